@@ -1,0 +1,68 @@
+# Sinew. `make demo` and `make check` are the two commands to begin with; `make help` lists the rest.
+
+CC = cc
+NVCC ?= $(shell command -v nvcc 2>/dev/null || ls /usr/local/cuda/bin/nvcc 2>/dev/null)
+CUDA ?= $(if $(NVCC),yes,no)
+PREFIX ?= /usr/local
+BUILD ?= build
+BIN ?= bin
+
+# The warning set, for gcc and clang alike; `make WERROR=` to live with them.
+WARN = -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wconversion -Wno-sign-conversion -Wstrict-prototypes \
+       -Wmissing-prototypes -Wpointer-arith -Wcast-qual -Wwrite-strings -Wundef -Wformat=2
+WERROR = -Werror
+OPT = -O3
+# No contraction: a fused multiply-add that one compiler makes and another does not would change results.
+CFLAGS = $(OPT) -g
+CSTD = -std=c11 -D_XOPEN_SOURCE=700 -D_DEFAULT_SOURCE -ffp-contract=off -fno-math-errno -pthread
+CPPFLAGS = -Icommon -I.
+ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(CPPFLAGS) -MMD -MP
+LDLIBS = -lz -lm -pthread
+EMBREE = -lembree3
+
+TOOLS = voxelise attach bind tled-run sinew sinew-deform sinew-info sinew-diff sinew-export
+
+# Every .c of these folders is the library, but for mains.
+LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/device/*.c)
+LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
+LIB := $(BUILD)/libsinew.a
+
+.PHONY: all
+all: $(TOOLS:%=$(BIN)/%)
+
+$(LIB): $(LIB_OBJ)
+	@rm -f $@
+	@ar rcs $@ $^
+
+$(BUILD)/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -c -o $@ $<
+
+# A tool: its main is the file of its name; what else its folder holds belongs to it.
+objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
+VOXELISE_SRC := $(wildcard voxelise/*.c)
+ATTACH_SRC := $(wildcard attach/*.c)
+BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
+TLED_SRC := $(wildcard tled/*.c)
+EXPORT_MODULES := $(wildcard common/tools/export_*.c)
+
+define tool
+$(BIN)/$(1): $(call objects,$(2)) $(LIB)
+	@mkdir -p $$(@D)
+	$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $(3) $$(LDLIBS)
+endef
+$(eval $(call tool,voxelise,$(VOXELISE_SRC),$$(EMBREE)))
+$(eval $(call tool,attach,$(ATTACH_SRC)))
+$(eval $(call tool,bind,bind/bind.c $(BIND_MODULES)))
+$(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
+$(eval $(call tool,tled-run,$(TLED_SRC)))
+$(eval $(call tool,sinew,common/tools/sinew.c))
+$(eval $(call tool,sinew-info,common/tools/sinew-info.c))
+$(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))
+$(eval $(call tool,sinew-export,common/tools/sinew-export.c $(EXPORT_MODULES)))
+
+.PHONY: clean
+clean:
+	rm -rf $(BUILD) $(BIN) out
+
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -1,0 +1,65 @@
+#include "base/err.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static size_t put_place(char *to, size_t size, const char *place, int64_t line)
+{
+    int n = 0;
+    if (place && line > 0)
+        n = snprintf(to, size, "%s:%lld: ", place, (long long)line);
+    else if (place)
+        n = snprintf(to, size, "%s: ", place);
+    return n < 0 ? 0 : (size_t)n < size ? (size_t)n : size - 1;
+}
+
+int err_set(err *e, const char *place, int64_t line, const char *format, ...)
+{
+    if (e->status)
+        return -1;
+    e->status = STATUS_BAD;
+    size_t at = put_place(e->text, sizeof e->text, place, line);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(e->text + at, sizeof e->text - at, format, args);
+    va_end(args);
+    return -1;
+}
+
+int err_system(err *e, const char *place, int code, const char *what)
+{
+    return err_set(e, place, 0, "%s: %s", what, strerror(code));
+}
+
+int err_memory(err *e, const char *what)
+{
+    return err_set(e, NULL, 0, "out of memory for %s; a smaller model or a larger machine is needed", what);
+}
+
+void notes_add(notes *n, const char *format, ...)
+{
+    char text[1000];
+    if (!n)
+        return;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    char **grown = realloc(n->line, ((size_t)n->count + 1) * sizeof *grown);
+    if (!grown)
+        return;
+    n->line = grown;
+    n->line[n->count] = strdup(text);
+    if (n->line[n->count])
+        n->count++;
+}
+
+void notes_free(notes *n)
+{
+    for (int i = 0; i < n->count; i++)
+        free(n->line[i]);
+    free(n->line);
+    *n = (notes){0};
+}

@@ -1,0 +1,44 @@
+/* An error and its place. The caller owns the struct (mostly one on main's stack); a library function
+ * that fails fills it and returns -1 or NULL. Only mains print: tool_end() in tool.h. Notes are the
+ * warnings that a library gathers on the way; the main prints them and frees the list.
+ */
+#ifndef SINEW_ERR_H
+#define SINEW_ERR_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { STATUS_OK = 0, STATUS_BAD = 1, STATUS_USAGE = 2, STATUS_DIVERGED = 3 };
+
+typedef struct err {
+    int status;      /* the exit status it asks for; 0: no error */
+    bool silent;     /* the tool before us in the pipe has said it already */
+    char text[1000]; /* "place:line: what is wrong; what was expected" */
+} err;
+
+typedef struct notes {
+    char **line; /* owned */
+    int count;
+} notes;
+
+#if defined(__GNUC__)
+#define SINEW_PRINTF(f, a) __attribute__((format(printf, f, a)))
+#else
+#define SINEW_PRINTF(f, a)
+#endif
+
+/* Fills e with status 1. place NULL: no place; line 0: no line. Always returns -1. The first error stands:
+ * a second call on a filled err changes nothing. */
+int err_set(err *e, const char *place, int64_t line, const char *format, ...) SINEW_PRINTF(4, 5);
+
+/* The same for a failed system call: appends strerror of the given errno value. */
+int err_system(err *e, const char *place, int code, const char *what);
+
+/* Out of memory, naming what for. Returns -1. */
+int err_memory(err *e, const char *what);
+
+/* Adds a warning. A note that cannot be stored for want of memory is lost. n may be NULL. */
+void notes_add(notes *n, const char *format, ...) SINEW_PRINTF(2, 3);
+void notes_free(notes *n);
+
+#endif

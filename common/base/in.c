@@ -1,0 +1,265 @@
+#include "base/in.h"
+
+#include "base/mem.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+
+enum { CHUNK = 1 << 18 };
+
+struct in {
+    char *name;
+    int fd; /* -1: memory */
+    const unsigned char *memory;
+    size_t memory_left;
+    bool gzip, member_ended, ended;
+    z_stream z;
+    unsigned char *raw; /* compressed bytes, where gzip */
+    unsigned char *buffer;
+    size_t at, filled; /* the plain bytes not yet taken: buffer[at..filled) */
+    char *line;
+    int64_t line_capacity, lines;
+};
+
+/* Bytes as they come from the file or memory. Returns how many, 0 at the end, -1 on failure. */
+static int64_t fetch(in *s, unsigned char *to, size_t size, err *e)
+{
+    if (s->fd < 0) {
+        size_t n = size < s->memory_left ? size : s->memory_left;
+        if (n)
+            memcpy(to, s->memory, n);
+        s->memory += n;
+        s->memory_left -= n;
+        return (int64_t)n;
+    }
+    for (;;) {
+        ssize_t n = read(s->fd, to, size);
+        if (n >= 0)
+            return n;
+        if (errno != EINTR)
+            return err_system(e, s->name, errno, "cannot read");
+    }
+}
+
+static int gzip_start(in *s, err *e)
+{
+    s->raw = mem_array(CHUNK, 1, "reading gzip", e);
+    if (!s->raw)
+        return -1;
+    memcpy(s->raw, s->buffer, s->filled);
+    s->z.next_in = s->raw;
+    s->z.avail_in = (uInt)s->filled;
+    s->filled = 0;
+    if (inflateInit2(&s->z, 15 + 16) != Z_OK)
+        return err_memory(e, "reading gzip");
+    s->gzip = true;
+    return 0;
+}
+
+/* Inflates into the empty buffer until at least a byte came or the data ended. */
+static int gzip_fill(in *s, err *e)
+{
+    s->z.next_out = s->buffer;
+    s->z.avail_out = CHUNK;
+    while (s->z.avail_out == CHUNK) {
+        if (!s->z.avail_in) {
+            int64_t n = fetch(s, s->raw, CHUNK, e);
+            if (n < 0)
+                return -1;
+            if (!n && !s->member_ended)
+                return err_set(e, s->name, 0, "gzip data is cut short; expected its end");
+            if (!n)
+                break;
+            s->z.next_in = s->raw;
+            s->z.avail_in = (uInt)n;
+        }
+        if (s->member_ended && inflateReset(&s->z) != Z_OK)
+            return err_memory(e, "reading gzip");
+        int code = inflate(&s->z, Z_NO_FLUSH);
+        s->member_ended = code == Z_STREAM_END;
+        if (code != Z_OK && code != Z_STREAM_END)
+            return err_set(e, s->name, 0, "gzip data is damaged (%s)", s->z.msg ? s->z.msg : "no reason given");
+    }
+    s->filled = CHUNK - s->z.avail_out;
+    return 0;
+}
+
+/* Refills the empty buffer; `ended` is set where nothing more comes. */
+static int fill(in *s, err *e)
+{
+    s->at = s->filled = 0;
+    if (s->gzip) {
+        if (gzip_fill(s, e))
+            return -1;
+    } else {
+        int64_t n = fetch(s, s->buffer, CHUNK, e);
+        if (n < 0)
+            return -1;
+        s->filled = (size_t)n;
+    }
+    s->ended = !s->filled;
+    return 0;
+}
+
+/* The first bytes say whether it is gzip; a pipe may give them one at a time. */
+static int sniff(in *s, err *e)
+{
+    while (s->filled < 2) {
+        int64_t n = fetch(s, s->buffer + s->filled, CHUNK - s->filled, e);
+        if (n < 0)
+            return -1;
+        if (!n)
+            break;
+        s->filled += (size_t)n;
+    }
+    if (s->filled >= 2 && s->buffer[0] == 0x1f && s->buffer[1] == 0x8b)
+        return gzip_start(s, e);
+    return 0;
+}
+
+static in *in_new(int fd, const char *name, const void *memory, size_t size, err *e)
+{
+    in *s = mem_array(1, sizeof *s, "a stream", e);
+    if (!s)
+        return NULL;
+    s->fd = fd;
+    s->memory = memory;
+    s->memory_left = size;
+    s->name = mem_text(name, e);
+    s->buffer = mem_array(CHUNK, 1, "a stream", e);
+    if (!s->name || !s->buffer || sniff(s, e)) {
+        in_close(s);
+        return NULL;
+    }
+    return s;
+}
+
+in *in_open(const char *path, err *e)
+{
+    if (!path || !strcmp(path, "-"))
+        return in_new(STDIN_FILENO, "stdin", NULL, 0, e);
+    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        err_system(e, path, errno, "cannot open");
+        return NULL;
+    }
+    return in_new(fd, path, NULL, 0, e);
+}
+
+in *in_memory(const void *bytes, size_t size, const char *name, err *e)
+{
+    return in_new(-1, name, bytes, size, e);
+}
+
+void in_close(in *s)
+{
+    if (!s)
+        return;
+    if (s->fd > STDIN_FILENO)
+        close(s->fd);
+    if (s->gzip)
+        inflateEnd(&s->z);
+    free(s->raw);
+    free(s->buffer);
+    free(s->line);
+    free(s->name);
+    free(s);
+}
+
+const char *in_name(const in *s)
+{
+    return s->name;
+}
+
+int64_t in_lines(const in *s)
+{
+    return s->lines;
+}
+
+int64_t in_read(in *s, void *bytes, size_t size, err *e)
+{
+    size_t got = 0;
+    while (got < size) {
+        if (s->at == s->filled) {
+            if (s->ended)
+                break;
+            if (fill(s, e))
+                return -1;
+            continue;
+        }
+        size_t n = s->filled - s->at < size - got ? s->filled - s->at : size - got;
+        memcpy((char *)bytes + got, s->buffer + s->at, n);
+        s->at += n;
+        got += n;
+    }
+    return (int64_t)got;
+}
+
+int in_peek(in *s, err *e)
+{
+    if (s->at == s->filled && !s->ended && fill(s, e))
+        return -2;
+    return s->at < s->filled ? s->buffer[s->at] : -1;
+}
+
+int64_t in_line(in *s, char **line, bool *ended, err *e)
+{
+    int64_t n = 0;
+    bool whole = false;
+    while (!whole) {
+        int next = in_peek(s, e);
+        if (next == -2)
+            return -2;
+        if (next == -1)
+            break;
+        const unsigned char *from = s->buffer + s->at;
+        const unsigned char *lf = memchr(from, '\n', s->filled - s->at);
+        int64_t part = lf ? lf - from : (int64_t)(s->filled - s->at);
+        if (mem_grow(&s->line, &s->line_capacity, n + part + 1, 1, "a line", e))
+            return -2;
+        memcpy(s->line + n, from, (size_t)part);
+        n += part;
+        whole = lf != NULL;
+        s->at += (size_t)part + whole;
+    }
+    if (!whole && !n)
+        return -1;
+    s->lines++;
+    if (memchr(s->line ? s->line : "", 0, (size_t)n)) {
+        err_set(e, s->name, s->lines, "a NUL byte in text; expected a text file");
+        return -2;
+    }
+    if (!s->line && mem_grow(&s->line, &s->line_capacity, 1, 1, "a line", e))
+        return -2;
+    n -= n && s->line[n - 1] == '\r';
+    s->line[n] = 0;
+    *line = s->line;
+    if (ended)
+        *ended = whole;
+    return n;
+}
+
+int64_t in_all(in *s, char **bytes, err *e)
+{
+    int64_t capacity = 0, n = 0;
+    *bytes = NULL;
+    for (;;) {
+        int64_t got = -1;
+        if (!mem_grow(bytes, &capacity, n + CHUNK + 1, 1, s->name, e))
+            got = in_read(s, *bytes + n, (size_t)(capacity - n - 1), e);
+        if (got < 0) {
+            free(*bytes);
+            *bytes = NULL;
+            return -1;
+        }
+        n += got;
+        if (!got)
+            break;
+    }
+    (*bytes)[n] = 0;
+    return n;
+}

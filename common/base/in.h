@@ -1,0 +1,41 @@
+/* A stream of bytes to read: a file, standard input ("-") or memory, gunzipped where it is gzip. The
+ * stream keeps its name and its count of lines for messages. It never seeks, and its memory grows only with the
+ * longest line asked for.
+ */
+#ifndef SINEW_IN_H
+#define SINEW_IN_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+typedef struct in in;
+
+/* Opens path; "-" or NULL is standard input, named "stdin". NULL with e filled on failure. */
+in *in_open(const char *path, err *e);
+
+/* Reads from bytes that stay the caller's (for tests and fuzzers). */
+in *in_memory(const void *bytes, size_t size, const char *name, err *e);
+
+void in_close(in *s);
+
+const char *in_name(const in *s);
+
+/* Lines taken so far by in_line: the number of the line it gave last. */
+int64_t in_lines(const in *s);
+
+/* Reads up to size bytes; less only at the end. -1 with e filled where reading or gunzipping fails. */
+int64_t in_read(in *s, void *bytes, size_t size, err *e);
+
+/* Looks at the next byte without taking it: 0 to 255, -1 at the end, -2 with e filled on failure. */
+int in_peek(in *s, err *e);
+
+/* The next line, without its end (LF or CR LF), NUL-terminated, valid until the next call on s.
+ * Returns its length, -1 at the end, -2 with e filled on failure. A NUL byte inside a line is an error.
+ * ended (may be NULL) gets false where the stream stopped before the line's LF. */
+int64_t in_line(in *s, char **line, bool *ended, err *e);
+
+/* All that is left, NUL-terminated; the caller frees *bytes. Returns the size, or -1 with e filled. */
+int64_t in_all(in *s, char **bytes, err *e);
+
+#endif

@@ -1,0 +1,23 @@
+/* Memory whose sizes are checked for overflow. What these return is the caller's to free(). */
+#ifndef SINEW_MEM_H
+#define SINEW_MEM_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Zeroed memory for count things of size bytes, or NULL with e filled. Never NULL for count 0. */
+void *mem_array(int64_t count, size_t size, const char *what, err *e);
+
+/* Makes *array (of *capacity things) hold at least need, at least doubling. Returns 0, or -1 with e filled
+ * and the array as it was. What is new is not zeroed. */
+int mem_grow(void *array, int64_t *capacity, int64_t need, size_t size, const char *what, err *e);
+
+/* A copy of text, or NULL with e filled. */
+char *mem_text(const char *text, err *e);
+
+/* Bytes of memory free for use now (MemAvailable), or a guess that is large where it cannot be known. */
+int64_t mem_available(void);
+
+#endif

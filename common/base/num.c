@@ -1,0 +1,242 @@
+#include "base/num.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* Powers of ten that a double holds exactly. */
+static const double ten_to[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+typedef struct decimal {
+    uint64_t digits; /* the significant digits as an integer */
+    int count;       /* how many of them, leading zeros aside */
+    int exponent;
+    bool negative;
+    const char *stop;
+} decimal;
+
+static const char *scan_digits(const char *p, const char *end, decimal *d, int scale)
+{
+    for (; p < end && *p >= '0' && *p <= '9'; p++) {
+        if (d->count < 19) {
+            d->digits = d->digits * 10 + (uint64_t)(*p - '0');
+            d->count += d->digits != 0;
+            d->exponent -= scale;
+        } else {
+            d->count++;
+            d->exponent += 1 - scale;
+        }
+    }
+    return p;
+}
+
+static const char *scan_exponent(const char *p, const char *end, decimal *d)
+{
+    const char *q = p + 1;
+    bool minus = false;
+    if (q < end && (*q == '+' || *q == '-'))
+        minus = *q++ == '-';
+    if (q >= end || *q < '0' || *q > '9')
+        return p;
+    int value = 0;
+    for (; q < end && *q >= '0' && *q <= '9'; q++)
+        if (value < 100000)
+            value = value * 10 + (*q - '0');
+    d->exponent += minus ? -value : value;
+    return q;
+}
+
+/* Splits text into sign, digits and exponent; false where it is not a number. */
+static bool scan_decimal(const char *text, const char *end, decimal *d)
+{
+    const char *p = text;
+    *d = (decimal){0};
+    if (p < end && (*p == '+' || *p == '-'))
+        d->negative = *p++ == '-';
+    const char *first = p;
+    p = scan_digits(p, end, d, 0);
+    int64_t seen = p - first;
+    if (p < end && *p == '.') {
+        const char *point = ++p;
+        p = scan_digits(p, end, d, 1);
+        seen += p - point;
+    }
+    if (!seen)
+        return false;
+    if (p < end && (*p == 'e' || *p == 'E'))
+        p = scan_exponent(p, end, d);
+    d->stop = p;
+    return true;
+}
+
+/* strtod wants a NUL at the end: a copy, on the stack unless someone wrote a thousand digits. */
+static int scan_slow(const char *text, const char *stop, double *value)
+{
+    char small[128];
+    size_t n = (size_t)(stop - text);
+    char *copy = n < sizeof small ? small : malloc(n + 1);
+    if (!copy)
+        return -1;
+    memcpy(copy, text, n);
+    copy[n] = 0;
+    *value = strtod(copy, NULL);
+    if (copy != small)
+        free(copy);
+    return isfinite(*value) ? 0 : -1;
+}
+
+int num_scan(const char *text, const char *end, const char **stop, double *value)
+{
+    decimal d;
+    if (!scan_decimal(text, end, &d))
+        return -1;
+    if (stop)
+        *stop = d.stop;
+    /* Clinger's fast path: both the digits and the power are exact, so one operation rounds correctly. */
+    if (d.count <= 19 && d.digits <= (UINT64_C(1) << 53) && d.exponent >= -22 && d.exponent <= 22) {
+        double v = (double)d.digits;
+        v = d.exponent < 0 ? v / ten_to[-d.exponent] : v * ten_to[d.exponent];
+        *value = d.negative ? -v : v;
+        return 0;
+    }
+    return scan_slow(text, d.stop, value);
+}
+
+int num_double(const char *text, double *value)
+{
+    const char *end = text + strlen(text), *stop;
+    return num_scan(text, end, &stop, value) || stop != end ? -1 : 0;
+}
+
+int num_int(const char *text, int64_t low, int64_t high, int64_t *value)
+{
+    char *stop;
+    if (!isdigit((unsigned char)text[text[0] == '-' || text[0] == '+']))
+        return -1;
+    errno = 0;
+    long long v = strtoll(text, &stop, 10);
+    if (errno || *stop || v < low || v > high)
+        return -1;
+    *value = v;
+    return 0;
+}
+
+static const struct {
+    const char *name;
+    num_unit unit;
+} units[] = {{"um", 1}, {"mm", 1000}, {"cm", 10000}, {"m", 1000000}, {"in", 25400}};
+
+enum { UNITS = sizeof units / sizeof *units };
+
+num_unit num_unit_of(const char *name)
+{
+    for (int i = 0; i < UNITS; i++)
+        if (!strcasecmp(name, units[i].name))
+            return units[i].unit;
+    return 0;
+}
+
+const char *num_unit_name(num_unit unit)
+{
+    for (int i = 0; i < UNITS; i++)
+        if (units[i].unit == unit)
+            return units[i].name;
+    return "?";
+}
+
+int num_length_of(const char *text, num_length *length)
+{
+    const char *end = text + strlen(text), *stop;
+    if (num_scan(text, end, &stop, &length->value))
+        return -1;
+    length->unit = *stop ? num_unit_of(stop) : 0;
+    return *stop && !length->unit ? -1 : 0;
+}
+
+double num_length_in(num_length length, num_unit unsuffixed, num_unit to)
+{
+    num_unit from = length.unit ? length.unit : unsuffixed;
+    if (from == to)
+        return length.value;
+    return from % to == 0 ? length.value * (from / to) : length.value * from / to;
+}
+
+/* Copies the item of a comma list that begins at *p into item and steps past its comma; false at the end. */
+static bool list_item(const char **p, char *item, size_t size)
+{
+    if (!*p)
+        return false;
+    const char *comma = strchr(*p, ',');
+    size_t n = comma ? (size_t)(comma - *p) : strlen(*p);
+    if (n >= size)
+        n = size - 1;
+    memcpy(item, *p, n);
+    item[n] = 0;
+    *p = comma ? comma + 1 : NULL;
+    return true;
+}
+
+int num_lengths_of(const char *text, num_length *list, int most)
+{
+    char item[64];
+    int n = 0;
+    while (list_item(&text, item, sizeof item))
+        if (n == most || num_length_of(item, &list[n++]))
+            return -1;
+    return n;
+}
+
+int num_list(const char *text, double *list, int most)
+{
+    char item[64];
+    int n = 0;
+    while (list_item(&text, item, sizeof item))
+        if (n == most || num_double(item, &list[n++]))
+            return -1;
+    return n;
+}
+
+/* Levenshtein's distance, letters of either case alike; names longer than the row are cut. */
+static int distance(const char *a, const char *b)
+{
+    enum { MOST = 64 };
+    int row[MOST + 1];
+    int nb = (int)strnlen(b, MOST);
+    for (int j = 0; j <= nb; j++)
+        row[j] = j;
+    for (int i = 0; a[i] && i < MOST; i++) {
+        int diagonal = row[0];
+        row[0] = i + 1;
+        for (int j = 0; j < nb; j++) {
+            bool same = tolower((unsigned char)a[i]) == tolower((unsigned char)b[j]);
+            int best = diagonal + !same;
+            diagonal = row[j + 1];
+            if (row[j + 1] + 1 < best)
+                best = row[j + 1] + 1;
+            if (row[j] + 1 < best)
+                best = row[j] + 1;
+            row[j + 1] = best;
+        }
+    }
+    return row[nb];
+}
+
+int num_nearest(const char *name, const char *const *names, int count)
+{
+    int limit = (int)strlen(name) / 3, best = -1;
+    if (limit < 1)
+        limit = 1;
+    for (int i = 0; i < count; i++) {
+        int d = distance(name, names[i]);
+        if (d <= limit) {
+            best = i;
+            limit = d - 1;
+        }
+    }
+    return best;
+}

@@ -1,0 +1,49 @@
+/* Numbers, lengths and lists as people write them: the whole text must be the number, in the C locale.
+ * Nothing here allocates or keeps state.
+ */
+#ifndef SINEW_NUM_H
+#define SINEW_NUM_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+/* A unit of length, as its count of micrometres; 0: none was written. */
+typedef int num_unit;
+
+typedef struct num_length {
+    double value;
+    num_unit unit; /* the suffix's; 0: it had none */
+} num_length;
+
+/* Reads a finite decimal number from text up to end; *stop (may be NULL) gets where it ends. Returns 0, or -1
+ * where there is no number or it is out of a double's range. Exact (correctly rounded), and fast for what
+ * people and tools write. "nan" and "inf" are not numbers here. */
+int num_scan(const char *text, const char *end, const char **stop, double *value);
+
+/* The whole of text as a finite number. Returns 0 or -1. */
+int num_double(const char *text, double *value);
+
+/* The whole of text as a decimal integer within [low, high]. Returns 0 or -1. */
+int num_int(const char *text, int64_t low, int64_t high, int64_t *value);
+
+/* um mm cm m in (any case), or 0 where it is none of these. */
+num_unit num_unit_of(const char *name);
+const char *num_unit_name(num_unit unit);
+
+/* "4cm", "2.5mm", "0.1": the whole of text. Returns 0 or -1. */
+int num_length_of(const char *text, num_length *length);
+
+/* A length in the unit `to`; what has no suffix is taken to be in `unsuffixed`. One rounding. */
+double num_length_in(num_length length, num_unit unsuffixed, num_unit to);
+
+/* A list of lengths between commas, at most `most`. Returns how many, or -1. */
+int num_lengths_of(const char *text, num_length *list, int most);
+
+/* A list of numbers between commas, at most `most`. Returns how many, or -1. */
+int num_list(const char *text, double *list, int most);
+
+/* Of `count` names the one nearest to name (edit distance at most a third of its length, at least 1), or -1. */
+int num_nearest(const char *name, const char *const *names, int count);
+
+#endif

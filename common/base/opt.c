@@ -1,0 +1,516 @@
+#include "base/opt.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HIDDEN = 1 << 8, MODELS = 1 << 9, THREADED = 1 << 10 };
+
+/* What every tool has. MODELS: only those that write a model; THREADED: only those with threads. */
+#define COMMON(field) offsetof(opt_common, field)
+static const opt common_options[] = {
+    {'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT, "write FILE, whole or not at all"},
+    {0, "text", NULL, OPT_FLAG, COMMON(text), 0, 0, NULL, OPT_OUTPUT | MODELS, "write text, not binary"},
+    {'z', "gzip", NULL, OPT_FLAG, COMMON(gzip), 0, 0, NULL, OPT_OUTPUT | MODELS, "gzip the output"},
+    {0, "threads", "N", OPT_INT, COMMON(threads), 1, 1024, NULL, OPT_OUTPUT | THREADED, "threads"},
+    {'q', "quiet", NULL, OPT_FLAG, COMMON(quiet), 0, 0, NULL, OPT_OUTPUT, "say only what is wrong"},
+    {'v', "verbose", NULL, OPT_FLAG, COMMON(verbose), 0, 0, NULL, OPT_OUTPUT, "say more"},
+    {'h', "help", NULL, OPT_FLAG, COMMON(help), 0, 0, NULL, OPT_OUTPUT, "this text"},
+    {'V', "version", NULL, OPT_FLAG, COMMON(version), 0, 0, NULL, OPT_OUTPUT, "the version"},
+    {0, "table", "mdoc|bash", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | HIDDEN, "for make"},
+    {0}};
+
+static bool is_end(const opt *o)
+{
+    return !o->name && !o->letter;
+}
+
+/* The i-th option of the tool, its own first, then the common ones that it has; NULL past the last. */
+static const opt *option_at(const opt_tool *tool, int i)
+{
+    const opt *o = tool->options;
+    for (; !is_end(o); o++)
+        if (!i--)
+            return o;
+    for (o = common_options; !is_end(o); o++) {
+        if ((o->flags & MODELS && !tool->writes_model) || (o->flags & THREADED && !tool->threaded))
+            continue;
+        if (!i--)
+            return o;
+    }
+    return NULL;
+}
+
+static const opt *find_letter(const opt_tool *tool, char letter)
+{
+    const opt *o;
+    for (int i = 0; (o = option_at(tool, i)); i++)
+        if (o->letter == letter)
+            return o;
+    return NULL;
+}
+
+static int usage_error(err *e)
+{
+    e->status = STATUS_USAGE;
+    return -1;
+}
+
+static int unknown_option(const opt_tool *tool, const char *name, size_t length, err *e)
+{
+    const char *names[64];
+    char word[64];
+    const opt *o;
+    int n = 0;
+    for (int i = 0; (o = option_at(tool, i)) && n < 64; i++)
+        if (o->name && !(o->flags & HIDDEN))
+            names[n++] = o->name;
+    snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), name);
+    int near = num_nearest(word, names, n);
+    if (near >= 0)
+        err_set(e, NULL, 0, "no option --%s; did you mean --%s?", word, names[near]);
+    else
+        err_set(e, NULL, 0, "no option --%s; see %s --help", word, tool->name);
+    return usage_error(e);
+}
+
+/* An exact name, or the only one that begins so. */
+static const opt *find_name(const opt_tool *tool, const char *name, size_t length, err *e)
+{
+    const opt *o, *found = NULL;
+    int count = 0;
+    for (int i = 0; (o = option_at(tool, i)); i++) {
+        if (!o->name || strncmp(o->name, name, length) != 0 || (o->flags & HIDDEN && o->name[length]))
+            continue;
+        if (!o->name[length])
+            return o;
+        found = o;
+        count++;
+    }
+    if (count == 1)
+        return found;
+    if (count > 1)
+        err_set(e, NULL, 0, "--%.*s could be several options; write more of it", (int)length, name), usage_error(e);
+    else
+        unknown_option(tool, name, length, e);
+    return NULL;
+}
+
+static int bad_value(const opt *o, const char *text, const char *expected, err *e)
+{
+    char name[64];
+    if (o->name)
+        snprintf(name, sizeof name, "--%s", o->name);
+    else
+        snprintf(name, sizeof name, "-%c", o->letter);
+    err_set(e, NULL, 0, "%s '%s': expected %s", name, text, expected);
+    return usage_error(e);
+}
+
+/* "a number from 0 to 1": what the table allows. */
+static const char *range_text(const opt *o, const char *what, char *to, size_t size)
+{
+    if (o->low == 0 && o->high == 0)
+        snprintf(to, size, "%s", what);
+    else if (isinf(o->high))
+        snprintf(to, size, "%s, at least %g", what, o->low);
+    else
+        snprintf(to, size, "%s from %g to %g", what, o->low, o->high);
+    return to;
+}
+
+static bool in_range(const opt *o, double value)
+{
+    return (o->low == 0 && o->high == 0) || (value >= o->low && value <= o->high);
+}
+
+static int set_int(const opt *o, const char *text, int64_t *to, err *e)
+{
+    char want[128];
+    if (num_int(text, INT64_MIN, INT64_MAX, to) || !in_range(o, (double)*to))
+        return bad_value(o, text, range_text(o, "a whole number", want, sizeof want), e);
+    return 0;
+}
+
+static int set_number(const opt *o, const char *text, double *to, err *e)
+{
+    char want[128];
+    if (num_double(text, to) || !in_range(o, *to))
+        return bad_value(o, text, range_text(o, "a number", want, sizeof want), e);
+    return 0;
+}
+
+static int set_lengths(const opt *o, const char *text, opt_lengths *to, err *e)
+{
+    int most = o->high > 0 ? (int)o->high : 6;
+    to->count = num_lengths_of(text, to->value, most);
+    if (to->count >= 1 && to->count >= (int)o->low)
+        return 0;
+    char want[128];
+    snprintf(want, sizeof want, "%s (%s), each a number with or without um, mm, cm, m or in", o->arg,
+             most > 1 ? "between commas" : "a length");
+    return bad_value(o, text, want, e);
+}
+
+static int set_numbers(const opt *o, const char *text, opt_numbers *to, err *e)
+{
+    to->count = num_list(text, to->value, o->high > 0 ? (int)o->high : 6);
+    if (to->count >= 1 && to->count >= (int)o->low)
+        return 0;
+    char want[128];
+    snprintf(want, sizeof want, "%s, numbers between commas", o->arg);
+    return bad_value(o, text, want, e);
+}
+
+static int set_choice(const opt *o, const char *text, int *to, err *e)
+{
+    const char *p = o->choices;
+    size_t length = strlen(text);
+    for (int i = 0; p; i++) {
+        const char *bar = strchr(p, '|');
+        if (length == (bar ? (size_t)(bar - p) : strlen(p)) && !strncmp(p, text, length)) {
+            *to = i;
+            return 0;
+        }
+        p = bar ? bar + 1 : NULL;
+    }
+    return bad_value(o, text, o->choices, e);
+}
+
+static int add_to_list(const opt *o, const char *text, opt_list *to, err *e)
+{
+    if (to->count == (int)(sizeof to->value / sizeof *to->value))
+        return bad_value(o, text, "at most 64 of these", e);
+    to->value[to->count++] = text;
+    return 0;
+}
+
+static int set_value(const opt *o, const char *text, void *options, err *e)
+{
+    void *to = (char *)options + o->to;
+    switch (o->kind) {
+    case OPT_FLAG:
+        *(bool *)to = true;
+        return 0;
+    case OPT_TEXT:
+        *(const char **)to = text;
+        return *text ? 0 : bad_value(o, text, o->arg, e);
+    case OPT_INT:
+        return set_int(o, text, to, e);
+    case OPT_NUMBER:
+        return set_number(o, text, to, e);
+    case OPT_LENGTHS:
+        return set_lengths(o, text, to, e);
+    case OPT_NUMBERS:
+        return set_numbers(o, text, to, e);
+    case OPT_CHOICE:
+        return set_choice(o, text, to, e);
+    case OPT_LIST:
+        return add_to_list(o, text, to, e);
+    }
+    return -1;
+}
+
+/* A command line being read. */
+typedef struct scan {
+    const opt_tool *tool;
+    int argc, at;
+    char **argv;
+    void *options;
+    uint64_t seen; /* bit i: option i was given */
+} scan;
+
+static void mark_seen(scan *s, const opt *o)
+{
+    const opt *other;
+    for (int i = 0; i < 64 && (other = option_at(s->tool, i)); i++)
+        if (other == o)
+            s->seen |= UINT64_C(1) << i;
+}
+
+/* value: what is joined to the option, or NULL to take the next word. */
+static int take(scan *s, const opt *o, const char *value, err *e)
+{
+    mark_seen(s, o);
+    if (o->kind != OPT_FLAG && !value) {
+        if (s->at + 1 >= s->argc) {
+            err_set(e, NULL, 0, "%s needs a value: %s", s->argv[s->at], o->arg);
+            return usage_error(e);
+        }
+        value = s->argv[++s->at];
+    }
+    return set_value(o, value ? value : "", s->options, e);
+}
+
+static int take_long(scan *s, const char *word, err *e)
+{
+    const char *equals = strchr(word, '=');
+    size_t length = equals ? (size_t)(equals - word) : strlen(word);
+    const opt *o = find_name(s->tool, word, length, e);
+    if (!o)
+        return -1;
+    if (equals && o->kind == OPT_FLAG) {
+        err_set(e, NULL, 0, "--%s takes no value", o->name);
+        return usage_error(e);
+    }
+    return take(s, o, equals ? equals + 1 : NULL, e);
+}
+
+/* "-qv", "-s2.5", "-s 2.5" */
+static int take_letters(scan *s, const char *letters, err *e)
+{
+    for (; *letters; letters++) {
+        const opt *o = find_letter(s->tool, *letters);
+        if (!o) {
+            err_set(e, NULL, 0, "no option -%c; see %s --help", *letters, s->tool->name);
+            return usage_error(e);
+        }
+        if (o->kind != OPT_FLAG)
+            return take(s, o, letters[1] ? letters + 1 : NULL, e);
+        if (take(s, o, NULL, e))
+            return -1;
+    }
+    return 0;
+}
+
+static int check_required(const scan *s, int operands, err *e)
+{
+    const opt *o;
+    for (int i = 0; i < 64 && (o = option_at(s->tool, i)); i++)
+        if (o->flags & OPT_REQUIRED && !(s->seen >> i & 1)) {
+            err_set(e, NULL, 0, "--%s %s is required; see %s --help", o->name, o->arg, s->tool->name);
+            return usage_error(e);
+        }
+    if (operands < s->tool->operands_min)
+        err_set(e, NULL, 0, "missing operand; expected %s", s->tool->operands);
+    else if (operands > s->tool->operands_max)
+        err_set(e, NULL, 0, "extra operand '%s'; expected %s", s->argv[s->tool->operands_max + 1],
+                *s->tool->operands ? s->tool->operands : "none");
+    else
+        return 0;
+    return usage_error(e);
+}
+
+int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e)
+{
+    scan s = {.tool = tool, .argc = argc, .argv = argv, .options = options};
+    const opt_common *common = options;
+    bool only_operands = false;
+    int operands = 0;
+    for (s.at = 1; s.at < argc; s.at++) {
+        char *word = argv[s.at];
+        int bad = 0;
+        if (only_operands || word[0] != '-' || !word[1])
+            argv[++operands] = word;
+        else if (!strcmp(word, "--"))
+            only_operands = true;
+        else
+            bad = word[1] == '-' ? take_long(&s, word + 2, e) : take_letters(&s, word + 1, e);
+        if (bad)
+            return -1;
+    }
+    if (common->help || common->version || common->table)
+        return operands;
+    return check_required(&s, operands, e) ? -1 : operands;
+}
+
+/* "-s, --size H|HX,HY,HZ" */
+static void put_option(const opt *o, char *to, size_t size)
+{
+    int n = 0;
+    if (o->letter)
+        n = snprintf(to, size, "-%c%s", o->letter, o->name ? ", " : "");
+    if (o->name)
+        n += snprintf(to + n, size - (size_t)n, "--%s", o->name);
+    if (o->arg)
+        snprintf(to + n, size - (size_t)n, " %s", o->arg);
+}
+
+static bool is_common(const opt *o)
+{
+    return o >= common_options && o < common_options + sizeof common_options / sizeof *common_options;
+}
+
+/* The common options on few lines, each word whole, at most 80 columns. */
+static void put_common(const opt_tool *tool, out *to)
+{
+    const opt *o;
+    size_t column = 0;
+    for (int i = 0; (o = option_at(tool, i)); i++) {
+        char item[160], name[80];
+        if (!is_common(o) || o->flags & HIDDEN)
+            continue;
+        put_option(o, name, sizeof name);
+        int n = snprintf(item, sizeof item, "%s %s", name, o->help);
+        if (column && column + (size_t)n + 2 > 78) {
+            out_text(to, "\n");
+            column = 0;
+        }
+        out_format(to, "%s%s", column ? "; " : "  ", item);
+        column += (size_t)n + 2;
+    }
+    out_text(to, "\n");
+}
+
+void opt_usage(const opt_tool *tool, out *to)
+{
+    const opt *o;
+    out_format(to, "usage: %s", tool->name);
+    for (o = tool->options; !is_end(o); o++)
+        if (o->flags & OPT_REQUIRED)
+            out_format(to, " --%s %s", o->name, o->arg);
+    out_format(to, " [options]%s%s\n%s\n", *tool->operands ? " " : "", tool->operands, tool->purpose);
+    for (o = tool->options; !is_end(o); o++) {
+        char name[80];
+        put_option(o, name, sizeof name);
+        out_format(to, strlen(name) > 30 ? "  %s  %s\n" : "  %-30s  %s\n", name, o->help);
+    }
+    put_common(tool, to);
+}
+
+/* mdoc wants its special characters away from macros' arguments; '|' is a delimiter and stands by itself. */
+static void put_mdoc_arg(const char *arg, out *to)
+{
+    for (const char *p = arg; *p; p++)
+        if (*p == '|')
+            out_text(to, " | ");
+        else
+            out_write(to, p, 1);
+}
+
+static void put_mdoc(const opt_tool *tool, out *to)
+{
+    const opt *o;
+    out_format(to, ".Nm %s\n", tool->name);
+    for (int i = 0; (o = option_at(tool, i)); i++) {
+        if (o->flags & HIDDEN)
+            continue;
+        out_text(to, o->flags & OPT_REQUIRED ? ".Fl" : ".Op Fl");
+        if (o->letter)
+            out_format(to, " %c", o->letter);
+        else
+            out_format(to, " -%s", o->name);
+        if (o->arg) {
+            out_text(to, " Ar ");
+            put_mdoc_arg(o->arg, to);
+        }
+        out_text(to, "\n");
+    }
+    if (*tool->operands) {
+        out_text(to, tool->operands_min ? ".Ar " : ".Op Ar ");
+        put_mdoc_arg(tool->operands, to);
+        out_text(to, "\n");
+    }
+}
+
+static void put_bash(const opt_tool *tool, out *to)
+{
+    const opt *o;
+    out_format(to, "complete -o default -W '");
+    for (int i = 0; (o = option_at(tool, i)); i++)
+        if (o->name && !(o->flags & HIDDEN))
+            out_format(to, "%s--%s", i ? " " : "", o->name);
+    out_format(to, "' %s\n", tool->name);
+}
+
+int opt_table(const opt_tool *tool, const char *kind, out *to, err *e)
+{
+    if (!strcmp(kind, "mdoc"))
+        put_mdoc(tool, to);
+    else if (!strcmp(kind, "bash"))
+        put_bash(tool, to);
+    else {
+        err_set(e, NULL, 0, "--table '%s': expected mdoc or bash", kind);
+        return usage_error(e);
+    }
+    return 0;
+}
+
+/* The base name: paths stay out of results, and so does what a reader would make of blanks. */
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash && slash[1] ? slash + 1 : path;
+}
+
+static void put_lengths(const opt_lengths *l, out *to)
+{
+    for (int i = 0; i < l->count; i++)
+        out_format(to, "%s%.17g%s", i ? "," : " ", l->value[i].value,
+                   l->value[i].unit ? num_unit_name(l->value[i].unit) : "");
+}
+
+static void put_numbers(const opt_numbers *l, out *to)
+{
+    for (int i = 0; i < l->count; i++)
+        out_format(to, "%s%.17g", i ? "," : " ", l->value[i]);
+}
+
+static void put_choice(const opt *o, int value, out *to)
+{
+    const char *p = o->choices;
+    for (int i = 0; i < value && p; i++)
+        p = strchr(p, '|') + 1;
+    out_format(to, " %.*s", (int)strcspn(p, "|"), p);
+}
+
+static void put_name(const opt *o, out *to)
+{
+    out_text(to, out_count(to) ? " " : "");
+    if (o->letter)
+        out_format(to, "-%c", o->letter);
+    else
+        out_format(to, "--%s", o->name);
+}
+
+/* Writes the option as it stands; what is off or was not given (texts, lists) is left out. */
+static void put_value(const opt *o, const void *options, out *to)
+{
+    const void *at = (const char *)options + o->to;
+    const opt_list *list = at;
+    if ((o->kind == OPT_FLAG && !*(const bool *)at) || (o->kind == OPT_TEXT && !*(const char *const *)at) ||
+        (o->kind == OPT_LENGTHS && !((const opt_lengths *)at)->count) ||
+        (o->kind == OPT_NUMBERS && !((const opt_numbers *)at)->count) ||
+        (o->kind == OPT_NUMBER && isnan(*(const double *)at)) || (o->kind == OPT_INT && *(const int64_t *)at < 0))
+        return;
+    if (o->kind == OPT_LIST) {
+        for (int i = 0; i < list->count; i++) {
+            put_name(o, to);
+            out_format(to, " %s", base_name(list->value[i]));
+        }
+        return;
+    }
+    put_name(o, to);
+    if (o->kind == OPT_TEXT)
+        out_format(to, " %s", base_name(*(const char *const *)at));
+    else if (o->kind == OPT_INT)
+        out_format(to, " %lld", (long long)*(const int64_t *)at);
+    else if (o->kind == OPT_NUMBER)
+        out_format(to, " %.17g", *(const double *)at);
+    else if (o->kind == OPT_LENGTHS)
+        put_lengths(at, to);
+    else if (o->kind == OPT_NUMBERS)
+        put_numbers(at, to);
+    else if (o->kind == OPT_CHOICE)
+        put_choice(o, *(const int *)at, to);
+}
+
+char *opt_provenance(const opt_tool *tool, const void *options, int operands, char *const *operand, err *e)
+{
+    out *to = out_memory(e);
+    if (!to)
+        return NULL;
+    for (const opt *o = tool->options; !is_end(o); o++)
+        if (!(o->flags & OPT_OUTPUT))
+            put_value(o, options, to);
+    for (int i = 0; i < operands; i++)
+        out_format(to, "%s%s", out_count(to) ? " " : "", base_name(operand[i]));
+    out_write(to, "", 1);
+    size_t size;
+    char *text = mem_text((const char *)out_bytes(to, &size), e);
+    out_discard(to);
+    return text;
+}

@@ -1,0 +1,89 @@
+/* Command lines from one table a tool: parsing, the usage text, shell completion and the manual's synopsis
+ * all come from it. A table says where each value goes as an offset into the tool's own struct of options, whose
+ * first member is an opt_common. Nothing here prints; texts point into argv.
+ */
+#ifndef SINEW_OPT_H
+#define SINEW_OPT_H
+
+#include "base/err.h"
+#include "base/num.h"
+#include "base/out.h"
+
+#include <stddef.h>
+
+typedef enum opt_kind {
+    OPT_FLAG,    /* bool */
+    OPT_TEXT,    /* const char * */
+    OPT_INT,     /* int64_t within low..high; the caller's default -1 means: not given */
+    OPT_NUMBER,  /* double within low..high; the caller's default NAN means: not given */
+    OPT_LENGTHS, /* opt_lengths: 1 to `high` lengths between commas, each with its suffix or none */
+    OPT_NUMBERS, /* opt_numbers: `low` to `high` numbers between commas */
+    OPT_CHOICE,  /* int: the index in `choices` (names between '|') */
+    OPT_LIST     /* opt_list: may be given again; each value is split at its commas by whoever reads it */
+} opt_kind;
+
+typedef struct opt_lengths {
+    int count; /* 0: not given */
+    num_length value[6];
+} opt_lengths;
+
+typedef struct opt_numbers {
+    int count;
+    double value[6];
+} opt_numbers;
+
+typedef struct opt_list {
+    int count;
+    const char *value[64];
+} opt_list;
+
+enum {
+    OPT_REQUIRED = 1, /* usage error without it (unless -h, -V) */
+    OPT_OUTPUT = 2    /* does not change the result: left out of provenance */
+};
+
+typedef struct opt {
+    char letter;      /* 0: none */
+    const char *name; /* long, without the dashes; NULL: letter only */
+    const char *arg;  /* metavariable, e.g. "SECONDS"; NULL for a flag */
+    opt_kind kind;
+    size_t to;        /* offsetof(options, field) */
+    double low, high; /* range, inclusive; both 0: any */
+    const char *choices;
+    int flags;
+    const char *help; /* a few words, unit included */
+} opt;
+
+typedef struct opt_common {
+    bool help, version, text, gzip, quiet, verbose;
+    const char *output; /* -o */
+    int64_t threads;    /* 0: not given */
+    const char *table;  /* --table mdoc|bash: for the manual and completion */
+} opt_common;
+
+typedef struct opt_tool {
+    const char *name;     /* "voxelise" */
+    const char *purpose;  /* one line */
+    const char *operands; /* as in the usage, e.g. "surface.obj|-"; "" for none */
+    int operands_min, operands_max;
+    bool writes_model;  /* has --text and -z */
+    bool threaded;      /* has --threads */
+    const opt *options; /* ends with {.name = NULL, .letter = 0} */
+} opt_tool;
+
+/* Parses argv into options (with its defaults set by the caller) and moves the operands to the front of argv, from
+ * argv[1]. Returns the count of operands, or -1 with e filled (status 2). With -h, -V or --table, nothing more is
+ * required. */
+int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e);
+
+/* Usage: at most 24 lines of 80 columns. */
+void opt_usage(const opt_tool *tool, out *o);
+
+/* kind "mdoc": the manual's SYNOPSIS; "bash": a completion script. -1 with e filled for another kind. */
+int opt_table(const opt_tool *tool, const char *kind, out *o, err *e);
+
+/* What of the command line changes the result, for provenance: options in table order, base names of files, then
+ * operands. The caller frees it; NULL with e filled. */
+char *opt_provenance(const opt_tool *tool, const void *options, int operands, char *const *operand, err *e);
+
+#endif

@@ -1,0 +1,342 @@
+#include "base/out.h"
+
+#include "base/mem.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+enum { CHUNK = 1 << 18 };
+
+struct out {
+    int fd;          /* -1: memory */
+    char *name;      /* for messages */
+    char *target;    /* where the file goes at the end; NULL: written directly */
+    char *temporary; /* its name until then; NULL while it has none (O_TMPFILE) */
+    bool gzip;
+    z_stream z;
+    unsigned char *packed;
+    unsigned char *buffer;
+    int64_t capacity, filled;
+    int64_t count;
+    err failed;
+};
+
+static void put(out *o, const unsigned char *bytes, size_t size)
+{
+    while (size && !o->failed.status) {
+        ssize_t n = write(o->fd, bytes, size);
+        if (n >= 0) {
+            bytes += n;
+            size -= (size_t)n;
+        } else if (errno == EPIPE) {
+            /* Someone had SIGPIPE ignored: end as quietly all the same. */
+            signal(SIGPIPE, SIG_DFL);
+            raise(SIGPIPE);
+        } else if (errno != EINTR) {
+            err_system(&o->failed, o->name, errno, "cannot write");
+        }
+    }
+}
+
+static void pack(out *o, const unsigned char *bytes, size_t size, int flush)
+{
+    /* zlib's next_in is not const, but it is only read. */
+    memcpy(&o->z.next_in, &bytes, sizeof bytes);
+    o->z.avail_in = (uInt)size;
+    do {
+        o->z.next_out = o->packed;
+        o->z.avail_out = CHUNK;
+        if (deflate(&o->z, flush) == Z_STREAM_ERROR)
+            err_set(&o->failed, o->name, 0, "zlib failed to compress");
+        put(o, o->packed, CHUNK - o->z.avail_out);
+    } while (!o->z.avail_out && !o->failed.status);
+}
+
+static void send(out *o, const unsigned char *bytes, size_t size, int flush)
+{
+    if (o->gzip)
+        pack(o, bytes, size, flush);
+    else
+        put(o, bytes, size);
+}
+
+static void empty(out *o, int flush)
+{
+    if (o->fd < 0)
+        return;
+    send(o, o->buffer, (size_t)o->filled, flush);
+    o->filled = 0;
+}
+
+static out *out_new(int fd, const char *name, bool gzip, err *e)
+{
+    out *o = mem_array(1, sizeof *o, "an output stream", e);
+    if (!o)
+        return NULL;
+    o->fd = fd;
+    o->name = mem_text(name, e);
+    o->buffer = mem_array(CHUNK, 1, "an output stream", e);
+    o->capacity = CHUNK;
+    if (o->name && o->buffer && gzip) {
+        o->packed = mem_array(CHUNK, 1, "an output stream", e);
+        o->gzip = o->packed && deflateInit2(&o->z, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK;
+        if (!o->gzip)
+            err_memory(e, "gzip");
+    }
+    if (e->status) {
+        out_discard(o);
+        return NULL;
+    }
+    return o;
+}
+
+/* The permissions that a file made by open(2) would have, or those of the file that it replaces. */
+static mode_t wanted_mode(const char *target)
+{
+    struct stat s;
+    if (!stat(target, &s))
+        return s.st_mode & 07777;
+    mode_t mask = umask(0);
+    umask(mask);
+    return 0666 & ~mask;
+}
+
+/* A name beside the target that nothing else has; the caller frees it. */
+static char *beside(const char *target, err *e)
+{
+    size_t n = strlen(target) + 32;
+    char *copy = mem_text(target, e), *copy2 = mem_text(target, e), *name = mem_array((int64_t)n, 1, "a name", e);
+    if (copy && copy2 && name)
+        snprintf(name, n, "%s/.%s.%ld.tmp", dirname(copy), basename(copy2), (long)getpid());
+    free(copy);
+    free(copy2);
+    return name;
+}
+
+/* A file without a name where the system can (a killed process then leaves nothing), else a temporary name. */
+static int open_temporary(const char *target, char **temporary, err *e)
+{
+    int fd = -1;
+    *temporary = NULL;
+#ifdef O_TMPFILE
+    char *copy = mem_text(target, e);
+    if (!copy)
+        return -1;
+    fd = open(dirname(copy), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    free(copy);
+#endif
+    if (fd < 0) {
+        *temporary = beside(target, e);
+        if (!*temporary)
+            return -1;
+        fd = open(*temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+        if (fd < 0) {
+            err_system(e, target, errno, "cannot create");
+            free(*temporary);
+            *temporary = NULL;
+            return -1;
+        }
+    }
+    fchmod(fd, wanted_mode(target));
+    return fd;
+}
+
+static out *open_direct(const char *path, bool gzip, err *e)
+{
+    int fd = open(path, O_WRONLY | O_CLOEXEC);
+    if (fd < 0) {
+        err_system(e, path, errno, "cannot open for writing");
+        return NULL;
+    }
+    return out_new(fd, path, gzip, e);
+}
+
+out *out_open(const char *path, bool gzip, err *e)
+{
+    struct stat s;
+    if (!path || !strcmp(path, "-"))
+        return out_new(STDOUT_FILENO, "stdout", gzip, e);
+    bool there = !stat(path, &s);
+    if (there && S_ISDIR(s.st_mode)) {
+        err_set(e, path, 0, "is a folder; expected a file to write");
+        return NULL;
+    }
+    if (there && !S_ISREG(s.st_mode))
+        return open_direct(path, gzip, e);
+    if (there && access(path, W_OK)) {
+        err_system(e, path, errno, "cannot write");
+        return NULL;
+    }
+    /* A link stays a link: what it points to is replaced. */
+    char *target = there ? realpath(path, NULL) : mem_text(path, e), *temporary = NULL;
+    int fd = target ? open_temporary(target, &temporary, e) : -1;
+    out *o = fd < 0 ? NULL : out_new(fd, path, gzip, e);
+    if (!o) {
+        if (!target)
+            err_memory(e, "a path");
+        if (fd >= 0)
+            close(fd);
+        if (temporary)
+            unlink(temporary);
+        free(temporary);
+        free(target);
+        return NULL;
+    }
+    o->target = target;
+    o->temporary = temporary;
+    return o;
+}
+
+out *out_memory(err *e)
+{
+    return out_new(-1, "memory", false, e);
+}
+
+const unsigned char *out_bytes(out *o, size_t *size)
+{
+    *size = (size_t)o->filled;
+    return o->buffer;
+}
+
+void out_write(out *o, const void *bytes, size_t size)
+{
+    if (o->failed.status)
+        return;
+    o->count += (int64_t)size;
+    if (o->fd < 0) {
+        if (mem_grow(&o->buffer, &o->capacity, o->filled + (int64_t)size, 1, "an output stream", &o->failed))
+            return;
+    } else if ((int64_t)size > o->capacity - o->filled) {
+        empty(o, Z_NO_FLUSH);
+        while (size >= CHUNK && !o->failed.status) {
+            send(o, bytes, CHUNK, Z_NO_FLUSH);
+            bytes = (const char *)bytes + CHUNK;
+            size -= CHUNK;
+        }
+    }
+    if (size)
+        memcpy(o->buffer + o->filled, bytes, size);
+    o->filled += (int64_t)size;
+}
+
+void out_text(out *o, const char *text)
+{
+    out_write(o, text, strlen(text));
+}
+
+void out_format(out *o, const char *format, ...)
+{
+    char small[512];
+    va_list args, again;
+    va_start(args, format);
+    va_copy(again, args);
+    int n = vsnprintf(small, sizeof small, format, args);
+    if (n >= 0 && (size_t)n < sizeof small) {
+        out_write(o, small, (size_t)n);
+    } else if (n >= 0) {
+        char *large = mem_array((int64_t)n + 1, 1, "text", &o->failed);
+        if (large) {
+            vsnprintf(large, (size_t)n + 1, format, again);
+            out_write(o, large, (size_t)n);
+        }
+        free(large);
+    }
+    va_end(again);
+    va_end(args);
+}
+
+void out_flush(out *o)
+{
+    empty(o, Z_SYNC_FLUSH);
+}
+
+int out_patch(out *o, int64_t offset, const void *bytes, size_t size, err *e)
+{
+    if (!o->target || o->gzip)
+        return err_set(e, o->name, 0, "cannot go back in this output; expected -o with a file");
+    empty(o, Z_NO_FLUSH);
+    if (!o->failed.status && pwrite(o->fd, bytes, size, (off_t)offset) != (ssize_t)size)
+        return err_system(e, o->name, errno, "cannot write");
+    return 0;
+}
+
+int64_t out_count(const out *o)
+{
+    return o->count;
+}
+
+bool out_is_file(const out *o)
+{
+    return o->target != NULL;
+}
+
+bool out_is_terminal(const out *o)
+{
+    return o->fd >= 0 && isatty(o->fd);
+}
+
+/* Gives the nameless file a name (beside its place), so that rename can put it there. */
+static int name_temporary(out *o, err *e)
+{
+    char self[64];
+    if (o->temporary)
+        return 0;
+    o->temporary = beside(o->target, e);
+    if (!o->temporary)
+        return -1;
+    snprintf(self, sizeof self, "/proc/self/fd/%d", o->fd);
+    if (linkat(AT_FDCWD, self, AT_FDCWD, o->temporary, AT_SYMLINK_FOLLOW))
+        return err_system(e, o->name, errno, "cannot create");
+    return 0;
+}
+
+int out_close(out *o, err *e)
+{
+    empty(o, Z_FINISH);
+    if (o->failed.status && !e->status)
+        *e = o->failed;
+    if (!o->failed.status && o->target) {
+        if (name_temporary(o, e))
+            o->failed = *e;
+        else if (rename(o->temporary, o->target))
+            o->failed.status = -err_system(e, o->name, errno, "cannot rename into place");
+    }
+    bool bad = o->failed.status;
+    if (!bad) {
+        free(o->temporary);
+        o->temporary = NULL;
+    }
+    if (!bad && o->fd >= 0 && close(o->fd) && errno != EINTR)
+        bad = err_system(e, o->name, errno, "cannot write");
+    if (!bad)
+        o->fd = -1;
+    out_discard(o);
+    return bad ? -1 : 0;
+}
+
+void out_discard(out *o)
+{
+    if (!o)
+        return;
+    if (o->temporary)
+        unlink(o->temporary);
+    if (o->fd > STDOUT_FILENO)
+        close(o->fd);
+    if (o->gzip)
+        deflateEnd(&o->z);
+    free(o->temporary);
+    free(o->target);
+    free(o->packed);
+    free(o->buffer);
+    free(o->name);
+    free(o);
+}

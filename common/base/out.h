@@ -1,0 +1,45 @@
+/* A stream of bytes to write, checked to its end: standard output, or a file that appears whole under its
+ * name when out_close() succeeds and not at all otherwise. Errors stick: write on, and out_close() says. A
+ * closed pipe ends the process quietly by SIGPIPE.
+ */
+#ifndef SINEW_OUT_H
+#define SINEW_OUT_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+typedef struct out out;
+
+/* path NULL or "-": standard output. Other paths: a regular or new file is written beside its place and renamed
+ * at out_close(); a device or FIFO is written directly. gzip: compress what is written. NULL with e filled. */
+out *out_open(const char *path, bool gzip, err *e);
+
+/* Keeps what is written in memory (tests, CRCs, spools); out_bytes() shows it until out_discard(). */
+out *out_memory(err *e);
+const unsigned char *out_bytes(out *o, size_t *size);
+
+void out_write(out *o, const void *bytes, size_t size);
+void out_text(out *o, const char *text);
+void out_format(out *o, const char *format, ...) SINEW_PRINTF(2, 3);
+
+/* Sends on what is buffered (live streams). */
+void out_flush(out *o);
+
+/* Overwrites size bytes at offset from the start, for headers whose counts come last. Only for files opened by
+ * path and not gzip; -1 with e filled elsewhere. */
+int out_patch(out *o, int64_t offset, const void *bytes, size_t size, err *e);
+
+/* Bytes written so far, before compression. */
+int64_t out_count(const out *o);
+
+bool out_is_file(const out *o);
+bool out_is_terminal(const out *o);
+
+/* Finishes: flushes, checks, renames. Frees o in every case. 0, or -1 with e filled and no file left. */
+int out_close(out *o, err *e);
+
+/* Gives up: removes what was written to a file. Frees o; o may be NULL. */
+void out_discard(out *o);
+
+#endif

@@ -1,0 +1,25 @@
+/* Progress on stderr with rate and time left, only where stderr is a terminal, at most ten times a second.
+ * The caller owns the struct; there is nothing to free.
+ */
+#ifndef SINEW_PROGRESS_H
+#define SINEW_PROGRESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct progress {
+    const char *tool, *what; /* "tled-run", "steps" */
+    double total;            /* 0: not known */
+    double started, shown;   /* s */
+    bool on;
+} progress;
+
+void progress_start(progress *p, const char *tool, const char *what, double total, bool quiet);
+void progress_at(progress *p, double done);
+/* Clears the line. */
+void progress_stop(progress *p);
+
+/* Seconds of a clock that only goes forward. */
+double progress_clock(void);
+
+#endif

@@ -1,0 +1,39 @@
+/* What every main begins and ends with: the command line, and messages on stderr. The only file that prints
+ * messages. A main reads: tool_begin, work, tool_end.
+ */
+#ifndef SINEW_TOOL_H
+#define SINEW_TOOL_H
+
+#include "base/err.h"
+#include "base/opt.h"
+
+#define SINEW_VERSION "0.1.0"
+
+typedef struct tool {
+    const opt_tool *table;
+    opt_common *common; /* the head of the tool's options */
+    int operands;       /* argv[1] to argv[operands] */
+    bool done;          /* -h, -V or --table was answered: nothing more to do */
+    char *provenance;   /* owned */
+} tool;
+
+/* Parses the command line and answers -h, -V and --table. Returns 0; -1 with e filled (status 2). When t->done,
+ * go straight to tool_end. */
+int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *options, err *e);
+
+/* Prints e, where there is one that was not said already, and frees t. Returns the exit status. */
+int tool_end(tool *t, const err *e);
+
+/* "tool: text" on stderr, unless -q. */
+void tool_say(const tool *t, const char *format, ...) SINEW_PRINTF(2, 3);
+
+/* The same, only with -v. */
+void tool_detail(const tool *t, const char *format, ...) SINEW_PRINTF(2, 3);
+
+/* "tool: warning: text" for each note; frees them. Not silenced by -q. */
+void tool_warn(const tool *t, notes *n);
+
+/* --threads, else SINEW_THREADS, else all processors. At least 1; -1 with e filled for a bad SINEW_THREADS. */
+int tool_threads(const tool *t, err *e);
+
+#endif

@@ -1,0 +1,47 @@
+/* Surfaces carried with a model: arrays "S/vertex.position", "S/face.start", … seen as one struct. A view
+ * borrows from the model and is valid until an array is added or removed.
+ */
+#ifndef SINEW_SURFACE_H
+#define SINEW_SURFACE_H
+
+#include "mesh/obj.h"
+#include "model/model.h"
+
+typedef struct surface {
+    const char *name;
+    const double *position; /* vertices x 3, m */
+    int64_t vertices;
+    const int64_t *start; /* faces; see surface_end */
+    const int32_t *group; /* faces */
+    int64_t faces;
+    const int32_t *vertex; /* corners */
+    int64_t corners;
+    char *const *group_name; /* names between spaces */
+    int64_t groups;
+} surface;
+
+static inline int64_t surface_end(const surface *s, int64_t face)
+{
+    return face + 1 < s->faces ? s->start[face + 1] : s->corners;
+}
+
+/* The surface named `name` (borrowed by the view). */
+int surface_of(const model *m, const char *name, surface *s, err *e);
+
+/* Adds an OBJ to the model as the surface `name`, its coordinates times scale (to metres). */
+int surface_add(model *m, const char *name, const obj *o, double scale, err *e);
+
+/* A surface name from a path: base name without .obj, .obj.gz; what axis names may not hold becomes '_'; "stdin" for
+ * "-". */
+void surface_name(const char *path, char *name, size_t size);
+
+/* Whether one of the names between spaces in `names` matches the pattern (any case; a '*' at its end matches any
+ * rest). */
+bool surface_in_group(const char *names, const char *pattern);
+
+/* Cuts a polygon of `count` corners (vertex indices into position) into count - 2 triangles: ear clipping in the plane
+ * of its Newell normal, so that concave polygons come out right; a fan where it is convex or beyond help.
+ * triangle: (count - 2) x 3 corners (0 to count - 1). */
+void surface_triangulate(const double *position, const int32_t *corner, int64_t count, int32_t *triangle);
+
+#endif

@@ -1,0 +1,75 @@
+/* The one table of arrays that Sinew knows. Checks on reading, sinew info, sinew diff and the manual come from
+ * it. A name that begins "*" + "/" is for every surface: the * stands for its name, in the axis and unit too.
+ */
+#ifndef SINEW_KNOWN_H
+#define SINEW_KNOWN_H
+
+#include "model/model.h"
+
+enum {
+    KNOWN_EVERY = 1, /* index arrays: -1 (none) is not allowed */
+    KNOWN_FRAME = 2  /* lives in frames */
+};
+
+typedef struct known {
+    const char *name;
+    model_type type;
+    const char *unit, *axis;
+    int columns_min, columns_max; /* a new array gets columns_max unless the caller says otherwise */
+    int flags;
+    const char *maker;   /* the tool that adds it */
+    const char *meaning; /* one line, for the manual */
+} known;
+
+/* X(name, type, unit, axis, columns_min, columns_max, flags, maker, meaning) */
+#define KNOWN_ARRAYS(X)                                                                                                \
+    X("node.position", MODEL_F64, "m", "node", 3, 3, 0, "voxelise", "rest position")                                   \
+    X("node.lattice", MODEL_I32, "1", "node", 3, 3, 0, "voxelise", "corner of the lattice: i, j, k")                   \
+    X("node.rigid", MODEL_U8, "1", "node", 1, 1, 0, "attach", "1 = fixed")                                             \
+    X("node.anchor", MODEL_I32, "@anchor", "node", 1, 1, 0, "attach", "rigid surface that holds the node, -1 = none")  \
+    X("anchor.name", MODEL_STR, "1", "anchor", 1, 1, 0, "attach", "name of a rigid surface")                           \
+    X("element.node", MODEL_I32, "@node", "element", 4, 8, KNOWN_EVERY, "voxelise",                                    \
+      "nodes in VTK order: 8 (hexahedron) or 4 (tetrahedron)")                                                         \
+    X("element.lattice", MODEL_I32, "1", "element", 3, 3, 0, "voxelise", "cell of the lattice: i, j, k")               \
+    X("element.volume", MODEL_I32, "@volume", "element", 1, 1, KNOWN_EVERY, "voxelise", "volume it belongs to")        \
+    X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, "voxelise", "share that the volume encloses")            \
+    X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, "attach",                                                   \
+      "unit direction of contraction; 0 0 0 where there is none")                                                      \
+    X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, "voxelise", "name")                                            \
+    X("volume.level", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise", "level, 0 the lowest")                            \
+    X("volume.priority", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise", "priority within the level, 0 the first")      \
+    X("volume.material", MODEL_I32, "@material", "volume", 1, 1, KNOWN_EVERY, "voxelise", "material")                  \
+    X("volume.muscle", MODEL_U8, "1", "volume", 1, 1, 0, "voxelise", "1 = a muscle")                                   \
+    X("material.name", MODEL_STR, "1", "material", 1, 1, 0, "voxelise", "name")                                        \
+    X("material.law", MODEL_STR, "1", "material", 1, 1, 0, "voxelise", "law: neo-hookean")                             \
+    X("material.E", MODEL_F64, "Pa", "material", 1, 1, 0, "voxelise", "Young's modulus")                               \
+    X("material.nu", MODEL_F64, "1", "material", 1, 1, 0, "voxelise", "Poisson's ratio")                               \
+    X("material.density", MODEL_F64, "kg/m3", "material", 1, 1, 0, "voxelise", "mass density at rest")                 \
+    X("material.peak", MODEL_F64, "Pa", "material", 1, 1, 0, "voxelise", "peak active stress of its muscles")          \
+    X("muscle.volume", MODEL_I32, "@volume", "muscle", 1, 1, KNOWN_EVERY, "attach", "volume of the muscle")            \
+    X("muscle.centre", MODEL_F64, "m", "muscle", 3, 3, 0, "attach",                                                    \
+      "contraction centre, the mean of its rigid nodes; nan where it has none")                                        \
+    X("*/vertex.position", MODEL_F64, "m", "*/vertex", 3, 3, 0, "voxelise or bind", "rest position")                   \
+    X("*/vertex.element", MODEL_I32, "@element", "*/vertex", 1, 1, KNOWN_EVERY, "bind", "element it is bound to")      \
+    X("*/vertex.weight", MODEL_F64, "1", "*/vertex", 3, 4, 0, "bind",                                                  \
+      "3 weights in a hexahedron (W&M eq. 1) or 4 in a tetrahedron")                                                   \
+    X("*/face.start", MODEL_I64, "@*/corner", "*/face", 1, 1, KNOWN_EVERY, "voxelise or bind",                         \
+      "its first corner; it ends where the next begins")                                                               \
+    X("*/face.vertex", MODEL_I32, "@*/vertex", "*/corner", 1, 1, KNOWN_EVERY, "voxelise or bind",                      \
+      "vertices of the faces: 1 = point, 2 = line, 3 and more = polygon")                                              \
+    X("*/face.group", MODEL_I32, "@*/group", "*/face", 1, 1, KNOWN_EVERY, "voxelise or bind", "group it is in")        \
+    X("*/group.name", MODEL_STR, "1", "*/group", 1, 1, 0, "voxelise or bind",                                          \
+      "names between spaces: a face may be in several")                                                                \
+    X("node.displacement", MODEL_F64, "m", "node", 3, 3, KNOWN_FRAME, "tled-run", "displacement from rest")            \
+    X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, "tled-run", "velocity")
+
+/* The row for an array's name, or NULL. */
+const known *known_find(const char *name);
+
+/* The i-th row, or NULL past the last. */
+const known *known_row(int i);
+
+/* Writes pattern (an axis or unit of the row) for the array `name`, its * replaced. */
+void known_expand(const char *pattern, const char *name, char *to, size_t size);
+
+#endif

@@ -1,0 +1,126 @@
+/* The model in memory: metadata, provenance, axes (named counts) and typed arrays over them, as
+ * sinew-model(5) defines. A model owns all that hangs on it; pointers to its arrays are valid until an array is
+ * added or removed, pointers to data until the array is removed. Functions that can fail return -1 or NULL with e
+ * filled.
+ */
+#ifndef SINEW_MODEL_H
+#define SINEW_MODEL_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum model_type { MODEL_F32, MODEL_F64, MODEL_I32, MODEL_I64, MODEL_U8, MODEL_STR, MODEL_TYPES } model_type;
+
+typedef struct model_array {
+    char *name;
+    model_type type;
+    char *unit; /* "m", "Pa", "1", …; "@axis": indices into that axis, -1 for none */
+    char *axis;
+    int32_t columns;
+    int64_t rows; /* the axis's count */
+    union {       /* rows x columns, row by row */
+        void *data;
+        float *f32;
+        double *f64;
+        int32_t *i32;
+        int64_t *i64;
+        uint8_t *u8;
+        char **str; /* each owned, UTF-8, never NULL */
+    };
+} model_array;
+
+typedef struct model_arrays {
+    model_array *v;
+    int count;
+} model_arrays;
+
+typedef struct model_axis {
+    char *name;
+    int64_t count;
+} model_axis;
+
+typedef struct model_meta {
+    char *key, *value;
+} model_meta;
+
+/* A block of a type that we do not know (its first letter is lower case), kept as it came. */
+typedef struct model_block {
+    char type[5];
+    uint32_t flags;
+    uint64_t length;
+    unsigned char *payload;
+} model_block;
+
+typedef struct model {
+    model_meta *meta;
+    char **prov;
+    model_axis *axes;
+    model_arrays arrays;
+    model_block *blocks;
+    int metas, provs, axis_count, block_count;
+} model;
+
+/* One frame of results. */
+typedef struct frame {
+    int64_t index;
+    double time; /* s */
+    model_arrays arrays;
+} frame;
+
+void model_free(model *m); /* and zeroes it; a zeroed model is an empty one */
+void frame_free(frame *f);
+
+/* Metadata. model_meta_of: NULL where there is none. Numbers: `count` doubles between spaces, written %.17g. */
+const char *model_meta_of(const model *m, const char *key);
+int model_meta_set(model *m, const char *key, const char *value, err *e);
+int model_meta_numbers(const model *m, const char *key, double *value, int count, err *e);
+int model_meta_set_numbers(model *m, const char *key, const double *value, int count, err *e);
+
+/* Appends "TOOL VERSION "OPTIONS"". */
+int model_prov_add(model *m, const char *tool, const char *version, const char *options, err *e);
+
+/* The axis's count, or -1 where there is none. */
+int64_t model_count(const model *m, const char *axis);
+/* Adds the axis; it must not be there, unless with the same count. */
+int model_axis_add(model *m, const char *axis, int64_t count, err *e);
+
+/* NULL where there is none. */
+model_array *model_find(const model *m, const char *name);
+model_array *frame_find(const frame *f, const char *name);
+
+/* The array, or NULL with e saying which tool makes it. */
+model_array *model_need(const model *m, const char *name, err *e);
+
+/* Adds a zeroed array whose type, unit, axis and columns the table of known arrays gives (known.h); its axis must be
+ * there. An array of that name is replaced. Strings begin as "". */
+model_array *model_add(model *m, const char *name, err *e);
+/* The same for a frame of model m. */
+model_array *frame_add(frame *f, const model *m, const char *name, err *e);
+/* Adds a zeroed array of any kind. */
+model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
+                          int32_t columns, err *e);
+
+/* Sets one string of a MODEL_STR array, copying text. */
+int model_set_text(model_array *a, int64_t at, const char *text, err *e);
+
+void model_remove(model *m, const char *name);
+
+/* For a tool that changes an axis (its count or its order): removes the axis and every array that is over it or
+ * points to it, noting those that the known table lacks. */
+void model_axis_drop(model *m, const char *axis, notes *warnings);
+
+/* Surfaces carried: the names S of axes "S/vertex". Returns the name of the i-th or NULL past the last. */
+const char *model_surface(const model *m, int i, char *name, size_t size);
+
+size_t model_type_size(model_type t);
+const char *model_type_name(model_type t);
+/* MODEL_TYPES where the name is none. */
+model_type model_type_of(const char *name);
+
+/* All of sinew-model(5)'s rules that a table can hold, on one array: known name with its type, unit, axis and
+ * columns; indices in range. Where: the stream's name, line: 0 or its line. Index ranges need all axes. */
+int model_check(const model *m, const model_array *a, const char *where, int64_t line, err *e);
+
+#endif

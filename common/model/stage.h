@@ -1,0 +1,39 @@
+/* A tool's place in a pipe: the model that comes in on stdin, the model that goes out, and how both end. A tool
+ * that fails after stage_open ends its output with `fail`, so that the tools behind it end with the same status
+ * and say nothing. The caller owns the stage; its models are its own.
+ */
+#ifndef SINEW_STAGE_H
+#define SINEW_STAGE_H
+
+#include "base/tool.h"
+#include "model/stream.h"
+
+typedef struct stage {
+    const tool *t;
+    in *source;
+    model_reader *reader;
+    out *sink;
+    model_writer *writer;
+} stage;
+
+/* Opens what the tool has: the output first (-o, --text, -z, from t's options; binary to a terminal is refused), so
+ * that even a failure to read reaches the next tool. Call it before anything else that can fail. */
+int stage_open_output(stage *s, const tool *t, err *e);
+
+/* Reads the model on stdin. A terminal there is a usage error (status 2). */
+int stage_read(stage *s, model *m, err *e);
+
+/* Appends the tool's provenance to m and writes it. */
+int stage_write(stage *s, model *m, err *e);
+
+/* Copies the frames that are left in to out. */
+int stage_copy_frames(stage *s, const model *m, err *e);
+
+/* Reads the frames that are left and drops them, noting how many. */
+int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e);
+
+/* Ends and closes all: `end` where e is clear, else `fail` (or no file). An error of closing goes into e. s may be
+ * part open, or zeroed after a usage error: then `fail` is written all the same if stdout is a pipe. */
+void stage_close(stage *s, const tool *t, err *e);
+
+#endif

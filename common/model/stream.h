@@ -1,0 +1,36 @@
+/* Models as streams: the text and the binary encoding of sinew-model(5). A reader sniffs which one it has.
+ * Frames come one at a time. Readers and writers borrow their streams; the caller closes those.
+ */
+#ifndef SINEW_STREAM_H
+#define SINEW_STREAM_H
+
+#include "base/in.h"
+#include "base/out.h"
+#include "model/model.h"
+
+typedef struct model_reader model_reader;
+typedef struct model_writer model_writer;
+
+/* Reads the first line or magic. NULL with e filled; on zero bytes e says so and names `sinew bind`. */
+model_reader *model_reader_open(in *s, err *e);
+void model_reader_close(model_reader *r);
+
+/* The body, all of it, checked. A stream that ended with `fail` gives -1 with e filled: the status and text as they
+ * came, e->silent set. */
+int model_read(model_reader *r, model *m, err *e);
+
+/* The next frame, into f (freed and filled again). 1: a frame; 0: the end, nothing follows it; -1: e filled. */
+int model_read_frame(model_reader *r, const model *m, frame *f, err *e);
+
+/* text: the text encoding. Nothing is written yet. NULL with e filled. */
+model_writer *model_writer_open(out *o, bool text, err *e);
+void model_writer_close(model_writer *w);
+
+/* Errors of writing stick in the out and show at out_close. */
+int model_write(model_writer *w, const model *m, err *e);
+int model_write_frame(model_writer *w, const frame *f, err *e);
+int model_write_end(model_writer *w, err *e);
+/* Ends the stream with `fail STATUS "text"`, wherever it stood. */
+int model_write_fail(model_writer *w, int status, const char *text, err *e);
+
+#endif

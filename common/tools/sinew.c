@@ -1,0 +1,89 @@
+/* sinew TOOL ARGS: the front command. It execs TOOL, or sinew-TOOL, from the folder that it lies in itself, so that
+ * generic names (info, diff) stay off the PATH and `sinew bind` is never the shell's builtin.
+ */
+#include "base/num.h"
+#include "base/tool.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The tools, in the order of the data's way. */
+static const struct {
+    const char *name, *file, *purpose;
+} tools[] = {
+    {"voxelise", "voxelise", "closed surfaces to hexahedral elements"},
+    {"attach", "attach", "rigid nodes, muscle centres and fibres"},
+    {"bind", "bind", "surfaces to elements, to move with them"},
+    {"tled-run", "tled-run", "total Lagrangian explicit dynamics"},
+    {"deform", "sinew-deform", "an OBJ as the model's results move it"},
+    {"info", "sinew-info", "what a model holds"},
+    {"diff", "sinew-diff", "where two models differ"},
+    {"export", "sinew-export", "VTU, Abaqus .inp, OBJ"},
+};
+
+enum { TOOLS = sizeof tools / sizeof *tools };
+
+static int list(void)
+{
+    err e = {0};
+    out *o = out_open(NULL, false, &e);
+    if (!o)
+        return STATUS_BAD;
+    out_text(o, "usage: sinew TOOL [ARGUMENTS]\nRuns one of Sinew's tools; sinew TOOL --help says more of each.\n");
+    for (int i = 0; i < TOOLS; i++)
+        out_format(o, "  %-10s  %s\n", tools[i].name, tools[i].purpose);
+    out_text(o, "  -h, --help  this text; -V, --version  the version\n");
+    return out_close(o, &e) ? STATUS_BAD : STATUS_OK;
+}
+
+static int unknown(const char *name)
+{
+    const char *names[TOOLS];
+    for (int i = 0; i < TOOLS; i++)
+        names[i] = tools[i].name;
+    int near = num_nearest(name, names, TOOLS);
+    if (near >= 0)
+        fprintf(stderr, "sinew: no tool '%s'; did you mean '%s'?\n", name, names[near]);
+    else
+        fprintf(stderr, "sinew: no tool '%s'; see sinew --help\n", name);
+    return STATUS_USAGE;
+}
+
+/* Only returns where it fails. */
+static int run(const char *file, char **argv)
+{
+    char self[PATH_MAX], path[PATH_MAX + 64];
+    ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
+    if (n < 0) {
+        fprintf(stderr, "sinew: cannot find its own folder: %s\n", strerror(errno));
+        return STATUS_BAD;
+    }
+    self[n] = 0;
+    char *slash = strrchr(self, '/');
+    snprintf(path, sizeof path, "%.*s/%s", slash ? (int)(slash - self) : 1, slash ? self : ".", file);
+    execv(path, argv);
+    fprintf(stderr, "sinew: cannot run %s: %s\n", path, strerror(errno));
+    return STATUS_BAD;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        fputs("usage: sinew TOOL [ARGUMENTS]; see sinew --help\n", stderr);
+        return STATUS_USAGE;
+    }
+    if (!strcmp(argv[1], "-h") || !strcmp(argv[1], "--help"))
+        return list();
+    if (!strcmp(argv[1], "-V") || !strcmp(argv[1], "--version")) {
+        puts("sinew (Sinew) " SINEW_VERSION);
+        return fflush(stdout) ? STATUS_BAD : STATUS_OK;
+    }
+    for (int i = 0; i < TOOLS; i++)
+        if (!strcmp(argv[1], tools[i].name) || !strcmp(argv[1], tools[i].file))
+            return run(tools[i].file, argv + 1);
+    return unknown(argv[1]);
+}
