@@ -1,0 +1,39 @@
+/* Files that people write (volumes, materials, scripts): one thing a line, words between blanks, a comment from a word
+ * that begins with '#' to the line's end, key=value. A keyfile reads lines from a stream that stays the caller's;
+ * its words are valid until the next line is read. Every error says file:line.
+ */
+#ifndef SINEW_KEYFILE_H
+#define SINEW_KEYFILE_H
+
+#include "base/in.h"
+
+enum { KEYFILE_WORDS = 64, KEYFILE_LINE = 65536 }; /* the most words and bytes that a line may have */
+
+typedef struct keyfile {
+    in *source;       /* borrowed */
+    const char *name; /* the source's, for messages */
+    int64_t line;     /* the number of the line whose words these are */
+    int count;
+    char *word[KEYFILE_WORDS];
+} keyfile;
+
+void keyfile_open(keyfile *k, in *source);
+
+/* Reads on to the next line that has words. 1: there is one; 0: the end; -1: e filled (too many words, control
+ * characters, what is not text). */
+int keyfile_next(keyfile *k, err *e);
+
+/* Takes word `at` as key=value: returns the key's index among `keys` (fewer than 64) and its value, never empty.
+ * -1 with e filled where it is not key=value, the key is unknown (the keys are listed, the nearest offered) or has its
+ * bit set in *seen. Sets that bit. A value may hold '='. */
+int keyfile_pair(keyfile *k, int at, const char *const *keys, int count, uint64_t *seen, char **value, err *e);
+
+/* err_set at the line read last. Returns -1. */
+int keyfile_error(const keyfile *k, err *e, const char *format, ...) SINEW_PRINTF(3, 4);
+
+/* "unknown WHAT 'name'; did you mean 'near'? WHATs: a, b, c" as an error at place:line (NULL and 0: none; as on command
+ * lines). Says so where there are no names at all; long lists are cut. Returns -1. */
+int keyfile_unknown(err *e, const char *place, int64_t line, const char *what, const char *name,
+                    const char *const *names, int count);
+
+#endif

@@ -1,0 +1,62 @@
+/* The material table of a model: the arrays material.name, material.law and one a key (MATERIAL_KEYS), read from
+ * files of lines `NAME law=neo-hookean E=3000 nu=0.49 density=1000 peak=30000` and from assignments NAME.KEY=VALUE. All
+ * values are checked against one table of keys. The model owns its arrays, as ever.
+ *
+ * For the tool that makes volumes: materials_default where no file is given, materials_read where one is; a
+ * volume that names no material has the first one, index 0; one that does is looked up with materials_find.
+ */
+#ifndef SINEW_MATERIALS_H
+#define SINEW_MATERIALS_H
+
+#include "base/in.h"
+#include "model/model.h"
+
+typedef enum material_law { MATERIAL_NEO_HOOKEAN, MATERIAL_LAWS } material_law;
+
+/* X(key, unit, default, low, low itself allowed, high, high itself allowed). E, nu and density: W&M section 4.2; peak is
+ * not in the paper. nu below 0 (auxetic) is a material too; from .5 on, the bulk modulus is not finite. */
+#define MATERIAL_KEYS(X)                                                                                               \
+    X(E, "Pa", 3000, 0, false, INFINITY, false)                                                                        \
+    X(nu, "1", 0.49, -1, false, 0.5, false)                                                                            \
+    X(density, "kg/m3", 1000, 0, false, INFINITY, false)                                                               \
+    X(peak, "Pa", 30000, 0, true, INFINITY, false)
+
+typedef struct material {
+    material_law law;
+    double E, nu, density, peak; /* Pa, 1, kg/m3, Pa */
+} material;
+
+/* Makes the table: one material, `tissue`, of the defaults. The axis must not be there yet. */
+int materials_default(model *m, err *e);
+
+/* Makes the table from a file, in its order; a key not given has the default. A name given twice, a value out of range
+ * or an empty file is an error. */
+int materials_read(model *m, in *s, err *e);
+
+/* Changes an existing table from such a file: only the keys given change. An unknown name is an error: nothing
+ * could be made of it. */
+int materials_override(model *m, in *s, err *e);
+
+/* Changes one value: "NAME.KEY=VALUE" (KEY may be law). NAME may hold dots. */
+int materials_set(model *m, const char *assignment, err *e);
+
+/* The index of the material named so, or -1. */
+int32_t materials_find(const model *m, const char *name);
+
+/* "unknown material 'name'; ..." at place:line, with near names. Returns -1. */
+int materials_unknown(const model *m, const char *name, const char *place, int64_t line, err *e);
+
+/* Material i, checked: a model may have been edited by hand. An array that is missing is an error, but for peak (0). */
+int materials_of(const model *m, int64_t i, material *to, err *e);
+
+/* mu and lambda (Pa), and K = lambda + 2/3 mu. */
+static inline double material_mu(const material *a)
+{
+    return a->E / (2 * (1 + a->nu));
+}
+static inline double material_bulk(const material *a)
+{
+    return a->E / (3 * (1 - 2 * a->nu));
+}
+
+#endif
