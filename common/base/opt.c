@@ -1,13 +1,10 @@
 #include "base/opt.h"
 
-#include "base/mem.h"
-
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { HIDDEN = 1 << 8, MODELS = 1 << 9, THREADED = 1 << 10 };
+enum { MODELS = 1 << 9, THREADED = 1 << 10 };
 
 /* What every tool has. MODELS: only those that write a model; THREADED: only those with threads. */
 #define COMMON(field) offsetof(opt_common, field)
@@ -20,7 +17,7 @@ static const opt common_options[] = {
     {'v', "verbose", NULL, OPT_FLAG, COMMON(verbose), 0, 0, NULL, OPT_OUTPUT, "say more"},
     {'h', "help", NULL, OPT_FLAG, COMMON(help), 0, 0, NULL, OPT_OUTPUT, "this text"},
     {'V', "version", NULL, OPT_FLAG, COMMON(version), 0, 0, NULL, OPT_OUTPUT, "the version"},
-    {0, "table", "mdoc|bash", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | HIDDEN, "for make"},
+    {0, "table", "mdoc|bash", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN, "for make"},
     {0}};
 
 static bool is_end(const opt *o)
@@ -28,8 +25,15 @@ static bool is_end(const opt *o)
     return !o->name && !o->letter;
 }
 
-/* The i-th option of the tool, its own first, then the common ones that it has; NULL past the last. */
-static const opt *option_at(const opt_tool *tool, int i)
+int opt_own(const opt_tool *tool)
+{
+    int n = 0;
+    while (!is_end(&tool->options[n]))
+        n++;
+    return n;
+}
+
+const opt *opt_at(const opt_tool *tool, int i)
 {
     const opt *o = tool->options;
     for (; !is_end(o); o++)
@@ -47,7 +51,7 @@ static const opt *option_at(const opt_tool *tool, int i)
 static const opt *find_letter(const opt_tool *tool, char letter)
 {
     const opt *o;
-    for (int i = 0; (o = option_at(tool, i)); i++)
+    for (int i = 0; (o = opt_at(tool, i)); i++)
         if (o->letter == letter)
             return o;
     return NULL;
@@ -65,8 +69,8 @@ static int unknown_option(const opt_tool *tool, const char *name, size_t length,
     char word[64];
     const opt *o;
     int n = 0;
-    for (int i = 0; (o = option_at(tool, i)) && n < 64; i++)
-        if (o->name && !(o->flags & HIDDEN))
+    for (int i = 0; (o = opt_at(tool, i)) && n < 64; i++)
+        if (o->name && !(o->flags & OPT_HIDDEN))
             names[n++] = o->name;
     snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), name);
     int near = num_nearest(word, names, n);
@@ -82,8 +86,8 @@ static const opt *find_name(const opt_tool *tool, const char *name, size_t lengt
 {
     const opt *o, *found = NULL;
     int count = 0;
-    for (int i = 0; (o = option_at(tool, i)); i++) {
-        if (!o->name || strncmp(o->name, name, length) != 0 || (o->flags & HIDDEN && o->name[length]))
+    for (int i = 0; (o = opt_at(tool, i)); i++) {
+        if (!o->name || strncmp(o->name, name, length) != 0 || (o->flags & OPT_HIDDEN && o->name[length]))
             continue;
         if (!o->name[length])
             return o;
@@ -226,7 +230,7 @@ typedef struct scan {
 static void mark_seen(scan *s, const opt *o)
 {
     const opt *other;
-    for (int i = 0; i < 64 && (other = option_at(s->tool, i)); i++)
+    for (int i = 0; i < 64 && (other = opt_at(s->tool, i)); i++)
         if (other == o)
             s->seen |= UINT64_C(1) << i;
 }
@@ -279,7 +283,7 @@ static int take_letters(scan *s, const char *letters, err *e)
 static int check_required(const scan *s, int operands, err *e)
 {
     const opt *o;
-    for (int i = 0; i < 64 && (o = option_at(s->tool, i)); i++)
+    for (int i = 0; i < 64 && (o = opt_at(s->tool, i)); i++)
         if (o->flags & OPT_REQUIRED && !(s->seen >> i & 1)) {
             err_set(e, NULL, 0, "--%s %s is required; see %s --help", o->name, o->arg, s->tool->name);
             return usage_error(e);
@@ -315,202 +319,4 @@ int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e
     if (common->help || common->version || common->table)
         return operands;
     return check_required(&s, operands, e) ? -1 : operands;
-}
-
-/* "-s, --size H|HX,HY,HZ" */
-static void put_option(const opt *o, char *to, size_t size)
-{
-    int n = 0;
-    if (o->letter)
-        n = snprintf(to, size, "-%c%s", o->letter, o->name ? ", " : "");
-    if (o->name)
-        n += snprintf(to + n, size - (size_t)n, "--%s", o->name);
-    if (o->arg)
-        snprintf(to + n, size - (size_t)n, " %s", o->arg);
-}
-
-static bool is_common(const opt *o)
-{
-    return o >= common_options && o < common_options + sizeof common_options / sizeof *common_options;
-}
-
-/* The common options on few lines, each word whole, at most 80 columns. */
-static void put_common(const opt_tool *tool, out *to)
-{
-    const opt *o;
-    size_t column = 0;
-    for (int i = 0; (o = option_at(tool, i)); i++) {
-        char item[160], name[80];
-        if (!is_common(o) || o->flags & HIDDEN)
-            continue;
-        put_option(o, name, sizeof name);
-        int n = snprintf(item, sizeof item, "%s %s", name, o->help);
-        if (column && column + (size_t)n + 2 > 78) {
-            out_text(to, "\n");
-            column = 0;
-        }
-        out_format(to, "%s%s", column ? "; " : "  ", item);
-        column += (size_t)n + 2;
-    }
-    out_text(to, "\n");
-}
-
-void opt_usage(const opt_tool *tool, out *to)
-{
-    const opt *o;
-    out_format(to, "usage: %s", tool->name);
-    for (o = tool->options; !is_end(o); o++)
-        if (o->flags & OPT_REQUIRED)
-            out_format(to, " --%s %s", o->name, o->arg);
-    out_format(to, " [options]%s%s\n%s\n", *tool->operands ? " " : "", tool->operands, tool->purpose);
-    for (o = tool->options; !is_end(o); o++) {
-        char name[80];
-        put_option(o, name, sizeof name);
-        out_format(to, strlen(name) > 30 ? "  %s  %s\n" : "  %-30s  %s\n", name, o->help);
-    }
-    put_common(tool, to);
-}
-
-/* mdoc wants its special characters away from macros' arguments; '|' is a delimiter and stands by itself. */
-static void put_mdoc_arg(const char *arg, out *to)
-{
-    for (const char *p = arg; *p; p++)
-        if (*p == '|')
-            out_text(to, " | ");
-        else
-            out_write(to, p, 1);
-}
-
-static void put_mdoc(const opt_tool *tool, out *to)
-{
-    const opt *o;
-    out_format(to, ".Nm %s\n", tool->name);
-    for (int i = 0; (o = option_at(tool, i)); i++) {
-        if (o->flags & HIDDEN)
-            continue;
-        out_text(to, o->flags & OPT_REQUIRED ? ".Fl" : ".Op Fl");
-        if (o->letter)
-            out_format(to, " %c", o->letter);
-        else
-            out_format(to, " -%s", o->name);
-        if (o->arg) {
-            out_text(to, " Ar ");
-            put_mdoc_arg(o->arg, to);
-        }
-        out_text(to, "\n");
-    }
-    if (*tool->operands) {
-        out_text(to, tool->operands_min ? ".Ar " : ".Op Ar ");
-        put_mdoc_arg(tool->operands, to);
-        out_text(to, "\n");
-    }
-}
-
-static void put_bash(const opt_tool *tool, out *to)
-{
-    const opt *o;
-    out_format(to, "complete -o default -W '");
-    for (int i = 0; (o = option_at(tool, i)); i++)
-        if (o->name && !(o->flags & HIDDEN))
-            out_format(to, "%s--%s", i ? " " : "", o->name);
-    out_format(to, "' %s\n", tool->name);
-}
-
-int opt_table(const opt_tool *tool, const char *kind, out *to, err *e)
-{
-    if (!strcmp(kind, "mdoc"))
-        put_mdoc(tool, to);
-    else if (!strcmp(kind, "bash"))
-        put_bash(tool, to);
-    else {
-        err_set(e, NULL, 0, "--table '%s': expected mdoc or bash", kind);
-        return usage_error(e);
-    }
-    return 0;
-}
-
-/* The base name: paths stay out of results, and so does what a reader would make of blanks. */
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash && slash[1] ? slash + 1 : path;
-}
-
-static void put_lengths(const opt_lengths *l, out *to)
-{
-    for (int i = 0; i < l->count; i++)
-        out_format(to, "%s%.17g%s", i ? "," : " ", l->value[i].value,
-                   l->value[i].unit ? num_unit_name(l->value[i].unit) : "");
-}
-
-static void put_numbers(const opt_numbers *l, out *to)
-{
-    for (int i = 0; i < l->count; i++)
-        out_format(to, "%s%.17g", i ? "," : " ", l->value[i]);
-}
-
-static void put_choice(const opt *o, int value, out *to)
-{
-    const char *p = o->choices;
-    for (int i = 0; i < value && p; i++)
-        p = strchr(p, '|') + 1;
-    out_format(to, " %.*s", (int)strcspn(p, "|"), p);
-}
-
-static void put_name(const opt *o, out *to)
-{
-    out_text(to, out_count(to) ? " " : "");
-    if (o->letter)
-        out_format(to, "-%c", o->letter);
-    else
-        out_format(to, "--%s", o->name);
-}
-
-/* Writes the option as it stands; what is off or was not given (texts, lists) is left out. */
-static void put_value(const opt *o, const void *options, out *to)
-{
-    const void *at = (const char *)options + o->to;
-    const opt_list *list = at;
-    if ((o->kind == OPT_FLAG && !*(const bool *)at) || (o->kind == OPT_TEXT && !*(const char *const *)at) ||
-        (o->kind == OPT_LENGTHS && !((const opt_lengths *)at)->count) ||
-        (o->kind == OPT_NUMBERS && !((const opt_numbers *)at)->count) ||
-        (o->kind == OPT_NUMBER && isnan(*(const double *)at)) || (o->kind == OPT_INT && *(const int64_t *)at < 0))
-        return;
-    if (o->kind == OPT_LIST) {
-        for (int i = 0; i < list->count; i++) {
-            put_name(o, to);
-            out_format(to, " %s", base_name(list->value[i]));
-        }
-        return;
-    }
-    put_name(o, to);
-    if (o->kind == OPT_TEXT)
-        out_format(to, " %s", base_name(*(const char *const *)at));
-    else if (o->kind == OPT_INT)
-        out_format(to, " %lld", (long long)*(const int64_t *)at);
-    else if (o->kind == OPT_NUMBER)
-        out_format(to, " %.17g", *(const double *)at);
-    else if (o->kind == OPT_LENGTHS)
-        put_lengths(at, to);
-    else if (o->kind == OPT_NUMBERS)
-        put_numbers(at, to);
-    else if (o->kind == OPT_CHOICE)
-        put_choice(o, *(const int *)at, to);
-}
-
-char *opt_provenance(const opt_tool *tool, const void *options, int operands, char *const *operand, err *e)
-{
-    out *to = out_memory(e);
-    if (!to)
-        return NULL;
-    for (const opt *o = tool->options; !is_end(o); o++)
-        if (!(o->flags & OPT_OUTPUT))
-            put_value(o, options, to);
-    for (int i = 0; i < operands; i++)
-        out_format(to, "%s%s", out_count(to) ? " " : "", base_name(operand[i]));
-    out_write(to, "", 1);
-    size_t size;
-    char *text = mem_text((const char *)out_bytes(to, &size), e);
-    out_discard(to);
-    return text;
 }

@@ -39,7 +39,8 @@ typedef struct opt_list {
 
 enum {
     OPT_REQUIRED = 1, /* usage error without it (unless -h, -V) */
-    OPT_OUTPUT = 2    /* does not change the result: left out of provenance */
+    OPT_OUTPUT = 2,   /* does not change the result: left out of provenance */
+    OPT_HIDDEN = 4    /* not for people: left out of every text */
 };
 
 typedef struct opt {
@@ -75,6 +76,11 @@ typedef struct opt_tool {
  * argv[1]. Returns the count of operands, or -1 with e filled (status 2). With -h, -V or --table, nothing more is
  * required. */
 int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e);
+
+/* The i-th option of the tool: its own first, then the common ones that it has; NULL past the last. opt_own: how many
+ * are its own. */
+const opt *opt_at(const opt_tool *tool, int i);
+int opt_own(const opt_tool *tool);
 
 /* Usage: at most 24 lines of 80 columns. */
 void opt_usage(const opt_tool *tool, out *o);

@@ -1,0 +1,203 @@
+/* What a table of options says of itself: usage, synopsis, completion, provenance. */
+#include "base/mem.h"
+#include "base/opt.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* "-s, --size H|HX,HY,HZ" */
+static void put_option(const opt *o, char *to, size_t size)
+{
+    int n = 0;
+    if (o->letter)
+        n = snprintf(to, size, "-%c%s", o->letter, o->name ? ", " : "");
+    if (o->name)
+        n += snprintf(to + n, size - (size_t)n, "--%s", o->name);
+    if (o->arg)
+        snprintf(to + n, size - (size_t)n, " %s", o->arg);
+}
+
+/* The common options on few lines, each word whole, at most 80 columns. */
+static void put_common(const opt_tool *tool, out *to)
+{
+    const opt *o;
+    size_t column = 0;
+    for (int i = opt_own(tool); (o = opt_at(tool, i)); i++) {
+        char item[160], name[80];
+        if (o->flags & OPT_HIDDEN)
+            continue;
+        put_option(o, name, sizeof name);
+        int n = snprintf(item, sizeof item, "%s %s", name, o->help);
+        if (column && column + (size_t)n + 2 > 78) {
+            out_text(to, "\n");
+            column = 0;
+        }
+        out_format(to, "%s%s", column ? "; " : "  ", item);
+        column += (size_t)n + 2;
+    }
+    out_text(to, "\n");
+}
+
+void opt_usage(const opt_tool *tool, out *to)
+{
+    const opt *o;
+    int own = opt_own(tool);
+    out_format(to, "usage: %s", tool->name);
+    for (int i = 0; i < own; i++)
+        if ((o = opt_at(tool, i))->flags & OPT_REQUIRED)
+            out_format(to, " --%s %s", o->name, o->arg);
+    out_format(to, " [options]%s%s\n%s\n", *tool->operands ? " " : "", tool->operands, tool->purpose);
+    for (int i = 0; i < own; i++) {
+        char name[80];
+        o = opt_at(tool, i);
+        put_option(o, name, sizeof name);
+        out_format(to, strlen(name) > 30 ? "  %s  %s\n" : "  %-30s  %s\n", name, o->help);
+    }
+    put_common(tool, to);
+}
+
+/* mdoc wants its special characters away from macros' arguments; '|' is a delimiter and stands by itself. */
+static void put_mdoc_arg(const char *arg, out *to)
+{
+    for (const char *p = arg; *p; p++)
+        if (*p == '|')
+            out_text(to, " | ");
+        else
+            out_write(to, p, 1);
+}
+
+static void put_mdoc(const opt_tool *tool, out *to)
+{
+    const opt *o;
+    out_format(to, ".Nm %s\n", tool->name);
+    for (int i = 0; (o = opt_at(tool, i)); i++) {
+        if (o->flags & OPT_HIDDEN)
+            continue;
+        out_text(to, o->flags & OPT_REQUIRED ? ".Fl" : ".Op Fl");
+        if (o->letter)
+            out_format(to, " %c", o->letter);
+        else
+            out_format(to, " -%s", o->name);
+        if (o->arg) {
+            out_text(to, " Ar ");
+            put_mdoc_arg(o->arg, to);
+        }
+        out_text(to, "\n");
+    }
+    if (*tool->operands) {
+        out_text(to, tool->operands_min ? ".Ar " : ".Op Ar ");
+        put_mdoc_arg(tool->operands, to);
+        out_text(to, "\n");
+    }
+}
+
+static void put_bash(const opt_tool *tool, out *to)
+{
+    const opt *o;
+    out_format(to, "complete -o default -W '");
+    for (int i = 0; (o = opt_at(tool, i)); i++)
+        if (o->name && !(o->flags & OPT_HIDDEN))
+            out_format(to, "%s--%s", i ? " " : "", o->name);
+    out_format(to, "' %s\n", tool->name);
+}
+
+int opt_table(const opt_tool *tool, const char *kind, out *to, err *e)
+{
+    if (!strcmp(kind, "mdoc"))
+        put_mdoc(tool, to);
+    else if (!strcmp(kind, "bash"))
+        put_bash(tool, to);
+    else {
+        err_set(e, NULL, 0, "--table '%s': expected mdoc or bash", kind);
+        e->status = STATUS_USAGE;
+        return -1;
+    }
+    return 0;
+}
+
+/* The base name: paths stay out of results, and so does what a reader would make of blanks. */
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash && slash[1] ? slash + 1 : path;
+}
+
+static void put_lengths(const opt_lengths *l, out *to)
+{
+    for (int i = 0; i < l->count; i++)
+        out_format(to, "%s%.17g%s", i ? "," : " ", l->value[i].value,
+                   l->value[i].unit ? num_unit_name(l->value[i].unit) : "");
+}
+
+static void put_numbers(const opt_numbers *l, out *to)
+{
+    for (int i = 0; i < l->count; i++)
+        out_format(to, "%s%.17g", i ? "," : " ", l->value[i]);
+}
+
+static void put_choice(const opt *o, int value, out *to)
+{
+    const char *p = o->choices;
+    for (int i = 0; i < value && p; i++)
+        p = strchr(p, '|') + 1;
+    out_format(to, " %.*s", (int)strcspn(p, "|"), p);
+}
+
+static void put_name(const opt *o, out *to)
+{
+    out_text(to, out_count(to) ? " " : "");
+    if (o->letter)
+        out_format(to, "-%c", o->letter);
+    else
+        out_format(to, "--%s", o->name);
+}
+
+/* Writes the option as it stands; what is off or was not given (texts, lists) is left out. */
+static void put_value(const opt *o, const void *options, out *to)
+{
+    const void *at = (const char *)options + o->to;
+    const opt_list *list = at;
+    if ((o->kind == OPT_FLAG && !*(const bool *)at) || (o->kind == OPT_TEXT && !*(const char *const *)at) ||
+        (o->kind == OPT_LENGTHS && !((const opt_lengths *)at)->count) ||
+        (o->kind == OPT_NUMBERS && !((const opt_numbers *)at)->count) ||
+        (o->kind == OPT_NUMBER && isnan(*(const double *)at)) || (o->kind == OPT_INT && *(const int64_t *)at < 0))
+        return;
+    if (o->kind == OPT_LIST) {
+        for (int i = 0; i < list->count; i++) {
+            put_name(o, to);
+            out_format(to, " %s", base_name(list->value[i]));
+        }
+        return;
+    }
+    put_name(o, to);
+    if (o->kind == OPT_TEXT)
+        out_format(to, " %s", base_name(*(const char *const *)at));
+    else if (o->kind == OPT_INT)
+        out_format(to, " %lld", (long long)*(const int64_t *)at);
+    else if (o->kind == OPT_NUMBER)
+        out_format(to, " %.17g", *(const double *)at);
+    else if (o->kind == OPT_LENGTHS)
+        put_lengths(at, to);
+    else if (o->kind == OPT_NUMBERS)
+        put_numbers(at, to);
+    else if (o->kind == OPT_CHOICE)
+        put_choice(o, *(const int *)at, to);
+}
+
+char *opt_provenance(const opt_tool *tool, const void *options, int operands, char *const *operand, err *e)
+{
+    out *to = out_memory(e);
+    if (!to)
+        return NULL;
+    for (int i = 0; i < opt_own(tool); i++)
+        if (!(opt_at(tool, i)->flags & OPT_OUTPUT))
+            put_value(opt_at(tool, i), options, to);
+    for (int i = 0; i < operands; i++)
+        out_format(to, "%s%s", out_count(to) ? " " : "", base_name(operand[i]));
+    out_write(to, "", 1);
+    size_t size;
+    char *text = mem_text((const char *)out_bytes(to, &size), e);
+    out_discard(to);
+    return text;
+}

@@ -1,0 +1,90 @@
+/* Numbers as people write them, against strtod and by hand. */
+#include "base/num.h"
+
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static uint64_t random_bits(uint64_t *state)
+{
+    *state ^= *state << 13, *state ^= *state >> 7, *state ^= *state << 17;
+    return *state;
+}
+
+/* Random decimals of 1 to 25 digits and every size of exponent must come out as strtod reads them. */
+static void against_strtod(void)
+{
+    uint64_t state = 88172645463325252u;
+    int wrong = 0;
+    for (int i = 0; i < 200000; i++) {
+        char text[64];
+        int n = 0, digits = 1 + (int)(random_bits(&state) % 25), point = (int)(random_bits(&state) % 26);
+        if (random_bits(&state) & 1)
+            text[n++] = '-';
+        for (int d = 0; d < digits; d++) {
+            if (d == point)
+                text[n++] = '.';
+            text[n++] = (char)('0' + random_bits(&state) % 10);
+        }
+        int exponent = (int)(random_bits(&state) % 60) - 30;
+        snprintf(text + n, sizeof text - (size_t)n, "e%d", exponent);
+        double got = 0, want = strtod(text, NULL);
+        if (num_double(text, &got) || memcmp(&got, &want, sizeof got))
+            wrong++;
+    }
+    ok(wrong == 0, "200000 random decimals read as strtod reads them (%d wrong)", wrong);
+}
+
+static void refuses(void)
+{
+    const char *bad[] = {"", "-", ".", "e5", "1e", "1.2.3", "nan", "inf", "0x10", "1 ", " 1", "1e400", "1,2", "--1"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        double v;
+        ok(num_double(bad[i], &v) == -1, "'%s' is no number", bad[i]);
+    }
+    double v = 1;
+    ok(!num_double("1e-400", &v) && v == 0, "a number below the smallest is 0");
+    ok(!num_double("-0", &v) && v == 0 && signbit(v), "-0 keeps its sign");
+}
+
+static void integers(void)
+{
+    int64_t v;
+    ok(!num_int("-12", -20, 20, &v) && v == -12, "-12");
+    ok(num_int("21", -20, 20, &v) == -1, "21 is past 20");
+    ok(num_int("9223372036854775808", INT64_MIN, INT64_MAX, &v) == -1, "2^63 does not fit");
+    ok(num_int("1.5", 0, 9, &v) == -1 && num_int("", 0, 9, &v) == -1 && num_int("1x", 0, 9, &v) == -1, "not integers");
+}
+
+static void lengths(void)
+{
+    num_length l;
+    ok(!num_length_of("4cm", &l) && l.value == 4 && l.unit == 10000, "4cm");
+    ok(num_length_in(l, 0, num_unit_of("mm")) == 40, "4cm is exactly 40 mm");
+    ok(!num_length_of("2.5", &l) && l.unit == 0, "no suffix");
+    ok(num_length_in(l, num_unit_of("mm"), num_unit_of("m")) == 2.5 / 1000, "2.5 mm in m is rounded once");
+    ok(!num_length_of("1in", &l) && num_length_in(l, 0, num_unit_of("mm")) == 25.4, "an inch is 25.4 mm");
+    ok(num_length_of("3ft", &l) == -1 && num_length_of("mm", &l) == -1, "feet, and a unit alone, are refused");
+    num_length list[3];
+    ok(num_lengths_of("1,2mm,3", list, 3) == 3 && list[1].unit == 1000, "a list of three");
+    ok(num_lengths_of("1,2,3,4", list, 3) == -1 && num_lengths_of("1,,3", list, 3) == -1, "four, or a gap: refused");
+}
+
+static void near_misses(void)
+{
+    const char *names[] = {"skin", "skull", "muscle_zyg"};
+    ok(num_nearest("skul", names, 3) == 1, "skul is near skull");
+    ok(num_nearest("MUSCLE_ZYK", names, 3) == 2, "letters of either case");
+    ok(num_nearest("liver", names, 3) == -1, "liver is near nothing");
+}
+
+int main(void)
+{
+    against_strtod();
+    refuses();
+    integers();
+    lengths();
+    near_misses();
+    return done_testing();
+}

@@ -1,0 +1,137 @@
+/* Command lines: every kind of value, what is refused, and what the texts say. */
+#include "base/opt.h"
+
+#include "tap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct options {
+    opt_common common;
+    bool open;
+    const char *name;
+    int64_t cells;
+    double level;
+    opt_lengths size;
+    opt_numbers gravity;
+    int device;
+    opt_list set;
+};
+
+#define TO(field) offsetof(struct options, field)
+static const opt options[] = {
+    {'s', "size", "H|HX,HY,HZ", OPT_LENGTHS, TO(size), 1, 3, NULL, OPT_REQUIRED, "voxel sides"},
+    {'n', "cells", "N", OPT_INT, TO(cells), 1, 100, NULL, 0, "cells"},
+    {0, "level", "L", OPT_NUMBER, TO(level), 0, 1, NULL, 0, "level"},
+    {'g', NULL, "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "gravity (m/s2)"},
+    {'d', NULL, "DEVICE", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT, "device"},
+    {0, "open", NULL, OPT_FLAG, TO(open), 0, 0, NULL, 0, "open"},
+    {0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0, "name"},
+    {'m', NULL, "KEY=VALUE", OPT_LIST, TO(set), 0, 0, NULL, 0, "set"},
+    {0}};
+static const opt_tool table = {"tool", "Does a thing.", "surface.obj|-", 1, 2, true, true, options};
+
+enum { WORDS = 16 };
+
+/* Parses the words of line; fills o. Returns opt_parse's answer. */
+static int parse(const char *line, struct options *o, char **argv, char *copy, err *e)
+{
+    int argc = 0;
+    *o = (struct options){.cells = -1, .level = NAN};
+    *e = (err){0};
+    strcpy(copy, line);
+    for (char *word = strtok(copy, " "); word && argc < WORDS; word = strtok(NULL, " "))
+        argv[argc++] = word;
+    return opt_parse(&table, argc, argv, o, e);
+}
+
+static void values(void)
+{
+    struct options o;
+    err e;
+    char *argv[WORDS], copy[256];
+    int n = parse("tool a.obj -s2.5mm,1,4cm --cells=7 -g 0,0,-9.81 -d cpu --open -m a=1 -m b=2 -qz -- -b.obj", &o, argv,
+                  copy, &e);
+    ok(n == 2 && !strcmp(argv[1], "a.obj") && !strcmp(argv[2], "-b.obj"), "operands come first, -- ends options");
+    ok(o.size.count == 3 && o.size.value[0].unit == 1000 && o.size.value[1].unit == 0, "lengths, joined to the letter");
+    ok(o.cells == 7 && o.gravity.value[2] == -9.81 && o.device == 2 && o.open, "integer, numbers, choice, flag");
+    ok(o.set.count == 2 && !strcmp(o.set.value[1], "b=2"), "a list");
+    ok(o.common.quiet && o.common.gzip && !o.common.text, "common letters bundle");
+    char *text = opt_provenance(&table, &o, n, argv + 1, &e);
+    ok(text && !strcmp(text, "-s 2.5mm,1,4cm -n 7 -g 0,0,-9.8100000000000005 --open -m a=1 -m b=2 a.obj -b.obj"),
+       "provenance: in the table's order, without what does not change the result: %s", text);
+    free(text);
+    n = parse("tool -s 1 /some/where/face.obj", &o, argv, copy, &e);
+    text = opt_provenance(&table, &o, n, argv + 1, &e);
+    ok(text && !strcmp(text, "-s 1 face.obj"), "provenance: base names, nothing that was not given: %s", text);
+    free(text);
+    ok(parse("tool -h", &o, argv, copy, &e) == 0 && o.common.help, "-h wants nothing else");
+}
+
+static void refused(void)
+{
+    static const struct {
+        const char *line, *text;
+    } bad[] = {
+        {"tool a.obj", "--size H|HX,HY,HZ is required"},
+        {"tool -s 1", "missing operand; expected surface.obj|-"},
+        {"tool -s 1 a b c", "extra operand 'c'"},
+        {"tool -s 1 a --sise 2", "no option --sise; did you mean --size?"},
+        {"tool -s 1 a -x", "no option -x"},
+        {"tool -s 1,2,3,4 a", "expected H|HX,HY,HZ"},
+        {"tool -s 1kg a", "expected H|HX,HY,HZ"},
+        {"tool -s 1 a -n 0", "a whole number from 1 to 100"},
+        {"tool -s 1 a -n x", "a whole number from 1 to 100"},
+        {"tool -s 1 a --level 1.5", "a number from 0 to 1"},
+        {"tool -s 1 a --level nan", "a number from 0 to 1"},
+        {"tool -s 1 a -g 0,0", "X,Y,Z, numbers between commas"},
+        {"tool -s 1 a -d gpu", "expected auto|cuda|cpu"},
+        {"tool -s 1 a --open=yes", "--open takes no value"},
+        {"tool -s 1 a -n", "-n needs a value: N"},
+        {"tool -s 1 a --ve", "could be several"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct options o;
+        err e;
+        char *argv[WORDS], copy[256];
+        int n = parse(bad[i].line, &o, argv, copy, &e);
+        ok(n == -1 && e.status == STATUS_USAGE && strstr(e.text, bad[i].text), "%s: %s", bad[i].line, e.text);
+    }
+}
+
+static void texts(void)
+{
+    err e = {0};
+    out *to = out_memory(&e);
+    opt_usage(&table, to);
+    out_write(to, "", 1);
+    size_t size;
+    const char *text = (const char *)out_bytes(to, &size);
+    int lines = 0, longest = 0, column = 0;
+    for (const char *p = text; *p; p++) {
+        column = *p == '\n' ? 0 : column + 1;
+        lines += *p == '\n';
+        longest = column > longest ? column : longest;
+    }
+    ok(lines <= 24 && longest <= 80, "usage is %d lines of at most %d columns", lines, longest);
+    ok(strstr(text, "usage: tool --size H|HX,HY,HZ [options] surface.obj|-\n"), "usage line");
+    ok(!strstr(text, "--table"), "--table is hidden");
+    out_discard(to);
+
+    to = out_memory(&e);
+    ok(!opt_table(&table, "mdoc", to, &e) && !opt_table(&table, "bash", to, &e), "tables");
+    out_write(to, "", 1);
+    text = (const char *)out_bytes(to, &size);
+    ok(strstr(text, ".Fl s Ar H | HX,HY,HZ\n.Op Fl n Ar N\n"), "mdoc synopsis");
+    ok(strstr(text, "complete -o default -W '--size --cells"), "bash completion");
+    ok(opt_table(&table, "html", to, &e) == -1 && e.status == STATUS_USAGE, "another kind is refused");
+    out_discard(to);
+}
+
+int main(void)
+{
+    values();
+    refused();
+    texts();
+    return done_testing();
+}

@@ -1,0 +1,132 @@
+/* Streams: what is written comes back, plain and gzipped, whole or not at all. */
+#include "base/in.h"
+#include "base/mem.h"
+#include "base/out.h"
+
+#include "tap.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static int files_in(const char *folder)
+{
+    DIR *d = opendir(folder);
+    int n = 0;
+    for (struct dirent *f; d && (f = readdir(d));)
+        n += f->d_name[0] != '.' || strlen(f->d_name) > 2;
+    if (d)
+        closedir(d);
+    return n;
+}
+
+static void round_trip(const char *path, bool gzip)
+{
+    err e = {0};
+    enum { COUNT = 300000 };
+    out *o = out_open(path, gzip, &e);
+    for (int i = 0; o && i < COUNT; i++)
+        out_format(o, "%d\r\n", i);
+    ok(o && access(path, F_OK), "nothing under the name before the end (gzip %d)", gzip);
+    ok(!out_close(o, &e), "closed (gzip %d) %s", gzip, e.text);
+    in *s = in_open(path, &e);
+    int64_t lines = 0, right = 0, n;
+    char *line;
+    bool whole = false;
+    while (s && (n = in_line(s, &line, &whole, &e)) >= 0)
+        right += atoi(line) == lines++ && line[n] == 0 && whole;
+    ok(s && right == COUNT && in_lines(s) == COUNT && !e.status, "%d lines come back (gzip %d)", COUNT, gzip);
+    in_close(s);
+    unlink(path);
+}
+
+static void damaged(const char *path)
+{
+    err e = {0};
+    out *o = out_open(path, true, &e);
+    for (int i = 0; o && i < 100000; i++)
+        out_format(o, "%d\n", i * 7919 % 1000003);
+    out_close(o, &e);
+    in *s = in_open(path, &e);
+    char *bytes = NULL;
+    in_close(s);
+    FILE *f = fopen(path, "rb+");
+    fseek(f, 0, SEEK_END);
+    ok(ftruncate(fileno(f), ftell(f) - 9) == 0, "cut");
+    fclose(f);
+    s = in_open(path, &e);
+    ok(s && in_all(s, &bytes, &e) == -1 && strstr(e.text, "cut short"), "a cut gzip stream: %s", e.text);
+    in_close(s);
+    unlink(path);
+}
+
+static void refused(const char *folder, const char *path)
+{
+    err e = {0};
+    ok(!in_open(path, &e) && strstr(e.text, "No such file"), "missing: %s", e.text);
+    e = (err){0};
+    ok(!out_open(folder, false, &e) && strstr(e.text, "is a folder"), "a folder: %s", e.text);
+    e = (err){0};
+    ok(!out_open("/nonexistent/x", false, &e) && strstr(e.text, "cannot create"), "no such folder: %s", e.text);
+    e = (err){0};
+    out *o = out_open("/dev/full", false, &e);
+    if (o) {
+        out_text(o, "x");
+        ok(out_close(o, &e) == -1 && strstr(e.text, "No space"), "a full disk: %s", e.text);
+    }
+    e = (err){0};
+    in *s = in_memory("a\0b\n", 4, "memory", &e);
+    char *line;
+    ok(in_line(s, &line, NULL, &e) == -2 && strstr(e.text, "memory:1: a NUL byte"), "%s", e.text);
+    in_close(s);
+}
+
+static void given_up(const char *folder, const char *path)
+{
+    err e = {0};
+    int before = files_in(folder);
+    out *o = out_open(path, false, &e);
+    out_text(o, "half");
+    out_discard(o);
+    ok(files_in(folder) == before, "a discarded output leaves no file");
+    o = out_open(path, false, &e);
+    out_text(o, "....tail");
+    ok(!out_patch(o, 0, "head", 4, &e) && !out_close(o, &e), "patched");
+    char text[9] = {0};
+    int fd = open(path, O_RDONLY);
+    ok(fd >= 0 && read(fd, text, 8) == 8 && !strcmp(text, "headtail"), "the head was written last: %s", text);
+    close(fd);
+    chmod(path, 0640);
+    o = out_open(path, false, &e);
+    out_text(o, "new");
+    struct stat st;
+    ok(!out_close(o, &e) && !stat(path, &st) && (st.st_mode & 0777) == 0640 && st.st_size == 3,
+       "a file that is replaced keeps its mode");
+    ok(files_in(folder) == before + 1, "and nothing else is left");
+    unlink(path);
+}
+
+int main(void)
+{
+    char folder[] = "/tmp/sinew-stream-XXXXXX", path[64];
+    if (!mkdtemp(folder))
+        return 1;
+    snprintf(path, sizeof path, "%s/file", folder);
+    round_trip(path, false);
+    round_trip(path, true);
+    damaged(path);
+    refused(folder, path);
+    given_up(folder, path);
+    rmdir(folder);
+
+    err e = {0};
+    in *s = in_memory("", 0, "memory", &e);
+    ok(s && in_peek(s, &e) == -1 && !e.status, "an empty stream is at its end");
+    in_close(s);
+    void *p = mem_array(INT64_MAX, 16, "a test", &e);
+    ok(!p && e.status, "a size that overflows is refused: %s", e.text);
+    return done_testing();
+}
