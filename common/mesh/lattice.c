@@ -1,0 +1,99 @@
+#include "mesh/lattice.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+const int32_t lattice_vtk[8][3] = {
+    {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1},
+};
+
+int lattice_of(const model *m, lattice *l, err *e)
+{
+    if (model_meta_numbers(m, "lattice.origin", l->origin, 3, e) ||
+        model_meta_numbers(m, "lattice.spacing", l->spacing, 3, e))
+        return -1;
+    for (int a = 0; a < 3; a++) {
+        if (!isfinite(l->origin[a]))
+            return err_set(e, NULL, 0, "lattice.origin holds %g; three finite numbers are needed", l->origin[a]);
+        if (!isfinite(l->spacing[a]) || l->spacing[a] <= 0)
+            return err_set(e, NULL, 0, "lattice.spacing holds %g; three finite numbers above 0 are needed",
+                           l->spacing[a]);
+    }
+    return 0;
+}
+
+int lattice_save(const lattice *l, model *m, err *e)
+{
+    if (model_meta_set_numbers(m, "lattice.origin", l->origin, 3, e))
+        return -1;
+    return model_meta_set_numbers(m, "lattice.spacing", l->spacing, 3, e);
+}
+
+/* The box of cells that the elements take, and its count of cells. -1 where no memory could hold a table of it. */
+static int64_t cells_covered(lattice_map *map, const int32_t *ijk, int64_t elements)
+{
+    int64_t cells = 1;
+    for (int a = 0; a < 3; a++) {
+        int32_t low = elements ? INT32_MAX : 0, high = elements ? INT32_MIN : -1;
+        for (int64_t n = 0; n < elements; n++) {
+            int32_t at = ijk[3 * n + a];
+            low = at < low ? at : low;
+            high = at > high ? at : high;
+        }
+        int64_t size = (int64_t)high - low + 1;
+        if (size > INT32_MAX || (size && cells > INT64_MAX / 8 / size))
+            return -1;
+        map->low[a] = low;
+        map->size[a] = (int32_t)size;
+        cells *= size;
+    }
+    return cells;
+}
+
+/* Enters each element into its cell. */
+static int fill(lattice_map *map, const int32_t *ijk, int64_t elements, err *e)
+{
+    for (int64_t n = 0; n < elements; n++) {
+        int64_t at[3];
+        for (int a = 0; a < 3; a++)
+            at[a] = (int64_t)ijk[3 * n + a] - map->low[a];
+        int32_t *cell = &map->element[(at[2] * map->size[1] + at[1]) * map->size[0] + at[0]];
+        if (*cell >= 0)
+            return err_set(e, NULL, 0, "element.lattice: elements %d and %lld are in the same cell %d %d %d", *cell,
+                           (long long)n, ijk[3 * n], ijk[3 * n + 1], ijk[3 * n + 2]);
+        *cell = (int32_t)n;
+    }
+    return 0;
+}
+
+int lattice_map_build(lattice_map *map, const model *m, err *e)
+{
+    *map = (lattice_map){0};
+    const model_array *ijk = model_need(m, "element.lattice", e);
+    if (!ijk)
+        return -1;
+    if (ijk->rows > INT32_MAX)
+        return err_set(e, NULL, 0, "%lld elements; at most %d are possible", (long long)ijk->rows, INT32_MAX);
+    int64_t cells = cells_covered(map, ijk->i32, ijk->rows);
+    if (cells < 0 || cells > mem_available() / (int64_t)sizeof *map->element)
+        return err_set(e, NULL, 0, "element.lattice: %lld elements are spread over more cells than memory can hold",
+                       (long long)ijk->rows);
+    map->element = mem_array(cells, sizeof *map->element, "the cells of the lattice", e);
+    if (!map->element)
+        return -1;
+    for (int64_t c = 0; c < cells; c++)
+        map->element[c] = -1;
+    if (fill(map, ijk->i32, ijk->rows, e)) {
+        lattice_map_free(map);
+        return -1;
+    }
+    return 0;
+}
+
+void lattice_map_free(lattice_map *map)
+{
+    free(map->element);
+    *map = (lattice_map){0};
+}
