@@ -1,0 +1,140 @@
+#include "base/keyfile.h"
+
+#include "base/num.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void keyfile_open(keyfile *k, in *source)
+{
+    *k = (keyfile){.source = source, .name = in_name(source)};
+}
+
+int keyfile_error(const keyfile *k, err *e, const char *format, ...)
+{
+    char text[900];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    return err_set(e, k->name, k->line, "%s", text);
+}
+
+static bool blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+/* Editors on some systems begin a file with this mark, and nobody sees it. */
+static char *past_mark(char *text, int64_t line)
+{
+    return line == 1 && !strncmp(text, "\xEF\xBB\xBF", 3) ? text + 3 : text;
+}
+
+static int check_characters(const keyfile *k, const char *text, err *e)
+{
+    for (const char *p = text; *p; p++)
+        if (((unsigned char)*p < 0x20 && *p != '\t') || *p == 0x7f)
+            return keyfile_error(k, e, "control character 0x%02x; expected a line of text", (unsigned)*p);
+    return 0;
+}
+
+/* Cuts the line into words in place. */
+static int split(keyfile *k, char *text, err *e)
+{
+    k->count = 0;
+    for (char *p = text; *p;) {
+        if (blank(*p)) {
+            *p++ = '\0';
+            continue;
+        }
+        if (*p == '#')
+            break;
+        if (k->count == KEYFILE_WORDS)
+            return keyfile_error(k, e, "more than %d words on a line", KEYFILE_WORDS);
+        k->word[k->count++] = p;
+        while (*p && !blank(*p))
+            p++;
+    }
+    return 0;
+}
+
+int keyfile_next(keyfile *k, err *e)
+{
+    for (;;) {
+        char *text;
+        int64_t length = in_line(k->source, &text, NULL, e);
+        if (length < 0)
+            return length == -1 ? 0 : -1;
+        k->line = in_lines(k->source);
+        if (length > KEYFILE_LINE)
+            return keyfile_error(k, e, "a line of %lld bytes; expected at most %d", (long long)length, KEYFILE_LINE);
+        text = past_mark(text, k->line);
+        if (check_characters(k, text, e) || split(k, text, e))
+            return -1;
+        if (k->count)
+            return 1;
+    }
+}
+
+static int index_of(const char *const *names, int count, const char *name)
+{
+    for (int i = 0; i < count; i++)
+        if (!strcmp(names[i], name))
+            return i;
+    return -1;
+}
+
+int keyfile_pair(keyfile *k, int at, const char *const *keys, int count, uint64_t *seen, char **value, err *e)
+{
+    char *key = k->word[at], *equals = strchr(key, '=');
+    if (!equals || equals == key)
+        return keyfile_error(k, e, "'%.200s'; expected KEY=VALUE", key);
+    *equals = '\0';
+    *value = equals + 1;
+    int i = index_of(keys, count, key);
+    if (i < 0)
+        return keyfile_unknown(e, k->name, k->line, "key", key, keys, count);
+    if (!**value)
+        return keyfile_error(k, e, "'%s=' without a value; expected %s=VALUE, no blank at the '='", key, key);
+    if (*seen >> i & 1)
+        return keyfile_error(k, e, "'%s' is given twice; expected once", key);
+    *seen |= UINT64_C(1) << i;
+    return i;
+}
+
+static size_t add_text(char *to, size_t size, size_t at, const char *text)
+{
+    int n = snprintf(to + at, size - at, "%s", text);
+    return n < 0 ? at : at + (size_t)n < size ? at + (size_t)n : size - 1;
+}
+
+/* The names between commas, as far as they fit. */
+static void list_names(char *to, size_t size, const char *const *names, int count)
+{
+    size_t at = 0;
+    to[0] = '\0';
+    for (int i = 0; i < count; i++) {
+        if (at + strlen(names[i]) + 8 >= size) {
+            add_text(to, size, at, at ? ", ..." : "...");
+            return;
+        }
+        at = add_text(to, size, at, i ? ", " : "");
+        at = add_text(to, size, at, names[i]);
+    }
+}
+
+int keyfile_unknown(err *e, const char *place, int64_t line, const char *what, const char *name,
+                    const char *const *names, int count)
+{
+    char list[320];
+    if (!count)
+        return err_set(e, place, line, "unknown %s '%.200s'; there is none here", what, name);
+    list_names(list, sizeof list, names, count);
+    int near = num_nearest(name, names, count);
+    if (near < 0)
+        return err_set(e, place, line, "unknown %s '%.200s'; expected one of: %s", what, name, list);
+    return err_set(e, place, line, "unknown %s '%.200s'; did you mean '%.200s'? expected one of: %s", what, name,
+                   names[near], list);
+}
