@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -198,6 +199,19 @@ int num_list(const char *text, double *list, int most)
     while (list_item(&text, item, sizeof item))
         if (n == most || num_double(item, &list[n++]))
             return -1;
+    return n;
+}
+
+int num_text(double value, bool single, char *to)
+{
+    if (isnan(value))
+        return snprintf(to, NUM_TEXT, "nan");
+    int n = 0;
+    for (int digits = single ? 6 : 15; digits <= (single ? 9 : 17); digits++) {
+        n = snprintf(to, NUM_TEXT, "%.*g", digits, value);
+        if (single ? strtof(to, NULL) == (float)value : strtod(to, NULL) == value)
+            break;
+    }
     return n;
 }
 

@@ -43,6 +43,11 @@ int num_lengths_of(const char *text, num_length *list, int most);
 /* A list of numbers between commas, at most `most`. Returns how many, or -1. */
 int num_list(const char *text, double *list, int most);
 
+/* The shortest text that reads back as the same double (single: as the same float), C locale; to holds at least
+ * NUM_TEXT bytes. "nan" has no sign. Returns its length. */
+enum { NUM_TEXT = 32 };
+int num_text(double value, bool single, char *to);
+
 /* Of `count` names the one nearest to name (edit distance at most a third of its length, at least 1), or -1. */
 int num_nearest(const char *name, const char *const *names, int count);
 

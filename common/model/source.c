@@ -1,0 +1,74 @@
+#include "model/source.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A `fail` in standard input was said by the tool that wrote it just now; one in a file was not. */
+static int tell(const source *s, err *e)
+{
+    if (!e->silent || s->from_stdin)
+        return -1;
+    err said = *e;
+    *e = (err){0};
+    err_set(e, in_name(s->stream), 0, "the run that wrote it failed: %.900s", said.text);
+    e->status = said.status;
+    return -1;
+}
+
+int source_open(source *s, const char *path, err *e)
+{
+    *s = (source){.from_stdin = !path || !strcmp(path, "-")};
+    if (s->from_stdin && isatty(STDIN_FILENO)) {
+        err_set(e, NULL, 0, "a model is read from standard input, which is a terminal; see --help");
+        e->status = STATUS_USAGE;
+        return -1;
+    }
+    s->stream = in_open(path, e);
+    if (!s->stream)
+        return -1;
+    int first = in_peek(s->stream, e);
+    if (first == -2)
+        return -1;
+    s->text = first == '%';
+    s->reader = model_reader_open(s->stream, e);
+    if (!s->reader || model_read(s->reader, &s->body, e))
+        return tell(s, e);
+    return 0;
+}
+
+int source_next(source *s, err *e)
+{
+    int got = model_read_frame(s->reader, &s->body, &s->spare, e);
+    if (got < 0)
+        return tell(s, e);
+    if (!got)
+        return 0;
+    frame last = s->frame;
+    s->frame = s->spare;
+    s->spare = last;
+    s->frames++;
+    return 1;
+}
+
+void source_close(source *s)
+{
+    frame_free(&s->frame);
+    frame_free(&s->spare);
+    model_free(&s->body);
+    if (s->reader)
+        model_reader_close(s->reader);
+    in_close(s->stream);
+    *s = (source){0};
+}
+
+const char *source_name(const source *s)
+{
+    return s->stream ? in_name(s->stream) : "stdin";
+}
+
+const model_array *source_find(const source *s, const char *name)
+{
+    const model_array *a = s->frames ? frame_find(&s->frame, name) : NULL;
+    return a ? a : model_find(&s->body, name);
+}

@@ -1,0 +1,56 @@
+/* A model that is only looked at: read from a file or standard input by tools that write no model. It owns
+ * the body and the last frame read, so one frame is in memory at a time (two while the next is read).
+ */
+#ifndef SINEW_SOURCE_H
+#define SINEW_SOURCE_H
+
+#include "model/stream.h"
+
+typedef struct source {
+    in *stream;
+    model_reader *reader;
+    model body;
+    frame frame;     /* the last one read; empty while frames is 0 */
+    int64_t frames;  /* read so far */
+    frame spare;
+    bool text;       /* the encoding */
+    bool from_stdin;
+} source;
+
+/* Opens path (NULL or "-": standard input; a terminal there is a usage error) and reads the body. Where the stream
+ * ended with `fail`, e is silent only for standard input: who reads a file of yesterday was not told. s is to be
+ * closed in every case. */
+int source_open(source *s, const char *path, err *e);
+
+/* The next frame, into s->frame. 1: a frame; 0: the end, and s->frame stays the last; -1: e filled. */
+int source_next(source *s, err *e);
+
+/* s may be zeroed or part open. */
+void source_close(source *s);
+
+/* "stdin" or the path: for messages. */
+const char *source_name(const source *s);
+
+/* An array by name: the frame's, where there is one, else the body's. NULL where neither has it. */
+const model_array *source_find(const source *s, const char *name);
+
+/* One number of an array that does not hold strings. */
+static inline double source_value(const model_array *a, int64_t at)
+{
+    switch (a->type) {
+    case MODEL_F32:
+        return (double)a->f32[at];
+    case MODEL_F64:
+        return a->f64[at];
+    case MODEL_I32:
+        return a->i32[at];
+    case MODEL_I64:
+        return (double)a->i64[at];
+    case MODEL_U8:
+        return a->u8[at];
+    default:
+        return 0;
+    }
+}
+
+#endif
