@@ -44,6 +44,7 @@ VOXELISE_SRC := $(wildcard voxelise/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
 TLED_SRC := $(wildcard tled/*.c)
+INFO_MODULES := $(wildcard common/tools/info_*.c)
 EXPORT_MODULES := $(wildcard common/tools/export_*.c)
 
 define tool
@@ -57,7 +58,7 @@ $(eval $(call tool,bind,bind/bind.c $(BIND_MODULES)))
 $(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
 $(eval $(call tool,tled-run,$(TLED_SRC)))
 $(eval $(call tool,sinew,common/tools/sinew.c))
-$(eval $(call tool,sinew-info,common/tools/sinew-info.c))
+$(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))
 $(eval $(call tool,sinew-export,common/tools/sinew-export.c $(EXPORT_MODULES)))
 
