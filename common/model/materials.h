@@ -13,13 +13,14 @@
 
 typedef enum material_law { MATERIAL_NEO_HOOKEAN, MATERIAL_LAWS } material_law;
 
-/* X(key, unit, default, low, low itself allowed, high, high itself allowed). E, nu and density: W&M section 4.2; peak is
- * not in the paper. nu below 0 (auxetic) is a material too; from .5 on, the bulk modulus is not finite. */
+/* X(key, unit, default, where the model has none, allowed values v, the same in words). E, nu and density: W&M
+ * section 4.2; peak is not in the paper. A nu below 0 (auxetic) is a material too; from .5 on, the bulk modulus is not
+ * finite. */
 #define MATERIAL_KEYS(X)                                                                                               \
-    X(E, "Pa", 3000, 0, false, INFINITY, false)                                                                        \
-    X(nu, "1", 0.49, -1, false, 0.5, false)                                                                            \
-    X(density, "kg/m3", 1000, 0, false, INFINITY, false)                                                               \
-    X(peak, "Pa", 30000, 0, true, INFINITY, false)
+    X(E, "Pa", 3000, NAN, v > 0, "more than 0 Pa")                                                                     \
+    X(nu, "1", 0.49, NAN, v > -1 && v < 0.5, "between -1 and 0.5, both excluded")                                      \
+    X(density, "kg/m3", 1000, NAN, v > 0, "more than 0 kg/m3")                                                         \
+    X(peak, "Pa", 30000, 0, v >= 0, "0 Pa or more")
 
 typedef struct material {
     material_law law;
@@ -46,10 +47,10 @@ int32_t materials_find(const model *m, const char *name);
 /* "unknown material 'name'; ..." at place:line, with near names. Returns -1. */
 int materials_unknown(const model *m, const char *name, const char *place, int64_t line, err *e);
 
-/* Material i, checked: a model may have been edited by hand. An array that is missing is an error, but for peak (0). */
+/* Material i, checked: a model may have been edited by hand. A missing array or a nan is an error, but for peak (0). */
 int materials_of(const model *m, int64_t i, material *to, err *e);
 
-/* mu and lambda (Pa), and K = lambda + 2/3 mu. */
+/* mu and K, in Pa. */
 static inline double material_mu(const material *a)
 {
     return a->E / (2 * (1 + a->nu));

@@ -1,0 +1,309 @@
+#include "model/materials.h"
+
+#include "base/keyfile.h"
+#include "base/mem.h"
+#include "base/num.h"
+#include "model/check.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct key {
+    const char *name, *array;
+    double fallback, absent;
+    bool (*valid)(double v);
+    const char *expected;
+} key;
+
+#define VALID(name, unit, fallback, absent, condition, words)                                                          \
+    static bool valid_##name(double v)                                                                                 \
+    {                                                                                                                  \
+        return isfinite(v) && (condition);                                                                             \
+    }
+MATERIAL_KEYS(VALID)
+
+#define KEY_ROW(name, unit, fallback, absent, condition, words)                                                        \
+    {#name, "material." #name, fallback, absent, valid_##name, words},
+static const key keys[] = {MATERIAL_KEYS(KEY_ROW)};
+
+enum { KEYS = sizeof keys / sizeof *keys };
+
+#define KEY_NAME(name, unit, fallback, absent, condition, words) #name,
+static const char *const key_names[] = {"law", MATERIAL_KEYS(KEY_NAME)};
+
+static const char *const law_names[MATERIAL_LAWS] = {[MATERIAL_NEO_HOOKEAN] = "neo-hookean"};
+
+/* One line of a file, or one row of the table. */
+typedef struct row {
+    char *name;
+    uint64_t given; /* bits of key_names */
+    material_law law;
+    double value[KEYS];
+} row;
+
+static void row_defaults(row *r)
+{
+    *r = (row){.law = MATERIAL_NEO_HOOKEAN};
+    for (int i = 0; i < KEYS; i++)
+        r->value[i] = keys[i].fallback;
+}
+
+static int law_of(const char *name)
+{
+    for (int i = 0; i < MATERIAL_LAWS; i++)
+        if (!strcmp(law_names[i], name))
+            return i;
+    return -1;
+}
+
+/* name: an index into key_names. place and line as in err_set. */
+static int row_take(row *r, int name, const char *text, const char *place, int64_t line, err *e)
+{
+    if (name == 0) {
+        int law = law_of(text);
+        if (law < 0)
+            return keyfile_unknown(e, place, line, "law", text, law_names, MATERIAL_LAWS);
+        r->law = (material_law)law;
+        return 0;
+    }
+    const key *k = &keys[name - 1];
+    double v;
+    if (num_double(text, &v) || !k->valid(v))
+        return err_set(e, place, line, "'%s=%.100s' is not allowed; expected %s", k->name, text, k->expected);
+    r->value[name - 1] = v;
+    return 0;
+}
+
+static int row_parse(row *r, keyfile *k, err *e)
+{
+    for (int at = 1; at < k->count; at++) {
+        char *text;
+        int name = keyfile_pair(k, at, key_names, KEYS + 1, &r->given, &text, e);
+        if (name < 0 || row_take(r, name, text, k->name, k->line, e))
+            return -1;
+    }
+    return 0;
+}
+
+/* The first word of the line, as a name. */
+static int parse_name(const keyfile *k, err *e)
+{
+    if (strchr(k->word[0], '='))
+        return keyfile_error(k, e, "'%.200s' comes first; expected NAME law=neo-hookean E=3000 ...", k->word[0]);
+    if (!check_utf8(k->word[0]))
+        return keyfile_error(k, e, "the material's name is not UTF-8");
+    return 0;
+}
+
+/* Writes what of the row is in `given` into the model's table. */
+static int row_store(model *m, int64_t at, const row *r, uint64_t given, err *e)
+{
+    if (given & 1) {
+        model_array *law = model_find(m, "material.law");
+        if (!law && !(law = model_add(m, "material.law", e)))
+            return -1;
+        if (model_set_text(law, at, law_names[r->law], e))
+            return -1;
+    }
+    for (int i = 0; i < KEYS; i++) {
+        if (!(given >> (i + 1) & 1))
+            continue;
+        model_array *a = model_need(m, keys[i].array, e);
+        if (!a)
+            return -1;
+        a->f64[at] = r->value[i];
+    }
+    return 0;
+}
+
+static int table_make(model *m, const row *rows, int64_t count, err *e)
+{
+    if (model_axis_add(m, "material", count, e) || !model_add(m, "material.name", e) ||
+        !model_add(m, "material.law", e))
+        return -1;
+    for (int i = 0; i < KEYS; i++)
+        if (!model_add(m, keys[i].array, e))
+            return -1;
+    for (int64_t i = 0; i < count; i++)
+        if (model_set_text(model_find(m, "material.name"), i, rows[i].name, e) ||
+            row_store(m, i, &rows[i], ~UINT64_C(0), e))
+            return -1;
+    return 0;
+}
+
+int materials_default(model *m, err *e)
+{
+    char name[] = "tissue";
+    row r;
+    row_defaults(&r);
+    r.name = name;
+    return table_make(m, &r, 1, e);
+}
+
+static int refuse_duplicate(const keyfile *k, const row *rows, int64_t count, err *e)
+{
+    for (int64_t i = 0; i < count; i++)
+        if (!strcmp(rows[i].name, k->word[0]))
+            return keyfile_error(k, e, "material '%.200s' is given twice; expected each name once", k->word[0]);
+    return 0;
+}
+
+int materials_read(model *m, in *s, err *e)
+{
+    keyfile k;
+    row *rows = NULL;
+    int64_t count = 0, capacity = 0;
+    int more, status = -1;
+    keyfile_open(&k, s);
+    while ((more = keyfile_next(&k, e)) > 0) {
+        if (parse_name(&k, e) || refuse_duplicate(&k, rows, count, e) ||
+            mem_grow(&rows, &capacity, count + 1, sizeof *rows, "materials", e))
+            goto out;
+        row *r = &rows[count];
+        row_defaults(r);
+        if (!(r->name = mem_text(k.word[0], e)))
+            goto out;
+        count++;
+        if (row_parse(r, &k, e))
+            goto out;
+    }
+    if (more < 0)
+        goto out;
+    if (!count)
+        err_set(e, in_name(s), 0, "no material in it; expected lines NAME law=neo-hookean E=3000 ...");
+    else
+        status = table_make(m, rows, count, e);
+out:
+    for (int64_t i = 0; i < count; i++)
+        free(rows[i].name);
+    free(rows);
+    return status;
+}
+
+/* One line of an override. seen: 1 for the rows that had theirs. */
+static int override_line(model *m, keyfile *k, uint8_t *seen, err *e)
+{
+    row r = {0};
+    if (parse_name(k, e))
+        return -1;
+    int32_t at = materials_find(m, k->word[0]);
+    if (at < 0)
+        return materials_unknown(m, k->word[0], k->name, k->line, e);
+    if (seen[at]++)
+        return keyfile_error(k, e, "material '%.200s' is given twice; expected each name once", k->word[0]);
+    return row_parse(&r, k, e) || row_store(m, at, &r, r.given, e) ? -1 : 0;
+}
+
+int materials_override(model *m, in *s, err *e)
+{
+    keyfile k;
+    int more = -1;
+    const model_array *names = model_need(m, "material.name", e);
+    uint8_t *seen = names ? mem_array(names->rows, 1, "materials", e) : NULL;
+    if (!seen)
+        return -1;
+    keyfile_open(&k, s);
+    while ((more = keyfile_next(&k, e)) > 0)
+        if (override_line(m, &k, seen, e)) {
+            more = -1;
+            break;
+        }
+    free(seen);
+    return more;
+}
+
+/* "NAME.KEY=VALUE" cut in place: NAME is what is left of text. */
+static int assignment_cut(char *text, char **name, char **value)
+{
+    char *equals = strchr(text, '=');
+    if (!equals)
+        return -1;
+    *equals = '\0';
+    char *dot = strrchr(text, '.');
+    if (!dot || dot == text || !dot[1] || !equals[1])
+        return -1;
+    *dot = '\0';
+    *name = dot + 1;
+    *value = equals + 1;
+    return 0;
+}
+
+static int assign(model *m, const char *which, const char *name, const char *text, err *e)
+{
+    int32_t at = materials_find(m, which);
+    if (at < 0)
+        return materials_unknown(m, which, NULL, 0, e);
+    for (int i = 0; i <= KEYS; i++) {
+        row r = {0};
+        if (!strcmp(key_names[i], name))
+            return row_take(&r, i, text, which, 0, e) ? -1 : row_store(m, at, &r, UINT64_C(1) << i, e);
+    }
+    return keyfile_unknown(e, which, 0, "key", name, key_names, KEYS + 1);
+}
+
+int materials_set(model *m, const char *assignment, err *e)
+{
+    if (!model_need(m, "material.name", e))
+        return -1;
+    char *text = mem_text(assignment, e), *name, *value;
+    if (!text)
+        return -1;
+    int status = -1;
+    if (assignment_cut(text, &name, &value))
+        err_set(e, NULL, 0, "'%.200s'; expected MATERIAL.KEY=VALUE, such as tissue.E=3000", assignment);
+    else
+        status = assign(m, text, name, value, e);
+    free(text);
+    return status;
+}
+
+int32_t materials_find(const model *m, const char *name)
+{
+    const model_array *a = model_find(m, "material.name");
+    for (int64_t i = 0; a && i < a->rows; i++)
+        if (!strcmp(a->str[i], name))
+            return (int32_t)i;
+    return -1;
+}
+
+int materials_unknown(const model *m, const char *name, const char *place, int64_t line, err *e)
+{
+    const model_array *a = model_find(m, "material.name");
+    int count = !a ? 0 : a->rows < INT32_MAX ? (int)a->rows : INT32_MAX;
+    return keyfile_unknown(e, place, line, "material", name, a ? (const char *const *)a->str : NULL, count);
+}
+
+/* The value of key k of material i, or what the table says where there is none. */
+static int value_of(const model *m, int64_t i, const key *k, double *value, err *e)
+{
+    const model_array *a = isnan(k->absent) ? model_need(m, k->array, e) : model_find(m, k->array);
+    if (!a && isnan(k->absent))
+        return -1;
+    *value = !a || isnan(a->f64[i]) ? k->absent : a->f64[i];
+    if (k->valid(*value))
+        return 0;
+    return err_set(e, NULL, 0, "%s, row %" PRId64 ": %g is not allowed; expected %s", k->array, i, *value, k->expected);
+}
+
+int materials_of(const model *m, int64_t i, material *to, err *e)
+{
+    const model_array *law = model_need(m, "material.law", e);
+    if (!law)
+        return -1;
+    int which = law_of(law->str[i]);
+    if (which < 0)
+        return keyfile_unknown(e, "material.law", 0, "law", law->str[i], law_names, MATERIAL_LAWS);
+    to->law = (material_law)which;
+#define VALUE_INDEX(name, unit, fallback, absent, condition, words) AT_##name,
+    enum { MATERIAL_KEYS(VALUE_INDEX) };
+#define VALUE_TAKE(name, unit, fallback, absent, condition, words)                                                     \
+    if (value_of(m, i, &keys[AT_##name], &to->name, e))                                                                \
+        return -1;
+    MATERIAL_KEYS(VALUE_TAKE)
+    if (!isfinite(material_bulk(to)) || !(material_mu(to) > 0))
+        return err_set(e, NULL, 0, "material, row %" PRId64 ": E=%g with nu=%g is beyond what can be computed", i,
+                       to->E, to->nu);
+    return 0;
+}
