@@ -37,6 +37,9 @@ typedef struct obj {
 int obj_read(obj *o, in *s, err *e);
 void obj_free(obj *o);
 
+/* The number of the line that the byte at `offset` of the text is on. */
+int64_t obj_line_number(const obj *o, int64_t offset);
+
 /* Writes the text again with these positions (and normals; NULL: as they were). A vertex whose position equals the
  * one read keeps its line to the byte; otherwise its three numbers are written %.9g and what follows them on
  * the line (weight, colour) stays. */

@@ -31,6 +31,16 @@ int surface_of(const model *m, const char *name, surface *s, err *e);
 /* Adds an OBJ to the model as the surface `name`, its coordinates times scale (to metres). */
 int surface_add(model *m, const char *name, const obj *o, double scale, err *e);
 
+/* A coordinate of an OBJ in metres: one product, the same wherever it is computed, so that equality can be asked. */
+static inline double surface_metres(double coordinate, double scale)
+{
+    return coordinate * scale;
+}
+
+/* Whether the surface is this OBJ: as many vertices, at the same places. Returns 0, or -1 with e saying what differs
+ * first. */
+int surface_is(const surface *s, const obj *o, double scale, err *e);
+
 /* A surface name from a path: base name without .obj, .obj.gz; what axis names may not hold becomes '_'; "stdin" for
  * "-". */
 void surface_name(const char *path, char *name, size_t size);

@@ -1,0 +1,631 @@
+#include "base/mem.h"
+#include "base/num.h"
+#include "mesh/obj.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Positive indices may point to what comes later in the file. Only those that point further than any before them
+ * are kept: of these, the first past the final count is the file's first wrong one. */
+typedef struct forward {
+    int64_t index, line;
+} forward;
+
+typedef struct forwards {
+    forward *v;
+    int64_t count, capacity, furthest;
+} forwards;
+
+typedef struct reader {
+    obj *o;
+    const char *p, *end;    /* the next byte of the text, and past its last */
+    const char *line_start; /* of the logical line */
+    int64_t line;           /* number of the line that p is on */
+    struct {
+        int64_t position, v, normal, vn, face_start, face_group, corner_vertex, corner_normal, group;
+    } room;
+    forwards vertex, normal;
+    bool grouped; /* `current` is the group of the next face */
+    int32_t current;
+    char *object;  /* the last object's name, or NULL */
+    int32_t *slot; /* hash table of groups: -1 = free */
+    int64_t slots; /* a power of two, or 0 */
+    char *name;    /* scratch for names */
+    int64_t name_room;
+    err *e;
+} reader;
+
+/* Scanning */
+
+static inline bool line_ends(const char *p, const char *end)
+{
+    return p >= end || *p == '\n' || (*p == '\r' && (p + 1 == end || p[1] == '\n'));
+}
+
+/* The length of a continuation (backslash, line end) at p, or 0. The text ends with a NUL. */
+static inline int continues(const char *p)
+{
+    if (*p != '\\')
+        return 0;
+    return p[1] == '\n' ? 2 : p[1] == '\r' && p[2] == '\n' ? 3 : 0;
+}
+
+static inline bool is_blank(char c)
+{
+    return c == ' ' || c == '\t';
+}
+
+/* Whether a word ends at p. */
+static inline bool is_break(const reader *r, const char *p)
+{
+    return is_blank(*p) || line_ends(p, r->end) || continues(p);
+}
+
+/* Steps over blanks and continuations; true where the line goes on. */
+static bool skip_blanks(reader *r)
+{
+    for (;;) {
+        if (line_ends(r->p, r->end))
+            return false;
+        int n = continues(r->p);
+        r->line += n > 0;
+        if (!n && !is_blank(*r->p))
+            return true;
+        r->p += n ? n : 1;
+    }
+}
+
+/* The same; a comment ends the line too. */
+static bool skip_to_word(reader *r)
+{
+    return skip_blanks(r) && *r->p != '#';
+}
+
+static const char *word_end(const reader *r)
+{
+    const char *p = r->p;
+    while (!is_break(r, p))
+        p++;
+    return p;
+}
+
+/* The LF that ends the line, or the end of the text. */
+static const char *line_end(const char *p, const char *end)
+{
+    const char *lf = memchr(p, '\n', (size_t)(end - p));
+    return lf ? lf : end;
+}
+
+/* Goes to the end of the logical line. */
+static void skip_line(reader *r)
+{
+    for (;;) {
+        r->p = line_end(r->p, r->end);
+        const char *last = r->p - 1;
+        last -= *last == '\r' && last > r->line_start;
+        if (r->p == r->end || *last != '\\')
+            return;
+        r->p++;
+        r->line++;
+    }
+}
+
+static int bad(reader *r, const char *what, const char *expected)
+{
+    char word[40];
+    size_t n = (size_t)(word_end(r) - r->p), most = sizeof word - 1;
+    memcpy(word, r->p, n < most ? n : most);
+    word[n < most ? n : most] = 0;
+    for (char *c = word; *c; c++)
+        if ((unsigned char)*c < ' ' || (unsigned char)*c >= 127)
+            *c = '?';
+    return err_set(r->e, r->o->name, r->line, "%s '%s%s'; expected %s", what, word, n > most ? "..." : "", expected);
+}
+
+/* Numbers */
+
+/* All the numbers that are left on the line: how many, or -1. */
+static int read_numbers(reader *r, double *value, int most, const char *expected)
+{
+    int n = 0;
+    while (skip_to_word(r)) {
+        const char *stop;
+        if (n == most)
+            return bad(r, "too many numbers, from", expected);
+        if (num_scan(r->p, r->end, &stop, &value[n]) || !is_break(r, stop))
+            return bad(r, "not a finite number:", expected);
+        r->p = stop;
+        n++;
+    }
+    return n;
+}
+
+/* Stores three numbers and their line as the next row of an array. Its line's end is known only now: p is there, or at
+ * a comment, which belongs to the line. */
+static int store_row(reader *r, const double *value, double **row, int64_t *row_room, obj_line **line,
+                     int64_t *line_room, int64_t *count)
+{
+    if (*count >= INT32_MAX)
+        return err_set(r->e, r->o->name, r->line, "more than %d vertices or normals; expected a smaller mesh",
+                       INT32_MAX);
+    if (mem_grow(row, row_room, 3 * (*count + 1), sizeof **row, "an OBJ's coordinates", r->e) ||
+        mem_grow(line, line_room, *count + 1, sizeof **line, "an OBJ's lines", r->e))
+        return -1;
+    memcpy(*row + 3 * *count, value, 3 * sizeof *value);
+    const char *to = r->p;
+    while (!line_ends(to, r->end))
+        to++;
+    (*line)[(*count)++] = (obj_line){r->line_start - r->o->text, to - r->o->text};
+    return 0;
+}
+
+static int read_vertex(reader *r)
+{
+    static const char expected[] = "v x y z, then w, or colours, or nothing";
+    double value[8];
+    int n = read_numbers(r, value, 8, expected);
+    if (n < 0)
+        return -1;
+    if (n < 3 || n == 5)
+        return err_set(r->e, r->o->name, r->line, "a vertex of %d numbers; expected %s", n, expected);
+    obj *o = r->o;
+    return store_row(r, value, &o->position, &r->room.position, &o->v, &r->room.v, &o->vertices);
+}
+
+static int read_normal(reader *r)
+{
+    double value[3];
+    int n = read_numbers(r, value, 3, "vn x y z");
+    if (n < 0)
+        return -1;
+    if (n < 3)
+        return err_set(r->e, r->o->name, r->line, "a normal of %d numbers; expected vn x y z", n);
+    obj *o = r->o;
+    return store_row(r, value, &o->normal, &r->room.normal, &o->vn, &r->room.vn, &o->normals);
+}
+
+/* Groups */
+
+static uint64_t hash(const char *text)
+{
+    uint64_t h = UINT64_C(14695981039346656037); /* FNV-1a */
+    for (; *text; text++)
+        h = (h ^ (unsigned char)*text) * UINT64_C(1099511628211);
+    return h;
+}
+
+static int32_t *find_slot(const reader *r, const char *name)
+{
+    int64_t at = (int64_t)(hash(name) & (uint64_t)(r->slots - 1));
+    while (r->slot[at] >= 0 && strcmp(r->o->group[r->slot[at]], name) != 0)
+        at = (at + 1) & (r->slots - 1);
+    return &r->slot[at];
+}
+
+static int grow_slots(reader *r)
+{
+    int64_t slots = r->slots ? r->slots * 4 : 64;
+    int32_t *slot = mem_array(slots, sizeof *slot, "an OBJ's groups", r->e);
+    if (!slot)
+        return -1;
+    memset(slot, -1, (size_t)slots * sizeof *slot);
+    free(r->slot);
+    r->slot = slot;
+    r->slots = slots;
+    for (int32_t g = 0; g < r->o->groups; g++)
+        *find_slot(r, r->o->group[g]) = g;
+    return 0;
+}
+
+/* Makes the group of this name current, adding it where it is new. */
+static int enter_group(reader *r, const char *name)
+{
+    obj *o = r->o;
+    if (2 * (int64_t)o->groups >= r->slots && grow_slots(r))
+        return -1;
+    int32_t *slot = find_slot(r, name);
+    if (*slot < 0) {
+        if (o->groups == INT32_MAX)
+            return err_set(r->e, o->name, r->line, "more than %d groups; expected fewer", INT32_MAX);
+        if (mem_grow(&o->group, &r->room.group, o->groups + 1, sizeof *o->group, "an OBJ's groups", r->e))
+            return -1;
+        o->group[o->groups] = mem_text(name, r->e);
+        if (!o->group[o->groups])
+            return -1;
+        *slot = o->groups++;
+    }
+    r->current = *slot;
+    r->grouped = true;
+    return 0;
+}
+
+/* The length of the UTF-8 character at p, or 0 where it is none. */
+static int utf8_length(const unsigned char *p, const unsigned char *end)
+{
+    if (*p < 0x80)
+        return 1;
+    int n = *p >= 0xf0 ? 4 : *p >= 0xe0 ? 3 : 2;
+    if (*p < 0xc2 || *p > 0xf4 || end - p < n)
+        return 0;
+    for (int i = 1; i < n; i++)
+        if ((p[i] & 0xc0) != 0x80)
+            return 0;
+    if ((*p == 0xe0 && p[1] < 0xa0) || (*p == 0xed && p[1] > 0x9f) || (*p == 0xf0 && p[1] < 0x90) ||
+        (*p == 0xf4 && p[1] > 0x8f))
+        return 0;
+    return n;
+}
+
+/* The words that are left on the line, joined by `joint`, into r->name: their length, or -1. */
+static int64_t read_names(reader *r, char joint)
+{
+    int64_t n = 0;
+    while (skip_blanks(r)) {
+        const char *stop = word_end(r);
+        for (const char *p = r->p; p < stop;) {
+            int step = utf8_length((const unsigned char *)p, (const unsigned char *)stop);
+            if (!step || (unsigned char)*p < ' ' || *p == 127)
+                return bad(r, "not a name in UTF-8:", "printable UTF-8");
+            p += step;
+        }
+        int64_t length = stop - r->p;
+        if (mem_grow(&r->name, &r->name_room, n + length + 2, 1, "a group's name", r->e))
+            return -1;
+        if (n)
+            r->name[n++] = joint;
+        memcpy(r->name + n, r->p, (size_t)length);
+        n += length;
+        r->name[n] = 0;
+        r->p = stop;
+    }
+    return n;
+}
+
+static int read_group(reader *r)
+{
+    int64_t n = read_names(r, ' ');
+    if (n < 0)
+        return -1;
+    return enter_group(r, n ? r->name : "default");
+}
+
+/* An object names faces only where no group does: its first face tells, so its name is kept until then. */
+static int read_object(reader *r)
+{
+    int64_t n = read_names(r, '_');
+    if (n < 0)
+        return -1;
+    free(r->object);
+    r->object = n ? mem_text(r->name, r->e) : NULL;
+    r->grouped = false;
+    return n && !r->object ? -1 : 0;
+}
+
+/* Faces, lines, points */
+
+static int begin_face(reader *r)
+{
+    obj *o = r->o;
+    if (!r->grouped && enter_group(r, r->object ? r->object : "default"))
+        return -1;
+    if (mem_grow(&o->face_start, &r->room.face_start, o->faces + 2, sizeof *o->face_start, "an OBJ's faces", r->e) ||
+        mem_grow(&o->face_group, &r->room.face_group, o->faces + 1, sizeof *o->face_group, "an OBJ's faces", r->e))
+        return -1;
+    o->face_start[o->faces] = o->corners;
+    o->face_group[o->faces++] = r->current;
+    return 0;
+}
+
+static int add_corner(reader *r, const int32_t *corner)
+{
+    obj *o = r->o;
+    if (mem_grow(&o->corner_vertex, &r->room.corner_vertex, o->corners + 1, sizeof(int32_t), "an OBJ's corners",
+                 r->e) ||
+        mem_grow(&o->corner_normal, &r->room.corner_normal, o->corners + 1, sizeof(int32_t), "an OBJ's corners", r->e))
+        return -1;
+    o->corner_vertex[o->corners] = corner[0];
+    o->corner_normal[o->corners++] = corner[1];
+    return 0;
+}
+
+static const char forms[] = "v, v/vt, v//vn or v/vt/vn, each from 1 or negative";
+
+/* An index at *p: not 0, at most 2^31 - 1 either way. Steps past it; 0 where there is none. */
+static int64_t scan_index(const char **p)
+{
+    const char *q = *p;
+    bool minus = *q == '-';
+    q += minus;
+    if (*q < '0' || *q > '9')
+        return 0;
+    int64_t v = 0;
+    for (; *q >= '0' && *q <= '9'; q++)
+        if (v <= INT32_MAX)
+            v = v * 10 + (*q - '0');
+    if (v > INT32_MAX)
+        return 0;
+    *p = q;
+    return minus ? -v : v;
+}
+
+/* Makes an index as written 0-based: a negative one counts back from the `count` so far; a positive one may point
+ * ahead. */
+static int resolve(reader *r, int64_t index, int64_t count, forwards *ahead, const char *what, int32_t *to)
+{
+    if (-index > count)
+        return err_set(r->e, r->o->name, r->line, "%s %lld, but only %lld came before; expected %s", what,
+                       (long long)index, (long long)count, forms);
+    if (index > count && index > ahead->furthest) {
+        if (mem_grow(&ahead->v, &ahead->capacity, ahead->count + 1, sizeof *ahead->v, "an OBJ's indices", r->e))
+            return -1;
+        ahead->v[ahead->count++] = (forward){index, r->line};
+        ahead->furthest = index;
+    }
+    *to = (int32_t)(index < 0 ? count + index : index - 1);
+    return 0;
+}
+
+enum { WITH_TEXTURE = 1, WITH_NORMAL = 2 };
+
+/* One corner in any form: vertex and normal (-1: none), and the form (WITH_...). Texture indices concern nobody here:
+ * only their syntax is checked. */
+static int read_corner(reader *r, int32_t *corner, int *form)
+{
+    const char *p = r->p;
+    int64_t vertex = scan_index(&p), texture = 1, normal = 1;
+    *form = 0;
+    corner[1] = -1;
+    if (*p == '/' && p[1] != '/') {
+        p++;
+        texture = scan_index(&p);
+        *form |= WITH_TEXTURE;
+    } else if (*p == '/') {
+        p++;
+    }
+    if (*p == '/') {
+        p++;
+        normal = scan_index(&p);
+        *form |= WITH_NORMAL;
+    }
+    if (!vertex || !texture || !normal || !is_break(r, p))
+        return bad(r, "not a corner:", forms);
+    if (resolve(r, vertex, r->o->vertices, &r->vertex, "vertex", &corner[0]))
+        return -1;
+    if ((*form & WITH_NORMAL) && resolve(r, normal, r->o->normals, &r->normal, "normal", &corner[1]))
+        return -1;
+    r->p = p;
+    return 0;
+}
+
+static int read_face(reader *r)
+{
+    int32_t corner[2];
+    int form, first = 0;
+    if (begin_face(r))
+        return -1;
+    int64_t start = r->o->corners;
+    while (skip_to_word(r)) {
+        const char *word = r->p;
+        if (read_corner(r, corner, &form) || add_corner(r, corner))
+            return -1;
+        if (r->o->corners == start + 1)
+            first = form;
+        if (form != first) {
+            r->p = word;
+            return bad(r, "a corner unlike the face's others:", "one form in a face");
+        }
+    }
+    int64_t n = r->o->corners - start;
+    if (n < 3)
+        return err_set(r->e, r->o->name, r->line, "a face of %lld corners; expected 3 or more", (long long)n);
+    return 0;
+}
+
+static int read_line(reader *r)
+{
+    int32_t corner[2], before[2];
+    int form, n = 0;
+    for (; skip_to_word(r); n = n < 2 ? n + 1 : 2) {
+        if (read_corner(r, corner, &form))
+            return -1;
+        if (n && (begin_face(r) || add_corner(r, before) || add_corner(r, corner)))
+            return -1;
+        memcpy(before, corner, sizeof before);
+    }
+    if (n < 2)
+        return err_set(r->e, r->o->name, r->line, "a line of %d vertices; expected 2 or more", n);
+    return 0;
+}
+
+static int read_point(reader *r)
+{
+    int32_t corner[2];
+    int form, n = 0;
+    for (; skip_to_word(r); n = 1)
+        if (read_corner(r, corner, &form) || begin_face(r) || add_corner(r, corner))
+            return -1;
+    if (!n)
+        return err_set(r->e, r->o->name, r->line, "a point statement without a vertex; expected p and vertices");
+    return 0;
+}
+
+/* Statements */
+
+static int pass_over(reader *r)
+{
+    skip_line(r);
+    return 0;
+}
+
+static int refuse_free_form(reader *r)
+{
+    r->p = r->line_start;
+    skip_blanks(r);
+    return bad(r, "free-form geometry:", "polygons (convert curves and surfaces to a mesh first)");
+}
+
+static int refuse_call(reader *r)
+{
+    r->p = r->line_start;
+    skip_blanks(r);
+    return bad(r, "a statement that runs other files:", "one OBJ that holds all");
+}
+
+typedef struct statement {
+    const char *word;
+    int (*read)(reader *r);
+} statement;
+
+static const statement statements[] = {{"v", read_vertex},
+                                       {"f", read_face},
+                                       {"vn", read_normal},
+                                       {"vt", pass_over},
+                                       {"g", read_group},
+                                       {"s", pass_over},
+                                       {"usemtl", pass_over},
+                                       {"mtllib", pass_over},
+                                       {"o", read_object},
+                                       {"l", read_line},
+                                       {"p", read_point},
+                                       {"fo", read_face},
+                                       {"mg", pass_over},
+                                       {"usemap", pass_over},
+                                       {"maplib", pass_over},
+                                       {"bevel", pass_over},
+                                       {"c_interp", pass_over},
+                                       {"d_interp", pass_over},
+                                       {"lod", pass_over},
+                                       {"shadow_obj", pass_over},
+                                       {"trace_obj", pass_over},
+                                       {"call", refuse_call},
+                                       {"csh", refuse_call},
+                                       {"vp", refuse_free_form},
+                                       {"cstype", refuse_free_form},
+                                       {"deg", refuse_free_form},
+                                       {"bmat", refuse_free_form},
+                                       {"step", refuse_free_form},
+                                       {"curv", refuse_free_form},
+                                       {"curv2", refuse_free_form},
+                                       {"surf", refuse_free_form},
+                                       {"parm", refuse_free_form},
+                                       {"trim", refuse_free_form},
+                                       {"hole", refuse_free_form},
+                                       {"scrv", refuse_free_form},
+                                       {"sp", refuse_free_form},
+                                       {"end", refuse_free_form},
+                                       {"con", refuse_free_form},
+                                       {"ctech", refuse_free_form},
+                                       {"stech", refuse_free_form},
+                                       {"bsp", refuse_free_form},
+                                       {"bzp", refuse_free_form},
+                                       {"cdc", refuse_free_form},
+                                       {"cdp", refuse_free_form},
+                                       {"res", refuse_free_form}};
+
+enum { STATEMENTS = sizeof statements / sizeof *statements };
+
+static int refuse_unknown(reader *r)
+{
+    char word[32], expected[64] = "a statement of an OBJ (v, vn, f, g, ...) or a comment (#)";
+    const char *names[STATEMENTS];
+    size_t n = (size_t)(word_end(r) - r->p);
+    if (n < sizeof word) {
+        memcpy(word, r->p, n);
+        word[n] = 0;
+        for (int i = 0; i < STATEMENTS; i++)
+            names[i] = statements[i].word;
+        int near = num_nearest(word, names, STATEMENTS);
+        if (near >= 0)
+            snprintf(expected, sizeof expected, "perhaps '%s'", names[near]);
+    }
+    return bad(r, "unknown statement", expected);
+}
+
+static int read_statement(reader *r)
+{
+    const char *stop = word_end(r);
+    size_t n = (size_t)(stop - r->p);
+    for (int i = 0; i < STATEMENTS; i++) {
+        const char *word = statements[i].word;
+        if (*word == *r->p && !strncmp(word, r->p, n) && !word[n]) {
+            r->p = stop;
+            return statements[i].read(r);
+        }
+    }
+    return refuse_unknown(r);
+}
+
+static int read_lines(reader *r)
+{
+    while (r->p < r->end) {
+        r->line_start = r->p;
+        if (skip_to_word(r) && read_statement(r))
+            return -1;
+        /* A comment does not continue: its last byte may be a path's backslash. */
+        r->p = line_end(r->p, r->end);
+        r->p += r->p < r->end;
+        r->line++;
+    }
+    return 0;
+}
+
+/* What is wrong with the text as a whole. */
+static int check_text(reader *r)
+{
+    const char *text = r->o->text, *nul = memchr(text, 0, (size_t)r->o->size);
+    if (nul) {
+        int64_t line = 1;
+        for (const char *p = text; p < nul; p++)
+            line += *p == '\n';
+        return err_set(r->e, r->o->name, line, "a NUL byte; expected an OBJ, which is text");
+    }
+    if (!strchr(text, '\n') && strchr(text, '\r') && strchr(text, '\r')[1])
+        return err_set(r->e, r->o->name, 1, "lines that end with CR alone; expected LF or CR LF");
+    return 0;
+}
+
+static int check_ahead(reader *r, const forwards *ahead, int64_t count, const char *what)
+{
+    for (int64_t i = 0; i < ahead->count; i++)
+        if (ahead->v[i].index > count)
+            return err_set(r->e, r->o->name, ahead->v[i].line, "%s %lld, but the file has %lld; expected %s", what,
+                           (long long)ahead->v[i].index, (long long)count, forms);
+    return 0;
+}
+
+static int finish(reader *r)
+{
+    obj *o = r->o;
+    if (check_ahead(r, &r->vertex, o->vertices, "vertex") || check_ahead(r, &r->normal, o->normals, "normal"))
+        return -1;
+    if (mem_grow(&o->face_start, &r->room.face_start, o->faces + 1, sizeof *o->face_start, "an OBJ's faces", r->e))
+        return -1;
+    o->face_start[o->faces] = o->corners;
+    return 0;
+}
+
+int obj_read(obj *o, in *s, err *e)
+{
+    reader r = {.o = o, .line = 1, .e = e};
+    *o = (obj){0};
+    o->name = mem_text(in_name(s), e);
+    o->size = o->name ? in_all(s, &o->text, e) : -1;
+    int code = o->size < 0 ? -1 : 0;
+    if (!code) {
+        r.p = o->text;
+        r.end = o->text + o->size;
+        if (!strncmp(r.p, "\xef\xbb\xbf", 3)) /* a byte order mark */
+            r.p += 3;
+        code = check_text(&r) || read_lines(&r) || finish(&r) ? -1 : 0;
+    }
+    free(r.vertex.v);
+    free(r.normal.v);
+    free(r.slot);
+    free(r.name);
+    free(r.object);
+    if (code)
+        obj_free(o);
+    return code;
+}

@@ -1,0 +1,157 @@
+#include "mesh/surface.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+enum { NAME = 300 };
+
+/* An array "S/what" of the model, or NULL with e filled. */
+static model_array *part(const model *m, const char *name, const char *what, err *e)
+{
+    char full[NAME];
+    snprintf(full, sizeof full, "%s/%s", name, what);
+    return model_need(m, full, e);
+}
+
+int surface_of(const model *m, const char *name, surface *s, err *e)
+{
+    const model_array *position = part(m, name, "vertex.position", e);
+    const model_array *start = position ? part(m, name, "face.start", e) : NULL;
+    const model_array *group = start ? part(m, name, "face.group", e) : NULL;
+    const model_array *vertex = group ? part(m, name, "face.vertex", e) : NULL;
+    const model_array *group_name = vertex ? part(m, name, "group.name", e) : NULL;
+    if (!group_name)
+        return -1;
+    *s = (surface){.name = name,
+                   .position = position->f64,
+                   .vertices = position->rows,
+                   .start = start->i64,
+                   .group = group->i32,
+                   .faces = start->rows,
+                   .vertex = vertex->i32,
+                   .corners = vertex->rows,
+                   .group_name = group_name->str,
+                   .groups = group_name->rows};
+    for (int64_t f = 0; f < s->faces; f++)
+        if (s->start[f] > surface_end(s, f))
+            return err_set(e, NULL, 0, "%s/face.start: face %lld starts after the next; expected rising starts", name,
+                           (long long)f);
+    return 0;
+}
+
+static int add_axis(model *m, const char *name, const char *what, int64_t count, err *e)
+{
+    char full[NAME];
+    snprintf(full, sizeof full, "%s/%s", name, what);
+    return model_axis_add(m, full, count, e);
+}
+
+static model_array *add_array(model *m, const char *name, const char *what, err *e)
+{
+    char full[NAME];
+    snprintf(full, sizeof full, "%s/%s", name, what);
+    return model_add(m, full, e);
+}
+
+static int add_positions(model *m, const char *name, const obj *o, double scale, err *e)
+{
+    model_array *a = add_array(m, name, "vertex.position", e);
+    for (int64_t i = 0; a && i < 3 * o->vertices; i++)
+        a->f64[i] = surface_metres(o->position[i], scale);
+    return a ? 0 : -1;
+}
+
+static int add_faces(model *m, const char *name, const obj *o, err *e)
+{
+    model_array *start = add_array(m, name, "face.start", e);
+    if (!start)
+        return -1;
+    if (o->faces)
+        memcpy(start->i64, o->face_start, (size_t)o->faces * sizeof *start->i64);
+    model_array *group = add_array(m, name, "face.group", e);
+    if (!group)
+        return -1;
+    if (o->faces)
+        memcpy(group->i32, o->face_group, (size_t)o->faces * sizeof *group->i32);
+    model_array *vertex = add_array(m, name, "face.vertex", e);
+    if (!vertex)
+        return -1;
+    if (o->corners)
+        memcpy(vertex->i32, o->corner_vertex, (size_t)o->corners * sizeof *vertex->i32);
+    return 0;
+}
+
+static int add_groups(model *m, const char *name, const obj *o, err *e)
+{
+    model_array *a = add_array(m, name, "group.name", e);
+    if (!a)
+        return -1;
+    for (int32_t g = 0; g < o->groups; g++)
+        if (model_set_text(a, g, o->group[g], e))
+            return -1;
+    return 0;
+}
+
+int surface_add(model *m, const char *name, const obj *o, double scale, err *e)
+{
+    if (add_axis(m, name, "vertex", o->vertices, e) || add_axis(m, name, "face", o->faces, e) ||
+        add_axis(m, name, "corner", o->corners, e) || add_axis(m, name, "group", o->groups, e))
+        return -1;
+    return add_positions(m, name, o, scale, e) || add_faces(m, name, o, e) || add_groups(m, name, o, e) ? -1 : 0;
+}
+
+int surface_is(const surface *s, const obj *o, double scale, err *e)
+{
+    if (s->vertices != o->vertices)
+        return err_set(e, o->name, 0, "%lld vertices, but the model's surface %s has %lld; expected the same OBJ",
+                       (long long)o->vertices, s->name, (long long)s->vertices);
+    for (int64_t i = 0; i < 3 * o->vertices; i++) {
+        if (surface_metres(o->position[i], scale) == s->position[i])
+            continue;
+        const double *p = &o->position[i - i % 3], *q = &s->position[i - i % 3];
+        return err_set(e, o->name, obj_line_number(o, o->v[i / 3].from),
+                       "vertex %lld is %.9g %.9g %.9g, but %.9g %.9g %.9g in the model's surface %s; expected the same "
+                       "OBJ in the same unit",
+                       (long long)(i / 3 + 1), p[0], p[1], p[2], q[0] / scale, q[1] / scale, q[2] / scale, s->name);
+    }
+    return 0;
+}
+
+void surface_name(const char *path, char *name, size_t size)
+{
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+    size_t n = strlen(base);
+    if (!strcmp(path, "-"))
+        base = "stdin", n = 5;
+    if (n > 3 && !strcasecmp(base + n - 3, ".gz"))
+        n -= 3;
+    if (n > 4 && !strncasecmp(base + n - 4, ".obj", 4))
+        n -= 4;
+    n = n < size ? n : size - 1;
+    for (size_t i = 0; i < n; i++) {
+        char c = base[i];
+        bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.';
+        name[i] = plain ? c : '_';
+    }
+    name[n] = 0;
+}
+
+static bool matches(const char *name, size_t n, const char *pattern)
+{
+    size_t m = strlen(pattern);
+    if (m && pattern[m - 1] == '*')
+        return n >= m - 1 && !strncasecmp(name, pattern, m - 1);
+    return n == m && !strncasecmp(name, pattern, m);
+}
+
+bool surface_in_group(const char *names, const char *pattern)
+{
+    while (*names) {
+        size_t n = strcspn(names, " ");
+        if (n && matches(names, n, pattern))
+            return true;
+        names += n + (names[n] != 0);
+    }
+    return false;
+}
