@@ -78,7 +78,8 @@ int model_meta_set(model *m, const char *key, const char *value, err *e);
 int model_meta_numbers(const model *m, const char *key, double *value, int count, err *e);
 int model_meta_set_numbers(model *m, const char *key, const double *value, int count, err *e);
 
-/* Appends "TOOL VERSION "OPTIONS"". */
+/* Appends the line `TOOL VERSION OPTIONS` (no third field where options is ""). Options that are not UTF-8 (file names can
+ * be anything) get '?' for the bytes that are not. */
 int model_prov_add(model *m, const char *tool, const char *version, const char *options, err *e);
 
 /* The axis's count, or -1 where there is none. */
@@ -102,6 +103,11 @@ model_array *frame_add(frame *f, const model *m, const char *name, err *e);
 model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
                           int32_t columns, err *e);
 
+/* For readers. Moves *a into the list, in the place of an array of its name where there is one; *a is then empty. */
+model_array *model_arrays_take(model_arrays *list, model_array *a, err *e);
+int model_block_take(model *m, model_block *b, err *e);
+void model_array_free(model_array *a);
+
 /* Sets one string of a MODEL_STR array, copying text. */
 int model_set_text(model_array *a, int64_t at, const char *text, err *e);
 
@@ -120,7 +126,8 @@ const char *model_type_name(model_type t);
 model_type model_type_of(const char *name);
 
 /* All of sinew-model(5)'s rules that a table can hold, on one array: known name with its type, unit, axis and
- * columns; indices in range. Where: the stream's name, line: 0 or its line. Index ranges need all axes. */
+ * columns; indices in range. Where: the stream's name; line: 0, or the line of its heading (its rows follow, one a line).
+ * Index ranges need all axes. Of a frame's array, m is the model that the frame belongs to. */
 int model_check(const model *m, const model_array *a, const char *where, int64_t line, err *e);
 
 #endif

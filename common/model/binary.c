@@ -1,0 +1,465 @@
+#include "model/binary.h"
+
+#include "base/mem.h"
+#include "model/check.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+#if !defined(__BYTE_ORDER__) || __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "arrays are read and written as they lie in memory: this needs a little-endian machine"
+#endif
+
+/* Bytes handled at once: they stay in the cache between reading, checksum and the search for nan. */
+enum { PIECE = 1 << 18, HEAD = 16, MAGIC = 10 };
+
+static const unsigned char magic[MAGIC] = {BINARY_FIRST, 's', 'i', 'n', 'e', 'w', '\r', '\n', 0x1a, '\n'};
+
+/* In the order of item_kind; ITEM_BLOCK carries its own. */
+static const char *const types[] = {"META", "PROV", "AXIS", "ARRY", "", "FRAM", "DONE", "FAIL"};
+
+enum { TYPES = sizeof types / sizeof *types };
+
+/* ---- reading ---- */
+
+/* A block that is being read. */
+typedef struct block {
+    item_source *s;
+    item *it;
+    char type[5];
+    uint32_t flags;
+    uint64_t length, left; /* payload, and what is left of it */
+    uLong crc;
+} block;
+
+static int block_error(const block *b, err *e, const char *text)
+{
+    char what[300];
+    const char *name = b->it->array.name ? b->it->array.name : b->it->key ? b->it->key : NULL;
+    snprintf(what, sizeof what, "%s%s%.*s", b->type, name ? " " : "", CHECK_NAME_MOST, name ? name : "");
+    return item_error(b->s, b->it->at, what, e, "%s", text);
+}
+
+/* Exactly size bytes of the stream. */
+static int take_raw(item_source *s, void *to, size_t size, err *e)
+{
+    int64_t got = in_read(s->s, to, size, e);
+    return got < 0 ? -1 : (size_t)got < size ? item_cut(s, e) : 0;
+}
+
+/* Exactly size bytes of the payload. */
+static int take(block *b, void *to, size_t size, err *e)
+{
+    if (size > b->left)
+        return block_error(b, e, "its length is less than what it holds; the stream is damaged");
+    if (take_raw(b->s, to, size, e))
+        return -1;
+    b->crc = crc32(b->crc, to, (uInt)size);
+    b->left -= size;
+    return 0;
+}
+
+/* Exactly size bytes of the payload into memory that grows as they come: a length is only a claim. `extra` bytes more are
+ * allocated. The caller frees *to, on failure too. canonical: the type whose nan are made so, or MODEL_TYPES. */
+static int take_grown(block *b, void *to, uint64_t size, size_t extra, model_type canonical, err *e)
+{
+    unsigned char *bytes = NULL;
+    uint64_t have = 0, done = 0;
+    if (size > b->left || size > PTRDIFF_MAX - PIECE)
+        return block_error(b, e, "its length is less than what it holds; the stream is damaged");
+    do {
+        if (done == have) {
+            have = 2 * have < PIECE ? PIECE : 2 * have;
+            have = have < size ? have : size;
+            unsigned char *grown = realloc(bytes, have + extra ? have + extra : 1);
+            if (!grown)
+                return err_memory(e, b->it->array.name ? b->it->array.name : "a block");
+            bytes = grown;
+            memcpy(to, &bytes, sizeof bytes);
+        }
+        size_t n = have - done < PIECE ? have - done : PIECE;
+        if (take(b, bytes + done, n, e))
+            return -1;
+        if (canonical != MODEL_TYPES)
+            item_canonical(canonical, bytes + done, (int64_t)(n / model_type_size(canonical)));
+        done += n;
+    } while (done < size);
+    return 0;
+}
+
+static int take_u32(block *b, uint32_t *v, err *e)
+{
+    return take(b, v, sizeof *v, e);
+}
+
+/* u32 length and bytes, as a string without NUL. The caller frees *text, on failure too. */
+static int take_text(block *b, char **text, err *e)
+{
+    uint32_t n;
+    if (take_u32(b, &n, e) || take_grown(b, text, n, 1, MODEL_TYPES, e))
+        return -1;
+    (*text)[n] = 0;
+    if (memchr(*text, 0, n))
+        return block_error(b, e, "a string holds a NUL byte; expected none");
+    return 0;
+}
+
+static int read_strings(block *b, int64_t n, err *e)
+{
+    model_array *a = &b->it->array;
+    int64_t capacity = 0, at = 0;
+    char **list = NULL;
+    int status = (uint64_t)n > b->left / sizeof(uint32_t)
+                     ? block_error(b, e, "its length is less than its strings need; the stream is damaged")
+                     : mem_grow(&list, &capacity, 1, sizeof *list, a->name, e);
+    for (; !status && at < n; at++) {
+        status = mem_grow(&list, &capacity, at + 1, sizeof *list, a->name, e);
+        if (status)
+            break;
+        list[at] = NULL;
+        status = take_text(b, &list[at], e);
+    }
+    if (!status) {
+        a->str = list;
+        return 0;
+    }
+    while (at--)
+        free(list[at]);
+    free(list);
+    return -1;
+}
+
+static int read_array(block *b, err *e)
+{
+    model_array *a = &b->it->array;
+    uint32_t type, columns;
+    if (take_text(b, &a->name, e) || take_text(b, &a->unit, e) || take_text(b, &a->axis, e) || take_u32(b, &type, e) ||
+        take_u32(b, &columns, e))
+        return -1;
+    if (type >= MODEL_TYPES)
+        return block_error(b, e, "its values have an unknown type; expected 0 to 5");
+    a->type = (model_type)type;
+    a->columns = columns <= INT32_MAX ? (int32_t)columns : -1;
+    int64_t n = item_heading(b->s, b->it, e);
+    if (n < 0)
+        return -1;
+    if (a->type == MODEL_STR)
+        return read_strings(b, n, e);
+    if (b->left != (uint64_t)n * model_type_size(a->type))
+        return block_error(b, e, "its length is not that of its rows and columns; the stream is damaged");
+    return take_grown(b, &a->data, b->left, 0, a->type, e);
+}
+
+static int read_block(block *b, err *e)
+{
+    model_block *to = &b->it->block;
+    memcpy(to->type, b->type, sizeof to->type);
+    to->flags = b->flags;
+    to->length = b->length;
+    return take_grown(b, &to->payload, b->length, 0, MODEL_TYPES, e);
+}
+
+static int read_payload(block *b, err *e)
+{
+    item *it = b->it;
+    uint64_t count;
+    uint32_t status;
+    switch (it->kind) {
+    case ITEM_META:
+        return take_text(b, &it->key, e) || take_text(b, &it->text, e);
+    case ITEM_PROV:
+        return take_text(b, &it->text, e);
+    case ITEM_AXIS:
+        if (take_text(b, &it->key, e) || take(b, &count, sizeof count, e))
+            return -1;
+        it->number = count <= INT64_MAX ? (int64_t)count : -1;
+        return 0;
+    case ITEM_ARRAY:
+        return read_array(b, e);
+    case ITEM_BLOCK:
+        return read_block(b, e);
+    case ITEM_FRAME:
+        return take(b, &it->number, sizeof it->number, e) || take(b, &it->time, sizeof it->time, e);
+    case ITEM_FAIL:
+        if (take_u32(b, &status, e) || take_text(b, &it->text, e))
+            return -1;
+        it->number = status;
+        return 0;
+    case ITEM_END:
+        break;
+    }
+    return 0;
+}
+
+static bool plain(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+/* What the four bytes of a type mean. */
+static int kind_of(block *b, err *e)
+{
+    for (int i = 0; i < 4; i++)
+        if (!plain(b->type[i])) {
+            b->type[0] = '?';
+            b->type[1] = 0;
+            return block_error(b, e, "its type is not four letters or digits; the stream is damaged");
+        }
+    for (int k = 0; k < TYPES; k++)
+        if (!strcmp(types[k], b->type)) {
+            b->it->kind = (item_kind)k;
+            return b->flags ? block_error(b, e, "it has flags that are not known; expected 0 (a newer sinew wrote it?)")
+                            : 0;
+        }
+    b->it->kind = ITEM_BLOCK;
+    return b->type[0] >= 'a'
+               ? 0
+               : block_error(b, e, "its type is not known and may not be skipped (a newer sinew wrote it?)");
+}
+
+static int binary_read(item_source *s, item *it, err *e)
+{
+    block b = {.s = s, .it = it};
+    unsigned char head[HEAD];
+    uint32_t crc;
+    it->at = ++s->blocks;
+    if (take_raw(s, head, HEAD, e))
+        return -1;
+    b.crc = crc32(0, head, HEAD);
+    memcpy(b.type, head, 4);
+    memcpy(&b.flags, head + 4, sizeof b.flags);
+    memcpy(&b.length, head + 8, sizeof b.length);
+    b.left = b.length;
+    if (kind_of(&b, e) || read_payload(&b, e))
+        return -1;
+    if (b.left)
+        return block_error(&b, e, "its length is more than what it holds; the stream is damaged");
+    if (take_raw(s, &crc, sizeof crc, e))
+        return -1;
+    if (crc != (uint32_t)b.crc) {
+        char text[100];
+        snprintf(text, sizeof text, "checksum %08" PRIx32 "; expected %08lx: the stream is damaged", crc, b.crc);
+        return block_error(&b, e, text);
+    }
+    return 0;
+}
+
+static int binary_begin(item_source *s, err *e)
+{
+    unsigned char head[HEAD] = {0};
+    uint32_t crc;
+    int64_t got = in_read(s->s, head, HEAD, e);
+    if (got < 0)
+        return -1;
+    if (got < HEAD && !memcmp(head, magic, got < MAGIC ? (size_t)got : MAGIC))
+        return item_cut(s, e);
+    if (memcmp(head, magic, MAGIC))
+        return err_set(e, in_name(s->s), 0,
+                       "is no sinew model, or one whose line ends were changed on the way; expected the magic of a "
+                       "binary model");
+    memcpy(&crc, head + MAGIC + 2, sizeof crc);
+    if (crc != crc32(0, head, MAGIC + 2))
+        return err_set(e, in_name(s->s), 0, "checksum of the version is wrong: the stream is damaged");
+    if (head[MAGIC] != ITEM_MAJOR)
+        return err_set(e, in_name(s->s), 0, "is a model of format version %d; expected %d", head[MAGIC], ITEM_MAJOR);
+    return 0;
+}
+
+/* ---- writing ---- */
+
+/* Where a block goes: to a stream, or (o NULL) only into its checksum. */
+typedef struct sink {
+    out *o;
+    uLong crc;
+} sink;
+
+static void put(sink *k, const void *bytes, size_t size)
+{
+    k->crc = crc32(k->crc, bytes, (uInt)size);
+    if (k->o)
+        out_write(k->o, bytes, size);
+}
+
+static void put_u32(sink *k, uint32_t v)
+{
+    put(k, &v, sizeof v);
+}
+
+static void put_u64(sink *k, uint64_t v)
+{
+    put(k, &v, sizeof v);
+}
+
+static void put_text(sink *k, const char *text)
+{
+    size_t n = strlen(text);
+    put_u32(k, (uint32_t)n);
+    put(k, text, n);
+}
+
+static bool has_nan(model_type type, const void *values, int64_t n)
+{
+    const float *f = values;
+    const double *d = values;
+    bool any = false;
+    if (type == MODEL_F32)
+        for (int64_t i = 0; i < n; i++)
+            any |= f[i] != f[i];
+    if (type == MODEL_F64)
+        for (int64_t i = 0; i < n; i++)
+            any |= d[i] != d[i];
+    return any;
+}
+
+/* A piece with nan in it, made canonical in a copy. */
+static void put_canonical(sink *k, model_type type, const unsigned char *bytes, size_t size)
+{
+    double copy[1024];
+    while (size) {
+        size_t n = size < sizeof copy ? size : sizeof copy;
+        memcpy(copy, bytes, n);
+        item_canonical(type, copy, (int64_t)(n / model_type_size(type)));
+        put(k, copy, n);
+        bytes += n;
+        size -= n;
+    }
+}
+
+static void put_values(sink *k, const model_array *a)
+{
+    size_t each = model_type_size(a->type), left = (size_t)(a->rows * a->columns) * each;
+    const unsigned char *bytes = a->data;
+    while (left) {
+        size_t n = left < PIECE ? left : PIECE;
+        if (has_nan(a->type, bytes, (int64_t)(n / each)))
+            put_canonical(k, a->type, bytes, n);
+        else
+            put(k, bytes, n);
+        bytes += n;
+        left -= n;
+    }
+}
+
+static uint64_t text_length(const char *text)
+{
+    return sizeof(uint32_t) + strlen(text);
+}
+
+static uint64_t array_length(const model_array *a)
+{
+    int64_t n = a->rows * a->columns;
+    uint64_t length = text_length(a->name) + text_length(a->unit) + text_length(a->axis) + 2 * sizeof(uint32_t);
+    if (a->type != MODEL_STR)
+        return length + (uint64_t)n * model_type_size(a->type);
+    for (int64_t i = 0; i < n; i++)
+        length += text_length(a->str[i]);
+    return length;
+}
+
+static void put_array(sink *k, const model_array *a)
+{
+    put_text(k, a->name);
+    put_text(k, a->unit);
+    put_text(k, a->axis);
+    put_u32(k, a->type);
+    put_u32(k, (uint32_t)a->columns);
+    if (a->type != MODEL_STR)
+        put_values(k, a);
+    else
+        for (int64_t i = 0; i < a->rows * a->columns; i++)
+            put_text(k, a->str[i]);
+}
+
+static uint64_t payload_length(const item *it)
+{
+    switch (it->kind) {
+    case ITEM_META:
+        return text_length(it->key) + text_length(it->text);
+    case ITEM_PROV:
+        return text_length(it->text);
+    case ITEM_AXIS:
+        return text_length(it->key) + sizeof(uint64_t);
+    case ITEM_ARRAY:
+        return array_length(&it->array);
+    case ITEM_BLOCK:
+        return it->block.length;
+    case ITEM_FRAME:
+        return sizeof it->number + sizeof it->time;
+    case ITEM_FAIL:
+        return sizeof(uint32_t) + text_length(it->text);
+    case ITEM_END:
+        break;
+    }
+    return 0;
+}
+
+static void put_payload(sink *k, const item *it)
+{
+    switch (it->kind) {
+    case ITEM_META:
+        put_text(k, it->key);
+        put_text(k, it->text);
+        break;
+    case ITEM_PROV:
+        put_text(k, it->text);
+        break;
+    case ITEM_AXIS:
+        put_text(k, it->key);
+        put_u64(k, (uint64_t)it->number);
+        break;
+    case ITEM_ARRAY:
+        put_array(k, &it->array);
+        break;
+    case ITEM_BLOCK:
+        for (uint64_t at = 0; at < it->block.length; at += PIECE)
+            put(k, it->block.payload + at, it->block.length - at < PIECE ? it->block.length - at : PIECE);
+        break;
+    case ITEM_FRAME:
+        put(k, &it->number, sizeof it->number);
+        put(k, &it->time, sizeof it->time);
+        break;
+    case ITEM_FAIL:
+        put_u32(k, (uint32_t)it->number);
+        put_text(k, it->text);
+        break;
+    case ITEM_END:
+        break;
+    }
+}
+
+static uint32_t put_block(out *o, const item *it)
+{
+    sink k = {.o = o, .crc = crc32(0, NULL, 0)};
+    put(&k, it->kind == ITEM_BLOCK ? it->block.type : types[it->kind], 4);
+    put_u32(&k, it->kind == ITEM_BLOCK ? it->block.flags : 0);
+    put_u64(&k, payload_length(it));
+    put_payload(&k, it);
+    return (uint32_t)k.crc;
+}
+
+uint32_t binary_crc(const item *it)
+{
+    return put_block(NULL, it);
+}
+
+static void binary_write(out *o, const item *it)
+{
+    uint32_t crc = put_block(o, it);
+    out_write(o, &crc, sizeof crc);
+}
+
+static void binary_write_begin(out *o)
+{
+    unsigned char head[HEAD];
+    memcpy(head, magic, MAGIC);
+    head[MAGIC] = ITEM_MAJOR;
+    head[MAGIC + 1] = ITEM_MINOR;
+    uint32_t crc = (uint32_t)crc32(0, head, MAGIC + 2);
+    memcpy(head + MAGIC + 2, &crc, sizeof crc);
+    out_write(o, head, HEAD);
+}
+
+const encoding binary_encoding = {false, binary_begin, binary_read, binary_write_begin, binary_write};

@@ -1,0 +1,186 @@
+#include "model/check.h"
+
+#include "model/known.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+bool check_name(const char *name)
+{
+    size_t n = 0;
+    for (; name[n]; n++)
+        if (n == CHECK_NAME_MOST || !(isalnum((unsigned char)name[n]) || strchr("._-/", name[n])))
+            return false;
+    return n > 0;
+}
+
+bool check_unit(const char *unit)
+{
+    size_t n = 0;
+    if (unit[0] == '@')
+        return check_name(unit + 1);
+    for (; unit[n]; n++)
+        if (n == CHECK_NAME_MOST || unit[n] <= ' ' || unit[n] > '~' || unit[n] == '"')
+            return false;
+    return n > 0;
+}
+
+/* The length of the well-formed UTF-8 character at p (not NUL), or 0. */
+static int utf8_length(const unsigned char *p)
+{
+    if (p[0] < 0x80)
+        return 1;
+    int more = p[0] >= 0xc2 && p[0] < 0xe0 ? 1 : p[0] >= 0xe0 && p[0] < 0xf0 ? 2 : p[0] >= 0xf0 && p[0] < 0xf5 ? 3 : 0;
+    for (int i = 1; i <= more; i++)
+        if ((p[i] & 0xc0) != 0x80)
+            return 0;
+    bool overlong = (p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xf0 && p[1] < 0x90);
+    bool surrogate = p[0] == 0xed && p[1] > 0x9f;
+    bool past = p[0] == 0xf4 && p[1] > 0x8f;
+    return more && !overlong && !surrogate && !past ? more + 1 : 0;
+}
+
+bool check_utf8(const char *text)
+{
+    const unsigned char *p = (const unsigned char *)text;
+    while (*p) {
+        int n = utf8_length(p);
+        if (!n)
+            return false;
+        p += n;
+    }
+    return true;
+}
+
+void check_utf8_mend(char *text)
+{
+    unsigned char *p = (unsigned char *)text;
+    while (*p) {
+        int n = utf8_length(p);
+        if (!n)
+            *p = '?';
+        p += n ? n : 1;
+    }
+}
+
+int64_t check_count(int64_t rows, int32_t columns, size_t size)
+{
+    if (rows < 0 || columns < 1 || rows > PTRDIFF_MAX / columns || rows * columns > (int64_t)(PTRDIFF_MAX / size))
+        return -1;
+    return rows * columns;
+}
+
+/* What a check needs to say where it stands: rows follow the heading's line, one each. */
+typedef struct site {
+    const model_array *a;
+    const char *where;
+    int64_t line;
+    err *e;
+} site;
+
+static int64_t row_line(const site *s, int64_t row)
+{
+    return s->line > 0 ? s->line + 1 + row : 0;
+}
+
+static int check_known(const site *s, const known *k)
+{
+    const model_array *a = s->a;
+    char unit[2 * CHECK_NAME_MOST], axis[2 * CHECK_NAME_MOST];
+    known_expand(k->unit, a->name, unit, sizeof unit);
+    known_expand(k->axis, a->name, axis, sizeof axis);
+    if (a->type != k->type)
+        return err_set(s->e, s->where, s->line, "array %s has type %s; expected %s", a->name, model_type_name(a->type),
+                       model_type_name(k->type));
+    if (strcmp(a->unit, unit))
+        return err_set(s->e, s->where, s->line, "array %s has unit %s; expected %s", a->name, a->unit, unit);
+    if (strcmp(a->axis, axis))
+        return err_set(s->e, s->where, s->line, "array %s is over axis %s; expected %s", a->name, a->axis, axis);
+    if (!strcmp(k->name, "element.node") && a->columns != 4 && a->columns != 8)
+        return err_set(s->e, s->where, s->line,
+                       "array element.node has %d columns; expected 8 (hexahedra) or 4 (tetrahedra)", (int)a->columns);
+    if (a->columns < k->columns_min || a->columns > k->columns_max)
+        return err_set(s->e, s->where, s->line, "array %s has %d columns; expected %d to %d", a->name, (int)a->columns,
+                       k->columns_min, k->columns_max);
+    return 0;
+}
+
+static int64_t index_at(const model_array *a, int64_t i)
+{
+    return a->type == MODEL_I32 ? a->i32[i] : a->i64[i];
+}
+
+/* Whether all is within [low, count): one plain pass, for speed; who failed is looked for afterwards. */
+static bool indices_good(const model_array *a, int64_t n, int64_t low, int64_t count)
+{
+    bool bad = false;
+    if (a->type == MODEL_I32)
+        for (int64_t i = 0; i < n; i++)
+            bad |= (a->i32[i] < low) | (a->i32[i] >= count);
+    else
+        for (int64_t i = 0; i < n; i++)
+            bad |= (a->i64[i] < low) | (a->i64[i] >= count);
+    return !bad;
+}
+
+static int check_indices(const site *s, const model *m, const known *k)
+{
+    const model_array *a = s->a;
+    int64_t count = model_count(m, a->unit + 1), n = a->rows * a->columns;
+    int64_t low = k && (k->flags & KNOWN_EVERY) ? 0 : -1;
+    if (count < 0)
+        return err_set(s->e, s->where, s->line,
+                       "array %s points to axis %s, which is not there; expected its axis line", a->name, a->unit + 1);
+    if (a->type != MODEL_I32 && a->type != MODEL_I64)
+        return err_set(s->e, s->where, s->line, "array %s of indices has type %s; expected i32 or i64", a->name,
+                       model_type_name(a->type));
+    if (indices_good(a, n, low, count))
+        return 0;
+    int64_t i = 0;
+    while (index_at(a, i) >= low && index_at(a, i) < count)
+        i++;
+    int64_t row = i / a->columns;
+    return err_set(s->e, s->where, row_line(s, row),
+                   "array %s, row %" PRId64 ": %" PRId64 " is no index into axis %s; expected %" PRId64 " to %" PRId64,
+                   a->name, row, index_at(a, i), a->unit + 1, low, count - 1);
+}
+
+static int check_strings(const site *s)
+{
+    const model_array *a = s->a;
+    for (int64_t i = 0; i < a->rows * a->columns; i++)
+        if (!check_utf8(a->str[i]))
+            return err_set(s->e, s->where, row_line(s, i / a->columns),
+                           "array %s, row %" PRId64 ": a string is not UTF-8", a->name, i / a->columns);
+    return 0;
+}
+
+/* Faces are told apart by where they start, so each must have a corner of its own. */
+static int check_starts(const site *s)
+{
+    const model_array *a = s->a;
+    for (int64_t i = 0; i < a->rows; i++)
+        if (i ? a->i64[i] <= a->i64[i - 1] : a->i64[i] != 0)
+            return err_set(s->e, s->where, row_line(s, i),
+                           "array %s, row %" PRId64 ": a face starts at %" PRId64
+                           "; expected 0 first, then each more than the one before",
+                           a->name, i, a->i64[i]);
+    return 0;
+}
+
+int model_check(const model *m, const model_array *a, const char *where, int64_t line, err *e)
+{
+    site s = {a, where, line, e};
+    const known *k = known_find(a->name);
+    if (k && check_known(&s, k))
+        return -1;
+    if (a->unit[0] == '@' && check_indices(&s, m, k))
+        return -1;
+    if (a->type == MODEL_STR && check_strings(&s))
+        return -1;
+    if (k && !strcmp(k->name, "*/face.start") && check_starts(&s))
+        return -1;
+    return 0;
+}

@@ -1,0 +1,26 @@
+/* The rules of sinew-model(5) for names, units and text. model_check() of model.h, which applies the rules to a
+ * whole array, is here too. Nothing is allocated.
+ */
+#ifndef SINEW_CHECK_H
+#define SINEW_CHECK_H
+
+#include "model/model.h"
+
+enum { CHECK_NAME_MOST = 255 }; /* bytes in a name, key or unit */
+
+/* Names of arrays and axes, keys, tools and versions: 1 to 255 of letters, digits and . _ - / */
+bool check_name(const char *name);
+
+/* Units: 1 to 255 printable ASCII characters, no space or quote; after '@' an axis's name. */
+bool check_unit(const char *unit);
+
+/* Well-formed UTF-8: no overlong forms, no surrogates, nothing past U+10FFFF. */
+bool check_utf8(const char *text);
+
+/* Replaces each byte that is not part of well-formed UTF-8 by '?'. */
+void check_utf8_mend(char *text);
+
+/* rows x columns, or -1 where that many things of `size` bytes cannot be. */
+int64_t check_count(int64_t rows, int32_t columns, size_t size);
+
+#endif

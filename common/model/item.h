@@ -1,0 +1,74 @@
+/* What a model stream is made of, one item at a time, and the table of functions that an encoding is. text.c and
+ * binary.c turn bytes into items and items into bytes, and know no more; which item may stand where is stream.c's. An item
+ * that was read owns what hangs on it; one that is written borrows it all.
+ */
+#ifndef SINEW_ITEM_H
+#define SINEW_ITEM_H
+
+#include "base/in.h"
+#include "base/out.h"
+#include "model/model.h"
+
+enum { ITEM_MAJOR = 1, ITEM_MINOR = 0 }; /* the version that is written */
+
+typedef enum item_kind {
+    ITEM_META,  /* key, text */
+    ITEM_PROV,  /* text: TOOL VERSION OPTIONS */
+    ITEM_AXIS,  /* key, number: its count */
+    ITEM_ARRAY, /* array */
+    ITEM_BLOCK, /* block: of a type that we do not know */
+    ITEM_FRAME, /* number: its index; time */
+    ITEM_END,
+    ITEM_FAIL /* number: the status; text */
+} item_kind;
+
+typedef struct item {
+    item_kind kind;
+    int64_t at; /* its line (text) or the number of its block (binary) */
+    char *key, *text;
+    int64_t number;
+    double time;
+    model_array array;
+    model_block block;
+} item;
+
+typedef struct item_source item_source;
+
+typedef struct encoding {
+    bool lines; /* places are lines; else blocks */
+    /* Reads the first line or magic. */
+    int (*begin)(item_source *s, err *e);
+    /* Reads the next item into an empty one. The caller frees it in every case. */
+    int (*read)(item_source *s, item *it, err *e);
+    void (*write_begin)(out *o);
+    void (*write)(out *o, const item *it);
+} encoding;
+
+/* A stream that is being read. */
+struct item_source {
+    in *s;
+    const encoding *how;
+    model axes;     /* the axes so far, and nothing else: arrays take their rows from here */
+    int64_t blocks; /* binary: blocks begun */
+    char *held;     /* text: a line that was looked at and not taken; NULL: none */
+};
+
+void item_free(item *it);
+
+/* Where in s the line or block `at` is; what (may be ""): its kind and name, for a binary place. */
+void item_place(const item_source *s, int64_t at, const char *what, char *place, size_t size);
+
+/* Fills e with that place. Always -1. */
+int item_error(const item_source *s, int64_t at, const char *what, err *e, const char *format, ...) SINEW_PRINTF(5, 6);
+
+/* The error of a stream that stops without `end` or `fail`. */
+int item_cut(const item_source *s, err *e);
+
+/* Checks the heading of an array just read (name, unit, axis, columns) and sets its rows. Returns its count of values, or
+ * -1. */
+int64_t item_heading(const item_source *s, item *it, err *e);
+
+/* Makes every nan among n values the one that is written: quiet, positive, no payload. */
+void item_canonical(model_type type, void *values, int64_t n);
+
+#endif

@@ -1,0 +1,403 @@
+#include "model/model.h"
+
+#include "base/mem.h"
+#include "base/num.h"
+#include "model/check.h"
+#include "model/known.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    size_t size;
+} types[MODEL_TYPES] = {
+    [MODEL_F32] = {"f32", sizeof(float)},   [MODEL_F64] = {"f64", sizeof(double)},
+    [MODEL_I32] = {"i32", sizeof(int32_t)}, [MODEL_I64] = {"i64", sizeof(int64_t)},
+    [MODEL_U8] = {"u8", sizeof(uint8_t)},   [MODEL_STR] = {"str", sizeof(char *)},
+};
+
+size_t model_type_size(model_type t)
+{
+    return types[t].size;
+}
+
+const char *model_type_name(model_type t)
+{
+    return types[t].name;
+}
+
+model_type model_type_of(const char *name)
+{
+    for (int t = 0; t < MODEL_TYPES; t++)
+        if (!strcmp(types[t].name, name))
+            return (model_type)t;
+    return MODEL_TYPES;
+}
+
+void model_array_free(model_array *a)
+{
+    if (a->type == MODEL_STR && a->data)
+        for (int64_t i = 0; i < a->rows * a->columns; i++)
+            free(a->str[i]);
+    free(a->data);
+    free(a->name);
+    free(a->unit);
+    free(a->axis);
+    *a = (model_array){0};
+}
+
+static void arrays_free(model_arrays *list)
+{
+    for (int i = 0; i < list->count; i++)
+        model_array_free(&list->v[i]);
+    free(list->v);
+    *list = (model_arrays){0};
+}
+
+void model_free(model *m)
+{
+    for (int i = 0; i < m->metas; i++) {
+        free(m->meta[i].key);
+        free(m->meta[i].value);
+    }
+    for (int i = 0; i < m->provs; i++)
+        free(m->prov[i]);
+    for (int i = 0; i < m->axis_count; i++)
+        free(m->axes[i].name);
+    for (int i = 0; i < m->block_count; i++)
+        free(m->blocks[i].payload);
+    free(m->meta);
+    free(m->prov);
+    free(m->axes);
+    free(m->blocks);
+    arrays_free(&m->arrays);
+    *m = (model){0};
+}
+
+void frame_free(frame *f)
+{
+    arrays_free(&f->arrays);
+    *f = (frame){0};
+}
+
+/* Room for one more in a list that has count things; the list's pointer is at `list`. */
+static int one_more(void *list, int count, size_t size, err *e)
+{
+    /* Doubling by counts alone: room is made at each power of two. */
+    int64_t capacity = count;
+    if (count & (count - 1))
+        return 0;
+    if (count > INT32_MAX / 2)
+        return err_memory(e, "the model");
+    return mem_grow(list, &capacity, count ? 2 * (int64_t)count : 16, size, "the model", e);
+}
+
+static char **meta_at(const model *m, const char *key)
+{
+    for (int i = 0; i < m->metas; i++)
+        if (!strcmp(m->meta[i].key, key))
+            return &m->meta[i].value;
+    return NULL;
+}
+
+const char *model_meta_of(const model *m, const char *key)
+{
+    char **value = meta_at(m, key);
+    return value ? *value : NULL;
+}
+
+int model_meta_set(model *m, const char *key, const char *value, err *e)
+{
+    if (!check_name(key))
+        return err_set(e, NULL, 0, "metadata '%.60s': expected a key of letters, digits and . _ - /", key);
+    if (!check_utf8(value))
+        return err_set(e, NULL, 0, "metadata %s: its value is not UTF-8", key);
+    char *copy = mem_text(value, e), **old = meta_at(m, key);
+    if (!copy)
+        return -1;
+    if (old) {
+        free(*old);
+        *old = copy;
+        return 0;
+    }
+    char *name = mem_text(key, e);
+    if (!name || one_more(&m->meta, m->metas, sizeof *m->meta, e)) {
+        free(name);
+        free(copy);
+        return -1;
+    }
+    m->meta[m->metas++] = (model_meta){name, copy};
+    return 0;
+}
+
+int model_meta_numbers(const model *m, const char *key, double *value, int count, err *e)
+{
+    const char *text = model_meta_of(m, key);
+    if (!text)
+        return err_set(e, NULL, 0, "the model has no metadata %s; expected %d number%s", key, count,
+                       count == 1 ? "" : "s");
+    const char *p = text, *end = text + strlen(text);
+    for (int i = 0; i < count; i++) {
+        p += strspn(p, " ");
+        if (num_scan(p, end, &p, &value[i]) || (*p && *p != ' '))
+            return err_set(e, NULL, 0, "metadata %s is \"%.100s\"; expected %d number%s", key, text, count,
+                           count == 1 ? "" : "s");
+    }
+    if (p[strspn(p, " ")])
+        return err_set(e, NULL, 0, "metadata %s is \"%.100s\"; expected no more than %d number%s", key, text, count,
+                       count == 1 ? "" : "s");
+    return 0;
+}
+
+int model_meta_set_numbers(model *m, const char *key, const double *value, int count, err *e)
+{
+    enum { WIDTH = 32 };
+    char *text = mem_array(count, WIDTH, "metadata", e), *p = text;
+    if (!text)
+        return -1;
+    for (int i = 0; i < count; i++)
+        p += snprintf(p, WIDTH, "%s%.17g", i ? " " : "", value[i]);
+    int status = model_meta_set(m, key, text, e);
+    free(text);
+    return status;
+}
+
+int model_prov_add(model *m, const char *tool, const char *version, const char *options, err *e)
+{
+    if (!check_name(tool) || !check_name(version))
+        return err_set(e, NULL, 0, "provenance '%.60s %.60s': expected a tool's name and version", tool, version);
+    size_t size = strlen(tool) + strlen(version) + strlen(options) + 3;
+    char *line = mem_array((int64_t)size, 1, "provenance", e);
+    if (!line || one_more(&m->prov, m->provs, sizeof *m->prov, e)) {
+        free(line);
+        return -1;
+    }
+    snprintf(line, size, "%s %s%s%s", tool, version, *options ? " " : "", options);
+    check_utf8_mend(line);
+    m->prov[m->provs++] = line;
+    return 0;
+}
+
+static int axis_at(const model *m, const char *axis)
+{
+    for (int i = 0; i < m->axis_count; i++)
+        if (!strcmp(m->axes[i].name, axis))
+            return i;
+    return -1;
+}
+
+int64_t model_count(const model *m, const char *axis)
+{
+    int i = axis_at(m, axis);
+    return i < 0 ? -1 : m->axes[i].count;
+}
+
+int model_axis_add(model *m, const char *axis, int64_t count, err *e)
+{
+    int64_t had = model_count(m, axis);
+    if (had == count && count >= 0)
+        return 0;
+    if (had >= 0)
+        return err_set(e, NULL, 0, "the model has an axis %s of %" PRId64 " already; expected %" PRId64, axis, had,
+                       count);
+    if (!check_name(axis) || count < 0)
+        return err_set(e, NULL, 0, "axis '%.60s': expected a name of letters, digits and . _ - / and a count", axis);
+    char *name = mem_text(axis, e);
+    if (!name || one_more(&m->axes, m->axis_count, sizeof *m->axes, e)) {
+        free(name);
+        return -1;
+    }
+    m->axes[m->axis_count++] = (model_axis){name, count};
+    return 0;
+}
+
+int model_block_take(model *m, model_block *b, err *e)
+{
+    if (one_more(&m->blocks, m->block_count, sizeof *m->blocks, e))
+        return -1;
+    m->blocks[m->block_count++] = *b;
+    *b = (model_block){0};
+    return 0;
+}
+
+static model_array *find(const model_arrays *list, const char *name)
+{
+    for (int i = 0; i < list->count; i++)
+        if (!strcmp(list->v[i].name, name))
+            return &list->v[i];
+    return NULL;
+}
+
+model_array *model_find(const model *m, const char *name)
+{
+    return find(&m->arrays, name);
+}
+
+model_array *frame_find(const frame *f, const char *name)
+{
+    return find(&f->arrays, name);
+}
+
+model_array *model_need(const model *m, const char *name, err *e)
+{
+    model_array *a = model_find(m, name);
+    const known *k = a ? NULL : known_find(name);
+    if (k)
+        err_set(e, NULL, 0, "the model has no %s; expected a model from %s", name, k->maker);
+    else if (!a)
+        err_set(e, NULL, 0, "the model has no array %s", name);
+    return a;
+}
+
+model_array *model_arrays_take(model_arrays *list, model_array *a, err *e)
+{
+    model_array *at = find(list, a->name);
+    if (at) {
+        model_array_free(at);
+    } else {
+        if (one_more(&list->v, list->count, sizeof *list->v, e))
+            return NULL;
+        at = &list->v[list->count++];
+    }
+    *at = *a;
+    *a = (model_array){0};
+    return at;
+}
+
+static int make_strings(model_array *a, int64_t n, err *e)
+{
+    for (int64_t i = 0; i < n; i++) {
+        a->str[i] = mem_text("", e);
+        if (!a->str[i])
+            return -1;
+    }
+    return 0;
+}
+
+/* A zeroed array, owned by the caller; the names are checked. */
+static int make(model_array *a, const char *name, model_type type, const char *unit, const char *axis, int64_t rows,
+                int32_t columns, err *e)
+{
+    int64_t n = check_count(rows, columns, model_type_size(type));
+    *a = (model_array){.type = type, .columns = columns, .rows = rows};
+    if (!check_name(name) || !check_unit(unit))
+        return err_set(e, NULL, 0, "array '%.60s' in '%.60s': expected a name and a unit without spaces", name, unit);
+    if (rows < 0)
+        return err_set(e, NULL, 0, "array %s: the model has no axis %s", name, axis);
+    if (n < 0)
+        return err_set(e, NULL, 0, "array %s: %" PRId64 " rows of %d columns are too many", name, rows, (int)columns);
+    a->name = mem_text(name, e);
+    a->unit = mem_text(unit, e);
+    a->axis = mem_text(axis, e);
+    a->data = mem_array(n, model_type_size(type), name, e);
+    if (!a->name || !a->unit || !a->axis || !a->data || (type == MODEL_STR && make_strings(a, n, e))) {
+        model_array_free(a);
+        return -1;
+    }
+    return 0;
+}
+
+static model_array *add(model_arrays *list, const model *m, const char *name, model_type type, const char *unit,
+                        const char *axis, int32_t columns, err *e)
+{
+    model_array a;
+    if (make(&a, name, type, unit, axis, model_count(m, axis), columns, e))
+        return NULL;
+    model_array *at = model_arrays_take(list, &a, e);
+    if (!at)
+        model_array_free(&a);
+    return at;
+}
+
+static model_array *add_known(model_arrays *list, const model *m, const char *name, int in_frame, err *e)
+{
+    char unit[2 * CHECK_NAME_MOST], axis[2 * CHECK_NAME_MOST];
+    const known *k = known_find(name);
+    if (!k || (k->flags & KNOWN_FRAME) != in_frame) {
+        err_set(e, NULL, 0, "array %s is not known %s", name, in_frame ? "in frames" : "in a model's body");
+        return NULL;
+    }
+    known_expand(k->unit, name, unit, sizeof unit);
+    known_expand(k->axis, name, axis, sizeof axis);
+    return add(list, m, name, k->type, unit, axis, k->columns_max, e);
+}
+
+model_array *model_add(model *m, const char *name, err *e)
+{
+    return add_known(&m->arrays, m, name, 0, e);
+}
+
+model_array *frame_add(frame *f, const model *m, const char *name, err *e)
+{
+    return add_known(&f->arrays, m, name, KNOWN_FRAME, e);
+}
+
+model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
+                          int32_t columns, err *e)
+{
+    return add(&m->arrays, m, name, type, unit, axis, columns, e);
+}
+
+int model_set_text(model_array *a, int64_t at, const char *text, err *e)
+{
+    if (!check_utf8(text))
+        return err_set(e, NULL, 0, "array %s, row %" PRId64 ": '%.60s' is not UTF-8", a->name, at / a->columns, text);
+    char *copy = mem_text(text, e);
+    if (!copy)
+        return -1;
+    free(a->str[at]);
+    a->str[at] = copy;
+    return 0;
+}
+
+static void remove_at(model *m, int i)
+{
+    model_array_free(&m->arrays.v[i]);
+    m->arrays.count--;
+    memmove(&m->arrays.v[i], &m->arrays.v[i + 1], (size_t)(m->arrays.count - i) * sizeof *m->arrays.v);
+}
+
+void model_remove(model *m, const char *name)
+{
+    model_array *a = model_find(m, name);
+    if (a)
+        remove_at(m, (int)(a - m->arrays.v));
+}
+
+void model_axis_drop(model *m, const char *axis, notes *warnings)
+{
+    int at = axis_at(m, axis);
+    for (int i = m->arrays.count - 1; i >= 0; i--) {
+        const model_array *a = &m->arrays.v[i];
+        bool over = !strcmp(a->axis, axis), to = a->unit[0] == '@' && !strcmp(a->unit + 1, axis);
+        if (!over && !to)
+            continue;
+        if (!known_find(a->name))
+            notes_add(warnings, "array %s is dropped: it %s axis %s, which changes", a->name,
+                      over ? "is over" : "points to", axis);
+        remove_at(m, i);
+    }
+    if (at < 0)
+        return;
+    free(m->axes[at].name);
+    m->axis_count--;
+    memmove(&m->axes[at], &m->axes[at + 1], (size_t)(m->axis_count - at) * sizeof *m->axes);
+}
+
+const char *model_surface(const model *m, int i, char *name, size_t size)
+{
+    static const char end[] = "/vertex";
+    size_t tail = sizeof end - 1;
+    for (int k = 0; k < m->axis_count; k++) {
+        const char *axis = m->axes[k].name;
+        size_t n = strlen(axis);
+        if (n <= tail || strcmp(axis + n - tail, end) || i--)
+            continue;
+        snprintf(name, size, "%.*s", (int)(n - tail), axis);
+        return name;
+    }
+    return NULL;
+}

@@ -1,0 +1,121 @@
+#include "model/stage.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+/* The exit status is the tool's, whatever library the failure comes from. */
+static int fail_with(err *e, int status, const char *text)
+{
+    bool first = !e->status;
+    err_set(e, NULL, 0, "%s", text);
+    if (first)
+        e->status = status;
+    return -1;
+}
+
+/* Opens the sink and its writer; the options may be only half read, after a usage error. */
+static int open_sink(stage *s, const tool *t, err *e)
+{
+    const opt_common *c = t->common;
+    s->t = t;
+    s->sink = out_open(c->output, c->gzip, e);
+    if (!s->sink)
+        return -1;
+    if (out_is_terminal(s->sink) && (!c->text || c->gzip)) {
+        out_discard(s->sink);
+        s->sink = NULL;
+        return err_set(e, "stdout", 0,
+                       "is a terminal, and a binary model is not for reading; expected --text, -o FILE or a pipe");
+    }
+    s->writer = model_writer_open(s->sink, c->text, e);
+    return s->writer ? 0 : -1;
+}
+
+int stage_open_output(stage *s, const tool *t, err *e)
+{
+    return open_sink(s, t, e);
+}
+
+int stage_read(stage *s, model *m, err *e)
+{
+    if (isatty(STDIN_FILENO))
+        return fail_with(e, STATUS_USAGE, "reads a model on stdin, which is a terminal; see --help");
+    s->source = in_open(NULL, e);
+    s->reader = s->source ? model_reader_open(s->source, e) : NULL;
+    return s->reader ? model_read(s->reader, m, e) : -1;
+}
+
+int stage_write(stage *s, model *m, err *e)
+{
+    if (model_prov_add(m, s->t->table->name, SINEW_VERSION, s->t->provenance ? s->t->provenance : "", e))
+        return -1;
+    return model_write(s->writer, m, e);
+}
+
+/* Reads the frames that are left, and writes them where w is not NULL. Returns how many, or -1. */
+static int64_t pass_frames(stage *s, const model *m, model_writer *w, err *e)
+{
+    frame f = {0};
+    int64_t count = 0;
+    int got = s->reader ? 1 : 0;
+    while (got > 0) {
+        got = model_read_frame(s->reader, m, &f, e);
+        if (got > 0 && w && model_write_frame(w, &f, e))
+            got = -1;
+        count += got > 0;
+    }
+    frame_free(&f);
+    return got < 0 ? -1 : count;
+}
+
+int stage_copy_frames(stage *s, const model *m, err *e)
+{
+    return pass_frames(s, m, s->writer, e) < 0 ? -1 : 0;
+}
+
+int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e)
+{
+    (void)m; /* it may have changed: what is dropped need only fit the model that came in */
+    int64_t count = pass_frames(s, NULL, NULL, e);
+    if (count > 0)
+        notes_add(warnings, "%lld frame%s dropped: the model that they belong to changes", (long long)count,
+                  count == 1 ? " is" : "s are");
+    return count < 0 ? -1 : 0;
+}
+
+/* `fail` reaches the next tool through stdout only: a file is not left behind. */
+static void close_failed(stage *s, const tool *t, const err *e)
+{
+    err ignored = {0};
+    char text[sizeof e->text + 64];
+    if (!s->sink && !t->common->output && t->table->writes_model && !isatty(STDOUT_FILENO))
+        open_sink(s, t, &ignored);
+    if (!s->writer || t->common->output) {
+        out_discard(s->sink);
+        s->sink = NULL;
+        return;
+    }
+    snprintf(text, sizeof text, "%s%s%s", e->silent ? "" : t->table->name, e->silent ? "" : ": ", e->text);
+    model_write_fail(s->writer, e->status, text, &ignored);
+    out_close(s->sink, &ignored);
+    s->sink = NULL;
+}
+
+void stage_close(stage *s, const tool *t, err *e)
+{
+    /* A model counts only once its end was seen: what is left in the pipe is read, and may yet say `fail`. */
+    if (!e->status && s->reader)
+        pass_frames(s, NULL, NULL, e);
+    if (!e->status && s->writer)
+        model_write_end(s->writer, e);
+    if (!e->status && s->sink) {
+        out_close(s->sink, e);
+        s->sink = NULL;
+    } else if (e->status) {
+        close_failed(s, t, e);
+    }
+    model_writer_close(s->writer);
+    model_reader_close(s->reader);
+    in_close(s->source);
+    *s = (stage){0};
+}

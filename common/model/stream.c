@@ -1,0 +1,437 @@
+#include "model/stream.h"
+
+#include "base/mem.h"
+#include "model/binary.h"
+#include "model/check.h"
+#include "model/item.h"
+#include "model/known.h"
+#include "model/text.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What every frame must have: the arrays of the first. Readers and writers both hold to it. */
+typedef struct pattern {
+    model_array *v; /* without data */
+    int count;
+    bool set;
+} pattern;
+
+struct model_reader {
+    item_source from;
+    item next; /* read, not yet taken, where `waiting` */
+    bool waiting, frames, ended;
+    int64_t *places; /* where the body's arrays stood: lines or blocks */
+    int64_t place_capacity;
+    pattern pattern;
+};
+
+struct model_writer {
+    out *o;
+    const encoding *how;
+    bool begun;
+    model axes; /* of the body that was written */
+    bool body;
+    pattern pattern;
+};
+
+/* ---- what readers and writers share ---- */
+
+static void pattern_free(pattern *p)
+{
+    for (int i = 0; i < p->count; i++)
+        model_array_free(&p->v[i]);
+    free(p->v);
+    *p = (pattern){0};
+}
+
+static int pattern_set(pattern *p, const model_arrays *arrays, err *e)
+{
+    p->v = mem_array(arrays->count, sizeof *p->v, "a frame", e);
+    if (!p->v)
+        return -1;
+    for (int i = 0; i < arrays->count; i++) {
+        const model_array *a = &arrays->v[i];
+        p->v[i] = (model_array){.type = a->type, .columns = a->columns};
+        p->count = i + 1;
+        p->v[i].name = mem_text(a->name, e);
+        p->v[i].unit = mem_text(a->unit, e);
+        p->v[i].axis = mem_text(a->axis, e);
+        if (!p->v[i].name || !p->v[i].unit || !p->v[i].axis)
+            return -1;
+    }
+    p->set = true;
+    return 0;
+}
+
+/* Whether a is what the first frame has as its i-th array. */
+static bool pattern_fits(const pattern *p, int i, const model_array *a)
+{
+    const model_array *b = i < p->count ? &p->v[i] : NULL;
+    return b && a->type == b->type && a->columns == b->columns && !strcmp(a->name, b->name) &&
+           !strcmp(a->unit, b->unit) && !strcmp(a->axis, b->axis);
+}
+
+static int copy_axes(model *to, const model *m, err *e)
+{
+    for (int i = 0; i < m->axis_count; i++)
+        if (model_axis_add(to, m->axes[i].name, m->axes[i].count, e))
+            return -1;
+    return 0;
+}
+
+static const char *belongs(const char *name, bool in_frame)
+{
+    const known *k = known_find(name);
+    if (!k || !!(k->flags & KNOWN_FRAME) == in_frame)
+        return NULL;
+    return in_frame ? "belongs to the model, not to a frame" : "belongs to frames; expected it after a frame line";
+}
+
+/* ---- reading ---- */
+
+model_reader *model_reader_open(in *s, err *e)
+{
+    int first = in_peek(s, e);
+    if (first == -2)
+        return NULL;
+    if (first == -1) {
+        err_set(e, NULL, 0, "no model on %s (0 bytes); if bash's builtin bind ran, write 'sinew bind'", in_name(s));
+        return NULL;
+    }
+    if (first != TEXT_FIRST && first != BINARY_FIRST) {
+        err_set(e, in_name(s), 0, "is no sinew model; expected '%%sinew 1 text' or the magic of a binary one");
+        return NULL;
+    }
+    model_reader *r = mem_array(1, sizeof *r, "reading a model", e);
+    if (!r)
+        return NULL;
+    r->from.s = s;
+    r->from.how = first == TEXT_FIRST ? &text_encoding : &binary_encoding;
+    if (r->from.how->begin(&r->from, e)) {
+        model_reader_close(r);
+        return NULL;
+    }
+    return r;
+}
+
+void model_reader_close(model_reader *r)
+{
+    if (!r)
+        return;
+    item_free(&r->next);
+    model_free(&r->from.axes);
+    pattern_free(&r->pattern);
+    free(r->places);
+    free(r);
+}
+
+/* The stream said `end` or `fail`: nothing may follow. */
+static int finish(model_reader *r, const item *it, err *e)
+{
+    int more = in_peek(r->from.s, e);
+    if (more == -2)
+        return -1;
+    if (more != -1)
+        return item_error(&r->from, it->at, "", e, "something follows the model's end; expected nothing");
+    r->ended = true;
+    if (it->kind == ITEM_END)
+        return 0;
+    if (it->number < 1 || it->number > 255)
+        return item_error(&r->from, it->at, "FAIL", e, "status %" PRId64 " of a failure; expected 1 to 255",
+                          it->number);
+    if (!check_utf8(it->text))
+        return item_error(&r->from, it->at, "FAIL", e, "its text is not UTF-8");
+    err_set(e, NULL, 0, "%s", it->text);
+    e->status = (int)it->number;
+    e->silent = true;
+    return -1;
+}
+
+/* The next item, into r->next, where it waits until it is taken. */
+static int look(model_reader *r, err *e)
+{
+    if (r->waiting)
+        return 0;
+    item_free(&r->next);
+    if (r->from.how->read(&r->from, &r->next, e))
+        return -1;
+    r->waiting = true;
+    return 0;
+}
+
+static int add_meta(model_reader *r, model *m, item *it, err *e)
+{
+    if (!check_name(it->key))
+        return item_error(&r->from, it->at, "META", e, "key '%.60s'; expected letters, digits and . _ - /", it->key);
+    if (!check_utf8(it->text))
+        return item_error(&r->from, it->at, it->key, e, "the value of %s is not UTF-8", it->key);
+    if (model_meta_of(m, it->key))
+        return item_error(&r->from, it->at, it->key, e, "a second meta %s; expected one", it->key);
+    return model_meta_set(m, it->key, it->text, e);
+}
+
+/* Cuts "TOOL VERSION OPTIONS" into its three at its first two spaces. */
+static int add_prov(model_reader *r, model *m, item *it, err *e)
+{
+    char *version = strchr(it->text, ' '), *options = version ? strchr(version + 1, ' ') : NULL;
+    if (!check_utf8(it->text))
+        return item_error(&r->from, it->at, "PROV", e, "provenance is not UTF-8");
+    if (version)
+        *version++ = 0;
+    if (options)
+        *options++ = 0;
+    if (!version || !check_name(it->text) || !check_name(version) || (options && !*options))
+        return item_error(&r->from, it->at, "PROV", e,
+                          "provenance '%.60s'; expected a tool's name, version and options", it->text);
+    return model_prov_add(m, it->text, version, options ? options : "", e);
+}
+
+static int add_axis(model_reader *r, model *m, item *it, err *e)
+{
+    if (!check_name(it->key) || it->number < 0)
+        return item_error(&r->from, it->at, "AXIS", e,
+                          "axis '%.60s'; expected letters, digits and . _ - /, and a count", it->key);
+    if (model_count(m, it->key) >= 0)
+        return item_error(&r->from, it->at, it->key, e, "a second axis %s; expected one", it->key);
+    return model_axis_add(m, it->key, it->number, e) || model_axis_add(&r->from.axes, it->key, it->number, e);
+}
+
+static int add_array(model_reader *r, model *m, item *it, err *e)
+{
+    const char *name = it->array.name, *wrong = belongs(name, false);
+    if (wrong)
+        return item_error(&r->from, it->at, name, e, "array %s %s", name, wrong);
+    if (model_find(m, name))
+        return item_error(&r->from, it->at, name, e, "a second array %s; expected one", name);
+    if (mem_grow(&r->places, &r->place_capacity, m->arrays.count + 1, sizeof *r->places, "the model", e))
+        return -1;
+    r->places[m->arrays.count] = it->at;
+    return model_arrays_take(&m->arrays, &it->array, e) ? 0 : -1;
+}
+
+static int add_item(model_reader *r, model *m, item *it, err *e)
+{
+    switch (it->kind) {
+    case ITEM_META:
+        return add_meta(r, m, it, e);
+    case ITEM_PROV:
+        return add_prov(r, m, it, e);
+    case ITEM_AXIS:
+        return add_axis(r, m, it, e);
+    case ITEM_ARRAY:
+        return add_array(r, m, it, e);
+    case ITEM_BLOCK:
+        return model_block_take(m, &it->block, e);
+    case ITEM_FRAME:
+    case ITEM_END:
+    case ITEM_FAIL:
+        break;
+    }
+    return 0;
+}
+
+static int check_array(const model_reader *r, const model *m, const model_array *a, int64_t at, err *e)
+{
+    char place[600];
+    item_place(&r->from, at, a->name, place, sizeof place);
+    return model_check(m, a, place, r->from.how->lines ? at : 0, e);
+}
+
+int model_read(model_reader *r, model *m, err *e)
+{
+    for (;;) {
+        if (look(r, e))
+            return -1;
+        if (r->next.kind == ITEM_FAIL)
+            return finish(r, &r->next, e);
+        if (r->next.kind == ITEM_FRAME || r->next.kind == ITEM_END)
+            break;
+        r->waiting = false;
+        if (add_item(r, m, &r->next, e))
+            return -1;
+    }
+    r->frames = true;
+    for (int i = 0; i < m->arrays.count; i++)
+        if (check_array(r, m, &m->arrays.v[i], r->places[i], e))
+            return -1;
+    return r->next.kind == ITEM_END ? finish(r, &r->next, e) : 0;
+}
+
+static int add_frame_array(model_reader *r, const model *m, frame *f, item *it, err *e)
+{
+    const char *name = it->array.name, *wrong = belongs(name, true);
+    if (wrong)
+        return item_error(&r->from, it->at, name, e, "array %s %s", name, wrong);
+    if (frame_find(f, name))
+        return item_error(&r->from, it->at, name, e, "a second array %s in a frame; expected one", name);
+    if (r->pattern.set && !pattern_fits(&r->pattern, f->arrays.count, &it->array))
+        return item_error(&r->from, it->at, name, e,
+                          "array %s is not as in the first frame; expected the same arrays in each", name);
+    if (m && model_count(m, it->array.axis) != it->array.rows)
+        return item_error(&r->from, it->at, name, e, "array %s is over axis %s, which has changed; expected no frames",
+                          name, it->array.axis);
+    if (check_array(r, &r->from.axes, &it->array, it->at, e))
+        return -1;
+    return model_arrays_take(&f->arrays, &it->array, e) ? 0 : -1;
+}
+
+/* The arrays of a frame whose heading was taken. From the second frame on their number is known, so that a frame is
+ * given out when its last array is there, and not only when the next frame comes. */
+static int read_frame_arrays(model_reader *r, const model *m, frame *f, int64_t at, err *e)
+{
+    while (!r->pattern.set || f->arrays.count < r->pattern.count) {
+        if (look(r, e))
+            return -1;
+        if (r->next.kind != ITEM_ARRAY)
+            break;
+        r->waiting = false;
+        if (add_frame_array(r, m, f, &r->next, e))
+            return -1;
+    }
+    if (!r->pattern.set)
+        return pattern_set(&r->pattern, &f->arrays, e);
+    if (f->arrays.count < r->pattern.count && r->next.kind == ITEM_FAIL)
+        return finish(r, &r->next, e);
+    if (f->arrays.count < r->pattern.count)
+        return item_error(&r->from, at, "FRAM", e,
+                          "frame %" PRId64 " has %d arrays; expected %d, as in the first frame", f->index,
+                          f->arrays.count, r->pattern.count);
+    return 0;
+}
+
+int model_read_frame(model_reader *r, const model *m, frame *f, err *e)
+{
+    frame_free(f);
+    if (r->ended)
+        return 0;
+    if (look(r, e))
+        return -1;
+    item *it = &r->next;
+    if (it->kind == ITEM_END || it->kind == ITEM_FAIL)
+        return finish(r, it, e);
+    if (it->kind != ITEM_FRAME)
+        return item_error(&r->from, it->at, "", e, "%s; expected a frame or the end",
+                          it->kind == ITEM_ARRAY ? "an array more than the first frame has"
+                                                 : "a part of the body after the first frame");
+    if (!isfinite(it->time))
+        return item_error(&r->from, it->at, "FRAM", e, "frame %" PRId64 " has no finite time", it->number);
+    f->index = it->number;
+    f->time = it->time;
+    r->waiting = false;
+    return read_frame_arrays(r, m, f, it->at, e) ? -1 : 1;
+}
+
+/* ---- writing ---- */
+
+model_writer *model_writer_open(out *o, bool text, err *e)
+{
+    model_writer *w = mem_array(1, sizeof *w, "writing a model", e);
+    if (!w)
+        return NULL;
+    w->o = o;
+    w->how = text ? &text_encoding : &binary_encoding;
+    return w;
+}
+
+void model_writer_close(model_writer *w)
+{
+    if (!w)
+        return;
+    model_free(&w->axes);
+    pattern_free(&w->pattern);
+    free(w);
+}
+
+static void write_item(model_writer *w, const item *it)
+{
+    if (!w->begun)
+        w->how->write_begin(w->o);
+    w->begun = true;
+    w->how->write(w->o, it);
+}
+
+static int check_body(const model *m, err *e)
+{
+    for (int i = 0; i < m->arrays.count; i++) {
+        const model_array *a = &m->arrays.v[i];
+        const char *wrong = belongs(a->name, false);
+        if (wrong)
+            return err_set(e, "model", 0, "array %s %s", a->name, wrong);
+        if (a->rows != model_count(m, a->axis))
+            return err_set(e, "model", 0, "array %s has %" PRId64 " rows; expected those of its axis", a->name,
+                           a->rows);
+        if (model_check(m, a, "model", 0, e))
+            return -1;
+    }
+    return 0;
+}
+
+int model_write(model_writer *w, const model *m, err *e)
+{
+    if (check_body(m, e) || copy_axes(&w->axes, m, e))
+        return -1;
+    for (int i = 0; i < m->metas; i++)
+        write_item(w, &(item){.kind = ITEM_META, .key = m->meta[i].key, .text = m->meta[i].value});
+    for (int i = 0; i < m->provs; i++)
+        write_item(w, &(item){.kind = ITEM_PROV, .text = m->prov[i]});
+    for (int i = 0; i < m->axis_count; i++)
+        write_item(w, &(item){.kind = ITEM_AXIS, .key = m->axes[i].name, .number = m->axes[i].count});
+    for (int i = 0; i < m->arrays.count; i++)
+        write_item(w, &(item){.kind = ITEM_ARRAY, .array = m->arrays.v[i]});
+    for (int i = 0; i < m->block_count; i++)
+        write_item(w, &(item){.kind = ITEM_BLOCK, .block = m->blocks[i]});
+    w->body = true;
+    out_flush(w->o);
+    return 0;
+}
+
+static int check_frame(const model_writer *w, const frame *f, err *e)
+{
+    bool same = f->arrays.count == w->pattern.count;
+    if (!w->body || !isfinite(f->time))
+        return err_set(e, "model", 0, "frame %" PRId64 " has no model before it, or no finite time", f->index);
+    for (int i = 0; i < f->arrays.count; i++) {
+        const model_array *a = &f->arrays.v[i];
+        if (belongs(a->name, true) || a->rows != model_count(&w->axes, a->axis))
+            return err_set(e, "model", 0, "array %s does not fit into a frame of this model", a->name);
+        if (model_check(&w->axes, a, "model", 0, e))
+            return -1;
+        same = same && pattern_fits(&w->pattern, i, a);
+    }
+    if (w->pattern.set && !same)
+        return err_set(e, "model", 0, "frame %" PRId64 " has other arrays than the first; expected the same", f->index);
+    return 0;
+}
+
+int model_write_frame(model_writer *w, const frame *f, err *e)
+{
+    if (check_frame(w, f, e) || (!w->pattern.set && pattern_set(&w->pattern, &f->arrays, e)))
+        return -1;
+    write_item(w, &(item){.kind = ITEM_FRAME, .number = f->index, .time = f->time});
+    for (int i = 0; i < f->arrays.count; i++)
+        write_item(w, &(item){.kind = ITEM_ARRAY, .array = f->arrays.v[i]});
+    out_flush(w->o);
+    return 0;
+}
+
+int model_write_end(model_writer *w, err *e)
+{
+    if (!w->body)
+        return err_set(e, "model", 0, "no model was written before the end");
+    write_item(w, &(item){.kind = ITEM_END});
+    return 0;
+}
+
+int model_write_fail(model_writer *w, int status, const char *text, err *e)
+{
+    char *copy = mem_text(text, e);
+    if (!copy)
+        return -1;
+    check_utf8_mend(copy);
+    write_item(w, &(item){.kind = ITEM_FAIL, .number = status, .text = copy});
+    free(copy);
+    return 0;
+}
