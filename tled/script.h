@@ -25,19 +25,19 @@ typedef struct script_curve {
     uint32_t mask;                  /* displace: bit a set: component a is prescribed, from the start of the run on */
     int32_t key_first, key_count;   /* in script.time and script.value; at least 1 key, times never decreasing */
     int32_t node_first, node_count; /* in script.node, ascending; 0 for contract and gravity */
+    double end;                     /* time of its last key, s */
     int64_t line;                   /* its first line in the script; 0: from the command line */
     double box[6];                  /* force: x y z radius; displace by box: low and high corner; m */
-    char *target;                   /* as written, owned: for messages */
+    char *target;                   /* as written, owned: for messages and to tell surfaces apart */
 } script_curve;
 
 typedef struct script {
     script_curve *curve;
     double *time;  /* keys: s */
     double *value; /* keys x 3 */
-    int32_t *node; /* a node has any one component displaced by one curve at most */
+    int32_t *node; /* a component of a node is displaced by one curve at most */
     int64_t curves, keys, nodes;
     int64_t curve_capacity, time_capacity, value_capacity, node_capacity;
-    char *name; /* the script file's; NULL: none was read */
 } script;
 
 void script_free(script *s);
@@ -60,5 +60,22 @@ double script_end(const script *s);
 
 /* The volume of the muscle so named, the prefix muscle_ given or not: its index, or -1 with e filled at place:line. */
 int32_t script_muscle(const model *m, const char *name, const char *place, int64_t line, err *e);
+
+/* What script.c and script_read.c share. */
+
+/* The curve of the same verb and target, or -1. */
+int64_t script_find(const script *s, const script_curve *like);
+
+/* Appends a copy of c, which has no keys or nodes, with its own copy of the target. Returns its index or -1. */
+int64_t script_add(script *s, const script_curve *c, err *e);
+
+/* Makes room for `more` keys. */
+int script_reserve(script *s, int64_t more, err *e);
+
+/* A level: a number from 0 to 1. Returns 0 or -1. */
+int script_level(const char *text, double *level);
+
+/* Warns where no element of the muscle has a fibre direction. */
+void script_warn_of_fibres(const model *m, int32_t volume, notes *warnings);
 
 #endif
