@@ -66,4 +66,6 @@ $(eval $(call tool,sinew-export,common/tools/sinew-export.c $(EXPORT_MODULES)))
 clean:
 	rm -rf $(BUILD) $(BIN) out
 
+include tests/check.mk
+
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

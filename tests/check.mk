@@ -1,0 +1,143 @@
+# What stands around the tools: set-up, the demo, every check, installation. The top Makefile includes this last; its
+# variables and pattern rules are used here. A bare machine has neither compiler nor libraries when make begins,
+# so `demo` and `check` run .ci/setup and only then call make again for the rest.
+
+CLANG ?= clang
+CLANG_TIDY ?= clang-tidy
+CLANG_FORMAT ?= clang-format
+FUZZ_SECONDS ?= 5
+# As many jobs as processors, unless make was told (then its job server serves the inner makes too).
+JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
+
+# ---- test programs: the library, and the objects that a line `// needs: a/b.c c/d.c` in the source names.
+UNIT_SRC := $(wildcard tests/unit/test_*.c)
+FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
+UNIT := $(UNIT_SRC:%.c=$(BUILD)/%)
+FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
+needs = $(call objects,$(shell sed -n 's|^// needs: *||p' $(1)))
+
+define test_program
+$(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB)
+	$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ -Wl,--as-needed $$(EMBREE) $$(LDLIBS)
+endef
+$(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
+$(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
+
+.PHONY: setup demo check unit check-unit check-cli check-tests check-long
+setup:
+	.ci/setup check
+
+demo:
+	.ci/setup demo
+	$(MAKE) $(JOBS) all
+	SINEW_BIN=$(BIN) samples/demo out
+
+check:
+	.ci/setup check
+	MAKE='$(MAKE)' BUILD=$(BUILD) JOBS='$(JOBS)' tests/check
+
+unit: $(UNIT)
+
+# ---- the tests, as TAP under prove. V=1 shows every line.
+PROVE = prove $(if $(V),-v) $(if $(filter -j%,$(JOBS)),$(JOBS),-j2)
+ENVIRONMENT = SINEW_BIN=$(BIN) CC='$(CC)' NVCC='$(NVCC)' BUILD=$(BUILD)
+
+check-unit: unit
+	$(ENVIRONMENT) $(PROVE) --exec '' $(UNIT)
+
+check-cli: all
+	$(ENVIRONMENT) $(PROVE) --exec sh $(sort $(wildcard tests/cli/*.t))
+
+check-tests: all unit
+	$(ENVIRONMENT) tests/prove $(PROVE) $(UNIT) $(sort $(wildcard tests/cli/*.t))
+
+# What takes minutes: the same tests with SINEW_LONG set, which some of them heed.
+check-long: all unit
+	SINEW_LONG=1 $(ENVIRONMENT) tests/prove $(PROVE) $(UNIT) $(sort $(wildcard tests/cli/*.t))
+
+# ---- other builds, each in its own folder
+.PHONY: clang sanitize fuzz fuzz-run
+clang:
+	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/clang BIN=$(BUILD)/clang/bin all unit
+
+# A sanitizer's complaint is exit status 99, which no test expects.
+SANITIZE = -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+sanitize:
+	ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=exitcode=99:print_stacktrace=1 SINEW_SANITIZED=1 \
+	    $(MAKE) $(JOBS) BUILD=$(BUILD)/sanitize BIN=$(BUILD)/sanitize/bin CFLAGS='$(SANITIZE)' CUDA=no $(SANITIZE_GOAL)
+SANITIZE_GOAL = check-tests
+
+FUZZ_FLAGS = -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
+fuzz:
+	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/fuzz BIN=$(BUILD)/fuzz/bin CFLAGS='$(FUZZ_FLAGS)' CUDA=no \
+	    FUZZ_SECONDS=$(FUZZ_SECONDS) fuzz-run
+fuzz-run: $(FUZZ)
+	tests/fuzz/run $(FUZZ_SECONDS) $(FUZZ)
+
+# ---- lints
+.PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man
+SOURCES = $(shell git ls-files -co --exclude-standard '*.c')
+HEADERS = $(shell git ls-files -co --exclude-standard '*.h' '*.cuh')
+SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/prove tests/fuzz/run $(wildcard tests/cli/*.t tests/cli/*.sh)
+lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
+
+lint-cppcheck:
+	cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
+	    --suppress=missingIncludeSystem --suppress=normalCheckLevelMaxBranches -j2 $(CPPFLAGS) $(SOURCES)
+
+# One stamp a file, so that only what changed is read again, and in parallel.
+TIDY = $(SOURCES:%.c=$(BUILD)/tidy/%.ok)
+lint-tidy: $(TIDY)
+$(BUILD)/tidy/%.ok: %.c .clang-tidy $(HEADERS)
+	@mkdir -p $(@D)
+	$(CLANG_TIDY) --quiet $< -- $(CSTD) $(CPPFLAGS) 2>$@.log || { cat $@.log; exit 1; }
+	@touch $@
+
+lint-format:
+	$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS)
+
+lint-shell:
+	shellcheck --external-sources --source-path=SCRIPTDIR $(SCRIPTS)
+
+lint-man:
+	mandoc -Tlint -Wwarning $(wildcard man/*.[157])
+
+# ---- installation
+.PHONY: install uninstall
+INSTALL = install
+BINDIR = $(DESTDIR)$(PREFIX)/bin
+MANDIR = $(DESTDIR)$(PREFIX)/share/man
+# `bind` has none: bash-completion has a file of that name, for the shell's builtin.
+COMPLETIONS = $(filter-out bind,$(TOOLS))
+COMPLETIONDIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
+PAGES = $(wildcard man/*.[157])
+installed_page = $(MANDIR)/man$(subst .,,$(suffix $(1)))/$(notdir $(1))
+
+install: all
+	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
+	$(INSTALL) -m 755 $(TOOLS:%=$(BIN)/%) $(BINDIR)
+	$(foreach page,$(PAGES),$(INSTALL) -m 644 $(page) $(call installed_page,$(page)) &&) :
+	for tool in $(COMPLETIONS); do \
+	    $(BIN)/$$tool --table bash >$(COMPLETIONDIR)/$$tool || exit 1; chmod 644 $(COMPLETIONDIR)/$$tool; done
+
+uninstall:
+	rm -f $(TOOLS:%=$(BINDIR)/%) $(COMPLETIONS:%=$(COMPLETIONDIR)/%) \
+	    $(foreach page,$(PAGES),$(call installed_page,$(page)))
+
+.PHONY: help
+help:
+	@printf '%s\n' \
+	'make              the tools, into $(BIN)/' \
+	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
+	'make check        set-up, and every check below but check-long' \
+	'make setup        installs what is missing, by apt (through sudo if not root), saying what' \
+	'make check-unit   the unit tests            make check-cli   the tests of the commands' \
+	'make check-tests  both, with the counts     make check-long  both, with what takes minutes' \
+	'make clang        the tools and unit tests, built by clang' \
+	'make sanitize     the tests under ASan and UBSan' \
+	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
+	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
+	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
+	'make clean        removes what was built' \
+	'' \
+	'CC, CFLAGS, BUILD, BIN, CUDA=no, WERROR= are the variables to know.'
