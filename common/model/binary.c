@@ -18,30 +18,15 @@ enum { PIECE = 1 << 18, HEAD = 16, MAGIC = 10 };
 
 static const unsigned char magic[MAGIC] = {BINARY_FIRST, 's', 'i', 'n', 'e', 'w', '\r', '\n', 0x1a, '\n'};
 
-/* In the order of item_kind; ITEM_BLOCK carries its own. */
-static const char *const types[] = {"META", "PROV", "AXIS", "ARRY", "", "FRAM", "DONE", "FAIL"};
-
-enum { TYPES = sizeof types / sizeof *types };
-
 /* ---- reading ---- */
 
 /* A block that is being read. */
 typedef struct block {
     item_source *s;
     item *it;
-    char type[5];
-    uint32_t flags;
-    uint64_t length, left; /* payload, and what is left of it */
-    uLong crc;
+    uint64_t left; /* of the payload */
+    uLong crc;     /* so far */
 } block;
-
-static int block_error(const block *b, err *e, const char *text)
-{
-    char what[300];
-    const char *name = b->it->array.name ? b->it->array.name : b->it->key ? b->it->key : NULL;
-    snprintf(what, sizeof what, "%s%s%.*s", b->type, name ? " " : "", CHECK_NAME_MOST, name ? name : "");
-    return item_error(b->s, b->it->at, what, e, "%s", text);
-}
 
 /* Exactly size bytes of the stream. */
 static int take_raw(item_source *s, void *to, size_t size, err *e)
@@ -54,7 +39,7 @@ static int take_raw(item_source *s, void *to, size_t size, err *e)
 static int take(block *b, void *to, size_t size, err *e)
 {
     if (size > b->left)
-        return block_error(b, e, "its length is less than what it holds; the stream is damaged");
+        return item_error(b->s, b->it, e, "its length is less than what it holds; the stream is damaged");
     if (take_raw(b->s, to, size, e))
         return -1;
     b->crc = crc32(b->crc, to, (uInt)size);
@@ -69,7 +54,7 @@ static int take_grown(block *b, void *to, uint64_t size, size_t extra, model_typ
     unsigned char *bytes = NULL;
     uint64_t have = 0, done = 0;
     if (size > b->left || size > PTRDIFF_MAX - PIECE)
-        return block_error(b, e, "its length is less than what it holds; the stream is damaged");
+        return item_error(b->s, b->it, e, "its length is less than what it holds; the stream is damaged");
     do {
         if (done == have) {
             have = 2 * have < PIECE ? PIECE : 2 * have;
@@ -103,7 +88,7 @@ static int take_text(block *b, char **text, err *e)
         return -1;
     (*text)[n] = 0;
     if (memchr(*text, 0, n))
-        return block_error(b, e, "a string holds a NUL byte; expected none");
+        return item_error(b->s, b->it, e, "a string holds a NUL byte; expected none");
     return 0;
 }
 
@@ -113,7 +98,7 @@ static int read_strings(block *b, int64_t n, err *e)
     int64_t capacity = 0, at = 0;
     char **list = NULL;
     int status = (uint64_t)n > b->left / sizeof(uint32_t)
-                     ? block_error(b, e, "its length is less than its strings need; the stream is damaged")
+                     ? item_error(b->s, b->it, e, "its length is less than its strings need; the stream is damaged")
                      : mem_grow(&list, &capacity, 1, sizeof *list, a->name, e);
     for (; !status && at < n; at++) {
         status = mem_grow(&list, &capacity, at + 1, sizeof *list, a->name, e);
@@ -140,7 +125,7 @@ static int read_array(block *b, err *e)
         take_u32(b, &columns, e))
         return -1;
     if (type >= MODEL_TYPES)
-        return block_error(b, e, "its values have an unknown type; expected 0 to 5");
+        return item_error(b->s, b->it, e, "its values have an unknown type; expected 0 to 5");
     a->type = (model_type)type;
     a->columns = columns <= INT32_MAX ? (int32_t)columns : -1;
     int64_t n = item_heading(b->s, b->it, e);
@@ -149,17 +134,8 @@ static int read_array(block *b, err *e)
     if (a->type == MODEL_STR)
         return read_strings(b, n, e);
     if (b->left != (uint64_t)n * model_type_size(a->type))
-        return block_error(b, e, "its length is not that of its rows and columns; the stream is damaged");
+        return item_error(b->s, b->it, e, "its length is not that of its rows and columns; the stream is damaged");
     return take_grown(b, &a->data, b->left, 0, a->type, e);
-}
-
-static int read_block(block *b, err *e)
-{
-    model_block *to = &b->it->block;
-    memcpy(to->type, b->type, sizeof to->type);
-    to->flags = b->flags;
-    to->length = b->length;
-    return take_grown(b, &to->payload, b->length, 0, MODEL_TYPES, e);
 }
 
 static int read_payload(block *b, err *e)
@@ -180,7 +156,7 @@ static int read_payload(block *b, err *e)
     case ITEM_ARRAY:
         return read_array(b, e);
     case ITEM_BLOCK:
-        return read_block(b, e);
+        return take_grown(b, &it->block.payload, b->left, 0, MODEL_TYPES, e);
     case ITEM_FRAME:
         return take(b, &it->number, sizeof it->number, e) || take(b, &it->time, sizeof it->time, e);
     case ITEM_FAIL:
@@ -194,56 +170,46 @@ static int read_payload(block *b, err *e)
     return 0;
 }
 
-static bool plain(char c)
+/* What kind of item the type in it->block is. */
+static int find_kind(const block *b, err *e)
 {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-}
-
-/* What the four bytes of a type mean. */
-static int kind_of(block *b, err *e)
-{
-    for (int i = 0; i < 4; i++)
-        if (!plain(b->type[i])) {
-            b->type[0] = '?';
-            b->type[1] = 0;
-            return block_error(b, e, "its type is not four letters or digits; the stream is damaged");
+    item *it = b->it;
+    for (int k = ITEM_META; k <= ITEM_FAIL; k++)
+        if (k != ITEM_BLOCK && !strcmp(item_type(&(item){.kind = (item_kind)k}), it->block.type)) {
+            it->kind = (item_kind)k;
+            return it->block.flags
+                       ? item_error(b->s, it, e, "its flags are not known; expected 0 (a newer sinew wrote it?)")
+                       : 0;
         }
-    for (int k = 0; k < TYPES; k++)
-        if (!strcmp(types[k], b->type)) {
-            b->it->kind = (item_kind)k;
-            return b->flags ? block_error(b, e, "it has flags that are not known; expected 0 (a newer sinew wrote it?)")
-                            : 0;
-        }
-    b->it->kind = ITEM_BLOCK;
-    return b->type[0] >= 'a'
-               ? 0
-               : block_error(b, e, "its type is not known and may not be skipped (a newer sinew wrote it?)");
+    it->kind = ITEM_BLOCK;
+    if (!check_type(it->block.type)) {
+        it->block.type[0] = 0;
+        return item_error(b->s, it, e, "its type is not four letters or digits; the stream is damaged");
+    }
+    if (it->block.type[0] < 'a')
+        return item_error(b->s, it, e, "its type is not known and may not be skipped (a newer sinew wrote it?)");
+    return 0;
 }
 
 static int binary_read(item_source *s, item *it, err *e)
 {
-    block b = {.s = s, .it = it};
     unsigned char head[HEAD];
     uint32_t crc;
     it->at = ++s->blocks;
     if (take_raw(s, head, HEAD, e))
         return -1;
-    b.crc = crc32(0, head, HEAD);
-    memcpy(b.type, head, 4);
-    memcpy(&b.flags, head + 4, sizeof b.flags);
-    memcpy(&b.length, head + 8, sizeof b.length);
-    b.left = b.length;
-    if (kind_of(&b, e) || read_payload(&b, e))
+    memcpy(it->block.type, head, 4);
+    memcpy(&it->block.flags, head + 4, sizeof it->block.flags);
+    memcpy(&it->block.length, head + 8, sizeof it->block.length);
+    block b = {s, it, it->block.length, crc32(0, head, HEAD)};
+    if (find_kind(&b, e) || read_payload(&b, e))
         return -1;
     if (b.left)
-        return block_error(&b, e, "its length is more than what it holds; the stream is damaged");
+        return item_error(s, it, e, "its length is more than what it holds; the stream is damaged");
     if (take_raw(s, &crc, sizeof crc, e))
         return -1;
-    if (crc != (uint32_t)b.crc) {
-        char text[100];
-        snprintf(text, sizeof text, "checksum %08" PRIx32 "; expected %08lx: the stream is damaged", crc, b.crc);
-        return block_error(&b, e, text);
-    }
+    if (crc != b.crc)
+        return item_error(s, it, e, "checksum is %08" PRIx32 "; expected %08lx: the stream is damaged", crc, b.crc);
     return 0;
 }
 
@@ -433,7 +399,7 @@ static void put_payload(sink *k, const item *it)
 static uint32_t put_block(out *o, const item *it)
 {
     sink k = {.o = o, .crc = crc32(0, NULL, 0)};
-    put(&k, it->kind == ITEM_BLOCK ? it->block.type : types[it->kind], 4);
+    put(&k, item_type(it), 4);
     put_u32(&k, it->kind == ITEM_BLOCK ? it->block.flags : 0);
     put_u64(&k, payload_length(it));
     put_payload(&k, it);

@@ -27,6 +27,14 @@ bool check_unit(const char *unit)
     return n > 0;
 }
 
+bool check_type(const char *type)
+{
+    size_t n = 0;
+    while (isalnum((unsigned char)type[n]))
+        n++;
+    return n == 4 && !type[n];
+}
+
 /* The length of the well-formed UTF-8 character at p (not NUL), or 0. */
 static int utf8_length(const unsigned char *p)
 {

@@ -14,6 +14,9 @@ bool check_name(const char *name);
 /* Units: 1 to 255 printable ASCII characters, no space or quote; after '@' an axis's name. */
 bool check_unit(const char *unit);
 
+/* Types of blocks: four letters or digits. */
+bool check_type(const char *type);
+
 /* Well-formed UTF-8: no overlong forms, no surrogates, nothing past U+10FFFF. */
 bool check_utf8(const char *text);
 

@@ -17,25 +17,34 @@ void item_free(item *it)
     *it = (item){0};
 }
 
-void item_place(const item_source *s, int64_t at, const char *what, char *place, size_t size)
+const char *item_type(const item *it)
 {
-    if (s->how->lines)
-        snprintf(place, size, "%s", in_name(s->s));
-    else if (*what)
-        snprintf(place, size, "%s: block %" PRId64 " (%s)", in_name(s->s), at, what);
-    else
-        snprintf(place, size, "%s: block %" PRId64, in_name(s->s), at);
+    static const char *const types[] = {
+        [ITEM_META] = "META", [ITEM_PROV] = "PROV",  [ITEM_AXIS] = "AXIS", [ITEM_ARRAY] = "ARRY",
+        [ITEM_BLOCK] = "",    [ITEM_FRAME] = "FRAM", [ITEM_END] = "DONE",  [ITEM_FAIL] = "FAIL",
+    };
+    return it->kind == ITEM_BLOCK ? it->block.type : types[it->kind];
 }
 
-int item_error(const item_source *s, int64_t at, const char *what, err *e, const char *format, ...)
+void item_place(const item_source *s, const item *it, char *place, size_t size)
+{
+    const char *name = it->array.name ? it->array.name : it->key ? it->key : "";
+    if (s->how->lines)
+        snprintf(place, size, "%s", in_name(s->s));
+    else
+        snprintf(place, size, "%s: block %" PRId64 " (%s%s%s)", in_name(s->s), it->at, item_type(it),
+                 check_name(name) ? " " : "", check_name(name) ? name : "");
+}
+
+int item_error(const item_source *s, const item *it, err *e, const char *format, ...)
 {
     char place[600], text[800];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    item_place(s, at, what, place, sizeof place);
-    return err_set(e, place, s->how->lines ? at : 0, "%s", text);
+    item_place(s, it, place, sizeof place);
+    return err_set(e, place, s->how->lines ? it->at : 0, "%s", text);
 }
 
 int item_cut(const item_source *s, err *e)
@@ -47,23 +56,20 @@ int item_cut(const item_source *s, err *e)
 int64_t item_heading(const item_source *s, item *it, err *e)
 {
     model_array *a = &it->array;
-    if (!check_name(a->name))
-        return item_error(s, it->at, "ARRY", e, "array name '%.60s'; expected letters, digits and . _ - /", a->name);
+    if (!check_name(a->name) || !check_name(a->axis))
+        return item_error(s, it, e, "the name of an array or its axis is not of letters, digits and . _ - /");
     if (!check_unit(a->unit))
-        return item_error(s, it->at, a->name, e, "unit '%.60s' of array %s; expected no spaces, 1 where it has none",
-                          a->unit, a->name);
+        return item_error(s, it, e, "array %s has no good unit; expected no spaces, and 1 where it has none", a->name);
     a->rows = model_count(&s->axes, a->axis);
     if (a->rows < 0)
-        return item_error(s, it->at, a->name, e,
-                          "array %s is over axis %.60s, which is not there; expected its axis first", a->name, a->axis);
+        return item_error(s, it, e, "array %s is over axis %s, which is not there; expected its axis first", a->name,
+                          a->axis);
     if (a->columns < 1)
-        return item_error(s, it->at, a->name, e, "array %s has %d columns; expected 1 or more", a->name,
-                          (int)a->columns);
+        return item_error(s, it, e, "array %s has %d columns; expected 1 or more", a->name, (int)a->columns);
     int64_t n = check_count(a->rows, a->columns, model_type_size(a->type));
     if (n < 0)
-        return item_error(s, it->at, a->name, e,
-                          "array %s of %" PRId64 " rows and %d columns is too large for any memory", a->name, a->rows,
-                          (int)a->columns);
+        return item_error(s, it, e, "array %s of %" PRId64 " rows and %d columns is too large for any memory", a->name,
+                          a->rows, (int)a->columns);
     return n;
 }
 

@@ -55,11 +55,14 @@ struct item_source {
 
 void item_free(item *it);
 
-/* Where in s the line or block `at` is; what (may be ""): its kind and name, for a binary place. */
-void item_place(const item_source *s, int64_t at, const char *what, char *place, size_t size);
+/* What its block is called: "META", ... */
+const char *item_type(const item *it);
+
+/* Where the item stands: "stdin" (its line is it->at), or "stdin: block 7 (ARRY element.node)". */
+void item_place(const item_source *s, const item *it, char *place, size_t size);
 
 /* Fills e with that place. Always -1. */
-int item_error(const item_source *s, int64_t at, const char *what, err *e, const char *format, ...) SINEW_PRINTF(5, 6);
+int item_error(const item_source *s, const item *it, err *e, const char *format, ...) SINEW_PRINTF(4, 5);
 
 /* The error of a stream that stops without `end` or `fail`. */
 int item_cut(const item_source *s, err *e);

@@ -135,15 +135,14 @@ static int finish(model_reader *r, const item *it, err *e)
     if (more == -2)
         return -1;
     if (more != -1)
-        return item_error(&r->from, it->at, "", e, "something follows the model's end; expected nothing");
+        return item_error(&r->from, it, e, "something follows the model's end; expected nothing");
     r->ended = true;
     if (it->kind == ITEM_END)
         return 0;
     if (it->number < 1 || it->number > 255)
-        return item_error(&r->from, it->at, "FAIL", e, "status %" PRId64 " of a failure; expected 1 to 255",
-                          it->number);
+        return item_error(&r->from, it, e, "status %" PRId64 " of a failure; expected 1 to 255", it->number);
     if (!check_utf8(it->text))
-        return item_error(&r->from, it->at, "FAIL", e, "its text is not UTF-8");
+        return item_error(&r->from, it, e, "its text is not UTF-8");
     err_set(e, NULL, 0, "%s", it->text);
     e->status = (int)it->number;
     e->silent = true;
@@ -165,11 +164,11 @@ static int look(model_reader *r, err *e)
 static int add_meta(model_reader *r, model *m, item *it, err *e)
 {
     if (!check_name(it->key))
-        return item_error(&r->from, it->at, "META", e, "key '%.60s'; expected letters, digits and . _ - /", it->key);
+        return item_error(&r->from, it, e, "key '%.60s'; expected letters, digits and . _ - /", it->key);
     if (!check_utf8(it->text))
-        return item_error(&r->from, it->at, it->key, e, "the value of %s is not UTF-8", it->key);
+        return item_error(&r->from, it, e, "the value of %s is not UTF-8", it->key);
     if (model_meta_of(m, it->key))
-        return item_error(&r->from, it->at, it->key, e, "a second meta %s; expected one", it->key);
+        return item_error(&r->from, it, e, "a second meta %s; expected one", it->key);
     return model_meta_set(m, it->key, it->text, e);
 }
 
@@ -178,24 +177,22 @@ static int add_prov(model_reader *r, model *m, item *it, err *e)
 {
     char *version = strchr(it->text, ' '), *options = version ? strchr(version + 1, ' ') : NULL;
     if (!check_utf8(it->text))
-        return item_error(&r->from, it->at, "PROV", e, "provenance is not UTF-8");
+        return item_error(&r->from, it, e, "provenance is not UTF-8");
     if (version)
         *version++ = 0;
     if (options)
         *options++ = 0;
     if (!version || !check_name(it->text) || !check_name(version) || (options && !*options))
-        return item_error(&r->from, it->at, "PROV", e,
-                          "provenance '%.60s'; expected a tool's name, version and options", it->text);
+        return item_error(&r->from, it, e, "provenance '%.60s'; expected a tool's name, version and options", it->text);
     return model_prov_add(m, it->text, version, options ? options : "", e);
 }
 
 static int add_axis(model_reader *r, model *m, item *it, err *e)
 {
     if (!check_name(it->key) || it->number < 0)
-        return item_error(&r->from, it->at, "AXIS", e,
-                          "axis '%.60s'; expected letters, digits and . _ - /, and a count", it->key);
+        return item_error(&r->from, it, e, "axis '%.60s'; expected letters, digits and . _ - /, and a count", it->key);
     if (model_count(m, it->key) >= 0)
-        return item_error(&r->from, it->at, it->key, e, "a second axis %s; expected one", it->key);
+        return item_error(&r->from, it, e, "a second axis %s; expected one", it->key);
     return model_axis_add(m, it->key, it->number, e) || model_axis_add(&r->from.axes, it->key, it->number, e);
 }
 
@@ -203,9 +200,9 @@ static int add_array(model_reader *r, model *m, item *it, err *e)
 {
     const char *name = it->array.name, *wrong = belongs(name, false);
     if (wrong)
-        return item_error(&r->from, it->at, name, e, "array %s %s", name, wrong);
+        return item_error(&r->from, it, e, "array %s %s", name, wrong);
     if (model_find(m, name))
-        return item_error(&r->from, it->at, name, e, "a second array %s; expected one", name);
+        return item_error(&r->from, it, e, "a second array %s; expected one", name);
     if (mem_grow(&r->places, &r->place_capacity, m->arrays.count + 1, sizeof *r->places, "the model", e))
         return -1;
     r->places[m->arrays.count] = it->at;
@@ -236,7 +233,7 @@ static int add_item(model_reader *r, model *m, item *it, err *e)
 static int check_array(const model_reader *r, const model *m, const model_array *a, int64_t at, err *e)
 {
     char place[600];
-    item_place(&r->from, at, a->name, place, sizeof place);
+    item_place(&r->from, &(item){.kind = ITEM_ARRAY, .at = at, .array.name = a->name}, place, sizeof place);
     return model_check(m, a, place, r->from.how->lines ? at : 0, e);
 }
 
@@ -264,15 +261,15 @@ static int add_frame_array(model_reader *r, const model *m, frame *f, item *it, 
 {
     const char *name = it->array.name, *wrong = belongs(name, true);
     if (wrong)
-        return item_error(&r->from, it->at, name, e, "array %s %s", name, wrong);
+        return item_error(&r->from, it, e, "array %s %s", name, wrong);
     if (frame_find(f, name))
-        return item_error(&r->from, it->at, name, e, "a second array %s in a frame; expected one", name);
+        return item_error(&r->from, it, e, "a second array %s in a frame; expected one", name);
     if (r->pattern.set && !pattern_fits(&r->pattern, f->arrays.count, &it->array))
-        return item_error(&r->from, it->at, name, e,
-                          "array %s is not as in the first frame; expected the same arrays in each", name);
+        return item_error(&r->from, it, e, "array %s is not as in the first frame; expected the same arrays in each",
+                          name);
     if (m && model_count(m, it->array.axis) != it->array.rows)
-        return item_error(&r->from, it->at, name, e, "array %s is over axis %s, which has changed; expected no frames",
-                          name, it->array.axis);
+        return item_error(&r->from, it, e, "array %s is over axis %s, which has changed; expected no frames", name,
+                          it->array.axis);
     if (check_array(r, &r->from.axes, &it->array, it->at, e))
         return -1;
     return model_arrays_take(&f->arrays, &it->array, e) ? 0 : -1;
@@ -296,7 +293,7 @@ static int read_frame_arrays(model_reader *r, const model *m, frame *f, int64_t 
     if (f->arrays.count < r->pattern.count && r->next.kind == ITEM_FAIL)
         return finish(r, &r->next, e);
     if (f->arrays.count < r->pattern.count)
-        return item_error(&r->from, at, "FRAM", e,
+        return item_error(&r->from, &(item){.kind = ITEM_FRAME, .at = at}, e,
                           "frame %" PRId64 " has %d arrays; expected %d, as in the first frame", f->index,
                           f->arrays.count, r->pattern.count);
     return 0;
@@ -313,11 +310,11 @@ int model_read_frame(model_reader *r, const model *m, frame *f, err *e)
     if (it->kind == ITEM_END || it->kind == ITEM_FAIL)
         return finish(r, it, e);
     if (it->kind != ITEM_FRAME)
-        return item_error(&r->from, it->at, "", e, "%s; expected a frame or the end",
+        return item_error(&r->from, it, e, "%s; expected a frame or the end",
                           it->kind == ITEM_ARRAY ? "an array more than the first frame has"
                                                  : "a part of the body after the first frame");
     if (!isfinite(it->time))
-        return item_error(&r->from, it->at, "FRAM", e, "frame %" PRId64 " has no finite time", it->number);
+        return item_error(&r->from, it, e, "frame %" PRId64 " has no finite time", it->number);
     f->index = it->number;
     f->time = it->time;
     r->waiting = false;
