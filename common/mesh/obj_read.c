@@ -1,6 +1,7 @@
 #include "base/mem.h"
 #include "base/num.h"
 #include "mesh/obj.h"
+#include "model/check.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -241,21 +242,13 @@ static int enter_group(reader *r, const char *name)
     return 0;
 }
 
-/* The length of the UTF-8 character at p, or 0 where it is none. */
-static int utf8_length(const unsigned char *p, const unsigned char *end)
+/* Whether a word may be part of a name: what control characters do to a terminal or a model is not wanted. */
+static bool is_plain(const char *word)
 {
-    if (*p < 0x80)
-        return 1;
-    int n = *p >= 0xf0 ? 4 : *p >= 0xe0 ? 3 : 2;
-    if (*p < 0xc2 || *p > 0xf4 || end - p < n)
-        return 0;
-    for (int i = 1; i < n; i++)
-        if ((p[i] & 0xc0) != 0x80)
-            return 0;
-    if ((*p == 0xe0 && p[1] < 0xa0) || (*p == 0xed && p[1] > 0x9f) || (*p == 0xf0 && p[1] < 0x90) ||
-        (*p == 0xf4 && p[1] > 0x8f))
-        return 0;
-    return n;
+    for (; *word; word++)
+        if ((unsigned char)*word < ' ' || *word == 127)
+            return false;
+    return true;
 }
 
 /* The words that are left on the line, joined by `joint`, into r->name: their length, or -1. */
@@ -264,20 +257,16 @@ static int64_t read_names(reader *r, char joint)
     int64_t n = 0;
     while (skip_blanks(r)) {
         const char *stop = word_end(r);
-        for (const char *p = r->p; p < stop;) {
-            int step = utf8_length((const unsigned char *)p, (const unsigned char *)stop);
-            if (!step || (unsigned char)*p < ' ' || *p == 127)
-                return bad(r, "not a name in UTF-8:", "printable UTF-8");
-            p += step;
-        }
         int64_t length = stop - r->p;
         if (mem_grow(&r->name, &r->name_room, n + length + 2, 1, "a group's name", r->e))
             return -1;
         if (n)
             r->name[n++] = joint;
         memcpy(r->name + n, r->p, (size_t)length);
+        r->name[n + length] = 0;
+        if (!check_utf8(r->name + n) || !is_plain(r->name + n))
+            return bad(r, "not a name in UTF-8:", "printable UTF-8");
         n += length;
-        r->name[n] = 0;
         r->p = stop;
     }
     return n;

@@ -128,6 +128,7 @@ void surface_name(const char *path, char *name, size_t size)
         n -= 3;
     if (n > 4 && !strncasecmp(base + n - 4, ".obj", 4))
         n -= 4;
+    n = n > SURFACE_NAME_MOST ? SURFACE_NAME_MOST : n;
     n = n < size ? n : size - 1;
     for (size_t i = 0; i < n; i++) {
         char c = base[i];

@@ -7,6 +7,8 @@
 #include "mesh/obj.h"
 #include "model/model.h"
 
+enum { SURFACE_NAME_MOST = 200 }; /* bytes of a surface's name: its arrays' names are longer */
+
 typedef struct surface {
     const char *name;
     const double *position; /* vertices x 3, m */

@@ -1,0 +1,261 @@
+/* bind: surfaces to elements, so that they move with them (W&M section 3.3). */
+#include "base/mem.h"
+#include "base/num.h"
+#include "base/pool.h"
+#include "bind/nearest.h"
+#include "bind/scale.h"
+#include "bind/weights.h"
+#include "mesh/surface.h"
+#include "model/check.h"
+#include "model/stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+struct options {
+    opt_common common;
+    const char *name;
+    const char *unit;
+};
+
+static const opt option_table[] = {{0, "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, 0,
+                                    "of the surface (default: the file's name)"},
+                                   {0, "unit", "UNIT", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
+                                    "of the OBJ: um, mm, cm, m, in (default: the model's source.unit)"},
+                                   {0}};
+
+static const opt_tool table = {
+    .name = "bind",
+    .purpose = "Binds surfaces to the elements of the model on standard input.",
+    .operands = "[surface.obj]",
+    .operands_max = 1,
+    .writes_model = true,
+    .threaded = true,
+    .options = option_table,
+};
+
+/* What the surfaces are bound to. */
+typedef struct target {
+    nearest elements;
+    pool *threads;
+    const int32_t *node;    /* elements x 8 */
+    const double *position; /* nodes x 3, m */
+} target;
+
+/* One surface on its way. */
+typedef struct binding {
+    const target *to;
+    const double *position; /* vertices x 3, m */
+    int32_t *element;       /* vertices */
+    double *weight;         /* vertices x 3 */
+} binding;
+
+static int check_model(const model *m, err *e)
+{
+    const model_array *node = model_need(m, "element.node", e), *position = model_need(m, "node.position", e);
+    if (!node || !position)
+        return -1;
+    if (node->columns != 8)
+        return err_set(e, NULL, 0, "the model is of tetrahedra; expected hexahedra on a lattice, from voxelise");
+    if (!node->rows)
+        return err_set(e, NULL, 0, "the model has no elements; expected some to bind to");
+    return 0;
+}
+
+static int target_open(target *to, const model *m, int threads, err *e)
+{
+    if (nearest_build(&to->elements, m, e))
+        return -1;
+    to->threads = pool_create(threads, e);
+    return to->threads ? 0 : -1;
+}
+
+static void target_close(target *to)
+{
+    nearest_free(&to->elements);
+    if (to->threads)
+        pool_destroy(to->threads);
+}
+
+static void bind_some(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const binding *b = context;
+    (void)chunk;
+    for (int64_t v = from; v < to; v++) {
+        int32_t element = nearest_element(&b->to->elements, &b->position[3 * v]);
+        weights_box box = weights_box_of(&b->to->node[8 * (int64_t)element], b->to->position);
+        weights_of(&box, &b->position[3 * v], &b->weight[3 * v]);
+        b->element[v] = element;
+    }
+}
+
+/* Warns of vertices so far from the elements that extrapolation means little. */
+static void warn_of_far(const binding *b, const surface *s, num_unit unit, notes *warnings)
+{
+    const double *side = b->to->elements.grid.spacing;
+    double voxel = fmax(fmax(side[0], side[1]), side[2]), furthest = 0, scale = scale_of(unit);
+    int64_t count = 0;
+    for (int64_t v = 0; v < s->vertices; v++) {
+        weights_box box = weights_box_of(&b->to->node[8 * (int64_t)b->element[v]], b->to->position);
+        double d = weights_outside(&box, &b->weight[3 * v]);
+        count += d > voxel * (1 + 1e-9);
+        furthest = fmax(furthest, d);
+    }
+    if (count)
+        notes_add(
+            warnings,
+            "surface %s: %lld of %lld vertices lie further than a voxel outside the elements, the furthest %.4g %s; "
+            "sinew deform --within leaves such vertices where they are",
+            s->name, (long long)count, (long long)s->vertices, furthest / scale, num_unit_name(unit));
+}
+
+static int check_finite(const surface *s, err *e)
+{
+    for (int64_t i = 0; i < 3 * s->vertices; i++)
+        if (!isfinite(s->position[i]))
+            return err_set(e, NULL, 0, "surface %s, vertex %lld: its position is not finite; expected finite numbers",
+                           s->name, (long long)(i / 3));
+    return 0;
+}
+
+/* Adds S/vertex.element and S/vertex.weight, or makes them anew. */
+static int bind_surface(const tool *t, target *to, model *m, const char *name, num_unit unit, notes *warnings, err *e)
+{
+    char element[CHECK_NAME_MOST + 1], weight[CHECK_NAME_MOST + 1], axis[CHECK_NAME_MOST + 1];
+    surface s;
+    snprintf(element, sizeof element, "%s/vertex.element", name);
+    snprintf(weight, sizeof weight, "%s/vertex.weight", name);
+    snprintf(axis, sizeof axis, "%s/vertex", name);
+    if (model_find(m, element))
+        tool_say(t, "surface %s was bound before; it is bound anew", name);
+    if (!model_add(m, element, e) || !model_add_as(m, weight, MODEL_F64, "1", axis, 3, e) ||
+        surface_of(m, name, &s, e) || check_finite(&s, e))
+        return -1;
+    to->node = model_find(m, "element.node")->i32;
+    to->position = model_find(m, "node.position")->f64;
+    binding b = {to, s.position, model_find(m, element)->i32, model_find(m, weight)->f64};
+    pool_run(to->threads, s.vertices, 1024, bind_some, &b);
+    warn_of_far(&b, &s, unit, warnings);
+    tool_detail(t, "surface %s: %lld vertices bound", name, (long long)s.vertices);
+    return 0;
+}
+
+static bool carries(const model *m, const char *name)
+{
+    char axis[CHECK_NAME_MOST + 1];
+    snprintf(axis, sizeof axis, "%s/vertex", name);
+    return model_count(m, axis) >= 0;
+}
+
+static int check_surface_name(const char *name, err *e)
+{
+    if (strlen(name) <= SURFACE_NAME_MOST && check_name(name) && !strchr(name, '/'))
+        return 0;
+    err_set(e, NULL, 0, "--name '%s': expected at most %d letters, digits and . _ -", name, SURFACE_NAME_MOST);
+    e->status = STATUS_USAGE;
+    return -1;
+}
+
+/* Carries the OBJ under this name, unless the model does already. */
+static int carry(model *m, const char *name, const obj *o, double scale, err *e)
+{
+    surface s;
+    if (!o->vertices)
+        return err_set(e, o->name, 0, "no vertices; expected a surface");
+    if (!carries(m, name))
+        return surface_add(m, name, o, scale, e);
+    if (surface_of(m, name, &s, e))
+        return -1;
+    if (!surface_is(&s, o, scale, e))
+        return 0;
+    /* What differs is in e; say the way out too. */
+    size_t n = strlen(e->text);
+    snprintf(e->text + n, sizeof e->text - n, ", or --name with a name that is free");
+    return -1;
+}
+
+static int bind_file(const tool *t, target *to, model *m, const char *path, const struct options *o, notes *warnings,
+                     err *e)
+{
+    char from_path[SURFACE_NAME_MOST + 1];
+    const char *name = o->name ? o->name : from_path;
+    num_unit unit = scale_unit(o->unit, m, e);
+    obj file = {0};
+    if (!unit)
+        return -1;
+    in *s = in_open(path, e);
+    int code = s ? obj_read(&file, s, e) : -1;
+    in_close(s);
+    surface_name(path, from_path, sizeof from_path);
+    if (!code && !carry(m, name, &file, scale_of(unit), e))
+        code = bind_surface(t, to, m, name, unit, warnings, e);
+    else
+        code = -1;
+    obj_free(&file);
+    return code;
+}
+
+/* Every surface that the model carries, or the one named. */
+static int bind_carried(const tool *t, target *to, model *m, const struct options *o, notes *warnings, err *e)
+{
+    char name[CHECK_NAME_MOST + 1];
+    const char *source = model_meta_of(m, "source.unit");
+    num_unit unit = source ? num_unit_of(source) : 0; /* for messages only */
+    unit = unit ? unit : num_unit_of("m");
+    if (!model_surface(m, 0, name, sizeof name))
+        return err_set(e, NULL, 0, "the model carries no surface; expected an OBJ: sinew bind surface.obj");
+    if (o->name && !carries(m, o->name))
+        return err_set(e, NULL, 0, "the model carries no surface %s; the first that it carries is %s", o->name, name);
+    if (o->name)
+        return bind_surface(t, to, m, o->name, unit, warnings, e);
+    for (int i = 0; model_surface(m, i, name, sizeof name); i++)
+        if (bind_surface(t, to, m, name, unit, warnings, e))
+            return -1;
+    return 0;
+}
+
+static int check_options(const struct options *o, const char *path, err *e)
+{
+    if (o->name && check_surface_name(o->name, e))
+        return -1;
+    if (path && !strcmp(path, "-"))
+        err_set(e, NULL, 0, "'-': the model comes on standard input; expected the name of an OBJ file");
+    else if (!path && o->unit)
+        err_set(e, NULL, 0, "--unit is for an OBJ, and none is given; surfaces in the model are in metres");
+    else
+        return 0;
+    e->status = STATUS_USAGE;
+    return -1;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {0};
+    err e = {0};
+    tool t = {0};
+    stage s = {0};
+    model m = {0};
+    target to = {0};
+    notes warnings = {0};
+    int threads;
+
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+        goto out;
+    const char *path = t.operands ? argv[1] : NULL;
+    if (stage_open_output(&s, &t, &e) || check_options(&o, path, &e) || (threads = tool_threads(&t, &e)) < 0)
+        goto out;
+    if (stage_read(&s, &m, &e) || check_model(&m, &e) || target_open(&to, &m, threads, &e))
+        goto out;
+    if (path ? bind_file(&t, &to, &m, path, &o, &warnings, &e) : bind_carried(&t, &to, &m, &o, &warnings, &e))
+        goto out;
+    if (!stage_write(&s, &m, &e))
+        stage_copy_frames(&s, &m, &e);
+out:
+    tool_warn(&t, &warnings);
+    if (!t.done)
+        stage_close(&s, &t, &e);
+    target_close(&to);
+    model_free(&m);
+    return tool_end(&t, &e);
+}

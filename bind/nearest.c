@@ -1,0 +1,194 @@
+#include "bind/nearest.h"
+
+#include "base/mem.h"
+#include "bind/weights.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static double shortest(const lattice *l)
+{
+    return fmin(fmin(l->spacing[0], l->spacing[1]), l->spacing[2]);
+}
+
+static double longest(const lattice *l)
+{
+    return fmax(fmax(l->spacing[0], l->spacing[1]), l->spacing[2]);
+}
+
+/* Each element must be where its cell is: the lookup goes by cells, the weights by nodes. */
+static int check_boxes(const nearest *n, const model *m, err *e)
+{
+    const model_array *node = model_need(m, "element.node", e), *ijk = model_need(m, "element.lattice", e);
+    const model_array *position = model_need(m, "node.position", e);
+    if (!node || !ijk || !position)
+        return -1;
+    for (int64_t i = 0; i < node->rows; i++) {
+        weights_box box = weights_box_of(&node->i32[8 * i], position->f64);
+        double corner[3];
+        lattice_corner(&n->grid, &ijk->i32[3 * i], corner);
+        for (int a = 0; a < 3; a++) {
+            double off = fmax(fabs(box.first[a] - corner[a]), fabs(box.side[a] - n->grid.spacing[a]));
+            if (!(off <= 1e-6 * n->grid.spacing[a]))
+                return err_set(
+                    e, NULL, 0,
+                    "element %lld is not the box of its lattice cell %d %d %d; expected a model from voxelise",
+                    (long long)i, ijk->i32[3 * i], ijk->i32[3 * i + 1], ijk->i32[3 * i + 2]);
+        }
+    }
+    return 0;
+}
+
+static bool occupied(const nearest *n, int level, int32_t i, int32_t j, int32_t k)
+{
+    const nearest_level *l = &n->level[level];
+    int64_t at = ((int64_t)k * l->size[1] + j) * l->size[0] + i;
+    return level ? l->occupied[at] : n->map.element[at] >= 0;
+}
+
+/* Adds the level above the last one. */
+static int add_level(nearest *n, err *e)
+{
+    const nearest_level *below = &n->level[n->levels - 1];
+    nearest_level *l = &n->level[n->levels];
+    int64_t blocks = 1;
+    for (int a = 0; a < 3; a++)
+        blocks *= l->size[a] = below->size[a] / 2 + below->size[a] % 2;
+    l->occupied = mem_array(blocks, 1, "the lattice's blocks", e);
+    if (!l->occupied)
+        return -1;
+    for (int32_t k = 0; k < below->size[2]; k++)
+        for (int32_t j = 0; j < below->size[1]; j++) {
+            uint8_t *row = &l->occupied[((int64_t)(k / 2) * l->size[1] + j / 2) * l->size[0]];
+            for (int32_t i = 0; i < below->size[0]; i++)
+                row[i / 2] |= occupied(n, n->levels - 1, i, j, k);
+        }
+    n->levels++;
+    return 0;
+}
+
+static bool is_one(const nearest_level *l)
+{
+    return l->size[0] == 1 && l->size[1] == 1 && l->size[2] == 1;
+}
+
+int nearest_build(nearest *n, const model *m, err *e)
+{
+    *n = (nearest){0};
+    if (lattice_of(m, &n->grid, e) || lattice_map_build(&n->map, m, e) || check_boxes(n, m, e))
+        goto bad;
+    for (int a = 0; a < 3; a++)
+        n->level[0].size[a] = n->map.size[a];
+    n->levels = 1;
+    while (!is_one(&n->level[n->levels - 1]))
+        if (add_level(n, e))
+            goto bad;
+    n->tie = 1e-9 * shortest(&n->grid);
+    n->margin = 1e-9 * longest(&n->grid) / shortest(&n->grid);
+    return 0;
+bad:
+    nearest_free(n);
+    return -1;
+}
+
+void nearest_free(nearest *n)
+{
+    for (int l = 1; l < n->levels; l++)
+        free(n->level[l].occupied);
+    lattice_map_free(&n->map);
+    *n = (nearest){0};
+}
+
+/* A search: for the least squared distance, then for the lowest index within it and a tie's width. */
+typedef struct search {
+    const nearest *n;
+    double q[3];     /* the point, in cells from the map's low corner */
+    double limit;    /* m2: what is further is not looked at */
+    int32_t element; /* -1: the distance is searched for */
+} search;
+
+/* The squared distance from the point to the nearest place where a block of cells low to high - 1 has a centre, m2. */
+static double distance2(const search *s, const int64_t *low, const int64_t *high)
+{
+    double sum = 0;
+    for (int a = 0; a < 3; a++) {
+        double d = fmax(fmax((double)low[a] + .5 - s->q[a], s->q[a] - ((double)high[a] - .5)), 0);
+        d *= s->n->grid.spacing[a];
+        sum += d * d;
+    }
+    return sum;
+}
+
+static void look_at(search *s, const int32_t *cell, double d2, bool by_index)
+{
+    const lattice_map *map = &s->n->map;
+    if (!by_index) {
+        s->limit = d2;
+        return;
+    }
+    int32_t element = map->element[((int64_t)cell[2] * map->size[1] + cell[1]) * map->size[0] + cell[0]];
+    if (s->element < 0 || element < s->element)
+        s->element = element;
+}
+
+/* Looks through a block, its children nearest to the point first. */
+static void descend(search *s, int level, const int32_t *block, bool by_index)
+{
+    int64_t low[3], high[3];
+    int near = 0;
+    for (int a = 0; a < 3; a++) {
+        int64_t size = s->n->map.size[a];
+        low[a] = (int64_t)block[a] << level;
+        high[a] = low[a] + (INT64_C(1) << level);
+        near |= s->q[a] > (double)(low[a] + high[a]) / 2 ? 1 << a : 0;
+        high[a] = high[a] < size ? high[a] : size;
+    }
+    double d2 = distance2(s, low, high);
+    if (d2 > s->limit)
+        return;
+    if (!level) {
+        look_at(s, block, d2, by_index);
+        return;
+    }
+    const int32_t *size = s->n->level[level - 1].size;
+    for (int c = 0; c < 8; c++) {
+        int32_t child[3];
+        for (int a = 0; a < 3; a++)
+            child[a] = 2 * block[a] + (((c ^ near) >> a) & 1);
+        if (child[0] < size[0] && child[1] < size[1] && child[2] < size[2] &&
+            occupied(s->n, level - 1, child[0], child[1], child[2]))
+            descend(s, level - 1, child, by_index);
+    }
+}
+
+/* The element of the cell that the point is well inside of, or -1. */
+static int32_t element_around(const search *s)
+{
+    int64_t cell[3];
+    for (int a = 0; a < 3; a++) {
+        double low = floor(s->q[a]), within = s->q[a] - low;
+        if (!(within > s->n->margin && 1 - within > s->n->margin))
+            return -1;
+        cell[a] = (int64_t)low + s->n->map.low[a];
+    }
+    return lattice_element(&s->n->map, cell[0], cell[1], cell[2]);
+}
+
+int32_t nearest_element(const nearest *n, const double *point)
+{
+    const double far = 1e12; /* cells: beyond it no double tells neighbours apart */
+    const int32_t all[3] = {0};
+    search s = {.n = n, .limit = INFINITY, .element = -1};
+    lattice_local(&n->grid, point, s.q);
+    for (int a = 0; a < 3; a++)
+        s.q[a] = fmin(fmax(s.q[a] - n->map.low[a], -far), far);
+    int32_t around = element_around(&s);
+    if (around >= 0)
+        return around;
+    descend(&s, n->levels - 1, all, false);
+    double d = sqrt(s.limit);
+    d += n->tie + 4e-15 * d; /* the second: what rounding does to d far outside */
+    s.limit = d * d;
+    descend(&s, n->levels - 1, all, true);
+    return s.element;
+}

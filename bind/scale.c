@@ -1,0 +1,23 @@
+#include "bind/scale.h"
+
+num_unit scale_unit(const char *unit, const model *m, err *e)
+{
+    const char *source = model_meta_of(m, "source.unit");
+    num_unit known = unit || source ? num_unit_of(unit ? unit : source) : 0;
+    if (known)
+        return known;
+    if (!unit && source)
+        err_set(e, NULL, 0, "the model's source.unit is '%s'; expected um, mm, cm, m or in: give --unit", source);
+    else if (!unit)
+        err_set(e, NULL, 0, "the model has no source.unit; expected --unit um, mm, cm, m or in");
+    else if (!e->status) {
+        err_set(e, NULL, 0, "--unit '%s': expected um, mm, cm, m or in", unit);
+        e->status = STATUS_USAGE;
+    }
+    return 0;
+}
+
+double scale_of(num_unit unit)
+{
+    return (double)unit / 1e6;
+}

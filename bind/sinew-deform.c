@@ -1,0 +1,288 @@
+/* sinew-deform: an OBJ as the results of a model move it. */
+#include "base/mem.h"
+#include "base/num.h"
+#include "base/pool.h"
+#include "base/tool.h"
+#include "bind/bound.h"
+#include "bind/normals.h"
+#include "bind/numbered.h"
+#include "bind/pointcache.h"
+#include "bind/scale.h"
+#include "model/source.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FORMAT_OBJ, FORMAT_PC2 };
+
+struct options {
+    opt_common common;
+    const char *frame, *unit;
+    opt_lengths within;
+    int format;
+};
+
+static const opt option_table[] = {{0, "frame", "N|last|all", OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
+                                    "which; all: -o f_%04d.obj (default: last; pc2: all)"},
+                                   {0, "within", "D", OPT_LENGTHS, offsetof(struct options, within), 0, 1, NULL, 0,
+                                    "leave vertices further than D outside as they are, m"},
+                                   {0, "format", "obj|pc2", OPT_CHOICE, offsetof(struct options, format), 0, 0,
+                                    "obj|pc2", 0, "OBJ, or a point cache (default: obj)"},
+                                   {0, "unit", "UNIT", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
+                                    "of the OBJ: um, mm, cm, m, in (default: the model's source.unit)"},
+                                   {0}};
+
+static const opt_tool table = {
+    .name = "sinew-deform",
+    .purpose = "Moves a bound OBJ as the results on standard input say.",
+    .operands = "surface.obj",
+    .operands_min = 1,
+    .operands_max = 1,
+    .threaded = true,
+    .options = option_table,
+};
+
+/* Which frames, and what becomes of them. */
+typedef struct plan {
+    enum { FRAME_LAST, FRAME_ALL, FRAME_ONE } frames;
+    int64_t index; /* FRAME_ONE */
+    bool found;
+    bool files;    /* a file a frame */
+    double within; /* m; infinite: any */
+    numbered names;
+    pointcache cache;
+    out *sink; /* of the point cache or the one OBJ */
+} plan;
+
+/* The OBJ and where it goes. */
+typedef struct mover {
+    obj file;
+    bound b;
+    double scale;     /* metres in the OBJ's unit */
+    bool *held;       /* vertices: too far outside to be moved */
+    double *position; /* vertices x 3, in the OBJ's unit */
+    double *normal;   /* normals x 3 */
+    const double *u;  /* nodes x 3, m: of the frame at hand */
+    pool *threads;
+} mover;
+
+static int usage_error(err *e)
+{
+    e->status = STATUS_USAGE;
+    return -1;
+}
+
+/* What the options ask for, checked before anything is read. */
+static int plan_of(plan *p, const struct options *o, const char *path, err *e)
+{
+    const char *frame = o->frame ? o->frame : o->format == FORMAT_PC2 ? "all" : "last", *output = o->common.output;
+    p->frames = !strcmp(frame, "last") ? FRAME_LAST : !strcmp(frame, "all") ? FRAME_ALL : FRAME_ONE;
+    p->files = p->frames == FRAME_ALL && o->format == FORMAT_OBJ;
+    p->within = o->within.count ? num_length_in(o->within.value[0], num_unit_of("m"), num_unit_of("m")) : INFINITY;
+    if (p->frames == FRAME_ONE && num_int(frame, 0, INT64_MAX, &p->index))
+        err_set(e, NULL, 0, "--frame '%s': expected a frame's index, last or all", frame);
+    else if (p->within < 0)
+        err_set(e, NULL, 0, "--within: a distance below 0; expected 0 or more");
+    else if (!strcmp(path, "-"))
+        err_set(e, NULL, 0, "'-': the model comes on standard input; expected the name of an OBJ file");
+    else if (o->format == FORMAT_PC2 && (!output || !strcmp(output, "-")))
+        err_set(e, NULL, 0, "a point cache's head is written last; expected -o with a file");
+    else
+        return p->files ? numbered_of(&p->names, output, e) : 0;
+    return usage_error(e);
+}
+
+static int read_obj(obj *o, const char *path, err *e)
+{
+    in *s = in_open(path, e);
+    int code = s ? obj_read(o, s, e) : -1;
+    in_close(s);
+    return code;
+}
+
+/* Finds the vertices that are too far outside to be moved, and says how many. */
+static int hold(mover *w, const tool *t, double within, err *e)
+{
+    int64_t held = 0;
+    double furthest = 0;
+    w->held = mem_array(w->file.vertices, sizeof *w->held, "vertices", e);
+    if (!w->held)
+        return -1;
+    for (int64_t v = 0; v < w->file.vertices; v++) {
+        double d = bound_outside(&w->b, v);
+        w->held[v] = d > within;
+        held += w->held[v];
+        furthest = fmax(furthest, d);
+    }
+    if (held)
+        tool_say(t,
+                 "%lld of %lld vertices lie further than %.4g m outside and stay where they are, the furthest %.4g m",
+                 (long long)held, (long long)w->file.vertices, within, furthest);
+    return 0;
+}
+
+static int mover_open(mover *w, const tool *t, const model *m, const char *path, const struct options *o, double within,
+                      err *e)
+{
+    char name[SURFACE_NAME_MOST + 1];
+    num_unit unit = scale_unit(o->unit, m, e);
+    int threads = unit ? tool_threads(t, e) : -1;
+    if (threads < 0 || read_obj(&w->file, path, e))
+        return -1;
+    surface_name(path, name, sizeof name);
+    w->scale = scale_of(unit);
+    if (bound_find(&w->b, m, name, &w->file, w->scale, e) || hold(w, t, within, e))
+        return -1;
+    w->position = mem_array(3 * w->file.vertices, sizeof *w->position, "positions", e);
+    w->normal = w->position ? mem_array(3 * w->file.normals, sizeof *w->normal, "normals", e) : NULL;
+    w->threads = w->normal ? pool_create(threads, e) : NULL;
+    return w->threads ? 0 : -1;
+}
+
+static void mover_close(mover *w)
+{
+    obj_free(&w->file);
+    free(w->held);
+    free(w->position);
+    free(w->normal);
+    if (w->threads)
+        pool_destroy(w->threads);
+}
+
+/* The displacement is added to what was read: where nothing moved, not a digit changes. */
+static void move_some(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    mover *w = context;
+    (void)chunk;
+    for (int64_t v = from; v < to; v++) {
+        double d[3] = {0};
+        if (!w->held[v])
+            bound_displacement(&w->b, v, w->u, d);
+        for (int a = 0; a < 3; a++)
+            w->position[3 * v + a] = w->file.position[3 * v + a] + d[a] / w->scale;
+    }
+}
+
+static int move(mover *w, const frame *f, err *e)
+{
+    const model_array *u = frame_find(f, "node.displacement");
+    if (!u)
+        return err_set(e, NULL, 0, "frame %lld has no node.displacement; expected results of tled-run",
+                       (long long)f->index);
+    w->u = u->f64;
+    pool_run(w->threads, w->file.vertices, 1024, move_some, w);
+    for (int64_t i = 0; i < 3 * w->file.vertices; i++)
+        if (!isfinite(w->position[i]))
+            return err_set(e, NULL, 0, "frame %lld moves vertex %lld (element %d) to a place that is not finite",
+                           (long long)f->index, (long long)(i / 3), w->b.element[i / 3]);
+    normals_deform(&w->file, &w->b, w->u, w->held, w->normal);
+    return 0;
+}
+
+/* One of the numbered files. */
+static int write_file(plan *p, const mover *w, int64_t index, err *e)
+{
+    char *name = numbered_name(&p->names, index, e);
+    out *to = name ? out_open(name, false, e) : NULL;
+    free(name);
+    if (!to)
+        return -1;
+    obj_write(&w->file, w->position, w->normal, to);
+    return out_close(to, e) ? -1 : numbered_add(&p->names, index, e);
+}
+
+/* Takes a frame that is wanted. */
+static int take(plan *p, mover *w, const frame *f, err *e)
+{
+    if (move(w, f, e))
+        return -1;
+    if (p->cache.to)
+        return pointcache_add(&p->cache, f->index, w->position, e);
+    return p->files ? write_file(p, w, f->index, e) : 0;
+}
+
+static int no_frame(const plan *p, const source *s, err *e)
+{
+    if (!s->frames)
+        return err_set(e, source_name(s), 0, "the model has no frames; expected results, from tled-run");
+    return err_set(e, source_name(s), 0, "no frame %lld among the %lld there; the last is %lld", (long long)p->index,
+                   (long long)s->frames, (long long)s->frame.index);
+}
+
+/* Reads to the end, whatever is wanted: only there is it known that the run went well. */
+static int take_frames(plan *p, mover *w, source *s, err *e)
+{
+    int got;
+    while ((got = source_next(s, e)) > 0) {
+        bool one = p->frames == FRAME_ONE && s->frame.index == p->index && !p->found;
+        if ((one || p->frames == FRAME_ALL) && take(p, w, &s->frame, e))
+            return -1;
+        p->found |= one;
+    }
+    if (got < 0)
+        return -1;
+    if (!s->frames || (p->frames == FRAME_ONE && !p->found))
+        return no_frame(p, s, e);
+    return p->frames == FRAME_LAST ? take(p, w, &s->frame, e) : 0;
+}
+
+static int open_sink(plan *p, const struct options *o, int64_t vertices, err *e)
+{
+    if (p->files)
+        return 0;
+    p->sink = out_open(o->common.output, false, e);
+    if (!p->sink)
+        return -1;
+    if (o->format == FORMAT_OBJ)
+        return 0;
+    if (!out_is_file(p->sink))
+        return err_set(e, o->common.output, 0, "not a regular file; expected one for a point cache");
+    pointcache_begin(&p->cache, p->sink, (int32_t)vertices);
+    return 0;
+}
+
+static int finish(plan *p, const mover *w, err *e)
+{
+    if (p->files)
+        return 0;
+    if (p->cache.to && pointcache_end(&p->cache, e))
+        return -1;
+    if (!p->cache.to)
+        obj_write(&w->file, w->position, w->normal, p->sink);
+    out *sink = p->sink;
+    p->sink = NULL;
+    return out_close(sink, e);
+}
+
+static void plan_close(plan *p, const err *e)
+{
+    out_discard(p->sink);
+    if (e->status)
+        numbered_remove(&p->names);
+    numbered_free(&p->names);
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {0};
+    err e = {0};
+    tool t = {0};
+    source s = {0};
+    plan p = {0};
+    mover w = {0};
+
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+        goto out;
+    if (plan_of(&p, &o, argv[1], &e) || source_open(&s, NULL, &e) ||
+        mover_open(&w, &t, &s.body, argv[1], &o, p.within, &e))
+        goto out;
+    if (open_sink(&p, &o, w.file.vertices, &e) || take_frames(&p, &w, &s, &e))
+        goto out;
+    finish(&p, &w, &e);
+out:
+    plan_close(&p, &e);
+    mover_close(&w);
+    source_close(&s);
+    return tool_end(&t, &e);
+}

@@ -1,0 +1,29 @@
+/* A place inside a hexahedron of a lattice, as three weights, and what follows from them: the shares of the eight nodes,
+ * their gradients, the distance outside. Source: W&M section 3.3, equation (1). Nothing here allocates.
+ */
+#ifndef SINEW_WEIGHTS_H
+#define SINEW_WEIGHTS_H
+
+#include <stdint.h>
+
+/* An element at rest: its first node (VTK node 0) and its sides, m. */
+typedef struct weights_box {
+    double first[3], side[3];
+} weights_box;
+
+/* node: the element's 8; position: of all nodes at rest, m. */
+weights_box weights_box_of(const int32_t *node, const double *position);
+
+/* Equation (1): w_i = 1 - (p_i - x_i) / v_i, x the first node, v the sides. Below 0 or above 1: outside. */
+void weights_of(const weights_box *box, const double *point, double *weight);
+
+/* The shares of the 8 nodes, trilinear: they sum to 1. Node 0's is w_0 w_1 w_2. */
+void weights_shares(const double *weight, double *share);
+
+/* The gradients of the shares at rest, 1/m: 8 x 3. */
+void weights_gradients(const weights_box *box, const double *weight, double *gradient);
+
+/* How far outside the box the place is, m; 0: it is inside. */
+double weights_outside(const weights_box *box, const double *weight);
+
+#endif
