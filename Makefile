@@ -22,6 +22,13 @@ EMBREE = -lembree3
 
 TOOLS = voxelise attach bind tled-run sinew sinew-deform sinew-info sinew-diff sinew-export
 
+# `make V=1` shows whole commands.
+ifeq ($(V),1)
+run = $(2)
+else
+run = @echo "  $(1)"; $(2)
+endif
+
 # Every .c of these folders is the library, but for mains.
 LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/device/*.c)
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
@@ -36,7 +43,7 @@ $(LIB): $(LIB_OBJ)
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -c -o $@ $<
+	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -c -o $@ $<)
 
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
@@ -50,7 +57,7 @@ EXPORT_MODULES := $(wildcard common/tools/export_*.c)
 define tool
 $(BIN)/$(1): $(call objects,$(2)) $(LIB)
 	@mkdir -p $$(@D)
-	$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $(3) $$(LDLIBS)
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $(3) $$(LDLIBS))
 endef
 $(eval $(call tool,voxelise,$(VOXELISE_SRC),$$(EMBREE)))
 $(eval $(call tool,attach,$(ATTACH_SRC)))
