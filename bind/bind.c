@@ -22,7 +22,7 @@ struct options {
 static const opt option_table[] = {{0, "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, 0,
                                     "of the surface (default: the file's name)"},
                                    {0, "unit", "UNIT", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
-                                    "of the OBJ: um, mm, cm, m, in (default: the model's source.unit)"},
+                                    "of the OBJ: mm, cm, m (default: source.unit)"},
                                    {0}};
 
 static const opt_tool table = {

@@ -24,18 +24,18 @@ struct options {
 };
 
 static const opt option_table[] = {{0, "frame", "N|last|all", OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
-                                    "which; all: -o f_%04d.obj (default: last; pc2: all)"},
+                                    "all: -o f_%04d.obj (default: last)"},
                                    {0, "within", "D", OPT_LENGTHS, offsetof(struct options, within), 0, 1, NULL, 0,
-                                    "leave vertices further than D outside as they are, m"},
+                                    "m: hold vertices further than D outside"},
                                    {0, "format", "obj|pc2", OPT_CHOICE, offsetof(struct options, format), 0, 0,
                                     "obj|pc2", 0, "OBJ, or a point cache (default: obj)"},
                                    {0, "unit", "UNIT", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
-                                    "of the OBJ: um, mm, cm, m, in (default: the model's source.unit)"},
+                                    "of the OBJ: mm, cm, m (default: source.unit)"},
                                    {0}};
 
 static const opt_tool table = {
     .name = "sinew-deform",
-    .purpose = "Moves a bound OBJ as the results on standard input say.",
+    .purpose = "Moves a bound OBJ by the results of the model on standard input.",
     .operands = "surface.obj",
     .operands_min = 1,
     .operands_max = 1,
@@ -76,12 +76,12 @@ static int usage_error(err *e)
 /* What the options ask for, checked before anything is read. */
 static int plan_of(plan *p, const struct options *o, const char *path, err *e)
 {
-    const char *frame = o->frame ? o->frame : o->format == FORMAT_PC2 ? "all" : "last", *output = o->common.output;
-    p->frames = !strcmp(frame, "last") ? FRAME_LAST : !strcmp(frame, "all") ? FRAME_ALL : FRAME_ONE;
+    const char *which = o->frame ? o->frame : o->format == FORMAT_PC2 ? "all" : "last", *output = o->common.output;
+    p->frames = !strcmp(which, "last") ? FRAME_LAST : !strcmp(which, "all") ? FRAME_ALL : FRAME_ONE;
     p->files = p->frames == FRAME_ALL && o->format == FORMAT_OBJ;
     p->within = o->within.count ? num_length_in(o->within.value[0], num_unit_of("m"), num_unit_of("m")) : INFINITY;
-    if (p->frames == FRAME_ONE && num_int(frame, 0, INT64_MAX, &p->index))
-        err_set(e, NULL, 0, "--frame '%s': expected a frame's index, last or all", frame);
+    if (p->frames == FRAME_ONE && num_int(which, 0, INT64_MAX, &p->index))
+        err_set(e, NULL, 0, "--frame '%s': expected a frame's index, last or all", which);
     else if (p->within < 0)
         err_set(e, NULL, 0, "--within: a distance below 0; expected 0 or more");
     else if (!strcmp(path, "-"))
