@@ -1,0 +1,177 @@
+/* The table of materials: defaults, files, overrides, assignments, and nonsense. */
+#include "model/materials.h"
+
+#include "tap.h"
+
+#include <string.h>
+
+typedef int reading(model *m, in *s, err *e);
+
+static int read_text(reading *reads, model *m, const char *text, err *e)
+{
+    in *s = in_memory(text, strlen(text), "m.txt", e);
+    int status = s ? reads(m, s, e) : -1;
+    if (s)
+        in_close(s);
+    return status;
+}
+
+static bool same(const material *a, double E, double nu, double density, double peak)
+{
+    return a->law == MATERIAL_NEO_HOOKEAN && a->E == E && a->nu == nu && a->density == density && a->peak == peak;
+}
+
+static void defaults(void)
+{
+    model m = {0};
+    err e = {0};
+    material a;
+    ok(!materials_default(&m, &e) && model_count(&m, "material") == 1, "one material");
+    ok(materials_find(&m, "tissue") == 0 && materials_find(&m, "Tissue") == -1, "tissue");
+    ok(!materials_of(&m, 0, &a, &e) && same(&a, 3000, .49, 1000, 30000), "W&M's values");
+    near_(material_mu(&a), 3000 / 2.98, 1e-9, "mu");
+    near_(material_bulk(&a), 50000, 1e-7, "K");
+    model_free(&m);
+}
+
+static void files(void)
+{
+    model m = {0};
+    err e = {0};
+    material a;
+    ok(!read_text(materials_read, &m, "skin law=neo-hookean E=5e3 # c\nmuscle peak=0 nu=0.45 density=1060\n", &e),
+       "a file is read: %s", e.text);
+    ok(model_count(&m, "material") == 2 && materials_find(&m, "muscle") == 1, "its two materials, in order");
+    ok(!materials_of(&m, 0, &a, &e) && same(&a, 5000, .49, 1000, 30000), "skin: what is not given is the default");
+    ok(!materials_of(&m, 1, &a, &e) && same(&a, 3000, .45, 1060, 0), "muscle");
+    ok(!read_text(materials_override, &m, "skin nu=.3\n", &e), "an override: %s", e.text);
+    ok(!materials_of(&m, 0, &a, &e) && same(&a, 5000, .3, 1000, 30000), "changes what it gives only");
+    ok(!read_text(materials_override, &m, "\n", &e), "an override without lines changes nothing");
+    ok(!materials_set(&m, "muscle.E=1e4", &e) && !materials_set(&m, "muscle.law=neo-hookean", &e), "assignments");
+    ok(!materials_of(&m, 1, &a, &e) && same(&a, 1e4, .45, 1060, 0), "change one value each");
+    model_free(&m);
+}
+
+static void dots(void)
+{
+    model m = {0};
+    err e = {0};
+    material a;
+    read_text(materials_read, &m, "left.cheek\nleft\n", &e);
+    ok(!materials_set(&m, "left.cheek.E=0.25", &e) && !materials_of(&m, 0, &a, &e) && a.E == .25,
+       "a name may hold dots: %s", e.text);
+    model_free(&m);
+}
+
+static void refuse_file(const char *text, const char *want)
+{
+    model m = {0};
+    err e = {0};
+    ok(read_text(materials_read, &m, text, &e) == -1 && strstr(e.text, want), "refused: %s", e.text);
+    model_free(&m);
+}
+
+static void refuse_override(const char *text, const char *want)
+{
+    model m = {0};
+    err e = {0};
+    materials_default(&m, &e);
+    ok(read_text(materials_override, &m, text, &e) == -1 && strstr(e.text, want), "refused: %s", e.text);
+    model_free(&m);
+}
+
+static void refuse_set(const char *text, const char *want)
+{
+    model m = {0};
+    err e = {0};
+    material a;
+    materials_default(&m, &e);
+    ok(materials_set(&m, text, &e) == -1 && strstr(e.text, want), "%s is refused: %s", text, e.text);
+    e = (err){0};
+    ok(!materials_of(&m, 0, &a, &e) && same(&a, 3000, .49, 1000, 30000), "and changes nothing");
+    model_free(&m);
+}
+
+/* Nonsense that stands in a model, not in a file. */
+static void refuse_model(const char *array, double value, const char *want)
+{
+    model m = {0};
+    err e = {0};
+    material a;
+    materials_default(&m, &e);
+    model_find(&m, array)->f64[0] = value;
+    ok(materials_of(&m, 0, &a, &e) == -1 && strstr(e.text, want), "%s = %g: %s", array, value, e.text);
+    model_free(&m);
+}
+
+static void incomplete_models(void)
+{
+    model m = {0};
+    err e = {0};
+    material a;
+    ok(materials_set(&m, "tissue.E=1", &e) == -1 && strstr(e.text, "material.name"), "no table: %s", e.text);
+    e = (err){0};
+    materials_default(&m, &e);
+    model_find(&m, "material.peak")->f64[0] = NAN;
+    ok(!materials_of(&m, 0, &a, &e) && a.peak == 0, "a peak of nan is none");
+    model_remove(&m, "material.peak");
+    ok(!materials_of(&m, 0, &a, &e) && a.peak == 0, "so is a peak that is missing");
+    ok(materials_set(&m, "tissue.peak=5", &e) == -1 && strstr(e.text, "material.peak"), "%s", e.text);
+    e = (err){0};
+    model_set_text(model_find(&m, "material.law"), 0, "neo-hokean", &e);
+    ok(materials_of(&m, 0, &a, &e) == -1 && strstr(e.text, "did you mean 'neo-hookean'?"), "%s", e.text);
+    e = (err){0};
+    model_remove(&m, "material.nu");
+    model_set_text(model_find(&m, "material.law"), 0, "neo-hookean", &e);
+    ok(materials_of(&m, 0, &a, &e) == -1 && strstr(e.text, "material.nu"), "a missing nu: %s", e.text);
+    model_free(&m);
+}
+
+int main(void)
+{
+    defaults();
+    files();
+    dots();
+    refuse_file("", "m.txt: no material");
+    refuse_file("# nothing\n\n", "m.txt: no material");
+    refuse_file("skin E=0", "m.txt:1: 'E=0' is not allowed; expected more than 0 Pa");
+    refuse_file("\nskin E=-3", "m.txt:2: 'E=-3'");
+    refuse_file("skin E=nan", "m.txt:1: 'E=nan'");
+    refuse_file("skin E=1e999", "m.txt:1: 'E=1e999'");
+    refuse_file("skin E=3kPa", "m.txt:1: 'E=3kPa'");
+    refuse_file("skin E=3,000", "m.txt:1: 'E=3,000'");
+    refuse_file("skin nu=0.5", "m.txt:1: 'nu=0.5' is not allowed; expected between -1 and 0.5");
+    refuse_file("skin nu=-1", "m.txt:1: 'nu=-1'");
+    refuse_file("skin density=0", "m.txt:1: 'density=0'");
+    refuse_file("skin peak=-1", "m.txt:1: 'peak=-1'");
+    refuse_file("skin law=hookean", "m.txt:1: unknown law 'hookean'; expected one of: neo-hookean");
+    refuse_file("skin law=neohookean", "did you mean 'neo-hookean'?");
+    refuse_file("skin e=3", "m.txt:1: unknown key 'e'; did you mean 'E'?");
+    refuse_file("skin E=3 E=3", "m.txt:1: 'E' is given twice");
+    refuse_file("skin E=3\nbone\nskin", "m.txt:3: material 'skin' is given twice");
+    refuse_file("E=3000", "m.txt:1: 'E=3000' comes first; expected NAME");
+    refuse_file("skin soft", "m.txt:1: 'soft'; expected KEY=VALUE");
+    refuse_file("sk\xffin E=3", "m.txt:1: the material's name is not UTF-8");
+    refuse_override("tisue E=3", "m.txt:1: unknown material 'tisue'; did you mean 'tissue'?");
+    refuse_override("tissue E=3\ntissue nu=0.3", "m.txt:2: material 'tissue' is given twice");
+    refuse_override("tissue nu=2", "m.txt:1: 'nu=2'");
+    refuse_set("tissue.E=-1", "more than 0 Pa");
+    refuse_set("tissue.young=1", "unknown key 'young'; expected one of: law, E, nu, density, peak");
+    refuse_set("tisue.E=1", "did you mean 'tissue'?");
+    refuse_set("tissue.E", "expected MATERIAL.KEY=VALUE");
+    refuse_set("tissue=1", "expected MATERIAL.KEY=VALUE");
+    refuse_set(".E=1", "expected MATERIAL.KEY=VALUE");
+    refuse_set("tissue.=1", "expected MATERIAL.KEY=VALUE");
+    refuse_set("tissue.E=", "expected MATERIAL.KEY=VALUE");
+    refuse_set("", "expected MATERIAL.KEY=VALUE");
+    refuse_set("tissue.law=mooney", "unknown law 'mooney'");
+    refuse_model("material.E", NAN, "material.E, row 0: nan");
+    refuse_model("material.E", 0, "material.E, row 0: 0");
+    refuse_model("material.E", INFINITY, "material.E, row 0: inf");
+    refuse_model("material.E", 1e308, "");
+    refuse_model("material.nu", .5, "material.nu, row 0: 0.5");
+    refuse_model("material.density", -1, "material.density, row 0: -1");
+    refuse_model("material.peak", -1, "material.peak, row 0: -1");
+    incomplete_models();
+    return done_testing();
+}
