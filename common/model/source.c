@@ -1,5 +1,7 @@
 #include "model/source.h"
 
+#include "base/num.h"
+
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -71,4 +73,37 @@ const model_array *source_find(const source *s, const char *name)
 {
     const model_array *a = s->frames ? frame_find(&s->frame, name) : NULL;
     return a ? a : model_find(&s->body, name);
+}
+
+void source_put_text(const char *text, out *to)
+{
+    for (const char *p = text; *p; p++)
+        out_write(to, (unsigned char)*p < 0x20 || *p == 0x7f ? "?" : p, 1);
+}
+
+static void put_string(const char *text, bool quoted, out *to)
+{
+    if (!quoted) {
+        out_text(to, text);
+        return;
+    }
+    out_text(to, "'");
+    source_put_text(text, to);
+    out_text(to, "'");
+}
+
+void source_put_row(const model_array *a, int64_t row, bool quoted, out *to)
+{
+    char number[NUM_TEXT];
+    for (int64_t at = row * a->columns; at < (row + 1) * a->columns; at++) {
+        out_text(to, at % a->columns ? " " : "");
+        if (a->type == MODEL_STR)
+            put_string(a->str[at], quoted, to);
+        else if (a->type == MODEL_I64)
+            out_format(to, "%lld", (long long)a->i64[at]);
+        else {
+            num_text(source_value(a, at), a->type == MODEL_F32, number);
+            out_text(to, number);
+        }
+    }
 }

@@ -10,10 +10,10 @@ typedef struct source {
     in *stream;
     model_reader *reader;
     model body;
-    frame frame;     /* the last one read; empty while frames is 0 */
-    int64_t frames;  /* read so far */
+    frame frame;    /* the last one read; empty while frames is 0 */
+    int64_t frames; /* read so far */
     frame spare;
-    bool text;       /* the encoding */
+    bool text; /* the encoding */
     bool from_stdin;
 } source;
 
@@ -52,5 +52,12 @@ static inline double source_value(const model_array *a, int64_t at)
         return 0;
     }
 }
+
+/* Writes a row's values between spaces, numbers as short as they read back. quoted: strings stand in quotes, on one
+ * line and harmless to a terminal; else as they are. */
+void source_put_row(const model_array *a, int64_t row, bool quoted, out *to);
+
+/* Text on one line and harmless to a terminal: control characters become '?'. */
+void source_put_text(const char *text, out *to);
 
 #endif

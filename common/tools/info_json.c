@@ -1,0 +1,168 @@
+#include "tools/info_json.h"
+
+#include "base/num.h"
+#include "model/known.h"
+#include "tools/info_key.h"
+#include "tools/info_stats.h"
+
+#include <math.h>
+#include <string.h>
+
+static void put_string(const char *text, out *to)
+{
+    out_text(to, "\"");
+    for (const unsigned char *p = (const unsigned char *)text; *p; p++)
+        if (*p == '"' || *p == '\\')
+            out_format(to, "\\%c", *p);
+        else if (*p < 0x20 || *p == 0x7f)
+            out_format(to, "\\u%04x", *p);
+        else
+            out_write(to, p, 1);
+    out_text(to, "\"");
+}
+
+static void put_number(double value, model_type from, out *to)
+{
+    if (isfinite(value))
+        info_put_number(value, from, to);
+    else
+        out_text(to, "null");
+}
+
+/* ", " between members, nothing before the first. */
+static void put_comma(bool first, out *to)
+{
+    out_text(to, first ? "" : ", ");
+}
+
+static void put_member(const char *name, const char *value, out *to)
+{
+    out_format(to, "\"%s\": ", name);
+    put_string(value, to);
+}
+
+static void put_array(const model_array *a, out *to)
+{
+    const known *k = known_find(a->name);
+    out_text(to, "    {");
+    put_member("name", a->name, to);
+    out_text(to, ", ");
+    put_member("type", model_type_name(a->type), to);
+    out_text(to, ", ");
+    put_member("unit", a->unit, to);
+    out_text(to, ", ");
+    put_member("axis", a->axis, to);
+    out_format(to, ", \"rows\": %lld, \"columns\": %d", (long long)a->rows, (int)a->columns);
+    if (a->type != MODEL_STR) {
+        info_stats s = info_stats_of(a);
+        model_type from = info_is_vector(a) ? MODEL_F64 : a->type;
+        out_text(to, ", \"min\": ");
+        put_number(s.min, from, to);
+        out_text(to, ", \"max\": ");
+        put_number(s.max, from, to);
+        out_format(to, ", \"nan\": %lld", (long long)s.nans);
+    }
+    if (k) {
+        out_text(to, ", ");
+        put_member("meaning", k->meaning, to);
+    }
+    out_text(to, "}");
+}
+
+static void put_arrays(const model_arrays *list, out *to)
+{
+    out_text(to, "[");
+    for (int i = 0; i < list->count; i++) {
+        out_text(to, i ? ",\n" : "\n");
+        put_array(&list->v[i], to);
+    }
+    out_text(to, list->count ? "\n  ]" : "]");
+}
+
+/* One row of a table as an object of its columns (their names less "axis."), then what more() adds. */
+static void put_row(const model *m, const char *axis, int64_t row, out *to)
+{
+    size_t n = strlen(axis);
+    bool first = true;
+    for (int i = 0; i < m->arrays.count; i++) {
+        const model_array *a = &m->arrays.v[i];
+        if (strcmp(a->axis, axis) != 0 || strncmp(a->name, axis, n) != 0 || a->name[n] != '.')
+            continue;
+        put_comma(first, to);
+        first = false;
+        put_string(a->name + n + 1, to);
+        out_text(to, a->columns == 1 ? ": " : ": [");
+        for (int32_t c = 0; c < a->columns; c++) {
+            put_comma(!c, to);
+            if (a->type == MODEL_STR)
+                put_string(a->str[row * a->columns + c], to);
+            else
+                put_number(source_value(a, row * a->columns + c), a->type, to);
+        }
+        out_text(to, a->columns == 1 ? "" : "]");
+    }
+    if (!strcmp(axis, "volume")) {
+        put_comma(first, to);
+        out_format(to, "\"elements\": %lld", (long long)info_volume_count(m, row));
+    }
+}
+
+static void put_table(const model *m, const char *axis, out *to)
+{
+    int64_t rows = model_count(m, axis);
+    out_format(to, "  \"%s\": [", axis);
+    for (int64_t i = 0; i < rows; i++) {
+        out_text(to, i ? ",\n    {" : "\n    {");
+        put_row(m, axis, i, to);
+        out_text(to, "}");
+    }
+    out_text(to, rows > 0 ? "\n  ],\n" : "],\n");
+}
+
+static void put_head(const source *s, out *to)
+{
+    const model *m = &s->body;
+    out_format(to, "  \"encoding\": \"%s\",\n  \"meta\": {", s->text ? "text" : "binary");
+    for (int i = 0; i < m->metas; i++) {
+        put_comma(!i, to);
+        put_string(m->meta[i].key, to);
+        out_text(to, ": ");
+        put_string(m->meta[i].value, to);
+    }
+    out_text(to, "},\n  \"provenance\": [");
+    for (int i = 0; i < m->provs; i++) {
+        put_comma(!i, to);
+        put_string(m->prov[i], to);
+    }
+    out_text(to, "],\n  \"axes\": {");
+    for (int i = 0; i < m->axis_count; i++) {
+        put_comma(!i, to);
+        put_string(m->axes[i].name, to);
+        out_format(to, ": %lld", (long long)m->axes[i].count);
+    }
+    out_text(to, "},\n");
+}
+
+void info_json(const source *s, const double *times, out *to)
+{
+    out_text(to, "{\n");
+    put_head(s, to);
+    out_text(to, "  \"arrays\": ");
+    put_arrays(&s->body.arrays, to);
+    out_text(to, ",\n");
+    put_table(&s->body, "volume", to);
+    put_table(&s->body, "material", to);
+    put_table(&s->body, "muscle", to);
+    out_format(to, "  \"frames\": %lld,\n  \"first\": ", (long long)s->frames);
+    if (s->frames) {
+        out_text(to, "{\"time\": ");
+        put_number(times[0], MODEL_F64, to);
+        out_format(to, "},\n  \"last\": {\"index\": %lld, \"time\": ", (long long)s->frame.index);
+        put_number(times[1], MODEL_F64, to);
+        out_text(to, ", \"arrays\": ");
+        put_arrays(&s->frame.arrays, to);
+        out_text(to, "}\n}\n");
+    } else {
+        out_text(to, "null,\n  \"last\": null\n}\n");
+    }
+}

@@ -1,0 +1,343 @@
+#include "tools/info_key.h"
+
+#include "base/num.h"
+#include "model/check.h"
+#include "model/known.h"
+#include "tools/info_stats.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define NATURE "rows, columns, type, unit, axis, row.N, at.X,Y,Z (nodes, elements, vertices) and NAME (tables)"
+
+int64_t info_volume_count(const model *m, int64_t v)
+{
+    const model_array *of = model_find(m, "element.volume");
+    int64_t n = 0;
+    for (int64_t i = 0; of && i < of->rows; i++)
+        n += of->i32[i] == v;
+    return n;
+}
+
+/* The row of the table over `axis` that has the name, or -1. A muscle has its volume's name. */
+static int64_t named_row(const model *m, const char *axis, const char *name)
+{
+    char names[CHECK_NAME_MOST + 16];
+    snprintf(names, sizeof names, "%s.name", axis);
+    const model_array *a = model_find(m, names), *of = NULL;
+    if (!a && !strcmp(axis, "muscle")) {
+        of = model_find(m, "muscle.volume");
+        a = of ? model_find(m, "volume.name") : NULL;
+    }
+    if (!a || a->type != MODEL_STR || a->columns != 1)
+        return -1;
+    for (int64_t i = 0; i < (of ? of->rows : a->rows); i++)
+        if (!strcmp(a->str[of ? of->i32[i] : i], name))
+            return i;
+    return -1;
+}
+
+/* The rest position of row i of an axis: its own, or the mean of an element's nodes. */
+static void place_of(const model_array *position, const model_array *node, int64_t i, double *place)
+{
+    if (!node) {
+        memcpy(place, position->f64 + 3 * i, 3 * sizeof *place);
+        return;
+    }
+    for (int a = 0; a < 3; a++) {
+        place[a] = 0;
+        for (int32_t c = 0; c < node->columns; c++)
+            place[a] += position->f64[3 * (int64_t)node->i32[i * node->columns + c] + a] / node->columns;
+    }
+}
+
+/* The row of the axis that rests nearest to `to`, the lower one of two as near; -1 where the axis has no places. */
+static int64_t nearest_row(const model *m, const char *axis, const double *to)
+{
+    char name[CHECK_NAME_MOST + 16];
+    bool elements = !strcmp(axis, "element");
+    snprintf(name, sizeof name, "%s.position", elements ? "node" : axis);
+    const model_array *position = model_find(m, name), *node = elements ? model_find(m, "element.node") : NULL;
+    int64_t best = -1;
+    double least = INFINITY;
+    if (!position || position->type != MODEL_F64 || position->columns != 3 || (elements && !node))
+        return -1;
+    for (int64_t i = 0; i < (node ? node->rows : position->rows); i++) {
+        double place[3], square = 0;
+        place_of(position, node, i, place);
+        for (int a = 0; a < 3; a++)
+            square += (place[a] - to[a]) * (place[a] - to[a]);
+        if (square < least) {
+            least = square;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* A request: the array, and what of it. */
+typedef struct query {
+    const source *s;
+    const model_array *a;
+    const char *key, *what;
+    out *to;
+} query;
+
+static int no_value(const query *q, err *e, const char *why)
+{
+    return err_set(e, source_name(q->s), 0, "no key '%s': %s", q->key, why);
+}
+
+static int put_at(const query *q, err *e)
+{
+    num_length where[3];
+    double to[3];
+    if (num_lengths_of(q->what + 3, where, 3) != 3)
+        return no_value(q, e, "expected at.X,Y,Z, three lengths between commas (metres, or with a unit)");
+    for (int a = 0; a < 3; a++)
+        to[a] = num_length_in(where[a], num_unit_of("m"), num_unit_of("m"));
+    int64_t row = nearest_row(&q->s->body, q->a->axis, to);
+    if (row < 0)
+        return no_value(q, e, "at.X,Y,Z is for arrays of nodes, elements and vertices, and there must be some");
+    source_put_row(q->a, row, false, q->to);
+    return 0;
+}
+
+static int put_row(const query *q, const char *number, err *e)
+{
+    int64_t row;
+    char why[128];
+    snprintf(why, sizeof why, "it has %lld rows; expected a row from 0 on", (long long)q->a->rows);
+    if (num_int(number, 0, q->a->rows - 1, &row))
+        return no_value(q, e, why);
+    source_put_row(q->a, row, false, q->to);
+    return 0;
+}
+
+/* Sums and means are of columns for vectors, of all values else. */
+static void put_sums(const query *q, const info_stats *s, double divisor)
+{
+    for (int c = 0; c < (info_is_vector(q->a) ? 3 : 1); c++) {
+        out_text(q->to, c ? " " : "");
+        info_put_number(s->sum[c] / divisor, MODEL_F64, q->to);
+    }
+}
+
+static void put_range(const query *q, bool high)
+{
+    for (int32_t c = 0; c < q->a->columns; c++) {
+        double range[2];
+        info_column_range(q->a, c, &range[0], &range[1]);
+        out_text(q->to, c ? " " : "");
+        info_put_number(range[high], q->a->type, q->to);
+    }
+}
+
+/* What every array has. 1: it was none of these. */
+static int put_nature(const query *q)
+{
+    if (!strcmp(q->what, "rows"))
+        out_format(q->to, "%lld", (long long)q->a->rows);
+    else if (!strcmp(q->what, "columns"))
+        out_format(q->to, "%d", (int)q->a->columns);
+    else if (!strcmp(q->what, "type"))
+        out_text(q->to, model_type_name(q->a->type));
+    else if (!strcmp(q->what, "unit"))
+        out_text(q->to, q->a->unit);
+    else if (!strcmp(q->what, "axis"))
+        out_text(q->to, q->a->axis);
+    else
+        return 1;
+    return 0;
+}
+
+/* What arrays of numbers have. 1: it was none of these. */
+static int put_numbers(const query *q)
+{
+    static const char *const names[] = {"min", "max", "sum", "mean", "nan", "low", "high"};
+    int which = 0;
+    while (which < 7 && strcmp(q->what, names[which]) != 0)
+        which++;
+    if (which == 7 || q->a->type == MODEL_STR)
+        return 1;
+    info_stats s = which < 5 ? info_stats_of(q->a) : (info_stats){0};
+    if (which < 2)
+        info_put_number(which ? s.max : s.min, info_is_vector(q->a) ? MODEL_F64 : q->a->type, q->to);
+    else if (which < 4)
+        put_sums(q, &s, which == 3 ? (double)s.count : 1);
+    else if (which == 4)
+        out_format(q->to, "%lld", (long long)s.nans);
+    else
+        put_range(q, which == 6);
+    return 0;
+}
+
+static int put_array(const query *q, err *e)
+{
+    if (!q->what && q->a->rows != 1)
+        return no_value(q, e, "it has several rows or none; add .max, .row.N, .at.X,Y,Z or the like");
+    if (!q->what)
+        return put_row(q, "0", e);
+    if (!strncmp(q->what, "at.", 3))
+        return put_at(q, e);
+    if (!strncmp(q->what, "row.", 4))
+        return put_row(q, q->what + 4, e);
+    if (!put_nature(q) || !put_numbers(q))
+        return 0;
+    int64_t row = named_row(&q->s->body, q->a->axis, q->what);
+    if (row >= 0) {
+        source_put_row(q->a, row, false, q->to);
+        return 0;
+    }
+    if (q->a->type == MODEL_STR)
+        return no_value(q, e, "an array of strings has " NATURE);
+    return no_value(q, e, "an array of numbers has min, max, sum, mean, low, high, nan, " NATURE);
+}
+
+/* Takes the longest name of an array that the key is or begins with; false: none. */
+static bool find_array(query *q)
+{
+    char name[CHECK_NAME_MOST + 1];
+    for (size_t n = strlen(q->key); n > 0; n--) {
+        if ((q->key[n] && q->key[n] != '.') || n >= sizeof name)
+            continue;
+        snprintf(name, sizeof name, "%.*s", (int)n, q->key);
+        q->a = source_find(q->s, name);
+        q->what = q->key[n] ? q->key + n + 1 : NULL;
+        if (q->a)
+            return true;
+    }
+    return false;
+}
+
+/* An array's key put right, where as many parts of the key as the array's name has look like that name. */
+static void note_array(notes *list, const char *name, const char *key)
+{
+    char head[CHECK_NAME_MOST + 1];
+    const char *end = key + strcspn(key, ".");
+    for (const char *dot = strchr(name, '.'); dot && *end; dot = strchr(dot + 1, '.'))
+        end += 1 + strcspn(end + 1, ".");
+    snprintf(head, sizeof head, "%.*s", (int)(end - key), key);
+    if (num_nearest(head, &name, 1) == 0)
+        notes_add(list, "%s%s", name, end);
+}
+
+/* What the key could have meant. */
+static void note_keys(const source *s, const char *key, notes *list)
+{
+    const model *m = &s->body;
+    const model_array *names = model_find(m, "volume.name");
+    notes_add(list, "frames");
+    notes_add(list, "frame.time");
+    notes_add(list, "frame.index");
+    for (int i = 0; i < m->axis_count; i++)
+        notes_add(list, "axis.%s", m->axes[i].name);
+    for (int i = 0; i < m->metas; i++)
+        notes_add(list, "meta.%s", m->meta[i].key);
+    for (int64_t i = 0; names && i < names->rows; i++)
+        notes_add(list, "volume.count.%s", names->str[i]);
+    for (int i = 0; i < m->arrays.count; i++)
+        note_array(list, m->arrays.v[i].name, key);
+    for (int i = 0; s->frames && i < s->frame.arrays.count; i++)
+        note_array(list, s->frame.arrays.v[i].name, key);
+}
+
+static void note_arrays(const source *s, notes *list)
+{
+    for (int i = 0; i < s->body.arrays.count; i++)
+        notes_add(list, "%s", s->body.arrays.v[i].name);
+    for (int i = 0; s->frames && i < s->frame.arrays.count; i++)
+        notes_add(list, "%s", s->frame.arrays.v[i].name);
+}
+
+/* The longest known array that the key could mean, for saying who makes it. */
+static const known *known_of(const char *key)
+{
+    char name[CHECK_NAME_MOST + 1];
+    for (size_t n = strlen(key); n > 0; n--) {
+        if ((key[n] && key[n] != '.') || n >= sizeof name)
+            continue;
+        snprintf(name, sizeof name, "%.*s", (int)n, key);
+        const known *k = known_find(name);
+        if (k)
+            return k;
+    }
+    return NULL;
+}
+
+/* Names between commas, as many as fit. */
+static const char *join(const notes *list, char *to, size_t size)
+{
+    size_t n = 0;
+    to[0] = 0;
+    for (int i = 0; i < list->count && n + strlen(list->line[i]) + 8 < size; i++)
+        n += (size_t)snprintf(to + n, size - n, "%s%s", i ? ", " : "", list->line[i]);
+    return to;
+}
+
+/* A known array that the model lacks: who makes it. */
+static int lacking(const source *s, const char *key, const known *k, err *e)
+{
+    if (k->flags & KNOWN_FRAME)
+        return err_set(e, source_name(s), 0, "no key '%.80s': of %lld frames the last has no %s; it comes from %s", key,
+                       (long long)s->frames, k->name, k->maker);
+    return err_set(e, source_name(s), 0, "no key '%.80s': the model has no %s; it comes from %s", key, k->name,
+                   k->maker);
+}
+
+static int unknown_key(const source *s, const char *key, err *e)
+{
+    char all[700];
+    notes list = {0}, arrays = {0};
+    const known *k = known_of(key);
+    note_keys(s, key, &list);
+    note_arrays(s, &arrays);
+    int near = num_nearest(key, (const char *const *)list.line, list.count);
+    if (k)
+        lacking(s, key, k, e);
+    else if (near >= 0)
+        err_set(e, source_name(s), 0, "no key '%.80s'; did you mean '%s'?", key, list.line[near]);
+    else
+        err_set(e, source_name(s), 0,
+                "no key '%.80s'; expected frames, frame.time, frame.index, axis.NAME, meta.KEY, volume.count.NAME or "
+                "ARRAY.VALUE with one of these arrays: %s",
+                key, join(&arrays, all, sizeof all));
+    notes_free(&list);
+    notes_free(&arrays);
+    return -1;
+}
+
+/* Keys that are of no array. 1: it was none of these. */
+static int put_plain(const source *s, const char *key, out *to)
+{
+    if (!strcmp(key, "frames")) {
+        out_format(to, "%lld", (long long)s->frames);
+    } else if (!strcmp(key, "frame.index") && s->frames) {
+        out_format(to, "%lld", (long long)s->frame.index);
+    } else if (!strcmp(key, "frame.time") && s->frames) {
+        info_put_number(s->frame.time, MODEL_F64, to);
+    } else if (!strncmp(key, "axis.", 5) && model_count(&s->body, key + 5) >= 0) {
+        out_format(to, "%lld", (long long)model_count(&s->body, key + 5));
+    } else if (!strncmp(key, "meta.", 5) && model_meta_of(&s->body, key + 5)) {
+        out_text(to, model_meta_of(&s->body, key + 5));
+    } else if (!strncmp(key, "volume.count.", 13)) {
+        int64_t v = named_row(&s->body, "volume", key + 13);
+        if (v < 0)
+            return 1;
+        out_format(to, "%lld", (long long)info_volume_count(&s->body, v));
+    } else {
+        return 1;
+    }
+    return 0;
+}
+
+int info_key(const source *s, const char *key, out *to, err *e)
+{
+    query q = {.s = s, .key = key, .to = to};
+    if (!put_plain(s, key, to))
+        return 0;
+    if (!find_array(&q))
+        return unknown_key(s, key, e);
+    return put_array(&q, e);
+}

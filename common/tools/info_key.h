@@ -1,0 +1,16 @@
+/* `sinew info --get KEY`: one value of a model that has been read to its end. Keys are described in sinew-info(1).
+ */
+#ifndef SINEW_INFO_KEY_H
+#define SINEW_INFO_KEY_H
+
+#include "base/out.h"
+#include "model/source.h"
+
+/* Writes the value of the key, without a line end. Returns 0, or -1 with e filled: what is wrong with the key, and what
+ * there is. */
+int info_key(const source *s, const char *key, out *to, err *e);
+
+/* Elements of volume v (its row). 0 where there are no elements. */
+int64_t info_volume_count(const model *m, int64_t v);
+
+#endif

@@ -1,0 +1,263 @@
+/* sinew-info: what a model holds, for people, as JSON, or one value at a time. */
+#include "base/num.h"
+#include "base/tool.h"
+#include "model/known.h"
+#include "model/source.h"
+#include "tools/info_json.h"
+#include "tools/info_key.h"
+#include "tools/info_stats.h"
+
+#include <math.h>
+#include <string.h>
+
+struct options {
+    opt_common common;
+    opt_list get;
+    bool json;
+};
+
+static const opt option_table[] = {
+    {0, "get", "KEY", OPT_LIST, offsetof(struct options, get), 0, 0, NULL, OPT_OUTPUT,
+     "one value, e.g. axis.node, node.displacement.max"},
+    {0, "json", NULL, OPT_FLAG, offsetof(struct options, json), 0, 0, NULL, OPT_OUTPUT, "the summary as JSON"},
+    {0}};
+
+static const opt_tool table = {
+    .name = "sinew-info",
+    .purpose = "Says what a model holds; reads MODEL or standard input.",
+    .operands = "MODEL",
+    .operands_max = 1,
+    .options = option_table,
+};
+
+/* For people seven digits do; whole numbers are whole. */
+static void put_short(double value, model_type from, out *to)
+{
+    if (isnan(value) || (from != MODEL_F32 && from != MODEL_F64))
+        info_put_number(value, from, to);
+    else
+        out_format(to, "%.7g", value);
+}
+
+static void put_range(const model_array *a, out *to)
+{
+    if (a->type == MODEL_STR) {
+        out_text(to, "-");
+        return;
+    }
+    info_stats s = info_stats_of(a);
+    out_text(to, info_is_vector(a) ? "norm " : "");
+    put_short(s.min, a->type, to);
+    out_text(to, " to ");
+    put_short(s.max, a->type, to);
+    if (s.nans)
+        out_format(to, ", %lld nan", (long long)s.nans);
+}
+
+static void put_array(const model_array *a, bool meanings, out *to)
+{
+    const known *k = known_find(a->name);
+    out_format(to, "  %-22s %-3s x %d  %-10s %-10s ", a->name, model_type_name(a->type), (int)a->columns, a->axis,
+               a->unit);
+    put_range(a, to);
+    out_text(to, "\n");
+    if (meanings)
+        out_format(to, "      %s\n", k ? k->meaning : "not one of Sinew's: passed on as it is");
+}
+
+static void put_line(const char *title, const char *key, const char *value, out *to)
+{
+    out_format(to, "%s  ", title);
+    if (key)
+        out_format(to, "%-22s ", key);
+    source_put_text(value, to);
+    out_text(to, "\n");
+}
+
+static void put_head(const source *s, out *to)
+{
+    const model *m = &s->body;
+    out_format(to, "%s: %s encoding\n", source_name(s), s->text ? "text" : "binary");
+    for (int i = 0; i < m->metas; i++)
+        put_line(i ? "" : "metadata\n", m->meta[i].key, m->meta[i].value, to);
+    for (int i = 0; i < m->provs; i++)
+        put_line(i ? "" : "provenance\n", NULL, m->prov[i], to);
+    for (int i = 0; i < m->axis_count; i++)
+        out_format(to, "%s%-22s %lld\n", i ? "  " : "axes\n  ", m->axes[i].name, (long long)m->axes[i].count);
+}
+
+static void put_extent(const model *m, out *to)
+{
+    const model_array *position = model_find(m, "node.position");
+    if (!position || !position->rows)
+        return;
+    out_text(to, "extent (m)\n");
+    for (int32_t c = 0; c < 3; c++) {
+        double low, high;
+        info_column_range(position, c, &low, &high);
+        out_format(to, "  %c ", "xyz"[c]);
+        put_short(low, MODEL_F64, to);
+        out_text(to, " to ");
+        put_short(high, MODEL_F64, to);
+        out_text(to, "\n");
+    }
+}
+
+/* The value in a row of a table's column, or "-" where the model lacks the column. */
+static void put_cell(const model *m, const char *column, int64_t row, out *to)
+{
+    const model_array *a = model_find(m, column);
+    if (a)
+        source_put_row(a, row, true, to);
+    else
+        out_text(to, "-");
+}
+
+static void put_volume(const char *title, const char *name, int64_t elements, out *to)
+{
+    out_format(to, "%s  ", title);
+    source_put_text(name, to);
+    out_format(to, ": %lld element%s", (long long)elements, elements == 1 ? "" : "s");
+}
+
+static void put_volumes(const model *m, out *to)
+{
+    const model_array *name = model_find(m, "volume.name"), *material = model_find(m, "volume.material");
+    const model_array *materials = model_find(m, "material.name");
+    for (int64_t i = 0; name && i < name->rows; i++) {
+        put_volume(i ? "" : "volumes\n", name->str[i], info_volume_count(m, i), to);
+        out_text(to, ", level ");
+        put_cell(m, "volume.level", i, to);
+        out_text(to, ", priority ");
+        put_cell(m, "volume.priority", i, to);
+        if (material && materials) {
+            out_text(to, ", material ");
+            source_put_text(materials->str[material->i32[i]], to);
+        }
+        out_text(to, "\n");
+    }
+}
+
+static void put_muscles(const model *m, out *to)
+{
+    const model_array *volume = model_find(m, "muscle.volume"), *name = model_find(m, "volume.name");
+    for (int64_t i = 0; volume && name && i < volume->rows; i++) {
+        put_volume(i ? "" : "muscles\n", name->str[volume->i32[i]], info_volume_count(m, volume->i32[i]), to);
+        out_text(to, ", centre ");
+        put_cell(m, "muscle.centre", i, to);
+        out_text(to, " m\n");
+    }
+}
+
+/* Where the nodes went furthest in the last frame. */
+static void put_displacement(const source *s, out *to)
+{
+    const model_array *u = frame_find(&s->frame, "node.displacement");
+    const model_array *position = model_find(&s->body, "node.position");
+    info_stats of = {.at_max = -1};
+    if (u)
+        of = info_stats_of(u);
+    if (of.at_max < 0)
+        return;
+    out_text(to, "  largest displacement ");
+    put_short(of.max, MODEL_F64, to);
+    out_format(to, " m, node %lld", (long long)of.at_max);
+    if (position) {
+        out_text(to, " at ");
+        source_put_row(position, of.at_max, true, to);
+    }
+    out_text(to, "\n");
+}
+
+static void put_frames(const source *s, const double *times, bool meanings, out *to)
+{
+    if (!s->frames) {
+        out_text(to, "frames  none\n");
+        return;
+    }
+    out_format(to, "frames  %lld, the last of index %lld; times ", (long long)s->frames, (long long)s->frame.index);
+    put_short(times[0], MODEL_F64, to);
+    out_text(to, " to ");
+    put_short(times[1], MODEL_F64, to);
+    out_text(to, " s; in the last\n");
+    for (int i = 0; i < s->frame.arrays.count; i++)
+        put_array(&s->frame.arrays.v[i], meanings, to);
+    put_displacement(s, to);
+}
+
+static void put_summary(const source *s, const double *times, bool meanings, out *to)
+{
+    const model *m = &s->body;
+    put_head(s, to);
+    for (int i = 0; i < m->arrays.count; i++) {
+        out_text(to, i ? "" : "arrays (type, columns, axis, unit, range)\n");
+        put_array(&m->arrays.v[i], meanings, to);
+    }
+    for (int i = 0; i < m->block_count; i++)
+        out_format(to, "%s%s %llu bytes\n", i ? "  " : "unknown blocks\n  ", m->blocks[i].type,
+                   (unsigned long long)m->blocks[i].length);
+    put_extent(m, to);
+    put_volumes(m, to);
+    put_muscles(m, to);
+    put_frames(s, times, meanings, to);
+}
+
+/* Reads frames to the end of the stream; times: of the first and of the last. */
+static int read_all(source *s, double *times, err *e)
+{
+    int got;
+    while ((got = source_next(s, e)) > 0) {
+        times[0] = s->frames == 1 ? s->frame.time : times[0];
+        times[1] = s->frame.time;
+    }
+    return got;
+}
+
+/* Nothing is written before all of it is known to be right. */
+static int put(const source *s, const double *times, const struct options *o, out *to, err *e)
+{
+    for (int i = 0; i < o->get.count; i++) {
+        if (info_key(s, o->get.value[i], to, e))
+            return -1;
+        out_text(to, "\n");
+    }
+    if (o->json)
+        info_json(s, times, to);
+    else if (!o->get.count)
+        put_summary(s, times, o->common.verbose, to);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {0};
+    err e = {0};
+    tool t = {0};
+    source s = {0};
+    out *text = NULL, *to = NULL;
+    double times[2] = {NAN, NAN};
+    size_t size;
+
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+        goto out;
+    if (o.json && o.get.count) {
+        err_set(&e, NULL, 0, "--json and --get exclude each other");
+        e.status = STATUS_USAGE;
+        goto out;
+    }
+    if (source_open(&s, t.operands ? argv[1] : NULL, &e) || read_all(&s, times, &e))
+        goto out;
+    text = out_memory(&e);
+    if (!text || put(&s, times, &o, text, &e))
+        goto out;
+    to = out_open(o.common.output, false, &e);
+    if (!to)
+        goto out;
+    const unsigned char *bytes = out_bytes(text, &size);
+    out_write(to, bytes, size);
+    out_close(to, &e);
+out:
+    out_discard(text);
+    source_close(&s);
+    return tool_end(&t, &e);
+}
