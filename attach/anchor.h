@@ -1,0 +1,19 @@
+/* Which nodes are rigid: W&M Algorithm 2. For each voxel near a rigid point, line or polygon, the line from the voxel's centre
+ * through the primitive's closest point meets the voxel's boundary near some of its nodes; those become rigid.
+ */
+#ifndef SINEW_ANCHOR_H
+#define SINEW_ANCHOR_H
+
+#include "model/model.h"
+#include "rigid.h"
+
+/* Makes the axis anchor with anchor.name (the rigid surfaces), node.rigid and node.anchor (the first rigid surface that
+ * holds the node) in a voxel model, in place of those that are there, and counts in r what each surface holds.
+ *
+ * strictness, in (0, 1]: a node is taken where the line meets the boundary within so many voxel sides of it along each
+ * axis; 0.75 in the paper. All comparisons are inclusive, to 1e-9 of a voxel. Where the closest point is the centre
+ * itself, the line is the polygon's normal; a point, a line or a polygon without area there takes all 8 nodes. Where a
+ * concave polygon has several closest points, each counts. */
+int anchor_nodes(model *m, rigid *r, double strictness, notes *warnings, err *e);
+
+#endif

@@ -1,0 +1,151 @@
+/* attach: fixes the nodes of a voxel model that lie at its rigid surfaces, and gives its muscles their contraction
+ * centres and fibres. W&M section 3, Algorithm 2.
+ */
+#include "anchor.h"
+#include "base/tool.h"
+#include "mesh/surface.h"
+#include "model/stage.h"
+#include "muscle.h"
+
+#include <stdlib.h>
+
+struct options {
+    opt_common common;
+    opt_list rigid;
+    const char *rigid_file;
+    double strictness;
+    int fibre;
+    bool report;
+};
+
+static const opt option_list[] = {
+    {0, "rigid", "NAME,...", OPT_LIST, offsetof(struct options, rigid), 0, 0, NULL, 0,
+     "rigid surfaces, * at the end for any rest [skull*,bone*,rigid*]"},
+    {0, "rigid-file", "FILE.obj", OPT_TEXT, offsetof(struct options, rigid_file), 0, 0, NULL, 0,
+     "more rigid points, lines and polygons, in source.unit"},
+    {0, "strictness", "S", OPT_NUMBER, offsetof(struct options, strictness), 0, 1, NULL, 0,
+     "reach of a node along a voxel's sides, above 0 to 1 [0.75]"},
+    {0, "fibre", "centre|axis", OPT_CHOICE, offsetof(struct options, fibre), 0, 0, "centre|axis", 0,
+     "fibres to the contraction centre, or along the muscle [centre]"},
+    {0, "report", NULL, OPT_FLAG, offsetof(struct options, report), 0, 0, NULL, OPT_OUTPUT,
+     "say on stderr what each surface and muscle got"},
+    {0},
+};
+
+static const opt_tool table = {
+    .name = "attach",
+    .purpose = "Fix the nodes at rigid surfaces, and give muscles centres and fibres.",
+    .operands = "",
+    .writes_model = true,
+    .options = option_list,
+};
+
+/* Reads the OBJ into a model of its own, in metres. */
+static int read_rigid_file(const char *path, const model *m, model *file, err *e)
+{
+    const char *unit_name = model_meta_of(m, "source.unit");
+    num_unit unit = unit_name ? num_unit_of(unit_name) : 0, metre = num_unit_of("m");
+    if (!unit)
+        return err_set(e, NULL, 0, "--rigid-file: the model's source.unit is %s%s; um, mm, cm, m or in is needed",
+                       unit_name ? "" : "not given", unit_name ? unit_name : "");
+    obj o = {0};
+    char name[256];
+    surface_name(path, name, sizeof name);
+    in *source = in_open(path, e);
+    int rc = source ? obj_read(&o, source, e) : -1;
+    if (!rc)
+        rc = surface_add(file, name, &o, num_length_in((num_length){1, unit}, unit, metre), e);
+    obj_free(&o);
+    in_close(source);
+    return rc;
+}
+
+static int collect(const struct options *o, const model *m, model *file, rigid *r, notes *warnings, err *e)
+{
+    if (rigid_collect(r, m, &o->rigid, e))
+        return -1;
+    if (o->rigid_file && (read_rigid_file(o->rigid_file, m, file, e) || rigid_collect_all(r, file, e)))
+        return -1;
+    if (!r->primitives)
+        notes_add(warnings, "no surface of the model is rigid (skull*, bone*, rigid*); --rigid names others");
+    return 0;
+}
+
+static void report_surfaces(const tool *t, const rigid *r)
+{
+    for (int64_t i = 0; i < r->surfaces; i++) {
+        const rigid_surface *s = &r->surface[i];
+        tool_say(t, "%s holds %lld nodes; %lld of its %lld primitives hold none", s->name, (long long)s->nodes,
+                 (long long)s->idle, (long long)s->primitives);
+    }
+}
+
+static void report_muscles(const tool *t, const muscle *list, int64_t count)
+{
+    for (int64_t i = 0; i < count; i++) {
+        const muscle *m = &list[i];
+        tool_say(t, "%s: %lld elements, %lld rigid nodes, contraction centre %.6g %.6g %.6g m", m->name,
+                 (long long)m->elements, (long long)m->rigid_nodes, m->centre[0], m->centre[1], m->centre[2]);
+    }
+}
+
+/* Whether all that was rigid was too far from the voxels. */
+static void check_held(const rigid *r, notes *warnings)
+{
+    for (int64_t i = 0; i < r->surfaces; i++)
+        if (r->surface[i].primitives && r->surface[i].idle == r->surface[i].primitives)
+            notes_add(warnings, "%s holds no node: all of it is too far from the voxels", r->surface[i].name);
+}
+
+static int work(const struct options *o, const tool *t, model *m, notes *warnings, err *e)
+{
+    rigid r = {0};
+    model file = {0};
+    muscle *muscles = NULL;
+    int64_t count;
+    int rc = -1;
+    if (collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||
+        muscle_make(m, (muscle_fibre)o->fibre, &muscles, &count, warnings, e))
+        goto out;
+    check_held(&r, warnings);
+    if (o->report) {
+        report_surfaces(t, &r);
+        report_muscles(t, muscles, count);
+    }
+    rc = 0;
+out:
+    free(muscles);
+    rigid_free(&r);
+    model_free(&file);
+    return rc;
+}
+
+static int check_options(const struct options *o, err *e)
+{
+    if (o->strictness > 0)
+        return 0;
+    err_set(e, NULL, 0, "--strictness 0 would hold nothing; above 0, to 1, was expected");
+    e->status = STATUS_USAGE;
+    return -1;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {.strictness = 0.75};
+    err e = {0};
+    tool t = {0};
+    stage s = {0};
+    model m = {0};
+    notes warnings = {0};
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done || check_options(&o, &e))
+        goto out;
+    if (!stage_open_output(&s, &t, &e) && !stage_read(&s, &m, &e) && !stage_drop_frames(&s, &m, &warnings, &e) &&
+        !work(&o, &t, &m, &warnings, &e))
+        stage_write(&s, &m, &e);
+out:
+    tool_warn(&t, &warnings);
+    if (!t.done)
+        stage_close(&s, &t, &e);
+    model_free(&m);
+    return tool_end(&t, &e);
+}

@@ -1,0 +1,254 @@
+#include "muscle.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The arrays that muscles are made from and into. */
+typedef struct body {
+    int64_t elements, nodes;
+    int32_t columns; /* of node */
+    const double *position;
+    const int32_t *node, *volume;
+    const uint8_t *rigid;
+    float *fibre;
+    int32_t *seen; /* nodes: the last muscle that counted it */
+} body;
+
+static void element_centre(const body *b, int64_t element, double *centre)
+{
+    const int32_t *node = &b->node[b->columns * element];
+    for (int a = 0; a < 3; a++) {
+        centre[a] = 0;
+        for (int n = 0; n < b->columns; n++)
+            centre[a] += b->position[3 * (int64_t)node[n] + a];
+        centre[a] /= b->columns;
+    }
+}
+
+/* A length to compare others with. */
+static double element_size(const body *b, int64_t element)
+{
+    const double *x = &b->position[3 * (int64_t)b->node[b->columns * element]];
+    const double *y = &b->position[3 * (int64_t)b->node[b->columns * element + b->columns - 1]];
+    return sqrt((x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) + (x[2] - y[2]) * (x[2] - y[2]));
+}
+
+/* The mean of the muscle's rigid nodes, each counted once, and that of its elements' centres. */
+static void find_centres(const body *b, muscle *m, int32_t index)
+{
+    double rigid[3] = {0}, middle[3] = {0}, centre[3];
+    for (int64_t i = 0; i < b->elements; i++) {
+        if (b->volume[i] != m->volume)
+            continue;
+        m->elements++;
+        element_centre(b, i, centre);
+        for (int a = 0; a < 3; a++)
+            middle[a] += centre[a];
+        for (int n = 0; n < b->columns; n++) {
+            int32_t node = b->node[b->columns * i + n];
+            if (!b->rigid[node] || b->seen[node] == index)
+                continue;
+            b->seen[node] = index;
+            m->rigid_nodes++;
+            for (int a = 0; a < 3; a++)
+                rigid[a] += b->position[3 * (int64_t)node + a];
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        m->middle[a] = m->elements ? middle[a] / (double)m->elements : NAN;
+        m->centre[a] = m->rigid_nodes ? rigid[a] / (double)m->rigid_nodes : NAN;
+    }
+}
+
+static void covariance(const body *b, const muscle *m, double c[3][3])
+{
+    double d[3];
+    for (int64_t i = 0; i < b->elements; i++) {
+        if (b->volume[i] != m->volume)
+            continue;
+        element_centre(b, i, d);
+        for (int p = 0; p < 3; p++)
+            d[p] -= m->middle[p];
+        for (int p = 0; p < 3; p++)
+            for (int q = 0; q < 3; q++)
+                c[p][q] += d[p] * d[q] / (double)m->elements;
+    }
+}
+
+/* One Jacobi rotation: makes c[p][q] zero, and turns the columns of v along. */
+static void rotate(double c[3][3], double v[3][3], int p, int q)
+{
+    if (c[p][q] == 0)
+        return;
+    double theta = (c[q][q] - c[p][p]) / (2 * c[p][q]);
+    double t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1));
+    double cosine = 1 / sqrt(t * t + 1), sine = t * cosine;
+    for (int k = 0; k < 3; k++) {
+        double cp = c[k][p], cq = c[k][q], vp = v[k][p], vq = v[k][q];
+        c[k][p] = cosine * cp - sine * cq;
+        c[k][q] = sine * cp + cosine * cq;
+        v[k][p] = cosine * vp - sine * vq;
+        v[k][q] = sine * vp + cosine * vq;
+    }
+    for (int k = 0; k < 3; k++) {
+        double cp = c[p][k], cq = c[q][k];
+        c[p][k] = cosine * cp - sine * cq;
+        c[q][k] = sine * cp + cosine * cq;
+    }
+}
+
+/* The axis along which the elements' centres spread most: the eigenvector of the largest eigenvalue of their
+ * covariance. Where two axes are equally long there is none: 0 0 0. Returns the spread along it (m). */
+static double longest_axis(const body *b, const muscle *m, double *axis)
+{
+    double c[3][3] = {{0}}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    covariance(b, m, c);
+    for (int sweep = 0; sweep < 20; sweep++) { /* converges in 4 or 5 */
+        rotate(c, v, 0, 1);
+        rotate(c, v, 0, 2);
+        rotate(c, v, 1, 2);
+    }
+    int first = 0;
+    for (int a = 1; a < 3; a++)
+        if (c[a][a] > c[first][first])
+            first = a;
+    double next = fmax(c[(first + 1) % 3][(first + 1) % 3], c[(first + 2) % 3][(first + 2) % 3]);
+    bool longest = c[first][first] - next > 1e-6 * c[first][first];
+    for (int a = 0; a < 3; a++)
+        axis[a] = longest ? v[a][first] : 0;
+    return longest ? sqrt(c[first][first]) : 0;
+}
+
+/* The axis points to the contraction centre; where that does not tell, its largest component is positive. */
+static void find_axis(const body *b, muscle *m)
+{
+    double spread = longest_axis(b, m, m->axis), toward = 0;
+    int largest = 0;
+    for (int a = 0; a < 3; a++) {
+        toward += m->axis[a] * (m->centre[a] - m->middle[a]);
+        if (fabs(m->axis[a]) > fabs(m->axis[largest]) + 1e-9)
+            largest = a;
+    }
+    if (!(fabs(toward) > 1e-9 * spread)) /* also where there is no centre: nan */
+        toward = m->axis[largest];
+    if (toward < 0)
+        for (int a = 0; a < 3; a++)
+            m->axis[a] = -m->axis[a];
+}
+
+/* The fibre of one element; false where it can have none. */
+static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t element)
+{
+    double line[3], length = 0, centre[3];
+    element_centre(b, element, centre);
+    for (int a = 0; a < 3; a++) {
+        line[a] = m->centre[a] - centre[a];
+        length += line[a] * line[a];
+    }
+    length = sqrt(length);
+    if (kind == MUSCLE_CENTRE && !m->rigid_nodes)
+        return false;
+    bool along_axis = kind == MUSCLE_AXIS || length <= 1e-9 * element_size(b, element);
+    for (int a = 0; a < 3; a++)
+        b->fibre[3 * element + a] = (float)(along_axis ? m->axis[a] : line[a] / length);
+    return !along_axis || m->axis[0] != 0 || m->axis[1] != 0 || m->axis[2] != 0;
+}
+
+static void set_fibres(const body *b, const muscle *m, muscle_fibre kind, notes *warnings)
+{
+    int64_t without = 0;
+    for (int64_t i = 0; i < b->elements; i++)
+        if (b->volume[i] == m->volume)
+            without += !set_fibre(b, m, kind, i);
+    if (!m->elements)
+        notes_add(warnings, "%s has no elements: it cannot contract", m->name);
+    else if (!m->rigid_nodes && kind == MUSCLE_CENTRE)
+        notes_add(warnings, "%s has no rigid node, so no contraction centre and no fibres: it will not contract",
+                  m->name);
+    else if (!m->rigid_nodes)
+        notes_add(warnings, "%s has no rigid node, so no contraction centre", m->name);
+    if (without && (m->rigid_nodes || kind == MUSCLE_AXIS))
+        notes_add(warnings,
+                  "%s has no axis that is the longest: %lld of its %lld elements have no fibre and will not contract",
+                  m->name, (long long)without, (long long)m->elements);
+}
+
+/* The arrays that are needed, and node and element counts. */
+static int find_arrays(const model *m, body *b, err *e)
+{
+    const model_array *position = model_need(m, "node.position", e), *rigid = model_need(m, "node.rigid", e);
+    const model_array *node = model_need(m, "element.node", e), *volume = model_need(m, "element.volume", e);
+    if (!position || !rigid || !node || !volume)
+        return -1;
+    *b = (body){.elements = node->rows,
+                .nodes = position->rows,
+                .columns = node->columns,
+                .position = position->f64,
+                .node = node->i32,
+                .volume = volume->i32,
+                .rigid = rigid->u8};
+    b->seen = mem_array(b->nodes, sizeof *b->seen, "nodes", e);
+    for (int64_t n = 0; b->seen && n < b->nodes; n++)
+        b->seen[n] = -1;
+    return b->seen ? 0 : -1;
+}
+
+/* The volumes that are muscles. */
+static int find_muscles(const model *m, muscle **list, int64_t *count, err *e)
+{
+    const model_array *is = model_need(m, "volume.muscle", e), *name = model_need(m, "volume.name", e);
+    if (!is || !name)
+        return -1;
+    *count = 0;
+    for (int64_t i = 0; i < is->rows; i++)
+        *count += is->u8[i] != 0;
+    *list = mem_array(*count, sizeof **list, "muscles", e);
+    if (!*list)
+        return -1;
+    muscle *next = *list;
+    for (int64_t i = 0; i < is->rows; i++)
+        if (is->u8[i])
+            *next++ = (muscle){.name = name->str[i], .volume = (int32_t)i};
+    return 0;
+}
+
+/* Adds the arrays; what they are made from stays where it is. */
+static int add_arrays(model *m, body *b, const muscle *list, int64_t count, err *e)
+{
+    if (model_axis_add(m, "muscle", count, e))
+        return -1;
+    model_array *a = model_add(m, "muscle.volume", e);
+    for (int64_t i = 0; a && i < count; i++)
+        a->i32[i] = list[i].volume;
+    a = a ? model_add(m, "muscle.centre", e) : NULL;
+    for (int64_t i = 0; a && i < count; i++)
+        memcpy(&a->f64[3 * i], list[i].centre, sizeof list[i].centre);
+    a = a ? model_add(m, "element.fibre", e) : NULL;
+    b->fibre = a ? a->f32 : NULL;
+    return a ? 0 : -1;
+}
+
+int muscle_make(model *m, muscle_fibre fibre, muscle **list, int64_t *count, notes *warnings, err *e)
+{
+    body b = {0};
+    int rc = -1;
+    *list = NULL;
+    model_axis_drop(m, "muscle", warnings);
+    if (find_arrays(m, &b, e) || find_muscles(m, list, count, e))
+        goto out;
+    for (int64_t i = 0; i < *count; i++) {
+        find_centres(&b, &(*list)[i], (int32_t)i);
+        find_axis(&b, &(*list)[i]);
+    }
+    if (add_arrays(m, &b, *list, *count, e))
+        goto out;
+    for (int64_t i = 0; i < *count; i++)
+        set_fibres(&b, &(*list)[i], fibre, warnings);
+    rc = 0;
+out:
+    free(b.seen);
+    return rc;
+}

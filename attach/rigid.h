@@ -1,0 +1,42 @@
+/* What of a model is rigid: the surfaces, by the names of their groups, and the points, lines and polygons that they are
+ * made of. A rigid owns its list; the positions and corners in it are borrowed from the models that it was collected
+ * from, which must outlive it.
+ */
+#ifndef SINEW_RIGID_H
+#define SINEW_RIGID_H
+
+#include "base/opt.h"
+#include "model/model.h"
+
+typedef struct rigid_primitive {
+    const double *position; /* vertices x 3 of its surface, m */
+    const int32_t *vertex;  /* its corners */
+    int64_t corners;        /* 1 point, 2 line, more: polygon */
+    int32_t surface;        /* the rigid surface it belongs to: the first that its group names */
+} rigid_primitive;
+
+typedef struct rigid_surface {
+    char *name;
+    int64_t primitives;
+    int64_t nodes; /* that it holds; a node may be held by several */
+    int64_t idle;  /* primitives that hold no node */
+} rigid_surface;
+
+typedef struct rigid {
+    rigid_surface *surface; /* in order of the groups */
+    rigid_primitive *primitive;
+    int64_t surfaces, primitives, surface_capacity, primitive_capacity;
+} rigid;
+
+/* Adds all that m's surfaces hold in groups of which a name matches one of the patterns (a '*' at the end matches any
+ * rest, any case; a value may hold several between commas). No patterns: skull*, bone* and rigid*. A pattern given that
+ * matches nothing is an error that offers near names. */
+int rigid_collect(rigid *r, const model *m, const opt_list *patterns, err *e);
+
+/* Adds all of an OBJ file that was loaded as the only surface of `file`. What is in no group of its own is named as the
+ * surface is. */
+int rigid_collect_all(rigid *r, const model *file, err *e);
+
+void rigid_free(rigid *r);
+
+#endif
