@@ -1,0 +1,108 @@
+/* The lattice: metadata, corners, and the lookup from cells to elements. */
+#include "mesh/lattice.h"
+
+#include "tap.h"
+
+#include <string.h>
+
+static void set_cells(model *m, const int32_t *ijk, int64_t elements)
+{
+    err e = {0};
+    model_axis_drop(m, "element", NULL);
+    model_axis_add(m, "element", elements, &e);
+    model_array *a = model_add(m, "element.lattice", &e);
+    if (a)
+        memcpy(a->i32, ijk, 3 * (size_t)elements * sizeof *ijk);
+    ok(a && !e.status, "a model of %d cells %s", (int)elements, e.text);
+}
+
+static void metadata(void)
+{
+    err e = {0};
+    model m = {0};
+    lattice l = {{0.1, -2, 1e-9}, {0.0025, 0.001, 1.0 / 3}}, back;
+    ok(lattice_of(&m, &back, &e) && strstr(e.text, "lattice.origin"), "none in an empty model: %s", e.text);
+    e = (err){0};
+    ok(!lattice_save(&l, &m, &e) && !lattice_of(&m, &back, &e) && !memcmp(&l, &back, sizeof l),
+       "comes back to the bit");
+    double corner[3], local[3];
+    lattice_corner(&l, (int32_t[]){4, -3, 6}, corner);
+    lattice_local(&l, corner, local);
+    near_(corner[0], 0.11, 1e-15, "corner x");
+    near_(corner[1], -2.003, 1e-15, "corner y");
+    near_(local[0], 4, 1e-12, "local x");
+    near_(local[2], 6, 1e-12, "local z");
+    static const double bad[] = {0, -1, NAN, INFINITY};
+    for (int i = 0; i < 4; i++) {
+        l.spacing[1] = bad[i];
+        e = (err){0};
+        lattice_save(&l, &m, &e);
+        e = (err){0};
+        ok(lattice_of(&m, &back, &e) && e.status == STATUS_BAD && strstr(e.text, "lattice.spacing"), "spacing %g: %s",
+           bad[i], e.text);
+    }
+    model_free(&m);
+}
+
+static void lookup(void)
+{
+    err e = {0};
+    model m = {0};
+    lattice_map map;
+    static const int32_t cells[] = {-2, 5, 0, 3, 5, 1, -2, 6, 1, 0, 5, 0};
+    set_cells(&m, cells, 4);
+    ok(!lattice_map_build(&map, &m, &e), "built %s", e.text);
+    int wrong = 0, found = 0;
+    for (int k = -2; k < 5; k++)
+        for (int j = 3; j < 9; j++)
+            for (int i = -4; i < 6; i++) {
+                int32_t want = -1;
+                for (int n = 0; n < 4; n++)
+                    if (cells[3 * n] == i && cells[3 * n + 1] == j && cells[3 * n + 2] == k)
+                        want = n;
+                wrong += lattice_element(&map, i, j, k) != want;
+                found += want >= 0;
+            }
+    ok(!wrong && found == 4, "each cell in and around the box has its element or none");
+    ok(lattice_element(&map, INT64_MAX / 2, 5, 0) == -1, "far away there is none");
+    lattice_map_free(&map);
+    set_cells(&m, NULL, 0);
+    ok(!lattice_map_build(&map, &m, &e) && lattice_element(&map, 0, 0, 0) == -1, "no elements, no cells %s", e.text);
+    lattice_map_free(&map);
+    model_free(&m);
+}
+
+static void refused(void)
+{
+    err e = {0};
+    model m = {0};
+    lattice_map map;
+    ok(lattice_map_build(&map, &m, &e) && strstr(e.text, "element.lattice"), "no array: %s", e.text);
+    e = (err){0};
+    set_cells(&m, (int32_t[]){1, 2, 3, 4, 5, 6, 1, 2, 3}, 3);
+    ok(lattice_map_build(&map, &m, &e) && strstr(e.text, "0 and 2") && strstr(e.text, "1 2 3"), "twice: %s", e.text);
+    ok(!map.element, "nothing is left");
+    static const int32_t wide[][6] = {
+        {INT32_MIN, INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX, INT32_MAX},
+        {0, 0, 0, INT32_MAX - 1, INT32_MAX - 1, INT32_MAX - 1},
+        {0, 0, 0, 1000000, 1000000, 3},
+    };
+    for (int i = 0; i < 3; i++) {
+        e = (err){0};
+        set_cells(&m, wide[i], 2);
+        ok(lattice_map_build(&map, &m, &e) && strstr(e.text, "memory"), "too wide: %s", e.text);
+    }
+    model_free(&m);
+}
+
+int main(void)
+{
+    metadata();
+    lookup();
+    refused();
+    for (int n = 0; n < 8; n++) /* VTK_HEXAHEDRON: round the bottom, then round the top */
+        ok(lattice_vtk[n][0] == (n % 4 == 1 || n % 4 == 2) && lattice_vtk[n][1] == (n % 4 > 1) &&
+               lattice_vtk[n][2] == n / 4,
+           "corner %d of a hexahedron", n);
+    return done_testing();
+}
