@@ -38,22 +38,23 @@ check:
 
 unit: $(UNIT)
 
-# ---- the tests, as TAP under prove. V=1 shows every line.
-PROVE = prove $(if $(V),-v) $(if $(filter -j%,$(JOBS)),$(JOBS),-j2)
-ENVIRONMENT = SINEW_BIN=$(BIN) CC='$(CC)' NVCC='$(NVCC)' BUILD=$(BUILD)
+# ---- the tests, as TAP under prove; V=1 shows every line
+PROVE = prove $(if $(V),-v) $(or $(JOBS),-j2)
+ENVIRONMENT = SINEW_BIN=$(BIN) BUILD=$(BUILD) CC='$(CC)' NVCC='$(NVCC)' MAKE='$(MAKE)'
+CLI = $(sort $(wildcard tests/cli/*.t))
 
 check-unit: unit
-	$(ENVIRONMENT) $(PROVE) --exec '' $(UNIT)
+	$(ENVIRONMENT) $(PROVE) $(UNIT)
 
 check-cli: all
-	$(ENVIRONMENT) $(PROVE) --exec sh $(sort $(wildcard tests/cli/*.t))
+	$(ENVIRONMENT) $(PROVE) $(CLI)
 
 check-tests: all unit
-	$(ENVIRONMENT) tests/prove $(PROVE) $(UNIT) $(sort $(wildcard tests/cli/*.t))
+	$(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
-# What takes minutes: the same tests with SINEW_LONG set, which some of them heed.
+# With what takes minutes: SINEW_LONG is set, which some of the tests heed.
 check-long: all unit
-	SINEW_LONG=1 $(ENVIRONMENT) tests/prove $(PROVE) $(UNIT) $(sort $(wildcard tests/cli/*.t))
+	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- other builds, each in its own folder
 .PHONY: clang sanitize fuzz fuzz-run
@@ -78,7 +79,7 @@ fuzz-run: $(FUZZ)
 .PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man
 SOURCES = $(shell git ls-files -co --exclude-standard '*.c')
 HEADERS = $(shell git ls-files -co --exclude-standard '*.h' '*.cuh')
-SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/prove tests/fuzz/run $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
