@@ -4,7 +4,7 @@
 #include "base/pool.h"
 #include "bind/nearest.h"
 #include "bind/scale.h"
-#include "bind/weights.h"
+#include "mesh/weights.h"
 #include "mesh/surface.h"
 #include "model/check.h"
 #include "model/stage.h"

@@ -1,6 +1,6 @@
 #include "bind/bound.h"
 
-#include "bind/weights.h"
+#include "mesh/weights.h"
 #include "model/check.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "bind/nearest.h"
 
 #include "base/mem.h"
-#include "bind/weights.h"
+#include "mesh/weights.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "bind/weights.h"
+#include "mesh/weights.h"
 
 #include "mesh/lattice.h"
 
