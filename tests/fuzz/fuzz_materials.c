@@ -1,0 +1,43 @@
+/* Any bytes as a file of materials: a table whose rows are all valid, or one error with a text. What was read can be read
+ * over itself as an override. */
+#include "model/materials.h"
+
+#include <stdlib.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static int read_bytes(int (*reads)(model *, in *, err *), model *m, const uint8_t *data, size_t size, err *e)
+{
+    in *s = in_memory(data, size, "fuzz", e);
+    int status = s ? reads(m, s, e) : -1;
+    if (s)
+        in_close(s);
+    return status;
+}
+
+static void check_table(const model *m)
+{
+    for (int64_t i = 0; i < model_count(m, "material"); i++) {
+        material a;
+        err e = {0};
+        if (materials_of(m, i, &a, &e) && a.E < 1e300 && a.E > 1e-300)
+            abort();
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    model m = {0};
+    err e = {0};
+    if (read_bytes(materials_read, &m, data, size, &e)) {
+        if (!e.text[0])
+            abort();
+    } else {
+        check_table(&m);
+        if (read_bytes(materials_override, &m, data, size, &e))
+            abort();
+        check_table(&m);
+    }
+    model_free(&m);
+    return 0;
+}
