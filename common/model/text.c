@@ -216,23 +216,30 @@ static int read_array(item_source *s, item *it, char *p, err *e)
     return read_rows(s, a, e) || read_crc(s, it, e);
 }
 
+/* The bytes of one line, at most what is left of the block. */
+static int read_hex_line(item_source *s, model_block *b, uint64_t *done, int64_t *capacity, err *e)
+{
+    char *p;
+    if (need_line(s, &p, e))
+        return -1;
+    for (p = text_blanks(p); !text_ended(p); p += 2) {
+        int high = text_hex(p[0]), low = high < 0 ? -1 : text_hex(p[1]);
+        if (low < 0 || *done == b->length)
+            return line_error(s, e, "expected pairs of hexadecimal digits, %" PRIu64 " bytes in all", b->length);
+        if (mem_grow(&b->payload, capacity, (int64_t)*done + 1, 1, "a block", e))
+            return -1;
+        b->payload[(*done)++] = (unsigned char)(high * 16 + low);
+    }
+    return 0;
+}
+
 static int read_hex(item_source *s, model_block *b, err *e)
 {
     int64_t capacity = 0;
     uint64_t done = 0;
-    while (done < b->length) {
-        char *line;
-        if (need_line(s, &line, e))
+    while (done < b->length)
+        if (read_hex_line(s, b, &done, &capacity, e))
             return -1;
-        for (char *p = text_blanks(line); done < b->length && !text_ended(p); p += 2) {
-            int high = text_hex(p[0]), low = high < 0 ? -1 : text_hex(p[1]);
-            if (low < 0)
-                return bad_line(s, e, "pairs of hexadecimal digits");
-            if (mem_grow(&b->payload, &capacity, (int64_t)done + 1, 1, "a block", e))
-                return -1;
-            b->payload[done++] = (unsigned char)(high * 16 + low);
-        }
-    }
     return 0;
 }
 
