@@ -1,0 +1,30 @@
+/* Back ends of a solver: a table of functions each, and the choice among them. The same for every solver: what a
+ * problem, a plan and a state are is the solver's own affair. The first in a table is the one preferred; a table ends with NULL.
+ * A caller owns the state that create gives, until destroy.
+ */
+#ifndef SINEW_BACKEND_H
+#define SINEW_BACKEND_H
+
+#include "base/err.h"
+#include "base/pool.h"
+
+#include <stddef.h>
+
+typedef struct backend {
+    const char *name;
+    /* Why it cannot be used on this machine, or NULL. Looks at the device: not called before it is asked for. */
+    const char *(*unusable)(void);
+    /* Allocates all that the steps take. The problem stays the caller's and unchanged. NULL with e filled. */
+    void *(*create)(const void *problem, pool *threads, err *e);
+    /* Goes `count` steps on. -1 with e filled. */
+    int (*step)(void *state, const void *plan, int64_t count, err *e);
+    /* Copies one of the state's arrays out. -1 with e filled. */
+    int (*get)(void *state, int what, double *to, err *e);
+    void (*destroy)(void *state);
+} backend;
+
+/* The back end named so, or for "auto" the first that is usable; says (of `size` bytes) gets what was taken, and what was not and
+ * why. NULL with e filled where the name is not in the table, or what it names is not usable here. */
+const backend *backend_choose(const backend *const *table, const char *name, char *says, size_t size, err *e);
+
+#endif

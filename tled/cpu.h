@@ -1,0 +1,9 @@
+/* The CPU back end of tled-run, in its two precisions. Each is complete in itself; a state belongs to who created it. */
+#ifndef SINEW_CPU_H
+#define SINEW_CPU_H
+
+#include "device/backend.h"
+
+extern const backend tled_cpu_double, tled_cpu_single;
+
+#endif

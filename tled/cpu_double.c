@@ -1,0 +1,4 @@
+/* The CPU back end in double: the reference. */
+#include "tled/cpu.h"
+#define CPU_BACKEND tled_cpu_double
+#include "tled/cpu_loops.h"

@@ -1,0 +1,5 @@
+/* The CPU back end in float: what a GPU computes, at half the memory. */
+#include "tled/cpu.h"
+#define CPU_BACKEND tled_cpu_single
+#define ELEMENT_SINGLE
+#include "tled/cpu_loops.h"

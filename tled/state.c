@@ -1,0 +1,278 @@
+#include "tled/state.h"
+
+#include "base/mem.h"
+#include "mesh/lattice.h"
+#include "model/materials.h"
+#include "tled/element.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void tled_problem_free(tled_problem *p)
+{
+    free(p->volume);
+    free(p->corner);
+    free(p->mass);
+    free(p->hold);
+    free(p->force_start);
+    free(p->force_curve);
+    free(p->force_share);
+    free(p->displacement);
+    free(p->velocity);
+    memset(p, 0, sizeof *p);
+}
+
+static int borrow_mesh(tled_problem *p, const model *m, err *e)
+{
+    const model_array *node = model_need(m, "element.node", e), *position = model_need(m, "node.position", e);
+    const model_array *volume = model_need(m, "element.volume", e), *fibre = model_find(m, "element.fibre");
+    if (!node || !position || !volume || !model_need(m, "volume.name", e) || !model_need(m, "volume.material", e))
+        return -1;
+    if (node->columns != 8)
+        return err_set(e, NULL, 0, "the model's elements have %d nodes; expected hexahedra, as voxelise makes them",
+                       node->columns);
+    if (node->rows < 1 || node->rows > INT32_MAX / 8)
+        return err_set(e, NULL, 0, "the model has %lld elements; expected 1 to %d", (long long)node->rows,
+                       INT32_MAX / 8);
+    p->nodes = position->rows;
+    p->elements = node->rows;
+    p->position = position->f64;
+    p->element_node = node->i32;
+    p->element_volume = volume->i32;
+    p->fibre = fibre ? fibre->f32 : NULL;
+    return 0;
+}
+
+/* Every element must be a box with the lattice's spacing for sides, its corners in VTK order. */
+static int check_boxes(const tled_problem *p, err *e)
+{
+    for (int64_t i = 0; i < p->elements * 8; i++) {
+        const double *first = p->position + 3 * (int64_t)p->element_node[i / 8 * 8];
+        const double *corner = p->position + 3 * (int64_t)p->element_node[i];
+        for (int a = 0; a < 3; a++) {
+            double gap = corner[a] - first[a] - p->side[a] * lattice_vtk[i % 8][a];
+            if (!(fabs(gap) <= 1e-6 * p->side[a]))
+                return err_set(e, NULL, 0,
+                               "element %lld is not a box of %g x %g x %g m; expected all to be the lattice's",
+                               (long long)(i / 8), p->side[0], p->side[1], p->side[2]);
+        }
+    }
+    return 0;
+}
+
+static int64_t find_curve(const script *s, script_verb verb, int32_t volume)
+{
+    for (int64_t i = 0; i < s->curves; i++)
+        if (s->curve[i].verb == verb && s->curve[i].volume == volume)
+            return i;
+    return -1;
+}
+
+static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
+{
+    material law;
+    tled_volume *v = &p->volume[i];
+    if (materials_of(m, model_find(m, "volume.material")->i32[i], &law, e))
+        return -1;
+    v->name = model_find(m, "volume.name")->str[i];
+    v->mu = material_mu(&law);
+    v->bulk = material_bulk(&law);
+    v->density = law.density;
+    v->peak = law.peak;
+    v->hourglass = element_hourglass(p->kappa, v->mu, v->bulk, p->side[0], p->side[1], p->side[2]);
+    v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
+    if (v->contract >= 0 && !(v->peak > 0))
+        return err_set(e, NULL, 0,
+                       "volume '%s' is to contract, but its material '%s' has no peak stress; expected peak=PASCAL",
+                       v->name, model_find(m, "material.name")->str[model_find(m, "volume.material")->i32[i]]);
+    return 0;
+}
+
+static int make_volumes(tled_problem *p, const model *m, err *e)
+{
+    p->volumes = (int32_t)model_find(m, "volume.name")->rows;
+    p->volume = mem_array(p->volumes, sizeof *p->volume, "the volumes", e);
+    for (int32_t i = 0; p->volume && i < p->volumes; i++)
+        if (make_volume(p, m, i, e))
+            return -1;
+    for (int64_t i = 0; p->volume && i < p->elements; i++)
+        p->volume[p->element_volume[i]].elements++;
+    return p->volume ? 0 : -1;
+}
+
+/* The corners of elements at each node, and its mass: rho V / 8 from each. */
+static int make_corners(tled_problem *p, err *e)
+{
+    double share = p->side[0] * p->side[1] * p->side[2] / 8;
+    for (int64_t i = 0; i < p->nodes * 8; i++)
+        p->corner[i] = -1;
+    for (int64_t i = 0; i < p->elements * 8; i++) {
+        int64_t n = p->element_node[i];
+        int at = 0;
+        while (at < 8 && p->corner[n * 8 + at] >= 0)
+            at++;
+        if (at == 8)
+            return err_set(e, NULL, 0, "node %lld is in more than 8 elements", (long long)n);
+        p->corner[n * 8 + at] = (int32_t)i;
+        p->mass[n] += p->volume[p->element_volume[i / 8]].density * share;
+    }
+    for (int64_t n = 0; n < p->nodes; n++)
+        if (p->corner[n * 8] < 0)
+            return err_set(e, NULL, 0, "node %lld is in no element", (long long)n);
+    return 0;
+}
+
+/* Rigid nodes stay where they are, but for components that the script displaces. */
+static void make_holds(tled_problem *p, const model *m)
+{
+    const model_array *rigid = model_find(m, "node.rigid");
+    for (int64_t i = 0; i < p->nodes * 3; i++)
+        p->hold[i] = rigid && rigid->u8[i / 3] ? HOLD_STILL : HOLD_FREE;
+    for (int64_t c = 0; c < p->script->curves; c++) {
+        const script_curve *curve = &p->script->curve[c];
+        for (int32_t i = 0; curve->verb == SCRIPT_DISPLACE && i < curve->node_count; i++)
+            for (int a = 0; a < 3; a++)
+                if (curve->mask & 1u << a)
+                    p->hold[3 * (int64_t)p->script->node[curve->node_first + i] + a] = (int32_t)c;
+    }
+    for (int64_t n = 0; n < p->nodes; n++)
+        p->held += p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
+}
+
+/* Each force curve's equal shares, listed by node in the order of the curves. */
+static int make_forces(tled_problem *p, err *e)
+{
+    const script *s = p->script;
+    int64_t entries = 0;
+    for (int64_t c = 0; c < s->curves; c++)
+        entries += s->curve[c].verb == SCRIPT_FORCE ? s->curve[c].node_count : 0;
+    p->force_start = mem_array(p->nodes + 2, sizeof *p->force_start, "the forces", e);
+    p->force_curve = mem_array(entries, sizeof *p->force_curve, "the forces", e);
+    p->force_share = mem_array(entries, sizeof *p->force_share, "the forces", e);
+    if (!p->force_start || !p->force_curve || !p->force_share)
+        return -1;
+    if (entries > INT32_MAX)
+        return err_set(e, NULL, 0, "forces on %lld nodes; expected at most %d", (long long)entries, INT32_MAX);
+    /* Counts two places on, so that filling moves each start to where it belongs. */
+    for (int64_t i = 0, c = 0; c < s->curves; c++)
+        for (i = 0; s->curve[c].verb == SCRIPT_FORCE && i < s->curve[c].node_count; i++)
+            p->force_start[s->node[s->curve[c].node_first + i] + 2]++;
+    for (int64_t n = 0; n < p->nodes; n++)
+        p->force_start[n + 2] += p->force_start[n + 1];
+    for (int64_t i = 0, c = 0; c < s->curves; c++)
+        for (i = 0; s->curve[c].verb == SCRIPT_FORCE && i < s->curve[c].node_count; i++) {
+            int32_t at = p->force_start[s->node[s->curve[c].node_first + i] + 1]++;
+            p->force_curve[at] = (int32_t)c;
+            p->force_share[at] = 1. / s->curve[c].node_count;
+        }
+    return 0;
+}
+
+int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e)
+{
+    lattice l;
+    p->script = s;
+    p->kappa = kappa;
+    p->gravity = find_curve(s, SCRIPT_GRAVITY, -1);
+    if (borrow_mesh(p, m, e) || lattice_of(m, &l, e))
+        return -1;
+    memcpy(p->side, l.spacing, sizeof p->side);
+    p->corner = mem_array(p->nodes, 8 * sizeof *p->corner, "the nodes", e);
+    p->mass = mem_array(p->nodes, sizeof *p->mass, "the nodes", e);
+    p->hold = mem_array(p->nodes, 3 * sizeof *p->hold, "the nodes", e);
+    p->displacement = mem_array(p->nodes, 3 * sizeof *p->displacement, "the nodes", e);
+    p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
+    if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
+        return -1;
+    if (check_boxes(p, e) || make_volumes(p, m, e) || make_corners(p, e) || make_forces(p, e))
+        return -1;
+    make_holds(p, m);
+    return 0;
+}
+
+int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
+{
+    const model_array *u = frame_find(f, "node.displacement"), *v = frame_find(f, "node.velocity");
+    if (!u)
+        return err_set(e, NULL, 0, "frame %lld has no node.displacement to go on from", (long long)f->index);
+    if (!v)
+        notes_add(warnings, "frame %lld has no node.velocity: going on from rest", (long long)f->index);
+    memcpy(p->displacement, u->f64, (size_t)p->nodes * 3 * sizeof *p->displacement);
+    if (v)
+        memcpy(p->velocity, v->f64, (size_t)p->nodes * 3 * sizeof *p->velocity);
+    for (int64_t i = 0; i < 3 * p->nodes; i++)
+        if (p->hold[i] == HOLD_STILL)
+            p->velocity[i] = 0;
+    p->start = f->time;
+    return 0;
+}
+
+double tled_tension(const tled_problem *p, int32_t volume, const double *value)
+{
+    const tled_volume *v = &p->volume[volume];
+    return v->contract < 0 ? 0 : v->peak * value[3 * v->contract];
+}
+
+void tled_curves(const tled_problem *p, double time, double *value)
+{
+    for (int64_t i = 0; i < p->script->curves; i++)
+        script_value(p->script, &p->script->curve[i], time, value + 3 * i);
+}
+
+void tled_external(const tled_problem *p, const double *value, int64_t n, double *force)
+{
+    for (int a = 0; a < 3; a++) {
+        force[a] = p->gravity < 0 ? 0 : p->mass[n] * value[3 * p->gravity + a];
+        for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
+            force[a] += p->force_share[i] * value[3 * (int64_t)p->force_curve[i] + a];
+    }
+}
+
+/* One wave over the elements: a node is one step farther than the nearest node of an element that it is in. Returns
+ * whether any node was reached first at `step`. */
+static bool spread(const tled_problem *p, int32_t *steps, int32_t step)
+{
+    bool reached = false;
+    for (int64_t i = 0; i < p->elements; i++) {
+        const int32_t *node = p->element_node + 8 * i;
+        bool touched = false;
+        for (int c = 0; c < 8; c++)
+            touched |= steps[node[c]] == step - 1;
+        for (int c = 0; touched && c < 8; c++)
+            if (steps[node[c]] < 0) {
+                steps[node[c]] = step;
+                reached = true;
+            }
+    }
+    return reached;
+}
+
+static double diagonal(const tled_problem *p)
+{
+    double square = 0;
+    for (int a = 0; a < 3; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t n = 0; n < p->nodes; n++) {
+            low = fmin(low, p->position[3 * n + a]);
+            high = fmax(high, p->position[3 * n + a]);
+        }
+        square += (high - low) * (high - low);
+    }
+    return sqrt(square);
+}
+
+double tled_reach(const tled_problem *p, err *e)
+{
+    int32_t farthest = 0, *steps = mem_array(p->nodes, sizeof *steps, "distances from what is held", e);
+    if (!steps)
+        return -1;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        const int32_t *hold = p->hold + 3 * n;
+        steps[n] = hold[0] != HOLD_FREE || hold[1] != HOLD_FREE || hold[2] != HOLD_FREE ? 0 : -1;
+    }
+    while (p->held && spread(p, steps, farthest + 1))
+        farthest++;
+    free(steps);
+    return p->held ? fmax(farthest, 1) * fmax(p->side[0], fmax(p->side[1], p->side[2])) : diagonal(p);
+}

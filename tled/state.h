@@ -1,0 +1,90 @@
+/* What tled-run solves, as flat arrays: the problem, which no back end changes, made from a model; and the contract of its
+ * back ends (device/backend.h): their create takes a tled_problem, their step a tled_plan. The caller owns the problem; it
+ * borrows the model's arrays and the script, which must outlive it.
+ *
+ * Forces of elements are kept one by one (element, corner, component) and each node sums those of its elements in
+ * ascending order, so that the sum is the same whoever computes it in whatever order.
+ */
+#ifndef SINEW_STATE_H
+#define SINEW_STATE_H
+
+#include "device/backend.h"
+#include "tled/script.h"
+
+/* What holds one component of a node: nothing, its place at the start, or curve number `hold` of the script. */
+enum { HOLD_FREE = -1, HOLD_STILL = -2 };
+
+typedef struct tled_volume {
+    const char *name;               /* borrowed */
+    double mu, bulk, density, peak; /* Pa, Pa, kg/m3, Pa */
+    double hourglass;               /* N/m: k of each hourglass mode */
+    int64_t elements;               /* of it */
+    int64_t contract;               /* curve that sets its level, or -1 */
+} tled_volume;
+
+typedef struct tled_problem {
+    int64_t nodes, elements;
+    int32_t volumes;
+    double side[3];                /* m: of every element */
+    double kappa;                  /* hourglass coefficient */
+    const double *position;        /* nodes x 3, m */
+    const int32_t *element_node;   /* elements x 8, VTK order */
+    const int32_t *element_volume; /* elements */
+    const float *fibre;            /* elements x 3, or NULL */
+    tled_volume *volume;           /* volumes; owned, as is all below */
+    int32_t *corner;               /* nodes x 8: element * 8 + corner, ascending, then -1 */
+    double *mass;                  /* nodes: kg */
+    int32_t *hold;                 /* nodes x 3 */
+    int64_t held;                  /* nodes with any component held */
+    int32_t *force_start;          /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
+    int32_t *force_curve;          /* entries: the curve whose value the node gets a share of */
+    double *force_share;           /* entries */
+    const script *script;
+    int64_t gravity;      /* its curve, or -1 */
+    double start;         /* s: the model's time at the start */
+    double *displacement; /* nodes x 3, m: at the start */
+    double *velocity;     /* nodes x 3, m/s */
+} tled_problem;
+
+/* A run of steps: after step i of them (from 1) the time is origin + (first + i) / rate. A rate, since a whole number of
+ * steps a second then gives times that are exact. */
+typedef struct tled_plan {
+    double origin, rate; /* s, 1/s: dt = 1 / rate */
+    int64_t first;
+    double damping; /* 1/s: alpha of the force -alpha M v */
+} tled_plan;
+
+static inline double tled_time(const tled_plan *plan, int64_t i)
+{
+    return plan->origin + (double)(plan->first + i) / plan->rate;
+}
+
+/* What get() gives, nodes x 3 doubles each: m, m/s, and N: the sum of the elements' pulls at the displacement. */
+enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL };
+
+/* Makes p (zeroed) of the model, whose lattice's boxes all elements must be; at rest at time 0. kappa: the hourglass
+ * coefficient. -1 with e filled and p to be freed all the same. */
+int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e);
+void tled_problem_free(tled_problem *p);
+
+/* Starts from a frame: its time, displacement and velocity (none: at rest, with a note). */
+int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e);
+
+/* The active stress of a volume (Pa): level times peak; value: of all curves. */
+double tled_tension(const tled_problem *p, int32_t volume, const double *value);
+
+/* The sum of what acts on node n from outside (N, 3): gravity and forces; value: all curves' values, 3 a curve. */
+void tled_external(const tled_problem *p, const double *value, int64_t n, double *force);
+
+/* The values of all curves at a time, 3 a curve. */
+void tled_curves(const tled_problem *p, double time, double *value);
+
+/* The farthest that a node is from a held one, in steps from element to element times the longest side; where
+ * nothing is held, the diagonal of the bounding box. -1 with e filled. */
+double tled_reach(const tled_problem *p, err *e);
+
+/* The back ends of tled-run, NULL-terminated, by the precision of their numbers. */
+extern const backend *const tled_backends_double[];
+extern const backend *const tled_backends_single[];
+
+#endif

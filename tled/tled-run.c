@@ -1,0 +1,336 @@
+/* tled-run: moves a voxel model by total Lagrangian explicit dynamics under gravity, forces, displacements and the contraction of its
+ * muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
+ */
+#include "base/mem.h"
+#include "base/progress.h"
+#include "model/materials.h"
+#include "model/stage.h"
+#include "tled/relax.h"
+#include "tled/run.h"
+#include "tled/step.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { REST_STEPS = 200000 }; /* after the script's end, before a run to rest gives up */
+
+static const double rest_tolerance = 1e-4;
+
+struct options {
+    opt_common common;
+    int device, precision;
+    double dt, seconds, rest, ramp, damping, hourglass, every; /* below 0: not given */
+    int64_t steps;                                             /* 0: not given */
+    opt_numbers gravity;
+    opt_list contract, material;
+    const char *script, *materials;
+};
+
+static const opt option_list[] = {
+    {'d', "device", "auto|cuda|cpu", OPT_CHOICE, offsetof(struct options, device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT,
+     "what computes [auto]"},
+    {0, "precision", "double|single", OPT_CHOICE, offsetof(struct options, precision), 0, 0, "double|single",
+     OPT_OUTPUT, "of the solver's numbers [double]"},
+    {0, "dt", "S", OPT_NUMBER, offsetof(struct options, dt), 1e-12, 1e6, NULL, OPT_OUTPUT,
+     "time step, s [half the stable one]"},
+    {'t', "time", "SECONDS", OPT_NUMBER, offsetof(struct options, seconds), 0, 1e9, NULL, 0, "simulate so long, s"},
+    {'n', "steps", "STEPS", OPT_INT, offsetof(struct options, steps), 1, 1e15, NULL, 0, "take so many steps"},
+    {0, "rest", "TOL", OPT_NUMBER, offsetof(struct options, rest), 1e-15, 1, NULL, 0,
+     "run until at rest to TOL [1e-4, where no end is given]"},
+    {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
+    {'c', "contract", "MUSCLE=LEVEL,...", OPT_LIST, offsetof(struct options, contract), 0, 0, NULL, 0,
+     "contract muscles to levels 0 to 1"},
+    {0, "ramp", "S", OPT_NUMBER, offsetof(struct options, ramp), 0, 1e9, NULL, OPT_OUTPUT,
+     "time that -c and -g take to come up, s [0.1]"},
+    {0, "script", "FILE", OPT_TEXT, offsetof(struct options, script), 0, 0, NULL, 0, "what happens when"},
+    {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, 0,
+     "change the materials by a file"},
+    {'m', "material", "MATERIAL.KEY=VALUE", OPT_LIST, offsetof(struct options, material), 0, 0, NULL, 0,
+     "change one value of a material"},
+    {0, "damping", "A", OPT_NUMBER, offsetof(struct options, damping), 0, 1e12, NULL, OPT_OUTPUT,
+     "mass damping, 1/s [critical; to rest: adapted]"},
+    {0, "hourglass", "K", OPT_NUMBER, offsetof(struct options, hourglass), 0, 1e3, NULL, OPT_OUTPUT,
+     "hourglass coefficient [0.0075]"},
+    {0, "every", "S", OPT_NUMBER, offsetof(struct options, every), 1e-12, 1e9, NULL, OPT_OUTPUT,
+     "write a frame each S seconds [the last state]"},
+    {0},
+};
+
+static const opt_tool table = {
+    .name = "tled-run",
+    .purpose = "Move a model by total Lagrangian explicit dynamics.",
+    .operands = "",
+    .writes_model = true,
+    .threaded = true,
+    .options = option_list,
+};
+
+/* What the functions called by the time loop share with main. */
+typedef struct session {
+    const tool *t;
+    stage stage;
+    model m;
+    script script;
+    tled_problem problem;
+    pool *threads;
+    run_setup run;
+    progress progress;
+    int64_t next_frame; /* its index */
+    int64_t cut;        /* parts of a step, as said last */
+    double stable;      /* s: at rest */
+    notes warnings;
+} session;
+
+static int check_end(const struct options *o, err *e)
+{
+    if ((o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0) < 2)
+        return 0;
+    err_set(e, NULL, 0, "-t, -n and --rest are three ways to end; expected one of them");
+    e->status = STATUS_USAGE;
+    return -1;
+}
+
+static int change_materials(session *s, const struct options *o, err *e)
+{
+    in *source = o->materials ? in_open(o->materials, e) : NULL;
+    int result = o->materials && (!source || materials_override(&s->m, source, e)) ? -1 : 0;
+    in_close(source);
+    for (int i = 0; !result && i < o->material.count; i++)
+        result = materials_set(&s->m, o->material.value[i], e);
+    return result;
+}
+
+static int make_script(session *s, const struct options *o, err *e)
+{
+    in *source = o->script ? in_open(o->script, e) : NULL;
+    int result = o->script && (!source || script_read(&s->script, source, &s->m, &s->warnings, e)) ? -1 : 0;
+    in_close(source);
+    for (int i = 0; !result && i < o->contract.count; i++)
+        result = script_add_contract(&s->script, &s->m, o->contract.value[i], o->ramp, &s->warnings, e);
+    if (!result && o->gravity.count)
+        result = script_add_gravity(&s->script, o->gravity.value, o->ramp, e);
+    return result;
+}
+
+static bool pushed(const script *s)
+{
+    bool any = false;
+    for (int64_t i = 0; i < s->curves; i++)
+        any |= s->curve[i].verb == SCRIPT_GRAVITY || s->curve[i].verb == SCRIPT_FORCE;
+    return any;
+}
+
+static int check_held(session *s, err *e)
+{
+    if (s->problem.held)
+        return 0;
+    if (s->run.rest >= 0 && pushed(&s->script))
+        return err_set(e, NULL, 0,
+                       "nothing holds the model, so that it never comes to rest under a load; expected rigid "
+                       "nodes (attach makes them), or -t or -n to end");
+    notes_add(&s->warnings, "nothing holds the model: no node is rigid or displaced");
+    return 0;
+}
+
+/* The step: half the stable one, or --dt if that is not above it. */
+static int choose_rate(session *s, const struct options *o, err *e)
+{
+    int32_t stiffest = 0;
+    s->stable = step_at_rest(&s->problem, &stiffest);
+    s->run.rate_fixed = o->dt > 0;
+    s->run.rate = o->dt > 0 ? 1 / o->dt : step_rate(s->stable, &s->run.check);
+    if (o->dt > 0)
+        s->run.check = 50;
+    if (o->dt > s->stable)
+        return err_set(e, NULL, 0, "--dt %g is above the stable step; expected at most %.6g s (volume '%s')", o->dt,
+                       s->stable, s->problem.volume[stiffest].name);
+    return 0;
+}
+
+/* How long, and with what damping. Frames given are behind us: p->start stands. */
+static int choose_end(session *s, const struct options *o, err *e)
+{
+    run_setup *r = &s->run;
+    tled_plan plan = run_plan(s->problem.start, r->rate);
+    double script_left = script_end(&s->script) - s->problem.start;
+    r->steps = o->steps;
+    if (o->seconds >= 0)
+        r->steps = run_steps_to(o->seconds, r->rate);
+    if (r->rest >= 0)
+        r->steps = REST_STEPS + run_steps_to(script_left > 0 ? script_left : 0, r->rate);
+    if ((double)plan.first + (double)r->steps > 1e15)
+        return err_set(e, NULL, 0, "a run to step %g; expected fewer than 1e15", (double)plan.first + (double)r->steps);
+    return 0;
+}
+
+static int choose_damping(session *s, const struct options *o, err *e)
+{
+    s->run.damping = o->damping >= 0 ? o->damping : relax_estimate(&s->problem, e);
+    s->run.adapt = o->damping < 0 && s->run.rest >= 0;
+    return s->run.damping < 0 ? -1 : 0;
+}
+
+/* What ran and every default that changes the result, after the options that were given. */
+static int say_provenance(tool *t, const session *s, const struct options *o, err *e)
+{
+    char ran[300];
+    snprintf(ran, sizeof ran, "%s[%s %s, dt=%.9g%s damping=%.9g%s ramp=%.9g hourglass=%.9g%s]",
+             *t->provenance ? " " : "", s->run.device->name, o->precision ? "single" : "double", 1 / s->run.rate,
+             s->run.rate_fixed ? "" : " or cut", s->run.damping, s->run.adapt ? " adapted" : "", o->ramp, o->hourglass,
+             s->run.rest >= 0 && o->rest < 0 ? " rest=1e-4" : "");
+    size_t size = strlen(t->provenance) + strlen(ran) + 1;
+    char *all = mem_array((int64_t)size, 1, "provenance", e);
+    if (!all)
+        return -1;
+    snprintf(all, size, "%s%s", t->provenance, ran);
+    free(t->provenance);
+    t->provenance = all;
+    return 0;
+}
+
+/* Reads the frames that came, passes them on, and starts from the last. Frames of other materials are not passed on. */
+static int take_frames(session *s, bool changed, err *e)
+{
+    frame f = {0}, last = {0};
+    int got, result = -1;
+    int64_t count = 0;
+    while ((got = model_read_frame(s->stage.reader, &s->m, &f, e)) > 0) {
+        frame swap = last;
+        last = f;
+        f = swap;
+        if (!changed && model_write_frame(s->stage.writer, &last, e))
+            goto out;
+        count++;
+    }
+    if (got < 0)
+        goto out;
+    if (count && changed)
+        notes_add(&s->warnings, "the materials changed: %lld frames dropped; going on from the last", (long long)count);
+    if (count)
+        s->next_frame = last.index + 1;
+    result = count ? tled_problem_start(&s->problem, &last, &s->warnings, e) : 0;
+out:
+    frame_free(&f);
+    frame_free(&last);
+    return result;
+}
+
+static int write_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
+{
+    session *s = context;
+    frame f = {.index = s->next_frame++, .time = time};
+    size_t size = 3 * (size_t)s->problem.nodes * sizeof(double);
+    model_array *u = frame_add(&f, &s->m, "node.displacement", e);
+    if (u)
+        memcpy(u->f64, displacement, size);
+    model_array *v = u ? frame_add(&f, &s->m, "node.velocity", e) : NULL;
+    if (v)
+        memcpy(v->f64, velocity, size);
+    int result = v ? model_write_frame(s->stage.writer, &f, e) : -1;
+    out_flush(s->stage.sink);
+    frame_free(&f);
+    return result;
+}
+
+static void checked(void *context, int64_t step, const watch_sight *sight, int64_t cut, double damping)
+{
+    session *s = context;
+    progress_at(&s->progress, (double)step);
+    if (cut != s->cut) {
+        progress_stop(&s->progress);
+        tool_detail(s->t, "%.6g s: stable step %.4g ms (element %lld): each step is taken in %lld", sight->time,
+                    1e3 * sight->stable, (long long)sight->stable_element, (long long)cut);
+        progress_start(&s->progress, "tled-run", "steps", s->progress.total, s->t->common->quiet);
+    }
+    s->cut = cut;
+    tool_detail(s->t, "%.6g s: residual %.3g of the load, kinetic %.3g J, strain %.3g J, damping %.4g 1/s", sight->time,
+                run_load(sight) > 0 ? sight->residual / run_load(sight) : 0, sight->kinetic, sight->strain, damping);
+}
+
+static void say_start(const session *s, const char *device, const struct options *o)
+{
+    const tled_problem *p = &s->problem;
+    const run_setup *r = &s->run;
+    tool_say(s->t, "%lld elements of %g x %g x %g mm, %lld nodes, %lld held; %s, %s precision", (long long)p->elements,
+             1e3 * p->side[0], 1e3 * p->side[1], 1e3 * p->side[2], (long long)p->nodes, (long long)p->held, device,
+             o->precision ? "single" : "double");
+    tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable, 1e3 / r->rate, r->damping,
+             r->adapt ? ", then adapted" : "");
+    if (r->rest >= 0)
+        tool_say(s->t, "from %.6g s to rest, tolerance %g", p->start, r->rest);
+    else
+        tool_say(s->t, "from %.6g s, %lld steps", p->start, (long long)r->steps);
+}
+
+static void say_end(const session *s, const run_end *end)
+{
+    const watch_sight *w = &end->sight;
+    tool_say(
+        s->t,
+        "%s %.6g s, after %lld steps: kinetic energy %.3g J, residual %.3g of the load, largest displacement %.6g mm",
+        end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic,
+        run_load(w) > 0 ? w->residual / run_load(w) : 0, 1e3 * w->largest);
+}
+
+/* From the model that came to the problem and how it is to be run. */
+static int prepare(session *s, const struct options *o, char *device, size_t size, err *e)
+{
+    const backend *const *backends = o->precision ? tled_backends_single : tled_backends_double;
+    static const char *const names[] = {"auto", "cuda", "cpu"};
+    s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps ? rest_tolerance : -1;
+    if (change_materials(s, o, e) || make_script(s, o, e) ||
+        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) || check_held(s, e) ||
+        choose_rate(s, o, e) || choose_damping(s, o, e))
+        return -1;
+    s->run.device = backend_choose(backends, names[o->device], device, size, e);
+    int threads = tool_threads(s->t, e);
+    s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
+    return s->threads ? 0 : -1;
+}
+
+static int simulate(session *s, const struct options *o, const char *device, err *e)
+{
+    run_end end = {0};
+    if (take_frames(s, o->materials || o->material.count, e) || choose_end(s, o, e))
+        return -1;
+    s->run.p = &s->problem;
+    s->run.threads = s->threads;
+    s->run.every = o->every > 0 ? o->every : 0;
+    s->run.context = s;
+    s->run.frame = write_frame;
+    s->run.checked = checked;
+    s->cut = 1;
+    say_start(s, device, o);
+    progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0, o->common.quiet);
+    int result = run_go(&s->run, &end, e);
+    progress_stop(&s->progress);
+    if (!result)
+        say_end(s, &end);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {
+        .dt = -1, .seconds = -1, .rest = -1, .ramp = .1, .damping = -1, .hourglass = .0075, .every = -1};
+    err e = {0};
+    tool t = {0};
+    session s = {.t = &t};
+    char device[300] = "";
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+        goto out;
+    if (check_end(&o, &e) || stage_open_output(&s.stage, &t, &e) || stage_read(&s.stage, &s.m, &e) ||
+        prepare(&s, &o, device, sizeof device, &e) || say_provenance(&t, &s, &o, &e) ||
+        stage_write(&s.stage, &s.m, &e) || simulate(&s, &o, device, &e))
+        goto out;
+out:
+    tool_warn(&t, &s.warnings);
+    if (!t.done)
+        stage_close(&s.stage, &t, &e);
+    pool_destroy(s.threads);
+    tled_problem_free(&s.problem);
+    script_free(&s.script);
+    model_free(&s.m);
+    return tool_end(&t, &e);
+}

@@ -1,0 +1,40 @@
+/* What a run looks at now and then, from the state that its back end has reached: energies, forces out of balance, the
+ * stable step in the configuration of now, elements that broke. In double and on this machine's threads, whatever the back end.
+ * Sums go by chunks in a fixed order: the same bytes for any number of threads. The creator owns the watch.
+ */
+#ifndef SINEW_WATCH_H
+#define SINEW_WATCH_H
+
+#include "tled/state.h"
+
+typedef struct watch_sight {
+    double time;            /* s */
+    double kinetic, strain; /* J; strain with hourglass energy, without what muscles do */
+    double residual, load;  /* N: Euclidean norms over nodes: of what is out of balance where nothing holds, and of the
+                                    largest of: forces from outside, reactions of what is held, pulls of muscle
+                                    elements */
+    double load_most, strain_most; /* the largest that this watch has seen */
+    double largest;                /* m: displacement */
+    double stable;                 /* s: the stable step now, at most that at rest; within 1 % */
+    int64_t stable_element;        /* whose it is, or -1: that at rest */
+    int64_t broken;                /* the first element that is inverted (J <= 0) or not a number, or -1 */
+    bool inverted;
+} watch_sight;
+
+typedef struct watch {
+    const tled_problem *p;
+    pool *threads;
+    double rest_step;
+    double *displacement, *velocity, *internal; /* nodes x 3: the state that was looked at last */
+    double *curves;                             /* values at its time */
+    struct watch_part *part;                    /* chunks */
+    watch_sight sight;
+} watch;
+
+watch *watch_create(const tled_problem *p, pool *threads, err *e);
+void watch_destroy(watch *w);
+
+/* Looks at the state, which stands at `time`: w->sight and the arrays. -1 with e filled where the back end fails. */
+int watch_look(watch *w, const backend *b, void *state, double time, err *e);
+
+#endif
