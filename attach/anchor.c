@@ -194,6 +194,7 @@ static int name_anchors(model *m, const rigid *r, err *e)
 static int add_arrays(model *m, search *s, const rigid *r, notes *warnings, err *e)
 {
     model_axis_drop(m, "anchor", warnings);
+    model_remove(m, "node.rigid"); /* so that a second time leaves the arrays in the same order */
     if (name_anchors(m, r, e))
         return -1;
     int64_t nodes = model_count(m, "node");

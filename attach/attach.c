@@ -8,6 +8,7 @@
 #include "muscle.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 struct options {
     opt_common common;
@@ -122,9 +123,12 @@ out:
 
 static int check_options(const struct options *o, err *e)
 {
-    if (o->strictness > 0)
+    if (o->strictness <= 0)
+        err_set(e, NULL, 0, "--strictness %g would hold nothing; above 0, to 1, was expected", o->strictness);
+    else if (o->rigid_file && !strcmp(o->rigid_file, "-"))
+        err_set(e, NULL, 0, "--rigid-file -: standard input is the model's; the name of a file was expected");
+    else
         return 0;
-    err_set(e, NULL, 0, "--strictness 0 would hold nothing; above 0, to 1, was expected");
     e->status = STATUS_USAGE;
     return -1;
 }

@@ -237,6 +237,7 @@ int muscle_make(model *m, muscle_fibre fibre, muscle **list, int64_t *count, not
     int rc = -1;
     *list = NULL;
     model_axis_drop(m, "muscle", warnings);
+    model_remove(m, "element.fibre");
     if (find_arrays(m, &b, e) || find_muscles(m, list, count, e))
         goto out;
     for (int64_t i = 0; i < *count; i++) {

@@ -1,0 +1,195 @@
+#!/bin/sh
+# attach on a bar of 3 x 1 x 1 voxels of 10 mm written by hand, with a muscle and bones.
+. "$(dirname "$0")/lib.sh"
+
+# bar GROUP: its first face, a square in the plane x = 2 mm, is in GROUP; a point at the bar's far end is in "Bone_b", and a
+# triangle far away in "rigid_far skin".
+bar() {
+    cat <<SINEW
+%sinew 1 text
+meta source.unit "mm"
+meta lattice.origin "0 0 0"
+meta lattice.spacing "0.01 0.01 0.01"
+axis node 16
+axis element 3
+axis volume 2
+axis material 1
+axis bar/vertex 8
+axis bar/face 3
+axis bar/corner 8
+axis bar/group 3
+axis x-lot 2
+array node.position f64 m node 3
+0 0 0
+0.01 0 0
+0.02 0 0
+0.03 0 0
+0 0.01 0
+0.01 0.01 0
+0.02 0.01 0
+0.03 0.01 0
+0 0 0.01
+0.01 0 0.01
+0.02 0 0.01
+0.03 0 0.01
+0 0.01 0.01
+0.01 0.01 0.01
+0.02 0.01 0.01
+0.03 0.01 0.01
+array element.node i32 @node element 8
+0 1 5 4 8 9 13 12
+1 2 6 5 9 10 14 13
+2 3 7 6 10 11 15 14
+array element.lattice i32 1 element 3
+0 0 0
+1 0 0
+2 0 0
+array element.volume i32 @volume element 1
+1
+1
+0
+array volume.name str 1 volume 1
+"skin"
+"muscle_a"
+array volume.muscle u8 1 volume 1
+0
+1
+array bar/vertex.position f64 m bar/vertex 3
+0.002 -0.01 -0.01
+0.002 0.02 -0.01
+0.002 0.02 0.02
+0.002 -0.01 0.02
+0.03 0.001 0.001
+1 0 0
+1 1 0
+1 0 1
+array bar/face.start i64 @bar/corner bar/face 1
+0
+4
+5
+array bar/face.vertex i32 @bar/vertex bar/corner 1
+0
+1
+2
+3
+4
+5
+6
+7
+array bar/face.group i32 @bar/group bar/face 1
+0
+1
+2
+array bar/group.name str 1 bar/group 1
+"$1"
+"Bone_b"
+"rigid_far skin"
+array x-heat f32 K node 1
+$(seq 16)
+array x-word str 1 x-lot 1
+"one"
+"two words"
+end
+SINEW
+}
+
+# values ARRAY FILE: its rows in a text model, between commas.
+values() {
+    awk -v name="$1" '/^array /{on = $2 == name; next} /^(crc|frame|end)/{on = 0} on' "$2" | paste -sd, -
+}
+
+bar skull >"$T/bar"
+bar cheek >"$T/cheek"
+check "a bar" attach --text -o "$T/out" <"$T/bar" -o "$T/out"
+is "$(values node.rigid "$T/out")" 1,0,0,1,1,0,0,0,1,0,0,0,1,0,0,0 "the skull holds the end, a point its corner"
+is "$(values node.anchor "$T/out")" 0,-1,-1,1,0,-1,-1,-1,0,-1,-1,-1,0,-1,-1,-1 "and each node knows which"
+is "$(values anchor.name "$T/out")" '"skull","Bone_b","rigid_far"' "surfaces are named in order"
+is "$(values muscle.volume "$T/out") $(values muscle.centre "$T/out")" "1 0 0.0050000000000000001 0.0050000000000000001" \
+    "the contraction centre"
+is "$(values element.fibre "$T/out")" "-1 0 0,-1 0 0,0 0 0" "fibres"
+is "$(grep -c 'rigid_far holds no node' "$T/stderr") $(wc -l <"$T/stderr")" "1 1" "one warning: a bone out of reach"
+is "$(values x-word "$T/out") $(values x-heat "$T/out")" '"one","two words" 1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16' \
+    "unknown arrays pass"
+is "$(grep '^prov' "$T/out")" 'prov attach 0.1.0 "--strictness 0.75 --fibre centre"' "provenance"
+
+check "again" attach --text -q -o "$T/again" <"$T/out"
+is "$(grep -v '^prov' "$T/again" | cksum)" "$(grep -v '^prov' "$T/out" | cksum)" "changes nothing"
+check "with other surfaces" attach --text -q --rigid bone_b -o "$T/again" <"$T/out"
+is "$(values node.rigid "$T/again") $(values anchor.name "$T/again") $(values node.anchor "$T/again" | tr -d ',01-')" \
+    '0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0 "Bone_b" ' "what the first left is gone"
+is "$(values muscle.centre "$T/again") $(values element.fibre "$T/again")" "nan nan nan 0 0 0,0 0 0,0 0 0" \
+    "a muscle that touches no bone"
+is "$(attach --rigid bone_b <"$T/bar" 2>&1 >"$T/x" | cut -d' ' -f1-7)" \
+    "attach: warning: muscle_a has no rigid node," "is a warning that names it"
+attach --text --rigid 'BONE*' --fibre axis <"$T/bar" >"$T/out" 2>"$T/stderr"
+is "$(values element.fibre "$T/out") $(grep -c 'muscle_a has no rigid node' "$T/stderr")" "1 0 0,1 0 0,0 0 0 1" \
+    "along the axis it has fibres all the same, and it is said"
+is "$(grep '^prov' "$T/out")" 'prov attach 0.1.0 "--rigid BONE* --strictness 0.75 --fibre axis"' "options are in the provenance"
+is "$(attach --text --strictness 1 --rigid bone_b <"$T/bar" 2>&1 | values node.rigid -)" \
+    0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1 "--strictness 1 takes the whole voxel"
+
+attach --report -o "$T/out" <"$T/bar" 2>"$T/stderr"
+is "$(grep -v warning "$T/stderr")" "attach: skull holds 4 nodes; 0 of its 1 primitives hold none
+attach: Bone_b holds 1 nodes; 0 of its 1 primitives hold none
+attach: rigid_far holds 0 nodes; 1 of its 1 primitives hold none
+attach: muscle_a: 2 elements, 4 rigid nodes, contraction centre 0 0.005 0.005 m" "--report"
+attach <"$T/bar" 2>"$T/stderr" >"$T/plain"
+check "--report is not in the model" cmp "$T/out" "$T/plain"
+
+cat >"$T/plate.obj" <<'OBJ'
+v 15 0 -1
+v 15 10 -1
+v 15 5 20
+v 25 5 10
+l 1 2
+g lid upper
+p 4
+OBJ
+check "--rigid-file" attach --text -q --rigid 'rigid*' --rigid-file "$T/plate.obj" -o "$T/out" <"$T/bar"
+is "$(values node.rigid "$T/out") $(values anchor.name "$T/out")" \
+    '0,1,1,0,0,1,1,0,0,0,1,1,0,0,1,1 "rigid_far","plate","lid"' "is in the model's unit, all of it rigid"
+sed '/source.unit/d' "$T/bar" >"$T/unitless"
+fails 1 "needs a unit" 'source\.unit' attach --rigid-file "$T/plate.obj" <"$T/unitless"
+fails 1 "that is missing" 'none\.obj.*No such file' attach --rigid-file "$T/none.obj" -o "$T/no" <"$T/bar"
+echo 'f 1 2 9' >>"$T/plate.obj"
+fails 1 "that is broken" 'plate\.obj:8: ' attach --rigid-file "$T/plate.obj" -o "$T/no" <"$T/bar"
+fails 2 "that is standard input" 'standard input' attach --rigid-file - <"$T/bar"
+
+attach --rigid cheek -o "$T/out" <"$T/cheek" 2>"$T/stderr"
+is "$(cat "$T/stderr")" "" "any group can be rigid"
+fails 1 "a name that is not there" "unknown surface 'chek'.*cheek" attach --rigid skin,chek -o "$T/no" <"$T/cheek"
+fails 1 "no name" 'names no surface' attach --rigid , <"$T/bar"
+sed '/^axis bar/d; /^array bar/,/^array x-heat/{/^array x-heat/!d;}' "$T/bar" >"$T/bare"
+check "a model without surfaces" attach --text -o "$T/out" <"$T/bare"
+is "$(grep -c 'no surface of the model is rigid' "$T/stderr") $(values node.rigid "$T/out")" \
+    "1 0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0" "is said to be free"
+is "$(values muscle.centre "$T/out")" "nan nan nan" "and its muscle to hang nowhere"
+fails 1 "but not with --rigid" "unknown surface 'skull'" attach --rigid skull <"$T/bare"
+
+for bad in 0 -0.5 1.5 x; do
+    fails 2 "--strictness $bad" 'strictness' attach --strictness "$bad" <"$T/bar"
+done
+fails 2 "--fibre field" 'fibre.*(centre|axis)' attach --fibre field <"$T/bar"
+fails 2 "an operand" '' attach model.sinew <"$T/bar"
+fails 1 "nothing on stdin" 'sinew bind' attach
+for array in element.lattice element.node element.volume node.position volume.muscle volume.name; do
+    sed "/^array $array /,/^array /{/^array $array /d;/^array /!d;}" "$T/bar" >"$T/without"
+    fails 1 "no $array" "${array%%.*}\.${array#*.}" attach -o "$T/no" <"$T/without"
+done
+sed 's/^2 0 0$/1 0 0/' "$T/bar" >"$T/twice"
+fails 1 "two elements in one cell" 'same cell 1 0 0' attach -o "$T/no" <"$T/twice"
+sed 's/^2 0 0$/2000000000 2000000000 2000000000/' "$T/bar" >"$T/wide"
+fails 1 "a lattice wider than memory" 'memory' attach -o "$T/no" <"$T/wide"
+sed '/lattice.spacing/s/0.01 0.01"/0 0.01"/' "$T/bar" >"$T/flat"
+fails 1 "voxels without thickness" 'lattice\.spacing' attach -o "$T/no" <"$T/flat"
+sed 's/^0.002 0.02 -0.01$/nan 0.02 -0.01/' "$T/bar" >"$T/nan"
+fails 1 "a vertex that is nowhere" 'surface bar: vertex 1 ' attach -o "$T/no" <"$T/nan"
+check "no output is left of any failure" test ! -e "$T/no"
+echo 'fail 3 "voxelise: no"' >"$T/failed"
+sed '$d' "$T/bar" | cat - "$T/failed" | attach -o "$T/no" 2>"$T/stderr"
+is "$? $(cat "$T/stderr")" "3 " "a failure before us passes on, silently"
+
+check "frames" attach --text -o "$T/out" <tests/cli/small.sinew
+is "$(grep -c '^frame' "$T/out") $(grep -c '2 frames' "$T/stderr")" "0 1" "are dropped, and it is said"
+
+done_testing
