@@ -4,8 +4,8 @@
 #include "base/pool.h"
 #include "bind/nearest.h"
 #include "bind/scale.h"
-#include "mesh/weights.h"
 #include "mesh/surface.h"
+#include "mesh/weights.h"
 #include "model/check.h"
 #include "model/stage.h"
 

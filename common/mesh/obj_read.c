@@ -560,18 +560,17 @@ static int read_lines(reader *r)
     return 0;
 }
 
-/* What is wrong with the text as a whole. */
-static int check_text(reader *r)
+/* Bytes that no OBJ has, wherever they are: a NUL, a CR without its LF. */
+static int check_bytes(reader *r)
 {
     const char *text = r->o->text, *nul = memchr(text, 0, (size_t)r->o->size);
-    if (nul) {
-        int64_t line = 1;
-        for (const char *p = text; p < nul; p++)
-            line += *p == '\n';
-        return err_set(r->e, r->o->name, line, "a NUL byte; expected an OBJ, which is text");
-    }
-    if (!strchr(text, '\n') && strchr(text, '\r') && strchr(text, '\r')[1])
-        return err_set(r->e, r->o->name, 1, "lines that end with CR alone; expected LF or CR LF");
+    if (nul)
+        return err_set(r->e, r->o->name, obj_line_number(r->o, nul - text),
+                       "a NUL byte; expected an OBJ, which is text");
+    for (const char *cr = strchr(text, '\r'); cr; cr = strchr(cr + 1, '\r'))
+        if (cr[1] && cr[1] != '\n')
+            return err_set(r->e, r->o->name, obj_line_number(r->o, cr - text),
+                           "a CR within the line; expected lines that end with LF or CR LF");
     return 0;
 }
 
@@ -607,7 +606,7 @@ int obj_read(obj *o, in *s, err *e)
         r.end = o->text + o->size;
         if (!strncmp(r.p, "\xef\xbb\xbf", 3)) /* a byte order mark */
             r.p += 3;
-        code = check_text(&r) || read_lines(&r) || finish(&r) ? -1 : 0;
+        code = check_bytes(&r) || read_lines(&r) || finish(&r) ? -1 : 0;
     }
     free(r.vertex.v);
     free(r.normal.v);
