@@ -423,9 +423,13 @@ int main(int argc, char **argv)
     const unsigned char *bytes = out_bytes(d.to, &size);
     if (!o.common.quiet)
         out_write(report, bytes, size);
-    out_close(report, &e);
 out:
-    out_discard(d.to);
+    if (d.to)
+        out_close(d.to, &e);
+    if (e.status)
+        out_discard(report);
+    else if (report)
+        out_close(report, &e);
     source_close(&d.a);
     source_close(&d.b);
     int status = tool_end(&t, &e);

@@ -255,9 +255,13 @@ int main(int argc, char **argv)
         goto out;
     const unsigned char *bytes = out_bytes(text, &size);
     out_write(to, bytes, size);
-    out_close(to, &e);
 out:
-    out_discard(text);
+    if (text)
+        out_close(text, &e);
+    if (e.status)
+        out_discard(to);
+    else if (to)
+        out_close(to, &e);
     source_close(&s);
     return tool_end(&t, &e);
 }

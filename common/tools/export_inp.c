@@ -1,0 +1,228 @@
+#include "tools/export_inp.h"
+
+#include "base/mem.h"
+#include "base/num.h"
+#include "model/materials.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIELD = 20, NAME = 80 }; /* Abaqus's limits on a number and a name */
+
+/* What is written and the tables that it takes. */
+typedef struct writer {
+    export_shape x;
+    const model_array *volume;   /* element.volume */
+    const model_array *material; /* volume.material */
+    const model_array *rigid;    /* node.rigid, or NULL */
+    int64_t volumes, materials;
+    int64_t *count;  /* elements of each volume */
+    char *set, *law; /* names: volumes x NAME, materials x NAME */
+    out *to;
+} writer;
+
+void export_inp_number(double value, char *text)
+{
+    int n = num_text(value, false, text);
+    for (int digits = 15; n > FIELD; digits--)
+        n = snprintf(text, NUM_TEXT, "%.*g", digits, value);
+}
+
+/* Whether one of the first `count` names is this one. */
+static bool taken(const char *names, int64_t count, size_t size, const char *name)
+{
+    for (int64_t i = 0; i < count; i++)
+        if (!strcmp(names + i * (int64_t)size, name))
+            return true;
+    return false;
+}
+
+void export_inp_names(char *const *name, int64_t count, const char *prefix, char *to, size_t size)
+{
+    for (int64_t i = 0; i < count; i++) {
+        char plain[NAME], *own = to + i * (int64_t)size;
+        snprintf(plain, sizeof plain, "%s%.60s", prefix, name[i]);
+        for (char *p = plain; *p; p++)
+            *p = isalnum((unsigned char)*p) && !((unsigned char)*p & 0x80) ? (char)toupper((unsigned char)*p) : '_';
+        snprintf(own, size, "%s", plain);
+        for (long long n = 2; taken(to, i, size, own); n++)
+            snprintf(own, size, "%.50s_%lld", plain, n);
+    }
+}
+
+static void put_numbers(const double *value, int count, out *to)
+{
+    char text[NUM_TEXT];
+    for (int i = 0; i < count; i++) {
+        export_inp_number(value[i], text);
+        out_format(to, "%s%s", i ? ", " : "", text);
+    }
+    out_text(to, "\n");
+}
+
+typedef bool belongs(const writer *w, int64_t i, int64_t key);
+
+/* The numbers of those that belong, 12 on a line. */
+static void put_set(const writer *w, int64_t count, belongs *one, int64_t key)
+{
+    int on_line = 0;
+    for (int64_t i = 0; i < count; i++) {
+        if (!one(w, i, key))
+            continue;
+        out_format(w->to, "%s%lld", on_line ? ", " : "", (long long)i + 1);
+        if (++on_line == 12) {
+            out_text(w->to, "\n");
+            on_line = 0;
+        }
+    }
+    out_text(w->to, on_line ? "\n" : "");
+}
+
+static bool is_of_volume(const writer *w, int64_t element, int64_t volume)
+{
+    return w->volume->i32[element] == volume;
+}
+
+static bool is_rigid(const writer *w, int64_t node, int64_t key)
+{
+    (void)key;
+    return w->rigid->u8[node] != 0;
+}
+
+static void put_nodes(const writer *w)
+{
+    out_text(w->to, "*NODE, NSET=NALL\n");
+    for (int64_t i = 0; i < w->x.points; i++) {
+        out_format(w->to, "%lld, ", (long long)i + 1);
+        put_numbers(&w->x.rest[3 * i], 3, w->to);
+    }
+}
+
+static void put_elements(const writer *w, const char *hexahedron)
+{
+    int64_t corners;
+    out_format(w->to, "*ELEMENT, TYPE=%s, ELSET=EALL\n", w->x.node->columns == 8 ? hexahedron : "C3D4");
+    for (int64_t i = 0; i < w->x.cells; i++) {
+        const int32_t *node = export_shape_cell(&w->x, i, &corners);
+        out_format(w->to, "%lld", (long long)i + 1);
+        for (int64_t c = 0; c < corners; c++)
+            out_format(w->to, ", %lld", (long long)node[c] + 1);
+        out_text(w->to, "\n");
+    }
+}
+
+static void put_sets(const writer *w)
+{
+    for (int64_t v = 0; v < w->volumes; v++) {
+        if (!w->count[v])
+            continue;
+        out_format(w->to, "*ELSET, ELSET=%s\n", w->set + v * NAME);
+        put_set(w, w->x.cells, is_of_volume, v);
+    }
+    bool any = false;
+    for (int64_t i = 0; w->rigid && i < w->x.points && !any; i++)
+        any = w->rigid->u8[i];
+    if (any) {
+        out_text(w->to, "*NSET, NSET=RIGID\n");
+        put_set(w, w->x.points, is_rigid, 0);
+        out_text(w->to, "*BOUNDARY\nRIGID, 1, 3\n");
+    }
+}
+
+/* W = C10 (J^-2/3 tr C - 3) + (J - 1)^2 / D1: DESIGN's law with C10 = mu / 2, D1 = 2 / K. */
+static int put_materials(const writer *w, err *e)
+{
+    for (int64_t i = 0; i < w->materials; i++) {
+        material law;
+        if (materials_of(w->x.m, i, &law, e))
+            return -1;
+        double constants[2] = {material_mu(&law) / 2, 2 / material_bulk(&law)};
+        out_format(w->to, "*MATERIAL, NAME=%s\n*HYPERELASTIC, NEO HOOKE\n", w->law + i * NAME);
+        put_numbers(constants, 2, w->to);
+        out_text(w->to, "*DENSITY\n");
+        put_numbers(&law.density, 1, w->to);
+    }
+    for (int64_t v = 0; v < w->volumes; v++)
+        if (w->count[v])
+            out_format(w->to, "*SOLID SECTION, ELSET=%s, MATERIAL=%s\n", w->set + v * NAME,
+                       w->law + (int64_t)w->material->i32[v] * NAME);
+    return 0;
+}
+
+static void put_step(const writer *w, const double *gravity)
+{
+    double size = sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]);
+    out_text(w->to, "*STEP, NLGEOM, INC=1000\n*STATIC\n0.1, 1, 1e-06, 1\n");
+    if (size > 0) {
+        double load[4] = {size, gravity[0] / size, gravity[1] / size, gravity[2] / size};
+        out_text(w->to, "*DLOAD\nEALL, GRAV, ");
+        put_numbers(load, 4, w->to);
+    }
+    out_text(w->to, "*NODE PRINT, NSET=NALL, FREQUENCY=1000\nU\n*NODE FILE, FREQUENCY=1000\nU\n*END STEP\n");
+}
+
+static int open_tables(writer *w, const model *m, err *e)
+{
+    const model_array *name = model_need(m, "volume.name", e);
+    const model_array *law = name ? model_need(m, "material.name", e) : NULL;
+    w->volume = law ? model_need(m, "element.volume", e) : NULL;
+    w->material = w->volume ? model_need(m, "volume.material", e) : NULL;
+    if (!w->material)
+        return -1;
+    w->rigid = model_find(m, "node.rigid");
+    w->volumes = name->rows;
+    w->materials = law->rows;
+    w->count = mem_array(w->volumes, sizeof *w->count, "volumes", e);
+    w->set = w->count ? mem_array(w->volumes, NAME, "set names", e) : NULL;
+    w->law = w->set ? mem_array(w->materials, NAME, "material names", e) : NULL;
+    if (!w->law)
+        return -1;
+    for (int64_t i = 0; i < w->volume->rows; i++)
+        w->count[w->volume->i32[i]]++;
+    export_inp_names(name->str, w->volumes, "V_", w->set, NAME);
+    export_inp_names(law->str, w->materials, "M_", w->law, NAME);
+    return 0;
+}
+
+static void note_omissions(const writer *w, const model *m, notes *warnings)
+{
+    const model_array *name = model_find(m, "volume.name");
+    for (int64_t v = 0; v < w->volumes; v++)
+        if (!w->count[v])
+            notes_add(warnings, "volume %.200s has no elements: it has no set in the file", name->str[v]);
+    for (int64_t i = 0; w->rigid && i < w->rigid->rows; i++)
+        if (w->rigid->u8[i])
+            return;
+    notes_add(warnings, "no node is rigid: nothing in the file holds the model");
+}
+
+static int put_all(writer *w, const export_inp_options *options, err *e)
+{
+    out_text(w->to, "*HEADING\nSinew; SI units\n");
+    put_nodes(w);
+    put_elements(w, options->element);
+    put_sets(w);
+    if (put_materials(w, e))
+        return -1;
+    put_step(w, options->gravity);
+    return 0;
+}
+
+int export_inp(const model *m, const export_inp_options *options, out *to, notes *warnings, err *e)
+{
+    writer w = {.to = to};
+    int bad = export_shape_of(&w.x, m, NULL, e) || open_tables(&w, m, e) ? -1 : 0;
+    if (!bad && !w.x.cells)
+        bad = err_set(e, NULL, 0, "the model has no elements; expected some");
+    if (!bad)
+        note_omissions(&w, m, warnings);
+    bad = bad || put_all(&w, options, e) ? -1 : 0;
+    free(w.count);
+    free(w.set);
+    free(w.law);
+    export_shape_free(&w.x);
+    return bad;
+}
