@@ -1,20 +1,10 @@
 #include "model/stage.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
-/* The exit status is the tool's, whatever library the failure comes from. */
-static int fail_with(err *e, int status, const char *text)
-{
-    bool first = !e->status;
-    err_set(e, NULL, 0, "%s", text);
-    if (first)
-        e->status = status;
-    return -1;
-}
-
-/* Opens the sink and its writer; the options may be only half read, after a usage error. */
-static int open_sink(stage *s, const tool *t, err *e)
+int stage_open_output(stage *s, const tool *t, err *e)
 {
     const opt_common *c = t->common;
     s->t = t;
@@ -31,15 +21,13 @@ static int open_sink(stage *s, const tool *t, err *e)
     return s->writer ? 0 : -1;
 }
 
-int stage_open_output(stage *s, const tool *t, err *e)
-{
-    return open_sink(s, t, e);
-}
-
 int stage_read(stage *s, model *m, err *e)
 {
-    if (isatty(STDIN_FILENO))
-        return fail_with(e, STATUS_USAGE, "reads a model on stdin, which is a terminal; see --help");
+    if (isatty(STDIN_FILENO)) {
+        err_set(e, NULL, 0, "reads a model on stdin, which is a terminal; see --help");
+        e->status = STATUS_USAGE;
+        return -1;
+    }
     s->source = in_open(NULL, e);
     s->reader = s->source ? model_reader_open(s->source, e) : NULL;
     return s->reader ? model_read(s->reader, m, e) : -1;
@@ -83,14 +71,19 @@ int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e)
     return count < 0 ? -1 : 0;
 }
 
-/* `fail` reaches the next tool through stdout only: a file is not left behind. */
+static bool to_stdout(const opt_common *c)
+{
+    return !c->output || !strcmp(c->output, "-");
+}
+
+/* `fail` goes where someone reads on: a file is not left behind. */
 static void close_failed(stage *s, const tool *t, const err *e)
 {
     err ignored = {0};
     char text[sizeof e->text + 64];
-    if (!s->sink && !t->common->output && t->table->writes_model && !isatty(STDOUT_FILENO))
-        open_sink(s, t, &ignored);
-    if (!s->writer || t->common->output) {
+    if (!s->sink && t->table->writes_model && to_stdout(t->common) && !isatty(STDOUT_FILENO))
+        stage_open_output(s, t, &ignored);
+    if (!s->writer || out_is_file(s->sink)) {
         out_discard(s->sink);
         s->sink = NULL;
         return;

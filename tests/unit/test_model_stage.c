@@ -1,0 +1,279 @@
+/* A tool's place in a pipe: a small filter, run as a process of its own on pipes, files and terminals. */
+#include "base/mem.h"
+#include "model/stage.h"
+
+#include "tap.h"
+
+#include <fcntl.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* ---- the filter ---- */
+
+struct options {
+    opt_common common;
+    bool drop, late; /* drop the frames; fail after the model was written */
+    const char *axis;
+};
+
+static const opt options_table[] = {
+    {.name = "drop", .kind = OPT_FLAG, .to = offsetof(struct options, drop), .help = "drop the frames"},
+    {.name = "late", .kind = OPT_FLAG, .to = offsetof(struct options, late), .help = "fail late"},
+    {.name = "axis", .arg = "NAME", .kind = OPT_TEXT, .to = offsetof(struct options, axis), .help = "add an axis"},
+    {.name = NULL},
+};
+
+static const opt_tool filter_table = {
+    .name = "filter", .purpose = "Copy a model", .operands = "", .writes_model = true, .options = options_table};
+
+static const opt_tool looker_table = {
+    .name = "looker", .purpose = "Look at a model", .operands = "", .options = options_table};
+
+static int work(stage *s, model *m, const struct options *o, notes *warnings, err *e)
+{
+    if (o->axis && model_axis_add(m, o->axis, 1, e))
+        return -1;
+    if (!s->writer)
+        return 0;
+    if (stage_write(s, m, e))
+        return -1;
+    if (o->late)
+        return err_set(e, NULL, 0, "too late");
+    return o->drop ? stage_drop_frames(s, m, warnings, e) : stage_copy_frames(s, m, e);
+}
+
+static int filter(const opt_tool *table, int argc, char **argv)
+{
+    struct options o = {0};
+    err e = {0};
+    tool t = {0};
+    stage s = {0};
+    model m = {0};
+    notes warnings = {0};
+    if (tool_begin(&t, table, argc, argv, &o, &e) || t.done)
+        goto out;
+    if ((table->writes_model && stage_open_output(&s, &t, &e)) || stage_read(&s, &m, &e))
+        goto out;
+    work(&s, &m, &o, &warnings, &e);
+out:
+    tool_warn(&t, &warnings);
+    if (!t.done)
+        stage_close(&s, &t, &e);
+    model_free(&m);
+    return tool_end(&t, &e);
+}
+
+/* ---- running it ---- */
+
+enum { MOST = 8, ROOM = 4000 };
+
+typedef struct result {
+    int status;
+    char out[ROOM], say[ROOM]; /* stdout (a pipe or file), stderr */
+} result;
+
+static void slurp(int fd, char *to)
+{
+    size_t n = 0;
+    for (ssize_t got = 1; got > 0 && n<ROOM - 1; n += got> 0 ? (size_t)got : 0)
+        got = pread(fd, to + n, ROOM - 1 - n, (off_t)n);
+    to[n] = 0;
+}
+
+static int scratch(const char *text)
+{
+    char name[] = "/tmp/sinew-test-XXXXXX";
+    int fd = mkstemp(name);
+    unlink(name);
+    if (write(fd, text, strlen(text)) < 0 || lseek(fd, 0, SEEK_SET) < 0)
+        return -1;
+    return fd;
+}
+
+/* The slave of a new terminal. */
+static int terminal(int *master)
+{
+    *master = posix_openpt(O_RDWR | O_NOCTTY);
+    if (*master < 0 || grantpt(*master) || unlockpt(*master))
+        return -1;
+    return open(ptsname(*master), O_RDWR | O_NOCTTY);
+}
+
+/* Runs the filter with options (words between spaces); in and to are closed. */
+static result run_on(const opt_tool *table, const char *options, int from, int to)
+{
+    result r = {0};
+    char words[200], *argv[MOST + 1] = {(char *)(uintptr_t)table->name};
+    int argc = 1, say = scratch("");
+    snprintf(words, sizeof words, "%s", options);
+    for (char *p = strtok(words, " "); p && argc < MOST; p = strtok(NULL, " "))
+        argv[argc++] = p;
+    fflush(stdout);
+    pid_t child = fork();
+    if (!child) {
+        dup2(from, 0);
+        dup2(to, 1);
+        dup2(say, 2);
+        exit(filter(table, argc, argv));
+    }
+    waitpid(child, &r.status, 0);
+    r.status = WIFEXITED(r.status) ? WEXITSTATUS(r.status) : -1;
+    if (!isatty(to))
+        slurp(to, r.out);
+    slurp(say, r.say);
+    close(from);
+    close(to);
+    close(say);
+    return r;
+}
+
+static result run(const char *options, const char *input)
+{
+    return run_on(&filter_table, options, scratch(input), scratch(""));
+}
+
+static bool text_is(const char *got, const char *want)
+{
+    if (!strcmp(got, want))
+        return true;
+    printf("# got '%s'\n# wanted '%s'\n", got, want);
+    return false;
+}
+
+static bool gives(const result *r, int status, const char *written, const char *say)
+{
+    if (r->status != status)
+        printf("# status %d, wanted %d\n", r->status, status);
+    return text_is(r->out, written) & text_is(r->say, say) & (r->status == status);
+}
+
+#define HEAD  "%sinew 1 text\n"
+#define BODY  "axis node 1\narray node.rigid u8 1 node 1\n1\n"
+#define CRC   "crc 3a88e8d9\n"
+#define FRAME "frame 4 0.5\narray x-a u8 1 node 1\n7\n"
+#define FCRC  "crc 28a4775e\n"
+
+static void test_copies(void)
+{
+    result r = run("--text", HEAD BODY FRAME "end\n");
+    ok(gives(&r, 0, HEAD "prov filter 0.1.0 \"\"\n" BODY CRC FRAME FCRC "end\n", ""), "a model and its frames");
+    r = run("--text --axis x-b --threads 1", HEAD BODY "end\n");
+    ok(r.status == STATUS_USAGE, "an option that the tool has not");
+    r = run("--text --axis x-b", HEAD BODY "end\n");
+    ok(gives(&r, 0,
+             HEAD "prov filter 0.1.0 \"--axis x-b\"\naxis node 1\naxis x-b 1\n"
+                  "array node.rigid u8 1 node 1\n1\n" CRC "end\n",
+             ""),
+       "provenance has what changes the result");
+    r = run("--text --drop", HEAD BODY FRAME FRAME "end\n");
+    ok(gives(&r, 0, HEAD "prov filter 0.1.0 \"--drop\"\n" BODY CRC "end\n",
+             "filter: warning: 2 frames are dropped: the model that they belong to changes\n"),
+       "frames that are dropped are counted");
+    r = run("", HEAD BODY "end\n");
+    ok(r.status == 0 && !memcmp(r.out, "\x89sinew", 6), "binary is the default");
+    r = run("-z", HEAD BODY "end\n");
+    ok(r.status == 0 && !memcmp(r.out, "\x1f\x8b", 2), "gzipped with -z");
+}
+
+static void test_failures(void)
+{
+    result r = run("--text", HEAD BODY);
+    ok(gives(&r, 1,
+             HEAD "fail 1 \"filter: stdin:4: the model is cut short; expected `end` (did the tool before this one "
+                  "stop early?)\"\n",
+             "filter: stdin:4: the model is cut short; expected `end` (did the tool before this one stop early?)\n"),
+       "a cut model is said once and sent on as a failure");
+    r = run("--text", HEAD BODY "fail 3 \"tled-run: diverged\"\n");
+    ok(gives(&r, 3, HEAD "fail 3 \"tled-run: diverged\"\n", ""), "a failure before us is copied, silently");
+    r = run("--text", HEAD BODY FRAME "fail 3 \"tled-run: diverged\"\n");
+    ok(gives(&r, 3, HEAD "prov filter 0.1.0 \"\"\n" BODY CRC FRAME FCRC "fail 3 \"tled-run: diverged\"\n", ""),
+       "one after the frames too");
+    r = run("--text --drop", HEAD BODY FRAME "fail 3 \"tled-run: diverged\"\n");
+    ok(r.status == 3 && strstr(r.out, CRC "fail 3") && !*r.say, "and where the frames are dropped");
+    r = run("--text --late", HEAD BODY "end\n");
+    ok(gives(&r, 1, HEAD "prov filter 0.1.0 \"--late\"\n" BODY CRC "fail 1 \"filter: too late\"\n",
+             "filter: too late\n"),
+       "a failure after the model was written");
+    r = run("--text --bogus", HEAD BODY "end\n");
+    ok(r.status == 2 && strstr(r.out, "fail 2 \"filter: ") && !strncmp(r.say, "filter: ", 8), "a usage error: %s",
+       r.say);
+    r = run("", "");
+    ok(r.status == 1 && !strcmp(r.say, "filter: no model on stdin (0 bytes); if bash's builtin bind ran, write 'sinew "
+                                       "bind'\n"),
+       "nothing on stdin");
+}
+
+/* A reader is not done before the end was seen: what comes late still counts. */
+static void test_looker(void)
+{
+    result r = run_on(&looker_table, "", scratch(HEAD BODY FRAME FRAME "end\n"), scratch(""));
+    ok(gives(&r, 0, "", ""), "a tool that writes no model");
+    r = run_on(&looker_table, "", scratch(HEAD BODY FRAME "fail 3 \"tled-run: diverged\"\n"), scratch(""));
+    ok(gives(&r, 3, "", ""), "takes the status of a failure that comes after what it read");
+    r = run_on(&looker_table, "", scratch(HEAD BODY FRAME), scratch(""));
+    ok(r.status == 1 && !*r.out && strstr(r.say, "cut short"), "and sees a cut there");
+}
+
+static void test_files(void)
+{
+    char folder[] = "/tmp/sinew-test-XXXXXX", options[100], file[60];
+    if (!mkdtemp(folder))
+        return;
+    snprintf(file, sizeof file, "%s/x", folder);
+    snprintf(options, sizeof options, "--text -o %s", file);
+    result r = run(options, HEAD BODY "fail 3 \"tled-run: diverged\"\n");
+    ok(r.status == 3 && access(file, F_OK) && !*r.out, "a failure leaves no file and writes nothing elsewhere");
+    snprintf(options, sizeof options, "--text --late -o %s", file);
+    r = run(options, HEAD BODY "end\n");
+    ok(r.status == 1 && access(file, F_OK), "a late one neither");
+    snprintf(options, sizeof options, "--text -o %s", file);
+    r = run(options, HEAD BODY "end\n");
+    in *s = in_open(file, &(err){0});
+    char *text = NULL;
+    ok(r.status == 0 && s && in_all(s, &text, &(err){0}) > 0 &&
+           text_is(text, HEAD "prov filter 0.1.0 \"\"\n" BODY CRC "end\n"),
+       "a file");
+    free(text);
+    in_close(s);
+    r = run(options, HEAD);
+    ok(r.status == 1 && !access(file, F_OK), "a failure keeps the file that was there");
+    r = run("--text -o -", HEAD "fail 3 \"a: b\"\n");
+    ok(r.status == 3 && text_is(r.out, HEAD "fail 3 \"a: b\"\n"), "-o - is standard output, failures too");
+    unlink(file);
+    rmdir(folder);
+}
+
+static void test_terminals(void)
+{
+    int master, tty = terminal(&master);
+    if (tty < 0) {
+        skip(5, "no pseudo-terminals here");
+        return;
+    }
+    result r = run_on(&filter_table, "--text", dup(tty), scratch(""));
+    ok(r.status == 2 && strstr(r.say, "reads a model on stdin, which is a terminal; see --help"),
+       "stdin is a terminal");
+    ok(strstr(r.out, "fail 2 \"filter: reads a model"), "the next tool hears of it");
+    r = run_on(&filter_table, "", scratch(HEAD BODY "end\n"), dup(tty));
+    ok(r.status == 1 && strstr(r.say, "stdout: is a terminal") && strstr(r.say, "expected --text"),
+       "binary to a terminal");
+    r = run_on(&filter_table, "--bogus", scratch(""), dup(tty));
+    ok(r.status == 2 && !strstr(r.say, "terminal"), "a usage error at a terminal is only said");
+    r = run_on(&filter_table, "--text", scratch(HEAD "end\n"), dup(tty));
+    ok(r.status == 0 && !*r.say, "text to a terminal");
+    close(tty);
+    close(master);
+}
+
+int main(void)
+{
+    test_copies();
+    test_failures();
+    test_looker();
+    test_files();
+    test_terminals();
+    return done_testing();
+}
