@@ -16,6 +16,8 @@ typedef struct tap {
 /* The one object of a test program that may change: which test it is at. */
 static tap tap_state;
 
+static inline void tap_line(bool passed, const char *format, va_list list) __attribute__((format(printf, 2, 0)));
+
 static inline void tap_line(bool passed, const char *format, va_list list)
 {
     tap_state.count++;
