@@ -124,24 +124,32 @@ static bool comes_near(const search *s, const box *b)
     return closest_distance(&s->shape, middle) <= (s->reach + sqrt(half)) * (1 + 1e-6);
 }
 
-/* The voxels of b, so that the work follows the primitive's area and not its box. */
-static void descend(search *s, const box *b)
+/* The halves of b across its longest side. */
+static void halve(const box *b, box *low, box *high)
 {
-    if (cells_in(b) <= WALKED) {
-        walk(s, b);
-        return;
-    }
-    if (!comes_near(s, b))
-        return;
     int longest = 0;
     for (int a = 1; a < 3; a++)
         if (b->high[a] - b->low[a] > b->high[longest] - b->low[longest])
             longest = a;
-    box part[2] = {*b, *b};
-    part[0].high[longest] = b->low[longest] + (b->high[longest] - b->low[longest]) / 2;
-    part[1].low[longest] = part[0].high[longest] + 1;
-    descend(s, &part[0]);
-    descend(s, &part[1]);
+    *low = *high = *b;
+    low->high[longest] = b->low[longest] + (b->high[longest] - b->low[longest]) / 2;
+    high->low[longest] = low->high[longest] + 1;
+}
+
+/* The voxels of a box, so that the work follows the primitive's area and not its box. Of each pair of halves one waits:
+ * with 31 bits a side never more than 3 x 31 + 1. */
+static void search_box(search *s, const box *all)
+{
+    box waiting[96] = {*all};
+    for (int count = 1; count > 0;) {
+        box b = waiting[--count];
+        if (cells_in(&b) <= WALKED) {
+            walk(s, &b);
+        } else if (comes_near(s, &b)) {
+            halve(&b, &waiting[count], &waiting[count + 1]);
+            count += 2;
+        }
+    }
 }
 
 /* The cells whose centres are at most a voxel's side from the shape's bounding box along each axis. Returns false where
@@ -173,7 +181,7 @@ static int try_primitives(search *s, rigid *r, err *e)
         s->surface = &r->surface[p->surface];
         s->holds = false;
         if (cells_near(s, &near))
-            descend(s, &near);
+            search_box(s, &near);
         s->surface->idle += !s->holds;
     }
     return 0;

@@ -103,7 +103,7 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
     rigid r = {0};
     model file = {0};
     muscle *muscles = NULL;
-    int64_t count;
+    int64_t count = 0;
     int rc = -1;
     if (collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||
         muscle_make(m, (muscle_fibre)o->fibre, &muscles, &count, warnings, e))

@@ -202,7 +202,6 @@ static int find_muscles(const model *m, muscle **list, int64_t *count, err *e)
     const model_array *is = model_need(m, "volume.muscle", e), *name = model_need(m, "volume.name", e);
     if (!is || !name)
         return -1;
-    *count = 0;
     for (int64_t i = 0; i < is->rows; i++)
         *count += is->u8[i] != 0;
     *list = mem_array(*count, sizeof **list, "muscles", e);
@@ -236,6 +235,7 @@ int muscle_make(model *m, muscle_fibre fibre, muscle **list, int64_t *count, not
     body b = {0};
     int rc = -1;
     *list = NULL;
+    *count = 0;
     model_axis_drop(m, "muscle", warnings);
     model_remove(m, "element.fibre");
     if (find_arrays(m, &b, e) || find_muscles(m, list, count, e))

@@ -23,7 +23,7 @@ typedef struct rigid_surface {
 } rigid_surface;
 
 typedef struct rigid {
-    rigid_surface *surface; /* in order of the groups */
+    rigid_surface *surface;     /* in order of the groups */
     rigid_primitive *primitive; /* by surface */
     int64_t surfaces, primitives, surface_capacity, primitive_capacity;
 } rigid;

@@ -465,32 +465,28 @@ static void at_the_centre(void)
     model_free(&m);
 }
 
-static void axes(void)
+/* --fibre axis on the bar: the fibre of the first muscle, and how many warnings. */
+static void axis(const char *fixed, float x, int said, const char *what)
 {
     err e = {0};
     notes warnings = {0};
     muscle *list;
     int64_t count;
     model m;
-    bar(&m, "00000"
-            "00000"
-            "00100"
-            "00000");
+    bar(&m, fixed);
     ok(!muscle_make(&m, MUSCLE_AXIS, &list, &count, &warnings, &e), "--fibre axis %s", e.text);
-    ok(fibre(&m, 0)[0] == 1 && fibre(&m, 1)[0] == 1 && fibre(&m, 1)[1] == 0, "along x, toward the centre");
-    ok(warnings.count == 2, "muscle_b has neither centre nor axis");
-    notes_free(&warnings);
-    free(list);
-    bar(&m, "00000"
-            "00000"
-            "00000"
-            "00000");
-    ok(!muscle_make(&m, MUSCLE_AXIS, &list, &count, &warnings, &e) && fibre(&m, 0)[0] == 1,
-       "no rigid node: the largest component is positive");
-    ok(warnings.count == 3 && strstr(warnings.line[0], "muscle_a"), "and it is said");
+    ok(fibre(&m, 0)[0] == x && fibre(&m, 1)[0] == x && fibre(&m, 1)[1] == 0, "%s", what);
+    ok(warnings.count == said && strstr(warnings.line[0], said > 2 ? "muscle_a" : "muscle_b"), "%d warnings", said);
     notes_free(&warnings);
     free(list);
     model_free(&m);
+}
+
+static void axes(void)
+{
+    axis("00000000000010000000", 1, 2, "along x, toward the centre"); /* muscle_b has neither centre nor axis */
+    axis("10000000000000000000", -1, 2, "along x, toward a centre at the other end");
+    axis("00000000000000000000", 1, 3, "no rigid node: the largest component is positive");
 }
 
 /* A straight row of voxels along (1, 2, -2) gives that axis, whatever lies across. */

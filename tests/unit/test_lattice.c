@@ -11,7 +11,7 @@ static void set_cells(model *m, const int32_t *ijk, int64_t elements)
     model_axis_drop(m, "element", NULL);
     model_axis_add(m, "element", elements, &e);
     model_array *a = model_add(m, "element.lattice", &e);
-    if (a)
+    if (a && elements)
         memcpy(a->i32, ijk, 3 * (size_t)elements * sizeof *ijk);
     ok(a && !e.status, "a model of %d cells %s", (int)elements, e.text);
 }
@@ -23,8 +23,9 @@ static void metadata(void)
     lattice l = {{0.1, -2, 1e-9}, {0.0025, 0.001, 1.0 / 3}}, back;
     ok(lattice_of(&m, &back, &e) && strstr(e.text, "lattice.origin"), "none in an empty model: %s", e.text);
     e = (err){0};
-    ok(!lattice_save(&l, &m, &e) && !lattice_of(&m, &back, &e) && !memcmp(&l, &back, sizeof l),
-       "comes back to the bit");
+    ok(!lattice_save(&l, &m, &e) && !lattice_of(&m, &back, &e), "saved %s", e.text);
+    for (int a = 0; a < 3; a++)
+        ok(l.origin[a] == back.origin[a] && l.spacing[a] == back.spacing[a], "comes back to the bit");
     double corner[3], local[3];
     lattice_corner(&l, (int32_t[]){4, -3, 6}, corner);
     lattice_local(&l, corner, local);
