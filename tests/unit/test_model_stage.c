@@ -83,13 +83,16 @@ static void slurp(int fd, char *to)
     to[n] = 0;
 }
 
+/* A file of its own without a name, with text in it. */
 static int scratch(const char *text)
 {
-    char name[] = "/tmp/sinew-test-XXXXXX";
-    int fd = mkstemp(name);
-    unlink(name);
-    if (write(fd, text, strlen(text)) < 0 || lseek(fd, 0, SEEK_SET) < 0)
+    FILE *f = tmpfile();
+    if (!f)
         return -1;
+    fputs(text, f);
+    rewind(f);
+    int fd = dup(fileno(f));
+    fclose(f);
     return fd;
 }
 
@@ -219,7 +222,7 @@ static void test_looker(void)
 
 static void test_files(void)
 {
-    char folder[] = "/tmp/sinew-test-XXXXXX", options[100], file[60];
+    char folder[] = P_tmpdir "/sinew-test-XXXXXX", options[100], file[60];
     if (!mkdtemp(folder))
         return;
     snprintf(file, sizeof file, "%s/x", folder);
