@@ -1,0 +1,18 @@
+/* Elements from runs of voxels: the arrays of a model. Elements come in the order of the runs; nodes, the corners that
+ * elements have, in k, j, i order (i fastest), numbered by sweeping two layers of corners, so that no grid is ever
+ * stored whole. The model owns what is added.
+ */
+#ifndef SINEW_BUILD_H
+#define SINEW_BUILD_H
+
+#include "mesh/lattice.h"
+#include "voxelise/volumes.h"
+#include "voxelise/voxels.h"
+
+/* Adds axes node and element, node.position, node.lattice, element.node, element.lattice and element.volume. */
+int build_elements(model *m, const voxels *x, const lattice *l, err *e);
+
+/* Adds axis volume and its arrays; volumes have their numbers of the plan. */
+int build_volumes(model *m, const volumes *plan, err *e);
+
+#endif

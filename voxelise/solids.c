@@ -1,0 +1,261 @@
+#include "voxelise/solids.h"
+
+#include "base/mem.h"
+#include "mesh/surface.h"
+#include "voxelise/closed.h"
+#include "voxelise/grid.h"
+#include "voxelise/hash.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What is needed on the way. */
+typedef struct work {
+    const obj *o;
+    const volumes *plan;
+    solids *s;
+    int32_t *weld;    /* the OBJ's vertices: a vertex of s, -1 = not used */
+    int64_t *start;   /* volumes + 1: the first of a volume's polygons */
+    int64_t *face;    /* polygons, volume after volume */
+    int32_t *surface; /* polygons */
+    int32_t *cut;     /* triangles of one polygon */
+    int64_t cut_capacity, vertex_capacity, volume_capacity;
+} work;
+
+static void work_free(work *w)
+{
+    free(w->weld);
+    free(w->start);
+    free(w->face);
+    free(w->surface);
+    free(w->cut);
+}
+
+static bool is_polygon(const obj *o, int64_t face)
+{
+    return o->face_start[face + 1] - o->face_start[face] >= 3;
+}
+
+/* ---- polygons by volume */
+
+static int gather_polygons(work *w, err *e)
+{
+    const obj *o = w->o;
+    const volumes *plan = w->plan;
+    w->start = mem_array((int64_t)plan->volumes + 2, sizeof *w->start, "polygons", e);
+    if (!w->start)
+        return -1;
+    /* Counted two places up, so that filling leaves each volume's first in its place. */
+    for (int64_t f = 0; f < o->faces; f++)
+        for (int64_t m = plan->group_start[o->face_group[f]]; m < plan->group_start[o->face_group[f] + 1]; m++)
+            w->start[plan->member[m].volume + 2] += is_polygon(o, f);
+    for (int32_t v = 0; v < plan->volumes; v++)
+        w->start[v + 2] += w->start[v + 1];
+    int64_t polygons = w->start[plan->volumes + 1];
+    w->face = mem_array(polygons, sizeof *w->face, "polygons", e);
+    w->surface = mem_array(polygons, sizeof *w->surface, "polygons", e);
+    if (!w->face || !w->surface)
+        return -1;
+    for (int64_t f = 0; f < o->faces; f++)
+        for (int64_t m = plan->group_start[o->face_group[f]]; m < plan->group_start[o->face_group[f] + 1]; m++) {
+            if (!is_polygon(o, f))
+                continue;
+            int64_t at = w->start[plan->member[m].volume + 1]++;
+            w->face[at] = f;
+            w->surface[at] = plan->member[m].surface;
+        }
+    return 0;
+}
+
+/* ---- vertices */
+
+static int take_position(const work *w, int64_t vertex, double *p, err *e)
+{
+    for (int a = 0; a < 3; a++) {
+        double x = w->o->position[3 * vertex + a];
+        if (!(fabs(x) <= GRID_LARGEST))
+            return err_set(e, w->o->name, 0, "vertex %lld has a coordinate of %g; expected magnitudes up to %g",
+                           (long long)vertex + 1, x, GRID_LARGEST);
+        p[a] = fabs(x) < GRID_SMALLEST ? 0 : x;
+    }
+    return 0;
+}
+
+static int64_t count_used(const work *w)
+{
+    int64_t used = 0;
+    for (int64_t i = 0; i < w->start[w->plan->volumes]; i++) {
+        const int64_t *start = &w->o->face_start[w->face[i]];
+        for (int64_t c = start[0]; c < start[1]; c++) {
+            int32_t *to = &w->weld[w->o->corner_vertex[c]];
+            used += *to == 0;
+            *to = 1;
+        }
+    }
+    return used;
+}
+
+static uint64_t hash_position(const double *p)
+{
+    uint64_t h = 0, bits;
+    for (int a = 0; a < 3; a++) {
+        memcpy(&bits, &p[a], sizeof bits);
+        h = hash_next(h, bits);
+    }
+    return h;
+}
+
+/* The vertex of s at a place, new or not. table: vertices + 1; 0: free. */
+static int32_t vertex_at(solids *s, int32_t *table, int64_t size, const double *p)
+{
+    int64_t at = (int64_t)(hash_position(p) & (uint64_t)(size - 1));
+    for (; table[at]; at = (at + 1) & (size - 1))
+        if (memcmp(&s->position[3 * ((int64_t)table[at] - 1)], p, 3 * sizeof *p) == 0)
+            return table[at] - 1;
+    memcpy(&s->position[3 * s->vertices], p, 3 * sizeof *p);
+    table[at] = (int32_t)++s->vertices;
+    for (int a = 0; a < 3; a++) {
+        s->low[a] = fmin(s->low[a], p[a]);
+        s->high[a] = fmax(s->high[a], p[a]);
+    }
+    return (int32_t)s->vertices - 1;
+}
+
+static int weld_vertices(work *w, err *e)
+{
+    solids *s = w->s;
+    w->weld = mem_array(w->o->vertices, sizeof *w->weld, "vertices", e);
+    if (!w->weld)
+        return -1;
+    int64_t used = count_used(w), size = hash_size(used);
+    int32_t *table = mem_array(size, sizeof *table, "vertices", e);
+    s->position = mem_array(3 * used, sizeof *s->position, "vertices", e);
+    int status = table && s->position ? 0 : -1;
+    for (int a = 0; a < 3; a++)
+        s->low[a] = INFINITY, s->high[a] = -INFINITY;
+    for (int64_t i = 0; !status && i < w->o->vertices; i++) {
+        double p[3];
+        bool is_used = w->weld[i] != 0;
+        w->weld[i] = -1;
+        if (!is_used)
+            continue;
+        status = take_position(w, i, p, e);
+        if (!status)
+            w->weld[i] = vertex_at(s, table, size, p);
+    }
+    free(table);
+    return status;
+}
+
+/* ---- volume after volume */
+
+/* "skin 8, skull 4" */
+static void name_open(const work *w, const closed_result *r, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int32_t s = 0; s < w->plan->surfaces; s++) {
+        if (!r->open_of[s])
+            continue;
+        int wrote = snprintf(text + used, size - used, "%s%s %lld", used ? ", " : "", w->plan->surface[s].name,
+                             (long long)r->open_of[s]);
+        if (wrote < 0 || (size_t)wrote >= size - used)
+            return;
+        used += (size_t)wrote;
+    }
+}
+
+static int report(const work *w, const char *volume, const closed_result *r, bool allow_open, notes *warnings, err *e)
+{
+    if (r->repeated && r->cancel)
+        notes_add(warnings,
+                  "volume '%s' gives polygons again (%lld of them): they cancel in pairs, as where two solids touch",
+                  volume, (long long)r->repeated);
+    else if (r->repeated)
+        notes_add(warnings, "volume '%s' gives polygons again (%lld of them): each counts once", volume,
+                  (long long)r->repeated);
+    if (!r->open)
+        return 0;
+    char names[500];
+    name_open(w, r, names, sizeof names);
+    if (allow_open) {
+        notes_add(warnings, "volume '%s' is open: %lld open edges (%s); what is inside it is a guess", volume,
+                  (long long)r->open, names);
+        return 0;
+    }
+    return err_set(e, w->o->name, 0,
+                   "volume '%s' is open: %lld open edges (%s); expected every edge to join two polygons "
+                   "(--allow-open goes on all the same)",
+                   volume, (long long)r->open, names);
+}
+
+static int add_triangle(work *w, int32_t volume, const int32_t *corner, const int32_t *cut, err *e)
+{
+    solids *s = w->s;
+    if (mem_grow(&s->vertex, &w->vertex_capacity, 3 * (s->triangles + 1), sizeof *s->vertex, "triangles", e) ||
+        mem_grow(&s->volume, &w->volume_capacity, s->triangles + 1, sizeof *s->volume, "triangles", e))
+        return -1;
+    for (int i = 0; i < 3; i++)
+        s->vertex[3 * s->triangles + i] = w->weld[corner[cut[i]]];
+    s->volume[s->triangles++] = volume;
+    return 0;
+}
+
+static int add_polygon(work *w, int32_t volume, int64_t face, err *e)
+{
+    static const int32_t whole[3] = {0, 1, 2};
+    int64_t from = w->o->face_start[face], count = w->o->face_start[face + 1] - from;
+    const int32_t *corner = &w->o->corner_vertex[from];
+    if (count == 3)
+        return add_triangle(w, volume, corner, whole, e);
+    if (mem_grow(&w->cut, &w->cut_capacity, 3 * (count - 2), sizeof *w->cut, "triangles", e))
+        return -1;
+    surface_triangulate(w->o->position, corner, count, w->cut);
+    for (int64_t t = 0; t < count - 2; t++)
+        if (add_triangle(w, volume, corner, &w->cut[3 * t], e))
+            return -1;
+    return 0;
+}
+
+static int build_volume(work *w, int32_t volume, bool allow_open, notes *warnings, err *e)
+{
+    int64_t from = w->start[volume];
+    closed_polygons p = {.o = w->o,
+                         .weld = w->weld,
+                         .face = &w->face[from],
+                         .surface = &w->surface[from],
+                         .polygons = w->start[volume + 1] - from,
+                         .surfaces = w->plan->surfaces};
+    closed_result r;
+    if (closed_check(&p, &r, e))
+        return -1;
+    int status = report(w, w->plan->volume[volume].name, &r, allow_open, warnings, e);
+    for (int64_t i = 0; !status && i < p.polygons; i++)
+        if (!r.drop[i])
+            status = add_polygon(w, volume, p.face[i], e);
+    closed_free(&r);
+    return status;
+}
+
+int solids_build(solids *s, const obj *o, const volumes *plan, bool allow_open, notes *warnings, err *e)
+{
+    *s = (solids){0};
+    work w = {.o = o, .plan = plan, .s = s};
+    int status = gather_polygons(&w, e) || weld_vertices(&w, e) ? -1 : 0;
+    for (int32_t v = 0; !status && v < plan->volumes; v++)
+        status = build_volume(&w, v, allow_open, warnings, e);
+    work_free(&w);
+    if (status)
+        solids_free(s);
+    return status;
+}
+
+void solids_free(solids *s)
+{
+    free(s->position);
+    free(s->vertex);
+    free(s->volume);
+    *s = (solids){0};
+}

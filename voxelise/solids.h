@@ -1,0 +1,24 @@
+/* The volumes of a plan as triangles in the source file's unit, ready for the inside test: vertices at one place made
+ * one, polygons cut into triangles, every volume seen to be closed. Owned by whoever declares it.
+ */
+#ifndef SINEW_SOLIDS_H
+#define SINEW_SOLIDS_H
+
+#include "voxelise/volumes.h"
+
+typedef struct solids {
+    double *position; /* vertices x 3, those used only */
+    int64_t vertices;
+    int32_t *vertex; /* triangles x 3 */
+    int32_t *volume; /* triangles */
+    int64_t triangles;
+    double low[3], high[3]; /* the box of the vertices */
+} solids;
+
+/* -1 with e filled where a volume is open (with allow_open that is a note). Coordinates too small for exact arithmetic
+ * (grid.h) are taken as 0, those too large refused. */
+int solids_build(solids *s, const obj *o, const volumes *plan, bool allow_open, notes *warnings, err *e);
+
+void solids_free(solids *s);
+
+#endif

@@ -1,0 +1,324 @@
+#include "voxelise/volumes.h"
+
+#include "base/mem.h"
+#include "model/materials.h"
+#include "voxelise/hash.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+bool volumes_begins(const char *name, const char *with)
+{
+    return strncasecmp(name, with, strlen(with)) == 0;
+}
+
+bool volumes_is_rigid(const char *name)
+{
+    return volumes_begins(name, "skull") || volumes_begins(name, "bone") || volumes_begins(name, "rigid");
+}
+
+void volumes_free(volumes *v)
+{
+    for (int32_t i = 0; i < v->volumes; i++) {
+        free(v->volume[i].name);
+        free(v->volume[i].surfaces);
+    }
+    for (int32_t i = 0; i < v->surfaces; i++)
+        free(v->surface[i].name);
+    free(v->volume);
+    free(v->surface);
+    free(v->member);
+    free(v->group_start);
+    free(v->token);
+    free(v->token_start);
+    *v = (volumes){0};
+}
+
+/* ---- the surfaces of an OBJ */
+
+/* Finds surfaces by name while they are gathered. */
+typedef struct name_table {
+    int32_t *at; /* index of a surface + 1; 0: free */
+    int64_t size, capacity;
+} name_table;
+
+static uint64_t hash_name(const char *name, size_t length)
+{
+    uint64_t h = length;
+    for (size_t i = 0; i < length; i++)
+        h = hash_next(h, (uint64_t)tolower((unsigned char)name[i]));
+    return h;
+}
+
+static bool same_name(const char *a, const char *b, size_t length)
+{
+    return strncasecmp(a, b, length) == 0 && a[length] == '\0';
+}
+
+/* The index of the surface so named, new or not; -1 with e filled. */
+static int32_t surface_named(volumes *v, name_table *t, const char *name, size_t length, err *e)
+{
+    int64_t at = (int64_t)(hash_name(name, length) & (uint64_t)(t->size - 1));
+    for (; t->at[at]; at = (at + 1) & (t->size - 1))
+        if (same_name(v->surface[t->at[at] - 1].name, name, length))
+            return t->at[at] - 1;
+    if (mem_grow(&v->surface, &t->capacity, v->surfaces + 1, sizeof *v->surface, "surfaces", e))
+        return -1;
+    char *copy = mem_array((int64_t)length + 1, 1, "surfaces", e);
+    if (!copy)
+        return -1;
+    memcpy(copy, name, length);
+    v->surface[v->surfaces] = (volumes_surface){.name = copy};
+    t->at[at] = ++v->surfaces;
+    return v->surfaces - 1;
+}
+
+static int64_t count_names(const obj *o)
+{
+    int64_t count = 0;
+    for (int32_t g = 0; g < o->groups; g++)
+        for (const char *p = o->group[g]; *p; p += strcspn(p, " "), p += strspn(p, " "))
+            count++;
+    return count;
+}
+
+/* One group's names become tokens. */
+static int take_group(volumes *v, name_table *t, const obj *o, int32_t group, err *e)
+{
+    int64_t count = v->token_start[group];
+    for (const char *p = o->group[group] + strspn(o->group[group], " "); *p;) {
+        size_t length = strcspn(p, " ");
+        int32_t s = surface_named(v, t, p, length, e);
+        if (s < 0)
+            return -1;
+        v->token[count++] = s;
+        p += length;
+        p += strspn(p, " ");
+    }
+    v->token_start[group + 1] = count;
+    return 0;
+}
+
+static bool group_is_rigid(const volumes *v, int32_t group)
+{
+    for (int64_t i = v->token_start[group]; i < v->token_start[group + 1]; i++)
+        if (!volumes_is_rigid(v->surface[v->token[i]].name))
+            return false;
+    return true;
+}
+
+/* Polygons of each surface, from those of each group. */
+static int count_polygons(volumes *v, const obj *o, err *e)
+{
+    int64_t *polygons = mem_array(o->groups, sizeof *polygons, "groups", e);
+    if (!polygons)
+        return -1;
+    for (int64_t f = 0; f < o->faces; f++)
+        polygons[o->face_group[f]] += o->face_start[f + 1] - o->face_start[f] >= 3;
+    for (int32_t g = 0; g < o->groups; g++) {
+        bool rigid = group_is_rigid(v, g);
+        for (int64_t i = v->token_start[g]; i < v->token_start[g + 1]; i++) {
+            volumes_surface *s = &v->surface[v->token[i]];
+            s->polygons += polygons[g];
+            s->own += rigid || !volumes_is_rigid(s->name) ? polygons[g] : 0;
+        }
+    }
+    free(polygons);
+    return 0;
+}
+
+int volumes_surfaces(volumes *v, const obj *o, err *e)
+{
+    int64_t names = count_names(o);
+    name_table t = {.size = hash_size(names)};
+    int status = -1;
+    t.at = mem_array(t.size, sizeof *t.at, "surfaces", e);
+    v->token = mem_array(names, sizeof *v->token, "surfaces", e);
+    v->token_start = mem_array((int64_t)o->groups + 1, sizeof *v->token_start, "surfaces", e);
+    v->groups = o->groups;
+    if (!t.at || !v->token || !v->token_start)
+        goto out;
+    for (int32_t g = 0; g < o->groups; g++)
+        if (take_group(v, &t, o, g, e))
+            goto out;
+    status = count_polygons(v, o, e);
+    int64_t polygons = 0;
+    for (int32_t s = 0; s < v->surfaces; s++) {
+        v->rigid = v->rigid || volumes_is_rigid(v->surface[s].name);
+        polygons += v->surface[s].polygons;
+    }
+    if (status == 0 && polygons == 0)
+        status = err_set(e, o->name, 0, "no polygons; expected closed surfaces (f lines of 3 corners and more)");
+out:
+    free(t.at);
+    return status;
+}
+
+/* ---- from surfaces to volumes */
+
+static int compare_links(const void *a, const void *b)
+{
+    const volumes_link *x = a, *y = b;
+    if (x->surface != y->surface)
+        return (x->surface > y->surface) - (x->surface < y->surface);
+    return (x->volume > y->volume) - (x->volume < y->volume);
+}
+
+static bool is_member(const volumes *v, int32_t group, int32_t volume)
+{
+    for (int64_t i = v->group_start[group]; i < v->members; i++)
+        if (v->member[i].volume == volume)
+            return true;
+    return false;
+}
+
+/* link_start: surfaces + 1. */
+static int join_group(volumes *v, int32_t group, const volumes_link *link, const int64_t *link_start, bool marks,
+                      err *e)
+{
+    bool rigid = group_is_rigid(v, group);
+    for (int64_t t = v->token_start[group]; t < v->token_start[group + 1]; t++) {
+        int32_t s = v->token[t];
+        if (marks && !rigid && volumes_is_rigid(v->surface[s].name))
+            continue;
+        for (int64_t l = link_start[s]; l < link_start[s + 1]; l++) {
+            if (is_member(v, group, link[l].volume))
+                continue;
+            if (mem_grow(&v->member, &v->capacity, v->members + 1, sizeof *v->member, "volumes", e))
+                return -1;
+            v->member[v->members++] = (volumes_member){group, link[l].volume, s};
+        }
+    }
+    v->group_start[group + 1] = v->members;
+    return 0;
+}
+
+/* A volume's surfaces as people read them. */
+static int list_surfaces(volumes *v, const volumes_link *link, int64_t links, err *e)
+{
+    int64_t *length = mem_array(v->volumes, sizeof *length, "volumes", e);
+    if (!length)
+        return -1;
+    for (int64_t i = 0; i < links; i++)
+        length[link[i].volume] += (int64_t)strlen(v->surface[link[i].surface].name) + 1;
+    for (int32_t i = 0; i < v->volumes; i++) {
+        v->volume[i].surfaces = mem_array(length[i] + 1, 1, "volumes", e);
+        if (!v->volume[i].surfaces) {
+            free(length);
+            return -1;
+        }
+        length[i] = 0;
+    }
+    for (int64_t i = 0; i < links; i++) {
+        const char *name = v->surface[link[i].surface].name;
+        int64_t *at = &length[link[i].volume];
+        char *to = v->volume[link[i].volume].surfaces;
+        if (*at)
+            to[(*at)++] = ' ';
+        memcpy(to + *at, name, strlen(name));
+        *at += (int64_t)strlen(name);
+    }
+    free(length);
+    return 0;
+}
+
+int volumes_join(volumes *v, const volumes_link *given, int64_t links, bool marks, err *e)
+{
+    int status = -1;
+    volumes_link *link = mem_array(links, sizeof *link, "volumes", e);
+    int64_t *start = mem_array((int64_t)v->surfaces + 1, sizeof *start, "volumes", e);
+    v->group_start = mem_array((int64_t)v->groups + 1, sizeof *v->group_start, "volumes", e);
+    if (!link || !start || !v->group_start)
+        goto out;
+    memcpy(link, given, (size_t)links * sizeof *link);
+    qsort(link, (size_t)links, sizeof *link, compare_links);
+    for (int64_t i = 0; i < links; i++) {
+        start[link[i].surface + 1]++;
+        v->surface[link[i].surface].used = true;
+    }
+    for (int32_t s = 0; s < v->surfaces; s++)
+        start[s + 1] += start[s];
+    for (int32_t g = 0; g < v->groups; g++)
+        if (join_group(v, g, link, start, marks, e))
+            goto out;
+    status = list_surfaces(v, link, links, e);
+out:
+    free(link);
+    free(start);
+    return status;
+}
+
+/* ---- by names */
+
+typedef enum part { PART_SKIN, PART_OTHER, PART_MUSCLE } part;
+
+static part part_of(const char *name)
+{
+    if (volumes_begins(name, "muscle"))
+        return PART_MUSCLE;
+    return volumes_begins(name, "skin") || volumes_is_rigid(name) ? PART_SKIN : PART_OTHER;
+}
+
+static int32_t material_for(const model *m, const char *name, bool muscle)
+{
+    int32_t at = materials_find(m, name);
+    if (at < 0 && muscle)
+        at = materials_find(m, "muscle");
+    return at < 0 ? 0 : at;
+}
+
+static int add_volume(volumes *v, const char *name, part p, int32_t level, int32_t priority, const model *m, err *e)
+{
+    char *copy = mem_text(name, e);
+    if (!copy)
+        return -1;
+    bool muscle = p == PART_MUSCLE;
+    v->volume[v->volumes++] = (volumes_volume){.name = copy,
+                                               .level = level,
+                                               .priority = priority,
+                                               .material = material_for(m, name, muscle),
+                                               .muscle = muscle};
+    return 0;
+}
+
+/* Links every surface of one part: all to one volume, or each to one of its own. */
+static int add_part(volumes *v, part p, int32_t level, int32_t priority, volumes_link *link, int64_t *links,
+                    const model *m, err *e)
+{
+    int32_t first = -1, count = 0;
+    for (int32_t s = 0; s < v->surfaces; s++) {
+        if (v->surface[s].own == 0 || part_of(v->surface[s].name) != p)
+            continue;
+        bool new_volume = first < 0 || p == PART_MUSCLE;
+        if (new_volume && add_volume(v, p == PART_SKIN ? "skin" : v->surface[s].name, p, level, priority + count, m, e))
+            return -1;
+        first = first < 0 ? v->volumes - 1 : first;
+        link[(*links)++] = (volumes_link){s, v->volumes - 1};
+        count++;
+    }
+    if (p != PART_OTHER || count < 2)
+        return 0;
+    free(v->volume[first].name);
+    v->volume[first].name = mem_text("other", e);
+    v->volume[first].material = material_for(m, "other", false);
+    return v->volume[first].name ? 0 : -1;
+}
+
+int volumes_by_name(volumes *v, const obj *o, const model *m, err *e)
+{
+    *v = (volumes){0};
+    if (volumes_surfaces(v, o, e))
+        return -1;
+    int64_t links = 0;
+    int status = -1;
+    volumes_link *link = mem_array(v->surfaces, sizeof *link, "volumes", e);
+    v->volume = mem_array(v->surfaces, sizeof *v->volume, "volumes", e);
+    if (link && v->volume && !add_part(v, PART_SKIN, 0, 0, link, &links, m, e) &&
+        !add_part(v, PART_OTHER, 0, v->volumes, link, &links, m, e) &&
+        !add_part(v, PART_MUSCLE, v->volumes > 0, 0, link, &links, m, e))
+        status = volumes_join(v, link, links, true, e);
+    free(link);
+    return status;
+}

@@ -1,0 +1,347 @@
+/* voxelise: closed surfaces become hexahedral elements, one a voxel (W&M section 3, Algorithm 1). */
+#include "base/mem.h"
+#include "base/num.h"
+#include "base/pool.h"
+#include "mesh/surface.h"
+#include "model/materials.h"
+#include "model/stage.h"
+#include "voxelise/build.h"
+#include "voxelise/solids.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+struct options {
+    opt_common common;
+    const char *unit, *volumes, *materials;
+    opt_lengths size, origin, box;
+    int64_t cells;
+    bool allow_open;
+};
+
+static const opt option_list[] = {
+    {0, "unit", "mm|cm|m|in|um", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
+     "of the OBJ, and of lengths without a suffix"},
+    {'s', NULL, "H|HX,HY,HZ", OPT_LENGTHS, offsetof(struct options, size), 1, 3, NULL, 0, "voxel size"},
+    {'n', NULL, "CELLS", OPT_INT, offsetof(struct options, cells), 1, 1e9, NULL, 0, "or: cells along the longest side"},
+    {0, "origin", "X,Y,Z", OPT_LENGTHS, offsetof(struct options, origin), 3, 3, NULL, 0,
+     "a corner of the lattice [centred]"},
+    {0, "box", "X0,Y0,Z0,X1,Y1,Z1", OPT_LENGTHS, offsetof(struct options, box), 6, 6, NULL, 0,
+     "keep voxels whose centre is in it"},
+    {0, "volumes", "FILE", OPT_TEXT, offsetof(struct options, volumes), 0, 0, NULL, 0,
+     "what bounds which volume [by names]"},
+    {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, 0, "materials [one: tissue]"},
+    {0, "allow-open", NULL, OPT_FLAG, offsetof(struct options, allow_open), 0, 0, NULL, 0,
+     "open surfaces are a warning"},
+    {0}};
+
+static const opt_tool table = {
+    .name = "voxelise",
+    .purpose = "Turns closed surfaces into a model of voxels.",
+    .operands = "surface.obj|-",
+    .operands_min = 1,
+    .operands_max = 1,
+    .writes_model = true,
+    .threaded = true,
+    .options = option_list,
+};
+
+/* All that one run makes on its way. */
+typedef struct job {
+    const struct options *o;
+    const tool *t;
+    const char *path;
+    num_unit unit;
+    obj surface;
+    volumes plan;
+    solids solid;
+    grid g;
+    columns c;
+    voxels x;
+    pool *threads;
+    notes warnings;
+} job;
+
+static void job_free(job *j)
+{
+    voxels_free(&j->x);
+    columns_destroy(&j->c);
+    solids_free(&j->solid);
+    volumes_free(&j->plan);
+    obj_free(&j->surface);
+    if (j->threads)
+        pool_destroy(j->threads);
+}
+
+/* ---- options */
+
+static int usage_error(err *e)
+{
+    e->status = STATUS_USAGE;
+    return -1;
+}
+
+static bool all_positive(const opt_lengths *l)
+{
+    for (int i = 0; i < l->count; i++)
+        if (!(l->value[i].value > 0))
+            return false;
+    return true;
+}
+
+static int check_options(job *j, err *e)
+{
+    const struct options *o = j->o;
+    j->unit = o->unit ? num_unit_of(o->unit) : 0;
+    if (o->unit && !j->unit)
+        err_set(e, NULL, 0, "--unit '%s': expected mm, cm, m, in or um", o->unit);
+    else if (o->unit && !o->size.count && o->cells < 0)
+        err_set(e, NULL, 0, "no voxel size; expected -s H, -s HX,HY,HZ or -n CELLS");
+    else if (o->size.count && o->cells >= 0)
+        err_set(e, NULL, 0, "-s and -n both give the voxel size; expected one of them");
+    else if (o->size.count == 2 || !all_positive(&o->size))
+        err_set(e, NULL, 0, "-s: expected one length, or three between commas, above 0");
+    else if (!strcmp(j->path, "-") && isatty(STDIN_FILENO))
+        err_set(e, NULL, 0, "reads an OBJ on stdin, which is a terminal; see voxelise --help");
+    else
+        return 0;
+    return usage_error(e);
+}
+
+/* Lengths in the OBJ's unit. */
+static void in_source_unit(const job *j, const opt_lengths *l, double *to)
+{
+    for (int i = 0; i < l->count; i++)
+        to[i] = num_length_in(l->value[i], j->unit, j->unit);
+}
+
+/* ---- read */
+
+static int read_surface(job *j, err *e)
+{
+    in *source = in_open(j->path, e);
+    int status = source ? obj_read(&j->surface, source, e) : -1;
+    in_close(source);
+    return status;
+}
+
+/* The extents that the polygons would have in m if the OBJ were in mm, and if it were in m; what else it may be in is
+ * for the user to know. */
+static int ask_for_unit(const obj *o, err *e)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, d[3];
+    for (int64_t f = 0; f < o->faces; f++)
+        for (int64_t c = o->face_start[f]; c < o->face_start[f + 1]; c++)
+            for (int a = 0; a < 3; a++) {
+                double x = o->position[3 * (int64_t)o->corner_vertex[c] + a];
+                low[a] = fmin(low[a], x);
+                high[a] = fmax(high[a], x);
+            }
+    for (int a = 0; a < 3; a++)
+        d[a] = o->faces ? high[a] - low[a] : 0;
+    err_set(e, o->name, 0,
+            "is in a unit that only you know: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "
+            "%.4g m; expected --unit mm|cm|m|in|um",
+            d[0] / 1e3, d[1] / 1e3, d[2] / 1e3, d[0], d[1], d[2]);
+    return usage_error(e);
+}
+
+static int read_materials(const job *j, model *m, err *e)
+{
+    if (!j->o->materials)
+        return materials_default(m, e);
+    in *source = in_open(j->o->materials, e);
+    int status = source ? materials_read(m, source, e) : -1;
+    in_close(source);
+    return status;
+}
+
+static int make_plan(job *j, const model *m, err *e)
+{
+    if (!j->o->volumes)
+        return volumes_by_name(&j->plan, &j->surface, m, e);
+    in *source = in_open(j->o->volumes, e);
+    int status = source ? volumes_read(&j->plan, source, &j->surface, m, &j->warnings, e) : -1;
+    in_close(source);
+    return status;
+}
+
+/* ---- work */
+
+static int find_spacing(const job *j, double *spacing, err *e)
+{
+    const solids *s = &j->solid;
+    double longest = 0;
+    in_source_unit(j, &j->o->size, spacing);
+    for (int a = 0; a < 3; a++)
+        longest = fmax(longest, s->high[a] - s->low[a]);
+    if (j->o->size.count == 0) {
+        if (!(longest > 0))
+            return err_set(e, j->surface.name, 0, "all vertices are at one place; expected closed surfaces");
+        spacing[0] = longest / (double)j->o->cells;
+    }
+    if (j->o->size.count < 3)
+        spacing[1] = spacing[2] = spacing[0];
+    return 0;
+}
+
+static int make_grid(job *j, err *e)
+{
+    const solids *s = &j->solid;
+    double spacing[3], origin[3], box[6];
+    if (find_spacing(j, spacing, e))
+        return -1;
+    in_source_unit(j, &j->o->origin, origin);
+    in_source_unit(j, &j->o->box, box);
+    if (j->o->origin.count ? grid_fix(&j->g, s->low, s->high, spacing, origin, e)
+                           : grid_cover(&j->g, s->low, s->high, spacing, e))
+        return -1;
+    return j->o->box.count ? grid_clip(&j->g, box, box + 3, e) : 0;
+}
+
+static int find_voxels(job *j, err *e)
+{
+    const solids *s = &j->solid;
+    columns_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
+    if (columns_create(&j->c, &j->g, &t, pool_threads(j->threads), e))
+        return -1;
+    int32_t *level = mem_array(j->plan.volumes, sizeof *level, "volumes", e);
+    if (!level)
+        return -1;
+    for (int32_t v = 0; v < j->plan.volumes; v++)
+        level[v] = j->plan.volume[v].level;
+    progress shown;
+    progress_start(&shown, table.name, "columns", (double)voxels_columns(&j->g), j->t->common->quiet);
+    int status = voxels_find(&j->x, &j->c, level, j->plan.volumes, j->threads, &shown, e);
+    progress_stop(&shown);
+    free(level);
+    if (!status && j->x.elements == 0)
+        status = err_set(e, j->surface.name, 0,
+                         "no voxel has its centre inside; expected smaller voxels%s (%g x %g x %g %s)",
+                         j->o->box.count ? ", or another --box" : "", j->g.spacing[0], j->g.spacing[1], j->g.spacing[2],
+                         num_unit_name(j->unit));
+    return status;
+}
+
+static double in_metres(const job *j, double length)
+{
+    return num_length_in((num_length){length, j->unit}, j->unit, num_unit_of("m"));
+}
+
+static int make_model(const job *j, model *m, err *e)
+{
+    lattice l;
+    char name[256];
+    for (int a = 0; a < 3; a++) {
+        l.origin[a] = in_metres(j, j->g.origin[a] + j->g.offset[a]);
+        l.spacing[a] = in_metres(j, j->g.spacing[a]);
+    }
+    surface_name(j->path, name, sizeof name);
+    if (model_meta_set(m, "source.unit", num_unit_name(j->unit), e) || lattice_save(&l, m, e) ||
+        build_elements(m, &j->x, &l, e) || build_volumes(m, &j->plan, e))
+        return -1;
+    return surface_add(m, name, &j->surface, in_metres(j, 1), e);
+}
+
+/* ---- say */
+
+static void say_volume(const job *j, const model *m, int32_t v)
+{
+    const volumes_volume *a = &j->plan.volume[v];
+    const voxels_count *n = &j->x.count[v];
+    const char *of = model_find(m, "material.name")->str[a->material];
+    tool_say(j->t, "%s%s: level %d, priority %d, material %s, surfaces %s: %lld elements", a->muscle ? "muscle " : "",
+             a->name, a->level, a->priority, of, a->surfaces, (long long)n->kept);
+    if (n->reached > 0 && n->reached < n->inside)
+        tool_say(j->t, "%s: %lld of its %lld voxels are outside level %d, and ignored", a->name,
+                 (long long)(n->inside - n->reached), (long long)n->inside, a->level - 1);
+}
+
+static void warn_volume(job *j, int32_t v)
+{
+    const volumes_volume *a = &j->plan.volume[v];
+    const voxels_count *n = &j->x.count[v];
+    if (n->inside == 0)
+        notes_add(&j->warnings,
+                  "%s has no voxel: no centre is inside it (it is thinner than a voxel, or off the lattice%s)", a->name,
+                  j->o->box.count ? " or the --box" : "");
+    else if (n->reached == 0)
+        notes_add(&j->warnings, "%s is ignored: none of its %lld voxels is in a volume of level %d", a->name,
+                  (long long)n->inside, a->level - 1);
+    else if (n->kept == 0)
+        notes_add(&j->warnings, "%s has no voxel: other volumes keep all %lld that it could have", a->name,
+                  (long long)n->reached);
+}
+
+static void say_plan(job *j, const model *m)
+{
+    const grid *g = &j->g;
+    tool_say(j->t, "lattice of %lld x %lld x %lld cells, %g x %g x %g %s each", (long long)grid_cells(g, 0),
+             (long long)grid_cells(g, 1), (long long)grid_cells(g, 2), g->spacing[0], g->spacing[1], g->spacing[2],
+             num_unit_name(j->unit));
+    for (int32_t v = 0; v < j->plan.volumes; v++) {
+        say_volume(j, m, v);
+        warn_volume(j, v);
+    }
+    tool_say(j->t, "%lld elements, %lld nodes", (long long)model_count(m, "element"),
+             (long long)model_count(m, "node"));
+    if (!j->plan.rigid)
+        notes_add(&j->warnings, "nothing is rigid: no surface begins skull, bone or rigid");
+}
+
+/* With -v: how long each step took. */
+static double say_time(const job *j, const char *what, double since)
+{
+    double now = progress_clock();
+    tool_detail(j->t, "%s: %.1f ms", what, 1e3 * (now - since));
+    return now;
+}
+
+static int work(job *j, model *m, err *e)
+{
+    double clock = progress_clock();
+    if (read_surface(j, e))
+        return -1;
+    if (!j->unit)
+        return ask_for_unit(&j->surface, e);
+    clock = say_time(j, "reading", clock);
+    int threads = tool_threads(j->t, e);
+    j->threads = threads > 0 ? pool_create(threads, e) : NULL;
+    if (!j->threads || read_materials(j, m, e) || make_plan(j, m, e) ||
+        solids_build(&j->solid, &j->surface, &j->plan, j->o->allow_open, &j->warnings, e) || make_grid(j, e))
+        return -1;
+    clock = say_time(j, "checking surfaces", clock);
+    if (find_voxels(j, e))
+        return -1;
+    clock = say_time(j, "finding what is inside", clock);
+    if (make_model(j, m, e))
+        return -1;
+    say_time(j, "building the model", clock);
+    say_plan(j, m);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {.cells = -1};
+    err e = {0};
+    tool t = {0};
+    stage s = {0};
+    model m = {0};
+    job j = {.o = &o, .t = &t};
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+        goto out;
+    j.path = argv[1];
+    /* Without a unit there will be no model: that is said whatever stdout is. */
+    if (!check_options(&j, &e) && (!j.unit || !stage_open_output(&s, &t, &e)) && !work(&j, &m, &e))
+        stage_write(&s, &m, &e);
+out:
+    tool_warn(&t, &j.warnings);
+    if (!t.done)
+        stage_close(&s, &t, &e);
+    job_free(&j);
+    model_free(&m);
+    return tool_end(&t, &e);
+}
