@@ -1,0 +1,113 @@
+/* A block with a run around it, for tests of the solver: what the run wrote last is kept. Functions end the test program where
+ * even the setting up fails.
+ */
+#ifndef SINEW_BENCH_RUN_H
+#define SINEW_BENCH_RUN_H
+
+#include "tled/relax.h"
+#include "tled/run.h"
+#include "tled/step.h"
+
+#include "block.h"
+#include "tap.h"
+
+#include <string.h>
+
+typedef struct bench {
+    model m;
+    script script;
+    tled_problem problem;
+    run_setup setup;
+    run_end end;
+    err e;
+    double *displacement, *velocity, time; /* the last frame's */
+    int64_t frames, cuts;                  /* written; the most parts that a step was cut in */
+} bench;
+
+static inline int bench_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
+{
+    bench *b = context;
+    (void)e;
+    memcpy(b->displacement, displacement, (size_t)b->problem.nodes * 3 * sizeof *displacement);
+    memcpy(b->velocity, velocity, (size_t)b->problem.nodes * 3 * sizeof *velocity);
+    b->time = time;
+    b->frames++;
+    return 0;
+}
+
+static inline void bench_checked(void *context, int64_t step, const watch_sight *sight, int64_t cut, double damping)
+{
+    bench *b = context;
+    (void)step, (void)sight, (void)damping;
+    b->cuts = cut > b->cuts ? cut : b->cuts;
+}
+
+static inline void bench_must(int result, const err *e)
+{
+    if (!result)
+        return;
+    printf("Bail out! %s\n", e->text);
+    exit(1);
+}
+
+/* gravity and level: 0 for none; both come up over .1 s. Ends at rest until the caller says otherwise. */
+static inline void bench_make(bench *b, const block *what, const double gravity[3], double level, double kappa,
+                              int threads)
+{
+    char contract[40];
+    memset(b, 0, sizeof *b);
+    block_make(what, &b->m);
+    snprintf(contract, sizeof contract, "m=%.17g", level);
+    if (gravity)
+        bench_must(script_add_gravity(&b->script, gravity, .1, &b->e), &b->e);
+    if (level > 0)
+        bench_must(script_add_contract(&b->script, &b->m, contract, .1, NULL, &b->e), &b->e);
+    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, kappa, &b->e), &b->e);
+    b->displacement = calloc((size_t)b->problem.nodes * 6, sizeof *b->displacement);
+    b->velocity = b->displacement + 3 * b->problem.nodes;
+    b->setup = (run_setup){.p = &b->problem,
+                           .device = tled_backends_double[0],
+                           .steps = 200000,
+                           .rest = 1e-4,
+                           .adapt = true,
+                           .context = b,
+                           .frame = bench_frame,
+                           .checked = bench_checked};
+    b->setup.rate = step_rate(step_at_rest(&b->problem, NULL), &b->setup.check);
+    b->setup.damping = relax_estimate(&b->problem, &b->e);
+    b->setup.threads = pool_create(threads, &b->e);
+    bench_must(!b->displacement || !b->setup.threads || b->e.status, &b->e);
+}
+
+/* From here on: `steps` steps with a fixed damping. */
+static inline void bench_steps(bench *b, int64_t steps, double damping)
+{
+    b->setup.steps = steps;
+    b->setup.rest = -1;
+    b->setup.adapt = false;
+    b->setup.damping = damping;
+}
+
+/* Goes on from what was written last. */
+static inline void bench_go_on(bench *b)
+{
+    memcpy(b->problem.displacement, b->displacement, (size_t)b->problem.nodes * 3 * sizeof *b->displacement);
+    memcpy(b->problem.velocity, b->velocity, (size_t)b->problem.nodes * 3 * sizeof *b->velocity);
+    b->problem.start = b->time;
+}
+
+static inline int bench_go(bench *b)
+{
+    return run_go(&b->setup, &b->end, &b->e);
+}
+
+static inline void bench_free(bench *b)
+{
+    pool_destroy(b->setup.threads);
+    tled_problem_free(&b->problem);
+    script_free(&b->script);
+    model_free(&b->m);
+    free(b->displacement);
+}
+
+#endif

@@ -1,0 +1,50 @@
+/* Runs to rest against CalculiX 2.20 (C3D8R): a cube that hangs from its top, with the sweep of the hourglass coefficient,
+ * and a cantilever, both by their own weight.
+ */
+// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/backends.c tled/cpu_double.c tled/cpu_single.c
+#include "bench_run.h"
+
+static const block cube = {{8, 8, 8}, {.0125, .0125, .0125}, 3000, .45, 1000, 0, 2, 0, 1, {0, 0, 0}};
+static const block beam = {{32, 8, 8}, {.0025, .0025, .0025}, 30000, .45, 1000, 0, 0, 1, 0, {0, 0, 0}};
+static const double down[3] = {0, 0, -9.81};
+
+/* The displacement along z of node (i, j, k) at rest. */
+static double sag(const block *what, double kappa, const backend *device, int32_t i, int32_t j, int32_t k)
+{
+    bench b;
+    bench_make(&b, what, down, 0, kappa, 2);
+    b.setup.device = device;
+    bool done = !bench_go(&b);
+    ok(done && b.end.rested, "at rest after %lld steps, residual %.2g of the load %s", (long long)b.end.steps,
+       b.end.sight.residual / b.end.sight.load, b.e.text);
+    double z = b.displacement[3 * block_node(what, i, j, k) + 2];
+    bench_free(&b);
+    return z;
+}
+
+int main(void)
+{
+    const backend *twice = tled_backends_double[0], *once = tled_backends_single[0];
+    double z = sag(&cube, .0075, twice, 4, 4, 0);
+    near_(z, -1.8191e-2, .005 * 1.8191e-2, "the cube's bottom centre: %.5g m, C3D8R to 0.5 %%", z);
+    z = sag(&cube, .0075, once, 4, 4, 0);
+    near_(z, -1.8191e-2, .005 * 1.8191e-2, "in single precision: %.5g m", z);
+    z = sag(&cube, .075, twice, 4, 4, 0);
+    near_(z, -1.7828e-2, .001 * 1.7828e-2, "hourglass coefficient .075: %.5g m", z);
+    z = sag(&cube, .5, twice, 4, 4, 0);
+    near_(z, -1.6435e-2, .001 * 1.6435e-2, ".5: %.5g m", z);
+    block coarse = beam;
+    for (int a = 0; a < 3; a++) {
+        coarse.cells[a] /= 2;
+        coarse.side[a] *= 2;
+    }
+    z = sag(&coarse, .0075, twice, 16, 2, 2);
+    near_(z, -4.3478e-2, .01 * 4.3478e-2, "the cantilever's tip, 16 x 4 x 4: %.5g m, C3D8R to 1 %%", z);
+    if (getenv("SINEW_SANITIZED")) {
+        skip(2, "32 x 8 x 8 takes long with sanitizers");
+        return done_testing();
+    }
+    z = sag(&beam, .0075, twice, 32, 4, 4);
+    near_(z, -4.2577e-2, .01 * 4.2577e-2, "32 x 8 x 8: %.5g m, C3D8R to 1 %%", z);
+    return done_testing();
+}

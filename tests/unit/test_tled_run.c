@@ -1,0 +1,255 @@
+/* The time loop: what is conserved without damping, the same bytes whatever the threads and wherever a run was cut in two,
+ * muscles at full contraction, steps that are too large, and the ends of runs.
+ */
+// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/backends.c tled/cpu_double.c tled/cpu_single.c
+#include "bench_run.h"
+
+static const block lump = {{4, 3, 5}, {.01, .01, .0125}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}};
+static const block muscle = {{8, 4, 4}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}};
+
+/* A velocity that bends, stretches and turns the block as it moves on. */
+static void push(bench *b)
+{
+    for (int64_t n = 0; n < b->problem.nodes; n++) {
+        const double *x = b->problem.position + 3 * n;
+        double *v = b->problem.velocity + 3 * n;
+        v[0] = .05 - 6 * x[1] + 2 * x[0];
+        v[1] = 6 * x[0] + .1 * sin(80 * x[2]);
+        v[2] = .02 - 3 * x[2] + 20 * x[0] * x[1];
+    }
+}
+
+static void moments(const bench *b, const double *u, const double *v, double linear[3], double angular[3])
+{
+    for (int a = 0; a < 3; a++) {
+        int next = (a + 1) % 3, last = (a + 2) % 3;
+        linear[a] = angular[a] = 0;
+        for (int64_t n = 0; n < b->problem.nodes; n++) {
+            const double *x = b->problem.position + 3 * n;
+            linear[a] += b->problem.mass[n] * v[3 * n + a];
+            angular[a] += b->problem.mass[n] * ((x[next] + u[3 * n + next]) * v[3 * n + last] -
+                                                (x[last] + u[3 * n + last]) * v[3 * n + next]);
+        }
+    }
+}
+
+static double norm(const double *x)
+{
+    return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
+
+/* 10,000 steps without damping, in parts, so that the worst on the way is seen. */
+static void test_conserved(const backend *device, const char *name)
+{
+    bench b;
+    double linear[3], angular[3], l[3], a[3], first = 0, gap_l = 0, gap_a = 0, gap_e = 0;
+    bench_make(&b, &lump, NULL, 0, .0075, 1);
+    bench_steps(&b, 400, 0);
+    b.setup.device = device;
+    push(&b);
+    moments(&b, b.problem.displacement, b.problem.velocity, linear, angular);
+    for (int64_t n = 0; n < 3 * b.problem.nodes; n++)
+        first += b.problem.mass[n / 3] / 2 * b.problem.velocity[n] * b.problem.velocity[n];
+    for (int part = 0; part < 25 && !bench_go(&b); part++, bench_go_on(&b)) {
+        moments(&b, b.displacement, b.velocity, l, a);
+        for (int k = 0; k < 3; k++) {
+            l[k] -= linear[k];
+            a[k] -= angular[k];
+        }
+        gap_l = fmax(gap_l, norm(l) / norm(linear));
+        gap_a = fmax(gap_a, norm(a) / norm(angular));
+        gap_e = fmax(gap_e, fabs(b.end.sight.kinetic + b.end.sight.strain - first) / first);
+    }
+    ok(b.frames == 25 && b.end.sight.strain > .05 * first, "%s: 10,000 steps that deform: %s", name, b.e.text);
+    ok(gap_l < .01, "%s: momentum to 1 %% (%.2g)", name, gap_l);
+    ok(gap_a < .01, "%s: angular momentum to 1 %% (%.2g)", name, gap_a);
+    ok(gap_e < .01, "%s: energy to 1 %% (%.2g)", name, gap_e);
+    bench_free(&b);
+}
+
+static bool same(const bench *a, const bench *b)
+{
+    return a->time == b->time &&
+           !memcmp(a->displacement, b->displacement, (size_t)a->problem.nodes * 6 * sizeof *a->displacement);
+}
+
+/* A run of 300 steps, at once on one thread; on 2 and 3; in two parts. */
+static void test_same_bytes(const backend *device, const char *name)
+{
+    int gone;
+    const double gravity[3] = {1, -2, -9.81};
+    bench whole, other;
+    bench_make(&whole, &muscle, gravity, .5, .0075, 1);
+    whole.setup.device = device;
+    bench_steps(&whole, 300, whole.setup.damping);
+    gone = bench_go(&whole);
+    ok(!gone, "%s: 300 steps: %s", name, whole.e.text);
+    ok(whole.cuts > 1, "%s: with the step cut on the way", name);
+    for (int threads = 2; threads <= 3; threads++) {
+        bench_make(&other, &muscle, gravity, .5, .0075, threads);
+        other.setup.device = device;
+        bench_steps(&other, 300, other.setup.damping);
+        gone = bench_go(&other);
+        ok(!gone && same(&whole, &other), "%s: the same bytes on %d threads", name, threads);
+        bench_free(&other);
+    }
+    bench_make(&other, &muscle, gravity, .5, .0075, 2);
+    other.setup.device = device;
+    other.setup.every = .0123;
+    bench_steps(&other, 300, other.setup.damping);
+    gone = bench_go(&other);
+    ok(!gone && same(&whole, &other) && other.frames == 6, "%s: whatever frames are written (%lld)", name,
+       (long long)other.frames);
+    bench_free(&other);
+    bench_make(&other, &muscle, gravity, .5, .0075, 2);
+    other.setup.device = device;
+    bench_steps(&other, 4 * other.setup.check, other.setup.damping);
+    gone = bench_go(&other);
+    ok(!gone, "%s: a part of it", name);
+    bench_go_on(&other);
+    other.setup.steps = 300 - 4 * other.setup.check;
+    gone = bench_go(&other);
+    ok(!gone && same(&whole, &other), "%s: gone on from its last frame, the same bytes", name);
+    bench_free(&other);
+    bench_free(&whole);
+}
+
+/* At full contraction by default settings: stable, all elements right way out, and it comes to rest. */
+static void test_contraction(const block *what, const char *name)
+{
+    int gone;
+    bench b;
+    bench_make(&b, what, NULL, 1, .0075, 2);
+    bench_steps(&b, (int64_t)b.setup.rate, b.setup.damping);
+    gone = bench_go(&b);
+    ok(!gone && b.end.sight.kinetic < 1e-6 * b.end.sight.strain,
+       "%s, full contraction for 1 s: kinetic %.2g J of %.2g J %s", name, b.end.sight.kinetic, b.end.sight.strain,
+       b.e.text);
+    ok(b.end.sight.largest > .003, "%s has contracted: %.2g mm", name, 1e3 * b.end.sight.largest);
+    bench_free(&b);
+    bench_make(&b, what, NULL, 1, .0075, 2);
+    gone = bench_go(&b);
+    ok(!gone && b.end.rested, "%s comes to rest after %lld steps %s", name, (long long)b.end.steps, b.e.text);
+    bench_free(&b);
+}
+
+static void test_step_too_large(void)
+{
+    int gone;
+    bench b;
+    bench_make(&b, &muscle, NULL, 1, .0075, 1);
+    bench_steps(&b, 100000, b.setup.damping);
+    b.setup.rate = 1.5 / step_at_rest(&b.problem, NULL);
+    b.setup.rate_fixed = true;
+    b.setup.check = 50;
+    gone = bench_go(&b);
+    ok(gone && b.e.status == STATUS_DIVERGED && strstr(b.e.text, "stable step of") && strstr(b.e.text, "'muscle_m'"),
+       "a fixed step that the contraction makes too large ends the run: %s", b.e.text);
+    bench_free(&b);
+}
+
+/* The watch is told to look too rarely to save it. */
+static void test_diverged(void)
+{
+    int gone;
+    bench b;
+    bench_make(&b, &lump, NULL, 0, .0075, 1);
+    bench_steps(&b, 2000, 0);
+    push(&b);
+    b.setup.rate = .3 / step_at_rest(&b.problem, NULL);
+    b.setup.rate_fixed = true;
+    b.setup.check = 2000;
+    watch *w = watch_create(&b.problem, b.setup.threads, &b.e);
+    void *state = b.setup.device->create(&b.problem, b.setup.threads, &b.e);
+    tled_plan plan = {.rate = b.setup.rate};
+    b.setup.device->step(state, &plan, 2000, &b.e);
+    gone = watch_look(w, b.setup.device, state, 1, &b.e);
+    ok(!gone && w->sight.broken >= 0, "steps of 3.3 times the stable one break element %lld",
+       (long long)w->sight.broken);
+    b.setup.device->destroy(state);
+    watch_destroy(w);
+    for (int64_t i = 0; i < b.problem.nodes; i++) /* inside out */
+        b.problem.displacement[3 * i] = -2.5 * b.problem.position[3 * i];
+    gone = bench_go(&b);
+    ok(gone && b.e.status == STATUS_DIVERGED && strstr(b.e.text, "element 0 (volume 'skin') is inverted"),
+       "an inverted element: %s", b.e.text);
+    bench_free(&b);
+}
+
+/* Stretched at the start and let go, with nothing that loads it: the residual has to vanish against what it was. */
+static void test_let_go(void)
+{
+    int gone;
+    block held = lump;
+    bench b;
+    held.fixed_low = 1;
+    bench_make(&b, &held, NULL, 0, .0075, 1);
+    for (int64_t i = 0; i < b.problem.nodes; i++)
+        b.problem.displacement[3 * i] = .2 * b.problem.position[3 * i];
+    gone = bench_go(&b);
+    ok(!gone && b.end.rested && b.end.sight.largest < 1e-5, "let go, it comes to rest after %lld steps, %.2g mm off",
+       (long long)b.end.steps, 1e3 * b.end.sight.largest);
+    bench_free(&b);
+    bench_make(&b, &held, NULL, 0, .0075, 1);
+    gone = bench_go(&b);
+    ok(!gone && b.end.rested && b.end.steps == 0 && b.frames == 1, "what nothing moves is at rest at once");
+    b.setup.rest = 1e-4;
+    b.setup.steps = 10;
+    b.problem.displacement[3 * (b.problem.nodes - 1)] = .001;
+    gone = bench_go(&b);
+    ok(gone && b.e.status == STATUS_BAD && strstr(b.e.text, "not at rest after 10 steps"), "%s", b.e.text);
+    bench_free(&b);
+}
+
+static void test_times(void)
+{
+    tled_plan p = run_plan(.3, 900);
+    ok(p.origin == 0 && p.first == 270, "0.3 s is step 270 of 900 a second");
+    p = run_plan(.3001, 900);
+    ok(p.origin == .3001 && p.first == 0, "0.3001 s is no step");
+    ok(run_steps_to(.5, 4400) == 2200 && run_steps_to(.04, 4400) == 176, "times are whole numbers of steps");
+    ok(run_steps_to(.0123, 900) == 12, "or the next step");
+}
+
+static const char *no_device(void)
+{
+    return "no device";
+}
+
+static void test_choice(void)
+{
+    static const backend broken = {.name = "cuda", .unusable = no_device};
+    const backend *both[] = {&broken, tled_backends_double[0], NULL}, *none[] = {&broken, NULL};
+    char says[100];
+    err e = {0};
+    const backend *took = backend_choose(both, "auto", says, sizeof says, &e);
+    ok(took == both[1] && !strcmp(says, "cpu (cuda: no device)"), "auto: %s", says);
+    took = backend_choose(both, "cpu", says, sizeof says, &e);
+    ok(took == both[1] && !strcmp(says, "cpu"), "by name");
+    took = backend_choose(both, "cuda", says, sizeof says, &e);
+    ok(!took && strstr(e.text, "no device"), "%s", e.text);
+    e = (err){0};
+    took = backend_choose(tled_backends_double, "cuda", says, sizeof says, &e);
+    ok(!took && !strcmp(e.text, "this build has no CUDA back end; have: cpu"), "%s", e.text);
+    e = (err){0};
+    took = backend_choose(none, "auto", says, sizeof says, &e);
+    ok(!took && strstr(e.text, "no device"), "%s", e.text);
+}
+
+int main(void)
+{
+    block bound = muscle;
+    bound.fixed_axis = 0;
+    test_times();
+    test_choice();
+    test_conserved(tled_backends_double[0], "double");
+    test_conserved(tled_backends_single[0], "single");
+    test_same_bytes(tled_backends_double[0], "double");
+    test_same_bytes(tled_backends_single[0], "single");
+    test_contraction(&muscle, "a muscle on its side");
+    test_contraction(&bound, "a muscle by its end");
+    test_step_too_large();
+    test_diverged();
+    test_let_go();
+    return done_testing();
+}

@@ -1,0 +1,190 @@
+/* The stable step: against its formulas at rest, the element's matrix against the derivative of its stress, and the bound
+ * against the largest frequency of a block, found by power iteration. */
+// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c
+#include "tled/step.h"
+
+#include "block.h"
+#include "tap.h"
+
+#include <string.h>
+
+static const block soft = {{3, 3, 3}, {.0125, .0125, .0125}, 3000, .49, 1000, 30000, 0, 0, 0, {0, 0, 0}};
+
+static double stable_of(block b, double kappa)
+{
+    model m = {0};
+    script s = {0};
+    tled_problem p = {0};
+    err e = {0};
+    block_make(&b, &m);
+    ok(!tled_problem_make(&p, &m, &s, kappa, &e), "the problem: %s", e.text);
+    double stable = step_at_rest(&p, NULL);
+    tled_problem_free(&p);
+    model_free(&m);
+    return stable;
+}
+
+static void test_rest(void)
+{
+    block b = soft;
+    near_(stable_of(b, .0075), .0125 / sqrt(3 * 50000. / 1000), 1e-12, "12.5 mm, nu = .49: h / sqrt(3 K / rho)");
+    near_(stable_of(b, .0075), 1.02e-3, .005e-3, "which is 1.02 ms");
+    b.poisson = .1;
+    near_(stable_of(b, .0075), .0125 / sqrt(3 * (3000 / 2.4) / 1000), 1e-12, "nu = .1");
+    b.poisson = .45;
+    double modulus = 10000 + 4. / 3 * 3000 / 2.9;
+    near_(stable_of(b, 2), .0125 / sqrt(2 * 3 * modulus / 1000), 1e-12, "a stiff hourglass control limits it");
+    /* Anisotropic, nu = 0: C_11 = E alone, along the shortest side, or shear in the plane of the two shortest. */
+    b.poisson = 0;
+    b.side[0] = .01, b.side[1] = .02, b.side[2] = .04;
+    near_(stable_of(b, .0075), 2 / sqrt(4. / 1000 * 3000 / 1e-4), 1e-12,
+          "10 x 20 x 40 mm, nu = 0: along the shortest side");
+    /* lambda -> large: K (1/h_i)(1/h_j) has the eigenvalue K sum(1/h^2). */
+    b.poisson = .4999;
+    double bulk = 3000 / (3 * (1 - 2 * b.poisson)), squares = 1e4 + 2500 + 625;
+    near_(stable_of(b, .0075) / (2 / sqrt(4. / 1000 * bulk * squares)), 1, 1e-3, "nearly incompressible: K sum(1/h^2)");
+}
+
+/* P at H, passive and active. */
+static void stress(const tled_volume *v, element_tensor h, element_fibre fibre, double p[9])
+{
+    element_tensor t = element_sum(element_stress(h, v->mu, v->bulk), element_active(h, fibre));
+    memcpy(p, &t, sizeof t);
+}
+
+/* The matrix is (4/rho) dP_kj/dF_lm / (h_j h_m). */
+static void test_matrix(element_tensor h, element_fibre fibre)
+{
+    tled_problem p = {.side = {.01, .0125, .02}};
+    tled_volume v = {.mu = 1000, .bulk = 9000, .density = 1100};
+    step_matrix a;
+    double worst = 0, scale = 0, shifted[9], high[9], low[9];
+    step_matrix_of(&p, &v, h, fibre, &a);
+    for (int c = 0; c < 9; c++) {
+        element_tensor moved;
+        memcpy(shifted, &h, sizeof h);
+        shifted[c] += 1e-6;
+        memcpy(&moved, shifted, sizeof h);
+        stress(&v, moved, fibre, high);
+        shifted[c] -= 2e-6;
+        memcpy(&moved, shifted, sizeof h);
+        stress(&v, moved, fibre, low);
+        for (int r = 0; r < 9; r++) {
+            double want = 4 / v.density * (high[r] - low[r]) / 2e-6 / (p.side[r % 3] * p.side[c % 3]);
+            worst = fmax(worst, fabs(a.at[r][c] - want));
+            scale = fmax(scale, fabs(want));
+        }
+    }
+    near_(worst / scale, 0, 1e-7, "the matrix is the stress's derivative, tension %g Pa", fibre.tension);
+    double largest = step_largest(&a);
+    ok(step_below(&a, largest * (1 + 1e-9)) && !step_below(&a, largest * (1 - 1e-9)), "its largest eigenvalue splits");
+}
+
+/* The internal forces of the whole block, element by element. */
+static void pull(const tled_problem *p, const double *u, double *f)
+{
+    element_shape shape = element_box(p->side[0], p->side[1], p->side[2]);
+    const element_fibre none = {0};
+    memset(f, 0, (size_t)p->nodes * 3 * sizeof *f);
+    for (int64_t i = 0; i < p->elements; i++) {
+        const tled_volume *v = &p->volume[p->element_volume[i]];
+        const int32_t *n = p->element_node + 8 * i;
+        element_law law = {v->mu, v->bulk, v->hourglass};
+        element_field at, force;
+        for (int c = 0; c < 8; c++) {
+            at.x.at[c] = u[3 * n[c]];
+            at.y.at[c] = u[3 * n[c] + 1];
+            at.z.at[c] = u[3 * n[c] + 2];
+        }
+        force = element_force(at, shape, law, none, false);
+        for (int c = 0; c < 8; c++) {
+            f[3 * n[c]] += force.x.at[c];
+            f[3 * n[c] + 1] += force.y.at[c];
+            f[3 * n[c] + 2] += force.z.at[c];
+        }
+    }
+}
+
+/* The largest eigenvalue of M^-1 K about the affine state (stretch - 1) x, by power iteration on differences of forces. */
+static double largest_frequency(const tled_problem *p, const double stretch[3])
+{
+    int64_t count = 3 * p->nodes;
+    double *u = calloc((size_t)count * 4, sizeof *u), *rest = u + count, *f = u + 2 * count, *way = u + 3 * count,
+           value = 0;
+    for (int64_t i = 0; i < count; i++)
+        way[i] = sin((double)(i * i % 97));
+    for (int round = 0; round < 600; round++) {
+        double size = 0;
+        for (int64_t i = 0; i < count; i++)
+            size = fmax(size, fabs(way[i]));
+        for (int side = -1; side <= 1; side += 2) {
+            for (int64_t i = 0; i < count; i++)
+                u[i] = (stretch[i % 3] - 1) * p->position[i] + side * 1e-9 * way[i] / size;
+            pull(p, u, side < 0 ? rest : f);
+        }
+        value = 0;
+        for (int64_t i = 0; i < count; i++) {
+            double next = (f[i] - rest[i]) / (2e-9 * p->mass[i / 3]);
+            value = fmax(value, fabs(next));
+            way[i] = next;
+        }
+    }
+    free(u);
+    return value;
+}
+
+/* A lone element's highest frequency is the bound; in a block, neighbours share nodes that they cannot both move. */
+static void test_bound(int32_t cells, double x, double y, double z, double least)
+{
+    block b = soft;
+    model m = {0};
+    script s = {0};
+    tled_problem p = {0};
+    err e = {0};
+    step_matrix a;
+    const double stretch[3] = {x, y, z};
+    const element_tensor h = {x - 1, 0, 0, 0, y - 1, 0, 0, 0, z - 1};
+    const element_fibre none = {0};
+    b.poisson = .45;
+    b.side[1] = .01;
+    b.cells[0] = b.cells[1] = b.cells[2] = cells;
+    block_make(&b, &m);
+    tled_problem_make(&p, &m, &s, .0075, &e);
+    step_matrix_of(&p, &p.volume[0], h, none, &a);
+    double share = largest_frequency(&p, stretch) / step_largest(&a);
+    ok(share <= 1 + 1e-6 && share >= least, "%d^3 elements stretched by %g %g %g: the largest w^2 is %.4f of the bound",
+       cells, x, y, z, share);
+    tled_problem_free(&p);
+    model_free(&m);
+}
+
+static void test_rate(void)
+{
+    int64_t check;
+    near_(step_rate(2.28218e-3, &check), 900, 0, "900 steps a second for a stable step of 2.28 ms");
+    ok(check == 9, "looked at every 9 steps");
+    near_(step_rate(5e-5, &check), 40000, 0, "40000 for 0.05 ms");
+    ok(check == 50, "looked at every 50");
+    double rate = step_rate(4.7e-5, &check);
+    ok(rate >= 2 / 4.7e-5 && fmod(rate / 100, (double)check) == 0, "checks divide 1/100 s");
+    near_(step_rate(1, &check), 100, 0, "never fewer than 100");
+}
+
+int main(void)
+{
+    const element_tensor bent = {.2, .3, -.1, .05, -.2, .2, -.15, .1, .1}, rest = {0};
+    const element_fibre none = {0}, muscle = {{2. / 7, 3. / 7, 6. / 7}, 30000};
+    test_rest();
+    test_matrix(rest, none);
+    test_matrix(rest, muscle);
+    test_matrix(bent, none);
+    test_matrix(bent, muscle);
+    test_bound(1, 1, 1, 1, 1 - 1e-5);
+    test_bound(1, 1.3, .9, .9, 1 - 1e-5);
+    test_bound(1, .7, 1.1, 1.2, 1 - 1e-5);
+    test_bound(4, 1, 1, 1, .5);
+    test_bound(4, 1.3, .9, .9, .5);
+    test_bound(4, .7, 1.1, 1.2, .5);
+    test_rate();
+    return done_testing();
+}
