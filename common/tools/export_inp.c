@@ -27,7 +27,7 @@ typedef struct writer {
 void export_inp_number(double value, char *text)
 {
     int n = num_text(value, false, text);
-    for (int digits = 15; n > FIELD; digits--)
+    for (int digits = 16; n > FIELD; digits--)
         n = snprintf(text, NUM_TEXT, "%.*g", digits, value);
 }
 

@@ -1,0 +1,121 @@
+#!/bin/sh
+# sinew info: the summary, single values, JSON, and what it says to nonsense.
+# shellcheck source=tests/cli/lib.sh
+. "$(dirname "$0")/lib.sh"
+
+small=tests/cli/small.sinew
+
+get() {
+    sinew info --get "$1" <"$small"
+}
+
+# Single values, worked out by hand from the file.
+is "$(get axis.node)" 12 "axis.NAME"
+is "$(get axis.s/vertex)" 4 "an axis of a surface"
+is "$(get meta.source.unit)" mm "meta.KEY, without quotes"
+is "$(get meta.note)" 'a "quoted" \ name: é' "metadata as it is"
+is "$(get frames)" 2 "frames"
+is "$(get frame.index)" 10 "the last frame's index"
+is "$(get frame.time)" 0.5 "the last frame's time"
+is "$(get node.rigid.sum)" 4 "sum of a column"
+is "$(get volume.count.muscle_a)" 1 "elements of a volume"
+is "$(get node.displacement.max)" 0.05 "max of vectors is the largest norm"
+is "$(get node.displacement.min)" 0 "min of vectors is the least norm"
+is "$(get node.displacement.sum)" "0.13 0 0.04" "sum of vectors, by column"
+is "$(get node.displacement.at.0.2,0,0)" "0.03 0 0.04" "the node at a place, last frame"
+is "$(get node.displacement.at.19cm,10mm,0.01)" "0.03 0 0.04" "the nearest node; lengths with units"
+is "$(get node.position.at.0.05,0.05,0)" "0 0 0" "of nodes as near, the first"
+is "$(get element.fibre.at.0.2,0,0)" "-1 0 0" "the element whose centre is nearest"
+is "$(get s/vertex.weight.at.0.2,0.1,0)" "0 0 1" "the vertex of a surface"
+is "$(get node.position.low)" "0 0 0" "low, by column"
+is "$(get node.position.high)" "0.2 0.1 0.1" "high, by column"
+is "$(get x-heat.min)" 0.1 "a float is written as short as a float can be"
+is "$(get x-heat.rows)" 12 "rows"
+is "$(get x-heat.unit)" K "unit"
+is "$(get element.node.columns)" 8 "columns"
+is "$(get s/face.start.type)" i64 "type"
+is "$(get element.node.mean)" 5.5 "mean"
+is "$(get material.peak.max)" 30000 "nan left out of max"
+is "$(get material.peak.sum)" nan "nan in a sum shows"
+is "$(get material.peak.nan)" 1 "nan are counted"
+is "$(get material.E.Tissue)" 6000 "a row of a table by its name; case counts"
+is "$(get muscle.centre.muscle_a)" "0 0.05 0.05" "a muscle has its volume's name"
+is "$(get muscle.centre)" "0 0.05 0.05" "an array of one row needs nothing more"
+is "$(get x-word.row.1)" "two words" "a string by its row"
+is "$(sinew info --get frames --get axis.element "$small" | tr '\n' ' ')" "2 2 " "several keys, in order; a file as operand"
+
+# The summary.
+check "the summary, by -o" sinew info -o "$T/summary" "$small"
+for line in "text encoding" "node.displacement .*norm 0 to 0.05" "skin: 1 element, level 0, priority 0, material tissue" \
+    "muscle_a: 1 element, centre 0 0.05 0.05 m" "frames  2, the last of index 10; times 0 to 0.5 s" \
+    "largest displacement 0.05 m, node 2 at 0.2 0 0" "x 0 to 0.2" "peak .*30000 to 30000, 1 nan"; do
+    check "the summary has: $line" grep -q "$line" "$T/summary"
+done
+check "-v says what arrays are" sh -c "sinew info -v $small | grep -q 'contraction centre, the mean of its rigid nodes'"
+printf '%%sinew 1 text\nmeta a "bell\x07 escape\x1b[31m"\nend\n' >"$T/rude"
+is "$(sinew info "$T/rude" | tr -d '[:print:]\n')" "" "the summary sends a terminal no control characters"
+
+# JSON.
+if have python3; then
+    sinew info --json "$small" >"$T/json"
+    check "--json is JSON" python3 -m json.tool "$T/json"
+    is "$(python3 -c "
+import json, sys
+m = json.load(open(sys.argv[1]))
+peak = [a for a in m['arrays'] if a['name'] == 'material.peak'][0]
+print(m['meta']['note'], m['axes']['node'], m['frames'], m['last']['time'], m['last']['arrays'][0]['max'],
+      m['material'][0]['peak'], peak['nan'], m['volume'][1]['name'], m['volume'][1]['elements'], m['muscle'][0]['centre'])
+" "$T/json")" "a \"quoted\" \\ name: é 12 2 0.5 0.05 None 1 muscle_a 1 [0, 0.05, 0.05]" "JSON has the values, nan as null"
+    printf '%%sinew 1 text\nmeta a "tab\\tline\\nbell\\x07"\nend\n' | sinew info --json >"$T/json"
+    is "$(python3 -c "import json, sys; print(repr(json.load(open(sys.argv[1]))['meta']['a']))" "$T/json")" \
+        "'tab\\tline\\nbell\\x07'" "control characters in JSON strings"
+    printf '%%sinew 1 text\nend\n' | sinew info --json >"$T/json"
+    check "JSON of an empty model" python3 -m json.tool "$T/json"
+else
+    skip 4 "no python3"
+fi
+
+# Nonsense.
+fails 1 "a slip in an axis" "no key 'axs.node'; did you mean 'axis.node'" sinew info --get axs.node "$small"
+fails 1 "a slip in an array" "did you mean 'node.displacement.max'" sinew info --get node.displacment.max "$small"
+fails 1 "a slip in a volume" "did you mean 'volume.count.skin'" sinew info --get volume.count.skn "$small"
+fails 1 "no such value" "an array of numbers has min, max" sinew info --get node.displacement.maximum "$small"
+fails 1 "numbers of strings" "an array of strings has rows" sinew info --get volume.name.max "$small"
+fails 1 "a known array that is missing names its maker" "no node.velocity; it comes from tled-run" \
+    sinew info --get node.velocity.max "$small"
+fails 1 "an unknown key lists arrays" "no key 'zork'; expected frames, .*node.position, node.rigid" sinew info --get zork "$small"
+fails 1 "an empty key" "no key ''" sinew info --get "" "$small"
+fails 1 "a row past the end" "12 rows; expected a row from 0 on" sinew info --get node.rigid.row.12 "$small"
+fails 1 "a negative row" "expected a row from 0 on" sinew info --get node.rigid.row.-1 "$small"
+fails 1 "a place of two numbers" "expected at.X,Y,Z" sinew info --get node.position.at.1,2 "$small"
+fails 1 "a place in an array without places" "at.X,Y,Z is for arrays of nodes" sinew info --get material.E.at.0,0,0 "$small"
+fails 1 "several rows at once" "several rows" sinew info --get node.position "$small"
+fails 2 "--json with --get" "exclude each other" sinew info --json --get frames "$small"
+fails 2 "two models" "extra operand" sinew info "$small" "$small"
+fails 1 "no such file" "nonesuch: cannot open" sinew info "$T/nonesuch"
+fails 1 "no model at all" "no model on stdin \\(0 bytes\\)" sinew info
+fails 1 "not a model" "is no sinew model" sinew info common/base/err.h
+
+sed '$d' "$small" >"$T/cut"
+fails 1 "a stream without its end" "cut" sinew info "$T/cut"
+is "$(cat "$T/stdout")" "" "a cut stream gives no summary"
+fails 1 "--get of a cut stream gives nothing" "cut" sinew info --get axis.node -o "$T/never" "$T/cut"
+is "$(ls "$T/never" 2>/dev/null)" "" "no output is left"
+
+{ sed '$d' "$small" && echo 'fail 3 "tled-run: it diverged"'; } >"$T/failed"
+sinew info <"$T/failed" >"$T/stdout" 2>"$T/stderr"
+is "$?" 3 "a failed stream on standard input gives its status"
+is "$(cat "$T/stdout" "$T/stderr")" "" "and says nothing: its tool has said it"
+fails 3 "a failed stream in a file is told" "the run that wrote it failed: tled-run: it diverged" sinew info "$T/failed"
+
+printf '%%sinew 1 text\nend\n' >"$T/empty"
+check "an empty model has a summary" sinew info "$T/empty"
+fails 1 "no axes" "no key 'axis.node'" sinew info --get axis.node "$T/empty"
+is "$(sinew info --get frames "$T/empty")" 0 "no frames"
+fails 1 "the time of no frame" "no key 'frame.time'" sinew info --get frame.time "$T/empty"
+printf '%%sinew 1 text\naxis node 0\narray node.position f64 m node 3\nend\n' >"$T/none"
+is "$(sinew info --get node.position.max "$T/none")" nan "the largest of nothing"
+is "$(sinew info --get node.position.mean "$T/none")" "nan nan nan" "the mean of nothing"
+fails 1 "the nearest of no nodes" "there must be some" sinew info --get node.position.at.0,0,0 "$T/none"
+
+done_testing
