@@ -2,8 +2,8 @@
  * files of lines `NAME law=neo-hookean E=3000 nu=0.49 density=1000 peak=30000` and from assignments NAME.KEY=VALUE. All
  * values are checked against one table of keys. The model owns its arrays, as ever.
  *
- * For the tool that makes volumes: materials_default where no file is given, materials_read where one is; a
- * volume that names no material has the first one, index 0; one that does is looked up with materials_find.
+ * For the tool that makes volumes: materials_default where no file is given, materials_read where one is;
+ * materials_find looks up what a volume names. Which material a volume has that names none is that tool's affair.
  */
 #ifndef SINEW_MATERIALS_H
 #define SINEW_MATERIALS_H

@@ -91,6 +91,7 @@ is "$(at 0.02,0.02,0.02)" "$u" "contract in a script is -c with its ramp"
 
 # What is refused. A model that nothing changes; no output may be left.
 block -v held=low -v muscle=1 >"$T/model"
+# shellcheck disable=SC2317 # fails runs it
 moved() { # ARG...
     tled-run "$@" <"$T/model"
 }

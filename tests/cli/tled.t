@@ -1,0 +1,167 @@
+#!/bin/sh
+# tled-run through its command line: figures that must come out, frames, going on, what is refused. The solver itself has
+# its unit tests.
+. "$(dirname "$0")/lib.sh"
+
+at() { # KEY COLUMN of the model in $T/out
+    sinew info --get "node.displacement.at.$1" <"$T/out" | cut -d ' ' -f "$2"
+}
+clock() { # milliseconds, of some clock
+    date +%s%3N
+}
+# An OBJ of X by Y by Z mm with its low or top side rigid, in voxels of H mm, as the model $T/model.
+model() { # X Y Z low|top H MATERIAL
+    awk -v x="$1" -v y="$2" -v z="$3" -v held="$4" -f tests/cli/box.awk >"$T/box.obj"
+    echo "tissue $6" >"$T/materials"
+    voxelise -q --unit mm -s "$5" --materials "$T/materials" "$T/box.obj" | attach -q >"$T/model"
+}
+rest() { # NAME KEY COLUMN WANT TOLERANCE ARG...: at rest under its own weight
+    name=$1 key=$2 column=$3 want=$4 tolerance=$5
+    shift 5
+    begin=$(clock)
+    tled-run -q -g 0,0,-9.81 "$@" <"$T/model" >"$T/out"
+    end=$(clock)
+    got=$(at "$key" "$column")
+    near "$got" "$want" "$tolerance" "$name"
+    diag "$(awk -v got="$got" -v want="$want" -v ms=$((end - begin)) \
+        'BEGIN { printf "%.6g m; wanted %g m: %+.2f %%; %.2f s", got, want, 100 * (got / want - 1), ms / 1000 }')"
+}
+
+# ---- Figures: against CalculiX 2.20 with C3D8R elements; the sweep over kappa against its published values.
+model 100 100 100 top 12.5 'E=3000 nu=0.45'
+rest "cube under gravity, 8^3" 0.05,0.05,0 3 -1.8191e-2 5e-3
+cp "$T/out" "$T/cube"
+rest "the same in single precision" 0.05,0.05,0 3 -1.8191e-2 5e-3 --precision single
+rest "hourglass 0.0075, the default" 0.05,0.05,0 3 -1.8188e-2 5e-3 --hourglass 0.0075
+rest "hourglass 0.075" 0.05,0.05,0 3 -1.7828e-2 5e-3 --hourglass 0.075
+rest "hourglass 0.5" 0.05,0.05,0 3 -1.6435e-2 5e-3 --hourglass 0.5
+model 80 20 20 low 5 'E=30e3 nu=0.45'
+rest "cantilever, 16 x 4 x 4" 0.08,0.01,0.01 3 -4.3478e-2 1e-2
+model 80 20 20 low 2.5 'E=30e3 nu=0.45'
+if [ -n "$SINEW_SANITIZED" ]; then
+    skip 1 "too slow with sanitizers"
+else
+    rest "cantilever, 32 x 8 x 8" 0.08,0.01,0.01 3 -4.2577e-2 1e-2
+fi
+
+# A muscle that nothing resists: mu, K and a s f(l) in balance, solved apart from this program.
+awk -v nx=4 -v ny=4 -v nz=4 -v h=0.005 -v nu=0.49 -v muscle=1 -f tests/cli/block.awk >"$T/model"
+cat >"$T/symmetry" <<'SCRIPT'
+0 displace 0,0,0,0,1,1 0,-,-
+0 displace 0,0,0,1,0,1 -,0,-
+0 displace 0,0,0,1,1,0 -,-,0
+SCRIPT
+for case in 0.05=0.7392330 0.4=0.5571587 1=0.5109409; do
+    tled-run -q -c "all=${case%=*}" --script "$T/symmetry" --rest 1e-6 <"$T/model" >"$T/out"
+    stretch=$(at 0.02,0.02,0.02 1 | awk '{ printf "%.7f", 1 + $1 / 0.02 }')
+    near "$stretch" "${case#*=}" 1e-5 "a free muscle at level ${case%=*} shortens to $stretch"
+done
+
+# ---- A muscle within tissue, from an OBJ.
+cat >"$T/muscle.awk" <<'AWK'
+function box(x0, y0, z0, x1, y1, z1) {
+    for (k = 0; k < 2; k++) for (j = 0; j < 2; j++) for (i = 0; i < 2; i++)
+        print "v", i ? x1 : x0, j ? y1 : y0, k ? z1 : z0
+}
+BEGIN {
+    box(0, 0, 0, 60, 30, 30)
+    box(-5, 10, 10, 45, 20, 20)
+    print "g skull\nf 1 5 7 3\ng skin\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7"
+    print "g muscle_bar\nf 9 13 15 11\nf 10 12 16 14\nf 9 10 14 13\nf 11 15 16 12\nf 9 11 12 10\nf 13 14 16 15"
+}
+AWK
+awk -f "$T/muscle.awk" >"$T/muscle.obj"
+voxelise -q --unit mm -s 5 "$T/muscle.obj" | attach -q >"$T/model"
+run() { # ARG...
+    tled-run "$@" <"$T/model"
+}
+run -q -c bar=0.4 -t 0.2 --every 0.05 --threads 1 >"$T/out"
+is "$(sinew info --get frames <"$T/out")" 4 "frames every 0.05 s to 0.2 s"
+x=$(at 0.045,0.015,0.015 1)
+check "the muscle's far end has moved toward its origin by more than 5 mm ($x)" awk "BEGIN { exit !($x < -0.005) }"
+is "$(at 0,0,0 1) $(at 0,0.015,0.015 1) $(at 0,0.03,0.03 3)" "0 0 0" "rigid nodes have not moved"
+for threads in 2 3; do
+    run -q -c bar=0.4 -t 0.2 --every 0.05 --threads $threads >"$T/again"
+    check "the same bytes from $threads threads" cmp "$T/out" "$T/again"
+done
+SINEW_THREADS=2 tled-run -q -c bar=0.4 -t 0.2 --every 0.05 <"$T/model" >"$T/again"
+check "and from SINEW_THREADS" cmp "$T/out" "$T/again"
+run -q -c muscle_bar=0.4 -t 0.2 --every 0.05 >"$T/again"
+check "muscle_bar is bar" sinew diff "$T/out" "$T/again"
+run -q -c bar=0.4 -t 0.2 --every 0.05 --text >"$T/text"
+check "text says the same" sinew diff "$T/out" "$T/text"
+run -q -c bar=0.4 -t 0.2 >"$T/again"
+is "$(sinew info --get node.displacement.max <"$T/again")" "$(sinew info --get node.displacement.max <"$T/out")" \
+    "frames in between do not change the end"
+is "$(awk '/^frame / { printf "%d %.12g, ", $2, $3 }' "$T/text")" "0 0.05, 1 0.1, 2 0.15, 3 0.2, " "frames have index and time"
+
+check "whatever it is told, -q says nothing" run -q -c bar=0.4 -n 3
+is "$(cat "$T/stderr")" "" "indeed nothing"
+fails 0 "else it says the stable step and its own" 'stable step [0-9.]+ ms, dt [0-9.]+ ms' run -c bar=0.4 -n 3
+fails 0 "and energies with -v" 'residual .* kinetic .* strain' run -v -c bar=0.4 -n 30
+
+# ---- Going on.
+run -q -c bar=0.4 -t 0.1 --damping 50 >"$T/first"
+tled-run -q -c bar=0.4 -t 0.1 --damping 50 <"$T/first" >"$T/second"
+run -q -c bar=0.4 -t 0.2 --damping 50 --every 0.1 >"$T/whole"
+check "a run of two parts is the run of both" sinew diff "$T/whole" "$T/second"
+is "$(sinew info --get frames <"$T/second")" 2 "the first part's frame is passed on"
+fails 0 "other materials drop the frames" 'warning: .*1 frames? dropped' \
+    sh -c "tled-run -m tissue.E=4000 -t 0.01 <'$T/first' >'$T/second'"
+is "$(sinew info --get frames <"$T/second")" 1 "and leave the new one"
+sinew info "$T/second" >"$T/info"
+check "provenance says what was run and with what" grep -q 'tled-run 0.1.0 .*-m tissue.E=4000.*dt=.*damping=' "$T/info"
+
+# ---- Time steps and divergence.
+fails 1 "a step above the stable one" '--dt 0.01 is above the stable step; expected at most 0.000[0-9]* s' \
+    run -o "$T/left" --dt 0.01 -t 1
+stable=$(run -n 1 2>&1 >/dev/null | sed -n 's/.*stable step \([0-9.]*\) ms.*/\1/p')
+near "$stable" "$(awk 'BEGIN { print 1000 * 0.005 / sqrt(3 * 50000 / 1000) }')" 1e-5 "the stable step is h / sqrt(3 K / rho)"
+echo '0 force 0.06,0.015,0.015 5mm 100,0,0' >"$T/tear"
+fails 3 "a force that tears it" 'tled-run: diverged at step [0-9]+, [0-9.]+ s: element [0-9]+ \(volume .*\)' \
+    run -q --script "$T/tear" --dt 0.0003 -t 1 -o "$T/left"
+echo '0 force 0.06,0.015,0.015 5mm 1e6,0,0' >"$T/tear"
+fails 3 "and a greater one, whatever the step" 'tled-run: diverged at step [0-9]+, [0-9.e-]+ s: element [0-9]+ \(volume .*\)' \
+    run -q --script "$T/tear" -t 1 -o "$T/left"
+[ ! -e "$T/left" ]
+is $? 0 "no output is left by either"
+run -q --script "$T/tear" --dt 0.0003 -t 1 2>"$T/stderr" | sinew info >/dev/null 2>"$T/silent"
+is "$? $(cat "$T/silent")" "3 " "the tool behind it ends with 3 too, silently"
+is "$(wc -l <"$T/stderr" | tr -d ' ')" 1 "one message in all"
+
+# ---- Bad command lines and models.
+for bad in '-t -1' '-t x' '-g 1,2' '-g 0,0,0,0' '-t 1 -n 3' '--rest 1e-3 -t 1' '--every 0' '--hourglass -1' '--threads 0' \
+    '-d vulkan' '--dt 0' '--damping -1' '--ramp -1' '-n 0' '-n 1.5' '--rest 2' '--precision half' '--gravty 0,0,1' 'model.sinew'; do
+    # shellcheck disable=SC2086 # words of an option
+    fails 2 "usage: $bad" '^tled-run: .*' run $bad
+done
+[ -e /dev/nvidia0 ] || fails 1 "-d cuda without a device" 'CUDA|cuda' run -d cuda -n 1
+fails 1 "an unknown muscle" "unknown muscle 'baz'; did you mean 'bar'\\?" run -c baz=1
+fails 1 "a volume that is no muscle" "unknown muscle 'skin'" run -c skin=1
+fails 1 "a level of 2" "level '2' of bar; expected a number from 0 to 1" run -c bar=2
+fails 1 "a muscle twice" "given twice" run -c bar=0.1 -c muscle_bar=0.2
+fails 1 "no level" "expected MUSCLE=LEVEL" run -c bar
+fails 1 "a full disk" 'No space left' run -q -n 1 -o /dev/full
+
+edit() { # NAME PATTERN SED: the model, edited as text, is refused
+    run -q -n 1 --text 2>/dev/null | sed -e '/^crc/d' -e '/^frame/,$d' -e "$3" >"$T/edited"
+    echo end >>"$T/edited"
+    cmp -s "$T/edited" "$T/whole_text" && not_ok "$1: an edit that changes nothing"
+    fails 1 "$1" "$2" sh -c "tled-run -q -g 0,0,-1 <'$T/edited'"
+}
+run -q -n 1 --text | sed -e '/^crc/d' -e '/^frame/,$d' >"$T/whole_text"
+echo end >>"$T/whole_text"
+check "a model may be edited as text" sh -c "tled-run -q -n 1 <'$T/whole_text'"
+edit "a negative modulus" 'material.E, row 0: -5 is not allowed; expected more than 0 Pa' '/^array material.E/{n;s/.*/-5/;}'
+edit "an unknown law" "unknown law 'mooney'" 's/"neo-hookean"/"mooney"/'
+edit "no lattice" 'lattice.spacing' '/lattice.spacing/d'
+edit "another spacing" 'not a box' 's/^\(meta lattice.spacing\).*/\1 "0.005 0.005 0.006"/'
+edit "gravity to rest where nothing holds the model" 'nothing holds the model' \
+    '/^array node.rigid/,/^array /{s/^1$/0/;}'
+fails 1 "nothing on stdin" 'no model on stdin \(0 bytes\)' tled-run
+head -c 2000 "$T/model" >"$T/cut"
+fails 1 "a model that is cut" 'stdin' sh -c "tled-run -q <'$T/cut'"
+
+is "$(tled-run --table mdoc)" "$(sed -n '/^\.\\" synopsis$/,/^\.\\" end synopsis$/{/^\.\\"/!p;}' man/tled-run.1)" \
+    "the manual's synopsis is the table's"
+done_testing
