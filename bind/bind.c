@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct options {
@@ -90,24 +91,42 @@ static void bind_some(void *context, int64_t chunk, int64_t from, int64_t to)
     }
 }
 
-/* Warns of vertices so far from the elements that extrapolation means little. */
-static void warn_of_far(const binding *b, const surface *s, num_unit unit, notes *warnings)
+/* How far outside the elements a surface's vertices lie. */
+typedef struct outside {
+    int64_t count; /* of those further than a voxel */
+    double voxel, furthest;
+} outside;
+
+static void add_outside(outside *o, const binding *b, int64_t v)
+{
+    weights_box box = weights_box_of(&b->to->node[8 * (int64_t)b->element[v]], b->to->position);
+    double d = weights_outside(&box, &b->weight[3 * v]);
+    o->count += d > o->voxel * (1 + 1e-9);
+    o->furthest = fmax(o->furthest, d);
+}
+
+/* Warns of vertices so far from the elements that extrapolation means little. Those that no face uses do not matter,
+ * unless there are no faces. */
+static int warn_of_far(const binding *b, const surface *s, num_unit unit, notes *warnings, err *e)
 {
     const double *side = b->to->elements.grid.spacing;
-    double voxel = fmax(fmax(side[0], side[1]), side[2]), furthest = 0, scale = scale_of(unit);
-    int64_t count = 0;
-    for (int64_t v = 0; v < s->vertices; v++) {
-        weights_box box = weights_box_of(&b->to->node[8 * (int64_t)b->element[v]], b->to->position);
-        double d = weights_outside(&box, &b->weight[3 * v]);
-        count += d > voxel * (1 + 1e-9);
-        furthest = fmax(furthest, d);
-    }
-    if (count)
+    outside o = {.voxel = fmax(fmax(side[0], side[1]), side[2])};
+    bool *used = mem_array(s->vertices, sizeof *used, "vertices", e);
+    if (!used)
+        return -1;
+    for (int64_t c = 0; c < s->corners; c++)
+        used[s->vertex[c]] = true;
+    for (int64_t v = 0; v < s->vertices; v++)
+        if (used[v] || !s->corners)
+            add_outside(&o, b, v);
+    free(used);
+    if (o.count)
         notes_add(
             warnings,
             "surface %s: %lld of %lld vertices lie further than a voxel outside the elements, the furthest %.4g %s; "
             "sinew deform --within leaves such vertices where they are",
-            s->name, (long long)count, (long long)s->vertices, furthest / scale, num_unit_name(unit));
+            s->name, (long long)o.count, (long long)s->vertices, o.furthest / scale_of(unit), num_unit_name(unit));
+    return 0;
 }
 
 static int check_finite(const surface *s, err *e)
@@ -136,7 +155,8 @@ static int bind_surface(const tool *t, target *to, model *m, const char *name, n
     to->position = model_find(m, "node.position")->f64;
     binding b = {to, s.position, model_find(m, element)->i32, model_find(m, weight)->f64};
     pool_run(to->threads, s.vertices, 1024, bind_some, &b);
-    warn_of_far(&b, &s, unit, warnings);
+    if (warn_of_far(&b, &s, unit, warnings, e))
+        return -1;
     tool_detail(t, "surface %s: %lld vertices bound", name, (long long)s.vertices);
     return 0;
 }
