@@ -47,32 +47,43 @@ static int take(block *b, void *to, size_t size, err *e)
     return 0;
 }
 
-/* Exactly size bytes of the payload into memory that grows as they come: a length is only a claim. `extra` bytes more are
- * allocated. The caller frees *to, on failure too. canonical: the type whose nan are made so, or MODEL_TYPES. */
-static int take_grown(block *b, void *to, uint64_t size, size_t extra, model_type canonical, err *e)
+/* Makes *bytes of *have at least a piece larger, at most size, with `extra` bytes behind. */
+static int more_room(unsigned char **bytes, uint64_t *have, uint64_t size, size_t extra, err *e)
+{
+    uint64_t next = 2 * *have < PIECE ? PIECE : 2 * *have;
+    next = next < size ? next : size;
+    unsigned char *grown = realloc(*bytes, next + extra ? next + extra : 1);
+    if (!grown)
+        return err_memory(e, "what a block holds");
+    *bytes = grown;
+    *have = next;
+    return 0;
+}
+
+/* Exactly size bytes of the payload, in memory that grows as they come: a length is only a claim. `extra` bytes more are
+ * allocated. canonical: the type whose nan are made so, or MODEL_TYPES. The caller frees it; NULL with e filled. */
+static void *take_grown(block *b, uint64_t size, size_t extra, model_type canonical, err *e)
 {
     unsigned char *bytes = NULL;
     uint64_t have = 0, done = 0;
-    if (size > b->left || size > PTRDIFF_MAX - PIECE)
-        return item_error(b->s, b->it, e, "its length is less than what it holds; the stream is damaged");
+    if (size > b->left || size > PTRDIFF_MAX / 2 - PIECE) {
+        item_error(b->s, b->it, e, "its length is less than what it holds; the stream is damaged");
+        return NULL;
+    }
     do {
-        if (done == have) {
-            have = 2 * have < PIECE ? PIECE : 2 * have;
-            have = have < size ? have : size;
-            unsigned char *grown = realloc(bytes, have + extra ? have + extra : 1);
-            if (!grown)
-                return err_memory(e, b->it->array.name ? b->it->array.name : "a block");
-            bytes = grown;
-            memcpy(to, &bytes, sizeof bytes);
-        }
+        if (done == have && more_room(&bytes, &have, size, extra, e))
+            goto fail;
         size_t n = have - done < PIECE ? have - done : PIECE;
         if (take(b, bytes + done, n, e))
-            return -1;
+            goto fail;
         if (canonical != MODEL_TYPES)
             item_canonical(canonical, bytes + done, (int64_t)(n / model_type_size(canonical)));
         done += n;
     } while (done < size);
-    return 0;
+    return bytes;
+fail:
+    free(bytes);
+    return NULL;
 }
 
 static int take_u32(block *b, uint32_t *v, err *e)
@@ -80,16 +91,18 @@ static int take_u32(block *b, uint32_t *v, err *e)
     return take(b, v, sizeof *v, e);
 }
 
-/* u32 length and bytes, as a string without NUL. The caller frees *text, on failure too. */
+/* u32 length and bytes, as a string without NUL, which is the caller's. */
 static int take_text(block *b, char **text, err *e)
 {
-    uint32_t n;
-    if (take_u32(b, &n, e) || take_grown(b, text, n, 1, MODEL_TYPES, e))
+    uint32_t n = 0;
+    if (take_u32(b, &n, e))
         return -1;
-    (*text)[n] = 0;
-    if (memchr(*text, 0, n))
-        return item_error(b->s, b->it, e, "a string holds a NUL byte; expected none");
-    return 0;
+    char *bytes = take_grown(b, n, 1, MODEL_TYPES, e);
+    if (!bytes)
+        return -1;
+    bytes[n] = 0;
+    *text = bytes;
+    return memchr(bytes, 0, n) ? item_error(b->s, b->it, e, "a string holds a NUL byte; expected none") : 0;
 }
 
 static int read_strings(block *b, int64_t n, err *e)
@@ -120,7 +133,7 @@ static int read_strings(block *b, int64_t n, err *e)
 static int read_array(block *b, err *e)
 {
     model_array *a = &b->it->array;
-    uint32_t type, columns;
+    uint32_t type = 0, columns = 0;
     if (take_text(b, &a->name, e) || take_text(b, &a->unit, e) || take_text(b, &a->axis, e) || take_u32(b, &type, e) ||
         take_u32(b, &columns, e))
         return -1;
@@ -135,14 +148,15 @@ static int read_array(block *b, err *e)
         return read_strings(b, n, e);
     if (b->left != (uint64_t)n * model_type_size(a->type))
         return item_error(b->s, b->it, e, "its length is not that of its rows and columns; the stream is damaged");
-    return take_grown(b, &a->data, b->left, 0, a->type, e);
+    a->data = take_grown(b, b->left, 0, a->type, e);
+    return a->data ? 0 : -1;
 }
 
 static int read_payload(block *b, err *e)
 {
     item *it = b->it;
-    uint64_t count;
-    uint32_t status;
+    uint64_t count = 0;
+    uint32_t status = 0;
     switch (it->kind) {
     case ITEM_META:
         return take_text(b, &it->key, e) || take_text(b, &it->text, e);
@@ -156,7 +170,8 @@ static int read_payload(block *b, err *e)
     case ITEM_ARRAY:
         return read_array(b, e);
     case ITEM_BLOCK:
-        return take_grown(b, &it->block.payload, b->left, 0, MODEL_TYPES, e);
+        it->block.payload = take_grown(b, b->left, 0, MODEL_TYPES, e);
+        return it->block.payload ? 0 : -1;
     case ITEM_FRAME:
         return take(b, &it->number, sizeof it->number, e) || take(b, &it->time, sizeof it->time, e);
     case ITEM_FAIL:

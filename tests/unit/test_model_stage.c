@@ -109,8 +109,9 @@ static int terminal(int *master)
 static result run_on(const opt_tool *table, const char *options, int from, int to)
 {
     result r = {0};
-    char words[200], *argv[MOST + 1] = {(char *)(uintptr_t)table->name};
+    char name[20], words[200], *argv[MOST + 1] = {name};
     int argc = 1, say = scratch("");
+    snprintf(name, sizeof name, "%s", table->name);
     snprintf(words, sizeof words, "%s", options);
     for (char *p = strtok(words, " "); p && argc < MOST; p = strtok(NULL, " "))
         argv[argc++] = p;
