@@ -3,6 +3,7 @@
 #include "base/num.h"
 #include "base/pool.h"
 #include "base/tool.h"
+#include "bind/bone.h"
 #include "bind/bound.h"
 #include "bind/normals.h"
 #include "bind/numbered.h"
@@ -59,8 +60,10 @@ typedef struct plan {
 typedef struct mover {
     obj file;
     bound b;
+    bone bone;
     double scale;     /* metres in the OBJ's unit */
     bool *held;       /* vertices: too far outside to be moved */
+    bool *straight;   /* vertices: held, or carried by bone; their normals do not turn */
     double *position; /* vertices x 3, in the OBJ's unit */
     double *normal;   /* normals x 3 */
     const double *u;  /* nodes x 3, m: of the frame at hand */
@@ -107,14 +110,17 @@ static int hold(mover *w, const tool *t, double within, err *e)
     int64_t held = 0;
     double furthest = 0;
     w->held = mem_array(w->file.vertices, sizeof *w->held, "vertices", e);
-    if (!w->held)
+    w->straight = w->held ? mem_array(w->file.vertices, sizeof *w->straight, "vertices", e) : NULL;
+    if (!w->straight)
         return -1;
     for (int64_t v = 0; v < w->file.vertices; v++) {
-        double d = bound_outside(&w->b, v);
+        double d = w->bone.node[v] < 0 ? bound_outside(&w->b, v) : 0;
         w->held[v] = d > within;
+        w->straight[v] = w->held[v] || w->bone.node[v] >= 0;
         held += w->held[v];
         furthest = fmax(furthest, d);
     }
+    tool_detail(t, "%lld vertices are bone's", (long long)w->bone.count);
     if (held)
         tool_say(t,
                  "%lld of %lld vertices lie further than %.4g m outside and stay where they are, the furthest %.4g m",
@@ -132,7 +138,7 @@ static int mover_open(mover *w, const tool *t, const model *m, const char *path,
         return -1;
     surface_name(path, name, sizeof name);
     w->scale = scale_of(unit);
-    if (bound_find(&w->b, m, name, &w->file, w->scale, e) || hold(w, t, within, e))
+    if (bound_find(&w->b, m, name, &w->file, w->scale, e) || bone_find(&w->bone, &w->b, m, e) || hold(w, t, within, e))
         return -1;
     w->position = mem_array(3 * w->file.vertices, sizeof *w->position, "positions", e);
     w->normal = w->position ? mem_array(3 * w->file.normals, sizeof *w->normal, "normals", e) : NULL;
@@ -143,7 +149,9 @@ static int mover_open(mover *w, const tool *t, const model *m, const char *path,
 static void mover_close(mover *w)
 {
     obj_free(&w->file);
+    bone_free(&w->bone);
     free(w->held);
+    free(w->straight);
     free(w->position);
     free(w->normal);
     if (w->threads)
@@ -157,7 +165,10 @@ static void move_some(void *context, int64_t chunk, int64_t from, int64_t to)
     (void)chunk;
     for (int64_t v = from; v < to; v++) {
         double d[3] = {0};
-        if (!w->held[v])
+        int64_t bone = w->bone.node[v];
+        if (bone >= 0)
+            memcpy(d, w->u + 3 * bone, sizeof d);
+        else if (!w->held[v])
             bound_displacement(&w->b, v, w->u, d);
         for (int a = 0; a < 3; a++)
             w->position[3 * v + a] = w->file.position[3 * v + a] + d[a] / w->scale;
@@ -176,7 +187,7 @@ static int move(mover *w, const frame *f, err *e)
         if (!isfinite(w->position[i]))
             return err_set(e, NULL, 0, "frame %lld moves vertex %lld (element %d) to a place that is not finite",
                            (long long)f->index, (long long)(i / 3), w->b.element[i / 3]);
-    normals_deform(&w->file, &w->b, w->u, w->held, w->normal);
+    normals_deform(&w->file, &w->b, w->u, w->straight, w->normal);
     return 0;
 }
 

@@ -42,6 +42,6 @@ END {
     printf "largest move %.3f mm, skull's largest %.4f mm\n", most, skull
     if (move[corner, 2] > .5 && move[corner, 1] < 0)
         print "mouth up and back"
-    if (skull < .02 * most)
+    if (skull == 0)
         print "skull still"
 }
