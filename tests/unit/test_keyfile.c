@@ -90,8 +90,10 @@ static void refuse_lines(void)
 {
     enum { LONG = KEYFILE_LINE + 1 };
     char *text = malloc(LONG + 1);
-    if (!ok(text != NULL, "memory"))
+    if (!text) {
+        ok(false, "memory for a long line");
         return;
+    }
     memset(text, 'x', LONG);
     refuse_text(text, LONG, "f.txt:1: a line of 65537 bytes", "a line that is too long");
     for (int i = 0; i <= 2 * KEYFILE_WORDS; i++)
