@@ -165,9 +165,9 @@ static void move_some(void *context, int64_t chunk, int64_t from, int64_t to)
     (void)chunk;
     for (int64_t v = from; v < to; v++) {
         double d[3] = {0};
-        int64_t bone = w->bone.node[v];
-        if (bone >= 0)
-            memcpy(d, w->u + 3 * bone, sizeof d);
+        int64_t carrier = w->bone.node[v];
+        if (carrier >= 0)
+            memcpy(d, w->u + 3 * carrier, sizeof d);
         else if (!w->held[v])
             bound_displacement(&w->b, v, w->u, d);
         for (int a = 0; a < 3; a++)
