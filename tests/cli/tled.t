@@ -110,7 +110,7 @@ fails 0 "other materials drop the frames" 'warning: .*1 frames? dropped' \
     sh -c "tled-run -m tissue.E=4000 -t 0.01 <'$T/first' >'$T/second'"
 is "$(sinew info --get frames <"$T/second")" 1 "and leave the new one"
 sinew info "$T/second" >"$T/info"
-check "provenance says what was run and with what" grep -q 'tled-run 0.1.0 .*-m tissue.E=4000.*dt=.*damping=' "$T/info"
+check "provenance says what was run and with what" grep -q 'tled-run 0.1.0 .*-m tissue.E=4000.*hourglass 0.0075 .*dt [0-9.]*.*damping [0-9.]*' "$T/info"
 
 # ---- Time steps and divergence.
 fails 1 "a step above the stable one" '--dt 0.01 is above the stable step; expected at most 0.000[0-9]* s' \
