@@ -7,6 +7,7 @@
 #include "model/stage.h"
 #include "muscle.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -85,8 +86,12 @@ static void report_muscles(const tool *t, const muscle *list, int64_t count)
 {
     for (int64_t i = 0; i < count; i++) {
         const muscle *m = &list[i];
-        tool_say(t, "%s: %lld elements, %lld rigid nodes, contraction centre %.6g %.6g %.6g m", m->name,
-                 (long long)m->elements, (long long)m->rigid_nodes, m->centre[0], m->centre[1], m->centre[2]);
+        char centre[100] = "no contraction centre";
+        if (m->rigid_nodes)
+            snprintf(centre, sizeof centre, "contraction centre %.6g %.6g %.6g m", m->centre[0], m->centre[1],
+                     m->centre[2]);
+        tool_say(t, "%s: %lld elements, %lld rigid nodes, %s", m->name, (long long)m->elements,
+                 (long long)m->rigid_nodes, centre);
     }
 }
 

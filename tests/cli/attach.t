@@ -1,5 +1,5 @@
 #!/bin/sh
-# attach on a bar of 3 x 1 x 1 voxels of 10 mm written by hand, with a muscle and bones.
+# attach on a bar of 3 x 1 x 1 voxels of 10 mm written by hand, with a muscle and bones; and on the real face.
 . "$(dirname "$0")/lib.sh"
 
 # bar GROUP: its first face, a square in the plane x = 2 mm, is in GROUP; a point at the bar's far end is in "Bone_b", and a
@@ -192,4 +192,33 @@ is "$? $(cat "$T/stderr")" "3 " "a failure before us passes on, silently"
 check "frames" attach --text -o "$T/out" <tests/cli/small.sinew
 is "$(grep -c '^frame' "$T/out") $(grep -c '2 frames' "$T/stderr")" "0 1" "are dropped, and it is said"
 
+
+if [ ! "$DATA" ]; then
+    skip 6 "no shared data"
+    done_testing
+fi
+# The counts are those of every voxel tried against every triangle, once, at this size (a smaller size is in test_attach).
+voxelise -q --unit mm -s 2.5 --origin -125,-125,-125 "$DATA/face/face_zyg.obj" >"$T/face"
+check "the real face" attach --text --report -o "$T/out" <"$T/face"
+is "$(sort "$T/stderr")" \
+    "attach: muscle_zyg_xneg: 60 elements, 28 rigid nodes, contraction centre -0.0494643 0.0407143 -0.0373214 m
+attach: muscle_zyg_xpos: 60 elements, 27 rigid nodes, contraction centre 0.0492593 0.0405556 -0.0374074 m
+attach: skull holds 6870 nodes; 0 of its 1800 primitives hold none" "what is held"
+# fibres FILE: for each volume its elements, how many have a unit fibre, and whether those go outward and up on the whole.
+fibres() {
+    awk '/^array /{ name = $2; row = 0; next } /^(crc|end)/{ name = "" }
+        name == "element.volume"{ volume[row++] = $1 }
+        name == "element.fibre"{ v = volume[row++]; n[v]++; x[v] += $1; z[v] += $3
+            length2 = $1 * $1 + $2 * $2 + $3 * $3; if (length2 > 0.999999 && length2 < 1.000001) unit[v]++ }
+        END { for (v = 0; v < 3; v++)
+            print n[v], unit[v] + 0, (x[v] < 0 ? "right" : x[v] > 0 ? "left" : "-"), (z[v] > 0.7 * n[v] ? "up" : "-") }' \
+        "$1" | paste -sd,
+}
+is "$(fibres "$T/out")" "24196 0 - -,60 60 right up,60 60 left up" "every muscle element has a fibre, up the cheek"
+attach --text -q --fibre axis -o "$T/out" <"$T/face"
+is "$(fibres "$T/out")" "24196 0 - -,60 60 right up,60 60 left up" "--fibre axis too"
+is "$(values element.fibre "$T/out" | tr , '\n' | sort -u | sed 's/^-//' | sort -u | wc -l)" 2 "one axis, mirrored"
+attach -q -o "$T/once" <"$T/face"
+attach -q -z <"$T/face" | attach -q --text | attach -q | sinew diff - "$T/once"
+is $? 0 "thrice is once"
 done_testing
