@@ -74,7 +74,7 @@ static void try(const unsigned char *data, size_t size)
     err e = {0};
     out *text = convert(data, size, true, &e);
     if (!text) {
-        if (!e.status || !*e.text)
+        if (!e.status || (!*e.text && !e.silent))
             abort();
         return;
     }

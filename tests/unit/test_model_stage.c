@@ -151,7 +151,8 @@ static bool gives(const result *r, int status, const char *written, const char *
 {
     if (r->status != status)
         printf("# status %d, wanted %d\n", r->status, status);
-    return text_is(r->out, written) & text_is(r->say, say) & (r->status == status);
+    bool same_out = text_is(r->out, written), same_say = text_is(r->say, say);
+    return same_out && same_say && r->status == status;
 }
 
 #define HEAD  "%sinew 1 text\n"
