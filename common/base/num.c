@@ -167,17 +167,17 @@ double num_length_in(num_length length, num_unit unsuffixed, num_unit to)
     return from % to == 0 ? length.value * (from / to) : length.value * from / to;
 }
 
-/* Copies the item of a comma list that begins at *p into item and steps past its comma; false at the end. */
+/* Copies the item of a comma list that begins at *p into item and steps past its comma; false at the end. One that
+ * is too long for a number becomes "?", which is none. */
 static bool list_item(const char **p, char *item, size_t size)
 {
     if (!*p)
         return false;
     const char *comma = strchr(*p, ',');
     size_t n = comma ? (size_t)(comma - *p) : strlen(*p);
-    if (n >= size)
-        n = size - 1;
-    memcpy(item, *p, n);
-    item[n] = 0;
+    bool fits = n < size;
+    memcpy(item, fits ? *p : "?", fits ? n : 1);
+    item[fits ? n : 1] = 0;
     *p = comma ? comma + 1 : NULL;
     return true;
 }
@@ -215,29 +215,36 @@ int num_text(double value, bool single, char *to)
     return n;
 }
 
-/* Levenshtein's distance, letters of either case alike; names longer than the row are cut. */
+enum { NAME_MOST = 64 };
+
+static bool same_letter(char a, char b)
+{
+    return tolower((unsigned char)a) == tolower((unsigned char)b);
+}
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+/* Edits from a to b: letters added, dropped, changed or swapped with their neighbour (optimal string alignment), those
+ * of either case alike. Names are cut at NAME_MOST. */
 static int distance(const char *a, const char *b)
 {
-    enum { MOST = 64 };
-    int row[MOST + 1];
-    int nb = (int)strnlen(b, MOST);
+    int rows[3][NAME_MOST + 1];
+    int na = (int)strnlen(a, NAME_MOST), nb = (int)strnlen(b, NAME_MOST);
     for (int j = 0; j <= nb; j++)
-        row[j] = j;
-    for (int i = 0; a[i] && i < MOST; i++) {
-        int diagonal = row[0];
-        row[0] = i + 1;
-        for (int j = 0; j < nb; j++) {
-            bool same = tolower((unsigned char)a[i]) == tolower((unsigned char)b[j]);
-            int best = diagonal + !same;
-            diagonal = row[j + 1];
-            if (row[j + 1] + 1 < best)
-                best = row[j + 1] + 1;
-            if (row[j] + 1 < best)
-                best = row[j] + 1;
-            row[j + 1] = best;
+        rows[0][j] = j;
+    for (int i = 1; i <= na; i++) {
+        int *now = rows[i % 3], *last = rows[(i + 2) % 3], *before = rows[(i + 1) % 3];
+        now[0] = i;
+        for (int j = 1; j <= nb; j++) {
+            now[j] = least(last[j - 1] + !same_letter(a[i - 1], b[j - 1]), least(last[j], now[j - 1]) + 1);
+            if (i > 1 && j > 1 && same_letter(a[i - 1], b[j - 2]) && same_letter(a[i - 2], b[j - 1]))
+                now[j] = least(now[j], before[j - 2] + 1);
         }
     }
-    return row[nb];
+    return rows[na % 3][nb];
 }
 
 int num_nearest(const char *name, const char *const *names, int count)

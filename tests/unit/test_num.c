@@ -68,6 +68,11 @@ static void lengths(void)
     ok(num_length_of("3ft", &l) == -1 && num_length_of("mm", &l) == -1, "feet, and a unit alone, are refused");
     num_length list[3];
     ok(num_lengths_of("1,2mm,3", list, 3) == 3 && list[1].unit == 1000, "a list of three");
+    char tail[80] = "1,2.";
+    memset(tail + 4, '0', 70);
+    tail[74] = 0;
+    double number[2];
+    ok(num_list(tail, number, 2) == -1, "an item of 72 characters is refused, not cut");
     ok(num_lengths_of("1,2,3,4", list, 3) == -1 && num_lengths_of("1,,3", list, 3) == -1, "four, or a gap: refused");
 }
 
@@ -76,6 +81,7 @@ static void near_misses(void)
     const char *names[] = {"skin", "skull", "muscle_zyg"};
     ok(num_nearest("skul", names, 3) == 1, "skul is near skull");
     ok(num_nearest("MUSCLE_ZYK", names, 3) == 2, "letters of either case");
+    ok(num_nearest("muscle_zgy", names, 3) == 2, "a swap is one edit");
     ok(num_nearest("liver", names, 3) == -1, "liver is near nothing");
 }
 
