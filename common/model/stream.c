@@ -22,7 +22,7 @@ typedef struct pattern {
 struct model_reader {
     item_source from;
     item next; /* read, not yet taken, where `waiting` */
-    bool waiting, frames, ended;
+    bool waiting, ended;
     int64_t *places; /* where the body's arrays stood: lines or blocks */
     int64_t place_capacity;
     pattern pattern;
@@ -250,7 +250,6 @@ int model_read(model_reader *r, model *m, err *e)
         if (add_item(r, m, &r->next, e))
             return -1;
     }
-    r->frames = true;
     for (int i = 0; i < m->arrays.count; i++)
         if (check_array(r, m, &m->arrays.v[i], r->places[i], e))
             return -1;
