@@ -22,15 +22,15 @@ struct options {
 
 static const opt option_list[] = {
     {0, "rigid", "NAME,...", OPT_LIST, offsetof(struct options, rigid), 0, 0, NULL, 0,
-     "rigid surfaces, * at the end for any rest [skull*,bone*,rigid*]"},
+     "rigid surfaces [skull*,bone*,rigid*]"},
     {0, "rigid-file", "FILE.obj", OPT_TEXT, offsetof(struct options, rigid_file), 0, 0, NULL, 0,
-     "more rigid points, lines and polygons, in source.unit"},
+     "more that is rigid, in the model's source.unit"},
     {0, "strictness", "S", OPT_NUMBER, offsetof(struct options, strictness), 0, 1, NULL, 0,
-     "reach of a node along a voxel's sides, above 0 to 1 [0.75]"},
+     "reach of nodes in voxel sides, 0 to 1 [0.75]"},
     {0, "fibre", "centre|axis", OPT_CHOICE, offsetof(struct options, fibre), 0, 0, "centre|axis", 0,
-     "fibres to the contraction centre, or along the muscle [centre]"},
+     "to the centre, or along the muscle [centre]"},
     {0, "report", NULL, OPT_FLAG, offsetof(struct options, report), 0, 0, NULL, OPT_OUTPUT,
-     "say on stderr what each surface and muscle got"},
+     "say what each surface and muscle got"},
     {0},
 };
 

@@ -169,6 +169,7 @@ fails 1 "but not with --rigid" "unknown surface 'skull'" attach --rigid skull <"
 for bad in 0 -0.5 1.5 x; do
     fails 2 "--strictness $bad" 'strictness' attach --strictness "$bad" <"$T/bar"
 done
+is "$(attach -h | awk 'length > 80' | wc -l)" 0 "the usage fits 80 columns"
 fails 2 "--fibre field" 'fibre.*(centre|axis)' attach --fibre field <"$T/bar"
 fails 2 "an operand" '' attach model.sinew <"$T/bar"
 fails 1 "nothing on stdin" 'sinew bind' attach
