@@ -2,10 +2,15 @@
 # cheekbone, where it begins inside the skull, to the corner of the mouth. y is up, z forward, x to the head's left.
 # Along a direction, a is the longitude from straight ahead, b the latitude, both in radians.
 
-# A smooth hill, 1 high at (a0, b0).
+function tan(x)
+{
+    return sin(x) / cos(x)
+}
+
+# A smooth hill, 1 high at (a0, b0). It goes by the latitude's tangent, so that none reaches a pole.
 function hill(a, b, a0, b0, wide, high)
 {
-    return exp(-((a - a0) / wide) ^ 2 - ((b - b0) / high) ^ 2)
+    return exp(-((a - a0) / wide) ^ 2 - ((tan(b) - tan(b0)) * cos(b0) ^ 2 / high) ^ 2)
 }
 
 # The same on both sides of the face.
@@ -30,9 +35,10 @@ function skin(a, b, dx, dy, dz)
     return egg(dx, dy, dz, 72, 104, 92) \
         + 17 * hill(a, b, 0, -0.20, 0.13, 0.09) + 9 * hill(a, b, 0, -0.02, 0.09, 0.16) \
         + 4 * hill(a, b, 0, 0.28, 0.6, 0.09) - 5 * hills(a, b, 0.36, 0.1, 0.16, 0.1) \
-        + 4 * hill(a, b, 0, -0.455, 0.26, 0.05) + 5 * hill(a, b, 0, -0.58, 0.24, 0.06) \
-        - 2 * hill(a, b, 0, -0.515, 0.34, 0.025) + 10 * hill(a, b, 0, -0.86, 0.35, 0.16) \
-        + 3 * hills(a, b, 0.75, -0.1, 0.25, 0.2) + 14 * hills(a, b, 1.65, -0.05, 0.07, 0.22)
+        + 4 * hill(a, b, 0, -0.455, 0.22, 0.05) + 5 * hill(a, b, 0, -0.58, 0.19, 0.06) \
+        - 2 * hill(a, b, 0, -0.515, 0.3, 0.025) + 10 * hill(a, b, 0, -0.86, 0.35, 0.16) \
+        + 3 * hills(a, b, 0.75, -0.1, 0.25, 0.2) + 11 * hills(a, b, 1.65, -0.05, 0.12, 0.22) \
+        - 10 * hills(a, b, 1.15, -0.8, 0.5, 0.35)
 }
 
 function skull(a, b, dx, dy, dz)
@@ -40,7 +46,8 @@ function skull(a, b, dx, dy, dz)
     return egg(dx, dy, dz, 65, 97, 84) \
         + 3 * hill(a, b, 0, 0.26, 0.6, 0.09) - 12 * hills(a, b, 0.4, 0.06, 0.17, 0.13) \
         - 4 * hill(a, b, 0, -0.18, 0.12, 0.12) + 5 * hills(a, b, 0.78, -0.1, 0.2, 0.11) \
-        - 9 * hills(a, b, 0.62, -0.42, 0.22, 0.16) + 6 * hill(a, b, 0, -0.86, 0.35, 0.16)
+        - 9 * hills(a, b, 0.62, -0.42, 0.22, 0.16) + 6 * hill(a, b, 0, -0.86, 0.35, 0.16) \
+        - 10 * hills(a, b, 1.15, -0.8, 0.5, 0.35)
 }
 
 function polar(radius, a, b)
@@ -65,7 +72,7 @@ function muscle_line(t,    a, b, inner, outer, depth)
     b = -0.10 + (-0.51 + 0.10) * t
     inner = radius_of("skull", a, b)
     outer = radius_of("skin", a, b)
-    depth = -0.5 + 1.05 * sin(PI / 2 * (t < 0.4 ? t / 0.4 : 1))
+    depth = -0.1 + 0.65 * sin(PI / 2 * (t < 0.4 ? t / 0.4 : 1))
     polar(inner + depth * (outer - inner), a, b)
 }
 
@@ -104,6 +111,8 @@ function point(name, u, i, rows,    a, b)
 BEGIN {
     PI = atan2(0, -1)
     begin("a head: skin, skull, left zygomaticus major")
+    polar(radius_of("skin", 0.32, -0.515), 0.32, -0.515)
+    print "# the mouth's left corner: " number(X) " " number(Y) " " number(Z)
     closed("skin", 96, 128)
     flush("skin", "skin")
     closed("skull", 64, 96)

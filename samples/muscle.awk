@@ -19,21 +19,9 @@ BEGIN {
     AX = 1 / sqrt(41); AY = 2 / sqrt(41); AZ = 6 / sqrt(41)
     BX = 2 / sqrt(5); BY = -1 / sqrt(5); BZ = 0
     CX = BY * AZ - BZ * AY; CY = BZ * AX - BX * AZ; CZ = BX * AY - BY * AX
-    rows = 14
     begin("a cylindrical muscle, held at one end")
-    closed("muscle", rows, 64)
-    # closed() makes a row of faces after the other: the first 64 are the end's.
-    split_faces(64)
-}
-
-function split_faces(n,    i, all, rest)
-{
-    all = waiting
-    for (i = n + 1; i <= all; i++)
-        rest[i] = faces[i]
-    waiting = n
-    flush("muscle rigid_end", "bone")
-    for (i = n + 1; i <= all; i++)
-        faces[++waiting] = rest[i]
+    closed("muscle", 14, 64)
+    # Rows of faces come one after the other: the first 64 are the end's.
+    flush_first(64, "muscle rigid_end", "bone")
     flush("muscle", "muscle")
 }

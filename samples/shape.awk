@@ -43,13 +43,21 @@ function face(text)
     faces[++waiting] = "f " text
 }
 
-function flush(group, material,    i)
+function flush(group, material)
+{
+    flush_first(waiting, group, material)
+}
+
+# Only the first n faces that wait.
+function flush_first(n, group, material,    i)
 {
     print "g " group
     print "usemtl " material
-    for (i = 1; i <= waiting; i++)
+    for (i = 1; i <= n; i++)
         print faces[i]
-    waiting = 0
+    for (i = n + 1; i <= waiting; i++)
+        faces[i - n] = faces[i]
+    waiting -= n
 }
 
 function begin(title)

@@ -1,4 +1,5 @@
-# A ball of soft tissue, radius 100 mm: W&M's first model. Voxels of 12.5 mm give 2176 elements and 2849 nodes.
+# A ball of soft tissue, radius 100 mm, in a rigid bowl: W&M's first model. Voxels of 12.5 mm give 2176 elements and 2849
+# nodes.
 
 function point(name, u, i, rows)
 {
@@ -12,5 +13,7 @@ BEGIN {
     R = 100
     begin("a ball, radius 100 mm")
     closed("skin", 32, 64)
-    flush("skin", "skin")
+    # The lowest 12 rows of faces hold it: all below 38 mm under the middle.
+    flush_first(20 * 64, "skin", "skin")
+    flush("rigid_bowl", "bone")
 }
