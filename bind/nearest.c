@@ -119,6 +119,47 @@ static double distance2(const search *s, const int64_t *low, const int64_t *high
     return sum;
 }
 
+/* A block of cells; level 0: one cell. */
+typedef struct block {
+    int level;
+    int32_t at[3];
+} block;
+
+enum { WAITING = 8 * NEAREST_LEVELS }; /* blocks: a search goes down one level at a time, 7 wait at each */
+
+/* The squared distance to a block's centres; bit a of *side is set where the point is on its high side along axis a. */
+static double block_distance2(const search *s, const block *b, int *side)
+{
+    int64_t low[3], high[3];
+    *side = 0;
+    for (int a = 0; a < 3; a++) {
+        int64_t size = s->n->map.size[a];
+        low[a] = (int64_t)b->at[a] << b->level;
+        high[a] = low[a] + (INT64_C(1) << b->level);
+        *side |= s->q[a] > (double)(low[a] + high[a]) / 2 ? 1 << a : 0;
+        high[a] = high[a] < size ? high[a] : size;
+    }
+    return distance2(s, low, high);
+}
+
+/* Adds the occupied blocks that b is made of, the one on the point's side last: it is looked at first. Returns how many
+ * blocks wait then. */
+static int add_children(const search *s, const block *b, int side, block *waiting, int count)
+{
+    const int32_t *size = s->n->level[b->level - 1].size;
+    for (int c = 7; c >= 0; c--) {
+        block child = {.level = b->level - 1};
+        bool there = true;
+        for (int a = 0; a < 3; a++) {
+            child.at[a] = 2 * b->at[a] + (((c ^ side) >> a) & 1);
+            there &= child.at[a] < size[a];
+        }
+        if (there && occupied(s->n, child.level, child.at[0], child.at[1], child.at[2]))
+            waiting[count++] = child;
+    }
+    return count;
+}
+
 static void look_at(search *s, const int32_t *cell, double d2, bool by_index)
 {
     const lattice_map *map = &s->n->map;
@@ -131,33 +172,19 @@ static void look_at(search *s, const int32_t *cell, double d2, bool by_index)
         s->element = element;
 }
 
-/* Looks through a block, its children nearest to the point first. */
-static void descend(search *s, int level, const int32_t *block, bool by_index)
+/* by_index: of the elements within the limit, the lowest; else the limit comes down to the nearest one's distance. */
+static void look_through(search *s, bool by_index)
 {
-    int64_t low[3], high[3];
-    int near = 0;
-    for (int a = 0; a < 3; a++) {
-        int64_t size = s->n->map.size[a];
-        low[a] = (int64_t)block[a] << level;
-        high[a] = low[a] + (INT64_C(1) << level);
-        near |= s->q[a] > (double)(low[a] + high[a]) / 2 ? 1 << a : 0;
-        high[a] = high[a] < size ? high[a] : size;
-    }
-    double d2 = distance2(s, low, high);
-    if (d2 > s->limit)
-        return;
-    if (!level) {
-        look_at(s, block, d2, by_index);
-        return;
-    }
-    const int32_t *size = s->n->level[level - 1].size;
-    for (int c = 0; c < 8; c++) {
-        int32_t child[3];
-        for (int a = 0; a < 3; a++)
-            child[a] = 2 * block[a] + (((c ^ near) >> a) & 1);
-        if (child[0] < size[0] && child[1] < size[1] && child[2] < size[2] &&
-            occupied(s->n, level - 1, child[0], child[1], child[2]))
-            descend(s, level - 1, child, by_index);
+    block waiting[WAITING] = {{.level = s->n->levels - 1}};
+    for (int count = 1, side; count;) {
+        block b = waiting[--count];
+        double d2 = block_distance2(s, &b, &side);
+        if (d2 > s->limit)
+            continue;
+        if (b.level)
+            count = add_children(s, &b, side, waiting, count);
+        else
+            look_at(s, b.at, d2, by_index);
     }
 }
 
@@ -177,7 +204,6 @@ static int32_t element_around(const search *s)
 int32_t nearest_element(const nearest *n, const double *point)
 {
     const double far = 1e12; /* cells: beyond it no double tells neighbours apart */
-    const int32_t all[3] = {0};
     search s = {.n = n, .limit = INFINITY, .element = -1};
     lattice_local(&n->grid, point, s.q);
     for (int a = 0; a < 3; a++)
@@ -185,10 +211,10 @@ int32_t nearest_element(const nearest *n, const double *point)
     int32_t around = element_around(&s);
     if (around >= 0)
         return around;
-    descend(&s, n->levels - 1, all, false);
+    look_through(&s, false);
     double d = sqrt(s.limit);
     d += n->tie + 4e-15 * d; /* the second: what rounding does to d far outside */
     s.limit = d * d;
-    descend(&s, n->levels - 1, all, true);
+    look_through(&s, true);
     return s.element;
 }

@@ -1,5 +1,6 @@
 /* A point cache in the PC2 format, which Blender's Mesh Cache modifier and others read: every frame's vertices in one
- * file, as float32. The out is the caller's; it must be a file, since the count of frames goes into the head at the end.
+ * file, as float32. The out is the caller's; it must be a file, since the count of frames goes into the head at the
+ * end.
  *
  * Layout, little-endian: "POINTCACHE2\0", version i32 = 1, points i32, start frame f32, sample rate f32, samples i32;
  * then for each sample points x 3 f32.

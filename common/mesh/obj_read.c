@@ -1,5 +1,6 @@
 #include "base/mem.h"
 #include "base/num.h"
+#include "mesh/names.h"
 #include "mesh/obj.h"
 #include "model/check.h"
 
@@ -25,15 +26,14 @@ typedef struct reader {
     const char *line_start; /* of the logical line */
     int64_t line;           /* number of the line that p is on */
     struct {
-        int64_t position, v, normal, vn, face_start, face_group, corner_vertex, corner_normal, group;
+        int64_t position, v, normal, vn, face_start, face_group, corner_vertex, corner_normal;
     } room;
     forwards vertex, normal;
+    names groups;
     bool grouped; /* `current` is the group of the next face */
     int32_t current;
-    char *object;  /* the last object's name, or NULL */
-    int32_t *slot; /* hash table of groups: -1 = free */
-    int64_t slots; /* a power of two, or 0 */
-    char *name;    /* scratch for names */
+    char *object; /* the last object's name, or NULL */
+    char *name;   /* scratch for names */
     int64_t name_room;
     err *e;
 } reader;
@@ -189,57 +189,12 @@ static int read_normal(reader *r)
 
 /* Groups */
 
-static uint64_t hash(const char *text)
-{
-    uint64_t h = UINT64_C(14695981039346656037); /* FNV-1a */
-    for (; *text; text++)
-        h = (h ^ (unsigned char)*text) * UINT64_C(1099511628211);
-    return h;
-}
-
-static int32_t *find_slot(const reader *r, const char *name)
-{
-    int64_t at = (int64_t)(hash(name) & (uint64_t)(r->slots - 1));
-    while (r->slot[at] >= 0 && strcmp(r->o->group[r->slot[at]], name) != 0)
-        at = (at + 1) & (r->slots - 1);
-    return &r->slot[at];
-}
-
-static int grow_slots(reader *r)
-{
-    int64_t slots = r->slots ? r->slots * 4 : 64;
-    int32_t *slot = mem_array(slots, sizeof *slot, "an OBJ's groups", r->e);
-    if (!slot)
-        return -1;
-    memset(slot, -1, (size_t)slots * sizeof *slot);
-    free(r->slot);
-    r->slot = slot;
-    r->slots = slots;
-    for (int32_t g = 0; g < r->o->groups; g++)
-        *find_slot(r, r->o->group[g]) = g;
-    return 0;
-}
-
 /* Makes the group of this name current, adding it where it is new. */
 static int enter_group(reader *r, const char *name)
 {
-    obj *o = r->o;
-    if (2 * (int64_t)o->groups >= r->slots && grow_slots(r))
-        return -1;
-    int32_t *slot = find_slot(r, name);
-    if (*slot < 0) {
-        if (o->groups == INT32_MAX)
-            return err_set(r->e, o->name, r->line, "more than %d groups; expected fewer", INT32_MAX);
-        if (mem_grow(&o->group, &r->room.group, o->groups + 1, sizeof *o->group, "an OBJ's groups", r->e))
-            return -1;
-        o->group[o->groups] = mem_text(name, r->e);
-        if (!o->group[o->groups])
-            return -1;
-        *slot = o->groups++;
-    }
-    r->current = *slot;
+    r->current = names_number(&r->groups, name, r->e);
     r->grouped = true;
-    return 0;
+    return r->current < 0 ? -1 : 0;
 }
 
 /* Whether a word may be part of a name: what control characters do to a terminal or a model is not wanted. */
@@ -390,7 +345,7 @@ static int read_corner(reader *r, int32_t *corner, int *form)
 
 static int read_face(reader *r)
 {
-    int32_t corner[2];
+    int32_t corner[2] = {0};
     int form, first = 0;
     if (begin_face(r))
         return -1;
@@ -414,7 +369,7 @@ static int read_face(reader *r)
 
 static int read_line(reader *r)
 {
-    int32_t corner[2], before[2];
+    int32_t corner[2] = {0}, before[2] = {0};
     int form, n = 0;
     for (; skip_to_word(r); n = n < 2 ? n + 1 : 2) {
         if (read_corner(r, corner, &form))
@@ -430,7 +385,7 @@ static int read_line(reader *r)
 
 static int read_point(reader *r)
 {
-    int32_t corner[2];
+    int32_t corner[2] = {0};
     int form, n = 0;
     for (; skip_to_word(r); n = 1)
         if (read_corner(r, corner, &form) || begin_face(r) || add_corner(r, corner))
@@ -463,71 +418,62 @@ static int refuse_call(reader *r)
 }
 
 typedef struct statement {
-    const char *word;
+    const char *words; /* between blanks */
     int (*read)(reader *r);
 } statement;
 
-static const statement statements[] = {{"v", read_vertex},
-                                       {"f", read_face},
-                                       {"vn", read_normal},
-                                       {"vt", pass_over},
-                                       {"g", read_group},
-                                       {"s", pass_over},
-                                       {"usemtl", pass_over},
-                                       {"mtllib", pass_over},
-                                       {"o", read_object},
-                                       {"l", read_line},
-                                       {"p", read_point},
-                                       {"fo", read_face},
-                                       {"mg", pass_over},
-                                       {"usemap", pass_over},
-                                       {"maplib", pass_over},
-                                       {"bevel", pass_over},
-                                       {"c_interp", pass_over},
-                                       {"d_interp", pass_over},
-                                       {"lod", pass_over},
-                                       {"shadow_obj", pass_over},
-                                       {"trace_obj", pass_over},
-                                       {"call", refuse_call},
-                                       {"csh", refuse_call},
-                                       {"vp", refuse_free_form},
-                                       {"cstype", refuse_free_form},
-                                       {"deg", refuse_free_form},
-                                       {"bmat", refuse_free_form},
-                                       {"step", refuse_free_form},
-                                       {"curv", refuse_free_form},
-                                       {"curv2", refuse_free_form},
-                                       {"surf", refuse_free_form},
-                                       {"parm", refuse_free_form},
-                                       {"trim", refuse_free_form},
-                                       {"hole", refuse_free_form},
-                                       {"scrv", refuse_free_form},
-                                       {"sp", refuse_free_form},
-                                       {"end", refuse_free_form},
-                                       {"con", refuse_free_form},
-                                       {"ctech", refuse_free_form},
-                                       {"stech", refuse_free_form},
-                                       {"bsp", refuse_free_form},
-                                       {"bzp", refuse_free_form},
-                                       {"cdc", refuse_free_form},
-                                       {"cdp", refuse_free_form},
-                                       {"res", refuse_free_form}};
+/* In the order of how often they come. */
+static const statement statements[] = {
+    {"v", read_vertex},
+    {"f fo", read_face},
+    {"vn", read_normal},
+    {"vt s usemtl mtllib mg usemap maplib bevel c_interp d_interp lod shadow_obj trace_obj", pass_over},
+    {"g", read_group},
+    {"o", read_object},
+    {"l", read_line},
+    {"p", read_point},
+    {"vp cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech bsp bzp cdc cdp res",
+     refuse_free_form},
+    {"call csh", refuse_call},
+};
 
 enum { STATEMENTS = sizeof statements / sizeof *statements };
+
+static bool is_among(const char *words, const char *word, size_t n)
+{
+    for (; words; words = strchr(words, ' ')) {
+        words += *words == ' ';
+        if (!strncmp(words, word, n) && (words[n] == ' ' || !words[n]))
+            return true;
+    }
+    return false;
+}
+
+/* Finds the statement whose name is like word, if any, and writes "perhaps 'name'". */
+static void suggest(const char *word, char *to, size_t size)
+{
+    enum { WORDS = 64, TEXT = 100 };
+    char text[STATEMENTS][TEXT], *keep;
+    const char *known[WORDS];
+    int count = 0;
+    for (int i = 0; i < STATEMENTS; i++) {
+        snprintf(text[i], TEXT, "%s", statements[i].words);
+        for (char *w = strtok_r(text[i], " ", &keep); w && count < WORDS; w = strtok_r(NULL, " ", &keep))
+            known[count++] = w;
+    }
+    int near = num_nearest(word, known, count);
+    if (near >= 0)
+        snprintf(to, size, "perhaps '%s'", known[near]);
+}
 
 static int refuse_unknown(reader *r)
 {
     char word[32], expected[64] = "a statement of an OBJ (v, vn, f, g, ...) or a comment (#)";
-    const char *names[STATEMENTS];
     size_t n = (size_t)(word_end(r) - r->p);
     if (n < sizeof word) {
         memcpy(word, r->p, n);
         word[n] = 0;
-        for (int i = 0; i < STATEMENTS; i++)
-            names[i] = statements[i].word;
-        int near = num_nearest(word, names, STATEMENTS);
-        if (near >= 0)
-            snprintf(expected, sizeof expected, "perhaps '%s'", names[near]);
+        suggest(word, expected, sizeof expected);
     }
     return bad(r, "unknown statement", expected);
 }
@@ -536,13 +482,11 @@ static int read_statement(reader *r)
 {
     const char *stop = word_end(r);
     size_t n = (size_t)(stop - r->p);
-    for (int i = 0; i < STATEMENTS; i++) {
-        const char *word = statements[i].word;
-        if (*word == *r->p && !strncmp(word, r->p, n) && !word[n]) {
+    for (int i = 0; i < STATEMENTS; i++)
+        if (is_among(statements[i].words, r->p, n)) {
             r->p = stop;
             return statements[i].read(r);
         }
-    }
     return refuse_unknown(r);
 }
 
@@ -591,6 +535,10 @@ static int finish(reader *r)
     if (mem_grow(&o->face_start, &r->room.face_start, o->faces + 1, sizeof *o->face_start, "an OBJ's faces", r->e))
         return -1;
     o->face_start[o->faces] = o->corners;
+    o->group = r->groups.name; /* handed over */
+    o->groups = r->groups.count;
+    r->groups.name = NULL;
+    r->groups.count = 0;
     return 0;
 }
 
@@ -610,7 +558,7 @@ int obj_read(obj *o, in *s, err *e)
     }
     free(r.vertex.v);
     free(r.normal.v);
-    free(r.slot);
+    names_free(&r.groups);
     free(r.name);
     free(r.object);
     if (code)

@@ -101,19 +101,27 @@ int surface_add(model *m, const char *name, const obj *o, double scale, err *e)
     return add_positions(m, name, o, scale, e) || add_faces(m, name, o, e) || add_groups(m, name, o, e) ? -1 : 0;
 }
 
+static bool is_at(const double *coordinates, double scale, const double *metres)
+{
+    for (int a = 0; a < 3; a++)
+        if (surface_metres(coordinates[a], scale) != metres[a])
+            return false;
+    return true;
+}
+
 int surface_is(const surface *s, const obj *o, double scale, err *e)
 {
     if (s->vertices != o->vertices)
         return err_set(e, o->name, 0, "%lld vertices, but the model's surface %s has %lld; expected the same OBJ",
                        (long long)o->vertices, s->name, (long long)s->vertices);
-    for (int64_t i = 0; i < 3 * o->vertices; i++) {
-        if (surface_metres(o->position[i], scale) == s->position[i])
+    for (int64_t v = 0; v < o->vertices; v++) {
+        const double *p = &o->position[3 * v], *q = &s->position[3 * v];
+        if (is_at(p, scale, q))
             continue;
-        const double *p = &o->position[i - i % 3], *q = &s->position[i - i % 3];
-        return err_set(e, o->name, obj_line_number(o, o->v[i / 3].from),
+        return err_set(e, o->name, obj_line_number(o, o->v[v].from),
                        "vertex %lld is %.9g %.9g %.9g, but %.9g %.9g %.9g in the model's surface %s; expected the same "
                        "OBJ in the same unit",
-                       (long long)(i / 3 + 1), p[0], p[1], p[2], q[0] / scale, q[1] / scale, q[2] / scale, s->name);
+                       (long long)v + 1, p[0], p[1], p[2], q[0] / scale, q[1] / scale, q[2] / scale, s->name);
     }
     return 0;
 }

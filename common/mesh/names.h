@@ -1,0 +1,20 @@
+/* A set of names, numbered in the order in which they were first given. Owns all; begin with a zeroed one.
+ */
+#ifndef SINEW_NAMES_H
+#define SINEW_NAMES_H
+
+#include "base/err.h"
+
+typedef struct names {
+    char **name; /* each owned */
+    int32_t count;
+    int64_t room;
+    int32_t *slot; /* hash table of numbers: -1 = free */
+    int64_t slots; /* a power of two, or 0 */
+} names;
+
+/* The number of the name, which is added where it is new. -1 with e filled on no memory. */
+int32_t names_number(names *n, const char *name, err *e);
+void names_free(names *n);
+
+#endif
