@@ -1,0 +1,60 @@
+#!/bin/sh
+# The shapes of samples/, what W&M's Table 1 says of three of them, and samples/Makefile as users would call it.
+. "$(dirname "$0")/lib.sh"
+
+have make || skip_all "no make"
+
+# samples FOLDER WORD...: make in samples/, without what a make above said.
+# shellcheck disable=SC2317 # called by name
+samples() {
+    folder=$1
+    shift
+    env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make -s -C samples OUT="$folder" "$@"
+}
+
+# count MODEL KEY
+count() {
+    sinew info --get "$2" "$1"
+}
+
+check "the shapes are written" samples "$T/a" shapes
+check "and again" samples "$T/b" shapes
+for shape in sphere muscle block head; do
+    check "$shape: the same bytes" cmp "$T/a/$shape.obj" "$T/b/$shape.obj"
+done
+
+check "models, two at a time" samples "$T/a" -j2 "$T/a/sphere.model" "$T/a/muscle.model" "$T/a/block.model" "$T/a/head.model"
+while read -r shape elements nodes; do
+    is "$(count "$T/a/$shape.model" axis.element) $(count "$T/a/$shape.model" axis.node)" "$elements $nodes" \
+        "$shape: $elements elements, $nodes nodes"
+done <<'END'
+sphere 2176 2849
+muscle 280 480
+block 4800 6724
+END
+for shape in sphere muscle block head; do
+    rigid=$(count "$T/a/$shape.model" node.rigid.sum)
+    check "$shape: some nodes are rigid, not all" test "$rigid" -gt 0 -a "$rigid" -lt "$(count "$T/a/$shape.model" axis.node)"
+done
+check "the head's muscle has elements" test "$(count "$T/a/head.model" volume.count.muscle_zyg)" -gt 50
+
+# The quick ones to their end: moved OBJ files and VTU.
+check "the muscle and the block move" samples "$T/a" -j2 SHAPES='muscle block'
+for shape in muscle block; do
+    is "$(diff "$T/a/$shape.obj" "$T/a/$shape.moved.obj" | sed -n 's/^[<>] \([a-z#]*\) .*/\1/p' | sort -u | tr '\n' ' ')" "v vn " \
+        "$shape: only v and vn lines differ"
+    check "$shape: a VTU" grep -q '<VTKFile' "$T/a/$shape.vtu"
+done
+
+# A folder of OBJ files, one of which is open: the others come out, that one leaves nothing behind.
+mkdir "$T/in"
+cp "$T/a/sphere.obj" "$T/in/ball.obj"
+grep -v '^f 1/' "$T/a/sphere.obj" >"$T/in/open.obj"
+fails 2 "a folder with an open surface" "open edges" \
+    samples "$T/c" -k -j2 IN="$T/in" VOXELISE='--unit mm -s 12.5' RUN='-n 3 -g 0,-9.81,0'
+messages=$(grep -c 'open edges' "$T/stderr")
+check "the good one is done" test -s "$T/c/ball.moved.obj"
+is "$(find "$T/c" -name 'open*')" "" "the bad one left no file"
+is "$messages" 1 "one message for it"
+
+done_testing
