@@ -99,6 +99,25 @@ is "$(vertices "$T/got" | sed -n 3p)" "$(vertices "$T/last.obj" | sed -n 3p)" "o
 sinew deform --within 5mm "$T/skin.obj" <"$T/bound" 2>&1 >/dev/null | grep -q '1 of 4 vertices lie further than 0.005 m outside'
 is $? 0 "and it is said"
 
+# Bone: the vertices of a rigid surface move with a node that it holds, and their normals do not turn.
+cat >"$T/bone.obj" <<'OBJ'
+vn 0 0 1
+vn 0 0 1
+v 2.5 2 2
+v 2.5 8 2
+v 19 2 2
+v 2.5 2 3
+g skin
+f 4//1 2//1 3//1
+g upper SKULL
+f 1//2 2//2 3//2
+OBJ
+model -v frames=1 -v bone=skull | sinew bind "$T/bone.obj" | sinew deform -o "$T/got" "$T/bone.obj"
+is "$(vertices "$T/got" | tr '\n' ',')" "3.5 0 2,1.5 7 2,20 0 2,4.25 0.325 2.85," \
+    "bone's vertices move with the nearest node that bone holds, others with their element"
+is "$(sed -n 2p "$T/got")" "vn 0 0 1" "bone's normals stay"
+is "$(sed -n 1p "$T/got" | cut -c 1-4)" "vn 0" "others turn"
+
 # Point caches
 check "a point cache" sinew deform --format pc2 "$T/skin.obj" -o "$T/skin.pc2" <"$T/bound"
 is "$(head -c 12 "$T/skin.pc2" | tr '\0' '.')" "POINTCACHE2." "its magic"

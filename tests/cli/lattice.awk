@@ -2,6 +2,7 @@
 #   unit    source.unit (default mm; none: it has none)
 #   frames  results: frame k (1, 2, ...) has the displacement k (A x + b), A and b as below
 #   gap     an element to leave out
+#   bone    name of a rigid surface that holds the nodes at x = 0
 #   ends    the last line (default end)
 BEGIN {
     if (unit == "") unit = "mm"
@@ -30,6 +31,10 @@ BEGIN {
         n = i + row * j + layer * k
         if (e++ != gap)
             print n, n + 1, n + 1 + row, n + row, n + layer, n + 1 + layer, n + 1 + row + layer, n + row + layer
+    }
+    if (bone != "") {
+        print "axis anchor 1\narray anchor.name str 1 anchor 1\n\"" bone "\"\narray node.anchor i32 @anchor node 1"
+        for (n = 0; n < nodes; n++) print x[n] == 0 ? 0 : -1
     }
     for (f = 1; f <= frames; f++) {
         print "frame " f " " f / 100 "\narray node.displacement f64 m node 3"
