@@ -28,10 +28,11 @@ typedef struct cpu_state {
     element_shape shape;
     cpu_kind *kind;                               /* volumes */
     real *displacement, *velocity, *acceleration; /* nodes x 3; between steps the velocity is half a step behind */
-    real *force;                                  /* elements x 8 x 3: what elements pull with */
+    real *force;                                  /* elements x 8 x 3: what elements pull with; then zeros */
     real *mass_inverse;                           /* nodes */
     double *now, *next;                           /* the curves' values, 3 a curve */
     double dt, damping;
+    real gravity[3];    /* now */
     bool finish, begin; /* what the loop over nodes does */
 } cpu_state;
 
@@ -119,27 +120,51 @@ static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
 }
 
 /* The sum of the pulls at node n, elements in ascending order. */
-static inline void internal_force(const cpu_state *s, int64_t n, real *sum)
+static inline void internal_force(const cpu_state *s, int64_t n, real sum[3])
 {
     const int32_t *corner = s->p->corner + 8 * n;
-    sum[0] = sum[1] = sum[2] = 0;
-    for (int i = 0; i < 8 && corner[i] >= 0; i++)
-        for (int a = 0; a < 3; a++)
-            sum[a] += s->force[3 * (int64_t)corner[i] + a];
+    real x = 0, y = 0, z = 0;
+    for (int i = 0; i < 8; i++) {
+        const real *f = s->force + 3 * (int64_t)corner[i];
+        x += f[0];
+        y += f[1];
+        z += f[2];
+    }
+    sum[0] = x, sum[1] = y, sum[2] = z;
 }
 
-/* a = (external - internal) / m at the displacement of now. */
+/* a = (external - internal) / m at the displacement of now; 0 where held. */
 static inline void accelerate(cpu_state *s, int64_t n)
 {
     const tled_problem *p = s->p;
-    real pull[3];
-    internal_force(s, n, pull);
-    for (int a = 0; a < 3; a++) {
-        real outside = 0;
-        for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
-            outside += (real)(p->force_share[i] * s->now[3 * (int64_t)p->force_curve[i] + a]);
-        real g = p->gravity < 0 ? 0 : (real)s->now[3 * p->gravity + a];
-        s->acceleration[3 * n + a] = p->hold[3 * n + a] == HOLD_FREE ? g + (outside - pull[a]) * s->mass_inverse[n] : 0;
+    const int32_t *hold = p->hold + 3 * n;
+    real net[3], *to = s->acceleration + 3 * n, inverse = s->mass_inverse[n];
+    internal_force(s, n, net);
+    for (int a = 0; a < 3; a++)
+        net[a] = -net[a];
+    for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
+        for (int a = 0; a < 3; a++)
+            net[a] += (real)(p->force_share[i] * s->now[3 * (int64_t)p->force_curve[i] + a]);
+    for (int a = 0; a < 3; a++)
+        to[a] = hold[a] == HOLD_FREE ? s->gravity[a] + net[a] * inverse : 0;
+}
+
+/* The factors of a step: dt, dt/2, 1 - alpha dt/2, 1 / (1 + alpha dt/2). */
+typedef struct cpu_factors {
+    real dt, half, keep, slow;
+} cpu_factors;
+
+/* Starts a step for component i, of axis a. What a curve displaces goes where the curve is at the step's end. */
+static inline void begin_step(cpu_state *s, int64_t i, int a, cpu_factors k)
+{
+    int32_t hold = s->p->hold[i];
+    if (hold == HOLD_FREE) {
+        s->velocity[i] = (s->velocity[i] + k.half * s->acceleration[i]) * k.slow;
+        s->displacement[i] += k.dt * s->velocity[i];
+    } else if (hold >= 0) {
+        real to = (real)s->next[3 * (int64_t)hold + a];
+        s->velocity[i] = (to - s->displacement[i]) / k.dt;
+        s->displacement[i] = to;
     }
 }
 
@@ -152,25 +177,19 @@ static inline void accelerate(cpu_state *s, int64_t n)
 static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     cpu_state *s = context;
-    real dt = (real)s->dt, half = (real)(s->dt / 2), drag = (real)(s->damping * s->dt / 2), slow = 1 / (1 + drag);
+    const double drag = s->damping * s->dt / 2;
+    const cpu_factors k = {(real)s->dt, (real)(s->dt / 2), (real)(1 - drag), (real)(1 / (1 + drag))};
+    const bool finish = s->finish, begin = s->begin;
     (void)chunk;
     for (int64_t n = from; n < to; n++) {
-        if (s->finish)
+        if (finish)
             accelerate(s, n);
-        for (int64_t i = 3 * n; i < 3 * n + 3; i++) {
-            int32_t hold = s->p->hold[i];
-            if (s->finish && hold == HOLD_FREE)
-                s->velocity[i] = s->velocity[i] * (1 - drag) + half * s->acceleration[i];
-            if (!s->begin)
-                continue;
-            if (hold >= 0) {
-                real to_be = (real)s->next[3 * (int64_t)hold + i % 3];
-                s->velocity[i] = (to_be - s->displacement[i]) / dt;
-                s->displacement[i] = to_be;
-            } else if (hold == HOLD_FREE) {
-                s->velocity[i] = (s->velocity[i] + half * s->acceleration[i]) * slow;
-                s->displacement[i] += dt * s->velocity[i];
-            }
+        for (int a = 0; a < 3; a++) {
+            int64_t i = 3 * n + a;
+            if (finish && s->p->hold[i] == HOLD_FREE)
+                s->velocity[i] = s->velocity[i] * k.keep + k.half * s->acceleration[i];
+            if (begin)
+                begin_step(s, i, a, k);
         }
     }
 }
@@ -189,10 +208,17 @@ static void run_elements(cpu_state *s)
     pool_run(s->threads, s->p->elements, ELEMENT_CHUNK, element_work, s);
 }
 
+static void take_gravity(cpu_state *s)
+{
+    for (int a = 0; a < 3; a++)
+        s->gravity[a] = s->p->gravity < 0 ? 0 : (real)s->now[3 * s->p->gravity + a];
+}
+
 static void run_nodes(cpu_state *s, bool finish, bool begin)
 {
     s->finish = finish;
     s->begin = begin;
+    take_gravity(s);
     pool_run(s->threads, s->p->nodes, NODE_CHUNK, node_work, s);
 }
 
@@ -264,7 +290,7 @@ static int allocate(cpu_state *s, err *e)
     s->displacement = mem_array(p->nodes, 3 * sizeof *s->displacement, "the solver", e);
     s->velocity = mem_array(p->nodes, 3 * sizeof *s->velocity, "the solver", e);
     s->acceleration = mem_array(p->nodes, 3 * sizeof *s->acceleration, "the solver", e);
-    s->force = mem_array(p->elements, 24 * sizeof *s->force, "the solver", e);
+    s->force = mem_array(p->elements + 1, 24 * sizeof *s->force, "the solver", e);
     s->mass_inverse = mem_array(p->nodes, sizeof *s->mass_inverse, "the solver", e);
     s->now = mem_array(p->script->curves, 3 * sizeof *s->now, "the solver", e);
     s->next = mem_array(p->script->curves, 3 * sizeof *s->next, "the solver", e);
@@ -296,6 +322,7 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
     }
     tled_curves(p, p->start, s->now);
     run_elements(s);
+    take_gravity(s);
     pool_run(threads, p->nodes, NODE_CHUNK, initial_work, s);
     return s;
 }

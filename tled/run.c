@@ -107,22 +107,23 @@ static int write_frame(run *n)
     return n->r->frame(n->r->context, tled_time(&n->plan, 0), n->watch->displacement, n->watch->velocity, n->e);
 }
 
-/* The first step past `first` with a frame. */
+/* The first step past plan.first with a frame. */
 static int64_t next_frame(const run *n)
 {
-    double every = n->r->every, k = floor((tled_time(&n->plan, 0)) / every);
+    double every = n->r->every, k = floor(tled_time(&n->plan, 0) / every);
     int64_t at = n->plan.first;
-    while (at <= n->plan.first) {
+    if (every * n->r->rate <= 1)
+        return at + 1;
+    for (; at <= n->plan.first; k++)
         at = run_steps_to(k * every - n->plan.origin, n->r->rate);
-        k++;
-    }
     return at;
 }
 
 static int advance(run *n, int64_t to)
 {
-    tled_plan cut = {n->plan.origin, ldexp(n->plan.rate, n->cuts), n->plan.first << n->cuts, n->damping};
-    if (n->r->device->step(n->state, &cut, (to - n->plan.first) << n->cuts, n->e))
+    int64_t parts = INT64_C(1) << n->cuts;
+    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, n->plan.first * parts, n->damping};
+    if (n->r->device->step(n->state, &cut, (to - n->plan.first) * parts, n->e))
         return -1;
     n->plan.first = to;
     return 0;

@@ -32,9 +32,9 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     if (node->columns != 8)
         return err_set(e, NULL, 0, "the model's elements have %d nodes; expected hexahedra, as voxelise makes them",
                        node->columns);
-    if (node->rows < 1 || node->rows > INT32_MAX / 8)
+    if (node->rows < 1 || node->rows > INT32_MAX / 8 - 1)
         return err_set(e, NULL, 0, "the model has %lld elements; expected 1 to %d", (long long)node->rows,
-                       INT32_MAX / 8);
+                       INT32_MAX / 8 - 1);
     p->nodes = position->rows;
     p->elements = node->rows;
     p->position = position->f64;
@@ -105,12 +105,13 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
 static int make_corners(tled_problem *p, err *e)
 {
     double share = p->side[0] * p->side[1] * p->side[2] / 8;
+    const int32_t none = (int32_t)p->elements * 8;
     for (int64_t i = 0; i < p->nodes * 8; i++)
-        p->corner[i] = -1;
+        p->corner[i] = none;
     for (int64_t i = 0; i < p->elements * 8; i++) {
         int64_t n = p->element_node[i];
         int at = 0;
-        while (at < 8 && p->corner[n * 8 + at] >= 0)
+        while (at < 8 && p->corner[n * 8 + at] != none)
             at++;
         if (at == 8)
             return err_set(e, NULL, 0, "node %lld is in more than 8 elements", (long long)n);
@@ -118,7 +119,7 @@ static int make_corners(tled_problem *p, err *e)
         p->mass[n] += p->volume[p->element_volume[i / 8]].density * share;
     }
     for (int64_t n = 0; n < p->nodes; n++)
-        if (p->corner[n * 8] < 0)
+        if (p->corner[n * 8] == none)
             return err_set(e, NULL, 0, "node %lld is in no element", (long long)n);
     return 0;
 }
@@ -194,6 +195,8 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
 int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
 {
     const model_array *u = frame_find(f, "node.displacement"), *v = frame_find(f, "node.velocity");
+    if (!isfinite(f->time))
+        return err_set(e, NULL, 0, "frame %lld has no time to go on from", (long long)f->index);
     if (!u)
         return err_set(e, NULL, 0, "frame %lld has no node.displacement to go on from", (long long)f->index);
     if (!v)

@@ -32,7 +32,7 @@ typedef struct tled_problem {
     const int32_t *element_volume; /* elements */
     const float *fibre;            /* elements x 3, or NULL */
     tled_volume *volume;           /* volumes; owned, as is all below */
-    int32_t *corner;               /* nodes x 8: element * 8 + corner, ascending, then -1 */
+    int32_t *corner;               /* nodes x 8: element * 8 + corner, ascending, then elements * 8 */
     double *mass;                  /* nodes: kg */
     int32_t *hold;                 /* nodes x 3 */
     int64_t held;                  /* nodes with any component held */

@@ -9,6 +9,7 @@
 #include "tled/run.h"
 #include "tled/step.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,9 +35,10 @@ static const opt option_list[] = {
      OPT_OUTPUT, "of the solver's numbers [double]"},
     {0, "dt", "S", OPT_NUMBER, offsetof(struct options, dt), 1e-12, 1e6, NULL, OPT_OUTPUT,
      "time step, s [half the stable one]"},
-    {'t', "time", "SECONDS", OPT_NUMBER, offsetof(struct options, seconds), 0, 1e9, NULL, 0, "simulate so long, s"},
-    {'n', "steps", "STEPS", OPT_INT, offsetof(struct options, steps), 1, 1e15, NULL, 0, "take so many steps"},
-    {0, "rest", "TOL", OPT_NUMBER, offsetof(struct options, rest), 1e-15, 1, NULL, 0,
+    {'t', "time", "SECONDS", OPT_NUMBER, offsetof(struct options, seconds), 0, 1e9, NULL, OPT_OUTPUT,
+     "simulate so long, s"},
+    {'n', "steps", "STEPS", OPT_INT, offsetof(struct options, steps), 1, 1e15, NULL, OPT_OUTPUT, "take so many steps"},
+    {0, "rest", "TOL", OPT_NUMBER, offsetof(struct options, rest), 1e-15, 1, NULL, OPT_OUTPUT,
      "run until at rest to TOL [1e-4, where no end is given]"},
     {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
     {'c', "contract", "MUSCLE=LEVEL,...", OPT_LIST, offsetof(struct options, contract), 0, 0, NULL, 0,
@@ -84,9 +86,13 @@ typedef struct session {
 
 static int check_end(const struct options *o, err *e)
 {
-    if ((o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0) < 2)
+    int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
+    if (ends > 1)
+        err_set(e, NULL, 0, "-t, -n and --rest are three ways to end; expected one of them");
+    else if (o->damping == 0 && (!ends || o->rest >= 0))
+        err_set(e, NULL, 0, "without damping nothing comes to rest; expected -t or -n to end, or a --damping above 0");
+    else
         return 0;
-    err_set(e, NULL, 0, "-t, -n and --rest are three ways to end; expected one of them");
     e->status = STATUS_USAGE;
     return -1;
 }
@@ -148,19 +154,18 @@ static int choose_rate(session *s, const struct options *o, err *e)
     return 0;
 }
 
-/* How long, and with what damping. Frames given are behind us: p->start stands. */
+/* How many steps. Frames given are behind us: the problem's start stands. */
 static int choose_end(session *s, const struct options *o, err *e)
 {
     run_setup *r = &s->run;
-    tled_plan plan = run_plan(s->problem.start, r->rate);
-    double script_left = script_end(&s->script) - s->problem.start;
-    r->steps = o->steps;
-    if (o->seconds >= 0)
-        r->steps = run_steps_to(o->seconds, r->rate);
+    double left = o->seconds, first = fabs(s->problem.start) * r->rate;
     if (r->rest >= 0)
-        r->steps = REST_STEPS + run_steps_to(script_left > 0 ? script_left : 0, r->rate);
-    if ((double)plan.first + (double)r->steps > 1e15)
-        return err_set(e, NULL, 0, "a run to step %g; expected fewer than 1e15", (double)plan.first + (double)r->steps);
+        left = fmax(0, script_end(&s->script) - s->problem.start);
+    if (o->steps > 0)
+        left = (double)o->steps / r->rate;
+    if (!(first + left * r->rate < 1e15))
+        return err_set(e, NULL, 0, "a run up to step %g; expected fewer than 1e15", first + left * r->rate);
+    r->steps = o->steps > 0 ? o->steps : run_steps_to(left, r->rate) + (r->rest >= 0 ? REST_STEPS : 0);
     return 0;
 }
 
@@ -171,14 +176,21 @@ static int choose_damping(session *s, const struct options *o, err *e)
     return s->run.damping < 0 ? -1 : 0;
 }
 
-/* What ran and every default that changes the result, after the options that were given. */
+/* After the options that were given: how it ends, what ran, and every default that changes the result. */
 static int say_provenance(tool *t, const session *s, const struct options *o, err *e)
 {
-    char ran[300];
-    snprintf(ran, sizeof ran, "%s[%s %s, dt=%.9g%s damping=%.9g%s ramp=%.9g hourglass=%.9g%s]",
-             *t->provenance ? " " : "", s->run.device->name, o->precision ? "single" : "double", 1 / s->run.rate,
-             s->run.rate_fixed ? "" : " or cut", s->run.damping, s->run.adapt ? " adapted" : "", o->ramp, o->hourglass,
-             s->run.rest >= 0 && o->rest < 0 ? " rest=1e-4" : "");
+    char until[60], ran[300];
+    const run_setup *r = &s->run;
+    if (r->rest >= 0)
+        snprintf(until, sizeof until, "--rest %.9g", r->rest);
+    else if (o->steps > 0)
+        snprintf(until, sizeof until, "-n %lld", (long long)o->steps);
+    else
+        snprintf(until, sizeof until, "-t %.9g", o->seconds);
+    snprintf(ran, sizeof ran, "%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s]",
+             *t->provenance ? " " : "", until, o->ramp, o->hourglass, r->device->name,
+             o->precision ? "single" : "double", 1 / r->rate, r->rate_fixed ? "" : " or cut", r->damping,
+             r->adapt ? " adapted" : "");
     size_t size = strlen(t->provenance) + strlen(ran) + 1;
     char *all = mem_array((int64_t)size, 1, "provenance", e);
     if (!all)
@@ -216,6 +228,12 @@ out:
     return result;
 }
 
+/* As a share of the load. */
+static double residual(const watch_sight *w)
+{
+    return run_load(w) > 0 ? w->residual / run_load(w) : 0;
+}
+
 static int write_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
 {
     session *s = context;
@@ -237,15 +255,13 @@ static void checked(void *context, int64_t step, const watch_sight *sight, int64
 {
     session *s = context;
     progress_at(&s->progress, (double)step);
-    if (cut != s->cut) {
-        progress_stop(&s->progress);
-        tool_detail(s->t, "%.6g s: stable step %.4g ms (element %lld): each step is taken in %lld", sight->time,
-                    1e3 * sight->stable, (long long)sight->stable_element, (long long)cut);
-        progress_start(&s->progress, "tled-run", "steps", s->progress.total, s->t->common->quiet);
-    }
+    tool_detail(
+        s->t, "%.6g s: kinetic %.3g J, strain %.3g J, residual %.3g of the load, stable step %.4g ms, damping %.4g 1/s",
+        sight->time, sight->kinetic, sight->strain, residual(sight), 1e3 * sight->stable, damping);
+    if (cut != s->cut)
+        tool_detail(s->t, "each step is taken in %lld from now on, for element %lld", (long long)cut,
+                    (long long)sight->stable_element);
     s->cut = cut;
-    tool_detail(s->t, "%.6g s: residual %.3g of the load, kinetic %.3g J, strain %.3g J, damping %.4g 1/s", sight->time,
-                run_load(sight) > 0 ? sight->residual / run_load(sight) : 0, sight->kinetic, sight->strain, damping);
 }
 
 static void say_start(const session *s, const char *device, const struct options *o)
@@ -269,8 +285,7 @@ static void say_end(const session *s, const run_end *end)
     tool_say(
         s->t,
         "%s %.6g s, after %lld steps: kinetic energy %.3g J, residual %.3g of the load, largest displacement %.6g mm",
-        end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic,
-        run_load(w) > 0 ? w->residual / run_load(w) : 0, 1e3 * w->largest);
+        end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic, residual(w), 1e3 * w->largest);
 }
 
 /* From the model that came to the problem and how it is to be run. */
@@ -302,7 +317,8 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.checked = checked;
     s->cut = 1;
     say_start(s, device, o);
-    progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0, o->common.quiet);
+    progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
+                   o->common.quiet || o->common.verbose);
     int result = run_go(&s->run, &end, e);
     progress_stop(&s->progress);
     if (!result)

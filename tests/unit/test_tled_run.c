@@ -2,7 +2,7 @@
  * muscles at full contraction, steps that are too large, and the ends of runs.
  */
 // needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/backends.c tled/cpu_double.c tled/cpu_single.c
-#include "bench_run.h"
+#include "tled_bench.h"
 
 static const block lump = {{4, 3, 5}, {.01, .01, .0125}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}};
 static const block muscle = {{8, 4, 4}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}};

@@ -3,7 +3,7 @@
 // needs: tled/state.c tled/step.c tled/script.c tled/script_read.c
 #include "tled/step.h"
 
-#include "block.h"
+#include "tled_block.h"
 #include "tap.h"
 
 #include <string.h>

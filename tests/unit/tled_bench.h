@@ -1,14 +1,14 @@
 /* A block with a run around it, for tests of the solver: what the run wrote last is kept. Functions end the test program where
  * even the setting up fails.
  */
-#ifndef SINEW_BENCH_RUN_H
-#define SINEW_BENCH_RUN_H
+#ifndef SINEW_TLED_BENCH_H
+#define SINEW_TLED_BENCH_H
 
 #include "tled/relax.h"
 #include "tled/run.h"
 #include "tled/step.h"
 
-#include "block.h"
+#include "tled_block.h"
 #include "tap.h"
 
 #include <string.h>

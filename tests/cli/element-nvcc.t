@@ -1,0 +1,21 @@
+#!/bin/sh
+# The element header is CUDA C too: nvcc compiles it for the device, in both precisions, without a warning.
+. "$(dirname "$0")/lib.sh"
+
+NVCC=${NVCC:-$(command -v nvcc || ls /usr/local/cuda/bin/nvcc 2>/dev/null)}
+[ -n "$NVCC" ] || skip_all "no nvcc here"
+
+cat >"$T/kernel.cu" <<'END'
+#include "tled/element.h"
+
+__global__ void forces(const element_field *u, element_field *f, element_shape shape, element_law law, element_fibre fibre)
+{
+    f[threadIdx.x] = element_force(u[threadIdx.x], shape, law, fibre, fibre.tension != 0);
+}
+END
+for precision in "" -DELEMENT_SINGLE; do
+    # shellcheck disable=SC2086 # empty: no argument
+    check "nvcc compiles element.h ${precision:-in double}" \
+        "$NVCC" $precision -I"$ROOT" -I"$ROOT/common" -Werror all-warnings -c "$T/kernel.cu" -o "$T/kernel.o"
+done
+done_testing

@@ -1,0 +1,100 @@
+/* A block of voxels as a model in memory, one volume of one material, for tests of the solver. Memory that is not to be had
+ * ends the test program.
+ */
+#ifndef SINEW_TLED_BLOCK_H
+#define SINEW_TLED_BLOCK_H
+
+#include "mesh/lattice.h"
+#include "model/model.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct block {
+    int32_t cells[3];
+    double side[3]; /* m */
+    double young, poisson, density, peak;
+    int fixed_axis, fixed_low, fixed_high; /* whether the nodes at its low and high end are rigid */
+    float fibre[3];                        /* not 0: the volume is a muscle named muscle_m */
+} block;
+
+static inline model_array *block_array(model *m, const char *name)
+{
+    err e = {0};
+    model_array *a = model_add(m, name, &e);
+    if (!a) {
+        printf("Bail out! %s\n", e.text);
+        exit(1);
+    }
+    return a;
+}
+
+static inline int64_t block_node(const block *b, int32_t i, int32_t j, int32_t k)
+{
+    return ((int64_t)k * (b->cells[1] + 1) + j) * (b->cells[0] + 1) + i;
+}
+
+static inline void block_mesh(const block *b, const lattice *l, model *m)
+{
+    double *position = block_array(m, "node.position")->f64;
+    uint8_t *rigid = block_array(m, "node.rigid")->u8;
+    int32_t *node = block_array(m, "element.node")->i32, at[3];
+    for (at[2] = 0; at[2] <= b->cells[2]; at[2]++)
+        for (at[1] = 0; at[1] <= b->cells[1]; at[1]++)
+            for (at[0] = 0; at[0] <= b->cells[0]; at[0]++) {
+                int64_t n = block_node(b, at[0], at[1], at[2]);
+                lattice_corner(l, at, position + 3 * n);
+                rigid[n] = (b->fixed_low && at[b->fixed_axis] == 0) ||
+                           (b->fixed_high && at[b->fixed_axis] == b->cells[b->fixed_axis]);
+            }
+    for (at[2] = 0; at[2] < b->cells[2]; at[2]++)
+        for (at[1] = 0; at[1] < b->cells[1]; at[1]++)
+            for (at[0] = 0; at[0] < b->cells[0]; at[0]++)
+                for (int c = 0; c < 8; c++) {
+                    const int32_t *o = lattice_vtk[c];
+                    *node++ = (int32_t)block_node(b, at[0] + o[0], at[1] + o[1], at[2] + o[2]);
+                }
+}
+
+static inline void block_tables(const block *b, model *m)
+{
+    err e = {0};
+    bool muscle = b->fibre[0] != 0 || b->fibre[1] != 0 || b->fibre[2] != 0;
+    block_array(m, "element.volume");
+    block_array(m, "volume.level");
+    block_array(m, "volume.priority");
+    block_array(m, "volume.material");
+    block_array(m, "volume.muscle")->u8[0] = muscle;
+    model_set_text(block_array(m, "volume.name"), 0, muscle ? "muscle_m" : "skin", &e);
+    model_set_text(block_array(m, "material.name"), 0, "tissue", &e);
+    model_set_text(block_array(m, "material.law"), 0, "neo-hookean", &e);
+    block_array(m, "material.E")->f64[0] = b->young;
+    block_array(m, "material.nu")->f64[0] = b->poisson;
+    block_array(m, "material.density")->f64[0] = b->density;
+    block_array(m, "material.peak")->f64[0] = b->peak;
+    float *fibre = block_array(m, "element.fibre")->f32;
+    for (int64_t i = 0; i < 3 * model_count(m, "element"); i++)
+        fibre[i] = b->fibre[i % 3];
+}
+
+/* Makes the model; the caller frees it. */
+static inline void block_make(const block *b, model *m)
+{
+    err e = {0};
+    lattice l = {{0, 0, 0}, {b->side[0], b->side[1], b->side[2]}};
+    int64_t nodes = (int64_t)(b->cells[0] + 1) * (b->cells[1] + 1) * (b->cells[2] + 1);
+    int64_t elements = (int64_t)b->cells[0] * b->cells[1] * b->cells[2];
+    model_axis_add(m, "node", nodes, &e);
+    model_axis_add(m, "element", elements, &e);
+    model_axis_add(m, "volume", 1, &e);
+    model_axis_add(m, "material", 1, &e);
+    lattice_save(&l, m, &e);
+    block_mesh(b, &l, m);
+    block_tables(b, m);
+    if (e.status) {
+        printf("Bail out! %s\n", e.text);
+        exit(1);
+    }
+}
+
+#endif
