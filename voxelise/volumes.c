@@ -1,8 +1,8 @@
 #include "voxelise/volumes.h"
 
 #include "base/mem.h"
+#include "mesh/names.h"
 #include "model/materials.h"
-#include "voxelise/hash.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -38,41 +38,26 @@ void volumes_free(volumes *v)
 
 /* ---- the surfaces of an OBJ */
 
-/* Finds surfaces by name while they are gathered. */
-typedef struct name_table {
-    int32_t *at; /* index of a surface + 1; 0: free */
-    int64_t size, capacity;
-} name_table;
-
-static uint64_t hash_name(const char *name, size_t length)
+/* The index of the surface so named, in any case, new or not; -1 with e filled. seen: names in lower case. */
+static int32_t surface_named(volumes *v, names *seen, int64_t *capacity, const char *name, size_t length, err *e)
 {
-    uint64_t h = length;
+    char *lower = mem_array((int64_t)length + 1, 1, "surfaces", e);
+    if (!lower)
+        return -1;
     for (size_t i = 0; i < length; i++)
-        h = hash_next(h, (uint64_t)tolower((unsigned char)name[i]));
-    return h;
-}
-
-static bool same_name(const char *a, const char *b, size_t length)
-{
-    return strncasecmp(a, b, length) == 0 && a[length] == '\0';
-}
-
-/* The index of the surface so named, new or not; -1 with e filled. */
-static int32_t surface_named(volumes *v, name_table *t, const char *name, size_t length, err *e)
-{
-    int64_t at = (int64_t)(hash_name(name, length) & (uint64_t)(t->size - 1));
-    for (; t->at[at]; at = (at + 1) & (t->size - 1))
-        if (same_name(v->surface[t->at[at] - 1].name, name, length))
-            return t->at[at] - 1;
-    if (mem_grow(&v->surface, &t->capacity, v->surfaces + 1, sizeof *v->surface, "surfaces", e))
+        lower[i] = (char)tolower((unsigned char)name[i]);
+    int32_t at = names_number(seen, lower, e);
+    if (at != v->surfaces) {
+        free(lower);
+        return at;
+    }
+    if (mem_grow(&v->surface, capacity, v->surfaces + 1, sizeof *v->surface, "surfaces", e)) {
+        free(lower);
         return -1;
-    char *copy = mem_array((int64_t)length + 1, 1, "surfaces", e);
-    if (!copy)
-        return -1;
-    memcpy(copy, name, length);
-    v->surface[v->surfaces] = (volumes_surface){.name = copy};
-    t->at[at] = ++v->surfaces;
-    return v->surfaces - 1;
+    }
+    memcpy(lower, name, length);
+    v->surface[v->surfaces] = (volumes_surface){.name = lower};
+    return v->surfaces++;
 }
 
 static int64_t count_names(const obj *o)
@@ -85,12 +70,12 @@ static int64_t count_names(const obj *o)
 }
 
 /* One group's names become tokens. */
-static int take_group(volumes *v, name_table *t, const obj *o, int32_t group, err *e)
+static int take_group(volumes *v, names *seen, int64_t *capacity, const obj *o, int32_t group, err *e)
 {
     int64_t count = v->token_start[group];
     for (const char *p = o->group[group] + strspn(o->group[group], " "); *p;) {
         size_t length = strcspn(p, " ");
-        int32_t s = surface_named(v, t, p, length, e);
+        int32_t s = surface_named(v, seen, capacity, p, length, e);
         if (s < 0)
             return -1;
         v->token[count++] = s;
@@ -131,17 +116,16 @@ static int count_polygons(volumes *v, const obj *o, err *e)
 
 int volumes_surfaces(volumes *v, const obj *o, err *e)
 {
-    int64_t names = count_names(o);
-    name_table t = {.size = hash_size(names)};
+    names seen = {0};
+    int64_t capacity = 0;
     int status = -1;
-    t.at = mem_array(t.size, sizeof *t.at, "surfaces", e);
-    v->token = mem_array(names, sizeof *v->token, "surfaces", e);
+    v->token = mem_array(count_names(o), sizeof *v->token, "surfaces", e);
     v->token_start = mem_array((int64_t)o->groups + 1, sizeof *v->token_start, "surfaces", e);
     v->groups = o->groups;
-    if (!t.at || !v->token || !v->token_start)
+    if (!v->token || !v->token_start)
         goto out;
     for (int32_t g = 0; g < o->groups; g++)
-        if (take_group(v, &t, o, g, e))
+        if (take_group(v, &seen, &capacity, o, g, e))
             goto out;
     status = count_polygons(v, o, e);
     int64_t polygons = 0;
@@ -152,7 +136,7 @@ int volumes_surfaces(volumes *v, const obj *o, err *e)
     if (status == 0 && polygons == 0)
         status = err_set(e, o->name, 0, "no polygons; expected closed surfaces (f lines of 3 corners and more)");
 out:
-    free(t.at);
+    names_free(&seen);
     return status;
 }
 

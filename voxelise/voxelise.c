@@ -91,6 +91,23 @@ static bool all_positive(const opt_lengths *l)
     return true;
 }
 
+/* Lengths in the OBJ's unit. */
+static void in_source_unit(const job *j, const opt_lengths *l, double *to)
+{
+    for (int i = 0; i < l->count; i++)
+        to[i] = num_length_in(l->value[i], j->unit, j->unit);
+}
+
+/* Also where no unit is given yet: that is asked for later. */
+static bool box_is_upright(const job *j)
+{
+    double box[6];
+    if (!j->o->box.count || !j->unit)
+        return true;
+    in_source_unit(j, &j->o->box, box);
+    return box[0] < box[3] && box[1] < box[4] && box[2] < box[5];
+}
+
 static int check_options(job *j, err *e)
 {
     const struct options *o = j->o;
@@ -103,18 +120,13 @@ static int check_options(job *j, err *e)
         err_set(e, NULL, 0, "-s and -n both give the voxel size; expected one of them");
     else if (o->size.count == 2 || !all_positive(&o->size))
         err_set(e, NULL, 0, "-s: expected one length, or three between commas, above 0");
+    else if (!box_is_upright(j))
+        err_set(e, NULL, 0, "--box: expected X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1");
     else if (!strcmp(j->path, "-") && isatty(STDIN_FILENO))
         err_set(e, NULL, 0, "reads an OBJ on stdin, which is a terminal; see voxelise --help");
     else
         return 0;
     return usage_error(e);
-}
-
-/* Lengths in the OBJ's unit. */
-static void in_source_unit(const job *j, const opt_lengths *l, double *to)
-{
-    for (int i = 0; i < l->count; i++)
-        to[i] = num_length_in(l->value[i], j->unit, j->unit);
 }
 
 /* ---- read */
@@ -255,8 +267,8 @@ static void say_volume(const job *j, const model *m, int32_t v)
     tool_say(j->t, "%s%s: level %d, priority %d, material %s, surfaces %s: %lld elements", a->muscle ? "muscle " : "",
              a->name, a->level, a->priority, of, a->surfaces, (long long)n->kept);
     if (n->reached > 0 && n->reached < n->inside)
-        tool_say(j->t, "%s: %lld of its %lld voxels are outside level %d, and ignored", a->name,
-                 (long long)(n->inside - n->reached), (long long)n->inside, a->level - 1);
+        tool_say(j->t, "%s: outside level %d, and ignored: %lld of its %lld voxels", a->name, a->level - 1,
+                 (long long)(n->inside - n->reached), (long long)n->inside);
 }
 
 static void warn_volume(job *j, int32_t v)
