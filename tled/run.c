@@ -110,12 +110,12 @@ static int write_frame(run *n)
 /* The first step past plan.first with a frame. */
 static int64_t next_frame(const run *n)
 {
-    double every = n->r->every, k = floor(tled_time(&n->plan, 0) / every);
+    double every = n->r->every, passed = floor(tled_time(&n->plan, 0) / every);
     int64_t at = n->plan.first;
     if (every * n->r->rate <= 1)
         return at + 1;
-    for (; at <= n->plan.first; k++)
-        at = run_steps_to(k * every - n->plan.origin, n->r->rate);
+    for (int more = 0; at <= n->plan.first; more++)
+        at = run_steps_to((passed + more) * every - n->plan.origin, n->r->rate);
     return at;
 }
 

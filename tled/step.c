@@ -63,7 +63,7 @@ void step_matrix_of(const tled_problem *p, const tled_volume *v, element_tensor 
 /* limit I - A = L D L^T: it is positive definite exactly where all of D is positive. */
 bool step_below(const step_matrix *a, double limit)
 {
-    double l[9][9], inverse[9], scaled[9]; /* scaled: a row of L D */
+    double l[9][9], inverse[9] = {0}, scaled[9]; /* scaled: a row of L D */
     for (int j = 0; j < 9; j++) {
         double d = limit - a->at[j][j];
         for (int i = 0; i < j; i++) {

@@ -42,6 +42,17 @@ static double muscle_force(element_tensor h, element_fibre fibre, element_shape 
            square_of(element_gather(none, p.zx, p.zy, p.zz, shape.area, 0));
 }
 
+static element_fibre fibre_of(const watch *w, int64_t i)
+{
+    const tled_problem *p = w->p;
+    element_fibre fibre = {0};
+    if (!p->fibre)
+        return fibre;
+    fibre.along = (element_vector){p->fibre[3 * i], p->fibre[3 * i + 1], p->fibre[3 * i + 2]};
+    fibre.tension = tled_tension(p, p->element_volume[i], w->curves);
+    return fibre;
+}
+
 /* Where an element's matrix reaches past the largest frequency of its chunk, that is raised to 1 % above the element's: so few
  * elements need more than one test. */
 static void look_at_step(const watch *w, const tled_volume *v, int64_t i, element_tensor h, element_fibre fibre,
@@ -70,11 +81,9 @@ static void look_at_element(const watch *w, int64_t i, element_shape shape, stru
         part->broken = part->broken < 0 ? i : part->broken;
         return;
     }
-    element_fibre fibre = {{0, 0, 0}, p->fibre ? tled_tension(p, p->element_volume[i], w->curves) : 0};
-    if (fibre.tension != 0) {
-        fibre.along = (element_vector){p->fibre[3 * i], p->fibre[3 * i + 1], p->fibre[3 * i + 2]};
+    element_fibre fibre = fibre_of(w, i);
+    if (fibre.tension != 0)
         part->muscle += muscle_force(h, fibre, shape);
-    }
     part->strain += energy * p->side[0] * p->side[1] * p->side[2] + hourglass;
     look_at_step(w, v, i, h, fibre, part);
 }

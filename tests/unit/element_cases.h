@@ -188,7 +188,8 @@ static void test_force_length(void)
 static void test_cube_root(double tolerance)
 {
     double worst = 0;
-    for (double x = 1e-3; x < 1e3; x *= 1.0037) {
+    for (int i = 0; i <= 4000; i++) {
+        double x = pow(10, 6 * i / 4000. - 3);
         double y = (double)element_cube_root_inverse(R(x));
         worst = fmax(worst, fabs(y * y * y * (double)R(x) - 1));
     }

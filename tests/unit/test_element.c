@@ -53,7 +53,8 @@ static void test_derivative(double f[3][3], const double fibre[3], double tensio
 static void test_slope(void)
 {
     double worst = 0;
-    for (double l = .35; l < 1.7; l += .0123) {
+    for (int i = 0; i < 110; i++) {
+        double l = .35 + .0123 * i;
         double numeric = (element_force_length(l + 1e-7) - element_force_length(l - 1e-7)) / 2e-7;
         worst = fmax(worst, fabs(numeric - element_force_length_slope(l)));
     }

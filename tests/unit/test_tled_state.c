@@ -4,8 +4,8 @@
 // needs: tled/state.c tled/script.c tled/script_read.c
 #include "tled/state.h"
 
-#include "tled_block.h"
 #include "tap.h"
+#include "tled_block.h"
 
 #include <string.h>
 
@@ -94,7 +94,7 @@ static void test_refused(void)
     refused(&m, "element 0 is not a box");
     block_make(&brick, &m);
     node = model_find(&m, "element.node")->i32;
-    memcpy(node, node + 8, 8 * sizeof *node);
+    memmove(node, node + 8, 8 * sizeof *node);
     refused(&m, "is in no element");
     block_make(&brick, &m);
     node = model_find(&m, "element.node")->i32;

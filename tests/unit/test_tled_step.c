@@ -3,8 +3,8 @@
 // needs: tled/state.c tled/step.c tled/script.c tled/script_read.c
 #include "tled/step.h"
 
-#include "tled_block.h"
 #include "tap.h"
+#include "tled_block.h"
 
 #include <string.h>
 

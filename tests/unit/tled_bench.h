@@ -8,8 +8,8 @@
 #include "tled/run.h"
 #include "tled/step.h"
 
-#include "tled_block.h"
 #include "tap.h"
+#include "tled_block.h"
 
 #include <string.h>
 
