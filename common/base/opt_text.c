@@ -47,7 +47,11 @@ void opt_usage(const opt_tool *tool, out *to)
     for (int i = 0; i < own; i++)
         if ((o = opt_at(tool, i))->flags & OPT_REQUIRED)
             out_format(to, " --%s %s", o->name, o->arg);
-    out_format(to, " [options]%s%s\n%s\n", *tool->operands ? " " : "", tool->operands, tool->purpose);
+    if (!*tool->operands)
+        out_format(to, " [options]\n%s\n", tool->purpose);
+    else
+        out_format(to, tool->operands_min ? " [options] %s\n%s\n" : " [options] [%s]\n%s\n", tool->operands,
+                   tool->purpose);
     for (int i = 0; i < own; i++) {
         char name[80];
         o = opt_at(tool, i);
