@@ -28,7 +28,7 @@ static void put_common(const opt_tool *tool, out *to)
         if (o->flags & OPT_HIDDEN)
             continue;
         put_option(o, name, sizeof name);
-        int n = snprintf(item, sizeof item, "%s %s", name, o->help);
+        int n = snprintf(item, sizeof item, "%s: %s", name, o->help);
         if (column && column + (size_t)n + 2 > 78) {
             out_text(to, "\n");
             column = 0;
