@@ -256,8 +256,8 @@ static void checked(void *context, int64_t step, const watch_sight *sight, int64
     session *s = context;
     progress_at(&s->progress, (double)step);
     tool_detail(
-        s->t, "%.6g s: kinetic %.3g J, strain %.3g J, residual %.3g of the load, stable step %.4g ms, damping %.4g 1/s",
-        sight->time, sight->kinetic, sight->strain, residual(sight), 1e3 * sight->stable, damping);
+        s->t, "%.6g s: residual %.3g of the load, kinetic %.3g J, strain %.3g J, stable step %.4g ms, damping %.4g 1/s",
+        sight->time, residual(sight), sight->kinetic, sight->strain, 1e3 * sight->stable, damping);
     if (cut != s->cut)
         tool_detail(s->t, "each step is taken in %lld from now on, for element %lld", (long long)cut,
                     (long long)sight->stable_element);
