@@ -16,11 +16,10 @@ static double in_frame(const columns *c, int axis, double local)
 static void triangle_box(const void *context, int64_t item, double *low, double *high)
 {
     const columns *c = context;
-    const int32_t *corner = &c->t.vertex[3 * item];
     for (int a = 0; a < 3; a++) {
         double least = INFINITY, most = -INFINITY;
         for (int i = 0; i < 3; i++) {
-            double x = c->local[3 * (int64_t)corner[i] + a];
+            double x = c->local[3 * (int64_t)c->t.vertex[3 * item + i] + a];
             least = fmin(least, x);
             most = fmax(most, x);
         }

@@ -107,12 +107,17 @@ static uint64_t hash_position(const double *p)
     return h;
 }
 
+static bool same_place(const double *a, const double *b)
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 /* The vertex of s at a place, new or not. table: vertices + 1; 0: free. */
 static int32_t vertex_at(solids *s, int32_t *table, int64_t size, const double *p)
 {
     int64_t at = (int64_t)(hash_position(p) & (uint64_t)(size - 1));
     for (; table[at]; at = (at + 1) & (size - 1))
-        if (memcmp(&s->position[3 * ((int64_t)table[at] - 1)], p, 3 * sizeof *p) == 0)
+        if (same_place(&s->position[3 * ((int64_t)table[at] - 1)], p))
             return table[at] - 1;
     memcpy(&s->position[3 * s->vertices], p, 3 * sizeof *p);
     table[at] = (int32_t)++s->vertices;
@@ -136,7 +141,7 @@ static int weld_vertices(work *w, err *e)
     for (int a = 0; a < 3; a++)
         s->low[a] = INFINITY, s->high[a] = -INFINITY;
     for (int64_t i = 0; !status && i < w->o->vertices; i++) {
-        double p[3];
+        double p[3] = {0};
         bool is_used = w->weld[i] != 0;
         w->weld[i] = -1;
         if (!is_used)

@@ -201,35 +201,35 @@ static int list_surfaces(volumes *v, const volumes_link *link, int64_t links, er
         char *to = v->volume[link[i].volume].surfaces;
         if (*at)
             to[(*at)++] = ' ';
-        memcpy(to + *at, name, strlen(name));
-        *at += (int64_t)strlen(name);
+        for (; *name; name++)
+            to[(*at)++] = *name;
     }
     free(length);
     return 0;
 }
 
-int volumes_join(volumes *v, const volumes_link *given, int64_t links, bool marks, err *e)
+int volumes_join(volumes *v, const volumes_link *link, int64_t links, bool marks, err *e)
 {
     int status = -1;
-    volumes_link *link = mem_array(links, sizeof *link, "volumes", e);
+    volumes_link *sorted = mem_array(links, sizeof *sorted, "volumes", e);
     int64_t *start = mem_array((int64_t)v->surfaces + 1, sizeof *start, "volumes", e);
     v->group_start = mem_array((int64_t)v->groups + 1, sizeof *v->group_start, "volumes", e);
-    if (!link || !start || !v->group_start)
+    if (!sorted || !start || !v->group_start)
         goto out;
-    memcpy(link, given, (size_t)links * sizeof *link);
-    qsort(link, (size_t)links, sizeof *link, compare_links);
+    memcpy(sorted, link, (size_t)links * sizeof *sorted);
+    qsort(sorted, (size_t)links, sizeof *sorted, compare_links);
     for (int64_t i = 0; i < links; i++) {
-        start[link[i].surface + 1]++;
-        v->surface[link[i].surface].used = true;
+        start[sorted[i].surface + 1]++;
+        v->surface[sorted[i].surface].used = true;
     }
     for (int32_t s = 0; s < v->surfaces; s++)
         start[s + 1] += start[s];
     for (int32_t g = 0; g < v->groups; g++)
-        if (join_group(v, g, link, start, marks, e))
+        if (join_group(v, g, sorted, start, marks, e))
             goto out;
-    status = list_surfaces(v, link, links, e);
+    status = list_surfaces(v, sorted, links, e);
 out:
-    free(link);
+    free(sorted);
     free(start);
     return status;
 }

@@ -101,7 +101,7 @@ static void in_source_unit(const job *j, const opt_lengths *l, double *to)
 /* Also where no unit is given yet: that is asked for later. */
 static bool box_is_upright(const job *j)
 {
-    double box[6];
+    double box[6] = {0};
     if (!j->o->box.count || !j->unit)
         return true;
     in_source_unit(j, &j->o->box, box);
@@ -202,7 +202,7 @@ static int find_spacing(const job *j, double *spacing, err *e)
 static int make_grid(job *j, err *e)
 {
     const solids *s = &j->solid;
-    double spacing[3], origin[3], box[6];
+    double spacing[3] = {0}, origin[3] = {0}, box[6] = {0};
     if (find_spacing(j, spacing, e))
         return -1;
     in_source_unit(j, &j->o->origin, origin);

@@ -24,7 +24,7 @@ wrong "no cells" "-n '0': expected a whole number from 1" --unit mm -n 0
 wrong "half an origin" "--origin '1,2': expected X,Y,Z" --unit mm -s 1 --origin 1,2
 wrong "half a box" "--box '1,2,3': expected X0,Y0,Z0,X1,Y1,Z1" --unit mm -s 1 --box 1,2,3
 wrong "a box upside down" "--box: expected .* with X0 < X1" --unit mm -s 1 --box 0,0,0,1mm,1mm,-1m
-wrong "no such option" "no option --volume; did you mean --volumes" --unit mm -s 1 --volume
+wrong "no such option" "no option --volmues; did you mean --volumes" --unit mm -s 1 --volmues x
 wrong "one surface too many" "extra operand" --unit mm -s 1 "$cube"
 fails 2 "no surface" "^voxelise: missing operand; expected surface.obj" voxelise --unit mm -s 1 -o "$T/out"
 
@@ -60,6 +60,7 @@ is "$? $(wc -l <"$T/stderr")" "1 1" "the tool behind it fails with the same stat
 voxelise -s 1 "$cube" 2>"$T/stderr" | sinew info >/dev/null 2>>"$T/stderr"
 is "$? $(wc -l <"$T/stderr")" "2 1" "a usage error too"
 if [ -w /dev/full ]; then
+    # shellcheck disable=SC2016
     fails 1 "a full disk" "No space" sh -c 'voxelise -q --unit mm -n 30 "$1" >/dev/full' sh "$cube"
 else
     skip 1 "no /dev/full"

@@ -115,15 +115,15 @@ static int sign(wide x)
 static bool reference(const mesh *m, const int64_t *centre)
 {
     static const wide direction[3] = {10007, 7919, -9001};
-    wide moved[3];
+    wide moved[3], unit = (wide)1 << (3 * MOVE);
     bool inside = false;
     for (int a = 0; a < 3; a++)
-        moved[a] = ((wide)centre[a] << (3 * MOVE)) + ((wide)1 << (MOVE * (2 - a)));
+        moved[a] = (wide)centre[a] * unit + ((wide)1 << (MOVE * (2 - a)));
     for (int t = 0; t < m->triangles; t++) {
         wide to[3][3], normal[3], e[3], f[3];
         for (int i = 0; i < 3; i++)
             for (int a = 0; a < 3; a++)
-                to[i][a] = ((wide)m->at[m->triangle[t][i]][a] << (3 * MOVE)) - moved[a];
+                to[i][a] = (wide)m->at[m->triangle[t][i]][a] * unit - moved[a];
         for (int a = 0; a < 3; a++) {
             e[a] = m->at[m->triangle[t][1]][a] - m->at[m->triangle[t][0]][a];
             f[a] = m->at[m->triangle[t][2]][a] - m->at[m->triangle[t][0]][a];
@@ -215,7 +215,7 @@ static void test_reference(const char *name, setting s, int64_t size, int meshes
     int64_t inside = 0;
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(size);
-        uint8_t mask[CELLS];
+        uint8_t mask[CELLS] = {0};
         unlike += !masks(&m, &s, mask);
         wrong += differing(&m, &s, mask);
         for (int i = 0; i < CELLS; i++)
@@ -252,7 +252,7 @@ static void test_rounded(void)
         mesh m = any_mesh(24);
         double h = unit[n % 4];
         setting s = {.base = {0.3 * h, 1e7 * h, -1e3 * h}, .half = {h, h * 0.7, h}, .spacing = {2, 2, 2}};
-        uint8_t mask[CELLS];
+        uint8_t mask[CELLS] = {0};
         unlike += !masks(&m, &s, mask);
     }
     ok(unlike == 0, "%d of %d meshes in rounded units differ between rays along x, y and z", unlike, meshes);
@@ -270,7 +270,7 @@ static void test_cube(void)
         add_triangle(&m, quad[f][0], quad[f][2], quad[f][3]);
     }
     setting s = {.half = {0.5, 0.5, 0.5}, .spacing = {2, 2, 2}};
-    uint8_t mask[CELLS];
+    uint8_t mask[CELLS] = {0};
     ok(masks(&m, &s, mask), "a cube: the same along x, y and z");
     int count = 0;
     for (int i = 0; i < CELLS; i++)
