@@ -14,11 +14,13 @@ UNIT_SRC := $(wildcard tests/unit/test_*.c)
 FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
 UNIT := $(UNIT_SRC:%.c=$(BUILD)/%)
 FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
+# Embree only for those that turn out to use it. (A variable: the comma.)
+AS_NEEDED = -Wl,--as-needed
 needs = $(call objects,$(shell sed -n 's|^// needs: *||p' $(1)))
 
 define test_program
 $(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB)
-	$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ -Wl,--as-needed $$(EMBREE) $$(LDLIBS)
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(LDLIBS))
 endef
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
@@ -83,25 +85,25 @@ SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run $(wildcard t
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
-	cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
-	    --suppress=missingIncludeSystem --suppress=normalCheckLevelMaxBranches -j2 $(CPPFLAGS) $(SOURCES)
+	@cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
+	    --suppress=missingIncludeSystem -j2 $(CPPFLAGS) $(SOURCES)
 
 # One stamp a file, so that only what changed is read again, and in parallel.
 TIDY = $(SOURCES:%.c=$(BUILD)/tidy/%.ok)
 lint-tidy: $(TIDY)
-$(BUILD)/tidy/%.ok: %.c .clang-tidy $(HEADERS)
+$(BUILD)/tidy/%.ok: %.c .clang-tidy tests/.clang-tidy $(HEADERS)
 	@mkdir -p $(@D)
-	$(CLANG_TIDY) --quiet $< -- $(CSTD) $(CPPFLAGS) 2>$@.log || { cat $@.log; exit 1; }
+	$(call run,TIDY $<,$(CLANG_TIDY) --quiet $< -- $(CSTD) $(CPPFLAGS) 2>/dev/null)
 	@touch $@
 
 lint-format:
-	$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS)
+	@$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS)
 
 lint-shell:
-	shellcheck --external-sources --source-path=SCRIPTDIR $(SCRIPTS)
+	@shellcheck --external-sources --source-path=SCRIPTDIR $(SCRIPTS)
 
 lint-man:
-	mandoc -Tlint -Wwarning $(wildcard man/*.[157])
+	@mandoc -Tlint -Wwarning $(wildcard man/*.[157])
 
 # ---- installation
 .PHONY: install uninstall

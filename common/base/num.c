@@ -164,7 +164,8 @@ double num_length_in(num_length length, num_unit unsuffixed, num_unit to)
     num_unit from = length.unit ? length.unit : unsuffixed;
     if (from == to)
         return length.value;
-    return from % to == 0 ? length.value * (from / to) : length.value * from / to;
+    num_unit whole = from / to;
+    return whole * to == from ? length.value * whole : length.value * from / to;
 }
 
 /* Copies the item of a comma list that begins at *p into item and steps past its comma; false at the end. One that

@@ -143,7 +143,7 @@ static void put_numbers(const opt_numbers *l, out *to)
 static void put_choice(const opt *o, int value, out *to)
 {
     const char *p = o->choices;
-    for (int i = 0; i < value && p; i++)
+    for (int i = 0; i < value; i++)
         p = strchr(p, '|') + 1;
     out_format(to, " %.*s", (int)strcspn(p, "|"), p);
 }
