@@ -110,22 +110,26 @@ lint-man:
 INSTALL = install
 BINDIR = $(DESTDIR)$(PREFIX)/bin
 MANDIR = $(DESTDIR)$(PREFIX)/share/man
-# `bind` has none: bash-completion has a file of that name, for the shell's builtin.
-COMPLETIONS = $(filter-out bind,$(TOOLS))
+SAMPLEDIR = $(DESTDIR)$(PREFIX)/share/doc/sinew/samples
 COMPLETIONDIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
+# `bind` has no completion: bash-completion has a file of that name, for the shell's builtin.
+COMPLETIONS = $(filter-out bind,$(TOOLS))
 PAGES = $(wildcard man/*.[157])
-installed_page = $(MANDIR)/man$(subst .,,$(suffix $(1)))/$(notdir $(1))
+SAMPLES = $(filter-out samples/demo,$(wildcard samples/*))
 
 install: all
-	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
+	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
 	$(INSTALL) -m 755 $(TOOLS:%=$(BIN)/%) $(BINDIR)
-	$(foreach page,$(PAGES),$(INSTALL) -m 644 $(page) $(call installed_page,$(page)) &&) :
-	for tool in $(COMPLETIONS); do \
-	    $(BIN)/$$tool --table bash >$(COMPLETIONDIR)/$$tool || exit 1; chmod 644 $(COMPLETIONDIR)/$$tool; done
+	for section in 1 5 7; do $(INSTALL) -m 644 man/*.$$section $(MANDIR)/man$$section || exit 1; done
+	$(INSTALL) -m 644 $(SAMPLES) $(SAMPLEDIR)
+	for tool in $(COMPLETIONS); do $(BIN)/$$tool --table bash >$(COMPLETIONDIR)/$$tool || exit 1; done
+	chmod 644 $(COMPLETIONS:%=$(COMPLETIONDIR)/%)
 
 uninstall:
 	rm -f $(TOOLS:%=$(BINDIR)/%) $(COMPLETIONS:%=$(COMPLETIONDIR)/%) \
-	    $(foreach page,$(PAGES),$(call installed_page,$(page)))
+	    $(foreach page,$(PAGES),$(MANDIR)/man$(subst .,,$(suffix $(page)))/$(notdir $(page)))
+	rm -rf $(SAMPLEDIR)
+	rmdir $(dir $(SAMPLEDIR)) 2>/dev/null || :
 
 .PHONY: help
 help:

@@ -40,6 +40,25 @@ static int list(void)
     return out_close(o, &e) ? STATUS_BAD : STATUS_OK;
 }
 
+/* What the option tables of the other tools say of them: the manual's synopsis, completion. */
+static int table(const char *kind)
+{
+    bool mdoc = !strcmp(kind, "mdoc");
+    if (!mdoc && strcmp(kind, "bash") != 0) {
+        fprintf(stderr, "sinew: --table '%s': expected mdoc or bash\n", kind);
+        return STATUS_USAGE;
+    }
+    err e = {0};
+    out *o = out_open(NULL, false, &e);
+    if (!o)
+        return STATUS_BAD;
+    out_text(o, mdoc ? ".Nm sinew\n.Ar TOOL\n.Op Ar ARGUMENTS\n.Nm sinew\n.Fl h | V\n" : "complete -o default -W '");
+    for (int i = 0; i < TOOLS && !mdoc; i++)
+        out_format(o, "%s ", tools[i].name);
+    out_text(o, mdoc ? "" : "--help --version' sinew\n");
+    return out_close(o, &e) ? STATUS_BAD : STATUS_OK;
+}
+
 static int unknown(const char *name)
 {
     const char *names[TOOLS];
@@ -82,6 +101,8 @@ int main(int argc, char **argv)
         puts("sinew (Sinew) " SINEW_VERSION);
         return fflush(stdout) ? STATUS_BAD : STATUS_OK;
     }
+    if (!strcmp(argv[1], "--table") && argc == 3)
+        return table(argv[2]);
     for (int i = 0; i < TOOLS; i++)
         if (!strcmp(argv[1], tools[i].name) || !strcmp(argv[1], tools[i].file))
             return run(tools[i].file, argv + 1);

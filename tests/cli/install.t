@@ -1,0 +1,53 @@
+#!/bin/sh
+# make install into a folder of its own, the tools run from there, and make uninstall leaves nothing. And every page, table and
+# completion agrees with its tool.
+. "$(dirname "$0")/lib.sh"
+
+have make || skip_all "no make"
+root=$T/root
+tools="voxelise attach bind tled-run sinew sinew-deform sinew-info sinew-diff sinew-export"
+
+# on ROOT's PREFIX: what was built for the tests, nothing else.
+# shellcheck disable=SC2317 # called by name
+make_here() {
+    env -u MAKEFLAGS -u MAKELEVEL make -s BIN="$SINEW_BIN" DESTDIR="$root" PREFIX=/usr "$@"
+}
+
+check "make install" make_here install
+is "$(cd "$root/usr/bin" && echo *)" "$(for tool in $tools; do echo "$tool"; done | LC_ALL=C sort | tr '\n' ' ' | sed 's/ $//')" \
+    "usr/bin has the tools and nothing else"
+is "$(find "$root" -type f ! -path '*/bin/*' ! -perm 644)" "" "what is not a tool is 644"
+for tool in $tools; do
+    page=$root/usr/share/man/man1/$tool.1
+    check "$tool: its page" test -s "$page"
+    is "$("$tool" --table mdoc)" "$(sed -n '/^\.\\" synopsis$/,/^\.\\" end synopsis$/{/^\.\\"/!p;}' "$page")" \
+        "$tool: the page's synopsis is what --table mdoc says"
+done
+check "sinew-model(5) and sinew(7)" test -s "$root/usr/share/man/man5/sinew-model.5" -a -s "$root/usr/share/man/man7/sinew.7"
+
+# The front command finds the others beside itself, not on PATH, called by any name that leads to it.
+ln -s "$root/usr/bin/sinew" "$T/link"
+for tool in voxelise attach bind tled-run deform info diff export; do
+    check "sinew $tool runs from its own folder" env PATH=/usr/bin:/bin "$root/usr/bin/sinew" "$tool" --version
+    is "$(sed 's/ (.*//' "$T/stdout")" "$("$tool" -V 2>/dev/null | sed 's/ (.*//' | grep . || echo "sinew-$tool")" "and is $tool"
+done
+check "through a symbolic link" env PATH=/usr/bin:/bin "$T/link" info --version
+rm "$root/usr/bin/sinew-info"
+fails 1 "a tool that is not there" "cannot run .*usr/bin/sinew-info: No such file" "$root/usr/bin/sinew" info --version
+fails 2 "a tool that is none" "no tool 'inof'; did you mean 'info'\?" sinew inof
+fails 2 "no tool" "^usage: sinew TOOL" sinew
+
+if have bash; then
+    for tool in voxelise attach tled-run sinew sinew-deform sinew-info sinew-diff sinew-export; do
+        # shellcheck disable=SC2016 # for bash
+        check "$tool: its completion is for it, and has --help" \
+            bash -c '. "$1" && complete -p "$2" | grep -q -e --help' - "$root/usr/share/bash-completion/completions/$tool" "$tool"
+    done
+else
+    skip 8 "no bash"
+fi
+check "no completion for the shell's bind" test ! -e "$root/usr/share/bash-completion/completions/bind"
+
+check "make uninstall" make_here uninstall
+is "$(find "$root" -type f)" "" "and nothing is left"
+done_testing
