@@ -37,7 +37,7 @@ function skin(a, b, dx, dy, dz)
         + 4 * hill(a, b, 0, 0.28, 0.6, 0.09) - 5 * hills(a, b, 0.36, 0.1, 0.16, 0.1) \
         + 4 * hill(a, b, 0, -0.455, 0.22, 0.05) + 5 * hill(a, b, 0, -0.58, 0.19, 0.06) \
         - 2 * hill(a, b, 0, -0.515, 0.3, 0.025) + 10 * hill(a, b, 0, -0.86, 0.35, 0.16) \
-        + 3 * hills(a, b, 0.75, -0.1, 0.25, 0.2) + 11 * hills(a, b, 1.65, -0.05, 0.12, 0.22) \
+        + 5 * hills(a, b, 0.75, -0.12, 0.25, 0.2) + 11 * hills(a, b, 1.65, -0.05, 0.12, 0.22) \
         - 10 * hills(a, b, 1.15, -0.8, 0.5, 0.35)
 }
 
@@ -45,9 +45,9 @@ function skull(a, b, dx, dy, dz)
 {
     return egg(dx, dy, dz, 65, 97, 84) \
         + 3 * hill(a, b, 0, 0.26, 0.6, 0.09) - 12 * hills(a, b, 0.4, 0.06, 0.17, 0.13) \
-        - 4 * hill(a, b, 0, -0.18, 0.12, 0.12) + 5 * hills(a, b, 0.78, -0.1, 0.2, 0.11) \
-        - 9 * hills(a, b, 0.62, -0.42, 0.22, 0.16) + 6 * hill(a, b, 0, -0.86, 0.35, 0.16) \
-        - 10 * hills(a, b, 1.15, -0.8, 0.5, 0.35)
+        - 4 * hill(a, b, 0, -0.18, 0.12, 0.12) + 4 * hills(a, b, 0.8, -0.08, 0.2, 0.11) \
+        - 8 * hills(a, b, 0.6, -0.42, 0.25, 0.16) - 5 * hills(a, b, 0.3, -0.52, 0.2, 0.14) \
+        + 6 * hill(a, b, 0, -0.86, 0.35, 0.16) - 10 * hills(a, b, 1.15, -0.8, 0.5, 0.35)
 }
 
 function polar(radius, a, b)
@@ -72,7 +72,7 @@ function muscle_line(t,    a, b, inner, outer, depth)
     b = -0.10 + (-0.51 + 0.10) * t
     inner = radius_of("skull", a, b)
     outer = radius_of("skin", a, b)
-    depth = -0.1 + 0.65 * sin(PI / 2 * (t < 0.4 ? t / 0.4 : 1))
+    depth = -0.05 + 0.45 * sin(PI / 2 * (t < 0.4 ? t / 0.4 : 1)) + 0.15 * t
     polar(inner + depth * (outer - inner), a, b)
 }
 
