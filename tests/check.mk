@@ -79,8 +79,9 @@ fuzz-run: $(FUZZ)
 
 # ---- lints
 .PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man
-SOURCES = $(shell git ls-files -co --exclude-standard '*.c')
-HEADERS = $(shell git ls-files -co --exclude-standard '*.h' '*.cuh')
+FOLDERS = $(filter-out $(BUILD)/ $(BIN)/ out/,$(wildcard */))
+SOURCES = $(sort $(shell find $(FOLDERS) -name '*.c'))
+HEADERS = $(sort $(shell find $(FOLDERS) -name '*.h'))
 SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
