@@ -2,10 +2,9 @@
 
 #include "base/mem.h"
 
+#include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Reads the conversion at the pattern's first '%'. */
 static bool read_conversion(numbered *n)
@@ -41,33 +40,8 @@ char *numbered_name(const numbered *n, int64_t index, err *e)
     if (!name)
         return NULL;
     if (n->zeros)
-        snprintf(name, size, "%.*s%0*lld%s", (int)n->from, n->pattern, n->width, (long long)index, n->pattern + n->to);
+        snprintf(name, size, "%.*s%0*" PRId64 "%s", (int)n->from, n->pattern, n->width, index, n->pattern + n->to);
     else
-        snprintf(name, size, "%.*s%*lld%s", (int)n->from, n->pattern, n->width, (long long)index, n->pattern + n->to);
+        snprintf(name, size, "%.*s%*" PRId64 "%s", (int)n->from, n->pattern, n->width, index, n->pattern + n->to);
     return name;
-}
-
-int numbered_add(numbered *n, int64_t index, err *e)
-{
-    if (mem_grow(&n->written, &n->capacity, n->count + 1, sizeof *n->written, "frames", e))
-        return -1;
-    n->written[n->count++] = index;
-    return 0;
-}
-
-void numbered_remove(const numbered *n)
-{
-    for (int64_t i = 0; i < n->count; i++) {
-        err ignored = {0};
-        char *name = numbered_name(n, n->written[i], &ignored);
-        if (name)
-            unlink(name);
-        free(name);
-    }
-}
-
-void numbered_free(numbered *n)
-{
-    free(n->written);
-    *n = (numbered){0};
 }

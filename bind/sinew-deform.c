@@ -1,6 +1,7 @@
 /* sinew-deform: an OBJ as the results of a model move it. */
 #include "base/mem.h"
 #include "base/num.h"
+#include "base/outs.h"
 #include "base/pool.h"
 #include "base/tool.h"
 #include "bind/bone.h"
@@ -52,6 +53,7 @@ typedef struct plan {
     bool files;    /* a file a frame */
     double within; /* m; infinite: any */
     numbered names;
+    outs written; /* the files so far */
     pointcache cache;
     out *sink; /* of the point cache or the one OBJ */
 } plan;
@@ -195,12 +197,12 @@ static int move(mover *w, const frame *f, err *e)
 static int write_file(plan *p, const mover *w, int64_t index, err *e)
 {
     char *name = numbered_name(&p->names, index, e);
-    out *to = name ? out_open(name, false, e) : NULL;
+    out *to = name ? outs_open(&p->written, name, e) : NULL;
     free(name);
     if (!to)
         return -1;
     obj_write(&w->file, w->position, w->normal, to);
-    return out_close(to, e) ? -1 : numbered_add(&p->names, index, e);
+    return out_close(to, e);
 }
 
 /* Takes a frame that is wanted. */
@@ -256,7 +258,7 @@ static int open_sink(plan *p, const struct options *o, int64_t vertices, err *e)
 static int finish(plan *p, const mover *w, err *e)
 {
     if (p->files)
-        return 0;
+        return outs_commit(&p->written, e);
     if (p->cache.to && pointcache_end(&p->cache, e))
         return -1;
     if (!p->cache.to)
@@ -266,12 +268,10 @@ static int finish(plan *p, const mover *w, err *e)
     return out_close(sink, e);
 }
 
-static void plan_close(plan *p, const err *e)
+static void plan_close(plan *p)
 {
     out_discard(p->sink);
-    if (e->status)
-        numbered_remove(&p->names);
-    numbered_free(&p->names);
+    outs_free(&p->written);
 }
 
 int main(int argc, char **argv)
@@ -292,7 +292,7 @@ int main(int argc, char **argv)
         goto out;
     finish(&p, &w, &e);
 out:
-    plan_close(&p, &e);
+    plan_close(&p);
     mover_close(&w);
     source_close(&s);
     return tool_end(&t, &e);

@@ -1,6 +1,7 @@
 /* sinew-export: a model in the formats of other programs: VTU, Abaqus input, OBJ. */
 #include "base/mem.h"
 #include "base/num.h"
+#include "base/outs.h"
 #include "base/tool.h"
 #include "model/source.h"
 #include "tools/export_inp.h"
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { VTU, INP, OBJ };
 enum { REST, LAST, ALL, ONE };
@@ -60,7 +60,7 @@ typedef struct job {
     export_shape x;
     notes warnings;
     char *stem; /* of the files of ALL: NAME of NAME.pvd */
-    int64_t written;
+    outs files; /* of ALL */
 } job;
 
 static int usage(err *e, const char *text)
@@ -131,7 +131,7 @@ static char *frame_file(const job *j, int64_t k, err *e)
 
 static int put_frame_file(job *j, const char *file, err *e)
 {
-    out *to = out_open(file, false, e);
+    out *to = outs_open(&j->files, file, e);
     if (!to)
         return -1;
     if (export_vtu(&j->x, j->o->deformed, to, e)) {
@@ -158,11 +158,10 @@ static int put_all_frames(job *j, out *collection, err *e)
     int got;
     export_pvd_begin(collection);
     while ((got = source_next(&j->s, e)) > 0) {
-        char *file = frame_file(j, j->written, e);
+        char *file = frame_file(j, j->s.frames - 1, e);
         int bad = !file || export_shape_move(&j->x, &j->s.frame, e) || check_moved(j, e) || put_frame_file(j, file, e);
         if (!bad) {
             const char *slash = strrchr(file, '/');
-            j->written++;
             export_pvd_add(collection, j->s.frame.time, slash ? slash + 1 : file);
         }
         free(file);
@@ -173,18 +172,6 @@ static int put_all_frames(job *j, out *collection, err *e)
     if (!got && !j->s.frames)
         return err_set(e, source_name(&j->s), 0, "--frame all: the model has no frames");
     return got;
-}
-
-/* A run that failed leaves none of its files. */
-static void remove_frames(const job *j)
-{
-    for (int64_t k = 0; k < j->written; k++) {
-        err ignored = {0};
-        char *file = frame_file(j, k, &ignored);
-        if (file)
-            unlink(file);
-        free(file);
-    }
 }
 
 static int no_frame(const job *j, int64_t first, err *e)
@@ -272,15 +259,16 @@ int main(int argc, char **argv)
         goto out;
     if (source_open(&j.s, t.operands ? argv[1] : NULL, &e))
         goto out;
-    to = out_open(o.common.output, o.common.gzip, &e);
+    to = j.which == ALL ? outs_open(&j.files, o.common.output, &e) : out_open(o.common.output, o.common.gzip, &e);
     if (to && !work(&j, to, &e)) {
         out_close(to, &e);
         to = NULL;
     }
+    if (!e.status)
+        outs_commit(&j.files, &e);
 out:
     out_discard(to);
-    if (e.status && j.stem)
-        remove_frames(&j);
+    outs_free(&j.files);
     if (!e.status)
         tool_warn(&t, &j.warnings);
     notes_free(&j.warnings);

@@ -71,6 +71,7 @@ check "--frame last is the default, and stdout as good as -o" cmp "$T/got" "$T/l
 check "--frame all" sinew deform --frame all "$T/skin.obj" -o "$T/f_%04d.obj" <"$T/bound"
 is "$(cd "$T" && echo f_*)" "f_0001.obj f_0002.obj f_0003.obj" "a file a frame"
 check "the third is the last" cmp "$T/f_0003.obj" "$T/last.obj"
+cp "$T/f_0001.obj" "$T/first.obj"
 sinew deform --threads 1 "$T/skin.obj" <"$T/bound" >"$T/1"
 sinew deform --threads 4 "$T/skin.obj" <"$T/bound" >"$T/2"
 check "the same bytes for any number of threads" cmp "$T/1" "$T/2"
@@ -164,7 +165,11 @@ fails 1 "a displacement that is no number" "frame 1 moves vertex 0 \\(element 0\
     sinew deform "$T/skin.obj" <"$T/nan"
 model -v frames=2 -v ends='fail 3 "tled-run: diverged"' | sinew bind -q "$T/skin.obj" >"$T/failed" 2>/dev/null
 sinew deform --frame all "$T/skin.obj" -o "$T/g_%d.obj" <"$T/failed" 2>"$T/stderr"
-is "$?:$(cat "$T/stderr"):$(cd "$T" && echo g_*)" "3::g_*" "a run that failed: its status, no words, no files"
+is "$?:$(cat "$T/stderr"):$(cd "$T" && echo g_* .sinew*)" "3::g_* .sinew*" "a run that failed: its status, no words, no files"
+sinew deform --frame all "$T/skin.obj" -o "$T/f_%04d.obj" <"$T/failed" 2>/dev/null
+is "$?" 3 "a run that failed, where an earlier one wrote"
+check "leaves the earlier files as they were" cmp "$T/f_0001.obj" "$T/first.obj"
+is "$(cd "$T" && echo f_*)" "f_0001.obj f_0002.obj f_0003.obj" "all of them"
 sinew deform "$T/skin.obj" <"$T/failed" >"$T/got" 2>"$T/stderr"
 is "$?:$(cat "$T/stderr"):$(cat "$T/got")" "3::" "nothing on stdout"
 head -c 2000 "$T/bound" >"$T/cut"

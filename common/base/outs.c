@@ -1,0 +1,113 @@
+#include "base/outs.h"
+
+#include "base/mem.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The length of the folder's part of a path, its last slash included; 0: it has none. */
+static size_t folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* What path stands for, which is the caller's; NULL with e filled where no file can be put there. */
+static char *find_target(const char *path, err *e)
+{
+    struct stat s;
+    bool there = !stat(path, &s);
+    if (there && !S_ISREG(s.st_mode)) {
+        err_set(e, path, 0, "is no regular file; expected one, or a new name");
+        return NULL;
+    }
+    if (there && access(path, W_OK)) {
+        err_system(e, path, errno, "cannot write");
+        return NULL;
+    }
+    char *target = there ? realpath(path, NULL) : mem_text(path, e);
+    if (!target)
+        err_system(e, path, errno, "cannot find its place");
+    return target;
+}
+
+/* A short name in the target's folder that nothing has. */
+static char *name_part(outs *o, const char *target, err *e)
+{
+    size_t folder = folder_length(target), size = folder + 64;
+    char *part = mem_array((int64_t)size, 1, "a file's name", e);
+    struct stat s;
+    if (!part)
+        return NULL;
+    do
+        snprintf(part, size, "%.*s.sinew-%ld-%" PRId64 ".part", (int)folder, target, (long)getpid(), o->number++);
+    while (!lstat(part, &s));
+    return part;
+}
+
+static int check_folder(const char *path, const char *target, err *e)
+{
+    size_t n = folder_length(target);
+    char *folder = mem_text(n ? target : ".", e);
+    if (!folder)
+        return -1;
+    folder[n ? n : 1] = 0;
+    int bad = access(folder, W_OK | X_OK) ? err_system(e, path, errno, "cannot create") : 0;
+    free(folder);
+    return bad;
+}
+
+out *outs_open(outs *s, const char *path, err *e)
+{
+    if (mem_grow(&s->file, &s->capacity, s->count + 1, sizeof *s->file, "files", e))
+        return NULL;
+    outs_file f = {.target = find_target(path, e)};
+    if (f.target && !check_folder(path, f.target, e))
+        f.part = name_part(s, f.target, e);
+    out *o = f.part ? out_open(f.part, false, e) : NULL;
+    if (!o) {
+        free(f.part);
+        free(f.target);
+        return NULL;
+    }
+    s->file[s->count++] = f;
+    return o;
+}
+
+/* A file that is replaced hands its permissions on. */
+static void keep_mode(const outs_file *f)
+{
+    struct stat s;
+    if (!stat(f->target, &s))
+        (void)!chmod(f->part, s.st_mode & 07777);
+}
+
+int outs_commit(outs *s, err *e)
+{
+    for (int64_t i = 0; i < s->count; i++) {
+        outs_file *f = &s->file[i];
+        keep_mode(f);
+        if (rename(f->part, f->target))
+            return err_system(e, f->target, errno, "cannot rename into place");
+        free(f->part);
+        f->part = NULL;
+    }
+    return 0;
+}
+
+void outs_free(outs *s)
+{
+    for (int64_t i = 0; i < s->count; i++) {
+        if (s->file[i].part)
+            unlink(s->file[i].part);
+        free(s->file[i].part);
+        free(s->file[i].target);
+    }
+    free(s->file);
+    *s = (outs){0};
+}

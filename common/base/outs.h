@@ -1,0 +1,29 @@
+/* Files of one run that appear together: each is written beside its place, and all are renamed once it is known that the
+ * run went well, so that a run that fails leaves the files of an earlier one as they were. Files are written one at a
+ * time, so any number takes one descriptor. The caller owns the struct; begin with a zeroed one.
+ */
+#ifndef SINEW_OUTS_H
+#define SINEW_OUTS_H
+
+#include "base/out.h"
+
+typedef struct outs_file {
+    char *part, *target; /* where it is, where it goes; each owned */
+} outs_file;
+
+typedef struct outs {
+    outs_file *file;
+    int64_t count, capacity, number; /* number: of the next name */
+} outs;
+
+/* Opens the next file, which is to appear as path; a link stays a link. The caller closes it (out_close) or gives it up
+ * (out_discard) as any other out. NULL with e filled. */
+out *outs_open(outs *s, const char *path, err *e);
+
+/* Puts every file in its place, in the order in which they were opened. All must have been closed. */
+int outs_commit(outs *s, err *e);
+
+/* Removes the files that are not in their places. */
+void outs_free(outs *s);
+
+#endif
