@@ -1,7 +1,7 @@
 #include "rigid.h"
 
-#include "base/keyfile.h"
 #include "base/mem.h"
+#include "base/near.h"
 #include "mesh/surface.h"
 
 #include <math.h>
@@ -160,7 +160,7 @@ static int all_used(const words *patterns, const model *m, err *e)
         while (n < names.count && !surface_in_group(names.v[n], patterns->v[p]))
             n++;
         if (n == names.count) {
-            keyfile_unknown(e, NULL, 0, "surface", patterns->v[p], (const char *const *)names.v, (int)names.count);
+            near_unknown(e, NULL, 0, "surface", patterns->v[p], (const char *const *)names.v, (int)names.count);
             goto out;
         }
     }

@@ -1,7 +1,7 @@
 #include "tled/script.h"
 
-#include "base/keyfile.h"
 #include "base/mem.h"
+#include "base/near.h"
 #include "base/num.h"
 
 #include <inttypes.h>
@@ -142,7 +142,7 @@ static int unknown_muscle(const model_array *names, const model_array *muscle, c
     for (int64_t i = 0; i < names->rows && count < INT32_MAX; i++)
         if (muscle->u8[i])
             list[count++] = whole ? names->str[i] : short_name(names->str[i]);
-    keyfile_unknown(e, place, line, "muscle", name, list, count);
+    near_unknown(e, place, line, "muscle", name, list, count);
     free(list);
     return -1;
 }

@@ -1,5 +1,6 @@
 #include "base/keyfile.h"
 #include "base/mem.h"
+#include "base/near.h"
 #include "base/num.h"
 #include "mesh/surface.h"
 #include "tled/script.h"
@@ -89,8 +90,8 @@ static int nodes_of_surface(reader *r, const script_curve *c, err *e)
     for (int64_t i = 0; i < names->rows; i++)
         known = known || surface_in_group(names->str[i], c->target);
     if (!known)
-        return keyfile_unknown(e, r->k.name, r->k.line, "rigid surface", c->target, (const char *const *)names->str,
-                               names->rows < INT32_MAX ? (int)names->rows : INT32_MAX);
+        return near_unknown(e, r->k.name, r->k.line, "rigid surface", c->target, (const char *const *)names->str,
+                            names->rows < INT32_MAX ? (int)names->rows : INT32_MAX);
     int64_t found = 0;
     for (int64_t i = 0; i < anchor->rows; i++) {
         int32_t a = anchor->i32[i];
@@ -289,7 +290,7 @@ static int take_line(reader *r, err *e)
     while (v < VERBS && strcmp(verb_names[v], k->word[1]))
         v++;
     if (v == VERBS)
-        return keyfile_unknown(e, k->name, k->line, "verb", k->word[1], verb_names, VERBS);
+        return near_unknown(e, k->name, k->line, "verb", k->word[1], verb_names, VERBS);
     if (k->count != verbs[v].words)
         return keyfile_error(k, e, "%d words; expected %s", k->count, verbs[v].expected);
     return verbs[v].take(r, time, e);

@@ -3,6 +3,7 @@
 
 #include "base/keyfile.h"
 #include "base/mem.h"
+#include "base/near.h"
 #include "base/num.h"
 #include "mesh/surface.h"
 #include "model/materials.h"
@@ -59,7 +60,7 @@ static int take_pattern(reader *r, const char *pattern, err *e)
         matched++;
     }
     if (!matched)
-        return keyfile_unknown(e, r->k.name, r->k.line, "surface", pattern, r->surface, r->v->surfaces);
+        return near_unknown(e, r->k.name, r->k.line, "surface", pattern, r->surface, r->v->surfaces);
     if (!polygons)
         return keyfile_error(&r->k, e, "surface '%s' has no polygons; expected faces of 3 corners and more", pattern);
     return 0;

@@ -1,6 +1,6 @@
 #include "base/keyfile.h"
 
-#include "base/num.h"
+#include "base/near.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -95,46 +95,11 @@ int keyfile_pair(keyfile *k, int at, const char *const *keys, int count, uint64_
     *value = equals + 1;
     int i = index_of(keys, count, key);
     if (i < 0)
-        return keyfile_unknown(e, k->name, k->line, "key", key, keys, count);
+        return near_unknown(e, k->name, k->line, "key", key, keys, count);
     if (!**value)
         return keyfile_error(k, e, "'%s=' without a value; expected %s=VALUE, no blank at the '='", key, key);
     if (*seen >> i & 1)
         return keyfile_error(k, e, "'%s' is given twice; expected once", key);
     *seen |= UINT64_C(1) << i;
     return i;
-}
-
-static size_t add_text(char *to, size_t size, size_t at, const char *text)
-{
-    int n = snprintf(to + at, size - at, "%s", text);
-    return n < 0 ? at : at + (size_t)n < size ? at + (size_t)n : size - 1;
-}
-
-/* The names between commas, as far as they fit. */
-static void list_names(char *to, size_t size, const char *const *names, int count)
-{
-    size_t at = 0;
-    to[0] = '\0';
-    for (int i = 0; i < count; i++) {
-        if (at + strlen(names[i]) + 8 >= size) {
-            add_text(to, size, at, at ? ", ..." : "...");
-            return;
-        }
-        at = add_text(to, size, at, i ? ", " : "");
-        at = add_text(to, size, at, names[i]);
-    }
-}
-
-int keyfile_unknown(err *e, const char *place, int64_t line, const char *what, const char *name,
-                    const char *const *names, int count)
-{
-    char list[320];
-    if (!count)
-        return err_set(e, place, line, "unknown %s '%.200s'; there is none here", what, name);
-    list_names(list, sizeof list, names, count);
-    int near = num_nearest(name, names, count);
-    if (near < 0)
-        return err_set(e, place, line, "unknown %s '%.200s'; expected one of: %s", what, name, list);
-    return err_set(e, place, line, "unknown %s '%.200s'; did you mean '%.200s'? expected one of: %s", what, name,
-                   names[near], list);
 }

@@ -31,9 +31,4 @@ int keyfile_pair(keyfile *k, int at, const char *const *keys, int count, uint64_
 /* err_set at the line read last. Returns -1. */
 int keyfile_error(const keyfile *k, err *e, const char *format, ...) SINEW_PRINTF(3, 4);
 
-/* "unknown WHAT 'name'; did you mean 'near'? WHATs: a, b, c" as an error at place:line (NULL and 0: none; as on command
- * lines). Says so where there are no names at all; long lists are cut. Returns -1. */
-int keyfile_unknown(err *e, const char *place, int64_t line, const char *what, const char *name,
-                    const char *const *names, int count);
-
 #endif

@@ -48,7 +48,4 @@ int num_list(const char *text, double *list, int most);
 enum { NUM_TEXT = 32 };
 int num_text(double value, bool single, char *to);
 
-/* Of `count` names the one nearest to name (edit distance at most a third of its length, at least 1), or -1. */
-int num_nearest(const char *name, const char *const *names, int count);
-
 #endif

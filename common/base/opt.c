@@ -1,5 +1,7 @@
 #include "base/opt.h"
 
+#include "base/near.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -73,7 +75,7 @@ static int unknown_option(const opt_tool *tool, const char *name, size_t length,
         if (o->name && !(o->flags & OPT_HIDDEN))
             names[n++] = o->name;
     snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), name);
-    int near = num_nearest(word, names, n);
+    int near = near_name(word, names, n);
     if (near >= 0)
         err_set(e, NULL, 0, "no option --%s; did you mean --%s?", word, names[near]);
     else

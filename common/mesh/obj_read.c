@@ -1,4 +1,5 @@
 #include "base/mem.h"
+#include "base/near.h"
 #include "base/num.h"
 #include "mesh/names.h"
 #include "mesh/obj.h"
@@ -461,7 +462,7 @@ static void suggest(const char *word, char *to, size_t size)
         for (char *w = strtok_r(text[i], " ", &keep); w && count < WORDS; w = strtok_r(NULL, " ", &keep))
             known[count++] = w;
     }
-    int near = num_nearest(word, known, count);
+    int near = near_name(word, known, count);
     if (near >= 0)
         snprintf(to, size, "perhaps '%s'", known[near]);
 }

@@ -2,6 +2,7 @@
 
 #include "base/keyfile.h"
 #include "base/mem.h"
+#include "base/near.h"
 #include "base/num.h"
 #include "model/check.h"
 
@@ -64,7 +65,7 @@ static int row_take(row *r, int name, const char *text, const char *place, int64
     if (name == 0) {
         int law = law_of(text);
         if (law < 0)
-            return keyfile_unknown(e, place, line, "law", text, law_names, MATERIAL_LAWS);
+            return near_unknown(e, place, line, "law", text, law_names, MATERIAL_LAWS);
         r->law = (material_law)law;
         return 0;
     }
@@ -240,7 +241,7 @@ static int assign(model *m, const char *which, const char *name, const char *tex
         if (!strcmp(key_names[i], name))
             return row_take(&r, i, text, which, 0, e) ? -1 : row_store(m, at, &r, UINT64_C(1) << i, e);
     }
-    return keyfile_unknown(e, which, 0, "key", name, key_names, KEYS + 1);
+    return near_unknown(e, which, 0, "key", name, key_names, KEYS + 1);
 }
 
 int materials_set(model *m, const char *assignment, err *e)
@@ -272,7 +273,7 @@ int materials_unknown(const model *m, const char *name, const char *place, int64
 {
     const model_array *a = model_find(m, "material.name");
     int count = !a ? 0 : a->rows < INT32_MAX ? (int)a->rows : INT32_MAX;
-    return keyfile_unknown(e, place, line, "material", name, a ? (const char *const *)a->str : NULL, count);
+    return near_unknown(e, place, line, "material", name, a ? (const char *const *)a->str : NULL, count);
 }
 
 /* The value of key k of material i, or what the table says where there is none. */
@@ -294,7 +295,7 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
         return -1;
     int which = law_of(law->str[i]);
     if (which < 0)
-        return keyfile_unknown(e, "material.law", 0, "law", law->str[i], law_names, MATERIAL_LAWS);
+        return near_unknown(e, "material.law", 0, "law", law->str[i], law_names, MATERIAL_LAWS);
     to->law = (material_law)which;
 #define VALUE_INDEX(name, unit, fallback, absent, condition, words) AT_##name,
     enum { MATERIAL_KEYS(VALUE_INDEX) };

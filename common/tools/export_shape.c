@@ -1,6 +1,7 @@
 #include "tools/export_shape.h"
 
 #include "base/mem.h"
+#include "base/near.h"
 #include "base/num.h"
 #include "mesh/weights.h"
 
@@ -25,7 +26,7 @@ static int no_surface(const model *m, const char *name, err *e)
         snprintf(all + n, sizeof all - n, "%s%s", i ? ", " : "", one);
         notes_add(&names, "%s", one);
     }
-    int near = num_nearest(name, (const char *const *)names.line, names.count);
+    int near = near_name(name, (const char *const *)names.line, names.count);
     if (!names.count)
         err_set(e, NULL, 0, "no surface '%.100s': the model carries none", name);
     else if (near >= 0)

@@ -1,5 +1,6 @@
 #include "tools/info_key.h"
 
+#include "base/near.h"
 #include "base/num.h"
 #include "model/check.h"
 #include "model/known.h"
@@ -219,7 +220,7 @@ static void note_array(notes *list, const char *name, const char *key)
     for (const char *dot = strchr(name, '.'); dot && *end; dot = strchr(dot + 1, '.'))
         end += 1 + strcspn(end + 1, ".");
     snprintf(head, sizeof head, "%.*s", (int)(end - key), key);
-    if (num_nearest(head, &name, 1) == 0)
+    if (near_name(head, &name, 1) == 0)
         notes_add(list, "%s%s", name, end);
 }
 
@@ -266,16 +267,6 @@ static const known *known_of(const char *key)
     return NULL;
 }
 
-/* Names between commas, as many as fit. */
-static const char *join(const notes *list, char *to, size_t size)
-{
-    size_t n = 0;
-    to[0] = 0;
-    for (int i = 0; i < list->count && n + strlen(list->line[i]) + 8 < size; i++)
-        n += (size_t)snprintf(to + n, size - n, "%s%s", i ? ", " : "", list->line[i]);
-    return to;
-}
-
 /* A known array that the model lacks: who makes it. */
 static int lacking(const source *s, const char *key, const known *k, err *e)
 {
@@ -293,16 +284,18 @@ static int unknown_key(const source *s, const char *key, err *e)
     const known *k = known_of(key);
     note_keys(s, key, &list);
     note_arrays(s, &arrays);
-    int near = num_nearest(key, (const char *const *)list.line, list.count);
+    int near = near_name(key, (const char *const *)list.line, list.count);
     if (k)
         lacking(s, key, k, e);
     else if (near >= 0)
         err_set(e, source_name(s), 0, "no key '%.80s'; did you mean '%s'?", key, list.line[near]);
-    else
+    else {
+        near_list(all, sizeof all, (const char *const *)arrays.line, arrays.count);
         err_set(e, source_name(s), 0,
                 "no key '%.80s'; expected frames, frame.time, frame.index, axis.NAME, meta.KEY, volume.count.NAME or "
                 "ARRAY.VALUE with one of these arrays: %s",
-                key, join(&arrays, all, sizeof all));
+                key, all);
+    }
     notes_free(&list);
     notes_free(&arrays);
     return -1;

@@ -1,6 +1,7 @@
 /* sinew TOOL ARGS: the front command. It execs TOOL, or sinew-TOOL, from the folder that it lies in itself, so that
  * generic names (info, diff) stay off the PATH and `sinew bind` is never the shell's builtin.
  */
+#include "base/near.h"
 #include "base/num.h"
 #include "base/tool.h"
 
@@ -64,7 +65,7 @@ static int unknown(const char *name)
     const char *names[TOOLS];
     for (int i = 0; i < TOOLS; i++)
         names[i] = tools[i].name;
-    int near = num_nearest(name, names, TOOLS);
+    int near = near_name(name, names, TOOLS);
     if (near >= 0)
         fprintf(stderr, "sinew: no tool '%s'; did you mean '%s'?\n", name, names[near]);
     else

@@ -105,27 +105,6 @@ static void refuse_lines(void)
     refuse_text("a\nb\177\n", 5, "f.txt:2: control character 0x7f", "a DEL");
 }
 
-static void unknown(void)
-{
-    err e = {0};
-    ok(keyfile_unknown(&e, NULL, 0, "thing", "x", NULL, 0) == -1 && strstr(e.text, "none here"), "no names: %s",
-       e.text);
-    e = (err){0};
-    keyfile_unknown(&e, "p", 7, "key", "levl", keys, 4);
-    ok(!strcmp(e.text, "p:7: unknown key 'levl'; did you mean 'level'? expected one of: level, priority, material, "
-                       "surfaces"),
-       "a near name is offered: %s", e.text);
-    e = (err){0};
-    keyfile_unknown(&e, "p", 7, "key", "qqqqqqqq", keys, 4);
-    ok(!strstr(e.text, "did you mean") && strstr(e.text, "material"), "a far one is not: %s", e.text);
-    const char *many[100];
-    for (int i = 0; i < 100; i++)
-        many[i] = "a_long_name_of_a_thing";
-    e = (err){0};
-    keyfile_unknown(&e, NULL, 0, "key", "b", many, 100);
-    ok(strlen(e.text) < 500 && strstr(e.text, ", ..."), "a long list is cut (%zu bytes)", strlen(e.text));
-}
-
 int main(void)
 {
     words();
@@ -137,6 +116,5 @@ int main(void)
     refuse_pair("skin level=1 level=1", "given twice");
     refuse_pair("skin Level=1", "did you mean 'level'?");
     refuse_lines();
-    unknown();
     return done_testing();
 }

@@ -76,21 +76,11 @@ static void lengths(void)
     ok(num_lengths_of("1,2,3,4", list, 3) == -1 && num_lengths_of("1,,3", list, 3) == -1, "four, or a gap: refused");
 }
 
-static void near_misses(void)
-{
-    const char *names[] = {"skin", "skull", "muscle_zyg"};
-    ok(num_nearest("skul", names, 3) == 1, "skul is near skull");
-    ok(num_nearest("MUSCLE_ZYK", names, 3) == 2, "letters of either case");
-    ok(num_nearest("muscle_zgy", names, 3) == 2, "a swap is one edit");
-    ok(num_nearest("liver", names, 3) == -1, "liver is near nothing");
-}
-
 int main(void)
 {
     against_strtod();
     refuses();
     integers();
     lengths();
-    near_misses();
     return done_testing();
 }

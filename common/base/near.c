@@ -1,0 +1,80 @@
+#include "base/near.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { NAME_MOST = 64 };
+
+static bool same_letter(char a, char b)
+{
+    return tolower((unsigned char)a) == tolower((unsigned char)b);
+}
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+/* Edits from a to b: letters added, dropped, changed or swapped with their neighbour (optimal string alignment), those
+ * of either case alike. Names are cut at NAME_MOST. */
+static int distance(const char *a, const char *b)
+{
+    int rows[3][NAME_MOST + 1];
+    int na = (int)strnlen(a, NAME_MOST), nb = (int)strnlen(b, NAME_MOST);
+    for (int j = 0; j <= nb; j++)
+        rows[0][j] = j;
+    for (int i = 1; i <= na; i++) {
+        int *now = rows[i % 3], *last = rows[(i + 2) % 3], *before = rows[(i + 1) % 3];
+        now[0] = i;
+        for (int j = 1; j <= nb; j++) {
+            now[j] = least(last[j - 1] + !same_letter(a[i - 1], b[j - 1]), least(last[j], now[j - 1]) + 1);
+            if (i > 1 && j > 1 && same_letter(a[i - 1], b[j - 2]) && same_letter(a[i - 2], b[j - 1]))
+                now[j] = least(now[j], before[j - 2] + 1);
+        }
+    }
+    return rows[na % 3][nb];
+}
+
+int near_name(const char *name, const char *const *names, int count)
+{
+    int limit = (int)strlen(name) / 3, best = -1;
+    if (limit < 1)
+        limit = 1;
+    for (int i = 0; i < count; i++) {
+        int d = distance(name, names[i]);
+        if (d <= limit) {
+            best = i;
+            limit = d - 1;
+        }
+    }
+    return best;
+}
+
+void near_list(char *to, size_t size, const char *const *names, int count)
+{
+    static const char more[] = ", ...", comma[] = ", ";
+    size_t at = 0;
+    to[0] = '\0';
+    for (int i = 0; i < count; i++) {
+        bool fits = at + sizeof comma + strlen(names[i]) + sizeof more <= size;
+        snprintf(to + at, size - at, "%s%s", at ? comma : "", fits ? names[i] : "...");
+        if (!fits)
+            return;
+        at += strlen(to + at);
+    }
+}
+
+int near_unknown(err *e, const char *place, int64_t line, const char *what, const char *name, const char *const *names,
+                 int count)
+{
+    char list[320];
+    if (!count)
+        return err_set(e, place, line, "unknown %s '%.200s'; there is none here", what, name);
+    near_list(list, sizeof list, names, count);
+    int near = near_name(name, names, count);
+    if (near < 0)
+        return err_set(e, place, line, "unknown %s '%.200s'; expected one of: %s", what, name, list);
+    return err_set(e, place, line, "unknown %s '%.200s'; did you mean '%.200s'? expected one of: %s", what, name,
+                   names[near], list);
+}
