@@ -1,7 +1,7 @@
 #include "voxelise/solids.h"
 
 #include "base/mem.h"
-#include "mesh/surface.h"
+#include "mesh/triangulate.h"
 #include "voxelise/closed.h"
 #include "voxelise/grid.h"
 #include "voxelise/hash.h"
@@ -215,9 +215,9 @@ static int add_polygon(work *w, int32_t volume, int64_t face, err *e)
     const int32_t *corner = &w->o->corner_vertex[from];
     if (count == 3)
         return add_triangle(w, volume, corner, whole, e);
-    if (mem_grow(&w->cut, &w->cut_capacity, 3 * (count - 2), sizeof *w->cut, "triangles", e))
+    if (mem_grow(&w->cut, &w->cut_capacity, 3 * (count - 2), sizeof *w->cut, "triangles", e) ||
+        triangulate(w->o->position, corner, count, w->cut, e))
         return -1;
-    surface_triangulate(w->o->position, corner, count, w->cut);
     for (int64_t t = 0; t < count - 2; t++)
         if (add_triangle(w, volume, corner, &w->cut[3 * t], e))
             return -1;

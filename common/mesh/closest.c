@@ -1,7 +1,7 @@
 #include "mesh/closest.h"
 
 #include "base/mem.h"
-#include "mesh/surface.h"
+#include "mesh/triangulate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -102,9 +102,9 @@ static void newell(const double *position, const int32_t *vertex, int64_t count,
 
 static int cut(closest_shape *s, const double *position, const int32_t *vertex, int64_t count, err *e)
 {
-    if (mem_grow(&s->triangle, &s->triangle_capacity, 3 * s->parts, sizeof *s->triangle, "a polygon's triangles", e))
+    if (mem_grow(&s->triangle, &s->triangle_capacity, 3 * s->parts, sizeof *s->triangle, "a polygon's triangles", e) ||
+        triangulate(position, vertex, count, s->triangle, e))
         return -1;
-    surface_triangulate(position, vertex, count, s->triangle);
     for (int64_t i = 0; i < 3 * s->parts; i++)
         memcpy(&s->point[3 * i], &position[3 * (int64_t)vertex[s->triangle[i]]], 3 * sizeof *position);
     newell(position, vertex, count, s->normal);

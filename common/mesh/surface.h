@@ -51,9 +51,4 @@ void surface_name(const char *path, char *name, size_t size);
  * rest). */
 bool surface_in_group(const char *names, const char *pattern);
 
-/* Cuts a polygon of `count` corners (vertex indices into position) into count - 2 triangles: ear clipping in the plane
- * of its Newell normal, so that concave polygons come out right; a fan where it is convex or beyond help.
- * triangle: (count - 2) x 3 corners (0 to count - 1). */
-void surface_triangulate(const double *position, const int32_t *corner, int64_t count, int32_t *triangle);
-
 #endif

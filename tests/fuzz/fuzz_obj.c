@@ -2,7 +2,7 @@
  * still an OBJ of as many vertices, whose polygons cut into triangles.
  */
 #include "mesh/obj.h"
-#include "mesh/surface.h"
+#include "mesh/triangulate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -58,14 +58,14 @@ static void write_moved(const obj *o)
 
 static void cut(const obj *o)
 {
+    err e = {0};
     for (int64_t f = 0; f < o->faces; f++) {
         int64_t count = o->face_start[f + 1] - o->face_start[f];
-        if (count < 3 || count > 200)
+        if (count < 3 || count > 4000)
             continue;
         int32_t *triangle = malloc(3 * (size_t)(count - 2) * sizeof *triangle);
-        if (!triangle)
+        if (!triangle || triangulate(o->position, o->corner_vertex + o->face_start[f], count, triangle, &e))
             abort();
-        surface_triangulate(o->position, o->corner_vertex + o->face_start[f], count, triangle);
         for (int64_t i = 0; i < 3 * (count - 2); i++)
             if (triangle[i] < 0 || triangle[i] >= count)
                 abort();
