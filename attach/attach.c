@@ -48,10 +48,10 @@ static int read_rigid_file(const char *path, const model *m, model *file, err *e
     const char *unit_name = model_meta_of(m, "source.unit");
     num_unit unit = unit_name ? num_unit_of(unit_name) : 0, metre = num_unit_of("m");
     if (!unit)
-        return err_set(e, NULL, 0, "--rigid-file: the model's source.unit is %s%s; um, mm, cm, m or in is needed",
+        return err_set(e, NULL, 0, "--rigid-file: the model's source.unit is %s%s; " NUM_UNITS " is needed",
                        unit_name ? "" : "not given", unit_name ? unit_name : "");
     obj o = {0};
-    char name[256];
+    char name[MODEL_NAME];
     surface_name(path, name, sizeof name);
     in *source = in_open(path, e);
     int rc = source ? obj_read(&o, source, e) : -1;

@@ -131,7 +131,7 @@ static int by_surface(const void *a, const void *b)
 
 static int collect(rigid *r, const model *m, const words *patterns, err *e)
 {
-    char name[256];
+    char name[MODEL_NAME];
     surface s;
     for (int i = 0; model_surface(m, i, name, sizeof name); i++)
         if (surface_of(m, name, &s, e) || collect_surface(r, &s, patterns, e))
@@ -145,7 +145,7 @@ static int collect(rigid *r, const model *m, const words *patterns, err *e)
 static int all_used(const words *patterns, const model *m, err *e)
 {
     int rc = -1;
-    char name[256];
+    char name[MODEL_NAME];
     words names = {0};
     surface s;
     for (int i = 0; model_surface(m, i, name, sizeof name); i++) {

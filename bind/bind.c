@@ -7,6 +7,7 @@
 #include "mesh/surface.h"
 #include "mesh/weights.h"
 #include "model/check.h"
+#include "model/known.h"
 #include "model/stage.h"
 
 #include <math.h>
@@ -141,7 +142,7 @@ static int check_finite(const surface *s, err *e)
 /* Adds S/vertex.element and S/vertex.weight, or makes them anew. */
 static int bind_surface(const tool *t, target *to, model *m, const char *name, num_unit unit, notes *warnings, err *e)
 {
-    char element[CHECK_NAME_MOST + 1], weight[CHECK_NAME_MOST + 1], axis[CHECK_NAME_MOST + 1];
+    char element[MODEL_NAME], weight[MODEL_NAME], axis[MODEL_NAME];
     surface s;
     snprintf(element, sizeof element, "%s/vertex.element", name);
     snprintf(weight, sizeof weight, "%s/vertex.weight", name);
@@ -161,18 +162,12 @@ static int bind_surface(const tool *t, target *to, model *m, const char *name, n
     return 0;
 }
 
-static bool carries(const model *m, const char *name)
-{
-    char axis[CHECK_NAME_MOST + 1];
-    snprintf(axis, sizeof axis, "%s/vertex", name);
-    return model_count(m, axis) >= 0;
-}
-
 static int check_surface_name(const char *name, err *e)
 {
-    if (strlen(name) <= SURFACE_NAME_MOST && check_name(name) && !strchr(name, '/'))
+    if (strlen(name) <= SURFACE_NAME_MOST && check_name(name) && !strchr(name, '/') && !known_users(name))
         return 0;
-    err_set(e, NULL, 0, "--name '%s': expected at most %d letters, digits and . _ -", name, SURFACE_NAME_MOST);
+    err_set(e, NULL, 0, "--name '%s': expected at most %d letters, digits and . _ -, not x- first", name,
+            SURFACE_NAME_MOST);
     e->status = STATUS_USAGE;
     return -1;
 }
@@ -183,7 +178,7 @@ static int carry(model *m, const char *name, const obj *o, double scale, err *e)
     surface s;
     if (!o->vertices)
         return err_set(e, o->name, 0, "no vertices; expected a surface");
-    if (!carries(m, name))
+    if (!surface_there(m, name))
         return surface_add(m, name, o, scale, e);
     if (surface_of(m, name, &s, e))
         return -1;
@@ -219,13 +214,13 @@ static int bind_file(const tool *t, target *to, model *m, const char *path, cons
 /* Every surface that the model carries, or the one named. */
 static int bind_carried(const tool *t, target *to, model *m, const struct options *o, notes *warnings, err *e)
 {
-    char name[CHECK_NAME_MOST + 1];
+    char name[MODEL_NAME];
     const char *source = model_meta_of(m, "source.unit");
     num_unit unit = source ? num_unit_of(source) : 0; /* for messages only */
     unit = unit ? unit : num_unit_of("m");
     if (!model_surface(m, 0, name, sizeof name))
         return err_set(e, NULL, 0, "the model carries no surface; expected an OBJ: sinew bind surface.obj");
-    if (o->name && !carries(m, o->name))
+    if (o->name && !surface_there(m, o->name))
         return err_set(e, NULL, 0, "the model carries no surface %s; the first that it carries is %s", o->name, name);
     if (o->name)
         return bind_surface(t, to, m, o->name, unit, warnings, e);

@@ -1,21 +1,10 @@
 #include "bind/bound.h"
 
 #include "mesh/weights.h"
-#include "model/check.h"
-
-#include <stdio.h>
-#include <string.h>
-
-static const model_array *part(const model *m, const char *name, const char *what)
-{
-    char full[2 * CHECK_NAME_MOST];
-    snprintf(full, sizeof full, "%s/%s", name, what);
-    return model_find(m, full);
-}
 
 static bool is_bound(const model *m, const char *name)
 {
-    return part(m, name, "vertex.element") && part(m, name, "vertex.weight");
+    return surface_part(m, name, "vertex.element") && surface_part(m, name, "vertex.weight");
 }
 
 static int view(bound *b, const model *m, const char *name, err *e)
@@ -23,10 +12,10 @@ static int view(bound *b, const model *m, const char *name, err *e)
     const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
     if (!node || !rest || surface_of(m, name, &b->shape, e))
         return -1;
-    const model_array *weight = part(m, name, "vertex.weight");
+    const model_array *weight = surface_part(m, name, "vertex.weight");
     if (node->columns != 8 || weight->columns != 3)
         return err_set(e, NULL, 0, "surface %s is bound to tetrahedra; expected hexahedra", name);
-    b->element = part(m, name, "vertex.element")->i32;
+    b->element = surface_part(m, name, "vertex.element")->i32;
     b->weight = weight->f64;
     b->node = node->i32;
     b->rest = rest->f64;
@@ -45,7 +34,7 @@ static const char *bound_name(const model *m, int at, char *name, size_t size)
 /* No surface of the OBJ's name is bound, and none is this OBJ: what the model has, or what differs. */
 static int nothing_fits(const model *m, const char *name, const obj *o, double scale, err *e)
 {
-    char first[CHECK_NAME_MOST + 1], second[CHECK_NAME_MOST + 1];
+    char first[MODEL_NAME], second[MODEL_NAME];
     surface s;
     if (!bound_name(m, 0, first, sizeof first))
         return model_surface(m, 0, second, sizeof second)
@@ -62,7 +51,7 @@ static int nothing_fits(const model *m, const char *name, const obj *o, double s
 
 int bound_find(bound *b, const model *m, const char *name, const obj *o, double scale, err *e)
 {
-    char other[CHECK_NAME_MOST + 1];
+    char other[MODEL_NAME];
     err differs = {0};
     surface s;
     if (is_bound(m, name) && !surface_of(m, name, &s, &differs) && !surface_is(&s, o, scale, &differs))
@@ -83,12 +72,7 @@ int bound_find(bound *b, const model *m, const char *name, const obj *o, double 
 void bound_displacement(const bound *b, int64_t vertex, const double *u, double *d)
 {
     const int32_t *node = &b->node[8 * (int64_t)b->element[vertex]];
-    double share[8], sum[3] = {0};
-    weights_shares(&b->weight[3 * vertex], share);
-    for (int n = 0; n < 8; n++)
-        for (int i = 0; i < 3; i++)
-            sum[i] += share[n] * u[3 * (int64_t)node[n] + i];
-    memcpy(d, sum, sizeof sum);
+    weights_displacement(node, 8, &b->weight[3 * vertex], u, d);
 }
 
 void bound_gradient(const bound *b, int64_t vertex, const double *u, double *f)

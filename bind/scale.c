@@ -7,11 +7,11 @@ num_unit scale_unit(const char *unit, const model *m, err *e)
     if (known)
         return known;
     if (!unit && source)
-        err_set(e, NULL, 0, "the model's source.unit is '%s'; expected um, mm, cm, m or in: give --unit", source);
+        err_set(e, NULL, 0, "the model's source.unit is '%s'; expected " NUM_UNITS ": give --unit", source);
     else if (!unit)
-        err_set(e, NULL, 0, "the model has no source.unit; expected --unit um, mm, cm, m or in");
+        err_set(e, NULL, 0, "the model has no source.unit; expected --unit " NUM_UNITS);
     else if (!e->status) {
-        err_set(e, NULL, 0, "--unit '%s': expected um, mm, cm, m or in", unit);
+        err_set(e, NULL, 0, "--unit '%s': expected " NUM_UNITS, unit);
         e->status = STATUS_USAGE;
     }
     return 0;

@@ -245,7 +245,7 @@ static double in_metres(const job *j, double length)
 static int make_model(const job *j, model *m, err *e)
 {
     lattice l;
-    char name[256];
+    char name[MODEL_NAME];
     for (int a = 0; a < 3; a++) {
         l.origin[a] = in_metres(j, j->g.origin[a] + j->g.offset[a]);
         l.spacing[a] = in_metres(j, j->g.spacing[a]);

@@ -27,6 +27,8 @@ int num_double(const char *text, double *value);
 /* The whole of text as a decimal integer within [low, high]. Returns 0 or -1. */
 int num_int(const char *text, int64_t low, int64_t high, int64_t *value);
 
+#define NUM_UNITS "um, mm, cm, m or in" /* for messages */
+
 /* um mm cm m in (any case), or 0 where it is none of these. */
 num_unit num_unit_of(const char *name);
 const char *num_unit_name(num_unit unit);

@@ -156,7 +156,7 @@ static int set_lengths(const opt *o, const char *text, opt_lengths *to, err *e)
     if (to->count >= 1 && to->count >= (int)o->low)
         return 0;
     char want[128];
-    snprintf(want, sizeof want, "%s (%s), each a number with or without um, mm, cm, m or in", o->arg,
+    snprintf(want, sizeof want, "%s (%s), each a number with or without " NUM_UNITS, o->arg,
              most > 1 ? "between commas" : "a length");
     return bad_value(o, text, want, e);
 }

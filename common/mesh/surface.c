@@ -1,26 +1,47 @@
 #include "mesh/surface.h"
 
+#include "model/known.h"
+
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-enum { NAME = 300 };
-
-/* An array "S/what" of the model, or NULL with e filled. */
-static model_array *part(const model *m, const char *name, const char *what, err *e)
+/* "NAME/what" into full, of MODEL_NAME bytes. Returns 0, or -1 where no name is that long. */
+static int join(const char *name, const char *what, char *full)
 {
-    char full[NAME];
-    snprintf(full, sizeof full, "%s/%s", name, what);
-    return model_need(m, full, e);
+    int n = snprintf(full, MODEL_NAME, "%s/%s", name, what);
+    return n < 0 || n >= MODEL_NAME ? -1 : 0;
+}
+
+model_array *surface_part(const model *m, const char *name, const char *what)
+{
+    char full[MODEL_NAME];
+    return join(name, what, full) || known_users(full) ? NULL : model_find(m, full);
+}
+
+bool surface_there(const model *m, const char *name)
+{
+    char axis[MODEL_NAME];
+    return !join(name, "vertex", axis) && !known_users(axis) && model_count(m, axis) >= 0;
+}
+
+/* The same, or NULL with e filled. */
+static model_array *need(const model *m, const char *name, const char *what, err *e)
+{
+    model_array *a = surface_part(m, name, what);
+    if (!a)
+        err_set(e, NULL, 0, "the model has no %.250s/%s; expected a model from voxelise or bind", name, what);
+    return a;
 }
 
 int surface_of(const model *m, const char *name, surface *s, err *e)
 {
-    const model_array *position = part(m, name, "vertex.position", e);
-    const model_array *start = position ? part(m, name, "face.start", e) : NULL;
-    const model_array *group = start ? part(m, name, "face.group", e) : NULL;
-    const model_array *vertex = group ? part(m, name, "face.vertex", e) : NULL;
-    const model_array *group_name = vertex ? part(m, name, "group.name", e) : NULL;
+    const model_array *position = need(m, name, "vertex.position", e);
+    const model_array *start = position ? need(m, name, "face.start", e) : NULL;
+    const model_array *group = start ? need(m, name, "face.group", e) : NULL;
+    const model_array *vertex = group ? need(m, name, "face.vertex", e) : NULL;
+    const model_array *group_name = vertex ? need(m, name, "group.name", e) : NULL;
     if (!group_name)
         return -1;
     *s = (surface){.name = name,
@@ -33,25 +54,24 @@ int surface_of(const model *m, const char *name, surface *s, err *e)
                    .corners = vertex->rows,
                    .group_name = group_name->str,
                    .groups = group_name->rows};
-    for (int64_t f = 0; f < s->faces; f++)
-        if (s->start[f] > surface_end(s, f))
-            return err_set(e, NULL, 0, "%s/face.start: face %lld starts after the next; expected rising starts", name,
-                           (long long)f);
     return 0;
 }
 
 static int add_axis(model *m, const char *name, const char *what, int64_t count, err *e)
 {
-    char full[NAME];
-    snprintf(full, sizeof full, "%s/%s", name, what);
+    char full[MODEL_NAME];
+    if (join(name, what, full))
+        return err_set(e, NULL, 0, "surface '%.60s': its name is too long", name);
     return model_axis_add(m, full, count, e);
 }
 
 static model_array *add_array(model *m, const char *name, const char *what, err *e)
 {
-    char full[NAME];
-    snprintf(full, sizeof full, "%s/%s", name, what);
-    return model_add(m, full, e);
+    char full[MODEL_NAME];
+    if (!join(name, what, full))
+        return model_add(m, full, e);
+    err_set(e, NULL, 0, "surface '%.60s': its name is too long", name);
+    return NULL;
 }
 
 static int add_positions(model *m, const char *name, const obj *o, double scale, err *e)
@@ -112,16 +132,18 @@ static bool is_at(const double *coordinates, double scale, const double *metres)
 int surface_is(const surface *s, const obj *o, double scale, err *e)
 {
     if (s->vertices != o->vertices)
-        return err_set(e, o->name, 0, "%lld vertices, but the model's surface %s has %lld; expected the same OBJ",
-                       (long long)o->vertices, s->name, (long long)s->vertices);
+        return err_set(e, o->name, 0,
+                       "%" PRId64 " vertices, but the model's surface %s has %" PRId64 "; expected the same OBJ",
+                       o->vertices, s->name, s->vertices);
     for (int64_t v = 0; v < o->vertices; v++) {
         const double *p = &o->position[3 * v], *q = &s->position[3 * v];
         if (is_at(p, scale, q))
             continue;
         return err_set(e, o->name, obj_line_number(o, o->v[v].from),
-                       "vertex %lld is %.9g %.9g %.9g, but %.9g %.9g %.9g in the model's surface %s; expected the same "
+                       "vertex %" PRId64
+                       " is %.9g %.9g %.9g, but %.9g %.9g %.9g in the model's surface %s; expected the same "
                        "OBJ in the same unit",
-                       (long long)v + 1, p[0], p[1], p[2], q[0] / scale, q[1] / scale, q[2] / scale, s->name);
+                       v + 1, p[0], p[1], p[2], q[0] / scale, q[1] / scale, q[2] / scale, s->name);
     }
     return 0;
 }
@@ -144,6 +166,8 @@ void surface_name(const char *path, char *name, size_t size)
         name[i] = plain ? c : '_';
     }
     name[n] = 0;
+    if (known_users(name))
+        name[1] = '_';
 }
 
 static bool matches(const char *name, size_t n, const char *pattern)

@@ -27,6 +27,12 @@ static inline int64_t surface_end(const surface *s, int64_t face)
     return face + 1 < s->faces ? s->start[face + 1] : s->corners;
 }
 
+/* The array "NAME/what" of a surface, or NULL: "vertex.element". NULL for the user's names ("x-") too. */
+model_array *surface_part(const model *m, const char *name, const char *what);
+
+/* Whether the model carries the surface. */
+bool surface_there(const model *m, const char *name);
+
 /* The surface named `name` (borrowed by the view). */
 int surface_of(const model *m, const char *name, surface *s, err *e);
 
@@ -43,8 +49,8 @@ static inline double surface_metres(double coordinate, double scale)
  * first. */
 int surface_is(const surface *s, const obj *o, double scale, err *e);
 
-/* A surface name from a path: base name without .obj, .obj.gz; what axis names may not hold becomes '_'; "stdin" for
- * "-". */
+/* A surface name from a path: base name without .obj, .obj.gz; what axis names may not hold becomes '_', and so
+ * does the '-' of "x-" at its start, which is the user's; "stdin" for "-". */
 void surface_name(const char *path, char *name, size_t size);
 
 /* Whether one of the names between spaces in `names` matches the pattern (any case; a '*' at its end matches any

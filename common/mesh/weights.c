@@ -3,6 +3,7 @@
 #include "mesh/lattice.h"
 
 #include <math.h>
+#include <string.h>
 
 weights_box weights_box_of(const int32_t *node, const double *position)
 {
@@ -33,6 +34,18 @@ void weights_shares(const double *weight, double *share)
         const int32_t *far = lattice_vtk[n];
         share[n] = factor(weight[0], far[0]) * factor(weight[1], far[1]) * factor(weight[2], far[2]);
     }
+}
+
+void weights_displacement(const int32_t *node, int32_t columns, const double *weight, const double *u, double *d)
+{
+    double hexahedron[8], sum[3] = {0};
+    const double *share = columns == 8 ? hexahedron : weight;
+    if (columns == 8)
+        weights_shares(weight, hexahedron);
+    for (int32_t n = 0; n < columns; n++)
+        for (int a = 0; a < 3; a++)
+            sum[a] += share[n] * u[3 * (int64_t)node[n] + a];
+    memcpy(d, sum, sizeof sum);
 }
 
 /* dw_i / dp_i = -1 / v_i. */

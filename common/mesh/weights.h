@@ -20,6 +20,10 @@ void weights_of(const weights_box *box, const double *point, double *weight);
 /* The shares of the 8 nodes, trilinear: they sum to 1. Node 0's is w_0 w_1 w_2. */
 void weights_shares(const double *weight, double *share);
 
+/* The displacement of a place in an element, m, by equation (1) in a hexahedron (columns 8, three weights; extrapolated
+ * outside) and by barycentric weights in a tetrahedron (columns 4, four weights). node: the element's; u: of all nodes, x 3. */
+void weights_displacement(const int32_t *node, int32_t columns, const double *weight, const double *u, double *d);
+
 /* The gradients of the shares at rest, 1/m: 8 x 3. */
 void weights_gradients(const weights_box *box, const double *weight, double *gradient);
 

@@ -11,7 +11,7 @@ bool check_name(const char *name)
 {
     size_t n = 0;
     for (; name[n]; n++)
-        if (n == CHECK_NAME_MOST || !(isalnum((unsigned char)name[n]) || strchr("._-/", name[n])))
+        if (n == MODEL_NAME - 1 || !(isalnum((unsigned char)name[n]) || strchr("._-/", name[n])))
             return false;
     return n > 0;
 }
@@ -22,7 +22,7 @@ bool check_unit(const char *unit)
     if (unit[0] == '@')
         return check_name(unit + 1);
     for (; unit[n]; n++)
-        if (n == CHECK_NAME_MOST || unit[n] <= ' ' || unit[n] > '~' || unit[n] == '"')
+        if (n == MODEL_NAME - 1 || unit[n] <= ' ' || unit[n] > '~' || unit[n] == '"')
             return false;
     return n > 0;
 }
@@ -96,7 +96,7 @@ static int64_t row_line(const site *s, int64_t row)
 static int check_known(const site *s, const known *k)
 {
     const model_array *a = s->a;
-    char unit[2 * CHECK_NAME_MOST], axis[2 * CHECK_NAME_MOST];
+    char unit[MODEL_NAME], axis[MODEL_NAME];
     known_expand(k->unit, a->name, unit, sizeof unit);
     known_expand(k->axis, a->name, axis, sizeof axis);
     if (a->type != k->type)

@@ -6,8 +6,6 @@
 
 #include "model/model.h"
 
-enum { CHECK_NAME_MOST = 255 }; /* bytes in a name, key or unit */
-
 /* Names of arrays and axes, keys, tools and versions: 1 to 255 of letters, digits and . _ - / */
 bool check_name(const char *name);
 

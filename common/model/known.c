@@ -17,8 +17,15 @@ static size_t surface_length(const char *name)
     return slash ? (size_t)(slash - name) : 0;
 }
 
+bool known_users(const char *name)
+{
+    return !strncmp(name, "x-", 2);
+}
+
 const known *known_find(const char *name)
 {
+    if (known_users(name))
+        return NULL;
     size_t surface = surface_length(name);
     for (int i = 0; i < ROWS; i++) {
         bool any = rows[i].name[0] == '*';

@@ -63,6 +63,9 @@ typedef struct known {
     X("node.displacement", MODEL_F64, "m", "node", 3, 3, KNOWN_FRAME, "tled-run", "displacement from rest")            \
     X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, "tled-run", "velocity")
 
+/* Whether a name is the user's: it begins "x-", and nothing is known of it, whatever follows. */
+bool known_users(const char *name);
+
 /* The row for an array's name, or NULL. */
 const known *known_find(const char *name);
 

@@ -223,7 +223,7 @@ int model_block_take(model *m, model_block *b, err *e)
     return 0;
 }
 
-static model_array *find(const model_arrays *list, const char *name)
+model_array *model_arrays_find(const model_arrays *list, const char *name)
 {
     for (int i = 0; i < list->count; i++)
         if (!strcmp(list->v[i].name, name))
@@ -233,12 +233,12 @@ static model_array *find(const model_arrays *list, const char *name)
 
 model_array *model_find(const model *m, const char *name)
 {
-    return find(&m->arrays, name);
+    return model_arrays_find(&m->arrays, name);
 }
 
 model_array *frame_find(const frame *f, const char *name)
 {
-    return find(&f->arrays, name);
+    return model_arrays_find(&f->arrays, name);
 }
 
 model_array *model_need(const model *m, const char *name, err *e)
@@ -254,7 +254,7 @@ model_array *model_need(const model *m, const char *name, err *e)
 
 model_array *model_arrays_take(model_arrays *list, model_array *a, err *e)
 {
-    model_array *at = find(list, a->name);
+    model_array *at = model_arrays_find(list, a->name);
     if (at) {
         model_array_free(at);
     } else {
@@ -314,7 +314,7 @@ static model_array *add(model_arrays *list, const model *m, const char *name, mo
 
 static model_array *add_known(model_arrays *list, const model *m, const char *name, int in_frame, err *e)
 {
-    char unit[2 * CHECK_NAME_MOST], axis[2 * CHECK_NAME_MOST];
+    char unit[MODEL_NAME], axis[MODEL_NAME];
     const known *k = known_find(name);
     if (!k || (k->flags & KNOWN_FRAME) != in_frame) {
         err_set(e, NULL, 0, "array %s is not known %s", name, in_frame ? "in frames" : "in a model's body");
@@ -394,7 +394,7 @@ const char *model_surface(const model *m, int i, char *name, size_t size)
     for (int k = 0; k < m->axis_count; k++) {
         const char *axis = m->axes[k].name;
         size_t n = strlen(axis);
-        if (n <= tail || strcmp(axis + n - tail, end) || i--)
+        if (n <= tail || strcmp(axis + n - tail, end) || known_users(axis) || i--)
             continue;
         snprintf(name, size, "%.*s", (int)(n - tail), axis);
         return name;

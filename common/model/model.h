@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { MODEL_NAME = 256 }; /* bytes that hold any name, key or unit, its NUL included */
+
 typedef enum model_type { MODEL_F32, MODEL_F64, MODEL_I32, MODEL_I64, MODEL_U8, MODEL_STR, MODEL_TYPES } model_type;
 
 typedef struct model_array {
@@ -103,6 +105,9 @@ model_array *frame_add(frame *f, const model *m, const char *name, err *e);
 model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
                           int32_t columns, err *e);
 
+/* The array of that name in a list, or NULL. */
+model_array *model_arrays_find(const model_arrays *list, const char *name);
+
 /* For readers. Moves *a into the list, in the place of an array of its name where there is one; *a is then empty. */
 model_array *model_arrays_take(model_arrays *list, model_array *a, err *e);
 int model_block_take(model *m, model_block *b, err *e);
@@ -117,7 +122,8 @@ void model_remove(model *m, const char *name);
  * points to it, noting those that the known table lacks. */
 void model_axis_drop(model *m, const char *axis, notes *warnings);
 
-/* Surfaces carried: the names S of axes "S/vertex". Returns the name of the i-th or NULL past the last. */
+/* Surfaces carried: the names S of axes "S/vertex", but for the user's ("x-"). Returns the name of the i-th or NULL past the
+ * last. */
 const char *model_surface(const model *m, int i, char *name, size_t size);
 
 size_t model_type_size(model_type t);

@@ -16,7 +16,7 @@ typedef struct export_shape {
     int64_t points, cells, corners;
     const double *rest;   /* points x 3, m */
     double *displacement; /* points x 3, m; NULL at rest, and where the frame has none for these points */
-    char point_axis[300], cell_axis[300];
+    char point_axis[MODEL_NAME], cell_axis[MODEL_NAME];
 } export_shape;
 
 /* surface NULL: the elements. -1 with e filled where the model lacks what it takes. */

@@ -22,12 +22,6 @@ enum {
     VTK_HEXAHEDRON = 12
 };
 
-#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
-#define BYTE_ORDER_NAME "LittleEndian"
-#else
-#define BYTE_ORDER_NAME "BigEndian"
-#endif
-
 static const char *const vtk_types[MODEL_TYPES] = {"Float32", "Float64", "Int32", "Int64", "UInt8", "String"};
 
 typedef struct writer {
@@ -146,15 +140,12 @@ static int put_strings(writer *w, const model_array *a, err *e)
 static int put_field_data(writer *w, err *e)
 {
     static const char *const names[] = {"volume.name", "material.name", "anchor.name"};
-    char group[300];
-    snprintf(group, sizeof group, "%.280s/group.name", w->x->is_surface ? w->x->s.name : "");
     out_text(w->xml, "<FieldData>\n");
     if (w->x->f && put_data(w, "TimeValue", MODEL_F64, 1, 1, &w->x->f->time, sizeof w->x->f->time, e))
         return -1;
-    for (int i = 0; i < 4; i++) {
-        if (w->x->is_surface != (i == 3))
-            continue;
-        const model_array *a = model_find(w->x->m, i == 3 ? group : names[i]);
+    for (int i = 0; i < (w->x->is_surface ? 1 : 3); i++) {
+        const model_array *a =
+            w->x->is_surface ? surface_part(w->x->m, w->x->s.name, "group.name") : model_find(w->x->m, names[i]);
         if (a && a->rows && put_strings(w, a, e))
             return -1;
     }
@@ -279,10 +270,9 @@ int export_vtu(const export_shape *x, bool deformed, out *to, err *e)
     w.data = w.xml ? out_memory(e) : NULL;
     int bad = w.data ? put_grid(&w, deformed, e) : -1;
     if (!bad) {
-        out_text(
-            to,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" BYTE_ORDER_NAME
-            "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n");
+        /* binary.c is why: no other machine compiles this. */
+        out_text(to, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+                     "byte_order=\"LittleEndian\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n");
         copy(w.xml, to);
         out_text(to, "<AppendedData encoding=\"raw\">\n_");
         copy(w.data, to);

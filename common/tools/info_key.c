@@ -2,7 +2,6 @@
 
 #include "base/near.h"
 #include "base/num.h"
-#include "model/check.h"
 #include "model/known.h"
 #include "tools/info_stats.h"
 
@@ -24,7 +23,7 @@ int64_t info_volume_count(const model *m, int64_t v)
 /* The row of the table over `axis` that has the name, or -1. A muscle has its volume's name. */
 static int64_t named_row(const model *m, const char *axis, const char *name)
 {
-    char names[CHECK_NAME_MOST + 16];
+    char names[MODEL_NAME + 16];
     snprintf(names, sizeof names, "%s.name", axis);
     const model_array *a = model_find(m, names), *of = NULL;
     if (!a && !strcmp(axis, "muscle")) {
@@ -56,7 +55,7 @@ static void place_of(const model_array *position, const model_array *node, int64
 /* The row of the axis that rests nearest to `to`, the lower one of two as near; -1 where the axis has no places. */
 static int64_t nearest_row(const model *m, const char *axis, const double *to)
 {
-    char name[CHECK_NAME_MOST + 16];
+    char name[MODEL_NAME + 16];
     bool elements = !strcmp(axis, "element");
     snprintf(name, sizeof name, "%s.position", elements ? "node" : axis);
     const model_array *position = model_find(m, name), *node = elements ? model_find(m, "element.node") : NULL;
@@ -199,7 +198,7 @@ static int put_array(const query *q, err *e)
 /* Takes the longest name of an array that the key is or begins with; false: none. */
 static bool find_array(query *q)
 {
-    char name[CHECK_NAME_MOST + 1];
+    char name[MODEL_NAME];
     for (size_t n = strlen(q->key); n > 0; n--) {
         if ((q->key[n] && q->key[n] != '.') || n >= sizeof name)
             continue;
@@ -215,7 +214,7 @@ static bool find_array(query *q)
 /* An array's key put right, where as many parts of the key as the array's name has look like that name. */
 static void note_array(notes *list, const char *name, const char *key)
 {
-    char head[CHECK_NAME_MOST + 1];
+    char head[MODEL_NAME];
     const char *end = key + strcspn(key, ".");
     for (const char *dot = strchr(name, '.'); dot && *end; dot = strchr(dot + 1, '.'))
         end += 1 + strcspn(end + 1, ".");
@@ -255,7 +254,7 @@ static void note_arrays(const source *s, notes *list)
 /* The longest known array that the key could mean, for saying who makes it. */
 static const known *known_of(const char *key)
 {
-    char name[CHECK_NAME_MOST + 1];
+    char name[MODEL_NAME];
     for (size_t n = strlen(key); n > 0; n--) {
         if ((key[n] && key[n] != '.') || n >= sizeof name)
             continue;

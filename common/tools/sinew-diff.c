@@ -1,7 +1,6 @@
 /* sinew-diff: where two models differ. Streaming: two bodies and one frame of each are in memory at a time. */
 #include "base/num.h"
 #include "base/tool.h"
-#include "model/check.h"
 #include "model/source.h"
 
 #include <inttypes.h>
@@ -35,7 +34,7 @@ enum { SAME = 0, DIFFERENT = 1, TROUBLE = 2, RULES = 64 };
 
 /* "ARRAY=NUMBER" or "NUMBER" (name NULL: every array of floats), or a name of --only. */
 typedef struct rule {
-    char name[CHECK_NAME_MOST + 1];
+    char name[MODEL_NAME];
     double value;
     bool seen; /* an array of this name was met */
 } rule;
@@ -67,7 +66,7 @@ static int usage(err *e)
 
 static int add_rule(rules *r, const char *name, size_t length, double value, err *e)
 {
-    if (r->count == RULES || length > CHECK_NAME_MOST) {
+    if (r->count == RULES || length >= MODEL_NAME) {
         err_set(e, NULL, 0, "too many arrays or too long a name; expected at most %d", RULES);
         return usage(e);
     }
@@ -294,21 +293,13 @@ static int compare_array(diff *d, const model_array *a, const model_array *b, er
     return 0;
 }
 
-static const model_array *find(const model_arrays *list, const char *name)
-{
-    for (int i = 0; i < list->count; i++)
-        if (!strcmp(list->v[i].name, name))
-            return &list->v[i];
-    return NULL;
-}
-
 static int compare_arrays(diff *d, const model_arrays *a, const model_arrays *b, err *e)
 {
     for (int i = 0; i < a->count; i++)
-        if (compare_array(d, &a->v[i], find(b, a->v[i].name), e))
+        if (compare_array(d, &a->v[i], model_arrays_find(b, a->v[i].name), e))
             return -1;
     for (int i = 0; i < b->count; i++)
-        if (!find(a, b->v[i].name) && compare_array(d, NULL, &b->v[i], e))
+        if (!model_arrays_find(a, b->v[i].name) && compare_array(d, NULL, &b->v[i], e))
             return -1;
     return 0;
 }

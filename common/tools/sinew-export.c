@@ -95,7 +95,7 @@ static int check_options(job *j, err *e)
     if (o->format == VTU && o->common.gzip)
         return usage(e, "-z is for inp and obj; vtu is compressed as it is");
     if (o->unit && !num_unit_of(o->unit))
-        return usage(e, "--unit: expected um, mm, cm, m or in");
+        return usage(e, "--unit: expected " NUM_UNITS);
     if (read_frame_option(j, e))
         return -1;
     if (j->which == REST && o->deformed)
@@ -223,7 +223,7 @@ static int choose_unit(job *j, err *e)
 {
     const char *name = j->o->unit ? j->o->unit : model_meta_of(&j->s.body, "source.unit");
     j->unit = num_unit_of(name ? name : "m");
-    return j->unit ? 0 : err_set(e, source_name(&j->s), 0, "source.unit '%.40s': expected um, mm, cm, m or in", name);
+    return j->unit ? 0 : err_set(e, source_name(&j->s), 0, "source.unit '%.40s': expected " NUM_UNITS, name);
 }
 
 static int work(job *j, out *to, err *e)

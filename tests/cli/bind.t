@@ -33,6 +33,13 @@ sinew bind --text --threads 1 "$T/dots.obj" <"$T/model" >"$T/1"
 sinew bind --text --threads 5 "$T/dots.obj" <"$T/model" >"$T/2"
 check "the same bytes for any number of threads" cmp "$T/1" "$T/2"
 
+# Names that begin x- are the user's, in the model and for files.
+sed 's/^end$/axis x-my\/vertex 1\narray x-my\/vertex.position f32 K x-my\/vertex 1\n7\nend/' "$T/model" >"$T/mine"
+cp "$T/dots.obj" "$T/x-wing.obj"
+check "a user's array may be called as it likes" sinew bind --text -o "$T/both" "$T/x-wing.obj" <"$T/mine"
+is "$(array "$T/both" x-my/vertex.position):$(grep -c '^array x_wing/' "$T/both")" "7 :7" \
+    "it passes through, and no surface is called so"
+
 # Which surface.
 check "without an OBJ, every surface carried" sinew bind --text -o "$T/again" <"$T/bound"
 is "$(cat "$T/stderr")" "bind: surface dots was bound before; it is bound anew" "and says what was bound before"
@@ -103,6 +110,7 @@ fails 1 "tetrahedra" 'of tetrahedra; expected hexahedra' sinew bind "$T/dots.obj
 # The command line.
 fails 2 "an OBJ on stdin" "'-': the model comes on standard input" sinew bind - <"$T/model"
 fails 2 "two OBJs" "extra operand" sinew bind "$T/dots.obj" "$T/cm.obj" <"$T/model"
+fails 2 "a name that is the user's" "not x- first" sinew bind --name x-a "$T/dots.obj" <"$T/model"
 fails 2 "a name with a slash" "expected at most 200 letters" sinew bind --name a/b "$T/dots.obj" <"$T/model"
 fails 2 "an unknown option" "no option --colour" sinew bind --colour x "$T/dots.obj" <"$T/model"
 fails 1 "a bad surface leaves no file" "no vertices" sinew bind -o "$T/none" /dev/null <"$T/model"

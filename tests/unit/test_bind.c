@@ -192,6 +192,16 @@ static void test_linear(double reach, double tolerance)
     model_free(&m);
 }
 
+/* In a tetrahedron the weights are the shares. */
+static void test_tetrahedron(void)
+{
+    static const int32_t node[] = {3, 1, 0, 2};
+    static const double weight[] = {.5, .25, .125, .125}, u[] = {8, 0, 0, 0, 8, 0, 0, 0, 8, 8, 8, 16};
+    double d[3];
+    weights_displacement(node, 4, weight, u, d);
+    ok(d[0] == 5 && d[1] == 6 && d[2] == 9, "a place in a tetrahedron: %g %g %g", d[0], d[1], d[2]);
+}
+
 /* One cube that a rotation, a stretch and a shift move: normals follow. */
 static void test_normals(void)
 {
@@ -271,6 +281,7 @@ int main(void)
     test_linear(0, 1e-12);
     test_linear(3, 1e-11);
     test_linear(1000, 1e-6);
+    test_tetrahedron();
     test_normals();
     test_numbered();
     return done_testing();

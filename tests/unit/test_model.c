@@ -170,10 +170,11 @@ static void test_surfaces(void)
     model_axis_add(&m, "a/vertex", 3, &e);
     model_axis_add(&m, "/vertex", 3, &e);
     model_axis_add(&m, "a/face", 3, &e);
+    model_axis_add(&m, "x-b/vertex", 3, &e);
     model_axis_add(&m, "b/c/vertex", 3, &e);
     ok(model_surface(&m, 0, name, sizeof name) && !strcmp(name, "a"), "the first surface");
     ok(model_surface(&m, 1, name, sizeof name) && !strcmp(name, "b/c"), "the second, with a slash in its name");
-    ok(!model_surface(&m, 2, name, sizeof name), "no third");
+    ok(!model_surface(&m, 2, name, sizeof name), "no third: one that begins x- is the user's");
     model_free(&m);
 }
 
@@ -198,12 +199,12 @@ static void test_known(void)
 
 static void test_names(void)
 {
-    char name[CHECK_NAME_MOST + 2];
+    char name[MODEL_NAME + 1];
     memset(name, 'a', sizeof name);
-    name[CHECK_NAME_MOST] = 0;
+    name[MODEL_NAME - 1] = 0;
     ok(check_name(name) && check_name("a/b.c_D-9"), "names");
-    name[CHECK_NAME_MOST] = 'a';
-    name[CHECK_NAME_MOST + 1] = 0;
+    name[MODEL_NAME - 1] = 'a';
+    name[MODEL_NAME] = 0;
     ok(!check_name(name) && !check_name("") && !check_name("a b") && !check_name("a\"") && !check_name("\xc3\xa9"),
        "no names");
     ok(check_unit("kg/m3") && check_unit("1") && check_unit("@a/b") && check_unit("%"), "units");

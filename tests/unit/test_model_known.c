@@ -65,6 +65,8 @@ int main(int argc, char **argv)
     in *s = in_open("man/sinew-model.5", &e);
     ok(s && in_all(s, &page, &e) > 0, "the manual page is there %s", e.text);
     ok(page_has(page, (const char *)out_bytes(o, &size)), "its table of arrays is model/known.h's");
+    ok(known_find("s/face.group") && !known_find("x-my/face.group") && !known_find("x-node.position"),
+       "nothing is known of the user's names, whatever follows x-");
     free(page);
     in_close(s);
     out_discard(o);

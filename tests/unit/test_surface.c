@@ -17,6 +17,8 @@ static void test_names(void)
         {"v.2-b_3.obj", "v.2-b_3"},
         {".obj", ".obj"},
         {"a.gz", "a"},
+        {"x-wing.obj", "x_wing"},
+        {"X-wing.obj", "X-wing"},
     };
     char name[64];
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -63,10 +65,20 @@ static void test_carried(void)
     ok(surface_is(&s, &o, .001, &e) && strstr(e.text, "2 vertices, but the model's surface s has 3"), "%s", e.text);
     o.vertices = 3;
     e = (err){0};
-    model_find(&m, "s/face.start")->i64[2] = 1;
-    ok(surface_of(&m, "s", &s, &e) && strstr(e.text, "face 1 starts after the next"), "%s", e.text);
-    e = (err){0};
     ok(surface_of(&m, "t", &s, &e) && strstr(e.text, "t/vertex.position"), "none of that name: %s", e.text);
+    char longest[MODEL_NAME + 1];
+    memset(longest, 'a', MODEL_NAME);
+    longest[MODEL_NAME] = 0;
+    e = (err){0};
+    ok(surface_add(&m, longest, &o, .001, &e) && strstr(e.text, "too long"), "a name too long for its arrays: %s",
+       e.text);
+    ok(!surface_there(&m, longest) && !surface_part(&m, longest, "face.start"), "is not there");
+    ok(surface_there(&m, "s") && surface_part(&m, "s", "face.start")->rows == 3, "what is there is found");
+    e = (err){0};
+    model_axis_add(&m, "x-s/vertex", 1, &e);
+    model_add_as(&m, "x-s/vertex.position", MODEL_U8, "1", "x-s/vertex", 1, &e);
+    ok(!surface_there(&m, "x-s") && surface_of(&m, "x-s", &s, &e) && strstr(e.text, "x-s/vertex.position"),
+       "the user's arrays are no surface: %s", e.text);
     obj_free(&o);
     model_free(&m);
 }
