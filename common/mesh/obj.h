@@ -32,7 +32,8 @@ typedef struct obj {
 } obj;
 
 /* Reads all of s. Every index form, negative indices, `g`, `o`, continuation lines. A face is in the groups of the
- * last `g`; where no `g` was seen since the last `o`, in the object (its blanks as '_'); else in "default".
+ * last `g`; where no `g` was seen since the last `o`, in the object (its blanks as '_'); else in "default". A word
+ * that begins with '#' begins a comment, in every statement.
  * Errors name the line. */
 int obj_read(obj *o, in *s, err *e);
 void obj_free(obj *o);

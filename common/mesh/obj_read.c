@@ -3,6 +3,7 @@
 #include "base/num.h"
 #include "mesh/names.h"
 #include "mesh/obj.h"
+#include "mesh/obj_words.h"
 #include "model/check.h"
 
 #include <limits.h>
@@ -23,9 +24,8 @@ typedef struct forwards {
 
 typedef struct reader {
     obj *o;
-    const char *p, *end;    /* the next byte of the text, and past its last */
-    const char *line_start; /* of the logical line */
-    int64_t line;           /* number of the line that p is on */
+    obj_words w;
+    const char *keyword; /* of the statement */
     struct {
         int64_t position, v, normal, vn, face_start, face_group, corner_vertex, corner_normal;
     } room;
@@ -36,95 +36,7 @@ typedef struct reader {
     char *object; /* the last object's name, or NULL */
     char *name;   /* scratch for names */
     int64_t name_room;
-    err *e;
 } reader;
-
-/* Scanning */
-
-static inline bool line_ends(const char *p, const char *end)
-{
-    return p >= end || *p == '\n' || (*p == '\r' && (p + 1 == end || p[1] == '\n'));
-}
-
-/* The length of a continuation (backslash, line end) at p, or 0. The text ends with a NUL. */
-static inline int continues(const char *p)
-{
-    if (*p != '\\')
-        return 0;
-    return p[1] == '\n' ? 2 : p[1] == '\r' && p[2] == '\n' ? 3 : 0;
-}
-
-static inline bool is_blank(char c)
-{
-    return c == ' ' || c == '\t';
-}
-
-/* Whether a word ends at p. */
-static inline bool is_break(const reader *r, const char *p)
-{
-    return is_blank(*p) || line_ends(p, r->end) || continues(p);
-}
-
-/* Steps over blanks and continuations; true where the line goes on. */
-static bool skip_blanks(reader *r)
-{
-    for (;;) {
-        if (line_ends(r->p, r->end))
-            return false;
-        int n = continues(r->p);
-        r->line += n > 0;
-        if (!n && !is_blank(*r->p))
-            return true;
-        r->p += n ? n : 1;
-    }
-}
-
-/* The same; a comment ends the line too. */
-static bool skip_to_word(reader *r)
-{
-    return skip_blanks(r) && *r->p != '#';
-}
-
-static const char *word_end(const reader *r)
-{
-    const char *p = r->p;
-    while (!is_break(r, p))
-        p++;
-    return p;
-}
-
-/* The LF that ends the line, or the end of the text. */
-static const char *line_end(const char *p, const char *end)
-{
-    const char *lf = memchr(p, '\n', (size_t)(end - p));
-    return lf ? lf : end;
-}
-
-/* Goes to the end of the logical line. */
-static void skip_line(reader *r)
-{
-    for (;;) {
-        r->p = line_end(r->p, r->end);
-        const char *last = r->p - 1;
-        last -= *last == '\r' && last > r->line_start;
-        if (r->p == r->end || *last != '\\')
-            return;
-        r->p++;
-        r->line++;
-    }
-}
-
-static int bad(reader *r, const char *what, const char *expected)
-{
-    char word[40];
-    size_t n = (size_t)(word_end(r) - r->p), most = sizeof word - 1;
-    memcpy(word, r->p, n < most ? n : most);
-    word[n < most ? n : most] = 0;
-    for (char *c = word; *c; c++)
-        if ((unsigned char)*c < ' ' || (unsigned char)*c >= 127)
-            *c = '?';
-    return err_set(r->e, r->o->name, r->line, "%s '%s%s'; expected %s", what, word, n > most ? "..." : "", expected);
-}
 
 /* Numbers */
 
@@ -132,13 +44,13 @@ static int bad(reader *r, const char *what, const char *expected)
 static int read_numbers(reader *r, double *value, int most, const char *expected)
 {
     int n = 0;
-    while (skip_to_word(r)) {
+    while (obj_next_word(&r->w)) {
         const char *stop;
         if (n == most)
-            return bad(r, "too many numbers, from", expected);
-        if (num_scan(r->p, r->end, &stop, &value[n]) || !is_break(r, stop))
-            return bad(r, "not a finite number:", expected);
-        r->p = stop;
+            return obj_bad_word(&r->w, "too many numbers, from", expected);
+        if (num_scan(r->w.p, r->w.end, &stop, &value[n]) || !obj_word_ends(&r->w, stop))
+            return obj_bad_word(&r->w, "not a finite number:", expected);
+        r->w.p = stop;
         n++;
     }
     return n;
@@ -150,16 +62,16 @@ static int store_row(reader *r, const double *value, double **row, int64_t *row_
                      int64_t *line_room, int64_t *count)
 {
     if (*count >= INT32_MAX)
-        return err_set(r->e, r->o->name, r->line, "more than %d vertices or normals; expected a smaller mesh",
+        return err_set(r->w.e, r->w.name, r->w.line, "more than %d vertices or normals; expected a smaller mesh",
                        INT32_MAX);
-    if (mem_grow(row, row_room, 3 * (*count + 1), sizeof **row, "an OBJ's coordinates", r->e) ||
-        mem_grow(line, line_room, *count + 1, sizeof **line, "an OBJ's lines", r->e))
+    if (mem_grow(row, row_room, 3 * (*count + 1), sizeof **row, "an OBJ's coordinates", r->w.e) ||
+        mem_grow(line, line_room, *count + 1, sizeof **line, "an OBJ's lines", r->w.e))
         return -1;
     memcpy(*row + 3 * *count, value, 3 * sizeof *value);
-    const char *to = r->p;
-    while (!line_ends(to, r->end))
+    const char *to = r->w.p;
+    while (!obj_line_ends(to, r->w.end))
         to++;
-    (*line)[(*count)++] = (obj_line){r->line_start - r->o->text, to - r->o->text};
+    (*line)[(*count)++] = (obj_line){r->w.line_start - r->o->text, to - r->o->text};
     return 0;
 }
 
@@ -171,7 +83,7 @@ static int read_vertex(reader *r)
     if (n < 0)
         return -1;
     if (n < 3 || n == 5)
-        return err_set(r->e, r->o->name, r->line, "a vertex of %d numbers; expected %s", n, expected);
+        return err_set(r->w.e, r->w.name, r->w.line, "a vertex of %d numbers; expected %s", n, expected);
     obj *o = r->o;
     return store_row(r, value, &o->position, &r->room.position, &o->v, &r->room.v, &o->vertices);
 }
@@ -183,7 +95,7 @@ static int read_normal(reader *r)
     if (n < 0)
         return -1;
     if (n < 3)
-        return err_set(r->e, r->o->name, r->line, "a normal of %d numbers; expected vn x y z", n);
+        return err_set(r->w.e, r->w.name, r->w.line, "a normal of %d numbers; expected vn x y z", n);
     obj *o = r->o;
     return store_row(r, value, &o->normal, &r->room.normal, &o->vn, &r->room.vn, &o->normals);
 }
@@ -193,7 +105,7 @@ static int read_normal(reader *r)
 /* Makes the group of this name current, adding it where it is new. */
 static int enter_group(reader *r, const char *name)
 {
-    r->current = names_number(&r->groups, name, r->e);
+    r->current = names_number(&r->groups, name, r->w.e);
     r->grouped = true;
     return r->current < 0 ? -1 : 0;
 }
@@ -211,19 +123,19 @@ static bool is_plain(const char *word)
 static int64_t read_names(reader *r, char joint)
 {
     int64_t n = 0;
-    while (skip_blanks(r)) {
-        const char *stop = word_end(r);
-        int64_t length = stop - r->p;
-        if (mem_grow(&r->name, &r->name_room, n + length + 2, 1, "a group's name", r->e))
+    while (obj_next_word(&r->w)) {
+        const char *stop = obj_word_end(&r->w);
+        int64_t length = stop - r->w.p;
+        if (mem_grow(&r->name, &r->name_room, n + length + 2, 1, "a group's name", r->w.e))
             return -1;
         if (n)
             r->name[n++] = joint;
-        memcpy(r->name + n, r->p, (size_t)length);
+        memcpy(r->name + n, r->w.p, (size_t)length);
         r->name[n + length] = 0;
         if (!check_utf8(r->name + n) || !is_plain(r->name + n))
-            return bad(r, "not a name in UTF-8:", "printable UTF-8");
+            return obj_bad_word(&r->w, "not a name in UTF-8:", "printable UTF-8");
         n += length;
-        r->p = stop;
+        r->w.p = stop;
     }
     return n;
 }
@@ -243,7 +155,7 @@ static int read_object(reader *r)
     if (n < 0)
         return -1;
     free(r->object);
-    r->object = n ? mem_text(r->name, r->e) : NULL;
+    r->object = n ? mem_text(r->name, r->w.e) : NULL;
     r->grouped = false;
     return n && !r->object ? -1 : 0;
 }
@@ -255,8 +167,8 @@ static int begin_face(reader *r)
     obj *o = r->o;
     if (!r->grouped && enter_group(r, r->object ? r->object : "default"))
         return -1;
-    if (mem_grow(&o->face_start, &r->room.face_start, o->faces + 2, sizeof *o->face_start, "an OBJ's faces", r->e) ||
-        mem_grow(&o->face_group, &r->room.face_group, o->faces + 1, sizeof *o->face_group, "an OBJ's faces", r->e))
+    if (mem_grow(&o->face_start, &r->room.face_start, o->faces + 2, sizeof *o->face_start, "an OBJ's faces", r->w.e) ||
+        mem_grow(&o->face_group, &r->room.face_group, o->faces + 1, sizeof *o->face_group, "an OBJ's faces", r->w.e))
         return -1;
     o->face_start[o->faces] = o->corners;
     o->face_group[o->faces++] = r->current;
@@ -267,8 +179,9 @@ static int add_corner(reader *r, const int32_t *corner)
 {
     obj *o = r->o;
     if (mem_grow(&o->corner_vertex, &r->room.corner_vertex, o->corners + 1, sizeof(int32_t), "an OBJ's corners",
-                 r->e) ||
-        mem_grow(&o->corner_normal, &r->room.corner_normal, o->corners + 1, sizeof(int32_t), "an OBJ's corners", r->e))
+                 r->w.e) ||
+        mem_grow(&o->corner_normal, &r->room.corner_normal, o->corners + 1, sizeof(int32_t), "an OBJ's corners",
+                 r->w.e))
         return -1;
     o->corner_vertex[o->corners] = corner[0];
     o->corner_normal[o->corners++] = corner[1];
@@ -300,12 +213,12 @@ static int64_t scan_index(const char **p)
 static int resolve(reader *r, int64_t index, int64_t count, forwards *ahead, const char *what, int32_t *to)
 {
     if (-index > count)
-        return err_set(r->e, r->o->name, r->line, "%s %lld, but only %lld came before; expected %s", what,
+        return err_set(r->w.e, r->w.name, r->w.line, "%s %lld, but only %lld came before; expected %s", what,
                        (long long)index, (long long)count, forms);
     if (index > count && index > ahead->furthest) {
-        if (mem_grow(&ahead->v, &ahead->capacity, ahead->count + 1, sizeof *ahead->v, "an OBJ's indices", r->e))
+        if (mem_grow(&ahead->v, &ahead->capacity, ahead->count + 1, sizeof *ahead->v, "an OBJ's indices", r->w.e))
             return -1;
-        ahead->v[ahead->count++] = (forward){index, r->line};
+        ahead->v[ahead->count++] = (forward){index, r->w.line};
         ahead->furthest = index;
     }
     *to = (int32_t)(index < 0 ? count + index : index - 1);
@@ -318,7 +231,7 @@ enum { WITH_TEXTURE = 1, WITH_NORMAL = 2 };
  * only their syntax is checked. */
 static int read_corner(reader *r, int32_t *corner, int *form)
 {
-    const char *p = r->p;
+    const char *p = r->w.p;
     int64_t vertex = scan_index(&p), texture = 1, normal = 1;
     *form = 0;
     corner[1] = -1;
@@ -334,13 +247,13 @@ static int read_corner(reader *r, int32_t *corner, int *form)
         normal = scan_index(&p);
         *form |= WITH_NORMAL;
     }
-    if (!vertex || !texture || !normal || !is_break(r, p))
-        return bad(r, "not a corner:", forms);
+    if (!vertex || !texture || !normal || !obj_word_ends(&r->w, p))
+        return obj_bad_word(&r->w, "not a corner:", forms);
     if (resolve(r, vertex, r->o->vertices, &r->vertex, "vertex", &corner[0]))
         return -1;
     if ((*form & WITH_NORMAL) && resolve(r, normal, r->o->normals, &r->normal, "normal", &corner[1]))
         return -1;
-    r->p = p;
+    r->w.p = p;
     return 0;
 }
 
@@ -351,20 +264,20 @@ static int read_face(reader *r)
     if (begin_face(r))
         return -1;
     int64_t start = r->o->corners;
-    while (skip_to_word(r)) {
-        const char *word = r->p;
+    while (obj_next_word(&r->w)) {
+        const char *word = r->w.p;
         if (read_corner(r, corner, &form) || add_corner(r, corner))
             return -1;
         if (r->o->corners == start + 1)
             first = form;
         if (form != first) {
-            r->p = word;
-            return bad(r, "a corner unlike the face's others:", "one form in a face");
+            r->w.p = word;
+            return obj_bad_word(&r->w, "a corner unlike the face's others:", "one form in a face");
         }
     }
     int64_t n = r->o->corners - start;
     if (n < 3)
-        return err_set(r->e, r->o->name, r->line, "a face of %lld corners; expected 3 or more", (long long)n);
+        return err_set(r->w.e, r->w.name, r->w.line, "a face of %lld corners; expected 3 or more", (long long)n);
     return 0;
 }
 
@@ -372,7 +285,7 @@ static int read_line(reader *r)
 {
     int32_t corner[2] = {0}, before[2] = {0};
     int form, n = 0;
-    for (; skip_to_word(r); n = n < 2 ? n + 1 : 2) {
+    for (; obj_next_word(&r->w); n = n < 2 ? n + 1 : 2) {
         if (read_corner(r, corner, &form))
             return -1;
         if (n && (begin_face(r) || add_corner(r, before) || add_corner(r, corner)))
@@ -380,7 +293,7 @@ static int read_line(reader *r)
         memcpy(before, corner, sizeof before);
     }
     if (n < 2)
-        return err_set(r->e, r->o->name, r->line, "a line of %d vertices; expected 2 or more", n);
+        return err_set(r->w.e, r->w.name, r->w.line, "a line of %d vertices; expected 2 or more", n);
     return 0;
 }
 
@@ -388,11 +301,11 @@ static int read_point(reader *r)
 {
     int32_t corner[2] = {0};
     int form, n = 0;
-    for (; skip_to_word(r); n = 1)
+    for (; obj_next_word(&r->w); n = 1)
         if (read_corner(r, corner, &form) || begin_face(r) || add_corner(r, corner))
             return -1;
     if (!n)
-        return err_set(r->e, r->o->name, r->line, "a point statement without a vertex; expected p and vertices");
+        return err_set(r->w.e, r->w.name, r->w.line, "a point statement without a vertex; expected p and vertices");
     return 0;
 }
 
@@ -400,22 +313,20 @@ static int read_point(reader *r)
 
 static int pass_over(reader *r)
 {
-    skip_line(r);
+    obj_skip_words(&r->w);
     return 0;
 }
 
 static int refuse_free_form(reader *r)
 {
-    r->p = r->line_start;
-    skip_blanks(r);
-    return bad(r, "free-form geometry:", "polygons (convert curves and surfaces to a mesh first)");
+    r->w.p = r->keyword;
+    return obj_bad_word(&r->w, "free-form geometry:", "polygons (convert curves and surfaces to a mesh first)");
 }
 
 static int refuse_call(reader *r)
 {
-    r->p = r->line_start;
-    skip_blanks(r);
-    return bad(r, "a statement that runs other files:", "one OBJ that holds all");
+    r->w.p = r->keyword;
+    return obj_bad_word(&r->w, "a statement that runs other files:", "one OBJ that holds all");
 }
 
 typedef struct statement {
@@ -470,22 +381,23 @@ static void suggest(const char *word, char *to, size_t size)
 static int refuse_unknown(reader *r)
 {
     char word[32], expected[64] = "a statement of an OBJ (v, vn, f, g, ...) or a comment (#)";
-    size_t n = (size_t)(word_end(r) - r->p);
+    size_t n = (size_t)(obj_word_end(&r->w) - r->w.p);
     if (n < sizeof word) {
-        memcpy(word, r->p, n);
+        memcpy(word, r->w.p, n);
         word[n] = 0;
         suggest(word, expected, sizeof expected);
     }
-    return bad(r, "unknown statement", expected);
+    return obj_bad_word(&r->w, "unknown statement", expected);
 }
 
 static int read_statement(reader *r)
 {
-    const char *stop = word_end(r);
-    size_t n = (size_t)(stop - r->p);
+    const char *stop = obj_word_end(&r->w);
+    size_t n = (size_t)(stop - r->w.p);
     for (int i = 0; i < STATEMENTS; i++)
-        if (is_among(statements[i].words, r->p, n)) {
-            r->p = stop;
+        if (is_among(statements[i].words, r->w.p, n)) {
+            r->keyword = r->w.p;
+            r->w.p = stop;
             return statements[i].read(r);
         }
     return refuse_unknown(r);
@@ -493,15 +405,9 @@ static int read_statement(reader *r)
 
 static int read_lines(reader *r)
 {
-    while (r->p < r->end) {
-        r->line_start = r->p;
-        if (skip_to_word(r) && read_statement(r))
+    for (; r->w.p < r->w.end; obj_next_line(&r->w))
+        if (obj_next_word(&r->w) && read_statement(r))
             return -1;
-        /* A comment does not continue: its last byte may be a path's backslash. */
-        r->p = line_end(r->p, r->end);
-        r->p += r->p < r->end;
-        r->line++;
-    }
     return 0;
 }
 
@@ -510,11 +416,11 @@ static int check_bytes(reader *r)
 {
     const char *text = r->o->text, *nul = memchr(text, 0, (size_t)r->o->size);
     if (nul)
-        return err_set(r->e, r->o->name, obj_line_number(r->o, nul - text),
+        return err_set(r->w.e, r->w.name, obj_line_number(r->o, nul - text),
                        "a NUL byte; expected an OBJ, which is text");
     for (const char *cr = strchr(text, '\r'); cr; cr = strchr(cr + 1, '\r'))
         if (cr[1] && cr[1] != '\n')
-            return err_set(r->e, r->o->name, obj_line_number(r->o, cr - text),
+            return err_set(r->w.e, r->w.name, obj_line_number(r->o, cr - text),
                            "a CR within the line; expected lines that end with LF or CR LF");
     return 0;
 }
@@ -523,7 +429,7 @@ static int check_ahead(reader *r, const forwards *ahead, int64_t count, const ch
 {
     for (int64_t i = 0; i < ahead->count; i++)
         if (ahead->v[i].index > count)
-            return err_set(r->e, r->o->name, ahead->v[i].line, "%s %lld, but the file has %lld; expected %s", what,
+            return err_set(r->w.e, r->w.name, ahead->v[i].line, "%s %lld, but the file has %lld; expected %s", what,
                            (long long)ahead->v[i].index, (long long)count, forms);
     return 0;
 }
@@ -533,7 +439,7 @@ static int finish(reader *r)
     obj *o = r->o;
     if (check_ahead(r, &r->vertex, o->vertices, "vertex") || check_ahead(r, &r->normal, o->normals, "normal"))
         return -1;
-    if (mem_grow(&o->face_start, &r->room.face_start, o->faces + 1, sizeof *o->face_start, "an OBJ's faces", r->e))
+    if (mem_grow(&o->face_start, &r->room.face_start, o->faces + 1, sizeof *o->face_start, "an OBJ's faces", r->w.e))
         return -1;
     o->face_start[o->faces] = o->corners;
     o->group = r->groups.name; /* handed over */
@@ -545,16 +451,14 @@ static int finish(reader *r)
 
 int obj_read(obj *o, in *s, err *e)
 {
-    reader r = {.o = o, .line = 1, .e = e};
+    reader r = {.o = o};
     *o = (obj){0};
     o->name = mem_text(in_name(s), e);
     o->size = o->name ? in_all(s, &o->text, e) : -1;
     int code = o->size < 0 ? -1 : 0;
     if (!code) {
-        r.p = o->text;
-        r.end = o->text + o->size;
-        if (!strncmp(r.p, "\xef\xbb\xbf", 3)) /* a byte order mark */
-            r.p += 3;
+        const char *start = o->text + (strncmp(o->text, "\xef\xbb\xbf", 3) ? 0 : 3); /* a byte order mark */
+        r.w = (obj_words){o->name, start, o->text + o->size, start, 1, e};
         code = check_bytes(&r) || read_lines(&r) || finish(&r) ? -1 : 0;
     }
     free(r.vertex.v);

@@ -1,5 +1,7 @@
 #include "mesh/obj.h"
 
+#include "mesh/obj_words.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,17 +31,10 @@ int64_t obj_line_number(const obj *o, int64_t offset)
     return line;
 }
 
-/* The length of a continuation (backslash, line end) at p, or 0. */
-static int64_t continues(const char *p)
-{
-    if (*p != '\\')
-        return 0;
-    return p[1] == '\n' ? 2 : p[1] == '\r' && p[2] == '\n' ? 3 : 0;
-}
-
+/* The length of the blank or continuation at p, or 0. */
 static int64_t blank(const char *p)
 {
-    return *p == ' ' || *p == '\t' ? 1 : continues(p);
+    return obj_is_blank(*p) ? 1 : obj_continues(p);
 }
 
 static const char *skip_blanks(const char *p, const char *end)
@@ -61,7 +56,7 @@ static void write_joined(const char *from, const char *to, out *sink)
 {
     const char *p = from;
     while (p < to) {
-        int64_t n = continues(p);
+        int64_t n = obj_continues(p);
         if (!n) {
             p++;
             continue;

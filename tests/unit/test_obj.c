@@ -127,6 +127,25 @@ static void test_lines(void)
     obj_free(&o);
 }
 
+/* A comment joins no line to the next, whatever it ends with and whatever it follows. */
+static void test_comments(void)
+{
+    obj o =
+        read_good(SQUARE "usemtl skin # C:\\tex\\\nf 1 2 3\nmtllib a b\t#\\\r\nf 2 3 4\nvt 0 0 \\\n# C:\\\nf 3 4 1\n"
+                         "g skin # D:\\\nf 1 2 4\ng # E:\\\nf 1 2 3\no the head # F:\\\nf 1 2 3\n"
+                         "f 1 2 3 # G:\\\nf 4 3 2\n");
+    ok(o.faces == 8, "a comment that ends in a backslash: %d faces", (int)o.faces);
+    ok(corners_are(&o, 0, "0 1 2") && corners_are(&o, 1, "1 2 3") && corners_are(&o, 2, "2 3 0"),
+       "after usemtl, mtllib and a joined line");
+    ok(!strcmp(group_of(&o, 3), "skin") && !strcmp(group_of(&o, 4), "default") && !strcmp(group_of(&o, 5), "the_head"),
+       "after g and o, whose names it is no part of");
+    ok(o.groups == 3 && corners_are(&o, 7, "3 2 1"), "after a face");
+    obj_free(&o);
+    o = read_good(SQUARE "usemtl skin#2\\\nf 1 2 3\nusemtl a\\\n b#\\\n c\nf 1 2 3\ng skin#2 \\\nleft\nf 1 2 3\n");
+    ok(o.faces == 2 && !strcmp(group_of(&o, 1), "skin#2 left"), "a # within a word begins none: lines are joined");
+    obj_free(&o);
+}
+
 static void test_gzip(void)
 {
     unsigned char packed[200];
@@ -184,6 +203,8 @@ static void test_nonsense(void)
         {"ply\nformat ascii 1.0\n", "m.obj:1: unknown statement 'ply'"},
         {"\x89PNG\r\n\x1a\n", "m.obj:1: unknown statement '?PNG'"},
         {"v 1 2 3\ncurv 0 1 1 2\n", "m.obj:2: free-form geometry: 'curv'"},
+        {SQUARE "usemtl a # b\\\nusemtl c \\\n d\nx\n", "m.obj:8: unknown statement 'x'"},
+        {"v 1 2 3\n \\\n curv 0 1 1 2\n", "m.obj:3: free-form geometry: 'curv'"},
         {"v 1 2 3\nend\n", "m.obj:2: free-form geometry: 'end'"},
         {"call other.obj\n", "m.obj:1: a statement that runs other files: 'call'"},
         {"g \xff\xfe\n", "m.obj:1: not a name in UTF-8: '?\?'"},
@@ -234,6 +255,7 @@ int main(void)
     test_forms();
     test_groups();
     test_lines();
+    test_comments();
     test_gzip();
     test_nonsense();
     test_cuts();
