@@ -1,5 +1,6 @@
 #include "base/keyfile.h"
 
+#include "base/chars.h"
 #include "base/near.h"
 
 #include <stdarg.h>
@@ -21,11 +22,6 @@ int keyfile_error(const keyfile *k, err *e, const char *format, ...)
     return err_set(e, k->name, k->line, "%s", text);
 }
 
-static bool blank(char c)
-{
-    return c == ' ' || c == '\t';
-}
-
 /* Editors on some systems begin a file with this mark, and nobody sees it. */
 static char *past_mark(char *text, int64_t line)
 {
@@ -45,7 +41,7 @@ static int split(keyfile *k, char *text, err *e)
 {
     k->count = 0;
     for (char *p = text; *p;) {
-        if (blank(*p)) {
+        if (chars_blank(*p)) {
             *p++ = '\0';
             continue;
         }
@@ -54,7 +50,7 @@ static int split(keyfile *k, char *text, err *e)
         if (k->count == KEYFILE_WORDS)
             return keyfile_error(k, e, "more than %d words on a line", KEYFILE_WORDS);
         k->word[k->count++] = p;
-        while (*p && !blank(*p))
+        while (*p && !chars_blank(*p))
             p++;
     }
     return 0;

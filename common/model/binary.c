@@ -274,6 +274,7 @@ static void put_u64(sink *k, uint64_t v)
     put(k, &v, sizeof v);
 }
 
+/* model_check and its like hold strings to 32 bits of length. */
 static void put_text(sink *k, const char *text)
 {
     size_t n = strlen(text);

@@ -1,5 +1,6 @@
 #include "model/check.h"
 
+#include "base/chars.h"
 #include "model/known.h"
 
 #include <ctype.h>
@@ -35,42 +36,11 @@ bool check_type(const char *type)
     return n == 4 && !type[n];
 }
 
-/* The length of the well-formed UTF-8 character at p (not NUL), or 0. */
-static int utf8_length(const unsigned char *p)
+const char *check_text(const char *text)
 {
-    if (p[0] < 0x80)
-        return 1;
-    int more = p[0] >= 0xc2 && p[0] < 0xe0 ? 1 : p[0] >= 0xe0 && p[0] < 0xf0 ? 2 : p[0] >= 0xf0 && p[0] < 0xf5 ? 3 : 0;
-    for (int i = 1; i <= more; i++)
-        if ((p[i] & 0xc0) != 0x80)
-            return 0;
-    bool overlong = (p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xf0 && p[1] < 0x90);
-    bool surrogate = p[0] == 0xed && p[1] > 0x9f;
-    bool past = p[0] == 0xf4 && p[1] > 0x8f;
-    return more && !overlong && !surrogate && !past ? more + 1 : 0;
-}
-
-bool check_utf8(const char *text)
-{
-    const unsigned char *p = (const unsigned char *)text;
-    while (*p) {
-        int n = utf8_length(p);
-        if (!n)
-            return false;
-        p += n;
-    }
-    return true;
-}
-
-void check_utf8_mend(char *text)
-{
-    unsigned char *p = (unsigned char *)text;
-    while (*p) {
-        int n = utf8_length(p);
-        if (!n)
-            *p = '?';
-        p += n ? n : 1;
-    }
+    if (strlen(text) > UINT32_MAX)
+        return "is longer than 4294967295 bytes";
+    return chars_utf8(text) ? NULL : "is not UTF-8";
 }
 
 int64_t check_count(int64_t rows, int32_t columns, size_t size)
@@ -158,10 +128,12 @@ static int check_indices(const site *s, const model *m, const known *k)
 static int check_strings(const site *s)
 {
     const model_array *a = s->a;
-    for (int64_t i = 0; i < a->rows * a->columns; i++)
-        if (!check_utf8(a->str[i]))
-            return err_set(s->e, s->where, row_line(s, i / a->columns),
-                           "array %s, row %" PRId64 ": a string is not UTF-8", a->name, i / a->columns);
+    for (int64_t i = 0; i < a->rows * a->columns; i++) {
+        const char *wrong = check_text(a->str[i]);
+        if (wrong)
+            return err_set(s->e, s->where, row_line(s, i / a->columns), "array %s, row %" PRId64 ": a string %s",
+                           a->name, i / a->columns, wrong);
+    }
     return 0;
 }
 

@@ -4,6 +4,7 @@
 #ifndef SINEW_CHECK_H
 #define SINEW_CHECK_H
 
+#include "base/chars.h"
 #include "model/model.h"
 
 /* Names of arrays and axes, keys, tools and versions: 1 to 255 of letters, digits and . _ - / */
@@ -15,11 +16,13 @@ bool check_unit(const char *unit);
 /* Types of blocks: four letters or digits. */
 bool check_type(const char *type);
 
-/* Well-formed UTF-8: no overlong forms, no surrogates, nothing past U+10FFFF. */
-bool check_utf8(const char *text);
+/* What is wrong with a string, after its name ("is not UTF-8"), or NULL. A string has a length of 32 bits. */
+const char *check_text(const char *text);
 
-/* Replaces each byte that is not part of well-formed UTF-8 by '?'. */
-void check_utf8_mend(char *text);
+static inline bool check_utf8(const char *text)
+{
+    return chars_utf8(text);
+}
 
 /* rows x columns, or -1 where that many things of `size` bytes cannot be. */
 int64_t check_count(int64_t rows, int32_t columns, size_t size);

@@ -38,7 +38,7 @@ void item_place(const item_source *s, const item *it, char *place, size_t size)
 
 int item_error(const item_source *s, const item *it, err *e, const char *format, ...)
 {
-    char place[600], text[800];
+    char place[ITEM_PLACE], text[800];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);

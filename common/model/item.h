@@ -9,6 +9,8 @@
 #include "base/out.h"
 #include "model/model.h"
 
+enum { ITEM_PLACE = 600 }; /* bytes that hold a place */
+
 enum { ITEM_MAJOR = 1, ITEM_MINOR = 0 }; /* the version that is written */
 
 typedef enum item_kind {

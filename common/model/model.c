@@ -1,5 +1,6 @@
 #include "model/model.h"
 
+#include "base/chars.h"
 #include "base/mem.h"
 #include "base/num.h"
 #include "model/check.h"
@@ -113,8 +114,9 @@ int model_meta_set(model *m, const char *key, const char *value, err *e)
 {
     if (!check_name(key))
         return err_set(e, NULL, 0, "metadata '%.60s': expected a key of letters, digits and . _ - /", key);
-    if (!check_utf8(value))
-        return err_set(e, NULL, 0, "metadata %s: its value is not UTF-8", key);
+    const char *wrong = check_text(value);
+    if (wrong)
+        return err_set(e, NULL, 0, "metadata %s: its value %s", key, wrong);
     char *copy = mem_text(value, e), **old = meta_at(m, key);
     if (!copy)
         return -1;
@@ -170,13 +172,16 @@ int model_prov_add(model *m, const char *tool, const char *version, const char *
     if (!check_name(tool) || !check_name(version))
         return err_set(e, NULL, 0, "provenance '%.60s %.60s': expected a tool's name and version", tool, version);
     size_t size = strlen(tool) + strlen(version) + strlen(options) + 3;
+    if (size - 1 > UINT32_MAX)
+        return err_set(e, NULL, 0, "provenance of %s: %zu bytes; expected at most %" PRIu32, tool, size - 1,
+                       UINT32_MAX);
     char *line = mem_array((int64_t)size, 1, "provenance", e);
     if (!line || one_more(&m->prov, m->provs, sizeof *m->prov, e)) {
         free(line);
         return -1;
     }
     snprintf(line, size, "%s %s%s%s", tool, version, *options ? " " : "", options);
-    check_utf8_mend(line);
+    chars_mend(line);
     m->prov[m->provs++] = line;
     return 0;
 }
@@ -343,8 +348,9 @@ model_array *model_add_as(model *m, const char *name, model_type type, const cha
 
 int model_set_text(model_array *a, int64_t at, const char *text, err *e)
 {
-    if (!check_utf8(text))
-        return err_set(e, NULL, 0, "array %s, row %" PRId64 ": '%.60s' is not UTF-8", a->name, at / a->columns, text);
+    const char *wrong = check_text(text);
+    if (wrong)
+        return err_set(e, NULL, 0, "array %s, row %" PRId64 ": '%.60s' %s", a->name, at / a->columns, text, wrong);
     char *copy = mem_text(text, e);
     if (!copy)
         return -1;

@@ -1,5 +1,6 @@
 #include "model/stream.h"
 
+#include "base/chars.h"
 #include "base/mem.h"
 #include "model/binary.h"
 #include "model/check.h"
@@ -11,6 +12,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+_Static_assert(MODEL_FAIL_MOST < sizeof((err *)0)->text, "an err holds the text of any failure");
 
 /* What every frame must have: the arrays of the first. Readers and writers both hold to it. */
 typedef struct pattern {
@@ -141,8 +144,12 @@ static int finish(model_reader *r, const item *it, err *e)
         return 0;
     if (it->number < 1 || it->number > 255)
         return item_error(&r->from, it, e, "status %" PRId64 " of a failure; expected 1 to 255", it->number);
-    if (!check_utf8(it->text))
-        return item_error(&r->from, it, e, "its text is not UTF-8");
+    const char *wrong = check_text(it->text);
+    if (wrong)
+        return item_error(&r->from, it, e, "its text %s", wrong);
+    if (strlen(it->text) > MODEL_FAIL_MOST)
+        return item_error(&r->from, it, e, "its text is of %zu bytes; expected at most %d", strlen(it->text),
+                          MODEL_FAIL_MOST);
     err_set(e, NULL, 0, "%s", it->text);
     e->status = (int)it->number;
     e->silent = true;
@@ -165,8 +172,9 @@ static int add_meta(model_reader *r, model *m, item *it, err *e)
 {
     if (!check_name(it->key))
         return item_error(&r->from, it, e, "key '%.60s'; expected letters, digits and . _ - /", it->key);
-    if (!check_utf8(it->text))
-        return item_error(&r->from, it, e, "the value of %s is not UTF-8", it->key);
+    const char *wrong = check_text(it->text);
+    if (wrong)
+        return item_error(&r->from, it, e, "the value of %s %s", it->key, wrong);
     if (model_meta_of(m, it->key))
         return item_error(&r->from, it, e, "a second meta %s; expected one", it->key);
     return model_meta_set(m, it->key, it->text, e);
@@ -176,8 +184,9 @@ static int add_meta(model_reader *r, model *m, item *it, err *e)
 static int add_prov(model_reader *r, model *m, item *it, err *e)
 {
     char *version = strchr(it->text, ' '), *options = version ? strchr(version + 1, ' ') : NULL;
-    if (!check_utf8(it->text))
-        return item_error(&r->from, it, e, "provenance is not UTF-8");
+    const char *wrong = check_text(it->text);
+    if (wrong)
+        return item_error(&r->from, it, e, "provenance %s", wrong);
     if (version)
         *version++ = 0;
     if (options)
@@ -232,7 +241,7 @@ static int add_item(model_reader *r, model *m, item *it, err *e)
 
 static int check_array(const model_reader *r, const model *m, const model_array *a, int64_t at, err *e)
 {
-    char place[600];
+    char place[ITEM_PLACE];
     item_place(&r->from, &(item){.kind = ITEM_ARRAY, .at = at, .array.name = a->name}, place, sizeof place);
     return model_check(m, a, place, r->from.how->lines ? at : 0, e);
 }
@@ -421,12 +430,24 @@ int model_write_end(model_writer *w, err *e)
     return 0;
 }
 
+/* Cuts a text to at most that many bytes, between characters. */
+static void cut(char *text, size_t most)
+{
+    size_t n = strlen(text);
+    if (n <= most)
+        return;
+    for (n = most; n && ((unsigned char)text[n] & 0xc0) == 0x80; n--)
+        ;
+    text[n] = 0;
+}
+
 int model_write_fail(model_writer *w, int status, const char *text, err *e)
 {
     char *copy = mem_text(text, e);
     if (!copy)
         return -1;
-    check_utf8_mend(copy);
+    chars_mend(copy);
+    cut(copy, MODEL_FAIL_MOST);
     write_item(w, &(item){.kind = ITEM_FAIL, .number = status, .text = copy});
     free(copy);
     return 0;

@@ -8,6 +8,8 @@
 #include "base/out.h"
 #include "model/model.h"
 
+enum { MODEL_FAIL_MOST = 999 }; /* bytes of the text of a `fail` */
+
 typedef struct model_reader model_reader;
 typedef struct model_writer model_writer;
 
@@ -32,7 +34,8 @@ void model_writer_close(model_writer *w);
 int model_write(model_writer *w, const model *m, err *e);
 int model_write_frame(model_writer *w, const frame *f, err *e);
 int model_write_end(model_writer *w, err *e);
-/* Ends the stream with `fail STATUS "text"`, wherever it stood. */
+/* Ends the stream with `fail STATUS "text"`, wherever it stood. A longer text is cut; bytes that are not UTF-8 become
+ * '?'. */
 int model_write_fail(model_writer *w, int status, const char *text, err *e);
 
 #endif

@@ -1,5 +1,6 @@
 #include "model/text.h"
 
+#include "base/chars.h"
 #include "base/mem.h"
 #include "base/num.h"
 #include "model/binary.h"
@@ -126,7 +127,7 @@ static int read_row(item_source *s, const model_array *a, int64_t row, rows_read
         p = text_blanks(p);
         p = *p ? text_value(a->type, p, r->data + (size_t)r->count * each) : NULL;
         r->count += p != NULL;
-        if (!p || (*p && !text_blank(*p)))
+        if (!p || (*p && !chars_blank(*p)))
             return line_error(s, e, "array %s, row %" PRId64 " (of %" PRId64 ", from 0), value %d: expected %d %s",
                               a->name, row, a->rows, (int)c + 1, (int)a->columns, text_value_what(a->type));
     }
@@ -182,7 +183,7 @@ static int read_crc(item_source *s, const item *it, err *e)
     if (got <= 0)
         return got;
     char *p = text_blanks(line);
-    if (strncmp(p, "crc", 3) || !(text_blank(p[3]) || !p[3])) {
+    if (strncmp(p, "crc", 3) || !(chars_blank(p[3]) || !p[3])) {
         s->held = line;
         return 0;
     }
@@ -237,6 +238,9 @@ static int read_hex(item_source *s, model_block *b, err *e)
 {
     int64_t capacity = 0;
     uint64_t done = 0;
+    /* An empty block is a block all the same: its payload is not NULL. */
+    if (mem_grow(&b->payload, &capacity, 1, 1, "a block", e))
+        return -1;
     while (done < b->length)
         if (read_hex_line(s, b, &done, &capacity, e))
             return -1;

@@ -1,5 +1,6 @@
 #include "model/text_value.h"
 
+#include "base/chars.h"
 #include "base/num.h"
 
 #include <float.h>
@@ -8,14 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool text_blank(char c)
-{
-    return c == ' ' || c == '\t';
-}
-
 char *text_blanks(char *p)
 {
-    while (text_blank(*p))
+    while (chars_blank(*p))
         p++;
     return p;
 }
@@ -23,7 +19,7 @@ char *text_blanks(char *p)
 char *text_word(char **p)
 {
     char *from = text_blanks(*p), *to = from;
-    while (*to && !text_blank(*to))
+    while (*to && !chars_blank(*to))
         to++;
     *p = *to ? to + 1 : to;
     *to = 0;

@@ -7,8 +7,6 @@
 #include "base/out.h"
 #include "model/model.h"
 
-bool text_blank(char c);
-
 /* The first character at p that is not blank. */
 char *text_blanks(char *p);
 

@@ -21,8 +21,9 @@ is "$(head -c 6 "$T/binary" | tail -c 5)" sinew "binary is the default"
 copy --text <"$T/binary" | strip >"$T/again"
 strip <"$T/text" >"$T/once"
 check "text -> binary -> text: the same bytes" cmp "$T/once" "$T/again"
-is "$(grep -A 2 '^block' "$T/again" | tr '\n' ' ')" "block xtra 00000007 3 0102ff crc $(sed -n '/^block/{n;n;s/crc //p;}' "$T/again") " \
+is "$(grep -A 2 '^block xtra' "$T/again" | tr '\n' ' ')" "block xtra 00000007 3 0102ff crc $(sed -n '/^block xtra/{n;n;s/crc //p;}' "$T/again") " \
     "an unknown block is copied"
+is "$(grep -c '^block abcd 00000000 0$' "$T/again")" 1 "and one of no bytes"
 grep -q '^array x-heat' "$T/again" && grep -q '^array x-word' "$T/again"
 is $? 0 "unknown arrays are kept"
 copy -z <"$T/text" >"$T/packed"

@@ -1,12 +1,15 @@
 /* The model in memory: its lists, its rules, and what a tool that changes an axis loses. */
+#include "base/chars.h"
 #include "model/check.h"
 #include "model/known.h"
 #include "model/model.h"
 
 #include "tap.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 static bool says(const err *e, const char *part)
 {
@@ -230,14 +233,56 @@ static void test_utf8(void)
                                       "\xff",     "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80"};
     bool all = true, none = true;
     for (size_t i = 0; i < sizeof good / sizeof *good; i++)
-        all = all && check_utf8(good[i]);
+        all = all && chars_utf8(good[i]);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        none = none && !check_utf8(bad[i]);
+        none = none && !chars_utf8(bad[i]);
     ok(all, "well-formed UTF-8, to the ends of each length");
     ok(none, "overlong, surrogate, cut and stray bytes are not");
     char text[] = "a\xc3\xa9\xe9 b\xe2\x82";
-    check_utf8_mend(text);
+    chars_mend(text);
     ok(!strcmp(text, "a\xc3\xa9? b??"), "mended: %s", text);
+}
+
+/* 4 GiB of 'a', of 2 MiB of memory mapped again and again; NULL where that cannot be. */
+static char *huge_text(size_t size, size_t piece)
+{
+    FILE *f = tmpfile();
+    char *all = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    bool good = f && all != MAP_FAILED;
+    for (size_t i = 0; good && i < piece; i++)
+        good = putc('a', f) == 'a';
+    good = good && !fflush(f);
+    for (size_t at = 0; good && at + piece < size; at += piece)
+        good = mmap(all + at, piece, PROT_READ, MAP_SHARED | MAP_FIXED, fileno(f), 0) != MAP_FAILED;
+    if (f)
+        fclose(f);
+    if (!good && all != MAP_FAILED)
+        munmap(all, size);
+    return good ? all : NULL;
+}
+
+/* The last piece of the mapping is zero, so the text is 4 GiB long: one byte more than a length can say. */
+static void test_huge(void)
+{
+    size_t piece = (size_t)1 << 21, size = ((size_t)1 << 32) + piece;
+    char *text = huge_text(size, piece);
+    model m = {0};
+    err e = {0};
+    if (!text) {
+        skip(2, "no address space for a string of 4 GiB");
+        return;
+    }
+    ok(model_meta_set(&m, "key", text, &e) && says(&e, "metadata key: its value is longer than 4294967295 bytes"),
+       "metadata of 4 GiB: %s", e.text);
+    e = (err){0};
+    model_axis_add(&m, "x-n", 1, &e);
+    model_array *a = model_add_as(&m, "x-s", MODEL_STR, "1", "x-n", 1, &e);
+    char *was = a->str[0];
+    a->str[0] = text;
+    ok(model_check(&m, a, "place", 0, &e) && says(&e, "row 0: a string is longer"), "a string of 4 GiB: %s", e.text);
+    a->str[0] = was;
+    munmap(text, size);
+    model_free(&m);
 }
 
 static int checked(model *m, const char *name, err *e)
@@ -305,6 +350,7 @@ int main(void)
     test_known();
     test_names();
     test_utf8();
+    test_huge();
     test_check();
     known_as(MODEL_I32, "@node", "element", 8, "");
     known_as(MODEL_I32, "@node", "element", 4, "");

@@ -281,6 +281,26 @@ static void fail_of(const char *text, int status, bool silent, const char *what)
     ok(got && e.status == status && e.silent == silent && says(&e, what), "fail: %s", e.text);
 }
 
+/* What a writer is given too long it cuts between characters, so that every reader takes it and hands on the same. */
+static void test_long_fail(void)
+{
+    err e = {0}, got;
+    char given[MODEL_FAIL_MOST + 32];
+    for (size_t i = 0; i + 2 < sizeof given; i += 2)
+        memcpy(given + i, "\xc3\xa9", 3);
+    out *o = out_memory(&e);
+    model_writer *w = model_writer_open(o, true, &e);
+    size_t size;
+    model_write_fail(w, 3, given, &e);
+    const unsigned char *b = out_bytes(o, &size);
+    refused(b, size, &got);
+    ok(got.status == 3 && got.silent && strlen(got.text) == MODEL_FAIL_MOST - 1 &&
+           !strncmp(got.text, given, MODEL_FAIL_MOST - 1),
+       "a text too long is cut between characters: %zu bytes", strlen(got.text));
+    model_writer_close(w);
+    out_discard(o);
+}
+
 static void test_fail(void)
 {
     err e = {0};
@@ -294,6 +314,17 @@ static void test_fail(void)
     fail_of("fail 1 \"a\"", 1, false, "cut short");
     fail_of("fail 1 \"a\"\nend\n", 1, false, "something follows");
     fail_of("fail a\n", 1, false, "expected fail STATUS");
+    char line[MODEL_FAIL_MOST + 32] = "%sinew 1 text\nfail 3 \"";
+    size_t at = strlen(line);
+    memset(line + at, 'a', MODEL_FAIL_MOST + 1);
+    strcpy(line + at + MODEL_FAIL_MOST + 1, "\"\n");
+    ok(refused(line, strlen(line), &e) && !e.silent && says(&e, "its text is of 1000 bytes; expected at most 999"),
+       "too long: %s", e.text);
+    strcpy(line + at + MODEL_FAIL_MOST, "\"\n");
+    ok(refused(line, strlen(line), &e) && e.status == 3 && e.silent && strlen(e.text) == MODEL_FAIL_MOST,
+       "the longest text comes as it is");
+    test_long_fail();
+    e = (err){0};
     for (int text = 0; text < 2; text++) {
         out *o = out_memory(&e);
         model_writer *w = model_writer_open(o, text, &e);
