@@ -1,10 +1,10 @@
+#include "base/chars.h"
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
 #include "mesh/names.h"
 #include "mesh/obj.h"
 #include "mesh/obj_words.h"
-#include "model/check.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -132,7 +132,7 @@ static int64_t read_names(reader *r, char joint)
             r->name[n++] = joint;
         memcpy(r->name + n, r->w.p, (size_t)length);
         r->name[n + length] = 0;
-        if (!check_utf8(r->name + n) || !is_plain(r->name + n))
+        if (!chars_utf8(r->name + n) || !is_plain(r->name + n))
             return obj_bad_word(&r->w, "not a name in UTF-8:", "printable UTF-8");
         n += length;
         r->w.p = stop;

@@ -4,7 +4,6 @@
 #ifndef SINEW_CHECK_H
 #define SINEW_CHECK_H
 
-#include "base/chars.h"
 #include "model/model.h"
 
 /* Names of arrays and axes, keys, tools and versions: 1 to 255 of letters, digits and . _ - / */
@@ -18,11 +17,6 @@ bool check_type(const char *type);
 
 /* What is wrong with a string, after its name ("is not UTF-8"), or NULL. A string has a length of 32 bits. */
 const char *check_text(const char *text);
-
-static inline bool check_utf8(const char *text)
-{
-    return chars_utf8(text);
-}
 
 /* rows x columns, or -1 where that many things of `size` bytes cannot be. */
 int64_t check_count(int64_t rows, int32_t columns, size_t size);

@@ -5,6 +5,7 @@
 #include "model/materials.h"
 
 #include <ctype.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,8 +49,8 @@ void export_inp_names(char *const *name, int64_t count, const char *prefix, char
         for (char *p = plain; *p; p++)
             *p = isalnum((unsigned char)*p) && !((unsigned char)*p & 0x80) ? (char)toupper((unsigned char)*p) : '_';
         snprintf(own, size, "%s", plain);
-        for (long long n = 2; taken(to, i, size, own); n++)
-            snprintf(own, size, "%.50s_%lld", plain, n);
+        for (int64_t n = 2; taken(to, i, size, own); n++)
+            snprintf(own, size, "%.50s_%" PRId64, plain, n);
     }
 }
 
@@ -72,7 +73,7 @@ static void put_set(const writer *w, int64_t count, belongs *one, int64_t key)
     for (int64_t i = 0; i < count; i++) {
         if (!one(w, i, key))
             continue;
-        out_format(w->to, "%s%lld", on_line ? ", " : "", (long long)i + 1);
+        out_format(w->to, "%s%" PRId64, on_line ? ", " : "", i + 1);
         if (++on_line == 12) {
             out_text(w->to, "\n");
             on_line = 0;
@@ -96,7 +97,7 @@ static void put_nodes(const writer *w)
 {
     out_text(w->to, "*NODE, NSET=NALL\n");
     for (int64_t i = 0; i < w->x.points; i++) {
-        out_format(w->to, "%lld, ", (long long)i + 1);
+        out_format(w->to, "%" PRId64 ", ", i + 1);
         put_numbers(&w->x.rest[3 * i], 3, w->to);
     }
 }
@@ -107,9 +108,9 @@ static void put_elements(const writer *w, const char *hexahedron)
     out_format(w->to, "*ELEMENT, TYPE=%s, ELSET=EALL\n", w->x.node->columns == 8 ? hexahedron : "C3D4");
     for (int64_t i = 0; i < w->x.cells; i++) {
         const int32_t *node = export_shape_cell(&w->x, i, &corners);
-        out_format(w->to, "%lld", (long long)i + 1);
+        out_format(w->to, "%" PRId64, i + 1);
         for (int64_t c = 0; c < corners; c++)
-            out_format(w->to, ", %lld", (long long)node[c] + 1);
+            out_format(w->to, ", %" PRId64, (int64_t)node[c] + 1);
         out_text(w->to, "\n");
     }
 }

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,7 +63,7 @@ static void put_surface(const writer *w)
             continue;
         out_text(w->to, corners == 1 ? "p" : corners == 2 ? "l" : "f");
         for (int64_t c = 0; c < corners; c++)
-            out_format(w->to, " %lld", (long long)vertex[c] + 1);
+            out_format(w->to, " %" PRId64, (int64_t)vertex[c] + 1);
         out_text(w->to, "\n");
     }
 }
@@ -155,7 +156,7 @@ static void put_sides(const writer *w, const side *list, int64_t count, const in
             put_group(named ? name->str[list[i].group] : "elements", false, w->to);
         out_text(w->to, "f");
         for (int c = 0; c < 4 && list[i].node[c] >= 0; c++)
-            out_format(w->to, " %lld", (long long)number[list[i].node[c]]);
+            out_format(w->to, " %" PRId64, number[list[i].node[c]]);
         out_text(w->to, "\n");
     }
 }

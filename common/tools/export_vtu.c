@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/num.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,8 +84,8 @@ static int put_data(writer *w, const char *name, model_type type, int columns, i
     if (columns > 1)
         out_format(w->xml, " NumberOfComponents=\"%d\"", columns);
     if (tuples >= 0)
-        out_format(w->xml, " NumberOfTuples=\"%lld\"", (long long)tuples);
-    out_format(w->xml, " format=\"appended\" offset=\"%lld\"/>\n", (long long)out_count(w->data));
+        out_format(w->xml, " NumberOfTuples=\"%" PRId64 "\"", tuples);
+    out_format(w->xml, " format=\"appended\" offset=\"%" PRId64 "\"/>\n", out_count(w->data));
     return append(w, bytes, size, e);
 }
 
@@ -249,8 +250,8 @@ static int put_grid(writer *w, bool deformed, err *e)
     out_text(w->xml, "<UnstructuredGrid>\n");
     if (put_field_data(w, e))
         return -1;
-    out_format(w->xml, "<Piece NumberOfPoints=\"%lld\" NumberOfCells=\"%lld\">\n", (long long)w->x->points,
-               (long long)w->x->cells);
+    out_format(w->xml, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n", w->x->points,
+               w->x->cells);
     if (put_point_data(w, e) || put_cell_data(w, e) || put_points(w, deformed, e) || put_cells(w, e))
         return -1;
     out_text(w->xml, "</Piece>\n</UnstructuredGrid>\n");

@@ -5,6 +5,7 @@
 #include "tools/info_key.h"
 #include "tools/info_stats.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -25,6 +26,22 @@ static void put_number(double value, model_type from, out *to)
 {
     if (isfinite(value))
         info_put_number(value, from, to);
+    else
+        out_text(to, "null");
+}
+
+static void put_value(const model_array *a, int64_t at, out *to)
+{
+    if (isfinite(source_value(a, at)))
+        info_put_value(a, at, to);
+    else
+        out_text(to, "null");
+}
+
+static void put_end(const model_array *a, const info_stats *s, bool max, out *to)
+{
+    if (isfinite(max ? s->max : s->min))
+        info_put_end(a, s, max, to);
     else
         out_text(to, "null");
 }
@@ -52,15 +69,14 @@ static void put_array(const model_array *a, out *to)
     put_member("unit", a->unit, to);
     out_text(to, ", ");
     put_member("axis", a->axis, to);
-    out_format(to, ", \"rows\": %lld, \"columns\": %d", (long long)a->rows, (int)a->columns);
+    out_format(to, ", \"rows\": %" PRId64 ", \"columns\": %d", a->rows, (int)a->columns);
     if (a->type != MODEL_STR) {
         info_stats s = info_stats_of(a);
-        model_type from = info_is_vector(a) ? MODEL_F64 : a->type;
         out_text(to, ", \"min\": ");
-        put_number(s.min, from, to);
+        put_end(a, &s, false, to);
         out_text(to, ", \"max\": ");
-        put_number(s.max, from, to);
-        out_format(to, ", \"nan\": %lld", (long long)s.nans);
+        put_end(a, &s, true, to);
+        out_format(to, ", \"nan\": %" PRId64, s.nans);
     }
     if (k) {
         out_text(to, ", ");
@@ -79,8 +95,8 @@ static void put_arrays(const model_arrays *list, out *to)
     out_text(to, list->count ? "\n  ]" : "]");
 }
 
-/* One row of a table as an object of its columns (their names less "axis."), then what more() adds. */
-static void put_row(const model *m, const char *axis, int64_t row, out *to)
+/* One row of a table as an object of its columns (their names less "axis."); of a volume, its elements too. */
+static void put_row(const model *m, const char *axis, int64_t row, const int64_t *elements, out *to)
 {
     size_t n = strlen(axis);
     bool first = true;
@@ -97,23 +113,23 @@ static void put_row(const model *m, const char *axis, int64_t row, out *to)
             if (a->type == MODEL_STR)
                 put_string(a->str[row * a->columns + c], to);
             else
-                put_number(source_value(a, row * a->columns + c), a->type, to);
+                put_value(a, row * a->columns + c, to);
         }
         out_text(to, a->columns == 1 ? "" : "]");
     }
     if (!strcmp(axis, "volume")) {
         put_comma(first, to);
-        out_format(to, "\"elements\": %lld", (long long)info_volume_count(m, row));
+        out_format(to, "\"elements\": %" PRId64, elements[row]);
     }
 }
 
-static void put_table(const model *m, const char *axis, out *to)
+static void put_table(const model *m, const char *axis, const int64_t *elements, out *to)
 {
     int64_t rows = model_count(m, axis);
     out_format(to, "  \"%s\": [", axis);
     for (int64_t i = 0; i < rows; i++) {
         out_text(to, i ? ",\n    {" : "\n    {");
-        put_row(m, axis, i, to);
+        put_row(m, axis, i, elements, to);
         out_text(to, "}");
     }
     out_text(to, rows > 0 ? "\n  ],\n" : "],\n");
@@ -138,26 +154,26 @@ static void put_head(const source *s, out *to)
     for (int i = 0; i < m->axis_count; i++) {
         put_comma(!i, to);
         put_string(m->axes[i].name, to);
-        out_format(to, ": %lld", (long long)m->axes[i].count);
+        out_format(to, ": %" PRId64, m->axes[i].count);
     }
     out_text(to, "},\n");
 }
 
-void info_json(const source *s, const double *times, out *to)
+void info_json(const source *s, const double *times, const int64_t *elements, out *to)
 {
     out_text(to, "{\n");
     put_head(s, to);
     out_text(to, "  \"arrays\": ");
     put_arrays(&s->body.arrays, to);
     out_text(to, ",\n");
-    put_table(&s->body, "volume", to);
-    put_table(&s->body, "material", to);
-    put_table(&s->body, "muscle", to);
-    out_format(to, "  \"frames\": %lld,\n  \"first\": ", (long long)s->frames);
+    put_table(&s->body, "volume", elements, to);
+    put_table(&s->body, "material", elements, to);
+    put_table(&s->body, "muscle", elements, to);
+    out_format(to, "  \"frames\": %" PRId64 ",\n  \"first\": ", s->frames);
     if (s->frames) {
         out_text(to, "{\"time\": ");
         put_number(times[0], MODEL_F64, to);
-        out_format(to, "},\n  \"last\": {\"index\": %lld, \"time\": ", (long long)s->frame.index);
+        out_format(to, "},\n  \"last\": {\"index\": %" PRId64 ", \"time\": ", s->frame.index);
         put_number(times[1], MODEL_F64, to);
         out_text(to, ", \"arrays\": ");
         put_arrays(&s->frame.arrays, to);

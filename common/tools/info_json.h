@@ -7,7 +7,7 @@
 #include "base/out.h"
 #include "model/source.h"
 
-/* times: those of the first and of the last frame, where there are frames. */
-void info_json(const source *s, const double *times, out *to);
+/* times: those of the first and of the last frame, where there are frames. elements: of each volume. */
+void info_json(const source *s, const double *times, const int64_t *elements, out *to);
 
 #endif

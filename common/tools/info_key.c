@@ -1,23 +1,38 @@
 #include "tools/info_key.h"
 
+#include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
 #include "model/known.h"
 #include "tools/info_stats.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define NATURE "rows, columns, type, unit, axis, row.N, at.X,Y,Z (nodes, elements, vertices) and NAME (tables)"
 
-int64_t info_volume_count(const model *m, int64_t v)
+int64_t *info_volume_counts(const model *m, err *e)
 {
     const model_array *of = model_find(m, "element.volume");
-    int64_t n = 0;
-    for (int64_t i = 0; of && i < of->rows; i++)
-        n += of->i32[i] == v;
-    return n;
+    int64_t volumes = model_count(m, "volume");
+    int64_t *count = mem_array(volumes < 0 ? 0 : volumes, sizeof *count, "counts of elements", e);
+    for (int64_t i = 0; count && of && i < of->rows; i++)
+        count[of->i32[i]]++;
+    return count;
+}
+
+/* Writes how many elements volume v has. */
+static int put_volume_count(const model *m, int64_t v, out *to, err *e)
+{
+    int64_t *count = info_volume_counts(m, e);
+    if (!count)
+        return -1;
+    out_format(to, "%" PRId64, count[v]);
+    free(count);
+    return 0;
 }
 
 /* The row of the table over `axis` that has the name, or -1. A muscle has its volume's name. */
@@ -108,7 +123,7 @@ static int put_row(const query *q, const char *number, err *e)
 {
     int64_t row;
     char why[128];
-    snprintf(why, sizeof why, "it has %lld rows; expected a row from 0 on", (long long)q->a->rows);
+    snprintf(why, sizeof why, "it has %" PRId64 " rows; expected a row from 0 on", q->a->rows);
     if (num_int(number, 0, q->a->rows - 1, &row))
         return no_value(q, e, why);
     source_put_row(q->a, row, false, q->to);
@@ -127,10 +142,9 @@ static void put_sums(const query *q, const info_stats *s, double divisor)
 static void put_range(const query *q, bool high)
 {
     for (int32_t c = 0; c < q->a->columns; c++) {
-        double range[2];
-        info_column_range(q->a, c, &range[0], &range[1]);
+        info_stats s = info_column_of(q->a, c);
         out_text(q->to, c ? " " : "");
-        info_put_number(range[high], q->a->type, q->to);
+        info_put_end(q->a, &s, high, q->to);
     }
 }
 
@@ -138,7 +152,7 @@ static void put_range(const query *q, bool high)
 static int put_nature(const query *q)
 {
     if (!strcmp(q->what, "rows"))
-        out_format(q->to, "%lld", (long long)q->a->rows);
+        out_format(q->to, "%" PRId64, q->a->rows);
     else if (!strcmp(q->what, "columns"))
         out_format(q->to, "%d", (int)q->a->columns);
     else if (!strcmp(q->what, "type"))
@@ -163,11 +177,11 @@ static int put_numbers(const query *q)
         return 1;
     info_stats s = which < 5 ? info_stats_of(q->a) : (info_stats){0};
     if (which < 2)
-        info_put_number(which ? s.max : s.min, info_is_vector(q->a) ? MODEL_F64 : q->a->type, q->to);
+        info_put_end(q->a, &s, which, q->to);
     else if (which < 4)
         put_sums(q, &s, which == 3 ? (double)s.count : 1);
     else if (which == 4)
-        out_format(q->to, "%lld", (long long)s.nans);
+        out_format(q->to, "%" PRId64, s.nans);
     else
         put_range(q, which == 6);
     return 0;
@@ -270,8 +284,9 @@ static const known *known_of(const char *key)
 static int lacking(const source *s, const char *key, const known *k, err *e)
 {
     if (k->flags & KNOWN_FRAME)
-        return err_set(e, source_name(s), 0, "no key '%.80s': of %lld frames the last has no %s; it comes from %s", key,
-                       (long long)s->frames, k->name, k->maker);
+        return err_set(e, source_name(s), 0,
+                       "no key '%.80s': of %" PRId64 " frames the last has no %s; it comes from %s", key, s->frames,
+                       k->name, k->maker);
     return err_set(e, source_name(s), 0, "no key '%.80s': the model has no %s; it comes from %s", key, k->name,
                    k->maker);
 }
@@ -300,24 +315,24 @@ static int unknown_key(const source *s, const char *key, err *e)
     return -1;
 }
 
-/* Keys that are of no array. 1: it was none of these. */
-static int put_plain(const source *s, const char *key, out *to)
+/* Keys that are of no array. 1: it was none of these; -1: e filled. */
+static int put_plain(const source *s, const char *key, out *to, err *e)
 {
     if (!strcmp(key, "frames")) {
-        out_format(to, "%lld", (long long)s->frames);
+        out_format(to, "%" PRId64, s->frames);
     } else if (!strcmp(key, "frame.index") && s->frames) {
-        out_format(to, "%lld", (long long)s->frame.index);
+        out_format(to, "%" PRId64, s->frame.index);
     } else if (!strcmp(key, "frame.time") && s->frames) {
         info_put_number(s->frame.time, MODEL_F64, to);
     } else if (!strncmp(key, "axis.", 5) && model_count(&s->body, key + 5) >= 0) {
-        out_format(to, "%lld", (long long)model_count(&s->body, key + 5));
+        out_format(to, "%" PRId64, model_count(&s->body, key + 5));
     } else if (!strncmp(key, "meta.", 5) && model_meta_of(&s->body, key + 5)) {
         out_text(to, model_meta_of(&s->body, key + 5));
     } else if (!strncmp(key, "volume.count.", 13)) {
         int64_t v = named_row(&s->body, "volume", key + 13);
         if (v < 0)
             return 1;
-        out_format(to, "%lld", (long long)info_volume_count(&s->body, v));
+        return put_volume_count(&s->body, v, to, e);
     } else {
         return 1;
     }
@@ -327,8 +342,9 @@ static int put_plain(const source *s, const char *key, out *to)
 int info_key(const source *s, const char *key, out *to, err *e)
 {
     query q = {.s = s, .key = key, .to = to};
-    if (!put_plain(s, key, to))
-        return 0;
+    int other = put_plain(s, key, to, e);
+    if (other <= 0)
+        return other;
     if (!find_array(&q))
         return unknown_key(s, key, e);
     return put_array(&q, e);

@@ -10,7 +10,7 @@
  * there is. */
 int info_key(const source *s, const char *key, out *to, err *e);
 
-/* Elements of volume v (its row). 0 where there are no elements. */
-int64_t info_volume_count(const model *m, int64_t v);
+/* How many elements each volume has, by its row; 0 where there are no elements. The caller frees it; NULL with e filled. */
+int64_t *info_volume_counts(const model *m, err *e);
 
 #endif

@@ -3,6 +3,7 @@
 #include "base/num.h"
 #include "model/source.h"
 
+#include <inttypes.h>
 #include <math.h>
 
 bool info_is_vector(const model_array *a)
@@ -32,31 +33,43 @@ static void take_vector(info_stats *s, const model_array *a, int64_t row)
     widen(s, sqrt(square), row);
 }
 
+/* Takes the value at `at` into the range, and into that of i64. */
+static void take_value(info_stats *s, const model_array *a, int64_t at)
+{
+    double v = source_value(a, at);
+    s->sum[0] += v;
+    s->nans += isnan(v);
+    widen(s, v, at / a->columns);
+    if (a->type != MODEL_I64)
+        return;
+    s->min_i64 = a->i64[at] < s->min_i64 ? a->i64[at] : s->min_i64;
+    s->max_i64 = a->i64[at] > s->max_i64 ? a->i64[at] : s->max_i64;
+}
+
+static info_stats none(int64_t count)
+{
+    return (info_stats){
+        .min = NAN, .max = NAN, .min_i64 = INT64_MAX, .max_i64 = INT64_MIN, .at_max = -1, .count = count};
+}
+
 info_stats info_stats_of(const model_array *a)
 {
     bool vector = info_is_vector(a);
-    info_stats s = {.min = NAN, .max = NAN, .at_max = -1, .count = vector ? a->rows : a->rows * a->columns};
-    for (int64_t i = 0; i < s.count; i++) {
-        if (vector) {
+    info_stats s = none(vector ? a->rows : a->rows * a->columns);
+    for (int64_t i = 0; i < s.count; i++)
+        if (vector)
             take_vector(&s, a, i);
-            continue;
-        }
-        double v = source_value(a, i);
-        s.sum[0] += v;
-        s.nans += isnan(v);
-        widen(&s, v, i / a->columns);
-    }
+        else
+            take_value(&s, a, i);
     return s;
 }
 
-void info_column_range(const model_array *a, int32_t column, double *low, double *high)
+info_stats info_column_of(const model_array *a, int32_t column)
 {
-    *low = *high = NAN;
-    for (int64_t i = 0; i < a->rows; i++) {
-        double v = source_value(a, i * a->columns + column);
-        *low = fmin(*low, v);
-        *high = fmax(*high, v);
-    }
+    info_stats s = none(a->rows);
+    for (int64_t i = 0; i < a->rows; i++)
+        take_value(&s, a, i * a->columns + column);
+    return s;
 }
 
 void info_put_number(double value, model_type from, out *to)
@@ -64,4 +77,20 @@ void info_put_number(double value, model_type from, out *to)
     char text[NUM_TEXT];
     num_text(value, from == MODEL_F32, text);
     out_text(to, text);
+}
+
+void info_put_end(const model_array *a, const info_stats *s, bool max, out *to)
+{
+    if (a->type == MODEL_I64 && s->count)
+        out_format(to, "%" PRId64, max ? s->max_i64 : s->min_i64);
+    else
+        info_put_number(max ? s->max : s->min, info_is_vector(a) ? MODEL_F64 : a->type, to);
+}
+
+void info_put_value(const model_array *a, int64_t at, out *to)
+{
+    if (a->type == MODEL_I64)
+        out_format(to, "%" PRId64, a->i64[at]);
+    else
+        info_put_number(source_value(a, at), a->type, to);
 }

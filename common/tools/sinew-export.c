@@ -8,6 +8,7 @@
 #include "tools/export_obj.h"
 #include "tools/export_vtu.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,7 +126,7 @@ static char *frame_file(const job *j, int64_t k, err *e)
     size_t size = strlen(j->stem) + 32;
     char *name = mem_array((int64_t)size, 1, "a file name", e);
     if (name)
-        snprintf(name, size, "%s_%04lld.vtu", j->stem, (long long)k);
+        snprintf(name, size, "%s_%04" PRId64 ".vtu", j->stem, k);
     return name;
 }
 
@@ -178,8 +179,8 @@ static int no_frame(const job *j, int64_t first, err *e)
 {
     if (!j->s.frames)
         return err_set(e, source_name(&j->s), 0, "--frame %s: the model has no frames", j->o->frame);
-    return err_set(e, source_name(&j->s), 0, "--frame %s: no such index; the model has frames %lld to %lld",
-                   j->o->frame, (long long)first, (long long)j->s.frame.index);
+    return err_set(e, source_name(&j->s), 0, "--frame %s: no such index; the model has frames %" PRId64 " to %" PRId64,
+                   j->o->frame, first, j->s.frame.index);
 }
 
 /* Reads to the end of the stream, keeping the frame asked for in *kept (it is f's from then on). NULL in *chosen: rest. */

@@ -7,7 +7,9 @@
 #include "tools/info_key.h"
 #include "tools/info_stats.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct options {
@@ -39,6 +41,14 @@ static void put_short(double value, model_type from, out *to)
         out_format(to, "%.7g", value);
 }
 
+static void put_end(const model_array *a, const info_stats *s, bool max, out *to)
+{
+    if (a->type == MODEL_F32 || a->type == MODEL_F64)
+        put_short(max ? s->max : s->min, a->type, to);
+    else
+        info_put_end(a, s, max, to);
+}
+
 static void put_range(const model_array *a, out *to)
 {
     if (a->type == MODEL_STR) {
@@ -47,11 +57,11 @@ static void put_range(const model_array *a, out *to)
     }
     info_stats s = info_stats_of(a);
     out_text(to, info_is_vector(a) ? "norm " : "");
-    put_short(s.min, a->type, to);
+    put_end(a, &s, false, to);
     out_text(to, " to ");
-    put_short(s.max, a->type, to);
+    put_end(a, &s, true, to);
     if (s.nans)
-        out_format(to, ", %lld nan", (long long)s.nans);
+        out_format(to, ", %" PRId64 " nan", s.nans);
 }
 
 static void put_array(const model_array *a, bool meanings, out *to)
@@ -83,7 +93,7 @@ static void put_head(const source *s, out *to)
     for (int i = 0; i < m->provs; i++)
         put_line(i ? "" : "provenance\n", NULL, m->prov[i], to);
     for (int i = 0; i < m->axis_count; i++)
-        out_format(to, "%s%-22s %lld\n", i ? "  " : "axes\n  ", m->axes[i].name, (long long)m->axes[i].count);
+        out_format(to, "%s%-22s %" PRId64 "\n", i ? "  " : "axes\n  ", m->axes[i].name, m->axes[i].count);
 }
 
 static void put_extent(const model *m, out *to)
@@ -93,12 +103,11 @@ static void put_extent(const model *m, out *to)
         return;
     out_text(to, "extent (m)\n");
     for (int32_t c = 0; c < 3; c++) {
-        double low, high;
-        info_column_range(position, c, &low, &high);
+        info_stats s = info_column_of(position, c);
         out_format(to, "  %c ", "xyz"[c]);
-        put_short(low, MODEL_F64, to);
+        put_short(s.min, MODEL_F64, to);
         out_text(to, " to ");
-        put_short(high, MODEL_F64, to);
+        put_short(s.max, MODEL_F64, to);
         out_text(to, "\n");
     }
 }
@@ -117,15 +126,15 @@ static void put_volume(const char *title, const char *name, int64_t elements, ou
 {
     out_format(to, "%s  ", title);
     source_put_text(name, to);
-    out_format(to, ": %lld element%s", (long long)elements, elements == 1 ? "" : "s");
+    out_format(to, ": %" PRId64 " element%s", elements, elements == 1 ? "" : "s");
 }
 
-static void put_volumes(const model *m, out *to)
+static void put_volumes(const model *m, const int64_t *elements, out *to)
 {
     const model_array *name = model_find(m, "volume.name"), *material = model_find(m, "volume.material");
     const model_array *materials = model_find(m, "material.name");
     for (int64_t i = 0; name && i < name->rows; i++) {
-        put_volume(i ? "" : "volumes\n", name->str[i], info_volume_count(m, i), to);
+        put_volume(i ? "" : "volumes\n", name->str[i], elements[i], to);
         out_text(to, ", level ");
         put_cell(m, "volume.level", i, to);
         out_text(to, ", priority ");
@@ -138,11 +147,11 @@ static void put_volumes(const model *m, out *to)
     }
 }
 
-static void put_muscles(const model *m, out *to)
+static void put_muscles(const model *m, const int64_t *elements, out *to)
 {
     const model_array *volume = model_find(m, "muscle.volume"), *name = model_find(m, "volume.name");
     for (int64_t i = 0; volume && name && i < volume->rows; i++) {
-        put_volume(i ? "" : "muscles\n", name->str[volume->i32[i]], info_volume_count(m, volume->i32[i]), to);
+        put_volume(i ? "" : "muscles\n", name->str[volume->i32[i]], elements[volume->i32[i]], to);
         out_text(to, ", centre ");
         put_cell(m, "muscle.centre", i, to);
         out_text(to, " m\n");
@@ -161,7 +170,7 @@ static void put_displacement(const source *s, out *to)
         return;
     out_text(to, "  largest displacement ");
     put_short(of.max, MODEL_F64, to);
-    out_format(to, " m, node %lld", (long long)of.at_max);
+    out_format(to, " m, node %" PRId64, of.at_max);
     if (position) {
         out_text(to, " at ");
         source_put_row(position, of.at_max, true, to);
@@ -175,7 +184,7 @@ static void put_frames(const source *s, const double *times, bool meanings, out 
         out_text(to, "frames  none\n");
         return;
     }
-    out_format(to, "frames  %lld, the last of index %lld; times ", (long long)s->frames, (long long)s->frame.index);
+    out_format(to, "frames  %" PRId64 ", the last of index %" PRId64 "; times ", s->frames, s->frame.index);
     put_short(times[0], MODEL_F64, to);
     out_text(to, " to ");
     put_short(times[1], MODEL_F64, to);
@@ -185,7 +194,7 @@ static void put_frames(const source *s, const double *times, bool meanings, out 
     put_displacement(s, to);
 }
 
-static void put_summary(const source *s, const double *times, bool meanings, out *to)
+static void put_summary(const source *s, const double *times, const int64_t *elements, bool meanings, out *to)
 {
     const model *m = &s->body;
     put_head(s, to);
@@ -194,11 +203,11 @@ static void put_summary(const source *s, const double *times, bool meanings, out
         put_array(&m->arrays.v[i], meanings, to);
     }
     for (int i = 0; i < m->block_count; i++)
-        out_format(to, "%s%s %llu bytes\n", i ? "  " : "unknown blocks\n  ", m->blocks[i].type,
-                   (unsigned long long)m->blocks[i].length);
+        out_format(to, "%s%s %" PRIu64 " bytes\n", i ? "  " : "unknown blocks\n  ", m->blocks[i].type,
+                   m->blocks[i].length);
     put_extent(m, to);
-    put_volumes(m, to);
-    put_muscles(m, to);
+    put_volumes(m, elements, to);
+    put_muscles(m, elements, to);
     put_frames(s, times, meanings, to);
 }
 
@@ -221,10 +230,16 @@ static int put(const source *s, const double *times, const struct options *o, ou
             return -1;
         out_text(to, "\n");
     }
+    if (o->get.count)
+        return 0;
+    int64_t *elements = info_volume_counts(&s->body, e);
+    if (!elements)
+        return -1;
     if (o->json)
-        info_json(s, times, to);
-    else if (!o->get.count)
-        put_summary(s, times, o->common.verbose, to);
+        info_json(s, times, elements, to);
+    else
+        put_summary(s, times, elements, o->common.verbose, to);
+    free(elements);
     return 0;
 }
 

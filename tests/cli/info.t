@@ -118,4 +118,16 @@ is "$(sinew info --get node.position.max "$T/none")" nan "the largest of nothing
 is "$(sinew info --get node.position.mean "$T/none")" "nan nan nan" "the mean of nothing"
 fails 1 "the nearest of no nodes" "there must be some" sinew info --get node.position.at.0,0,0 "$T/none"
 
+# Whole numbers that no double holds: 2^63 - 1, -2^63 + 1, 2^53 + 1.
+printf '%%sinew 1 text\naxis material 3\narray material.x-id i64 1 material 1\n%s\n%s\n%s\nend\n' \
+    9223372036854775807 -9223372036854775807 9007199254740993 >"$T/whole"
+is "$(sinew info --get material.x-id.max --get material.x-id.min --get material.x-id.low --get material.x-id.row.2 "$T/whole" |
+    tr '\n' ' ')" "9223372036854775807 -9223372036854775807 -9223372036854775807 9007199254740993 " "i64 are exact"
+sinew info "$T/whole" | grep -q ' -9223372036854775807 to 9223372036854775807$'
+is $? 0 "in the summary"
+is "$(sinew info --json "$T/whole" | grep -c -e '"min": -9223372036854775807, "max": 9223372036854775807' \
+    -e '{"x-id": 9223372036854775807}' -e '{"x-id": -9223372036854775807}' -e '{"x-id": 9007199254740993}')" 4 "and in JSON"
+printf '%%sinew 1 text\naxis a 0\narray x-id i64 1 a 1\nend\n' >"$T/whole"
+is "$(sinew info --get x-id.max "$T/whole")" nan "the largest of none"
+
 done_testing
