@@ -1,10 +1,11 @@
 #include "base/out.h"
 
 #include "base/mem.h"
+#include "base/replace.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <libgen.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -17,10 +18,9 @@
 enum { CHUNK = 1 << 18 };
 
 struct out {
-    int fd;          /* -1: memory */
-    char *name;      /* for messages */
-    char *target;    /* where the file goes at the end; NULL: written directly */
-    char *temporary; /* its name until then; NULL while it has none (O_TMPFILE) */
+    int fd;       /* -1: memory */
+    char *name;   /* for messages */
+    replace file; /* no target: fd is written directly */
     bool gzip;
     z_stream z;
     unsigned char *packed;
@@ -30,6 +30,17 @@ struct out {
     err failed;
 };
 
+/* Someone had SIGPIPE ignored or blocked: end as quietly all the same. Returns only where that cannot be. */
+static void end_by_sigpipe(void)
+{
+    sigset_t only;
+    sigemptyset(&only);
+    sigaddset(&only, SIGPIPE);
+    signal(SIGPIPE, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &only, NULL);
+    raise(SIGPIPE);
+}
+
 static void put(out *o, const unsigned char *bytes, size_t size)
 {
     while (size && !o->failed.status) {
@@ -38,9 +49,9 @@ static void put(out *o, const unsigned char *bytes, size_t size)
             bytes += n;
             size -= (size_t)n;
         } else if (errno == EPIPE) {
-            /* Someone had SIGPIPE ignored: end as quietly all the same. */
-            signal(SIGPIPE, SIG_DFL);
-            raise(SIGPIPE);
+            end_by_sigpipe();
+            err_system(&o->failed, o->name, EPIPE, "cannot write");
+            o->failed.silent = true;
         } else if (errno != EINTR) {
             err_system(&o->failed, o->name, errno, "cannot write");
         }
@@ -77,6 +88,17 @@ static void empty(out *o, int flush)
     o->filled = 0;
 }
 
+static void out_free(out *o)
+{
+    if (o->gzip)
+        deflateEnd(&o->z);
+    free(o->packed);
+    free(o->buffer);
+    free(o->name);
+    free(o);
+}
+
+/* fd stays the caller's where this fails. */
 static out *out_new(int fd, const char *name, bool gzip, err *e)
 {
     out *o = mem_array(1, sizeof *o, "an output stream", e);
@@ -93,61 +115,10 @@ static out *out_new(int fd, const char *name, bool gzip, err *e)
             err_memory(e, "gzip");
     }
     if (e->status) {
-        out_discard(o);
+        out_free(o);
         return NULL;
     }
     return o;
-}
-
-/* The permissions that a file made by open(2) would have, or those of the file that it replaces. */
-static mode_t wanted_mode(const char *target)
-{
-    struct stat s;
-    if (!stat(target, &s))
-        return s.st_mode & 07777;
-    mode_t mask = umask(0);
-    umask(mask);
-    return 0666 & ~mask;
-}
-
-/* A name beside the target that nothing else has; the caller frees it. */
-static char *beside(const char *target, err *e)
-{
-    size_t n = strlen(target) + 32;
-    char *copy = mem_text(target, e), *copy2 = mem_text(target, e), *name = mem_array((int64_t)n, 1, "a name", e);
-    if (copy && copy2 && name)
-        snprintf(name, n, "%s/.%s.%ld.tmp", dirname(copy), basename(copy2), (long)getpid());
-    free(copy);
-    free(copy2);
-    return name;
-}
-
-/* A file without a name where the system can (a killed process then leaves nothing), else a temporary name. */
-static int open_temporary(const char *target, char **temporary, err *e)
-{
-    int fd = -1;
-    *temporary = NULL;
-#ifdef O_TMPFILE
-    char *copy = mem_text(target, e);
-    if (!copy)
-        return -1;
-    fd = open(dirname(copy), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    free(copy);
-#endif
-    if (fd < 0) {
-        *temporary = beside(target, e);
-        if (!*temporary)
-            return -1;
-        fd = open(*temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-        if (fd < 0) {
-            err_system(e, target, errno, "cannot create");
-            free(*temporary);
-            *temporary = NULL;
-            return -1;
-        }
-    }
-    fchmod(fd, wanted_mode(target));
-    return fd;
 }
 
 static out *open_direct(const char *path, bool gzip, err *e)
@@ -157,7 +128,10 @@ static out *open_direct(const char *path, bool gzip, err *e)
         err_system(e, path, errno, "cannot open for writing");
         return NULL;
     }
-    return out_new(fd, path, gzip, e);
+    out *o = out_new(fd, path, gzip, e);
+    if (!o)
+        close(fd);
+    return o;
 }
 
 out *out_open(const char *path, bool gzip, err *e)
@@ -176,23 +150,14 @@ out *out_open(const char *path, bool gzip, err *e)
         err_system(e, path, errno, "cannot write");
         return NULL;
     }
-    /* A link stays a link: what it points to is replaced. */
-    char *target = there ? realpath(path, NULL) : mem_text(path, e), *temporary = NULL;
-    int fd = target ? open_temporary(target, &temporary, e) : -1;
-    out *o = fd < 0 ? NULL : out_new(fd, path, gzip, e);
-    if (!o) {
-        if (!target)
-            err_memory(e, "a path");
-        if (fd >= 0)
-            close(fd);
-        if (temporary)
-            unlink(temporary);
-        free(temporary);
-        free(target);
+    replace file;
+    if (replace_open(&file, path, e))
         return NULL;
-    }
-    o->target = target;
-    o->temporary = temporary;
+    out *o = out_new(file.fd, path, gzip, e);
+    if (o)
+        o->file = file;
+    else
+        replace_discard(&file);
     return o;
 }
 
@@ -261,7 +226,7 @@ void out_flush(out *o)
 
 int out_patch(out *o, int64_t offset, const void *bytes, size_t size, err *e)
 {
-    if (!o->target || o->gzip)
+    if (!o->file.target || o->gzip)
         return err_set(e, o->name, 0, "cannot go back in this output; expected -o with a file");
     empty(o, Z_NO_FLUSH);
     if (!o->failed.status && pwrite(o->fd, bytes, size, (off_t)offset) != (ssize_t)size)
@@ -276,7 +241,7 @@ int64_t out_count(const out *o)
 
 bool out_is_file(const out *o)
 {
-    return o->target != NULL;
+    return o->file.target != NULL;
 }
 
 bool out_is_terminal(const out *o)
@@ -284,59 +249,31 @@ bool out_is_terminal(const out *o)
     return o->fd >= 0 && isatty(o->fd);
 }
 
-/* Gives the nameless file a name (beside its place), so that rename can put it there. */
-static int name_temporary(out *o, err *e)
-{
-    char self[64];
-    if (o->temporary)
-        return 0;
-    o->temporary = beside(o->target, e);
-    if (!o->temporary)
-        return -1;
-    snprintf(self, sizeof self, "/proc/self/fd/%d", o->fd);
-    if (linkat(AT_FDCWD, self, AT_FDCWD, o->temporary, AT_SYMLINK_FOLLOW))
-        return err_system(e, o->name, errno, "cannot create");
-    return 0;
-}
-
 int out_close(out *o, err *e)
 {
     empty(o, Z_FINISH);
-    if (o->failed.status && !e->status)
+    int bad = o->failed.status ? -1 : 0;
+    if (bad && !e->status)
         *e = o->failed;
-    if (!o->failed.status && o->target) {
-        if (name_temporary(o, e))
-            o->failed = *e;
-        else if (rename(o->temporary, o->target))
-            o->failed.status = -err_system(e, o->name, errno, "cannot rename into place");
-    }
-    bool bad = o->failed.status;
-    if (!bad) {
-        free(o->temporary);
-        o->temporary = NULL;
-    }
-    if (!bad && o->fd >= 0 && close(o->fd) && errno != EINTR)
-        bad = err_system(e, o->name, errno, "cannot write");
-    if (!bad)
+    if (!bad && o->file.target) {
+        bad = replace_finish(&o->file, o->name, e);
         o->fd = -1;
+    } else if (!bad && o->fd >= 0) {
+        if (close(o->fd) && errno != EINTR)
+            bad = err_system(e, o->name, errno, "cannot write");
+        o->fd = -1;
+    }
     out_discard(o);
-    return bad ? -1 : 0;
+    return bad;
 }
 
 void out_discard(out *o)
 {
     if (!o)
         return;
-    if (o->temporary)
-        unlink(o->temporary);
-    if (o->fd > STDOUT_FILENO)
+    if (o->file.target)
+        replace_discard(&o->file);
+    else if (o->fd > STDOUT_FILENO)
         close(o->fd);
-    if (o->gzip)
-        deflateEnd(&o->z);
-    free(o->temporary);
-    free(o->target);
-    free(o->packed);
-    free(o->buffer);
-    free(o->name);
-    free(o);
+    out_free(o);
 }

@@ -1,0 +1,172 @@
+#include "base/replace.h"
+
+#include "base/mem.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { LINKS = 40, NAMES = 1000 }; /* the most links to follow, and names to try */
+
+/* The length of the folder's part of a path, its last slash included; 0: it has none. */
+static size_t folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* folder (its first n bytes) and name joined; the caller's. */
+static char *join(const char *folder, size_t n, const char *name, err *e)
+{
+    size_t size = n + strlen(name) + 1;
+    char *path = mem_array((int64_t)size, 1, "a path", e);
+    if (path)
+        snprintf(path, size, "%.*s%s", (int)n, folder, name);
+    return path;
+}
+
+/* What the link at path says, seen from here; the caller's. */
+static char *read_link(const char *path, err *e)
+{
+    char to[PATH_MAX];
+    ssize_t n = readlink(path, to, sizeof to - 1);
+    if (n < 0) {
+        err_system(e, path, errno, "cannot read the link");
+        return NULL;
+    }
+    to[n] = 0;
+    return join(path, to[0] == '/' ? 0 : folder_length(path), to, e);
+}
+
+/* Where a file named path would be, links followed; the caller's. */
+static char *find_target(const char *path, err *e)
+{
+    struct stat s;
+    char *at = mem_text(path, e);
+    int links = 0;
+    while (at && !lstat(at, &s) && S_ISLNK(s.st_mode)) {
+        char *next = NULL;
+        if (links++ == LINKS)
+            err_system(e, path, ELOOP, "cannot create");
+        else
+            next = read_link(at, e);
+        free(at);
+        at = next;
+    }
+    if (!at)
+        return NULL;
+    size_t n = strlen(at);
+    int code = !n || at[n - 1] == '/' ? EISDIR : lstat(at, &s) && errno != ENOENT ? errno : 0;
+    if (!code)
+        return at;
+    err_system(e, path, code, "cannot create");
+    free(at);
+    return NULL;
+}
+
+/* The permissions that a file made by open(2) would have, or those of the file that it replaces. */
+static mode_t wanted_mode(const char *target)
+{
+    struct stat s;
+    if (!stat(target, &s))
+        return s.st_mode & 07777;
+    mode_t mask = umask(0);
+    umask(mask);
+    return 0666 & ~mask;
+}
+
+/* Gives the file a name beside its place that nothing else has: a new file (nameless NULL) or the nameless one. */
+static int take_name(replace *r, const char *nameless, const char *path, err *e)
+{
+    char name[64];
+    for (int i = 0; i < NAMES; i++) {
+        snprintf(name, sizeof name, ".sinew-%ld-%d.tmp", (long)getpid(), i);
+        r->temporary = join(r->target, folder_length(r->target), name, e);
+        if (!r->temporary)
+            return -1;
+        int done = nameless ? linkat(AT_FDCWD, nameless, AT_FDCWD, r->temporary, AT_SYMLINK_FOLLOW)
+                            : (r->fd = open(r->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+        if (done >= 0)
+            return 0;
+        int code = errno;
+        free(r->temporary);
+        r->temporary = NULL;
+        if (code != EEXIST)
+            return err_system(e, path, code, "cannot create");
+    }
+    return err_system(e, path, EEXIST, "cannot create");
+}
+
+/* A file without a name where the system can: a killed process then leaves nothing. -1: it cannot. */
+static int open_nameless(const char *target)
+{
+    int fd = -1;
+#ifdef O_TMPFILE
+    err ignored = {0};
+    size_t n = folder_length(target);
+    char *folder = join(n ? target : "./", n ? n : 2, "", &ignored);
+    if (folder && !access("/proc/self/fd", X_OK))
+        fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    free(folder);
+#else
+    (void)target;
+#endif
+    return fd;
+}
+
+int replace_open(replace *r, const char *path, err *e)
+{
+    *r = (replace){.fd = -1, .target = find_target(path, e)};
+    if (!r->target)
+        return -1;
+    r->fd = open_nameless(r->target);
+    if (r->fd < 0 && take_name(r, NULL, path, e)) {
+        replace_discard(r);
+        return -1;
+    }
+    fchmod(r->fd, wanted_mode(r->target));
+    return 0;
+}
+
+/* Some of what can be written to cannot be synced; nothing is wrong then. */
+static bool stored(int fd)
+{
+    return !fsync(fd) || errno == EINVAL || errno == ENOTSUP;
+}
+
+int replace_finish(replace *r, const char *name, err *e)
+{
+    char self[64];
+    snprintf(self, sizeof self, "/proc/self/fd/%d", r->fd);
+    int bad = stored(r->fd) ? 0 : err_system(e, name, errno, "cannot write");
+    if (!bad && !r->temporary)
+        bad = take_name(r, self, name, e);
+    int fd = r->fd;
+    r->fd = -1;
+    if (close(fd) && errno != EINTR && !bad)
+        bad = err_system(e, name, errno, "cannot write");
+    if (!bad && rename(r->temporary, r->target))
+        bad = err_system(e, name, errno, "cannot rename into place");
+    if (!bad) {
+        free(r->temporary);
+        r->temporary = NULL;
+    }
+    replace_discard(r);
+    return bad;
+}
+
+void replace_discard(replace *r)
+{
+    if (r->target && r->fd >= 0)
+        close(r->fd);
+    if (r->temporary)
+        unlink(r->temporary);
+    free(r->temporary);
+    free(r->target);
+    *r = (replace){0};
+}

@@ -1,0 +1,26 @@
+/* A file that is written beside its place, under no name or a name of its own, and put there once it is whole. Until
+ * then the place is as it was. The caller owns the struct; begin with a zeroed one.
+ */
+#ifndef SINEW_REPLACE_H
+#define SINEW_REPLACE_H
+
+#include "base/err.h"
+
+typedef struct replace {
+    int fd;          /* what to write to */
+    char *target;    /* where the file goes, links followed; owned; NULL: nothing is open */
+    char *temporary; /* its name until then; owned; NULL while it has none (O_TMPFILE) */
+} replace;
+
+/* Opens a file that is to appear as path, which is a regular file or none; a link stays a link, even one to nothing.
+ * A name that cannot be given is refused now, not after the work. */
+int replace_open(replace *r, const char *path, err *e);
+
+/* Puts the file in its place, once every byte of it is known to be stored. name: for messages. In every case r is zeroed,
+ * and on failure no file is left and the place is as it was. */
+int replace_finish(replace *r, const char *name, err *e);
+
+/* Removes the file. */
+void replace_discard(replace *r);
+
+#endif
