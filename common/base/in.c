@@ -60,6 +60,13 @@ static int gzip_start(in *s, err *e)
     return 0;
 }
 
+/* Zeros after a member are padding (of tapes and blocks), as gzip(1) has it. */
+static void skip_padding(in *s)
+{
+    for (; s->z.avail_in && !*s->z.next_in; s->z.next_in++)
+        s->z.avail_in--;
+}
+
 /* Inflates into the empty buffer until at least a byte came or the data ended. */
 static int gzip_fill(in *s, err *e)
 {
@@ -77,8 +84,13 @@ static int gzip_fill(in *s, err *e)
             s->z.next_in = s->raw;
             s->z.avail_in = (uInt)n;
         }
-        if (s->member_ended && inflateReset(&s->z) != Z_OK)
-            return err_memory(e, "reading gzip");
+        if (s->member_ended) {
+            skip_padding(s);
+            if (!s->z.avail_in)
+                continue;
+            if (inflateReset(&s->z) != Z_OK)
+                return err_memory(e, "reading gzip");
+        }
         int code = inflate(&s->z, Z_NO_FLUSH);
         s->member_ended = code == Z_STREAM_END;
         if (code != Z_OK && code != Z_STREAM_END)
@@ -121,6 +133,18 @@ static int sniff(in *s, err *e)
     return 0;
 }
 
+static void in_free(in *s)
+{
+    if (s->gzip)
+        inflateEnd(&s->z);
+    free(s->raw);
+    free(s->buffer);
+    free(s->line);
+    free(s->name);
+    free(s);
+}
+
+/* fd stays the caller's where this fails. */
 static in *in_new(int fd, const char *name, const void *memory, size_t size, err *e)
 {
     in *s = mem_array(1, sizeof *s, "a stream", e);
@@ -132,7 +156,7 @@ static in *in_new(int fd, const char *name, const void *memory, size_t size, err
     s->name = mem_text(name, e);
     s->buffer = mem_array(CHUNK, 1, "a stream", e);
     if (!s->name || !s->buffer || sniff(s, e)) {
-        in_close(s);
+        in_free(s);
         return NULL;
     }
     return s;
@@ -147,7 +171,10 @@ in *in_open(const char *path, err *e)
         err_system(e, path, errno, "cannot open");
         return NULL;
     }
-    return in_new(fd, path, NULL, 0, e);
+    in *s = in_new(fd, path, NULL, 0, e);
+    if (!s)
+        close(fd);
+    return s;
 }
 
 in *in_memory(const void *bytes, size_t size, const char *name, err *e)
@@ -161,13 +188,7 @@ void in_close(in *s)
         return;
     if (s->fd > STDIN_FILENO)
         close(s->fd);
-    if (s->gzip)
-        inflateEnd(&s->z);
-    free(s->raw);
-    free(s->buffer);
-    free(s->line);
-    free(s->name);
-    free(s);
+    in_free(s);
 }
 
 const char *in_name(const in *s)
@@ -219,6 +240,10 @@ int64_t in_line(in *s, char **line, bool *ended, err *e)
         const unsigned char *from = s->buffer + s->at;
         const unsigned char *lf = memchr(from, '\n', s->filled - s->at);
         int64_t part = lf ? lf - from : (int64_t)(s->filled - s->at);
+        if (n + part > IN_LINE_MOST) {
+            err_set(e, s->name, s->lines + 1, "a line of more than %d MiB; expected text in lines", IN_LINE_MOST >> 20);
+            return -2;
+        }
         if (mem_grow(&s->line, &s->line_capacity, n + part + 1, 1, "a line", e))
             return -2;
         memcpy(s->line + n, from, (size_t)part);

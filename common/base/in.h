@@ -1,6 +1,6 @@
 /* A stream of bytes to read: a file, standard input ("-") or memory, gunzipped where it is gzip. The
  * stream keeps its name and its count of lines for messages. It never seeks, and its memory grows only with the
- * longest line asked for.
+ * longest line asked for, which has a limit.
  */
 #ifndef SINEW_IN_H
 #define SINEW_IN_H
@@ -10,6 +10,8 @@
 #include <stddef.h>
 
 typedef struct in in;
+
+enum { IN_LINE_MOST = 1 << 28 }; /* the most bytes of a line */
 
 /* Opens path; "-" or NULL is standard input, named "stdin". NULL with e filled on failure. */
 in *in_open(const char *path, err *e);
@@ -31,8 +33,8 @@ int64_t in_read(in *s, void *bytes, size_t size, err *e);
 int in_peek(in *s, err *e);
 
 /* The next line, without its end (LF or CR LF), NUL-terminated, valid until the next call on s.
- * Returns its length, -1 at the end, -2 with e filled on failure. A NUL byte inside a line is an error.
- * ended (may be NULL) gets false where the stream stopped before the line's LF. */
+ * Returns its length, -1 at the end, -2 with e filled on failure. A NUL byte in a line, or a line of more than
+ * IN_LINE_MOST bytes, is an error. ended (may be NULL) gets false where the stream stopped before the line's LF. */
 int64_t in_line(in *s, char **line, bool *ended, err *e);
 
 /* All that is left, NUL-terminated; the caller frees *bytes. Returns the size, or -1 with e filled. */
