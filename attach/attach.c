@@ -23,7 +23,7 @@ struct options {
 static const opt option_list[] = {
     {0, "rigid", "NAME,...", OPT_LIST, offsetof(struct options, rigid), 0, 0, NULL, 0,
      "rigid surfaces [skull*,bone*,rigid*]"},
-    {0, "rigid-file", "FILE.obj", OPT_TEXT, offsetof(struct options, rigid_file), 0, 0, NULL, 0,
+    {0, "rigid-file", "FILE.obj", OPT_TEXT, offsetof(struct options, rigid_file), 0, 0, NULL, OPT_FILE,
      "more that is rigid, in the model's source.unit"},
     {0, "strictness", "S", OPT_NUMBER, offsetof(struct options, strictness), 0, 1, NULL, 0,
      "reach of nodes in voxel sides, 0 to 1 [0.75]"},
@@ -129,13 +129,10 @@ out:
 static int check_options(const struct options *o, err *e)
 {
     if (o->strictness <= 0)
-        err_set(e, NULL, 0, "--strictness %g would hold nothing; above 0, to 1, was expected", o->strictness);
-    else if (o->rigid_file && !strcmp(o->rigid_file, "-"))
-        err_set(e, NULL, 0, "--rigid-file -: standard input is the model's; the name of a file was expected");
-    else
-        return 0;
-    e->status = STATUS_USAGE;
-    return -1;
+        return err_usage(e, "--strictness %g would hold nothing; above 0, to 1, was expected", o->strictness);
+    if (o->rigid_file && !strcmp(o->rigid_file, "-"))
+        return err_usage(e, "--rigid-file -: standard input is the model's; the name of a file was expected");
+    return 0;
 }
 
 int main(int argc, char **argv)

@@ -166,10 +166,8 @@ static int check_surface_name(const char *name, err *e)
 {
     if (strlen(name) <= SURFACE_NAME_MOST && check_name(name) && !strchr(name, '/') && !known_users(name))
         return 0;
-    err_set(e, NULL, 0, "--name '%s': expected at most %d letters, digits and . _ -, not x- first", name,
-            SURFACE_NAME_MOST);
-    e->status = STATUS_USAGE;
-    return -1;
+    return err_usage(e, "--name '%s': expected at most %d letters, digits and . _ -, not x- first", name,
+                     SURFACE_NAME_MOST);
 }
 
 /* Carries the OBJ under this name, unless the model does already. */
@@ -235,13 +233,10 @@ static int check_options(const struct options *o, const char *path, err *e)
     if (o->name && check_surface_name(o->name, e))
         return -1;
     if (path && !strcmp(path, "-"))
-        err_set(e, NULL, 0, "'-': the model comes on standard input; expected the name of an OBJ file");
-    else if (!path && o->unit)
-        err_set(e, NULL, 0, "--unit is for an OBJ, and none is given; surfaces in the model are in metres");
-    else
-        return 0;
-    e->status = STATUS_USAGE;
-    return -1;
+        return err_usage(e, "'-': the model comes on standard input; expected the name of an OBJ file");
+    if (!path && o->unit)
+        return err_usage(e, "--unit is for an OBJ, and none is given; surfaces in the model are in metres");
+    return 0;
 }
 
 int main(int argc, char **argv)

@@ -26,11 +26,8 @@ int numbered_of(numbered *n, const char *pattern, err *e)
     if (pattern && read_conversion(n))
         return 0;
     if (!pattern)
-        err_set(e, NULL, 0, "--frame all writes a file a frame; expected -o with %%04d in the name, or --format pc2");
-    else
-        err_set(e, NULL, 0, "-o '%s': expected one number, such as %%04d, in the name and no other '%%'", pattern);
-    e->status = STATUS_USAGE;
-    return -1;
+        return err_usage(e, "--frame all writes a file a frame; expected -o with %%04d in the name, or --format pc2");
+    return err_usage(e, "-o '%s': expected one number, such as %%04d, in the name and no other '%%'", pattern);
 }
 
 char *numbered_name(const numbered *n, int64_t index, err *e)

@@ -10,10 +10,8 @@ num_unit scale_unit(const char *unit, const model *m, err *e)
         err_set(e, NULL, 0, "the model's source.unit is '%s'; expected " NUM_UNITS ": give --unit", source);
     else if (!unit)
         err_set(e, NULL, 0, "the model has no source.unit; expected --unit " NUM_UNITS);
-    else if (!e->status) {
-        err_set(e, NULL, 0, "--unit '%s': expected " NUM_UNITS, unit);
-        e->status = STATUS_USAGE;
-    }
+    else
+        err_usage(e, "--unit '%s': expected " NUM_UNITS, unit);
     return 0;
 }
 

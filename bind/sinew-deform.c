@@ -72,12 +72,6 @@ typedef struct mover {
     pool *threads;
 } mover;
 
-static int usage_error(err *e)
-{
-    e->status = STATUS_USAGE;
-    return -1;
-}
-
 /* What the options ask for, checked before anything is read. */
 static int plan_of(plan *p, const struct options *o, const char *path, err *e)
 {
@@ -86,16 +80,14 @@ static int plan_of(plan *p, const struct options *o, const char *path, err *e)
     p->files = p->frames == FRAME_ALL && o->format == FORMAT_OBJ;
     p->within = o->within.count ? num_length_in(o->within.value[0], num_unit_of("m"), num_unit_of("m")) : INFINITY;
     if (p->frames == FRAME_ONE && num_int(which, 0, INT64_MAX, &p->index))
-        err_set(e, NULL, 0, "--frame '%s': expected a frame's index, last or all", which);
-    else if (p->within < 0)
-        err_set(e, NULL, 0, "--within: a distance below 0; expected 0 or more");
-    else if (!strcmp(path, "-"))
-        err_set(e, NULL, 0, "'-': the model comes on standard input; expected the name of an OBJ file");
-    else if (o->format == FORMAT_PC2 && (!output || !strcmp(output, "-")))
-        err_set(e, NULL, 0, "a point cache's head is written last; expected -o with a file");
-    else
-        return p->files ? numbered_of(&p->names, output, e) : 0;
-    return usage_error(e);
+        return err_usage(e, "--frame '%s': expected a frame's index, last or all", which);
+    if (p->within < 0)
+        return err_usage(e, "--within: a distance below 0; expected 0 or more");
+    if (!strcmp(path, "-"))
+        return err_usage(e, "'-': the model comes on standard input; expected the name of an OBJ file");
+    if (o->format == FORMAT_PC2 && (!output || !strcmp(output, "-")))
+        return err_usage(e, "a point cache's head is written last; expected -o with a file");
+    return p->files ? numbered_of(&p->names, output, e) : 0;
 }
 
 static int read_obj(obj *o, const char *path, err *e)

@@ -39,14 +39,14 @@ static const opt option_list[] = {
      "simulate so long, s"},
     {'n', "steps", "STEPS", OPT_INT, offsetof(struct options, steps), 1, 1e15, NULL, OPT_OUTPUT, "take so many steps"},
     {0, "rest", "TOL", OPT_NUMBER, offsetof(struct options, rest), 1e-15, 1, NULL, OPT_OUTPUT,
-     "run until at rest to TOL [1e-4, where no end is given]"},
+     "run to rest, to TOL [1e-4, where no end is given]"},
     {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
     {'c', "contract", "MUSCLE=LEVEL,...", OPT_LIST, offsetof(struct options, contract), 0, 0, NULL, 0,
      "contract muscles to levels 0 to 1"},
     {0, "ramp", "S", OPT_NUMBER, offsetof(struct options, ramp), 0, 1e9, NULL, OPT_OUTPUT,
      "time that -c and -g take to come up, s [0.1]"},
-    {0, "script", "FILE", OPT_TEXT, offsetof(struct options, script), 0, 0, NULL, 0, "what happens when"},
-    {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, 0,
+    {0, "script", "FILE", OPT_TEXT, offsetof(struct options, script), 0, 0, NULL, OPT_FILE, "what happens when"},
+    {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, OPT_FILE,
      "change the materials by a file"},
     {'m', "material", "MATERIAL.KEY=VALUE", OPT_LIST, offsetof(struct options, material), 0, 0, NULL, 0,
      "change one value of a material"},
@@ -88,13 +88,10 @@ static int check_end(const struct options *o, err *e)
 {
     int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
     if (ends > 1)
-        err_set(e, NULL, 0, "-t, -n and --rest are three ways to end; expected one of them");
-    else if (o->damping == 0 && (!ends || o->rest >= 0))
-        err_set(e, NULL, 0, "without damping nothing comes to rest; expected -t or -n to end, or a --damping above 0");
-    else
-        return 0;
-    e->status = STATUS_USAGE;
-    return -1;
+        return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
+    if (o->damping == 0 && (!ends || o->rest >= 0))
+        return err_usage(e, "without damping nothing comes to rest; expected -t or -n to end, or a --damping above 0");
+    return 0;
 }
 
 static int change_materials(session *s, const struct options *o, err *e)

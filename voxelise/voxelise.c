@@ -11,7 +11,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 struct options {
     opt_common common;
@@ -30,9 +29,10 @@ static const opt option_list[] = {
      "a corner of the lattice [centred]"},
     {0, "box", "X0,Y0,Z0,X1,Y1,Z1", OPT_LENGTHS, offsetof(struct options, box), 6, 6, NULL, 0,
      "keep voxels whose centre is in it"},
-    {0, "volumes", "FILE", OPT_TEXT, offsetof(struct options, volumes), 0, 0, NULL, 0,
+    {0, "volumes", "FILE", OPT_TEXT, offsetof(struct options, volumes), 0, 0, NULL, OPT_FILE,
      "what bounds which volume [by names]"},
-    {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, 0, "materials [one: tissue]"},
+    {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, OPT_FILE,
+     "materials [one: tissue]"},
     {0, "allow-open", NULL, OPT_FLAG, offsetof(struct options, allow_open), 0, 0, NULL, 0,
      "open surfaces are a warning"},
     {0}};
@@ -77,12 +77,6 @@ static void job_free(job *j)
 
 /* ---- options */
 
-static int usage_error(err *e)
-{
-    e->status = STATUS_USAGE;
-    return -1;
-}
-
 static bool all_positive(const opt_lengths *l)
 {
     for (int i = 0; i < l->count; i++)
@@ -113,20 +107,16 @@ static int check_options(job *j, err *e)
     const struct options *o = j->o;
     j->unit = o->unit ? num_unit_of(o->unit) : 0;
     if (o->unit && !j->unit)
-        err_set(e, NULL, 0, "--unit '%s': expected mm, cm, m, in or um", o->unit);
-    else if (o->unit && !o->size.count && o->cells < 0)
-        err_set(e, NULL, 0, "no voxel size; expected -s H, -s HX,HY,HZ or -n CELLS");
-    else if (o->size.count && o->cells >= 0)
-        err_set(e, NULL, 0, "-s and -n both give the voxel size; expected one of them");
-    else if (o->size.count == 2 || !all_positive(&o->size))
-        err_set(e, NULL, 0, "-s: expected one length, or three between commas, above 0");
-    else if (!box_is_upright(j))
-        err_set(e, NULL, 0, "--box: expected X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1");
-    else if (!strcmp(j->path, "-") && isatty(STDIN_FILENO))
-        err_set(e, NULL, 0, "reads an OBJ on stdin, which is a terminal; see voxelise --help");
-    else
-        return 0;
-    return usage_error(e);
+        return err_usage(e, "--unit '%s': expected mm, cm, m, in or um", o->unit);
+    if (o->unit && !o->size.count && o->cells < 0)
+        return err_usage(e, "no voxel size; expected -s H, -s HX,HY,HZ or -n CELLS");
+    if (o->size.count && o->cells >= 0)
+        return err_usage(e, "-s and -n both give the voxel size; expected one of them");
+    if (o->size.count == 2 || !all_positive(&o->size))
+        return err_usage(e, "-s: expected one length, or three between commas, above 0");
+    if (!box_is_upright(j))
+        return err_usage(e, "--box: expected X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1");
+    return strcmp(j->path, "-") ? 0 : tool_need_stdin("an OBJ", e);
 }
 
 /* ---- read */
@@ -153,11 +143,11 @@ static int ask_for_unit(const obj *o, err *e)
             }
     for (int a = 0; a < 3; a++)
         d[a] = o->faces ? high[a] - low[a] : 0;
-    err_set(e, o->name, 0,
-            "is in a unit that only you know: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "
-            "%.4g m; expected --unit mm|cm|m|in|um",
-            d[0] / 1e3, d[1] / 1e3, d[2] / 1e3, d[0], d[1], d[2]);
-    return usage_error(e);
+    return err_usage(
+        e,
+        "%s: is in a unit that only you know: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "
+        "%.4g m; expected --unit mm|cm|m|in|um",
+        o->name, d[0] / 1e3, d[1] / 1e3, d[2] / 1e3, d[0], d[1], d[2]);
 }
 
 static int read_materials(const job *j, model *m, err *e)

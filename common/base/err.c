@@ -28,6 +28,18 @@ int err_set(err *e, const char *place, int64_t line, const char *format, ...)
     return -1;
 }
 
+int err_usage(err *e, const char *format, ...)
+{
+    if (e->status)
+        return -1;
+    e->status = STATUS_USAGE;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(e->text, sizeof e->text, format, args);
+    va_end(args);
+    return -1;
+}
+
 int err_system(err *e, const char *place, int code, const char *what)
 {
     return err_set(e, place, 0, "%s: %s", what, strerror(code));

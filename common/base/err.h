@@ -13,6 +13,7 @@ enum { STATUS_OK = 0, STATUS_BAD = 1, STATUS_USAGE = 2, STATUS_DIVERGED = 3 };
 typedef struct err {
     int status;      /* the exit status it asks for; 0: no error */
     bool silent;     /* the tool before us in the pipe has said it already */
+    bool usage;      /* the usage would help: it is printed after the text */
     char text[1000]; /* "place:line: what is wrong; what was expected" */
 } err;
 
@@ -31,7 +32,10 @@ typedef struct notes {
  * a second call on a filled err changes nothing. */
 int err_set(err *e, const char *place, int64_t line, const char *format, ...) SINEW_PRINTF(4, 5);
 
-/* The same for a failed system call: appends strerror of the given errno value. */
+/* The same for what the command line asks, without a place: status 2. */
+int err_usage(err *e, const char *format, ...) SINEW_PRINTF(2, 3);
+
+/* err_set for a failed system call: appends strerror of the given errno value. */
 int err_system(err *e, const char *place, int code, const char *what);
 
 /* Out of memory, naming what for. Returns -1. */

@@ -162,10 +162,11 @@ int num_length_of(const char *text, num_length *length)
 double num_length_in(num_length length, num_unit unsuffixed, num_unit to)
 {
     num_unit from = length.unit ? length.unit : unsuffixed;
-    if (from == to)
-        return length.value;
-    num_unit whole = from / to;
-    return whole * to == from ? length.value * whole : length.value * from / to;
+    if (to % from == 0)
+        return length.value / (to / from);
+    if (from % to == 0)
+        return length.value * (from / to);
+    return length.value * from / to;
 }
 
 /* Copies the item of a comma list that begins at *p into item and steps past its comma; false at the end. One that

@@ -11,7 +11,8 @@ enum { MODELS = 1 << 9, THREADED = 1 << 10 };
 /* What every tool has. MODELS: only those that write a model; THREADED: only those with threads. */
 #define COMMON(field) offsetof(opt_common, field)
 static const opt common_options[] = {
-    {'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT, "write FILE, whole or not at all"},
+    {'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
+     "write FILE, whole or not at all"},
     {0, "text", NULL, OPT_FLAG, COMMON(text), 0, 0, NULL, OPT_OUTPUT | MODELS, "write text, not binary"},
     {'z', "gzip", NULL, OPT_FLAG, COMMON(gzip), 0, 0, NULL, OPT_OUTPUT | MODELS, "gzip the output"},
     {0, "threads", "N", OPT_INT, COMMON(threads), 1, 1024, NULL, OPT_OUTPUT | THREADED, "threads"},
@@ -59,12 +60,6 @@ static const opt *find_letter(const opt_tool *tool, char letter)
     return NULL;
 }
 
-static int usage_error(err *e)
-{
-    e->status = STATUS_USAGE;
-    return -1;
-}
-
 static int unknown_option(const opt_tool *tool, const char *name, size_t length, err *e)
 {
     const char *names[64];
@@ -77,10 +72,8 @@ static int unknown_option(const opt_tool *tool, const char *name, size_t length,
     snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), name);
     int near = near_name(word, names, n);
     if (near >= 0)
-        err_set(e, NULL, 0, "no option --%s; did you mean --%s?", word, names[near]);
-    else
-        err_set(e, NULL, 0, "no option --%s; see %s --help", word, tool->name);
-    return usage_error(e);
+        return err_usage(e, "no option --%s; did you mean --%s?", word, names[near]);
+    return err_usage(e, "no option --%s; see %s --help", word, tool->name);
 }
 
 /* An exact name, or the only one that begins so. */
@@ -99,7 +92,7 @@ static const opt *find_name(const opt_tool *tool, const char *name, size_t lengt
     if (count == 1)
         return found;
     if (count > 1)
-        err_set(e, NULL, 0, "--%.*s could be several options; write more of it", (int)length, name), usage_error(e);
+        err_usage(e, "--%.*s could be several options; write more of it", (int)length, name);
     else
         unknown_option(tool, name, length, e);
     return NULL;
@@ -112,8 +105,7 @@ static int bad_value(const opt *o, const char *text, const char *expected, err *
         snprintf(name, sizeof name, "--%s", o->name);
     else
         snprintf(name, sizeof name, "-%c", o->letter);
-    err_set(e, NULL, 0, "%s '%s': expected %s", name, text, expected);
-    return usage_error(e);
+    return err_usage(e, "%s '%s': expected %s", name, text, expected);
 }
 
 /* "a number from 0 to 1": what the table allows. */
@@ -242,10 +234,8 @@ static int take(scan *s, const opt *o, const char *value, err *e)
 {
     mark_seen(s, o);
     if (o->kind != OPT_FLAG && !value) {
-        if (s->at + 1 >= s->argc) {
-            err_set(e, NULL, 0, "%s needs a value: %s", s->argv[s->at], o->arg);
-            return usage_error(e);
-        }
+        if (s->at + 1 >= s->argc)
+            return err_usage(e, "%s needs a value: %s", s->argv[s->at], o->arg);
         value = s->argv[++s->at];
     }
     return set_value(o, value ? value : "", s->options, e);
@@ -258,10 +248,8 @@ static int take_long(scan *s, const char *word, err *e)
     const opt *o = find_name(s->tool, word, length, e);
     if (!o)
         return -1;
-    if (equals && o->kind == OPT_FLAG) {
-        err_set(e, NULL, 0, "--%s takes no value", o->name);
-        return usage_error(e);
-    }
+    if (equals && o->kind == OPT_FLAG)
+        return err_usage(e, "--%s takes no value", o->name);
     return take(s, o, equals ? equals + 1 : NULL, e);
 }
 
@@ -270,10 +258,8 @@ static int take_letters(scan *s, const char *letters, err *e)
 {
     for (; *letters; letters++) {
         const opt *o = find_letter(s->tool, *letters);
-        if (!o) {
-            err_set(e, NULL, 0, "no option -%c; see %s --help", *letters, s->tool->name);
-            return usage_error(e);
-        }
+        if (!o)
+            return err_usage(e, "no option -%c; see %s --help", *letters, s->tool->name);
         if (o->kind != OPT_FLAG)
             return take(s, o, letters[1] ? letters + 1 : NULL, e);
         if (take(s, o, NULL, e))
@@ -286,18 +272,14 @@ static int check_required(const scan *s, int operands, err *e)
 {
     const opt *o;
     for (int i = 0; i < 64 && (o = opt_at(s->tool, i)); i++)
-        if (o->flags & OPT_REQUIRED && !(s->seen >> i & 1)) {
-            err_set(e, NULL, 0, "--%s %s is required; see %s --help", o->name, o->arg, s->tool->name);
-            return usage_error(e);
-        }
+        if (o->flags & OPT_REQUIRED && !(s->seen >> i & 1))
+            return err_usage(e, "--%s %s is required; see %s --help", o->name, o->arg, s->tool->name);
     if (operands < s->tool->operands_min)
-        err_set(e, NULL, 0, "missing operand; expected %s", s->tool->operands);
-    else if (operands > s->tool->operands_max)
-        err_set(e, NULL, 0, "extra operand '%s'; expected %s", s->argv[s->tool->operands_max + 1],
-                *s->tool->operands ? s->tool->operands : "none");
-    else
-        return 0;
-    return usage_error(e);
+        return err_usage(e, "missing operand; expected %s", s->tool->operands);
+    if (operands > s->tool->operands_max)
+        return err_usage(e, "extra operand '%s'; expected %s", s->argv[s->tool->operands_max + 1],
+                         *s->tool->operands ? s->tool->operands : "none");
+    return 0;
 }
 
 int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e)

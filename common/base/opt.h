@@ -40,7 +40,8 @@ typedef struct opt_list {
 enum {
     OPT_REQUIRED = 1, /* usage error without it (unless -h, -V) */
     OPT_OUTPUT = 2,   /* does not change the result: left out of provenance */
-    OPT_HIDDEN = 4    /* not for people: left out of every text */
+    OPT_HIDDEN = 4,   /* not for people: left out of every text */
+    OPT_FILE = 8      /* its text names a file: provenance has the base name only */
 };
 
 typedef struct opt {
@@ -88,8 +89,8 @@ void opt_usage(const opt_tool *tool, out *o);
 /* kind "mdoc": the manual's SYNOPSIS; "bash": a completion script. -1 with e filled for another kind. */
 int opt_table(const opt_tool *tool, const char *kind, out *o, err *e);
 
-/* What of the command line changes the result, for provenance: options in table order, base names of files, then
- * operands. The caller frees it; NULL with e filled. */
+/* What of the command line changes the result, for provenance: options in table order, then operands, which are files;
+ * base names of files, and quoted as for the shell where they have blanks or quotes. The caller frees it; NULL with e filled. */
 char *opt_provenance(const opt_tool *tool, const void *options, int operands, char *const *operand, err *e);
 
 #endif

@@ -112,32 +112,52 @@ int opt_table(const opt_tool *tool, const char *kind, out *to, err *e)
         put_mdoc(tool, to);
     else if (!strcmp(kind, "bash"))
         put_bash(tool, to);
-    else {
-        err_set(e, NULL, 0, "--table '%s': expected mdoc or bash", kind);
-        e->status = STATUS_USAGE;
-        return -1;
-    }
+    else
+        return err_usage(e, "--table '%s': expected mdoc or bash", kind);
     return 0;
 }
 
-/* The base name: paths stay out of results, and so does what a reader would make of blanks. */
+/* Paths stay out of results. */
 static const char *base_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash && slash[1] ? slash + 1 : path;
 }
 
+/* A word of the command line, in single quotes where it would not stay one as it is. */
+static void put_word(bool file, const char *word, out *to)
+{
+    const char *text = file ? base_name(word) : word;
+    out_text(to, out_count(to) ? " " : "");
+    if (*text && !strpbrk(text, " \t\n\r\v\f'\"\\")) {
+        out_text(to, text);
+        return;
+    }
+    out_text(to, "'");
+    for (const char *p = text; *p; p++)
+        out_write(to, *p == '\'' ? "'\\''" : p, *p == '\'' ? 4 : 1);
+    out_text(to, "'");
+}
+
+static void put_number(const char *before, double value, out *to)
+{
+    char text[NUM_TEXT];
+    num_text(value, false, text);
+    out_format(to, "%s%s", before, text);
+}
+
 static void put_lengths(const opt_lengths *l, out *to)
 {
-    for (int i = 0; i < l->count; i++)
-        out_format(to, "%s%.17g%s", i ? "," : " ", l->value[i].value,
-                   l->value[i].unit ? num_unit_name(l->value[i].unit) : "");
+    for (int i = 0; i < l->count; i++) {
+        put_number(i ? "," : " ", l->value[i].value, to);
+        out_text(to, l->value[i].unit ? num_unit_name(l->value[i].unit) : "");
+    }
 }
 
 static void put_numbers(const opt_numbers *l, out *to)
 {
     for (int i = 0; i < l->count; i++)
-        out_format(to, "%s%.17g", i ? "," : " ", l->value[i]);
+        put_number(i ? "," : " ", l->value[i], to);
 }
 
 static void put_choice(const opt *o, int value, out *to)
@@ -170,17 +190,17 @@ static void put_value(const opt *o, const void *options, out *to)
     if (o->kind == OPT_LIST) {
         for (int i = 0; i < list->count; i++) {
             put_name(o, to);
-            out_format(to, " %s", base_name(list->value[i]));
+            put_word(o->flags & OPT_FILE, list->value[i], to);
         }
         return;
     }
     put_name(o, to);
     if (o->kind == OPT_TEXT)
-        out_format(to, " %s", base_name(*(const char *const *)at));
+        put_word(o->flags & OPT_FILE, *(const char *const *)at, to);
     else if (o->kind == OPT_INT)
         out_format(to, " %lld", (long long)*(const int64_t *)at);
     else if (o->kind == OPT_NUMBER)
-        out_format(to, " %.17g", *(const double *)at);
+        put_number(" ", *(const double *)at, to);
     else if (o->kind == OPT_LENGTHS)
         put_lengths(at, to);
     else if (o->kind == OPT_NUMBERS)
@@ -198,7 +218,7 @@ char *opt_provenance(const opt_tool *tool, const void *options, int operands, ch
         if (!(opt_at(tool, i)->flags & OPT_OUTPUT))
             put_value(opt_at(tool, i), options, to);
     for (int i = 0; i < operands; i++)
-        out_format(to, "%s%s", out_count(to) ? " " : "", base_name(operand[i]));
+        put_word(true, operand[i], to);
     out_write(to, "", 1);
     size_t size;
     char *text = mem_text((const char *)out_bytes(to, &size), e);

@@ -1,9 +1,15 @@
+#define _GNU_SOURCE /* sched_getaffinity */
 #include "base/tool.h"
 
+#include <errno.h>
+#include <fcntl.h>
+#include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
+
+enum { LINE = 4096 }; /* the most bytes of a message */
 
 /* Answers -h, -V and --table on stdout. */
 static int answer(tool *t, err *e)
@@ -24,9 +30,24 @@ static int answer(tool *t, err *e)
     return out_close(o, e);
 }
 
+/* A closed descriptor would become the next file's, and messages would go into the output. What is opened in its place
+ * fails as the closed one did: it cannot be read (0) or written (1, 2). */
+static int fill_descriptors(err *e)
+{
+    for (int fd = 0; fd <= STDERR_FILENO; fd++) {
+        if (fcntl(fd, F_GETFD) >= 0 || errno != EBADF)
+            continue;
+        if (open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0)
+            return err_system(e, "/dev/null", errno, "cannot open");
+    }
+    return 0;
+}
+
 int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *options, err *e)
 {
     *t = (tool){.table = table, .common = options};
+    if (fill_descriptors(e))
+        return -1;
     t->operands = opt_parse(table, argc, argv, options, e);
     if (t->operands < 0)
         return -1;
@@ -36,20 +57,66 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
     return t->provenance ? 0 : -1;
 }
 
+/* Whether a character at p steers a terminal: C0, DEL, and C1 in UTF-8 (the first of its two bytes). */
+static bool steers(const char *p)
+{
+    unsigned char c = (unsigned char)p[0], next = (unsigned char)(c ? p[1] : 0);
+    return c < 0x20 || c == 0x7f || (c == 0xc2 && next >= 0x80 && next < 0xa0);
+}
+
+/* "tool: kind: text": one line in one write, so that those of the tools in a pipe do not mix. */
+static void print(const tool *t, const char *kind, const char *text)
+{
+    char line[LINE];
+    int n = snprintf(line, sizeof line, "%s: %s%s", t->table->name, kind, text);
+    if (n > LINE - 2)
+        n = LINE - 2;
+    for (char *p = line; *p; p++)
+        if (steers(p)) {
+            p[1] = (unsigned char)*p == 0xc2 ? '?' : p[1];
+            *p = '?';
+        }
+    line[n++] = '\n';
+    fwrite(line, 1, (size_t)n, stderr);
+}
+
+static void print_usage(const tool *t)
+{
+    err ignored = {0};
+    size_t size;
+    out *o = out_memory(&ignored);
+    if (!o)
+        return;
+    opt_usage(t->table, o);
+    const unsigned char *text = out_bytes(o, &size);
+    fwrite(text, 1, size, stderr);
+    out_discard(o);
+}
+
 int tool_end(tool *t, const err *e)
 {
     if (e->status && !e->silent)
-        fprintf(stderr, "%s: %s\n", t->table->name, e->text);
+        print(t, "", e->text);
+    if (e->status && e->usage)
+        print_usage(t);
     free(t->provenance);
     t->provenance = NULL;
     return e->status;
 }
 
+int tool_need_stdin(const char *what, err *e)
+{
+    if (!isatty(STDIN_FILENO))
+        return 0;
+    e->usage = !e->status;
+    return err_usage(e, "reads %s on stdin, which is a terminal", what);
+}
+
 SINEW_PRINTF(2, 0) static void say(const tool *t, const char *format, va_list args)
 {
-    fprintf(stderr, "%s: ", t->table->name);
-    vfprintf(stderr, format, args);
-    fputc('\n', stderr);
+    char text[LINE];
+    vsnprintf(text, sizeof text, format, args);
+    print(t, "", text);
 }
 
 void tool_say(const tool *t, const char *format, ...)
@@ -73,8 +140,17 @@ void tool_detail(const tool *t, const char *format, ...)
 void tool_warn(const tool *t, notes *n)
 {
     for (int i = 0; i < n->count; i++)
-        fprintf(stderr, "%s: warning: %s\n", t->table->name, n->line[i]);
+        print(t, "warning: ", n->line[i]);
     notes_free(n);
+}
+
+/* How many processors the process may run on. */
+static int64_t processors(void)
+{
+    cpu_set_t set;
+    if (!sched_getaffinity(0, sizeof set, &set))
+        return CPU_COUNT(&set);
+    return sysconf(_SC_NPROCESSORS_ONLN);
 }
 
 int tool_threads(const tool *t, err *e)
@@ -88,6 +164,6 @@ int tool_threads(const tool *t, err *e)
             return (int)threads;
         return err_set(e, NULL, 0, "SINEW_THREADS '%s': expected a whole number from 1 to 1024", text);
     }
-    long all = sysconf(_SC_NPROCESSORS_ONLN);
+    int64_t all = processors();
     return all < 1 ? 1 : all > 1024 ? 1024 : (int)all;
 }

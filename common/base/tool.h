@@ -17,12 +17,16 @@ typedef struct tool {
     char *provenance;   /* owned */
 } tool;
 
-/* Parses the command line and answers -h, -V and --table. Returns 0; -1 with e filled (status 2). When t->done,
+/* Sees to it that descriptors 0 to 2 are open (no file may become one of them), parses the command line and answers -h, -V and --table. Returns 0; -1 with e filled (status 2). When t->done,
  * go straight to tool_end. */
 int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *options, err *e);
 
-/* Prints e, where there is one that was not said already, and frees t. Returns the exit status. */
+/* Prints e, where there is one that was not said already, and frees t. Returns the exit status. Every message is one
+ * line in one write; control characters in it become '?'. */
 int tool_end(tool *t, const err *e);
+
+/* Where standard input is a terminal: what is read from it ("a model") is not typed, so status 2 and the usage. */
+int tool_need_stdin(const char *what, err *e);
 
 /* "tool: text" on stderr, unless -q. */
 void tool_say(const tool *t, const char *format, ...) SINEW_PRINTF(2, 3);
@@ -33,7 +37,7 @@ void tool_detail(const tool *t, const char *format, ...) SINEW_PRINTF(2, 3);
 /* "tool: warning: text" for each note; frees them. Not silenced by -q. */
 void tool_warn(const tool *t, notes *n);
 
-/* --threads, else SINEW_THREADS, else all processors. At least 1; -1 with e filled for a bad SINEW_THREADS. */
+/* --threads, else SINEW_THREADS, else all processors that the process may run on. At least 1; -1 with e filled for a bad SINEW_THREADS. */
 int tool_threads(const tool *t, err *e);
 
 #endif

@@ -1,10 +1,11 @@
 #include "model/source.h"
 
 #include "base/num.h"
+#include "base/tool.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 /* A `fail` in standard input was said by the tool that wrote it just now; one in a file was not. */
 static int tell(const source *s, err *e)
@@ -21,11 +22,8 @@ static int tell(const source *s, err *e)
 int source_open(source *s, const char *path, err *e)
 {
     *s = (source){.from_stdin = !path || !strcmp(path, "-")};
-    if (s->from_stdin && isatty(STDIN_FILENO)) {
-        err_set(e, NULL, 0, "a model is read from standard input, which is a terminal; see --help");
-        e->status = STATUS_USAGE;
+    if (s->from_stdin && tool_need_stdin("a model", e))
         return -1;
-    }
     s->stream = in_open(path, e);
     if (!s->stream)
         return -1;
@@ -100,7 +98,7 @@ void source_put_row(const model_array *a, int64_t row, bool quoted, out *to)
         if (a->type == MODEL_STR)
             put_string(a->str[at], quoted, to);
         else if (a->type == MODEL_I64)
-            out_format(to, "%lld", (long long)a->i64[at]);
+            out_format(to, "%" PRId64, a->i64[at]);
         else {
             num_text(source_value(a, at), a->type == MODEL_F32, number);
             out_text(to, number);

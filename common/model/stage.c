@@ -1,5 +1,6 @@
 #include "model/stage.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -23,11 +24,8 @@ int stage_open_output(stage *s, const tool *t, err *e)
 
 int stage_read(stage *s, model *m, err *e)
 {
-    if (isatty(STDIN_FILENO)) {
-        err_set(e, NULL, 0, "reads a model on stdin, which is a terminal; see --help");
-        e->status = STATUS_USAGE;
+    if (tool_need_stdin("a model", e))
         return -1;
-    }
     s->source = in_open(NULL, e);
     s->reader = s->source ? model_reader_open(s->source, e) : NULL;
     return s->reader ? model_read(s->reader, m, e) : -1;
@@ -66,7 +64,7 @@ int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e)
     (void)m; /* it may have changed: what is dropped need only fit the model that came in */
     int64_t count = pass_frames(s, NULL, NULL, e);
     if (count > 0)
-        notes_add(warnings, "%lld frame%s dropped: the model that they belong to changes", (long long)count,
+        notes_add(warnings, "%" PRId64 " frame%s dropped: the model that they belong to changes", count,
                   count == 1 ? " is" : "s are");
     return count < 0 ? -1 : 0;
 }

@@ -58,18 +58,10 @@ typedef struct finding {
     double abs, rel;     /* the largest differences; nan where a value has no difference to another */
 } finding;
 
-static int usage(err *e)
-{
-    e->status = STATUS_USAGE;
-    return -1;
-}
-
 static int add_rule(rules *r, const char *name, size_t length, double value, err *e)
 {
-    if (r->count == RULES || length >= MODEL_NAME) {
-        err_set(e, NULL, 0, "too many arrays or too long a name; expected at most %d", RULES);
-        return usage(e);
-    }
+    if (r->count == RULES || length >= MODEL_NAME)
+        return err_usage(e, "too many arrays or too long a name; expected at most %d", RULES);
     rule *new = &r->v[r->count++];
     *new = (rule){.value = value};
     snprintf(new->name, sizeof new->name, "%.*s", (int)length, name);
@@ -81,10 +73,8 @@ static int read_tolerances(const opt_list *list, const char *option, rules *r, e
     for (int i = 0; i < list->count; i++) {
         const char *text = list->value[i], *equals = strrchr(text, '=');
         double value;
-        if (num_double(equals ? equals + 1 : text, &value) || value < 0 || equals == text) {
-            err_set(e, NULL, 0, "%s '%s': expected a number from 0 on, or ARRAY=NUMBER", option, text);
-            return usage(e);
-        }
+        if (num_double(equals ? equals + 1 : text, &value) || value < 0 || equals == text)
+            return err_usage(e, "%s '%s': expected a number from 0 on, or ARRAY=NUMBER", option, text);
         if (add_rule(r, text, equals ? (size_t)(equals - text) : 0, value, e))
             return -1;
     }
@@ -96,10 +86,8 @@ static int read_only(const opt_list *list, rules *r, err *e)
     for (int i = 0; i < list->count; i++)
         for (const char *p = list->value[i]; p;) {
             size_t n = strcspn(p, ",");
-            if (!n) {
-                err_set(e, NULL, 0, "--only '%s': expected names of arrays between commas", list->value[i]);
-                return usage(e);
-            }
+            if (!n)
+                return err_usage(e, "--only '%s': expected names of arrays between commas", list->value[i]);
             if (add_rule(r, p, n, 0, e))
                 return -1;
             p = p[n] ? p + n + 1 : NULL;
@@ -385,10 +373,8 @@ static int compare(diff *d, err *e)
 
 static int open_both(diff *d, char *const *path, err *e)
 {
-    if (!strcmp(path[0], "-") && !strcmp(path[1], "-")) {
-        err_set(e, NULL, 0, "both operands are standard input; expected one file at least");
-        return usage(e);
-    }
+    if (!strcmp(path[0], "-") && !strcmp(path[1], "-"))
+        return err_usage(e, "both operands are standard input; expected one file at least");
     return source_open(&d->a, path[0], e) || source_open(&d->b, path[1], e) ? -1 : 0;
 }
 

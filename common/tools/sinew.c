@@ -28,36 +28,53 @@ static const struct {
 
 enum { TOOLS = sizeof tools / sizeof *tools };
 
-static int list(void)
+static void put_list(out *o)
 {
-    err e = {0};
-    out *o = out_open(NULL, false, &e);
-    if (!o)
-        return STATUS_BAD;
     out_text(o, "usage: sinew TOOL [ARGUMENTS]\nRuns one of Sinew's tools; sinew TOOL --help says more of each.\n");
     for (int i = 0; i < TOOLS; i++)
         out_format(o, "  %-10s  %s\n", tools[i].name, tools[i].purpose);
     out_text(o, "  -h, --help  this text; -V, --version  the version\n");
-    return out_close(o, &e) ? STATUS_BAD : STATUS_OK;
+}
+
+static void put_version(out *o)
+{
+    out_text(o, "sinew (Sinew) " SINEW_VERSION "\n");
 }
 
 /* What the option tables of the other tools say of them: the manual's synopsis, completion. */
-static int table(const char *kind)
+static void put_mdoc(out *o)
 {
-    bool mdoc = !strcmp(kind, "mdoc");
-    if (!mdoc && strcmp(kind, "bash") != 0) {
-        fprintf(stderr, "sinew: --table '%s': expected mdoc or bash\n", kind);
-        return STATUS_USAGE;
-    }
+    out_text(o, ".Nm sinew\n.Ar TOOL\n.Op Ar ARGUMENTS\n.Nm sinew\n.Fl h | V\n");
+}
+
+static void put_bash(out *o)
+{
+    out_text(o, "complete -o default -W '");
+    for (int i = 0; i < TOOLS; i++)
+        out_format(o, "%s ", tools[i].name);
+    out_text(o, "--help --version' sinew\n");
+}
+
+/* Standard output gets what put writes. */
+static int answer(void (*put)(out *o))
+{
     err e = {0};
     out *o = out_open(NULL, false, &e);
-    if (!o)
-        return STATUS_BAD;
-    out_text(o, mdoc ? ".Nm sinew\n.Ar TOOL\n.Op Ar ARGUMENTS\n.Nm sinew\n.Fl h | V\n" : "complete -o default -W '");
-    for (int i = 0; i < TOOLS && !mdoc; i++)
-        out_format(o, "%s ", tools[i].name);
-    out_text(o, mdoc ? "" : "--help --version' sinew\n");
-    return out_close(o, &e) ? STATUS_BAD : STATUS_OK;
+    if (o)
+        put(o);
+    if (!o || out_close(o, &e))
+        fprintf(stderr, "sinew: %s\n", e.text);
+    return e.status;
+}
+
+static int table(const char *kind)
+{
+    if (!strcmp(kind, "mdoc"))
+        return answer(put_mdoc);
+    if (!strcmp(kind, "bash"))
+        return answer(put_bash);
+    fprintf(stderr, "sinew: --table '%s': expected mdoc or bash\n", kind);
+    return STATUS_USAGE;
 }
 
 static int unknown(const char *name)
@@ -97,11 +114,9 @@ int main(int argc, char **argv)
         return STATUS_USAGE;
     }
     if (!strcmp(argv[1], "-h") || !strcmp(argv[1], "--help"))
-        return list();
-    if (!strcmp(argv[1], "-V") || !strcmp(argv[1], "--version")) {
-        puts("sinew (Sinew) " SINEW_VERSION);
-        return fflush(stdout) ? STATUS_BAD : STATUS_OK;
-    }
+        return answer(put_list);
+    if (!strcmp(argv[1], "-V") || !strcmp(argv[1], "--version"))
+        return answer(put_version);
     if (!strcmp(argv[1], "--table") && argc == 3)
         return table(argv[2]);
     for (int i = 0; i < TOOLS; i++)

@@ -64,6 +64,10 @@ static void lengths(void)
     ok(num_length_in(l, 0, num_unit_of("mm")) == 40, "4cm is exactly 40 mm");
     ok(!num_length_of("2.5", &l) && l.unit == 0, "no suffix");
     ok(num_length_in(l, num_unit_of("mm"), num_unit_of("m")) == 2.5 / 1000, "2.5 mm in m is rounded once");
+    int twice = 0;
+    for (int i = 0; i < 10000; i++)
+        twice += num_length_in((num_length){i / 10., 1000}, 0, 1000000) != i / 10. / 1000;
+    ok(!twice, "so is 5.1 mm, and every other tenth of a millimetre to a metre");
     ok(!num_length_of("1in", &l) && num_length_in(l, 0, num_unit_of("mm")) == 25.4, "an inch is 25.4 mm");
     ok(num_length_of("3ft", &l) == -1 && num_length_of("mm", &l) == -1, "feet, and a unit alone, are refused");
     num_length list[3];

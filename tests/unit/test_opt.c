@@ -16,6 +16,7 @@ struct options {
     opt_numbers gravity;
     int device;
     opt_list set;
+    const char *file;
 };
 
 #define TO(field) offsetof(struct options, field)
@@ -28,6 +29,7 @@ static const opt options[] = {
     {0, "open", NULL, OPT_FLAG, TO(open), 0, 0, NULL, 0, "open"},
     {0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0, "name"},
     {'m', NULL, "KEY=VALUE", OPT_LIST, TO(set), 0, 0, NULL, 0, "set"},
+    {0, "file", "FILE", OPT_TEXT, TO(file), 0, 0, NULL, OPT_FILE, "file"},
     {0}};
 static const opt_tool table = {"tool", "Does a thing.", "surface.obj|-", 1, 2, true, true, options};
 
@@ -58,12 +60,19 @@ static void values(void)
     ok(o.set.count == 2 && !strcmp(o.set.value[1], "b=2"), "a list");
     ok(o.common.quiet && o.common.gzip && !o.common.text, "common letters bundle");
     char *text = opt_provenance(&table, &o, n, argv + 1, &e);
-    ok(text && !strcmp(text, "-s 2.5mm,1,4cm -n 7 -g 0,0,-9.8100000000000005 --open -m a=1 -m b=2 a.obj -b.obj"),
+    ok(text && !strcmp(text, "-s 2.5mm,1,4cm -n 7 -g 0,0,-9.81 --open -m a=1 -m b=2 a.obj -b.obj"),
        "provenance: in the table's order, without what does not change the result: %s", text);
     free(text);
     n = parse("tool -s 1 /some/where/face.obj", &o, argv, copy, &e);
     text = opt_provenance(&table, &o, n, argv + 1, &e);
     ok(text && !strcmp(text, "-s 1 face.obj"), "provenance: base names, nothing that was not given: %s", text);
+    free(text);
+    o.set = (opt_list){.count = 2, .value = {"skin/a", "an 'apple'"}};
+    o.file = "some where/the file.txt";
+    o.size.value[0].value = 0.2;
+    text = opt_provenance(&table, &o, n, argv + 1, &e);
+    ok(text && !strcmp(text, "-s 0.2 -m skin/a -m 'an '\\''apple'\\''' --file 'the file.txt' face.obj"),
+       "provenance: names stay whole, blanks are quoted, numbers are short: %s", text);
     free(text);
     ok(parse("tool -h", &o, argv, copy, &e) == 0 && o.common.help, "-h wants nothing else");
 }
