@@ -41,8 +41,8 @@ static void take(search *s, int32_t node)
     s->held[node] = s->at;
 }
 
-/* Lines 7 to 10 of the algorithm. line: its direction from the centre, in voxel sides; 0 0 0: all directions. The line
- * meets the voxel's boundary, a cube of side 1 here, where its largest component is 1/2. */
+/* Lines 7 to 10 of the algorithm. line: its direction from the centre, in voxel sides; 0 0 0: all directions. It meets
+ * the voxel's boundary, a cube of side 1 here, where its largest component is 1/2. */
 static void take_along(search *s, int32_t element, const double *line)
 {
     double most = fmax(fabs(line[0]), fmax(fabs(line[1]), fabs(line[2])));
@@ -70,6 +70,11 @@ static void try_point(search *s, int32_t element, const double *centre, const do
         for (int a = 0; a < 3; a++)
             line[a] = s->shape.normal[a] / s->grid.spacing[a];
     take_along(s, element, line);
+    if (most <= tolerance) { /* the normal's other end: which way round the polygon was written says nothing */
+        for (int a = 0; a < 3; a++)
+            line[a] = -line[a];
+        take_along(s, element, line);
+    }
 }
 
 static void centre_of(const search *s, const int64_t *cell, double *centre)

@@ -12,8 +12,9 @@
  *
  * strictness, in (0, 1]: a node is taken where the line meets the boundary within so many voxel sides of it along each
  * axis; 0.75 in the paper. All comparisons are inclusive, to 1e-9 of a voxel. Where the closest point is the centre
- * itself, the line is the polygon's normal; a point, a line or a polygon without area there takes all 8 nodes. Where a
- * concave polygon has several closest points, each counts. */
+ * itself, the line is the polygon's normal, and both its ends count, so that it makes no difference which way round a
+ * polygon is written; a point, a line or a polygon without area there takes all 8 nodes. Where a concave polygon has
+ * several closest points, each counts. */
 int anchor_nodes(model *m, rigid *r, double strictness, notes *warnings, err *e);
 
 #endif
