@@ -39,7 +39,7 @@ static const opt option_list[] = {
      "simulate so long, s"},
     {'n', "steps", "STEPS", OPT_INT, offsetof(struct options, steps), 1, 1e15, NULL, OPT_OUTPUT, "take so many steps"},
     {0, "rest", "TOL", OPT_NUMBER, offsetof(struct options, rest), 1e-15, 1, NULL, OPT_OUTPUT,
-     "run to rest, to TOL [1e-4, where no end is given]"},
+     "run to rest [to 1e-4, where no end is given]"},
     {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
     {'c', "contract", "MUSCLE=LEVEL,...", OPT_LIST, offsetof(struct options, contract), 0, 0, NULL, 0,
      "contract muscles to levels 0 to 1"},

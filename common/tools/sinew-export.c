@@ -29,7 +29,7 @@ static const opt option_table[] = {{'f', "format", "vtu|inp|obj", OPT_CHOICE, of
                                    {0, "frame", "N|last|all|rest", OPT_TEXT, offsetof(struct options, frame), 0, 0,
                                     NULL, 0, "vtu, obj: which frame (last, if any)"},
                                    {0, "deformed", NULL, OPT_FLAG, offsetof(struct options, deformed), 0, 0, NULL, 0,
-                                    "vtu, obj: points stand where the frame moved them"},
+                                    "vtu, obj: points as the frame moved them"},
                                    {0, "surface", "NAME", OPT_TEXT, offsetof(struct options, surface), 0, 0, NULL, 0,
                                     "vtu, obj: a carried surface, not the elements"},
                                    {0, "unit", "mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
@@ -64,13 +64,6 @@ typedef struct job {
     outs files; /* of ALL */
 } job;
 
-static int usage(err *e, const char *text)
-{
-    err_set(e, NULL, 0, "%s", text);
-    e->status = STATUS_USAGE;
-    return -1;
-}
-
 static int read_frame_option(job *j, err *e)
 {
     const char *f = j->o->frame;
@@ -78,9 +71,7 @@ static int read_frame_option(job *j, err *e)
     j->which = !f || !strcmp(f, "last") ? LAST : !strcmp(f, "all") ? ALL : !strcmp(f, "rest") ? REST : ONE;
     if (j->which != ONE || !num_int(f, INT64_MIN, INT64_MAX, &j->index))
         return 0;
-    err_set(e, NULL, 0, "--frame '%s': expected a frame's index, last, all or rest", f);
-    e->status = STATUS_USAGE;
-    return -1;
+    return err_usage(e, "--frame '%s': expected a frame's index, last, all or rest", f);
 }
 
 /* An option that says nothing to this format is a slip, not to be passed over. */
@@ -88,21 +79,21 @@ static int check_options(job *j, err *e)
 {
     const struct options *o = j->o;
     if (o->format == INP && (o->frame || o->deformed || o->surface))
-        return usage(e, "--frame, --deformed and --surface are for vtu and obj: inp holds the model at rest");
+        return err_usage(e, "--frame, --deformed and --surface are for vtu and obj: inp holds the model at rest");
     if (o->format != INP && (o->gravity.count || o->element))
-        return usage(e, "--gravity and --element are for inp");
+        return err_usage(e, "--gravity and --element are for inp");
     if (o->format != OBJ && o->unit)
-        return usage(e, "--unit is for obj; vtu and inp are in SI units");
+        return err_usage(e, "--unit is for obj; vtu and inp are in SI units");
     if (o->format == VTU && o->common.gzip)
-        return usage(e, "-z is for inp and obj; vtu is compressed as it is");
+        return err_usage(e, "-z is for inp and obj; vtu is compressed as it is");
     if (o->unit && !num_unit_of(o->unit))
-        return usage(e, "--unit: expected " NUM_UNITS);
+        return err_usage(e, "--unit: expected " NUM_UNITS);
     if (read_frame_option(j, e))
         return -1;
     if (j->which == REST && o->deformed)
-        return usage(e, "--deformed wants a frame; --frame rest has none");
+        return err_usage(e, "--deformed wants a frame; --frame rest has none");
     if (j->which == ALL && o->format != VTU)
-        return usage(e, "--frame all is for vtu; sinew deform --frame all writes an OBJ a frame");
+        return err_usage(e, "--frame all is for vtu; sinew deform --frame all writes an OBJ a frame");
     return 0;
 }
 
@@ -112,7 +103,7 @@ static int read_stem(job *j, err *e)
     const char *path = j->o->common.output;
     size_t n = path ? strlen(path) : 0;
     if (n < 5 || strcmp(path + n - 4, ".pvd") != 0 || path[n - 5] == '/')
-        return usage(e, "--frame all wants -o NAME.pvd; the frames go to NAME_0000.vtu and so on");
+        return err_usage(e, "--frame all wants -o NAME.pvd; the frames go to NAME_0000.vtu and so on");
     j->stem = mem_text(path, e);
     if (!j->stem)
         return -1;

@@ -20,7 +20,7 @@ struct options {
 
 static const opt option_table[] = {
     {0, "get", "KEY", OPT_LIST, offsetof(struct options, get), 0, 0, NULL, OPT_OUTPUT,
-     "one value, e.g. axis.node, node.displacement.max"},
+     "one value, as node.displacement.max"},
     {0, "json", NULL, OPT_FLAG, offsetof(struct options, json), 0, 0, NULL, OPT_OUTPUT, "the summary as JSON"},
     {0}};
 
@@ -256,8 +256,7 @@ int main(int argc, char **argv)
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
     if (o.json && o.get.count) {
-        err_set(&e, NULL, 0, "--json and --get exclude each other");
-        e.status = STATUS_USAGE;
+        err_usage(&e, "--json and --get exclude each other");
         goto out;
     }
     if (source_open(&s, t.operands ? argv[1] : NULL, &e) || read_all(&s, times, &e))

@@ -18,6 +18,8 @@ is "$(cd "$root/usr/bin" && echo *)" "$(for tool in $tools; do echo "$tool"; don
     "usr/bin has the tools and nothing else"
 is "$(find "$root" -type f ! -path '*/bin/*' ! -perm 644)" "" "what is not a tool is 644"
 for tool in $tools; do
+    is "$("$tool" --help | awk 'length > 80 { print } END { if (NR > 24 || !NR) print NR " lines" }')" "" \
+        "$tool: its usage is at most 24 lines of 80 columns"
     page=$root/usr/share/man/man1/$tool.1
     check "$tool: its page" test -s "$page"
     is "$("$tool" --table mdoc)" "$(sed -n '/^\.\\" synopsis$/,/^\.\\" end synopsis$/{/^\.\\"/!p;}' "$page")" \
