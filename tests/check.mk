@@ -80,8 +80,10 @@ fuzz-run: $(FUZZ)
 # ---- lints
 .PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man
 FOLDERS = $(filter-out $(BUILD)/ $(BIN)/ out/,$(wildcard */))
-SOURCES = $(sort $(shell find $(FOLDERS) -name '*.c'))
-HEADERS = $(sort $(shell find $(FOLDERS) -name '*.h'))
+# None found: something is wrong, and a lint of nothing would pass.
+found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(FOLDERS)))
+SOURCES = $(call found,*.c)
+HEADERS = $(call found,*.h)
 SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
@@ -94,7 +96,7 @@ TIDY = $(SOURCES:%.c=$(BUILD)/tidy/%.ok)
 lint-tidy: $(TIDY)
 $(BUILD)/tidy/%.ok: %.c .clang-tidy tests/.clang-tidy $(HEADERS)
 	@mkdir -p $(@D)
-	$(call run,TIDY $<,$(CLANG_TIDY) --quiet $< -- $(CSTD) $(CPPFLAGS) 2>/dev/null)
+	$(call run,TIDY $<,$(CLANG_TIDY) --quiet $< -- $(CSTD) $(CPPFLAGS) 2>$(@:.ok=.err) || { cat $(@:.ok=.err) >&2; exit 1; })
 	@touch $@
 
 lint-format:
