@@ -162,10 +162,11 @@ int num_length_of(const char *text, num_length *length)
 double num_length_in(num_length length, num_unit unsuffixed, num_unit to)
 {
     num_unit from = length.unit ? length.unit : unsuffixed;
-    if (to % from == 0)
-        return length.value / (to / from);
-    if (from % to == 0)
-        return length.value * (from / to);
+    num_unit more = from / to, fewer = to / from;
+    if (more * to == from)
+        return length.value * more;
+    if (fewer * from == to)
+        return length.value / fewer;
     return length.value * from / to;
 }
 

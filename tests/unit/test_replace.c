@@ -35,6 +35,7 @@ int close(int fd)
     return failing == CLOSE ? -1 : status;
 }
 
+/* NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the C library's names are its own */
 int rename(const char *from, const char *to)
 {
     errno = EACCES;
