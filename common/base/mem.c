@@ -1,8 +1,12 @@
 #include "base/mem.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Where the memory that is free cannot be known. */
+#define UNKNOWN (INT64_MAX / 4)
 
 void *mem_array(int64_t count, size_t size, const char *what, err *e)
 {
@@ -44,16 +48,70 @@ char *mem_text(const char *text, err *e)
     return copy;
 }
 
+/* The number after `key` at the start of a line ("": the file is a number alone); -1 where there is none. */
+static int64_t number_in(const char *path, const char *key)
+{
+    long long value = -1;
+    char line[256];
+    size_t n = strlen(key);
+    FILE *f = fopen(path, "r");
+    while (f && value < 0 && fgets(line, sizeof line, f))
+        if (strncmp(line, key, n) != 0 || sscanf(line + n, "%lld", &value) != 1)
+            value = -1;
+    if (f)
+        fclose(f);
+    return value;
+}
+
+static int64_t group_number(const char *root, const char *path, const char *file, const char *key)
+{
+    char name[PATH_MAX];
+    snprintf(name, sizeof name, "%s%s/%s", root, path, file);
+    return number_in(name, key);
+}
+
+int64_t mem_group_left(const char *root, const char *path)
+{
+    int64_t left = UNKNOWN;
+    char at[PATH_MAX];
+    snprintf(at, sizeof at, "%s", path);
+    for (;;) {
+        size_t n = strlen(at);
+        while (n && at[n - 1] == '/')
+            at[--n] = 0;
+        int64_t most = group_number(root, at, "memory.max", ""), used = group_number(root, at, "memory.current", "");
+        int64_t cached = group_number(root, at, "memory.stat", "file ");
+        if (most >= 0 && used >= 0) {
+            used -= cached > 0 && cached < used ? cached : 0;
+            left = most - used < left ? most - used : left;
+        }
+        char *slash = strrchr(at, '/');
+        if (!slash)
+            return left > 0 ? left : 0;
+        *slash = 0;
+    }
+}
+
+/* The path of the process's control group. */
+static void find_group(char *path, size_t size)
+{
+    char line[PATH_MAX];
+    FILE *f = fopen("/proc/self/cgroup", "r");
+    *path = 0;
+    while (f && fgets(line, sizeof line, f))
+        if (!strncmp(line, "0::", 3)) {
+            line[strcspn(line, "\n")] = 0;
+            snprintf(path, size, "%s", line + 3);
+        }
+    if (f)
+        fclose(f);
+}
+
 int64_t mem_available(void)
 {
-    long long kib = 0;
-    char line[128];
-    FILE *f = fopen("/proc/meminfo", "r");
-    if (!f)
-        return INT64_MAX / 4;
-    while (fgets(line, sizeof line, f))
-        if (sscanf(line, "MemAvailable: %lld kB", &kib) == 1)
-            break;
-    fclose(f);
-    return kib > 0 ? (int64_t)kib * 1024 : INT64_MAX / 4;
+    char group[PATH_MAX];
+    int64_t kib = number_in("/proc/meminfo", "MemAvailable:");
+    find_group(group, sizeof group);
+    int64_t left = mem_group_left("/sys/fs/cgroup", group), free_now = kib > 0 ? kib * 1024 : UNKNOWN;
+    return left < free_now ? left : free_now;
 }

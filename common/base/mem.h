@@ -17,7 +17,12 @@ int mem_grow(void *array, int64_t *capacity, int64_t need, size_t size, const ch
 /* A copy of text, or NULL with e filled. */
 char *mem_text(const char *text, err *e);
 
-/* Bytes of memory free for use now (MemAvailable), or a guess that is large where it cannot be known. */
+/* Bytes of memory free for use now: MemAvailable, and no more than the process's control groups leave (cgroup v2); or a
+ * guess that is large where it cannot be known. */
 int64_t mem_available(void);
+
+/* What the control group at path (as "/a/b") and those that hold it leave, of those mounted at root; the guess where none
+ * has a limit. Caches of files do not count as used. */
+int64_t mem_group_left(const char *root, const char *path);
 
 #endif

@@ -63,6 +63,47 @@ static void damaged(const char *path)
     unlink(path);
 }
 
+/* Zeros that end blocks, after the end and between members. */
+static void padded(const char *path)
+{
+    err e = {0};
+    char all[600] = {0}, *bytes = NULL;
+    out *o = out_open(path, true, &e);
+    out_text(o, "one");
+    out_close(o, &e);
+    FILE *f = fopen(path, "rb");
+    size_t n = fread(all, 1, 100, f);
+    fclose(f);
+    memcpy(all + 300, all, n);
+    in *s = in_memory(all, sizeof all, "memory", &e);
+    ok(s && in_all(s, &bytes, &e) == 6 && !strcmp(bytes, "oneone"), "zeros after gzipped data are padding %s", e.text);
+    in_close(s);
+    free(bytes);
+    unlink(path);
+}
+
+static void long_line(void)
+{
+    err e = {0};
+    char *line;
+    size_t size = (size_t)IN_LINE_MOST + 2;
+    char *bytes = malloc(size);
+    if (!bytes) {
+        skip(2, "too little memory");
+        return;
+    }
+    memset(bytes, 'x', size);
+    bytes[IN_LINE_MOST] = '\n';
+    in *s = in_memory(bytes, size, "memory", &e);
+    ok(s && in_line(s, &line, NULL, &e) == IN_LINE_MOST, "the longest line");
+    in_close(s);
+    bytes[IN_LINE_MOST] = 'x';
+    s = in_memory(bytes, size, "memory", &e);
+    ok(s && in_line(s, &line, NULL, &e) == -2 && strstr(e.text, "memory:1: a line of more than 256 MiB"), "%s", e.text);
+    in_close(s);
+    free(bytes);
+}
+
 static void refused(const char *folder, const char *path)
 {
     err e = {0};
@@ -109,6 +150,49 @@ static void given_up(const char *folder, const char *path)
     unlink(path);
 }
 
+static void put_file(const char *folder, const char *name, const char *text)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *f = fopen(path, "w");
+    if (f) {
+        fputs(text, f);
+        fclose(f);
+    }
+}
+
+/* Memory in control groups: the least that one of them leaves, caches not counted. */
+static void groups(const char *folder)
+{
+    char inner[96];
+    snprintf(inner, sizeof inner, "%s/a", folder);
+    mkdir(inner, 0700);
+    int64_t unknown = mem_group_left(folder, "/a");
+    ok(unknown > INT64_MAX / 8, "groups without limits");
+    put_file(inner, "memory.max", "max\n");
+    put_file(inner, "memory.current", "500\n");
+    ok(mem_group_left(folder, "/a") == unknown, "max is no limit");
+    put_file(folder, "memory.max", "1000\n");
+    put_file(folder, "memory.current", "700\n");
+    ok(mem_group_left(folder, "/a") == 300 && mem_group_left(folder, "/") == 300,
+       "the outer group's limit holds inside");
+    put_file(inner, "memory.max", "600\n");
+    ok(mem_group_left(folder, "/a/") == 100, "the inner one is less");
+    put_file(inner, "memory.stat", "anon 100\nfile 400\n");
+    ok(mem_group_left(folder, "/a") == 300, "files in the cache are not counted");
+    put_file(inner, "memory.max", "50\n");
+    ok(mem_group_left(folder, "/a") == 0, "nothing is left");
+    static const char *const made[] = {"a/memory.max", "a/memory.current", "a/memory.stat", "memory.max",
+                                       "memory.current"};
+    for (size_t i = 0; i < sizeof made / sizeof *made; i++) {
+        char path[160];
+        snprintf(path, sizeof path, "%s/%s", folder, made[i]);
+        unlink(path);
+    }
+    rmdir(inner);
+    ok(mem_available() > 0, "some memory is free here");
+}
+
 int main(void)
 {
     char folder[] = "/tmp/sinew-stream-XXXXXX", path[64];
@@ -118,8 +202,11 @@ int main(void)
     round_trip(path, false);
     round_trip(path, true);
     damaged(path);
+    padded(path);
+    long_line();
     refused(folder, path);
     given_up(folder, path);
+    groups(folder);
     rmdir(folder);
 
     err e = {0};
