@@ -1,6 +1,7 @@
 #include "bind/bone.h"
 
 #include "base/mem.h"
+#include "bind/held.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,47 +45,54 @@ static double distance2(const double *p, const double *q)
     return x * x + y * y + z * z;
 }
 
-/* Of the nodes listed (all, where list is NULL) the nearest to p that the anchor holds, or -1. */
-static int32_t nearest(const anchors *a, int32_t anchor, const double *p, const int32_t *list, int64_t count)
+/* Of an element's nodes the nearest to p that the anchor holds, or -1. */
+static int32_t nearest_of(const anchors *a, int32_t anchor, const double *p, const int32_t *node)
 {
     int32_t best = -1;
     double least = INFINITY;
-    for (int64_t i = 0; i < count; i++) {
-        int32_t n = list ? list[i] : (int32_t)i;
-        double d = distance2(p, a->rest + 3 * (int64_t)n);
-        if (a->of_node[n] == anchor && d < least) {
-            best = n;
+    for (int i = 0; i < 8; i++) {
+        double d = distance2(p, a->rest + 3 * (int64_t)node[i]);
+        if (a->of_node[node[i]] == anchor && d < least) {
+            best = node[i];
             least = d;
         }
     }
     return best;
 }
 
-int bone_find(bone *b, const bound *of, const model *m, err *e)
+/* A node in place of the anchor for each vertex that has one. Where only a part of a surface was voxelised, most vertices
+ * may lie by an element of which their bone holds nothing. */
+static int carry(bone *b, const bound *of, const anchors *a, err *e)
 {
-    const model_array *name = model_find(m, "anchor.name"), *held = model_find(m, "node.anchor");
-    b->node = mem_array(of->shape.vertices, sizeof *b->node, "vertices on bone", e);
-    if (!b->node)
-        return -1;
-    for (int64_t v = 0; v < of->shape.vertices; v++)
-        b->node[v] = -1;
-    if (!name || !held)
-        return 0;
-    anchors a = {name, held->i32, held->rows, of->rest};
-    if (mark(b, &of->shape, &a, e))
+    held all;
+    if (held_build(&all, a->rest, a->of_node, a->nodes, (int32_t)a->name->rows, e))
         return -1;
     for (int64_t v = 0; v < of->shape.vertices; v++) {
         const double *p = of->shape.position + 3 * v;
         int32_t anchor = b->node[v];
         if (anchor < 0)
             continue;
-        b->node[v] = nearest(&a, anchor, p, of->node + 8 * (int64_t)of->element[v], 8);
-        /* Few vertices lie by an element of which their bone holds nothing. */
+        b->node[v] = nearest_of(a, anchor, p, of->node + 8 * (int64_t)of->element[v]);
         if (b->node[v] < 0)
-            b->node[v] = nearest(&a, anchor, p, NULL, a.nodes);
+            b->node[v] = held_nearest(&all, anchor, p);
         b->count += b->node[v] >= 0;
     }
+    held_free(&all);
     return 0;
+}
+
+int bone_find(bone *b, const bound *of, const model *m, err *e)
+{
+    const model_array *name = model_find(m, "anchor.name"), *anchor = model_find(m, "node.anchor");
+    b->node = mem_array(of->shape.vertices, sizeof *b->node, "vertices on bone", e);
+    if (!b->node)
+        return -1;
+    for (int64_t v = 0; v < of->shape.vertices; v++)
+        b->node[v] = -1;
+    if (!name || !anchor)
+        return 0;
+    anchors a = {name, anchor->i32, anchor->rows, of->rest};
+    return mark(b, &of->shape, &a, e) || carry(b, of, &a, e) ? -1 : 0;
 }
 
 void bone_free(bone *b)
