@@ -2,6 +2,7 @@
 
 #include "mesh/obj_words.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,15 +69,36 @@ static void write_joined(const char *from, const char *to, out *sink)
     out_write(sink, from, (size_t)(p - from));
 }
 
+/* How many digits give nine of the surface's extent: one more for each power of ten that the farthest coordinate is above
+ * it. Of the vertices that something uses, if any is. */
+static int digits_of(const obj *o)
+{
+    double extent = 0, farthest = 0;
+    for (int a = 0; a < 3; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t i = 0; i < (o->corners ? o->corners : o->vertices); i++) {
+            double x = o->position[3 * (o->corners ? o->corner_vertex[i] : i) + a];
+            low = fmin(low, x);
+            high = fmax(high, x);
+            farthest = fmax(farthest, fabs(x));
+        }
+        extent = fmax(extent, high - low);
+    }
+    int digits = 9;
+    for (; extent < farthest && digits < 17; extent *= 10)
+        digits++;
+    return digits;
+}
+
 /* The line again with other numbers after its keyword. */
-static void write_row(const obj *o, obj_line line, const double *value, out *sink)
+static void write_row(const obj *o, obj_line line, const double *value, int digits, out *sink)
 {
     const char *from = o->text + line.from, *to = o->text + line.to;
     const char *first = skip_blanks(skip_word(skip_blanks(from, to), to), to), *rest = first;
     for (int i = 0; i < 3; i++)
         rest = skip_word(skip_blanks(rest, to), to);
     write_joined(from, first, sink);
-    out_format(sink, "%.9g %.9g %.9g", value[0], value[1], value[2]);
+    out_format(sink, "%.*g %.*g %.*g", digits, value[0], digits, value[1], digits, value[2]);
     write_joined(rest, to, sink);
 }
 
@@ -87,6 +109,7 @@ static bool same(const double *a, const double *b)
 
 void obj_write(const obj *o, const double *position, const double *normal, out *to)
 {
+    int digits = digits_of(o);
     int64_t at = 0, v = 0, n = 0, normals = normal ? o->normals : 0;
     while (v < o->vertices || n < normals) {
         bool vertex = n == normals || (v < o->vertices && o->v[v].from < o->vn[n].from);
@@ -97,7 +120,7 @@ void obj_write(const obj *o, const double *position, const double *normal, out *
         if (same(was, is))
             continue;
         out_write(to, o->text + at, (size_t)(line.from - at));
-        write_row(o, line, is, to);
+        write_row(o, line, is, vertex ? digits : 9, to);
         at = line.to;
     }
     out_write(to, o->text + at, (size_t)(o->size - at));

@@ -127,6 +127,37 @@ static void test_lines(void)
     obj_free(&o);
 }
 
+/* A surface far from the origin keeps nine digits of its own extent; vertices of no face do not count. */
+static void test_far(void)
+{
+    static const struct {
+        const char *text;
+        double x;
+        const char *line; /* the first, with x */
+    } far[] = {
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 1. / 3, "v 0.333333333 0 0"},
+        {"v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 1. / 3, "v 0.333333333 0 0"},
+        {"v 1 0 0\nv 2 0 0\nv 1 1 0\nf 1 2 3\n", 4. / 3, "v 1.333333333 0 0"},
+        {"v 999999 0 0\nv 1e6 0 0\nv 1e6 1 0\nf 1 2 3\n", 999999 + 1. / 3, "v 999999.333333333 0 0"},
+        {"v 999900 -2e6 3e6\nv 1e6 -2e6 3e6\nv 1e6 -2000100 3e6\nf 1 2 3\n", 999900 + 1. / 3,
+         "v 999900.33333333 -2000000 3000000"},
+        {"v 0 0 1e9\nv 0 0 1e9\nv 0 0 1e9\nf 1 2 3\n", 1. / 3, "v 0.33333333333333331 0 1000000000"},
+        {"v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", 1. / 3, "v 0.333333333 0 0"},
+        {"v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1e9 0 0\nf 1 2 3\n", 1. / 3, "v 0.333333333 0 0"},
+        {"v 9 0 0\nv 10 0 0\nv 9 1 0\n", 9 + 1. / 3, "v 9.333333333 0 0"},
+    };
+    for (size_t i = 0; i < sizeof far / sizeof *far; i++) {
+        obj o = read_good(far[i].text);
+        double place[12];
+        char want[200];
+        memcpy(place, o.position, 3 * (size_t)o.vertices * sizeof *place);
+        place[0] = far[i].x;
+        snprintf(want, sizeof want, "%s%s", far[i].line, strchr(far[i].text, '\n'));
+        ok(writes(&o, place, NULL, want), "far from the origin: %s", far[i].line);
+        obj_free(&o);
+    }
+}
+
 /* A comment joins no line to the next, whatever it ends with and whatever it follows. */
 static void test_comments(void)
 {
@@ -255,6 +286,7 @@ int main(void)
     test_forms();
     test_groups();
     test_lines();
+    test_far();
     test_comments();
     test_gzip();
     test_nonsense();
