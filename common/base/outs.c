@@ -1,6 +1,7 @@
 #include "base/outs.h"
 
 #include "base/mem.h"
+#include "base/temporary.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -69,8 +70,10 @@ out *outs_open(outs *s, const char *path, err *e)
     outs_file f = {.target = find_target(path, e)};
     if (f.target && !check_folder(path, f.target, e))
         f.part = name_part(s, f.target, e);
-    out *o = f.part ? out_open(f.part, false, e) : NULL;
+    out *o = f.part && !temporary_add(f.part, e) ? out_open(f.part, false, e) : NULL;
     if (!o) {
+        if (f.part)
+            temporary_drop(f.part);
         free(f.part);
         free(f.target);
         return NULL;
@@ -94,6 +97,7 @@ int outs_commit(outs *s, err *e)
         keep_mode(f);
         if (rename(f->part, f->target))
             return err_system(e, f->target, errno, "cannot rename into place");
+        temporary_drop(f->part);
         free(f->part);
         f->part = NULL;
     }
@@ -103,8 +107,10 @@ int outs_commit(outs *s, err *e)
 void outs_free(outs *s)
 {
     for (int64_t i = 0; i < s->count; i++) {
-        if (s->file[i].part)
+        if (s->file[i].part) {
             unlink(s->file[i].part);
+            temporary_drop(s->file[i].part);
+        }
         free(s->file[i].part);
         free(s->file[i].target);
     }

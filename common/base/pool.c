@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,6 +92,10 @@ pool *pool_create(int threads, err *e)
     pthread_cond_init(&p->begin, NULL);
     pthread_cond_init(&p->finished, NULL);
     p->worker = mem_array(p->threads, sizeof *p->worker, "threads", e);
+    /* Signals are the main thread's: a handler then never runs beside what it looks at. */
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
     while (p->worker && p->started < p->threads - 1) {
         int code = pthread_create(&p->worker[p->started], NULL, worker_main, p);
         if (code) {
@@ -99,6 +104,7 @@ pool *pool_create(int threads, err *e)
         }
         p->started++;
     }
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
     if (e->status) {
         pool_destroy(p);
         return NULL;

@@ -1,6 +1,7 @@
 #include "base/replace.h"
 
 #include "base/mem.h"
+#include "base/temporary.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -92,7 +93,7 @@ static int take_name(replace *r, const char *nameless, const char *path, err *e)
         int done = nameless ? linkat(AT_FDCWD, nameless, AT_FDCWD, r->temporary, AT_SYMLINK_FOLLOW)
                             : (r->fd = open(r->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
         if (done >= 0)
-            return 0;
+            return temporary_add(r->temporary, e);
         int code = errno;
         free(r->temporary);
         r->temporary = NULL;
@@ -153,6 +154,7 @@ int replace_finish(replace *r, const char *name, err *e)
     if (!bad && rename(r->temporary, r->target))
         bad = err_system(e, name, errno, "cannot rename into place");
     if (!bad) {
+        temporary_drop(r->temporary);
         free(r->temporary);
         r->temporary = NULL;
     }
@@ -164,8 +166,10 @@ void replace_discard(replace *r)
 {
     if (r->target && r->fd >= 0)
         close(r->fd);
-    if (r->temporary)
+    if (r->temporary) {
         unlink(r->temporary);
+        temporary_drop(r->temporary);
+    }
     free(r->temporary);
     free(r->target);
     *r = (replace){0};

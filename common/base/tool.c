@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { LINE = 4096 }; /* the most bytes of a message */
@@ -43,6 +44,29 @@ static int fill_descriptors(err *e)
     return 0;
 }
 
+/* Whether -o would write over the file at path. */
+static bool is_output(const opt_common *c, const char *path)
+{
+    struct stat a, b;
+    return path && c->output && !stat(c->output, &a) && !stat(path, &b) && S_ISREG(a.st_mode) && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
+/* What is written over while it is read, or for want of a second look at the command line, is lost. */
+static int check_output(const tool *t, char *const *operand, const void *options, err *e)
+{
+    const char *lost = NULL;
+    for (int i = 0; i < t->operands; i++)
+        lost = is_output(t->common, operand[i]) ? operand[i] : lost;
+    for (int i = 0; i < opt_own(t->table); i++) {
+        const opt *o = opt_at(t->table, i);
+        const char *path =
+            o->flags & OPT_FILE && o->kind == OPT_TEXT ? *(const char *const *)((const char *)options + o->to) : NULL;
+        lost = is_output(t->common, path) ? path : lost;
+    }
+    return lost ? err_usage(e, "-o '%s' would overwrite what is read; expected another file", lost) : 0;
+}
+
 int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *options, err *e)
 {
     *t = (tool){.table = table, .common = options};
@@ -53,6 +77,8 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
         return -1;
     if (t->common->help || t->common->version || t->common->table)
         return answer(t, e);
+    if (check_output(t, argv + 1, options, e))
+        return -1;
     t->provenance = opt_provenance(table, options, t->operands, argv + 1, e);
     return t->provenance ? 0 : -1;
 }

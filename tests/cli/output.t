@@ -61,6 +61,13 @@ check "-o to a link to nothing" sinew info --json -o "$T/link" "$small"
 is "$(readlink "$T/link")" there "leaves the link"
 check "and makes what it names" cmp "$T/want" "$T/there"
 
+# What is read is not written over.
+cp "$small" "$T/own"
+fails 2 "-o with the operand's own name" "overwrite what is read; expected another file" sinew info -o "$T/own" "$T/own"
+ln -s own "$T/alias"
+fails 2 "or a link to it" "overwrite what is read" sinew info -o "$T/alias" "$T/own"
+check "the file stays" cmp "$small" "$T/own"
+
 # What a message says of a file steers no terminal.
 printf 'x\033[2J\302\233y' >"$T/esc"
 fails 1 "a name with escapes" '^sinew-info: .*x\?\[2J\?\?y: cannot open' sinew info "$(cat "$T/esc")"
