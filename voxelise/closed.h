@@ -18,14 +18,16 @@ typedef struct closed_polygons {
 } closed_polygons;
 
 typedef struct closed_result {
-    bool *drop;       /* polygons: given before, and to be left out; owned */
-    int64_t *open_of; /* surfaces: open edges of each; owned */
-    int64_t open;     /* edges used an odd number of times, by polygons not dropped */
-    int64_t repeated; /* polygons that were given before */
-    bool cancel;      /* none of those is dropped: in pairs they bound nothing, as where two solids touch */
+    bool *drop;        /* polygons: to be left out; owned */
+    int64_t *open_of;  /* surfaces: open edges of each; owned */
+    int64_t open;      /* edges used an odd number of times, by polygons not dropped */
+    int64_t once;      /* polygons that were given before, and dropped */
+    int64_t cancelled; /* polygons that were given before, and cancel in pairs: they bound nothing */
 } closed_result;
 
-/* A polygon given again is dropped, unless the surface closes only with it. */
+/* A polygon given again counts once, unless that part of the surface (what edges join) closes only where such polygons
+ * cancel in pairs, as where two solids touch; or is less open then. Where an even number cancels all are dropped, where
+ * an odd number does all but the first. */
 int closed_check(const closed_polygons *p, closed_result *r, err *e);
 void closed_free(closed_result *r);
 

@@ -174,13 +174,13 @@ static void name_open(const work *w, const closed_result *r, char *text, size_t 
 
 static int report(const work *w, const char *volume, const closed_result *r, bool allow_open, notes *warnings, err *e)
 {
-    if (r->repeated && r->cancel)
+    if (r->cancelled)
         notes_add(warnings,
                   "volume '%s' gives polygons again (%lld of them): they cancel in pairs, as where two solids touch",
-                  volume, (long long)r->repeated);
-    else if (r->repeated)
+                  volume, (long long)r->cancelled);
+    if (r->once)
         notes_add(warnings, "volume '%s' gives polygons again (%lld of them): each counts once", volume,
-                  (long long)r->repeated);
+                  (long long)r->once);
     if (!r->open)
         return 0;
     char names[500];

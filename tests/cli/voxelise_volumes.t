@@ -171,6 +171,39 @@ is "$(counts gland)" "8 " "a surface given twice counts once"
 vox "$T/touch.obj"
 is "$(counts other)" "2 " "two boxes that share a face"
 said "that is said" "gives polygons again \(1 of them\): they cancel in pairs"
+{
+    cat "$T/twice.obj" "$T/twice.obj"
+    box "c" 4 4 4 6 6 6
+    box "d" 6 4 4 8 6 6
+} >"$T/both.obj"
+vox "$T/both.obj"
+is "$(counts other)" "24 " "a surface given four times and two boxes that share a face, in one volume"
+said "what counts once" "gives polygons again \(18 of them\): each counts once"
+said "and what cancels" "gives polygons again \(1 of them\): they cancel in pairs"
+sed '$d' "$T/both.obj" >"$T/torn.obj"
+vox --allow-open "$T/torn.obj"
+said "an open one of them" "is open: 4 open edges \(d 4\)"
+said "leaves the other as it is" "gives polygons again \(18 of them\): each counts once"
+{
+    box "e" 9 4 4 9.5 6 6
+    cat "$T/torn.obj"
+} >"$T/apart.obj"
+vox --allow-open "$T/apart.obj"
+said "one part's gap is its own" "is open: 4 open edges \(d 4\)"
+sed '$d' "$T/one.obj" | sed 's/^f .*$/&\n&/' >"$T/torn.obj"
+fails 1 "a torn surface given twice is open, not gone" "'gland' is open: 4 open edges \(gland 4\)" \
+    voxelise --unit mm -s 1 "$T/torn.obj"
+# What two solids share need not be flat, nor begin at the same corner or go the same way round.
+for face in '2 4 8 6' '4 8 6 2' '6 8 4 2' '4 2 6 8'; do
+    {
+        printf 'v %s\n' '0 0 0' '2 0 0' '0 4 0' '6 4 0' '0 0 4' '6 0 4' '0 4 4' '2 4 4' \
+            '8 0 0' '8 4 0' '8 0 4' '8 4 4'
+        printf 'f %s\n' '1 2 4 3' '5 7 8 6' '1 5 6 2' '3 4 8 7' '1 3 7 5' '2 4 8 6' \
+            '2 9 10 4' '6 8 12 11' '2 6 11 9' '4 10 12 8' '9 11 12 10' "$face"
+    } >"$T/warped.obj"
+    vox "$T/warped.obj"
+    is "$(counts default)" "128 " "two solids that share a polygon which is not flat: $face"
+done
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\ng skin\n' >"$T/none.obj"
 fails 1 "no polygons" "none.obj: no polygons; expected closed surfaces" voxelise --unit mm -s 1 "$T/none.obj"
 done_testing
