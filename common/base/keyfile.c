@@ -56,6 +56,15 @@ static int split(keyfile *k, char *text, err *e)
     return 0;
 }
 
+/* What is in a comment does not matter. */
+static int check_words(const keyfile *k, err *e)
+{
+    for (int i = 0; i < k->count; i++)
+        if (!chars_utf8(k->word[i]))
+            return keyfile_error(k, e, "word %d is not UTF-8; expected text in UTF-8", i + 1);
+    return 0;
+}
+
 int keyfile_next(keyfile *k, err *e)
 {
     for (;;) {
@@ -67,7 +76,7 @@ int keyfile_next(keyfile *k, err *e)
         if (length > KEYFILE_LINE)
             return keyfile_error(k, e, "a line of %lld bytes; expected at most %d", (long long)length, KEYFILE_LINE);
         text = past_mark(text, k->line);
-        if (check_characters(k, text, e) || split(k, text, e))
+        if (check_characters(k, text, e) || split(k, text, e) || check_words(k, e))
             return -1;
         if (k->count)
             return 1;

@@ -57,4 +57,5 @@ check "the good one is done" test -s "$T/c/ball.moved.obj"
 is "$(find "$T/c" -name 'open*')" "" "the bad one left no file"
 is "$messages" 1 "one message for it"
 
+fails 2 "a folder without OBJ files" "no OBJ file in .*expected IN=folder" make -C samples IN="$T/none"
 done_testing

@@ -105,8 +105,21 @@ static void refuse_lines(void)
     refuse_text("a\nb\177\n", 5, "f.txt:2: control character 0x7f", "a DEL");
 }
 
+static void bytes(void)
+{
+    static const char comment[] = "skin level=0 # caf\xE9\n", word[] = "skin\nsk\xFFin level=0\n";
+    file f;
+    file_open(&f, comment, sizeof comment - 1);
+    ok(lines(&f) == 1, "a comment's bytes do not matter");
+    in_close(f.s);
+    file_open(&f, word, sizeof word - 1);
+    ok(lines(&f) == -1 && strstr(f.e.text, "f.txt:2: word 1 is not UTF-8"), "a word's do: %s", f.e.text);
+    in_close(f.s);
+}
+
 int main(void)
 {
+    bytes();
     words();
     pairs();
     refuse_pair("skin levl=0", "unknown key 'levl'; did you mean 'level'?");
