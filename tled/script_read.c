@@ -2,6 +2,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
+#include "mesh/lattice.h"
 #include "mesh/surface.h"
 #include "tled/script.h"
 
@@ -23,7 +24,8 @@ typedef struct reader {
     keyfile k;
     entry *entries;
     int64_t count, capacity;
-    int64_t first; /* curves before these came from the command line */
+    int64_t first;  /* curves before these came from the command line */
+    double near[3]; /* m: how far past a box a node may be that counts as on its face, along each axis */
 } reader;
 
 /* Nodes of a target: appended to s->node as those of the curve added last. */
@@ -49,7 +51,7 @@ static int nodes_in_ball(reader *r, const script_curve *c, err *e)
     for (int64_t i = 0; i < position->rows; i++, p += 3) {
         double away = hypot(hypot(p[0] - c->box[0], p[1] - c->box[1]), p[2] - c->box[2]);
         nearest = away < nearest ? away : nearest;
-        if (away > c->box[3])
+        if (away > c->box[3] + fmax(r->near[0], fmax(r->near[1], r->near[2])))
             continue;
         if (node_add(r->s, i, e))
             return -1;
@@ -67,7 +69,10 @@ static int nodes_in_box(reader *r, const script_curve *c, err *e)
     int64_t found = 0;
     for (int64_t i = 0; position && i < position->rows; i++) {
         const double *p = position->f64 + 3 * i, *low = c->box, *high = c->box + 3;
-        if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1] || p[2] < low[2] || p[2] > high[2])
+        bool outside = false;
+        for (int a = 0; a < 3; a++)
+            outside |= p[a] < low[a] - r->near[a] || p[a] > high[a] + r->near[a];
+        if (outside)
             continue;
         if (node_add(r->s, i, e))
             return -1;
@@ -343,11 +348,22 @@ static int refuse_conflicts(reader *r, err *e)
     return status;
 }
 
+/* Sides of voxels are seldom whole in binary: 3 x 1.1 mm is more than 3.3 mm by a rounding. */
+static void take_near(reader *r)
+{
+    lattice l;
+    err none = {0};
+    bool known = model_meta_of(r->m, "lattice.spacing") && !lattice_of(r->m, &l, &none);
+    for (int a = 0; a < 3; a++)
+        r->near[a] = known ? 1e-9 * l.spacing[a] : 0;
+}
+
 int script_read(script *s, in *source, const model *m, notes *warnings, err *e)
 {
     reader r = {.s = s, .m = m, .warnings = warnings, .first = s->curves};
     int more, status = -1;
     keyfile_open(&r.k, source);
+    take_near(&r);
     while ((more = keyfile_next(&r.k, e)) > 0)
         if (take_line(&r, e))
             goto out;

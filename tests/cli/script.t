@@ -57,6 +57,14 @@ u=$(at 0.02,0.02,0.02)
 tled-run -q -g 0,0,-9.81 --ramp 0.1 <"$T/model" >"$T/out"
 is "$(at 0.02,0.02,0.02)" "$u" "gravity in a script is -g with its ramp"
 
+# 3 x 1.1 mm is more than 3.3 mm by a rounding: such nodes are on the box's face all the same.
+awk -v nx=3 -v ny=3 -v nz=3 -v h=0.0011 -v held=none -f tests/cli/block.awk >"$T/model"
+run '0 displace 0,0,0,3.3mm,3.3mm,3.3mm 0,0,0
+0 force 0,0,0 3.3mm 0,0,0
+' -n 1
+is "$(tled-run --script "$T/script" -n 1 <"$T/model" 2>&1 >/dev/null | sed -n 's/.* \([0-9]*\) held.*/\1/p')" 64 \
+    "a box holds the nodes on its faces, whatever the rounding"
+
 # The momentum of a free block (text, $T/out): nodes weigh an eighth of 1000 kg/m3 x h^3 for each element that they are in.
 momentum() { # COLUMN
     awk -v c="$1" '
