@@ -66,7 +66,7 @@ int main(void)
     double bent[3][3] = {{1.2, .3, -.1}, {.05, .8, .2}, {-.15, .1, 1.1}};
     const double fibre[3] = {2. / 7, 3. / 7, 6. / 7};
     double squeezed[3][3] = {{.7, .1, 0}, {0, .75, -.2}, {.3, 0, .8}};
-    test_homogeneous();
+    test_homogeneous(1e-6);
     test_rotation(1e-10);
     test_hourglass(1e-12);
     test_force_length();

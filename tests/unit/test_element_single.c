@@ -4,7 +4,7 @@
 
 int main(void)
 {
-    test_homogeneous();
+    test_homogeneous(1e-4);
     test_rotation(1e-3);
     test_hourglass(1e-5);
     test_force_length();
