@@ -27,7 +27,7 @@ typedef struct cpu_state {
     pool *threads;
     element_shape shape;
     cpu_kind *kind;                               /* volumes */
-    real *displacement, *velocity, *acceleration; /* nodes x 3; between steps the velocity is half a step behind */
+    real *displacement, *velocity, *acceleration; /* nodes x 3: all at one time, after each step */
     real *force;                                  /* elements x 8 x 3: what elements pull with; then zeros */
     real *mass_inverse;                           /* nodes */
     double *now, *next;                           /* the curves' values, 3 a curve */
