@@ -1,12 +1,18 @@
 #include "tled/run.h"
 
+#include "base/mem.h"
 #include "tled/relax.h"
 #include "tled/step.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-enum { CUTS_MAX = 10 }; /* a step cut 2^10 times is no step */
+enum {
+    CUTS_MAX = 10, /* a step cut 2^10 times is no step */
+    STUCK = 5000   /* steps, at least, without coming closer to rest */
+};
 
 /* A step is safe up to this share of the stable one: it changes a little between two checks. */
 static const double margin = .8;
@@ -16,10 +22,15 @@ typedef struct run {
     void *state;
     watch *watch;
     relax relax;
-    tled_plan plan; /* plan.first: steps counted */
-    int64_t from;   /* the first of this run */
+    tled_plan plan;      /* plan.first: steps counted */
+    int64_t from;        /* the first of this run */
+    tled_problem saved;  /* p, but that it begins at the last check: states are made from it. The rest is p's */
+    int64_t saved_first; /* plan.first there */
     int cuts;
     double damping;
+    double closest; /* to rest so far, as a share; and the step that it came so close in */
+    int64_t closest_at;
+    double remaining;
     err *e;
 } run;
 
@@ -39,84 +50,80 @@ tled_plan run_plan(double start, double rate)
     return plan;
 }
 
-double run_load(const watch_sight *s)
+double run_share(const watch_sight *s, double way)
 {
-    return fmax(s->load, .01 * s->load_most);
+    return way == 0 ? 0 : way / fmax(s->moved, .01 * s->moved_most);
 }
 
-bool run_at_rest(const watch_sight *s, double tolerance)
+static double step_now(const run *n)
 {
-    double strain = fmax(s->strain, 1e-4 * s->strain_most);
-    return s->residual <= tolerance * run_load(s) && s->kinetic <= tolerance * tolerance * strain;
+    return ldexp(1 / n->r->rate, -n->cuts);
 }
 
-/* Status 3, with where and when. Returns -1. */
-static int diverged(const run *n, int64_t element, const char *what)
+/* Status 3, with where and when, of what was looked at last. Returns -1. */
+static int diverged(const run *n)
 {
     const tled_problem *p = n->r->p;
+    const watch_sight *s = &n->watch->sight;
+    int64_t element = s->broken >= 0 ? s->broken : s->stable_element >= 0 ? s->stable_element : 0;
+    char what[200] = "is no longer finite";
+    if (s->broken >= 0 && s->inverted)
+        snprintf(what, sizeof what, "is inverted");
+    else if (s->broken < 0)
+        snprintf(what, sizeof what, "has a stable step of %.3g ms now, below the step of %.3g ms%s", 1e3 * s->stable,
+                 1e3 * step_now(n), n->r->rate_fixed ? "; expected a smaller --dt" : "");
     err_set(n->e, NULL, 0, "diverged at step %lld, %.6g s: element %lld (volume '%s') %s",
-            (long long)(n->plan.first - n->from), tled_time(&n->plan, 0), (long long)element,
+            (long long)(n->plan.first - n->from), s->time, (long long)element,
             p->volume[p->element_volume[element]].name, what);
     n->e->status = STATUS_DIVERGED;
     return -1;
 }
 
+static int look_at(run *n, double time)
+{
+    return watch_look(n->watch, n->r->device, n->state, time, n->e);
+}
+
 static int look(run *n)
 {
-    if (watch_look(n->watch, n->r->device, n->state, tled_time(&n->plan, 0), n->e))
-        return -1;
+    return look_at(n, tled_time(&n->plan, 0));
+}
+
+/* Whether the steps of now can have led to what was looked at last: nothing is broken, and they are stable still. */
+static bool is_sound(const run *n)
+{
     const watch_sight *s = &n->watch->sight;
-    if (s->broken < 0)
-        return 0;
-    return diverged(n, s->broken, s->inverted ? "is inverted" : "is no longer finite");
+    return s->broken < 0 && s->stable >= step_now(n) * (1 - 1e-12);
+}
+
+/* Keeps what was looked at last, to come back to. */
+static void save(run *n)
+{
+    size_t size = 3 * (size_t)n->saved.nodes * sizeof(double);
+    memcpy(n->saved.displacement, n->watch->displacement, size);
+    memcpy(n->saved.velocity, n->watch->velocity, size);
+    n->saved.start = tled_time(&n->plan, 0);
+    n->saved_first = n->plan.first;
+}
+
+static int restore(run *n)
+{
+    n->r->device->destroy(n->state);
+    n->state = n->r->device->create(&n->saved, n->r->threads, n->e);
+    n->plan.first = n->saved_first;
+    return n->state ? 0 : -1;
 }
 
 /* Chooses how often a step is cut: from the state alone, so that it is the same whatever went before. */
 static int choose_step(run *n)
 {
-    const watch_sight *s = &n->watch->sight;
-    char text[200];
-    if (n->r->rate_fixed && s->stable * n->r->rate >= 1)
+    if (n->r->rate_fixed)
         return 0;
-    for (n->cuts = 0; n->cuts <= CUTS_MAX && !n->r->rate_fixed; n->cuts++)
-        if (ldexp(margin * s->stable * n->r->rate, n->cuts) >= 1)
+    for (n->cuts = 0; n->cuts <= CUTS_MAX; n->cuts++)
+        if (margin * n->watch->sight.stable >= step_now(n))
             return 0;
-    snprintf(text, sizeof text, "has a stable step of %.3g ms now, below the step of %.3g ms; expected a smaller --dt",
-             1e3 * s->stable, 1e3 / n->r->rate);
-    return diverged(n, s->stable_element < 0 ? 0 : s->stable_element, text);
-}
-
-/* What happens at a check. Returns -1, or whether the run is over. */
-static int check(run *n)
-{
-    const run_setup *r = n->r;
-    const watch_sight *s = &n->watch->sight;
-    bool settled = s->time >= script_end(r->p->script);
-    if (choose_step(n))
-        return -1;
-    if (r->adapt && settled) {
-        relax_update(&n->relax, n->watch);
-        n->damping = n->relax.damping;
-    }
-    r->checked(r->context, n->plan.first - n->from, s, INT64_C(1) << n->cuts, n->damping);
-    return r->rest >= 0 && settled && run_at_rest(s, r->rest);
-}
-
-static int write_frame(run *n)
-{
-    return n->r->frame(n->r->context, tled_time(&n->plan, 0), n->watch->displacement, n->watch->velocity, n->e);
-}
-
-/* The first step past plan.first with a frame. */
-static int64_t next_frame(const run *n)
-{
-    double every = n->r->every, passed = floor(tled_time(&n->plan, 0) / every);
-    int64_t at = n->plan.first;
-    if (every * n->r->rate <= 1)
-        return at + 1;
-    for (int more = 0; at <= n->plan.first; more++)
-        at = run_steps_to((passed + more) * every - n->plan.origin, n->r->rate);
-    return at;
+    n->cuts = CUTS_MAX;
+    return diverged(n);
 }
 
 static int advance(run *n, int64_t to)
@@ -129,21 +136,154 @@ static int advance(run *n, int64_t to)
     return 0;
 }
 
-/* Steps to the end. Looks at the state at every check, every frame and the end; decides only at checks. */
+/* One part after another of the step past what is saved, until it breaks. */
+static int find_part(run *n)
+{
+    int64_t parts = INT64_C(1) << n->cuts;
+    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, n->saved_first * parts, n->damping};
+    if (restore(n))
+        return -1;
+    n->plan.first++;
+    for (int64_t i = 0; i < parts; i++, cut.first++)
+        if (n->r->device->step(n->state, &cut, 1, n->e) || look_at(n, tled_time(&cut, 1)))
+            return -1;
+        else if (!is_sound(n))
+            break;
+    return diverged(n);
+}
+
+/* What lies before `to` is not sound: goes there again, looking after each step, to say where and when it broke. Returns -1. */
+static int find_break(run *n, int64_t to)
+{
+    if (restore(n))
+        return -1;
+    while (n->plan.first < to) {
+        if (advance(n, n->plan.first + 1) || look(n))
+            return -1;
+        if (!is_sound(n))
+            break;
+        save(n);
+    }
+    return find_part(n);
+}
+
+/* Goes to the next check, or the end, in steps that are cut until its state is sound. */
+static int cut_to(run *n, int64_t to)
+{
+    for (;; n->cuts++) {
+        if (advance(n, to) || look(n))
+            return -1;
+        if (is_sound(n))
+            return 0;
+        if (n->cuts == CUTS_MAX)
+            return find_break(n, to);
+        if (restore(n))
+            return -1;
+    }
+}
+
+static int write_frame(run *n)
+{
+    return n->r->frame(n->r->context, tled_time(&n->plan, 0), n->watch->displacement, n->watch->velocity, n->e);
+}
+
+/* The first step past `after` with a frame. */
+static int64_t next_frame(const run *n, int64_t after)
+{
+    double every = n->r->every;
+    int64_t at = after;
+    if (every == 0)
+        return INT64_MAX;
+    if (every * n->r->rate <= 1)
+        return at + 1;
+    double passed = floor(tled_time(&n->plan, after - n->plan.first) / every);
+    for (int more = 0; at <= after; more++)
+        at = run_steps_to((passed + more) * every - n->plan.origin, n->r->rate);
+    return at;
+}
+
+/* Goes on from what is saved to the next check, or the end, with the frames before it. */
+static int go_to(run *n, int64_t to)
+{
+    int64_t at = next_frame(n, n->plan.first);
+    if (!n->r->rate_fixed) {
+        if (cut_to(n, to))
+            return -1;
+        if (at >= to)
+            return 0;
+        if (restore(n))
+            return -1;
+    }
+    for (; at < to; at = next_frame(n, at)) {
+        if (advance(n, at) || look(n))
+            return -1;
+        if (n->watch->sight.broken >= 0)
+            return find_break(n, at);
+        if (write_frame(n))
+            return -1;
+    }
+    if (advance(n, to) || look(n))
+        return -1;
+    return is_sound(n) ? 0 : find_break(n, to);
+}
+
+/* At rest, or single precision comes no closer. Returns -1, or whether it is at rest. */
+static int is_at_rest(run *n)
+{
+    const run_setup *r = n->r;
+    const watch_sight *s = &n->watch->sight;
+    double period = 2 * acos(-1) / n->relax.lowest;
+    double share = n->remaining = run_share(s, relax_remaining(&n->relax, s));
+    if (share <= r->rest)
+        return 1;
+    if (n->closest == INFINITY || share < .9 * n->closest) {
+        n->closest = share;
+        n->closest_at = n->plan.first;
+    }
+    if (!r->single || (double)(n->plan.first - n->closest_at) <= fmax(STUCK, 20 * period * r->rate))
+        return 0;
+    return err_set(n->e, NULL, 0,
+                   "in single precision it comes no closer to rest than %.3g of its displacement, expected %.3g; a "
+                   "larger --rest, or --precision double",
+                   n->closest, r->rest);
+}
+
+/* What happens at a check. Returns -1, or whether the run is over. */
+static int check(run *n)
+{
+    const run_setup *r = n->r;
+    const watch_sight *s = &n->watch->sight;
+    bool settled = r->rest >= 0 && s->time >= script_end(r->p->script);
+    int over = 0;
+    if (choose_step(n))
+        return -1;
+    if (settled) {
+        relax_update(&n->relax, n->watch);
+        over = is_at_rest(n);
+    }
+    if (settled && r->adapt)
+        n->damping = 2 * n->relax.frequency;
+    r->checked(r->context, n->plan.first - n->from, s, n->remaining, INT64_C(1) << n->cuts, n->damping);
+    return over;
+}
+
+/* Steps to the end. Decides only at checks. */
 static int loop(run *n, run_end *end)
 {
     const run_setup *r = n->r;
     int64_t last = n->plan.first + r->steps, written = -1;
-    int over = look(n) ? -1 : check(n);
+    int over = look(n) ? -1 : n->watch->sight.broken >= 0 ? diverged(n) : check(n);
+    if (over >= 0 && !is_sound(n))
+        return diverged(n);
     while (!over && n->plan.first < last) {
-        int64_t to = (n->plan.first / r->check + 1) * r->check, frame_at = r->every > 0 ? next_frame(n) : last;
+        int64_t to = (n->plan.first / r->check + 1) * r->check;
         to = to < last ? to : last;
-        to = to < frame_at ? to : frame_at;
-        if (advance(n, to) || look(n))
+        save(n);
+        if (go_to(n, to))
             return -1;
         if (to % r->check == 0)
             over = check(n);
-        if (over >= 0 && r->every > 0 && to == frame_at) {
+        if (over >= 0 && next_frame(n, to - 1) == to) {
             written = to;
             over = write_frame(n) ? -1 : over;
         }
@@ -151,30 +291,49 @@ static int loop(run *n, run_end *end)
     end->steps = n->plan.first - n->from;
     end->sight = n->watch->sight;
     end->rested = over > 0;
+    end->remaining = n->remaining;
     if (over >= 0 && r->rest >= 0 && !end->rested)
-        return err_set(
-            n->e, NULL, 0,
-            "not at rest after %lld steps, %.6g s: residual %.3g of the load, expected %.3g; a larger --rest, or -t to "
-            "stop at a time",
-            (long long)end->steps, end->sight.time, end->sight.residual / run_load(&end->sight), r->rest);
+        return err_set(n->e, NULL, 0,
+                       "not at rest after %lld steps, %.6g s: still %.3g of its displacement to go, expected %.3g; a "
+                       "larger --rest, or -t to stop at a time",
+                       (long long)end->steps, end->sight.time, n->remaining, r->rest);
     return over < 0 ? -1 : written == n->plan.first ? 0 : write_frame(n);
+}
+
+static int prepare(run *n)
+{
+    const run_setup *r = n->r;
+    int64_t count = 3 * r->p->nodes;
+    n->watch = watch_create(r->p, r->threads, n->e);
+    n->saved.displacement = mem_array(count, sizeof(double), "the run", n->e);
+    n->saved.velocity = mem_array(count, sizeof(double), "the run", n->e);
+    if (!n->watch || !n->saved.displacement || !n->saved.velocity)
+        return -1;
+    if (r->rate_fixed)
+        n->watch->raise = 1;
+    if (r->rest >= 0 && relax_make(&n->relax, r->p, r->frequency, n->watch->rest_step, n->e))
+        return -1;
+    n->state = r->device->create(r->p, r->threads, n->e);
+    return n->state ? 0 : -1;
 }
 
 int run_go(const run_setup *r, run_end *end, err *e)
 {
-    run n = {.r = r, .plan = run_plan(r->p->start, r->rate), .damping = r->damping, .e = e};
-    int result = -1;
-    n.from = n.plan.first;
-    n.watch = watch_create(r->p, r->threads, e);
-    if (!n.watch || (r->adapt && relax_make(&n.relax, r->p, r->damping, n.watch->rest_step, e)))
-        goto out;
-    n.state = r->device->create(r->p, r->threads, e);
-    if (n.state)
-        result = loop(&n, end);
-out:
+    run n = {.r = r,
+             .plan = run_plan(r->p->start, r->rate),
+             .saved = *r->p,
+             .damping = r->damping,
+             .closest = INFINITY,
+             .remaining = INFINITY,
+             .e = e};
+    n.from = n.closest_at = n.plan.first;
+    n.saved.displacement = n.saved.velocity = NULL;
+    int result = prepare(&n) ? -1 : loop(&n, end);
     if (n.state)
         r->device->destroy(n.state);
     relax_free(&n.relax);
     watch_destroy(n.watch);
+    free(n.saved.displacement);
+    free(n.saved.velocity);
     return result;
 }

@@ -3,8 +3,10 @@
  *
  * Steps are counted, and times are counts over a rate. Where the caller does not fix the step, it may be cut in halves while
  * the tissue's stable step is small: the steps counted stay the same, each taken as 2, 4, ... That is decided only at
- * checks, whose places depend on the count alone, so what is written out does not change the result, and a run that goes on
- * from a frame at a check takes the same steps as one that never stopped.
+ * checks, whose places depend on the count alone, from the state there. Where the state at the next check shows that it was too
+ * little, the run goes back to the check before and cuts once more. So what is written out does not change the result, and
+ * a run that goes on from a frame at a check takes the same steps as one that never stopped. Frames between two checks are
+ * written once the second is known to be sound, for which those steps are taken again.
  */
 #ifndef SINEW_RUN_H
 #define SINEW_RUN_H
@@ -16,24 +18,28 @@ typedef struct run_setup {
     const tled_problem *p;
     const backend *device;
     pool *threads;
-    double rate;     /* steps a second */
-    bool rate_fixed; /* never cut the step: fail instead */
-    int64_t check;   /* steps between looks */
-    int64_t steps;   /* how many to take; with rest: at most */
-    double rest;     /* tolerance: end at rest; < 0: after `steps` */
-    double damping;  /* 1/s */
-    bool adapt;      /* find the damping on the way, from the end of the script on */
-    double every;    /* s: a frame at each multiple; 0: the last state only */
+    double rate;      /* steps a second */
+    bool rate_fixed;  /* never cut the step: fail instead */
+    int64_t check;    /* steps between looks */
+    int64_t steps;    /* how many to take; with rest: at most */
+    double rest;      /* tolerance: end at rest; < 0: after `steps` */
+    double frequency; /* rad/s: relax_guess */
+    double damping;   /* 1/s */
+    bool adapt;       /* find the damping on the way, from the end of the script on */
+    bool single;      /* numbers of single precision, which may come no closer to rest: then fail */
+    double every;     /* s: a frame at each multiple; 0: the last state only */
     void *context;
     /* A state to write out. -1 with e filled ends the run. */
     int (*frame)(void *context, double time, const double *displacement, const double *velocity, err *e);
-    /* After every check. cut: parts that each step is taken in from now on. */
-    void (*checked)(void *context, int64_t step, const watch_sight *sight, int64_t cut, double damping);
+    /* After every check. remaining: see run_remaining; cut: parts that each step is taken in from now on. */
+    void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+                    double damping);
 } run_setup;
 
 typedef struct run_end {
     int64_t steps; /* taken, cuts not counted */
     bool rested;
+    double remaining;  /* with rest: at the last check */
     watch_sight sight; /* of the last state */
 } run_end;
 
@@ -44,12 +50,8 @@ int64_t run_steps_to(double t, double rate);
  * so that it goes on as if it had never stopped. */
 tled_plan run_plan(double start, double rate);
 
-/* What the residual is measured against: the load, or 1/100 of the largest so far, for what is let go. */
-double run_load(const watch_sight *s);
-
-/* Whether the model is at rest: residual <= tolerance x run_load, and kinetic energy <= tolerance^2 x strain energy
- * (or 1/10000 of the largest so far). */
-bool run_at_rest(const watch_sight *s, double tolerance);
+/* `way` (m) as a share of what the tissue has moved, or of 1/100 of the most that it had, for what is let go. */
+double run_share(const watch_sight *s, double way);
 
 /* Runs. -1 with e filled; status 3 where the simulation diverged: e names step, time, element and volume. */
 int run_go(const run_setup *r, run_end *end, err *e);

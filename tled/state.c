@@ -232,23 +232,29 @@ void tled_external(const tled_problem *p, const double *value, int64_t n, double
     }
 }
 
-/* One wave over the elements: a node is one step farther than the nearest node of an element that it is in. Returns
- * whether any node was reached first at `step`. */
-static bool spread(const tled_problem *p, int32_t *steps, int32_t step)
+/* A search outwards: nodes in the order in which they were reached. */
+typedef struct search {
+    int32_t *steps, *queue; /* nodes: from where it began, or -1; nodes */
+    int64_t count;
+} search;
+
+static void reach_node(search *s, int32_t node, int32_t step)
 {
-    bool reached = false;
-    for (int64_t i = 0; i < p->elements; i++) {
-        const int32_t *node = p->element_node + 8 * i;
-        bool touched = false;
-        for (int c = 0; c < 8; c++)
-            touched |= steps[node[c]] == step - 1;
-        for (int c = 0; touched && c < 8; c++)
-            if (steps[node[c]] < 0) {
-                steps[node[c]] = step;
-                reached = true;
-            }
+    if (s->steps[node] >= 0)
+        return;
+    s->steps[node] = step;
+    s->queue[s->count++] = node;
+}
+
+/* Goes on from node `at` of the queue: a node is one step farther than the nearest node of an element that it is in. */
+static void spread(const tled_problem *p, search *s, int64_t at)
+{
+    for (; at < s->count; at++) {
+        int64_t node = s->queue[at];
+        for (int i = 0; i < 8 && p->corner[8 * node + i] < p->elements * 8; i++)
+            for (int c = 0; c < 8; c++)
+                reach_node(s, p->element_node[p->corner[8 * node + i] / 8 * 8 + c], s->steps[node] + 1);
     }
-    return reached;
 }
 
 static double diagonal(const tled_problem *p)
@@ -265,17 +271,49 @@ static double diagonal(const tled_problem *p)
     return sqrt(square);
 }
 
-double tled_reach(const tled_problem *p, err *e)
+static bool is_pushed(const tled_problem *p, int64_t node)
 {
-    int32_t farthest = 0, *steps = mem_array(p->nodes, sizeof *steps, "distances from what is held", e);
-    if (!steps)
-        return -1;
-    for (int64_t n = 0; n < p->nodes; n++) {
-        const int32_t *hold = p->hold + 3 * n;
-        steps[n] = hold[0] != HOLD_FREE || hold[1] != HOLD_FREE || hold[2] != HOLD_FREE ? 0 : -1;
+    return p->gravity >= 0 || p->force_start[node + 1] > p->force_start[node];
+}
+
+/* What the search from held nodes did not reach, part by part. */
+static void find_loose(const tled_problem *p, search *s, tled_parts *parts)
+{
+    parts->first = -1;
+    for (int64_t i = 0; i < p->elements; i++)
+        if (s->steps[p->element_node[8 * i]] < 0) {
+            parts->first = parts->first < 0 ? i : parts->first;
+            parts->in_them++;
+        }
+    for (int64_t n = 0; n < p->nodes; n++)
+        if (s->steps[n] < 0) {
+            int64_t at = s->count;
+            parts->loose++;
+            reach_node(s, (int32_t)n, 0);
+            spread(p, s, at);
+            for (; at < s->count; at++)
+                parts->pushed |= is_pushed(p, s->queue[at]);
+        }
+}
+
+int tled_parts_of(const tled_problem *p, tled_parts *parts, err *e)
+{
+    search s = {mem_array(p->nodes, sizeof *s.steps, "the parts", e),
+                mem_array(p->nodes, sizeof *s.queue, "the parts", e), 0};
+    *parts = (tled_parts){0};
+    if (s.steps && s.queue) {
+        for (int64_t n = 0; n < p->nodes; n++)
+            s.steps[n] = -1;
+        for (int64_t n = 0; n < p->nodes; n++)
+            if (p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE)
+                reach_node(&s, (int32_t)n, 0);
+        spread(p, &s, 0);
+        int32_t farthest = s.count ? s.steps[s.queue[s.count - 1]] : 0;
+        parts->reach = s.count ? fmax(farthest, 1) * fmax(p->side[0], fmax(p->side[1], p->side[2])) : diagonal(p);
+        find_loose(p, &s, parts);
     }
-    while (p->held && spread(p, steps, farthest + 1))
-        farthest++;
-    free(steps);
-    return p->held ? fmax(farthest, 1) * fmax(p->side[0], fmax(p->side[1], p->side[2])) : diagonal(p);
+    bool done = s.steps && s.queue;
+    free(s.steps);
+    free(s.queue);
+    return done ? 0 : -1;
 }

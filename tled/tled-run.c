@@ -75,6 +75,7 @@ typedef struct session {
     model m;
     script script;
     tled_problem problem;
+    tled_parts parts;
     pool *threads;
     run_setup run;
     progress progress;
@@ -116,23 +117,23 @@ static int make_script(session *s, const struct options *o, err *e)
     return result;
 }
 
-static bool pushed(const script *s)
-{
-    bool any = false;
-    for (int64_t i = 0; i < s->curves; i++)
-        any |= s->curve[i].verb == SCRIPT_GRAVITY || s->curve[i].verb == SCRIPT_FORCE;
-    return any;
-}
-
 static int check_held(session *s, err *e)
 {
-    if (s->problem.held)
-        return 0;
-    if (s->run.rest >= 0 && pushed(&s->script))
+    char what[200] = "the model: no node is rigid or displaced";
+    const tled_parts *parts = &s->parts;
+    if (tled_parts_of(&s->problem, &s->parts, e))
+        return -1;
+    if (s->problem.held && parts->loose)
+        snprintf(what, sizeof what, "%lld %s of the model, %lld elements, the first of them %lld (volume '%.100s')",
+                 (long long)parts->loose, parts->loose == 1 ? "part" : "parts", (long long)parts->in_them,
+                 (long long)parts->first, s->problem.volume[s->problem.element_volume[parts->first]].name);
+    if (parts->pushed && s->run.rest >= 0)
         return err_set(e, NULL, 0,
-                       "nothing holds the model, so that it never comes to rest under a load; expected rigid "
-                       "nodes (attach makes them), or -t or -n to end");
-    notes_add(&s->warnings, "nothing holds the model: no node is rigid or displaced");
+                       "nothing holds %s, so that it never comes to rest under a load; expected rigid nodes (attach "
+                       "makes them), or -t or -n to end",
+                       what);
+    if (parts->loose)
+        notes_add(&s->warnings, "nothing holds %s", what);
     return 0;
 }
 
@@ -147,7 +148,7 @@ static int choose_rate(session *s, const struct options *o, err *e)
         s->run.check = 50;
     if (o->dt > s->stable)
         return err_set(e, NULL, 0, "--dt %g is above the stable step; expected at most %.6g s (volume '%s')", o->dt,
-                       s->stable, s->problem.volume[stiffest].name);
+                       s->stable * (1 - 1e-5), s->problem.volume[stiffest].name); /* rounded down */
     return 0;
 }
 
@@ -166,11 +167,11 @@ static int choose_end(session *s, const struct options *o, err *e)
     return 0;
 }
 
-static int choose_damping(session *s, const struct options *o, err *e)
+static void choose_damping(session *s, const struct options *o)
 {
-    s->run.damping = o->damping >= 0 ? o->damping : relax_estimate(&s->problem, e);
+    s->run.frequency = relax_guess(&s->problem, s->parts.reach);
+    s->run.damping = o->damping >= 0 ? o->damping : 2 * s->run.frequency;
     s->run.adapt = o->damping < 0 && s->run.rest >= 0;
-    return s->run.damping < 0 ? -1 : 0;
 }
 
 /* After the options that were given: how it ends, what ran, and every default that changes the result. */
@@ -225,12 +226,6 @@ out:
     return result;
 }
 
-/* As a share of the load. */
-static double residual(const watch_sight *w)
-{
-    return run_load(w) > 0 ? w->residual / run_load(w) : 0;
-}
-
 static int write_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
 {
     session *s = context;
@@ -248,13 +243,16 @@ static int write_frame(void *context, double time, const double *displacement, c
     return result;
 }
 
-static void checked(void *context, int64_t step, const watch_sight *sight, int64_t cut, double damping)
+static void checked(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+                    double damping)
 {
     session *s = context;
+    char left[60] = "";
     progress_at(&s->progress, (double)step);
-    tool_detail(
-        s->t, "%.6g s: residual %.3g of the load, kinetic %.3g J, strain %.3g J, stable step %.4g ms, damping %.4g 1/s",
-        sight->time, residual(sight), sight->kinetic, sight->strain, 1e3 * sight->stable, damping);
+    if (isfinite(remaining))
+        snprintf(left, sizeof left, "%.3g of its displacement to go, ", remaining);
+    tool_detail(s->t, "%.6g s: %skinetic %.3g J, strain %.3g J, stable step %.4g ms, damping %.4g 1/s", sight->time,
+                left, sight->kinetic, sight->strain, 1e3 * sight->stable, damping);
     if (cut != s->cut)
         tool_detail(s->t, "each step is taken in %lld from now on, for element %lld", (long long)cut,
                     (long long)sight->stable_element);
@@ -270,6 +268,8 @@ static void say_start(const session *s, const char *device, const struct options
              o->precision ? "single" : "double");
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable, 1e3 / r->rate, r->damping,
              r->adapt ? ", then adapted" : "");
+    if (p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
+        tool_say(s->t, "past the ramp of %g s: -c and -g act in full at once", o->ramp);
     if (r->rest >= 0)
         tool_say(s->t, "from %.6g s to rest, tolerance %g", p->start, r->rest);
     else
@@ -279,10 +279,11 @@ static void say_start(const session *s, const char *device, const struct options
 static void say_end(const session *s, const run_end *end)
 {
     const watch_sight *w = &end->sight;
-    tool_say(
-        s->t,
-        "%s %.6g s, after %lld steps: kinetic energy %.3g J, residual %.3g of the load, largest displacement %.6g mm",
-        end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic, residual(w), 1e3 * w->largest);
+    char left[80] = "";
+    if (end->rested)
+        snprintf(left, sizeof left, ", %.3g of its displacement to go", end->remaining);
+    tool_say(s->t, "%s %.6g s, after %lld steps: kinetic energy %.3g J, largest displacement %.6g mm%s",
+             end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic, 1e3 * w->largest, left);
 }
 
 /* From the model that came to the problem and how it is to be run. */
@@ -292,9 +293,10 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     static const char *const names[] = {"auto", "cuda", "cpu"};
     s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps ? rest_tolerance : -1;
     if (change_materials(s, o, e) || make_script(s, o, e) ||
-        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) || check_held(s, e) ||
-        choose_rate(s, o, e) || choose_damping(s, o, e))
+        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) || check_held(s, e) || choose_rate(s, o, e))
         return -1;
+    choose_damping(s, o);
+    s->run.single = o->precision;
     s->run.device = backend_choose(backends, names[o->device], device, size, e);
     int threads = tool_threads(s->t, e);
     s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;

@@ -8,10 +8,11 @@
 
 enum { CHUNK = 256 }; /* elements, or nodes */
 
-struct watch_part {                              /* of one chunk */
-    double kinetic, strain, muscle;              /* J, J, N2 */
-    double residual, outside, reaction, largest; /* N2, N2, N2, m2 */
-    double frequency;                            /* 1/s2: the largest seen, raised by 1 % */
+struct watch_part {                          /* of one chunk */
+    double kinetic, strain;                  /* J */
+    double acceleration, speed, moved, mass; /* sums over mass: kg m2/s4, kg m2/s2, kg m2, kg */
+    double largest;                          /* m2 */
+    double frequency;                        /* 1/s2: the largest seen, raised by 1 % */
     int64_t frequency_element, broken;
     bool inverted;
 };
@@ -22,24 +23,6 @@ static element_corners corners_of(const watch *w, int64_t element, int a)
     for (int i = 0; i < 8; i++)
         c.at[i] = w->displacement[3 * (int64_t)w->p->element_node[8 * element + i] + a];
     return c;
-}
-
-static double square_of(element_corners c)
-{
-    double sum = 0;
-    for (int i = 0; i < 8; i++)
-        sum += c.at[i] * c.at[i];
-    return sum;
-}
-
-/* |f|^2 of what the muscle alone pulls with at the element's corners. */
-static double muscle_force(element_tensor h, element_fibre fibre, element_shape shape)
-{
-    const element_modes none = {0};
-    element_tensor p = element_active(h, fibre);
-    return square_of(element_gather(none, p.xx, p.xy, p.xz, shape.area, 0)) +
-           square_of(element_gather(none, p.yx, p.yy, p.yz, shape.area, 0)) +
-           square_of(element_gather(none, p.zx, p.zy, p.zz, shape.area, 0));
 }
 
 static element_fibre fibre_of(const watch *w, int64_t i)
@@ -62,7 +45,7 @@ static void look_at_step(const watch *w, const tled_volume *v, int64_t i, elemen
     step_matrix_of(w->p, v, h, fibre, &a);
     if (step_below(&a, part->frequency))
         return;
-    part->frequency = 1.01 * step_largest(&a);
+    part->frequency = w->raise * step_largest(&a);
     part->frequency_element = i;
 }
 
@@ -81,17 +64,16 @@ static void look_at_element(const watch *w, int64_t i, element_shape shape, stru
         part->broken = part->broken < 0 ? i : part->broken;
         return;
     }
-    element_fibre fibre = fibre_of(w, i);
-    if (fibre.tension != 0)
-        part->muscle += muscle_force(h, fibre, shape);
     part->strain += energy * p->side[0] * p->side[1] * p->side[2] + hourglass;
-    look_at_step(w, v, i, h, fibre, part);
+    look_at_step(w, v, i, h, fibre_of(w, i), part);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     watch *w = context;
-    struct watch_part part = {.frequency = 4 / (w->rest_step * w->rest_step), .frequency_element = -1, .broken = -1};
+    /* A rounding above the frequency at rest, so that elements at rest do not pass it. */
+    const double rest = 4 / (w->rest_step * w->rest_step) * (1 + 1e-9);
+    struct watch_part part = {.frequency = rest, .frequency_element = -1, .broken = -1};
     element_shape shape = element_box(w->p->side[0], w->p->side[1], w->p->side[2]);
     for (int64_t i = from; i < to; i++)
         look_at_element(w, i, shape, &part);
@@ -100,18 +82,19 @@ static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
 
 static void look_at_node(const watch *w, int64_t n, struct watch_part *part)
 {
-    double outside[3], square = 0;
+    double outside[3], square = 0, mass = w->p->mass[n];
     tled_external(w->p, w->curves, n, outside);
     for (int a = 0; a < 3; a++) {
         int64_t i = 3 * n + a;
-        double gap = outside[a] - w->internal[i];
-        bool free_ = w->p->hold[i] == HOLD_FREE;
-        part->residual += free_ ? gap * gap : 0;
-        part->reaction += free_ ? 0 : gap * gap;
-        part->outside += free_ ? outside[a] * outside[a] : 0;
-        part->kinetic += w->p->mass[n] / 2 * w->velocity[i] * w->velocity[i];
+        double gap = outside[a] - w->internal[i], drive = mass * w->velocity[i] * w->velocity[i];
+        bool is_free = w->p->hold[i] == HOLD_FREE;
+        part->acceleration += is_free ? gap * gap / mass : 0;
+        part->speed += is_free ? drive : 0;
+        part->kinetic += drive / 2;
         square += w->displacement[i] * w->displacement[i];
     }
+    part->mass += mass;
+    part->moved += mass * square;
     part->largest = fmax(part->largest, square);
 }
 
@@ -133,7 +116,6 @@ static void sum_elements(watch *w, int64_t chunks, struct watch_part *sum)
     for (int64_t c = 0; c < chunks; c++) {
         const struct watch_part *part = &w->part[c];
         sum->strain += part->strain;
-        sum->muscle += part->muscle;
         if (s->broken < 0) {
             s->broken = part->broken;
             s->inverted = part->inverted;
@@ -151,9 +133,10 @@ static void sum_nodes(const watch *w, int64_t chunks, struct watch_part *sum)
     for (int64_t c = 0; c < chunks; c++) {
         const struct watch_part *part = &w->part[c];
         sum->kinetic += part->kinetic;
-        sum->residual += part->residual;
-        sum->outside += part->outside;
-        sum->reaction += part->reaction;
+        sum->acceleration += part->acceleration;
+        sum->speed += part->speed;
+        sum->moved += part->moved;
+        sum->mass += part->mass;
         sum->largest = fmax(sum->largest, part->largest);
     }
 }
@@ -173,11 +156,11 @@ int watch_look(watch *w, const backend *b, void *state, double time, err *e)
     w->sight.time = time;
     w->sight.kinetic = sum.kinetic;
     w->sight.strain = sum.strain;
-    w->sight.residual = sqrt(sum.residual);
-    w->sight.load = sqrt(fmax(sum.outside, fmax(sum.reaction, sum.muscle)));
+    w->sight.acceleration = sqrt(sum.acceleration / sum.mass);
+    w->sight.speed = sqrt(sum.speed / sum.mass);
+    w->sight.moved = sqrt(sum.moved / sum.mass);
+    w->sight.moved_most = fmax(w->sight.moved_most, w->sight.moved);
     w->sight.largest = sqrt(sum.largest);
-    w->sight.load_most = fmax(w->sight.load_most, w->sight.load);
-    w->sight.strain_most = fmax(w->sight.strain_most, w->sight.strain);
     return 0;
 }
 
@@ -190,6 +173,7 @@ watch *watch_create(const tled_problem *p, pool *threads, err *e)
     w->p = p;
     w->threads = threads;
     w->rest_step = step_at_rest(p, NULL);
+    w->raise = 1.01;
     w->displacement = mem_array(p->nodes, 3 * sizeof *w->displacement, "the watch", e);
     w->velocity = mem_array(p->nodes, 3 * sizeof *w->velocity, "the watch", e);
     w->internal = mem_array(p->nodes, 3 * sizeof *w->internal, "the watch", e);

@@ -98,7 +98,7 @@ is "$(awk '/^frame / { printf "%d %.12g, ", $2, $3 }' "$T/text")" "0 0.05, 1 0.1
 check "whatever it is told, -q says nothing" run -q -c bar=0.4 -n 3
 is "$(cat "$T/stderr")" "" "indeed nothing"
 fails 0 "else it says the stable step and its own" 'stable step [0-9.]+ ms, dt [0-9.]+ ms' run -c bar=0.4 -n 3
-fails 0 "and energies with -v" 'residual .* kinetic .* strain' run -v -c bar=0.4 -n 30
+fails 0 "and energies with -v" 'kinetic .* strain .* stable step' run -v -c bar=0.4 -n 30
 
 # ---- Going on.
 run -q -c bar=0.4 -t 0.1 --damping 50 >"$T/first"
@@ -112,10 +112,60 @@ is "$(sinew info --get frames <"$T/second")" 1 "and leave the new one"
 sinew info "$T/second" >"$T/info"
 check "provenance says what was run and with what" grep -q 'tled-run 0.1.0 .*-m tissue.E=4000.*hourglass 0.0075 .*dt [0-9.]*.*damping [0-9.]*' "$T/info"
 
+tled-run -q -g 0,0,-1 -t 0.3 <"$T/model" >"$T/first"
+check "what sets in at once on a model that moves already is no jump too far" \
+    sh -c "tled-run -q -g 0,0,-1 -c bar=0.4 -t 0.1 <'$T/first' >'$T/second'"
+
+# ---- Parts that nothing holds.
+cat >"$T/boxes.awk" <<'AWK'
+function box(g, x0, y0, z0, x1, y1, z1) {
+    for (k = 0; k < 2; k++) for (j = 0; j < 2; j++) for (i = 0; i < 2; i++)
+        print "v", i ? x1 : x0, j ? y1 : y0, k ? z1 : z0
+    print "g " g "\nf -8 -4 -2 -6\nf -7 -5 -1 -3\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -6 -5 -7\nf -4 -3 -1 -2"
+}
+AWK
+{
+    cat "$T/boxes.awk"
+    echo 'BEGIN { box("skin", 0, 0, 0, 20, 20, 20); box("skin", 40, 0, 0, 60, 20, 20) }'
+} >"$T/two.awk"
+awk -f "$T/two.awk" >"$T/two.obj"
+voxelise -q --unit mm -s 5 "$T/two.obj" >"$T/two"
+printf '0 displace 0,0,0,0,1,1 0,0,0\n0 force 0.02,0.01,0.01 5mm 0,0,-0.001\n' >"$T/hold"
+fails 1 "a part that nothing holds never comes to rest under its weight" \
+    "nothing holds 1 part of the model, 64 elements, the first of them [0-9]+ \(volume 'skin'\)" \
+    sh -c "tled-run -q -g 0,0,-1 --script '$T/hold' <'$T/two'"
+fails 0 "it is warned of where no load acts on it" 'warning: nothing holds 1 part' \
+    sh -c "tled-run --script '$T/hold' <'$T/two' >'$T/out'"
+
+# ---- Rest: a soft beam on a hard block that is squeezed, whose forces are far greater than the beam's weight.
+{
+    cat "$T/boxes.awk"
+    echo 'BEGIN { box("block", 0, 0, 0, 40, 40, 40); box("beam", 40, 10, 10, 100, 30, 30) }'
+} >"$T/two.awk"
+awk -f "$T/two.awk" >"$T/two.obj"
+printf 'block level=0 priority=0 material=hard surfaces=block\nbeam level=0 priority=1 material=soft surfaces=beam\n' >"$T/volumes"
+printf 'hard E=3e7 nu=0.45\nsoft E=30e3 nu=0.45\n' >"$T/materials"
+cat >"$T/squeeze" <<'SCRIPT'
+0   displace 0,0,0,0,1,1               0,0,0
+0   displace 4cm,0,0,4cm,0,4cm         0,0,0
+0.1 displace 4cm,0,0,4cm,0,4cm         0,2mm,0
+0   displace 4cm,4cm,0,4cm,4cm,4cm     0,0,0
+0.1 displace 4cm,4cm,0,4cm,4cm,4cm     0,-2mm,0
+SCRIPT
+voxelise -q --unit mm -s 10 --volumes "$T/volumes" --materials "$T/materials" "$T/two.obj" >"$T/two"
+tled-run -q -g 0,0,-9.81 --script "$T/squeeze" <"$T/two" >"$T/out"
+loose=$(at 0.1,0.02,0.02 3)
+tled-run -q -g 0,0,-9.81 --script "$T/squeeze" --rest 1e-6 <"$T/two" >"$T/out"
+tight=$(at 0.1,0.02,0.02 3)
+near "$loose" "$tight" 1e-3 "a soft beam on a hard block that is squeezed: $loose m at rest to 1e-4"
+check "it hangs down by more than 1 cm ($tight m)" awk "BEGIN { exit !($tight < -0.01) }"
+
 # ---- Time steps and divergence.
 fails 1 "a step above the stable one" '--dt 0.01 is above the stable step; expected at most 0.000[0-9]* s' \
     run -o "$T/left" --dt 0.01 -t 1
 stable=$(run -n 1 2>&1 >/dev/null | sed -n 's/.*stable step \([0-9.]*\) ms.*/\1/p')
+run -q -n 100 --dt "$(awk "BEGIN { print $stable * 0.999 / 1000 }")" >"$T/again"
+is $? 0 "a step just below it is taken"
 near "$stable" "$(awk 'BEGIN { print 1000 * 0.005 / sqrt(3 * 50000 / 1000) }')" 1e-5 "the stable step is h / sqrt(3 K / rho)"
 echo '0 force 0.06,0.015,0.015 5mm 100,0,0' >"$T/tear"
 fails 3 "a force that tears it" 'tled-run: diverged at step [0-9]+, [0-9.]+ s: element [0-9]+ \(volume .*\)' \

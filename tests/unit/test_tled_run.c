@@ -148,6 +148,75 @@ static void test_step_too_large(void)
     bench_free(&b);
 }
 
+/* A jump breaks the steps that the state before it allows: they are taken again, cut; whatever threads and frames. */
+static void test_jump(const backend *device, const char *name)
+{
+    bench first, b;
+    block fixed = muscle;
+    fixed.fixed_axis = 0;
+    for (int i = 0; i < 5; i++) {
+        static const double every[] = {0, .0123, .0007, .01, 0};
+        bench *to = i ? &b : &first;
+        bench_make(to, &fixed, NULL, 1, .0075, 1 + i % 3);
+        for (int64_t k = 0; k < to->script.keys; k++)
+            to->script.time[k] = k ? .0101 : .01005; /* between two checks */
+        to->setup.device = device;
+        to->setup.every = every[i];
+        bench_steps(to, (int64_t)(.1 * to->setup.rate), to->setup.damping);
+        int gone = bench_go(to);
+        if (i == 4) { /* in two parts, the second with the jump */
+            b.setup.steps = 2 * b.setup.check;
+            memset(b.problem.displacement, 0, (size_t)b.problem.nodes * 3 * sizeof(double));
+            gone |= bench_go(&b);
+            bench_go_on(&b);
+            b.setup.steps = first.setup.steps - 2 * b.setup.check;
+            gone |= bench_go(&b);
+        }
+        ok(!gone && same(&first, to), "%s: a jump, %d threads, frames every %g s%s %s", name, 1 + i % 3, every[i],
+           i == 4 ? ", in two parts" : "", to->e.text);
+        if (i)
+            bench_free(&b);
+    }
+    ok(first.end.sight.largest > .003, "%s: %.2g mm", name, 1e3 * first.end.sight.largest);
+    bench_free(&first);
+}
+
+/* Steps just below the stable one are taken as told. */
+static void test_just_stable(void)
+{
+    static const double share[] = {.99, .996, .9999, 1};
+    for (int i = 0; i < 4; i++) {
+        bench b;
+        bench_make(&b, &lump, NULL, 0, .0075, 1);
+        bench_steps(&b, 200, 0);
+        b.problem.velocity[0] = 1e-12;
+        b.setup.rate = 1 / (share[i] * step_at_rest(&b.problem, NULL));
+        b.setup.rate_fixed = true;
+        b.setup.check = 50;
+        int gone = bench_go(&b);
+        ok(!gone && b.end.sight.largest < 1e-9, "a step of %g of the stable one %s", share[i], b.e.text);
+        bench_free(&b);
+    }
+}
+
+/* Where and when it broke: the element that a force of no bounds acts on, in the first of many steps between checks. */
+static void test_place(bool fixed)
+{
+    bench b;
+    char text[60];
+    bench_make(&b, &lump, NULL, 0, .0075, 1);
+    bench_steps(&b, 1000, 10);
+    b.setup.rate_fixed = fixed;
+    b.setup.check = 50;
+    int64_t node = block_node(&lump, 4, 3, 5);
+    b.problem.velocity[3 * node] = -1e6;
+    int gone = bench_go(&b);
+    snprintf(text, sizeof text, "element %lld ", (long long)b.problem.elements - 1);
+    ok(gone && b.e.status == STATUS_DIVERGED && strstr(b.e.text, "at step 1, ") && strstr(b.e.text, text), "%s",
+       b.e.text);
+    bench_free(&b);
+}
+
 /* The watch is told to look too rarely to save it. */
 static void test_diverged(void)
 {
@@ -250,6 +319,11 @@ int main(void)
     test_contraction(&bound, "a muscle by its end");
     test_step_too_large();
     test_diverged();
+    test_jump(tled_backends_double[0], "double");
+    test_jump(tled_backends_single[0], "single");
+    test_just_stable();
+    test_place(true);
+    test_place(false);
     test_let_go();
     return done_testing();
 }

@@ -63,7 +63,32 @@ static void test_arrays(void)
     near_(total[2], 3 - 10 * mass, 1e-12, "z, with the weight");
     tled_external(&p, value, block_node(&brick, 2, 2, 3), force);
     near_(force[0], .5 + .5, 1e-12, "two forces on one node");
-    near_(tled_reach(&p, &e), 2 * .03, 1e-15, "the farthest node is two elements from what is held");
+    tled_parts parts;
+    ok(!tled_parts_of(&p, &parts, &e) && parts.loose == 0 && !parts.pushed, "all hangs on what is held");
+    near_(parts.reach, 2 * .03, 1e-15, "the farthest node is two elements from what is held");
+    tled_problem_free(&p);
+    script_free(&s);
+    model_free(&m);
+}
+
+/* Nothing held: one part, loose, and its diagonal. */
+static void test_loose(bool weight)
+{
+    model m = {0};
+    script s = {0};
+    tled_problem p = {0};
+    tled_parts parts;
+    err e = {0};
+    block free_brick = brick;
+    const double down[3] = {0, 0, -1};
+    free_brick.fixed_low = 0;
+    block_make(&free_brick, &m);
+    if (weight)
+        script_add_gravity(&s, down, .1, &e);
+    ok(!tled_problem_make(&p, &m, &s, .0075, &e) && !tled_parts_of(&p, &parts, &e), "a brick: %s", e.text);
+    ok(parts.loose == 1 && parts.first == 0 && parts.in_them == 12 && parts.pushed == weight,
+       "hangs on nothing, and is %s", weight ? "pushed" : "not pushed");
+    near_(parts.reach, sqrt(.02 * .02 + .04 * .04 + .09 * .09), 1e-15, "its diagonal counts for the reach");
     tled_problem_free(&p);
     script_free(&s);
     model_free(&m);
@@ -142,6 +167,8 @@ static void test_start(void)
 int main(void)
 {
     test_arrays();
+    test_loose(false);
+    test_loose(true);
     test_refused();
     test_start();
     return done_testing();

@@ -35,10 +35,11 @@ static inline int bench_frame(void *context, double time, const double *displace
     return 0;
 }
 
-static inline void bench_checked(void *context, int64_t step, const watch_sight *sight, int64_t cut, double damping)
+static inline void bench_checked(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+                                 double damping)
 {
     bench *b = context;
-    (void)step, (void)sight, (void)damping;
+    (void)step, (void)sight, (void)remaining, (void)damping;
     b->cuts = cut > b->cuts ? cut : b->cuts;
 }
 
@@ -74,7 +75,10 @@ static inline void bench_make(bench *b, const block *what, const double gravity[
                            .frame = bench_frame,
                            .checked = bench_checked};
     b->setup.rate = step_rate(step_at_rest(&b->problem, NULL), &b->setup.check);
-    b->setup.damping = relax_estimate(&b->problem, &b->e);
+    tled_parts parts;
+    bench_must(tled_parts_of(&b->problem, &parts, &b->e), &b->e);
+    b->setup.frequency = relax_guess(&b->problem, parts.reach);
+    b->setup.damping = 2 * b->setup.frequency;
     b->setup.threads = pool_create(threads, &b->e);
     bench_must(!b->displacement || !b->setup.threads || b->e.status, &b->e);
 }
