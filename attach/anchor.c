@@ -83,6 +83,21 @@ static void centre_of(const search *s, const int64_t *cell, double *centre)
         centre[a] = s->grid.origin[a] + s->grid.spacing[a] * ((double)cell[a] + 0.5);
 }
 
+/* Whether p, a part's point at distance d, is closest in its own right. In one convex piece the points at most a tie's width
+ * t farther than the closest one's d are within sqrt(2 d t + t t) of that: of those so near to each other the closest
+ * counts, or else a cut through a polygon would shift its closest point. */
+static bool is_closest(const search *s, int64_t part, const double *centre, const double *p, double d)
+{
+    double width2 = s->tie * (2 * d + s->tie) * (1 + 1e-6), q[3];
+    for (int64_t other = 0; other < s->shape.parts; other++) {
+        double at = closest_part(&s->shape, other, centre, q);
+        double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+        if ((at < d || (at == d && other < part)) && x * x + y * y + z * z <= width2)
+            return false;
+    }
+    return true;
+}
+
 /* Lines 3 to 10: one voxel and one primitive. */
 static void try_voxel(search *s, const int64_t *cell)
 {
@@ -94,9 +109,11 @@ static void try_voxel(search *s, const int64_t *cell)
     double nearest = closest_distance(&s->shape, centre);
     if (nearest > s->reach)
         return;
-    for (int64_t part = 0; part < s->shape.parts; part++)
-        if (closest_part(&s->shape, part, centre, p) <= nearest + s->tie)
+    for (int64_t part = 0; part < s->shape.parts; part++) {
+        double d = closest_part(&s->shape, part, centre, p);
+        if (d <= nearest + s->tie && is_closest(s, part, centre, p, d))
             try_point(s, element, centre, p);
+    }
 }
 
 static int64_t cells_in(const box *b)
@@ -230,7 +247,7 @@ static int find_voxels(const model *m, search *s, err *e)
     if (!node || lattice_of(m, &s->grid, e))
         return -1;
     if (node->columns != 8)
-        return err_set(e, NULL, 0, "element.node has %d columns; a model of voxels, with 8, is needed", node->columns);
+        return err_set(e, NULL, 0, "element.node has %d columns; expected a model of voxels, with 8", node->columns);
     s->node = node->i32;
     const double *h = s->grid.spacing;
     s->reach = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]) * (1 + 1e-6);

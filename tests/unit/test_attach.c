@@ -158,6 +158,26 @@ static void two_closest(void)
     }
 }
 
+/* Of a convex polygon there is one closest point, however it is cut: here 3e-5 from a diagonal, and the line to it 2e-5 past
+ * the limit for two more nodes. To rounding the diagonal is as near. */
+static void beside_a_cut(void)
+{
+    const double n[] = {0, .50002, 1}, length = sqrt(.50002 * .50002 + 1), d = .8;
+    const double along[][3] = {{-9, -3e-5, 0}, {0, 9, 0}, {9, -3e-5, 0}, {0, -9, 0}}; /* x, up the slope */
+    double corner[4][3], turned[12];
+    char digits[9];
+    for (int c = 0; c < 4; c++) {
+        corner[c][0] = .5 + along[c][0];
+        corner[c][1] = .5 + (d * n[1] + along[c][1] * n[2]) / length;
+        corner[c][2] = .5 + (d * n[2] - along[c][1] * n[1]) / length;
+    }
+    for (int first = 0; first < 4; first++) {
+        for (int c = 0; c < 4; c++)
+            memcpy(&turned[3 * c], corner[(first + c) % 4], sizeof corner[0]);
+        ok(!strcmp(held(turned, 4, .75, digits), "67"), "beside a cut, from corner %d: nodes %s", first, digits);
+    }
+}
+
 /* Lines 1 to 10 to the letter over every voxel, for a flat convex polygon. The real face is symmetric: some of its places
  * lie just on a limit, so rounding is allowed for. */
 static void brute_force(const model *m, const double *position, int corners, double strictness, uint8_t *fixed)
@@ -422,6 +442,7 @@ int main(void)
 {
     hand_examples();
     two_closest();
+    beside_a_cut();
     all_voxels();
     symmetry();
     anisotropic();
