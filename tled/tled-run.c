@@ -315,6 +315,7 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.frame = write_frame;
     s->run.checked = checked;
     s->cut = 1;
+    tool_warn(s->t, &s->warnings);
     say_start(s, device, o);
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
                    o->common.quiet || o->common.verbose);

@@ -1,6 +1,5 @@
 #include "model/materials.h"
 
-#include "base/chars.h"
 #include "base/keyfile.h"
 #include "base/mem.h"
 #include "base/near.h"
@@ -94,8 +93,6 @@ static int parse_name(const keyfile *k, err *e)
 {
     if (strchr(k->word[0], '='))
         return keyfile_error(k, e, "'%.200s' comes first; expected NAME law=neo-hookean E=3000 ...", k->word[0]);
-    if (!chars_utf8(k->word[0]))
-        return keyfile_error(k, e, "the material's name is not UTF-8");
     return 0;
 }
 

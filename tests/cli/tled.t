@@ -202,7 +202,7 @@ edit() { # NAME PATTERN SED: the model, edited as text, is refused
 run -q -n 1 --text | sed -e '/^crc/d' -e '/^frame/,$d' >"$T/whole_text"
 echo end >>"$T/whole_text"
 check "a model may be edited as text" sh -c "tled-run -q -n 1 <'$T/whole_text'"
-edit "a negative modulus" 'material.E, row 0: -5 is not allowed; expected more than 0 Pa' '/^array material.E/{n;s/.*/-5/;}'
+edit "a negative modulus" 'material.E, row 0: -5 is not allowed; expected 0.001 to 1e12 Pa' '/^array material.E/{n;s/.*/-5/;}'
 edit "an unknown law" "unknown law 'mooney'" 's/"neo-hookean"/"mooney"/'
 edit "no lattice" 'lattice.spacing' '/lattice.spacing/d'
 edit "another spacing" 'not a box' 's/^\(meta lattice.spacing\).*/\1 "0.005 0.005 0.006"/'
