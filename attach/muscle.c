@@ -14,7 +14,9 @@ typedef struct body {
     const int32_t *node, *volume;
     const uint8_t *rigid;
     float *fibre;
-    int32_t *seen; /* nodes: the last muscle that counted it */
+    int32_t *seen;    /* nodes: the last muscle that counted it */
+    int64_t *start;   /* volumes + 1: a volume's first place in element */
+    int64_t *element; /* the elements, volume after volume */
 } body;
 
 static void element_centre(const body *b, int64_t element, double *centre)
@@ -40,10 +42,9 @@ static double element_size(const body *b, int64_t element)
 static void find_centres(const body *b, muscle *m, int32_t index)
 {
     double rigid[3] = {0}, middle[3] = {0}, centre[3];
-    for (int64_t i = 0; i < b->elements; i++) {
-        if (b->volume[i] != m->volume)
-            continue;
-        m->elements++;
+    m->elements = b->start[m->volume + 1] - b->start[m->volume];
+    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
+        int64_t i = b->element[at];
         element_centre(b, i, centre);
         for (int a = 0; a < 3; a++)
             middle[a] += centre[a];
@@ -66,10 +67,8 @@ static void find_centres(const body *b, muscle *m, int32_t index)
 static void covariance(const body *b, const muscle *m, double c[3][3])
 {
     double d[3];
-    for (int64_t i = 0; i < b->elements; i++) {
-        if (b->volume[i] != m->volume)
-            continue;
-        element_centre(b, i, d);
+    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
+        element_centre(b, b->element[at], d);
         for (int p = 0; p < 3; p++)
             d[p] -= m->middle[p];
         for (int p = 0; p < 3; p++)
@@ -160,9 +159,8 @@ static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t
 static void set_fibres(const body *b, const muscle *m, muscle_fibre kind, notes *warnings)
 {
     int64_t without = 0;
-    for (int64_t i = 0; i < b->elements; i++)
-        if (b->volume[i] == m->volume)
-            without += !set_fibre(b, m, kind, i);
+    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++)
+        without += !set_fibre(b, m, kind, b->element[at]);
     if (!m->elements)
         notes_add(warnings, "%s has no elements: it cannot contract", m->name);
     else if (!m->rigid_nodes && kind == MUSCLE_CENTRE)
@@ -194,6 +192,23 @@ static int find_arrays(const model *m, body *b, err *e)
     for (int64_t n = 0; b->seen && n < b->nodes; n++)
         b->seen[n] = -1;
     return b->seen ? 0 : -1;
+}
+
+/* The elements of each volume, in their order. */
+static int sort_elements(body *b, int64_t volumes, err *e)
+{
+    /* Counted two places up, so that filling leaves each volume's first in its place. */
+    b->start = mem_array(volumes + 2, sizeof *b->start, "volumes", e);
+    b->element = b->start ? mem_array(b->elements, sizeof *b->element, "elements", e) : NULL;
+    if (!b->element)
+        return -1;
+    for (int64_t i = 0; i < b->elements; i++)
+        b->start[b->volume[i] + 2]++;
+    for (int64_t v = 0; v < volumes; v++)
+        b->start[v + 2] += b->start[v + 1];
+    for (int64_t i = 0; i < b->elements; i++)
+        b->element[b->start[b->volume[i] + 1]++] = i;
+    return 0;
 }
 
 /* The volumes that are muscles. */
@@ -238,7 +253,7 @@ int muscle_make(model *m, muscle_fibre fibre, muscle **list, int64_t *count, not
     *count = 0;
     model_axis_drop(m, "muscle", warnings);
     model_remove(m, "element.fibre");
-    if (find_arrays(m, &b, e) || find_muscles(m, list, count, e))
+    if (find_arrays(m, &b, e) || find_muscles(m, list, count, e) || sort_elements(&b, model_count(m, "volume"), e))
         goto out;
     for (int64_t i = 0; i < *count; i++) {
         find_centres(&b, &(*list)[i], (int32_t)i);
@@ -251,5 +266,7 @@ int muscle_make(model *m, muscle_fibre fibre, muscle **list, int64_t *count, not
     rc = 0;
 out:
     free(b.seen);
+    free(b.start);
+    free(b.element);
     return rc;
 }

@@ -8,69 +8,36 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Patterns taken apart, or names. */
-typedef struct words {
-    char **v; /* each owned */
-    int64_t count, capacity;
-} words;
-
-static void words_free(words *w)
-{
-    for (int64_t i = 0; i < w->count; i++)
-        free(w->v[i]);
-    free(w->v);
-}
-
 /* Adds each word of text (between characters of `blanks`) that is not there yet. */
-static int words_add(words *w, const char *text, const char *blanks, err *e)
+static int add_words(names *to, const char *text, const char *blanks, err *e)
 {
-    for (text += strspn(text, blanks); *text; text += strspn(text, blanks)) {
-        size_t size = strcspn(text, blanks);
-        int64_t i = 0;
-        while (i < w->count && (strncmp(w->v[i], text, size) || w->v[i][size]))
-            i++;
-        if (i == w->count) {
-            if (mem_grow(&w->v, &w->capacity, w->count + 1, sizeof *w->v, "names of surfaces", e))
-                return -1;
-            w->v[w->count] = mem_array((int64_t)size + 1, 1, "names of surfaces", e);
-            if (!w->v[w->count])
-                return -1;
-            memcpy(w->v[w->count++], text, size);
-        }
-        text += size;
-    }
-    return 0;
+    char *words = mem_text(text, e), *rest;
+    if (!words)
+        return -1;
+    int status = 0;
+    for (char *w = strtok_r(words, blanks, &rest); w && !status; w = strtok_r(NULL, blanks, &rest))
+        status = names_number(to, w, e) < 0 ? -1 : 0;
+    free(words);
+    return status;
 }
 
-static bool matches_any(const char *name, const words *patterns)
+static bool matches_any(const char *name, const names *patterns)
 {
-    for (int64_t i = 0; i < patterns->count; i++)
-        if (surface_in_group(name, patterns->v[i]))
+    for (int32_t i = 0; i < patterns->count; i++)
+        if (surface_in_group(name, patterns->name[i]))
             return true;
     return false;
-}
-
-static int64_t find(const rigid *r, const char *name)
-{
-    int64_t i = 0;
-    while (i < r->surfaces && strcmp(r->surface[i].name, name))
-        i++;
-    return i;
 }
 
 /* The rigid surface of that name, made where there is none, or -1 with e filled. */
 static int64_t surface_named(rigid *r, const char *name, err *e)
 {
-    int64_t i = find(r, name);
-    if (i < r->surfaces)
+    int32_t i = names_number(&r->names, name, e);
+    if (i < 0 || i < r->surfaces)
         return i;
-    if (i == INT32_MAX)
-        return err_set(e, NULL, 0, "more than %d rigid surfaces", INT32_MAX);
-    if (mem_grow(&r->surface, &r->surface_capacity, i + 1, sizeof *r->surface, "rigid surfaces", e))
+    if (mem_grow(&r->surface, &r->surface_capacity, r->surfaces + 1, sizeof *r->surface, "rigid surfaces", e))
         return -1;
-    r->surface[i] = (rigid_surface){.name = mem_text(name, e)};
-    if (!r->surface[i].name)
-        return -1;
+    r->surface[i] = (rigid_surface){.name = r->names.name[i]};
     return r->surfaces++;
 }
 
@@ -91,21 +58,21 @@ static int add_face(rigid *r, const surface *s, int64_t f, int32_t to, err *e)
 
 /* The rigid surface that the faces of a group belong to: that of its first name to match, -1 where none does, -2 with e
  * filled. patterns NULL: the first name, "default" standing for the whole surface's. */
-static int64_t surface_of_group(rigid *r, const surface *s, const char *names, const words *patterns, err *e)
+static int64_t surface_of_group(rigid *r, const surface *s, const char *group, const names *patterns, err *e)
 {
-    words name = {0};
-    int64_t found = words_add(&name, names, " ", e) ? -2 : -1;
-    for (int64_t i = 0; i < name.count && found == -1; i++) {
-        const char *as = !patterns && !strcmp(name.v[i], "default") ? s->name : name.v[i];
-        if (!patterns || matches_any(name.v[i], patterns))
+    names of = {0};
+    int64_t found = add_words(&of, group, " ", e) ? -2 : -1;
+    for (int32_t i = 0; i < of.count && found == -1; i++) {
+        const char *as = !patterns && !strcmp(of.name[i], "default") ? s->name : of.name[i];
+        if (!patterns || matches_any(of.name[i], patterns))
             if ((found = surface_named(r, as, e)) < 0)
                 found = -2;
     }
-    words_free(&name);
+    names_free(&of);
     return found;
 }
 
-static int collect_surface(rigid *r, const surface *s, const words *patterns, err *e)
+static int collect_surface(rigid *r, const surface *s, const names *patterns, err *e)
 {
     int rc = -1;
     int64_t *to = mem_array(s->groups, sizeof *to, "groups", e);
@@ -129,7 +96,7 @@ static int by_surface(const void *a, const void *b)
     return (p->surface > q->surface) - (p->surface < q->surface);
 }
 
-static int collect(rigid *r, const model *m, const words *patterns, err *e)
+static int collect(rigid *r, const model *m, const names *patterns, err *e)
 {
     char name[MODEL_NAME];
     surface s;
@@ -142,52 +109,52 @@ static int collect(rigid *r, const model *m, const words *patterns, err *e)
 }
 
 /* Whether each pattern has a name to match. */
-static int all_used(const words *patterns, const model *m, err *e)
+static int all_used(const names *patterns, const model *m, err *e)
 {
     int rc = -1;
     char name[MODEL_NAME];
-    words names = {0};
+    names all = {0};
     surface s;
     for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
         if (surface_of(m, name, &s, e))
             goto out;
         for (int64_t g = 0; g < s.groups; g++)
-            if (words_add(&names, s.group_name[g], " ", e))
+            if (add_words(&all, s.group_name[g], " ", e))
                 goto out;
     }
-    for (int64_t p = 0; p < patterns->count; p++) {
-        int64_t n = 0;
-        while (n < names.count && !surface_in_group(names.v[n], patterns->v[p]))
+    for (int32_t p = 0; p < patterns->count; p++) {
+        int32_t n = 0;
+        while (n < all.count && !surface_in_group(all.name[n], patterns->name[p]))
             n++;
-        if (n == names.count) {
-            near_unknown(e, NULL, 0, "surface", patterns->v[p], (const char *const *)names.v, (int)names.count);
+        if (n == all.count) {
+            near_unknown(e, NULL, 0, "surface", patterns->name[p], (const char *const *)all.name, all.count);
             goto out;
         }
     }
     rc = 0;
 out:
-    words_free(&names);
+    names_free(&all);
     return rc;
 }
 
 int rigid_collect(rigid *r, const model *m, const opt_list *patterns, err *e)
 {
     int rc = -1;
-    words list = {0};
+    names list = {0};
     for (int i = 0; i < patterns->count; i++)
-        if (words_add(&list, patterns->value[i], ",", e))
+        if (add_words(&list, patterns->value[i], ",", e))
             goto out;
     if (patterns->count && !list.count) {
-        err_set(e, NULL, 0, "--rigid names no surface; names between commas were expected");
+        err_set(e, NULL, 0, "--rigid names no surface; expected names between commas");
         goto out;
     }
     if (patterns->count && all_used(&list, m, e))
         goto out;
-    if (!patterns->count && words_add(&list, "skull*,bone*,rigid*", ",", e))
+    if (!patterns->count && add_words(&list, "skull*,bone*,rigid*", ",", e))
         goto out;
     rc = collect(r, m, &list, e);
 out:
-    words_free(&list);
+    names_free(&list);
     return rc;
 }
 
@@ -198,8 +165,7 @@ int rigid_collect_all(rigid *r, const model *file, err *e)
 
 void rigid_free(rigid *r)
 {
-    for (int64_t i = 0; i < r->surfaces; i++)
-        free(r->surface[i].name);
+    names_free(&r->names);
     free(r->surface);
     free(r->primitive);
     *r = (rigid){0};

@@ -6,6 +6,7 @@
 #define SINEW_RIGID_H
 
 #include "base/opt.h"
+#include "mesh/names.h"
 #include "model/model.h"
 
 typedef struct rigid_primitive {
@@ -16,7 +17,7 @@ typedef struct rigid_primitive {
 } rigid_primitive;
 
 typedef struct rigid_surface {
-    char *name;
+    const char *name; /* in the rigid's names */
     int64_t primitives;
     int64_t nodes; /* that it holds; a node may be held by several */
     int64_t idle;  /* primitives that hold no node */
@@ -26,6 +27,7 @@ typedef struct rigid {
     rigid_surface *surface;     /* in order of the groups */
     rigid_primitive *primitive; /* by surface */
     int64_t surfaces, primitives, surface_capacity, primitive_capacity;
+    names names; /* of surfaces, by the same numbers */
 } rigid;
 
 /* Adds all that m's surfaces hold in groups of which a name matches one of the patterns (a '*' at the end matches any

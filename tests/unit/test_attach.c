@@ -25,9 +25,9 @@ static const int32_t in_order[] = {0, 1, 2, 3, 4, 5, 6, 7};
 static int attach_one(model *m, const double *position, int corners, double strictness)
 {
     err e = {0};
-    rigid_surface skull = {.name = (char[]){"skull"}, .primitives = 1};
+    rigid_surface skull = {.name = "skull", .primitives = 1};
     rigid_primitive primitive = {position, in_order, corners, 0};
-    rigid r = {&skull, &primitive, 1, 1, 1, 1};
+    rigid r = {.surface = &skull, .primitive = &primitive, .surfaces = 1, .primitives = 1};
     if (anchor_nodes(m, &r, strictness, NULL, &e))
         ok(false, "attach: %s", e.text);
     return (int)skull.nodes;
@@ -346,10 +346,10 @@ static void several(void)
     err e = {0};
     model m;
     block(&m, &unit, two, 0);
-    rigid_surface three[] = {{.name = (char[]){"a"}}, {.name = (char[]){"b"}}, {.name = (char[]){"far"}}};
+    rigid_surface three[] = {{.name = "a"}, {.name = "b"}, {.name = "far"}};
     rigid_primitive primitive[] = {{at, &in_order[0], 1, 0}, {at, &in_order[3], 1, 0}, {at, &in_order[1], 1, 1},
                                    {at, &in_order[2], 1, 1}, {at, &in_order[0], 1, 1}, {at, &in_order[3], 1, 2}};
-    rigid r = {three, primitive, 3, 6, 3, 6};
+    rigid r = {.surface = three, .primitive = primitive, .surfaces = 3, .primitives = 6};
     ok(!anchor_nodes(&m, &r, .75, NULL, &e), "three surfaces %s", e.text);
     ok(three[0].nodes == 4 && three[1].nodes == 8 && three[2].nodes == 0, "each node once a surface: %d %d %d",
        (int)three[0].nodes, (int)three[1].nodes, (int)three[2].nodes);
@@ -394,7 +394,6 @@ static void real_skull(void)
 {
     static const lattice grid = {{-.075, -.1, -.13}, {.01, .008, .009}};
     static const int32_t size[] = {15, 25, 26};
-    static const char *const names[] = {"skull"};
     const char *shared = getenv("SINEW_SHARED");
     char path[1000];
     snprintf(path, sizeof path, "%s/data/face/face_zyg.obj", shared ? shared : "../shared");
@@ -408,7 +407,7 @@ static void real_skull(void)
     model m, file = {0};
     block(&m, &grid, size, 0);
     in *source = in_open(path, &e);
-    opt_list pattern = {1, {names[0]}};
+    opt_list pattern = {1, {"skull"}};
     ok(source && !obj_read(&o, source, &e) && !surface_add(&file, "face", &o, .001, &e) &&
            !rigid_collect(&r, &file, &pattern, &e) && !anchor_nodes(&m, &r, .75, NULL, &e),
        "a real skull %s", e.text);

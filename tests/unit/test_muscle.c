@@ -149,7 +149,7 @@ static void load(model *m, const char *name, err *e)
     obj_free(&o);
 }
 
-static void names(void)
+static void by_name(void)
 {
     err e = {0};
     model m = {0};
@@ -185,6 +185,6 @@ int main(void)
     at_the_centre();
     axes();
     slanted_axis();
-    names();
+    by_name();
     return done_testing();
 }
