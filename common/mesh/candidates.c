@@ -123,6 +123,24 @@ void candidates_destroy(candidates *c)
     free(c);
 }
 
+static int by_number(const void *a, const void *b)
+{
+    const uint32_t *i = a, *j = b;
+    return (*i > *j) - (*i < *j);
+}
+
+/* Ascending, each once: Embree promises neither, and an item met twice would turn inside out for the caller. */
+static void sort_items(candidates_list *list)
+{
+    int64_t kept = 0;
+    if (list->count)
+        qsort(list->item, (size_t)list->count, sizeof *list->item, by_number);
+    for (int64_t i = 0; i < list->count; i++)
+        if (!kept || list->item[kept - 1] != list->item[i])
+            list->item[kept++] = list->item[i];
+    list->count = kept;
+}
+
 int candidates_ray(const candidates *c, const double *from, const double *direction, candidates_list *list, err *e)
 {
     struct RTCRay ray = {
@@ -140,7 +158,10 @@ int candidates_ray(const candidates *c, const double *from, const double *direct
     list->count = 0;
     list->lost = false;
     rtcOccluded1(c->scene, &context.embree, &ray);
-    return list->lost ? err_memory(e, "candidates") : 0;
+    if (list->lost)
+        return err_memory(e, "candidates");
+    sort_items(list);
+    return 0;
 }
 
 void candidates_list_free(candidates_list *list)

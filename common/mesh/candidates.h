@@ -27,8 +27,8 @@ candidates *candidates_create(int64_t count, candidates_box *box, const void *co
                               err *e);
 void candidates_destroy(candidates *c);
 
-/* Fills the list anew with the items whose boxes the ray from a point (within reach) along a direction may meet, in any
- * order. -1 with e filled on no memory. Any number of threads may call it at once. */
+/* Fills the list anew with the items whose boxes the ray from a point (within reach) along a direction may meet, each
+ * once, in ascending order. -1 with e filled on no memory. Any number of threads may call it at once. */
 int candidates_ray(const candidates *c, const double *from, const double *direction, candidates_list *list, err *e);
 
 void candidates_list_free(candidates_list *list);
