@@ -1,7 +1,7 @@
 # Compares CalculiX's displacements (its .dat, first file) with those of a model's last frame in text (second file).
 # Prints, relative to CalculiX: the largest difference of a node over the largest displacement; the root mean square of
-# all differences over that of all displacements; and the difference at the node that moved furthest. Then the nodes
-# that both have.
+# all differences over that of all displacements; the difference at the node that moved furthest; and the largest
+# difference of a node inside, that eight elements hold, as the first. Then the nodes that both have, and those inside.
 function norm(a, b, c) {
     return sqrt(a * a + b * b + c * c)
 }
@@ -14,15 +14,17 @@ NR == FNR {
     }
     next
 }
-$1 == "array" { on = $2 == "node.displacement"; node = 0; next }
-$1 == "crc" || $1 == "frame" || $1 == "end" { on = 0 }
+$1 == "array" { on = $2 == "node.displacement"; elements = $2 == "element.node"; node = 0; next }
+$1 == "crc" || $1 == "frame" || $1 == "end" { on = elements = 0 }
+elements { for (i = 1; i <= NF; i++) holds[$i + 1]++ }
 on && ++node in x {
     off = norm($1 - x[node], $2 - y[node], $3 - z[node])
     sum += off * off
     both++
     if (off > worst) worst = off
+    if (holds[node] == 8) { inside++; if (off > worst_inside) worst_inside = off }
     if (node == furthest) at_furthest = off
 }
 END {
-    if (both) printf "%.6f %.6f %.6f %d\n", worst / largest, sqrt(sum / squares), at_furthest / largest, both
+    if (both) printf "%.6f %.6f %.6f %.6f %d %d\n", worst / largest, sqrt(sum / squares), at_furthest / largest, worst_inside / largest, both, inside
 }
