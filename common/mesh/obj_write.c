@@ -85,8 +85,10 @@ static int digits_of(const obj *o)
         extent = fmax(extent, high - low);
     }
     int digits = 9;
-    for (; extent < farthest && digits < 17; extent *= 10)
+    while (extent < farthest && digits < 17) {
+        extent *= 10;
         digits++;
+    }
     return digits;
 }
 
