@@ -12,14 +12,14 @@ typedef struct scene_mesh {
     int corners;             /* of every face: 3, or 4 (drawn as two triangles, 0 1 3 and 2 3 1) */
     int64_t vertices, faces; /* each under 2^32 */
     float *position;         /* [vertices][3], m */
-    float *normal;           /* [vertices][3], any length but zero: smooth; NULL: flat */
-    uint32_t *corner;        /* [faces][corners] */
-    float colour[3];         /* where neither of the next two is given */
-    float *vertex_colour;    /* [vertices][3], blended over a face; or NULL */
-    float *face_colour;      /* [faces][3], before vertex_colour; or NULL */
-    uint8_t *edges;          /* [faces], bit i: the edge from corner i to the next is drawn; NULL: none */
-    float edge_colour[3];    /* of those; their width is trace_options' */
-    float transparency;      /* 0 opaque, under 1: what is behind shows through */
+    float *normal;        /* [faces][corners][3], any length but zero: smooth (scene_smooth makes them); NULL: flat */
+    uint32_t *corner;     /* [faces][corners] */
+    float colour[3];      /* where neither of the next two is given */
+    float *vertex_colour; /* [vertices][3], blended over a face; or NULL */
+    float *face_colour;   /* [faces][3], before vertex_colour; or NULL */
+    uint8_t *edges;       /* [faces], bit i: the edge from corner i to the next is drawn; NULL: none */
+    float edge_colour[3]; /* of those; their width is trace_options' */
+    float transparency;   /* 0 opaque, under 1: what is behind shows through */
 } scene_mesh;
 
 typedef struct scene_spheres {
@@ -45,8 +45,10 @@ int scene_add_spheres(scene *s, scene_spheres *b, err *e);
  * the box is as it was. */
 bool scene_bounds(const scene *s, double low[3], double high[3]);
 
-/* Gives a mesh smooth normals, each the mean of its faces' weighted by their angle there. */
-int scene_smooth(scene_mesh *m, err *e);
+/* Gives a mesh smooth normals: at every corner the mean of the normals of the faces around it, weighted by their angles
+ * there, but for those that are turned by more than crease degrees from this face (so a box keeps its edges). Faces
+ * that are wound the other way are turned, so an inside-out part does no harm. */
+int scene_smooth(scene_mesh *m, double crease, err *e);
 
 /* Checks sizes, indices and finite numbers: "label: what is wrong". trace() does so by itself. */
 int scene_check(const scene *s, err *e);
