@@ -1,0 +1,103 @@
+#include "mesh/bone.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The nodes that anchors hold. */
+typedef struct anchors {
+    const model_array *name;
+    const int32_t *of_node;
+    int64_t nodes;
+    const double *rest;
+} anchors;
+
+/* The first anchor among the names of a group, or -1. */
+static int32_t anchor_of_group(const anchors *a, const char *names)
+{
+    for (int64_t i = 0; i < a->name->rows; i++)
+        if (surface_in_group(names, a->name->str[i]))
+            return (int32_t)i;
+    return -1;
+}
+
+/* Marks the vertices of each face on a rigid surface with its anchor: the first face decides. */
+static int mark(bone *b, const surface *s, const anchors *a, err *e)
+{
+    int32_t *of_group = mem_array(s->groups, sizeof *of_group, "groups", e);
+    if (!of_group)
+        return -1;
+    for (int64_t g = 0; g < s->groups; g++)
+        of_group[g] = anchor_of_group(a, s->group_name[g]);
+    for (int64_t f = 0; f < s->faces; f++)
+        for (int64_t c = s->start[f]; c < surface_end(s, f); c++)
+            if (b->node[s->vertex[c]] < 0)
+                b->node[s->vertex[c]] = of_group[s->group[f]];
+    free(of_group);
+    return 0;
+}
+
+static double distance2(const double *p, const double *q)
+{
+    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+    return x * x + y * y + z * z;
+}
+
+/* Of the nodes listed (all, where list is NULL) the nearest to p that the anchor holds, or -1. */
+static int32_t nearest(const anchors *a, int32_t anchor, const double *p, const int32_t *list, int64_t count)
+{
+    int32_t best = -1;
+    double least = INFINITY;
+    for (int64_t i = 0; i < count; i++) {
+        int32_t n = list ? list[i] : (int32_t)i;
+        double d = distance2(p, a->rest + 3 * (int64_t)n);
+        if (a->of_node[n] == anchor && d < least) {
+            best = n;
+            least = d;
+        }
+    }
+    return best;
+}
+
+int bone_find(bone *b, const bound *of, const model *m, err *e)
+{
+    const model_array *name = model_find(m, "anchor.name"), *held = model_find(m, "node.anchor");
+    b->node = mem_array(of->shape.vertices, sizeof *b->node, "vertices on bone", e);
+    if (!b->node)
+        return -1;
+    for (int64_t v = 0; v < of->shape.vertices; v++)
+        b->node[v] = -1;
+    if (!name || !held)
+        return 0;
+    anchors a = {name, held->i32, held->rows, of->rest};
+    if (mark(b, &of->shape, &a, e))
+        return -1;
+    for (int64_t v = 0; v < of->shape.vertices; v++) {
+        const double *p = of->shape.position + 3 * v;
+        int32_t anchor = b->node[v];
+        if (anchor < 0)
+            continue;
+        b->node[v] = nearest(&a, anchor, p, of->node + of->corners * (int64_t)of->element[v], of->corners);
+        /* Few vertices lie by an element of which their bone holds nothing. */
+        if (b->node[v] < 0)
+            b->node[v] = nearest(&a, anchor, p, NULL, a.nodes);
+        b->count += b->node[v] >= 0;
+    }
+    return 0;
+}
+
+void bone_displacement(const bone *b, const bound *of, int64_t vertex, const double *u, double *d)
+{
+    if (b->node[vertex] >= 0)
+        memcpy(d, &u[3 * (int64_t)b->node[vertex]], 3 * sizeof *d);
+    else
+        bound_displacement(of, vertex, u, d);
+}
+
+void bone_free(bone *b)
+{
+    free(b->node);
+    *b = (bone){0};
+}

@@ -1,0 +1,136 @@
+#include "mesh/bound.h"
+
+#include "mesh/weights.h"
+#include "model/check.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const model_array *part(const model *m, const char *name, const char *what)
+{
+    char full[2 * CHECK_NAME_MOST];
+    snprintf(full, sizeof full, "%s/%s", name, what);
+    return model_find(m, full);
+}
+
+static bool is_bound(const model *m, const char *name)
+{
+    return part(m, name, "vertex.element") && part(m, name, "vertex.weight");
+}
+
+int bound_of(bound *b, const model *m, const char *name, err *e)
+{
+    *b = (bound){0};
+    if (surface_of(m, name, &b->shape, e))
+        return -1;
+    if (!is_bound(m, name))
+        return 0;
+    const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
+    const model_array *weight = part(m, name, "vertex.weight");
+    if (!node || !rest)
+        return -1;
+    if ((node->columns != 8 || weight->columns != 3) && (node->columns != 4 || weight->columns != 4))
+        return err_set(e, NULL, 0,
+                       "%s/vertex.weight does not fit element.node: 3 weights in hexahedra, 4 in tetrahedra", name);
+    b->element = part(m, name, "vertex.element")->i32;
+    b->weight = weight->f64;
+    b->node = node->i32;
+    b->corners = node->columns;
+    b->rest = rest->f64;
+    return 1;
+}
+
+/* For an OBJ that is to be moved, normals and all. */
+static int view(bound *b, const model *m, const char *name, err *e)
+{
+    if (bound_of(b, m, name, e) < 0)
+        return -1;
+    return b->corners == 8 ? 0 : err_set(e, NULL, 0, "surface %s is bound to tetrahedra; expected hexahedra", name);
+}
+
+/* The i-th bound surface's name, or NULL past the last. */
+static const char *bound_name(const model *m, int at, char *name, size_t size)
+{
+    for (int i = 0; model_surface(m, i, name, size); i++)
+        if (is_bound(m, name) && !at--)
+            return name;
+    return NULL;
+}
+
+/* No surface of the OBJ's name is bound, and none is this OBJ: what the model has, or what differs. */
+static int nothing_fits(const model *m, const char *name, const obj *o, double scale, err *e)
+{
+    char first[CHECK_NAME_MOST + 1], second[CHECK_NAME_MOST + 1];
+    surface s;
+    if (!bound_name(m, 0, first, sizeof first))
+        return model_surface(m, 0, second, sizeof second)
+                   ? err_set(e, NULL, 0,
+                             "the model carries surface %s, but it is not bound; expected a model from sinew bind",
+                             second)
+                   : err_set(e, NULL, 0, "the model carries no surface; expected a model from sinew bind");
+    if (bound_name(m, 1, second, sizeof second))
+        return err_set(e, o->name, 0, "is none of the bound surfaces (%s, %s, ...); expected the OBJ that was bound",
+                       first, second);
+    (void)name;
+    return surface_of(m, first, &s, e) ? -1 : surface_is(&s, o, scale, e);
+}
+
+int bound_find(bound *b, const model *m, const char *name, const obj *o, double scale, err *e)
+{
+    char other[CHECK_NAME_MOST + 1];
+    err differs = {0};
+    surface s;
+    if (is_bound(m, name) && !surface_of(m, name, &s, &differs) && !surface_is(&s, o, scale, &differs))
+        return view(b, m, s.name, e);
+    for (int i = 0; bound_name(m, i, other, sizeof other); i++) {
+        err ignored = {0};
+        if (surface_of(m, other, &s, e))
+            return -1;
+        if (!surface_is(&s, o, scale, &ignored))
+            return view(b, m, other, e);
+    }
+    if (!differs.status)
+        return nothing_fits(m, name, o, scale, e);
+    *e = differs;
+    return -1;
+}
+
+int bound_shares(const bound *b, int64_t vertex, double share[8])
+{
+    if (b->corners == 8)
+        weights_shares(&b->weight[3 * vertex], share);
+    else
+        memcpy(share, &b->weight[4 * vertex], 4 * sizeof *share);
+    return b->corners;
+}
+
+void bound_displacement(const bound *b, int64_t vertex, const double *u, double *d)
+{
+    const int32_t *node = &b->node[b->corners * (int64_t)b->element[vertex]];
+    double share[8], sum[3] = {0};
+    int corners = bound_shares(b, vertex, share);
+    for (int n = 0; n < corners; n++)
+        for (int i = 0; i < 3; i++)
+            sum[i] += share[n] * u[3 * (int64_t)node[n] + i];
+    memcpy(d, sum, sizeof sum);
+}
+
+void bound_gradient(const bound *b, int64_t vertex, const double *u, double *f)
+{
+    const int32_t *node = &b->node[8 * (int64_t)b->element[vertex]];
+    weights_box box = weights_box_of(node, b->rest);
+    double gradient[24];
+    weights_gradients(&box, &b->weight[3 * vertex], gradient);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            f[3 * i + j] = i == j;
+            for (int n = 0; n < 8; n++)
+                f[3 * i + j] += u[3 * (int64_t)node[n] + i] * gradient[3 * n + j];
+        }
+}
+
+double bound_outside(const bound *b, int64_t vertex)
+{
+    weights_box box = weights_box_of(&b->node[8 * (int64_t)b->element[vertex]], b->rest);
+    return weights_outside(&box, &b->weight[3 * vertex]);
+}
