@@ -2,19 +2,11 @@
 
 #include "base/mem.h"
 #include "base/num.h"
-#include "mesh/weights.h"
+#include "mesh/bound.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* An array "S/what" of the surface, or NULL. */
-static const model_array *part(const export_shape *x, const char *what)
-{
-    char name[300];
-    snprintf(name, sizeof name, "%s/%s", x->s.name, what);
-    return model_find(x->m, name);
-}
 
 static int no_surface(const model *m, const char *name, err *e)
 {
@@ -78,38 +70,18 @@ int export_shape_of(export_shape *x, const model *m, const char *name, err *e)
     return name ? of_surface(x, name, e) : of_elements(x, e);
 }
 
-/* A vertex moves with its element by W&M's equation (1), or by the barycentric weights of a tetrahedron. */
-static void move_vertices(export_shape *x, const model_array *element, const model_array *weight, const double *u)
-{
-    const model_array *node = model_find(x->m, "element.node");
-    for (int64_t v = 0; v < x->points; v++) {
-        const int32_t *of = &node->i32[(int64_t)element->i32[v] * node->columns];
-        double hexahedron[8];
-        const double *share = &weight->f64[v * weight->columns];
-        if (node->columns == 8) {
-            weights_shares(share, hexahedron);
-            share = hexahedron;
-        }
-        for (int n = 0; n < node->columns; n++)
-            for (int a = 0; a < 3; a++)
-                x->displacement[3 * v + a] += share[n] * u[3 * (int64_t)of[n] + a];
-    }
-}
-
+/* A vertex moves with its element. A surface that is not bound stays where it is. */
 static int move_surface(export_shape *x, const double *u, err *e)
 {
-    const model_array *element = part(x, "vertex.element"), *weight = part(x, "vertex.weight");
-    const model_array *node = model_find(x->m, "element.node");
-    if (!element || !weight)
-        return 0;
-    if (!node || weight->columns != (node->columns == 8 ? 3 : 4))
-        return err_set(e, NULL, 0,
-                       "%s/vertex.weight does not fit element.node: 3 weights in hexahedra, 4 in tetrahedra",
-                       x->s.name);
+    bound b;
+    int is_bound = bound_of(&b, x->m, x->s.name, e);
+    if (is_bound <= 0)
+        return is_bound;
     x->displacement = mem_array(3 * x->points, sizeof *x->displacement, "displacements", e);
     if (!x->displacement)
         return -1;
-    move_vertices(x, element, weight, u);
+    for (int64_t v = 0; v < x->points; v++)
+        bound_displacement(&b, v, u, &x->displacement[3 * v]);
     return 0;
 }
 

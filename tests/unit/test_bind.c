@@ -1,9 +1,9 @@
-// needs: bind/nearest.c bind/bound.c bind/normals.c bind/numbered.c
+// needs: bind/nearest.c bind/normals.c
 /* Binding: the nearest element against a search through all, ties, equation (1), linear fields inside and outside. */
-#include "bind/bound.h"
+#include "base/numbered.h"
 #include "bind/nearest.h"
 #include "bind/normals.h"
-#include "bind/numbered.h"
+#include "mesh/bound.h"
 #include "mesh/weights.h"
 
 #include "tap.h"
@@ -240,7 +240,7 @@ static bool names_are(const char *pattern, int64_t index, const char *want)
 {
     numbered n;
     err e = {0};
-    if (numbered_of(&n, pattern, &e))
+    if (numbered_of(&n, pattern, "", &e))
         return !want && e.status == STATUS_USAGE;
     char *got = numbered_name(&n, index, &e);
     bool same = want && !strcmp(got, want);
