@@ -168,7 +168,11 @@ static void test_linear(double reach, double tolerance)
     nearest n;
     err e = {0};
     nearest_build(&n, &m, &e);
-    bound view = {.element = element, .weight = weight, .node = model_find(&m, "element.node")->i32, .rest = rest->f64};
+    bound view = {.element = element,
+                  .weight = weight,
+                  .corners = 8,
+                  .node = model_find(&m, "element.node")->i32,
+                  .rest = rest->f64};
     for (int v = 0; v < VERTICES; v++) {
         double p[3], d[3], f[9];
         for (int k = 0; k < 3; k++)
@@ -211,7 +215,8 @@ static void test_normals(void)
     const double *rest = model_find(&m, "node.position")->f64;
     int32_t element[3] = {0};
     double weight[9], u[24], normal[12];
-    bound b = {.element = element, .weight = weight, .node = model_find(&m, "element.node")->i32, .rest = rest};
+    bound b = {
+        .element = element, .weight = weight, .corners = 8, .node = model_find(&m, "element.node")->i32, .rest = rest};
     for (int i = 0; i < 9; i++)
         weight[i] = 1 - o.position[i];
     for (int i = 0; i < 8; i++) { /* x' = 2 x + 5, then a quarter turn about x: y' = -z, z' = y */
