@@ -182,22 +182,27 @@ void embree_packet_clear(embree_packet *p)
     }
 }
 
-static void begin(struct RTCIntersectContext *c, bool coherent)
+/* Embree wants -1 for each ray that counts, 0 for others. */
+static void begin(struct RTCIntersectContext *c, bool coherent, unsigned valid, int *each)
 {
+    for (int i = 0; i < EMBREE_RAYS; i++)
+        each[i] = -(int)(valid >> i & 1);
     rtcInitIntersectContext(c);
     c->flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 }
 
-void embree_nearest(const embree *b, const int *valid, embree_packet *p, bool coherent)
+void embree_nearest(const embree *b, unsigned valid, embree_packet *p, bool coherent)
 {
     struct RTCIntersectContext c;
-    begin(&c, coherent);
-    rtcIntersect16(valid, b->scene, &c, (struct RTCRayHit16 *)(void *)p);
+    alignas(64) int each[EMBREE_RAYS];
+    begin(&c, coherent, valid, each);
+    rtcIntersect16(each, b->scene, &c, (struct RTCRayHit16 *)(void *)p);
 }
 
-void embree_blocked(const embree *b, const int *valid, embree_packet *p, bool coherent)
+void embree_blocked(const embree *b, unsigned valid, embree_packet *p, bool coherent)
 {
     struct RTCIntersectContext c;
-    begin(&c, coherent);
-    rtcOccluded16(valid, b->scene, &c, (struct RTCRay16 *)(void *)p);
+    alignas(64) int each[EMBREE_RAYS];
+    begin(&c, coherent, valid, each);
+    rtcOccluded16(each, b->scene, &c, (struct RTCRay16 *)(void *)p);
 }

@@ -53,10 +53,10 @@ void embree_list(const embree *b, const float *from, const float *along, embree_
 /* All rays as if unused: from 0 without end, and nothing met. */
 void embree_packet_clear(embree_packet *p);
 
-/* The nearest thing that each ray with valid[i] = -1 (not 0) meets. coherent: the rays run much the same way. */
-void embree_nearest(const embree *b, const int *valid, embree_packet *p, bool coherent);
+/* The nearest thing that each ray whose bit of valid is set meets. coherent: the rays run much the same way. */
+void embree_nearest(const embree *b, unsigned valid, embree_packet *p, bool coherent);
 
 /* Whether a ray meets anything at all: its end becomes -infinity. */
-void embree_blocked(const embree *b, const int *valid, embree_packet *p, bool coherent);
+void embree_blocked(const embree *b, unsigned valid, embree_packet *p, bool coherent);
 
 #endif

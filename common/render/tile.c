@@ -49,7 +49,7 @@ void tile_destroy(tile *t)
 /* ---- rays from the eye */
 
 /* Rays through places in the picture, and what they meet behind all that is transparent. */
-static void look(tile *t, const float *x, const float *y, int *valid, surface *met, veil *before)
+static void look(tile *t, const float *x, const float *y, unsigned valid, surface *met, veil *before)
 {
     const view *v = t->view;
     embree_packet p;
@@ -65,19 +65,18 @@ static void look(tile *t, const float *x, const float *y, int *valid, surface *m
         p.along[2][i] = along.z;
         before[i] = (veil){{0, 0, 0}, 1};
     }
-    int left = 1;
-    for (int layer = 0; left && layer < VIEW_LAYERS; layer++) {
-        left = 0;
+    for (int layer = 0; valid && layer < VIEW_LAYERS; layer++) {
         embree_nearest(v->all, valid, &p, true);
         for (int i = 0; i < EMBREE_RAYS; i++) {
-            if (!valid[i])
+            if (!(valid >> i & 1))
                 continue;
             surface_met(v, &p, i, x[i], y[i], &met[i]);
             t->count.rays++;
             float transparency = met[i].geometry == EMBREE_NONE ? 0 : surface_transparency(v, &met[i]);
-            valid[i] = 0;
-            if (!(transparency > 0))
+            if (!(transparency > 0)) {
+                valid &= ~(1u << i);
                 continue;
+            }
             transparency *= 1 - met[i].line;
             before[i].colour =
                 vec_along(before[i].colour, surface_shade(v, &met[i], 1, 1), before[i].through * (1 - transparency));
@@ -85,8 +84,6 @@ static void look(tile *t, const float *x, const float *y, int *valid, surface *m
             met[i].geometry = p.geometry[i] = EMBREE_NONE;
             p.start[i] = p.end[i] * (1 + 1e-6f) + v->offset;
             p.end[i] = INFINITY;
-            valid[i] = -1;
-            left = 1;
         }
     }
 }
@@ -94,15 +91,13 @@ static void look(tile *t, const float *x, const float *y, int *valid, surface *m
 static void look_at_block(tile *t, int column, int row)
 {
     float x[EMBREE_RAYS], y[EMBREE_RAYS];
-    int valid[EMBREE_RAYS];
     surface met[EMBREE_RAYS];
     veil before[EMBREE_RAYS];
     for (int i = 0; i < EMBREE_RAYS; i++) {
         x[i] = (float)(t->left + column + i % VIEW_CELL) + .5f;
         y[i] = (float)(t->top + row + i / VIEW_CELL) + .5f;
-        valid[i] = -1;
     }
-    look(t, x, y, valid, met, before);
+    look(t, x, y, (1u << EMBREE_RAYS) - 1, met, before);
     for (int i = 0; i < EMBREE_RAYS; i++) {
         int at = (row + i / VIEW_CELL) * TILE_WIDTH + column + i % VIEW_CELL;
         sight *s = &t->sight[at];
@@ -145,7 +140,7 @@ static vec lift(const view *v, const sight *s)
 }
 
 /* How many of the packet's rays come through, bit by bit. */
-static unsigned come_through(tile *t, const int *valid, embree_packet *p)
+static unsigned come_through(tile *t, unsigned valid, embree_packet *p)
 {
     unsigned through = 0;
     embree_blocked(t->view->solid, valid, p, true);
@@ -155,7 +150,7 @@ static unsigned come_through(tile *t, const int *valid, embree_packet *p)
     return through;
 }
 
-static void open_near(tile *t, const queue *q, const int *valid, int class)
+static void open_near(tile *t, const queue *q, unsigned valid, int class)
 {
     const view *v = t->view;
     float open[EMBREE_RAYS] = {0};
@@ -178,7 +173,7 @@ static void open_near(tile *t, const queue *q, const int *valid, int class)
         t->sight[q->pixel[i]].open = open[i];
 }
 
-static void reach_lamp(tile *t, const queue *q, const int *valid, int class)
+static void reach_lamp(tile *t, const queue *q, unsigned valid, int class)
 {
     const view *v = t->view;
     embree_packet p;
@@ -194,11 +189,9 @@ static void flush(tile *t, int class)
 {
     const trace_options *o = t->view->options;
     queue *q = &t->queue[class];
-    int valid[EMBREE_RAYS];
-    if (!q->count)
+    unsigned valid = (1u << q->count) - 1;
+    if (!valid)
         return;
-    for (int i = 0; i < EMBREE_RAYS; i++)
-        valid[i] = i < q->count ? -1 : 0;
     if (o->occlusion > 0 && !o->draft)
         open_near(t, q, valid, class);
     if (o->shadows)
@@ -314,14 +307,14 @@ static void refine(tile *t)
 {
     const view *v = t->view;
     float x[EMBREE_RAYS], y[EMBREE_RAYS];
-    int valid[EMBREE_RAYS];
+    unsigned valid = 0;
     surface met[EMBREE_RAYS];
     veil before[EMBREE_RAYS];
     for (int i = 0; i < EMBREE_RAYS; i++) {
         int k = i / VIEW_SUBPIXELS, at = t->refine[k < t->refining ? k : 0];
         x[i] = (float)(t->left + at % TILE_WIDTH) + v->subpixel[i % VIEW_SUBPIXELS][0];
         y[i] = (float)(t->top + at / TILE_WIDTH) + v->subpixel[i % VIEW_SUBPIXELS][1];
-        valid[i] = k < t->refining ? -1 : 0;
+        valid |= (unsigned)(k < t->refining) << i;
     }
     look(t, x, y, valid, met, before);
     for (int k = 0; k < t->refining; k++) {
