@@ -138,11 +138,13 @@ static float soft(float cosine)
 
 vec surface_shade(const view *v, const surface *s, float ambient, float key)
 {
-    float sky = .5f + .5f * vec_dot(s->normal, v->unit_up);
-    float light = (.34f + .14f * sky) * ambient;
-    /* Deep places get less of the lamps too. */
-    float open = .5f + .5f * ambient;
-    light += (.5f * key * soft(vec_dot(s->normal, v->key)) + .16f * soft(vec_dot(s->normal, v->fill))) * open;
+    float sky = .5f + .5f * vec_dot(s->normal, v->unit_up), cosine = vec_dot(s->normal, v->key);
+    float light = (.22f + .14f * sky) * ambient;
+    /* Deep places get less of the lamps too. Of a surface that turns away from the lamp the faces would show in its
+     * shadow: there it has no more than the turning gives. */
+    float open = .5f + .5f * ambient, turned = fminf(1, fmaxf(0, 3 * cosine));
+    light += .66f * soft(cosine) * (1 - turned * (1 - key)) * open;
+    light += .14f * soft(vec_dot(s->normal, v->fill)) * open;
     vec c = vec_scale(s->colour, light);
     if (!(s->line > 0))
         return c;
