@@ -153,7 +153,7 @@ static void extend(extent *x, const double p[3], double radius)
     x->near_by = fmax(x->near_by, z + radius);
 }
 
-static int begin_fit(extent *x, camera *c, int width, int height, double angle, double margin, err *e)
+static int check_fit(int width, int height, double angle, double margin, err *e)
 {
     if (width < 1 || height < 1)
         return err_set(e, NULL, 0, "a picture of %d x %d pixels; at least 1 x 1 is expected", width, height);
@@ -161,6 +161,11 @@ static int begin_fit(extent *x, camera *c, int width, int height, double angle, 
         return err_set(e, NULL, 0, "a field of view of %g degrees; 0 (orthographic) to 170 is expected", angle);
     if (!(margin >= 0 && margin < .5))
         return err_set(e, NULL, 0, "a margin of %g; 0 to under .5 of the shorter side is expected", margin);
+    return 0;
+}
+
+static void begin_fit(extent *x, camera *c, int width, int height, double angle, double margin)
+{
     c->orthographic = angle == 0;
     double tangent = tan(angle / 2 * degree), free_ = 2 * margin * fmin(width, height);
     *x = (extent){.camera = c, .near_by = -INFINITY};
@@ -170,7 +175,6 @@ static int begin_fit(extent *x, camera *c, int width, int height, double angle, 
     for (int i = 0; i < 4; i++)
         x->most[i / 2][i % 2] = -INFINITY;
     c->half_height = tangent;
-    return 0;
 }
 
 static void place_eye(camera *c, double right, double up, double back)
@@ -201,11 +205,12 @@ int camera_fit_box(camera *c, const double low[3], const double high[3], int wid
                    double margin, err *e)
 {
     extent x;
-    if (begin_fit(&x, c, width, height, angle, margin, e))
+    if (check_fit(width, height, angle, margin, e))
         return -1;
     for (int i = 0; i < 3; i++)
         if (!(low[i] <= high[i]) || !isfinite(low[i]) || !isfinite(high[i]))
             return err_set(e, NULL, 0, "nothing to be seen: a box from %g to %g", low[i], high[i]);
+    begin_fit(&x, c, width, height, angle, margin);
     for (int k = 0; k < 8; k++) {
         double p[3];
         for (int i = 0; i < 3; i++)
@@ -225,8 +230,9 @@ static void extend_float(extent *x, const float *p, float radius)
 int camera_fit_scene(camera *c, const scene *s, int width, int height, double angle, double margin, err *e)
 {
     extent x;
-    if (scene_check(s, e) || begin_fit(&x, c, width, height, angle, margin, e))
+    if (scene_check(s, e) || check_fit(width, height, angle, margin, e))
         return -1;
+    begin_fit(&x, c, width, height, angle, margin);
     for (int64_t i = 0; i < s->meshes; i++) {
         const scene_mesh *m = &s->mesh[i];
         for (int64_t k = 0; k < m->faces * m->corners; k++)
@@ -234,7 +240,7 @@ int camera_fit_scene(camera *c, const scene *s, int width, int height, double an
     }
     for (int64_t i = 0; i < s->sphere_sets; i++)
         for (int64_t k = 0; k < s->spheres[i].count; k++)
-            extend_float(&x, &s->spheres[i].centre_radius[4 * k], s->spheres[i].centre_radius[4 * k + 3]);
+            extend_float(&x, s->spheres[i].centre_radius + 4 * k, s->spheres[i].centre_radius[4 * k + 3]);
     if (!isfinite(x.near_by))
         return err_set(e, NULL, 0, "nothing to be seen: no faces and no spheres");
     end_fit(&x, c, width, height, margin);

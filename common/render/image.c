@@ -108,13 +108,14 @@ static void convert_rows(void *context, int64_t chunk, int64_t from, int64_t to)
         for (int i = 0; i < 3; i++)
             out[i] = encode(&c->table, scale * p[i]);
         if (c->channels == 4)
-            out[3] = whole ? 255 : p[3] > 0 ? (uint8_t)(255 * p[3] + .5f) : 0;
+            out[3] = whole ? 255 : p[3] > 0 ? (uint8_t)lrintf(255 * p[3]) : 0;
     }
 }
 
 void image_bytes(const image *im, int channels, uint8_t *out, pool *p)
 {
-    conversion c = {.im = im, .channels = channels, .out = out};
+    conversion c = {.im = im, .channels = channels};
+    c.out = out;
     make_codes(&c.table);
     pool_run(p, im->height, CHUNK_ROWS, convert_rows, &c);
 }

@@ -77,7 +77,7 @@ bool scene_bounds(const scene *s, double low[3], double high[3])
     }
     for (int64_t i = 0; i < s->sphere_sets; i++)
         for (int64_t k = 0; k < s->spheres[i].count; k++) {
-            const float *ball = &s->spheres[i].centre_radius[4 * k];
+            const float *ball = s->spheres[i].centre_radius + 4 * k;
             widen(l, h, ball, (double)ball[3]);
         }
     if (!(l[0] <= h[0]))
@@ -98,7 +98,9 @@ static int check_finite(const char *label, const char *what, const float *number
 {
     /* x - x is 0 for finite numbers only, and so is a sum of such. */
     float sum = 0;
-    for (int64_t i = 0; number && i < count; i++)
+    if (!number)
+        return 0;
+    for (int64_t i = 0; i < count; i++)
         sum += number[i] - number[i];
     if (sum == 0)
         return 0;

@@ -94,8 +94,9 @@ static void look_at_block(tile *t, int column, int row)
     surface met[EMBREE_RAYS];
     veil before[EMBREE_RAYS];
     for (int i = 0; i < EMBREE_RAYS; i++) {
-        x[i] = (float)(t->left + column + i % VIEW_CELL) + .5f;
-        y[i] = (float)(t->top + row + i / VIEW_CELL) + .5f;
+        int right = t->left + column + i % VIEW_CELL, down = t->top + row + i / VIEW_CELL;
+        x[i] = (float)right + .5f;
+        y[i] = (float)down + .5f;
     }
     look(t, x, y, (1u << EMBREE_RAYS) - 1, met, before);
     for (int i = 0; i < EMBREE_RAYS; i++) {
@@ -312,8 +313,9 @@ static void refine(tile *t)
     veil before[EMBREE_RAYS];
     for (int i = 0; i < EMBREE_RAYS; i++) {
         int k = i / VIEW_SUBPIXELS, at = t->refine[k < t->refining ? k : 0];
-        x[i] = (float)(t->left + at % TILE_WIDTH) + v->subpixel[i % VIEW_SUBPIXELS][0];
-        y[i] = (float)(t->top + at / TILE_WIDTH) + v->subpixel[i % VIEW_SUBPIXELS][1];
+        int right = t->left + at % TILE_WIDTH, down = t->top + at / TILE_WIDTH;
+        x[i] = (float)right + v->subpixel[i % VIEW_SUBPIXELS][0];
+        y[i] = (float)down + v->subpixel[i % VIEW_SUBPIXELS][1];
         valid |= (unsigned)(k < t->refining) << i;
     }
     look(t, x, y, valid, met, before);

@@ -102,7 +102,7 @@ static void draw_tile(void *context, int64_t chunk, int64_t from, int64_t to)
 static int make_tiles(job *j, int64_t tiles, int threads, err *e)
 {
     j->count = mem_array(tiles, sizeof *j->count, "parts of a picture", e);
-    j->tile = mem_array(threads, sizeof *j->tile, "parts of a picture", e);
+    j->tile = mem_array(threads, sizeof(tile *), "parts of a picture", e);
     j->taken = mem_array(threads, sizeof *j->taken, "parts of a picture", e);
     if (!j->count || !j->tile || !j->taken)
         return -1;

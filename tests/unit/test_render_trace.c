@@ -120,7 +120,7 @@ static void add_globe(scene *s, double crease)
     for (int i = 0; i <= ROWS; i++)
         for (int j = 0; j < COLUMNS; j++) {
             double a = 3.14159265 * i / ROWS, b = 2 * 3.14159265 * j / COLUMNS;
-            float *p = &m.position[3 * (i * COLUMNS + j)];
+            float *p = m.position + 3 * (i * COLUMNS + j);
             p[0] = (float)(sin(a) * cos(b));
             p[1] = (float)(sin(a) * sin(b));
             p[2] = (float)cos(a);
@@ -351,7 +351,7 @@ static void test_fit(void)
         double least[2] = {1e9, 1e9}, most[2] = {-1e9, -1e9}, margin = .05 * (width < height ? width : height);
         bool before = true;
         for (int i = 0; i < 8; i++) {
-            const float *f = &s.mesh[0].position[3 * i];
+            const float *f = s.mesh[0].position + 3 * i;
             const double p[3] = {(double)f[0], (double)f[1], (double)f[2]};
             double q[2];
             before = before && camera_project(&c, width, height, p, q);
