@@ -14,13 +14,13 @@ UNIT_SRC := $(wildcard tests/unit/test_*.c)
 FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
 UNIT := $(UNIT_SRC:%.c=$(BUILD)/%)
 FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
-# Embree only for those that turn out to use it. (A variable: the comma.)
+# Embree and the rest only for those that turn out to use them. (A variable: the comma.)
 AS_NEEDED = -Wl,--as-needed
 needs = $(call objects,$(shell sed -n 's|^// needs: *||p' $(1)))
 
 define test_program
 $(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB)
-	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(LDLIBS))
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(LDLIBS))
 endef
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
