@@ -140,17 +140,22 @@ typedef struct extent {
     double most[2][2], near_by; /* [axis][towards + or -]; the greatest z, toward the eye */
 } extent;
 
+static inline void exceed(double *most, double x)
+{
+    *most = x > *most ? x : *most;
+}
+
 static void extend(extent *x, const double p[3], double radius)
 {
     const camera *c = x->camera;
     const double *axis[2] = {c->right, c->up};
     double z = -dot(c->forward, p);
     for (int i = 0; i < 2; i++) {
-        double k = x->lean[i], side = dot(axis[i], p), swell = radius * sqrt(1 + k * k);
-        x->most[i][0] = fmax(x->most[i][0], side + k * z + swell);
-        x->most[i][1] = fmax(x->most[i][1], -side + k * z + swell);
+        double k = x->lean[i], side = dot(axis[i], p), swell = radius > 0 ? radius * sqrt(1 + k * k) : 0;
+        exceed(&x->most[i][0], side + k * z + swell);
+        exceed(&x->most[i][1], -side + k * z + swell);
     }
-    x->near_by = fmax(x->near_by, z + radius);
+    exceed(&x->near_by, z + radius);
 }
 
 static int check_fit(int width, int height, double angle, double margin, err *e)

@@ -62,8 +62,9 @@ int scene_add_spheres(scene *s, scene_spheres *b, err *e)
 static void widen(double low[3], double high[3], const float *p, double radius)
 {
     for (int i = 0; i < 3; i++) {
-        low[i] = fmin(low[i], (double)p[i] - radius);
-        high[i] = fmax(high[i], (double)p[i] + radius);
+        double from = (double)p[i] - radius, to = (double)p[i] + radius;
+        low[i] = from < low[i] ? from : low[i];
+        high[i] = to > high[i] ? to : high[i];
     }
 }
 

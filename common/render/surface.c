@@ -48,7 +48,7 @@ typedef struct spot {
 static spot project(const view *v, vec p)
 {
     vec d = vec_sub(p, v->eye);
-    float scale = 1 / (v->pixel * (v->orthographic ? 1 : fmaxf(vec_dot(d, v->forward), 1e-9f)));
+    float scale = 1 / (v->pixel * (v->orthographic ? 1 : vec_most(vec_dot(d, v->forward), 1e-9f)));
     return (spot){.5f * (float)v->width + vec_dot(d, v->unit_right) * scale,
                   .5f * (float)v->height - vec_dot(d, v->unit_up) * scale};
 }
@@ -70,7 +70,7 @@ static float fade(const spot *s, int corners, float width)
     for (int i = 0; i < corners; i++) {
         spot a = s[i], b = s[(i + 1) % corners];
         area += a.x * b.y - a.y * b.x;
-        longest = fmaxf(longest, (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+        longest = vec_most(longest, (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
     }
     float across = longest > 0 ? (corners == 4 ? .5f : 1) * fabsf(area) / sqrtf(longest) : 0;
     float share = (across / width - 1.5f) / 6;
@@ -90,8 +90,8 @@ static float cover(const view *v, const scene_mesh *m, size_t face, float x, flo
     float least = INFINITY;
     for (int i = 0; i < m->corners; i++)
         if (m->edges[face] >> i & 1)
-            least = fminf(least, distance_squared(s[i], s[(i + 1) % m->corners], x, y));
-    float share = fmaxf(0, fminf(fminf(1, width), .5f * width + .5f - sqrtf(least)));
+            least = vec_least(least, distance_squared(s[i], s[(i + 1) % m->corners], x, y));
+    float share = vec_most(0, vec_least(vec_least(1, width), .5f * width + .5f - sqrtf(least)));
     return share > 0 ? share * fade(s, m->corners, width) : 0;
 }
 
@@ -142,7 +142,7 @@ vec surface_shade(const view *v, const surface *s, float ambient, float key)
     float light = (.22f + .14f * sky) * ambient;
     /* Deep places get less of the lamps too. Of a surface that turns away from the lamp the faces would show in its
      * shadow: there it has no more than the turning gives. */
-    float open = .5f + .5f * ambient, turned = fminf(1, fmaxf(0, 3 * cosine));
+    float open = .5f + .5f * ambient, turned = vec_least(1, vec_most(0, 3 * cosine));
     light += .66f * soft(cosine) * (1 - turned * (1 - key)) * open;
     light += .14f * soft(vec_dot(s->normal, v->fill)) * open;
     vec c = vec_scale(s->colour, light);

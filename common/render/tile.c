@@ -8,7 +8,7 @@
 /* A pixel as its centre sees it. */
 typedef struct sight {
     surface surface;
-    float pixel;        /* m a pixel there */
+    float pixel, finer; /* m a pixel there, and its inverse */
     float open, key;    /* of the few rays of its own: shares of the ambient and of the key light that come through */
     float ambient, lit; /* the same, averaged with its like */
 } sight;
@@ -88,6 +88,12 @@ static void look(tile *t, const float *x, const float *y, unsigned valid, surfac
     }
 }
 
+static void set_pixel(sight *s, float size)
+{
+    s->pixel = size;
+    s->finer = 1 / size;
+}
+
 static void look_at_block(tile *t, int column, int row)
 {
     float x[EMBREE_RAYS], y[EMBREE_RAYS];
@@ -106,7 +112,7 @@ static void look_at_block(tile *t, int column, int row)
         t->veil[at] = before[i];
         s->open = s->key = s->ambient = s->lit = 1;
         if (met[i].geometry != EMBREE_NONE)
-            s->pixel = view_pixel(t->view, met[i].place);
+            set_pixel(s, view_pixel(t->view, met[i].place));
     }
 }
 
@@ -286,15 +292,18 @@ static float *pixel_of(const tile *t, int at)
 /* The pixel or neighbour that a place seen within it is most like: its light is taken for the place. */
 static const sight *likest(const tile *t, int at, const surface *s)
 {
+    static const int beside[9] = {
+        0, -1, 1, -TILE_WIDTH, TILE_WIDTH, -TILE_WIDTH - 1, -TILE_WIDTH + 1, TILE_WIDTH - 1, TILE_WIDTH + 1};
+    const float good = .2f;
     const sight *best = NULL;
     float least = INFINITY;
-    for (int k = 0; k < 9; k++) {
-        const sight *n = &t->sight[at + (k / 3 - 1) * TILE_WIDTH + k % 3 - 1];
+    for (int k = 0; k < 9 && least > good; k++) {
+        const sight *n = &t->sight[at + beside[k]];
         if (n->surface.geometry == EMBREE_NONE)
             continue;
-        vec apart = vec_sub(s->place, n->surface.place);
-        float badness = 8 * (1 - vec_dot(n->surface.normal, s->normal)) +
-                        (fabsf(vec_dot(n->surface.flat, apart)) + .1f * sqrtf(vec_dot(apart, apart))) / n->pixel;
+        vec apart = vec_scale(vec_sub(s->place, n->surface.place), n->finer);
+        float badness = 8 * (1 - vec_dot(n->surface.normal, s->normal)) + fabsf(vec_dot(n->surface.flat, apart)) +
+                        .05f * vec_dot(apart, apart);
         if (badness < least) {
             least = badness;
             best = n;
@@ -340,7 +349,8 @@ static bool border(const tile *t, int a, int b)
 {
     const sight *s = &t->sight[a], *n = &t->sight[b];
     const veil *before = &t->veil[a], *beside = &t->veil[b];
-    if (fabsf(before->through - beside->through) > .02f || differ(before->colour, beside->colour))
+    if (t->view->solid != t->view->all &&
+        (fabsf(before->through - beside->through) > .02f || differ(before->colour, beside->colour)))
         return true;
     if (s->surface.geometry == EMBREE_NONE)
         return n->surface.geometry != EMBREE_NONE;

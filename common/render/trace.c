@@ -10,7 +10,7 @@
 
 trace_options trace_defaults(void)
 {
-    return (trace_options){.background = {1, 1, 1, 1}, .edge_width = 1.1, .occlusion = .9, .reach = .2};
+    return (trace_options){.background = {1, 1, 1, 1}, .edge_width = 1.1, .occlusion = .9, .reach = .16};
 }
 
 static double now(void)

@@ -45,6 +45,17 @@ static inline vec vec_cross(vec a, vec b)
     return (vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/* The C library's take care of nans, and are calls. */
+static inline float vec_least(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float vec_most(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 /* Zero stays zero. */
 static inline vec vec_unit(vec a)
 {
