@@ -41,58 +41,82 @@ static vec mesh_normal(const scene_mesh *m, size_t face, const float *weight, ve
     return vec_dot(sum, sum) > .5f ? sum : flat;
 }
 
-typedef struct spot {
-    float x, y;
-} spot;
+/* A face's corners in the picture, in pixels from the place that is seen. A triangle's fourth is its first again. The
+ * loops over four run in vector registers. */
+typedef struct outline {
+    float x[4], y[4];
+} outline;
 
-static spot project(const view *v, vec p)
+static void project(const view *v, const scene_mesh *m, size_t face, float x, float y, outline *o)
 {
-    vec d = vec_sub(p, v->eye);
-    float scale = 1 / (v->pixel * (v->orthographic ? 1 : vec_most(vec_dot(d, v->forward), 1e-9f)));
-    return (spot){.5f * (float)v->width + vec_dot(d, v->unit_right) * scale,
-                  .5f * (float)v->height - vec_dot(d, v->unit_up) * scale};
+    const uint32_t *corner = m->corner + face * (size_t)m->corners;
+    float p[3][4];
+    for (int i = 0; i < 4; i++) {
+        const float *at = m->position + 3 * (size_t)corner[i < m->corners ? i : 0];
+        for (int k = 0; k < 3; k++)
+            p[k][i] = at[k];
+    }
+    float left = .5f * (float)v->width - x, top = .5f * (float)v->height - y;
+    for (int i = 0; i < 4; i++) {
+        float dx = p[0][i] - v->eye.x, dy = p[1][i] - v->eye.y, dz = p[2][i] - v->eye.z;
+        float depth = dx * v->forward.x + dy * v->forward.y + dz * v->forward.z;
+        depth = v->orthographic ? 1 : depth > 1e-9f ? depth : 1e-9f;
+        float scale = 1 / (v->pixel * depth);
+        o->x[i] = left + scale * (dx * v->unit_right.x + dy * v->unit_right.y + dz * v->unit_right.z);
+        o->y[i] = top - scale * (dx * v->unit_up.x + dy * v->unit_up.y + dz * v->unit_up.z);
+    }
 }
 
-static float distance_squared(spot a, spot b, float x, float y)
+/* The squared distance from the place to each side, and the sides' squared lengths. */
+static void sides(const outline *o, int corners, float distance[4], float length[4])
 {
-    float dx = b.x - a.x, dy = b.y - a.y, length = dx * dx + dy * dy;
-    float t = length > 0 ? ((x - a.x) * dx + (y - a.y) * dy) / length : 0;
-    t = t < 0 ? 0 : t > 1 ? 1 : t;
-    dx = a.x + t * dx - x;
-    dy = a.y + t * dy - y;
-    return dx * dx + dy * dy;
+    float ex[4], ey[4];
+    for (int i = 0; i < 4; i++) {
+        int next = i + 1 < corners ? i + 1 : 0;
+        ex[i] = o->x[next];
+        ey[i] = o->y[next];
+    }
+    for (int i = 0; i < 4; i++) {
+        float dx = ex[i] - o->x[i], dy = ey[i] - o->y[i];
+        length[i] = dx * dx + dy * dy;
+        float t = -(o->x[i] * dx + o->y[i] * dy) / (length[i] + 1e-30f);
+        t = vec_least(vec_most(t, 0), 1);
+        float nx = o->x[i] + t * dx, ny = o->y[i] + t * dy;
+        distance[i] = nx * nx + ny * ny;
+    }
 }
 
 /* Lines would make one dark mass of faces that are as small as they: from many widths down to few they fade. */
-static float fade(const spot *s, int corners, float width)
+static float fade(const outline *o, const float *length, int corners, float width)
 {
     float area = 0, longest = 0;
     for (int i = 0; i < corners; i++) {
-        spot a = s[i], b = s[(i + 1) % corners];
-        area += a.x * b.y - a.y * b.x;
-        longest = vec_most(longest, (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+        int next = i + 1 < corners ? i + 1 : 0;
+        area += o->x[i] * o->y[next] - o->y[i] * o->x[next];
+        longest = vec_most(longest, length[i]);
     }
     float across = longest > 0 ? (corners == 4 ? .5f : 1) * fabsf(area) / sqrtf(longest) : 0;
-    float share = (across / width - 1.5f) / 6;
-    return share < 0 ? 0 : share > 1 ? 1 : share;
+    return vec_least(vec_most((across / width - 1.5f) / 6, 0), 1);
 }
 
 /* How much of the pixel about (x, y) the face's drawn edges cover: their distance in the picture, filtered by a box of
  * one pixel. Each of two neighbours draws its half of the line between them. */
 static float cover(const view *v, const scene_mesh *m, size_t face, float x, float y)
 {
-    float width = (float)v->options->edge_width;
+    float width = (float)v->options->edge_width, distance[4], length[4], least = INFINITY;
     if (!m->edges || !m->edges[face] || !(width > 0))
         return 0;
-    spot s[4];
-    for (int i = 0; i < m->corners; i++)
-        s[i] = project(v, vec_of(&m->position[3 * (size_t)m->corner[face * (size_t)m->corners + (size_t)i]]));
-    float least = INFINITY;
+    outline o;
+    project(v, m, face, x, y, &o);
+    sides(&o, m->corners, distance, length);
     for (int i = 0; i < m->corners; i++)
         if (m->edges[face] >> i & 1)
-            least = vec_least(least, distance_squared(s[i], s[(i + 1) % m->corners], x, y));
-    float share = vec_most(0, vec_least(vec_least(1, width), .5f * width + .5f - sqrtf(least)));
-    return share > 0 ? share * fade(s, m->corners, width) : 0;
+            least = vec_least(least, distance[i]);
+    float reach = .5f * width + .5f;
+    if (least >= reach * reach)
+        return 0;
+    float share = vec_least(vec_least(1, width), reach - sqrtf(least));
+    return share * fade(&o, length, m->corners, width);
 }
 
 static void mesh_met(const view *v, const scene_mesh *m, const embree_packet *p, int i, float x, float y, surface *to)

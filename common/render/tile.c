@@ -118,32 +118,51 @@ static void look_at_block(tile *t, int column, int row)
 
 /* ---- how much light reaches a place */
 
-static void set_ray(embree_packet *p, int i, vec from, vec along, float length)
+/* Where the rays of a queue's pixels begin, lifted off their surfaces, and the frames about their normals, number by
+ * number for all, so that loops over them run in vector registers. */
+typedef struct bundle {
+    float from[3][EMBREE_RAYS], flat[3][EMBREE_RAYS], normal[3][EMBREE_RAYS];
+} bundle;
+
+static void gather(const tile *t, const queue *q, bundle *b)
 {
-    p->from[0][i] = from.x;
-    p->from[1][i] = from.y;
-    p->from[2][i] = from.z;
-    p->along[0][i] = along.x;
-    p->along[1][i] = along.y;
-    p->along[2][i] = along.z;
-    p->end[i] = length;
+    memset(b, 0, sizeof *b);
+    for (int i = 0; i < q->count; i++) {
+        const sight *s = &t->sight[q->pixel[i]];
+        const surface *on = &s->surface;
+        vec from = vec_along(on->place, on->flat, t->view->offset + .02f * s->pixel);
+        const vec part[3] = {from, on->flat, on->normal};
+        for (int k = 0; k < 3; k++) {
+            float(*to)[EMBREE_RAYS] = k == 0 ? b->from : k == 1 ? b->flat : b->normal;
+            to[0][i] = part[k].x;
+            to[1][i] = part[k].y;
+            to[2][i] = part[k].z;
+        }
+    }
 }
 
-/* A direction about +z as one about n. The frame comes from n in the eye's axes, where n is toward the eye mostly and
- * the frame turns smoothly with it (after Duff et al., Building an Orthonormal Basis, Revisited, 2017). */
-static vec about(const view *v, vec n, vec d)
+/* Directions about +z as such about each normal. The frame comes from the normal in the eye's axes, where it is toward
+ * the eye mostly and the frame turns smoothly with it (after Duff et al., Building an Orthonormal Basis, Revisited,
+ * 2017). Those that then run into the face itself are mirrored out of it. */
+static void turn_about(const view *v, const bundle *b, vec d, embree_packet *p)
 {
-    float nx = vec_dot(n, v->unit_right), ny = vec_dot(n, v->unit_up), nz = -vec_dot(n, v->forward);
-    float sign = nz < 0 ? -1.f : 1.f, a = -1 / (sign + nz), b = nx * ny * a;
-    float x = d.x * (1 + sign * nx * nx * a) + d.y * b + d.z * nx;
-    float y = d.x * sign * b + d.y * (sign + ny * ny * a) + d.z * ny;
-    float z = d.x * -sign * nx - d.y * ny + d.z * nz;
-    return vec_along(vec_along(vec_scale(v->unit_right, x), v->unit_up, y), v->forward, -z);
-}
-
-static vec lift(const view *v, const sight *s)
-{
-    return vec_along(s->surface.place, s->surface.flat, v->offset + .02f * s->pixel);
+    const vec r = v->unit_right, u = v->unit_up, f = v->forward;
+    for (int i = 0; i < EMBREE_RAYS; i++) {
+        float x = b->normal[0][i], y = b->normal[1][i], z = b->normal[2][i];
+        float nx = x * r.x + y * r.y + z * r.z, ny = x * u.x + y * u.y + z * u.z, nz = -(x * f.x + y * f.y + z * f.z);
+        float sign = nz < 0 ? -1.f : 1.f, a = -1 / (sign + nz), c = nx * ny * a;
+        float dx = d.x * (1 + sign * nx * nx * a) + d.y * c + d.z * nx;
+        float dy = d.x * sign * c + d.y * (sign + ny * ny * a) + d.z * ny;
+        float dz = d.x * sign * nx + d.y * ny - d.z * nz;
+        x = dx * r.x + dy * u.x + dz * f.x;
+        y = dx * r.y + dy * u.y + dz * f.y;
+        z = dx * r.z + dy * u.z + dz * f.z;
+        float under = x * b->flat[0][i] + y * b->flat[1][i] + z * b->flat[2][i];
+        float mirror = under < 0 ? -2 * under : 0;
+        p->along[0][i] = x + mirror * b->flat[0][i];
+        p->along[1][i] = y + mirror * b->flat[1][i];
+        p->along[2][i] = z + mirror * b->flat[2][i];
+    }
 }
 
 /* How many of the packet's rays come through, bit by bit. */
@@ -157,36 +176,36 @@ static unsigned come_through(tile *t, unsigned valid, embree_packet *p)
     return through;
 }
 
-static void open_near(tile *t, const queue *q, unsigned valid, int class)
+static void open_near(tile *t, const queue *q, const bundle *b, unsigned valid, int class)
 {
     const view *v = t->view;
-    float open[EMBREE_RAYS] = {0};
-    for (int k = 0; k < VIEW_NEAR; k++) {
-        embree_packet p;
-        embree_packet_clear(&p);
-        for (int i = 0; i < q->count; i++) {
-            const sight *s = &t->sight[q->pixel[i]];
-            vec d = about(v, s->surface.normal, v->near_by[class][k]);
-            float under = vec_dot(d, s->surface.flat);
-            if (under < 0)
-                d = vec_along(d, s->surface.flat, -2 * under);
-            set_ray(&p, i, lift(v, s), d, v->reach * v->near_length[class][k]);
-        }
-        unsigned through = come_through(t, valid, &p);
-        for (int i = 0; i < q->count; i++)
-            open[i] += (float)(through >> i & 1) / VIEW_NEAR;
-    }
-    for (int i = 0; i < q->count; i++)
-        t->sight[q->pixel[i]].open = open[i];
-}
-
-static void reach_lamp(tile *t, const queue *q, unsigned valid, int class)
-{
-    const view *v = t->view;
+    int open[EMBREE_RAYS] = {0};
     embree_packet p;
     embree_packet_clear(&p);
+    memcpy(p.from, b->from, sizeof p.from);
+    for (int k = 0; k < VIEW_NEAR; k++) {
+        turn_about(v, b, v->near_by[class][k], &p);
+        for (int i = 0; i < EMBREE_RAYS; i++)
+            p.end[i] = v->reach * v->near_length[class][k];
+        unsigned through = come_through(t, valid, &p);
+        for (int i = 0; i < EMBREE_RAYS; i++)
+            open[i] += (int)(through >> i & 1);
+    }
     for (int i = 0; i < q->count; i++)
-        set_ray(&p, i, lift(v, &t->sight[q->pixel[i]]), v->lamp[class], INFINITY);
+        t->sight[q->pixel[i]].open = (float)open[i] / VIEW_NEAR;
+}
+
+static void reach_lamp(tile *t, const queue *q, const bundle *b, unsigned valid, int class)
+{
+    const vec lamp = t->view->lamp[class];
+    embree_packet p;
+    embree_packet_clear(&p);
+    memcpy(p.from, b->from, sizeof p.from);
+    for (int i = 0; i < EMBREE_RAYS; i++) {
+        p.along[0][i] = lamp.x;
+        p.along[1][i] = lamp.y;
+        p.along[2][i] = lamp.z;
+    }
     unsigned through = come_through(t, valid, &p);
     for (int i = 0; i < q->count; i++)
         t->sight[q->pixel[i]].key = (float)(through >> i & 1);
@@ -199,10 +218,12 @@ static void flush(tile *t, int class)
     unsigned valid = (1u << q->count) - 1;
     if (!valid)
         return;
+    bundle b;
+    gather(t, q, &b);
     if (o->occlusion > 0 && !o->draft)
-        open_near(t, q, valid, class);
+        open_near(t, q, &b, valid, class);
     if (o->shadows)
-        reach_lamp(t, q, valid, class);
+        reach_lamp(t, q, &b, valid, class);
     q->count = 0;
 }
 
