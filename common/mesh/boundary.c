@@ -15,12 +15,18 @@ typedef struct elements {
     const int32_t *node;
     int64_t count;
     int corners, sides;
-    const bool *keep;
+    const bool *keep, *beside;
 } elements;
 
 static bool kept(const elements *x, int64_t element)
 {
     return !x->keep || x->keep[element];
+}
+
+/* Whether an element takes part: its own faces, or only those that it covers. */
+static bool counts(const elements *x, int64_t element)
+{
+    return kept(x, element) || (x->beside && x->beside[element]);
 }
 
 static int32_t face_node(const elements *x, int64_t element, int side, int corner)
@@ -51,7 +57,7 @@ static int of_lattice(boundary *b, const elements *x, const model *m, const int3
             int64_t at[3] = {cell[3 * n], cell[3 * n + 1], cell[3 * n + 2]};
             at[side / 2] += side % 2 ? 1 : -1;
             int32_t beside = lattice_element(&map, at[0], at[1], at[2]);
-            if (beside < 0 || !kept(x, beside))
+            if (beside < 0 || !counts(x, beside))
                 bad = add(b, x, n, side, e);
         }
     lattice_map_free(&map);
@@ -86,7 +92,7 @@ static face *sort(const elements *x, int corners, int64_t nodes, int64_t *start,
 {
     int32_t lowest;
     for (int64_t n = 0; n < x->count; n++)
-        for (int side = 0; side < x->sides && kept(x, n); side++) {
+        for (int side = 0; side < x->sides && counts(x, n); side++) {
             face_of(x, n, side, corners, &lowest);
             start[lowest + 1]++;
         }
@@ -96,7 +102,7 @@ static face *sort(const elements *x, int corners, int64_t nodes, int64_t *start,
     if (!all)
         return NULL;
     for (int64_t n = 0; n < x->count; n++)
-        for (int side = 0; side < x->sides && kept(x, n); side++) {
+        for (int side = 0; side < x->sides && counts(x, n); side++) {
             face f = face_of(x, n, side, corners, &lowest);
             all[start[lowest]++] = f;
         }
@@ -120,14 +126,14 @@ static int by_nodes(boundary *b, const elements *x, int64_t nodes, err *e)
     int bad = all ? 0 : -1;
     for (int64_t n = 0; n < nodes && !bad; n++)
         for (int64_t i = start[n]; i < start[n + 1] && !bad; i++)
-            if (!shared(all, start[n], start[n + 1], i))
+            if (kept(x, all[i].element) && !shared(all, start[n], start[n + 1], i))
                 bad = add(b, x, all[i].element, all[i].side, e);
     free(start);
     free(all);
     return bad;
 }
 
-int boundary_of(boundary *b, const model *m, const bool *keep, err *e)
+int boundary_of(boundary *b, const model *m, const bool *keep, const bool *beside, err *e)
 {
     const model_array *node = model_need(m, "element.node", e), *cell = model_find(m, "element.lattice");
     *b = (boundary){0};
@@ -136,7 +142,7 @@ int boundary_of(boundary *b, const model *m, const bool *keep, err *e)
     if (node->columns != 8 && node->columns != 4)
         return err_set(e, NULL, 0, "element.node has %d columns; expected 8 (hexahedra) or 4 (tetrahedra)",
                        (int)node->columns);
-    elements x = {node->i32, node->rows, node->columns, node->columns == 8 ? 6 : 4, keep};
+    elements x = {node->i32, node->rows, node->columns, node->columns == 8 ? 6 : 4, keep, beside};
     b->corners = node->columns == 8 ? 4 : 3;
     int bad =
         cell && node->columns == 8 ? of_lattice(b, &x, m, cell->i32, e) : by_nodes(b, &x, model_count(m, "node"), e);

@@ -18,7 +18,7 @@ typedef struct build_cut {
 } build_cut;
 
 enum {
-    BUILD_SURFACES = 1, /* all that the model carries */
+    BUILD_SURFACES = 1, /* all that the model carries, but muscles within a skin */
     BUILD_VOXELS = 2,   /* all elements, with edges; cuts open them */
     BUILD_MUSCLES = 4,  /* the elements of muscles, with edges; whole */
     BUILD_RIGID = 8,    /* rigid nodes, as spheres */
@@ -44,6 +44,8 @@ typedef struct build {
     scene scene;
     double **value; /* a mesh: the field's, one a face (where that mesh has face_colour) or vertex; or NULL */
     int64_t values, value_capacity;
+    bool marked; /* the scene's set of spheres `marks` is contraction centres: they are to be seen through all else */
+    int64_t marks;
     int seen; /* of BUILD_*: what there is of it; BUILD_MUSCLES also where voxels show muscle */
 } build;
 

@@ -154,11 +154,14 @@ static int add_thing(build *to, const model *m, const build_want *w, int thing, 
     const model_array *node = model_need(m, "element.node", e);
     const model_array *rest = node ? model_need(m, "node.position", e) : NULL;
     bool *keep = rest ? choose(m, w, thing, node, rest->f64, e) : NULL;
+    bool apart = keep && thing == BUILD_VOXELS && w->things & BUILD_MUSCLES;
+    bool *muscle = apart ? choose(m, w, BUILD_MUSCLES, node, rest->f64, e) : NULL;
     boundary b = {0};
-    int bad = !keep || boundary_of(&b, m, keep, e) ? -1 : 0;
+    int bad = e->status || boundary_of(&b, m, keep, muscle, e) ? -1 : 0;
     if (!bad && b.faces)
         bad = add_outside(to, m, w, thing, &b, e);
     free(keep);
+    free(muscle);
     boundary_free(&b);
     return bad;
 }

@@ -30,7 +30,7 @@ static int add_rigid(build *b, const model *m, const build_want *w, err *e)
     const model_array *rigid = model_need(m, "node.rigid", e), *rest = rigid ? model_need(m, "node.position", e) : NULL;
     const model_array *u = w->moved ? frame_find(w->moved, "node.displacement") : NULL;
     int64_t count = 0;
-    float radius = (float)(.23 * side(m));
+    float radius = (float)(.35 * side(m));
     if (!rest)
         return -1;
     for (int64_t n = 0; n < rigid->rows; n++)
@@ -48,11 +48,21 @@ static int add_rigid(build *b, const model *m, const build_want *w, err *e)
     return sphere ? add(b, sphere, count, "rigid nodes", build_red, e) : -1;
 }
 
+/* Centres are marks more than things: they are as large as the eye wants them, whatever the elements. */
+static double mark(const build *b, const model *m)
+{
+    double low[3], high[3], square = 0;
+    for (int a = 0; scene_bounds(&b->scene, low, high) && a < 3; a++)
+        square += (high[a] - low[a]) * (high[a] - low[a]);
+    return fmax(.016 * sqrt(square), 1.2 * side(m));
+}
+
 static int add_centres(build *b, const model *m, err *e)
 {
     const model_array *centre = model_need(m, "muscle.centre", e);
     int64_t count = 0;
     float *sphere = centre ? mem_array(4 * centre->rows, sizeof *sphere, "contraction centres", e) : NULL;
+    double radius = mark(b, m);
     if (!sphere)
         return -1;
     for (int64_t n = 0; n < centre->rows; n++) {
@@ -60,13 +70,15 @@ static int add_centres(build *b, const model *m, err *e)
         if (!isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
             continue;
         build_place(centre->f64, NULL, n, &sphere[4 * count]);
-        sphere[4 * count++ + 3] = (float)(1.2 * side(m));
+        sphere[4 * count++ + 3] = (float)radius;
     }
     if (!count) {
         free(sphere);
         return err_set(e, NULL, 0, "no muscle has a contraction centre; expected rigid nodes in one");
     }
     b->seen |= BUILD_CENTRES;
+    b->marks = b->scene.sphere_sets;
+    b->marked = true;
     return add(b, sphere, count, "contraction centres", build_centre, e);
 }
 

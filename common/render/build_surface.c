@@ -16,15 +16,17 @@ static const double crease = 40; /* degrees: edges sharper than this stay */
 static const struct {
     const char *pattern;
     uint8_t srgb[3];
-} kinds[] = {{"skull*", {238, 229, 205}}, {"bone*", {238, 229, 205}}, {"rigid*", {238, 229, 205}},
-             {"muscle*", {178, 66, 60}},  {"skin*", {228, 182, 156}}, {"*", {190, 198, 212}}};
+} kinds[] = {{"skull*", {244, 237, 216}}, {"bone*", {244, 237, 216}}, {"rigid*", {244, 237, 216}},
+             {"muscle*", {178, 66, 60}},  {"skin*", {246, 208, 184}}, {"*", {190, 198, 212}}};
 
-static void kind_colour(const char *names, float colour[3])
+enum { MUSCLE = 3, SKIN = 4 };
+
+static int kind_of(const char *names)
 {
     int i = 0;
     while (kinds[i].pattern[0] != '*' && !surface_in_group(names, kinds[i].pattern))
         i++;
-    build_linear(kinds[i].srgb, colour);
+    return i;
 }
 
 /* One surface on its way into the scene. */
@@ -39,21 +41,32 @@ typedef struct part {
     float *group_colour;
 } part;
 
+static bool has_skin(const surface *s)
+{
+    for (int64_t g = 0; g < s->groups; g++)
+        if (kind_of(s->group_name[g]) == SKIN)
+            return true;
+    return false;
+}
+
+/* Muscles lie within the skin, where there is one: they are seen only where they are named. */
 static int choose_groups(part *p, const build_want *w, err *e)
 {
     const surface *s = &p->b.shape;
     int seen = 0;
+    bool skin = has_skin(s);
     p->take = mem_array(s->groups, 1, "groups", e);
     p->group_colour = p->take ? mem_array(3 * s->groups, sizeof *p->group_colour, "groups", e) : NULL;
     if (!p->group_colour)
         return -1;
     for (int64_t g = 0; g < s->groups; g++) {
         const char *name = s->group_name[g];
-        if (w->things & BUILD_SURFACES || build_named(w->name, w->names, s->name) ||
-            build_named(w->name, w->names, name))
+        int kind = kind_of(name);
+        bool outside = w->things & BUILD_SURFACES && !(skin && kind == MUSCLE);
+        if (outside || build_named(w->name, w->names, s->name) || build_named(w->name, w->names, name))
             p->take[g] = build_named(w->clear, w->clears, s->name) || build_named(w->clear, w->clears, name) ? 2 : 1;
         seen |= p->take[g];
-        kind_colour(name, &p->group_colour[3 * g]);
+        build_linear(kinds[kind].srgb, &p->group_colour[3 * g]);
     }
     return seen;
 }
@@ -106,17 +119,35 @@ static int place(const part *p, scene_mesh *to, err *e)
     return 0;
 }
 
-/* A vertex has the value that its element's nodes give it; a name is its element's. */
+/* A vector is blended before its norm is taken. */
+static double value_of_vector(const part *p, int64_t v)
+{
+    double at[3];
+    if (p->field->displaces && p->bone.node)
+        bone_displacement(&p->bone, &p->b, v, p->field->vector, at);
+    else
+        bound_displacement(&p->b, v, p->field->vector, at);
+    return field_of_vector(p->field, at);
+}
+
+/* A vertex has the value that its element's nodes give it, and none beyond theirs where it lies outside; a name is
+ * its element's. */
 static double value_at(const part *p, int64_t v)
 {
     const bound *b = &p->b;
-    double share[8], sum = 0;
+    double share[8], sum = 0, low = INFINITY, high = -INFINITY;
+    if (p->field->vector)
+        return value_of_vector(p, v);
     if (!p->at_nodes)
         return p->field->value[b->element[v]];
     int corners = bound_shares(b, v, share);
-    for (int n = 0; n < corners; n++)
-        sum += share[n] * p->at_nodes[b->node[b->corners * (int64_t)b->element[v] + n]];
-    return sum;
+    for (int n = 0; n < corners; n++) {
+        double at = p->at_nodes[b->node[b->corners * (int64_t)b->element[v] + n]];
+        sum += share[n] * at;
+        low = fmin(low, at);
+        high = fmax(high, at);
+    }
+    return isnan(sum) ? sum : fmin(fmax(sum, low), high);
 }
 
 /* Values take the place of the groups' colours. Names do not blend: they are the faces'. */
@@ -129,8 +160,13 @@ static double *values(const part *p, scene_mesh *to, err *e)
         to->face_colour = NULL;
         to->vertex_colour = mem_array(3 * count, sizeof *to->vertex_colour, "values", e);
     }
-    for (int64_t n = 0; value && n < count; n++)
-        value[n] = value_at(p, p->at_nodes ? n : to->corner[3 * n]);
+    if (!value)
+        return NULL;
+    /* Vertices of no face here are not seen: they have no part in the scale. */
+    for (int64_t n = 0; n < count; n++)
+        value[n] = (double)NAN;
+    for (int64_t c = 0; c < 3 * to->faces; c += p->at_nodes ? 1 : 3)
+        value[p->at_nodes ? to->corner[c] : c / 3] = value_at(p, to->corner[c]);
     return value;
 }
 

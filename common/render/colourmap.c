@@ -50,10 +50,12 @@ static void put(const double lab[3], float colour[3])
         colour[i] = (float)fmin(fmax(rgb[i], 0), 1);
 }
 
-/* The path through the colours, s of 0 to 1: not yet of equal steps. */
+/* The path through the colours, s of 0 to 1: not yet of equal steps. Its chroma is smooth, and a screen can show all of
+ * it: what had to give way would be seen as a band. */
 static void path(double s, double lab[3])
 {
-    by_hue(.27 + .65 * s, .125 + .055 * s, 312 - 204 * s, lab);
+    double middle = (2 * s - 1) * (2 * s - 1);
+    by_hue(.31 + .61 * s, .102 + (s < .5 ? .040 : .075) * middle, 310 - 203 * s, lab);
 }
 
 enum { FINE = 4096 };

@@ -42,15 +42,28 @@ static int make(field *to, bool of_elements, int64_t count, const char *label, c
 
 /* ---- arrays */
 
-/* One component, or the norm (component -1) of the three, or the one number. */
-static void take_array(field *to, const model_array *a, int component)
+double field_of_vector(const field *f, const double v[3])
 {
-    for (int64_t n = 0; n < to->count; n++) {
-        double x = source_value(a, n * a->columns), sum = x * x;
-        for (int c = 1; c < a->columns; c++)
-            sum += source_value(a, n * a->columns + c) * source_value(a, n * a->columns + c);
-        to->value[n] = component >= 0 ? source_value(a, n * a->columns + component) : a->columns == 1 ? x : sqrt(sum);
+    return f->component >= 0 ? v[f->component] : sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* One component, or the norm (component -1) of the three, or the one number. */
+static int take_array(field *to, const model_array *a, err *e)
+{
+    if (a->columns == 3 && !to->of_elements) {
+        to->vector = mem_array(3 * to->count, sizeof *to->vector, "a field", e);
+        if (!to->vector)
+            return -1;
     }
+    for (int64_t n = 0; n < to->count; n++) {
+        double v[3];
+        for (int c = 0; c < a->columns; c++)
+            v[c] = source_value(a, n * a->columns + c);
+        to->value[n] = a->columns == 3 ? field_of_vector(to, v) : v[0];
+        if (to->vector)
+            memcpy(&to->vector[3 * n], v, sizeof v);
+    }
+    return 0;
 }
 
 static bool is_field(const model_array *a)
@@ -83,9 +96,10 @@ static int of_array(field *to, const model_array *a, int component, const char *
     const char *si = strcmp(a->unit, "1") != 0 && a->unit[0] != '@' ? a->unit : "";
     if (make(to, !strcmp(a->axis, "element"), a->rows, label, si, e))
         return -1;
+    to->component = component;
+    to->displaces = !strcmp(a->name, "node.displacement");
     to->below_zero = component >= 0 || a->columns == 1;
-    take_array(to, a, component);
-    return 0;
+    return take_array(to, a, e);
 }
 
 /* ---- names: the volume of an element, and its material */
@@ -214,6 +228,7 @@ int field_of(field *to, const model *m, const frame *f, const char *name, err *e
 void field_free(field *f)
 {
     free(f->value);
+    free(f->vector);
     *f = (field){0};
 }
 

@@ -10,6 +10,9 @@ typedef struct field {
     bool of_elements; /* else of nodes */
     double *value;    /* elements or nodes; SI, or the index of a name; nan: there is none */
     int64_t count;
+    double *vector;    /* of node arrays of three: nodes x 3, from which value comes; else NULL */
+    int component;     /* of vector, or -1: its norm */
+    bool displaces;    /* vector is the nodes' displacement: bone carries it as it carries vertices */
     char label[120];   /* "displacement" */
     char si[16];       /* "m", "Pa", …; "": a pure number */
     bool below_zero;   /* may be below 0: a scale need not begin at 0 */
@@ -26,6 +29,9 @@ void field_free(field *f);
 
 /* Whether the name can only be had from a frame. */
 bool field_moves(const model *m, const char *name);
+
+/* The value of a vector: its component, or its norm. */
+double field_of_vector(const field *f, const double vector[3]);
 
 /* Values at the nodes: as they are, or the mean of the elements round a node. nan where there is none. The caller frees
  * them. */

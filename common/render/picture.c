@@ -276,6 +276,25 @@ static int put_words(work *w, int i, err *e)
 
 /* ---- all together */
 
+/* Contraction centres lie within bone and muscle: what hides them lets them shine through. */
+static int trace_marks(work *w, int i, image *im, const trace_options *o, err *e)
+{
+    static const float shine = .6f;
+    const build *b = &w->build[i];
+    scene marks = {.sphere_sets = 1, .spheres = b->scene.spheres ? &b->scene.spheres[b->marks] : NULL};
+    image over = {0};
+    if (!b->marked)
+        return 0;
+    if (image_create(&over, im->width, im->height, e))
+        return -1;
+    int bad = trace(&marks, &w->p->camera[i], &over, w->p->threads, o, NULL, e);
+    for (int64_t n = 0; n < 4 * (int64_t)over.width * over.height && !bad; n++)
+        over.pixel[n] *= shine;
+    image_over(im, &over, 0, 0);
+    image_free(&over);
+    return bad;
+}
+
 static int trace_panel(work *w, int i, err *e)
 {
     picture *p = w->p;
@@ -289,6 +308,8 @@ static int trace_panel(work *w, int i, err *e)
     int bad = trace(&w->build[i].scene, &p->camera[i], &im, p->threads, &o, &r, e);
     if (!bad && !r.covered)
         bad = err_set(e, NULL, 0, "nothing is to be seen from there: the camera looks past the model");
+    if (!bad)
+        bad = trace_marks(w, i, &im, &o, e);
     image_over(&p->image, &im, c.x, c.y);
     image_free(&im);
     p->report.build += r.build, p->report.trace += r.trace, p->report.rays += r.rays;
