@@ -73,7 +73,7 @@ void legend_bar(image *im, font *f, int size, int x, int y, int width, const col
     int long_ = width - 3 * size < 26 * size ? width - 3 * size : 26 * size;
     int left = x + (width - long_) / 2, top = y + (int)lround(1.5 * size), thick = size, decimals;
     double tick[LEGEND_TICKS];
-    int most = (int)fmin(fmax(long_ / (3.5 * size), 2), 10), ticks = legend_ticks(low, high, most, tick, &decimals);
+    int most = (int)fmin(fmax(long_ / (3.5 * size), 3), 10), ticks = legend_ticks(low, high, most, tick, &decimals);
     font_draw_middle(f, im, x + width / 2, x, x + width, y + size, words, ink);
     for (int c = 0; c < long_; c++) {
         float colour[3];

@@ -26,13 +26,6 @@ typedef struct work {
     int keys[PICTURE_PANELS];
 } work;
 
-int picture_letters(const picture_spec *s)
-{
-    double side = fmin(s->height, s->width);
-    int size = (int)lround(side / 36);
-    return size < 11 ? 11 : size > 40 ? 40 : size;
-}
-
 int picture_open(picture *p, const picture_spec *spec, font *f, pool *threads, err *e)
 {
     *p = (picture){.spec = spec, .font = f, .threads = threads};
@@ -229,6 +222,15 @@ static bool has_bar(const work *w, int i)
     return has_field(w, i) && !w->field.name;
 }
 
+/* The size of letters, pixels: readable, but no wider than a panel has room for. */
+static int letters(const picture_spec *s)
+{
+    sheet bare;
+    sheet_make(&bare, s->width, s->height, s->panels, 0, 0);
+    int size = (int)fmin(fmin(s->width, s->height) / 36., sheet_panel(&bare, 0).width / 22.);
+    return size < 11 ? 11 : size > 40 ? 40 : size;
+}
+
 /* The room that the tallest legend takes. Columns depend on it and it on their width: the first guess has none. */
 static int lay_out(work *w, err *e)
 {
@@ -257,6 +259,8 @@ static int put_words(work *w, int i, err *e)
     sheet_cell c = sheet_panel(&w->sheet, i), inner = sheet_picture(&w->sheet, i);
     int y = inner.y + inner.height, size = w->letters;
     char caption[sizeof s->panel[i].caption + 48], shown[sizeof caption + 4], words[200];
+    if (!w->p->font)
+        return 0;
     snprintf(caption, sizeof caption, "%s", s->panel[i].caption);
     if (s->panel[i].moved && w->f)
         snprintf(caption, sizeof caption, "%s, %.4g s", s->panel[i].caption, w->f->time);
@@ -322,8 +326,8 @@ static int draw(work *w, err *e)
     static const float paper[2][4] = {{1, 1, 1, 1}, {0, 0, 0, 0}};
     picture *p = w->p;
     const picture_spec *s = p->spec;
-    w->letters = picture_letters(s);
-    if (font_set(p->font, w->letters, e))
+    w->letters = letters(s);
+    if (p->font && font_set(p->font, w->letters, e))
         return -1;
     if (s->field && field_of(&w->field, w->m, w->f, s->field, e))
         return -1;

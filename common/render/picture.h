@@ -63,14 +63,11 @@ typedef struct picture {
     trace_report report; /* sums over the panels of the last one */
 } picture;
 
-/* font and threads stay the caller's, and must outlive the picture. */
+/* font and threads stay the caller's, and must outlive the picture. f NULL: it has no words (no captions, no field). */
 int picture_open(picture *p, const picture_spec *spec, font *f, pool *threads, err *e);
 void picture_close(picture *p);
 
 /* Draws p->image. f NULL: all is at rest. -1 with e filled. */
 int picture_draw(picture *p, const model *m, const frame *f, err *e);
-
-/* The size of letters in a picture of that size, pixels. */
-int picture_letters(const picture_spec *spec);
 
 #endif

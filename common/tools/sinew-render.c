@@ -73,8 +73,9 @@ static int open_picture(job *j, err *e)
     const picture_spec *s = &j->plan.spec;
     int threads = tool_threads(j->t, e);
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;
-    j->font = j->threads ? font_open(j->o->font, e) : NULL;
-    if (!j->font || picture_open(&j->picture, s, j->font, j->threads, e))
+    if (j->threads && (s->captions || s->field || j->o->font))
+        j->font = font_open(j->o->font, e);
+    if (e->status || picture_open(&j->picture, s, j->font, j->threads, e))
         return -1;
     j->bytes = mem_array(4 * (int64_t)s->width * s->height, 1, "a picture", e);
     return j->bytes ? 0 : -1;
