@@ -19,7 +19,8 @@ static double side(const model *m)
 
 static int add(build *b, float *spheres, int64_t count, const char *label, const uint8_t srgb[3], err *e)
 {
-    scene_spheres set = {.count = count, .centre_radius = spheres};
+    scene_spheres set = {.count = count};
+    set.centre_radius = spheres;
     set.label = mem_text(label, e);
     build_linear(srgb, set.colour);
     return scene_add_spheres(&b->scene, &set, e);

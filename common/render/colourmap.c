@@ -32,9 +32,9 @@ void colourmap_oklab(const float colour[3], double lab[3])
 /* A colour by lightness, chroma and hue (degrees); chroma gives way until a screen can show it. */
 static void by_hue(double lightness, double chroma, double hue, double lab[3])
 {
-    for (; chroma > 0; chroma -= .002) {
-        double rgb[3];
-        lab[0] = lightness, lab[1] = chroma * cos(hue * degree), lab[2] = chroma * sin(hue * degree);
+    for (int less = 0; less < 64; less++) {
+        double rgb[3], c = chroma * (64 - less) / 64;
+        lab[0] = lightness, lab[1] = c * cos(hue * degree), lab[2] = c * sin(hue * degree);
         from_oklab(lab, rgb);
         if (fmin(fmin(rgb[0], rgb[1]), rgb[2]) >= 0 && fmax(fmax(rgb[0], rgb[1]), rgb[2]) <= 1)
             return;

@@ -118,7 +118,7 @@ void font_draw(font *t, image *im, int x, int baseline, const char *words, const
     FT_Pos pen = 64 * (FT_Pos)x;
     FT_UInt last = 0;
     while (load(t, &words, &last, &pen, FT_LOAD_RENDER)) {
-        const FT_GlyphSlot g = t->face->glyph;
+        FT_GlyphSlot g = t->face->glyph;
         if (g->bitmap.pixel_mode == FT_PIXEL_MODE_GRAY)
             put(im, &g->bitmap, (int)((pen + 32) >> 6) + g->bitmap_left, baseline - g->bitmap_top, colour);
         pen += g->advance.x;

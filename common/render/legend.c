@@ -22,8 +22,11 @@ int legend_ticks(double low, double high, int most, double tick[LEGEND_TICKS], i
         if (floor(high / (steps[i] * ten) + 1e-9) - ceil(low / (steps[i] * ten) - 1e-9) < most)
             step = steps[i] * ten;
     int count = 0;
-    for (double n = ceil(low / step - 1e-9); n * step <= high + 1e-9 * step && count < LEGEND_TICKS; n++)
-        tick[count++] = n * step;
+    double first = ceil(low / step - 1e-9);
+    while (count < LEGEND_TICKS && (first + count) * step <= high + 1e-9 * step) {
+        tick[count] = (first + count) * step;
+        count++;
+    }
     *decimals = (int)fmax(0, -floor(log10(step) + 1e-9));
     return count;
 }

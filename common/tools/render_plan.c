@@ -35,7 +35,7 @@ static int make_text(render_plan *p, const render_options *o, err *e)
     return p->text ? 0 : -1;
 }
 
-/* Splits a list; returns how many are at list[0], … or -1. *at and *room move on. */
+/* Splits a list; returns how many are at list[0], … or -1; the rest of list stays NULL. *at moves on. */
 static int split(const opt_list *from, const char *option, char **at, const char **list, int room, err *e)
 {
     int count = 0;
@@ -140,7 +140,7 @@ static void name_panel(picture_panel *p, const picture_panel *as_asked, int whic
 static int unknown_panel(const char *name, err *e)
 {
     char views[] = CAMERA_VIEWS;
-    const char *names[16];
+    const char *names[16] = {0};
     int count = 0;
     for (; count < 3; count++)
         names[count] = panels[count];
@@ -181,7 +181,7 @@ static int read_sheet(picture_spec *s, const char *const *list, int count, err *
     picture_panel as_asked = s->panel[0];
     if (count > PICTURE_PANELS)
         return err_set(e, NULL, 0, "--sheet: %d panels; expected %d at most", count, PICTURE_PANELS);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count && list[i]; i++)
         if (read_panel(&s->panel[i], s, &as_asked, list[i], e))
             return -1;
     s->captions = count > 0;
@@ -254,10 +254,10 @@ static int read_panel_asked(render_plan *p, const render_options *o, char **at, 
 {
     picture_spec *s = &p->spec;
     picture_panel *panel = &s->panel[0];
-    const char *things[64];
+    const char *things[64] = {0};
     int count = split(&o->show, "--show", at, things, 64, e);
     *panel = (picture_panel){.moved = true, .coloured = true, .names = true};
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count && things[i]; i++) {
         int t = 0;
         while (t < 5 && strcmp(things[i], build_things[t]) != 0)
             t++;
@@ -281,7 +281,7 @@ static int read_lists(render_plan *p, const render_options *o, err *e)
 {
     picture_spec *s = &p->spec;
     char *at = p->text;
-    const char *sheet[64], *cut[64];
+    const char *sheet[64] = {0}, *cut[64] = {0};
     if (read_panel_asked(p, o, &at, e))
         return -1;
     int panels_asked = split(&o->sheet, "--sheet", &at, sheet, 64, e);
@@ -290,7 +290,7 @@ static int read_lists(render_plan *p, const render_options *o, err *e)
     s->cuts = split(&o->cut, "--cut", &at, cut, 64, e);
     if (s->cuts > PICTURE_CUTS)
         return err_set(e, NULL, 0, "--cut: %d planes; expected %d at most", s->cuts, PICTURE_CUTS);
-    for (int i = 0; i < s->cuts; i++)
+    for (int i = 0; i < s->cuts && cut[i]; i++)
         if (read_cut(&s->cut[i], cut[i], e))
             return -1;
     return s->cuts < 0 ? -1 : 0;

@@ -122,7 +122,7 @@ static int draw(job *j, const frame *f, err *e)
         return -1;
     j->drawn++;
     report(j);
-    if (!j->plan.files)
+    if (!j->plan.files || !f)
         return put(j, j->sink, e);
     char *name = numbered_name(&j->plan.names, f->index, e);
     out *to = name ? outs_open(&j->files, name, e) : NULL;
