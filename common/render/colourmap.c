@@ -96,7 +96,8 @@ void colourmap_at(const colourmap *c, double t, float colour[3])
 
 void colourmap_name(int64_t i, float colour[3])
 {
+    static const double lightness[3] = {.74, .60, .86};
     double lab[3], turn = (double)i * .6180339887498949;
-    by_hue(i % 2 ? .62 : .76, .125, 360 * (turn - floor(turn)) + 40, lab);
+    by_hue(lightness[(i + i / 8) % 3], .125, 360 * (turn - floor(turn)) + 40, lab);
     put(lab, colour);
 }

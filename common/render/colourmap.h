@@ -18,7 +18,8 @@ void colourmap_make(colourmap *c);
 /* The colour at t of 0 to 1, linear RGB; beyond: that of the end. Grey for nan. */
 void colourmap_at(const colourmap *c, double t, float colour[3]);
 
-/* The colour of the i-th name, linear RGB: the hue goes round by the golden ratio, so that any number differ. */
+/* The colour of the i-th name, linear RGB: the hue goes round by the golden ratio, in three lightnesses, so
+ * that many differ. */
 void colourmap_name(int64_t i, float colour[3]);
 
 /* Oklab of a linear RGB colour (for tests). */
