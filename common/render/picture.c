@@ -18,7 +18,7 @@ typedef struct work {
     const frame *f;
     field field;
     bool coloured; /* there is a field */
-    build build[PICTURE_PANELS];
+    showing showing[PICTURE_PANELS];
     double low, high; /* of the scale, SI */
     sheet sheet;
     int letters;
@@ -69,7 +69,7 @@ static int fit_together(work *w, int i, err *e)
     int bad = 0;
     const picture_spec *s = w->p->spec;
     for (int k = 0; k < s->panels && !bad; k++) {
-        const scene *one = &w->build[k].scene;
+        const scene *one = &w->showing[k].scene;
         if (!same_view(&s->panel[i].view, &s->panel[k].view))
             continue;
         bad = mem_grow(&all.mesh, &all.mesh_capacity, all.meshes + one->meshes, sizeof *all.mesh, "a scene", e) ||
@@ -83,7 +83,7 @@ static int fit_together(work *w, int i, err *e)
     sheet_cell c = sheet_picture(&w->sheet, i);
     if (!bad)
         bad = camera_fit_scene(&w->p->camera[i], &all, c.width, c.height, s->angle, s->margin, e);
-    /* The meshes are the builds'. */
+    /* The meshes are the showings'. */
     free(all.mesh);
     free(all.spheres);
     return bad ? -1 : 0;
@@ -110,37 +110,37 @@ static int place_cameras(work *w, err *e)
 static int things_of(const work *w, const picture_panel *panel)
 {
     char name[8];
-    int things = panel->things, some = BUILD_MUSCLES | BUILD_RIGID | BUILD_CENTRES;
+    int things = panel->things, some = SHOWING_MUSCLES | SHOWING_RIGID | SHOWING_CENTRES;
     if (!things && !(panel->names && w->p->spec->names))
-        things = model_surface(w->m, 0, name, sizeof name) ? BUILD_SURFACES : BUILD_VOXELS;
-    return panel->what_there_is ? things & (~some | build_there(w->m)) : things;
+        things = model_surface(w->m, 0, name, sizeof name) ? SHOWING_SURFACES : SHOWING_VOXELS;
+    return panel->what_there_is ? things & (~some | showing_there(w->m)) : things;
 }
 
-static int build_panel(work *w, int i, err *e)
+static int showing_panel(work *w, int i, err *e)
 {
     const picture_spec *s = w->p->spec;
     const picture_panel *panel = &s->panel[i];
-    build_cut cut[PICTURE_CUTS];
+    showing_cut cut[PICTURE_CUTS];
     for (int k = 0; k < s->cuts; k++) {
         bool above = s->cut[k].side ? s->cut[k].side > 0 : w->p->camera[i].forward[s->cut[k].axis] <= 0;
-        cut[k] = (build_cut){s->cut[k].axis, above, s->cut[k].at};
+        cut[k] = (showing_cut){s->cut[k].axis, above, s->cut[k].at};
     }
-    build_want want = {.things = things_of(w, panel),
-                       .name = s->name,
-                       .names = panel->names ? s->names : 0,
-                       .clear = s->clear,
-                       .clears = s->clears,
-                       .cut = cut,
-                       .cuts = s->cuts,
-                       .moved = panel->moved ? w->f : NULL,
-                       .field = panel->coloured && w->coloured ? &w->field : NULL};
-    return build_make(&w->build[i], w->m, &want, e);
+    showing_want want = {.things = things_of(w, panel),
+                         .name = s->name,
+                         .names = panel->names ? s->names : 0,
+                         .clear = s->clear,
+                         .clears = s->clears,
+                         .cut = cut,
+                         .cuts = s->cuts,
+                         .moved = panel->moved ? w->f : NULL,
+                         .field = panel->coloured && w->coloured ? &w->field : NULL};
+    return showing_make(&w->showing[i], w->m, &want, e);
 }
 
-static int build_panels(work *w, err *e)
+static int showing_panels(work *w, err *e)
 {
     for (int i = 0; i < w->p->spec->panels; i++)
-        if ((!w->p->placed && turn(w->p, i, e)) || build_panel(w, i, e))
+        if ((!w->p->placed && turn(w->p, i, e)) || showing_panel(w, i, e))
             return -1;
     return 0;
 }
@@ -152,7 +152,7 @@ static void find_range(work *w)
     double low, high;
     w->low = INFINITY, w->high = -INFINITY;
     for (int i = 0; i < s->panels; i++)
-        if (build_range(&w->build[i], &low, &high)) {
+        if (showing_range(&w->showing[i], &low, &high)) {
             w->low = fmin(w->low, low);
             w->high = fmax(w->high, high);
         }
@@ -163,7 +163,7 @@ static void find_range(work *w)
     if (s->ranged)
         w->low = s->low, w->high = s->high;
     for (int i = 0; i < s->panels; i++)
-        build_colour(&w->build[i], &w->field, &w->p->map, w->low, w->high);
+        showing_colour(&w->showing[i], &w->field, &w->p->map, w->low, w->high);
 }
 
 /* ---- legends */
@@ -183,9 +183,9 @@ static void add_names(work *w, int i)
     int most = (int)(sizeof w->key[i] / sizeof *w->key[i]);
     for (int64_t n = 0; n < f->names && w->keys[i] < most; n++) {
         bool seen = false;
-        for (int64_t k = 0; k < w->build[i].values && !seen; k++)
-            for (int64_t v = 0; w->build[i].value[k] && v < w->build[i].scene.mesh[k].faces && !seen; v++)
-                seen = (int64_t)w->build[i].value[k][v] == n;
+        for (int64_t k = 0; k < w->showing[i].values && !seen; k++)
+            for (int64_t v = 0; w->showing[i].value[k] && v < w->showing[i].scene.mesh[k].faces && !seen; v++)
+                seen = (int64_t)w->showing[i].value[k][v] == n;
         if (!seen)
             continue;
         legend_key *key = &w->key[i][w->keys[i]++];
@@ -203,17 +203,17 @@ static bool has_field(const work *w, int i)
 static void make_keys(work *w)
 {
     for (int i = 0; i < w->p->spec->panels; i++) {
-        int seen = w->build[i].seen;
+        int seen = w->showing[i].seen;
         if (has_field(w, i) && w->field.name)
             add_names(w, i);
         if (!w->p->spec->captions)
             continue;
-        if (seen & BUILD_MUSCLES && !has_field(w, i))
-            add_key(w, i, "muscle elements", build_green, false);
-        if (seen & BUILD_RIGID)
-            add_key(w, i, "rigid nodes", build_red, true);
-        if (seen & BUILD_CENTRES)
-            add_key(w, i, "contraction centres", build_centre, true);
+        if (seen & SHOWING_MUSCLES && !has_field(w, i))
+            add_key(w, i, "muscle elements", showing_green, false);
+        if (seen & SHOWING_RIGID)
+            add_key(w, i, "rigid nodes", showing_red, true);
+        if (seen & SHOWING_CENTRES)
+            add_key(w, i, "contraction centres", showing_centre, true);
     }
 }
 
@@ -284,7 +284,7 @@ static int put_words(work *w, int i, err *e)
 static int trace_marks(work *w, int i, image *im, const trace_options *o, err *e)
 {
     static const float shine = .6f;
-    const build *b = &w->build[i];
+    const showing *b = &w->showing[i];
     scene marks = {.sphere_sets = 1, .spheres = b->scene.spheres ? &b->scene.spheres[b->marks] : NULL};
     image over = {0};
     if (!b->marked)
@@ -309,7 +309,7 @@ static int trace_panel(work *w, int i, err *e)
     memset(o.background, 0, sizeof o.background);
     if (image_create(&im, c.width, c.height, e))
         return -1;
-    int bad = trace(&w->build[i].scene, &p->camera[i], &im, p->threads, &o, &r, e);
+    int bad = trace(&w->showing[i].scene, &p->camera[i], &im, p->threads, &o, &r, e);
     if (!bad && !r.covered)
         bad = err_set(e, NULL, 0, "nothing is to be seen from there: the camera looks past the model");
     if (!bad)
@@ -332,7 +332,7 @@ static int draw(work *w, err *e)
     if (s->field && field_of(&w->field, w->m, w->f, s->field, e))
         return -1;
     w->coloured = s->field != NULL;
-    if (build_panels(w, e))
+    if (showing_panels(w, e))
         return -1;
     if (w->coloured)
         find_range(w);
@@ -355,7 +355,7 @@ int picture_draw(picture *p, const model *m, const frame *f, err *e)
     w->p = p, w->m = m, w->f = f;
     int bad = draw(w, e);
     for (int i = 0; i < PICTURE_PANELS; i++)
-        build_free(&w->build[i]);
+        showing_free(&w->showing[i]);
     field_free(&w->field);
     free(w);
     return bad;

@@ -5,8 +5,8 @@
 #ifndef SINEW_PICTURE_H
 #define SINEW_PICTURE_H
 
-#include "render/build.h"
 #include "render/font.h"
+#include "render/showing.h"
 #include "render/trace.h"
 
 /* From where a panel is seen: by a name, from a direction, or from a place. */
@@ -18,7 +18,7 @@ typedef struct picture_view {
 } picture_view;
 
 typedef struct picture_panel {
-    int things;         /* BUILD_*; 0 with no names: surfaces, or voxels where the model carries none */
+    int things;         /* SHOWING_*; 0 with no names: surfaces, or voxels where the model carries none */
     bool what_there_is; /* of muscles, rigid nodes and centres only what the model has */
     bool names;         /* the spec's names besides */
     bool moved;         /* by the frame; else at rest */

@@ -123,7 +123,7 @@ static void name_panel(picture_panel *p, const picture_panel *as_asked, int whic
     if (which == REST)
         strcpy(p->caption, "at rest");
     if (which == VOXELS) {
-        p->things = BUILD_VOXELS | BUILD_MUSCLES | BUILD_RIGID | BUILD_CENTRES;
+        p->things = SHOWING_VOXELS | SHOWING_MUSCLES | SHOWING_RIGID | SHOWING_CENTRES;
         p->what_there_is = true;
         strcpy(p->caption, "voxels");
     }
@@ -259,7 +259,7 @@ static int read_panel_asked(render_plan *p, const render_options *o, char **at, 
     *panel = (picture_panel){.moved = true, .coloured = true, .names = true};
     for (int i = 0; i < count && things[i]; i++) {
         int t = 0;
-        while (t < 5 && strcmp(things[i], build_things[t]) != 0)
+        while (t < 5 && strcmp(things[i], showing_things[t]) != 0)
             t++;
         if (t < 5)
             panel->things |= 1 << t;

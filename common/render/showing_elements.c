@@ -1,7 +1,7 @@
 /* The outside of the elements as a mesh with edges. */
 #include "base/mem.h"
 #include "mesh/boundary.h"
-#include "render/build_parts.h"
+#include "render/showing_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,7 +34,7 @@ static double centre(const int32_t *node, int corners, const double *rest, int a
     return sum / corners;
 }
 
-static bool is_cut(const build_want *w, const int32_t *node, int corners, const double *rest)
+static bool is_cut(const showing_want *w, const int32_t *node, int corners, const double *rest)
 {
     for (int i = 0; i < w->cuts; i++) {
         double at = centre(node, corners, rest, w->cut[i].axis);
@@ -45,14 +45,15 @@ static bool is_cut(const build_want *w, const int32_t *node, int corners, const 
 }
 
 /* The elements of one thing: what a cut leaves of all but what is shown by itself, or the muscles. */
-static bool *choose(const model *m, const build_want *w, int thing, const model_array *node, const double *rest, err *e)
+static bool *choose(const model *m, const showing_want *w, int thing, const model_array *node, const double *rest,
+                    err *e)
 {
     muscles muscle = muscles_of(m);
-    bool apart = w->things & BUILD_MUSCLES;
+    bool apart = w->things & SHOWING_MUSCLES;
     bool *keep = mem_array(node->rows, sizeof *keep, "elements", e);
     for (int64_t n = 0; keep && n < node->rows; n++) {
         bool is = apart && is_muscle(&muscle, n);
-        keep[n] = thing == BUILD_MUSCLES ? is : !is && !is_cut(w, &node->i32[n * node->columns], node->columns, rest);
+        keep[n] = thing == SHOWING_MUSCLES ? is : !is && !is_cut(w, &node->i32[n * node->columns], node->columns, rest);
     }
     return keep;
 }
@@ -79,7 +80,7 @@ static int32_t *number(const boundary *b, int64_t nodes, scene_mesh *to, err *e)
 }
 
 /* Positions of the vertices, and the edges of the faces. */
-static int shape(const model *m, const build_want *w, const boundary *b, const int32_t *of_vertex, scene_mesh *to,
+static int shape(const model *m, const showing_want *w, const boundary *b, const int32_t *of_vertex, scene_mesh *to,
                  err *e)
 {
     const model_array *u = w->moved ? frame_find(w->moved, "node.displacement") : NULL;
@@ -89,9 +90,9 @@ static int shape(const model *m, const build_want *w, const boundary *b, const i
     if (!to->edges)
         return -1;
     for (int64_t v = 0; v < to->vertices; v++)
-        build_place(rest, u ? u->f64 : NULL, of_vertex[v], &to->position[3 * v]);
+        showing_place(rest, u ? u->f64 : NULL, of_vertex[v], &to->position[3 * v]);
     memset(to->edges, b->corners == 4 ? 15 : 7, (size_t)b->faces);
-    build_linear(edge, to->edge_colour);
+    showing_linear(edge, to->edge_colour);
     return 0;
 }
 
@@ -100,13 +101,13 @@ static int paint(const model *m, const boundary *b, scene_mesh *to, int *seen, e
 {
     muscles muscle = muscles_of(m);
     float colour[2][3];
-    build_linear(tissue, colour[0]);
-    build_linear(build_green, colour[1]);
+    showing_linear(tissue, colour[0]);
+    showing_linear(showing_green, colour[1]);
     to->face_colour = mem_array(3 * b->faces, sizeof *to->face_colour, "faces", e);
     for (int64_t f = 0; to->face_colour && f < b->faces; f++) {
         bool is = is_muscle(&muscle, b->element[f]);
         memcpy(&to->face_colour[3 * f], colour[is], sizeof colour[is]);
-        *seen |= is ? BUILD_MUSCLES : 0;
+        *seen |= is ? SHOWING_MUSCLES : 0;
     }
     return to->face_colour ? 0 : -1;
 }
@@ -128,13 +129,13 @@ static double *values(const field *f, const boundary *b, const int32_t *of_verte
     return value;
 }
 
-static int add_outside(build *to, const model *m, const build_want *w, int thing, const boundary *b, err *e)
+static int add_outside(showing *to, const model *m, const showing_want *w, int thing, const boundary *b, err *e)
 {
-    const char *name = build_things[thing == BUILD_MUSCLES ? 2 : 1];
+    const char *name = showing_things[thing == SHOWING_MUSCLES ? 2 : 1];
     scene_mesh mesh = {.corners = b->corners, .faces = b->faces};
     double *value = NULL;
     mesh.label = mem_text(name, e);
-    mesh.transparency = build_named(w->clear, w->clears, name) ? .85f : 0;
+    mesh.transparency = showing_named(w->clear, w->clears, name) ? .85f : 0;
     int32_t *of_vertex = mesh.label ? number(b, model_count(m, "node"), &mesh, e) : NULL;
     int seen = thing;
     if (of_vertex && !shape(m, w, b, of_vertex, &mesh, e) && !paint(m, b, &mesh, &seen, e) && w->field)
@@ -142,20 +143,20 @@ static int add_outside(build *to, const model *m, const build_want *w, int thing
     free(of_vertex);
     if (!e->status) {
         to->seen |= seen;
-        return build_add(to, &mesh, value, e);
+        return showing_add(to, &mesh, value, e);
     }
     free(value);
     scene_mesh_free(&mesh);
     return -1;
 }
 
-static int add_thing(build *to, const model *m, const build_want *w, int thing, err *e)
+static int add_thing(showing *to, const model *m, const showing_want *w, int thing, err *e)
 {
     const model_array *node = model_need(m, "element.node", e);
     const model_array *rest = node ? model_need(m, "node.position", e) : NULL;
     bool *keep = rest ? choose(m, w, thing, node, rest->f64, e) : NULL;
-    bool apart = keep && thing == BUILD_VOXELS && w->things & BUILD_MUSCLES;
-    bool *muscle = apart ? choose(m, w, BUILD_MUSCLES, node, rest->f64, e) : NULL;
+    bool apart = keep && thing == SHOWING_VOXELS && w->things & SHOWING_MUSCLES;
+    bool *muscle = apart ? choose(m, w, SHOWING_MUSCLES, node, rest->f64, e) : NULL;
     boundary b = {0};
     int bad = e->status || boundary_of(&b, m, keep, muscle, e) ? -1 : 0;
     if (!bad && b.faces)
@@ -166,11 +167,11 @@ static int add_thing(build *to, const model *m, const build_want *w, int thing, 
     return bad;
 }
 
-int build_elements(build *b, const model *m, const build_want *want, err *e)
+int showing_elements(showing *b, const model *m, const showing_want *want, err *e)
 {
-    if (want->things & BUILD_MUSCLES && !(build_there(m) & BUILD_MUSCLES))
+    if (want->things & SHOWING_MUSCLES && !(showing_there(m) & SHOWING_MUSCLES))
         return err_set(e, NULL, 0, "the model has no muscles; expected a volume of a muscle* surface");
-    if (want->things & BUILD_VOXELS && add_thing(b, m, want, BUILD_VOXELS, e))
+    if (want->things & SHOWING_VOXELS && add_thing(b, m, want, SHOWING_VOXELS, e))
         return -1;
-    return want->things & BUILD_MUSCLES ? add_thing(b, m, want, BUILD_MUSCLES, e) : 0;
+    return want->things & SHOWING_MUSCLES ? add_thing(b, m, want, SHOWING_MUSCLES, e) : 0;
 }

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "mesh/bone.h"
 #include "model/check.h"
-#include "render/build_parts.h"
+#include "render/showing_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,7 +50,7 @@ static bool has_skin(const surface *s)
 }
 
 /* Muscles lie within the skin, where there is one: they are seen only where they are named. */
-static int choose_groups(part *p, const build_want *w, err *e)
+static int choose_groups(part *p, const showing_want *w, err *e)
 {
     const surface *s = &p->b.shape;
     int seen = 0;
@@ -62,11 +62,12 @@ static int choose_groups(part *p, const build_want *w, err *e)
     for (int64_t g = 0; g < s->groups; g++) {
         const char *name = s->group_name[g];
         int kind = kind_of(name);
-        bool outside = w->things & BUILD_SURFACES && !(skin && kind == MUSCLE);
-        if (outside || build_named(w->name, w->names, s->name) || build_named(w->name, w->names, name))
-            p->take[g] = build_named(w->clear, w->clears, s->name) || build_named(w->clear, w->clears, name) ? 2 : 1;
+        bool outside = w->things & SHOWING_SURFACES && !(skin && kind == MUSCLE);
+        if (outside || showing_named(w->name, w->names, s->name) || showing_named(w->name, w->names, name))
+            p->take[g] =
+                showing_named(w->clear, w->clears, s->name) || showing_named(w->clear, w->clears, name) ? 2 : 1;
         seen |= p->take[g];
-        build_linear(kinds[kind].srgb, &p->group_colour[3 * g]);
+        showing_linear(kinds[kind].srgb, &p->group_colour[3 * g]);
     }
     return seen;
 }
@@ -170,7 +171,7 @@ static double *values(const part *p, scene_mesh *to, err *e)
     return value;
 }
 
-static int add_part(build *b, const part *p, int take, err *e)
+static int add_part(showing *b, const part *p, int take, err *e)
 {
     scene_mesh mesh = {.corners = 3, .transparency = take == 2 ? .75f : 0};
     double *value = NULL;
@@ -179,8 +180,8 @@ static int add_part(build *b, const part *p, int take, err *e)
         if (p->field && p->is_bound)
             value = values(p, &mesh, e);
         if (!e->status && !scene_smooth(&mesh, crease, e)) {
-            b->seen |= BUILD_SURFACES;
-            return build_add(b, &mesh, value, e);
+            b->seen |= SHOWING_SURFACES;
+            return showing_add(b, &mesh, value, e);
         }
     }
     free(value);
@@ -189,7 +190,8 @@ static int add_part(build *b, const part *p, int take, err *e)
 }
 
 /* 1: some of it is seen; 0: none; -1: e is filled. */
-static int add_surface(build *b, const model *m, const build_want *w, const double *at_nodes, const char *name, err *e)
+static int add_surface(showing *b, const model *m, const showing_want *w, const double *at_nodes, const char *name,
+                       err *e)
 {
     part p = {.at_nodes = at_nodes, .field = w->field};
     const model_array *u = w->moved ? frame_find(w->moved, "node.displacement") : NULL;
@@ -212,7 +214,7 @@ static int note_names(const model *m, notes *there, err *e)
 {
     char name[CHECK_NAME_MOST + 1];
     for (int i = 0; i < 5; i++)
-        notes_add(there, "%s", build_things[i]);
+        notes_add(there, "%s", showing_things[i]);
     for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
         surface s;
         if (surface_of(m, name, &s, e))
@@ -224,7 +226,7 @@ static int note_names(const model *m, notes *there, err *e)
     return 0;
 }
 
-int build_check_names(const model *m, const build_want *w, err *e)
+int showing_check_names(const model *m, const showing_want *w, err *e)
 {
     notes there = {0};
     int bad = note_names(m, &there, e);
@@ -240,7 +242,7 @@ int build_check_names(const model *m, const build_want *w, err *e)
     return bad;
 }
 
-int build_surfaces(build *b, const model *m, const build_want *want, const double *at_nodes, err *e)
+int showing_surfaces(showing *b, const model *m, const showing_want *want, const double *at_nodes, err *e)
 {
     char name[CHECK_NAME_MOST + 1];
     if (!model_surface(m, 0, name, sizeof name))

@@ -1,18 +1,18 @@
-#include "render/build.h"
+#include "render/showing.h"
 
 #include "base/mem.h"
 #include "mesh/surface.h"
-#include "render/build_parts.h"
 #include "render/image.h"
+#include "render/showing_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char *const build_things[5] = {"surface", "voxels", "muscles", "rigid", "centres"};
-const uint8_t build_green[3] = {62, 158, 70}, build_red[3] = {205, 32, 32}, build_centre[3] = {12, 120, 30};
+const char *const showing_things[5] = {"surface", "voxels", "muscles", "rigid", "centres"};
+const uint8_t showing_green[3] = {62, 158, 70}, showing_red[3] = {205, 32, 32}, showing_centre[3] = {12, 120, 30};
 
-int build_add(build *b, scene_mesh *mesh, double *value, err *e)
+int showing_add(showing *b, scene_mesh *mesh, double *value, err *e)
 {
     if (mem_grow(&b->value, &b->value_capacity, b->scene.meshes + 1, sizeof *b->value, "a scene", e)) {
         scene_mesh_free(mesh);
@@ -24,7 +24,7 @@ int build_add(build *b, scene_mesh *mesh, double *value, err *e)
     return scene_add_mesh(&b->scene, mesh, e);
 }
 
-bool build_named(const char *const *pattern, int patterns, const char *name)
+bool showing_named(const char *const *pattern, int patterns, const char *name)
 {
     for (int i = 0; i < patterns; i++)
         if (surface_in_group(name, pattern[i]))
@@ -32,13 +32,13 @@ bool build_named(const char *const *pattern, int patterns, const char *name)
     return false;
 }
 
-void build_place(const double *rest, const double *u, int64_t node, float *to)
+void showing_place(const double *rest, const double *u, int64_t node, float *to)
 {
     for (int a = 0; a < 3; a++)
         to[a] = (float)(rest[3 * node + a] + (u ? u[3 * node + a] : 0));
 }
 
-void build_linear(const uint8_t srgb[3], float to[3])
+void showing_linear(const uint8_t srgb[3], float to[3])
 {
     image_linear(srgb, to);
 }
@@ -52,20 +52,20 @@ static bool any(const model *m, const char *name)
     return false;
 }
 
-int build_there(const model *m)
+int showing_there(const model *m)
 {
     const model_array *centre = model_find(m, "muscle.centre");
-    int there = any(m, "node.rigid") ? BUILD_RIGID : 0;
+    int there = any(m, "node.rigid") ? SHOWING_RIGID : 0;
     if (any(m, "volume.muscle") && model_find(m, "element.volume"))
-        there |= BUILD_MUSCLES;
+        there |= SHOWING_MUSCLES;
     for (int64_t i = 0; centre && i < centre->rows; i++)
         if (isfinite(centre->f64[3 * i]))
-            there |= BUILD_CENTRES;
+            there |= SHOWING_CENTRES;
     return there;
 }
 
 /* The field must be there to be seen somewhere: a picture all grey says nothing. */
-static int check_values(const build *b, const field *f, err *e)
+static int check_values(const showing *b, const field *f, err *e)
 {
     for (int64_t i = 0; f && i < b->values; i++)
         if (b->value[i])
@@ -77,20 +77,20 @@ static int check_values(const build *b, const field *f, err *e)
              : 0;
 }
 
-int build_make(build *b, const model *m, const build_want *want, err *e)
+int showing_make(showing *b, const model *m, const showing_want *want, err *e)
 {
-    *b = (build){0};
-    if (build_check_names(m, want, e))
+    *b = (showing){0};
+    if (showing_check_names(m, want, e))
         return -1;
-    bool surfaces = want->things & BUILD_SURFACES || want->names;
+    bool surfaces = want->things & SHOWING_SURFACES || want->names;
     double *at_nodes = want->field && surfaces && !want->field->name ? field_at_nodes(want->field, m, e) : NULL;
     double low[3], high[3];
     if (!e->status && surfaces)
-        build_surfaces(b, m, want, at_nodes, e);
+        showing_surfaces(b, m, want, at_nodes, e);
     if (!e->status)
-        build_elements(b, m, want, e);
+        showing_elements(b, m, want, e);
     if (!e->status)
-        build_spheres(b, m, want, e);
+        showing_spheres(b, m, want, e);
     free(at_nodes);
     if (!e->status && !scene_bounds(&b->scene, low, high))
         err_set(e, NULL, 0,
@@ -99,17 +99,17 @@ int build_make(build *b, const model *m, const build_want *want, err *e)
     if (!e->status)
         check_values(b, want->field, e);
     if (e->status)
-        build_free(b);
+        showing_free(b);
     return e->status ? -1 : 0;
 }
 
-void build_free(build *b)
+void showing_free(showing *b)
 {
     for (int64_t i = 0; i < b->values; i++)
         free(b->value[i]);
     free(b->value);
     scene_free(&b->scene);
-    *b = (build){0};
+    *b = (showing){0};
 }
 
 static int64_t value_count(const scene_mesh *mesh)
@@ -117,7 +117,7 @@ static int64_t value_count(const scene_mesh *mesh)
     return mesh->face_colour ? mesh->faces : mesh->vertices;
 }
 
-bool build_range(const build *b, double *low, double *high)
+bool showing_range(const showing *b, double *low, double *high)
 {
     *low = INFINITY, *high = -INFINITY;
     for (int64_t i = 0; i < b->values; i++)
@@ -129,7 +129,7 @@ bool build_range(const build *b, double *low, double *high)
     return *low <= *high;
 }
 
-void build_colour(build *b, const field *f, const colourmap *map, double low, double high)
+void showing_colour(showing *b, const field *f, const colourmap *map, double low, double high)
 {
     for (int64_t i = 0; i < b->values; i++) {
         scene_mesh *mesh = &b->scene.mesh[i];
