@@ -15,12 +15,13 @@ OPT = -O3
 # No contraction: a fused multiply-add that one compiler makes and another does not would change results.
 CFLAGS = $(OPT) -g
 CSTD = -std=c11 -D_XOPEN_SOURCE=700 -D_DEFAULT_SOURCE -ffp-contract=off -fno-math-errno -pthread
-CPPFLAGS = -Icommon -I.
+CPPFLAGS = -Icommon -I. -isystem /usr/include/freetype2
 ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(CPPFLAGS) -MMD -MP
 LDLIBS = -lz -lm -pthread
 EMBREE = -lembree3
+PICTURES = -lpng -lfreetype
 
-TOOLS = voxelise attach bind tled-run sinew sinew-deform sinew-info sinew-diff sinew-export
+TOOLS = voxelise attach bind tled-run sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -30,7 +31,7 @@ run = @echo "  $(1)"; $(2)
 endif
 
 # Every .c of these folders is the library, but for mains.
-LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/device/*.c)
+LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/device/*.c common/render/*.c common/render/*.c)
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -53,6 +54,7 @@ BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c
 TLED_SRC := $(wildcard tled/*.c)
 INFO_MODULES := $(wildcard common/tools/info_*.c)
 EXPORT_MODULES := $(wildcard common/tools/export_*.c)
+RENDER_MODULES := $(wildcard common/tools/render_*.c)
 
 define tool
 $(BIN)/$(1): $(call objects,$(2)) $(LIB)
@@ -68,6 +70,7 @@ $(eval $(call tool,sinew,common/tools/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))
 $(eval $(call tool,sinew-export,common/tools/sinew-export.c $(EXPORT_MODULES)))
+$(eval $(call tool,sinew-render,common/tools/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))
 
 .PHONY: clean
 clean:

@@ -3,7 +3,7 @@
 #ifndef SINEW_NORMALS_H
 #define SINEW_NORMALS_H
 
-#include "bind/bound.h"
+#include "mesh/bound.h"
 
 /* Fills normal (o->normals x 3): the mean over the corners that use it of n' = F^-T n / |F^-T n|, made a unit vector;
  * as it was read where it turned by less than 1e-9, or no corner uses it. held (may be NULL): vertices at which nothing

@@ -1,15 +1,15 @@
 /* sinew-deform: an OBJ as the results of a model move it. */
 #include "base/mem.h"
 #include "base/num.h"
+#include "base/numbered.h"
 #include "base/outs.h"
 #include "base/pool.h"
 #include "base/tool.h"
-#include "bind/bone.h"
-#include "bind/bound.h"
 #include "bind/normals.h"
-#include "bind/numbered.h"
 #include "bind/pointcache.h"
 #include "bind/scale.h"
+#include "mesh/bone.h"
+#include "mesh/bound.h"
 #include "model/source.h"
 
 #include <math.h>
@@ -87,7 +87,7 @@ static int plan_of(plan *p, const struct options *o, const char *path, err *e)
         return err_usage(e, "'-': the model comes on standard input; expected the name of an OBJ file");
     if (o->format == FORMAT_PC2 && (!output || !strcmp(output, "-")))
         return err_usage(e, "a point cache's head is written last; expected -o with a file");
-    return p->files ? numbered_of(&p->names, output, e) : 0;
+    return p->files ? numbered_of(&p->names, output, ", or --format pc2", e) : 0;
 }
 
 static int read_obj(obj *o, const char *path, err *e)
@@ -159,11 +159,8 @@ static void move_some(void *context, int64_t chunk, int64_t from, int64_t to)
     (void)chunk;
     for (int64_t v = from; v < to; v++) {
         double d[3] = {0};
-        int64_t carrier = w->bone.node[v];
-        if (carrier >= 0)
-            memcpy(d, w->u + 3 * carrier, sizeof d);
-        else if (!w->held[v])
-            bound_displacement(&w->b, v, w->u, d);
+        if (!w->held[v])
+            bone_displacement(&w->bone, &w->b, v, w->u, d);
         for (int a = 0; a < 3; a++)
             w->position[3 * v + a] = w->file.position[3 * v + a] + d[a] / w->scale;
     }

@@ -14,14 +14,16 @@ UNIT_SRC := $(wildcard tests/unit/test_*.c)
 FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
 UNIT := $(UNIT_SRC:%.c=$(BUILD)/%)
 FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
-# Embree only for those that turn out to use it. (A variable: the comma.)
+# Embree and the rest only for those that turn out to use them. (A variable: the comma.)
 AS_NEEDED = -Wl,--as-needed
 needs = $(call objects,$(shell sed -n 's|^// needs: *||p' $(1)))
 
 define test_program
 $(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB)
-	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(LDLIBS))
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(LDLIBS))
 endef
+COMPARE := $(BUILD)/tests/cli/compare
+$(eval $(call test_program,tests/cli/compare))
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
 
@@ -34,11 +36,16 @@ demo:
 	$(MAKE) $(JOBS) all
 	SINEW_BIN=$(BIN) samples/demo out
 
+# The picture at the top of README.md: small, since it is kept in the repository; make demo leaves a larger one.
+.PHONY: picture
+picture: demo
+	$(BIN)/sinew render --view 0.6,0.1,1 --cut x=0 --sheet rest,voxels,deformed --size 900x360 -o samples/face.png out/smile.sinew
+
 check:
 	.ci/setup check
 	MAKE='$(MAKE)' BUILD=$(BUILD) JOBS='$(JOBS)' tests/check
 
-unit: $(UNIT)
+unit: $(UNIT) $(COMPARE)
 
 # ---- the tests, as TAP under prove; V=1 shows every line
 PROVE = prove $(if $(V),-v) $(or $(JOBS),-j2)
@@ -48,7 +55,7 @@ CLI = $(sort $(wildcard tests/cli/*.t))
 check-unit: unit
 	$(ENVIRONMENT) $(PROVE) $(UNIT)
 
-check-cli: all
+check-cli: all $(COMPARE)
 	$(ENVIRONMENT) $(PROVE) $(CLI)
 
 check-tests: all unit
@@ -139,6 +146,7 @@ help:
 	@printf '%s\n' \
 	'make              the tools, into $(BIN)/' \
 	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
+	'make picture      the demo, and the picture in README.md from it' \
 	'make check        set-up, and every check below but check-long' \
 	'make setup        installs what is missing, by apt (through sudo if not root), saying what' \
 	'make check-unit   the unit tests            make check-cli   the tests of the commands' \

@@ -5,7 +5,7 @@
  * elements. No two threads write to one place and no sum depends on who computes it: the same bytes for any number of threads.
  */
 #include "base/mem.h"
-#include "tled/element.h"
+#include "mesh/element.h"
 #include "tled/state.h"
 
 #include <stdlib.h>

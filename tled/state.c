@@ -1,9 +1,9 @@
 #include "tled/state.h"
 
 #include "base/mem.h"
+#include "mesh/element.h"
 #include "mesh/lattice.h"
 #include "model/materials.h"
-#include "tled/element.h"
 
 #include <math.h>
 #include <stdlib.h>

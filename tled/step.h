@@ -10,7 +10,7 @@
 #ifndef SINEW_STEP_H
 #define SINEW_STEP_H
 
-#include "tled/element.h"
+#include "mesh/element.h"
 #include "tled/state.h"
 
 typedef struct step_matrix {

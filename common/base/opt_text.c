@@ -55,6 +55,8 @@ void opt_usage(const opt_tool *tool, out *to)
     for (int i = 0; i < own; i++) {
         char name[80];
         o = opt_at(tool, i);
+        if (o->flags & OPT_HIDDEN)
+            continue;
         put_option(o, name, sizeof name);
         out_format(to, strlen(name) > 30 ? "  %s  %s\n" : "  %-30s  %s\n", name, o->help);
     }

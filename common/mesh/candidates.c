@@ -1,11 +1,9 @@
 #include "mesh/candidates.h"
 
 #include "base/mem.h"
-
-#include <embree3/rtcore.h>
+#include "mesh/embree.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* Boxes and rays are floats: a conversion errs by 2^-24 of the number, Embree's slab test by little more. */
@@ -14,22 +12,15 @@ static const double float_slack = 0x1p-21, least_slack = 1e-3;
 static const double farthest = 1e12;
 
 struct candidates {
-    RTCDevice device;
-    RTCScene scene;
+    embree *tree;
 };
 
-/* What Embree calls back with while it builds. */
+/* What the tree calls back with while it is built. */
 typedef struct boxes {
     candidates_box *box;
     const void *context;
     double slack;
 } boxes;
-
-/* A ray's list goes along with it in Embree's context, which must come first. */
-typedef struct ray_context {
-    struct RTCIntersectContext embree;
-    candidates_list *list;
-} ray_context;
 
 static float outward(double x, double slack, float toward)
 {
@@ -38,55 +29,27 @@ static float outward(double x, double slack, float toward)
     return nextafterf((float)x, toward * INFINITY);
 }
 
-static void give_bounds(const struct RTCBoundsFunctionArguments *a)
+static void give_box(const void *context, uint32_t item, float *low, float *high)
 {
-    const boxes *b = a->geometryUserPtr;
-    double low[3], high[3];
-    b->box(b->context, a->primID, low, high);
-    a->bounds_o->lower_x = outward(low[0], b->slack, -1);
-    a->bounds_o->lower_y = outward(low[1], b->slack, -1);
-    a->bounds_o->lower_z = outward(low[2], b->slack, -1);
-    a->bounds_o->upper_x = outward(high[0], b->slack, 1);
-    a->bounds_o->upper_y = outward(high[1], b->slack, 1);
-    a->bounds_o->upper_z = outward(high[2], b->slack, 1);
+    const boxes *b = context;
+    double from[3], to[3];
+    b->box(b->context, item, from, to);
+    for (int i = 0; i < 3; i++) {
+        low[i] = outward(from[i], b->slack, -1);
+        high[i] = outward(to[i], b->slack, 1);
+    }
 }
 
-/* Takes the item down and does not accept it as a hit, so that Embree goes on to the next. */
-static void take_item(const struct RTCOccludedFunctionNArguments *a)
+static void take_item(void *context, uint32_t item)
 {
-    candidates_list *list = ((ray_context *)(void *)a->context)->list;
+    candidates_list *list = context;
     err ignored = {0};
     if (list->count == list->capacity &&
         mem_grow(&list->item, &list->capacity, list->count + 1, sizeof *list->item, "candidates", &ignored)) {
         list->lost = true;
         return;
     }
-    list->item[list->count++] = a->primID;
-}
-
-static int embree_error(RTCDevice device, const char *what, err *e)
-{
-    enum RTCError code = rtcGetDeviceError(device);
-    if (code == RTC_ERROR_NONE)
-        return 0;
-    if (code == RTC_ERROR_OUT_OF_MEMORY)
-        return err_memory(e, what);
-    return err_set(e, NULL, 0, "Embree could not make %s (its error %d)", what, (int)code);
-}
-
-static int build(candidates *c, int64_t count, boxes *b, err *e)
-{
-    RTCGeometry geometry = rtcNewGeometry(c->device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)count);
-    rtcSetGeometryUserData(geometry, b);
-    rtcSetGeometryBoundsFunction(geometry, give_bounds, NULL);
-    rtcSetGeometryOccludedFunction(geometry, take_item);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(c->scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcSetSceneFlags(c->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcCommitScene(c->scene);
-    return embree_error(c->device, "its tree of boxes", e);
+    list->item[list->count++] = item;
 }
 
 candidates *candidates_create(int64_t count, candidates_box *box, const void *context, double reach, int threads,
@@ -99,13 +62,9 @@ candidates *candidates_create(int64_t count, candidates_box *box, const void *co
     candidates *c = mem_array(1, sizeof *c, "the tree of boxes", e);
     if (!c)
         return NULL;
-    char settings[64];
-    snprintf(settings, sizeof settings, "threads=%d", threads < 1 ? 1 : threads);
-    c->device = rtcNewDevice(settings);
     boxes b = {box, context, least_slack + reach * float_slack};
-    if (c->device)
-        c->scene = rtcNewScene(c->device);
-    if (embree_error(c->device, "a device", e) || build(c, count, &b, e)) {
+    c->tree = embree_create(threads, e);
+    if (!c->tree || embree_add_boxes(c->tree, count, give_box, &b, e) || embree_commit(c->tree, e)) {
         candidates_destroy(c);
         return NULL;
     }
@@ -116,10 +75,7 @@ void candidates_destroy(candidates *c)
 {
     if (!c)
         return;
-    if (c->scene)
-        rtcReleaseScene(c->scene);
-    if (c->device)
-        rtcReleaseDevice(c->device);
+    embree_destroy(c->tree);
     free(c);
 }
 
@@ -143,21 +99,11 @@ static void sort_items(candidates_list *list)
 
 int candidates_ray(const candidates *c, const double *from, const double *direction, candidates_list *list, err *e)
 {
-    struct RTCRay ray = {
-        .org_x = (float)from[0],
-        .org_y = (float)from[1],
-        .org_z = (float)from[2],
-        .dir_x = (float)direction[0],
-        .dir_y = (float)direction[1],
-        .dir_z = (float)direction[2],
-        .tfar = INFINITY,
-        .mask = UINT32_MAX,
-    };
-    ray_context context = {.list = list};
-    rtcInitIntersectContext(&context.embree);
+    const float start[3] = {(float)from[0], (float)from[1], (float)from[2]};
+    const float along[3] = {(float)direction[0], (float)direction[1], (float)direction[2]};
     list->count = 0;
     list->lost = false;
-    rtcOccluded1(c->scene, &context.embree, &ray);
+    embree_list(c->tree, start, along, take_item, list);
     if (list->lost)
         return err_memory(e, "candidates");
     sort_items(list);

@@ -1,4 +1,4 @@
-/* Which of many boxes a ray may meet: a bounding volume hierarchy, and the one user of Embree. Embree works in floats, so
+/* Which of many boxes a ray may meet: a bounding volume hierarchy (mesh/embree.h). Embree works in floats, so
  * the caller gives boxes in a frame of its own choosing, shifted and scaled so that rays keep within `reach` of the
  * origin; the boxes are then made larger by more than any rounding, so that a ray may be given a box that it misses
  * but never misses a box that it meets. What truly is met is the caller's to decide. The creator owns it; lists are

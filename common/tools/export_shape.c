@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/near.h"
-#include "mesh/weights.h"
+#include "mesh/bone.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,30 +57,24 @@ int export_shape_of(export_shape *x, const model *m, const char *name, err *e)
     return name ? of_surface(x, name, e) : of_elements(x, e);
 }
 
-static void move_vertices(export_shape *x, const model_array *element, const model_array *weight, const double *u)
-{
-    const model_array *node = model_find(x->m, "element.node");
-    for (int64_t v = 0; v < x->points; v++)
-        weights_displacement(&node->i32[(int64_t)element->i32[v] * node->columns], node->columns,
-                             &weight->f64[v * weight->columns], u, &x->displacement[3 * v]);
-}
-
+/* A vertex moves with its element, or with the bone that carries it, as in sinew deform. A surface that is not bound stays
+ * where it is. */
 static int move_surface(export_shape *x, const double *u, err *e)
 {
-    const model_array *element = surface_part(x->m, x->s.name, "vertex.element");
-    const model_array *weight = surface_part(x->m, x->s.name, "vertex.weight");
-    const model_array *node = model_find(x->m, "element.node");
-    if (!element || !weight)
-        return 0;
-    if (!node || weight->columns != (node->columns == 8 ? 3 : 4))
-        return err_set(e, NULL, 0,
-                       "%s/vertex.weight does not fit element.node: 3 weights in hexahedra, 4 in tetrahedra",
-                       x->s.name);
-    x->displacement = mem_array(3 * x->points, sizeof *x->displacement, "displacements", e);
-    if (!x->displacement)
+    bound b;
+    bone carried = {0};
+    int is_bound = bound_of(&b, x->m, x->s.name, e);
+    if (is_bound <= 0)
+        return is_bound;
+    if (bone_find(&carried, &b, x->m, e)) {
+        bone_free(&carried);
         return -1;
-    move_vertices(x, element, weight, u);
-    return 0;
+    }
+    x->displacement = mem_array(3 * x->points, sizeof *x->displacement, "displacements", e);
+    for (int64_t v = 0; v < x->points && x->displacement; v++)
+        bone_displacement(&carried, &b, v, u, &x->displacement[3 * v]);
+    bone_free(&carried);
+    return x->displacement ? 0 : -1;
 }
 
 int export_shape_move(export_shape *x, const frame *f, err *e)

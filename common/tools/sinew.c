@@ -24,6 +24,7 @@ static const struct {
     {"info", "sinew-info", "what a model holds"},
     {"diff", "sinew-diff", "where two models differ"},
     {"export", "sinew-export", "VTU, Abaqus .inp, OBJ"},
+    {"render", "sinew-render", "pictures"},
 };
 
 enum { TOOLS = sizeof tools / sizeof *tools };

@@ -1,9 +1,9 @@
-// needs: bind/nearest.c bind/bound.c bind/normals.c bind/numbered.c
+// needs: bind/nearest.c bind/normals.c
 /* Binding: the nearest element against a search through all, ties, equation (1), linear fields inside and outside. */
-#include "bind/bound.h"
+#include "base/numbered.h"
 #include "bind/nearest.h"
 #include "bind/normals.h"
-#include "bind/numbered.h"
+#include "mesh/bound.h"
 #include "mesh/weights.h"
 
 #include "tap.h"
@@ -168,7 +168,11 @@ static void test_linear(double reach, double tolerance)
     nearest n;
     err e = {0};
     nearest_build(&n, &m, &e);
-    bound view = {.element = element, .weight = weight, .node = model_find(&m, "element.node")->i32, .rest = rest->f64};
+    bound view = {.element = element,
+                  .weight = weight,
+                  .corners = 8,
+                  .node = model_find(&m, "element.node")->i32,
+                  .rest = rest->f64};
     for (int v = 0; v < VERTICES; v++) {
         double p[3], d[3], f[9];
         for (int k = 0; k < 3; k++)
@@ -221,7 +225,8 @@ static void test_normals(void)
     const double *rest = model_find(&m, "node.position")->f64;
     int32_t element[3] = {0};
     double weight[9], u[24], normal[12];
-    bound b = {.element = element, .weight = weight, .node = model_find(&m, "element.node")->i32, .rest = rest};
+    bound b = {
+        .element = element, .weight = weight, .corners = 8, .node = model_find(&m, "element.node")->i32, .rest = rest};
     for (int i = 0; i < 9; i++)
         weight[i] = 1 - o.position[i];
     for (int i = 0; i < 8; i++) { /* x' = 2 x + 5, then a quarter turn about x: y' = -z, z' = y */
@@ -250,7 +255,7 @@ static bool names_are(const char *pattern, int64_t index, const char *want)
 {
     numbered n;
     err e = {0};
-    if (numbered_of(&n, pattern, &e))
+    if (numbered_of(&n, pattern, "", &e))
         return !want && e.status == STATUS_USAGE;
     char *got = numbered_name(&n, index, &e);
     bool same = want && !strcmp(got, want);

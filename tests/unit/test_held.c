@@ -1,6 +1,6 @@
 // needs: bind/held.c
 /* The nearest node that an anchor holds, against a search through all: lattices full of ties, and nodes anywhere. */
-#include "bind/held.h"
+#include "mesh/held.h"
 
 #include "tap.h"
 

@@ -1,4 +1,4 @@
-#include "bind/numbered.h"
+#include "base/numbered.h"
 
 #include "base/mem.h"
 
@@ -20,13 +20,13 @@ static bool read_conversion(numbered *n)
     return *p == 'd' && n->width <= 18 && !strchr(p, '%');
 }
 
-int numbered_of(numbered *n, const char *pattern, err *e)
+int numbered_of(numbered *n, const char *pattern, const char *otherwise, err *e)
 {
     *n = (numbered){.pattern = pattern};
     if (pattern && read_conversion(n))
         return 0;
     if (!pattern)
-        return err_usage(e, "--frame all writes a file a frame; expected -o with %%04d in the name, or --format pc2");
+        return err_usage(e, "--frame all writes a file a frame; expected -o with %%04d in the name%s", otherwise);
     return err_usage(e, "-o '%s': expected one number, such as %%04d, in the name and no other '%%'", pattern);
 }
 

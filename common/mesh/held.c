@@ -1,4 +1,4 @@
-#include "bind/held.h"
+#include "mesh/held.h"
 
 #include "base/mem.h"
 

@@ -1,4 +1,4 @@
-#include "bind/bound.h"
+#include "mesh/bound.h"
 
 #include "mesh/weights.h"
 
@@ -7,19 +7,34 @@ static bool is_bound(const model *m, const char *name)
     return surface_part(m, name, "vertex.element") && surface_part(m, name, "vertex.weight");
 }
 
-static int view(bound *b, const model *m, const char *name, err *e)
+int bound_of(bound *b, const model *m, const char *name, err *e)
 {
-    const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
-    if (!node || !rest || surface_of(m, name, &b->shape, e))
+    *b = (bound){0};
+    if (surface_of(m, name, &b->shape, e))
         return -1;
+    if (!is_bound(m, name))
+        return 0;
+    const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
     const model_array *weight = surface_part(m, name, "vertex.weight");
-    if (node->columns != 8 || weight->columns != 3)
-        return err_set(e, NULL, 0, "surface %s is bound to tetrahedra; expected hexahedra", name);
+    if (!node || !rest)
+        return -1;
+    if ((node->columns != 8 || weight->columns != 3) && (node->columns != 4 || weight->columns != 4))
+        return err_set(e, NULL, 0,
+                       "%s/vertex.weight does not fit element.node: 3 weights in hexahedra, 4 in tetrahedra", name);
     b->element = surface_part(m, name, "vertex.element")->i32;
     b->weight = weight->f64;
     b->node = node->i32;
+    b->corners = node->columns;
     b->rest = rest->f64;
-    return 0;
+    return 1;
+}
+
+/* For an OBJ that is to be moved, normals and all. */
+static int view(bound *b, const model *m, const char *name, err *e)
+{
+    if (bound_of(b, m, name, e) < 0)
+        return -1;
+    return b->corners == 8 ? 0 : err_set(e, NULL, 0, "surface %s is bound to tetrahedra; expected hexahedra", name);
 }
 
 /* The i-th bound surface's name, or NULL past the last. */
@@ -69,10 +84,19 @@ int bound_find(bound *b, const model *m, const char *name, const obj *o, double 
     return -1;
 }
 
+int bound_shares(const bound *b, int64_t vertex, double share[8])
+{
+    if (b->corners == 8)
+        weights_shares(&b->weight[3 * vertex], share);
+    else
+        memcpy(share, &b->weight[4 * vertex], 4 * sizeof *share);
+    return b->corners;
+}
+
 void bound_displacement(const bound *b, int64_t vertex, const double *u, double *d)
 {
-    const int32_t *node = &b->node[8 * (int64_t)b->element[vertex]];
-    weights_displacement(node, 8, &b->weight[3 * vertex], u, d);
+    const int32_t *node = &b->node[b->corners * (int64_t)b->element[vertex]];
+    weights_displacement(node, b->corners, &b->weight[(b->corners == 8 ? 3 : 4) * vertex], u, d);
 }
 
 void bound_gradient(const bound *b, int64_t vertex, const double *u, double *f)

@@ -5,7 +5,7 @@
 #ifndef SINEW_BONE_H
 #define SINEW_BONE_H
 
-#include "bind/bound.h"
+#include "mesh/bound.h"
 
 typedef struct bone {
     int32_t *node; /* vertices: the node that carries it, -1 = none does */
@@ -16,5 +16,8 @@ typedef struct bone {
  * anchors carries none. */
 int bone_find(bone *b, const bound *of, const model *m, err *e);
 void bone_free(bone *b);
+
+/* The displacement of a vertex, m: that of the node that carries it, else by its weights. u: of the nodes (x 3, m). */
+void bone_displacement(const bone *b, const bound *of, int64_t vertex, const double *u, double *d);
 
 #endif

@@ -1,10 +1,11 @@
-#include "bind/bone.h"
+#include "mesh/bone.h"
 
 #include "base/mem.h"
-#include "bind/held.h"
+#include "mesh/held.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The nodes that anchors hold. */
 typedef struct anchors {
@@ -46,11 +47,11 @@ static double distance2(const double *p, const double *q)
 }
 
 /* Of an element's nodes the nearest to p that the anchor holds, or -1. */
-static int32_t nearest_of(const anchors *a, int32_t anchor, const double *p, const int32_t *node)
+static int32_t nearest_of(const anchors *a, int32_t anchor, const double *p, const int32_t *node, int corners)
 {
     int32_t best = -1;
     double least = INFINITY;
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < corners; i++) {
         double d = distance2(p, a->rest + 3 * (int64_t)node[i]);
         if (a->of_node[node[i]] == anchor && d < least) {
             best = node[i];
@@ -72,7 +73,7 @@ static int carry(bone *b, const bound *of, const anchors *a, err *e)
         int32_t anchor = b->node[v];
         if (anchor < 0)
             continue;
-        b->node[v] = nearest_of(a, anchor, p, of->node + 8 * (int64_t)of->element[v]);
+        b->node[v] = nearest_of(a, anchor, p, of->node + of->corners * (int64_t)of->element[v], of->corners);
         if (b->node[v] < 0)
             b->node[v] = held_nearest(&all, anchor, p);
         b->count += b->node[v] >= 0;
@@ -93,6 +94,14 @@ int bone_find(bone *b, const bound *of, const model *m, err *e)
         return 0;
     anchors a = {name, anchor->i32, anchor->rows, of->rest};
     return mark(b, &of->shape, &a, e) || carry(b, of, &a, e) ? -1 : 0;
+}
+
+void bone_displacement(const bone *b, const bound *of, int64_t vertex, const double *u, double *d)
+{
+    if (b->node[vertex] >= 0)
+        memcpy(d, &u[3 * (int64_t)b->node[vertex]], 3 * sizeof *d);
+    else
+        bound_displacement(of, vertex, u, d);
 }
 
 void bone_free(bone *b)

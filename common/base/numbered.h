@@ -14,8 +14,9 @@ typedef struct numbered {
     bool zeros;
 } numbered;
 
-/* pattern (NULL: a usage error too): one conversion %d, %4d or %04d, and no other '%'. -1 with e filled (status 2). */
-int numbered_of(numbered *n, const char *pattern, err *e);
+/* pattern (NULL: a usage error too): one conversion %d, %4d or %04d, and no other '%'. otherwise: what the tool offers in
+ * place of files, as ", or --format pc2"; "": nothing. -1 with e filled (status 2). */
+int numbered_of(numbered *n, const char *pattern, const char *otherwise, err *e);
 
 /* The file's name for a frame; the caller frees it. */
 char *numbered_name(const numbered *n, int64_t index, err *e);

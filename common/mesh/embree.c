@@ -1,0 +1,208 @@
+#include "mesh/embree.h"
+
+#include "base/mem.h"
+
+#include <embree3/rtcore.h>
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+_Static_assert(sizeof(embree_packet) == sizeof(struct RTCRayHit16) &&
+                   offsetof(embree_packet, along) == offsetof(struct RTCRayHit16, ray.dir_x) &&
+                   offsetof(embree_packet, end) == offsetof(struct RTCRayHit16, ray.tfar) &&
+                   offsetof(embree_packet, normal) == offsetof(struct RTCRayHit16, hit.Ng_x) &&
+                   offsetof(embree_packet, item) == offsetof(struct RTCRayHit16, hit.primID) &&
+                   offsetof(embree_packet, geometry) == offsetof(struct RTCRayHit16, hit.geomID),
+               "a packet of rays is Embree's");
+
+/* What Embree calls back with for a geometry of boxes; it must stay where it is until the tree is gone. */
+typedef struct boxes {
+    embree_box *box;
+    const void *context;
+} boxes;
+
+struct embree {
+    RTCDevice device;
+    RTCScene scene;
+    boxes boxes;
+};
+
+/* A ray's taker goes along with it in Embree's context, which must come first. */
+typedef struct ray_context {
+    struct RTCIntersectContext embree;
+    embree_take *take;
+    void *context;
+} ray_context;
+
+static int trouble(RTCDevice device, const char *what, err *e)
+{
+    enum RTCError code = rtcGetDeviceError(device);
+    if (code == RTC_ERROR_NONE)
+        return 0;
+    if (code == RTC_ERROR_OUT_OF_MEMORY)
+        return err_memory(e, what);
+    return err_set(e, NULL, 0, "Embree could not make %s (its error %d)", what, (int)code);
+}
+
+embree *embree_create(int threads, err *e)
+{
+    embree *b = mem_array(1, sizeof *b, "a tree of boxes", e);
+    if (!b)
+        return NULL;
+    char settings[64];
+    snprintf(settings, sizeof settings, "threads=%d", threads < 1 ? 1 : threads);
+    b->device = rtcNewDevice(settings);
+    if (b->device)
+        b->scene = rtcNewScene(b->device);
+    if (trouble(b->device, "a device", e)) {
+        embree_destroy(b);
+        return NULL;
+    }
+    rtcSetSceneFlags(b->scene, RTC_SCENE_FLAG_ROBUST);
+    return b;
+}
+
+void embree_destroy(embree *b)
+{
+    if (!b)
+        return;
+    if (b->scene)
+        rtcReleaseScene(b->scene);
+    if (b->device)
+        rtcReleaseDevice(b->device);
+    free(b);
+}
+
+static int attach(embree *b, RTCGeometry geometry, const char *what, err *e)
+{
+    if (geometry) {
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(b->scene, geometry);
+        rtcReleaseGeometry(geometry);
+    }
+    return trouble(b->device, what, e);
+}
+
+static void give_bounds(const struct RTCBoundsFunctionArguments *a)
+{
+    const boxes *b = a->geometryUserPtr;
+    float low[3], high[3];
+    b->box(b->context, a->primID, low, high);
+    a->bounds_o->lower_x = low[0];
+    a->bounds_o->lower_y = low[1];
+    a->bounds_o->lower_z = low[2];
+    a->bounds_o->upper_x = high[0];
+    a->bounds_o->upper_y = high[1];
+    a->bounds_o->upper_z = high[2];
+}
+
+/* Does not accept the item as a hit, so that Embree goes on to the next. */
+static void give_item(const struct RTCOccludedFunctionNArguments *a)
+{
+    ray_context *c = (ray_context *)(void *)a->context;
+    c->take(c->context, a->primID);
+}
+
+int embree_add_boxes(embree *b, int64_t count, embree_box *box, const void *context, err *e)
+{
+    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER);
+    b->boxes = (boxes){box, context};
+    if (geometry) {
+        rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)count);
+        rtcSetGeometryUserData(geometry, &b->boxes);
+        rtcSetGeometryBoundsFunction(geometry, give_bounds, NULL);
+        rtcSetGeometryOccludedFunction(geometry, give_item);
+    }
+    return attach(b, geometry, "boxes", e);
+}
+
+/* Copies an array into a buffer of Embree's own, which has the padding that it reads beyond the end. */
+static int give_array(const embree *b, RTCGeometry geometry, enum RTCBufferType type, enum RTCFormat format,
+                      const void *array, size_t size, int64_t count, err *e)
+{
+    void *to = geometry && count ? rtcSetNewGeometryBuffer(geometry, type, 0, format, size, (size_t)count) : NULL;
+    if (to)
+        memcpy(to, array, size * (size_t)count);
+    return trouble(b->device, "room for a surface", e);
+}
+
+int embree_add_faces(embree *b, int corners, int64_t vertices, const float *position, int64_t faces,
+                     const uint32_t *corner, err *e)
+{
+    bool quads = corners == 4;
+    RTCGeometry geometry = rtcNewGeometry(b->device, quads ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
+    int failed = give_array(b, geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, position, 3 * sizeof *position,
+                            vertices, e) ||
+                 give_array(b, geometry, RTC_BUFFER_TYPE_INDEX, quads ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3, corner,
+                            (size_t)corners * sizeof *corner, faces, e);
+    return attach(b, geometry, "a surface", e) || failed ? -1 : 0;
+}
+
+int embree_add_spheres(embree *b, int64_t count, const float *centre_radius, err *e)
+{
+    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    int failed = give_array(b, geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, centre_radius,
+                            4 * sizeof *centre_radius, count, e);
+    return attach(b, geometry, "spheres", e) || failed ? -1 : 0;
+}
+
+int embree_commit(embree *b, err *e)
+{
+    rtcCommitScene(b->scene);
+    return trouble(b->device, "its tree of boxes", e);
+}
+
+void embree_list(const embree *b, const float *from, const float *along, embree_take *take, void *context)
+{
+    struct RTCRay ray = {
+        .org_x = from[0],
+        .org_y = from[1],
+        .org_z = from[2],
+        .dir_x = along[0],
+        .dir_y = along[1],
+        .dir_z = along[2],
+        .tfar = INFINITY,
+        .mask = UINT32_MAX,
+    };
+    ray_context c = {.take = take, .context = context};
+    rtcInitIntersectContext(&c.embree);
+    rtcOccluded1(b->scene, &c.embree, &ray);
+}
+
+void embree_packet_clear(embree_packet *p)
+{
+    memset(p, 0, sizeof *p);
+    for (int i = 0; i < EMBREE_RAYS; i++) {
+        p->end[i] = INFINITY;
+        p->mask[i] = UINT32_MAX;
+        p->geometry[i] = p->instance[i] = EMBREE_NONE;
+    }
+}
+
+/* Embree wants -1 for each ray that counts, 0 for others. */
+static void begin(struct RTCIntersectContext *c, bool coherent, unsigned valid, int *each)
+{
+    for (int i = 0; i < EMBREE_RAYS; i++)
+        each[i] = -(int)(valid >> i & 1);
+    rtcInitIntersectContext(c);
+    c->flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+}
+
+void embree_nearest(const embree *b, unsigned valid, embree_packet *p, bool coherent)
+{
+    struct RTCIntersectContext c;
+    alignas(64) int each[EMBREE_RAYS];
+    begin(&c, coherent, valid, each);
+    rtcIntersect16(each, b->scene, &c, (struct RTCRayHit16 *)(void *)p);
+}
+
+void embree_blocked(const embree *b, unsigned valid, embree_packet *p, bool coherent)
+{
+    struct RTCIntersectContext c;
+    alignas(64) int each[EMBREE_RAYS];
+    begin(&c, coherent, valid, each);
+    rtcOccluded16(each, b->scene, &c, (struct RTCRay16 *)(void *)p);
+}

@@ -1,0 +1,25 @@
+/* How an element is strained at its centre, from the displacements of its nodes: hexahedra of any shape and tetrahedra.
+ * Tensors are 3 x 3, row i column j at 3 i + j. Nothing here allocates.
+ */
+#ifndef SINEW_GRADIENT_H
+#define SINEW_GRADIENT_H
+
+#include <stdint.h>
+
+/* H = du/dX at the centre. node: the element's 8 or 4; rest, u: of all nodes, x 3, m. False, and all nan: the element has
+ * no volume. */
+int gradient_of(const int32_t *node, int corners, const double *rest, const double *u, double h[9]);
+
+/* Green-Lagrange's E = (H + H^T + H^T H) / 2. */
+void gradient_strain(const double h[9], double strain[9]);
+
+/* Of a symmetric tensor: the largest principal value, and sqrt(3/2 dev : dev), von Mises' equivalent of a stress (that
+ * of a strain is 2/3 of it). */
+double gradient_largest(const double t[9]);
+double gradient_mises(const double t[9]);
+
+/* Von Mises' equivalent of the Cauchy stress P F^T / J of the law in element.h, without active stress; Pa. nan where J
+ * is not above 0. */
+double gradient_stress(const double h[9], double mu, double bulk);
+
+#endif

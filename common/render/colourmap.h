@@ -1,0 +1,28 @@
+/* A perceptually uniform scale of colours, dark violet over green to yellow: equal steps of a value are equal steps in
+ * Oklab (B. Ottosson, A perceptual color space for image processing, 2020), and lightness grows throughout, so that it
+ * reads in grey and to the colour-blind. And distinct colours for names. The table is computed; its owner is the caller.
+ */
+#ifndef SINEW_RENDER_COLOURMAP_H
+#define SINEW_RENDER_COLOURMAP_H
+
+#include <stdint.h>
+
+enum { COLOURMAP_STEPS = 256 };
+
+typedef struct colourmap {
+    float colour[COLOURMAP_STEPS][3]; /* linear RGB */
+} colourmap;
+
+void colourmap_make(colourmap *c);
+
+/* The colour at t of 0 to 1, linear RGB; beyond: that of the end. Grey for nan. */
+void colourmap_at(const colourmap *c, double t, float colour[3]);
+
+/* The colour of the i-th name, linear RGB: the hue goes round by the golden ratio, in three lightnesses, so
+ * that many differ. */
+void colourmap_name(int64_t i, float colour[3]);
+
+/* Oklab of a linear RGB colour (for tests). */
+void colourmap_oklab(const float colour[3], double lab[3]);
+
+#endif

@@ -1,0 +1,284 @@
+#include "render/field.h"
+
+#include "base/keyfile.h"
+#include "base/mem.h"
+#include "base/num.h"
+#include "mesh/gradient.h"
+#include "model/materials.h"
+#include "model/source.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The fields that are not arrays. */
+static const char *const ours[] = {"displacement", "strain", "strain.max", "stress", "volume", "material"};
+enum { DISPLACEMENT, STRAIN, STRAIN_MAX, STRESS, VOLUME, MATERIAL, OURS };
+
+/* The displacements of a frame, or NULL with e filled. */
+static const double *displacement(const frame *f, const char *name, err *e)
+{
+    const model_array *u = f ? frame_find(f, "node.displacement") : NULL;
+    if (u)
+        return u->f64;
+    if (!f)
+        err_set(e, NULL, 0, "%s is of results, and at rest there are none; expected a model from tled-run", name);
+    else
+        err_set(e, NULL, 0, "frame %lld has no node.displacement, which %s takes; expected results of tled-run",
+                (long long)f->index, name);
+    return NULL;
+}
+
+static int make(field *to, bool of_elements, int64_t count, const char *label, const char *si, err *e)
+{
+    to->of_elements = of_elements;
+    to->count = count;
+    snprintf(to->label, sizeof to->label, "%s", label);
+    snprintf(to->si, sizeof to->si, "%s", si);
+    to->value = mem_array(count, sizeof *to->value, "a field", e);
+    return to->value ? 0 : -1;
+}
+
+/* ---- arrays */
+
+double field_of_vector(const field *f, const double v[3])
+{
+    return f->component >= 0 ? v[f->component] : sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* One component, or the norm (component -1) of the three, or the one number. */
+static int take_array(field *to, const model_array *a, err *e)
+{
+    if (a->columns == 3 && !to->of_elements) {
+        to->vector = mem_array(3 * to->count, sizeof *to->vector, "a field", e);
+        if (!to->vector)
+            return -1;
+    }
+    for (int64_t n = 0; n < to->count; n++) {
+        double v[3];
+        for (int c = 0; c < a->columns; c++)
+            v[c] = source_value(a, n * a->columns + c);
+        to->value[n] = a->columns == 3 ? field_of_vector(to, v) : v[0];
+        if (to->vector)
+            memcpy(&to->vector[3 * n], v, sizeof v);
+    }
+    return 0;
+}
+
+static bool is_field(const model_array *a)
+{
+    bool over = !strcmp(a->axis, "node") || !strcmp(a->axis, "element");
+    return over && a->type != MODEL_STR && (a->columns == 1 || (a->columns == 3 && a->unit[0] != '@'));
+}
+
+/* "array" or "array.x": the array, and the component or -1; NULL: no such array. */
+static const model_array *find(const model *m, const frame *f, const char *name, int *component)
+{
+    char head[300];
+    size_t n = strlen(name);
+    const model_array *a = f ? frame_find(f, name) : NULL;
+    *component = -1;
+    a = a ? a : model_find(m, name);
+    if (a && is_field(a))
+        return a;
+    if (n < 3 || n >= sizeof head || name[n - 2] != '.' || name[n - 1] < 'x' || name[n - 1] > 'z')
+        return NULL;
+    snprintf(head, sizeof head, "%.*s", (int)(n - 2), name);
+    *component = name[n - 1] - 'x';
+    a = f ? frame_find(f, head) : NULL;
+    a = a ? a : model_find(m, head);
+    return a && is_field(a) && a->columns == 3 ? a : NULL;
+}
+
+static int of_array(field *to, const model_array *a, int component, const char *label, err *e)
+{
+    const char *si = strcmp(a->unit, "1") != 0 && a->unit[0] != '@' ? a->unit : "";
+    if (make(to, !strcmp(a->axis, "element"), a->rows, label, si, e))
+        return -1;
+    to->component = component;
+    to->displaces = !strcmp(a->name, "node.displacement");
+    to->below_zero = component >= 0 || a->columns == 1;
+    return take_array(to, a, e);
+}
+
+/* ---- names: the volume of an element, and its material */
+
+static int of_names(field *to, const model *m, bool of_material, err *e)
+{
+    const model_array *volume = model_need(m, "element.volume", e);
+    const model_array *name = volume ? model_need(m, of_material ? "material.name" : "volume.name", e) : NULL;
+    const model_array *of = name && of_material ? model_need(m, "volume.material", e) : volume;
+    if (!name || !of || make(to, true, volume->rows, ours[of_material ? MATERIAL : VOLUME], "", e))
+        return -1;
+    to->name = name->str;
+    to->names = name->rows;
+    for (int64_t n = 0; n < to->count; n++)
+        to->value[n] = of_material ? of->i32[volume->i32[n]] : volume->i32[n];
+    return 0;
+}
+
+/* ---- strain and stress */
+
+/* mu and K of every volume (rows x 2); the caller frees them. */
+static double *laws(const model *m, err *e)
+{
+    const model_array *of = model_need(m, "volume.material", e);
+    double *law = of ? mem_array(2 * of->rows, sizeof *law, "materials", e) : NULL;
+    for (int64_t v = 0; law && v < of->rows; v++) {
+        material a;
+        if (materials_of(m, of->i32[v], &a, e)) {
+            free(law);
+            return NULL;
+        }
+        law[2 * v] = material_mu(&a);
+        law[2 * v + 1] = material_bulk(&a);
+    }
+    return law;
+}
+
+static double strained(int which, const double h[9], const double *law)
+{
+    double strain[9];
+    if (which == STRESS)
+        return gradient_stress(h, law[0], law[1]);
+    gradient_strain(h, strain);
+    return which == STRAIN ? 2. / 3 * gradient_mises(strain) : gradient_largest(strain);
+}
+
+static int of_strain(field *to, const model *m, const frame *f, int which, err *e)
+{
+    const double *u = displacement(f, ours[which], e);
+    const model_array *node = u ? model_need(m, "element.node", e) : NULL;
+    const model_array *rest = node ? model_need(m, "node.position", e) : NULL;
+    const model_array *volume = rest && which == STRESS ? model_need(m, "element.volume", e) : NULL;
+    if (!rest || (which == STRESS && !volume))
+        return -1;
+    double *law = which == STRESS ? laws(m, e) : NULL;
+    if ((which == STRESS && !law) || make(to, true, node->rows, ours[which], which == STRESS ? "Pa" : "", e)) {
+        free(law);
+        return -1;
+    }
+    to->below_zero = which == STRAIN_MAX;
+    for (int64_t n = 0; n < node->rows; n++) {
+        double h[9];
+        gradient_of(&node->i32[n * node->columns], node->columns, rest->f64, u, h);
+        to->value[n] = strained(which, h, law ? &law[2 * volume->i32[n]] : NULL);
+    }
+    free(law);
+    return 0;
+}
+
+/* ---- all of them by name */
+
+static void note_arrays(const model_arrays *list, notes *names)
+{
+    for (int i = 0; i < list->count; i++)
+        if (is_field(&list->v[i]))
+            notes_add(names, "%s", list->v[i].name);
+}
+
+static int unknown(const model *m, const frame *f, const char *name, err *e)
+{
+    notes names = {0};
+    for (int i = 0; i < OURS; i++)
+        notes_add(&names, "%s", ours[i]);
+    if (f)
+        note_arrays(&f->arrays, &names);
+    note_arrays(&m->arrays, &names);
+    keyfile_unknown(e, NULL, 0, "field", name, (const char *const *)names.line, names.count);
+    notes_free(&names);
+    return -1;
+}
+
+/* Which of ours; OURS: none. */
+static int own(const char *name)
+{
+    int i = 0;
+    while (i < OURS && strcmp(name, ours[i]) != 0)
+        i++;
+    return i < OURS ? i : strncmp(name, "displacement.", 13) ? OURS : DISPLACEMENT;
+}
+
+static int of_name(field *to, const model *m, const frame *f, const char *name, err *e)
+{
+    int which = own(name), component;
+    char full[320];
+    const model_array *a;
+    if (which == VOLUME || which == MATERIAL)
+        return of_names(to, m, which == MATERIAL, e);
+    if (which == STRAIN || which == STRAIN_MAX || which == STRESS)
+        return of_strain(to, m, f, which, e);
+    if (which == DISPLACEMENT && !displacement(f, name, e))
+        return -1;
+    snprintf(full, sizeof full, "%s%.300s", which == DISPLACEMENT ? "node." : "", name);
+    a = find(m, f, full, &component);
+    return a ? of_array(to, a, component, name, e) : unknown(m, f, name, e);
+}
+
+int field_of(field *to, const model *m, const frame *f, const char *name, err *e)
+{
+    *to = (field){0};
+    if (!of_name(to, m, f, name, e))
+        return 0;
+    field_free(to);
+    return -1;
+}
+
+void field_free(field *f)
+{
+    free(f->value);
+    free(f->vector);
+    *f = (field){0};
+}
+
+bool field_moves(const model *m, const char *name)
+{
+    int component, which = own(name);
+    return which != VOLUME && which != MATERIAL && !find(m, NULL, name, &component);
+}
+
+static void add_elements(const field *f, const model_array *node, double *sum, int32_t *count)
+{
+    for (int64_t n = 0; n < f->count; n++)
+        for (int c = 0; c < node->columns && !isnan(f->value[n]); c++) {
+            sum[node->i32[n * node->columns + c]] += f->value[n];
+            count[node->i32[n * node->columns + c]]++;
+        }
+}
+
+double *field_at_nodes(const field *f, const model *m, err *e)
+{
+    int64_t nodes = model_count(m, "node");
+    const model_array *node = f->of_elements ? model_need(m, "element.node", e) : NULL;
+    double *value = mem_array(nodes, sizeof *value, "a field", e);
+    int32_t *count = value && node ? mem_array(nodes, sizeof *count, "a field", e) : NULL;
+    if (!f->of_elements && value)
+        memcpy(value, f->value, (size_t)nodes * sizeof *value);
+    if (count) {
+        add_elements(f, node, value, count);
+        for (int64_t n = 0; n < nodes; n++)
+            value[n] = count[n] ? value[n] / count[n] : (double)NAN;
+    }
+    free(count);
+    if (!e->status)
+        return value;
+    free(value);
+    return NULL;
+}
+
+const char *field_unit(const field *f, const model *m, double most, double *scale)
+{
+    const char *own_unit = model_meta_of(m, "source.unit");
+    num_unit unit = own_unit ? num_unit_of(own_unit) : 0;
+    *scale = 1;
+    if (!strcmp(f->si, "m") && unit) {
+        *scale = 1 / num_length_in((num_length){1, unit}, unit, num_unit_of("m"));
+        return num_unit_name(unit);
+    }
+    if (!strcmp(f->si, "Pa") && most >= 1e3) {
+        *scale = most >= 1e6 ? 1e-6 : 1e-3;
+        return most >= 1e6 ? "MPa" : "kPa";
+    }
+    return f->si;
+}

@@ -1,0 +1,362 @@
+#include "render/picture.h"
+
+#include "base/mem.h"
+#include "render/legend.h"
+#include "render/sheet.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const float ink[3] = {.012f, .012f, .012f};
+
+/* What it takes to draw one frame. */
+typedef struct work {
+    picture *p;
+    const model *m;
+    const frame *f;
+    field field;
+    bool coloured; /* there is a field */
+    showing showing[PICTURE_PANELS];
+    double low, high; /* of the scale, SI */
+    sheet sheet;
+    int letters;
+    legend_key key[PICTURE_PANELS][64];
+    int keys[PICTURE_PANELS];
+} work;
+
+int picture_open(picture *p, const picture_spec *spec, font *f, pool *threads, err *e)
+{
+    *p = (picture){.spec = spec, .font = f, .threads = threads};
+    colourmap_make(&p->map);
+    return image_create(&p->image, spec->width, spec->height, e);
+}
+
+void picture_close(picture *p)
+{
+    image_free(&p->image);
+    *p = (picture){0};
+}
+
+/* ---- cameras */
+
+static bool same_view(const picture_view *a, const picture_view *b)
+{
+    return a->kind == b->kind && !strcmp(a->name, b->name) && !memcmp(a->from, b->from, sizeof a->from);
+}
+
+static int turn(picture *p, int i, err *e)
+{
+    static const double middle[3] = {0, 0, 0};
+    const picture_spec *s = p->spec;
+    const picture_view *v = &s->panel[i].view;
+    double away = v->kind == PICTURE_PLACED
+                      ? hypot(hypot(v->eye[0] - v->target[0], v->eye[1] - v->target[1]), v->eye[2] - v->target[2])
+                      : 1;
+    double angle = s->angle > 0 ? s->angle : 2 * away * tan(.17);
+    if (v->kind == PICTURE_NAMED)
+        return camera_view(&p->camera[i], v->name, s->up, s->front, e);
+    if (v->kind == PICTURE_FROM)
+        return camera_look(&p->camera[i], v->from, middle, s->up, s->angle <= 0, angle, e);
+    return camera_look(&p->camera[i], v->eye, v->target, s->up, s->angle <= 0, angle, e);
+}
+
+/* All panels with one view have one camera, which sees what is in any of them: so that they can be compared. */
+static int fit_together(work *w, int i, err *e)
+{
+    scene all = {0};
+    int bad = 0;
+    const picture_spec *s = w->p->spec;
+    for (int k = 0; k < s->panels && !bad; k++) {
+        const scene *one = &w->showing[k].scene;
+        if (!same_view(&s->panel[i].view, &s->panel[k].view))
+            continue;
+        bad = mem_grow(&all.mesh, &all.mesh_capacity, all.meshes + one->meshes, sizeof *all.mesh, "a scene", e) ||
+              mem_grow(&all.spheres, &all.sphere_capacity, all.sphere_sets + one->sphere_sets, sizeof *all.spheres,
+                       "a scene", e);
+        for (int64_t n = 0; n < one->meshes && !bad; n++)
+            all.mesh[all.meshes++] = one->mesh[n];
+        for (int64_t n = 0; n < one->sphere_sets && !bad; n++)
+            all.spheres[all.sphere_sets++] = one->spheres[n];
+    }
+    sheet_cell c = sheet_picture(&w->sheet, i);
+    if (!bad)
+        bad = camera_fit_scene(&w->p->camera[i], &all, c.width, c.height, s->angle, s->margin, e);
+    /* The meshes are the showings'. */
+    free(all.mesh);
+    free(all.spheres);
+    return bad ? -1 : 0;
+}
+
+static int place_cameras(work *w, err *e)
+{
+    const picture_spec *s = w->p->spec;
+    for (int i = 0; i < s->panels && !w->p->placed; i++) {
+        int like = 0;
+        while (like < i && !same_view(&s->panel[i].view, &s->panel[like].view))
+            like++;
+        if (like < i)
+            w->p->camera[i] = w->p->camera[like];
+        else if (s->panel[i].view.kind != PICTURE_PLACED && fit_together(w, i, e))
+            return -1;
+    }
+    w->p->placed = true;
+    return 0;
+}
+
+/* ---- what is in the panels */
+
+static int things_of(const work *w, const picture_panel *panel)
+{
+    char name[8];
+    int things = panel->things, some = SHOWING_MUSCLES | SHOWING_RIGID | SHOWING_CENTRES;
+    if (!things && !(panel->names && w->p->spec->names))
+        things = model_surface(w->m, 0, name, sizeof name) ? SHOWING_SURFACES : SHOWING_VOXELS;
+    return panel->what_there_is ? things & (~some | showing_there(w->m)) : things;
+}
+
+static int showing_panel(work *w, int i, err *e)
+{
+    const picture_spec *s = w->p->spec;
+    const picture_panel *panel = &s->panel[i];
+    showing_cut cut[PICTURE_CUTS];
+    for (int k = 0; k < s->cuts; k++) {
+        bool above = s->cut[k].side ? s->cut[k].side > 0 : w->p->camera[i].forward[s->cut[k].axis] <= 0;
+        cut[k] = (showing_cut){s->cut[k].axis, above, s->cut[k].at};
+    }
+    showing_want want = {.things = things_of(w, panel),
+                         .name = s->name,
+                         .names = panel->names ? s->names : 0,
+                         .clear = s->clear,
+                         .clears = s->clears,
+                         .cut = cut,
+                         .cuts = s->cuts,
+                         .moved = panel->moved ? w->f : NULL,
+                         .field = panel->coloured && w->coloured ? &w->field : NULL};
+    return showing_make(&w->showing[i], w->m, &want, e);
+}
+
+static int showing_panels(work *w, err *e)
+{
+    for (int i = 0; i < w->p->spec->panels; i++)
+        if ((!w->p->placed && turn(w->p, i, e)) || showing_panel(w, i, e))
+            return -1;
+    return 0;
+}
+
+/* One scale for all panels. What cannot be below 0 begins there. */
+static void find_range(work *w)
+{
+    const picture_spec *s = w->p->spec;
+    double low, high;
+    w->low = INFINITY, w->high = -INFINITY;
+    for (int i = 0; i < s->panels; i++)
+        if (showing_range(&w->showing[i], &low, &high)) {
+            w->low = fmin(w->low, low);
+            w->high = fmax(w->high, high);
+        }
+    if (!(w->low <= w->high))
+        w->low = w->high = 0;
+    if (!w->field.below_zero && w->low > 0)
+        w->low = 0;
+    if (s->ranged)
+        w->low = s->low, w->high = s->high;
+    for (int i = 0; i < s->panels; i++)
+        showing_colour(&w->showing[i], &w->field, &w->p->map, w->low, w->high);
+}
+
+/* ---- legends */
+
+static void add_key(work *w, int i, const char *words, const uint8_t srgb[3], bool round)
+{
+    legend_key *k = &w->key[i][w->keys[i]++];
+    k->words = words;
+    k->round = round;
+    image_linear(srgb, k->colour);
+}
+
+/* The names that faces are coloured by. */
+static void add_names(work *w, int i)
+{
+    const field *f = &w->field;
+    int most = (int)(sizeof w->key[i] / sizeof *w->key[i]);
+    for (int64_t n = 0; n < f->names && w->keys[i] < most; n++) {
+        bool seen = false;
+        for (int64_t k = 0; k < w->showing[i].values && !seen; k++)
+            for (int64_t v = 0; w->showing[i].value[k] && v < w->showing[i].scene.mesh[k].faces && !seen; v++)
+                seen = (int64_t)w->showing[i].value[k][v] == n;
+        if (!seen)
+            continue;
+        legend_key *key = &w->key[i][w->keys[i]++];
+        key->words = f->name[n];
+        key->round = false;
+        colourmap_name(n, key->colour);
+    }
+}
+
+static bool has_field(const work *w, int i)
+{
+    return w->coloured && w->p->spec->panel[i].coloured;
+}
+
+static void make_keys(work *w)
+{
+    for (int i = 0; i < w->p->spec->panels; i++) {
+        int seen = w->showing[i].seen;
+        if (has_field(w, i) && w->field.name)
+            add_names(w, i);
+        if (!w->p->spec->captions)
+            continue;
+        if (seen & SHOWING_MUSCLES && !has_field(w, i))
+            add_key(w, i, "muscle elements", showing_green, false);
+        if (seen & SHOWING_RIGID)
+            add_key(w, i, "rigid nodes", showing_red, true);
+        if (seen & SHOWING_CENTRES)
+            add_key(w, i, "contraction centres", showing_centre, true);
+    }
+}
+
+static bool has_bar(const work *w, int i)
+{
+    return has_field(w, i) && !w->field.name;
+}
+
+/* The size of letters, pixels: readable, but no wider than a panel has room for. */
+static int letters(const picture_spec *s)
+{
+    sheet bare;
+    sheet_make(&bare, s->width, s->height, s->panels, 0, 0);
+    int size = (int)fmin(fmin(s->width, s->height) / 36., sheet_panel(&bare, 0).width / 22.);
+    return size < 11 ? 11 : size > 40 ? 40 : size;
+}
+
+/* The room that the tallest legend takes. Columns depend on it and it on their width: the first guess has none. */
+static int lay_out(work *w, err *e)
+{
+    const picture_spec *s = w->p->spec;
+    int head = s->captions ? 2 * w->letters : 0, foot = 0;
+    sheet_make(&w->sheet, s->width, s->height, s->panels, head, 0);
+    for (int i = 0; i < s->panels; i++) {
+        int width = sheet_panel(&w->sheet, i).width;
+        int room = has_bar(w, i) ? legend_bar_height(w->letters) : 0;
+        if (w->keys[i])
+            room += legend_keys_height(w->p->font, w->letters, width, w->key[i], w->keys[i]);
+        foot = room > foot ? room : foot;
+    }
+    sheet_make(&w->sheet, s->width, s->height, s->panels, head, foot);
+    sheet_cell c = sheet_picture(&w->sheet, 0);
+    if (c.width < 16 || c.height < 16)
+        return err_set(e, NULL, 0, "--size %dx%d leaves %d x %d pixels for each picture; expected a larger one",
+                       s->width, s->height, c.width, c.height < 0 ? 0 : c.height);
+    return 0;
+}
+
+static int put_words(work *w, int i, err *e)
+{
+    const picture_spec *s = w->p->spec;
+    image *im = &w->p->image;
+    sheet_cell c = sheet_panel(&w->sheet, i), inner = sheet_picture(&w->sheet, i);
+    int y = inner.y + inner.height, size = w->letters;
+    char caption[sizeof s->panel[i].caption + 48], shown[sizeof caption + 4], words[200];
+    if (!w->p->font)
+        return 0;
+    snprintf(caption, sizeof caption, "%s", s->panel[i].caption);
+    if (s->panel[i].moved && w->f)
+        snprintf(caption, sizeof caption, "%s, %.4g s", s->panel[i].caption, w->f->time);
+    font_shorten(w->p->font, caption, c.width - size, shown);
+    if (s->captions)
+        font_draw_middle(w->p->font, im, c.x + c.width / 2, c.x, c.x + c.width, c.y + (int)lround(1.4 * size), shown,
+                         ink);
+    if (has_bar(w, i)) {
+        double scale;
+        const char *unit = field_unit(&w->field, w->m, fmax(fabs(w->low), fabs(w->high)), &scale);
+        snprintf(words, sizeof words, "%s%s%s", w->field.label, *unit ? ", " : "", unit);
+        legend_bar(im, w->p->font, size, c.x, y, c.width, &w->p->map, w->low * scale, w->high * scale, words);
+        y += legend_bar_height(size);
+    }
+    return legend_keys(im, w->p->font, size, c.x, y, c.width, w->key[i], w->keys[i], e);
+}
+
+/* ---- all together */
+
+/* Contraction centres lie within bone and muscle: what hides them lets them shine through. */
+static int trace_marks(work *w, int i, image *im, const trace_options *o, err *e)
+{
+    static const float shine = .6f;
+    const showing *b = &w->showing[i];
+    scene marks = {.sphere_sets = 1, .spheres = b->scene.spheres ? &b->scene.spheres[b->marks] : NULL};
+    image over = {0};
+    if (!b->marked)
+        return 0;
+    if (image_create(&over, im->width, im->height, e))
+        return -1;
+    int bad = trace(&marks, &w->p->camera[i], &over, w->p->threads, o, NULL, e);
+    for (int64_t n = 0; n < 4 * (int64_t)over.width * over.height && !bad; n++)
+        over.pixel[n] *= shine;
+    image_over(im, &over, 0, 0);
+    image_free(&over);
+    return bad;
+}
+
+static int trace_panel(work *w, int i, err *e)
+{
+    picture *p = w->p;
+    trace_options o = trace_defaults();
+    trace_report r = {0};
+    image im = {0};
+    sheet_cell c = sheet_picture(&w->sheet, i);
+    memset(o.background, 0, sizeof o.background);
+    if (image_create(&im, c.width, c.height, e))
+        return -1;
+    int bad = trace(&w->showing[i].scene, &p->camera[i], &im, p->threads, &o, &r, e);
+    if (!bad && !r.covered)
+        bad = err_set(e, NULL, 0, "nothing is to be seen from there: the camera looks past the model");
+    if (!bad)
+        bad = trace_marks(w, i, &im, &o, e);
+    image_over(&p->image, &im, c.x, c.y);
+    image_free(&im);
+    p->report.build += r.build, p->report.trace += r.trace, p->report.rays += r.rays;
+    p->report.faces += r.faces, p->report.spheres += r.spheres;
+    return bad;
+}
+
+static int draw(work *w, err *e)
+{
+    static const float paper[2][4] = {{1, 1, 1, 1}, {0, 0, 0, 0}};
+    picture *p = w->p;
+    const picture_spec *s = p->spec;
+    w->letters = letters(s);
+    if (p->font && font_set(p->font, w->letters, e))
+        return -1;
+    if (s->field && field_of(&w->field, w->m, w->f, s->field, e))
+        return -1;
+    w->coloured = s->field != NULL;
+    if (showing_panels(w, e))
+        return -1;
+    if (w->coloured)
+        find_range(w);
+    make_keys(w);
+    if (lay_out(w, e) || place_cameras(w, e))
+        return -1;
+    p->report = (trace_report){0};
+    image_fill(&p->image, paper[s->transparent]);
+    for (int i = 0; i < s->panels; i++)
+        if (trace_panel(w, i, e) || put_words(w, i, e))
+            return -1;
+    return 0;
+}
+
+int picture_draw(picture *p, const model *m, const frame *f, err *e)
+{
+    work *w = mem_array(1, sizeof *w, "a picture", e);
+    if (!w)
+        return -1;
+    w->p = p, w->m = m, w->f = f;
+    int bad = draw(w, e);
+    for (int i = 0; i < PICTURE_PANELS; i++)
+        showing_free(&w->showing[i]);
+    field_free(&w->field);
+    free(w);
+    return bad;
+}

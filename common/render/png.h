@@ -1,0 +1,16 @@
+/* PNG files: 8-bit RGB or RGBA (not premultiplied), sRGB. The one user of libpng. Nothing is kept.
+ */
+#ifndef SINEW_PNG_H
+#define SINEW_PNG_H
+
+#include "base/out.h"
+
+#include <stdint.h>
+
+/* Writes [height][width][channels] bytes, channels 3 or 4, as one PNG. -1 with e filled. */
+int png_put(const uint8_t *pixel, int width, int height, int channels, out *to, err *e);
+
+/* Reads a PNG file into [*height][*width][4] bytes, which the caller frees. NULL with e filled. */
+uint8_t *png_get(const char *path, int *width, int *height, err *e);
+
+#endif

@@ -1,0 +1,40 @@
+/* What the command line of sinew-render asks for, understood and checked before anything is read: the picture's spec, which
+ * frames, and where to. The plan borrows from the options and owns its lists.
+ */
+#ifndef SINEW_RENDER_PLAN_H
+#define SINEW_RENDER_PLAN_H
+
+#include "base/numbered.h"
+#include "base/opt.h"
+#include "render/picture.h"
+
+enum { RENDER_PNG, RENDER_PPM };
+enum { RENDER_LAST, RENDER_ALL, RENDER_REST, RENDER_ONE };
+
+typedef struct render_options {
+    opt_common common;
+    opt_list show, clear, sheet, cut;
+    const char *view, *up, *front, *colour, *frame, *size, *font;
+    opt_lengths camera, range;
+    double angle;
+    bool transparent;
+    int format;
+} render_options;
+
+typedef struct render_plan {
+    picture_spec spec;
+    int frames;    /* RENDER_LAST, … */
+    int64_t index; /* of RENDER_ONE */
+    bool frame_given;
+    bool files;       /* a file a frame: `names` */
+    bool ranged_bare; /* --range has no unit: SI of whatever is coloured */
+    numbered names;
+    char *text; /* owned: the lists below point into it */
+    const char *name[256];
+} render_plan;
+
+/* -1 with e filled (status 2). */
+int render_plan_of(render_plan *p, const render_options *o, err *e);
+void render_plan_free(render_plan *p);
+
+#endif

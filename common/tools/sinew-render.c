@@ -1,0 +1,213 @@
+/* sinew-render: pictures of a model, ray-traced. */
+#include "base/mem.h"
+#include "base/outs.h"
+#include "base/progress.h"
+#include "base/tool.h"
+#include "model/source.h"
+#include "render/png.h"
+#include "tools/render_plan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TO(field) offsetof(render_options, field)
+static const opt option_table[] = {
+    {0, "show", "THING,...", OPT_LIST, TO(show), 0, 0, NULL, 0, "surface voxels muscles rigid centres, NAME"},
+    {0, "clear", "THING,...", OPT_LIST, TO(clear), 0, 0, NULL, 0, "of those: seen through"},
+    {0, "view", "VIEW", OPT_TEXT, TO(view), 0, 0, NULL, 0, "front back left right top bottom, X,Y,Z"},
+    {0, "camera", "EYE,TARGET", OPT_LENGTHS, TO(camera), 0, 6, NULL, 0, "m: two places, X,Y,Z,X,Y,Z"},
+    {0, "angle", "DEGREES", OPT_NUMBER, TO(angle), 0, 120, NULL, 0, "field of view (20; 0: parallel)"},
+    {0, "up", "AXIS", OPT_TEXT, TO(up), 0, 0, NULL, 0, "x, y, z, -x... (y)"},
+    {0, "front", "AXIS", OPT_TEXT, TO(front), 0, 0, NULL, 0, "the way that it looks (z; y if up is z)"},
+    {0, "colour", "FIELD", OPT_TEXT, TO(colour), 0, 0, NULL, 0, "displacement strain stress material..."},
+    {0, "color", "FIELD", OPT_TEXT, TO(colour), 0, 0, NULL, OPT_HIDDEN, "colour"},
+    {0, "range", "A,B", OPT_LENGTHS, TO(range), 0, 2, NULL, 0, "ends of the scale, SI or with a unit"},
+    {0, "cut", "AXIS=POS", OPT_LIST, TO(cut), 0, 0, NULL, 0, "m: opens the voxels, as x=0 or +y=2cm"},
+    {0, "frame", "N|last|all|rest", OPT_TEXT, TO(frame), 0, 0, NULL, 0, "all: -o f_%04d.png (default: last)"},
+    {0, "sheet", "PANEL,...", OPT_LIST, TO(sheet), 0, 0, NULL, 0, "rest voxels deformed, VIEW, rest@VIEW"},
+    {0, "size", "WxH", OPT_TEXT, TO(size), 0, 0, NULL, 0, "pixels (1280x720)"},
+    {0, "transparent", NULL, OPT_FLAG, TO(transparent), 0, 0, NULL, 0, "no background"},
+    {0, "format", "png|ppm", OPT_CHOICE, TO(format), 0, 0, "png|ppm", 0, "ppm: a stream, for ffmpeg"},
+    {0, "font", "FILE", OPT_TEXT, TO(font), 0, 0, NULL, 0, "of the words (DejaVu Sans)"},
+    {0}};
+
+static const opt_tool table = {
+    .name = "sinew-render",
+    .purpose = "Draws the model on standard input (or MODEL) as PNG.",
+    .operands = "MODEL",
+    .operands_max = 1,
+    .threaded = true,
+    .options = option_table,
+};
+
+typedef struct job {
+    const render_options *o;
+    const tool *t;
+    render_plan plan;
+    source s;
+    font *font;
+    pool *threads;
+    picture picture;
+    uint8_t *bytes; /* the picture as it is written */
+    out *sink;      /* of one picture, or of the stream */
+    outs files;
+    int64_t drawn;
+} job;
+
+static int open_sink(job *j, err *e)
+{
+    if (j->plan.files)
+        return 0;
+    j->sink = out_open(j->o->common.output, false, e);
+    if (!j->sink || !out_is_terminal(j->sink))
+        return j->sink ? 0 : -1;
+    err_set(e, j->o->common.output ? j->o->common.output : "stdout", 0,
+            "is a terminal, and a picture is not for reading; expected -o FILE or a pipe");
+    e->status = STATUS_USAGE;
+    return -1;
+}
+
+static int open_picture(job *j, err *e)
+{
+    const picture_spec *s = &j->plan.spec;
+    int threads = tool_threads(j->t, e);
+    j->threads = threads > 0 ? pool_create(threads, e) : NULL;
+    if (j->threads && (s->captions || s->field || j->o->font))
+        j->font = font_open(j->o->font, e);
+    if (e->status || picture_open(&j->picture, s, j->font, j->threads, e))
+        return -1;
+    j->bytes = mem_array(4 * (int64_t)s->width * s->height, 1, "a picture", e);
+    return j->bytes ? 0 : -1;
+}
+
+/* A bare --range is in SI; one with a unit of length is for lengths. */
+static int check_range(const job *j, const frame *f, err *e)
+{
+    const picture_spec *s = &j->plan.spec;
+    field of = {0};
+    if (!s->ranged || j->plan.ranged_bare)
+        return 0;
+    int bad = field_of(&of, &j->s.body, f, s->field, e);
+    if (!bad && strcmp(of.si, "m") != 0)
+        bad = err_set(e, NULL, 0, "--range: %s is no length; expected numbers without a unit%s%s", s->field,
+                      of.si[0] ? ", in " : "", of.si);
+    field_free(&of);
+    return bad;
+}
+
+static void report(const job *j)
+{
+    const trace_report *r = &j->picture.report;
+    tool_detail(j->t, "%lld faces, %lld spheres, %.2f million rays; tree %.0f ms, rays %.0f ms", (long long)r->faces,
+                (long long)r->spheres, (double)r->rays / 1e6, 1e3 * r->build, 1e3 * r->trace);
+}
+
+static int put(job *j, out *to, err *e)
+{
+    const picture_spec *s = &j->plan.spec;
+    int channels = s->transparent ? 4 : 3;
+    image_bytes(&j->picture.image, channels, j->bytes, j->threads);
+    if (j->o->format == RENDER_PNG)
+        return png_put(j->bytes, s->width, s->height, channels, to, e);
+    out_format(to, "P6\n%d %d\n255\n", s->width, s->height);
+    out_write(to, j->bytes, 3 * (size_t)s->width * (size_t)s->height);
+    out_flush(to);
+    return 0;
+}
+
+static int draw(job *j, const frame *f, err *e)
+{
+    if ((!j->drawn && check_range(j, f, e)) || picture_draw(&j->picture, &j->s.body, f, e))
+        return -1;
+    j->drawn++;
+    report(j);
+    if (!j->plan.files || !f)
+        return put(j, j->sink, e);
+    char *name = numbered_name(&j->plan.names, f->index, e);
+    out *to = name ? outs_open(&j->files, name, e) : NULL;
+    free(name);
+    if (to && put(j, to, e)) {
+        out_discard(to);
+        return -1;
+    }
+    return to ? out_close(to, e) : -1;
+}
+
+static int no_frame(const job *j, int64_t first, err *e)
+{
+    const char *asked = j->plan.frame_given ? j->o->frame : "last";
+    if (!j->s.frames)
+        return err_set(e, source_name(&j->s), 0, "--frame %s: the model has no frames; expected results, from tled-run",
+                       asked);
+    return err_set(e, source_name(&j->s), 0, "--frame %s: no such index; the model has frames %lld to %lld", asked,
+                   (long long)first, (long long)j->s.frame.index);
+}
+
+/* Reads to the end of the stream, whatever is wanted: only there is it known that the run went well. */
+static int draw_frames(job *j, err *e)
+{
+    int64_t first = 0;
+    int got, which = j->plan.frames;
+    bool found = false;
+    progress bar = {0};
+    progress_start(&bar, "sinew-render", "frames", 0, j->o->common.quiet || which != RENDER_ALL);
+    while ((got = source_next(&j->s, e)) > 0) {
+        bool one = which == RENDER_ONE && !found && j->s.frame.index == j->plan.index;
+        first = j->s.frames == 1 ? j->s.frame.index : first;
+        found |= one;
+        if ((one || which == RENDER_ALL) && draw(j, &j->s.frame, e))
+            break;
+        progress_at(&bar, (double)j->s.frames);
+    }
+    progress_stop(&bar);
+    if (got || e->status)
+        return -1;
+    if ((which == RENDER_ONE && !found) ||
+        (!j->s.frames && (which == RENDER_ALL || (which == RENDER_LAST && j->plan.frame_given))))
+        return no_frame(j, first, e);
+    if (which == RENDER_REST || which == RENDER_LAST)
+        return draw(j, which == RENDER_LAST && j->s.frames ? &j->s.frame : NULL, e);
+    return 0;
+}
+
+static int finish(job *j, err *e)
+{
+    if (j->plan.files)
+        return outs_commit(&j->files, e);
+    out *sink = j->sink;
+    j->sink = NULL;
+    return out_close(sink, e);
+}
+
+static void job_close(job *j)
+{
+    out_discard(j->sink);
+    outs_free(&j->files);
+    picture_close(&j->picture);
+    font_close(j->font);
+    if (j->threads)
+        pool_destroy(j->threads);
+    free(j->bytes);
+    source_close(&j->s);
+    render_plan_free(&j->plan);
+}
+
+int main(int argc, char **argv)
+{
+    render_options o = {.size = "1280x720", .angle = 20};
+    err e = {0};
+    tool t = {0};
+    job j = {.o = &o, .t = &t};
+
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+        goto out;
+    if (render_plan_of(&j.plan, &o, &e) || open_sink(&j, &e) || source_open(&j.s, t.operands ? argv[1] : NULL, &e))
+        goto out;
+    if (open_picture(&j, &e) || draw_frames(&j, &e))
+        goto out;
+    finish(&j, &e);
+out:
+    job_close(&j);
+    return tool_end(&t, &e);
+}

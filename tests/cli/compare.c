@@ -1,0 +1,50 @@
+/* compare A.png B.png: how far two pictures are from one another. Says the mean difference of all bytes, in 255ths, and the
+ * share of pixels that differ by more than 32 of them in some channel; exits 1 where the mean is above 1 or the share above a hundredth (a
+ * processor may round an edge to the next pixel), or the sizes differ; 2 on trouble.
+ */
+#include "render/png.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static int compare(const uint8_t *a, const uint8_t *b, int64_t pixels)
+{
+    double sum = 0;
+    int64_t far = 0;
+    for (int64_t p = 0; p < pixels; p++) {
+        int worst = 0;
+        for (int i = 0; i < 4; i++) {
+            int d = abs(a[4 * p + i] - b[4 * p + i]);
+            sum += d;
+            worst = d > worst ? d : worst;
+        }
+        far += worst > 32;
+    }
+    double mean = sum / (4 * (double)pixels), share = (double)far / (double)pixels;
+    printf("mean %.4f, %.5f of the pixels far\n", mean, share);
+    return mean > 1 || share > .01;
+}
+
+int main(int argc, char **argv)
+{
+    int width[2], height[2], status = 2;
+    uint8_t *picture[2] = {NULL, NULL};
+    err e = {0};
+    if (argc != 3) {
+        fputs("usage: compare A.png B.png\n", stderr);
+        return 2;
+    }
+    for (int i = 0; i < 2 && !e.status; i++)
+        picture[i] = png_get(argv[i + 1], &width[i], &height[i], &e);
+    if (e.status) {
+        fprintf(stderr, "compare: %s\n", e.text);
+    } else if (width[0] != width[1] || height[0] != height[1]) {
+        printf("%d x %d and %d x %d\n", width[0], height[0], width[1], height[1]);
+        status = 1;
+    } else {
+        status = compare(picture[0], picture[1], (int64_t)width[0] * height[0]);
+    }
+    free(picture[0]);
+    free(picture[1]);
+    return status;
+}
