@@ -2,6 +2,8 @@
 
 #include "mesh/weights.h"
 
+#include <string.h>
+
 static bool is_bound(const model *m, const char *name)
 {
     return surface_part(m, name, "vertex.element") && surface_part(m, name, "vertex.weight");

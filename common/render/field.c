@@ -1,7 +1,7 @@
 #include "render/field.h"
 
-#include "base/keyfile.h"
 #include "base/mem.h"
+#include "base/near.h"
 #include "base/num.h"
 #include "mesh/gradient.h"
 #include "model/materials.h"
@@ -186,7 +186,7 @@ static int unknown(const model *m, const frame *f, const char *name, err *e)
     if (f)
         note_arrays(&f->arrays, &names);
     note_arrays(&m->arrays, &names);
-    keyfile_unknown(e, NULL, 0, "field", name, (const char *const *)names.line, names.count);
+    near_unknown(e, NULL, 0, "field", name, (const char *const *)names.line, names.count);
     notes_free(&names);
     return -1;
 }

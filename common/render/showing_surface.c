@@ -1,7 +1,8 @@
 /* Carried and bound surfaces as meshes of triangles. */
-#include "base/keyfile.h"
 #include "base/mem.h"
+#include "base/near.h"
 #include "mesh/bone.h"
+#include "mesh/triangulate.h"
 #include "model/check.h"
 #include "render/showing_parts.h"
 
@@ -87,20 +88,21 @@ static int cut_faces(const part *p, int take, scene_mesh *to, err *e)
     to->face_colour = to->corner ? mem_array(3 * most, sizeof *to->face_colour, "triangles", e) : NULL;
     if (!to->face_colour || mem_grow(&triangle, &capacity, 3 * most_corners + 1, sizeof *triangle, "triangles", e))
         return -1;
-    for (int64_t f = 0; f < s->faces; f++) {
+    int bad = 0;
+    for (int64_t f = 0; f < s->faces && !bad; f++) {
         const int32_t *vertex = &s->vertex[s->start[f]];
         int64_t corners = surface_end(s, f) - s->start[f];
         if (corners < 3 || p->take[s->group[f]] != take)
             continue;
-        surface_triangulate(s->position, vertex, corners, triangle);
-        for (int64_t t = 0; t < corners - 2; t++, to->faces++) {
+        bad = triangulate(s->position, vertex, corners, triangle, e);
+        for (int64_t t = 0; t < corners - 2 && !bad; t++, to->faces++) {
             for (int c = 0; c < 3; c++)
                 to->corner[3 * to->faces + c] = (uint32_t)vertex[triangle[3 * t + c]];
             memcpy(&to->face_colour[3 * to->faces], &p->group_colour[3 * (int64_t)s->group[f]], 3 * sizeof(float));
         }
     }
     free(triangle);
-    return 0;
+    return bad;
 }
 
 static int place(const part *p, scene_mesh *to, err *e)
@@ -212,7 +214,7 @@ static int add_surface(showing *b, const model *m, const showing_want *w, const 
 /* The names of all things, surfaces and groups. */
 static int note_names(const model *m, notes *there, err *e)
 {
-    char name[CHECK_NAME_MOST + 1];
+    char name[MODEL_NAME];
     for (int i = 0; i < 5; i++)
         notes_add(there, "%s", showing_things[i]);
     for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
@@ -236,7 +238,7 @@ int showing_check_names(const model *m, const showing_want *w, err *e)
         while (i < there.count && !surface_in_group(there.line[i], name))
             i++;
         if (i == there.count)
-            bad = keyfile_unknown(e, NULL, 0, "thing", name, (const char *const *)there.line, there.count);
+            bad = near_unknown(e, NULL, 0, "thing", name, (const char *const *)there.line, there.count);
     }
     notes_free(&there);
     return bad;
@@ -244,7 +246,7 @@ int showing_check_names(const model *m, const showing_want *w, err *e)
 
 int showing_surfaces(showing *b, const model *m, const showing_want *want, const double *at_nodes, err *e)
 {
-    char name[CHECK_NAME_MOST + 1];
+    char name[MODEL_NAME];
     if (!model_surface(m, 0, name, sizeof name))
         return err_set(e, NULL, 0,
                        "the model carries no surface; expected a model from voxelise or sinew bind, or "

@@ -4,7 +4,7 @@
 #ifndef SINEW_RENDER_TILE_H
 #define SINEW_RENDER_TILE_H
 
-#include "render/surface.h"
+#include "render/shade.h"
 
 enum { TILE_SIDE = 88, TILE_RIM = 4, TILE_WIDTH = TILE_SIDE + 2 * TILE_RIM };
 

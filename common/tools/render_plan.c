@@ -1,7 +1,7 @@
 #include "tools/render_plan.h"
 
-#include "base/keyfile.h"
 #include "base/mem.h"
+#include "base/near.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -152,7 +152,7 @@ static int unknown_panel(const char *name, err *e)
         }
         names[count++] = word;
     }
-    return keyfile_unknown(e, NULL, 0, "panel", name, names, count);
+    return near_unknown(e, NULL, 0, "panel", name, names, count);
 }
 
 /* "rest", "left", "rest@left". */

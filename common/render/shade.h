@@ -1,7 +1,7 @@
 /* What a ray has met: a place on a face or sphere with what is needed to shade it. Nothing is owned.
  */
-#ifndef SINEW_RENDER_SURFACE_H
-#define SINEW_RENDER_SURFACE_H
+#ifndef SINEW_SHADE_H
+#define SINEW_SHADE_H
 
 #include "render/view.h"
 

@@ -1,4 +1,4 @@
-#include "render/surface.h"
+#include "render/shade.h"
 
 #include <stddef.h>
 
