@@ -1,4 +1,3 @@
-// needs: 
 /* The nearest node that an anchor holds, against a search through all: lattices full of ties, and nodes anywhere. */
 #include "mesh/held.h"
 
