@@ -17,6 +17,9 @@ typedef struct numbered {
 /* pattern (NULL: a usage error too): one conversion %d, %4d or %04d, and no other '%'. -1 with e filled (status 2). */
 int numbered_of(numbered *n, const char *pattern, err *e);
 
+/* Whether a name (or NULL) is such a pattern. */
+bool numbered_is(const char *name);
+
 /* The file's name for a frame; the caller frees it. */
 char *numbered_name(const numbered *n, int64_t index, err *e);
 
