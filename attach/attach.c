@@ -4,6 +4,7 @@
 #include "anchor.h"
 #include "base/tool.h"
 #include "mesh/surface.h"
+#include "model/finite.h"
 #include "model/stage.h"
 #include "muscle.h"
 
@@ -25,8 +26,8 @@ static const opt option_list[] = {
      "rigid surfaces [skull*,bone*,rigid*]"},
     {0, "rigid-file", "FILE.obj", OPT_TEXT, offsetof(struct options, rigid_file), 0, 0, NULL, OPT_FILE,
      "more that is rigid, in the model's source.unit"},
-    {0, "strictness", "S", OPT_NUMBER, offsetof(struct options, strictness), 0, 1, NULL, 0,
-     "reach of nodes in voxel sides, 0 to 1 [0.75]"},
+    {0, "strictness", "S", OPT_NUMBER, offsetof(struct options, strictness), 0, 0, NULL, 0,
+     "reach of nodes: 0, excluded, to 1 voxel [0.75]"},
     {0, "fibre", "centre|axis", OPT_CHOICE, offsetof(struct options, fibre), 0, 0, "centre|axis", 0,
      "to the centre, or along the muscle [centre]"},
     {0, "report", NULL, OPT_FLAG, offsetof(struct options, report), 0, 0, NULL, OPT_OUTPUT,
@@ -48,7 +49,7 @@ static int read_rigid_file(const char *path, const model *m, model *file, err *e
     const char *unit_name = model_meta_of(m, "source.unit");
     num_unit unit = unit_name ? num_unit_of(unit_name) : 0, metre = num_unit_of("m");
     if (!unit)
-        return err_set(e, NULL, 0, "--rigid-file: the model's source.unit is %s%s; " NUM_UNITS " is needed",
+        return err_set(e, NULL, 0, "--rigid-file: the model's source.unit is %s%s; expected " NUM_UNITS,
                        unit_name ? "" : "not given", unit_name ? unit_name : "");
     obj o = {0};
     char name[MODEL_NAME];
@@ -110,6 +111,8 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
     muscle *muscles = NULL;
     int64_t count = 0;
     int rc = -1;
+    if (finite_array(model_find(m, "node.position"), NULL, e) || finite_elements(m, NULL, e))
+        return -1;
     if (collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||
         muscle_make(m, (muscle_fibre)o->fibre, &muscles, &count, warnings, e))
         goto out;
@@ -128,10 +131,10 @@ out:
 
 static int check_options(const struct options *o, err *e)
 {
-    if (o->strictness <= 0)
-        return err_usage(e, "--strictness %g would hold nothing; above 0, to 1, was expected", o->strictness);
+    if (!(o->strictness > 0 && o->strictness <= 1))
+        return err_usage(e, "--strictness %g: expected a number above 0, at most 1", o->strictness);
     if (o->rigid_file && !strcmp(o->rigid_file, "-"))
-        return err_usage(e, "--rigid-file -: standard input is the model's; the name of a file was expected");
+        return err_usage(e, "--rigid-file -: standard input is the model's; expected the name of a file");
     return 0;
 }
 

@@ -21,20 +21,20 @@ struct options {
     const char *unit;
 };
 
-static const opt option_table[] = {{0, "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, 0,
-                                    "of the surface (default: the file's name)"},
-                                   {0, "unit", "UNIT", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
-                                    "of the OBJ: mm, cm, m (default: source.unit)"},
-                                   {0}};
+static const opt option_list[] = {
+    {0, "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, 0, "of the surface [the file's name]"},
+    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of the OBJ [source.unit]"},
+    {0},
+};
 
 static const opt_tool table = {
     .name = "bind",
-    .purpose = "Binds surfaces to the elements of the model on standard input.",
+    .purpose = "Bind surfaces to the elements of the model on standard input.",
     .operands = "surface.obj",
     .operands_max = 1,
     .writes_model = true,
     .threaded = true,
-    .options = option_table,
+    .options = option_list,
 };
 
 /* What the surfaces are bound to. */

@@ -25,30 +25,32 @@ struct options {
     int format;
 };
 
-static const opt option_table[] = {{0, "frame", "N|last|all", OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
-                                    "all: -o f_%04d.obj (default: last)"},
-                                   {0, "within", "D", OPT_LENGTHS, offsetof(struct options, within), 0, 1, NULL, 0,
-                                    "m: hold vertices further than D outside"},
-                                   {0, "format", "obj|pc2", OPT_CHOICE, offsetof(struct options, format), 0, 0,
-                                    "obj|pc2", 0, "OBJ, or a point cache (default: obj)"},
-                                   {0, "unit", "UNIT", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
-                                    "of the OBJ: mm, cm, m (default: source.unit)"},
-                                   {0}};
+static const opt option_list[] = {
+    {0, "frame", "N|last|all", OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
+     "all: -o f_%04d.obj, or pc2 [last; pc2: all]"},
+    {0, "within", "D", OPT_LENGTHS, offsetof(struct options, within), 0, 1, NULL, 0,
+     "m: hold vertices further than D outside [any]"},
+    {0, "format", "obj|pc2", OPT_CHOICE, offsetof(struct options, format), 0, 0, "obj|pc2", 0,
+     "OBJ, or a point cache [obj]"},
+    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of the OBJ [source.unit]"},
+    {0},
+};
 
 static const opt_tool table = {
     .name = "sinew-deform",
-    .purpose = "Moves a bound OBJ by the results of the model on standard input.",
+    .purpose = "Move a bound OBJ by the results of the model on standard input.",
     .operands = "surface.obj",
     .operands_min = 1,
     .operands_max = 1,
     .threaded = true,
-    .options = option_table,
+    .options = option_list,
 };
 
 /* Which frames, and what becomes of them. */
 typedef struct plan {
     enum { FRAME_LAST, FRAME_ALL, FRAME_ONE } frames;
-    int64_t index; /* FRAME_ONE */
+    const char *asked; /* --frame, or what it is without */
+    int64_t index;     /* FRAME_ONE */
     bool found;
     bool files;    /* a file a frame */
     double within; /* m; infinite: any */
@@ -76,6 +78,7 @@ typedef struct mover {
 static int plan_of(plan *p, const struct options *o, const char *path, err *e)
 {
     const char *which = o->frame ? o->frame : o->format == FORMAT_PC2 ? "all" : "last", *output = o->common.output;
+    p->asked = which;
     p->frames = !strcmp(which, "last") ? FRAME_LAST : !strcmp(which, "all") ? FRAME_ALL : FRAME_ONE;
     p->files = p->frames == FRAME_ALL && o->format == FORMAT_OBJ;
     p->within = o->within.count ? num_length_in(o->within.value[0], num_unit_of("m"), num_unit_of("m")) : INFINITY;
@@ -87,7 +90,11 @@ static int plan_of(plan *p, const struct options *o, const char *path, err *e)
         return err_usage(e, "'-': the model comes on standard input; expected the name of an OBJ file");
     if (o->format == FORMAT_PC2 && (!output || !strcmp(output, "-")))
         return err_usage(e, "a point cache's head is written last; expected -o with a file");
-    return p->files ? numbered_of(&p->names, output, ", or --format pc2", e) : 0;
+    if (p->files)
+        return numbered_of(&p->names, output, ", or --format pc2", e);
+    if (numbered_is(output))
+        return err_usage(e, "-o '%s': a number in the name is for --frame all and OBJ; expected a file's name", output);
+    return 0;
 }
 
 static int read_obj(obj *o, const char *path, err *e)
@@ -204,14 +211,6 @@ static int take(plan *p, mover *w, const frame *f, err *e)
     return p->files ? write_file(p, w, f->index, e) : 0;
 }
 
-static int no_frame(const plan *p, const source *s, err *e)
-{
-    if (!s->frames)
-        return err_set(e, source_name(s), 0, "the model has no frames; expected results, from tled-run");
-    return err_set(e, source_name(s), 0, "no frame %lld among the %lld there; the last is %lld", (long long)p->index,
-                   (long long)s->frames, (long long)s->frame.index);
-}
-
 /* Reads to the end, whatever is wanted: only there is it known that the run went well. */
 static int take_frames(plan *p, mover *w, source *s, err *e)
 {
@@ -225,7 +224,7 @@ static int take_frames(plan *p, mover *w, source *s, err *e)
     if (got < 0)
         return -1;
     if (!s->frames || (p->frames == FRAME_ONE && !p->found))
-        return no_frame(p, s, e);
+        return source_no_frame(s, s->frames ? p->asked : NULL, e);
     return p->frames == FRAME_LAST ? take(p, w, &s->frame, e) : 0;
 }
 

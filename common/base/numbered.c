@@ -30,6 +30,11 @@ int numbered_of(numbered *n, const char *pattern, const char *otherwise, err *e)
     return err_usage(e, "-o '%s': expected one number, such as %%04d, in the name and no other '%%'", pattern);
 }
 
+bool numbered_is(const char *name)
+{
+    return name && read_conversion(&(numbered){.pattern = name});
+}
+
 char *numbered_name(const numbered *n, int64_t index, err *e)
 {
     size_t size = strlen(n->pattern) + 32;

@@ -18,6 +18,9 @@ typedef struct numbered {
  * place of files, as ", or --format pc2"; "": nothing. -1 with e filled (status 2). */
 int numbered_of(numbered *n, const char *pattern, const char *otherwise, err *e);
 
+/* Whether a name (or NULL) is such a pattern. */
+bool numbered_is(const char *name);
+
 /* The file's name for a frame; the caller frees it. */
 char *numbered_name(const numbered *n, int64_t index, err *e);
 

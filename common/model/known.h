@@ -17,7 +17,7 @@ typedef struct known {
     const char *unit, *axis;
     int columns_min, columns_max; /* a new array gets columns_max unless the caller says otherwise */
     int flags;
-    const char *maker;   /* the tool that adds it */
+    const char *maker;   /* the tool that adds it; NULL: none yet, the name is reserved */
     const char *meaning; /* one line, for the manual */
 } known;
 
@@ -32,7 +32,7 @@ typedef struct known {
       "nodes in VTK order: 8 (hexahedron) or 4 (tetrahedron)")                                                         \
     X("element.lattice", MODEL_I32, "1", "element", 3, 3, 0, "voxelise", "cell of the lattice: i, j, k")               \
     X("element.volume", MODEL_I32, "@volume", "element", 1, 1, KNOWN_EVERY, "voxelise", "volume it belongs to")        \
-    X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, "voxelise", "share that the volume encloses")            \
+    X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, NULL, "share that the volume encloses")                  \
     X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, "attach",                                                   \
       "unit direction of contraction; 0 0 0 where there is none")                                                      \
     X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, "voxelise", "name")                                            \

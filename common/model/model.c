@@ -156,12 +156,15 @@ int model_meta_numbers(const model *m, const char *key, double *value, int count
 
 int model_meta_set_numbers(model *m, const char *key, const double *value, int count, err *e)
 {
-    enum { WIDTH = 32 };
+    enum { WIDTH = NUM_TEXT + 1 };
     char *text = mem_array(count, WIDTH, "metadata", e), *p = text;
     if (!text)
         return -1;
-    for (int i = 0; i < count; i++)
-        p += snprintf(p, WIDTH, "%s%.17g", i ? " " : "", value[i]);
+    for (int i = 0; i < count; i++) {
+        if (i)
+            *p++ = ' ';
+        p += num_text(value[i], false, p);
+    }
     int status = model_meta_set(m, key, text, e);
     free(text);
     return status;
@@ -251,7 +254,7 @@ model_array *model_need(const model *m, const char *name, err *e)
     model_array *a = model_find(m, name);
     const known *k = a ? NULL : known_find(name);
     if (k)
-        err_set(e, NULL, 0, "the model has no %s; expected a model from %s", name, k->maker);
+        err_set(e, NULL, 0, "the model has no %s; expected a model from %s", name, k->maker ? k->maker : "elsewhere");
     else if (!a)
         err_set(e, NULL, 0, "the model has no array %s", name);
     return a;

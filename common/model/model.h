@@ -74,7 +74,7 @@ typedef struct frame {
 void model_free(model *m); /* and zeroes it; a zeroed model is an empty one */
 void frame_free(frame *f);
 
-/* Metadata. model_meta_of: NULL where there is none. Numbers: `count` doubles between spaces, written %.17g. */
+/* Metadata. model_meta_of: NULL where there is none. Numbers: `count` doubles between spaces, as short as they read back. */
 const char *model_meta_of(const model *m, const char *key);
 int model_meta_set(model *m, const char *key, const char *value, err *e);
 int model_meta_numbers(const model *m, const char *key, double *value, int count, err *e);

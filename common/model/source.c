@@ -47,8 +47,20 @@ int source_next(source *s, err *e)
     frame last = s->frame;
     s->frame = s->spare;
     s->spare = last;
-    s->frames++;
+    if (!s->frames++)
+        s->first = s->frame.index;
     return 1;
+}
+
+int source_no_frame(const source *s, const char *asked, err *e)
+{
+    const char *option = asked ? "--frame " : "", *colon = asked ? ": " : "";
+    if (!s->frames)
+        return err_set(e, source_name(s), 0, "%s%.40s%sthe model has no frames; expected results, from tled-run",
+                       option, asked ? asked : "", colon);
+    return err_set(e, source_name(s), 0,
+                   "%s%.40s%sno such frame; expected one of the %" PRId64 " there, of index %" PRId64 " to %" PRId64,
+                   option, asked ? asked : "", colon, s->frames, s->first, s->frame.index);
 }
 
 void source_close(source *s)

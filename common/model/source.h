@@ -12,6 +12,7 @@ typedef struct source {
     model body;
     frame frame;    /* the last one read; empty while frames is 0 */
     int64_t frames; /* read so far */
+    int64_t first;  /* the index of the first */
     frame spare;
     bool text; /* the encoding */
     bool from_stdin;
@@ -24,6 +25,10 @@ int source_open(source *s, const char *path, err *e);
 
 /* The next frame, into s->frame. 1: a frame; 0: the end, and s->frame stays the last; -1: e filled. */
 int source_next(source *s, err *e);
+
+/* At the end, for `--frame N` of a frame that is not there, or any frame where there is none (asked NULL: the last): says
+ * what there is. Always -1. */
+int source_no_frame(const source *s, const char *asked, err *e);
 
 /* s may be zeroed or part open. */
 void source_close(source *s);

@@ -22,6 +22,12 @@ typedef struct pattern {
     bool set;
 } pattern;
 
+/* The index of the frame before; each is more than that. */
+typedef struct order {
+    int64_t last;
+    bool any;
+} order;
+
 struct model_reader {
     item_source from;
     item next; /* read, not yet taken, where `waiting` */
@@ -29,6 +35,7 @@ struct model_reader {
     int64_t *places; /* where the body's arrays stood: lines or blocks */
     int64_t place_capacity;
     pattern pattern;
+    order order;
 };
 
 struct model_writer {
@@ -38,6 +45,7 @@ struct model_writer {
     model axes; /* of the body that was written */
     bool body;
     pattern pattern;
+    order order;
 };
 
 /* ---- what readers and writers share ---- */
@@ -323,6 +331,10 @@ int model_read_frame(model_reader *r, const model *m, frame *f, err *e)
                                                  : "a part of the body after the first frame");
     if (!isfinite(it->time))
         return item_error(&r->from, it, e, "frame %" PRId64 " has no finite time", it->number);
+    if (r->order.any && it->number <= r->order.last)
+        return item_error(&r->from, it, e, "frame %" PRId64 " after frame %" PRId64 "; expected indices that increase",
+                          it->number, r->order.last);
+    r->order = (order){it->number, true};
     f->index = it->number;
     f->time = it->time;
     r->waiting = false;
@@ -398,6 +410,9 @@ static int check_frame(const model_writer *w, const frame *f, err *e)
     bool same = f->arrays.count == w->pattern.count;
     if (!w->body || !isfinite(f->time))
         return err_set(e, "model", 0, "frame %" PRId64 " has no model before it, or no finite time", f->index);
+    if (w->order.any && f->index <= w->order.last)
+        return err_set(e, "model", 0, "frame %" PRId64 " after frame %" PRId64 "; expected indices that increase",
+                       f->index, w->order.last);
     for (int i = 0; i < f->arrays.count; i++) {
         const model_array *a = &f->arrays.v[i];
         if (belongs(a->name, true) || a->rows != model_count(&w->axes, a->axis))
@@ -415,6 +430,7 @@ int model_write_frame(model_writer *w, const frame *f, err *e)
 {
     if (check_frame(w, f, e) || (!w->pattern.set && pattern_set(&w->pattern, &f->arrays, e)))
         return -1;
+    w->order = (order){f->index, true};
     write_item(w, &(item){.kind = ITEM_FRAME, .number = f->index, .time = f->time});
     for (int i = 0; i < f->arrays.count; i++)
         write_item(w, &(item){.kind = ITEM_ARRAY, .array = f->arrays.v[i]});

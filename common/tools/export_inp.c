@@ -21,6 +21,7 @@ typedef struct writer {
     const model_array *rigid;    /* node.rigid, or NULL */
     int64_t volumes, materials;
     int64_t *count;  /* elements of each volume */
+    material *laws;  /* materials */
     char *set, *law; /* names: volumes x NAME, materials x NAME */
     out *to;
 } writer;
@@ -134,23 +135,20 @@ static void put_sets(const writer *w)
 }
 
 /* W = C10 (J^-2/3 tr C - 3) + (J - 1)^2 / D1: DESIGN's law with C10 = mu / 2, D1 = 2 / K. */
-static int put_materials(const writer *w, err *e)
+static void put_materials(const writer *w)
 {
     for (int64_t i = 0; i < w->materials; i++) {
-        material law;
-        if (materials_of(w->x.m, i, &law, e))
-            return -1;
-        double constants[2] = {material_mu(&law) / 2, 2 / material_bulk(&law)};
+        const material *law = &w->laws[i];
+        double constants[2] = {material_mu(law) / 2, 2 / material_bulk(law)};
         out_format(w->to, "*MATERIAL, NAME=%s\n*HYPERELASTIC, NEO HOOKE\n", w->law + i * NAME);
         put_numbers(constants, 2, w->to);
         out_text(w->to, "*DENSITY\n");
-        put_numbers(&law.density, 1, w->to);
+        put_numbers(&law->density, 1, w->to);
     }
     for (int64_t v = 0; v < w->volumes; v++)
         if (w->count[v])
             out_format(w->to, "*SOLID SECTION, ELSET=%s, MATERIAL=%s\n", w->set + v * NAME,
                        w->law + (int64_t)w->material->i32[v] * NAME);
-    return 0;
 }
 
 static void put_step(const writer *w, const double *gravity)
@@ -179,8 +177,12 @@ static int open_tables(writer *w, const model *m, err *e)
     w->count = mem_array(w->volumes, sizeof *w->count, "volumes", e);
     w->set = w->count ? mem_array(w->volumes, NAME, "set names", e) : NULL;
     w->law = w->set ? mem_array(w->materials, NAME, "material names", e) : NULL;
-    if (!w->law)
+    w->laws = w->law ? mem_array(w->materials, sizeof *w->laws, "materials", e) : NULL;
+    if (!w->laws)
         return -1;
+    for (int64_t i = 0; i < w->materials; i++)
+        if (materials_of(m, i, &w->laws[i], e))
+            return -1;
     for (int64_t i = 0; i < w->volume->rows; i++)
         w->count[w->volume->i32[i]]++;
     export_inp_names(name->str, w->volumes, "V_", w->set, NAME);
@@ -200,16 +202,14 @@ static void note_omissions(const writer *w, const model *m, notes *warnings)
     notes_add(warnings, "no node is rigid: nothing in the file holds the model");
 }
 
-static int put_all(writer *w, const export_inp_options *options, err *e)
+static void put_all(const writer *w, const export_inp_options *options)
 {
     out_text(w->to, "*HEADING\nSinew; SI units\n");
     put_nodes(w);
     put_elements(w, options->element);
     put_sets(w);
-    if (put_materials(w, e))
-        return -1;
+    put_materials(w);
     put_step(w, options->gravity);
-    return 0;
 }
 
 int export_inp(const model *m, const export_inp_options *options, out *to, notes *warnings, err *e)
@@ -218,10 +218,12 @@ int export_inp(const model *m, const export_inp_options *options, out *to, notes
     int bad = export_shape_of(&w.x, m, NULL, e) || open_tables(&w, m, e) ? -1 : 0;
     if (!bad && !w.x.cells)
         bad = err_set(e, NULL, 0, "the model has no elements; expected some");
-    if (!bad)
+    if (!bad) {
         note_omissions(&w, m, warnings);
-    bad = bad || put_all(&w, options, e) ? -1 : 0;
+        put_all(&w, options);
+    }
     free(w.count);
+    free(w.laws);
     free(w.set);
     free(w.law);
     export_shape_free(&w.x);

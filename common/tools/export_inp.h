@@ -12,7 +12,8 @@ typedef struct export_inp_options {
     double gravity[3];   /* m/s2; all 0: none */
 } export_inp_options;
 
-/* Writes the rest model. -1 with e filled where it lacks volumes or materials, or a value makes no material. What is left
+/* Writes the rest model. -1 with e filled and nothing written where it lacks volumes or materials, or a value makes no
+ * material. What is left
  * out (an empty volume) is noted. */
 int export_inp(const model *m, const export_inp_options *options, out *to, notes *warnings, err *e);
 

@@ -35,8 +35,8 @@ static int put_volume_count(const model *m, int64_t v, out *to, err *e)
     return 0;
 }
 
-/* The row of the table over `axis` that has the name, or -1. A muscle has its volume's name. */
-static int64_t named_row(const model *m, const char *axis, const char *name)
+/* The row of the table over `axis` that has the very name, or -1. A muscle has its volume's name. */
+static int64_t exact_row(const model *m, const char *axis, const char *name)
 {
     char names[MODEL_NAME + 16];
     snprintf(names, sizeof names, "%s.name", axis);
@@ -51,6 +51,17 @@ static int64_t named_row(const model *m, const char *axis, const char *name)
         if (!strcmp(a->str[of ? of->i32[i] : i], name))
             return i;
     return -1;
+}
+
+/* The same, where muscle_ of the name may be left out. */
+static int64_t named_row(const model *m, const char *axis, const char *name)
+{
+    char whole[MODEL_NAME + 16];
+    int64_t row = exact_row(m, axis, name);
+    if (row >= 0 || (strcmp(axis, "volume") != 0 && strcmp(axis, "muscle") != 0) || strlen(name) >= MODEL_NAME)
+        return row;
+    snprintf(whole, sizeof whole, "muscle_%s", name);
+    return exact_row(m, axis, whole);
 }
 
 /* The rest position of row i of an axis: its own, or the mean of an element's nodes. */
@@ -283,10 +294,14 @@ static const known *known_of(const char *key)
 /* A known array that the model lacks: who makes it. */
 static int lacking(const source *s, const char *key, const known *k, err *e)
 {
+    if (!k->maker)
+        return err_set(e, source_name(s), 0, "no key '%.80s': the model has no %s; the name is reserved", key, k->name);
+    if (k->flags & KNOWN_FRAME && !s->frames)
+        return err_set(e, source_name(s), 0, "no key '%.80s': the model has no frames; they come from %s", key,
+                       k->maker);
     if (k->flags & KNOWN_FRAME)
-        return err_set(e, source_name(s), 0,
-                       "no key '%.80s': of %" PRId64 " frames the last has no %s; it comes from %s", key, s->frames,
-                       k->name, k->maker);
+        return err_set(e, source_name(s), 0, "no key '%.80s': the last frame has no %s; it comes from %s", key, k->name,
+                       k->maker);
     return err_set(e, source_name(s), 0, "no key '%.80s': the model has no %s; it comes from %s", key, k->name,
                    k->maker);
 }
@@ -299,7 +314,9 @@ static int unknown_key(const source *s, const char *key, err *e)
     note_keys(s, key, &list);
     note_arrays(s, &arrays);
     int near = near_name(key, (const char *const *)list.line, list.count);
-    if (k)
+    if (!strncmp(key, "frame.", 6) && !s->frames)
+        err_set(e, source_name(s), 0, "no key '%.80s': the model has no frames; they come from tled-run", key);
+    else if (k)
         lacking(s, key, k, e);
     else if (near >= 0)
         err_set(e, source_name(s), 0, "no key '%.80s'; did you mean '%s'?", key, list.line[near]);

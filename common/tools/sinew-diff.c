@@ -23,7 +23,7 @@ static const opt option_table[] = {
 
 static const opt_tool table = {
     .name = "sinew-diff",
-    .purpose = "Says where two models differ: exit status 0 same, 1 different, 2 trouble.",
+    .purpose = "Say where two models differ: exit status 0 same, 1 different, 2 trouble.",
     .operands = "A B",
     .operands_min = 2,
     .operands_max = 2,
@@ -49,7 +49,8 @@ typedef struct diff {
     source a, b;
     out *to;
     bool different;
-    int64_t frame; /* 0: the body; else the number of the frame */
+    int64_t compared; /* arrays that both have, a frame's each time */
+    int64_t frame;    /* 0: the body; else the number of the frame */
 } diff;
 
 /* What was found in one array. */
@@ -275,6 +276,7 @@ static int compare_array(diff *d, const model_array *a, const model_array *b, er
     }
     if (!alike(d, a, b))
         return 0;
+    d->compared++;
     finding f = compare_rows(a, b, most_abs ? most_abs->value : 0, most_rel ? most_rel->value : 0);
     if (f.rows)
         say_finding(d, a, b, &f);
@@ -394,6 +396,8 @@ int main(int argc, char **argv)
         goto out;
     if (open_both(&d, argv + 1, &e) || !(d.to = out_memory(&e)) || compare(&d, &e))
         goto out;
+    tool_detail(&t, "%" PRId64 " arrays compared; frames: %" PRId64 " and %" PRId64, d.compared, d.a.frames,
+                d.b.frames);
     report = out_open(o.common.output, false, &e);
     if (!report)
         goto out;

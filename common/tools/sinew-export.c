@@ -1,10 +1,12 @@
-/* sinew-export: a model in the formats of other programs: VTU, Abaqus input, OBJ. */
+/* sinew-export: a model in the formats of other programs (VTU, Abaqus input, OBJ), or in either of its own. */
 #include "base/mem.h"
 #include "base/num.h"
 #include "base/outs.h"
 #include "base/tool.h"
+#include "model/finite.h"
 #include "model/source.h"
 #include "tools/export_inp.h"
+#include "tools/export_model.h"
 #include "tools/export_obj.h"
 #include "tools/export_vtu.h"
 
@@ -13,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VTU, INP, OBJ };
+enum { MODEL, VTU, INP, OBJ };
 enum { REST, LAST, ALL, ONE };
 
 struct options {
@@ -24,38 +26,42 @@ struct options {
     opt_numbers gravity;
 };
 
-static const opt option_table[] = {{'f', "format", "vtu|inp|obj", OPT_CHOICE, offsetof(struct options, format), 0, 0,
-                                    "vtu|inp|obj", OPT_REQUIRED, "the format"},
-                                   {0, "frame", "N|last|all|rest", OPT_TEXT, offsetof(struct options, frame), 0, 0,
-                                    NULL, 0, "vtu, obj: which frame (last, if any)"},
-                                   {0, "deformed", NULL, OPT_FLAG, offsetof(struct options, deformed), 0, 0, NULL, 0,
-                                    "vtu, obj: points as the frame moved them"},
-                                   {0, "surface", "NAME", OPT_TEXT, offsetof(struct options, surface), 0, 0, NULL, 0,
-                                    "vtu, obj: a carried surface, not the elements"},
-                                   {0, "unit", "mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
-                                    "obj: unit of length (the model's source.unit)"},
-                                   {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL,
-                                    0, "inp: gravity, m/s2 (none)"},
-                                   {0, "element", "C3D8R|C3D8", OPT_CHOICE, offsetof(struct options, element), 0, 0,
-                                    "C3D8R|C3D8", 0, "inp: type of hexahedra (C3D8R)"},
-                                   {'z', "gzip", NULL, OPT_FLAG, offsetof(struct options, common.gzip), 0, 0, NULL,
-                                    OPT_OUTPUT, "inp, obj: gzip the file"},
-                                   {0}};
+static const opt option_list[] = {
+    {'f', "format", "model|vtu|inp|obj", OPT_CHOICE, offsetof(struct options, format), 0, 0, "model|vtu|inp|obj",
+     OPT_REQUIRED, "the format; model: Sinew's own"},
+    {0, "frame", "N|last|all|rest", OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
+     "vtu, obj: which frame [last, if any]"},
+    {0, "deformed", NULL, OPT_FLAG, offsetof(struct options, deformed), 0, 0, NULL, 0,
+     "vtu, obj: points as the frame moved them"},
+    {0, "surface", "NAME", OPT_TEXT, offsetof(struct options, surface), 0, 0, NULL, 0,
+     "vtu, obj: a carried surface, not the elements"},
+    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0,
+     "obj: unit of length [source.unit]"},
+    {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0,
+     "inp: gravity, m/s2 [none]"},
+    {0, "element", "C3D8R|C3D8", OPT_CHOICE, offsetof(struct options, element), 0, 0, "C3D8R|C3D8", 0,
+     "inp: type of hexahedra [C3D8R]"},
+    {0, "text", NULL, OPT_FLAG, offsetof(struct options, common.text), 0, 0, NULL, OPT_OUTPUT,
+     "model: text, not binary"},
+    {'z', "gzip", NULL, OPT_FLAG, offsetof(struct options, common.gzip), 0, 0, NULL, OPT_OUTPUT,
+     "model, inp, obj: gzip the output"},
+    {0},
+};
 
 static const opt_tool table = {
     .name = "sinew-export",
-    .purpose = "Writes the model on standard input (or MODEL) for other programs.",
+    .purpose = "Write the model on standard input (or MODEL) for other programs.",
     .operands = "MODEL",
     .operands_max = 1,
-    .options = option_table,
+    .options = option_list,
 };
 
 /* What was asked for, understood. */
 typedef struct job {
     const struct options *o;
     int which;     /* REST, LAST, ALL or ONE */
-    int64_t index; /* of ONE */
-    bool frame_given;
+    int64_t index; /* of ONE; in the end, of the frame chosen */
+    bool frame_given, chosen;
     num_unit unit;
     source s;
     export_shape x;
@@ -78,16 +84,20 @@ static int read_frame_option(job *j, err *e)
 static int check_options(job *j, err *e)
 {
     const struct options *o = j->o;
+    if (o->format == MODEL && (o->frame || o->deformed || o->surface))
+        return err_usage(e, "--frame, --deformed and --surface are for vtu and obj: model is the whole of it");
     if (o->format == INP && (o->frame || o->deformed || o->surface))
         return err_usage(e, "--frame, --deformed and --surface are for vtu and obj: inp holds the model at rest");
+    if (o->format != MODEL && o->common.text)
+        return err_usage(e, "--text is for model");
     if (o->format != INP && (o->gravity.count || o->element))
         return err_usage(e, "--gravity and --element are for inp");
     if (o->format != OBJ && o->unit)
-        return err_usage(e, "--unit is for obj; vtu and inp are in SI units");
+        return err_usage(e, "--unit is for obj; the others are in SI units");
     if (o->format == VTU && o->common.gzip)
-        return err_usage(e, "-z is for inp and obj; vtu is compressed as it is");
+        return err_usage(e, "-z is for model, inp and obj; vtu is compressed as it is");
     if (o->unit && !num_unit_of(o->unit))
-        return err_usage(e, "--unit: expected " NUM_UNITS);
+        return err_usage(e, "--unit '%s': expected " NUM_UNITS, o->unit);
     if (read_frame_option(j, e))
         return -1;
     if (j->which == REST && o->deformed)
@@ -144,6 +154,14 @@ static int check_moved(const job *j, err *e)
                    j->o->surface);
 }
 
+/* What a frame moves must arrive somewhere. */
+static int check_frame(job *j, const frame *f, err *e)
+{
+    j->chosen = f != NULL;
+    j->index = f ? f->index : j->index;
+    return f ? finite_array(frame_find(f, "node.displacement"), source_name(&j->s), e) : 0;
+}
+
 /* Each frame as it comes, in a file of its own. */
 static int put_all_frames(job *j, out *collection, err *e)
 {
@@ -151,7 +169,8 @@ static int put_all_frames(job *j, out *collection, err *e)
     export_pvd_begin(collection);
     while ((got = source_next(&j->s, e)) > 0) {
         char *file = frame_file(j, j->s.frames - 1, e);
-        int bad = !file || export_shape_move(&j->x, &j->s.frame, e) || check_moved(j, e) || put_frame_file(j, file, e);
+        int bad = !file || export_shape_move(&j->x, &j->s.frame, e) || check_moved(j, e) ||
+                  check_frame(j, &j->s.frame, e) || put_frame_file(j, file, e);
         if (!bad) {
             const char *slash = strrchr(file, '/');
             export_pvd_add(collection, j->s.frame.time, slash ? slash + 1 : file);
@@ -162,40 +181,30 @@ static int put_all_frames(job *j, out *collection, err *e)
     }
     export_pvd_end(collection);
     if (!got && !j->s.frames)
-        return err_set(e, source_name(&j->s), 0, "--frame all: the model has no frames");
+        return source_no_frame(&j->s, "all", e);
     return got;
-}
-
-static int no_frame(const job *j, int64_t first, err *e)
-{
-    if (!j->s.frames)
-        return err_set(e, source_name(&j->s), 0, "--frame %s: the model has no frames", j->o->frame);
-    return err_set(e, source_name(&j->s), 0, "--frame %s: no such index; the model has frames %" PRId64 " to %" PRId64,
-                   j->o->frame, first, j->s.frame.index);
 }
 
 /* Reads to the end of the stream, keeping the frame asked for in *kept (it is f's from then on). NULL in *chosen: rest. */
 static int choose_frame(job *j, frame *kept, const frame **chosen, err *e)
 {
-    int64_t first = 0;
     int got;
     *chosen = NULL;
-    while ((got = source_next(&j->s, e)) > 0) {
-        first = j->s.frames == 1 ? j->s.frame.index : first;
+    while ((got = source_next(&j->s, e)) > 0)
         if (j->which == ONE && !*chosen && j->s.frame.index == j->index) {
             *kept = j->s.frame;
             j->s.frame = (frame){.index = kept->index};
             *chosen = kept;
         }
-    }
     if (got < 0)
         return -1;
     if (j->which == LAST && j->s.frames)
         *chosen = &j->s.frame;
     if (!*chosen && (j->which == ONE || (j->which == LAST && j->frame_given)))
-        return no_frame(j, first, e);
+        return source_no_frame(&j->s, j->o->frame, e);
     if (!*chosen && j->o->deformed)
-        return err_set(e, source_name(&j->s), 0, "--deformed: the model has no frames");
+        return err_set(e, source_name(&j->s), 0,
+                       "--deformed: the model has no frames; expected results, from tled-run");
     return 0;
 }
 
@@ -218,11 +227,22 @@ static int choose_unit(job *j, err *e)
     return j->unit ? 0 : err_set(e, source_name(&j->s), 0, "source.unit '%.40s': expected " NUM_UNITS, name);
 }
 
+/* Other programs take nan for a number, or for nothing. Where they calculate, an element needs an inside too. */
+static int check_rest(const job *j, err *e)
+{
+    char name[MODEL_NAME + 32];
+    snprintf(name, sizeof name, "%.255s%s", j->o->surface ? j->o->surface : "node",
+             j->o->surface ? "/vertex.position" : ".position");
+    if (finite_array(model_find(&j->s.body, name), source_name(&j->s), e))
+        return -1;
+    return j->o->surface ? 0 : finite_elements(&j->s.body, source_name(&j->s), e);
+}
+
 static int work(job *j, out *to, err *e)
 {
     frame kept = {0};
     const frame *chosen;
-    if (choose_unit(j, e))
+    if (choose_unit(j, e) || check_rest(j, e))
         return -1;
     if (j->o->format != INP && export_shape_of(&j->x, &j->s.body, j->o->surface, e))
         return -1;
@@ -232,9 +252,44 @@ static int work(job *j, out *to, err *e)
     if (!bad && j->o->format != INP)
         bad = export_shape_move(&j->x, chosen, e) || check_moved(j, e) ? -1 : 0;
     if (!bad)
-        bad = put_one(j, to, e);
+        bad = check_frame(j, chosen, e) || put_one(j, to, e) ? -1 : 0;
     frame_free(&kept);
     return bad;
+}
+
+/* -v: what was written. */
+static void say(const job *j, const tool *t)
+{
+    if (j->o->format == MODEL)
+        tool_detail(t, "%" PRId64 " frame%s written", j->s.frames, j->s.frames == 1 ? " is" : "s are");
+    else if (j->o->format == INP)
+        tool_detail(t, "%" PRId64 " nodes and %" PRId64 " elements at rest", model_count(&j->s.body, "node"),
+                    model_count(&j->s.body, "element"));
+    else if (j->which == ALL)
+        tool_detail(t, "%" PRId64 " points and %" PRId64 " cells in each of %" PRId64 " frames", j->x.points,
+                    j->x.cells, j->s.frames);
+    else if (j->chosen)
+        tool_detail(t, "%" PRId64 " points and %" PRId64 " cells, %s frame %" PRId64, j->x.points, j->x.cells,
+                    j->o->deformed ? "moved by" : "at rest, with", j->index);
+    else
+        tool_detail(t, "%" PRId64 " points and %" PRId64 " cells at rest", j->x.points, j->x.cells);
+}
+
+/* Writes what is not a model: a file, or a collection of files. */
+static void put_file(job *j, const char *path, err *e)
+{
+    const opt_common *c = &j->o->common;
+    if (source_open(&j->s, path, e))
+        return;
+    out *to = j->which == ALL ? outs_open(&j->files, c->output, e) : out_open(c->output, c->gzip, e);
+    if (!to)
+        return;
+    if (work(j, to, e)) {
+        out_discard(to);
+        return;
+    }
+    if (!out_close(to, e))
+        outs_commit(&j->files, e);
 }
 
 int main(int argc, char **argv)
@@ -243,23 +298,21 @@ int main(int argc, char **argv)
     job j = {.o = &o};
     err e = {0};
     tool t = {0};
-    out *to = NULL;
+    stage copy = {0};
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
     if (check_options(&j, &e) || (j.which == ALL && read_stem(&j, &e)))
         goto out;
-    if (source_open(&j.s, t.operands ? argv[1] : NULL, &e))
-        goto out;
-    to = j.which == ALL ? outs_open(&j.files, o.common.output, &e) : out_open(o.common.output, o.common.gzip, &e);
-    if (to && !work(&j, to, &e)) {
-        out_close(to, &e);
-        to = NULL;
-    }
+    if (o.format == MODEL)
+        export_model(&j.s, t.operands ? argv[1] : NULL, &copy, &t, &e);
+    else
+        put_file(&j, t.operands ? argv[1] : NULL, &e);
     if (!e.status)
-        outs_commit(&j.files, &e);
+        say(&j, &t);
 out:
-    out_discard(to);
+    if (!t.done && o.format == MODEL)
+        stage_close(&copy, &t, &e);
     outs_free(&j.files);
     if (!e.status)
         tool_warn(&t, &j.warnings);

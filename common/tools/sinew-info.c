@@ -26,7 +26,7 @@ static const opt option_table[] = {
 
 static const opt_tool table = {
     .name = "sinew-info",
-    .purpose = "Says what a model holds; reads MODEL or standard input.",
+    .purpose = "Say what a model holds; read MODEL or standard input.",
     .operands = "MODEL",
     .operands_max = 1,
     .options = option_table,
@@ -256,7 +256,7 @@ int main(int argc, char **argv)
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
     if (o.json && o.get.count) {
-        err_usage(&e, "--json and --get exclude each other");
+        err_usage(&e, "--json and --get exclude each other; expected one of them");
         goto out;
     }
     if (source_open(&s, t.operands ? argv[1] : NULL, &e) || read_all(&s, times, &e))

@@ -222,4 +222,12 @@ is "$(values element.fibre "$T/out" | tr , '\n' | sort -u | sed 's/^-//' | sort 
 attach -q -o "$T/once" <"$T/face"
 attach -q -z <"$T/face" | attach -q --text | attach -q | sinew diff - "$T/once"
 is $? 0 "thrice is once"
+# Nodes that are nowhere, elements that enclose nothing.
+small=$ROOT/tests/cli/small.sinew
+sed 's/^0.1 0.1 0.1$/0.1 nan 0.1/' "$small" >"$T/nan"
+fails 1 "a node that is nowhere" "^attach: node.position, row 10 is not finite; expected" attach -o "$T/none" <"$T/nan"
+sed 's/^0 1 4 3 6 7 10 9$/0 0 0 0 0 0 0 0/' "$small" >"$T/flat"
+fails 1 "an element of one node" "^attach: element.node, row 0 has 1 different node; expected 4 or more" \
+    attach -o "$T/none" <"$T/flat"
+
 done_testing

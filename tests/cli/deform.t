@@ -155,7 +155,7 @@ fails 1 "no surface" "carries no surface; expected a model from sinew bind" sine
 # Frames that are not there, and streams that end badly
 model | sinew bind -q "$T/skin.obj" >"$T/noframes" 2>/dev/null
 fails 1 "no frames" "no frames; expected results, from tled-run" sinew deform "$T/skin.obj" <"$T/noframes"
-fails 1 "no such frame" "no frame 9 among the 3 there; the last is 3" sinew deform --frame 9 "$T/skin.obj" <"$T/bound"
+fails 1 "no such frame" "--frame 9: no such frame; expected one of the 3 there, of index [0-9]+ to 3\$" sinew deform --frame 9 "$T/skin.obj" <"$T/bound"
 model -v frames=1 | sed 's/node.displacement f64 m /node.velocity f64 m\/s /' |
     sinew bind -q "$T/skin.obj" >"$T/velocity" 2>/dev/null
 fails 1 "no displacement" "frame 1 has no node.displacement" sinew deform "$T/skin.obj" <"$T/velocity"
@@ -189,4 +189,9 @@ fails 2 "--within of no length" "within" sinew deform --within far "$T/skin.obj"
 fails 2 "no OBJ" "missing operand" sinew deform <"$T/bound"
 fails 2 "an OBJ on stdin" "the model comes on standard input" sinew deform - <"$T/bound"
 fails 2 "an unknown format" "obj\\|pc2" sinew deform --format fbx "$T/skin.obj" <"$T/bound"
+fails 2 "a numbered name of one frame" "-o '.*x_%04d.obj': a number in the name is for --frame all" \
+    sinew deform --frame 1 -o "$T/x_%04d.obj" "$T/skin.obj" <"$T/bound"
+fails 2 "a numbered name of a point cache" "is for --frame all and OBJ" \
+    sinew deform --format pc2 -o "$T/x_%d.pc2" "$T/skin.obj" <"$T/bound"
+
 done_testing

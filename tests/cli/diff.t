@@ -112,4 +112,7 @@ printf '%%sinew 1 text\nend\n' >"$T/empty"
 check "nothing is the same as nothing" sinew diff "$T/empty" "$T/empty"
 differs "nothing and something" "^axis node: only in $small$" "$T/empty" "$small"
 
+is "$(sinew diff -v "$small" "$small" 2>&1)" "sinew-diff: $(($(grep -c '^array' "$small"))) arrays compared; frames: 2 and 2" \
+    "-v says how much was compared"
+
 done_testing

@@ -197,9 +197,9 @@ sed '/^frame 0/,$d' "$small" >"$T/still" && echo end >>"$T/still"
 printf '%%sinew 1 text\nend\n' >"$T/empty"
 printf '%%sinew 1 text\naxis node 0\naxis element 0\narray node.position f64 m node 3\narray element.node i32 @node element 8\nend\n' >"$T/none"
 fails 2 "no format" "format .*is required" sinew export "$small"
-fails 2 "an unknown format" "--format 'stl': expected vtu\\|inp\\|obj" sinew export -f stl "$small"
+fails 2 "an unknown format" "--format 'stl': expected model\\|vtu\\|inp\\|obj" sinew export -f stl "$small"
 fails 2 "a frame that is no number" "--frame 'lst': expected a frame's index" sinew export -f vtu --frame lst "$small"
-fails 1 "a frame that is not there" "no such index; the model has frames 0 to 10" sinew export -f vtu --frame 3 -o "$T/x.vtu" "$small"
+fails 1 "a frame that is not there" "--frame 3: no such frame; expected one of the 2 there, of index 0 to 10\$" sinew export -f vtu --frame 3 -o "$T/x.vtu" "$small"
 fails 1 "a frame where there are none" "the model has no frames" sinew export -f vtu --frame last -o "$T/x.vtu" "$T/still"
 fails 1 "moved without frames" "the model has no frames" sinew export -f obj --deformed -o "$T/x.obj" "$T/still"
 check "without frames the default is the rest" sinew export -f vtu -o "$T/still.vtu" "$T/still"
@@ -218,7 +218,7 @@ fails 2 "a frame in Abaqus input" "inp holds the model at rest" sinew export -f 
 fails 2 "two numbers of gravity" "--gravity '0,1'" sinew export -f inp -g 0,1 "$small"
 fails 2 "a unit for SI formats" "--unit is for obj" sinew export -f vtu --unit mm "$small"
 fails 2 "an unknown unit" "expected um, mm, cm, m or in" sinew export -f obj --unit furlong "$small"
-fails 2 "gzip of a VTU" "-z is for inp and obj" sinew export -f vtu -z "$small"
+fails 2 "gzip of a VTU" "-z is for model, inp and obj" sinew export -f vtu -z "$small"
 fails 1 "an empty model" "node.position" sinew export -f vtu -o "$T/x.vtu" "$T/empty"
 fails 1 "no volumes" "element.volume|volume.name" sinew export -f inp -o "$T/x.inp" "$T/tet"
 sed 's/^0.45$/0.5/' "$small" >"$T/b"
@@ -235,5 +235,45 @@ is "$(cd "$T" && echo x*)" "x*" "none of these left a file"
 check "a VTU of nothing" sinew export -f vtu -o "$T/none.vtu" "$T/none"
 vtk "nothing" "0 points
 0 cells" "$T/none.vtu"
+
+# The model itself, in either encoding.
+check "text" sinew export -f model --text -o "$T/text" "$small"
+check "text becomes binary" sinew export -f model -o "$T/binary" "$T/text"
+is "$(head -c 6 "$T/binary" | tail -c 5)" sinew "which it is"
+check "binary becomes text" sinew export -f model --text -o "$T/again" "$T/binary"
+check "text -> binary -> text: the same bytes" cmp "$T/text" "$T/again"
+is "$(grep -c '^prov' "$T/again")" "$(grep -c '^prov' "$small")" "no provenance is added"
+sinew export -f model -z <"$T/text" | sinew export -f model - >"$T/back"
+check "binary -> gzip -> binary: the same bytes" cmp "$T/binary" "$T/back"
+check "and the same model as that written by hand" sinew diff "$small" "$T/binary"
+fails 2 "text of another format" "--text is for model" sinew export -f obj --text "$small"
+fails 2 "a frame of the whole" "are for vtu and obj" sinew export -f model --frame 0 "$small"
+head -n 150 "$T/text" >"$T/cut"
+fails 1 "a model that is cut" "cut short" sinew export -f model -o "$T/gone" "$T/cut"
+[ ! -e "$T/gone" ]
+is $? 0 "leaves no file"
+sinew export -f model --text <"$T/cut" 2>/dev/null | tail -n 1 | grep -q '^fail 1 "sinew-export: '
+is $? 0 "and in a pipe it ends with fail"
+
+# What is no number or no element does not go out.
+sed 's/^0.03 0 0.04$/nan 0 0/' "$small" >"$T/nan"
+for format in vtu obj; do
+    fails 1 "$format: a displacement that is nan" "nan: node.displacement, row 2 is not finite" \
+        sinew export -f "$format" --deformed -o "$T/none" "$T/nan"
+done
+sed 's/^0.1 0.1 0.1$/0.1 inf 0.1/' "$small" >"$T/inf"
+for format in vtu obj inp; do
+    fails 1 "$format: a node that is nowhere" "inf: node.position, row 10 is not finite" \
+        sinew export -f "$format" -o "$T/none" "$T/inf"
+done
+sed 's/^0 1 4 3 6 7 10 9$/0 0 0 0 0 0 0 0/' "$small" >"$T/flat"
+fails 1 "an element of one node" "element.node, row 0 has 1 different node; expected 4 or more" \
+    sinew export -f inp "$T/flat"
+check "the model itself passes on what it holds" sinew export -f model -o "$T/none" "$T/nan"
+sed 's/^6000$/-1/' "$small" >"$T/soft"
+fails 1 "a material that is none, on standard output" "material.E, row 1: -1 is not allowed" sinew export -f inp "$T/soft"
+is "$(wc -c <"$T/stdout")" 0 "nothing is written before that is known"
+is "$(sinew export -f vtu -v -o "$T/v.vtu" "$small" 2>&1)" \
+    "sinew-export: 12 points and 2 cells, at rest, with frame 10" "-v says what was written"
 
 done_testing

@@ -92,7 +92,13 @@ is "$? $(cat "$T/err") $(ls "$T/none" 2>/dev/null)" "3  " "through any number of
 is "$? $(wc -l <"$T/err") $(grep -c '^bind: ' "$T/err")" "2 1 1" "a usage error ends the whole pipe, with one message"
 
 # What the manual shows is so.
-awk '/^\.Bd -literal/ { on = 1; next } /^\.Ed/ { on = 0 } on' "$ROOT/man/sinew-model.5" >"$T/example"
+awk '/^\.Ed/ { exit } on; /^\.Bd -literal/ { on = 1 }' "$ROOT/man/sinew-model.5" >"$T/example"
 is "$(sinew info --get node.displacement.max <"$T/example")" 0.01 "the model in sinew-model(5)"
+
+# Indices of frames increase.
+sed 's/^frame 10 /frame 0 /' "$small" >"$T/twice"
+fails 1 "two frames of one index" "twice:[0-9]+: frame 0 after frame 0; expected indices that increase" sinew info "$T/twice"
+sed 's/^frame 10 /frame -1 /' "$small" >"$T/back"
+fails 1 "a frame before the last" "frame -1 after frame 0" sinew info "$T/back"
 
 done_testing

@@ -51,7 +51,7 @@ is "$(cells | head -n 1) $(cells | tail -n 1) $(get axis.element)" "-2 -2 -2 0 0
     echo "v 1000 1000 1000"
 ) >"$T/far.obj"
 vox --unit mm -s 4 "$T/far.obj"
-is "$(get axis.element) $(get meta.lattice.origin)" "8 -0.0040000000000000001 -0.0040000000000000001 -0.0040000000000000001" \
+is "$(get axis.element) $(get meta.lattice.origin)" "8 -0.004 -0.004 -0.004" \
     "an unused vertex does not matter; 2 cells of 4 mm about 6 mm, centred"
 vox --unit mm -s 1,2,3 "$T/cube.obj"
 is "$(get axis.element) $(get axis.node)" "36 84" "voxels of 1 x 2 x 3 mm"

@@ -24,7 +24,8 @@ static void print_part(out *o, bool in_frames)
         if (k->columns_min < k->columns_max)
             out_format(o, "%d|", k->columns_min);
         out_format(o, "%d\n", k->columns_max);
-        out_format(o, "By %s%s: %s.\n", k->maker, k->flags & KNOWN_EVERY ? "; never \\-1" : "", k->meaning);
+        out_format(o, "%s%s%s: %s.\n", k->maker ? "By " : "Reserved", k->maker ? k->maker : "",
+                   k->flags & KNOWN_EVERY ? "; never \\-1" : "", k->meaning);
     }
     out_text(o, ".El\n");
 }

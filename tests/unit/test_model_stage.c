@@ -159,6 +159,7 @@ static bool gives(const result *r, int status, const char *written, const char *
 #define BODY  "axis node 1\narray node.rigid u8 1 node 1\n1\n"
 #define CRC   "crc 3a88e8d9\n"
 #define FRAME "frame 4 0.5\narray x-a u8 1 node 1\n7\n"
+#define NEXT  "frame 5 1\narray x-a u8 1 node 1\n7\n"
 #define FCRC  "crc 28a4775e\n"
 
 static void test_copies(void)
@@ -173,7 +174,7 @@ static void test_copies(void)
                   "array node.rigid u8 1 node 1\n1\n" CRC "end\n",
              ""),
        "provenance has what changes the result");
-    r = run("--text --drop", HEAD BODY FRAME FRAME "end\n");
+    r = run("--text --drop", HEAD BODY FRAME NEXT "end\n");
     ok(gives(&r, 0, HEAD "prov filter 0.1.0 \"--drop\"\n" BODY CRC "end\n",
              "filter: warning: 2 frames are dropped: the model that they belong to changes\n"),
        "frames that are dropped are counted");
@@ -214,7 +215,7 @@ static void test_failures(void)
 /* A reader is not done before the end was seen: what comes late still counts. */
 static void test_looker(void)
 {
-    result r = run_on(&looker_table, "", scratch(HEAD BODY FRAME FRAME "end\n"), scratch(""));
+    result r = run_on(&looker_table, "", scratch(HEAD BODY FRAME NEXT "end\n"), scratch(""));
     ok(gives(&r, 0, "", ""), "a tool that writes no model");
     r = run_on(&looker_table, "", scratch(HEAD BODY FRAME "fail 3 \"tled-run: diverged\"\n"), scratch(""));
     ok(gives(&r, 3, "", ""), "takes the status of a failure that comes after what it read");

@@ -44,7 +44,7 @@ static const char rich[] =
     "000102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f\n"
     "2021222324252627\n"
     "block zero 00000000 0\n"
-    "frame 0 0.01\n"
+    "frame -9 0.01\n"
     "array node.displacement f64 m node 3\n"
     "0 0 0\n0 0 1\nnan 0 0\n"
     "array x-lot str 1 element 1\n\"a\"\n"
@@ -198,7 +198,11 @@ static void test_writer(void)
     ok(!model_write(w, &m, &e), "a good one is");
     frame_add(&f, &m, "node.displacement", &e);
     ok(!model_write_frame(w, &f, &e), "a frame");
+    ok(model_write_frame(w, &f, &e) && says(&e, "frame 0 after frame 0; expected indices that increase"),
+       "a second one of its index");
+    e = (err){0};
     frame_free(&f);
+    f.index = 1;
     ok(model_write_frame(w, &f, &e) && says(&e, "other arrays than the first"), "a frame without its arrays");
     e = (err){0};
     f.time = NAN;

@@ -151,7 +151,7 @@ static void test_step_too_large(void)
 /* A jump breaks the steps that the state before it allows: they are taken again, cut; whatever threads and frames. */
 static void test_jump(const backend *device, const char *name)
 {
-    bench first, b;
+    bench first = {0}, b = {0};
     block fixed = muscle;
     fixed.fixed_axis = 0;
     for (int i = 0; i < 5; i++) {

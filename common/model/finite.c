@@ -1,0 +1,39 @@
+#include "model/finite.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+int finite_array(const model_array *a, const char *where, err *e)
+{
+    if (!a || (a->type != MODEL_F32 && a->type != MODEL_F64))
+        return 0;
+    for (int64_t row = 0; row < a->rows; row++)
+        for (int64_t at = row * a->columns; at < (row + 1) * a->columns; at++)
+            if (!isfinite(a->type == MODEL_F32 ? (double)a->f32[at] : a->f64[at]))
+                return err_set(e, where, 0, "%s, row %" PRId64 " is not finite; expected finite numbers", a->name, row);
+    return 0;
+}
+
+static int different(const int32_t *node, int count)
+{
+    int found = 0;
+    for (int i = 0; i < count; i++) {
+        bool new = true;
+        for (int k = 0; k < i; k++)
+            new = new &&node[k] != node[i];
+        found += new;
+    }
+    return found;
+}
+
+int finite_elements(const model *m, const char *where, err *e)
+{
+    const model_array *node = model_find(m, "element.node");
+    for (int64_t i = 0; node && i < node->rows; i++) {
+        int count = different(&node->i32[i * node->columns], node->columns);
+        if (count < 4)
+            return err_set(e, where, 0, "element.node, row %" PRId64 " has %d different node%s; expected 4 or more", i,
+                           count, count == 1 ? "" : "s");
+    }
+    return 0;
+}
