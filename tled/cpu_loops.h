@@ -5,7 +5,7 @@
  * elements. No two threads write to one place and no sum depends on who computes it: the same bytes for any number of threads.
  */
 #include "base/mem.h"
-#include "mesh/element.h"
+#include "tled/node.h"
 #include "tled/state.h"
 
 #include <stdlib.h>
@@ -22,12 +22,20 @@ typedef struct cpu_kind { /* what a volume's elements need */
     real tension; /* now */
 } cpu_kind;
 
+/* A copy of what a state is, or, without acceleration and curves, of its results. */
+typedef struct cpu_copy {
+    real *displacement, *velocity, *acceleration;
+    double *now;
+} cpu_copy;
+
 typedef struct cpu_state {
     const tled_problem *p;
     pool *threads;
     element_shape shape;
     cpu_kind *kind;                               /* volumes */
     real *displacement, *velocity, *acceleration; /* nodes x 3: all at one time, after each step */
+    cpu_copy kept, taken[TLED_TAKEN];             /* made when first wanted */
+    int first_taken, count_taken;                 /* a ring */
     real *force;                                  /* elements x 8 x 3: what elements pull with; then zeros */
     real *mass_inverse;                           /* nodes */
     double *now, *next;                           /* the curves' values, 3 a curve */
@@ -149,17 +157,12 @@ static inline void accelerate(cpu_state *s, int64_t n)
         to[a] = hold[a] == HOLD_FREE ? s->gravity[a] + net[a] * inverse : 0;
 }
 
-/* The factors of a step: dt, dt/2, 1 - alpha dt/2, 1 / (1 + alpha dt/2). */
-typedef struct cpu_factors {
-    real dt, half, keep, slow;
-} cpu_factors;
-
 /* Starts a step for component i, of axis a. What a curve displaces goes where the curve is at the step's end. */
-static inline void begin_step(cpu_state *s, int64_t i, int a, cpu_factors k)
+static inline void begin_step(cpu_state *s, int64_t i, int a, node_factors k)
 {
     int32_t hold = s->p->hold[i];
     if (hold == HOLD_FREE) {
-        s->velocity[i] = (s->velocity[i] + k.half * s->acceleration[i]) * k.slow;
+        s->velocity[i] = node_begin(s->velocity[i], s->acceleration[i], k);
         s->displacement[i] += k.dt * s->velocity[i];
     } else if (hold >= 0) {
         real to = (real)s->next[3 * (int64_t)hold + a];
@@ -168,17 +171,11 @@ static inline void begin_step(cpu_state *s, int64_t i, int a, cpu_factors k)
     }
 }
 
-/* Central differences with mass damping alpha (Miller et al. 2007), as kick, drift, kick: from u, v, a at t
- *     v' = (v + dt/2 a) / (1 + alpha dt/2),  u += dt v',                (begin)
- * then with a at t + dt
- *     v = v' (1 - alpha dt/2) + dt/2 a.                                 (finish)
- * The state at the end of a step is u and v alone: a run goes on from them to the same bytes. The end of one step and the
- * beginning of the next are one loop over nodes. */
+/* Ends a step, begins the next, or both: node.h. */
 static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     cpu_state *s = context;
-    const double drag = s->damping * s->dt / 2;
-    const cpu_factors k = {(real)s->dt, (real)(s->dt / 2), (real)(1 - drag), (real)(1 / (1 + drag))};
+    const node_factors k = node_factors_of(s->dt, s->damping);
     const bool finish = s->finish, begin = s->begin;
     (void)chunk;
     for (int64_t n = from; n < to; n++) {
@@ -187,7 +184,7 @@ static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
         for (int a = 0; a < 3; a++) {
             int64_t i = 3 * n + a;
             if (finish && s->p->hold[i] == HOLD_FREE)
-                s->velocity[i] = s->velocity[i] * k.keep + k.half * s->acceleration[i];
+                s->velocity[i] = node_finish(s->velocity[i], s->acceleration[i], k);
             if (begin)
                 begin_step(s, i, a, k);
         }
@@ -267,11 +264,106 @@ static int cpu_get(void *state, int what, double *to, err *e)
     return 0;
 }
 
+static int copy_make(cpu_copy *c, const tled_problem *p, err *e)
+{
+    if (c->velocity)
+        return 0;
+    c->displacement = mem_array(p->nodes, 3 * sizeof *c->displacement, "the solver", e);
+    c->velocity = c->displacement ? mem_array(p->nodes, 3 * sizeof *c->velocity, "the solver", e) : NULL;
+    return c->velocity ? 0 : -1;
+}
+
+static void copy_free(cpu_copy *c)
+{
+    free(c->displacement);
+    free(c->velocity);
+    free(c->acceleration);
+    free(c->now);
+}
+
+/* What a state is, from one set of arrays to another. */
+static void copy_all(const tled_problem *p, const cpu_copy *from, const cpu_copy *to)
+{
+    size_t size = 3 * (size_t)p->nodes * sizeof *from->displacement;
+    memcpy(to->displacement, from->displacement, size);
+    memcpy(to->velocity, from->velocity, size);
+    memcpy(to->acceleration, from->acceleration, size);
+    memcpy(to->now, from->now, 3 * (size_t)p->script->curves * sizeof *from->now);
+}
+
+static cpu_copy of_now(const cpu_state *s)
+{
+    cpu_copy c = {s->displacement, s->velocity, s->acceleration, s->now};
+    return c;
+}
+
+static int cpu_keep(void *state, err *e)
+{
+    cpu_state *s = state;
+    cpu_copy now = of_now(s), *kept = &s->kept;
+    if (copy_make(kept, s->p, e))
+        return -1;
+    if (!kept->acceleration)
+        kept->acceleration = mem_array(s->p->nodes, 3 * sizeof *kept->acceleration, "the solver", e);
+    if (!kept->now)
+        kept->now = mem_array(s->p->script->curves, 3 * sizeof *kept->now, "the solver", e);
+    if (!kept->acceleration || !kept->now)
+        return -1;
+    copy_all(s->p, &now, kept);
+    return 0;
+}
+
+static int cpu_back(void *state, err *e)
+{
+    cpu_state *s = state;
+    cpu_copy now = of_now(s);
+    (void)e;
+    copy_all(s->p, &s->kept, &now);
+    return 0;
+}
+
+static int cpu_take(void *state, err *e)
+{
+    cpu_state *s = state;
+    cpu_copy *to = &s->taken[(s->first_taken + s->count_taken) % TLED_TAKEN];
+    size_t size = 3 * (size_t)s->p->nodes * sizeof *s->displacement;
+    if (copy_make(to, s->p, e))
+        return -1;
+    memcpy(to->displacement, s->displacement, size);
+    memcpy(to->velocity, s->velocity, size);
+    s->count_taken++;
+    return 0;
+}
+
+static int cpu_taken(void *state, void *to, err *e)
+{
+    cpu_state *s = state;
+    const tled_taken *out = to;
+    const cpu_copy *from = &s->taken[s->first_taken];
+    (void)e;
+    for (int64_t i = 0; i < 3 * s->p->nodes; i++) {
+        out->displacement[i] = from->displacement[i];
+        out->velocity[i] = from->velocity[i];
+    }
+    s->first_taken = (s->first_taken + 1) % TLED_TAKEN;
+    s->count_taken--;
+    return 0;
+}
+
+static void cpu_drop(void *state, int count)
+{
+    cpu_state *s = state;
+    s->count_taken -= count;
+}
+
 static void cpu_destroy(void *state)
 {
     cpu_state *s = state;
     if (!s)
         return;
+    copy_free(&s->kept);
+    for (int i = 0; i < TLED_TAKEN; i++)
+        copy_free(&s->taken[i]);
     free(s->kind);
     free(s->displacement);
     free(s->velocity);
@@ -332,4 +424,14 @@ static const char *cpu_unusable(void)
     return NULL;
 }
 
-const backend CPU_BACKEND = {"cpu", cpu_unusable, cpu_create, cpu_step, cpu_get, cpu_destroy};
+const backend CPU_BACKEND = {.name = "cpu",
+                             .unusable = cpu_unusable,
+                             .create = cpu_create,
+                             .step = cpu_step,
+                             .get = cpu_get,
+                             .keep = cpu_keep,
+                             .back = cpu_back,
+                             .take = cpu_take,
+                             .taken = cpu_taken,
+                             .drop = cpu_drop,
+                             .destroy = cpu_destroy};

@@ -1,10 +1,6 @@
 #include "tled/relax.h"
 
-#include "base/mem.h"
-
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 double relax_guess(const tled_problem *p, double reach)
 {
@@ -15,39 +11,20 @@ double relax_guess(const tled_problem *p, double reach)
     return acos(-1) / 2 * speed / reach;
 }
 
-int relax_make(relax *r, const tled_problem *p, double guess, double stable, err *e)
+relax relax_of(double guess, double stable)
 {
-    *r = (relax){.guess = guess, .frequency = guess, .lowest = guess, .low = .01 * guess, .high = 1 / stable};
-    r->displacement = mem_array(p->nodes, 3 * sizeof *r->displacement, "relaxation", e);
-    r->internal = mem_array(p->nodes, 3 * sizeof *r->internal, "relaxation", e);
-    return r->displacement && r->internal ? 0 : -1;
+    relax r = {.guess = guess, .frequency = guess, .lowest = guess, .low = .01 * guess, .high = 1 / stable};
+    return r;
 }
 
-void relax_free(relax *r)
+void relax_update(relax *r, const watch_sight *s)
 {
-    free(r->displacement);
-    free(r->internal);
-    memset(r, 0, sizeof *r);
-}
-
-void relax_update(relax *r, const watch *w)
-{
-    double stiffness = 0, inertia = 0;
-    int64_t count = 3 * w->p->nodes;
-    for (int64_t i = 0; r->looks && i < count; i++)
-        if (w->p->hold[i] == HOLD_FREE) {
-            double du = w->displacement[i] - r->displacement[i];
-            stiffness += du * (w->internal[i] - r->internal[i]);
-            inertia += w->p->mass[i / 3] * du * du;
-        }
-    if (stiffness > 0 && inertia > 0)
-        r->frequency = fmin(fmax(sqrt(stiffness / inertia), r->low), r->high);
+    if (r->looks && s->stiffness > 0 && s->inertia > 0)
+        r->frequency = fmin(fmax(sqrt(s->stiffness / s->inertia), r->low), r->high);
     /* What was lowest fades: it grows e-fold in 4 of its radians, so that half a period leaves it where it was, to a factor. */
     if (r->looks)
-        r->lowest = fmin(r->guess, fmin(r->frequency, r->lowest * exp(r->lowest * (w->sight.time - r->time) / 4)));
-    r->time = w->sight.time;
-    memcpy(r->displacement, w->displacement, (size_t)count * sizeof *r->displacement);
-    memcpy(r->internal, w->internal, (size_t)count * sizeof *r->internal);
+        r->lowest = fmin(r->guess, fmin(r->frequency, r->lowest * exp(r->lowest * (s->time - r->time) / 4)));
+    r->time = s->time;
     r->looks += r->looks < 2;
 }
 

@@ -1,6 +1,5 @@
 /* How a run comes to rest: the frequency of what still moves, guessed from two states by Rayleigh's quotient; from that the
- * mass damping that is soonest at rest (dynamic relaxation, Underwood 1983), and how far the tissue has still to go. The caller owns
- * the struct.
+ * mass damping that is soonest at rest (dynamic relaxation, Underwood 1983), and how far the tissue has still to go. Owns nothing.
  */
 #ifndef SINEW_RELAX_H
 #define SINEW_RELAX_H
@@ -8,25 +7,24 @@
 #include "tled/watch.h"
 
 typedef struct relax {
-    double guess;                    /* rad/s: the lowest frequency, before anything moves */
-    double low, high;                /* rad/s: bounds of `frequency` */
-    double frequency;                /* rad/s: of the last motion; the guess before there is any */
-    double lowest;                   /* rad/s: of the guess and of any motion in about the last period */
-    double time;                     /* s: of the state before */
-    double *displacement, *internal; /* nodes x 3: of the state before; owned */
-    int looks;                       /* 0, 1, 2 or more states taken */
+    double guess;     /* rad/s: the lowest frequency, before anything moves */
+    double low, high; /* rad/s: bounds of `frequency` */
+    double frequency; /* rad/s: of the last motion; the guess before there is any */
+    double lowest;    /* rad/s: of the guess and of any motion in about the last period */
+    double time;      /* s: of the state before */
+    int looks;        /* 0, 1, 2 or more states taken */
 } relax;
 
 /* A guess of the lowest frequency: that of a column of the slowest shear waves, w = (pi/2) c / L, c the least of
  * sqrt(mu/rho), L the model's reach (tled_parts). Critical damping is 2 w. */
 double relax_guess(const tled_problem *p, double reach);
 
-int relax_make(relax *r, const tled_problem *p, double guess, double stable, err *e);
-void relax_free(relax *r);
+/* stable: the stable step at rest (s). */
+relax relax_of(double guess, double stable);
 
-/* Takes the state that was looked at: w^2 = du . dK / (du . M du) over what is free, du the displacement since the last
- * state, dK the change of the elements' pulls. */
-void relax_update(relax *r, const watch *w);
+/* Takes a state that was looked at: w^2 = du . dK / (du . M du) over what is free, du the displacement since the last
+ * state, which the watch has kept, dK the change of the elements' pulls. */
+void relax_update(relax *r, const watch_sight *s);
 
 /* How far it has still to go (m, root mean square over the mass): |a| / w^2 and |v| / w in one root, as of an oscillator out of
  * balance by a and moving at v; w the lowest frequency, since at a turning point the slowest does not show. Infinite until two states are known, unless nothing moves. */

@@ -6,8 +6,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
     CUTS_MAX = 10, /* a step cut 2^10 times is no step */
@@ -22,10 +20,13 @@ typedef struct run {
     void *state;
     watch *watch;
     relax relax;
-    tled_plan plan;      /* plan.first: steps counted */
-    int64_t from;        /* the first of this run */
-    tled_problem saved;  /* p, but that it begins at the last check: states are made from it. The rest is p's */
-    int64_t saved_first; /* plan.first there */
+    outbox *out;
+    tled_plan plan;     /* plan.first: steps counted */
+    int64_t from;       /* the first of this run */
+    int64_t kept_first; /* plan.first of the state that is kept: that at the last check */
+    /* Frames that the device has taken, in a ring: `sound` of them to be written, after them those not known to be. */
+    double frame_time[TLED_TAKEN];
+    int first_frame, sound, unsure;
     int cuts;
     double damping;
     double closest; /* to rest so far, as a share; and the step that it came so close in */
@@ -97,21 +98,16 @@ static bool is_sound(const run *n)
 }
 
 /* Keeps what was looked at last, to come back to. */
-static void save(run *n)
+static int keep(run *n)
 {
-    size_t size = 3 * (size_t)n->saved.nodes * sizeof(double);
-    memcpy(n->saved.displacement, n->watch->displacement, size);
-    memcpy(n->saved.velocity, n->watch->velocity, size);
-    n->saved.start = tled_time(&n->plan, 0);
-    n->saved_first = n->plan.first;
+    n->kept_first = n->plan.first;
+    return watch_keep(n->watch, n->r->device, n->state, n->e);
 }
 
-static int restore(run *n)
+static int go_back(run *n)
 {
-    n->r->device->destroy(n->state);
-    n->state = n->r->device->create(&n->saved, n->r->threads, n->e);
-    n->plan.first = n->saved_first;
-    return n->state ? 0 : -1;
+    n->plan.first = n->kept_first;
+    return n->r->device->back(n->state, n->e);
 }
 
 /* Chooses how often a step is cut: from the state alone, so that it is the same whatever went before. */
@@ -136,55 +132,35 @@ static int advance(run *n, int64_t to)
     return 0;
 }
 
-/* One part after another of the step past what is saved, until it breaks. */
-static int find_part(run *n)
+/* Takes a frame of the state of now, which may yet turn out to be unsound. */
+static int take(run *n)
 {
-    int64_t parts = INT64_C(1) << n->cuts;
-    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, n->saved_first * parts, n->damping};
-    if (restore(n))
-        return -1;
-    n->plan.first++;
-    for (int64_t i = 0; i < parts; i++, cut.first++)
-        if (n->r->device->step(n->state, &cut, 1, n->e) || look_at(n, tled_time(&cut, 1)))
-            return -1;
-        else if (!is_sound(n))
-            break;
-    return diverged(n);
+    n->frame_time[(n->first_frame + n->sound + n->unsure++) % TLED_TAKEN] = tled_time(&n->plan, 0);
+    return n->r->device->take(n->state, n->e);
 }
 
-/* What lies before `to` is not sound: goes there again, looking after each step, to say where and when it broke. Returns -1. */
-static int find_break(run *n, int64_t to)
+/* Hands on the frames that are sound. */
+static int send(run *n)
 {
-    if (restore(n))
-        return -1;
-    while (n->plan.first < to) {
-        if (advance(n, n->plan.first + 1) || look(n))
+    tled_taken to;
+    for (; n->sound; n->sound--, n->first_frame = (n->first_frame + 1) % TLED_TAKEN) {
+        if (outbox_next(n->out, &to, n->e) || n->r->device->taken(n->state, &to, n->e))
             return -1;
-        if (!is_sound(n))
-            break;
-        save(n);
+        outbox_send(n->out, n->frame_time[n->first_frame]);
     }
-    return find_part(n);
+    return 0;
 }
 
-/* Goes to the next check, or the end, in steps that are cut until its state is sound. */
-static int cut_to(run *n, int64_t to)
-{
-    for (;; n->cuts++) {
-        if (advance(n, to) || look(n))
-            return -1;
-        if (is_sound(n))
-            return 0;
-        if (n->cuts == CUTS_MAX)
-            return find_break(n, to);
-        if (restore(n))
-            return -1;
-    }
-}
-
+/* Of a state that is sound, as all before it are. It is handed on with the next. */
 static int write_frame(run *n)
 {
-    return n->r->frame(n->r->context, tled_time(&n->plan, 0), n->watch->displacement, n->watch->velocity, n->e);
+    if (n->sound == TLED_TAKEN && send(n))
+        return -1;
+    if (take(n))
+        return -1;
+    n->sound += n->unsure;
+    n->unsure = 0;
+    return 0;
 }
 
 /* The first step past `after` with a frame. */
@@ -202,29 +178,88 @@ static int64_t next_frame(const run *n, int64_t after)
     return at;
 }
 
-/* Goes on from what is saved to the next check, or the end, with the frames before it. */
+/* One part after another of the step past what is kept, until it breaks. */
+static int find_part(run *n)
+{
+    int64_t parts = INT64_C(1) << n->cuts;
+    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, n->kept_first * parts, n->damping};
+    if (go_back(n))
+        return -1;
+    n->plan.first++;
+    for (int64_t i = 0; i < parts; i++, cut.first++)
+        if (n->r->device->step(n->state, &cut, 1, n->e) || look_at(n, tled_time(&cut, 1)))
+            return -1;
+        else if (!is_sound(n))
+            break;
+    return diverged(n);
+}
+
+/* What lies before `to` is not sound: goes there again, looking after each step, to say where and when it broke, and with the
+ * frames before that. Returns -1. */
+static int find_break(run *n, int64_t to)
+{
+    if (go_back(n))
+        return -1;
+    while (n->plan.first < to) {
+        if (advance(n, n->plan.first + 1) || look(n))
+            return -1;
+        if (!is_sound(n))
+            break;
+        if (keep(n) || (next_frame(n, n->plan.first - 1) == n->plan.first && write_frame(n)))
+            return -1;
+    }
+    return find_part(n);
+}
+
+/* Whether the frames before `to` are few enough to be taken on the way. */
+static bool can_take(const run *n, int64_t to)
+{
+    int64_t at = n->plan.first;
+    for (int count = 0; count < TLED_TAKEN / 2; count++) {
+        at = next_frame(n, at);
+        if (at >= to)
+            return true;
+    }
+    return false;
+}
+
+/* Goes to the next check, or the end, in steps that are cut until its state is sound, taking frames if so asked. */
+static int cut_to(run *n, int64_t to, bool taking)
+{
+    for (;; n->cuts++) {
+        for (int64_t at = next_frame(n, n->plan.first); taking && at < to; at = next_frame(n, at))
+            if (advance(n, at) || take(n))
+                return -1;
+        if (advance(n, to) || send(n) || look(n))
+            return -1;
+        if (is_sound(n))
+            break;
+        n->r->device->drop(n->state, n->unsure);
+        n->unsure = 0;
+        if (n->r->rate_fixed || n->cuts == CUTS_MAX)
+            return find_break(n, to);
+        if (go_back(n))
+            return -1;
+    }
+    n->sound += n->unsure;
+    n->unsure = 0;
+    return 0;
+}
+
+/* Goes on from what is kept to the next check, or the end, with the frames before it. */
 static int go_to(run *n, int64_t to)
 {
-    int64_t at = next_frame(n, n->plan.first);
-    if (!n->r->rate_fixed) {
-        if (cut_to(n, to))
-            return -1;
-        if (at >= to)
-            return 0;
-        if (restore(n))
-            return -1;
-    }
-    for (; at < to; at = next_frame(n, at)) {
-        if (advance(n, at) || look(n))
-            return -1;
-        if (n->watch->sight.broken >= 0)
-            return find_break(n, at);
-        if (write_frame(n))
-            return -1;
-    }
-    if (advance(n, to) || look(n))
+    bool taking = can_take(n, to);
+    if (cut_to(n, to, taking))
         return -1;
-    return is_sound(n) ? 0 : find_break(n, to);
+    if (taking)
+        return 0;
+    if (go_back(n))
+        return -1;
+    for (int64_t at = next_frame(n, n->plan.first); at < to; at = next_frame(n, at))
+        if (advance(n, at) || write_frame(n))
+            return -1;
+    return advance(n, to) || look(n) ? -1 : 0;
 }
 
 /* At rest, or single precision comes no closer. Returns -1, or whether it is at rest. */
@@ -258,7 +293,7 @@ static int check(run *n)
     if (choose_step(n))
         return -1;
     if (settled) {
-        relax_update(&n->relax, n->watch);
+        relax_update(&n->relax, s);
         over = is_at_rest(n);
     }
     if (settled && r->adapt)
@@ -278,8 +313,7 @@ static int loop(run *n, run_end *end)
     while (!over && n->plan.first < last) {
         int64_t to = (n->plan.first / r->check + 1) * r->check;
         to = to < last ? to : last;
-        save(n);
-        if (go_to(n, to))
+        if (keep(n) || go_to(n, to))
             return -1;
         if (to % r->check == 0)
             over = check(n);
@@ -303,16 +337,14 @@ static int loop(run *n, run_end *end)
 static int prepare(run *n)
 {
     const run_setup *r = n->r;
-    int64_t count = 3 * r->p->nodes;
     n->watch = watch_create(r->p, r->threads, n->e);
-    n->saved.displacement = mem_array(count, sizeof(double), "the run", n->e);
-    n->saved.velocity = mem_array(count, sizeof(double), "the run", n->e);
-    if (!n->watch || !n->saved.displacement || !n->saved.velocity)
+    n->out = outbox_create(r->p->nodes, r->frame, r->context, n->e);
+    if (!n->watch || !n->out)
         return -1;
     if (r->rate_fixed)
         n->watch->raise = 1;
-    if (r->rest >= 0 && relax_make(&n->relax, r->p, r->frequency, n->watch->rest_step, n->e))
-        return -1;
+    n->watch->differences = r->rest >= 0;
+    n->relax = relax_of(r->frequency, n->watch->rest_step);
     n->state = r->device->create(r->p, r->threads, n->e);
     return n->state ? 0 : -1;
 }
@@ -321,19 +353,18 @@ int run_go(const run_setup *r, run_end *end, err *e)
 {
     run n = {.r = r,
              .plan = run_plan(r->p->start, r->rate),
-             .saved = *r->p,
              .damping = r->damping,
              .closest = INFINITY,
              .remaining = INFINITY,
              .e = e};
     n.from = n.closest_at = n.plan.first;
-    n.saved.displacement = n.saved.velocity = NULL;
     int result = prepare(&n) ? -1 : loop(&n, end);
+    if (n.state && send(&n)) /* what is sound is written whatever happened then */
+        result = -1;
+    if (outbox_close(n.out, e))
+        result = -1;
     if (n.state)
         r->device->destroy(n.state);
-    relax_free(&n.relax);
     watch_destroy(n.watch);
-    free(n.saved.displacement);
-    free(n.saved.velocity);
     return result;
 }

@@ -6,12 +6,14 @@
  * checks, whose places depend on the count alone, from the state there. Where the state at the next check shows that it was too
  * little, the run goes back to the check before and cuts once more. So what is written out does not change the result, and
  * a run that goes on from a frame at a check takes the same steps as one that never stopped. Frames between two checks are
- * written once the second is known to be sound, for which those steps are taken again.
+ * taken on the way and written once the second is known to be sound, while the next steps are already under way. (Where they
+ * are too many to be held, those steps are taken again for them.)
  */
 #ifndef SINEW_RUN_H
 #define SINEW_RUN_H
 
 #include "device/backend.h"
+#include "tled/outbox.h"
 #include "tled/watch.h"
 
 typedef struct run_setup {
@@ -29,8 +31,8 @@ typedef struct run_setup {
     bool single;      /* numbers of single precision, which may come no closer to rest: then fail */
     double every;     /* s: a frame at each multiple; 0: the last state only */
     void *context;
-    /* A state to write out. -1 with e filled ends the run. */
-    int (*frame)(void *context, double time, const double *displacement, const double *velocity, err *e);
+    /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run. */
+    outbox_frame *frame;
     /* After every check. remaining: see run_remaining; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
                     double damping);

@@ -101,6 +101,13 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
     return p->volume ? 0 : -1;
 }
 
+/* Where among a node's elements, by their places in the lattice, the one is that has the node for this corner. */
+static int corner_rank(int32_t corner)
+{
+    const int32_t *offset = lattice_vtk[corner % 8];
+    return 7 - (offset[0] + 2 * offset[1] + 4 * offset[2]);
+}
+
 /* The corners of elements at each node, and its mass: rho V / 8 from each. */
 static int make_corners(tled_problem *p, err *e)
 {
@@ -110,12 +117,13 @@ static int make_corners(tled_problem *p, err *e)
         p->corner[i] = none;
     for (int64_t i = 0; i < p->elements * 8; i++) {
         int64_t n = p->element_node[i];
-        int at = 0;
-        while (at < 8 && p->corner[n * 8 + at] != none)
-            at++;
-        if (at == 8)
+        int32_t *list = p->corner + n * 8;
+        int at = 7;
+        if (list[at] != none)
             return err_set(e, NULL, 0, "node %lld is in more than 8 elements", (long long)n);
-        p->corner[n * 8 + at] = (int32_t)i;
+        for (; at && (list[at - 1] == none || corner_rank(list[at - 1]) > corner_rank((int32_t)i)); at--)
+            list[at] = list[at - 1];
+        list[at] = (int32_t)i;
         p->mass[n] += p->volume[p->element_volume[i / 8]].density * share;
     }
     for (int64_t n = 0; n < p->nodes; n++)

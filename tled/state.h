@@ -2,8 +2,8 @@
  * back ends (device/backend.h): their create takes a tled_problem, their step a tled_plan. The caller owns the problem; it
  * borrows the model's arrays and the script, which must outlive it.
  *
- * Forces of elements are kept one by one (element, corner, component) and each node sums those of its elements in
- * ascending order, so that the sum is the same whoever computes it in whatever order.
+ * Each node sums the forces of its elements in the order in which these stand in the lattice, x fastest, so that the sum
+ * is the same whoever computes it in whatever order, and however the model numbers its elements.
  */
 #ifndef SINEW_STATE_H
 #define SINEW_STATE_H
@@ -32,7 +32,7 @@ typedef struct tled_problem {
     const int32_t *element_volume; /* elements */
     const float *fibre;            /* elements x 3, or NULL */
     tled_volume *volume;           /* volumes; owned, as is all below */
-    int32_t *corner;               /* nodes x 8: element * 8 + corner, ascending, then elements * 8 */
+    int32_t *corner;               /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
     double *mass;                  /* nodes: kg */
     int32_t *hold;                 /* nodes x 3 */
     int64_t held;                  /* nodes with any component held */
@@ -61,6 +61,33 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
 
 /* What get() gives, nodes x 3 doubles each: m, m/s, and N: the sum of the elements' pulls at the displacement. */
 enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL };
+
+/* As many as may be taken and not yet fetched. */
+enum { TLED_TAKEN = 8 };
+
+/* What taken() fills, nodes x 3 each: m, m/s. */
+typedef struct tled_taken {
+    double *displacement, *velocity;
+} tled_taken;
+
+/* What look() is asked. */
+typedef struct tled_question {
+    double time;      /* s: where the state stands */
+    double rest;      /* 1/s2: frequencies up to this one are not told */
+    double raise;     /* by what factor the frequency told may be too high: 1.01, or 1 for exactly */
+    bool differences; /* against what was kept */
+} tled_question;
+
+/* And its answer: sums over all, in a fixed order. */
+typedef struct tled_sums {
+    double kinetic, strain;                  /* J; strain with hourglass energy, without what muscles do */
+    double acceleration, speed, moved, mass; /* squares times masses, kg m2/s4, kg m2/s2, kg m2; and kg */
+    double stiffness, inertia; /* with du, df since what was kept: du df (J), m du du (kg m2), where free */
+    double largest;            /* m2: the square of the largest displacement */
+    double frequency;          /* 1/s2: the square of the highest of any element, if past question.rest */
+    int64_t frequency_element; /* whose it is, or -1 */
+    int64_t broken;            /* an element that is inverted (J <= 0) or not a number, or -1 */
+} tled_sums;
 
 /* Makes p (zeroed) of the model, whose lattice's boxes all elements must be; at rest at time 0. kappa: the hourglass
  * coefficient. -1 with e filled and p to be freed all the same. */

@@ -10,12 +10,8 @@
 #ifndef SINEW_STEP_H
 #define SINEW_STEP_H
 
-#include "mesh/element.h"
+#include "tled/stability.h"
 #include "tled/state.h"
-
-typedef struct step_matrix {
-    double at[9][9]; /* symmetric; 1/s2; row 3 k + j: component k, axis j */
-} step_matrix;
 
 /* The stable step at rest, s: the least of all volumes that have elements. *volume (may be NULL) gets which. */
 double step_at_rest(const tled_problem *p, int32_t *volume);

@@ -5,15 +5,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { CHUNK = 256 }; /* elements, or nodes */
 
-struct watch_part {                          /* of one chunk */
-    double kinetic, strain;                  /* J */
-    double acceleration, speed, moved, mass; /* sums over mass: kg m2/s4, kg m2/s2, kg m2, kg */
-    double largest;                          /* m2 */
-    double frequency;                        /* 1/s2: the largest seen, raised by 1 % */
-    int64_t frequency_element, broken;
+struct watch_part { /* of one chunk */
+    tled_sums sum;
     bool inverted;
 };
 
@@ -43,10 +40,10 @@ static void look_at_step(const watch *w, const tled_volume *v, int64_t i, elemen
 {
     step_matrix a;
     step_matrix_of(w->p, v, h, fibre, &a);
-    if (step_below(&a, part->frequency))
+    if (step_below(&a, part->sum.frequency))
         return;
-    part->frequency = w->raise * step_largest(&a);
-    part->frequency_element = i;
+    part->sum.frequency = w->raise * step_largest(&a);
+    part->sum.frequency_element = i;
 }
 
 static void look_at_element(const watch *w, int64_t i, element_shape shape, struct watch_part *part)
@@ -60,27 +57,25 @@ static void look_at_element(const watch *w, int64_t i, element_shape shape, stru
     double hourglass = element_hourglass_energy(x, v->hourglass) + element_hourglass_energy(y, v->hourglass) +
                        element_hourglass_energy(z, v->hourglass);
     if (!(volume > 0) || !isfinite(energy) || !isfinite(hourglass)) {
-        part->inverted = part->broken < 0 ? volume <= 0 : part->inverted;
-        part->broken = part->broken < 0 ? i : part->broken;
+        part->inverted = part->sum.broken < 0 ? volume <= 0 : part->inverted;
+        part->sum.broken = part->sum.broken < 0 ? i : part->sum.broken;
         return;
     }
-    part->strain += energy * p->side[0] * p->side[1] * p->side[2] + hourglass;
+    part->sum.strain += energy * p->side[0] * p->side[1] * p->side[2] + hourglass;
     look_at_step(w, v, i, h, fibre_of(w, i), part);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     watch *w = context;
-    /* A rounding above the frequency at rest, so that elements at rest do not pass it. */
-    const double rest = 4 / (w->rest_step * w->rest_step) * (1 + 1e-9);
-    struct watch_part part = {.frequency = rest, .frequency_element = -1, .broken = -1};
+    struct watch_part part = {.sum = {.frequency = w->question.rest, .frequency_element = -1, .broken = -1}};
     element_shape shape = element_box(w->p->side[0], w->p->side[1], w->p->side[2]);
     for (int64_t i = from; i < to; i++)
         look_at_element(w, i, shape, &part);
     w->part[chunk] = part;
 }
 
-static void look_at_node(const watch *w, int64_t n, struct watch_part *part)
+static void look_at_node(const watch *w, int64_t n, tled_sums *sum)
 {
     double outside[3], square = 0, mass = w->p->mass[n];
     tled_external(w->p, w->curves, n, outside);
@@ -88,14 +83,19 @@ static void look_at_node(const watch *w, int64_t n, struct watch_part *part)
         int64_t i = 3 * n + a;
         double gap = outside[a] - w->internal[i], drive = mass * w->velocity[i] * w->velocity[i];
         bool is_free = w->p->hold[i] == HOLD_FREE;
-        part->acceleration += is_free ? gap * gap / mass : 0;
-        part->speed += is_free ? drive : 0;
-        part->kinetic += drive / 2;
+        sum->acceleration += is_free ? gap * gap / mass : 0;
+        sum->speed += is_free ? drive : 0;
+        sum->kinetic += drive / 2;
         square += w->displacement[i] * w->displacement[i];
+        if (w->question.differences && is_free) {
+            double du = w->displacement[i] - w->kept_displacement[i];
+            sum->stiffness += du * (w->internal[i] - w->kept_internal[i]);
+            sum->inertia += mass * du * du;
+        }
     }
-    part->mass += mass;
-    part->moved += mass * square;
-    part->largest = fmax(part->largest, square);
+    sum->mass += mass;
+    sum->moved += mass * square;
+    sum->largest = fmax(sum->largest, square);
 }
 
 static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -103,65 +103,115 @@ static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
     watch *w = context;
     struct watch_part part = {0};
     for (int64_t n = from; n < to; n++)
-        look_at_node(w, n, &part);
+        look_at_node(w, n, &part.sum);
     w->part[chunk] = part;
 }
 
-static void sum_elements(watch *w, int64_t chunks, struct watch_part *sum)
+static void sum_elements(watch *w, tled_sums *sum)
 {
-    watch_sight *s = &w->sight;
-    double frequency = 0;
-    s->broken = s->stable_element = -1;
-    s->stable = w->rest_step;
+    int64_t chunks = pool_chunks(w->p->elements, CHUNK);
+    sum->frequency_element = sum->broken = -1;
     for (int64_t c = 0; c < chunks; c++) {
         const struct watch_part *part = &w->part[c];
-        sum->strain += part->strain;
-        if (s->broken < 0) {
-            s->broken = part->broken;
-            s->inverted = part->inverted;
+        sum->strain += part->sum.strain;
+        if (sum->broken < 0) {
+            sum->broken = part->sum.broken;
+            w->sight.inverted = part->inverted;
         }
-        if (part->frequency_element >= 0 && part->frequency > frequency) {
-            frequency = part->frequency;
-            s->stable_element = part->frequency_element;
-            s->stable = 2 / sqrt(frequency);
+        if (part->sum.frequency_element >= 0 && part->sum.frequency > sum->frequency) {
+            sum->frequency = part->sum.frequency;
+            sum->frequency_element = part->sum.frequency_element;
         }
     }
 }
 
-static void sum_nodes(const watch *w, int64_t chunks, struct watch_part *sum)
+static void sum_nodes(const watch *w, tled_sums *sum)
 {
+    int64_t chunks = pool_chunks(w->p->nodes, CHUNK);
     for (int64_t c = 0; c < chunks; c++) {
-        const struct watch_part *part = &w->part[c];
+        const tled_sums *part = &w->part[c].sum;
         sum->kinetic += part->kinetic;
         sum->acceleration += part->acceleration;
         sum->speed += part->speed;
         sum->moved += part->moved;
         sum->mass += part->mass;
+        sum->stiffness += part->stiffness;
+        sum->inertia += part->inertia;
         sum->largest = fmax(sum->largest, part->largest);
     }
 }
 
-int watch_look(watch *w, const backend *b, void *state, double time, err *e)
+static int need(double **array, int64_t nodes, err *e)
+{
+    if (!*array)
+        *array = mem_array(nodes, 3 * sizeof **array, "the watch", e);
+    return *array ? 0 : -1;
+}
+
+/* On this machine's threads. */
+static int look_here(watch *w, const backend *b, void *state, tled_sums *sum, err *e)
 {
     const tled_problem *p = w->p;
-    struct watch_part sum = {0};
-    if (b->get(state, TLED_DISPLACEMENT, w->displacement, e) || b->get(state, TLED_VELOCITY, w->velocity, e) ||
+    if (need(&w->displacement, p->nodes, e) || need(&w->velocity, p->nodes, e) || need(&w->internal, p->nodes, e) ||
+        b->get(state, TLED_DISPLACEMENT, w->displacement, e) || b->get(state, TLED_VELOCITY, w->velocity, e) ||
         b->get(state, TLED_INTERNAL, w->internal, e))
         return -1;
-    tled_curves(p, time, w->curves);
+    *sum = (tled_sums){0};
+    tled_curves(p, w->question.time, w->curves);
     pool_run(w->threads, p->elements, CHUNK, element_work, w);
-    sum_elements(w, pool_chunks(p->elements, CHUNK), &sum);
+    sum_elements(w, sum);
     pool_run(w->threads, p->nodes, CHUNK, node_work, w);
-    sum_nodes(w, pool_chunks(p->nodes, CHUNK), &sum);
-    w->sight.time = time;
-    w->sight.kinetic = sum.kinetic;
-    w->sight.strain = sum.strain;
-    w->sight.acceleration = sqrt(sum.acceleration / sum.mass);
-    w->sight.speed = sqrt(sum.speed / sum.mass);
-    w->sight.moved = sqrt(sum.moved / sum.mass);
-    w->sight.moved_most = fmax(w->sight.moved_most, w->sight.moved);
-    w->sight.largest = sqrt(sum.largest);
+    sum_nodes(w, sum);
     return 0;
+}
+
+/* On the device, unless something is broken: then here, which tells the first. */
+static int look_there(watch *w, const backend *b, void *state, tled_sums *sum, err *e)
+{
+    if (b->look(state, &w->question, sum, e))
+        return -1;
+    if (sum->broken < 0)
+        return 0;
+    w->question.differences = false;
+    return look_here(w, b, state, sum, e);
+}
+
+int watch_look(watch *w, const backend *b, void *state, double time, err *e)
+{
+    tled_sums sum;
+    watch_sight *s = &w->sight;
+    /* A rounding above the frequency at rest, so that elements at rest do not pass it. */
+    w->question =
+        (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences && w->has_kept};
+    if (b->look ? look_there(w, b, state, &sum, e) : look_here(w, b, state, &sum, e))
+        return -1;
+    s->time = time;
+    s->kinetic = sum.kinetic;
+    s->strain = sum.strain;
+    s->acceleration = sqrt(sum.acceleration / sum.mass);
+    s->speed = sqrt(sum.speed / sum.mass);
+    s->moved = sqrt(sum.moved / sum.mass);
+    s->moved_most = fmax(s->moved_most, s->moved);
+    s->stiffness = sum.stiffness;
+    s->inertia = sum.inertia;
+    s->largest = sqrt(sum.largest);
+    s->broken = sum.broken;
+    s->stable_element = sum.frequency_element;
+    s->stable = sum.frequency_element < 0 ? w->rest_step : 2 / sqrt(sum.frequency);
+    return 0;
+}
+
+int watch_keep(watch *w, const backend *b, void *state, err *e)
+{
+    size_t size = 3 * (size_t)w->p->nodes * sizeof(double);
+    w->has_kept = true;
+    if (w->differences && !b->look) {
+        if (need(&w->kept_displacement, w->p->nodes, e) || need(&w->kept_internal, w->p->nodes, e))
+            return -1;
+        memcpy(w->kept_displacement, w->displacement, size);
+        memcpy(w->kept_internal, w->internal, size);
+    }
+    return b->keep(state, e);
 }
 
 watch *watch_create(const tled_problem *p, pool *threads, err *e)
@@ -174,12 +224,9 @@ watch *watch_create(const tled_problem *p, pool *threads, err *e)
     w->threads = threads;
     w->rest_step = step_at_rest(p, NULL);
     w->raise = 1.01;
-    w->displacement = mem_array(p->nodes, 3 * sizeof *w->displacement, "the watch", e);
-    w->velocity = mem_array(p->nodes, 3 * sizeof *w->velocity, "the watch", e);
-    w->internal = mem_array(p->nodes, 3 * sizeof *w->internal, "the watch", e);
     w->curves = mem_array(p->script->curves, 3 * sizeof *w->curves, "the watch", e);
     w->part = mem_array(pool_chunks(most, CHUNK), sizeof *w->part, "the watch", e);
-    if (!w->displacement || !w->velocity || !w->internal || !w->curves || !w->part) {
+    if (!w->curves || !w->part) {
         watch_destroy(w);
         return NULL;
     }
@@ -193,6 +240,8 @@ void watch_destroy(watch *w)
     free(w->displacement);
     free(w->velocity);
     free(w->internal);
+    free(w->kept_displacement);
+    free(w->kept_internal);
     free(w->curves);
     free(w->part);
     free(w);

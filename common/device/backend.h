@@ -1,6 +1,9 @@
 /* Back ends of a solver: a table of functions each, and the choice among them. The same for every solver: what a
  * problem, a plan and a state are is the solver's own affair. The first in a table is the one preferred; a table ends with NULL.
- * A caller owns the state that create gives, until destroy.
+ * A caller owns the state that create gives, until destroy. A state is used by one thread at a time.
+ *
+ * step, keep, back and take may return before the device is done: what went wrong then comes out of a later call. look and
+ * taken wait.
  */
 #ifndef SINEW_BACKEND_H
 #define SINEW_BACKEND_H
@@ -16,10 +19,21 @@ typedef struct backend {
     const char *(*unusable)(void);
     /* Allocates all that the steps take. The problem stays the caller's and unchanged. NULL with e filled. */
     void *(*create)(const void *problem, pool *threads, err *e);
-    /* Goes `count` steps on. -1 with e filled. */
+    /* Goes `count` steps on. -1 with e filled, as for all below. */
     int (*step)(void *state, const void *plan, int64_t count, err *e);
-    /* Copies one of the state's arrays out. -1 with e filled. */
+    /* Copies one of the state's arrays out. */
     int (*get)(void *state, int what, double *to, err *e);
+    /* Keeps a copy of the state in place of the one kept before; and goes back to it. */
+    int (*keep)(void *state, err *e);
+    int (*back)(void *state, err *e);
+    /* Takes a copy of the results as they are, to be fetched later, in the order in which they were taken. */
+    int (*take)(void *state, err *e);
+    /* Fetches the oldest that was taken. */
+    int (*taken)(void *state, void *to, err *e);
+    /* Forgets the newest `count` that were taken. */
+    void (*drop)(void *state, int count);
+    /* What the solver looks at now and then, found where the state is; NULL: the solver does it from what get gives. */
+    int (*look)(void *state, const void *question, void *answer, err *e);
     void (*destroy)(void *state);
 } backend;
 
