@@ -3,6 +3,7 @@
 CC = cc
 NVCC ?= $(shell command -v nvcc 2>/dev/null || ls /usr/local/cuda/bin/nvcc 2>/dev/null)
 CUDA ?= $(if $(NVCC),yes,no)
+CUDA_HOME ?= $(if $(NVCC),$(abspath $(dir $(realpath $(NVCC)))/..))
 PREFIX ?= /usr/local
 BUILD ?= build
 BIN ?= bin
@@ -46,26 +47,53 @@ $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
 	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -c -o $@ $<)
 
+# CUDA: machine code for sm_90, and for the rest from sm_75 on what the driver compiles. As with C, no multiply and add is fused,
+# so that a card computes what a processor does. Objects are linked by cc, so they must not want C++'s library.
+CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_75,code=compute_75
+NVCC_FLAGS = -std=c++17 -O3 -lineinfo -fmad=false $(CUDA_ARCH) -Werror all-warnings \
+	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
+CUDA_SRC := $(wildcard common/device/*.cu tled/*.cu)
+ifeq ($(CUDA),yes)
+LIB_CUDA := $(BUILD)/libsinew-cuda.a
+CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
+endif
+
+$(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(BUILD)/tled/tiles.o
+	@rm -f $@
+	@ar rcs $@ $^
+
+$(BUILD)/%.o: %.cu
+	@mkdir -p $(@D)
+	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Icommon -I. -MMD -MP -MF $(@:.o=.d) -c -o $@ $<)
+
+# Which of the two is built is known to one file, made again when that changes.
+$(BUILD)/cuda-$(CUDA):
+	@mkdir -p $(@D)
+	@rm -f $(BUILD)/cuda-yes $(BUILD)/cuda-no
+	@touch $@
+$(BUILD)/tled/backends.o: $(BUILD)/cuda-$(CUDA)
+$(BUILD)/tled/backends.o: CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
+
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 VOXELISE_SRC := $(wildcard voxelise/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
-TLED_SRC := $(wildcard tled/*.c)
+TLED_SRC := $(filter-out tled/tiles.c,$(wildcard tled/*.c))
 INFO_MODULES := $(wildcard common/tools/info_*.c)
 EXPORT_MODULES := $(wildcard common/tools/export_*.c)
 RENDER_MODULES := $(wildcard common/tools/render_*.c)
 
 define tool
-$(BIN)/$(1): $(call objects,$(2)) $(LIB)
+$(BIN)/$(1): $(call objects,$(2)) $(4) $(LIB)
 	@mkdir -p $$(@D)
-	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $(3) $$(LDLIBS))
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $(3) $(5) $$(LDLIBS))
 endef
 $(eval $(call tool,voxelise,$(VOXELISE_SRC),$$(EMBREE)))
 $(eval $(call tool,attach,$(ATTACH_SRC)))
 $(eval $(call tool,bind,bind/bind.c $(BIND_MODULES)))
 $(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
-$(eval $(call tool,tled-run,$(TLED_SRC)))
+$(eval $(call tool,tled-run,$(TLED_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
 $(eval $(call tool,sinew,common/tools/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))

@@ -19,8 +19,8 @@ AS_NEEDED = -Wl,--as-needed
 needs = $(call objects,$(shell sed -n 's|^// needs: *||p' $(1)))
 
 define test_program
-$(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB)
-	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(LDLIBS))
+$(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB_CUDA) $(LIB)
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(CUDA_LIBS) $$(LDLIBS))
 endef
 COMPARE := $(BUILD)/tests/cli/compare
 $(eval $(call test_program,tests/cli/compare))

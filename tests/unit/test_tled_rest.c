@@ -45,7 +45,7 @@ static void test_stuck(const block *what)
 {
     bench b;
     bench_make(&b, what, down, 0, .0075, 2);
-    b.setup.device = tled_backends_single[0];
+    b.setup.device = &tled_cpu_single;
     b.setup.single = true;
     b.setup.rest = 1e-7;
     int gone = bench_go(&b);
@@ -55,7 +55,7 @@ static void test_stuck(const block *what)
 
 int main(void)
 {
-    const backend *twice = tled_backends_double[0], *once = tled_backends_single[0];
+    const backend *twice = &tled_cpu_double, *once = &tled_cpu_single;
     double z = sag(&cube, .0075, twice, 4, 4, 0);
     near_(z, -1.8191e-2, .005 * 1.8191e-2, "the cube's bottom centre: %.5g m, C3D8R to 0.5 %%", z);
     z = sag(&cube, .0075, once, 4, 4, 0);

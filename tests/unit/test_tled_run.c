@@ -288,7 +288,7 @@ static const char *no_device(void)
 static void test_choice(void)
 {
     static const backend broken = {.name = "cuda", .unusable = no_device};
-    const backend *both[] = {&broken, tled_backends_double[0], NULL}, *none[] = {&broken, NULL};
+    const backend *both[] = {&broken, &tled_cpu_double, NULL}, *none[] = {&broken, NULL}, *without[] = {both[1], NULL};
     char says[100];
     err e = {0};
     const backend *took = backend_choose(both, "auto", says, sizeof says, &e);
@@ -298,11 +298,19 @@ static void test_choice(void)
     took = backend_choose(both, "cuda", says, sizeof says, &e);
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
     e = (err){0};
-    took = backend_choose(tled_backends_double, "cuda", says, sizeof says, &e);
+    took = backend_choose(without, "cuda", says, sizeof says, &e);
     ok(!took && !strcmp(e.text, "this build has no CUDA back end; have: cpu"), "%s", e.text);
     e = (err){0};
     took = backend_choose(none, "auto", says, sizeof says, &e);
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
+}
+
+/* What holds for every back end, in one precision. */
+static void test_device(const backend *device, const char *name)
+{
+    test_conserved(device, name);
+    test_same_bytes(device, name);
+    test_jump(device, name);
 }
 
 int main(void)
@@ -311,19 +319,22 @@ int main(void)
     bound.fixed_axis = 0;
     test_times();
     test_choice();
-    test_conserved(tled_backends_double[0], "double");
-    test_conserved(tled_backends_single[0], "single");
-    test_same_bytes(tled_backends_double[0], "double");
-    test_same_bytes(tled_backends_single[0], "single");
+    test_device(&tled_cpu_double, "double");
+    test_device(&tled_cpu_single, "single");
     test_contraction(&muscle, "a muscle on its side");
     test_contraction(&bound, "a muscle by its end");
     test_step_too_large();
     test_diverged();
-    test_jump(tled_backends_double[0], "double");
-    test_jump(tled_backends_single[0], "single");
     test_just_stable();
     test_place(true);
     test_place(false);
     test_let_go();
+    const char *why;
+    const backend *cuda[] = {bench_cuda(tled_backends_double, &why), bench_cuda(tled_backends_single, &why)};
+    for (int i = 0; i < 2; i++)
+        if (cuda[i])
+            test_device(cuda[i], i ? "CUDA, single" : "CUDA, double");
+        else
+            skip(1, why);
     return done_testing();
 }

@@ -4,6 +4,7 @@
 #ifndef SINEW_TLED_BENCH_H
 #define SINEW_TLED_BENCH_H
 
+#include "tled/cpu.h"
 #include "tled/relax.h"
 #include "tled/run.h"
 #include "tled/step.h"
@@ -12,6 +13,17 @@
 #include "tled_block.h"
 
 #include <string.h>
+
+/* The CUDA back end of a table, or NULL with the reason where there is none that can be used. */
+static inline const backend *bench_cuda(const backend *const *table, const char **why)
+{
+    for (*why = "built without CUDA"; *table; table++)
+        if (!strcmp((*table)->name, "cuda")) {
+            *why = (*table)->unusable();
+            return *why ? NULL : *table;
+        }
+    return NULL;
+}
 
 typedef struct bench {
     model m;
@@ -67,7 +79,7 @@ static inline void bench_make(bench *b, const block *what, const double gravity[
     b->displacement = calloc((size_t)b->problem.nodes * 6, sizeof *b->displacement);
     b->velocity = b->displacement + 3 * b->problem.nodes;
     b->setup = (run_setup){.p = &b->problem,
-                           .device = tled_backends_double[0],
+                           .device = &tled_cpu_double,
                            .steps = 200000,
                            .rest = 1e-4,
                            .adapt = true,

@@ -1,0 +1,65 @@
+#include <cuda_runtime.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+extern "C" {
+#include "device/card.h"
+}
+
+static char reason[200];
+static bool looked;
+
+const char *card_unusable(void)
+{
+    int count = 0;
+    if (looked)
+        return *reason ? reason : NULL;
+    looked = true;
+    cudaError_t code = cudaGetDeviceCount(&count);
+    if (code == cudaSuccess && count < 1)
+        snprintf(reason, sizeof reason, "there is no device");
+    else if (code == cudaSuccess)
+        code = cudaFree(NULL); /* makes the context, so that a card that cannot be used is known now */
+    if (code == cudaErrorInsufficientDriver)
+        snprintf(reason, sizeof reason, "there is no driver, or it is older than this build's CUDA %d.%d",
+                 CUDART_VERSION / 1000, CUDART_VERSION % 1000 / 10);
+    else if (code != cudaSuccess)
+        snprintf(reason, sizeof reason, "%s", cudaGetErrorString(code));
+    cudaGetLastError(); /* said: not to come out again of a later call */
+    return *reason ? reason : NULL;
+}
+
+int card_check(int code, const char *call, int64_t step, err *e)
+{
+    if (code == cudaSuccess)
+        return 0;
+    char at[40] = "";
+    if (step >= 0)
+        snprintf(at, sizeof at, " at step %lld", (long long)step);
+    return err_set(e, NULL, 0, "CUDA: %s failed%s: %s", call, at, cudaGetErrorString((cudaError_t)code));
+}
+
+void *card_take(int64_t bytes, const char *what, err *e)
+{
+    size_t left = 0, all = 0;
+    void *memory = NULL;
+    cudaError_t code = cudaMemGetInfo(&left, &all);
+    if (code == cudaSuccess && (uint64_t)bytes > left)
+        code = cudaErrorMemoryAllocation;
+    if (code == cudaSuccess)
+        code = cudaMalloc(&memory, (size_t)bytes);
+    if (code == cudaErrorMemoryAllocation) {
+        cudaGetLastError();
+        err_set(e, NULL, 0,
+                "%s takes %.4g GB of the card's memory, which has %.4g GB free of %.4g; -d cpu does without it", what,
+                1e-9 * (double)bytes, 1e-9 * (double)left, 1e-9 * (double)all);
+        return NULL;
+    }
+    return card_check(code, "cudaMalloc", -1, e) ? NULL : memory;
+}
+
+void card_give(void *memory)
+{
+    cudaFree(memory);
+}

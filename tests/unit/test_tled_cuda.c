@@ -1,0 +1,216 @@
+/* The CUDA back end against the CPU's: the same bytes in the same precision where the steps are the same, 1e-4 of the largest
+ * displacement between single precision there and double here over 10,000 steps and at rest, the same looks, the same messages.
+ * Without a card all is skipped.
+ */
+// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c
+#include "tled_bench.h"
+
+#include <inttypes.h>
+
+static const block lump = {{17, 9, 6}, {.01, .008, .0125}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}};
+static const block muscle = {{11, 6, 5}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}};
+static const block large = {{72, 72, 56}, {.001, .001, .001}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 1, 0}};
+
+static bool same(const bench *a, const bench *b)
+{
+    return a->time == b->time && a->frames == b->frames &&
+           !memcmp(a->displacement, b->displacement, (size_t)a->problem.nodes * 6 * sizeof *a->displacement);
+}
+
+/* The largest difference of a component, as a share of the largest displacement. */
+static double apart(const bench *a, const bench *b)
+{
+    double most = 0;
+    for (int64_t i = 0; i < 3 * a->problem.nodes; i++)
+        most = fmax(most, fabs(a->displacement[i] - b->displacement[i]));
+    return most / b->end.sight.largest;
+}
+
+/* All that a script can do, on a block of several bricks that hangs from a side. */
+static void add_script(bench *b)
+{
+    static const char text[] = "0 gravity 0,0,0\n"
+                               "0.02 gravity 0,1,-9.81\n"
+                               "0 force 0.17,0.072,0.075 0.03 0,0,0\n"
+                               "0.03 force 0.17,0.072,0.075 0.03 .1,.05,0\n"
+                               "0 force 0.17,0.05,0.075 0.05 .01,.02,.03\n"
+                               "0 displace 0.169,-1,-1,1,0.001,1 -,0,0\n"
+                               "0.04 displace 0.169,-1,-1,1,0.001,1 -,0.002,-0.003\n";
+    in *source = in_memory(text, strlen(text), "script", &b->e);
+    bench_must(!source || script_read(&b->script, source, &b->m, NULL, &b->e), &b->e);
+    in_close(source);
+    tled_problem_free(&b->problem);
+    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, .0075, &b->e), &b->e);
+}
+
+/* So many steps of a fraction of the stable one, which is never cut, so that both take the same. */
+static void make(bench *b, const block *what, double level, bool scripted, const backend *device, int64_t steps)
+{
+    bench_make(b, what, NULL, level, .0075, 2);
+    if (scripted)
+        add_script(b);
+    bench_steps(b, steps, b->setup.damping);
+    b->setup.device = device;
+    b->setup.rate = 3 / step_at_rest(&b->problem, NULL);
+    b->setup.rate_fixed = true;
+    b->setup.check = 50;
+    b->setup.every = .0123;
+}
+
+static void test_bytes(const block *what, double level, bool scripted, int64_t steps, const backend *cpu,
+                       const backend *cuda, const char *name)
+{
+    bench here, there;
+    make(&here, what, level, scripted, cpu, steps);
+    make(&there, what, level, scripted, cuda, steps);
+    int gone = bench_go(&here) | bench_go(&there);
+    ok(!gone && here.end.sight.largest > 1e-5, "%s: %" PRId64 " steps, %" PRId64 " frames, %.2g mm %s", name, steps,
+       there.frames, 1e3 * here.end.sight.largest, there.e.text);
+    ok(!gone && same(&here, &there), "%s: the same bytes as the CPU in the same precision", name);
+    bench_free(&here);
+    bench_free(&there);
+}
+
+static void test_all_bytes(const backend *cpu, const backend *cuda, const char *name)
+{
+    char what[80];
+    snprintf(what, sizeof what, "%s, a script", name);
+    test_bytes(&lump, 0, true, 1000, cpu, cuda, what);
+    snprintf(what, sizeof what, "%s, a muscle", name);
+    test_bytes(&muscle, .5, false, 1000, cpu, cuda, what);
+    snprintf(what, sizeof what, "%s, many bricks", name);
+    test_bytes(&large, .2, false, 20, cpu, cuda, what);
+}
+
+/* By default settings: the step may be cut, at times that differ by what single precision does to the stable step. */
+static void test_long(const backend *cuda, const char *name)
+{
+    bench here, there;
+    const double gravity[3] = {1, -2, -9.81};
+    bench_make(&here, &muscle, gravity, .6, .0075, 2);
+    bench_make(&there, &muscle, gravity, .6, .0075, 2);
+    bench_steps(&here, 10000, here.setup.damping);
+    bench_steps(&there, 10000, here.setup.damping);
+    there.setup.device = cuda;
+    int gone = bench_go(&here) | bench_go(&there);
+    ok(!gone && apart(&there, &here) < 1e-4, "%s: after 10,000 steps %.2g of the largest displacement off %s", name,
+       apart(&there, &here), there.e.text);
+    bench_free(&here);
+    bench_free(&there);
+}
+
+static void test_rest(const backend *cuda, const char *name, double tolerance)
+{
+    bench here, there;
+    const double gravity[3] = {0, 0, -9.81};
+    bench_make(&here, &lump, gravity, 0, .0075, 2);
+    bench_make(&there, &lump, gravity, 0, .0075, 2);
+    there.setup.device = cuda;
+    there.setup.single = cuda == tled_backends_single[0];
+    here.setup.rest = there.setup.rest = tolerance;
+    int gone = bench_go(&here) | bench_go(&there);
+    ok(!gone && there.end.rested && apart(&there, &here) < 2 * tolerance,
+       "%s: at rest after %" PRId64 " steps (CPU: %" PRId64 "), %.2g off %s", name, there.end.steps, here.end.steps,
+       apart(&there, &here), there.e.text);
+    bench_free(&here);
+    bench_free(&there);
+}
+
+static void test_repeats(const backend *cuda, const char *name)
+{
+    bench first, b;
+    int different = 0, gone = 0;
+    make(&first, &muscle, .7, false, cuda, 120);
+    gone |= bench_go(&first);
+    for (int i = 0; i < 100; i++) {
+        make(&b, &muscle, .7, false, cuda, 120);
+        gone |= bench_go(&b);
+        different += !same(&first, &b);
+        bench_free(&b);
+    }
+    ok(!gone && !different, "%s: 100 repeats, the same bytes", name);
+    bench_free(&first);
+}
+
+static bool close_to(double a, double b, double tolerance)
+{
+    return fabs(a - b) <= tolerance * fmax(fabs(a), fabs(b));
+}
+
+/* The device's look against that of the watch on what get() gives. */
+static void test_look(const block *what, bool scripted, const backend *cuda, const char *name, double tolerance)
+{
+    bench b;
+    backend blind = *cuda;
+    tled_plan plan = {0};
+    blind.look = NULL;
+    make(&b, what, scripted ? 0 : .8, scripted, cuda, 100);
+    plan.rate = b.setup.rate;
+    void *state = cuda->create(&b.problem, b.setup.threads, &b.e);
+    watch *w = watch_create(&b.problem, b.setup.threads, &b.e), *v = watch_create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || !w || !v, &b.e);
+    w->differences = v->differences = true;
+    for (int part = 0; part < 2; part++, plan.first += 300) {
+        bench_must(cuda->step(state, &plan, 300, &b.e), &b.e);
+        bench_must(watch_look(w, cuda, state, tled_time(&plan, 300), &b.e), &b.e);
+        bench_must(watch_look(v, &blind, state, tled_time(&plan, 300), &b.e), &b.e);
+        if (!part)
+            bench_must(watch_keep(v, &blind, state, &b.e) || watch_keep(w, cuda, state, &b.e), &b.e);
+    }
+    const watch_sight *s = &w->sight, *t = &v->sight;
+    ok(close_to(s->kinetic, t->kinetic, tolerance) && close_to(s->strain, t->strain, tolerance) &&
+           close_to(s->acceleration, t->acceleration, tolerance) && close_to(s->speed, t->speed, tolerance) &&
+           close_to(s->moved, t->moved, tolerance) && close_to(s->largest, t->largest, tolerance),
+       "%s: the same energies and means: %.9g %.9g J", name, s->kinetic, t->kinetic);
+    ok(close_to(s->stiffness, t->stiffness, tolerance) && close_to(s->inertia, t->inertia, tolerance) && s->inertia > 0,
+       "%s: and differences: %.9g %.9g", name, s->stiffness, t->stiffness);
+    ok(close_to(s->stable, t->stable, .011) && s->broken == t->broken, "%s: the stable step %.6g, %.6g ms", name,
+       1e3 * s->stable, 1e3 * t->stable);
+    w->raise = v->raise = 1;
+    bench_must(watch_look(w, cuda, state, tled_time(&plan, 0), &b.e), &b.e);
+    bench_must(watch_look(v, &blind, state, tled_time(&plan, 0), &b.e), &b.e);
+    ok(close_to(s->stable, t->stable, 1e-12) && s->stable_element == t->stable_element,
+       "%s: exactly %.12g, %.12g ms, of element %" PRId64, name, 1e3 * s->stable, 1e3 * t->stable, s->stable_element);
+    cuda->destroy(state);
+    watch_destroy(w);
+    watch_destroy(v);
+    bench_free(&b);
+}
+
+/* Diverging here and there: the same step, time and element. */
+static void test_diverged(const backend *cpu, const backend *cuda)
+{
+    bench here, there;
+    make(&here, &muscle, 1, false, cpu, 100000);
+    make(&there, &muscle, 1, false, cuda, 100000);
+    here.setup.rate = there.setup.rate = 1.5 / step_at_rest(&here.problem, NULL);
+    int gone = bench_go(&here) & bench_go(&there);
+    ok(gone && there.e.status == STATUS_DIVERGED && !strcmp(here.e.text, there.e.text), "diverges as there: %s / %s",
+       here.e.text, there.e.text);
+    bench_free(&here);
+    bench_free(&there);
+}
+
+int main(void)
+{
+    const char *why;
+    const backend *twice = bench_cuda(tled_backends_double, &why), *once = bench_cuda(tled_backends_single, &why);
+    if (!twice || !once) {
+        skip(1, why);
+        return done_testing();
+    }
+    test_all_bytes(&tled_cpu_double, twice, "double");
+    test_all_bytes(&tled_cpu_single, once, "single");
+    test_long(twice, "double");
+    test_long(once, "single");
+    test_rest(twice, "double", 1e-5);
+    test_rest(once, "single", 1e-3);
+    test_repeats(twice, "double");
+    test_repeats(once, "single");
+    test_look(&lump, true, twice, "double, a script", 1e-10);
+    test_look(&muscle, false, twice, "double, a muscle", 1e-10);
+    test_look(&muscle, false, once, "single, a muscle", 1e-6);
+    test_look(&large, false, once, "single, many bricks", 1e-6);
+    test_diverged(&tled_cpu_double, twice);
+    return done_testing();
+}

@@ -1,0 +1,221 @@
+/* A problem cut into tiles: every node owned once, every element owned once, and a pass over the tiles, each seeing no more
+ * than its own lists, gives the internal forces of a pass over elements, to the last bit. Slits are refused.
+ */
+// needs: tled/tiles.c tled/state.c tled/script.c tled/script_read.c
+#include "mesh/element.h"
+#include "mesh/lattice.h"
+#include "tled/tiles.h"
+
+#include "tap.h"
+#include "tled_block.h"
+
+#include <math.h>
+#include <string.h>
+
+static const block lump = {{17, 9, 6}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}};
+
+static double moved(int64_t node, int a)
+{
+    return 1e-3 * sin((double)(3 * node + a));
+}
+
+static void force_of(const tled_problem *p, int64_t element, double u[8][3], double f[8][3])
+{
+    element_field at, g;
+    const tled_volume *v = &p->volume[p->element_volume[element]];
+    element_law law = {v->mu, v->bulk, v->hourglass};
+    const float *d = p->fibre + 3 * element;
+    element_fibre fibre = {{d[0], d[1], d[2]}, .3 * v->peak};
+    for (int c = 0; c < 8; c++)
+        at.x.at[c] = u[c][0], at.y.at[c] = u[c][1], at.z.at[c] = u[c][2];
+    g = element_force(at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre, 1);
+    for (int c = 0; c < 8; c++)
+        f[c][0] = g.x.at[c], f[c][1] = g.y.at[c], f[c][2] = g.z.at[c];
+}
+
+/* By elements: nodes x 3. */
+static void by_elements(const tled_problem *p, double *sum)
+{
+    double u[8][3], f[8][3], *force = calloc((size_t)p->elements, sizeof f);
+    for (int64_t i = 0; i < p->elements; i++) {
+        for (int c = 0; c < 8; c++)
+            for (int a = 0; a < 3; a++)
+                u[c][a] = moved(p->element_node[8 * i + c], a);
+        force_of(p, i, u, f);
+        memcpy(force + 24 * i, f, sizeof f);
+    }
+    for (int64_t n = 0; n < p->nodes; n++)
+        for (int a = 0; a < 3; a++) {
+            sum[3 * n + a] = 0;
+            for (int i = 0; i < 8 && p->corner[8 * n + i] < 8 * p->elements; i++)
+                sum[3 * n + a] += force[3 * (int64_t)p->corner[8 * n + i] + a];
+        }
+    free(force);
+}
+
+typedef struct room { /* what a tile's threads share */
+    double u[TILE_PLACES][3], f[TILE_PLACES][8][3];
+    bool known[TILE_PLACES];
+} room;
+
+static int corner_step(const tiles *t, int c)
+{
+    return lattice_vtk[c][0] + t->grid[0] * (lattice_vtk[c][1] + t->grid[1] * lattice_vtk[c][2]);
+}
+
+static void load(const tiles *t, const tile *own, room *r)
+{
+    memset(r, 0, sizeof *r);
+    for (int32_t k = 0; k < own->nodes + own->halos; k++) {
+        bool inside = k < own->nodes;
+        int32_t n = inside ? own->node + k : t->halo_node[own->halo + k - own->nodes];
+        int place = inside ? (int)(t->node_info[n] & TILE_PLACE) : t->halo_place[own->halo + k - own->nodes];
+        r->known[place] = true;
+        for (int a = 0; a < 3; a++)
+            r->u[place][a] = moved(t->node[n], a);
+    }
+}
+
+/* By tiles. Returns whether every corner of a cell was known, and volumes and fibres are the elements'. */
+static bool by_tiles(const tled_problem *p, const tiles *t, double *sum, int *owned)
+{
+    bool good = true;
+    room *r = malloc(sizeof *r);
+    const int order[8] = {6, 7, 5, 4, 2, 3, 1, 0};
+    for (const tile *own = t->tile; own < t->tile + t->count; own++) {
+        load(t, own, r);
+        for (int32_t k = 0; k < own->cells; k++) {
+            double u[8][3];
+            uint32_t cell = t->cell[own->cell + k];
+            int32_t element = t->cell_element[own->cell + k];
+            int place = (int)(cell & TILE_PLACE);
+            for (int c = 0; c < 8; c++) {
+                good &= r->known[place + corner_step(t, c)];
+                memcpy(u[c], r->u[place + corner_step(t, c)], sizeof u[c]);
+            }
+            force_of(p, element, u, r->f[place]);
+            owned[element] += (int)(cell >> TILE_OWN & 1);
+            good &= (int32_t)(cell >> TILE_VOLUME) == p->element_volume[element];
+            good &= k >= own->fibred || !memcmp(t->fibre + 3 * (own->direction + k), p->fibre + 3 * element, 12);
+        }
+        for (int32_t n = own->node; n < own->node + own->nodes; n++)
+            for (int i = 0; i < 8; i++)
+                for (int a = 0; t->node_info[n] >> (TILE_CORNERS + order[i]) & 1 && a < 3; a++)
+                    sum[3 * t->node[n] + a] +=
+                        r->f[(int)(t->node_info[n] & TILE_PLACE) - corner_step(t, order[i])][order[i]][a];
+    }
+    free(r);
+    return good;
+}
+
+static void test_pass(const tled_problem *p, const int brick[3])
+{
+    tiles t;
+    err e = {0};
+    double *want = calloc((size_t)p->nodes * 3, sizeof *want), *got = calloc((size_t)p->nodes * 3, sizeof *got);
+    int *owned = calloc((size_t)p->elements, sizeof *owned), once = 0;
+    if (!want || !got || !owned)
+        exit(1);
+    int failed = tiles_make(&t, p, brick, &e);
+    ok(!failed && t.count > 1, "bricks of %d x %d x %d: %lld tiles, %.3g cells an element %s", brick[0], brick[1],
+       brick[2], (long long)t.count, (double)t.cells / (double)p->elements, e.text);
+    by_elements(p, want);
+    ok(!failed && by_tiles(p, &t, got, owned), "each knows what it needs");
+    for (int64_t i = 0; i < p->elements; i++)
+        once += owned[i] == 1;
+    ok(once == p->elements, "every element is owned once");
+    ok(!memcmp(want, got, (size_t)p->nodes * 3 * sizeof *want), "and the forces at all nodes are the same bytes");
+    tiles_free(&t);
+    free(want);
+    free(got);
+    free(owned);
+}
+
+static void make(model *m, script *s, tled_problem *p)
+{
+    err e = {0};
+    if (tled_problem_make(p, m, s, .0075, &e)) {
+        printf("Bail out! %s\n", e.text);
+        exit(1);
+    }
+}
+
+static void test_block(void)
+{
+    static const int bricks[][3] = {{4, 4, 4}, {8, 8, 4}, {8, 8, 8}, {1, 2, 3}};
+    model m = {0};
+    script s = {0};
+    tled_problem p = {0};
+    err e = {0};
+    block_make(&lump, &m);
+    ok(!script_add_contract(&s, &m, "m=.5", 0, NULL, &e), "a muscle contracts %s", e.text);
+    make(&m, &s, &p);
+    for (int i = 0; i < 4; i++)
+        test_pass(&p, bricks[i]);
+    tled_problem_free(&p);
+    script_free(&s);
+    model_free(&m);
+}
+
+/* A problem of two blocks, one on the other, whose nodes between them stand twice: two parts; or, where `joined`, one, as
+ * they have the first of these nodes in common (the other copy of it is in no element). */
+static void test_slit(bool joined)
+{
+    static const int brick[3] = {4, 4, 4};
+    const block what = {{5, 4, 3}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}};
+    model m = {0};
+    script s = {0};
+    tled_problem p = {0}, both;
+    tiles t;
+    err e = {0};
+    block_make(&what, &m);
+    make(&m, &s, &p);
+    both = p;
+    both.nodes *= 2;
+    both.elements *= 2;
+    const int64_t nodes = p.nodes, elements = p.elements, corners = 8 * elements;
+    double *position = malloc(6 * (size_t)nodes * sizeof *position);
+    int32_t *volume = calloc(2 * (size_t)elements, sizeof *volume);
+    int32_t *node = malloc(2 * (size_t)corners * sizeof *node), *corner = malloc(16 * (size_t)nodes * sizeof *corner);
+    both.hold = calloc((size_t)both.nodes * 3, sizeof *both.hold);
+    both.force_start = calloc((size_t)both.nodes + 2, sizeof *both.force_start);
+    if (!position || !node || !corner || !volume || !both.hold || !both.force_start)
+        exit(1);
+    for (int64_t i = 0; i < 6 * nodes; i++)
+        position[i] = p.position[i % (3 * nodes)] + (i >= 3 * nodes && i % 3 == 2 ? 3 * what.side[2] : 0);
+    for (int64_t i = 0; i < 2 * corners; i++)
+        node[i] = p.element_node[i % corners] + (i >= corners ? (int32_t)nodes : 0);
+    for (int64_t i = 0; i < 16 * nodes; i++) {
+        int32_t c = p.corner[i % (8 * nodes)];
+        corner[i] = c == corners ? (int32_t)(2 * corners) : c + (i >= 8 * nodes ? (int32_t)corners : 0);
+    }
+    if (joined)
+        node[corners] = (int32_t)block_node(&what, 0, 0, 3);
+    both.position = position;
+    both.element_node = node;
+    both.element_volume = volume;
+    both.corner = corner;
+    int failed = tiles_make(&t, &both, brick, &e);
+    if (joined)
+        ok(failed && strstr(e.text, "share a place"), "a slit is refused: %s", e.text);
+    else
+        ok(!failed && t.nodes == 2 * nodes, "two parts that touch are none %s", e.text);
+    tiles_free(&t);
+    free(position);
+    free(node);
+    free(corner);
+    free(volume);
+    free(both.hold);
+    free(both.force_start);
+    tled_problem_free(&p);
+    script_free(&s);
+    model_free(&m);
+}
+
+int main(void)
+{
+    test_block();
+    test_slit(false);
+    test_slit(true);
+    return done_testing();
+}

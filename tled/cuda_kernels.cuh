@@ -1,0 +1,150 @@
+/* The step of a tile, in `real`: the loops of the CUDA back end over element.h and node.h. One block of threads a tile: loads
+ * the displacements around it, computes its cells, sums them at its nodes, moves these on. Included by cuda_loops.cuh alone.
+ *
+ *     f_n = sum over elements at n of element_force(u),   a = g + (f_ext - f_n) / m,   then node.h.
+ */
+#ifndef SINEW_CUDA_KERNELS_CUH
+#define SINEW_CUDA_KERNELS_CUH
+
+extern "C" {
+#include "tled/node.h"
+}
+#include "tled/cuda_view.cuh"
+
+/* What a pass does: ends a step, begins the next, writes the internal forces instead of displacements. */
+enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
+
+typedef struct cuda_pass {
+    const real *from; /* displacements */
+    real *to;         /* the next ones, or internal forces */
+    real *velocity;
+    const double *now, *next; /* the curves' values */
+    element_shape shape;
+    node_factors factors;
+    int what;
+} cuda_pass;
+
+template <class G>
+__device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, const real *u,
+                           real *force)
+{
+    uint32_t cell = v.cell[t.cell + i];
+    int place = cell & TILE_PLACE;
+    const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
+    element_law law = {(real)kind.mu, (real)kind.bulk, (real)kind.hourglass};
+    element_fibre fibre = {{0, 0, 0}, 0};
+    if (i < t.fibred) {
+        const float *along = v.fibre + 3 * (int64_t)(t.direction + i);
+        fibre.along.x = along[0], fibre.along.y = along[1], fibre.along.z = along[2];
+        fibre.tension = (real)(kind.peak * p.now[3 * kind.contract]);
+    }
+    element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
+                        cuda_corners<G>(u + 2 * G::PLACES, place)};
+    element_field f = element_force(at, p.shape, law, fibre, fibre.tension != 0);
+#pragma unroll
+    for (int c = 0; c < 8; c++) {
+        force[c * G::CELLS + place] = f.x.at[c];
+        force[(8 + c) * G::CELLS + place] = f.y.at[c];
+        force[(16 + c) * G::CELLS + place] = f.z.at[c];
+    }
+}
+
+/* The sum of the pulls at a node, elements in the lattice's order. */
+template <class G> __device__ element_vector node_internal(uint32_t info, const real *force)
+{
+    constexpr int order[8] = {6, 7, 5, 4, 2, 3, 1, 0};
+    const int place = info & TILE_PLACE;
+    element_vector sum = {0, 0, 0};
+#pragma unroll
+    for (int i = 0; i < 8; i++) {
+        const int c = order[i];
+        if (info >> (TILE_CORNERS + c) & 1) {
+            const real *at = force + c * G::CELLS + place - cuda_corner<G>(c);
+            sum.x += at[0];
+            sum.y += at[8 * G::CELLS];
+            sum.z += at[16 * G::CELLS];
+        }
+    }
+    return sum;
+}
+
+/* One component of a node. outside: forces (N); hold: the curve that displaces it, or none. */
+static __device__ void move_node(const cuda_view<real> &v, const cuda_pass &p, int64_t at, int a, bool is_free,
+                                 int32_t hold, real net, real mass_inverse)
+{
+    real gravity = v.gravity < 0 ? 0 : (real)p.now[3 * v.gravity + a];
+    real acceleration = is_free ? gravity + net * mass_inverse : 0;
+    real velocity = p.velocity[at], u = p.from[at];
+    if (p.what & PASS_FINISH && is_free)
+        velocity = node_finish(velocity, acceleration, p.factors);
+    if (p.what & PASS_BEGIN) {
+        if (is_free) {
+            velocity = node_begin(velocity, acceleration, p.factors);
+            u += p.factors.dt * velocity;
+        } else if (hold >= 0) {
+            real to = (real)p.next[3 * hold + a];
+            velocity = (to - u) / p.factors.dt;
+            u = to;
+        }
+        p.to[at] = u;
+    }
+    p.velocity[at] = velocity;
+}
+
+template <class G>
+__device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, const real *force)
+{
+    const int32_t n = t.node + i;
+    const uint32_t info = v.node_info[n];
+    const real mass_inverse = v.mass_inverse[n];
+    element_vector f = node_internal<G>(info, force);
+    real net[3] = {-f.x, -f.y, -f.z};
+    int32_t hold[3] = {HOLD_STILL, HOLD_STILL, HOLD_STILL};
+    if (p.what & PASS_INTERNAL) {
+        p.to[n] = f.x, p.to[v.stride + n] = f.y, p.to[2 * v.stride + n] = f.z;
+        if (!(p.what & PASS_FINISH))
+            return;
+    }
+    if (info >> TILE_EXTRA & 1) {
+        const tile_extra *x = cuda_extra(v, n);
+        for (int a = 0; a < 3; a++)
+            hold[a] = x->hold[a];
+        for (int32_t k = x->force; k < x->force + x->forces; k++)
+            for (int a = 0; a < 3; a++)
+                net[a] += (real)(v.force_share[k] * p.now[3 * v.force_curve[k] + a]);
+    }
+    for (int a = 0; a < 3; a++)
+        move_node(v, p, a * v.stride + n, a, info >> (TILE_FREE + a) & 1, hold[a], net[a], mass_inverse);
+}
+
+template <class G> __global__ void __launch_bounds__(G::THREADS) pass_kernel(cuda_view<real> v, cuda_pass p)
+{
+    extern __shared__ double memory[];
+    real *u = (real *)memory, *force = u + 3 * G::PLACES;
+    const tile t = v.tiles[blockIdx.x];
+    cuda_load<G>(v, t, p.from, u);
+    __syncthreads();
+    for (int i = threadIdx.x; i < t.cells; i += G::THREADS)
+        cell_force<G>(v, p, t, i, u, force);
+    __syncthreads();
+    for (int i = threadIdx.x; i < t.nodes; i += G::THREADS)
+        one_node<G>(v, p, t, i, force);
+}
+
+template <class G> static size_t pass_shared(void)
+{
+    return (3 * (size_t)G::PLACES + 24 * (size_t)G::CELLS) * sizeof(real);
+}
+
+/* Lets the kernel have so much shared memory; nonzero where the card has not so much. */
+template <class G> static cudaError_t pass_allow(void)
+{
+    return cudaFuncSetAttribute(pass_kernel<G>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)pass_shared<G>());
+}
+
+template <class G> static void pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t s)
+{
+    pass_kernel<G><<<(unsigned)tiles, G::THREADS, pass_shared<G>(), s>>>(v, p);
+}
+
+#endif

@@ -1,0 +1,125 @@
+/* What the CUDA kernels of tled-run see, and the shape of their blocks; the headers of C that they share with the CPU. A view
+ * is passed to kernels by value and owns nothing. S is the type of the state's numbers: float or double.
+ *
+ * Arrays over nodes are in the tiles' order, one component after another: component a of node n at a * stride + n.
+ */
+#ifndef SINEW_CUDA_VIEW_CUH
+#define SINEW_CUDA_VIEW_CUH
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern "C" {
+#include "base/mem.h"
+#include "device/card.h"
+#include "tled/cuda.h"
+#include "tled/tiles.h"
+}
+
+#include <cuda_runtime.h>
+
+/* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one. */
+template <int X, int Y, int Z, int T> struct cuda_brick {
+    enum {
+        BX = X,
+        BY = Y,
+        BZ = Z,
+        GX = X + 2,
+        GY = Y + 2,
+        GZ = Z + 2,
+        PLACES = GX * GY * GZ,
+        CELLS = X + GX * (Y + GY * Z) + 1,
+        THREADS = T
+    };
+};
+typedef cuda_brick<4, 4, 4, 128> small_brick;
+typedef cuda_brick<8, 8, 4, 256> large_brick;
+
+typedef struct cuda_kind { /* a volume */
+    double mu, bulk, density, hourglass, peak;
+    int32_t contract; /* its curve, or -1 */
+} cuda_kind;
+
+template <class S> struct cuda_view {
+    const tile *tiles;
+    const uint32_t *node_info, *cell;
+    const int32_t *halo_node;
+    const uint16_t *halo_place;
+    const float *fibre;
+    const tile_extra *extra;
+    const int32_t *force_curve;
+    const double *force_share;
+    const S *mass_inverse;
+    const cuda_kind *kind;
+    int64_t stride;
+    int32_t nodes, extras, gravity; /* gravity: its curve, or -1 */
+    double side[3];
+};
+
+/* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. */
+template <class G, class S> __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
+{
+    for (int i = threadIdx.x; i < t.nodes; i += G::THREADS) {
+        int place = v.node_info[t.node + i] & TILE_PLACE;
+        for (int a = 0; a < 3; a++)
+            to[a * G::PLACES + place] = u[a * v.stride + t.node + i];
+    }
+    for (int i = threadIdx.x; i < t.halos; i += G::THREADS) {
+        int place = v.halo_place[t.halo + i], node = v.halo_node[t.halo + i];
+        for (int a = 0; a < 3; a++)
+            to[a * G::PLACES + place] = u[a * v.stride + node];
+    }
+}
+
+/* Where corner c of a cell lies, from its low corner; VTK order. */
+template <class G> __device__ constexpr int cuda_corner(int c)
+{
+    return (c == 1 || c == 2 || c == 5 || c == 6) + G::GX * (c == 2 || c == 3 || c == 6 || c == 7) +
+           G::GX * G::GY * (c >= 4);
+}
+
+/* One component at a cell's corners. */
+template <class G, class S> __device__ element_corners cuda_corners(const S *u, int place)
+{
+    const S *at = u + place;
+    element_corners c = {{at[cuda_corner<G>(0)], at[cuda_corner<G>(1)], at[cuda_corner<G>(2)], at[cuda_corner<G>(3)],
+                          at[cuda_corner<G>(4)], at[cuda_corner<G>(5)], at[cuda_corner<G>(6)], at[cuda_corner<G>(7)]}};
+    return c;
+}
+
+/* What the script does to a node whose TILE_EXTRA is set. */
+template <class S> __device__ const tile_extra *cuda_extra(const cuda_view<S> &v, int32_t node)
+{
+    int32_t low = 0, high = v.extras - 1;
+    while (low < high) {
+        int32_t middle = (low + high) / 2;
+        if (v.extra[middle].node < node)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return &v.extra[low];
+}
+
+/* cuda_look.cu: what look() answers, on the device. All asynchronous on the stream but for the last. */
+template <class S> struct cuda_look {
+    cuda_view<S> view;
+    bool large;                                                                      /* the bricks */
+    int64_t count;                                                                   /* tiles */
+    const S *displacement, *velocity, *internal, *kept_displacement, *kept_internal; /* the last two: or NULL */
+    const double *now;                                                               /* the curves' values */
+    tled_question question;
+    void *parts; /* cuda_look_bytes of them */
+};
+
+size_t cuda_look_bytes(int64_t tiles, int64_t nodes);
+
+/* Starts the work; *sums (on the device) gets the answer, with cells for elements. */
+template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream);
+
+#endif
