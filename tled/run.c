@@ -310,6 +310,10 @@ static int loop(run *n, run_end *end)
     int over = look(n) ? -1 : n->watch->sight.broken >= 0 ? diverged(n) : check(n);
     if (over >= 0 && !is_sound(n))
         return diverged(n);
+    if (over >= 0 && r->first) {
+        written = n->plan.first;
+        over = write_frame(n) ? -1 : over;
+    }
     while (!over && n->plan.first < last) {
         int64_t to = (n->plan.first / r->check + 1) * r->check;
         to = to < last ? to : last;

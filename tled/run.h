@@ -30,6 +30,7 @@ typedef struct run_setup {
     bool adapt;       /* find the damping on the way, from the end of the script on */
     bool single;      /* numbers of single precision, which may come no closer to rest: then fail */
     double every;     /* s: a frame at each multiple; 0: the last state only */
+    bool first;       /* and a frame of the state that the run begins from */
     void *context;
     /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run. */
     outbox_frame *frame;

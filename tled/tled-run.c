@@ -55,7 +55,7 @@ static const opt option_list[] = {
     {0, "hourglass", "K", OPT_NUMBER, offsetof(struct options, hourglass), 0, 1e3, NULL, OPT_OUTPUT,
      "hourglass coefficient [0.0075]"},
     {0, "every", "S", OPT_NUMBER, offsetof(struct options, every), 1e-12, 1e9, NULL, OPT_OUTPUT,
-     "write a frame each S seconds [the last state]"},
+     "write a frame at the start and each S seconds"},
     {0},
 };
 
@@ -80,6 +80,7 @@ typedef struct session {
     run_setup run;
     progress progress;
     int64_t next_frame; /* its index */
+    bool started;       /* the state that the run begins from has been written: as a frame that came */
     int64_t cut;        /* parts of a step, as said last */
     double stable;      /* s: at rest */
     notes warnings;
@@ -216,9 +217,11 @@ static int take_frames(session *s, bool changed, err *e)
     if (got < 0)
         goto out;
     if (count && changed)
-        notes_add(&s->warnings, "the materials changed: %lld frames dropped; going on from the last", (long long)count);
+        notes_add(&s->warnings, "the materials changed: %lld frame%s dropped; going on from the last", (long long)count,
+                  count == 1 ? "" : "s");
     if (count)
         s->next_frame = last.index + 1;
+    s->started = count && !changed;
     result = count ? tled_problem_start(&s->problem, &last, &s->warnings, e) : 0;
 out:
     frame_free(&f);
@@ -311,6 +314,7 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.p = &s->problem;
     s->run.threads = s->threads;
     s->run.every = o->every > 0 ? o->every : 0;
+    s->run.first = s->run.every > 0 && !s->started;
     s->run.context = s;
     s->run.frame = write_frame;
     s->run.checked = checked;

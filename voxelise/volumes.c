@@ -114,6 +114,11 @@ static int count_polygons(volumes *v, const obj *o, err *e)
     return 0;
 }
 
+int volumes_no_polygons(const obj *o, err *e)
+{
+    return err_set(e, o->name, 0, "no polygons; expected closed surfaces (f lines of 3 corners and more)");
+}
+
 int volumes_surfaces(volumes *v, const obj *o, err *e)
 {
     names seen = {0};
@@ -134,7 +139,7 @@ int volumes_surfaces(volumes *v, const obj *o, err *e)
         polygons += v->surface[s].polygons;
     }
     if (status == 0 && polygons == 0)
-        status = err_set(e, o->name, 0, "no polygons; expected closed surfaces (f lines of 3 corners and more)");
+        status = volumes_no_polygons(o, e);
 out:
     names_free(&seen);
     return status;

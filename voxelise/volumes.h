@@ -54,10 +54,13 @@ int volumes_read(volumes *v, in *file, const obj *o, const model *materials, not
 
 void volumes_free(volumes *v);
 
-/* ---- for the two that make plans: volumes.c and volumes_file.c */
+/* ---- for those that make plans: volumes.c and volumes_file.c, and for voxelise.c */
 
 /* Fills surface, token and token_start. */
 int volumes_surfaces(volumes *v, const obj *o, err *e);
+
+/* The error of an OBJ that has none. Returns -1. */
+int volumes_no_polygons(const obj *o, err *e);
 
 /* A surface bounds a volume. */
 typedef struct volumes_link {

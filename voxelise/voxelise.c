@@ -126,6 +126,8 @@ static int read_surface(job *j, err *e)
     in *source = in_open(j->path, e);
     int status = source ? obj_read(&j->surface, source, e) : -1;
     in_close(source);
+    if (!status && j->surface.faces == 0)
+        status = volumes_no_polygons(&j->surface, e);
     return status;
 }
 
@@ -142,7 +144,7 @@ static int ask_for_unit(const obj *o, err *e)
                 high[a] = fmax(high[a], x);
             }
     for (int a = 0; a < 3; a++)
-        d[a] = o->faces ? high[a] - low[a] : 0;
+        d[a] = high[a] - low[a];
     return err_usage(
         e,
         "%s: is in a unit that only you know: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "

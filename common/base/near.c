@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_MOST = 64 };
+enum { NAME_MOST = 64, SUGGESTIONS = 3, SUGGESTION_MOST = 100 };
 
 static bool same_letter(char a, char b)
 {
@@ -51,6 +51,26 @@ int near_name(const char *name, const char *const *names, int count)
     return best;
 }
 
+static bool begins_so(const char *name, const char *with)
+{
+    while (*with && same_letter(*name, *with))
+        name++, with++;
+    return !*with;
+}
+
+/* "'a' or 'b'": what may be meant: the nearest, or else those that begin with the name, a few of them. */
+static void suggest(char *to, size_t size, const char *name, const char *const *names, int count)
+{
+    int near = near_name(name, names, count), found = 0;
+    size_t at = 0;
+    to[0] = '\0';
+    for (int i = 0; i < count && *name && found < SUGGESTIONS; i++)
+        if (near < 0 ? begins_so(names[i], name) : i == near) {
+            snprintf(to + at, size - at, "%s'%.*s'", found++ ? " or " : "", SUGGESTION_MOST, names[i]);
+            at += strlen(to + at);
+        }
+}
+
 void near_list(char *to, size_t size, const char *const *names, int count)
 {
     static const char more[] = ", ...", comma[] = ", ";
@@ -68,13 +88,13 @@ void near_list(char *to, size_t size, const char *const *names, int count)
 int near_unknown(err *e, const char *place, int64_t line, const char *what, const char *name, const char *const *names,
                  int count)
 {
-    char list[320];
+    char list[320], meant[SUGGESTIONS * (SUGGESTION_MOST + 8)];
     if (!count)
         return err_set(e, place, line, "unknown %s '%.200s'; there is none here", what, name);
     near_list(list, sizeof list, names, count);
-    int near = near_name(name, names, count);
-    if (near < 0)
+    suggest(meant, sizeof meant, name, names, count);
+    if (!*meant)
         return err_set(e, place, line, "unknown %s '%.200s'; expected one of: %s", what, name, list);
-    return err_set(e, place, line, "unknown %s '%.200s'; did you mean '%.200s'? expected one of: %s", what, name,
-                   names[near], list);
+    return err_set(e, place, line, "unknown %s '%.200s'; did you mean %s? expected one of: %s", what, name, meant,
+                   list);
 }

@@ -108,15 +108,29 @@ static int bad_value(const opt *o, const char *text, const char *expected, err *
     return err_usage(e, "%s '%s': expected %s", name, text, expected);
 }
 
+/* As people write it: 1e9, not 1e+09. */
+static const char *bound_text(double bound, char to[32])
+{
+    snprintf(to, 32, "%g", bound);
+    char *e = strchr(to, 'e'), *digits = e ? e + 1 : NULL;
+    if (!e)
+        return to;
+    char *power = digits + strspn(digits, "+-0");
+    digits += *digits == '-';
+    memmove(digits, power, strlen(power) + 1);
+    return to;
+}
+
 /* "a number from 0 to 1": what the table allows. */
 static const char *range_text(const opt *o, const char *what, char *to, size_t size)
 {
+    char low[32], high[32];
     if (o->low == 0 && o->high == 0)
         snprintf(to, size, "%s", what);
     else if (isinf(o->high))
-        snprintf(to, size, "%s, at least %g", what, o->low);
+        snprintf(to, size, "%s, at least %s", what, bound_text(o->low, low));
     else
-        snprintf(to, size, "%s from %g to %g", what, o->low, o->high);
+        snprintf(to, size, "%s from %s to %s", what, bound_text(o->low, low), bound_text(o->high, high));
     return to;
 }
 
@@ -268,17 +282,28 @@ static int take_letters(scan *s, const char *letters, err *e)
     return 0;
 }
 
+static int missing_option(const opt_tool *tool, const opt *o, err *e)
+{
+    if (o->letter)
+        return err_usage(e, "missing option -%c, --%s; expected -%c %s; see %s --help", o->letter, o->name, o->letter,
+                         o->arg, tool->name);
+    return err_usage(e, "missing option --%s; expected --%s %s; see %s --help", o->name, o->name, o->arg, tool->name);
+}
+
 static int check_required(const scan *s, int operands, err *e)
 {
     const opt *o;
     for (int i = 0; i < 64 && (o = opt_at(s->tool, i)); i++)
         if (o->flags & OPT_REQUIRED && !(s->seen >> i & 1))
-            return err_usage(e, "--%s %s is required; see %s --help", o->name, o->arg, s->tool->name);
+            return missing_option(s->tool, o, e);
     if (operands < s->tool->operands_min)
         return err_usage(e, "missing operand; expected %s", s->tool->operands);
     if (operands > s->tool->operands_max)
         return err_usage(e, "extra operand '%s'; expected %s", s->argv[s->tool->operands_max + 1],
                          *s->tool->operands ? s->tool->operands : "none");
+    for (int i = 1; i <= operands; i++)
+        if (!*s->argv[i])
+            return err_usage(e, "operand '' has no text; expected %s", s->tool->operands);
     return 0;
 }
 

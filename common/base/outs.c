@@ -1,22 +1,15 @@
 #include "base/outs.h"
 
 #include "base/mem.h"
+#include "base/path.h"
 #include "base/temporary.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-/* The length of the folder's part of a path, its last slash included; 0: it has none. */
-static size_t folder_length(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
-}
 
 /* What path stands for, which is the caller's; NULL with e filled where no file can be put there. */
 static char *find_target(const char *path, err *e)
@@ -31,33 +24,28 @@ static char *find_target(const char *path, err *e)
         err_system(e, path, errno, "cannot write");
         return NULL;
     }
-    char *target = there ? realpath(path, NULL) : mem_text(path, e);
-    if (!target)
-        err_system(e, path, errno, "cannot find its place");
-    return target;
+    return path_target(path, e);
 }
 
 /* A short name in the target's folder that nothing has. */
 static char *name_part(outs *o, const char *target, err *e)
 {
-    size_t folder = folder_length(target), size = folder + 64;
-    char *part = mem_array((int64_t)size, 1, "a file's name", e);
+    char name[64], *part = NULL;
     struct stat s;
-    if (!part)
-        return NULL;
-    do
-        snprintf(part, size, "%.*s.sinew-%ld-%" PRId64 ".part", (int)folder, target, (long)getpid(), o->number++);
-    while (!lstat(part, &s));
+    do {
+        free(part);
+        snprintf(name, sizeof name, ".sinew-%ld-%" PRId64 ".part", (long)getpid(), o->number++);
+        part = path_join(target, path_folder(target), name, e);
+    } while (part && !lstat(part, &s));
     return part;
 }
 
 static int check_folder(const char *path, const char *target, err *e)
 {
-    size_t n = folder_length(target);
-    char *folder = mem_text(n ? target : ".", e);
+    size_t n = path_folder(target);
+    char *folder = path_join(n ? target : ".", n ? n : 1, "", e);
     if (!folder)
         return -1;
-    folder[n ? n : 1] = 0;
     int bad = access(folder, W_OK | X_OK) ? err_system(e, path, errno, "cannot create") : 0;
     free(folder);
     return bad;

@@ -1,74 +1,16 @@
 #include "base/replace.h"
 
-#include "base/mem.h"
+#include "base/path.h"
 #include "base/temporary.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { LINKS = 40, NAMES = 1000 }; /* the most links to follow, and names to try */
-
-/* The length of the folder's part of a path, its last slash included; 0: it has none. */
-static size_t folder_length(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-/* folder (its first n bytes) and name joined; the caller's. */
-static char *join(const char *folder, size_t n, const char *name, err *e)
-{
-    size_t size = n + strlen(name) + 1;
-    char *path = mem_array((int64_t)size, 1, "a path", e);
-    if (path)
-        snprintf(path, size, "%.*s%s", (int)n, folder, name);
-    return path;
-}
-
-/* What the link at path says, seen from here; the caller's. */
-static char *read_link(const char *path, err *e)
-{
-    char to[PATH_MAX];
-    ssize_t n = readlink(path, to, sizeof to - 1);
-    if (n < 0) {
-        err_system(e, path, errno, "cannot read the link");
-        return NULL;
-    }
-    to[n] = 0;
-    return join(path, to[0] == '/' ? 0 : folder_length(path), to, e);
-}
-
-/* Where a file named path would be, links followed; the caller's. */
-static char *find_target(const char *path, err *e)
-{
-    struct stat s;
-    char *at = mem_text(path, e);
-    int links = 0;
-    while (at && !lstat(at, &s) && S_ISLNK(s.st_mode)) {
-        char *next = NULL;
-        if (links++ == LINKS)
-            err_system(e, path, ELOOP, "cannot create");
-        else
-            next = read_link(at, e);
-        free(at);
-        at = next;
-    }
-    if (!at)
-        return NULL;
-    size_t n = strlen(at);
-    int code = !n || at[n - 1] == '/' ? EISDIR : lstat(at, &s) && errno != ENOENT ? errno : 0;
-    if (!code)
-        return at;
-    err_system(e, path, code, "cannot create");
-    free(at);
-    return NULL;
-}
+enum { NAMES = 1000 }; /* to try, at most */
 
 /* The permissions that a file made by open(2) would have, or those of the file that it replaces. */
 static mode_t wanted_mode(const char *target)
@@ -87,7 +29,7 @@ static int take_name(replace *r, const char *nameless, const char *path, err *e)
     char name[64];
     for (int i = 0; i < NAMES; i++) {
         snprintf(name, sizeof name, ".sinew-%ld-%d.tmp", (long)getpid(), i);
-        r->temporary = join(r->target, folder_length(r->target), name, e);
+        r->temporary = path_join(r->target, path_folder(r->target), name, e);
         if (!r->temporary)
             return -1;
         int done = nameless ? linkat(AT_FDCWD, nameless, AT_FDCWD, r->temporary, AT_SYMLINK_FOLLOW)
@@ -109,8 +51,8 @@ static int open_nameless(const char *target)
     int fd = -1;
 #ifdef O_TMPFILE
     err ignored = {0};
-    size_t n = folder_length(target);
-    char *folder = join(n ? target : "./", n ? n : 2, "", &ignored);
+    size_t n = path_folder(target);
+    char *folder = path_join(n ? target : "./", n ? n : 2, "", &ignored);
     if (folder && !access("/proc/self/fd", X_OK))
         fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     free(folder);
@@ -122,7 +64,7 @@ static int open_nameless(const char *target)
 
 int replace_open(replace *r, const char *path, err *e)
 {
-    *r = (replace){.fd = -1, .target = find_target(path, e)};
+    *r = (replace){.fd = -1, .target = path_target(path, e)};
     if (!r->target)
         return -1;
     r->fd = open_nameless(r->target);

@@ -20,10 +20,11 @@ typedef struct work {
     bool coloured; /* there is a field */
     showing showing[PICTURE_PANELS];
     double low, high; /* of the scale, SI */
-    sheet sheet;
+    sheet sheet;      /* above the strip */
     int letters;
     legend_key key[PICTURE_PANELS][64];
     int keys[PICTURE_PANELS];
+    bool one_bar, one_key; /* what several panels would repeat is once in a strip below all of them */
 } work;
 
 int picture_open(picture *p, const picture_spec *spec, font *f, pool *threads, err *e)
@@ -231,20 +232,51 @@ static int letters(const picture_spec *s)
     return size < 11 ? 11 : size > 40 ? 40 : size;
 }
 
+static bool same_keys(const work *w, int a, int b)
+{
+    bool same = w->keys[a] == w->keys[b];
+    for (int k = 0; k < w->keys[a] && same; k++) {
+        const legend_key *x = &w->key[a][k], *y = &w->key[b][k];
+        same = !strcmp(x->words, y->words) && x->round == y->round && !memcmp(x->colour, y->colour, sizeof x->colour);
+    }
+    return same;
+}
+
+/* One scale holds for all panels, so several need no more than one bar. */
+static void find_shared(work *w)
+{
+    int panels = w->p->spec->panels, bars = 0;
+    w->one_key = panels > 1 && w->keys[0];
+    for (int i = 0; i < panels; i++) {
+        bars += has_bar(w, i);
+        w->one_key = w->one_key && same_keys(w, 0, i);
+    }
+    w->one_bar = bars > 1;
+}
+
+static int keys_height(const work *w, int i, int width)
+{
+    return w->keys[i] ? legend_keys_height(w->p->font, w->letters, width, w->key[i], w->keys[i]) : 0;
+}
+
+static int bar_height(const work *w, bool there)
+{
+    return there ? legend_bar_height(w->letters) : 0;
+}
+
 /* The room that the tallest legend takes. Columns depend on it and it on their width: the first guess has none. */
 static int lay_out(work *w, err *e)
 {
     const picture_spec *s = w->p->spec;
     int head = s->captions ? 2 * w->letters : 0, foot = 0;
-    sheet_make(&w->sheet, s->width, s->height, s->panels, head, 0);
+    int height = s->height - bar_height(w, w->one_bar) - (w->one_key ? keys_height(w, 0, s->width) : 0);
+    sheet_make(&w->sheet, s->width, height, s->panels, head, 0);
     for (int i = 0; i < s->panels; i++) {
         int width = sheet_panel(&w->sheet, i).width;
-        int room = has_bar(w, i) ? legend_bar_height(w->letters) : 0;
-        if (w->keys[i])
-            room += legend_keys_height(w->p->font, w->letters, width, w->key[i], w->keys[i]);
+        int room = bar_height(w, has_bar(w, i) && !w->one_bar) + (w->one_key ? 0 : keys_height(w, i, width));
         foot = room > foot ? room : foot;
     }
-    sheet_make(&w->sheet, s->width, s->height, s->panels, head, foot);
+    sheet_make(&w->sheet, s->width, height, s->panels, head, foot);
     sheet_cell c = sheet_picture(&w->sheet, 0);
     if (c.width < 16 || c.height < 16)
         return err_set(e, NULL, 0, "--size %dx%d leaves %d x %d pixels for each picture; expected a larger one",
@@ -252,30 +284,48 @@ static int lay_out(work *w, err *e)
     return 0;
 }
 
-static int put_words(work *w, int i, err *e)
+static void put_caption(work *w, int i)
 {
     const picture_spec *s = w->p->spec;
-    image *im = &w->p->image;
-    sheet_cell c = sheet_panel(&w->sheet, i), inner = sheet_picture(&w->sheet, i);
-    int y = inner.y + inner.height, size = w->letters;
-    char caption[sizeof s->panel[i].caption + 48], shown[sizeof caption + 4], words[200];
-    if (!w->p->font)
-        return 0;
+    sheet_cell c = sheet_panel(&w->sheet, i);
+    int size = w->letters;
+    char caption[sizeof s->panel[i].caption + 48], shown[sizeof caption + 4];
     snprintf(caption, sizeof caption, "%s", s->panel[i].caption);
     if (s->panel[i].moved && w->f)
         snprintf(caption, sizeof caption, "%s, %.4g s", s->panel[i].caption, w->f->time);
     font_shorten(w->p->font, caption, c.width - size, shown);
-    if (s->captions)
-        font_draw_middle(w->p->font, im, c.x + c.width / 2, c.x, c.x + c.width, c.y + (int)lround(1.4 * size), shown,
-                         ink);
-    if (has_bar(w, i)) {
+    font_draw_middle(w->p->font, &w->p->image, c.x + c.width / 2, c.x, c.x + c.width, c.y + (int)lround(1.4 * size),
+                     shown, ink);
+}
+
+/* A bar where `bar`, and the keys of panel i where `keys`, in [x, x + width) from y down. */
+static int put_legend(work *w, int i, bool bar, bool keys, int x, int y, int width, err *e)
+{
+    picture *p = w->p;
+    if (bar) {
         double scale;
+        char words[200];
         const char *unit = field_unit(&w->field, w->m, fmax(fabs(w->low), fabs(w->high)), &scale);
         snprintf(words, sizeof words, "%s%s%s", w->field.label, *unit ? ", " : "", unit);
-        legend_bar(im, w->p->font, size, c.x, y, c.width, &w->p->map, w->low * scale, w->high * scale, words);
-        y += legend_bar_height(size);
+        legend_bar(&p->image, p->font, w->letters, x, y, width, &p->map, w->low * scale, w->high * scale, words);
+        y += legend_bar_height(w->letters);
     }
-    return legend_keys(im, w->p->font, size, c.x, y, c.width, w->key[i], w->keys[i], e);
+    return keys ? legend_keys(&p->image, p->font, w->letters, x, y, width, w->key[i], w->keys[i], e) : 0;
+}
+
+static int put_words(work *w, err *e)
+{
+    const picture_spec *s = w->p->spec;
+    int bad = 0;
+    if (!w->p->font)
+        return 0;
+    for (int i = 0; i < s->panels && !bad; i++) {
+        sheet_cell c = sheet_picture(&w->sheet, i);
+        if (s->captions)
+            put_caption(w, i);
+        bad = put_legend(w, i, has_bar(w, i) && !w->one_bar, !w->one_key, c.x, c.y + c.height, c.width, e);
+    }
+    return bad ? -1 : put_legend(w, 0, w->one_bar, w->one_key, 0, w->sheet.height, s->width, e);
 }
 
 /* ---- all together */
@@ -337,14 +387,15 @@ static int draw(work *w, err *e)
     if (w->coloured)
         find_range(w);
     make_keys(w);
+    find_shared(w);
     if (lay_out(w, e) || place_cameras(w, e))
         return -1;
     p->report = (trace_report){0};
     image_fill(&p->image, paper[s->transparent]);
     for (int i = 0; i < s->panels; i++)
-        if (trace_panel(w, i, e) || put_words(w, i, e))
+        if (trace_panel(w, i, e))
             return -1;
-    return 0;
+    return put_words(w, e);
 }
 
 int picture_draw(picture *p, const model *m, const frame *f, err *e)

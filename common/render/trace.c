@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "render/tile.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,22 +23,51 @@ static double now(void)
 
 /* ---- trees */
 
-static int add_meshes(embree *tree, const scene *s, bool solid, err *e)
+/* Where two meshes are in one plane rounding would choose between them anew at every pixel. So each is a little nearer the
+ * eye than those before it: by a share of its distance, which moves nothing in the picture, or along parallel rays. The
+ * share is above the rounding of distances and below what the rays of light are lifted by and pixels are wide. */
+static double nearer_by(const scene *s, int64_t mesh)
 {
-    for (int64_t i = 0; i < s->meshes; i++) {
-        const scene_mesh *m = &s->mesh[i];
-        int64_t faces = solid && m->transparency > 0 ? 0 : m->faces;
-        if (embree_add_faces(tree, m->corners, m->vertices, m->position, faces, m->corner, e))
-            return -1;
+    return (double)mesh * fmin(1e-5, 2e-4 / (double)s->meshes);
+}
+
+/* The mesh's places moved toward the eye; the caller's. */
+static float *bring_nearer(const scene_mesh *m, const camera *c, double share, double size, err *e)
+{
+    float *to = mem_array(3 * m->vertices, sizeof *to, "a surface", e);
+    for (int64_t i = 0; to && i < 3 * m->vertices; i++) {
+        double way = c->orthographic ? -size * c->forward[i % 3] : c->eye[i % 3] - (double)m->position[i];
+        to[i] = (float)((double)m->position[i] + share * way);
     }
+    return to;
+}
+
+static int add_mesh(embree *tree, const scene *s, int64_t i, const camera *c, double size, bool solid, err *e)
+{
+    const scene_mesh *m = &s->mesh[i];
+    int64_t faces = solid && m->transparency > 0 ? 0 : m->faces;
+    float *moved = i > 0 && faces ? bring_nearer(m, c, nearer_by(s, i), size, e) : NULL;
+    int bad = i > 0 && faces && !moved;
+    if (!bad)
+        bad = embree_add_faces(tree, m->corners, m->vertices, moved ? moved : m->position, faces, m->corner, e);
+    free(moved);
+    return bad ? -1 : 0;
+}
+
+/* size: of the scene, m. */
+static int add_meshes(embree *tree, const scene *s, const camera *c, double size, bool solid, err *e)
+{
+    for (int64_t i = 0; i < s->meshes; i++)
+        if (add_mesh(tree, s, i, c, size, solid, e))
+            return -1;
     return 0;
 }
 
 /* By one thread: with more, the order of faces in the tree, and so which of two at one place is met, would change. */
-static embree *make_tree(const scene *s, bool solid, err *e)
+static embree *make_tree(const scene *s, const camera *c, double size, bool solid, err *e)
 {
     embree *tree = embree_create(1, e);
-    int status = tree ? add_meshes(tree, s, solid, e) : -1;
+    int status = tree ? add_meshes(tree, s, c, size, solid, e) : -1;
     for (int64_t i = 0; !status && i < s->sphere_sets; i++)
         status = embree_add_spheres(tree, s->spheres[i].count, s->spheres[i].centre_radius, e);
     if (!status && !embree_commit(tree, e))
@@ -160,14 +190,16 @@ static int draw(job *j, pool *p, trace_report *r, err *e)
 static int trace_scene(const scene *s, const camera *c, image *im, pool *p, const trace_options *o, trace_report *r,
                        err *e)
 {
-    double low[3], high[3], begin = now();
+    double low[3], high[3], size = 0, begin = now();
     if (!scene_bounds(s, low, high)) {
         image_fill(im, o->background);
         return 0;
     }
-    embree *all = make_tree(s, false, e), *solid = all;
+    for (int a = 0; a < 3; a++)
+        size = fmax(size, high[a] - low[a]);
+    embree *all = make_tree(s, c, size, false, e), *solid = all;
     if (all && any_transparent(s))
-        solid = make_tree(s, true, e);
+        solid = make_tree(s, c, size, true, e);
     r->build = now() - begin;
     job j = {.view = {.scene = s, .options = o, .all = all, .solid = solid}, .image = im};
     int status = -1;

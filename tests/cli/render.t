@@ -52,6 +52,7 @@ picture() {
 }
 
 picture muscle --sheet rest,voxels,deformed --size 480x180 "$muscle"
+picture views --sheet front,left,top --colour displacement --size 480x180 "$muscle"
 picture block --show voxels --cut z=0 --colour strain --view 1,-1,2 --size 320x240 "$block"
 picture block-inside --show 'surface,muscle*' --clear skin --view back --size 320x240 "$block"
 picture sphere --transparent --size 320x240 --view bottom --angle 0 "$T/sphere.model"

@@ -76,7 +76,7 @@ run() { # ARG...
     tled-run "$@" <"$T/model"
 }
 run -q -c bar=0.4 -t 0.2 --every 0.05 --threads 1 >"$T/out"
-is "$(sinew info --get frames <"$T/out")" 4 "frames every 0.05 s to 0.2 s"
+is "$(sinew info --get frames <"$T/out")" 5 "frames every 0.05 s from 0 to 0.2 s"
 x=$(at 0.045,0.015,0.015 1)
 check "the muscle's far end has moved toward its origin by more than 5 mm ($x)" awk "BEGIN { exit !($x < -0.005) }"
 is "$(at 0,0,0 1) $(at 0,0.015,0.015 1) $(at 0,0.03,0.03 3)" "0 0 0" "rigid nodes have not moved"
@@ -93,7 +93,10 @@ check "text says the same" sinew diff "$T/out" "$T/text"
 run -q -c bar=0.4 -t 0.2 >"$T/again"
 is "$(sinew info --get node.displacement.max <"$T/again")" "$(sinew info --get node.displacement.max <"$T/out")" \
     "frames in between do not change the end"
-is "$(awk '/^frame / { printf "%d %.12g, ", $2, $3 }' "$T/text")" "0 0.05, 1 0.1, 2 0.15, 3 0.2, " "frames have index and time"
+is "$(awk '/^frame / { printf "%d %.12g, ", $2, $3 }' "$T/text")" "0 0, 1 0.05, 2 0.1, 3 0.15, 4 0.2, " "frames have index and time"
+is "$(awk '/^frame / { f = $2 } /^array node.(displacement|velocity) / { on = 1; next } /^[a-z]/ { on = 0 }
+    on && f == 0 && ($1 || $2 || $3) { n++ } END { print n + 0 }' "$T/text")" 0 "the first is the model at rest"
+is "$(run -q -c bar=0.4 -t 0 --every 0.05 | sinew info --get frames)" 1 "a run that takes no step has one"
 
 check "whatever it is told, -q says nothing" run -q -c bar=0.4 -n 3
 is "$(cat "$T/stderr")" "" "indeed nothing"
@@ -101,11 +104,18 @@ fails 0 "else it says the stable step and its own" 'stable step [0-9.]+ ms, dt [
 fails 0 "and energies with -v" 'kinetic .* strain .* stable step' run -v -c bar=0.4 -n 30
 
 # ---- Going on.
+run -q -c bar=0.4 -t 0.2 --damping 50 --every 0.1 >"$T/whole"
+run -q -c bar=0.4 -t 0.1 --damping 50 --every 0.1 >"$T/first"
+tled-run -q -c bar=0.4 -t 0.1 --damping 50 --every 0.1 <"$T/first" >"$T/second"
+check "a run of two parts is the run of both" sinew diff "$T/whole" "$T/second"
+is "$(sinew info --get frames <"$T/second")" 3 "the first part's frames are passed on, and where it ended is not written twice"
 run -q -c bar=0.4 -t 0.1 --damping 50 >"$T/first"
 tled-run -q -c bar=0.4 -t 0.1 --damping 50 <"$T/first" >"$T/second"
-run -q -c bar=0.4 -t 0.2 --damping 50 --every 0.1 >"$T/whole"
-check "a run of two parts is the run of both" sinew diff "$T/whole" "$T/second"
-is "$(sinew info --get frames <"$T/second")" 2 "the first part's frame is passed on"
+is "$(sinew info --get node.displacement.max <"$T/second")" "$(sinew info --get node.displacement.max <"$T/whole")" \
+    "nor without frames in between does the end differ"
+fails 0 "with frames dropped, the start is written" 'warning: .*1 frame dropped' \
+    sh -c "tled-run -m tissue.E=4000 -t 0.01 --every 0.01 <'$T/first' >'$T/again'"
+is "$(sinew info --get frames "$T/again")" 2 "and so is the end"
 fails 0 "other materials drop the frames" 'warning: .*1 frames? dropped' \
     sh -c "tled-run -m tissue.E=4000 -t 0.01 <'$T/first' >'$T/second'"
 is "$(sinew info --get frames <"$T/second")" 1 "and leave the new one"

@@ -26,6 +26,8 @@ wrong "half a box" "--box '1,2,3': expected X0,Y0,Z0,X1,Y1,Z1" --unit mm -s 1 --
 wrong "a box upside down" "--box: expected .* with X0 < X1" --unit mm -s 1 --box 0,0,0,1mm,1mm,-1m
 wrong "no such option" "no option --volmues; did you mean --volumes" --unit mm -s 1 --volmues x
 wrong "one surface too many" "extra operand" --unit mm -s 1 "$cube"
+fails 1 "nothing to ask the unit of" "^voxelise: stdin: no polygons; expected closed surfaces" voxelise -s 1 -o "$T/out" -
+fails 2 "a name without text" "^voxelise: operand '' has no text; expected surface.obj" voxelise -s 1 -o "$T/out" ''
 fails 2 "no surface" "^voxelise: missing operand; expected surface.obj" voxelise --unit mm -s 1 -o "$T/out"
 
 # bad NAME PATTERN ARGS...: refused.

@@ -39,6 +39,16 @@ static void unknown(void)
     e = (err){0};
     near_unknown(&e, "p", 7, "key", "qqqqqqqq", keys, 4);
     ok(!strstr(e.text, "did you mean") && strstr(e.text, "material"), "a far one is not: %s", e.text);
+    const char *muscles[] = {"Zyg_left", "skin", "zyg_right", "zyg_lower", "zyg_upper"};
+    e = (err){0};
+    near_unknown(&e, NULL, 0, "muscle", "zyg", muscles, 3);
+    ok(strstr(e.text, "did you mean 'Zyg_left' or 'zyg_right'? expected"), "what begins so: %s", e.text);
+    e = (err){0};
+    near_unknown(&e, NULL, 0, "muscle", "zyg", muscles, 5);
+    ok(strstr(e.text, "'zyg_right' or 'zyg_lower'? expected"), "three at most: %s", e.text);
+    e = (err){0};
+    near_unknown(&e, NULL, 0, "muscle", "", muscles, 5);
+    ok(!strstr(e.text, "did you mean"), "all begin with nothing: %s", e.text);
     const char *many[100];
     for (int i = 0; i < 100; i++)
         many[i] = "a_long_name_of_a_thing";

@@ -11,7 +11,7 @@ struct options {
     bool open;
     const char *name;
     int64_t cells;
-    double level;
+    double level, weight;
     opt_lengths size;
     opt_numbers gravity;
     int device;
@@ -24,6 +24,7 @@ static const opt options[] = {
     {'s', "size", "H|HX,HY,HZ", OPT_LENGTHS, TO(size), 1, 3, NULL, OPT_REQUIRED, "voxel sides"},
     {'n', "cells", "N", OPT_INT, TO(cells), 1, 100, NULL, 0, "cells"},
     {0, "level", "L", OPT_NUMBER, TO(level), 0, 1, NULL, 0, "level"},
+    {0, "weight", "W", OPT_NUMBER, TO(weight), 1e-12, 1e15, NULL, 0, "weight"},
     {'g', NULL, "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "gravity (m/s2)"},
     {'d', NULL, "DEVICE", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT, "device"},
     {0, "open", NULL, OPT_FLAG, TO(open), 0, 0, NULL, 0, "open"},
@@ -39,7 +40,7 @@ enum { WORDS = 16 };
 static int parse(const char *line, struct options *o, char **argv, char *copy, err *e)
 {
     int argc = 0;
-    *o = (struct options){.cells = -1, .level = NAN};
+    *o = (struct options){.cells = -1, .level = NAN, .weight = NAN};
     *e = (err){0};
     strcpy(copy, line);
     for (char *word = strtok(copy, " "); word && argc < WORDS; word = strtok(NULL, " "))
@@ -82,7 +83,7 @@ static void refused(void)
     static const struct {
         const char *line, *text;
     } bad[] = {
-        {"tool a.obj", "--size H|HX,HY,HZ is required"},
+        {"tool a.obj", "missing option -s, --size; expected -s H|HX,HY,HZ; see tool --help"},
         {"tool -s 1", "missing operand; expected surface.obj|-"},
         {"tool -s 1 a b c", "extra operand 'c'"},
         {"tool -s 1 a --sise 2", "no option --sise; did you mean --size?"},
@@ -93,6 +94,8 @@ static void refused(void)
         {"tool -s 1 a -n x", "a whole number from 1 to 100"},
         {"tool -s 1 a --level 1.5", "a number from 0 to 1"},
         {"tool -s 1 a --level nan", "a number from 0 to 1"},
+        {"tool -s 1 a --weight x", "a number from 1e-12 to 1e15"},
+        {"tool -s 1 a --weight 0", "a number from 1e-12 to 1e15"},
         {"tool -s 1 a -g 0,0", "X,Y,Z, numbers between commas"},
         {"tool -s 1 a -d gpu", "expected auto|cuda|cpu"},
         {"tool -s 1 a --open=yes", "--open takes no value"},
@@ -106,6 +109,12 @@ static void refused(void)
         int n = parse(bad[i].line, &o, argv, copy, &e);
         ok(n == -1 && e.status == STATUS_USAGE && strstr(e.text, bad[i].text), "%s: %s", bad[i].line, e.text);
     }
+    struct options o = {.cells = -1};
+    err e = {0};
+    char tool[] = "tool", option[] = "-s1", none[] = "", *argv[] = {tool, none, option};
+    ok(opt_parse(&table, 3, argv, &o, &e) == -1 && e.status == STATUS_USAGE &&
+           strstr(e.text, "operand '' has no text; expected surface.obj|-"),
+       "an operand without text: %s", e.text);
 }
 
 static void texts(void)

@@ -264,6 +264,42 @@ static void test_light(void)
     scene_free(&s);
 }
 
+/* One slanting square, as one quad and as many: of the two the later is seen, all over. */
+static void test_one_plane(void)
+{
+    enum { N = 7 };
+    quad part[N * N] = {0}, whole = {0};
+    for (int i = 0; i <= N * N; i++)
+        for (int k = 0; k < 4; k++) {
+            float side = i < N * N ? 1.f / N : 1, x = i < N * N ? side * (float)(i % N) : 0;
+            float y = i < N * N ? side * (float)(i / N) : 0;
+            float *at = i < N * N ? part[i].at[k] : whole.at[k];
+            x += k == 1 || k == 2 ? side : 0;
+            y += k >= 2 ? side : 0;
+            at[0] = .1f + .09f * x - .013f * y;
+            at[1] = .07f * x + .1f * y;
+            at[2] = .31f * y - .11f * x;
+        }
+    for (int which = 0; which < 4; which++) {
+        scene s = {0};
+        bool whole_last = which & 1;
+        add_quads(&s, whole_last ? part : &whole, whole_last ? N * N : 1, (scene_mesh){.colour = {1, 0, 0}}, false);
+        add_quads(&s, whole_last ? &whole : part, whole_last ? 1 : N * N, (scene_mesh){.colour = {0, 0, 1}}, false);
+        trace_options o = trace_defaults();
+        camera c = fitted(&s, "three-quarter", 160, 120, which & 2 ? 20 : 0);
+        image im = drawn(&s, &c, 160, 120, &o, 2, NULL);
+        int red = 0, blue = 0;
+        for (int i = 0; i < 160 * 120; i++) {
+            red += im.pixel[4 * i + 1] < .5f && im.pixel[4 * i] > im.pixel[4 * i + 1] + .05f;
+            blue += im.pixel[4 * i + 1] < .5f && im.pixel[4 * i + 2] > im.pixel[4 * i + 1] + .05f;
+        }
+        ok(blue > 1000 && red == 0, "two meshes in one plane, %s, %s: %d of the later, %d of the other",
+           which & 2 ? "perspective" : "parallel", whole_last ? "the whole last" : "the parts last", blue, red);
+        image_free(&im);
+        scene_free(&s);
+    }
+}
+
 static void test_shadow(void)
 {
     const quad floor_ = {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}};
@@ -486,6 +522,7 @@ int main(void)
     test_crease();
     test_same();
     test_light();
+    test_one_plane();
     test_shadow();
     test_lines();
     test_veil();

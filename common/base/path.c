@@ -1,0 +1,66 @@
+#include "base/path.h"
+
+#include "base/mem.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { LINKS = 40 }; /* the most to follow */
+
+size_t path_folder(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+char *path_join(const char *folder, size_t n, const char *name, err *e)
+{
+    size_t size = n + strlen(name) + 1;
+    char *path = mem_array((int64_t)size, 1, "a path", e);
+    if (path)
+        snprintf(path, size, "%.*s%s", (int)n, folder, name);
+    return path;
+}
+
+/* What the link at path says, seen from here; the caller's. */
+static char *read_link(const char *path, err *e)
+{
+    char to[PATH_MAX];
+    ssize_t n = readlink(path, to, sizeof to - 1);
+    if (n < 0) {
+        err_system(e, path, errno, "cannot read the link");
+        return NULL;
+    }
+    to[n] = 0;
+    return path_join(path, to[0] == '/' ? 0 : path_folder(path), to, e);
+}
+
+char *path_target(const char *path, err *e)
+{
+    struct stat s;
+    char *at = mem_text(path, e);
+    int links = 0;
+    while (at && !lstat(at, &s) && S_ISLNK(s.st_mode)) {
+        char *next = NULL;
+        if (links++ == LINKS)
+            err_system(e, path, ELOOP, "cannot create");
+        else
+            next = read_link(at, e);
+        free(at);
+        at = next;
+    }
+    if (!at)
+        return NULL;
+    size_t n = strlen(at);
+    int code = !n || at[n - 1] == '/' ? EISDIR : lstat(at, &s) && errno != ENOENT ? errno : 0;
+    if (!code)
+        return at;
+    err_system(e, path, code, "cannot create");
+    free(at);
+    return NULL;
+}

@@ -1,0 +1,19 @@
+/* Paths of files to write: the folder in one, what a link stands for. What is returned is the caller's to free.
+ */
+#ifndef SINEW_PATH_H
+#define SINEW_PATH_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+/* The length of the folder's part of a path, its last slash included; 0: it has none. */
+size_t path_folder(const char *path);
+
+/* The folder (its first n bytes) and name joined. NULL with e filled. */
+char *path_join(const char *folder, size_t n, const char *name, err *e);
+
+/* Where a file named path would be, links followed, even one to nothing. NULL with e filled where there can be none. */
+char *path_target(const char *path, err *e);
+
+#endif
