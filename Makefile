@@ -66,13 +66,13 @@ $(BUILD)/%.o: %.cu
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Icommon -I. -MMD -MP -MF $(@:.o=.d) -c -o $@ $<)
 
-# Which of the two is built is known to one file, made again when that changes.
+# Which of the two is built is known to one file and its test, made again when that changes.
 $(BUILD)/cuda-$(CUDA):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/cuda-yes $(BUILD)/cuda-no
 	@touch $@
-$(BUILD)/tled/backends.o: $(BUILD)/cuda-$(CUDA)
-$(BUILD)/tled/backends.o: CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
+$(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: $(BUILD)/cuda-$(CUDA)
+$(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))

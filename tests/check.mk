@@ -65,6 +65,21 @@ check-tests: all unit
 check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
+# ---- benchmarks: CSV, on standard output and in out/bench.csv; tests/bench keeps one of each machine
+.PHONY: bench bench-tled
+BENCH_TLED = $(BUILD)/tests/bench/bench_tled
+BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
+BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
+$(eval $(call test_program,tests/bench/bench_tled))
+bench:
+	@mkdir -p out
+	@{ tests/bench/machine; $(MAKE) --no-print-directory -s bench-tled; } | tee out/bench.csv
+bench-tled: all $(BENCH_TLED) $(BENCH_MODELS)
+	@$(BENCH_TLED) $(shell nproc) 5 all runs .3 $(BENCH_MODELS)
+$(BUILD)/tests/bench/face_%mm: all
+	@mkdir -p $(@D)
+	@$(BIN)/voxelise -q --unit mm -s $* $(BENCH_FACE) | $(BIN)/attach -q >$@
+
 # ---- other builds, each in its own folder
 .PHONY: clang sanitize fuzz fuzz-run
 clang:
@@ -91,7 +106,7 @@ FOLDERS = $(filter-out $(BUILD)/ $(BIN)/ out/,$(wildcard */))
 found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(FOLDERS)))
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
-SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:

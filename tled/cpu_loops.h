@@ -35,7 +35,6 @@ typedef struct cpu_state {
     cpu_kind *kind;                               /* volumes */
     real *displacement, *velocity, *acceleration; /* nodes x 3: all at one time, after each step */
     cpu_copy kept, taken[TLED_TAKEN];             /* made when first wanted */
-    int first_taken, count_taken;                 /* a ring */
     real *force;                                  /* elements x 8 x 3: what elements pull with; then zeros */
     real *mass_inverse;                           /* nodes */
     double *now, *next;                           /* the curves' values, 3 a curve */
@@ -322,38 +321,39 @@ static int cpu_back(void *state, err *e)
     return 0;
 }
 
-static int cpu_take(void *state, err *e)
+static int cpu_take(void *state, int slot, err *e)
 {
     cpu_state *s = state;
-    cpu_copy *to = &s->taken[(s->first_taken + s->count_taken) % TLED_TAKEN];
+    cpu_copy *to = &s->taken[slot];
     size_t size = 3 * (size_t)s->p->nodes * sizeof *s->displacement;
     if (copy_make(to, s->p, e))
         return -1;
     memcpy(to->displacement, s->displacement, size);
     memcpy(to->velocity, s->velocity, size);
-    s->count_taken++;
     return 0;
 }
 
-static int cpu_taken(void *state, void *to, err *e)
+static int cpu_taken(void *state, int slot, void *to, err *e)
 {
-    cpu_state *s = state;
+    const cpu_state *s = state;
     const tled_taken *out = to;
-    const cpu_copy *from = &s->taken[s->first_taken];
+    const cpu_copy *from = &s->taken[slot];
     (void)e;
     for (int64_t i = 0; i < 3 * s->p->nodes; i++) {
         out->displacement[i] = from->displacement[i];
         out->velocity[i] = from->velocity[i];
     }
-    s->first_taken = (s->first_taken + 1) % TLED_TAKEN;
-    s->count_taken--;
     return 0;
 }
 
-static void cpu_drop(void *state, int count)
+static int64_t cpu_bytes(const void *state)
 {
-    cpu_state *s = state;
-    s->count_taken -= count;
+    const cpu_state *s = state;
+    int64_t bytes = (s->p->elements + 1) * 24 * (int64_t)sizeof(real) + s->p->nodes * 10 * (int64_t)sizeof(real);
+    bytes += s->kept.acceleration ? s->p->nodes * 9 * (int64_t)sizeof(real) : 0;
+    for (int i = 0; i < TLED_TAKEN; i++)
+        bytes += s->taken[i].velocity ? s->p->nodes * 6 * (int64_t)sizeof(real) : 0;
+    return bytes;
 }
 
 static void cpu_destroy(void *state)
@@ -433,5 +433,5 @@ const backend CPU_BACKEND = {.name = "cpu",
                              .back = cpu_back,
                              .take = cpu_take,
                              .taken = cpu_taken,
-                             .drop = cpu_drop,
+                             .bytes = cpu_bytes,
                              .destroy = cpu_destroy};

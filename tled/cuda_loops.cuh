@@ -7,7 +7,12 @@
  */
 #include "tled/cuda_kernels.cuh"
 
-enum { TABLE_STEPS = 64, TABLES = 2, COPY_CHUNK = 4096 };
+enum {
+    TABLE_STEPS = 64,
+    TABLES = 2,
+    COPY_CHUNK = 4096,
+    FRAME_DIRECT = 2 << 20 /* bytes: a frame that is copied sooner than it is worth its own memory on the card */
+};
 
 typedef struct cuda_frame { /* results on their way to the host; made when first wanted */
     real *host;             /* pinned: displacement, then velocity */
@@ -18,7 +23,7 @@ typedef struct cuda_state {
     const tled_problem *p;
     pool *threads;
     tiles tiles;
-    bool large; /* its bricks */
+    cuda_size size; /* of its bricks */
     cuda_view<real> view;
     element_shape shape;
     char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
@@ -137,8 +142,10 @@ out:
 
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
-    if (s->large)
+    if (s->size == CUDA_LARGE)
         pass_start<large_brick>(s->view, *p, s->tiles.count, s->stream);
+    else if (s->size == CUDA_MIDDLE)
+        pass_start<middle_brick>(s->view, *p, s->tiles.count, s->stream);
     else
         pass_start<small_brick>(s->view, *p, s->tiles.count, s->stream);
     return card_check(cudaGetLastError(), "the start of a pass", s->step, e);
@@ -300,51 +307,72 @@ static int cuda_back(void *state, err *e)
 static int make_frame(cuda_state *s, cuda_frame *f, err *e)
 {
     const int64_t bytes = 6 * s->view.stride * (int64_t)sizeof(real);
-    if (!s->frame)
+    if (bytes > FRAME_DIRECT && !s->frame)
         s->frame = (real *)card_take(bytes, "a frame", e);
-    if (!s->frame || f->host)
-        return s->frame ? 0 : -1;
+    if (bytes > FRAME_DIRECT && !s->frame)
+        return -1;
+    if (f->host)
+        return 0;
     return CUDA_TRY(cudaEventCreateWithFlags(&f->arrived, cudaEventDisableTiming)) ||
                    CUDA_TRY(cudaMallocHost((void **)&f->host, (size_t)bytes))
                ? -1
                : 0;
 }
 
-/* Copies the results on the card, and from that copy to the host in a stream of its own, while the steps go on. */
-static int cuda_take(void *state, err *e)
+/* To the host, between two steps. */
+static int send_direct(cuda_state *s, const cuda_frame *f, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
     const int64_t n = 3 * s->view.stride;
-    cuda_frame *f = &s->taken[(s->first_taken + s->count_taken) % TLED_TAKEN];
-    if (make_frame(s, f, e) || CUDA_TRY(cudaStreamWaitEvent(s->stream, s->frame_free, 0)) ||
-        copy(s, s->frame, s->displacement, n, e) || copy(s, s->frame + n, s->velocity, n, e) ||
-        CUDA_TRY(cudaEventRecord(s->frame_ready, s->stream)) ||
-        CUDA_TRY(cudaStreamWaitEvent(s->sending, s->frame_ready, 0)) ||
-        CUDA_TRY(
-            cudaMemcpyAsync(f->host, s->frame, 2 * (size_t)n * sizeof(real), cudaMemcpyDeviceToHost, s->sending)) ||
-        CUDA_TRY(cudaEventRecord(s->frame_free, s->sending)) || CUDA_TRY(cudaEventRecord(f->arrived, s->sending)))
-        return -1;
-    s->count_taken++;
-    return 0;
+    const size_t bytes = (size_t)n * sizeof(real);
+    return CUDA_TRY(cudaMemcpyAsync(f->host, s->displacement, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
+                   CUDA_TRY(cudaMemcpyAsync(f->host + n, s->velocity, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
+                   CUDA_TRY(cudaEventRecord(f->arrived, s->stream))
+               ? -1
+               : 0;
 }
 
-static int cuda_taken(void *state, void *to, err *e)
+/* Copies the results on the card, and from that copy to the host in a stream of its own, while the steps go on. */
+static int send_aside(cuda_state *s, const cuda_frame *f, err *e)
+{
+    const int64_t n = 3 * s->view.stride;
+    return CUDA_TRY(cudaStreamWaitEvent(s->stream, s->frame_free, 0)) || copy(s, s->frame, s->displacement, n, e) ||
+                   copy(s, s->frame + n, s->velocity, n, e) || CUDA_TRY(cudaEventRecord(s->frame_ready, s->stream)) ||
+                   CUDA_TRY(cudaStreamWaitEvent(s->sending, s->frame_ready, 0)) ||
+                   CUDA_TRY(cudaMemcpyAsync(f->host, s->frame, 2 * (size_t)n * sizeof(real), cudaMemcpyDeviceToHost,
+                                            s->sending)) ||
+                   CUDA_TRY(cudaEventRecord(s->frame_free, s->sending)) ||
+                   CUDA_TRY(cudaEventRecord(f->arrived, s->sending))
+               ? -1
+               : 0;
+}
+
+static int cuda_take(void *state, int slot, err *e)
+{
+    cuda_state *s = (cuda_state *)state;
+    cuda_frame *f = &s->taken[slot];
+    if (make_frame(s, f, e))
+        return -1;
+    return s->frame ? send_aside(s, f, e) : send_direct(s, f, e);
+}
+
+static int cuda_taken(void *state, int slot, void *to, err *e)
 {
     cuda_state *s = (cuda_state *)state;
     const tled_taken *out = (const tled_taken *)to;
-    const cuda_frame *f = &s->taken[s->first_taken];
+    const cuda_frame *f = &s->taken[slot];
+    const permutation u = {s, f->host, out->displacement}, v = {s, f->host + 3 * s->view.stride, out->velocity};
     if (CUDA_TRY(cudaEventSynchronize(f->arrived)))
         return -1;
-    permute(s, f->host, out->displacement);
-    permute(s, f->host + 3 * s->view.stride, out->velocity);
-    s->first_taken = (s->first_taken + 1) % TLED_TAKEN;
-    s->count_taken--;
+    permute_work((void *)&u, 0, 0, s->tiles.nodes);
+    permute_work((void *)&v, 0, 0, s->tiles.nodes);
     return 0;
 }
 
-static void cuda_drop(void *state, int count)
+static int64_t cuda_bytes(const void *state)
 {
-    ((cuda_state *)state)->count_taken -= count;
+    const cuda_state *s = (const cuda_state *)state;
+    const int64_t rows = 3 * s->view.stride * (int64_t)sizeof(real);
+    return s->bytes + (s->kept_internal ? rows : 0) + (s->frame ? 2 * rows : 0);
 }
 
 static int cuda_look_at(void *state, const void *question, void *answer, err *e)
@@ -358,7 +386,7 @@ static int cuda_look_at(void *state, const void *question, void *answer, err *e)
     if ((q->differences && !s->kept_internal) || find_internal(s, e) || put_table(s, &here, 0, 0, &rows, e))
         return -1;
     const real *kept = q->differences && s->has_kept_internal ? s->kept_displacement : NULL;
-    cuda_look<real> l = {s->view,     s->large, s->tiles.count, s->displacement,
+    cuda_look<real> l = {s->view,     s->size,  s->tiles.count, s->displacement,
                          s->velocity, s->spare, kept,           s->kept_internal,
                          rows,        *q,       s->look_parts};
     if (card_check(cuda_look_start(&l, s->sums, s->stream), "the start of a look", s->step, e) ||
@@ -412,27 +440,34 @@ static void cuda_destroy(void *state)
     free(s);
 }
 
-/* Large bricks compute fewer elements twice; small ones make enough blocks of a small model for the whole card. */
-static int choose_brick(cuda_state *s, err *e)
+template <class G> static int cut_in(cuda_state *s, err *e)
+{
+    static const int brick[3] = {G::BX, G::BY, G::BZ};
+    return CUDA_TRY(pass_allow<G>()) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
+}
+
+/* By how many bricks of a size a multiprocessor would get, from what was measured on an H200. */
+static int cut(cuda_state *s, err *e)
 {
     int processors = 0, device = 0;
     if (CUDA_TRY(cudaGetDevice(&device)) ||
         CUDA_TRY(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device)))
         return -1;
-    s->large = sizeof(real) == sizeof(float) && s->p->nodes > (int64_t)processors * 8 * 256 &&
-               pass_allow<large_brick>() == cudaSuccess;
-    cudaGetLastError();
-    if (!s->large && CUDA_TRY(pass_allow<small_brick>()))
-        return -1;
-    static const int small[3] = {small_brick::BX, small_brick::BY, small_brick::BZ};
-    static const int large[3] = {large_brick::BX, large_brick::BY, large_brick::BZ};
-    return tiles_make(&s->tiles, s->p, s->large ? large : small, e);
+    const int64_t each = s->p->nodes / processors;
+    s->size = each < 150 ? CUDA_SMALL : CUDA_MIDDLE;
+    if (sizeof(real) == sizeof(float) && each >= 3000) {
+        s->size = pass_allow<large_brick>() == cudaSuccess ? CUDA_LARGE : CUDA_MIDDLE;
+        cudaGetLastError(); /* a card with too little shared memory for them has said so */
+    }
+    return s->size == CUDA_LARGE    ? cut_in<large_brick>(s, e)
+           : s->size == CUDA_MIDDLE ? cut_in<middle_brick>(s, e)
+                                    : cut_in<small_brick>(s, e);
 }
 
 static int fill(cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
-    if (choose_brick(s, e))
+    if (cut(s, e))
         return -1;
     s->view.stride = (p->nodes + 31) / 32 * 32;
     s->view.nodes = (int32_t)p->nodes;
@@ -461,5 +496,5 @@ static void *cuda_create(const void *problem, pool *threads, err *e)
     return s;
 }
 
-const backend CUDA_BACKEND = {"cuda",    card_unusable, cuda_create, cuda_step, cuda_get,     cuda_keep,
-                              cuda_back, cuda_take,     cuda_taken,  cuda_drop, cuda_look_at, cuda_destroy};
+const backend CUDA_BACKEND = {"cuda",    card_unusable, cuda_create, cuda_step,    cuda_get,   cuda_keep,
+                              cuda_back, cuda_take,     cuda_taken,  cuda_look_at, cuda_bytes, cuda_destroy};

@@ -37,8 +37,11 @@ template <int X, int Y, int Z, int T> struct cuda_brick {
         THREADS = T
     };
 };
+/* The larger, the fewer elements are computed twice; the smaller, the more blocks there are for the whole card. */
 typedef cuda_brick<4, 4, 4, 128> small_brick;
+typedef cuda_brick<8, 4, 4, 128> middle_brick;
 typedef cuda_brick<8, 8, 4, 256> large_brick;
+typedef enum cuda_size { CUDA_SMALL, CUDA_MIDDLE, CUDA_LARGE } cuda_size;
 
 typedef struct cuda_kind { /* a volume */
     double mu, bulk, density, hourglass, peak;
@@ -109,7 +112,7 @@ template <class S> __device__ const tile_extra *cuda_extra(const cuda_view<S> &v
 /* cuda_look.cu: what look() answers, on the device. All asynchronous on the stream but for the last. */
 template <class S> struct cuda_look {
     cuda_view<S> view;
-    bool large;                                                                      /* the bricks */
+    cuda_size size;                                                                  /* the bricks */
     int64_t count;                                                                   /* tiles */
     const S *displacement, *velocity, *internal, *kept_displacement, *kept_internal; /* the last two: or NULL */
     const double *now;                                                               /* the curves' values */

@@ -5,20 +5,17 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-enum { BUFFERS = 3 };
-
-typedef struct letter {
-    double *displacement, *velocity, time; /* nodes x 3 */
-} letter;
-
 struct outbox {
+    const backend *device;
+    void *state;
     outbox_frame *write;
     void *context;
-    int64_t nodes;
-    letter letter[BUFFERS]; /* a ring; made when first wanted */
-    int64_t sent, written;  /* how many so far */
+    tled_taken frame;     /* what is being written */
+    int slot[TLED_TAKEN]; /* what is sent: a ring */
+    double time[TLED_TAKEN];
+    int64_t sent, written; /* how many so far */
     bool closing, running;
-    err e; /* the writer's */
+    err e; /* the thread's */
     pthread_t thread;
     pthread_mutex_t lock;
     pthread_cond_t changed;
@@ -34,12 +31,13 @@ static void *deliver(void *context)
             pthread_cond_wait(&o->changed, &o->lock);
         if (o->written == o->sent)
             break;
-        const letter *l = &o->letter[o->written % BUFFERS];
+        int slot = o->slot[o->written % TLED_TAKEN];
+        double time = o->time[o->written % TLED_TAKEN];
         bool broken = o->e.status != 0;
         pthread_mutex_unlock(&o->lock);
         err e = {0};
-        if (!broken)
-            o->write(o->context, l->time, l->displacement, l->velocity, &e);
+        if (!broken && !o->device->taken(o->state, slot, &o->frame, &e))
+            o->write(o->context, time, o->frame.displacement, o->frame.velocity, &e);
         pthread_mutex_lock(&o->lock);
         if (!broken)
             o->e = e;
@@ -50,54 +48,51 @@ static void *deliver(void *context)
     return NULL;
 }
 
-outbox *outbox_create(int64_t nodes, outbox_frame *write, void *context, err *e)
+outbox *outbox_create(const tled_problem *p, const backend *device, void *state, outbox_frame *write, void *context,
+                      err *e)
 {
     outbox *o = mem_array(1, sizeof *o, "the frames", e);
     if (!o)
         return NULL;
+    o->device = device;
+    o->state = state;
     o->write = write;
     o->context = context;
-    o->nodes = nodes;
     pthread_mutex_init(&o->lock, NULL);
     pthread_cond_init(&o->changed, NULL);
-    int code = pthread_create(&o->thread, NULL, deliver, o);
-    o->running = !code;
-    if (code) {
+    o->frame.displacement = mem_array(p->nodes, 3 * sizeof *o->frame.displacement, "the frames", e);
+    o->frame.velocity = mem_array(p->nodes, 3 * sizeof *o->frame.velocity, "the frames", e);
+    bool whole = o->frame.displacement && o->frame.velocity;
+    int code = whole ? pthread_create(&o->thread, NULL, deliver, o) : 0;
+    o->running = whole && !code;
+    if (code)
         err_system(e, NULL, code, "a thread for the frames");
-        outbox_close(o, e);
-        return NULL;
-    }
-    return o;
+    if (o->running)
+        return o;
+    outbox_close(o, e);
+    return NULL;
 }
 
-int outbox_next(outbox *o, tled_taken *to, err *e)
+void outbox_send(outbox *o, int slot, double time)
 {
     pthread_mutex_lock(&o->lock);
-    while (o->sent - o->written == BUFFERS)
+    o->slot[o->sent % TLED_TAKEN] = slot;
+    o->time[o->sent % TLED_TAKEN] = time;
+    o->sent++;
+    pthread_cond_broadcast(&o->changed);
+    pthread_mutex_unlock(&o->lock);
+}
+
+int outbox_wait(outbox *o, int64_t index, err *e)
+{
+    pthread_mutex_lock(&o->lock);
+    while (o->written <= index)
         pthread_cond_wait(&o->changed, &o->lock);
     bool broken = o->e.status != 0;
     if (broken && !e->status)
         *e = o->e;
     pthread_mutex_unlock(&o->lock);
-    if (broken)
-        return -1;
-    letter *l = &o->letter[o->sent % BUFFERS];
-    if (!l->displacement)
-        l->displacement = mem_array(o->nodes, 6 * sizeof *l->displacement, "the frames", e);
-    if (!l->displacement)
-        return -1;
-    l->velocity = l->displacement + 3 * o->nodes;
-    to->displacement = l->displacement;
-    to->velocity = l->velocity;
-    return 0;
-}
-
-void outbox_send(outbox *o, double time)
-{
-    pthread_mutex_lock(&o->lock);
-    o->letter[o->sent++ % BUFFERS].time = time;
-    pthread_cond_broadcast(&o->changed);
-    pthread_mutex_unlock(&o->lock);
+    return broken ? -1 : 0;
 }
 
 int outbox_close(outbox *o, err *e)
@@ -114,8 +109,8 @@ int outbox_close(outbox *o, err *e)
     bool broken = o->e.status != 0;
     if (broken && !e->status)
         *e = o->e;
-    for (int i = 0; i < BUFFERS; i++)
-        free(o->letter[i].displacement);
+    free(o->frame.displacement);
+    free(o->frame.velocity);
     pthread_mutex_destroy(&o->lock);
     pthread_cond_destroy(&o->changed);
     free(o);

@@ -24,9 +24,12 @@ typedef struct run {
     tled_plan plan;     /* plan.first: steps counted */
     int64_t from;       /* the first of this run */
     int64_t kept_first; /* plan.first of the state that is kept: that at the last check */
-    /* Frames that the device has taken, in a ring: `sound` of them to be written, after them those not known to be. */
+    /* Frames are numbered, and taken into slots by their numbers modulo `slots`: `sent` of them are the outbox's, then come
+     * those not yet known to be sound. */
+    int slots;
     double frame_time[TLED_TAKEN];
-    int first_frame, sound, unsure;
+    int64_t sent;
+    int unsure;
     int cuts;
     double damping;
     double closest; /* to rest so far, as a share; and the step that it came so close in */
@@ -62,10 +65,12 @@ static double step_now(const run *n)
 }
 
 /* Status 3, with where and when, of what was looked at last. Returns -1. */
-static int diverged(const run *n)
+static int diverged(run *n)
 {
     const tled_problem *p = n->r->p;
     const watch_sight *s = &n->watch->sight;
+    if (watch_tell(n->watch, n->r->device, n->state, n->e))
+        return -1;
     int64_t element = s->broken >= 0 ? s->broken : s->stable_element >= 0 ? s->stable_element : 0;
     char what[200] = "is no longer finite";
     if (s->broken >= 0 && s->inverted)
@@ -135,31 +140,26 @@ static int advance(run *n, int64_t to)
 /* Takes a frame of the state of now, which may yet turn out to be unsound. */
 static int take(run *n)
 {
-    n->frame_time[(n->first_frame + n->sound + n->unsure++) % TLED_TAKEN] = tled_time(&n->plan, 0);
-    return n->r->device->take(n->state, n->e);
+    int64_t index = n->sent + n->unsure++;
+    if (index >= n->slots && outbox_wait(n->out, index - n->slots, n->e))
+        return -1;
+    n->frame_time[index % n->slots] = tled_time(&n->plan, 0);
+    return n->r->device->take(n->state, (int)(index % n->slots), n->e);
 }
 
-/* Hands on the frames that are sound. */
-static int send(run *n)
+/* Those not known to be sound are: hands them on. */
+static void send(run *n)
 {
-    tled_taken to;
-    for (; n->sound; n->sound--, n->first_frame = (n->first_frame + 1) % TLED_TAKEN) {
-        if (outbox_next(n->out, &to, n->e) || n->r->device->taken(n->state, &to, n->e))
-            return -1;
-        outbox_send(n->out, n->frame_time[n->first_frame]);
-    }
-    return 0;
+    for (; n->unsure; n->unsure--, n->sent++)
+        outbox_send(n->out, (int)(n->sent % n->slots), n->frame_time[n->sent % n->slots]);
 }
 
-/* Of a state that is sound, as all before it are. It is handed on with the next. */
+/* Of a state that is sound, as all before it are. */
 static int write_frame(run *n)
 {
-    if (n->sound == TLED_TAKEN && send(n))
-        return -1;
     if (take(n))
         return -1;
-    n->sound += n->unsure;
-    n->unsure = 0;
+    send(n);
     return 0;
 }
 
@@ -215,7 +215,7 @@ static int find_break(run *n, int64_t to)
 static bool can_take(const run *n, int64_t to)
 {
     int64_t at = n->plan.first;
-    for (int count = 0; count < TLED_TAKEN / 2; count++) {
+    for (int count = 0; count < n->slots; count++) {
         at = next_frame(n, at);
         if (at >= to)
             return true;
@@ -230,19 +230,17 @@ static int cut_to(run *n, int64_t to, bool taking)
         for (int64_t at = next_frame(n, n->plan.first); taking && at < to; at = next_frame(n, at))
             if (advance(n, at) || take(n))
                 return -1;
-        if (advance(n, to) || send(n) || look(n))
+        if (advance(n, to) || look(n))
             return -1;
         if (is_sound(n))
             break;
-        n->r->device->drop(n->state, n->unsure);
         n->unsure = 0;
         if (n->r->rate_fixed || n->cuts == CUTS_MAX)
             return find_break(n, to);
         if (go_back(n))
             return -1;
     }
-    n->sound += n->unsure;
-    n->unsure = 0;
+    send(n);
     return 0;
 }
 
@@ -338,19 +336,27 @@ static int loop(run *n, run_end *end)
     return over < 0 ? -1 : written == n->plan.first ? 0 : write_frame(n);
 }
 
+/* As many as frames between two checks, and one that is still being written; where those are too many, fewer. */
+static int choose_slots(const run_setup *r)
+{
+    double between = r->every > 0 ? ceil((double)r->check / r->rate / r->every) : 0;
+    return between + 2 < TLED_TAKEN ? (int)between + 2 : TLED_TAKEN;
+}
+
 static int prepare(run *n)
 {
     const run_setup *r = n->r;
+    n->slots = choose_slots(r);
     n->watch = watch_create(r->p, r->threads, n->e);
-    n->out = outbox_create(r->p->nodes, r->frame, r->context, n->e);
-    if (!n->watch || !n->out)
+    if (!n->watch)
         return -1;
     if (r->rate_fixed)
         n->watch->raise = 1;
     n->watch->differences = r->rest >= 0;
     n->relax = relax_of(r->frequency, n->watch->rest_step);
     n->state = r->device->create(r->p, r->threads, n->e);
-    return n->state ? 0 : -1;
+    n->out = n->state ? outbox_create(r->p, r->device, n->state, r->frame, r->context, n->e) : NULL;
+    return n->out ? 0 : -1;
 }
 
 int run_go(const run_setup *r, run_end *end, err *e)
@@ -363,9 +369,8 @@ int run_go(const run_setup *r, run_end *end, err *e)
              .e = e};
     n.from = n.closest_at = n.plan.first;
     int result = prepare(&n) ? -1 : loop(&n, end);
-    if (n.state && send(&n)) /* what is sound is written whatever happened then */
-        result = -1;
-    if (outbox_close(n.out, e))
+    end->bytes = n.state ? r->device->bytes(n.state) : 0;
+    if (outbox_close(n.out, e)) /* what is sound is written whatever happened then */
         result = -1;
     if (n.state)
         r->device->destroy(n.state);

@@ -44,6 +44,7 @@ typedef struct run_end {
     bool rested;
     double remaining;  /* with rest: at the last check */
     watch_sight sight; /* of the last state */
+    int64_t bytes;     /* of the device's memory, in the end */
 } run_end;
 
 /* The least step count whose time is at or past t, seen from the plan's origin. */

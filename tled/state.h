@@ -62,7 +62,7 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
 /* What get() gives, nodes x 3 doubles each: m, m/s, and N: the sum of the elements' pulls at the displacement. */
 enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL };
 
-/* As many as may be taken and not yet fetched. */
+/* Slots for results that were taken. */
 enum { TLED_TAKEN = 8 };
 
 /* What taken() fills, nodes x 3 each: m, m/s. */

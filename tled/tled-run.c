@@ -287,6 +287,8 @@ static void say_end(const session *s, const run_end *end)
         snprintf(left, sizeof left, ", %.3g of its displacement to go", end->remaining);
     tool_say(s->t, "%s %.6g s, after %lld steps: kinetic energy %.3g J, largest displacement %.6g mm%s",
              end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic, 1e3 * w->largest, left);
+    tool_detail(s->t, "%s: %.4g MB, %.4g bytes an element", s->run.device->name, 1e-6 * (double)end->bytes,
+                (double)end->bytes / (double)s->problem.elements);
 }
 
 /* From the model that came to the problem and how it is to be run. */

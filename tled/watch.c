@@ -87,7 +87,7 @@ static void look_at_node(const watch *w, int64_t n, tled_sums *sum)
         sum->speed += is_free ? drive : 0;
         sum->kinetic += drive / 2;
         square += w->displacement[i] * w->displacement[i];
-        if (w->question.differences && is_free) {
+        if (w->kept_internal && is_free) {
             double du = w->displacement[i] - w->kept_displacement[i];
             sum->stiffness += du * (w->internal[i] - w->kept_internal[i]);
             sum->inertia += mass * du * du;
@@ -165,46 +165,49 @@ static int look_here(watch *w, const backend *b, void *state, tled_sums *sum, er
     return 0;
 }
 
-/* On the device, unless something is broken: then here, which tells the first. */
-static int look_there(watch *w, const backend *b, void *state, tled_sums *sum, err *e)
+static void take_sums(watch *w, const tled_sums *sum)
 {
-    if (b->look(state, &w->question, sum, e))
-        return -1;
-    if (sum->broken < 0)
-        return 0;
-    w->question.differences = false;
-    return look_here(w, b, state, sum, e);
+    watch_sight *s = &w->sight;
+    s->time = w->question.time;
+    s->kinetic = sum->kinetic;
+    s->strain = sum->strain;
+    s->acceleration = sqrt(sum->acceleration / sum->mass);
+    s->speed = sqrt(sum->speed / sum->mass);
+    s->moved = sqrt(sum->moved / sum->mass);
+    s->moved_most = fmax(s->moved_most, s->moved);
+    s->stiffness = sum->stiffness;
+    s->inertia = sum->inertia;
+    s->largest = sqrt(sum->largest);
+    s->broken = sum->broken;
+    s->stable_element = sum->frequency_element;
+    s->stable = sum->frequency_element < 0 ? w->rest_step : 2 / sqrt(sum->frequency);
 }
 
 int watch_look(watch *w, const backend *b, void *state, double time, err *e)
 {
     tled_sums sum;
-    watch_sight *s = &w->sight;
     /* A rounding above the frequency at rest, so that elements at rest do not pass it. */
-    w->question =
-        (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences && w->has_kept};
-    if (b->look ? look_there(w, b, state, &sum, e) : look_here(w, b, state, &sum, e))
+    w->question = (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences};
+    if (b->look ? b->look(state, &w->question, &sum, e) : look_here(w, b, state, &sum, e))
         return -1;
-    s->time = time;
-    s->kinetic = sum.kinetic;
-    s->strain = sum.strain;
-    s->acceleration = sqrt(sum.acceleration / sum.mass);
-    s->speed = sqrt(sum.speed / sum.mass);
-    s->moved = sqrt(sum.moved / sum.mass);
-    s->moved_most = fmax(s->moved_most, s->moved);
-    s->stiffness = sum.stiffness;
-    s->inertia = sum.inertia;
-    s->largest = sqrt(sum.largest);
-    s->broken = sum.broken;
-    s->stable_element = sum.frequency_element;
-    s->stable = sum.frequency_element < 0 ? w->rest_step : 2 / sqrt(sum.frequency);
+    take_sums(w, &sum);
+    return 0;
+}
+
+int watch_tell(watch *w, const backend *b, void *state, err *e)
+{
+    tled_sums sum;
+    if (!b->look)
+        return 0;
+    if (look_here(w, b, state, &sum, e))
+        return -1;
+    take_sums(w, &sum);
     return 0;
 }
 
 int watch_keep(watch *w, const backend *b, void *state, err *e)
 {
     size_t size = 3 * (size_t)w->p->nodes * sizeof(double);
-    w->has_kept = true;
     if (w->differences && !b->look) {
         if (need(&w->kept_displacement, w->p->nodes, e) || need(&w->kept_internal, w->p->nodes, e))
             return -1;

@@ -36,12 +36,15 @@ typedef struct watch {
     double *curves;                            /* values at its time */
     struct watch_part *part;                   /* chunks */
     tled_question question;                    /* of the last look */
-    bool has_kept;
     watch_sight sight;
 } watch;
 
 watch *watch_create(const tled_problem *p, pool *threads, err *e);
 void watch_destroy(watch *w);
+
+/* Looks once more at the state that was looked at last, on this machine's threads: the element that is broken or has the
+ * least stable step is then told by the model's order, whatever the back end. -1 with e filled. */
+int watch_tell(watch *w, const backend *b, void *state, err *e);
 
 /* Keeps the state that was looked at last: the back end to go back to, the watch to tell differences. -1 with e filled. */
 int watch_keep(watch *w, const backend *b, void *state, err *e);

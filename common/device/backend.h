@@ -1,6 +1,6 @@
 /* Back ends of a solver: a table of functions each, and the choice among them. The same for every solver: what a
  * problem, a plan and a state are is the solver's own affair. The first in a table is the one preferred; a table ends with NULL.
- * A caller owns the state that create gives, until destroy. A state is used by one thread at a time.
+ * A caller owns the state that create gives, until destroy. A state is used by one thread at a time, but for taken.
  *
  * step, keep, back and take may return before the device is done: what went wrong then comes out of a later call. look and
  * taken wait.
@@ -26,14 +26,14 @@ typedef struct backend {
     /* Keeps a copy of the state in place of the one kept before; and goes back to it. */
     int (*keep)(void *state, err *e);
     int (*back)(void *state, err *e);
-    /* Takes a copy of the results as they are, to be fetched later, in the order in which they were taken. */
-    int (*take)(void *state, err *e);
-    /* Fetches the oldest that was taken. */
-    int (*taken)(void *state, void *to, err *e);
-    /* Forgets the newest `count` that were taken. */
-    void (*drop)(void *state, int count);
+    /* Takes a copy of the results as they are into a slot (from 0; how many is the solver's affair), to be fetched later. */
+    int (*take)(void *state, int slot, err *e);
+    /* Fetches what was taken, in any thread, while the state goes on. */
+    int (*taken)(void *state, int slot, void *to, err *e);
     /* What the solver looks at now and then, found where the state is; NULL: the solver does it from what get gives. */
     int (*look)(void *state, const void *question, void *answer, err *e);
+    /* Bytes of the device's memory that the state has by now. */
+    int64_t (*bytes)(const void *state);
     void (*destroy)(void *state);
 } backend;
 

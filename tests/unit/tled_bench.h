@@ -63,19 +63,9 @@ static inline void bench_must(int result, const err *e)
     exit(1);
 }
 
-/* gravity and level: 0 for none; both come up over .1 s. Ends at rest until the caller says otherwise. */
-static inline void bench_make(bench *b, const block *what, const double gravity[3], double level, double kappa,
-                              int threads)
+/* The setting of a problem that is made: to rest, by default settings. */
+static inline void bench_finish(bench *b, int threads)
 {
-    char contract[40];
-    memset(b, 0, sizeof *b);
-    block_make(what, &b->m);
-    snprintf(contract, sizeof contract, "m=%.17g", level);
-    if (gravity)
-        bench_must(script_add_gravity(&b->script, gravity, .1, &b->e), &b->e);
-    if (level > 0)
-        bench_must(script_add_contract(&b->script, &b->m, contract, .1, NULL, &b->e), &b->e);
-    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, kappa, &b->e), &b->e);
     b->displacement = calloc((size_t)b->problem.nodes * 6, sizeof *b->displacement);
     b->velocity = b->displacement + 3 * b->problem.nodes;
     b->setup = (run_setup){.p = &b->problem,
@@ -93,6 +83,22 @@ static inline void bench_make(bench *b, const block *what, const double gravity[
     b->setup.damping = 2 * b->setup.frequency;
     b->setup.threads = pool_create(threads, &b->e);
     bench_must(!b->displacement || !b->setup.threads || b->e.status, &b->e);
+}
+
+/* gravity and level: 0 for none; both come up over .1 s. Ends at rest until the caller says otherwise. */
+static inline void bench_make(bench *b, const block *what, const double gravity[3], double level, double kappa,
+                              int threads)
+{
+    char contract[40];
+    memset(b, 0, sizeof *b);
+    block_make(what, &b->m);
+    snprintf(contract, sizeof contract, "m=%.17g", level);
+    if (gravity)
+        bench_must(script_add_gravity(&b->script, gravity, .1, &b->e), &b->e);
+    if (level > 0)
+        bench_must(script_add_contract(&b->script, &b->m, contract, .1, NULL, &b->e), &b->e);
+    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, kappa, &b->e), &b->e);
+    bench_finish(b, threads);
 }
 
 /* From here on: `steps` steps with a fixed damping. */

@@ -1,0 +1,91 @@
+#!/bin/sh
+# tled-run on a card, through its command line: the choice and what is said of it; on a card, every model of the samples, one
+# of all that a script can do and the real face, against the CPU in double precision. SINEW_MODELS names a folder of models to use
+# instead where voxelise is not to be had.
+. "$(dirname "$0")/lib.sh"
+
+awk -v nx=12 -v ny=9 -v nz=7 -v h=0.005 -v held=low -f tests/cli/block.awk >"$T/block.sinew"
+awk -v nx=12 -v ny=6 -v nz=5 -v h=0.0025 -v held=low -v muscle=1 -f tests/cli/block.awk >"$T/muscle.sinew"
+run() { # FILE ARG...
+    from=$1
+    shift
+    tled-run "$@" <"$from"
+}
+
+# ---- The choice.
+if ! tled-run -q -d cuda -n 1 <"$T/block.sinew" >"$T/out" 2>"$T/err"; then
+    run "$T/block.sinew" -n 1 >"$T/auto" 2>"$T/said"
+    is $? 0 "-d auto takes the CPU"
+    if grep -q 'this build has no CUDA' "$T/err"; then
+        why='this build has no CUDA back end; have: cpu$'
+    else
+        why='the cuda back end cannot be used here: [a-z]'
+        check "-d auto says what it took, and why" grep -q ' cpu (cuda: ' "$T/said"
+    fi
+    fails 1 "-d cuda fails, and says why" "$why" run "$T/block.sinew" -d cuda -n 1
+    is "$(wc -l <"$T/stderr" | tr -d ' ')" 1 "in one line"
+    skip 1 "the rest: $(sed 's/.*: //' "$T/err" | head -n 1)"
+    done_testing
+fi
+run "$T/block.sinew" -n 1 >"$T/out" 2>"$T/err"
+check "-d auto takes the card, and says so" grep -q 'held; cuda, double' "$T/err"
+sinew info <"$T/out" >"$T/info"
+check "what ran is in provenance" grep -q '\[cuda double,' "$T/info"
+
+# ---- Against the CPU.
+same() { # NAME FILE ARG...: 10,000 steps; single precision there to 1e-4 of the largest displacement of double here
+    name=$1 file=$2
+    shift 2
+    run "$file" -q -d cpu -n 10000 "$@" >"$T/cpu"
+    most=$(sinew info --get node.displacement.max <"$T/cpu")
+    near "$(awk -v m="$most" 'BEGIN { print (m > 1e-5) }')" 1 0 "$name moves: $most m"
+    for precision in single double; do
+        run "$file" -q -d cuda --precision "$precision" -n 10000 "$@" >"$T/cuda"
+        check "$name: $precision there, double here, to 1e-4" sinew diff --only node.displacement \
+            --abs "$(awk -v m="$most" 'BEGIN { print 1e-4 * m }')" "$T/cpu" "$T/cuda"
+        diag "$(sinew diff --only node.displacement "$T/cpu" "$T/cuda" | tail -n 1)"
+    done
+}
+cat >"$T/script" <<'SCRIPT'
+0    gravity 0,0,0
+0.02 gravity 0,1,-9.81
+0    force 0.06,0.045,0.035 0.02 0,0,0
+0.03 force 0.06,0.045,0.035 0.02 .002,.001,0
+0    displace 0.055,-1,-1,1,0.001,1 -,0,0
+0.04 displace 0.055,-1,-1,1,0.001,1 -,0.002,-0.003
+SCRIPT
+same "a script" "$T/block.sinew" --script "$T/script"
+same "a muscle" "$T/muscle.sinew" -c all=0.5 -g 0,0,-9.81
+if [ -z "$SINEW_MODELS" ] && have voxelise; then
+    SINEW_MODELS=$T
+    make -s -C samples OUT="$T" SINEW_BIN="$SINEW_BIN" "$T/sphere.model" "$T/muscle.model" "$T/block.model" "$T/head.model"
+    [ -z "$DATA" ] || voxelise -q --unit mm -s 2.5 "$DATA/face/face_zyg.obj" | attach -q >"$T/face_2.5.model"
+fi
+[ -e "$SINEW_MODELS/face_2.5.model" ] || skip 1 "no real face here"
+for model in "$SINEW_MODELS"/*.model; do
+    case ${model##*/} in
+    sphere*) set -- -g 0,-9.81,0 ;;
+    muscle*) set -- -c muscle=0.4 ;;
+    block*) set -- --script samples/block.script ;;
+    head*) set -- -c zyg=0.4 ;;
+    face*) set -- -c zyg_xneg=0.4,zyg_xpos=0.2 ;;
+    *) continue ;;
+    esac
+    same "${model##*/}" "$model" "$@"
+done
+
+# ---- Frames, and going on.
+run "$T/muscle.sinew" -q -d cuda -c all=0.5 -t 0.5 --every 0.0166666666666666667 >"$T/a"
+run "$T/muscle.sinew" -q -d cpu -c all=0.5 -t 0.5 --every 0.0166666666666666667 >"$T/b"
+check "frames are the CPU's" sinew diff --abs 1e-9 "$T/a" "$T/b"
+run "$T/muscle.sinew" -q -d cuda -c all=0.5 -t 0.25 | tled-run -q -d cuda -c all=0.5 -t 0.25 | sinew info --get node.displacement.max >"$T/in_two"
+is "$(cat "$T/in_two")" "$(sinew info --get node.displacement.max <"$T/a")" "a run in two parts"
+run "$T/muscle.sinew" -q -d cuda --precision single -c all=0.5 -t 0.25 --every 0.01 >"$T/first"
+different=0
+for _ in 1 2 3 4 5; do
+    run "$T/muscle.sinew" -q -d cuda --precision single -c all=0.5 -t 0.25 --every 0.01 | cmp -s - "$T/first" || different=1
+done
+is "$different" 0 "the same bytes, run after run"
+fails 3 "a step too large diverges, with its element" 'diverged at step [0-9]+, .* element [0-9]+ \(volume .muscle_all.\)' \
+    run "$T/muscle.sinew" -d cuda -c all=1 --ramp 0.01 --dt 0.00019 -t 1
+done_testing
