@@ -139,12 +139,29 @@ static int showing_panel(work *w, int i, err *e)
     return showing_make(&w->showing[i], w->m, &want, e);
 }
 
+/* What is to be seen through must be seen, in some panel. */
+static int check_clears(const work *w, err *e)
+{
+    const picture_spec *s = w->p->spec;
+    uint64_t cleared = 0;
+    for (int i = 0; i < s->panels; i++)
+        cleared |= w->showing[i].cleared;
+    for (int k = 0; k < s->clears; k++)
+        if (!(cleared >> k & 1))
+            return err_set(
+                e, NULL, 0,
+                "--clear %s: nothing that is drawn has that name; expected it with --show, or one of what is "
+                "drawn",
+                s->clear[k]);
+    return 0;
+}
+
 static int showing_panels(work *w, err *e)
 {
     for (int i = 0; i < w->p->spec->panels; i++)
         if ((!w->p->placed && turn(w->p, i, e)) || showing_panel(w, i, e))
             return -1;
-    return 0;
+    return check_clears(w, e);
 }
 
 /* One scale for all panels. What cannot be below 0 begins there. */
