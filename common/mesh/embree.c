@@ -28,6 +28,8 @@ struct embree {
     RTCDevice device;
     RTCScene scene;
     boxes boxes;
+    float **spheres; /* of each geometry of spheres, owned */
+    int64_t sphere_sets, sphere_capacity;
 };
 
 /* A ray's taker goes along with it in Embree's context, which must come first. */
@@ -73,6 +75,9 @@ void embree_destroy(embree *b)
         rtcReleaseScene(b->scene);
     if (b->device)
         rtcReleaseDevice(b->device);
+    for (int64_t i = 0; i < b->sphere_sets; i++)
+        free(b->spheres[i]);
+    free(b->spheres);
     free(b);
 }
 
@@ -141,12 +146,125 @@ int embree_add_faces(embree *b, int corners, int64_t vertices, const float *posi
     return attach(b, geometry, "a surface", e) || failed ? -1 : 0;
 }
 
+/* ---- spheres */
+
+/* Embree's own are met ray by ray, not packet by packet, which takes twice as long for the small ones that many nodes are. */
+
+/* The rows of a packet of any number of rays, as of an embree_packet. */
+enum { FROM = 0, START = 3, ALONG = 4, END = 8, NORMAL = 12, U = 15, V, ITEM, GEOMETRY, INSTANCE };
+
+/* Rays number by number, as Embree hands them over, in packets of any size up to EMBREE_RAYS. */
+typedef struct lanes {
+    const float *from[3], *along[3], *start;
+    float *end;
+    const int *valid;
+} lanes;
+
+static lanes lanes_of(void *rays, const int *valid, size_t n)
+{
+    float *f = rays, *from = f + FROM * n, *along = f + ALONG * n;
+    return (lanes){
+        {from, from + n, from + 2 * n}, {along, along + n, along + 2 * n}, f + START * n, f + END * n, valid};
+}
+
+/* Where each of n rays meets the sphere, in multiples of along, and for which it is so: -1, else 0. The middle of what is
+ * within the sphere comes first and half of it then: exact from afar too. */
+static inline void meet(const lanes *l, size_t n, const float *sphere, float *restrict at, int *restrict met)
+{
+    const float x = sphere[0], y = sphere[1], z = sphere[2], square = sphere[3] * sphere[3];
+    const float *fx = l->from[0], *fy = l->from[1], *fz = l->from[2];
+    const float *ax = l->along[0], *ay = l->along[1], *az = l->along[2], *start = l->start, *end = l->end;
+    const int *valid = l->valid;
+    for (size_t i = 0; i < n; i++) {
+        float cx = x - fx[i], cy = y - fy[i], cz = z - fz[i];
+        float share = 1 / (ax[i] * ax[i] + ay[i] * ay[i] + az[i] * az[i]);
+        float middle = (cx * ax[i] + cy * ay[i] + cz * az[i]) * share;
+        float px = cx - middle * ax[i], py = cy - middle * ay[i], pz = cz - middle * az[i];
+        float half = (square - (px * px + py * py + pz * pz)) * share;
+        float h = sqrtf(fabsf(half)), least = start[i], most = end[i];
+        float first = middle - h, last = middle + h;
+        float a = first >= least ? first : last;
+        at[i] = a;
+        met[i] = valid[i] & -((half >= 0) & (last >= least) & (a <= most));
+    }
+}
+
+static void meet_all(const lanes *l, size_t n, const float *sphere, float *at, int *met)
+{
+    if (n == EMBREE_RAYS)
+        meet(l, EMBREE_RAYS, sphere, at, met);
+    else
+        meet(l, n, sphere, at, met);
+}
+
+static const float *sphere_of(const void *spheres, unsigned item)
+{
+    return (const float *)spheres + 4 * (size_t)item;
+}
+
+static void sphere_bounds(const struct RTCBoundsFunctionArguments *a)
+{
+    const float *s = sphere_of(a->geometryUserPtr, a->primID);
+    a->bounds_o->lower_x = s[0] - s[3];
+    a->bounds_o->lower_y = s[1] - s[3];
+    a->bounds_o->lower_z = s[2] - s[3];
+    a->bounds_o->upper_x = s[0] + s[3];
+    a->bounds_o->upper_y = s[1] + s[3];
+    a->bounds_o->upper_z = s[2] + s[3];
+}
+
+static void sphere_nearest(const struct RTCIntersectFunctionNArguments *a)
+{
+    const float *s = sphere_of(a->geometryUserPtr, a->primID);
+    alignas(64) float at[EMBREE_RAYS];
+    alignas(64) int met[EMBREE_RAYS];
+    const size_t n = a->N;
+    const lanes l = lanes_of(a->rayhit, a->valid, n);
+    float *number = (float *)(void *)a->rayhit;
+    uint32_t *index = (uint32_t *)(void *)a->rayhit;
+    meet_all(&l, n, s, at, met);
+    for (size_t i = 0; i < n; i++) {
+        if (!met[i])
+            continue;
+        l.end[i] = at[i];
+        for (size_t k = 0; k < 3; k++)
+            number[(NORMAL + k) * n + i] = l.from[k][i] + at[i] * l.along[k][i] - s[k];
+        number[U * n + i] = number[V * n + i] = 0;
+        index[ITEM * n + i] = a->primID;
+        index[GEOMETRY * n + i] = a->geomID;
+        index[INSTANCE * n + i] = a->context->instID[0];
+    }
+}
+
+static void sphere_blocks(const struct RTCOccludedFunctionNArguments *a)
+{
+    alignas(64) float at[EMBREE_RAYS];
+    alignas(64) int met[EMBREE_RAYS];
+    const size_t n = a->N;
+    const lanes l = lanes_of(a->ray, a->valid, n);
+    meet_all(&l, n, sphere_of(a->geometryUserPtr, a->primID), at, met);
+    for (size_t i = 0; i < n; i++)
+        l.end[i] = met[i] ? -INFINITY : l.end[i];
+}
+
 int embree_add_spheres(embree *b, int64_t count, const float *centre_radius, err *e)
 {
-    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    int failed = give_array(b, geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, centre_radius,
-                            4 * sizeof *centre_radius, count, e);
-    return attach(b, geometry, "spheres", e) || failed ? -1 : 0;
+    if (mem_grow(&b->spheres, &b->sphere_capacity, b->sphere_sets + 1, sizeof *b->spheres, "spheres", e))
+        return -1;
+    float *copy = mem_array(4 * count, sizeof *copy, "spheres", e);
+    if (!copy)
+        return -1;
+    memcpy(copy, centre_radius, 4 * (size_t)count * sizeof *copy);
+    b->spheres[b->sphere_sets++] = copy;
+    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER);
+    if (geometry) {
+        rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)count);
+        rtcSetGeometryUserData(geometry, copy);
+        rtcSetGeometryBoundsFunction(geometry, sphere_bounds, NULL);
+        rtcSetGeometryIntersectFunction(geometry, sphere_nearest);
+        rtcSetGeometryOccludedFunction(geometry, sphere_blocks);
+    }
+    return attach(b, geometry, "spheres", e);
 }
 
 int embree_commit(embree *b, err *e)

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const float ink[3] = {.012f, .012f, .012f};
+static const float ink[3] = {.012f, .012f, .012f}, none[4] = {0, 0, 0, 0};
+static const float paper[2][4] = {{1, 1, 1, 1}, {0, 0, 0, 0}}; /* 1: transparent */
 
 /* What it takes to draw one frame. */
 typedef struct work {
@@ -138,12 +139,29 @@ static int showing_panel(work *w, int i, err *e)
     return showing_make(&w->showing[i], w->m, &want, e);
 }
 
+/* What is to be seen through must be seen, in some panel. */
+static int check_clears(const work *w, err *e)
+{
+    const picture_spec *s = w->p->spec;
+    uint64_t cleared = 0;
+    for (int i = 0; i < s->panels; i++)
+        cleared |= w->showing[i].cleared;
+    for (int k = 0; k < s->clears; k++)
+        if (!(cleared >> k & 1))
+            return err_set(
+                e, NULL, 0,
+                "--clear %s: nothing that is drawn has that name; expected it with --show, or one of what is "
+                "drawn",
+                s->clear[k]);
+    return 0;
+}
+
 static int showing_panels(work *w, err *e)
 {
     for (int i = 0; i < w->p->spec->panels; i++)
         if ((!w->p->placed && turn(w->p, i, e)) || showing_panel(w, i, e))
             return -1;
-    return 0;
+    return check_clears(w, e);
 }
 
 /* One scale for all panels. What cannot be below 0 begins there. */
@@ -331,17 +349,19 @@ static int put_words(work *w, err *e)
 /* ---- all together */
 
 /* Contraction centres lie within bone and muscle: what hides them lets them shine through. */
-static int trace_marks(work *w, int i, image *im, const trace_options *o, err *e)
+static int trace_marks(work *w, int i, image *im, err *e)
 {
     static const float shine = .6f;
     const showing *b = &w->showing[i];
+    trace_options o = trace_defaults();
     scene marks = {.sphere_sets = 1, .spheres = b->scene.spheres ? &b->scene.spheres[b->marks] : NULL};
     image over = {0};
     if (!b->marked)
         return 0;
+    memcpy(o.background, none, sizeof none);
     if (image_create(&over, im->width, im->height, e))
         return -1;
-    int bad = trace(&marks, &w->p->camera[i], &over, w->p->threads, o, NULL, e);
+    int bad = trace(&marks, &w->p->camera[i], &over, w->p->threads, &o, NULL, e);
     for (int64_t n = 0; n < 4 * (int64_t)over.width * over.height && !bad; n++)
         over.pixel[n] *= shine;
     image_over(im, &over, 0, 0);
@@ -349,23 +369,31 @@ static int trace_marks(work *w, int i, image *im, const trace_options *o, err *e
     return bad;
 }
 
+/* Whether a panel is all of the picture: then it is drawn there, not beside it and laid over. */
+static bool fills(const work *w, int i)
+{
+    sheet_cell c = sheet_picture(&w->sheet, i);
+    return c.x == 0 && c.y == 0 && c.width == w->p->image.width && c.height == w->p->image.height;
+}
+
 static int trace_panel(work *w, int i, err *e)
 {
     picture *p = w->p;
     trace_options o = trace_defaults();
     trace_report r = {0};
-    image im = {0};
+    image part = {0}, *im = fills(w, i) ? &p->image : &part;
     sheet_cell c = sheet_picture(&w->sheet, i);
-    memset(o.background, 0, sizeof o.background);
-    if (image_create(&im, c.width, c.height, e))
+    memcpy(o.background, im == &part ? none : paper[p->spec->transparent], sizeof o.background);
+    if (im == &part && image_create(im, c.width, c.height, e))
         return -1;
-    int bad = trace(&w->showing[i].scene, &p->camera[i], &im, p->threads, &o, &r, e);
+    int bad = trace(&w->showing[i].scene, &p->camera[i], im, p->threads, &o, &r, e);
     if (!bad && !r.covered)
         bad = err_set(e, NULL, 0, "nothing is to be seen from there: the camera looks past the model");
     if (!bad)
-        bad = trace_marks(w, i, &im, &o, e);
-    image_over(&p->image, &im, c.x, c.y);
-    image_free(&im);
+        bad = trace_marks(w, i, im, e);
+    if (im == &part)
+        image_over(&p->image, im, c.x, c.y);
+    image_free(&part);
     p->report.build += r.build, p->report.trace += r.trace, p->report.rays += r.rays;
     p->report.faces += r.faces, p->report.spheres += r.spheres;
     return bad;
@@ -373,7 +401,6 @@ static int trace_panel(work *w, int i, err *e)
 
 static int draw(work *w, err *e)
 {
-    static const float paper[2][4] = {{1, 1, 1, 1}, {0, 0, 0, 0}};
     picture *p = w->p;
     const picture_spec *s = p->spec;
     w->letters = letters(s);
@@ -391,7 +418,8 @@ static int draw(work *w, err *e)
     if (lay_out(w, e) || place_cameras(w, e))
         return -1;
     p->report = (trace_report){0};
-    image_fill(&p->image, paper[s->transparent]);
+    if (!fills(w, 0))
+        image_fill(&p->image, paper[s->transparent]);
     for (int i = 0; i < s->panels; i++)
         if (trace_panel(w, i, e))
             return -1;

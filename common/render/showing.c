@@ -32,6 +32,14 @@ bool showing_named(const char *const *pattern, int patterns, const char *name)
     return false;
 }
 
+uint64_t showing_cleared(const showing_want *want, const char *name)
+{
+    uint64_t by = 0;
+    for (int k = 0; k < want->clears; k++)
+        by |= (uint64_t)showing_named(&want->clear[k], 1, name) << k;
+    return by;
+}
+
 void showing_place(const double *rest, const double *u, int64_t node, float *to)
 {
     for (int a = 0; a < 3; a++)

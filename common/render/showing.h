@@ -32,7 +32,7 @@ typedef struct showing_want {
     int things;
     const char *const *name; /* surfaces or groups to be seen besides, by name; a '*' at the end matches any rest */
     int names;
-    const char *const *clear; /* those of the names (or "voxels", "muscles") through which one sees */
+    const char *const *clear; /* those of the names (or "voxels", "muscles") through which one sees; 64 at most */
     int clears;
     const showing_cut *cut;
     int cuts;
@@ -46,7 +46,8 @@ typedef struct showing {
     int64_t values, value_capacity;
     bool marked; /* the scene's set of spheres `marks` is contraction centres: they are to be seen through all else */
     int64_t marks;
-    int seen; /* of SHOWING_*: what there is of it; SHOWING_MUSCLES also where voxels show muscle */
+    uint64_t cleared; /* bit k: one sees through something by the want's clear[k] */
+    int seen;         /* of SHOWING_*: what there is of it; SHOWING_MUSCLES also where voxels show muscle */
 } showing;
 
 /* -1 with e filled: what is wanted is not there (with the names there are), there is nothing to be seen, or no memory. */

@@ -135,7 +135,8 @@ static int add_outside(showing *to, const model *m, const showing_want *w, int t
     scene_mesh mesh = {.corners = b->corners, .faces = b->faces};
     double *value = NULL;
     mesh.label = mem_text(name, e);
-    mesh.transparency = showing_named(w->clear, w->clears, name) ? .85f : 0;
+    uint64_t cleared = showing_cleared(w, name);
+    mesh.transparency = cleared ? .85f : 0;
     int32_t *of_vertex = mesh.label ? number(b, model_count(m, "node"), &mesh, e) : NULL;
     int seen = thing;
     if (of_vertex && !shape(m, w, b, of_vertex, &mesh, e) && !paint(m, b, &mesh, &seen, e) && w->field)
@@ -143,6 +144,7 @@ static int add_outside(showing *to, const model *m, const showing_want *w, int t
     free(of_vertex);
     if (!e->status) {
         to->seen |= seen;
+        to->cleared |= cleared;
         return showing_add(to, &mesh, value, e);
     }
     free(value);

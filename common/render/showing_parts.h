@@ -11,6 +11,9 @@ int showing_add(showing *b, scene_mesh *mesh, double *value, err *e);
 /* Whether `name` is among the patterns (any case, '*' at the end). */
 bool showing_named(const char *const *pattern, int patterns, const char *name);
 
+/* By which of the want's clear one sees through what has this name: bit k for clear[k]. */
+uint64_t showing_cleared(const showing_want *want, const char *name);
+
 /* Where a node is, as the frame moves it. u: NULL: at rest. */
 void showing_place(const double *rest, const double *u, int64_t node, float *to);
 

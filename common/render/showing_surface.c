@@ -40,6 +40,7 @@ typedef struct part {
     const field *field;
     char *take; /* groups: 0 not seen, 1 seen, 2 seen through */
     float *group_colour;
+    uint64_t cleared; /* as the showing's */
 } part;
 
 static bool has_skin(const surface *s)
@@ -64,9 +65,11 @@ static int choose_groups(part *p, const showing_want *w, err *e)
         const char *name = s->group_name[g];
         int kind = kind_of(name);
         bool outside = w->things & SHOWING_SURFACES && !(skin && kind == MUSCLE);
-        if (outside || showing_named(w->name, w->names, s->name) || showing_named(w->name, w->names, name))
-            p->take[g] =
-                showing_named(w->clear, w->clears, s->name) || showing_named(w->clear, w->clears, name) ? 2 : 1;
+        if (outside || showing_named(w->name, w->names, s->name) || showing_named(w->name, w->names, name)) {
+            uint64_t cleared = showing_cleared(w, s->name) | showing_cleared(w, name);
+            p->take[g] = cleared ? 2 : 1;
+            p->cleared |= cleared;
+        }
         seen |= p->take[g];
         showing_linear(kinds[kind].srgb, &p->group_colour[3 * g]);
     }
@@ -202,6 +205,7 @@ static int add_surface(showing *b, const model *m, const showing_want *w, const 
     p.u = u ? u->f64 : NULL;
     if (seen > 0 && p.u && p.is_bound && bone_find(&p.bone, &p.b, m, e))
         seen = -1;
+    b->cleared |= p.cleared;
     for (int take = 1; take <= 2 && seen > 0; take++)
         if (seen & take && add_part(b, &p, take, e))
             seen = -1;

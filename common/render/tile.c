@@ -122,10 +122,12 @@ static void look_at_block(tile *t, int column, int row)
  * number for all, so that loops over them run in vector registers. */
 typedef struct bundle {
     float from[3][EMBREE_RAYS], flat[3][EMBREE_RAYS], normal[3][EMBREE_RAYS];
+    bool coherent; /* the normals are much the same, and so the rays about them */
 } bundle;
 
 static void gather(const tile *t, const queue *q, bundle *b)
 {
+    vec sum = {0, 0, 0};
     memset(b, 0, sizeof *b);
     for (int i = 0; i < q->count; i++) {
         const sight *s = &t->sight[q->pixel[i]];
@@ -138,7 +140,9 @@ static void gather(const tile *t, const queue *q, bundle *b)
             to[1][i] = part[k].y;
             to[2][i] = part[k].z;
         }
+        sum = vec_add(sum, on->normal);
     }
+    b->coherent = vec_dot(sum, sum) > .9f * (float)(q->count * q->count);
 }
 
 /* Directions about +z as such about each normal. The frame comes from the normal in the eye's axes, where it is toward
@@ -166,10 +170,10 @@ static void turn_about(const view *v, const bundle *b, vec d, embree_packet *p)
 }
 
 /* How many of the packet's rays come through, bit by bit. */
-static unsigned come_through(tile *t, unsigned valid, embree_packet *p)
+static unsigned come_through(tile *t, unsigned valid, embree_packet *p, bool coherent)
 {
     unsigned through = 0;
-    embree_blocked(t->view->solid, valid, p, true);
+    embree_blocked(t->view->solid, valid, p, coherent);
     for (int i = 0; i < EMBREE_RAYS; i++)
         through |= (unsigned)(p->end[i] > 0) << i;
     t->count.rays += EMBREE_RAYS;
@@ -187,7 +191,7 @@ static void open_near(tile *t, const queue *q, const bundle *b, unsigned valid, 
         turn_about(v, b, v->near_by[class][k], &p);
         for (int i = 0; i < EMBREE_RAYS; i++)
             p.end[i] = v->reach * v->near_length[class][k];
-        unsigned through = come_through(t, valid, &p);
+        unsigned through = come_through(t, valid, &p, b->coherent);
         for (int i = 0; i < EMBREE_RAYS; i++)
             open[i] += (int)(through >> i & 1);
     }
@@ -206,7 +210,7 @@ static void reach_lamp(tile *t, const queue *q, const bundle *b, unsigned valid,
         p.along[1][i] = lamp.y;
         p.along[2][i] = lamp.z;
     }
-    unsigned through = come_through(t, valid, &p);
+    unsigned through = come_through(t, valid, &p, true);
     for (int i = 0; i < q->count; i++)
         t->sight[q->pixel[i]].key = (float)(through >> i & 1);
 }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAMES = sizeof((render_plan *)0)->name / sizeof(const char *) };
+enum { CLEARS = 64 }; /* showing_want has room for so many */
 
 static int usage(err *e)
 {
@@ -48,7 +48,7 @@ static int split(const opt_list *from, const char *option, char **at, const char
             if (!*word)
                 return err_set(e, NULL, 0, "%s '%s': an empty name", option, from->value[i]);
             if (count == room)
-                return err_set(e, NULL, 0, "%s: more than %d names", option, NAMES);
+                return err_set(e, NULL, 0, "%s: more than %d names", option, room);
             list[count++] = word;
         }
         *at = end + 1;
@@ -268,7 +268,7 @@ static int read_panel_asked(render_plan *p, const render_options *o, char **at, 
     }
     s->name = p->name;
     s->clear = p->name + s->names;
-    s->clears = count < 0 ? -1 : split(&o->clear, "--clear", at, p->name + s->names, NAMES - s->names, e);
+    s->clears = count < 0 ? -1 : split(&o->clear, "--clear", at, p->name + s->names, CLEARS, e);
     if (count < 0 || s->clears < 0)
         return -1;
     if (o->camera.count && o->view)
