@@ -58,7 +58,7 @@ typedef struct job {
     volumes plan;
     solids solid;
     grid g;
-    columns c;
+    inside in;
     voxels x;
     pool *threads;
     notes warnings;
@@ -67,7 +67,7 @@ typedef struct job {
 static void job_free(job *j)
 {
     voxels_free(&j->x);
-    columns_destroy(&j->c);
+    inside_free(&j->in);
     solids_free(&j->solid);
     volumes_free(&j->plan);
     obj_free(&j->surface);
@@ -208,8 +208,8 @@ static int make_grid(job *j, err *e)
 static int find_voxels(job *j, err *e)
 {
     const solids *s = &j->solid;
-    columns_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
-    if (columns_create(&j->c, &j->g, &t, pool_threads(j->threads), e))
+    inside_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
+    if (inside_create(&j->in, &j->g, &t, VOXELS_RAY, j->threads, e))
         return -1;
     int32_t *level = mem_array(j->plan.volumes, sizeof *level, "volumes", e);
     if (!level)
@@ -217,8 +217,8 @@ static int find_voxels(job *j, err *e)
     for (int32_t v = 0; v < j->plan.volumes; v++)
         level[v] = j->plan.volume[v].level;
     progress shown;
-    progress_start(&shown, table.name, "columns", (double)voxels_columns(&j->g), j->t->common->quiet);
-    int status = voxels_find(&j->x, &j->c, level, j->plan.volumes, j->threads, &shown, e);
+    progress_start(&shown, table.name, "slabs", (double)j->in.slabs, j->t->common->quiet);
+    int status = voxels_find(&j->x, &j->in, level, j->plan.volumes, j->threads, &shown, e);
     progress_stop(&shown);
     free(level);
     if (!status && j->x.elements == 0)

@@ -7,7 +7,7 @@
 
 #include "base/pool.h"
 #include "base/progress.h"
-#include "voxelise/columns.h"
+#include "voxelise/inside.h"
 
 /* Cells from <= i < to of column (j, k). */
 typedef struct voxels_run {
@@ -27,20 +27,17 @@ typedef struct voxels {
     voxels_count *count; /* volumes */
 } voxels;
 
-/* level: of each volume; volumes are in order of level, then of priority. Refuses, before any of it is allocated, what
- * would not fit in memory. progress (may be NULL) counts columns and has been started. */
-int voxels_find(voxels *x, const columns *c, const int32_t *level, int32_t volumes, pool *threads, progress *shown,
+/* in: with rays along y (any axis but that of the runs; its slabs are then whole layers of z). level: of each volume;
+ * volumes are in order of level, then of priority. Refuses, before any of it is allocated, what would not fit in
+ * memory. progress (may be NULL) counts slabs and has been started. */
+enum { VOXELS_RAY = 1 };
+int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t volumes, pool *threads, progress *shown,
                 err *e);
 
 void voxels_free(voxels *x);
 
-/* Columns that voxels_find looks at. */
-static inline int64_t voxels_columns(const grid *g)
-{
-    return grid_cells(g, 1) * grid_cells(g, 2);
-}
-
-/* Refuses what would take more memory than there is: `elements` of them, on the lattice g. available: bytes. */
-int voxels_check_memory(const grid *g, double elements, int threads, double available, err *e);
+/* Refuses what would take more memory than there is: `elements` of them, on the lattice g, and slabs of so many bytes.
+ * available: bytes. */
+int voxels_check_memory(const grid *g, double elements, double slabs, double available, err *e);
 
 #endif

@@ -1,4 +1,4 @@
-// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/columns.c voxelise/voxels.c voxelise/build.c
+// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/inside.c voxelise/voxels.c voxelise/build.c
 /* Algorithm 1 as it is printed, voxel by voxel over boxes at random, against columns and runs; and the nodes of the
  * elements against a plain table of all corners.
  */
@@ -57,7 +57,7 @@ static void make_scene(scene *s)
         s->g.low[a] = -1, s->g.high[a] = SIDE - 1;
 }
 
-static bool inside(const scene *s, int b, const int *cell)
+static bool is_inside(const scene *s, int b, const int *cell)
 {
     for (int a = 0; a < 3; a++)
         if (cell[a] < s->low[b][a] || cell[a] >= s->high[b][a])
@@ -76,7 +76,7 @@ static int printed(const scene *s, const int *cell)
             past++;
         level_changed = false;
         for (int priority = first; priority < past && !level_changed; priority++)
-            if (inside(s, priority, cell)) {
+            if (is_inside(s, priority, cell)) {
                 volume = priority;
                 level_changed = true;
             }
@@ -87,14 +87,14 @@ static int printed(const scene *s, const int *cell)
 
 static bool find(const scene *s, int threads, voxels *x)
 {
-    columns_triangles t = {s->position, BOXES * 8, s->vertex, s->volume, BOXES * 12};
-    columns c;
+    inside_triangles t = {s->position, BOXES * 8, s->vertex, s->volume, BOXES * 12};
+    inside test;
     err e = {0};
     pool *p = pool_create(threads, &e);
-    bool good = p && !columns_create(&c, &s->g, &t, 1, &e);
+    bool good = p && !inside_create(&test, &s->g, &t, VOXELS_RAY, p, &e);
     if (good) {
-        good = !voxels_find(x, &c, s->level, BOXES, p, NULL, &e);
-        columns_destroy(&c);
+        good = !voxels_find(x, &test, s->level, BOXES, p, NULL, &e);
+        inside_free(&test);
     }
     pool_destroy(p);
     return good;
@@ -134,7 +134,7 @@ static bool same_as_printed(const scene *s, const voxels *x)
                 if (volume[cell_index(i, j, k)] != want)
                     return false;
                 for (int b = 0; b < BOXES; b++)
-                    within[b] += inside(s, b, cell);
+                    within[b] += is_inside(s, b, cell);
                 if (want >= 0)
                     kept[want]++, elements++;
             }
@@ -215,12 +215,12 @@ static void test_memory(void)
 {
     grid g = {.high = {1000, 1000, 1000}};
     err e = {0};
-    ok(voxels_check_memory(&g, 1e8, 2, 20e9, &e) == 0, "1e8 elements fit 20 GB");
-    ok(voxels_check_memory(&g, 1e9, 2, 20e9, &e) == -1 && strstr(e.text, "1000 x 1000 x 1000 cells") &&
+    ok(voxels_check_memory(&g, 1e8, 1e6, 20e9, &e) == 0, "1e8 elements fit 20 GB");
+    ok(voxels_check_memory(&g, 1e9, 1e6, 20e9, &e) == -1 && strstr(e.text, "1000 x 1000 x 1000 cells") &&
            strstr(e.text, "20 GB are free"),
        "1e9 do not: %s", e.text);
     e = (err){0};
-    ok(voxels_check_memory(&g, 3e9, 2, 1e15, &e) == -1 && strstr(e.text, "2147483647"), "too many to number: %s",
+    ok(voxels_check_memory(&g, 3e9, 1e6, 1e15, &e) == -1 && strstr(e.text, "2147483647"), "too many to number: %s",
        e.text);
 }
 

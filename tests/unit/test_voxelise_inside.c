@@ -1,11 +1,11 @@
-// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/columns.c
+// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/inside.c
 /* The inside test against an exact reference of another making: whole numbers, the centre moved by a real e = 2^-14, and a
  * ray in a skew direction that no edge of these meshes can meet; signs of 4 x 4 determinants only. Meshes whose
  * faces, edges, diagonals and vertices lie on centres; every axis; translated; scaled to awkward units.
  */
 #include "tap.h"
 
-#include "voxelise/columns.h"
+#include "voxelise/inside.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -116,7 +116,7 @@ static bool reference(const mesh *m, const int64_t *centre)
 {
     static const wide direction[3] = {10007, 7919, -9001};
     wide moved[3], unit = (wide)1 << (3 * MOVE);
-    bool inside = false;
+    bool within = false;
     for (int a = 0; a < 3; a++)
         moved[a] = (wide)centre[a] * unit + ((wide)1 << (MOVE * (2 - a)));
     for (int t = 0; t < m->triangles; t++) {
@@ -136,9 +136,9 @@ static bool reference(const mesh *m, const int64_t *centre)
             continue;
         int s = sign(determinant(direction, to[0], to[1]));
         if (s && s == sign(determinant(direction, to[1], to[2])) && s == sign(determinant(direction, to[2], to[0])))
-            inside = !inside;
+            within = !within;
     }
-    return inside;
+    return within;
 }
 
 /* How a mesh in halves becomes doubles: x = base + half * at, with the lattice's origin and spacing alike. */
@@ -149,21 +149,35 @@ typedef struct setting {
     int64_t shift[3];        /* cells by which the mesh is moved and the lattice is not */
 } setting;
 
-static void fill_mask(const columns *c, int axis, const int64_t *low, uint8_t *mask)
+/* Rays along an axis; false on no memory. */
+static bool fill_mask(const grid *g, const inside_triangles *t, int axis, pool *threads, uint8_t *mask)
 {
     static const int step[3] = {1, SIDE, SIDE * SIDE};
-    columns_scratch s = {0};
+    inside test;
+    inside_slab slab = {0};
     err e = {0};
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     memset(mask, 0, CELLS);
-    for (int iv = 0; iv < SIDE; iv++)
-        for (int iu = 0; iu < SIDE; iu++) {
-            columns_look(c, axis, iu + low[u], iv + low[v], &s, &e);
-            for (int64_t i = 0; i < s.spans; i++)
-                for (int64_t x = s.span[i].from - low[axis]; x < s.span[i].to - low[axis]; x++)
-                    mask[iu * step[u] + iv * step[v] + (int)x * step[axis]] |= (uint8_t)(1 << s.span[i].volume);
+    if (inside_create(&test, g, t, axis, threads, &e))
+        return false;
+    bool good = true;
+    for (int64_t n = 0; good && n < test.slabs; n++) {
+        good = inside_look(&test, n, &slab, &e) == 0;
+        for (int64_t i = 0; good && i < slab.parts; i++) {
+            const inside_part *p = &slab.part[i];
+            for (int64_t layer = p->box.low[u]; layer < p->box.high[u]; layer++)
+                for (int64_t x = p->box.low[axis]; x < p->box.high[axis]; x++)
+                    for (int64_t y = p->box.low[v]; y < p->box.high[v]; y++) {
+                        int64_t bit = y - p->box.low[v];
+                        if (inside_words(&test, p, layer, x)[bit / 64] >> bit % 64 & 1)
+                            mask[(layer - g->low[u]) * step[u] + (x - g->low[axis]) * step[axis] +
+                                 (y - g->low[v]) * step[v]] |= (uint8_t)(1 << p->volume);
+                    }
         }
-    columns_scratch_free(&s);
+    }
+    inside_slab_free(&slab);
+    inside_free(&test);
+    return good;
 }
 
 /* The mask along each axis, bit `volume` where inside. Returns whether all three agree. */
@@ -181,19 +195,14 @@ static bool masks(const mesh *m, const setting *s, uint8_t *mask)
         g.spacing[a] = s->half[a] * (double)s->spacing[a];
         g.low[a] = s->shift[a], g.high[a] = s->shift[a] + SIDE;
     }
-    columns_triangles t = {position, m->vertices, m->triangle[0], volume, m->triangles};
-    columns c;
+    inside_triangles t = {position, m->vertices, m->triangle[0], volume, m->triangles};
     err e = {0};
+    pool *threads = pool_create(1, &e);
     uint8_t other[CELLS];
-    if (columns_create(&c, &g, &t, 1, &e))
-        return false;
-    bool same = true;
-    fill_mask(&c, 0, g.low, mask);
-    for (int axis = 1; axis < 3; axis++) {
-        fill_mask(&c, axis, g.low, other);
-        same = same && memcmp(mask, other, CELLS) == 0;
-    }
-    columns_destroy(&c);
+    bool same = threads && fill_mask(&g, &t, 0, threads, mask);
+    for (int axis = 1; axis < 3; axis++)
+        same = same && fill_mask(&g, &t, axis, threads, other) && memcmp(mask, other, CELLS) == 0;
+    pool_destroy(threads);
     return same;
 }
 
@@ -212,18 +221,18 @@ static int differing(const mesh *m, const setting *s, const uint8_t *mask)
 static void test_reference(const char *name, setting s, int64_t size, int meshes)
 {
     int wrong = 0, unlike = 0;
-    int64_t inside = 0;
+    int64_t within = 0;
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(size);
         uint8_t mask[CELLS] = {0};
         unlike += !masks(&m, &s, mask);
         wrong += differing(&m, &s, mask);
         for (int i = 0; i < CELLS; i++)
-            inside += mask[i] & 1;
+            within += mask[i] & 1;
     }
     ok(wrong == 0, "%s: %d of %d voxels differ from the reference", name, wrong, meshes * CELLS);
     ok(unlike == 0, "%s: %d of %d meshes differ between rays along x, y and z", name, unlike, meshes);
-    ok(inside > meshes, "%s: %lld voxels are inside", name, (long long)inside);
+    ok(within > meshes, "%s: %lld voxels are inside", name, (long long)within);
 }
 
 /* The same mesh moved by whole cells, far away: the same mask. */
