@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -72,9 +73,30 @@ static int place_vertices(inside *test, pool *threads, err *e)
 
 /* ---- triangles by slab */
 
-static int64_t slab_of(const inside *test, int64_t row)
+/* The slabs first <= s < past that a triangle turns anything over in. */
+typedef struct reach {
+    int32_t first, past;
+} reach;
+
+/* A volume's box while several threads widen it. */
+typedef struct shared_box {
+    atomic_int low[3], high[3];
+} shared_box;
+
+typedef struct sorting {
+    const inside *test;
+    reach *reach;    /* triangles */
+    shared_box *box; /* volumes */
+} sorting;
+
+static int32_t smaller(int32_t a, int32_t b)
 {
-    return (row - test->mesh.g->low[test->mesh.row]) / test->layers;
+    return a < b ? a : b;
+}
+
+static int32_t larger(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
 }
 
 /* The cells that a triangle may turn inside or out along each axis. */
@@ -82,63 +104,102 @@ static inside_box box_of(const inside *test, int64_t triangle)
 {
     inside_box b;
     const int32_t *corner = &test->t.vertex[3 * triangle];
+    const int32_t *x = &test->first[3 * (int64_t)corner[0]], *y = &test->first[3 * (int64_t)corner[1]];
+    const int32_t *z = &test->first[3 * (int64_t)corner[2]];
     for (int a = 0; a < 3; a++) {
-        int32_t x = test->first[3 * (int64_t)corner[0] + a], y = test->first[3 * (int64_t)corner[1] + a];
-        int32_t z = test->first[3 * (int64_t)corner[2] + a], low = x < y ? x : y, high = x < y ? y : x;
-        b.low[a] = z < low ? z : low;
-        b.high[a] = z > high ? z : high;
+        b.low[a] = smaller(x[a], smaller(y[a], z[a]));
+        b.high[a] = larger(x[a], larger(y[a], z[a]));
     }
     return b;
 }
 
-/* Whether the rays that cross it turn anything over in the grid. */
-static bool matters(const inside *test, const inside_box *b)
+static reach reach_of(const inside *test, const inside_box *b)
 {
     const crossing_mesh *m = &test->mesh;
-    return b->low[m->row] < b->high[m->row] && b->low[m->column] < b->high[m->column] &&
-           b->low[m->ray] < m->g->high[m->ray];
+    int64_t low = m->g->low[m->row];
+    if (b->low[m->row] >= b->high[m->row] || b->low[m->column] >= b->high[m->column] ||
+        b->low[m->ray] >= m->g->high[m->ray])
+        return (reach){0, 0};
+    return (reach){(int32_t)((b->low[m->row] - low) / test->layers),
+                   (int32_t)((b->high[m->row] - 1 - low) / test->layers + 1)};
 }
 
-static void widen(inside_box *to, const inside_box *by)
+/* The same whatever the order in which threads come. */
+static void widen_shared(shared_box *to, const inside_box *by)
 {
     for (int a = 0; a < 3; a++) {
-        to->low[a] = by->low[a] < to->low[a] ? by->low[a] : to->low[a];
-        to->high[a] = by->high[a] > to->high[a] ? by->high[a] : to->high[a];
+        int low = atomic_load(&to->low[a]), high = atomic_load(&to->high[a]);
+        while (by->low[a] < low && !atomic_compare_exchange_weak(&to->low[a], &low, by->low[a]))
+            ;
+        while (by->high[a] > high && !atomic_compare_exchange_weak(&to->high[a], &high, by->high[a]))
+            ;
     }
+}
+
+static void reach_chunk(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    (void)chunk;
+    const sorting *s = context;
+    const int32_t *volume = s->test->t.volume;
+    inside_box all = {{0}, {0}};
+    for (int64_t t = from; t < to; t++) {
+        inside_box b = box_of(s->test, t);
+        s->reach[t] = reach_of(s->test, &b);
+        if (t == from || volume[t] != volume[t - 1]) {
+            if (t > from)
+                widen_shared(&s->box[volume[t - 1]], &all);
+            all = b;
+        }
+        for (int a = 0; a < 3; a++) {
+            all.low[a] = smaller(all.low[a], b.low[a]);
+            all.high[a] = larger(all.high[a], b.high[a]);
+        }
+    }
+    widen_shared(&s->box[volume[to - 1]], &all);
 }
 
 /* Counted two places up, so that filling leaves each slab's first in its place. */
-static int sort_triangles(inside *test, err *e)
+static int fill_slabs(inside *test, const reach *of, err *e)
 {
-    int row = test->mesh.row;
-    test->start = mem_array(test->slabs + 2, sizeof *test->start, "triangles", e);
-    test->box = mem_array(test->volumes, sizeof *test->box, "volumes", e);
-    if (!test->start || !test->box)
+    int64_t *start = test->start = mem_array(test->slabs + 2, sizeof *test->start, "triangles", e);
+    if (!start)
         return -1;
-    for (int32_t v = 0; v < test->volumes; v++)
-        for (int a = 0; a < 3; a++)
-            test->box[v].low[a] = INT32_MAX, test->box[v].high[a] = INT32_MIN;
-    for (int64_t t = 0; t < test->t.triangles; t++) {
-        inside_box b = box_of(test, t);
-        widen(&test->box[test->t.volume[t]], &b);
-        if (!matters(test, &b))
-            continue;
-        for (int64_t s = slab_of(test, b.low[row]); s <= slab_of(test, b.high[row] - 1); s++)
-            test->start[s + 2]++;
-    }
+    for (int64_t t = 0; t < test->t.triangles; t++)
+        for (int32_t s = of[t].first; s < of[t].past; s++)
+            start[s + 2]++;
     for (int64_t s = 0; s < test->slabs; s++)
-        test->start[s + 2] += test->start[s + 1];
-    test->triangle = mem_array(test->start[test->slabs + 1], sizeof *test->triangle, "triangles", e);
+        start[s + 2] += start[s + 1];
+    test->triangle = mem_array(start[test->slabs + 1], sizeof *test->triangle, "triangles", e);
     if (!test->triangle)
         return -1;
-    for (int64_t t = 0; t < test->t.triangles; t++) {
-        inside_box b = box_of(test, t);
-        if (!matters(test, &b))
-            continue;
-        for (int64_t s = slab_of(test, b.low[row]); s <= slab_of(test, b.high[row] - 1); s++)
-            test->triangle[test->start[s + 1]++] = (uint32_t)t;
-    }
+    for (int64_t t = 0; t < test->t.triangles; t++)
+        for (int32_t s = of[t].first; s < of[t].past; s++)
+            test->triangle[start[s + 1]++] = (uint32_t)t;
     return 0;
+}
+
+static int sort_triangles(inside *test, pool *threads, err *e)
+{
+    sorting s = {.test = test};
+    s.reach = mem_array(test->t.triangles, sizeof *s.reach, "triangles", e);
+    s.box = mem_array(test->volumes, sizeof *s.box, "volumes", e);
+    test->box = mem_array(test->volumes, sizeof *test->box, "volumes", e);
+    int status = s.reach && s.box && test->box ? 0 : -1;
+    for (int64_t i = 0; !status && i < 3 * (int64_t)test->volumes; i++) {
+        atomic_init(&s.box[i / 3].low[i % 3], INT32_MAX);
+        atomic_init(&s.box[i / 3].high[i % 3], INT32_MIN);
+    }
+    if (!status) {
+        pool_run(threads, test->t.triangles, CHUNK, reach_chunk, &s);
+        for (int64_t i = 0; i < 3 * (int64_t)test->volumes; i++) {
+            test->box[i / 3].low[i % 3] = atomic_load(&s.box[i / 3].low[i % 3]);
+            test->box[i / 3].high[i % 3] = atomic_load(&s.box[i / 3].high[i % 3]);
+        }
+        status = fill_slabs(test, s.reach, e);
+    }
+    free(s.reach);
+    free(s.box);
+    return status;
 }
 
 int inside_create(inside *test, const grid *g, const inside_triangles *t, int ray, pool *threads, err *e)
@@ -151,7 +212,7 @@ int inside_create(inside *test, const grid *g, const inside_triangles *t, int ra
     test->layers = layer * LAYERS <= SLAB_BITS ? LAYERS : layer <= SLAB_BITS ? (int64_t)(SLAB_BITS / layer) : 1;
     test->slabs = pool_chunks(grid_cells(g, row), test->layers);
     test->volumes = t->triangles ? t->volume[t->triangles - 1] + 1 : 0;
-    if (!place_vertices(test, threads, e) && !sort_triangles(test, e))
+    if (!place_vertices(test, threads, e) && !sort_triangles(test, threads, e))
         return 0;
     inside_free(test);
     return -1;
@@ -232,16 +293,6 @@ static void draw_rows(drawing *d, int32_t from, int32_t to, const crossing_line 
         else if (b < a)
             draw_columns(d, row, b, a);
     }
-}
-
-static int32_t larger(int32_t a, int32_t b)
-{
-    return a > b ? a : b;
-}
-
-static int32_t smaller(int32_t a, int32_t b)
-{
-    return a < b ? a : b;
 }
 
 /* The corners in order of their rows: the first to the last is an edge across all rows, which the middle one divides. */

@@ -42,7 +42,6 @@ typedef struct scratch {
     uint64_t *below, *now; /* words of a row: what is taken on the level below, and on this one */
     voxels_count *count;   /* volumes */
     chunk *to;
-    int64_t row_runs; /* of `to`: where the row begins */
 } scratch;
 
 /* ---- memory */
@@ -208,11 +207,26 @@ static void count_kept(scratch *s, int64_t j, int64_t k)
     }
 }
 
+/* One volume of level 0 alone, as most rows have it: all of it is kept. */
+static int do_plain_row(scratch *s, int64_t j, int64_t k, err *e)
+{
+    int64_t before = s->to->runs, cells = 0;
+    voxels_count *count = &s->count[s->active[0]->volume];
+    if (add_runs(s, s->active[0], j, k, e))
+        return -1;
+    for (int64_t r = before; r < s->to->runs; r++)
+        cells += s->to->run[r].to - s->to->run[r].from;
+    count->inside += cells, count->reached += cells, count->kept += cells;
+    return 0;
+}
+
 static int do_row(scratch *s, int64_t j, int64_t k, err *e)
 {
     find_active(s, j, k);
     if (s->actives == 0)
         return 0;
+    if (s->actives == 1 && s->to && s->w->level[s->active[0]->volume] == 0)
+        return do_plain_row(s, j, k, e);
     climb(s, j, k);
     yield(s, j, k);
     count_kept(s, j, k);

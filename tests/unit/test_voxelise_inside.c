@@ -84,11 +84,61 @@ static void add_box(mesh *m, int64_t size)
     }
 }
 
+/* A box each of whose faces is a fan about a point of its own, inside of it or at its rim: coplanar triangles, some
+ * without area. */
+static void add_fans(mesh *m, int64_t size)
+{
+    int64_t low[3], high[3];
+    int v[8];
+    for (int a = 0; a < 3; a++)
+        low[a] = draw(0, size - 1), high[a] = draw(low[a] + 1, size);
+    for (int i = 0; i < 8; i++)
+        v[i] = add_vertex(m, i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]);
+    static const int quad[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    static const int across[6] = {2, 2, 1, 1, 0, 0};
+    for (int f = 0; f < 6; f++) {
+        int64_t p[3];
+        for (int a = 0; a < 3; a++)
+            p[a] = a != across[f] ? draw(low[a], high[a]) : f == 0 || f == 2 || f == 4 ? low[a] : high[a];
+        int middle = add_vertex(m, p[0], p[1], p[2]);
+        for (int i = 0; i < 4; i++)
+            add_triangle(m, middle, v[quad[f][i]], v[quad[f][(i + 1) % 4]]);
+    }
+}
+
+/* Two corners next to each other, two far away: all but flat, and as long as the lattice. */
+static void add_sliver(mesh *m, int64_t size)
+{
+    int64_t at[2][3], next[2][3];
+    int v[4];
+    for (int a = 0; a < 3; a++) {
+        at[0][a] = draw(0, 2), at[1][a] = draw(size - 2, size);
+        if (draw(0, 1))
+            at[0][a] = size - at[0][a], at[1][a] = size - at[1][a];
+        for (int i = 0; i < 2; i++)
+            next[i][a] = at[i][a] + draw(-1, 1);
+    }
+    for (int i = 0; i < 2; i++) {
+        v[i] = add_vertex(m, at[i][0], at[i][1], at[i][2]);
+        v[2 + i] = add_vertex(m, next[i][0], next[i][1], next[i][2]);
+    }
+    add_triangle(m, v[0], v[1], v[2]);
+    add_triangle(m, v[0], v[3], v[1]);
+    add_triangle(m, v[1], v[3], v[2]);
+    add_triangle(m, v[2], v[3], v[0]);
+}
+
 static mesh any_mesh(int64_t size)
 {
     mesh m = {0};
     for (int parts = (int)draw(1, 3); parts > 0; parts--)
-        switch (draw(0, 2)) {
+        switch (draw(0, 4)) {
+        case 3:
+            add_fans(&m, size);
+            break;
+        case 4:
+            add_sliver(&m, size);
+            break;
         case 0:
             add_tetrahedron(&m, size);
             break;
@@ -218,8 +268,16 @@ static int differing(const mesh *m, const setting *s, const uint8_t *mask)
     return count;
 }
 
+/* How much of everything: more with SINEW_LONG. */
+static int times(void)
+{
+    const char *is_long = getenv("SINEW_LONG");
+    return is_long && *is_long ? 25 : 1;
+}
+
 static void test_reference(const char *name, setting s, int64_t size, int meshes)
 {
+    meshes *= times();
     int wrong = 0, unlike = 0;
     int64_t within = 0;
     for (int n = 0; n < meshes; n++) {
@@ -239,7 +297,7 @@ static void test_reference(const char *name, setting s, int64_t size, int meshes
 static void test_translation(void)
 {
     static const int64_t far[4] = {3, 1000000, 999999999, -1000000000};
-    int unlike = 0, meshes = 400;
+    int unlike = 0, meshes = 400 * times();
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(24);
         setting here = {.half = {0.5, 0.5, 0.5}, .spacing = {2, 4, 2}, .origin = {1, 0, 0}}, there = here;
@@ -256,7 +314,7 @@ static void test_translation(void)
 static void test_rounded(void)
 {
     static const double unit[4] = {0.1, 1e-6 / 3, 123.4567, 2.54e-2};
-    int unlike = 0, meshes = 800;
+    int unlike = 0, meshes = 800 * times();
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(24);
         double h = unit[n % 4];
