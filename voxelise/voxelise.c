@@ -6,6 +6,7 @@
 #include "model/materials.h"
 #include "model/stage.h"
 #include "voxelise/build.h"
+#include "voxelise/report.h"
 #include "voxelise/solids.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ struct options {
     const char *unit, *volumes, *materials;
     opt_lengths size, origin, box;
     int64_t cells;
-    bool allow_open;
+    bool allow_open, check;
 };
 
 static const opt option_list[] = {
@@ -35,6 +36,7 @@ static const opt option_list[] = {
      "materials [one: tissue]"},
     {0, "allow-open", NULL, OPT_FLAG, offsetof(struct options, allow_open), 0, 0, NULL, 0,
      "open surfaces are a warning"},
+    {0, "check", NULL, OPT_FLAG, offsetof(struct options, check), 0, 0, NULL, 0, "only report on the surfaces"},
     {0}};
 
 static const opt_tool table = {
@@ -108,7 +110,7 @@ static int check_options(job *j, err *e)
     j->unit = o->unit ? num_unit_of(o->unit) : 0;
     if (o->unit && !j->unit)
         return err_usage(e, "--unit '%s': expected mm, cm, m, in or um", o->unit);
-    if (o->unit && !o->size.count && o->cells < 0)
+    if (o->unit && !o->size.count && o->cells < 0 && !o->check)
         return err_usage(e, "no voxel size; expected -s H, -s HX,HY,HZ or -n CELLS");
     if (o->size.count && o->cells >= 0)
         return err_usage(e, "-s and -n both give the voxel size; expected one of them");
@@ -162,17 +164,24 @@ static int read_materials(const job *j, model *m, err *e)
     return status;
 }
 
-static int make_plan(job *j, const model *m, err *e)
+static int read_plan(job *j, const model *m, err *e)
 {
-    if (!j->o->volumes)
-        return volumes_by_name(&j->plan, &j->surface, m, e);
     in *source = in_open(j->o->volumes, e);
     int status = source ? volumes_read(&j->plan, source, &j->surface, m, &j->warnings, e) : -1;
     in_close(source);
     return status;
 }
 
-/* ---- work */
+static int make_plan(job *j, const model *m, err *e)
+{
+    bool by_name = !j->o->volumes;
+    if (by_name ? volumes_by_name(&j->plan, &j->surface, m, e) : read_plan(j, m, e))
+        return -1;
+    volumes_notes(&j->plan, by_name, &j->warnings);
+    return 0;
+}
+
+/* ---- the lattice and what is inside */
 
 static int find_spacing(const job *j, double *spacing, err *e)
 {
@@ -303,7 +312,107 @@ static double say_time(const job *j, const char *what, double since)
     return now;
 }
 
-static int work(job *j, model *m, err *e)
+/* ---- --check */
+
+/* Whether a group's polygons are of a surface, and whether they bound a volume. */
+static bool is_of_surface(const volumes *v, int32_t group, int32_t number)
+{
+    for (int64_t t = v->token_start[group]; t < v->token_start[group + 1]; t++)
+        if (v->token[t] == number)
+            return true;
+    return false;
+}
+
+static bool is_of_volume(const volumes *v, int32_t group, int32_t number)
+{
+    for (int64_t m = v->group_start[group]; m < v->group_start[group + 1]; m++)
+        if (v->member[m].volume == number)
+            return true;
+    return false;
+}
+
+/* What --check needs for all surfaces and volumes. */
+typedef struct checking {
+    job *j;
+    const double *voxel; /* NULL: none was given */
+    int64_t *face;       /* room for all of the OBJ's */
+    out *to;
+} checking;
+
+static int look_at(const checking *c, bool (*is_of)(const volumes *v, int32_t group, int32_t number), int32_t number,
+                   check_result *r, err *e)
+{
+    const obj *o = &c->j->surface;
+    int64_t count = 0;
+    for (int64_t f = 0; f < o->faces; f++)
+        if (o->face_start[f + 1] - o->face_start[f] >= 3 && is_of(&c->j->plan, o->face_group[f], number))
+            c->face[count++] = f;
+    return check_surface(r, o, c->face, count, c->voxel, pool_threads(c->j->threads), e);
+}
+
+static int check_surfaces(const checking *c, err *e)
+{
+    job *j = c->j;
+    for (int32_t s = 0; s < j->plan.surfaces; s++) {
+        check_result r;
+        if (j->plan.surface[s].polygons == 0)
+            continue;
+        if (look_at(c, is_of_surface, s, &r, e))
+            return -1;
+        report_surface(c->to, &j->plan, s, &r, num_unit_name(j->unit));
+        report_warn(&j->warnings, "surface", j->plan.surface[s].name, &r);
+    }
+    return 0;
+}
+
+/* A volume of one surface is as that is. */
+static int check_volumes(const checking *c, err *e)
+{
+    job *j = c->j;
+    for (int32_t v = 0; v < j->plan.volumes; v++) {
+        const volumes_volume *a = &j->plan.volume[v];
+        check_result r;
+        bool several = strchr(a->surfaces, ' ') != NULL;
+        if (several && look_at(c, is_of_volume, v, &r, e))
+            return -1;
+        report_volume(c->to, a, several ? &r : NULL, j->solid.open[v], num_unit_name(j->unit));
+        if (several)
+            report_warn(&j->warnings, "volume", a->name, &r);
+    }
+    return 0;
+}
+
+/* Writes the report; fails where a volume is open, as a run without --check would. */
+static int check(job *j, err *e)
+{
+    double spacing[3] = {0};
+    bool sized = j->o->size.count || j->o->cells >= 0;
+    if (sized && find_spacing(j, spacing, e))
+        return -1;
+    checking c = {.j = j, .voxel = sized ? spacing : NULL};
+    c.face = mem_array(j->surface.faces, sizeof *c.face, "polygons", e);
+    c.to = c.face ? out_open(j->t->common->output, j->t->common->gzip, e) : NULL;
+    int status = c.to && !check_surfaces(&c, e) && !check_volumes(&c, e) ? 0 : -1;
+    free(c.face);
+    if (status) {
+        out_discard(c.to);
+        return -1;
+    }
+    int64_t open = 0;
+    for (int32_t v = 0; v < j->plan.volumes; v++)
+        open += j->solid.open[v];
+    if (out_close(c.to, e))
+        return -1;
+    if (!open || j->o->allow_open)
+        return 0;
+    return err_set(e, j->surface.name, 0,
+                   "%lld open edges; expected every edge to join two polygons (--allow-open goes on all the same)",
+                   (long long)open);
+}
+
+/* ---- work */
+
+static int prepare(job *j, model *m, err *e)
 {
     double clock = progress_clock();
     if (read_surface(j, e))
@@ -313,11 +422,18 @@ static int work(job *j, model *m, err *e)
     clock = say_time(j, "reading", clock);
     int threads = tool_threads(j->t, e);
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;
+    bool allow_open = j->o->allow_open || j->o->check;
     if (!j->threads || read_materials(j, m, e) || make_plan(j, m, e) ||
-        solids_build(&j->solid, &j->surface, &j->plan, j->o->allow_open, &j->warnings, e) || make_grid(j, e))
+        solids_build(&j->solid, &j->surface, &j->plan, allow_open, &j->warnings, e))
         return -1;
-    clock = say_time(j, "checking surfaces", clock);
-    if (find_voxels(j, e))
+    say_time(j, "checking surfaces", clock);
+    return 0;
+}
+
+static int work(job *j, model *m, err *e)
+{
+    double clock = progress_clock();
+    if (make_grid(j, e) || find_voxels(j, e))
         return -1;
     clock = say_time(j, "finding what is inside", clock);
     if (make_model(j, m, e))
@@ -339,11 +455,15 @@ int main(int argc, char **argv)
         goto out;
     j.path = argv[1];
     /* Without a unit there will be no model: that is said whatever stdout is. */
-    if (!check_options(&j, &e) && (!j.unit || !stage_open_output(&s, &t, &e)) && !work(&j, &m, &e))
+    if (check_options(&j, &e) || (!o.check && j.unit && stage_open_output(&s, &t, &e)) || prepare(&j, &m, &e))
+        goto out;
+    if (o.check)
+        check(&j, &e);
+    else if (!work(&j, &m, &e))
         stage_write(&s, &m, &e);
 out:
     tool_warn(&t, &j.warnings);
-    if (!t.done)
+    if (!t.done && !o.check)
         stage_close(&s, &t, &e);
     job_free(&j);
     model_free(&m);
