@@ -202,7 +202,7 @@ static int sort_triangles(inside *test, pool *threads, err *e)
     return status;
 }
 
-int inside_create(inside *test, const grid *g, const inside_triangles *t, int ray, pool *threads, err *e)
+int inside_create(inside *test, const grid *g, const inside_triangles *t, int ray, int multiple, pool *threads, err *e)
 {
     int row = (ray + 1) % 3, column = (ray + 2) % 3;
     *test = (inside){.t = *t, .mesh = {.g = g, .position = t->position, .ray = ray, .row = row, .column = column}};
@@ -210,6 +210,7 @@ int inside_create(inside *test, const grid *g, const inside_triangles *t, int ra
         return err_set(e, NULL, 0, "%lld triangles; at most %u are possible", (long long)t->triangles, UINT32_MAX);
     double layer = (double)grid_cells(g, ray) * (double)grid_cells(g, column);
     test->layers = layer * LAYERS <= SLAB_BITS ? LAYERS : layer <= SLAB_BITS ? (int64_t)(SLAB_BITS / layer) : 1;
+    test->layers = (test->layers + multiple - 1) / multiple * multiple;
     test->slabs = pool_chunks(grid_cells(g, row), test->layers);
     test->volumes = t->triangles ? t->volume[t->triangles - 1] + 1 : 0;
     if (!place_vertices(test, threads, e) && !sort_triangles(test, threads, e))

@@ -40,8 +40,9 @@ typedef struct inside {
     uint32_t *triangle; /* slab after slab, each in the order that they were given in */
 } inside;
 
-/* Rays run along `ray`; rows along ray + 1, the bits of a word along ray + 2 (mod 3). */
-int inside_create(inside *test, const grid *g, const inside_triangles *t, int ray, pool *threads, err *e);
+/* Rays run along `ray`; rows along ray + 1, the bits of a word along ray + 2 (mod 3). A slab has a multiple of so many
+ * layers. */
+int inside_create(inside *test, const grid *g, const inside_triangles *t, int ray, int multiple, pool *threads, err *e);
 void inside_free(inside *test);
 
 /* One volume in a slab: bit b of word w of a layer and a cell along the ray is the cell low of the grid + 64 (word + w) + b

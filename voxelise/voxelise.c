@@ -17,7 +17,8 @@ struct options {
     opt_common common;
     const char *unit, *volumes, *materials;
     opt_lengths size, origin, box;
-    int64_t cells;
+    int64_t cells, fraction;
+    double least;
     bool allow_open, check;
 };
 
@@ -34,6 +35,10 @@ static const opt option_list[] = {
      "what bounds which volume [by names]"},
     {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, OPT_FILE,
      "materials [one: tissue]"},
+    {0, "fraction", "N", OPT_INT, offsetof(struct options, fraction), 1, SHARES_MOST, NULL, 0,
+     "elements by enclosed share, from N^3 samples"},
+    {0, "least", "SHARE", OPT_NUMBER, offsetof(struct options, least), 0, 1, NULL, 0,
+     "that makes an element, with --fraction [any]"},
     {0, "allow-open", NULL, OPT_FLAG, offsetof(struct options, allow_open), 0, 0, NULL, 0,
      "open surfaces are a warning"},
     {0, "check", NULL, OPT_FLAG, offsetof(struct options, check), 0, 0, NULL, 0, "only report on the surfaces"},
@@ -59,8 +64,8 @@ typedef struct job {
     obj surface;
     volumes plan;
     solids solid;
-    grid g;
-    inside in;
+    grid g, samples;
+    inside test;
     voxels x;
     pool *threads;
     notes warnings;
@@ -69,7 +74,7 @@ typedef struct job {
 static void job_free(job *j)
 {
     voxels_free(&j->x);
-    inside_free(&j->in);
+    inside_free(&j->test);
     solids_free(&j->solid);
     volumes_free(&j->plan);
     obj_free(&j->surface);
@@ -116,6 +121,8 @@ static int check_options(job *j, err *e)
         return err_usage(e, "-s and -n both give the voxel size; expected one of them");
     if (o->size.count == 2 || !all_positive(&o->size))
         return err_usage(e, "-s: expected one length, or three between commas, above 0");
+    if (!isnan(o->least) && o->fraction < 0)
+        return err_usage(e, "--least is for --fraction N; expected both, or neither");
     if (!box_is_upright(j))
         return err_usage(e, "--box: expected X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1");
     return strcmp(j->path, "-") ? 0 : tool_need_stdin("an OBJ", e);
@@ -211,14 +218,17 @@ static int make_grid(job *j, err *e)
     if (j->o->origin.count ? grid_fix(&j->g, s->low, s->high, spacing, origin, e)
                            : grid_cover(&j->g, s->low, s->high, spacing, e))
         return -1;
+    if (j->o->origin.count && j->o->fraction > 0 && grid_widen(&j->g, e))
+        return -1;
     return j->o->box.count ? grid_clip(&j->g, box, box + 3, e) : 0;
 }
 
-static int find_voxels(job *j, err *e)
+/* What is inside, by centres or by samples; samples: the lattice of the one or the other. */
+static int look_inside(job *j, const grid *samples, const shares_rule *rule, err *e)
 {
     const solids *s = &j->solid;
     inside_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
-    if (inside_create(&j->in, &j->g, &t, VOXELS_RAY, j->threads, e))
+    if (inside_create(&j->test, samples, &t, CLIMB_RAY, rule ? rule->samples : 1, j->threads, e))
         return -1;
     int32_t *level = mem_array(j->plan.volumes, sizeof *level, "volumes", e);
     if (!level)
@@ -226,16 +236,26 @@ static int find_voxels(job *j, err *e)
     for (int32_t v = 0; v < j->plan.volumes; v++)
         level[v] = j->plan.volume[v].level;
     progress shown;
-    progress_start(&shown, table.name, "slabs", (double)j->in.slabs, j->t->common->quiet);
-    int status = voxels_find(&j->x, &j->in, level, j->plan.volumes, j->threads, &shown, e);
+    progress_start(&shown, table.name, "slabs", (double)j->test.slabs, j->t->common->quiet);
+    int status = voxels_find(&j->x, &j->test, level, j->plan.volumes, rule, j->threads, &shown, e);
     progress_stop(&shown);
     free(level);
-    if (!status && j->x.elements == 0)
-        status = err_set(e, j->surface.name, 0,
-                         "no voxel has its centre inside; expected smaller voxels%s (%g x %g x %g %s)",
-                         j->o->box.count ? ", or another --box" : "", j->g.spacing[0], j->g.spacing[1], j->g.spacing[2],
-                         num_unit_name(j->unit));
     return status;
+}
+
+static int find_voxels(job *j, err *e)
+{
+    bool by_shares = j->o->fraction > 0;
+    shares_rule rule = {(int)j->o->fraction, isnan(j->o->least) ? 0 : j->o->least};
+    if (by_shares && grid_divide(&j->samples, &j->g, rule.samples, e))
+        return -1;
+    if (look_inside(j, by_shares ? &j->samples : &j->g, by_shares ? &rule : NULL, e))
+        return -1;
+    if (j->x.elements)
+        return 0;
+    return err_set(e, j->surface.name, 0, "no voxel has %s inside; expected smaller voxels%s (%g x %g x %g %s)",
+                   by_shares ? "enough of it" : "its centre", j->o->box.count ? ", or another --box" : "",
+                   j->g.spacing[0], j->g.spacing[1], j->g.spacing[2], num_unit_name(j->unit));
 }
 
 static double in_metres(const job *j, double length)
@@ -260,32 +280,46 @@ static int make_model(const job *j, model *m, err *e)
 
 /* ---- say */
 
+/* What is counted of a volume: voxels by their centres, or samples. */
+static const char *counted(const job *j)
+{
+    return j->x.fraction ? "samples" : "voxels";
+}
+
 static void say_volume(const job *j, const model *m, int32_t v)
 {
     const volumes_volume *a = &j->plan.volume[v];
-    const voxels_count *n = &j->x.count[v];
+    const climb_count *n = &j->x.count[v];
     const char *of = model_find(m, "material.name")->str[a->material];
     tool_say(j->t, "%s%s: level %d, priority %d, material %s, surfaces %s: %lld elements", a->muscle ? "muscle " : "",
              a->name, a->level, a->priority, of, a->surfaces, (long long)n->kept);
     if (n->reached > 0 && n->reached < n->inside)
-        tool_say(j->t, "%s: outside level %d, and ignored: %lld of its %lld voxels", a->name, a->level - 1,
-                 (long long)(n->inside - n->reached), (long long)n->inside);
+        tool_say(j->t, "%s: outside level %d, and ignored: %lld of its %lld %s", a->name, a->level - 1,
+                 (long long)(n->inside - n->reached), (long long)n->inside, counted(j));
 }
 
 static void warn_volume(job *j, int32_t v)
 {
     const volumes_volume *a = &j->plan.volume[v];
-    const voxels_count *n = &j->x.count[v];
+    const climb_count *n = &j->x.count[v];
     if (n->inside == 0)
         notes_add(&j->warnings,
                   "%s has no voxel: no centre is inside it (it is thinner than a voxel, or off the lattice%s)", a->name,
                   j->o->box.count ? " or the --box" : "");
     else if (n->reached == 0)
-        notes_add(&j->warnings, "%s is ignored: none of its %lld voxels is in a volume of level %d", a->name,
-                  (long long)n->inside, a->level - 1);
+        notes_add(&j->warnings, "%s is ignored: none of its %lld %s is in a volume of level %d", a->name,
+                  (long long)n->inside, counted(j), a->level - 1);
     else if (n->kept == 0)
-        notes_add(&j->warnings, "%s has no voxel: other volumes keep all %lld that it could have", a->name,
-                  (long long)n->reached);
+        notes_add(&j->warnings, "%s has no voxel: other volumes keep all %lld %s that it could have", a->name,
+                  (long long)n->reached, counted(j));
+}
+
+static double enclosed(const job *j)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < j->x.elements; i++)
+        sum += (double)j->x.fraction[i];
+    return sum;
 }
 
 static void say_plan(job *j, const model *m)
@@ -298,6 +332,8 @@ static void say_plan(job *j, const model *m)
         say_volume(j, m, v);
         warn_volume(j, v);
     }
+    if (j->x.fraction)
+        tool_say(j->t, "enclosed: %.9g of the elements' %lld voxels", enclosed(j), (long long)j->x.elements);
     tool_say(j->t, "%lld elements, %lld nodes", (long long)model_count(m, "element"),
              (long long)model_count(m, "node"));
     if (!j->plan.rigid)
@@ -445,7 +481,7 @@ static int work(job *j, model *m, err *e)
 
 int main(int argc, char **argv)
 {
-    struct options o = {.cells = -1};
+    struct options o = {.cells = -1, .fraction = -1, .least = NAN};
     err e = {0};
     tool t = {0};
     stage s = {0};

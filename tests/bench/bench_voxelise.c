@@ -1,5 +1,6 @@
 // needs: voxelise/build.c voxelise/closed.c voxelise/crossing.c voxelise/expansion.c voxelise/grid.c voxelise/inside.c
-// needs: voxelise/solids.c voxelise/volumes.c voxelise/voxels.c tests/bench/scan.c
+// needs: voxelise/solids.c voxelise/weld.c voxelise/volumes.c voxelise/voxels.c voxelise/climb.c
+// needs: voxelise/shares.c tests/bench/scan.c
 /* How long voxelise takes on a closed scan, step by step, beside two probes of the machine: CSV on stdout. Each figure is the
  * least of several runs. Usage: bench_voxelise [TRIANGLES [FOLDER]]; the OBJ that is read stands in FOLDER (/tmp) meanwhile.
  */
@@ -139,9 +140,9 @@ static int find(const bench *b, const grid *g, pool *threads, inside *test, voxe
     const int32_t level = 0;
     inside_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
     double start = progress_clock();
-    if (inside_create(test, g, &t, VOXELS_RAY, threads, e))
+    if (inside_create(test, g, &t, CLIMB_RAY, 1, threads, e))
         return -1;
-    int status = voxels_find(x, test, &level, 1, threads, NULL, e);
+    int status = voxels_find(x, test, &level, 1, NULL, threads, NULL, e);
     *seconds = progress_clock() - start;
     inside_free(test);
     return status;

@@ -29,13 +29,13 @@ static double distance(const double *d)
     return r + 0.7 * sin(17 * d[0] + 3 * d[2]) * sin(13 * d[1]) + 0.3 * sin(41 * d[2] + 5 * d[0]);
 }
 
-/* Rings from pole to pole, of `round` vertices each; a place between them moves by less than half a step. */
+/* Rings from pole to pole, of `round` vertices each; a place moves by less than a sixth of a step, so that no triangle turns over. */
 static void put_vertex(scan *s, int64_t at, int64_t rings, int64_t round)
 {
     int64_t ring = at / round, turn = at % round;
     double step = M_PI / (double)(rings + 1), side = 2 * M_PI / (double)round;
-    double polar = step * ((double)ring + 1 + 0.6 * (chance(at, 0) - 0.5));
-    double azimuth = side * ((double)turn + 0.5 * (double)(ring % 2) + 0.6 * (chance(at, 1) - 0.5));
+    double polar = step * ((double)ring + 1 + 0.3 * (chance(at, 0) - 0.5));
+    double azimuth = side * ((double)turn + 0.5 * (double)(ring % 2) + 0.3 * (chance(at, 1) - 0.5));
     double d[3] = {sin(polar) * cos(azimuth), sin(polar) * sin(azimuth), cos(polar)};
     double r = distance(d) + 0.05 * (chance(at, 2) - 0.5);
     for (int a = 0; a < 3; a++)

@@ -208,7 +208,7 @@ static bool fill_mask(const grid *g, const inside_triangles *t, int axis, pool *
     err e = {0};
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     memset(mask, 0, CELLS);
-    if (inside_create(&test, g, t, axis, threads, &e))
+    if (inside_create(&test, g, t, axis, 1, threads, &e))
         return false;
     bool good = true;
     for (int64_t n = 0; good && n < test.slabs; n++) {

@@ -136,7 +136,7 @@ static int64_t differing(const mesh *m, const setting *s, int ray, const uint8_t
     int32_t *volume = calloc((size_t)m->s.triangles, sizeof *volume);
     pool *threads = pool_create(2, &e);
     inside_triangles t = {m->s.position, m->s.vertices, m->s.vertex, volume, m->s.triangles};
-    if (!volume || !threads || inside_create(&test, &g, &t, ray, threads, &e))
+    if (!volume || !threads || inside_create(&test, &g, &t, ray, 1, threads, &e))
         wrong = -1;
     for (int64_t n = 0; wrong >= 0 && n < test.slabs; n++) {
         if (inside_look(&test, n, &slab, &e))

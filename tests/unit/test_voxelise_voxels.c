@@ -1,4 +1,4 @@
-// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/inside.c voxelise/voxels.c voxelise/build.c
+// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/inside.c voxelise/voxels.c voxelise/climb.c voxelise/shares.c voxelise/build.c
 /* Algorithm 1 as it is printed, voxel by voxel over boxes at random, against columns and runs; and the nodes of the
  * elements against a plain table of all corners.
  */
@@ -85,19 +85,24 @@ static int printed(const scene *s, const int *cell)
     return volume;
 }
 
-static bool find(const scene *s, int threads, voxels *x)
+static bool find_on(const scene *s, const grid *g, const shares_rule *rule, int threads, voxels *x)
 {
     inside_triangles t = {s->position, BOXES * 8, s->vertex, s->volume, BOXES * 12};
     inside test;
     err e = {0};
     pool *p = pool_create(threads, &e);
-    bool good = p && !inside_create(&test, &s->g, &t, VOXELS_RAY, p, &e);
+    bool good = p && !inside_create(&test, g, &t, CLIMB_RAY, rule ? rule->samples : 1, p, &e);
     if (good) {
-        good = !voxels_find(x, &test, s->level, BOXES, p, NULL, &e);
+        good = !voxels_find(x, &test, s->level, BOXES, rule, p, NULL, &e);
         inside_free(&test);
     }
     pool_destroy(p);
     return good;
+}
+
+static bool find(const scene *s, int threads, voxels *x)
+{
+    return find_on(s, &s->g, NULL, threads, x);
 }
 
 static int cell_index(int i, int j, int k)
@@ -211,6 +216,71 @@ static void test_scenes(void)
     ok(bad_nodes == 0, "%d of %d scenes have wrong nodes", bad_nodes, scenes);
 }
 
+/* Of a voxel: its samples of each volume, from runs of samples. */
+static int64_t owner_of(const voxels *samples, int n, const int *cell, int64_t *total)
+{
+    int64_t count[BOXES] = {0}, best = 0;
+    for (int64_t r = 0; r < samples->runs; r++) {
+        const climb_run *a = &samples->run[r];
+        int from = n * cell[0], to = from + n;
+        if (a->j < n * cell[1] || a->j >= n * (cell[1] + 1) || a->k < n * cell[2] || a->k >= n * (cell[2] + 1))
+            continue;
+        from = a->from > from ? a->from : from;
+        to = a->to < to ? a->to : to;
+        count[a->volume] += to > from ? to - from : 0;
+    }
+    *total = 0;
+    for (int v = 0; v < BOXES; v++) {
+        *total += count[v];
+        best = count[v] > count[best] ? v : best;
+    }
+    return *total ? best : -1;
+}
+
+/* Voxels of 2 cells by shares, against the samples one by one. */
+static bool same_as_samples(const scene *s, const shares_rule *rule)
+{
+    scene coarse = *s;
+    grid fine;
+    err e = {0};
+    voxels got = {0}, samples = {0}, again = {0};
+    int volume[CELLS];
+    for (int a = 0; a < 3; a++) {
+        coarse.g.spacing[a] = 2;
+        coarse.g.origin[a] = 0.3 * (a - 1);
+    }
+    bool good = !grid_divide(&fine, &coarse.g, rule->samples, &e) && find_on(&coarse, &fine, rule, 1, &got) &&
+                find_on(&coarse, &fine, rule, 3, &again) && find_on(&coarse, &fine, NULL, 1, &samples) &&
+                unroll(&got, volume);
+    good = good && got.elements == again.elements && got.runs == again.runs &&
+           memcmp(got.fraction, again.fraction, (size_t)got.elements * sizeof *got.fraction) == 0;
+    int64_t at = 0, all = (int64_t)rule->samples * rule->samples * rule->samples;
+    for (int c = 0; good && c < CELLS; c++) {
+        int cell[3] = {c % SIDE - 1, c / SIDE % SIDE - 1, c / SIDE / SIDE - 1};
+        int64_t total, owner = owner_of(&samples, rule->samples, cell, &total);
+        bool is_element = total > 0 && (double)total >= rule->least * (double)all;
+        good = volume[c] == (is_element ? owner : -1);
+        if (good && is_element)
+            good = got.fraction[at++] == (float)((double)total / (double)all);
+    }
+    voxels_free(&got);
+    voxels_free(&samples);
+    voxels_free(&again);
+    return good;
+}
+
+static void test_shares(void)
+{
+    static const shares_rule rule[] = {{1, 0}, {2, 0}, {3, 0.4}, {4, 0.5}, {5, 1}, {7, 0.1}};
+    int scenes = 60, wrong = 0;
+    for (int n = 0; n < scenes; n++) {
+        scene s;
+        make_scene(&s);
+        wrong += !same_as_samples(&s, &rule[n % 6]);
+    }
+    ok(wrong == 0, "%d of %d scenes by shares differ from their samples", wrong, scenes);
+}
+
 static void test_memory(void)
 {
     grid g = {.high = {1000, 1000, 1000}};
@@ -227,6 +297,7 @@ static void test_memory(void)
 int main(void)
 {
     test_scenes();
+    test_shares();
     test_memory();
     return done_testing();
 }
