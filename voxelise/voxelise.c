@@ -6,6 +6,7 @@
 #include "model/materials.h"
 #include "model/stage.h"
 #include "voxelise/build.h"
+#include "voxelise/layers.h"
 #include "voxelise/report.h"
 #include "voxelise/solids.h"
 
@@ -15,7 +16,7 @@
 
 struct options {
     opt_common common;
-    const char *unit, *volumes, *materials;
+    const char *unit, *volumes, *materials, *layers;
     opt_lengths size, origin, box;
     int64_t cells, fraction;
     double least;
@@ -35,6 +36,8 @@ static const opt option_list[] = {
      "what bounds which volume [by names]"},
     {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, OPT_FILE,
      "materials [one: tissue]"},
+    {0, "layers", "FILE", OPT_TEXT, offsetof(struct options, layers), 0, 0, NULL, OPT_FILE,
+     "volumes from the skin inward"},
     {0, "fraction", "N", OPT_INT, offsetof(struct options, fraction), 1, SHARES_MOST, NULL, 0,
      "elements by enclosed share, from N^3 samples"},
     {0, "least", "SHARE", OPT_NUMBER, offsetof(struct options, least), 0, 1, NULL, 0,
@@ -63,6 +66,7 @@ typedef struct job {
     num_unit unit;
     obj surface;
     volumes plan;
+    layers layer;
     solids solid;
     grid g, samples;
     inside test;
@@ -76,6 +80,7 @@ static void job_free(job *j)
     voxels_free(&j->x);
     inside_free(&j->test);
     solids_free(&j->solid);
+    layers_free(&j->layer);
     volumes_free(&j->plan);
     obj_free(&j->surface);
     if (j->threads)
@@ -179,13 +184,23 @@ static int read_plan(job *j, const model *m, err *e)
     return status;
 }
 
+static int read_layers(job *j, const model *m, err *e)
+{
+    if (!j->o->layers)
+        return 0;
+    in *source = in_open(j->o->layers, e);
+    int status = source ? layers_read(&j->layer, source, j->unit, &j->plan, m, e) : -1;
+    in_close(source);
+    return status;
+}
+
 static int make_plan(job *j, const model *m, err *e)
 {
     bool by_name = !j->o->volumes;
     if (by_name ? volumes_by_name(&j->plan, &j->surface, m, e) : read_plan(j, m, e))
         return -1;
     volumes_notes(&j->plan, by_name, &j->warnings);
-    return 0;
+    return read_layers(j, m, e);
 }
 
 /* ---- the lattice and what is inside */
@@ -472,6 +487,11 @@ static int work(job *j, model *m, err *e)
     if (make_grid(j, e) || find_voxels(j, e))
         return -1;
     clock = say_time(j, "finding what is inside", clock);
+    if (j->layer.layers) {
+        if (layers_apply(&j->layer, &j->x, &j->plan, &j->surface, &j->g, j->threads, e))
+            return -1;
+        clock = say_time(j, "finding layers", clock);
+    }
     if (make_model(j, m, e))
         return -1;
     say_time(j, "building the model", clock);
