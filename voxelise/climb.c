@@ -60,7 +60,7 @@ static void take_levels(climb *c, int64_t j, int64_t k)
     int64_t words = row_words_of(c->test);
     int32_t level = -1;
     for (int64_t a = 0; a < c->actives; a++) {
-        const inside_part *p = c->active[a];
+        const inside_part *p = &c->active[a];
         int32_t mine = c->level[p->volume];
         uint64_t *bits = row_words(c, p, j, k);
         climb_count *count = &c->count[p->volume];
@@ -87,10 +87,10 @@ static void take_levels(climb *c, int64_t j, int64_t k)
 static void yield(const climb *c, int64_t j, int64_t k)
 {
     for (int64_t a = 0; a < c->actives; a++) {
-        const inside_part *p = c->active[a];
+        const inside_part *p = &c->active[a];
         uint64_t *bits = row_words(c, p, j, k);
         for (int64_t b = a + 1; b < c->actives; b++) {
-            const inside_part *q = c->active[b];
+            const inside_part *q = &c->active[b];
             if (c->level[q->volume] != c->level[p->volume] + 1)
                 continue;
             const uint64_t *theirs = row_words(c, q, j, k);
@@ -135,7 +135,7 @@ static int find_runs(const climb *c, int64_t j, int64_t k, climb_runs *to, err *
 {
     int64_t before = to->runs;
     for (int64_t a = 0; a < c->actives; a++)
-        if (add_runs(c, c->active[a], j, k, to, e))
+        if (add_runs(c, &c->active[a], j, k, to, e))
             return -1;
     if (c->actives > 1 && to->runs > before)
         qsort(to->run + before, (size_t)(to->runs - before), sizeof(climb_run), compare_runs);
@@ -150,17 +150,17 @@ static bool any_bits(const uint64_t *words, int64_t count)
     return any != 0;
 }
 
-static int find_active(climb *c, inside_slab *slab, int64_t j, int64_t k, err *e)
+static int find_active(climb *c, const inside_slab *slab, int64_t j, int64_t k, err *e)
 {
     c->actives = 0;
     if (mem_grow(&c->active, &c->capacity, slab->parts, sizeof *c->active, "volumes", e))
         return -1;
     for (int64_t n = 0; n < slab->parts; n++) {
-        inside_part *p = &slab->part[n];
+        const inside_part *p = &slab->part[n];
         if (j < p->box.low[1] || j >= p->box.high[1] || k < p->box.low[2] || k >= p->box.high[2])
             continue;
         if (any_bits(row_words(c, p, j, k), p->words))
-            c->active[c->actives++] = p;
+            c->active[c->actives++] = *p;
     }
     return 0;
 }
@@ -168,7 +168,7 @@ static int find_active(climb *c, inside_slab *slab, int64_t j, int64_t k, err *e
 static void count_kept(const climb *c, int64_t j, int64_t k)
 {
     for (int64_t a = 0; a < c->actives; a++) {
-        const inside_part *p = c->active[a];
+        const inside_part *p = &c->active[a];
         const uint64_t *bits = row_words(c, p, j, k);
         for (int64_t i = 0; i < p->words; i++)
             c->count[p->volume].kept += popcount(bits[i]);
@@ -179,8 +179,8 @@ static void count_kept(const climb *c, int64_t j, int64_t k)
 static int plain_row(const climb *c, int64_t j, int64_t k, climb_runs *to, err *e)
 {
     int64_t before = to->runs, cells = 0;
-    climb_count *count = &c->count[c->active[0]->volume];
-    if (add_runs(c, c->active[0], j, k, to, e))
+    climb_count *count = &c->count[c->active[0].volume];
+    if (add_runs(c, &c->active[0], j, k, to, e))
         return -1;
     for (int64_t r = before; r < to->runs; r++)
         cells += to->run[r].to - to->run[r].from;
@@ -188,13 +188,13 @@ static int plain_row(const climb *c, int64_t j, int64_t k, climb_runs *to, err *
     return 0;
 }
 
-int climb_row(climb *c, inside_slab *slab, int64_t j, int64_t k, climb_runs *to, err *e)
+int climb_row(climb *c, const inside_slab *slab, int64_t j, int64_t k, climb_runs *to, err *e)
 {
     if (find_active(c, slab, j, k, e))
         return -1;
     if (c->actives == 0)
         return 0;
-    if (c->actives == 1 && to && c->level[c->active[0]->volume] == 0)
+    if (c->actives == 1 && to && c->level[c->active[0].volume] == 0)
         return plain_row(c, j, k, to, e);
     take_levels(c, j, k);
     yield(c, j, k);

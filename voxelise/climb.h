@@ -33,7 +33,7 @@ typedef struct climb {
     const inside *test;   /* with rays along CLIMB_RAY; borrowed */
     const int32_t *level; /* volumes, which are in order of level, then of priority; borrowed */
     climb_count *count;   /* volumes */
-    inside_part **active; /* the volumes in a row, in order */
+    inside_part *active;  /* the volumes in a row, in order */
     int64_t actives, capacity;
     uint64_t *below, *now; /* words of a row: what is taken on the level below, and on this one */
 } climb;
@@ -42,6 +42,6 @@ int climb_create(climb *c, const inside *test, const int32_t *level, int32_t vol
 void climb_free(climb *c);
 
 /* Adds a row's runs to a list (NULL: they are counted only), by where they begin. It writes over the slab's row. */
-int climb_row(climb *c, inside_slab *slab, int64_t j, int64_t k, climb_runs *to, err *e);
+int climb_row(climb *c, const inside_slab *slab, int64_t j, int64_t k, climb_runs *to, err *e);
 
 #endif

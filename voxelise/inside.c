@@ -103,7 +103,7 @@ static int32_t larger(int32_t a, int32_t b)
 static inside_box box_of(const inside *test, int64_t triangle)
 {
     inside_box b;
-    const int32_t *corner = &test->t.vertex[3 * triangle];
+    const int32_t *corner = test->t.vertex + 3 * triangle;
     const int32_t *x = &test->first[3 * (int64_t)corner[0]], *y = &test->first[3 * (int64_t)corner[1]];
     const int32_t *z = &test->first[3 * (int64_t)corner[2]];
     for (int a = 0; a < 3; a++) {
@@ -300,7 +300,7 @@ static void draw_rows(drawing *d, int32_t from, int32_t to, const crossing_line 
 static void draw_triangle(const inside *test, const inside_part *p, int64_t triangle)
 {
     const crossing_mesh *m = &test->mesh;
-    const int32_t *t = &test->t.vertex[3 * triangle];
+    const int32_t *t = test->t.vertex + 3 * triangle;
     int32_t v[3] = {t[0], t[1], t[2]}, row[3];
     for (int i = 0; i < 3; i++)
         row[i] = m->first[3 * (int64_t)v[i] + m->row];

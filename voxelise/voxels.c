@@ -265,13 +265,14 @@ static int join_chunks(voxels *x, const work *w, err *e)
         chunk *c = &w->chunk[i];
         if (c->to.runs)
             memcpy(x->run + at, c->to.run, (size_t)c->to.runs * sizeof *x->run);
-        if (c->fraction.count)
+        if (x->fraction && c->fraction.count)
             memcpy(x->fraction + voxel, c->fraction.fraction, (size_t)c->fraction.count * sizeof *x->fraction);
         at += c->to.runs;
         voxel += c->fraction.count;
         free(c->to.run);
         free(c->fraction.fraction);
-        *c = (chunk){0};
+        c->to.run = NULL;
+        c->fraction.fraction = NULL;
     }
     return 0;
 }

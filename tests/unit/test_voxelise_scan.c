@@ -101,7 +101,7 @@ static void reference(const mesh *m, const setting *s, uint8_t *mask)
 {
     memset(mask, 0, (size_t)s->cells * s->cells * s->cells);
     for (int64_t t = 0; t < m->s.triangles; t++) {
-        const int32_t *v = &m->s.vertex[3 * t];
+        const int32_t *v = m->s.vertex + 3 * t;
         int64_t low[3], high[3];
         for (int a = 1; a < 3; a++) {
             low[a] = high[a] = m->at[v[0]][a];
