@@ -8,6 +8,7 @@
 #include "voxelise/thin.h"
 #include "voxelise/weld.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,9 +76,16 @@ static const int32_t *corners(const work *w, int64_t polygon)
 
 /* ---- triangles */
 
-/* Whether three places are in a line: the exact cross product is 0. */
+/* Whether three places are in a line: the exact cross product is 0. In doubles a component errs by less than 8 epsilon of its
+ * two products. */
 static bool is_degenerate(const double *a, const double *b, const double *c)
 {
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double one = (b[j] - a[j]) * (c[k] - a[k]), other = (b[k] - a[k]) * (c[j] - a[j]);
+        if (fabs(one - other) > 8 * DBL_EPSILON * (fabs(one) + fabs(other)))
+            return false;
+    }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         double uj[2], uk[2], vj[2], vk[2], one[8], other[8], h[16];

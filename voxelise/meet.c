@@ -64,9 +64,12 @@ static int side(const double *a, const double *b, const double *c, const double 
     return fabs(value) > 16 * DBL_EPSILON * size ? sign_of(value) : exact_side(a, b, c, d);
 }
 
-/* Whether the edge p q passes through the inside of triangle t. */
+/* Whether the edge p q passes through the inside of triangle t: not if it ends in a corner of it. */
 static bool passes(const double *p, const double *q, const double *const *t)
 {
+    for (int i = 0; i < 3; i++)
+        if (t[i] == p || t[i] == q)
+            return false;
     int of_p = side(t[0], t[1], t[2], p), of_q = side(t[0], t[1], t[2], q);
     if (of_p * of_q >= 0)
         return false;

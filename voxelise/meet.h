@@ -7,7 +7,7 @@
 
 #include "base/err.h"
 
-/* vertex: triangles x 3. Coordinates as grid.h wants them. threads: to look with. count: the pairs. -1 with e filled. */
+/* vertex: triangles x 3; those at one place are one. Coordinates as grid.h wants them. threads: to look with. count: the pairs. -1 with e filled. */
 int meet_count(const double *position, const int32_t *vertex, int64_t triangles, int threads, int64_t *count, err *e);
 
 /* Whether two triangles are such a pair. */
