@@ -2,7 +2,7 @@
 // needs: voxelise/solids.c voxelise/weld.c voxelise/volumes.c voxelise/voxels.c voxelise/climb.c
 // needs: voxelise/shares.c tests/bench/scan.c
 /* How long voxelise takes on a closed scan, step by step, beside two probes of the machine: CSV on stdout. Each figure is the
- * least of several runs. Usage: bench_voxelise [TRIANGLES [FOLDER]]; the OBJ that is read stands in FOLDER (/tmp) meanwhile.
+ * least of several runs. Usage: bench_voxelise [TRIANGLES [FOLDER]]; the OBJ that is read stands in FOLDER (here) meanwhile.
  */
 #include "base/mem.h"
 #include "base/progress.h"
@@ -199,7 +199,7 @@ int main(int argc, char **argv)
     bench b = {0};
     int64_t triangles = argc > 1 ? atoll(argv[1]) : 100000;
     char path[1000];
-    snprintf(path, sizeof path, "%s/bench_voxelise.obj", argc > 2 ? argv[2] : "/tmp");
+    snprintf(path, sizeof path, "%s/bench_voxelise.obj", argc > 2 ? argv[2] : ".");
     puts("what,triangles,cells,threads,value,unit");
     if (triangles < 100)
         err_set(&e, NULL, 0, "%s triangles; expected 100 or more", argv[1]);
