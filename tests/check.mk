@@ -79,6 +79,12 @@ bench-tled: all $(BENCH_TLED) $(BENCH_MODELS)
 $(BUILD)/tests/bench/face_%mm: all
 	@mkdir -p $(@D)
 	@$(BIN)/voxelise -q --unit mm -s $* $(BENCH_FACE) | $(BIN)/attach -q >$@
+# The steps of voxelise on a closed scan, probes of the machine first.
+.PHONY: bench-voxelise
+TRIANGLES ?= 100000
+$(eval $(call test_program,tests/bench/bench_voxelise))
+bench-voxelise: $(BUILD)/tests/bench/bench_voxelise
+	@$(BUILD)/tests/bench/bench_voxelise $(TRIANGLES) $(BUILD)
 
 # ---- other builds, each in its own folder
 .PHONY: clang sanitize fuzz fuzz-run
@@ -169,6 +175,7 @@ help:
 	'make clang        the tools and unit tests, built by clang' \
 	'make sanitize     the tests under ASan and UBSan' \
 	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
+	'make bench-voxelise  the steps of voxelise on a closed scan, timed (TRIANGLES=100000)' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make clean        removes what was built' \

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Two layers of lattice corners, over the rectangle that elements cover. */
 typedef struct sweep {
@@ -21,7 +22,7 @@ static void find_rectangle(sweep *s)
     int64_t high[2] = {INT32_MIN, INT32_MIN};
     s->low[0] = s->low[1] = INT32_MAX;
     for (int64_t r = 0; r < x->runs; r++) {
-        const voxels_run *a = &x->run[r];
+        const climb_run *a = &x->run[r];
         s->low[0] = a->from < s->low[0] ? a->from : s->low[0];
         s->low[1] = a->j < s->low[1] ? a->j : s->low[1];
         high[0] = a->to > high[0] ? a->to : high[0];
@@ -40,7 +41,7 @@ static int64_t corner_at(const sweep *s, int64_t i, int64_t j)
 static void mark(const sweep *s, int64_t first, int64_t past, int32_t *layer)
 {
     for (int64_t r = first; r < past; r++) {
-        const voxels_run *a = &s->x->run[r];
+        const climb_run *a = &s->x->run[r];
         for (int j = 0; j < 2; j++)
             for (int64_t i = a->from; i <= a->to; i++)
                 layer[corner_at(s, i, a->j + j)] = 0;
@@ -109,7 +110,7 @@ static bool next_layer(sweep *s)
     return true;
 }
 
-static void put_elements(const sweep *s, const voxels_run *a, int64_t at, model_array *node, model_array *place,
+static void put_elements(const sweep *s, const climb_run *a, int64_t at, model_array *node, model_array *place,
                          model_array *volume)
 {
     for (int64_t i = a->from; i < a->to; i++, at++) {
@@ -168,6 +169,14 @@ static void fill(sweep *s, model *m)
         }
 }
 
+static int add_fractions(model *m, const voxels *x, err *e)
+{
+    model_array *to = model_add(m, "element.fraction", e);
+    if (to && x->elements)
+        memcpy(to->f32, x->fraction, (size_t)x->elements * sizeof *x->fraction);
+    return to ? 0 : -1;
+}
+
 int build_elements(model *m, const voxels *x, const lattice *l, err *e)
 {
     sweep s = {.x = x, .l = l};
@@ -179,7 +188,7 @@ int build_elements(model *m, const voxels *x, const lattice *l, err *e)
     if (!s.below || !s.above || count_nodes(&s, &nodes, e) || add_arrays(m, nodes, x->elements, e))
         goto out;
     fill(&s, m);
-    status = 0;
+    status = x->fraction ? add_fractions(m, x, e) : 0;
 out:
     free(s.below);
     free(s.above);

@@ -9,7 +9,8 @@
 #include "voxelise/volumes.h"
 #include "voxelise/voxels.h"
 
-/* Adds axes node and element, node.position, node.lattice, element.node, element.lattice and element.volume. */
+/* Adds axes node and element, node.position, node.lattice, element.node, element.lattice and element.volume; by shares
+ * element.fraction too. */
 int build_elements(model *m, const voxels *x, const lattice *l, err *e);
 
 /* Adds axis volume and its arrays; volumes have their numbers of the plan. */

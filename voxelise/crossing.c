@@ -7,23 +7,65 @@
 
 enum { CROSS_PARTS = 4 * GRID_PARTS }; /* components of a product of an edge (2) and a difference (5), and of its sum */
 
+/* What crossing_first() counts from is included, so that its own rounding is within the bound. */
 double crossing_error(const grid *g, int axis, double local, double far)
 {
-    double first = fabs(grid_centre(g, axis, g->low[axis])), last = fabs(grid_centre(g, axis, g->high[axis]));
-    double most = fmax(fmax(first, last), fmax(local, far));
-    return 2 * DBL_EPSILON * most; /* 4 units of rounding: two sums in local, one product in a centre */
+    double cells = fmax(fabs((double)g->low[axis]), fabs((double)g->high[axis])) + 4;
+    return 2 * DBL_EPSILON * (2 * fmax(local, far) / g->spacing[axis] + cells);
 }
 
-crossing_ray crossing_ray_at(const crossing_mesh *m, int axis, int64_t iu, int64_t iv)
+/* The first of cells low to high that is past, where each after one that is past is too, and high is. */
+typedef bool is_past(const void *context, int32_t cell);
+
+static int32_t first_past(is_past *past, const void *context, int64_t low, int64_t high)
 {
-    int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    return (crossing_ray){m, axis, u, v, iu, iv, grid_centre(m->g, u, iu), grid_centre(m->g, v, iv)};
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+        if (past(context, (int32_t)middle))
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return (int32_t)low;
 }
 
-static int sign_of(double x)
+/* The same where x, which they are to be past, is known to within bound: only the cells that this leaves open are
+ * asked. */
+static int32_t first_near(is_past *past, const void *context, double x, double bound, int32_t low, int32_t high)
 {
-    return (x > 0) - (x < 0);
+    double from = ceil(x - bound), to = ceil(x + bound);
+    bool known = bound < INFINITY && from <= to; /* false for a nan */
+    return first_past(past, context, known ? (int64_t)crossing_within(from, low, high) : low,
+                      known ? (int64_t)crossing_within(to, low, high) : high);
 }
+
+/* ---- a vertex */
+
+typedef struct point {
+    const crossing_mesh *m;
+    int axis;
+    double x;
+} point;
+
+static bool past_point(const void *context, int32_t cell)
+{
+    const point *p = context;
+    double h[GRID_PARTS];
+    int n = grid_difference(p->m->g, p->axis, cell, p->x, h);
+    return expansion_sign(n, h) >= 0; /* a centre beside it has been moved on */
+}
+
+int32_t crossing_of_point(const crossing_mesh *m, int axis, double x, double cell)
+{
+    int32_t low = (int32_t)m->g->low[axis], high = (int32_t)m->g->high[axis];
+    int32_t at = crossing_first(cell, m->error[axis], low, high);
+    if (at != CROSSING_OPEN)
+        return at;
+    point p = {m, axis, x};
+    return first_near(past_point, &p, cell, m->error[axis], low, high);
+}
+
+/* ---- an edge */
 
 /* h = p q - r s of expansions of at most 2 (p, r) and GRID_PARTS (q, s) components. */
 static int cross(const double *p, int np, const double *q, int nq, const double *r, int nr, const double *s, int ns,
@@ -35,78 +77,84 @@ static int cross(const double *p, int np, const double *q, int nq, const double 
     return expansion_sum(npq, pq, nrs, rs, h);
 }
 
-/* e_u w_v - e_v w_u with the edge e from a to b and w from a to the ray: its exact sign. */
-static int exact_turn(const crossing_ray *r, const double *a, const double *b)
+/* With w the differences from a to b and from a to the centre, along rows and columns: the bound. The fraction of the
+ * edge at which it crosses is off by at most 3 error_row / (w_row - 2 error_row), the column then by that times w_column,
+ * by 3 error_column, and by a few roundings, each less than half of an error: less than half of this in all. */
+crossing_line crossing_line_of(const crossing_mesh *m, int32_t a, int32_t b)
 {
-    double eu[2], ev[2], wu[GRID_PARTS], wv[GRID_PARTS], h[2 * CROSS_PARTS];
-    int neu = expansion_of_sum(b[r->u], -a[r->u], eu), nev = expansion_of_sum(b[r->v], -a[r->v], ev);
-    int nwu = grid_difference(r->m->g, r->u, r->iu, a[r->u], wu);
-    int nwv = grid_difference(r->m->g, r->v, r->iv, a[r->v], wv);
-    int n = cross(eu, neu, wv, nwv, ev, nev, wu, nwu, h);
-    return expansion_sign(n, h);
+    const double *from = &m->cell[3 * (int64_t)a], *to = &m->cell[3 * (int64_t)b];
+    int32_t first = m->first[3 * (int64_t)a + m->column], second = m->first[3 * (int64_t)b + m->column];
+    double rows = to[m->row] - from[m->row], slope = (to[m->column] - from[m->column]) / rows;
+    double bound = 8 * (m->error[m->column] + fabs(slope) * m->error[m->row]);
+    return (crossing_line){.m = m,
+                           .a = a,
+                           .b = b,
+                           .low = first < second ? first : second,
+                           .high = first < second ? second : first,
+                           .row = from[m->row],
+                           .column = from[m->column],
+                           .slope = slope,
+                           .bound = rows >= 16 * m->error[m->row] ? bound : INFINITY};
 }
 
-/* The same where that is 0: the ray moves by e^(1 + axis number) along each of its two axes, so its derivative
- * along the axis of the lower number decides, then along the other. */
-static int moved_turn(const crossing_ray *r, const double *a, const double *b)
+typedef struct line_row {
+    const crossing_line *l;
+    int32_t row;
+} line_row;
+
+/* w_row c_column - w_column c_row, with w from a to b and c from a to the centre: its sign. Where that is 0 the centre has
+ * moved by e^(1 + axis number) along each axis, so the derivative along the axis of the lower number decides,
+ * then along the other; w_row is above 0. */
+static bool past_line(const void *context, int32_t column)
 {
-    int along_u = -sign_of(b[r->v] - a[r->v]), along_v = sign_of(b[r->u] - a[r->u]);
-    if (r->u < r->v)
-        return along_u ? along_u : along_v;
-    return along_v ? along_v : along_u;
+    const line_row *c = context;
+    const crossing_mesh *m = c->l->m;
+    const double *a = &m->position[3 * (int64_t)c->l->a], *b = &m->position[3 * (int64_t)c->l->b];
+    double wr[2], wc[2], cr[GRID_PARTS], cc[GRID_PARTS], h[2 * CROSS_PARTS];
+    int nwr = expansion_of_sum(b[m->row], -a[m->row], wr), nwc = expansion_of_sum(b[m->column], -a[m->column], wc);
+    int ncr = grid_difference(m->g, m->row, c->row, a[m->row], cr);
+    int ncc = grid_difference(m->g, m->column, column, a[m->column], cc);
+    int n = cross(wr, nwr, cc, ncc, wc, nwc, cr, ncr, h);
+    if (n)
+        return expansion_sign(n, h) > 0;
+    return m->row > m->column || b[m->column] <= a[m->column];
 }
 
-/* On which side of the edge from vertex a to b the ray runs: 1 left, -1 right, 0 only where a and b are one point in
- * the plane across the ray. The bound: with s the sizes of edge and difference, each product errs by at most
- * 4 (s_u error_v + s_v error_u), for an error is at least two roundings of either; twice that is taken. */
-static int turn(const crossing_ray *r, int32_t a, int32_t b)
+int32_t crossing_line_exact(const crossing_line *l, int32_t row)
 {
-    const crossing_mesh *m = r->m;
-    const double *la = &m->local[3 * (int64_t)a], *lb = &m->local[3 * (int64_t)b];
-    double eu = lb[r->u] - la[r->u], ev = lb[r->v] - la[r->v];
-    double wu = r->cu - la[r->u], wv = r->cv - la[r->v];
-    double du = m->error[r->u], dv = m->error[r->v];
-    double size_u = fabs(eu) + fabs(wu) + 4 * du, size_v = fabs(ev) + fabs(wv) + 4 * dv;
-    double value = eu * wv - ev * wu;
-    if (fabs(value) > 8 * (size_u * dv + size_v * du))
-        return sign_of(value);
-    const double *pa = &m->position[3 * (int64_t)a], *pb = &m->position[3 * (int64_t)b];
-    int sign = exact_turn(r, pa, pb);
-    return sign ? sign : moved_turn(r, pa, pb);
+    line_row c = {l, row};
+    return first_near(past_line, &c, l->column + (row - l->row) * l->slope, l->bound, l->low, l->high);
 }
 
-int crossing_of(const crossing_ray *r, const int32_t *triangle)
-{
-    int first = turn(r, triangle[0], triangle[1]);
-    if (!first || turn(r, triangle[1], triangle[2]) != first || turn(r, triangle[2], triangle[0]) != first)
-        return 0;
-    return first;
-}
+/* ---- a plane */
 
-/* A triangle's plane in doubles, from its first corner. */
-typedef struct plane {
-    const double *corner;       /* of `local` */
-    double normal[3], error[3]; /* and a bound on the normal's error */
-    double low, high;           /* the triangle's extent along the ray */
-} plane;
-
-static plane plane_of(const crossing_ray *r, const int32_t *triangle)
+/* With n the normal and s the triangle's size, each component of n is off by at most d: with edges e and f from the first
+ * corner, each off by 2.5 errors, their products by less than 5.5 (s error + error s). The crossing is n.w / n_ray from the
+ * corner, w the way to the column, no longer than s: what that may be off by is less than half of this. */
+crossing_plane crossing_plane_of(const crossing_mesh *m, const int32_t *triangle)
 {
-    const double *d = r->m->error, *a = &r->m->local[3 * (int64_t)triangle[0]];
-    const double *b = &r->m->local[3 * (int64_t)triangle[1]], *c = &r->m->local[3 * (int64_t)triangle[2]];
-    plane p = {.corner = a};
-    double e[3], f[3], size[3];
+    const double *a = &m->cell[3 * (int64_t)triangle[0]], *b = &m->cell[3 * (int64_t)triangle[1]];
+    const double *c = &m->cell[3 * (int64_t)triangle[2]], *error = m->error;
+    crossing_plane p = {.m = m, .triangle = triangle, .row = a[m->row], .column = a[m->column], .ray = a[m->ray]};
+    double e[3], f[3], size[3], n[3], d[3], off = 0;
+    p.low = INT32_MAX, p.high = INT32_MIN;
     for (int i = 0; i < 3; i++) {
+        int32_t first = m->first[3 * (int64_t)triangle[i] + m->ray];
+        p.low = first < p.low ? first : p.low;
+        p.high = first > p.high ? first : p.high;
         e[i] = b[i] - a[i], f[i] = c[i] - a[i];
-        size[i] = fabs(e[i]) + fabs(f[i]) + 4 * d[i];
+        size[i] = fabs(e[i]) + fabs(f[i]) + 4 * error[i];
     }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        p.normal[i] = e[j] * f[k] - e[k] * f[j];
-        p.error[i] = 8 * (size[j] * d[k] + size[k] * d[j]);
+        n[i] = e[j] * f[k] - e[k] * f[j];
+        d[i] = 8 * (size[j] * error[k] + size[k] * error[j]);
+        off += d[i] * size[i] + 8 * fabs(n[i]) * error[i];
     }
-    p.low = fmin(a[r->axis], fmin(b[r->axis], c[r->axis]));
-    p.high = fmax(a[r->axis], fmax(b[r->axis], c[r->axis]));
+    double sure = fabs(n[m->ray]) - d[m->ray];
+    p.by_row = -n[m->row] / n[m->ray];
+    p.by_column = -n[m->column] / n[m->ray];
+    p.bound = sure > d[m->ray] ? 2 * off / sure : INFINITY;
     return p;
 }
 
@@ -120,78 +168,46 @@ static int exact_normal(const double *const *p, int i, double *h)
     return cross(ej, nej, fk, nfk, ek, nek, fj, nfj, h);
 }
 
-/* The side of the plane on which a moved centre lies, exactly: normal . (centre - corner), then, where that is 0, the
- * first component of the normal that is not. */
-static int exact_side(const crossing_ray *r, const int32_t *triangle, const int64_t *cell)
+/* The exact triangle and a column. */
+typedef struct plane_column {
+    const crossing_mesh *m;
+    const double *corner[3];
+    double normal[3][CROSS_PARTS];
+    int count[3], moved; /* moved: the sign of the first component of the normal that is not 0 */
+    int32_t row, column;
+} plane_column;
+
+/* The side of the plane that a moved centre is on, against that of what lies far along the ray: n . (centre - corner),
+ * then, where that is 0, the first component of the normal that is not. */
+static bool past_plane(const void *context, int32_t cell)
 {
-    const double *p[3];
-    for (int i = 0; i < 3; i++)
-        p[i] = &r->m->position[3 * (int64_t)triangle[i]];
+    const plane_column *c = context;
+    const crossing_mesh *m = c->m;
+    int32_t at[3];
+    at[m->ray] = cell, at[m->row] = c->row, at[m->column] = c->column;
     double total[EXPANSION_MOST];
-    int count = 0, moved = 0;
+    int count = 0;
     for (int i = 0; i < 3; i++) {
-        double normal[CROSS_PARTS], w[GRID_PARTS], term[EXPANSION_MOST], sum[EXPANSION_MOST];
-        int n = exact_normal(p, i, normal), nw = grid_difference(r->m->g, i, cell[i], p[0][i], w);
-        int terms = expansion_product(n, normal, nw, w, term);
+        double w[GRID_PARTS], term[EXPANSION_MOST], sum[EXPANSION_MOST];
+        int nw = grid_difference(m->g, i, at[i], c->corner[0][i], w);
+        int terms = expansion_product(c->count[i], c->normal[i], nw, w, term);
         count = expansion_sum(count, total, terms, term, sum);
         for (int t = 0; t < count; t++)
             total[t] = sum[t];
-        if (!moved)
-            moved = expansion_sign(n, normal);
     }
     int sign = expansion_sign(count, total);
-    return sign ? sign : moved;
+    return (sign ? sign : c->moved) == expansion_sign(c->count[m->ray], c->normal[m->ray]);
 }
 
-/* Whether the centre of cell i along the ray is behind the crossing: on the side that the normal shows, for a ray that
- * runs with the normal. */
-static bool behind(const crossing_ray *r, const plane *p, const int32_t *triangle, int direction, int64_t i)
+int32_t crossing_plane_exact(const crossing_plane *p, int32_t row, int32_t column)
 {
-    const double *d = r->m->error;
-    double w[3], value = 0, bound = 0;
-    w[r->axis] = grid_centre(r->m->g, r->axis, i) - p->corner[r->axis];
-    w[r->u] = r->cu - p->corner[r->u];
-    w[r->v] = r->cv - p->corner[r->v];
-    for (int a = 0; a < 3; a++) {
-        value += p->normal[a] * w[a];
-        bound += p->error[a] * (fabs(w[a]) + 4 * d[a]) + 4 * fabs(p->normal[a]) * d[a];
+    plane_column c = {.m = p->m, .row = row, .column = column};
+    for (int i = 0; i < 3; i++)
+        c.corner[i] = &p->m->position[3 * (int64_t)p->triangle[i]];
+    for (int i = 0; i < 3; i++) {
+        c.count[i] = exact_normal(c.corner, i, c.normal[i]);
+        c.moved = c.moved ? c.moved : expansion_sign(c.count[i], c.normal[i]);
     }
-    if (fabs(value) > 2 * bound)
-        return sign_of(value) == direction;
-    int64_t cell[3];
-    cell[r->axis] = i, cell[r->u] = r->iu, cell[r->v] = r->iv;
-    return exact_side(r, triangle, cell) == direction;
-}
-
-/* The cell to try first: where the plane in doubles meets the ray, within the triangle's extent and the grid. */
-static int64_t guess(const crossing_ray *r, const plane *p)
-{
-    const grid *g = r->m->g;
-    double over = p->normal[r->u] * (r->cu - p->corner[r->u]) + p->normal[r->v] * (r->cv - p->corner[r->v]);
-    double x = p->corner[r->axis] - over / p->normal[r->axis];
-    x = x >= p->low ? fmin(x, p->high) : p->low; /* a nan becomes low */
-    double cell = ceil(x / g->spacing[r->axis] - 0.5);
-    if (!(cell > (double)g->low[r->axis]))
-        return g->low[r->axis];
-    return cell < (double)g->high[r->axis] ? (int64_t)cell : g->high[r->axis] - 1;
-}
-
-int64_t crossing_cell(const crossing_ray *r, const int32_t *triangle, int direction)
-{
-    plane p = plane_of(r, triangle);
-    int64_t before = r->m->g->low[r->axis] - 1, after = r->m->g->high[r->axis]; /* the answer: before < i <= after */
-    if (after - before < 2)
-        return after;
-    int64_t at = guess(r, &p);
-    /* Steps that double, away from the guess, until the answer is between two cells tried; then halves. */
-    for (int64_t step = 1; after - before > 1; step *= 2) {
-        bool is_behind = behind(r, &p, triangle, direction, at);
-        int64_t next = is_behind ? at - step : at + step;
-        if (is_behind)
-            after = at;
-        else
-            before = at;
-        at = next > before && next < after ? next : before + (after - before) / 2;
-    }
-    return after;
+    double x = p->ray + ((row - p->row) * p->by_row + (column - p->column) * p->by_column);
+    return first_near(past_plane, &c, x, p->bound, p->low, p->high);
 }

@@ -1,8 +1,11 @@
 /* Where rays along an axis, one through each column of voxel centres, cross triangles: decided exactly. A centre counts as
  * moved by (e, e^2, e^3), e -> 0+, so it is never on a face, and a ray never meets an edge or a vertex: whichever axis
- * the rays run along, the same centres come out inside a closed surface. Each sign is first sought in doubles
- * with a proven bound on their error, and settled by expansions where that leaves it open. Everything is
+ * the rays run along, the same centres come out inside a closed surface. Each place is first sought in doubles
+ * with a proven bound on the error, and settled by expansions where that leaves it open. Everything is
  * borrowed; nothing is allocated.
+ *
+ * Coordinates are counted in cells, so that the centre of cell i is at i. A triangle is cut into rows of cells across the
+ * rays, a row into columns: a line says where an edge crosses a row, a plane where a triangle crosses a column.
  */
 #ifndef SINEW_CROSSING_H
 #define SINEW_CROSSING_H
@@ -15,28 +18,86 @@
 typedef struct crossing_mesh {
     const grid *g;
     const double *position; /* vertices x 3, in the grid's unit */
-    const double *local;    /* the same from the corner of cell 0, rounded: grid_local of each */
-    double error[3];        /* a bound on the error of local and of grid_centre along each axis */
+    const double *cell;     /* the same in cells, rounded: crossing_cells of each */
+    const int32_t
+        *first;      /* vertices x 3: the first cell of the grid whose centre is past the vertex; `high`: none is */
+    double error[3]; /* a bound on the error of cell along each axis: crossing_error */
+    int ray, row, column; /* the axes that rays run along, that rows are counted along, and columns in a row */
 } crossing_mesh;
 
-/* The bound for `error`: of local coordinates up to `local` and of |x - origin| up to `far` along an axis. */
+/* A coordinate in cells, and the bound on its error: of such that reach as far as `local` from the corner of cell 0, and
+ * `far` from the origin (in the grid's unit). */
+static inline double crossing_cells(const grid *g, int axis, double x)
+{
+    return grid_local(g, axis, x) / g->spacing[axis] - 0.5;
+}
 double crossing_error(const grid *g, int axis, double local, double far);
 
-/* A ray: along `axis`, through the centres of cells iu along u = axis + 1 and iv along v = axis + 2 (mod 3). */
-typedef struct crossing_ray {
+enum { CROSSING_OPEN = INT32_MIN }; /* no cell: cells are numbered from -GRID_INDEX */
+
+static inline double crossing_within(double x, double low, double high)
+{
+    x = x > low ? x : low; /* a nan becomes low */
+    return x < high ? x : high;
+}
+
+/* The first cell whose centre is past x, which is known to within bound, among low to high, where it is known to be; or
+ * CROSSING_OPEN where the bound leaves that open. */
+static inline int32_t crossing_first(double x, double bound, int32_t low, int32_t high)
+{
+    double from = x - ((double)low - 2), most = (double)high - low + 2.5, least = 0;
+    double down = crossing_within(from - bound, least, most), up = from + bound;
+    up = up < most ? up : most; /* a nan becomes most, and so leaves it open */
+    up = up > least ? up : least;
+    int64_t below = (int64_t)down, above = (int64_t)up; /* floors, for none is negative */
+    if (below != above)
+        return CROSSING_OPEN;
+    int64_t at = low - 1 + above;
+    return (int32_t)(at < low ? low : at > high ? high : at);
+}
+
+/* What `first` holds for a coordinate: x of the grid's unit, cell the same in cells. */
+int32_t crossing_of_point(const crossing_mesh *m, int axis, double x, double cell);
+
+/* An edge from vertex a to b, where b comes in a later row. */
+typedef struct crossing_line {
     const crossing_mesh *m;
-    int axis, u, v;
-    int64_t iu, iv;
-    double cu, cv; /* grid_centre of them */
-} crossing_ray;
+    int32_t a, b;
+    int32_t low, high;   /* where it can cross: columns */
+    double row, column;  /* of a */
+    double slope, bound; /* columns a row; a bound on the error of what they give */
+} crossing_line;
 
-crossing_ray crossing_ray_at(const crossing_mesh *m, int axis, int64_t iu, int64_t iv);
+crossing_line crossing_line_of(const crossing_mesh *m, int32_t a, int32_t b);
+int32_t crossing_line_exact(const crossing_line *l, int32_t row);
 
-/* Whether the ray crosses the triangle: 1 with the triangle's normal along the axis, -1 against it, 0 not at all. */
-int crossing_of(const crossing_ray *r, const int32_t *triangle);
+/* The first column of a row whose centre is past the edge. */
+static inline int32_t crossing_line_at(const crossing_line *l, int32_t row)
+{
+    if (l->low == l->high)
+        return l->low;
+    int32_t at = crossing_first(l->column + (row - l->row) * l->slope, l->bound, l->low, l->high);
+    return at != CROSSING_OPEN ? at : crossing_line_exact(l, row);
+}
 
-/* The first cell of the grid along the axis whose centre is behind the crossing (the grid's `high` where none is),
- * for a triangle that the ray crosses with the given direction. */
-int64_t crossing_cell(const crossing_ray *r, const int32_t *triangle, int direction);
+/* A triangle's plane. */
+typedef struct crossing_plane {
+    const crossing_mesh *m;
+    const int32_t *triangle;
+    int32_t low, high;               /* where it can be crossed: cells along the ray */
+    double row, column, ray;         /* of its first corner */
+    double by_row, by_column, bound; /* cells along the ray for each; a bound on the error of what they give */
+} crossing_plane;
+
+crossing_plane crossing_plane_of(const crossing_mesh *m, const int32_t *triangle);
+int32_t crossing_plane_exact(const crossing_plane *p, int32_t row, int32_t column);
+
+/* The first cell of a column whose centre is past the triangle, which the column's ray crosses. */
+static inline int32_t crossing_plane_at(const crossing_plane *p, int32_t row, int32_t column)
+{
+    double x = p->ray + ((row - p->row) * p->by_row + (column - p->column) * p->by_column);
+    int32_t at = crossing_first(x, p->bound, p->low, p->high);
+    return at != CROSSING_OPEN ? at : crossing_plane_exact(p, row, column);
+}
 
 #endif

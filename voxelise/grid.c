@@ -129,6 +129,30 @@ int grid_clip(grid *g, const double *low, const double *high, err *e)
     return 0;
 }
 
+int grid_divide(grid *g, const grid *whole, int parts, err *e)
+{
+    *g = *whole;
+    for (int a = 0; a < 3; a++) {
+        g->spacing[a] = whole->spacing[a] / parts;
+        g->low[a] = whole->low[a] * parts;
+        g->high[a] = whole->high[a] * parts;
+        if (g->low[a] < -GRID_INDEX || g->high[a] > GRID_INDEX)
+            return refuse_index(a, (double)(g->high[a] > GRID_INDEX ? g->high[a] : g->low[a]), e);
+    }
+    return check_lengths(g->spacing, g->origin, e);
+}
+
+int grid_widen(grid *g, err *e)
+{
+    for (int a = 0; a < 3; a++) {
+        g->low[a]--;
+        g->high[a]++;
+        if (g->low[a] < -GRID_INDEX || g->high[a] > GRID_INDEX)
+            return refuse_index(a, (double)(g->high[a] > GRID_INDEX ? g->high[a] : g->low[a]), e);
+    }
+    return 0;
+}
+
 double grid_count(const grid *g)
 {
     return (double)grid_cells(g, 0) * (double)grid_cells(g, 1) * (double)grid_cells(g, 2);

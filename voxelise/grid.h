@@ -32,6 +32,13 @@ int grid_fix(grid *g, const double *low, const double *high, const double *spaci
 /* Keeps the cells whose centres are in a box, its low sides included, its high sides not. */
 int grid_clip(grid *g, const double *low, const double *high, err *e);
 
+/* The same region in cells of which `parts` along each axis make one of these: their centres are samples of it. (A part's
+ * side is rounded once, where parts is no power of 2; then a sample may be off by as much as that, times its number.) */
+int grid_divide(grid *g, const grid *whole, int parts, err *e);
+
+/* One cell more at either end: those that a surface may cut though none of their centres can be inside. */
+int grid_widen(grid *g, err *e);
+
 /* Cells along an axis, and all of them (a double: they may be many). */
 static inline int64_t grid_cells(const grid *g, int axis)
 {

@@ -3,10 +3,8 @@
 #include "base/mem.h"
 #include "mesh/triangulate.h"
 #include "voxelise/closed.h"
-#include "voxelise/grid.h"
-#include "voxelise/hash.h"
+#include "voxelise/weld.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +14,7 @@ typedef struct work {
     const obj *o;
     const volumes *plan;
     solids *s;
-    int32_t *weld;    /* the OBJ's vertices: a vertex of s, -1 = not used */
+    weld place;       /* the vertices of s */
     int64_t *start;   /* volumes + 1: the first of a volume's polygons */
     int64_t *face;    /* polygons, volume after volume */
     int32_t *surface; /* polygons */
@@ -26,7 +24,7 @@ typedef struct work {
 
 static void work_free(work *w)
 {
-    free(w->weld);
+    weld_free(&w->place);
     free(w->start);
     free(w->face);
     free(w->surface);
@@ -67,91 +65,6 @@ static int gather_polygons(work *w, err *e)
             w->surface[at] = plan->member[m].surface;
         }
     return 0;
-}
-
-/* ---- vertices */
-
-static int take_position(const work *w, int64_t vertex, double *p, err *e)
-{
-    for (int a = 0; a < 3; a++) {
-        double x = w->o->position[3 * vertex + a];
-        if (!(fabs(x) <= GRID_LARGEST))
-            return err_set(e, w->o->name, 0, "vertex %lld has a coordinate of %g; expected magnitudes up to %g",
-                           (long long)vertex + 1, x, GRID_LARGEST);
-        p[a] = fabs(x) < GRID_SMALLEST ? 0 : x;
-    }
-    return 0;
-}
-
-static int64_t count_used(const work *w)
-{
-    int64_t used = 0;
-    for (int64_t i = 0; i < w->start[w->plan->volumes]; i++) {
-        const int64_t *start = &w->o->face_start[w->face[i]];
-        for (int64_t c = start[0]; c < start[1]; c++) {
-            int32_t *to = &w->weld[w->o->corner_vertex[c]];
-            used += *to == 0;
-            *to = 1;
-        }
-    }
-    return used;
-}
-
-static uint64_t hash_position(const double *p)
-{
-    uint64_t h = 0, bits;
-    for (int a = 0; a < 3; a++) {
-        memcpy(&bits, &p[a], sizeof bits);
-        h = hash_next(h, bits);
-    }
-    return h;
-}
-
-static bool same_place(const double *a, const double *b)
-{
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
-/* The vertex of s at a place, new or not. table: vertices + 1; 0: free. */
-static int32_t vertex_at(solids *s, int32_t *table, int64_t size, const double *p)
-{
-    int64_t at = (int64_t)(hash_position(p) & (uint64_t)(size - 1));
-    for (; table[at]; at = (at + 1) & (size - 1))
-        if (same_place(&s->position[3 * ((int64_t)table[at] - 1)], p))
-            return table[at] - 1;
-    memcpy(&s->position[3 * s->vertices], p, 3 * sizeof *p);
-    table[at] = (int32_t)++s->vertices;
-    for (int a = 0; a < 3; a++) {
-        s->low[a] = fmin(s->low[a], p[a]);
-        s->high[a] = fmax(s->high[a], p[a]);
-    }
-    return (int32_t)s->vertices - 1;
-}
-
-static int weld_vertices(work *w, err *e)
-{
-    solids *s = w->s;
-    w->weld = mem_array(w->o->vertices, sizeof *w->weld, "vertices", e);
-    if (!w->weld)
-        return -1;
-    int64_t used = count_used(w), size = hash_size(used);
-    int32_t *table = mem_array(size, sizeof *table, "vertices", e);
-    s->position = mem_array(3 * used, sizeof *s->position, "vertices", e);
-    int status = table && s->position ? 0 : -1;
-    for (int a = 0; a < 3; a++)
-        s->low[a] = INFINITY, s->high[a] = -INFINITY;
-    for (int64_t i = 0; !status && i < w->o->vertices; i++) {
-        double p[3] = {0};
-        bool is_used = w->weld[i] != 0;
-        w->weld[i] = -1;
-        if (!is_used)
-            continue;
-        status = take_position(w, i, p, e);
-        if (!status)
-            w->weld[i] = vertex_at(s, table, size, p);
-    }
-    free(table);
-    return status;
 }
 
 /* ---- volume after volume */
@@ -203,7 +116,7 @@ static int add_triangle(work *w, int32_t volume, const int32_t *corner, const in
         mem_grow(&s->volume, &w->volume_capacity, s->triangles + 1, sizeof *s->volume, "triangles", e))
         return -1;
     for (int i = 0; i < 3; i++)
-        s->vertex[3 * s->triangles + i] = w->weld[corner[cut[i]]];
+        s->vertex[3 * s->triangles + i] = w->place.of[corner[cut[i]]];
     s->volume[s->triangles++] = volume;
     return 0;
 }
@@ -228,7 +141,7 @@ static int build_volume(work *w, int32_t volume, bool allow_open, notes *warning
 {
     int64_t from = w->start[volume];
     closed_polygons p = {.o = w->o,
-                         .weld = w->weld,
+                         .weld = w->place.of,
                          .face = &w->face[from],
                          .surface = &w->surface[from],
                          .polygons = w->start[volume + 1] - from,
@@ -236,6 +149,7 @@ static int build_volume(work *w, int32_t volume, bool allow_open, notes *warning
     closed_result r;
     if (closed_check(&p, &r, e))
         return -1;
+    w->s->open[volume] = r.open;
     int status = report(w, w->plan->volume[volume].name, &r, allow_open, warnings, e);
     for (int64_t i = 0; !status && i < p.polygons; i++)
         if (!r.drop[i])
@@ -244,13 +158,27 @@ static int build_volume(work *w, int32_t volume, bool allow_open, notes *warning
     return status;
 }
 
+static void take_places(work *w)
+{
+    solids *s = w->s;
+    s->position = w->place.position;
+    s->vertices = w->place.places;
+    memcpy(s->low, w->place.low, sizeof s->low);
+    memcpy(s->high, w->place.high, sizeof s->high);
+    w->place.position = NULL;
+}
+
 int solids_build(solids *s, const obj *o, const volumes *plan, bool allow_open, notes *warnings, err *e)
 {
     *s = (solids){0};
     work w = {.o = o, .plan = plan, .s = s};
-    int status = gather_polygons(&w, e) || weld_vertices(&w, e) ? -1 : 0;
+    s->open = mem_array(plan->volumes, sizeof *s->open, "volumes", e);
+    int status =
+        !s->open || gather_polygons(&w, e) || weld_make(&w.place, o, w.face, w.start[plan->volumes], e) ? -1 : 0;
     for (int32_t v = 0; !status && v < plan->volumes; v++)
         status = build_volume(&w, v, allow_open, warnings, e);
+    if (!status)
+        take_places(&w);
     work_free(&w);
     if (status)
         solids_free(s);
@@ -262,5 +190,6 @@ void solids_free(solids *s)
     free(s->position);
     free(s->vertex);
     free(s->volume);
+    free(s->open);
     *s = (solids){0};
 }

@@ -13,6 +13,7 @@ typedef struct solids {
     int32_t *volume; /* triangles */
     int64_t triangles;
     double low[3], high[3]; /* the box of the vertices */
+    int64_t *open;          /* volumes: open edges */
 } solids;
 
 /* -1 with e filled where a volume is open (with allow_open that is a note). Coordinates too small for exact arithmetic

@@ -1,6 +1,7 @@
 #include "voxelise/volumes.h"
 
 #include "base/mem.h"
+#include "base/near.h"
 #include "mesh/names.h"
 #include "model/materials.h"
 
@@ -310,4 +311,38 @@ int volumes_by_name(volumes *v, const obj *o, const model *m, err *e)
         status = volumes_join(v, link, links, true, e);
     free(link);
     return status;
+}
+
+/* ---- what may be a mistake */
+
+/* Of a name such as "musle_zyg": the word that it all but begins with, NULL for none. */
+static const char *almost(const char *name)
+{
+    static const char *const word[] = {"skin", "skull", "bone", "rigid", "muscle"};
+    enum { WORDS = sizeof word / sizeof *word };
+    char begin[16];
+    size_t length = 0;
+    for (; isalpha((unsigned char)name[length]); length++) {
+        if (length + 1 >= sizeof begin)
+            return NULL;
+        begin[length] = (char)tolower((unsigned char)name[length]);
+    }
+    begin[length] = '\0';
+    for (int i = 0; i < WORDS; i++)
+        if (volumes_begins(name, word[i]))
+            return NULL;
+    int at = length > 2 ? near_name(begin, word, WORDS) : -1;
+    return at < 0 ? NULL : word[at];
+}
+
+void volumes_notes(const volumes *v, bool by_name, notes *warnings)
+{
+    for (int32_t s = 0; s < v->surfaces; s++) {
+        const char *name = v->surface[s].name, *word = by_name ? almost(name) : NULL;
+        if (v->surface[s].polygons == 0)
+            notes_add(warnings, "surface '%s' is named and has no polygon", name);
+        else if (word)
+            notes_add(warnings, "surface '%s' bounds a volume as other names do; names that begin '%s' are near", name,
+                      word);
+    }
 }

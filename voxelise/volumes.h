@@ -52,6 +52,9 @@ int volumes_by_name(volumes *v, const obj *o, const model *materials, err *e);
  * surfaces are in no volume. */
 int volumes_read(volumes *v, in *file, const obj *o, const model *materials, notes *warnings, err *e);
 
+/* Notes on surfaces that have no polygon. by_name: and on names that are all but one that says what a surface is. */
+void volumes_notes(const volumes *v, bool by_name, notes *warnings);
+
 void volumes_free(volumes *v);
 
 /* ---- for those that make plans: volumes.c and volumes_file.c, and for voxelise.c */

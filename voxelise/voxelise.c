@@ -6,6 +6,8 @@
 #include "model/materials.h"
 #include "model/stage.h"
 #include "voxelise/build.h"
+#include "voxelise/layers.h"
+#include "voxelise/report.h"
 #include "voxelise/solids.h"
 
 #include <math.h>
@@ -14,10 +16,11 @@
 
 struct options {
     opt_common common;
-    const char *unit, *volumes, *materials;
+    const char *unit, *volumes, *materials, *layers;
     opt_lengths size, origin, box;
-    int64_t cells;
-    bool allow_open;
+    int64_t cells, fraction;
+    double least;
+    bool allow_open, check;
 };
 
 static const opt option_list[] = {
@@ -33,8 +36,15 @@ static const opt option_list[] = {
      "what bounds which volume [by names]"},
     {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, OPT_FILE,
      "materials [one: tissue]"},
+    {0, "layers", "FILE", OPT_TEXT, offsetof(struct options, layers), 0, 0, NULL, OPT_FILE,
+     "volumes from the skin inward"},
+    {0, "fraction", "N", OPT_INT, offsetof(struct options, fraction), 1, SHARES_MOST, NULL, 0,
+     "elements by enclosed share, from N^3 samples"},
+    {0, "least", "SHARE", OPT_NUMBER, offsetof(struct options, least), 0, 1, NULL, 0,
+     "that makes an element, with --fraction [any]"},
     {0, "allow-open", NULL, OPT_FLAG, offsetof(struct options, allow_open), 0, 0, NULL, 0,
      "open surfaces are a warning"},
+    {0, "check", NULL, OPT_FLAG, offsetof(struct options, check), 0, 0, NULL, 0, "only report on the surfaces"},
     {0}};
 
 static const opt_tool table = {
@@ -56,9 +66,10 @@ typedef struct job {
     num_unit unit;
     obj surface;
     volumes plan;
+    layers layer;
     solids solid;
-    grid g;
-    columns c;
+    grid g, samples;
+    inside test;
     voxels x;
     pool *threads;
     notes warnings;
@@ -67,8 +78,9 @@ typedef struct job {
 static void job_free(job *j)
 {
     voxels_free(&j->x);
-    columns_destroy(&j->c);
+    inside_free(&j->test);
     solids_free(&j->solid);
+    layers_free(&j->layer);
     volumes_free(&j->plan);
     obj_free(&j->surface);
     if (j->threads)
@@ -108,12 +120,14 @@ static int check_options(job *j, err *e)
     j->unit = o->unit ? num_unit_of(o->unit) : 0;
     if (o->unit && !j->unit)
         return err_usage(e, "--unit '%s': expected mm, cm, m, in or um", o->unit);
-    if (o->unit && !o->size.count && o->cells < 0)
+    if (o->unit && !o->size.count && o->cells < 0 && !o->check)
         return err_usage(e, "no voxel size; expected -s H, -s HX,HY,HZ or -n CELLS");
     if (o->size.count && o->cells >= 0)
         return err_usage(e, "-s and -n both give the voxel size; expected one of them");
     if (o->size.count == 2 || !all_positive(&o->size))
         return err_usage(e, "-s: expected one length, or three between commas, above 0");
+    if (!isnan(o->least) && o->fraction < 0)
+        return err_usage(e, "--least is for --fraction N; expected both, or neither");
     if (!box_is_upright(j))
         return err_usage(e, "--box: expected X0,Y0,Z0,X1,Y1,Z1 with X0 < X1, Y0 < Y1 and Z0 < Z1");
     return strcmp(j->path, "-") ? 0 : tool_need_stdin("an OBJ", e);
@@ -162,17 +176,34 @@ static int read_materials(const job *j, model *m, err *e)
     return status;
 }
 
-static int make_plan(job *j, const model *m, err *e)
+static int read_plan(job *j, const model *m, err *e)
 {
-    if (!j->o->volumes)
-        return volumes_by_name(&j->plan, &j->surface, m, e);
     in *source = in_open(j->o->volumes, e);
     int status = source ? volumes_read(&j->plan, source, &j->surface, m, &j->warnings, e) : -1;
     in_close(source);
     return status;
 }
 
-/* ---- work */
+static int read_layers(job *j, const model *m, err *e)
+{
+    if (!j->o->layers)
+        return 0;
+    in *source = in_open(j->o->layers, e);
+    int status = source ? layers_read(&j->layer, source, j->unit, &j->plan, m, e) : -1;
+    in_close(source);
+    return status;
+}
+
+static int make_plan(job *j, const model *m, err *e)
+{
+    bool by_name = !j->o->volumes;
+    if (by_name ? volumes_by_name(&j->plan, &j->surface, m, e) : read_plan(j, m, e))
+        return -1;
+    volumes_notes(&j->plan, by_name, &j->warnings);
+    return read_layers(j, m, e);
+}
+
+/* ---- the lattice and what is inside */
 
 static int find_spacing(const job *j, double *spacing, err *e)
 {
@@ -202,14 +233,17 @@ static int make_grid(job *j, err *e)
     if (j->o->origin.count ? grid_fix(&j->g, s->low, s->high, spacing, origin, e)
                            : grid_cover(&j->g, s->low, s->high, spacing, e))
         return -1;
+    if (j->o->origin.count && j->o->fraction > 0 && grid_widen(&j->g, e))
+        return -1;
     return j->o->box.count ? grid_clip(&j->g, box, box + 3, e) : 0;
 }
 
-static int find_voxels(job *j, err *e)
+/* What is inside, by centres or by samples; samples: the lattice of the one or the other. */
+static int look_inside(job *j, const grid *samples, const shares_rule *rule, err *e)
 {
     const solids *s = &j->solid;
-    columns_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
-    if (columns_create(&j->c, &j->g, &t, pool_threads(j->threads), e))
+    inside_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
+    if (inside_create(&j->test, samples, &t, CLIMB_RAY, rule ? rule->samples : 1, j->threads, e))
         return -1;
     int32_t *level = mem_array(j->plan.volumes, sizeof *level, "volumes", e);
     if (!level)
@@ -217,16 +251,26 @@ static int find_voxels(job *j, err *e)
     for (int32_t v = 0; v < j->plan.volumes; v++)
         level[v] = j->plan.volume[v].level;
     progress shown;
-    progress_start(&shown, table.name, "columns", (double)voxels_columns(&j->g), j->t->common->quiet);
-    int status = voxels_find(&j->x, &j->c, level, j->plan.volumes, j->threads, &shown, e);
+    progress_start(&shown, table.name, "slabs", (double)j->test.slabs, j->t->common->quiet);
+    int status = voxels_find(&j->x, &j->test, level, j->plan.volumes, rule, j->threads, &shown, e);
     progress_stop(&shown);
     free(level);
-    if (!status && j->x.elements == 0)
-        status = err_set(e, j->surface.name, 0,
-                         "no voxel has its centre inside; expected smaller voxels%s (%g x %g x %g %s)",
-                         j->o->box.count ? ", or another --box" : "", j->g.spacing[0], j->g.spacing[1], j->g.spacing[2],
-                         num_unit_name(j->unit));
     return status;
+}
+
+static int find_voxels(job *j, err *e)
+{
+    bool by_shares = j->o->fraction > 0;
+    shares_rule rule = {(int)j->o->fraction, isnan(j->o->least) ? 0 : j->o->least};
+    if (by_shares && grid_divide(&j->samples, &j->g, rule.samples, e))
+        return -1;
+    if (look_inside(j, by_shares ? &j->samples : &j->g, by_shares ? &rule : NULL, e))
+        return -1;
+    if (j->x.elements)
+        return 0;
+    return err_set(e, j->surface.name, 0, "no voxel has %s inside; expected smaller voxels%s (%g x %g x %g %s)",
+                   by_shares ? "enough of it" : "its centre", j->o->box.count ? ", or another --box" : "",
+                   j->g.spacing[0], j->g.spacing[1], j->g.spacing[2], num_unit_name(j->unit));
 }
 
 static double in_metres(const job *j, double length)
@@ -251,32 +295,46 @@ static int make_model(const job *j, model *m, err *e)
 
 /* ---- say */
 
+/* What is counted of a volume: voxels by their centres, or samples. */
+static const char *counted(const job *j)
+{
+    return j->x.fraction ? "samples" : "voxels";
+}
+
 static void say_volume(const job *j, const model *m, int32_t v)
 {
     const volumes_volume *a = &j->plan.volume[v];
-    const voxels_count *n = &j->x.count[v];
+    const climb_count *n = &j->x.count[v];
     const char *of = model_find(m, "material.name")->str[a->material];
     tool_say(j->t, "%s%s: level %d, priority %d, material %s, surfaces %s: %lld elements", a->muscle ? "muscle " : "",
              a->name, a->level, a->priority, of, a->surfaces, (long long)n->kept);
     if (n->reached > 0 && n->reached < n->inside)
-        tool_say(j->t, "%s: outside level %d, and ignored: %lld of its %lld voxels", a->name, a->level - 1,
-                 (long long)(n->inside - n->reached), (long long)n->inside);
+        tool_say(j->t, "%s: outside level %d, and ignored: %lld of its %lld %s", a->name, a->level - 1,
+                 (long long)(n->inside - n->reached), (long long)n->inside, counted(j));
 }
 
 static void warn_volume(job *j, int32_t v)
 {
     const volumes_volume *a = &j->plan.volume[v];
-    const voxels_count *n = &j->x.count[v];
+    const climb_count *n = &j->x.count[v];
     if (n->inside == 0)
         notes_add(&j->warnings,
                   "%s has no voxel: no centre is inside it (it is thinner than a voxel, or off the lattice%s)", a->name,
                   j->o->box.count ? " or the --box" : "");
     else if (n->reached == 0)
-        notes_add(&j->warnings, "%s is ignored: none of its %lld voxels is in a volume of level %d", a->name,
-                  (long long)n->inside, a->level - 1);
+        notes_add(&j->warnings, "%s is ignored: none of its %lld %s is in a volume of level %d", a->name,
+                  (long long)n->inside, counted(j), a->level - 1);
     else if (n->kept == 0)
-        notes_add(&j->warnings, "%s has no voxel: other volumes keep all %lld that it could have", a->name,
-                  (long long)n->reached);
+        notes_add(&j->warnings, "%s has no voxel: other volumes keep all %lld %s that it could have", a->name,
+                  (long long)n->reached, counted(j));
+}
+
+static double enclosed(const job *j)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < j->x.elements; i++)
+        sum += (double)j->x.fraction[i];
+    return sum;
 }
 
 static void say_plan(job *j, const model *m)
@@ -289,6 +347,8 @@ static void say_plan(job *j, const model *m)
         say_volume(j, m, v);
         warn_volume(j, v);
     }
+    if (j->x.fraction)
+        tool_say(j->t, "enclosed: %.9g of the elements' %lld voxels", enclosed(j), (long long)j->x.elements);
     tool_say(j->t, "%lld elements, %lld nodes", (long long)model_count(m, "element"),
              (long long)model_count(m, "node"));
     if (!j->plan.rigid)
@@ -303,7 +363,107 @@ static double say_time(const job *j, const char *what, double since)
     return now;
 }
 
-static int work(job *j, model *m, err *e)
+/* ---- --check */
+
+/* Whether a group's polygons are of a surface, and whether they bound a volume. */
+static bool is_of_surface(const volumes *v, int32_t group, int32_t number)
+{
+    for (int64_t t = v->token_start[group]; t < v->token_start[group + 1]; t++)
+        if (v->token[t] == number)
+            return true;
+    return false;
+}
+
+static bool is_of_volume(const volumes *v, int32_t group, int32_t number)
+{
+    for (int64_t m = v->group_start[group]; m < v->group_start[group + 1]; m++)
+        if (v->member[m].volume == number)
+            return true;
+    return false;
+}
+
+/* What --check needs for all surfaces and volumes. */
+typedef struct checking {
+    job *j;
+    const double *voxel; /* NULL: none was given */
+    int64_t *face;       /* room for all of the OBJ's */
+    out *to;
+} checking;
+
+static int look_at(const checking *c, bool (*is_of)(const volumes *v, int32_t group, int32_t number), int32_t number,
+                   check_result *r, err *e)
+{
+    const obj *o = &c->j->surface;
+    int64_t count = 0;
+    for (int64_t f = 0; f < o->faces; f++)
+        if (o->face_start[f + 1] - o->face_start[f] >= 3 && is_of(&c->j->plan, o->face_group[f], number))
+            c->face[count++] = f;
+    return check_surface(r, o, c->face, count, c->voxel, pool_threads(c->j->threads), e);
+}
+
+static int check_surfaces(const checking *c, err *e)
+{
+    job *j = c->j;
+    for (int32_t s = 0; s < j->plan.surfaces; s++) {
+        check_result r;
+        if (j->plan.surface[s].polygons == 0)
+            continue;
+        if (look_at(c, is_of_surface, s, &r, e))
+            return -1;
+        report_surface(c->to, &j->plan, s, &r, num_unit_name(j->unit));
+        report_warn(&j->warnings, "surface", j->plan.surface[s].name, &r);
+    }
+    return 0;
+}
+
+/* A volume of one surface is as that is. */
+static int check_volumes(const checking *c, err *e)
+{
+    job *j = c->j;
+    for (int32_t v = 0; v < j->plan.volumes; v++) {
+        const volumes_volume *a = &j->plan.volume[v];
+        check_result r;
+        bool several = strchr(a->surfaces, ' ') != NULL;
+        if (several && look_at(c, is_of_volume, v, &r, e))
+            return -1;
+        report_volume(c->to, a, several ? &r : NULL, j->solid.open[v], num_unit_name(j->unit));
+        if (several)
+            report_warn(&j->warnings, "volume", a->name, &r);
+    }
+    return 0;
+}
+
+/* Writes the report; fails where a volume is open, as a run without --check would. */
+static int check(job *j, err *e)
+{
+    double spacing[3] = {0};
+    bool sized = j->o->size.count || j->o->cells >= 0;
+    if (sized && find_spacing(j, spacing, e))
+        return -1;
+    checking c = {.j = j, .voxel = sized ? spacing : NULL};
+    c.face = mem_array(j->surface.faces, sizeof *c.face, "polygons", e);
+    c.to = c.face ? out_open(j->t->common->output, j->t->common->gzip, e) : NULL;
+    int status = c.to && !check_surfaces(&c, e) && !check_volumes(&c, e) ? 0 : -1;
+    free(c.face);
+    if (status) {
+        out_discard(c.to);
+        return -1;
+    }
+    int64_t open = 0;
+    for (int32_t v = 0; v < j->plan.volumes; v++)
+        open += j->solid.open[v];
+    if (out_close(c.to, e))
+        return -1;
+    if (!open || j->o->allow_open)
+        return 0;
+    return err_set(e, j->surface.name, 0,
+                   "%lld open edges; expected every edge to join two polygons (--allow-open goes on all the same)",
+                   (long long)open);
+}
+
+/* ---- work */
+
+static int prepare(job *j, model *m, err *e)
 {
     double clock = progress_clock();
     if (read_surface(j, e))
@@ -313,13 +473,25 @@ static int work(job *j, model *m, err *e)
     clock = say_time(j, "reading", clock);
     int threads = tool_threads(j->t, e);
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;
+    bool allow_open = j->o->allow_open || j->o->check;
     if (!j->threads || read_materials(j, m, e) || make_plan(j, m, e) ||
-        solids_build(&j->solid, &j->surface, &j->plan, j->o->allow_open, &j->warnings, e) || make_grid(j, e))
+        solids_build(&j->solid, &j->surface, &j->plan, allow_open, &j->warnings, e))
         return -1;
-    clock = say_time(j, "checking surfaces", clock);
-    if (find_voxels(j, e))
+    say_time(j, "checking surfaces", clock);
+    return 0;
+}
+
+static int work(job *j, model *m, err *e)
+{
+    double clock = progress_clock();
+    if (make_grid(j, e) || find_voxels(j, e))
         return -1;
     clock = say_time(j, "finding what is inside", clock);
+    if (j->layer.layers) {
+        if (layers_apply(&j->layer, &j->x, &j->plan, &j->surface, &j->g, j->threads, e))
+            return -1;
+        clock = say_time(j, "finding layers", clock);
+    }
     if (make_model(j, m, e))
         return -1;
     say_time(j, "building the model", clock);
@@ -329,7 +501,7 @@ static int work(job *j, model *m, err *e)
 
 int main(int argc, char **argv)
 {
-    struct options o = {.cells = -1};
+    struct options o = {.cells = -1, .fraction = -1, .least = NAN};
     err e = {0};
     tool t = {0};
     stage s = {0};
@@ -339,11 +511,15 @@ int main(int argc, char **argv)
         goto out;
     j.path = argv[1];
     /* Without a unit there will be no model: that is said whatever stdout is. */
-    if (!check_options(&j, &e) && (!j.unit || !stage_open_output(&s, &t, &e)) && !work(&j, &m, &e))
+    if (check_options(&j, &e) || (!o.check && j.unit && stage_open_output(&s, &t, &e)) || prepare(&j, &m, &e))
+        goto out;
+    if (o.check)
+        check(&j, &e);
+    else if (!work(&j, &m, &e))
         stage_write(&s, &m, &e);
 out:
     tool_warn(&t, &j.warnings);
-    if (!t.done)
+    if (!t.done && !o.check)
         stage_close(&s, &t, &e);
     job_free(&j);
     model_free(&m);

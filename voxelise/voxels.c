@@ -2,19 +2,21 @@
 
 #include "base/mem.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 64, PARTS = 100 }; /* columns that one thread takes at a time; parts between which progress is shown */
+enum { PARTS = 50 }; /* between which progress is shown */
 
 /* What an element needs: its nodes, lattice place and volume (48 bytes), a little over one node (36 bytes), and room for
- * the writer. A column: its chunk's share and some runs. */
-static const double element_bytes = 120, column_bytes = 64;
+ * the writer. A row of cells: some runs. */
+static const double element_bytes = 120, row_bytes = 64;
 
+/* What one slab gives. */
 typedef struct chunk {
-    voxels_run *run;
-    int64_t runs, capacity;
+    climb_runs to;
+    shares_list fraction;
 } chunk;
 
 typedef struct counter {
@@ -22,29 +24,33 @@ typedef struct counter {
 } counter;
 
 typedef struct work {
-    const columns *c;
+    const inside *test;
     const int32_t *level;
     int32_t volumes;
-    int64_t first; /* column of this part */
-    chunk *chunk;  /* of all parts */
-    counter *counter;
+    const shares_rule *rule;
+    int64_t first;    /* slab of this part */
+    chunk *chunk;     /* slabs; NULL: elements are only counted */
+    counter *counter; /* volumes */
     atomic_bool failed;
 } work;
 
-/* One thread's, for one chunk. */
+/* One thread's, for one slab. */
 typedef struct scratch {
-    columns_scratch look;
-    int32_t *owner;      /* cells of a column: the volume that has it, -1 = none */
-    voxels_count *count; /* volumes */
+    inside_slab slab;
+    climb climb;
+    shares shares;
+    climb_runs samples;      /* runs of one row of them */
+    climb_count *kept;       /* volumes: their voxels by shares */
+    int64_t low[2], high[2]; /* of its parts, along y and z */
 } scratch;
 
 /* ---- memory */
 
-int voxels_check_memory(const grid *g, double elements, int threads, double available, err *e)
+int voxels_check_memory(const grid *g, double elements, double slabs, double available, err *e)
 {
     double layer = (double)(grid_cells(g, 0) + 1) * (double)(grid_cells(g, 1) + 1);
-    double bytes = element_bytes * elements + column_bytes * (double)grid_cells(g, 1) * (double)grid_cells(g, 2) +
-                   2 * 4 * layer + 4.0 * threads * (double)grid_cells(g, 0);
+    double bytes = element_bytes * elements + row_bytes * (double)grid_cells(g, 1) * (double)grid_cells(g, 2) +
+                   2 * 4 * layer + slabs;
     if (bytes <= available && elements <= INT32_MAX)
         return 0;
     const char *say =
@@ -57,197 +63,236 @@ int voxels_check_memory(const grid *g, double elements, int threads, double avai
         bytes / 1e9, available / 1e9, say);
 }
 
-/* Cells of a column inside any volume of level 0: the elements that it will have. Spans come by volume. */
-static int64_t column_elements(const columns_scratch *s, const int32_t *level, int64_t low)
-{
-    int64_t total = 0, done = low;
-    for (;;) {
-        /* The span that reaches furthest among those that begin at or before `done`, else the next to begin. */
-        int64_t from = INT64_MAX, to = done;
-        for (int64_t i = 0; i < s->spans; i++) {
-            const columns_span *a = &s->span[i];
-            if (level[a->volume] != 0 || a->to <= done)
-                continue;
-            int64_t begin = a->from > done ? a->from : done;
-            if (begin < from)
-                from = begin, to = a->to;
-        }
-        if (from == INT64_MAX)
-            return total;
-        total += to - from;
-        done = to;
-    }
-}
-
-/* The share of cells that will be elements, from columns evenly picked: enough to refuse by. */
-static int estimate(const columns *c, const int32_t *level, double *elements, err *e)
-{
-    enum { PICKS = 48 };
-    const grid *g = c->g;
-    columns_scratch s = {0};
-    int64_t total = 0;
-    int status = 0;
-    for (int n = 0; !status && n < PICKS * PICKS; n++) {
-        int64_t j = g->low[1] + grid_cells(g, 1) * (2 * (n % PICKS) + 1) / (2 * PICKS);
-        int64_t k = g->low[2] + grid_cells(g, 2) * (2 * (n / PICKS) + 1) / (2 * PICKS);
-        status = columns_look(c, 0, j, k, &s, e);
-        if (!status)
-            total += column_elements(&s, level, g->low[0]);
-    }
-    columns_scratch_free(&s);
-    *elements = (double)total / (PICKS * PICKS) * (double)grid_cells(g, 1) * (double)grid_cells(g, 2);
-    return status;
-}
-
-static int check_memory(const columns *c, const int32_t *level, int threads, err *e)
-{
-    double available = (double)mem_available(), elements = 0;
-    err whole = {0};
-    if (voxels_check_memory(c->g, grid_count(c->g), threads, available, &whole) == 0)
-        return 0;
-    if (estimate(c, level, &elements, e))
-        return -1;
-    return voxels_check_memory(c->g, elements, threads, available, e);
-}
-
-/* ---- Algorithm 1 */
-
-/* Lines 7 to 9 for one span of one volume: it takes what is at the level below, and what is not is left. */
-static void climb(const work *w, const columns_span *a, scratch *s)
-{
-    int32_t *owner = s->owner;
-    int32_t level = w->level[a->volume];
-    int64_t reached = 0, low = w->c->g->low[0];
-    for (int64_t i = a->from - low; i < a->to - low; i++) {
-        int32_t has = owner[i] < 0 ? -1 : w->level[owner[i]];
-        reached += has >= level - 1;
-        if (has == level - 1)
-            owner[i] = a->volume;
-    }
-    s->count[a->volume].inside += a->to - a->from;
-    s->count[a->volume].reached += reached;
-}
-
-static int add_run(chunk *to, voxels_run run, err *e)
-{
-    if (mem_grow(&to->run, &to->capacity, to->runs + 1, sizeof *to->run, "runs of voxels", e))
-        return -1;
-    to->run[to->runs++] = run;
-    return 0;
-}
-
-static int column_runs(const work *w, int64_t j, int64_t k, scratch *s, chunk *to, err *e)
-{
-    int64_t low = w->c->g->low[0], cells = grid_cells(w->c->g, 0);
-    for (int64_t from = 0, end; from < cells; from = end) {
-        int32_t volume = s->owner[from];
-        for (end = from + 1; end < cells && s->owner[end] == volume;)
-            end++;
-        if (volume < 0)
-            continue;
-        s->count[volume].kept += end - from;
-        voxels_run run = {(int32_t)(low + from), (int32_t)(low + end), (int32_t)j, (int32_t)k, volume};
-        if (add_run(to, run, e))
-            return -1;
-    }
-    return 0;
-}
-
-static int do_column(const work *w, int64_t column, scratch *s, chunk *to, err *e)
-{
-    const grid *g = w->c->g;
-    int64_t j = g->low[1] + column % grid_cells(g, 1), k = g->low[2] + column / grid_cells(g, 1);
-    if (columns_look(w->c, 0, j, k, &s->look, e))
-        return -1;
-    if (s->look.spans == 0)
-        return 0;
-    memset(s->owner, -1, (size_t)grid_cells(g, 0) * sizeof *s->owner);
-    for (int64_t i = 0; i < s->look.spans; i++)
-        climb(w, &s->look.span[i], s);
-    return column_runs(w, j, k, s, to, e);
-}
+/* ---- slabs */
 
 /* Whole numbers: the sums are the same in any order. */
-static void add_counts(work *w, const scratch *s)
+static void add_counts(work *w, const climb_count *count)
 {
     for (int32_t v = 0; v < w->volumes; v++) {
-        if (s->count[v].inside == 0)
+        if (count[v].inside == 0)
             continue;
-        atomic_fetch_add(&w->counter[v].inside, s->count[v].inside);
-        atomic_fetch_add(&w->counter[v].reached, s->count[v].reached);
-        atomic_fetch_add(&w->counter[v].kept, s->count[v].kept);
+        atomic_fetch_add(&w->counter[v].inside, count[v].inside);
+        atomic_fetch_add(&w->counter[v].reached, count[v].reached);
+        atomic_fetch_add(&w->counter[v].kept, count[v].kept);
     }
 }
 
-static void do_chunk(void *context, int64_t number, int64_t from, int64_t to)
+static void find_extent(scratch *s)
 {
+    for (int a = 0; a < 2; a++) {
+        s->low[a] = INT32_MAX, s->high[a] = INT32_MIN;
+        for (int64_t n = 0; n < s->slab.parts; n++) {
+            const inside_box *b = &s->slab.part[n].box;
+            s->low[a] = b->low[1 + a] < s->low[a] ? b->low[1 + a] : s->low[a];
+            s->high[a] = b->high[1 + a] > s->high[a] ? b->high[1 + a] : s->high[a];
+        }
+    }
+}
+
+static int by_centres(scratch *s, climb_runs *to, err *e)
+{
+    for (int64_t k = s->low[1]; k < s->high[1]; k++)
+        for (int64_t j = s->low[0]; j < s->high[0]; j++)
+            if (climb_row(&s->climb, &s->slab, j, k, to, e))
+                return -1;
+    return 0;
+}
+
+/* The samples of one row of voxels. */
+static int add_samples(scratch *s, int64_t j, int64_t k, err *e)
+{
+    int samples = s->shares.rule.samples;
+    for (int64_t z = k * samples; z < (k + 1) * samples; z++)
+        for (int64_t y = j * samples; y < (j + 1) * samples; y++) {
+            s->samples.runs = 0;
+            if (y < s->low[0] || y >= s->high[0] || z < s->low[1] || z >= s->high[1])
+                continue;
+            if (climb_row(&s->climb, &s->slab, y, z, &s->samples, e))
+                return -1;
+            for (int64_t r = 0; r < s->samples.runs; r++)
+                if (shares_add(&s->shares, &s->samples.run[r], e))
+                    return -1;
+        }
+    return 0;
+}
+
+static int64_t floor_of(int64_t a, int64_t b)
+{
+    return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+
+/* Slabs hold whole layers of voxels. */
+static int by_shares(scratch *s, const work *w, chunk *to, err *e)
+{
+    int samples = w->rule->samples;
+    if (s->slab.parts == 0)
+        return 0;
+    for (int64_t k = floor_of(s->low[1], samples); k * samples < s->high[1]; k++)
+        for (int64_t j = floor_of(s->low[0], samples); j * samples < s->high[0]; j++)
+            if (add_samples(s, j, k, e) || shares_row(&s->shares, j, k, &to->to, &to->fraction, s->kept, e))
+                return -1;
+    return 0;
+}
+
+static int look(scratch *s, work *w, int64_t number, err *e)
+{
+    if (climb_create(&s->climb, w->test, w->level, w->volumes, e) || inside_look(w->test, number, &s->slab, e))
+        return -1;
+    find_extent(s);
+    if (!w->rule || !w->chunk)
+        return by_centres(s, w->chunk ? &w->chunk[number].to : NULL, e);
+    if (shares_create(&s->shares, w->test->mesh.g, w->rule, w->volumes, e))
+        return -1;
+    s->kept = mem_array(w->volumes, sizeof *s->kept, "volumes", e);
+    if (!s->kept || by_shares(s, w, &w->chunk[number], e))
+        return -1;
+    for (int32_t v = 0; v < w->volumes; v++)
+        s->climb.count[v].kept = s->kept[v].kept;
+    return 0;
+}
+
+static void do_slab(void *context, int64_t chunk_number, int64_t from, int64_t to)
+{
+    (void)chunk_number;
     work *w = context;
-    scratch s = {0};
     err e = {0};
-    chunk *mine = &w->chunk[w->first / CHUNK + number];
-    s.owner = mem_array(grid_cells(w->c->g, 0), sizeof *s.owner, "a column", &e);
-    s.count = mem_array(w->volumes, sizeof *s.count, "volumes", &e);
-    int status = s.owner && s.count ? 0 : -1;
-    for (int64_t column = w->first + from; !status && column < w->first + to; column++)
-        status = do_column(w, column, &s, mine, &e);
-    if (status)
-        atomic_store(&w->failed, true); /* nothing here fails but for want of memory */
-    else
-        add_counts(w, &s);
-    columns_scratch_free(&s.look);
-    free(s.owner);
-    free(s.count);
+    for (int64_t number = w->first + from; number < w->first + to; number++) {
+        scratch s = {0};
+        if (look(&s, w, number, &e))
+            atomic_store(&w->failed, true); /* nothing here fails but for want of memory */
+        else
+            add_counts(w, s.climb.count);
+        inside_slab_free(&s.slab);
+        climb_free(&s.climb);
+        shares_free(&s.shares);
+        free(s.samples.run);
+        free(s.kept);
+    }
 }
 
 static void run_parts(work *w, pool *threads, progress *shown)
 {
-    int64_t all = voxels_columns(w->c->g), part = all / (PARTS * CHUNK) * CHUNK + CHUNK;
+    int64_t all = w->test->slabs, part = all / PARTS + 4 * (int64_t)pool_threads(threads);
     for (; w->first < all && !atomic_load(&w->failed); w->first += part) {
         int64_t left = all - w->first;
-        pool_run(threads, left < part ? left : part, CHUNK, do_chunk, w);
+        pool_run(threads, left < part ? left : part, 1, do_slab, w);
         if (shown)
             progress_at(shown, (double)(w->first + part));
     }
 }
 
-/* One list of all, in order; chunks are freed as they go. */
-static int join_chunks(voxels *x, chunk *list, int64_t chunks, err *e)
+/* ---- how many there will be */
+
+/* The same region in at most so many cells a side: enough to refuse by. */
+static grid coarse_of(const grid *g)
 {
-    for (int64_t i = 0; i < chunks; i++)
-        x->runs += list[i].runs;
-    x->run = mem_array(x->runs, sizeof *x->run, "runs of voxels", e);
-    if (!x->run)
-        return -1;
-    int64_t at = 0;
-    for (int64_t i = 0; i < chunks; i++) {
-        if (list[i].runs)
-            memcpy(x->run + at, list[i].run, (size_t)list[i].runs * sizeof *x->run);
-        at += list[i].runs;
-        free(list[i].run);
-        list[i].run = NULL;
+    enum { MOST = 64 };
+    grid c = *g;
+    for (int a = 0; a < 3; a++) {
+        int64_t cells = grid_cells(g, a), kept = cells < MOST ? cells : MOST;
+        if (kept == cells)
+            continue;
+        c.offset[a] = g->offset[a] + (double)g->low[a] * g->spacing[a];
+        c.spacing[a] = g->spacing[a] * ((double)cells / (double)kept);
+        c.low[a] = 0, c.high[a] = kept;
     }
-    for (int64_t i = 0; i < x->runs; i++)
-        x->elements += x->run[i].to - x->run[i].from;
+    return c;
+}
+
+static int estimate(const inside *test, const int32_t *level, int32_t volumes, pool *threads, double *elements, err *e)
+{
+    grid g = coarse_of(test->mesh.g);
+    inside coarse;
+    work w = {.test = &coarse, .level = level, .volumes = volumes};
+    w.counter = mem_array(volumes, sizeof *w.counter, "volumes", e);
+    if (!w.counter || inside_create(&coarse, &g, &test->t, test->mesh.ray, 1, threads, e)) {
+        free(w.counter);
+        return -1;
+    }
+    run_parts(&w, threads, NULL);
+    double kept = 0;
+    for (int32_t v = 0; v < volumes; v++)
+        kept += (double)atomic_load(&w.counter[v].kept);
+    *elements = kept * (grid_count(test->mesh.g) / grid_count(&g));
+    inside_free(&coarse);
+    free(w.counter);
+    return atomic_load(&w.failed) ? err_memory(e, "an estimate of the elements") : 0;
+}
+
+/* The cells of the voxels: those of the inside test, or of samples. */
+static grid voxel_cells(const work *w)
+{
+    grid g = *w->test->mesh.g;
+    for (int a = 0; w->rule && a < 3; a++) {
+        g.low[a] /= w->rule->samples;
+        g.high[a] /= w->rule->samples;
+    }
+    return g;
+}
+
+static double slab_bytes(const work *w, const pool *threads)
+{
+    return pool_threads(threads) * inside_slab_bytes(w->test);
+}
+
+static int check_memory(const work *w, pool *threads, err *e)
+{
+    double available = (double)mem_available(), elements = 0;
+    err whole = {0};
+    grid g = voxel_cells(w);
+    if (voxels_check_memory(&g, grid_count(&g), slab_bytes(w, threads), available, &whole) == 0)
+        return 0;
+    if (estimate(w->test, w->level, w->volumes, threads, &elements, e))
+        return -1;
+    elements *= grid_count(&g) / grid_count(w->test->mesh.g);
+    return voxels_check_memory(&g, elements, slab_bytes(w, threads), available, e);
+}
+
+/* One list of all, in order; chunks are freed as they go. */
+static int join_chunks(voxels *x, const work *w, err *e)
+{
+    int64_t at = 0, voxel = 0;
+    for (int64_t i = 0; i < w->test->slabs; i++) {
+        x->runs += w->chunk[i].to.runs;
+        for (int64_t r = 0; r < w->chunk[i].to.runs; r++)
+            x->elements += w->chunk[i].to.run[r].to - w->chunk[i].to.run[r].from;
+    }
+    x->run = mem_array(x->runs, sizeof *x->run, "runs of voxels", e);
+    x->fraction = x->run && w->rule ? mem_array(x->elements, sizeof *x->fraction, "shares of voxels", e) : NULL;
+    if (!x->run || (w->rule && !x->fraction))
+        return -1;
+    for (int64_t i = 0; i < w->test->slabs; i++) {
+        chunk *c = &w->chunk[i];
+        if (c->to.runs)
+            memcpy(x->run + at, c->to.run, (size_t)c->to.runs * sizeof *x->run);
+        if (x->fraction && c->fraction.count)
+            memcpy(x->fraction + voxel, c->fraction.fraction, (size_t)c->fraction.count * sizeof *x->fraction);
+        at += c->to.runs;
+        voxel += c->fraction.count;
+        free(c->to.run);
+        free(c->fraction.fraction);
+        c->to.run = NULL;
+        c->fraction.fraction = NULL;
+    }
     return 0;
 }
 
 static void take_counts(voxels *x, const work *w)
 {
     for (int32_t v = 0; v < w->volumes; v++)
-        x->count[v] = (voxels_count){atomic_load(&w->counter[v].inside), atomic_load(&w->counter[v].reached),
-                                     atomic_load(&w->counter[v].kept)};
+        x->count[v] = (climb_count){atomic_load(&w->counter[v].inside), atomic_load(&w->counter[v].reached),
+                                    atomic_load(&w->counter[v].kept)};
 }
 
-int voxels_find(voxels *x, const columns *c, const int32_t *level, int32_t volumes, pool *threads, progress *shown,
-                err *e)
+int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t volumes, const shares_rule *rule,
+                pool *threads, progress *shown, err *e)
 {
     *x = (voxels){0};
-    if (check_memory(c, level, pool_threads(threads), e))
-        return -1;
-    int64_t chunks = pool_chunks(voxels_columns(c->g), CHUNK);
-    work w = {.c = c, .level = level, .volumes = volumes};
+    work w = {.test = test, .level = level, .volumes = volumes, .rule = rule};
     int status = -1;
-    w.chunk = mem_array(chunks, sizeof *w.chunk, "columns", e);
+    if (check_memory(&w, threads, e))
+        return -1;
+    w.chunk = mem_array(test->slabs, sizeof *w.chunk, "slabs", e);
     w.counter = mem_array(volumes, sizeof *w.counter, "volumes", e);
     x->count = mem_array(volumes, sizeof *x->count, "volumes", e);
     if (!w.chunk || !w.counter || !x->count)
@@ -258,13 +303,16 @@ int voxels_find(voxels *x, const columns *c, const int32_t *level, int32_t volum
         goto out;
     }
     take_counts(x, &w);
-    if (join_chunks(x, w.chunk, chunks, e) ||
-        voxels_check_memory(c->g, (double)x->elements, pool_threads(threads), (double)mem_available(), e))
+    grid g = voxel_cells(&w);
+    if (join_chunks(x, &w, e) ||
+        voxels_check_memory(&g, (double)x->elements, slab_bytes(&w, threads), (double)mem_available(), e))
         goto out;
     status = 0;
 out:
-    for (int64_t i = 0; w.chunk && i < chunks; i++)
-        free(w.chunk[i].run);
+    for (int64_t i = 0; w.chunk && i < test->slabs; i++) {
+        free(w.chunk[i].to.run);
+        free(w.chunk[i].fraction.fraction);
+    }
     free(w.chunk);
     free(w.counter);
     if (status)
@@ -276,5 +324,6 @@ void voxels_free(voxels *x)
 {
     free(x->run);
     free(x->count);
+    free(x->fraction);
     *x = (voxels){0};
 }

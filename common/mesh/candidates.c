@@ -110,6 +110,23 @@ int candidates_ray(const candidates *c, const double *from, const double *direct
     return 0;
 }
 
+typedef struct pairs {
+    candidates_pair *take;
+    void *context;
+} pairs;
+
+static void take_pair(void *context, uint32_t one, uint32_t other)
+{
+    const pairs *p = context;
+    p->take(p->context, one, other);
+}
+
+void candidates_pairs(const candidates *c, candidates_pair *take, void *context)
+{
+    pairs p = {take, context};
+    embree_pairs(c->tree, take_pair, &p);
+}
+
 void candidates_list_free(candidates_list *list)
 {
     free(list->item);

@@ -31,6 +31,12 @@ void candidates_destroy(candidates *c);
  * once, in ascending order. -1 with e filled on no memory. Any number of threads may call it at once. */
 int candidates_ray(const candidates *c, const double *from, const double *direction, candidates_list *list, err *e);
 
+/* Takes two items, the lower number first. Called from several threads. */
+typedef void candidates_pair(void *context, int64_t one, int64_t other);
+
+/* Gives every two items whose boxes may overlap, each two once, in any order. */
+void candidates_pairs(const candidates *c, candidates_pair *take, void *context);
+
 void candidates_list_free(candidates_list *list);
 
 #endif

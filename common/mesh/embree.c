@@ -290,6 +290,26 @@ void embree_list(const embree *b, const float *from, const float *along, embree_
     rtcOccluded1(b->scene, &c.embree, &ray);
 }
 
+typedef struct pair_context {
+    embree_take_pair *take;
+    void *context;
+} pair_context;
+
+/* Embree gives a scene against itself: each pair both ways, and each item with itself. */
+static void give_pairs(void *context, struct RTCCollision *pair, unsigned pairs)
+{
+    const pair_context *c = context;
+    for (unsigned i = 0; i < pairs; i++)
+        if (pair[i].primID0 < pair[i].primID1)
+            c->take(c->context, pair[i].primID0, pair[i].primID1);
+}
+
+void embree_pairs(const embree *b, embree_take_pair *take, void *context)
+{
+    pair_context c = {take, context};
+    rtcCollide(b->scene, b->scene, give_pairs, &c);
+}
+
 void embree_packet_clear(embree_packet *p)
 {
     memset(p, 0, sizeof *p);

@@ -16,6 +16,9 @@ typedef void embree_box(const void *context, uint32_t item, float *low, float *h
 /* Takes an item whose box a ray may meet. */
 typedef void embree_take(void *context, uint32_t item);
 
+/* Takes two items whose boxes overlap. Called from several threads. */
+typedef void embree_take_pair(void *context, uint32_t one, uint32_t other);
+
 enum { EMBREE_RAYS = 16 };
 #define EMBREE_NONE UINT32_MAX
 
@@ -49,6 +52,9 @@ int embree_commit(embree *b, err *e);
 
 /* Gives every item whose box a ray without end may meet, in any order. */
 void embree_list(const embree *b, const float *from, const float *along, embree_take *take, void *context);
+
+/* Gives every two items of a scene of boxes only whose boxes overlap, once, the lower number first. */
+void embree_pairs(const embree *b, embree_take_pair *take, void *context);
 
 /* All rays as if unused: from 0 without end, and nothing met. */
 void embree_packet_clear(embree_packet *p);

@@ -67,7 +67,7 @@ is "$(rows volume.name)" '"other" "muscle_out" "muscle_thin" "muscle_deep" "musc
 is "$(counts other muscle_deep)" "13 1 " "inside one of two is inside, inside both is outside"
 said "a muscle outside" "warning: muscle_out is ignored: none of its 1 voxels is in a volume of level 0"
 said "a muscle thinner than a voxel" "warning: muscle_thin has no voxel: no centre is inside it"
-said "a muscle that comes too late" "warning: muscle_late has no voxel: other volumes keep all 1"
+said "a muscle that comes too late" "warning: muscle_late has no voxel: other volumes keep all 1 voxels"
 said "nothing rigid" "warning: nothing is rigid"
 box "gland" 0 0 0 2 2 2 >"$T/one.obj"
 vox "$T/one.obj"
@@ -110,7 +110,7 @@ is "$(rows volume.name)" '"flesh" "middle" "last" "core" ' "in order of level an
 is "$(rows volume.level)$(rows volume.priority)$(rows volume.material)$(rows volume.muscle)" \
     "0 1 1 2 0 3 7 0 0 1 0 0 0 0 1 0 " "level, priority, material, muscle"
 is "$(counts flesh middle last core)" "896 8 0 32 " "three levels: one climbs only from the level below"
-said "a volume that all others take" "warning: last has no voxel: other volumes keep all 32"
+said "a volume that all others take" "warning: last has no voxel: other volumes keep all 32 voxels"
 
 # bad NAME PATTERN LINE...: a --volumes file that is refused.
 bad() {

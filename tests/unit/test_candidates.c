@@ -1,9 +1,11 @@
-/* Boxes along rays: all that a ray meets are found, each once and in order, and of others none that is far from it. */
+/* Boxes along rays: all that a ray meets are found, each once and in order, and of others none that is far from it. And boxes
+ * that overlap: all pairs are found, each once, and none that is far apart. */
 #include "mesh/candidates.h"
 
 #include "tap.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 enum { BOXES = 2000, RAYS = 300 };
@@ -30,6 +32,42 @@ static void give(const void *context, int64_t item, double *low, double *high)
 static bool meets(const one *b, double x, double y, double by)
 {
     return x >= b->low[0] - by && x <= b->high[0] + by && y >= b->low[1] - by && y <= b->high[1] + by;
+}
+
+static void count_pair(void *context, int64_t first, int64_t second)
+{
+    atomic_uchar *times = context;
+    atomic_fetch_add(&times[first * BOXES + second], 1);
+}
+
+/* Whether they overlap when each is made larger by so much. */
+static bool overlap(const one *a, const one *b, double by)
+{
+    for (int i = 0; i < 3; i++)
+        if (a->low[i] - by > b->high[i] + by || b->low[i] - by > a->high[i] + by)
+            return false;
+    return true;
+}
+
+static void test_pairs(const one *box)
+{
+    static atomic_uchar times[BOXES * BOXES];
+    err e = {0};
+    candidates *c = candidates_create(BOXES, give, box, 100, 3, &e);
+    if (c)
+        candidates_pairs(c, count_pair, times);
+    candidates_destroy(c);
+    int missed = 0, far = 0, again = 0, found = 0;
+    for (int64_t i = 0; i < BOXES; i++)
+        for (int64_t j = 0; j < BOXES; j++) {
+            int count = atomic_load(&times[i * BOXES + j]);
+            found += count > 0;
+            again += count > 1;
+            missed += i < j && !count && overlap(&box[i], &box[j], 0);
+            far += count > 0 && (i >= j || !overlap(&box[i], &box[j], .01));
+        }
+    ok(!missed && found > BOXES / 2, "%d pairs missed of %d", missed, found);
+    ok(!again && !far, "%d pairs twice, %d far apart or the wrong way round", again, far);
 }
 
 int main(void)
@@ -68,5 +106,6 @@ int main(void)
     ok(!far, "%d far from their ray", far);
     candidates_list_free(&list);
     candidates_destroy(c);
+    test_pairs(box);
     return done_testing();
 }

@@ -1,4 +1,4 @@
-// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/columns.c voxelise/voxels.c voxelise/build.c
+// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/inside.c voxelise/voxels.c voxelise/climb.c voxelise/shares.c voxelise/build.c
 /* Algorithm 1 as it is printed, voxel by voxel over boxes at random, against columns and runs; and the nodes of the
  * elements against a plain table of all corners.
  */
@@ -57,7 +57,7 @@ static void make_scene(scene *s)
         s->g.low[a] = -1, s->g.high[a] = SIDE - 1;
 }
 
-static bool inside(const scene *s, int b, const int *cell)
+static bool is_inside(const scene *s, int b, const int *cell)
 {
     for (int a = 0; a < 3; a++)
         if (cell[a] < s->low[b][a] || cell[a] >= s->high[b][a])
@@ -76,7 +76,7 @@ static int printed(const scene *s, const int *cell)
             past++;
         level_changed = false;
         for (int priority = first; priority < past && !level_changed; priority++)
-            if (inside(s, priority, cell)) {
+            if (is_inside(s, priority, cell)) {
                 volume = priority;
                 level_changed = true;
             }
@@ -85,19 +85,24 @@ static int printed(const scene *s, const int *cell)
     return volume;
 }
 
-static bool find(const scene *s, int threads, voxels *x)
+static bool find_on(const scene *s, const grid *g, const shares_rule *rule, int threads, voxels *x)
 {
-    columns_triangles t = {s->position, BOXES * 8, s->vertex, s->volume, BOXES * 12};
-    columns c;
+    inside_triangles t = {s->position, BOXES * 8, s->vertex, s->volume, BOXES * 12};
+    inside test;
     err e = {0};
     pool *p = pool_create(threads, &e);
-    bool good = p && !columns_create(&c, &s->g, &t, 1, &e);
+    bool good = p && !inside_create(&test, g, &t, CLIMB_RAY, rule ? rule->samples : 1, p, &e);
     if (good) {
-        good = !voxels_find(x, &c, s->level, BOXES, p, NULL, &e);
-        columns_destroy(&c);
+        good = !voxels_find(x, &test, s->level, BOXES, rule, p, NULL, &e);
+        inside_free(&test);
     }
     pool_destroy(p);
     return good;
+}
+
+static bool find(const scene *s, int threads, voxels *x)
+{
+    return find_on(s, &s->g, NULL, threads, x);
 }
 
 static int cell_index(int i, int j, int k)
@@ -134,7 +139,7 @@ static bool same_as_printed(const scene *s, const voxels *x)
                 if (volume[cell_index(i, j, k)] != want)
                     return false;
                 for (int b = 0; b < BOXES; b++)
-                    within[b] += inside(s, b, cell);
+                    within[b] += is_inside(s, b, cell);
                 if (want >= 0)
                     kept[want]++, elements++;
             }
@@ -211,22 +216,88 @@ static void test_scenes(void)
     ok(bad_nodes == 0, "%d of %d scenes have wrong nodes", bad_nodes, scenes);
 }
 
+/* Of a voxel: its samples of each volume, from runs of samples. */
+static int64_t owner_of(const voxels *samples, int n, const int *cell, int64_t *total)
+{
+    int64_t count[BOXES] = {0}, best = 0;
+    for (int64_t r = 0; r < samples->runs; r++) {
+        const climb_run *a = &samples->run[r];
+        int from = n * cell[0], to = from + n;
+        if (a->j < n * cell[1] || a->j >= n * (cell[1] + 1) || a->k < n * cell[2] || a->k >= n * (cell[2] + 1))
+            continue;
+        from = a->from > from ? a->from : from;
+        to = a->to < to ? a->to : to;
+        count[a->volume] += to > from ? to - from : 0;
+    }
+    *total = 0;
+    for (int v = 0; v < BOXES; v++) {
+        *total += count[v];
+        best = count[v] > count[best] ? v : best;
+    }
+    return *total ? best : -1;
+}
+
+/* Voxels of 2 cells by shares, against the samples one by one. */
+static bool same_as_samples(const scene *s, const shares_rule *rule)
+{
+    scene coarse = *s;
+    grid fine;
+    err e = {0};
+    voxels got = {0}, samples = {0}, again = {0};
+    int volume[CELLS];
+    for (int a = 0; a < 3; a++) {
+        coarse.g.spacing[a] = 2;
+        coarse.g.origin[a] = 0.3 * (a - 1);
+    }
+    bool good = !grid_divide(&fine, &coarse.g, rule->samples, &e) && find_on(&coarse, &fine, rule, 1, &got) &&
+                find_on(&coarse, &fine, rule, 3, &again) && find_on(&coarse, &fine, NULL, 1, &samples) &&
+                unroll(&got, volume);
+    good = good && got.elements == again.elements && got.runs == again.runs &&
+           memcmp(got.fraction, again.fraction, (size_t)got.elements * sizeof *got.fraction) == 0;
+    int64_t at = 0, all = (int64_t)rule->samples * rule->samples * rule->samples;
+    for (int c = 0; good && c < CELLS; c++) {
+        int cell[3] = {c % SIDE - 1, c / SIDE % SIDE - 1, c / SIDE / SIDE - 1};
+        int64_t total, owner = owner_of(&samples, rule->samples, cell, &total);
+        bool is_element = total > 0 && (double)total >= rule->least * (double)all;
+        good = volume[c] == (is_element ? owner : -1);
+        if (good && is_element)
+            good = got.fraction[at++] == (float)((double)total / (double)all);
+    }
+    voxels_free(&got);
+    voxels_free(&samples);
+    voxels_free(&again);
+    return good;
+}
+
+static void test_shares(void)
+{
+    static const shares_rule rule[] = {{1, 0}, {2, 0}, {3, 0.4}, {4, 0.5}, {5, 1}, {7, 0.1}};
+    int scenes = 60, wrong = 0;
+    for (int n = 0; n < scenes; n++) {
+        scene s;
+        make_scene(&s);
+        wrong += !same_as_samples(&s, &rule[n % 6]);
+    }
+    ok(wrong == 0, "%d of %d scenes by shares differ from their samples", wrong, scenes);
+}
+
 static void test_memory(void)
 {
     grid g = {.high = {1000, 1000, 1000}};
     err e = {0};
-    ok(voxels_check_memory(&g, 1e8, 2, 20e9, &e) == 0, "1e8 elements fit 20 GB");
-    ok(voxels_check_memory(&g, 1e9, 2, 20e9, &e) == -1 && strstr(e.text, "1000 x 1000 x 1000 cells") &&
+    ok(voxels_check_memory(&g, 1e8, 1e6, 20e9, &e) == 0, "1e8 elements fit 20 GB");
+    ok(voxels_check_memory(&g, 1e9, 1e6, 20e9, &e) == -1 && strstr(e.text, "1000 x 1000 x 1000 cells") &&
            strstr(e.text, "20 GB are free"),
        "1e9 do not: %s", e.text);
     e = (err){0};
-    ok(voxels_check_memory(&g, 3e9, 2, 1e15, &e) == -1 && strstr(e.text, "2147483647"), "too many to number: %s",
+    ok(voxels_check_memory(&g, 3e9, 1e6, 1e15, &e) == -1 && strstr(e.text, "2147483647"), "too many to number: %s",
        e.text);
 }
 
 int main(void)
 {
     test_scenes();
+    test_shares();
     test_memory();
     return done_testing();
 }

@@ -1,11 +1,11 @@
-// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/columns.c
+// needs: voxelise/expansion.c voxelise/grid.c voxelise/crossing.c voxelise/inside.c
 /* The inside test against an exact reference of another making: whole numbers, the centre moved by a real e = 2^-14, and a
  * ray in a skew direction that no edge of these meshes can meet; signs of 4 x 4 determinants only. Meshes whose
  * faces, edges, diagonals and vertices lie on centres; every axis; translated; scaled to awkward units.
  */
 #include "tap.h"
 
-#include "voxelise/columns.h"
+#include "voxelise/inside.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -84,11 +84,61 @@ static void add_box(mesh *m, int64_t size)
     }
 }
 
+/* A box each of whose faces is a fan about a point of its own, inside of it or at its rim: coplanar triangles, some
+ * without area. */
+static void add_fans(mesh *m, int64_t size)
+{
+    int64_t low[3], high[3];
+    int v[8];
+    for (int a = 0; a < 3; a++)
+        low[a] = draw(0, size - 1), high[a] = draw(low[a] + 1, size);
+    for (int i = 0; i < 8; i++)
+        v[i] = add_vertex(m, i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]);
+    static const int quad[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    static const int across[6] = {2, 2, 1, 1, 0, 0};
+    for (int f = 0; f < 6; f++) {
+        int64_t p[3];
+        for (int a = 0; a < 3; a++)
+            p[a] = a != across[f] ? draw(low[a], high[a]) : f == 0 || f == 2 || f == 4 ? low[a] : high[a];
+        int middle = add_vertex(m, p[0], p[1], p[2]);
+        for (int i = 0; i < 4; i++)
+            add_triangle(m, middle, v[quad[f][i]], v[quad[f][(i + 1) % 4]]);
+    }
+}
+
+/* Two corners next to each other, two far away: all but flat, and as long as the lattice. */
+static void add_sliver(mesh *m, int64_t size)
+{
+    int64_t at[2][3], next[2][3];
+    int v[4];
+    for (int a = 0; a < 3; a++) {
+        at[0][a] = draw(0, 2), at[1][a] = draw(size - 2, size);
+        if (draw(0, 1))
+            at[0][a] = size - at[0][a], at[1][a] = size - at[1][a];
+        for (int i = 0; i < 2; i++)
+            next[i][a] = at[i][a] + draw(-1, 1);
+    }
+    for (int i = 0; i < 2; i++) {
+        v[i] = add_vertex(m, at[i][0], at[i][1], at[i][2]);
+        v[2 + i] = add_vertex(m, next[i][0], next[i][1], next[i][2]);
+    }
+    add_triangle(m, v[0], v[1], v[2]);
+    add_triangle(m, v[0], v[3], v[1]);
+    add_triangle(m, v[1], v[3], v[2]);
+    add_triangle(m, v[2], v[3], v[0]);
+}
+
 static mesh any_mesh(int64_t size)
 {
     mesh m = {0};
     for (int parts = (int)draw(1, 3); parts > 0; parts--)
-        switch (draw(0, 2)) {
+        switch (draw(0, 4)) {
+        case 3:
+            add_fans(&m, size);
+            break;
+        case 4:
+            add_sliver(&m, size);
+            break;
         case 0:
             add_tetrahedron(&m, size);
             break;
@@ -116,7 +166,7 @@ static bool reference(const mesh *m, const int64_t *centre)
 {
     static const wide direction[3] = {10007, 7919, -9001};
     wide moved[3], unit = (wide)1 << (3 * MOVE);
-    bool inside = false;
+    bool within = false;
     for (int a = 0; a < 3; a++)
         moved[a] = (wide)centre[a] * unit + ((wide)1 << (MOVE * (2 - a)));
     for (int t = 0; t < m->triangles; t++) {
@@ -136,9 +186,9 @@ static bool reference(const mesh *m, const int64_t *centre)
             continue;
         int s = sign(determinant(direction, to[0], to[1]));
         if (s && s == sign(determinant(direction, to[1], to[2])) && s == sign(determinant(direction, to[2], to[0])))
-            inside = !inside;
+            within = !within;
     }
-    return inside;
+    return within;
 }
 
 /* How a mesh in halves becomes doubles: x = base + half * at, with the lattice's origin and spacing alike. */
@@ -149,21 +199,35 @@ typedef struct setting {
     int64_t shift[3];        /* cells by which the mesh is moved and the lattice is not */
 } setting;
 
-static void fill_mask(const columns *c, int axis, const int64_t *low, uint8_t *mask)
+/* Rays along an axis; false on no memory. */
+static bool fill_mask(const grid *g, const inside_triangles *t, int axis, pool *threads, uint8_t *mask)
 {
     static const int step[3] = {1, SIDE, SIDE * SIDE};
-    columns_scratch s = {0};
+    inside test;
+    inside_slab slab = {0};
     err e = {0};
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     memset(mask, 0, CELLS);
-    for (int iv = 0; iv < SIDE; iv++)
-        for (int iu = 0; iu < SIDE; iu++) {
-            columns_look(c, axis, iu + low[u], iv + low[v], &s, &e);
-            for (int64_t i = 0; i < s.spans; i++)
-                for (int64_t x = s.span[i].from - low[axis]; x < s.span[i].to - low[axis]; x++)
-                    mask[iu * step[u] + iv * step[v] + (int)x * step[axis]] |= (uint8_t)(1 << s.span[i].volume);
+    if (inside_create(&test, g, t, axis, 1, threads, &e))
+        return false;
+    bool good = true;
+    for (int64_t n = 0; good && n < test.slabs; n++) {
+        good = inside_look(&test, n, &slab, &e) == 0;
+        for (int64_t i = 0; good && i < slab.parts; i++) {
+            const inside_part *p = &slab.part[i];
+            for (int64_t layer = p->box.low[u]; layer < p->box.high[u]; layer++)
+                for (int64_t x = p->box.low[axis]; x < p->box.high[axis]; x++)
+                    for (int64_t y = p->box.low[v]; y < p->box.high[v]; y++) {
+                        int64_t bit = y - p->box.low[v];
+                        if (inside_words(&test, p, layer, x)[bit / 64] >> bit % 64 & 1)
+                            mask[(layer - g->low[u]) * step[u] + (x - g->low[axis]) * step[axis] +
+                                 (y - g->low[v]) * step[v]] |= (uint8_t)(1 << p->volume);
+                    }
         }
-    columns_scratch_free(&s);
+    }
+    inside_slab_free(&slab);
+    inside_free(&test);
+    return good;
 }
 
 /* The mask along each axis, bit `volume` where inside. Returns whether all three agree. */
@@ -181,19 +245,14 @@ static bool masks(const mesh *m, const setting *s, uint8_t *mask)
         g.spacing[a] = s->half[a] * (double)s->spacing[a];
         g.low[a] = s->shift[a], g.high[a] = s->shift[a] + SIDE;
     }
-    columns_triangles t = {position, m->vertices, m->triangle[0], volume, m->triangles};
-    columns c;
+    inside_triangles t = {position, m->vertices, m->triangle[0], volume, m->triangles};
     err e = {0};
+    pool *threads = pool_create(1, &e);
     uint8_t other[CELLS];
-    if (columns_create(&c, &g, &t, 1, &e))
-        return false;
-    bool same = true;
-    fill_mask(&c, 0, g.low, mask);
-    for (int axis = 1; axis < 3; axis++) {
-        fill_mask(&c, axis, g.low, other);
-        same = same && memcmp(mask, other, CELLS) == 0;
-    }
-    columns_destroy(&c);
+    bool same = threads && fill_mask(&g, &t, 0, threads, mask);
+    for (int axis = 1; axis < 3; axis++)
+        same = same && fill_mask(&g, &t, axis, threads, other) && memcmp(mask, other, CELLS) == 0;
+    pool_destroy(threads);
     return same;
 }
 
@@ -209,28 +268,36 @@ static int differing(const mesh *m, const setting *s, const uint8_t *mask)
     return count;
 }
 
+/* How much of everything: more with SINEW_LONG. */
+static int times(void)
+{
+    const char *is_long = getenv("SINEW_LONG");
+    return is_long && *is_long ? 25 : 1;
+}
+
 static void test_reference(const char *name, setting s, int64_t size, int meshes)
 {
+    meshes *= times();
     int wrong = 0, unlike = 0;
-    int64_t inside = 0;
+    int64_t within = 0;
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(size);
         uint8_t mask[CELLS] = {0};
         unlike += !masks(&m, &s, mask);
         wrong += differing(&m, &s, mask);
         for (int i = 0; i < CELLS; i++)
-            inside += mask[i] & 1;
+            within += mask[i] & 1;
     }
     ok(wrong == 0, "%s: %d of %d voxels differ from the reference", name, wrong, meshes * CELLS);
     ok(unlike == 0, "%s: %d of %d meshes differ between rays along x, y and z", name, unlike, meshes);
-    ok(inside > meshes, "%s: %lld voxels are inside", name, (long long)inside);
+    ok(within > meshes, "%s: %lld voxels are inside", name, (long long)within);
 }
 
 /* The same mesh moved by whole cells, far away: the same mask. */
 static void test_translation(void)
 {
     static const int64_t far[4] = {3, 1000000, 999999999, -1000000000};
-    int unlike = 0, meshes = 400;
+    int unlike = 0, meshes = 400 * times();
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(24);
         setting here = {.half = {0.5, 0.5, 0.5}, .spacing = {2, 4, 2}, .origin = {1, 0, 0}}, there = here;
@@ -247,7 +314,7 @@ static void test_translation(void)
 static void test_rounded(void)
 {
     static const double unit[4] = {0.1, 1e-6 / 3, 123.4567, 2.54e-2};
-    int unlike = 0, meshes = 800;
+    int unlike = 0, meshes = 800 * times();
     for (int n = 0; n < meshes; n++) {
         mesh m = any_mesh(24);
         double h = unit[n % 4];

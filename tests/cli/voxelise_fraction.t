@@ -1,0 +1,68 @@
+#!/bin/sh
+# voxelise --fraction: the share of each voxel that is enclosed.
+. "$(dirname "$0")/lib.sh"
+. tests/cli/boxes.sh
+
+# vox ARGS...: as text into $T/m.
+vox() {
+    voxelise -q --text --unit mm "$@" >"$T/m" 2>"$T/said"
+}
+# rows ARRAY: of $T/m, a line each.
+rows() {
+    awk -v a="$1" '$1 == "array" { on = $2 == a; next } /^[a-z]/ { on = 0 } on' "$T/m"
+}
+# total: of the shares.
+total() {
+    rows element.fraction | awk '{ sum += $1 } END { printf "%.9g", sum }'
+}
+get() {
+    sinew info --get "$1" <"$T/m"
+}
+
+# A box from 0.25 to 2.5 in voxels of 1: shares of three quarters, 1 and a half along each axis.
+box skin 0.25 0.25 0.25 2.5 2.5 2.5 >"$T/box.obj"
+vox -s 1 --origin 0,0,0 --fraction 4 "$T/box.obj"
+is "$(get axis.element) $(rows element.fraction | head -n 3 | tr '\n' ' ')" "27 0.421875 0.5625 0.28125 " "voxels that a box cuts"
+is "$(total)" 11.390625 "together they are its volume"
+vox -s 1 --origin 0,0,0 "$T/box.obj"
+is "$(get axis.element) $(rows element.fraction)" "8 " "without it: by centres, and no shares"
+vox -s 1 --origin 0,0,0 --fraction 4 --least 0.5 "$T/box.obj"
+is "$(get axis.element) $(rows element.fraction | sort -n | head -n 1)" "10 0.5" "--least leaves out what is less"
+vox -s 1 --origin 0,0,0 --fraction 4 --least 1 "$T/box.obj"
+is "$(get axis.element)" 1 "only what is whole"
+vox -s 1 --origin 0,0,0 --fraction 1 "$T/box.obj"
+is "$(get axis.element) $(total)" "8 8" "one sample is the centre"
+box skin 0.1 0.1 0.1 1.4 1.4 1.4 >"$T/near.obj"
+vox -s 1 --origin 0,0,0 --fraction 10 "$T/near.obj"
+is "$(get axis.element)" 8 "voxels whose centres are outside"
+near "$(total)" 2.197 1e-6 "a voxel whose centre is outside of the surface's box"
+vox -s 1 --origin 0,0,0 --box 0,0,0,1,1,1 --fraction 10 "$T/near.obj"
+is "$(get axis.element)" 1 "one voxel"
+near "$(total)" 0.729 1e-6 "--box still goes by centres"
+
+# Who owns a voxel: the volume with most of it, the first of two.
+{
+    box skin 0 0 0 4 1 1
+    box muscle_a 0 0 0 1.25 1 1
+    box muscle_b 2.5 0 0 4 1 1
+} >"$T/muscles.obj"
+vox -s 1 --origin 0,0,0 --fraction 4 "$T/muscles.obj"
+is "$(rows element.volume | tr '\n' ' ')$(rows element.fraction | sort -u)" "1 0 0 2 1" "the most, the first of two"
+
+# The volume of a ball: shares are nearer than centres by far.
+awk -v r=100 -v n=96 -f tests/cli/sphere.awk >"$T/ball.obj"
+true_volume=$(voxelise --check --unit mm "$T/ball.obj" | awk '$1 == "encloses" { print $2; exit }')
+for size in 25 12.5 6.25; do
+    vox -s "$size" --fraction 8 --threads 1 "$T/ball.obj"
+    cp "$T/m" "$T/one"
+    near "$(awk -v t="$(total)" -v s="$size" 'BEGIN { printf "%.9g", t * s ^ 3 }')" "$true_volume" 0.0015 \
+        "a ball, voxels of $size mm"
+    vox -s "$size" --fraction 8 --threads 3 "$T/ball.obj"
+    check "the same bytes on three threads" cmp "$T/m" "$T/one"
+done
+is "$(sinew info <"$T/m" | sed -n 's/^  voxelise 0.1.0 //p')" "--unit mm -s 6.25 --fraction 8 ball.obj" "provenance"
+fails 2 "no samples" "--fraction '0': expected a whole number from 1" voxelise --unit mm -s 1 --fraction 0 "$T/box.obj"
+fails 2 "--least without --fraction" "--least is for --fraction" voxelise --unit mm -s 1 --least 0.5 "$T/box.obj"
+fails 2 "--least past 1" "--least '1.5'" voxelise --unit mm -s 1 --fraction 2 --least 1.5 "$T/box.obj"
+fails 1 "nothing is enough" "no voxel has enough of it inside" voxelise --unit mm -s 10 --origin 0,0,0 --fraction 4 --least 0.5 "$T/box.obj"
+done_testing

@@ -1,0 +1,32 @@
+/* Layers from the skin inward (epidermis, dermis, hypodermis): voxels of level 0 whose centre is nearer to the surface than the
+ * thickness of the layers so far become volumes of their own. The surface is what bounds level 0 and is not rigid by
+ * name; voxels of higher levels (muscles) stay what they are. The caller owns a layers.
+ */
+#ifndef SINEW_LAYERS_H
+#define SINEW_LAYERS_H
+
+#include "base/num.h"
+#include "voxelise/volumes.h"
+#include "voxelise/voxels.h"
+
+typedef struct layers_layer {
+    char *name;   /* owned */
+    double depth; /* of its lower side below the surface, in the OBJ's unit */
+    int32_t material;
+} layers_layer;
+
+typedef struct layers {
+    layers_layer *layer; /* from the surface inward */
+    int64_t layers, capacity;
+} layers;
+
+/* From a file of lines `NAME thickness=LENGTH material=MATERIAL`. A length without a suffix is in `unit`, the OBJ's; a layer
+ * that names no material takes the one of its own name, else the first. No name may be a volume's. */
+int layers_read(layers *l, in *file, num_unit unit, const volumes *plan, const model *materials, err *e);
+void layers_free(layers *l);
+
+/* Gives voxels to the layers, and adds the layers to the plan: after level 0, with priorities that follow its own. g: the
+ * lattice of voxels. */
+int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const grid *g, pool *threads, err *e);
+
+#endif

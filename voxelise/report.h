@@ -1,0 +1,19 @@
+/* What voxelise --check says of a surface, as text for people: one thing a line, in two columns. Nothing is kept.
+ */
+#ifndef SINEW_REPORT_H
+#define SINEW_REPORT_H
+
+#include "base/out.h"
+#include "voxelise/check.h"
+#include "voxelise/volumes.h"
+
+/* unit: the name of the OBJ's. */
+void report_surface(out *o, const volumes *plan, int32_t surface, const check_result *r, const char *unit);
+
+/* A volume: open is the count of its open edges. r (NULL: not asked): of all its surfaces together. */
+void report_volume(out *o, const volumes_volume *v, const check_result *r, int64_t open, const char *unit);
+
+/* What is to be feared of it. what: "surface". */
+void report_warn(notes *n, const char *what, const char *name, const check_result *r);
+
+#endif
