@@ -14,7 +14,7 @@
 #endif
 
 /* Bytes handled at once: they stay in the cache between reading, checksum and the search for nan. */
-enum { PIECE = 1 << 18, HEAD = 16, MAGIC = 10 };
+enum { PIECE = 1 << 18, FIRST = 1 << 24, HEAD = 16, MAGIC = 10 };
 
 static const unsigned char magic[MAGIC] = {BINARY_FIRST, 's', 'i', 'n', 'e', 'w', '\r', '\n', 0x1a, '\n'};
 
@@ -47,14 +47,16 @@ static int take(block *b, void *to, size_t size, err *e)
     return 0;
 }
 
-/* Makes *bytes of *have at least a piece larger, at most size, with `extra` bytes behind. */
+/* Makes *bytes of *have at least FIRST larger, at most size, with `extra` bytes behind. (What is not touched takes no
+ * memory.) */
 static int more_room(unsigned char **bytes, uint64_t *have, uint64_t size, size_t extra, err *e)
 {
-    uint64_t next = 2 * *have < PIECE ? PIECE : 2 * *have;
+    uint64_t next = 2 * *have < FIRST ? FIRST : 2 * *have;
     next = next < size ? next : size;
     unsigned char *grown = realloc(*bytes, next + extra ? next + extra : 1);
     if (!grown)
         return err_memory(e, "what a block holds");
+    mem_large(grown, next + extra);
     *bytes = grown;
     *have = next;
     return 0;

@@ -1,6 +1,6 @@
 /* How fast the geometry is read, passed on and worked on: OBJ files, models through a pipe, attach and bind on the real face,
  * with a probe of the machine in the same run. Lines of CSV on stdout; the rounds are interleaved, so that what disturbs
- * the machine for a while disturbs all alike. `bench_geometry [BIN [face.obj]]`: the tools in BIN are run too.
+ * the machine for a while disturbs all alike. `bench_geometry [BIN face.obj [ROUNDS]]`: the tools in BIN are run too, where the face is there.
  */
 // needs: tests/bench/bench.c
 #include "base/checksum.h"
@@ -18,7 +18,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { ROUNDS = 5, PROBE = 64 << 20 };
+enum { PROBE = 64 << 20 };
 
 /* ---- OBJ: a scan's surface from an equation, bumps on a ball, in the forms that exporters write */
 
@@ -234,13 +234,13 @@ static void write_scans(char path[FORMS][64], double *size)
     }
 }
 
-static void tools(bench *b, const char *bin, const char *face)
+static void tools(bench *b, int rounds, const char *bin, const char *face)
 {
     bench_bytes plain = {0}, attached = {0}, bound = {0};
     bench_command voxelise = {bin, "voxelise", {"-q", "--unit", "mm", "-s", "0.625", face, NULL}};
     bench_command attach = {bin, "attach", {"-q", NULL}}, bind = {bin, "bind", {"-q", NULL}};
     bench_run(&voxelise, NULL, &plain);
-    for (int i = 0; i < ROUNDS; i++) {
+    for (int i = 0; i < rounds; i++) {
         bench_take(b, "probe: copy through a pipe", (double)plain.size, "B", copy_pipe(plain.bytes, plain.size));
         bench_take(b, "attach, face at 0.625 mm, pipes included", 1, "run", bench_run(&attach, &plain, &attached));
         bench_take(b, "bind, face at 0.625 mm, pipes included", 1, "run", bench_run(&bind, &attached, &bound));
@@ -252,6 +252,7 @@ static void tools(bench *b, const char *bin, const char *face)
 
 int main(int argc, char **argv)
 {
+    int rounds = argc > 3 ? atoi(argv[3]) : 5;
     err e = {0};
     bench b = {0};
     model m = {0};
@@ -265,7 +266,7 @@ int main(int argc, char **argv)
     make_model(&m);
     bench_stream(&m, &stream);
     write_scans(path, size);
-    for (int round = 0; round < ROUNDS; round++) {
+    for (int round = 0; round < rounds; round++) {
         bench_probe(&b);
         bench_take(&b, "probe: copy through a pipe", (double)stream.size, "B", copy_pipe(stream.bytes, stream.size));
         bench_take(&b, "crc32 of zlib", PROBE, "B", sum(of_zlib, bytes));
@@ -278,7 +279,7 @@ int main(int argc, char **argv)
     for (int i = 0; i < FORMS; i++)
         unlink(path[i]);
     if (argc > 2 && !access(argv[2], R_OK))
-        tools(&b, argv[1], argv[2]);
+        tools(&b, rounds, argv[1], argv[2]);
     bench_print(&b);
     free(bytes);
     free(stream.bytes);
