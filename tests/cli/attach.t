@@ -158,9 +158,7 @@ p 2
 p 4
 g bone_y
 p 4"
-    for i in $(seq 27); do
-        printf 'p 1\np 4\n'
-    done
+    seq 27 | sed 's/.*/p 1 4/'
 } >"$T/idle.obj"
 attach --report --rigid skull --rigid-file "$T/idle.obj" <"$T/bar" -o "$T/out" 2>"$T/stderr"
 is "$(grep -e 'no node is held' -e 'nor by' "$T/stderr")" "attach: idle: no node is held by faces of idle: 1-3, 5

@@ -59,10 +59,9 @@ static void make_muscle(model *m, const tube *t, double h, int ends)
     block(m, &grid, size, 0);
     model_find(m, "volume.muscle")->u8[1] = 1;
     model_set_text(model_find(m, "volume.name"), 1, "muscle_tube", &e);
+    uint8_t *rigid = model_add(m, "node.rigid", &e)->u8;
     const model_array *position = model_find(m, "node.position"), *node = model_find(m, "element.node");
     int32_t *volume = model_find(m, "element.volume")->i32;
-    uint8_t *rigid = model_add(m, "node.rigid", &e)->u8;
-    position = model_find(m, "node.position"), node = model_find(m, "element.node");
     for (int64_t i = 0; i < node->rows; i++) {
         for (int a = 0; a < 3; a++)
             x[a] = position->f64[3 * (int64_t)node->i32[8 * i] + a] + h / 2;
@@ -189,7 +188,7 @@ static void straight(void)
     for (int32_t i = 0; i < 12 * 9 * 6; i++) {
         int32_t x = i % 12, y = i / 12 % 9;
         if (volume[i])
-            off[x == 11 ? 1 : y == 5 ? 2 : 0] += fabs(1 - (x == 11 ? fabs(f[3 * i + 1]) : f[3 * i]));
+            off[x == 11 ? 1 : y == 5 ? 2 : 0] += fabs(1 - (x == 11 ? fabs((double)f[3 * i + 1]) : f[3 * i]));
     }
     ok(off[0] < 1 && f[0] > .8, "the bar: along it, toward its larger end (off by %g in 36 elements)", off[0]);
     ok(off[1] < .2, "the other: along it (off by %g in 18)", off[1]);
