@@ -56,6 +56,8 @@ static double copy_memory(void)
     err e = {0};
     char *from = mem_array(COPY, 1, "a probe", &e), *to = from ? mem_array(COPY, 1, "a probe", &e) : NULL;
     bench_must(to != NULL, &e);
+    if (!to)
+        exit(1);
     memset(from, 1, COPY);
     memset(to, 2, COPY);
     double start = bench_clock();

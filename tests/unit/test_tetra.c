@@ -132,7 +132,8 @@ static void against_all(double size, double shift, bool holes)
         take_point(&m, size, i % 5, p);
         int32_t element = tetra_element(&t, p);
         wrong += element != brute(&t, elements, p);
-        const int32_t *n = &t.node[4 * element];
+        int32_t n[4];
+        memcpy(n, t.node + 4 * (size_t)element, sizeof n);
         weights_tetrahedron(n, t.position, p, weight);
         for (int a = 0; a < 3; a++)
             want += (a + 2) * p[a] / size;
