@@ -105,5 +105,6 @@ clean:
 	rm -rf $(BUILD) $(BIN) out
 
 include tests/check.mk
+include tests/bench/geometry.mk
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

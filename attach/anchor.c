@@ -16,7 +16,8 @@ enum { WALKED = 64 };
 typedef struct search {
     lattice grid;
     lattice_map map;
-    const int32_t *node; /* element.node */
+    const int32_t *node;   /* element.node */
+    const float *fraction; /* element.fraction, or NULL */
     double strictness, reach, tie;
     uint8_t *rigid;
     int32_t *anchor, *held; /* nodes: the first surface that holds it, the last one; -1 = none */
@@ -70,7 +71,10 @@ static void try_point(search *s, int32_t element, const double *centre, const do
         for (int a = 0; a < 3; a++)
             line[a] = s->shape.normal[a] / s->grid.spacing[a];
     take_along(s, element, line);
-    if (most <= tolerance) { /* the normal's other end: which way round the polygon was written says nothing */
+    /* The other end: of the normal, since which way round the polygon was written says nothing; and where the primitive cuts
+     * a voxel that is less than half tissue, since then its centre lies in the bone: nothing of it should hang loose there. */
+    bool in_bone = s->fraction && s->fraction[element] < 0.5F && most <= 0.5 + tolerance;
+    if (most <= tolerance || in_bone) {
         for (int a = 0; a < 3; a++)
             line[a] = -line[a];
         take_along(s, element, line);
@@ -196,7 +200,7 @@ static int try_primitives(search *s, rigid *r, err *e)
 {
     box near;
     for (int64_t i = 0; i < r->primitives; i++) {
-        const rigid_primitive *p = &r->primitive[i];
+        rigid_primitive *p = &r->primitive[i];
         if (closest_shape_of(&s->shape, p->position, p->vertex, p->corners, e))
             return -1;
         s->at = p->surface;
@@ -204,7 +208,8 @@ static int try_primitives(search *s, rigid *r, err *e)
         s->holds = false;
         if (cells_near(s, &near))
             search_box(s, &near);
-        s->surface->idle += !s->holds;
+        p->idle = !s->holds;
+        s->surface->idle += p->idle;
     }
     return 0;
 }
@@ -248,7 +253,9 @@ static int find_voxels(const model *m, search *s, err *e)
         return -1;
     if (node->columns != 8)
         return err_set(e, NULL, 0, "element.node has %d columns; expected a model of voxels, with 8", node->columns);
+    const model_array *fraction = model_find(m, "element.fraction");
     s->node = node->i32;
+    s->fraction = fraction ? fraction->f32 : NULL;
     const double *h = s->grid.spacing;
     s->reach = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]) * (1 + 1e-6);
     s->tie = tolerance * fmin(h[0], fmin(h[1], h[2]));

@@ -14,7 +14,11 @@
  * axis; 0.75 in the paper. All comparisons are inclusive, to 1e-9 of a voxel. Where the closest point is the centre
  * itself, the line is the polygon's normal, and both its ends count, so that it makes no difference which way round a
  * polygon is written; a point, a line or a polygon without area there takes all 8 nodes. Where a concave polygon has
- * several closest points, each counts. */
+ * several closest points, each counts.
+ *
+ * With element.fraction, voxels may be elements whose centres lie in the bone. Where the closest point is in a voxel of which
+ * less than half is enclosed, both ends of the line count: the nodes on the tissue's side, which are the surface to the
+ * nearest layer of nodes, and those behind, which nothing else would hold. */
 int anchor_nodes(model *m, rigid *r, double strictness, notes *warnings, err *e);
 
 #endif

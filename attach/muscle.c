@@ -1,34 +1,13 @@
 #include "muscle.h"
 
 #include "base/mem.h"
+#include "body.h"
+#include "field.h"
+#include "mesh/lattice.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The arrays that muscles are made from and into. */
-typedef struct body {
-    int64_t elements, nodes;
-    int32_t columns; /* of node */
-    const double *position;
-    const int32_t *node, *volume;
-    const uint8_t *rigid;
-    float *fibre;
-    int32_t *seen;    /* nodes: the last muscle that counted it */
-    int64_t *start;   /* volumes + 1: a volume's first place in element */
-    int64_t *element; /* the elements, volume after volume */
-} body;
-
-static void element_centre(const body *b, int64_t element, double *centre)
-{
-    const int32_t *node = &b->node[b->columns * element];
-    for (int a = 0; a < 3; a++) {
-        centre[a] = 0;
-        for (int n = 0; n < b->columns; n++)
-            centre[a] += b->position[3 * (int64_t)node[n] + a];
-        centre[a] /= b->columns;
-    }
-}
 
 /* A length to compare others with. */
 static double element_size(const body *b, int64_t element)
@@ -45,9 +24,11 @@ static void find_centres(const body *b, muscle *m, int32_t index)
     m->elements = b->start[m->volume + 1] - b->start[m->volume];
     for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
         int64_t i = b->element[at];
-        element_centre(b, i, centre);
+        double share = body_fraction(b, i);
+        body_centre(b, i, centre);
+        m->weight += share;
         for (int a = 0; a < 3; a++)
-            middle[a] += centre[a];
+            middle[a] += share * centre[a];
         for (int n = 0; n < b->columns; n++) {
             int32_t node = b->node[b->columns * i + n];
             if (!b->rigid[node] || b->seen[node] == index)
@@ -59,7 +40,7 @@ static void find_centres(const body *b, muscle *m, int32_t index)
         }
     }
     for (int a = 0; a < 3; a++) {
-        m->middle[a] = m->elements ? middle[a] / (double)m->elements : NAN;
+        m->middle[a] = m->weight > 0 ? middle[a] / m->weight : NAN;
         m->centre[a] = m->rigid_nodes ? rigid[a] / (double)m->rigid_nodes : NAN;
     }
 }
@@ -68,12 +49,13 @@ static void covariance(const body *b, const muscle *m, double c[3][3])
 {
     double d[3];
     for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
-        element_centre(b, b->element[at], d);
+        double share = body_fraction(b, b->element[at]) / m->weight;
+        body_centre(b, b->element[at], d);
         for (int p = 0; p < 3; p++)
             d[p] -= m->middle[p];
         for (int p = 0; p < 3; p++)
             for (int q = 0; q < 3; q++)
-                c[p][q] += d[p] * d[q] / (double)m->elements;
+                c[p][q] += share * d[p] * d[q];
     }
 }
 
@@ -142,7 +124,7 @@ static void find_axis(const body *b, muscle *m)
 static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t element)
 {
     double line[3], length = 0, centre[3];
-    element_centre(b, element, centre);
+    body_centre(b, element, centre);
     for (int a = 0; a < 3; a++) {
         line[a] = m->centre[a] - centre[a];
         length += line[a] * line[a];
@@ -150,9 +132,12 @@ static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t
     length = sqrt(length);
     if (kind == MUSCLE_CENTRE && !m->rigid_nodes)
         return false;
-    bool along_axis = kind == MUSCLE_AXIS || length <= 1e-9 * element_size(b, element);
+    float *fibre = &b->fibre[3 * element];
+    if (kind == MUSCLE_FIELD && (fibre[0] != 0 || fibre[1] != 0 || fibre[2] != 0))
+        return true;
+    bool along_axis = kind != MUSCLE_CENTRE || length <= 1e-9 * element_size(b, element);
     for (int a = 0; a < 3; a++)
-        b->fibre[3 * element + a] = (float)(along_axis ? m->axis[a] : line[a] / length);
+        fibre[a] = (float)(along_axis ? m->axis[a] : line[a] / length);
     return !along_axis || m->axis[0] != 0 || m->axis[1] != 0 || m->axis[2] != 0;
 }
 
@@ -168,10 +153,19 @@ static void set_fibres(const body *b, const muscle *m, muscle_fibre kind, notes 
                   m->name);
     else if (!m->rigid_nodes)
         notes_add(warnings, "%s has no rigid node, so no contraction centre", m->name);
-    if (without && (m->rigid_nodes || kind == MUSCLE_AXIS))
+    if (without && (m->rigid_nodes || kind != MUSCLE_CENTRE))
         notes_add(warnings,
                   "%s has no axis that is the longest: %lld of its %lld elements have no fibre and will not contract",
                   m->name, (long long)without, (long long)m->elements);
+}
+
+static int check_fractions(const model_array *fraction, err *e)
+{
+    for (int64_t i = 0; fraction && i < fraction->rows; i++)
+        if (!(fraction->f32[i] >= 0 && fraction->f32[i] <= 1))
+            return err_set(e, NULL, 0, "element.fraction, row %lld is %g; expected a share from 0 to 1", (long long)i,
+                           (double)fraction->f32[i]);
+    return 0;
 }
 
 /* The arrays that are needed, and node and element counts. */
@@ -179,6 +173,7 @@ static int find_arrays(const model *m, body *b, err *e)
 {
     const model_array *position = model_need(m, "node.position", e), *rigid = model_need(m, "node.rigid", e);
     const model_array *node = model_need(m, "element.node", e), *volume = model_need(m, "element.volume", e);
+    const model_array *anchor = model_find(m, "node.anchor"), *fraction = model_find(m, "element.fraction");
     if (!position || !rigid || !node || !volume)
         return -1;
     *b = (body){.elements = node->rows,
@@ -187,11 +182,14 @@ static int find_arrays(const model *m, body *b, err *e)
                 .position = position->f64,
                 .node = node->i32,
                 .volume = volume->i32,
-                .rigid = rigid->u8};
+                .rigid = rigid->u8,
+                .anchor = anchor ? anchor->i32 : NULL,
+                .fraction = fraction ? fraction->f32 : NULL};
     b->seen = mem_array(b->nodes, sizeof *b->seen, "nodes", e);
-    for (int64_t n = 0; b->seen && n < b->nodes; n++)
-        b->seen[n] = -1;
-    return b->seen ? 0 : -1;
+    b->part = b->seen ? mem_array(b->nodes, sizeof *b->part, "nodes", e) : NULL;
+    for (int64_t n = 0; b->part && n < b->nodes; n++)
+        b->seen[n] = b->part[n] = -1;
+    return b->part ? check_fractions(fraction, e) : -1;
 }
 
 /* The elements of each volume, in their order. */
@@ -212,61 +210,112 @@ static int sort_elements(body *b, int64_t volumes, err *e)
 }
 
 /* The volumes that are muscles. */
-static int find_muscles(const model *m, muscle **list, int64_t *count, err *e)
+static int find_muscles(const model *m, muscles *list, err *e)
 {
     const model_array *is = model_need(m, "volume.muscle", e), *name = model_need(m, "volume.name", e);
     if (!is || !name)
         return -1;
     for (int64_t i = 0; i < is->rows; i++)
-        *count += is->u8[i] != 0;
-    *list = mem_array(*count, sizeof **list, "muscles", e);
-    if (!*list)
+        list->count += is->u8[i] != 0;
+    list->of = mem_array(list->count, sizeof *list->of, "muscles", e);
+    if (!list->of)
         return -1;
-    muscle *next = *list;
+    muscle *next = list->of;
     for (int64_t i = 0; i < is->rows; i++)
         if (is->u8[i])
             *next++ = (muscle){.name = name->str[i], .volume = (int32_t)i};
     return 0;
 }
 
-/* Adds the arrays; what they are made from stays where it is. */
-static int add_arrays(model *m, body *b, const muscle *list, int64_t count, err *e)
+/* The axis attachment and its arrays. */
+static int add_attachments(model *m, const attachments *list, err *e)
 {
-    if (model_axis_add(m, "muscle", count, e))
+    if (model_axis_add(m, "attachment", list->count, e))
+        return -1;
+    model_array *a = model_add(m, "attachment.muscle", e);
+    for (int64_t i = 0; a && i < list->count; i++)
+        a->i32[i] = list->of[i].muscle;
+    a = a && model_count(m, "anchor") >= 0 ? model_add(m, "attachment.anchor", e) : a;
+    for (int64_t i = 0; a && model_count(m, "anchor") >= 0 && i < list->count; i++)
+        a->i32[i] = list->of[i].anchor;
+    a = a ? model_add(m, "attachment.nodes", e) : NULL;
+    for (int64_t i = 0; a && i < list->count; i++)
+        a->i32[i] = (int32_t)list->of[i].nodes;
+    a = a ? model_add(m, "attachment.centre", e) : NULL;
+    for (int64_t i = 0; a && i < list->count; i++)
+        memcpy(&a->f64[3 * i], list->of[i].centre, sizeof list->of[i].centre);
+    return a ? 0 : -1;
+}
+
+/* Adds the arrays; what they are made from stays where it is. */
+static int add_arrays(model *m, body *b, const muscles *list, err *e)
+{
+    if (model_axis_add(m, "muscle", list->count, e))
         return -1;
     model_array *a = model_add(m, "muscle.volume", e);
-    for (int64_t i = 0; a && i < count; i++)
-        a->i32[i] = list[i].volume;
+    for (int64_t i = 0; a && i < list->count; i++)
+        a->i32[i] = list->of[i].volume;
     a = a ? model_add(m, "muscle.centre", e) : NULL;
-    for (int64_t i = 0; a && i < count; i++)
-        memcpy(&a->f64[3 * i], list[i].centre, sizeof list[i].centre);
-    a = a ? model_add(m, "element.fibre", e) : NULL;
+    for (int64_t i = 0; a && i < list->count; i++)
+        memcpy(&a->f64[3 * i], list->of[i].centre, sizeof list->of[i].centre);
+    if (!a || add_attachments(m, &list->attached, e))
+        return -1;
+    a = model_add(m, "element.fibre", e);
     b->fibre = a ? a->f32 : NULL;
     return a ? 0 : -1;
 }
 
-int muscle_make(model *m, muscle_fibre fibre, muscle **list, int64_t *count, notes *warnings, err *e)
+/* --fibre field: each muscle's attachments are found again, since b->part holds one muscle's. */
+static int follow_fields(const model *m, const body *b, const muscles *list, pool *threads, err *e)
+{
+    lattice grid;
+    attachments own = {0};
+    field *f = lattice_of(m, &grid, e) ? NULL : field_create(b, threads, grid.spacing, e);
+    int rc = f ? 0 : -1;
+    for (int64_t i = 0; !rc && i < list->count; i++) {
+        const muscle *of = &list->of[i];
+        own.count = 0;
+        if (of->elements)
+            rc = attachments_find(&own, b, (int32_t)i, of->volume, e) ||
+                 field_fibres(f, of->volume, own.of, own.count, e);
+    }
+    free(own.of);
+    field_free(f);
+    return rc ? -1 : 0;
+}
+
+int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, notes *warnings, err *e)
 {
     body b = {0};
     int rc = -1;
-    *list = NULL;
-    *count = 0;
+    *list = (muscles){0};
     model_axis_drop(m, "muscle", warnings);
+    model_axis_drop(m, "attachment", warnings);
     model_remove(m, "element.fibre");
-    if (find_arrays(m, &b, e) || find_muscles(m, list, count, e) || sort_elements(&b, model_count(m, "volume"), e))
+    if (find_arrays(m, &b, e) || find_muscles(m, list, e) || sort_elements(&b, model_count(m, "volume"), e))
         goto out;
-    for (int64_t i = 0; i < *count; i++) {
-        find_centres(&b, &(*list)[i], (int32_t)i);
-        find_axis(&b, &(*list)[i]);
+    for (int64_t i = 0; i < list->count; i++) {
+        find_centres(&b, &list->of[i], (int32_t)i);
+        find_axis(&b, &list->of[i]);
+        if (attachments_find(&list->attached, &b, (int32_t)i, list->of[i].volume, e))
+            goto out;
     }
-    if (add_arrays(m, &b, *list, *count, e))
+    if (add_arrays(m, &b, list, e) || (fibre == MUSCLE_FIELD && follow_fields(m, &b, list, threads, e)))
         goto out;
-    for (int64_t i = 0; i < *count; i++)
-        set_fibres(&b, &(*list)[i], fibre, warnings);
+    for (int64_t i = 0; i < list->count; i++)
+        set_fibres(&b, &list->of[i], fibre, warnings);
     rc = 0;
 out:
     free(b.seen);
+    free(b.part);
     free(b.start);
     free(b.element);
     return rc;
+}
+
+void muscles_free(muscles *list)
+{
+    free(list->of);
+    free(list->attached.of);
+    *list = (muscles){0};
 }

@@ -4,25 +4,38 @@
 #ifndef SINEW_MUSCLE_H
 #define SINEW_MUSCLE_H
 
+#include "attachment.h"
+#include "base/pool.h"
 #include "model/model.h"
 
 typedef enum muscle_fibre {
     MUSCLE_CENTRE, /* from the element's centre toward the contraction centre */
-    MUSCLE_AXIS    /* along the muscle's longest axis, the principal one of its elements' centres */
+    MUSCLE_AXIS,   /* along the muscle's longest axis, the principal one of its elements' centres */
+    MUSCLE_FIELD   /* along the gradient of a potential between its two ends (field.h) */
 } muscle_fibre;
 
 typedef struct muscle {
     const char *name; /* borrowed from volume.name */
     int32_t volume;
     int64_t elements, rigid_nodes;
+    double weight;    /* the sum of its elements' enclosed shares */
     double centre[3]; /* contraction centre, m; nan where it has none */
-    double middle[3]; /* the mean of its elements' centres */
+    double middle[3]; /* the mean of its elements' centres, by enclosed share */
     double axis[3];   /* unit; toward the contraction centre where there is one; 0 0 0 where no axis is the longest */
 } muscle;
 
-/* Makes the axis muscle with muscle.volume and muscle.centre, and element.fibre, in place of those that are there, from
- * node.rigid and the volumes that are muscles. An element that lies at the contraction centre gets the axis. Notes the
- * muscles that can have no centre or no fibres. *list (muscles of them, *count) is the caller's to free. */
-int muscle_make(model *m, muscle_fibre fibre, muscle **list, int64_t *count, notes *warnings, err *e);
+typedef struct muscles {
+    muscle *of;
+    int64_t count;
+    attachments attached;
+} muscles;
+
+/* Makes the axis muscle with muscle.volume and muscle.centre, the axis attachment with attachment.muscle and its other
+ * arrays, and element.fibre, in place of those that are there, from node.rigid (and node.anchor and element.fraction,
+ * where there are any) and the volumes that are muscles. An element that lies at the contraction centre gets the axis.
+ * Notes the muscles that can have no centre or no fibres. Spreads are weighted by element.fraction. threads: for
+ * MUSCLE_FIELD. The caller frees the list, on failure too. */
+int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, notes *warnings, err *e);
+void muscles_free(muscles *list);
 
 #endif

@@ -42,7 +42,7 @@ static int64_t surface_named(rigid *r, const char *name, err *e)
 }
 
 /* Adds face f of s to the rigid surface. */
-static int add_face(rigid *r, const surface *s, int64_t f, int32_t to, err *e)
+static int add_face(rigid *r, const surface *s, const char *of, int64_t f, int32_t to, err *e)
 {
     const int32_t *vertex = &s->vertex[s->start[f]];
     int64_t corners = surface_end(s, f) - s->start[f];
@@ -51,7 +51,8 @@ static int add_face(rigid *r, const surface *s, int64_t f, int32_t to, err *e)
             return err_set(e, NULL, 0, "surface %s: vertex %d is not at a finite place", s->name, vertex[i / 3]);
     if (mem_grow(&r->primitive, &r->primitive_capacity, r->primitives + 1, sizeof *r->primitive, "rigid primitives", e))
         return -1;
-    r->primitive[r->primitives++] = (rigid_primitive){s->position, vertex, corners, to};
+    r->primitive[r->primitives] = (rigid_primitive){s->position, vertex, corners, to, of, f, r->primitives, false};
+    r->primitives++;
     r->surface[to].primitives++;
     return 0;
 }
@@ -76,13 +77,14 @@ static int collect_surface(rigid *r, const surface *s, const names *patterns, er
 {
     int rc = -1;
     int64_t *to = mem_array(s->groups, sizeof *to, "groups", e);
-    if (!to)
-        return -1;
+    int32_t named = to ? names_number(&r->sources, s->name, e) : -1;
+    if (named < 0)
+        goto out;
     for (int64_t g = 0; g < s->groups; g++)
         if ((to[g] = surface_of_group(r, s, s->group_name[g], patterns, e)) == -2)
             goto out;
     for (int64_t f = 0; f < s->faces; f++)
-        if (to[s->group[f]] >= 0 && add_face(r, s, f, (int32_t)to[s->group[f]], e))
+        if (to[s->group[f]] >= 0 && add_face(r, s, r->sources.name[named], f, (int32_t)to[s->group[f]], e))
             goto out;
     rc = 0;
 out:
@@ -93,7 +95,9 @@ out:
 static int by_surface(const void *a, const void *b)
 {
     const rigid_primitive *p = a, *q = b;
-    return (p->surface > q->surface) - (p->surface < q->surface);
+    if (p->surface != q->surface)
+        return p->surface < q->surface ? -1 : 1;
+    return (p->number > q->number) - (p->number < q->number);
 }
 
 static int collect(rigid *r, const model *m, const names *patterns, err *e)
@@ -166,6 +170,7 @@ int rigid_collect_all(rigid *r, const model *file, err *e)
 void rigid_free(rigid *r)
 {
     names_free(&r->names);
+    names_free(&r->sources);
     free(r->surface);
     free(r->primitive);
     *r = (rigid){0};

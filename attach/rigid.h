@@ -14,6 +14,10 @@ typedef struct rigid_primitive {
     const int32_t *vertex;  /* its corners */
     int64_t corners;        /* 1 point, 2 line, more: polygon */
     int32_t surface;        /* the rigid surface it belongs to: the first that its group names */
+    const char *of;         /* the surface that it is a face of, by its name in the model; in the rigid's sources */
+    int64_t face;           /* which */
+    int64_t number;         /* in the order in which they were collected */
+    bool idle;              /* it holds no node */
 } rigid_primitive;
 
 typedef struct rigid_surface {
@@ -27,7 +31,8 @@ typedef struct rigid {
     rigid_surface *surface;     /* in order of the groups */
     rigid_primitive *primitive; /* by surface */
     int64_t surfaces, primitives, surface_capacity, primitive_capacity;
-    names names; /* of surfaces, by the same numbers */
+    names names;   /* of surfaces, by the same numbers */
+    names sources; /* of the models' surfaces */
 } rigid;
 
 /* Adds all that m's surfaces hold in groups of which a name matches one of the patterns (a '*' at the end matches any

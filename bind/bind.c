@@ -4,9 +4,11 @@
 #include "base/pool.h"
 #include "bind/nearest.h"
 #include "bind/scale.h"
+#include "bind/tetra.h"
 #include "mesh/surface.h"
 #include "mesh/weights.h"
 #include "model/check.h"
+#include "model/finite.h"
 #include "model/known.h"
 #include "model/stage.h"
 
@@ -30,8 +32,8 @@ static const opt option_list[] = {
 static const opt_tool table = {
     .name = "bind",
     .purpose = "Bind surfaces to the elements of the model on standard input.",
-    .operands = "surface.obj",
-    .operands_max = 1,
+    .operands = "surface.obj...",
+    .operands_max = 1000,
     .writes_model = true,
     .threaded = true,
     .options = option_list,
@@ -39,9 +41,11 @@ static const opt_tool table = {
 
 /* What the surfaces are bound to. */
 typedef struct target {
-    nearest elements;
+    nearest voxels; /* or */
+    tetra tetrahedra;
     pool *threads;
-    const int32_t *node;    /* elements x 8 */
+    const int32_t *node; /* elements x corners */
+    int corners;
     const double *position; /* nodes x 3, m */
 } target;
 
@@ -50,7 +54,7 @@ typedef struct binding {
     const target *to;
     const double *position; /* vertices x 3, m */
     int32_t *element;       /* vertices */
-    double *weight;         /* vertices x 3 */
+    double *weight;         /* vertices x 3 (voxels) or 4 */
 } binding;
 
 static int check_model(const model *m, err *e)
@@ -58,51 +62,94 @@ static int check_model(const model *m, err *e)
     const model_array *node = model_need(m, "element.node", e), *position = model_need(m, "node.position", e);
     if (!node || !position)
         return -1;
-    if (node->columns != 8)
-        return err_set(e, NULL, 0, "the model is of tetrahedra; expected hexahedra on a lattice, from voxelise");
     if (!node->rows)
         return err_set(e, NULL, 0, "the model has no elements; expected some to bind to");
-    return 0;
+    return finite_array(position, NULL, e);
 }
 
-static int target_open(target *to, const model *m, int threads, err *e)
+static int target_open(target *to, const model *m, int threads, notes *warnings, err *e)
 {
-    if (nearest_build(&to->elements, m, e))
+    to->corners = model_find(m, "element.node")->columns;
+    if (to->corners == 8 ? nearest_build(&to->voxels, m, e) : tetra_build(&to->tetrahedra, m, e))
         return -1;
+    if (to->tetrahedra.flat)
+        notes_add(warnings, "%lld of the tetrahedra have no volume, and nothing is bound to them",
+                  (long long)to->tetrahedra.flat);
     to->threads = pool_create(threads, e);
     return to->threads ? 0 : -1;
 }
 
 static void target_close(target *to)
 {
-    nearest_free(&to->elements);
+    nearest_free(&to->voxels);
+    tetra_free(&to->tetrahedra);
     if (to->threads)
         pool_destroy(to->threads);
+}
+
+static void bind_to_voxel(const binding *b, int64_t v)
+{
+    const double *point = &b->position[3 * v];
+    b->element[v] = nearest_element(&b->to->voxels, point);
+    weights_box box = weights_box_of(&b->to->node[8 * (int64_t)b->element[v]], b->to->position);
+    weights_of(&box, point, &b->weight[3 * v]);
+}
+
+static void bind_to_tetrahedron(const binding *b, int64_t v)
+{
+    const double *point = &b->position[3 * v];
+    b->element[v] = tetra_element(&b->to->tetrahedra, point);
+    weights_tetrahedron(&b->to->node[4 * (int64_t)b->element[v]], b->to->position, point, &b->weight[4 * v]);
 }
 
 static void bind_some(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const binding *b = context;
     (void)chunk;
-    for (int64_t v = from; v < to; v++) {
-        int32_t element = nearest_element(&b->to->elements, &b->position[3 * v]);
-        weights_box box = weights_box_of(&b->to->node[8 * (int64_t)element], b->to->position);
-        weights_of(&box, &b->position[3 * v], &b->weight[3 * v]);
-        b->element[v] = element;
-    }
+    for (int64_t v = from; v < to; v++)
+        if (b->to->corners == 8)
+            bind_to_voxel(b, v);
+        else
+            bind_to_tetrahedron(b, v);
 }
 
 /* How far outside the elements a surface's vertices lie. */
 typedef struct outside {
-    int64_t count; /* of those further than a voxel */
-    double voxel, furthest;
+    int64_t count; /* of those further than a voxel, or than their tetrahedron is long */
+    double furthest;
 } outside;
+
+/* A voxel's longest side, or a tetrahedron's. */
+static double length_of(const target *to, int32_t element)
+{
+    double longest = 0;
+    const double *side = to->voxels.grid.spacing;
+    if (to->corners == 8)
+        return fmax(fmax(side[0], side[1]), side[2]);
+    for (int i = 0; i < 6; i++) {
+        static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+        double square = 0;
+        for (int a = 0; a < 3; a++) {
+            double d = to->position[3 * (int64_t)to->node[4 * (int64_t)element + ends[i][0]] + a] -
+                       to->position[3 * (int64_t)to->node[4 * (int64_t)element + ends[i][1]] + a];
+            square += d * d;
+        }
+        longest = fmax(longest, square);
+    }
+    return sqrt(longest);
+}
 
 static void add_outside(outside *o, const binding *b, int64_t v)
 {
-    weights_box box = weights_box_of(&b->to->node[8 * (int64_t)b->element[v]], b->to->position);
-    double d = weights_outside(&box, &b->weight[3 * v]);
-    o->count += d > o->voxel * (1 + 1e-9);
+    const int32_t *node = &b->to->node[b->to->corners * (int64_t)b->element[v]];
+    double d;
+    if (b->to->corners == 8) {
+        weights_box box = weights_box_of(node, b->to->position);
+        d = weights_outside(&box, &b->weight[3 * v]);
+    } else {
+        d = weights_tetrahedron_outside(node, b->to->position, &b->position[3 * v]);
+    }
+    o->count += d > 0 && d > length_of(b->to, b->element[v]) * (1 + 1e-9);
     o->furthest = fmax(o->furthest, d);
 }
 
@@ -110,8 +157,7 @@ static void add_outside(outside *o, const binding *b, int64_t v)
  * unless there are no faces. */
 static int warn_of_far(const binding *b, const surface *s, num_unit unit, notes *warnings, err *e)
 {
-    const double *side = b->to->elements.grid.spacing;
-    outside o = {.voxel = fmax(fmax(side[0], side[1]), side[2])};
+    outside o = {0};
     bool *used = mem_array(s->vertices, sizeof *used, "vertices", e);
     if (!used)
         return -1;
@@ -122,11 +168,11 @@ static int warn_of_far(const binding *b, const surface *s, num_unit unit, notes 
             add_outside(&o, b, v);
     free(used);
     if (o.count)
-        notes_add(
-            warnings,
-            "surface %s: %lld of %lld vertices lie further than a voxel outside the elements, the furthest %.4g %s; "
-            "sinew deform --within leaves such vertices where they are",
-            s->name, (long long)o.count, (long long)s->vertices, o.furthest / scale_of(unit), num_unit_name(unit));
+        notes_add(warnings,
+                  "surface %s: %lld of %lld vertices lie further than a%s outside the elements, the furthest %.4g %s; "
+                  "sinew deform --within leaves such vertices where they are",
+                  s->name, (long long)o.count, (long long)s->vertices, b->to->corners == 8 ? " voxel" : "n element",
+                  o.furthest / scale_of(unit), num_unit_name(unit));
     return 0;
 }
 
@@ -149,7 +195,7 @@ static int bind_surface(const tool *t, target *to, model *m, const char *name, n
     snprintf(axis, sizeof axis, "%s/vertex", name);
     if (model_find(m, element))
         tool_say(t, "surface %s was bound before; it is bound anew", name);
-    if (!model_add(m, element, e) || !model_add_as(m, weight, MODEL_F64, "1", axis, 3, e) ||
+    if (!model_add(m, element, e) || !model_add_as(m, weight, MODEL_F64, "1", axis, to->corners == 8 ? 3 : 4, e) ||
         surface_of(m, name, &s, e) || check_finite(&s, e))
         return -1;
     to->node = model_find(m, "element.node")->i32;
@@ -209,6 +255,26 @@ static int bind_file(const tool *t, target *to, model *m, const char *path, cons
     return code;
 }
 
+/* Two files of one name would be one surface: the second is refused where they differ, and where they do not. */
+static int bind_files(const tool *t, target *to, model *m, char *const *path, const struct options *o, notes *warnings,
+                      err *e)
+{
+    char name[SURFACE_NAME_MOST + 1], other[SURFACE_NAME_MOST + 1];
+    for (int i = 0; i < t->operands; i++) {
+        surface_name(path[i], name, sizeof name);
+        for (int j = 0; j < i; j++) {
+            surface_name(path[j], other, sizeof other);
+            if (!strcmp(name, other))
+                return err_set(e, path[i], 0,
+                               "would be surface %s, as %s is; expected another name, or --name in a run of its own",
+                               name, path[j]);
+        }
+        if (bind_file(t, to, m, path[i], o, warnings, e))
+            return -1;
+    }
+    return 0;
+}
+
 /* Every surface that the model carries, or the one named. */
 static int bind_carried(const tool *t, target *to, model *m, const struct options *o, notes *warnings, err *e)
 {
@@ -228,13 +294,16 @@ static int bind_carried(const tool *t, target *to, model *m, const struct option
     return 0;
 }
 
-static int check_options(const struct options *o, const char *path, err *e)
+static int check_options(const struct options *o, int count, char *const *path, err *e)
 {
     if (o->name && check_surface_name(o->name, e))
         return -1;
-    if (path && !strcmp(path, "-"))
-        return err_usage(e, "'-': the model comes on standard input; expected the name of an OBJ file");
-    if (!path && o->unit)
+    for (int i = 0; i < count; i++)
+        if (!strcmp(path[i], "-"))
+            return err_usage(e, "'-': the model comes on standard input; expected the name of an OBJ file");
+    if (count > 1 && o->name)
+        return err_usage(e, "--name names one surface, but %d files are given", count);
+    if (!count && o->unit)
         return err_usage(e, "--unit is for an OBJ, and none is given; surfaces in the model are in metres");
     return 0;
 }
@@ -252,12 +321,13 @@ int main(int argc, char **argv)
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    const char *path = t.operands ? argv[1] : NULL;
-    if (stage_open_output(&s, &t, &e) || check_options(&o, path, &e) || (threads = tool_threads(&t, &e)) < 0)
+    if (stage_open_output(&s, &t, &e) || check_options(&o, t.operands, argv + 1, &e) ||
+        (threads = tool_threads(&t, &e)) < 0)
         goto out;
-    if (stage_read(&s, &m, &e) || check_model(&m, &e) || target_open(&to, &m, threads, &e))
+    if (stage_read(&s, &m, &e) || check_model(&m, &e) || target_open(&to, &m, threads, &warnings, &e))
         goto out;
-    if (path ? bind_file(&t, &to, &m, path, &o, &warnings, &e) : bind_carried(&t, &to, &m, &o, &warnings, &e))
+    if (t.operands ? bind_files(&t, &to, &m, argv + 1, &o, &warnings, &e)
+                   : bind_carried(&t, &to, &m, &o, &warnings, &e))
         goto out;
     if (!stage_write(&s, &m, &e))
         stage_copy_frames(&s, &m, &e);

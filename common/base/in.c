@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { CHUNK = 1 << 18 };
+enum { CHUNK = 1 << 18, MUCH = 1 << 15 }; /* bytes */
 
 struct in {
     char *name;
@@ -201,13 +201,29 @@ int64_t in_lines(const in *s)
     return s->lines;
 }
 
+/* What is much goes where it is wanted, past the empty buffer. Returns how many bytes came; `ended` is set where nothing
+ * more does. */
+static int64_t fetch_past(in *s, void *bytes, size_t size, err *e)
+{
+    int64_t n = fetch(s, bytes, size < CHUNK ? size : CHUNK, e);
+    s->ended = !n;
+    return n;
+}
+
 int64_t in_read(in *s, void *bytes, size_t size, err *e)
 {
     size_t got = 0;
     while (got < size) {
+        if (s->at == s->filled && s->ended)
+            break;
+        if (s->at == s->filled && !s->gzip && size - got >= MUCH) {
+            int64_t n = fetch_past(s, (char *)bytes + got, size - got, e);
+            if (n < 0)
+                return -1;
+            got += (size_t)n;
+            continue;
+        }
         if (s->at == s->filled) {
-            if (s->ended)
-                break;
             if (fill(s, e))
                 return -1;
             continue;

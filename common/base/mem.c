@@ -4,16 +4,32 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 /* Where the memory that is free cannot be known. */
 #define UNKNOWN (INT64_MAX / 4)
+
+void mem_large(void *p, size_t size)
+{
+#ifdef MADV_HUGEPAGE
+    enum { LARGE = 1 << 22 };
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), before = (uintptr_t)p % page;
+    if (size >= LARGE) /* from the page's start: a mapping of two minds cannot be moved when it grows */
+        madvise((char *)p - before, before + size, MADV_HUGEPAGE);
+#else
+    (void)p, (void)size;
+#endif
+}
 
 void *mem_array(int64_t count, size_t size, const char *what, err *e)
 {
     void *p = NULL;
     if (count >= 0 && (uint64_t)count <= PTRDIFF_MAX / (size ? size : 1))
         p = calloc(count ? (size_t)count : 1, size ? size : 1);
-    if (!p)
+    if (p)
+        mem_large(p, (size_t)count * size);
+    else
         err_memory(e, what);
     return p;
 }
@@ -35,6 +51,7 @@ int mem_grow(void *array, int64_t *capacity, int64_t need, size_t size, const ch
     void *grown = realloc(old, (size_t)next * size);
     if (!grown)
         return err_memory(e, what);
+    mem_large(grown, (size_t)next * size);
     memcpy(array, &grown, sizeof grown);
     *capacity = next;
     return 0; // cppcheck-suppress memleak ; *array has it

@@ -14,6 +14,14 @@ void *mem_array(int64_t count, size_t size, const char *what, err *e);
  * and the array as it was. What is new is not zeroed. */
 int mem_grow(void *array, int64_t *capacity, int64_t need, size_t size, const char *what, err *e);
 
+/* mem_grow where it is needed: for loops that add one thing at a time. */
+#define MEM_ROOM(array, capacity, need, what, e)                                                                       \
+    ((need) > *(capacity) ? mem_grow(array, capacity, need, sizeof **(array), what, e) : 0)
+
+/* Says to the system that memory of this size, which nothing has touched yet, may come in large pages: most of the time that
+ * it takes to touch much memory once goes into the pages' coming one at a time. mem_array and mem_grow say it. */
+void mem_large(void *p, size_t size);
+
 /* A copy of text, or NULL with e filled. */
 char *mem_text(const char *text, err *e);
 

@@ -91,9 +91,72 @@ static int scan_slow(const char *text, const char *stop, double *value)
     return isfinite(*value) ? 0 : -1;
 }
 
+/* What most numbers are, digits about a point: 1 and the number, or 0 for scan_decimal to look closer: an exponent, many
+ * digits, the text's end. Up to 15 digits are below 2^53, and no power of ten past 1e22 can come up. */
+static int scan_plain(const char *text, const char *end, const char **stop, double *value)
+{
+    const char *p = text;
+    uint64_t digits = 0;
+    if (end - text < 40)
+        return 0;
+    bool negative = *p == '-';
+    const char *first = p += negative;
+    for (; (unsigned)(*p - '0') < 10 && p - first < 16; p++)
+        digits = digits * 10 + (unsigned)(*p - '0');
+    int64_t count = p - first, after = 0;
+    if (*p == '.') {
+        const char *point = ++p;
+        for (; (unsigned)(*p - '0') < 10 && p - point < 16; p++)
+            digits = digits * 10 + (unsigned)(*p - '0');
+        after = p - point;
+    }
+    if (!(count + after) || count + after > 15 || (*p | 0x20) == 'e')
+        return 0;
+    double v = (double)digits / ten_to[after];
+    *value = negative ? -v : v;
+    if (stop)
+        *stop = p;
+    return 1;
+}
+
+/* digits / 10^places, rounded once, for digits that are not 0 and up to 19 places: the quotient of integers whose top bits
+ * are set has 63 or 64 bits, ten or more past a double's, and the last of them stands for what is left over. */
+static double divide(uint64_t digits, int places)
+{
+    static const uint64_t ten[] = {UINT64_C(1),
+                                   UINT64_C(10),
+                                   UINT64_C(100),
+                                   UINT64_C(1000),
+                                   UINT64_C(10000),
+                                   UINT64_C(100000),
+                                   UINT64_C(1000000),
+                                   UINT64_C(10000000),
+                                   UINT64_C(100000000),
+                                   UINT64_C(1000000000),
+                                   UINT64_C(10000000000),
+                                   UINT64_C(100000000000),
+                                   UINT64_C(1000000000000),
+                                   UINT64_C(10000000000000),
+                                   UINT64_C(100000000000000),
+                                   UINT64_C(1000000000000000),
+                                   UINT64_C(10000000000000000),
+                                   UINT64_C(100000000000000000),
+                                   UINT64_C(1000000000000000000),
+                                   UINT64_C(10000000000000000000)};
+    __extension__ typedef unsigned __int128 wide;
+    int up = __builtin_clzll(digits), by = __builtin_clzll(ten[places]);
+    uint64_t divisor = ten[places] << by;
+    wide dividend = (wide)(digits << up) << 63;
+    uint64_t quotient = (uint64_t)(dividend / divisor);
+    bool over = (wide)quotient * divisor != dividend;
+    return ldexp((double)(quotient | over), by - up - 63);
+}
+
 int num_scan(const char *text, const char *end, const char **stop, double *value)
 {
     decimal d;
+    if (scan_plain(text, end, stop, value))
+        return 0;
     if (!scan_decimal(text, end, &d))
         return -1;
     if (stop)
@@ -103,6 +166,11 @@ int num_scan(const char *text, const char *end, const char **stop, double *value
         double v = (double)d.digits;
         v = d.exponent < 0 ? v / ten_to[-d.exponent] : v * ten_to[d.exponent];
         *value = d.negative ? -v : v;
+        return 0;
+    }
+    if (d.count <= 19 && d.digits && d.exponent >= -19 && d.exponent <= 0) {
+        *value = divide(d.digits, -d.exponent);
+        *value = d.negative ? -*value : *value;
         return 0;
     }
     return scan_slow(text, d.stop, value);

@@ -31,14 +31,6 @@ int bound_of(bound *b, const model *m, const char *name, err *e)
     return 1;
 }
 
-/* For an OBJ that is to be moved, normals and all. */
-static int view(bound *b, const model *m, const char *name, err *e)
-{
-    if (bound_of(b, m, name, e) < 0)
-        return -1;
-    return b->corners == 8 ? 0 : err_set(e, NULL, 0, "surface %s is bound to tetrahedra; expected hexahedra", name);
-}
-
 /* The i-th bound surface's name, or NULL past the last. */
 static const char *bound_name(const model *m, int at, char *name, size_t size)
 {
@@ -72,13 +64,13 @@ int bound_find(bound *b, const model *m, const char *name, const obj *o, double 
     err differs = {0};
     surface s;
     if (is_bound(m, name) && !surface_of(m, name, &s, &differs) && !surface_is(&s, o, scale, &differs))
-        return view(b, m, s.name, e);
+        return bound_of(b, m, s.name, e) < 0 ? -1 : 0;
     for (int i = 0; bound_name(m, i, other, sizeof other); i++) {
         err ignored = {0};
         if (surface_of(m, other, &s, e))
             return -1;
         if (!surface_is(&s, o, scale, &ignored))
-            return view(b, m, other, e);
+            return bound_of(b, m, other, e) < 0 ? -1 : 0;
     }
     if (!differs.status)
         return nothing_fits(m, name, o, scale, e);
@@ -103,20 +95,27 @@ void bound_displacement(const bound *b, int64_t vertex, const double *u, double 
 
 void bound_gradient(const bound *b, int64_t vertex, const double *u, double *f)
 {
-    const int32_t *node = &b->node[8 * (int64_t)b->element[vertex]];
-    weights_box box = weights_box_of(node, b->rest);
+    const int32_t *node = &b->node[b->corners * (int64_t)b->element[vertex]];
     double gradient[24];
-    weights_gradients(&box, &b->weight[3 * vertex], gradient);
+    if (b->corners == 8) {
+        weights_box box = weights_box_of(node, b->rest);
+        weights_gradients(&box, &b->weight[3 * vertex], gradient);
+    } else {
+        weights_tetrahedron_gradients(node, b->rest, gradient);
+    }
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             f[3 * i + j] = i == j;
-            for (int n = 0; n < 8; n++)
+            for (int n = 0; n < b->corners; n++)
                 f[3 * i + j] += u[3 * (int64_t)node[n] + i] * gradient[3 * n + j];
         }
 }
 
 double bound_outside(const bound *b, int64_t vertex)
 {
-    weights_box box = weights_box_of(&b->node[8 * (int64_t)b->element[vertex]], b->rest);
+    const int32_t *node = &b->node[b->corners * (int64_t)b->element[vertex]];
+    if (b->corners == 4)
+        return weights_tetrahedron_outside(node, b->rest, &b->shape.position[3 * vertex]);
+    weights_box box = weights_box_of(node, b->rest);
     return weights_outside(&box, &b->weight[3 * vertex]);
 }

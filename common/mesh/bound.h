@@ -20,7 +20,7 @@ typedef struct bound {
 int bound_of(bound *b, const model *m, const char *name, err *e);
 
 /* The bound surface that this OBJ is: the one named, else any whose vertices are the same. -1 with e saying what
- * differs, or that it is bound to tetrahedra. */
+ * differs. */
 int bound_find(bound *b, const model *m, const char *name, const obj *o, double scale, err *e);
 
 /* The shares that the element's nodes have in a vertex: they sum to 1. Returns how many: b->corners. */
@@ -31,10 +31,10 @@ int bound_shares(const bound *b, int64_t vertex, double share[8]);
 /* The displacement of a vertex, m: trilinear (linear in a tetrahedron), extrapolated outside. */
 void bound_displacement(const bound *b, int64_t vertex, const double *u, double *d);
 
-/* In hexahedra only: the deformation gradient F = I + du/dX at a vertex: row i, column j at 3 i + j. */
+/* The deformation gradient F = I + du/dX at a vertex: row i, column j at 3 i + j. */
 void bound_gradient(const bound *b, int64_t vertex, const double *u, double *f);
 
-/* In hexahedra only: how far the vertex lies outside its element at rest, m. */
+/* How far the vertex lies outside its element at rest, m. */
 double bound_outside(const bound *b, int64_t vertex);
 
 #endif

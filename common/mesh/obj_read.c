@@ -64,8 +64,8 @@ static int store_row(reader *r, const double *value, double **row, int64_t *row_
     if (*count >= INT32_MAX)
         return err_set(r->w.e, r->w.name, r->w.line, "more than %d vertices or normals; expected a smaller mesh",
                        INT32_MAX);
-    if (mem_grow(row, row_room, 3 * (*count + 1), sizeof **row, "an OBJ's coordinates", r->w.e) ||
-        mem_grow(line, line_room, *count + 1, sizeof **line, "an OBJ's lines", r->w.e))
+    if (MEM_ROOM(row, row_room, 3 * (*count + 1), "an OBJ's coordinates", r->w.e) ||
+        MEM_ROOM(line, line_room, *count + 1, "an OBJ's lines", r->w.e))
         return -1;
     memcpy(*row + 3 * *count, value, 3 * sizeof *value);
     const char *to = r->w.p;
@@ -167,8 +167,8 @@ static int begin_face(reader *r)
     obj *o = r->o;
     if (!r->grouped && enter_group(r, r->object ? r->object : "default"))
         return -1;
-    if (mem_grow(&o->face_start, &r->room.face_start, o->faces + 2, sizeof *o->face_start, "an OBJ's faces", r->w.e) ||
-        mem_grow(&o->face_group, &r->room.face_group, o->faces + 1, sizeof *o->face_group, "an OBJ's faces", r->w.e))
+    if (MEM_ROOM(&o->face_start, &r->room.face_start, o->faces + 2, "an OBJ's faces", r->w.e) ||
+        MEM_ROOM(&o->face_group, &r->room.face_group, o->faces + 1, "an OBJ's faces", r->w.e))
         return -1;
     o->face_start[o->faces] = o->corners;
     o->face_group[o->faces++] = r->current;
@@ -178,10 +178,8 @@ static int begin_face(reader *r)
 static int add_corner(reader *r, const int32_t *corner)
 {
     obj *o = r->o;
-    if (mem_grow(&o->corner_vertex, &r->room.corner_vertex, o->corners + 1, sizeof(int32_t), "an OBJ's corners",
-                 r->w.e) ||
-        mem_grow(&o->corner_normal, &r->room.corner_normal, o->corners + 1, sizeof(int32_t), "an OBJ's corners",
-                 r->w.e))
+    if (MEM_ROOM(&o->corner_vertex, &r->room.corner_vertex, o->corners + 1, "an OBJ's corners", r->w.e) ||
+        MEM_ROOM(&o->corner_normal, &r->room.corner_normal, o->corners + 1, "an OBJ's corners", r->w.e))
         return -1;
     o->corner_vertex[o->corners] = corner[0];
     o->corner_normal[o->corners++] = corner[1];
@@ -392,8 +390,13 @@ static int refuse_unknown(reader *r)
 
 static int read_statement(reader *r)
 {
-    const char *stop = obj_word_end(&r->w);
-    size_t n = (size_t)(stop - r->w.p);
+    const char *p = r->w.p, *stop;
+    if ((*p == 'v' || *p == 'f') && obj_is_blank(p[1])) { /* nearly all */
+        r->keyword = r->w.p++;
+        return *p == 'v' ? read_vertex(r) : read_face(r);
+    }
+    stop = obj_word_end(&r->w);
+    size_t n = (size_t)(stop - p);
     for (int i = 0; i < STATEMENTS; i++)
         if (is_among(statements[i].words, r->w.p, n)) {
             r->keyword = r->w.p;

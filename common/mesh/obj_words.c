@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-bool obj_next_word(obj_words *w)
+bool obj_seek_word(obj_words *w)
 {
     for (;;) {
         if (obj_line_ends(w->p, w->end))

@@ -40,7 +40,15 @@ static inline bool obj_word_ends(const obj_words *w, const char *p)
 }
 
 /* Steps to the line's next word; false where there is none. */
-bool obj_next_word(obj_words *w);
+bool obj_seek_word(obj_words *w);
+
+/* The same, quick where only blanks stand before it. */
+static inline bool obj_next_word(obj_words *w)
+{
+    while (obj_is_blank(*w->p))
+        w->p++;
+    return (*w->p > '#' && *w->p != '\\') || obj_seek_word(w);
+}
 
 /* The end of the word that begins at p. */
 const char *obj_word_end(const obj_words *w);

@@ -1,5 +1,6 @@
 #include "model/binary.h"
 
+#include "base/checksum.h"
 #include "base/mem.h"
 #include "model/check.h"
 
@@ -7,14 +8,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 #if !defined(__BYTE_ORDER__) || __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "arrays are read and written as they lie in memory: this needs a little-endian machine"
 #endif
 
 /* Bytes handled at once: they stay in the cache between reading, checksum and the search for nan. */
-enum { PIECE = 1 << 18, HEAD = 16, MAGIC = 10 };
+enum { PIECE = 1 << 18, FIRST = 1 << 24, HEAD = 16, MAGIC = 10 };
 
 static const unsigned char magic[MAGIC] = {BINARY_FIRST, 's', 'i', 'n', 'e', 'w', '\r', '\n', 0x1a, '\n'};
 
@@ -25,7 +25,7 @@ typedef struct block {
     item_source *s;
     item *it;
     uint64_t left; /* of the payload */
-    uLong crc;     /* so far */
+    uint32_t crc;  /* so far */
 } block;
 
 /* Exactly size bytes of the stream. */
@@ -42,19 +42,21 @@ static int take(block *b, void *to, size_t size, err *e)
         return item_error(b->s, b->it, e, "its length is less than what it holds; the stream is damaged");
     if (take_raw(b->s, to, size, e))
         return -1;
-    b->crc = crc32(b->crc, to, (uInt)size);
+    b->crc = checksum_add(b->crc, to, size);
     b->left -= size;
     return 0;
 }
 
-/* Makes *bytes of *have at least a piece larger, at most size, with `extra` bytes behind. */
+/* Makes *bytes of *have at least FIRST larger, at most size, with `extra` bytes behind. (What is not touched takes no
+ * memory.) */
 static int more_room(unsigned char **bytes, uint64_t *have, uint64_t size, size_t extra, err *e)
 {
-    uint64_t next = 2 * *have < PIECE ? PIECE : 2 * *have;
+    uint64_t next = 2 * *have < FIRST ? FIRST : 2 * *have;
     next = next < size ? next : size;
     unsigned char *grown = realloc(*bytes, next + extra ? next + extra : 1);
     if (!grown)
         return err_memory(e, "what a block holds");
+    mem_large(grown, next + extra);
     *bytes = grown;
     *have = next;
     return 0;
@@ -216,7 +218,7 @@ static int binary_read(item_source *s, item *it, err *e)
     memcpy(it->block.type, head, 4);
     memcpy(&it->block.flags, head + 4, sizeof it->block.flags);
     memcpy(&it->block.length, head + 8, sizeof it->block.length);
-    block b = {s, it, it->block.length, crc32(0, head, HEAD)};
+    block b = {s, it, it->block.length, checksum_add(0, head, HEAD)};
     if (find_kind(&b, e) || read_payload(&b, e))
         return -1;
     if (b.left)
@@ -224,7 +226,8 @@ static int binary_read(item_source *s, item *it, err *e)
     if (take_raw(s, &crc, sizeof crc, e))
         return -1;
     if (crc != b.crc)
-        return item_error(s, it, e, "checksum is %08" PRIx32 "; expected %08lx: the stream is damaged", crc, b.crc);
+        return item_error(s, it, e, "checksum is %08" PRIx32 "; expected %08" PRIx32 ": the stream is damaged", crc,
+                          b.crc);
     return 0;
 }
 
@@ -242,7 +245,7 @@ static int binary_begin(item_source *s, err *e)
                        "is no sinew model, or one whose line ends were changed on the way; expected the magic of a "
                        "binary model");
     memcpy(&crc, head + MAGIC + 2, sizeof crc);
-    if (crc != crc32(0, head, MAGIC + 2))
+    if (crc != checksum_add(0, head, MAGIC + 2))
         return err_set(e, in_name(s->s), 0, "checksum of the version is wrong: the stream is damaged");
     if (head[MAGIC] != ITEM_MAJOR)
         return err_set(e, in_name(s->s), 0, "is a model of format version %d; expected %d", head[MAGIC], ITEM_MAJOR);
@@ -254,12 +257,12 @@ static int binary_begin(item_source *s, err *e)
 /* Where a block goes: to a stream, or (o NULL) only into its checksum. */
 typedef struct sink {
     out *o;
-    uLong crc;
+    uint32_t crc;
 } sink;
 
 static void put(sink *k, const void *bytes, size_t size)
 {
-    k->crc = crc32(k->crc, bytes, (uInt)size);
+    k->crc = checksum_add(k->crc, bytes, size);
     if (k->o)
         out_write(k->o, bytes, size);
 }
@@ -414,12 +417,12 @@ static void put_payload(sink *k, const item *it)
 
 static uint32_t put_block(out *o, const item *it)
 {
-    sink k = {.o = o, .crc = crc32(0, NULL, 0)};
+    sink k = {.o = o};
     put(&k, item_type(it), 4);
     put_u32(&k, it->kind == ITEM_BLOCK ? it->block.flags : 0);
     put_u64(&k, payload_length(it));
     put_payload(&k, it);
-    return (uint32_t)k.crc;
+    return k.crc;
 }
 
 uint32_t binary_crc(const item *it)
@@ -439,7 +442,7 @@ static void binary_write_begin(out *o)
     memcpy(head, magic, MAGIC);
     head[MAGIC] = ITEM_MAJOR;
     head[MAGIC + 1] = ITEM_MINOR;
-    uint32_t crc = (uint32_t)crc32(0, head, MAGIC + 2);
+    uint32_t crc = checksum_add(0, head, MAGIC + 2);
     memcpy(head + MAGIC + 2, &crc, sizeof crc);
     out_write(o, head, HEAD);
 }

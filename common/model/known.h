@@ -49,6 +49,12 @@ typedef struct known {
     X("muscle.volume", MODEL_I32, "@volume", "muscle", 1, 1, KNOWN_EVERY, "attach", "volume of the muscle")            \
     X("muscle.centre", MODEL_F64, "m", "muscle", 3, 3, 0, "attach",                                                    \
       "contraction centre, the mean of its rigid nodes; nan where it has none")                                        \
+    X("attachment.muscle", MODEL_I32, "@muscle", "attachment", 1, 1, KNOWN_EVERY, "attach",                            \
+      "muscle that is fixed there: a connected part of its rigid nodes; the largest first")                            \
+    X("attachment.anchor", MODEL_I32, "@anchor", "attachment", 1, 1, 0, "attach",                                      \
+      "rigid surface that holds most of its nodes")                                                                    \
+    X("attachment.nodes", MODEL_I32, "1", "attachment", 1, 1, 0, "attach", "how many rigid nodes")                     \
+    X("attachment.centre", MODEL_F64, "m", "attachment", 3, 3, 0, "attach", "the mean of its rigid nodes")             \
     X("*/vertex.position", MODEL_F64, "m", "*/vertex", 3, 3, 0, "voxelise or bind", "rest position")                   \
     X("*/vertex.element", MODEL_I32, "@element", "*/vertex", 1, 1, KNOWN_EVERY, "bind", "element it is bound to")      \
     X("*/vertex.weight", MODEL_F64, "1", "*/vertex", 3, 4, 0, "bind",                                                  \

@@ -128,12 +128,47 @@ is "$(grep '^prov' "$T/out")" 'prov attach 0.1.0 "--rigid BONE* --strictness 0.7
 is "$(attach --text --strictness 1 --rigid bone_b <"$T/bar" 2>&1 | values node.rigid -)" \
     0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1 "--strictness 1 takes the whole voxel"
 
+# End to end: held at x = 0, its free end in the middle of the bar.
+check "--fibre field" attach --text --fibre field -o "$T/out" <"$T/bar"
+is "$(values element.fibre "$T/out")" "-1 0 0,-1 0 0,0 0 0" "along the muscle, toward where it is held"
+is "$(values attachment.muscle "$T/out") $(values attachment.nodes "$T/out") $(values attachment.centre "$T/out") $(
+    values attachment.anchor "$T/out")" "0 4 0 0.0050000000000000001 0.0050000000000000001 0" "its attachment"
+for threads in 1 3; do
+    attach -q --fibre field --threads $threads <"$T/bar" >"$T/threads$threads"
+done
+check "the same bytes for any number of threads" cmp "$T/threads1" "$T/threads3"
+
 attach --report -o "$T/out" <"$T/bar" 2>"$T/stderr"
 is "$(grep -v warning "$T/stderr")" "attach: skull holds 4 nodes; 0 of its 1 primitives hold none
 attach: Bone_b holds 1 nodes; 0 of its 1 primitives hold none
 attach: rigid_far holds 0 nodes; 1 of its 1 primitives hold none
 attach: muscle_a: 2 elements, 4 rigid nodes, contraction centre 0 0.005 0.005 m" "--report"
 attach <"$T/bar" 2>"$T/stderr" >"$T/plain"
+# Faces 1 to 3 and 5 are far away, and so are 8 to 60, each apart from the next.
+{
+    echo "v 500 500 500
+v 510 500 500
+v 500 510 500
+v 12 5 5
+f 1 2 3
+f 3 2 1
+p 1
+p 4
+p 2
+p 4
+g bone_y
+p 4"
+    seq 27 | sed 's/.*/p 1 4/'
+} >"$T/idle.obj"
+attach --report --rigid skull --rigid-file "$T/idle.obj" <"$T/bar" -o "$T/out" 2>"$T/stderr"
+is "$(grep -e 'no node is held' -e 'nor by' "$T/stderr")" "attach: idle: no node is held by faces of idle: 1-3, 5
+attach: bone_y: no node is held by faces of idle: 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 34, 36, 38, 40, 42, 44, 46
+attach: bone_y: nor by 7 more; -v lists them" "the faces that hold no node"
+attach -v --report --rigid skull --rigid-file "$T/idle.obj" <"$T/bar" -o "$T/out" 2>&1 |
+    grep -q 'bone_y: no node is held by faces of idle: 48, 50, 52, 54, 56, 58, 60$'
+is $? 0 "-v lists all"
+attach -q <"$T/bar" >"$T/plain"
+attach -q --report <"$T/bar" -o "$T/out"
 check "--report is not in the model" cmp "$T/out" "$T/plain"
 
 cat >"$T/plate.obj" <<'OBJ'
@@ -170,7 +205,7 @@ for bad in 0 -0.5 1.5 x; do
     fails 2 "--strictness $bad" 'strictness' attach --strictness "$bad" <"$T/bar"
 done
 is "$(attach -h | awk 'length > 80' | wc -l)" 0 "the usage fits 80 columns"
-fails 2 "--fibre field" 'fibre.*(centre|axis)' attach --fibre field <"$T/bar"
+fails 2 "--fibre along" 'fibre.*centre\|axis\|field' attach --fibre along <"$T/bar"
 fails 2 "an operand" '' attach model.sinew <"$T/bar"
 fails 1 "nothing on stdin" 'sinew bind' attach
 for array in element.lattice element.node element.volume node.position volume.muscle volume.name; do

@@ -103,13 +103,53 @@ fails 1 "no elements" 'has no elements' sinew bind "$T/dots.obj" <"$T/bad"
 sed 's/^0.01 0 0$/0.012 0 0/' "$T/model" >"$T/bad"
 fails 1 "an element that is not its cell" 'element 1 is not the box of its lattice cell 1 0 0' \
     sinew bind "$T/dots.obj" <"$T/bad"
-printf '%%sinew 1 text\nmeta source.unit "mm"\naxis node 4\naxis element 1\narray node.position f64 m node 3\n' >"$T/tet"
-printf '0 0 0\n1 0 0\n0 1 0\n0 0 1\narray element.node i32 @node element 4\n0 1 2 3\nend\n' >>"$T/tet"
-fails 1 "tetrahedra" 'of tetrahedra; expected hexahedra' sinew bind "$T/dots.obj" <"$T/tet"
+
+# Tetrahedra: the one that holds the vertex, of several the first, else the nearest; barycentric weights.
+cat >"$T/tet" <<'SINEW'
+%sinew 1 text
+meta source.unit "mm"
+axis node 5
+axis element 2
+array node.position f64 m node 3
+0 0 0
+0.01 0 0
+0 0.01 0
+0 0 0.01
+0.01 0.01 0.01
+array element.node i32 @node element 4
+0 1 2 3
+4 3 2 1
+end
+SINEW
+printf 'v 1 2 3\nv 0 0 0\nv 5 5 5\nv 4 4 2\nv -2 2 2\nv 30 30 30\np 1 2 3 4 5 6\n' >"$T/in.obj"
+check "a model of tetrahedra" sinew bind --text "$T/in.obj" -o "$T/bound" <"$T/tet"
+is "$(array "$T/bound" in/vertex.element)" "0 0 1 0 0 1 " "which each vertex is in, or nearest to"
+is "$(array "$T/bound" in/vertex.weight | tr ' ' '\n' | awk '{ printf "%.10g ", ($1 * $1 < 1e-24 ? 0 : $1) }')" \
+    "0.4 0.1 0.2 0.3 1 0 0 0 0.25 0.25 0.25 0.25 0 0.4 0.4 0.2 0.8 -0.2 0.2 0.2 4 -1 -1 -1 " "weights that sum to 1"
+is "$(cut -d';' -f1 "$T/stderr")" \
+    "bind: warning: surface in: 1 of 6 vertices lie further than an element outside the elements, the furthest 34.64 mm" \
+    "who is far"
+sed 's/^0 1 2 3$/0 1 2 2/' "$T/tet" >"$T/flat"
+check "one without a volume" sinew bind --text "$T/in.obj" -o "$T/bound" <"$T/flat"
+is "$(array "$T/bound" in/vertex.element)$(grep -c '1 of the tetrahedra have no volume' "$T/stderr")" "1 1 1 1 1 1 1" \
+    "is passed over, and it is said"
+sed 's/^0 1 2 3$/0 1 2 2/; s/^4 3 2 1$/4 4 4 4/' "$T/tet" >"$T/flat"
+fails 1 "none with a volume" 'no tetrahedron of the model has a volume' sinew bind -o "$T/none" "$T/in.obj" <"$T/flat"
+sed 's/^0 0 0.01$/0 0 nan/' "$T/tet" >"$T/nan"
+fails 1 "a node that is nowhere" 'node.position, row 3 is not finite' sinew bind -o "$T/none" "$T/in.obj" <"$T/nan"
+
+# Several files.
+check "several files" sinew bind --text "$T/dots.obj" "$T/far.obj" -o "$T/both" <"$T/model"
+is "$(array "$T/both" dots/vertex.element)$(array "$T/both" far/vertex.element)" "0 7 0 4 1 6 0 4 0 1 " "are surfaces each"
+sinew bind -q "$T/dots.obj" <"$T/model" 2>/dev/null | sinew bind -q --text "$T/far.obj" 2>/dev/null | grep -v ^prov >"$T/one"
+grep -v ^prov "$T/both" >"$T/two"
+check "as one after the other" cmp "$T/one" "$T/two"
+fails 1 "two of one name" 'd/dots.obj: would be surface dots, as .*/dots.obj is' \
+    sinew bind "$T/dots.obj" "$T/d/dots.obj" -o "$T/none" <"$T/model"
+fails 2 "two files and one name" 'name names one surface, but 2 files' sinew bind --name x "$T/dots.obj" "$T/far.obj" <"$T/model"
 
 # The command line.
 fails 2 "an OBJ on stdin" "'-': the model comes on standard input" sinew bind - <"$T/model"
-fails 2 "two OBJs" "extra operand" sinew bind "$T/dots.obj" "$T/cm.obj" <"$T/model"
 fails 2 "a name that is the user's" "not x- first" sinew bind --name x-a "$T/dots.obj" <"$T/model"
 fails 2 "a name with a slash" "expected at most 200 letters" sinew bind --name a/b "$T/dots.obj" <"$T/model"
 fails 2 "an unknown option" "no option --colour" sinew bind --colour x "$T/dots.obj" <"$T/model"

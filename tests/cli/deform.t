@@ -93,6 +93,19 @@ cp "$T/skin.obj" "$T/renamed.obj"
 sinew deform "$T/renamed.obj" <"$T/bound" >"$T/got"
 check "an OBJ is known by its vertices, not by its name" cmp "$T/got" "$T/last.obj"
 
+# Tetrahedra: the same linear field, so the same places and normals.
+model -v frames=3 | awk -f tests/cli/tetra.awk >"$T/tet"
+sinew bind -q "$T/skin.obj" <"$T/tet" 2>/dev/null >"$T/tetbound"
+check "a model of tetrahedra" sinew deform "$T/skin.obj" -o "$T/tet.obj" <"$T/tetbound"
+vertices "$T/tet.obj" >"$T/got"
+field 3 >"$T/want"
+check "a linear field is reproduced to 1e-6 by tetrahedra, inside and outside" close "$T/got" "$T/want"
+is "$(awk '$1 == "vn" { printf "%.6f %.6f %.6f ", $2, $3, $4 }' "$T/tet.obj")" \
+    "$(awk '$1 == "vn" { printf "%.6f %.6f %.6f ", $2, $3, $4 }' "$T/last.obj")" "normals turn with them"
+check "tetrahedra and --within" sinew deform --within 5mm "$T/skin.obj" -o "$T/got" <"$T/tetbound"
+is "$(vertices "$T/got" | sed -n 4p)" "-15 30 5" "a vertex outside by more stays"
+is "$(vertices "$T/got" | sed -n 3p)" "$(vertices "$T/tet.obj" | sed -n 3p)" "others move"
+
 # --within
 check "--within" sinew deform --within 5mm "$T/skin.obj" -o "$T/got" <"$T/bound"
 is "$(vertices "$T/got" | sed -n 4p)" "-15 30 5" "a vertex outside by more stays where it was"

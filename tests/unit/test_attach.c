@@ -26,7 +26,7 @@ static int attach_one(model *m, const double *position, int corners, double stri
 {
     err e = {0};
     rigid_surface skull = {.name = "skull", .primitives = 1};
-    rigid_primitive primitive = {position, in_order, corners, 0};
+    rigid_primitive primitive = {.position = position, .vertex = in_order, .corners = corners};
     rigid r = {.surface = &skull, .primitive = &primitive, .surfaces = 1, .primitives = 1};
     if (anchor_nodes(m, &r, strictness, NULL, &e))
         ok(false, "attach: %s", e.text);
@@ -347,8 +347,13 @@ static void several(void)
     model m;
     block(&m, &unit, two, 0);
     rigid_surface three[] = {{.name = "a"}, {.name = "b"}, {.name = "far"}};
-    rigid_primitive primitive[] = {{at, &in_order[0], 1, 0}, {at, &in_order[3], 1, 0}, {at, &in_order[1], 1, 1},
-                                   {at, &in_order[2], 1, 1}, {at, &in_order[0], 1, 1}, {at, &in_order[3], 1, 2}};
+    static const struct {
+        int vertex, surface;
+    } each[] = {{0, 0}, {3, 0}, {1, 1}, {2, 1}, {0, 1}, {3, 2}};
+    rigid_primitive primitive[6] = {{0}};
+    for (int i = 0; i < 6; i++)
+        primitive[i] = (rigid_primitive){
+            .position = at, .vertex = &in_order[each[i].vertex], .corners = 1, .surface = each[i].surface};
     rigid r = {.surface = three, .primitive = primitive, .surfaces = 3, .primitives = 6};
     ok(!anchor_nodes(&m, &r, .75, NULL, &e), "three surfaces %s", e.text);
     ok(three[0].nodes == 4 && three[1].nodes == 8 && three[2].nodes == 0, "each node once a surface: %d %d %d",
@@ -364,6 +369,34 @@ static void several(void)
         left += model_find(&m, "node.rigid")->u8[n] || model_find(&m, "node.anchor")->i32[n] != -1;
     ok(!left, "nothing is left of the first time");
     model_free(&m);
+}
+
+/* Where less than half of a voxel is tissue and a plane cuts it, its centre is in the bone: what is behind is held too. */
+static void cut_voxels(void)
+{
+    static const lattice unit = {{0, 0, 0}, {1, 1, 1}};
+    static const int32_t one[] = {1, 1, 1};
+    static const struct {
+        double z, fraction;
+        const char *nodes, *what;
+    } cut[] = {{.7, .3, "11111111", "the centre in the bone"},
+               {.7, .5, "00001111", "just half"},
+               {.2, .8, "11110000", "the centre in the tissue"},
+               {1, .4, "11111111", "on the voxel's side"},
+               {1.1, .4, "00001111", "less than half, but cut by something else"}};
+    for (size_t i = 0; i < sizeof cut / sizeof *cut; i++) {
+        const double plane[] = SQUARE(cut[i].z);
+        err e = {0};
+        model m;
+        char got[9] = "";
+        block(&m, &unit, one, 0);
+        model_add(&m, "element.fraction", &e)->f32[0] = (float)cut[i].fraction;
+        attach_one(&m, plane, 4, .75);
+        for (int v = 0; v < 8; v++)
+            got[v] = model_find(&m, "node.rigid")->u8[model_find(&m, "element.node")->i32[v]] ? '1' : '0';
+        ok(!strcmp(got, cut[i].nodes), "%s: nodes %s", cut[i].what, got);
+        model_free(&m);
+    }
 }
 
 /* The largest distance of a rigid node from the surfaces, m. */
@@ -446,6 +479,7 @@ int main(void)
     symmetry();
     anisotropic();
     several();
+    cut_voxels();
     real_skull();
     return done_testing();
 }

@@ -1,6 +1,6 @@
 /* Contraction centres, fibres and axes against sums done by hand; and which surfaces are rigid, by name.
  */
-// needs: attach/rigid.c attach/muscle.c
+// needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/field.c attach/laplace.c
 #include "attach/muscle.h"
 #include "attach/rigid.h"
 #include "mesh/surface.h"
@@ -34,21 +34,20 @@ static void centres(void)
 {
     err e = {0};
     notes warnings = {0};
-    muscle *list;
-    int64_t count;
+    muscles list;
     model m;
     bar(&m, "11000" /* y 0, z 0: x = 0 and .01, which two elements share */
             "00000"
             "11000"
             "00000");
-    ok(!muscle_make(&m, MUSCLE_CENTRE, &list, &count, &warnings, &e) && count == 2, "two muscles %s", e.text);
+    ok(!muscle_make(&m, MUSCLE_CENTRE, NULL, &list, &warnings, &e) && list.count == 2, "two muscles %s", e.text);
     const double *centre = model_find(&m, "muscle.centre")->f64;
     near_(centre[0], .005, 1e-15, "contraction centre x: each node once");
     near_(centre[1], 0, 1e-15, "y");
     near_(centre[2], .005, 1e-15, "z");
     ok(isnan(centre[3]) && isnan(centre[5]), "none for the other");
     ok(model_find(&m, "muscle.volume")->i32[0] == 1 && model_find(&m, "muscle.volume")->i32[1] == 2, "their volumes");
-    ok(list[0].elements == 2 && list[0].rigid_nodes == 4 && list[1].elements == 1, "counts");
+    ok(list.of[0].elements == 2 && list.of[0].rigid_nodes == 4 && list.of[1].elements == 1, "counts");
     const float *f = fibre(&m, 0);
     ok(f[0] == 0 && f[1] == -1 && f[2] == 0, "from (.005, .005, .005) straight down");
     f = fibre(&m, 1);
@@ -59,7 +58,7 @@ static void centres(void)
     ok(warnings.count == 1 && strstr(warnings.line[0], "muscle_b") && strstr(warnings.line[0], "no rigid node"), "%s",
        warnings.count ? warnings.line[0] : "no warning");
     notes_free(&warnings);
-    free(list);
+    muscles_free(&list);
     model_free(&m);
 }
 
@@ -68,20 +67,19 @@ static void at_the_centre(void)
 {
     err e = {0};
     notes warnings = {0};
-    muscle *list;
-    int64_t count;
+    muscles list;
     model m;
     bar(&m, "11011"
             "11011"
             "11011"
             "11011");
-    ok(!muscle_make(&m, MUSCLE_CENTRE, &list, &count, &warnings, &e), "all corners rigid %s", e.text);
+    ok(!muscle_make(&m, MUSCLE_CENTRE, NULL, &list, &warnings, &e), "all corners rigid %s", e.text);
     ok(fibre(&m, 0)[0] == -1 && fibre(&m, 0)[1] == 0 && fibre(&m, 1)[0] == -1, "the axis, toward the centre");
     ok(fibre(&m, 3)[0] == 0, "one element alone has no axis");
     ok(warnings.count == 1 && strstr(warnings.line[0], "muscle_b") && strstr(warnings.line[0], "1 of its 1"), "%s",
        warnings.count ? warnings.line[0] : "no warning");
     notes_free(&warnings);
-    free(list);
+    muscles_free(&list);
     model_free(&m);
 }
 
@@ -90,15 +88,14 @@ static void axis(const char *fixed, float x, int said, const char *what)
 {
     err e = {0};
     notes warnings = {0};
-    muscle *list;
-    int64_t count;
+    muscles list;
     model m;
     bar(&m, fixed);
-    ok(!muscle_make(&m, MUSCLE_AXIS, &list, &count, &warnings, &e), "--fibre axis %s", e.text);
+    ok(!muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e), "--fibre axis %s", e.text);
     ok(fibre(&m, 0)[0] == x && fibre(&m, 1)[0] == x && fibre(&m, 1)[1] == 0, "%s", what);
     ok(warnings.count == said && strstr(warnings.line[0], said > 2 ? "muscle_a" : "muscle_b"), "%d warnings", said);
     notes_free(&warnings);
-    free(list);
+    muscles_free(&list);
     model_free(&m);
 }
 
@@ -116,8 +113,7 @@ static void slanted_axis(void)
     static const int32_t size[] = {9, 9, 9};
     err e = {0};
     notes warnings = {0};
-    muscle *list;
-    int64_t count;
+    muscles list;
     model m;
     block(&m, &grid, size, 0);
     model_find(&m, "volume.muscle")->u8[2] = 1;
@@ -125,13 +121,13 @@ static void slanted_axis(void)
         model_find(&m, "element.volume")->i32[((8 - i) * 9 + i) * 9 + i] = 2;
     model_add(&m, "node.rigid", &e);
     model_find(&m, "node.rigid")->u8[node_at(size, 0, 0, 9)] = 1;
-    ok(!muscle_make(&m, MUSCLE_AXIS, &list, &count, &warnings, &e) && count == 1, "nine voxels in a row %s", e.text);
-    near_(list[0].axis[0], -1. / 3, 1e-12, "axis x");
-    near_(list[0].axis[1], -2. / 3, 1e-12, "axis y");
-    near_(list[0].axis[2], 2. / 3, 1e-12, "axis z");
+    ok(!muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) && list.count == 1, "nine voxels in a row %s", e.text);
+    near_(list.of[0].axis[0], -1. / 3, 1e-12, "axis x");
+    near_(list.of[0].axis[1], -2. / 3, 1e-12, "axis y");
+    near_(list.of[0].axis[2], 2. / 3, 1e-12, "axis z");
     ok(!warnings.count, "no warning");
     notes_free(&warnings);
-    free(list);
+    muscles_free(&list);
     model_free(&m);
 }
 

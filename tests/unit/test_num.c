@@ -36,6 +36,49 @@ static void against_strtod(void)
     ok(wrong == 0, "200000 random decimals read as strtod reads them (%d wrong)", wrong);
 }
 
+/* Whether num_scan reads what stands at the start of a long line as strtod does, to where strtod stops. */
+static bool as_strtod(const char *text)
+{
+    char line[160], *end;
+    const char *stop = NULL;
+    snprintf(line, sizeof line, "%s 2 3 and more on the line, so that what comes is not the end of the text", text);
+    double got = 0, want = strtod(line, &end);
+    return !num_scan(line, line + strlen(line), &stop, &got) && stop == end && !memcmp(&got, &want, sizeof got);
+}
+
+/* As they stand in files: no exponent, up to 19 digits and more, within longer text. */
+static void in_lines(void)
+{
+    static const char *const odd[] = {"0",   "-0",   "0.0",     "-0.000000", ".5",     "-.5",        "5.",  "1e5",
+                                      "1E5", "1.5e", "1.25e-3", "0.1e+2",    "000001", "0000000.10", "+.5", "1.2.3"};
+    uint64_t state = 3;
+    int wrong[3] = {0};
+    char text[64];
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
+        ok(as_strtod(odd[i]), "'%s' within a line", odd[i]);
+    for (int i = 0; i < 200000; i++) {
+        int n = 0, digits = 1 + (int)(random_bits(&state) % 22), point = (int)(random_bits(&state) % 23);
+        for (int d = 0; d < digits; d++) {
+            if (d == point)
+                text[n++] = '.';
+            text[n++] = (char)('0' + random_bits(&state) % 10);
+        }
+        text[n] = 0;
+        wrong[0] += !as_strtod(text);
+        double value;
+        uint64_t bits = (random_bits(&state) & 0x800fffffffffffff) | (uint64_t)(1023 - 40 + i % 60) << 52;
+        memcpy(&value, &bits, sizeof value);
+        snprintf(text, sizeof text, "%.17g", value);
+        wrong[1] += !as_strtod(text);
+        /* Half way between two doubles: to the even one. */
+        snprintf(text, sizeof text, "%llu.5", (1ull << 52) + (random_bits(&state) >> 12));
+        wrong[2] += !as_strtod(text);
+    }
+    ok(!wrong[0], "200000 random numbers within lines: %d differ", wrong[0]);
+    ok(!wrong[1], "200000 doubles with 17 digits: %d differ", wrong[1]);
+    ok(!wrong[2], "200000 that are half way between two doubles: %d differ", wrong[2]);
+}
+
 static void refuses(void)
 {
     const char *bad[] = {"", "-", ".", "e5", "1e", "1.2.3", "nan", "inf", "0x10", "1 ", " 1", "1e400", "1,2", "--1"};
@@ -83,6 +126,7 @@ static void lengths(void)
 int main(void)
 {
     against_strtod();
+    in_lines();
     refuses();
     integers();
     lengths();

@@ -1,0 +1,56 @@
+/* What muscles are made from and into: a model's arrays, its elements sorted by volume, and marks on nodes. Borrows the arrays;
+ * muscle_make owns the rest.
+ */
+#ifndef SINEW_BODY_H
+#define SINEW_BODY_H
+
+#include <stdint.h>
+
+typedef struct body {
+    int64_t elements, nodes;
+    int32_t columns; /* of node */
+    const double *position;
+    const int32_t *node, *volume;
+    const uint8_t *rigid;
+    const int32_t *anchor; /* nodes; NULL: not known */
+    const float *fraction; /* elements; NULL: all are whole */
+    float *fibre;
+    int32_t *seen;    /* nodes: the last muscle that counted it */
+    int32_t *part;    /* nodes: its attachment in the muscle looked at last, -1 = none */
+    int64_t *start;   /* volumes + 1: a volume's first place in element */
+    int64_t *element; /* the elements, volume after volume */
+} body;
+
+static inline void body_centre(const body *b, int64_t element, double *centre)
+{
+    const int32_t *node = &b->node[b->columns * element];
+    for (int a = 0; a < 3; a++) {
+        centre[a] = 0;
+        for (int n = 0; n < b->columns; n++)
+            centre[a] += b->position[3 * (int64_t)node[n] + a];
+        centre[a] /= b->columns;
+    }
+}
+
+/* The share of an element that is enclosed. */
+static inline double body_fraction(const body *b, int64_t element)
+{
+    return b->fraction ? b->fraction[element] : 1;
+}
+
+/* A set of a forest in which each points to one before it, or to itself. */
+static inline int32_t body_root(int32_t *root, int32_t n)
+{
+    while (root[n] != n)
+        n = root[n] = root[root[n]];
+    return n;
+}
+
+static inline void body_join(int32_t *root, int32_t m, int32_t n)
+{
+    m = body_root(root, m);
+    n = body_root(root, n);
+    root[m > n ? m : n] = m > n ? n : m;
+}
+
+#endif
