@@ -63,10 +63,11 @@ static void batch_load(cpu_batch *b, const cpu_state *s, int64_t from, int count
             b->displacement[8 + c][l] = u[1];
             b->displacement[16 + c][l] = u[2];
         }
-        b->mu[l] = kind->law.mu;
-        b->bulk[l] = kind->law.bulk;
-        b->hourglass[l] = kind->law.hourglass;
-        b->tension[l] = kind->tension;
+        const real share = p->fraction ? (real)p->fraction[at] : 1; /* forces are linear in all of these */
+        b->mu[l] = share * kind->law.mu;
+        b->bulk[l] = share * kind->law.bulk;
+        b->hourglass[l] = share * kind->law.hourglass;
+        b->tension[l] = share * kind->tension;
         b->active |= kind->tension != 0;
         b->x[l] = p->fibre ? (real)p->fibre[3 * at] : 0;
         b->y[l] = p->fibre ? (real)p->fibre[3 * at + 1] : 0;

@@ -31,12 +31,13 @@ __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const t
     uint32_t cell = v.cell[t.cell + i];
     int place = cell & TILE_PLACE;
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
-    element_law law = {(real)kind.mu, (real)kind.bulk, (real)kind.hourglass};
+    const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
+    element_law law = {share * (real)kind.mu, share * (real)kind.bulk, share * (real)kind.hourglass};
     element_fibre fibre = {{0, 0, 0}, 0};
     if (i < t.fibred) {
         const float *along = v.fibre + 3 * (int64_t)(t.direction + i);
         fibre.along.x = along[0], fibre.along.y = along[1], fibre.along.z = along[2];
-        fibre.tension = (real)(kind.peak * p.now[3 * kind.contract]);
+        fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
     }
     element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
                         cuda_corners<G>(u + 2 * G::PLACES, place)};

@@ -89,7 +89,7 @@ static __device__ void look_at_cell(const cuda_look<S> &l, const tile &t, int i,
     double hourglass = element_hourglass_energy(x, kind.hourglass) + element_hourglass_energy(y, kind.hourglass) +
                        element_hourglass_energy(z, kind.hourglass);
     c->broken = !(volume > 0) || !isfinite(energy) || !isfinite(hourglass);
-    c->strain = energy * v.side[0] * v.side[1] * v.side[2] + hourglass;
+    c->strain = (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + hourglass);
     stability_matrix(kind.mu, kind.bulk, kind.density, v.side, h, fibre, &c->matrix);
 }
 

@@ -27,6 +27,7 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
 {
     const model_array *node = model_need(m, "element.node", e), *position = model_need(m, "node.position", e);
     const model_array *volume = model_need(m, "element.volume", e), *fibre = model_find(m, "element.fibre");
+    const model_array *fraction = model_find(m, "element.fraction");
     if (!node || !position || !volume || !model_need(m, "volume.name", e) || !model_need(m, "volume.material", e))
         return -1;
     if (node->columns != 8)
@@ -41,6 +42,17 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     p->element_node = node->i32;
     p->element_volume = volume->i32;
     p->fibre = fibre ? fibre->f32 : NULL;
+    p->fraction = fraction ? fraction->f32 : NULL;
+    return 0;
+}
+
+/* An element without mass has no step that is stable. */
+static int check_fractions(const tled_problem *p, err *e)
+{
+    for (int64_t i = 0; p->fraction && i < p->elements; i++)
+        if (!(p->fraction[i] > 0 && p->fraction[i] <= 1))
+            return err_set(e, NULL, 0, "element.fraction of element %lld is %g; expected above 0, and at most 1",
+                           (long long)i, (double)p->fraction[i]);
     return 0;
 }
 
@@ -108,7 +120,7 @@ static int corner_rank(int32_t corner)
     return 7 - (offset[0] + 2 * offset[1] + 4 * offset[2]);
 }
 
-/* The corners of elements at each node, and its mass: rho V / 8 from each. */
+/* The corners of elements at each node, and its mass: rho V / 8 from each, of what is tissue. */
 static int make_corners(tled_problem *p, err *e)
 {
     double share = p->side[0] * p->side[1] * p->side[2] / 8;
@@ -124,7 +136,7 @@ static int make_corners(tled_problem *p, err *e)
         for (; at && (list[at - 1] == none || corner_rank(list[at - 1]) > corner_rank((int32_t)i)); at--)
             list[at] = list[at - 1];
         list[at] = (int32_t)i;
-        p->mass[n] += p->volume[p->element_volume[i / 8]].density * share;
+        p->mass[n] += p->volume[p->element_volume[i / 8]].density * share * tled_fraction(p, i / 8);
     }
     for (int64_t n = 0; n < p->nodes; n++)
         if (p->corner[n * 8] == none)
@@ -194,7 +206,7 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
     p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
     if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
         return -1;
-    if (check_boxes(p, e) || make_volumes(p, m, e) || make_corners(p, e) || make_forces(p, e))
+    if (check_boxes(p, e) || check_fractions(p, e) || make_volumes(p, m, e) || make_corners(p, e) || make_forces(p, e))
         return -1;
     make_holds(p, m);
     return 0;

@@ -31,14 +31,15 @@ typedef struct tled_problem {
     const int32_t *element_node;   /* elements x 8, VTK order */
     const int32_t *element_volume; /* elements */
     const float *fibre;            /* elements x 3, or NULL */
-    tled_volume *volume;           /* volumes; owned, as is all below */
-    int32_t *corner;               /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
-    double *mass;                  /* nodes: kg */
-    int32_t *hold;                 /* nodes x 3 */
-    int64_t held;                  /* nodes with any component held */
-    int32_t *force_start;          /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
-    int32_t *force_curve;          /* entries: the curve whose value the node gets a share of */
-    double *force_share;           /* entries */
+    const float *fraction; /* elements: the share that is tissue, by which mass and all forces go; NULL: all 1 */
+    tled_volume *volume;   /* volumes; owned, as is all below */
+    int32_t *corner;       /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
+    double *mass;          /* nodes: kg */
+    int32_t *hold;         /* nodes x 3 */
+    int64_t held;          /* nodes with any component held */
+    int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
+    int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
+    double *force_share;   /* entries */
     const script *script;
     int64_t gravity;      /* its curve, or -1 */
     double start;         /* s: the model's time at the start */
@@ -96,6 +97,12 @@ void tled_problem_free(tled_problem *p);
 
 /* Starts from a frame: its time, displacement and velocity (none: at rest, with a note). */
 int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e);
+
+/* The share of an element that is tissue. */
+static inline double tled_fraction(const tled_problem *p, int64_t element)
+{
+    return p->fraction ? (double)p->fraction[element] : 1;
+}
 
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);

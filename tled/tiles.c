@@ -33,6 +33,7 @@ void tiles_free(tiles *t)
     free(t->cell);
     free(t->cell_element);
     free(t->fibre);
+    free(t->share);
     free(t->extra);
     memset(t, 0, sizeof *t);
 }
@@ -270,7 +271,8 @@ static int list_cells(cutter *c)
     t->cell = mem_array(t->cells, sizeof *t->cell, "the tiles", c->e);
     t->cell_element = mem_array(t->cells, sizeof *t->cell_element, "the tiles", c->e);
     t->fibre = mem_array(t->directions, 3 * sizeof *t->fibre, "the tiles", c->e);
-    if (!t->cell || !t->cell_element || !t->fibre)
+    t->share = c->p->fraction ? mem_array(t->cells, sizeof *t->share, "the tiles", c->e) : NULL;
+    if (!t->cell || !t->cell_element || !t->fibre || (c->p->fraction && !t->share))
         return -1;
     for (int fibred = 1; fibred >= 0; fibred--)
         for (int64_t i = 0; i < c->p->elements; i++)
@@ -293,6 +295,8 @@ static int put_cell(cutter *c, int64_t which, int64_t at)
     if (c->taken[place])
         return no_lattice(c, element);
     c->taken[place] = true;
+    if (t->share)
+        t->share[at] = c->p->fraction[element];
     t->cell[at] = (uint32_t)place | own << TILE_OWN | (uint32_t)c->p->element_volume[element] << TILE_VOLUME;
     for (int i = 0; i < 8; i++) {
         int32_t *here = &c->here[place_in(c, which, corner[i])];

@@ -50,6 +50,7 @@ typedef struct tiles {
     uint32_t *cell;        /* cells: TILE_*, those with fibres first, then by place */
     int32_t *cell_element; /* cells: which of the model's elements it is */
     float *fibre;          /* directions x 3 */
+    float *share;          /* cells: the problem's fraction; NULL where that is */
     tile_extra *extra;     /* extras, by node */
 } tiles;
 

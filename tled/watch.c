@@ -61,7 +61,7 @@ static void look_at_element(const watch *w, int64_t i, element_shape shape, stru
         part->sum.broken = part->sum.broken < 0 ? i : part->sum.broken;
         return;
     }
-    part->sum.strain += energy * p->side[0] * p->side[1] * p->side[2] + hourglass;
+    part->sum.strain += tled_fraction(p, i) * (energy * p->side[0] * p->side[1] * p->side[2] + hourglass);
     look_at_step(w, v, i, h, fibre_of(w, i), part);
 }
 

@@ -4,8 +4,8 @@
 // needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c
 #include "tled_bench.h"
 
-static const block lump = {{4, 3, 5}, {.01, .01, .0125}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}};
-static const block muscle = {{8, 4, 4}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}};
+static const block lump = {{4, 3, 5}, {.01, .01, .0125}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0};
+static const block muscle = {{8, 4, 4}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0};
 
 /* A velocity that bends, stretches and turns the block as it moves on. */
 static void push(bench *b)
@@ -305,12 +305,44 @@ static void test_choice(void)
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
 }
 
+/* Half of each element is tissue: half the mass, and half of all forces. Under gravity and in contraction it moves as
+ * if it were whole; what a force moves, it moves as twice the force does. And where the shares differ from element to element
+ * the step at rest is what it was, and stable. */
+static void test_fraction(const backend *device, const char *name)
+{
+    const double gravity[3] = {3, -2, -9.81};
+    bench whole, half, mixed;
+    block with = muscle;
+    bench_make(&whole, &muscle, gravity, .4, .0075, 2);
+    with.fraction = .5F;
+    bench_make(&half, &with, gravity, .4, .0075, 2);
+    with.fraction = -1;
+    bench_make(&mixed, &with, gravity, .4, .0075, 2);
+    bench *all[] = {&whole, &half, &mixed};
+    int gone = 0;
+    for (int i = 0; i < 3; i++) {
+        bench_steps(all[i], 2000, whole.setup.damping);
+        all[i]->setup.device = device;
+        gone |= bench_go(all[i]);
+    }
+    ok(!gone && same(&whole, &half), "%s: half of every element is tissue: it moves by its weight as it did whole",
+       name);
+    near_(2 * half.end.sight.strain, whole.end.sight.strain, 1e-12 * whole.end.sight.strain, "%s: with half the energy",
+          name);
+    ok(!gone && mixed.end.sight.kinetic < 1e-3 * mixed.end.sight.strain && !same(&whole, &mixed),
+       "%s: shares of .05 to 1 are stable by default settings: %.3g mm, whole %.3g %s", name,
+       1e3 * mixed.end.sight.largest, 1e3 * whole.end.sight.largest, mixed.e.text);
+    for (int i = 0; i < 3; i++)
+        bench_free(all[i]);
+}
+
 /* What holds for every back end, in one precision. */
 static void test_device(const backend *device, const char *name)
 {
     test_conserved(device, name);
     test_same_bytes(device, name);
     test_jump(device, name);
+    test_fraction(device, name);
 }
 
 int main(void)

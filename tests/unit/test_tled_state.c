@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-static const block brick = {{2, 2, 3}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}};
+static const block brick = {{2, 2, 3}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0};
 
 static void read_script(script *s, const model *m, const char *text)
 {

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-static const block soft = {{3, 3, 3}, {.0125, .0125, .0125}, 3000, .49, 1000, 30000, 0, 0, 0, {0, 0, 0}};
+static const block soft = {{3, 3, 3}, {.0125, .0125, .0125}, 3000, .49, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0};
 
 static double stable_of(block b, double kappa)
 {

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-static const block lump = {{17, 9, 6}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}};
+static const block lump = {{17, 9, 6}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0};
 
 static double moved(int64_t node, int a)
 {
@@ -23,9 +23,10 @@ static void force_of(const tled_problem *p, int64_t element, double u[8][3], dou
 {
     element_field at, g;
     const tled_volume *v = &p->volume[p->element_volume[element]];
-    element_law law = {v->mu, v->bulk, v->hourglass};
+    const double share = tled_fraction(p, element);
+    element_law law = {share * v->mu, share * v->bulk, share * v->hourglass};
     const float *d = p->fibre + 3 * element;
-    element_fibre fibre = {{d[0], d[1], d[2]}, .3 * v->peak};
+    element_fibre fibre = {{d[0], d[1], d[2]}, share * .3 * v->peak};
     for (int c = 0; c < 8; c++)
         at.x.at[c] = u[c][0], at.y.at[c] = u[c][1], at.z.at[c] = u[c][2];
     g = element_force(at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre, 1);
@@ -96,6 +97,7 @@ static bool by_tiles(const tled_problem *p, const tiles *t, double *sum, int *ow
             force_of(p, element, u, r->f[place]);
             owned[element] += (int)(cell >> TILE_OWN & 1);
             good &= (int32_t)(cell >> TILE_VOLUME) == p->element_volume[element];
+            good &= t->share ? t->share[own->cell + k] == p->fraction[element] : !p->fraction;
             good &= k >= own->fibred || !memcmp(t->fibre + 3 * (own->direction + k), p->fibre + 3 * element, 12);
         }
         for (int32_t n = own->node; n < own->node + own->nodes; n++)
@@ -140,14 +142,14 @@ static void make(model *m, script *s, tled_problem *p)
     }
 }
 
-static void test_block(void)
+static void test_block(const block *what)
 {
     static const int bricks[][3] = {{4, 4, 4}, {8, 8, 4}, {8, 8, 8}, {1, 2, 3}};
     model m = {0};
     script s = {0};
     tled_problem p = {0};
     err e = {0};
-    block_make(&lump, &m);
+    block_make(what, &m);
     ok(!script_add_contract(&s, &m, "m=.5", 0, NULL, &e), "a muscle contracts %s", e.text);
     make(&m, &s, &p);
     for (int i = 0; i < 4; i++)
@@ -162,7 +164,7 @@ static void test_block(void)
 static void test_slit(bool joined)
 {
     static const int brick[3] = {4, 4, 4};
-    const block what = {{5, 4, 3}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}};
+    const block what = {{5, 4, 3}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0};
     model m = {0};
     script s = {0};
     tled_problem p = {0}, both;
@@ -214,7 +216,10 @@ static void test_slit(bool joined)
 
 int main(void)
 {
-    test_block();
+    block cut = lump;
+    cut.fraction = -1;
+    test_block(&lump);
+    test_block(&cut);
     test_slit(false);
     test_slit(true);
     return done_testing();

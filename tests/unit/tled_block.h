@@ -16,6 +16,7 @@ typedef struct block {
     double young, poisson, density, peak;
     int fixed_axis, fixed_low, fixed_high; /* whether the nodes at its low and high end are rigid */
     float fibre[3];                        /* not 0: the volume is a muscle named muscle_m */
+    float fraction; /* of every element; 0: the model has none. Below 0: they differ, from .05 to 1 */
 } block;
 
 static inline model_array *block_array(model *m, const char *name)
@@ -75,6 +76,9 @@ static inline void block_tables(const block *b, model *m)
     float *fibre = block_array(m, "element.fibre")->f32;
     for (int64_t i = 0; i < 3 * model_count(m, "element"); i++)
         fibre[i] = b->fibre[i % 3];
+    float *fraction = b->fraction != 0 ? block_array(m, "element.fraction")->f32 : NULL;
+    for (int64_t i = 0; fraction && i < model_count(m, "element"); i++)
+        fraction[i] = b->fraction > 0 ? b->fraction : .05F + .95F * (float)(i * 7919 % 101) / 100;
 }
 
 /* Makes the model; the caller frees it. */
