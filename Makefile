@@ -74,6 +74,14 @@ $(BUILD)/cuda-$(CUDA):
 $(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: $(BUILD)/cuda-$(CUDA)
 $(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 
+# The CPU solver's pass, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
+# (No psabi: vectors are passed between functions of one file only.)
+$(BUILD)/tled/cpu_pass_%.o: CFLAGS += -Wno-psabi
+ifeq ($(shell uname -m),x86_64)
+$(BUILD)/tled/cpu_pass_avx2_%.o: CFLAGS += -mavx2
+$(BUILD)/tled/cpu_pass_avx512_%.o: CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
+endif
+
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 VOXELISE_SRC := $(wildcard voxelise/*.c)

@@ -2,4 +2,5 @@
 #include "tled/cpu.h"
 #define CPU_BACKEND tled_cpu_single
 #define ELEMENT_SINGLE
+#define CPU_PASSES cpu_passes_single
 #include "tled/cpu_loops.h"

@@ -13,13 +13,13 @@
 
 /* dt, dt/2, 1 - alpha dt/2, 1 / (1 + alpha dt/2). */
 typedef struct node_factors {
-    real dt, half, keep, slow;
+    real_one dt, half, keep, slow;
 } node_factors;
 
 ELEMENT_FUNCTION node_factors node_factors_of(double dt, double damping)
 {
     const double drag = damping * dt / 2;
-    node_factors k = {(real)dt, (real)(dt / 2), (real)(1 - drag), (real)(1 / (1 + drag))};
+    node_factors k = {(real_one)dt, (real_one)(dt / 2), (real_one)(1 - drag), (real_one)(1 / (1 + drag))};
     return k;
 }
 

@@ -1,7 +1,8 @@
 /* The maths of one element: a box of eight corners, one integration point at its centre, in total Lagrangian form
  * (Miller, Joldes, Lance & Wittek 2007), with hourglass control in the same form (Joldes, Wittek & Miller 2008). Compiled by
- * gcc, clang and nvcc alike; `real` is double, or float where ELEMENT_SINGLE is defined before. No branches on data, no
- * loops, no arrays indexed by a variable: a compiler can lay several elements side by side in one vector.
+ * gcc, clang and nvcc alike; `real` is double, or float where ELEMENT_SINGLE is defined before; or, where ELEMENT_LANES is
+ * too, a vector of so many of them: as many elements side by side (GNU C's vectors, which gcc and clang have). No branches on
+ * data, no loops, no arrays indexed by a variable, and every operation rounds by itself: the same bits in any lane.
  *
  * Corners are in VTK order. Over a box, a field u with values at the corners is a sum of eight modes: its mean, three
  * slopes (x, y, z) and four hourglass modes (xy, yz, zx, xyz), each a product of signs at the corners. The slopes give the
@@ -16,13 +17,34 @@
 #include <string.h>
 
 #ifdef ELEMENT_SINGLE
-typedef float real;
-#define REAL_SQRT sqrtf
+typedef float real_one;
+#define REAL_SQRT_ONE sqrtf
 #else
-typedef double real;
-#define REAL_SQRT sqrt
+typedef double real_one;
+#define REAL_SQRT_ONE sqrt
 #endif
-#define R(constant) ((real)(constant))
+#define R(constant) ((real_one)(constant))
+
+#ifdef ELEMENT_LANES
+typedef real_one real __attribute__((vector_size(ELEMENT_LANES * sizeof(real_one))));
+typedef float real_guess __attribute__((vector_size(ELEMENT_LANES * sizeof(float))));
+typedef int32_t real_bits __attribute__((vector_size(ELEMENT_LANES * sizeof(int32_t))));
+#ifdef ELEMENT_SINGLE
+typedef int32_t real_mask __attribute__((vector_size(ELEMENT_LANES * sizeof(int32_t))));
+#else
+typedef int64_t real_mask __attribute__((vector_size(ELEMENT_LANES * sizeof(int64_t))));
+#endif
+#define REAL_ZERO                  ((real){0})
+#define REAL_CONVERT(x, type)      __builtin_convertvector(x, type)
+#define REAL_SELECT(mask, yes, no) ((real)(((mask) & (real_mask)(yes)) | (~(mask) & (real_mask)(no))))
+#else
+typedef real_one real;
+typedef float real_guess;
+typedef int32_t real_bits;
+#define REAL_ZERO                  ((real)0)
+#define REAL_CONVERT(x, type)      ((type)(x))
+#define REAL_SELECT(mask, yes, no) ((mask) ? (yes) : (no))
+#endif
 
 #ifdef __CUDACC__
 #define ELEMENT_FUNCTION static __host__ __device__ __forceinline__
@@ -31,6 +53,27 @@ typedef double real;
 #else
 #define ELEMENT_FUNCTION static inline
 #endif
+
+/* In all lanes. */
+ELEMENT_FUNCTION real real_of(double x)
+{
+#ifdef ELEMENT_LANES
+    return REAL_ZERO + (real_one)x;
+#else
+    return (real)x;
+#endif
+}
+
+ELEMENT_FUNCTION real real_sqrt(real x)
+{
+#ifdef ELEMENT_LANES
+    for (int i = 0; i < ELEMENT_LANES; i++)
+        x[i] = REAL_SQRT_ONE(x[i]);
+    return x;
+#else
+    return REAL_SQRT_ONE(x);
+#endif
+}
 
 /* One component of a vector field at the eight corners, and all three. */
 typedef struct element_corners {
@@ -72,8 +115,8 @@ typedef struct element_fibre {
 
 ELEMENT_FUNCTION element_shape element_box(double hx, double hy, double hz)
 {
-    element_shape s = {{R(1 / (4 * hx)), R(1 / (4 * hy)), R(1 / (4 * hz))},
-                       {R(hy * hz / 4), R(hz * hx / 4), R(hx * hy / 4)}};
+    element_shape s = {{real_of(1 / (4 * hx)), real_of(1 / (4 * hy)), real_of(1 / (4 * hz))},
+                       {real_of(hy * hz / 4), real_of(hz * hx / 4), real_of(hx * hy / 4)}};
     return s;
 }
 
@@ -141,12 +184,12 @@ ELEMENT_FUNCTION element_tensor element_cofactor(element_tensor h)
  * y^-3 - x. Arithmetic only, so the same bytes with any C library. For x <= 0 some number. */
 ELEMENT_FUNCTION real element_cube_root_inverse(real x)
 {
-    float guess = (float)x;
-    int32_t bits;
+    real_guess guess = REAL_CONVERT(x, real_guess);
+    real_bits bits;
     memcpy(&bits, &guess, sizeof bits);
-    bits = (int32_t)(1419967116.f - (float)bits * (1.f / 3));
+    bits = REAL_CONVERT(1419967116.f - REAL_CONVERT(bits, real_guess) * (1.f / 3), real_bits);
     memcpy(&guess, &bits, sizeof guess);
-    real y = guess;
+    real y = REAL_CONVERT(guess, real);
     real r = 1 - x * y * y * y;
     y += y * r * (R(1. / 3) + r * (R(2. / 9) + r * R(14. / 81)));
     r = 1 - x * y * y * y;
@@ -186,15 +229,15 @@ ELEMENT_FUNCTION real element_force_length(real l)
 {
     real low = 9 * (l - R(.4)) * (l - R(.4)), middle = 1 - 4 * (1 - l) * (1 - l);
     real high = 9 * (l - R(1.6)) * (l - R(1.6));
-    real f = l < R(.6) ? low : l <= R(1.4) ? middle : high;
-    return l < R(.4) ? 0 : l > R(1.6) ? 0 : f;
+    real f = REAL_SELECT(l < R(.6), low, REAL_SELECT(l <= R(1.4), middle, high));
+    return REAL_SELECT(l < R(.4), REAL_ZERO, REAL_SELECT(l > R(1.6), REAL_ZERO, f));
 }
 
 /* Its derivative. */
 ELEMENT_FUNCTION real element_force_length_slope(real l)
 {
-    real f = l < R(.6) ? 18 * (l - R(.4)) : l <= R(1.4) ? 8 * (1 - l) : 18 * (l - R(1.6));
-    return l < R(.4) ? 0 : l > R(1.6) ? 0 : f;
+    real f = REAL_SELECT(l < R(.6), 18 * (l - R(.4)), REAL_SELECT(l <= R(1.4), 8 * (1 - l), 18 * (l - R(1.6))));
+    return REAL_SELECT(l < R(.4), REAL_ZERO, REAL_SELECT(l > R(1.6), REAL_ZERO, f));
 }
 
 /* F a0. */
@@ -207,7 +250,7 @@ ELEMENT_FUNCTION element_vector element_fibre_now(element_tensor h, element_vect
 
 ELEMENT_FUNCTION real element_length(element_vector a)
 {
-    return REAL_SQRT(a.x * a.x + a.y * a.y + a.z * a.z);
+    return real_sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
 }
 
 /* P of the muscle's active stress S = a s f(l)/l a0 (x) a0: a s f(l)/l (F a0) (x) a0. No fibre (a0 = 0): none. */
@@ -215,7 +258,7 @@ ELEMENT_FUNCTION element_tensor element_active(element_tensor h, element_fibre f
 {
     element_vector a = fibre.along, m = element_fibre_now(h, a);
     real l = element_length(m);
-    real t = fibre.tension * element_force_length(l) / (l > 0 ? l : 1);
+    real t = fibre.tension * element_force_length(l) / REAL_SELECT(l > 0, l, REAL_ZERO + 1);
     element_tensor p = {t * m.x * a.x, t * m.x * a.y, t * m.x * a.z, t * m.y * a.x, t * m.y * a.y,
                         t * m.y * a.z, t * m.z * a.x, t * m.z * a.y, t * m.z * a.z};
     return p;

@@ -1,9 +1,12 @@
 /* A problem cut into tiles: every node owned once, every element owned once, and a pass over the tiles, each seeing no more
- * than its own lists, gives the internal forces of a pass over elements, to the last bit. Slits are refused.
+ * than its own lists, gives the internal forces of a pass over elements, to the last bit. Slits are refused. And in rows: the
+ * same, slits too.
  */
-// needs: tled/tiles.c tled/state.c tled/script.c tled/script_read.c
+// needs: tled/tiles.c tled/state.c tled/script.c tled/script_read.c tled/cpu_double.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c
 #include "mesh/element.h"
 #include "mesh/lattice.h"
+#include "tled/cpu.h"
+#include "tled/rows.h"
 #include "tled/tiles.h"
 
 #include "tap.h"
@@ -133,6 +136,58 @@ static void test_pass(const tled_problem *p, const int brick[3])
     free(owned);
 }
 
+/* Each element is in the slabs that own nodes of it, each of its four rows of nodes once; nodes are each in one layer. */
+static void test_rows(const tled_problem *p, int lanes, int slabs)
+{
+    rows r;
+    err e = {0};
+    int failed = rows_make(&r, p, lanes, slabs, &e);
+    int *covered = calloc((size_t)p->elements, sizeof *covered), good = 1;
+    uint8_t *seen = calloc((size_t)r.nodes + 1, 1);
+    if (!covered || !seen)
+        exit(1);
+    for (const rows_run *run = r.run; run < r.run + r.runs; run++)
+        for (int i = 0; i < run->count; i++) {
+            int64_t element = r.cell_element[run->cell + i];
+            for (int bit = 0; bit < 4; bit++)
+                covered[element] += (run->mask >> bit & 1) << 4 * bit;
+            for (int c = 0; c < 8; c++)
+                good &= r.place[p->element_node[8 * element + c]] == run->node[c] + i;
+        }
+    for (int64_t i = 0; i < p->elements; i++)
+        good &= covered[i] == 0x1111;
+    for (const rows_layer *l = r.layer; l < r.layer + r.layers; l++)
+        for (int32_t n = 0; n < l->nodes; n++)
+            good &= !seen[l->node + n]++;
+    for (int64_t n = 0; n < p->nodes; n++)
+        good &= seen[r.place[n]];
+    ok(!failed && good && r.slabs <= slabs, "rows of %d lanes, %d slabs: %d runs, %.3g cells an element %s", lanes,
+       r.slabs, r.runs, (double)r.cells / (double)p->elements, e.text);
+    rows_free(&r);
+    free(covered);
+    free(seen);
+}
+
+/* What the CPU's back end finds, by rows, against the pass over elements. p->displacement is moved(). */
+static void test_cpu(const tled_problem *p, int threads, const char *name)
+{
+    err e = {0};
+    pool *threads_of = pool_create(threads, &e);
+    double *want = calloc((size_t)p->nodes * 3, sizeof *want), *got = calloc((size_t)p->nodes * 3, sizeof *got);
+    void *state = threads_of ? tled_cpu_double.create(p, threads_of, &e) : NULL;
+    if (!want || !got || !state) {
+        printf("Bail out! %s\n", e.text);
+        exit(1);
+    }
+    by_elements(p, want);
+    tled_cpu_double.get(state, TLED_INTERNAL, got, &e);
+    ok(!memcmp(want, got, (size_t)p->nodes * 3 * sizeof *want), "%s, %d threads: the same forces", name, threads);
+    tled_cpu_double.destroy(state);
+    pool_destroy(threads_of);
+    free(want);
+    free(got);
+}
+
 static void make(model *m, script *s, tled_problem *p)
 {
     err e = {0};
@@ -154,6 +209,8 @@ static void test_block(const block *what)
     make(&m, &s, &p);
     for (int i = 0; i < 4; i++)
         test_pass(&p, bricks[i]);
+    for (int i = 1; i < 9; i++)
+        test_rows(&p, i < 5 ? 4 : 16, i * i);
     tled_problem_free(&p);
     script_free(&s);
     model_free(&m);
@@ -176,12 +233,16 @@ static void test_slit(bool joined)
     both.nodes *= 2;
     both.elements *= 2;
     const int64_t nodes = p.nodes, elements = p.elements, corners = 8 * elements;
-    double *position = malloc(6 * (size_t)nodes * sizeof *position);
+    double *position = malloc(6 * (size_t)nodes * sizeof *position), *mass = calloc(2 * (size_t)nodes, sizeof *mass);
+    double *displacement = calloc(6 * (size_t)nodes, sizeof *displacement);
+    double *velocity = calloc(6 * (size_t)nodes, sizeof *velocity);
+    float *fibre = calloc(6 * (size_t)elements, sizeof *fibre);
     int32_t *volume = calloc(2 * (size_t)elements, sizeof *volume);
     int32_t *node = malloc(2 * (size_t)corners * sizeof *node), *corner = malloc(16 * (size_t)nodes * sizeof *corner);
     both.hold = calloc((size_t)both.nodes * 3, sizeof *both.hold);
     both.force_start = calloc((size_t)both.nodes + 2, sizeof *both.force_start);
-    if (!position || !node || !corner || !volume || !both.hold || !both.force_start)
+    if (!position || !node || !corner || !volume || !mass || !displacement || !velocity || !fibre || !both.hold ||
+        !both.force_start)
         exit(1);
     for (int64_t i = 0; i < 6 * nodes; i++)
         position[i] = p.position[i % (3 * nodes)] + (i >= 3 * nodes && i % 3 == 2 ? 3 * what.side[2] : 0);
@@ -191,8 +252,22 @@ static void test_slit(bool joined)
         int32_t c = p.corner[i % (8 * nodes)];
         corner[i] = c == corners ? (int32_t)(2 * corners) : c + (i >= 8 * nodes ? (int32_t)corners : 0);
     }
-    if (joined)
-        node[corners] = (int32_t)block_node(&what, 0, 0, 3);
+    if (joined) { /* corner 0 of the first element above is the node below, whose fifth element it is */
+        const int64_t below = block_node(&what, 0, 0, 3);
+        node[corners] = (int32_t)below;
+        corner[8 * below + 1] = (int32_t)corners;
+        corner[8 * nodes] = (int32_t)(2 * corners);
+    }
+    for (int64_t n = 0; n < 2 * nodes; n++)
+        for (int a = 0; a < 3; a++) {
+            both.hold[3 * n + a] = HOLD_FREE;
+            displacement[3 * n + a] = moved(n, a);
+            mass[n] = 1;
+        }
+    both.mass = mass;
+    both.displacement = displacement;
+    both.velocity = velocity;
+    both.fibre = fibre;
     both.position = position;
     both.element_node = node;
     both.element_volume = volume;
@@ -202,7 +277,13 @@ static void test_slit(bool joined)
         ok(failed && strstr(e.text, "share a place"), "a slit is refused: %s", e.text);
     else
         ok(!failed && t.nodes == 2 * nodes, "two parts that touch are none %s", e.text);
+    for (int threads = 1; threads < 4; threads++)
+        test_cpu(&both, threads, joined ? "a slit in rows" : "two parts in rows");
     tiles_free(&t);
+    free(mass);
+    free(displacement);
+    free(velocity);
+    free(fibre);
     free(position);
     free(node);
     free(corner);
