@@ -53,6 +53,7 @@ CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_75,code=co
 NVCC_FLAGS = -std=c++17 -O3 -lineinfo -fmad=false $(CUDA_ARCH) -Werror all-warnings \
 	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
 CUDA_SRC := $(wildcard common/device/*.cu tled/*.cu)
+$(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
 LIB_CUDA := $(BUILD)/libsinew-cuda.a
 CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
@@ -63,6 +64,7 @@ $(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(BUILD)/tled/tiles.o
 	@ar rcs $@ $^
 
 $(BUILD)/%.o: %.cu
+	$(if $(NVCC),,$(error there is no nvcc for CUDA=yes; expected NVCC with its path, or CUDA=no))
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Icommon -I. -MMD -MP -MF $(@:.o=.d) -c -o $@ $<)
 

@@ -73,12 +73,13 @@ BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests
 $(eval $(call test_program,tests/bench/bench_tled))
 bench:
 	@mkdir -p out
-	@{ tests/bench/machine; $(MAKE) --no-print-directory -s bench-tled; } | tee out/bench.csv
+	@{ tests/bench/machine; $(MAKE) --no-print-directory -s bench-tled || echo '# failed'; } | tee out/bench.csv
+	@! grep -q '^# failed' out/bench.csv
 bench-tled: all $(BENCH_TLED) $(BENCH_MODELS)
 	@$(BENCH_TLED) $(shell nproc) 5 all runs .3 $(BENCH_MODELS)
 $(BUILD)/tests/bench/face_%mm: all
 	@mkdir -p $(@D)
-	@$(BIN)/voxelise -q --unit mm -s $* $(BENCH_FACE) | $(BIN)/attach -q >$@
+	@$(BIN)/voxelise -q --unit mm -s $* $(BENCH_FACE) | $(BIN)/attach -q -o $@
 # The steps of voxelise on a closed scan, probes of the machine first.
 .PHONY: bench-voxelise
 TRIANGLES ?= 100000
@@ -112,6 +113,7 @@ FOLDERS = $(filter-out $(BUILD)/ $(BIN)/ out/,$(wildcard */))
 found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(FOLDERS)))
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
+CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
 SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
@@ -128,7 +130,7 @@ $(BUILD)/tidy/%.ok: %.c .clang-tidy tests/.clang-tidy $(HEADERS)
 	@touch $@
 
 lint-format:
-	@$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS)
+	@$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS) $(CUDA_FILES)
 
 lint-shell:
 	@shellcheck --external-sources --source-path=SCRIPTDIR $(SCRIPTS)
@@ -177,6 +179,7 @@ help:
 	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
 	'make bench-voxelise  the steps of voxelise on a closed scan, timed (TRIANGLES=100000)' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
+	'make bench        what a step of the solver takes here, as CSV, into out/bench.csv too' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make clean        removes what was built' \
 	'' \

@@ -1,3 +1,3 @@
-// The CUDA back end in double.
+/* The CUDA back end in double. */
 #define CUDA_BACKEND tled_cuda_double
 #include "tled/cuda_loops.cuh"

@@ -1,5 +1,6 @@
-// What the watch wants to know of a state, found where it is: watch.c's sums over elements and nodes, in double whatever
-// the state is in, in a fixed order. Kernels of blocks leave parts, a last one adds them up.
+/* What the watch wants to know of a state, found where it is: watch.c's sums over elements and nodes, in double whatever
+ * the state is in, in a fixed order. Kernels of blocks leave parts, a last one adds them up.
+ */
 extern "C" {
 #include "tled/stability.h"
 }
@@ -31,7 +32,7 @@ size_t cuda_look_bytes(int64_t tiles, int64_t nodes)
     return cells_bytes(tiles) + (size_t)node_blocks(nodes) * sizeof(look_nodes);
 }
 
-// A sum, or with `most` the largest, over a block's threads, in one order; the answer is thread 0's. scratch: a number a thread.
+/* A sum, or with `most` the largest, over a block's threads, in one order; the answer is thread 0's. scratch: a number a thread. */
 template <int THREADS> static __device__ double block_sum(double x, bool most, double *scratch)
 {
     __syncthreads();
@@ -47,7 +48,7 @@ template <int THREADS> static __device__ double block_sum(double x, bool most, d
     return scratch[0];
 }
 
-// The least of what threads say, or INT32_MAX where none does.
+/* The least of what threads say, or INT32_MAX where none does. */
 static __device__ int block_least(int mine, int *shared)
 {
     __syncthreads();
@@ -60,7 +61,7 @@ static __device__ int block_least(int mine, int *shared)
     return *shared;
 }
 
-typedef struct one_cell { // what a thread found of its cell
+typedef struct one_cell { /* what a thread found of its cell */
     double strain;
     bool broken;
     step_matrix matrix;
@@ -93,13 +94,13 @@ static __device__ void look_at_cell(const cuda_look<S> &l, const tile &t, int i,
     stability_matrix(kind.mu, kind.bulk, kind.density, v.side, h, fibre, &c->matrix);
 }
 
-// What a tile's block knows of its highest frequency so far.
+/* What a tile's block knows of its highest frequency so far. */
 typedef struct highest {
     double limit;
     int32_t cell;
 } highest;
 
-// Some thread's matrix reaches past the limit: raises it by halving until it is the highest, or too high by `raise` at most.
+/* Some thread's matrix reaches past the limit: raises it by halving until it is the highest, or too high by `raise` at most. */
 template <int THREADS>
 static __device__ void raise_limit(const step_matrix *a, bool past, double raise, int32_t cell, highest *h,
                                    double *scratch, int *least)
@@ -191,7 +192,7 @@ template <class S> static __device__ void look_at_node(const cuda_look<S> &l, in
     to->largest = fmax(to->largest, square);
 }
 
-// Sums over a block's threads; thread 0's is good.
+/* Sums over a block's threads; thread 0's is good. */
 template <int THREADS> static __device__ look_nodes sum_nodes(look_nodes x, double *scratch)
 {
     look_nodes s;
@@ -218,7 +219,7 @@ template <class S> static __global__ void __launch_bounds__(NODE_THREADS) nodes_
         out[blockIdx.x] = mine;
 }
 
-// One block adds up all parts, in the order of its threads' shares.
+/* One block adds up all parts, in the order of its threads' shares. */
 static __global__ void __launch_bounds__(SUM_THREADS)
     sums_kernel(const look_cells *cells, int64_t tiles, const look_nodes *nodes, int64_t blocks, double rest,
                 tled_sums *out)

@@ -17,6 +17,7 @@ enum {
 typedef struct cuda_frame { /* results on their way to the host; made when first wanted */
     real *host;             /* pinned: displacement, then velocity */
     cudaEvent_t arrived;
+    int64_t step; /* that it was taken at, for messages: the state's own goes on meanwhile */
 } cuda_frame;
 
 typedef struct cuda_state {
@@ -34,21 +35,21 @@ typedef struct cuda_state {
     real *kept_internal;     /* made when first wanted */
     real *frame;             /* a copy of displacement and velocity to send; likewise */
     bool spare_is_internal, has_kept_internal;
+    bool frame_direct;          /* there is no room for `frame` */
     double *table[TABLES];      /* on the card: TABLE_STEPS + 1 rows of the curves' values */
     double *table_host[TABLES]; /* pinned */
     cudaEvent_t table_free[TABLES], frame_free, frame_ready;
     int64_t tables; /* filled so far */
     void *look_parts;
     tled_sums *sums, *sums_host;
-    real *staging;                /* pinned: 3 x stride */
-    cuda_frame taken[TLED_TAKEN]; /* a ring */
-    int first_taken, count_taken;
-    int64_t step; /* for messages */
-    double time;  /* where the state stands */
+    real *staging; /* pinned: 3 x stride */
+    cuda_frame taken[TLED_TAKEN];
+    int64_t step, kept_step; /* for messages */
+    double time, kept_time;  /* where the state stands */
     cudaStream_t stream, sending;
 } cuda_state;
 
-/* What went wrong in steps before may come out of any call. */
+/* What went wrong in steps before may come out of any call. Not for taken(), which another thread calls. */
 #define CUDA_TRY(call) card_check(call, #call, s->step, e)
 
 /* Room in the card's memory; with none yet, counts only. */
@@ -289,6 +290,8 @@ static int cuda_keep(void *state, err *e)
     if (s->kept_internal && (find_internal(s, e) || copy(s, s->kept_internal, s->spare, n, e)))
         return -1;
     s->has_kept_internal = s->kept_internal != NULL;
+    s->kept_step = s->step;
+    s->kept_time = s->time;
     return copy(s, s->kept_displacement, s->displacement, n, e) || copy(s, s->kept_displacement + n, s->velocity, n, e)
                ? -1
                : 0;
@@ -299,18 +302,23 @@ static int cuda_back(void *state, err *e)
     cuda_state *s = (cuda_state *)state;
     const int64_t n = 3 * s->view.stride;
     s->spare_is_internal = false;
+    s->step = s->kept_step;
+    s->time = s->kept_time;
     return copy(s, s->displacement, s->kept_displacement, n, e) || copy(s, s->velocity, s->kept_displacement + n, n, e)
                ? -1
                : 0;
 }
 
+/* Where the card has no room for the copy, a frame holds up the steps: better than a run that ends at its first frame, which may be
+ * its last state. */
 static int make_frame(cuda_state *s, cuda_frame *f, err *e)
 {
     const int64_t bytes = 6 * s->view.stride * (int64_t)sizeof(real);
-    if (bytes > FRAME_DIRECT && !s->frame)
-        s->frame = (real *)card_take(bytes, "a frame", e);
-    if (bytes > FRAME_DIRECT && !s->frame)
-        return -1;
+    if (bytes > FRAME_DIRECT && !s->frame && !s->frame_direct) {
+        err full = {0};
+        s->frame = (real *)card_take(bytes, "a frame", &full);
+        s->frame_direct = !s->frame;
+    }
     if (f->host)
         return 0;
     return CUDA_TRY(cudaEventCreateWithFlags(&f->arrived, cudaEventDisableTiming)) ||
@@ -352,6 +360,7 @@ static int cuda_take(void *state, int slot, err *e)
     cuda_frame *f = &s->taken[slot];
     if (make_frame(s, f, e))
         return -1;
+    f->step = s->step;
     return s->frame ? send_aside(s, f, e) : send_direct(s, f, e);
 }
 
@@ -361,7 +370,7 @@ static int cuda_taken(void *state, int slot, void *to, err *e)
     const tled_taken *out = (const tled_taken *)to;
     const cuda_frame *f = &s->taken[slot];
     const permutation u = {s, f->host, out->displacement}, v = {s, f->host + 3 * s->view.stride, out->velocity};
-    if (CUDA_TRY(cudaEventSynchronize(f->arrived)))
+    if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
         return -1;
     permute_work((void *)&u, 0, 0, s->tiles.nodes);
     permute_work((void *)&v, 0, 0, s->tiles.nodes);

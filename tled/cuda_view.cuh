@@ -109,7 +109,7 @@ template <class S> __device__ const tile_extra *cuda_extra(const cuda_view<S> &v
     return &v.extra[low];
 }
 
-/* cuda_look.cu: what look() answers, on the device. All asynchronous on the stream but for the last. */
+/* What look() answers, found on the device: cuda_look.cu. */
 template <class S> struct cuda_look {
     cuda_view<S> view;
     cuda_size size;                                                                  /* the bricks */
@@ -122,7 +122,7 @@ template <class S> struct cuda_look {
 
 size_t cuda_look_bytes(int64_t tiles, int64_t nodes);
 
-/* Starts the work; *sums (on the device) gets the answer, with cells for elements. */
+/* Starts the work on the stream; *sums (on the device) gets the answer, with cells for elements. */
 template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream);
 
 #endif

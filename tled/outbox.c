@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdlib.h>
 
 struct outbox {
@@ -48,6 +49,17 @@ static void *deliver(void *context)
     return NULL;
 }
 
+/* Starts the thread; signals are the main thread's, as with the pool's. 0 or errno's code. */
+static int start(outbox *o)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    int code = pthread_create(&o->thread, NULL, deliver, o);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return code;
+}
+
 outbox *outbox_create(const tled_problem *p, const backend *device, void *state, outbox_frame *write, void *context,
                       err *e)
 {
@@ -63,7 +75,7 @@ outbox *outbox_create(const tled_problem *p, const backend *device, void *state,
     o->frame.displacement = mem_array(p->nodes, 3 * sizeof *o->frame.displacement, "the frames", e);
     o->frame.velocity = mem_array(p->nodes, 3 * sizeof *o->frame.velocity, "the frames", e);
     bool whole = o->frame.displacement && o->frame.velocity;
-    int code = whole ? pthread_create(&o->thread, NULL, deliver, o) : 0;
+    int code = whole ? start(o) : 0;
     o->running = whole && !code;
     if (code)
         err_system(e, NULL, code, "a thread for the frames");

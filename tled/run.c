@@ -40,7 +40,7 @@ typedef struct run {
 
 int64_t run_steps_to(double t, double rate)
 {
-    return (int64_t)ceil(t * rate - 1e-6);
+    return (int64_t)fmin(ceil(t * rate - 1e-6), 9e18); /* farther than any run */
 }
 
 tled_plan run_plan(double start, double rate)

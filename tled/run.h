@@ -32,9 +32,9 @@ typedef struct run_setup {
     double every;     /* s: a frame at each multiple; 0: the last state only */
     bool first;       /* and a frame of the state that the run begins from */
     void *context;
-    /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run. */
+    /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run, at a frame soon after. */
     outbox_frame *frame;
-    /* After every check. remaining: see run_remaining; cut: parts that each step is taken in from now on. */
+    /* After every check. remaining: see run_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
                     double damping);
 } run_setup;

@@ -60,7 +60,8 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
     return plan->origin + (double)(plan->first + i) / plan->rate;
 }
 
-/* What get() gives, nodes x 3 doubles each: m, m/s, and N: the sum of the elements' pulls at the displacement. */
+/* What get() gives, nodes x 3 doubles each: m, m/s, and N: the sum of the elements' pulls at the displacement (where a step or
+ * create led to the state; not right after back). */
 enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL };
 
 /* Slots for results that were taken. */

@@ -240,8 +240,7 @@ static int write_frame(void *context, double time, const double *displacement, c
     model_array *v = u ? frame_add(&f, &s->m, "node.velocity", e) : NULL;
     if (v)
         memcpy(v->f64, velocity, size);
-    int result = v ? model_write_frame(s->stage.writer, &f, e) : -1;
-    out_flush(s->stage.sink);
+    int result = v && !model_write_frame(s->stage.writer, &f, e) ? out_failed(s->stage.sink, e) : -1;
     frame_free(&f);
     return result;
 }

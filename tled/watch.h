@@ -20,8 +20,8 @@ typedef struct watch_sight {
     double largest;    /* m: displacement */
     double stable;     /* s: the stable step now, at most that at rest; within 1 %, or exactly */
     int64_t stable_element; /* whose it is, or -1: that at rest */
-    int64_t broken;         /* the first element that is inverted (J <= 0) or not a number, or -1 */
-    bool inverted;
+    int64_t broken;         /* an element that is inverted (J <= 0) or not a number, or -1 */
+    bool inverted;          /* that it is: known here, and after watch_tell wherever */
 } watch_sight;
 
 typedef struct watch {

@@ -224,6 +224,13 @@ void out_flush(out *o)
     empty(o, Z_SYNC_FLUSH);
 }
 
+int out_failed(const out *o, err *e)
+{
+    if (o->failed.status && !e->status)
+        *e = o->failed;
+    return o->failed.status ? -1 : 0;
+}
+
 int out_patch(out *o, int64_t offset, const void *bytes, size_t size, err *e)
 {
     if (!o->file.target || o->gzip)

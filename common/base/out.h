@@ -26,6 +26,9 @@ void out_format(out *o, const char *format, ...) SINEW_PRINTF(2, 3);
 /* Sends on what is buffered (live streams). */
 void out_flush(out *o);
 
+/* 0, or -1 with e filled where something could not be written: for who writes long and would rather end at once. */
+int out_failed(const out *o, err *e);
+
 /* Overwrites size bytes at offset from the start, for headers whose counts come last. Only for files opened by
  * path and not gzip; -1 with e filled elsewhere. */
 int out_patch(out *o, int64_t offset, const void *bytes, size_t size, err *e);

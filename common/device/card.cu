@@ -7,8 +7,23 @@ extern "C" {
 #include "device/card.h"
 }
 
+enum { LEAST = 75 }; /* compute capability that builds have code for: 10 major + minor */
+
 static char reason[200];
 static bool looked;
+
+/* Whether this build has code for the card. */
+static cudaError_t look_at_capability(void)
+{
+    int major = 0, minor = 0;
+    cudaError_t code = cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, 0);
+    if (code == cudaSuccess)
+        code = cudaDeviceGetAttribute(&minor, cudaDevAttrComputeCapabilityMinor, 0);
+    if (code == cudaSuccess && 10 * major + minor < LEAST)
+        snprintf(reason, sizeof reason, "its compute capability is %d.%d; expected at least %d.%d", major, minor,
+                 LEAST / 10, LEAST % 10);
+    return code;
+}
 
 const char *card_unusable(void)
 {
@@ -20,6 +35,8 @@ const char *card_unusable(void)
     if (code == cudaSuccess && count < 1)
         snprintf(reason, sizeof reason, "there is no device");
     else if (code == cudaSuccess)
+        code = look_at_capability();
+    if (code == cudaSuccess && !*reason)
         code = cudaFree(NULL); /* makes the context, so that a card that cannot be used is known now */
     if (code == cudaErrorInsufficientDriver)
         snprintf(reason, sizeof reason, "there is no driver, or it is older than this build's CUDA %d.%d",

@@ -202,6 +202,9 @@ fails 1 "a level of 2" "level '2' of bar; expected a number from 0 to 1" run -c 
 fails 1 "a muscle twice" "given twice" run -c bar=0.1 -c muscle_bar=0.2
 fails 1 "no level" "expected MUSCLE=LEVEL" run -c bar
 fails 1 "a full disk" 'No space left' run -q -n 1 -o /dev/full
+fails 1 "and a long run ends there" 'No space left' timeout 60 tled-run -q -t 1e6 --every 0.01 -o /dev/full <"$T/model"
+timeout 60 sh -c "tled-run -q -c bar=0.1 -t 1e6 --every 0.01 <'$T/model' 2>'$T/stderr' | head -c 100 >/dev/null"
+is "$? $(cat "$T/stderr")" "0 " "or where nobody reads, silently"
 
 edit() { # NAME PATTERN SED: the model, edited as text, is refused
     run -q -n 1 --text 2>/dev/null | sed -e '/^crc/d' -e '/^frame/,$d' -e "$3" >"$T/edited"

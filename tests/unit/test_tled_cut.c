@@ -216,80 +216,95 @@ static void test_block(const block *what)
     model_free(&m);
 }
 
-/* A problem of two blocks, one on the other, whose nodes between them stand twice: two parts; or, where `joined`, one, as
- * they have the first of these nodes in common (the other copy of it is in no element). */
+typedef struct blocks { /* a problem with arrays of its own */
+    tled_problem p;
+    double *position;
+    float *fibre;
+    int32_t *node, *volume;
+} blocks;
+
+/* Two blocks, one on the other, whose nodes between them stand twice: two parts; or, where `joined`, one, as they have
+ * the first of these nodes in common (the other copy of it is in no element). */
+static void make_blocks(blocks *b, const tled_problem *p, const block *what, bool joined)
+{
+    const int64_t nodes = p->nodes, elements = p->elements, corners = 8 * elements;
+    tled_problem *both = &b->p;
+    *both = *p;
+    both->nodes *= 2;
+    both->elements *= 2;
+    both->position = b->position = malloc(6 * (size_t)nodes * sizeof *b->position);
+    both->element_node = b->node = malloc(2 * (size_t)corners * sizeof *b->node);
+    both->element_volume = b->volume = calloc(2 * (size_t)elements, sizeof *b->volume);
+    both->corner = malloc(16 * (size_t)nodes * sizeof *both->corner);
+    both->hold = calloc((size_t)both->nodes * 3, sizeof *both->hold);
+    both->force_start = calloc((size_t)both->nodes + 2, sizeof *both->force_start);
+    if (!b->position || !b->node || !b->volume || !both->corner || !both->hold || !both->force_start)
+        exit(1);
+    for (int64_t i = 0; i < 6 * nodes; i++)
+        b->position[i] = p->position[i % (3 * nodes)] + (i >= 3 * nodes && i % 3 == 2 ? 3 * what->side[2] : 0);
+    for (int64_t i = 0; i < 2 * corners; i++)
+        b->node[i] = p->element_node[i % corners] + (i >= corners ? (int32_t)nodes : 0);
+    for (int64_t i = 0; i < 16 * nodes; i++) {
+        int32_t c = p->corner[i % (8 * nodes)];
+        both->corner[i] = c == corners ? (int32_t)(2 * corners) : c + (i >= 8 * nodes ? (int32_t)corners : 0);
+    }
+    if (joined) { /* corner 0 of the first element above is the node below, whose second element it is */
+        const int64_t below = block_node(what, 0, 0, 3);
+        b->node[corners] = (int32_t)below;
+        both->corner[8 * below + 1] = (int32_t)corners;
+        both->corner[8 * nodes] = (int32_t)(2 * corners);
+    }
+}
+
+/* Every node is free, and moved. */
+static void move_blocks(blocks *b)
+{
+    tled_problem *p = &b->p;
+    p->mass = calloc((size_t)p->nodes, sizeof *p->mass);
+    p->displacement = calloc((size_t)p->nodes * 3, sizeof *p->displacement);
+    p->velocity = calloc((size_t)p->nodes * 3, sizeof *p->velocity);
+    p->fibre = b->fibre = calloc((size_t)p->elements * 3, sizeof *b->fibre);
+    if (!p->mass || !p->displacement || !p->velocity || !b->fibre)
+        exit(1);
+    for (int64_t i = 0; i < 3 * p->nodes; i++) {
+        p->hold[i] = HOLD_FREE;
+        p->mass[i / 3] = 1;
+        p->displacement[i] = moved(i / 3, (int)(i % 3));
+    }
+}
+
 static void test_slit(bool joined)
 {
     static const int brick[3] = {4, 4, 4};
     const block what = {{5, 4, 3}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0};
     model m = {0};
     script s = {0};
-    tled_problem p = {0}, both;
+    tled_problem p = {0};
+    blocks both;
     tiles t;
     err e = {0};
     block_make(&what, &m);
     make(&m, &s, &p);
-    both = p;
-    both.nodes *= 2;
-    both.elements *= 2;
-    const int64_t nodes = p.nodes, elements = p.elements, corners = 8 * elements;
-    double *position = malloc(6 * (size_t)nodes * sizeof *position), *mass = calloc(2 * (size_t)nodes, sizeof *mass);
-    double *displacement = calloc(6 * (size_t)nodes, sizeof *displacement);
-    double *velocity = calloc(6 * (size_t)nodes, sizeof *velocity);
-    float *fibre = calloc(6 * (size_t)elements, sizeof *fibre);
-    int32_t *volume = calloc(2 * (size_t)elements, sizeof *volume);
-    int32_t *node = malloc(2 * (size_t)corners * sizeof *node), *corner = malloc(16 * (size_t)nodes * sizeof *corner);
-    both.hold = calloc((size_t)both.nodes * 3, sizeof *both.hold);
-    both.force_start = calloc((size_t)both.nodes + 2, sizeof *both.force_start);
-    if (!position || !node || !corner || !volume || !mass || !displacement || !velocity || !fibre || !both.hold ||
-        !both.force_start)
-        exit(1);
-    for (int64_t i = 0; i < 6 * nodes; i++)
-        position[i] = p.position[i % (3 * nodes)] + (i >= 3 * nodes && i % 3 == 2 ? 3 * what.side[2] : 0);
-    for (int64_t i = 0; i < 2 * corners; i++)
-        node[i] = p.element_node[i % corners] + (i >= corners ? (int32_t)nodes : 0);
-    for (int64_t i = 0; i < 16 * nodes; i++) {
-        int32_t c = p.corner[i % (8 * nodes)];
-        corner[i] = c == corners ? (int32_t)(2 * corners) : c + (i >= 8 * nodes ? (int32_t)corners : 0);
-    }
-    if (joined) { /* corner 0 of the first element above is the node below, whose fifth element it is */
-        const int64_t below = block_node(&what, 0, 0, 3);
-        node[corners] = (int32_t)below;
-        corner[8 * below + 1] = (int32_t)corners;
-        corner[8 * nodes] = (int32_t)(2 * corners);
-    }
-    for (int64_t n = 0; n < 2 * nodes; n++)
-        for (int a = 0; a < 3; a++) {
-            both.hold[3 * n + a] = HOLD_FREE;
-            displacement[3 * n + a] = moved(n, a);
-            mass[n] = 1;
-        }
-    both.mass = mass;
-    both.displacement = displacement;
-    both.velocity = velocity;
-    both.fibre = fibre;
-    both.position = position;
-    both.element_node = node;
-    both.element_volume = volume;
-    both.corner = corner;
-    int failed = tiles_make(&t, &both, brick, &e);
+    make_blocks(&both, &p, &what, joined);
+    move_blocks(&both);
+    int failed = tiles_make(&t, &both.p, brick, &e);
     if (joined)
         ok(failed && strstr(e.text, "share a place"), "a slit is refused: %s", e.text);
     else
-        ok(!failed && t.nodes == 2 * nodes, "two parts that touch are none %s", e.text);
+        ok(!failed && t.nodes == 2 * p.nodes, "two parts that touch are none %s", e.text);
     for (int threads = 1; threads < 4; threads++)
-        test_cpu(&both, threads, joined ? "a slit in rows" : "two parts in rows");
+        test_cpu(&both.p, threads, joined ? "a slit in rows" : "two parts in rows");
     tiles_free(&t);
-    free(mass);
-    free(displacement);
-    free(velocity);
-    free(fibre);
-    free(position);
-    free(node);
-    free(corner);
-    free(volume);
-    free(both.hold);
-    free(both.force_start);
+    free(both.position);
+    free(both.node);
+    free(both.volume);
+    free(both.fibre);
+    free(both.p.corner);
+    free(both.p.hold);
+    free(both.p.force_start);
+    free(both.p.mass);
+    free(both.p.displacement);
+    free(both.p.velocity);
     tled_problem_free(&p);
     script_free(&s);
     model_free(&m);

@@ -4,6 +4,8 @@
 // needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c
 #include "tled_bench.h"
 
+#include <time.h>
+
 static const block lump = {{4, 3, 5}, {.01, .01, .0125}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0};
 static const block muscle = {{8, 4, 4}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0};
 
@@ -270,6 +272,46 @@ static void test_let_go(void)
     bench_free(&b);
 }
 
+enum { LAST_FRAME = 3 }; /* that no_room takes */
+
+/* Takes its time, so that the run has to wait; then there is no more room. */
+static int no_room(void *context, double time, const double *displacement, const double *velocity, err *e)
+{
+    bench *b = context;
+    struct timespec nap = {0, 2000000};
+    nanosleep(&nap, NULL);
+    if (b->frames == LAST_FRAME)
+        return err_set(e, NULL, 0, "no room at %g s", time);
+    return bench_frame(context, time, displacement, velocity, e);
+}
+
+static void count_checks(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+                         double damping)
+{
+    (void)step, (void)sight, (void)remaining, (void)cut, (void)damping;
+    ((bench *)context)->cuts++;
+}
+
+/* A frame that cannot be written ends the run soon, whether frames are taken on the way or steps are taken again for them. */
+static void test_frame_fails(const backend *device, const char *name)
+{
+    static const double every[] = {1e-9, .0007, .0123};
+    static const char *const want[] = {"no room at 0.000909091 s", "no room at 0.00295455 s", "no room at 0.0493182 s"};
+    for (int i = 0; i < 3; i++) {
+        bench b;
+        bench_make(&b, &muscle, NULL, .1, .0075, 1);
+        bench_steps(&b, 1000000, b.setup.damping);
+        b.setup.device = device;
+        b.setup.every = every[i];
+        b.setup.frame = no_room;
+        b.setup.checked = count_checks;
+        int gone = bench_go(&b);
+        ok(gone && !strcmp(b.e.text, want[i]), "%s: frames every %g s: %s", name, every[i], b.e.text);
+        ok(b.frames == LAST_FRAME && b.cuts < 20, "%s: the run ends, after %lld checks", name, (long long)b.cuts);
+        bench_free(&b);
+    }
+}
+
 static void test_times(void)
 {
     tled_plan p = run_plan(.3, 900);
@@ -278,6 +320,7 @@ static void test_times(void)
     ok(p.origin == .3001 && p.first == 0, "0.3001 s is no step");
     ok(run_steps_to(.5, 4400) == 2200 && run_steps_to(.04, 4400) == 176, "times are whole numbers of steps");
     ok(run_steps_to(.0123, 900) == 12, "or the next step");
+    ok(run_steps_to(1e9, 1e12) > INT64_C(1000000000000000), "what no run comes to is far");
 }
 
 static const char *no_device(void)
@@ -343,6 +386,7 @@ static void test_device(const backend *device, const char *name)
     test_same_bytes(device, name);
     test_jump(device, name);
     test_fraction(device, name);
+    test_frame_fails(device, name);
 }
 
 int main(void)
