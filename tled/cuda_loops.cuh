@@ -33,7 +33,7 @@ typedef struct cuda_state {
     real *velocity;
     real *kept_displacement; /* and velocity after it */
     real *kept_internal;     /* made when first wanted */
-    real *frame;             /* a copy of displacement and velocity to send; likewise */
+    real *frame;             /* a copy of displacement to send; likewise, unless that is: one of the two */
     bool spare_is_internal, has_kept_internal;
     bool frame_direct;          /* there is no room for `frame` */
     double *table[TABLES];      /* on the card: TABLE_STEPS + 1 rows of the curves' values */
@@ -314,9 +314,9 @@ static int cuda_back(void *state, err *e)
 static int make_frame(cuda_state *s, cuda_frame *f, err *e)
 {
     const int64_t bytes = 6 * s->view.stride * (int64_t)sizeof(real);
-    if (bytes > FRAME_DIRECT && !s->frame && !s->frame_direct) {
+    if (bytes > FRAME_DIRECT && !s->kept_internal && !s->frame && !s->frame_direct) {
         err full = {0};
-        s->frame = (real *)card_take(bytes, "a frame", &full);
+        s->frame = (real *)card_take(bytes / 2, "a frame", &full);
         s->frame_direct = !s->frame;
     }
     if (f->host)
@@ -327,27 +327,23 @@ static int make_frame(cuda_state *s, cuda_frame *f, err *e)
                : 0;
 }
 
-/* To the host, between two steps. */
-static int send_direct(cuda_state *s, const cuda_frame *f, err *e)
+/* The velocity goes to the host between two steps; so does the displacement, or it is copied on the card, and from there
+ * goes in a stream of its own while the steps go on. */
+static int send_frame(cuda_state *s, const cuda_frame *f, err *e)
 {
     const int64_t n = 3 * s->view.stride;
     const size_t bytes = (size_t)n * sizeof(real);
-    return CUDA_TRY(cudaMemcpyAsync(f->host, s->displacement, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
-                   CUDA_TRY(cudaMemcpyAsync(f->host + n, s->velocity, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
-                   CUDA_TRY(cudaEventRecord(f->arrived, s->stream))
-               ? -1
-               : 0;
-}
-
-/* Copies the results on the card, and from that copy to the host in a stream of its own, while the steps go on. */
-static int send_aside(cuda_state *s, const cuda_frame *f, err *e)
-{
-    const int64_t n = 3 * s->view.stride;
+    if (CUDA_TRY(cudaMemcpyAsync(f->host + n, s->velocity, bytes, cudaMemcpyDeviceToHost, s->stream)))
+        return -1;
+    if (!s->frame)
+        return CUDA_TRY(cudaMemcpyAsync(f->host, s->displacement, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
+                       CUDA_TRY(cudaEventRecord(f->arrived, s->stream))
+                   ? -1
+                   : 0;
     return CUDA_TRY(cudaStreamWaitEvent(s->stream, s->frame_free, 0)) || copy(s, s->frame, s->displacement, n, e) ||
-                   copy(s, s->frame + n, s->velocity, n, e) || CUDA_TRY(cudaEventRecord(s->frame_ready, s->stream)) ||
+                   CUDA_TRY(cudaEventRecord(s->frame_ready, s->stream)) ||
                    CUDA_TRY(cudaStreamWaitEvent(s->sending, s->frame_ready, 0)) ||
-                   CUDA_TRY(cudaMemcpyAsync(f->host, s->frame, 2 * (size_t)n * sizeof(real), cudaMemcpyDeviceToHost,
-                                            s->sending)) ||
+                   CUDA_TRY(cudaMemcpyAsync(f->host, s->frame, bytes, cudaMemcpyDeviceToHost, s->sending)) ||
                    CUDA_TRY(cudaEventRecord(s->frame_free, s->sending)) ||
                    CUDA_TRY(cudaEventRecord(f->arrived, s->sending))
                ? -1
@@ -361,7 +357,7 @@ static int cuda_take(void *state, int slot, err *e)
     if (make_frame(s, f, e))
         return -1;
     f->step = s->step;
-    return s->frame ? send_aside(s, f, e) : send_direct(s, f, e);
+    return send_frame(s, f, e);
 }
 
 static int cuda_taken(void *state, int slot, void *to, err *e)
@@ -381,7 +377,7 @@ static int64_t cuda_bytes(const void *state)
 {
     const cuda_state *s = (const cuda_state *)state;
     const int64_t rows = 3 * s->view.stride * (int64_t)sizeof(real);
-    return s->bytes + (s->kept_internal ? rows : 0) + (s->frame ? 2 * rows : 0);
+    return s->bytes + (s->kept_internal ? rows : 0) + (s->frame ? rows : 0);
 }
 
 static int cuda_look_at(void *state, const void *question, void *answer, err *e)

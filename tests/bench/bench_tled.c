@@ -78,6 +78,7 @@ static void measure_steps(measured *w, bench *b)
         steps *= 2;
     for (int i = 0; i < ROUNDS; i++)
         took[i] = time_steps(b, w->device, state, &plan, steps);
+    bench_must(w->device->take(state, 0, &b->e), &b->e); /* what a run has: one frame at least */
     w->bytes = (double)w->device->bytes(state);
     say(w, b, "step", took, steps);
     w->device->destroy(state);

@@ -201,17 +201,20 @@ static void test_diverged(const backend *cpu, const backend *cuda)
     bench_free(&there);
 }
 
-/* The card's memory: with frames and without, at most 120 bytes an element in single precision. */
-static void test_memory(const block *what, const backend *cuda)
+/* The card's memory: with frames, or in a run to rest and with frames, at most 120 bytes an element in single precision. */
+static void test_memory(const block *what, bool rests, const backend *cuda)
 {
     bench b;
+    tled_sums sums;
+    tled_question question = {.rest = INFINITY, .raise = 1.01, .differences = rests};
     bench_make(&b, what, NULL, 0, .0075, 2);
     void *state = cuda->create(&b.problem, b.setup.threads, &b.e);
-    bench_must(!state, &b.e);
+    bench_must(!state || cuda->look(state, &question, &sums, &b.e), &b.e);
     double each = (double)cuda->bytes(state) / (double)b.problem.elements;
     bench_must(cuda->take(state, 0, &b.e), &b.e);
     double frames = (double)cuda->bytes(state) / (double)b.problem.elements;
-    ok(each > 40 && frames >= each && frames <= 120, "single: %.4g bytes an element, %.4g with frames", each, frames);
+    ok(each > 40 && frames >= each && frames <= 120, "single%s: %.4g bytes an element, %.4g with frames",
+       rests ? ", to rest" : "", each, frames);
     cuda->destroy(state);
     bench_free(&b);
 }
@@ -263,8 +266,10 @@ int main(void)
     test_look(&middle, false, twice, "double, more bricks", 1e-10);
     test_look(&middle, false, once, "single, more bricks", 1e-6);
     test_look(&large, false, once, "single, many bricks", 1e-6);
-    test_memory(&middle, once);
-    test_memory(&large, once);
+    for (int rests = 0; rests < 2; rests++) {
+        test_memory(&middle, rests, once);
+        test_memory(&large, rests, once);
+    }
     test_diverged(&tled_cpu_double, twice);
     return done_testing();
 }
