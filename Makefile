@@ -52,6 +52,8 @@ $(BUILD)/%.o: %.c
 CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_75,code=compute_75
 NVCC_FLAGS = -std=c++17 -O3 -lineinfo -fmad=false $(CUDA_ARCH) -Werror all-warnings \
 	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
+# As on the CPU: numbers of single precision that are too small to be normal are zero.
+$(BUILD)/tled/cuda_single.o: NVCC_FLAGS += -ftz=true
 CUDA_SRC := $(wildcard common/device/*.cu tled/*.cu)
 $(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
