@@ -145,7 +145,7 @@ static inline void move_nodes(const cpu_work *w, const rows_layer *l, int a, nod
     const bool finish = w->what & PASS_FINISH, begin = w->what & PASS_BEGIN, internal = w->what & PASS_INTERNAL;
     for (int32_t i = 0; i < l->nodes; i += LANES) {
         const int64_t at = l->node + i;
-        real_bits flags;
+        real_bits flags = {0};
         for (int lane = 0; lane < LANES; lane++)
             flags[lane] = w->flags[at + lane];
         const real_mask bits = REAL_CONVERT(flags, real_mask);

@@ -22,6 +22,16 @@ static bool same(const bench *a, const bench *b)
            !memcmp(a->displacement, b->displacement, (size_t)a->problem.nodes * 6 * sizeof *a->displacement);
 }
 
+/* In single precision numbers that are too small to be normal are taken for zero; which of those at the very edge are, a card
+ * and a processor may decide differently. */
+static bool same_but_the_smallest(const bench *a, const bench *b)
+{
+    double most = 0;
+    for (int64_t i = 0; i < 6 * a->problem.nodes; i++)
+        most = fmax(most, fabs(a->displacement[i] - b->displacement[i]));
+    return a->time == b->time && a->frames == b->frames && most < 1e-30;
+}
+
 /* The largest difference of a component, as a share of the largest displacement. */
 static double apart(const bench *a, const bench *b)
 {
@@ -71,7 +81,8 @@ static void test_bytes(const block *what, double level, bool scripted, int64_t s
     int gone = bench_go(&here) | bench_go(&there);
     ok(!gone && here.end.sight.largest > 1e-6, "%s: %" PRId64 " steps, %" PRId64 " frames, %.2g mm %s", name, steps,
        there.frames, 1e3 * here.end.sight.largest, there.e.text);
-    ok(!gone && same(&here, &there), "%s: the same bytes as the CPU in the same precision", name);
+    ok(!gone && (cpu == &tled_cpu_double ? same(&here, &there) : same_but_the_smallest(&here, &there)),
+       "%s: the same bytes as the CPU in the same precision", name);
     bench_free(&here);
     bench_free(&there);
 }
