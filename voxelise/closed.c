@@ -61,35 +61,194 @@ static bool same_polygon(const closed_polygons *p, const reading *a, int64_t oth
     return true;
 }
 
-/* Drops each polygon given before. like: of each polygon, the first that reads as it does. */
-static int find_repeated(const closed_polygons *p, closed_result *r, int64_t *like, err *e)
+/* ---- tables by vertex: what is alike has the same vertex, so it is looked for among few, that lie side by side */
+
+typedef struct table {
+    int64_t low, past; /* vertices */
+    int64_t *start;    /* vertices + 1: the first entry of each */
+    uint64_t *entry;   /* 32 bits to tell it by, 32 of the polygon */
+    int64_t dots;      /* edges without length */
+} table;
+
+/* Takes one entry after another: first to count them, then to store them. */
+typedef void table_fill(const closed_polygons *p, int64_t polygon, table *t, bool store);
+
+static void put(table *t, int32_t vertex, uint32_t key, int64_t polygon, bool store)
 {
-    int64_t size = hash_size(p->polygons);
-    int64_t *table = mem_array(size, sizeof *table, "polygons", e); /* a polygon + 1; 0: free */
-    if (!table)
-        return -1;
-    for (int64_t i = 0; i < p->polygons; i++) {
-        reading a = reading_of(p, i);
-        int64_t at = (int64_t)(hash_polygon(p, &a) & (uint64_t)(size - 1));
-        while (table[at] && !same_polygon(p, &a, table[at] - 1))
-            at = (at + 1) & (size - 1);
-        if (!table[at])
-            table[at] = i + 1;
-        like[i] = table[at] - 1;
-        r->drop[i] = like[i] != i;
+    int64_t *start = &t->start[vertex - t->low];
+    if (store)
+        t->entry[start[1]++] = (uint64_t)key << 32 | (uint64_t)polygon;
+    else
+        start[2]++;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const uint64_t *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/* Most vertices have a few entries. */
+static void sort_entries(uint64_t *entry, int64_t count)
+{
+    enum { FEW = 24 };
+    if (count > FEW) {
+        qsort(entry, (size_t)count, sizeof *entry, by_value);
+        return;
     }
-    free(table);
+    for (int64_t i = 1; i < count; i++) {
+        uint64_t one = entry[i];
+        int64_t at = i;
+        for (; at > 0 && entry[at - 1] > one; at--)
+            entry[at] = entry[at - 1];
+        entry[at] = one;
+    }
+}
+
+static void find_vertices(const closed_polygons *p, table *t)
+{
+    t->low = INT32_MAX, t->past = 0;
+    for (int64_t i = 0; i < p->polygons; i++)
+        for (int64_t c = 0; c < corner_count(p, i); c++) {
+            int32_t v = corner(p, i, c);
+            t->low = v < t->low ? v : t->low;
+            t->past = v >= t->past ? (int64_t)v + 1 : t->past;
+        }
+    t->low = t->low < t->past ? t->low : t->past;
+}
+
+/* Counted two places up, so that filling leaves each vertex's first in its place. */
+static int make_table(table *t, const closed_polygons *p, table_fill *fill, err *e)
+{
+    find_vertices(p, t);
+    int64_t vertices = t->past - t->low;
+    t->start = mem_array(vertices + 2, sizeof *t->start, "vertices", e);
+    if (!t->start)
+        return -1;
+    for (int64_t i = 0; i < p->polygons; i++)
+        fill(p, i, t, false);
+    for (int64_t v = 0; v < vertices; v++)
+        t->start[v + 2] += t->start[v + 1];
+    t->entry = mem_array(t->start[vertices + 1], sizeof *t->entry, "polygons", e);
+    if (!t->entry)
+        return -1;
+    for (int64_t i = 0; i < p->polygons; i++)
+        fill(p, i, t, true);
+    for (int64_t v = 0; v < vertices; v++)
+        sort_entries(t->entry + t->start[v], t->start[v + 1] - t->start[v]);
     return 0;
 }
 
-/* ---- edges, and the parts of the surface that they join */
+static void free_table(table *t)
+{
+    free(t->start);
+    free(t->entry);
+    *t = (table){0};
+}
 
-typedef struct edge {
-    uint64_t ends;          /* lower vertex, higher vertex; 0: free, for an edge's higher end is not vertex 0 */
-    int64_t polygon;        /* the first that has it */
-    bool open, uncancelled; /* used an odd number of times: by polygons not dropped, by all */
-    bool told;
-} edge;
+static int64_t polygon_of(uint64_t entry)
+{
+    return (int64_t)(entry & UINT32_MAX);
+}
+
+/* Calls take with each run of entries of one vertex and one key. */
+typedef void table_take(void *context, const uint64_t *entry, int64_t count);
+
+static void each_run(const table *t, table_take *take, void *context)
+{
+    for (int64_t v = 0; v < t->past - t->low; v++)
+        for (int64_t from = t->start[v], to = from; from < t->start[v + 1]; from = to) {
+            while (to < t->start[v + 1] && t->entry[to] >> 32 == t->entry[from] >> 32)
+                to++;
+            take(context, t->entry + from, to - from);
+        }
+}
+
+/* ---- polygons given again, by their least vertex */
+
+static void fill_polygon(const closed_polygons *p, int64_t polygon, table *t, bool store)
+{
+    reading a = reading_of(p, polygon);
+    put(t, read_corner(p, &a, 0), store ? (uint32_t)(hash_polygon(p, &a) >> 32) : 0, polygon, store);
+}
+
+typedef struct repeats {
+    const closed_polygons *p;
+    closed_result *r;
+    int64_t *like; /* polygons: the first that reads as each does; owned by whoever looks for them */
+    int64_t count;
+} repeats;
+
+/* Polygons of one hash: in nearly all cases one, or the same again and again. */
+static void take_alike(void *context, const uint64_t *entry, int64_t count)
+{
+    repeats *f = context;
+    for (int64_t i = 1; i < count; i++) {
+        int64_t polygon = polygon_of(entry[i]);
+        reading a = reading_of(f->p, polygon);
+        for (int64_t before = 0; before < i && f->like[polygon] == polygon; before++) {
+            int64_t other = polygon_of(entry[before]);
+            if (f->like[other] == other && same_polygon(f->p, &a, other))
+                f->like[polygon] = other;
+        }
+        f->r->drop[polygon] = f->like[polygon] != polygon;
+        f->count += f->r->drop[polygon];
+    }
+}
+
+/* Drops each polygon given before. */
+static int find_repeated(repeats *f, err *e)
+{
+    table t = {0};
+    f->like = mem_array(f->p->polygons, sizeof *f->like, "polygons", e);
+    int status = f->like ? make_table(&t, f->p, fill_polygon, e) : -1;
+    for (int64_t i = 0; !status && i < f->p->polygons; i++)
+        f->like[i] = i;
+    if (!status)
+        each_run(&t, take_alike, f);
+    free_table(&t);
+    return status;
+}
+
+/* ---- edges, by their lower vertex, and the parts of the surface that they join */
+
+static void fill_edges(const closed_polygons *p, int64_t polygon, table *t, bool store)
+{
+    const int64_t *start = &p->o->face_start[p->face[polygon]];
+    int32_t a = p->weld[p->o->corner_vertex[start[1] - 1]];
+    for (int64_t c = start[0]; c < start[1]; c++) {
+        int32_t b = p->weld[p->o->corner_vertex[c]];
+        if (a != b)
+            put(t, a < b ? a : b, (uint32_t)(a < b ? b : a), polygon, store);
+        else
+            t->dots++;
+        a = b;
+    }
+}
+
+/* Whether a polygon may have been given again: two that are alike share both edges at their least vertex, and nearly
+ * nowhere else two polygons share two edges of one vertex, an edge more than twice, or one both ends. */
+static bool may_repeat(const table *t)
+{
+    enum { MOST = 16 };
+    uint64_t pair[MOST];
+    for (int64_t v = 0; v < t->past - t->low; v++) {
+        int pairs = 0;
+        for (int64_t i = t->start[v]; i + 1 < t->start[v + 1]; i++) {
+            const uint64_t *entry = t->entry + i;
+            if (entry[0] >> 32 != entry[1] >> 32)
+                continue;
+            if (pairs == MOST || entry[0] == entry[1])
+                return true;
+            pair[pairs] = entry[0] << 32 | (entry[1] & UINT32_MAX);
+            for (int n = 0; n < pairs; n++)
+                if (pair[n] == pair[pairs] || entry[-1] >> 32 == entry[0] >> 32)
+                    return true;
+            pairs++;
+        }
+    }
+    return t->dots > 0;
+}
 
 /* A part: what edges join. Known by one of its polygons. */
 typedef struct part {
@@ -98,9 +257,11 @@ typedef struct part {
 } part;
 
 typedef struct edges {
-    edge *table;
-    int64_t size;
-    part *part; /* polygons */
+    const closed_polygons *p;
+    closed_result *r;
+    const int64_t *like;
+    table by_vertex;
+    part *part; /* polygons; NULL where none is given again */
 } edges;
 
 static part *part_of(const edges *t, int64_t polygon)
@@ -110,44 +271,28 @@ static part *part_of(const edges *t, int64_t polygon)
     return &t->part[polygon];
 }
 
-/* The edge from a polygon's corner to the next, or NULL where both are at one place. */
-static edge *edge_at(const edges *t, const closed_polygons *p, int64_t polygon, int64_t at)
+static void join_parts(void *context, const uint64_t *entry, int64_t count)
 {
-    int32_t a = corner(p, polygon, at), b = corner(p, polygon, (at + 1) % corner_count(p, polygon));
-    if (a == b)
-        return NULL;
-    uint64_t ends = a < b ? (uint64_t)a << 32 | (uint64_t)b : (uint64_t)b << 32 | (uint64_t)a;
-    int64_t i = (int64_t)(hash_mix(ends) & (uint64_t)(t->size - 1));
-    while (t->table[i].ends && t->table[i].ends != ends)
-        i = (i + 1) & (t->size - 1);
-    if (!t->table[i].ends)
-        t->table[i] = (edge){.ends = ends, .polygon = polygon};
-    return &t->table[i];
+    const edges *t = context;
+    for (int64_t i = 1; i < count; i++)
+        part_of(t, polygon_of(entry[i]))->parent = part_of(t, polygon_of(entry[0]))->parent;
 }
 
-static void use_edges(const edges *t, const closed_polygons *p, const bool *drop)
+/* Used an odd number of times, by polygons that are not dropped. */
+static bool is_open(const edges *t, const uint64_t *entry, int64_t count)
 {
-    for (int64_t i = 0; i < p->polygons; i++)
-        t->part[i].parent = i;
-    for (int64_t i = 0; i < p->polygons; i++)
-        for (int64_t c = 0; c < corner_count(p, i); c++) {
-            edge *x = edge_at(t, p, i, c);
-            if (!x)
-                continue;
-            x->uncancelled = !x->uncancelled;
-            x->open ^= !drop[i];
-            part_of(t, i)->parent = part_of(t, x->polygon)->parent;
-        }
+    bool odd = false;
+    for (int64_t i = 0; i < count; i++)
+        odd ^= !t->r->drop[polygon_of(entry[i])];
+    return odd;
 }
 
-static void count_open(const edges *t)
+static void count_open(void *context, const uint64_t *entry, int64_t count)
 {
-    for (int64_t i = 0; i < t->size; i++)
-        if (t->table[i].ends) {
-            part *of = part_of(t, t->table[i].polygon);
-            of->open += t->table[i].open;
-            of->uncancelled += t->table[i].uncancelled;
-        }
+    const edges *t = context;
+    part *of = part_of(t, polygon_of(entry[0]));
+    of->open += is_open(t, entry, count);
+    of->uncancelled += count % 2;
 }
 
 /* Whether the polygons that a part gives again cancel in pairs: fewer edges are open then, and some polygon is left. (A
@@ -159,14 +304,16 @@ static bool cancels(const part *of)
 
 /* Where polygons cancel, one that was given an even number of times goes altogether: two alike need not be cut into the
  * same triangles. */
-static void cancel(const edges *t, const closed_polygons *p, closed_result *r, const int64_t *like)
+static void cancel(const edges *t)
 {
-    for (int64_t i = 0; i < p->polygons; i++)
+    closed_result *r = t->r;
+    const int64_t *like = t->like;
+    for (int64_t i = 0; i < t->p->polygons; i++)
         if (like[i] != i)
             r->drop[like[i]] = !r->drop[like[i]];
-    for (int64_t i = 0; i < p->polygons; i++)
+    for (int64_t i = 0; i < t->p->polygons; i++)
         part_of(t, i)->left += !r->drop[i];
-    for (int64_t i = 0; i < p->polygons; i++) {
+    for (int64_t i = 0; i < t->p->polygons; i++) {
         bool pairs = cancels(part_of(t, i)), repeat = like[i] != i;
         r->drop[i] = r->drop[i] && (pairs || repeat);
         r->cancelled += repeat && pairs;
@@ -174,48 +321,57 @@ static void cancel(const edges *t, const closed_polygons *p, closed_result *r, c
     }
 }
 
-/* Each open edge is told of the first surface that has it. */
-static void tell_open(const edges *t, const closed_polygons *p, closed_result *r)
+/* Each open edge is told of the first surface that has it: entries are in order of their polygons. */
+static void tell_open(void *context, const uint64_t *entry, int64_t count)
 {
-    for (int64_t i = 0; i < p->polygons; i++)
-        for (int64_t c = 0; c < corner_count(p, i); c++) {
-            edge *x = edge_at(t, p, i, c);
-            if (!x || x->told || !(cancels(part_of(t, i)) ? x->uncancelled : x->open))
-                continue;
-            x->told = true;
-            r->open++;
-            r->open_of[p->surface[i]]++;
-        }
+    const edges *t = context;
+    int64_t first = polygon_of(entry[0]);
+    bool even = count % 2 == 0;
+    if (!t->part ? even : cancels(part_of(t, first)) ? even : !is_open(t, entry, count))
+        return;
+    t->r->open++;
+    t->r->open_of[t->p->surface[first]]++;
 }
 
-static int check_edges(const closed_polygons *p, closed_result *r, const int64_t *like, err *e)
+static int judge_repeated(edges *t, err *e)
 {
-    int64_t corners = 0;
-    for (int64_t i = 0; i < p->polygons; i++)
-        corners += corner_count(p, i);
-    edges t = {.size = hash_size(corners)};
-    t.table = mem_array(t.size, sizeof *t.table, "edges", e);
-    t.part = t.table ? mem_array(p->polygons, sizeof *t.part, "polygons", e) : NULL;
-    int status = t.part ? 0 : -1;
-    if (!status) {
-        use_edges(&t, p, r->drop);
-        count_open(&t);
-        cancel(&t, p, r, like);
-        tell_open(&t, p, r);
-    }
-    free(t.table);
-    free(t.part);
+    t->part = mem_array(t->p->polygons, sizeof *t->part, "polygons", e);
+    if (!t->part)
+        return -1;
+    for (int64_t i = 0; i < t->p->polygons; i++)
+        t->part[i].parent = i;
+    each_run(&t->by_vertex, join_parts, t);
+    each_run(&t->by_vertex, count_open, t);
+    cancel(t);
+    return 0;
+}
+
+static int check_edges(edges *t, err *e)
+{
+    repeats again = {.p = t->p, .r = t->r};
+    int status = make_table(&t->by_vertex, t->p, fill_edges, e);
+    if (!status && may_repeat(&t->by_vertex))
+        status = find_repeated(&again, e);
+    t->like = again.like;
+    if (!status && again.count)
+        status = judge_repeated(t, e);
+    if (!status)
+        each_run(&t->by_vertex, tell_open, t);
+    free_table(&t->by_vertex);
+    free(t->part);
+    free(again.like);
     return status;
 }
 
 int closed_check(const closed_polygons *p, closed_result *r, err *e)
 {
     *r = (closed_result){0};
-    int64_t *like = mem_array(p->polygons, sizeof *like, "polygons", e);
-    r->drop = like ? mem_array(p->polygons, sizeof *r->drop, "polygons", e) : NULL;
+    if (p->polygons > UINT32_MAX)
+        return err_set(e, p->o->name, 0, "%lld polygons; at most %u are possible", (long long)p->polygons, UINT32_MAX);
+    edges t = {.p = p, .r = r};
+    r->drop = mem_array(p->polygons, sizeof *r->drop, "polygons", e);
     r->open_of = r->drop ? mem_array(p->surfaces, sizeof *r->open_of, "surfaces", e) : NULL;
-    int status = r->open_of && !find_repeated(p, r, like, e) && !check_edges(p, r, like, e) ? 0 : -1;
-    free(like);
+    int status = r->open_of ? check_edges(&t, e) : -1;
     if (status)
         closed_free(r);
     return status;
