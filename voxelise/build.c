@@ -2,139 +2,206 @@
 
 #include "base/mem.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Two layers of lattice corners, over the rectangle that elements cover. */
-typedef struct sweep {
-    const voxels *x;
-    int64_t low[2], size[2];       /* of corners along i and j */
-    int32_t *below, *above;        /* a corner's node, -1 = none */
-    int64_t first, past;           /* runs of the layer of cells above the corners last numbered */
-    int64_t nodes;                 /* so far */
-    model_array *position, *place; /* NULL: the nodes are only counted */
-    const lattice *l;
-} sweep;
+enum { WORD = 64, CHUNK = 4 /* layers */ };
 
-static void find_rectangle(sweep *s)
+/* The rectangle of corners that elements have in any layer. */
+typedef struct rectangle {
+    int64_t low[2], size[2]; /* along i and j */
+    int64_t words;           /* of a row along i */
+} rectangle;
+
+typedef struct work {
+    const voxels *x;
+    const voxels_layers *layer;
+    const lattice *l;
+    rectangle of;
+    int64_t *first;   /* layers of corners + 1: the first node of each */
+    double *position; /* the model's arrays */
+    int32_t *place, *node, *element_place, *volume;
+    atomic_bool failed;
+} work;
+
+/* One layer of corners: which of them elements have, and for each word of a row the nodes before it in the layer. So the
+ * nodes of a run, whose corners follow one another, are known from its first. */
+typedef struct corners {
+    uint64_t *bits;
+    int32_t *before;
+    int64_t count;
+} corners;
+
+static rectangle find_rectangle(const voxels *x)
 {
-    const voxels *x = s->x;
+    rectangle r = {{INT32_MAX, INT32_MAX}, {0, 0}, 0};
     int64_t high[2] = {INT32_MIN, INT32_MIN};
-    s->low[0] = s->low[1] = INT32_MAX;
-    for (int64_t r = 0; r < x->runs; r++) {
-        const climb_run *a = &x->run[r];
-        s->low[0] = a->from < s->low[0] ? a->from : s->low[0];
-        s->low[1] = a->j < s->low[1] ? a->j : s->low[1];
+    for (int64_t n = 0; n < x->runs; n++) {
+        const climb_run *a = &x->run[n];
+        r.low[0] = a->from < r.low[0] ? a->from : r.low[0];
+        r.low[1] = a->j < r.low[1] ? a->j : r.low[1];
         high[0] = a->to > high[0] ? a->to : high[0];
         high[1] = a->j + 1 > high[1] ? a->j + 1 : high[1];
     }
-    for (int a = 0; a < 2; a++)
-        s->size[a] = x->runs ? high[a] - s->low[a] + 1 : 0;
+    for (int a = 0; x->runs && a < 2; a++)
+        r.size[a] = high[a] - r.low[a] + 1;
+    r.words = pool_chunks(r.size[0], WORD);
+    return r;
 }
 
-static int64_t corner_at(const sweep *s, int64_t i, int64_t j)
+/* Sets bits from <= i <= to of a row. */
+static void set_bits(uint64_t *row, int64_t from, int64_t to)
 {
-    return (j - s->low[1]) * s->size[0] + i - s->low[0];
+    int64_t first = from / WORD, last = to / WORD;
+    uint64_t begin = ~(uint64_t)0 << (from % WORD), end = ~(uint64_t)0 >> (WORD - 1 - to % WORD);
+    if (first == last) {
+        row[first] |= begin & end;
+        return;
+    }
+    row[first] |= begin;
+    for (int64_t w = first + 1; w < last; w++)
+        row[w] = ~(uint64_t)0;
+    row[last] |= end;
 }
 
-/* Marks the corners that a layer's runs have, on one of its two layers of corners. */
-static void mark(const sweep *s, int64_t first, int64_t past, int32_t *layer)
+static void mark_cells(const work *w, corners *c, int64_t layer)
 {
-    for (int64_t r = first; r < past; r++) {
-        const climb_run *a = &s->x->run[r];
+    if (layer < 0 || layer >= w->layer->count)
+        return;
+    for (int64_t n = w->layer->run[layer]; n < w->layer->run[layer + 1]; n++) {
+        const climb_run *a = &w->x->run[n];
         for (int j = 0; j < 2; j++)
-            for (int64_t i = a->from; i <= a->to; i++)
-                layer[corner_at(s, i, a->j + j)] = 0;
+            set_bits(c->bits + (a->j + j - w->of.low[1]) * w->of.words, a->from - w->of.low[0], a->to - w->of.low[0]);
     }
 }
 
-static void put_node(const sweep *s, int64_t node, int64_t i, int64_t j, int64_t k)
+/* The corners below a layer of cells: its own, and those of the layer under it. */
+static void find_corners(const work *w, corners *c, int64_t layer)
 {
-    int32_t *place = &s->place->i32[3 * node];
-    place[0] = (int32_t)i, place[1] = (int32_t)j, place[2] = (int32_t)k;
-    lattice_corner(s->l, place, &s->position->f64[3 * node]);
+    int64_t words = w->of.words * w->of.size[1];
+    memset(c->bits, 0, (size_t)words * sizeof *c->bits);
+    mark_cells(w, c, layer - 1);
+    mark_cells(w, c, layer);
+    c->count = 0;
+    for (int64_t i = 0; i < words; i++) {
+        c->before[i] = (int32_t)c->count;
+        c->count += __builtin_popcountll(c->bits[i]);
+    }
 }
 
-/* Numbers the marked corners of layer k. */
-static void number(sweep *s, int64_t k, int32_t *layer)
+static bool make_corners(corners *c, const work *w)
 {
-    for (int64_t j = 0; j < s->size[1]; j++)
-        for (int64_t i = 0; i < s->size[0]; i++) {
-            int32_t *node = &layer[j * s->size[0] + i];
-            if (*node < 0)
-                continue;
-            if (s->position)
-                put_node(s, s->nodes, s->low[0] + i, s->low[1] + j, k);
-            *node = (int32_t)s->nodes++;
+    err ignored = {0};
+    int64_t words = w->of.words * w->of.size[1];
+    c->bits = mem_array(words, sizeof *c->bits, "a layer of nodes", &ignored);
+    c->before = mem_array(words, sizeof *c->before, "a layer of nodes", &ignored);
+    return c->bits && c->before;
+}
+
+static void free_corners(corners *c)
+{
+    free(c->bits);
+    free(c->before);
+}
+
+/* ---- nodes are counted layer by layer */
+
+static void count_layers(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    (void)chunk;
+    work *w = context;
+    corners c = {0};
+    if (!make_corners(&c, w))
+        atomic_store(&w->failed, true);
+    for (int64_t layer = from; layer < to && !atomic_load(&w->failed); layer++) {
+        find_corners(w, &c, layer);
+        w->first[layer + 1] = c.count;
+    }
+    free_corners(&c);
+}
+
+static int count_nodes(work *w, pool *threads, err *e)
+{
+    int64_t layers = w->layer->count + 1;
+    pool_run(threads, layers, CHUNK, count_layers, w);
+    if (atomic_load(&w->failed))
+        return err_memory(e, "a layer of nodes");
+    for (int64_t i = 0; i < layers; i++)
+        w->first[i + 1] += w->first[i];
+    if (w->first[layers] <= INT32_MAX)
+        return 0;
+    return err_set(e, NULL, 0, "%lld nodes; at most %d can be numbered: use larger voxels, or a --box",
+                   (long long)w->first[layers], INT32_MAX);
+}
+
+/* ---- then nodes and elements are written, some layers at a time */
+
+static void put_nodes(const work *w, const corners *c, int64_t layer)
+{
+    int64_t node = w->first[layer];
+    for (int64_t j = 0; j < w->of.size[1]; j++)
+        for (int64_t i = 0; i < w->of.words; i++)
+            for (uint64_t bits = c->bits[j * w->of.words + i]; bits; bits &= bits - 1, node++) {
+                int32_t *place = &w->place[3 * node];
+                place[0] = (int32_t)(w->of.low[0] + i * WORD + __builtin_ctzll(bits));
+                place[1] = (int32_t)(w->of.low[1] + j);
+                place[2] = (int32_t)(w->layer->low + layer);
+                lattice_corner(w->l, place, &w->position[3 * node]);
+            }
+}
+
+/* The node at a corner that has one. */
+static int32_t node_at(const work *w, const corners *c, int64_t layer, int64_t i, int64_t j)
+{
+    i -= w->of.low[0];
+    int64_t word = (j - w->of.low[1]) * w->of.words + i / WORD;
+    uint64_t earlier = c->bits[word] & (((uint64_t)1 << (i % WORD)) - 1);
+    return (int32_t)(w->first[layer] + c->before[word] + __builtin_popcountll(earlier));
+}
+
+/* corner: the layers of corners below and above. at: the run's first element. */
+static void put_elements(const work *w, const corners *const *corner, int64_t layer, const climb_run *a, int64_t at)
+{
+    int32_t first[8];
+    for (int c = 0; c < 8; c++) {
+        const int32_t *offset = lattice_vtk[c];
+        first[c] = node_at(w, corner[offset[2]], layer + offset[2], a->from, a->j + offset[1]) + offset[0];
+    }
+    for (int32_t i = 0; i < a->to - a->from; i++, at++) {
+        int32_t *ijk = &w->element_place[3 * at];
+        for (int c = 0; c < 8; c++)
+            w->node[8 * at + c] = first[c] + i;
+        ijk[0] = a->from + i, ijk[1] = a->j, ijk[2] = a->k;
+        w->volume[at] = a->volume;
+    }
+}
+
+/* Layers of cells with the nodes below them; the last layer's with those above it too. */
+static void fill_layers(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    (void)chunk;
+    work *w = context;
+    corners c[2] = {{0}, {0}};
+    if (!make_corners(&c[0], w) || !make_corners(&c[1], w)) {
+        atomic_store(&w->failed, true);
+        to = from;
+    } else
+        find_corners(w, &c[0], from);
+    for (int64_t layer = from; layer < to; layer++) {
+        const corners *pair[2] = {&c[(layer - from) % 2], &c[(layer - from + 1) % 2]};
+        find_corners(w, &c[(layer - from + 1) % 2], layer + 1);
+        put_nodes(w, pair[0], layer);
+        if (layer + 1 == w->layer->count)
+            put_nodes(w, pair[1], layer + 1);
+        int64_t at = w->layer->voxel[layer];
+        for (int64_t n = w->layer->run[layer]; n < w->layer->run[layer + 1]; n++) {
+            put_elements(w, pair, layer, &w->x->run[n], at);
+            at += w->x->run[n].to - w->x->run[n].from;
         }
-}
-
-static void clear(const sweep *s, int32_t *layer)
-{
-    for (int64_t c = 0; c < s->size[0] * s->size[1]; c++)
-        layer[c] = -1;
-}
-
-static int64_t layer_end(const voxels *x, int64_t first)
-{
-    int64_t past = first;
-    while (past < x->runs && x->run[past].k == x->run[first].k)
-        past++;
-    return past;
-}
-
-/* Goes on to the next layer of cells: afterwards `below` and `above` hold the nodes of its corners. False at the end. */
-static bool next_layer(sweep *s)
-{
-    const voxels *x = s->x;
-    int64_t before = s->first;
-    bool follows = s->past > 0 && s->past < x->runs && x->run[s->past].k == x->run[before].k + 1;
-    if (s->past == x->runs)
-        return false;
-    s->first = s->past;
-    s->past = layer_end(x, s->first);
-    int32_t *spare = s->below;
-    s->below = s->above;
-    s->above = spare;
-    int64_t k = x->run[s->first].k, next = s->past < x->runs ? layer_end(x, s->past) : s->past;
-    if (!follows) {
-        clear(s, s->below);
-        mark(s, s->first, s->past, s->below);
-        number(s, k, s->below);
     }
-    clear(s, s->above);
-    mark(s, s->first, s->past, s->above);
-    if (s->past < x->runs && x->run[s->past].k == k + 1)
-        mark(s, s->past, next, s->above);
-    number(s, k + 1, s->above);
-    return true;
-}
-
-static void put_elements(const sweep *s, const climb_run *a, int64_t at, model_array *node, model_array *place,
-                         model_array *volume)
-{
-    for (int64_t i = a->from; i < a->to; i++, at++) {
-        const int32_t *layer[2] = {s->below, s->above};
-        for (int c = 0; c < 8; c++) {
-            const int32_t *offset = lattice_vtk[c];
-            node->i32[8 * at + c] = layer[offset[2]][corner_at(s, i + offset[0], a->j + offset[1])];
-        }
-        int32_t *ijk = &place->i32[3 * at];
-        ijk[0] = (int32_t)i, ijk[1] = a->j, ijk[2] = a->k;
-        volume->i32[at] = a->volume;
-    }
-}
-
-static int count_nodes(sweep *s, int64_t *nodes, err *e)
-{
-    while (next_layer(s))
-        ;
-    *nodes = s->nodes;
-    s->first = s->past = s->nodes = 0;
-    if (*nodes > INT32_MAX)
-        return err_set(e, NULL, 0, "%lld nodes; at most %d can be numbered: use larger voxels, or a --box",
-                       (long long)*nodes, INT32_MAX);
-    return 0;
+    free_corners(&c[0]);
+    free_corners(&c[1]);
 }
 
 /* An array of the model by its name, which is there. */
@@ -143,7 +210,7 @@ static model_array *added(const model *m, const char *name)
     return model_find(m, name);
 }
 
-static int add_arrays(model *m, int64_t nodes, int64_t elements, err *e)
+static int add_arrays(work *w, model *m, int64_t nodes, int64_t elements, err *e)
 {
     static const char *const name[] = {"node.position", "node.lattice", "element.node", "element.lattice",
                                        "element.volume"};
@@ -152,21 +219,12 @@ static int add_arrays(model *m, int64_t nodes, int64_t elements, err *e)
     for (size_t i = 0; i < sizeof name / sizeof *name; i++)
         if (!model_add(m, name[i], e))
             return -1;
+    w->position = added(m, "node.position")->f64;
+    w->place = added(m, "node.lattice")->i32;
+    w->node = added(m, "element.node")->i32;
+    w->element_place = added(m, "element.lattice")->i32;
+    w->volume = added(m, "element.volume")->i32;
     return 0;
-}
-
-static void fill(sweep *s, model *m)
-{
-    model_array *node = added(m, "element.node"), *place = added(m, "element.lattice");
-    model_array *volume = added(m, "element.volume");
-    int64_t at = 0;
-    s->position = added(m, "node.position");
-    s->place = added(m, "node.lattice");
-    while (next_layer(s))
-        for (int64_t r = s->first; r < s->past; r++) {
-            put_elements(s, &s->x->run[r], at, node, place, volume);
-            at += s->x->run[r].to - s->x->run[r].from;
-        }
 }
 
 static int add_fractions(model *m, const voxels *x, err *e)
@@ -177,21 +235,24 @@ static int add_fractions(model *m, const voxels *x, err *e)
     return to ? 0 : -1;
 }
 
-int build_elements(model *m, const voxels *x, const lattice *l, err *e)
+int build_elements(model *m, const voxels *x, const lattice *l, pool *threads, err *e)
 {
-    sweep s = {.x = x, .l = l};
-    int64_t nodes;
+    voxels_layers layer;
+    work w = {.x = x, .layer = &layer, .l = l, .of = find_rectangle(x)};
     int status = -1;
-    find_rectangle(&s);
-    s.below = mem_array(s.size[0] * s.size[1], sizeof *s.below, "a layer of nodes", e);
-    s.above = mem_array(s.size[0] * s.size[1], sizeof *s.above, "a layer of nodes", e);
-    if (!s.below || !s.above || count_nodes(&s, &nodes, e) || add_arrays(m, nodes, x->elements, e))
+    if (voxels_find_layers(x, &layer, e))
+        return -1;
+    w.first = mem_array(layer.count + 2, sizeof *w.first, "layers of nodes", e);
+    if (!w.first || count_nodes(&w, threads, e) || add_arrays(&w, m, w.first[layer.count + 1], x->elements, e))
         goto out;
-    fill(&s, m);
-    status = x->fraction ? add_fractions(m, x, e) : 0;
+    pool_run(threads, layer.count, CHUNK, fill_layers, &w);
+    if (atomic_load(&w.failed))
+        err_memory(e, "a layer of nodes");
+    else
+        status = x->fraction ? add_fractions(m, x, e) : 0;
 out:
-    free(s.below);
-    free(s.above);
+    free(w.first);
+    voxels_layers_free(&layer);
     return status;
 }
 

@@ -1,6 +1,6 @@
 /* Elements from runs of voxels: the arrays of a model. Elements come in the order of the runs; nodes, the corners that
- * elements have, in k, j, i order (i fastest), numbered by sweeping two layers of corners, so that no grid is ever
- * stored whole. The model owns what is added.
+ * elements have, in k, j, i order (i fastest), numbered from one bit a corner of two layers, so that no grid is ever
+ * stored whole. The model owns what is added, which is the same for any number of threads.
  */
 #ifndef SINEW_BUILD_H
 #define SINEW_BUILD_H
@@ -11,7 +11,7 @@
 
 /* Adds axes node and element, node.position, node.lattice, element.node, element.lattice and element.volume; by shares
  * element.fraction too. */
-int build_elements(model *m, const voxels *x, const lattice *l, err *e);
+int build_elements(model *m, const voxels *x, const lattice *l, pool *threads, err *e);
 
 /* Adds axis volume and its arrays; volumes have their numbers of the plan. */
 int build_volumes(model *m, const volumes *plan, err *e);

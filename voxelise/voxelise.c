@@ -288,7 +288,7 @@ static int make_model(const job *j, model *m, err *e)
     }
     surface_name(j->path, name, sizeof name);
     if (model_meta_set(m, "source.unit", num_unit_name(j->unit), e) || lattice_save(&l, m, e) ||
-        build_elements(m, &j->x, &l, e) || build_volumes(m, &j->plan, e))
+        build_elements(m, &j->x, &l, j->threads, e) || build_volumes(m, &j->plan, e))
         return -1;
     return surface_add(m, name, &j->surface, in_metres(j, 1), e);
 }

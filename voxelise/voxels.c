@@ -327,3 +327,29 @@ void voxels_free(voxels *x)
     free(x->fraction);
     *x = (voxels){0};
 }
+
+int voxels_find_layers(const voxels *x, voxels_layers *l, err *e)
+{
+    *l = (voxels_layers){.low = x->runs ? x->run[0].k : 0};
+    l->count = x->runs ? x->run[x->runs - 1].k - l->low + 1 : 0;
+    l->run = mem_array(l->count + 1, sizeof *l->run, "layers of cells", e);
+    l->voxel = mem_array(l->count + 1, sizeof *l->voxel, "layers of cells", e);
+    if (!l->run || !l->voxel) {
+        voxels_layers_free(l);
+        return -1;
+    }
+    for (int64_t r = 0, at = 0, voxel = 0; r <= x->runs; r++) {
+        for (; at <= l->count && (r == x->runs || at <= x->run[r].k - l->low); at++)
+            l->run[at] = r, l->voxel[at] = voxel;
+        if (r < x->runs)
+            voxel += x->run[r].to - x->run[r].from;
+    }
+    return 0;
+}
+
+void voxels_layers_free(voxels_layers *l)
+{
+    free(l->run);
+    free(l->voxel);
+    *l = (voxels_layers){0};
+}

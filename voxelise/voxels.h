@@ -24,6 +24,15 @@ int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t vol
 
 void voxels_free(voxels *x);
 
+/* Where each layer of cells begins, from the lowest that has a voxel to the highest. The caller owns it. */
+typedef struct voxels_layers {
+    int64_t low, count;   /* layers */
+    int64_t *run, *voxel; /* layers + 1: the first run and the first voxel of each */
+} voxels_layers;
+
+int voxels_find_layers(const voxels *x, voxels_layers *l, err *e);
+void voxels_layers_free(voxels_layers *l);
+
 /* Refuses what would take more memory than there is: `elements` of them, on the lattice g, and slabs of so many bytes.
  * available: bytes. */
 int voxels_check_memory(const grid *g, double elements, double slabs, double available, err *e);

@@ -148,20 +148,20 @@ static int find(const bench *b, const grid *g, pool *threads, inside *test, voxe
     return status;
 }
 
-static int bench_model(const voxels *x, int64_t triangles, int cells, err *e)
+static int bench_model(const voxels *x, int64_t triangles, int cells, pool *threads, err *e)
 {
     lattice l = {{0, 0, 0}, {1, 1, 1}};
     double best = INFINITY;
     for (int r = 0; r < 3; r++) {
         model m = {0};
         double start = progress_clock();
-        int status = model_axis_add(&m, "volume", 1, e) || build_elements(&m, x, &l, e) ? -1 : 0;
+        int status = model_axis_add(&m, "volume", 1, e) || build_elements(&m, x, &l, threads, e) ? -1 : 0;
         best = fmin(best, progress_clock() - start);
         model_free(&m);
         if (status)
             return -1;
     }
-    say("building", triangles, cells, 1, 1e3 * best, "ms");
+    say("building", triangles, cells, pool_threads(threads), 1e3 * best, "ms");
     return 0;
 }
 
@@ -184,8 +184,8 @@ static int bench_inside(const bench *b, int cells, int count, err *e)
     }
     if (!status) {
         say("inside", s->triangles, cells, count, 1e3 * best, "ms");
-        if (count == 1 && cells <= LARGEST_MODEL)
-            status = bench_model(&x, s->triangles, cells, e);
+        if (cells <= LARGEST_MODEL)
+            status = bench_model(&x, s->triangles, cells, threads, e);
     }
     voxels_free(&x);
     pool_destroy(threads);

@@ -188,8 +188,12 @@ static bool builds(const voxels *x)
     model m = {0};
     err e = {0};
     lattice l = {{10, 10, 10}, {0.5, 0.5, 0.5}};
-    bool good = model_axis_add(&m, "volume", BOXES, &e) == 0 && build_elements(&m, x, &l, &e) == 0 && good_nodes(&m);
+    pool *threads = pool_create(2, &e);
+    bool good = threads && model_axis_add(&m, "volume", BOXES, &e) == 0 &&
+                build_elements(&m, x, &l, threads, &e) == 0 && good_nodes(&m);
     model_free(&m);
+    if (threads)
+        pool_destroy(threads);
     return good;
 }
 
