@@ -2,12 +2,10 @@
 
 #include "base/keyfile.h"
 #include "base/mem.h"
-#include "mesh/closest.h"
 #include "mesh/triangulate.h"
 #include "model/materials.h"
+#include "voxelise/depths.h"
 
-#include <math.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -15,8 +13,6 @@
 /* ---- the file */
 
 enum { KEY_THICKNESS, KEY_MATERIAL, KEYS };
-
-enum { MOST = 100 }; /* layers: a byte a voxel tells them */
 
 static const char *const key_name[KEYS] = {"thickness", "material"};
 
@@ -78,8 +74,8 @@ static int take_line(reader *r, err *e)
         return keyfile_error(&r->k, e, "layer '%s' has no thickness; expected thickness=LENGTH", name);
     one.material = one.material < 0 ? 0 : one.material;
     one.depth = thickness + (l->layers ? l->layer[l->layers - 1].depth : 0);
-    if (l->layers == MOST)
-        return keyfile_error(&r->k, e, "too many layers; at most %d are possible", MOST);
+    if (l->layers == DEPTHS_MOST)
+        return keyfile_error(&r->k, e, "too many layers; at most %d are possible", DEPTHS_MOST);
     if (mem_grow(&l->layer, &l->capacity, l->layers + 1, sizeof *l->layer, "layers", e))
         return -1;
     one.name = mem_text(name, e);
@@ -170,150 +166,13 @@ static void free_skin(skin *s)
     free(s->cut);
 }
 
-/* ---- depths, some layers of cells at a time */
+/* ---- voxels and volumes */
 
 typedef struct work {
     const layers *l;
-    const voxels *x;
-    const grid *g;
-    const skin *s;
     int32_t lowest; /* volumes of level 0 */
     uint8_t *layer; /* elements: a layer + 1, 0 = none */
-    int64_t *start; /* layers of cells + 1, from the lowest: the first run of each */
-    int64_t *voxel; /* and the first element */
-    int64_t low;    /* the lowest */
-    atomic_bool failed;
 } work;
-
-/* The cells that a slab's voxels are in, and the squared distance of the centre of each from the surface. */
-typedef struct depths {
-    int64_t low[3], high[3];
-    double *squared;
-} depths;
-
-static double *depth_at(const depths *d, int64_t i, int64_t j, int64_t k)
-{
-    return &d->squared[((k - d->low[2]) * (d->high[1] - d->low[1]) + j - d->low[1]) * (d->high[0] - d->low[0]) + i -
-                       d->low[0]];
-}
-
-/* Cells that a triangle, made larger by the layers, may reach; false where none is in the slab. */
-static bool find_reach(const work *w, const depths *d, const double *corner, int64_t *low, int64_t *high)
-{
-    double most = w->l->layer[w->l->layers - 1].depth;
-    for (int a = 0; a < 3; a++) {
-        double h = w->g->spacing[a];
-        double from = fmin(corner[a], fmin(corner[3 + a], corner[6 + a])) - most;
-        double to = fmax(corner[a], fmax(corner[3 + a], corner[6 + a])) + most;
-        from = floor(from / h - 0.5), to = ceil(to / h - 0.5) + 1;
-        low[a] = from > (double)d->low[a] ? from < (double)d->high[a] ? (int64_t)from : d->high[a] : d->low[a];
-        high[a] = to < (double)d->high[a] ? to > (double)d->low[a] ? (int64_t)to : d->low[a] : d->high[a];
-        if (low[a] >= high[a])
-            return false;
-    }
-    return true;
-}
-
-/* A centre that is further from the middle of the triangle than its corners are and than what is known already is not
- * looked at; the factor is for rounding. */
-static void measure(const work *w, depths *d, const double *corner)
-{
-    int64_t low[3], high[3];
-    double middle[3], radius = 0, q[3], p[3];
-    if (!find_reach(w, d, corner, low, high))
-        return;
-    for (int a = 0; a < 3; a++)
-        middle[a] = (corner[a] + corner[3 + a] + corner[6 + a]) / 3;
-    for (int i = 0; i < 3; i++)
-        radius = fmax(radius, hypot(hypot(corner[3 * i] - middle[0], corner[3 * i + 1] - middle[1]),
-                                    corner[3 * i + 2] - middle[2]));
-    for (int64_t k = low[2]; k < high[2]; k++)
-        for (int64_t j = low[1]; j < high[1]; j++)
-            for (int64_t i = low[0]; i < high[0]; i++) {
-                double *best = depth_at(d, i, j, k);
-                q[0] = grid_centre(w->g, 0, i), q[1] = grid_centre(w->g, 1, j), q[2] = grid_centre(w->g, 2, k);
-                double x = q[0] - middle[0], y = q[1] - middle[1], z = q[2] - middle[2];
-                double far = (sqrt(*best) + radius) * (1 + 1e-9);
-                if (x * x + y * y + z * z < far * far)
-                    *best = fmin(*best, closest_triangle(corner, corner + 3, corner + 6, q, p));
-            }
-}
-
-static uint8_t layer_of(const layers *l, double squared)
-{
-    double depth = sqrt(squared);
-    for (int64_t i = 0; i < l->layers; i++)
-        if (depth < l->layer[i].depth)
-            return (uint8_t)(i + 1);
-    return 0;
-}
-
-/* The box of the runs of level 0 between two; false where there is none. */
-static bool find_box(const work *w, int64_t first, int64_t past, depths *d)
-{
-    for (int a = 0; a < 3; a++)
-        d->low[a] = INT64_MAX, d->high[a] = INT64_MIN;
-    for (int64_t r = first; r < past; r++) {
-        const climb_run *a = &w->x->run[r];
-        const int64_t low[3] = {a->from, a->j, a->k}, high[3] = {a->to, (int64_t)a->j + 1, (int64_t)a->k + 1};
-        for (int i = 0; a->volume < w->lowest && i < 3; i++) {
-            d->low[i] = low[i] < d->low[i] ? low[i] : d->low[i];
-            d->high[i] = high[i] > d->high[i] ? high[i] : d->high[i];
-        }
-    }
-    return d->low[0] < d->high[0];
-}
-
-/* One layer of cells, or some. */
-static void do_layers(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    (void)chunk;
-    work *w = context;
-    err e = {0};
-    depths d;
-    if (!find_box(w, w->start[from], w->start[to], &d))
-        return;
-    int64_t cells = (d.high[0] - d.low[0]) * (d.high[1] - d.low[1]) * (d.high[2] - d.low[2]);
-    double most = w->l->layer[w->l->layers - 1].depth;
-    d.squared = mem_array(cells, sizeof *d.squared, "depths", &e);
-    if (!d.squared) {
-        atomic_store(&w->failed, true);
-        return;
-    }
-    for (int64_t c = 0; c < cells; c++)
-        d.squared[c] = most * most;
-    for (int64_t t = 0; t < w->s->triangles; t++)
-        measure(w, &d, &w->s->corner[9 * t]);
-    int64_t voxel = w->voxel[from];
-    for (int64_t r = w->start[from]; r < w->start[to]; r++) {
-        const climb_run *a = &w->x->run[r];
-        for (int64_t i = a->from; i < a->to; i++, voxel++)
-            if (a->volume < w->lowest)
-                w->layer[voxel] = layer_of(w->l, *depth_at(&d, i, a->j, a->k));
-    }
-    free(d.squared);
-}
-
-/* ---- voxels and volumes */
-
-/* Where each layer of cells begins. */
-static int find_starts(work *w, int64_t *count, err *e)
-{
-    const voxels *x = w->x;
-    w->low = x->runs ? x->run[0].k : 0;
-    *count = x->runs ? x->run[x->runs - 1].k - w->low + 1 : 0;
-    w->start = mem_array(*count + 1, sizeof *w->start, "layers of cells", e);
-    w->voxel = mem_array(*count + 1, sizeof *w->voxel, "layers of cells", e);
-    if (!w->start || !w->voxel)
-        return -1;
-    for (int64_t r = 0, at = 0, voxel = 0; r <= x->runs; r++) {
-        for (; at <= *count && (r == x->runs || at <= x->run[r].k - w->low); at++)
-            w->start[at] = r, w->voxel[at] = voxel;
-        if (r < x->runs)
-            voxel += x->run[r].to - x->run[r].from;
-    }
-    return 0;
-}
 
 /* Volumes from the first that is not of level 0 on make room for the layers. */
 static int32_t moved(const work *w, int32_t volume)
@@ -387,27 +246,30 @@ static int add_volumes(const work *w, volumes *plan, err *e)
     return 0;
 }
 
+static int find_layers(const work *w, const voxels *x, const skin *s, const grid *g, pool *threads, err *e)
+{
+    double depth[DEPTHS_MOST];
+    voxels_layers at;
+    depths_surface surface = {s->corner, s->triangles};
+    for (int64_t i = 0; i < w->l->layers; i++)
+        depth[i] = w->l->layer[i].depth;
+    if (voxels_find_layers(x, &at, e))
+        return -1;
+    int status = depths_find(w->layer, depth, w->l->layers, x, &at, w->lowest, &surface, g, threads, e);
+    voxels_layers_free(&at);
+    return status;
+}
+
 int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const grid *g, pool *threads, err *e)
 {
     skin s = {0};
-    work w = {.l = l, .x = x, .g = g, .s = &s, .lowest = lowest_volumes(plan)};
-    int64_t count = 0;
-    int status = -1;
+    work w = {.l = l, .lowest = lowest_volumes(plan)};
     w.layer = mem_array(x->elements, sizeof *w.layer, "layers", e);
-    if (!w.layer || make_skin(&s, plan, o, g, e) || find_starts(&w, &count, e))
-        goto out;
-    pool_run(threads, count, 4, do_layers, &w);
-    if (atomic_load(&w.failed)) {
-        err_memory(e, "depths");
-        goto out;
-    }
-    if (cut_runs(&w, x, e) || move_counts(&w, x, plan->volumes, e) || add_volumes(&w, plan, e))
-        goto out;
-    status = 0;
-out:
+    int status = -1;
+    if (w.layer && !make_skin(&s, plan, o, g, e) && !find_layers(&w, x, &s, g, threads, e) && !cut_runs(&w, x, e) &&
+        !move_counts(&w, x, plan->volumes, e) && !add_volumes(&w, plan, e))
+        status = 0;
     free_skin(&s);
     free(w.layer);
-    free(w.start);
-    free(w.voxel);
     return status;
 }
