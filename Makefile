@@ -117,6 +117,5 @@ clean:
 	rm -rf $(BUILD) $(BIN) out
 
 include tests/check.mk
-include tests/bench/geometry.mk
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -24,7 +24,8 @@ typedef struct search {
     closest_shape shape;
     rigid_surface *surface;
     int32_t at; /* its index */
-    bool holds; /* the primitive at hand holds a node */
+    bool apart; /* of the primitive at hand */
+    bool holds; /* it holds a node */
 } search;
 
 typedef struct box { /* of cells, inclusive */
@@ -72,8 +73,9 @@ static void try_point(search *s, int32_t element, const double *centre, const do
             line[a] = s->shape.normal[a] / s->grid.spacing[a];
     take_along(s, element, line);
     /* The other end: of the normal, since which way round the polygon was written says nothing; and where the primitive cuts
-     * a voxel that is less than half tissue, since then its centre lies in the bone: nothing of it should hang loose there. */
-    bool in_bone = s->fraction && s->fraction[element] < 0.5F && most <= 0.5 + tolerance;
+     * a voxel that is less than half tissue, since then its centre lies in the bone: nothing of it should hang loose there. But
+     * what comes from a file of its own may lie within tissue: then it is another surface that cuts the voxel. */
+    bool in_bone = s->fraction && s->fraction[element] < 0.5F && !s->apart && most <= 0.5 + tolerance;
     if (most <= tolerance || in_bone) {
         for (int a = 0; a < 3; a++)
             line[a] = -line[a];
@@ -205,6 +207,7 @@ static int try_primitives(search *s, rigid *r, err *e)
             return -1;
         s->at = p->surface;
         s->surface = &r->surface[p->surface];
+        s->apart = p->apart;
         s->holds = false;
         if (cells_near(s, &near))
             search_box(s, &near);

@@ -42,7 +42,7 @@ static int64_t surface_named(rigid *r, const char *name, err *e)
 }
 
 /* Adds face f of s to the rigid surface. */
-static int add_face(rigid *r, const surface *s, const char *of, int64_t f, int32_t to, err *e)
+static int add_face(rigid *r, const surface *s, const char *of, int64_t f, int32_t to, bool apart, err *e)
 {
     const int32_t *vertex = &s->vertex[s->start[f]];
     int64_t corners = surface_end(s, f) - s->start[f];
@@ -51,7 +51,8 @@ static int add_face(rigid *r, const surface *s, const char *of, int64_t f, int32
             return err_set(e, NULL, 0, "surface %s: vertex %d is not at a finite place", s->name, vertex[i / 3]);
     if (mem_grow(&r->primitive, &r->primitive_capacity, r->primitives + 1, sizeof *r->primitive, "rigid primitives", e))
         return -1;
-    r->primitive[r->primitives] = (rigid_primitive){s->position, vertex, corners, to, of, f, r->primitives, false};
+    r->primitive[r->primitives] =
+        (rigid_primitive){s->position, vertex, corners, to, of, f, r->primitives, false, apart};
     r->primitives++;
     r->surface[to].primitives++;
     return 0;
@@ -84,7 +85,7 @@ static int collect_surface(rigid *r, const surface *s, const names *patterns, er
         if ((to[g] = surface_of_group(r, s, s->group_name[g], patterns, e)) == -2)
             goto out;
     for (int64_t f = 0; f < s->faces; f++)
-        if (to[s->group[f]] >= 0 && add_face(r, s, r->sources.name[named], f, (int32_t)to[s->group[f]], e))
+        if (to[s->group[f]] >= 0 && add_face(r, s, r->sources.name[named], f, (int32_t)to[s->group[f]], !patterns, e))
             goto out;
     rc = 0;
 out:

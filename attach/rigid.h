@@ -18,6 +18,7 @@ typedef struct rigid_primitive {
     int64_t face;           /* which */
     int64_t number;         /* in the order in which they were collected */
     bool idle;              /* it holds no node */
+    bool apart;             /* of a file of its own: it may lie within tissue, and need not bound any */
 } rigid_primitive;
 
 typedef struct rigid_surface {

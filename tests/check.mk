@@ -65,27 +65,32 @@ check-tests: all unit
 check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
-# ---- benchmarks: CSV, on standard output and in out/bench.csv; tests/bench keeps one of each machine
-.PHONY: bench bench-tled
-BENCH_TLED = $(BUILD)/tests/bench/bench_tled
+# ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
+.PHONY: bench bench-tled bench-voxelise bench-geometry bench-fraction
+BENCHES = voxelise geometry tled
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
 BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
-$(eval $(call test_program,tests/bench/bench_tled))
-bench:
+TRIANGLES ?= 100000
+$(foreach name,$(BENCHES),$(eval $(call test_program,tests/bench/bench_$(name))))
+bench: all $(BENCHES:%=$(BUILD)/tests/bench/bench_%)
 	@mkdir -p out
-	@{ tests/bench/machine; $(MAKE) --no-print-directory -s bench-tled || echo '# failed'; } | tee out/bench.csv
+	@{ tests/bench/machine; for name in $(BENCHES); do echo "# $$name"; \
+	    $(MAKE) --no-print-directory -s bench-$$name || echo '# failed'; done; } | tee out/bench.csv
 	@! grep -q '^# failed' out/bench.csv
-bench-tled: all $(BENCH_TLED) $(BENCH_MODELS)
-	@$(BENCH_TLED) $(shell nproc) 5 all runs .3 $(BENCH_MODELS)
+bench-tled: all $(BUILD)/tests/bench/bench_tled $(BENCH_MODELS)
+	@$(BUILD)/tests/bench/bench_tled $(shell nproc) 5 all runs .3 $(BENCH_MODELS)
 $(BUILD)/tests/bench/face_%mm: all
 	@mkdir -p $(@D)
 	@$(BIN)/voxelise -q --unit mm -s $* $(BENCH_FACE) | $(BIN)/attach -q -o $@
-# The steps of voxelise on a closed scan, probes of the machine first.
-.PHONY: bench-voxelise
-TRIANGLES ?= 100000
-$(eval $(call test_program,tests/bench/bench_voxelise))
+# The steps of voxelise on a closed scan.
 bench-voxelise: $(BUILD)/tests/bench/bench_voxelise
 	@$(BUILD)/tests/bench/bench_voxelise $(TRIANGLES) $(BUILD)
+# Reading OBJ, models through pipes, attach and bind on the real face.
+bench-geometry: all $(BUILD)/tests/bench/bench_geometry
+	@$(BUILD)/tests/bench/bench_geometry $(BIN) $(BENCH_FACE)
+# No time, but how fast models converge, by centres and by shares; it takes many minutes, and is no part of bench.
+bench-fraction: all
+	@tests/bench/fraction $(BIN) $(BENCH_FACE)
 
 # ---- other builds, each in its own folder
 .PHONY: clang sanitize fuzz fuzz-run
@@ -114,7 +119,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -177,9 +182,10 @@ help:
 	'make clang        the tools and unit tests, built by clang' \
 	'make sanitize     the tests under ASan and UBSan' \
 	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
-	'make bench-voxelise  the steps of voxelise on a closed scan, timed (TRIANGLES=100000)' \
+	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
+	'make bench-voxelise, -geometry, -tled   its parts (TRIANGLES=100000: of the scan)' \
+	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
-	'make bench        what a step of the solver takes here, as CSV, into out/bench.csv too' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make clean        removes what was built' \
 	'' \

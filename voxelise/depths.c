@@ -305,40 +305,34 @@ static int look_unit(search *s, const box *b, err *e)
 {
     const work *w = s->w;
     int64_t bin = bin_at(w, b->low), count = w->start[bin + 1] - w->start[bin];
+    if (count == 0)
+        return 0;
     if (MEM_ROOM(&s->triangle, &s->triangle_capacity, count, "triangles", e) ||
-        MEM_ROOM(&s->least, &s->least_capacity, count, "triangles", e))
+        MEM_ROOM(&s->least, &s->least_capacity, count, "triangles", e) || !s->triangle || !s->least)
         return -1;
-    if (count)
-        memcpy(s->triangle, w->triangle + w->start[bin], (size_t)count * sizeof *s->triangle);
+    memcpy(s->triangle, w->triangle + w->start[bin], (size_t)count * sizeof *s->triangle);
     return look(s, b, 0, count, e);
 }
 
-/* Calls take with each of the row's runs of such volumes: its cells, and the steps of its voxels. */
-typedef void take_run(uint8_t *cell, uint8_t *step, int64_t count);
-
-static void each_run(const search *s, take_run *take)
+/* Of such volumes' voxels in the row: wants the step of each, or gives it what was found. */
+static void each_run(const search *s, bool give)
 {
     const work *w = s->w;
     for (int64_t k = s->row.low[2]; k < s->row.high[2]; k++) {
         int64_t layer = k - w->layer->low, voxel = w->layer->voxel[layer];
         for (int64_t r = w->layer->run[layer]; r < w->layer->run[layer + 1]; r++) {
             const climb_run *a = &w->x->run[r];
-            if (a->volume < w->volumes && a->j >= s->row.low[1] && a->j < s->row.high[1])
-                take(step_at(s, a->from, a->j, k), w->step + voxel, a->to - a->from);
-            voxel += a->to - a->from;
+            size_t count = (size_t)(a->to - a->from);
+            if (a->volume < w->volumes && a->j >= s->row.low[1] && a->j < s->row.high[1]) {
+                uint8_t *cell = step_at(s, a->from, a->j, k);
+                if (give)
+                    memcpy(w->step + voxel, cell, count);
+                else
+                    memset(cell, 0, count);
+            }
+            voxel += (int64_t)count;
         }
     }
-}
-
-static void want(uint8_t *cell, uint8_t *step, int64_t count)
-{
-    (void)step;
-    memset(cell, 0, (size_t)count);
-}
-
-static void give(uint8_t *cell, uint8_t *step, int64_t count)
-{
-    memcpy(step, cell, (size_t)count);
 }
 
 static int do_row(search *s, err *e)
@@ -351,7 +345,7 @@ static int do_row(search *s, err *e)
     if (!s->step)
         return -1;
     memset(s->step, UNWANTED, (size_t)cells);
-    each_run(s, want);
+    each_run(s, false);
     for (int64_t i = s->row.low[0]; i < s->row.high[0]; i += unit) {
         box b = s->row;
         b.low[0] = i;
@@ -359,7 +353,7 @@ static int do_row(search *s, err *e)
         if (look_unit(s, &b, e))
             return -1;
     }
-    each_run(s, give);
+    each_run(s, true);
     return 0;
 }
 
@@ -402,10 +396,12 @@ static bool find_all(work *w)
     return b->low[0] < b->high[0];
 }
 
+// NOLINTNEXTLINE(readability-non-const-parameter): it is written to
 int depths_find(uint8_t *step, const double *depth, int64_t depths, const voxels *x, const voxels_layers *layer,
                 int32_t volumes, const depths_surface *s, const grid *g, pool *threads, err *e)
 {
-    work w = {step, depth, depths, x, layer, volumes, s, g, .bin = LEAST_BIN};
+    work w = {
+        .step = step, .depth = depth, .depths = depths, .x = x, .layer = layer, .volumes = volumes, .s = s, .g = g};
     if (s->triangles > UINT32_MAX)
         return err_set(e, NULL, 0, "%lld triangles; at most %u are possible", (long long)s->triangles, UINT32_MAX);
     if (!find_all(&w))

@@ -6,9 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Boxes and rays are floats: a conversion errs by 2^-24 of the number, Embree's slab test by little more. */
+/* Boxes are floats: a conversion errs by 2^-24 of the number. */
 static const double float_slack = 0x1p-21, least_slack = 1e-3;
-/* Beyond this no ray starts, and Embree would not take the box. */
+/* Embree would not take a box beyond this. */
 static const double farthest = 1e12;
 
 struct candidates {
@@ -40,18 +40,6 @@ static void give_box(const void *context, uint32_t item, float *low, float *high
     }
 }
 
-static void take_item(void *context, uint32_t item)
-{
-    candidates_list *list = context;
-    err ignored = {0};
-    if (list->count == list->capacity &&
-        mem_grow(&list->item, &list->capacity, list->count + 1, sizeof *list->item, "candidates", &ignored)) {
-        list->lost = true;
-        return;
-    }
-    list->item[list->count++] = item;
-}
-
 candidates *candidates_create(int64_t count, candidates_box *box, const void *context, double reach, int threads,
                               err *e)
 {
@@ -79,37 +67,6 @@ void candidates_destroy(candidates *c)
     free(c);
 }
 
-static int by_number(const void *a, const void *b)
-{
-    const uint32_t *i = a, *j = b;
-    return (*i > *j) - (*i < *j);
-}
-
-/* Ascending, each once: Embree promises neither, and an item met twice would turn inside out for the caller. */
-static void sort_items(candidates_list *list)
-{
-    int64_t kept = 0;
-    if (list->count)
-        qsort(list->item, (size_t)list->count, sizeof *list->item, by_number);
-    for (int64_t i = 0; i < list->count; i++)
-        if (!kept || list->item[kept - 1] != list->item[i])
-            list->item[kept++] = list->item[i];
-    list->count = kept;
-}
-
-int candidates_ray(const candidates *c, const double *from, const double *direction, candidates_list *list, err *e)
-{
-    const float start[3] = {(float)from[0], (float)from[1], (float)from[2]};
-    const float along[3] = {(float)direction[0], (float)direction[1], (float)direction[2]};
-    list->count = 0;
-    list->lost = false;
-    embree_list(c->tree, start, along, take_item, list);
-    if (list->lost)
-        return err_memory(e, "candidates");
-    sort_items(list);
-    return 0;
-}
-
 typedef struct pairs {
     candidates_pair *take;
     void *context;
@@ -125,10 +82,4 @@ void candidates_pairs(const candidates *c, candidates_pair *take, void *context)
 {
     pairs p = {take, context};
     embree_pairs(c->tree, take_pair, &p);
-}
-
-void candidates_list_free(candidates_list *list)
-{
-    free(list->item);
-    *list = (candidates_list){0};
 }

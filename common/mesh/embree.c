@@ -32,13 +32,6 @@ struct embree {
     int64_t sphere_sets, sphere_capacity;
 };
 
-/* A ray's taker goes along with it in Embree's context, which must come first. */
-typedef struct ray_context {
-    struct RTCIntersectContext embree;
-    embree_take *take;
-    void *context;
-} ray_context;
-
 static int trouble(RTCDevice device, const char *what, err *e)
 {
     enum RTCError code = rtcGetDeviceError(device);
@@ -104,13 +97,6 @@ static void give_bounds(const struct RTCBoundsFunctionArguments *a)
     a->bounds_o->upper_z = high[2];
 }
 
-/* Does not accept the item as a hit, so that Embree goes on to the next. */
-static void give_item(const struct RTCOccludedFunctionNArguments *a)
-{
-    ray_context *c = (ray_context *)(void *)a->context;
-    c->take(c->context, a->primID);
-}
-
 int embree_add_boxes(embree *b, int64_t count, embree_box *box, const void *context, err *e)
 {
     RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_USER);
@@ -119,7 +105,6 @@ int embree_add_boxes(embree *b, int64_t count, embree_box *box, const void *cont
         rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)count);
         rtcSetGeometryUserData(geometry, &b->boxes);
         rtcSetGeometryBoundsFunction(geometry, give_bounds, NULL);
-        rtcSetGeometryOccludedFunction(geometry, give_item);
     }
     return attach(b, geometry, "boxes", e);
 }
@@ -271,23 +256,6 @@ int embree_commit(embree *b, err *e)
 {
     rtcCommitScene(b->scene);
     return trouble(b->device, "its tree of boxes", e);
-}
-
-void embree_list(const embree *b, const float *from, const float *along, embree_take *take, void *context)
-{
-    struct RTCRay ray = {
-        .org_x = from[0],
-        .org_y = from[1],
-        .org_z = from[2],
-        .dir_x = along[0],
-        .dir_y = along[1],
-        .dir_z = along[2],
-        .tfar = INFINITY,
-        .mask = UINT32_MAX,
-    };
-    ray_context c = {.take = take, .context = context};
-    rtcInitIntersectContext(&c.embree);
-    rtcOccluded1(b->scene, &c.embree, &ray);
 }
 
 typedef struct pair_context {

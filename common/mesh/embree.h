@@ -1,5 +1,5 @@
 /* A bounding volume hierarchy of boxes, faces or spheres: the one user of Embree, and the one file that knows which of its
- * versions this is. Faces and spheres are met by packets of rays; boxes are only listed, as candidates.c needs it.
+ * versions this is. Faces and spheres are met by packets of rays; boxes only overlap, as candidates.c needs it.
  * The creator owns it. Once committed, any number of threads may ask at once.
  */
 #ifndef SINEW_EMBREE_H
@@ -13,9 +13,6 @@ typedef struct embree embree;
 
 /* Gives the box of one item. Called from several threads. */
 typedef void embree_box(const void *context, uint32_t item, float *low, float *high);
-/* Takes an item whose box a ray may meet. */
-typedef void embree_take(void *context, uint32_t item);
-
 /* Takes two items whose boxes overlap. Called from several threads. */
 typedef void embree_take_pair(void *context, uint32_t one, uint32_t other);
 
@@ -49,9 +46,6 @@ int embree_add_faces(embree *b, int corners, int64_t vertices, const float *posi
                      const uint32_t *corner, err *e);
 int embree_add_spheres(embree *b, int64_t count, const float *centre_radius, err *e);
 int embree_commit(embree *b, err *e);
-
-/* Gives every item whose box a ray without end may meet, in any order. */
-void embree_list(const embree *b, const float *from, const float *along, embree_take *take, void *context);
 
 /* Gives every two items of a scene of boxes only whose boxes overlap, once, the lower number first. */
 void embree_pairs(const embree *b, embree_take_pair *take, void *context);

@@ -32,7 +32,8 @@ typedef struct known {
       "nodes in VTK order: 8 (hexahedron) or 4 (tetrahedron)")                                                         \
     X("element.lattice", MODEL_I32, "1", "element", 3, 3, 0, "voxelise", "cell of the lattice: i, j, k")               \
     X("element.volume", MODEL_I32, "@volume", "element", 1, 1, KNOWN_EVERY, "voxelise", "volume it belongs to")        \
-    X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, NULL, "share that the volume encloses")                  \
+    X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, "voxelise",                                              \
+      "share of it that is enclosed: the part that it has of its mass and forces; without the array all is")           \
     X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, "attach",                                                   \
       "unit direction of contraction; 0 0 0 where there is none")                                                      \
     X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, "voxelise", "name")                                            \
