@@ -65,4 +65,53 @@ fails 2 "no samples" "--fraction '0': expected a whole number from 1" voxelise -
 fails 2 "--least without --fraction" "--least is for --fraction" voxelise --unit mm -s 1 --least 0.5 "$T/box.obj"
 fails 2 "--least past 1" "--least '1.5'" voxelise --unit mm -s 1 --fraction 2 --least 1.5 "$T/box.obj"
 fails 1 "nothing is enough" "no voxel has enough of it inside" voxelise --unit mm -s 10 --origin 0,0,0 --fraction 4 --least 0.5 "$T/box.obj"
+# With attach: what it holds by centres it holds by shares too, and nothing hangs loose.
+# held FILE: the lattice places of the model's rigid nodes. parts: of $T/m, how many parts faces join.
+held() {
+    awk '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" } on == "node.lattice" { place[n++] = $0 }
+        on == "node.rigid" && $1 { print place[n] } on == "node.rigid" { n++ }' "$1" | sort
+}
+parts() {
+    rows element.lattice | awk '
+        function root(a) { while (up[a] != a) a = up[a] = up[up[a]]; return a }
+        { up[NR] = NR; cell[$1, $2, $3] = NR; x[NR] = $1; y[NR] = $2; z[NR] = $3 }
+        END {
+            for (n = 1; n <= NR; n++) {
+                if ((x[n] - 1, y[n], z[n]) in cell) up[root(n)] = root(cell[x[n] - 1, y[n], z[n]])
+                if ((x[n], y[n] - 1, z[n]) in cell) up[root(n)] = root(cell[x[n], y[n] - 1, z[n]])
+                if ((x[n], y[n], z[n] - 1) in cell) up[root(n)] = root(cell[x[n], y[n], z[n] - 1])
+            }
+            for (n = 1; n <= NR; n++) count += up[n] == n
+            print count
+        }'
+}
+# held_too NAME SIZE OBJ: attach holds with shares what it holds without, and nothing is loose.
+held_too() {
+    vox -s "$2" "$3"
+    attach -q --text <"$T/m" >"$T/centres"
+    vox -s "$2" --fraction 8 "$3"
+    attach -q --text <"$T/m" >"$T/shares"
+    held "$T/centres" >"$T/held"
+    check "$1: nodes are held" test "$(wc -l <"$T/held")" -gt 100
+    is "$(held "$T/shares" | comm -23 "$T/held" -)" "" "$1: with shares too"
+    is "$(parts)" 1 "$1: by shares it is in one piece"
+}
+awk -v r=100 -v n=96 -v g=skin -f tests/cli/sphere.awk >"$T/ball.obj"
+{
+    cat "$T/ball.obj"
+    awk -v r=50 -v n=48 -v g=skull -f tests/cli/sphere.awk |
+        awk -v from="$((2 + 95 * 192))" '$1 == "f" { for (i = 2; i <= NF; i++) $i += from } 1'
+} >"$T/core.obj"
+held_too "a ball about a core" 12.5 "$T/core.obj"
+if [ -n "$DATA" ]; then
+    held_too "the real face" 5 "$DATA/face/face_zyg.obj"
+else
+    skip 3 "no real face"
+fi
+
+# A plate within the ball holds its own nodes, and of cut voxels no more.
+printf 'g rigid\nv -200 -200 0\nv 200 -200 0\nv 200 200 0\nv -200 200 0\nf 1 2 3 4\n' >"$T/plate.obj"
+vox -s 12.5 --fraction 8 "$T/ball.obj"
+attach -q --text --rigid-file "$T/plate.obj" <"$T/m" >"$T/shares"
+is "$(held "$T/shares" | awk '{ print $3 }' | sort -u)" 8 "a plate in its middle"
 done_testing
