@@ -261,7 +261,7 @@ static int keep_near(search *s, double most, int64_t from, int64_t to, int64_t *
 static bool part_of(const box *b, int number, box *part)
 {
     for (int a = 0; a < 3; a++) {
-        int64_t middle = (b->low[a] + b->high[a] + 1) / 2;
+        int64_t middle = b->low[a] + (b->high[a] - b->low[a] + 1) / 2;
         part->low[a] = number >> a & 1 ? middle : b->low[a];
         part->high[a] = number >> a & 1 ? b->high[a] : middle;
         if (part->low[a] >= part->high[a])

@@ -196,6 +196,9 @@ static void note_omissions(const writer *w, const model *m, notes *warnings)
     for (int64_t v = 0; v < w->volumes; v++)
         if (!w->count[v])
             notes_add(warnings, "volume %.200s has no elements: it has no set in the file", name->str[v]);
+    if (model_find(m, "element.fraction"))
+        notes_add(warnings,
+                  "element.fraction is not in the file, which has no place for it: all elements are whole there");
     for (int64_t i = 0; w->rigid && i < w->rigid->rows; i++)
         if (w->rigid->u8[i])
             return;

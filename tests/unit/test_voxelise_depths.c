@@ -1,0 +1,138 @@
+// needs: voxelise/depths.c voxelise/voxels.c voxelise/climb.c voxelise/shares.c voxelise/inside.c voxelise/crossing.c
+// needs: voxelise/expansion.c voxelise/grid.c
+/* How deep voxels lie below a surface: triangles of all sizes at random, and voxels too, each centre measured from each
+ * triangle. Small lattices and long ones, flat voxels, depths from less than a voxel to more than the lattice.
+ */
+#include "tap.h"
+
+#include "mesh/closest.h"
+#include "voxelise/depths.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_RUNS = 4000, MOST_VOXELS = 40000, MOST_TRIANGLES = 300, DEPTHS = 4 };
+
+typedef struct scene {
+    grid g;
+    climb_run run[MOST_RUNS];
+    voxels x;
+    double corner[9 * MOST_TRIANGLES], depth[DEPTHS];
+    depths_surface s;
+    int64_t depths;
+} scene;
+
+static double uniform(double low, double high)
+{
+    return low + (high - low) * rand() / (double)RAND_MAX;
+}
+
+/* Runs in order, of volumes 0 to 2, in a lattice of such sizes. */
+static void add_runs(scene *s, const int *size)
+{
+    s->x = (voxels){.run = s->run};
+    for (int k = 0; k < size[2]; k++)
+        for (int j = 0; j < size[1]; j++)
+            for (int i = rand() % size[0]; i < size[0] && s->x.runs < MOST_RUNS;) {
+                int past = i + 1 + rand() % size[0];
+                past = past < size[0] ? past : size[0];
+                if (s->x.elements + past - i > MOST_VOXELS)
+                    return;
+                s->run[s->x.runs++] = (climb_run){i - 5, past - 5, j - 7, k - 9, rand() % 3};
+                s->x.elements += past - i;
+                i = past + rand() % 3;
+            }
+}
+
+/* Some triangles are points, lines, many alike; some larger than the lattice. */
+static void add_triangles(scene *s, const int *size)
+{
+    s->s = (depths_surface){s->corner, 1 + rand() % MOST_TRIANGLES};
+    for (int64_t t = 0; t < s->s.triangles; t++) {
+        double middle[3], length = rand() % 9 ? uniform(0, 3) : uniform(0, 100);
+        for (int a = 0; a < 3; a++)
+            middle[a] = (uniform(-4, size[a] + 4) - (a == 0 ? 5 : a == 1 ? 7 : 9)) * s->g.spacing[a];
+        for (int c = 0; c < 9; c++)
+            s->corner[9 * t + c] = t && rand() % 20 == 0 ? s->corner[9 * t + c - 9]
+                                                         : middle[c % 3] + uniform(-1, 1) * length * s->g.spacing[0];
+    }
+}
+
+static void make_scene(scene *s)
+{
+    int longest = rand() % 3, size[3];
+    double scale = pow(10, uniform(-3, 3)), depth = 0;
+    s->g = (grid){.low = {-1000, -1000, -1000}, .high = {1000, 1000, 1000}};
+    for (int a = 0; a < 3; a++) {
+        size[a] = 1 + rand() % (a == longest && rand() % 2 ? 150 : 20);
+        s->g.spacing[a] = scale * (rand() % 2 ? 1 : uniform(0.3, 3));
+    }
+    add_runs(s, size);
+    add_triangles(s, size);
+    s->depths = 1 + rand() % DEPTHS;
+    for (int64_t i = 0; i < s->depths; i++)
+        s->depth[i] = depth += scale * (rand() % 6 ? uniform(0.05, 3) : uniform(0, 100));
+}
+
+static uint8_t step_of(const scene *s, const climb_run *r, int32_t i)
+{
+    const int32_t cell[3] = {i, r->j, r->k};
+    double q[3], p[3], nearest = INFINITY;
+    for (int a = 0; a < 3; a++)
+        q[a] = grid_centre(&s->g, a, cell[a]);
+    for (int64_t t = 0; t < s->s.triangles; t++) {
+        const double *c = &s->corner[9 * t];
+        nearest = fmin(nearest, sqrt(closest_triangle(c, c + 3, c + 6, q, p)));
+    }
+    for (int64_t d = 0; d < s->depths; d++)
+        if (nearest < s->depth[d])
+            return (uint8_t)(d + 1);
+    return 0;
+}
+
+/* What find gives, on so many threads: of volume 2, what was there. */
+static bool find(const scene *s, int count, uint8_t *step)
+{
+    err e = {0};
+    voxels_layers layer;
+    pool *threads = pool_create(count, &e);
+    memset(step, 77, MOST_VOXELS);
+    bool good = threads && !voxels_find_layers(&s->x, &layer, &e);
+    if (good) {
+        good = !depths_find(step, s->depth, s->depths, &s->x, &layer, 2, &s->s, &s->g, threads, &e);
+        voxels_layers_free(&layer);
+    }
+    if (threads)
+        pool_destroy(threads);
+    return good;
+}
+
+int main(void)
+{
+    static scene s;
+    static uint8_t one[MOST_VOXELS], three[MOST_VOXELS];
+    int64_t wrong = 0, unlike = 0, failed = 0, seen[DEPTHS + 1] = {0};
+    srand(5);
+    for (int n = 0; n < 60; n++) {
+        make_scene(&s);
+        if (!find(&s, 1, one) || !find(&s, 3, three)) {
+            failed++;
+            continue;
+        }
+        unlike += memcmp(one, three, sizeof one) != 0;
+        for (int64_t r = 0, voxel = 0; r < s.x.runs; r++)
+            for (int32_t i = s.run[r].from; i < s.run[r].to; i++, voxel++) {
+                uint8_t want = s.run[r].volume < 2 ? step_of(&s, &s.run[r], i) : 77;
+                wrong += one[voxel] != want;
+                if (want <= DEPTHS)
+                    seen[want]++;
+            }
+    }
+    ok(!failed, "%d scenes could not be looked at", (int)failed);
+    ok(!wrong, "%d voxels are not at their depth", (int)wrong);
+    ok(!unlike, "%d scenes differ between one thread and three", (int)unlike);
+    ok(seen[0] > 100 && seen[1] > 100 && seen[2] > 100, "voxels at many depths: %d %d %d", (int)seen[0], (int)seen[1],
+       (int)seen[2]);
+    return done_testing();
+}
