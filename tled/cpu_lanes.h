@@ -200,7 +200,7 @@ static void slab_pass(const cpu_work *w, int32_t which)
     int32_t extra = s->extra;
     for (const rows_layer *l = r->layer + s->layer; l < r->layer + s->layer + s->layers; l++) {
         for (const rows_run *run = r->run + l->run; run < r->run + l->run + l->runs; run++)
-            if (w->kind[run->volume].tension != 0)
+            if (w->fibre[0] && w->kind[run->volume].tension != 0)
                 run_forces(w, run, shape, true);
             else
                 run_forces(w, run, shape, false);
