@@ -32,7 +32,7 @@ run = @echo "  $(1)"; $(2)
 endif
 
 # Every .c of these folders is the library, but for mains.
-LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/device/*.c common/render/*.c)
+LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/volume/*.c common/device/*.c common/render/*.c)
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
