@@ -126,14 +126,14 @@ static void split_free(split *s)
 
 static int cut_cells(split *s, const model *m, err *e)
 {
-    const model_array *node = model_need(m, "element.node", e),
-                      *ijk = node ? model_need(m, "element.lattice", e) : NULL;
+    const model_array *node = model_need(m, "element.node", e);
+    if (node && node->columns != 8)
+        return err_set(e, NULL, 0, "the model's elements have %d nodes; expected hexahedra, from voxelise",
+                       node->columns);
+    const model_array *ijk = node ? model_need(m, "element.lattice", e) : NULL;
     const model_array *position = ijk ? model_need(m, "node.position", e) : NULL;
     if (!position)
         return -1;
-    if (node->columns != 8)
-        return err_set(e, NULL, 0, "the model's elements have %d nodes; expected hexahedra, from voxelise",
-                       node->columns);
     if (node->rows > INT32_MAX / MESH_TETS)
         return err_set(e, NULL, 0, "%lld elements give more tetrahedra than can be numbered; expected at most %d",
                        (long long)node->rows, INT32_MAX / MESH_TETS);
