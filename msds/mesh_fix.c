@@ -21,7 +21,7 @@ typedef struct places {
 
 static int32_t place_of(const places *p, int64_t node, int axis)
 {
-    if (p->lattice)
+    if (!p->nodes)
         return p->lattice[3 * node + axis];
     if (axis == 0)
         return (int32_t)(node % p->nodes[0]);

@@ -192,7 +192,7 @@ int mesh_split(model *m, notes *warnings, err *e)
 {
     split s = {0};
     int status = -1;
-    if (cut_cells(&s, m, e) || keep(&s, m, e))
+    if (cut_cells(&s, m, e) || keep(&s, m, e) || !s.node)
         goto out;
     note_bound(m, warnings);
     drop_weights(m);

@@ -292,21 +292,13 @@ static int take_file(header *h, const char *field, char *value, err *e)
     return h->x.file ? 0 : -1;
 }
 
-/* Says nothing that is needed here. */
-static int take_nothing(header *h, const char *field, char *value, err *e)
-{
-    (void)h, (void)field, (void)value, (void)e;
-    return 0;
-}
-
 /* What places an image in another way than by space directions or spacings. */
 static int take_other(header *h, const char *field, char *value, err *e)
 {
-    (void)value;
-    return header_bad(h->s, e, field, "is not read", "space directions and space origin");
+    return header_bad(h->s, e, field, header_trim(value), "space directions and space origin in its place");
 }
 
-/* Names without their blanks: some writers leave them out. */
+/* Names without their blanks: some writers leave them out. NULL: what it says is not needed here. */
 static const struct {
     const char *field;
     take *take;
@@ -328,19 +320,19 @@ static const struct {
     {"datafile", take_file},
     {"axismins", take_other},
     {"axismaxs", take_other},
-    {"content", take_nothing},
-    {"number", take_nothing},
-    {"min", take_nothing},
-    {"max", take_nothing},
-    {"oldmin", take_nothing},
-    {"oldmax", take_nothing},
-    {"sampleunits", take_nothing},
-    {"thicknesses", take_nothing},
-    {"labels", take_nothing},
-    {"units", take_nothing},
-    {"centers", take_nothing},
-    {"centerings", take_nothing},
-    {"measurementframe", take_nothing},
+    {"content", NULL},
+    {"number", NULL},
+    {"min", NULL},
+    {"max", NULL},
+    {"oldmin", NULL},
+    {"oldmax", NULL},
+    {"sampleunits", NULL},
+    {"thicknesses", NULL},
+    {"labels", NULL},
+    {"units", NULL},
+    {"centers", NULL},
+    {"centerings", NULL},
+    {"measurementframe", NULL},
 };
 
 /* ---- lines */
@@ -355,7 +347,7 @@ static int take_field(header *h, char *field, char *value, err *e)
     name[n] = '\0';
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
         if (!strcmp(fields[i].field, name))
-            return fields[i].take(h, field, header_trim(value), e);
+            return fields[i].take ? fields[i].take(h, field, header_trim(value), e) : 0;
     return header_bad(h->s, e, "field", field, "a field of NRRD, or KEY:=VALUE");
 }
 
@@ -453,7 +445,7 @@ static void take_normal(volume *v)
 
 static int take_geometry(header *h, err *e)
 {
-    const axis *of[3] = {0};
+    const axis *of[3] = {&h->axis[0], &h->axis[0], &h->axis[0]};
     int count = find_axes(h, of, e);
     volume *v = h->v;
     if (count < 0)

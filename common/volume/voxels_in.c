@@ -78,6 +78,7 @@ static int bytes_left(bytes *b, err *e)
 {
     unsigned char one;
     int64_t n = bytes_some(b, &one, 1, e);
+    b->z.next_out = NULL;
     if (n || !b->inflating)
         return n < 0 ? -1 : n > 0;
     int next = in_peek(b->s, e);

@@ -12,7 +12,7 @@
 /* Reads all events of a text into list; returns how many, or -1 with e filled. */
 static int read_with(const char *text, const char *transform, poses_event *list, int most, int64_t *skipped, err *e)
 {
-    poses p;
+    poses p = {0};
     int count = 0, more = -1;
     in *s = in_memory(text, strlen(text), "p", e);
     if (s && !poses_open(&p, s, transform, e))

@@ -27,7 +27,7 @@ static int read_parts(volume *v, const char *header, const void *data, size_t si
     char *all = malloc(n + size + 1);
     if (!all)
         return -1;
-    memcpy(all, header, n);
+    memcpy(all, header, n + 1);
     if (size)
         memcpy(all + n, data, size);
     int status = read_bytes(v, all, n + size, e);
@@ -308,7 +308,7 @@ static void refused_nrrd(void)
     refuse(NRRD("spacings: 1 -1 1\n"), "01234567", 8, "spacings: '-1'; expected a distance above 0");
     refuse(NRRD("spacings: 1 1\n"), "01234567", 8, "spacings: 'too few'");
     refuse(NRRD("space units: \"mm\" \"mm\" \"ell\"\n"), "01234567", 8, "space units: 'ell'");
-    refuse(NRRD("axis mins: 0 0 0\n"), "01234567", 8, "axis mins: 'is not read'");
+    refuse(NRRD("axis mins: 0 0 0\n"), "01234567", 8, "axis mins: '0 0 0'; expected space directions");
     refuse(NRRD("kinds: RGB-color domain domain\n"), "01234567", 8, "axis 0 holds 2 values of each voxel");
     refuse(NRRD("data file: LIST\n"), "", 0, "data file: 'LIST'; expected one file");
     refuse(NRRD("data file: x.raw\n"), "", 0,
