@@ -192,6 +192,19 @@ static void say_volumes(const tool *t, const model *m, notes *warnings)
     }
 }
 
+static double length_of(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static void say_cells(const tool *t, const mesh_box *b)
+{
+    double side[3];
+    for (int a = 0; a < 3; a++)
+        side[a] = 1e3 * length_of(b->edge[a]) / (b->nodes[a] - 1);
+    tool_say(t, "cells of %.6g x %.6g x %.6g mm", side[0], side[1], side[2]);
+}
+
 static void say_all(const tool *t, const model *m, notes *warnings)
 {
     int64_t fixed = mesh_fixed(m);
@@ -233,6 +246,8 @@ int main(int argc, char **argv)
         goto out;
     if (stage_open_output(&s, &t, &e) || (o.nodes ? from_nodes(&o, &b, &m, &e) : from_model(&o, &s, &m, &warnings, &e)))
         goto out;
+    if (o.nodes)
+        say_cells(&t, &b);
     say_all(&t, &m, &warnings);
     stage_write(&s, &m, &e);
 out:
