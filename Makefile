@@ -22,7 +22,7 @@ LDLIBS = -lz -lm -pthread
 EMBREE = -lembree3
 PICTURES = -lpng -lfreetype
 
-TOOLS = voxelise attach bind tled-run sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
+TOOLS = voxelise attach bind tled-run msds-mesh sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -32,7 +32,7 @@ run = @echo "  $(1)"; $(2)
 endif
 
 # Every .c of these folders is the library, but for mains.
-LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/device/*.c common/render/*.c)
+LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/volume/*.c common/device/*.c common/render/*.c)
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -92,6 +92,7 @@ VOXELISE_SRC := $(wildcard voxelise/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
 TLED_SRC := $(filter-out tled/tiles.c,$(wildcard tled/*.c))
+MESH_MODULES := $(wildcard msds/mesh_*.c)
 INFO_MODULES := $(wildcard common/tools/info_*.c)
 EXPORT_MODULES := $(wildcard common/tools/export_*.c)
 RENDER_MODULES := $(wildcard common/tools/render_*.c)
@@ -106,6 +107,7 @@ $(eval $(call tool,attach,$(ATTACH_SRC)))
 $(eval $(call tool,bind,bind/bind.c $(BIND_MODULES)))
 $(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
 $(eval $(call tool,tled-run,$(TLED_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
+$(eval $(call tool,msds-mesh,msds/msds-mesh.c $(MESH_MODULES)))
 $(eval $(call tool,sinew,common/tools/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))

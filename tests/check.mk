@@ -22,8 +22,9 @@ define test_program
 $(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB_CUDA) $(LIB)
 	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(CUDA_LIBS) $$(LDLIBS))
 endef
-COMPARE := $(BUILD)/tests/cli/compare
+COMPARE := $(BUILD)/tests/cli/compare $(BUILD)/tests/cli/voxels
 $(eval $(call test_program,tests/cli/compare))
+$(eval $(call test_program,tests/cli/voxels))
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
 

@@ -145,7 +145,7 @@ static void in_free(in *s)
 }
 
 /* fd stays the caller's where this fails. */
-static in *in_new(int fd, const char *name, const void *memory, size_t size, err *e)
+static in *in_new(int fd, const char *name, const void *memory, size_t size, bool plain, err *e)
 {
     in *s = mem_array(1, sizeof *s, "a stream", e);
     if (!s)
@@ -155,31 +155,40 @@ static in *in_new(int fd, const char *name, const void *memory, size_t size, err
     s->memory_left = size;
     s->name = mem_text(name, e);
     s->buffer = mem_array(CHUNK, 1, "a stream", e);
-    if (!s->name || !s->buffer || sniff(s, e)) {
+    if (!s->name || !s->buffer || (!plain && sniff(s, e))) {
         in_free(s);
         return NULL;
     }
     return s;
 }
 
-in *in_open(const char *path, err *e)
+static in *open_file(const char *path, bool plain, err *e)
 {
-    if (!path || !strcmp(path, "-"))
-        return in_new(STDIN_FILENO, "stdin", NULL, 0, e);
     int fd = open(path, O_RDONLY | O_CLOEXEC);
     if (fd < 0) {
         err_system(e, path, errno, "cannot open");
         return NULL;
     }
-    in *s = in_new(fd, path, NULL, 0, e);
+    in *s = in_new(fd, path, NULL, 0, plain, e);
     if (!s)
         close(fd);
     return s;
 }
 
+in *in_open(const char *path, err *e)
+{
+    if (!path || !strcmp(path, "-"))
+        return in_new(STDIN_FILENO, "stdin", NULL, 0, false, e);
+    return open_file(path, false, e);
+}
+
+in *in_open_plain(const char *path, err *e)
+{
+    return open_file(path, true, e);
+}
 in *in_memory(const void *bytes, size_t size, const char *name, err *e)
 {
-    return in_new(-1, name, bytes, size, e);
+    return in_new(-1, name, bytes, size, false, e);
 }
 
 void in_close(in *s)

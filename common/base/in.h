@@ -16,6 +16,9 @@ enum { IN_LINE_MOST = 1 << 28 }; /* the most bytes of a line */
 /* Opens path; "-" or NULL is standard input, named "stdin". NULL with e filled on failure. */
 in *in_open(const char *path, err *e);
 
+/* Opens a file whose bytes are taken as they are, though they may look like gzip. */
+in *in_open_plain(const char *path, err *e);
+
 /* Reads from bytes that stay the caller's (for tests and fuzzers). */
 in *in_memory(const void *bytes, size_t size, const char *name, err *e);
 

@@ -97,3 +97,12 @@ double gradient_stress(const double h[9], double mu, double bulk)
         }
     return gradient_mises(cauchy);
 }
+
+double gradient_stress_linear(const double h[9], double mu)
+{
+    double stress[9];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            stress[3 * i + j] = mu * (h[3 * i + j] + h[3 * j + i]);
+    return gradient_mises(stress);
+}

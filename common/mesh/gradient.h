@@ -22,4 +22,7 @@ double gradient_mises(const double t[9]);
  * is not above 0. */
 double gradient_stress(const double h[9], double mu, double bulk);
 
+/* The same of linear elasticity: of the small strain (H + H^T) / 2, whose mean part drops out. */
+double gradient_stress_linear(const double h[9], double mu);
+
 #endif

@@ -23,30 +23,33 @@ typedef struct known {
 
 /* X(name, type, unit, axis, columns_min, columns_max, flags, maker, meaning) */
 #define KNOWN_ARRAYS(X)                                                                                                \
-    X("node.position", MODEL_F64, "m", "node", 3, 3, 0, "voxelise", "rest position")                                   \
+    X("node.position", MODEL_F64, "m", "node", 3, 3, 0, "voxelise or msds-mesh", "rest position")                      \
     X("node.lattice", MODEL_I32, "1", "node", 3, 3, 0, "voxelise", "corner of the lattice: i, j, k")                   \
-    X("node.rigid", MODEL_U8, "1", "node", 1, 1, 0, "attach", "1 = fixed")                                             \
+    X("node.rigid", MODEL_U8, "1", "node", 1, 1, 0, "attach or msds-mesh", "1 = fixed")                                \
     X("node.anchor", MODEL_I32, "@anchor", "node", 1, 1, 0, "attach", "rigid surface that holds the node, -1 = none")  \
     X("anchor.name", MODEL_STR, "1", "anchor", 1, 1, 0, "attach", "name of a rigid surface")                           \
-    X("element.node", MODEL_I32, "@node", "element", 4, 8, KNOWN_EVERY, "voxelise",                                    \
-      "nodes in VTK order: 8 (hexahedron) or 4 (tetrahedron)")                                                         \
+    X("element.node", MODEL_I32, "@node", "element", 4, 8, KNOWN_EVERY, "voxelise or msds-mesh",                       \
+      "nodes in VTK order: 8 (hexahedron) or 4 (tetrahedron, its volume above 0)")                                     \
     X("element.lattice", MODEL_I32, "1", "element", 3, 3, 0, "voxelise", "cell of the lattice: i, j, k")               \
-    X("element.volume", MODEL_I32, "@volume", "element", 1, 1, KNOWN_EVERY, "voxelise", "volume it belongs to")        \
+    X("element.volume", MODEL_I32, "@volume", "element", 1, 1, KNOWN_EVERY, "voxelise or msds-mesh",                   \
+      "volume it belongs to")                                                                                          \
     X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, "voxelise",                                              \
       "share of it that is enclosed: the part that it has of its mass and forces; without the array all is")           \
     X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, "attach",                                                   \
       "unit direction of contraction; 0 0 0 where there is none")                                                      \
-    X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, "voxelise", "name")                                            \
-    X("volume.level", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise", "level, 0 the lowest")                            \
-    X("volume.priority", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise", "priority within the level, 0 the first")      \
-    X("volume.material", MODEL_I32, "@material", "volume", 1, 1, KNOWN_EVERY, "voxelise", "material")                  \
-    X("volume.muscle", MODEL_U8, "1", "volume", 1, 1, 0, "voxelise", "1 = a muscle")                                   \
-    X("material.name", MODEL_STR, "1", "material", 1, 1, 0, "voxelise", "name")                                        \
-    X("material.law", MODEL_STR, "1", "material", 1, 1, 0, "voxelise", "law: neo-hookean")                             \
-    X("material.E", MODEL_F64, "Pa", "material", 1, 1, 0, "voxelise", "Young's modulus")                               \
-    X("material.nu", MODEL_F64, "1", "material", 1, 1, 0, "voxelise", "Poisson's ratio")                               \
-    X("material.density", MODEL_F64, "kg/m3", "material", 1, 1, 0, "voxelise", "mass density at rest")                 \
-    X("material.peak", MODEL_F64, "Pa", "material", 1, 1, 0, "voxelise", "peak active stress of its muscles")          \
+    X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, "voxelise or msds-mesh", "name")                               \
+    X("volume.level", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise or msds-mesh", "level, 0 the lowest")               \
+    X("volume.priority", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise or msds-mesh",                                   \
+      "priority within the level, 0 the first")                                                                        \
+    X("volume.material", MODEL_I32, "@material", "volume", 1, 1, KNOWN_EVERY, "voxelise or msds-mesh", "material")     \
+    X("volume.muscle", MODEL_U8, "1", "volume", 1, 1, 0, "voxelise or msds-mesh", "1 = a muscle")                      \
+    X("material.name", MODEL_STR, "1", "material", 1, 1, 0, "voxelise or msds-mesh", "name")                           \
+    X("material.law", MODEL_STR, "1", "material", 1, 1, 0, "voxelise or msds-mesh", "law: neo-hookean or linear")      \
+    X("material.E", MODEL_F64, "Pa", "material", 1, 1, 0, "voxelise or msds-mesh", "Young's modulus")                  \
+    X("material.nu", MODEL_F64, "1", "material", 1, 1, 0, "voxelise or msds-mesh", "Poisson's ratio")                  \
+    X("material.density", MODEL_F64, "kg/m3", "material", 1, 1, 0, "voxelise or msds-mesh", "mass density at rest")    \
+    X("material.peak", MODEL_F64, "Pa", "material", 1, 1, 0, "voxelise or msds-mesh",                                  \
+      "peak active stress of its muscles")                                                                             \
     X("muscle.volume", MODEL_I32, "@volume", "muscle", 1, 1, KNOWN_EVERY, "attach", "volume of the muscle")            \
     X("muscle.centre", MODEL_F64, "m", "muscle", 3, 3, 0, "attach",                                                    \
       "contraction centre, the mean of its rigid nodes; nan where it has none")                                        \

@@ -34,7 +34,8 @@ enum { KEYS = sizeof keys / sizeof *keys };
 #define KEY_NAME(name, unit, fallback, absent, condition, words) #name,
 static const char *const key_names[] = {"law", MATERIAL_KEYS(KEY_NAME)};
 
-static const char *const law_names[MATERIAL_LAWS] = {[MATERIAL_NEO_HOOKEAN] = "neo-hookean"};
+static const char *const law_names[MATERIAL_LAWS] = {
+    [MATERIAL_NEO_HOOKEAN] = "neo-hookean", [MATERIAL_LINEAR] = "linear"};
 
 /* One line of a file, or one row of the table. */
 typedef struct row {
@@ -44,11 +45,21 @@ typedef struct row {
     double value[KEYS];
 } row;
 
-static void row_defaults(row *r)
+#define VALUE_INDEX(name, unit, fallback, absent, condition, words) AT_##name,
+enum { MATERIAL_KEYS(VALUE_INDEX) };
+
+material materials_fallback(void)
 {
-    *r = (row){.law = MATERIAL_NEO_HOOKEAN};
-    for (int i = 0; i < KEYS; i++)
-        r->value[i] = keys[i].fallback;
+#define VALUE_FALLBACK(name, unit, fallback, absent, condition, words) .name = (fallback),
+    return (material){.law = MATERIAL_NEO_HOOKEAN, MATERIAL_KEYS(VALUE_FALLBACK)};
+}
+
+static row row_of(const material *of)
+{
+    row r = {.law = of->law};
+#define VALUE_PUT(name, unit, fallback, absent, condition, words) r.value[AT_##name] = of->name;
+    MATERIAL_KEYS(VALUE_PUT)
+    return r;
 }
 
 static int law_of(const char *name)
@@ -132,13 +143,21 @@ static int table_make(model *m, const row *rows, int64_t count, err *e)
     return 0;
 }
 
-int materials_default(model *m, err *e)
+int materials_make(model *m, const material *of, err *e)
 {
     char name[] = "tissue";
-    row r;
-    row_defaults(&r);
+    row r = row_of(of);
+    for (int i = 0; i < KEYS; i++)
+        if (!keys[i].valid(r.value[i]))
+            return err_set(e, NULL, 0, "%s=%g is not allowed; expected %s", keys[i].name, r.value[i], keys[i].expected);
     r.name = name;
     return table_make(m, &r, 1, e);
+}
+
+int materials_default(model *m, err *e)
+{
+    material of = materials_fallback();
+    return materials_make(m, &of, e);
 }
 
 static int refuse_duplicate(const keyfile *k, const row *rows, int64_t count, err *e)
@@ -151,6 +170,12 @@ static int refuse_duplicate(const keyfile *k, const row *rows, int64_t count, er
 
 int materials_read(model *m, in *s, err *e)
 {
+    return materials_read_with(m, s, NULL, e);
+}
+
+int materials_read_with(model *m, in *s, const material *fallback, err *e)
+{
+    material usual = materials_fallback();
     keyfile k;
     row *rows = NULL;
     int64_t count = 0, capacity = 0;
@@ -161,7 +186,7 @@ int materials_read(model *m, in *s, err *e)
             mem_grow(&rows, &capacity, count + 1, sizeof *rows, "materials", e))
             goto out;
         row *r = &rows[count];
-        row_defaults(r);
+        *r = row_of(fallback ? fallback : &usual);
         if (!(r->name = mem_text(k.word[0], e)))
             goto out;
         count++;
@@ -295,8 +320,6 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
     if (which < 0)
         return near_unknown(e, "material.law", 0, "law", law->str[i], law_names, MATERIAL_LAWS);
     to->law = (material_law)which;
-#define VALUE_INDEX(name, unit, fallback, absent, condition, words) AT_##name,
-    enum { MATERIAL_KEYS(VALUE_INDEX) };
 #define VALUE_TAKE(name, unit, fallback, absent, condition, words)                                                     \
     if (value_of(m, i, &keys[AT_##name], &to->name, e))                                                                \
         return -1;

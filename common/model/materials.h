@@ -2,7 +2,7 @@
  * files of lines `NAME law=neo-hookean E=3000 nu=0.49 density=1000 peak=30000` and from assignments NAME.KEY=VALUE. All
  * values are checked against one table of keys. The model owns its arrays, as ever.
  *
- * For the tool that makes volumes: materials_default where no file is given, materials_read where one is;
+ * For the tool that makes volumes: materials_default or materials_make where no file is given, materials_read where one is;
  * materials_find looks up what a volume names. Which material a volume has that names none is that tool's affair.
  */
 #ifndef SINEW_MATERIALS_H
@@ -11,7 +11,9 @@
 #include "base/in.h"
 #include "model/model.h"
 
-typedef enum material_law { MATERIAL_NEO_HOOKEAN, MATERIAL_LAWS } material_law;
+/* Neo-Hookean: tled-run's. Linear: isotropic linear elasticity with Cauchy's small strain, msds-run's FEM (PST section III);
+ * it is what the first becomes where strains are small, with the same E and nu. */
+typedef enum material_law { MATERIAL_NEO_HOOKEAN, MATERIAL_LINEAR, MATERIAL_LAWS } material_law;
 
 /* X(key, unit, default, where the model has none, allowed values v, the same in words). E, nu and density: W&M
  * section 4.2; peak is not in the paper. A nu below 0 (auxetic) is a material too; toward .5
@@ -27,12 +29,17 @@ typedef struct material {
     double E, nu, density, peak; /* Pa, 1, kg/m3, Pa */
 } material;
 
-/* Makes the table: one material, `tissue`, of the defaults. The axis must not be there yet. */
-int materials_default(model *m, err *e);
+/* Neo-Hookean, and each key's default. */
+material materials_fallback(void);
 
-/* Makes the table from a file, in its order; a key not given has the default. A name given twice, a value out of range
- * or an empty file is an error. */
+/* Makes the table: one material, `tissue`, of the defaults or of these values, which are checked. The axis must not be there yet. */
+int materials_default(model *m, err *e);
+int materials_make(model *m, const material *of, err *e);
+
+/* Makes the table from a file, in its order; a key not given has the default, or that of `fallback` (NULL: the default). A name
+ * given twice, a value out of range or an empty file is an error. */
 int materials_read(model *m, in *s, err *e);
+int materials_read_with(model *m, in *s, const material *fallback, err *e);
 
 /* Changes an existing table from such a file: only the keys given change. An unknown name is an error: nothing
  * could be made of it. */

@@ -120,28 +120,26 @@ static int of_names(field *to, const model *m, bool of_material, err *e)
 
 /* ---- strain and stress */
 
-/* mu and K of every volume (rows x 2); the caller frees them. */
-static double *laws(const model *m, err *e)
+/* The material of every volume; the caller frees them. */
+static material *laws(const model *m, err *e)
 {
     const model_array *of = model_need(m, "volume.material", e);
-    double *law = of ? mem_array(2 * of->rows, sizeof *law, "materials", e) : NULL;
-    for (int64_t v = 0; law && v < of->rows; v++) {
-        material a;
-        if (materials_of(m, of->i32[v], &a, e)) {
+    material *law = of ? mem_array(of->rows, sizeof *law, "materials", e) : NULL;
+    for (int64_t v = 0; law && v < of->rows; v++)
+        if (materials_of(m, of->i32[v], &law[v], e)) {
             free(law);
             return NULL;
         }
-        law[2 * v] = material_mu(&a);
-        law[2 * v + 1] = material_bulk(&a);
-    }
     return law;
 }
 
-static double strained(int which, const double h[9], const double *law)
+static double strained(int which, const double h[9], const material *law)
 {
     double strain[9];
+    if (which == STRESS && law->law == MATERIAL_LINEAR)
+        return gradient_stress_linear(h, material_mu(law));
     if (which == STRESS)
-        return gradient_stress(h, law[0], law[1]);
+        return gradient_stress(h, material_mu(law), material_bulk(law));
     gradient_strain(h, strain);
     return which == STRAIN ? 2. / 3 * gradient_mises(strain) : gradient_largest(strain);
 }
@@ -154,7 +152,7 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
     const model_array *volume = rest && which == STRESS ? model_need(m, "element.volume", e) : NULL;
     if (!rest || (which == STRESS && !volume))
         return -1;
-    double *law = which == STRESS ? laws(m, e) : NULL;
+    material *law = which == STRESS ? laws(m, e) : NULL;
     if ((which == STRESS && !law) || make(to, true, node->rows, ours[which], which == STRESS ? "Pa" : "", e)) {
         free(law);
         return -1;
@@ -163,7 +161,7 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
     for (int64_t n = 0; n < node->rows; n++) {
         double h[9];
         gradient_of(&node->i32[n * node->columns], node->columns, rest->f64, u, h);
-        to->value[n] = strained(which, h, law ? &law[2 * volume->i32[n]] : NULL);
+        to->value[n] = strained(which, h, law ? &law[volume->i32[n]] : NULL);
     }
     free(law);
     return 0;

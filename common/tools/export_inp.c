@@ -134,14 +134,16 @@ static void put_sets(const writer *w)
     }
 }
 
-/* W = C10 (J^-2/3 tr C - 3) + (J - 1)^2 / D1: DESIGN's law with C10 = mu / 2, D1 = 2 / K. */
+/* Neo-Hookean: W = C10 (J^-2/3 tr C - 3) + (J - 1)^2 / D1, DESIGN's law with C10 = mu / 2, D1 = 2 / K. */
 static void put_materials(const writer *w)
 {
     for (int64_t i = 0; i < w->materials; i++) {
         const material *law = &w->laws[i];
-        double constants[2] = {material_mu(law) / 2, 2 / material_bulk(law)};
-        out_format(w->to, "*MATERIAL, NAME=%s\n*HYPERELASTIC, NEO HOOKE\n", w->law + i * NAME);
-        put_numbers(constants, 2, w->to);
+        bool linear = law->law == MATERIAL_LINEAR;
+        double constants[2] = {material_mu(law) / 2, 2 / material_bulk(law)}, moduli[2] = {law->E, law->nu};
+        out_format(w->to, "*MATERIAL, NAME=%s\n%s\n", w->law + i * NAME,
+                   linear ? "*ELASTIC" : "*HYPERELASTIC, NEO HOOKE");
+        put_numbers(linear ? moduli : constants, 2, w->to);
         out_text(w->to, "*DENSITY\n");
         put_numbers(&law->density, 1, w->to);
     }
@@ -151,10 +153,19 @@ static void put_materials(const writer *w)
                        w->law + (int64_t)w->material->i32[v] * NAME);
 }
 
+/* Whether every volume is of the linear law: then its equations are solved in one step. */
+static bool is_linear(const writer *w)
+{
+    for (int64_t v = 0; v < w->volumes; v++)
+        if (w->count[v] && w->laws[w->material->i32[v]].law != MATERIAL_LINEAR)
+            return false;
+    return true;
+}
+
 static void put_step(const writer *w, const double *gravity)
 {
     double size = sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]);
-    out_text(w->to, "*STEP, NLGEOM, INC=1000\n*STATIC\n0.1, 1, 1e-06, 1\n");
+    out_text(w->to, is_linear(w) ? "*STEP\n*STATIC\n" : "*STEP, NLGEOM, INC=1000\n*STATIC\n0.1, 1, 1e-06, 1\n");
     if (size > 0) {
         double load[4] = {size, gravity[0] / size, gravity[1] / size, gravity[2] / size};
         out_text(w->to, "*DLOAD\nEALL, GRAV, ");

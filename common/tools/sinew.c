@@ -20,6 +20,7 @@ static const struct {
     {"attach", "attach", "rigid nodes, muscle centres and fibres"},
     {"bind", "bind", "surfaces to elements, to move with them"},
     {"tled-run", "tled-run", "total Lagrangian explicit dynamics"},
+    {"msds-mesh", "msds-mesh", "regular meshes of tetrahedra"},
     {"deform", "sinew-deform", "an OBJ as the model's results move it"},
     {"info", "sinew-info", "what a model holds"},
     {"diff", "sinew-diff", "where two models differ"},

@@ -144,7 +144,7 @@ int main(void)
     refuse_file("skin nu=-1", "m.txt:1: 'nu=-1'");
     refuse_file("skin density=0", "m.txt:1: 'density=0'");
     refuse_file("skin peak=-1", "m.txt:1: 'peak=-1'");
-    refuse_file("skin law=hookean", "m.txt:1: unknown law 'hookean'; expected one of: neo-hookean");
+    refuse_file("skin law=hookean", "m.txt:1: unknown law 'hookean'; expected one of: neo-hookean, linear");
     refuse_file("skin law=neohookean", "did you mean 'neo-hookean'?");
     refuse_file("skin e=3", "m.txt:1: unknown key 'e'; did you mean 'E'?");
     refuse_file("skin E=3 E=3", "m.txt:1: 'E' is given twice");

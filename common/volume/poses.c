@@ -1,0 +1,183 @@
+#include "volume/poses.h"
+
+#include "base/near.h"
+#include "base/num.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+int poses_open(poses *p, in *source, const char *transform, err *e)
+{
+    *p = (poses){.last = -(double)INFINITY};
+    int first = in_peek(source, e);
+    if (first == -2)
+        return -1;
+    p->sequence = first >= 'A' && first <= 'Z';
+    keyfile_open(&p->lines, source);
+    return p->sequence ? plus_open(&p->frames, source, transform, e) : 0;
+}
+
+static const char *place(const poses *p)
+{
+    return p->lines.name;
+}
+
+static int check_time(poses *p, double time, int64_t line, err *e)
+{
+    if (time < p->last)
+        return err_set(e, place(p), line, "time %.9g comes after %.9g; expected times that do not decrease", time,
+                       p->last);
+    p->last = time;
+    return 0;
+}
+
+/* ---- TUM */
+
+static int take_method(const poses *p, poses_event *to, err *e)
+{
+    static const char *const name[] = {"fem", "msds"};
+    const keyfile *k = &p->lines;
+    if (k->count != 2)
+        return keyfile_error(k, e, "%d words after method; expected method fem, or method msds", k->count - 1);
+    for (int i = 0; i < 2; i++)
+        if (!strcmp(k->word[1], name[i])) {
+            to->kind = i ? POSES_MSDS : POSES_FEM;
+            return 1;
+        }
+    return near_unknown(e, k->name, k->line, "method", k->word[1], name, 2);
+}
+
+static int take_pose(poses *p, poses_event *to, err *e)
+{
+    const keyfile *k = &p->lines;
+    double v[8], square = 0;
+    if (k->count != 8)
+        return keyfile_error(k, e, "%d words; expected time tx ty tz qx qy qz qw, method fem, or method msds",
+                             k->count);
+    for (int i = 0; i < 8; i++)
+        if (num_double(k->word[i], &v[i]))
+            return keyfile_error(k, e, "'%.100s' is no finite number; expected time tx ty tz qx qy qz qw", k->word[i]);
+    for (int i = 4; i < 8; i++)
+        square += v[i] * v[i];
+    double length = sqrt(square);
+    if (!(fabs(length - 1) <= POSES_LENGTH))
+        return keyfile_error(k, e, "a quaternion of length %.6g; expected 1, to within %g", length, POSES_LENGTH);
+    to->kind = POSES_POSE;
+    to->time = v[0];
+    memcpy(to->origin, v + 1, sizeof to->origin);
+    for (int i = 0; i < 4; i++)
+        to->turn[i] = v[4 + i] / length;
+    return check_time(p, to->time, k->line, e) ? -1 : 1;
+}
+
+static int next_line(poses *p, poses_event *to, err *e)
+{
+    int more = keyfile_next(&p->lines, e);
+    if (more <= 0)
+        return more;
+    to->line = p->lines.line;
+    return strcmp(p->lines.word[0], "method") ? take_pose(p, to, e) : take_method(p, to, e);
+}
+
+/* ---- sequences */
+
+/* The columns of a 4 x 4 matrix's rotation, made of length 1. -1: they are not at right angles, or left-handed. */
+static int take_axes(const double m[16], double axis[3][3])
+{
+    for (int j = 0; j < 3; j++) {
+        double square = 0;
+        for (int i = 0; i < 3; i++)
+            square += m[4 * i + j] * m[4 * i + j];
+        double length = sqrt(square);
+        if (!(length > 0) || !isfinite(length))
+            return -1;
+        for (int i = 0; i < 3; i++)
+            axis[j][i] = m[4 * i + j] / length;
+    }
+    for (int j = 0; j < 3; j++) {
+        const double *a = axis[j], *b = axis[(j + 1) % 3];
+        if (!(fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) <= POSES_COSINE))
+            return -1;
+    }
+    const double *x = axis[0], *y = axis[1], *z = axis[2];
+    double volume =
+        x[0] * (y[1] * z[2] - y[2] * z[1]) + x[1] * (y[2] * z[0] - y[0] * z[2]) + x[2] * (y[0] * z[1] - y[1] * z[0]);
+    return volume > 0 ? 0 : -1;
+}
+
+/* An image's frame as a probe's: +x along the columns, +z along the rows (into the tissue), +y against its normal. */
+static void turn_image(double axis[3][3])
+{
+    for (int i = 0; i < 3; i++) {
+        double down = axis[1][i];
+        axis[1][i] = -axis[2][i];
+        axis[2][i] = down;
+    }
+}
+
+/* The quaternion of the rotation whose columns are the axes, from its largest part, which is nowhere small. */
+static void quaternion(double axis[3][3], double turn[4])
+{
+    double trace = axis[0][0] + axis[1][1] + axis[2][2], length = 0;
+    int most = 0;
+    for (int i = 1; i < 3; i++)
+        most = axis[i][i] > axis[most][most] ? i : most;
+    if (trace > axis[most][most]) {
+        for (int i = 0; i < 3; i++)
+            turn[i] = axis[(i + 1) % 3][(i + 2) % 3] - axis[(i + 2) % 3][(i + 1) % 3];
+        turn[3] = 1 + trace;
+    } else {
+        int i = most, j = (i + 1) % 3, k = (i + 2) % 3;
+        turn[i] = 1 + axis[i][i] - axis[j][j] - axis[k][k];
+        turn[j] = axis[i][j] + axis[j][i];
+        turn[k] = axis[i][k] + axis[k][i];
+        turn[3] = axis[j][k] - axis[k][j];
+    }
+    for (int i = 0; i < 4; i++)
+        length += turn[i] * turn[i];
+    for (int i = 0; i < 4; i++)
+        turn[i] /= sqrt(length);
+}
+
+static int next_frame(poses *p, poses_event *to, err *e)
+{
+    double m[16], axis[3][3];
+    int more = plus_next(&p->frames, &to->time, &to->line, m, e);
+    if (more <= 0)
+        return more;
+    bool image = !strcmp(p->frames.from, "Image");
+    if (image && !p->frames.width)
+        return err_set(e, place(p), to->line,
+                       "the width of the images is not known; expected DimSize before the frames");
+    double middle = image ? (double)(p->frames.width - 1) / 2 : 0;
+    if (take_axes(m, axis))
+        return err_set(e, place(p), to->line, "%sTo%s is no rotation; expected axes at right angles, right-handed",
+                       p->frames.from, p->frames.to);
+    for (int i = 0; i < 3; i++) {
+        to->origin[i] = (m[4 * i] * middle + m[4 * i + 3]) / 1e3;
+        if (!isfinite(to->origin[i]))
+            return err_set(e, place(p), to->line, "%sTo%s lies too far away; expected mm", p->frames.from,
+                           p->frames.to);
+    }
+    if (image)
+        turn_image(axis);
+    quaternion(axis, to->turn);
+    to->kind = POSES_POSE;
+    return check_time(p, to->time, to->line, e) ? -1 : 1;
+}
+
+int poses_next(poses *p, poses_event *to, err *e)
+{
+    *to = (poses_event){0};
+    return p->sequence ? next_frame(p, to, e) : next_line(p, to, e);
+}
+
+void poses_matrix(const double turn[4], double r[9])
+{
+    double x = turn[0], y = turn[1], z = turn[2], w = turn[3];
+    r[0] = 1 - 2 * (y * y + z * z), r[1] = 2 * (x * y - z * w), r[2] = 2 * (x * z + y * w);
+    r[3] = 2 * (x * y + z * w), r[4] = 1 - 2 * (x * x + z * z), r[5] = 2 * (y * z - x * w);
+    r[6] = 2 * (x * z - y * w), r[7] = 2 * (y * z + x * w), r[8] = 1 - 2 * (x * x + y * y);
+}

@@ -1,0 +1,52 @@
+/* Any bytes as poses: each event is finite, its rotation is one and its time does not go back; or one error with a text. */
+#include "volume/poses.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static void check_pose(const poses_event *v, double last)
+{
+    double square = 0, r[9];
+    for (int i = 0; i < 4; i++)
+        square += v->turn[i] * v->turn[i];
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(v->origin[i]))
+            abort();
+    if (!(fabs(square - 1) < 1e-9) || !isfinite(v->time) || v->time < last)
+        abort();
+    poses_matrix(v->turn, r);
+    for (int i = 0; i < 9; i++)
+        if (!(fabs(r[i]) <= 1 + 1e-9))
+            abort();
+}
+
+static void read_all(const uint8_t *data, size_t size, const char *transform)
+{
+    err e = {0};
+    poses p;
+    poses_event v;
+    double last = -(double)INFINITY;
+    in *s = in_memory(data, size, "fuzz", &e);
+    int more = s ? poses_open(&p, s, transform, &e) : -1;
+    while (!more || more == 1) {
+        more = poses_next(&p, &v, &e);
+        if (more <= 0)
+            break;
+        if (v.kind != POSES_POSE)
+            continue;
+        check_pose(&v, last);
+        last = v.time;
+    }
+    if ((more < 0) != (e.text[0] != '\0'))
+        abort();
+    in_close(s);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    read_all(data, size, NULL);
+    read_all(data, size, "ImageToTracker");
+    return 0;
+}
