@@ -17,7 +17,7 @@ OPT = -O3
 CFLAGS = $(OPT) -g
 CSTD = -std=c11 -D_XOPEN_SOURCE=700 -D_DEFAULT_SOURCE -ffp-contract=off -fno-math-errno -pthread
 CPPFLAGS = -Icommon -I. -isystem /usr/include/freetype2
-ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(CPPFLAGS) -MMD -MP
+ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(VECTORS) $(CPPFLAGS) -MMD -MP
 LDLIBS = -lz -lm -pthread
 EMBREE = -lembree3
 PICTURES = -lpng -lfreetype
@@ -80,10 +80,10 @@ $(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: CPPFLAGS += $(if 
 
 # The CPU solver's pass, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
 # (No psabi: vectors are passed between functions of one file only.)
-$(BUILD)/tled/cpu_pass_%.o: CFLAGS += -Wno-psabi
+$(BUILD)/tled/cpu_pass_%.o: VECTORS = -Wno-psabi
 ifeq ($(shell uname -m),x86_64)
-$(BUILD)/tled/cpu_pass_avx2_%.o: CFLAGS += -mavx2
-$(BUILD)/tled/cpu_pass_avx512_%.o: CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
+$(BUILD)/tled/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
+$(BUILD)/tled/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 endif
 
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
