@@ -1,0 +1,29 @@
+#include "msds/lanes.h"
+
+#include "base/mem.h"
+
+#include <stdlib.h>
+
+const lanes *lanes_choose(void)
+{
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2"))
+        return &lanes_avx2;
+#endif
+    return &lanes_plain;
+}
+
+int lanes_field_make(lanes_field *f, int64_t nodes, err *e)
+{
+    const int64_t each = nodes + 2 * LANES;
+    f->memory = mem_array(3 * each, sizeof *f->memory, "the solver", e);
+    for (int a = 0; a < 3 && f->memory; a++)
+        f->x[a] = f->memory + a * each + LANES;
+    return f->memory ? 0 : -1;
+}
+
+void lanes_field_free(lanes_field *f)
+{
+    free(f->memory);
+    *f = (lanes_field){0};
+}

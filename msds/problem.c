@@ -1,0 +1,164 @@
+#include "msds/problem.h"
+
+#include "base/mem.h"
+#include "model/finite.h"
+#include "model/materials.h"
+#include "msds/springs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Lattices of five tetrahedra a cell with springs of k a tetrahedron act as E = 8.615 k / h, h the cell's side. */
+static const double lattice_stiffness = 8.615;
+
+/* A tetrahedron flatter than this share of its longest edge cubed has no shape to speak of. */
+static const double flat = 1e-9;
+
+static int check_arrays(msds_problem *p, const model *m, err *e)
+{
+    const model_array *position = model_need(m, "node.position", e);
+    const model_array *node = position ? model_need(m, "element.node", e) : NULL;
+    if (!node || finite_array(position, NULL, e))
+        return -1;
+    if (node->columns != 4)
+        return err_set(e, NULL, 0,
+                       "elements of %d nodes; expected tetrahedra (msds-mesh makes them of a box, an image or a voxel model)",
+                       (int)node->columns);
+    if (node->rows < 1 || node->rows > INT32_MAX / 16)
+        return err_set(e, NULL, 0, "%lld elements; expected 1 to %d", (long long)node->rows, INT32_MAX / 16);
+    if (finite_elements(m, NULL, e))
+        return -1;
+    p->nodes = position->rows;
+    p->elements = node->rows;
+    p->position = position->f64;
+    p->element_node = node->i32;
+    return 0;
+}
+
+static double longest_edge(const msds_problem *p, int64_t t)
+{
+    static const int corner[6][2] = SIMPLEX_EDGES;
+    double longest = 0;
+    for (int i = 0; i < 6; i++) {
+        const double *a = p->position + 3 * (int64_t)p->element_node[4 * t + corner[i][0]];
+        const double *b = p->position + 3 * (int64_t)p->element_node[4 * t + corner[i][1]];
+        longest = fmax(longest, (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
+                                    (b[2] - a[2]) * (b[2] - a[2]));
+    }
+    return sqrt(longest);
+}
+
+static int make_shapes(msds_problem *p, err *e)
+{
+    double volume = 0;
+    p->element = mem_array(p->elements, sizeof *p->element, "elements", e);
+    if (!p->element)
+        return -1;
+    for (int64_t t = 0; t < p->elements; t++) {
+        const int32_t *n = p->element_node + 4 * t;
+        const double *x = p->position;
+        simplex *s = &p->element[t];
+        simplex_shape(x + 3 * (int64_t)n[0], x + 3 * (int64_t)n[1], x + 3 * (int64_t)n[2], x + 3 * (int64_t)n[3], s);
+        double longest = longest_edge(p, t);
+        if (!(s->volume > flat * longest * longest * longest))
+            return err_set(e, NULL, 0, "element %lld is %s, its volume %.6g m3; expected its nodes in VTK order, a volume above 0",
+                           (long long)t, s->volume < 0 ? "inverted" : "flat", s->volume);
+        volume += s->volume;
+    }
+    p->side = cbrt(5 * volume / (double)p->elements);
+    return 0;
+}
+
+/* The linear law's E and nu are those of small strains of any other. */
+static int take_material(msds_problem *p, int64_t t, const material *a)
+{
+    p->young[t] = a->E;
+    simplex_material(a->E, a->nu, &p->element[t]);
+    for (int c = 0; c < 4; c++)
+        p->weight[p->element_node[4 * t + c]] += a->density * p->element[t].volume / 4;
+    return 0;
+}
+
+static int make_materials(msds_problem *p, const model *m, err *e)
+{
+    const model_array *of = model_need(m, "element.volume", e);
+    const model_array *table = of ? model_need(m, "volume.material", e) : NULL;
+    material *list = table ? mem_array(table->rows, sizeof *list, "materials", e) : NULL;
+    p->young = mem_array(p->elements, sizeof *p->young, "elements", e);
+    p->weight = mem_array(p->nodes, sizeof *p->weight, "nodes", e);
+    int result = list && p->young && p->weight ? 0 : -1;
+    for (int64_t i = 0; !result && i < table->rows; i++)
+        result = materials_of(m, table->i32[i], &list[i], e);
+    for (int64_t t = 0; !result && t < p->elements; t++)
+        result = take_material(p, t, &list[of->i32[t]]);
+    free(list);
+    return result;
+}
+
+static int make_nodes(msds_problem *p, const model *m, err *e)
+{
+    const model_array *rigid = model_find(m, "node.rigid");
+    p->fixed = mem_array(p->nodes, 1, "nodes", e);
+    p->displacement = mem_array(p->nodes, 3 * sizeof *p->displacement, "nodes", e);
+    p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "nodes", e);
+    if (!p->fixed || !p->displacement || !p->velocity)
+        return -1;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        p->fixed[n] = rigid && rigid->u8[n];
+        if (!(p->weight[n] > 0)) /* of no element: it stays where it is */
+            p->fixed[n] = 1;
+    }
+    return 0;
+}
+
+/* A node that the probe holds off by a force is to be held about as stiffly as its springs hold it. */
+static void choose_repulsion(msds_problem *p)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < p->springs; i++)
+        sum += 2 * p->spring[i].stiffness;
+    if (p->options.repulsion == 0)
+        p->options.repulsion = sum / (double)p->nodes;
+}
+
+int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, err *e)
+{
+    p->options = *o;
+    p->mass_factor = 1;
+    if (check_arrays(p, m, e) || make_shapes(p, e) || make_materials(p, m, e) || make_nodes(p, m, e))
+        return -1;
+    p->scale = o->scale > 0 ? o->scale : p->side / lattice_stiffness;
+    if (springs_make(p, p->scale, o->damping, e))
+        return -1;
+    choose_repulsion(p);
+    return 0;
+}
+
+int msds_problem_start(msds_problem *p, const frame *f, err *e)
+{
+    const model_array *u = frame_find(f, "node.displacement"), *v = frame_find(f, "node.velocity");
+    if (!u)
+        return err_set(e, NULL, 0, "frame %lld has no node.displacement; expected it, to go on from there",
+                       (long long)f->index);
+    if (finite_array(u, NULL, e) || finite_array(v, NULL, e))
+        return -1;
+    memcpy(p->displacement, u->f64, 3 * (size_t)p->nodes * sizeof *p->displacement);
+    if (v)
+        memcpy(p->velocity, v->f64, 3 * (size_t)p->nodes * sizeof *p->velocity);
+    for (int64_t n = 0; n < p->nodes; n++)
+        for (int a = 0; a < 3 && p->fixed[n]; a++)
+            p->velocity[3 * n + a] = 0;
+    return 0;
+}
+
+void msds_problem_free(msds_problem *p)
+{
+    free(p->element);
+    free(p->young);
+    free(p->fixed);
+    free(p->weight);
+    free(p->spring);
+    free(p->displacement);
+    free(p->velocity);
+    *p = (msds_problem){0};
+}
