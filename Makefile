@@ -22,7 +22,7 @@ LDLIBS = -lz -lm -pthread
 EMBREE = -lembree3
 PICTURES = -lpng -lfreetype
 
-TOOLS = voxelise attach bind tled-run msds-mesh sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
+TOOLS = voxelise attach bind tled-run msds-mesh msds-run sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -32,7 +32,7 @@ run = @echo "  $(1)"; $(2)
 endif
 
 # Every .c of these folders is the library, but for mains.
-LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/volume/*.c common/device/*.c common/render/*.c)
+LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/volume/*.c common/contact/*.c common/device/*.c common/render/*.c)
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -46,6 +46,12 @@ $(LIB): $(LIB_OBJ)
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
 	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -c -o $@ $<)
+
+# Loops that are compiled twice, plainly and for AVX2; which is taken is found out as the tool runs. No multiply and add is fused:
+# -mavx2 has none, and both give the same bytes.
+ifneq ($(filter x86_64-%,$(shell $(CC) -dumpmachine 2>/dev/null)),)
+$(BUILD)/msds/lanes_avx2.o: CFLAGS += -mavx2
+endif
 
 # CUDA: machine code for sm_90, and for the rest from sm_75 on what the driver compiles. As with C, no multiply and add is fused,
 # so that a card computes what a processor does. Objects are linked by cc, so they must not want C++'s library.
@@ -93,6 +99,7 @@ ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
 TLED_SRC := $(filter-out tled/tiles.c,$(wildcard tled/*.c))
 MESH_MODULES := $(wildcard msds/mesh_*.c)
+RUN_MODULES := $(filter-out msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
 INFO_MODULES := $(wildcard common/tools/info_*.c)
 EXPORT_MODULES := $(wildcard common/tools/export_*.c)
 RENDER_MODULES := $(wildcard common/tools/render_*.c)
@@ -108,6 +115,7 @@ $(eval $(call tool,bind,bind/bind.c $(BIND_MODULES)))
 $(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
 $(eval $(call tool,tled-run,$(TLED_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
 $(eval $(call tool,msds-mesh,msds/msds-mesh.c $(MESH_MODULES)))
+$(eval $(call tool,msds-run,msds/msds-run.c $(RUN_MODULES)))
 $(eval $(call tool,sinew,common/tools/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))

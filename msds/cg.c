@@ -130,9 +130,11 @@ static double find_left(cg *g, double *load)
 {
     double square = 0;
     *load = 0;
+    g->pull = 0;
     for (int a = 0; a < 3; a++)
         for (int64_t own = 0; own < g->s->nodes; own++) {
             float weight = g->weight->x[a][own], left = weight - g->pulled.x[a][own];
+            g->pull += (double)g->pulled.x[a][own] * (double)g->pulled.x[a][own];
             g->left.x[a][own] = left;
             square += (double)left * (double)left;
             *load += (double)weight * (double)weight;
@@ -166,8 +168,8 @@ static double add_penalty(cg *g)
     for (int64_t i = 0; i < g->c->count && g->p->options.penalty; i++) {
         int32_t own = g->s->own_node[g->c->list[i].node];
         double by = along(&g->way, own, &g->c->list[i]);
-        add_along(&g->pulled, own, &g->c->list[i], g->p->options.repulsion * by);
-        sum += g->p->options.repulsion * by * by;
+        add_along(&g->pulled, own, &g->c->list[i], g->p->repulsion[g->c->list[i].node] * by);
+        sum += g->p->repulsion[g->c->list[i].node] * by * by;
     }
     return sum;
 }
@@ -183,7 +185,7 @@ static void push(cg *g)
 {
     for (int64_t i = 0; i < g->c->count && g->p->options.penalty; i++)
         add_along(&g->left, g->s->own_node[g->c->list[i].node], &g->c->list[i],
-                  g->p->options.repulsion * g->c->list[i].depth);
+                  g->p->repulsion[g->c->list[i].node] * g->c->list[i].depth);
 }
 
 /* The depth that is left after the search. */
@@ -205,14 +207,15 @@ static void conclude(cg *g)
     for (int64_t i = 0; i < g->c->count; i++) {
         contact *c = &g->c->list[i];
         int32_t own = g->s->own_node[c->node];
-        c->force = g->p->options.penalty ? g->p->options.repulsion * depth_now(g, c) : -along(&g->left, own, c);
+        c->force = g->p->options.penalty ? g->p->repulsion[c->node] * depth_now(g, c) : -along(&g->left, own, c);
         for (int a = 0; a < 3; a++) {
             double left = (double)g->left.x[a][own], weight = (double)g->weight->x[a][own], by = c->force * c->way[a];
             square += (left + by) * (left + by) - left * left;
             load += (weight + by) * (weight + by) - weight * weight;
         }
     }
-    g->residual = load > 0 ? sqrt(fmax(0, square) / load) : square > 0 ? INFINITY : 0;
+    load = fmax(load, g->pull);
+    g->residual = load > 0 ? sqrt(fmax(0, square) / load) : 0;
 }
 
 void cg_solve(cg *g, int64_t iterations)

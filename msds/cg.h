@@ -21,7 +21,8 @@ typedef struct cg {
     double *place, *force;   /* the model's nodes x 3: m, N; where warping needs them */
     double *sum;             /* chunks */
     float alpha, beta;
-    double residual;
+    double pull;     /* N2: the square of the elements' pulls */
+    double residual; /* what is left over the load or the pull, whichever is more */
 } cg;
 
 /* -1 with e filled, and to be freed all the same. */

@@ -51,7 +51,8 @@ static void consider(contacts *c, const lanes_springs *w, const msds_problem *p,
     memcpy(at.way, t.way, sizeof at.way);
     at.force = fmax(0, c->held[at.node]);
     double slack = rule == CONTACTS_NEAR ? near_by : at.force > 0 ? clinging : 0;
-    if (!p->fixed[at.node] && at.depth > -slack * w->probe->reach)
+    bool follows = rule == CONTACTS_NEAR && at.force > 0;
+    if (!p->fixed[at.node] && (follows || at.depth > -slack * w->probe->reach))
         c->list[c->count++] = at;
 }
 
@@ -97,6 +98,14 @@ void contacts_hold(contacts *c, const msds_problem *p)
     memset(c->held, 0, (size_t)p->nodes * sizeof *c->held);
     for (int64_t i = 0; i < c->count; i++)
         c->held[c->list[i].node] = c->list[i].force > 0 ? c->list[i].force : -1;
+}
+
+int64_t contacts_held(const contacts *c, const msds_problem *p)
+{
+    int64_t held = 0;
+    for (int64_t n = 0; n < p->nodes; n++)
+        held += c->held[n] > 0;
+    return held;
 }
 
 int64_t contacts_sum(const contacts *c, double force[3])

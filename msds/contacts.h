@@ -41,6 +41,9 @@ void contacts_hold(contacts *c, const msds_problem *p);
 bool contacts_missed(contacts *c, const lanes *loops, lanes_springs *w, const msds_problem *p, const double *u,
                      pool *threads, double depth);
 
+/* How many nodes were pressed in the frame before. */
+int64_t contacts_held(const contacts *c, const msds_problem *p);
+
 /* The force on the probe, N, and how many nodes it presses. */
 int64_t contacts_sum(const contacts *c, double force[3]);
 

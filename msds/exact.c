@@ -155,7 +155,7 @@ static int make_schur(exact *x, err *e)
     pool_run(x->threads, count, 1, normal_work, x);
     pool_run(x->threads, count, 1, schur_work, x);
     for (int64_t i = 0; i < count && x->p->options.penalty; i++)
-        x->schur[i * count + i] += 1 / x->p->options.repulsion;
+        x->schur[i * count + i] += 1 / x->p->repulsion[x->c->list[i].node];
     return 0;
 }
 
@@ -191,10 +191,11 @@ static double still_to_go(const exact *x, const double *u, int64_t i)
     double gone = 0;
     for (int a = 0; a < 3; a++)
         gone += c->way[a] * (u[3 * (int64_t)c->node + a] - c->from[a]);
-    return c->depth - gone - (x->p->options.penalty ? c->force / x->p->options.repulsion : 0);
+    return c->depth - gone - (x->p->options.penalty ? c->force / x->p->repulsion[c->node] : 0);
 }
 
-/* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull. */
+/* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull, whichever was
+ * the most in this frame. */
 static double find_left(exact *x, const double *u)
 {
     const msds_problem *p = x->p;
@@ -216,13 +217,8 @@ static double find_left(exact *x, const double *u)
         x->left[i] -= x->inner[i];
         left += x->left[i] * x->left[i];
     }
-    double most = fmax(load, inner);
-    return most > 0 ? sqrt(left / most) : 0;
-}
-
-double exact_residual(exact *x, const double *u)
-{
-    return find_left(x, u);
+    x->load = fmax(x->load, fmax(load, inner));
+    return x->load > 0 ? sqrt(left / x->load) : 0;
 }
 
 /* One solve: u and the contact forces. */
@@ -259,8 +255,9 @@ static bool in_place(const exact *x, const double *u, double tolerance)
     return true;
 }
 
-int exact_solve(exact *x, double *u, double tolerance, double reach, err *e)
+int exact_solve(exact *x, double *u, bool first, double tolerance, double reach, err *e)
 {
+    x->load = first ? 0 : x->load;
     if (make_schur(x, e))
         return -1;
     x->residual = find_left(x, u);

@@ -28,6 +28,7 @@ typedef struct exact {
     double *schur, *want, *force; /* contacts squared; contacts */
     int64_t normal_room, schur_room, want_room, force_room;
     contacts *c;
+    double load;     /* N2: the square of the frame's largest load */
     double residual;
     int solves;
 } exact;
@@ -36,11 +37,9 @@ typedef struct exact {
 int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const lanes *loops, pool *threads, err *e);
 void exact_free(exact *x);
 
-/* Brings u (nodes x 3) into equilibrium with gravity and with the contacts listed, whose forces it fills. -1 with e filled where
+/* Brings u (nodes x 3) into equilibrium with gravity and with the contacts listed, whose forces it fills; first:
+ * of a frame. -1 with e filled where
  * it does not come to the tolerance. */
-int exact_solve(exact *x, double *u, double tolerance, double reach, err *e);
-
-/* The residual at u, relative to the load or the pull, whichever is more. */
-double exact_residual(exact *x, const double *u);
+int exact_solve(exact *x, double *u, bool first, double tolerance, double reach, err *e);
 
 #endif

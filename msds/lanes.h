@@ -23,7 +23,8 @@ typedef struct lanes_springs {
     float dt;
     bool touched;
     float centre[3], reach; /* m: of a ball that holds the probe */
-    double repulsion;       /* N/m */
+    const float *repulsion; /* nodes: N/m */
+    double damping;         /* s: of the repulsion, over its stiffness */
     const probe_placed *probe;
 } lanes_springs;
 

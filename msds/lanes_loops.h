@@ -66,7 +66,7 @@ INLINE v8 fetch(const float *field, int32_t first, const int32_t *neighbour)
     return r;
 }
 
-/* What the probe pushes the nodes of a slice with. */
+/* What the probe pushes the nodes of a slice with: a spring and damper each, that do not pull. */
 static void push(const lanes_springs *w, int64_t own, v8 force[3])
 {
     for (int l = 0; l < LANES; l++) {
@@ -74,8 +74,12 @@ static void push(const lanes_springs *w, int64_t own, v8 force[3])
         for (int a = 0; a < 3; a++)
             x[a] = (double)w->place.x[a][own + l] + (double)w->u.x[a][own + l];
         probe_touch t = probe_at(w->probe, x);
-        for (int a = 0; a < 3 && t.depth > 0; a++)
-            force[a][l] += (float)(w->repulsion * t.depth * t.way[a]);
+        double speed = 0;
+        for (int a = 0; a < 3; a++)
+            speed += t.way[a] * (double)w->v.x[a][own + l];
+        double pushed = (double)w->repulsion[own + l] * (t.depth - w->damping * speed);
+        for (int a = 0; a < 3 && t.depth > 0 && pushed > 0; a++)
+            force[a][l] += (float)(pushed * t.way[a]);
     }
 }
 

@@ -128,7 +128,8 @@ static double iterate(lanczos *z)
     return found * (1 + sharp);
 }
 
-/* |a - b|^2 <= (1/ma + 1/mb) (ma |a|^2 + mb |b|^2), and no spring is stiffer than its k in any direction. */
+/* A spring takes k |a - b|^2 <= 2 k (|a|^2 + |b|^2), or k |a|^2 where b is fixed, in whatever direction it lies; the probe
+ * adds its own stiffness. */
 static int bound_of(const msds_problem *p, largest *l, err *e)
 {
     double *sum = mem_array(p->nodes, sizeof *sum, "the stable step", e);
@@ -136,15 +137,14 @@ static int bound_of(const msds_problem *p, largest *l, err *e)
         return -1;
     for (int64_t i = 0; i < p->springs; i++) {
         const msds_spring *s = &p->spring[i];
-        int64_t a = s->node[0], b = s->node[1];
-        double inverse_a = p->fixed[a] ? 0 : 1 / p->weight[a], inverse_b = p->fixed[b] ? 0 : 1 / p->weight[b];
-        sum[a] += s->stiffness * (inverse_a + inverse_b);
-        sum[b] += s->stiffness * (inverse_a + inverse_b);
+        double share = p->fixed[s->node[0]] || p->fixed[s->node[1]] ? 1 : 2;
+        sum[s->node[0]] += share * s->stiffness;
+        sum[s->node[1]] += share * s->stiffness;
     }
     l->bound = 0;
     for (int64_t n = 0; n < p->nodes; n++)
         if (!p->fixed[n])
-            l->bound = fmax(l->bound, (sum[n] + p->options.repulsion / p->weight[n]) / p->mass_factor);
+            l->bound = fmax(l->bound, (sum[n] + p->repulsion[n]) / (p->weight[n] * p->mass_factor));
     free(sum);
     return 0;
 }

@@ -23,7 +23,8 @@ typedef struct cpu_state {
     lanes_springs w;
     float *stiffness, *damper, *rest; /* slots x LANES: of w */
     float *inertia;                   /* nodes: 1 / kg, 0 where fixed */
-    float *inverse;                   /* dt / inertia: of w */
+    float *inverse;                   /* nodes: dt / inertia; of w */
+    float *repulsion;                 /* nodes: of w */
     contacts contacts;
     stiffness k;
     cg *cg;       /* made when first wanted, as is exact */
@@ -75,6 +76,7 @@ static void fill_nodes(cpu_state *s)
     spread(s, p->velocity, &s->w.v);
     for (int64_t n = 0; n < p->nodes; n++) {
         int32_t own = s->order.own_node[n];
+        s->repulsion[own] = (float)p->repulsion[n];
         s->inertia[own] = p->fixed[n] ? 0 : (float)(1 / (p->weight[n] * p->mass_factor));
         for (int a = 0; a < 3; a++)
             s->w.weight.x[a][own] = p->fixed[n] ? 0 : (float)(p->weight[n] * p->options.gravity[a]);
@@ -89,6 +91,7 @@ static int allocate(cpu_state *s, err *e)
     s->rest = mem_array(o->slots * LANES, sizeof *s->rest, "the solver", e);
     s->inertia = mem_array(o->nodes, sizeof *s->inertia, "the solver", e);
     s->inverse = mem_array(o->nodes, sizeof *s->inverse, "the solver", e);
+    s->repulsion = mem_array(o->nodes, sizeof *s->repulsion, "the solver", e);
     s->place = mem_array(s->p->nodes, 3 * sizeof *s->place, "the solver", e);
     lanes_field *fields[] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
@@ -96,7 +99,7 @@ static int allocate(cpu_state *s, err *e)
             return -1;
     if (contacts_make(&s->contacts, o, s->p->nodes, e))
         return -1;
-    return s->stiffness && s->damper && s->rest && s->inertia && s->inverse && s->place ? 0 : -1;
+    return s->stiffness && s->damper && s->rest && s->inertia && s->inverse && s->repulsion && s->place ? 0 : -1;
 }
 
 static void cpu_destroy(void *state)
@@ -120,6 +123,7 @@ static void cpu_destroy(void *state)
     free(s->rest);
     free(s->inertia);
     free(s->inverse);
+    free(s->repulsion);
     free(s->place);
     slices_free(&s->order);
     free(s);
@@ -142,7 +146,8 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
     s->w.damper = s->damper;
     s->w.rest = s->rest;
     s->w.inverse = s->inverse;
-    s->w.repulsion = s->p->options.repulsion;
+    s->w.repulsion = s->repulsion;
+    s->w.damping = s->p->options.damping;
     fill_nodes(s);
     fill_springs(s);
     return s;
@@ -192,7 +197,7 @@ static void note_repulsion(cpu_state *s)
         contacts_find(&s->contacts, s->loops, &s->w, s->p, NULL, s->threads, CONTACTS_PRESSED);
     for (int64_t i = 0; i < s->contacts.count; i++) {
         contact *c = &s->contacts.list[i];
-        c->force = c->depth > 0 ? s->w.repulsion * c->depth : 0;
+        c->force = c->depth > 0 ? s->p->repulsion[c->node] * c->depth : 0;
     }
 }
 
@@ -210,13 +215,21 @@ static void find_contacts(cpu_state *s, const double *u, contacts_rule rule)
 
 static int step_cg(cpu_state *s, int64_t count, err *e)
 {
+    double force[3];
     if (!s->cg) {
         s->cg = mem_array(1, sizeof *s->cg, "the solver", e);
         if (!s->cg || make_stiffness(s, e) ||
             cg_make(s->cg, s->p, &s->order, &s->k, &s->contacts, s->loops, s->threads, &s->w.u, &s->w.weight, e))
             return -1;
     }
+    int64_t pressed = contacts_held(&s->contacts, s->p);
     find_contacts(s, NULL, CONTACTS_PRESSED);
+    if (contacts_sum(&s->contacts, force) < pressed && count > 1) { /* let go of: tissue may come after the probe */
+        cg_solve(s->cg, count / 2);
+        contacts_hold(&s->contacts, s->p);
+        find_contacts(s, NULL, CONTACTS_PRESSED);
+        count -= count / 2;
+    }
     cg_solve(s->cg, count);
     return 0;
 }
@@ -234,7 +247,7 @@ static int step_exact(cpu_state *s, err *e)
     s->solves = 0;
     find_contacts(s, s->place, CONTACTS_NEAR);
     for (int turn = 0; turn < ROUNDS; turn++) {
-        if (exact_solve(s->exact, s->place, exact_tolerance, s->plan.touched ? s->plan.probe.reach : 1, e))
+        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.reach : 1, e))
             return -1;
         s->solves += s->exact->solves;
         spread(s, s->place, &s->w.u);

@@ -111,14 +111,13 @@ static int make_nodes(msds_problem *p, const model *m, err *e)
     return 0;
 }
 
-/* A node that the probe holds off by a force is to be held about as stiffly as its springs hold it. */
-static void choose_repulsion(msds_problem *p)
+static int make_repulsion(msds_problem *p, err *e)
 {
-    double sum = 0;
-    for (int64_t i = 0; i < p->springs; i++)
-        sum += 2 * p->spring[i].stiffness;
-    if (p->options.repulsion == 0)
-        p->options.repulsion = sum / (double)p->nodes;
+    p->repulsion = mem_array(p->nodes, sizeof *p->repulsion, "nodes", e);
+    for (int64_t i = 0; p->repulsion && i < p->springs; i++)
+        for (int c = 0; c < 2; c++)
+            p->repulsion[p->spring[i].node[c]] += p->options.repulsion * p->spring[i].stiffness;
+    return p->repulsion ? 0 : -1;
 }
 
 int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, err *e)
@@ -128,10 +127,7 @@ int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, er
     if (check_arrays(p, m, e) || make_shapes(p, e) || make_materials(p, m, e) || make_nodes(p, m, e))
         return -1;
     p->scale = o->scale > 0 ? o->scale : p->side / lattice_stiffness;
-    if (springs_make(p, p->scale, o->damping, e))
-        return -1;
-    choose_repulsion(p);
-    return 0;
+    return springs_make(p, p->scale, o->damping, e) || make_repulsion(p, e) ? -1 : 0;
 }
 
 int msds_problem_start(msds_problem *p, const frame *f, err *e)
@@ -156,6 +152,7 @@ void msds_problem_free(msds_problem *p)
     free(p->element);
     free(p->young);
     free(p->fixed);
+    free(p->repulsion);
     free(p->weight);
     free(p->spring);
     free(p->displacement);

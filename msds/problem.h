@@ -27,7 +27,7 @@ typedef struct msds_options {
     double scale;      /* m: a spring's stiffness over its tetrahedron's Young's modulus; 0: by the mesh (auto) */
     double damping;    /* s: a spring's damping over its stiffness */
     double gravity[3]; /* m/s2 */
-    double repulsion;  /* N/m: of a node on the probe; 0: chosen */
+    double repulsion;  /* contact stiffness of a node over that of its springs together */
     bool penalty;      /* the FEM's contact is a penalty of that stiffness; else the displacement is prescribed */
     bool warp;         /* the FEM takes each element's rotation out */
 } msds_options;
@@ -39,6 +39,7 @@ typedef struct msds_problem {
     simplex *element;            /* elements; owned, as is all below */
     double *young;               /* elements, Pa */
     uint8_t *fixed;              /* nodes */
+    double *repulsion;           /* nodes, N/m: of contact, by springs or a penalty */
     double *weight;              /* nodes, kg: lumped masses, which gravity acts on */
     double mass_factor;          /* inertia over weight */
     msds_spring *spring;         /* springs, by their nodes */

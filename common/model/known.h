@@ -70,8 +70,12 @@ typedef struct known {
     X("*/face.group", MODEL_I32, "@*/group", "*/face", 1, 1, KNOWN_EVERY, "voxelise or bind", "group it is in")        \
     X("*/group.name", MODEL_STR, "1", "*/group", 1, 1, 0, "voxelise or bind",                                          \
       "names between spaces: a face may be in several")                                                                \
-    X("node.displacement", MODEL_F64, "m", "node", 3, 3, KNOWN_FRAME, "tled-run", "displacement from rest")            \
-    X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, "tled-run", "velocity")
+    X("node.displacement", MODEL_F64, "m", "node", 3, 3, KNOWN_FRAME, "tled-run or msds-run",                          \
+      "displacement from rest")                                                                                        \
+    X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, "tled-run or msds-run", "velocity")                \
+    X("probe.pose", MODEL_F64, "1", "probe", 7, 7, KNOWN_FRAME, "msds-run",                                            \
+      "place of its frame, m, and its turn, a unit quaternion x y z w")                                                \
+    X("probe.force", MODEL_F64, "N", "probe", 3, 3, KNOWN_FRAME, "msds-run", "force of the tissue on it")
 
 /* Whether a name is the user's: it begins "x-", and nothing is known of it, whatever follows. */
 bool known_users(const char *name);

@@ -21,6 +21,7 @@ static const struct {
     {"bind", "bind", "surfaces to elements, to move with them"},
     {"tled-run", "tled-run", "total Lagrangian explicit dynamics"},
     {"msds-mesh", "msds-mesh", "regular meshes of tetrahedra"},
+    {"msds-run", "msds-run", "press a probe on tetrahedra, by springs or finite elements"},
     {"deform", "sinew-deform", "an OBJ as the model's results move it"},
     {"info", "sinew-info", "what a model holds"},
     {"diff", "sinew-diff", "where two models differ"},

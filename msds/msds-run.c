@@ -1,0 +1,346 @@
+/* msds-run: presses a probe on a tetrahedral model, pose by pose, and writes a frame for each as soon as it is solved: by springs
+ * and dampers or by linear finite elements. PST sections III and the appendix.
+ */
+#include "base/mem.h"
+#include "model/stage.h"
+#include "msds/compare.h"
+#include "msds/largest.h"
+#include "msds/problem.h"
+#include "volume/poses.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SUBSTEPS_MOST = 1000 };
+
+enum { MASS_STABLE, MASS_LUMPED };
+
+struct options {
+    opt_common common;
+    int device, method, mass, contact;
+    bool exact, warp, residual, compare;
+    const char *probe, *poses, *transform, *scale;
+    int64_t iterations;
+    double dt, damping, repulsion;
+    opt_numbers gravity;
+};
+
+static const opt option_list[] = {
+    {'d', "device", "auto|cuda|cpu", OPT_CHOICE, offsetof(struct options, device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT,
+     "what computes [auto]"},
+    {0, "method", "msds|fem", OPT_CHOICE, offsetof(struct options, method), 0, 0, "msds|fem", OPT_OUTPUT,
+     "springs or finite elements [msds]"},
+    {0, "exact", NULL, OPT_FLAG, offsetof(struct options, exact), 0, 0, NULL, 0, "the FEM to 1e-6, by a factor"},
+    {0, "probe", "sphere:R", OPT_TEXT, offsetof(struct options, probe), 0, 0, NULL, 0, "what presses [nothing]"},
+    {0, "poses", "FILE", OPT_TEXT, offsetof(struct options, poses), 0, 0, NULL, OPT_REQUIRED | OPT_FILE,
+     "where it is: TUM lines or a PLUS sequence"},
+    {0, "transform", "NAME", OPT_TEXT, offsetof(struct options, transform), 0, 0, NULL, 0, "of a PLUS sequence"},
+    {0, "iterations", "N", OPT_INT, offsetof(struct options, iterations), 1, 1e6, NULL, OPT_OUTPUT, "a frame [20]"},
+    {0, "dt", "S", OPT_NUMBER, offsetof(struct options, dt), 1e-9, 1e3, NULL, OPT_OUTPUT,
+     "step of the springs, s [0.01]"},
+    {0, "mass", "stable|lumped", OPT_CHOICE, offsetof(struct options, mass), 0, 0, "stable|lumped", OPT_OUTPUT,
+     "inertia [stable: scaled for --dt]"},
+    {0, "spring-scale", "M|auto", OPT_TEXT, offsetof(struct options, scale), 0, 0, NULL, OPT_OUTPUT,
+     "spring stiffness over E, m [.002]"},
+    {0, "damping", "S", OPT_NUMBER, offsetof(struct options, damping), 0, 1e6, NULL, OPT_OUTPUT,
+     "damping over stiffness, s [.1]"},
+    {0, "contact", "prescribed|penalty", OPT_CHOICE, offsetof(struct options, contact), 0, 0, "prescribed|penalty",
+     OPT_OUTPUT, "of the FEM [prescribed]"},
+    {0, "repulsion", "X", OPT_NUMBER, offsetof(struct options, repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT,
+     "of contact, over a node's springs [2]"},
+    {0, "warp", NULL, OPT_FLAG, offsetof(struct options, warp), 0, 0, NULL, 0, "FEM: take rotations out"},
+    {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
+    {0, "residual", NULL, OPT_FLAG, offsetof(struct options, residual), 0, 0, NULL, OPT_OUTPUT,
+     "say what each FEM frame leaves"},
+    {0, "compare", NULL, OPT_FLAG, offsetof(struct options, compare), 0, 0, NULL, OPT_OUTPUT,
+     "run the other method too; say the difference"},
+    {0},
+};
+
+static const opt_tool table = {
+    .name = "msds-run",
+    .purpose = "Press a probe on a tetrahedral model, by springs or finite elements.",
+    .operands = "",
+    .writes_model = true,
+    .threaded = true,
+    .options = option_list,
+};
+
+typedef struct session {
+    const tool *t;
+    const struct options *o;
+    stage stage;
+    model m;
+    msds_problem problem;
+    probe probe;
+    largest largest;
+    int64_t substeps;
+    const backend *device;
+    pool *threads;
+    void *state;
+    compare *other; /* the other method, or NULL */
+    in *source;
+    poses poses;
+    msds_method method; /* now */
+    int64_t next_frame;
+    notes warnings;
+} session;
+
+/* Algorithm 1's constant, or 0 for auto. */
+static int read_scale(const char *text, double *scale, err *e)
+{
+    num_length length;
+    if (!strcmp(text, "auto")) {
+        *scale = 0;
+        return 0;
+    }
+    if (num_length_of(text, &length))
+        return err_usage(e, "--spring-scale %.100s; expected a length above 0, such as .002, or auto", text);
+    *scale = num_length_in(length, num_unit_of("m"), num_unit_of("m"));
+    return *scale > 0 ? 0 : err_usage(e, "--spring-scale %.100s; expected a length above 0, such as .002, or auto", text);
+}
+
+static msds_method method_of(const session *s, bool fem)
+{
+    return !fem ? MSDS_SPRINGS : s->o->exact ? MSDS_EXACT : MSDS_FEM;
+}
+
+/* Scales inertia, or cuts the step, until the step of springs is stable in every configuration. */
+static int choose_step(session *s, err *e)
+{
+    const struct options *o = s->o;
+    msds_problem *p = &s->problem;
+    if (largest_of(p, &s->largest, e))
+        return -1;
+    double stable = largest_step(s->largest.rest, o->damping), sure = largest_step(s->largest.bound, o->damping);
+    s->substeps = 1;
+    if (o->mass == MASS_LUMPED)
+        s->substeps = sure < o->dt ? (int64_t)fmin(ceil(o->dt / sure), 1e15) : 1;
+    else
+        p->mass_factor = fmax(1, largest_factor(s->largest.bound, o->damping, o->dt));
+    tool_say(s->t, "springs: stable step %.4g ms at rest, %.4g ms in any configuration, dt %.4g ms", 1e3 * stable, 1e3 * sure,
+             1e3 * o->dt);
+    if (s->substeps > SUBSTEPS_MOST)
+        return err_set(e, NULL, 0, "--dt %g is %.3g times the stable step; expected at most %.3g s, or --mass stable", o->dt,
+                       o->dt / sure, SUBSTEPS_MOST * sure);
+    if (o->mass == MASS_STABLE)
+        tool_say(s->t, "springs: inertia is %.6g times the mass, for that step", p->mass_factor);
+    else if (s->substeps > 1)
+        tool_say(s->t, "springs: each step is taken in %lld", (long long)s->substeps);
+    return 0;
+}
+
+static int make_problem(session *s, err *e)
+{
+    const struct options *o = s->o;
+    msds_options options = {.damping = o->damping,
+                            .repulsion = o->repulsion,
+                            .penalty = o->contact,
+                            .warp = o->warp};
+    for (int a = 0; a < 3 && o->gravity.count; a++)
+        options.gravity[a] = o->gravity.value[a];
+    if (read_scale(o->scale, &options.scale, e) || msds_problem_make(&s->problem, &s->m, &options, e) ||
+        model_axis_add(&s->m, "probe", 1, e))
+        return -1;
+    tool_say(s->t, "%lld nodes, %lld tetrahedra, %lld springs; k = %.6g m E",
+             (long long)s->problem.nodes, (long long)s->problem.elements, (long long)s->problem.springs,
+             s->problem.scale);
+    return choose_step(s, e);
+}
+
+static int say_provenance(tool *t, const session *s, err *e)
+{
+    char ran[400];
+    const struct options *o = s->o;
+    snprintf(ran, sizeof ran,
+             "%s--method %s --iterations %lld --dt %.9g --mass %s --spring-scale %.9g --damping %.9g --contact %s --repulsion "
+             "%.9g [%s, inertia %.9g, %lld substeps]",
+             *t->provenance ? " " : "", o->method ? "fem" : "msds", (long long)o->iterations, o->dt,
+             o->mass ? "lumped" : "stable", s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed",
+             o->repulsion, s->device->name, s->problem.mass_factor, (long long)s->substeps);
+    size_t size = strlen(t->provenance) + strlen(ran) + 1;
+    char *all = mem_array((int64_t)size, 1, "provenance", e);
+    if (!all)
+        return -1;
+    snprintf(all, size, "%s%s", t->provenance, ran);
+    free(t->provenance);
+    t->provenance = all;
+    return 0;
+}
+
+/* Passes on the frames that came, and starts from the last. */
+static int take_frames(session *s, err *e)
+{
+    frame f = {0}, last = {0};
+    int got, result = -1;
+    int64_t count = 0;
+    while ((got = model_read_frame(s->stage.reader, &s->m, &f, e)) > 0) {
+        frame swap = last;
+        last = f;
+        f = swap;
+        count++;
+        if (model_write_frame(s->stage.writer, &last, e))
+            goto out;
+    }
+    if (got < 0)
+        goto out;
+    if (count)
+        s->next_frame = last.index + 1;
+    result = count ? msds_problem_start(&s->problem, &last, e) : 0;
+out:
+    frame_free(&f);
+    frame_free(&last);
+    return result;
+}
+
+static int write_frame(session *s, const poses_event *at, const msds_sight *sight, err *e)
+{
+    frame f = {.index = s->next_frame++, .time = at->time};
+    int result = -1;
+    model_array *u = frame_add(&f, &s->m, "node.displacement", e);
+    if (!u || s->device->get(s->state, MSDS_DISPLACEMENT, u->f64, e))
+        goto out;
+    model_array *v = frame_add(&f, &s->m, "node.velocity", e);
+    if (!v || s->device->get(s->state, MSDS_VELOCITY, v->f64, e))
+        goto out;
+    model_array *pose = frame_add(&f, &s->m, "probe.pose", e);
+    model_array *force = pose ? frame_add(&f, &s->m, "probe.force", e) : NULL;
+    if (!force)
+        goto out;
+    memcpy(pose->f64, at->origin, sizeof at->origin);
+    memcpy(pose->f64 + 3, at->turn, sizeof at->turn);
+    memcpy(force->f64, sight->force, sizeof sight->force);
+    result = model_write_frame(s->stage.writer, &f, e);
+    out_flush(s->stage.sink);
+out:
+    frame_free(&f);
+    return result;
+}
+
+static void say_frame(const session *s, double time, const msds_sight *sight)
+{
+    static const char *const names[] = {"msds", "fem", "fem, exact"};
+    char left[60] = "", force[100] = "";
+    double size = sqrt(sight->force[0] * sight->force[0] + sight->force[1] * sight->force[1] +
+                       sight->force[2] * sight->force[2]);
+    if (!isnan(sight->residual))
+        snprintf(left, sizeof left, ", residual %.3g", sight->residual);
+    if (sight->solves)
+        snprintf(left + strlen(left), sizeof left - strlen(left), " after %d solves", sight->solves);
+    if (s->o->probe)
+        snprintf(force, sizeof force, ", %lld nodes press with %.4g N", (long long)sight->contacts, size);
+    if (s->o->residual)
+        tool_say(s->t, "%.6g s: %s%s%s", time, names[s->method], left, force);
+    else
+        tool_detail(s->t, "%.6g s: %s%s%s", time, names[s->method], left, force);
+}
+
+static int solve_frame(session *s, const poses_event *at, err *e)
+{
+    msds_plan plan = {.method = s->method, .dt = s->o->dt / (double)s->substeps, .touched = s->o->probe != NULL};
+    msds_sight sight;
+    probe_pose pose;
+    memcpy(pose.position, at->origin, sizeof pose.position);
+    memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
+    plan.probe = probe_place(&s->probe, &pose);
+    int64_t count = s->o->iterations * (s->method == MSDS_SPRINGS ? s->substeps : 1);
+    if (s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
+        return -1;
+    if (!sight.finite) {
+        err_set(e, in_name(s->source), at->line, "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt",
+                at->time);
+        e->status = STATUS_DIVERGED;
+        return -1;
+    }
+    say_frame(s, at->time, &sight);
+    if (write_frame(s, at, &sight, e))
+        return -1;
+    if (!s->other)
+        return 0;
+    plan.method = method_of(s, s->method == MSDS_SPRINGS);
+    count = s->o->iterations * (plan.method == MSDS_SPRINGS ? s->substeps : 1);
+    return compare_frame(s->other, s->device, s->state, &plan, count, e);
+}
+
+static int simulate(session *s, err *e)
+{
+    poses_event at;
+    int got;
+    int64_t frames = 0;
+    while ((got = poses_next(&s->poses, &at, e)) > 0) {
+        if (at.kind != POSES_POSE) {
+            s->method = method_of(s, at.kind == POSES_FEM);
+            tool_detail(s->t, "line %lld: from here on by %s", (long long)at.line, s->method ? "fem" : "msds");
+            continue;
+        }
+        frames++;
+        if (solve_frame(s, &at, e))
+            return -1;
+        if (s->other)
+            tool_say(s->t, "%.6g s: msds against fem: root mean square %.4g, at most %.4g of the largest displacement", at.time,
+                     s->other->mean, s->other->worst);
+    }
+    if (!got && !frames)
+        return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
+    return got;
+}
+
+static int prepare(session *s, err *e)
+{
+    static const char *const names[] = {"auto", "cuda", "cpu"};
+    const struct options *o = s->o;
+    char device[300];
+    if ((o->probe && probe_of(&s->probe, o->probe, e)) || make_problem(s, e))
+        return -1;
+    s->device = backend_choose(msds_backends, names[o->device], device, sizeof device, e);
+    int threads = tool_threads(s->t, e);
+    s->threads = s->device && threads > 0 ? pool_create(threads, e) : NULL;
+    if (!s->threads)
+        return -1;
+    tool_say(s->t, "%s", device);
+    s->method = method_of(s, o->method);
+    return 0;
+}
+
+/* The poses last: a FIFO opens when its writer comes. */
+static int make_states(session *s, err *e)
+{
+    s->state = s->device->create(&s->problem, s->threads, e);
+    if (!s->state)
+        return -1;
+    if (s->o->compare) {
+        s->other = compare_make(&s->problem, s->device, s->threads, e);
+        if (!s->other)
+            return -1;
+    }
+    out_flush(s->stage.sink);
+    s->source = in_open(s->o->poses, e);
+    return s->source ? poses_open(&s->poses, s->source, s->o->transform, e) : -1;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {.iterations = 20, .dt = .01, .damping = .1, .repulsion = 2, .scale = ".002"};
+    err e = {0};
+    tool t = {0};
+    session s = {.t = &t, .o = &o};
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+        goto out;
+    if (stage_open_output(&s.stage, &t, &e) || stage_read(&s.stage, &s.m, &e) || prepare(&s, &e) ||
+        say_provenance(&t, &s, &e) || stage_write(&s.stage, &s.m, &e) || take_frames(&s, &e) || make_states(&s, &e) ||
+        simulate(&s, &e))
+        goto out;
+out:
+    tool_warn(&t, &s.warnings);
+    if (!t.done)
+        stage_close(&s.stage, &t, &e);
+    compare_free(s.other, s.device);
+    if (s.state)
+        s.device->destroy(s.state);
+    in_close(s.source);
+    pool_destroy(s.threads);
+    msds_problem_free(&s.problem);
+    model_free(&s.m);
+    return tool_end(&t, &e);
+}
