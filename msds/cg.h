@@ -18,8 +18,8 @@ typedef struct cg {
     lanes_matrix matrix;
     lanes_field *u, *weight; /* the state's: m, N */
     lanes_field left, way, pulled;
-    double *place, *force;   /* the model's nodes x 3: m, N; where warping needs them */
-    double *sum;             /* chunks */
+    double *place, *force; /* the model's nodes x 3: m, N; where warping needs them */
+    double *sum;           /* chunks */
     float alpha, beta;
     double pull;     /* N2: the square of the elements' pulls */
     double residual; /* what is left over the load or the pull, whichever is more */

@@ -10,7 +10,8 @@ typedef struct compare {
     const msds_problem *p;
     void *state;
     double *ours, *other; /* nodes x 3, m */
-    double mean, worst; /* of the last frame: root mean square over that of the FEM; the largest over the FEM's largest */
+    double mean,
+        worst; /* of the last frame: root mean square over that of the FEM; the largest over the FEM's largest */
 } compare;
 
 /* NULL with e filled. */

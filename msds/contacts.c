@@ -66,8 +66,8 @@ static void look_for(contacts *c, const lanes *loops, lanes_springs *w, pool *th
     w->reach = reach;
 }
 
-void contacts_find(contacts *c, const lanes *loops, lanes_springs *w, const msds_problem *p, const double *u, pool *threads,
-                   contacts_rule rule)
+void contacts_find(contacts *c, const lanes *loops, lanes_springs *w, const msds_problem *p, const double *u,
+                   pool *threads, contacts_rule rule)
 {
     look_for(c, loops, w, threads);
     c->count = 0;

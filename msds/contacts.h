@@ -7,17 +7,18 @@
 #include "msds/lanes.h"
 
 typedef struct contact {
-    int32_t node;    /* the model's */
-    double way[3];   /* unit: out of the probe */
-    double depth;    /* m: how far it has to go that way; below 0: how far it may come */
-    double from[3];  /* m: its displacement where depth was found */
-    double force;    /* N: what it is pushed with, along way */
+    int32_t node;   /* the model's */
+    double way[3];  /* unit: out of the probe */
+    double depth;   /* m: how far it has to go that way; below 0: how far it may come */
+    double from[3]; /* m: its displacement where depth was found */
+    double force;   /* N: what it is pushed with, along way */
 } contact;
 
 typedef struct contacts {
     contact *list;
     int64_t count;
-    double *held;    /* the model's nodes: the force of the frame before, -1 where listed without one, 0 where not listed */
+    double
+        *held; /* the model's nodes: the force of the frame before, -1 where listed without one, 0 where not listed */
     int32_t *found;  /* our nodes: those in the ball, by chunks */
     int64_t *amount; /* chunks: how many */
 } contacts;
@@ -31,8 +32,8 @@ void contacts_free(contacts *c);
 
 /* Lists them, in the solver's order, with the forces of the frame before; w has the probe and the displacements, or u (the model's
  * nodes x 3) has these to more digits. */
-void contacts_find(contacts *c, const lanes *loops, lanes_springs *w, const msds_problem *p, const double *u, pool *threads,
-                   contacts_rule rule);
+void contacts_find(contacts *c, const lanes *loops, lanes_springs *w, const msds_problem *p, const double *u,
+                   pool *threads, contacts_rule rule);
 
 /* Notes the forces, for the next frame. */
 void contacts_hold(contacts *c, const msds_problem *p);

@@ -167,8 +167,8 @@ static int link_nodes(dissection *d, const msds_problem *p, err *e)
 }
 
 /* The rows of front f, whose children's are known: mark[place] == f + 1 where noted. */
-static int find_rows(dissection *d, const msds_problem *p, int64_t f, const int64_t *child, int32_t *mark, int32_t *list,
-                     err *e)
+static int find_rows(dissection *d, const msds_problem *p, int64_t f, const int64_t *child, int32_t *mark,
+                     int32_t *list, err *e)
 {
     front *at = &d->front[f];
     const int64_t end = at->first + at->columns;

@@ -17,13 +17,13 @@ typedef struct front {
 } front;
 
 typedef struct dissection {
-    int64_t nodes;     /* free ones */
-    int32_t *order;    /* nodes: the model's */
-    int32_t *place;    /* the model's nodes: in the order, or -1 for a fixed one */
-    front *front;      /* children before parents; the last is the root */
+    int64_t nodes;  /* free ones */
+    int32_t *order; /* nodes: the model's */
+    int32_t *place; /* the model's nodes: in the order, or -1 for a fixed one */
+    front *front;   /* children before parents; the last is the root */
     int64_t fronts, room;
-    int64_t *start;    /* the model's nodes + 1: neighbours of each */
-    int32_t *link;     /* of each: the spring */
+    int64_t *start; /* the model's nodes + 1: neighbours of each */
+    int32_t *link;  /* of each: the spring */
 } dissection;
 
 /* Makes d (zeroed); -1 with e filled, and to be freed all the same. */

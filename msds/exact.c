@@ -208,12 +208,12 @@ static double find_left(exact *x, const double *u)
         for (int a = 0; a < 3; a++)
             x->left[3 * (int64_t)x->c->list[i].node + a] += x->c->list[i].force * x->c->list[i].way[a];
     for (int64_t i = 0; i < 3 * p->nodes; i++) {
+        inner += x->inner[i] * x->inner[i];
         if (p->fixed[i / 3]) {
             x->left[i] = 0;
             continue;
         }
         load += x->left[i] * x->left[i];
-        inner += x->inner[i] * x->inner[i];
         x->left[i] -= x->inner[i];
         left += x->left[i] * x->left[i];
     }

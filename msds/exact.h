@@ -18,17 +18,17 @@ typedef struct exact {
     stiffness *k;
     factor factor;
     double *left, *inner, *step; /* nodes x 3 */
-    int32_t *cached;            /* nodes: which of the paths are theirs, or -1 */
-    int32_t *whose;             /* paths: the node */
-    float *path;                /* paths x 3 x factor.path */
+    int32_t *cached;             /* nodes: which of the paths are theirs, or -1 */
+    int32_t *whose;              /* paths: the node */
+    float *path;                 /* paths x 3 x factor.path */
     int64_t paths, room, whose_room;
-    double *work;               /* for paths being made */
-    int64_t fresh;              /* the first of them */
-    float *normal;              /* contacts x factor.path: along each contact's way */
+    double *work;                 /* for paths being made */
+    int64_t fresh;                /* the first of them */
+    float *normal;                /* contacts x factor.path: along each contact's way */
     double *schur, *want, *force; /* contacts squared; contacts */
     int64_t normal_room, schur_room, want_room, force_room;
     contacts *c;
-    double load;     /* N2: the square of the frame's largest load */
+    double load; /* N2: the square of the frame's largest load */
     double residual;
     int solves;
 } exact;

@@ -6,8 +6,8 @@
 #include <string.h>
 
 enum {
-    PANEL = 32,        /* columns that are eliminated before the rest of a front is updated */
-    TRIANGLE = 16,     /* columns of a triangle that is solved plainly */
+    PANEL = 32,    /* columns that are eliminated before the rest of a front is updated */
+    TRIANGLE = 16, /* columns of a triangle that is solved plainly */
     FAIL_MEMORY = -2
 };
 
@@ -160,9 +160,9 @@ static void factor_work(void *context, int64_t chunk, int64_t from, int64_t to)
         bool sound = true;
         for (int c = 0; c < 2; c++)
             sound = sound && (f->of[number].child[c] < 0 || f->failed[f->of[number].child[c]] == -1);
-        f->failed[number] = sound ? factor_front_of(f, number) : f->failed[f->of[number].child[0]] != -1
-                                                                     ? f->failed[f->of[number].child[0]]
-                                                                     : f->failed[f->of[number].child[1]];
+        f->failed[number] = sound                                     ? factor_front_of(f, number)
+                            : f->failed[f->of[number].child[0]] != -1 ? f->failed[f->of[number].child[0]]
+                                                                      : f->failed[f->of[number].child[1]];
     }
 }
 
@@ -380,10 +380,11 @@ static int allocate(factor *f, err *e)
         f->numbers += size_of(&d->front[i]) * 3 * d->front[i].columns;
     double need = 1.3 * 4 * (double)f->numbers + 24 * (double)f->largest * (double)f->largest;
     if (need > (double)mem_available())
-        return err_set(e, NULL, 0,
-                       "the factor that --exact needs would take some %.3g GB, and %.3g are free; expected a smaller mesh, or the "
-                       "conjugate gradients of --method fem",
-                       1e-9 * need, 1e-9 * (double)mem_available());
+        return err_set(
+            e, NULL, 0,
+            "the factor that --exact needs would take some %.3g GB, and %.3g are free; expected a smaller mesh, or the "
+            "conjugate gradients of --method fem",
+            1e-9 * need, 1e-9 * (double)mem_available());
     for (int64_t i = 0; i < d->fronts; i++) {
         const front *t = &d->front[i];
         f->of[i].panel = mem_array(size_of(t) * 3 * t->columns, sizeof *f->of[i].panel, "the factor", e);
@@ -408,9 +409,10 @@ int factor_make(factor *f, const msds_problem *p, const stiffness *k, const lane
     if (failed == FAIL_MEMORY)
         return err_memory(e, "the factor");
     if (failed >= 0)
-        return err_set(e, NULL, 0,
-                       "nothing holds node %d's part of the model, so that the FEM has no one solution; expected rigid nodes",
-                       (int)failed);
+        return err_set(
+            e, NULL, 0,
+            "nothing holds node %d's part of the model, so that the FEM has no one solution; expected rigid nodes",
+            (int)failed);
     return 0;
 }
 

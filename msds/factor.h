@@ -31,13 +31,13 @@ typedef struct factor {
     int64_t *level;   /* tree.fronts: the deepest first */
     int64_t *begin;   /* levels + 1: of each in `level` */
     int64_t levels;
-    int64_t at;       /* the level that is being worked on */
-    int64_t numbers;  /* in all panels */
-    int64_t path;     /* the longest path's values */
-    int64_t largest;  /* rows and columns of the largest front, as numbers */
+    int64_t at;      /* the level that is being worked on */
+    int64_t numbers; /* in all panels */
+    int64_t path;    /* the longest path's values */
+    int64_t largest; /* rows and columns of the largest front, as numbers */
     const double *load;
     double *result;
-    int32_t *failed;  /* fronts: the model's node whose pivot was not above 0, or -1; -2: no memory */
+    int32_t *failed; /* fronts: the model's node whose pivot was not above 0, or -1; -2: no memory */
 } factor;
 
 /* Orders, allocates and factors k's matrix. -1 with e filled, and to be freed all the same: where memory is short (said before

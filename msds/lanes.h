@@ -42,8 +42,8 @@ typedef struct lanes {
     /* y = a p for slices [from, to); returns p . y. */
     double (*multiply)(const lanes_matrix *a, const lanes_field *p, lanes_field *y, int64_t from, int64_t to);
     /* u += alpha p; r -= alpha y; returns r . r. */
-    double (*advance)(lanes_field *u, lanes_field *r, const lanes_field *p, const lanes_field *y, float alpha, int64_t from,
-                      int64_t to);
+    double (*advance)(lanes_field *u, lanes_field *r, const lanes_field *p, const lanes_field *y, float alpha,
+                      int64_t from, int64_t to);
     /* p = r + beta p. */
     void (*turn)(lanes_field *p, const lanes_field *r, float beta, int64_t from, int64_t to);
     /* Nodes of slices [from, to) in the ball: their numbers to `list`; returns how many. */

@@ -168,7 +168,8 @@ static int64_t inside(const lanes_springs *w, int64_t from, int64_t to, int32_t 
 INLINE void block(const float *k, v8 p0, v8 p1, v8 p2, v8 y[3])
 {
     for (int a = 0; a < 3; a++)
-        y[a] += load(k + (3 * a) * LANES) * p0 + load(k + (3 * a + 1) * LANES) * p1 + load(k + (3 * a + 2) * LANES) * p2;
+        y[a] +=
+            load(k + (3 * a) * LANES) * p0 + load(k + (3 * a + 1) * LANES) * p1 + load(k + (3 * a + 2) * LANES) * p2;
 }
 
 INLINE void sum_up(double sum[LANES], v8 x)
@@ -202,8 +203,8 @@ static double multiply(const lanes_matrix *m, const lanes_field *p, lanes_field 
     return sum_of(sum);
 }
 
-static double advance(lanes_field *u, lanes_field *r, const lanes_field *p, const lanes_field *y, float alpha, int64_t from,
-                      int64_t to)
+static double advance(lanes_field *u, lanes_field *r, const lanes_field *p, const lanes_field *y, float alpha,
+                      int64_t from, int64_t to)
 {
     double sum[LANES] = {0};
     for (int64_t own = from * LANES; own < to * LANES; own += LANES) {

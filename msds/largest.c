@@ -12,26 +12,29 @@ static const double sharp = 1e-3;
 
 typedef struct lanczos {
     const msds_problem *p;
-    double *root;             /* nodes: 1 / sqrt(m), 0 where fixed */
+    bool any;     /* springs as stiff in every direction as along themselves, and the probe's repulsion on all nodes */
+    double *root; /* nodes: 1 / sqrt(m), 0 where fixed */
     double *v, *before, *next; /* nodes x 3 */
     double alpha[STEPS], beta[STEPS];
 } lanczos;
 
-/* next = M^-1/2 K M^-1/2 v. */
+/* next = M^-1/2 K M^-1/2 v. A spring that turns and stretches is never stiffer, in any direction, than k. */
 static void apply(lanczos *z)
 {
     const msds_problem *p = z->p;
-    memset(z->next, 0, 3 * (size_t)p->nodes * sizeof *z->next);
+    for (int64_t i = 0; i < 3 * p->nodes; i++)
+        z->next[i] = z->any ? p->repulsion[i / 3] * z->root[i / 3] * z->root[i / 3] * z->v[i] : 0;
     for (int64_t i = 0; i < p->springs; i++) {
         const msds_spring *s = &p->spring[i];
         int64_t a = s->node[0], b = s->node[1];
-        double d[3], along = 0;
+        double d[3], w[3], along = 0;
         for (int c = 0; c < 3; c++) {
             d[c] = (p->position[3 * b + c] - p->position[3 * a + c]) / s->rest;
-            along += d[c] * (z->v[3 * b + c] * z->root[b] - z->v[3 * a + c] * z->root[a]);
+            w[c] = z->v[3 * b + c] * z->root[b] - z->v[3 * a + c] * z->root[a];
+            along += d[c] * w[c];
         }
         for (int c = 0; c < 3; c++) {
-            double f = s->stiffness * along * d[c];
+            double f = s->stiffness * (z->any ? w[c] : along * d[c]);
             z->next[3 * a + c] -= f * z->root[a];
             z->next[3 * b + c] += f * z->root[b];
         }
@@ -128,27 +131,6 @@ static double iterate(lanczos *z)
     return found * (1 + sharp);
 }
 
-/* A spring takes k |a - b|^2 <= 2 k (|a|^2 + |b|^2), or k |a|^2 where b is fixed, in whatever direction it lies; the probe
- * adds its own stiffness. */
-static int bound_of(const msds_problem *p, largest *l, err *e)
-{
-    double *sum = mem_array(p->nodes, sizeof *sum, "the stable step", e);
-    if (!sum)
-        return -1;
-    for (int64_t i = 0; i < p->springs; i++) {
-        const msds_spring *s = &p->spring[i];
-        double share = p->fixed[s->node[0]] || p->fixed[s->node[1]] ? 1 : 2;
-        sum[s->node[0]] += share * s->stiffness;
-        sum[s->node[1]] += share * s->stiffness;
-    }
-    l->bound = 0;
-    for (int64_t n = 0; n < p->nodes; n++)
-        if (!p->fixed[n])
-            l->bound = fmax(l->bound, (sum[n] + p->repulsion[n]) / (p->weight[n] * p->mass_factor));
-    free(sum);
-    return 0;
-}
-
 int largest_of(const msds_problem *p, largest *l, err *e)
 {
     lanczos z = {.p = p};
@@ -157,11 +139,13 @@ int largest_of(const msds_problem *p, largest *l, err *e)
     z.v = mem_array(p->nodes, 3 * sizeof *z.v, "the stable step", e);
     z.before = mem_array(p->nodes, 3 * sizeof *z.before, "the stable step", e);
     z.next = mem_array(p->nodes, 3 * sizeof *z.next, "the stable step", e);
-    if (!z.root || !z.v || !z.before || !z.next || bound_of(p, l, e))
+    if (!z.root || !z.v || !z.before || !z.next)
         goto out;
     for (int64_t n = 0; n < p->nodes; n++)
         z.root[n] = p->fixed[n] ? 0 : 1 / sqrt(p->weight[n] * p->mass_factor);
-    l->rest = fmin(iterate(&z), l->bound);
+    l->rest = iterate(&z);
+    z.any = true;
+    l->bound = fmax(l->rest, iterate(&z));
     result = 0;
 out:
     free(z.root);

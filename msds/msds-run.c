@@ -48,7 +48,7 @@ static const opt option_list[] = {
     {0, "contact", "prescribed|penalty", OPT_CHOICE, offsetof(struct options, contact), 0, 0, "prescribed|penalty",
      OPT_OUTPUT, "of the FEM [prescribed]"},
     {0, "repulsion", "X", OPT_NUMBER, offsetof(struct options, repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT,
-     "of contact, over a node's springs [2]"},
+     "of contact, over a node's springs [1]"},
     {0, "warp", NULL, OPT_FLAG, offsetof(struct options, warp), 0, 0, NULL, 0, "FEM: take rotations out"},
     {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
     {0, "residual", NULL, OPT_FLAG, offsetof(struct options, residual), 0, 0, NULL, OPT_OUTPUT,
@@ -98,7 +98,8 @@ static int read_scale(const char *text, double *scale, err *e)
     if (num_length_of(text, &length))
         return err_usage(e, "--spring-scale %.100s; expected a length above 0, such as .002, or auto", text);
     *scale = num_length_in(length, num_unit_of("m"), num_unit_of("m"));
-    return *scale > 0 ? 0 : err_usage(e, "--spring-scale %.100s; expected a length above 0, such as .002, or auto", text);
+    return *scale > 0 ? 0
+                      : err_usage(e, "--spring-scale %.100s; expected a length above 0, such as .002, or auto", text);
 }
 
 static msds_method method_of(const session *s, bool fem)
@@ -119,11 +120,11 @@ static int choose_step(session *s, err *e)
         s->substeps = sure < o->dt ? (int64_t)fmin(ceil(o->dt / sure), 1e15) : 1;
     else
         p->mass_factor = fmax(1, largest_factor(s->largest.bound, o->damping, o->dt));
-    tool_say(s->t, "springs: stable step %.4g ms at rest, %.4g ms in any configuration, dt %.4g ms", 1e3 * stable, 1e3 * sure,
-             1e3 * o->dt);
+    tool_say(s->t, "springs: stable step %.4g ms at rest, %.4g ms in any configuration, dt %.4g ms", 1e3 * stable,
+             1e3 * sure, 1e3 * o->dt);
     if (s->substeps > SUBSTEPS_MOST)
-        return err_set(e, NULL, 0, "--dt %g is %.3g times the stable step; expected at most %.3g s, or --mass stable", o->dt,
-                       o->dt / sure, SUBSTEPS_MOST * sure);
+        return err_set(e, NULL, 0, "--dt %g is %.3g times the stable step; expected at most %.3g s, or --mass stable",
+                       o->dt, o->dt / sure, SUBSTEPS_MOST * sure);
     if (o->mass == MASS_STABLE)
         tool_say(s->t, "springs: inertia is %.6g times the mass, for that step", p->mass_factor);
     else if (s->substeps > 1)
@@ -134,18 +135,14 @@ static int choose_step(session *s, err *e)
 static int make_problem(session *s, err *e)
 {
     const struct options *o = s->o;
-    msds_options options = {.damping = o->damping,
-                            .repulsion = o->repulsion,
-                            .penalty = o->contact,
-                            .warp = o->warp};
+    msds_options options = {.damping = o->damping, .repulsion = o->repulsion, .penalty = o->contact, .warp = o->warp};
     for (int a = 0; a < 3 && o->gravity.count; a++)
         options.gravity[a] = o->gravity.value[a];
     if (read_scale(o->scale, &options.scale, e) || msds_problem_make(&s->problem, &s->m, &options, e) ||
         model_axis_add(&s->m, "probe", 1, e))
         return -1;
-    tool_say(s->t, "%lld nodes, %lld tetrahedra, %lld springs; k = %.6g m E",
-             (long long)s->problem.nodes, (long long)s->problem.elements, (long long)s->problem.springs,
-             s->problem.scale);
+    tool_say(s->t, "%lld nodes, %lld tetrahedra, %lld springs; k = %.6g m E", (long long)s->problem.nodes,
+             (long long)s->problem.elements, (long long)s->problem.springs, s->problem.scale);
     return choose_step(s, e);
 }
 
@@ -154,7 +151,8 @@ static int say_provenance(tool *t, const session *s, err *e)
     char ran[400];
     const struct options *o = s->o;
     snprintf(ran, sizeof ran,
-             "%s--method %s --iterations %lld --dt %.9g --mass %s --spring-scale %.9g --damping %.9g --contact %s --repulsion "
+             "%s--method %s --iterations %lld --dt %.9g --mass %s --spring-scale %.9g --damping %.9g --contact %s "
+             "--repulsion "
              "%.9g [%s, inertia %.9g, %lld substeps]",
              *t->provenance ? " " : "", o->method ? "fem" : "msds", (long long)o->iterations, o->dt,
              o->mass ? "lumped" : "stable", s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed",
@@ -222,8 +220,8 @@ static void say_frame(const session *s, double time, const msds_sight *sight)
 {
     static const char *const names[] = {"msds", "fem", "fem, exact"};
     char left[60] = "", force[100] = "";
-    double size = sqrt(sight->force[0] * sight->force[0] + sight->force[1] * sight->force[1] +
-                       sight->force[2] * sight->force[2]);
+    double size =
+        sqrt(sight->force[0] * sight->force[0] + sight->force[1] * sight->force[1] + sight->force[2] * sight->force[2]);
     if (!isnan(sight->residual))
         snprintf(left, sizeof left, ", residual %.3g", sight->residual);
     if (sight->solves)
@@ -248,8 +246,8 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     if (s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
         return -1;
     if (!sight.finite) {
-        err_set(e, in_name(s->source), at->line, "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt",
-                at->time);
+        err_set(e, in_name(s->source), at->line,
+                "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt", at->time);
         e->status = STATUS_DIVERGED;
         return -1;
     }
@@ -278,8 +276,8 @@ static int simulate(session *s, err *e)
         if (solve_frame(s, &at, e))
             return -1;
         if (s->other)
-            tool_say(s->t, "%.6g s: msds against fem: root mean square %.4g, at most %.4g of the largest displacement", at.time,
-                     s->other->mean, s->other->worst);
+            tool_say(s->t, "%.6g s: msds against fem: root mean square %.4g, at most %.4g of the largest displacement",
+                     at.time, s->other->mean, s->other->worst);
     }
     if (!got && !frames)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
@@ -321,7 +319,7 @@ static int make_states(session *s, err *e)
 
 int main(int argc, char **argv)
 {
-    struct options o = {.iterations = 20, .dt = .01, .damping = .1, .repulsion = 2, .scale = ".002"};
+    struct options o = {.iterations = 20, .dt = .01, .damping = .1, .repulsion = 1, .scale = ".002"};
     err e = {0};
     tool t = {0};
     session s = {.t = &t, .o = &o};

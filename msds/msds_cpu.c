@@ -27,11 +27,11 @@ typedef struct cpu_state {
     float *repulsion;                 /* nodes: of w */
     contacts contacts;
     stiffness k;
-    cg *cg;       /* made when first wanted, as is exact */
+    cg *cg; /* made when first wanted, as is exact */
     exact *exact;
     double *place; /* the model's nodes x 3, m: where exact frames stand */
     msds_plan plan;
-    bool precise;  /* place is the state; else w.u */
+    bool precise; /* place is the state; else w.u */
     int solves;
 } cpu_state;
 
@@ -150,6 +150,8 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
     s->w.damping = s->p->options.damping;
     fill_nodes(s);
     fill_springs(s);
+    memcpy(s->place, s->p->displacement, 3 * (size_t)s->p->nodes * sizeof *s->place);
+    s->precise = true;
     return s;
 }
 

@@ -21,9 +21,10 @@ static int check_arrays(msds_problem *p, const model *m, err *e)
     if (!node || finite_array(position, NULL, e))
         return -1;
     if (node->columns != 4)
-        return err_set(e, NULL, 0,
-                       "elements of %d nodes; expected tetrahedra (msds-mesh makes them of a box, an image or a voxel model)",
-                       (int)node->columns);
+        return err_set(
+            e, NULL, 0,
+            "elements of %d nodes; expected tetrahedra (msds-mesh makes them of a box, an image or a voxel model)",
+            (int)node->columns);
     if (node->rows < 1 || node->rows > INT32_MAX / 16)
         return err_set(e, NULL, 0, "%lld elements; expected 1 to %d", (long long)node->rows, INT32_MAX / 16);
     if (finite_elements(m, NULL, e))
@@ -42,8 +43,8 @@ static double longest_edge(const msds_problem *p, int64_t t)
     for (int i = 0; i < 6; i++) {
         const double *a = p->position + 3 * (int64_t)p->element_node[4 * t + corner[i][0]];
         const double *b = p->position + 3 * (int64_t)p->element_node[4 * t + corner[i][1]];
-        longest = fmax(longest, (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
-                                    (b[2] - a[2]) * (b[2] - a[2]));
+        longest = fmax(longest,
+                       (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
     }
     return sqrt(longest);
 }
@@ -61,7 +62,8 @@ static int make_shapes(msds_problem *p, err *e)
         simplex_shape(x + 3 * (int64_t)n[0], x + 3 * (int64_t)n[1], x + 3 * (int64_t)n[2], x + 3 * (int64_t)n[3], s);
         double longest = longest_edge(p, t);
         if (!(s->volume > flat * longest * longest * longest))
-            return err_set(e, NULL, 0, "element %lld is %s, its volume %.6g m3; expected its nodes in VTK order, a volume above 0",
+            return err_set(e, NULL, 0,
+                           "element %lld is %s, its volume %.6g m3; expected its nodes in VTK order, a volume above 0",
                            (long long)t, s->volume < 0 ? "inverted" : "flat", s->volume);
         volume += s->volume;
     }

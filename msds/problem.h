@@ -60,7 +60,6 @@ typedef struct msds_plan {
 /* What get() gives, nodes x 3 doubles each: m, m/s. */
 enum { MSDS_DISPLACEMENT, MSDS_VELOCITY };
 
-
 typedef struct msds_sight {
     double force[3];  /* N: on the probe */
     int64_t contacts; /* nodes that it presses */

@@ -19,7 +19,13 @@ typedef struct simplex {
 } simplex;
 
 /* The six edges by their corners. */
-#define SIMPLEX_EDGES {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}
+#define SIMPLEX_EDGES                                                                                                  \
+    {                                                                                                                  \
+        {0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3},                                                                        \
+        {                                                                                                              \
+            2, 3                                                                                                       \
+        }                                                                                                              \
+    }
 
 SIMPLEX_FUNCTION void simplex_cross(const double a[3], const double b[3], double to[3])
 {
@@ -85,8 +91,8 @@ SIMPLEX_FUNCTION void simplex_force(const simplex *s, double g[3][3], double f[4
             sigma[a][b] = s->volume * (s->mu * (g[a][b] + g[b][a]) + (a == b ? trace : 0));
     for (int c = 0; c < 4; c++)
         for (int a = 0; a < 3; a++)
-            f[c][a] = sigma[a][0] * s->gradient[c][0] + sigma[a][1] * s->gradient[c][1] +
-                      sigma[a][2] * s->gradient[c][2];
+            f[c][a] =
+                sigma[a][0] * s->gradient[c][0] + sigma[a][1] * s->gradient[c][1] + sigma[a][2] * s->gradient[c][2];
 }
 
 /* One turn of the quaternion q (x y z w) toward the rotation of the polar decomposition of f: Muller et al. 2016. Returns
@@ -106,10 +112,9 @@ SIMPLEX_FUNCTION double simplex_turn(double f[3][3], double r[3][3], double q[4]
         return 0;
     double sine = sin(angle / 2) * scale / angle, cosine = cos(angle / 2);
     double p[4] = {sine * w[0], sine * w[1], sine * w[2], cosine};
-    double t[4] = {p[3] * q[0] + q[3] * p[0] + p[1] * q[2] - p[2] * q[1],
-                   p[3] * q[1] + q[3] * p[1] + p[2] * q[0] - p[0] * q[2],
-                   p[3] * q[2] + q[3] * p[2] + p[0] * q[1] - p[1] * q[0],
-                   p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]};
+    double t[4] = {
+        p[3] * q[0] + q[3] * p[0] + p[1] * q[2] - p[2] * q[1], p[3] * q[1] + q[3] * p[1] + p[2] * q[0] - p[0] * q[2],
+        p[3] * q[2] + q[3] * p[2] + p[0] * q[1] - p[1] * q[0], p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]};
     double length = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + t[3] * t[3]);
     for (int i = 0; i < 4; i++)
         q[i] = t[i] / length;

@@ -18,10 +18,10 @@ typedef struct slices {
     int32_t *model_node;         /* nodes: the model's, -1 where it only fills up */
     int32_t *own_node;           /* the model's nodes: ours */
     int64_t *start;              /* count + 1: slots of slice s are start[s] to start[s + 1] - 1 */
-    int32_t *first;              /* slots: where lane 0's neighbour stands (may be below 0 or past the end, by less than LANES,
+    int32_t *first;     /* slots: where lane 0's neighbour stands (may be below 0 or past the end, by less than LANES,
                                     where that lane has none), or SLICES_SCATTERED */
-    int32_t *neighbour;          /* slots x LANES: ours; the node itself where the lane has none */
-    int32_t *spring;             /* slots x LANES: or -1 */
+    int32_t *neighbour; /* slots x LANES: ours; the node itself where the lane has none */
+    int32_t *spring;    /* slots x LANES: or -1 */
 } slices;
 
 enum { SLICES_SCATTERED = INT32_MIN };

@@ -48,12 +48,12 @@ int springs_make(msds_problem *p, double scale, double damping, err *e)
     msds_spring *made = list ? mem_array(6 * p->elements, sizeof *made, "springs", e) : NULL;
     int64_t count = 0;
     for (int64_t i = 0; made && i < 6 * p->elements; i++) {
-        double k = scale * p->young[list[i].element];                                /* 5 */
+        double k = scale * p->young[list[i].element]; /* 5 */
         const int32_t *n = list[i].node, *last = count ? made[count - 1].node : NULL;
-        if (!last || last[0] != n[0] || last[1] != n[1])                             /* 7 */
-            made[count++] = (msds_spring){{n[0], n[1]}, length_of(p, n), 0, 0};      /* 11 */
-        made[count - 1].stiffness += k;                                              /* 8 */
-        made[count - 1].damper += damping * k;                                       /* 6, 9 */
+        if (!last || last[0] != n[0] || last[1] != n[1])                        /* 7 */
+            made[count++] = (msds_spring){{n[0], n[1]}, length_of(p, n), 0, 0}; /* 11 */
+        made[count - 1].stiffness += k;                                         /* 8 */
+        made[count - 1].damper += damping * k;                                  /* 6, 9 */
     }
     free(list);
     p->spring = made;

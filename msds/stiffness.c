@@ -28,8 +28,8 @@ static void link_edges(stiffness *k)
     const msds_problem *p = k->p;
     for (int64_t t = 0; t < p->elements; t++)
         for (int i = 0; i < 6; i++)
-            k->element_spring[6 * t + i] = find_spring(p, p->element_node[4 * t + corner[i][0]],
-                                                       p->element_node[4 * t + corner[i][1]]);
+            k->element_spring[6 * t + i] =
+                find_spring(p, p->element_node[4 * t + corner[i][0]], p->element_node[4 * t + corner[i][1]]);
 }
 
 static void link_corners(stiffness *k)

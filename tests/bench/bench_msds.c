@@ -1,0 +1,130 @@
+/* `make bench-msds`: what a frame of msds-run's solvers takes at the four sizes of PST's Table I, whose figures stand beside: CSV, with
+ * a probe of the machine in the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts
+ * again. `bench_msds [THREADS [ROUNDS]]`.
+ */
+// needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
+#include "../unit/msds_block.h"
+
+#include "bench.h"
+#include "msds/largest.h"
+#include "msds/msds_cpu.h"
+
+enum { SIZES = 4, METHODS = 4, FRAMES = 30, ITERATIONS = 20, TOUCHES = 20 };
+
+typedef struct paper {
+    int32_t nodes[3];
+    double ms[METHODS]; /* Table I: MSDS, FEM; none for exact; collision */
+} paper;
+
+static const paper papers[SIZES] = {{{20, 10, 10}, {10, 30, NAN, .1}},
+                                    {{24, 12, 12}, {17, 60, NAN, .2}},
+                                    {{28, 14, 14}, {27, 100, NAN, .2}},
+                                    {{32, 16, 16}, {40, 150, NAN, .3}}};
+
+static const char *const names[METHODS] = {"msds", "fem 20 cg", "fem exact", "collision"};
+
+typedef struct subject {
+    model m;
+    msds_problem p;
+    void *state[METHODS];
+    double took[METHODS][BENCH_ROUNDS * FRAMES];
+    int count[METHODS];
+    double factor; /* s: the exact method's first frame */
+} subject;
+
+static void make(subject *s, const paper *from, pool *threads)
+{
+    err e = {0};
+    tets b = {{from->nodes[0], from->nodes[1], from->nodes[2]}, {.16, .08, .08}, 1e4, .45, 1000, 2, false};
+    msds_options o = tets_options();
+    largest l;
+    tets_make(&b, &s->m);
+    bench_must(!msds_problem_make(&s->p, &s->m, &o, &e) && !largest_of(&s->p, &l, &e), &e);
+    s->p.mass_factor = fmax(1, largest_factor(l.bound, o.damping, .01));
+    for (int i = 0; i < METHODS; i++) {
+        s->state[i] = msds_cpu.create(&s->p, threads, &e);
+        bench_must(s->state[i] != NULL, &e);
+    }
+}
+
+static msds_plan plan_of(int method, int number)
+{
+    static const msds_method methods[METHODS] = {MSDS_SPRINGS, MSDS_FEM, MSDS_EXACT, MSDS_SPRINGS};
+    msds_plan plan = tets_plan(methods[method]);
+    tets_press(&plan, .02, .08 + .0003 * number, .04, .08 - .0005 * number);
+    return plan;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+static void measure(subject *s)
+{
+    err e = {0};
+    for (int method = 0; method < METHODS; method++)
+        for (int number = 0; number < FRAMES; number++) {
+            msds_plan plan = plan_of(method, number);
+            double start = bench_clock();
+            for (int i = 0; method == METHODS - 1 && i < TOUCHES; i++)
+                msds_cpu_touch(s->state[method], &plan);
+            if (method < METHODS - 1)
+                bench_must(!msds_cpu.step(s->state[method], &plan, ITERATIONS, &e), &e);
+            double took = (bench_clock() - start) / (method == METHODS - 1 ? TOUCHES : 1);
+            if (method == MSDS_EXACT && s->factor == 0)
+                s->factor = took;
+            else
+                s->took[method][s->count[method]++] = took;
+        }
+}
+
+static void say(subject *s, const paper *from, int threads)
+{
+    for (int i = 0; i < METHODS; i++) {
+        double *t = s->took[i];
+        int n = s->count[i];
+        qsort(t, (size_t)n, sizeof *t, ascending);
+        printf("%dx%dx%d,%lld,%lld,%lld,%s,%d,%d,%.4g,%.4g,%.4g,", (int)from->nodes[0], (int)from->nodes[1],
+               (int)from->nodes[2], (long long)s->p.nodes, (long long)s->p.elements, (long long)s->p.springs, names[i],
+               threads, n, 1e3 * t[0], 1e3 * t[n / 2], 1e3 * t[n - 1 - n / 20]);
+        if (!isnan(from->ms[i]))
+            printf("%g", from->ms[i]);
+        printf("\n");
+    }
+    printf("%dx%dx%d,%lld,%lld,%lld,first exact frame,%d,1,%.4g,%.4g,%.4g,\n", (int)from->nodes[0], (int)from->nodes[1],
+           (int)from->nodes[2], (long long)s->p.nodes, (long long)s->p.elements, (long long)s->p.springs, threads,
+           1e3 * s->factor, 1e3 * s->factor, 1e3 * s->factor);
+    for (int i = 0; i < METHODS; i++)
+        msds_cpu.destroy(s->state[i]);
+    msds_problem_free(&s->p);
+    model_free(&s->m);
+}
+
+int main(int argc, char **argv)
+{
+    static subject subjects[SIZES];
+    static bench probes;
+    err e = {0};
+    int threads = argc > 1 ? atoi(argv[1]) : 2, rounds = argc > 2 ? atoi(argv[2]) : 7;
+    if (threads < 1 || rounds < 1 || rounds > BENCH_ROUNDS) {
+        fprintf(stderr, "usage: bench_msds [THREADS [ROUNDS]]\n");
+        return 2;
+    }
+    pool *workers = pool_create(threads, &e);
+    bench_must(workers != NULL, &e);
+    for (int i = 0; i < SIZES; i++)
+        make(&subjects[i], &papers[i], workers);
+    for (int round = 0; round < rounds; round++) {
+        bench_probe(&probes);
+        for (int i = 0; i < SIZES; i++)
+            measure(&subjects[i]);
+    }
+    printf("mesh,nodes,tetrahedra,springs,method,threads,frames,best_ms,median_ms,p95_ms,paper_ms\n");
+    for (int i = 0; i < SIZES; i++)
+        say(&subjects[i], &papers[i], threads);
+    bench_print(&probes);
+    pool_destroy(workers);
+    return 0;
+}

@@ -1,0 +1,109 @@
+#!/bin/sh
+# msds-run as a tool: frames live through a FIFO, changes of method, what it refuses; and CalculiX's linear C3D4 on the same mesh.
+# shellcheck source=tests/cli/lib.sh
+. "$(dirname "$0")/lib.sh"
+
+block="--nodes 9x9x7 --size 8cm,8cm,6cm --young 10000 --poisson 0.4 --density 1000"
+# shellcheck disable=SC2086
+msds-mesh -q $block >"$T/block.sinew"
+
+# press N: poses, each half a millimetre deeper.
+press() {
+    awk -v n="$1" 'BEGIN { for (i = 0; i < n; i++) printf "%g .04 .04 %.4f 1 0 0 0\n", i / 60, .06 - .0005 * i }'
+}
+press 10 >"$T/press.tum"
+
+check "springs" msds-run --probe sphere:2cm --poses "$T/press.tum" -o "$T/msds.sinew" <"$T/block.sinew"
+is "$(grep -c 'stable step' "$T/stderr")" 1 "says the stable step"
+is "$(grep -c 'inertia is' "$T/stderr")" 1 "says by what inertia grew"
+is "$(sinew info --get frames "$T/msds.sinew")" 10 "a frame a pose"
+check "finite elements" msds-run --method fem --residual --probe sphere:2cm --poses "$T/press.tum" -o "$T/fem.sinew" <"$T/block.sinew"
+is "$(grep -c residual "$T/stderr")" 10 "says what each frame leaves"
+check "exactly" msds-run --method fem --exact --residual --probe sphere:2cm --poses "$T/press.tum" -o "$T/exact.sinew" <"$T/block.sinew"
+awk '/residual/ { r = $0; sub(/.*residual /, "", r); sub(/ .*/, "", r); if (r + 0 > 1e-6) bad++; n++ } END { exit !(n == 10 && !bad) }' "$T/stderr"
+is $? 0 "each frame to 1e-6"
+deep=$(sinew info --get node.displacement.at.0.04,0.04,0.06 "$T/exact.sinew" | awk '{ print $3 }')
+near "$deep" -0.0045 0.0001 "the node under the pole is where the pole is"
+
+# One line of poses at a time: its frame is there before the next is written.
+mkfifo "$T/live"
+msds-run -q --text --probe sphere:2cm --poses "$T/live" <"$T/block.sinew" >"$T/live.sinew" &
+run=$!
+exec 3>"$T/live"
+seen=
+for i in 1 2 3; do
+    sed -n "${i}p" "$T/press.tum" >&3
+    tries=0
+    while [ "$(grep -c '^frame ' "$T/live.sinew")" -lt "$i" ] && [ "$tries" -lt 100 ]; do
+        sleep 0.1
+        tries=$((tries + 1))
+    done
+    seen="$seen$(grep -c '^frame ' "$T/live.sinew")"
+done
+exec 3>&-
+wait "$run"
+is "$? $seen" "0 123" "through a FIFO each frame comes before the next pose"
+
+# Methods change between poses, and the state carries over.
+{ sed -n 1,4p "$T/press.tum"; echo 'method fem'; sed -n 5,7p "$T/press.tum"; echo 'method msds'; sed -n 8,10p "$T/press.tum"; } >"$T/both.tum"
+check "methods change in the stream" msds-run -v --exact --probe sphere:2cm --poses "$T/both.tum" -o "$T/both.sinew" <"$T/block.sinew"
+is "$(grep -c ' s: fem, exact' "$T/stderr") $(grep -c ' s: msds' "$T/stderr")" "3 7" "three frames by the FEM, seven by springs"
+sed -n 1,4p "$T/press.tum" >"$T/first.tum"
+sed -n 5,10p "$T/press.tum" >"$T/last.tum"
+msds-run -q --method fem --exact --probe sphere:2cm --poses "$T/first.tum" <"$T/block.sinew" |
+    msds-run -q --method fem --exact --probe sphere:2cm --poses "$T/last.tum" >"$T/parts.sinew"
+check "in two parts: the same" sinew diff --rel 1e-4 --abs 1e-8 --only node.displacement "$T/exact.sinew" "$T/parts.sinew"
+
+check "compares" msds-run --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
+is "$(grep -c 'msds against fem' "$T/stderr")" 10 "a difference a frame"
+
+for method in msds 'fem' 'fem --exact'; do
+    # shellcheck disable=SC2086
+    for n in 1 2 3; do
+        msds-run -q --threads $n --method $method --probe sphere:2cm --poses "$T/press.tum" <"$T/block.sinew" | cksum
+    done | sort -u >"$T/sums"
+    is "$(wc -l <"$T/sums" | tr -d ' ')" 1 "$method: the same bytes by 1, 2 and 3 threads"
+done
+
+# Physical masses: substeps, or a refusal.
+check "physical masses" msds-run --mass lumped --dt 1e-4 --iterations 5 --probe sphere:2cm --poses "$T/first.tum" -o /dev/null <"$T/block.sinew"
+is "$(grep -c 'each step is taken in' "$T/stderr")" 1 "substeps are said"
+fails 1 "a step past all substeps" 'times the stable step; expected' msds-run --mass lumped --dt 10 --poses "$T/first.tum" <"$T/block.sinew"
+
+# What is bad.
+fails 2 "a probe of radius 0" 'radius of 0 m; expected one above 0' msds-run --probe sphere:0 --poses "$T/press.tum" <"$T/block.sinew"
+fails 2 "no poses" 'poses' msds-run <"$T/block.sinew"
+echo '0 0 0 nan 0 0 0 1' >"$T/nan.tum"
+fails 1 "a nan" 'nan.tum:1: ' msds-run --poses "$T/nan.tum" <"$T/block.sinew"
+{ sed -n 3p "$T/press.tum"; sed -n 1p "$T/press.tum"; } >"$T/back.tum"
+fails 1 "poses out of order" 'back.tum:2: ' msds-run --poses "$T/back.tum" <"$T/block.sinew"
+: >"$T/empty.tum"
+fails 1 "no pose" 'no pose; expected' msds-run --poses "$T/empty.tum" <"$T/block.sinew"
+msds-run -q --text --poses "$T/first.tum" <"$T/block.sinew" | awk '/^frame/ { exit } /^crc/ { next } { print } END { print "end" }' >"$T/text.sinew"
+awk '/^array element.node/ { print; getline; print $2, $1, $3, $4; next } { print }' "$T/text.sinew" >"$T/inverted.sinew"
+fails 1 "an inverted element" 'element 0 is inverted' msds-run --poses "$T/first.tum" <"$T/inverted.sinew"
+awk '/^array material.nu/ { print; getline; print "0.5"; next } { print }' "$T/text.sinew" >"$T/nu.sinew"
+fails 1 "nu = .5" 'nu.* 0.5.*expected' msds-run --poses "$T/first.tum" <"$T/nu.sinew"
+fails 1 "no model" 'no model on stdin' msds-run --poses "$T/first.tum" </dev/null
+
+# The hanging block, by CalculiX's linear tetrahedra and ours.
+if have ccx; then
+    # shellcheck disable=SC2086
+    msds-mesh -q $block --fix zmax >"$T/hang.sinew"
+    echo '0 0 0 1 0 0 0 1' >"$T/one.tum"
+    check "an input file" sinew export -f inp -g 0,0,-9.81 -o "$T/hang.inp" "$T/hang.sinew"
+    check "CalculiX takes it" sh -c "cd '$T' && ccx -i hang >hang.log && grep -q 'Job finished' hang.log"
+    msds-run -q --text --method fem --exact -g 0,0,-9.81 --poses "$T/one.tum" <"$T/hang.sinew" >"$T/hang.rest"
+    awk -f tests/cli/calculix.awk "$T/hang.dat" "$T/hang.rest" >"$T/differences"
+    read -r worst mean furthest inside nodes <"$T/differences"
+    is "${nodes%% *}" 567 "the same nodes"
+    near "$worst" 0 1e-4 "every node within 1e-4 of CalculiX (largest difference $worst, mean $mean, $furthest $inside)"
+    msds-run -q --text --method fem --iterations 400 -g 0,0,-9.81 --poses "$T/one.tum" <"$T/hang.sinew" >"$T/hang.cg"
+    awk -f tests/cli/calculix.awk "$T/hang.dat" "$T/hang.cg" >"$T/differences"
+    read -r worst mean furthest inside nodes <"$T/differences"
+    near "$worst" 0 1e-4 "and by 400 conjugate gradients"
+else
+    skip 5 "no CalculiX (calculix-ccx)"
+fi
+
+done_testing

@@ -1,0 +1,94 @@
+/* A box of tetrahedra as a model in memory, one material, for tests of msds-run's solvers. Memory that is not to be had ends the test
+ * program.
+ */
+#ifndef SINEW_MSDS_BLOCK_H
+#define SINEW_MSDS_BLOCK_H
+
+#include "model/materials.h"
+#include "msds/mesh_tets.h"
+#include "msds/problem.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct tets {
+    int32_t nodes[3];
+    double size[3]; /* m; the lowest corner is 0 0 0 */
+    double young, poisson, density;
+    int fixed_axis; /* whose low end's nodes are rigid; -1: none */
+    bool all_sides; /* every node on the surface is */
+} tets;
+
+static inline void tets_must(bool good, const err *e)
+{
+    if (good)
+        return;
+    printf("Bail out! %s\n", e->text);
+    exit(1);
+}
+
+static inline model_array *tets_array(model *m, const char *name)
+{
+    err e = {0};
+    model_array *a = model_add(m, name, &e);
+    tets_must(a != NULL, &e);
+    return a;
+}
+
+/* The tables that every model has: one volume of one material. */
+static inline void tets_tables(const tets *b, model *m)
+{
+    err e = {0};
+    material of = materials_fallback();
+    of.law = MATERIAL_LINEAR, of.E = b->young, of.nu = b->poisson, of.density = b->density;
+    tets_must(!materials_make(m, &of, &e) && !model_axis_add(m, "volume", 1, &e), &e);
+    tets_array(m, "element.volume");
+    tets_array(m, "volume.material");
+    tets_array(m, "volume.level");
+    tets_array(m, "volume.priority");
+    tets_must(!model_set_text(tets_array(m, "volume.name"), 0, "tissue", &e), &e);
+}
+
+/* The caller frees it. */
+static inline void tets_make(const tets *b, model *m)
+{
+    err e = {0};
+    mesh_box box = {{b->nodes[0], b->nodes[1], b->nodes[2]},
+                    {0, 0, 0},
+                    {{b->size[0], 0, 0}, {0, b->size[1], 0}, {0, 0, b->size[2]}}};
+    tets_must(!mesh_box_add(m, &box, &e), &e);
+    tets_tables(b, m);
+    uint8_t *rigid = tets_array(m, "node.rigid")->u8;
+    const double *x = model_find(m, "node.position")->f64;
+    for (int64_t n = 0; n < model_count(m, "node"); n++)
+        for (int a = 0; a < 3; a++) {
+            bool low = x[3 * n + a]<1e-9, high = x[3 * n + a]> b->size[a] - 1e-9;
+            if ((a == b->fixed_axis && low) || (b->all_sides && (low || high)))
+                rigid[n] = 1;
+        }
+}
+
+/* As PST has it: Algorithm 1's constants, contact by prescribed displacement. */
+static inline msds_options tets_options(void)
+{
+    msds_options o = {.scale = .002, .damping = .1, .repulsion = 1};
+    return o;
+}
+
+static inline msds_plan tets_plan(msds_method method)
+{
+    msds_plan plan = {.method = method, .dt = .01};
+    return plan;
+}
+
+/* A sphere whose lowest point is at x, pressing along -z. */
+static inline void tets_press(msds_plan *plan, double radius, double x, double y, double z)
+{
+    probe shape = {PROBE_SPHERE, radius};
+    probe_pose pose = {{x, y, z}, {1, 0, 0, 0}};
+    plan->touched = true;
+    plan->probe = probe_place(&shape, &pose);
+}
+
+#endif

@@ -1,0 +1,423 @@
+/* msds-run's solvers: Algorithm 1 on PST's figure 4, springs at rest under gravity and their momentum, the sharp bound of the step, the FEM's
+ * patch test, the exact solver's contact, warping, and the same bytes for any number of threads.
+ */
+// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/largest.c
+#include "msds_block.h"
+
+#include "base/mem.h"
+#include "msds/largest.h"
+#include "msds/msds_cpu.h"
+#include "msds/slices.h"
+
+#include "tap.h"
+
+/* Solves `count` frames by a method from a start; returns displacements, the caller's to free. */
+static double *run_frames(const msds_problem *p, const msds_plan *plan, int threads, int count, int64_t iterations,
+                          msds_sight *sight)
+{
+    err e = {0};
+    pool *workers = pool_create(threads, &e);
+    void *state = workers ? msds_cpu.create(p, workers, &e) : NULL;
+    double *u = mem_array(p->nodes, 3 * sizeof *u, "test", &e);
+    tets_must(state && u, &e);
+    for (int i = 0; i < count; i++)
+        tets_must(!msds_cpu.step(state, plan, iterations, &e), &e);
+    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, u, &e) && !msds_cpu.look(state, NULL, sight, &e), &e);
+    msds_cpu.destroy(state);
+    pool_destroy(workers);
+    return u;
+}
+
+static void make_problem(const tets *b, const msds_options *o, model *m, msds_problem *p)
+{
+    err e = {0};
+    largest l;
+    tets_make(b, m);
+    tets_must(!msds_problem_make(p, m, o, &e) && !largest_of(p, &l, &e), &e);
+    p->mass_factor = fmax(1, largest_factor(l.bound, o->damping, .01));
+}
+
+static void free_problem(model *m, msds_problem *p)
+{
+    msds_problem_free(p);
+    model_free(m);
+}
+
+/* A model of any tetrahedra. */
+static void make_any(const double *x, int64_t nodes, const int32_t *node, int64_t elements, double young, model *m)
+{
+    err e = {0};
+    tets b = {.young = young, .poisson = .3, .density = 1000};
+    tets_must(!model_axis_add(m, "node", nodes, &e) && !model_axis_add(m, "element", elements, &e), &e);
+    memcpy(tets_array(m, "node.position")->f64, x, 3 * (size_t)nodes * sizeof *x);
+    model_array *a = model_add_as(m, "element.node", MODEL_I32, "@node", "element", 4, &e);
+    tets_must(a != NULL, &e);
+    memcpy(a->i32, node, 4 * (size_t)elements * sizeof *node);
+    tets_tables(&b, m);
+    tets_array(m, "node.rigid");
+}
+
+static const double two_x[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
+static const int32_t two[] = {0, 1, 2, 3, 1, 2, 3, 4};
+
+static void test_figure_4(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    int doubled = 0, single = 0;
+    make_any(two_x, 5, two, 2, 5000, &m);
+    ok(!msds_problem_make(&p, &m, &o, &e), "two tetrahedra that share a face: %s", e.text);
+    for (int64_t i = 0; i < p.springs; i++) {
+        const msds_spring *s = &p.spring[i];
+        bool on_face = s->node[0] >= 1 && s->node[1] <= 3;
+        doubled += on_face && s->stiffness == 20 && s->damper == 2;
+        single += !on_face && s->stiffness == 10 && s->damper == 1;
+    }
+    ok(p.springs == 9 && doubled == 3 && single == 6, "9 springs, 3 of them doubled (PST figure 4): %d, %d, %d",
+       (int)p.springs, doubled, single);
+    near_(p.spring[0].rest, 1, 0, "as long as the edge");
+    free_problem(&m, &p);
+}
+
+static void test_counts(void)
+{
+    static const int want[][5] = {{5, 5, 5, 320, 540}, {20, 10, 10, 7695, 10540}, {24, 12, 12, 13915, 18624}};
+    for (int i = 0; i < 3; i++) {
+        model m = {0};
+        msds_problem p = {0};
+        err e = {0};
+        msds_options o = tets_options();
+        tets b = {{want[i][0], want[i][1], want[i][2]}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
+        tets_make(&b, &m);
+        tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
+        ok(p.elements == want[i][3] && p.springs == want[i][4], "%d x %d x %d nodes: %lld tetrahedra, %lld springs",
+           want[i][0], want[i][1], want[i][2], (long long)p.elements, (long long)p.springs);
+        free_problem(&m, &p);
+    }
+}
+
+/* Every slot's neighbour is the spring's other end, and every spring is met from both. */
+static void test_slices(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    slices s = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    tets b = {{9, 6, 5}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
+    int64_t met = 0, wrong = 0, rows = 0;
+    make_problem(&b, &o, &m, &p);
+    tets_must(!slices_make(&s, &p, &e), &e);
+    for (int64_t slice = 0; slice < s.count; slice++)
+        for (int64_t slot = s.start[slice]; slot < s.start[slice + 1]; slot++)
+            for (int64_t lane = 0; lane < LANES; lane++) {
+                int32_t i = s.spring[slot * LANES + lane], other = s.neighbour[slot * LANES + lane];
+                if (i < 0)
+                    continue;
+                int32_t a = s.model_node[slice * LANES + lane], c = s.model_node[other];
+                wrong += !((p.spring[i].node[0] == a && p.spring[i].node[1] == c) ||
+                           (p.spring[i].node[1] == a && p.spring[i].node[0] == c));
+                wrong += s.first[slot] != SLICES_SCATTERED && s.first[slot] + lane != other;
+                rows += s.first[slot] != SLICES_SCATTERED;
+                met++;
+            }
+    ok(met == 2 * p.springs && !wrong, "each spring is met from both its ends");
+    ok(rows > met * 7 / 10, "mostly in rows: %lld of %lld", (long long)rows, (long long)met);
+    slices_free(&s);
+    free_problem(&m, &p);
+}
+
+/* Gravity along a column of springs: at rest, the springs across each level carry what hangs below. The exact answer is a small
+ * system of springs; here it is met as the balance of every node, and, for one tetrahedron, in closed form. */
+static void test_hanging(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_sight sight;
+    err e = {0};
+    msds_options o = tets_options();
+    static const double x[] = {1, 0, 0, -.5, .8660254037844386, 0, -.5, -.8660254037844386, 0, 0, 0, -1};
+    static const int32_t node[] = {0, 1, 2, 3};
+    static const int32_t flipped[] = {0, 2, 1, 3};
+    o.gravity[2] = -10;
+    simplex shape;
+    simplex_shape(x, x + 3, x + 6, x + 9, &shape);
+    make_any(x, 4, shape.volume > 0 ? node : flipped, 1, 1e6, &m);
+    for (int n = 0; n < 3; n++)
+        model_find(&m, "node.rigid")->u8[n] = 1;
+    largest l;
+    tets_must(!msds_problem_make(&p, &m, &o, &e) && !largest_of(&p, &l, &e), &e);
+    p.mass_factor = largest_factor(l.bound, o.damping, .01);
+    msds_plan plan = tets_plan(MSDS_SPRINGS);
+    double *u = run_frames(&p, &plan, 1, 200, 100, &sight);
+    double k = 2000, weight = p.weight[3] * 10, down = 1; /* 3 k (L - L0) down / L = weight */
+    for (int i = 0; i < 200; i++) {
+        double length = sqrt(1 + down * down), f = 3 * k * (length - sqrt(2.)) * down / length - weight;
+        double slope = 3 * k * (1 - sqrt(2.) / (length * length * length));
+        down -= f / slope;
+    }
+    near_(-u[11], down - 1, 1e-5 * (down - 1), "a mass on three springs hangs where they balance it: %.9g m", -u[11]);
+    near_(u[9], 0, 1e-7, "and straight down");
+    free(u);
+    free_problem(&m, &p);
+}
+
+static void test_column(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_sight sight;
+    err e = {0};
+    msds_options o = tets_options();
+    tets b = {{3, 3, 9}, {.02, .02, .08}, 20000, .3, 1000, 2, false};
+    o.gravity[2] = 5;
+    double worst = 0, heaviest = 0;
+    make_problem(&b, &o, &m, &p);
+    msds_plan plan = tets_plan(MSDS_SPRINGS);
+    double *u = run_frames(&p, &plan, 2, 3000, 20, &sight), *f = mem_array(p.nodes, 3 * sizeof *f, "test", &e);
+    tets_must(f != NULL, &e);
+    for (int64_t i = 0; i < p.springs; i++) { /* in double, from the definition: equation 1 */
+        const msds_spring *s = &p.spring[i];
+        double d[3], length = 0;
+        for (int a = 0; a < 3; a++) {
+            d[a] = p.position[3 * s->node[1] + a] + u[3 * s->node[1] + a] - p.position[3 * s->node[0] + a] -
+                   u[3 * s->node[0] + a];
+            length += d[a] * d[a];
+        }
+        length = sqrt(length);
+        for (int a = 0; a < 3; a++) {
+            f[3 * s->node[0] + a] += s->stiffness * (length - s->rest) * d[a] / length;
+            f[3 * s->node[1] + a] -= s->stiffness * (length - s->rest) * d[a] / length;
+        }
+    }
+    double hangs = 0, held = 0;
+    for (int64_t n = 0; n < p.nodes; n++) {
+        hangs += p.fixed[n] ? 0 : p.weight[n] * 5;
+        heaviest = fmax(heaviest, p.weight[n] * 5);
+        held += p.fixed[n] ? f[3 * n + 2] : 0;
+        for (int a = 0; a < 3 && !p.fixed[n]; a++)
+            worst = fmax(worst, fabs(f[3 * n + a] + p.weight[n] * o.gravity[a]));
+    }
+    ok(worst < 1e-3 * heaviest, "a column of springs at rest: every node in balance to %.2g of a weight",
+       worst / heaviest);
+    near_(held, hangs, 1e-4 * hangs, "and what is fixed holds its weight");
+    free(f);
+    free(u);
+    free_problem(&m, &p);
+}
+
+/* Momentum: without fixed nodes and forces, springs leave it as it was. */
+static void test_momentum(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    tets b = {{6, 5, 4}, {.1, .1, .1}, 3000, .45, 1000, -1, false};
+    double before[3] = {0}, after[3] = {0}, size = 0;
+    make_problem(&b, &o, &m, &p);
+    for (int64_t i = 0; i < 3 * p.nodes; i++) {
+        p.velocity[i] = .05 * sin((double)i * 1.7) + .002 * (double)(i % 3);
+        before[i % 3] += p.weight[i / 3] * p.velocity[i];
+        size += p.weight[i / 3] * fabs(p.velocity[i]);
+    }
+    pool *workers = pool_create(2, &e);
+    void *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
+    double *v = mem_array(p.nodes, 3 * sizeof *v, "test", &e);
+    msds_plan plan = tets_plan(MSDS_SPRINGS);
+    tets_must(state && v, &e);
+    tets_must(!msds_cpu.step(state, &plan, 100, &e) && !msds_cpu.get(state, MSDS_VELOCITY, v, &e), &e);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        after[i % 3] += p.weight[i / 3] * v[i];
+    for (int a = 0; a < 3; a++)
+        near_(after[a], before[a], 1e-5 * size, "momentum along axis %d after 100 steps", a);
+    msds_cpu.destroy(state);
+    pool_destroy(workers);
+    free(v);
+    free_problem(&m, &p);
+}
+
+/* Small motion about rest: a step just below the bound dies out, one just above grows. */
+static void test_bound(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    err e = {0};
+    largest l;
+    msds_options o = tets_options();
+    tets b = {{4, 4, 4}, {.06, .06, .06}, 3000, .45, 1000, 2, false};
+    tets_make(&b, &m);
+    tets_must(!msds_problem_make(&p, &m, &o, &e) && !largest_of(&p, &l, &e), &e);
+    double stable = largest_step(l.rest, .1);
+    near_(stable * stable * l.rest + .2 * stable * l.rest, 4, 1e-9, "dt^2 L + .2 dt L = 4");
+    ok(l.bound >= l.rest, "no configuration is stiffer than the bound: %g, at rest %g", l.bound, l.rest);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        p.displacement[i] = p.fixed[i / 3] ? 0 : 1e-7 * sin(2.3 * (double)i);
+    for (int above = 0; above < 2; above++) {
+        msds_plan plan = tets_plan(MSDS_SPRINGS);
+        msds_sight sight;
+        plan.dt = stable * (above ? 1.01 : .995);
+        free(run_frames(&p, &plan, 1, 1, 2000, &sight));
+        ok(above ? !(sight.largest < 1e-4) : sight.largest < 3e-7, "a step of %s the stable one %s: %g m",
+           above ? "1.01" : ".995", above ? "grows" : "does not grow", sight.largest);
+    }
+    free_problem(&m, &p);
+}
+
+/* Nodes on the surface displaced linearly: so are those inside, by either solver, and the strain is that of the field. */
+static void test_patch(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_options o = tets_options();
+    static const double slope[9] = {.01, .004, -.003, .002, -.008, .005, .001, .006, .012};
+    tets b = {{6, 5, 7}, {.1, .08, .12}, 3000, .45, 1000, -1, true};
+    make_problem(&b, &o, &m, &p);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        for (int c = 0; c < 3 && p.fixed[i / 3]; c++)
+            p.displacement[i] += slope[3 * (i % 3) + c] * p.position[i / 3 * 3 + c];
+    for (int exact = 0; exact < 2; exact++) {
+        msds_plan plan = tets_plan(exact ? MSDS_EXACT : MSDS_FEM);
+        msds_sight sight;
+        double *u = run_frames(&p, &plan, 2, exact ? 3 : 1, 200, &sight), worst = 0;
+        for (int64_t i = 0; i < 3 * p.nodes; i++) {
+            double want = 0;
+            for (int c = 0; c < 3; c++)
+                want += slope[3 * (i % 3) + c] * p.position[i / 3 * 3 + c];
+            worst = fmax(worst, fabs(u[i] - want));
+        }
+        ok(worst < (exact ? 1e-9 : 2e-7) * .12, "patch test, %s: off by %.2g m",
+           exact ? "exact" : "conjugate gradients", worst);
+        free(u);
+    }
+    free_problem(&m, &p);
+}
+
+/* Contact: no node is left in the probe, what it presses on is pushed away from it, and both solvers agree. */
+static void test_contact(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_options o = tets_options();
+    tets b = {{11, 11, 7}, {.1, .1, .06}, 3000, .45, 1000, 2, false};
+    msds_sight exact, cg, springs;
+    make_problem(&b, &o, &m, &p);
+    msds_plan plan = tets_plan(MSDS_EXACT);
+    tets_press(&plan, .02, .052, .047, .052);
+    double *u = run_frames(&p, &plan, 2, 5, 20, &exact), deepest = -1, off = 0;
+    for (int64_t n = 0; n < p.nodes; n++) {
+        double x[3] = {p.position[3 * n] + u[3 * n], p.position[3 * n + 1] + u[3 * n + 1],
+                       p.position[3 * n + 2] + u[3 * n + 2]};
+        deepest = fmax(deepest, probe_at(&plan.probe, x).depth);
+    }
+    ok(deepest < 1e-6 * .02, "no node is left in the probe: %g m", deepest);
+    ok(exact.residual < 1e-6 && exact.contacts > 3 && exact.force[2] > 0, "residual %.2g, %lld contacts, %.4g N back",
+       exact.residual, (long long)exact.contacts, exact.force[2]);
+    plan.method = MSDS_FEM;
+    double *w = run_frames(&p, &plan, 2, 5, 400, &cg);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        off = fmax(off, fabs(u[i] - w[i]));
+    ok(off < 1e-3 * exact.largest, "400 conjugate gradients agree to %.2g of the largest", off / exact.largest);
+    near_(cg.force[2], exact.force[2], 2e-3 * exact.force[2], "and so does the force");
+    plan.method = MSDS_SPRINGS;
+    free(run_frames(&p, &plan, 2, 5, 20, &springs));
+    ok(springs.contacts > 0 && springs.force[2] > 0 && isnan(springs.residual), "springs push too: %.4g N",
+       springs.force[2]);
+    free(u);
+    free(w);
+    free_problem(&m, &p);
+}
+
+/* A rigid turn: linear elements take it for strain, warped ones do not. */
+static void test_warp(void)
+{
+    double q[4] = {0, 0, sin(.4), cos(.4)}, r[3][3], g[3][3], f[4][3], start[4] = {0, 0, 0, 1}, found[3][3], worst = 0;
+    static const double x[] = {0, 0, 0, 1, .1, 0, 0, 1, .2, .1, 0, 1};
+    simplex s;
+    simplex_shape(x, x + 3, x + 6, x + 9, &s);
+    simplex_material(1000, .3, &s);
+    simplex_matrix(q, r);
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            g[a][b] = r[a][b] - (a == b);
+    simplex_rotation(g, start, found);
+    simplex_warped(&s, g, found, f);
+    for (int c = 0; c < 4; c++)
+        for (int a = 0; a < 3; a++)
+            worst = fmax(worst, fabs(f[c][a]));
+    ok(worst < 1e-6, "a turn of .8 is no strain to a warped element: %g N", worst);
+    simplex_force(&s, g, f);
+    ok(fabs(f[1][0]) > 1, "but to a linear one: %g N", f[1][0]);
+}
+
+static void test_threads(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_options o = tets_options();
+    tets b = {{20, 10, 10}, {.16, .08, .08}, 3000, .45, 1000, 2, false};
+    static const char *const names[] = {"springs", "conjugate gradients", "exact"};
+    make_problem(&b, &o, &m, &p);
+    for (int method = 0; method < 3; method++) {
+        msds_plan plan = tets_plan((msds_method)method);
+        msds_sight sight;
+        tets_press(&plan, .02, .08, .04, .074);
+        double *one = run_frames(&p, &plan, 1, 3, 20, &sight), *two_threads = run_frames(&p, &plan, 2, 3, 20, &sight);
+        double *three = run_frames(&p, &plan, 3, 3, 20, &sight);
+        size_t size = 3 * (size_t)p.nodes * sizeof *one;
+        ok(!memcmp(one, two_threads, size) && !memcmp(one, three, size), "%s: the same bytes by 1, 2 and 3 threads",
+           names[method]);
+        free(one);
+        free(two_threads);
+        free(three);
+    }
+    free_problem(&m, &p);
+}
+
+static void test_bad(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    err e = {0};
+    probe shape;
+    msds_options o = tets_options();
+    static const int32_t inverted[] = {0, 1, 2, 3, 1, 3, 2, 4};
+    make_any(two_x, 5, inverted, 2, 5000, &m);
+    ok(msds_problem_make(&p, &m, &o, &e) && strstr(e.text, "element 1 is inverted"), "%s", e.text);
+    free_problem(&m, &p);
+    static const char *const bad[] = {"sphere:0", "sphere:-1cm", "sphere:", "sphere:nan", "box:1", "sphere"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        e = (err){0};
+        ok(probe_of(&shape, bad[i], &e) && e.status == STATUS_USAGE, "%s", e.text);
+    }
+    e = (err){0};
+    ok(!probe_of(&shape, "sphere:2cm", &e) && shape.radius == .02, "a sphere of 2 cm");
+    make_any(two_x, 5, two, 2, 5000, &m);
+    tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
+    pool *workers = pool_create(1, &e);
+    void *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
+    msds_plan plan = tets_plan(MSDS_EXACT);
+    ok(state && msds_cpu.step(state, &plan, 1, &e) && strstr(e.text, "nothing holds"), "%s", e.text);
+    msds_cpu.destroy(state);
+    pool_destroy(workers);
+    free_problem(&m, &p);
+}
+
+int main(void)
+{
+    test_figure_4();
+    test_counts();
+    test_slices();
+    test_hanging();
+    test_column();
+    test_momentum();
+    test_bound();
+    test_patch();
+    test_contact();
+    test_warp();
+    test_threads();
+    test_bad();
+    return done_testing();
+}
