@@ -231,7 +231,7 @@ static void backward_work(void *context, int64_t chunk, int64_t from, int64_t to
         int64_t number = f->level[f->begin[f->at] + i];
         const front *t = &f->tree.front[number];
         factor_front *o = &f->of[number];
-        const double *up = t->parent < 0 ? NULL : f->of[t->parent].value;
+        const double *up = t->parent < 0 ? o->value : f->of[t->parent].value; /* the root has no rows */
         for (int64_t r = 0; r < t->rows; r++)
             memcpy(o->value + 3 * (t->columns + r), up + 3 * (int64_t)t->above[r], 3 * sizeof *up);
         backward_front(f->loops, o->panel, size_of(t), 3 * t->columns, o->value);

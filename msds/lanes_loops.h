@@ -56,9 +56,9 @@ INLINE v8 at_least(v8 x, v8 least)
 }
 
 /* Eight neighbours' values, in a row or not. */
-INLINE v8 fetch(const float *field, int32_t first, const int32_t *neighbour)
+INLINE v8 fetch(const float *field, bool row, int32_t first, const int32_t *neighbour)
 {
-    if (first != SLICES_SCATTERED)
+    if (row)
         return load(field + first);
     v8 r = {0};
     for (int l = 0; l < LANES; l++)
@@ -102,15 +102,16 @@ INLINE bool any_below(v8 x, float limit)
     return any != 0;
 }
 
-INLINE void pull(const lanes_springs *w, int64_t slot, const v8 x[3], const v8 u[3], const v8 v[3], v8 force[3])
+INLINE void pull(const lanes_springs *w, bool row, int64_t slot, const v8 x[3], const v8 u[3], const v8 v[3],
+                 v8 force[3])
 {
     const int32_t first = w->s->first[slot], *neighbour = w->s->neighbour + slot * LANES;
     v8 d[3], speed = {0}, stretch = {0};
     v8 rest = load(w->rest + slot * LANES), least = rest * rest * SPRING_LEAST;
     for (int a = 0; a < 3; a++) {
-        v8 at_rest = fetch(w->place.x[a], first, neighbour) - x[a];
-        v8 du = fetch(w->u.x[a], first, neighbour) - u[a];
-        v8 dv = fetch(w->v.x[a], first, neighbour) - v[a];
+        v8 at_rest = fetch(w->place.x[a], row, first, neighbour) - x[a];
+        v8 du = fetch(w->u.x[a], row, first, neighbour) - u[a];
+        v8 dv = fetch(w->v.x[a], row, first, neighbour) - v[a];
         d[a] = at_rest + du;
         stretch += du * (at_rest + d[a]);
         speed += dv * d[a];
@@ -138,7 +139,10 @@ static void step(const lanes_springs *w, int64_t from, int64_t to)
             force[a] = load(w->weight.x[a] + own);
         }
         for (int64_t slot = s->start[slice]; slot < s->start[slice + 1]; slot++)
-            pull(w, slot, x, u, v, force);
+            if (s->first[slot] != SLICES_SCATTERED)
+                pull(w, true, slot, x, u, v, force);
+            else
+                pull(w, false, slot, x, u, v, force);
         if (w->touched && any_below(away(w, own), reach))
             push(w, own, force);
         v8 inverse = load(w->inverse + own);
@@ -172,6 +176,13 @@ INLINE void block(const float *k, v8 p0, v8 p1, v8 p2, v8 y[3])
             load(k + (3 * a) * LANES) * p0 + load(k + (3 * a + 1) * LANES) * p1 + load(k + (3 * a + 2) * LANES) * p2;
 }
 
+INLINE void couple(const lanes_matrix *m, bool row, int64_t slot, const lanes_field *p, v8 y[3])
+{
+    const int32_t first = m->s->first[slot], *neighbour = m->s->neighbour + slot * LANES;
+    block(m->block + slot * 9 * LANES, fetch(p->x[0], row, first, neighbour), fetch(p->x[1], row, first, neighbour),
+          fetch(p->x[2], row, first, neighbour), y);
+}
+
 INLINE void sum_up(double sum[LANES], v8 x)
 {
     for (int l = 0; l < LANES; l++)
@@ -192,9 +203,10 @@ static double multiply(const lanes_matrix *m, const lanes_field *p, lanes_field 
         v8 p0 = load(p->x[0] + own), p1 = load(p->x[1] + own), p2 = load(p->x[2] + own), t[3] = {{0}, {0}, {0}};
         block(m->diagonal + slice * 9 * LANES, p0, p1, p2, t);
         for (int64_t slot = s->start[slice]; slot < s->start[slice + 1]; slot++) {
-            const int32_t first = s->first[slot], *neighbour = s->neighbour + slot * LANES;
-            block(m->block + slot * 9 * LANES, fetch(p->x[0], first, neighbour), fetch(p->x[1], first, neighbour),
-                  fetch(p->x[2], first, neighbour), t);
+            if (s->first[slot] != SLICES_SCATTERED)
+                couple(m, true, slot, p, t);
+            else
+                couple(m, false, slot, p, t);
         }
         for (int a = 0; a < 3; a++)
             store(y->x[a] + own, t[a]);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS = 4 /* of an exact frame, each with the nodes that the last one pushed into the probe */ };
+enum { FIELDS = 6, ROUNDS = 4 /* of an exact frame, each with the nodes that the last one pushed into the probe */ };
 
 /* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of its reach. */
 static const double exact_tolerance = 1e-6, missed = 1e-6;
@@ -93,8 +93,8 @@ static int allocate(cpu_state *s, err *e)
     s->inverse = mem_array(o->nodes, sizeof *s->inverse, "the solver", e);
     s->repulsion = mem_array(o->nodes, sizeof *s->repulsion, "the solver", e);
     s->place = mem_array(s->p->nodes, 3 * sizeof *s->place, "the solver", e);
-    lanes_field *fields[] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
-    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+    lanes_field *fields[FIELDS] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
+    for (int i = 0; i < FIELDS; i++)
         if (lanes_field_make(fields[i], o->nodes, e))
             return -1;
     if (contacts_make(&s->contacts, o, s->p->nodes, e))
@@ -115,8 +115,8 @@ static void cpu_destroy(void *state)
     free(s->exact);
     stiffness_free(&s->k);
     contacts_free(&s->contacts);
-    lanes_field *fields[] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
-    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+    lanes_field *fields[FIELDS] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
+    for (int i = 0; i < FIELDS; i++)
         lanes_field_free(fields[i]);
     free(s->stiffness);
     free(s->damper);

@@ -40,7 +40,20 @@ static int list_incident(maker *m, err *e)
     return 0;
 }
 
-/* Those with many springs, in the model's order, then those with few. */
+/* Whether a neighbour has fewer springs: in a lattice of five tetrahedra a cell, true of every other node, those where diagonals
+ * meet, on the surface and at its corners too. */
+static bool has_many(const maker *m, int64_t n)
+{
+    for (int64_t i = m->start[n]; i < m->start[n + 1]; i++) {
+        const int32_t *ends = m->p->spring[m->incident[i]].node;
+        int64_t other = ends[0] == n ? ends[1] : ends[0];
+        if (m->start[other + 1] - m->start[other] < m->start[n + 1] - m->start[n])
+            return true;
+    }
+    return false;
+}
+
+/* Those with many springs, in the model's order, then those with few: so slices of a lattice end where its rows do. */
 static int order_nodes(maker *m, err *e)
 {
     slices *s = m->s;
@@ -51,10 +64,10 @@ static int order_nodes(maker *m, err *e)
     s->own_node = mem_array(p->nodes, sizeof *s->own_node, "the solver", e);
     if (!s->model_node || !s->own_node)
         return -1;
-    int64_t at = 0, mean = 2 * p->springs / p->nodes;
+    int64_t at = 0;
     for (int few = 0; few < 2; few++)
         for (int64_t n = 0; n < p->nodes; n++)
-            if ((3 * (m->start[n + 1] - m->start[n]) < 2 * mean) == few) {
+            if (has_many(m, n) != few) {
                 s->own_node[n] = (int32_t)at;
                 s->model_node[at++] = (int32_t)n;
             }
