@@ -47,12 +47,6 @@ $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
 	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -c -o $@ $<)
 
-# Loops that are compiled twice, plainly and for AVX2; which is taken is found out as the tool runs. No multiply and add is fused:
-# -mavx2 has none, and both give the same bytes.
-ifneq ($(filter x86_64-%,$(shell $(CC) -dumpmachine 2>/dev/null)),)
-$(BUILD)/msds/lanes_avx2.o: CFLAGS += -mavx2
-endif
-
 # CUDA: machine code for sm_90, and for the rest from sm_75 on what the driver compiles. As with C, no multiply and add is fused,
 # so that a card computes what a processor does. Objects are linked by cc, so they must not want C++'s library.
 CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_75,code=compute_75
@@ -84,10 +78,11 @@ $(BUILD)/cuda-$(CUDA):
 $(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: $(BUILD)/cuda-$(CUDA)
 $(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 
-# The CPU solver's pass, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
+# The CPU solvers' loops, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
 # (No psabi: vectors are passed between functions of one file only.)
 $(BUILD)/tled/cpu_pass_%.o: VECTORS = -Wno-psabi
 ifeq ($(shell uname -m),x86_64)
+$(BUILD)/msds/lanes_avx2.o: VECTORS = -mavx2
 $(BUILD)/tled/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/tled/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 endif

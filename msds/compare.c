@@ -38,8 +38,8 @@ static double square_of(const double *a)
 int compare_frame(compare *c, const backend *device, void *state, const msds_plan *plan, int64_t count, err *e)
 {
     double off = 0, size = 0, worst = 0, largest = 0;
-    if (device->step(c->state, plan, count, e) || device->get(state, MSDS_DISPLACEMENT, c->ours, e) ||
-        device->get(c->state, MSDS_DISPLACEMENT, c->other, e))
+    if (device->step(c->state, plan, count, e) || device->look(c->state, NULL, &c->sight, e) ||
+        device->get(state, MSDS_DISPLACEMENT, c->ours, e) || device->get(c->state, MSDS_DISPLACEMENT, c->other, e))
         return -1;
     const double *fem = plan->method == MSDS_SPRINGS ? c->ours : c->other;
     for (int64_t n = 0; n < c->p->nodes; n++) {

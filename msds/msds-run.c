@@ -83,6 +83,7 @@ typedef struct session {
     in *source;
     poses poses;
     msds_method method; /* now */
+    msds_sight sight;   /* of the last frame */
     int64_t next_frame;
     notes warnings;
 } session;
@@ -216,12 +217,16 @@ out:
     return result;
 }
 
+static double size_of(const double force[3])
+{
+    return sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+}
+
 static void say_frame(const session *s, double time, const msds_sight *sight)
 {
     static const char *const names[] = {"msds", "fem", "fem, exact"};
     char left[60] = "", force[100] = "";
-    double size =
-        sqrt(sight->force[0] * sight->force[0] + sight->force[1] * sight->force[1] + sight->force[2] * sight->force[2]);
+    double size = size_of(sight->force);
     if (!isnan(sight->residual))
         snprintf(left, sizeof left, ", residual %.3g", sight->residual);
     if (sight->solves)
@@ -237,7 +242,7 @@ static void say_frame(const session *s, double time, const msds_sight *sight)
 static int solve_frame(session *s, const poses_event *at, err *e)
 {
     msds_plan plan = {.method = s->method, .dt = s->o->dt / (double)s->substeps, .touched = s->o->probe != NULL};
-    msds_sight sight;
+    msds_sight sight = {0};
     probe_pose pose;
     memcpy(pose.position, at->origin, sizeof pose.position);
     memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
@@ -251,6 +256,7 @@ static int solve_frame(session *s, const poses_event *at, err *e)
         e->status = STATUS_DIVERGED;
         return -1;
     }
+    s->sight = sight;
     say_frame(s, at->time, &sight);
     if (write_frame(s, at, &sight, e))
         return -1;
@@ -259,6 +265,17 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     plan.method = method_of(s, s->method == MSDS_SPRINGS);
     count = s->o->iterations * (plan.method == MSDS_SPRINGS ? s->substeps : 1);
     return compare_frame(s->other, s->device, s->state, &plan, count, e);
+}
+
+static void say_difference(const session *s, double time)
+{
+    char force[100] = "";
+    double ours = size_of(s->sight.force), other = size_of(s->other->sight.force);
+    bool springs = s->method == MSDS_SPRINGS;
+    if (s->o->probe)
+        snprintf(force, sizeof force, "; %.4g N against %.4g N", springs ? ours : other, springs ? other : ours);
+    tool_say(s->t, "%.6g s: msds against fem: root mean square %.4g, at most %.4g of the largest displacement%s", time,
+             s->other->mean, s->other->worst, force);
 }
 
 static int simulate(session *s, err *e)
@@ -276,8 +293,7 @@ static int simulate(session *s, err *e)
         if (solve_frame(s, &at, e))
             return -1;
         if (s->other)
-            tool_say(s->t, "%.6g s: msds against fem: root mean square %.4g, at most %.4g of the largest displacement",
-                     at.time, s->other->mean, s->other->worst);
+            say_difference(s, at.time);
     }
     if (!got && !frames)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");

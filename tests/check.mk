@@ -120,7 +120,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:

@@ -4,3 +4,8 @@ BENCH_MSDS = $(BUILD)/tests/bench/bench_msds
 $(eval $(call test_program,tests/bench/bench_msds))
 bench-msds: $(BENCH_MSDS)
 	@$(BENCH_MSDS) $(shell nproc)
+
+# How far springs are from the FEM at those sizes: CSV.
+.PHONY: compare-msds
+compare-msds: all
+	@tests/bench/msds_compare $(BIN)
