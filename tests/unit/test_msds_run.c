@@ -5,6 +5,7 @@
 #include "msds_block.h"
 
 #include "base/mem.h"
+#include "msds/lanes.h"
 #include "msds/largest.h"
 #include "msds/msds_cpu.h"
 #include "msds/slices.h"
@@ -352,6 +353,53 @@ static void test_warp(void)
     ok(fabs(f[1][0]) > 1, "but to a linear one: %g N", f[1][0]);
 }
 
+#if defined(__x86_64__)
+/* Every loop by both builds of it, over numbers with no pattern: the same bytes. */
+static void test_lanes(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    slices s = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    tets b = {{9, 6, 5}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
+    lanes_field f[8] = {{{NULL}, NULL}};
+    make_problem(&b, &o, &m, &p);
+    tets_must(!slices_make(&s, &p, &e), &e);
+    for (int i = 0; i < 8; i++) {
+        tets_must(!lanes_field_make(&f[i], s.nodes, &e), &e);
+        for (int64_t k = 0; k < 3 * s.nodes; k++)
+            f[i].x[k % 3][k / 3] = (float)(sin(1.3 * (double)k + i) * (i ? .001 : 1));
+    }
+    float *number = mem_array(s.slots * 9 * LANES, sizeof *number, "test", &e);
+    tets_must(number != NULL, &e);
+    for (int64_t k = 0; k < s.slots * 9 * LANES; k++)
+        number[k] = 1 + (float)cos(.7 * (double)k);
+    lanes_springs w = {&s,     number, number + 8, number + 16, f[0], f[1], f[2], f[3], f[4],
+                       number, f[5],   .01F,       false,       {0},  0,    NULL, 0,    NULL};
+    lanes_matrix a = {&s, number, number};
+    size_t size = 3 * (size_t)(s.nodes + 2 * LANES) * sizeof(float);
+    lanes_plain.step(&w, 0, s.count);
+    double plain = lanes_plain.multiply(&a, &f[1], &f[6], 0, s.count);
+    w.next_u = f[7], w.next_v = f[5];
+    bool same = __builtin_cpu_supports("avx2") > 0;
+    if (same) {
+        lanes_avx2.step(&w, 0, s.count);
+        same = !memcmp(f[3].memory, f[7].memory, size) && !memcmp(f[4].memory, f[5].memory, size);
+        double other = lanes_avx2.multiply(&a, &f[1], &f[7], 0, s.count);
+        same = same && !memcmp(f[6].memory, f[7].memory, size) && !memcmp(&plain, &other, sizeof plain);
+        ok(same, "plain and AVX2: the same bytes");
+    } else {
+        skip(1, "no AVX2 here");
+    }
+    for (int i = 0; i < 8; i++)
+        lanes_field_free(&f[i]);
+    free(number);
+    slices_free(&s);
+    free_problem(&m, &p);
+}
+#endif
+
 static void test_threads(void)
 {
     model m = {0};
@@ -418,6 +466,9 @@ int main(void)
     test_contact();
     test_warp();
     test_threads();
+#if defined(__x86_64__)
+    test_lanes();
+#endif
     test_bad();
     return done_testing();
 }
