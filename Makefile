@@ -122,6 +122,5 @@ clean:
 	rm -rf $(BUILD) $(BIN) out
 
 include tests/check.mk
-include tests/bench/msds.mk
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -67,8 +67,8 @@ check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-voxelise bench-geometry bench-fraction
-BENCHES = voxelise geometry tled
+.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-fraction compare-msds
+BENCHES = voxelise geometry tled msds
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
 BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
 TRIANGLES ?= 100000
@@ -89,6 +89,12 @@ bench-voxelise: $(BUILD)/tests/bench/bench_voxelise
 # Reading OBJ, models through pipes, attach and bind on the real face.
 bench-geometry: all $(BUILD)/tests/bench/bench_geometry
 	@$(BUILD)/tests/bench/bench_geometry $(BIN) $(BENCH_FACE)
+# Frames of msds-run's solvers at the sizes of PST's Table I, beside its figures.
+bench-msds: $(BUILD)/tests/bench/bench_msds
+	@$(BUILD)/tests/bench/bench_msds $(shell nproc)
+# No time, but how far springs are from the FEM at those sizes.
+compare-msds: all
+	@tests/bench/msds_compare $(BIN)
 # No time, but how fast models converge, by centres and by shares; it takes many minutes, and is no part of bench.
 bench-fraction: all
 	@tests/bench/fraction $(BIN) $(BENCH_FACE)
@@ -184,7 +190,8 @@ help:
 	'make sanitize     the tests under ASan and UBSan' \
 	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
-	'make bench-voxelise, -geometry, -tled   its parts (TRIANGLES=100000: of the scan)' \
+	'make bench-voxelise, -geometry, -tled, -msds   its parts (TRIANGLES=100000: of the scan)' \
+	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
