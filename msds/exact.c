@@ -8,6 +8,7 @@
 enum {
     PATHS_MOST = 2048, /* kept; past that all are forgotten */
     BATCH = 16,        /* paths made side by side */
+    STALE = 20,        /* solves with one factor at most, where elements turn */
     SWEEPS = 2000      /* of the complementarity problem; the next solve takes over what is left */
 };
 
@@ -77,6 +78,13 @@ static int make_batch(exact *x, const int32_t *node, int64_t count, err *e)
     return 0;
 }
 
+static void forget_paths(exact *x)
+{
+    for (int64_t i = 0; i < x->paths; i++)
+        x->cached[x->whose[i]] = -1;
+    x->paths = 0;
+}
+
 /* Paths of all contacts, of which most are known from the frame before. */
 static int make_paths(exact *x, err *e)
 {
@@ -85,9 +93,7 @@ static int make_paths(exact *x, err *e)
     for (int64_t i = 0; i < x->c->count; i++)
         missing += x->cached[x->c->list[i].node] < 0;
     if (missing && x->paths + missing > PATHS_MOST) {
-        for (int64_t i = 0; i < x->paths; i++)
-            x->cached[x->whose[i]] = -1;
-        x->paths = 0;
+        forget_paths(x);
     }
     for (int64_t i = 0; i < x->c->count; i++) {
         if (x->cached[x->c->list[i].node] < 0)
@@ -255,16 +261,33 @@ static bool in_place(const exact *x, const double *u, double tolerance)
     return true;
 }
 
+/* A factor of elements as they are turned now, where one of older turns no longer leads on. */
+static int turn_again(exact *x, const double *u, err *e)
+{
+    stiffness_warp(x->k, u, true);
+    forget_paths(x);
+    return factor_again(&x->factor, e) || make_schur(x, e) ? -1 : 0;
+}
+
 int exact_solve(exact *x, double *u, bool first, double tolerance, double reach, err *e)
 {
     x->load = first ? 0 : x->load;
     if (make_schur(x, e))
         return -1;
+    double before = INFINITY;
+    int fresh = 0; /* the solve that the factor was made for */
     x->residual = find_left(x, u);
     for (x->solves = 0; x->residual > tolerance || !in_place(x, u, tolerance * reach);) {
         if (x->solves == EXACT_SOLVES || !isfinite(x->residual))
             return err_set(e, NULL, 0, "after %d solves the residual is still %.3g; expected %.3g", x->solves,
                            x->residual, tolerance);
+        bool stale = x->solves - fresh >= STALE || (x->solves - fresh > 1 && x->residual > before);
+        if (x->k->turn && stale) {
+            if (turn_again(x, u, e))
+                return -1;
+            fresh = x->solves;
+        }
+        before = x->residual;
         improve(x, u);
         x->residual = find_left(x, u);
     }

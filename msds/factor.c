@@ -401,8 +401,11 @@ int factor_make(factor *f, const msds_problem *p, const stiffness *k, const lane
     f->k = k;
     f->loops = loops;
     f->threads = threads;
-    if (dissect(&f->tree, p, e) || order_levels(f, e) || allocate(f, e))
-        return -1;
+    return dissect(&f->tree, p, e) || order_levels(f, e) || allocate(f, e) ? -1 : factor_again(f, e);
+}
+
+int factor_again(factor *f, err *e)
+{
     for (int64_t level = 0; level < f->levels; level++)
         run_level(f, level, factor_work);
     int32_t failed = f->failed[f->tree.fronts - 1];

@@ -45,6 +45,9 @@ typedef struct factor {
 int factor_make(factor *f, const msds_problem *p, const stiffness *k, const lanes *loops, pool *threads, err *e);
 void factor_free(factor *f);
 
+/* Factors again, when k's matrix has changed. -1 with e filled. */
+int factor_again(factor *f, err *e);
+
 /* L^-1 of a load (the model's nodes x 3), into the fronts' values. */
 void factor_forward(factor *f, const double *load);
 /* L^-T of the fronts' values, into result (the model's nodes x 3; fixed ones get 0). */
