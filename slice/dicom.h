@@ -5,13 +5,13 @@
 #ifndef SINEW_DICOM_H
 #define SINEW_DICOM_H
 
-#include "base/err.h"
-
-#include <stddef.h>
-
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+#include "base/err.h"
+
+#include <stddef.h>
 
 enum { DICOM_UID = 65 };
 
