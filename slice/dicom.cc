@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <pthread.h>
 
 /* No exception may leave this file, and none is thrown in it but for want of memory. */
 namespace
@@ -22,7 +23,11 @@ namespace
 const char *const PHILIPS_VOLUME = "1.2.840.113543.6.6.1.3.10002";
 const DcmTagKey PHILIPS_DEPTH(0x3001, 0x1001), PHILIPS_DELTA_Z(0x3001, 0x1003);
 
-enum { CENTIMETRES = 3, MOST_ITEMS = 20000 };
+enum { CENTIMETRES = 3, FEW_ITEMS = 500, MOST_ITEMS = 100000 };
+
+/* Of a thread that reads many items: DCMTK goes down into items that lie in items by recursion, and takes less than 2 KB for
+ * each. Only what is used of it becomes memory. */
+const size_t STACK = size_t(256) << 20;
 
 struct reading {
     dicom_image *d;
@@ -39,33 +44,10 @@ int refuse(const reading &r, const char *what, const char *expected)
 
 /* ---- elements by tag; what is used is noted */
 
-int compare(const dicom_element &a, const DcmTagKey &k)
-{
-    int by_group = int(a.group) - int(k.getGroup());
-    return by_group ? by_group : int(a.element) - int(k.getElement());
-}
-
-/* The place of a tag in the list, by halving; *there: whether it is in it. */
-int64_t place_of(const dicom_elements *list, const DcmTagKey &k, bool *there)
-{
-    int64_t low = 0, high = list->count;
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        if (compare(list->one[middle], k) < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    *there = low < list->count && compare(list->one[low], k) == 0;
-    return low;
-}
-
 void use(const reading &r, const DcmTagKey &k)
 {
-    bool there = false;
-    int64_t at = r.seen ? place_of(r.seen, k, &there) : 0;
-    if (there)
-        r.seen->one[at].used = true;
+    if (r.seen)
+        dicom_elements_use(r.seen, k.getGroup(), k.getElement());
 }
 
 /* Up to `most` numbers of an element: how many there are, 0 where there is no such element. */
@@ -127,29 +109,6 @@ DcmItem *inner(const reading &r, DcmItem *item, const DcmTagKey &k, long at = 0)
 
 /* ---- the list of elements */
 
-int note(dicom_elements *list, const dicom_element &what, err *e)
-{
-    bool there = false;
-    int64_t at = place_of(list, DcmTagKey(what.group, what.element), &there);
-    if (there) {
-        list->one[at].files++;
-        return 0;
-    }
-    if (list->count == list->capacity) {
-        int64_t room = list->capacity ? 2 * list->capacity : 256;
-        void *more = std::realloc(list->one, size_t(room) * sizeof *list->one);
-        if (!more)
-            return err_memory(e, "a list of elements");
-        list->one = static_cast<dicom_element *>(more);
-        list->capacity = room;
-    }
-    dicom_element *to = list->one + at;
-    std::memmove(to + 1, to, size_t(list->count++ - at) * sizeof *to);
-    *to = what;
-    to->files = 1;
-    return 0;
-}
-
 dicom_element element_of(DcmObject *object)
 {
     dicom_element what = dicom_element();
@@ -168,11 +127,12 @@ int note_all(const reading &r)
     int code = 0;
     while (!code && r.set->nextObject(stack, OFTrue).good()) {
         DcmObject *object = stack.top();
+        dicom_element what = element_of(object);
         if (object->ident() != EVR_item && object->ident() != EVR_pixelItem)
-            code = note(&here, element_of(object), r.e);
+            code = dicom_elements_note(&here, &what, r.e);
     }
     for (int64_t i = 0; !code && i < here.count; i++)
-        code = note(r.seen, here.one[i], r.e);
+        code = dicom_elements_note(r.seen, &here.one[i], r.e);
     dicom_elements_free(&here);
     return code;
 }
@@ -451,8 +411,8 @@ int read_pixels(const reading &r)
 
 /* ---- the file */
 
-/* Items lie in items as deep as a file says, and DCMTK goes down by recursion: there cannot be more levels than item tags. */
-bool too_deep(const unsigned char *bytes, size_t size)
+/* Tags of items, in either byte order: a file cannot have more levels of items in items than these. */
+int64_t count_items(const unsigned char *bytes, size_t size)
 {
     int64_t items = 0;
     const unsigned char *end = bytes + size;
@@ -464,7 +424,7 @@ bool too_deep(const unsigned char *bytes, size_t size)
         bool big = p > bytes && p[-1] == 0xFF && p[1] == 0xE0 && p[2] == 0;
         items += little || big;
     }
-    return items > MOST_ITEMS;
+    return items;
 }
 
 int parse(const reading &r, DcmFileFormat &file, const void *bytes, size_t size)
@@ -513,8 +473,6 @@ int read_image(reading &r)
 int read_file(reading &r, const void *bytes, size_t size)
 {
     DcmFileFormat file;
-    if (too_deep(static_cast<const unsigned char *>(bytes), size))
-        return err_set(r.e, r.name, 0, "more than %d items; expected fewer", int(MOST_ITEMS));
     if (parse(r, file, bytes, size))
         return -1;
     r.set = file.getDataset();
@@ -523,6 +481,42 @@ int read_file(reading &r, const void *bytes, size_t size)
     if (r.seen && note_all(r))
         return -1;
     return read_image(r);
+}
+
+/* What a thread is given, and what it gives back. */
+struct errand {
+    reading *r;
+    const void *bytes;
+    size_t size;
+    int code;
+};
+
+void *run(void *given)
+{
+    errand *job = static_cast<errand *>(given);
+    try {
+        job->code = read_file(*job->r, job->bytes, job->size);
+    } catch (const std::bad_alloc &) {
+        job->code = err_memory(job->r->e, job->r->name);
+    }
+    return nullptr;
+}
+
+int run_on_large_stack(errand *job)
+{
+    pthread_t thread;
+    pthread_attr_t how;
+    int code = pthread_attr_init(&how);
+    if (!code) {
+        code = pthread_attr_setstacksize(&how, STACK);
+        if (!code)
+            code = pthread_create(&thread, &how, run, job);
+        pthread_attr_destroy(&how);
+    }
+    if (code)
+        return err_system(job->r->e, job->r->name, code, "cannot start a thread to read it");
+    pthread_join(thread, nullptr);
+    return job->code;
 }
 
 void begin()
@@ -554,12 +548,15 @@ int dicom_read(dicom_image *d, const void *bytes, size_t size, const char *name,
         return err_set(e, nullptr, 0,
                        "DCMTK has no data dictionary; expected its dicom.dic (or DCMDICTPATH to say where it is)");
     reading r = {d, nullptr, name, seen, e};
-    int code;
-    try {
-        code = read_file(r, bytes, size);
-    } catch (const std::bad_alloc &) {
-        code = err_memory(e, name);
-    }
+    errand job = {&r, bytes, size, -1};
+    int64_t items = count_items(static_cast<const unsigned char *>(bytes), size);
+    if (items > MOST_ITEMS)
+        return err_set(e, name, 0, "more than %d items; expected fewer", int(MOST_ITEMS));
+    if (items > FEW_ITEMS)
+        run_on_large_stack(&job);
+    else
+        run(&job);
+    int code = job.code;
     if (code)
         dicom_free(d);
     return code;
@@ -571,12 +568,6 @@ void dicom_free(dicom_image *d)
     std::free(d->time);
     std::free(d->pixels);
     *d = dicom_image();
-}
-
-void dicom_elements_free(dicom_elements *list)
-{
-    std::free(list->one);
-    *list = dicom_elements();
 }
 
 void dicom_end(void)

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-#include "base/err.h"
+#include "slice/dicom_elements.h"
 
 #include <stddef.h>
 
@@ -34,19 +34,6 @@ typedef struct dicom_image {
     unsigned char *pixels; /* frames x rows x columns x bytes, little-endian, brighter = more */
 } dicom_image;
 
-/* The elements that files held: for reports. Names are the standard's, values are not kept. */
-typedef struct dicom_element {
-    uint16_t group, element;
-    bool used;     /* for geometry or pixels */
-    char name[64]; /* "private" where it is a maker's */
-    int64_t files;
-} dicom_element;
-
-typedef struct dicom_elements {
-    dicom_element *one; /* owned; by tag */
-    int64_t count, capacity;
-} dicom_elements;
-
 /* Whether these bytes begin as a DICOM file does: 132 of them are enough to know. */
 bool dicom_is(const void *bytes, size_t size);
 
@@ -55,7 +42,6 @@ bool dicom_is(const void *bytes, size_t size);
 int dicom_read(dicom_image *d, const void *bytes, size_t size, const char *name, dicom_elements *seen, err *e);
 
 void dicom_free(dicom_image *d);
-void dicom_elements_free(dicom_elements *list);
 
 /* What DCMTK allocated once. */
 void dicom_end(void);

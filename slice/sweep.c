@@ -112,9 +112,40 @@ double sweep_voxel(const sweep *s, const volume *images, err *e)
     return side;
 }
 
-static int set_geometry(volume *v, const sweep *s, const volume *images, double side, err *e)
+/* Axes along the columns and rows of the middle frame, and square to both: a sweep fills little of a box along other axes. */
+static int find_axes(const sweep *s, double axis[3][3], err *e)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, corner[3], count = 1;
+    const double *m = s->one[s->count / 2].m;
+    double dot = 0, length[3] = {0};
+    for (int b = 0; b < 3; b++) {
+        axis[0][b] = m[4 * b];
+        axis[1][b] = m[4 * b + 1];
+        length[0] += m[4 * b] * m[4 * b];
+        dot += m[4 * b] * m[4 * b + 1];
+    }
+    for (int b = 0; b < 3; b++) {
+        axis[1][b] -= dot / length[0] * axis[0][b];
+        length[1] += axis[1][b] * axis[1][b];
+    }
+    for (int b = 0; b < 3; b++)
+        axis[2][b] = axis[0][(b + 1) % 3] * axis[1][(b + 2) % 3] - axis[0][(b + 2) % 3] * axis[1][(b + 1) % 3];
+    length[2] = length[0] * length[1];
+    if (!(length[2] > 1e-12 * length[0] * length[0]) || !isfinite(length[2]))
+        return err_set(e, NULL, 0,
+                       "an image whose columns and rows lie on a line; expected a transform that keeps them apart");
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            axis[a][b] /= sqrt(length[a]);
+    return 0;
+}
+
+static int find_box(const sweep *s, const volume *images, double axis[3][3], double low[3], double high[3], err *e)
+{
+    double corner[3];
+    for (int a = 0; a < 3; a++) {
+        low[a] = INFINITY;
+        high[a] = -INFINITY;
+    }
     for (int64_t i = 0; i < s->count; i++) {
         const sweep_frame *f = &s->one[i];
         if (f->image >= images->size[2])
@@ -124,11 +155,20 @@ static int set_geometry(volume *v, const sweep *s, const volume *images, double 
         for (int c = 0; c < 4; c++) {
             place(f, c % 2 ? (double)(images->size[0] - 1) : 0, c / 2 ? (double)(images->size[1] - 1) : 0, corner);
             for (int a = 0; a < 3; a++) {
-                low[a] = fmin(low[a], corner[a]);
-                high[a] = fmax(high[a], corner[a]);
+                double at = axis[a][0] * corner[0] + axis[a][1] * corner[1] + axis[a][2] * corner[2];
+                low[a] = fmin(low[a], at);
+                high[a] = fmax(high[a], at);
             }
         }
     }
+    return 0;
+}
+
+static int set_geometry(volume *v, const sweep *s, const volume *images, double side, err *e)
+{
+    double axis[3][3], low[3], high[3], count = 1;
+    if (find_axes(s, axis, e) || find_box(s, images, axis, low, high, e))
+        return -1;
     v->type = images->type;
     for (int a = 0; a < 3; a++) {
         double cells = ceil((high[a] - low[a]) / side - 1e-6) + 1;
@@ -139,8 +179,10 @@ static int set_geometry(volume *v, const sweep *s, const volume *images, double 
                 "a volume of %g x %g x %g mm, in voxels of %g mm, is more than memory holds; expected a larger --voxel",
                 high[0] - low[0], high[1] - low[1], high[2] - low[2], side);
         v->size[a] = (int64_t)cells;
-        v->origin[a] = low[a];
-        v->axis[a][a] = side;
+        for (int b = 0; b < 3; b++) {
+            v->axis[a][b] = axis[a][b] * side;
+            v->origin[b] += axis[a][b] * low[a];
+        }
     }
     return volume_check(v, NULL, 0, e);
 }
@@ -187,21 +229,31 @@ static void add_linear(const splat *s, const double at[3], float value)
     }
 }
 
+/* What takes pixels to voxels. */
+static void to_voxels(const splat *s, const sweep_frame *f, double m[12])
+{
+    for (int a = 0; a < 3; a++)
+        for (int j = 0; j < 4; j++) {
+            m[4 * a + j] = 0;
+            for (int b = 0; b < 3; b++)
+                m[4 * a + j] +=
+                    s->v->axis[a][b] / (s->side * s->side) * (f->m[4 * b + j] - (j == 3 ? s->v->origin[b] : 0));
+        }
+}
+
 static void add_image(const splat *s, const sweep_frame *f, const volume *images, bool linear)
 {
     int64_t wide = images->size[0], first = f->image * wide * images->size[1];
-    double step[3], start[3], at[3];
+    double m[12], at[3];
+    to_voxels(s, f, m);
     for (int64_t r = 0; r < images->size[1]; r++) {
         for (int64_t c = 0; c < wide; c++)
             s->row[c] = (float)volume_value(images, first + r * wide + c);
-        place(f, 0, (double)r, start);
-        for (int a = 0; a < 3; a++) {
-            start[a] = (start[a] - s->v->origin[a]) / s->side;
-            step[a] = f->m[4 * a] / s->side;
-        }
         for (int64_t c = 0; c < wide; c++) {
-            for (int a = 0; a < 3; a++)
-                at[a] = fmin(fmax(start[a] + step[a] * (double)c, 0), (double)(s->v->size[a] - 1));
+            for (int a = 0; a < 3; a++) {
+                double x = m[4 * a] * (double)c + m[4 * a + 1] * (double)r + m[4 * a + 3];
+                at[a] = fmin(fmax(x, 0), (double)(s->v->size[a] - 1));
+            }
             if (linear)
                 add_linear(s, at, s->row[c]);
             else

@@ -36,7 +36,8 @@ void sweep_free(sweep *s);
 /* The larger of the distance between pixels and half the median distance between the middles of one frame and the next, mm. */
 double sweep_voxel(const sweep *s, const volume *images, err *e);
 
-/* The volume, along the axes of the frame that the sequence is tracked in; of the type of the images. filled: voxels that
+/* The volume, in the frame that the sequence is tracked in; its axes are along the columns and rows of the middle frame; of the
+ * type of the images. filled: voxels that
  * pixels and, after these, gaps gave a value. */
 int sweep_volume(volume *v, const sweep *s, const volume *images, const sweep_wish *wish, int64_t filled[2], err *e);
 
