@@ -111,9 +111,9 @@ static void cross_edge(const march *m, int axis, unsigned code)
         share = share > CONTOUR_NEAREST    ? fmin(share, 1 - CONTOUR_NEAREST)
                 : share <= CONTOUR_NEAREST ? CONTOUR_NEAREST
                                            : .5;
-        outward[axis] = low_inside ? 1 : -1;
     }
     position[axis] += share;
+    outward[axis] = low_inside ? 1 : -1;
     *edge_place(m, 4 * axis + 3) = add_vertex(m->to, position, outward);
 }
 
