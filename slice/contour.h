@@ -15,9 +15,8 @@
 
 typedef struct contour {
     double *position; /* vertices x 3: samples from the box's first; x, y, z */
-    float *
-        outward; /* vertices x 3: along its edge towards the outside, of length 1; 0 at the box's border; of a vertex amid
-                         a cube, the mean of its rim's */
+    /* vertices x 3: along its edge towards the outside, of length 1; amid a cube, the mean of its rim's */
+    float *outward;
     int64_t vertices, vertex_room;
     int32_t *triangle; /* triangles x 3, anticlockwise as seen from outside */
     int64_t triangles, triangle_room;
