@@ -53,7 +53,7 @@ $(BUILD)/%.o: %.c
 
 $(BUILD)/%.o: %.cc
 	@mkdir -p $(@D)
-	$(call run,CXX $<,$(CXX) -std=c++17 -Wall -Wextra $(WERROR) $(CFLAGS) -ffp-contract=off -pthread $(CPPFLAGS) -MMD -MP -c -o $@ $<)
+	$(call run,CXX $<,$(CXX) -std=c++17 -Wall -Wextra $(WERROR) $(CFLAGS) -fno-sanitize=vptr -ffp-contract=off -pthread $(CPPFLAGS) -MMD -MP -c -o $@ $<)
 
 # CUDA: machine code for sm_90, and for the rest from sm_75 on what the driver compiles. As with C, no multiply and add is fused,
 # so that a card computes what a processor does. Objects are linked by cc, so they must not want C++'s library.

@@ -24,9 +24,8 @@ struct options {
 
 static const opt option_list[] = {
     {'l', "label", "NAME,...", OPT_LIST, offsetof(struct options, labels), 0, 0, NULL, 0,
-     "surfaces of these labels (names or numbers); all"},
-    {'i', "iso", "LEVEL", OPT_NUMBER, offsetof(struct options, iso), 0, 0, NULL, 0,
-     "or the surface of all that is LEVEL or more"},
+     "of these labels, by name or number; or all"},
+    {'i', "iso", "LEVEL", OPT_NUMBER, offsetof(struct options, iso), 0, 0, NULL, 0, "or of all that is LEVEL or more"},
     {0, "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, 0, "its group, with -i [surface]"},
     {0, "smooth", "SIGMA", OPT_LENGTHS, offsetof(struct options, smooth), 0, 1, NULL, 0,
      "Gaussian filter before, as 1mm [none]"},

@@ -25,7 +25,7 @@ seg() {
 
 seg "above a level" -n bone --low 80
 is "$(count 1)" 384 "all that is there"
-is "$(grep -a '^Segment0_\(Name\|LabelValue\):=' "$T/l.nrrd" | tr '\n' ' ')" "Segment0_Name:=bone Segment0_LabelValue:=1 " "its name"
+is "$(grep -a '^Segment0_\(Name\|LabelValue\):=' "$T/l.nrrd" | sort | tr '\n' ' ')" "Segment0_LabelValue:=1 Segment0_Name:=bone " "its name"
 is "$(grep -a '^space origin' "$T/l.nrrd")" "space origin: (10,20,30)" "its place"
 seg "the largest part" -n bone --low 80 --largest
 is "$(count 1)" 383 "without the voxel alone"
