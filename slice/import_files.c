@@ -8,6 +8,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -19,91 +20,102 @@ const char *import_base(const char *path)
     return path + path_folder(path);
 }
 
+/* A file or folder that is still to be looked at. */
+typedef struct found {
+    char *path; /* owned */
+    bool named;
+    int depth;
+} found;
+
+typedef struct pending {
+    found *one;
+    int64_t count, capacity;
+} pending;
+
 /* path becomes the list's. */
-static int add(import_files *f, char *path, bool named, err *e)
+static int push(pending *p, char *path, bool named, int depth, err *e)
 {
-    int64_t room = f->capacity;
-    if (!path || MEM_ROOM(&f->path, &f->capacity, f->count + 1, "files", e) ||
-        (f->capacity != room && mem_grow(&f->named, &room, f->capacity, sizeof *f->named, "files", e))) {
+    if (!path || MEM_ROOM(&p->one, &p->capacity, p->count + 1, "files", e)) {
         free(path);
         return -1;
     }
-    f->path[f->count] = path;
-    f->named[f->count++] = named;
+    p->one[p->count++] = (found){path, named, depth};
     return 0;
 }
 
+/* What is taken last is looked at first, so names are in falling order. */
 static int by_name(const void *a, const void *b)
 {
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-static int find_in(import_files *f, const char *folder, int depth, err *e);
-
-static int find_at(import_files *f, char *path, bool named, int depth, err *e)
-{
-    struct stat s;
-    if ((named ? stat(path, &s) : lstat(path, &s))) {
-        int code = errno;
-        err_system(e, import_base(path), code, "cannot read");
-    } else if (S_ISDIR(s.st_mode)) {
-        int code = find_in(f, path, depth + 1, e);
-        free(path);
-        return code;
-    } else if (named || S_ISREG(s.st_mode)) {
-        return add(f, path, named, e);
-    }
-    free(path);
-    return e->status ? -1 : 0;
+    return strcmp(((const found *)b)->path, ((const found *)a)->path);
 }
 
 static char *join(const char *folder, const char *name, err *e)
 {
     size_t size = strlen(folder) + strlen(name) + 2;
     char *path = mem_array((int64_t)size, 1, "a path", e);
-    if (path) {
-        memcpy(path, folder, strlen(folder));
-        path[strlen(folder)] = '/';
-        memcpy(path + strlen(folder) + 1, name, strlen(name));
-    }
+    if (path)
+        snprintf(path, size, "%s/%s", folder, name);
     return path;
 }
 
-static int find_in(import_files *f, const char *folder, int depth, err *e)
+static int push_folder(pending *p, const found *folder, err *e)
 {
-    char **path = NULL;
-    int64_t count = 0, capacity = 0;
-    if (depth > IMPORT_DEPTH)
-        return err_set(e, import_base(folder), 0, "folders more than %d deep", IMPORT_DEPTH);
-    DIR *d = opendir(folder);
+    const char *place = import_base(folder->path);
+    int64_t first = p->count;
+    if (folder->depth == IMPORT_DEPTH)
+        return err_set(e, place, 0, "folders more than %d deep", IMPORT_DEPTH);
+    DIR *d = opendir(folder->path);
     if (!d)
-        return err_system(e, import_base(folder), errno, "cannot read the folder");
-    for (struct dirent *one = readdir(d); one && !e->status; one = readdir(d)) {
-        if (one->d_name[0] == '.' || MEM_ROOM(&path, &capacity, count + 1, "files", e))
-            continue;
-        path[count] = join(folder, one->d_name, e);
-        count += path[count] != NULL;
-    }
+        return err_system(e, place, errno, "cannot read the folder");
+    for (struct dirent *one = readdir(d); one && !e->status; one = readdir(d))
+        if (one->d_name[0] != '.')
+            push(p, join(folder->path, one->d_name, e), false, folder->depth + 1, e);
     closedir(d);
-    if (count)
-        qsort(path, (size_t)count, sizeof *path, by_name);
-    for (int64_t i = 0; i < count; i++)
-        if (e->status)
-            free(path[i]);
-        else
-            find_at(f, path[i], false, depth, e);
-    free(path);
+    if (p->count > first)
+        qsort(p->one + first, (size_t)(p->count - first), sizeof *p->one, by_name);
     return e->status ? -1 : 0;
+}
+
+static int add(import_files *f, const found *one, err *e)
+{
+    int64_t room = f->capacity;
+    if (MEM_ROOM(&f->path, &f->capacity, f->count + 1, "files", e) ||
+        (f->capacity != room && mem_grow(&f->named, &room, f->capacity, sizeof *f->named, "files", e)))
+        return -1;
+    f->path[f->count] = mem_text(one->path, e);
+    if (!f->path[f->count])
+        return -1;
+    f->named[f->count++] = one->named;
+    return 0;
+}
+
+/* Links are followed only where they are named. */
+static int look_at(import_files *f, pending *p, const found *one, err *e)
+{
+    struct stat s;
+    if (one->named ? stat(one->path, &s) : lstat(one->path, &s))
+        return err_system(e, import_base(one->path), errno, "cannot read");
+    if (S_ISDIR(s.st_mode))
+        return push_folder(p, one, e);
+    return one->named || S_ISREG(s.st_mode) ? add(f, one, e) : 0;
 }
 
 int import_find(import_files *f, char *const *operand, int count, err *e)
 {
-    for (int i = 0; i < count; i++) {
-        char *path = mem_text(operand[i], e);
-        if (!path || find_at(f, path, true, 0, e))
-            return -1;
+    pending p = {0};
+    for (int i = count - 1; i >= 0 && !e->status; i--)
+        push(&p, mem_text(operand[i], e), true, 0, e);
+    while (p.count && !e->status) {
+        found one = p.one[--p.count];
+        look_at(f, &p, &one, e);
+        free(one.path);
     }
-    return f->count ? 0 : err_set(e, NULL, 0, "no files; expected DICOM, NRRD or MetaImage");
+    while (p.count)
+        free(p.one[--p.count].path);
+    free(p.one);
+    if (!e->status && !f->count)
+        err_set(e, NULL, 0, "no files; expected DICOM, NRRD or MetaImage");
+    return e->status ? -1 : 0;
 }
 
 void import_free(import_files *f)

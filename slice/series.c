@@ -89,7 +89,7 @@ static int refuse_many(const series *s, const int64_t *number, int64_t last, int
 static int choose_files(stack *k, const series *s, err *e)
 {
     int64_t *number = mem_array(s->count, sizeof *number, "series", e), last = 0, wanted = k->wish->number;
-    k->file = mem_array(s->count, sizeof *k->file, "series", e);
+    k->file = mem_array(s->count, sizeof(void *), "series", e);
     if (number && k->file) {
         for (int64_t i = 0; i < s->count; i++) {
             number[i] = number_of(s, i, number);

@@ -209,6 +209,8 @@ static int write_named(job *j, const char *name, err *e)
 static int write_labels(job *j, err *e)
 {
     j->labels = samples_labels(&j->v, &j->label, e);
+    if (j->labels < 1 || !j->label)
+        return e->status ? -1 : err_set(e, NULL, 0, "no label has voxels");
     for (int i = 0; i < j->o->labels.count && !e->status; i++) {
         char *list = mem_text(j->o->labels.value[i], e), *rest = NULL;
         bool all = list && !strcmp(list, "all");
@@ -219,8 +221,6 @@ static int write_labels(job *j, err *e)
             write_named(j, name, e);
         free(list);
     }
-    if (!e->status && !j->vertices)
-        err_set(e, NULL, 0, "no label has voxels");
     return e->status ? -1 : 0;
 }
 

@@ -57,9 +57,9 @@ static bool is_closed(const contour *c)
 static bool has_one_ring(const contour *c)
 {
     int64_t sides = 3 * c->triangles;
-    int32_t *count = calloc((size_t)c->vertices + 1, sizeof *count), *next = malloc((size_t)sides * sizeof *next + 1);
-    int64_t *first = malloc(((size_t)c->vertices + 1) * sizeof *first);
-    bool good = count && next && first;
+    int32_t *count = calloc((size_t)c->vertices + 1, sizeof *count);
+    int64_t *first = calloc((size_t)c->vertices + 1, sizeof *first);
+    bool good = count && first;
     for (int64_t i = 0; good && i < sides; i++) {
         count[c->triangle[i]]++;
         first[c->triangle[i]] = i;
@@ -79,7 +79,6 @@ static bool has_one_ring(const contour *c)
         good = at == first[v] && met == count[v];
     }
     free(count);
-    free(next);
     free(first);
     return good;
 }
