@@ -1,5 +1,9 @@
 #include "slice/dicom.h"
 
+extern "C" {
+#include "slice/dicom_lengths.h"
+}
+
 #include "dcmtk/config/osconfig.h"
 
 #include "dcmtk/dcmdata/dcistrmb.h"
@@ -33,6 +37,7 @@ struct reading {
     dicom_image *d;
     DcmDataset *set;
     const char *name;
+    size_t size; /* of the file */
     dicom_elements *seen;
     err *e;
 };
@@ -460,8 +465,10 @@ int read_image(reading &r)
     if (!packed && double(pixels->getLength()) < rows * columns * frames)
         return err_set(r.e, r.name, 0, "%lld bytes of pixels; expected %g or more", (long long)pixels->getLength(),
                        rows * columns * frames);
-    if (packed && frames > MOST_ITEMS)
-        return err_set(r.e, r.name, 0, "%g frames; expected at most %d that are compressed", frames, int(MOST_ITEMS));
+    /* Flat images shrink a lot, but not without end. */
+    if (packed && (frames > MOST_ITEMS || rows * columns * frames > 1000. * double(r.size) + 16e6))
+        return err_set(r.e, r.name, 0, "%g frames of %g x %g pixels in %lu bytes; expected fewer", frames, columns,
+                       rows, (unsigned long)r.size);
     OFString series = text(r, DCM_SeriesInstanceUID), burned = text(r, DCM_BurnedInAnnotation);
     std::strncpy(d->series, series.c_str(), sizeof d->series - 1);
     d->burned = burned == "YES" ? DICOM_BURNED : burned == "NO" ? DICOM_CLEAN : DICOM_NOT_SAID;
@@ -541,13 +548,15 @@ int dicom_read(dicom_image *d, const void *bytes, size_t size, const char *name,
 {
     if (!dicom_is(bytes, size))
         return err_set(e, name, 0, "not a DICOM file; expected DICM after 128 bytes");
+    if (dicom_lengths_check(static_cast<const unsigned char *>(bytes), size, name, e))
+        return -1;
     if (!begun)
         begin();
     begun = true;
     if (!dcmDataDict.isDictionaryLoaded())
         return err_set(e, nullptr, 0,
                        "DCMTK has no data dictionary; expected its dicom.dic (or DCMDICTPATH to say where it is)");
-    reading r = {d, nullptr, name, seen, e};
+    reading r = {d, nullptr, name, size, seen, e};
     errand job = {&r, bytes, size, -1};
     int64_t items = count_items(static_cast<const unsigned char *>(bytes), size);
     if (items > MOST_ITEMS)

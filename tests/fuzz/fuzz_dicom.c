@@ -1,4 +1,4 @@
-// needs: slice/dicom.cc slice/dicom_elements.c slice/series.c
+// needs: slice/dicom.cc slice/dicom_elements.c slice/dicom_lengths.c slice/series.c
 /* A DICOM file of any bytes is read or refused; what was read makes a volume, or not, twice over too. What DCMTK keeps for the whole of
  * a program's life is its own.
  */
