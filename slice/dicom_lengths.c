@@ -35,7 +35,7 @@ static uint32_t four(const walk *w, size_t at, bool big)
 /* The head at w->at; false: there is none that is understood. */
 static bool read_head(const walk *w, bool implicit, bool big, head *h)
 {
-    static const char longer[] = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
+    static const char shorter[] = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
     if (w->size - w->at < 8)
         return false;
     *h = (head){.group = two(w, w->at, big), .element = two(w, w->at + 2, big), .size = 8};
@@ -44,10 +44,10 @@ static bool read_head(const walk *w, bool implicit, bool big, head *h)
         return true;
     }
     memcpy(h->vr, w->bytes + w->at + 4, 2);
-    if (h->vr[0] < 'A' || h->vr[0] > 'Z' || h->vr[1] < 'A' || h->vr[1] > 'Z')
-        return false;
+    /* Of representations that it does not know, DCMTK takes those of two capitals as UN, others as if they were short. */
+    bool known = h->vr[0] >= 'A' && h->vr[0] <= 'Z' && h->vr[1] >= 'A' && h->vr[1] <= 'Z';
     h->length = two(w, w->at + 6, big);
-    if (!strstr(longer, h->vr))
+    if (!known || strstr(shorter, h->vr))
         return true;
     h->size = 12;
     if (w->size - w->at < 12)

@@ -136,7 +136,7 @@ $(BUILD)/tidy/%.ok: %.c .clang-tidy tests/.clang-tidy $(HEADERS)
 	@touch $@
 
 lint-format:
-	@$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS) $(CUDA_FILES)
+	@$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS) $(call found,*.cc) $(CUDA_FILES)
 
 lint-shell:
 	@shellcheck --external-sources --source-path=SCRIPTDIR $(SCRIPTS)
