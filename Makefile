@@ -20,9 +20,13 @@ CPPFLAGS = -Icommon -I. -isystem /usr/include/freetype2
 ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(VECTORS) $(CPPFLAGS) -MMD -MP
 LDLIBS = -lz -lm -pthread
 EMBREE = -lembree3
+# DCMTK is C++, and so is the one file that uses it.
+CXX = $(if $(findstring clang,$(CC)),$(subst clang,clang++,$(CC)),c++)
+DICOM = -ldcmjpeg -ldcmjpls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
 PICTURES = -lpng -lfreetype
 
-TOOLS = voxelise attach bind tled-run msds-mesh msds-run sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
+TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface \
+	sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -46,6 +50,10 @@ $(LIB): $(LIB_OBJ)
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
 	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -c -o $@ $<)
+
+$(BUILD)/%.o: %.cc
+	@mkdir -p $(@D)
+	$(call run,CXX $<,$(CXX) -std=c++17 -Wall -Wextra $(WERROR) $(CFLAGS) -fno-sanitize=vptr -ffp-contract=off -pthread $(CPPFLAGS) -MMD -MP -c -o $@ $<)
 
 # CUDA: machine code for sm_90, and for the rest from sm_75 on what the driver compiles. As with C, no multiply and add is fused,
 # so that a card computes what a processor does. Objects are linked by cc, so they must not want C++'s library.
@@ -88,13 +96,17 @@ $(BUILD)/tled/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -ma
 endif
 
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
-objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
+objects = $(patsubst %.cc,$(BUILD)/%.o,$(patsubst %.c,$(BUILD)/%.o,$(1)))
 VOXELISE_SRC := $(wildcard voxelise/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
 TLED_SRC := $(filter-out tled/tiles.c,$(wildcard tled/*.c))
 MESH_MODULES := $(wildcard msds/mesh_*.c)
 RUN_MODULES := $(filter-out msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
+SAMPLES_SRC := slice/samples.c slice/length.c
+IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c slice/dicom_elements.c slice/dicom_lengths.c slice/dicom.cc
+SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
+SURFACE_SRC := $(SAMPLES_SRC) $(wildcard slice/contour*.c) slice/cubes.c
 INFO_MODULES := $(wildcard common/tools/info_*.c)
 EXPORT_MODULES := $(wildcard common/tools/export_*.c)
 RENDER_MODULES := $(wildcard common/tools/render_*.c)
@@ -111,6 +123,9 @@ $(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
 $(eval $(call tool,tled-run,$(TLED_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
 $(eval $(call tool,msds-mesh,msds/msds-mesh.c $(MESH_MODULES)))
 $(eval $(call tool,msds-run,msds/msds-run.c $(RUN_MODULES)))
+$(eval $(call tool,us-import,slice/us-import.c $(IMPORT_SRC),$$(DICOM)))
+$(eval $(call tool,us-segment,slice/us-segment.c $(SEGMENT_SRC)))
+$(eval $(call tool,us-surface,slice/us-surface.c $(SURFACE_SRC)))
 $(eval $(call tool,sinew,common/tools/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))

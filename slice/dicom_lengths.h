@@ -1,0 +1,15 @@
+/* A look through a DICOM file, before DCMTK gets it, for elements that claim to be longer than what is left of it: DCMTK asks for as
+ * much memory as is claimed, up to 4 GiB, before it sees that it is not there. Nothing is kept.
+ */
+#ifndef SINEW_DICOM_LENGTHS_H
+#define SINEW_DICOM_LENGTHS_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+/* 0, or -1 with e filled: such an element, or a file that is deflated as a whole. Where it cannot tell how to go on, it stops, and
+ * leaves the rest to DCMTK. */
+int dicom_lengths_check(const unsigned char *bytes, size_t size, const char *name, err *e);
+
+#endif

@@ -1,0 +1,337 @@
+/* us-segment: marks a part of a volume, by intensity and from seeds, as a named label in a map of labels. */
+#include "base/mem.h"
+#include "base/tool.h"
+#include "slice/length.h"
+#include "slice/samples.h"
+#include "slice/segment_region.h"
+#include "volume/nrrd.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct options {
+    opt_common common;
+    const char *name, *onto;
+    int64_t value;
+    opt_list seeds, voxels;
+    double low, high, tolerance;
+    opt_lengths filter, smooth;
+    bool largest, fill, raw;
+};
+
+static const opt option_list[] = {
+    {'n', "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, OPT_REQUIRED, "the label's name"},
+    {0, "value", "N", OPT_INT, offsetof(struct options, value), 1, 1e9, NULL, 0,
+     "its number [the name's, or the next]"},
+    {0, "onto", "LABELS", OPT_TEXT, offsetof(struct options, onto), 0, 0, NULL, OPT_FILE,
+     "add it to this map [a new one]"},
+    {0, "low", "LEVEL", OPT_NUMBER, offsetof(struct options, low), 0, 0, NULL, 0, "of this intensity or more"},
+    {0, "high", "LEVEL", OPT_NUMBER, offsetof(struct options, high), 0, 0, NULL, 0, "of this intensity or less"},
+    {0, "seed", "X,Y,Z", OPT_LIST, offsetof(struct options, seeds), 0, 0, NULL, 0,
+     "joined to this place, LPS, as 10,-4,32mm"},
+    {0, "seed-voxel", "I,J,K", OPT_LIST, offsetof(struct options, voxels), 0, 0, NULL, 0, "joined to this voxel"},
+    {0, "tolerance", "T", OPT_NUMBER, offsetof(struct options, tolerance), 0, 1e30, NULL, 0,
+     "within T of the seeds' intensities"},
+    {0, "filter", "SIGMA", OPT_LENGTHS, offsetof(struct options, filter), 0, 1, NULL, 0,
+     "Gaussian filter of intensities, as 1mm [none]"},
+    {0, "smooth", "SIGMA", OPT_LENGTHS, offsetof(struct options, smooth), 0, 1, NULL, 0,
+     "smooth what was found, as 1mm [none]"},
+    {0, "largest", NULL, OPT_FLAG, offsetof(struct options, largest), 0, 0, NULL, 0, "keep the largest part only"},
+    {0, "fill", NULL, OPT_FLAG, offsetof(struct options, fill), 0, 0, NULL, 0, "fill the holes in it"},
+    {0, "raw", NULL, OPT_FLAG, offsetof(struct options, raw), 0, 0, NULL, OPT_OUTPUT, "do not compress"},
+    {0},
+};
+
+static const opt_tool table = {
+    .name = "us-segment",
+    .purpose = "Mark a part of a volume (NRRD, MetaImage) as a label; writes the labels, NRRD.",
+    .operands = "volume",
+    .operands_max = 1,
+    .options = option_list,
+};
+
+enum { SEEDS = 128 };
+
+typedef struct job {
+    const struct options *o;
+    const tool *t;
+    volume v, labels;
+    float *value; /* v's, filtered */
+    region r;     /* its mask is owned here */
+    int64_t seed[SEEDS];
+    int seeds;
+    double low, high;
+} job;
+
+/* ---- options */
+
+static int check_options(const struct options *o, err *e)
+{
+    bool seeds = o->seeds.count || o->voxels.count;
+    if (!*o->name || strpbrk(o->name, "\t\r\n"))
+        return err_usage(e, "-n '%s': expected a name", o->name);
+    if (!isnan(o->tolerance) && !seeds)
+        return err_usage(e, "--tolerance is from seeds; expected --seed or --seed-voxel");
+    if (isnan(o->low) && isnan(o->high) && isnan(o->tolerance))
+        return err_usage(e, "which intensities? expected --low, --high, or --tolerance with seeds");
+    if (o->low > o->high)
+        return err_usage(e, "--low %g is above --high %g", o->low, o->high);
+    return 0;
+}
+
+static int add_seed(job *j, const char *text, int64_t at, err *e)
+{
+    if (at < 0)
+        return err_usage(e, "seed %s: outside of the volume", text);
+    if (j->seeds == SEEDS)
+        return err_usage(e, "more than %d seeds", SEEDS);
+    j->seed[j->seeds++] = at;
+    return 0;
+}
+
+static int add_place(job *j, const volume_finder *f, const char *text, err *e)
+{
+    opt_lengths l = {0};
+    double place[3];
+    l.count = num_lengths_of(text, l.value, 3);
+    if (l.count != 3)
+        return err_usage(e, "--seed %s: expected X,Y,Z, LPS, as 10,-4,32mm", text);
+    if (length_mm(&l, "--seed", place, e))
+        return -1;
+    for (int a = 0; a < 3; a++)
+        place[a] /= 1e3;
+    return add_seed(j, text, volume_nearest(&j->v, f, place), e);
+}
+
+static int add_voxel(job *j, const char *text, err *e)
+{
+    double n[3];
+    const int64_t *size = j->v.size;
+    if (num_list(text, n, 3) != 3 || n[0] != floor(n[0]) || n[1] != floor(n[1]) || n[2] != floor(n[2]))
+        return err_usage(e, "--seed-voxel %s: expected I,J,K, whole numbers", text);
+    bool inside = true;
+    for (int a = 0; a < 3; a++)
+        inside &= n[a] >= 0 && n[a] < (double)size[a];
+    return add_seed(j, text, inside ? ((int64_t)n[2] * size[1] + (int64_t)n[1]) * size[0] + (int64_t)n[0] : -1, e);
+}
+
+static int find_seeds(job *j, err *e)
+{
+    volume_finder f = volume_finder_of(&j->v);
+    for (int i = 0; i < j->o->seeds.count; i++)
+        if (add_place(j, &f, j->o->seeds.value[i], e))
+            return -1;
+    for (int i = 0; i < j->o->voxels.count; i++)
+        if (add_voxel(j, j->o->voxels.value[i], e))
+            return -1;
+    return 0;
+}
+
+static int sigma_of(const job *j, const opt_lengths *l, const char *option, double sigma[3], err *e)
+{
+    double mm = 0;
+    if (length_mm(l, option, &mm, e))
+        return -1;
+    for (int a = 0; a < 3; a++) {
+        sigma[a] = mm / volume_spacing(&j->v, a);
+        if (!(sigma[a] >= 0 && sigma[a] <= (double)j->v.size[a]))
+            return err_usage(e, "%s %gmm: expected 0 or more, and less than the volume", option, mm);
+    }
+    return 0;
+}
+
+/* ---- finding */
+
+/* The intensities that count: what was asked for, and within the tolerance of the seeds'. */
+static void find_range(job *j)
+{
+    double low = INFINITY, high = -INFINITY;
+    j->low = isnan(j->o->low) ? -INFINITY : j->o->low;
+    j->high = isnan(j->o->high) ? INFINITY : j->o->high;
+    if (isnan(j->o->tolerance))
+        return;
+    for (int i = 0; i < j->seeds; i++) {
+        low = fmin(low, (double)j->value[j->seed[i]]);
+        high = fmax(high, (double)j->value[j->seed[i]]);
+    }
+    j->low = fmax(j->low, low - j->o->tolerance);
+    j->high = fmin(j->high, high + j->o->tolerance);
+}
+
+static int64_t count_in(const job *j)
+{
+    int64_t sum = 0;
+    for (int64_t i = 0; i < volume_count(&j->v); i++)
+        sum += j->r.mask[i];
+    return sum;
+}
+
+/* Keeps what is joined to a seed. */
+static int grow(job *j, err *e)
+{
+    if (!j->seeds)
+        return 0;
+    for (int i = 0; i < j->seeds; i++) {
+        if (!j->r.mask[j->seed[i]])
+            return err_set(e, NULL, 0, "seed %d has intensity %g; expected one from %g to %g", i + 1,
+                           (double)j->value[j->seed[i]], j->low, j->high);
+        if (region_flood(&j->r, j->seed[i], 1, 2, e) < 0)
+            return -1;
+    }
+    for (int64_t i = 0; i < volume_count(&j->v); i++)
+        j->r.mask[i] = j->r.mask[i] == 2;
+    return 0;
+}
+
+/* What is at least half inside after the filter. */
+static int smooth(job *j, err *e)
+{
+    double sigma[3];
+    if (sigma_of(j, &j->o->smooth, "--smooth", sigma, e))
+        return -1;
+    if (!(sigma[0] > 0))
+        return 0;
+    for (int64_t i = 0; i < volume_count(&j->v); i++)
+        j->value[i] = j->r.mask[i];
+    if (samples_filter(j->value, j->v.size, sigma, e))
+        return -1;
+    for (int64_t i = 0; i < volume_count(&j->v); i++)
+        j->r.mask[i] = j->value[i] >= .5F;
+    return 0;
+}
+
+static int find(job *j, err *e)
+{
+    double sigma[3];
+    samples_box whole = samples_whole(&j->v);
+    int64_t count = volume_count(&j->v);
+    j->value = mem_array(count, sizeof *j->value, "samples", e);
+    j->r.mask = mem_array(count, 1, "a mask", e);
+    memcpy(j->r.size, j->v.size, sizeof j->r.size);
+    if (e->status || find_seeds(j, e) || sigma_of(j, &j->o->filter, "--filter", sigma, e))
+        return -1;
+    samples_take(&j->v, &whole, j->value);
+    if (samples_filter(j->value, j->v.size, sigma, e))
+        return -1;
+    find_range(j);
+    float low = (float)j->low, high = (float)j->high;
+    for (int64_t i = 0; i < count; i++)
+        j->r.mask[i] = j->value[i] >= low && j->value[i] <= high;
+    if (grow(j, e) || smooth(j, e) || (j->o->largest && region_largest(&j->r, e)) ||
+        (j->o->fill && region_fill(&j->r, e)))
+        return -1;
+    if (!count_in(j))
+        return err_set(e, NULL, 0,
+                       "nothing is left of '%s'; expected other intensities (here %g to %g) or less smoothing",
+                       j->o->name, j->low, j->high);
+    return 0;
+}
+
+/* ---- the map */
+
+static int check_same_place(const volume *a, const volume *b, const char *name, err *e)
+{
+    bool same = true;
+    for (int i = 0; i < 3; i++) {
+        double least = 1e-3 * volume_spacing(a, i);
+        same &= a->size[i] == b->size[i] && fabs(a->origin[i] - b->origin[i]) <= least;
+        for (int k = 0; k < 3; k++)
+            same &= fabs(a->axis[i][k] - b->axis[i][k]) * (double)a->size[i] <= least;
+    }
+    return same ? 0 : err_set(e, name, 0, "labels of another size or place than the volume");
+}
+
+static int open_labels(job *j, err *e)
+{
+    volume *l = &j->labels;
+    if (j->o->onto) {
+        if (volume_load(l, j->o->onto, e) || check_same_place(&j->v, l, j->o->onto, e))
+            return -1;
+        if (l->type == VOLUME_F32 || l->type == VOLUME_F64)
+            return err_set(e, j->o->onto, 0, "voxels that are no whole numbers; expected a map of labels");
+        return 0;
+    }
+    l->type = VOLUME_U8;
+    memcpy(l->size, j->v.size, sizeof l->size);
+    memcpy(l->origin, j->v.origin, sizeof l->origin);
+    memcpy(l->axis, j->v.axis, sizeof l->axis);
+    return volume_make(l, e);
+}
+
+/* The number of the name; else the first that no voxel and no name has. */
+static int choose_value(const job *j, int64_t *value, err *e)
+{
+    samples_label *list = NULL;
+    const volume *l = &j->labels;
+    *value = j->o->value;
+    for (int i = 0; *value < 0 && i < l->labels; i++)
+        if (!strcmp(l->label[i].name, j->o->name))
+            *value = l->label[i].value;
+    if (*value >= 0)
+        return 0;
+    int64_t count = samples_labels(l, &list, e), most = 0;
+    for (int64_t i = 0; i < count; i++)
+        most = list[i].value > most ? list[i].value : most;
+    for (int i = 0; i < l->labels; i++)
+        most = l->label[i].value > most ? l->label[i].value : most;
+    free(list);
+    *value = most + 1;
+    return count < 0 ? -1 : 0;
+}
+
+static int put_label(job *j, err *e)
+{
+    int64_t value, count = volume_count(&j->v), taken = 0;
+    if (open_labels(j, e) || choose_value(j, &value, e))
+        return -1;
+    switch (j->labels.type) {
+#define PUT(name, of, nrrd, meta, low_, high_)                                                                         \
+    case VOLUME_##name:                                                                                                \
+        if ((int64_t)(of)value != value)                                                                               \
+            return err_set(e, NULL, 0, "label %" PRId64 " in voxels of type " nrrd "; expected a smaller --value",     \
+                           value);                                                                                     \
+        for (int64_t i = 0; i < count; i++)                                                                            \
+            if (j->r.mask[i]) {                                                                                        \
+                taken += ((of *)j->labels.data)[i] != 0 && ((of *)j->labels.data)[i] != (of)value;                     \
+                ((of *)j->labels.data)[i] = (of)value;                                                                 \
+            }                                                                                                          \
+        break;
+        VOLUME_TYPES(PUT)
+    default:
+        break;
+    }
+    double voxel = fabs(volume_handed(&j->v));
+    int64_t found = count_in(j);
+    tool_say(j->t, "%s (%" PRId64 "): %" PRId64 " voxels, %.6g mm3%s", j->o->name, value, found, voxel * (double)found,
+             taken ? ", some of them from other labels" : "");
+    return volume_name(&j->labels, value, j->o->name, e);
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {.value = -1, .low = NAN, .high = NAN, .tolerance = NAN};
+    err e = {0};
+    tool t = {0};
+    job j = {.o = &o, .t = &t};
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done || check_options(&o, &e))
+        goto out;
+    if ((!t.operands && tool_need_stdin("a volume", &e)) || volume_load(&j.v, t.operands ? argv[1] : NULL, &e))
+        goto out;
+    if (find(&j, &e) || put_label(&j, &e))
+        goto out;
+    out *to = out_open(o.common.output, false, &e);
+    if (to && nrrd_write(&j.labels, !o.raw, to, &e))
+        out_discard(to);
+    else if (to)
+        out_close(to, &e);
+out:
+    free(j.value);
+    free(j.r.mask);
+    region_free(&j.r);
+    volume_free(&j.v);
+    volume_free(&j.labels);
+    return tool_end(&t, &e);
+}

@@ -1,0 +1,258 @@
+/* us-surface: closed surfaces of what a volume shows, by marching cubes: around labels, or where an intensity is reached. */
+#include "base/mem.h"
+#include "base/near.h"
+#include "base/tool.h"
+#include "slice/contour.h"
+#include "slice/contour_obj.h"
+#include "slice/length.h"
+#include "slice/samples.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct options {
+    opt_common common;
+    opt_list labels;
+    double iso;
+    const char *name;
+    opt_lengths smooth;
+    int64_t taubin;
+};
+
+static const opt option_list[] = {
+    {'l', "label", "NAME,...", OPT_LIST, offsetof(struct options, labels), 0, 0, NULL, 0,
+     "of these labels, by name or number; or all"},
+    {'i', "iso", "LEVEL", OPT_NUMBER, offsetof(struct options, iso), 0, 0, NULL, 0, "or of all that is LEVEL or more"},
+    {0, "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, 0, "its group, with -i [surface]"},
+    {0, "smooth", "SIGMA", OPT_LENGTHS, offsetof(struct options, smooth), 0, 1, NULL, 0,
+     "Gaussian filter before, as 1mm [none]"},
+    {0, "taubin", "PASSES", OPT_INT, offsetof(struct options, taubin), 0, 1000, NULL, 0,
+     "Taubin's smoothing after, 10 is much [0]"},
+    {0},
+};
+
+static const opt_tool table = {
+    .name = "us-surface",
+    .purpose = "Write closed surfaces of a volume (NRRD, MetaImage) as OBJ, mm, LPS.",
+    .operands = "volume",
+    .operands_max = 1,
+    .options = option_list,
+};
+
+typedef struct job {
+    const struct options *o;
+    const tool *t;
+    volume v;
+    double sigma[3]; /* voxels */
+    cubes *table;
+    samples_label *label;
+    int64_t labels;
+    out *to;
+    int64_t vertices; /* written */
+    notes warnings;
+} job;
+
+static int check_options(const struct options *o, err *e)
+{
+    if ((o->labels.count > 0) == !isnan(o->iso))
+        return err_usage(e, "expected -l LABEL,... or -i LEVEL");
+    if (o->name && isnan(o->iso))
+        return err_usage(e, "--name is for -i; labels have names of their own");
+    if (o->name && (!*o->name || strpbrk(o->name, " \t\r\n")))
+        return err_usage(e, "--name '%s': expected one word", o->name);
+    return 0;
+}
+
+static int read_volume(job *j, const char *path, err *e)
+{
+    double sigma = 0;
+    if (length_mm(&j->o->smooth, "--smooth", &sigma, e))
+        return -1;
+    if (!(sigma >= 0))
+        return err_usage(e, "--smooth: expected 0 or more");
+    if (!path && tool_need_stdin("a volume", e))
+        return -1;
+    if (volume_load(&j->v, path, e))
+        return -1;
+    for (int a = 0; a < 3; a++) {
+        j->sigma[a] = sigma / volume_spacing(&j->v, a);
+        if (j->sigma[a] > (double)j->v.size[a])
+            return err_usage(e, "--smooth %gmm: wider than the volume, which is %gmm", sigma,
+                             volume_spacing(&j->v, a) * (double)j->v.size[a]);
+    }
+    return 0;
+}
+
+/* The value that a number would fall below so that as many samples are at least as large as a label has voxels: what Gaussian
+ * filtering takes from thin parts is not lost. Samples are within 0 and 1. */
+static float level_for(const float *value, int64_t count, int64_t wanted, err *e)
+{
+    enum { BINS = 1 << 16 };
+    int64_t *bin = mem_array(BINS + 1, sizeof *bin, "a histogram", e), above = 0;
+    int at = BINS;
+    if (!bin)
+        return 0;
+    for (int64_t i = 0; i < count; i++)
+        bin[(int)(fminf(fmaxf(value[i], 0), 1) * BINS)]++;
+    while (at > 1 && above + bin[at] <= wanted)
+        above += bin[at--];
+    free(bin);
+    return ((float)at + 1) / BINS;
+}
+
+/* One surface, from samples in a box. label NULL: where j->o->iso is reached. */
+static int make_surface(job *j, const samples_box *box, float *value, const samples_label *label, contour *c, err *e)
+{
+    bool filtered = j->sigma[0] > 0;
+    int64_t size[3];
+    float level = label ? .5F : (float)j->o->iso;
+    for (int a = 0; a < 3; a++)
+        size[a] = box->high[a] - box->low[a];
+    if (filtered && samples_filter(value, size, j->sigma, e))
+        return -1;
+    if (filtered && label)
+        level = level_for(value, samples_count(box), label->count, e);
+    if (e->status || contour_make(c, value, size, level, j->table, e))
+        return -1;
+    double inside = label ? (double)label->count : contour_volume(c);
+    if (j->o->taubin && contour_smooth(c, (int)j->o->taubin, e))
+        return -1;
+    if (label || j->o->taubin)
+        contour_fill(c, inside, filtered || !label ? .25 : .49);
+    return 0;
+}
+
+static void say_surface(job *j, const contour *c, const char *group, const samples_label *label)
+{
+    double voxel = fabs(volume_handed(&j->v)), got = contour_volume(c);
+    tool_detail(j->t, "%s: %" PRId64 " triangles, %.6g mm3", group, c->triangles, got * voxel);
+    if (label && fabs(got - (double)label->count) > .01 * (double)label->count)
+        notes_add(&j->warnings, "%s: the surface encloses %.6g mm3, the label has %.6g", group, got * voxel,
+                  (double)label->count * voxel);
+}
+
+static int write_surface(job *j, const char *group, const samples_box *inner, const samples_label *label, err *e)
+{
+    contour c = {0};
+    int64_t reach[3];
+    for (int a = 0; a < 3; a++)
+        reach[a] = samples_reach(j->sigma[a]) + 1;
+    samples_box box = samples_wider(&j->v, inner, reach);
+    float *value = mem_array(samples_count(&box), sizeof *value, "samples", e);
+    if (value) {
+        if (label)
+            samples_mark(&j->v, &box, label->value, value);
+        else
+            samples_take(&j->v, &box, value);
+        make_surface(j, &box, value, label, &c, e);
+    }
+    free(value);
+    if (!e->status && !c.triangles)
+        err_set(e, NULL, 0, "%s: nothing is left of it; expected less smoothing", group);
+    if (!e->status) {
+        contour_write(&c, &j->v, &box, group, j->vertices, j->to);
+        j->vertices += c.vertices;
+        say_surface(j, &c, group, label);
+    }
+    contour_free(&c);
+    return e->status ? -1 : 0;
+}
+
+/* A label's name as an OBJ group: one word. The caller frees it. */
+static char *group_of(const job *j, int64_t value, err *e)
+{
+    char plain[40];
+    const char *name = volume_label_of(&j->v, value);
+    snprintf(plain, sizeof plain, "label_%" PRId64, value);
+    char *group = mem_text(name && *name ? name : plain, e);
+    for (char *c = group; c && *c; c++)
+        if ((unsigned char)*c <= ' ' || *c == '#' || *c == '\\')
+            *c = '_';
+    return group;
+}
+
+static int write_label(job *j, const samples_label *label, err *e)
+{
+    char *group = group_of(j, label->value, e);
+    int code = group ? write_surface(j, group, &label->box, label, e) : -1;
+    free(group);
+    return code;
+}
+
+/* A label by its name or number; it has to have voxels. */
+static int write_named(job *j, const char *name, err *e)
+{
+    int64_t value = 0;
+    int at = 0;
+    while (at < j->v.labels && strcmp(j->v.label[at].name, name))
+        at++;
+    if (at < j->v.labels) {
+        value = j->v.label[at].value;
+    } else if (num_int(name, INT64_MIN, INT64_MAX, &value)) {
+        const char **known = mem_array(j->v.labels, sizeof *known, "names", e);
+        for (int i = 0; known && i < j->v.labels; i++)
+            known[i] = j->v.label[i].name;
+        if (known)
+            near_unknown(e, NULL, 0, "label", name, known, j->v.labels);
+        free(known);
+        return -1;
+    }
+    for (int64_t i = 0; i < j->labels; i++)
+        if (j->label[i].value == value)
+            return write_label(j, &j->label[i], e);
+    return err_set(e, NULL, 0, "label '%s' has no voxels", name);
+}
+
+static int write_labels(job *j, err *e)
+{
+    j->labels = samples_labels(&j->v, &j->label, e);
+    if (j->labels < 1 || !j->label)
+        return e->status ? -1 : err_set(e, NULL, 0, "no label has voxels");
+    for (int i = 0; i < j->o->labels.count && !e->status; i++) {
+        char *list = mem_text(j->o->labels.value[i], e), *rest = NULL;
+        bool all = list && !strcmp(list, "all");
+        for (int64_t l = 0; all && l < j->labels && !e->status; l++)
+            write_label(j, &j->label[l], e);
+        for (char *name = list && !all ? strtok_r(list, ",", &rest) : NULL; name && !e->status;
+             name = strtok_r(NULL, ",", &rest))
+            write_named(j, name, e);
+        free(list);
+    }
+    return e->status ? -1 : 0;
+}
+
+static int write_level(job *j, err *e)
+{
+    samples_box whole = samples_whole(&j->v);
+    return write_surface(j, j->o->name ? j->o->name : "surface", &whole, NULL, e);
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {.iso = NAN};
+    err e = {0};
+    tool t = {0};
+    job j = {.o = &o, .t = &t};
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done || check_options(&o, &e))
+        goto out;
+    if (read_volume(&j, t.operands ? argv[1] : NULL, &e))
+        goto out;
+    j.table = cubes_create(&e);
+    j.to = j.table ? out_open(o.common.output, false, &e) : NULL;
+    if (!j.to)
+        goto out;
+    out_text(j.to, "# us-surface " SINEW_VERSION ": mm, LPS\n");
+    if (isnan(o.iso) ? write_labels(&j, &e) : write_level(&j, &e))
+        out_discard(j.to);
+    else
+        out_close(j.to, &e);
+out:
+    tool_warn(&t, &j.warnings);
+    free(j.table);
+    free(j.label);
+    volume_free(&j.v);
+    return tool_end(&t, &e);
+}
