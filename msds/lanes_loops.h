@@ -1,5 +1,6 @@
 /* The loops of lanes.h, compiled by lanes_plain.c and lanes_avx2.c, which name the table. Everything here is static.
  */
+#include "base/flush.h"
 #include "msds/lanes.h"
 #include "msds/spring.h"
 
@@ -122,28 +123,6 @@ INLINE void pull(const lanes_springs *w, bool row, int64_t slot, const v8 x[3], 
     v8 scale = SPRING_FORCE(k, gamma, rest, square, speed, stretch, length);
     for (int a = 0; a < 3; a++)
         force[a] += scale * d[a];
-}
-
-/* Tissue far from the probe soon has motions too small to be normal numbers, which most processors compute with a hundred times
- * slower: they are taken for zero, as on a card. Returns what was set before. */
-INLINE unsigned flush_small(void)
-{
-#if defined(__SSE2__)
-    unsigned before = _mm_getcsr();
-    _mm_setcsr(before | 0x8040); /* results that are too small, and operands */
-    return before;
-#else
-    return 0;
-#endif
-}
-
-INLINE void flush_as(unsigned before)
-{
-#if defined(__SSE2__)
-    _mm_setcsr(before);
-#else
-    (void)before;
-#endif
 }
 
 /* PST equations 3 to 5. */

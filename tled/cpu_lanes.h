@@ -1,10 +1,7 @@
 /* The body of cpu_pass_*.c: see cpu_pass.h. All but the table that they name is static. */
+#include "base/flush.h"
 #include "tled/cpu_pass.h"
 #include "tled/node.h"
-
-#ifdef __x86_64__
-#include <xmmintrin.h>
-#endif
 
 enum { LANES = ELEMENT_LANES };
 
@@ -168,31 +165,11 @@ static inline void move_nodes(const cpu_work *w, const rows_layer *l, int a, nod
     }
 }
 
-/* In single precision tissue far from all that moves soon has displacements too small to be normal numbers, which most
- * processors compute with a hundred times slower: they are taken for zero, as on a card. Returns what was set before. */
-static unsigned flush_small(void)
-{
-#if defined(ELEMENT_SINGLE) && defined(__x86_64__)
-    unsigned before = _mm_getcsr();
-    _mm_setcsr(before | 0x8040); /* results that are too small, and operands */
-    return before;
-#else
-    return 0;
-#endif
-}
-
-static void flush_as(unsigned before)
-{
-#if defined(ELEMENT_SINGLE) && defined(__x86_64__)
-    _mm_setcsr(before);
-#else
-    (void)before;
-#endif
-}
-
 static void slab_pass(const cpu_work *w, int32_t which)
 {
+#ifdef ELEMENT_SINGLE /* whose smallest normal number tissue far from all that moves soon comes to */
     const unsigned before = flush_small();
+#endif
     const rows *r = w->r;
     const rows_slab *s = &r->slab[which];
     const element_shape shape = element_box(w->p->side[0], w->p->side[1], w->p->side[2]);
@@ -210,7 +187,9 @@ static void slab_pass(const cpu_work *w, int32_t which)
         for (int a = 0; a < 3; a++)
             move_nodes(w, l, a, k);
     }
+#ifdef ELEMENT_SINGLE
     flush_as(before);
+#endif
 }
 
 const cpu_pass CPU_PASS = {CPU_PASS_NAME, LANES, slab_pass};

@@ -10,9 +10,6 @@
 
 #include "tled/rows.h"
 
-/* What a pass does: ends a step, begins the next, writes the internal forces instead of displacements. */
-enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
-
 enum { NODE_FREE = 1, NODE_EXTRA = 8 }; /* flags of a node: NODE_FREE << a: nothing holds component a; an extra */
 
 typedef struct cpu_kind { /* what a volume's elements need */

@@ -11,9 +11,6 @@ extern "C" {
 }
 #include "tled/cuda_view.cuh"
 
-/* What a pass does: ends a step, begins the next, writes the internal forces instead of displacements. */
-enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
-
 typedef struct cuda_pass {
     const real *from; /* displacements */
     real *to;         /* the next ones, or internal forces */

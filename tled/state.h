@@ -64,6 +64,9 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
  * create led to the state; not right after back). */
 enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL };
 
+/* What a pass over the model does, in any back end: ends a step, begins the next, writes the internal forces instead of displacements. */
+enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
+
 /* Slots for results that were taken. */
 enum { TLED_TAKEN = 8 };
 

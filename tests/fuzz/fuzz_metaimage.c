@@ -6,14 +6,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const char first[] = "ObjectType = Image\n";
-    const size_t n = sizeof first - 1;
-    uint8_t *all = malloc(n + size);
-    if (!all)
-        return 0;
-    memcpy(all, first, n);
-    if (size)
-        memcpy(all + n, data, size);
-    volume_bytes(all, n + size);
-    free(all);
+    volume_bytes_after(first, sizeof first - 1, data, size);
     return 0;
 }

@@ -59,4 +59,17 @@ static inline void volume_bytes(const uint8_t *data, size_t size)
     volume_free(&again);
 }
 
+/* The same, with a format's first line before the bytes. */
+static inline void volume_bytes_after(const void *first, size_t n, const uint8_t *data, size_t size)
+{
+    uint8_t *all = malloc(n + size);
+    if (!all)
+        return;
+    memcpy(all, first, n);
+    if (size)
+        memcpy(all + n, data, size);
+    volume_bytes(all, n + size);
+    free(all);
+}
+
 #endif
