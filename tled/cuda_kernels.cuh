@@ -21,7 +21,69 @@ typedef struct cuda_pass {
     int what;
 } cuda_pass;
 
+template <class G> __device__ element_field cell_field(const real *u, int place)
+{
+    element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
+                        cuda_corners<G>(u + 2 * G::PLACES, place)};
+    return at;
+}
+
+static __device__ element_vector cell_along(const tile &t, int i, const float *fibre)
+{
+    const float *at = fibre + 3 * (int64_t)(t.direction + i);
+    element_vector along = {at[0], at[1], at[2]};
+    return along;
+}
+
+static __device__ real cell_tension(const cuda_kind &kind, const cuda_pass &p)
+{
+    return kind.contract < 0 ? 0 : (real)(kind.peak * p.now[3 * kind.contract]);
+}
+
+static __device__ element_law cell_law(const cuda_kind &kind)
+{
+    element_law law = {(real)kind.mu, (real)kind.bulk, (real)kind.hourglass};
+    return law;
+}
+
+/* A cell mixed of two volumes. */
 template <class G>
+__device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, const real *u,
+                                     int place, const cuda_kind &kind, const cuda_kind &mix, real share)
+{
+    const real part = (real)v.mixture[t.cell + i], own = share * (1 - part), other = share * part;
+    const element_law law = element_mixed(cell_law(kind), own, cell_law(mix), other);
+    element_fibre fibre = {{0, 0, 0}, 0}, second = fibre;
+    real tension = 0, tension_of_mix = 0;
+    if (i < t.fibred) {
+        tension = cell_tension(kind, p);
+        fibre.along = cell_along(t, i, v.fibre);
+        fibre.tension = own * tension;
+    }
+    if (i < t.fibred && v.mixfibre) {
+        tension_of_mix = cell_tension(mix, p);
+        second.along = cell_along(t, i, v.mixfibre);
+        second.tension = other * tension_of_mix;
+    }
+    return element_force_of_two(cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
+                                tension_of_mix != 0);
+}
+
+template <class G>
+__device__ element_field plain_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, const real *u,
+                                     int place, const cuda_kind &kind, real share)
+{
+    element_law law = {share * (real)kind.mu, share * (real)kind.bulk, share * (real)kind.hourglass};
+    element_fibre fibre = {{0, 0, 0}, 0};
+    if (i < t.fibred) {
+        fibre.along = cell_along(t, i, v.fibre);
+        fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
+    }
+    return element_force(cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
+}
+
+/* MIXED: there are cells mixed of two volumes; a kernel of its own, so that others do without. */
+template <class G, bool MIXED>
 __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, const real *u,
                            real *force)
 {
@@ -29,16 +91,9 @@ __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const t
     int place = cell & TILE_PLACE;
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
     const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
-    element_law law = {share * (real)kind.mu, share * (real)kind.bulk, share * (real)kind.hourglass};
-    element_fibre fibre = {{0, 0, 0}, 0};
-    if (i < t.fibred) {
-        const float *along = v.fibre + 3 * (int64_t)(t.direction + i);
-        fibre.along.x = along[0], fibre.along.y = along[1], fibre.along.z = along[2];
-        fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
-    }
-    element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
-                        cuda_corners<G>(u + 2 * G::PLACES, place)};
-    element_field f = element_force(at, p.shape, law, fibre, fibre.tension != 0);
+    const int32_t mix = MIXED ? v.mix[t.cell + i] : -1;
+    const element_field f = MIXED && mix >= 0 ? mixed_force<G>(v, p, t, i, u, place, kind, v.kind[mix], share)
+                                              : plain_force<G>(v, p, t, i, u, place, kind, share);
 #pragma unroll
     for (int c = 0; c < 8; c++) {
         force[c * G::CELLS + place] = f.x.at[c];
@@ -115,7 +170,7 @@ __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const til
         move_node(v, p, a * v.stride + n, a, info >> (TILE_FREE + a) & 1, hold[a], net[a], mass_inverse);
 }
 
-template <class G> __global__ void __launch_bounds__(G::THREADS) pass_kernel(cuda_view<real> v, cuda_pass p)
+template <class G, bool MIXED> __global__ void __launch_bounds__(G::THREADS) pass_kernel(cuda_view<real> v, cuda_pass p)
 {
     extern __shared__ double memory[];
     real *u = (real *)memory, *force = u + 3 * G::PLACES;
@@ -123,7 +178,7 @@ template <class G> __global__ void __launch_bounds__(G::THREADS) pass_kernel(cud
     cuda_load<G>(v, t, p.from, u);
     __syncthreads();
     for (int i = threadIdx.x; i < t.cells; i += G::THREADS)
-        cell_force<G>(v, p, t, i, u, force);
+        cell_force<G, MIXED>(v, p, t, i, u, force);
     __syncthreads();
     for (int i = threadIdx.x; i < t.nodes; i += G::THREADS)
         one_node<G>(v, p, t, i, force);
@@ -134,15 +189,22 @@ template <class G> static size_t pass_shared(void)
     return (3 * (size_t)G::PLACES + 24 * (size_t)G::CELLS) * sizeof(real);
 }
 
-/* Lets the kernel have so much shared memory; nonzero where the card has not so much. */
+/* Lets the kernels have so much shared memory; nonzero where the card has not so much. */
 template <class G> static cudaError_t pass_allow(void)
 {
-    return cudaFuncSetAttribute(pass_kernel<G>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)pass_shared<G>());
+    const cudaError_t plain = cudaFuncSetAttribute(
+        pass_kernel<G, false>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)pass_shared<G>());
+    return plain != cudaSuccess ? plain
+                                : cudaFuncSetAttribute(pass_kernel<G, true>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                                       (int)pass_shared<G>());
 }
 
 template <class G> static void pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t s)
 {
-    pass_kernel<G><<<(unsigned)tiles, G::THREADS, pass_shared<G>(), s>>>(v, p);
+    if (v.mix)
+        pass_kernel<G, true><<<(unsigned)tiles, G::THREADS, pass_shared<G>(), s>>>(v, p);
+    else
+        pass_kernel<G, false><<<(unsigned)tiles, G::THREADS, pass_shared<G>(), s>>>(v, p);
 }
 
 #endif

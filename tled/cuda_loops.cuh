@@ -78,7 +78,9 @@ static int lay_out(cuda_state *s, const real *mass_inverse, const cuda_kind *kin
     if (put(s, &v->tiles, t->tile, t->count, e) || put(s, &v->node_info, t->node_info, t->nodes, e) ||
         put(s, &v->cell, t->cell, t->cells, e) || put(s, &v->halo_node, t->halo_node, t->halos, e) ||
         put(s, &v->halo_place, t->halo_place, t->halos, e) || put(s, &v->fibre, t->fibre, 3 * t->directions, e) ||
-        (t->share && put(s, &v->share, t->share, t->cells, e)) || put(s, &v->extra, t->extra, t->extras, e) ||
+        (t->share && put(s, &v->share, t->share, t->cells, e)) || (t->mix && put(s, &v->mix, t->mix, t->cells, e)) ||
+        (t->mix && put(s, &v->mixture, t->mixture, t->cells, e)) ||
+        (t->mixfibre && put(s, &v->mixfibre, t->mixfibre, 3 * t->directions, e)) || put(s, &v->extra, t->extra, t->extras, e) ||
         put(s, &v->force_curve, p->force_curve, p->force_start[p->nodes], e) ||
         put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
         put(s, &v->mass_inverse, mass_inverse, t->nodes, e) || put(s, &v->kind, kind, p->volumes, e))

@@ -53,7 +53,9 @@ template <class S> struct cuda_view {
     const uint32_t *node_info, *cell;
     const int32_t *halo_node;
     const uint16_t *halo_place;
-    const float *fibre, *share; /* share: or NULL */
+    const float *fibre, *share; /* share: or NULL, as are: */
+    const int32_t *mix;
+    const float *mixture, *mixfibre;
     const tile_extra *extra;
     const int32_t *force_curve;
     const double *force_share;

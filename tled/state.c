@@ -1,9 +1,9 @@
 #include "tled/state.h"
 
 #include "base/mem.h"
-#include "mesh/element.h"
 #include "mesh/lattice.h"
 #include "model/materials.h"
+#include "tled/stability.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,11 +23,23 @@ void tled_problem_free(tled_problem *p)
     memset(p, 0, sizeof *p);
 }
 
+static bool is_mixed(const model_array *mix)
+{
+    for (int64_t i = 0; mix && i < mix->rows; i++)
+        if (mix->i32[i] >= 0)
+            return true;
+    return false;
+}
+
 static int borrow_mesh(tled_problem *p, const model *m, err *e)
 {
     const model_array *node = model_need(m, "element.node", e), *position = model_need(m, "node.position", e);
     const model_array *volume = model_need(m, "element.volume", e), *fibre = model_find(m, "element.fibre");
     const model_array *fraction = model_find(m, "element.fraction");
+    const model_array *mix = model_find(m, "element.mix"), *mixfibre = model_find(m, "element.mixfibre");
+    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    if ((mix && !mixture) || (mixfibre && !model_need(m, "element.fibre", e)))
+        return -1;
     if (!node || !position || !volume || !model_need(m, "volume.name", e) || !model_need(m, "volume.material", e))
         return -1;
     if (node->columns != 8)
@@ -43,6 +55,11 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     p->element_volume = volume->i32;
     p->fibre = fibre ? fibre->f32 : NULL;
     p->fraction = fraction ? fraction->f32 : NULL;
+    if (!is_mixed(mix))
+        return 0;
+    p->mix = mix->i32;
+    p->mixture = mixture->f32;
+    p->mixfibre = mixfibre ? mixfibre->f32 : NULL;
     return 0;
 }
 
@@ -53,6 +70,15 @@ static int check_fractions(const tled_problem *p, err *e)
         if (!(p->fraction[i] > 0 && p->fraction[i] <= 1))
             return err_set(e, NULL, 0, "element.fraction of element %lld is %g; expected above 0, and at most 1",
                            (long long)i, (double)p->fraction[i]);
+    return 0;
+}
+
+static int check_mixtures(const tled_problem *p, err *e)
+{
+    for (int64_t i = 0; p->mix && i < p->elements; i++)
+        if (p->mix[i] >= 0 && !(p->mixture[i] >= 0 && p->mixture[i] <= 1))
+            return err_set(e, NULL, 0, "element.mixture of element %lld is %g; expected a share from 0 to 1",
+                           (long long)i, (double)p->mixture[i]);
     return 0;
 }
 
@@ -81,6 +107,17 @@ static int64_t find_curve(const script *s, script_verb verb, int32_t volume)
     return -1;
 }
 
+/* Of the matrix of step.h, and of the hourglass modes. */
+static double square_at_rest(const tled_problem *p, const tled_volume *v)
+{
+    const element_tensor rest = {0};
+    const element_fibre none = {0};
+    const double share = p->side[0] * p->side[1] * p->side[2] / 8;
+    step_matrix a;
+    stability_matrix(v->mu, v->bulk, v->density, p->side, rest, none, none, &a);
+    return fmax(stability_largest(&a), 8 * v->hourglass / (v->density * share));
+}
+
 static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
 {
     material law;
@@ -97,6 +134,7 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
     v->density = law.density;
     v->peak = law.peak;
     v->hourglass = element_hourglass(p->kappa, v->mu, v->bulk, p->side[0], p->side[1], p->side[2]);
+    v->square = square_at_rest(p, v);
     v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
     if (v->contract >= 0 && !(v->peak > 0))
         return err_set(e, NULL, 0,
@@ -115,6 +153,21 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
     for (int64_t i = 0; p->volume && i < p->elements; i++)
         p->volume[p->element_volume[i]].elements++;
     return p->volume ? 0 : -1;
+}
+
+tled_law tled_law_of(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]];
+    tled_law law = {v->mu, v->bulk, v->density, v->hourglass};
+    if (tled_mix(p, element) < 0)
+        return law;
+    const tled_volume *w = &p->volume[p->mix[element]];
+    const double s = tled_mixture(p, element), rest = 1 - s;
+    law.mu = rest * v->mu + s * w->mu;
+    law.bulk = rest * v->bulk + s * w->bulk;
+    law.density = rest * v->density + s * w->density;
+    law.hourglass = rest * v->hourglass + s * w->hourglass;
+    return law;
 }
 
 /* Where among a node's elements, by their places in the lattice, the one is that has the node for this corner. */
@@ -140,7 +193,7 @@ static int make_corners(tled_problem *p, err *e)
         for (; at && (list[at - 1] == none || corner_rank(list[at - 1]) > corner_rank((int32_t)i)); at--)
             list[at] = list[at - 1];
         list[at] = (int32_t)i;
-        p->mass[n] += p->volume[p->element_volume[i / 8]].density * share * tled_fraction(p, i / 8);
+        p->mass[n] += tled_law_of(p, i / 8).density * share * tled_fraction(p, i / 8);
     }
     for (int64_t n = 0; n < p->nodes; n++)
         if (p->corner[n * 8] == none)
@@ -210,7 +263,7 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
     p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
     if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
         return -1;
-    if (check_boxes(p, e) || check_fractions(p, e) || make_volumes(p, m, e) || make_corners(p, e) || make_forces(p, e))
+    if (check_boxes(p, e) || check_fractions(p, e) || check_mixtures(p, e) || make_volumes(p, m, e) || make_corners(p, e) || make_forces(p, e))
         return -1;
     make_holds(p, m);
     return 0;

@@ -18,9 +18,15 @@ typedef struct tled_volume {
     const char *name;               /* borrowed */
     double mu, bulk, density, peak; /* Pa, Pa, kg/m3, Pa */
     double hourglass;               /* N/m: k of each hourglass mode */
+    double square;                  /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
     int64_t elements;               /* of it */
     int64_t contract;               /* curve that sets its level, or -1 */
 } tled_volume;
+
+/* What an element is made of, that its forces are linear in: a volume's, or a mixture of two volumes'. */
+typedef struct tled_law {
+    double mu, bulk, density, hourglass; /* as a tled_volume's */
+} tled_law;
 
 typedef struct tled_problem {
     int64_t nodes, elements;
@@ -32,6 +38,9 @@ typedef struct tled_problem {
     const int32_t *element_volume; /* elements */
     const float *fibre;            /* elements x 3, or NULL */
     const float *fraction; /* elements: the share that is tissue, by which mass and all forces go; NULL: all 1 */
+    const int32_t *mix;    /* elements: the second volume of those that are mixed, -1 in others; NULL: none is */
+    const float *mixture;  /* elements: its share of the tissue, 0 to 1; where mix is not NULL */
+    const float *mixfibre; /* elements x 3: its fibre; or NULL */
     tled_volume *volume;   /* volumes; owned, as is all below */
     int32_t *corner;       /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
     double *mass;          /* nodes: kg */
@@ -107,6 +116,22 @@ static inline double tled_fraction(const tled_problem *p, int64_t element)
 {
     return p->fraction ? (double)p->fraction[element] : 1;
 }
+
+/* The second volume of an element, or -1. */
+static inline int32_t tled_mix(const tled_problem *p, int64_t element)
+{
+    return p->mix ? p->mix[element] : -1;
+}
+
+/* Its share of the tissue; 0 where there is none. */
+static inline double tled_mixture(const tled_problem *p, int64_t element)
+{
+    return tled_mix(p, element) < 0 ? 0 : (double)p->mixture[element];
+}
+
+/* The law of an element: its volume's, or with s the share of its second volume, (1 - s) times the one plus s times the
+ * other's. A neo-Hookean stress is linear in mu and K, so this is the mean of both volumes' stresses. */
+tled_law tled_law_of(const tled_problem *p, int64_t element);
 
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);

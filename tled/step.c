@@ -2,9 +2,10 @@
 
 #include <math.h>
 
-void step_matrix_of(const tled_problem *p, const tled_volume *v, element_tensor h, element_fibre fibre, step_matrix *a)
+void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
+                    element_fibre second, step_matrix *a)
 {
-    stability_matrix(v->mu, v->bulk, v->density, p->side, h, fibre, a);
+    stability_matrix(law->mu, law->bulk, law->density, p->side, h, fibre, second, a);
 }
 
 bool step_below(const step_matrix *a, double limit)
@@ -17,23 +18,27 @@ double step_largest(const step_matrix *a)
     return stability_largest(a);
 }
 
+/* The square of the highest frequency of an element at rest, or what that is at most where two volumes are mixed. */
+static double square_at_rest(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]];
+    if (tled_mix(p, element) < 0)
+        return v->square;
+    const tled_volume *w = &p->volume[p->mix[element]];
+    const double s = tled_mixture(p, element), own = (1 - s) * v->density, other = s * w->density;
+    return (own * v->square + other * w->square) / (own + other);
+}
+
 double step_at_rest(const tled_problem *p, int32_t *volume)
 {
-    const element_tensor rest = {0};
-    const element_fibre none = {0};
-    double least = INFINITY, share = p->side[0] * p->side[1] * p->side[2] / 8;
-    for (int32_t i = 0; i < p->volumes; i++) {
-        const tled_volume *v = &p->volume[i];
-        step_matrix a;
-        if (!v->elements)
-            continue;
-        step_matrix_of(p, v, rest, none, &a);
-        double dt = 2 / sqrt(fmax(step_largest(&a), 8 * v->hourglass / (v->density * share)));
-        if (dt < least && volume)
-            *volume = i;
-        least = fmin(least, dt);
+    double highest = 0;
+    for (int64_t i = 0; i < p->elements; i++) {
+        double square = square_at_rest(p, i);
+        if (square > highest && volume)
+            *volume = p->element_volume[i];
+        highest = fmax(highest, square);
     }
-    return least;
+    return 2 / sqrt(highest);
 }
 
 double step_rate(double stable, int64_t *check)

@@ -11,10 +11,10 @@
 
 #include <inttypes.h>
 
-static const block lump = {{17, 9, 6}, {.01, .008, .0125}, 30000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0};
-static const block muscle = {{11, 6, 5}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0};
-static const block middle = {{40, 40, 24}, {.001, .001, .001}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 1, 0}, 0};
-static const block large = {{80, 80, 64}, {.001, .001, .001}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 1, 0}, 0};
+static const block lump = {{17, 9, 6}, {.01, .008, .0125}, 30000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0, false};
+static const block muscle = {{11, 6, 5}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0, false};
+static const block middle = {{40, 40, 24}, {.001, .001, .001}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 1, 0}, 0, false};
+static const block large = {{80, 80, 64}, {.001, .001, .001}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 1, 0}, 0, false};
 
 static bool same(const bench *a, const bench *b)
 {
@@ -98,6 +98,13 @@ static void test_all_bytes(const backend *cpu, const backend *cuda, const char *
     cut.fraction = -1;
     snprintf(what, sizeof what, "%s, cut elements", name);
     test_bytes(&cut, .5, false, 1000, cpu, cuda, what);
+    cut.mixed = true;
+    snprintf(what, sizeof what, "%s, elements mixed of two muscles", name);
+    test_bytes(&cut, .5, false, 1000, cpu, cuda, what);
+    cut = lump;
+    cut.mixed = true;
+    snprintf(what, sizeof what, "%s, mixed elements, a script", name);
+    test_bytes(&cut, 0, true, 1000, cpu, cuda, what);
     snprintf(what, sizeof what, "%s, more bricks", name);
     test_bytes(&middle, .2, false, 60, cpu, cuda, what);
     snprintf(what, sizeof what, "%s, many bricks", name);
@@ -274,6 +281,9 @@ int main(void)
     block cut = muscle;
     cut.fraction = -1;
     test_look(&cut, false, twice, "double, cut elements", 1e-10);
+    cut.mixed = true;
+    test_look(&cut, false, twice, "double, mixed elements", 1e-10);
+    test_look(&cut, false, once, "single, mixed elements", 1e-6);
     test_look(&middle, false, twice, "double, more bricks", 1e-10);
     test_look(&middle, false, once, "single, more bricks", 1e-6);
     test_look(&large, false, once, "single, many bricks", 1e-6);
