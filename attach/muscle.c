@@ -24,7 +24,7 @@ static void find_centres(const body *b, muscle *m, int32_t index)
     m->elements = b->start[m->volume + 1] - b->start[m->volume];
     for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
         int64_t i = b->element[at];
-        double share = body_fraction(b, i);
+        double share = body_share(b, i, m->volume);
         body_centre(b, i, centre);
         m->weight += share;
         for (int a = 0; a < 3; a++)
@@ -49,7 +49,7 @@ static void covariance(const body *b, const muscle *m, double c[3][3])
 {
     double d[3];
     for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
-        double share = body_fraction(b, b->element[at]) / m->weight;
+        double share = body_share(b, b->element[at], m->volume) / m->weight;
         body_centre(b, b->element[at], d);
         for (int p = 0; p < 3; p++)
             d[p] -= m->middle[p];
@@ -132,7 +132,7 @@ static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t
     length = sqrt(length);
     if (kind == MUSCLE_CENTRE && !m->rigid_nodes)
         return false;
-    float *fibre = &b->fibre[3 * element];
+    float *fibre = body_fibre(b, element, m->volume);
     if (kind == MUSCLE_FIELD && (fibre[0] != 0 || fibre[1] != 0 || fibre[2] != 0))
         return true;
     bool along_axis = kind != MUSCLE_CENTRE || length <= 1e-9 * element_size(b, element);
@@ -168,6 +168,27 @@ static int check_fractions(const model_array *fraction, err *e)
     return 0;
 }
 
+static int check_mixtures(const model_array *mix, const model_array *mixture, err *e)
+{
+    for (int64_t i = 0; mix && i < mix->rows; i++)
+        if (mix->i32[i] >= 0 && !(mixture->f32[i] >= 0 && mixture->f32[i] <= 1))
+            return err_set(e, NULL, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)i,
+                           (double)mixture->f32[i]);
+    return 0;
+}
+
+/* The second volumes of elements, where the model has any. */
+static int find_mixes(const model *m, body *b, err *e)
+{
+    const model_array *mix = model_find(m, "element.mix");
+    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    if ((mix && !mixture) || check_mixtures(mix, mixture, e))
+        return -1;
+    b->mix = mix ? mix->i32 : NULL;
+    b->mixture = mixture ? mixture->f32 : NULL;
+    return 0;
+}
+
 /* The arrays that are needed, and node and element counts. */
 static int find_arrays(const model *m, body *b, err *e)
 {
@@ -189,23 +210,32 @@ static int find_arrays(const model *m, body *b, err *e)
     b->part = b->seen ? mem_array(b->nodes, sizeof *b->part, "nodes", e) : NULL;
     for (int64_t n = 0; b->part && n < b->nodes; n++)
         b->seen[n] = b->part[n] = -1;
-    return b->part ? check_fractions(fraction, e) : -1;
+    return b->part && !check_fractions(fraction, e) ? find_mixes(m, b, e) : -1;
 }
 
-/* The elements of each volume, in their order. */
+/* The elements of each volume, in their order, then those that it is the second in. */
 static int sort_elements(body *b, int64_t volumes, err *e)
 {
     /* Counted two places up, so that filling leaves each volume's first in its place. */
     b->start = mem_array(volumes + 2, sizeof *b->start, "volumes", e);
-    b->element = b->start ? mem_array(b->elements, sizeof *b->element, "elements", e) : NULL;
+    int64_t entries = b->elements;
+    for (int64_t i = 0; b->mix && i < b->elements; i++)
+        entries += b->mix[i] >= 0;
+    b->element = b->start ? mem_array(entries, sizeof *b->element, "elements", e) : NULL;
     if (!b->element)
         return -1;
-    for (int64_t i = 0; i < b->elements; i++)
+    for (int64_t i = 0; i < b->elements; i++) {
         b->start[b->volume[i] + 2]++;
+        if (b->mix && b->mix[i] >= 0)
+            b->start[b->mix[i] + 2]++;
+    }
     for (int64_t v = 0; v < volumes; v++)
         b->start[v + 2] += b->start[v + 1];
     for (int64_t i = 0; i < b->elements; i++)
         b->element[b->start[b->volume[i] + 1]++] = i;
+    for (int64_t i = 0; b->mix && i < b->elements; i++)
+        if (b->mix[i] >= 0)
+            b->element[b->start[b->mix[i] + 1]++] = i;
     return 0;
 }
 
@@ -262,6 +292,8 @@ static int add_arrays(model *m, body *b, const muscles *list, err *e)
         return -1;
     a = model_add(m, "element.fibre", e);
     b->fibre = a ? a->f32 : NULL;
+    a = a && b->mix ? model_add(m, "element.mixfibre", e) : a;
+    b->mixfibre = a && b->mix ? a->f32 : NULL;
     return a ? 0 : -1;
 }
 
@@ -292,6 +324,7 @@ int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, note
     model_axis_drop(m, "muscle", warnings);
     model_axis_drop(m, "attachment", warnings);
     model_remove(m, "element.fibre");
+    model_remove(m, "element.mixfibre");
     if (find_arrays(m, &b, e) || find_muscles(m, list, e) || sort_elements(&b, model_count(m, "volume"), e))
         goto out;
     for (int64_t i = 0; i < list->count; i++) {

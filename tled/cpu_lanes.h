@@ -101,13 +101,6 @@ static inline void add_field(const cpu_work *w, const rows_run *run, const eleme
     add_forces(w->sum[2], run, &f->z);
 }
 
-static inline element_law law_of(const cpu_kind *kind)
-{
-    element_law law = {REAL_ZERO + (real_one)kind->mu, REAL_ZERO + (real_one)kind->bulk,
-                       REAL_ZERO + (real_one)kind->hourglass};
-    return law;
-}
-
 static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active)
 {
     const cpu_kind *kind = &w->kind[run->volume];
@@ -127,7 +120,8 @@ static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_
     const cpu_kind *kind = &w->kind[run->volume], *mix = &w->kind[run->mix];
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1, part = load(w->mixture, run->cell);
     const real own = share * (1 - part), other = share * part;
-    const element_law law = element_mixed(law_of(kind), own, law_of(mix), other);
+    const element_law law = {share * load(w->law[0], run->cell), share * load(w->law[1], run->cell),
+                             share * load(w->law[2], run->cell)};
     element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO}, mixfibre = fibre;
     if (active)
         fibre = fibre_of(w->fibre, run, own * (real_one)kind->tension);

@@ -28,7 +28,7 @@ typedef struct cpu_state {
     number *mass_inverse;                    /* rows.nodes */
     uint8_t *flags;                          /* rows.nodes: NODE_* */
     number *fibre, *fraction;                /* cells, with padding: 3 x and 1 x; or NULL */
-    number *mixfibre, *mixture;              /* likewise */
+    number *mixfibre, *mixture, *law;        /* likewise; law: 3 x */
     number *kept;                            /* displacement, then velocity; made when first wanted, as are: */
     number *taken[TLED_TAKEN];
     bool spare_is_internal;
@@ -171,7 +171,7 @@ static int64_t cpu_bytes(const void *state)
     const cpu_state *s = state;
     const rows *r = &s->rows;
     int64_t nodes = 13 + (s->kept ? 6 : 0), cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
-    cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 1 : 0);
+    cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 4 : 0);
     for (int i = 0; i < TLED_TAKEN; i++)
         nodes += s->taken[i] ? 6 : 0;
     return r->nodes * (nodes * (int64_t)sizeof(number) + 1 + 4) + r->runs * (int64_t)sizeof *r->run +
@@ -197,6 +197,7 @@ static void cpu_destroy(void *state)
     free(s->fraction);
     free(s->mixfibre);
     free(s->mixture);
+    free(s->law);
     free(s->kept);
     for (int i = 0; i < TLED_TAKEN; i++)
         free(s->taken[i]);
@@ -213,8 +214,9 @@ static bool allocate_cells(cpu_state *s, err *e)
     s->fibre = p->fibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
     s->fraction = p->fraction ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
     s->mixture = p->mix ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
+    s->law = p->mix ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
     s->mixfibre = p->mixfibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
-    return (s->fibre || !p->fibre) && (s->fraction || !p->fraction) && (s->mixture || !p->mix) &&
+    return (s->fibre || !p->fibre) && (s->fraction || !p->fraction) && ((s->mixture && s->law) || !p->mix) &&
            (s->mixfibre || !p->mixfibre);
 }
 
@@ -264,8 +266,13 @@ static void fill_cells(cpu_state *s)
             s->mixfibre[a * cells + i] = (number)p->mixfibre[3 * element + a];
         if (s->fraction)
             s->fraction[i] = (number)p->fraction[element];
-        if (s->mixture)
+        if (s->mixture) {
+            const tled_law law = tled_law_of(p, element);
             s->mixture[i] = (number)tled_mixture(p, element);
+            s->law[i] = (number)law.mu;
+            s->law[cells + i] = (number)law.bulk;
+            s->law[2 * cells + i] = (number)law.hourglass;
+        }
     }
     for (int32_t i = 0; i < p->volumes; i++)
         s->kind[i] = (cpu_kind){p->volume[i].mu, p->volume[i].bulk, p->volume[i].hourglass, 0};
@@ -285,6 +292,7 @@ static void make_work(cpu_state *s)
         w->velocity[a] = s->velocity + a * s->rows.nodes;
         w->sum[a] = s->sum + a * s->rows.nodes;
         w->fibre[a] = s->fibre ? s->fibre + a * (s->rows.cells + ROWS_PAD) : NULL;
+        w->law[a] = s->law ? s->law + a * (s->rows.cells + ROWS_PAD) : NULL;
         w->mixfibre[a] = s->mixfibre ? s->mixfibre + a * (s->rows.cells + ROWS_PAD) : NULL;
     }
 }

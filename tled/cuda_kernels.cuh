@@ -40,19 +40,14 @@ static __device__ real cell_tension(const cuda_kind &kind, const cuda_pass &p)
     return kind.contract < 0 ? 0 : (real)(kind.peak * p.now[3 * kind.contract]);
 }
 
-static __device__ element_law cell_law(const cuda_kind &kind)
-{
-    element_law law = {(real)kind.mu, (real)kind.bulk, (real)kind.hourglass};
-    return law;
-}
-
 /* A cell mixed of two volumes. */
 template <class G>
 __device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, const real *u,
-                                     int place, const cuda_kind &kind, const cuda_kind &mix, real share)
+                                     int place, const cuda_kind &kind, const cuda_mixed &mixed, real share)
 {
-    const real part = (real)v.mixture[t.cell + i], own = share * (1 - part), other = share * part;
-    const element_law law = element_mixed(cell_law(kind), own, cell_law(mix), other);
+    const cuda_kind &mix = v.kind[mixed.mix];
+    const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
+    const element_law law = {share * (real)mixed.mu, share * (real)mixed.bulk, share * (real)mixed.hourglass};
     element_fibre fibre = {{0, 0, 0}, 0}, second = fibre;
     real tension = 0, tension_of_mix = 0;
     if (i < t.fibred) {
@@ -91,9 +86,9 @@ __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const t
     int place = cell & TILE_PLACE;
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
     const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
-    const int32_t mix = MIXED ? v.mix[t.cell + i] : -1;
-    const element_field f = MIXED && mix >= 0 ? mixed_force<G>(v, p, t, i, u, place, kind, v.kind[mix], share)
-                                              : plain_force<G>(v, p, t, i, u, place, kind, share);
+    const int32_t mixed = MIXED ? v.mixed[t.cell + i] : -1;
+    const element_field f = MIXED && mixed >= 0 ? mixed_force<G>(v, p, t, i, u, place, kind, v.mixture[mixed], share)
+                                                : plain_force<G>(v, p, t, i, u, place, kind, share);
 #pragma unroll
     for (int c = 0; c < 8; c++) {
         force[c * G::CELLS + place] = f.x.at[c];
@@ -192,16 +187,17 @@ template <class G> static size_t pass_shared(void)
 /* Lets the kernels have so much shared memory; nonzero where the card has not so much. */
 template <class G> static cudaError_t pass_allow(void)
 {
-    const cudaError_t plain = cudaFuncSetAttribute(
-        pass_kernel<G, false>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)pass_shared<G>());
-    return plain != cudaSuccess ? plain
-                                : cudaFuncSetAttribute(pass_kernel<G, true>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                                       (int)pass_shared<G>());
+    const cudaError_t plain =
+        cudaFuncSetAttribute(pass_kernel<G, false>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)pass_shared<G>());
+    return plain != cudaSuccess
+               ? plain
+               : cudaFuncSetAttribute(pass_kernel<G, true>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                      (int)pass_shared<G>());
 }
 
 template <class G> static void pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t s)
 {
-    if (v.mix)
+    if (v.mixed)
         pass_kernel<G, true><<<(unsigned)tiles, G::THREADS, pass_shared<G>(), s>>>(v, p);
     else
         pass_kernel<G, false><<<(unsigned)tiles, G::THREADS, pass_shared<G>(), s>>>(v, p);

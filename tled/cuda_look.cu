@@ -88,25 +88,24 @@ static __device__ void look_at_cell(const cuda_look<S> &l, const tile &t, int i,
     const uint32_t cell = v.cell[t.cell + i];
     const int place = cell & TILE_PLACE;
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
-    const int32_t second = v.mix ? v.mix[t.cell + i] : -1;
-    const cuda_kind &mix = v.kind[second < 0 ? cell >> TILE_VOLUME : second];
-    const double s = second < 0 ? 0 : (double)v.mixture[t.cell + i], rest = 1 - s;
-    const double mu = rest * kind.mu + s * mix.mu, bulk = rest * kind.bulk + s * mix.bulk;
-    const double density = rest * kind.density + s * mix.density, k = rest * kind.hourglass + s * mix.hourglass;
+    const int32_t mixed = v.mixed ? v.mixed[t.cell + i] : -1;
+    cuda_mixed own = {kind.mu, kind.bulk, kind.density, kind.hourglass, 0, (int32_t)(cell >> TILE_VOLUME)};
+    if (mixed >= 0)
+        own = v.mixture[mixed];
     const element_shape shape = element_box(v.side[0], v.side[1], v.side[2]);
     element_modes x = element_modes_of(cuda_corners<G>(u, place));
     element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
     element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
     element_tensor h = element_gradient(x, y, z, shape.slope);
-    const element_fibre fibre = look_fibre(l, t, i, v.fibre, kind, rest);
-    const element_fibre mixfibre = look_fibre(l, t, i, second < 0 ? NULL : v.mixfibre, mix, s);
+    const element_fibre fibre = look_fibre(l, t, i, v.fibre, kind, 1 - own.share);
+    const element_fibre mixfibre = look_fibre(l, t, i, mixed < 0 ? NULL : v.mixfibre, v.kind[own.mix], own.share);
     double volume = 1 + element_dilation(h);
-    double energy = element_energy(h, mu, bulk);
-    double hourglass =
-        element_hourglass_energy(x, k) + element_hourglass_energy(y, k) + element_hourglass_energy(z, k);
+    double energy = element_energy(h, own.mu, own.bulk);
+    double hourglass = element_hourglass_energy(x, own.hourglass) + element_hourglass_energy(y, own.hourglass) +
+                       element_hourglass_energy(z, own.hourglass);
     c->broken = !(volume > 0) || !isfinite(energy) || !isfinite(hourglass);
     c->strain = (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + hourglass);
-    stability_matrix(mu, bulk, density, v.side, h, fibre, mixfibre, &c->matrix);
+    stability_matrix(own.mu, own.bulk, own.density, v.side, h, fibre, mixfibre, &c->matrix);
 }
 
 /* What a tile's block knows of its highest frequency so far. */

@@ -68,7 +68,7 @@ template <class T> static int put(cuda_state *s, const T **to, const T *from, in
 }
 
 /* Lays out what is in s->memory, and fills what does not change. Called twice: to count, and to do. */
-static int lay_out(cuda_state *s, const real *mass_inverse, const cuda_kind *kind, err *e)
+static int lay_out(cuda_state *s, const real *mass_inverse, const cuda_kind *kind, const cuda_mixed *mixture, err *e)
 {
     const tiles *t = &s->tiles;
     const tled_problem *p = s->p;
@@ -78,9 +78,11 @@ static int lay_out(cuda_state *s, const real *mass_inverse, const cuda_kind *kin
     if (put(s, &v->tiles, t->tile, t->count, e) || put(s, &v->node_info, t->node_info, t->nodes, e) ||
         put(s, &v->cell, t->cell, t->cells, e) || put(s, &v->halo_node, t->halo_node, t->halos, e) ||
         put(s, &v->halo_place, t->halo_place, t->halos, e) || put(s, &v->fibre, t->fibre, 3 * t->directions, e) ||
-        (t->share && put(s, &v->share, t->share, t->cells, e)) || (t->mix && put(s, &v->mix, t->mix, t->cells, e)) ||
-        (t->mix && put(s, &v->mixture, t->mixture, t->cells, e)) ||
-        (t->mixfibre && put(s, &v->mixfibre, t->mixfibre, 3 * t->directions, e)) || put(s, &v->extra, t->extra, t->extras, e) ||
+        (t->share && put(s, &v->share, t->share, t->cells, e)) ||
+        (t->mixed && put(s, &v->mixed, t->mixed, t->cells, e)) ||
+        (t->mixed && put(s, &v->mixture, mixture, p->laws, e)) ||
+        (t->mixfibre && put(s, &v->mixfibre, t->mixfibre, 3 * t->directions, e)) ||
+        put(s, &v->extra, t->extra, t->extras, e) ||
         put(s, &v->force_curve, p->force_curve, p->force_start[p->nodes], e) ||
         put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
         put(s, &v->mass_inverse, mass_inverse, t->nodes, e) || put(s, &v->kind, kind, p->volumes, e))
@@ -113,6 +115,15 @@ static int make_events(cuda_state *s, err *e)
     return 0;
 }
 
+static void put_mixtures(const tled_problem *p, cuda_mixed *to)
+{
+    for (int64_t i = 0; p->mixed && i < p->elements; i++)
+        if (p->mixed[i] >= 0) {
+            const tled_law law = tled_law_of(p, i);
+            to[p->mixed[i]] = {law.mu, law.bulk, law.density, law.hourglass, tled_mixture(p, i), p->mix[i]};
+        }
+}
+
 /* Takes the card's memory and puts the problem there. */
 static int put_problem(cuda_state *s, err *e)
 {
@@ -121,23 +132,26 @@ static int put_problem(cuda_state *s, err *e)
     int result = -1;
     real *mass_inverse = (real *)mem_array(p->nodes, sizeof *mass_inverse, "the solver", e);
     cuda_kind *kind = (cuda_kind *)mem_array(p->volumes, sizeof *kind, "the solver", e);
-    if (!mass_inverse || !kind)
+    cuda_mixed *mixture = (cuda_mixed *)mem_array(p->laws, sizeof *mixture, "the solver", e);
+    if (!mass_inverse || !kind || !mixture)
         goto out;
+    put_mixtures(p, mixture);
     for (int64_t k = 0; k < p->nodes; k++)
         mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
     for (int32_t i = 0; i < p->volumes; i++) {
         const tled_volume *v = &p->volume[i];
         kind[i] = {v->mu, v->bulk, v->density, v->hourglass, v->peak, (int32_t)v->contract};
     }
-    lay_out(s, mass_inverse, kind, e);
+    lay_out(s, mass_inverse, kind, mixture, e);
     s->bytes = s->used;
     snprintf(what, sizeof what, "the solver of %lld elements", (long long)p->elements);
     s->memory = (char *)card_take(s->bytes, what, e);
-    if (s->memory && !lay_out(s, mass_inverse, kind, e))
+    if (s->memory && !lay_out(s, mass_inverse, kind, mixture, e))
         result = 0;
 out:
     free(mass_inverse);
     free(kind);
+    free(mixture);
     return result;
 }
 

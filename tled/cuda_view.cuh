@@ -48,14 +48,20 @@ typedef struct cuda_kind { /* a volume */
     int32_t contract; /* its curve, or -1 */
 } cuda_kind;
 
+typedef struct cuda_mixed {                     /* a cell mixed of two volumes */
+    double mu, bulk, density, hourglass, share; /* share: of the second volume */
+    int32_t mix;                                /* the second volume */
+} cuda_mixed;
+
 template <class S> struct cuda_view {
     const tile *tiles;
     const uint32_t *node_info, *cell;
     const int32_t *halo_node;
     const uint16_t *halo_place;
     const float *fibre, *share; /* share: or NULL, as are: */
-    const int32_t *mix;
-    const float *mixture, *mixfibre;
+    const float *mixfibre;
+    const int32_t *mixed; /* cells: which of: */
+    const cuda_mixed *mixture;
     const tile_extra *extra;
     const int32_t *force_curve;
     const double *force_share;

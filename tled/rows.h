@@ -19,7 +19,7 @@ typedef struct rows_run {
     int32_t node[8]; /* of its first element's corners, VTK order, in the rows' order of nodes */
     int32_t cell;    /* its first element, in the order of fibre and fraction */
     int32_t volume;
-    int32_t mix; /* the second volume of all of them, or -1 */
+    int32_t mix;   /* the second volume of all of them, or -1 */
     uint8_t count; /* elements */
     uint8_t
         mask; /* bit r: the row of nodes at corners 2r and 2r + 1 (r = 0 to 3: y, z low; y high; ...) is the slab's own */

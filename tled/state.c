@@ -11,6 +11,8 @@
 
 void tled_problem_free(tled_problem *p)
 {
+    free(p->mixed);
+    free(p->law);
     free(p->volume);
     free(p->corner);
     free(p->mass);
@@ -155,19 +157,35 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
     return p->volume ? 0 : -1;
 }
 
-tled_law tled_law_of(const tled_problem *p, int64_t element)
+static double between(double a, double b, double s)
 {
-    const tled_volume *v = &p->volume[p->element_volume[element]];
-    tled_law law = {v->mu, v->bulk, v->density, v->hourglass};
-    if (tled_mix(p, element) < 0)
-        return law;
-    const tled_volume *w = &p->volume[p->mix[element]];
-    const double s = tled_mixture(p, element), rest = 1 - s;
-    law.mu = rest * v->mu + s * w->mu;
-    law.bulk = rest * v->bulk + s * w->bulk;
-    law.density = rest * v->density + s * w->density;
-    law.hourglass = rest * v->hourglass + s * w->hourglass;
+    return a == b ? a : exp((1 - s) * log(a) + s * log(b));
+}
+
+static tled_law mix_laws(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]], *w = &p->volume[p->mix[element]];
+    const double s = tled_mixture(p, element);
+    tled_law law = {.mu = between(v->mu, w->mu, s),
+                    .bulk = between(v->bulk, w->bulk, s),
+                    .density = (1 - s) * v->density + s * w->density};
+    law.hourglass = element_hourglass(p->kappa, law.mu, law.bulk, p->side[0], p->side[1], p->side[2]);
     return law;
+}
+
+/* The laws of what is mixed. */
+static int make_mixtures(tled_problem *p, err *e)
+{
+    if (!p->mix)
+        return 0;
+    p->mixed = mem_array(p->elements, sizeof *p->mixed, "the mixed elements", e);
+    for (int64_t i = 0; p->mixed && i < p->elements; i++)
+        p->mixed[i] = p->mix[i] < 0 ? -1 : (int32_t)p->laws++;
+    p->law = p->mixed ? mem_array(p->laws, sizeof *p->law, "the mixed elements", e) : NULL;
+    for (int64_t i = 0; p->law && i < p->elements; i++)
+        if (p->mixed[i] >= 0)
+            p->law[p->mixed[i]] = mix_laws(p, i);
+    return p->law ? 0 : -1;
 }
 
 /* Where among a node's elements, by their places in the lattice, the one is that has the node for this corner. */
@@ -263,7 +281,8 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
     p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
     if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
         return -1;
-    if (check_boxes(p, e) || check_fractions(p, e) || check_mixtures(p, e) || make_volumes(p, m, e) || make_corners(p, e) || make_forces(p, e))
+    if (check_boxes(p, e) || check_fractions(p, e) || check_mixtures(p, e) || make_volumes(p, m, e) ||
+        make_mixtures(p, e) || make_corners(p, e) || make_forces(p, e))
         return -1;
     make_holds(p, m);
     return 0;

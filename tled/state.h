@@ -23,7 +23,9 @@ typedef struct tled_volume {
     int64_t contract;               /* curve that sets its level, or -1 */
 } tled_volume;
 
-/* What an element is made of, that its forces are linear in: a volume's, or a mixture of two volumes'. */
+/* What an element is made of: a volume, or two. With s the share of the second, density is (1 - s) rho1 + s rho2, mu is
+ * mu1^(1-s) mu2^s and K likewise: between what two materials side by side have along their border and what they have
+ * across it, nearer to the softer, as neither is known of a voxel. */
 typedef struct tled_law {
     double mu, bulk, density, hourglass; /* as a tled_volume's */
 } tled_law;
@@ -41,14 +43,17 @@ typedef struct tled_problem {
     const int32_t *mix;    /* elements: the second volume of those that are mixed, -1 in others; NULL: none is */
     const float *mixture;  /* elements: its share of the tissue, 0 to 1; where mix is not NULL */
     const float *mixfibre; /* elements x 3: its fibre; or NULL */
-    tled_volume *volume;   /* volumes; owned, as is all below */
-    int32_t *corner;       /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
-    double *mass;          /* nodes: kg */
-    int32_t *hold;         /* nodes x 3 */
-    int64_t held;          /* nodes with any component held */
-    int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
-    int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
-    double *force_share;   /* entries */
+    int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL where mix is. Owned, as is all below */
+    tled_law *law;         /* of the mixed elements, in their order */
+    int64_t laws;
+    tled_volume *volume;  /* volumes */
+    int32_t *corner;      /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
+    double *mass;         /* nodes: kg */
+    int32_t *hold;        /* nodes x 3 */
+    int64_t held;         /* nodes with any component held */
+    int32_t *force_start; /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
+    int32_t *force_curve; /* entries: the curve whose value the node gets a share of */
+    double *force_share;  /* entries */
     const script *script;
     int64_t gravity;      /* its curve, or -1 */
     double start;         /* s: the model's time at the start */
@@ -129,9 +134,13 @@ static inline double tled_mixture(const tled_problem *p, int64_t element)
     return tled_mix(p, element) < 0 ? 0 : (double)p->mixture[element];
 }
 
-/* The law of an element: its volume's, or with s the share of its second volume, (1 - s) times the one plus s times the
- * other's. A neo-Hookean stress is linear in mu and K, so this is the mean of both volumes' stresses. */
-tled_law tled_law_of(const tled_problem *p, int64_t element);
+/* The law of an element: its volume's, or one between its two volumes'. */
+static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]];
+    const tled_law own = {v->mu, v->bulk, v->density, v->hourglass};
+    return p->mixed && p->mixed[element] >= 0 ? p->law[p->mixed[element]] : own;
+}
 
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);

@@ -18,15 +18,21 @@ double step_largest(const step_matrix *a)
     return stability_largest(a);
 }
 
-/* The square of the highest frequency of an element at rest, or what that is at most where two volumes are mixed. */
+/* No less than the square of the highest frequency of a mixed element: stiffness grows with mu and K alike, so it is at most
+ * that of a volume times the larger of what these are of the volume's. */
+static double square_by(const tled_law *law, const tled_volume *v)
+{
+    return v->square * fmax(law->mu / v->mu, law->bulk / v->bulk) * v->density / law->density;
+}
+
+/* The square of the highest frequency of an element at rest; of one that is mixed perhaps a little more. */
 static double square_at_rest(const tled_problem *p, int64_t element)
 {
     const tled_volume *v = &p->volume[p->element_volume[element]];
     if (tled_mix(p, element) < 0)
         return v->square;
-    const tled_volume *w = &p->volume[p->mix[element]];
-    const double s = tled_mixture(p, element), own = (1 - s) * v->density, other = s * w->density;
-    return (own * v->square + other * w->square) / (own + other);
+    const tled_law law = tled_law_of(p, element);
+    return fmin(square_by(&law, v), square_by(&law, &p->volume[p->mix[element]]));
 }
 
 double step_at_rest(const tled_problem *p, int32_t *volume)

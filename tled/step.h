@@ -7,8 +7,7 @@
  * and, apart from them, of the hourglass modes: 8 k / m. At rest A is the elasticity C: the largest eigenvalue of a cube is
  * 12 K / (rho h^2), so dt = h / sqrt(3 K / rho). Deformed, A has the geometric stiffness and the active stress in it.
  *
- * An element mixed of two volumes has (1 - s) of the one's stiffness and s of the other's, and so of the mass: the square of
- * its highest frequency is at most the mean of the two volumes' squares, each weighted by the mass that it has there.
+ * Of an element mixed of two volumes what is found at rest is a bound from theirs, exact where both have the same nu.
  */
 #ifndef SINEW_STEP_H
 #define SINEW_STEP_H

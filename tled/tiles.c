@@ -34,8 +34,7 @@ void tiles_free(tiles *t)
     free(t->cell_element);
     free(t->fibre);
     free(t->share);
-    free(t->mix);
-    free(t->mixture);
+    free(t->mixed);
     free(t->mixfibre);
     free(t->extra);
     memset(t, 0, sizeof *t);
@@ -263,11 +262,10 @@ static int make_cell_lists(cutter *c)
     t->cell_element = mem_array(t->cells, sizeof *t->cell_element, "the tiles", c->e);
     t->fibre = mem_array(t->directions, 3 * sizeof *t->fibre, "the tiles", c->e);
     t->share = p->fraction ? mem_array(t->cells, sizeof *t->share, "the tiles", c->e) : NULL;
-    t->mix = p->mix ? mem_array(t->cells, sizeof *t->mix, "the tiles", c->e) : NULL;
-    t->mixture = p->mix ? mem_array(t->cells, sizeof *t->mixture, "the tiles", c->e) : NULL;
+    t->mixed = p->mixed ? mem_array(t->cells, sizeof *t->mixed, "the tiles", c->e) : NULL;
     t->mixfibre = p->mixfibre ? mem_array(t->directions, 3 * sizeof *t->mixfibre, "the tiles", c->e) : NULL;
-    return t->cell && t->cell_element && t->fibre && (t->share || !p->fraction) &&
-                   ((t->mix && t->mixture) || !p->mix) && (t->mixfibre || !p->mixfibre)
+    return t->cell && t->cell_element && t->fibre && (t->share || !p->fraction) && (t->mixed || !p->mixed) &&
+                   (t->mixfibre || !p->mixfibre)
                ? 0
                : -1;
 }
@@ -317,10 +315,8 @@ static int put_cell(cutter *c, int64_t which, int64_t at)
     c->taken[place] = true;
     if (t->share)
         t->share[at] = c->p->fraction[element];
-    if (t->mix) {
-        t->mix[at] = c->p->mix[element];
-        t->mixture[at] = (float)tled_mixture(c->p, element);
-    }
+    if (t->mixed)
+        t->mixed[at] = c->p->mixed[element];
     t->cell[at] = (uint32_t)place | own << TILE_OWN | (uint32_t)c->p->element_volume[element] << TILE_VOLUME;
     for (int i = 0; i < 8; i++) {
         int32_t *here = &c->here[place_in(c, which, corner[i])];

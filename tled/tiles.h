@@ -51,9 +51,8 @@ typedef struct tiles {
     int32_t *cell_element; /* cells: which of the model's elements it is */
     float *fibre;          /* directions x 3 */
     float *share;          /* cells: the problem's fraction; NULL where that is */
-    int32_t *mix;          /* cells: the problem's; NULL where that is, as are: */
-    float *mixture;        /* cells */
-    float *mixfibre;       /* directions x 3: of cells' second volumes */
+    int32_t *mixed;        /* cells: the problem's; NULL where that is */
+    float *mixfibre;       /* directions x 3: of cells' second volumes; or NULL */
     tile_extra *extra;     /* extras, by node */
 } tiles;
 

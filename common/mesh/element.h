@@ -278,14 +278,6 @@ ELEMENT_FUNCTION element_corners element_gather(element_modes u, real px, real p
     return element_corners_of(f);
 }
 
-/* What part `of_a` of law a and part `of_b` of law b have together: the stress is linear in all of a law. */
-ELEMENT_FUNCTION element_law element_mixed(element_law a, real of_a, element_law b, real of_b)
-{
-    element_law m = {of_a * a.mu + of_b * b.mu, of_a * a.bulk + of_b * b.bulk,
-                     of_a * a.hourglass + of_b * b.hourglass};
-    return m;
-}
-
 /* As element_force, with a second fibre. */
 ELEMENT_FUNCTION element_field element_force_of_two(element_field u, element_shape shape, element_law law,
                                                     element_fibre fibre, int is_active, element_fibre second,

@@ -29,12 +29,11 @@ static void force_of(const tled_problem *p, int64_t element, double u[8][3], dou
     const tled_volume *w = tled_mix(p, element) < 0 ? v : &p->volume[p->mix[element]];
     const double share = tled_fraction(p, element), s = tled_mixture(p, element);
     const double own = share * (1 - s), other = share * s;
-    element_law law = {share * v->mu, share * v->bulk, share * v->hourglass};
+    const tled_law of = tled_law_of(p, element);
+    element_law law = {share * of.mu, share * of.bulk, share * of.hourglass};
     const float *d = p->fibre + 3 * element, *c2 = p->mixfibre ? p->mixfibre + 3 * element : d;
-    element_fibre fibre = {{d[0], d[1], d[2]}, own * (.3 * v->peak)}, second = {{c2[0], c2[1], c2[2]}, other * (.3 * w->peak)};
-    if (w != v)
-        law = (element_law){own * v->mu + other * w->mu, own * v->bulk + other * w->bulk,
-                            own * v->hourglass + other * w->hourglass};
+    element_fibre fibre = {{d[0], d[1], d[2]}, own * (.3 * v->peak)},
+                  second = {{c2[0], c2[1], c2[2]}, other * (.3 * w->peak)};
     for (int c = 0; c < 8; c++)
         at.x.at[c] = u[c][0], at.y.at[c] = u[c][1], at.z.at[c] = u[c][2];
     g = element_force_of_two(at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre, 1, second, w != v);
@@ -106,8 +105,7 @@ static bool by_tiles(const tled_problem *p, const tiles *t, double *sum, int *ow
             owned[element] += (int)(cell >> TILE_OWN & 1);
             good &= (int32_t)(cell >> TILE_VOLUME) == p->element_volume[element];
             good &= t->share ? t->share[own->cell + k] == p->fraction[element] : !p->fraction;
-            good &= tled_mix(p, element) == (t->mix ? t->mix[own->cell + k] : -1);
-            good &= !t->mix || tled_mixture(p, element) == (double)t->mixture[own->cell + k];
+            good &= t->mixed ? t->mixed[own->cell + k] == p->mixed[element] : !p->mix;
             good &= k >= own->fibred || !t->mixfibre ||
                     !memcmp(t->mixfibre + 3 * (own->direction + k), p->mixfibre + 3 * element, 12);
             good &= k >= own->fibred || !memcmp(t->fibre + 3 * (own->direction + k), p->fibre + 3 * element, 12);

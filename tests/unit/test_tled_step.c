@@ -76,8 +76,8 @@ static void test_matrix(element_tensor h, element_fibre fibre, element_fibre sec
             scale = fmax(scale, fabs(want));
         }
     }
-    near_(worst / scale, 0, 1e-7, "the matrix is the stress's derivative, tension %g and %g Pa",
-          fibre.tension, second.tension);
+    near_(worst / scale, 0, 1e-7, "the matrix is the stress's derivative, tension %g and %g Pa", fibre.tension,
+          second.tension);
     double largest = step_largest(&a);
     ok(step_below(&a, largest * (1 + 1e-9)) && !step_below(&a, largest * (1 - 1e-9)), "its largest eigenvalue splits");
 }

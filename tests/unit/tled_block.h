@@ -17,7 +17,8 @@ typedef struct block {
     int fixed_axis, fixed_low, fixed_high; /* whether the nodes at its low and high end are rigid */
     float fibre[3];                        /* not 0: the volume is a muscle named muscle_m */
     float fraction; /* of every element; 0: the model has none. Below 0: they differ, from .05 to 1 */
-    bool mixed; /* some elements are of a second volume, stiffer and denser, and some mixed of both, by different shares */
+    bool
+        mixed; /* some elements are of a second volume, stiffer and denser, and some mixed of both, by different shares */
 } block;
 
 static inline model_array *block_array(model *m, const char *name)
