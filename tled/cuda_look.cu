@@ -288,12 +288,10 @@ template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums 
     look_cells *cells = (look_cells *)l->parts;
     look_nodes *nodes = (look_nodes *)((char *)l->parts + cells_bytes(l->count));
     const int64_t blocks = node_blocks(l->view.nodes);
-    if (l->size == CUDA_LARGE)
-        cells_kernel<large_brick><<<(unsigned)l->count, large_brick::THREADS, 0, stream>>>(*l, cells);
-    else if (l->size == CUDA_MIDDLE)
-        cells_kernel<middle_brick><<<(unsigned)l->count, middle_brick::THREADS, 0, stream>>>(*l, cells);
-    else
-        cells_kernel<small_brick><<<(unsigned)l->count, small_brick::THREADS, 0, stream>>>(*l, cells);
+    with_brick(l->size, [&](auto g) {
+        typedef decltype(g) G;
+        cells_kernel<G><<<(unsigned)l->count, G::THREADS, 0, stream>>>(*l, cells);
+    });
     nodes_kernel<<<(unsigned)blocks, NODE_THREADS, 0, stream>>>(*l, nodes);
     sums_kernel<<<1, SUM_THREADS, 0, stream>>>(cells, l->count, nodes, blocks, l->question.rest, sums);
     return cudaGetLastError();

@@ -5,10 +5,10 @@
  * internal forces where displacements go else. All of a step's data stays on the card; the curves' values of some steps at
  * a time go there.
  */
-#include "tled/cuda_kernels.cuh"
+#include "tled/cuda_resident.cuh"
 
 enum {
-    TABLE_STEPS = 64,
+    TABLE_STEPS = 256,
     TABLES = 2,
     COPY_CHUNK = 4096,
     FRAME_DIRECT = 2 << 20 /* bytes: a frame that is copied sooner than it is worth its own memory on the card */
@@ -31,10 +31,13 @@ typedef struct cuda_state {
     int64_t bytes, used;        /* of memory */
     real *displacement, *spare; /* each 3 x stride, as is velocity */
     real *velocity;
+    uint64_t *message;       /* between tiles that are resident */
+    uint32_t messages;       /* passes that they have sent them for */
     real *kept_displacement; /* and velocity after it */
     real *kept_internal;     /* made when first wanted */
     real *frame;             /* a copy of displacement to send; likewise, unless that is: one of the two */
     bool spare_is_internal, has_kept_internal;
+    bool resident;              /* all tiles have a place on the card at once */
     bool frame_direct;          /* there is no room for `frame` */
     double *table[TABLES];      /* on the card: TABLE_STEPS + 1 rows of the curves' values */
     double *table_host[TABLES]; /* pinned */
@@ -67,8 +70,15 @@ template <class T> static int put(cuda_state *s, const T **to, const T *from, in
     return at ? CUDA_TRY(cudaMemcpy(at, from, (size_t)count * sizeof(T), cudaMemcpyHostToDevice)) : 0;
 }
 
+/* What the card gets of the problem's numbers. */
+typedef struct cuda_numbers {
+    real *mass_inverse, *law;
+    cuda_kind *kind;
+    cuda_mixed *mixture;
+} cuda_numbers;
+
 /* Lays out what is in s->memory, and fills what does not change. Called twice: to count, and to do. */
-static int lay_out(cuda_state *s, const real *mass_inverse, const cuda_kind *kind, const cuda_mixed *mixture, err *e)
+static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
 {
     const tiles *t = &s->tiles;
     const tled_problem *p = s->p;
@@ -80,17 +90,20 @@ static int lay_out(cuda_state *s, const real *mass_inverse, const cuda_kind *kin
         put(s, &v->halo_place, t->halo_place, t->halos, e) || put(s, &v->fibre, t->fibre, 3 * t->directions, e) ||
         (t->share && put(s, &v->share, t->share, t->cells, e)) ||
         (t->mixed && put(s, &v->mixed, t->mixed, t->cells, e)) ||
-        (t->mixed && put(s, &v->mixture, mixture, p->laws, e)) ||
+        (t->mixed && put(s, &v->mixture, numbers->mixture, p->laws, e)) ||
         (t->mixfibre && put(s, &v->mixfibre, t->mixfibre, 3 * t->directions, e)) ||
         put(s, &v->extra, t->extra, t->extras, e) ||
         put(s, &v->force_curve, p->force_curve, p->force_start[p->nodes], e) ||
         put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
-        put(s, &v->mass_inverse, mass_inverse, t->nodes, e) || put(s, &v->kind, kind, p->volumes, e))
+        put(s, &v->mass_inverse, numbers->mass_inverse, t->nodes, e) ||
+        put(s, &v->kind, numbers->kind, p->volumes, e) || put(s, &v->law, numbers->law, LAW_NUMBERS * p->volumes, e))
         return -1;
     s->displacement = (real *)room(s, rows, sizeof(real));
     s->spare = (real *)room(s, rows, sizeof(real));
     s->velocity = (real *)room(s, rows, sizeof(real));
     s->kept_displacement = (real *)room(s, 2 * rows, sizeof(real));
+    if (s->resident)
+        s->message = (uint64_t *)room(s, MESSAGES * MESSAGE_WORDS * v->stride, sizeof *s->message);
     for (int i = 0; i < TABLES; i++)
         s->table[i] = (double *)room(s, (TABLE_STEPS + 1) * 3 * p->script->curves, sizeof(double));
     s->look_parts = room(s, (int64_t)cuda_look_bytes(t->count, t->nodes), 1);
@@ -124,34 +137,46 @@ static void put_mixtures(const tled_problem *p, cuda_mixed *to)
         }
 }
 
+static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    n->mass_inverse = (real *)mem_array(p->nodes, sizeof *n->mass_inverse, "the solver", e);
+    n->law = (real *)mem_array(p->volumes, LAW_NUMBERS * sizeof *n->law, "the solver", e);
+    n->kind = (cuda_kind *)mem_array(p->volumes, sizeof *n->kind, "the solver", e);
+    n->mixture = (cuda_mixed *)mem_array(p->laws, sizeof *n->mixture, "the solver", e);
+    if (!n->mass_inverse || !n->law || !n->kind || !n->mixture)
+        return -1;
+    for (int64_t k = 0; k < p->nodes; k++)
+        n->mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
+    for (int32_t i = 0; i < p->volumes; i++) {
+        const tled_volume *v = &p->volume[i];
+        real *law = n->law + LAW_NUMBERS * i;
+        n->kind[i] = {v->mu, v->bulk, v->density, v->hourglass, v->peak, (int32_t)v->contract};
+        law[0] = (real)v->mu, law[1] = (real)v->bulk, law[2] = (real)v->hourglass;
+    }
+    put_mixtures(p, n->mixture);
+    return 0;
+}
+
 /* Takes the card's memory and puts the problem there. */
 static int put_problem(cuda_state *s, err *e)
 {
-    const tled_problem *p = s->p;
     char what[80];
     int result = -1;
-    real *mass_inverse = (real *)mem_array(p->nodes, sizeof *mass_inverse, "the solver", e);
-    cuda_kind *kind = (cuda_kind *)mem_array(p->volumes, sizeof *kind, "the solver", e);
-    cuda_mixed *mixture = (cuda_mixed *)mem_array(p->laws, sizeof *mixture, "the solver", e);
-    if (!mass_inverse || !kind || !mixture)
+    cuda_numbers numbers = {0};
+    if (make_numbers(&numbers, s, e))
         goto out;
-    put_mixtures(p, mixture);
-    for (int64_t k = 0; k < p->nodes; k++)
-        mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
-    for (int32_t i = 0; i < p->volumes; i++) {
-        const tled_volume *v = &p->volume[i];
-        kind[i] = {v->mu, v->bulk, v->density, v->hourglass, v->peak, (int32_t)v->contract};
-    }
-    lay_out(s, mass_inverse, kind, mixture, e);
+    lay_out(s, &numbers, e);
     s->bytes = s->used;
-    snprintf(what, sizeof what, "the solver of %lld elements", (long long)p->elements);
+    snprintf(what, sizeof what, "the solver of %lld elements", (long long)s->p->elements);
     s->memory = (char *)card_take(s->bytes, what, e);
-    if (s->memory && !lay_out(s, mass_inverse, kind, mixture, e))
+    if (s->memory && !lay_out(s, &numbers, e))
         result = 0;
 out:
-    free(mass_inverse);
-    free(kind);
-    free(mixture);
+    free(numbers.mass_inverse);
+    free(numbers.law);
+    free(numbers.kind);
+    free(numbers.mixture);
     return result;
 }
 
@@ -159,12 +184,7 @@ out:
 
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
-    if (s->size == CUDA_LARGE)
-        pass_start<large_brick>(s->view, *p, s->tiles.count, s->stream);
-    else if (s->size == CUDA_MIDDLE)
-        pass_start<middle_brick>(s->view, *p, s->tiles.count, s->stream);
-    else
-        pass_start<small_brick>(s->view, *p, s->tiles.count, s->stream);
+    with_brick(s->size, [&](auto g) { pass_start<decltype(g)>(s->view, *p, s->tiles.count, s->stream); });
     return card_check(cudaGetLastError(), "the start of a pass", s->step, e);
 }
 
@@ -202,6 +222,8 @@ static int pass(cuda_state *s, const tled_plan *plan, const double *now, int wha
                    s->velocity,
                    now,
                    now + 3 * s->p->script->curves,
+                   NULL,
+                   NULL,
                    s->shape,
                    node_factors_of(1 / plan->rate, plan->damping),
                    what};
@@ -213,23 +235,59 @@ static int pass(cuda_state *s, const tled_plan *plan, const double *now, int wha
     return 0;
 }
 
+/* `passes` passes from pass `first` of count steps on, in one launch. */
+static int stay(cuda_state *s, const tled_plan *plan, const double *now, int64_t first, int64_t passes, int64_t count,
+                err *e)
+{
+    const bool ends = first + passes > count, moves = !ends || passes > 1;
+    const cuda_pass p = {s->displacement,
+                         moves ? s->spare : s->displacement,
+                         s->velocity,
+                         now,
+                         NULL,
+                         NULL,
+                         NULL,
+                         s->shape,
+                         node_factors_of(1 / plan->rate, plan->damping),
+                         0};
+    const cuda_resident r = {p,
+                             moves ? s->displacement : s->spare,
+                             s->message,
+                             s->messages + 1,
+                             (int32_t)passes,
+                             (int32_t)s->p->script->curves,
+                             first == 0,
+                             ends};
+    s->messages += (uint32_t)passes;
+    const cudaError_t started = with_brick(s->size, [&](auto g) {
+        return s->view.mixed ? resident_start<decltype(g), true>(s->view, r, s->tiles.count, s->stream)
+                             : resident_start<decltype(g), false>(s->view, r, s->tiles.count, s->stream);
+    });
+    s->spare_is_internal = ends;
+    if (card_check(started, "the start of passes", s->step, e))
+        return -1;
+    if (moves)
+        swap_displacements(s);
+    return 0;
+}
+
 static int cuda_step(void *state, const void *plan, int64_t count, err *e)
 {
     cuda_state *s = (cuda_state *)state;
     const tled_plan *t = (const tled_plan *)plan;
     const double *rows = NULL;
-    int64_t first = 0;
-    for (int64_t i = 0; count > 0 && i <= count; i++) {
-        if (i % TABLE_STEPS == 0) {
-            int64_t ahead = count - i < TABLE_STEPS ? count - i : TABLE_STEPS;
-            first = i;
-            if (put_table(s, t, first, ahead, &rows, e))
-                return -1;
-        }
-        int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
-        if (pass(s, t, rows + (i - first) * 3 * s->p->script->curves, what, e))
+    for (int64_t first = 0; count > 0 && first <= count; first += TABLE_STEPS) {
+        const int64_t passes = count + 1 - first < TABLE_STEPS ? count + 1 - first : TABLE_STEPS;
+        if (put_table(s, t, first, first + passes > count ? passes - 1 : passes, &rows, e))
             return -1;
-        s->step += i > 0;
+        if (s->resident && stay(s, t, rows, first, passes, count, e))
+            return -1;
+        for (int64_t i = first; i < first + passes; i++) {
+            int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
+            if (!s->resident && pass(s, t, rows + (i - first) * 3 * s->p->script->curves, what, e))
+                return -1;
+            s->step += i > 0;
+        }
     }
     s->time = count > 0 ? tled_time(t, count) : s->time;
     return 0;
@@ -461,28 +519,48 @@ static void cuda_destroy(void *state)
     free(s);
 }
 
-template <class G> static int cut_in(cuda_state *s, err *e)
+/* Cuts the problem in bricks of a size. -1: it cannot be cut so, or the card has too little shared memory for them. */
+static int cut_in(cuda_state *s, cuda_size size, err *e)
 {
-    static const int brick[3] = {G::BX, G::BY, G::BZ};
-    return CUDA_TRY(pass_allow<G>()) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
+    s->size = size;
+    tiles_free(&s->tiles);
+    return with_brick(size, [&](auto g) {
+        typedef decltype(g) G;
+        static const int brick[3] = {G::BX, G::BY, G::BZ};
+        return CUDA_TRY(pass_allow<G>()) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
+    });
 }
 
-/* By how many bricks of a size a multiprocessor would get, from what was measured on an H200. */
+/* How many bricks of a size are resident at once, and how many nodes they have at most. */
+static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
+{
+    return with_brick(size, [&](auto g) {
+        typedef decltype(g) G;
+        const int64_t curves = s->p->script->curves;
+        const int64_t places = s->p->mix ? resident_places<G, true>(curves) : resident_places<G, false>(curves);
+        *nodes = places * G::NODES;
+        return places;
+    });
+}
+
+/* The smallest bricks that are all resident: the more there are, the less each has to do. Else the largest that the card has shared
+ * memory for. So measured on an H200. */
 static int cut(cuda_state *s, err *e)
 {
-    int processors = 0, device = 0;
-    if (CUDA_TRY(cudaGetDevice(&device)) ||
-        CUDA_TRY(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device)))
-        return -1;
-    const int64_t each = s->p->nodes / processors;
-    s->size = each < 150 ? CUDA_SMALL : CUDA_MIDDLE;
-    if (sizeof(real) == sizeof(float) && each >= 3000) {
-        s->size = pass_allow<large_brick>() == cudaSuccess ? CUDA_LARGE : CUDA_MIDDLE;
-        cudaGetLastError(); /* a card with too little shared memory for them has said so */
+    for (int size = CUDA_SMALL; size < CUDA_SIZES; size++) {
+        int64_t nodes, places = places_of(s, (cuda_size)size, &nodes);
+        err here = {0};
+        if (size < CUDA_LARGE && s->p->nodes > nodes)
+            continue;
+        if (cut_in(s, (cuda_size)size, &here)) {
+            cudaGetLastError(); /* it has said so */
+            return cut_in(s, size == CUDA_SMALL ? CUDA_SMALL : (cuda_size)(size - 1), e);
+        }
+        s->resident = s->tiles.count <= places;
+        if (s->resident)
+            return 0;
     }
-    return s->size == CUDA_LARGE    ? cut_in<large_brick>(s, e)
-           : s->size == CUDA_MIDDLE ? cut_in<middle_brick>(s, e)
-                                    : cut_in<small_brick>(s, e);
+    return 0;
 }
 
 static int fill(cuda_state *s, err *e)
@@ -492,6 +570,7 @@ static int fill(cuda_state *s, err *e)
         return -1;
     s->view.stride = (p->nodes + 31) / 32 * 32;
     s->view.nodes = (int32_t)p->nodes;
+    s->view.volumes = p->volumes;
     s->view.extras = (int32_t)s->tiles.extras;
     s->view.gravity = (int32_t)p->gravity;
     memcpy(s->view.side, p->side, sizeof p->side);
@@ -499,6 +578,9 @@ static int fill(cuda_state *s, err *e)
     s->time = p->start;
     if (put_problem(s, e) || make_events(s, e) || set(s, s->displacement, p->displacement, e) ||
         set(s, s->velocity, p->velocity, e) || CUDA_TRY(cudaDeviceSynchronize()))
+        return -1;
+    if (s->resident &&
+        CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))
         return -1;
     return find_internal(s, e);
 }
