@@ -81,6 +81,22 @@ static int take_material(msds_problem *p, int64_t t, const material *a)
     return 0;
 }
 
+/* Element t's of its volume, or of the two that it is mixed of. */
+static int take_element(msds_problem *p, const model *m, int64_t t, const material *list, err *e)
+{
+    const model_array *mix = model_find(m, "element.mix"), *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    const material *own = &list[model_find(m, "element.volume")->i32[t]];
+    if (mix && !mixture)
+        return -1;
+    if (!mix || mix->i32[t] < 0)
+        return take_material(p, t, own);
+    if (!(mixture->f32[t] >= 0 && mixture->f32[t] <= 1))
+        return err_set(e, NULL, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)t,
+                       (double)mixture->f32[t]);
+    material mixed = material_mixed(own, &list[mix->i32[t]], mixture->f32[t]);
+    return take_material(p, t, &mixed);
+}
+
 static int make_materials(msds_problem *p, const model *m, err *e)
 {
     const model_array *of = model_need(m, "element.volume", e);
@@ -92,7 +108,7 @@ static int make_materials(msds_problem *p, const model *m, err *e)
     for (int64_t i = 0; !result && i < table->rows; i++)
         result = materials_of(m, table->i32[i], &list[i], e);
     for (int64_t t = 0; !result && t < p->elements; t++)
-        result = take_material(p, t, &list[of->i32[t]]);
+        result = take_element(p, m, t, list, e);
     free(list);
     return result;
 }

@@ -157,17 +157,12 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
     return p->volume ? 0 : -1;
 }
 
-static double between(double a, double b, double s)
-{
-    return a == b ? a : exp((1 - s) * log(a) + s * log(b));
-}
-
 static tled_law mix_laws(const tled_problem *p, int64_t element)
 {
     const tled_volume *v = &p->volume[p->element_volume[element]], *w = &p->volume[p->mix[element]];
     const double s = tled_mixture(p, element);
-    tled_law law = {.mu = between(v->mu, w->mu, s),
-                    .bulk = between(v->bulk, w->bulk, s),
+    tled_law law = {.mu = material_between(v->mu, w->mu, s),
+                    .bulk = material_between(v->bulk, w->bulk, s),
                     .density = (1 - s) * v->density + s * w->density};
     law.hourglass = element_hourglass(p->kappa, law.mu, law.bulk, p->side[0], p->side[1], p->side[2]);
     return law;
