@@ -140,7 +140,7 @@ static void mixed(void)
     notes warnings = {0};
     muscles list;
     model m;
-    bar(&m, "10000000000000000000");
+    bar(&m, "10001000000000000000");
     memcpy(model_add(&m, "element.mix", &e)->i32, mix, sizeof mix);
     memcpy(model_add(&m, "element.mixture", &e)->f32, share, sizeof share);
     ok(!muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e), "elements mixed of two volumes %s", e.text);
@@ -148,6 +148,10 @@ static void mixed(void)
     near_(list.of[0].weight, 1 + .75 + .25 + .5, 1e-12, "its shares");
     near_(list.of[1].weight, .5, 1e-12, "what it leaves the other");
     near_(list.of[0].middle[0], (1 * .005 + .75 * .015 + .25 * .025 + .5 * .035) / 2.5, 1e-12, "their middle");
+    near_(list.of[0].centre[0], .5 * .04 / 1.5, 1e-9, "rigid nodes count by the part that it has there");
+    ok(list.of[0].rigid_nodes == 2 && list.of[1].rigid_nodes == 1 && list.attached.count == 3,
+       "two attachments and one");
+    near_(list.of[1].centre[0], .04, 1e-9, "the other's");
     const float *second = model_find(&m, "element.mixfibre")->f32;
     ok(fibre(&m, 0)[0] == -1 && fibre(&m, 1)[0] == -1 && fibre(&m, 2)[0] == 0, "fibres of the first volume");
     ok(second[0] == 0 && second[3] == 0 && second[6] == -1 && second[9] == -1,
