@@ -25,12 +25,22 @@ void tled_problem_free(tled_problem *p)
     memset(p, 0, sizeof *p);
 }
 
-static bool is_mixed(const model_array *mix)
+/* What some elements are mixed of, if any is. */
+static int borrow_mixes(tled_problem *p, const model *m, err *e)
 {
-    for (int64_t i = 0; mix && i < mix->rows; i++)
-        if (mix->i32[i] >= 0)
-            return true;
-    return false;
+    const model_array *mix = model_find(m, "element.mix"), *mixfibre = model_find(m, "element.mixfibre");
+    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    bool any = false;
+    if (!mix)
+        return 0;
+    if (!mixture || (mixfibre && !model_need(m, "element.fibre", e)))
+        return -1;
+    for (int64_t i = 0; i < mix->rows; i++)
+        any |= mix->i32[i] >= 0;
+    p->mix = any ? mix->i32 : NULL;
+    p->mixture = any ? mixture->f32 : NULL;
+    p->mixfibre = any && mixfibre ? mixfibre->f32 : NULL;
+    return 0;
 }
 
 static int borrow_mesh(tled_problem *p, const model *m, err *e)
@@ -38,10 +48,6 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     const model_array *node = model_need(m, "element.node", e), *position = model_need(m, "node.position", e);
     const model_array *volume = model_need(m, "element.volume", e), *fibre = model_find(m, "element.fibre");
     const model_array *fraction = model_find(m, "element.fraction");
-    const model_array *mix = model_find(m, "element.mix"), *mixfibre = model_find(m, "element.mixfibre");
-    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
-    if ((mix && !mixture) || (mixfibre && !model_need(m, "element.fibre", e)))
-        return -1;
     if (!node || !position || !volume || !model_need(m, "volume.name", e) || !model_need(m, "volume.material", e))
         return -1;
     if (node->columns != 8)
@@ -57,12 +63,7 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     p->element_volume = volume->i32;
     p->fibre = fibre ? fibre->f32 : NULL;
     p->fraction = fraction ? fraction->f32 : NULL;
-    if (!is_mixed(mix))
-        return 0;
-    p->mix = mix->i32;
-    p->mixture = mixture->f32;
-    p->mixfibre = mixfibre ? mixfibre->f32 : NULL;
-    return 0;
+    return borrow_mixes(p, m, e);
 }
 
 /* An element without mass has no step that is stable. */
