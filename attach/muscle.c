@@ -185,12 +185,16 @@ static int check_fractions(const model_array *fraction, err *e)
     return 0;
 }
 
-static int check_mixtures(const model_array *mix, const model_array *mixture, err *e)
+static int check_mixtures(const body *b, const model_array *mix, const model_array *mixture, err *e)
 {
-    for (int64_t i = 0; mix && i < mix->rows; i++)
+    for (int64_t i = 0; mix && i < mix->rows; i++) {
         if (mix->i32[i] >= 0 && !(mixture->f32[i] >= 0 && mixture->f32[i] <= 1))
             return err_set(e, NULL, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)i,
                            (double)mixture->f32[i]);
+        if (mix->i32[i] == b->volume[i])
+            return err_set(e, NULL, 0, "element.mix, row %lld is its own volume; expected another, or -1",
+                           (long long)i);
+    }
     return 0;
 }
 
@@ -199,7 +203,7 @@ static int find_mixes(const model *m, body *b, err *e)
 {
     const model_array *mix = model_find(m, "element.mix");
     const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
-    if ((mix && !mixture) || check_mixtures(mix, mixture, e))
+    if ((mix && !mixture) || check_mixtures(b, mix, mixture, e))
         return -1;
     b->mix = mix ? mix->i32 : NULL;
     b->mixture = mixture ? mixture->f32 : NULL;

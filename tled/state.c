@@ -78,10 +78,14 @@ static int check_fractions(const tled_problem *p, err *e)
 
 static int check_mixtures(const tled_problem *p, err *e)
 {
-    for (int64_t i = 0; p->mix && i < p->elements; i++)
+    for (int64_t i = 0; p->mix && i < p->elements; i++) {
         if (p->mix[i] >= 0 && !(p->mixture[i] >= 0 && p->mixture[i] <= 1))
             return err_set(e, NULL, 0, "element.mixture of element %lld is %g; expected a share from 0 to 1",
                            (long long)i, (double)p->mixture[i]);
+        if (p->mix[i] == p->element_volume[i])
+            return err_set(e, NULL, 0, "element.mix of element %lld is its own volume; expected another, or -1",
+                           (long long)i);
+    }
     return 0;
 }
 

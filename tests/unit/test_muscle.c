@@ -158,6 +158,13 @@ static void mixed(void)
        "fibres of the second, where that is a muscle");
     notes_free(&warnings);
     muscles_free(&list);
+    model_find(&m, "element.mix")->i32[3] = 2;
+    ok(muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) &&
+           strstr(e.text, "element.mix, row 3 is its own volume"),
+       "%s", e.text);
+    notes_free(&warnings);
+    muscles_free(&list);
+    e = (err){0};
     model_find(&m, "element.mixture")->f32[2] = -1;
     ok(muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) && strstr(e.text, "element.mixture, row 2 is -1"), "%s",
        e.text);
