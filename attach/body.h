@@ -20,6 +20,7 @@ typedef struct body {
     float *fibre;          /* elements x 3: of the volume */
     float *mixfibre;       /* elements x 3: of the second volume; NULL where mix is */
     int32_t *seen;         /* nodes: the last muscle that counted it */
+    float *held;           /* nodes: of its elements of the muscle looked at last, the largest part */
     int32_t *part;         /* nodes: its attachment in the muscle looked at last, -1 = none */
     int64_t *start;        /* volumes + 1: a volume's first place in element */
     int64_t *element;      /* the elements, volume after volume; of one, those that it is the second in come last */
@@ -42,13 +43,18 @@ static inline bool body_has_shares(const body *b)
     return b->fraction || b->mix;
 }
 
-/* The share of an element that is enclosed and of a volume, which it is of. */
+/* Of what is enclosed of an element, the part of a volume that it is of. */
+static inline double body_part(const body *b, int64_t element, int32_t volume)
+{
+    if (!b->mix || b->mix[element] < 0)
+        return 1;
+    return volume == b->volume[element] ? 1 - (double)b->mixture[element] : (double)b->mixture[element];
+}
+
+/* The share of the element. */
 static inline double body_share(const body *b, int64_t element, int32_t volume)
 {
-    double share = b->fraction ? (double)b->fraction[element] : 1;
-    if (!b->mix || b->mix[element] < 0)
-        return share;
-    return share * (volume == b->volume[element] ? 1 - (double)b->mixture[element] : (double)b->mixture[element]);
+    return (b->fraction ? (double)b->fraction[element] : 1) * body_part(b, element, volume);
 }
 
 /* The fibre that an element has of a volume, which it is of. */

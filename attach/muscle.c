@@ -5,6 +5,7 @@
 #include "field.h"
 #include "mesh/lattice.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,10 +18,25 @@ static double element_size(const body *b, int64_t element)
     return sqrt((x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) + (x[2] - y[2]) * (x[2] - y[2]));
 }
 
-/* The mean of the muscle's rigid nodes, each counted once, and that of its elements' centres. */
+/* The part that the muscle has at each of its nodes. */
+static void find_held(const body *b, const muscle *m, int32_t index)
+{
+    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
+        float part = fmaxf((float)body_part(b, b->element[at], m->volume), FLT_EPSILON);
+        for (int n = 0; n < b->columns; n++) {
+            int32_t node = b->node[b->columns * b->element[at] + n];
+            b->held[node] = b->seen[node] == index ? fmaxf(b->held[node], part) : part;
+            b->seen[node] = index;
+        }
+    }
+}
+
+/* The mean of the muscle's rigid nodes, each counted once, by its part, and that of its elements' centres. */
 static void find_centres(const body *b, muscle *m, int32_t index)
 {
-    double rigid[3] = {0}, middle[3] = {0}, centre[3];
+    double rigid[3] = {0}, middle[3] = {0}, centre[3], held = 0;
+    const int32_t counted = -2 - index;
+    find_held(b, m, index);
     m->elements = b->start[m->volume + 1] - b->start[m->volume];
     for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
         int64_t i = b->element[at];
@@ -31,17 +47,18 @@ static void find_centres(const body *b, muscle *m, int32_t index)
             middle[a] += share * centre[a];
         for (int n = 0; n < b->columns; n++) {
             int32_t node = b->node[b->columns * i + n];
-            if (!b->rigid[node] || b->seen[node] == index)
+            if (!b->rigid[node] || b->seen[node] == counted)
                 continue;
-            b->seen[node] = index;
+            b->seen[node] = counted;
             m->rigid_nodes++;
+            held += (double)b->held[node];
             for (int a = 0; a < 3; a++)
-                rigid[a] += b->position[3 * (int64_t)node + a];
+                rigid[a] += (double)b->held[node] * b->position[3 * (int64_t)node + a];
         }
     }
     for (int a = 0; a < 3; a++) {
         m->middle[a] = m->weight > 0 ? middle[a] / m->weight : NAN;
-        m->centre[a] = m->rigid_nodes ? rigid[a] / (double)m->rigid_nodes : NAN;
+        m->centre[a] = held > 0 ? rigid[a] / held : NAN;
     }
 }
 
@@ -168,12 +185,16 @@ static int check_fractions(const model_array *fraction, err *e)
     return 0;
 }
 
-static int check_mixtures(const model_array *mix, const model_array *mixture, err *e)
+static int check_mixtures(const body *b, const model_array *mix, const model_array *mixture, err *e)
 {
-    for (int64_t i = 0; mix && i < mix->rows; i++)
+    for (int64_t i = 0; mix && i < mix->rows; i++) {
         if (mix->i32[i] >= 0 && !(mixture->f32[i] >= 0 && mixture->f32[i] <= 1))
             return err_set(e, NULL, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)i,
                            (double)mixture->f32[i]);
+        if (mix->i32[i] == b->volume[i])
+            return err_set(e, NULL, 0, "element.mix, row %lld is its own volume; expected another, or -1",
+                           (long long)i);
+    }
     return 0;
 }
 
@@ -182,7 +203,7 @@ static int find_mixes(const model *m, body *b, err *e)
 {
     const model_array *mix = model_find(m, "element.mix");
     const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
-    if ((mix && !mixture) || check_mixtures(mix, mixture, e))
+    if ((mix && !mixture) || check_mixtures(b, mix, mixture, e))
         return -1;
     b->mix = mix ? mix->i32 : NULL;
     b->mixture = mixture ? mixture->f32 : NULL;
@@ -207,7 +228,8 @@ static int find_arrays(const model *m, body *b, err *e)
                 .anchor = anchor ? anchor->i32 : NULL,
                 .fraction = fraction ? fraction->f32 : NULL};
     b->seen = mem_array(b->nodes, sizeof *b->seen, "nodes", e);
-    b->part = b->seen ? mem_array(b->nodes, sizeof *b->part, "nodes", e) : NULL;
+    b->held = b->seen ? mem_array(b->nodes, sizeof *b->held, "nodes", e) : NULL;
+    b->part = b->held ? mem_array(b->nodes, sizeof *b->part, "nodes", e) : NULL;
     for (int64_t n = 0; b->part && n < b->nodes; n++)
         b->seen[n] = b->part[n] = -1;
     return b->part && !check_fractions(fraction, e) ? find_mixes(m, b, e) : -1;
@@ -340,6 +362,7 @@ int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, note
     rc = 0;
 out:
     free(b.seen);
+    free(b.held);
     free(b.part);
     free(b.start);
     free(b.element);

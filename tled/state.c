@@ -25,12 +25,22 @@ void tled_problem_free(tled_problem *p)
     memset(p, 0, sizeof *p);
 }
 
-static bool is_mixed(const model_array *mix)
+/* What some elements are mixed of, if any is. */
+static int borrow_mixes(tled_problem *p, const model *m, err *e)
 {
-    for (int64_t i = 0; mix && i < mix->rows; i++)
-        if (mix->i32[i] >= 0)
-            return true;
-    return false;
+    const model_array *mix = model_find(m, "element.mix"), *mixfibre = model_find(m, "element.mixfibre");
+    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    bool any = false;
+    if (!mix)
+        return 0;
+    if (!mixture || (mixfibre && !model_need(m, "element.fibre", e)))
+        return -1;
+    for (int64_t i = 0; i < mix->rows; i++)
+        any |= mix->i32[i] >= 0;
+    p->mix = any ? mix->i32 : NULL;
+    p->mixture = any ? mixture->f32 : NULL;
+    p->mixfibre = any && mixfibre ? mixfibre->f32 : NULL;
+    return 0;
 }
 
 static int borrow_mesh(tled_problem *p, const model *m, err *e)
@@ -38,10 +48,6 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     const model_array *node = model_need(m, "element.node", e), *position = model_need(m, "node.position", e);
     const model_array *volume = model_need(m, "element.volume", e), *fibre = model_find(m, "element.fibre");
     const model_array *fraction = model_find(m, "element.fraction");
-    const model_array *mix = model_find(m, "element.mix"), *mixfibre = model_find(m, "element.mixfibre");
-    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
-    if ((mix && !mixture) || (mixfibre && !model_need(m, "element.fibre", e)))
-        return -1;
     if (!node || !position || !volume || !model_need(m, "volume.name", e) || !model_need(m, "volume.material", e))
         return -1;
     if (node->columns != 8)
@@ -57,12 +63,7 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     p->element_volume = volume->i32;
     p->fibre = fibre ? fibre->f32 : NULL;
     p->fraction = fraction ? fraction->f32 : NULL;
-    if (!is_mixed(mix))
-        return 0;
-    p->mix = mix->i32;
-    p->mixture = mixture->f32;
-    p->mixfibre = mixfibre ? mixfibre->f32 : NULL;
-    return 0;
+    return borrow_mixes(p, m, e);
 }
 
 /* An element without mass has no step that is stable. */
@@ -77,10 +78,14 @@ static int check_fractions(const tled_problem *p, err *e)
 
 static int check_mixtures(const tled_problem *p, err *e)
 {
-    for (int64_t i = 0; p->mix && i < p->elements; i++)
+    for (int64_t i = 0; p->mix && i < p->elements; i++) {
         if (p->mix[i] >= 0 && !(p->mixture[i] >= 0 && p->mixture[i] <= 1))
             return err_set(e, NULL, 0, "element.mixture of element %lld is %g; expected a share from 0 to 1",
                            (long long)i, (double)p->mixture[i]);
+        if (p->mix[i] == p->element_volume[i])
+            return err_set(e, NULL, 0, "element.mix of element %lld is its own volume; expected another, or -1",
+                           (long long)i);
+    }
     return 0;
 }
 
@@ -157,17 +162,12 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
     return p->volume ? 0 : -1;
 }
 
-static double between(double a, double b, double s)
-{
-    return a == b ? a : exp((1 - s) * log(a) + s * log(b));
-}
-
 static tled_law mix_laws(const tled_problem *p, int64_t element)
 {
     const tled_volume *v = &p->volume[p->element_volume[element]], *w = &p->volume[p->mix[element]];
     const double s = tled_mixture(p, element);
-    tled_law law = {.mu = between(v->mu, w->mu, s),
-                    .bulk = between(v->bulk, w->bulk, s),
+    tled_law law = {.mu = material_between(v->mu, w->mu, s),
+                    .bulk = material_between(v->bulk, w->bulk, s),
                     .density = (1 - s) * v->density + s * w->density};
     law.hourglass = element_hourglass(p->kappa, law.mu, law.bulk, p->side[0], p->side[1], p->side[2]);
     return law;

@@ -24,8 +24,7 @@ typedef struct tled_volume {
 } tled_volume;
 
 /* What an element is made of: a volume, or two. With s the share of the second, density is (1 - s) rho1 + s rho2, mu is
- * mu1^(1-s) mu2^s and K likewise: between what two materials side by side have along their border and what they have
- * across it, nearer to the softer, as neither is known of a voxel. */
+ * mu1^(1-s) mu2^s and K likewise (material_between). */
 typedef struct tled_law {
     double mu, bulk, density, hourglass; /* as a tled_volume's */
 } tled_law;

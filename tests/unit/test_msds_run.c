@@ -453,8 +453,47 @@ static void test_bad(void)
     free_problem(&m, &p);
 }
 
+/* An element has its share of stiffness and mass, and what two volumes mixed have between them. */
+static void test_shares(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    make_any(two_x, 5, two, 2, 5000, &m);
+    tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
+    const double whole = p.weight[0], young = p.young[0];
+    msds_problem_free(&p);
+    p = (msds_problem){0};
+    float *fraction = tets_array(&m, "element.fraction")->f32, *mixture;
+    fraction[0] = .5F, fraction[1] = 1;
+    tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
+    near_(p.young[0] / young, .5, 1e-12, "half an element: half the stiffness");
+    ok(p.young[1] == young, "not of the other");
+    msds_problem_free(&p);
+    p = (msds_problem){0};
+    tets_array(&m, "element.mix")->i32[1] = -1;
+    mixture = tets_array(&m, "element.mixture")->f32;
+    mixture[0] = .3F;
+    tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
+    near_(p.young[0] / young, .5, 1e-9, "mixed of one material twice");
+    ok(p.weight[0] < whole, "and less mass");
+    msds_problem_free(&p);
+    p = (msds_problem){0};
+    mixture[0] = 2;
+    ok(msds_problem_make(&p, &m, &o, &e) && strstr(e.text, "element.mixture, row 0 is 2"), "%s", e.text);
+    e = (err){0};
+    mixture[0] = .3F;
+    fraction[0] = 0;
+    msds_problem_free(&p);
+    p = (msds_problem){0};
+    ok(msds_problem_make(&p, &m, &o, &e) && strstr(e.text, "element.fraction, row 0 is 0"), "%s", e.text);
+    free_problem(&m, &p);
+}
+
 int main(void)
 {
+    test_shares();
     test_figure_4();
     test_counts();
     test_slices();
