@@ -111,7 +111,6 @@ int note_all(const dicom_file *f, err *e)
 struct errand {
     dicom_file *f;
     const unsigned char *bytes;
-    int (*take)(dicom_file *f, void *to, err *e);
     void *to;
     err *e;
     int code;
@@ -138,7 +137,7 @@ int read_file(const errand *job)
                        syntax.c_str());
     if (f->seen && note_all(f, job->e))
         return -1;
-    return job->take(f, job->to, job->e);
+    return dicom_file_take(f, job->to, job->e);
 }
 
 void *run(void *given)
@@ -201,11 +200,10 @@ DcmPixelSequence *pieces_of(dicom_file *f)
 
 } // namespace
 
-int dicom_file_read(const unsigned char *bytes, size_t size, const char *name, dicom_elements *seen,
-                    int (*take)(dicom_file *f, void *to, err *e), void *to, err *e)
+int dicom_file_read(const unsigned char *bytes, size_t size, const char *name, dicom_elements *seen, void *to, err *e)
 {
     dicom_file f = {nullptr, name, size, seen};
-    errand job = {&f, bytes, take, to, e, -1};
+    errand job = {&f, bytes, to, e, -1};
     int64_t items = dicom_lengths_items(bytes, size);
     if (dicom_lengths_check(bytes, size, name, e) || begin(e))
         return -1;

@@ -1,6 +1,6 @@
 /* A DICOM file while it is read: its elements by tag, and its pixels. The one user of DCMTK, which is C++: dicom_file.cc.
  * (DCMTK rather than GDCM, which knows nothing of Enhanced US Volume's functional groups.) All that these return lasts while
- * `take` runs, and is not the caller's.
+ * dicom_file_take runs, and is not the caller's.
  */
 #ifndef SINEW_DICOM_FILE_H
 #define SINEW_DICOM_FILE_H
@@ -18,10 +18,12 @@ typedef struct dicom_item dicom_item; /* of a sequence, or the data set */
 
 typedef enum dicom_packing { DICOM_PLAIN, DICOM_DCMTK, DICOM_JPEG2000 } dicom_packing;
 
-/* Reads a file that is in memory, and gives it to `take`, whose result this returns; or -1 with e filled. seen (may be NULL)
- * gets its elements, those of nested items too; and which of them are used. */
-int dicom_file_read(const unsigned char *bytes, size_t size, const char *name, dicom_elements *seen,
-                    int (*take)(dicom_file *f, void *to, err *e), void *to, err *e);
+/* Reads a file that is in memory, and gives it to dicom_file_take, whose result this returns; or -1 with e filled. seen (may be
+ * NULL) gets its elements, those of nested items too; and which of them are used. */
+int dicom_file_read(const unsigned char *bytes, size_t size, const char *name, dicom_elements *seen, void *to, err *e);
+
+/* What is done with the file while it is open: dicom_image.c. (By name: sanitizers cannot follow a pointer to it from C++.) */
+int dicom_file_take(dicom_file *f, void *to, err *e);
 
 /* What DCMTK allocated once. */
 void dicom_file_end(void);

@@ -266,7 +266,7 @@ typedef struct taken {
     bool none; /* no image */
 } taken;
 
-static int take(dicom_file *f, void *to, err *e)
+int dicom_file_take(dicom_file *f, void *to, err *e)
 {
     taken *t = to;
     char burned[8];
@@ -298,7 +298,7 @@ int dicom_read(dicom_image *d, const void *bytes, size_t size, const char *name,
         return err_set(e, name, 0, "not a DICOM file; expected DICM after 128 bytes");
     int code = dicom_inflate(bytes, size, &inflated, &size, name, e);
     if (code >= 0)
-        code = dicom_file_read(inflated ? inflated : bytes, size, name, seen, take, &t, e);
+        code = dicom_file_read(inflated ? inflated : bytes, size, name, seen, &t, e);
     free(inflated);
     if (code || t.none)
         dicom_free(d);
