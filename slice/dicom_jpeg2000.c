@@ -50,7 +50,38 @@ static opj_stream_t *open_source(source *s)
     return stream;
 }
 
-/* What was announced is what DICOM said: before memory is asked for. */
+static uint64_t big(const unsigned char *p, int bytes)
+{
+    uint64_t n = 0;
+    for (int i = 0; i < bytes; i++)
+        n = n << 8 | p[i];
+    return n;
+}
+
+/* How large the image is, and how many tiles it says that it has, each of which takes 14 bytes at least (SOT, SOD) and 10 KB of
+ * OpenJPEG's: looked at before OpenJPEG asks for these. (ISO/IEC 15444-1: A.5.1) */
+static bool is_sane(const dicom_frame *f, const unsigned char *from, size_t size)
+{
+    enum { SIZ = 4, TILE = 14 };
+    if (size < SIZ + 38 || big(from, 4) != 0xFF4FFF51U)
+        return false;
+    uint64_t end[2], first[2], tile[2], tile_first[2], tiles = 1;
+    for (int a = 0; a < 2; a++) {
+        end[a] = big(from + SIZ + 4 + 4 * a, 4);
+        first[a] = big(from + SIZ + 12 + 4 * a, 4);
+        tile[a] = big(from + SIZ + 20 + 4 * a, 4);
+        tile_first[a] = big(from + SIZ + 28 + 4 * a, 4);
+        if (!tile[a] || tile_first[a] > first[a] || end[a] <= first[a] ||
+            end[a] - first[a] != (uint64_t)(a ? f->rows : f->columns))
+            return false;
+        tiles *= (end[a] - tile_first[a] + tile[a] - 1) / tile[a];
+        if (tiles > size / TILE)
+            return false;
+    }
+    return big(from + SIZ + 36, 2) == (uint64_t)f->samples;
+}
+
+/* What was announced is what DICOM said. */
 static bool has_shape(const opj_image_t *image, const dicom_frame *f)
 {
     bool same = image->numcomps == (OPJ_UINT32)f->samples && image->x1 - image->x0 == (OPJ_UINT32)f->columns &&
@@ -83,6 +114,10 @@ int dicom_jpeg2000(const dicom_frame *f, const unsigned char *from, size_t size,
 {
     source s = {from, size, 0};
     opj_dparameters_t how;
+    if (!is_sane(f, from, size))
+        return err_set(e, name, 0,
+                       "JPEG 2000 of another shape than the image; expected %lld x %lld pixels of %d samples",
+                       (long long)f->columns, (long long)f->rows, f->samples);
     opj_stream_t *stream = open_source(&s);
     opj_codec_t *codec = opj_create_decompress(OPJ_CODEC_J2K);
     opj_image_t *image = NULL;
@@ -93,8 +128,8 @@ int dicom_jpeg2000(const dicom_frame *f, const unsigned char *from, size_t size,
              !opj_read_header(stream, codec, &image))
         err_set(e, name, 0, "damaged JPEG 2000; expected a codestream");
     else if (!has_shape(image, f))
-        err_set(e, name, 0, "JPEG 2000 of another shape than the image; expected %lld x %lld pixels of %d samples",
-                (long long)f->columns, (long long)f->rows, f->samples);
+        err_set(e, name, 0, "JPEG 2000 whose samples are not as large as the image's; expected %d bits each, at most",
+                8 * f->bytes);
     else if (!opj_decode(codec, stream, image) || !put(image, f, to))
         err_set(e, name, 0, "damaged JPEG 2000; expected a whole codestream");
     opj_image_destroy(image);

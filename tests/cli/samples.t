@@ -69,7 +69,7 @@ volume() {
 }
 near "$(volume "$C/surfaces.obj" bone)" 9651 .03 "the bone's volume"
 near "$(volume "$C/surfaces.obj" vein)" 1508 .03 "the vein's"
-near "$(volume "$C/surfaces.obj" artery)" 942 .03 "the artery's"
+near "$(volume "$C/surfaces.obj" artery)" 942 .06 "the artery's, of 32 pixels a slice"
 # height FILE: of the vein, amid the volume.
 height() {
     awk '$1 == "g" { on = $2 == "vein" } $1 == "v" && on && $4 * $4 < 1 { if (!n++ || $3 < low) low = $3; if ($3 > high) high = $3 }
