@@ -54,7 +54,7 @@ DcmItem *item_of(dicom_item *item)
     return reinterpret_cast<DcmItem *>(item);
 }
 
-/* A number of an element, whichever way it is written. */
+/* A number of an element, whichever way it is written. (DCMTK reads 1.5 as 1 where text should be whole.) */
 bool number_at(DcmElement *element, unsigned long at, double *value)
 {
     OFString text;
@@ -62,11 +62,12 @@ bool number_at(DcmElement *element, unsigned long at, double *value)
     Sint32 whole = 0;
     Uint16 small = 0;
     OFBool good = OFTrue;
-    if (element->getFloat64(real, at).good())
+    bool written = element->ident() == EVR_IS || element->ident() == EVR_DS;
+    if (!written && element->getFloat64(real, at).good())
         *value = real;
-    else if (element->getSint32(whole, at).good())
+    else if (!written && element->getSint32(whole, at).good())
         *value = whole;
-    else if (element->getUint16(small, at).good())
+    else if (!written && element->getUint16(small, at).good())
         *value = small;
     else if (element->getOFString(text, at).good() && !text.empty())
         *value = OFStandard::atof(text.c_str(), &good);

@@ -128,7 +128,7 @@ static int check_alike(const stack *k, err *e)
             if (!near_enough(a->along_row[c], b->along_row[c], 1e-3) ||
                 !near_enough(a->along_column[c], b->along_column[c], 1e-3))
                 what = "another orientation";
-            if (c < 2 && !near_enough(a->spacing[c], b->spacing[c], 1e-4 * a->spacing[c]))
+            if (c < 2 && !near_enough(a->spacing[c], b->spacing[c], 1e-4 * fabs(a->spacing[c])))
                 what = "another distance between pixels";
         }
         if (what)
