@@ -88,7 +88,7 @@ static void set_spacings(const reading *r)
 
 static int read_plain_geometry(const reading *r)
 {
-    double p[3], o[6];
+    double p[3], o[6] = {0};
     dicom_image *d = r->d;
     set_spacings(r);
     if (numbers(r, r->set, TAG_ORIENTATION, o, 6) == 6 && set_axes(r, o))
@@ -144,7 +144,7 @@ static int read_place(const reading *r, const groups *g, double turn[6])
 static int read_frame_groups(const reading *r, const groups *g, double first[6])
 {
     dicom_image *d = r->d;
-    double turn[6];
+    double turn[6] = {0};
     if (read_place(r, g, turn))
         return -1;
     for (int i = 0; g->at && i < 6; i++)
@@ -207,7 +207,8 @@ static int read_philips_geometry(const reading *r)
     set_spacings(r);
     d->spacing[2] = 10 * fabs(between);
     for (int64_t f = 0; f < planes * times; f++) {
-        d->time[f] = (double)(f / planes);
+        int64_t time = f / planes;
+        d->time[f] = (double)time;
         d->position[3 * f] = d->position[3 * f + 1] = 0;
         d->position[3 * f + 2] = d->spacing[2] * (double)(f % planes);
     }

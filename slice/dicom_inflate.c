@@ -72,7 +72,7 @@ int dicom_inflate(const unsigned char *bytes, size_t size, unsigned char **plain
     growing to = {0};
     if (!head)
         return 0;
-    if (MEM_ROOM(&to.bytes, &to.capacity, (int64_t)head + PIECE, "a file", e))
+    if (mem_grow(&to.bytes, &to.capacity, (int64_t)head + PIECE, sizeof *to.bytes, "a file", e) || !to.bytes)
         return -1;
     memcpy(to.bytes, bytes, head);
     memset(to.bytes + syntax + strlen("1.2.840.10008.1.2.1"), 0, strlen(".99"));

@@ -21,10 +21,10 @@ static const series_wish any = {{(double)NAN, (double)NAN, (double)NAN}, -1, -1,
 static dicom_image image_at(double at, int frames, int value)
 {
     dicom_image d = {.series = "1.2", .columns = WIDE, .rows = HIGH, .frames = frames, .bytes = 1, .slope = 1};
-    d.position = calloc((size_t)(3 * frames), sizeof *d.position);
+    d.position = calloc(3 * (size_t)frames, sizeof *d.position);
     d.time = calloc((size_t)frames, sizeof *d.time);
     d.kind = calloc((size_t)frames, sizeof *d.kind);
-    d.pixels = malloc((size_t)(frames * WIDE * HIGH));
+    d.pixels = malloc((size_t)frames * WIDE * HIGH);
     if (!d.position || !d.time || !d.kind || !d.pixels)
         exit(1);
     d.spacing[0] = .25;
