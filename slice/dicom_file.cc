@@ -27,6 +27,9 @@ struct dicom_file {
     const char *name;
     size_t size;
     dicom_elements *seen;
+    int64_t
+        piece_at; /* the last that was asked for: finding one by its number takes as long as there are others before it */
+    DcmObject *piece;
 };
 
 namespace
@@ -203,7 +206,7 @@ DcmPixelSequence *pieces_of(dicom_file *f)
 
 int dicom_file_read(const unsigned char *bytes, size_t size, const char *name, dicom_elements *seen, void *to, err *e)
 {
-    dicom_file f = {nullptr, name, size, seen};
+    dicom_file f = {nullptr, name, size, seen, -1, nullptr};
     errand job = {&f, bytes, to, e, -1};
     int64_t items = dicom_lengths_items(bytes, size);
     if (dicom_lengths_check(bytes, size, name, e) || begin(e))
@@ -340,8 +343,17 @@ const unsigned char *dicom_piece(dicom_file *f, int64_t at, size_t *size)
     DcmPixelSequence *items = pieces_of(f);
     DcmPixelItem *item = nullptr;
     Uint8 *bytes = nullptr;
-    if (!items || items->getItem(item, static_cast<unsigned long>(at + 1)).bad() || !item ||
-        item->getUint8Array(bytes).bad() || !bytes)
+    if (!items)
+        return nullptr;
+    if (f->piece && at == f->piece_at + 1)
+        item = static_cast<DcmPixelItem *>(items->nextInContainer(f->piece));
+    else if (f->piece && at == f->piece_at)
+        item = static_cast<DcmPixelItem *>(f->piece);
+    else if (items->getItem(item, static_cast<unsigned long>(at + 1)).bad())
+        item = nullptr;
+    f->piece_at = at;
+    f->piece = item;
+    if (!item || item->getUint8Array(bytes).bad() || !bytes)
         return nullptr;
     *size = item->getLength();
     return bytes;

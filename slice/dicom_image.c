@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CENTIMETRES = 3, MOST_FRAMES = 100000 };
+enum { CENTIMETRES = 3, MOST_FRAMES = 30000 };
 
 typedef struct reading {
     dicom_image *d;
@@ -83,7 +83,13 @@ static void set_spacings(const reading *r)
 {
     set_spacing(r, r->set);
     set_region_spacing(r, r->set);
-    set_region_spacing(r, dicom_inner(r->f, r->set, TAG_REGIONS, 0));
+    for (int64_t at = 0; !isfinite(r->d->spacing[0]);
+         at++) { /* an image may have traces beside it, whose regions are no cm */
+        dicom_item *region = dicom_inner(r->f, r->set, TAG_REGIONS, at);
+        if (!region)
+            break;
+        set_region_spacing(r, region);
+    }
 }
 
 static int read_plain_geometry(const reading *r)

@@ -6,6 +6,7 @@
 #include "slice/dicom_tags.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static int refuse(const dicom_file *f, err *e, const char *what, const char *expected)
 {
@@ -68,29 +69,52 @@ static dicom_palette *read_palette(dicom_file *f, bool negative, err *e)
     return NULL;
 }
 
-/* A frame a piece, by pixel. The caller frees them. */
+/* Whether a piece begins a frame: with SOC and SIZ (ISO/IEC 15444-1: A.2). A frame may be in several. */
+static bool begins_frame(const unsigned char *piece, size_t size)
+{
+    static const unsigned char begin[] = {0xFF, 0x4F, 0xFF, 0x51};
+    return size >= sizeof begin && !memcmp(piece, begin, sizeof begin);
+}
+
+/* The frame that begins with piece *at, joined; *at becomes the next's. The caller frees it; NULL with e filled. */
+static unsigned char *join_frame(dicom_file *f, int64_t *at, int64_t *size, err *e)
+{
+    unsigned char *joined = NULL;
+    int64_t room = 0, pieces = dicom_pieces(f);
+    for (*size = 0; *at < pieces && !e->status; ++*at) {
+        size_t length = 0;
+        const unsigned char *piece = dicom_piece(f, *at, &length);
+        if (!piece || !length || (*size && begins_frame(piece, length)))
+            break;
+        if (!mem_grow(&joined, &room, *size + (int64_t)length, 1, "a frame", e) && joined)
+            memcpy(joined + *size, piece, length);
+        *size += (int64_t)length;
+    }
+    if (!e->status && *size)
+        return joined;
+    free(joined);
+    if (!e->status)
+        refuse(f, e, "a frame without bytes, or fewer frames than are said", "a codestream of JPEG 2000 each");
+    return NULL;
+}
+
+/* By pixel. The caller frees them. */
 static unsigned char *unpack_jpeg2000(dicom_samples *s, const dicom_image *d, dicom_file *f, err *e)
 {
     dicom_frame frame = {d->columns, d->rows, dicom_colour_samples(s->colour), s->bytes};
-    int64_t pieces = dicom_pieces(f), size = s->plane * frame.samples * s->bytes;
-    s->planar = false;
-    if (pieces != s->frames) {
-        err_set(e, dicom_file_name(f), 0, "%lld frames in %lld pieces; expected one each", (long long)s->frames,
-                (long long)pieces);
-        return NULL;
-    }
+    int64_t size = s->plane * frame.samples * s->bytes, at = 0, length;
     unsigned char *to = mem_array(s->frames, (size_t)size, "pixels", e);
-    for (int64_t i = 0; to && i < s->frames; i++) {
-        size_t length = 0;
-        const unsigned char *piece = dicom_piece(f, i, &length);
-        if (!piece)
-            refuse(f, e, "a frame without bytes", "JPEG 2000");
-        if (!piece || dicom_jpeg2000(&frame, piece, length, to + i * size, dicom_file_name(f), e)) {
-            free(to);
-            to = NULL;
-        }
+    s->planar = false;
+    for (int64_t i = 0; i < s->frames && !e->status; i++) {
+        unsigned char *from = join_frame(f, &at, &length, e);
+        if (from)
+            dicom_jpeg2000(&frame, from, (size_t)length, to + i * size, dicom_file_name(f), e);
+        free(from);
     }
-    return to;
+    if (!e->status)
+        return to;
+    free(to);
+    return NULL;
 }
 
 static int unpack(dicom_samples *s, const dicom_image *d, dicom_file *f, err *e)
