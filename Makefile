@@ -16,13 +16,13 @@ OPT = -O3
 # No contraction: a fused multiply-add that one compiler makes and another does not would change results.
 CFLAGS = $(OPT) -g
 CSTD = -std=c11 -D_XOPEN_SOURCE=700 -D_DEFAULT_SOURCE -ffp-contract=off -fno-math-errno -pthread
-CPPFLAGS = -Icommon -I. -isystem /usr/include/freetype2
+CPPFLAGS = -Icommon -I. -isystem /usr/include/freetype2 $(foreach folder,$(lastword $(wildcard /usr/include/openjpeg-2.*)),-isystem $(folder))
 ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(VECTORS) $(CPPFLAGS) -MMD -MP
 LDLIBS = -lz -lm -pthread
 EMBREE = -lembree3
 # DCMTK is C++, and so is the one file that uses it.
 CXX = $(if $(findstring clang,$(CC)),$(subst clang,clang++,$(CC)),c++)
-DICOM = -ldcmjpeg -ldcmjpls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
+DICOM = -ldcmjpeg -ldcmjpls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++ -lopenjp2
 PICTURES = -lpng -lfreetype
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface \
@@ -104,7 +104,7 @@ TLED_SRC := $(filter-out tled/tiles.c,$(wildcard tled/*.c))
 MESH_MODULES := $(wildcard msds/mesh_*.c)
 RUN_MODULES := $(filter-out msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
 SAMPLES_SRC := slice/samples.c slice/length.c
-IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c slice/dicom_elements.c slice/dicom_lengths.c slice/dicom.cc
+IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c $(wildcard slice/dicom*.c) slice/dicom_file.cc
 SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
 SURFACE_SRC := $(SAMPLES_SRC) $(wildcard slice/contour*.c) slice/cubes.c
 INFO_MODULES := $(wildcard common/tools/info_*.c)
