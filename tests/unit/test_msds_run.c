@@ -1,13 +1,14 @@
 /* msds-run's solvers: Algorithm 1 on PST's figure 4, springs at rest under gravity and their momentum, the sharp bound of the step, the FEM's
  * patch test, the exact solver's contact, warping, and the same bytes for any number of threads.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/largest.c
+// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/largest.c
 #include "msds_block.h"
 
 #include "base/mem.h"
 #include "device/vectors.h"
 #include "msds/lanes.h"
 #include "msds/largest.h"
+#include "msds/mixing.h"
 #include "msds/msds_cpu.h"
 #include "msds/slices.h"
 
@@ -354,6 +355,71 @@ static void test_warp(void)
     ok(fabs(f[1][0]) > 1, "but to a linear one: %g N", f[1][0]);
 }
 
+/* A strained element's rotation, from none: the turn that its strain was turned by, however far. */
+static void test_rotation(void)
+{
+    double worst = 0;
+    for (int i = 0; i < 200; i++) {
+        double angle = 2.8 * (i + .5) / 200, x = sin(1. + i), y = cos(2. * i), z = sin(3. * i);
+        double half = sin(angle / 2) / sqrt(x * x + y * y + z * z);
+        double q[4] = {half * x, half * y, half * z, cos(angle / 2)}, r[3][3], g[3][3], found[3][3];
+        double strain[3][3] = {{1.4, .2, -.1}, {.2, .7, .15}, {-.1, .15, 1 - .3 * sin(i)}}, start[4] = {0, 0, 0, 1};
+        simplex_matrix(q, r);
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++)
+                g[a][b] = r[a][0] * strain[0][b] + r[a][1] * strain[1][b] + r[a][2] * strain[2][b] - (a == b);
+        simplex_rotation(g, start, found);
+        for (int a = 0; a < 9; a++)
+            worst = fmax(worst, fabs(found[a / 3][a % 3] - r[a / 3][a % 3]));
+    }
+    ok(worst < 1e-9, "the turn of a strained element, up to 2.8: off by %.2g", worst);
+}
+
+/* Mixing brings a slow linear iteration to rest in as many steps as it has directions, and one that grows, too. */
+static void test_mixing(void)
+{
+    err e = {0};
+    mixing m = {0};
+    double x[6] = {0}, step[6], left = 0;
+    static const double rate[6] = {.9, .8, -.7, .95, 1.3, -2};
+    tets_must(!mixing_make(&m, 6, 6, &e), &e);
+    for (int k = 0; k < 8; k++) {
+        left = 0;
+        for (int i = 0; i < 6; i++) {
+            step[i] = (rate[i] - 1) * (x[i] - i);
+            left = fmax(left, fabs(x[i] - i));
+        }
+        mixing_next(&m, x, step);
+    }
+    ok(left < 1e-8, "mixing: at rest after 7 steps, to %.2g", left);
+    mixing_free(&m);
+}
+
+/* A beam that hangs far down: the equilibrium of warped elements by two ways that share only the elements' forces. */
+static void test_warped(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_options o = tets_options();
+    tets b = {{11, 4, 4}, {.1, .03, .03}, 20000, .4, 1000, 0, false};
+    msds_sight exact, cg;
+    o.warp = true;
+    o.gravity[2] = -9.81;
+    make_problem(&b, &o, &m, &p);
+    msds_plan plan = tets_plan(MSDS_EXACT);
+    double *u = run_frames(&p, &plan, 2, 2, 20, &exact), off = 0;
+    ok(exact.residual < 1e-6 && exact.largest > .02, "warped, %.3g m down: residual %.2g", exact.largest,
+       exact.residual);
+    plan.method = MSDS_FEM;
+    double *w = run_frames(&p, &plan, 2, 60, 100, &cg);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        off = fmax(off, fabs(u[i] - w[i]));
+    ok(off < 1e-4 * exact.largest, "conjugate gradients come to the same to %.2g of the largest", off / exact.largest);
+    free(u);
+    free(w);
+    free_problem(&m, &p);
+}
+
 enum { LANE_FIELDS = 6, DENSE = 29, DENSE_ROWS = 43, DENSE_STRIDE = 45 };
 
 /* What the loops of one build make of numbers with no pattern, all that they write together. */
@@ -489,6 +555,9 @@ int main(void)
     test_contact();
     test_warp();
     test_threads();
+    test_rotation();
+    test_mixing();
+    test_warped();
     test_lanes();
     test_bad();
     return done_testing();
