@@ -85,6 +85,7 @@ typedef struct session {
     msds_method method; /* now */
     msds_sight sight;   /* of the last frame */
     int64_t next_frame;
+    bool pressed; /* some node, in some frame */
     notes warnings;
 } session;
 
@@ -257,6 +258,7 @@ static int solve_frame(session *s, const poses_event *at, err *e)
         return -1;
     }
     s->sight = sight;
+    s->pressed = s->pressed || sight.contacts > 0;
     say_frame(s, at->time, &sight);
     if (write_frame(s, at, &sight, e))
         return -1;
@@ -297,6 +299,10 @@ static int simulate(session *s, err *e)
     }
     if (!got && !frames)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
+    if (!got && s->o->probe && !s->pressed)
+        notes_add(&s->warnings,
+                  "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space",
+                  (long long)frames);
     return got;
 }
 

@@ -57,7 +57,7 @@ check "in two parts: the same" sinew diff --rel 1e-4 --abs 1e-8 --only node.disp
 check "compares" msds-run --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'msds against fem' "$T/stderr")" 10 "a difference a frame"
 
-for method in msds 'fem' 'fem --exact'; do
+for method in msds 'fem' 'fem --exact' 'fem --warp' 'fem --exact --warp'; do
     # shellcheck disable=SC2086
     for n in 1 2 3; do
         msds-run -q --threads $n --method $method --probe sphere:2cm --poses "$T/press.tum" <"$T/block.sinew" | cksum
@@ -84,6 +84,30 @@ awk '/^array element.node/ { print; getline; print $2, $1, $3, $4; next } { prin
 fails 1 "an inverted element" 'element 0 is inverted' msds-run --poses "$T/first.tum" <"$T/inverted.sinew"
 awk '/^array material.nu/ { print; getline; print "0.5"; next } { print }' "$T/text.sinew" >"$T/nu.sinew"
 fails 1 "nu = .5" 'nu.* 0.5.*expected' msds-run --poses "$T/first.tum" <"$T/nu.sinew"
+echo 'method fem' >"$T/method.tum"
+fails 1 "changes of method and no pose" 'method.tum: no pose; expected' msds-run --poses "$T/method.tum" <"$T/block.sinew"
+printf '0 .04 .04 .07 1 0 0 0\n0.1 .04' >"$T/cut.tum"
+fails 1 "a pose that is cut short" 'cut.tum:2: 2 words; expected time tx' msds-run --poses "$T/cut.tum" <"$T/block.sinew"
+mkfifo "$T/fifo"
+printf '0 .04 .04 .07 1 0 0 0\n0.1 .0' >"$T/fifo" &
+fails 1 "a FIFO whose writer goes in the middle of a pose" 'fifo:2: 2 words' msds-run -o "$T/left" --poses "$T/fifo" <"$T/block.sinew"
+: >"$T/fifo" &
+fails 1 "a FIFO whose writer says nothing" 'fifo: no pose' msds-run -o "$T/left" --poses "$T/fifo" <"$T/block.sinew"
+check "no output is left" test ! -e "$T/left"
+echo '0 .04 .04 .5 1 0 0 0' >"$T/far.tum"
+fails 0 "a probe that never touches" 'warning: the probe touches nothing in any frame \(of 1\)' \
+    msds-run --probe sphere:2cm --poses "$T/far.tum" -o /dev/null <"$T/block.sinew"
+fails 0 "and one that does" 'node' msds-run --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
+is "$(grep -c warning "$T/stderr")" 0 "has no such word"
+awk '/^array material.E/ { print; getline; print "nan"; next } { print }' "$T/text.sinew" >"$T/E.sinew"
+fails 1 "E = nan" 'material.E.* nan .*expected' msds-run --poses "$T/first.tum" <"$T/E.sinew"
+awk '/^array node.position/ { print; getline; print "0 nan 0"; next } { print }' "$T/text.sinew" >"$T/place.sinew"
+fails 1 "a place that is nan" 'node.position, row 0 is not finite' msds-run --poses "$T/first.tum" <"$T/place.sinew"
+awk '/^array element.node/ { print; getline; print $1, $2, $3, $3; next } { print }' "$T/text.sinew" >"$T/flat.sinew"
+fails 1 "a flat element" 'element.node, row 0 has 3 different nodes' msds-run --poses "$T/first.tum" <"$T/flat.sinew"
+# shellcheck disable=SC2086
+msds-mesh -q $block --fix none >"$T/free.sinew" 2>"$T/err"
+fails 1 "an exact FEM that nothing holds" 'nothing holds node' msds-run --method fem --exact --poses "$T/first.tum" <"$T/free.sinew"
 fails 1 "no model" 'no model on stdin' msds-run --poses "$T/first.tum" </dev/null
 
 # The hanging block, by CalculiX's linear tetrahedra and ours.
