@@ -57,6 +57,47 @@ check "in two parts: the same" sinew diff --rel 1e-4 --abs 1e-8 --only node.disp
 check "compares" msds-run --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'msds against fem' "$T/stderr")" 10 "a difference a frame"
 
+# The root mean square of their difference, by hand from both.
+for method in msds 'fem --exact'; do
+    # shellcheck disable=SC2086
+    msds-run -q --text --method $method --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" <"$T/block.sinew" |
+        awk '/^frame/ { frame = $2 } /^[a-z]/ { on = $2 == "node.displacement" && frame == 9; next } on' >"$T/${method%% *}.rows"
+done
+by_hand=$(paste "$T/msds.rows" "$T/fem.rows" | awk '{ for (i = 1; i <= 3; i++) { off += ($i - $(i + 3)) ^ 2; size += $(i + 3) ^ 2 } }
+    END { printf "%.4g", sqrt(off / size) }')
+near "$(sed -n '$s/.*root mean square \([0-9.e-]*\),.*/\1/p' "$T/stderr")" "$by_hand" 1e-3 "which is that of both by hand, $by_hand"
+
+# What is carried: the first frame after a change is that of a run which begins with the frames before.
+head -n 4 "$T/press.tum" >"$T/four.tum"
+sed -n 5p "$T/press.tum" >"$T/fifth.tum"
+for change in 'msds:fem' 'fem:msds'; do
+    { cat "$T/four.tum"; echo "method ${change#*:}"; cat "$T/fifth.tum"; } >"$T/change.tum"
+    msds-run -q --iterations 5 --method "${change%:*}" --probe sphere:2cm --poses "$T/change.tum" <"$T/block.sinew" >"$T/change.sinew"
+    msds-run -q --iterations 5 --method "${change%:*}" --probe sphere:2cm --poses "$T/four.tum" <"$T/block.sinew" |
+        msds-run -q --iterations 5 --method "${change#*:}" --probe sphere:2cm --poses "$T/fifth.tum" >"$T/parts.sinew"
+    check "$change: displacements and velocities carry over" sinew diff --rel 1e-3 --abs 2e-5 --only node.displacement,node.velocity \
+        "$T/change.sinew" "$T/parts.sinew"
+    msds-run -q --iterations 5 --method "${change#*:}" --probe sphere:2cm --poses "$T/fifth.tum" <"$T/block.sinew" >"$T/fresh.sinew"
+    carried=$(sinew info --get node.displacement.at.0.04,0.04,0.04 "$T/parts.sinew" | awk '{ print $3 }')
+    fresh=$(sinew info --get node.displacement.at.0.04,0.04,0.04 "$T/fresh.sinew" | awk '{ print $3 }')
+    check "$change: from rest it is another ($fresh, not $carried m)" awk -v a="$carried" -v b="$fresh" 'BEGIN { exit !((a - b) / a > 0.05 || (a - b) / a < -0.05) }'
+done
+
+# A PLUS sequence as poses, in mm, of two transforms.
+{
+    printf 'ObjectType = Image\nNDims = 3\nDimSize = 5 4 2\n'
+    for i in 0 1; do
+        printf 'Seq_Frame000%d_ProbeToReferenceTransform = 1 0 0 40 0 -1 0 40 0 0 -1 %d 0 0 0 1\n' "$i" $((59 - i))
+        printf 'Seq_Frame000%d_StylusToReferenceTransform = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\nSeq_Frame000%d_Timestamp = %d.5\n' "$i" "$i" "$i"
+    done
+    printf 'ElementDataFile = LOCAL\n'
+} >"$T/sweep.mha"
+check "a PLUS sequence" msds-run -q --text --transform ProbeToReference --probe sphere:2cm --poses "$T/sweep.mha" -o "$T/sweep.sinew" <"$T/block.sinew"
+is "$(awk '/^array probe.pose/ { getline; print $1, $2, $3, $4 }' "$T/sweep.sinew" | tr '\n' ';')" \
+    "0.040000000000000001 0.040000000000000001 0.058999999999999997 1;0.040000000000000001 0.040000000000000001 0.058000000000000003 1;" "in metres"
+fails 1 "a transform that it has not" 'sweep.mha:[0-9]*: frame 0 does not say where Nose is' \
+    msds-run --transform NoseToReference --poses "$T/sweep.mha" <"$T/block.sinew"
+
 for method in msds 'fem' 'fem --exact' 'fem --warp' 'fem --exact --warp'; do
     # shellcheck disable=SC2086
     for n in 1 2 3; do

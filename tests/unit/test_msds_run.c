@@ -5,12 +5,9 @@
 #include "msds_block.h"
 
 #include "base/mem.h"
-#include "device/vectors.h"
-#include "msds/lanes.h"
 #include "msds/largest.h"
-#include "msds/mixing.h"
 #include "msds/msds_cpu.h"
-#include "msds/slices.h"
+#include "msds/stiffness.h"
 
 #include "tap.h"
 
@@ -99,37 +96,6 @@ static void test_counts(void)
            want[i][0], want[i][1], want[i][2], (long long)p.elements, (long long)p.springs);
         free_problem(&m, &p);
     }
-}
-
-/* Every slot's neighbour is the spring's other end, and every spring is met from both. */
-static void test_slices(void)
-{
-    model m = {0};
-    msds_problem p = {0};
-    slices s = {0};
-    err e = {0};
-    msds_options o = tets_options();
-    tets b = {{9, 6, 5}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
-    int64_t met = 0, wrong = 0, rows = 0;
-    make_problem(&b, &o, &m, &p);
-    tets_must(!slices_make(&s, &p, &e), &e);
-    for (int64_t slice = 0; slice < s.count; slice++)
-        for (int64_t slot = s.start[slice]; slot < s.start[slice + 1]; slot++)
-            for (int64_t lane = 0; lane < LANES; lane++) {
-                int32_t i = s.spring[slot * LANES + lane], other = s.neighbour[slot * LANES + lane];
-                if (i < 0)
-                    continue;
-                int32_t a = s.model_node[slice * LANES + lane], c = s.model_node[other];
-                wrong += !((p.spring[i].node[0] == a && p.spring[i].node[1] == c) ||
-                           (p.spring[i].node[1] == a && p.spring[i].node[0] == c));
-                wrong += s.first[slot] != SLICES_SCATTERED && s.first[slot] + lane != other;
-                rows += s.first[slot] != SLICES_SCATTERED;
-                met++;
-            }
-    ok(met == 2 * p.springs && !wrong, "each spring is met from both its ends");
-    ok(rows > met * 7 / 10, "mostly in rows: %lld of %lld", (long long)rows, (long long)met);
-    slices_free(&s);
-    free_problem(&m, &p);
 }
 
 /* Gravity along a column of springs: at rest, the springs across each level carry what hangs below. The exact answer is a small
@@ -333,6 +299,76 @@ static void test_contact(void)
     free_problem(&m, &p);
 }
 
+/* By a penalty, nodes stay in the probe as deep as their springs give; both solvers agree; and what is fixed holds what the probe
+ * pushes. */
+static void test_penalty(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    stiffness k = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    tets b = {{11, 11, 7}, {.1, .1, .06}, 3000, .45, 1000, 2, false};
+    msds_sight exact, cg;
+    o.penalty = true;
+    make_problem(&b, &o, &m, &p);
+    msds_plan plan = tets_plan(MSDS_EXACT);
+    tets_press(&plan, .02, .052, .047, .052);
+    double *u = run_frames(&p, &plan, 2, 8, 20, &exact), off = 0, springs = 0, held[3] = {0};
+    for (int64_t n = 0; n < p.nodes; n++) {
+        double x[3] = {p.position[3 * n] + u[3 * n], p.position[3 * n + 1] + u[3 * n + 1],
+                       p.position[3 * n + 2] + u[3 * n + 2]};
+        probe_touch t = probe_at(&plan.probe, x);
+        springs += t.depth > 0 ? p.repulsion[n] * t.depth * t.way[2] : 0;
+    }
+    near_(-springs, exact.force[2], 2e-3 * exact.force[2], "a penalty pushes as deep as nodes are: %.4g N",
+          exact.force[2]);
+    plan.method = MSDS_FEM;
+    double *w = run_frames(&p, &plan, 2, 8, 400, &cg), *f = mem_array(p.nodes, 3 * sizeof *f, "test", &e);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        off = fmax(off, fabs(u[i] - w[i]));
+    ok(off < 2e-3 * exact.largest, "400 conjugate gradients agree to %.2g of the largest", off / exact.largest);
+    pool *workers = pool_create(1, &e);
+    tets_must(workers && f && !stiffness_make(&k, &p, workers, &e), &e);
+    stiffness_force(&k, u, f);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        held[i % 3] += p.fixed[i / 3] ? f[i] : 0;
+    for (int a = 0; a < 3; a++)
+        near_(held[a], exact.force[a], 1e-5 * exact.force[2], "what is fixed holds the probe's force along axis %d", a);
+    stiffness_free(&k);
+    pool_destroy(workers);
+    free(f);
+    free(u);
+    free(w);
+    free_problem(&m, &p);
+}
+
+/* auto: springs store the energy of their material, pulled along an axis (nu = 3/13, as theirs is). */
+static void test_auto(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_options o = tets_options();
+    tets b = {{6, 5, 7}, {.05, .04, .06}, 7000, 3. / 13, 1000, 2, false};
+    double energy = 0;
+    o.scale = 0;
+    make_problem(&b, &o, &m, &p);
+    near_(p.scale, .01 / 8.615, 1e-6 * .01, "k = h / 8.615 E");
+    for (int64_t i = 0; i < p.springs; i++) {
+        const msds_spring *s = &p.spring[i];
+        double square = 0;
+        for (int a = 0; a < 3; a++) {
+            double d = p.position[3 * s->node[1] + a] - p.position[3 * s->node[0] + a];
+            d *= 1 + (a ? -3. / 13 : 1) * 1e-5;
+            square += d * d;
+        }
+        energy += s->stiffness * (sqrt(square) - s->rest) * (sqrt(square) - s->rest) / 2;
+    }
+    double want = .5 * 7000 * 1e-10 * .05 * .04 * .06;
+    near_(energy, want, 2e-4 * want, "and the energy of a pull along x is the material's");
+    free_problem(&m, &p);
+}
+
 /* A rigid turn: linear elements take it for strain, warped ones do not. */
 static void test_warp(void)
 {
@@ -353,46 +389,6 @@ static void test_warp(void)
     ok(worst < 1e-6, "a turn of .8 is no strain to a warped element: %g N", worst);
     simplex_force(&s, g, f);
     ok(fabs(f[1][0]) > 1, "but to a linear one: %g N", f[1][0]);
-}
-
-/* A strained element's rotation, from none: the turn that its strain was turned by, however far. */
-static void test_rotation(void)
-{
-    double worst = 0;
-    for (int i = 0; i < 200; i++) {
-        double angle = 2.8 * (i + .5) / 200, x = sin(1. + i), y = cos(2. * i), z = sin(3. * i);
-        double half = sin(angle / 2) / sqrt(x * x + y * y + z * z);
-        double q[4] = {half * x, half * y, half * z, cos(angle / 2)}, r[3][3], g[3][3], found[3][3];
-        double strain[3][3] = {{1.4, .2, -.1}, {.2, .7, .15}, {-.1, .15, 1 - .3 * sin(i)}}, start[4] = {0, 0, 0, 1};
-        simplex_matrix(q, r);
-        for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++)
-                g[a][b] = r[a][0] * strain[0][b] + r[a][1] * strain[1][b] + r[a][2] * strain[2][b] - (a == b);
-        simplex_rotation(g, start, found);
-        for (int a = 0; a < 9; a++)
-            worst = fmax(worst, fabs(found[a / 3][a % 3] - r[a / 3][a % 3]));
-    }
-    ok(worst < 1e-9, "the turn of a strained element, up to 2.8: off by %.2g", worst);
-}
-
-/* Mixing brings a slow linear iteration to rest in as many steps as it has directions, and one that grows, too. */
-static void test_mixing(void)
-{
-    err e = {0};
-    mixing m = {0};
-    double x[6] = {0}, step[6], left = 0;
-    static const double rate[6] = {.9, .8, -.7, .95, 1.3, -2};
-    tets_must(!mixing_make(&m, 6, 6, &e), &e);
-    for (int k = 0; k < 8; k++) {
-        left = 0;
-        for (int i = 0; i < 6; i++) {
-            step[i] = (rate[i] - 1) * (x[i] - i);
-            left = fmax(left, fabs(x[i] - i));
-        }
-        mixing_next(&m, x, step);
-    }
-    ok(left < 1e-8, "mixing: at rest after 7 steps, to %.2g", left);
-    mixing_free(&m);
 }
 
 /* A beam that hangs far down: the equilibrium of warped elements by two ways that share only the elements' forces. */
@@ -417,75 +413,6 @@ static void test_warped(void)
     ok(off < 1e-4 * exact.largest, "conjugate gradients come to the same to %.2g of the largest", off / exact.largest);
     free(u);
     free(w);
-    free_problem(&m, &p);
-}
-
-enum { LANE_FIELDS = 6, DENSE = 29, DENSE_ROWS = 43, DENSE_STRIDE = 45 };
-
-/* What the loops of one build make of numbers with no pattern, all that they write together. */
-static double *run_lanes(const lanes *loops, const slices *s, int64_t *count)
-{
-    err e = {0};
-    lanes_field f[LANE_FIELDS] = {{{NULL}, NULL}};
-    const int64_t slots = s->slots * 9 * LANES, dense = DENSE_STRIDE * DENSE, all = 3 * s->nodes * LANE_FIELDS;
-    float *number = mem_array(slots, sizeof *number, "test", &e);
-    double *result = mem_array(all + 3 + 3 * dense, sizeof *result, "test", &e), *to = result;
-    tets_must(number && result, &e);
-    for (int i = 0; i < LANE_FIELDS; i++) {
-        tets_must(!lanes_field_make(&f[i], s->nodes, &e), &e);
-        for (int64_t k = 0; k < 3 * s->nodes; k++)
-            f[i].x[k % 3][k / 3] = (float)(sin(1.3 * (double)k + i) * (i ? .001 : 1));
-    }
-    for (int64_t k = 0; k < slots; k++)
-        number[k] = 1 + (float)cos(.7 * (double)k);
-    lanes_springs w = {s,      number, number + 8, number + 16, f[0], f[1], f[2], f[3], f[4],
-                       number, f[5],   .01F,       false,       {0},  0,    NULL, 0,    NULL};
-    lanes_matrix a = {s, number, number};
-    loops->step(&w, 0, s->count);
-    *to++ = loops->multiply(&a, &f[1], &f[5], 0, s->count);
-    *to++ = loops->advance(&f[1], &f[2], &f[3], &f[4], .37F, 0, s->count);
-    loops->turn(&f[0], &f[2], .61F, 0, s->count);
-    for (int i = 0; i < LANE_FIELDS; i++)
-        for (int64_t k = 0; k < 3 * s->nodes; k++)
-            *to++ = (double)f[i].x[k % 3][k / 3];
-    double *c = to, *l = c + dense, *x = l + dense;
-    for (int64_t k = 0; k < 3 * dense; k++)
-        c[k] = sin(.9 * (double)k);
-    for (int columns = 1; columns <= 4; columns++)
-        loops->update(c + columns, DENSE_STRIDE, l, x, DENSE_ROWS - columns, columns, DENSE);
-    loops->forward(c, number, DENSE_STRIDE, DENSE_ROWS, DENSE, x);
-    loops->backward(x, number, DENSE_STRIDE, DENSE_ROWS, DENSE, c);
-    *count = (x - result) + dense;
-    for (int i = 0; i < LANE_FIELDS; i++)
-        lanes_field_free(&f[i]);
-    free(number);
-    return result;
-}
-
-/* Every build of the loops gives the same bytes. */
-static void test_lanes(void)
-{
-    model m = {0};
-    msds_problem p = {0};
-    slices s = {0};
-    err e = {0};
-    msds_options o = tets_options();
-    tets b = {{9, 6, 5}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
-    int64_t count;
-    make_problem(&b, &o, &m, &p);
-    tets_must(!slices_make(&s, &p, &e), &e);
-    double *plain = run_lanes(&lanes_plain, &s, &count);
-    for (int i = 0; lanes_all[i] != &lanes_plain; i++) {
-        if (!vectors_are(lanes_all[i]->name)) {
-            skip(1, "not on this processor");
-            continue;
-        }
-        double *other = run_lanes(lanes_all[i], &s, &count);
-        ok(!memcmp(plain, other, (size_t)count * sizeof *plain), "%s: the bytes of plain", lanes_all[i]->name);
-        free(other);
-    }
-    free(plain);
-    slices_free(&s);
     free_problem(&m, &p);
 }
 
@@ -546,19 +473,17 @@ int main(void)
 {
     test_figure_4();
     test_counts();
-    test_slices();
     test_hanging();
     test_column();
     test_momentum();
     test_bound();
     test_patch();
     test_contact();
+    test_penalty();
+    test_auto();
     test_warp();
     test_threads();
-    test_rotation();
-    test_mixing();
     test_warped();
-    test_lanes();
     test_bad();
     return done_testing();
 }
