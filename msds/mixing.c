@@ -76,7 +76,7 @@ static void multiply_all(const mixing *m, const double *step, double a[MIXING_DE
 /* Least squares by Cholesky's factor; what depends on others gets 0. */
 static void solve(int n, double a[MIXING_DEPTH][MIXING_DEPTH], double *b)
 {
-    bool taken[MIXING_DEPTH];
+    bool taken[MIXING_DEPTH] = {false};
     for (int j = 0; j < n; j++) {
         double pivot = a[j][j];
         for (int k = 0; k < j; k++)

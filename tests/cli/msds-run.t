@@ -80,7 +80,7 @@ for change in 'msds:fem' 'fem:msds'; do
     msds-run -q --iterations 5 --method "${change#*:}" --probe sphere:2cm --poses "$T/fifth.tum" <"$T/block.sinew" >"$T/fresh.sinew"
     carried=$(sinew info --get node.displacement.at.0.04,0.04,0.04 "$T/parts.sinew" | awk '{ print $3 }')
     fresh=$(sinew info --get node.displacement.at.0.04,0.04,0.04 "$T/fresh.sinew" | awk '{ print $3 }')
-    check "$change: from rest it is another ($fresh, not $carried m)" awk -v a="$carried" -v b="$fresh" 'BEGIN { exit !((a - b) / a > 0.05 || (a - b) / a < -0.05) }'
+    check "$change: from rest it is another ($fresh, not $carried m)" awk -v a="$carried" -v b="$fresh" 'BEGIN { exit !((a - b) / a > 0.02 || (a - b) / a < -0.02) }'
 done
 
 # A PLUS sequence as poses, in mm, of two transforms.
