@@ -258,7 +258,6 @@ static int solve_frame(session *s, const poses_event *at, err *e)
         return -1;
     }
     s->sight = sight;
-    s->pressed = s->pressed || sight.contacts > 0;
     say_frame(s, at->time, &sight);
     if (write_frame(s, at, &sight, e))
         return -1;
@@ -296,6 +295,7 @@ static int simulate(session *s, err *e)
             return -1;
         if (s->other)
             say_difference(s, at.time);
+        s->pressed = s->pressed || s->sight.contacts > 0;
     }
     if (!got && !frames)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
