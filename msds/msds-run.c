@@ -7,6 +7,7 @@
 #include "model/stage.h"
 #include "msds/compare.h"
 #include "msds/largest.h"
+#include "msds/press.h"
 #include "msds/problem.h"
 #include "volume/poses.h"
 
@@ -24,7 +25,7 @@ struct options {
     bool exact, warp, residual, compare;
     const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
-    double dt, damping, repulsion;
+    double dt, damping, repulsion, rate;
     opt_numbers gravity;
 };
 
@@ -41,6 +42,8 @@ static const opt option_list[] = {
      "where it is: TUM lines or a PLUS sequence"},
     {0, "transform", "NAME", OPT_TEXT, offsetof(struct options, transform), 0, 0, NULL, 0, "of a PLUS sequence"},
     {0, "iterations", "N", OPT_INT, offsetof(struct options, iterations), 1, 1e6, NULL, OPT_OUTPUT, "a frame [20]"},
+    {0, "rate", "HZ", OPT_NUMBER, offsetof(struct options, rate), 0, 1e6, NULL, OPT_OUTPUT,
+     "of frames of so many; 0: any [60]"},
     {0, "dt", "S", OPT_NUMBER, offsetof(struct options, dt), 1e-9, 1e3, NULL, OPT_OUTPUT,
      "step of the springs, s [0.01]"},
     {0, "mass", "stable|lumped", OPT_CHOICE, offsetof(struct options, mass), 0, 0, "stable|lumped", OPT_OUTPUT,
@@ -78,6 +81,7 @@ typedef struct session {
     model m;
     msds_problem problem;
     probe probe;
+    press press;
     largest largest;
     int64_t substeps;
     const backend *device;
@@ -160,10 +164,11 @@ static int say_provenance(tool *t, const session *s, err *e)
         snprintf(shape, sizeof shape, "--probe %s%.250s ", s->probe.file ? "convex:" : "", text);
     }
     snprintf(ran, sizeof ran,
-             "%s%s--method %s --iterations %lld --dt %.9g --mass %s --spring-scale %.9g --damping %.9g --contact %s "
+             "%s%s--method %s --iterations %lld --rate %.9g --dt %.9g --mass %s --spring-scale %.9g --damping %.9g "
+             "--contact %s "
              "--repulsion "
              "%.9g [%s, inertia %.9g, %lld substeps]",
-             *t->provenance ? " " : "", shape, o->method ? "fem" : "msds", (long long)o->iterations, o->dt,
+             *t->provenance ? " " : "", shape, o->method ? "fem" : "msds", (long long)o->iterations, o->rate, o->dt,
              o->mass ? "lumped" : "stable", s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed",
              o->repulsion, s->device->name, s->problem.mass_factor, (long long)s->substeps);
     size_t size = strlen(t->provenance) + strlen(ran) + 1;
@@ -192,8 +197,15 @@ static int take_frames(session *s, err *e)
     }
     if (got < 0)
         goto out;
+    const model_array *pose = count ? frame_find(&last, "probe.pose") : NULL;
     if (count)
         s->next_frame = last.index + 1;
+    if (pose && pose->rows == 1 && s->o->probe) {
+        probe_pose from;
+        memcpy(from.position, pose->f64, sizeof from.position);
+        memcpy(from.quaternion, pose->f64 + 3, sizeof from.quaternion);
+        press_from(&s->press, &from, last.time);
+    }
     result = count ? msds_problem_start(&s->problem, &last, e) : 0;
 out:
     frame_free(&f);
@@ -251,32 +263,71 @@ static void say_frame(const session *s, double time, const msds_sight *sight)
         tool_detail(s->t, "%.6g s: %s%s%s", time, names[s->method], left, force);
 }
 
+/* What the first pose shows of the probe, and where it enters tissue at once. */
+static void warn_of_pose(session *s, const poses_event *at, const press_moves *moves, bool first)
+{
+    probe_pose pose;
+    memcpy(pose.position, at->origin, sizeof pose.position);
+    memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
+    const probe_placed placed = probe_place(&s->probe, &pose);
+    if (first && press_plate(&s->problem, &placed))
+        notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
+    if (moves->inside > 0)
+        notes_add(&s->warnings,
+                  "%s:%lld: the probe is %.3g mm inside the tissue at once; it is eased in along its axis, in %d moves",
+                  in_name(s->source), (long long)at->line, 1e3 * moves->inside, moves->count);
+    tool_warn(s->t, &s->warnings);
+}
+
+/* All moves of a frame but the last; fills the plan with that, and returns its count of steps, or -1 with e filled. */
+static int64_t make_moves(session *s, void *state, const press_moves *moves, msds_plan *plan, err *e)
+{
+    int64_t count = 0;
+    for (int i = 0; i < moves->count; i++) {
+        plan->probe = probe_place(&s->probe, &moves->list[i].pose);
+        count = moves->list[i].iterations * (plan->method == MSDS_SPRINGS ? s->substeps : 1);
+        if (i + 1 < moves->count && s->device->step(state, plan, count, e))
+            return -1;
+    }
+    return count;
+}
+
+static int diverged(const session *s, const poses_event *at, err *e)
+{
+    err_set(e, in_name(s->source), at->line,
+            "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt", at->time);
+    e->status = STATUS_DIVERGED;
+    return -1;
+}
+
 static int solve_frame(session *s, const poses_event *at, err *e)
 {
     msds_plan plan = {.method = s->method, .dt = s->o->dt / (double)s->substeps, .touched = s->o->probe != NULL};
     msds_sight sight = {0};
+    press_moves moves;
     probe_pose pose;
+    bool first = !s->press.any;
     memcpy(pose.position, at->origin, sizeof pose.position);
     memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
-    plan.probe = probe_place(&s->probe, &pose);
-    int64_t count = s->o->iterations * (s->method == MSDS_SPRINGS ? s->substeps : 1);
-    if (s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
+    if (press_to(&s->press, s->device, s->state, &pose, at->time, s->method == MSDS_SPRINGS, &moves, e))
         return -1;
-    if (!sight.finite) {
-        err_set(e, in_name(s->source), at->line,
-                "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt", at->time);
-        e->status = STATUS_DIVERGED;
+    if (plan.touched)
+        warn_of_pose(s, at, &moves, first);
+    int64_t count = make_moves(s, s->state, &moves, &plan, e);
+    if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
         return -1;
-    }
+    if (!sight.finite)
+        return diverged(s, at, e);
     s->sight = sight;
+    s->press.contacts = sight.contacts;
     say_frame(s, at->time, &sight);
     if (write_frame(s, at, &sight, e))
         return -1;
     if (!s->other)
         return 0;
     plan.method = method_of(s, s->method == MSDS_SPRINGS);
-    count = s->o->iterations * (plan.method == MSDS_SPRINGS ? s->substeps : 1);
-    return compare_frame(s->other, s->device, s->state, &plan, count, e);
+    count = make_moves(s, s->other->state, &moves, &plan, e);
+    return count < 0 ? -1 : compare_frame(s->other, s->device, s->state, &plan, count, e);
 }
 
 static void say_difference(const session *s, double time)
@@ -338,7 +389,7 @@ static int prepare(session *s, err *e)
         return -1;
     tool_say(s->t, "%s", device);
     s->method = method_of(s, o->method);
-    return 0;
+    return press_make(&s->press, &s->problem, &s->probe, o->iterations, o->rate, e);
 }
 
 /* The poses last: a FIFO opens when its writer comes. */
@@ -359,7 +410,7 @@ static int make_states(session *s, err *e)
 
 int main(int argc, char **argv)
 {
-    struct options o = {.iterations = 20, .dt = .01, .damping = .1, .repulsion = 1, .scale = ".002"};
+    struct options o = {.iterations = 20, .rate = 60, .dt = .01, .damping = .1, .repulsion = 1, .scale = ".002"};
     err e = {0};
     tool t = {0};
     session s = {.t = &t, .o = &o};
@@ -378,6 +429,7 @@ out:
         s.device->destroy(s.state);
     in_close(s.source);
     pool_destroy(s.threads);
+    press_free(&s.press);
     msds_problem_free(&s.problem);
     probe_free(&s.probe);
     model_free(&s.m);
