@@ -9,6 +9,7 @@
 #include "msds/largest.h"
 #include "msds/press.h"
 #include "msds/problem.h"
+#include "msds/skin_model.h"
 #include "volume/poses.h"
 
 #include <stdio.h>
@@ -25,7 +26,8 @@ struct options {
     bool exact, warp, residual, compare;
     const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
-    double dt, damping, repulsion, rate;
+    double dt, damping, repulsion, rate, skin_stiffness, skin_anchors;
+    const char *skin;
     opt_numbers gravity;
 };
 
@@ -37,6 +39,7 @@ static const opt option_list[] = {
     {0, "exact", NULL, OPT_FLAG, offsetof(struct options, exact), 0, 0, NULL, 0, "the FEM to 1e-6, by a factor"},
     {0, "probe", "SHAPE", OPT_TEXT, offsetof(struct options, probe), 0, 0, NULL, OPT_OUTPUT,
      "sphere:R linear:W,T curved:R,A,T convex:OBJ"},
+    {0, "skin", "OBJ", OPT_TEXT, offsetof(struct options, skin), 0, 0, NULL, OPT_FILE, "a skin apart from the tissue"},
     {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of an OBJ [source.unit]"},
     {0, "poses", "FILE", OPT_TEXT, offsetof(struct options, poses), 0, 0, NULL, OPT_REQUIRED | OPT_FILE,
      "where it is: TUM lines or a PLUS sequence"},
@@ -57,6 +60,10 @@ static const opt option_list[] = {
     {0, "repulsion", "X", OPT_NUMBER, offsetof(struct options, repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT,
      "of contact, over a node's springs [1]"},
     {0, "warp", NULL, OPT_FLAG, offsetof(struct options, warp), 0, 0, NULL, 0, "FEM: take rotations out"},
+    {0, "skin-stiffness", "K", OPT_NUMBER, offsetof(struct options, skin_stiffness), 1e-9, 1e9, NULL, OPT_OUTPUT,
+     "of its edges, N/m [100]"},
+    {0, "skin-anchors", "X", OPT_NUMBER, offsetof(struct options, skin_anchors), 1e-6, 1e6, NULL, OPT_OUTPUT,
+     "over a vertex's springs [.1]"},
     {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
     {0, "residual", NULL, OPT_FLAG, offsetof(struct options, residual), 0, 0, NULL, OPT_OUTPUT,
      "say what each FEM frame leaves"},
@@ -82,6 +89,8 @@ typedef struct session {
     msds_problem problem;
     probe probe;
     press press;
+    skin skin;
+    char skin_name[SURFACE_NAME_MOST + 1];
     largest largest;
     int64_t substeps;
     const backend *device;
@@ -207,6 +216,8 @@ static int take_frames(session *s, err *e)
         press_from(&s->press, &from, last.time);
     }
     result = count ? msds_problem_start(&s->problem, &last, e) : 0;
+    if (!result && count && s->skin.vertices)
+        result = skin_model_start(&s->skin, &last, e);
 out:
     frame_free(&f);
     frame_free(&last);
@@ -234,6 +245,8 @@ static int write_frame(session *s, const poses_event *at, const msds_sight *sigh
         goto out;
     memcpy(force->f64, sight->force, sizeof sight->force);
     memcpy(torque->f64, sight->torque, sizeof sight->torque);
+    if (s->skin.vertices && skin_model_put(&s->skin, &f, &s->m, e))
+        goto out;
     result = model_write_frame(s->stage.writer, &f, e);
     out_flush(s->stage.sink);
 out:
@@ -279,12 +292,15 @@ static void warn_of_pose(session *s, const poses_event *at, const press_moves *m
     tool_warn(s->t, &s->warnings);
 }
 
-/* All moves of a frame but the last; fills the plan with that, and returns its count of steps, or -1 with e filled. */
-static int64_t make_moves(session *s, void *state, const press_moves *moves, msds_plan *plan, err *e)
+/* All moves of a frame but the last; fills the plan with that, and returns its count of steps, or -1 with e filled. The skin, if there
+ * is one to go with it, makes the last one too. */
+static int64_t make_moves(session *s, void *state, const press_moves *moves, msds_plan *plan, bool with_skin, err *e)
 {
     int64_t count = 0;
     for (int i = 0; i < moves->count; i++) {
         plan->probe = probe_place(&s->probe, &moves->list[i].pose);
+        if (with_skin && s->skin.vertices)
+            skin_step(&s->skin, plan->touched ? &plan->probe : NULL, moves->list[i].iterations);
         count = moves->list[i].iterations * (plan->method == MSDS_SPRINGS ? s->substeps : 1);
         if (i + 1 < moves->count && s->device->step(state, plan, count, e))
             return -1;
@@ -313,10 +329,10 @@ static int solve_frame(session *s, const poses_event *at, err *e)
         return -1;
     if (plan.touched)
         warn_of_pose(s, at, &moves, first);
-    int64_t count = make_moves(s, s->state, &moves, &plan, e);
+    int64_t count = make_moves(s, s->state, &moves, &plan, true, e);
     if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
         return -1;
-    if (!sight.finite)
+    if (!sight.finite || (s->skin.vertices && !isfinite(skin_largest(&s->skin))))
         return diverged(s, at, e);
     s->sight = sight;
     s->press.contacts = sight.contacts;
@@ -326,7 +342,7 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     if (!s->other)
         return 0;
     plan.method = method_of(s, s->method == MSDS_SPRINGS);
-    count = make_moves(s, s->other->state, &moves, &plan, e);
+    count = make_moves(s, s->other->state, &moves, &plan, false, e);
     return count < 0 ? -1 : compare_frame(s->other, s->device, s->state, &plan, count, e);
 }
 
@@ -375,12 +391,35 @@ static int take_probe(session *s, err *e)
     return unit ? probe_load(&s->probe, scale_of(unit), e) : -1;
 }
 
+/* The skin's surface joins the body; its springs are made when there are threads. */
+static int carry_skin(session *s, err *e)
+{
+    if (!s->o->skin)
+        return 0;
+    num_unit unit = scale_unit(s->o->unit, &s->m, e);
+    return unit ? skin_model_carry(&s->m, s->o->skin, scale_of(unit), s->skin_name, e) : -1;
+}
+
+static int make_skin(session *s, err *e)
+{
+    const struct options *o = s->o;
+    const skin_options options = {o->skin_stiffness, o->skin_anchors, o->damping, o->dt};
+    surface shape;
+    if (!o->skin)
+        return 0;
+    if (surface_of(&s->m, s->skin_name, &shape, e) || skin_make(&s->skin, &shape, &options, s->threads, e))
+        return -1;
+    tool_say(s->t, "skin %s: %lld vertices, %lld springs", s->skin_name, (long long)s->skin.vertices,
+             (long long)s->skin.edges);
+    return 0;
+}
+
 static int prepare(session *s, err *e)
 {
     static const char *const names[] = {"auto", "cuda", "cpu"};
     const struct options *o = s->o;
     char device[300];
-    if (take_probe(s, e) || make_problem(s, e))
+    if (take_probe(s, e) || carry_skin(s, e) || make_problem(s, e))
         return -1;
     s->device = backend_choose(msds_backends, names[o->device], device, sizeof device, e);
     int threads = tool_threads(s->t, e);
@@ -389,7 +428,7 @@ static int prepare(session *s, err *e)
         return -1;
     tool_say(s->t, "%s", device);
     s->method = method_of(s, o->method);
-    return press_make(&s->press, &s->problem, &s->probe, o->iterations, o->rate, e);
+    return make_skin(s, e) ? -1 : press_make(&s->press, &s->problem, &s->probe, o->iterations, o->rate, e);
 }
 
 /* The poses last: a FIFO opens when its writer comes. */
@@ -410,7 +449,14 @@ static int make_states(session *s, err *e)
 
 int main(int argc, char **argv)
 {
-    struct options o = {.iterations = 20, .rate = 60, .dt = .01, .damping = .1, .repulsion = 1, .scale = ".002"};
+    struct options o = {.iterations = 20,
+                        .rate = 60,
+                        .dt = .01,
+                        .damping = .1,
+                        .repulsion = 1,
+                        .scale = ".002",
+                        .skin_stiffness = 100,
+                        .skin_anchors = .1};
     err e = {0};
     tool t = {0};
     session s = {.t = &t, .o = &o};
@@ -430,6 +476,7 @@ out:
     in_close(s.source);
     pool_destroy(s.threads);
     press_free(&s.press);
+    skin_free(&s.skin);
     msds_problem_free(&s.problem);
     probe_free(&s.probe);
     model_free(&s.m);

@@ -77,7 +77,11 @@ typedef struct known {
       "place of its frame, m, and its turn, a unit quaternion x y z w")                                                \
     X("probe.force", MODEL_F64, "N", "probe", 3, 3, KNOWN_FRAME, "msds-run", "force of the tissue on it")              \
     X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, "msds-run",                                        \
-      "torque of the tissue on it, about the origin of its frame")
+      "torque of the tissue on it, about the origin of its frame")                                                     \
+    X("*/vertex.displacement", MODEL_F64, "m", "*/vertex", 3, 3, KNOWN_FRAME, "msds-run",                              \
+      "of a skin: displacement from rest")                                                                             \
+    X("*/vertex.normal", MODEL_F64, "1", "*/vertex", 3, 3, KNOWN_FRAME, "msds-run",                                    \
+      "of a skin: unit normal as it is moved")
 
 /* Whether a name is the user's: it begins "x-", and nothing is known of it, whatever follows. */
 bool known_users(const char *name);
