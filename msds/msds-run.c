@@ -26,7 +26,7 @@ struct options {
     bool exact, warp, residual, compare;
     const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
-    double dt, damping, repulsion, rate, skin_stiffness, skin_anchors;
+    double dt, damping, repulsion, rate, skin_stiffness, skin_anchors, skin_tension;
     const char *skin;
     opt_numbers gravity;
 };
@@ -63,7 +63,9 @@ static const opt option_list[] = {
     {0, "skin-stiffness", "K", OPT_NUMBER, offsetof(struct options, skin_stiffness), 1e-9, 1e9, NULL, OPT_OUTPUT,
      "of its edges, N/m [100]"},
     {0, "skin-anchors", "X", OPT_NUMBER, offsetof(struct options, skin_anchors), 1e-6, 1e6, NULL, OPT_OUTPUT,
-     "over a vertex's springs [.1]"},
+     "over a vertex's springs [.01]"},
+    {0, "skin-tension", "X", OPT_NUMBER, offsetof(struct options, skin_tension), 0, 1e3, NULL, OPT_OUTPUT,
+     "across an edge, over along it [.5]"},
     {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
     {0, "residual", NULL, OPT_FLAG, offsetof(struct options, residual), 0, 0, NULL, OPT_OUTPUT,
      "say what each FEM frame leaves"},
@@ -403,7 +405,7 @@ static int carry_skin(session *s, err *e)
 static int make_skin(session *s, err *e)
 {
     const struct options *o = s->o;
-    const skin_options options = {o->skin_stiffness, o->skin_anchors, o->damping, o->dt};
+    const skin_options options = {o->skin_stiffness, o->skin_anchors, o->skin_tension, o->damping, o->dt};
     surface shape;
     if (!o->skin)
         return 0;
@@ -456,7 +458,8 @@ int main(int argc, char **argv)
                         .repulsion = 1,
                         .scale = ".002",
                         .skin_stiffness = 100,
-                        .skin_anchors = .1};
+                        .skin_anchors = .01,
+                        .skin_tension = .5};
     err e = {0};
     tool t = {0};
     session s = {.t = &t, .o = &o};

@@ -105,11 +105,11 @@ static int make_springs(skin *s, err *e)
 static void settle(skin *s, int64_t v, double k)
 {
     const skin_options *o = &s->options;
-    const double a = o->anchors * k, dt = o->dt;
+    const double a = o->anchors * k, dt = o->dt, any = (1 + o->tension) * k;
     double m = 0, gamma = 0;
     for (int i = 0; i < TURNS; i++) {
         gamma = damped * fmax(2 * sqrt(m * a), o->damping > 0 ? 2 * m / o->damping : 0);
-        m = (dt * dt * (2 * k + a) + 2 * dt * (2 * o->damping * k + gamma)) / (4 * safe);
+        m = (dt * dt * (2 * any + a) + 2 * dt * (2 * o->damping * any + gamma)) / (4 * safe);
     }
     s->inertia[v] = m;
     s->anchor[v] = a;
@@ -166,9 +166,11 @@ static void pull(const skin *s, int64_t v, const skin_spring *spring, double for
         speed += d[a] * (w[3 * o + a] - w[3 * v + a]);
     }
     length = fmax(sqrt(length), least * spring->rest);
+    const double across = s->options.tension * k;
     double by = (k * (length - spring->rest) + s->options.damping * k * speed / length) / length;
     for (int a = 0; a < 3; a++)
-        force[a] += by * d[a];
+        force[a] +=
+            by * d[a] + across * ((u[3 * o + a] - u[3 * v + a]) + s->options.damping * (w[3 * o + a] - w[3 * v + a]));
 }
 
 /* A vertex that the step would leave in the probe comes to its surface. */

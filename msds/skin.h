@@ -4,7 +4,9 @@
  * the surface away from the probe, and then it oscillates; a small one lets the probe in. This one is as large as brings a vertex to the
  * probe's surface by the end of the step, and takes its speed into the probe. The skin goes with the probe only, not with the tissue.
  *
- * Only ratios show: of the anchors to the edges' springs, which is how wide a dent is. Inertia is what a step of dt is stable
+ * Springs at their lengths do not resist at first what goes across them, and a dent ends like a crater. Skin is under tension, so an
+ * edge pulls across itself as well, by a share of its stiffness: t k (u_other - u), which is nothing at rest. Only ratios show: of that to
+ * the anchors, which is how wide a dent is. Inertia is what a step of dt is stable
  * with, in any configuration; the anchors' damping is that with which no mode oscillates: with inertia m, anchors a and gamma = c k in
  * the springs, gamma_a >= 2 sqrt(m a) and gamma_a c >= 2 m give every mode a + l, damped by gamma_a + c l, at least its
  * critical damping. The creator owns it; it borrows the surface, which the model keeps.
@@ -19,6 +21,7 @@
 typedef struct skin_options {
     double stiffness; /* N/m: of an edge's spring */
     double anchors;   /* an anchor's stiffness over the sum of its vertex's springs' */
+    double tension;   /* how stiff an edge's spring is across itself, as under tension, over its stiffness */
     double damping;   /* s: of a spring over its stiffness */
     double dt;        /* s */
 } skin_options;
