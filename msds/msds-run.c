@@ -2,7 +2,6 @@
  * and dampers or by linear finite elements. PST sections III and the appendix.
  */
 #include "base/mem.h"
-#include "base/path.h"
 #include "mesh/scale.h"
 #include "model/stage.h"
 #include "msds/compare.h"
@@ -152,6 +151,16 @@ static int choose_step(session *s, err *e)
     return 0;
 }
 
+/* So that pictures can show it. */
+static int note_shape(session *s, err *e)
+{
+    char text[300];
+    if (!s->o->probe)
+        return 0;
+    probe_text(&s->probe, text, sizeof text);
+    return model_meta_set(&s->m, "probe.shape", text, e);
+}
+
 static int make_problem(session *s, err *e)
 {
     const struct options *o = s->o;
@@ -163,16 +172,17 @@ static int make_problem(session *s, err *e)
         return -1;
     tool_say(s->t, "%lld nodes, %lld tetrahedra, %lld springs; k = %.6g m E", (long long)s->problem.nodes,
              (long long)s->problem.elements, (long long)s->problem.springs, s->problem.scale);
-    return choose_step(s, e);
+    return note_shape(s, e) ? -1 : choose_step(s, e);
 }
 
 static int say_provenance(tool *t, const session *s, err *e)
 {
     char ran[800], shape[300] = "";
     const struct options *o = s->o;
-    if (o->probe) { /* without the folder of its file */
-        const char *text = s->probe.file ? s->probe.file + path_folder(s->probe.file) : o->probe;
-        snprintf(shape, sizeof shape, "--probe %s%.250s ", s->probe.file ? "convex:" : "", text);
+    if (o->probe) {
+        char text[280];
+        probe_text(&s->probe, text, sizeof text);
+        snprintf(shape, sizeof shape, "--probe %s ", text);
     }
     snprintf(ran, sizeof ran,
              "%s%s--method %s --iterations %lld --rate %.9g --dt %.9g --mass %s --spring-scale %.9g --damping %.9g "

@@ -235,7 +235,7 @@ static int add_surface(showing *b, const model *m, const showing_want *w, const 
 static int note_names(const model *m, notes *there, err *e)
 {
     char name[MODEL_NAME];
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < SHOWING_THINGS; i++)
         notes_add(there, "%s", showing_things[i]);
     for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
         surface s;
@@ -254,7 +254,7 @@ int showing_check_names(const model *m, const showing_want *w, err *e)
     int bad = note_names(m, &there, e);
     for (int n = 0; n < w->names + w->clears && !bad; n++) {
         const char *name = n < w->names ? w->name[n] : w->clear[n - w->names];
-        int i = n < w->names ? 5 : 1;
+        int i = n < w->names ? SHOWING_THINGS : 1;
         while (i < there.count && !surface_in_group(there.line[i], name))
             i++;
         if (i == there.count)
