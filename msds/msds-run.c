@@ -30,46 +30,35 @@ struct options {
     opt_numbers gravity;
 };
 
+#define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
-    {'d', "device", "auto|cuda|cpu", OPT_CHOICE, offsetof(struct options, device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT,
-     "what computes [auto]"},
-    {0, "method", "msds|fem", OPT_CHOICE, offsetof(struct options, method), 0, 0, "msds|fem", OPT_OUTPUT,
+    {'d', "device", "auto|cuda|cpu", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT, "what computes [auto]"},
+    {0, "method", "msds|fem", OPT_CHOICE, TO(method), 0, 0, "msds|fem", OPT_OUTPUT,
      "springs or finite elements [msds]"},
-    {0, "exact", NULL, OPT_FLAG, offsetof(struct options, exact), 0, 0, NULL, 0, "the FEM to 1e-6, by a factor"},
-    {0, "probe", "SHAPE", OPT_TEXT, offsetof(struct options, probe), 0, 0, NULL, OPT_OUTPUT,
-     "sphere:R linear:W,T curved:R,A,T convex:OBJ"},
-    {0, "skin", "OBJ", OPT_TEXT, offsetof(struct options, skin), 0, 0, NULL, OPT_FILE, "a skin apart from the tissue"},
-    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of an OBJ [source.unit]"},
-    {0, "poses", "FILE", OPT_TEXT, offsetof(struct options, poses), 0, 0, NULL, OPT_REQUIRED | OPT_FILE,
+    {0, "exact", NULL, OPT_FLAG, TO(exact), 0, 0, NULL, 0, "the FEM to 1e-6, by a factor"},
+    {0, "warp", NULL, OPT_FLAG, TO(warp), 0, 0, NULL, 0, "FEM: take rotations out"},
+    {0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, NULL, OPT_OUTPUT, "sphere:R linear:W,T curved:R,A,T convex:OBJ"},
+    {0, "poses", "FILE", OPT_TEXT, TO(poses), 0, 0, NULL, OPT_REQUIRED | OPT_FILE,
      "where it is: TUM lines or a PLUS sequence"},
-    {0, "transform", "NAME", OPT_TEXT, offsetof(struct options, transform), 0, 0, NULL, 0, "of a PLUS sequence"},
-    {0, "iterations", "N", OPT_INT, offsetof(struct options, iterations), 1, 1e6, NULL, OPT_OUTPUT, "a frame [20]"},
-    {0, "rate", "HZ", OPT_NUMBER, offsetof(struct options, rate), 0, 1e6, NULL, OPT_OUTPUT,
-     "of frames of so many; 0: any [60]"},
-    {0, "dt", "S", OPT_NUMBER, offsetof(struct options, dt), 1e-9, 1e3, NULL, OPT_OUTPUT,
-     "step of the springs, s [0.01]"},
-    {0, "mass", "stable|lumped", OPT_CHOICE, offsetof(struct options, mass), 0, 0, "stable|lumped", OPT_OUTPUT,
+    {0, "transform", "NAME", OPT_TEXT, TO(transform), 0, 0, NULL, 0, "of a PLUS sequence"},
+    {0, "iterations", "N", OPT_INT, TO(iterations), 1, 1e6, NULL, OPT_OUTPUT, "a frame [20]"},
+    {0, "rate", "HZ", OPT_NUMBER, TO(rate), 0, 1e6, NULL, OPT_OUTPUT, "of such frames; 0: any [60]"},
+    {0, "dt", "S", OPT_NUMBER, TO(dt), 1e-9, 1e3, NULL, OPT_OUTPUT, "step of springs, s [0.01]"},
+    {0, "mass", "stable|lumped", OPT_CHOICE, TO(mass), 0, 0, "stable|lumped", OPT_OUTPUT,
      "inertia [stable: scaled for --dt]"},
-    {0, "spring-scale", "M|auto", OPT_TEXT, offsetof(struct options, scale), 0, 0, NULL, OPT_OUTPUT,
-     "spring stiffness over E, m [.002]"},
-    {0, "damping", "S", OPT_NUMBER, offsetof(struct options, damping), 0, 1e6, NULL, OPT_OUTPUT,
-     "damping over stiffness, s [.1]"},
-    {0, "contact", "prescribed|penalty", OPT_CHOICE, offsetof(struct options, contact), 0, 0, "prescribed|penalty",
-     OPT_OUTPUT, "of the FEM [prescribed]"},
-    {0, "repulsion", "X", OPT_NUMBER, offsetof(struct options, repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT,
-     "of contact, over a node's springs [1]"},
-    {0, "warp", NULL, OPT_FLAG, offsetof(struct options, warp), 0, 0, NULL, 0, "FEM: take rotations out"},
-    {0, "skin-stiffness", "K", OPT_NUMBER, offsetof(struct options, skin_stiffness), 1e-9, 1e9, NULL, OPT_OUTPUT,
-     "of its edges, N/m [100]"},
-    {0, "skin-anchors", "X", OPT_NUMBER, offsetof(struct options, skin_anchors), 1e-6, 1e6, NULL, OPT_OUTPUT,
-     "over a vertex's springs [.01]"},
-    {0, "skin-tension", "X", OPT_NUMBER, offsetof(struct options, skin_tension), 0, 1e3, NULL, OPT_OUTPUT,
-     "across an edge, over along it [.5]"},
-    {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
-    {0, "residual", NULL, OPT_FLAG, offsetof(struct options, residual), 0, 0, NULL, OPT_OUTPUT,
-     "say what each FEM frame leaves"},
-    {0, "compare", NULL, OPT_FLAG, offsetof(struct options, compare), 0, 0, NULL, OPT_OUTPUT,
-     "run the other method too; say the difference"},
+    {0, "spring-scale", "M|auto", OPT_TEXT, TO(scale), 0, 0, NULL, OPT_OUTPUT, "spring stiffness over E, m [.002]"},
+    {0, "damping", "S", OPT_NUMBER, TO(damping), 0, 1e6, NULL, OPT_OUTPUT, "over stiffness, s [.1]"},
+    {0, "contact", "prescribed|penalty", OPT_CHOICE, TO(contact), 0, 0, "prescribed|penalty", OPT_OUTPUT,
+     "FEM [prescribed]"},
+    {0, "repulsion", "X", OPT_NUMBER, TO(repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT, "of contact, over springs [1]"},
+    {'g', "gravity", "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "m/s2 [none]"},
+    {0, "skin", "OBJ", OPT_TEXT, TO(skin), 0, 0, NULL, OPT_FILE, "a skin of its own"},
+    {0, "skin-stiffness", "K", OPT_NUMBER, TO(skin_stiffness), 1e-9, 1e9, NULL, OPT_OUTPUT, "N/m [100]"},
+    {0, "skin-anchors", "X", OPT_NUMBER, TO(skin_anchors), 1e-6, 1e6, NULL, OPT_OUTPUT, "over that [.01]"},
+    {0, "skin-tension", "X", OPT_NUMBER, TO(skin_tension), 0, 1e3, NULL, OPT_OUTPUT, "over that [.5]"},
+    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0, "of an OBJ [source.unit]"},
+    {0, "residual", NULL, OPT_FLAG, TO(residual), 0, 0, NULL, OPT_OUTPUT, "say what FEM leaves"},
+    {0, "compare", NULL, OPT_FLAG, TO(compare), 0, 0, NULL, OPT_OUTPUT, "run the other method too; say the difference"},
     {0},
 };
 
@@ -295,7 +284,7 @@ static void warn_of_pose(session *s, const poses_event *at, const press_moves *m
     memcpy(pose.position, at->origin, sizeof pose.position);
     memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
     const probe_placed placed = probe_place(&s->probe, &pose);
-    if (first && press_plate(&s->problem, &placed))
+    if (first && probe_is_plate(&placed, s->problem.position, s->problem.nodes))
         notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
     if (moves->inside > 0)
         notes_add(&s->warnings,

@@ -80,24 +80,6 @@ static void ease_in(const press *s, const probe_pose *pose, press_moves *m)
         m->list[i] = (press_move){drawn_back(s, pose, back * (m->count - 1 - i) / m->count), s->iterations};
 }
 
-/* Between two poses: the shorter way round. */
-static probe_pose between(const probe_pose *a, const probe_pose *b, double share)
-{
-    probe_pose to;
-    double dot = 0, length = 0;
-    for (int i = 0; i < 4; i++)
-        dot += a->quaternion[i] * b->quaternion[i];
-    for (int i = 0; i < 4; i++) {
-        to.quaternion[i] = (1 - share) * (dot < 0 ? -a->quaternion[i] : a->quaternion[i]) + share * b->quaternion[i];
-        length += to.quaternion[i] * to.quaternion[i];
-    }
-    for (int i = 0; i < 4; i++)
-        to.quaternion[i] = length > 1e-12 ? to.quaternion[i] / sqrt(length) : b->quaternion[i];
-    for (int i = 0; i < 3; i++)
-        to.position[i] = (1 - share) * a->position[i] + share * b->position[i];
-    return to;
-}
-
 /* Iterations for the time since the last pose. Counted from the beginning, so that no rounding adds up. */
 static int64_t iterations_to(press *s, double time)
 {
@@ -123,7 +105,7 @@ static void go_on(press *s, const probe_pose *pose, int64_t count, press_moves *
         int64_t from = count * i / m->count, to = count * (i + 1) / m->count;
         m->list[i] = (press_move){*pose, to - from};
         if (i + 1 < m->count)
-            m->list[i].pose = between(&s->last, pose, (double)to / (double)count);
+            m->list[i].pose = probe_between(&s->last, pose, (double)to / (double)count);
     }
 }
 
@@ -155,20 +137,4 @@ int press_to(press *s, const backend *device, void *state, const probe_pose *pos
     s->last = *pose;
     s->time = time;
     return 0;
-}
-
-bool press_plate(const msds_problem *p, const probe_placed *at)
-{
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (int64_t n = 0; n < p->nodes; n++)
-        for (int i = 0; i < 2; i++) {
-            const double *x = p->position + 3 * n;
-            double along = at->axis[i][0] * x[0] + at->axis[i][1] * x[1] + at->axis[i][2] * x[2];
-            low[i] = fmin(low[i], along);
-            high[i] = fmax(high[i], along);
-        }
-    const probe *s = &at->shape;
-    double wide = s->kind == PROBE_LINEAR ? s->width : s->kind == PROBE_CURVED ? 2 * s->radius * s->sine : 2 * s->size;
-    double thick = s->kind == PROBE_LINEAR || s->kind == PROBE_CURVED ? s->thickness : 2 * s->size;
-    return wide > high[0] - low[0] && thick > high[1] - low[1];
 }

@@ -49,7 +49,4 @@ void press_from(press *s, const probe_pose *pose, double time);
 int press_to(press *s, const backend *device, void *state, const probe_pose *pose, double time, bool springs,
              press_moves *moves, err *e);
 
-/* Whether the probe's face is wider than the tissue, both of its sides: it presses like a plate. */
-bool press_plate(const msds_problem *p, const probe_placed *at);
-
 #endif

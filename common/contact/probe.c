@@ -208,6 +208,39 @@ void probe_text(const probe *p, char *to, size_t size)
         snprintf(to, size, "convex:%.250s", p->file + path_folder(p->file));
 }
 
+probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share)
+{
+    probe_pose to;
+    double dot = 0, length = 0;
+    for (int i = 0; i < 4; i++)
+        dot += a->quaternion[i] * b->quaternion[i];
+    for (int i = 0; i < 4; i++) {
+        to.quaternion[i] = (1 - share) * (dot < 0 ? -a->quaternion[i] : a->quaternion[i]) + share * b->quaternion[i];
+        length += to.quaternion[i] * to.quaternion[i];
+    }
+    for (int i = 0; i < 4; i++)
+        to.quaternion[i] = length > 1e-12 ? to.quaternion[i] / sqrt(length) : b->quaternion[i];
+    for (int i = 0; i < 3; i++)
+        to.position[i] = (1 - share) * a->position[i] + share * b->position[i];
+    return to;
+}
+
+bool probe_is_plate(const probe_placed *at, const double *position, int64_t nodes)
+{
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int64_t n = 0; n < nodes; n++)
+        for (int i = 0; i < 2; i++) {
+            const double *x = position + 3 * n;
+            double along = at->axis[i][0] * x[0] + at->axis[i][1] * x[1] + at->axis[i][2] * x[2];
+            low[i] = fmin(low[i], along);
+            high[i] = fmax(high[i], along);
+        }
+    const probe *s = &at->shape;
+    double wide = s->kind == PROBE_LINEAR ? s->width : s->kind == PROBE_CURVED ? 2 * s->radius * s->sine : 2 * s->size;
+    double thick = s->kind == PROBE_LINEAR || s->kind == PROBE_CURVED ? s->thickness : 2 * s->size;
+    return wide > high[0] - low[0] && thick > high[1] - low[1];
+}
+
 void probe_free(probe *p)
 {
     free(p->plane);

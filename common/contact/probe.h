@@ -96,6 +96,12 @@ probe probe_curved(double radius, double angle, double thickness, double edge);
 /* The point of it that is farthest along d (any length), both in its own frame. */
 void probe_farthest(const probe *p, const double d[3], double to[3]);
 
+/* A share (0 to 1) of the way from pose a to pose b, turning the shorter way round. */
+probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share);
+
+/* Whether the probe's face is wider than what these points (x 3, m) span, both of its sides: it presses like a plate. */
+bool probe_is_plate(const probe_placed *at, const double *position, int64_t nodes);
+
 /* v turned by a unit quaternion. */
 PROBE_FUNCTION void probe_turn(const double q[4], const double v[3], double to[3])
 {

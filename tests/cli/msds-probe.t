@@ -62,7 +62,7 @@ for probe in sphere:2cm linear:4cm,1cm curved:4cm,70,15mm "convex:$T/cube.obj"; 
 done
 echo '0 .06 .03 .03 1 0 0 0' >"$T/inside.tum"
 is "$(msds-run -q --probe "convex:$T/cube.obj" --unit mm --poses "$T/inside.tum" <"$T/block.sinew" | sinew info | grep -c "$T")" 0 "no folder in provenance"
-is "$(msds-run -q --probe "convex:$T/cube.obj" --unit mm --poses "$T/inside.tum" <"$T/block.sinew" | sinew info | grep -c 'convex:cube.obj')" 1 "but the file"
+is "$(msds-run -q --probe "convex:$T/cube.obj" --unit mm --poses "$T/inside.tum" <"$T/block.sinew" | sinew info | grep -c -- '--probe convex:cube.obj ')" 1 "but the file"
 
 # The torque is the forces' arms: beside the middle of a symmetric block, pushed up more on one side.
 cat >"$T/side.tum" <<'END'
