@@ -1,0 +1,73 @@
+/* What the kernels of msds-run see of a model on the card, what they are asked for a frame, and how it is started. Views are
+ * passed by value and own nothing. Arrays over nodes are in the slices' order (slices.h); a number in each direction and a fourth
+ * are a float4.
+ */
+#ifndef SINEW_CUDA_TISSUE_CUH
+#define SINEW_CUDA_TISSUE_CUH
+
+#include "msds/cuda_grid.cuh"
+
+extern "C" {
+#include "contact/probe.h"
+#include "msds/problem.h"
+}
+
+typedef struct tissue_contact {
+    double way[3], depth, from[3], force; /* as contacts.h has them */
+} tissue_contact;
+
+enum { TISSUE_NOBODY, TISSUE_FREE, TISSUE_FIXED };
+
+/* Sums over chunks, in tissue.part: a row of chunks each. */
+typedef enum tissue_part {
+    PART_FIRST,
+    PART_SECOND,
+    PART_THIRD,
+    PART_LEFT, /* squares of what is left, of the load and of the pulls */
+    PART_LOAD,
+    PART_PULLS,
+    PART_FORCE,
+    PART_PRESSED = PART_FORCE + 3,
+    PART_LARGEST,
+    PART_BROKEN,
+    PARTS
+} tissue_part;
+
+typedef struct tissue {
+    int32_t nodes, chunks;
+    const int32_t *start, *neighbour; /* slices + 1; slots x LANES */
+    const float *stiffness, *damper, *rest;
+    const float *diagonal, *block;  /* of the stiffness, as lanes_matrix has them; or NULL, not yet made */
+    const uint8_t *kind;            /* TISSUE_NOBODY: only fills up */
+    const float4 *place, *weight;   /* m, w: 1 / inertia, 0 where fixed; N, w: N/m of contact */
+    const double *position;         /* nodes x 3, m */
+    const double *repulsion;        /* N/m */
+    float4 *u, *v, *next_u, *next_v;
+    float4 *left, *pulled, *way[2]; /* of conjugate gradients */
+    double *precise;                /* nodes x 3, m: the displacement of exact frames */
+    tissue_contact *contact;
+    uint8_t *listed;
+    double *held; /* as contacts.h has it */
+    double *part; /* PARTS x chunks */
+    msds_sight *sight;
+    unsigned long long *arrived;
+} tissue;
+
+typedef struct tissue_frame {
+    probe_placed probe;
+    float centre[3], reach, wide; /* m: the ball that holds the probe; its reach while contacts are looked for */
+    float dt;
+    double damping; /* s: of the repulsion, over its stiffness */
+    int32_t count;
+    bool touched, penalty;
+} tissue_frame;
+
+/* Start a frame on the stream; blocks: as many as fit the card. */
+cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, int blocks, cudaStream_t stream);
+cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, int blocks, cudaStream_t stream);
+
+/* How many blocks of each a multiprocessor holds. */
+cudaError_t tissue_springs_fit(int *blocks);
+cudaError_t tissue_fem_fit(int *blocks);
+
+#endif

@@ -1,0 +1,227 @@
+/* msds-run's CUDA back end against the CPU's: springs and conjugate gradients give the same numbers to the bit, exact frames come within
+ * 1e-5 of the largest displacement; on lattices, on a mesh without any order, through changes of method, with contact of both
+ * kinds; and a hundred repeats give the same bytes. Without a card all is skipped.
+ */
+// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
+#include "msds_block.h"
+
+#include "base/mem.h"
+#include "msds/largest.h"
+#include "msds/msds_cpu.h"
+
+#include "tap.h"
+
+typedef struct pair { /* the same model here and there */
+    model m;
+    msds_problem p;
+    pool *threads;
+    const backend *device[2]; /* the CPU, the card */
+    void *state[2];
+    double *u[2], *v[2];
+    msds_sight sight[2];
+    double worst;      /* difference so far, over the largest displacement of its frame */
+    double force;      /* and of the force on the probe */
+    int64_t different; /* numbers that are not the same */
+    double largest;    /* m, N: so far */
+    double pressed;
+} pair;
+
+static const backend *find_cuda(const char **why)
+{
+    *why = "built without CUDA";
+    for (int i = 0; msds_backends[i]; i++)
+        if (!strcmp(msds_backends[i]->name, "cuda")) {
+            *why = msds_backends[i]->unusable();
+            return *why ? NULL : msds_backends[i];
+        }
+    return NULL;
+}
+
+/* Moves the nodes a little, each its own way, so that no two springs are the same. */
+static void shake(const tets *b, model *m)
+{
+    double *x = model_find(m, "node.position")->f64;
+    uint32_t seed = 12345;
+    for (int64_t i = 0; i < 3 * model_count(m, "node"); i++) {
+        seed = seed * 1664525u + 1013904223u;
+        x[i] += .15 * b->size[i % 3] / (b->nodes[i % 3] - 1) * ((double)(seed >> 8) / 8388608. - 1);
+    }
+}
+
+static void make(pair *c, const tets *b, const msds_options *o, bool shaken, const backend *cuda)
+{
+    err e = {0};
+    largest l;
+    tets_make(b, &c->m);
+    if (shaken)
+        shake(b, &c->m);
+    tets_must(!msds_problem_make(&c->p, &c->m, o, &e) && !largest_of(&c->p, &l, &e), &e);
+    c->p.mass_factor = fmax(1, largest_factor(l.bound, o->damping, .01));
+    c->threads = pool_create(2, &e);
+    tets_must(c->threads != NULL, &e);
+    c->device[0] = &msds_cpu;
+    c->device[1] = cuda;
+    for (int i = 0; i < 2; i++) {
+        c->state[i] = c->device[i]->create(&c->p, c->threads, &e);
+        c->u[i] = mem_array(c->p.nodes, 3 * sizeof *c->u[i], "test", &e);
+        c->v[i] = mem_array(c->p.nodes, 3 * sizeof *c->v[i], "test", &e);
+        tets_must(c->state[i] && c->u[i] && c->v[i], &e);
+    }
+}
+
+static void drop(pair *c)
+{
+    for (int i = 0; i < 2; i++) {
+        c->device[i]->destroy(c->state[i]);
+        free(c->u[i]);
+        free(c->v[i]);
+    }
+    pool_destroy(c->threads);
+    msds_problem_free(&c->p);
+    model_free(&c->m);
+}
+
+static void frame_of(pair *c, const msds_plan *plan, int64_t count)
+{
+    err e = {0};
+    for (int i = 0; i < 2; i++)
+        tets_must(!c->device[i]->step(c->state[i], plan, count, &e) &&
+                      !c->device[i]->look(c->state[i], NULL, &c->sight[i], &e) &&
+                      !c->device[i]->get(c->state[i], MSDS_DISPLACEMENT, c->u[i], &e) &&
+                      !c->device[i]->get(c->state[i], MSDS_VELOCITY, c->v[i], &e),
+                  &e);
+    for (int64_t k = 0; k < 3 * c->p.nodes; k++) {
+        c->worst = fmax(c->worst, fabs(c->u[1][k] - c->u[0][k]) / c->sight[0].largest);
+        c->different += c->u[1][k] != c->u[0][k] || c->v[1][k] != c->v[0][k];
+    }
+    c->largest = fmax(c->largest, c->sight[0].largest);
+    double off = 0, size = 0;
+    for (int a = 0; a < 3; a++) {
+        off += pow(c->sight[1].force[a] - c->sight[0].force[a], 2);
+        size += pow(c->sight[0].force[a], 2);
+    }
+    c->pressed = fmax(c->pressed, sqrt(size));
+    c->force = fmax(c->force, sqrt(off) / c->pressed);
+    if (!(fabs(c->sight[1].largest - c->sight[0].largest) <= 1e-5 * c->sight[0].largest))
+        c->different++;
+}
+
+/* Presses a ball in from above, off the middle, sliding, and takes it away again. */
+static void press(pair *c, const tets *b, msds_method method, int frames, int64_t count)
+{
+    for (int i = 0; i < frames; i++) {
+        msds_plan plan = tets_plan(method);
+        double t = (double)i / (frames - 1), depth = .3 * b->size[2] * sin(3.3 * t);
+        tets_press(&plan, .25 * b->size[0], (.45 + .1 * t) * b->size[0], .5 * b->size[1], b->size[2] - depth);
+        frame_of(c, &plan, count);
+    }
+}
+
+static void test_same(const tets *b, const msds_options *o, bool shaken, msds_method method, const backend *cuda,
+                      const char *name)
+{
+    pair c = {0};
+    make(&c, b, o, shaken, cuda);
+    press(&c, b, method, 24, 20);
+    ok(c.largest > 1e-3 && c.pressed > 1e-3, "%s: %.3g mm, %.3g N", name, 1e3 * c.largest, c.pressed);
+    ok(c.worst < 1e-5 && c.force < 1e-5, "%s: within 1e-5: %.3g, forces %.3g", name, c.worst, c.force);
+    if (method != MSDS_EXACT && !o->penalty)
+        ok(!c.different, "%s: the same numbers as the CPU's (%lld differ)", name, (long long)c.different);
+    if (method != MSDS_SPRINGS)
+        ok(fabs(c.sight[1].residual - c.sight[0].residual) <= (method == MSDS_EXACT ? 1e-6 : 1e-4 * c.sight[0].residual),
+           "%s: leaves %.4g, %.4g", name, c.sight[0].residual, c.sight[1].residual);
+    drop(&c);
+}
+
+static void test_changes(const tets *b, const backend *cuda)
+{
+    static const msds_method methods[] = {MSDS_SPRINGS, MSDS_FEM, MSDS_SPRINGS, MSDS_EXACT, MSDS_FEM, MSDS_EXACT};
+    pair c = {0};
+    msds_options o = tets_options();
+    o.gravity[2] = -3;
+    make(&c, b, &o, false, cuda);
+    for (int i = 0; i < 6; i++)
+        press(&c, b, methods[i], 5, 7 + i);
+    ok(c.worst < 1e-5 && c.force < 1e-5, "methods change and the state goes along: %.3g, forces %.3g", c.worst, c.force);
+    drop(&c);
+}
+
+static void test_repeats(const tets *b, msds_method method, const backend *cuda, const char *name)
+{
+    err e = {0};
+    pair c = {0};
+    msds_options o = tets_options();
+    int different = 0;
+    make(&c, b, &o, false, cuda);
+    for (int repeat = 0; repeat <= 100; repeat++) {
+        void *state = cuda->create(&c.p, c.threads, &e);
+        tets_must(state != NULL, &e);
+        for (int i = 0; i < 4; i++) {
+            msds_plan plan = tets_plan(method);
+            tets_press(&plan, .25 * b->size[0], .5 * b->size[0], .5 * b->size[1], b->size[2] * (1 - .05 * i));
+            tets_must(!cuda->step(state, &plan, 20, &e), &e);
+        }
+        double *to = c.u[repeat > 0];
+        tets_must(!cuda->get(state, MSDS_DISPLACEMENT, to, &e) && !cuda->look(state, NULL, &c.sight[repeat > 0], &e), &e);
+        different += repeat > 0 && (memcmp(c.u[0], c.u[1], 3 * (size_t)c.p.nodes * sizeof *to) != 0 ||
+                                    memcmp(c.sight[0].force, c.sight[1].force, sizeof c.sight[0].force) != 0);
+        cuda->destroy(state);
+    }
+    ok(!different && c.sight[0].largest > 1e-3, "%s: 100 repeats, the same bytes", name);
+    drop(&c);
+}
+
+static void test_refused(const backend *cuda)
+{
+    static const tets b = {{4, 3, 3}, {.03, .02, .02}, 1e4, .3, 1000, 2, false};
+    pair c = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    msds_plan plan = tets_plan(MSDS_FEM);
+    o.warp = true;
+    make(&c, &b, &o, false, cuda);
+    ok(cuda->step(c.state[1], &plan, 1, &e) && strstr(e.text, "expected -d cpu"), "warping is refused: %s", e.text);
+    drop(&c);
+}
+
+static const tets small = {{5, 4, 4}, {.04, .03, .03}, 1e4, .3, 1000, 2, false};
+static const tets odd = {{21, 14, 9}, {.1, .07, .045}, 1e4, .45, 1000, 2, false};
+static const tets paper = {{32, 16, 16}, {.16, .08, .08}, 1e4, .45, 1000, 2, false};
+static const tets large = {{64, 40, 40}, {.16, .1, .1}, 1e4, .45, 1000, 2, false};
+
+static void test_method(msds_method method, const backend *cuda, const char *name)
+{
+    char what[80];
+    msds_options o = tets_options();
+    const tets *all[] = {&small, &odd, &paper, &large};
+    for (int i = 0; i < 4 - (method == MSDS_EXACT); i++) {
+        snprintf(what, sizeof what, "%s, %dx%dx%d", name, all[i]->nodes[0], all[i]->nodes[1], all[i]->nodes[2]);
+        test_same(all[i], &o, false, method, cuda, what);
+    }
+    snprintf(what, sizeof what, "%s, no lattice", name);
+    test_same(&odd, &o, true, method, cuda, what);
+    o.gravity[0] = 1, o.gravity[2] = -5;
+    snprintf(what, sizeof what, "%s, gravity", name);
+    test_same(&odd, &o, false, method, cuda, what);
+    o.penalty = true;
+    snprintf(what, sizeof what, "%s, a penalty", name);
+    if (method != MSDS_SPRINGS)
+        test_same(&odd, &o, false, method, cuda, what);
+    test_repeats(&odd, method, cuda, name);
+}
+
+int main(void)
+{
+    const char *why;
+    const backend *cuda = find_cuda(&why);
+    if (!cuda) {
+        skip(1, why);
+        return done_testing();
+    }
+    test_method(MSDS_SPRINGS, cuda, "springs");
+    test_method(MSDS_FEM, cuda, "20 cg");
+    test_method(MSDS_EXACT, cuda, "exact");
+    test_changes(&odd, cuda);
+    test_refused(cuda);
+    return done_testing();
+}
