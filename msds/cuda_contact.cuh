@@ -94,7 +94,7 @@ static __device__ inline void sight_sum(const tissue *t, double residual, int so
     sight.residual = residual;
     sight.solves = solves;
     if (threadIdx.x == 0)
-        *t->sight = sight;
+        t->outcome->sight = sight;
 }
 
 #endif

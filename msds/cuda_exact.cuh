@@ -1,6 +1,46 @@
+/* What the kernel of exact frames sees besides the tissue: the coarser lattices (levels.h) on the card. Passed by value; owns nothing.
+ */
 #ifndef SINEW_CUDA_EXACT_CUH
 #define SINEW_CUDA_EXACT_CUH
+
 #include "msds/cuda_tissue.cuh"
-typedef struct tissue_exact { int x; } tissue_exact;
-cudaError_t tissue_exact_fit(int *blocks);
+
+extern "C" {
+#include "msds/levels.h"
+}
+
+/* Steps of Chebyshev's polynomial before and after a coarser lattice has its say: odd, see FINISHED. It damps eigenvalues from the
+ * largest down to so small a share of it; by trials on lattices of 8,192 and 524,288 nodes at nu = .45. */
+enum { SMOOTH = 3, FINISHED = 1 /* where the steps leave the result, of the two that they go between */ };
+static const double smooth_share = .1;
+
+typedef struct tissue_weights {
+    const int32_t *start, *column;
+    const float *weight;
+} tissue_weights;
+
+typedef struct tissue_level {
+    int32_t nodes, chunks;
+    const int32_t *start, *neighbour;
+    const float *diagonal, *block, *inverse;
+    tissue_weights up, down;
+    float4 *left, *rest; /* right-hand side; what is left of it */
+    float4 *z[2], *step;
+    float keep[SMOOTH], take[SMOOTH]; /* of each step: the share of the last one, and of the inverse times what is left */
+} tissue_level;
+
+typedef struct tissue_exact {
+    tissue_level at[LEVELS_MOST];
+    int32_t count, order;
+    const float *coarsest;
+    float4 *gone;    /* what a search adds to the displacement */
+    uint8_t *active; /* nodes: kept on their plane */
+    double tolerance;
+} tissue_exact;
+
+/* Makes the displacement of exact frames that of the others. */
+void tissue_widen(const tissue *t, cudaStream_t stream);
+
+cudaError_t tissue_exact_start(const tissue *t, const tissue_frame *f, const tissue_exact *x, cudaStream_t stream);
+
 #endif

@@ -19,25 +19,26 @@ static __device__ inline void add_block(const float *k, float4 p, float4 *y)
 }
 
 /* What the elements pull node n with at u. */
-static __device__ inline float4 pulled_at(const tissue *t, int32_t n)
+template <int AHEAD> static __device__ inline float4 pulled_at(const tissue *t, int32_t n)
 {
     const int32_t slice = n / LANES, lane = n % LANES, last = t->start[slice + 1];
     float4 y = {0, 0, 0, 0};
     add_block(t->diagonal + slice * 9 * LANES + lane, t->u[n], &y);
-#pragma unroll 2
+#pragma unroll AHEAD
     for (int32_t slot = t->start[slice]; slot < last; slot++)
         add_block(t->block + (int64_t)slot * 9 * LANES + lane, t->u[t->neighbour[slot * LANES + lane]], &y);
     return y;
 }
 
 /* The same of the way, which is left + beta times the one before; that of node n to *own. */
+template <int AHEAD>
 static __device__ inline float4 pulled_along(const tissue *t, int32_t n, float beta, const float4 *before, float4 *own)
 {
     const int32_t slice = n / LANES, lane = n % LANES, last = t->start[slice + 1];
     float4 y = {0, 0, 0, 0};
     *own = along_way(t->left[n], beta, before[n]);
     add_block(t->diagonal + slice * 9 * LANES + lane, *own, &y);
-#pragma unroll 2
+#pragma unroll AHEAD
     for (int32_t slot = t->start[slice]; slot < last; slot++) {
         const int32_t other = t->neighbour[slot * LANES + lane];
         add_block(t->block + (int64_t)slot * 9 * LANES + lane, along_way(t->left[other], beta, before[other]), &y);
@@ -91,13 +92,13 @@ static __device__ void touch(const tissue *t, const tissue_frame *f)
 }
 
 /* What is left of the load at u; PART_FIRST: its square. */
-static __device__ void begin(const tissue *t, const tissue_frame *f, grid_scratch *s)
+template <int AHEAD> static __device__ void begin(const tissue *t, const tissue_frame *f, grid_scratch *s)
 {
     for (int32_t chunk = blockIdx.x; chunk < t->chunks; chunk += gridDim.x) {
         const int32_t n = CHUNK_NODE(chunk);
         float4 left = {0, 0, 0, 0};
         if (n < t->nodes) {
-            const float4 y = pulled_at(t, n), w = t->weight[n];
+            const float4 y = pulled_at<AHEAD>(t, n), w = t->weight[n];
             left = {w.x - y.x, w.y - y.y, w.z - y.z, 0};
             if (t->listed[n]) {
                 const tissue_contact *c = &t->contact[n];
@@ -113,6 +114,7 @@ static __device__ void begin(const tissue *t, const tissue_frame *f, grid_scratc
 }
 
 /* PART_SECOND: way . pulled of the elements; PART_THIRD: of the penalty. */
+template <int AHEAD>
 static __device__ void multiply(const tissue *t, const tissue_frame *f, float beta, const float4 *before, float4 *way,
                                 grid_scratch *s)
 {
@@ -122,7 +124,7 @@ static __device__ void multiply(const tissue *t, const tissue_frame *f, float be
         double stiffer = 0;
         float product = 0;
         if (n < t->nodes) {
-            y = pulled_along(t, n, beta, before, &p);
+            y = pulled_along<AHEAD>(t, n, beta, before, &p);
             product = p.x * y.x + p.y * y.y + p.z * y.z;
             if (t->listed[n]) {
                 const tissue_contact *c = &t->contact[n];
@@ -165,13 +167,13 @@ static __device__ double square_of_double(double x, double y, double z)
 }
 
 /* The forces of contact, for the next frame too, and the squares of what is left, of the load and of the pulls. */
-static __device__ void conclude(const tissue *t, const tissue_frame *f, grid_scratch *s)
+template <int AHEAD> static __device__ void conclude(const tissue *t, const tissue_frame *f, grid_scratch *s)
 {
     for (int32_t chunk = blockIdx.x; chunk < t->chunks; chunk += gridDim.x) {
         const int32_t n = CHUNK_NODE(chunk);
         double left[3] = {0, 0, 0}, load[3] = {0, 0, 0}, pulled = 0;
         if (n < t->nodes) {
-            const float4 y = pulled_at(t, n), w = t->weight[n], u = t->u[n];
+            const float4 y = pulled_at<AHEAD>(t, n), w = t->weight[n], u = t->u[n];
             const float4 r = {w.x - y.x, w.y - y.y, w.z - y.z, 0};
             left[0] = (double)r.x, left[1] = (double)r.y, left[2] = (double)r.z;
             load[0] = (double)w.x, load[1] = (double)w.y, load[2] = (double)w.z;
@@ -203,15 +205,16 @@ static __device__ double total(const tissue *t, tissue_part which, grid_scratch 
 
 /* cg_solve. What is summed after a barrier is summed by every block, in the same order; no part is filled again before another
  * barrier. */
+template <int AHEAD>
 static __device__ void solve(const tissue *t, const tissue_frame *f, int32_t iterations, grid_scratch *s)
 {
     float beta = 0;
     touch(t, f);
-    begin(t, f, s);
+    begin<AHEAD>(t, f, s);
     double squared = total(t, PART_FIRST, s);
     for (int32_t i = 0; i < iterations && squared > 0; i++) {
         float4 *before = t->way[i % 2], *way = t->way[1 - i % 2];
-        multiply(t, f, beta, before, way, s);
+        multiply<AHEAD>(t, f, beta, before, way, s);
         const double curvature = total(t, PART_SECOND, s) + total(t, PART_THIRD, s);
         if (!(curvature > 0))
             break;
@@ -220,37 +223,34 @@ static __device__ void solve(const tissue *t, const tissue_frame *f, int32_t ite
         beta = (float)(next / squared);
         squared = next;
     }
-    conclude(t, f, s);
+    conclude<AHEAD>(t, f, s);
 }
 
-static __global__ void __launch_bounds__(GRID_THREADS, 6) fem_kernel(tissue t, tissue_frame f)
+template <int AHEAD, int BLOCKS>
+static __global__ void __launch_bounds__(GRID_THREADS, BLOCKS) fem_kernel(tissue t, tissue_frame f)
 {
     __shared__ grid_scratch scratch;
     grid_scratch *s = &scratch;
     int32_t count = f.count;
     find_contacts(&t, &f, s);
     if (total(&t, PART_SECOND, s) < total(&t, PART_FIRST, s) && count > 1) { /* let go of: tissue may come after the probe */
-        solve(&t, &f, count / 2, s);
+        solve<AHEAD>(&t, &f, count / 2, s);
         find_contacts(&t, &f, s);
         count -= count / 2;
     }
-    solve(&t, &f, count, s);
+    solve<AHEAD>(&t, &f, count, s);
     if (blockIdx.x == 0) {
         const double left = total(&t, PART_LEFT, s), load = fmax(total(&t, PART_LOAD, s), total(&t, PART_PULLS, s));
         sight_sum(&t, load > 0 ? sqrt(left / load) : 0, 0, s);
     }
 }
 
-cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, int blocks, cudaStream_t stream)
+static const void *kernel_of(const tissue *t, int processors)
 {
-    tissue view = *t;
-    tissue_frame frame = *f;
-    void *with[] = {&view, &frame};
-    return cudaLaunchCooperativeKernel((const void *)fem_kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0,
-                                       stream);
+    return t->chunks <= 2 * processors ? (const void *)fem_kernel<6, 2> : (const void *)fem_kernel<2, 6>;
 }
 
-cudaError_t tissue_fem_fit(int *blocks)
+cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, cudaStream_t stream)
 {
-    return cudaOccupancyMaxActiveBlocksPerMultiprocessor(blocks, fem_kernel, GRID_THREADS, 0);
+    return tissue_start(kernel_of, t, f, NULL, stream);
 }

@@ -17,6 +17,9 @@ extern "C" {
 /* A node is looked for in the ball that holds the probe and so much more of its reach: contacts.c's. */
 static const double near_by = .1;
 
+/* An exact frame is in equilibrium to this share of its load: msds_cpu.c's. */
+static const double exact_tolerance = 1e-6;
+
 typedef struct cuda_state {
     const msds_problem *p;
     pool *threads;
@@ -25,9 +28,8 @@ typedef struct cuda_state {
     tissue_exact x;
     char *memory, *fem, *exact, *planes; /* of the card */
     int64_t bytes, fem_bytes, exact_bytes;
-    int springs_blocks, fem_blocks, exact_blocks;
     void *staging; /* pinned: nodes x float4, or x 3 doubles */
-    msds_sight *sight; /* pinned */
+    tissue_outcome *outcome; /* pinned */
     msds_method method;
     bool precise; /* t.precise is the state; else t.u */
     int64_t step;
@@ -147,21 +149,10 @@ static int lay_out(cuda_state *s, const host_nodes *h, err *e)
     t->listed = room<uint8_t>(s->memory, &used, nodes);
     t->held = room<double>(s->memory, &used, nodes);
     t->part = room<double>(s->memory, &used, (int64_t)PARTS * t->chunks);
-    t->sight = room<msds_sight>(s->memory, &used, 1);
+    t->outcome = room<tissue_outcome>(s->memory, &used, 1);
     t->arrived = room<unsigned long long>(s->memory, &used, 1);
     s->bytes = used;
     return 0;
-}
-
-/* So many blocks as there are chunks, or as the card holds at once. */
-static int choose_blocks(cuda_state *s, cudaError_t (*fit)(int *), int *blocks, err *e)
-{
-    int processors = 0, device = 0;
-    if (CUDA_TRY(cudaGetDevice(&device)) ||
-        CUDA_TRY(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device)) || CUDA_TRY(fit(blocks)))
-        return -1;
-    *blocks = *blocks * processors < s->t.chunks ? *blocks * processors : s->t.chunks;
-    return *blocks > 0 ? 0 : err_set(e, NULL, 0, "CUDA: the card holds no block of the solver");
 }
 
 static int put_problem(cuda_state *s, err *e)
@@ -189,11 +180,9 @@ static int fill(cuda_state *s, err *e)
     s->t.nodes = (int32_t)s->order.nodes;
     s->t.chunks = (int32_t)pool_chunks(s->order.count, SLICES_CHUNK);
     s->precise = true;
-    return put_problem(s, e) || choose_blocks(s, tissue_springs_fit, &s->springs_blocks, e) ||
-                   choose_blocks(s, tissue_fem_fit, &s->fem_blocks, e) ||
-                   choose_blocks(s, tissue_exact_fit, &s->exact_blocks, e) ||
+    return put_problem(s, e) ||
                    CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
-                   CUDA_TRY(cudaMallocHost((void **)&s->sight, sizeof *s->sight)) ||
+                   CUDA_TRY(cudaMallocHost((void **)&s->outcome, sizeof *s->outcome)) ||
                    CUDA_TRY(cudaMallocHost(&s->staging, (size_t)s->order.nodes * 3 * sizeof(double))) ||
                    CUDA_TRY(cudaDeviceSynchronize())
                ? -1
@@ -208,7 +197,7 @@ static void cuda_destroy(void *state)
     if (s->stream)
         cudaStreamSynchronize(s->stream);
     cudaFreeHost(s->staging);
-    cudaFreeHost(s->sight);
+    cudaFreeHost(s->outcome);
     card_give(s->memory);
     card_give(s->fem);
     card_give(s->exact);
@@ -267,28 +256,165 @@ static int make_matrix(cuda_state *s, lanes_matrix *m, err *e)
     return result;
 }
 
-static int make_fem(cuda_state *s, err *e)
+/* The stiffness on the card; with l (zeroed), the coarser lattices on the host too. */
+static int make_stiffness(cuda_state *s, levels *l, err *e)
 {
-    lanes_matrix m = {0};
+    lanes_matrix m = {};
     int result = -1;
-    if (s->fem)
-        return 0;
     if (s->p->options.warp)
         return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
-    if (make_matrix(s, &m, e))
+    if (make_matrix(s, &m, e) || (l && levels_make(l, s->p, &s->order, &m, s->threads, e)))
+        goto out;
+    result = 0;
+    if (s->fem)
         goto out;
     lay_out_fem(s, &m, e);
     s->fem = (char *)card_take(s->fem_bytes, "the stiffness", e);
-    if (s->fem && !CUDA_TRY(cudaMemset(s->fem, 0, (size_t)s->fem_bytes)) && !lay_out_fem(s, &m, e) &&
-        !CUDA_TRY(cudaDeviceSynchronize()))
-        result = 0;
+    result = !s->fem || CUDA_TRY(cudaMemset(s->fem, 0, (size_t)s->fem_bytes)) || lay_out_fem(s, &m, e) ||
+                     CUDA_TRY(cudaDeviceSynchronize())
+                 ? -1
+                 : 0;
 out:
     free(m.diagonal);
     free(m.block);
     return result;
 }
 
+/* ---- exact frames */
+
+/* The steps of Chebyshev's polynomial on eigenvalues from smooth_share of the largest up to it. */
+static void choose_steps(tissue_level *v, double largest)
+{
+    const double middle = .5 * (1 + smooth_share) * largest, half = .5 * (1 - smooth_share) * largest;
+    double share = half / middle;
+    v->keep[0] = 0;
+    v->take[0] = (float)(1 / middle);
+    for (int i = 1; i < SMOOTH; i++) {
+        const double next = 1 / (2 * middle / half - share);
+        v->keep[i] = (float)(next * share);
+        v->take[i] = (float)(2 * next / half);
+        share = next;
+    }
+}
+
+static int put_weights(cuda_state *s, int64_t *used, tissue_weights *to, const levels_weights *from, err *e)
+{
+    return put(s, s->exact, used, &to->start, from->start, from->count + 1, e) ||
+                   put(s, s->exact, used, &to->column, from->column, from->slots * LANES, e) ||
+                   put(s, s->exact, used, &to->weight, from->weight, from->slots * LANES, e)
+               ? -1
+               : 0;
+}
+
+/* Of levels past the mesh, the matrix; what the mesh has already stays where it is. */
+static int put_matrix(cuda_state *s, int64_t *used, tissue_level *v, const level *from, const int32_t *start, err *e)
+{
+    const slices *g = &from->graph;
+    v->left = room<float4>(s->exact, used, g->nodes);
+    v->rest = room<float4>(s->exact, used, g->nodes);
+    return put(s, s->exact, used, &v->start, start, g->count + 1, e) ||
+                   put(s, s->exact, used, &v->neighbour, g->neighbour, g->slots * LANES, e) ||
+                   put(s, s->exact, used, &v->diagonal, from->matrix.diagonal, g->count * 9 * LANES, e) ||
+                   put(s, s->exact, used, &v->block, from->matrix.block, g->slots * 9 * LANES, e)
+               ? -1
+               : 0;
+}
+
+static int put_level(cuda_state *s, int64_t *used, int i, const level *from, const int32_t *start, bool last, err *e)
+{
+    tissue_level *v = &s->x.at[i];
+    const tissue *t = &s->t;
+    v->nodes = (int32_t)from->graph.nodes;
+    v->chunks = (int32_t)pool_chunks(from->graph.count, SLICES_CHUNK);
+    choose_steps(v, from->largest);
+    v->start = t->start, v->neighbour = t->neighbour, v->diagonal = t->diagonal, v->block = t->block;
+    v->left = t->left, v->rest = t->pulled;
+    if (i > 0 && put_matrix(s, used, v, from, start, e))
+        return -1;
+    v->z[0] = room<float4>(s->exact, used, v->nodes);
+    v->z[1] = room<float4>(s->exact, used, v->nodes);
+    v->step = room<float4>(s->exact, used, v->nodes);
+    return put(s, s->exact, used, &v->inverse, from->inverse, from->graph.count * 9 * LANES, e) ||
+                   (!last && (put_weights(s, used, &v->up, &from->up, e) || put_weights(s, used, &v->down, &from->down, e)))
+               ? -1
+               : 0;
+}
+
+static int lay_out_exact(cuda_state *s, const levels *l, int32_t *const *start, err *e)
+{
+    tissue_exact *x = &s->x;
+    int64_t used = 0;
+    for (int i = 0; i < l->count; i++)
+        if (put_level(s, &used, i, &l->at[i], start[i], i == l->count - 1, e))
+            return -1;
+    x->count = l->count;
+    x->order = (int32_t)l->order;
+    x->tolerance = exact_tolerance;
+    x->gone = room<float4>(s->exact, &used, s->order.nodes);
+    x->active = room<uint8_t>(s->exact, &used, s->order.nodes);
+    if (put(s, s->exact, &used, &x->coarsest, l->coarsest, l->order * l->order, e))
+        return -1;
+    s->exact_bytes = used;
+    return 0;
+}
+
+/* The slices' beginnings as the card counts. */
+static int narrow_starts(const levels *l, int32_t **start, err *e)
+{
+    for (int i = 0; i < l->count; i++) {
+        const slices *g = &l->at[i].graph;
+        start[i] = (int32_t *)mem_array(g->count + 1, sizeof *start[i], "the solver", e);
+        if (!start[i])
+            return -1;
+        for (int64_t k = 0; k <= g->count; k++)
+            start[i][k] = (int32_t)g->start[k];
+    }
+    return 0;
+}
+
+static int make_exact(cuda_state *s, err *e)
+{
+    levels *l = s->exact ? NULL : (levels *)mem_array(1, sizeof *l, "the solver", e);
+    int32_t *start[LEVELS_MOST] = {};
+    int result = -1;
+    if (s->exact)
+        return 0;
+    if (!l || make_stiffness(s, l, e) || narrow_starts(l, start, e))
+        goto out;
+    lay_out_exact(s, l, start, e);
+    s->exact = (char *)card_take(s->exact_bytes, "coarser lattices", e);
+    if (s->exact && !CUDA_TRY(cudaMemset(s->exact, 0, (size_t)s->exact_bytes)) && !lay_out_exact(s, l, start, e) &&
+        !CUDA_TRY(cudaDeviceSynchronize()))
+        result = 0;
+out:
+    for (int i = 0; i < LEVELS_MOST; i++)
+        free(start[i]);
+    if (l)
+        levels_free(l);
+    free(l);
+    return result;
+}
+
 /* ---- frames */
+
+cudaError_t tissue_start(const void *(*of)(const tissue *t, int processors), const tissue *t, const tissue_frame *f,
+                         void *more, cudaStream_t stream)
+{
+    int processors = 0, device = 0, fit = 0;
+    tissue view = *t;
+    tissue_frame frame = *f;
+    void *with[] = {&view, &frame, more};
+    cudaError_t code = cudaGetDevice(&device);
+    if (code == cudaSuccess)
+        code = cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device);
+    const void *kernel = of(t, processors);
+    if (code == cudaSuccess)
+        code = cudaOccupancyMaxActiveBlocksPerMultiprocessor(&fit, kernel, GRID_THREADS, 0);
+    const int blocks = fit * processors < t->chunks ? fit * processors : t->chunks;
+    return code != cudaSuccess ? code
+                               : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0,
+                                                             stream);
+}
 
 static tissue_frame frame_of(const cuda_state *s, const msds_plan *plan, int64_t count)
 {
@@ -308,7 +434,7 @@ static tissue_frame frame_of(const cuda_state *s, const msds_plan *plan, int64_t
 
 static int step_springs(cuda_state *s, const tissue_frame *f, err *e)
 {
-    if (card_check(tissue_springs_start(&s->t, f, s->springs_blocks, s->stream), "the start of a frame", s->step, e))
+    if (card_check(tissue_springs_start(&s->t, f, s->stream), "the start of a frame", s->step, e))
         return -1;
     if (f->count % 2) {
         float4 *u = s->t.u, *v = s->t.v;
@@ -320,14 +446,21 @@ static int step_springs(cuda_state *s, const tissue_frame *f, err *e)
 
 static int step_fem(cuda_state *s, const tissue_frame *f, err *e)
 {
-    return make_fem(s, e) ||
-                   card_check(tissue_fem_start(&s->t, f, s->fem_blocks, s->stream), "the start of a frame", s->step, e)
+    return (!s->fem && make_stiffness(s, NULL, e)) ||
+                   card_check(tissue_fem_start(&s->t, f, s->stream), "the start of a frame", s->step, e)
                ? -1
                : 0;
 }
 
-cudaError_t tissue_exact_fit(int *blocks) { *blocks = 1; return cudaSuccess; }
-static int step_exact(cuda_state *s, const tissue_frame *f, err *e) { (void)s; (void)f; return err_set(e, NULL, 0, "not yet"); }
+static int step_exact(cuda_state *s, const tissue_frame *f, err *e)
+{
+    if (make_exact(s, e))
+        return -1;
+    if (!s->precise) /* exact frames go on from what the others left */
+        tissue_widen(&s->t, s->stream);
+    return card_check(tissue_exact_start(&s->t, f, &s->x, s->stream), "the start of a frame", s->step, e);
+}
+
 static int cuda_step(void *state, const void *plan, int64_t count, err *e)
 {
     cuda_state *s = (cuda_state *)state;
@@ -346,10 +479,13 @@ static int cuda_look(void *state, const void *question, void *answer, err *e)
 {
     cuda_state *s = (cuda_state *)state;
     (void)question;
-    if (CUDA_TRY(cudaMemcpyAsync(s->sight, s->t.sight, sizeof *s->sight, cudaMemcpyDeviceToHost, s->stream)) ||
+    if (CUDA_TRY(cudaMemcpyAsync(s->outcome, s->t.outcome, sizeof *s->outcome, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
-    *(msds_sight *)answer = *s->sight;
+    *(msds_sight *)answer = s->outcome->sight;
+    if (s->method == MSDS_EXACT && s->outcome->failed)
+        return err_set(e, NULL, 0, "after %d solves the residual is still %.3g, or contact not settled; expected %.3g",
+                       s->outcome->sight.solves, s->outcome->sight.residual, exact_tolerance);
     return 0;
 }
 

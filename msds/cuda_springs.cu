@@ -9,14 +9,23 @@ extern "C" {
 
 static const double clinging = .02; /* contacts.c's */
 
-/* What the spring to a neighbour pulls node n with: x, u and v are n's. */
-static __device__ inline void pull(const tissue *t, int32_t at, float4 x, float4 u, float4 v, float force[3])
+/* A spring and its other end. */
+typedef struct spring_end {
+    float4 place, u, v;
+    float rest, stiffness, damper;
+} spring_end;
+
+static __device__ inline spring_end load_end(const tissue *t, int32_t at)
 {
     const int32_t other = t->neighbour[at];
-    const float4 y = t->place[other], w = t->u[other], z = t->v[other];
-    const float rest = t->rest[at], k = t->stiffness[at], gamma = t->damper[at];
-    const float du[3] = {w.x - u.x, w.y - u.y, w.z - u.z}, dv[3] = {z.x - v.x, z.y - v.y, z.z - v.z};
-    const float at_rest[3] = {y.x - x.x, y.y - x.y, y.z - x.z};
+    return {t->place[other], t->u[other], t->v[other], t->rest[at], t->stiffness[at], t->damper[at]};
+}
+
+/* What a spring pulls its first end with: x, u and v are that end's. */
+static __device__ inline void pull(const spring_end *o, float4 x, float4 u, float4 v, float force[3])
+{
+    const float du[3] = {o->u.x - u.x, o->u.y - u.y, o->u.z - u.z}, dv[3] = {o->v.x - v.x, o->v.y - v.y, o->v.z - v.z};
+    const float at_rest[3] = {o->place.x - x.x, o->place.y - x.y, o->place.z - x.z}, rest = o->rest;
     float d[3], stretch = 0, speed = 0;
     for (int a = 0; a < 3; a++) {
         d[a] = at_rest[a] + du[a];
@@ -24,7 +33,7 @@ static __device__ inline void pull(const tissue *t, int32_t at, float4 x, float4
         speed += dv[a] * d[a];
     }
     const float square = fmaxf(rest * rest + stretch, rest * rest * SPRING_LEAST), length = sqrtf(square);
-    const float scale = SPRING_FORCE(k, gamma, rest, square, speed, stretch, length);
+    const float scale = SPRING_FORCE(o->stiffness, o->damper, rest, square, speed, stretch, length);
     for (int a = 0; a < 3; a++)
         force[a] += scale * d[a];
 }
@@ -41,14 +50,27 @@ static __device__ void push(const tissue *t, const tissue_frame *f, int32_t n, f
         force[a] += (float)(pushed * at.way[a]);
 }
 
-static __device__ inline void move_node(const tissue *t, const tissue_frame *f, int32_t n)
+/* AHEAD springs are loaded before the first of them is computed: what is computed has branches (of division and root), past which
+ * no compiler moves loads, and a small mesh waits for nothing but loads. */
+template <int AHEAD> static __device__ inline void move_node(const tissue *t, const tissue_frame *f, int32_t n)
 {
     const float4 x = t->place[n], u = t->u[n], v = t->v[n], weight = t->weight[n];
     const int32_t slice = n / LANES, lane = n % LANES, last = t->start[slice + 1];
     float force[3] = {weight.x, weight.y, weight.z};
-#pragma unroll 3
-    for (int32_t slot = t->start[slice]; slot < last; slot++)
-        pull(t, slot * LANES + lane, x, u, v, force);
+    int32_t slot = t->start[slice];
+    for (; slot + AHEAD <= last; slot += AHEAD) {
+        spring_end end[AHEAD];
+#pragma unroll
+        for (int i = 0; i < AHEAD; i++)
+            end[i] = load_end(t, (slot + i) * LANES + lane);
+#pragma unroll
+        for (int i = 0; i < AHEAD; i++)
+            pull(&end[i], x, u, v, force);
+    }
+    for (; slot < last; slot++) {
+        const spring_end end = load_end(t, slot * LANES + lane);
+        pull(&end, x, u, v, force);
+    }
     if (f->touched && square_away(f, x, u) < f->reach * f->reach)
         push(t, f, n, u, v, force);
     const float inverse = f->dt * x.w;
@@ -71,13 +93,14 @@ static __device__ void note_contact(const tissue *t, const tissue_frame *f, int3
     contact_hold(t, n);
 }
 
-static __global__ void __launch_bounds__(GRID_THREADS, 6) springs_kernel(tissue t, tissue_frame f)
+template <int AHEAD, int BLOCKS>
+static __global__ void __launch_bounds__(GRID_THREADS, BLOCKS) springs_kernel(tissue t, tissue_frame f)
 {
     __shared__ grid_scratch scratch;
     for (int32_t i = 0; i < f.count; i++) {
         for (int32_t chunk = blockIdx.x; chunk < t.chunks; chunk += gridDim.x)
             if (CHUNK_NODE(chunk) < t.nodes)
-                move_node(&t, &f, CHUNK_NODE(chunk));
+                move_node<AHEAD>(&t, &f, CHUNK_NODE(chunk));
         float4 *u = t.u, *v = t.v;
         t.u = t.next_u, t.v = t.next_v;
         t.next_u = u, t.next_v = v;
@@ -95,16 +118,13 @@ static __global__ void __launch_bounds__(GRID_THREADS, 6) springs_kernel(tissue 
         sight_sum(&t, NAN, 0, &scratch);
 }
 
-cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, int blocks, cudaStream_t stream)
+/* Few blocks wait for loads; many hide them behind each other. */
+static const void *kernel_of(const tissue *t, int processors)
 {
-    tissue view = *t;
-    tissue_frame frame = *f;
-    void *with[] = {&view, &frame};
-    return cudaLaunchCooperativeKernel((const void *)springs_kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0,
-                                       stream);
+    return t->chunks <= 2 * processors ? (const void *)springs_kernel<6, 2> : (const void *)springs_kernel<2, 6>;
 }
 
-cudaError_t tissue_springs_fit(int *blocks)
+cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, cudaStream_t stream)
 {
-    return cudaOccupancyMaxActiveBlocksPerMultiprocessor(blocks, springs_kernel, GRID_THREADS, 0);
+    return tissue_start(kernel_of, t, f, NULL, stream);
 }

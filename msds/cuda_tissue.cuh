@@ -33,6 +33,11 @@ typedef enum tissue_part {
     PARTS
 } tissue_part;
 
+typedef struct tissue_outcome { /* of a frame */
+    msds_sight sight;
+    bool failed; /* an exact one did not come to its tolerance */
+} tissue_outcome;
+
 typedef struct tissue {
     int32_t nodes, chunks;
     const int32_t *start, *neighbour; /* slices + 1; slots x LANES */
@@ -49,7 +54,7 @@ typedef struct tissue {
     uint8_t *listed;
     double *held; /* as contacts.h has it */
     double *part; /* PARTS x chunks */
-    msds_sight *sight;
+    tissue_outcome *outcome;
     unsigned long long *arrived;
 } tissue;
 
@@ -62,12 +67,12 @@ typedef struct tissue_frame {
     bool touched, penalty;
 } tissue_frame;
 
-/* Start a frame on the stream; blocks: as many as fit the card. */
-cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, int blocks, cudaStream_t stream);
-cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, int blocks, cudaStream_t stream);
+/* Starts a frame on the stream, by the kernel that `of` names for a card of so many multiprocessors; more: its third argument, or
+ * NULL. As many blocks as there are chunks, or as the card holds at once. */
+cudaError_t tissue_start(const void *(*of)(const tissue *t, int processors), const tissue *t, const tissue_frame *f,
+                         void *more, cudaStream_t stream);
 
-/* How many blocks of each a multiprocessor holds. */
-cudaError_t tissue_springs_fit(int *blocks);
-cudaError_t tissue_fem_fit(int *blocks);
+cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, cudaStream_t stream);
+cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, cudaStream_t stream);
 
 #endif

@@ -1,8 +1,9 @@
 /* msds-run's CUDA back end against the CPU's: springs and conjugate gradients give the same numbers to the bit, exact frames come within
  * 1e-5 of the largest displacement; on lattices, on a mesh without any order, through changes of method, with contact of both
- * kinds; and a hundred repeats give the same bytes. Without a card all is skipped.
+ * kinds; and a hundred repeats give the same bytes. Without a card all is skipped. `test_msds_cuda small` is short enough for
+ * compute-sanitizer.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
+// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c msds/levels.c
 #include "msds_block.h"
 
 #include "base/mem.h"
@@ -10,6 +11,8 @@
 #include "msds/msds_cpu.h"
 
 #include "tap.h"
+
+static bool shortened;
 
 typedef struct pair { /* the same model here and there */
     model m;
@@ -122,7 +125,7 @@ static void test_same(const tets *b, const msds_options *o, bool shaken, msds_me
 {
     pair c = {0};
     make(&c, b, o, shaken, cuda);
-    press(&c, b, method, 24, 20);
+    press(&c, b, method, shortened ? 4 : 24, 20);
     ok(c.largest > 1e-3 && c.pressed > 1e-3, "%s: %.3g mm, %.3g N", name, 1e3 * c.largest, c.pressed);
     ok(c.worst < 1e-5 && c.force < 1e-5, "%s: within 1e-5: %.3g, forces %.3g", name, c.worst, c.force);
     if (method != MSDS_EXACT && !o->penalty)
@@ -151,9 +154,10 @@ static void test_repeats(const tets *b, msds_method method, const backend *cuda,
     err e = {0};
     pair c = {0};
     msds_options o = tets_options();
+    const int repeats = shortened ? 2 : 100;
     int different = 0;
     make(&c, b, &o, false, cuda);
-    for (int repeat = 0; repeat <= 100; repeat++) {
+    for (int repeat = 0; repeat <= repeats; repeat++) {
         void *state = cuda->create(&c.p, c.threads, &e);
         tets_must(state != NULL, &e);
         for (int i = 0; i < 4; i++) {
@@ -167,7 +171,7 @@ static void test_repeats(const tets *b, msds_method method, const backend *cuda,
                                     memcmp(c.sight[0].force, c.sight[1].force, sizeof c.sight[0].force) != 0);
         cuda->destroy(state);
     }
-    ok(!different && c.sight[0].largest > 1e-3, "%s: 100 repeats, the same bytes", name);
+    ok(!different && c.sight[0].largest > 1e-3, "%s: %d repeats, the same bytes", name, repeats);
     drop(&c);
 }
 
@@ -194,7 +198,7 @@ static void test_method(msds_method method, const backend *cuda, const char *nam
     char what[80];
     msds_options o = tets_options();
     const tets *all[] = {&small, &odd, &paper, &large};
-    for (int i = 0; i < 4 - (method == MSDS_EXACT); i++) {
+    for (int i = 0; i < (shortened ? 2 : method == MSDS_EXACT ? 3 : 4); i++) {
         snprintf(what, sizeof what, "%s, %dx%dx%d", name, all[i]->nodes[0], all[i]->nodes[1], all[i]->nodes[2]);
         test_same(all[i], &o, false, method, cuda, what);
     }
@@ -210,8 +214,9 @@ static void test_method(msds_method method, const backend *cuda, const char *nam
     test_repeats(&odd, method, cuda, name);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    shortened = argc > 1 && !strcmp(argv[1], "small");
     const char *why;
     const backend *cuda = find_cuda(&why);
     if (!cuda) {
