@@ -5,7 +5,7 @@
 
 #include "msds/cuda_tissue.cuh"
 
-#define CHUNK_NODE(chunk) ((chunk) * GRID_THREADS + (int32_t)threadIdx.x)
+#define CHUNK_NODE(chunk) ((chunk)*GRID_THREADS + (int32_t)threadIdx.x)
 
 static __device__ inline float square_away(const tissue_frame *f, float4 place, float4 u)
 {
@@ -29,7 +29,8 @@ static __device__ inline float4 contact_add(const tissue_contact *c, float4 f, d
 /* Whether a node is in the ball that is looked through. */
 static __device__ inline bool contact_candidate(const tissue *t, const tissue_frame *f, int32_t n, float4 u)
 {
-    return f->touched && n < t->nodes && t->kind[n] == TISSUE_FREE && square_away(f, t->place[n], u) < f->wide * f->wide;
+    return f->touched && n < t->nodes && t->kind[n] == TISSUE_FREE &&
+           square_away(f, t->place[n], u) < f->wide * f->wide;
 }
 
 /* Where the probe is from a node that stands at its place and `from`. */
@@ -76,8 +77,9 @@ static __device__ inline void sight_parts(const tissue *t, int32_t chunk, float4
         pressed = c->force > 0;
     }
     const double x = (double)u.x, y = (double)u.y, z = (double)u.z, square = x * x + y * y + z * z;
-    const double sum[] = {grid_block_sum(force[0], s), grid_block_sum(force[1], s), grid_block_sum(force[2], s),
-                          grid_block_sum(pressed, s),  grid_block_most(square, s),  grid_block_sum(!isfinite(square), s)};
+    const double sum[] = {grid_block_sum(force[0], s), grid_block_sum(force[1], s),
+                          grid_block_sum(force[2], s), grid_block_sum(pressed, s),
+                          grid_block_most(square, s),  grid_block_sum(!isfinite(square), s)};
     for (int i = 0; i < PARTS - PART_FORCE && threadIdx.x == 0; i++)
         t->part[(PART_FORCE + i) * t->chunks + chunk] = sum[i];
 }

@@ -25,15 +25,31 @@ static __device__ inline void block_add(const float *k, float4 p, float4 *y)
     y->z += k[6 * LANES] * p.x + k[7 * LANES] * p.y + k[8 * LANES] * p.z;
 }
 
-/* left - matrix z at a node. */
+/* The same of a block in half precision. */
+static __device__ inline void half_add(uint4 eight, __half ninth, float4 p, float4 *y)
+{
+    const float2 a = __half22float2(*(const __half2 *)&eight.x), b = __half22float2(*(const __half2 *)&eight.y);
+    const float2 c = __half22float2(*(const __half2 *)&eight.z), d = __half22float2(*(const __half2 *)&eight.w);
+    y->x += a.x * p.x + a.y * p.y + b.x * p.z;
+    y->y += b.y * p.x + c.x * p.y + c.y * p.z;
+    y->z += d.x * p.x + d.y * p.y + __half2float(ninth) * p.z;
+}
+
+/* left - matrix z at a node. The matrix is one of half precision, but what it does to a field without strain is exact: differences
+ * to the neighbours, and the sum of the row. */
 static __device__ inline float4 level_rest(const tissue_level *l, int32_t n, const float4 *z)
 {
     const int32_t slice = n / LANES, lane = n % LANES, last = l->start[slice + 1];
+    const float4 own = z[n];
     float4 y = {0, 0, 0, 0};
-    block_add(l->diagonal + slice * 9 * LANES + lane, z[n], &y);
 #pragma unroll 4
-    for (int32_t slot = l->start[slice]; slot < last; slot++)
-        block_add(l->block + (int64_t)slot * 9 * LANES + lane, z[l->neighbour[slot * LANES + lane]], &y);
+    for (int32_t slot = l->start[slice]; slot < last; slot++) {
+        const int32_t at = slot * LANES + lane;
+        half_add(l->eight[at], l->ninth[at], minus(z[l->neighbour[at]], own), &y);
+    }
+    y = {l->back * y.x, l->back * y.y, l->back * y.z, 0};
+    if (l->sums)
+        block_add(l->sums + slice * 9 * LANES + lane, own, &y);
     return minus(l->left[n], y);
 }
 
@@ -49,8 +65,8 @@ static __device__ inline float4 weights_sum(const tissue_weights *w, int32_t n, 
 }
 
 /* On the mesh: without what a node has along its contact's way, where that is prescribed. */
-static __device__ inline float4 keep_out(const tissue *t, const tissue_frame *f, const tissue_exact *x, int l, int32_t n,
-                                         float4 v)
+static __device__ inline float4 keep_out(const tissue *t, const tissue_frame *f, const tissue_exact *x, int l,
+                                         int32_t n, float4 v)
 {
     if (l > 0 || f->penalty || !x->active[n])
         return v;
@@ -59,8 +75,8 @@ static __device__ inline float4 keep_out(const tissue *t, const tissue_frame *f,
 }
 
 /* The first step from zero, of what is left at a node. */
-static __device__ inline void smooth_first(const tissue *t, const tissue_frame *f, const tissue_exact *x, int l, int32_t n,
-                                           float4 left)
+static __device__ inline void smooth_first(const tissue *t, const tissue_frame *f, const tissue_exact *x, int l,
+                                           int32_t n, float4 left)
 {
     const tissue_level *v = &x->at[l];
     float4 step = {0, 0, 0, 0};
@@ -72,8 +88,8 @@ static __device__ inline void smooth_first(const tissue *t, const tissue_frame *
 }
 
 /* A later one, from one z to the other; returns the new z. */
-static __device__ inline float4 smooth_node(const tissue *t, const tissue_frame *f, const tissue_exact *x, int l, int32_t n,
-                                            int which, const float4 *from, float4 *to)
+static __device__ inline float4 smooth_node(const tissue *t, const tissue_frame *f, const tissue_exact *x, int l,
+                                            int32_t n, int which, const float4 *from, float4 *to)
 {
     const tissue_level *v = &x->at[l];
     const float4 rest = keep_out(t, f, x, l, n, level_rest(v, n, from)), before = v->step[n];

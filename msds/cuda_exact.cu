@@ -6,14 +6,15 @@
 #include "msds/cuda_cycle.cuh"
 
 enum {
-    ROUNDS = 4,     /* of a frame, each with the nodes that the last one pushed into the probe: as on the CPU */
-    SEARCH = 100,   /* iterations of one search */
-    TURNS = 200,    /* searches and changes of contact in a round */
-    LOOSE_TURNS = 12 /* changes of contact that are found by the loose tolerance */
+    ROUNDS = 4,   /* of a frame, each with the nodes that the last one pushed into the probe: as on the CPU */
+    SEARCH = 100, /* iterations of one search */
+    TURNS = 200,  /* searches and changes of contact in a round */
+    STAGES = 3,   /* of a solve, each to a tolerance that is sharper by `sharper` */
+    CHANGES = 12  /* of contact by a tolerance that is not yet the last */
 };
 
 /* msds_cpu.c's and contacts.c's; a search goes so far down at once, which single precision can do. */
-static const double missed = 1e-6, near_by = .1, loose = 1e-3, search_depth = 1e-4;
+static const double missed = 1e-6, near_by = .1, sharper = 1e-2, search_depth = 1e-4;
 
 static __device__ double sum_of(const tissue *t, tissue_part which, grid_scratch *s)
 {
@@ -61,7 +62,8 @@ static __device__ void find_contacts(const tissue *t, const tissue_frame *f, con
 /* Prescribed contact: active nodes go to their planes. */
 static __device__ void impose(const tissue *t, const tissue_frame *f, const tissue_exact *x)
 {
-    for (int32_t n = blockIdx.x * GRID_THREADS + threadIdx.x; n < t->nodes && !f->penalty; n += gridDim.x * GRID_THREADS)
+    for (int32_t n = blockIdx.x * GRID_THREADS + threadIdx.x; n < t->nodes && !f->penalty;
+         n += gridDim.x * GRID_THREADS)
         if (x->active[n]) {
             const double by = still_to_go(t, n);
             for (int a = 0; a < 3; a++)
@@ -116,7 +118,8 @@ static __device__ void find_left(const tissue *t, const tissue_frame *f, const t
             t->left[n] = single(left);
             smooth_first(t, f, x, 0, n, t->left[n]);
         }
-        const double sum[] = {grid_block_sum(square(left), s), grid_block_sum(square(load), s), grid_block_sum(square(y), s)};
+        const double sum[] = {grid_block_sum(square(left), s), grid_block_sum(square(load), s),
+                              grid_block_sum(square(y), s)};
         for (int i = 0; i < 3 && threadIdx.x == 0; i++)
             t->part[(PART_LEFT + i) * t->chunks + chunk] = sum[i];
     }
@@ -176,7 +179,8 @@ static __device__ void advance(const tissue *t, const tissue_frame *f, const tis
 }
 
 /* Searches until the square of what is left is at most goal. Returns the iterations taken. */
-static __device__ int search(const tissue *t, const tissue_frame *f, const tissue_exact *x, double goal, grid_scratch *s)
+static __device__ int search(const tissue *t, const tissue_frame *f, const tissue_exact *x, double goal,
+                             grid_scratch *s)
 {
     float beta = 0;
     int i = 0;
@@ -209,7 +213,8 @@ static __device__ int search(const tissue *t, const tissue_frame *f, const tissu
 }
 
 /* Lets go of active nodes that pull and takes in those that are past their planes. Returns how many. */
-static __device__ int64_t change_contacts(const tissue *t, const tissue_frame *f, const tissue_exact *x, grid_scratch *s)
+static __device__ int64_t change_contacts(const tissue *t, const tissue_frame *f, const tissue_exact *x,
+                                          grid_scratch *s)
 {
     for (int32_t chunk = blockIdx.x; chunk < t->chunks; chunk += gridDim.x) {
         const int32_t n = CHUNK_NODE(chunk);
@@ -251,10 +256,11 @@ typedef struct progress {
 } progress;
 
 /* Brings the tissue into equilibrium with the contacts listed. Returns whether it is. */
-static __device__ bool solve(const tissue *t, const tissue_frame *f, const tissue_exact *x, progress *p, grid_scratch *s)
+static __device__ bool solve(const tissue *t, const tissue_frame *f, const tissue_exact *x, progress *p,
+                             grid_scratch *s)
 {
-    double tolerance = loose;
-    int changes = 0;
+    double tolerance = x->tolerance / (sharper * sharper);
+    int changes = 0, stage = 1;
     for (int turn = 0; turn < TURNS; turn++) {
         impose(t, f, x);
         find_left(t, f, x, s);
@@ -264,16 +270,16 @@ static __device__ bool solve(const tissue *t, const tissue_frame *f, const tissu
         if (!isfinite(p->residual))
             return false;
         if (p->residual > tolerance) {
-            const double goal = .25 * tolerance * tolerance * p->load, least = search_depth * search_depth * left;
+            const double goal = .64 * tolerance * tolerance * p->load, least = search_depth * search_depth * left;
             p->solves += search(t, f, x, fmax(goal, least), s);
             continue;
         }
-        if (change_contacts(t, f, x, s) == 0) {
-            if (tolerance == x->tolerance)
-                return true;
-            tolerance = x->tolerance;
-        } else if (++changes == LOOSE_TURNS) {
-            tolerance = x->tolerance;
+        const bool settled = change_contacts(t, f, x, s) == 0;
+        if (settled && stage == STAGES)
+            return true;
+        if (stage < STAGES && (settled || ++changes == CHANGES)) {
+            tolerance = ++stage == STAGES ? x->tolerance : sharper * tolerance;
+            changes = 0;
         }
     }
     return false;

@@ -5,6 +5,8 @@
 
 #include "msds/cuda_tissue.cuh"
 
+#include <cuda_fp16.h>
+
 extern "C" {
 #include "msds/levels.h"
 }
@@ -22,11 +24,16 @@ typedef struct tissue_weights {
 typedef struct tissue_level {
     int32_t nodes, chunks;
     const int32_t *start, *neighbour;
-    const float *diagonal, *block, *inverse;
+    const uint4 *eight; /* slots x LANES: the first eight numbers of a block in half precision, over `back` */
+    const __half *ninth;
+    float back;
+    const float *sums;    /* count x 9 x LANES: of each row's blocks; NULL on the mesh, where they are nothing */
+    const float *inverse; /* as levels.h has it */
     tissue_weights up, down;
     float4 *left, *rest; /* right-hand side; what is left of it */
     float4 *z[2], *step;
-    float keep[SMOOTH], take[SMOOTH]; /* of each step: the share of the last one, and of the inverse times what is left */
+    float keep[SMOOTH],
+        take[SMOOTH]; /* of each step: the share of the last one, and of the inverse times what is left */
 } tissue_level;
 
 typedef struct tissue_exact {

@@ -190,7 +190,8 @@ template <int AHEAD> static __device__ void conclude(const tissue *t, const tiss
             t->v[n] = {0, 0, 0, 0};
         }
         const double sum[] = {grid_block_sum(square_of_double(left[0], left[1], left[2]), s),
-                              grid_block_sum(square_of_double(load[0], load[1], load[2]), s), grid_block_sum(pulled, s)};
+                              grid_block_sum(square_of_double(load[0], load[1], load[2]), s),
+                              grid_block_sum(pulled, s)};
         for (int i = 0; i < 3 && threadIdx.x == 0; i++)
             t->part[(PART_LEFT + i) * t->chunks + chunk] = sum[i];
         sight_parts(t, chunk, n < t->nodes ? t->u[n] : float4{0, 0, 0, 0}, s);
@@ -233,7 +234,8 @@ static __global__ void __launch_bounds__(GRID_THREADS, BLOCKS) fem_kernel(tissue
     grid_scratch *s = &scratch;
     int32_t count = f.count;
     find_contacts(&t, &f, s);
-    if (total(&t, PART_SECOND, s) < total(&t, PART_FIRST, s) && count > 1) { /* let go of: tissue may come after the probe */
+    if (total(&t, PART_SECOND, s) < total(&t, PART_FIRST, s) &&
+        count > 1) { /* let go of: tissue may come after the probe */
         solve<AHEAD>(&t, &f, count / 2, s);
         find_contacts(&t, &f, s);
         count -= count / 2;

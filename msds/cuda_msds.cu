@@ -20,6 +20,9 @@ static const double near_by = .1;
 /* An exact frame is in equilibrium to this share of its load: msds_cpu.c's. */
 static const double exact_tolerance = 1e-6;
 
+/* The largest number of a matrix in half precision, whose own largest is 65504 and whose digits go from 6e-5 up. */
+static const float half_most = 1024;
+
 typedef struct cuda_state {
     const msds_problem *p;
     pool *threads;
@@ -28,7 +31,7 @@ typedef struct cuda_state {
     tissue_exact x;
     char *memory, *fem, *exact, *planes; /* of the card */
     int64_t bytes, fem_bytes, exact_bytes;
-    void *staging; /* pinned: nodes x float4, or x 3 doubles */
+    void *staging;           /* pinned: nodes x float4, or x 3 doubles */
     tissue_outcome *outcome; /* pinned */
     msds_method method;
     bool precise; /* t.precise is the state; else t.u */
@@ -60,7 +63,7 @@ static int put(cuda_state *s, char *memory, int64_t *used, T **to, const F *from
 /* ---- springs, and what every method needs */
 
 typedef struct host_nodes { /* what create fills and sends */
-    float4 *place, *weight, *u, *v;
+    float4 *place, *weight, *u, *v, *spring;
     double *position, *repulsion, *precise;
     uint8_t *kind;
     int32_t *start;
@@ -69,8 +72,8 @@ typedef struct host_nodes { /* what create fills and sends */
 
 static void host_free(host_nodes *h)
 {
-    void *all[] = {h->place, h->weight, h->u,     h->v,         h->position, h->repulsion,
-                   h->precise, h->kind, h->start, h->stiffness, h->damper,   h->rest};
+    void *all[] = {h->place,   h->weight, h->u,     h->v,         h->spring, h->position, h->repulsion,
+                   h->precise, h->kind,   h->start, h->stiffness, h->damper, h->rest};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         free(all[i]);
 }
@@ -82,6 +85,7 @@ static int host_make(const cuda_state *s, host_nodes *h, err *e)
     h->weight = (float4 *)mem_array(nodes, sizeof *h->weight, "the solver", e);
     h->u = (float4 *)mem_array(nodes, sizeof *h->u, "the solver", e);
     h->v = (float4 *)mem_array(nodes, sizeof *h->v, "the solver", e);
+    h->spring = (float4 *)mem_array(slots, sizeof *h->spring, "the solver", e);
     h->position = (double *)mem_array(nodes, 3 * sizeof *h->position, "the solver", e);
     h->repulsion = (double *)mem_array(nodes, sizeof *h->repulsion, "the solver", e);
     h->precise = (double *)mem_array(nodes, 3 * sizeof *h->precise, "the solver", e);
@@ -90,8 +94,8 @@ static int host_make(const cuda_state *s, host_nodes *h, err *e)
     h->stiffness = (float *)mem_array(slots, sizeof *h->stiffness, "the solver", e);
     h->damper = (float *)mem_array(slots, sizeof *h->damper, "the solver", e);
     h->rest = (float *)mem_array(slots, sizeof *h->rest, "the solver", e);
-    return h->place && h->weight && h->u && h->v && h->position && h->repulsion && h->precise && h->kind && h->start &&
-                   h->stiffness && h->damper && h->rest
+    return h->place && h->weight && h->u && h->v && h->spring && h->position && h->repulsion && h->precise && h->kind &&
+                   h->start && h->stiffness && h->damper && h->rest
                ? 0
                : -1;
 }
@@ -123,6 +127,10 @@ static void host_fill(const cuda_state *s, host_nodes *h)
     for (int64_t i = 0; i <= s->order.count; i++)
         h->start[i] = (int32_t)s->order.start[i];
     slices_springs(&s->order, p, h->stiffness, h->damper, h->rest);
+    for (int64_t i = 0; i < s->order.slots * LANES; i++) {
+        h->spring[i] = {h->rest[i], h->stiffness[i], h->damper[i], 0};
+        memcpy(&h->spring[i].w, &s->order.neighbour[i], sizeof h->spring[i].w);
+    }
 }
 
 /* Lays out what is in s->memory, and fills what there is to fill. Called twice: to count, and to do. */
@@ -133,9 +141,8 @@ static int lay_out(cuda_state *s, const host_nodes *h, err *e)
     int64_t used = 0;
     if (put(s, s->memory, &used, &t->start, h->start, s->order.count + 1, e) ||
         put(s, s->memory, &used, &t->neighbour, s->order.neighbour, slots, e) ||
-        put(s, s->memory, &used, &t->stiffness, h->stiffness, slots, e) ||
-        put(s, s->memory, &used, &t->damper, h->damper, slots, e) ||
-        put(s, s->memory, &used, &t->rest, h->rest, slots, e) || put(s, s->memory, &used, &t->kind, h->kind, nodes, e) ||
+        put(s, s->memory, &used, &t->spring, h->spring, slots, e) ||
+        put(s, s->memory, &used, &t->kind, h->kind, nodes, e) ||
         put(s, s->memory, &used, &t->place, h->place, nodes, e) ||
         put(s, s->memory, &used, &t->weight, h->weight, nodes, e) ||
         put(s, s->memory, &used, &t->position, h->position, 3 * nodes, e) ||
@@ -180,8 +187,7 @@ static int fill(cuda_state *s, err *e)
     s->t.nodes = (int32_t)s->order.nodes;
     s->t.chunks = (int32_t)pool_chunks(s->order.count, SLICES_CHUNK);
     s->precise = true;
-    return put_problem(s, e) ||
-                   CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
+    return put_problem(s, e) || CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
                    CUDA_TRY(cudaMallocHost((void **)&s->outcome, sizeof *s->outcome)) ||
                    CUDA_TRY(cudaMallocHost(&s->staging, (size_t)s->order.nodes * 3 * sizeof(double))) ||
                    CUDA_TRY(cudaDeviceSynchronize())
@@ -256,27 +262,34 @@ static int make_matrix(cuda_state *s, lanes_matrix *m, err *e)
     return result;
 }
 
-/* The stiffness on the card; with l (zeroed), the coarser lattices on the host too. */
-static int make_stiffness(cuda_state *s, levels *l, err *e)
+static void matrix_free(lanes_matrix *m)
 {
-    lanes_matrix m = {};
-    int result = -1;
+    free(m->diagonal);
+    free(m->block);
+}
+
+/* The stiffness on the card, and in m (zeroed) on the host, which is the caller's to free in every case. */
+static int put_stiffness(cuda_state *s, lanes_matrix *m, err *e)
+{
     if (s->p->options.warp)
         return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
-    if (make_matrix(s, &m, e) || (l && levels_make(l, s->p, &s->order, &m, s->threads, e)))
-        goto out;
-    result = 0;
+    if (make_matrix(s, m, e))
+        return -1;
     if (s->fem)
-        goto out;
-    lay_out_fem(s, &m, e);
+        return 0;
+    lay_out_fem(s, m, e);
     s->fem = (char *)card_take(s->fem_bytes, "the stiffness", e);
-    result = !s->fem || CUDA_TRY(cudaMemset(s->fem, 0, (size_t)s->fem_bytes)) || lay_out_fem(s, &m, e) ||
-                     CUDA_TRY(cudaDeviceSynchronize())
-                 ? -1
-                 : 0;
-out:
-    free(m.diagonal);
-    free(m.block);
+    return !s->fem || CUDA_TRY(cudaMemset(s->fem, 0, (size_t)s->fem_bytes)) || lay_out_fem(s, m, e) ||
+                   CUDA_TRY(cudaDeviceSynchronize())
+               ? -1
+               : 0;
+}
+
+static int make_fem(cuda_state *s, err *e)
+{
+    lanes_matrix m = {};
+    int result = s->fem ? 0 : put_stiffness(s, &m, e);
+    matrix_free(&m);
     return result;
 }
 
@@ -306,46 +319,111 @@ static int put_weights(cuda_state *s, int64_t *used, tissue_weights *to, const l
                : 0;
 }
 
-/* Of levels past the mesh, the matrix; what the mesh has already stays where it is. */
-static int put_matrix(cuda_state *s, int64_t *used, tissue_level *v, const level *from, const int32_t *start, err *e)
+/* A level's matrix as smoothing wants it: blocks in half precision, times `scale`; and what a row's blocks sum up to, which is
+ * nothing on the mesh. */
+typedef struct host_level {
+    uint4 *eight;
+    __half *ninth;
+    float *sums;
+    int32_t *start;
+    float scale;
+} host_level;
+
+static void host_level_free(host_level *h)
+{
+    free(h->eight);
+    free(h->ninth);
+    free(h->sums);
+    free(h->start);
+}
+
+static void fill_halves(const level *from, host_level *h)
 {
     const slices *g = &from->graph;
+    float most = 0;
+    for (int64_t i = 0; i < g->count * 9 * LANES; i++)
+        most = fmaxf(most, fabsf(from->matrix.diagonal[i]));
+    h->scale = most > 0 ? half_most / most : 1;
+    for (int64_t at = 0; at < g->slots * LANES; at++) {
+        __half nine[9];
+        for (int i = 0; i < 9; i++)
+            nine[i] = __float2half(h->scale * from->matrix.block[(at / LANES * 9 + i) * LANES + at % LANES]);
+        memcpy(&h->eight[at], nine, sizeof h->eight[at]);
+        h->ninth[at] = nine[8];
+    }
+}
+
+static void fill_sums(const level *from, host_level *h)
+{
+    const slices *g = &from->graph;
+    for (int64_t slice = 0; slice < g->count; slice++)
+        for (int64_t i = 0; i < 9 * LANES; i++) {
+            double sum = (double)from->matrix.diagonal[slice * 9 * LANES + i];
+            for (int64_t slot = g->start[slice]; slot < g->start[slice + 1]; slot++)
+                sum += (double)from->matrix.block[slot * 9 * LANES + i];
+            h->sums[slice * 9 * LANES + i] = (float)sum;
+        }
+}
+
+static int host_level_make(const level *from, bool mesh, host_level *h, err *e)
+{
+    const slices *g = &from->graph;
+    h->eight = (uint4 *)mem_array(g->slots * LANES, sizeof *h->eight, "the solver", e);
+    h->ninth = (__half *)mem_array(g->slots * LANES, sizeof *h->ninth, "the solver", e);
+    h->start = (int32_t *)mem_array(g->count + 1, sizeof *h->start, "the solver", e);
+    h->sums = mesh ? NULL : (float *)mem_array(g->count, 9 * LANES * sizeof *h->sums, "the solver", e);
+    if (!h->eight || !h->ninth || !h->start || (!mesh && !h->sums))
+        return -1;
+    for (int64_t i = 0; i <= g->count; i++)
+        h->start[i] = (int32_t)g->start[i];
+    fill_halves(from, h);
+    if (!mesh)
+        fill_sums(from, h);
+    return 0;
+}
+
+/* What the mesh has already stays where it is. */
+static int put_graph(cuda_state *s, int64_t *used, tissue_level *v, const level *from, const host_level *h, err *e)
+{
+    const slices *g = &from->graph;
+    if (!h->sums) {
+        v->start = s->t.start, v->neighbour = s->t.neighbour, v->left = s->t.left, v->rest = s->t.pulled;
+        return 0;
+    }
     v->left = room<float4>(s->exact, used, g->nodes);
     v->rest = room<float4>(s->exact, used, g->nodes);
-    return put(s, s->exact, used, &v->start, start, g->count + 1, e) ||
+    return put(s, s->exact, used, &v->start, h->start, g->count + 1, e) ||
                    put(s, s->exact, used, &v->neighbour, g->neighbour, g->slots * LANES, e) ||
-                   put(s, s->exact, used, &v->diagonal, from->matrix.diagonal, g->count * 9 * LANES, e) ||
-                   put(s, s->exact, used, &v->block, from->matrix.block, g->slots * 9 * LANES, e)
+                   put(s, s->exact, used, &v->sums, h->sums, g->count * 9 * LANES, e)
                ? -1
                : 0;
 }
 
-static int put_level(cuda_state *s, int64_t *used, int i, const level *from, const int32_t *start, bool last, err *e)
+static int put_level(cuda_state *s, int64_t *used, tissue_level *v, const level *from, const host_level *h, err *e)
 {
-    tissue_level *v = &s->x.at[i];
-    const tissue *t = &s->t;
-    v->nodes = (int32_t)from->graph.nodes;
-    v->chunks = (int32_t)pool_chunks(from->graph.count, SLICES_CHUNK);
+    const slices *g = &from->graph;
+    v->nodes = (int32_t)g->nodes;
+    v->chunks = (int32_t)pool_chunks(g->count, SLICES_CHUNK);
+    v->back = 1 / h->scale;
     choose_steps(v, from->largest);
-    v->start = t->start, v->neighbour = t->neighbour, v->diagonal = t->diagonal, v->block = t->block;
-    v->left = t->left, v->rest = t->pulled;
-    if (i > 0 && put_matrix(s, used, v, from, start, e))
-        return -1;
-    v->z[0] = room<float4>(s->exact, used, v->nodes);
-    v->z[1] = room<float4>(s->exact, used, v->nodes);
-    v->step = room<float4>(s->exact, used, v->nodes);
-    return put(s, s->exact, used, &v->inverse, from->inverse, from->graph.count * 9 * LANES, e) ||
-                   (!last && (put_weights(s, used, &v->up, &from->up, e) || put_weights(s, used, &v->down, &from->down, e)))
+    v->z[0] = room<float4>(s->exact, used, g->nodes);
+    v->z[1] = room<float4>(s->exact, used, g->nodes);
+    v->step = room<float4>(s->exact, used, g->nodes);
+    return put_graph(s, used, v, from, h, e) || put(s, s->exact, used, &v->eight, h->eight, g->slots * LANES, e) ||
+                   put(s, s->exact, used, &v->ninth, h->ninth, g->slots * LANES, e) ||
+                   put(s, s->exact, used, &v->inverse, from->inverse, g->count * 9 * LANES, e) ||
+                   (from->up.start &&
+                    (put_weights(s, used, &v->up, &from->up, e) || put_weights(s, used, &v->down, &from->down, e)))
                ? -1
                : 0;
 }
 
-static int lay_out_exact(cuda_state *s, const levels *l, int32_t *const *start, err *e)
+static int lay_out_exact(cuda_state *s, const levels *l, const host_level *h, err *e)
 {
     tissue_exact *x = &s->x;
     int64_t used = 0;
     for (int i = 0; i < l->count; i++)
-        if (put_level(s, &used, i, &l->at[i], start[i], i == l->count - 1, e))
+        if (put_level(s, &used, &x->at[i], &l->at[i], &h[i], e))
             return -1;
     x->count = l->count;
     x->order = (int32_t)l->order;
@@ -358,40 +436,43 @@ static int lay_out_exact(cuda_state *s, const levels *l, int32_t *const *start, 
     return 0;
 }
 
-/* The slices' beginnings as the card counts. */
-static int narrow_starts(const levels *l, int32_t **start, err *e)
+typedef struct host_exact {
+    lanes_matrix m;
+    levels l;
+    host_level at[LEVELS_MOST];
+} host_exact;
+
+static int host_exact_make(cuda_state *s, host_exact *h, err *e)
 {
-    for (int i = 0; i < l->count; i++) {
-        const slices *g = &l->at[i].graph;
-        start[i] = (int32_t *)mem_array(g->count + 1, sizeof *start[i], "the solver", e);
-        if (!start[i])
+    if (put_stiffness(s, &h->m, e) || levels_make(&h->l, s->p, &s->order, &h->m, s->threads, e))
+        return -1;
+    for (int i = 0; i < h->l.count; i++)
+        if (host_level_make(&h->l.at[i], i == 0, &h->at[i], e))
             return -1;
-        for (int64_t k = 0; k <= g->count; k++)
-            start[i][k] = (int32_t)g->start[k];
-    }
     return 0;
+}
+
+static int put_exact(cuda_state *s, const host_exact *h, err *e)
+{
+    lay_out_exact(s, &h->l, h->at, e);
+    s->exact = (char *)card_take(s->exact_bytes, "coarser lattices", e);
+    return !s->exact || CUDA_TRY(cudaMemset(s->exact, 0, (size_t)s->exact_bytes)) ||
+                   lay_out_exact(s, &h->l, h->at, e) || CUDA_TRY(cudaDeviceSynchronize())
+               ? -1
+               : 0;
 }
 
 static int make_exact(cuda_state *s, err *e)
 {
-    levels *l = s->exact ? NULL : (levels *)mem_array(1, sizeof *l, "the solver", e);
-    int32_t *start[LEVELS_MOST] = {};
-    int result = -1;
-    if (s->exact)
-        return 0;
-    if (!l || make_stiffness(s, l, e) || narrow_starts(l, start, e))
-        goto out;
-    lay_out_exact(s, l, start, e);
-    s->exact = (char *)card_take(s->exact_bytes, "coarser lattices", e);
-    if (s->exact && !CUDA_TRY(cudaMemset(s->exact, 0, (size_t)s->exact_bytes)) && !lay_out_exact(s, l, start, e) &&
-        !CUDA_TRY(cudaDeviceSynchronize()))
-        result = 0;
-out:
-    for (int i = 0; i < LEVELS_MOST; i++)
-        free(start[i]);
-    if (l)
-        levels_free(l);
-    free(l);
+    host_exact *h = s->exact ? NULL : (host_exact *)mem_array(1, sizeof *h, "the solver", e);
+    if (!h)
+        return s->exact ? 0 : -1;
+    int result = host_exact_make(s, h, e) || put_exact(s, h, e) ? -1 : 0;
+    for (int i = 0; i < h->l.count; i++)
+        host_level_free(&h->at[i]);
+    levels_free(&h->l);
+    matrix_free(&h->m);
+    free(h);
     return result;
 }
 
@@ -411,9 +492,9 @@ cudaError_t tissue_start(const void *(*of)(const tissue *t, int processors), con
     if (code == cudaSuccess)
         code = cudaOccupancyMaxActiveBlocksPerMultiprocessor(&fit, kernel, GRID_THREADS, 0);
     const int blocks = fit * processors < t->chunks ? fit * processors : t->chunks;
-    return code != cudaSuccess ? code
-                               : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0,
-                                                             stream);
+    return code != cudaSuccess
+               ? code
+               : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0, stream);
 }
 
 static tissue_frame frame_of(const cuda_state *s, const msds_plan *plan, int64_t count)
@@ -446,10 +527,8 @@ static int step_springs(cuda_state *s, const tissue_frame *f, err *e)
 
 static int step_fem(cuda_state *s, const tissue_frame *f, err *e)
 {
-    return (!s->fem && make_stiffness(s, NULL, e)) ||
-                   card_check(tissue_fem_start(&s->t, f, s->stream), "the start of a frame", s->step, e)
-               ? -1
-               : 0;
+    return make_fem(s, e) || card_check(tissue_fem_start(&s->t, f, s->stream), "the start of a frame", s->step, e) ? -1
+                                                                                                                   : 0;
 }
 
 static int step_exact(cuda_state *s, const tissue_frame *f, err *e)
@@ -503,8 +582,7 @@ static int cuda_get(void *state, int what, double *to, err *e)
     const size_t nodes = (size_t)s->order.nodes;
     const bool precise = what == MSDS_DISPLACEMENT && s->precise;
     const float4 *single = what == MSDS_DISPLACEMENT ? s->t.u : s->t.v;
-    if (precise ? fetch(s, s->t.precise, 3 * nodes * sizeof(double), e)
-                : fetch(s, single, nodes * sizeof(float4), e))
+    if (precise ? fetch(s, s->t.precise, 3 * nodes * sizeof(double), e) : fetch(s, single, nodes * sizeof(float4), e))
         return -1;
     for (int64_t n = 0; n < s->p->nodes; n++) {
         const int32_t own = s->order.own_node[n];

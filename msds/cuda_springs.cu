@@ -11,21 +11,21 @@ static const double clinging = .02; /* contacts.c's */
 
 /* A spring and its other end. */
 typedef struct spring_end {
-    float4 place, u, v;
-    float rest, stiffness, damper;
+    float4 spring, place, u, v;
 } spring_end;
 
 static __device__ inline spring_end load_end(const tissue *t, int32_t at)
 {
-    const int32_t other = t->neighbour[at];
-    return {t->place[other], t->u[other], t->v[other], t->rest[at], t->stiffness[at], t->damper[at]};
+    const float4 spring = t->spring[at];
+    const int32_t other = __float_as_int(spring.w);
+    return {spring, t->place[other], t->u[other], t->v[other]};
 }
 
 /* What a spring pulls its first end with: x, u and v are that end's. */
 static __device__ inline void pull(const spring_end *o, float4 x, float4 u, float4 v, float force[3])
 {
     const float du[3] = {o->u.x - u.x, o->u.y - u.y, o->u.z - u.z}, dv[3] = {o->v.x - v.x, o->v.y - v.y, o->v.z - v.z};
-    const float at_rest[3] = {o->place.x - x.x, o->place.y - x.y, o->place.z - x.z}, rest = o->rest;
+    const float at_rest[3] = {o->place.x - x.x, o->place.y - x.y, o->place.z - x.z}, rest = o->spring.x;
     float d[3], stretch = 0, speed = 0;
     for (int a = 0; a < 3; a++) {
         d[a] = at_rest[a] + du[a];
@@ -33,7 +33,7 @@ static __device__ inline void pull(const spring_end *o, float4 x, float4 u, floa
         speed += dv[a] * d[a];
     }
     const float square = fmaxf(rest * rest + stretch, rest * rest * SPRING_LEAST), length = sqrtf(square);
-    const float scale = SPRING_FORCE(o->stiffness, o->damper, rest, square, speed, stretch, length);
+    const float scale = SPRING_FORCE(o->spring.y, o->spring.z, rest, square, speed, stretch, length);
     for (int a = 0; a < 3; a++)
         force[a] += scale * d[a];
 }
@@ -50,8 +50,8 @@ static __device__ void push(const tissue *t, const tissue_frame *f, int32_t n, f
         force[a] += (float)(pushed * at.way[a]);
 }
 
-/* AHEAD springs are loaded before the first of them is computed: what is computed has branches (of division and root), past which
- * no compiler moves loads, and a small mesh waits for nothing but loads. */
+/* AHEAD springs are loaded before the first of them is computed, each whole with its neighbour's number: what is computed has
+ * branches (of division and root), past which no compiler moves loads, and a small mesh waits for nothing but loads. */
 template <int AHEAD> static __device__ inline void move_node(const tissue *t, const tissue_frame *f, int32_t n)
 {
     const float4 x = t->place[n], u = t->u[n], v = t->v[n], weight = t->weight[n];

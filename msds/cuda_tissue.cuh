@@ -41,12 +41,12 @@ typedef struct tissue_outcome { /* of a frame */
 typedef struct tissue {
     int32_t nodes, chunks;
     const int32_t *start, *neighbour; /* slices + 1; slots x LANES */
-    const float *stiffness, *damper, *rest;
-    const float *diagonal, *block;  /* of the stiffness, as lanes_matrix has them; or NULL, not yet made */
-    const uint8_t *kind;            /* TISSUE_NOBODY: only fills up */
-    const float4 *place, *weight;   /* m, w: 1 / inertia, 0 where fixed; N, w: N/m of contact */
-    const double *position;         /* nodes x 3, m */
-    const double *repulsion;        /* N/m */
+    const float4 *spring;             /* slots x LANES: length at rest, stiffness, damper, and the neighbour's bits */
+    const float *diagonal, *block;    /* of the stiffness, as lanes_matrix has them; or NULL, not yet made */
+    const uint8_t *kind;              /* TISSUE_NOBODY: only fills up */
+    const float4 *place, *weight;     /* m, w: 1 / inertia, 0 where fixed; N, w: N/m of contact */
+    const double *position;           /* nodes x 3, m */
+    const double *repulsion;          /* N/m */
     float4 *u, *v, *next_u, *next_v;
     float4 *left, *pulled, *way[2]; /* of conjugate gradients */
     double *precise;                /* nodes x 3, m: the displacement of exact frames */

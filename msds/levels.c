@@ -458,7 +458,8 @@ static int make_smoother(level *l, pool *threads, err *e)
         return -1;
     for (int64_t n = 0; n < l->graph.nodes; n++)
         if (l->moves[n])
-            invert(l->matrix.diagonal + n / LANES * 9 * LANES + n % LANES, l->inverse + n / LANES * 9 * LANES + n % LANES);
+            invert(l->matrix.diagonal + n / LANES * 9 * LANES + n % LANES,
+                   l->inverse + n / LANES * 9 * LANES + n % LANES);
     return find_largest(l, threads, e);
 }
 

@@ -23,18 +23,18 @@ typedef struct levels_weights {
 typedef struct level {
     slices graph; /* of level 0: the mesh's, borrowed; else count, nodes, slots, start, first and neighbour alone */
     lanes_matrix matrix;
-    float *inverse; /* count x 9 x LANES: of the diagonal's blocks, row by row; zero where nothing moves */
-    double largest; /* the largest eigenvalue of inverse times matrix, from above */
+    float *inverse;          /* count x 9 x LANES: of the diagonal's blocks, row by row; zero where nothing moves */
+    double largest;          /* the largest eigenvalue of inverse times matrix, from above */
     levels_weights up, down; /* from the next coarser level to this one, and back */
-    double *place;  /* nodes x 3: on this level's lattice */
-    bool *moves;    /* nodes */
+    double *place;           /* nodes x 3: on this level's lattice */
+    bool *moves;             /* nodes */
 } level;
 
 typedef struct levels {
     level at[LEVELS_MOST];
     int count;
-    float *coarsest;    /* order squared: the inverse of the last level's matrix */
-    int64_t order;      /* 3 x its nodes */
+    float *coarsest; /* order squared: the inverse of the last level's matrix */
+    int64_t order;   /* 3 x its nodes */
 } levels;
 
 /* Makes l (zeroed) of the stiffness of p's mesh, as cg_fill() gives it, which stays borrowed. -1 with e filled; to be freed in
