@@ -7,25 +7,7 @@
 #include "msds/cuda_contact.cuh"
 #include "msds/cuda_exact.cuh"
 
-static __device__ inline float4 minus(float4 a, float4 b)
-{
-    return {a.x - b.x, a.y - b.y, a.z - b.z, 0};
-}
-
-static __device__ inline float4 plus_times(float4 a, float by, float4 b)
-{
-    return {a.x + by * b.x, a.y + by * b.y, a.z + by * b.z, 0};
-}
-
-/* y += the 3 x 3 block that begins at k for this lane, times p. */
-static __device__ inline void block_add(const float *k, float4 p, float4 *y)
-{
-    y->x += k[0] * p.x + k[LANES] * p.y + k[2 * LANES] * p.z;
-    y->y += k[3 * LANES] * p.x + k[4 * LANES] * p.y + k[5 * LANES] * p.z;
-    y->z += k[6 * LANES] * p.x + k[7 * LANES] * p.y + k[8 * LANES] * p.z;
-}
-
-/* The same of a block in half precision. */
+/* block_add of a block in half precision. */
 static __device__ inline void half_add(uint4 eight, __half ninth, float4 p, float4 *y)
 {
     const float2 a = __half22float2(*(const __half2 *)&eight.x), b = __half22float2(*(const __half2 *)&eight.y);

@@ -221,7 +221,7 @@ static __device__ int64_t change_contacts(const tissue *t, const tissue_frame *f
         bool changed = false;
         if (n < t->nodes && t->listed[n]) {
             tissue_contact *c = &t->contact[n];
-            changed = x->active[n] ? c->force < 0 : still_to_go(t, n) > x->tolerance * f->probe.reach;
+            changed = x->active[n] ? c->force < 0 : still_to_go(t, n) > exact_tolerance * f->probe.shape.size;
             x->active[n] ^= changed;
             if (!x->active[n])
                 c->force = 0;
@@ -242,7 +242,7 @@ static __device__ bool contacts_missed(const tissue *t, const tissue_frame *f, g
             const double *u = t->precise + 3 * (int64_t)n;
             contact_hold(t, n);
             in = !t->listed[n] && contact_candidate(t, f, n, single(u)) &&
-                 contact_at(t, f, n, u).depth > missed * f->probe.reach;
+                 contact_at(t, f, n, u).depth > missed * f->probe.shape.size;
         }
         count_part(t, PART_SECOND, chunk, in);
     }
@@ -259,7 +259,7 @@ typedef struct progress {
 static __device__ bool solve(const tissue *t, const tissue_frame *f, const tissue_exact *x, progress *p,
                              grid_scratch *s)
 {
-    double tolerance = x->tolerance / (sharper * sharper);
+    double tolerance = exact_tolerance / (sharper * sharper);
     int changes = 0, stage = 1;
     for (int turn = 0; turn < TURNS; turn++) {
         impose(t, f, x);
@@ -278,7 +278,7 @@ static __device__ bool solve(const tissue *t, const tissue_frame *f, const tissu
         if (settled && stage == STAGES)
             return true;
         if (stage < STAGES && (settled || ++changes == CHANGES)) {
-            tolerance = ++stage == STAGES ? x->tolerance : sharper * tolerance;
+            tolerance = ++stage == STAGES ? exact_tolerance : sharper * tolerance;
             changes = 0;
         }
     }
@@ -286,18 +286,19 @@ static __device__ bool solve(const tissue *t, const tissue_frame *f, const tissu
 }
 
 /* What the frame leaves: displacements in single precision too, no velocity, the forces for the next frame. */
-static __device__ void conclude(const tissue *t, grid_scratch *s)
+static __device__ void conclude(const tissue *t, const tissue_frame *f, grid_scratch *s)
 {
     for (int32_t chunk = blockIdx.x; chunk < t->chunks; chunk += gridDim.x) {
         const int32_t n = CHUNK_NODE(chunk);
-        float4 u = {0, 0, 0, 0};
+        double u[3] = {0, 0, 0};
         if (n < t->nodes) {
-            u = single(t->precise + 3 * (int64_t)n);
+            for (int a = 0; a < 3; a++)
+                u[a] = t->precise[3 * (int64_t)n + a];
             contact_hold(t, n);
-            t->u[n] = u;
+            t->u[n] = single(u);
             t->v[n] = {0, 0, 0, 0};
         }
-        sight_parts(t, chunk, u, s);
+        sight_parts(t, f, chunk, u, s);
     }
     grid_barrier(t->arrived);
 }
@@ -314,10 +315,11 @@ static __global__ void __launch_bounds__(GRID_THREADS, 6) exact_kernel(tissue t,
         if (!f.touched || round == ROUNDS - 1 || !contacts_missed(&t, &f, s))
             break;
     }
-    conclude(&t, s);
+    conclude(&t, &f, s);
     if (blockIdx.x == 0) {
         sight_sum(&t, p.residual, p.solves, s);
-        t.outcome->failed = !good;
+        if (!good && threadIdx.x == 0)
+            t.outcome->failed = true;
     }
 }
 
@@ -345,5 +347,5 @@ static const void *kernel_of(const tissue *t, int processors)
 cudaError_t tissue_exact_start(const tissue *t, const tissue_frame *f, const tissue_exact *x, cudaStream_t stream)
 {
     tissue_exact view = *x;
-    return tissue_start(kernel_of, t, f, &view, stream);
+    return tissue_start(TISSUE_EXACT, kernel_of, t, f, &view, stream);
 }

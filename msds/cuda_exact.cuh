@@ -16,6 +16,9 @@ extern "C" {
 enum { SMOOTH = 3, FINISHED = 1 /* where the steps leave the result, of the two that they go between */ };
 static const double smooth_share = .1;
 
+/* An exact frame is in equilibrium to this share of its load: msds_cpu.c's. */
+static const double exact_tolerance = 1e-6;
+
 typedef struct tissue_weights {
     const int32_t *start, *column;
     const float *weight;
@@ -42,8 +45,12 @@ typedef struct tissue_exact {
     const float *coarsest;
     float4 *gone;    /* what a search adds to the displacement */
     uint8_t *active; /* nodes: kept on their plane */
-    double tolerance;
 } tissue_exact;
+
+/* Puts them on the card, from the stiffness on the host; what the mesh has already stays with t. *memory and *bytes get the piece of
+ * the card's memory that they take, which is the caller's. -1 with e filled. */
+int tissue_exact_make(tissue_exact *x, const tissue *t, const msds_problem *p, const slices *s, const lanes_matrix *m,
+                      pool *threads, char **memory, int64_t *bytes, err *e);
 
 /* Makes the displacement of exact frames that of the others. */
 void tissue_widen(const tissue *t, cudaStream_t stream);

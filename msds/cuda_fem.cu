@@ -5,28 +5,15 @@
 
 static const double clinging = .02; /* contacts.c's */
 
-static __device__ inline float4 along_way(float4 left, float beta, float4 before)
-{
-    return {left.x + beta * before.x, left.y + beta * before.y, left.z + beta * before.z, 0};
-}
-
-/* y += the 3 x 3 block that begins at k for this lane, times p. */
-static __device__ inline void add_block(const float *k, float4 p, float4 *y)
-{
-    y->x += k[0] * p.x + k[LANES] * p.y + k[2 * LANES] * p.z;
-    y->y += k[3 * LANES] * p.x + k[4 * LANES] * p.y + k[5 * LANES] * p.z;
-    y->z += k[6 * LANES] * p.x + k[7 * LANES] * p.y + k[8 * LANES] * p.z;
-}
-
 /* What the elements pull node n with at u. */
 template <int AHEAD> static __device__ inline float4 pulled_at(const tissue *t, int32_t n)
 {
     const int32_t slice = n / LANES, lane = n % LANES, last = t->start[slice + 1];
     float4 y = {0, 0, 0, 0};
-    add_block(t->diagonal + slice * 9 * LANES + lane, t->u[n], &y);
+    block_add(t->diagonal + slice * 9 * LANES + lane, t->u[n], &y);
 #pragma unroll AHEAD
     for (int32_t slot = t->start[slice]; slot < last; slot++)
-        add_block(t->block + (int64_t)slot * 9 * LANES + lane, t->u[t->neighbour[slot * LANES + lane]], &y);
+        block_add(t->block + (int64_t)slot * 9 * LANES + lane, t->u[t->neighbour[slot * LANES + lane]], &y);
     return y;
 }
 
@@ -36,12 +23,12 @@ static __device__ inline float4 pulled_along(const tissue *t, int32_t n, float b
 {
     const int32_t slice = n / LANES, lane = n % LANES, last = t->start[slice + 1];
     float4 y = {0, 0, 0, 0};
-    *own = along_way(t->left[n], beta, before[n]);
-    add_block(t->diagonal + slice * 9 * LANES + lane, *own, &y);
+    *own = plus_times(t->left[n], beta, before[n]);
+    block_add(t->diagonal + slice * 9 * LANES + lane, *own, &y);
 #pragma unroll AHEAD
     for (int32_t slot = t->start[slice]; slot < last; slot++) {
         const int32_t other = t->neighbour[slot * LANES + lane];
-        add_block(t->block + (int64_t)slot * 9 * LANES + lane, along_way(t->left[other], beta, before[other]), &y);
+        block_add(t->block + (int64_t)slot * 9 * LANES + lane, plus_times(t->left[other], beta, before[other]), &y);
     }
     return y;
 }
@@ -99,7 +86,7 @@ template <int AHEAD> static __device__ void begin(const tissue *t, const tissue_
         float4 left = {0, 0, 0, 0};
         if (n < t->nodes) {
             const float4 y = pulled_at<AHEAD>(t, n), w = t->weight[n];
-            left = {w.x - y.x, w.y - y.y, w.z - y.z, 0};
+            left = minus(w, y);
             if (t->listed[n]) {
                 const tissue_contact *c = &t->contact[n];
                 left = f->penalty ? contact_add(c, left, t->repulsion[n] * c->depth)
@@ -152,7 +139,7 @@ static __device__ void advance(const tissue *t, float alpha, const float4 *way, 
         if (n < t->nodes) {
             const float4 p = way[n], y = t->pulled[n], u = t->u[n];
             r = t->left[n];
-            t->u[n] = {u.x + alpha * p.x, u.y + alpha * p.y, u.z + alpha * p.z, 0};
+            t->u[n] = plus_times(u, alpha, p);
             r = {r.x - alpha * y.x, r.y - alpha * y.y, r.z - alpha * y.z, 0};
             t->left[n] = r;
         }
@@ -174,7 +161,7 @@ template <int AHEAD> static __device__ void conclude(const tissue *t, const tiss
         double left[3] = {0, 0, 0}, load[3] = {0, 0, 0}, pulled = 0;
         if (n < t->nodes) {
             const float4 y = pulled_at<AHEAD>(t, n), w = t->weight[n], u = t->u[n];
-            const float4 r = {w.x - y.x, w.y - y.y, w.z - y.z, 0};
+            const float4 r = minus(w, y);
             left[0] = (double)r.x, left[1] = (double)r.y, left[2] = (double)r.z;
             load[0] = (double)w.x, load[1] = (double)w.y, load[2] = (double)w.z;
             pulled = square_of_double((double)y.x, (double)y.y, (double)y.z);
@@ -194,7 +181,7 @@ template <int AHEAD> static __device__ void conclude(const tissue *t, const tiss
                               grid_block_sum(pulled, s)};
         for (int i = 0; i < 3 && threadIdx.x == 0; i++)
             t->part[(PART_LEFT + i) * t->chunks + chunk] = sum[i];
-        sight_parts(t, chunk, n < t->nodes ? t->u[n] : float4{0, 0, 0, 0}, s);
+        sight_parts(t, f, chunk, n < t->nodes ? t->u[n] : float4{0, 0, 0, 0}, s);
     }
     grid_barrier(t->arrived);
 }
@@ -254,5 +241,5 @@ static const void *kernel_of(const tissue *t, int processors)
 
 cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, cudaStream_t stream)
 {
-    return tissue_start(kernel_of, t, f, NULL, stream);
+    return tissue_start(TISSUE_FEM, kernel_of, t, f, NULL, stream);
 }

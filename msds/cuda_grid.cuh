@@ -22,7 +22,8 @@ typedef struct grid_scratch {
     double warp[GRID_WARPS];
 } grid_scratch;
 
-/* Waits for all blocks: what they wrote before is there for all after. `arrived` counts on from launch to launch. */
+/* Waits for all blocks: what they wrote before is there for all after. `arrived` counts on from launch to launch, all of
+ * so many blocks. */
 static __device__ inline void grid_barrier(unsigned long long *arrived)
 {
     __syncthreads();

@@ -1,6 +1,7 @@
 /* The CUDA back end of msds-run: memory, and which kernel takes a frame. All of a frame is one launch.
  */
 #include "msds/cuda_exact.cuh"
+#include "msds/cuda_room.cuh"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,20 +9,12 @@
 #include <string.h>
 
 extern "C" {
-#include "base/mem.h"
-#include "device/card.h"
 #include "msds/cg.h"
 #include "msds/msds_cuda.h"
 }
 
-/* A node is looked for in the ball that holds the probe and so much more of its reach: contacts.c's. */
+/* A node is looked for in the ball that holds the probe and so much more of its size: contacts.c's. */
 static const double near_by = .1;
-
-/* An exact frame is in equilibrium to this share of its load: msds_cpu.c's. */
-static const double exact_tolerance = 1e-6;
-
-/* The largest number of a matrix in half precision, whose own largest is 65504 and whose digits go from 6e-5 up. */
-static const float half_most = 1024;
 
 typedef struct cuda_state {
     const msds_problem *p;
@@ -29,36 +22,20 @@ typedef struct cuda_state {
     slices order;
     tissue t;
     tissue_exact x;
-    char *memory, *fem, *exact, *planes; /* of the card */
+    char *memory, *fem, *exact; /* of the card */
+    double *planes;             /* of a convex probe: on the card, as those here */
+    double *planes_here;
+    int32_t planes_count;
     int64_t bytes, fem_bytes, exact_bytes;
     void *staging;           /* pinned: nodes x float4, or x 3 doubles */
     tissue_outcome *outcome; /* pinned */
-    msds_method method;
-    bool precise; /* t.precise is the state; else t.u */
+    bool precise;            /* t.precise is the state; else t.u */
     int64_t step;
     cudaStream_t stream;
 } cuda_state;
 
 /* What went wrong in steps before may come out of any call. */
 #define CUDA_TRY(call) card_check(call, #call, s->step, e)
-
-/* Room in a piece of the card's memory; with no piece yet, counts only. */
-template <class T> static T *room(char *memory, int64_t *used, int64_t count)
-{
-    T *at = memory ? (T *)(memory + *used) : NULL;
-    *used += (count * (int64_t)sizeof(T) + 255) / 256 * 256;
-    return at;
-}
-
-/* The same, filled. */
-template <class T, class F>
-static int put(cuda_state *s, char *memory, int64_t *used, T **to, const F *from, int64_t count, err *e)
-{
-    static_assert(sizeof(T) == sizeof(F), "one type");
-    T *at = room<T>(memory, used, count);
-    *to = at;
-    return at ? CUDA_TRY(cudaMemcpy((void *)at, from, (size_t)count * sizeof(T), cudaMemcpyHostToDevice)) : 0;
-}
 
 /* ---- springs, and what every method needs */
 
@@ -139,16 +116,14 @@ static int lay_out(cuda_state *s, const host_nodes *h, err *e)
     tissue *t = &s->t;
     const int64_t nodes = s->order.nodes, slots = s->order.slots * LANES;
     int64_t used = 0;
-    if (put(s, s->memory, &used, &t->start, h->start, s->order.count + 1, e) ||
-        put(s, s->memory, &used, &t->neighbour, s->order.neighbour, slots, e) ||
-        put(s, s->memory, &used, &t->spring, h->spring, slots, e) ||
-        put(s, s->memory, &used, &t->kind, h->kind, nodes, e) ||
-        put(s, s->memory, &used, &t->place, h->place, nodes, e) ||
-        put(s, s->memory, &used, &t->weight, h->weight, nodes, e) ||
-        put(s, s->memory, &used, &t->position, h->position, 3 * nodes, e) ||
-        put(s, s->memory, &used, &t->repulsion, h->repulsion, nodes, e) ||
-        put(s, s->memory, &used, &t->u, h->u, nodes, e) || put(s, s->memory, &used, &t->v, h->v, nodes, e) ||
-        put(s, s->memory, &used, &t->precise, h->precise, 3 * nodes, e))
+    if (put(s->memory, &used, &t->start, h->start, s->order.count + 1, e) ||
+        put(s->memory, &used, &t->neighbour, s->order.neighbour, slots, e) ||
+        put(s->memory, &used, &t->spring, h->spring, slots, e) || put(s->memory, &used, &t->kind, h->kind, nodes, e) ||
+        put(s->memory, &used, &t->place, h->place, nodes, e) ||
+        put(s->memory, &used, &t->weight, h->weight, nodes, e) ||
+        put(s->memory, &used, &t->position, h->position, 3 * nodes, e) ||
+        put(s->memory, &used, &t->repulsion, h->repulsion, nodes, e) || put(s->memory, &used, &t->u, h->u, nodes, e) ||
+        put(s->memory, &used, &t->v, h->v, nodes, e) || put(s->memory, &used, &t->precise, h->precise, 3 * nodes, e))
         return -1;
     t->next_u = room<float4>(s->memory, &used, nodes);
     t->next_v = room<float4>(s->memory, &used, nodes);
@@ -157,7 +132,7 @@ static int lay_out(cuda_state *s, const host_nodes *h, err *e)
     t->held = room<double>(s->memory, &used, nodes);
     t->part = room<double>(s->memory, &used, (int64_t)PARTS * t->chunks);
     t->outcome = room<tissue_outcome>(s->memory, &used, 1);
-    t->arrived = room<unsigned long long>(s->memory, &used, 1);
+    t->arrived = room<unsigned long long>(s->memory, &used, TISSUE_KERNELS);
     s->bytes = used;
     return 0;
 }
@@ -208,6 +183,7 @@ static void cuda_destroy(void *state)
     card_give(s->fem);
     card_give(s->exact);
     card_give(s->planes);
+    free(s->planes_here);
     if (s->stream)
         cudaStreamDestroy(s->stream);
     slices_free(&s->order);
@@ -235,8 +211,8 @@ static int lay_out_fem(cuda_state *s, const lanes_matrix *m, err *e)
     tissue *t = &s->t;
     const int64_t nodes = s->order.nodes;
     int64_t used = 0;
-    if (put(s, s->fem, &used, &t->diagonal, m->diagonal, s->order.count * 9 * LANES, e) ||
-        put(s, s->fem, &used, &t->block, m->block, s->order.slots * 9 * LANES, e))
+    if (put(s->fem, &used, &t->diagonal, m->diagonal, s->order.count * 9 * LANES, e) ||
+        put(s->fem, &used, &t->block, m->block, s->order.slots * 9 * LANES, e))
         return -1;
     t->left = room<float4>(s->fem, &used, nodes);
     t->pulled = room<float4>(s->fem, &used, nodes);
@@ -295,196 +271,26 @@ static int make_fem(cuda_state *s, err *e)
 
 /* ---- exact frames */
 
-/* The steps of Chebyshev's polynomial on eigenvalues from smooth_share of the largest up to it. */
-static void choose_steps(tissue_level *v, double largest)
-{
-    const double middle = .5 * (1 + smooth_share) * largest, half = .5 * (1 - smooth_share) * largest;
-    double share = half / middle;
-    v->keep[0] = 0;
-    v->take[0] = (float)(1 / middle);
-    for (int i = 1; i < SMOOTH; i++) {
-        const double next = 1 / (2 * middle / half - share);
-        v->keep[i] = (float)(next * share);
-        v->take[i] = (float)(2 * next / half);
-        share = next;
-    }
-}
-
-static int put_weights(cuda_state *s, int64_t *used, tissue_weights *to, const levels_weights *from, err *e)
-{
-    return put(s, s->exact, used, &to->start, from->start, from->count + 1, e) ||
-                   put(s, s->exact, used, &to->column, from->column, from->slots * LANES, e) ||
-                   put(s, s->exact, used, &to->weight, from->weight, from->slots * LANES, e)
-               ? -1
-               : 0;
-}
-
-/* A level's matrix as smoothing wants it: blocks in half precision, times `scale`; and what a row's blocks sum up to, which is
- * nothing on the mesh. */
-typedef struct host_level {
-    uint4 *eight;
-    __half *ninth;
-    float *sums;
-    int32_t *start;
-    float scale;
-} host_level;
-
-static void host_level_free(host_level *h)
-{
-    free(h->eight);
-    free(h->ninth);
-    free(h->sums);
-    free(h->start);
-}
-
-static void fill_halves(const level *from, host_level *h)
-{
-    const slices *g = &from->graph;
-    float most = 0;
-    for (int64_t i = 0; i < g->count * 9 * LANES; i++)
-        most = fmaxf(most, fabsf(from->matrix.diagonal[i]));
-    h->scale = most > 0 ? half_most / most : 1;
-    for (int64_t at = 0; at < g->slots * LANES; at++) {
-        __half nine[9];
-        for (int i = 0; i < 9; i++)
-            nine[i] = __float2half(h->scale * from->matrix.block[(at / LANES * 9 + i) * LANES + at % LANES]);
-        memcpy(&h->eight[at], nine, sizeof h->eight[at]);
-        h->ninth[at] = nine[8];
-    }
-}
-
-static void fill_sums(const level *from, host_level *h)
-{
-    const slices *g = &from->graph;
-    for (int64_t slice = 0; slice < g->count; slice++)
-        for (int64_t i = 0; i < 9 * LANES; i++) {
-            double sum = (double)from->matrix.diagonal[slice * 9 * LANES + i];
-            for (int64_t slot = g->start[slice]; slot < g->start[slice + 1]; slot++)
-                sum += (double)from->matrix.block[slot * 9 * LANES + i];
-            h->sums[slice * 9 * LANES + i] = (float)sum;
-        }
-}
-
-static int host_level_make(const level *from, bool mesh, host_level *h, err *e)
-{
-    const slices *g = &from->graph;
-    h->eight = (uint4 *)mem_array(g->slots * LANES, sizeof *h->eight, "the solver", e);
-    h->ninth = (__half *)mem_array(g->slots * LANES, sizeof *h->ninth, "the solver", e);
-    h->start = (int32_t *)mem_array(g->count + 1, sizeof *h->start, "the solver", e);
-    h->sums = mesh ? NULL : (float *)mem_array(g->count, 9 * LANES * sizeof *h->sums, "the solver", e);
-    if (!h->eight || !h->ninth || !h->start || (!mesh && !h->sums))
-        return -1;
-    for (int64_t i = 0; i <= g->count; i++)
-        h->start[i] = (int32_t)g->start[i];
-    fill_halves(from, h);
-    if (!mesh)
-        fill_sums(from, h);
-    return 0;
-}
-
-/* What the mesh has already stays where it is. */
-static int put_graph(cuda_state *s, int64_t *used, tissue_level *v, const level *from, const host_level *h, err *e)
-{
-    const slices *g = &from->graph;
-    if (!h->sums) {
-        v->start = s->t.start, v->neighbour = s->t.neighbour, v->left = s->t.left, v->rest = s->t.pulled;
-        return 0;
-    }
-    v->left = room<float4>(s->exact, used, g->nodes);
-    v->rest = room<float4>(s->exact, used, g->nodes);
-    return put(s, s->exact, used, &v->start, h->start, g->count + 1, e) ||
-                   put(s, s->exact, used, &v->neighbour, g->neighbour, g->slots * LANES, e) ||
-                   put(s, s->exact, used, &v->sums, h->sums, g->count * 9 * LANES, e)
-               ? -1
-               : 0;
-}
-
-static int put_level(cuda_state *s, int64_t *used, tissue_level *v, const level *from, const host_level *h, err *e)
-{
-    const slices *g = &from->graph;
-    v->nodes = (int32_t)g->nodes;
-    v->chunks = (int32_t)pool_chunks(g->count, SLICES_CHUNK);
-    v->back = 1 / h->scale;
-    choose_steps(v, from->largest);
-    v->z[0] = room<float4>(s->exact, used, g->nodes);
-    v->z[1] = room<float4>(s->exact, used, g->nodes);
-    v->step = room<float4>(s->exact, used, g->nodes);
-    return put_graph(s, used, v, from, h, e) || put(s, s->exact, used, &v->eight, h->eight, g->slots * LANES, e) ||
-                   put(s, s->exact, used, &v->ninth, h->ninth, g->slots * LANES, e) ||
-                   put(s, s->exact, used, &v->inverse, from->inverse, g->count * 9 * LANES, e) ||
-                   (from->up.start &&
-                    (put_weights(s, used, &v->up, &from->up, e) || put_weights(s, used, &v->down, &from->down, e)))
-               ? -1
-               : 0;
-}
-
-static int lay_out_exact(cuda_state *s, const levels *l, const host_level *h, err *e)
-{
-    tissue_exact *x = &s->x;
-    int64_t used = 0;
-    for (int i = 0; i < l->count; i++)
-        if (put_level(s, &used, &x->at[i], &l->at[i], &h[i], e))
-            return -1;
-    x->count = l->count;
-    x->order = (int32_t)l->order;
-    x->tolerance = exact_tolerance;
-    x->gone = room<float4>(s->exact, &used, s->order.nodes);
-    x->active = room<uint8_t>(s->exact, &used, s->order.nodes);
-    if (put(s, s->exact, &used, &x->coarsest, l->coarsest, l->order * l->order, e))
-        return -1;
-    s->exact_bytes = used;
-    return 0;
-}
-
-typedef struct host_exact {
-    lanes_matrix m;
-    levels l;
-    host_level at[LEVELS_MOST];
-} host_exact;
-
-static int host_exact_make(cuda_state *s, host_exact *h, err *e)
-{
-    if (put_stiffness(s, &h->m, e) || levels_make(&h->l, s->p, &s->order, &h->m, s->threads, e))
-        return -1;
-    for (int i = 0; i < h->l.count; i++)
-        if (host_level_make(&h->l.at[i], i == 0, &h->at[i], e))
-            return -1;
-    return 0;
-}
-
-static int put_exact(cuda_state *s, const host_exact *h, err *e)
-{
-    lay_out_exact(s, &h->l, h->at, e);
-    s->exact = (char *)card_take(s->exact_bytes, "coarser lattices", e);
-    return !s->exact || CUDA_TRY(cudaMemset(s->exact, 0, (size_t)s->exact_bytes)) ||
-                   lay_out_exact(s, &h->l, h->at, e) || CUDA_TRY(cudaDeviceSynchronize())
-               ? -1
-               : 0;
-}
-
 static int make_exact(cuda_state *s, err *e)
 {
-    host_exact *h = s->exact ? NULL : (host_exact *)mem_array(1, sizeof *h, "the solver", e);
-    if (!h)
-        return s->exact ? 0 : -1;
-    int result = host_exact_make(s, h, e) || put_exact(s, h, e) ? -1 : 0;
-    for (int i = 0; i < h->l.count; i++)
-        host_level_free(&h->at[i]);
-    levels_free(&h->l);
-    matrix_free(&h->m);
-    free(h);
+    lanes_matrix m = {};
+    int result = s->exact ? 0 : -1;
+    if (!s->exact && !put_stiffness(s, &m, e))
+        result = tissue_exact_make(&s->x, &s->t, s->p, &s->order, &m, s->threads, &s->exact, &s->exact_bytes, e);
+    matrix_free(&m);
     return result;
 }
 
 /* ---- frames */
 
-cudaError_t tissue_start(const void *(*of)(const tissue *t, int processors), const tissue *t, const tissue_frame *f,
-                         void *more, cudaStream_t stream)
+cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t, int processors), const tissue *t,
+                         const tissue_frame *f, void *more, cudaStream_t stream)
 {
     int processors = 0, device = 0, fit = 0;
     tissue view = *t;
     tissue_frame frame = *f;
     void *with[] = {&view, &frame, more};
+    view.arrived += which;
     cudaError_t code = cudaGetDevice(&device);
     if (code == cudaSuccess)
         code = cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device);
@@ -497,14 +303,36 @@ cudaError_t tissue_start(const void *(*of)(const tissue *t, int processors), con
                : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0, stream);
 }
 
+/* A convex probe's planes go to the card where they are not those of the frame before. */
+static int put_planes(cuda_state *s, const probe *shape, err *e)
+{
+    const size_t bytes = 4 * (size_t)shape->planes * sizeof *s->planes;
+    if (shape->kind != PROBE_CONVEX ||
+        (s->planes_count == shape->planes && !memcmp(s->planes_here, shape->plane, bytes)))
+        return 0;
+    if (s->planes && CUDA_TRY(cudaStreamSynchronize(s->stream)))
+        return -1;
+    card_give(s->planes);
+    free(s->planes_here);
+    s->planes_count = 0;
+    s->planes_here = (double *)mem_array(shape->planes, 4 * sizeof *s->planes_here, "the probe", e);
+    s->planes = s->planes_here ? (double *)card_take((int64_t)bytes, "the probe", e) : NULL;
+    if (!s->planes || CUDA_TRY(cudaMemcpy(s->planes, shape->plane, bytes, cudaMemcpyHostToDevice)))
+        return -1;
+    memcpy(s->planes_here, shape->plane, bytes);
+    s->planes_count = shape->planes;
+    return 0;
+}
+
 static tissue_frame frame_of(const cuda_state *s, const msds_plan *plan, int64_t count)
 {
     tissue_frame f = {};
     f.probe = plan->probe;
+    f.probe.shape.plane = s->planes;
     for (int a = 0; a < 3; a++)
         f.centre[a] = (float)plan->probe.centre[a];
     f.reach = (float)(plan->probe.reach * (1 + 1e-6));
-    f.wide = (float)(plan->probe.reach * (1 + 1.01 * near_by));
+    f.wide = (float)(plan->probe.reach + 1.01 * near_by * plan->probe.shape.size);
     f.dt = (float)plan->dt;
     f.damping = s->p->options.damping;
     f.count = (int32_t)count;
@@ -544,8 +372,9 @@ static int cuda_step(void *state, const void *plan, int64_t count, err *e)
 {
     cuda_state *s = (cuda_state *)state;
     const msds_plan *p = (const msds_plan *)plan;
+    if (p->touched && put_planes(s, &p->probe.shape, e))
+        return -1;
     const tissue_frame f = frame_of(s, p, count);
-    s->method = p->method;
     int result = p->method == MSDS_SPRINGS ? step_springs(s, &f, e)
                  : p->method == MSDS_FEM   ? step_fem(s, &f, e)
                                            : step_exact(s, &f, e);
@@ -562,7 +391,7 @@ static int cuda_look(void *state, const void *question, void *answer, err *e)
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
     *(msds_sight *)answer = s->outcome->sight;
-    if (s->method == MSDS_EXACT && s->outcome->failed)
+    if (s->outcome->failed)
         return err_set(e, NULL, 0, "after %d solves the residual is still %.3g, or contact not settled; expected %.3g",
                        s->outcome->sight.solves, s->outcome->sight.residual, exact_tolerance);
     return 0;

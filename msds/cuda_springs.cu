@@ -111,7 +111,7 @@ static __global__ void __launch_bounds__(GRID_THREADS, BLOCKS) springs_kernel(ti
         const int32_t n = CHUNK_NODE(chunk);
         if (n < t.nodes)
             note_contact(&t, &f, n);
-        sight_parts(&t, chunk, n < t.nodes ? t.u[n] : float4{0, 0, 0, 0}, &scratch);
+        sight_parts(&t, &f, chunk, n < t.nodes ? t.u[n] : float4{0, 0, 0, 0}, &scratch);
     }
     grid_barrier(t.arrived);
     if (blockIdx.x == 0)
@@ -126,5 +126,5 @@ static const void *kernel_of(const tissue *t, int processors)
 
 cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, cudaStream_t stream)
 {
-    return tissue_start(kernel_of, t, f, NULL, stream);
+    return tissue_start(TISSUE_SPRINGS, kernel_of, t, f, NULL, stream);
 }

@@ -16,6 +16,8 @@ typedef struct tissue_contact {
     double way[3], depth, from[3], force; /* as contacts.h has them */
 } tissue_contact;
 
+typedef enum tissue_kernel { TISSUE_SPRINGS, TISSUE_FEM, TISSUE_EXACT, TISSUE_KERNELS } tissue_kernel;
+
 enum { TISSUE_NOBODY, TISSUE_FREE, TISSUE_FIXED };
 
 /* Sums over chunks, in tissue.part: a row of chunks each. */
@@ -27,7 +29,8 @@ typedef enum tissue_part {
     PART_LOAD,
     PART_PULLS,
     PART_FORCE,
-    PART_PRESSED = PART_FORCE + 3,
+    PART_TORQUE = PART_FORCE + 3,
+    PART_PRESSED = PART_TORQUE + 3,
     PART_LARGEST,
     PART_BROKEN,
     PARTS
@@ -35,7 +38,7 @@ typedef enum tissue_part {
 
 typedef struct tissue_outcome { /* of a frame */
     msds_sight sight;
-    bool failed; /* an exact one did not come to its tolerance */
+    bool failed; /* an exact one did not come to its tolerance: here, or in a frame before that nobody looked at */
 } tissue_outcome;
 
 typedef struct tissue {
@@ -55,7 +58,8 @@ typedef struct tissue {
     double *held; /* as contacts.h has it */
     double *part; /* PARTS x chunks */
     tissue_outcome *outcome;
-    unsigned long long *arrived;
+    unsigned long long
+        *arrived; /* of grid_barrier: TISSUE_KERNELS, each its own, whose number of blocks never changes */
 } tissue;
 
 typedef struct tissue_frame {
@@ -69,10 +73,28 @@ typedef struct tissue_frame {
 
 /* Starts a frame on the stream, by the kernel that `of` names for a card of so many multiprocessors; more: its third argument, or
  * NULL. As many blocks as there are chunks, or as the card holds at once. */
-cudaError_t tissue_start(const void *(*of)(const tissue *t, int processors), const tissue *t, const tissue_frame *f,
-                         void *more, cudaStream_t stream);
+cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t, int processors), const tissue *t,
+                         const tissue_frame *f, void *more, cudaStream_t stream);
 
 cudaError_t tissue_springs_start(const tissue *t, const tissue_frame *f, cudaStream_t stream);
 cudaError_t tissue_fem_start(const tissue *t, const tissue_frame *f, cudaStream_t stream);
+
+static __device__ inline float4 minus(float4 a, float4 b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z, 0};
+}
+
+static __device__ inline float4 plus_times(float4 a, float by, float4 b)
+{
+    return {a.x + by * b.x, a.y + by * b.y, a.z + by * b.z, 0};
+}
+
+/* y += the 3 x 3 block that begins at k for this lane, times p. */
+static __device__ inline void block_add(const float *k, float4 p, float4 *y)
+{
+    y->x += k[0] * p.x + k[LANES] * p.y + k[2 * LANES] * p.z;
+    y->y += k[3 * LANES] * p.x + k[4 * LANES] * p.y + k[5 * LANES] * p.z;
+    y->z += k[6 * LANES] * p.x + k[7 * LANES] * p.y + k[8 * LANES] * p.z;
+}
 
 #endif

@@ -22,10 +22,10 @@ typedef struct pair { /* the same model here and there */
     void *state[2];
     double *u[2], *v[2];
     msds_sight sight[2];
-    double worst, force; /* m, N: the largest difference so far */
-    int64_t different;   /* numbers that are not the same */
-    double largest;      /* m, N: the largest so far */
-    double pressed;
+    double worst, force, torque; /* m, N, N m: the largest difference so far */
+    int64_t different;           /* numbers that are not the same */
+    double largest;              /* m, N: the largest so far */
+    double pressed, twisted;
 } pair;
 
 static const backend *find_cuda(const char **why)
@@ -83,6 +83,21 @@ static void drop(pair *c)
     model_free(&c->m);
 }
 
+static void compare_wrench(pair *c)
+{
+    double off = 0, size = 0, twist = 0, torque = 0;
+    for (int a = 0; a < 3; a++) {
+        off += pow(c->sight[1].force[a] - c->sight[0].force[a], 2);
+        size += pow(c->sight[0].force[a], 2);
+        twist += pow(c->sight[1].torque[a] - c->sight[0].torque[a], 2);
+        torque += pow(c->sight[0].torque[a], 2);
+    }
+    c->pressed = fmax(c->pressed, sqrt(size));
+    c->force = fmax(c->force, sqrt(off));
+    c->twisted = fmax(c->twisted, sqrt(torque));
+    c->torque = fmax(c->torque, sqrt(twist));
+}
+
 static void frame_of(pair *c, const msds_plan *plan, int64_t count)
 {
     err e = {0};
@@ -97,38 +112,48 @@ static void frame_of(pair *c, const msds_plan *plan, int64_t count)
         c->different += c->u[1][k] != c->u[0][k] || c->v[1][k] != c->v[0][k];
     }
     c->largest = fmax(c->largest, c->sight[0].largest);
-    double off = 0, size = 0;
-    for (int a = 0; a < 3; a++) {
-        off += pow(c->sight[1].force[a] - c->sight[0].force[a], 2);
-        size += pow(c->sight[0].force[a], 2);
-    }
-    c->pressed = fmax(c->pressed, sqrt(size));
-    c->force = fmax(c->force, sqrt(off));
+    compare_wrench(c);
     if (!(fabs(c->sight[1].largest - c->sight[0].largest) <= 1e-5 * c->largest))
         c->different++;
 }
 
-/* Presses a ball in from above, off the middle, sliding, and takes it away again. */
-static void press(pair *c, const tets *b, msds_method method, int frames, int64_t count)
+/* Presses a ball, or another body, in from above, off the middle, sliding, and takes it away again. */
+static void press(pair *c, const tets *b, const probe *shape, msds_method method, int frames, int64_t count)
 {
     for (int i = 0; i < frames; i++) {
         msds_plan plan = tets_plan(method);
         double t = (double)i / (frames - 1), depth = .3 * b->size[2] * sin(3.3 * t);
         tets_press(&plan, .25 * b->size[0], (.45 + .1 * t) * b->size[0], .5 * b->size[1], b->size[2] - depth);
+        if (shape) {
+            probe_pose pose = {{(.45 + .1 * t) * b->size[0], .5 * b->size[1], b->size[2] - depth}, {1, 0, 0, 0}};
+            plan.probe = probe_place(shape, &pose);
+        }
         frame_of(c, &plan, count);
     }
 }
 
-static void test_same(const tets *b, const msds_options *o, bool shaken, msds_method method, const backend *cuda,
-                      const char *name)
+static bool close_enough(const pair *c)
+{
+    return c->worst < 1e-5 * c->largest && c->force < 1e-5 * c->pressed && c->torque < 1e-5 * c->twisted;
+}
+
+typedef struct setting {
+    const tets *block;
+    const probe *shape; /* or NULL: a ball */
+    msds_options options;
+    bool shaken;
+} setting;
+
+static void test_same(const setting *g, msds_method method, const backend *cuda, const char *name)
 {
     pair c = {0};
-    make(&c, b, o, shaken, cuda);
-    press(&c, b, method, shortened ? 4 : 24, 20);
-    ok(c.largest > 1e-3 && c.pressed > 1e-3, "%s: %.3g mm, %.3g N", name, 1e3 * c.largest, c.pressed);
-    ok(c.worst < 1e-5 * c.largest && c.force < 1e-5 * c.pressed, "%s: within 1e-5: %.3g, forces %.3g", name,
-       c.worst / c.largest, c.force / c.pressed);
-    if (method != MSDS_EXACT && !o->penalty)
+    make(&c, g->block, &g->options, g->shaken, cuda);
+    press(&c, g->block, g->shape, method, shortened ? 4 : 24, 20);
+    ok(c.largest > 1e-3 && c.pressed > 1e-3 && c.twisted > 1e-7, "%s: %.3g mm, %.3g N, %.3g N m", name, 1e3 * c.largest,
+       c.pressed, c.twisted);
+    ok(close_enough(&c), "%s: within 1e-5: %.3g, forces %.3g, torques %.3g", name, c.worst / c.largest,
+       c.force / c.pressed, c.torque / c.twisted);
+    if (method != MSDS_EXACT && !g->options.penalty)
         ok(!c.different, "%s: the same numbers as the CPU's (%lld differ)", name, (long long)c.different);
     if (method != MSDS_SPRINGS)
         ok(fabs(c.sight[1].residual - c.sight[0].residual) <=
@@ -145,9 +170,9 @@ static void test_changes(const tets *b, const backend *cuda)
     o.gravity[2] = -3;
     make(&c, b, &o, false, cuda);
     for (int i = 0; i < 6; i++)
-        press(&c, b, methods[i], 5, 7 + i);
-    ok(c.worst < 1e-5 * c.largest && c.force < 1e-5 * c.pressed,
-       "methods change and the state goes along: %.3g, forces %.3g", c.worst / c.largest, c.force / c.pressed);
+        press(&c, b, NULL, methods[i], 5, 7 + i);
+    ok(close_enough(&c), "methods change and the state goes along: %.3g, forces %.3g", c.worst / c.largest,
+       c.force / c.pressed);
     drop(&c);
 }
 
@@ -196,24 +221,59 @@ static const tets odd = {{21, 14, 9}, {.1, .07, .045}, 1e4, .45, 1000, 2, false}
 static const tets paper = {{32, 16, 16}, {.16, .08, .08}, 1e4, .45, 1000, 2, false};
 static const tets large = {{64, 40, 40}, {.16, .1, .1}, 1e4, .45, 1000, 2, false};
 
+/* An octagonal prism, its axis along x, that points down with an edge. */
+static probe prism(void)
+{
+    static double plane[10][4];
+    probe p = {
+        .kind = PROBE_CONVEX, .planes = 10, .plane = plane[0], .middle = {0, 0, -.02}, .reach = .03, .size = .018};
+    for (int i = 0; i < 8; i++) {
+        plane[i][1] = sin(.3 + i * acos(0) / 2);
+        plane[i][2] = cos(.3 + i * acos(0) / 2);
+        plane[i][3] = .018 + plane[i][2] * -.02;
+    }
+    for (int i = 8; i < 10; i++) {
+        plane[i][0] = i == 8 ? 1 : -1;
+        plane[i][3] = .02;
+    }
+    return p;
+}
+
+static void test_shapes(msds_method method, const backend *cuda, const char *name)
+{
+    const probe shapes[] = {probe_linear(.03, .01, .0025), probe_curved(.03, 1.2, .014, .003), prism()};
+    static const char *const names[] = {"linear", "curved", "convex"};
+    char what[80];
+    for (int i = 0; i < 3; i++) {
+        const setting g = {&odd, &shapes[i], tets_options(), false};
+        snprintf(what, sizeof what, "%s, %s", name, names[i]);
+        test_same(&g, method, cuda, what);
+    }
+}
+
 static void test_method(msds_method method, const backend *cuda, const char *name)
 {
     char what[80];
-    msds_options o = tets_options();
     const tets *all[] = {&small, &odd, &paper, &large};
+    setting g = {&odd, NULL, tets_options(), false};
     for (int i = 0; i < (shortened ? 2 : method == MSDS_EXACT ? 3 : 4); i++) {
+        g.block = all[i];
         snprintf(what, sizeof what, "%s, %dx%dx%d", name, all[i]->nodes[0], all[i]->nodes[1], all[i]->nodes[2]);
-        test_same(all[i], &o, false, method, cuda, what);
+        test_same(&g, method, cuda, what);
     }
+    g.block = &odd;
+    g.shaken = true;
     snprintf(what, sizeof what, "%s, no lattice", name);
-    test_same(&odd, &o, true, method, cuda, what);
-    o.gravity[0] = 1, o.gravity[2] = -5;
+    test_same(&g, method, cuda, what);
+    g.shaken = false;
+    g.options.gravity[0] = 1, g.options.gravity[2] = -5;
     snprintf(what, sizeof what, "%s, gravity", name);
-    test_same(&odd, &o, false, method, cuda, what);
-    o.penalty = true;
+    test_same(&g, method, cuda, what);
+    g.options.penalty = true;
     snprintf(what, sizeof what, "%s, a penalty", name);
     if (method != MSDS_SPRINGS)
-        test_same(&odd, &o, false, method, cuda, what);
+        test_same(&g, method, cuda, what);
+    test_shapes(method, cuda, name);
     test_repeats(&odd, method, cuda, name);
 }
 
