@@ -9,7 +9,8 @@ enum {
     ROW_MOST = 1000, /* neighbours of a node on a coarser lattice; one that fits has 26 */
     TABLE = 2048,    /* a power of two, above it */
     ROWS_CHUNK = 256,
-    POWERS = 12 /* steps to the largest eigenvalue */
+    WIDEST = 1000000, /* cells */
+    POWERS = 12       /* steps to the largest eigenvalue */
 };
 
 /* The largest eigenvalue is found so far from below. */
@@ -119,8 +120,11 @@ static int make_lattice(lattice *x, const level *fine, err *e)
     for (int64_t n = 0; n < fine->graph.nodes; n++)
         for (int a = 0; a < 3; a++)
             high[a] = fmax(high[a], fine->place[3 * n + a]);
-    for (int a = 0; a < 3; a++)
-        x->size[a] = (int64_t)fmin(high[a] / 2, 1e6) + 2;
+    for (int a = 0; a < 3; a++) {
+        if (!(high[a] < WIDEST))
+            return err_set(e, NULL, 0, "the mesh is %.3g cells wide; expected at most %d", high[a], WIDEST);
+        x->size[a] = (int64_t)(high[a] / 2) + 2;
+    }
     const int64_t places = x->size[0] * x->size[1] * x->size[2];
     x->node = mem_array(places, sizeof *x->node, "coarser lattices", e);
     if (!x->node)
