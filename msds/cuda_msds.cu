@@ -11,6 +11,7 @@
 extern "C" {
 #include "msds/cg.h"
 #include "msds/msds_cuda.h"
+#include "msds/parts.h"
 }
 
 /* A node is looked for in the ball that holds the probe and so much more of its size: contacts.c's. */
@@ -275,7 +276,7 @@ static int make_exact(cuda_state *s, err *e)
 {
     lanes_matrix m = {};
     int result = s->exact ? 0 : -1;
-    if (!s->exact && !put_stiffness(s, &m, e))
+    if (!s->exact && !parts_held(s->p, e) && !put_stiffness(s, &m, e))
         result = tissue_exact_make(&s->x, &s->t, s->p, &s->order, &m, s->threads, &s->exact, &s->exact_bytes, e);
     matrix_free(&m);
     return result;

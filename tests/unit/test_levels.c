@@ -2,12 +2,13 @@
  * the energy of the one before (Galerkin), that the coarsest is inverted; on a lattice, on one that lies askew, on a mesh without
  * any order, with nodes held fast inside; and the same bytes for any number of threads.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/cg.c msds/levels.c
+// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/cg.c msds/levels.c msds/parts.c
 #include "msds_block.h"
 
 #include "base/mem.h"
 #include "msds/cg.h"
 #include "msds/levels.h"
+#include "msds/parts.h"
 
 #include "tap.h"
 
@@ -230,6 +231,46 @@ static void test_nothing_moves(void)
     drop(&s);
 }
 
+static void test_held(void)
+{
+    static const tets b = {{4, 3, 3}, {.03, .02, .02}, 1e4, .3, 1000, 2, false};
+    subject s = {0};
+    err e = {0};
+    make(&s, &b, NULL, 0, false, 1);
+    ok(!parts_held(&s.p, &e), "a block that hangs is held");
+    for (int fixed = 12; fixed >= 0; fixed--) { /* of the twelve, fewer and fewer */
+        int left = 0;
+        e = (err){0};
+        for (int64_t n = 0; n < s.p.nodes; n++)
+            left += s.p.fixed[n] = s.p.fixed[n] && left < fixed;
+        if (fixed == 3)
+            ok(!parts_held(&s.p, &e), "by three nodes");
+        if (fixed == 2)
+            ok(parts_held(&s.p, &e) && strstr(e.text, "nothing holds node"), "not by two: %s", e.text);
+        if (fixed == 0)
+            ok(parts_held(&s.p, &e) && strstr(e.text, "nothing holds node 0's"), "nor by none: %s", e.text);
+    }
+    drop(&s);
+}
+
+static void test_two_parts(void)
+{
+    static const tets b = {{4, 3, 3}, {.03, .02, .02}, 1e4, .3, 1000, 0, false};
+    subject s = {0};
+    err e = {0};
+    int64_t springs = 0;
+    make(&s, &b, NULL, 0, false, 1);
+    const double *x = s.p.position;
+    for (int64_t i = 0; i < s.p.springs; i++) { /* cut between x = 1 cm and 2 cm */
+        const int32_t *n = s.p.spring[i].node;
+        if ((x[3 * (int64_t)n[0]] < .015) == (x[3 * (int64_t)n[1]] < .015))
+            s.p.spring[springs++] = s.p.spring[i];
+    }
+    s.p.springs = springs;
+    ok(parts_held(&s.p, &e) && strstr(e.text, "nothing holds node 2's"), "one of two parts is not: %s", e.text);
+    drop(&s);
+}
+
 int main(void)
 {
     static const tets block = {{32, 16, 16}, {.16, .08, .08}, 1e4, .45, 1000, 2, false};
@@ -242,5 +283,7 @@ int main(void)
     test_mesh(&odd, NULL, 0, true, "nodes held inside");
     test_threads(&odd);
     test_nothing_moves();
+    test_held();
+    test_two_parts();
     return done_testing();
 }

@@ -3,7 +3,7 @@
  * kinds; and a hundred repeats give the same bytes. Without a card all is skipped. `test_msds_cuda small` is short enough for
  * compute-sanitizer.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c msds/levels.c
+// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c msds/levels.c msds/parts.c
 #include "msds_block.h"
 
 #include "base/mem.h"
@@ -216,6 +216,14 @@ static void test_refused(const backend *cuda)
     o.warp = true;
     make(&c, &b, &o, false, cuda);
     ok(cuda->step(c.state[1], &plan, 1, &e) && strstr(e.text, "expected -d cpu"), "warping is refused: %s", e.text);
+    drop(&c);
+    c = (pair){0};
+    e = (err){0};
+    o.warp = false;
+    plan.method = MSDS_EXACT;
+    make(&c, &b, &o, false, cuda);
+    memset(c.p.fixed, 0, (size_t)c.p.nodes);
+    ok(cuda->step(c.state[1], &plan, 1, &e) && strstr(e.text, "nothing holds"), "so is what nothing holds: %s", e.text);
     drop(&c);
 }
 
