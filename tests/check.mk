@@ -37,6 +37,11 @@ demo:
 	$(MAKE) $(JOBS) all
 	SINEW_BIN=$(BIN) samples/demo out
 
+# The second example: an arm's vessels under a probe, with plots where there is gnuplot.
+.PHONY: arm
+arm: all
+	SINEW_BIN=$(BIN) samples/arm out/arm
+
 # The picture at the top of README.md: small, since it is kept in the repository; make demo leaves a larger one.
 .PHONY: picture
 picture: demo
@@ -130,7 +135,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo samples/arm tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -185,6 +190,7 @@ help:
 	@printf '%s\n' \
 	'make              the tools, into $(BIN)/' \
 	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
+	'make arm          an arm under a probe: the second example, into out/arm' \
 	'make picture      the demo, and the picture in README.md from it' \
 	'make check        set-up, and every check below but check-long' \
 	'make setup        installs what is missing, by apt (through sudo if not root), saying what' \
