@@ -71,7 +71,9 @@ LIB_CUDA := $(BUILD)/libsinew-cuda.a
 CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
 endif
 
-$(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(BUILD)/tled/tiles.o
+# What only cards use, in C, is in it too.
+CUDA_ONLY := tled/tiles.c msds/levels.c msds/parts.c
+$(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
 	@rm -f $@
 	@ar rcs $@ $^
 
@@ -103,9 +105,9 @@ objects = $(patsubst %.cc,$(BUILD)/%.o,$(patsubst %.c,$(BUILD)/%.o,$(1)))
 VOXELISE_SRC := $(wildcard voxelise/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
-TLED_SRC := $(filter-out tled/tiles.c,$(wildcard tled/*.c))
+TLED_SRC := $(filter-out $(CUDA_ONLY),$(wildcard tled/*.c))
 MESH_MODULES := $(wildcard msds/mesh_*.c)
-RUN_MODULES := $(filter-out msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
+RUN_MODULES := $(filter-out $(CUDA_ONLY) msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
 SAMPLES_SRC := slice/samples.c slice/length.c
 IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c $(wildcard slice/dicom*.c) slice/dicom_file.cc
 SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
