@@ -2,7 +2,7 @@
  * stand beside, and with half a million nodes: CSV, the rounds of all interleaved. A sphere presses the block, deeper with each
  * frame, and starts again. `bench_msds_card [ROUNDS]`.
  */
-// needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
+// needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"

@@ -2,7 +2,7 @@
  * the energy of the one before (Galerkin), that the coarsest is inverted; on a lattice, on one that lies askew, on a mesh without
  * any order, with nodes held fast inside; and the same bytes for any number of threads.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/cg.c msds/levels.c msds/parts.c
+// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/cg.c msds/levels.c msds/parts.c
 #include "msds_block.h"
 
 #include "base/mem.h"
