@@ -430,10 +430,10 @@ static double norm_of(const lanes_field *f, int64_t nodes)
 static int find_largest(level *l, pool *threads, err *e)
 {
     lanes_field x = {0}, y = {0};
-    power w = {l, lanes_choose(), &x, &y};
+    power w = {l, lanes_choose(e), &x, &y};
     uint32_t seed = 1;
     int result = -1;
-    if (lanes_field_make(&x, l->graph.nodes, e) || lanes_field_make(&y, l->graph.nodes, e))
+    if (!w.loops || lanes_field_make(&x, l->graph.nodes, e) || lanes_field_make(&y, l->graph.nodes, e))
         goto out;
     for (int64_t i = 0; i < 3 * l->graph.nodes; i++) {
         seed = seed * 1664525u + 1013904223u;
