@@ -3,7 +3,7 @@
  * some rounds. A `step` is the back end's own; a `run` is one as tled-run makes it, with its looks, and with 60 frames a second of
  * the model's time.
  */
-// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c
+// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c
 #include "../unit/tled_bench.h"
 
 #include "model/stream.h"
@@ -141,7 +141,7 @@ static void measure_block(int32_t x, int32_t y, int32_t z, const options *o)
     char name[60];
     bench b;
     const double gravity[3] = {0, 0, -.5}; /* so little that no step is cut */
-    block what = {{x, y, z}, {.0025, .0025, .0025}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 0, 0}, 0};
+    block what = {{x, y, z}, {.0025, .0025, .0025}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 0, 0}, 0, false};
     snprintf(name, sizeof name, "block %d x %d x %d", x, y, z);
     bench_make(&b, &what, gravity, 0, .0075, o->threads);
     measure(name, &b, o);

@@ -46,6 +46,17 @@ for shape in muscle block; do
     check "$shape: a VTU" grep -q '<VTKFile' "$T/a/$shape.vtu"
 done
 
+# The block that a ball presses, by both methods: what it says of the forces.
+check "a press, two at a time" samples "$T/a" -f press.mk -j2 NODES=9x7x7
+is "$(awk '!/^#/ { n++; if ($2 > springs) springs = $2; if ($3 > fem) fem = $3; if (n == 1 || n == 60) ends += $2 + $3 }
+    END { print n, (springs > 1), (fem > 1), ends }' "$T/a/press.force")" "60 1 1 0" "60 poses: both push back while they are pressed, and not before and after"
+near "$(awk '$1 == 1 { print $3 }' "$T/a/press.force")" "$(awk '$1 == 1.2 { print $3 }' "$T/a/press.force")" 0.001 \
+    "the FEM's force is the same while the ball stays"
+for method in msds fem; do
+    check "press.$method: a VTU" grep -q '<VTKFile' "$T/a/press.$method.vtu"
+    is "$(sinew info --get frames "$T/a/press.$method")" 60 "press.$method: a frame a pose"
+done
+
 # A folder of OBJ files, one of which is open: the others come out, that one leaves nothing behind.
 mkdir "$T/in"
 cp "$T/a/sphere.obj" "$T/in/ball.obj"
