@@ -24,7 +24,7 @@ static int cut(skin *s, const surface *shape, err *e)
         bad = MEM_ROOM(&part, &capacity, 3 * corners, "the skin", e) ||
               MEM_ROOM(&s->triangle, &room, 3 * (s->triangles + corners - 2), "the skin", e) ||
               triangulate(shape->position, vertex, corners, part, e);
-        for (int64_t i = 0; i < 3 * (corners - 2) && !bad; i++)
+        for (int64_t i = 0; part && i < 3 * (corners - 2) && !bad; i++)
             s->triangle[3 * s->triangles + i] = vertex[part[i]];
         s->triangles += bad ? 0 : corners - 2;
     }

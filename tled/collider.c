@@ -32,10 +32,11 @@ static int read_poses(collider *c, const char *path, const char *transform, err 
     return got;
 }
 
-int collider_read(collider *c, const char *shape, double scale, const char *path, const char *transform, err *e)
+int collider_read(collider *c, const char *shape, double scale, const char *poses_file, const char *transform, err *e)
 {
-    return probe_of(&c->shape, shape, e) || probe_load(&c->shape, scale, e) || read_poses(c, path, transform, e) ? -1
-                                                                                                                 : 0;
+    return probe_of(&c->shape, shape, e) || probe_load(&c->shape, scale, e) || read_poses(c, poses_file, transform, e)
+               ? -1
+               : 0;
 }
 
 void collider_free(collider *c)

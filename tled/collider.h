@@ -21,7 +21,7 @@ typedef struct collider {
 } collider;
 
 /* Reads a shape (its OBJ, if it is one, times scale) and all poses; c is zeroed. -1 with e filled, c to be freed all the same. */
-int collider_read(collider *c, const char *shape, double scale, const char *poses, const char *transform, err *e);
+int collider_read(collider *c, const char *shape, double scale, const char *poses_file, const char *transform, err *e);
 void collider_free(collider *c);
 
 /* Makes it part of the problem, which says how stiff it is. */

@@ -36,7 +36,8 @@ static int place(const probe *p, const double pose[7], scene_mesh *to, err *e)
     to->position = mem_array(to->vertices, 3 * sizeof *to->position, "the probe", e);
     for (int64_t v = 0; to->position && v < to->vertices; v++) {
         /* Half a step off, so that no direction lies in a plane of symmetry. */
-        double across = M_PI * (double)(v / AROUND) / RINGS, round = 2 * M_PI * ((double)(v % AROUND) + .5) / AROUND;
+        const int64_t ring = v / AROUND;
+        double across = M_PI * (double)ring / RINGS, round = 2 * M_PI * ((double)(v % AROUND) + .5) / AROUND;
         double d[3] = {sin(across) * cos(round), sin(across) * sin(round), cos(across)}, own[3], world[3];
         probe_farthest(p, d, own);
         probe_turn(at.quaternion, own, world);

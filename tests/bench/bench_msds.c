@@ -1,7 +1,7 @@
 /* `make bench-msds`: what a frame of msds-run's solvers takes at the four sizes of PST's Table I, whose figures stand beside, as do
  * OpenTissue's at the largest (one thread; as the project was given them, not measured here): CSV, with a probe of the machine in
- * the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts again. At the
- * largest, each shape of probe too; and what one node costs, by closed form and by libccd. `bench_msds [THREADS [ROUNDS]]`.
+ * the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts again. At the largest, each
+ * shape of probe too; and what one node costs, by closed form and by libccd. `bench_msds [THREADS [ROUNDS]]`.
  */
 // needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
 #include "../unit/msds_block.h"
