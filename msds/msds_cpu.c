@@ -12,7 +12,7 @@
 
 enum { FIELDS = 6, ROUNDS = 4 /* of an exact frame, each with the nodes that the last one pushed into the probe */ };
 
-/* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of its reach. */
+/* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of its size. */
 static const double exact_tolerance = 1e-6, missed = 1e-6;
 
 typedef struct cpu_state {
@@ -47,25 +47,6 @@ static void collect(const cpu_state *s, const lanes_field *from, double *to)
     for (int64_t n = 0; n < s->p->nodes; n++)
         for (int a = 0; a < 3; a++)
             to[3 * n + a] = (double)from->x[a][s->order.own_node[n]];
-}
-
-/* The length is that of the ends as float, so that rest is without force. A lane without a spring: length 1, no stiffness. */
-static void fill_springs(cpu_state *s)
-{
-    const slices *o = &s->order;
-    for (int64_t slice = 0; slice < o->count; slice++)
-        for (int64_t at = o->start[slice] * LANES; at < o->start[slice + 1] * LANES; at++) {
-            const msds_spring *spring = o->spring[at] < 0 ? NULL : &s->p->spring[o->spring[at]];
-            int64_t own = slice * LANES + at % LANES, other = o->neighbour[at];
-            float square = 0;
-            for (int a = 0; a < 3; a++) {
-                float d = s->w.place.x[a][other] - s->w.place.x[a][own];
-                square += d * d;
-            }
-            s->rest[at] = spring ? sqrtf(square) : 1;
-            s->stiffness[at] = spring ? (float)spring->stiffness : 0;
-            s->damper[at] = spring ? (float)spring->damper : 0;
-        }
 }
 
 static void fill_nodes(cpu_state *s)
@@ -149,7 +130,7 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
     s->w.repulsion = s->repulsion;
     s->w.damping = s->p->options.damping;
     fill_nodes(s);
-    fill_springs(s);
+    slices_springs(&s->order, s->p, s->stiffness, s->damper, s->rest);
     memcpy(s->place, s->p->displacement, 3 * (size_t)s->p->nodes * sizeof *s->place);
     s->precise = true;
     return s;
@@ -249,12 +230,14 @@ static int step_exact(cpu_state *s, err *e)
     s->solves = 0;
     find_contacts(s, s->place, CONTACTS_NEAR);
     for (int turn = 0; turn < ROUNDS; turn++) {
-        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.reach : 1, e))
+        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.shape.size : 1,
+                        e))
             return -1;
         s->solves += s->exact->solves;
         spread(s, s->place, &s->w.u);
         if (!s->plan.touched || turn == ROUNDS - 1 ||
-            !contacts_missed(&s->contacts, s->loops, &s->w, s->p, s->place, s->threads, missed * s->plan.probe.reach))
+            !contacts_missed(&s->contacts, s->loops, &s->w, s->p, s->place, s->threads,
+                             missed * s->plan.probe.shape.size))
             break;
         find_contacts(s, s->place, CONTACTS_NEAR);
     }
@@ -299,6 +282,8 @@ static int cpu_look(void *state, const void *question, void *answer, err *e)
     (void)e;
     *sight = (msds_sight){.residual = NAN, .solves = s->solves, .finite = true};
     sight->contacts = contacts_sum(&s->contacts, sight->force);
+    if (s->plan.touched)
+        contacts_twist(&s->contacts, &s->w, s->p, s->precise ? s->place : NULL, sight->torque);
     if (s->plan.method == MSDS_FEM && s->cg)
         sight->residual = s->cg->residual;
     if (s->plan.method == MSDS_EXACT && s->exact)

@@ -20,7 +20,7 @@ needs = $(call objects,$(shell sed -n 's|^// needs: *||p' $(1)))
 
 define test_program
 $(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB_CUDA) $(LIB)
-	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
 endef
 COMPARE := $(BUILD)/tests/cli/compare $(BUILD)/tests/cli/voxels
 $(eval $(call test_program,tests/cli/compare))
@@ -36,6 +36,11 @@ demo:
 	.ci/setup demo
 	$(MAKE) $(JOBS) all
 	SINEW_BIN=$(BIN) samples/demo out
+
+# The second example: an arm's vessels under a probe, with plots where there is gnuplot.
+.PHONY: arm
+arm: all
+	SINEW_BIN=$(BIN) samples/arm out/arm
 
 # The picture at the top of README.md: small, since it is kept in the repository; make demo leaves a larger one.
 .PHONY: picture
@@ -67,8 +72,8 @@ check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-images bench-fraction compare-msds
-BENCHES = voxelise geometry tled msds images
+.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-fraction compare-msds
+BENCHES = voxelise geometry tled msds msds_card images
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
 BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
@@ -93,6 +98,9 @@ bench-geometry: all $(BUILD)/tests/bench/bench_geometry
 # Frames of msds-run's solvers at the sizes of PST's Table I, beside its figures.
 bench-msds: $(BUILD)/tests/bench/bench_msds
 	@$(BUILD)/tests/bench/bench_msds $(shell nproc)
+# The same on a card, where there is one, and with half a million nodes.
+bench-msds_card: $(BUILD)/tests/bench/bench_msds_card
+	@$(BUILD)/tests/bench/bench_msds_card
 # DICOM to volumes, labels and surfaces.
 bench-images: all $(BUILD)/tests/bench/bench_images
 	@$(BUILD)/tests/bench/bench_images $(BIN) $(BUILD) $(BENCH_HEAD)
@@ -130,7 +138,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo samples/arm tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -185,6 +193,7 @@ help:
 	@printf '%s\n' \
 	'make              the tools, into $(BIN)/' \
 	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
+	'make arm          an arm under a probe: the second example, into out/arm' \
 	'make picture      the demo, and the picture in README.md from it' \
 	'make check        set-up, and every check below but check-long' \
 	'make setup        installs what is missing, by apt (through sudo if not root), saying what' \
