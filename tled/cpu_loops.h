@@ -351,6 +351,11 @@ static const char *cpu_unusable(void)
     return NULL;
 }
 
+static int64_t cpu_computed(const void *state)
+{
+    return ((const cpu_state *)state)->rows.cells;
+}
+
 const backend CPU_BACKEND = {.name = "cpu",
                              .unusable = cpu_unusable,
                              .create = cpu_create,
@@ -361,4 +366,5 @@ const backend CPU_BACKEND = {.name = "cpu",
                              .take = cpu_take,
                              .taken = cpu_taken,
                              .bytes = cpu_bytes,
-                             .destroy = cpu_destroy};
+                             .destroy = cpu_destroy,
+                             .computed = cpu_computed};

@@ -382,5 +382,10 @@ static void *cuda_create(const void *problem, pool *threads, err *e)
     return s;
 }
 
-const backend CUDA_BACKEND = {"cuda",    card_unusable, cuda_create, cuda_step,    cuda_get,   cuda_keep,
-                              cuda_back, cuda_take,     cuda_taken,  cuda_look_at, cuda_bytes, cuda_destroy};
+static int64_t cuda_computed(const void *state)
+{
+    return ((const cuda_state *)state)->tiles.cells;
+}
+
+const backend CUDA_BACKEND = {"cuda",    card_unusable, cuda_create,  cuda_step,  cuda_get,     cuda_keep,    cuda_back,
+                              cuda_take, cuda_taken,    cuda_look_at, cuda_bytes, cuda_destroy, cuda_computed};

@@ -35,6 +35,8 @@ typedef struct backend {
     /* Bytes of the device's memory that the state has by now. */
     int64_t (*bytes)(const void *state);
     void (*destroy)(void *state);
+    /* How many elements a pass computes, those that are computed twice counted twice, for benchmarks; NULL: not told. */
+    int64_t (*computed)(const void *state);
 } backend;
 
 /* The back end named so, or for "auto" the first that is usable; says (of `size` bytes) gets what was taken, and what was not and

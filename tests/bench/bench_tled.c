@@ -1,12 +1,22 @@
 /* `make bench-tled`: what a step of tled-run's solver takes, on each back end and in each precision that this machine has, over
- * blocks of growing size and over the models whose files are named: CSV. After a warm-up, the median, the least and the most of
+ * blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio): CSV. After a warm-up, the median, the least and the most of
  * some rounds. A `step` is the back end's own; a `run` is one as tled-run makes it, with its looks, and with 60 frames a second of
- * the model's time.
+ * the model's time; times_real_time is how much of the model's time one of these takes.
+ *
+ * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and written, 1/m,
+ * and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, and its fibre (12) and share (4) where it
+ * has them. flops_a_step is what flops.h counts, for each element and node once; `computed` says how many elements for each one of
+ * the model are computed in fact. Beside them stands what the machine did at most in the same rounds: copying (on a card of more than its
+ * L2 cache holds or within it, as the bytes of a step are) and multiply-adds, in two instructions, of the same precision.
  */
-// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c
+// needs: tests/bench/roof.c tests/bench/flops.cc tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c
 #include "../unit/tled_bench.h"
 
+#include "card_roof.h"
+#include "flops.h"
 #include "model/stream.h"
+#include "roof.h"
+#include "tled/cpu_pass.h"
 
 #include <inttypes.h>
 #include <time.h>
@@ -18,15 +28,26 @@ typedef struct options {
     const char *device; /* or NULL: all */
     bool runs;          /* as well as steps */
     double least;       /* s: a round takes at least so long */
+    double poisson;     /* of all tissue of models that are read; 0: as it is */
+    card_roof *card;    /* or NULL */
 } options;
 
 typedef struct measured {
     const char *model;
     const backend *device;
     const char *precision;
+    bool single;
     double least; /* s: a round takes at least so long */
     double bytes; /* of the device's memory */
+    double computed;
+    card_roof *card;
+    double took[ROUNDS], copy[ROUNDS], flops[ROUNDS]; /* s; bytes and operations a second, of the machine */
 } measured;
+
+static const char *const header =
+    "model,device,threads,precision,what,elements,nodes,bytes_an_element,steps,rounds,median_us_a_step,least_us,"
+    "most_us,ns_an_element_step,simulated_us_a_step,times_real_time,bytes_a_step,flops_a_step,computed,GB_s,Gflop_s,"
+    "copied,copy_GB_s,multiply_add_Gflop_s,share_of_copy,share_of_multiply_add";
 
 static double clock_now(void)
 {
@@ -41,16 +62,84 @@ static int ascending(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-static void say(const measured *w, const bench *b, const char *what, double *took, int64_t steps)
+static double middle_of(double *of)
+{
+    qsort(of, ROUNDS, sizeof *of, ascending);
+    return of[ROUNDS / 2];
+}
+
+/* What every row begins with; returns the median of a step in seconds. */
+static double say(measured *w, const bench *b, const char *what, int64_t steps)
 {
     const double nodes = (double)b->problem.nodes, elements = (double)b->problem.elements;
-    qsort(took, ROUNDS, sizeof *took, ascending);
-    double middle = took[ROUNDS / 2] / (double)steps;
-    printf("%s,%s,%d,%s,%s,%.0f,%.0f,%.4g,%" PRId64 ",%d,%.4g,%.4g,%.4g,%.4g\n", w->model, w->device->name,
+    const double middle = middle_of(w->took) / (double)steps, simulated = 1 / b->setup.rate;
+    printf("%s,%s,%d,%s,%s,%.0f,%.0f,%.4g,%" PRId64 ",%d,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,", w->model, w->device->name,
            pool_threads(b->setup.threads), w->precision, what, elements, nodes, w->bytes / elements, steps, ROUNDS,
-           1e6 * middle, 1e6 * took[0] / (double)steps, 1e6 * took[ROUNDS - 1] / (double)steps,
-           1e9 * middle / elements);
+           1e6 * middle, 1e6 * w->took[0] / (double)steps, 1e6 * w->took[ROUNDS - 1] / (double)steps,
+           1e9 * middle / elements, 1e6 * simulated, simulated / middle);
+    return middle;
+}
+
+static double bytes_of(const tled_problem *p, bool single)
+{
+    const int number = single ? sizeof(float) : sizeof(double);
+    return (double)p->nodes * (13 * number + 4) +
+           (double)p->elements * (4 + (p->fibre ? 12 : 0) + (p->fraction ? 4 : 0));
+}
+
+static double flops_of(const tled_problem *p)
+{
+    const double zero[24] = {0};
+    const flops rest = flops_of_element(0, zero, NULL), active = flops_of_element(1, zero, NULL);
+    double sum = (double)p->nodes * (double)flops_sum(flops_of_node());
+    for (int32_t i = 0; i < p->volumes; i++)
+        sum += (double)p->volume[i].elements * (double)flops_sum(p->volume[i].contract < 0 ? rest : active);
+    return sum;
+}
+
+static const char *copied_by(const measured *w, double bytes)
+{
+    (void)bytes;
+#ifdef SINEW_CUDA
+    if (w->device->look && bytes < (double)card_roof_cache(w->card))
+        return "cache";
+#endif
+    return "memory";
+}
+
+static void say_shares(measured *w, const bench *b, int64_t steps)
+{
+    const double middle = say(w, b, "step", steps), bytes = bytes_of(&b->problem, w->single);
+    const double operations = flops_of(&b->problem), copy = middle_of(w->copy), most = middle_of(w->flops);
+    printf("%.0f,%.0f,%.4g,%.4g,%.4g,%s,%.4g,%.4g,%.4g,%.4g\n", bytes, operations, w->computed, 1e-9 * bytes / middle,
+           1e-9 * operations / middle, copied_by(w, bytes), 1e-9 * copy, 1e-9 * most, bytes / middle / copy,
+           operations / middle / most);
     fflush(stdout);
+}
+
+static void say_run(measured *w, const bench *b, const char *what, int64_t steps)
+{
+    say(w, b, what, steps);
+    puts(",,,,,,,,,");
+    fflush(stdout);
+}
+
+/* One round of what the machine can do, in the round of what is compared with it. */
+static void probe(measured *w, bench *b, const roof *r, int round)
+{
+#ifdef SINEW_CUDA
+    card_rates card;
+    if (w->device->look) {
+        bench_must(card_roof_take(w->card, w->single, &card, &b->e), &b->e);
+        w->copy[round] = strcmp(copied_by(w, bytes_of(&b->problem, w->single)), "memory") ? card.cache : card.memory;
+        w->flops[round] = card.flops;
+        return;
+    }
+#endif
+    (void)b;
+    const roof_rates rates = roof_take(r, w->single);
+    w->copy[round] = rates.copy;
+    w->flops[round] = rates.flops;
 }
 
 /* So many steps, and that they are done. */
@@ -69,19 +158,27 @@ static double time_steps(bench *b, const backend *d, void *state, tled_plan *pla
 /* The steps alone: enough of them in a round that the wait at its end counts for little. */
 static void measure_steps(measured *w, bench *b)
 {
-    double took[ROUNDS];
     tled_plan plan = {.rate = b->setup.rate, .damping = b->setup.damping};
+    roof r = {0};
+    if (!w->device->look) {
+        const cpu_pass *pass = cpu_pass_choose(w->single ? cpu_passes_single : cpu_passes_double, &b->e);
+        bench_must(!pass || roof_make(&r, b->setup.threads, pass->name, &b->e), &b->e);
+    }
     void *state = w->device->create(&b->problem, b->setup.threads, &b->e);
     bench_must(!state, &b->e);
     int64_t steps = 4;
     while (time_steps(b, w->device, state, &plan, steps) < w->least) /* warm-up */
         steps *= 2;
-    for (int i = 0; i < ROUNDS; i++)
-        took[i] = time_steps(b, w->device, state, &plan, steps);
+    for (int i = 0; i < ROUNDS; i++) {
+        w->took[i] = time_steps(b, w->device, state, &plan, steps);
+        probe(w, b, &r, i);
+    }
     bench_must(w->device->take(state, 0, &b->e), &b->e); /* what a run has: one frame at least */
     w->bytes = (double)w->device->bytes(state);
-    say(w, b, "step", took, steps);
+    w->computed = (double)w->device->computed(state) / (double)b->problem.elements;
+    say_shares(w, b, steps);
     w->device->destroy(state);
+    roof_free(&r);
 }
 
 static double time_run(bench *b, int64_t steps)
@@ -94,16 +191,15 @@ static double time_run(bench *b, int64_t steps)
 
 /* Runs with looks, and 60 frames a second of the model's time or none, that are copied and dropped: what a longer run takes
  * more than one of four frames, which has all the memory that it will need. */
-static void measure_run(const measured *w, bench *b, double every, const char *what, int64_t steps)
+static void measure_run(measured *w, bench *b, double every, const char *what, int64_t steps)
 {
-    double took[ROUNDS];
     const int64_t first = (int64_t)ceil(4. / 60 * b->setup.rate);
     b->setup.device = w->device;
     b->setup.every = every;
     time_run(b, b->setup.check);
     for (int i = 0; i < ROUNDS; i++)
-        took[i] = -time_run(b, first) + time_run(b, first + steps);
-    say(w, b, what, took, steps);
+        w->took[i] = -time_run(b, first) + time_run(b, first + steps);
+    say_run(w, b, what, steps);
 }
 
 /* One back end in one precision: on the CPU with one thread and with all; on a device runs too. */
@@ -130,7 +226,12 @@ static void measure(const char *name, bench *b, const options *o)
 {
     for (int single = 0; single < 2; single++)
         for (const backend *const *d = single ? tled_backends_single : tled_backends_double; *d; d++) {
-            measured w = {name, *d, single ? "single" : "double", o->least, 0};
+            measured w = {.model = name,
+                          .device = *d,
+                          .precision = single ? "single" : "double",
+                          .single = single,
+                          .least = o->least,
+                          .card = o->card};
             if (!(*d)->unusable() && !(o->device && strcmp((*d)->name, o->device)))
                 measure_device(&w, b, o);
         }
@@ -148,43 +249,87 @@ static void measure_block(int32_t x, int32_t y, int32_t z, const options *o)
     bench_free(&b);
 }
 
+static void set_poisson(model *m, double poisson)
+{
+    const model_array *nu = model_find(m, "material.nu");
+    for (int64_t i = 0; nu && i < nu->rows; i++)
+        nu->f64[i] = poisson;
+}
+
 /* A model from a file; its first muscle contracts. */
 static void measure_file(const char *path, const options *o)
 {
     bench b = {0};
+    char name[200];
+    const char *file = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     char contract[200] = "";
     in *source = in_open(path, &b.e);
     model_reader *reader = source ? model_reader_open(source, &b.e) : NULL;
     bench_must(!reader || model_read(reader, &b.m, &b.e), &b.e);
     model_reader_close(reader);
     in_close(source);
-    const model_array *muscle = model_find(&b.m, "volume.muscle"), *name = model_find(&b.m, "volume.name");
+    if (o->poisson > 0)
+        set_poisson(&b.m, o->poisson);
+    snprintf(name, sizeof name, o->poisson > 0 ? "%s nu=%g" : "%s", file, o->poisson);
+    const model_array *muscle = model_find(&b.m, "volume.muscle"), *names = model_find(&b.m, "volume.name");
     for (int64_t i = 0; muscle && i < muscle->rows && !*contract; i++)
         if (muscle->u8[i])
-            snprintf(contract, sizeof contract, "%s=.05", name->str[i]);
+            snprintf(contract, sizeof contract, "%s=.05", names->str[i]);
     bench_must(*contract && script_add_contract(&b.script, &b.m, contract, .1, NULL, &b.e), &b.e);
     bench_must(tled_problem_make(&b.problem, &b.m, &b.script, .0075, &b.e), &b.e);
     bench_finish(&b, o->threads);
-    measure(strrchr(path, '/') ? strrchr(path, '/') + 1 : path, &b, o);
+    measure(name, &b, o);
     bench_free(&b);
+}
+
+/* All that a card can do, a row each. */
+static card_roof *find_card(const options *o)
+{
+#ifdef SINEW_CUDA
+    err e = {0};
+    const char *why;
+    card_rates rates;
+    if (!bench_cuda(tled_backends_single, &why) || (o->device && strcmp(o->device, "cuda") != 0))
+        return NULL;
+    card_roof *r = card_roof_create(&e);
+    bench_must(!r, &e);
+    for (int single = 0; single < 2; single++) {
+        const char *precision = single ? "single" : "double";
+        bench_must(card_roof_take(r, single, &rates, &e), &e);
+        printf("probe,cuda,,%s,copy in memory,,,,,1,,,,,,,,,,%.4g,,,,,,\n", precision, 1e-9 * rates.memory);
+        printf("probe,cuda,,%s,copy within the L2 cache,,,,,1,,,,,,,,,,%.4g,,,,,,\n", precision, 1e-9 * rates.cache);
+        printf("probe,cuda,,%s,multiply-add,,,,,1,,,,,,,,,,,%.4g,,,,,\n", precision, 1e-9 * rates.flops);
+        printf("probe,cuda,,%s,multiply-add fused,,,,,1,,,,,,,,,,,%.4g,,,,,\n", precision, 1e-9 * rates.fused);
+    }
+    return r;
+#else
+    (void)o;
+    return NULL;
+#endif
 }
 
 int main(int argc, char **argv)
 {
     static const int32_t blocks[][3] = {{16, 17, 8}, {29, 47, 9}, {46, 47, 46}, {100, 100, 100}, {159, 159, 159}};
     if (argc < 6 || atoi(argv[1]) < 1 || atoi(argv[2]) > 5) {
-        fprintf(stderr, "usage: bench_tled THREADS BLOCKS all|cpu|cuda steps|runs SECONDS [MODEL...]\n");
+        fprintf(stderr, "usage: bench_tled THREADS BLOCKS all|cpu|cuda steps|runs SECONDS [nu=NU|MODEL...]\n");
         return 2;
     }
-    const options o = {.threads = atoi(argv[1]),
-                       .device = strcmp(argv[3], "all") ? argv[3] : NULL,
-                       .runs = !strcmp(argv[4], "runs"),
-                       .least = atof(argv[5])};
-    printf("model,device,threads,precision,what,elements,nodes,bytes_an_element,steps,rounds,median_us_a_step,least_us,"
-           "most_us,ns_an_element_step\n");
+    options o = {.threads = atoi(argv[1]),
+                 .device = strcmp(argv[3], "all") ? argv[3] : NULL,
+                 .runs = !strcmp(argv[4], "runs"),
+                 .least = atof(argv[5])};
+    puts(header);
+    o.card = find_card(&o);
     for (int i = 0; i < atoi(argv[2]); i++)
         measure_block(blocks[i][0], blocks[i][1], blocks[i][2], &o);
     for (int i = 6; i < argc; i++)
-        measure_file(argv[i], &o);
+        if (!strncmp(argv[i], "nu=", 3))
+            o.poisson = atof(argv[i] + 3);
+        else
+            measure_file(argv[i], &o);
+#ifdef SINEW_CUDA
+    card_roof_destroy(o.card);
+#endif
     return 0;
 }
