@@ -72,7 +72,7 @@ check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-fraction compare-msds
+.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-fraction compare-msds
 BENCHES = voxelise geometry tled msds msds_card images
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
@@ -87,11 +87,14 @@ $(BUILD)/tests/bench/bench_tled: $(BUILD)/tests/bench/card_roof.o
 endif
 bench: all $(BENCHES:%=$(BUILD)/tests/bench/bench_%)
 	@mkdir -p out
-	@{ tests/bench/machine; for name in $(BENCHES); do echo "# $$name"; \
+	@{ tests/bench/machine; for name in $(BENCHES) table1; do echo "# $$name"; \
 	    $(MAKE) --no-print-directory -s bench-$$name || echo '# failed'; done; } | tee out/bench.csv
 	@! grep -q '^# failed' out/bench.csv
 bench-tled: all $(BUILD)/tests/bench/bench_tled $(BENCH_MODELS)
 	@$(BUILD)/tests/bench/bench_tled $(shell nproc) 5 all runs .3 $(BENCH_MODELS) nu=0.45 $(filter %_0.625mm,$(BENCH_MODELS))
+# W&M's Table 1 on our samples.
+bench-table1: all $(BUILD)/tests/bench/bench_tled
+	@tests/bench/table1 $(BIN) $(BUILD)/tests/bench/bench_tled $(BUILD)/tests/bench/table1 $(shell nproc)
 $(BUILD)/tests/bench/face_%mm: all
 	@mkdir -p $(@D)
 	@$(BIN)/voxelise -q --unit mm -s $* $(BENCH_FACE) | $(BIN)/attach -q -o $@
@@ -144,7 +147,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo samples/arm tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo samples/arm tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -209,7 +212,7 @@ help:
 	'make sanitize     the tests under ASan and UBSan' \
 	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
-	'make bench-voxelise, -geometry, -tled, -msds, -images   its parts (TRIANGLES=100000: of the scan)' \
+	'make bench-voxelise, -geometry, -tled, -table1, -msds, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
