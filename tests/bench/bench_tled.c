@@ -6,7 +6,7 @@
  * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and written, 1/m,
  * and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, and its fibre (12) and share (4) where it
  * has them. flops_a_step is what flops.h counts, for each element and node once; `computed` says how many elements for each one of
- * the model are computed in fact. Beside them stands what the machine did at most in the same rounds: copying (on a card of more than its
+ * the model are computed in fact, and lanes_filled how much of a processor's vectors they fill. Beside them stands what the machine did at most in the same rounds: copying (on a card of more than its
  * L2 cache holds or within it, as the bytes of a step are) and multiply-adds, in two instructions, of the same precision.
  */
 // needs: tests/bench/roof.c tests/bench/flops.cc tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c
@@ -37,9 +37,9 @@ typedef struct measured {
     const backend *device;
     const char *precision;
     bool single;
-    double least; /* s: a round takes at least so long */
-    double bytes; /* of the device's memory */
-    double computed;
+    double least;            /* s: a round takes at least so long */
+    double bytes;            /* of the device's memory */
+    double computed, filled; /* elements, as times the model's; lanes, as a share of all */
     card_roof *card;
     double took[ROUNDS], copy[ROUNDS], flops[ROUNDS]; /* s; bytes and operations a second, of the machine */
 } measured;
@@ -47,7 +47,8 @@ typedef struct measured {
 static const char *const header =
     "model,device,threads,precision,what,elements,nodes,bytes_an_element,steps,rounds,median_us_a_step,least_us,"
     "most_us,ns_an_element_step,simulated_us_a_step,times_real_time,bytes_a_step,flops_a_step,computed,GB_s,Gflop_s,"
-    "copied,copy_GB_s,multiply_add_Gflop_s,share_of_copy,share_of_multiply_add";
+    "copied,copy_GB_s,multiply_add_Gflop_s,share_of_copy,share_of_multiply_add,"
+    "lanes_filled";
 
 static double clock_now(void)
 {
@@ -99,7 +100,7 @@ static double flops_of(const tled_problem *p)
 
 static const char *copied_by(const measured *w, double bytes)
 {
-    (void)bytes;
+    (void)w, (void)bytes;
 #ifdef SINEW_CUDA
     if (w->device->look && bytes < (double)card_roof_cache(w->card))
         return "cache";
@@ -111,16 +112,16 @@ static void say_shares(measured *w, const bench *b, int64_t steps)
 {
     const double middle = say(w, b, "step", steps), bytes = bytes_of(&b->problem, w->single);
     const double operations = flops_of(&b->problem), copy = middle_of(w->copy), most = middle_of(w->flops);
-    printf("%.0f,%.0f,%.4g,%.4g,%.4g,%s,%.4g,%.4g,%.4g,%.4g\n", bytes, operations, w->computed, 1e-9 * bytes / middle,
-           1e-9 * operations / middle, copied_by(w, bytes), 1e-9 * copy, 1e-9 * most, bytes / middle / copy,
-           operations / middle / most);
+    printf("%.0f,%.0f,%.4g,%.4g,%.4g,%s,%.4g,%.4g,%.4g,%.4g,%.4g\n", bytes, operations, w->computed,
+           1e-9 * bytes / middle, 1e-9 * operations / middle, copied_by(w, bytes), 1e-9 * copy, 1e-9 * most,
+           bytes / middle / copy, operations / middle / most, w->filled);
     fflush(stdout);
 }
 
 static void say_run(measured *w, const bench *b, const char *what, int64_t steps)
 {
     say(w, b, what, steps);
-    puts(",,,,,,,,,");
+    puts(",,,,,,,,,,");
     fflush(stdout);
 }
 
@@ -155,6 +156,16 @@ static double time_steps(bench *b, const backend *d, void *state, tled_plan *pla
     return clock_now() - before;
 }
 
+/* Of the elements that are computed side by side, how many are any. */
+static double lanes_filled(bench *b, int lanes)
+{
+    rows r = {0};
+    bench_must(rows_make(&r, &b->problem, lanes, pool_threads(b->setup.threads), &b->e), &b->e);
+    const double filled = (double)r.cells / ((double)r.runs * lanes);
+    rows_free(&r);
+    return filled;
+}
+
 /* The steps alone: enough of them in a round that the wait at its end counts for little. */
 static void measure_steps(measured *w, bench *b)
 {
@@ -163,6 +174,7 @@ static void measure_steps(measured *w, bench *b)
     if (!w->device->look) {
         const cpu_pass *pass = cpu_pass_choose(w->single ? cpu_passes_single : cpu_passes_double, &b->e);
         bench_must(!pass || roof_make(&r, b->setup.threads, pass->name, &b->e), &b->e);
+        w->filled = lanes_filled(b, pass->lanes);
     }
     void *state = w->device->create(&b->problem, b->setup.threads, &b->e);
     bench_must(!state, &b->e);
@@ -231,6 +243,7 @@ static void measure(const char *name, bench *b, const options *o)
                           .precision = single ? "single" : "double",
                           .single = single,
                           .least = o->least,
+                          .filled = 1,
                           .card = o->card};
             if (!(*d)->unusable() && !(o->device && strcmp((*d)->name, o->device)))
                 measure_device(&w, b, o);
@@ -282,6 +295,15 @@ static void measure_file(const char *path, const options *o)
     bench_free(&b);
 }
 
+#ifdef SINEW_CUDA
+/* In GB/s or Gflop/s. */
+static void say_probe(const char *precision, const char *what, double rate, bool flops_too)
+{
+    printf("probe,cuda,,%s,%s,,,,,1,,,,,,,,,,%s%.4g,%s,,,,,\n", precision, what, flops_too ? "," : "", rate,
+           flops_too ? "" : ",");
+}
+#endif
+
 /* All that a card can do, a row each. */
 static card_roof *find_card(const options *o)
 {
@@ -296,10 +318,12 @@ static card_roof *find_card(const options *o)
     for (int single = 0; single < 2; single++) {
         const char *precision = single ? "single" : "double";
         bench_must(card_roof_take(r, single, &rates, &e), &e);
-        printf("probe,cuda,,%s,copy in memory,,,,,1,,,,,,,,,,%.4g,,,,,,\n", precision, 1e-9 * rates.memory);
-        printf("probe,cuda,,%s,copy within the L2 cache,,,,,1,,,,,,,,,,%.4g,,,,,,\n", precision, 1e-9 * rates.cache);
-        printf("probe,cuda,,%s,multiply-add,,,,,1,,,,,,,,,,,%.4g,,,,,\n", precision, 1e-9 * rates.flops);
-        printf("probe,cuda,,%s,multiply-add fused,,,,,1,,,,,,,,,,,%.4g,,,,,\n", precision, 1e-9 * rates.fused);
+        if (!single) {
+            say_probe("", "copy in memory", 1e-9 * rates.memory, false);
+            say_probe("", "copy within the L2 cache", 1e-9 * rates.cache, false);
+        }
+        say_probe(precision, "multiply-add", 1e-9 * rates.flops, true);
+        say_probe(precision, "multiply-add fused", 1e-9 * rates.fused, true);
     }
     return r;
 #else
