@@ -28,6 +28,7 @@ static double clock_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): an attribute and types
 /* Chains side by side of x = a x + b, each of as many numbers as a register has. */
 #define DEFINE_CHAINS(name, number, bytes, attribute)                                                                  \
     typedef number name##_vector __attribute__((vector_size(bytes)));                                                  \
@@ -45,6 +46,8 @@ static double clock_now(void)
             sum += (double)x[i][0];                                                                                    \
         return sum;                                                                                                    \
     }
+
+// NOLINTEND(bugprone-macro-parentheses)
 
 DEFINE_CHAINS(plain_single, float, 16, )
 DEFINE_CHAINS(plain_double, double, 16, )
