@@ -75,6 +75,10 @@ check "slope and intercept" us-import -q --raw -o "$T/out.nrrd" "$T/in"
 is "$(line "$T/out.nrrd" type)" float "make floats"
 is "$(tail -c 16 "$T/out.nrrd" | od -A n -t fF | tr -s ' ' | sed 's/^ //')" "-5 -3 9 11" "of the right values"
 
+dicom enhanced scaled=1 columns=2 rows=1 slices=2
+check "a slope a frame" us-import -q --raw -o "$T/out.nrrd" "$T/in"
+is "$(tail -c 16 "$T/out.nrrd" | od -A n -t fF | tr -s ' ' | sed 's/^ //')" "0 1 14 16" "scales that frame"
+
 # says PATTERN FILE NAME, says_not: whether a file has a line like this.
 says() {
     if grep -aqi -e "$1" "$2"; then ok "$3"; else not_ok "$3"; fi
@@ -95,6 +99,7 @@ bad "two are" '2 missing between im07\.dcm and im14\.dcm' series drop=2,3
 bad "one is there twice" 'im11x\.dcm and im21\.dcm lie at one place' series dup=3
 bad "one is shifted" 'im14\.dcm and im21\.dcm lie 0\.95 mm apart; im21\.dcm and im28\.dcm lie 0\.55 mm apart' series shift=3:.2
 bad "frames of a file" '1 missing between frame 4 and frame 3|lie .* mm apart' enhanced shift=3:.2
+bad "a frame of other pixels" 'frame 2 has pixels of 1 x 0.25 mm, frame 1 of 0.5 x 0.25' enhanced wider=1
 bad "they are askew" 'beside where the first points' series tilt=.2
 bad "no spacing" 'no distance between pixels' series spacing=no
 bad "no positions" 'without a position' series position=no
