@@ -68,28 +68,43 @@ static void set_spacing(const reading *r, dicom_item *item)
         r->d->spacing[2] = fabs(between);
 }
 
-/* Pixels of ultrasound regions, in cm. */
-static void set_region_spacing(const reading *r, dicom_item *item)
+/* Pixels of an ultrasound region: whether it is in cm, and mm. */
+static bool region_spacing(const reading *r, dicom_item *item, double mm[2])
 {
     double dx = number(r, item, TAG_DELTA_X, (double)NAN), dy = number(r, item, TAG_DELTA_Y, (double)NAN);
     double ux = number(r, item, TAG_UNITS_X, 0), uy = number(r, item, TAG_UNITS_Y, 0);
-    if (fabs(ux - CENTIMETRES) < .5 && fabs(uy - CENTIMETRES) < .5 && !isfinite(r->d->spacing[0])) {
-        r->d->spacing[0] = 10 * fabs(dx);
-        r->d->spacing[1] = 10 * fabs(dy);
+    mm[0] = 10 * fabs(dx);
+    mm[1] = 10 * fabs(dy);
+    return fabs(ux - CENTIMETRES) < .5 && fabs(uy - CENTIMETRES) < .5 && mm[0] > 0 && mm[1] > 0;
+}
+
+/* An image may have traces beside it, whose regions are no cm. Where regions in cm differ, nothing tells which is meant. */
+static void set_regions_spacing(const reading *r)
+{
+    double *to = r->d->spacing, mm[2];
+    dicom_item *region;
+    bool found = false;
+    for (int64_t at = 0; (region = dicom_inner(r->f, r->set, TAG_REGIONS, at)); at++) {
+        if (!region_spacing(r, region, mm))
+            continue;
+        if (found && !(fabs(mm[0] - to[0]) <= .01 * to[0] && fabs(mm[1] - to[1]) <= .01 * to[1])) {
+            to[0] = to[1] = (double)NAN;
+            return;
+        }
+        if (!found)
+            memcpy(to, mm, sizeof mm);
+        found = true;
     }
 }
 
 static void set_spacings(const reading *r)
 {
+    double mm[2];
     set_spacing(r, r->set);
-    set_region_spacing(r, r->set);
-    for (int64_t at = 0; !isfinite(r->d->spacing[0]);
-         at++) { /* an image may have traces beside it, whose regions are no cm */
-        dicom_item *region = dicom_inner(r->f, r->set, TAG_REGIONS, at);
-        if (!region)
-            break;
-        set_region_spacing(r, region);
-    }
+    if (!isfinite(r->d->spacing[0]) && region_spacing(r, r->set, mm))
+        memcpy(r->d->spacing, mm, sizeof mm);
+    if (!isfinite(r->d->spacing[0]))
+        set_regions_spacing(r);
 }
 
 static int read_plain_geometry(const reading *r)

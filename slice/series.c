@@ -158,9 +158,9 @@ static int find_spacing(stack *k, err *e)
     for (int a = 0; a < 3; a++) {
         k->spacing[a] = isnan(k->wish->spacing[a]) ? k->first->spacing[a] : k->wish->spacing[a];
         if (a < 2 && !(k->spacing[a] > 0 && k->spacing[a] < 1e6))
-            return err_set(
-                e, k->file[0]->name, 0,
-                "no distance between pixels; expected PixelSpacing, or an ultrasound region in cm, or --spacing");
+            return err_set(e, k->file[0]->name, 0,
+                           "no distance between pixels; expected PixelSpacing, or ultrasound regions in cm that agree, "
+                           "or --spacing");
     }
     return 0;
 }

@@ -60,6 +60,7 @@ same "deflated as a whole" -- multi syntax=deflated
 same "many frames in a file" -- multi
 same "many frames, pixels in an ultrasound region's cm" -- multi regions=1
 is "$(line "$T/out.nrrd" "space directions")" "(0.5,0,0) (0,0.25,0) (0,0,0.75)" "its directions"
+same "regions that differ, and the distance that is said here" --spacing .5,.25,.75mm -- multi regions=2
 same "many frames, whose distance is said here" --spacing .5,.25,.75mm -- multi between=no
 same "Enhanced US Volume, its last frame first" -- enhanced
 is "$(line "$T/out.nrrd" "space origin")" "(10,-20,30)" "its origin"
@@ -102,6 +103,7 @@ bad "frames of a file" '1 missing between frame 4 and frame 3|lie .* mm apart' e
 bad "a frame of other pixels" 'frame 2 has pixels of 1 x 0.25 mm, frame 1 of 0.5 x 0.25' enhanced wider=1
 bad "they are askew" 'beside where the first points' series tilt=.2
 bad "no spacing" 'no distance between pixels' series spacing=no
+bad "regions in cm that differ" 'no distance between pixels; expected PixelSpacing, or ultrasound regions in cm that agree' multi regions=2
 bad "no positions" 'without a position' series position=no
 bad "no distance between frames" '6 frames, and no distance between them' multi between=no
 bad "two series" '2 series: 1: 1 file of 7 x 5 from im00\.dcm, 2: 5 files .*--series N' series second=1
