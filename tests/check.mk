@@ -72,8 +72,8 @@ check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-images bench-fraction compare-msds
-BENCHES = voxelise geometry tled msds images
+.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-fraction compare-msds
+BENCHES = voxelise geometry tled msds msds_card images
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
 BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
@@ -98,6 +98,9 @@ bench-geometry: all $(BUILD)/tests/bench/bench_geometry
 # Frames of msds-run's solvers at the sizes of PST's Table I, beside its figures.
 bench-msds: $(BUILD)/tests/bench/bench_msds
 	@$(BUILD)/tests/bench/bench_msds $(shell nproc)
+# The same on a card, where there is one, and with half a million nodes.
+bench-msds_card: $(BUILD)/tests/bench/bench_msds_card
+	@$(BUILD)/tests/bench/bench_msds_card
 # DICOM to volumes, labels and surfaces.
 bench-images: all $(BUILD)/tests/bench/bench_images
 	@$(BUILD)/tests/bench/bench_images $(BIN) $(BUILD) $(BENCH_HEAD)

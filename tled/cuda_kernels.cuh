@@ -220,8 +220,9 @@ static __device__ own_node node_at(const cuda_view<real> &v, const cuda_pass &p,
         const int32_t n = t.node + i;
         own.info = v.node_info[n];
         own.mass_inverse = v.mass_inverse[n];
+        const real *const row[3] = {p.velocity, p.velocity + v.stride, p.velocity + 2 * v.stride};
         for (int a = 0; a < 3; a++)
-            own.velocity[a] = p.velocity[a * v.stride + n];
+            own.velocity[a] = row[a][n];
     }
     return own;
 }
@@ -240,10 +241,12 @@ __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const til
     }
     real u[3] = {grid[place], grid[G::PLACES + place], grid[2 * G::PLACES + place]};
     step_node(v, p, n, f, &own, u);
+    real *const to[3] = {p.to, p.to + v.stride, p.to + 2 * v.stride};
+    real *const velocity[3] = {p.velocity, p.velocity + v.stride, p.velocity + 2 * v.stride};
     for (int a = 0; a < 3; a++) {
         if (p.what & PASS_BEGIN)
-            p.to[a * v.stride + n] = u[a];
-        p.velocity[a * v.stride + n] = own.velocity[a];
+            to[a][n] = u[a];
+        velocity[a][n] = own.velocity[a];
     }
 }
 

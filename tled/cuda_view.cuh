@@ -90,6 +90,7 @@ template <class S> struct cuda_view {
 template <class G, class S> __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
 {
     constexpr int OWN = G::OWN, HALO = G::HALO;
+    const S *const row[3] = {u, u + v.stride, u + 2 * v.stride};
     int32_t node[OWN + HALO], place[OWN + HALO];
     S value[3 * (OWN + HALO)];
 #pragma unroll
@@ -105,7 +106,7 @@ template <class G, class S> __device__ void cuda_load(const cuda_view<S> &v, con
     for (int k = 0; k < OWN + HALO; k++)
 #pragma unroll
         for (int a = 0; a < 3; a++)
-            value[3 * k + a] = node[k] >= 0 ? u[a * v.stride + node[k]] : 0;
+            value[3 * k + a] = node[k] >= 0 ? row[a][node[k]] : 0;
 #pragma unroll
     for (int k = 0; k < OWN + HALO; k++)
 #pragma unroll
