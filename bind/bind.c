@@ -3,7 +3,7 @@
 #include "base/num.h"
 #include "base/pool.h"
 #include "bind/nearest.h"
-#include "bind/scale.h"
+#include "mesh/scale.h"
 #include "bind/tetra.h"
 #include "mesh/surface.h"
 #include "mesh/weights.h"

@@ -7,7 +7,7 @@
 #include "base/tool.h"
 #include "bind/normals.h"
 #include "bind/pointcache.h"
-#include "bind/scale.h"
+#include "mesh/scale.h"
 #include "mesh/bone.h"
 #include "mesh/bound.h"
 #include "model/source.h"

@@ -37,22 +37,29 @@ static void search_work(void *context, int64_t chunk, int64_t from, int64_t to)
     s->c->amount[chunk] = s->loops->inside(s->w, from, to, s->c->found + from * LANES);
 }
 
+/* Where a node is, m, and by how far moved. */
+static void place_of(const lanes_springs *w, const msds_problem *p, const double *u, int64_t node, double moved[3],
+                     double x[3])
+{
+    for (int a = 0; a < 3; a++) {
+        moved[a] = u ? u[3 * node + a] : (double)w->u.x[a][w->s->own_node[node]];
+        x[a] = p->position[3 * node + a] + moved[a];
+    }
+}
+
 static void consider(contacts *c, const lanes_springs *w, const msds_problem *p, const double *u, int32_t own,
                      contacts_rule rule)
 {
     contact at = {.node = w->s->model_node[own]};
     double x[3];
-    for (int a = 0; a < 3; a++) {
-        at.from[a] = u ? u[3 * (int64_t)at.node + a] : (double)w->u.x[a][own];
-        x[a] = p->position[3 * (int64_t)at.node + a] + at.from[a];
-    }
+    place_of(w, p, u, at.node, at.from, x);
     probe_touch t = probe_at(w->probe, x);
     at.depth = t.depth;
     memcpy(at.way, t.way, sizeof at.way);
     at.force = fmax(0, c->held[at.node]);
     double slack = rule == CONTACTS_NEAR ? near_by : at.force > 0 ? clinging : 0;
     bool follows = rule == CONTACTS_NEAR && at.force > 0;
-    if (!p->fixed[at.node] && (follows || at.depth > -slack * w->probe->reach))
+    if (!p->fixed[at.node] && (follows || at.depth > -slack * w->probe->shape.size))
         c->list[c->count++] = at;
 }
 
@@ -61,7 +68,7 @@ static void look_for(contacts *c, const lanes *loops, lanes_springs *w, pool *th
 {
     search s = {c, loops, w};
     float reach = w->reach;
-    w->reach = (float)(w->probe->reach * (1 + 1.01 * near_by));
+    w->reach = (float)(w->probe->reach + 1.01 * near_by * w->probe->shape.size);
     pool_run(threads, w->s->count, SLICES_CHUNK, search_work, &s);
     w->reach = reach;
 }
@@ -118,4 +125,16 @@ int64_t contacts_sum(const contacts *c, double force[3])
             force[a] -= c->list[i].force * c->list[i].way[a];
     }
     return pressed;
+}
+
+void contacts_twist(const contacts *c, const lanes_springs *w, const msds_problem *p, const double *u, double torque[3])
+{
+    double moved[3], x[3], force[3];
+    torque[0] = torque[1] = torque[2] = 0;
+    for (int64_t i = 0; i < c->count; i++) {
+        place_of(w, p, u, c->list[i].node, moved, x);
+        for (int a = 0; a < 3; a++)
+            force[a] = -c->list[i].force * c->list[i].way[a];
+        probe_torque(w->probe, x, force, torque);
+    }
 }

@@ -23,7 +23,7 @@ typedef struct contacts {
     int64_t *amount; /* chunks: how many */
 } contacts;
 
-/* Which nodes: PRESSED, those inside the probe, or pressed by it in the frame before and no farther than a 50th of its reach;
+/* Which nodes: PRESSED, those inside the probe, or pressed by it in the frame before and no farther than a 50th of the probe's size;
  * NEAR, all within a tenth. */
 typedef enum contacts_rule { CONTACTS_PRESSED, CONTACTS_NEAR } contacts_rule;
 
@@ -47,5 +47,9 @@ int64_t contacts_held(const contacts *c, const msds_problem *p);
 
 /* The force on the probe, N, and how many nodes it presses. */
 int64_t contacts_sum(const contacts *c, double force[3]);
+
+/* The torque of those forces, N m; w has the probe and the displacements, or u as above. */
+void contacts_twist(const contacts *c, const lanes_springs *w, const msds_problem *p, const double *u,
+                    double torque[3]);
 
 #endif

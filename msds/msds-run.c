@@ -2,6 +2,8 @@
  * and dampers or by linear finite elements. PST sections III and the appendix.
  */
 #include "base/mem.h"
+#include "base/path.h"
+#include "mesh/scale.h"
 #include "model/stage.h"
 #include "msds/compare.h"
 #include "msds/largest.h"
@@ -20,7 +22,7 @@ struct options {
     opt_common common;
     int device, method, mass, contact;
     bool exact, warp, residual, compare;
-    const char *probe, *poses, *transform, *scale;
+    const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
     double dt, damping, repulsion;
     opt_numbers gravity;
@@ -32,7 +34,9 @@ static const opt option_list[] = {
     {0, "method", "msds|fem", OPT_CHOICE, offsetof(struct options, method), 0, 0, "msds|fem", OPT_OUTPUT,
      "springs or finite elements [msds]"},
     {0, "exact", NULL, OPT_FLAG, offsetof(struct options, exact), 0, 0, NULL, 0, "the FEM to 1e-6, by a factor"},
-    {0, "probe", "sphere:R", OPT_TEXT, offsetof(struct options, probe), 0, 0, NULL, 0, "what presses [nothing]"},
+    {0, "probe", "SHAPE", OPT_TEXT, offsetof(struct options, probe), 0, 0, NULL, OPT_OUTPUT,
+     "sphere:R linear:W,T curved:R,A,T convex:OBJ"},
+    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of an OBJ [source.unit]"},
     {0, "poses", "FILE", OPT_TEXT, offsetof(struct options, poses), 0, 0, NULL, OPT_REQUIRED | OPT_FILE,
      "where it is: TUM lines or a PLUS sequence"},
     {0, "transform", "NAME", OPT_TEXT, offsetof(struct options, transform), 0, 0, NULL, 0, "of a PLUS sequence"},
@@ -149,13 +153,17 @@ static int make_problem(session *s, err *e)
 
 static int say_provenance(tool *t, const session *s, err *e)
 {
-    char ran[400];
+    char ran[800], shape[300] = "";
     const struct options *o = s->o;
+    if (o->probe) { /* without the folder of its file */
+        const char *text = s->probe.file ? s->probe.file + path_folder(s->probe.file) : o->probe;
+        snprintf(shape, sizeof shape, "--probe %s%.250s ", s->probe.file ? "convex:" : "", text);
+    }
     snprintf(ran, sizeof ran,
-             "%s--method %s --iterations %lld --dt %.9g --mass %s --spring-scale %.9g --damping %.9g --contact %s "
+             "%s%s--method %s --iterations %lld --dt %.9g --mass %s --spring-scale %.9g --damping %.9g --contact %s "
              "--repulsion "
              "%.9g [%s, inertia %.9g, %lld substeps]",
-             *t->provenance ? " " : "", o->method ? "fem" : "msds", (long long)o->iterations, o->dt,
+             *t->provenance ? " " : "", shape, o->method ? "fem" : "msds", (long long)o->iterations, o->dt,
              o->mass ? "lumped" : "stable", s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed",
              o->repulsion, s->device->name, s->problem.mass_factor, (long long)s->substeps);
     size_t size = strlen(t->provenance) + strlen(ran) + 1;
@@ -209,7 +217,11 @@ static int write_frame(session *s, const poses_event *at, const msds_sight *sigh
         goto out;
     memcpy(pose->f64, at->origin, sizeof at->origin);
     memcpy(pose->f64 + 3, at->turn, sizeof at->turn);
+    model_array *torque = frame_add(&f, &s->m, "probe.torque", e);
+    if (!torque)
+        goto out;
     memcpy(force->f64, sight->force, sizeof sight->force);
+    memcpy(torque->f64, sight->torque, sizeof sight->torque);
     result = model_write_frame(s->stage.writer, &f, e);
     out_flush(s->stage.sink);
 out:
@@ -300,12 +312,24 @@ static int simulate(session *s, err *e)
     return got;
 }
 
+static int take_probe(session *s, err *e)
+{
+    if (!s->o->probe)
+        return 0;
+    if (probe_of(&s->probe, s->o->probe, e))
+        return -1;
+    if (s->probe.kind != PROBE_CONVEX)
+        return 0;
+    num_unit unit = scale_unit(s->o->unit, &s->m, e);
+    return unit ? probe_load(&s->probe, scale_of(unit), e) : -1;
+}
+
 static int prepare(session *s, err *e)
 {
     static const char *const names[] = {"auto", "cuda", "cpu"};
     const struct options *o = s->o;
     char device[300];
-    if ((o->probe && probe_of(&s->probe, o->probe, e)) || make_problem(s, e))
+    if (take_probe(s, e) || make_problem(s, e))
         return -1;
     s->device = backend_choose(msds_backends, names[o->device], device, sizeof device, e);
     int threads = tool_threads(s->t, e);
@@ -355,6 +379,7 @@ out:
     in_close(s.source);
     pool_destroy(s.threads);
     msds_problem_free(&s.problem);
+    probe_free(&s.probe);
     model_free(&s.m);
     return tool_end(&t, &e);
 }

@@ -12,7 +12,7 @@
 
 enum { FIELDS = 6, ROUNDS = 4 /* of an exact frame, each with the nodes that the last one pushed into the probe */ };
 
-/* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of its reach. */
+/* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of its size. */
 static const double exact_tolerance = 1e-6, missed = 1e-6;
 
 typedef struct cpu_state {
@@ -249,12 +249,12 @@ static int step_exact(cpu_state *s, err *e)
     s->solves = 0;
     find_contacts(s, s->place, CONTACTS_NEAR);
     for (int turn = 0; turn < ROUNDS; turn++) {
-        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.reach : 1, e))
+        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.shape.size : 1, e))
             return -1;
         s->solves += s->exact->solves;
         spread(s, s->place, &s->w.u);
         if (!s->plan.touched || turn == ROUNDS - 1 ||
-            !contacts_missed(&s->contacts, s->loops, &s->w, s->p, s->place, s->threads, missed * s->plan.probe.reach))
+            !contacts_missed(&s->contacts, s->loops, &s->w, s->p, s->place, s->threads, missed * s->plan.probe.shape.size))
             break;
         find_contacts(s, s->place, CONTACTS_NEAR);
     }
@@ -299,6 +299,8 @@ static int cpu_look(void *state, const void *question, void *answer, err *e)
     (void)e;
     *sight = (msds_sight){.residual = NAN, .solves = s->solves, .finite = true};
     sight->contacts = contacts_sum(&s->contacts, sight->force);
+    if (s->plan.touched)
+        contacts_twist(&s->contacts, &s->w, s->p, s->precise ? s->place : NULL, sight->torque);
     if (s->plan.method == MSDS_FEM && s->cg)
         sight->residual = s->cg->residual;
     if (s->plan.method == MSDS_EXACT && s->exact)

@@ -62,6 +62,7 @@ enum { MSDS_DISPLACEMENT, MSDS_VELOCITY };
 
 typedef struct msds_sight {
     double force[3];  /* N: on the probe */
+    double torque[3]; /* N m: on it, about its frame's origin */
     int64_t contacts; /* nodes that it presses */
     double residual;  /* |external - internal forces| over |internal forces|, where nodes are free to move; or nan */
     double largest;   /* m: the largest displacement */

@@ -85,7 +85,7 @@ static inline msds_plan tets_plan(msds_method method)
 /* A sphere whose lowest point is at x, pressing along -z. */
 static inline void tets_press(msds_plan *plan, double radius, double x, double y, double z)
 {
-    probe shape = {PROBE_SPHERE, radius};
+    probe shape = probe_sphere(radius);
     probe_pose pose = {{x, y, z}, {1, 0, 0, 0}};
     plan->touched = true;
     plan->probe = probe_place(&shape, &pose);

@@ -1,4 +1,4 @@
-/* What a coordinate of an OBJ is worth in metres, the same for bind and deform. Owns nothing.
+/* What a coordinate of an OBJ is worth in metres, the same for all tools that take one. Owns nothing.
  */
 #ifndef SINEW_SCALE_H
 #define SINEW_SCALE_H

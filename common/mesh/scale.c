@@ -1,4 +1,4 @@
-#include "bind/scale.h"
+#include "mesh/scale.h"
 
 num_unit scale_unit(const char *unit, const model *m, err *e)
 {
