@@ -76,7 +76,7 @@ typedef struct known {
     X("probe.pose", MODEL_F64, "1", "probe", 7, 7, KNOWN_FRAME, "msds-run",                                            \
       "place of its frame, m, and its turn, a unit quaternion x y z w")                                                \
     X("probe.force", MODEL_F64, "N", "probe", 3, 3, KNOWN_FRAME, "msds-run", "force of the tissue on it")              \
-    X("probe.torque", MODEL_F64, "N m", "probe", 3, 3, KNOWN_FRAME, "msds-run",                                        \
+    X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, "msds-run",                                        \
       "torque of the tissue on it, about the origin of its frame")
 
 /* Whether a name is the user's: it begins "x-", and nothing is known of it, whatever follows. */
