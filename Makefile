@@ -24,6 +24,7 @@ EMBREE = -lembree3
 CXX = $(if $(findstring clang,$(CC)),$(subst clang,clang++,$(CC)),c++)
 DICOM = -ldcmjpeg -ldcmjpls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
 PICTURES = -lpng -lfreetype
+COLLIDE = -lccd
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface \
 	sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render

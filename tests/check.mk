@@ -20,7 +20,7 @@ needs = $(call objects,$(shell sed -n 's|^// needs: *||p' $(1)))
 
 define test_program
 $(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB_CUDA) $(LIB)
-	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
 endef
 COMPARE := $(BUILD)/tests/cli/compare $(BUILD)/tests/cli/voxels
 $(eval $(call test_program,tests/cli/compare))

@@ -1,0 +1,140 @@
+#include "contact/narrow.h"
+
+#include <ccd/ccd.h>
+
+/* Of EPA, of what is squared; lengths are over the probe's reach here, since it is absolute. */
+static const double tolerance = 1e-9;
+
+typedef struct body {
+    const probe_placed *placed;
+    const double *first; /* the direction in which the search begins */
+} body;
+
+typedef struct ball {
+    ccd_vec3_t centre;
+    double radius;
+} ball;
+
+static void put(ccd_vec3_t *to, const double x[3])
+{
+    for (int a = 0; a < 3; a++)
+        to->v[a] = x[a];
+}
+
+/* The farthest point of a curved array less its edge, along a direction of its plane: of the arc, a corner or the tip. */
+static void far_in_sector(const probe *p, double x, double z, double to[2])
+{
+    const double mirror = x < 0 ? -1 : 1, u = fabs(x), length = hypot(x, z);
+    const double corner[2] = {p->side * p->sine, p->side * p->cosine + p->tip};
+    bool arc = u * corner[1] <= z * corner[0] && length > 0;
+    bool tip = !arc && u * corner[0] + z * corner[1] < z * p->tip;
+    to[0] = arc ? p->disc * x / length : tip ? 0 : mirror * corner[0];
+    to[1] = arc ? p->disc * z / length : tip ? p->tip : corner[1];
+    to[1] -= p->radius;
+}
+
+static const double *far_corner(const probe *p, const double d[3])
+{
+    const double *best = p->corner;
+    double most = -INFINITY;
+    for (int32_t i = 0; i < p->corners; i++) {
+        const double *x = p->corner + 3 * (int64_t)i;
+        double along = d[0] * x[0] + d[1] * x[1] + d[2] * x[2];
+        if (along > most) {
+            most = along;
+            best = x;
+        }
+    }
+    return best;
+}
+
+/* The farthest point of what is rounded by the edge (a sphere: its centre), in the probe's frame. */
+static void far_core(const probe *p, const double d[3], double to[3])
+{
+    double flat[2];
+    for (int a = 0; a < 3; a++)
+        to[a] = p->middle[a] + (d[a] < 0 ? -p->half[a] : p->half[a]);
+    if (p->kind == PROBE_CURVED) {
+        far_in_sector(p, d[0], d[2], flat);
+        to[0] = flat[0];
+        to[2] = flat[1];
+    }
+    if (p->kind == PROBE_CONVEX)
+        for (int a = 0; a < 3; a++)
+            to[a] = far_corner(p, d)[a];
+}
+
+static void far_of_probe(const void *object, const ccd_vec3_t *way, ccd_vec3_t *to)
+{
+    const probe_placed *placed = ((const body *)object)->placed;
+    const probe *p = &placed->shape;
+    const double edge = p->kind == PROBE_SPHERE ? p->radius : p->edge;
+    const double length = sqrt(ccdVec3Len2(way));
+    double d[3], own[3];
+    for (int i = 0; i < 3; i++)
+        d[i] = placed->axis[i][0] * way->v[0] + placed->axis[i][1] * way->v[1] + placed->axis[i][2] * way->v[2];
+    far_core(p, d, own);
+    for (int a = 0; a < 3; a++) {
+        double x = placed->origin[a];
+        for (int i = 0; i < 3; i++)
+            x += placed->axis[i][a] * own[i];
+        to->v[a] = (x + (length > 0 ? edge * way->v[a] / length : 0)) / p->reach;
+    }
+}
+
+static void middle_of_probe(const void *object, ccd_vec3_t *to)
+{
+    const probe_placed *placed = ((const body *)object)->placed;
+    put(to, placed->centre);
+    ccdVec3Scale(to, 1 / placed->shape.reach);
+}
+
+static void far_of_ball(const void *object, const ccd_vec3_t *way, ccd_vec3_t *to)
+{
+    const ball *b = object;
+    const double length = sqrt(ccdVec3Len2(way));
+    ccdVec3Copy(to, way);
+    ccdVec3Scale(to, length > 0 ? b->radius / length : 0);
+    ccdVec3Add(to, &b->centre);
+}
+
+static void middle_of_ball(const void *object, ccd_vec3_t *to)
+{
+    ccdVec3Copy(to, &((const ball *)object)->centre);
+}
+
+static void first_way(const void *object, const void *other, ccd_vec3_t *way)
+{
+    (void)other;
+    put(way, ((const body *)object)->first);
+}
+
+bool narrow_at(const probe_placed *p, const double x[3], double radius, int starts, probe_touch *t)
+{
+    static const double firsts[NARROW_STARTS][3] = {{1, 0, 0},    {0, 0, 1},     {.3, .5, .8}, {-.7, .6, .4},
+                                                    {0, -.8, .6}, {.9, -.1, .4}, {0, 1, 0},    {-.5, -.5, -.7}};
+    ball b = {.radius = radius / p->shape.reach};
+    ccd_t how;
+    CCD_INIT(&how);
+    how.support1 = far_of_probe;
+    how.support2 = far_of_ball;
+    how.center1 = middle_of_probe;
+    how.center2 = middle_of_ball;
+    how.first_dir = first_way;
+    how.max_iterations = 500;
+    how.epa_tolerance = tolerance;
+    put(&b.centre, x);
+    ccdVec3Scale(&b.centre, 1 / p->shape.reach);
+    t->depth = -INFINITY;
+    for (int i = 0; i < starts && i < NARROW_STARTS; i++) {
+        const body probe_body = {p, firsts[i]};
+        ccd_real_t depth;
+        ccd_vec3_t way, where;
+        if (ccdGJKPenetration(&probe_body, &b, &how, &depth, &way, &where) != 0 || depth * p->shape.reach < t->depth)
+            continue;
+        t->depth = depth * p->shape.reach;
+        for (int a = 0; a < 3; a++)
+            t->way[a] = way.v[a];
+    }
+    return t->depth >= 0;
+}
