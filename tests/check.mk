@@ -67,8 +67,8 @@ check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-fraction compare-msds
-BENCHES = voxelise geometry tled msds
+.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-slice bench-fraction compare-msds
+BENCHES = voxelise geometry tled msds slice
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
 BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
 TRIANGLES ?= 100000
@@ -92,6 +92,9 @@ bench-geometry: all $(BUILD)/tests/bench/bench_geometry
 # Frames of msds-run's solvers at the sizes of PST's Table I, beside its figures.
 bench-msds: $(BUILD)/tests/bench/bench_msds
 	@$(BUILD)/tests/bench/bench_msds $(shell nproc)
+# Images of us-slice at the sizes of PST's Tables I and II, beside their figures.
+bench-slice: $(BUILD)/tests/bench/bench_slice
+	@$(BUILD)/tests/bench/bench_slice $(shell nproc)
 # No time, but how far springs are from the FEM at those sizes.
 compare-msds: all
 	@tests/bench/msds_compare $(BIN)
@@ -190,7 +193,7 @@ help:
 	'make sanitize     the tests under ASan and UBSan' \
 	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
-	'make bench-voxelise, -geometry, -tled, -msds   its parts (TRIANGLES=100000: of the scan)' \
+	'make bench-voxelise, -geometry, -tled, -msds, -slice   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
