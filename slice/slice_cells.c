@@ -18,12 +18,14 @@ slice_window slice_window_of(const volume *v)
             w.high = fmax(w.high, x);
         }
     }
+    if (v->type != VOLUME_F32 && v->type != VOLUME_F64 && w.low >= 0 && w.high <= 255)
+        return (slice_window){0, 255};
     return w.low <= w.high ? w : (slice_window){0, 0};
 }
 
 static uint8_t grey(double x, slice_window w)
 {
-    double share = w.high > w.low ? (x - w.low) / (w.high - w.low) : x > w.low;
+    const double share = w.high > w.low ? (x - w.low) / (w.high - w.low) : x > w.low;
     return share > 0 ? (uint8_t)(fmin(share, 1) * 255 + .5) : 0; /* also for a nan */
 }
 

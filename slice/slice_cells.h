@@ -16,8 +16,9 @@ typedef struct slice_cells {
     int32_t size[3]; /* voxels */
     int32_t row;     /* words from a row of cells to the next; */
     int32_t layer;   /* and from a layer to the next */
-    uint64_t *word;  /* low byte to high: voxels (x - 1, y - 1), (x, y - 1), (x - 1, y), (x, y) of layer z - 1, then of z */
-    int32_t black;   /* the z, in fixed point, of cells whose words are 0 */
+    uint64_t
+        *word; /* low byte to high: voxels (x - 1, y - 1), (x, y - 1), (x - 1, y), (x, y) of layer z - 1, then of z */
+    int32_t black;                /* the z, in fixed point, of cells whose words are 0 */
     double origin[3], axis[3][3]; /* m to cells: axis[a] . (p - origin) + 1 */
 } slice_cells;
 
@@ -26,7 +27,7 @@ typedef struct slice_window {
     double low, high;
 } slice_window;
 
-/* 0 to 255 for what has 8 bits; otherwise the lowest and highest value that there are. */
+/* 0 to 255 for whole numbers that are within them; otherwise the lowest and highest value that there are. */
 slice_window slice_window_of(const volume *v);
 
 /* -1 with e filled: too large to be numbered, or no memory. */

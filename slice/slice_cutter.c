@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 
-#include <stdatomic.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ struct slice_cutter {
     slice_node *at; /* nodes */
     uint8_t *code;
     const double *displacement;
-    int32_t *list; /* tetrahedra that may meet the image; by chunks first, then all in a row */
+    int32_t *list;  /* tetrahedra that may meet the image; by chunks first, then all in a row */
     int64_t *chunk; /* how many a chunk has */
     int64_t count;
     void *piece; /* slice_piece or slice_paper_tet: of the list */
@@ -121,6 +121,15 @@ int64_t slice_cutter_list(const slice_cutter *c, const int32_t **list)
 {
     *list = c->list;
     return c->count;
+}
+
+slice_piece *slice_cutter_pieces(const slice_cutter *c, int64_t *count, err *e)
+{
+    slice_piece *p = mem_array(c->count, sizeof *p, "pieces of an image", e);
+    *count = c->count;
+    if (p)
+        c->s.lanes->cut(&c->tets, c->s.cells, c->list, c->count, c->s.size.rows, p);
+    return p;
 }
 
 /* ---- the tetrahedra that meet the slice */
@@ -290,9 +299,13 @@ static int make_whole(slice_cutter *c, const slice_plane *at, err *e)
     if (c->room < 1 && mem_grow(&c->piece, &c->room, 1, sizeof(slice_piece), "pieces of an image", e))
         return -1;
     slice_piece *p = c->piece;
-    *p = (slice_piece){
-        .corners = 4, .end = c->s.size.rows, .u = {-1, w, w, -1}, .v = {-1, -1, h, h},
-                       .from = {0, -1, 0, -1}, .to = {0, h, 0, h}, .start = {0, w, 0, -1}};
+    *p = (slice_piece){.corners = 4,
+                       .end = c->s.size.rows,
+                       .u = {-1, w, w, -1},
+                       .v = {-1, -1, h, h},
+                       .from = {0, -1, 0, -1},
+                       .to = {0, h, 0, h},
+                       .start = {0, w, 0, -1}};
     slice_cells_place(c->s.cells, at->origin, place);
     for (int a = 0; a < 3; a++) {
         columns[a] = rows[a] = 0;

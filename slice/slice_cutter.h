@@ -48,8 +48,12 @@ void slice_cutter_free(slice_cutter *c);
 int slice_cutter_image(slice_cutter *c, const slice_plane *at, const double *displacement, uint8_t *image,
                        int32_t *owner, err *e);
 
-/* Of the last image: the tetrahedra that the plane cuts, and nodes of the mesh in its frame. */
+/* Of the last image: the tetrahedra that may meet it, ascending. */
 int64_t slice_cutter_list(const slice_cutter *c, const int32_t **list);
+
+/* The pieces of the last image's list, whatever the method: how the plane cuts each tetrahedron that may meet the image. The caller frees
+ * them; NULL with e filled. */
+slice_piece *slice_cutter_pieces(const slice_cutter *c, int64_t *count, err *e);
 
 /* What is done with each row of places as it is sampled, beside: offset is of the row's first pixel in the image. */
 typedef void slice_more(void *context, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,

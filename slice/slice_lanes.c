@@ -19,9 +19,11 @@ const slice_lanes *slice_lanes_choose(err *e)
 {
     static const slice_lanes *const all[] = {
 #if defined(__x86_64__)
-        &slice_lanes_avx512, &slice_lanes_avx2,
+        &slice_lanes_avx512,
+        &slice_lanes_avx2,
 #endif
-        &slice_lanes_plain};
+        &slice_lanes_plain
+    };
     const char *wanted = getenv("SINEW_VECTORS");
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (can(all[i]) && (!wanted || !*wanted || !strcmp(wanted, all[i]->name)))

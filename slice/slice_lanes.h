@@ -38,22 +38,24 @@ typedef struct slice_tets {
 
 typedef struct slice_piece {
     int32_t tet, corners;
-    int32_t first, end; /* rows */
-    bool inside;        /* all of it within the volume */
-    double u[4], v[4];  /* corners, around */
+    int32_t first, end;                        /* rows */
+    bool inside;                               /* all of it within the volume */
+    double u[4], v[4];                         /* corners, around */
     double from[4], to[4], start[4], slope[4]; /* edges: from v to v, and u where v is 0, growing a row */
-    double place[4], across[4], down[4]; /* in fixed point: at pixel (0, 0), and how it grows a column and a row; [3] is 0 */
+    double place[4], across[4],
+        down[4]; /* in fixed point: at pixel (0, 0), and how it grows a column and a row; [3] is 0 */
 } slice_piece;
 
 typedef struct slice_shown {
-    int32_t from[2], to[2]; /* columns of a row that are within the image's fan: two runs, either of which may be empty */
+    int32_t from[2],
+        to[2]; /* columns of a row that are within the image's fan: two runs, either of which may be empty */
 } slice_shown;
 
 /* Places of the pixels of some rows, in fixed point, and which piece they were found in. */
 typedef struct slice_places {
-    int32_t stride;   /* of a row: columns, padded */
-    int32_t *at[3];   /* rows x stride */
-    int32_t *owner;   /* rows x stride: the tetrahedron or -1; or NULL: not asked for */
+    int32_t stride; /* of a row: columns, padded */
+    int32_t *at[3]; /* rows x stride */
+    int32_t *owner; /* rows x stride: the tetrahedron or -1; or NULL: not asked for */
 } slice_places;
 
 /* What the rows of an image are filled from. */

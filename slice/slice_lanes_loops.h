@@ -355,9 +355,8 @@ INLINE is whole_side(ds x, double most)
 INLINE void widen(ds rows, double from, double to, ds x, ds *low, ds *high)
 {
 #if defined(__AVX512BW__)
-    const __mmask8 meets =
-        _mm512_mask_cmp_pd_mask(_mm512_cmp_pd_mask((__m512d)rows, _mm512_set1_pd(from), _CMP_GE_OQ), (__m512d)rows,
-                                _mm512_set1_pd(to), _CMP_LT_OQ);
+    const __mmask8 meets = _mm512_mask_cmp_pd_mask(_mm512_cmp_pd_mask((__m512d)rows, _mm512_set1_pd(from), _CMP_GE_OQ),
+                                                   (__m512d)rows, _mm512_set1_pd(to), _CMP_LT_OQ);
     *low = (ds)_mm512_mask_min_pd((__m512d)*low, meets, (__m512d)x, (__m512d)*low);
     *high = (ds)_mm512_mask_max_pd((__m512d)*high, meets, (__m512d)x, (__m512d)*high);
 #else
@@ -506,24 +505,23 @@ static void sample(const slice_cells *c, const int32_t *x, const int32_t *y, con
         const __m512i px = _mm512_min_epu32(_mm512_loadu_si512(x + i), xe);
         const __m512i py = _mm512_min_epu32(_mm512_loadu_si512(y + i), ye);
         const __m512i pz = _mm512_min_epu32(_mm512_loadu_si512(z + i), ze);
-        const __m512i at =
-            _mm512_add_epi32(_mm512_srli_epi32(px, 16),
-                             _mm512_add_epi32(_mm512_mullo_epi32(_mm512_srli_epi32(py, 16), row),
-                                              _mm512_mullo_epi32(_mm512_srli_epi32(pz, 16), layer)));
+        const __m512i at = _mm512_add_epi32(_mm512_srli_epi32(px, 16),
+                                            _mm512_add_epi32(_mm512_mullo_epi32(_mm512_srli_epi32(py, 16), row),
+                                                             _mm512_mullo_epi32(_mm512_srli_epi32(pz, 16), layer)));
         int32_t index[16];
         _mm512_storeu_si512(index, at);
-        const __m512 first = _mm512_castsi512_ps(words(c->word, index)), last = _mm512_castsi512_ps(words(c->word, index + 2));
+        const __m512 first = _mm512_castsi512_ps(words(c->word, index)),
+                     last = _mm512_castsi512_ps(words(c->word, index + 2));
         const __m512i a = _mm512_castps_si512(_mm512_shuffle_ps(first, last, 0x88));
         const __m512i b = _mm512_castps_si512(_mm512_shuffle_ps(first, last, 0xdd));
         const __m512i fx = share(px), fy = share(py), fz = share(pz);
-        const __m512i left = mix(_mm512_slli_epi16(_mm512_and_si512(a, low), 7),
-                                 _mm512_slli_epi16(_mm512_and_si512(b, low), 7), fz);
-        const __m512i right = mix(_mm512_slli_epi16(_mm512_srli_epi16(a, 8), 7),
-                                  _mm512_slli_epi16(_mm512_srli_epi16(b, 8), 7), fz);
+        const __m512i left =
+            mix(_mm512_slli_epi16(_mm512_and_si512(a, low), 7), _mm512_slli_epi16(_mm512_and_si512(b, low), 7), fz);
+        const __m512i right =
+            mix(_mm512_slli_epi16(_mm512_srli_epi16(a, 8), 7), _mm512_slli_epi16(_mm512_srli_epi16(b, 8), 7), fz);
         const __m512i both = mix(left, right, fx);
         const __m512i value = mix(both, _mm512_srli_epi32(both, 16), fy);
-        _mm_storeu_si128((void *)(to + i),
-                         _mm512_cvtepi32_epi8(_mm512_srli_epi16(_mm512_add_epi16(value, half), 7)));
+        _mm_storeu_si128((void *)(to + i), _mm512_cvtepi32_epi8(_mm512_srli_epi16(_mm512_add_epi16(value, half), 7)));
     }
     for (; i < count; i++)
         to[i] = sample_one(c, (uint32_t)x[i], (uint32_t)y[i], (uint32_t)z[i]);
@@ -569,20 +567,19 @@ static void sample(const slice_cells *c, const int32_t *x, const int32_t *y, con
     for (; i + 8 <= count; i += 8) {
         const __m256i px = within8(x + i, (c->size[0] + 1) * SLICE_ONE - 1);
         const __m256i py = within8(y + i, (c->size[1] + 1) * SLICE_ONE - 1), pz = within8(z + i, c->black);
-        const __m256i at =
-            _mm256_add_epi32(_mm256_srli_epi32(px, 16),
-                             _mm256_add_epi32(_mm256_mullo_epi32(_mm256_srli_epi32(py, 16), row),
-                                              _mm256_mullo_epi32(_mm256_srli_epi32(pz, 16), layer)));
+        const __m256i at = _mm256_add_epi32(_mm256_srli_epi32(px, 16),
+                                            _mm256_add_epi32(_mm256_mullo_epi32(_mm256_srli_epi32(py, 16), row),
+                                                             _mm256_mullo_epi32(_mm256_srli_epi32(pz, 16), layer)));
         int32_t index[8];
         _mm256_storeu_si256((__m256i *)(void *)index, at);
         const __m256 first = words(c->word, index), last = words(c->word, index + 2);
         const __m256i a = _mm256_castps_si256(_mm256_shuffle_ps(first, last, 0x88));
         const __m256i b = _mm256_castps_si256(_mm256_shuffle_ps(first, last, 0xdd));
         const __m256i fx = share(px), fy = share(py), fz = share(pz);
-        const __m256i left = mix(_mm256_slli_epi16(_mm256_and_si256(a, low), 7),
-                                 _mm256_slli_epi16(_mm256_and_si256(b, low), 7), fz);
-        const __m256i right = mix(_mm256_slli_epi16(_mm256_srli_epi16(a, 8), 7),
-                                  _mm256_slli_epi16(_mm256_srli_epi16(b, 8), 7), fz);
+        const __m256i left =
+            mix(_mm256_slli_epi16(_mm256_and_si256(a, low), 7), _mm256_slli_epi16(_mm256_and_si256(b, low), 7), fz);
+        const __m256i right =
+            mix(_mm256_slli_epi16(_mm256_srli_epi16(a, 8), 7), _mm256_slli_epi16(_mm256_srli_epi16(b, 8), 7), fz);
         const __m256i both = mix(left, right, fx);
         const __m256i value = mix(both, _mm256_srli_epi32(both, 16), fy);
         const __m256i packed = _mm256_shuffle_epi8(_mm256_srli_epi16(_mm256_add_epi16(value, half), 7), bytes);
@@ -604,5 +601,11 @@ static void sample(const slice_cells *c, const int32_t *x, const int32_t *y, con
 
 #endif
 
-const slice_lanes SLICE_LANES_TABLE = {
-    .name = SLICE_LANES_NAME, .project = project, .meet = meet, .cut = cut, .clear = clear, .line = line, .fill = fill, .sample = sample};
+const slice_lanes SLICE_LANES_TABLE = {.name = SLICE_LANES_NAME,
+                                       .project = project,
+                                       .meet = meet,
+                                       .cut = cut,
+                                       .clear = clear,
+                                       .line = line,
+                                       .fill = fill,
+                                       .sample = sample};

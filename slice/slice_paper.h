@@ -12,8 +12,8 @@
 
 typedef struct slice_paper_tet {
     slice_piece piece;
-    double share[4][3];      /* barycentric coordinates: at pixel (0, 0), and how they grow a column and a row */
-    int32_t low, high; /* columns that it may hold: low to high - 1 */
+    double share[4][3]; /* barycentric coordinates: at pixel (0, 0), and how they grow a column and a row */
+    int32_t low, high;  /* columns that it may hold: low to high - 1 */
 } slice_paper_tet;
 
 /* The tetrahedra of a list. */
