@@ -24,7 +24,7 @@ int slice_writer_open(slice_writer *w, const char *path, err *e)
 static void put_comment(const slice_plane *at, out *to)
 {
     const double *list[3] = {at->origin, at->column, at->row};
-    out_text(to, "# sinew slice, m: pixel 0 0, to the next column, to the next row:");
+    out_text(to, "# us-slice:");
     for (int i = 0; i < 3; i++)
         for (int a = 0; a < 3; a++)
             out_format(to, " %.9g", list[i][a]);

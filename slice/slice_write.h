@@ -1,5 +1,6 @@
 /* Images going out: a stream of PGM or PPM (each flushed as it is done, so that whoever shows them is not behind), or a file each, PNG or
- * PGM or PPM by the name's end, each whole under its name as soon as it is done. A comment in PGM and PPM says where the image lies.
+ * PGM or PPM by the name's end, each whole under its name as soon as it is done. A comment in PGM and PPM says where the image
+ * lies: nine numbers, m: the centre of pixel 0 0, the step to the next column, and to the next row.
  * The writer owns its stream; begin with a zeroed one.
  */
 #ifndef SINEW_SLICE_WRITE_H
