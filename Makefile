@@ -16,13 +16,13 @@ OPT = -O3
 # No contraction: a fused multiply-add that one compiler makes and another does not would change results.
 CFLAGS = $(OPT) -g
 CSTD = -std=c11 -D_XOPEN_SOURCE=700 -D_DEFAULT_SOURCE -ffp-contract=off -fno-math-errno -pthread
-CPPFLAGS = -Icommon -I. -isystem /usr/include/freetype2
+CPPFLAGS = -Icommon -I. -isystem /usr/include/freetype2 $(foreach folder,$(lastword $(wildcard /usr/include/openjpeg-2.*)),-isystem $(folder))
 ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(VECTORS) $(CPPFLAGS) -MMD -MP
 LDLIBS = -lz -lm -pthread
 EMBREE = -lembree3
 # DCMTK is C++, and so is the one file that uses it.
 CXX = $(if $(findstring clang,$(CC)),$(subst clang,clang++,$(CC)),c++)
-DICOM = -ldcmjpeg -ldcmjpls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++
+DICOM = -ldcmjpeg -ldcmjpls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++ -lopenjp2
 PICTURES = -lpng -lfreetype
 COLLIDE = -lccd
 
@@ -94,6 +94,7 @@ ifeq ($(shell uname -m),x86_64)
 $(BUILD)/msds/lanes_avx2.o: VECTORS = -mavx2
 $(BUILD)/slice/slice_lanes_avx2.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/slice/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mbmi2 -mprefer-vector-width=512
+$(BUILD)/msds/lanes_avx512.o: VECTORS = -mavx512f -mavx512vl -mavx512dq -mavx512bw
 $(BUILD)/tled/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/tled/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 endif
@@ -107,7 +108,7 @@ TLED_SRC := $(filter-out tled/tiles.c,$(wildcard tled/*.c))
 MESH_MODULES := $(wildcard msds/mesh_*.c)
 RUN_MODULES := $(filter-out msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
 SAMPLES_SRC := slice/samples.c slice/length.c
-IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c slice/dicom_elements.c slice/dicom_lengths.c slice/dicom.cc
+IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c $(wildcard slice/dicom*.c) slice/dicom_file.cc
 SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
 SURFACE_SRC := $(SAMPLES_SRC) $(wildcard slice/contour*.c) slice/cubes.c
 SLICE_SRC := $(SAMPLES_SRC) $(wildcard slice/slice_*.c)

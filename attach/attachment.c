@@ -2,11 +2,14 @@
 
 #include "base/mem.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 /* A rigid node of the muscle: what it belongs to, and whose it is. */
 typedef struct holder {
     int32_t part, anchor, node;
+    float held; /* the muscle's part of an element there */
 } holder;
 
 typedef struct holders {
@@ -73,13 +76,16 @@ static int collect(holders *h, const body *b, int32_t volume, err *e)
                 continue;
             if (mem_grow(&h->of, &h->capacity, h->count + 1, sizeof *h->of, "attachments", e))
                 return -1;
-            h->of[h->count++] = (holder){body_root(b->part, node), b->anchor ? b->anchor[node] : -1, node};
+            h->of[h->count++] = (holder){body_root(b->part, node), b->anchor ? b->anchor[node] : -1, node,
+                                         fmaxf((float)body_part(b, b->element[at], volume), FLT_EPSILON)};
         }
     if (h->count)
         qsort(h->of, (size_t)h->count, sizeof *h->of, by_part);
     for (int64_t i = 0; i < h->count; i++)
         if (!kept || h->of[kept - 1].node != h->of[i].node)
             h->of[kept++] = h->of[i];
+        else
+            h->of[kept - 1].held = fmaxf(h->of[kept - 1].held, h->of[i].held);
     h->count = kept;
     return 0;
 }
@@ -97,17 +103,19 @@ static attachment make(const body *b, const holder *first, const holder *last, i
 {
     attachment a = {.muscle = muscle, .nodes = last - first, .anchor = first->anchor};
     int64_t most = 0, run = 0;
+    double held = 0;
     for (const holder *h = first; h < last; h++) {
         run = h > first && h->anchor == h[-1].anchor ? run + 1 : 1;
         if (run > most) {
             most = run;
             a.anchor = h->anchor;
         }
+        held += (double)h->held;
         for (int k = 0; k < 3; k++)
-            a.centre[k] += b->position[3 * (int64_t)h->node + k];
+            a.centre[k] += (double)h->held * b->position[3 * (int64_t)h->node + k];
     }
     for (int k = 0; k < 3; k++)
-        a.centre[k] /= (double)a.nodes;
+        a.centre[k] /= held;
     return a;
 }
 

@@ -10,7 +10,7 @@
 typedef struct attachment {
     int32_t muscle;
     int64_t nodes;
-    double centre[3]; /* of its nodes, m */
+    double centre[3]; /* of its nodes, by the largest part that the muscle has of an element there, m */
     int32_t anchor;   /* that holds most of them, of equals the first; -1: not known */
 } attachment;
 

@@ -1,9 +1,10 @@
-/* What muscles are made from and into: a model's arrays, its elements sorted by volume, and marks on nodes. Borrows the arrays;
- * muscle_make owns the rest.
+/* What muscles are made from and into: a model's arrays, its elements sorted by volume, and marks on nodes. An element mixed of
+ * two volumes is one of both. Borrows the arrays; muscle_make owns the rest.
  */
 #ifndef SINEW_BODY_H
 #define SINEW_BODY_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 typedef struct body {
@@ -14,11 +15,15 @@ typedef struct body {
     const uint8_t *rigid;
     const int32_t *anchor; /* nodes; NULL: not known */
     const float *fraction; /* elements; NULL: all are whole */
-    float *fibre;
-    int32_t *seen;    /* nodes: the last muscle that counted it */
-    int32_t *part;    /* nodes: its attachment in the muscle looked at last, -1 = none */
-    int64_t *start;   /* volumes + 1: a volume's first place in element */
-    int64_t *element; /* the elements, volume after volume */
+    const int32_t *mix;    /* elements: the second volume, -1 = none; NULL: none has any */
+    const float *mixture;  /* elements: its share of what is enclosed; where mix is */
+    float *fibre;          /* elements x 3: of the volume */
+    float *mixfibre;       /* elements x 3: of the second volume; NULL where mix is */
+    int32_t *seen;         /* nodes: the last muscle that counted it */
+    float *held;           /* nodes: of its elements of the muscle looked at last, the largest part */
+    int32_t *part;         /* nodes: its attachment in the muscle looked at last, -1 = none */
+    int64_t *start;        /* volumes + 1: a volume's first place in element */
+    int64_t *element;      /* the elements, volume after volume; of one, those that it is the second in come last */
 } body;
 
 static inline void body_centre(const body *b, int64_t element, double *centre)
@@ -32,10 +37,30 @@ static inline void body_centre(const body *b, int64_t element, double *centre)
     }
 }
 
-/* The share of an element that is enclosed. */
-static inline double body_fraction(const body *b, int64_t element)
+/* Whether elements have shares of volumes. */
+static inline bool body_has_shares(const body *b)
 {
-    return b->fraction ? b->fraction[element] : 1;
+    return b->fraction || b->mix;
+}
+
+/* Of what is enclosed of an element, the part of a volume that it is of. */
+static inline double body_part(const body *b, int64_t element, int32_t volume)
+{
+    if (!b->mix || b->mix[element] < 0)
+        return 1;
+    return volume == b->volume[element] ? 1 - (double)b->mixture[element] : (double)b->mixture[element];
+}
+
+/* The share of the element. */
+static inline double body_share(const body *b, int64_t element, int32_t volume)
+{
+    return (b->fraction ? (double)b->fraction[element] : 1) * body_part(b, element, volume);
+}
+
+/* The fibre that an element has of a volume, which it is of. */
+static inline float *body_fibre(const body *b, int64_t element, int32_t volume)
+{
+    return (volume == b->volume[element] ? b->fibre : b->mixfibre) + 3 * element;
 }
 
 /* A set of a forest in which each points to one before it, or to itself. */

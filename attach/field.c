@@ -9,7 +9,7 @@
 
 static const double last_part = 0.05, most_part = 0.15, least_voxels = 1.5, end_depth = 0.4, far_side = 0.5,
                     least_share = 0.1;
-static const double least_conduction = 1e-3; /* of an element of which hardly anything is enclosed */
+static const double least_conduction = 1e-3; /* of an element of which hardly anything is its own */
 
 struct field {
     const body *b;
@@ -36,6 +36,7 @@ typedef struct piece {
 /* One muscle. */
 typedef struct muscle_field {
     const field *f;
+    int32_t volume;
     const int64_t *element; /* its elements in the body */
     int64_t elements, nodes, capacity;
     int32_t *corner; /* elements x 8: local nodes */
@@ -110,7 +111,7 @@ static void find_pieces(muscle_field *m)
     }
     for (int64_t i = 0; i < m->elements; i++)
         m->of[m->root[m->corner[8 * i]]].volume +=
-            body_fraction(m->f->b, m->element[i]) * m->f->spacing[0] * m->f->spacing[1] * m->f->spacing[2];
+            body_share(m->f->b, m->element[i], m->volume) * m->f->spacing[0] * m->f->spacing[1] * m->f->spacing[2];
 }
 
 static int muscle_open(muscle_field *m, err *e)
@@ -130,11 +131,12 @@ static int muscle_open(muscle_field *m, err *e)
     if (!m->of)
         return -1;
     find_pieces(m);
-    m->share = b->fraction ? mem_array(m->elements, sizeof *m->share, "fibres", e) : NULL;
-    if (b->fraction && !m->share)
+    bool shares = body_has_shares(b);
+    m->share = shares ? mem_array(m->elements, sizeof *m->share, "fibres", e) : NULL;
+    if (shares && !m->share)
         return -1;
     for (int64_t i = 0; m->share && i < m->elements; i++)
-        m->share[i] = (float)fmax(body_fraction(b, m->element[i]), least_conduction);
+        m->share[i] = (float)fmax(body_share(b, m->element[i], m->volume), least_conduction);
     m->potential = laplace_create(m->f->threads, m->f->spacing, m->corner, m->elements, m->nodes, m->share, e);
     return m->potential ? 0 : -1;
 }
@@ -415,8 +417,10 @@ static int64_t spread(muscle_field *m, bool lacking)
 int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, err *e)
 {
     const body *b = f->b;
-    muscle_field m = {
-        .f = f, .element = &b->element[b->start[volume]], .elements = b->start[volume + 1] - b->start[volume]};
+    muscle_field m = {.f = f,
+                      .volume = volume,
+                      .element = &b->element[b->start[volume]],
+                      .elements = b->start[volume + 1] - b->start[volume]};
     int rc = -1;
     if (muscle_open(&m, e))
         goto out;
@@ -427,7 +431,7 @@ int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, 
     while (spread(&m, true))
         ;
     for (int64_t i = 0; i < 3 * m.elements; i++)
-        b->fibre[3 * m.element[i / 3] + i % 3] = (float)m.direction[i];
+        body_fibre(b, m.element[i / 3], volume)[i % 3] = (float)m.direction[i];
     rc = 0;
 out:
     muscle_close(&m);

@@ -14,7 +14,7 @@ typedef struct field field;
 field *field_create(const body *b, pool *threads, const double *spacing, err *e);
 void field_free(field *f);
 
-/* Fills b->fibre at the elements of a volume, toward its first end; 0 0 0 where there is no direction. Each connected piece
+/* Fills the fibres of a volume at its elements, toward its first end; 0 0 0 where there is no direction. Each connected piece
  * of the volume has ends of its own. of, count: the attachments that b->part numbers.
  * - The first end: the piece's largest attachment; where it has none, see below.
  * - How far along the piece a place is: with a uniform source and the first end held at 0, the potential is that of a rod,

@@ -5,6 +5,7 @@
 #include "field.h"
 #include "mesh/lattice.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,31 +18,47 @@ static double element_size(const body *b, int64_t element)
     return sqrt((x[0] - y[0]) * (x[0] - y[0]) + (x[1] - y[1]) * (x[1] - y[1]) + (x[2] - y[2]) * (x[2] - y[2]));
 }
 
-/* The mean of the muscle's rigid nodes, each counted once, and that of its elements' centres. */
+/* The part that the muscle has at each of its nodes. */
+static void find_held(const body *b, const muscle *m, int32_t index)
+{
+    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
+        float part = fmaxf((float)body_part(b, b->element[at], m->volume), FLT_EPSILON);
+        for (int n = 0; n < b->columns; n++) {
+            int32_t node = b->node[b->columns * b->element[at] + n];
+            b->held[node] = b->seen[node] == index ? fmaxf(b->held[node], part) : part;
+            b->seen[node] = index;
+        }
+    }
+}
+
+/* The mean of the muscle's rigid nodes, each counted once, by its part, and that of its elements' centres. */
 static void find_centres(const body *b, muscle *m, int32_t index)
 {
-    double rigid[3] = {0}, middle[3] = {0}, centre[3];
+    double rigid[3] = {0}, middle[3] = {0}, centre[3], held = 0;
+    const int32_t counted = -2 - index;
+    find_held(b, m, index);
     m->elements = b->start[m->volume + 1] - b->start[m->volume];
     for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
         int64_t i = b->element[at];
-        double share = body_fraction(b, i);
+        double share = body_share(b, i, m->volume);
         body_centre(b, i, centre);
         m->weight += share;
         for (int a = 0; a < 3; a++)
             middle[a] += share * centre[a];
         for (int n = 0; n < b->columns; n++) {
             int32_t node = b->node[b->columns * i + n];
-            if (!b->rigid[node] || b->seen[node] == index)
+            if (!b->rigid[node] || b->seen[node] == counted)
                 continue;
-            b->seen[node] = index;
+            b->seen[node] = counted;
             m->rigid_nodes++;
+            held += (double)b->held[node];
             for (int a = 0; a < 3; a++)
-                rigid[a] += b->position[3 * (int64_t)node + a];
+                rigid[a] += (double)b->held[node] * b->position[3 * (int64_t)node + a];
         }
     }
     for (int a = 0; a < 3; a++) {
         m->middle[a] = m->weight > 0 ? middle[a] / m->weight : NAN;
-        m->centre[a] = m->rigid_nodes ? rigid[a] / (double)m->rigid_nodes : NAN;
+        m->centre[a] = held > 0 ? rigid[a] / held : NAN;
     }
 }
 
@@ -49,7 +66,7 @@ static void covariance(const body *b, const muscle *m, double c[3][3])
 {
     double d[3];
     for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
-        double share = body_fraction(b, b->element[at]) / m->weight;
+        double share = body_share(b, b->element[at], m->volume) / m->weight;
         body_centre(b, b->element[at], d);
         for (int p = 0; p < 3; p++)
             d[p] -= m->middle[p];
@@ -132,7 +149,7 @@ static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t
     length = sqrt(length);
     if (kind == MUSCLE_CENTRE && !m->rigid_nodes)
         return false;
-    float *fibre = &b->fibre[3 * element];
+    float *fibre = body_fibre(b, element, m->volume);
     if (kind == MUSCLE_FIELD && (fibre[0] != 0 || fibre[1] != 0 || fibre[2] != 0))
         return true;
     bool along_axis = kind != MUSCLE_CENTRE || length <= 1e-9 * element_size(b, element);
@@ -168,6 +185,31 @@ static int check_fractions(const model_array *fraction, err *e)
     return 0;
 }
 
+static int check_mixtures(const body *b, const model_array *mix, const model_array *mixture, err *e)
+{
+    for (int64_t i = 0; mix && i < mix->rows; i++) {
+        if (mix->i32[i] >= 0 && !(mixture->f32[i] >= 0 && mixture->f32[i] <= 1))
+            return err_set(e, NULL, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)i,
+                           (double)mixture->f32[i]);
+        if (mix->i32[i] == b->volume[i])
+            return err_set(e, NULL, 0, "element.mix, row %lld is its own volume; expected another, or -1",
+                           (long long)i);
+    }
+    return 0;
+}
+
+/* The second volumes of elements, where the model has any. */
+static int find_mixes(const model *m, body *b, err *e)
+{
+    const model_array *mix = model_find(m, "element.mix");
+    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    if ((mix && !mixture) || check_mixtures(b, mix, mixture, e))
+        return -1;
+    b->mix = mix ? mix->i32 : NULL;
+    b->mixture = mixture ? mixture->f32 : NULL;
+    return 0;
+}
+
 /* The arrays that are needed, and node and element counts. */
 static int find_arrays(const model *m, body *b, err *e)
 {
@@ -186,26 +228,36 @@ static int find_arrays(const model *m, body *b, err *e)
                 .anchor = anchor ? anchor->i32 : NULL,
                 .fraction = fraction ? fraction->f32 : NULL};
     b->seen = mem_array(b->nodes, sizeof *b->seen, "nodes", e);
-    b->part = b->seen ? mem_array(b->nodes, sizeof *b->part, "nodes", e) : NULL;
+    b->held = b->seen ? mem_array(b->nodes, sizeof *b->held, "nodes", e) : NULL;
+    b->part = b->held ? mem_array(b->nodes, sizeof *b->part, "nodes", e) : NULL;
     for (int64_t n = 0; b->part && n < b->nodes; n++)
         b->seen[n] = b->part[n] = -1;
-    return b->part ? check_fractions(fraction, e) : -1;
+    return b->part && !check_fractions(fraction, e) ? find_mixes(m, b, e) : -1;
 }
 
-/* The elements of each volume, in their order. */
+/* The elements of each volume, in their order, then those that it is the second in. */
 static int sort_elements(body *b, int64_t volumes, err *e)
 {
     /* Counted two places up, so that filling leaves each volume's first in its place. */
     b->start = mem_array(volumes + 2, sizeof *b->start, "volumes", e);
-    b->element = b->start ? mem_array(b->elements, sizeof *b->element, "elements", e) : NULL;
+    int64_t entries = b->elements;
+    for (int64_t i = 0; b->mix && i < b->elements; i++)
+        entries += b->mix[i] >= 0;
+    b->element = b->start ? mem_array(entries, sizeof *b->element, "elements", e) : NULL;
     if (!b->element)
         return -1;
-    for (int64_t i = 0; i < b->elements; i++)
+    for (int64_t i = 0; i < b->elements; i++) {
         b->start[b->volume[i] + 2]++;
+        if (b->mix && b->mix[i] >= 0)
+            b->start[b->mix[i] + 2]++;
+    }
     for (int64_t v = 0; v < volumes; v++)
         b->start[v + 2] += b->start[v + 1];
     for (int64_t i = 0; i < b->elements; i++)
         b->element[b->start[b->volume[i] + 1]++] = i;
+    for (int64_t i = 0; b->mix && i < b->elements; i++)
+        if (b->mix[i] >= 0)
+            b->element[b->start[b->mix[i] + 1]++] = i;
     return 0;
 }
 
@@ -262,6 +314,8 @@ static int add_arrays(model *m, body *b, const muscles *list, err *e)
         return -1;
     a = model_add(m, "element.fibre", e);
     b->fibre = a ? a->f32 : NULL;
+    a = a && b->mix ? model_add(m, "element.mixfibre", e) : a;
+    b->mixfibre = a && b->mix ? a->f32 : NULL;
     return a ? 0 : -1;
 }
 
@@ -292,6 +346,7 @@ int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, note
     model_axis_drop(m, "muscle", warnings);
     model_axis_drop(m, "attachment", warnings);
     model_remove(m, "element.fibre");
+    model_remove(m, "element.mixfibre");
     if (find_arrays(m, &b, e) || find_muscles(m, list, e) || sort_elements(&b, model_count(m, "volume"), e))
         goto out;
     for (int64_t i = 0; i < list->count; i++) {
@@ -307,6 +362,7 @@ int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, note
     rc = 0;
 out:
     free(b.seen);
+    free(b.held);
     free(b.part);
     free(b.start);
     free(b.element);

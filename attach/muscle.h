@@ -17,11 +17,11 @@ typedef enum muscle_fibre {
 typedef struct muscle {
     const char *name; /* borrowed from volume.name */
     int32_t volume;
-    int64_t elements, rigid_nodes;
-    double weight;    /* the sum of its elements' enclosed shares */
-    double centre[3]; /* contraction centre, m; nan where it has none */
-    double middle[3]; /* the mean of its elements' centres, by enclosed share */
-    double axis[3];   /* unit; toward the contraction centre where there is one; 0 0 0 where no axis is the longest */
+    int64_t elements, rigid_nodes; /* elements: with those that it is the second volume of */
+    double weight;                 /* the sum of its shares of its elements */
+    double centre[3];              /* contraction centre, m; nan where it has none */
+    double middle[3];              /* the mean of its elements' centres, by enclosed share */
+    double axis[3]; /* unit; toward the contraction centre where there is one; 0 0 0 where no axis is the longest */
 } muscle;
 
 typedef struct muscles {
@@ -31,9 +31,9 @@ typedef struct muscles {
 } muscles;
 
 /* Makes the axis muscle with muscle.volume and muscle.centre, the axis attachment with attachment.muscle and its other
- * arrays, and element.fibre, in place of those that are there, from node.rigid (and node.anchor and element.fraction,
- * where there are any) and the volumes that are muscles. An element that lies at the contraction centre gets the axis.
- * Notes the muscles that can have no centre or no fibres. Spreads are weighted by element.fraction. threads: for
+ * arrays, and element.fibre (and element.mixfibre where there is element.mix), in place of those that are there, from node.rigid (and
+ * node.anchor, element.fraction and element.mix, where there are any) and the volumes that are muscles. An element that lies at the contraction centre gets the axis.
+ * Notes the muscles that can have no centre or no fibres. Spreads are weighted by its shares. threads: for
  * MUSCLE_FIELD. The caller frees the list, on failure too. */
 int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, notes *warnings, err *e);
 void muscles_free(muscles *list);

@@ -8,7 +8,7 @@
 enum {
     PATHS_MOST = 2048, /* kept; past that all are forgotten */
     BATCH = 16,        /* paths made side by side */
-    STALE = 20,        /* solves with one factor at most, where elements turn */
+    STALE = 20,        /* solves of one frame by one factor at most, where elements turn */
     SWEEPS = 2000      /* of the complementarity problem; the next solve takes over what is left */
 };
 
@@ -29,7 +29,11 @@ int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const
         return -1;
     for (int64_t n = 0; n < p->nodes; n++)
         x->cached[n] = -1;
-    return 0;
+    if (!k->turn)
+        return 0;
+    x->state = mem_array(p->nodes, 4 * sizeof *x->state, "the solver", e);
+    x->by = mem_array(p->nodes, 4 * sizeof *x->by, "the solver", e);
+    return x->state && x->by ? mixing_make(&x->mixing, 4 * p->nodes, 3 * p->nodes, e) : -1;
 }
 
 void exact_free(exact *x)
@@ -46,6 +50,9 @@ void exact_free(exact *x)
     free(x->schur);
     free(x->want);
     free(x->force);
+    free(x->state);
+    free(x->by);
+    mixing_free(&x->mixing);
     *x = (exact){0};
 }
 
@@ -250,6 +257,30 @@ static void improve(exact *x, double *u)
     x->solves++;
 }
 
+static void gather_state(const exact *x, const double *u, double *to)
+{
+    const int64_t nodes = x->p->nodes;
+    memcpy(to, u, 3 * (size_t)nodes * sizeof *to);
+    memset(to + 3 * nodes, 0, (size_t)nodes * sizeof *to);
+    for (int64_t i = 0; i < x->c->count; i++)
+        to[3 * nodes + x->c->list[i].node] = x->c->list[i].force;
+}
+
+/* One solve where elements turn, and what follows from those before. */
+static void improve_turned(exact *x, double *u)
+{
+    const int64_t nodes = x->p->nodes;
+    gather_state(x, u, x->state);
+    improve(x, u);
+    gather_state(x, u, x->by);
+    for (int64_t i = 0; i < 4 * nodes; i++)
+        x->by[i] -= x->state[i];
+    mixing_next(&x->mixing, x->state, x->by);
+    memcpy(u, x->state, 3 * (size_t)nodes * sizeof *u);
+    for (int64_t i = 0; i < x->c->count; i++)
+        x->c->list[i].force = fmax(0, x->state[3 * nodes + x->c->list[i].node]);
+}
+
 /* Whether each contact is where it should be. */
 static bool in_place(const exact *x, const double *u, double tolerance)
 {
@@ -274,21 +305,23 @@ int exact_solve(exact *x, double *u, bool first, double tolerance, double reach,
     x->load = first ? 0 : x->load;
     if (make_schur(x, e))
         return -1;
-    double before = INFINITY;
+    mixing_begin(&x->mixing);
     int fresh = 0; /* the solve that the factor was made for */
     x->residual = find_left(x, u);
     for (x->solves = 0; x->residual > tolerance || !in_place(x, u, tolerance * reach);) {
         if (x->solves == EXACT_SOLVES || !isfinite(x->residual))
             return err_set(e, NULL, 0, "after %d solves the residual is still %.3g; expected %.3g", x->solves,
                            x->residual, tolerance);
-        bool stale = x->solves - fresh >= STALE || (x->solves - fresh > 1 && x->residual > before);
-        if (x->k->turn && stale) {
+        if (x->k->turn && x->solves - fresh >= STALE) {
             if (turn_again(x, u, e))
                 return -1;
             fresh = x->solves;
+            mixing_begin(&x->mixing);
         }
-        before = x->residual;
-        improve(x, u);
+        if (x->k->turn)
+            improve_turned(x, u);
+        else
+            improve(x, u);
         x->residual = find_left(x, u);
     }
     return 0;

@@ -1,14 +1,15 @@
 /* The FEM solved to a tolerance each frame, with one factor of the stiffness matrix at rest. A probe's contact does not change that
  * factor: with N the directions of contact and S = N^T K^-1 N (the Schur complement, whose parts are products of path vectors,
  * factor.h), the forces f >= 0 that keep each node out of the probe solve a small complementarity problem; they come in between
- * the two halves of a solve. What rounding (the factor is float), warping or an inexact S leave over, the next solve takes out. The
- * creator owns it.
+ * the two halves of a solve. What rounding (the factor is float), an inexact S leaves over, the next solve takes out; where elements
+ * turn, whose factor it is not, mixing.h makes the most of the solves. The creator owns it.
  */
 #ifndef SINEW_EXACT_H
 #define SINEW_EXACT_H
 
 #include "msds/contacts.h"
 #include "msds/factor.h"
+#include "msds/mixing.h"
 
 enum { EXACT_SOLVES = 300 };
 
@@ -31,6 +32,8 @@ typedef struct exact {
     double load; /* N2: the square of the frame's largest load */
     double residual;
     int solves;
+    mixing mixing;      /* where elements turn: of displacements, which lead, and contact forces */
+    double *state, *by; /* nodes x 4: those, as mixing wants them */
 } exact;
 
 /* Factors. -1 with e filled, and to be freed all the same. */

@@ -1,16 +1,23 @@
 #include "msds/lanes.h"
 
 #include "base/mem.h"
+#include "device/vectors.h"
 
 #include <stdlib.h>
 
-const lanes *lanes_choose(void)
-{
+const lanes *const lanes_all[] = {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2"))
-        return &lanes_avx2;
+    &lanes_avx512, &lanes_avx2,
 #endif
-    return &lanes_plain;
+    &lanes_plain, NULL};
+
+const lanes *lanes_choose(err *e)
+{
+    for (int i = 0; lanes_all[i]; i++)
+        if (vectors_are(lanes_all[i]->name))
+            return lanes_all[i];
+    vectors_none(e);
+    return NULL;
 }
 
 int lanes_field_make(lanes_field *f, int64_t nodes, err *e)

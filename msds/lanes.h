@@ -1,6 +1,6 @@
 /* The loops that take the time, over eight nodes side by side (slices.h) and over dense columns, as a table of functions: the same
- * source compiled for plain x86-64 (or whatever the compiler's default is) and for AVX2, chosen when a state is made. No multiply
- * and add is fused in either, and no sum changes its order: both give the same bytes. All memory is the caller's.
+ * source compiled for plain x86-64 (or whatever the compiler's default is), AVX2 and AVX-512, chosen when a state is made. No
+ * multiply and add is fused in any, and no sum changes its order: all give the same bytes. All memory is the caller's.
  */
 #ifndef SINEW_LANES_H
 #define SINEW_LANES_H
@@ -36,7 +36,7 @@ typedef struct lanes_matrix {
 } lanes_matrix;
 
 typedef struct lanes {
-    const char *name;
+    const char *name; /* as device/vectors.h has it */
     /* A step of springs for slices [from, to): next_u, next_v from u, v. */
     void (*step)(const lanes_springs *w, int64_t from, int64_t to);
     /* y = a p for slices [from, to); returns p . y. */
@@ -60,11 +60,14 @@ typedef struct lanes {
 
 extern const lanes lanes_plain;
 #if defined(__x86_64__)
-extern const lanes lanes_avx2;
+extern const lanes lanes_avx2, lanes_avx512;
 #endif
 
-/* The fastest that this machine has. */
-const lanes *lanes_choose(void);
+/* All that are built, the fastest first; ends with NULL. */
+extern const lanes *const lanes_all[];
+
+/* The first that this processor can do, or what SINEW_VECTORS names (device/vectors.h). NULL with e filled. */
+const lanes *lanes_choose(err *e);
 
 int lanes_field_make(lanes_field *f, int64_t nodes, err *e);
 void lanes_field_free(lanes_field *f);

@@ -1,4 +1,4 @@
-/* The loops of lanes.h, compiled by lanes_plain.c and lanes_avx2.c, which name the table. Everything here is static.
+/* The loops of lanes.h, compiled by lanes_plain.c, lanes_avx2.c and lanes_avx512.c, which name the table. Everything here is static.
  */
 #include "base/flush.h"
 #include "msds/lanes.h"
@@ -30,30 +30,6 @@ INLINE v8 load(const float *p)
 INLINE void store(float *p, v8 v)
 {
     *(v8 *)(void *)p = v;
-}
-
-INLINE v8 root(v8 x)
-{
-#if defined(__AVX__)
-    return (v8)_mm256_sqrt_ps((__m256)x);
-#else
-    v8 r = x;
-    for (int l = 0; l < LANES; l++)
-        r[l] = __builtin_sqrtf(x[l]);
-    return r;
-#endif
-}
-
-INLINE v8 at_least(v8 x, v8 least)
-{
-#if defined(__AVX__)
-    return (v8)_mm256_max_ps((__m256)x, (__m256)least);
-#else
-    v8 r = x;
-    for (int l = 0; l < LANES; l++)
-        r[l] = x[l] > least[l] ? x[l] : least[l];
-    return r;
-#endif
 }
 
 /* Eight neighbours' values, in a row or not. */
@@ -103,32 +79,142 @@ INLINE bool any_below(v8 x, float limit)
     return any != 0;
 }
 
-INLINE void pull(const lanes_springs *w, bool row, int64_t slot, const v8 x[3], const v8 u[3], const v8 v[3],
-                 v8 force[3])
+/* The slots that a register takes: two where it has room for them. What waits for a root and a division then waits for two. */
+#if defined(__AVX512F__)
+typedef float wide __attribute__((vector_size(64)));
+
+INLINE wide both(v8 a, v8 b)
 {
-    const int32_t first = w->s->first[slot], *neighbour = w->s->neighbour + slot * LANES;
-    v8 d[3], speed = {0}, stretch = {0};
-    v8 rest = load(w->rest + slot * LANES), least = rest * rest * SPRING_LEAST;
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+INLINE wide root(wide x)
+{
+    return (wide)_mm512_sqrt_ps((__m512)x);
+}
+
+INLINE wide at_least(wide x, wide least)
+{
+    return (wide)_mm512_max_ps((__m512)x, (__m512)least);
+}
+
+/* Adds the first slot's, then, if there is one, the second's. */
+INLINE void add_slots(v8 *to, wide x, bool two)
+{
+    *to += __builtin_shufflevector(x, x, 0, 1, 2, 3, 4, 5, 6, 7);
+    if (two)
+        *to += __builtin_shufflevector(x, x, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+enum { TWO = 1 };
+#else
+typedef v8 wide;
+
+INLINE wide both(v8 a, v8 b)
+{
+    (void)b;
+    return a;
+}
+
+INLINE wide root(wide x)
+{
+#if defined(__AVX__)
+    return (v8)_mm256_sqrt_ps((__m256)x);
+#else
+    v8 r = x;
+    for (int l = 0; l < LANES; l++)
+        r[l] = __builtin_sqrtf(x[l]);
+    return r;
+#endif
+}
+
+INLINE wide at_least(wide x, wide least)
+{
+#if defined(__AVX__)
+    return (v8)_mm256_max_ps((__m256)x, (__m256)least);
+#else
+    v8 r = x;
+    for (int l = 0; l < LANES; l++)
+        r[l] = x[l] > least[l] ? x[l] : least[l];
+    return r;
+#endif
+}
+
+INLINE void add_slots(v8 *to, wide x, bool two)
+{
+    (void)two;
+    *to += x;
+}
+
+enum { TWO = 0 };
+#endif
+
+INLINE wide load_slots(const float *p, const int64_t slot[2])
+{
+    return both(load(p + slot[0] * LANES), load(p + slot[1] * LANES));
+}
+
+INLINE wide fetch_slots(const float *field, const slices *s, bool row, const int64_t slot[2])
+{
+    v8 first = fetch(field, row, s->first[slot[0]], s->neighbour + slot[0] * LANES);
+    return both(first, row ? load(field + s->first[slot[1]]) : first);
+}
+
+/* Adds to force what the springs of a slot, or of two, which must be rows, pull with. */
+INLINE void pull(const lanes_springs *w, bool row, const int64_t slot[2], const wide x[3], const wide u[3],
+                 const wide v[3], v8 force[3])
+{
+    wide d[3], e[3], s[3], rest = load_slots(w->rest, slot), least = rest * rest * SPRING_LEAST;
     for (int a = 0; a < 3; a++) {
-        v8 at_rest = fetch(w->place.x[a], row, first, neighbour) - x[a];
-        v8 du = fetch(w->u.x[a], row, first, neighbour) - u[a];
-        v8 dv = fetch(w->v.x[a], row, first, neighbour) - v[a];
+        wide at_rest = fetch_slots(w->place.x[a], w->s, row, slot) - x[a];
+        wide du = fetch_slots(w->u.x[a], w->s, row, slot) - u[a];
         d[a] = at_rest + du;
-        stretch += du * (at_rest + d[a]);
-        speed += dv * d[a];
+        e[a] = du * (at_rest + d[a]);
+        s[a] = (fetch_slots(w->v.x[a], w->s, row, slot) - v[a]) * d[a];
     }
-    v8 square = at_least(rest * rest + stretch, least);
-    v8 length = root(square);
-    v8 k = load(w->stiffness + slot * LANES), gamma = load(w->damper + slot * LANES);
-    v8 scale = SPRING_FORCE(k, gamma, rest, square, speed, stretch, length);
+    wide stretch = e[0] + e[1] + e[2], speed = s[0] + s[1] + s[2];
+    wide square = at_least(rest * rest + stretch, least);
+    wide length = root(square);
+    wide k = load_slots(w->stiffness, slot), gamma = load_slots(w->damper, slot);
+    wide scale = SPRING_FORCE(k, gamma, rest, square, speed, stretch, length);
     for (int a = 0; a < 3; a++)
-        force[a] += scale * d[a];
+        add_slots(&force[a], scale * d[a], slot[1] != slot[0]);
+}
+
+INLINE bool is_row(const slices *s, int64_t slot)
+{
+    return s->first[slot] != SLICES_SCATTERED;
+}
+
+/* What the springs of a slice pull its nodes with, slot after slot. */
+INLINE void pull_all(const lanes_springs *w, int64_t slice, const v8 x[3], const v8 u[3], const v8 v[3], v8 force[3])
+{
+    const slices *s = w->s;
+    const int64_t end = s->start[slice + 1];
+    wide own_x[3], own_u[3], own_v[3];
+    for (int a = 0; a < 3; a++) {
+        own_x[a] = both(x[a], x[a]);
+        own_u[a] = both(u[a], u[a]);
+        own_v[a] = both(v[a], v[a]);
+    }
+    for (int64_t slot = s->start[slice]; slot < end;) {
+        const int64_t one[2] = {slot, slot}, two[2] = {slot, slot + 1};
+        if (TWO && slot + 1 < end && is_row(s, slot) && is_row(s, slot + 1)) {
+            pull(w, true, two, own_x, own_u, own_v, force);
+            slot += 2;
+            continue;
+        }
+        if (is_row(s, slot))
+            pull(w, true, one, own_x, own_u, own_v, force);
+        else
+            pull(w, false, one, own_x, own_u, own_v, force);
+        slot++;
+    }
 }
 
 /* PST equations 3 to 5. */
 static void step(const lanes_springs *w, int64_t from, int64_t to)
 {
-    const slices *s = w->s;
     const float reach = w->reach * w->reach;
     const unsigned before = flush_small();
     for (int64_t slice = from; slice < to; slice++) {
@@ -140,11 +226,7 @@ static void step(const lanes_springs *w, int64_t from, int64_t to)
             v[a] = load(w->v.x[a] + own);
             force[a] = load(w->weight.x[a] + own);
         }
-        for (int64_t slot = s->start[slice]; slot < s->start[slice + 1]; slot++)
-            if (s->first[slot] != SLICES_SCATTERED)
-                pull(w, true, slot, x, u, v, force);
-            else
-                pull(w, false, slot, x, u, v, force);
+        pull_all(w, slice, x, u, v, force);
         if (w->touched && any_below(away(w, own), reach))
             push(w, own, force);
         v8 inverse = load(w->inverse + own);

@@ -27,9 +27,10 @@ static int take_name(volume *labels, char *item, err *e)
 
 int mesh_label_names(volume *labels, const char *list, err *e)
 {
-    for (const char *p = list; p; p = strchr(p, ','), p += p != NULL) {
+    size_t length;
+    for (const char *p = list; p; p = p[length] ? p + length + 1 : NULL) {
         char item[NAME];
-        size_t length = strcspn(p, ",");
+        length = strcspn(p, ",");
         if (length >= sizeof item)
             return err_usage(e, "--names: a name of %zu bytes; expected fewer than %d", length, NAME);
         snprintf(item, sizeof item, "%.*s", (int)length, p);

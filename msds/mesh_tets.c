@@ -106,7 +106,8 @@ int mesh_box_add(model *m, const mesh_box *b, err *e)
 /* ---- a voxel model */
 
 /* What stays of an element, by the names of arrays: every tetrahedron has its cell's row. */
-static const char *const kept[] = {"element.volume", "element.fibre", "element.fraction"};
+static const char *const kept[] = {"element.volume", "element.fibre",   "element.fraction",
+                                   "element.mix",    "element.mixture", "element.mixfibre"};
 
 enum { KEPT = sizeof kept / sizeof *kept };
 

@@ -89,6 +89,7 @@ typedef struct session {
     msds_method method; /* now */
     msds_sight sight;   /* of the last frame */
     int64_t next_frame;
+    bool pressed; /* some node, in some frame */
     notes warnings;
 } session;
 
@@ -306,9 +307,14 @@ static int simulate(session *s, err *e)
             return -1;
         if (s->other)
             say_difference(s, at.time);
+        s->pressed = s->pressed || s->sight.contacts > 0;
     }
     if (!got && !frames)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
+    if (!got && s->o->probe && !s->pressed)
+        notes_add(&s->warnings,
+                  "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space",
+                  (long long)frames);
     return got;
 }
 

@@ -136,8 +136,8 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
         return NULL;
     s->p = problem;
     s->threads = threads;
-    s->loops = lanes_choose();
-    if (slices_make(&s->order, s->p, e) || allocate(s, e)) {
+    s->loops = lanes_choose(e);
+    if (!s->loops || slices_make(&s->order, s->p, e) || allocate(s, e)) {
         cpu_destroy(s);
         return NULL;
     }

@@ -81,6 +81,42 @@ static int take_material(msds_problem *p, int64_t t, const material *a)
     return 0;
 }
 
+/* What elements have shares of; each or NULL. */
+typedef struct shares {
+    const float *fraction, *mixture;
+    const int32_t *mix;
+} shares;
+
+static int find_shares(const model *m, shares *s, err *e)
+{
+    const model_array *fraction = model_find(m, "element.fraction"), *mix = model_find(m, "element.mix");
+    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    if (mix && !mixture)
+        return -1;
+    *s = (shares){fraction ? fraction->f32 : NULL, mixture ? mixture->f32 : NULL, mix ? mix->i32 : NULL};
+    return 0;
+}
+
+/* Element t's of its volume, or of the two that it is mixed of; of one that a surface cuts, so much as is enclosed. */
+static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t volume, const material *list, err *e)
+{
+    const int32_t mix = s->mix ? s->mix[t] : -1;
+    material own = list[volume];
+    if (mix >= 0 && !(s->mixture[t] >= 0 && s->mixture[t] <= 1))
+        return err_set(e, NULL, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)t,
+                       (double)s->mixture[t]);
+    if (s->fraction && !(s->fraction[t] > 0 && s->fraction[t] <= 1))
+        return err_set(e, NULL, 0, "element.fraction, row %lld is %g; expected above 0, and at most 1", (long long)t,
+                       (double)s->fraction[t]);
+    if (mix >= 0)
+        own = material_mixed(&own, &list[mix], (double)s->mixture[t]);
+    if (s->fraction) {
+        own.E *= (double)s->fraction[t];
+        own.density *= (double)s->fraction[t];
+    }
+    return take_material(p, t, &own);
+}
+
 static int make_materials(msds_problem *p, const model *m, err *e)
 {
     const model_array *of = model_need(m, "element.volume", e);
@@ -88,11 +124,12 @@ static int make_materials(msds_problem *p, const model *m, err *e)
     material *list = table ? mem_array(table->rows, sizeof *list, "materials", e) : NULL;
     p->young = mem_array(p->elements, sizeof *p->young, "elements", e);
     p->weight = mem_array(p->nodes, sizeof *p->weight, "nodes", e);
-    int result = list && p->young && p->weight ? 0 : -1;
+    shares share;
+    int result = list && p->young && p->weight ? find_shares(m, &share, e) : -1;
     for (int64_t i = 0; !result && i < table->rows; i++)
         result = materials_of(m, table->i32[i], &list[i], e);
     for (int64_t t = 0; !result && t < p->elements; t++)
-        result = take_material(p, t, &list[of->i32[t]]);
+        result = take_element(p, &share, t, of->i32[t], list, e);
     free(list);
     return result;
 }

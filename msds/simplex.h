@@ -95,30 +95,49 @@ SIMPLEX_FUNCTION void simplex_force(const simplex *s, double g[3][3], double f[4
                 sigma[a][0] * s->gradient[c][0] + sigma[a][1] * s->gradient[c][1] + sigma[a][2] * s->gradient[c][2];
 }
 
-/* One turn of the quaternion q (x y z w) toward the rotation of the polar decomposition of f: Muller et al. 2016. Returns
- * the angle. */
+/* Solves a x = b, a symmetric. Returns whether a is positive definite, without which x is left as it was. */
+SIMPLEX_FUNCTION int simplex_solve(double a[3][3], const double b[3], double x[3])
+{
+    double c[3] = {a[1][1] * a[2][2] - a[1][2] * a[1][2], a[0][2] * a[1][2] - a[0][1] * a[2][2],
+                   a[0][1] * a[1][2] - a[0][2] * a[1][1]};
+    double det = a[0][0] * c[0] + a[0][1] * c[1] + a[0][2] * c[2], minor = a[0][0] * a[1][1] - a[0][1] * a[0][1];
+    if (!(a[0][0] > 0 && minor > 0 && det > 0))
+        return 0;
+    double d = a[0][0] * a[2][2] - a[0][2] * a[0][2], e = a[0][1] * a[0][2] - a[0][0] * a[1][2];
+    x[0] = (c[0] * b[0] + c[1] * b[1] + c[2] * b[2]) / det;
+    x[1] = (c[1] * b[0] + d * b[1] + e * b[2]) / det;
+    x[2] = (c[2] * b[0] + e * b[1] + minor * b[2]) / det;
+    return 1;
+}
+
+/* One turn of the quaternion q (x y z w) toward the rotation of the polar decomposition of f. With B = f R^T, w the axis of B -
+ * B^T: Newton's step solves (tr B - sym B) turn = w; where that is no way up, or a long one, it is that of Muller et al. 2016, w
+ * over |tr B|. Returns an estimate of the angle that is left. */
 SIMPLEX_FUNCTION double simplex_turn(double f[3][3], double r[3][3], double q[4])
 {
-    double w[3] = {0, 0, 0}, dot = 0;
-    for (int c = 0; c < 3; c++) {
-        w[0] += r[1][c] * f[2][c] - r[2][c] * f[1][c];
-        w[1] += r[2][c] * f[0][c] - r[0][c] * f[2][c];
-        w[2] += r[0][c] * f[1][c] - r[1][c] * f[0][c];
-        dot += r[0][c] * f[0][c] + r[1][c] * f[1][c] + r[2][c] * f[2][c];
+    double b[3][3], a[3][3], turn[3] = {2, 0, 0};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            b[i][j] = f[i][0] * r[j][0] + f[i][1] * r[j][1] + f[i][2] * r[j][2];
+    const double w[3] = {b[2][1] - b[1][2], b[0][2] - b[2][0], b[1][0] - b[0][1]}, trace = b[0][0] + b[1][1] + b[2][2];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            a[i][j] = (i == j ? trace : 0) - (b[i][j] + b[j][i]) / 2;
+    int newton = simplex_solve(a, w, turn);
+    double square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
+    if (!newton || !(square < 1)) {
+        newton = 0;
+        for (int i = 0; i < 3; i++)
+            turn[i] = w[i] / (fabs(trace) + 1e-9);
+        square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
     }
-    double scale = 1 / (fabs(dot) + 1e-9);
-    double angle = scale * sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    if (angle < 1e-12)
-        return 0;
-    double sine = sin(angle / 2) * scale / angle, cosine = cos(angle / 2);
-    double p[4] = {sine * w[0], sine * w[1], sine * w[2], cosine};
-    double t[4] = {
-        p[3] * q[0] + q[3] * p[0] + p[1] * q[2] - p[2] * q[1], p[3] * q[1] + q[3] * p[1] + p[2] * q[0] - p[0] * q[2],
-        p[3] * q[2] + q[3] * p[2] + p[0] * q[1] - p[1] * q[0], p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]};
+    const double p[3] = {turn[0] / 2, turn[1] / 2, turn[2] / 2}; /* and 1 */
+    double t[4] = {q[0] + q[3] * p[0] + p[1] * q[2] - p[2] * q[1], q[1] + q[3] * p[1] + p[2] * q[0] - p[0] * q[2],
+                   q[2] + q[3] * p[2] + p[0] * q[1] - p[1] * q[0], q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]};
     double length = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2] + t[3] * t[3]);
     for (int i = 0; i < 4; i++)
         q[i] = t[i] / length;
-    return angle;
+    return newton ? square : sqrt(square);
 }
 
 SIMPLEX_FUNCTION void simplex_matrix(const double q[4], double r[3][3])
@@ -139,9 +158,9 @@ SIMPLEX_FUNCTION void simplex_rotation(double g[3][3], double q[4], double r[3][
             f[a][b] = g[a][b] + (a == b);
     simplex_matrix(q, r);
     for (int i = 0; i < 30; i++) {
-        double angle = simplex_turn(f, r, q);
+        double left = simplex_turn(f, r, q);
         simplex_matrix(q, r);
-        if (angle < 1e-9)
+        if (left < 1e-12)
             break;
     }
 }

@@ -79,8 +79,6 @@ static int read_meta(walk *w, const char *name, err *e)
             w->implicit = rest == 0 || !value[most] || value[most] == ' ';
             w->big = rest >= 2 && !memcmp(value + most, ".2", 2) &&
                      (rest == 2 || !value[most + 2] || value[most + 2] == ' ');
-            if (rest >= 5 && !memcmp(value + most, ".1.99", 5))
-                return err_set(e, name, 0, "deflated as a whole; expected another transfer syntax");
         }
         w->at += h.size + h.length;
     }
@@ -119,4 +117,19 @@ int dicom_lengths_check(const unsigned char *bytes, size_t size, const char *nam
         w.at += h.size + h.length;
     }
     return 0;
+}
+
+int64_t dicom_lengths_items(const unsigned char *bytes, size_t size)
+{
+    int64_t items = 0;
+    const unsigned char *end = bytes + size;
+    for (const unsigned char *p = bytes; p + 4 <= end; p++) {
+        p = memchr(p, 0xFE, (size_t)(end - p));
+        if (!p || p + 4 > end)
+            break;
+        bool little = p[1] == 0xFF && p[2] == 0 && p[3] == 0xE0;
+        bool big = p > bytes && p[-1] == 0xFF && p[1] == 0xE0 && p[2] == 0;
+        items += little || big;
+    }
+    return items;
 }

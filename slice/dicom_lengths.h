@@ -8,8 +8,11 @@
 
 #include <stddef.h>
 
-/* 0, or -1 with e filled: such an element, or a file that is deflated as a whole. Where it cannot tell how to go on, it stops, and
+/* 0, or -1 with e filled: such an element. Where it cannot tell how to go on, it stops, and
  * leaves the rest to DCMTK. */
 int dicom_lengths_check(const unsigned char *bytes, size_t size, const char *name, err *e);
+
+/* Tags of items, in either byte order: a file cannot have more levels of items in items than these. */
+int64_t dicom_lengths_items(const unsigned char *bytes, size_t size);
 
 #endif

@@ -3,7 +3,7 @@
 #include "base/in.h"
 #include "base/mem.h"
 #include "base/path.h"
-#include "slice/dicom.h"
+#include "slice/dicom_image.h"
 #include "slice/sweep.h"
 
 #include <dirent.h>

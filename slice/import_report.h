@@ -5,7 +5,7 @@
 #define SINEW_IMPORT_REPORT_H
 
 #include "base/tool.h"
-#include "slice/dicom.h"
+#include "slice/dicom_image.h"
 #include "slice/import_files.h"
 #include "volume/volume.h"
 

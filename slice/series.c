@@ -17,6 +17,7 @@ typedef struct slice {
     const series_file *file;
     int64_t frame;
     double position[3], along, time;
+    const char *kind; /* of data */
 } slice;
 
 typedef struct stack {
@@ -127,7 +128,7 @@ static int check_alike(const stack *k, err *e)
             if (!near_enough(a->along_row[c], b->along_row[c], 1e-3) ||
                 !near_enough(a->along_column[c], b->along_column[c], 1e-3))
                 what = "another orientation";
-            if (c < 2 && !near_enough(a->spacing[c], b->spacing[c], 1e-4 * a->spacing[c]))
+            if (c < 2 && !near_enough(a->spacing[c], b->spacing[c], 1e-4 * fabs(a->spacing[c])))
                 what = "another distance between pixels";
         }
         if (what)
@@ -180,7 +181,7 @@ static int place_frame(const stack *k, const series_file *f, int64_t frame, slic
         position = d->position;
         behind = frame ? k->spacing[2] * (double)frame : 0;
     }
-    *to = (slice){.file = f, .frame = frame, .time = d->time[frame]};
+    *to = (slice){.file = f, .frame = frame, .time = d->time[frame], .kind = d->kind[frame]};
     for (int a = 0; a < 3; a++) {
         to->position[a] = (isnan(position[a]) ? 0 : position[a]) + behind * k->normal[a];
         to->along += to->position[a] * k->normal[a];
@@ -199,6 +200,37 @@ static int place_frames(stack *k, err *e)
             if (place_frame(k, k->file[i], f, &k->one[k->count++], e))
                 return -1;
     return k->one ? 0 : -1;
+}
+
+static int by_kind(const void *a, const void *b)
+{
+    return strcmp(((const slice *)a)->kind, ((const slice *)b)->kind);
+}
+
+/* Keeps the frames of the kind of data that is wanted: tissue, flow and the like share their places. */
+static int choose_kind(stack *k, err *e)
+{
+    char list[200] = "";
+    int64_t kinds = 0, kept = 0;
+    const char *wanted = k->wish->kind;
+    qsort(k->one, (size_t)k->count, sizeof *k->one, by_kind);
+    for (int64_t i = 0; i < k->count; i++) {
+        const char *kind = k->one[i].kind;
+        size_t used = strlen(list);
+        if (i && !strcmp(kind, k->one[i - 1].kind))
+            continue;
+        kinds++;
+        snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", *kind ? kind : "(not said)");
+    }
+    for (int64_t i = 0; i < k->count; i++)
+        if (!wanted || !strcmp(k->one[i].kind, wanted))
+            k->one[kept++] = k->one[i];
+    if (!kept)
+        return err_set(e, k->file[0]->name, 0, "no frames of %.40s; expected --data of: %s", wanted, list);
+    if (!wanted && kinds > 1)
+        return err_set(e, k->file[0]->name, 0, "frames of several kinds of data; expected --data, one of: %s", list);
+    k->count = kept;
+    return 0;
 }
 
 static int by_time(const void *a, const void *b)
@@ -403,7 +435,7 @@ int series_volume(volume *v, const series *s, const series_wish *wish, err *e)
     if (check_alike(&k, e) || find_spacing(&k, e))
         goto out;
     find_normal(&k);
-    if (place_frames(&k, e) || choose_time(&k, e) || put_in_order(&k, e))
+    if (place_frames(&k, e) || choose_kind(&k, e) || choose_time(&k, e) || put_in_order(&k, e))
         goto out;
     set_geometry(v, &k);
     if (!volume_check(v, k.file[0]->name, 0, e))

@@ -3,7 +3,7 @@
 #ifndef SINEW_SERIES_H
 #define SINEW_SERIES_H
 
-#include "slice/dicom.h"
+#include "slice/dicom_image.h"
 #include "volume/volume.h"
 
 typedef struct series_file {
@@ -24,6 +24,7 @@ typedef struct series_wish {
     double spacing[3]; /* mm; instead of what the files say; nan: as they say */
     int64_t number;    /* which series, of those that there are in the order of their files, from 1; -1: the only one */
     int64_t time;      /* which time, from 1; -1: the only one */
+    const char *kind;  /* which kind of data, as TISSUE_INTENSITY; NULL: the only one */
 } series_wish;
 
 /* The volume, from the first slice along rows x columns to the last. Slices that are missing, lie at one place, unevenly or

@@ -21,7 +21,7 @@ struct options {
     opt_lengths spacing, voxel;
     int64_t series, time, fill;
     int splat;
-    const char *transform, *calibration;
+    const char *data, *transform, *calibration;
 };
 
 static const opt option_list[] = {
@@ -33,6 +33,8 @@ static const opt option_list[] = {
      "DICOM: between columns, rows and slices"},
     {0, "series", "N", OPT_INT, offsetof(struct options, series), 1, 1e9, NULL, 0, "DICOM: the N-th series"},
     {0, "time", "N", OPT_INT, offsetof(struct options, time), 1, 1e9, NULL, 0, "DICOM: the N-th volume in time"},
+    {0, "data", "KIND", OPT_TEXT, offsetof(struct options, data), 0, 0, NULL, 0,
+     "DICOM: of this kind, as TISSUE_INTENSITY"},
     {0, "voxel", "SIDE", OPT_LENGTHS, offsetof(struct options, voxel), 0, 1, NULL, 0,
      "sweep: size of voxels [as pixels or frames]"},
     {0, "splat", "nearest|linear", OPT_CHOICE, offsetof(struct options, splat), 0, 0, "nearest|linear", 0,
@@ -114,7 +116,7 @@ static int read_dicom_file(job *j, const char *path, const char *bytes, int64_t 
 
 static int read_dicom(job *j, err *e)
 {
-    series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, j->o->series, j->o->time};
+    series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, j->o->series, j->o->time, j->o->data};
     if (j->o->spacing.count && length_mm(&j->o->spacing, "--spacing", wish.spacing, e))
         return -1;
     for (int64_t i = 0; i < j->files.count; i++) {
@@ -225,8 +227,8 @@ static int check_options(const struct options *o, import_kind kind, err *e)
         return err_usage(e, "--crop: expected X0,Y0,X1,Y1 or X0,Y0,Z0,X1,Y1,Z1");
     if (o->spacing.count && o->spacing.count != 3)
         return err_usage(e, "--spacing: expected DX,DY,DZ");
-    if (kind != IMPORT_DICOM && (o->spacing.count || o->series >= 0 || o->time >= 0))
-        return err_usage(e, "--spacing, --series and --time are for DICOM");
+    if (kind != IMPORT_DICOM && (o->spacing.count || o->series >= 0 || o->time >= 0 || o->data))
+        return err_usage(e, "--spacing, --series, --time and --data are for DICOM");
     if (kind != IMPORT_SWEEP && sweeps)
         return err_usage(e,
                          "--voxel, --splat, --fill, --transform and --calibration are for sweeps with tracked frames");

@@ -3,6 +3,7 @@
 #include "base/near.h"
 #include "base/tool.h"
 #include "slice/contour.h"
+#include "slice/contour_level.h"
 #include "slice/contour_obj.h"
 #include "slice/length.h"
 #include "slice/samples.h"
@@ -86,23 +87,6 @@ static int read_volume(job *j, const char *path, err *e)
     return 0;
 }
 
-/* The value that a number would fall below so that as many samples are at least as large as a label has voxels: what Gaussian
- * filtering takes from thin parts is not lost. Samples are within 0 and 1. */
-static float level_for(const float *value, int64_t count, int64_t wanted, err *e)
-{
-    enum { BINS = 1 << 16 };
-    int64_t *bin = mem_array(BINS + 1, sizeof *bin, "a histogram", e), above = 0;
-    int at = BINS;
-    if (!bin)
-        return 0;
-    for (int64_t i = 0; i < count; i++)
-        bin[(int)(fminf(fmaxf(value[i], 0), 1) * BINS)]++;
-    while (at > 1 && above + bin[at] <= wanted)
-        above += bin[at--];
-    free(bin);
-    return ((float)at + 1) / BINS;
-}
-
 /* One surface, from samples in a box. label NULL: where j->o->iso is reached. */
 static int make_surface(job *j, const samples_box *box, float *value, const samples_label *label, contour *c, err *e)
 {
@@ -113,15 +97,16 @@ static int make_surface(job *j, const samples_box *box, float *value, const samp
         size[a] = box->high[a] - box->low[a];
     if (filtered && samples_filter(value, size, j->sigma, e))
         return -1;
-    if (filtered && label)
-        level = level_for(value, samples_count(box), label->count, e);
-    if (e->status || contour_make(c, value, size, level, j->table, e))
+    if (filtered && label ? contour_make_of_volume(c, value, size, (double)label->count, j->table, e)
+                          : contour_make(c, value, size, level, j->table, e))
         return -1;
     double inside = label ? (double)label->count : contour_volume(c);
     if (j->o->taubin && contour_smooth(c, (int)j->o->taubin, e))
         return -1;
-    if (label || j->o->taubin)
-        contour_fill(c, inside, filtered || !label ? .25 : .49);
+    if (label && !filtered)
+        contour_fill(c, inside, .49);
+    else if ((label || j->o->taubin) && fabs(contour_volume(c) - inside) > .005 * inside)
+        contour_fill(c, inside, .25); /* a vertex may be as near to a sample as that */
     return 0;
 }
 

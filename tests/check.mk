@@ -67,8 +67,9 @@ check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-slice bench-fraction compare-msds
-BENCHES = voxelise geometry tled msds slice
+.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-images bench-slice bench-fraction compare-msds
+BENCHES = voxelise geometry tled msds images slice
+BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
 BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
 TRIANGLES ?= 100000
@@ -95,6 +96,9 @@ bench-msds: $(BUILD)/tests/bench/bench_msds
 # Images of us-slice at the sizes of PST's Tables I and II, beside their figures.
 bench-slice: $(BUILD)/tests/bench/bench_slice
 	@$(BUILD)/tests/bench/bench_slice $(shell nproc)
+# DICOM to volumes, labels and surfaces.
+bench-images: all $(BUILD)/tests/bench/bench_images
+	@$(BUILD)/tests/bench/bench_images $(BIN) $(BUILD) $(BENCH_HEAD)
 # No time, but how far springs are from the FEM at those sizes.
 compare-msds: all
 	@tests/bench/msds_compare $(BIN)
@@ -193,7 +197,7 @@ help:
 	'make sanitize     the tests under ASan and UBSan' \
 	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
-	'make bench-voxelise, -geometry, -tled, -msds, -slice   its parts (TRIANGLES=100000: of the scan)' \
+	'make bench-voxelise, -geometry, -tled, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \

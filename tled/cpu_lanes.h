@@ -82,11 +82,23 @@ static inline void add_forces(void *sum, const rows_run *run, const element_corn
         add_row(sum, run, 0, 1, f);
 }
 
-static inline element_fibre fibre_of(const cpu_work *w, const rows_run *run, real tension)
+static inline element_fibre fibre_of(const void *const along[3], const rows_run *run, real tension)
 {
-    element_fibre fibre = {{load(w->fibre[0], run->cell), load(w->fibre[1], run->cell), load(w->fibre[2], run->cell)},
-                           tension};
+    element_fibre fibre = {{load(along[0], run->cell), load(along[1], run->cell), load(along[2], run->cell)}, tension};
     return fibre;
+}
+
+static inline element_field moved_by(const cpu_work *w, const rows_run *run)
+{
+    element_field u = {corners_at(w->from[0], run), corners_at(w->from[1], run), corners_at(w->from[2], run)};
+    return u;
+}
+
+static inline void add_field(const cpu_work *w, const rows_run *run, const element_field *f)
+{
+    add_forces(w->sum[0], run, &f->x);
+    add_forces(w->sum[1], run, &f->y);
+    add_forces(w->sum[2], run, &f->z);
 }
 
 static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active)
@@ -95,14 +107,43 @@ static inline void run_forces(const cpu_work *w, const rows_run *run, element_sh
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* forces are linear in all below */
     const element_law law = {share * (real_one)kind->mu, share * (real_one)kind->bulk,
                              share * (real_one)kind->hourglass};
-    const element_field u = {corners_at(w->from[0], run), corners_at(w->from[1], run), corners_at(w->from[2], run)};
     element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO};
     if (active)
-        fibre = fibre_of(w, run, share * (real_one)kind->tension);
-    const element_field f = element_force(u, shape, law, fibre, active);
-    add_forces(w->sum[0], run, &f.x);
-    add_forces(w->sum[1], run, &f.y);
-    add_forces(w->sum[2], run, &f.z);
+        fibre = fibre_of(w->fibre, run, share * (real_one)kind->tension);
+    const element_field f = element_force(moved_by(w, run), shape, law, fibre, active);
+    add_field(w, run, &f);
+}
+
+/* Elements mixed of two volumes. */
+static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active, bool second)
+{
+    const cpu_kind *kind = &w->kind[run->volume], *mix = &w->kind[run->mix];
+    const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1, part = load(w->mixture, run->cell);
+    const real own = share * (1 - part), other = share * part;
+    const element_law law = {share * load(w->law[0], run->cell), share * load(w->law[1], run->cell),
+                             share * load(w->law[2], run->cell)};
+    element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO}, mixfibre = fibre;
+    if (active)
+        fibre = fibre_of(w->fibre, run, own * (real_one)kind->tension);
+    if (second)
+        mixfibre = fibre_of(w->mixfibre, run, other * (real_one)mix->tension);
+    const element_field f = element_force_of_two(moved_by(w, run), shape, law, fibre, active, mixfibre, second);
+    add_field(w, run, &f);
+}
+
+/* Apart from the loop, which is the faster without it. */
+static __attribute__((noinline)) void any_mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape)
+{
+    const bool active = w->fibre[0] && w->kind[run->volume].tension != 0;
+    const bool second = w->mixfibre[0] && w->kind[run->mix].tension != 0;
+    if (active && second)
+        mixed_forces(w, run, shape, true, true);
+    else if (active)
+        mixed_forces(w, run, shape, true, false);
+    else if (second)
+        mixed_forces(w, run, shape, false, true);
+    else
+        mixed_forces(w, run, shape, false, false);
 }
 
 /* One component of a node that the script displaces or pushes. */
@@ -177,7 +218,9 @@ static void slab_pass(const cpu_work *w, int32_t which)
     int32_t extra = s->extra;
     for (const rows_layer *l = r->layer + s->layer; l < r->layer + s->layer + s->layers; l++) {
         for (const rows_run *run = r->run + l->run; run < r->run + l->run + l->runs; run++)
-            if (w->fibre[0] && w->kind[run->volume].tension != 0)
+            if (run->mix >= 0)
+                any_mixed_forces(w, run, shape);
+            else if (w->fibre[0] && w->kind[run->volume].tension != 0)
                 run_forces(w, run, shape, true);
             else
                 run_forces(w, run, shape, false);

@@ -28,6 +28,7 @@ typedef struct cpu_state {
     number *mass_inverse;                    /* rows.nodes */
     uint8_t *flags;                          /* rows.nodes: NODE_* */
     number *fibre, *fraction;                /* cells, with padding: 3 x and 1 x; or NULL */
+    number *mixfibre, *mixture, *law;        /* likewise; law: 3 x */
     number *kept;                            /* displacement, then velocity; made when first wanted, as are: */
     number *taken[TLED_TAKEN];
     bool spare_is_internal;
@@ -170,6 +171,7 @@ static int64_t cpu_bytes(const void *state)
     const cpu_state *s = state;
     const rows *r = &s->rows;
     int64_t nodes = 13 + (s->kept ? 6 : 0), cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
+    cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 4 : 0);
     for (int i = 0; i < TLED_TAKEN; i++)
         nodes += s->taken[i] ? 6 : 0;
     return r->nodes * (nodes * (int64_t)sizeof(number) + 1 + 4) + r->runs * (int64_t)sizeof *r->run +
@@ -193,6 +195,9 @@ static void cpu_destroy(void *state)
     free(s->flags);
     free(s->fibre);
     free(s->fraction);
+    free(s->mixfibre);
+    free(s->mixture);
+    free(s->law);
     free(s->kept);
     for (int i = 0; i < TLED_TAKEN; i++)
         free(s->taken[i]);
@@ -201,9 +206,23 @@ static void cpu_destroy(void *state)
     free(s);
 }
 
+/* Those arrays over cells that the problem has. */
+static bool allocate_cells(cpu_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    const int64_t cells = s->rows.cells + ROWS_PAD;
+    s->fibre = p->fibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
+    s->fraction = p->fraction ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
+    s->mixture = p->mix ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
+    s->law = p->mix ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
+    s->mixfibre = p->mixfibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
+    return (s->fibre || !p->fibre) && (s->fraction || !p->fraction) && ((s->mixture && s->law) || !p->mix) &&
+           (s->mixfibre || !p->mixfibre);
+}
+
 static int allocate(cpu_state *s, err *e)
 {
-    const int64_t nodes = s->rows.nodes, cells = s->rows.cells + ROWS_PAD, curves = s->p->script->curves;
+    const int64_t nodes = s->rows.nodes, curves = s->p->script->curves;
     s->kind = mem_array(s->p->volumes, sizeof *s->kind, "the solver", e);
     s->displacement = mem_array(nodes, 3 * sizeof(number), "the solver", e);
     s->spare = mem_array(nodes, 3 * sizeof(number), "the solver", e);
@@ -211,11 +230,9 @@ static int allocate(cpu_state *s, err *e)
     s->sum = mem_array(nodes, 3 * sizeof(number), "the solver", e);
     s->mass_inverse = mem_array(nodes, sizeof(number), "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
-    s->fibre = s->p->fibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
-    s->fraction = s->p->fraction ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
     s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
     s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
-    bool cells_too = (s->fibre || !s->p->fibre) && (s->fraction || !s->p->fraction);
+    bool cells_too = allocate_cells(s, e);
     return s->kind && s->displacement && s->spare && s->velocity && s->sum && s->mass_inverse && s->flags &&
                    cells_too && s->now && s->next
                ? 0
@@ -245,8 +262,17 @@ static void fill_cells(cpu_state *s)
         const int64_t element = s->rows.cell_element[i];
         for (int a = 0; s->fibre && a < 3; a++)
             s->fibre[a * cells + i] = (number)p->fibre[3 * element + a];
+        for (int a = 0; s->mixfibre && a < 3; a++)
+            s->mixfibre[a * cells + i] = (number)p->mixfibre[3 * element + a];
         if (s->fraction)
             s->fraction[i] = (number)p->fraction[element];
+        if (s->mixture) {
+            const tled_law law = tled_law_of(p, element);
+            s->mixture[i] = (number)tled_mixture(p, element);
+            s->law[i] = (number)law.mu;
+            s->law[cells + i] = (number)law.bulk;
+            s->law[2 * cells + i] = (number)law.hourglass;
+        }
     }
     for (int32_t i = 0; i < p->volumes; i++)
         s->kind[i] = (cpu_kind){p->volume[i].mu, p->volume[i].bulk, p->volume[i].hourglass, 0};
@@ -261,10 +287,13 @@ static void make_work(cpu_state *s)
     w->mass_inverse = s->mass_inverse;
     w->flags = s->flags;
     w->fraction = s->fraction;
+    w->mixture = s->mixture;
     for (int a = 0; a < 3; a++) {
         w->velocity[a] = s->velocity + a * s->rows.nodes;
         w->sum[a] = s->sum + a * s->rows.nodes;
         w->fibre[a] = s->fibre ? s->fibre + a * (s->rows.cells + ROWS_PAD) : NULL;
+        w->law[a] = s->law ? s->law + a * (s->rows.cells + ROWS_PAD) : NULL;
+        w->mixfibre[a] = s->mixfibre ? s->mixfibre + a * (s->rows.cells + ROWS_PAD) : NULL;
     }
 }
 

@@ -30,6 +30,9 @@ typedef struct cpu_work {
     const uint8_t *flags;
     const void *fibre[3];     /* cells, or NULL */
     const void *fraction;     /* cells, or NULL */
+    const void *mixture;      /* cells, or NULL: none is mixed */
+    const void *law[3];       /* cells: mu, bulk, hourglass of those that are mixed; or NULL */
+    const void *mixfibre[3];  /* cells, or NULL */
     const double *now, *next; /* the curves' values */
     double dt, damping;
     int what;

@@ -67,6 +67,20 @@ typedef struct one_cell { /* what a thread found of its cell */
     step_matrix matrix;
 } one_cell;
 
+/* along: over cells that may contract, or NULL; share: of the tissue that is of this kind. */
+template <class S>
+static __device__ element_fibre look_fibre(const cuda_look<S> &l, const tile &t, int i, const float *along,
+                                           const cuda_kind &kind, double share)
+{
+    element_fibre fibre = {{0, 0, 0}, 0};
+    if (i >= t.fibred || !along || kind.contract < 0)
+        return fibre;
+    along += 3 * (int64_t)(t.direction + i);
+    fibre.along.x = along[0], fibre.along.y = along[1], fibre.along.z = along[2];
+    fibre.tension = share * (kind.peak * l.now[3 * kind.contract]);
+    return fibre;
+}
+
 template <class G, class S>
 static __device__ void look_at_cell(const cuda_look<S> &l, const tile &t, int i, const S *u, one_cell *c)
 {
@@ -74,24 +88,24 @@ static __device__ void look_at_cell(const cuda_look<S> &l, const tile &t, int i,
     const uint32_t cell = v.cell[t.cell + i];
     const int place = cell & TILE_PLACE;
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
+    const int32_t mixed = v.mixed ? v.mixed[t.cell + i] : -1;
+    cuda_mixed own = {kind.mu, kind.bulk, kind.density, kind.hourglass, 0, (int32_t)(cell >> TILE_VOLUME)};
+    if (mixed >= 0)
+        own = v.mixture[mixed];
     const element_shape shape = element_box(v.side[0], v.side[1], v.side[2]);
     element_modes x = element_modes_of(cuda_corners<G>(u, place));
     element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
     element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
     element_tensor h = element_gradient(x, y, z, shape.slope);
-    element_fibre fibre = {{0, 0, 0}, 0};
-    if (i < t.fibred) {
-        const float *along = v.fibre + 3 * (int64_t)(t.direction + i);
-        fibre.along.x = along[0], fibre.along.y = along[1], fibre.along.z = along[2];
-        fibre.tension = kind.peak * l.now[3 * kind.contract];
-    }
+    const element_fibre fibre = look_fibre(l, t, i, v.fibre, kind, 1 - own.share);
+    const element_fibre mixfibre = look_fibre(l, t, i, mixed < 0 ? NULL : v.mixfibre, v.kind[own.mix], own.share);
     double volume = 1 + element_dilation(h);
-    double energy = element_energy(h, kind.mu, kind.bulk);
-    double hourglass = element_hourglass_energy(x, kind.hourglass) + element_hourglass_energy(y, kind.hourglass) +
-                       element_hourglass_energy(z, kind.hourglass);
+    double energy = element_energy(h, own.mu, own.bulk);
+    double hourglass = element_hourglass_energy(x, own.hourglass) + element_hourglass_energy(y, own.hourglass) +
+                       element_hourglass_energy(z, own.hourglass);
     c->broken = !(volume > 0) || !isfinite(energy) || !isfinite(hourglass);
     c->strain = (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + hourglass);
-    stability_matrix(kind.mu, kind.bulk, kind.density, v.side, h, fibre, &c->matrix);
+    stability_matrix(own.mu, own.bulk, own.density, v.side, h, fibre, mixfibre, &c->matrix);
 }
 
 /* What a tile's block knows of its highest frequency so far. */
@@ -274,12 +288,10 @@ template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums 
     look_cells *cells = (look_cells *)l->parts;
     look_nodes *nodes = (look_nodes *)((char *)l->parts + cells_bytes(l->count));
     const int64_t blocks = node_blocks(l->view.nodes);
-    if (l->size == CUDA_LARGE)
-        cells_kernel<large_brick><<<(unsigned)l->count, large_brick::THREADS, 0, stream>>>(*l, cells);
-    else if (l->size == CUDA_MIDDLE)
-        cells_kernel<middle_brick><<<(unsigned)l->count, middle_brick::THREADS, 0, stream>>>(*l, cells);
-    else
-        cells_kernel<small_brick><<<(unsigned)l->count, small_brick::THREADS, 0, stream>>>(*l, cells);
+    with_brick(l->size, [&](auto g) {
+        typedef decltype(g) G;
+        cells_kernel<G><<<(unsigned)l->count, G::THREADS, 0, stream>>>(*l, cells);
+    });
     nodes_kernel<<<(unsigned)blocks, NODE_THREADS, 0, stream>>>(*l, nodes);
     sums_kernel<<<1, SUM_THREADS, 0, stream>>>(cells, l->count, nodes, blocks, l->question.rest, sums);
     return cudaGetLastError();

@@ -5,150 +5,13 @@
  * internal forces where displacements go else. All of a step's data stays on the card; the curves' values of some steps at
  * a time go there.
  */
-#include "tled/cuda_kernels.cuh"
-
-enum {
-    TABLE_STEPS = 64,
-    TABLES = 2,
-    COPY_CHUNK = 4096,
-    FRAME_DIRECT = 2 << 20 /* bytes: a frame that is copied sooner than it is worth its own memory on the card */
-};
-
-typedef struct cuda_frame { /* results on their way to the host; made when first wanted */
-    real *host;             /* pinned: displacement, then velocity */
-    cudaEvent_t arrived;
-    int64_t step; /* that it was taken at, for messages: the state's own goes on meanwhile */
-} cuda_frame;
-
-typedef struct cuda_state {
-    const tled_problem *p;
-    pool *threads;
-    tiles tiles;
-    cuda_size size; /* of its bricks */
-    cuda_view<real> view;
-    element_shape shape;
-    char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
-    int64_t bytes, used;        /* of memory */
-    real *displacement, *spare; /* each 3 x stride, as is velocity */
-    real *velocity;
-    real *kept_displacement; /* and velocity after it */
-    real *kept_internal;     /* made when first wanted */
-    real *frame;             /* a copy of displacement to send; likewise, unless that is: one of the two */
-    bool spare_is_internal, has_kept_internal;
-    bool frame_direct;          /* there is no room for `frame` */
-    double *table[TABLES];      /* on the card: TABLE_STEPS + 1 rows of the curves' values */
-    double *table_host[TABLES]; /* pinned */
-    cudaEvent_t table_free[TABLES], frame_free, frame_ready;
-    int64_t tables; /* filled so far */
-    void *look_parts;
-    tled_sums *sums, *sums_host;
-    real *staging; /* pinned: 3 x stride */
-    cuda_frame taken[TLED_TAKEN];
-    int64_t step, kept_step; /* for messages */
-    double time, kept_time;  /* where the state stands */
-    cudaStream_t stream, sending;
-} cuda_state;
-
-/* What went wrong in steps before may come out of any call. Not for taken(), which another thread calls. */
-#define CUDA_TRY(call) card_check(call, #call, s->step, e)
-
-/* Room in the card's memory; with none yet, counts only. */
-static void *room(cuda_state *s, int64_t count, size_t size)
-{
-    void *at = s->memory ? s->memory + s->used : NULL;
-    s->used += (count * (int64_t)size + 255) / 256 * 256;
-    return at;
-}
-
-template <class T> static int put(cuda_state *s, const T **to, const T *from, int64_t count, err *e)
-{
-    T *at = (T *)room(s, count, sizeof(T));
-    *to = at;
-    return at ? CUDA_TRY(cudaMemcpy(at, from, (size_t)count * sizeof(T), cudaMemcpyHostToDevice)) : 0;
-}
-
-/* Lays out what is in s->memory, and fills what does not change. Called twice: to count, and to do. */
-static int lay_out(cuda_state *s, const real *mass_inverse, const cuda_kind *kind, err *e)
-{
-    const tiles *t = &s->tiles;
-    const tled_problem *p = s->p;
-    cuda_view<real> *v = &s->view;
-    const int64_t rows = 3 * v->stride;
-    s->used = 0;
-    if (put(s, &v->tiles, t->tile, t->count, e) || put(s, &v->node_info, t->node_info, t->nodes, e) ||
-        put(s, &v->cell, t->cell, t->cells, e) || put(s, &v->halo_node, t->halo_node, t->halos, e) ||
-        put(s, &v->halo_place, t->halo_place, t->halos, e) || put(s, &v->fibre, t->fibre, 3 * t->directions, e) ||
-        (t->share && put(s, &v->share, t->share, t->cells, e)) || put(s, &v->extra, t->extra, t->extras, e) ||
-        put(s, &v->force_curve, p->force_curve, p->force_start[p->nodes], e) ||
-        put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
-        put(s, &v->mass_inverse, mass_inverse, t->nodes, e) || put(s, &v->kind, kind, p->volumes, e))
-        return -1;
-    s->displacement = (real *)room(s, rows, sizeof(real));
-    s->spare = (real *)room(s, rows, sizeof(real));
-    s->velocity = (real *)room(s, rows, sizeof(real));
-    s->kept_displacement = (real *)room(s, 2 * rows, sizeof(real));
-    for (int i = 0; i < TABLES; i++)
-        s->table[i] = (double *)room(s, (TABLE_STEPS + 1) * 3 * p->script->curves, sizeof(double));
-    s->look_parts = room(s, (int64_t)cuda_look_bytes(t->count, t->nodes), 1);
-    s->sums = (tled_sums *)room(s, 1, sizeof *s->sums);
-    return 0;
-}
-
-static int make_events(cuda_state *s, err *e)
-{
-    const size_t row = 3 * (size_t)(s->p->script->curves ? s->p->script->curves : 1) * sizeof(double);
-    if (CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
-        CUDA_TRY(cudaStreamCreateWithFlags(&s->sending, cudaStreamNonBlocking)) ||
-        CUDA_TRY(cudaEventCreateWithFlags(&s->frame_free, cudaEventDisableTiming)) ||
-        CUDA_TRY(cudaEventCreateWithFlags(&s->frame_ready, cudaEventDisableTiming)) ||
-        CUDA_TRY(cudaMallocHost((void **)&s->sums_host, sizeof *s->sums_host)) ||
-        CUDA_TRY(cudaMallocHost((void **)&s->staging, 3 * (size_t)s->view.stride * sizeof(real))))
-        return -1;
-    for (int i = 0; i < TABLES; i++)
-        if (CUDA_TRY(cudaMallocHost((void **)&s->table_host[i], (TABLE_STEPS + 1) * row)) ||
-            CUDA_TRY(cudaEventCreateWithFlags(&s->table_free[i], cudaEventDisableTiming)))
-            return -1;
-    return 0;
-}
-
-/* Takes the card's memory and puts the problem there. */
-static int put_problem(cuda_state *s, err *e)
-{
-    const tled_problem *p = s->p;
-    char what[80];
-    int result = -1;
-    real *mass_inverse = (real *)mem_array(p->nodes, sizeof *mass_inverse, "the solver", e);
-    cuda_kind *kind = (cuda_kind *)mem_array(p->volumes, sizeof *kind, "the solver", e);
-    if (!mass_inverse || !kind)
-        goto out;
-    for (int64_t k = 0; k < p->nodes; k++)
-        mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
-    for (int32_t i = 0; i < p->volumes; i++) {
-        const tled_volume *v = &p->volume[i];
-        kind[i] = {v->mu, v->bulk, v->density, v->hourglass, v->peak, (int32_t)v->contract};
-    }
-    lay_out(s, mass_inverse, kind, e);
-    s->bytes = s->used;
-    snprintf(what, sizeof what, "the solver of %lld elements", (long long)p->elements);
-    s->memory = (char *)card_take(s->bytes, what, e);
-    if (s->memory && !lay_out(s, mass_inverse, kind, e))
-        result = 0;
-out:
-    free(mass_inverse);
-    free(kind);
-    return result;
-}
+#include "tled/cuda_state.cuh"
 
 /* ---- passes */
 
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
-    if (s->size == CUDA_LARGE)
-        pass_start<large_brick>(s->view, *p, s->tiles.count, s->stream);
-    else if (s->size == CUDA_MIDDLE)
-        pass_start<middle_brick>(s->view, *p, s->tiles.count, s->stream);
-    else
-        pass_start<small_brick>(s->view, *p, s->tiles.count, s->stream);
+    with_brick(s->size, [&](auto g) { pass_start<decltype(g)>(s->view, *p, s->tiles.count, s->stream); });
     return card_check(cudaGetLastError(), "the start of a pass", s->step, e);
 }
 
@@ -186,6 +49,8 @@ static int pass(cuda_state *s, const tled_plan *plan, const double *now, int wha
                    s->velocity,
                    now,
                    now + 3 * s->p->script->curves,
+                   NULL,
+                   NULL,
                    s->shape,
                    node_factors_of(1 / plan->rate, plan->damping),
                    what};
@@ -197,23 +62,59 @@ static int pass(cuda_state *s, const tled_plan *plan, const double *now, int wha
     return 0;
 }
 
+/* `passes` passes from pass `first` of count steps on, in one launch. */
+static int stay(cuda_state *s, const tled_plan *plan, const double *now, int64_t first, int64_t passes, int64_t count,
+                err *e)
+{
+    const bool ends = first + passes > count, moves = !ends || passes > 1;
+    const cuda_pass p = {s->displacement,
+                         moves ? s->spare : s->displacement,
+                         s->velocity,
+                         now,
+                         NULL,
+                         NULL,
+                         NULL,
+                         s->shape,
+                         node_factors_of(1 / plan->rate, plan->damping),
+                         0};
+    const cuda_resident r = {p,
+                             moves ? s->displacement : s->spare,
+                             s->message,
+                             s->messages + 1,
+                             (int32_t)passes,
+                             (int32_t)s->p->script->curves,
+                             first == 0,
+                             ends};
+    s->messages += (uint32_t)passes;
+    const cudaError_t started = with_brick(s->size, [&](auto g) {
+        return s->view.mixed ? resident_start<decltype(g), true>(s->view, r, s->tiles.count, s->stream)
+                             : resident_start<decltype(g), false>(s->view, r, s->tiles.count, s->stream);
+    });
+    s->spare_is_internal = ends;
+    if (card_check(started, "the start of passes", s->step, e))
+        return -1;
+    if (moves)
+        swap_displacements(s);
+    return 0;
+}
+
 static int cuda_step(void *state, const void *plan, int64_t count, err *e)
 {
     cuda_state *s = (cuda_state *)state;
     const tled_plan *t = (const tled_plan *)plan;
     const double *rows = NULL;
-    int64_t first = 0;
-    for (int64_t i = 0; count > 0 && i <= count; i++) {
-        if (i % TABLE_STEPS == 0) {
-            int64_t ahead = count - i < TABLE_STEPS ? count - i : TABLE_STEPS;
-            first = i;
-            if (put_table(s, t, first, ahead, &rows, e))
-                return -1;
-        }
-        int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
-        if (pass(s, t, rows + (i - first) * 3 * s->p->script->curves, what, e))
+    for (int64_t first = 0; count > 0 && first <= count; first += TABLE_STEPS) {
+        const int64_t passes = count + 1 - first < TABLE_STEPS ? count + 1 - first : TABLE_STEPS;
+        if (put_table(s, t, first, first + passes > count ? passes - 1 : passes, &rows, e))
             return -1;
-        s->step += i > 0;
+        if (s->resident && stay(s, t, rows, first, passes, count, e))
+            return -1;
+        for (int64_t i = first; i < first + passes; i++) {
+            int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
+            if (!s->resident && pass(s, t, rows + (i - first) * 3 * s->p->script->curves, what, e))
+                return -1;
+            s->step += i > 0;
+        }
     }
     s->time = count > 0 ? tled_time(t, count) : s->time;
     return 0;
@@ -445,30 +346,6 @@ static void cuda_destroy(void *state)
     free(s);
 }
 
-template <class G> static int cut_in(cuda_state *s, err *e)
-{
-    static const int brick[3] = {G::BX, G::BY, G::BZ};
-    return CUDA_TRY(pass_allow<G>()) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
-}
-
-/* By how many bricks of a size a multiprocessor would get, from what was measured on an H200. */
-static int cut(cuda_state *s, err *e)
-{
-    int processors = 0, device = 0;
-    if (CUDA_TRY(cudaGetDevice(&device)) ||
-        CUDA_TRY(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device)))
-        return -1;
-    const int64_t each = s->p->nodes / processors;
-    s->size = each < 150 ? CUDA_SMALL : CUDA_MIDDLE;
-    if (sizeof(real) == sizeof(float) && each >= 3000) {
-        s->size = pass_allow<large_brick>() == cudaSuccess ? CUDA_LARGE : CUDA_MIDDLE;
-        cudaGetLastError(); /* a card with too little shared memory for them has said so */
-    }
-    return s->size == CUDA_LARGE    ? cut_in<large_brick>(s, e)
-           : s->size == CUDA_MIDDLE ? cut_in<middle_brick>(s, e)
-                                    : cut_in<small_brick>(s, e);
-}
-
 static int fill(cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
@@ -476,6 +353,7 @@ static int fill(cuda_state *s, err *e)
         return -1;
     s->view.stride = (p->nodes + 31) / 32 * 32;
     s->view.nodes = (int32_t)p->nodes;
+    s->view.volumes = p->volumes;
     s->view.extras = (int32_t)s->tiles.extras;
     s->view.gravity = (int32_t)p->gravity;
     memcpy(s->view.side, p->side, sizeof p->side);
@@ -483,6 +361,9 @@ static int fill(cuda_state *s, err *e)
     s->time = p->start;
     if (put_problem(s, e) || make_events(s, e) || set(s, s->displacement, p->displacement, e) ||
         set(s, s->velocity, p->velocity, e) || CUDA_TRY(cudaDeviceSynchronize()))
+        return -1;
+    if (s->resident &&
+        CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))
         return -1;
     return find_internal(s, e);
 }

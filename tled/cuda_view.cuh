@@ -23,8 +23,9 @@ extern "C" {
 
 #include <cuda_runtime.h>
 
-/* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one. */
-template <int X, int Y, int Z, int T> struct cuda_brick {
+/* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one; HALO: the most
+ * places around it for a thread; TOGETHER: blocks that a multiprocessor is to have registers for, in single precision. THREADS is a power of 2. */
+template <int X, int Y, int Z, int T, int B> struct cuda_brick {
     enum {
         BX = X,
         BY = Y,
@@ -32,51 +33,85 @@ template <int X, int Y, int Z, int T> struct cuda_brick {
         GX = X + 2,
         GY = Y + 2,
         GZ = Z + 2,
+        NODES = X * Y * Z,
         PLACES = GX * GY * GZ,
         CELLS = X + GX * (Y + GY * Z) + 1,
-        THREADS = T
+        THREADS = T,
+        TOGETHER = B,
+        OWN = (NODES + T - 1) / T,
+        HALO = (PLACES - NODES + T - 1) / T
     };
 };
 /* The larger, the fewer elements are computed twice; the smaller, the more blocks there are for the whole card. */
-typedef cuda_brick<4, 4, 4, 128> small_brick;
-typedef cuda_brick<8, 4, 4, 128> middle_brick;
-typedef cuda_brick<8, 8, 4, 256> large_brick;
-typedef enum cuda_size { CUDA_SMALL, CUDA_MIDDLE, CUDA_LARGE } cuda_size;
+typedef enum cuda_size { CUDA_SMALL, CUDA_MIDDLE, CUDA_LARGE, CUDA_SIZES } cuda_size;
+
+/* Calls f with a brick of this size. */
+template <class F> static auto with_brick(cuda_size size, F f)
+{
+    return size == CUDA_LARGE    ? f(cuda_brick<8, 8, 4, 256, 4>())
+           : size == CUDA_MIDDLE ? f(cuda_brick<8, 4, 4, 128, 1>())
+                                 : f(cuda_brick<4, 4, 4, 128, 1>());
+}
 
 typedef struct cuda_kind { /* a volume */
     double mu, bulk, density, hourglass, peak;
     int32_t contract; /* its curve, or -1 */
 } cuda_kind;
 
+typedef struct cuda_mixed {                     /* a cell mixed of two volumes */
+    double mu, bulk, density, hourglass, share; /* share: of the second volume */
+    int32_t mix;                                /* the second volume */
+} cuda_mixed;
+
+enum { LAW_NUMBERS = 3, LAWS_NEAR = 16 /* volumes whose laws stand in shared memory */ };
+
 template <class S> struct cuda_view {
     const tile *tiles;
     const uint32_t *node_info, *cell;
     const int32_t *halo_node;
     const uint16_t *halo_place;
-    const float *fibre, *share; /* share: or NULL */
+    const float *fibre, *share; /* share: or NULL, as are: */
+    const float *mixfibre;
+    const int32_t *mixed; /* cells: which of: */
+    const cuda_mixed *mixture;
     const tile_extra *extra;
     const int32_t *force_curve;
     const double *force_share;
     const S *mass_inverse;
     const cuda_kind *kind;
+    const S *law; /* volumes x LAW_NUMBERS: mu, bulk, hourglass */
     int64_t stride;
-    int32_t nodes, extras, gravity; /* gravity: its curve, or -1 */
+    int32_t nodes, extras, volumes, gravity; /* gravity: its curve, or -1 */
     double side[3];
 };
 
-/* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. */
+/* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on its way
+ * at once: first where, then what. */
 template <class G, class S> __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
 {
-    for (int i = threadIdx.x; i < t.nodes; i += G::THREADS) {
-        int place = v.node_info[t.node + i] & TILE_PLACE;
-        for (int a = 0; a < 3; a++)
-            to[a * G::PLACES + place] = u[a * v.stride + t.node + i];
+    constexpr int OWN = G::OWN, HALO = G::HALO;
+    int32_t node[OWN + HALO], place[OWN + HALO];
+    S value[3 * (OWN + HALO)];
+#pragma unroll
+    for (int k = 0; k < OWN + HALO; k++) {
+        const int i = (int)threadIdx.x + (k < OWN ? k : k - OWN) * G::THREADS;
+        node[k] = -1;
+        if (k < OWN && i < t.nodes)
+            node[k] = t.node + i, place[k] = v.node_info[t.node + i] & TILE_PLACE;
+        if (k >= OWN && i < t.halos)
+            node[k] = v.halo_node[t.halo + i], place[k] = v.halo_place[t.halo + i];
     }
-    for (int i = threadIdx.x; i < t.halos; i += G::THREADS) {
-        int place = v.halo_place[t.halo + i], node = v.halo_node[t.halo + i];
+#pragma unroll
+    for (int k = 0; k < OWN + HALO; k++)
+#pragma unroll
         for (int a = 0; a < 3; a++)
-            to[a * G::PLACES + place] = u[a * v.stride + node];
-    }
+            value[3 * k + a] = node[k] >= 0 ? u[a * v.stride + node[k]] : 0;
+#pragma unroll
+    for (int k = 0; k < OWN + HALO; k++)
+#pragma unroll
+        for (int a = 0; a < 3; a++)
+            if (node[k] >= 0)
+                to[a * G::PLACES + place[k]] = value[3 * k + a];
 }
 
 /* Where corner c of a cell lies, from its low corner; VTK order. */

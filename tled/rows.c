@@ -124,7 +124,8 @@ static uint8_t own_rows(const builder *b, int64_t element, int32_t slab)
 
 static bool follows(const builder *b, const rows_run *run, int64_t element, uint8_t mask)
 {
-    if (run->count == b->r->lanes || run->mask != mask || !run->regular || run->volume != b->p->element_volume[element])
+    if (run->count == b->r->lanes || run->mask != mask || !run->regular ||
+        run->volume != b->p->element_volume[element] || run->mix != tled_mix(b->p, element))
         return false;
     for (int c = 0; c < 8; c++)
         if (b->r->place[b->p->element_node[8 * element + c]] != run->node[c] + run->count)
@@ -153,7 +154,11 @@ static int add_cell(builder *b, int64_t element, uint8_t mask, bool begins)
         mem_grow(&r->run, &b->run_capacity, r->runs + 1, sizeof *r->run, "the rows", b->e))
         return -1;
     rows_run *run = &r->run[r->runs++];
-    *run = (rows_run){.cell = r->cells - 1, .volume = b->p->element_volume[element], .count = 1, .mask = mask};
+    *run = (rows_run){.cell = r->cells - 1,
+                      .volume = b->p->element_volume[element],
+                      .mix = tled_mix(b->p, element),
+                      .count = 1,
+                      .mask = mask};
     for (int c = 0; c < 8; c++)
         run->node[c] = r->place[b->p->element_node[8 * element + c]];
     run->regular = is_regular(run);

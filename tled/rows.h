@@ -3,7 +3,7 @@
  * into slabs of whole rows of nodes, one for a thread at a time: a slab computes every element at its nodes, those at its border as its
  * neighbour does too, so that no thread waits for another within a step and each node's sum is the same however it is cut.
  *
- * A run is at most `lanes` elements of one volume; its corners need not lie in a lattice, but for where they follow each other: any
+ * A run is at most `lanes` elements of one volume, or mixed of the same two; its corners need not lie in a lattice, but for where they follow each other: any
  * model of boxes can be cut so. The creator owns the rows; they hold no pointer into the problem.
  */
 #ifndef SINEW_ROWS_H
@@ -19,6 +19,7 @@ typedef struct rows_run {
     int32_t node[8]; /* of its first element's corners, VTK order, in the rows' order of nodes */
     int32_t cell;    /* its first element, in the order of fibre and fraction */
     int32_t volume;
+    int32_t mix;   /* the second volume of all of them, or -1 */
     uint8_t count; /* elements */
     uint8_t
         mask; /* bit r: the row of nodes at corners 2r and 2r + 1 (r = 0 to 3: y, z low; y high; ...) is the slab's own */

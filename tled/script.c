@@ -163,11 +163,14 @@ int32_t script_muscle(const model *m, const char *name, const char *place, int64
 
 static bool has_fibre(const model *m, int32_t volume)
 {
-    const model_array *of = model_find(m, "element.volume"), *fibre = model_find(m, "element.fibre");
-    for (int64_t i = 0; of && fibre && i < of->rows; i++)
-        if (of->i32[i] == volume &&
-            (fibre->f32[3 * i] != 0 || fibre->f32[3 * i + 1] != 0 || fibre->f32[3 * i + 2] != 0))
-            return true;
+    static const char *const name[2][2] = {{"element.volume", "element.fibre"}, {"element.mix", "element.mixfibre"}};
+    for (int k = 0; k < 2; k++) {
+        const model_array *of = model_find(m, name[k][0]), *fibre = model_find(m, name[k][1]);
+        for (int64_t i = 0; of && fibre && i < of->rows; i++)
+            if (of->i32[i] == volume &&
+                (fibre->f32[3 * i] != 0 || fibre->f32[3 * i + 1] != 0 || fibre->f32[3 * i + 2] != 0))
+                return true;
+    }
     return false;
 }
 

@@ -62,13 +62,15 @@ ELEMENT_FUNCTION void stability_add_active(element_tensor h, element_fibre fibre
                        slope * m[r / 3] * along[r % 3] * m[c / 3] * along[c % 3];
 }
 
-/* (4/rho) A_kjlm / (h_j h_m) of an element at H, with its fibre; density: kg/m3; side: m. */
+/* (4/rho) A_kjlm / (h_j h_m) of an element at H, with its fibre and that of a second volume in it; density: kg/m3; side: m. */
 ELEMENT_FUNCTION void stability_matrix(double mu, double k, double density, const double side[3], element_tensor h,
-                                       element_fibre fibre, step_matrix *a)
+                                       element_fibre fibre, element_fibre second, step_matrix *a)
 {
     stability_add_law(mu, k, h, a->at);
     if (fibre.tension != 0)
         stability_add_active(h, fibre, a->at);
+    if (second.tension != 0)
+        stability_add_active(h, second, a->at);
     for (int r = 0; r < 9; r++)
         for (int c = 0; c <= r; c++)
             a->at[c][r] = a->at[r][c] *= 4 / (density * side[r % 3] * side[c % 3]);

@@ -1,9 +1,9 @@
 #include "tled/state.h"
 
 #include "base/mem.h"
-#include "mesh/element.h"
 #include "mesh/lattice.h"
 #include "model/materials.h"
+#include "tled/stability.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,6 +11,8 @@
 
 void tled_problem_free(tled_problem *p)
 {
+    free(p->mixed);
+    free(p->law);
     free(p->volume);
     free(p->corner);
     free(p->mass);
@@ -21,6 +23,24 @@ void tled_problem_free(tled_problem *p)
     free(p->displacement);
     free(p->velocity);
     memset(p, 0, sizeof *p);
+}
+
+/* What some elements are mixed of, if any is. */
+static int borrow_mixes(tled_problem *p, const model *m, err *e)
+{
+    const model_array *mix = model_find(m, "element.mix"), *mixfibre = model_find(m, "element.mixfibre");
+    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    bool any = false;
+    if (!mix)
+        return 0;
+    if (!mixture || (mixfibre && !model_need(m, "element.fibre", e)))
+        return -1;
+    for (int64_t i = 0; i < mix->rows; i++)
+        any |= mix->i32[i] >= 0;
+    p->mix = any ? mix->i32 : NULL;
+    p->mixture = any ? mixture->f32 : NULL;
+    p->mixfibre = any && mixfibre ? mixfibre->f32 : NULL;
+    return 0;
 }
 
 static int borrow_mesh(tled_problem *p, const model *m, err *e)
@@ -43,7 +63,7 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     p->element_volume = volume->i32;
     p->fibre = fibre ? fibre->f32 : NULL;
     p->fraction = fraction ? fraction->f32 : NULL;
-    return 0;
+    return borrow_mixes(p, m, e);
 }
 
 /* An element without mass has no step that is stable. */
@@ -53,6 +73,19 @@ static int check_fractions(const tled_problem *p, err *e)
         if (!(p->fraction[i] > 0 && p->fraction[i] <= 1))
             return err_set(e, NULL, 0, "element.fraction of element %lld is %g; expected above 0, and at most 1",
                            (long long)i, (double)p->fraction[i]);
+    return 0;
+}
+
+static int check_mixtures(const tled_problem *p, err *e)
+{
+    for (int64_t i = 0; p->mix && i < p->elements; i++) {
+        if (p->mix[i] >= 0 && !(p->mixture[i] >= 0 && p->mixture[i] <= 1))
+            return err_set(e, NULL, 0, "element.mixture of element %lld is %g; expected a share from 0 to 1",
+                           (long long)i, (double)p->mixture[i]);
+        if (p->mix[i] == p->element_volume[i])
+            return err_set(e, NULL, 0, "element.mix of element %lld is its own volume; expected another, or -1",
+                           (long long)i);
+    }
     return 0;
 }
 
@@ -81,6 +114,17 @@ static int64_t find_curve(const script *s, script_verb verb, int32_t volume)
     return -1;
 }
 
+/* Of the matrix of step.h, and of the hourglass modes. */
+static double square_at_rest(const tled_problem *p, const tled_volume *v)
+{
+    const element_tensor rest = {0};
+    const element_fibre none = {0};
+    const double share = p->side[0] * p->side[1] * p->side[2] / 8;
+    step_matrix a;
+    stability_matrix(v->mu, v->bulk, v->density, p->side, rest, none, none, &a);
+    return fmax(stability_largest(&a), 8 * v->hourglass / (v->density * share));
+}
+
 static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
 {
     material law;
@@ -97,6 +141,7 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
     v->density = law.density;
     v->peak = law.peak;
     v->hourglass = element_hourglass(p->kappa, v->mu, v->bulk, p->side[0], p->side[1], p->side[2]);
+    v->square = square_at_rest(p, v);
     v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
     if (v->contract >= 0 && !(v->peak > 0))
         return err_set(e, NULL, 0,
@@ -115,6 +160,32 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
     for (int64_t i = 0; p->volume && i < p->elements; i++)
         p->volume[p->element_volume[i]].elements++;
     return p->volume ? 0 : -1;
+}
+
+static tled_law mix_laws(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]], *w = &p->volume[p->mix[element]];
+    const double s = tled_mixture(p, element);
+    tled_law law = {.mu = material_between(v->mu, w->mu, s),
+                    .bulk = material_between(v->bulk, w->bulk, s),
+                    .density = (1 - s) * v->density + s * w->density};
+    law.hourglass = element_hourglass(p->kappa, law.mu, law.bulk, p->side[0], p->side[1], p->side[2]);
+    return law;
+}
+
+/* The laws of what is mixed. */
+static int make_mixtures(tled_problem *p, err *e)
+{
+    if (!p->mix)
+        return 0;
+    p->mixed = mem_array(p->elements, sizeof *p->mixed, "the mixed elements", e);
+    for (int64_t i = 0; p->mixed && i < p->elements; i++)
+        p->mixed[i] = p->mix[i] < 0 ? -1 : (int32_t)p->laws++;
+    p->law = p->mixed ? mem_array(p->laws, sizeof *p->law, "the mixed elements", e) : NULL;
+    for (int64_t i = 0; p->law && i < p->elements; i++)
+        if (p->mixed[i] >= 0)
+            p->law[p->mixed[i]] = mix_laws(p, i);
+    return p->law ? 0 : -1;
 }
 
 /* Where among a node's elements, by their places in the lattice, the one is that has the node for this corner. */
@@ -140,7 +211,7 @@ static int make_corners(tled_problem *p, err *e)
         for (; at && (list[at - 1] == none || corner_rank(list[at - 1]) > corner_rank((int32_t)i)); at--)
             list[at] = list[at - 1];
         list[at] = (int32_t)i;
-        p->mass[n] += p->volume[p->element_volume[i / 8]].density * share * tled_fraction(p, i / 8);
+        p->mass[n] += tled_law_of(p, i / 8).density * share * tled_fraction(p, i / 8);
     }
     for (int64_t n = 0; n < p->nodes; n++)
         if (p->corner[n * 8] == none)
@@ -210,7 +281,8 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
     p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
     if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
         return -1;
-    if (check_boxes(p, e) || check_fractions(p, e) || make_volumes(p, m, e) || make_corners(p, e) || make_forces(p, e))
+    if (check_boxes(p, e) || check_fractions(p, e) || check_mixtures(p, e) || make_volumes(p, m, e) ||
+        make_mixtures(p, e) || make_corners(p, e) || make_forces(p, e))
         return -1;
     make_holds(p, m);
     return 0;

@@ -18,9 +18,16 @@ typedef struct tled_volume {
     const char *name;               /* borrowed */
     double mu, bulk, density, peak; /* Pa, Pa, kg/m3, Pa */
     double hourglass;               /* N/m: k of each hourglass mode */
+    double square;                  /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
     int64_t elements;               /* of it */
     int64_t contract;               /* curve that sets its level, or -1 */
 } tled_volume;
+
+/* What an element is made of: a volume, or two. With s the share of the second, density is (1 - s) rho1 + s rho2, mu is
+ * mu1^(1-s) mu2^s and K likewise (material_between). */
+typedef struct tled_law {
+    double mu, bulk, density, hourglass; /* as a tled_volume's */
+} tled_law;
 
 typedef struct tled_problem {
     int64_t nodes, elements;
@@ -32,14 +39,20 @@ typedef struct tled_problem {
     const int32_t *element_volume; /* elements */
     const float *fibre;            /* elements x 3, or NULL */
     const float *fraction; /* elements: the share that is tissue, by which mass and all forces go; NULL: all 1 */
-    tled_volume *volume;   /* volumes; owned, as is all below */
-    int32_t *corner;       /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
-    double *mass;          /* nodes: kg */
-    int32_t *hold;         /* nodes x 3 */
-    int64_t held;          /* nodes with any component held */
-    int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
-    int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
-    double *force_share;   /* entries */
+    const int32_t *mix;    /* elements: the second volume of those that are mixed, -1 in others; NULL: none is */
+    const float *mixture;  /* elements: its share of the tissue, 0 to 1; where mix is not NULL */
+    const float *mixfibre; /* elements x 3: its fibre; or NULL */
+    int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL where mix is. Owned, as is all below */
+    tled_law *law;         /* of the mixed elements, in their order */
+    int64_t laws;
+    tled_volume *volume;  /* volumes */
+    int32_t *corner;      /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
+    double *mass;         /* nodes: kg */
+    int32_t *hold;        /* nodes x 3 */
+    int64_t held;         /* nodes with any component held */
+    int32_t *force_start; /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
+    int32_t *force_curve; /* entries: the curve whose value the node gets a share of */
+    double *force_share;  /* entries */
     const script *script;
     int64_t gravity;      /* its curve, or -1 */
     double start;         /* s: the model's time at the start */
@@ -106,6 +119,26 @@ int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
 static inline double tled_fraction(const tled_problem *p, int64_t element)
 {
     return p->fraction ? (double)p->fraction[element] : 1;
+}
+
+/* The second volume of an element, or -1. */
+static inline int32_t tled_mix(const tled_problem *p, int64_t element)
+{
+    return p->mix ? p->mix[element] : -1;
+}
+
+/* Its share of the tissue; 0 where there is none. */
+static inline double tled_mixture(const tled_problem *p, int64_t element)
+{
+    return tled_mix(p, element) < 0 ? 0 : (double)p->mixture[element];
+}
+
+/* The law of an element: its volume's, or one between its two volumes'. */
+static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]];
+    const tled_law own = {v->mu, v->bulk, v->density, v->hourglass};
+    return p->mixed && p->mixed[element] >= 0 ? p->law[p->mixed[element]] : own;
 }
 
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */

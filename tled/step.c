@@ -2,9 +2,10 @@
 
 #include <math.h>
 
-void step_matrix_of(const tled_problem *p, const tled_volume *v, element_tensor h, element_fibre fibre, step_matrix *a)
+void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
+                    element_fibre second, step_matrix *a)
 {
-    stability_matrix(v->mu, v->bulk, v->density, p->side, h, fibre, a);
+    stability_matrix(law->mu, law->bulk, law->density, p->side, h, fibre, second, a);
 }
 
 bool step_below(const step_matrix *a, double limit)
@@ -17,23 +18,33 @@ double step_largest(const step_matrix *a)
     return stability_largest(a);
 }
 
+/* No less than the square of the highest frequency of a mixed element: stiffness grows with mu and K alike, so it is at most
+ * that of a volume times the larger of what these are of the volume's. */
+static double square_by(const tled_law *law, const tled_volume *v)
+{
+    return v->square * fmax(law->mu / v->mu, law->bulk / v->bulk) * v->density / law->density;
+}
+
+/* The square of the highest frequency of an element at rest; of one that is mixed perhaps a little more. */
+static double square_at_rest(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]];
+    if (tled_mix(p, element) < 0)
+        return v->square;
+    const tled_law law = tled_law_of(p, element);
+    return fmin(square_by(&law, v), square_by(&law, &p->volume[p->mix[element]]));
+}
+
 double step_at_rest(const tled_problem *p, int32_t *volume)
 {
-    const element_tensor rest = {0};
-    const element_fibre none = {0};
-    double least = INFINITY, share = p->side[0] * p->side[1] * p->side[2] / 8;
-    for (int32_t i = 0; i < p->volumes; i++) {
-        const tled_volume *v = &p->volume[i];
-        step_matrix a;
-        if (!v->elements)
-            continue;
-        step_matrix_of(p, v, rest, none, &a);
-        double dt = 2 / sqrt(fmax(step_largest(&a), 8 * v->hourglass / (v->density * share)));
-        if (dt < least && volume)
-            *volume = i;
-        least = fmin(least, dt);
+    double highest = 0;
+    for (int64_t i = 0; i < p->elements; i++) {
+        double square = square_at_rest(p, i);
+        if (square > highest && volume)
+            *volume = p->element_volume[i];
+        highest = fmax(highest, square);
     }
-    return least;
+    return 2 / sqrt(highest);
 }
 
 double step_rate(double stable, int64_t *check)

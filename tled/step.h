@@ -6,6 +6,8 @@
  *     (4/rho) A_kjlm / (h_j h_m),   A = dP/dF,
  * and, apart from them, of the hourglass modes: 8 k / m. At rest A is the elasticity C: the largest eigenvalue of a cube is
  * 12 K / (rho h^2), so dt = h / sqrt(3 K / rho). Deformed, A has the geometric stiffness and the active stress in it.
+ *
+ * Of an element mixed of two volumes what is found at rest is a bound from theirs, exact where both have the same nu.
  */
 #ifndef SINEW_STEP_H
 #define SINEW_STEP_H
@@ -13,11 +15,12 @@
 #include "tled/stability.h"
 #include "tled/state.h"
 
-/* The stable step at rest, s: the least of all volumes that have elements. *volume (may be NULL) gets which. */
+/* The stable step at rest, s: the least of all elements. *volume (may be NULL) gets whose. */
 double step_at_rest(const tled_problem *p, int32_t *volume);
 
-/* The matrix above for an element of a volume at H, with its fibre. */
-void step_matrix_of(const tled_problem *p, const tled_volume *v, element_tensor h, element_fibre fibre, step_matrix *a);
+/* The matrix above for an element of a law at H, with its fibre and that of its second volume. */
+void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
+                    element_fibre second, step_matrix *a);
 
 /* Whether all its eigenvalues are below the limit; false where anything is not finite. */
 bool step_below(const step_matrix *a, double limit);

@@ -34,6 +34,8 @@ void tiles_free(tiles *t)
     free(t->cell_element);
     free(t->fibre);
     free(t->share);
+    free(t->mixed);
+    free(t->mixfibre);
     free(t->extra);
     memset(t, 0, sizeof *t);
 }
@@ -245,7 +247,27 @@ static int tiles_at(const cutter *c, int64_t element, int32_t list[8])
 
 static bool is_fibred(const cutter *c, int64_t element)
 {
-    return c->p->fibre && c->p->volume[c->p->element_volume[element]].contract >= 0;
+    const tled_problem *p = c->p;
+    if (p->fibre && p->volume[p->element_volume[element]].contract >= 0)
+        return true;
+    return p->mixfibre && p->mix[element] >= 0 && p->volume[p->mix[element]].contract >= 0;
+}
+
+/* Lists over cells, as many as are counted. */
+static int make_cell_lists(cutter *c)
+{
+    tiles *t = c->t;
+    const tled_problem *p = c->p;
+    t->cell = mem_array(t->cells, sizeof *t->cell, "the tiles", c->e);
+    t->cell_element = mem_array(t->cells, sizeof *t->cell_element, "the tiles", c->e);
+    t->fibre = mem_array(t->directions, 3 * sizeof *t->fibre, "the tiles", c->e);
+    t->share = p->fraction ? mem_array(t->cells, sizeof *t->share, "the tiles", c->e) : NULL;
+    t->mixed = p->mixed ? mem_array(t->cells, sizeof *t->mixed, "the tiles", c->e) : NULL;
+    t->mixfibre = p->mixfibre ? mem_array(t->directions, 3 * sizeof *t->mixfibre, "the tiles", c->e) : NULL;
+    return t->cell && t->cell_element && t->fibre && (t->share || !p->fraction) && (t->mixed || !p->mixed) &&
+                   (t->mixfibre || !p->mixfibre)
+               ? 0
+               : -1;
 }
 
 /* The cells of each tile, those with fibres first. */
@@ -268,11 +290,7 @@ static int list_cells(cutter *c)
         t->directions += to->fibred;
         to->cells = to->fibred = 0;
     }
-    t->cell = mem_array(t->cells, sizeof *t->cell, "the tiles", c->e);
-    t->cell_element = mem_array(t->cells, sizeof *t->cell_element, "the tiles", c->e);
-    t->fibre = mem_array(t->directions, 3 * sizeof *t->fibre, "the tiles", c->e);
-    t->share = c->p->fraction ? mem_array(t->cells, sizeof *t->share, "the tiles", c->e) : NULL;
-    if (!t->cell || !t->cell_element || !t->fibre || (c->p->fraction && !t->share))
+    if (make_cell_lists(c))
         return -1;
     for (int fibred = 1; fibred >= 0; fibred--)
         for (int64_t i = 0; i < c->p->elements; i++)
@@ -297,6 +315,8 @@ static int put_cell(cutter *c, int64_t which, int64_t at)
     c->taken[place] = true;
     if (t->share)
         t->share[at] = c->p->fraction[element];
+    if (t->mixed)
+        t->mixed[at] = c->p->mixed[element];
     t->cell[at] = (uint32_t)place | own << TILE_OWN | (uint32_t)c->p->element_volume[element] << TILE_VOLUME;
     for (int i = 0; i < 8; i++) {
         int32_t *here = &c->here[place_in(c, which, corner[i])];
@@ -343,8 +363,11 @@ static void sort_cells(cutter *c, int64_t i)
             key[k] = (uint32_t)place_in(c, i, c->p->element_node[8 * (int64_t)list[first + k]]);
         sort_by_place(list + first, key, count);
     }
-    for (int32_t k = 0; k < 3 * to->fibred; k++)
+    for (int32_t k = 0; k < 3 * to->fibred; k++) {
         t->fibre[3 * (int64_t)to->direction + k] = c->p->fibre[3 * (int64_t)list[k / 3] + k % 3];
+        if (t->mixfibre)
+            t->mixfibre[3 * (int64_t)to->direction + k] = c->p->mixfibre[3 * (int64_t)list[k / 3] + k % 3];
+    }
 }
 
 static int cut_tiles(cutter *c)

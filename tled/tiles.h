@@ -17,7 +17,7 @@ typedef struct tile {
     int32_t node, nodes;       /* owned: the first, in the tiles' order of nodes, and how many */
     int32_t halo, halos;       /* in halo_node, halo_place */
     int32_t cell, cells;       /* in cell */
-    int32_t fibred, direction; /* the first `fibred` of its cells have fibres, in fibre from row `direction` on */
+    int32_t fibred, direction; /* the first `fibred` of its cells may contract: fibre from row `direction` on */
 } tile;
 
 enum {
@@ -51,6 +51,8 @@ typedef struct tiles {
     int32_t *cell_element; /* cells: which of the model's elements it is */
     float *fibre;          /* directions x 3 */
     float *share;          /* cells: the problem's fraction; NULL where that is */
+    int32_t *mixed;        /* cells: the problem's; NULL where that is */
+    float *mixfibre;       /* directions x 3: of cells' second volumes; or NULL */
     tile_extra *extra;     /* extras, by node */
 } tiles;
 

@@ -22,24 +22,26 @@ static element_corners corners_of(const watch *w, int64_t element, int a)
     return c;
 }
 
-static element_fibre fibre_of(const watch *w, int64_t i)
+/* along: elements x 3, or NULL; share: of the tissue that is the volume's. */
+static element_fibre fibre_of(const watch *w, const float *along, int64_t i, int32_t volume, double share)
 {
-    const tled_problem *p = w->p;
     element_fibre fibre = {0};
-    if (!p->fibre)
+    if (!along || volume < 0)
         return fibre;
-    fibre.along = (element_vector){p->fibre[3 * i], p->fibre[3 * i + 1], p->fibre[3 * i + 2]};
-    fibre.tension = tled_tension(p, p->element_volume[i], w->curves);
+    fibre.along = (element_vector){along[3 * i], along[3 * i + 1], along[3 * i + 2]};
+    fibre.tension = share * tled_tension(w->p, volume, w->curves);
     return fibre;
 }
 
 /* Where an element's matrix reaches past the largest frequency of its chunk, that is raised to 1 % above the element's: so few
  * elements need more than one test. */
-static void look_at_step(const watch *w, const tled_volume *v, int64_t i, element_tensor h, element_fibre fibre,
-                         struct watch_part *part)
+static void look_at_step(const watch *w, const tled_law *law, int64_t i, element_tensor h, struct watch_part *part)
 {
+    const tled_problem *p = w->p;
+    const double s = tled_mixture(p, i);
     step_matrix a;
-    step_matrix_of(w->p, v, h, fibre, &a);
+    step_matrix_of(p, law, h, fibre_of(w, p->fibre, i, p->element_volume[i], 1 - s),
+                   fibre_of(w, p->mixfibre, i, tled_mix(p, i), s), &a);
     if (step_below(&a, part->sum.frequency))
         return;
     part->sum.frequency = w->raise * step_largest(&a);
@@ -49,20 +51,20 @@ static void look_at_step(const watch *w, const tled_volume *v, int64_t i, elemen
 static void look_at_element(const watch *w, int64_t i, element_shape shape, struct watch_part *part)
 {
     const tled_problem *p = w->p;
-    const tled_volume *v = &p->volume[p->element_volume[i]];
+    const tled_law law = tled_law_of(p, i);
     element_modes x = element_modes_of(corners_of(w, i, 0)), y = element_modes_of(corners_of(w, i, 1));
     element_modes z = element_modes_of(corners_of(w, i, 2));
     element_tensor h = element_gradient(x, y, z, shape.slope);
-    double volume = 1 + element_dilation(h), energy = element_energy(h, v->mu, v->bulk);
-    double hourglass = element_hourglass_energy(x, v->hourglass) + element_hourglass_energy(y, v->hourglass) +
-                       element_hourglass_energy(z, v->hourglass);
+    double volume = 1 + element_dilation(h), energy = element_energy(h, law.mu, law.bulk);
+    double hourglass = element_hourglass_energy(x, law.hourglass) + element_hourglass_energy(y, law.hourglass) +
+                       element_hourglass_energy(z, law.hourglass);
     if (!(volume > 0) || !isfinite(energy) || !isfinite(hourglass)) {
         part->inverted = part->sum.broken < 0 ? volume <= 0 : part->inverted;
         part->sum.broken = part->sum.broken < 0 ? i : part->sum.broken;
         return;
     }
     part->sum.strain += tled_fraction(p, i) * (energy * p->side[0] * p->side[1] * p->side[2] + hourglass);
-    look_at_step(w, v, i, h, fibre_of(w, i), part);
+    look_at_step(w, &law, i, h, part);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)

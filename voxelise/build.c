@@ -227,12 +227,29 @@ static int add_arrays(work *w, model *m, int64_t nodes, int64_t elements, err *e
     return 0;
 }
 
-static int add_fractions(model *m, const voxels *x, err *e)
+/* Whether some element has a second volume. */
+static bool is_mixed(const voxels *x)
 {
-    model_array *to = model_add(m, "element.fraction", e);
-    if (to && x->elements)
-        memcpy(to->f32, x->fraction, (size_t)x->elements * sizeof *x->fraction);
-    return to ? 0 : -1;
+    for (int64_t i = 0; x->mix && i < x->elements; i++)
+        if (x->mix[i] >= 0)
+            return true;
+    return false;
+}
+
+static int add_shares(model *m, const voxels *x, err *e)
+{
+    bool mixed = is_mixed(x);
+    model_array *fraction = model_add(m, "element.fraction", e);
+    model_array *mix = fraction && mixed ? model_add(m, "element.mix", e) : NULL;
+    model_array *mixture = mix ? model_add(m, "element.mixture", e) : NULL;
+    if (!fraction || (mixed && !mixture))
+        return -1;
+    memcpy(fraction->f32, x->fraction, (size_t)x->elements * sizeof *x->fraction);
+    if (mixed) {
+        memcpy(mix->i32, x->mix, (size_t)x->elements * sizeof *x->mix);
+        memcpy(mixture->f32, x->mixture, (size_t)x->elements * sizeof *x->mixture);
+    }
+    return 0;
 }
 
 int build_elements(model *m, const voxels *x, const lattice *l, pool *threads, err *e)
@@ -249,7 +266,7 @@ int build_elements(model *m, const voxels *x, const lattice *l, pool *threads, e
     if (atomic_load(&w.failed))
         err_memory(e, "a layer of nodes");
     else
-        status = x->fraction ? add_fractions(m, x, e) : 0;
+        status = x->fraction ? add_shares(m, x, e) : 0;
 out:
     free(w.first);
     voxels_layers_free(&layer);

@@ -10,7 +10,7 @@
 #include "voxelise/voxels.h"
 
 /* Adds axes node and element, node.position, node.lattice, element.node, element.lattice and element.volume; by shares
- * element.fraction too. */
+ * element.fraction too, and element.mix and element.mixture where some element has a second volume. */
 int build_elements(model *m, const voxels *x, const lattice *l, pool *threads, err *e);
 
 /* Adds axis volume and its arrays; volumes have their numbers of the plan. */

@@ -27,6 +27,7 @@ typedef struct climb_count {
     int64_t inside;  /* centres in it */
     int64_t reached; /* of them, those taken at the level below (on level 0 all) */
     int64_t kept;    /* of them, those that it has in the end */
+    int64_t mixed;   /* by shares (shares.h): voxels that it is the second volume in */
 } climb_count;
 
 typedef struct climb {

@@ -180,6 +180,21 @@ static int32_t moved(const work *w, int32_t volume)
     return volume < w->lowest ? volume : volume + (int32_t)w->l->layers;
 }
 
+/* The second volumes, as the first: one of level 0 is the layer that the voxel's centre is in, and no second where that is
+ * the first's too. x: of the runs that are cut. */
+static void move_mixes(const work *w, voxels *x)
+{
+    for (int64_t r = 0, i = 0; x->mix && r < x->runs; r++)
+        for (int32_t at = x->run[r].from; at < x->run[r].to; at++, i++) {
+            int32_t was = x->mix[i];
+            bool in_layer = w->layer[i] && was >= 0 && was < w->lowest;
+            x->mix[i] = was < 0 ? -1 : in_layer ? w->lowest + w->layer[i] - 1 : moved(w, was);
+            if (x->mix[i] == x->run[r].volume)
+                x->mix[i] = -1;
+            x->mixture[i] = x->mix[i] < 0 ? 0 : x->mixture[i];
+        }
+}
+
 /* The runs again, cut where layers change. */
 static int cut_runs(const work *w, voxels *x, err *e)
 {
@@ -187,9 +202,10 @@ static int cut_runs(const work *w, voxels *x, err *e)
     int64_t voxel = 0;
     for (int64_t r = 0; r < x->runs; r++) {
         climb_run a = x->run[r];
+        bool low = a.volume < w->lowest;
         for (int32_t from = a.from, end; from < a.to; from = end) {
-            int layer = w->layer[voxel];
-            for (end = from; end < a.to && w->layer[voxel] == layer; end++)
+            int layer = low ? w->layer[voxel] : 0;
+            for (end = from; end < a.to && (!low || w->layer[voxel] == layer); end++)
                 voxel++;
             climb_run part = {from, end, a.j, a.k, layer ? w->lowest + layer - 1 : moved(w, a.volume)};
             if (climb_add_run(&to, part, e)) {
@@ -211,10 +227,13 @@ static int move_counts(const work *w, voxels *x, int32_t all, err *e)
         return -1;
     for (int32_t v = 0; v < all; v++) {
         count[moved(w, v)] = x->count[v];
-        count[moved(w, v)].kept = 0;
+        count[moved(w, v)].kept = count[moved(w, v)].mixed = 0;
     }
     for (int64_t r = 0; r < x->runs; r++)
         count[x->run[r].volume].kept += x->run[r].to - x->run[r].from;
+    for (int64_t i = 0; x->mix && i < x->elements; i++)
+        if (x->mix[i] >= 0)
+            count[x->mix[i]].mixed++;
     for (int64_t i = w->lowest; i < w->lowest + w->l->layers; i++)
         count[i].inside = count[i].reached = count[i].kept;
     free(x->count);
@@ -255,7 +274,9 @@ static int find_layers(const work *w, const voxels *x, const skin *s, const grid
         depth[i] = w->l->layer[i].depth;
     if (voxels_find_layers(x, &at, e))
         return -1;
-    int status = depths_find(w->layer, depth, w->l->layers, x, &at, w->lowest, &surface, g, threads, e);
+    /* A muscle's voxel may have a share of level 0. */
+    int32_t below = x->mix ? INT32_MAX : w->lowest;
+    int status = depths_find(w->layer, depth, w->l->layers, x, &at, below, &surface, g, threads, e);
     voxels_layers_free(&at);
     return status;
 }
@@ -266,9 +287,10 @@ int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const 
     work w = {.l = l, .lowest = lowest_volumes(plan)};
     w.layer = mem_array(x->elements, sizeof *w.layer, "layers", e);
     int status = -1;
-    if (w.layer && !make_skin(&s, plan, o, g, e) && !find_layers(&w, x, &s, g, threads, e) && !cut_runs(&w, x, e) &&
-        !move_counts(&w, x, plan->volumes, e) && !add_volumes(&w, plan, e))
-        status = 0;
+    if (w.layer && !make_skin(&s, plan, o, g, e) && !find_layers(&w, x, &s, g, threads, e) && !cut_runs(&w, x, e)) {
+        move_mixes(&w, x);
+        status = move_counts(&w, x, plan->volumes, e) || add_volumes(&w, plan, e) ? -1 : 0;
+    }
     free_skin(&s);
     free(w.layer);
     return status;

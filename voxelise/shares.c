@@ -81,29 +81,58 @@ static void forget(shares *s)
     s->past = 0;
 }
 
-int shares_row(shares *s, int64_t j, int64_t k, climb_runs *to, shares_list *fraction, climb_count *kept, err *e)
+/* The slot that has the most samples of voxel i, of two the first volume's; but for one. -1: none has any. */
+static int64_t largest(const shares *s, int64_t i, int64_t but)
+{
+    int64_t size = 2 * (s->cells + 1), best = -1;
+    for (int64_t n = 0; n < s->slots; n++) {
+        int32_t here = s->sum[n * size + i], most = best < 0 ? 0 : s->sum[best * size + i];
+        if (n != but && (here > most || (here > 0 && here == most && s->volume[n] < s->volume[best])))
+            best = n;
+    }
+    return best;
+}
+
+static int64_t total(const shares *s, int64_t i)
+{
+    int64_t sum = 0;
+    for (int64_t n = 0; n < s->slots; n++)
+        sum += s->sum[n * 2 * (s->cells + 1) + i];
+    return sum;
+}
+
+/* Voxel i of a row, in which so many samples are. */
+static int add_share(shares *s, int64_t i, climb_run at, int64_t samples, shares_list *list, climb_count *kept, err *e)
+{
+    int64_t size = 2 * (s->cells + 1), first = largest(s, i, -1), second = largest(s, i, first);
+    shares_voxel voxel = {(float)((double)samples / pow(s->rule.samples, 3)), 0, -1};
+    if (second >= 0) {
+        double own = s->sum[first * size + i], other = s->sum[second * size + i];
+        voxel.mix = s->volume[second];
+        voxel.mixture = (float)(other / (own + other));
+        kept[voxel.mix].mixed++;
+    }
+    if (mem_grow(&list->voxel, &list->capacity, list->count + 1, sizeof *list->voxel, "voxels", e))
+        return -1;
+    list->voxel[list->count++] = voxel;
+    kept[at.volume].kept++;
+    return 0;
+}
+
+int shares_row(shares *s, int64_t j, int64_t k, climb_runs *to, shares_list *list, climb_count *kept, err *e)
 {
     int64_t size = 2 * (s->cells + 1), first = to->runs;
     double all = pow(s->rule.samples, 3);
     for (int64_t n = 0; n < s->slots; n++)
         count_samples(s, &s->sum[n * size]);
     for (int64_t i = s->from; i < s->past; i++) {
-        int64_t total = 0, best = 0;
-        for (int64_t n = 0; n < s->slots; n++) {
-            int32_t here = s->sum[n * size + i], most = s->sum[best * size + i];
-            total += here;
-            if (here > most || (here == most && s->volume[n] < s->volume[best]))
-                best = n;
-        }
-        if (total == 0 || (double)total < s->rule.least * all)
+        int64_t samples = total(s, i);
+        if (samples == 0 || (double)samples < s->rule.least * all)
             continue;
-        int32_t at = (int32_t)(s->low + i), volume = s->volume[best];
-        if (mem_grow(&fraction->fraction, &fraction->capacity, fraction->count + 1, sizeof *fraction->fraction,
-                     "voxels", e) ||
-            add_voxel(to, first, (climb_run){at, at + 1, (int32_t)j, (int32_t)k, volume}, e))
+        int32_t at = (int32_t)(s->low + i);
+        climb_run voxel = {at, at + 1, (int32_t)j, (int32_t)k, s->volume[largest(s, i, -1)]};
+        if (add_share(s, i, voxel, samples, list, kept, e) || add_voxel(to, first, voxel, e))
             return -1;
-        fraction->fraction[fraction->count++] = (float)((double)total / all);
-        kept[volume].kept++;
     }
     forget(s);
     return 0;

@@ -126,6 +126,9 @@ static int check_options(job *j, err *e)
         return err_usage(e, "-s and -n both give the voxel size; expected one of them");
     if (o->size.count == 2 || !all_positive(&o->size))
         return err_usage(e, "-s: expected one length, or three between commas, above 0");
+    if (o->check && (o->fraction > 0 || !isnan(o->least) || o->origin.count || o->box.count))
+        return err_usage(e, "--check looks at surfaces and makes no voxels; expected it without --fraction, --least, "
+                            "--origin and --box");
     if (!isnan(o->least) && o->fraction < 0)
         return err_usage(e, "--least is for --fraction N; expected both, or neither");
     if (!box_is_upright(j))
@@ -308,6 +311,8 @@ static void say_volume(const job *j, const model *m, int32_t v)
     const char *of = model_find(m, "material.name")->str[a->material];
     tool_say(j->t, "%s%s: level %d, priority %d, material %s, surfaces %s: %lld elements", a->muscle ? "muscle " : "",
              a->name, a->level, a->priority, of, a->surfaces, (long long)n->kept);
+    if (n->mixed)
+        tool_say(j->t, "%s: the second volume of %lld elements more", a->name, (long long)n->mixed);
     if (n->reached > 0 && n->reached < n->inside)
         tool_say(j->t, "%s: outside level %d, and ignored: %lld of its %lld %s", a->name, a->level - 1,
                  (long long)(n->inside - n->reached), (long long)n->inside, counted(j));
@@ -324,7 +329,7 @@ static void warn_volume(job *j, int32_t v)
     else if (n->reached == 0)
         notes_add(&j->warnings, "%s is ignored: none of its %lld %s is in a volume of level %d", a->name,
                   (long long)n->inside, counted(j), a->level - 1);
-    else if (n->kept == 0)
+    else if (n->kept == 0 && n->mixed == 0)
         notes_add(&j->warnings, "%s has no voxel: other volumes keep all %lld %s that it could have", a->name,
                   (long long)n->reached, counted(j));
 }

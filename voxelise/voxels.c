@@ -16,11 +16,11 @@ static const double element_bytes = 120, row_bytes = 64;
 /* What one slab gives. */
 typedef struct chunk {
     climb_runs to;
-    shares_list fraction;
+    shares_list share;
 } chunk;
 
 typedef struct counter {
-    atomic_llong inside, reached, kept;
+    atomic_llong inside, reached, kept, mixed;
 } counter;
 
 typedef struct work {
@@ -74,6 +74,7 @@ static void add_counts(work *w, const climb_count *count)
         atomic_fetch_add(&w->counter[v].inside, count[v].inside);
         atomic_fetch_add(&w->counter[v].reached, count[v].reached);
         atomic_fetch_add(&w->counter[v].kept, count[v].kept);
+        atomic_fetch_add(&w->counter[v].mixed, count[v].mixed);
     }
 }
 
@@ -129,7 +130,7 @@ static int by_shares(scratch *s, const work *w, chunk *to, err *e)
         return 0;
     for (int64_t k = floor_of(s->low[1], samples); k * samples < s->high[1]; k++)
         for (int64_t j = floor_of(s->low[0], samples); j * samples < s->high[0]; j++)
-            if (add_samples(s, j, k, e) || shares_row(&s->shares, j, k, &to->to, &to->fraction, s->kept, e))
+            if (add_samples(s, j, k, e) || shares_row(&s->shares, j, k, &to->to, &to->share, s->kept, e))
                 return -1;
     return 0;
 }
@@ -146,8 +147,10 @@ static int look(scratch *s, work *w, int64_t number, err *e)
     s->kept = mem_array(w->volumes, sizeof *s->kept, "volumes", e);
     if (!s->kept || by_shares(s, w, &w->chunk[number], e))
         return -1;
-    for (int32_t v = 0; v < w->volumes; v++)
+    for (int32_t v = 0; v < w->volumes; v++) {
         s->climb.count[v].kept = s->kept[v].kept;
+        s->climb.count[v].mixed = s->kept[v].mixed;
+    }
     return 0;
 }
 
@@ -248,6 +251,33 @@ static int check_memory(const work *w, pool *threads, err *e)
     return voxels_check_memory(&g, elements, slab_bytes(w, threads), available, e);
 }
 
+static int make_lists(voxels *x, const work *w, err *e)
+{
+    int64_t mixed = 0;
+    for (int32_t v = 0; v < w->volumes; v++)
+        mixed += x->count[v].mixed;
+    x->run = mem_array(x->runs, sizeof *x->run, "runs of voxels", e);
+    if (!x->run || !w->rule)
+        return x->run ? 0 : -1;
+    x->fraction = mem_array(x->elements, sizeof *x->fraction, "shares of voxels", e);
+    if (!x->fraction || !mixed)
+        return x->fraction ? 0 : -1;
+    x->mix = mem_array(x->elements, sizeof *x->mix, "shares of voxels", e);
+    x->mixture = mem_array(x->elements, sizeof *x->mixture, "shares of voxels", e);
+    return x->mix && x->mixture ? 0 : -1;
+}
+
+static void put_shares(voxels *x, int64_t voxel, const shares_list *list)
+{
+    for (int64_t i = 0; i < list->count; i++) {
+        x->fraction[voxel + i] = list->voxel[i].fraction;
+        if (x->mix) {
+            x->mix[voxel + i] = list->voxel[i].mix;
+            x->mixture[voxel + i] = list->voxel[i].mixture;
+        }
+    }
+}
+
 /* One list of all, in order; chunks are freed as they go. */
 static int join_chunks(voxels *x, const work *w, err *e)
 {
@@ -257,22 +287,19 @@ static int join_chunks(voxels *x, const work *w, err *e)
         for (int64_t r = 0; r < w->chunk[i].to.runs; r++)
             x->elements += w->chunk[i].to.run[r].to - w->chunk[i].to.run[r].from;
     }
-    x->run = mem_array(x->runs, sizeof *x->run, "runs of voxels", e);
-    x->fraction = x->run && w->rule ? mem_array(x->elements, sizeof *x->fraction, "shares of voxels", e) : NULL;
-    if (!x->run || (w->rule && !x->fraction))
+    if (make_lists(x, w, e))
         return -1;
     for (int64_t i = 0; i < w->test->slabs; i++) {
         chunk *c = &w->chunk[i];
         if (c->to.runs)
             memcpy(x->run + at, c->to.run, (size_t)c->to.runs * sizeof *x->run);
-        if (x->fraction && c->fraction.count)
-            memcpy(x->fraction + voxel, c->fraction.fraction, (size_t)c->fraction.count * sizeof *x->fraction);
+        put_shares(x, voxel, &c->share);
         at += c->to.runs;
-        voxel += c->fraction.count;
+        voxel += c->share.count;
         free(c->to.run);
-        free(c->fraction.fraction);
+        free(c->share.voxel);
         c->to.run = NULL;
-        c->fraction.fraction = NULL;
+        c->share.voxel = NULL;
     }
     return 0;
 }
@@ -281,7 +308,7 @@ static void take_counts(voxels *x, const work *w)
 {
     for (int32_t v = 0; v < w->volumes; v++)
         x->count[v] = (climb_count){atomic_load(&w->counter[v].inside), atomic_load(&w->counter[v].reached),
-                                    atomic_load(&w->counter[v].kept)};
+                                    atomic_load(&w->counter[v].kept), atomic_load(&w->counter[v].mixed)};
 }
 
 int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t volumes, const shares_rule *rule,
@@ -311,7 +338,7 @@ int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t vol
 out:
     for (int64_t i = 0; w.chunk && i < test->slabs; i++) {
         free(w.chunk[i].to.run);
-        free(w.chunk[i].fraction.fraction);
+        free(w.chunk[i].share.voxel);
     }
     free(w.chunk);
     free(w.counter);
@@ -325,6 +352,8 @@ void voxels_free(voxels *x)
     free(x->run);
     free(x->count);
     free(x->fraction);
+    free(x->mix);
+    free(x->mixture);
     *x = (voxels){0};
 }
 

@@ -14,6 +14,8 @@ typedef struct voxels {
     int64_t runs, elements;
     climb_count *count; /* volumes; by shares, inside and reached are samples */
     float *fraction;    /* elements, by shares; otherwise NULL */
+    int32_t *mix;       /* elements: the second volume, -1 = none; NULL where no element has one */
+    float *mixture;     /* elements: its share of what is enclosed; likewise */
 } voxels;
 
 /* test: with rays along CLIMB_RAY; by shares, of the lattice of samples. level: of each volume; volumes are in order of

@@ -278,20 +278,30 @@ ELEMENT_FUNCTION element_corners element_gather(element_modes u, real px, real p
     return element_corners_of(f);
 }
 
-/* The internal forces at the corners (N): what the element pulls with, for displacements u (m). is_active false: the
- * fibre is not looked at. */
-ELEMENT_FUNCTION element_field element_force(element_field u, element_shape shape, element_law law, element_fibre fibre,
-                                             int is_active)
+/* As element_force, with a second fibre. */
+ELEMENT_FUNCTION element_field element_force_of_two(element_field u, element_shape shape, element_law law,
+                                                    element_fibre fibre, int is_active, element_fibre second,
+                                                    int is_second_active)
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_gradient(x, y, z, shape.slope);
     element_tensor p = element_stress(h, law.mu, law.bulk);
     if (is_active)
         p = element_sum(p, element_active(h, fibre));
+    if (is_second_active)
+        p = element_sum(p, element_active(h, second));
     element_field f = {element_gather(x, p.xx, p.xy, p.xz, shape.area, law.hourglass),
                        element_gather(y, p.yx, p.yy, p.yz, shape.area, law.hourglass),
                        element_gather(z, p.zx, p.zy, p.zz, shape.area, law.hourglass)};
     return f;
+}
+
+/* The internal forces at the corners (N): what the element pulls with, for displacements u (m). is_active false: the
+ * fibre is not looked at. */
+ELEMENT_FUNCTION element_field element_force(element_field u, element_shape shape, element_law law, element_fibre fibre,
+                                             int is_active)
+{
+    return element_force_of_two(u, shape, law, fibre, is_active, fibre, 0);
 }
 
 /* Strain energy per volume at rest (J/m3), without the active stress. */

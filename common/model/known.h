@@ -35,8 +35,13 @@ typedef struct known {
       "volume it belongs to")                                                                                          \
     X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, "voxelise",                                              \
       "share of it that is enclosed: the part that it has of its mass and forces; without the array all is")           \
+    X("element.mix", MODEL_I32, "@volume", "element", 1, 1, 0, "voxelise",                                             \
+      "second volume that it is mixed of, -1 = none")                                                                  \
+    X("element.mixture", MODEL_F32, "1", "element", 1, 1, 0, "voxelise",                                               \
+      "share of what is enclosed that is of element.mix; the rest is of element.volume")                               \
     X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, "attach",                                                   \
       "unit direction of contraction; 0 0 0 where there is none")                                                      \
+    X("element.mixfibre", MODEL_F32, "1", "element", 3, 3, 0, "attach", "the same of element.mix")                     \
     X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, "voxelise or msds-mesh", "name")                               \
     X("volume.level", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise or msds-mesh", "level, 0 the lowest")               \
     X("volume.priority", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise or msds-mesh",                                   \

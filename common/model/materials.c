@@ -329,3 +329,14 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
                        to->E, to->nu);
     return 0;
 }
+
+material material_mixed(const material *a, const material *b, double s)
+{
+    const double mu = material_between(material_mu(a), material_mu(b), s);
+    const double bulk = material_between(material_bulk(a), material_bulk(b), s);
+    return (material){.law = a->law,
+                      .E = 9 * bulk * mu / (3 * bulk + mu),
+                      .nu = (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu)),
+                      .density = (1 - s) * a->density + s * b->density,
+                      .peak = (1 - s) * a->peak + s * b->peak};
+}

@@ -11,6 +11,8 @@
 #include "base/in.h"
 #include "model/model.h"
 
+#include <math.h>
+
 /* Neo-Hookean: tled-run's. Linear: isotropic linear elasticity with Cauchy's small strain, msds-run's FEM (PST section III);
  * it is what the first becomes where strains are small, with the same E and nu. */
 typedef enum material_law { MATERIAL_NEO_HOOKEAN, MATERIAL_LINEAR, MATERIAL_LAWS } material_law;
@@ -66,5 +68,16 @@ static inline double material_bulk(const material *a)
 {
     return a->E / (3 * (1 - 2 * a->nu));
 }
+
+/* A modulus of what is mixed of two materials, s the share of b: a^(1-s) b^s. Two materials side by side have the sum of their
+ * shares along their border, and the inverse of the sum of their shares' inverses across it; this lies between, whatever the
+ * border's direction, and does to the inverses what it does to the moduli. */
+static inline double material_between(double a, double b, double s)
+{
+    return a == b ? a : exp((1 - s) * log(a) + s * log(b));
+}
+
+/* What is mixed of two materials of one law: mu and K as above, density and peak by shares. */
+material material_mixed(const material *a, const material *b, double s);
 
 #endif

@@ -144,6 +144,15 @@ static double strained(int which, const double h[9], const material *law)
     return which == STRAIN ? 2. / 3 * gradient_mises(strain) : gradient_largest(strain);
 }
 
+/* An element's material: its volume's, or one between those of the two that it is mixed of. */
+static material law_of(const model *m, const material *law, int64_t element)
+{
+    const model_array *mix = model_find(m, "element.mix"), *mixture = model_find(m, "element.mixture");
+    const material *own = &law[model_find(m, "element.volume")->i32[element]];
+    int32_t second = mix && mixture ? mix->i32[element] : -1;
+    return second < 0 || law[second].law != own->law ? *own : material_mixed(own, &law[second], mixture->f32[element]);
+}
+
 static int of_strain(field *to, const model *m, const frame *f, int which, err *e)
 {
     const double *u = displacement(f, ours[which], e);
@@ -161,7 +170,8 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
     for (int64_t n = 0; n < node->rows; n++) {
         double h[9];
         gradient_of(&node->i32[n * node->columns], node->columns, rest->f64, u, h);
-        to->value[n] = strained(which, h, law ? &law[volume->i32[n]] : NULL);
+        material own = law ? law_of(m, law, n) : (material){0};
+        to->value[n] = strained(which, h, law ? &own : NULL);
     }
     free(law);
     return 0;

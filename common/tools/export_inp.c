@@ -210,6 +210,9 @@ static void note_omissions(const writer *w, const model *m, notes *warnings)
     if (model_find(m, "element.fraction"))
         notes_add(warnings,
                   "element.fraction is not in the file, which has no place for it: all elements are whole there");
+    if (model_find(m, "element.mix"))
+        notes_add(warnings,
+                  "element.mix is not in the file, which has no place for it: elements are of one volume there");
     for (int64_t i = 0; w->rigid && i < w->rigid->rows; i++)
         if (w->rigid->u8[i])
             return;

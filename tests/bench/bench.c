@@ -92,6 +92,22 @@ void bench_probe(bench *b)
     bench_take(b, "probe: multiply-add", (double)CHAINS * LENGTH, "multiply-add", multiply_add());
 }
 
+static void multiply_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    (void)context, (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        multiply_add();
+}
+
+void bench_probe_threads(bench *b, pool *threads)
+{
+    const int count = 4 * pool_threads(threads);
+    double start = bench_clock();
+    pool_run(threads, count, 1, multiply_work, NULL);
+    bench_take(b, "probe: multiply-add, all threads", (double)CHAINS * LENGTH * count, "multiply-add",
+               bench_clock() - start);
+}
+
 /* ---- commands */
 
 typedef struct feed_end {

@@ -4,6 +4,7 @@
 #ifndef SINEW_BENCH_H
 #define SINEW_BENCH_H
 
+#include "base/pool.h"
 #include "model/model.h"
 
 enum { BENCH_CASES = 64, BENCH_ROUNDS = 32 };
@@ -44,6 +45,9 @@ void bench_take(bench *b, const char *name, double amount, const char *unit, dou
 
 /* A round of the probe: copy bandwidth of one thread in memory, and its rate of multiply-adds in doubles. */
 void bench_probe(bench *b);
+
+/* The multiply-adds of all threads at once: whether they are processors, or halves of one. */
+void bench_probe_threads(bench *b, pool *threads);
 
 /* Runs the command with these bytes on standard input (NULL: none); what it writes replaces what `to` held. Returns
  * seconds from start to exit. */

@@ -1,8 +1,9 @@
-/* `make bench-msds`: what a frame of msds-run's solvers takes at the four sizes of PST's Table I, whose figures stand beside: CSV, with
- * a probe of the machine in the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts
- * again. `bench_msds [THREADS [ROUNDS]]`.
+/* `make bench-msds`: what a frame of msds-run's solvers takes at the four sizes of PST's Table I, whose figures stand beside, as do
+ * OpenTissue's at the largest (one thread; as the project was given them, not measured here): CSV, with a probe of the machine in
+ * the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts again.
+ * `bench_msds [THREADS [ROUNDS]]`.
  */
-// needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
+// needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"
@@ -15,6 +16,9 @@ typedef struct paper {
     int32_t nodes[3];
     double ms[METHODS]; /* Table I: MSDS, FEM; none for exact; collision */
 } paper;
+
+/* At the last size. */
+static const double open_tissue[METHODS] = {9.4, 47, NAN, NAN};
 
 static const paper papers[SIZES] = {{{20, 10, 10}, {10, 30, NAN, .1}},
                                     {{24, 12, 12}, {17, 60, NAN, .2}},
@@ -91,11 +95,14 @@ static void say(subject *s, const paper *from, int threads)
                threads, n, 1e3 * t[0], 1e3 * t[n / 2], 1e3 * t[n - 1 - n / 20]);
         if (!isnan(from->ms[i]))
             printf("%g", from->ms[i]);
+        printf(",");
+        if (from == &papers[SIZES - 1] && !isnan(open_tissue[i]))
+            printf("%g", open_tissue[i]);
         printf("\n");
     }
-    printf("%dx%dx%d,%lld,%lld,%lld,first exact frame,%d,1,%.4g,%.4g,%.4g,\n", (int)from->nodes[0], (int)from->nodes[1],
-           (int)from->nodes[2], (long long)s->p.nodes, (long long)s->p.elements, (long long)s->p.springs, threads,
-           1e3 * s->factor, 1e3 * s->factor, 1e3 * s->factor);
+    printf("%dx%dx%d,%lld,%lld,%lld,first exact frame,%d,1,%.4g,%.4g,%.4g,,\n", (int)from->nodes[0],
+           (int)from->nodes[1], (int)from->nodes[2], (long long)s->p.nodes, (long long)s->p.elements,
+           (long long)s->p.springs, threads, 1e3 * s->factor, 1e3 * s->factor, 1e3 * s->factor);
     for (int i = 0; i < METHODS; i++)
         msds_cpu.destroy(s->state[i]);
     msds_problem_free(&s->p);
@@ -118,10 +125,11 @@ int main(int argc, char **argv)
         make(&subjects[i], &papers[i], workers);
     for (int round = 0; round < rounds; round++) {
         bench_probe(&probes);
+        bench_probe_threads(&probes, workers);
         for (int i = 0; i < SIZES; i++)
             measure(&subjects[i]);
     }
-    printf("mesh,nodes,tetrahedra,springs,method,threads,frames,best_ms,median_ms,p95_ms,paper_ms\n");
+    printf("mesh,nodes,tetrahedra,springs,method,threads,frames,best_ms,median_ms,p95_ms,paper_ms,opentissue_ms\n");
     for (int i = 0; i < SIZES; i++)
         say(&subjects[i], &papers[i], threads);
     bench_print(&probes);

@@ -141,7 +141,7 @@ static void measure_block(int32_t x, int32_t y, int32_t z, const options *o)
     char name[60];
     bench b;
     const double gravity[3] = {0, 0, -.5}; /* so little that no step is cut */
-    block what = {{x, y, z}, {.0025, .0025, .0025}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 0, 0}, 0};
+    block what = {{x, y, z}, {.0025, .0025, .0025}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 0, 0}, 0, false};
     snprintf(name, sizeof name, "block %d x %d x %d", x, y, z);
     bench_make(&b, &what, gravity, 0, .0075, o->threads);
     measure(name, &b, o);

@@ -57,7 +57,48 @@ check "in two parts: the same" sinew diff --rel 1e-4 --abs 1e-8 --only node.disp
 check "compares" msds-run --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'msds against fem' "$T/stderr")" 10 "a difference a frame"
 
-for method in msds 'fem' 'fem --exact'; do
+# The root mean square of their difference, by hand from both.
+for method in msds 'fem --exact'; do
+    # shellcheck disable=SC2086
+    msds-run -q --text --method $method --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" <"$T/block.sinew" |
+        awk '/^frame/ { frame = $2 } /^[a-z]/ { on = $2 == "node.displacement" && frame == 9; next } on' >"$T/${method%% *}.rows"
+done
+by_hand=$(paste "$T/msds.rows" "$T/fem.rows" | awk '{ for (i = 1; i <= 3; i++) { off += ($i - $(i + 3)) ^ 2; size += $(i + 3) ^ 2 } }
+    END { printf "%.4g", sqrt(off / size) }')
+near "$(sed -n '$s/.*root mean square \([0-9.e-]*\),.*/\1/p' "$T/stderr")" "$by_hand" 1e-3 "which is that of both by hand, $by_hand"
+
+# What is carried: the first frame after a change is that of a run which begins with the frames before.
+head -n 4 "$T/press.tum" >"$T/four.tum"
+sed -n 5p "$T/press.tum" >"$T/fifth.tum"
+for change in 'msds:fem' 'fem:msds'; do
+    { cat "$T/four.tum"; echo "method ${change#*:}"; cat "$T/fifth.tum"; } >"$T/change.tum"
+    msds-run -q --iterations 5 --method "${change%:*}" --probe sphere:2cm --poses "$T/change.tum" <"$T/block.sinew" >"$T/change.sinew"
+    msds-run -q --iterations 5 --method "${change%:*}" --probe sphere:2cm --poses "$T/four.tum" <"$T/block.sinew" |
+        msds-run -q --iterations 5 --method "${change#*:}" --probe sphere:2cm --poses "$T/fifth.tum" >"$T/parts.sinew"
+    check "$change: displacements and velocities carry over" sinew diff --rel 1e-3 --abs 2e-5 --only node.displacement,node.velocity \
+        "$T/change.sinew" "$T/parts.sinew"
+    msds-run -q --iterations 5 --method "${change#*:}" --probe sphere:2cm --poses "$T/fifth.tum" <"$T/block.sinew" >"$T/fresh.sinew"
+    carried=$(sinew info --get node.displacement.at.0.04,0.04,0.04 "$T/parts.sinew" | awk '{ print $3 }')
+    fresh=$(sinew info --get node.displacement.at.0.04,0.04,0.04 "$T/fresh.sinew" | awk '{ print $3 }')
+    check "$change: from rest it is another ($fresh, not $carried m)" awk -v a="$carried" -v b="$fresh" 'BEGIN { exit !((a - b) / a > 0.02 || (a - b) / a < -0.02) }'
+done
+
+# A PLUS sequence as poses, in mm, of two transforms.
+{
+    printf 'ObjectType = Image\nNDims = 3\nDimSize = 5 4 2\n'
+    for i in 0 1; do
+        printf 'Seq_Frame000%d_ProbeToReferenceTransform = 1 0 0 40 0 -1 0 40 0 0 -1 %d 0 0 0 1\n' "$i" $((59 - i))
+        printf 'Seq_Frame000%d_StylusToReferenceTransform = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\nSeq_Frame000%d_Timestamp = %d.5\n' "$i" "$i" "$i"
+    done
+    printf 'ElementDataFile = LOCAL\n'
+} >"$T/sweep.mha"
+check "a PLUS sequence" msds-run -q --text --transform ProbeToReference --probe sphere:2cm --poses "$T/sweep.mha" -o "$T/sweep.sinew" <"$T/block.sinew"
+is "$(awk '/^array probe.pose/ { getline; print $1, $2, $3, $4 }' "$T/sweep.sinew" | tr '\n' ';')" \
+    "0.040000000000000001 0.040000000000000001 0.058999999999999997 1;0.040000000000000001 0.040000000000000001 0.058000000000000003 1;" "in metres"
+fails 1 "a transform that it has not" 'sweep.mha:[0-9]*: frame 0 does not say where Nose is' \
+    msds-run --transform NoseToReference --poses "$T/sweep.mha" <"$T/block.sinew"
+
+for method in msds 'fem' 'fem --exact' 'fem --warp' 'fem --exact --warp'; do
     # shellcheck disable=SC2086
     for n in 1 2 3; do
         msds-run -q --threads $n --method $method --probe sphere:2cm --poses "$T/press.tum" <"$T/block.sinew" | cksum
@@ -84,6 +125,30 @@ awk '/^array element.node/ { print; getline; print $2, $1, $3, $4; next } { prin
 fails 1 "an inverted element" 'element 0 is inverted' msds-run --poses "$T/first.tum" <"$T/inverted.sinew"
 awk '/^array material.nu/ { print; getline; print "0.5"; next } { print }' "$T/text.sinew" >"$T/nu.sinew"
 fails 1 "nu = .5" 'nu.* 0.5.*expected' msds-run --poses "$T/first.tum" <"$T/nu.sinew"
+echo 'method fem' >"$T/method.tum"
+fails 1 "changes of method and no pose" 'method.tum: no pose; expected' msds-run --poses "$T/method.tum" <"$T/block.sinew"
+printf '0 .04 .04 .07 1 0 0 0\n0.1 .04' >"$T/cut.tum"
+fails 1 "a pose that is cut short" 'cut.tum:2: 2 words; expected time tx' msds-run --poses "$T/cut.tum" <"$T/block.sinew"
+mkfifo "$T/fifo"
+printf '0 .04 .04 .07 1 0 0 0\n0.1 .0' >"$T/fifo" &
+fails 1 "a FIFO whose writer goes in the middle of a pose" 'fifo:2: 2 words' msds-run -o "$T/left" --poses "$T/fifo" <"$T/block.sinew"
+: >"$T/fifo" &
+fails 1 "a FIFO whose writer says nothing" 'fifo: no pose' msds-run -o "$T/left" --poses "$T/fifo" <"$T/block.sinew"
+check "no output is left" test ! -e "$T/left"
+echo '0 .04 .04 .5 1 0 0 0' >"$T/far.tum"
+fails 0 "a probe that never touches" 'warning: the probe touches nothing in any frame \(of 1\)' \
+    msds-run --probe sphere:2cm --poses "$T/far.tum" -o /dev/null <"$T/block.sinew"
+fails 0 "and one that does" 'node' msds-run --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
+is "$(grep -c warning "$T/stderr")" 0 "has no such word"
+awk '/^array material.E/ { print; getline; print "nan"; next } { print }' "$T/text.sinew" >"$T/E.sinew"
+fails 1 "E = nan" 'material.E.* nan .*expected' msds-run --poses "$T/first.tum" <"$T/E.sinew"
+awk '/^array node.position/ { print; getline; print "0 nan 0"; next } { print }' "$T/text.sinew" >"$T/place.sinew"
+fails 1 "a place that is nan" 'node.position, row 0 is not finite' msds-run --poses "$T/first.tum" <"$T/place.sinew"
+awk '/^array element.node/ { print; getline; print $1, $2, $3, $3; next } { print }' "$T/text.sinew" >"$T/flat.sinew"
+fails 1 "a flat element" 'element.node, row 0 has 3 different nodes' msds-run --poses "$T/first.tum" <"$T/flat.sinew"
+# shellcheck disable=SC2086
+msds-mesh -q $block --fix none >"$T/free.sinew" 2>"$T/err"
+fails 1 "an exact FEM that nothing holds" 'nothing holds node' msds-run --method fem --exact --poses "$T/first.tum" <"$T/free.sinew"
 fails 1 "no model" 'no model on stdin' msds-run --poses "$T/first.tum" </dev/null
 
 # The hanging block, by CalculiX's linear tetrahedra and ours.

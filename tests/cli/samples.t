@@ -46,6 +46,17 @@ for shape in muscle block; do
     check "$shape: a VTU" grep -q '<VTKFile' "$T/a/$shape.vtu"
 done
 
+# The block that a ball presses, by both methods: what it says of the forces.
+check "a press, two at a time" samples "$T/a" -f press.mk -j2 NODES=9x7x7
+is "$(awk '!/^#/ { n++; if ($2 > springs) springs = $2; if ($3 > fem) fem = $3; if (n == 1 || n == 60) ends += $2 + $3 }
+    END { print n, (springs > 1), (fem > 1), ends }' "$T/a/press.force")" "60 1 1 0" "60 poses: both push back while they are pressed, and not before and after"
+near "$(awk '$1 == 1 { print $3 }' "$T/a/press.force")" "$(awk '$1 == 1.2 { print $3 }' "$T/a/press.force")" 0.001 \
+    "the FEM's force is the same while the ball stays"
+for method in msds fem; do
+    check "press.$method: a VTU" grep -q '<VTKFile' "$T/a/press.$method.vtu"
+    is "$(sinew info --get frames "$T/a/press.$method")" 60 "press.$method: a frame a pose"
+done
+
 # A folder of OBJ files, one of which is open: the others come out, that one leaves nothing behind.
 mkdir "$T/in"
 cp "$T/a/sphere.obj" "$T/in/ball.obj"
@@ -56,6 +67,29 @@ messages=$(grep -c 'open edges' "$T/stderr")
 check "the good one is done" test -s "$T/c/ball.moved.obj"
 is "$(find "$T/c" -name 'open*')" "" "the bad one left no file"
 is "$messages" 1 "one message for it"
+
+# A case: DICOM files to a volume, labels, surfaces and a mesh, and a probe that presses it. Volumes are known from the equations.
+check "a case of a patient" samples "$T/d" case
+C=$T/d/case
+# volume FILE GROUP: what a group's triangles enclose.
+volume() {
+    awk -v group="$2" '$1 == "g" { on = $2 == group } $1 == "v" { x[++n] = $2; y[n] = $3; z[n] = $4 }
+        $1 == "f" && on { a = $2; b = $3; c = $4
+            sum += x[a] * (y[b] * z[c] - z[b] * y[c]) + y[a] * (z[b] * x[c] - x[b] * z[c]) + z[a] * (x[b] * y[c] - y[b] * x[c]) }
+        END { print sum / 6 }' "$1"
+}
+near "$(volume "$C/surfaces.obj" bone)" 9651 .03 "the bone's volume"
+near "$(volume "$C/surfaces.obj" vein)" 1508 .03 "the vein's"
+near "$(volume "$C/surfaces.obj" artery)" 942 .06 "the artery's, of 32 pixels a slice"
+# height FILE: of the vein, amid the volume.
+height() {
+    awk '$1 == "g" { on = $2 == "vein" } $1 == "v" && on && $4 * $4 < 1 { if (!n++ || $3 < low) low = $3; if ($3 > high) high = $3 }
+        END { print high - low }' "$1"
+}
+check "the vein is pressed from $(height "$C/surfaces.obj") to $(height "$C/pressed.obj") mm" awk \
+    "BEGIN { exit !($(height "$C/pressed.obj") < .9 * $(height "$C/surfaces.obj")) }"
+is "$(cat "$C"/dicom/*.dcm | grep -ac Nobody) $(find "$C" -maxdepth 1 -type f -exec cat {} + | grep -ac -e Nobody -e 2.25.4242)" "48 0" \
+    "the patient's name is in the DICOM files only"
 
 fails 2 "a folder without OBJ files" "no OBJ file in .*expected IN=folder" make -C samples IN="$T/none"
 done_testing

@@ -52,7 +52,11 @@ same "12 of 16 bits, white is 0" -- series bits=16 stored=12 colour=MONOCHROME1
 same "RGB by pixel" -- series colour=RGB
 same "RGB by plane" -- series colour=RGB planar=1
 same "YBR by plane" -- series colour=YBR_FULL planar=1
+same "YBR, two pixels sharing colours" -- series colour=YBR_FULL_422 columns=8
+same "a palette of 16 bits" -- series colour=PALETTE
+same "a palette of 8" -- series colour=PALETTE entries=8
 same "RLE" -- series syntax=rle
+same "deflated as a whole" -- multi syntax=deflated
 same "many frames in a file" -- multi
 same "many frames, pixels in an ultrasound region's cm" -- multi regions=1
 is "$(line "$T/out.nrrd" "space directions")" "(0.5,0,0) (0,0.25,0) (0,0,0.75)" "its directions"
@@ -60,6 +64,7 @@ same "many frames, whose distance is said here" --spacing .5,.25,.75mm -- multi 
 same "Enhanced US Volume, its last frame first" -- enhanced
 is "$(line "$T/out.nrrd" "space origin")" "(10,-20,30)" "its origin"
 same "its second time" --time 2 -- enhanced times=2 time=1
+same "the kind of data that is asked for" --data FLOW_POWER -- enhanced kinds=2 kind=1
 same "a maker's own volume, second time" --time 2 -- philips times=2 time=1
 is "$(line "$T/out.nrrd" "space directions")" "(0.5,0,0) (0,0.25,0) (0,0,0.75)" "its directions, from private elements"
 same "the second of two series" --series 2 -- series second=1 slices=6
@@ -97,13 +102,16 @@ bad "no distance between frames" '6 frames, and no distance between them' multi 
 bad "two series" '2 series: 1: 1 file of 7 x 5 from im00\.dcm, 2: 5 files .*--series N' series second=1
 bad "two times" 'volumes of 2 times; expected --time 1 to 2' enhanced times=2
 bad "cut" 'im00\.dcm: not whole' series cut=20
-bad "JPEG 2000" 'compressed as JPEG 2000' series syntax=jpeg2000
-bad "a palette" 'pixels of another kind' series colour=PALETTE
+bad "two kinds of data" 'several kinds of data; expected --data, one of: FLOW_POWER, TISSUE_INTENSITY' enhanced kinds=2
+bad "deflated, and cut" 'deflated elements that do not end' multi syntax=deflated cut=20
+bad "colours of another kind" 'pixels of another kind; expected MONOCHROME1' series colour=XYB
+bad "colours that are shared in odd rows" 'in odd rows' series colour=YBR_FULL_422 rows=4
 bad "too deep" 'more than 100000 items' multi deep=120000
 bad "one slice" 'one slice' series slices=1
 check "no output is left" test ! -e "$T/bad.nrrd"
 dicom series
 fails 1 "no such series" 'no series 3' us-import --series 3 "$T/in"
+fails 1 "no such data" 'no frames of FLOW; expected --data of: .not said.' us-import --data FLOW "$T/in"
 fails 1 "no such time" 'volumes of 1 time; expected --time 1' us-import --time 2 "$T/in"
 echo text >"$T/in/notes.txt"
 check "a file of another kind in a folder" us-import -o "$T/out.nrrd" "$T/in"
@@ -167,7 +175,7 @@ fails 2 "options of DICOM" 'are for DICOM' us-import --series 1 "$T/sweep.mha"
 
 # ---- real data
 if [ -z "$DATA" ]; then
-    skip 7 "no shared data"
+    skip 8 "no shared data"
     done_testing
 fi
 U=$DATA/ultrasound
@@ -176,8 +184,10 @@ cat "$T/head.nrrd" "$T/stderr" >"$T/all"
 says_not planted "$T/all" "no name in its outputs"
 is "$(line "$T/head.nrrd" sizes)" "211 232 153" "its size"
 check "the spine phantom" us-import -o "$T/spine.nrrd" "$U/SpinePhantomFreehandReconstructed.mha"
-printf '0.07 0 0 -28\n0 0.07 0 0\n0 0 0.07 0\n0 0 0 1\n' >"$T/calibration"
-check "the bone sweep" us-import --voxel .4mm --crop 110,40,710,560 --calibration "$T/calibration" -o "$T/bone.nrrd" "$U/BoneUltrasound_L14.igs.mha"
+# An array of 38 mm is 467 pixels wide; how the image lies to its marker is not known, so that pixels lie along the marker's axes.
+printf '0.0814 0 0 -33.34\n0 0.0814 0 -0.16\n0 0 0.0814 0\n0 0 0 1\n' >"$T/calibration"
+check "the bone sweep" us-import --voxel .4mm --crop 176,2,643,616 --calibration "$T/calibration" -o "$T/bone.nrrd" "$U/BoneUltrasound_L14.igs.mha"
+says '21 frames (0 without tracking left out) to 99 x 127 x 24 voxels of 0.4 mm' "$T/stderr" "its size: 38 mm wide, 50 deep"
 
 reader=
 for p in python3 /usr/bin/python3; do

@@ -15,13 +15,19 @@ value() {
     sed -n "s/^ *$2  *//p" "$1" | tail -n 1 | sed 's/ mm^3//'
 }
 
-for chance in .1 .5 .9; do
-    map 7 $chance '(0.5,0,0) (0,0.7,0) (0,0,0.6)' >"$T/map.nrrd"
+for case in '7 .1' '7 .5' '7 .9' '1 .03' '2 .1' '3 .2' '4 .3' '5 .4' '6 .5' '8 .6' '9 .7' '10 .8' '11 .9' '12 .97'; do
+    seed=${case% *} chance=${case#* }
+    map "$seed" "$chance" '(0.5,0,0) (0,0.7,0) (0,0,0.6)' >"$T/map.nrrd"
     voxels=$(sed '1,/^$/d' "$T/map.nrrd" | grep -c '^1$')
     check "labels at $chance" us-surface -l 'inner vein' -o "$T/vein.obj" "$T/map.nrrd"
     voxelise --unit mm --check "$T/vein.obj" >"$T/check" 2>&1
     is "$(value "$T/check" 'edges of one polygon (open)') $(value "$T/check" 'edges of more than two') $(value "$T/check" 'edges where facing turns') $(value "$T/check" 'triangles without area') $(value "$T/check" 'pairs of triangles that cross')" \
         "0 0 0 0 0" "it is closed, faces one way, and does not cross itself"
+    near "$(value "$T/check" encloses)" "$(awk "BEGIN { print $voxels * .5 * .7 * .6 }")" .01 "it encloses what the label does"
+    check "the same, filtered" us-surface -l 'inner vein' --smooth 0.3mm -o "$T/vein.obj" "$T/map.nrrd"
+    voxelise --unit mm --check "$T/vein.obj" >"$T/check" 2>&1
+    is "$(value "$T/check" 'edges of one polygon (open)') $(value "$T/check" 'edges of more than two') $(value "$T/check" 'edges where facing turns')" \
+        "0 0 0" "it is closed, and faces one way"
     near "$(value "$T/check" encloses)" "$(awk "BEGIN { print $voxels * .5 * .7 * .6 }")" .01 "it encloses what the label does"
 done
 
@@ -69,6 +75,19 @@ for how in "" "--smooth 1mm" "--taubin 20" "--smooth 2mm --taubin 5"; do
     # shellcheck disable=SC2086
     check "a label $how" us-surface -l 1 $how -o "$T/ball.obj" "$T/label.nrrd"
     near "$(outward <"$T/ball.obj")" "$voxels" .01 "keeps its volume"
+done
+
+# A rod of 32 voxels a slice, of which many are equal after filtering: no count of samples tells its level.
+{
+    printf '%s\n' NRRD0004 'type: uint8' 'dimension: 3' 'space: left-posterior-superior' 'sizes: 12 12 30' \
+        'space directions: (0.8,0,0) (0,0.8,0) (0,0,1)' 'kinds: domain domain domain' 'encoding: text' 'space origin: (0,0,0)' ''
+    awk 'BEGIN { for (z = 0; z < 30; z++) for (y = 0; y < 12; y++) for (x = 0; x < 12; x++)
+        print (x - 5.5) ^ 2 + (y - 5.5) ^ 2 < 11 }'
+} >"$T/rod.nrrd"
+voxels=$(sed '1,/^$/d' "$T/rod.nrrd" | grep -c '^1$')
+for sigma in .3 .8 1.5; do
+    check "a rod, filtered by $sigma mm" us-surface -q -l 1 --smooth ${sigma}mm -o "$T/rod.obj" "$T/rod.nrrd"
+    near "$(outward <"$T/rod.obj")" "$(awk "BEGIN { print $voxels * .64 }")" .01 "keeps its volume"
 done
 
 fails 2 "neither" 'expected -l LABEL' us-surface "$T/ball.nrrd"

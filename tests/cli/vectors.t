@@ -1,5 +1,5 @@
 #!/bin/sh
-# The CPU solver in each instruction set that this processor has, for several numbers of threads: the same bytes.
+# The CPU solvers in each instruction set that this processor has, for several numbers of threads: the same bytes.
 . "$(dirname "$0")/lib.sh"
 
 awk -v nx=19 -v ny=9 -v nz=7 -v h=0.005 -v held=low -v muscle=1 -f tests/cli/block.awk >"$T/model"
@@ -24,6 +24,24 @@ for precision in double single; do
         done
     done
 done
+# msds-run's, each method.
+msds-mesh -q --nodes 13x9x8 --size 12cm,8cm,7cm --young 8000 >"$T/block"
+awk 'BEGIN { for (i = 0; i < 6; i++) printf "%g .06 .04 %.4f 1 0 0 0\n", i / 60, .07 - .001 * i }' >"$T/press"
+for method in msds fem 'fem --exact'; do
+    # shellcheck disable=SC2086
+    msds-run -q --method $method --probe sphere:2cm --poses "$T/press" <"$T/block" >"$T/first"
+    for vectors in plain AVX2 AVX-512; do
+        # shellcheck disable=SC2086
+        if SINEW_VECTORS=$vectors msds-run -q --method $method --probe sphere:2cm --poses "$T/press" <"$T/block" >"$T/out" 2>"$T/err"; then
+            check "msds-run $method, $vectors: the same bytes" cmp "$T/first" "$T/out"
+        else
+            skip 1 "msds-run $method, $vectors: $(sed 's/; .*//' "$T/err")"
+        fi
+    done
+done
+echo '0 0 0 1 0 0 0 1' >"$T/pose"
+SINEW_VECTORS=MMX fails 1 "msds-run: an unknown instruction set" \
+    "^msds-run: SINEW_VECTORS: 'MMX' is not to be had here; expected plain, AVX2 or AVX-512$" msds-run -q --poses "$T/pose" <"$T/block"
 SINEW_VECTORS=MMX fails 1 "an unknown instruction set" \
     "^tled-run: SINEW_VECTORS: 'MMX' is not to be had here; expected plain, AVX2 or AVX-512$" run double 1
 done_testing

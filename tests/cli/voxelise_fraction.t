@@ -49,6 +49,61 @@ near "$(total)" 0.729 1e-6 "--box still goes by centres"
 vox -s 1 --origin 0,0,0 --fraction 4 "$T/muscles.obj"
 is "$(rows element.volume | tr '\n' ' ')$(rows element.fraction | sort -u)" "1 0 0 2 1" "the most, the first of two"
 
+is "$(rows element.mix | tr '\n' ' ')$(rows element.mixture | tr '\n' ' ')" "-1 1 2 -1 0 0.25 0.5 0 " "the second, and its share"
+is "$(grep -c "second volume of 1 elements more" "$T/said")" 0 "quietly"
+voxelise --text --unit mm -s 1 --origin 0,0,0 --fraction 4 "$T/muscles.obj" 2>"$T/said" >"$T/m"
+is "$(grep -c "muscle_[ab]: the second volume of 1 elements more" "$T/said")" 2 "said of each"
+vox -s 1 --origin 0,0,0 --fraction 4 "$T/box.obj"
+is "$(grep -c 'element.mix' "$T/m")" 0 "no such arrays where nothing is mixed"
+vox -s 1 --origin 0,0,0 "$T/muscles.obj"
+is "$(grep -c 'element.mix' "$T/m")" 0 "nor by centres"
+# Three volumes in a voxel, of which 2 tenths are outside: 4 tenths, 3 and 1.
+{
+    box skin 0 0 0 0.8 1 1
+    box muscle_a 0 0 0 0.4 1 1
+    box muscle_b 0.4 0 0 0.5 1 1
+} >"$T/three.obj"
+vox -s 1 --origin 0,0,0 --fraction 10 "$T/three.obj"
+is "$(rows element.volume) $(rows element.mix) $(rows element.fraction)" "1 0 0.800000012" "three volumes: the two largest"
+near "$(rows element.mixture)" 0.4285714 1e-6 "their shares are of what the two have"
+# A muscle that has the most of no voxel.
+{
+    box skin 0 0 0 4 4 4
+    box muscle_thin 1 1 1.1 3 3 1.4
+} >"$T/thin.obj"
+vox -s 1 --origin 0,0,0 --fraction 10 "$T/thin.obj"
+is "$(grep -c "has no voxel" "$T/said") $(rows element.mix | grep -cx 1)" "0 4" "a muscle thinner than half a voxel has its share of some"
+vox -s 1 --origin 0,0,0 --fraction 1 "$T/thin.obj"
+is "$(grep -c "muscle_thin has no voxel" "$T/said")" 1 "one sample sees none of it"
+
+# With layers: what a muscle's voxel has of the skin is the layer's that its centre is in.
+printf 'top thickness=1.2mm\n' >"$T/layers"
+vox -s 1 --origin 0,0,0 --fraction 10 --layers "$T/layers" "$T/thin.obj"
+is "$(awk '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" } on == "element.volume" { v[n++] = $1 }
+    on == "element.mix" && $1 >= 0 { print v[n], $1 } on == "element.mix" { n++ }' "$T/m" | sort | uniq -c | tr -s ' ' | tr '\n' ' ')" " 4 0 2 " "the muscle's number is moved"
+box skin 0 0 0 4 4 4 >"$T/thick.obj"
+box muscle_thick 1 1 0.4 3 3 2.3 >>"$T/thick.obj"
+vox -s 1 --origin 0,0,0 --fraction 10 --layers "$T/layers" "$T/thick.obj"
+is "$(awk '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" } on == "element.volume" { v[n++] = $1 }
+    on == "element.mix" && $1 >= 0 { print v[n], $1 } on == "element.mix" { n++ }' "$T/m" | sort | uniq -c | tr -s ' ' | tr '\n' ' ')" " 4 0 2  4 2 1 " "a layer's share of a muscle's voxels"
+
+# What each volume has, of a ball in a ball: its shares come to it, where whole voxels do not.
+awk -v r=100 -v n=96 -v g=skin -f tests/cli/sphere.awk >"$T/two.obj"
+awk -v r=57 -v n=96 -v g=muscle_m -f tests/cli/sphere.awk | awk -v from="$((2 + 95 * 192))" '$1 == "f" { for (i = 2; i <= NF; i++) $i += from } 1' >>"$T/two.obj"
+inner=$(voxelise --check --unit mm "$T/two.obj" | awk '$1 == "volume" { on = $2 == "muscle_m" } $1 == "surface" { on = $2 == "muscle_m" } on && $1 == "encloses" && $2 > 0 { v = $2 } END { print v }')
+for size in 25 12.5 6.25; do
+    vox -s "$size" --fraction 8 --threads 3 "$T/two.obj"
+    cp "$T/m" "$T/three"
+    vox -s "$size" --fraction 8 --threads 1 "$T/two.obj"
+    check "mixed: the same bytes on three threads" cmp "$T/m" "$T/three"
+    sums=$(awk -v s="$size" '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" } on == "element.volume" { v[n++] = $1 }
+        on == "element.fraction" { f[n++] = $1 } on == "element.mix" { m[n++] = $1 }
+        on == "element.mixture" { x = f[n]; own += v[n] * x; all += v[n] ? x * (1 - $1) : m[n] == 1 ? x * $1 : 0; n++ }
+        END { printf "%.9g %.9g", all * s ^ 3, own * s ^ 3 }' "$T/m")
+    near "${sums% *}" "$inner" 0.005 "the inner ball's shares, voxels of $size mm"
+    echo "# voxels of $size mm: $(awk -v a="${sums% *}" -v b="${sums#* }" -v c="$inner" 'BEGIN { printf "%.3g %% by shares, %.3g by whole elements", 100 * (a / c - 1), 100 * (b / c - 1) }')"
+done
+
 # The volume of a ball: shares are nearer than centres by far.
 awk -v r=100 -v n=96 -f tests/cli/sphere.awk >"$T/ball.obj"
 true_volume=$(voxelise --check --unit mm "$T/ball.obj" | awk '$1 == "encloses" { print $2; exit }')
@@ -64,6 +119,10 @@ is "$(sinew info <"$T/m" | sed -n 's/^  voxelise 0.1.0 //p')" "--unit mm -s 6.25
 fails 2 "no samples" "--fraction '0': expected a whole number from 1" voxelise --unit mm -s 1 --fraction 0 "$T/box.obj"
 fails 2 "--least without --fraction" "--least is for --fraction" voxelise --unit mm -s 1 --least 0.5 "$T/box.obj"
 fails 2 "--least past 1" "--least '1.5'" voxelise --unit mm -s 1 --fraction 2 --least 1.5 "$T/box.obj"
+for option in "--fraction 4" "--box 0,0,0,1,1,1" "--origin 0,0,0"; do
+    # shellcheck disable=SC2086 # an option and its value
+    fails 2 "--check with $option" "--check looks at surfaces and makes no voxels" voxelise --check --unit mm $option "$T/box.obj"
+done
 fails 1 "nothing is enough" "no voxel has enough of it inside" voxelise --unit mm -s 10 --origin 0,0,0 --fraction 4 --least 0.5 "$T/box.obj"
 # With attach: what it holds by centres it holds by shares too, and nothing hangs loose.
 # held FILE: the lattice places of the model's rigid nodes. parts: of $T/m, how many parts faces join.

@@ -1,4 +1,5 @@
-// needs: slice/dicom.cc slice/dicom_elements.c slice/dicom_lengths.c slice/series.c
+// needs: slice/dicom_image.c slice/dicom_file.cc slice/dicom_pixels.c slice/dicom_colour.c slice/dicom_inflate.c slice/dicom_jpeg2000.c
+// needs: slice/dicom_elements.c slice/dicom_lengths.c slice/series.c
 /* A DICOM file of any bytes is read or refused; what was read makes a volume, or not, twice over too. What DCMTK keeps for the whole of
  * a program's life is its own.
  */
@@ -12,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 static void make_volume(const series *s, bool spaced)
 {
-    series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, 1, 1};
+    series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, 1, 1, NULL};
     volume v = {0};
     err e = {0};
     for (int a = 0; spaced && a < 3; a++)

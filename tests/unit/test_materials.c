@@ -3,6 +3,7 @@
 
 #include "tap.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef int reading(model *m, in *s, err *e);
@@ -127,9 +128,36 @@ static void incomplete_models(void)
     model_free(&m);
 }
 
+/* Between two materials: their own where the share is 0 or 1, within the bounds of side by side and across, and the same
+ * whichever comes first. */
+static void mixtures(void)
+{
+    const material a = {.law = MATERIAL_NEO_HOOKEAN, .E = 3000, .nu = .45, .density = 1000, .peak = 10};
+    const material b = {.law = MATERIAL_NEO_HOOKEAN, .E = 48000, .nu = .3, .density = 1800, .peak = 30};
+    material none = material_mixed(&a, &b, 0), all = material_mixed(&a, &b, 1), same = material_mixed(&a, &a, .3);
+    near_(none.E, 3000, 1e-9, "share 0: E of the first");
+    near_(none.nu, .45, 1e-12, "and nu");
+    near_(all.E, 48000, 1e-7, "share 1: E of the second");
+    near_(all.nu, .3, 1e-12, "and nu");
+    near_(same.E, 3000, 1e-9, "one material twice");
+    for (int i = 1; i < 4; i++) {
+        const double s = i / 4.;
+        material m = material_mixed(&a, &b, s), turned = material_mixed(&b, &a, 1 - s);
+        double mu = material_mu(&m), beside = (1 - s) * material_mu(&a) + s * material_mu(&b);
+        double across = 1 / ((1 - s) / material_mu(&a) + s / material_mu(&b));
+        ok(mu > across && mu < beside, "share %g: mu %g is between %g and %g", s, mu, across, beside);
+        near_(turned.E, m.E, 1e-8, "the other way round");
+        near_(m.density, 1000 + 800 * s, 1e-9, "density by shares");
+        near_(m.peak, 10 + 20 * s, 1e-12, "peak too");
+    }
+    material half = material_mixed(&a, &b, .5);
+    near_(material_bulk(&half), sqrt(material_bulk(&a) * material_bulk(&b)), 1e-8, "half and half: the geometric mean");
+}
+
 int main(void)
 {
     defaults();
+    mixtures();
     files();
     dots();
     refuse_file("", "m.txt: no material");

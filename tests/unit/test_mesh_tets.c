@@ -138,7 +138,8 @@ static int voxels(model *m, int side, unsigned seed, err *e)
     if (model_axis_add(m, "node", (int64_t)n * n * n, e) || model_axis_add(m, "element", count, e) ||
         model_axis_add(m, "volume", 3, e) || !model_add(m, "node.position", e) || !model_add(m, "node.lattice", e) ||
         !model_add(m, "element.node", e) || !model_add(m, "element.lattice", e) || !model_add(m, "element.volume", e) ||
-        !model_add(m, "element.fibre", e) || !model_add_as(m, "x-kept", MODEL_U8, "1", "node", 1, e) ||
+        !model_add(m, "element.fibre", e) || !model_add(m, "element.mix", e) || !model_add(m, "element.mixture", e) ||
+        !model_add_as(m, "x-kept", MODEL_U8, "1", "node", 1, e) ||
         !model_add_as(m, "x-lost", MODEL_U8, "1", "element", 1, e))
         return -1;
     for (int i = 0; i < n * n * n; i++)
@@ -155,6 +156,8 @@ static int voxels(model *m, int side, unsigned seed, err *e)
         memcpy(&model_find(m, "element.lattice")->i32[3 * c], cell[c], sizeof cell[c]);
         model_find(m, "element.volume")->i32[c] = (int32_t)(c % 3);
         model_find(m, "element.fibre")->f32[3 * c] = (float)c;
+        model_find(m, "element.mix")->i32[c] = (int32_t)(c % 2) - 1;
+        model_find(m, "element.mixture")->f32[c] = (float)c;
     }
     return 0;
 }
@@ -162,9 +165,11 @@ static int voxels(model *m, int side, unsigned seed, err *e)
 static bool rows_kept(const model *m)
 {
     const model_array *of = model_find(m, "element.volume"), *fibre = model_find(m, "element.fibre");
-    bool same = of && fibre;
+    const model_array *mix = model_find(m, "element.mix"), *mixture = model_find(m, "element.mixture");
+    bool same = of && fibre && mix && mixture;
     for (int64_t n = 0; same && n < of->rows; n++)
-        same = of->i32[n] == n / 5 % 3 && (int64_t)fibre->f32[3 * n] == n / 5;
+        same = of->i32[n] == n / 5 % 3 && (int64_t)fibre->f32[3 * n] == n / 5 && mix->i32[n] == n / 5 % 2 - 1 &&
+               (int64_t)mixture->f32[n] == n / 5;
     return same;
 }
 
@@ -183,7 +188,7 @@ static void split(unsigned seed)
        "%lld voxels, five tetrahedra each %s", (long long)cells, e.text);
     near_(volumes(&m, &least), .125 * (double)cells, 1e-12, "they fill the voxels");
     ok(least > 0 && count_faces(model_find(&m, "element.node")).more == 0, "no face is shared by more than two");
-    ok(rows_kept(&m), "each has its voxel's volume and fibre");
+    ok(rows_kept(&m), "each has its voxel's volume, fibre and mixture");
     ok(!model_find(&m, "element.lattice") && model_find(&m, "x-kept") && !model_find(&m, "x-lost") &&
            warnings.count == 1,
        "what is over elements and not known is dropped, with a word");

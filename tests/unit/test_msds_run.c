@@ -1,14 +1,13 @@
 /* msds-run's solvers: Algorithm 1 on PST's figure 4, springs at rest under gravity and their momentum, the sharp bound of the step, the FEM's
  * patch test, the exact solver's contact, warping, and the same bytes for any number of threads.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/cg.c msds/msds_cpu.c msds/largest.c
+// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/largest.c
 #include "msds_block.h"
 
 #include "base/mem.h"
-#include "msds/lanes.h"
 #include "msds/largest.h"
 #include "msds/msds_cpu.h"
-#include "msds/slices.h"
+#include "msds/stiffness.h"
 
 #include "tap.h"
 
@@ -97,37 +96,6 @@ static void test_counts(void)
            want[i][0], want[i][1], want[i][2], (long long)p.elements, (long long)p.springs);
         free_problem(&m, &p);
     }
-}
-
-/* Every slot's neighbour is the spring's other end, and every spring is met from both. */
-static void test_slices(void)
-{
-    model m = {0};
-    msds_problem p = {0};
-    slices s = {0};
-    err e = {0};
-    msds_options o = tets_options();
-    tets b = {{9, 6, 5}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
-    int64_t met = 0, wrong = 0, rows = 0;
-    make_problem(&b, &o, &m, &p);
-    tets_must(!slices_make(&s, &p, &e), &e);
-    for (int64_t slice = 0; slice < s.count; slice++)
-        for (int64_t slot = s.start[slice]; slot < s.start[slice + 1]; slot++)
-            for (int64_t lane = 0; lane < LANES; lane++) {
-                int32_t i = s.spring[slot * LANES + lane], other = s.neighbour[slot * LANES + lane];
-                if (i < 0)
-                    continue;
-                int32_t a = s.model_node[slice * LANES + lane], c = s.model_node[other];
-                wrong += !((p.spring[i].node[0] == a && p.spring[i].node[1] == c) ||
-                           (p.spring[i].node[1] == a && p.spring[i].node[0] == c));
-                wrong += s.first[slot] != SLICES_SCATTERED && s.first[slot] + lane != other;
-                rows += s.first[slot] != SLICES_SCATTERED;
-                met++;
-            }
-    ok(met == 2 * p.springs && !wrong, "each spring is met from both its ends");
-    ok(rows > met * 7 / 10, "mostly in rows: %lld of %lld", (long long)rows, (long long)met);
-    slices_free(&s);
-    free_problem(&m, &p);
 }
 
 /* Gravity along a column of springs: at rest, the springs across each level carry what hangs below. The exact answer is a small
@@ -331,6 +299,76 @@ static void test_contact(void)
     free_problem(&m, &p);
 }
 
+/* By a penalty, nodes stay in the probe as deep as their springs give; both solvers agree; and what is fixed holds what the probe
+ * pushes. */
+static void test_penalty(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    stiffness k = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    tets b = {{11, 11, 7}, {.1, .1, .06}, 3000, .45, 1000, 2, false};
+    msds_sight exact, cg;
+    o.penalty = true;
+    make_problem(&b, &o, &m, &p);
+    msds_plan plan = tets_plan(MSDS_EXACT);
+    tets_press(&plan, .02, .052, .047, .052);
+    double *u = run_frames(&p, &plan, 2, 8, 20, &exact), off = 0, springs = 0, held[3] = {0};
+    for (int64_t n = 0; n < p.nodes; n++) {
+        double x[3] = {p.position[3 * n] + u[3 * n], p.position[3 * n + 1] + u[3 * n + 1],
+                       p.position[3 * n + 2] + u[3 * n + 2]};
+        probe_touch t = probe_at(&plan.probe, x);
+        springs += t.depth > 0 ? p.repulsion[n] * t.depth * t.way[2] : 0;
+    }
+    near_(-springs, exact.force[2], 2e-3 * exact.force[2], "a penalty pushes as deep as nodes are: %.4g N",
+          exact.force[2]);
+    plan.method = MSDS_FEM;
+    double *w = run_frames(&p, &plan, 2, 8, 400, &cg), *f = mem_array(p.nodes, 3 * sizeof *f, "test", &e);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        off = fmax(off, fabs(u[i] - w[i]));
+    ok(off < 2e-3 * exact.largest, "400 conjugate gradients agree to %.2g of the largest", off / exact.largest);
+    pool *workers = pool_create(1, &e);
+    tets_must(workers && f && !stiffness_make(&k, &p, workers, &e), &e);
+    stiffness_force(&k, u, f);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        held[i % 3] += p.fixed[i / 3] ? f[i] : 0;
+    for (int a = 0; a < 3; a++)
+        near_(held[a], exact.force[a], 1e-5 * exact.force[2], "what is fixed holds the probe's force along axis %d", a);
+    stiffness_free(&k);
+    pool_destroy(workers);
+    free(f);
+    free(u);
+    free(w);
+    free_problem(&m, &p);
+}
+
+/* auto: springs store the energy of their material, pulled along an axis (nu = 3/13, as theirs is). */
+static void test_auto(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_options o = tets_options();
+    tets b = {{6, 5, 7}, {.05, .04, .06}, 7000, 3. / 13, 1000, 2, false};
+    double energy = 0;
+    o.scale = 0;
+    make_problem(&b, &o, &m, &p);
+    near_(p.scale, .01 / 8.615, 1e-6 * .01, "k = h / 8.615 E");
+    for (int64_t i = 0; i < p.springs; i++) {
+        const msds_spring *s = &p.spring[i];
+        double square = 0;
+        for (int a = 0; a < 3; a++) {
+            double d = p.position[3 * s->node[1] + a] - p.position[3 * s->node[0] + a];
+            d *= 1 + (a ? -3. / 13 : 1) * 1e-5;
+            square += d * d;
+        }
+        energy += s->stiffness * (sqrt(square) - s->rest) * (sqrt(square) - s->rest) / 2;
+    }
+    double want = .5 * 7000 * 1e-10 * .05 * .04 * .06;
+    near_(energy, want, 2e-4 * want, "and the energy of a pull along x is the material's");
+    free_problem(&m, &p);
+}
+
 /* A rigid turn: linear elements take it for strain, warped ones do not. */
 static void test_warp(void)
 {
@@ -353,52 +391,30 @@ static void test_warp(void)
     ok(fabs(f[1][0]) > 1, "but to a linear one: %g N", f[1][0]);
 }
 
-#if defined(__x86_64__)
-/* Every loop by both builds of it, over numbers with no pattern: the same bytes. */
-static void test_lanes(void)
+/* A beam that hangs far down: the equilibrium of warped elements by two ways that share only the elements' forces. */
+static void test_warped(void)
 {
     model m = {0};
     msds_problem p = {0};
-    slices s = {0};
-    err e = {0};
     msds_options o = tets_options();
-    tets b = {{9, 6, 5}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
-    lanes_field f[8] = {{{NULL}, NULL}};
+    tets b = {{11, 4, 4}, {.1, .03, .03}, 20000, .4, 1000, 0, false};
+    msds_sight exact, cg;
+    o.warp = true;
+    o.gravity[2] = -9.81;
     make_problem(&b, &o, &m, &p);
-    tets_must(!slices_make(&s, &p, &e), &e);
-    for (int i = 0; i < 8; i++) {
-        tets_must(!lanes_field_make(&f[i], s.nodes, &e), &e);
-        for (int64_t k = 0; k < 3 * s.nodes; k++)
-            f[i].x[k % 3][k / 3] = (float)(sin(1.3 * (double)k + i) * (i ? .001 : 1));
-    }
-    float *number = mem_array(s.slots * 9 * LANES, sizeof *number, "test", &e);
-    tets_must(number != NULL, &e);
-    for (int64_t k = 0; k < s.slots * 9 * LANES; k++)
-        number[k] = 1 + (float)cos(.7 * (double)k);
-    lanes_springs w = {&s,     number, number + 8, number + 16, f[0], f[1], f[2], f[3], f[4],
-                       number, f[5],   .01F,       false,       {0},  0,    NULL, 0,    NULL};
-    lanes_matrix a = {&s, number, number};
-    size_t size = 3 * (size_t)(s.nodes + 2 * LANES) * sizeof(float);
-    lanes_plain.step(&w, 0, s.count);
-    double plain = lanes_plain.multiply(&a, &f[1], &f[6], 0, s.count);
-    w.next_u = f[7], w.next_v = f[5];
-    bool same = __builtin_cpu_supports("avx2") > 0;
-    if (same) {
-        lanes_avx2.step(&w, 0, s.count);
-        same = !memcmp(f[3].memory, f[7].memory, size) && !memcmp(f[4].memory, f[5].memory, size);
-        double other = lanes_avx2.multiply(&a, &f[1], &f[7], 0, s.count);
-        same = same && !memcmp(f[6].memory, f[7].memory, size) && !memcmp(&plain, &other, sizeof plain);
-        ok(same, "plain and AVX2: the same bytes");
-    } else {
-        skip(1, "no AVX2 here");
-    }
-    for (int i = 0; i < 8; i++)
-        lanes_field_free(&f[i]);
-    free(number);
-    slices_free(&s);
+    msds_plan plan = tets_plan(MSDS_EXACT);
+    double *u = run_frames(&p, &plan, 2, 2, 20, &exact), off = 0;
+    ok(exact.residual < 1e-6 && exact.largest > .02, "warped, %.3g m down: residual %.2g", exact.largest,
+       exact.residual);
+    plan.method = MSDS_FEM;
+    double *w = run_frames(&p, &plan, 2, 60, 100, &cg);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        off = fmax(off, fabs(u[i] - w[i]));
+    ok(off < 1e-4 * exact.largest, "conjugate gradients come to the same to %.2g of the largest", off / exact.largest);
+    free(u);
+    free(w);
     free_problem(&m, &p);
 }
-#endif
 
 static void test_threads(void)
 {
@@ -453,22 +469,60 @@ static void test_bad(void)
     free_problem(&m, &p);
 }
 
+/* An element has its share of stiffness and mass, and what two volumes mixed have between them. */
+static void test_shares(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    err e = {0};
+    msds_options o = tets_options();
+    make_any(two_x, 5, two, 2, 5000, &m);
+    tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
+    const double whole = p.weight[0], young = p.young[0];
+    msds_problem_free(&p);
+    p = (msds_problem){0};
+    float *fraction = tets_array(&m, "element.fraction")->f32, *mixture;
+    fraction[0] = .5F, fraction[1] = 1;
+    tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
+    near_(p.young[0] / young, .5, 1e-12, "half an element: half the stiffness");
+    ok(p.young[1] == young, "not of the other");
+    msds_problem_free(&p);
+    p = (msds_problem){0};
+    tets_array(&m, "element.mix")->i32[1] = -1;
+    mixture = tets_array(&m, "element.mixture")->f32;
+    mixture[0] = .3F;
+    tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
+    near_(p.young[0] / young, .5, 1e-9, "mixed of one material twice");
+    ok(p.weight[0] < whole, "and less mass");
+    msds_problem_free(&p);
+    p = (msds_problem){0};
+    mixture[0] = 2;
+    ok(msds_problem_make(&p, &m, &o, &e) && strstr(e.text, "element.mixture, row 0 is 2"), "%s", e.text);
+    e = (err){0};
+    mixture[0] = .3F;
+    fraction[0] = 0;
+    msds_problem_free(&p);
+    p = (msds_problem){0};
+    ok(msds_problem_make(&p, &m, &o, &e) && strstr(e.text, "element.fraction, row 0 is 0"), "%s", e.text);
+    free_problem(&m, &p);
+}
+
 int main(void)
 {
+    test_shares();
     test_figure_4();
     test_counts();
-    test_slices();
     test_hanging();
     test_column();
     test_momentum();
     test_bound();
     test_patch();
     test_contact();
+    test_penalty();
+    test_auto();
     test_warp();
     test_threads();
-#if defined(__x86_64__)
-    test_lanes();
-#endif
+    test_warped();
     test_bad();
     return done_testing();
 }

@@ -131,6 +131,48 @@ static void slanted_axis(void)
     model_free(&m);
 }
 
+/* Elements mixed of two volumes count for both, by their shares. */
+static void mixed(void)
+{
+    static const int32_t mix[] = {-1, 0, 1, 1};
+    static const float share[] = {0, .25F, .25F, .5F};
+    err e = {0};
+    notes warnings = {0};
+    muscles list;
+    model m;
+    bar(&m, "10001000000000000000");
+    memcpy(model_add(&m, "element.mix", &e)->i32, mix, sizeof mix);
+    memcpy(model_add(&m, "element.mixture", &e)->f32, share, sizeof share);
+    ok(!muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e), "elements mixed of two volumes %s", e.text);
+    ok(list.of[0].elements == 4 && list.of[1].elements == 1, "of the second volume too");
+    near_(list.of[0].weight, 1 + .75 + .25 + .5, 1e-12, "its shares");
+    near_(list.of[1].weight, .5, 1e-12, "what it leaves the other");
+    near_(list.of[0].middle[0], (1 * .005 + .75 * .015 + .25 * .025 + .5 * .035) / 2.5, 1e-12, "their middle");
+    near_(list.of[0].centre[0], .5 * .04 / 1.5, 1e-9, "rigid nodes count by the part that it has there");
+    ok(list.of[0].rigid_nodes == 2 && list.of[1].rigid_nodes == 1 && list.attached.count == 3,
+       "two attachments and one");
+    near_(list.of[1].centre[0], .04, 1e-9, "the other's");
+    const float *second = model_find(&m, "element.mixfibre")->f32;
+    ok(fibre(&m, 0)[0] == -1 && fibre(&m, 1)[0] == -1 && fibre(&m, 2)[0] == 0, "fibres of the first volume");
+    ok(second[0] == 0 && second[3] == 0 && second[6] == -1 && second[9] == -1,
+       "fibres of the second, where that is a muscle");
+    notes_free(&warnings);
+    muscles_free(&list);
+    model_find(&m, "element.mix")->i32[3] = 2;
+    ok(muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) &&
+           strstr(e.text, "element.mix, row 3 is its own volume"),
+       "%s", e.text);
+    notes_free(&warnings);
+    muscles_free(&list);
+    e = (err){0};
+    model_find(&m, "element.mixture")->f32[2] = -1;
+    ok(muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) && strstr(e.text, "element.mixture, row 2 is -1"), "%s",
+       e.text);
+    notes_free(&warnings);
+    muscles_free(&list);
+    model_free(&m);
+}
+
 static const char face[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                            "f 1 2 3\ng Skull_upper\nf 1 2 4\nl 1 2 3\ng skin\nf 2 3 4\n"
                            "g cheek BONE_7 rigid\nf 1 3 4\ng skull_lower\np 4\n";
@@ -181,6 +223,7 @@ int main(void)
     at_the_centre();
     axes();
     slanted_axis();
+    mixed();
     by_name();
     return done_testing();
 }

@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-static const block lump = {{17, 9, 6}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0};
+static const block lump = {{17, 9, 6}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
 
 static double moved(int64_t node, int a)
 {
@@ -26,13 +26,17 @@ static void force_of(const tled_problem *p, int64_t element, double u[8][3], dou
 {
     element_field at, g;
     const tled_volume *v = &p->volume[p->element_volume[element]];
-    const double share = tled_fraction(p, element);
-    element_law law = {share * v->mu, share * v->bulk, share * v->hourglass};
-    const float *d = p->fibre + 3 * element;
-    element_fibre fibre = {{d[0], d[1], d[2]}, share * .3 * v->peak};
+    const tled_volume *w = tled_mix(p, element) < 0 ? v : &p->volume[p->mix[element]];
+    const double share = tled_fraction(p, element), s = tled_mixture(p, element);
+    const double own = share * (1 - s), other = share * s;
+    const tled_law of = tled_law_of(p, element);
+    element_law law = {share * of.mu, share * of.bulk, share * of.hourglass};
+    const float *d = p->fibre + 3 * element, *c2 = p->mixfibre ? p->mixfibre + 3 * element : d;
+    element_fibre fibre = {{d[0], d[1], d[2]}, own * (.3 * v->peak)},
+                  second = {{c2[0], c2[1], c2[2]}, other * (.3 * w->peak)};
     for (int c = 0; c < 8; c++)
         at.x.at[c] = u[c][0], at.y.at[c] = u[c][1], at.z.at[c] = u[c][2];
-    g = element_force(at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre, 1);
+    g = element_force_of_two(at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre, 1, second, w != v);
     for (int c = 0; c < 8; c++)
         f[c][0] = g.x.at[c], f[c][1] = g.y.at[c], f[c][2] = g.z.at[c];
 }
@@ -101,6 +105,9 @@ static bool by_tiles(const tled_problem *p, const tiles *t, double *sum, int *ow
             owned[element] += (int)(cell >> TILE_OWN & 1);
             good &= (int32_t)(cell >> TILE_VOLUME) == p->element_volume[element];
             good &= t->share ? t->share[own->cell + k] == p->fraction[element] : !p->fraction;
+            good &= t->mixed ? t->mixed[own->cell + k] == p->mixed[element] : !p->mix;
+            good &= k >= own->fibred || !t->mixfibre ||
+                    !memcmp(t->mixfibre + 3 * (own->direction + k), p->mixfibre + 3 * element, 12);
             good &= k >= own->fibred || !memcmp(t->fibre + 3 * (own->direction + k), p->fibre + 3 * element, 12);
         }
         for (int32_t n = own->node; n < own->node + own->nodes; n++)
@@ -197,7 +204,7 @@ static void make(model *m, script *s, tled_problem *p)
     }
 }
 
-static void test_block(const block *what)
+static void test_block(const block *what, const char *name)
 {
     static const int bricks[][3] = {{4, 4, 4}, {8, 8, 4}, {8, 8, 8}, {1, 2, 3}};
     model m = {0};
@@ -205,12 +212,16 @@ static void test_block(const block *what)
     tled_problem p = {0};
     err e = {0};
     block_make(what, &m);
-    ok(!script_add_contract(&s, &m, "m=.5", 0, NULL, &e), "a muscle contracts %s", e.text);
+    ok(!script_add_contract(&s, &m, what->mixed ? "m=.3,n=.3" : "m=.3", 0, NULL, &e), "a muscle contracts %s", e.text);
     make(&m, &s, &p);
     for (int i = 0; i < 4; i++)
         test_pass(&p, bricks[i]);
     for (int i = 1; i < 9; i++)
         test_rows(&p, i < 5 ? 4 : 16, i * i);
+    for (int64_t i = 0; i < 3 * p.nodes; i++)
+        p.displacement[i] = moved(i / 3, (int)(i % 3));
+    for (int threads = 1; threads < 4; threads++)
+        test_cpu(&p, threads, name);
     tled_problem_free(&p);
     script_free(&s);
     model_free(&m);
@@ -276,7 +287,7 @@ static void move_blocks(blocks *b)
 static void test_slit(bool joined)
 {
     static const int brick[3] = {4, 4, 4};
-    const block what = {{5, 4, 3}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0};
+    const block what = {{5, 4, 3}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0, false};
     model m = {0};
     script s = {0};
     tled_problem p = {0};
@@ -314,8 +325,11 @@ int main(void)
 {
     block cut = lump;
     cut.fraction = -1;
-    test_block(&lump);
-    test_block(&cut);
+    block mixed = cut;
+    mixed.mixed = true;
+    test_block(&lump, "whole elements");
+    test_block(&cut, "cut elements");
+    test_block(&mixed, "elements mixed of two muscles");
     test_slit(false);
     test_slit(true);
     return done_testing();

@@ -4,8 +4,8 @@
 // needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c
 #include "tled_bench.h"
 
-static const block cube = {{8, 8, 8}, {.0125, .0125, .0125}, 3000, .45, 1000, 0, 2, 0, 1, {0, 0, 0}, 0};
-static const block beam = {{32, 8, 8}, {.0025, .0025, .0025}, 30000, .45, 1000, 0, 0, 1, 0, {0, 0, 0}, 0};
+static const block cube = {{8, 8, 8}, {.0125, .0125, .0125}, 3000, .45, 1000, 0, 2, 0, 1, {0, 0, 0}, 0, false};
+static const block beam = {{32, 8, 8}, {.0025, .0025, .0025}, 30000, .45, 1000, 0, 0, 1, 0, {0, 0, 0}, 0, false};
 static const double down[3] = {0, 0, -9.81};
 
 /* The displacement along z of node (i, j, k) at rest. */

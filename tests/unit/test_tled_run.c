@@ -6,8 +6,8 @@
 
 #include <time.h>
 
-static const block lump = {{4, 3, 5}, {.01, .01, .0125}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0};
-static const block muscle = {{8, 4, 4}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0};
+static const block lump = {{4, 3, 5}, {.01, .01, .0125}, 3000, .45, 1000, 30000, 0, 0, 0, {0, 0, 0}, 0, false};
+static const block muscle = {{8, 4, 4}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0, false};
 
 /* A velocity that bends, stretches and turns the block as it moves on. */
 static void push(bench *b)

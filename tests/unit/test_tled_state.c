@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-static const block brick = {{2, 2, 3}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0};
+static const block brick = {{2, 2, 3}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0, false};
 
 static void read_script(script *s, const model *m, const char *text)
 {
@@ -133,6 +133,17 @@ static void test_refused(void)
     block_make(&brick, &m);
     model_remove(&m, "element.volume");
     refused(&m, "element.volume");
+    block mixed = brick;
+    mixed.mixed = true;
+    block_make(&mixed, &m);
+    model_find(&m, "element.mixture")->f32[1] = 1.5F;
+    refused(&m, "element.mixture of element 1 is 1.5; expected a share from 0 to 1");
+    block_make(&mixed, &m);
+    model_find(&m, "element.mix")->i32[1] = model_find(&m, "element.volume")->i32[1];
+    refused(&m, "element.mix of element 1 is its own volume; expected another, or -1");
+    block_make(&mixed, &m);
+    model_remove(&m, "element.mixture");
+    refused(&m, "element.mixture");
     block_make(&brick, &m);
     model_find(&m, "material.nu")->f64[0] = .5;
     refused(&m, "nu");

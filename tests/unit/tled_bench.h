@@ -89,10 +89,10 @@ static inline void bench_finish(bench *b, int threads)
 static inline void bench_make(bench *b, const block *what, const double gravity[3], double level, double kappa,
                               int threads)
 {
-    char contract[40];
+    char contract[80];
     memset(b, 0, sizeof *b);
     block_make(what, &b->m);
-    snprintf(contract, sizeof contract, "m=%.17g", level);
+    snprintf(contract, sizeof contract, what->mixed ? "m=%.17g,n=%.17g" : "m=%.17g", level, level / 2);
     if (gravity)
         bench_must(script_add_gravity(&b->script, gravity, .1, &b->e), &b->e);
     if (level > 0)

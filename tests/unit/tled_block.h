@@ -1,4 +1,4 @@
-/* A block of voxels as a model in memory, one volume of one material, for tests of the solver. Memory that is not to be had
+/* A block of voxels as a model in memory, one volume of one material or two mixed, for tests of the solver. Memory that is not to be had
  * ends the test program.
  */
 #ifndef SINEW_TLED_BLOCK_H
@@ -17,6 +17,8 @@ typedef struct block {
     int fixed_axis, fixed_low, fixed_high; /* whether the nodes at its low and high end are rigid */
     float fibre[3];                        /* not 0: the volume is a muscle named muscle_m */
     float fraction; /* of every element; 0: the model has none. Below 0: they differ, from .05 to 1 */
+    bool
+        mixed; /* some elements are of a second volume, stiffer and denser, and some mixed of both, by different shares */
 } block;
 
 static inline model_array *block_array(model *m, const char *name)
@@ -57,6 +59,40 @@ static inline void block_mesh(const block *b, const lattice *l, model *m)
                 }
 }
 
+/* A second volume: muscle_n, whose fibres run another way, or stiff. */
+static inline void block_second(const block *b, bool muscle, model *m)
+{
+    err e = {0};
+    model_set_text(model_find(m, "volume.name"), 1, muscle ? "muscle_n" : "stiff", &e);
+    model_find(m, "volume.muscle")->u8[1] = muscle;
+    model_find(m, "volume.material")->i32[1] = 1;
+    model_set_text(model_find(m, "material.name"), 1, "stiff", &e);
+    model_set_text(model_find(m, "material.law"), 1, "neo-hookean", &e);
+    model_find(m, "material.E")->f64[1] = 3 * b->young;
+    model_find(m, "material.nu")->f64[1] = .4;
+    model_find(m, "material.density")->f64[1] = 1.3 * b->density;
+    model_find(m, "material.peak")->f64[1] = .4 * b->peak;
+}
+
+/* Which elements are of the second volume, and which are mixed; fibres by volume. */
+static inline void block_mix(const block *b, bool muscle, model *m)
+{
+    const float along[3] = {muscle ? .6F : 0, muscle ? -.64F : 0, muscle ? .48F : 0};
+    int32_t *volume = model_find(m, "element.volume")->i32, *mix = block_array(m, "element.mix")->i32;
+    float *mixture = block_array(m, "element.mixture")->f32, *fibre = model_find(m, "element.fibre")->f32;
+    float *mixfibre = block_array(m, "element.mixfibre")->f32;
+    block_second(b, muscle, m);
+    for (int64_t i = 0; i < model_count(m, "element"); i++) {
+        volume[i] = i % 7 == 0 || i % 5 == 1;
+        mix[i] = i % 7 == 0 ? -1 : i % 5 == 1 ? 0 : i / 3 % 3 == 0 ? 1 : -1;
+        mixture[i] = mix[i] < 0 ? 0 : (float)(i * 3571 % 97) / 96;
+        for (int a = 0; a < 3; a++) {
+            fibre[3 * i + a] = volume[i] ? along[a] : b->fibre[a];
+            mixfibre[3 * i + a] = mix[i] < 0 ? 0 : mix[i] ? along[a] : b->fibre[a];
+        }
+    }
+}
+
 static inline void block_tables(const block *b, model *m)
 {
     err e = {0};
@@ -79,6 +115,8 @@ static inline void block_tables(const block *b, model *m)
     float *fraction = b->fraction != 0 ? block_array(m, "element.fraction")->f32 : NULL;
     for (int64_t i = 0; fraction && i < model_count(m, "element"); i++)
         fraction[i] = b->fraction > 0 ? b->fraction : .05F + .95F * (float)(i * 7919 % 101) / 100;
+    if (b->mixed)
+        block_mix(b, muscle, m);
 }
 
 /* Makes the model; the caller frees it. */
@@ -90,8 +128,8 @@ static inline void block_make(const block *b, model *m)
     int64_t elements = (int64_t)b->cells[0] * b->cells[1] * b->cells[2];
     model_axis_add(m, "node", nodes, &e);
     model_axis_add(m, "element", elements, &e);
-    model_axis_add(m, "volume", 1, &e);
-    model_axis_add(m, "material", 1, &e);
+    model_axis_add(m, "volume", 1 + b->mixed, &e);
+    model_axis_add(m, "material", 1 + b->mixed, &e);
     lattice_save(&l, m, &e);
     block_mesh(b, &l, m);
     block_tables(b, m);

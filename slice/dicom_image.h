@@ -1,19 +1,13 @@
-/* A DICOM file as a volume needs it: pixels and where they lie, and nothing that names anybody. The one user of DCMTK, which is
- * C++: dicom.cc. (DCMTK rather than GDCM, which knows nothing of Enhanced US Volume's functional groups.) The caller owns
- * the struct.
+/* A DICOM file as a volume needs it: pixels and where they lie, and nothing that names anybody. The caller owns the struct.
  */
-#ifndef SINEW_DICOM_H
-#define SINEW_DICOM_H
-
-#ifdef __cplusplus
-extern "C" {
-#endif
+#ifndef SINEW_DICOM_IMAGE_H
+#define SINEW_DICOM_IMAGE_H
 
 #include "slice/dicom_elements.h"
 
 #include <stddef.h>
 
-enum { DICOM_UID = 65 };
+enum { DICOM_UID = 65, DICOM_KIND = 20 };
 
 typedef enum dicom_burned { DICOM_NOT_SAID, DICOM_CLEAN, DICOM_BURNED } dicom_burned;
 
@@ -27,9 +21,10 @@ typedef struct dicom_image {
     double along_row[3], along_column[3]; /* unit vectors, LPS: the way in which columns and rows are counted */
     bool placed;    /* frames have positions; where not, along_* are the axes, and frames lie one behind the other */
     bool own_frame; /* positions are in a frame of the volume's own, not the patient's */
-    bool private_geometry; /* some of it came from a maker's private elements */
-    double *position;      /* frames x 3: mm, LPS, the centre of the first pixel; nan: not said */
-    double *time;          /* frames: when, or which time; 0 where there is one only */
+    bool private_geometry;    /* some of it came from a maker's private elements */
+    double *position;         /* frames x 3: mm, LPS, the centre of the first pixel; nan: not said */
+    double *time;             /* frames: when, or which time; 0 where there is one only */
+    char (*kind)[DICOM_KIND]; /* frames: what their data are, as TISSUE_INTENSITY; "": not said */
     dicom_burned burned;
     unsigned char *pixels; /* frames x rows x columns x bytes, little-endian, brighter = more */
 } dicom_image;
@@ -45,9 +40,5 @@ void dicom_free(dicom_image *d);
 
 /* What DCMTK allocated once. */
 void dicom_end(void);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif
