@@ -93,7 +93,7 @@ $(BUILD)/tled/cpu_pass_%.o $(BUILD)/slice/slice_lanes_%.o: VECTORS = -Wno-psabi
 ifeq ($(shell uname -m),x86_64)
 $(BUILD)/msds/lanes_avx2.o: VECTORS = -mavx2
 $(BUILD)/slice/slice_lanes_avx2.o: VECTORS = -Wno-psabi -mavx2
-$(BUILD)/slice/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mbmi2 -mprefer-vector-width=512
+$(BUILD)/slice/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 $(BUILD)/msds/lanes_avx512.o: VECTORS = -mavx512f -mavx512vl -mavx512dq -mavx512bw
 $(BUILD)/tled/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/tled/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512

@@ -226,7 +226,7 @@ INLINE steps steps_of(int32_t step)
 
 INLINE void put(int32_t *to, int32_t count, int32_t from, steps s)
 {
-    const __mmask16 which = (__mmask16)_bzhi_u32(0xffff, (unsigned)count);
+    const __mmask16 which = (__mmask16)(count >= 16 ? 0xffffU : (1U << count) - 1);
     _mm512_mask_storeu_epi32(to, which, _mm512_add_epi32(_mm512_set1_epi32(from), s));
 }
 

@@ -93,9 +93,11 @@ bench-geometry: all $(BUILD)/tests/bench/bench_geometry
 # Frames of msds-run's solvers at the sizes of PST's Table I, beside its figures.
 bench-msds: $(BUILD)/tests/bench/bench_msds
 	@$(BUILD)/tests/bench/bench_msds $(shell nproc)
-# Images of us-slice at the sizes of PST's Tables I and II, beside their figures.
+# Images of us-slice at the sizes of PST's Tables I and II, beside their figures; out/regions.png where there is gnuplot.
 bench-slice: $(BUILD)/tests/bench/bench_slice
-	@$(BUILD)/tests/bench/bench_slice $(shell nproc)
+	@mkdir -p out
+	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat
+	@! command -v gnuplot >/dev/null || gnuplot -e "data='out/regions.dat'; picture='out/regions.png'" tests/bench/regions.plot
 # DICOM to volumes, labels and surfaces.
 bench-images: all $(BUILD)/tests/bench/bench_images
 	@$(BUILD)/tests/bench/bench_images $(BIN) $(BUILD) $(BENCH_HEAD)
@@ -133,7 +135,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo samples/scan tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -167,7 +169,7 @@ COMPLETIONDIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 # `bind` has no completion: bash-completion has a file of that name, for the shell's builtin.
 COMPLETIONS = $(filter-out bind,$(TOOLS))
 PAGES = $(wildcard man/*.[157])
-SAMPLES = $(filter-out samples/demo,$(wildcard samples/*))
+SAMPLES = $(filter-out samples/demo samples/scan,$(wildcard samples/*))
 
 install: all
 	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
