@@ -15,6 +15,10 @@ typedef struct scratch {
     atomic_flag busy;
 } scratch;
 
+typedef struct reach {
+    int32_t first, end;
+} reach;
+
 struct slice_cutter {
     slice_setup s;
     slice_projection projection;
@@ -27,6 +31,8 @@ struct slice_cutter {
     int64_t count;
     void *piece; /* slice_piece or slice_paper_tet: of the list */
     int64_t room;
+    reach *reach; /* the rows of each, close together */
+    int64_t reach_room;
     int32_t *region; /* lists of the regions, one after another: indices of pieces */
     int64_t region_room;
     int64_t *start; /* regions + 1: where each begins */
@@ -104,6 +110,7 @@ void slice_cutter_free(slice_cutter *c)
     free(c->start);
     free(c->region);
     free(c->piece);
+    free(c->reach);
     free(c->chunk);
     free(c->list);
     free(c->code);
@@ -156,6 +163,12 @@ static void gather(slice_cutter *c)
     }
 }
 
+static const slice_piece *piece_at(const slice_cutter *c, int64_t i)
+{
+    return c->s.method == SLICE_PAPER ? &((const slice_paper_tet *)c->piece)[i].piece
+                                      : &((const slice_piece *)c->piece)[i];
+}
+
 static void cut(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     slice_cutter *c = context;
@@ -166,6 +179,8 @@ static void cut(void *context, int64_t chunk, int64_t from, int64_t to)
     else
         c->s.lanes->cut(&c->tets, c->s.cells, c->list + from, to - from, c->s.size.rows,
                         (slice_piece *)c->piece + from);
+    for (int64_t i = from; i < to; i++)
+        c->reach[i] = (reach){piece_at(c, i)->first, piece_at(c, i)->end};
 }
 
 static int make_pieces(slice_cutter *c, err *e)
@@ -174,7 +189,8 @@ static int make_pieces(slice_cutter *c, err *e)
     pool_run(c->s.threads, c->s.mesh->nodes, NODES, project, c);
     pool_run(c->s.threads, c->s.mesh->tets, TETS, meet, c);
     gather(c);
-    if (c->count > c->room && mem_grow(&c->piece, &c->room, c->count, size, "pieces of an image", e))
+    if ((c->count > c->room && mem_grow(&c->piece, &c->room, c->count, size, "pieces of an image", e)) ||
+        MEM_ROOM(&c->reach, &c->reach_room, c->count, "pieces of an image", e))
         return -1;
     pool_run(c->s.threads, c->count, PIECES, cut, c);
     return 0;
@@ -182,20 +198,14 @@ static int make_pieces(slice_cutter *c, err *e)
 
 /* ---- the regions' lists */
 
-static const slice_piece *piece_at(const slice_cutter *c, int64_t i)
-{
-    return c->s.method == SLICE_PAPER ? &((const slice_paper_tet *)c->piece)[i].piece
-                                      : &((const slice_piece *)c->piece)[i];
-}
-
 /* Counts, or (place) writes, each piece in the regions that it reaches: ascending in each. */
 static void deal(slice_cutter *c, int64_t *at, bool place)
 {
     for (int64_t i = 0; i < c->count; i++) {
-        const slice_piece *p = piece_at(c, i);
-        if (p->first >= p->end)
+        const reach p = c->reach[i];
+        if (p.first >= p.end)
             continue;
-        for (int32_t r = p->first / c->rows; r <= (p->end - 1) / c->rows; r++) {
+        for (int32_t r = p.first / c->rows; r <= (p.end - 1) / c->rows; r++) {
             if (place)
                 c->region[at[r]] = (int32_t)i;
             at[r]++;
@@ -296,8 +306,10 @@ static int make_whole(slice_cutter *c, const slice_plane *at, err *e)
 {
     const double w = c->s.size.columns, h = c->s.size.rows;
     double columns[3], rows[3], place[3];
-    if (c->room < 1 && mem_grow(&c->piece, &c->room, 1, sizeof(slice_piece), "pieces of an image", e))
+    if ((c->room < 1 && mem_grow(&c->piece, &c->room, 1, sizeof(slice_piece), "pieces of an image", e)) ||
+        MEM_ROOM(&c->reach, &c->reach_room, 1, "pieces of an image", e))
         return -1;
+    c->reach[0] = (reach){0, c->s.size.rows};
     slice_piece *p = c->piece;
     *p = (slice_piece){.corners = 4,
                        .end = c->s.size.rows,

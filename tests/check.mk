@@ -94,10 +94,11 @@ bench-geometry: all $(BUILD)/tests/bench/bench_geometry
 bench-msds: $(BUILD)/tests/bench/bench_msds
 	@$(BUILD)/tests/bench/bench_msds $(shell nproc)
 # Images of us-slice at the sizes of PST's Tables I and II, beside their figures; out/regions.png where there is gnuplot.
-bench-slice: $(BUILD)/tests/bench/bench_slice
+bench-slice: all $(BUILD)/tests/bench/bench_slice
 	@mkdir -p out
 	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat
 	@! command -v gnuplot >/dev/null || gnuplot -e "data='out/regions.dat'; picture='out/regions.png'" tests/bench/regions.plot
+	@! command -v python3 >/dev/null || python3 tests/bench/live.py $(BIN) $(shell nproc)
 # DICOM to volumes, labels and surfaces.
 bench-images: all $(BUILD)/tests/bench/bench_images
 	@$(BUILD)/tests/bench/bench_images $(BIN) $(BUILD) $(BENCH_HEAD)
