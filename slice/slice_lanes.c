@@ -6,9 +6,11 @@ const slice_lanes *slice_lanes_choose(err *e)
 {
     static const slice_lanes *const all[] = {
 #if defined(__x86_64__)
-        &slice_lanes_avx512, &slice_lanes_avx2,
+        &slice_lanes_avx512,
+        &slice_lanes_avx2,
 #endif
-        &slice_lanes_plain};
+        &slice_lanes_plain
+    };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (vectors_are(all[i]->name))
             return all[i];
