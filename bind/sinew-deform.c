@@ -7,12 +7,13 @@
 #include "base/tool.h"
 #include "bind/normals.h"
 #include "bind/pointcache.h"
-#include "mesh/scale.h"
 #include "mesh/bone.h"
 #include "mesh/bound.h"
+#include "mesh/scale.h"
 #include "model/source.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,12 +66,13 @@ typedef struct mover {
     obj file;
     bound b;
     bone bone;
-    double scale;     /* metres in the OBJ's unit */
-    bool *held;       /* vertices: too far outside to be moved */
-    bool *straight;   /* vertices: held, or carried by bone; their normals do not turn */
-    double *position; /* vertices x 3, in the OBJ's unit */
-    double *normal;   /* normals x 3 */
-    const double *u;  /* nodes x 3, m: of the frame at hand */
+    double scale;                     /* metres in the OBJ's unit */
+    bool *held;                       /* vertices: too far outside to be moved */
+    bool *straight;                   /* vertices: held, or carried by bone; their normals do not turn */
+    double *position;                 /* vertices x 3, in the OBJ's unit */
+    double *normal;                   /* normals x 3 */
+    const double *u;                  /* nodes x 3, m: of the frame at hand */
+    char skin[SURFACE_NAME_MOST + 1]; /* the surface's name, where frames move it themselves; else "" */
     pool *threads;
 } mover;
 
@@ -129,6 +131,18 @@ static int hold(mover *w, const tool *t, double within, err *e)
     return 0;
 }
 
+/* A surface that is carried and not bound may be a skin, which frames move themselves. */
+static int as_skin(mover *w, const model *m, const char *name, err *e)
+{
+    surface s;
+    if (!surface_there(m, name) || surface_part(m, name, "vertex.element"))
+        return 0;
+    if (surface_of(m, name, &s, e) || surface_is(&s, &w->file, w->scale, e))
+        return -1;
+    snprintf(w->skin, sizeof w->skin, "%s", name);
+    return 0;
+}
+
 static int mover_open(mover *w, const tool *t, const model *m, const char *path, const struct options *o, double within,
                       err *e)
 {
@@ -139,7 +153,10 @@ static int mover_open(mover *w, const tool *t, const model *m, const char *path,
         return -1;
     surface_name(path, name, sizeof name);
     w->scale = scale_of(unit);
-    if (bound_find(&w->b, m, name, &w->file, w->scale, e) || bone_find(&w->bone, &w->b, m, e) || hold(w, t, within, e))
+    if (as_skin(w, m, name, e))
+        return -1;
+    if (!*w->skin && (bound_find(&w->b, m, name, &w->file, w->scale, e) || bone_find(&w->bone, &w->b, m, e) ||
+                      hold(w, t, within, e)))
         return -1;
     w->position = mem_array(3 * w->file.vertices, sizeof *w->position, "positions", e);
     w->normal = w->position ? mem_array(3 * w->file.normals, sizeof *w->normal, "normals", e) : NULL;
@@ -173,8 +190,48 @@ static void move_some(void *context, int64_t chunk, int64_t from, int64_t to)
     }
 }
 
+/* A skin's array of a frame; -1 with e filled where it has none. */
+static const double *of_skin(const mover *w, const frame *f, const char *what, err *e)
+{
+    char name[MODEL_NAME + 20];
+    snprintf(name, sizeof name, "%s/vertex.%s", w->skin, what);
+    const model_array *a = frame_find(f, name);
+    if (!a)
+        err_set(e, NULL, 0,
+                "surface %s is not bound to the elements, and frame %lld has no %s; expected sinew bind before the "
+                "run, or msds-run --skin",
+                w->skin, (long long)f->index, name);
+    return a ? a->f64 : NULL;
+}
+
+/* Positions by its displacements. A normal becomes the mean of those that the skin has at the vertices that use it. */
+static int move_skin(mover *w, const frame *f, err *e)
+{
+    const double *u = of_skin(w, f, "displacement", e), *n = u ? of_skin(w, f, "normal", e) : NULL;
+    if (!n)
+        return -1;
+    memset(w->normal, 0, 3 * (size_t)w->file.normals * sizeof *w->normal);
+    for (int64_t i = 0; i < 3 * w->file.vertices; i++) {
+        w->position[i] = w->file.position[i] + u[i] / w->scale;
+        if (!isfinite(w->position[i]))
+            return err_set(e, NULL, 0, "frame %lld moves vertex %lld to a place that is not finite",
+                           (long long)f->index, (long long)(i / 3));
+    }
+    for (int64_t c = 0; c < w->file.corners; c++)
+        for (int a = 0; a < 3 && w->file.corner_normal[c] >= 0; a++)
+            w->normal[3 * (int64_t)w->file.corner_normal[c] + a] += n[3 * (int64_t)w->file.corner_vertex[c] + a];
+    for (int64_t i = 0; i < w->file.normals; i++) {
+        double *to = w->normal + 3 * i, length = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]);
+        for (int a = 0; a < 3; a++)
+            to[a] = length > 0 ? to[a] / length : w->file.normal[3 * i + a];
+    }
+    return 0;
+}
+
 static int move(mover *w, const frame *f, err *e)
 {
+    if (*w->skin)
+        return move_skin(w, f, e);
     const model_array *u = frame_find(f, "node.displacement");
     if (!u)
         return err_set(e, NULL, 0, "frame %lld has no node.displacement; expected results of tled-run",

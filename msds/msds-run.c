@@ -2,12 +2,13 @@
  * and dampers or by linear finite elements. PST sections III and the appendix.
  */
 #include "base/mem.h"
-#include "base/path.h"
 #include "mesh/scale.h"
 #include "model/stage.h"
 #include "msds/compare.h"
 #include "msds/largest.h"
+#include "msds/press.h"
 #include "msds/problem.h"
+#include "msds/skin_model.h"
 #include "volume/poses.h"
 
 #include <stdio.h>
@@ -24,41 +25,40 @@ struct options {
     bool exact, warp, residual, compare;
     const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
-    double dt, damping, repulsion;
+    double dt, damping, repulsion, rate, skin_stiffness, skin_anchors, skin_tension;
+    const char *skin;
     opt_numbers gravity;
 };
 
+#define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
-    {'d', "device", "auto|cuda|cpu", OPT_CHOICE, offsetof(struct options, device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT,
-     "what computes [auto]"},
-    {0, "method", "msds|fem", OPT_CHOICE, offsetof(struct options, method), 0, 0, "msds|fem", OPT_OUTPUT,
+    {'d', "device", "auto|cuda|cpu", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT, "what computes [auto]"},
+    {0, "method", "msds|fem", OPT_CHOICE, TO(method), 0, 0, "msds|fem", OPT_OUTPUT,
      "springs or finite elements [msds]"},
-    {0, "exact", NULL, OPT_FLAG, offsetof(struct options, exact), 0, 0, NULL, 0, "the FEM to 1e-6, by a factor"},
-    {0, "probe", "SHAPE", OPT_TEXT, offsetof(struct options, probe), 0, 0, NULL, OPT_OUTPUT,
-     "sphere:R linear:W,T curved:R,A,T convex:OBJ"},
-    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of an OBJ [source.unit]"},
-    {0, "poses", "FILE", OPT_TEXT, offsetof(struct options, poses), 0, 0, NULL, OPT_REQUIRED | OPT_FILE,
+    {0, "exact", NULL, OPT_FLAG, TO(exact), 0, 0, NULL, 0, "the FEM to 1e-6, by a factor"},
+    {0, "warp", NULL, OPT_FLAG, TO(warp), 0, 0, NULL, 0, "FEM: take rotations out"},
+    {0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, NULL, OPT_OUTPUT, "sphere:R linear:W,T curved:R,A,T convex:OBJ"},
+    {0, "poses", "FILE", OPT_TEXT, TO(poses), 0, 0, NULL, OPT_REQUIRED | OPT_FILE,
      "where it is: TUM lines or a PLUS sequence"},
-    {0, "transform", "NAME", OPT_TEXT, offsetof(struct options, transform), 0, 0, NULL, 0, "of a PLUS sequence"},
-    {0, "iterations", "N", OPT_INT, offsetof(struct options, iterations), 1, 1e6, NULL, OPT_OUTPUT, "a frame [20]"},
-    {0, "dt", "S", OPT_NUMBER, offsetof(struct options, dt), 1e-9, 1e3, NULL, OPT_OUTPUT,
-     "step of the springs, s [0.01]"},
-    {0, "mass", "stable|lumped", OPT_CHOICE, offsetof(struct options, mass), 0, 0, "stable|lumped", OPT_OUTPUT,
+    {0, "transform", "NAME", OPT_TEXT, TO(transform), 0, 0, NULL, 0, "of a PLUS sequence"},
+    {0, "iterations", "N", OPT_INT, TO(iterations), 1, 1e6, NULL, OPT_OUTPUT, "a frame [20]"},
+    {0, "rate", "HZ", OPT_NUMBER, TO(rate), 0, 1e6, NULL, OPT_OUTPUT, "of such frames; 0: any [60]"},
+    {0, "dt", "S", OPT_NUMBER, TO(dt), 1e-9, 1e3, NULL, OPT_OUTPUT, "step of springs, s [0.01]"},
+    {0, "mass", "stable|lumped", OPT_CHOICE, TO(mass), 0, 0, "stable|lumped", OPT_OUTPUT,
      "inertia [stable: scaled for --dt]"},
-    {0, "spring-scale", "M|auto", OPT_TEXT, offsetof(struct options, scale), 0, 0, NULL, OPT_OUTPUT,
-     "spring stiffness over E, m [.002]"},
-    {0, "damping", "S", OPT_NUMBER, offsetof(struct options, damping), 0, 1e6, NULL, OPT_OUTPUT,
-     "damping over stiffness, s [.1]"},
-    {0, "contact", "prescribed|penalty", OPT_CHOICE, offsetof(struct options, contact), 0, 0, "prescribed|penalty",
-     OPT_OUTPUT, "of the FEM [prescribed]"},
-    {0, "repulsion", "X", OPT_NUMBER, offsetof(struct options, repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT,
-     "of contact, over a node's springs [1]"},
-    {0, "warp", NULL, OPT_FLAG, offsetof(struct options, warp), 0, 0, NULL, 0, "FEM: take rotations out"},
-    {'g', "gravity", "X,Y,Z", OPT_NUMBERS, offsetof(struct options, gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
-    {0, "residual", NULL, OPT_FLAG, offsetof(struct options, residual), 0, 0, NULL, OPT_OUTPUT,
-     "say what each FEM frame leaves"},
-    {0, "compare", NULL, OPT_FLAG, offsetof(struct options, compare), 0, 0, NULL, OPT_OUTPUT,
-     "run the other method too; say the difference"},
+    {0, "spring-scale", "M|auto", OPT_TEXT, TO(scale), 0, 0, NULL, OPT_OUTPUT, "spring stiffness over E, m [.002]"},
+    {0, "damping", "S", OPT_NUMBER, TO(damping), 0, 1e6, NULL, OPT_OUTPUT, "over stiffness, s [.1]"},
+    {0, "contact", "prescribed|penalty", OPT_CHOICE, TO(contact), 0, 0, "prescribed|penalty", OPT_OUTPUT,
+     "FEM [prescribed]"},
+    {0, "repulsion", "X", OPT_NUMBER, TO(repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT, "of contact, over springs [1]"},
+    {'g', "gravity", "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "m/s2 [none]"},
+    {0, "skin", "OBJ", OPT_TEXT, TO(skin), 0, 0, NULL, OPT_FILE, "a skin of its own"},
+    {0, "skin-stiffness", "K", OPT_NUMBER, TO(skin_stiffness), 1e-9, 1e9, NULL, OPT_OUTPUT, "N/m [100]"},
+    {0, "skin-anchors", "X", OPT_NUMBER, TO(skin_anchors), 1e-6, 1e6, NULL, OPT_OUTPUT, "over that [.01]"},
+    {0, "skin-tension", "X", OPT_NUMBER, TO(skin_tension), 0, 1e3, NULL, OPT_OUTPUT, "over that [.5]"},
+    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0, "of an OBJ [source.unit]"},
+    {0, "residual", NULL, OPT_FLAG, TO(residual), 0, 0, NULL, OPT_OUTPUT, "say what FEM leaves"},
+    {0, "compare", NULL, OPT_FLAG, TO(compare), 0, 0, NULL, OPT_OUTPUT, "run the other method too; say the difference"},
     {0},
 };
 
@@ -78,6 +78,9 @@ typedef struct session {
     model m;
     msds_problem problem;
     probe probe;
+    press press;
+    skin skin;
+    char skin_name[SURFACE_NAME_MOST + 1];
     largest largest;
     int64_t substeps;
     const backend *device;
@@ -138,6 +141,16 @@ static int choose_step(session *s, err *e)
     return 0;
 }
 
+/* So that pictures can show it. */
+static int note_shape(session *s, err *e)
+{
+    char text[300];
+    if (!s->o->probe)
+        return 0;
+    probe_text(&s->probe, text, sizeof text);
+    return model_meta_set(&s->m, "probe.shape", text, e);
+}
+
 static int make_problem(session *s, err *e)
 {
     const struct options *o = s->o;
@@ -149,22 +162,24 @@ static int make_problem(session *s, err *e)
         return -1;
     tool_say(s->t, "%lld nodes, %lld tetrahedra, %lld springs; k = %.6g m E", (long long)s->problem.nodes,
              (long long)s->problem.elements, (long long)s->problem.springs, s->problem.scale);
-    return choose_step(s, e);
+    return note_shape(s, e) ? -1 : choose_step(s, e);
 }
 
 static int say_provenance(tool *t, const session *s, err *e)
 {
     char ran[800], shape[300] = "";
     const struct options *o = s->o;
-    if (o->probe) { /* without the folder of its file */
-        const char *text = s->probe.file ? s->probe.file + path_folder(s->probe.file) : o->probe;
-        snprintf(shape, sizeof shape, "--probe %s%.250s ", s->probe.file ? "convex:" : "", text);
+    if (o->probe) {
+        char text[280];
+        probe_text(&s->probe, text, sizeof text);
+        snprintf(shape, sizeof shape, "--probe %s ", text);
     }
     snprintf(ran, sizeof ran,
-             "%s%s--method %s --iterations %lld --dt %.9g --mass %s --spring-scale %.9g --damping %.9g --contact %s "
+             "%s%s--method %s --iterations %lld --rate %.9g --dt %.9g --mass %s --spring-scale %.9g --damping %.9g "
+             "--contact %s "
              "--repulsion "
              "%.9g [%s, inertia %.9g, %lld substeps]",
-             *t->provenance ? " " : "", shape, o->method ? "fem" : "msds", (long long)o->iterations, o->dt,
+             *t->provenance ? " " : "", shape, o->method ? "fem" : "msds", (long long)o->iterations, o->rate, o->dt,
              o->mass ? "lumped" : "stable", s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed",
              o->repulsion, s->device->name, s->problem.mass_factor, (long long)s->substeps);
     size_t size = strlen(t->provenance) + strlen(ran) + 1;
@@ -193,9 +208,18 @@ static int take_frames(session *s, err *e)
     }
     if (got < 0)
         goto out;
+    const model_array *pose = count ? frame_find(&last, "probe.pose") : NULL;
     if (count)
         s->next_frame = last.index + 1;
+    if (pose && pose->rows == 1 && s->o->probe) {
+        probe_pose from;
+        memcpy(from.position, pose->f64, sizeof from.position);
+        memcpy(from.quaternion, pose->f64 + 3, sizeof from.quaternion);
+        press_from(&s->press, &from, last.time);
+    }
     result = count ? msds_problem_start(&s->problem, &last, e) : 0;
+    if (!result && count && s->skin.vertices)
+        result = skin_model_start(&s->skin, &last, e);
 out:
     frame_free(&f);
     frame_free(&last);
@@ -223,6 +247,8 @@ static int write_frame(session *s, const poses_event *at, const msds_sight *sigh
         goto out;
     memcpy(force->f64, sight->force, sizeof sight->force);
     memcpy(torque->f64, sight->torque, sizeof sight->torque);
+    if (s->skin.vertices && skin_model_put(&s->skin, &f, &s->m, e))
+        goto out;
     result = model_write_frame(s->stage.writer, &f, e);
     out_flush(s->stage.sink);
 out:
@@ -252,32 +278,74 @@ static void say_frame(const session *s, double time, const msds_sight *sight)
         tool_detail(s->t, "%.6g s: %s%s%s", time, names[s->method], left, force);
 }
 
+/* What the first pose shows of the probe, and where it enters tissue at once. */
+static void warn_of_pose(session *s, const poses_event *at, const press_moves *moves, bool first)
+{
+    probe_pose pose;
+    memcpy(pose.position, at->origin, sizeof pose.position);
+    memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
+    const probe_placed placed = probe_place(&s->probe, &pose);
+    if (first && probe_is_plate(&placed, s->problem.position, s->problem.nodes))
+        notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
+    if (moves->inside > 0)
+        notes_add(&s->warnings,
+                  "%s:%lld: the probe is %.3g mm inside the tissue at once; it is eased in along its axis, in %d moves",
+                  in_name(s->source), (long long)at->line, 1e3 * moves->inside, moves->count);
+    tool_warn(s->t, &s->warnings);
+}
+
+/* All moves of a frame but the last; fills the plan with that, and returns its count of steps, or -1 with e filled. The skin, if there
+ * is one to go with it, makes the last one too. */
+static int64_t make_moves(session *s, void *state, const press_moves *moves, msds_plan *plan, bool with_skin, err *e)
+{
+    int64_t count = 0;
+    for (int i = 0; i < moves->count; i++) {
+        plan->probe = probe_place(&s->probe, &moves->list[i].pose);
+        if (with_skin && s->skin.vertices)
+            skin_step(&s->skin, plan->touched ? &plan->probe : NULL, moves->list[i].iterations);
+        count = moves->list[i].iterations * (plan->method == MSDS_SPRINGS ? s->substeps : 1);
+        if (i + 1 < moves->count && s->device->step(state, plan, count, e))
+            return -1;
+    }
+    return count;
+}
+
+static int diverged(const session *s, const poses_event *at, err *e)
+{
+    err_set(e, in_name(s->source), at->line,
+            "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt", at->time);
+    e->status = STATUS_DIVERGED;
+    return -1;
+}
+
 static int solve_frame(session *s, const poses_event *at, err *e)
 {
     msds_plan plan = {.method = s->method, .dt = s->o->dt / (double)s->substeps, .touched = s->o->probe != NULL};
     msds_sight sight = {0};
+    press_moves moves;
     probe_pose pose;
+    bool first = !s->press.any;
     memcpy(pose.position, at->origin, sizeof pose.position);
     memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
-    plan.probe = probe_place(&s->probe, &pose);
-    int64_t count = s->o->iterations * (s->method == MSDS_SPRINGS ? s->substeps : 1);
-    if (s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
+    if (press_to(&s->press, s->device, s->state, &pose, at->time, s->method == MSDS_SPRINGS, &moves, e))
         return -1;
-    if (!sight.finite) {
-        err_set(e, in_name(s->source), at->line,
-                "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt", at->time);
-        e->status = STATUS_DIVERGED;
+    if (plan.touched)
+        warn_of_pose(s, at, &moves, first);
+    int64_t count = make_moves(s, s->state, &moves, &plan, true, e);
+    if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
         return -1;
-    }
+    if (!sight.finite || (s->skin.vertices && !isfinite(skin_largest(&s->skin))))
+        return diverged(s, at, e);
     s->sight = sight;
+    s->press.contacts = sight.contacts;
     say_frame(s, at->time, &sight);
     if (write_frame(s, at, &sight, e))
         return -1;
     if (!s->other)
         return 0;
     plan.method = method_of(s, s->method == MSDS_SPRINGS);
-    count = s->o->iterations * (plan.method == MSDS_SPRINGS ? s->substeps : 1);
-    return compare_frame(s->other, s->device, s->state, &plan, count, e);
+    count = make_moves(s, s->other->state, &moves, &plan, false, e);
+    return count < 0 ? -1 : compare_frame(s->other, s->device, s->state, &plan, count, e);
 }
 
 static void say_difference(const session *s, double time)
@@ -330,12 +398,35 @@ static int take_probe(session *s, err *e)
     return unit ? probe_load(&s->probe, scale_of(unit), e) : -1;
 }
 
+/* The skin's surface joins the body; its springs are made when there are threads. */
+static int carry_skin(session *s, err *e)
+{
+    if (!s->o->skin)
+        return 0;
+    num_unit unit = scale_unit(s->o->unit, &s->m, e);
+    return unit ? skin_model_carry(&s->m, s->o->skin, scale_of(unit), s->skin_name, e) : -1;
+}
+
+static int make_skin(session *s, err *e)
+{
+    const struct options *o = s->o;
+    const skin_options options = {o->skin_stiffness, o->skin_anchors, o->skin_tension, o->damping, o->dt};
+    surface shape;
+    if (!o->skin)
+        return 0;
+    if (surface_of(&s->m, s->skin_name, &shape, e) || skin_make(&s->skin, &shape, &options, s->threads, e))
+        return -1;
+    tool_say(s->t, "skin %s: %lld vertices, %lld springs", s->skin_name, (long long)s->skin.vertices,
+             (long long)s->skin.edges);
+    return 0;
+}
+
 static int prepare(session *s, err *e)
 {
     static const char *const names[] = {"auto", "cuda", "cpu"};
     const struct options *o = s->o;
     char device[300];
-    if (take_probe(s, e) || make_problem(s, e))
+    if (take_probe(s, e) || carry_skin(s, e) || make_problem(s, e))
         return -1;
     s->device = backend_choose(msds_backends, names[o->device], device, sizeof device, e);
     int threads = tool_threads(s->t, e);
@@ -344,7 +435,7 @@ static int prepare(session *s, err *e)
         return -1;
     tool_say(s->t, "%s", device);
     s->method = method_of(s, o->method);
-    return 0;
+    return make_skin(s, e) ? -1 : press_make(&s->press, &s->problem, &s->probe, o->iterations, o->rate, e);
 }
 
 /* The poses last: a FIFO opens when its writer comes. */
@@ -365,7 +456,15 @@ static int make_states(session *s, err *e)
 
 int main(int argc, char **argv)
 {
-    struct options o = {.iterations = 20, .dt = .01, .damping = .1, .repulsion = 1, .scale = ".002"};
+    struct options o = {.iterations = 20,
+                        .rate = 60,
+                        .dt = .01,
+                        .damping = .1,
+                        .repulsion = 1,
+                        .scale = ".002",
+                        .skin_stiffness = 100,
+                        .skin_anchors = .01,
+                        .skin_tension = .5};
     err e = {0};
     tool t = {0};
     session s = {.t = &t, .o = &o};
@@ -384,6 +483,8 @@ out:
         s.device->destroy(s.state);
     in_close(s.source);
     pool_destroy(s.threads);
+    press_free(&s.press);
+    skin_free(&s.skin);
     msds_problem_free(&s.problem);
     probe_free(&s.probe);
     model_free(&s.m);

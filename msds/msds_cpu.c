@@ -249,12 +249,14 @@ static int step_exact(cpu_state *s, err *e)
     s->solves = 0;
     find_contacts(s, s->place, CONTACTS_NEAR);
     for (int turn = 0; turn < ROUNDS; turn++) {
-        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.shape.size : 1, e))
+        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.shape.size : 1,
+                        e))
             return -1;
         s->solves += s->exact->solves;
         spread(s, s->place, &s->w.u);
         if (!s->plan.touched || turn == ROUNDS - 1 ||
-            !contacts_missed(&s->contacts, s->loops, &s->w, s->p, s->place, s->threads, missed * s->plan.probe.shape.size))
+            !contacts_missed(&s->contacts, s->loops, &s->w, s->p, s->place, s->threads,
+                             missed * s->plan.probe.shape.size))
             break;
         find_contacts(s, s->place, CONTACTS_NEAR);
     }

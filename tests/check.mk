@@ -37,6 +37,11 @@ demo:
 	$(MAKE) $(JOBS) all
 	SINEW_BIN=$(BIN) samples/demo out
 
+# The second example: an arm's vessels under a probe, with plots where there is gnuplot.
+.PHONY: arm
+arm: all
+	SINEW_BIN=$(BIN) samples/arm out/arm
+
 # The picture at the top of README.md: small, since it is kept in the repository; make demo leaves a larger one.
 .PHONY: picture
 picture: demo
@@ -136,7 +141,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo samples/scan tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo samples/arm samples/scan tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -170,7 +175,7 @@ COMPLETIONDIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 # `bind` has no completion: bash-completion has a file of that name, for the shell's builtin.
 COMPLETIONS = $(filter-out bind,$(TOOLS))
 PAGES = $(wildcard man/*.[157])
-SAMPLES = $(filter-out samples/demo samples/scan,$(wildcard samples/*))
+SAMPLES = $(filter-out samples/demo samples/arm samples/scan,$(wildcard samples/*))
 
 install: all
 	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
@@ -191,6 +196,7 @@ help:
 	@printf '%s\n' \
 	'make              the tools, into $(BIN)/' \
 	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
+	'make arm          an arm under a probe: the second example, into out/arm' \
 	'make picture      the demo, and the picture in README.md from it' \
 	'make check        set-up, and every check below but check-long' \
 	'make setup        installs what is missing, by apt (through sudo if not root), saying what' \

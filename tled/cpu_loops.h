@@ -6,10 +6,13 @@
  * are cut: the same bytes for any number of threads, and in any of the processor's instruction sets.
  */
 #include "base/mem.h"
+#include "tled/collider.h"
 #include "tled/cpu_pass.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+enum { CONTACT_CHUNK = 4096 };
 
 #ifdef ELEMENT_SINGLE
 typedef float number;
@@ -45,8 +48,31 @@ static void pass_work(void *context, int64_t chunk, int64_t from, int64_t to)
         s->pass->slab(&s->work, (int32_t)i);
 }
 
+/* What the probe pushes with, into the sums that the pass adds to. */
+typedef struct cpu_contact {
+    const cpu_state *s;
+    probe_placed at;
+    double time;
+} cpu_contact;
+
+static void contact_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cpu_contact *c = context;
+    const cpu_state *s = c->s;
+    (void)chunk;
+    for (int64_t n = from; n < to; n++) {
+        double x[3], push[3];
+        for (int a = 0; a < 3; a++)
+            x[a] = s->p->position[3 * n + a] + (double)s->displacement[a * s->rows.nodes + s->rows.place[n]];
+        if (!collider_push(s->p->collider, &c->at, c->time, x, s->p->mass[n], push))
+            continue;
+        for (int a = 0; a < 3; a++)
+            s->sum[a * s->rows.nodes + s->rows.place[n]] = (number)-push[a];
+    }
+}
+
 /* One pass at the displacements of now, with the curves' values of now and of the step's end. */
-static void run_pass(cpu_state *s, const tled_plan *plan, int what)
+static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
 {
     cpu_work *w = &s->work;
     for (int32_t i = 0; i < s->p->volumes; i++)
@@ -60,6 +86,10 @@ static void run_pass(cpu_state *s, const tled_plan *plan, int what)
     w->dt = 1 / plan->rate;
     w->damping = plan->damping;
     w->what = what;
+    if (s->p->collider) {
+        cpu_contact contact = {s, collider_at(s->p->collider, time), time};
+        pool_run(s->threads, s->p->nodes, CONTACT_CHUNK, contact_work, &contact);
+    }
     pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (what & PASS_BEGIN) {
@@ -80,7 +110,7 @@ static int cpu_step(void *state, const void *plan, int64_t count, err *e)
     for (int64_t i = 0; i <= count; i++) {
         if (i < count)
             tled_curves(s->p, tled_time(t, i + 1), s->next);
-        run_pass(s, t, (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL));
+        run_pass(s, t, tled_time(t, i), (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL));
         if (i < count) {
             double *swap = s->now;
             s->now = s->next;
@@ -114,7 +144,7 @@ static int cpu_get(void *state, int what, double *to, err *e)
     if (what == TLED_INTERNAL && !s->spare_is_internal) {
         const tled_plan here = {.rate = 1};
         tled_curves(s->p, s->time, s->now);
-        run_pass(s, &here, PASS_INTERNAL);
+        run_pass(s, &here, s->time, PASS_INTERNAL);
     }
     put_out(s, what == TLED_DISPLACEMENT ? s->displacement : what == TLED_VELOCITY ? s->velocity : s->spare, to);
     return 0;

@@ -1,6 +1,7 @@
 #include "tled/run.h"
 
 #include "base/mem.h"
+#include "tled/collider.h"
 #include "tled/relax.h"
 #include "tled/step.h"
 
@@ -286,7 +287,7 @@ static int check(run *n)
 {
     const run_setup *r = n->r;
     const watch_sight *s = &n->watch->sight;
-    bool settled = r->rest >= 0 && s->time >= script_end(r->p->script);
+    bool settled = r->rest >= 0 && s->time >= collider_events_end(r->p);
     int over = 0;
     if (choose_step(n))
         return -1;

@@ -54,10 +54,11 @@ typedef struct tled_problem {
     int32_t *force_curve; /* entries: the curve whose value the node gets a share of */
     double *force_share;  /* entries */
     const script *script;
-    int64_t gravity;      /* its curve, or -1 */
-    double start;         /* s: the model's time at the start */
-    double *displacement; /* nodes x 3, m: at the start */
-    double *velocity;     /* nodes x 3, m/s */
+    int64_t gravity;                 /* its curve, or -1 */
+    double start;                    /* s: the model's time at the start */
+    double *displacement;            /* nodes x 3, m: at the start */
+    double *velocity;                /* nodes x 3, m/s */
+    const struct collider *collider; /* what presses (collider.h), or NULL */
 } tled_problem;
 
 /* A run of steps: after step i of them (from 1) the time is origin + (first + i) / rate. A rate, since a whole number of

@@ -3,8 +3,10 @@
  */
 #include "base/mem.h"
 #include "base/progress.h"
+#include "mesh/scale.h"
 #include "model/materials.h"
 #include "model/stage.h"
+#include "tled/collider.h"
 #include "tled/relax.h"
 #include "tled/run.h"
 #include "tled/step.h"
@@ -25,7 +27,8 @@ struct options {
     int64_t steps;                                             /* 0: not given */
     opt_numbers gravity;
     opt_list contract, material;
-    const char *script, *materials;
+    const char *script, *materials, *probe, *poses, *unit;
+    double repulsion;
 };
 
 static const opt option_list[] = {
@@ -56,6 +59,12 @@ static const opt option_list[] = {
      "hourglass coefficient [0.0075]"},
     {0, "every", "S", OPT_NUMBER, offsetof(struct options, every), 1e-12, 1e9, NULL, OPT_OUTPUT,
      "write a frame at the start and each S seconds"},
+    {0, "probe", "SHAPE", OPT_TEXT, offsetof(struct options, probe), 0, 0, NULL, OPT_OUTPUT,
+     "sphere:R linear:W,T curved:R,A,T convex:OBJ"},
+    {0, "poses", "FILE", OPT_TEXT, offsetof(struct options, poses), 0, 0, NULL, OPT_FILE, "where it is"},
+    {0, "repulsion", "X", OPT_NUMBER, offsetof(struct options, repulsion), 1e-6, 1e3, NULL, OPT_OUTPUT,
+     "of it, over tissue's own [1]"},
+    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of its OBJ"},
     {0},
 };
 
@@ -76,6 +85,7 @@ typedef struct session {
     script script;
     tled_problem problem;
     tled_parts parts;
+    collider collider;
     pool *threads;
     run_setup run;
     progress progress;
@@ -142,7 +152,7 @@ static int check_held(session *s, err *e)
 static int choose_rate(session *s, const struct options *o, err *e)
 {
     int32_t stiffest = 0;
-    s->stable = step_at_rest(&s->problem, &stiffest);
+    s->stable = collider_step(&s->problem, step_at_rest(&s->problem, &stiffest));
     s->run.rate_fixed = o->dt > 0;
     s->run.rate = o->dt > 0 ? 1 / o->dt : step_rate(s->stable, &s->run.check);
     if (o->dt > 0)
@@ -159,7 +169,7 @@ static int choose_end(session *s, const struct options *o, err *e)
     run_setup *r = &s->run;
     double left = o->seconds, first = fabs(s->problem.start) * r->rate;
     if (r->rest >= 0)
-        left = fmax(0, script_end(&s->script) - s->problem.start);
+        left = fmax(0, collider_events_end(&s->problem) - s->problem.start);
     if (o->steps > 0)
         left = (double)o->steps / r->rate;
     if (!(first + left * r->rate < 1e15))
@@ -178,16 +188,20 @@ static void choose_damping(session *s, const struct options *o)
 /* After the options that were given: how it ends, what ran, and every default that changes the result. */
 static int say_provenance(tool *t, const session *s, const struct options *o, err *e)
 {
-    char until[60], ran[300];
+    char until[60], shape[300] = "", press[360] = "", ran[800];
     const run_setup *r = &s->run;
+    if (s->collider.poses) {
+        probe_text(&s->collider.shape, shape, sizeof shape);
+        snprintf(press, sizeof press, "--probe %s --repulsion %.9g ", shape, o->repulsion);
+    }
     if (r->rest >= 0)
         snprintf(until, sizeof until, "--rest %.9g", r->rest);
     else if (o->steps > 0)
         snprintf(until, sizeof until, "-n %lld", (long long)o->steps);
     else
         snprintf(until, sizeof until, "-t %.9g", o->seconds);
-    snprintf(ran, sizeof ran, "%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s]",
-             *t->provenance ? " " : "", until, o->ramp, o->hourglass, r->device->name,
+    snprintf(ran, sizeof ran, "%s%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s]",
+             *t->provenance ? " " : "", press, until, o->ramp, o->hourglass, r->device->name,
              o->precision ? "single" : "double", 1 / r->rate, r->rate_fixed ? "" : " or cut", r->damping,
              r->adapt ? " adapted" : "");
     size_t size = strlen(t->provenance) + strlen(ran) + 1;
@@ -229,6 +243,24 @@ out:
     return result;
 }
 
+/* Where the probe is, and what the tissue pushes it with. */
+static int add_probe(const session *s, frame *f, const double *displacement, err *e)
+{
+    static const char *const names[] = {"probe.pose", "probe.force", "probe.torque"};
+    const probe_pose at = collider_pose(&s->collider, f->time);
+    double *to[3];
+    for (int i = 0; i < 3; i++) {
+        model_array *a = frame_add(f, &s->m, names[i], e);
+        if (!a)
+            return -1;
+        to[i] = a->f64;
+    }
+    memcpy(to[0], at.position, sizeof at.position);
+    memcpy(to[0] + 3, at.quaternion, sizeof at.quaternion);
+    collider_sum(&s->problem, f->time, displacement, to[1], to[2]);
+    return 0;
+}
+
 static int write_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
 {
     session *s = context;
@@ -240,6 +272,8 @@ static int write_frame(void *context, double time, const double *displacement, c
     model_array *v = u ? frame_add(&f, &s->m, "node.velocity", e) : NULL;
     if (v)
         memcpy(v->f64, velocity, size);
+    if (v && s->collider.poses && add_probe(s, &f, displacement, e))
+        v = NULL;
     int result = v && !model_write_frame(s->stage.writer, &f, e) ? out_failed(s->stage.sink, e) : -1;
     frame_free(&f);
     return result;
@@ -290,18 +324,70 @@ static void say_end(const session *s, const run_end *end)
                 (double)end->bytes / (double)s->problem.elements);
 }
 
-/* From the model that came to the problem and how it is to be run. */
-static int prepare(session *s, const struct options *o, char *device, size_t size, err *e)
+/* What presses, and where. Its stiffness is part of the stable step. */
+static int read_collider(session *s, const struct options *o, err *e)
+{
+    char text[300];
+    double scale = 1;
+    if (!o->probe && !o->poses)
+        return 0;
+    if (!o->probe || !o->poses)
+        return err_usage(e, "--%s without --%s; expected both", o->probe ? "probe" : "poses",
+                         o->probe ? "poses" : "probe");
+    if (!strncmp(o->probe, "convex:", 7)) {
+        num_unit unit = scale_unit(o->unit, &s->m, e);
+        if (!unit)
+            return -1;
+        scale = scale_of(unit);
+    }
+    if (collider_read(&s->collider, o->probe, scale, o->poses, NULL, e) || model_axis_add(&s->m, "probe", 1, e))
+        return -1;
+    probe_text(&s->collider.shape, text, sizeof text);
+    return model_meta_set(&s->m, "probe.shape", text, e);
+}
+
+static void begin_collider(session *s, const struct options *o)
+{
+    if (!s->collider.poses)
+        return;
+    double inside = collider_begin(&s->collider, &s->problem, s->next_frame ? 0 : o->ramp);
+    const probe_placed first = collider_at(&s->collider, s->problem.start);
+    if (inside > 0)
+        notes_add(&s->warnings, "the probe begins %.3g mm inside the tissue: it comes up in %g s", 1e3 * inside,
+                  o->ramp);
+    if (probe_is_plate(&first, s->problem.position, s->problem.nodes))
+        notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
+}
+
+/* The CPU alone has contact: auto takes it. */
+static const backend *choose_device(session *s, const struct options *o, char *device, size_t size, err *e)
 {
     const backend *const *backends = o->precision ? tled_backends_single : tled_backends_double;
     static const char *const names[] = {"auto", "cuda", "cpu"};
+    if (s->collider.poses && !strcmp(names[o->device], "cuda")) {
+        err_set(e, NULL, 0, "the CUDA back end has no contact with a probe; expected -d cpu or auto");
+        return NULL;
+    }
+    const backend *taken = backend_choose(backends, s->collider.poses ? "cpu" : names[o->device], device, size, e);
+    if (taken && s->collider.poses && !strcmp(names[o->device], "auto"))
+        snprintf(device, size, "cpu (the one with contact with a probe)");
+    return taken;
+}
+
+/* From the model that came to the problem and how it is to be run. */
+static int prepare(session *s, const struct options *o, char *device, size_t size, err *e)
+{
     s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps ? rest_tolerance : -1;
-    if (change_materials(s, o, e) || make_script(s, o, e) ||
-        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) || check_held(s, e) || choose_rate(s, o, e))
+    if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
+        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) || check_held(s, e))
+        return -1;
+    if (s->collider.poses)
+        collider_join(&s->collider, &s->problem, o->repulsion);
+    if (choose_rate(s, o, e))
         return -1;
     choose_damping(s, o);
     s->run.single = o->precision;
-    s->run.device = backend_choose(backends, names[o->device], device, size, e);
+    s->run.device = choose_device(s, o, device, size, e);
     int threads = tool_threads(s->t, e);
     s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
     return s->threads ? 0 : -1;
@@ -312,6 +398,7 @@ static int simulate(session *s, const struct options *o, const char *device, err
     run_end end = {0};
     if (take_frames(s, o->materials || o->material.count, e) || choose_end(s, o, e))
         return -1;
+    begin_collider(s, o);
     s->run.p = &s->problem;
     s->run.threads = s->threads;
     s->run.every = o->every > 0 ? o->every : 0;
@@ -333,8 +420,14 @@ static int simulate(session *s, const struct options *o, const char *device, err
 
 int main(int argc, char **argv)
 {
-    struct options o = {
-        .dt = -1, .seconds = -1, .rest = -1, .ramp = .1, .damping = -1, .hourglass = .0075, .every = -1};
+    struct options o = {.dt = -1,
+                        .seconds = -1,
+                        .rest = -1,
+                        .ramp = .1,
+                        .damping = -1,
+                        .hourglass = .0075,
+                        .every = -1,
+                        .repulsion = 1};
     err e = {0};
     tool t = {0};
     session s = {.t = &t};
@@ -351,6 +444,7 @@ out:
         stage_close(&s.stage, &t, &e);
     pool_destroy(s.threads);
     tled_problem_free(&s.problem);
+    collider_free(&s.collider);
     script_free(&s.script);
     model_free(&s.m);
     return tool_end(&t, &e);

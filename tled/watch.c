@@ -1,5 +1,7 @@
 #include "tled/watch.h"
 
+#include "tled/collider.h"
+
 #include "base/mem.h"
 #include "tled/step.h"
 
@@ -183,6 +185,7 @@ static void take_sums(watch *w, const tled_sums *sum)
     s->broken = sum->broken;
     s->stable_element = sum->frequency_element;
     s->stable = sum->frequency_element < 0 ? w->rest_step : 2 / sqrt(sum->frequency);
+    s->stable = collider_step(w->p, s->stable);
 }
 
 int watch_look(watch *w, const backend *b, void *state, double time, err *e)

@@ -18,31 +18,50 @@ static void put_option(const opt *o, char *to, size_t size)
         snprintf(to + n, size - (size_t)n, " %s", o->arg);
 }
 
-/* The common options on few lines, each word whole, at most 80 columns. */
-static void put_common(const opt_tool *tool, out *to)
+enum { USAGE_LINES = 24 };
+
+/* The options from number `from` on few lines, each word whole, at most 80 columns. Returns how many; to may be NULL. */
+static int put_packed(const opt_tool *tool, int from, out *to)
 {
     const opt *o;
     size_t column = 0;
-    for (int i = opt_own(tool); (o = opt_at(tool, i)); i++) {
+    int lines = 1;
+    for (int i = from; (o = opt_at(tool, i)); i++) {
         char item[160], name[80];
         if (o->flags & OPT_HIDDEN)
             continue;
         put_option(o, name, sizeof name);
         int n = snprintf(item, sizeof item, "%s: %s", name, o->help);
         if (column && column + (size_t)n + 2 > 78) {
-            out_text(to, "\n");
+            if (to)
+                out_text(to, "\n");
             column = 0;
+            lines++;
         }
-        out_format(to, "%s%s", column ? "; " : "  ", item);
+        if (to)
+            out_format(to, "%s%s", column ? "; " : "  ", item);
         column += (size_t)n + 2;
     }
-    out_text(to, "\n");
+    if (to)
+        out_text(to, "\n");
+    return lines;
+}
+
+/* How many of its own options have a line each: all, or as many as leave room for the rest. */
+static int apart(const opt_tool *tool)
+{
+    int lines = 2, own = opt_own(tool), count = own;
+    for (int i = 0; i < own; i++)
+        lines += !(opt_at(tool, i)->flags & OPT_HIDDEN);
+    while (count > 0 && lines + put_packed(tool, count, NULL) > USAGE_LINES)
+        lines -= !(opt_at(tool, --count)->flags & OPT_HIDDEN);
+    return count;
 }
 
 void opt_usage(const opt_tool *tool, out *to)
 {
     const opt *o;
-    int own = opt_own(tool);
+    int own = opt_own(tool), alone = apart(tool);
     out_format(to, "usage: %s", tool->name);
     for (int i = 0; i < own; i++)
         if ((o = opt_at(tool, i))->flags & OPT_REQUIRED)
@@ -52,7 +71,7 @@ void opt_usage(const opt_tool *tool, out *to)
     else
         out_format(to, tool->operands_min ? " [options] %s\n%s\n" : " [options] [%s]\n%s\n", tool->operands,
                    tool->purpose);
-    for (int i = 0; i < own; i++) {
+    for (int i = 0; i < alone; i++) {
         char name[80];
         o = opt_at(tool, i);
         if (o->flags & OPT_HIDDEN)
@@ -60,7 +79,7 @@ void opt_usage(const opt_tool *tool, out *to)
         put_option(o, name, sizeof name);
         out_format(to, strlen(name) > 30 ? "  %s  %s\n" : "  %-30s  %s\n", name, o->help);
     }
-    put_common(tool, to);
+    put_packed(tool, alone, to);
 }
 
 /* mdoc wants its special characters away from macros' arguments; '|' is a delimiter and stands by itself. */

@@ -21,64 +21,19 @@ static void put(ccd_vec3_t *to, const double x[3])
         to->v[a] = x[a];
 }
 
-/* The farthest point of a curved array less its edge, along a direction of its plane: of the arc, a corner or the tip. */
-static void far_in_sector(const probe *p, double x, double z, double to[2])
-{
-    const double mirror = x < 0 ? -1 : 1, u = fabs(x), length = hypot(x, z);
-    const double corner[2] = {p->side * p->sine, p->side * p->cosine + p->tip};
-    bool arc = u * corner[1] <= z * corner[0] && length > 0;
-    bool tip = !arc && u * corner[0] + z * corner[1] < z * p->tip;
-    to[0] = arc ? p->disc * x / length : tip ? 0 : mirror * corner[0];
-    to[1] = arc ? p->disc * z / length : tip ? p->tip : corner[1];
-    to[1] -= p->radius;
-}
-
-static const double *far_corner(const probe *p, const double d[3])
-{
-    const double *best = p->corner;
-    double most = -INFINITY;
-    for (int32_t i = 0; i < p->corners; i++) {
-        const double *x = p->corner + 3 * (int64_t)i;
-        double along = d[0] * x[0] + d[1] * x[1] + d[2] * x[2];
-        if (along > most) {
-            most = along;
-            best = x;
-        }
-    }
-    return best;
-}
-
-/* The farthest point of what is rounded by the edge (a sphere: its centre), in the probe's frame. */
-static void far_core(const probe *p, const double d[3], double to[3])
-{
-    double flat[2];
-    for (int a = 0; a < 3; a++)
-        to[a] = p->middle[a] + (d[a] < 0 ? -p->half[a] : p->half[a]);
-    if (p->kind == PROBE_CURVED) {
-        far_in_sector(p, d[0], d[2], flat);
-        to[0] = flat[0];
-        to[2] = flat[1];
-    }
-    if (p->kind == PROBE_CONVEX)
-        for (int a = 0; a < 3; a++)
-            to[a] = far_corner(p, d)[a];
-}
-
 static void far_of_probe(const void *object, const ccd_vec3_t *way, ccd_vec3_t *to)
 {
     const probe_placed *placed = ((const body *)object)->placed;
     const probe *p = &placed->shape;
-    const double edge = p->kind == PROBE_SPHERE ? p->radius : p->edge;
-    const double length = sqrt(ccdVec3Len2(way));
     double d[3], own[3];
     for (int i = 0; i < 3; i++)
         d[i] = placed->axis[i][0] * way->v[0] + placed->axis[i][1] * way->v[1] + placed->axis[i][2] * way->v[2];
-    far_core(p, d, own);
+    probe_farthest(p, d, own);
     for (int a = 0; a < 3; a++) {
         double x = placed->origin[a];
         for (int i = 0; i < 3; i++)
             x += placed->axis[i][a] * own[i];
-        to->v[a] = (x + (length > 0 ? edge * way->v[a] / length : 0)) / p->reach;
+        to->v[a] = x / p->reach;
     }
 }
 

@@ -1,7 +1,9 @@
 #include "contact/probe.h"
 
 #include "base/num.h"
+#include "base/path.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -139,6 +141,104 @@ int probe_of(probe *p, const char *text, err *e)
         if (!strncmp(text, kinds[i].name, strlen(kinds[i].name)))
             return kinds[i].read(p, text, text + strlen(kinds[i].name), e);
     return err_usage(e, "--probe %.100s; expected %s", text, expected);
+}
+
+/* The farthest point of a curved array less its edge, along a direction of its plane: of the arc, a corner or the tip. */
+static void far_in_sector(const probe *p, double x, double z, double to[2])
+{
+    const double mirror = x < 0 ? -1 : 1, u = fabs(x), length = hypot(x, z);
+    const double corner[2] = {p->side * p->sine, p->side * p->cosine + p->tip};
+    bool arc = u * corner[1] <= z * corner[0] && length > 0;
+    bool tip = !arc && u * corner[0] + z * corner[1] < z * p->tip;
+    to[0] = arc ? p->disc * x / length : tip ? 0 : mirror * corner[0];
+    to[1] = arc ? p->disc * z / length : tip ? p->tip : corner[1];
+    to[1] -= p->radius;
+}
+
+static const double *far_corner(const probe *p, const double d[3])
+{
+    const double *best = p->corner;
+    double most = -INFINITY;
+    for (int32_t i = 0; i < p->corners; i++) {
+        const double *x = p->corner + 3 * (int64_t)i;
+        double along = d[0] * x[0] + d[1] * x[1] + d[2] * x[2];
+        if (along > most) {
+            most = along;
+            best = x;
+        }
+    }
+    return best;
+}
+
+/* Of what is rounded by the edge; of a sphere its centre. */
+static void far_core(const probe *p, const double d[3], double to[3])
+{
+    double flat[2];
+    for (int a = 0; a < 3; a++)
+        to[a] = p->middle[a] + (d[a] < 0 ? -p->half[a] : p->half[a]);
+    if (p->kind == PROBE_CURVED) {
+        far_in_sector(p, d[0], d[2], flat);
+        to[0] = flat[0];
+        to[2] = flat[1];
+    }
+    if (p->kind == PROBE_CONVEX)
+        for (int a = 0; a < 3; a++)
+            to[a] = far_corner(p, d)[a];
+}
+
+void probe_farthest(const probe *p, const double d[3], double to[3])
+{
+    const double edge = p->kind == PROBE_SPHERE ? p->radius : p->edge;
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    far_core(p, d, to);
+    for (int a = 0; a < 3 && length > 0; a++)
+        to[a] += edge * d[a] / length;
+}
+
+void probe_text(const probe *p, char *to, size_t size)
+{
+    const double degrees = p->angle * 180 / pi;
+    if (p->kind == PROBE_SPHERE)
+        snprintf(to, size, "sphere:%.9gm", p->radius);
+    else if (p->kind == PROBE_LINEAR)
+        snprintf(to, size, "linear:%.9gm,%.9gm,%.9gm", p->width, p->thickness, p->edge);
+    else if (p->kind == PROBE_CURVED)
+        snprintf(to, size, "curved:%.9gm,%.9g,%.9gm,%.9gm", p->radius, degrees, p->thickness, p->edge);
+    else
+        snprintf(to, size, "convex:%.250s", p->file + path_folder(p->file));
+}
+
+probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share)
+{
+    probe_pose to;
+    double dot = 0, length = 0;
+    for (int i = 0; i < 4; i++)
+        dot += a->quaternion[i] * b->quaternion[i];
+    for (int i = 0; i < 4; i++) {
+        to.quaternion[i] = (1 - share) * (dot < 0 ? -a->quaternion[i] : a->quaternion[i]) + share * b->quaternion[i];
+        length += to.quaternion[i] * to.quaternion[i];
+    }
+    for (int i = 0; i < 4; i++)
+        to.quaternion[i] = length > 1e-12 ? to.quaternion[i] / sqrt(length) : b->quaternion[i];
+    for (int i = 0; i < 3; i++)
+        to.position[i] = (1 - share) * a->position[i] + share * b->position[i];
+    return to;
+}
+
+bool probe_is_plate(const probe_placed *at, const double *position, int64_t nodes)
+{
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int64_t n = 0; n < nodes; n++)
+        for (int i = 0; i < 2; i++) {
+            const double *x = position + 3 * n;
+            double along = at->axis[i][0] * x[0] + at->axis[i][1] * x[1] + at->axis[i][2] * x[2];
+            low[i] = fmin(low[i], along);
+            high[i] = fmax(high[i], along);
+        }
+    const probe *s = &at->shape;
+    double wide = s->kind == PROBE_LINEAR ? s->width : s->kind == PROBE_CURVED ? 2 * s->radius * s->sine : 2 * s->size;
+    double thick = s->kind == PROBE_LINEAR || s->kind == PROBE_CURVED ? s->thickness : 2 * s->size;
+    return wide > high[0] - low[0] && thick > high[1] - low[1];
 }
 
 void probe_free(probe *p)

@@ -19,6 +19,7 @@
 #include "base/err.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #ifdef __CUDACC__
 #define PROBE_FUNCTION static __host__ __device__ inline
@@ -77,6 +78,9 @@ typedef struct probe_touch {
  * e filled (status 2) where it is none of these, or no such body can be. */
 int probe_of(probe *p, const char *text, err *e);
 
+/* Writes what probe_of reads, with all there is of it; of a file only its base name. */
+void probe_text(const probe *p, char *to, size_t size);
+
 /* Reads the file of a convex probe, its coordinates times scale (to metres); of the others there is nothing to do. -1 with e
  * filled for what is not a closed convex surface. */
 int probe_load(probe *p, double scale, err *e);
@@ -88,6 +92,15 @@ void probe_free(probe *p);
 probe probe_sphere(double radius);
 probe probe_linear(double width, double thickness, double edge);
 probe probe_curved(double radius, double angle, double thickness, double edge);
+
+/* The point of it that is farthest along d (any length), both in its own frame. */
+void probe_farthest(const probe *p, const double d[3], double to[3]);
+
+/* A share (0 to 1) of the way from pose a to pose b, turning the shorter way round. */
+probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share);
+
+/* Whether the probe's face is wider than what these points (x 3, m) span, both of its sides: it presses like a plate. */
+bool probe_is_plate(const probe_placed *at, const double *position, int64_t nodes);
 
 /* v turned by a unit quaternion. */
 PROBE_FUNCTION void probe_turn(const double q[4], const double v[3], double to[3])

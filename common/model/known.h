@@ -78,11 +78,15 @@ typedef struct known {
     X("node.displacement", MODEL_F64, "m", "node", 3, 3, KNOWN_FRAME, "tled-run or msds-run",                          \
       "displacement from rest")                                                                                        \
     X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, "tled-run or msds-run", "velocity")                \
-    X("probe.pose", MODEL_F64, "1", "probe", 7, 7, KNOWN_FRAME, "msds-run",                                            \
+    X("probe.pose", MODEL_F64, "1", "probe", 7, 7, KNOWN_FRAME, "msds-run or tled-run",                                \
       "place of its frame, m, and its turn, a unit quaternion x y z w")                                                \
-    X("probe.force", MODEL_F64, "N", "probe", 3, 3, KNOWN_FRAME, "msds-run", "force of the tissue on it")              \
-    X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, "msds-run",                                        \
-      "torque of the tissue on it, about the origin of its frame")
+    X("probe.force", MODEL_F64, "N", "probe", 3, 3, KNOWN_FRAME, "msds-run or tled-run", "force of the tissue on it")  \
+    X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, "msds-run or tled-run",                            \
+      "torque of the tissue on it, about the origin of its frame")                                                     \
+    X("*/vertex.displacement", MODEL_F64, "m", "*/vertex", 3, 3, KNOWN_FRAME, "msds-run",                              \
+      "of a skin: displacement from rest")                                                                             \
+    X("*/vertex.normal", MODEL_F64, "1", "*/vertex", 3, 3, KNOWN_FRAME, "msds-run",                                    \
+      "of a skin: unit normal as it is moved")
 
 /* Whether a name is the user's: it begins "x-", and nothing is known of it, whatever follows. */
 bool known_users(const char *name);

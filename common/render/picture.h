@@ -18,7 +18,7 @@ typedef struct picture_view {
 } picture_view;
 
 typedef struct picture_panel {
-    int things;         /* SHOWING_*; 0 with no names: surfaces, or voxels where the model carries none */
+    int things; /* SHOWING_*; 0, but for the probe, with no names: surfaces, or voxels where the model carries none */
     bool what_there_is; /* of muscles, rigid nodes and centres only what the model has */
     bool names;         /* the spec's names besides */
     bool moved;         /* by the frame; else at rest */

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const showing_things[5] = {"surface", "voxels", "muscles", "rigid", "centres"};
+const char *const showing_things[SHOWING_THINGS] = {"surface", "voxels", "muscles", "rigid", "centres", "probe"};
 const uint8_t showing_green[3] = {62, 158, 70}, showing_red[3] = {205, 32, 32}, showing_centre[3] = {12, 120, 30};
 
 int showing_add(showing *b, scene_mesh *mesh, double *value, err *e)
@@ -99,6 +99,8 @@ int showing_make(showing *b, const model *m, const showing_want *want, err *e)
         showing_elements(b, m, want, e);
     if (!e->status)
         showing_spheres(b, m, want, e);
+    if (!e->status)
+        showing_probe(b, m, want, e);
     free(at_nodes);
     if (!e->status && !scene_bounds(&b->scene, low, high))
         err_set(e, NULL, 0,

@@ -22,11 +22,14 @@ enum {
     SHOWING_VOXELS = 2,   /* all elements, with edges; cuts open them */
     SHOWING_MUSCLES = 4,  /* the elements of muscles, with edges; whole */
     SHOWING_RIGID = 8,    /* rigid nodes, as spheres */
-    SHOWING_CENTRES = 16  /* contraction centres, as spheres */
+    SHOWING_CENTRES = 16, /* contraction centres, as spheres */
+    SHOWING_PROBE = 32    /* what presses, where the frame has it */
 };
 
+enum { SHOWING_THINGS = 6 };
+
 /* The names of the above, in that order, for command lines. */
-extern const char *const showing_things[5];
+extern const char *const showing_things[SHOWING_THINGS];
 
 typedef struct showing_want {
     int things;

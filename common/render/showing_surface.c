@@ -7,6 +7,7 @@
 #include "render/showing_parts.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -34,8 +35,9 @@ static int kind_of(const char *names)
 typedef struct part {
     bound b;
     bool is_bound;
-    bone bone;       /* who carries its vertices; filled where it moves */
-    const double *u; /* displacement of the nodes, or NULL */
+    bone bone;         /* who carries its vertices; filled where it moves */
+    const double *u;   /* displacement of the nodes, or NULL */
+    const double *own; /* of its own vertices, which a skin has, or NULL */
     const double *at_nodes;
     const field *field;
     char *take; /* groups: 0 not seen, 1 seen, 2 seen through */
@@ -117,7 +119,9 @@ static int place(const part *p, scene_mesh *to, err *e)
         return -1;
     for (int64_t v = 0; v < s->vertices; v++) {
         double d[3] = {0};
-        if (p->u && p->is_bound)
+        if (p->own)
+            memcpy(d, p->own + 3 * v, sizeof d);
+        else if (p->u && p->is_bound)
             bone_displacement(&p->bone, &p->b, v, p->u, d);
         for (int a = 0; a < 3; a++)
             to->position[3 * v + a] = (float)(s->position[3 * v + a] + d[a]);
@@ -129,7 +133,9 @@ static int place(const part *p, scene_mesh *to, err *e)
 static double value_of_vector(const part *p, int64_t v)
 {
     double at[3];
-    if (p->field->displaces && p->bone.node)
+    if (p->field->displaces && p->own)
+        memcpy(at, p->own + 3 * v, sizeof at);
+    else if (p->field->displaces && p->bone.node)
         bone_displacement(&p->bone, &p->b, v, p->field->vector, at);
     else
         bound_displacement(&p->b, v, p->field->vector, at);
@@ -182,7 +188,7 @@ static int add_part(showing *b, const part *p, int take, err *e)
     double *value = NULL;
     mesh.label = mem_text(p->b.shape.name, e);
     if (mesh.label && !cut_faces(p, take, &mesh, e) && mesh.faces && !place(p, &mesh, e)) {
-        if (p->field && p->is_bound)
+        if (p->field && (p->is_bound || (p->own && p->field->displaces)))
             value = values(p, &mesh, e);
         if (!e->status && !scene_smooth(&mesh, crease, e)) {
             b->seen |= SHOWING_SURFACES;
@@ -194,6 +200,15 @@ static int add_part(showing *b, const part *p, int take, err *e)
     return e->status ? -1 : 0;
 }
 
+/* A skin's own displacement in a frame, or NULL. */
+static const double *own_displacement(const frame *f, const char *name)
+{
+    char array[MODEL_NAME + 20];
+    snprintf(array, sizeof array, "%s/vertex.displacement", name);
+    const model_array *u = f ? frame_find(f, array) : NULL;
+    return u ? u->f64 : NULL;
+}
+
 /* 1: some of it is seen; 0: none; -1: e is filled. */
 static int add_surface(showing *b, const model *m, const showing_want *w, const double *at_nodes, const char *name,
                        err *e)
@@ -203,6 +218,7 @@ static int add_surface(showing *b, const model *m, const showing_want *w, const 
     int is_bound = bound_of(&p.b, m, name, e), seen = is_bound < 0 ? -1 : choose_groups(&p, w, e);
     p.is_bound = is_bound > 0;
     p.u = u ? u->f64 : NULL;
+    p.own = own_displacement(w->moved, name);
     if (seen > 0 && p.u && p.is_bound && bone_find(&p.bone, &p.b, m, e))
         seen = -1;
     b->cleared |= p.cleared;
@@ -219,7 +235,7 @@ static int add_surface(showing *b, const model *m, const showing_want *w, const 
 static int note_names(const model *m, notes *there, err *e)
 {
     char name[MODEL_NAME];
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < SHOWING_THINGS; i++)
         notes_add(there, "%s", showing_things[i]);
     for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
         surface s;
@@ -238,7 +254,7 @@ int showing_check_names(const model *m, const showing_want *w, err *e)
     int bad = note_names(m, &there, e);
     for (int n = 0; n < w->names + w->clears && !bad; n++) {
         const char *name = n < w->names ? w->name[n] : w->clear[n - w->names];
-        int i = n < w->names ? 5 : 1;
+        int i = n < w->names ? SHOWING_THINGS : 1;
         while (i < there.count && !surface_in_group(there.line[i], name))
             i++;
         if (i == there.count)

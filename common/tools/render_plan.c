@@ -129,6 +129,7 @@ static void name_panel(picture_panel *p, const picture_panel *as_asked, int whic
     }
     if (which == DEFORMED) {
         p->moved = p->coloured = true;
+        p->things = as_asked->things & SHOWING_PROBE;
         strcpy(p->caption, "deformed");
     }
     if (which == VIEWED) {
@@ -259,9 +260,9 @@ static int read_panel_asked(render_plan *p, const render_options *o, char **at, 
     *panel = (picture_panel){.moved = true, .coloured = true, .names = true};
     for (int i = 0; i < count && things[i]; i++) {
         int t = 0;
-        while (t < 5 && strcmp(things[i], showing_things[t]) != 0)
+        while (t < SHOWING_THINGS && strcmp(things[i], showing_things[t]) != 0)
             t++;
-        if (t < 5)
+        if (t < SHOWING_THINGS)
             panel->things |= 1 << t;
         else
             p->name[s->names++] = things[i];

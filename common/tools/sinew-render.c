@@ -13,7 +13,7 @@
 
 #define TO(field) offsetof(render_options, field)
 static const opt option_table[] = {
-    {0, "show", "THING,...", OPT_LIST, TO(show), 0, 0, NULL, 0, "surface voxels muscles rigid centres, NAME"},
+    {0, "show", "THING,...", OPT_LIST, TO(show), 0, 0, NULL, 0, "surface voxels muscles rigid centres probe ..."},
     {0, "clear", "THING,...", OPT_LIST, TO(clear), 0, 0, NULL, 0, "of those: seen through"},
     {0, "view", "VIEW", OPT_TEXT, TO(view), 0, 0, NULL, 0, "front back left right top bottom, X,Y,Z"},
     {0, "camera", "EYE,TARGET", OPT_LENGTHS, TO(camera), 0, 6, NULL, 0, "m: two places, X,Y,Z,X,Y,Z"},

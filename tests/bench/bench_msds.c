@@ -1,12 +1,14 @@
 /* `make bench-msds`: what a frame of msds-run's solvers takes at the four sizes of PST's Table I, whose figures stand beside, as do
  * OpenTissue's at the largest (one thread; as the project was given them, not measured here): CSV, with a probe of the machine in
- * the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts again.
- * `bench_msds [THREADS [ROUNDS]]`.
+ * the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts again. At the largest, each
+ * shape of probe too; and what one node costs, by closed form and by libccd. `bench_msds [THREADS [ROUNDS]]`.
  */
 // needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
 #include "../unit/msds_block.h"
 
+#include "base/mem.h"
 #include "bench.h"
+#include "contact/narrow.h"
 #include "msds/largest.h"
 #include "msds/msds_cpu.h"
 
@@ -26,6 +28,14 @@ static const paper papers[SIZES] = {{{20, 10, 10}, {10, 30, NAN, .1}},
                                     {{32, 16, 16}, {40, 150, NAN, .3}}};
 
 static const char *const names[METHODS] = {"msds", "fem 20 cg", "fem exact", "collision"};
+
+/* Shapes, against which nodes of the largest mesh are found, and single points asked of the closed forms and of libccd. */
+enum { SHAPES = 4, QUERIES = 2000 };
+
+typedef struct shape {
+    probe of;
+    const char *found, *closed, *libccd; /* names of cases */
+} shape;
 
 typedef struct subject {
     model m;
@@ -63,6 +73,56 @@ static int ascending(const void *a, const void *b)
 {
     const double *x = a, *y = b;
     return (*x > *y) - (*x < *y);
+}
+
+/* A convex body of 128 facets: a ball's. */
+static probe faceted(void)
+{
+    enum { AROUND = 16, RINGS = 7 };
+    probe p = {.kind = PROBE_CONVEX, .middle = {0, 0, -.02}, .reach = .0205, .size = .019};
+    err e = {0};
+    p.plane = mem_array((RINGS + 1) * AROUND, 4 * sizeof *p.plane, "a probe", &e);
+    p.corner = mem_array((int64_t)(RINGS + 1) * AROUND, 3 * sizeof *p.corner, "a probe", &e);
+    bench_must(p.plane && p.corner, &e);
+    for (int i = 0; i < (RINGS + 1) * AROUND; i++) {
+        double a = 3.14159265358979 * (i / AROUND + .5) / (RINGS + 1), b = 6.28318530717959 * (i % AROUND) / AROUND;
+        double n[3] = {sin(a) * cos(b), sin(a) * sin(b), cos(a)};
+        for (int c = 0; c < 3; c++) {
+            p.plane[4 * p.planes + c] = n[c];
+            p.corner[3 * p.corners + c] = .02 * n[c] + p.middle[c];
+        }
+        p.plane[4 * p.planes++ + 3] = .0195 - .02 * n[2];
+        p.corners++;
+    }
+    return p;
+}
+
+static void measure_shape(bench *b, const shape *s, void *state)
+{
+    msds_plan plan = plan_of(METHODS - 1, FRAMES / 2);
+    probe_pose pose = {{.085, .04, .07}, {1, 0, 0, 0}};
+    probe_touch t = {0, {0, 0, 0}};
+    double sum = 0;
+    plan.probe = probe_place(&s->of, &pose);
+    double start = bench_clock();
+    for (int i = 0; i < TOUCHES; i++)
+        msds_cpu_touch(state, &plan);
+    bench_take(b, s->found, TOUCHES, "search of 8192 nodes", bench_clock() - start);
+    for (int kind = 0; kind < 2; kind++) {
+        start = bench_clock();
+        for (int i = 0; i < QUERIES; i++) { /* all over the body */
+            double x[3];
+            for (int a = 0; a < 3; a++)
+                x[a] = plan.probe.centre[a] + .5 * s->of.size * sin(1. * i * (a + 1) + a);
+            if (kind)
+                narrow_at(&plan.probe, x, 1e-4, 1, &t);
+            else
+                t = probe_at(&plan.probe, x);
+            sum += t.depth;
+        }
+        bench_take(b, kind ? s->libccd : s->closed, QUERIES, "node", bench_clock() - start);
+    }
+    bench_use(sum);
 }
 
 static void measure(subject *s)
@@ -113,6 +173,12 @@ int main(int argc, char **argv)
 {
     static subject subjects[SIZES];
     static bench probes;
+    shape shapes[SHAPES] = {
+        {probe_sphere(.02), "collision: sphere", "depth: sphere, closed form", "depth: sphere, libccd"},
+        {probe_linear(.04, .01, .0025), "collision: linear", "depth: linear, closed form", "depth: linear, libccd"},
+        {probe_curved(.04, 1.2, .015, .003), "collision: curved", "depth: curved, closed form",
+         "depth: curved, libccd"},
+        {faceted(), "collision: convex of 128 planes", "depth: convex of 128 planes", "depth: convex of 128, libccd"}};
     err e = {0};
     int threads = argc > 1 ? atoi(argv[1]) : 2, rounds = argc > 2 ? atoi(argv[2]) : 7;
     if (threads < 1 || rounds < 1 || rounds > BENCH_ROUNDS) {
@@ -128,11 +194,14 @@ int main(int argc, char **argv)
         bench_probe_threads(&probes, workers);
         for (int i = 0; i < SIZES; i++)
             measure(&subjects[i]);
+        for (int i = 0; i < SHAPES; i++)
+            measure_shape(&probes, &shapes[i], subjects[SIZES - 1].state[METHODS - 1]);
     }
     printf("mesh,nodes,tetrahedra,springs,method,threads,frames,best_ms,median_ms,p95_ms,paper_ms,opentissue_ms\n");
     for (int i = 0; i < SIZES; i++)
         say(&subjects[i], &papers[i], threads);
     bench_print(&probes);
+    probe_free(&shapes[SHAPES - 1].of);
     pool_destroy(workers);
     return 0;
 }

@@ -91,5 +91,22 @@ check "the vein is pressed from $(height "$C/surfaces.obj") to $(height "$C/pres
 is "$(cat "$C"/dicom/*.dcm | grep -ac Nobody) $(find "$C" -maxdepth 1 -type f -exec cat {} + | grep -ac -e Nobody -e 2.25.4242)" "48 0" \
     "the patient's name is in the DICOM files only"
 
+# The arm, in a coarse mesh: the vein collapses, the artery does not.
+check "the arm is pressed" env NODES=25x7x13 HZ=30 SINEW_BIN="$(dirname "$(command -v sinew)")" samples/arm "$T/arm"
+awk 'NR == 2 { for (i = 3; i <= 6; i++) at[i] = $i }
+    $1 == 1.5 { line = $0; bad = !($3 < .5 * at[3] && $4 > .8 * at[4] && $5 < .5 * at[5] && $6 > .8 * at[6] && $7 > .5 && $8 > .5); seen = 1 }
+    END { print line; exit bad || !seen || NR != 77 }' "$T/arm/areas.tsv" >"$T/areas"
+is $? 0 "areas and forces, deepest: $(cat "$T/areas")"
+for picture in arm skin; do
+    check "a picture: $picture.png" sh -c "head -c 8 '$T/arm/$picture.png' | grep -q PNG"
+done
+if have gnuplot; then
+    for picture in areas fold; do
+        check "a plot: $picture.png" sh -c "head -c 8 '$T/arm/$picture.png' | grep -q PNG"
+    done
+else
+    skip 2 "no gnuplot"
+fi
+
 fails 2 "a folder without OBJ files" "no OBJ file in .*expected IN=folder" make -C samples IN="$T/none"
 done_testing

@@ -1,0 +1,95 @@
+#!/bin/sh
+# tled-run with a probe: the same colliders as msds-run's, by a penalty; forces against statics; what it refuses.
+# shellcheck source=tests/cli/lib.sh
+. "$(dirname "$0")/lib.sh"
+
+# A block of 8 x 8 x 4 cm from equations, in cm; its bottom is bone.
+cat >"$T/block.obj" <<'END'
+g skin
+v 0 0 0
+v 8 0 0
+v 8 8 0
+v 0 8 0
+v 0 0 4
+v 8 0 4
+v 8 8 4
+v 0 8 4
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+g bone
+v 0 0 -.01
+v 8 0 -.01
+v 8 8 -.01
+v 0 8 -.01
+f 9 10 11 12
+END
+voxelise -q --unit cm -s 0.5 --origin 0,0,0 --allow-open "$T/block.obj" 2>/dev/null | attach -q --rigid bone >"$T/block.sinew"
+is "$(sinew info --get axis.element "$T/block.sinew") $(sinew info --get node.rigid.sum "$T/block.sinew")" "2048 289" "a block on bone"
+# 5 mm down in 0.4 s, and 0.2 s there.
+awk 'BEGIN { for (i = 0; i <= 24; i++) { t = i / 40; d = t < .4 ? .0125 * t : .005; printf "%.4f .04 .04 %.6f 1 0 0 0\n", t, .0401 - d } }' >"$T/press.tum"
+
+# force MODEL: along z, in the last frame.
+force() {
+    awk '/^array / { what = $2; next } what == "probe.force" { f = $3 } what == "probe.torque" { t = $1 * $1 + $2 * $2 + $3 * $3 } { what = "" }
+        END { print f, sqrt(t) }' "$1"
+}
+
+cat >"$T/cube.obj" <<'END'
+v -10 -10 -20
+v 10 -10 -20
+v 10 10 -20
+v -10 10 -20
+v -10 -10 0
+v 10 -10 0
+v 10 10 0
+v -10 10 0
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+END
+for probe in sphere:2cm linear:4cm,1cm curved:4cm,70,15mm "convex:$T/cube.obj"; do
+    check "${probe%%:*}" tled-run -v --text --unit mm --probe "$probe" --poses "$T/press.tum" --rest 1e-3 -m tissue.E=10000 -o "$T/run.sinew" <"$T/block.sinew"
+    force "$T/run.sinew" >"$T/force"
+    read -r newton torque <"$T/force"
+    deep=$(sinew info --get node.displacement.at.0.04,0.04,0.04 "$T/run.sinew" | awk '{ print -1e3 * $3 }')
+    awk -v f="$newton" -v d="$deep" -v t="$torque" 'BEGIN { exit !(f > .3 && f < 5 && d > 4.5 && d < 4.95 && t < 1e-3 * f) }'
+    is $? 0 "${probe%%:*}: pushes back with $newton N, a torque of $torque N m; the node under it is $deep mm down"
+    eval "force_${probe%%:*}=$newton"
+done
+# A stiffer contact changes the force by what it lets in no longer.
+tled-run -q --text --probe sphere:2cm --poses "$T/press.tum" --repulsion 4 --rest 1e-3 -m tissue.E=10000 <"$T/block.sinew" >"$T/stiff.sinew"
+read -r stiff torque <<END
+$(force "$T/stiff.sinew")
+END
+# shellcheck disable=SC2154 # by eval
+awk -v a="$force_sphere" -v b="$stiff" 'BEGIN { exit !(b > a && b < 1.1 * a) }'
+is $? 0 "four times the repulsion: $stiff N"
+
+for n in 1 2 3; do
+    tled-run -q --threads $n --probe linear:4cm,1cm --poses "$T/press.tum" -t .1 --every .02 <"$T/block.sinew" | cksum
+done | sort -u >"$T/sums"
+is "$(wc -l <"$T/sums" | tr -d ' ')" 1 "the same bytes by 1, 2 and 3 threads"
+check "in two parts" sh -c "tled-run -q --probe sphere:2cm --poses '$T/press.tum' -t .2 <'$T/block.sinew' | tled-run -q --probe sphere:2cm --poses '$T/press.tum' -t .2 >'$T/two.sinew' 2>'$T/said'"
+tled-run -q --probe sphere:2cm --poses "$T/press.tum" -t .4 <"$T/block.sinew" >"$T/one.sinew"
+is "$(sinew info --get node.displacement.max "$T/one.sinew")" "$(sinew info --get node.displacement.max "$T/two.sinew")" "in two parts: the same"
+
+echo '0 .04 .04 .035 1 0 0 0' >"$T/inside.tum"
+check "starts inside" tled-run --probe sphere:2cm --poses "$T/inside.tum" -t .3 -o "$T/inside.sinew" <"$T/block.sinew"
+is "$(grep -c 'the probe begins 5 mm inside the tissue: it comes up in 0.1 s' "$T/stderr")" 1 "it says so"
+check "larger than the tissue" tled-run --probe linear:30cm,20cm --poses "$T/press.tum" -t .3 -o "$T/plate.sinew" <"$T/block.sinew"
+is "$(grep -c 'larger than the tissue: it presses like a plate' "$T/stderr")" 1 "it says so"
+fails 1 "no probe on CUDA" 'no contact with a probe; expected -d cpu or auto' tled-run -d cuda --probe sphere:2cm --poses "$T/press.tum" -t .1 <"$T/block.sinew"
+check "auto takes the CPU" tled-run -d auto --probe sphere:2cm --poses "$T/press.tum" -n 5 -o /dev/null <"$T/block.sinew"
+is "$(grep -c 'cpu (the one with contact' "$T/stderr")" 1 "and says so"
+fails 2 "poses without a probe" 'expected both' tled-run --poses "$T/press.tum" -t .1 <"$T/block.sinew"
+{ cat "$T/inside.tum"; echo 'method fem'; } >"$T/method.tum"
+fails 1 "a change of method" 'method.tum:2: .*expected poses alone' tled-run --probe sphere:2cm --poses "$T/method.tum" -t .1 <"$T/block.sinew"
+fails 1 "a step too long with contact" 'above the stable step' tled-run --probe sphere:2cm --poses "$T/press.tum" --dt "$(tled-run -n 1 -o /dev/null <"$T/block.sinew" 2>&1 | sed -n 's/.*stable step \([^ ]*\) ms.*/\1/p' | awk '{ print $1 * .9e-3 }')" -n 5 <"$T/block.sinew"
+done_testing

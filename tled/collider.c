@@ -1,0 +1,148 @@
+#include "tled/collider.h"
+
+#include "base/mem.h"
+#include "tled/step.h"
+#include "volume/poses.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int read_poses(collider *c, const char *path, const char *transform, err *e)
+{
+    in *source = in_open(path, e);
+    poses list = {.sequence = false};
+    poses_event at;
+    int got = source && !poses_open(&list, source, transform, e) ? 1 : -1;
+    while (got > 0 && (got = poses_next(&list, &at, e)) > 0) {
+        if (at.kind != POSES_POSE)
+            got = err_set(e, path, at.line,
+                          "a line that changes the method; expected poses alone: methods are msds-run's");
+        if (got < 0 || MEM_ROOM(&c->pose, &c->pose_room, c->poses + 1, "poses", e) ||
+            MEM_ROOM(&c->time, &c->time_room, c->poses + 1, "poses", e)) {
+            got = -1;
+            break;
+        }
+        memcpy(c->pose[c->poses].position, at.origin, sizeof at.origin);
+        memcpy(c->pose[c->poses].quaternion, at.turn, sizeof at.turn);
+        c->time[c->poses++] = at.time;
+    }
+    if (!got && !c->poses)
+        got = err_set(e, path, 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
+    in_close(source);
+    return got;
+}
+
+int collider_read(collider *c, const char *shape, double scale, const char *poses_file, const char *transform, err *e)
+{
+    return probe_of(&c->shape, shape, e) || probe_load(&c->shape, scale, e) || read_poses(c, poses_file, transform, e)
+               ? -1
+               : 0;
+}
+
+void collider_free(collider *c)
+{
+    probe_free(&c->shape);
+    free(c->time);
+    free(c->pose);
+    *c = (collider){.poses = 0};
+}
+
+void collider_join(collider *c, tled_problem *p, double repulsion)
+{
+    double step = step_at_rest(p, NULL);
+    c->stiffness = repulsion * 4 / (step * step);
+    p->collider = c;
+}
+
+double collider_begin(collider *c, const tled_problem *p, double ramp)
+{
+    const probe_placed first = collider_at(c, p->start);
+    double deepest = 0;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        double x[3];
+        for (int a = 0; a < 3; a++)
+            x[a] = p->position[3 * n + a] + p->displacement[3 * n + a];
+        deepest = fmax(deepest, probe_at(&first, x).depth);
+    }
+    c->start = p->start;
+    c->rises = deepest > .01 * c->shape.size ? ramp : 0;
+    return c->rises > 0 ? deepest : 0;
+}
+
+probe_pose collider_pose(const collider *c, double time)
+{
+    int64_t low = 0, high = c->poses - 1;
+    while (high - low > 1) {
+        int64_t middle = low + (high - low) / 2;
+        if (c->time[middle] <= time)
+            low = middle;
+        else
+            high = middle;
+    }
+    double span = c->time[high] - c->time[low];
+    double share = span > 0 ? fmin(1, fmax(0, (time - c->time[low]) / span)) : time >= c->time[high];
+    return probe_between(&c->pose[low], &c->pose[high], share);
+}
+
+probe_placed collider_at(const collider *c, double time)
+{
+    const probe_pose at = collider_pose(c, time);
+    return probe_place(&c->shape, &at);
+}
+
+double collider_end(const collider *c)
+{
+    return c->time[c->poses - 1];
+}
+
+bool collider_push(const collider *c, const probe_placed *at, double time, const double x[3], double mass,
+                   double push[3])
+{
+    double away = 0;
+    for (int a = 0; a < 3; a++)
+        away += (x[a] - at->centre[a]) * (x[a] - at->centre[a]);
+    if (away >= at->reach * at->reach)
+        return false;
+    const probe_touch t = probe_at(at, x);
+    if (!(t.depth > 0))
+        return false;
+    const double up = c->rises > 0 ? fmin(1, (time - c->start) / c->rises) : 1;
+    for (int a = 0; a < 3; a++)
+        push[a] = up * mass * c->stiffness * t.depth * t.way[a];
+    return true;
+}
+
+int64_t collider_sum(const tled_problem *p, double time, const double *displacement, double force[3], double torque[3])
+{
+    const probe_placed at = collider_at(p->collider, time);
+    int64_t count = 0;
+    memset(force, 0, 3 * sizeof *force);
+    memset(torque, 0, 3 * sizeof *torque);
+    for (int64_t n = 0; n < p->nodes; n++) {
+        const int32_t *hold = p->hold + 3 * n;
+        double x[3], push[3];
+        for (int a = 0; a < 3; a++)
+            x[a] = p->position[3 * n + a] + displacement[3 * n + a];
+        bool is_free = hold[0] == HOLD_FREE || hold[1] == HOLD_FREE || hold[2] == HOLD_FREE;
+        if (!is_free || !collider_push(p->collider, &at, time, x, p->mass[n], push))
+            continue;
+        for (int a = 0; a < 3; a++) {
+            push[a] = hold[a] == HOLD_FREE ? -push[a] : 0;
+            force[a] += push[a];
+        }
+        probe_torque(&at, x, push, torque);
+        count++;
+    }
+    return count;
+}
+
+double collider_step(const tled_problem *p, double step)
+{
+    return p->collider ? 2 / sqrt(4 / (step * step) + p->collider->stiffness) : step;
+}
+
+double collider_events_end(const tled_problem *p)
+{
+    double end = script_end(p->script);
+    return p->collider ? fmax(end, collider_end(p->collider)) : end;
+}
