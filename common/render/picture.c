@@ -136,6 +136,7 @@ static int showing_panel(work *w, int i, err *e)
                          .cut = cut,
                          .cuts = s->cuts,
                          .moved = panel->moved ? w->f : NULL,
+                         .slice = panel->moved ? s->slice : NULL,
                          .field = panel->coloured && w->coloured ? &w->field : NULL};
     return showing_make(&w->showing[i], w->m, &want, e);
 }
