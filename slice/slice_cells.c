@@ -26,7 +26,7 @@ slice_window slice_window_of(const volume *v)
 static uint8_t grey(double x, slice_window w)
 {
     const double share = w.high > w.low ? (x - w.low) / (w.high - w.low) : x > w.low;
-    return share > 0 ? (uint8_t)(fmin(share, 1) * 255 + .5) : 0; /* also for a nan */
+    return share > 0 ? (uint8_t)lrint(fmin(share, 1) * 255) : 0; /* also for a nan */
 }
 
 /* The voxels in 8 bits: the volume's own, where it has them, or *made, which the caller frees. */

@@ -9,9 +9,10 @@ const slice_lanes *slice_lanes_choose(err *e)
         &slice_lanes_avx512,
         &slice_lanes_avx2,
 #endif
-        &slice_lanes_plain
+        &slice_lanes_plain,
+        NULL
     };
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    for (int i = 0; all[i]; i++)
         if (vectors_are(all[i]->name))
             return all[i];
     vectors_none(e);

@@ -108,18 +108,40 @@ static void sample_line(const search *s, const slice_paper_tet *t, int32_t from,
         s->l->line(s->f, &t->piece, s->row, from, end, s->offset, s->to);
 }
 
-/* Columns a to z, which were found to fall in p and q. Where both ends are outside the mesh, what is between them need not be. */
-static void divide(const search *s, int32_t a, int32_t z, const slice_paper_tet *p, const slice_paper_tet *q)
+/* An interval of a row, its ends found to fall in p and q. */
+typedef struct interval {
+    int32_t a, z;
+    const slice_paper_tet *p, *q;
+} interval;
+
+/* Samples an interval, or halves it: the halves that are left to do. Where both ends are outside the mesh, what is between them
+ * need not be. */
+static int divide(const search *s, interval i, interval half[2])
 {
-    if (p == q && (p || a == z)) {
-        sample_line(s, p, a, z + 1);
-    } else if (z - a < 2) {
-        sample_line(s, p, a, a + 1);
-        sample_line(s, q, z, z + 1);
-    } else {
-        int32_t m = a + (z - a + 1) / 2;
-        divide(s, a, m - 1, p, m - 1 > a ? find(s, m - 1) : p);
-        divide(s, m, z, m < z ? find(s, m) : q, q);
+    if (i.p == i.q && (i.p || i.a == i.z)) {
+        sample_line(s, i.p, i.a, i.z + 1);
+        return 0;
+    }
+    if (i.z - i.a < 2) {
+        sample_line(s, i.p, i.a, i.a + 1);
+        sample_line(s, i.q, i.z, i.z + 1);
+        return 0;
+    }
+    const int32_t m = i.a + (i.z - i.a + 1) / 2;
+    half[0] = (interval){m, i.z, m < i.z ? find(s, m) : i.q, i.q};
+    half[1] = (interval){i.a, m - 1, i.p, m - 1 > i.a ? find(s, m - 1) : i.p};
+    return 2;
+}
+
+/* The paper's recursion, with what is left to do on a stack: one interval for each time that a row of SLICE_SIDE_MOST can be halved, and
+ * the two of the last. */
+static void fill_row(const search *s, int32_t a, int32_t z)
+{
+    interval stack[20] = {{a, z, find(s, a), find(s, z)}};
+    int count = 1;
+    while (count > 0) {
+        count--;
+        count += divide(s, stack[count], stack + count);
     }
 }
 
@@ -132,6 +154,6 @@ void slice_paper_fill(const slice_lanes *l, const slice_fill *f, const slice_pap
         for (int k = 0; k < 2; k++) {
             int32_t a = f->shown[s.row].from[k], z = f->shown[s.row].to[k] - 1;
             if (a <= z)
-                divide(&s, a, z, find(&s, a), find(&s, z));
+                fill_row(&s, a, z);
         }
 }

@@ -18,10 +18,12 @@ static int make_mesh(scene_mesh *mesh, const placed *p, err *e)
     mesh->face_colour = mem_array(3 * faces, sizeof *mesh->face_colour, "a slice", e);
     if (e->status)
         return -1;
-    for (int64_t i = 0; i < mesh->vertices; i++)
+    for (int64_t i = 0; i < mesh->vertices; i++) {
+        const int64_t c = i % across, r = i / across;
         for (int a = 0; a < 3; a++)
-            mesh->position[3 * i + a] = (float)(p->origin[a] + p->column[a] * ((double)(i % across) - .5) +
-                                                p->row[a] * ((double)(i / across) - .5));
+            mesh->position[3 * i + a] =
+                (float)(p->origin[a] + p->column[a] * ((double)c - .5) + p->row[a] * ((double)r - .5));
+    }
     for (int64_t i = 0; i < faces; i++) {
         const uint32_t first = (uint32_t)(i / p->columns * across + i % p->columns);
         const uint32_t corner[4] = {first, first + 1, first + (uint32_t)across + 1, first + (uint32_t)across};

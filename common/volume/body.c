@@ -159,7 +159,7 @@ static void place_parts(body *b, const bool *in_volume)
 {
     for (int i = 0; i < b->parts; i++) {
         body_place *p = &b->part[i].place;
-        if (!in_volume[i])
+        if (!in_volume || !in_volume[i])
             continue;
         body_put(&b->volume, p->move, p->move);
         body_turn(&b->volume, p->turn, p->turn);
@@ -171,10 +171,9 @@ int body_read(body *b, in *s, err *e)
     keyfile k;
     line l;
     bool *in_volume = NULL, placed = false;
-    int more;
     *b = (body){.volume = body_none()};
     keyfile_open(&k, s);
-    while ((more = keyfile_next(&k, e)) > 0) {
+    while (keyfile_next(&k, e) > 0) {
         if (!strcmp(k.word[0], "surface")) {
             if (take_surface(b, &k, &in_volume, e))
                 break;
