@@ -36,7 +36,7 @@ static const opt option_list[] = {
     {0, "rigid", NULL, OPT_FLAG, TO(rigid), 0, 0, NULL, 0, "no model: the volume as it lies"},
     {0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "where it lies in the frame of --poses"},
     {0, "size", "COLUMNSxROWS", OPT_TEXT, TO(size), 0, 0, NULL, 0, "pixels [512x512]"},
-    {0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, NULL, 0, "linear:W,T curved:R,ANGLE,T phased:ANGLE [frames']"},
+    {0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, NULL, 0, "linear:W,T curved:R,ANGLE,T phased:ANGLE"},
     {0, "depth", "D", OPT_LENGTHS, TO(depth), 0, 1, NULL, 0, "along a beam [5cm]"},
     {0, "width", "W", OPT_LENGTHS, TO(width), 0, 1, NULL, 0, "of the image [the array's, or its fan's]"},
     {0, "thickness", "T[,N]", OPT_TEXT, TO(thickness), 0, 0, NULL, 0, "of the beam: the mean of N slices [5]"},

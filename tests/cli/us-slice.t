@@ -41,6 +41,7 @@ check "a PNG a pose" us-slice --rigid --poses "$T/native.tum" -o "$T/p_%02d.png"
 is "$(head -c 4 "$T/p_00.png" | tail -c 3)" PNG "is one"
 
 # real FILE K: a pose and options for the native plane K of a NRRD, and its pixels: tests/cli/native.py.
+# shellcheck disable=SC2317 # called by name
 real() {
     # shellcheck disable=SC2046
     us-slice -q --rigid --poses "$T/plane.tum" $(python3 tests/cli/native.py "$1" "$2" "$T/plane") -o "$T/plane.pgm" "$1" &&
@@ -60,6 +61,7 @@ else
 fi
 
 # VTK's own slices, oblique: Debian's python3, which has it.
+# shellcheck disable=SC2317 # called by name
 vtk() {
     us-slice -q --rigid --poses "$T/oblique.tum" --size 300x200 --width "$2" --depth "$3" -o "$T/oblique.pgm" "$1" &&
         /usr/bin/python3 tests/cli/reslice.py "$1" "$T/oblique.pgm" >"$T/off"
@@ -166,6 +168,22 @@ pixels "$T/placed.pgm" | tr -d ' ' | cmp -s - "$T/want"
 is $? 0 "a body places the volume"
 is "$(sed -n 2p "$T/placed.pgm" | awk '{ printf "%.4f %.4f %.4f", $3, $4, $5 }')" "0.0960 0.0000 0.0200" "and the image lies in the body"
 
+# sinew render shows the image and the body: more is seen with them than without.
+msds-run -q --probe linear:6mm,4mm --poses "$T/native.tum" <"$T/mesh.sinew" >"$T/one.sinew" 2>/dev/null
+us-slice -q --size 12x8 --depth 8mm -o "$T/s_%d.pgm" "$T/noise.nrrd" <"$T/one.sinew"
+printf 'v 0 0 0\nv 30 0 0\nv 0 0 30\nf 1 2 3\n' >"$T/skin.obj"
+for extra in "" "--slice $T/s_%d.pgm" "--body $T/body"; do
+    # shellcheck disable=SC2086
+    check "a picture $extra" sinew render --show probe $extra --view 1,2,3 --size 80x60 --format ppm -o "$T/r.ppm" "$T/one.sinew"
+    cksum <"$T/r.ppm" >>"$T/sums"
+done
+is "$(sort -u "$T/sums" | wc -l | tr -d ' ')" 3 "differs with each"
+printf 'P5\n12 8\n255\n' >"$T/bare.pgm"
+fails 1 "an image that does not say where it lies" "bare.pgm:2: no image that says where it lies; expected '# us-slice:'" \
+    sinew render --show probe --slice "$T/bare.pgm" -o "$T/r.png" "$T/one.sinew"
+head -c 90 "$T/s_0.pgm" >"$T/bare.pgm"
+fails 1 "an image cut off" 'bare.pgm: ends after .* of 96 bytes' sinew render --show probe --slice "$T/bare.pgm" -o "$T/r.png" "$T/one.sinew"
+
 # Frames of msds-run: the default probe is theirs; the two methods and any number of threads agree.
 printf '%s\n' '0 .0055 .0045 -.0005 0 0 0 1' '1 .0055 .0045 .0005 0 0 0 1' '2 .0055 .0045 .001 0 0 0 1' >"$T/press.tum"
 msds-run -q --probe linear:6mm,4mm --poses "$T/press.tum" <"$T/mesh.sinew" >"$T/run.sinew"
@@ -236,7 +254,9 @@ fails 1 "no frames and no poses" 'the model has no frames' us-slice "$T/noise.nr
 fails 1 "nothing on stdin" 'no model on stdin' us-slice "$T/noise.nrrd"
 fails 1 "fewer poses than frames" 'has 1 poses, fewer than there are frames' us-slice --poses "$T/zero.tum" -o "$T/none.pgm" "$T/noise.nrrd" <"$T/run.sinew"
 check "leave no file" test ! -e "$T/none.pgm"
-voxelise -q --unit mm -n 4 tests/golden/cube.obj -o "$T/cube.sinew" 2>/dev/null || awk -f samples/block.awk | voxelise -q --unit mm -n 4 -o "$T/cube.sinew" - 2>/dev/null
+printf '%s\n' 'v 0 0 0' 'v 9 0 0' 'v 9 9 0' 'v 0 9 0' 'v 0 0 9' 'v 9 0 9' 'v 9 9 9' 'v 0 9 9' \
+    'f 4 3 2 1' 'f 5 6 7 8' 'f 1 2 6 5' 'f 2 3 7 6' 'f 3 4 8 7' 'f 4 1 5 8' >"$T/cube.obj"
+voxelise -q --unit mm -n 3 "$T/cube.obj" -o "$T/cube.sinew" 2>/dev/null
 fails 1 "hexahedra" 'elements of 8 nodes; expected tetrahedra' us-slice --poses "$T/zero.tum" "$T/noise.nrrd" <"$T/cube.sinew"
 head -c $(($(wc -c <"$T/run.sinew") / 2)) "$T/run.sinew" >"$T/cut.sinew"
 fails 1 "a model cut off" 'stdin' us-slice "$T/noise.nrrd" <"$T/cut.sinew"
