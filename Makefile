@@ -63,14 +63,17 @@ NVCC_FLAGS = -std=c++17 -O3 -lineinfo -fmad=false $(CUDA_ARCH) -Werror all-warni
 	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
 $(BUILD)/tled/cuda_single.o: NVCC_FLAGS += -ftz=true
-CUDA_SRC := $(wildcard common/device/*.cu tled/*.cu)
+$(BUILD)/msds/cuda_%.o: NVCC_FLAGS += -ftz=true
+CUDA_SRC := $(wildcard common/device/*.cu tled/*.cu msds/*.cu)
 $(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
 LIB_CUDA := $(BUILD)/libsinew-cuda.a
 CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
 endif
 
-$(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(BUILD)/tled/tiles.o
+# What only cards use, in C, is in it too.
+CUDA_ONLY := tled/tiles.c msds/levels.c msds/parts.c
+$(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
 	@rm -f $@
 	@ar rcs $@ $^
 
@@ -79,13 +82,14 @@ $(BUILD)/%.o: %.cu
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Icommon -I. -MMD -MP -MF $(@:.o=.d) -c -o $@ $<)
 
-# Which of the two is built is known to one file and its test, made again when that changes.
+# Which of the two is built is known to few files, made again when that changes.
+KNOW_CUDA := $(addprefix $(BUILD)/,tled/backends.o tests/unit/test_tled_cuda.o msds/msds_backends.o tests/unit/test_msds_cuda.o)
 $(BUILD)/cuda-$(CUDA):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/cuda-yes $(BUILD)/cuda-no
 	@touch $@
-$(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: $(BUILD)/cuda-$(CUDA)
-$(BUILD)/tled/backends.o $(BUILD)/tests/unit/test_tled_cuda.o: CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
+$(KNOW_CUDA): $(BUILD)/cuda-$(CUDA)
+$(KNOW_CUDA): CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 
 # The CPU solvers' loops, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
 # (No psabi: vectors are passed between functions of one file only.)
@@ -104,9 +108,9 @@ objects = $(patsubst %.cc,$(BUILD)/%.o,$(patsubst %.c,$(BUILD)/%.o,$(1)))
 VOXELISE_SRC := $(wildcard voxelise/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
-TLED_SRC := $(filter-out tled/tiles.c,$(wildcard tled/*.c))
+TLED_SRC := $(filter-out $(CUDA_ONLY),$(wildcard tled/*.c))
 MESH_MODULES := $(wildcard msds/mesh_*.c)
-RUN_MODULES := $(filter-out msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
+RUN_MODULES := $(filter-out $(CUDA_ONLY) msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
 SAMPLES_SRC := slice/samples.c slice/length.c
 IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c $(wildcard slice/dicom*.c) slice/dicom_file.cc
 SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
@@ -127,7 +131,7 @@ $(eval $(call tool,bind,bind/bind.c $(BIND_MODULES)))
 $(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
 $(eval $(call tool,tled-run,$(TLED_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
 $(eval $(call tool,msds-mesh,msds/msds-mesh.c $(MESH_MODULES)))
-$(eval $(call tool,msds-run,msds/msds-run.c $(RUN_MODULES)))
+$(eval $(call tool,msds-run,msds/msds-run.c $(RUN_MODULES),,$(LIB_CUDA),$(CUDA_LIBS)))
 $(eval $(call tool,us-import,slice/us-import.c $(IMPORT_SRC),$$(DICOM)))
 $(eval $(call tool,us-segment,slice/us-segment.c $(SEGMENT_SRC)))
 $(eval $(call tool,us-surface,slice/us-surface.c $(SURFACE_SRC)))

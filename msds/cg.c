@@ -1,6 +1,7 @@
 #include "msds/cg.h"
 
 #include "base/mem.h"
+#include "msds/sums.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,25 +13,36 @@ static void put_block(float *to, int lane, const double *block, bool transposed)
             to[(3 * i + j) * LANES + lane] = (float)(transposed ? block[3 * j + i] : block[3 * i + j]);
 }
 
-/* The stiffness as float, in the slices' order; rows of fixed nodes are zero. */
+typedef struct filling {
+    lanes_matrix *m;
+    const msds_problem *p;
+    const stiffness *k;
+} filling;
+
 static void fill_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    cg *g = context;
-    const slices *s = g->s;
+    filling *g = context;
+    const slices *s = g->m->s;
     (void)chunk;
     for (int64_t own = from * LANES; own < to * LANES; own++) {
         const int64_t slice = own / LANES, node = s->model_node[own];
         const int lane = (int)(own % LANES);
         if (node < 0 || g->p->fixed[node])
             continue;
-        put_block(g->matrix.diagonal + slice * 9 * LANES, lane, g->k->diagonal + 9 * node, false);
+        put_block(g->m->diagonal + slice * 9 * LANES, lane, g->k->diagonal + 9 * node, false);
         for (int64_t slot = s->start[slice]; slot < s->start[slice + 1]; slot++) {
             int64_t spring = s->spring[slot * LANES + lane];
             if (spring >= 0)
-                put_block(g->matrix.block + slot * 9 * LANES, lane, g->k->block + 9 * spring,
+                put_block(g->m->block + slot * 9 * LANES, lane, g->k->block + 9 * spring,
                           g->p->spring[spring].node[0] != node);
         }
     }
+}
+
+void cg_fill(lanes_matrix *m, const msds_problem *p, const stiffness *k, pool *threads)
+{
+    filling f = {m, p, k};
+    pool_run(threads, m->s->count, SLICES_CHUNK, fill_work, &f);
 }
 
 static void run(cg *g, pool_work *work)
@@ -40,10 +52,7 @@ static void run(cg *g, pool_work *work)
 
 static double sum_of(const cg *g)
 {
-    double sum = 0;
-    for (int64_t i = 0; i < pool_chunks(g->s->count, SLICES_CHUNK); i++)
-        sum += g->sum[i];
-    return sum;
+    return sums_of(g->sum, pool_chunks(g->s->count, SLICES_CHUNK));
 }
 
 int cg_make(cg *g, const msds_problem *p, const slices *s, stiffness *k, contacts *c, const lanes *loops, pool *threads,
@@ -60,7 +69,7 @@ int cg_make(cg *g, const msds_problem *p, const slices *s, stiffness *k, contact
         lanes_field_make(&g->left, s->nodes, e) || lanes_field_make(&g->way, s->nodes, e) ||
         lanes_field_make(&g->pulled, s->nodes, e))
         return -1;
-    run(g, fill_work);
+    cg_fill(&g->matrix, g->p, g->k, g->threads);
     return 0;
 }
 
@@ -97,7 +106,7 @@ static void find_pulled(cg *g, bool again)
             g->place[3 * n + a] = (double)g->u->x[a][s->own_node[n]];
     if (again) {
         stiffness_warp(g->k, g->place, true);
-        run(g, fill_work);
+        cg_fill(&g->matrix, g->p, g->k, g->threads);
     }
     stiffness_force(g->k, g->place, g->force);
     for (int64_t n = 0; n < g->p->nodes; n++)

@@ -25,6 +25,9 @@ typedef struct cg {
     double residual; /* what is left over the load or the pull, whichever is more */
 } cg;
 
+/* The stiffness as float, in the order of m's slices; rows of fixed nodes stay as they are: zero. */
+void cg_fill(lanes_matrix *m, const msds_problem *p, const stiffness *k, pool *threads);
+
 /* -1 with e filled, and to be freed all the same. */
 int cg_make(cg *g, const msds_problem *p, const slices *s, stiffness *k, contacts *c, const lanes *loops, pool *threads,
             lanes_field *u, lanes_field *weight, err *e);

@@ -428,7 +428,8 @@ static int prepare(session *s, err *e)
     char device[300];
     if (take_probe(s, e) || carry_skin(s, e) || make_problem(s, e))
         return -1;
-    s->device = backend_choose(msds_backends, names[o->device], device, sizeof device, e);
+    const char *device_name = o->warp && !o->device ? "cpu" : names[o->device]; /* no card takes rotations out */
+    s->device = backend_choose(msds_backends, device_name, device, sizeof device, e);
     int threads = tool_threads(s->t, e);
     s->threads = s->device && threads > 0 ? pool_create(threads, e) : NULL;
     if (!s->threads)

@@ -2,4 +2,14 @@
 #include "msds/msds_cpu.h"
 #include "msds/problem.h"
 
-const backend *const msds_backends[] = {&msds_cpu, NULL};
+#ifdef SINEW_CUDA
+#include "msds/msds_cuda.h"
+#endif
+
+const backend *const msds_backends[] = {
+#ifdef SINEW_CUDA
+    &msds_cuda,
+#endif
+    &msds_cpu,
+    NULL,
+};

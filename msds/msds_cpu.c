@@ -49,25 +49,6 @@ static void collect(const cpu_state *s, const lanes_field *from, double *to)
             to[3 * n + a] = (double)from->x[a][s->order.own_node[n]];
 }
 
-/* The length is that of the ends as float, so that rest is without force. A lane without a spring: length 1, no stiffness. */
-static void fill_springs(cpu_state *s)
-{
-    const slices *o = &s->order;
-    for (int64_t slice = 0; slice < o->count; slice++)
-        for (int64_t at = o->start[slice] * LANES; at < o->start[slice + 1] * LANES; at++) {
-            const msds_spring *spring = o->spring[at] < 0 ? NULL : &s->p->spring[o->spring[at]];
-            int64_t own = slice * LANES + at % LANES, other = o->neighbour[at];
-            float square = 0;
-            for (int a = 0; a < 3; a++) {
-                float d = s->w.place.x[a][other] - s->w.place.x[a][own];
-                square += d * d;
-            }
-            s->rest[at] = spring ? sqrtf(square) : 1;
-            s->stiffness[at] = spring ? (float)spring->stiffness : 0;
-            s->damper[at] = spring ? (float)spring->damper : 0;
-        }
-}
-
 static void fill_nodes(cpu_state *s)
 {
     const msds_problem *p = s->p;
@@ -149,7 +130,7 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
     s->w.repulsion = s->repulsion;
     s->w.damping = s->p->options.damping;
     fill_nodes(s);
-    fill_springs(s);
+    slices_springs(&s->order, s->p, s->stiffness, s->damper, s->rest);
     memcpy(s->place, s->p->displacement, 3 * (size_t)s->p->nodes * sizeof *s->place);
     s->precise = true;
     return s;

@@ -186,6 +186,26 @@ out:
     return result;
 }
 
+static float length_of(const msds_problem *p, const int32_t node[2])
+{
+    float square = 0;
+    for (int a = 0; a < 3; a++) {
+        float d = (float)p->position[3 * (int64_t)node[1] + a] - (float)p->position[3 * (int64_t)node[0] + a];
+        square += d * d;
+    }
+    return sqrtf(square);
+}
+
+void slices_springs(const slices *s, const msds_problem *p, float *stiffness, float *damper, float *rest)
+{
+    for (int64_t at = 0; at < s->slots * LANES; at++) {
+        const msds_spring *spring = s->spring[at] < 0 ? NULL : &p->spring[s->spring[at]];
+        rest[at] = spring ? length_of(p, spring->node) : 1;
+        stiffness[at] = spring ? (float)spring->stiffness : 0;
+        damper[at] = spring ? (float)spring->damper : 0;
+    }
+}
+
 void slices_free(slices *s)
 {
     free(s->model_node);

@@ -30,4 +30,8 @@ enum { SLICES_SCATTERED = INT32_MIN };
 int slices_make(slices *s, const msds_problem *p, err *e);
 void slices_free(slices *s);
 
+/* The springs' numbers in single precision, slots x LANES each. A length is that of the ends as float, so that rest is without
+ * force. A lane without a spring: length 1, no stiffness. */
+void slices_springs(const slices *s, const msds_problem *p, float *stiffness, float *damper, float *rest);
+
 #endif

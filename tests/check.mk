@@ -72,8 +72,8 @@ check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-images bench-slice bench-fraction compare-msds
-BENCHES = voxelise geometry tled msds images slice
+.PHONY: bench bench-tled bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction compare-msds
+BENCHES = voxelise geometry tled msds msds_card images slice
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
 BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
@@ -104,6 +104,9 @@ bench-slice: all $(BUILD)/tests/bench/bench_slice
 	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat
 	@! command -v gnuplot >/dev/null || gnuplot -e "data='out/regions.dat'; picture='out/regions.png'" tests/bench/regions.plot
 	@! command -v python3 >/dev/null || python3 tests/bench/live.py $(BIN) $(shell nproc)
+# The same on a card, where there is one, and with half a million nodes.
+bench-msds_card: $(BUILD)/tests/bench/bench_msds_card
+	@$(BUILD)/tests/bench/bench_msds_card
 # DICOM to volumes, labels and surfaces.
 bench-images: all $(BUILD)/tests/bench/bench_images
 	@$(BUILD)/tests/bench/bench_images $(BIN) $(BUILD) $(BENCH_HEAD)
