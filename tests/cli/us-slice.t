@@ -174,7 +174,7 @@ us-slice -q --size 12x8 --depth 8mm -o "$T/s_%d.pgm" "$T/noise.nrrd" <"$T/one.si
 printf 'v 0 0 0\nv 30 0 0\nv 0 0 30\nf 1 2 3\n' >"$T/skin.obj"
 for extra in "" "--slice $T/s_%d.pgm" "--body $T/body"; do
     # shellcheck disable=SC2086
-    check "a picture $extra" sinew render --show probe $extra --view 1,2,3 --size 80x60 --format ppm -o "$T/r.ppm" "$T/one.sinew"
+    check "a picture $extra" sinew render --show voxels,probe --clear voxels $extra --view 1,2,3 --size 80x60 --format ppm -o "$T/r.ppm" "$T/one.sinew"
     cksum <"$T/r.ppm" >>"$T/sums"
 done
 is "$(sort -u "$T/sums" | wc -l | tr -d ' ')" 3 "differs with each"
