@@ -104,7 +104,7 @@ slice_plane slice_view_plane(const slice_view *v, const double origin[3], const 
 {
     const double corner[3] = {v->corner[0], off, v->corner[1]};
     const double column[3] = {v->pixel[0], 0, 0}, row[3] = {0, 0, v->pixel[1]};
-    slice_plane p;
+    slice_plane p = {0};
     probe_turn(turn, corner, p.origin);
     probe_turn(turn, column, p.column);
     probe_turn(turn, row, p.row);

@@ -336,7 +336,7 @@ static int write_cut(job *j, const slice_plane *at, int64_t index, err *e)
 static slice_plane placed(const job *j, const slice_plane *at)
 {
     const body_place turn = {.turn = {j->place.turn[0], j->place.turn[1], j->place.turn[2], j->place.turn[3]}};
-    slice_plane p;
+    slice_plane p = {0};
     body_put(&j->place, at->origin, p.origin);
     body_put(&turn, at->column, p.column);
     body_put(&turn, at->row, p.row);

@@ -129,7 +129,7 @@ static int take_keys(keyfile *k, int from, bool surface, line *l, err *e)
     return 0;
 }
 
-static int take_surface(body *b, keyfile *k, bool **in_volume, err *e)
+static int take_surface(body *b, keyfile *k, err *e)
 {
     line l;
     if (k->count < 2 || strchr(k->word[1], '='))
@@ -142,24 +142,21 @@ static int take_surface(body *b, keyfile *k, bool **in_volume, err *e)
         return -1;
     if (!(l.scale > 0))
         return keyfile_error(k, e, "'%.200s' without unit=; expected " NUM_UNITS, k->word[1]);
-    body_part *more = realloc(b->part, (size_t)(b->parts + 1) * sizeof *more);
-    b->part = more ? more : b->part;
-    bool *flags = more ? realloc(*in_volume, (size_t)(b->parts + 1) * sizeof *flags) : NULL;
-    *in_volume = flags ? flags : *in_volume;
-    char *file = flags ? mem_text(k->word[1], e) : NULL;
-    if (!file)
-        return err_memory(e, "the parts of a body");
-    (*in_volume)[b->parts] = l.in_volume;
-    b->part[b->parts++] = (body_part){file, l.scale, l.place};
+    char *file = mem_text(k->word[1], e);
+    if (!file || MEM_ROOM(&b->part, &b->room, b->parts + 1, "the parts of a body", e)) {
+        free(file);
+        return -1;
+    }
+    b->part[b->parts++] = (body_part){file, l.scale, l.place, l.in_volume};
     return 0;
 }
 
 /* Parts in the volume go where it goes, once it is known. */
-static void place_parts(body *b, const bool *in_volume)
+static void place_parts(body *b)
 {
     for (int i = 0; i < b->parts; i++) {
         body_place *p = &b->part[i].place;
-        if (!in_volume || !in_volume[i])
+        if (!b->part[i].in_volume)
             continue;
         body_put(&b->volume, p->move, p->move);
         body_turn(&b->volume, p->turn, p->turn);
@@ -170,12 +167,12 @@ int body_read(body *b, in *s, err *e)
 {
     keyfile k;
     line l;
-    bool *in_volume = NULL, placed = false;
+    bool placed = false;
     *b = (body){.volume = body_none()};
     keyfile_open(&k, s);
     while (keyfile_next(&k, e) > 0) {
         if (!strcmp(k.word[0], "surface")) {
-            if (take_surface(b, &k, &in_volume, e))
+            if (take_surface(b, &k, e))
                 break;
         } else if (strcmp(k.word[0], "volume") != 0) {
             keyfile_error(&k, e, "'%.100s'; expected volume or surface", k.word[0]);
@@ -191,8 +188,7 @@ int body_read(body *b, in *s, err *e)
         }
     }
     if (!e->status)
-        place_parts(b, in_volume);
-    free(in_volume);
+        place_parts(b);
     if (e->status)
         body_free(b);
     return e->status ? -1 : 0;

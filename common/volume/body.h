@@ -21,12 +21,14 @@ typedef struct body_part {
     char *file;       /* a name without a folder: beside the body's own file */
     double scale;     /* to metres */
     body_place place; /* in the body, the volume's taken in */
+    bool in_volume;   /* it goes where the volume goes; place says it already */
 } body_part;
 
 typedef struct body {
     body_place volume; /* 0 and no turn where the file does not say */
     body_part *part;
     int parts;
+    int64_t room; /* for parts */
 } body;
 
 /* -1 with e filled: file and line. */
