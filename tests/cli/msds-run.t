@@ -122,9 +122,11 @@ fails 1 "poses out of order" 'back.tum:2: ' msds-run --poses "$T/back.tum" <"$T/
 fails 1 "no pose" 'no pose; expected' msds-run --poses "$T/empty.tum" <"$T/block.sinew"
 msds-run -q --text --poses "$T/first.tum" <"$T/block.sinew" | awk '/^frame/ { exit } /^crc/ { next } { print } END { print "end" }' >"$T/text.sinew"
 awk '/^array element.node/ { print; getline; print $2, $1, $3, $4; next } { print }' "$T/text.sinew" >"$T/inverted.sinew"
-fails 1 "an inverted element" 'element 0 is inverted' msds-run --poses "$T/first.tum" <"$T/inverted.sinew"
+at=$(awk '/^array element.node/ { print NR + 1 }' "$T/inverted.sinew")
+fails 1 "an inverted element" "stdin:$at: element 0 is inverted" msds-run --poses "$T/first.tum" <"$T/inverted.sinew"
 awk '/^array material.nu/ { print; getline; print "0.5"; next } { print }' "$T/text.sinew" >"$T/nu.sinew"
-fails 1 "nu = .5" 'nu.* 0.5.*expected' msds-run --poses "$T/first.tum" <"$T/nu.sinew"
+at=$(awk '/^array material.nu/ { print NR + 1 }' "$T/nu.sinew")
+fails 1 "nu = .5" "stdin:$at: material.nu, row 0: 0.5 .*expected" msds-run --poses "$T/first.tum" <"$T/nu.sinew"
 echo 'method fem' >"$T/method.tum"
 fails 1 "changes of method and no pose" 'method.tum: no pose; expected' msds-run --poses "$T/method.tum" <"$T/block.sinew"
 printf '0 .04 .04 .07 1 0 0 0\n0.1 .04' >"$T/cut.tum"
@@ -143,9 +145,10 @@ is "$(grep -c warning "$T/stderr")" 0 "has no such word"
 awk '/^array material.E/ { print; getline; print "nan"; next } { print }' "$T/text.sinew" >"$T/E.sinew"
 fails 1 "E = nan" 'material.E.* nan .*expected' msds-run --poses "$T/first.tum" <"$T/E.sinew"
 awk '/^array node.position/ { print; getline; print "0 nan 0"; next } { print }' "$T/text.sinew" >"$T/place.sinew"
-fails 1 "a place that is nan" 'node.position, row 0 is not finite' msds-run --poses "$T/first.tum" <"$T/place.sinew"
+at=$(awk '/^array node.position/ { print NR + 1 }' "$T/place.sinew")
+fails 1 "a place that is nan" "stdin:$at: node.position, row 0 is not finite" msds-run --poses "$T/first.tum" <"$T/place.sinew"
 awk '/^array element.node/ { print; getline; print $1, $2, $3, $3; next } { print }' "$T/text.sinew" >"$T/flat.sinew"
-fails 1 "a flat element" 'element.node, row 0 has 3 different nodes' msds-run --poses "$T/first.tum" <"$T/flat.sinew"
+fails 1 "a flat element" 'stdin:[0-9]*: element.node, row 0 has 3 different nodes' msds-run --poses "$T/first.tum" <"$T/flat.sinew"
 # shellcheck disable=SC2086
 msds-mesh -q $block --fix none >"$T/free.sinew" 2>"$T/err"
 fails 1 "an exact FEM that nothing holds" 'nothing holds node' msds-run --method fem --exact --poses "$T/first.tum" <"$T/free.sinew"
