@@ -95,6 +95,8 @@ done
 check "a PLUS sequence" msds-run -q --text --transform ProbeToReference --probe sphere:2cm --poses "$T/sweep.mha" -o "$T/sweep.sinew" <"$T/block.sinew"
 is "$(awk '/^array probe.pose/ { getline; print $1, $2, $3, $4 }' "$T/sweep.sinew" | tr '\n' ';')" \
     "0.040000000000000001 0.040000000000000001 0.058999999999999997 1;0.040000000000000001 0.040000000000000001 0.058000000000000003 1;" "in metres"
+fails 1 "a transform of lines" 'press.tum: lines of poses have no transform NoseToReference; expected a PLUS sequence' \
+    msds-run --transform NoseToReference --poses "$T/press.tum" <"$T/block.sinew"
 fails 1 "a transform that it has not" 'sweep.mha:[0-9]*: frame 0 does not say where Nose is' \
     msds-run --transform NoseToReference --poses "$T/sweep.mha" <"$T/block.sinew"
 
