@@ -385,7 +385,8 @@ static int simulate(session *s, err *e)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
     if (!got && s->o->probe && !s->pressed)
         notes_add(&s->warnings,
-                  "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space",
+                  "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space, "
+                  "and nodes closer together than the probe is wide",
                   (long long)frames);
     return got;
 }
