@@ -207,9 +207,9 @@ static double still_to_go(const exact *x, const double *u, int64_t i)
     return c->depth - gone - (x->p->options.penalty ? c->force / x->p->repulsion[c->node] : 0);
 }
 
-/* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull, whichever was
- * the most in this frame. */
-static double find_left(exact *x, const double *u)
+/* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull, whichever is
+ * more: now, or where the frame begins, which tells of tissue that the probe has just left. */
+static double find_left(exact *x, const double *u, bool begins)
 {
     const msds_problem *p = x->p;
     double left = 0, load = 0, inner = 0;
@@ -230,8 +230,11 @@ static double find_left(exact *x, const double *u)
         x->left[i] -= x->inner[i];
         left += x->left[i] * x->left[i];
     }
-    x->load = fmax(x->load, fmax(load, inner));
-    return x->load > 0 ? sqrt(left / x->load) : 0;
+    load = fmax(load, inner);
+    if (begins)
+        x->load = load;
+    load = fmax(load, x->load);
+    return load > 0 ? sqrt(left / load) : 0;
 }
 
 /* One solve: u and the contact forces. */
@@ -302,12 +305,11 @@ static int turn_again(exact *x, const double *u, err *e)
 
 int exact_solve(exact *x, double *u, bool first, double tolerance, double reach, err *e)
 {
-    x->load = first ? 0 : x->load;
     if (make_schur(x, e))
         return -1;
     mixing_begin(&x->mixing);
     int fresh = 0; /* the solve that the factor was made for */
-    x->residual = find_left(x, u);
+    x->residual = find_left(x, u, first);
     for (x->solves = 0; x->residual > tolerance || !in_place(x, u, tolerance * reach);) {
         if (x->solves == EXACT_SOLVES || !isfinite(x->residual))
             return err_set(e, NULL, 0, "after %d solves the residual is still %.3g; expected %.3g", x->solves,
@@ -322,7 +324,7 @@ int exact_solve(exact *x, double *u, bool first, double tolerance, double reach,
             improve_turned(x, u);
         else
             improve(x, u);
-        x->residual = find_left(x, u);
+        x->residual = find_left(x, u, false);
     }
     return 0;
 }
