@@ -44,6 +44,14 @@ exec 3>&-
 wait "$run"
 is "$? $seen" "0 123" "through a FIFO each frame comes before the next pose"
 
+# A probe that leaves, and stays away: exact frames find rest again, and stay there.
+awk 'BEGIN { for (i = 0; i < 12; i++) printf "%g .04 .04 %.4f 1 0 0 0\n", i / 60, i < 4 ? .06 - .001 * i : .08 }' >"$T/leave.tum"
+for warp in '' --warp; do
+    # shellcheck disable=SC2086
+    check "a probe that leaves exact frames $warp" msds-run --method fem --exact $warp --probe sphere:2cm --poses "$T/leave.tum" -o "$T/leave.sinew" <"$T/block.sinew"
+    check "lets go of the tissue" awk -v u="$(sinew info --get node.displacement.max "$T/leave.sinew")" 'BEGIN { exit !(u < 1e-8) }'
+done
+
 # Methods change between poses, and the state carries over.
 { sed -n 1,4p "$T/press.tum"; echo 'method fem'; sed -n 5,7p "$T/press.tum"; echo 'method msds'; sed -n 8,10p "$T/press.tum"; } >"$T/both.tum"
 check "methods change in the stream" msds-run -v --exact --probe sphere:2cm --poses "$T/both.tum" -o "$T/both.sinew" <"$T/block.sinew"
