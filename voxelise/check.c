@@ -317,7 +317,7 @@ static void find_hollows(work *w, int64_t shells)
 {
     for (int64_t s = 0; s < shells; s++)
         w->by_y[s] = &w->shell[s];
-    qsort(w->by_y, (size_t)shells, sizeof *w->by_y, compare_y);
+    qsort(w->by_y, (size_t)shells, sizeof(shell *), compare_y);
     for (int64_t t = 0; shells > 1 && t < w->triangles; t++) {
         bool turned;
         const shell *own = shell_of(w, t, &turned);

@@ -89,9 +89,8 @@ static bool on_both(const int *where)
 /* The corner that is alone on its side, first, then the two others in their order. */
 static void alone_first(corners of, const int *where, const double **to)
 {
-    int above = (where[0] > 0) + (where[1] > 0) + (where[2] > 0), lone = above == 1 ? 1 : -1, first = 0;
-    while (where[first] != lone)
-        first++;
+    int above = (where[0] > 0) + (where[1] > 0) + (where[2] > 0), lone = above == 1 ? 1 : -1;
+    int first = where[0] == lone ? 0 : where[1] == lone ? 1 : 2;
     for (int i = 0; i < 3; i++)
         to[i] = of[(first + i) % 3];
 }
