@@ -26,7 +26,7 @@ DICOM = -ldcmjpeg -ldcmjpls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++ -lopen
 PICTURES = -lpng -lfreetype
 COLLIDE = -lccd
 
-TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface \
+TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
 	sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
 
 # `make V=1` shows whole commands.
@@ -93,9 +93,11 @@ $(KNOW_CUDA): CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 
 # The CPU solvers' loops, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
 # (No psabi: vectors are passed between functions of one file only.)
-$(BUILD)/tled/cpu_pass_%.o: VECTORS = -Wno-psabi
+$(BUILD)/tled/cpu_pass_%.o $(BUILD)/slice/slice_lanes_%.o: VECTORS = -Wno-psabi
 ifeq ($(shell uname -m),x86_64)
 $(BUILD)/msds/lanes_avx2.o: VECTORS = -mavx2
+$(BUILD)/slice/slice_lanes_avx2.o: VECTORS = -Wno-psabi -mavx2
+$(BUILD)/slice/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 $(BUILD)/msds/lanes_avx512.o: VECTORS = -mavx512f -mavx512vl -mavx512dq -mavx512bw
 $(BUILD)/tled/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/tled/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
@@ -113,6 +115,7 @@ SAMPLES_SRC := slice/samples.c slice/length.c
 IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c $(wildcard slice/dicom*.c) slice/dicom_file.cc
 SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
 SURFACE_SRC := $(SAMPLES_SRC) $(wildcard slice/contour*.c) slice/cubes.c
+SLICE_SRC := $(SAMPLES_SRC) $(wildcard slice/slice_*.c)
 INFO_MODULES := $(wildcard common/tools/info_*.c)
 EXPORT_MODULES := $(wildcard common/tools/export_*.c)
 RENDER_MODULES := $(wildcard common/tools/render_*.c)
@@ -132,6 +135,7 @@ $(eval $(call tool,msds-run,msds/msds-run.c $(RUN_MODULES),,$(LIB_CUDA),$(CUDA_L
 $(eval $(call tool,us-import,slice/us-import.c $(IMPORT_SRC),$$(DICOM)))
 $(eval $(call tool,us-segment,slice/us-segment.c $(SEGMENT_SRC)))
 $(eval $(call tool,us-surface,slice/us-surface.c $(SURFACE_SRC)))
+$(eval $(call tool,us-slice,slice/us-slice.c $(SLICE_SRC),$$(PICTURES)))
 $(eval $(call tool,sinew,common/tools/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))

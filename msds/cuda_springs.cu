@@ -79,17 +79,20 @@ template <int AHEAD> static __device__ inline void move_node(const tissue *t, co
     t->next_u[n] = {u.x + f->dt * speed.x, u.y + f->dt * speed.y, u.z + f->dt * speed.z, 0};
 }
 
-/* The contacts where springs stand now, and their forces. */
+/* The contacts where springs stand now, and what the next step would push them with. */
 static __device__ void note_contact(const tissue *t, const tissue_frame *f, int32_t n)
 {
-    const float4 u = t->u[n];
+    const float4 u = t->u[n], v = t->v[n];
     t->listed[n] = 0;
     if (contact_candidate(t, f, n, u)) {
         const double from[3] = {(double)u.x, (double)u.y, (double)u.z};
         contact_consider(t, f, n, from, clinging, 0, false);
     }
-    if (t->listed[n])
-        t->contact[n].force = t->contact[n].depth > 0 ? t->repulsion[n] * t->contact[n].depth : 0;
+    if (t->listed[n]) {
+        tissue_contact *c = &t->contact[n];
+        const double speed = c->way[0] * (double)v.x + c->way[1] * (double)v.y + c->way[2] * (double)v.z;
+        c->force = c->depth > 0 ? fmax(0., t->repulsion[n] * (c->depth - f->damping * speed)) : 0;
+    }
     contact_hold(t, n);
 }
 

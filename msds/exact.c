@@ -12,6 +12,23 @@ enum {
     SWEEPS = 2000      /* of the complementarity problem; the next solve takes over what is left */
 };
 
+/* Where elements turn, rounding leaves strains of some 1e-16, so that tissue back at rest never comes to a share of what it still
+ * pulls with: a strain of this size counts as load. */
+static const double slight = 1e-8;
+
+static double slight_load(const msds_problem *p)
+{
+    double sum = 0;
+    for (int64_t t = 0; t < p->elements; t++) {
+        const simplex *s = &p->element[t];
+        const double stress = slight * (3 * s->lambda + 2 * s->mu) * s->volume;
+        for (int c = 0; c < 4; c++)
+            for (int a = 0; a < 3; a++)
+                sum += stress * stress * s->gradient[c][a] * s->gradient[c][a];
+    }
+    return sum;
+}
+
 int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const lanes *loops, pool *threads, err *e)
 {
     x->p = p;
@@ -31,6 +48,7 @@ int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const
         x->cached[n] = -1;
     if (!k->turn)
         return 0;
+    x->slight = slight_load(p);
     x->state = mem_array(p->nodes, 4 * sizeof *x->state, "the solver", e);
     x->by = mem_array(p->nodes, 4 * sizeof *x->by, "the solver", e);
     return x->state && x->by ? mixing_make(&x->mixing, 4 * p->nodes, 3 * p->nodes, e) : -1;
@@ -207,9 +225,9 @@ static double still_to_go(const exact *x, const double *u, int64_t i)
     return c->depth - gone - (x->p->options.penalty ? c->force / x->p->repulsion[c->node] : 0);
 }
 
-/* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull, whichever was
- * the most in this frame. */
-static double find_left(exact *x, const double *u)
+/* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull, whichever is
+ * more: now, or where the frame begins, which tells of tissue that the probe has just left. */
+static double find_left(exact *x, const double *u, bool begins)
 {
     const msds_problem *p = x->p;
     double left = 0, load = 0, inner = 0;
@@ -230,8 +248,11 @@ static double find_left(exact *x, const double *u)
         x->left[i] -= x->inner[i];
         left += x->left[i] * x->left[i];
     }
-    x->load = fmax(x->load, fmax(load, inner));
-    return x->load > 0 ? sqrt(left / x->load) : 0;
+    load = fmax(fmax(load, inner), x->slight);
+    if (begins)
+        x->load = load;
+    load = fmax(load, x->load);
+    return load > 0 ? sqrt(left / load) : 0;
 }
 
 /* One solve: u and the contact forces. */
@@ -302,12 +323,11 @@ static int turn_again(exact *x, const double *u, err *e)
 
 int exact_solve(exact *x, double *u, bool first, double tolerance, double reach, err *e)
 {
-    x->load = first ? 0 : x->load;
     if (make_schur(x, e))
         return -1;
     mixing_begin(&x->mixing);
     int fresh = 0; /* the solve that the factor was made for */
-    x->residual = find_left(x, u);
+    x->residual = find_left(x, u, first);
     for (x->solves = 0; x->residual > tolerance || !in_place(x, u, tolerance * reach);) {
         if (x->solves == EXACT_SOLVES || !isfinite(x->residual))
             return err_set(e, NULL, 0, "after %d solves the residual is still %.3g; expected %.3g", x->solves,
@@ -322,7 +342,7 @@ int exact_solve(exact *x, double *u, bool first, double tolerance, double reach,
             improve_turned(x, u);
         else
             improve(x, u);
-        x->residual = find_left(x, u);
+        x->residual = find_left(x, u, false);
     }
     return 0;
 }

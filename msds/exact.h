@@ -29,7 +29,8 @@ typedef struct exact {
     double *schur, *want, *force; /* contacts squared; contacts */
     int64_t normal_room, schur_room, want_room, force_room;
     contacts *c;
-    double load; /* N2: the square of the frame's largest load */
+    double slight; /* N2: where elements turn, the square of the least that counts as load; else 0 */
+    double load;   /* N2: the square of the load or the pull where the frame began */
     double residual;
     int solves;
     mixing mixing;      /* where elements turn: of displacements, which lead, and contact forces */

@@ -11,10 +11,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAME = 400 }; /* bytes of one name in a list */
+enum {
+    NAME = 400, /* bytes of one name in a list */
+    TOLD = 20   /* labels without a tetrahedron that are told one by one */
+};
 
-/* One "VALUE=NAME" of the list. */
-static int take_name(volume *labels, char *item, err *e)
+/* Whether the first `before` bytes of the list name the label already. */
+static bool named(const char *list, size_t before, int64_t value)
+{
+    for (const char *p = list; p < list + before; p += strcspn(p, ",") + 1) {
+        char number[NAME];
+        int64_t other;
+        snprintf(number, sizeof number, "%.*s", (int)strcspn(p, "="), p);
+        if (!num_int(number, INT64_MIN, INT64_MAX, &other) && other == value)
+            return true;
+    }
+    return false;
+}
+
+/* One "VALUE=NAME" of the list, `before` bytes in. */
+static int take_name(volume *labels, const char *list, size_t before, char *item, err *e)
 {
     char *equals = strchr(item, '=');
     int64_t value;
@@ -22,6 +38,8 @@ static int take_name(volume *labels, char *item, err *e)
         *equals = '\0';
     if (!equals || !equals[1] || num_int(item, INT64_MIN, INT64_MAX, &value))
         return err_usage(e, "--names: '%s'; expected LABEL=NAME, such as 1=bone,2=vein", item);
+    if (named(list, before, value))
+        return err_usage(e, "--names: label %" PRId64 " is named twice; expected each once", value);
     return volume_name(labels, value, equals + 1, e);
 }
 
@@ -34,7 +52,7 @@ int mesh_label_names(volume *labels, const char *list, err *e)
         if (length >= sizeof item)
             return err_usage(e, "--names: a name of %zu bytes; expected fewer than %d", length, NAME);
         snprintf(item, sizeof item, "%.*s", (int)length, p);
-        if (take_name(labels, item, e))
+        if (take_name(labels, list, (size_t)(p - list), item, e))
             return -1;
     }
     return 0;
@@ -119,6 +137,66 @@ static int find_volumes(found *f, const volume *labels, const int64_t *label, in
     return name_volumes(f, labels, e);
 }
 
+/* ---- labels that nothing is of */
+
+typedef struct missed {
+    int64_t value[TOLD];
+    int count;
+    bool more;
+} missed;
+
+static void add_missed(missed *m, int64_t value)
+{
+    for (int i = 0; i < m->count; i++)
+        if (m->value[i] == value)
+            return;
+    m->more = m->count == TOLD;
+    if (m->count < TOLD)
+        m->value[m->count++] = value;
+}
+
+/* The image's labels that no element has. */
+static void find_missed(missed *m, const found *f, const volume *labels)
+{
+    double last = 0;
+    for (int64_t voxel = 0; voxel < volume_count(labels) && !m->more; voxel++) {
+        const double value = volume_value(labels, voxel);
+        if (value == last || !(fabs(value) <= 9e15))
+            continue;
+        last = value;
+        const int64_t label = (int64_t)value;
+        if (label && !bsearch(&label, f->value, (size_t)f->count, sizeof *f->value, compare))
+            add_missed(m, label);
+    }
+}
+
+static void note_one(const volume *labels, int64_t value, const char *what, notes *warnings)
+{
+    const char *name = volume_label_of(labels, value);
+    notes_add(warnings, "label %" PRId64 "%s%s%s %s", value, name ? " (" : "", name ? name : "", name ? ")" : "", what);
+}
+
+/* What is too thin, or not where the mesh is; and names of no voxel. */
+static void note_missed(const found *f, const volume *labels, notes *warnings)
+{
+    missed m = {.count = 0};
+    find_missed(&m, f, labels);
+    for (int i = 0; i < m.count; i++)
+        note_one(labels, m.value[i],
+                 "has no tetrahedron: none has its centre in it; expected it where the mesh is, and more nodes for "
+                 "what is thin",
+                 warnings);
+    if (m.more)
+        notes_add(warnings, "nor have other labels");
+    for (int i = 0; i < labels->labels && !m.more; i++) {
+        bool any = bsearch(&labels->label[i].value, f->value, (size_t)f->count, sizeof *f->value, compare) != NULL;
+        for (int k = 0; k < m.count; k++)
+            any = any || m.value[k] == labels->label[i].value;
+        if (!any && labels->label[i].value)
+            note_one(labels, labels->label[i].value, "is named, and no voxel has it", warnings);
+    }
+}
+
 /* ---- tables */
 
 static int add_table(model *m, char *const *name, int32_t count, err *e)
@@ -149,7 +227,7 @@ static void put_volumes(model *m, const found *f, const int64_t *label)
     }
 }
 
-int mesh_label(model *m, const volume *labels, const char *where, err *e)
+int mesh_label(model *m, const volume *labels, const char *where, notes *warnings, err *e)
 {
     char tissue[] = "tissue", *const one[] = {tissue};
     int64_t elements = model_count(m, "element");
@@ -161,6 +239,7 @@ int mesh_label(model *m, const volume *labels, const char *where, err *e)
     if (label && !find_labels(m, labels, where, label, e) && !find_volumes(&f, labels, label, elements, e) &&
         !add_table(m, f.names.name, f.names.count, e)) {
         put_volumes(m, &f, label);
+        note_missed(&f, labels, warnings);
         status = 0;
     }
     found_free(&f);

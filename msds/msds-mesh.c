@@ -155,16 +155,16 @@ static int make_materials(const struct options *o, model *m, err *e)
     return o->materials ? read_materials(o, m, &usual, e) : materials_make(m, &usual, e);
 }
 
-static int make_volumes(const struct options *o, model *m, err *e)
+static int make_volumes(const struct options *o, model *m, notes *warnings, err *e)
 {
     volume labels = {0};
     if (!o->labels)
-        return mesh_label(m, NULL, NULL, e);
+        return mesh_label(m, NULL, NULL, warnings, e);
     int status = volume_load(&labels, o->labels, e);
     if (!status && o->names)
         status = mesh_label_names(&labels, o->names, e);
     if (!status)
-        status = mesh_label(m, &labels, o->labels, e);
+        status = mesh_label(m, &labels, o->labels, warnings, e);
     volume_free(&labels);
     return status;
 }
@@ -217,9 +217,9 @@ static void say_all(const tool *t, const model *m, notes *warnings)
 
 /* ---- the two ways to a mesh */
 
-static int from_nodes(const struct options *o, mesh_box *b, model *m, err *e)
+static int from_nodes(const struct options *o, mesh_box *b, model *m, notes *warnings, err *e)
 {
-    if (make_box(o, b, m, e) || make_materials(o, m, e) || make_volumes(o, m, e))
+    if (make_box(o, b, m, e) || make_materials(o, m, e) || make_volumes(o, m, warnings, e))
         return -1;
     return mesh_fix(m, o->fix ? o->fix : "zmin", b->nodes, e);
 }
@@ -244,7 +244,8 @@ int main(int argc, char **argv)
     notes warnings = {0};
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done || check_options(&o, b.nodes, &e))
         goto out;
-    if (stage_open_output(&s, &t, &e) || (o.nodes ? from_nodes(&o, &b, &m, &e) : from_model(&o, &s, &m, &warnings, &e)))
+    if (stage_open_output(&s, &t, &e) ||
+        (o.nodes ? from_nodes(&o, &b, &m, &warnings, &e) : from_model(&o, &s, &m, &warnings, &e)))
         goto out;
     if (o.nodes)
         say_cells(&t, &b);

@@ -226,6 +226,15 @@ out:
     return result;
 }
 
+/* An array of one row. An array added is to be filled before the next. */
+static int put_numbers(const session *s, frame *f, const char *name, const double *number, int count, err *e)
+{
+    model_array *a = frame_add(f, &s->m, name, e);
+    if (a)
+        memcpy(a->f64, number, (size_t)count * sizeof *number);
+    return a ? 0 : -1;
+}
+
 static int write_frame(session *s, const poses_event *at, const msds_sight *sight, err *e)
 {
     frame f = {.index = s->next_frame++, .time = at->time};
@@ -236,17 +245,12 @@ static int write_frame(session *s, const poses_event *at, const msds_sight *sigh
     model_array *v = frame_add(&f, &s->m, "node.velocity", e);
     if (!v || s->device->get(s->state, MSDS_VELOCITY, v->f64, e))
         goto out;
-    model_array *pose = frame_add(&f, &s->m, "probe.pose", e);
-    model_array *force = pose ? frame_add(&f, &s->m, "probe.force", e) : NULL;
-    if (!force)
+    double pose[7];
+    memcpy(pose, at->origin, sizeof at->origin);
+    memcpy(pose + 3, at->turn, sizeof at->turn);
+    if (put_numbers(s, &f, "probe.pose", pose, 7, e) || put_numbers(s, &f, "probe.force", sight->force, 3, e) ||
+        put_numbers(s, &f, "probe.torque", sight->torque, 3, e))
         goto out;
-    memcpy(pose->f64, at->origin, sizeof at->origin);
-    memcpy(pose->f64 + 3, at->turn, sizeof at->turn);
-    model_array *torque = frame_add(&f, &s->m, "probe.torque", e);
-    if (!torque)
-        goto out;
-    memcpy(force->f64, sight->force, sizeof sight->force);
-    memcpy(torque->f64, sight->torque, sizeof sight->torque);
     if (s->skin.vertices && skin_model_put(&s->skin, &f, &s->m, e))
         goto out;
     result = model_write_frame(s->stage.writer, &f, e);
@@ -381,7 +385,8 @@ static int simulate(session *s, err *e)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
     if (!got && s->o->probe && !s->pressed)
         notes_add(&s->warnings,
-                  "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space",
+                  "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space, "
+                  "and nodes closer together than the probe is wide",
                   (long long)frames);
     return got;
 }

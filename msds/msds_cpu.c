@@ -172,7 +172,17 @@ static void step_springs(cpu_state *s, int64_t count)
     }
 }
 
-/* The contacts where springs stand now, and their forces. */
+/* How fast a contact's node leaves the probe: m/s. */
+static double leaving(const cpu_state *s, const contact *c)
+{
+    const int32_t own = s->order.own_node[c->node];
+    double speed = 0;
+    for (int a = 0; a < 3; a++)
+        speed += c->way[a] * (double)s->w.v.x[a][own];
+    return speed;
+}
+
+/* The contacts where springs stand now, and what the next step would push them with: spring and damper, that do not pull. */
 static void note_repulsion(cpu_state *s)
 {
     s->contacts.count = 0;
@@ -180,7 +190,8 @@ static void note_repulsion(cpu_state *s)
         contacts_find(&s->contacts, s->loops, &s->w, s->p, NULL, s->threads, CONTACTS_PRESSED);
     for (int64_t i = 0; i < s->contacts.count; i++) {
         contact *c = &s->contacts.list[i];
-        c->force = c->depth > 0 ? s->p->repulsion[c->node] * c->depth : 0;
+        const double pushed = s->p->repulsion[c->node] * (c->depth - s->p->options.damping * leaving(s, c));
+        c->force = c->depth > 0 ? fmax(0, pushed) : 0;
     }
 }
 

@@ -18,16 +18,16 @@ static int check_arrays(msds_problem *p, const model *m, err *e)
 {
     const model_array *position = model_need(m, "node.position", e);
     const model_array *node = position ? model_need(m, "element.node", e) : NULL;
-    if (!node || finite_array(position, NULL, e))
+    if (!node || finite_array(position, m->stream, e))
         return -1;
     if (node->columns != 4)
         return err_set(
-            e, NULL, 0,
+            e, m->stream, m->stream ? node->line : 0,
             "elements of %d nodes; expected tetrahedra (msds-mesh makes them of a box, an image or a voxel model)",
             (int)node->columns);
     if (node->rows < 1 || node->rows > INT32_MAX / 16)
-        return err_set(e, NULL, 0, "%lld elements; expected 1 to %d", (long long)node->rows, INT32_MAX / 16);
-    if (finite_elements(m, NULL, e))
+        return err_set(e, m->stream, 0, "%lld elements; expected 1 to %d", (long long)node->rows, INT32_MAX / 16);
+    if (finite_elements(m, m->stream, e))
         return -1;
     p->nodes = position->rows;
     p->elements = node->rows;
@@ -49,7 +49,7 @@ static double longest_edge(const msds_problem *p, int64_t t)
     return sqrt(longest);
 }
 
-static int make_shapes(msds_problem *p, err *e)
+static int make_shapes(msds_problem *p, const model *m, err *e)
 {
     double volume = 0;
     p->element = mem_array(p->elements, sizeof *p->element, "elements", e);
@@ -62,7 +62,7 @@ static int make_shapes(msds_problem *p, err *e)
         simplex_shape(x + 3 * (int64_t)n[0], x + 3 * (int64_t)n[1], x + 3 * (int64_t)n[2], x + 3 * (int64_t)n[3], s);
         double longest = longest_edge(p, t);
         if (!(s->volume > flat * longest * longest * longest))
-            return err_set(e, NULL, 0,
+            return err_set(e, m->stream, m->stream ? model_line(model_find(m, "element.node"), t) : 0,
                            "element %lld is %s, its volume %.6g m3; expected its nodes in VTK order, a volume above 0",
                            (long long)t, s->volume < 0 ? "inverted" : "flat", s->volume);
         volume += s->volume;
@@ -98,15 +98,16 @@ static int find_shares(const model *m, shares *s, err *e)
 }
 
 /* Element t's of its volume, or of the two that it is mixed of; of one that a surface cuts, so much as is enclosed. */
-static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t volume, const material *list, err *e)
+static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t volume, const material *list,
+                        const char *stream, err *e)
 {
     const int32_t mix = s->mix ? s->mix[t] : -1;
     material own = list[volume];
     if (mix >= 0 && !(s->mixture[t] >= 0 && s->mixture[t] <= 1))
-        return err_set(e, NULL, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)t,
+        return err_set(e, stream, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)t,
                        (double)s->mixture[t]);
     if (s->fraction && !(s->fraction[t] > 0 && s->fraction[t] <= 1))
-        return err_set(e, NULL, 0, "element.fraction, row %lld is %g; expected above 0, and at most 1", (long long)t,
+        return err_set(e, stream, 0, "element.fraction, row %lld is %g; expected above 0, and at most 1", (long long)t,
                        (double)s->fraction[t]);
     if (mix >= 0)
         own = material_mixed(&own, &list[mix], (double)s->mixture[t]);
@@ -129,7 +130,7 @@ static int make_materials(msds_problem *p, const model *m, err *e)
     for (int64_t i = 0; !result && i < table->rows; i++)
         result = materials_of(m, table->i32[i], &list[i], e);
     for (int64_t t = 0; !result && t < p->elements; t++)
-        result = take_element(p, &share, t, of->i32[t], list, e);
+        result = take_element(p, &share, t, of->i32[t], list, m->stream, e);
     free(list);
     return result;
 }
@@ -163,7 +164,7 @@ int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, er
 {
     p->options = *o;
     p->mass_factor = 1;
-    if (check_arrays(p, m, e) || make_shapes(p, e) || make_materials(p, m, e) || make_nodes(p, m, e))
+    if (check_arrays(p, m, e) || make_shapes(p, m, e) || make_materials(p, m, e) || make_nodes(p, m, e))
         return -1;
     p->scale = o->scale > 0 ? o->scale : p->side / lattice_stiffness;
     return springs_make(p, p->scale, o->damping, e) || make_repulsion(p, e) ? -1 : 0;

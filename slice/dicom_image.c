@@ -68,28 +68,43 @@ static void set_spacing(const reading *r, dicom_item *item)
         r->d->spacing[2] = fabs(between);
 }
 
-/* Pixels of ultrasound regions, in cm. */
-static void set_region_spacing(const reading *r, dicom_item *item)
+/* Pixels of an ultrasound region: whether it is in cm, and mm. */
+static bool region_spacing(const reading *r, dicom_item *item, double mm[2])
 {
     double dx = number(r, item, TAG_DELTA_X, (double)NAN), dy = number(r, item, TAG_DELTA_Y, (double)NAN);
     double ux = number(r, item, TAG_UNITS_X, 0), uy = number(r, item, TAG_UNITS_Y, 0);
-    if (fabs(ux - CENTIMETRES) < .5 && fabs(uy - CENTIMETRES) < .5 && !isfinite(r->d->spacing[0])) {
-        r->d->spacing[0] = 10 * fabs(dx);
-        r->d->spacing[1] = 10 * fabs(dy);
+    mm[0] = 10 * fabs(dx);
+    mm[1] = 10 * fabs(dy);
+    return fabs(ux - CENTIMETRES) < .5 && fabs(uy - CENTIMETRES) < .5 && mm[0] > 0 && mm[1] > 0;
+}
+
+/* An image may have traces beside it, whose regions are no cm. Where regions in cm differ, nothing tells which is meant. */
+static void set_regions_spacing(const reading *r)
+{
+    double *to = r->d->spacing, mm[2];
+    dicom_item *region;
+    bool found = false;
+    for (int64_t at = 0; (region = dicom_inner(r->f, r->set, TAG_REGIONS, at)); at++) {
+        if (!region_spacing(r, region, mm))
+            continue;
+        if (found && !(fabs(mm[0] - to[0]) <= .01 * to[0] && fabs(mm[1] - to[1]) <= .01 * to[1])) {
+            to[0] = to[1] = (double)NAN;
+            return;
+        }
+        if (!found)
+            memcpy(to, mm, sizeof mm);
+        found = true;
     }
 }
 
 static void set_spacings(const reading *r)
 {
+    double mm[2];
     set_spacing(r, r->set);
-    set_region_spacing(r, r->set);
-    for (int64_t at = 0; !isfinite(r->d->spacing[0]);
-         at++) { /* an image may have traces beside it, whose regions are no cm */
-        dicom_item *region = dicom_inner(r->f, r->set, TAG_REGIONS, at);
-        if (!region)
-            break;
-        set_region_spacing(r, region);
-    }
+    if (!isfinite(r->d->spacing[0]) && region_spacing(r, r->set, mm))
+        memcpy(r->d->spacing, mm, sizeof mm);
+    if (!isfinite(r->d->spacing[0]))
+        set_regions_spacing(r);
 }
 
 static int read_plain_geometry(const reading *r)
@@ -147,6 +162,19 @@ static int read_place(const reading *r, const groups *g, double turn[6])
     return 0;
 }
 
+/* A frame's pixels lie as far apart as the first's. */
+static int check_spacing(const reading *r, const groups *g)
+{
+    double s[2];
+    const double *first = r->d->spacing;
+    if (numbers(r, group_of(r, g, TAG_GROUP_MEASURES), TAG_PIXEL_SPACING, s, 2) != 2 || !isfinite(first[0]) ||
+        (fabs(s[1] - first[0]) <= 1e-4 * first[0] && fabs(s[0] - first[1]) <= 1e-4 * first[1]))
+        return 0;
+    return err_set(r->e, dicom_file_name(r->f), 0,
+                   "frame %lld has pixels of %g x %g mm, frame 1 of %g x %g; expected frames that are alike",
+                   (long long)g->at + 1, s[1], s[0], first[0], first[1]);
+}
+
 static int read_frame_groups(const reading *r, const groups *g, double first[6])
 {
     dicom_image *d = r->d;
@@ -159,13 +187,13 @@ static int read_frame_groups(const reading *r, const groups *g, double first[6])
                            "frame %lld is turned against frame 1; expected parallel frames", (long long)g->at + 1);
     d->time[g->at] = time_of(r, g);
     dicom_text(r->f, group_of(r, g, TAG_GROUP_DATA_TYPE), TAG_DATA_TYPE, d->kind[g->at], sizeof d->kind[g->at]);
+    dicom_item *values = group_of(r, g, TAG_GROUP_VALUES);
+    d->scale[g->at].slope = number(r, values, TAG_SLOPE, d->slope);
+    d->scale[g->at].intercept = number(r, values, TAG_INTERCEPT, d->intercept);
     if (g->at)
-        return 0;
+        return check_spacing(r, g);
     memcpy(first, turn, sizeof turn);
     set_spacing(r, group_of(r, g, TAG_GROUP_MEASURES));
-    dicom_item *values = group_of(r, g, TAG_GROUP_VALUES);
-    d->slope = number(r, values, TAG_SLOPE, d->slope);
-    d->intercept = number(r, values, TAG_INTERCEPT, d->intercept);
     return set_axes(r, turn);
 }
 
@@ -188,12 +216,16 @@ static int make_frames(const reading *r, int64_t frames)
     free(d->position);
     free(d->time);
     free(d->kind);
+    free(d->scale);
     d->frames = frames;
     d->position = mem_array(frames, 3 * sizeof *d->position, "frames", r->e);
     d->time = mem_array(frames, sizeof *d->time, "frames", r->e);
     d->kind = mem_array(frames, sizeof *d->kind, "frames", r->e);
+    d->scale = mem_array(frames, sizeof *d->scale, "frames", r->e);
     for (int64_t i = 0; !r->e->status && i < 3 * frames; i++)
         d->position[i] = (double)NAN;
+    for (int64_t i = 0; !r->e->status && i < frames; i++)
+        d->scale[i] = (dicom_scale){d->slope, d->intercept};
     return r->e->status ? -1 : 0;
 }
 
@@ -317,6 +349,7 @@ void dicom_free(dicom_image *d)
     free(d->position);
     free(d->time);
     free(d->kind);
+    free(d->scale);
     free(d->pixels);
     *d = (dicom_image){0};
 }

@@ -11,12 +11,17 @@ enum { DICOM_UID = 65, DICOM_KIND = 20 };
 
 typedef enum dicom_burned { DICOM_NOT_SAID, DICOM_CLEAN, DICOM_BURNED } dicom_burned;
 
+/* A value is slope times what is stored, and intercept. */
+typedef struct dicom_scale {
+    double slope, intercept;
+} dicom_scale;
+
 typedef struct dicom_image {
     char series[DICOM_UID]; /* to tell series apart; for no output */
     int64_t columns, rows, frames;
-    int bytes;     /* of a sample: 1 or 2 */
-    bool negative; /* samples are signed */
-    double slope, intercept;
+    int bytes;                            /* of a sample: 1 or 2 */
+    bool negative;                        /* samples are signed */
+    double slope, intercept;              /* of frames that have none of their own */
     double spacing[3];                    /* mm between columns, rows and frames; nan: not said */
     double along_row[3], along_column[3]; /* unit vectors, LPS: the way in which columns and rows are counted */
     bool placed;    /* frames have positions; where not, along_* are the axes, and frames lie one behind the other */
@@ -25,6 +30,7 @@ typedef struct dicom_image {
     double *position;         /* frames x 3: mm, LPS, the centre of the first pixel; nan: not said */
     double *time;             /* frames: when, or which time; 0 where there is one only */
     char (*kind)[DICOM_KIND]; /* frames: what their data are, as TISSUE_INTENSITY; "": not said */
+    dicom_scale *scale;       /* frames; NULL: slope and intercept of all */
     dicom_burned burned;
     unsigned char *pixels; /* frames x rows x columns x bytes, little-endian, brighter = more */
 } dicom_image;

@@ -158,9 +158,9 @@ static int find_spacing(stack *k, err *e)
     for (int a = 0; a < 3; a++) {
         k->spacing[a] = isnan(k->wish->spacing[a]) ? k->first->spacing[a] : k->wish->spacing[a];
         if (a < 2 && !(k->spacing[a] > 0 && k->spacing[a] < 1e6))
-            return err_set(
-                e, k->file[0]->name, 0,
-                "no distance between pixels; expected PixelSpacing, or an ultrasound region in cm, or --spacing");
+            return err_set(e, k->file[0]->name, 0,
+                           "no distance between pixels; expected PixelSpacing, or ultrasound regions in cm that agree, "
+                           "or --spacing");
     }
     return 0;
 }
@@ -397,10 +397,21 @@ static double stored_value(const dicom_image *d, const unsigned char *p)
     return d->negative ? (double)(int16_t)two : (double)two;
 }
 
+/* What makes a slice's values of what is stored. */
+static dicom_scale scale_of(const slice *s)
+{
+    const dicom_image *d = &s->file->image;
+    return d->scale ? d->scale[s->frame] : (dicom_scale){d->slope, d->intercept};
+}
+
 static int fill(volume *v, const stack *k, err *e)
 {
     const dicom_image *d = k->first;
-    bool scaled = d->slope != 1 || d->intercept != 0;
+    bool scaled = false;
+    for (int64_t s = 0; s < k->count; s++) {
+        dicom_scale scale = scale_of(&k->one[s]);
+        scaled |= scale.slope != 1 || scale.intercept != 0;
+    }
     v->type = scaled          ? VOLUME_F32
               : d->bytes == 1 ? (d->negative ? VOLUME_I8 : VOLUME_U8)
               : d->negative   ? VOLUME_I16
@@ -416,8 +427,9 @@ static int fill(volume *v, const stack *k, err *e)
             continue;
         }
         float *to = (float *)v->data + s * plane;
+        dicom_scale scale = scale_of(&k->one[s]);
         for (int64_t i = 0; i < plane; i++)
-            to[i] = (float)(stored_value(d, p + i * d->bytes) * d->slope + d->intercept);
+            to[i] = (float)(stored_value(d, p + i * d->bytes) * scale.slope + scale.intercept);
     }
     return 0;
 }

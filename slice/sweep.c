@@ -2,10 +2,12 @@
 
 #include "base/mem.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 bool sweep_is(const char *header, size_t size)
 {
@@ -56,6 +58,32 @@ static int add_frame(sweep *s, const plus *p, const double m[16], const double *
     return 0;
 }
 
+/* Two letters, of which a third may follow where probes are of volumes. What is not said, or XX, is as PLUS has it. */
+static int take_orientation(sweep *s, const plus *p, err *e)
+{
+    const char *o = p->orientation;
+    if (!*o || !strcasecmp(o, "XX"))
+        return 0;
+    char column = (char)toupper((unsigned char)o[0]), row = (char)toupper((unsigned char)o[1]);
+    s->flipped[0] = column == 'U';
+    s->flipped[1] = row == 'N';
+    if ((column == 'M' || column == 'U') && (row == 'F' || row == 'N'))
+        return 0;
+    return err_set(e, in_name(p->source), 0, "UltrasoundImageOrientation: '%s'; expected MF, MN, UF or UN", o);
+}
+
+void sweep_unflip(sweep *s, const int64_t size[3])
+{
+    for (int c = 0; c < 2; c++)
+        for (int64_t i = 0; s->flipped[c] && i < s->count; i++)
+            for (int a = 0; a < 3; a++) {
+                double *m = s->one[i].m + 4 * a;
+                m[3] += m[c] * (double)(size[c] - 1);
+                m[c] = -m[c];
+            }
+    s->flipped[0] = s->flipped[1] = false;
+}
+
 int sweep_read(sweep *s, in *source, const char *transform, const double *image_to_probe, err *e)
 {
     plus p;
@@ -70,7 +98,7 @@ int sweep_read(sweep *s, in *source, const char *transform, const double *image_
     s->skipped = p.skipped;
     if (!more && !s->count)
         return err_set(e, in_name(source), 0, "no frame that was tracked");
-    return more;
+    return more ? more : take_orientation(s, &p, e);
 }
 
 /* ---- where it lies */

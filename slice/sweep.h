@@ -17,6 +17,7 @@ typedef struct sweep_frame {
 typedef struct sweep {
     sweep_frame *one; /* owned */
     int64_t count, capacity, skipped;
+    bool flipped[2]; /* columns, rows: stored the other way round than m has them */
 } sweep;
 
 typedef struct sweep_wish {
@@ -32,6 +33,10 @@ bool sweep_is(const char *header, size_t size);
  * the probe's mm; needed, and taken, where the sequence knows the probe's place only; NULL: none. */
 int sweep_read(sweep *s, in *source, const char *transform, const double *image_to_probe, err *e);
 void sweep_free(sweep *s);
+
+/* Turns m to images as they are stored, of this size. PLUS' transforms are of images whose columns go to the probe's marked side
+ * and whose rows go deeper (MF), whatever the file's UltrasoundImageOrientation. */
+void sweep_unflip(sweep *s, const int64_t size[3]);
 
 /* The larger of the distance between pixels and half the median distance between the middles of one frame and the next, mm. */
 double sweep_voxel(const sweep *s, const volume *images, err *e);

@@ -191,12 +191,13 @@ static int put_together(job *j, volume *images, sweep *s, const double *image_to
     if (j->o->voxel.count && !(wish.voxel > 0))
         return err_usage(e, "--voxel: expected more than 0");
     in *source = in_open(path, e);
-    if (!source || sweep_read(s, source, j->o->transform, image_to_probe, e) || volume_load(images, path, e) ||
-        crop_images(j, images, s, e) || sweep_volume(&j->v, s, images, &wish, filled, e)) {
-        in_close(source);
-        return -1;
-    }
+    int code = !source || sweep_read(s, source, j->o->transform, image_to_probe, e) || volume_load(images, path, e);
     in_close(source);
+    if (code)
+        return -1;
+    sweep_unflip(s, images->size);
+    if (crop_images(j, images, s, e) || sweep_volume(&j->v, s, images, &wish, filled, e))
+        return -1;
     double percent = 100 / (double)volume_count(&j->v);
     tool_say(j->t,
              "%" PRId64 " frames (%" PRId64 " without tracking left out) to %" PRId64 " x %" PRId64 " x %" PRId64

@@ -1,4 +1,5 @@
 /* us-segment: marks a part of a volume, by intensity and from seeds, as a named label in a map of labels. */
+#include "base/chars.h"
 #include "base/mem.h"
 #include "base/tool.h"
 #include "slice/length.h"
@@ -68,11 +69,21 @@ typedef struct job {
 
 /* ---- options */
 
+/* A name comes back from a header's line as it was given: blanks at its ends do not, and readers refuse what is not UTF-8. */
+static bool is_name(const char *name)
+{
+    size_t length = strlen(name);
+    for (size_t i = 0; i < length; i++)
+        if ((unsigned char)name[i] < ' ' || name[i] == 0x7F)
+            return false;
+    return length && name[0] != ' ' && name[length - 1] != ' ' && chars_utf8(name);
+}
+
 static int check_options(const struct options *o, err *e)
 {
     bool seeds = o->seeds.count || o->voxels.count;
-    if (!*o->name || strpbrk(o->name, "\t\r\n"))
-        return err_usage(e, "-n '%s': expected a name", o->name);
+    if (!is_name(o->name))
+        return err_usage(e, "-n '%s': expected a name in UTF-8, without blanks at its ends", o->name);
     if (!isnan(o->tolerance) && !seeds)
         return err_usage(e, "--tolerance is from seeds; expected --seed or --seed-voxel");
     if (isnan(o->low) && isnan(o->high) && isnan(o->tolerance))
@@ -261,15 +272,28 @@ static int open_labels(job *j, err *e)
     return volume_make(l, e);
 }
 
+/* A name is of one number, and a number of one name: else what is there would be called by the new name, or a name be of two. */
+static int check_value(const job *j, const volume_label *l, err *e)
+{
+    bool named = !strcmp(l->name, j->o->name), numbered = l->value == j->o->value;
+    if (j->o->value < 0 || named == numbered)
+        return 0;
+    return err_set(e, j->o->onto, 0, "label %" PRId64 " is '%s'; expected %s", l->value, l->name,
+                   named ? "that --value, or another name" : "another --value, or that name");
+}
+
 /* The number of the name; else the first that no voxel and no name has. */
 static int choose_value(const job *j, int64_t *value, err *e)
 {
     samples_label *list = NULL;
     const volume *l = &j->labels;
     *value = j->o->value;
-    for (int i = 0; *value < 0 && i < l->labels; i++)
-        if (!strcmp(l->label[i].name, j->o->name))
+    for (int i = 0; i < l->labels; i++) {
+        if (check_value(j, &l->label[i], e))
+            return -1;
+        if (*value < 0 && !strcmp(l->label[i].name, j->o->name))
             *value = l->label[i].value;
+    }
     if (*value >= 0)
         return 0;
     int64_t count = samples_labels(l, &list, e), most = 0;

@@ -51,6 +51,8 @@ typedef struct job {
     cubes *table;
     samples_label *label;
     int64_t labels;
+    char **group; /* names of those written; owned */
+    int64_t groups, group_room;
     out *to;
     int64_t vertices; /* written */
     notes warnings;
@@ -146,6 +148,15 @@ static int write_surface(job *j, const char *group, const samples_box *inner, co
     return e->status ? -1 : 0;
 }
 
+/* The label of that name; -1: none. */
+static int find_name(const volume *v, const char *name)
+{
+    for (int i = 0; i < v->labels; i++)
+        if (!strcmp(v->label[i].name, name))
+            return i;
+    return -1;
+}
+
 /* A label's name as an OBJ group: one word. The caller frees it. */
 static char *group_of(const job *j, int64_t value, err *e)
 {
@@ -159,22 +170,34 @@ static char *group_of(const job *j, int64_t value, err *e)
     return group;
 }
 
+/* The group becomes the job's. Two surfaces of one group would be one. */
+static int take_group(job *j, char *group, err *e)
+{
+    for (int64_t i = 0; i < j->groups; i++)
+        if (!strcmp(j->group[i], group)) {
+            err_set(e, NULL, 0, "a second surface in group '%s'; expected labels once, and names that differ", group);
+            break;
+        }
+    if (e->status || MEM_ROOM(&j->group, &j->group_room, j->groups + 1, "groups", e)) {
+        free(group);
+        return -1;
+    }
+    j->group[j->groups++] = group;
+    return 0;
+}
+
 static int write_label(job *j, const samples_label *label, err *e)
 {
     char *group = group_of(j, label->value, e);
-    int code = group ? write_surface(j, group, &label->box, label, e) : -1;
-    free(group);
-    return code;
+    return group && !take_group(j, group, e) ? write_surface(j, group, &label->box, label, e) : -1;
 }
 
 /* A label by its name or number; it has to have voxels. */
 static int write_named(job *j, const char *name, err *e)
 {
     int64_t value = 0;
-    int at = 0;
-    while (at < j->v.labels && strcmp(j->v.label[at].name, name))
-        at++;
-    if (at < j->v.labels) {
+    int at = find_name(&j->v, name);
+    if (at >= 0) {
         value = j->v.label[at].value;
     } else if (num_int(name, INT64_MIN, INT64_MAX, &value)) {
         const char **known = mem_array(j->v.labels, sizeof *known, "names", e);
@@ -191,21 +214,37 @@ static int write_named(job *j, const char *name, err *e)
     return err_set(e, NULL, 0, "label '%s' has no voxels", name);
 }
 
+/* Those of an -l: all, or names by commas, or one name that has a comma in it. */
+static int write_list(job *j, const char *given, err *e)
+{
+    if (!strcmp(given, "all")) {
+        for (int64_t l = 0; l < j->labels && !e->status; l++)
+            write_label(j, &j->label[l], e);
+        return e->status ? -1 : 0;
+    }
+    if (find_name(&j->v, given) >= 0)
+        return write_named(j, given, e);
+    char *list = mem_text(given, e);
+    for (char *name = list, *comma; name && !e->status; name = comma) {
+        comma = strchr(name, ',');
+        if (comma)
+            *comma++ = '\0';
+        if (*name)
+            write_named(j, name, e);
+        else
+            err_usage(e, "-l '%s': expected names or numbers of labels between commas, or all", given);
+    }
+    free(list);
+    return e->status ? -1 : 0;
+}
+
 static int write_labels(job *j, err *e)
 {
     j->labels = samples_labels(&j->v, &j->label, e);
     if (j->labels < 1 || !j->label)
         return e->status ? -1 : err_set(e, NULL, 0, "no label has voxels");
-    for (int i = 0; i < j->o->labels.count && !e->status; i++) {
-        char *list = mem_text(j->o->labels.value[i], e), *rest = NULL;
-        bool all = list && !strcmp(list, "all");
-        for (int64_t l = 0; all && l < j->labels && !e->status; l++)
-            write_label(j, &j->label[l], e);
-        for (char *name = list && !all ? strtok_r(list, ",", &rest) : NULL; name && !e->status;
-             name = strtok_r(NULL, ",", &rest))
-            write_named(j, name, e);
-        free(list);
-    }
+    for (int i = 0; i < j->o->labels.count && !e->status; i++)
+        write_list(j, j->o->labels.value[i], e);
     return e->status ? -1 : 0;
 }
 
@@ -238,6 +277,9 @@ out:
     tool_warn(&t, &j.warnings);
     free(j.table);
     free(j.label);
+    while (j.groups)
+        free(j.group[--j.groups]);
+    free(j.group);
     volume_free(&j.v);
     return tool_end(&t, &e);
 }

@@ -72,8 +72,8 @@ check-long: all unit
 	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-fraction compare-msds
-BENCHES = voxelise geometry tled msds msds_card images
+.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction compare-msds
+BENCHES = voxelise geometry tled msds msds_card images slice
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
 BENCH_MODELS = $(if $(BENCH_FACE),$(foreach side,5 2.5 1.25 0.625,$(BUILD)/tests/bench/face_$(side)mm))
@@ -107,6 +107,12 @@ bench-geometry: all $(BUILD)/tests/bench/bench_geometry
 # Frames of msds-run's solvers at the sizes of PST's Table I, beside its figures.
 bench-msds: $(BUILD)/tests/bench/bench_msds
 	@$(BUILD)/tests/bench/bench_msds $(shell nproc)
+# Images of us-slice at the sizes of PST's Tables I and II, beside their figures; out/regions.png where there is gnuplot.
+bench-slice: all $(BUILD)/tests/bench/bench_slice
+	@mkdir -p out
+	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat
+	@! command -v gnuplot >/dev/null || gnuplot -e "data='out/regions.dat'; picture='out/regions.png'" tests/bench/regions.plot
+	@! command -v python3 >/dev/null || python3 tests/bench/live.py $(BIN) $(shell nproc)
 # The same on a card, where there is one, and with half a million nodes.
 bench-msds_card: $(BUILD)/tests/bench/bench_msds_card
 	@$(BUILD)/tests/bench/bench_msds_card
@@ -147,7 +153,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo samples/arm tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo samples/arm samples/scan tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -181,7 +187,7 @@ COMPLETIONDIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 # `bind` has no completion: bash-completion has a file of that name, for the shell's builtin.
 COMPLETIONS = $(filter-out bind,$(TOOLS))
 PAGES = $(wildcard man/*.[157])
-SAMPLES = $(filter-out samples/demo,$(wildcard samples/*))
+SAMPLES = $(filter-out samples/demo samples/arm samples/scan,$(wildcard samples/*))
 
 install: all
 	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
@@ -212,7 +218,7 @@ help:
 	'make sanitize     the tests under ASan and UBSan' \
 	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
-	'make bench-voxelise, -geometry, -tled, -table1, -msds, -images   its parts (TRIANGLES=100000: of the scan)' \
+	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \

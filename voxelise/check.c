@@ -28,8 +28,8 @@ typedef struct part {
 
 /* A shell: a part that has a triangle. */
 typedef struct shell {
-    double volume, low[3], high[3];
-    int64_t first, past; /* of its triangles, by shell */
+    double volume, point[3]; /* in one of its triangles */
+    bool met, hollow;        /* it has its point; inside of an odd number of others */
 } shell;
 
 typedef struct work {
@@ -43,10 +43,10 @@ typedef struct work {
     int32_t *cut;
     use *use;
     int64_t uses;
-    part *part;        /* polygons */
-    int32_t *number;   /* polygons: a shell's, at the polygon that it is known by; -1 = none yet */
-    int32_t *by_shell; /* triangles, shell after shell */
+    part *part;      /* polygons */
+    int32_t *number; /* polygons: a shell's, at the polygon that it is known by; -1 = none yet */
     shell *shell;
+    shell **by_y; /* shells, by their points' y */
     double middle[3];
 } work;
 
@@ -59,8 +59,8 @@ static void work_free(work *w)
     free(w->use);
     free(w->part);
     free(w->number);
-    free(w->by_shell);
     free(w->shell);
+    free(w->by_y);
 }
 
 static int64_t corner_count(const work *w, int64_t polygon)
@@ -226,8 +226,7 @@ static double cone(const work *w, int64_t triangle, double *area)
 static int number_shells(work *w, check_result *r, err *e)
 {
     w->number = mem_array(w->faces, sizeof *w->number, "shells", e);
-    w->by_shell = mem_array(w->triangles, sizeof *w->by_shell, "shells", e);
-    if (!w->number || !w->by_shell)
+    if (!w->number)
         return -1;
     memset(w->number, -1, (size_t)w->faces * sizeof *w->number);
     for (int64_t t = 0; t < w->triangles; t++) {
@@ -237,7 +236,8 @@ static int number_shells(work *w, check_result *r, err *e)
             *number = (int32_t)r->shells++;
     }
     w->shell = mem_array(r->shells, sizeof *w->shell, "shells", e);
-    return w->shell ? 0 : -1;
+    w->by_y = mem_array(r->shells, sizeof(shell *), "shells", e);
+    return w->shell && w->by_y ? 0 : -1;
 }
 
 static shell *shell_of(const work *w, int64_t triangle, bool *turned)
@@ -245,32 +245,24 @@ static shell *shell_of(const work *w, int64_t triangle, bool *turned)
     return &w->shell[w->number[part_of(w, w->polygon[triangle], turned)]];
 }
 
+/* A point in the inside of a triangle, off its lines of symmetry. */
+static void place_point(const work *w, int64_t triangle, double *q)
+{
+    for (int a = 0; a < 3; a++)
+        q[a] = 0.3 * place(w, triangle, 0)[a] + 0.36 * place(w, triangle, 1)[a] + 0.34 * place(w, triangle, 2)[a];
+}
+
 static void measure_shells(work *w, check_result *r)
 {
-    for (int64_t s = 0; s < r->shells; s++)
-        for (int a = 0; a < 3; a++)
-            w->shell[s].low[a] = INFINITY, w->shell[s].high[a] = -INFINITY;
     for (int64_t t = 0; t < w->triangles; t++) {
         bool turned;
         double area, six = cone(w, t, &area);
         shell *s = shell_of(w, t, &turned);
         s->volume += turned ? -six / 6 : six / 6;
         r->area += area / 2;
-        s->past++;
-        for (int i = 0; i < 9; i++) {
-            s->low[i % 3] = fmin(s->low[i % 3], place(w, t, i / 3)[i % 3]);
-            s->high[i % 3] = fmax(s->high[i % 3], place(w, t, i / 3)[i % 3]);
-        }
-    }
-    int64_t at = 0;
-    for (int64_t s = 0; s < r->shells; s++) {
-        w->shell[s].first = at;
-        at += w->shell[s].past;
-        w->shell[s].past = w->shell[s].first;
-    }
-    for (int64_t t = 0; t < w->triangles; t++) {
-        bool turned;
-        w->by_shell[shell_of(w, t, &turned)->past++] = (int32_t)t;
+        if (!s->met)
+            place_point(w, t, s->point);
+        s->met = true;
     }
 }
 
@@ -280,7 +272,9 @@ static bool crosses(const double *const *p, const double *q)
     bool within = false;
     double x = 0;
     for (int i = 0; i < 3; i++) {
-        const double *a = p[i], *b = p[(i + 1) % 3];
+        const double *a = p[i], *b = p[(i + 1) % 3], *swap = a;
+        if (b[1] < a[1])
+            a = b, b = swap; /* an edge's two triangles round alike */
         if ((a[1] > q[1]) != (b[1] > q[1]) && (q[2] - a[2] < (b[2] - a[2]) * (q[1] - a[1]) / (b[1] - a[1])))
             within = !within;
     }
@@ -295,25 +289,45 @@ static bool crosses(const double *const *p, const double *q)
     return x > q[0];
 }
 
-/* Whether a shell is inside of an odd number of others, so that it bounds a hollow: by a point in one of its faces. */
-static bool is_hollow(const work *w, int64_t shells, const shell *of)
+static int compare_y(const void *a, const void *b)
 {
-    bool hollow = false;
-    double q[3];
-    for (int a = 0; a < 3; a++)
-        q[a] = 0.3 * place(w, w->by_shell[of->first], 0)[a] + 0.36 * place(w, w->by_shell[of->first], 1)[a] +
-               0.34 * place(w, w->by_shell[of->first], 2)[a];
-    for (const shell *s = w->shell; s < w->shell + shells; s++) {
-        if (s == of || q[1] < s->low[1] || q[1] > s->high[1] || q[2] < s->low[2] || q[2] > s->high[2] ||
-            q[0] > s->high[0] || q[0] < s->low[0])
-            continue;
-        for (int64_t i = s->first; i < s->past; i++) {
-            const double *p[3] = {place(w, w->by_shell[i], 0), place(w, w->by_shell[i], 1),
-                                  place(w, w->by_shell[i], 2)};
-            hollow = hollow != crosses(p, q);
-        }
+    const shell *x = *(shell *const *)a, *y = *(shell *const *)b;
+    if (x->point[1] != y->point[1])
+        return (x->point[1] > y->point[1]) - (x->point[1] < y->point[1]);
+    return (x > y) - (x < y);
+}
+
+/* The first shell whose point is not below y. */
+static int64_t first_above(const work *w, int64_t shells, double y)
+{
+    int64_t from = 0, to = shells;
+    while (from < to) {
+        int64_t middle = from + (to - from) / 2;
+        if (w->by_y[middle]->point[1] < y)
+            from = middle + 1;
+        else
+            to = middle;
     }
-    return hollow;
+    return from;
+}
+
+/* Which shells are inside of an odd number of others, so that they bound hollows: rays from their points cross these oddly. A
+ * triangle looks only at the points that are as high along y as it is. */
+static void find_hollows(work *w, int64_t shells)
+{
+    for (int64_t s = 0; s < shells; s++)
+        w->by_y[s] = &w->shell[s];
+    qsort(w->by_y, (size_t)shells, sizeof(shell *), compare_y);
+    for (int64_t t = 0; shells > 1 && t < w->triangles; t++) {
+        bool turned;
+        const shell *own = shell_of(w, t, &turned);
+        const double *p[3] = {place(w, t, 0), place(w, t, 1), place(w, t, 2)};
+        double high = fmax(p[0][1], fmax(p[1][1], p[2][1]));
+        int64_t i = first_above(w, shells, fmin(p[0][1], fmin(p[1][1], p[2][1])));
+        for (; i < shells && w->by_y[i]->point[1] <= high; i++)
+            if (w->by_y[i] != own && crosses(p, w->by_y[i]->point))
+                w->by_y[i]->hollow = !w->by_y[i]->hollow;
+    }
 }
 
 /* ---- all of it */
@@ -342,8 +356,9 @@ static int measure(work *w, check_result *r, const double *voxel, int threads, e
         return -1;
     if (r->open)
         return 0;
+    find_hollows(w, r->shells);
     for (int64_t s = 0; s < r->shells; s++)
-        r->volume += fabs(w->shell[s].volume) * (is_hollow(w, r->shells, &w->shell[s]) ? -1 : 1);
+        r->volume += fabs(w->shell[s].volume) * (w->shell[s].hollow ? -1 : 1);
     face_out(w);
     return voxel ? thin_share(w->place.position, w->place.places, w->vertex, w->triangles, voxel, threads, &r->thin, e)
                  : 0;

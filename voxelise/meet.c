@@ -6,6 +6,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 
@@ -64,30 +65,170 @@ static int side(const double *a, const double *b, const double *c, const double 
     return fabs(value) > 16 * DBL_EPSILON * size ? sign_of(value) : exact_side(a, b, c, d);
 }
 
-/* Whether the edge p q passes through the inside of triangle t: not if it ends in a corner of it. */
-static bool passes(const double *p, const double *q, const double *const *t)
+/* ---- two triangles */
+
+typedef const double *const corners[3];
+
+static bool is_corner(corners t, const double *p)
+{
+    return t[0] == p || t[1] == p || t[2] == p;
+}
+
+/* The sides of a triangle's plane on which another's corners are. */
+static void find_sides(corners plane, corners of, int *where)
 {
     for (int i = 0; i < 3; i++)
-        if (t[i] == p || t[i] == q)
-            return false;
-    int of_p = side(t[0], t[1], t[2], p), of_q = side(t[0], t[1], t[2], q);
-    if (of_p * of_q >= 0)
+        where[i] = is_corner(plane, of[i]) ? 0 : side(plane[0], plane[1], plane[2], of[i]);
+}
+
+static bool on_both(const int *where)
+{
+    return (where[0] > 0 || where[1] > 0 || where[2] > 0) && (where[0] < 0 || where[1] < 0 || where[2] < 0);
+}
+
+/* The corner that is alone on its side, first, then the two others in their order. */
+static void alone_first(corners of, const int *where, const double **to)
+{
+    int above = (where[0] > 0) + (where[1] > 0) + (where[2] > 0), lone = above == 1 ? 1 : -1;
+    int first = where[0] == lone ? 0 : where[1] == lone ? 1 : 2;
+    for (int i = 0; i < 3; i++)
+        to[i] = of[(first + i) % 3];
+}
+
+/* Both have corners on either side of the other's plane, so each cuts an interval out of the line in which these meet, whose
+ * ends are on the two edges of the corner that is alone. The insides meet where the intervals overlap in more than a point:
+ * each begins before the other ends, which two edges of four say (Guigue and Devillers, 2003). */
+static bool cross_inside(corners one, const int *of_one, corners other, const int *of_other)
+{
+    if (!on_both(of_one) || !on_both(of_other))
         return false;
-    int first = side(p, q, t[0], t[1]);
-    return first && side(p, q, t[1], t[2]) == first && side(p, q, t[2], t[0]) == first;
+    const double *p[3], *q[3], *swap;
+    alone_first(one, of_one, p);
+    alone_first(other, of_other, q);
+    if (side(q[0], q[1], q[2], p[0]) < 0)
+        swap = q[1], q[1] = q[2], q[2] = swap;
+    if (side(p[0], p[1], p[2], q[0]) < 0)
+        swap = p[1], p[1] = p[2], p[2] = swap;
+    return side(p[0], p[1], q[0], q[1]) < 0 && side(p[0], p[2], q[2], q[0]) < 0;
+}
+
+/* Whether the edge from corner i of a triangle to the next lies in another's plane, its third corner does not, and the edge
+ * runs through the other's inside: neither has the other on one side of it. Sides within the plane are those of planes
+ * through the third corner. */
+static bool runs_within(corners t, const int *where, int i, corners other)
+{
+    if (where[i] || where[(i + 1) % 3] || !where[(i + 2) % 3])
+        return false;
+    const double *p = t[i], *q = t[(i + 1) % 3], *apex = t[(i + 2) % 3];
+    if (is_corner(other, p) && is_corner(other, q))
+        return false;
+    bool left = false, right = false;
+    for (int k = 0; k < 3; k++) {
+        const double *a = other[k], *b = other[(k + 1) % 3];
+        int of_corner = side(p, q, apex, a), inner = side(a, b, apex, other[(k + 2) % 3]);
+        left = left || of_corner > 0;
+        right = right || of_corner < 0;
+        if (side(a, b, apex, p) * inner <= 0 && side(a, b, apex, q) * inner <= 0)
+            return false;
+    }
+    return left && right;
+}
+
+static void corners_of(const double *position, const int32_t *triangle, const double **to)
+{
+    for (int i = 0; i < 3; i++)
+        to[i] = &position[3 * (int64_t)triangle[i]];
 }
 
 bool meet_triangles(const double *position, const int32_t *one, const int32_t *other)
 {
     const double *a[3], *b[3];
-    for (int i = 0; i < 3; i++) {
-        a[i] = &position[3 * (int64_t)one[i]];
-        b[i] = &position[3 * (int64_t)other[i]];
+    int of_a[3], of_b[3];
+    corners_of(position, one, a);
+    corners_of(position, other, b);
+    find_sides(b, a, of_a);
+    find_sides(a, b, of_b);
+    return cross_inside(a, of_a, b, of_b);
+}
+
+/* ---- edges within triangles: the surface crosses there if its next triangle is on the other side */
+
+/* An edge of a triangle, or an edge of a triangle within another. */
+typedef struct within {
+    int32_t low, high; /* ends */
+    int32_t apex;      /* the triangle's third corner */
+    int32_t other;     /* the triangle that it runs within */
+} within;
+
+static int compare_ends(const void *a, const void *b)
+{
+    const within *x = a, *y = b;
+    if (x->low != y->low)
+        return (x->low > y->low) - (x->low < y->low);
+    return (x->high > y->high) - (x->high < y->high);
+}
+
+static within edge_of(const int32_t *triangle, int i, int32_t other)
+{
+    int32_t p = triangle[i], q = triangle[(i + 1) % 3];
+    return (within){p < q ? p : q, p < q ? q : p, triangle[(i + 2) % 3], other};
+}
+
+typedef struct edges {
+    within *edge;
+    int64_t count, capacity;
+} edges;
+
+/* Every edge of the mesh, in the ends' order. */
+static int list_edges(edges *all, const int32_t *vertex, int64_t triangles, err *e)
+{
+    all->edge = mem_array(3 * triangles, sizeof *all->edge, "edges", e);
+    if (!all->edge)
+        return -1;
+    for (int64_t t = 0; t < triangles; t++)
+        for (int i = 0; i < 3; i++)
+            all->edge[all->count++] = edge_of(&vertex[3 * t], i, -1);
+    qsort(all->edge, (size_t)all->count, sizeof *all->edge, compare_ends);
+    return 0;
+}
+
+/* The first of an edge's uses. */
+static int64_t first_use(const edges *all, const within *of)
+{
+    int64_t from = 0, to = all->count;
+    while (from < to) {
+        int64_t middle = from + (to - from) / 2;
+        if (compare_ends(&all->edge[middle], of) < 0)
+            from = middle + 1;
+        else
+            to = middle;
     }
-    for (int i = 0; i < 3; i++)
-        if (passes(a[i], a[(i + 1) % 3], b) || passes(b[i], b[(i + 1) % 3], a))
+    return from;
+}
+
+/* Whether an edge that runs within a triangle has another triangle on its other side. */
+static bool goes_through(const within *of, const edges *all, const double *position, const int32_t *vertex)
+{
+    const double *t[3];
+    corners_of(position, &vertex[3 * (int64_t)of->other], t);
+    int here = side(t[0], t[1], t[2], &position[3 * (int64_t)of->apex]);
+    for (int64_t i = first_use(all, of); i < all->count && !compare_ends(&all->edge[i], of); i++)
+        if (side(t[0], t[1], t[2], &position[3 * (int64_t)all->edge[i].apex]) == -here)
             return true;
     return false;
+}
+
+/* How many of the edges within triangles go through; edges are listed only if there are any. */
+static int count_through(const edges *inside, const double *position, const int32_t *vertex, int64_t triangles,
+                         int64_t *count, err *e)
+{
+    edges all = {0};
+    if (inside->count && list_edges(&all, vertex, triangles, e))
+        return -1;
+    for (int64_t i = 0; i < inside->count; i++)
+        *count += goes_through(&inside->edge[i], &all, position, vertex);
+    free(all.edge);
+    return 0;
 }
 
 /* ---- pairs whose boxes overlap */
@@ -97,6 +238,10 @@ typedef struct work {
     const int32_t *vertex;
     double middle[3], scale; /* the frame that the tree stands in */
     atomic_llong count;
+    pthread_mutex_t lock; /* of what follows */
+    edges inside;
+    bool failed;
+    err *e;
 } work;
 
 static const double reach = 1000; /* of the frame, from its middle */
@@ -114,33 +259,67 @@ static void give_box(const void *context, int64_t item, double *low, double *hig
     }
 }
 
+static void keep_edge(work *w, within edge)
+{
+    pthread_mutex_lock(&w->lock);
+    if (!w->failed)
+        w->failed = mem_grow(&w->inside.edge, &w->inside.capacity, w->inside.count + 1, sizeof edge, "edges", w->e);
+    if (!w->failed)
+        w->inside.edge[w->inside.count++] = edge;
+    pthread_mutex_unlock(&w->lock);
+}
+
 static void take_pair(void *context, int64_t one, int64_t other)
 {
     work *w = context;
-    if (meet_triangles(w->position, &w->vertex[3 * one], &w->vertex[3 * other]))
+    const int32_t *a = &w->vertex[3 * one], *b = &w->vertex[3 * other];
+    const double *p[3], *q[3];
+    corners_of(w->position, a, p);
+    corners_of(w->position, b, q);
+    int of_p[3], of_q[3];
+    find_sides(q, p, of_p);
+    find_sides(p, q, of_q);
+    if (cross_inside(p, of_p, q, of_q)) {
         atomic_fetch_add(&w->count, 1);
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        if (runs_within(p, of_p, i, q))
+            keep_edge(w, edge_of(a, i, (int32_t)other));
+        if (runs_within(q, of_q, i, p))
+            keep_edge(w, edge_of(b, i, (int32_t)one));
+    }
 }
 
-int meet_count(const double *position, const int32_t *vertex, int64_t triangles, int threads, int64_t *count, err *e)
+static void frame(work *w, int64_t triangles)
 {
-    work w = {.position = position, .vertex = vertex};
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, longest = 0;
     for (int64_t c = 0; c < 3 * triangles; c++)
         for (int a = 0; a < 3; a++) {
-            double x = position[3 * (int64_t)vertex[c] + a];
+            double x = w->position[3 * (int64_t)w->vertex[c] + a];
             low[a] = fmin(low[a], x);
             high[a] = fmax(high[a], x);
         }
     for (int a = 0; a < 3; a++) {
-        w.middle[a] = triangles ? low[a] / 2 + high[a] / 2 : 0;
+        w->middle[a] = triangles ? low[a] / 2 + high[a] / 2 : 0;
         longest = fmax(longest, high[a] - low[a]);
     }
-    w.scale = longest > 0 ? 2 * reach / longest : 1;
+    w->scale = longest > 0 ? 2 * reach / longest : 1;
+}
+
+int meet_count(const double *position, const int32_t *vertex, int64_t triangles, int threads, int64_t *count, err *e)
+{
+    work w = {.position = position, .vertex = vertex, .e = e};
+    frame(&w, triangles);
     candidates *near = candidates_create(triangles, give_box, &w, reach, threads, e);
     if (!near)
         return -1;
+    pthread_mutex_init(&w.lock, NULL);
     candidates_pairs(near, take_pair, &w);
     candidates_destroy(near);
+    pthread_mutex_destroy(&w.lock);
     *count = atomic_load(&w.count);
-    return 0;
+    int status = w.failed ? -1 : count_through(&w.inside, position, vertex, triangles, count, e);
+    free(w.inside.edge);
+    return status;
 }

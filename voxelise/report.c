@@ -46,7 +46,7 @@ static void say_numbers(out *o, const check_result *r, const char *unit)
     if (r->open)
         out_text(o, "nothing: it is open\n");
     else
-        out_format(o, "%.6g %s^3\n", r->volume, unit);
+        out_format(o, "%.6g %s^3%s\n", r->volume, unit, r->met ? " if nothing crossed" : "");
     count(o, "shells", r->shells);
     count(o, "edges of one polygon (open)", r->open);
     count(o, "edges of more than two", r->crowded);

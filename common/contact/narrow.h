@@ -2,7 +2,7 @@
  * support functions of the shapes (GJK to see whether they meet, then EPA). This is the one user of libccd.
  *
  * Solvers do not ask it. All shapes have a closed form for points, convex polyhedra too: the plane that is farthest. On a point
- * inside it gives libccd's answer, without its tolerance, and in tens of nanoseconds where EPA takes microseconds to fractions of a
+ * inside it gives libccd's answer, without its tolerance, and in 40 ns, or 150 of 128 planes, where EPA takes microseconds to fractions of a
  * millisecond (`make bench-msds` prints both); and a processor and a card compute the same. So libccd is the reference that tests hold the
  * closed forms to, over random points and poses of every shape. Nothing is kept.
  */

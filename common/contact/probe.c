@@ -72,10 +72,11 @@ static int numbers(const char *text, const char *list, int least, int most, int 
     for (int i = 0; i < count; i++) {
         to[i] = i == degrees ? length[i].value : num_length_in(length[i], num_unit_of("m"), num_unit_of("m"));
         if (i == degrees && (length[i].unit || !(to[i] > 0) || to[i] > 180))
-            return err_usage(e, "--probe %.100s: an angle of %g%s; expected degrees above 0, at most 180", text, to[i],
-                             length[i].unit ? num_unit_name(length[i].unit) : "");
+            return err_set(e, NULL, 0, "--probe %.100s: an angle of %g%s; expected degrees above 0, at most 180", text,
+                           to[i], length[i].unit ? num_unit_name(length[i].unit) : "");
         if (i != degrees && !above_0(to[i]) && !(i == most - 1 && i >= least && to[i] == 0))
-            return err_usage(e, "--probe %.100s: a length of %g m; expected one above 0", text, to[i]);
+            return err_set(e, NULL, 0, "--probe %.100s: a length of %g m; expected one above 0, at most %g m", text,
+                           to[i], largest);
     }
     return count;
 }
@@ -85,7 +86,8 @@ static int check_edge(const char *text, double edge, double most, err *e)
 {
     if (edge <= most)
         return 0;
-    return err_usage(e, "--probe %.100s: an edge of %g m does not go into it; expected at most %g m", text, edge, most);
+    return err_set(e, NULL, 0, "--probe %.100s: an edge of %g m does not go into it; expected at most %g m", text, edge,
+                   most);
 }
 
 static int read_sphere(probe *p, const char *text, const char *list, err *e)
@@ -96,7 +98,8 @@ static int read_sphere(probe *p, const char *text, const char *list, err *e)
                          list);
     double r = num_length_in(radius, num_unit_of("m"), num_unit_of("m"));
     if (!above_0(r))
-        return err_usage(e, "--probe %.100s: a radius of %g m; expected one above 0", text, r);
+        return err_set(e, NULL, 0, "--probe %.100s: a radius of %g m; expected one above 0, at most %g m", text, r,
+                       largest);
     *p = probe_sphere(r);
     return 0;
 }

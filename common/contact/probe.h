@@ -75,7 +75,7 @@ typedef struct probe_touch {
 
 /* Reads "sphere:2cm", "linear:4cm,1cm", "curved:6cm,60,14mm" (degrees; both with an edge as a last length; by default a quarter of
  * the thickness, less where that would not go in) or "convex:FILE.obj", whose file probe_load reads; metres without a suffix. -1 with
- * e filled (status 2) where it is none of these, or no such body can be. */
+ * e filled where it is none of these (status 2), or no such body can be (status 1). */
 int probe_of(probe *p, const char *text, err *e);
 
 /* Writes what probe_of reads, with all there is of it; of a file only its base name. */

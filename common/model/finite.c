@@ -10,7 +10,8 @@ int finite_array(const model_array *a, const char *where, err *e)
     for (int64_t row = 0; row < a->rows; row++)
         for (int64_t at = row * a->columns; at < (row + 1) * a->columns; at++)
             if (!isfinite(a->type == MODEL_F32 ? (double)a->f32[at] : a->f64[at]))
-                return err_set(e, where, 0, "%s, row %" PRId64 " is not finite; expected finite numbers", a->name, row);
+                return err_set(e, where, where ? model_line(a, row) : 0,
+                               "%s, row %" PRId64 " is not finite; expected finite numbers", a->name, row);
     return 0;
 }
 
@@ -32,8 +33,9 @@ int finite_elements(const model *m, const char *where, err *e)
     for (int64_t i = 0; node && i < node->rows; i++) {
         int count = different(&node->i32[i * node->columns], node->columns);
         if (count < 4)
-            return err_set(e, where, 0, "element.node, row %" PRId64 " has %d different node%s; expected 4 or more", i,
-                           count, count == 1 ? "" : "s");
+            return err_set(e, where, where ? model_line(node, i) : 0,
+                           "element.node, row %" PRId64 " has %d different node%s; expected 4 or more", i, count,
+                           count == 1 ? "" : "s");
     }
     return 0;
 }

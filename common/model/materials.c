@@ -308,7 +308,8 @@ static int value_of(const model *m, int64_t i, const key *k, double *value, err 
     *value = !a || isnan(a->f64[i]) ? k->absent : a->f64[i];
     if (k->valid(*value))
         return 0;
-    return err_set(e, NULL, 0, "%s, row %" PRId64 ": %g is not allowed; expected %s", k->array, i, *value, k->expected);
+    return err_set(e, m->stream, a && m->stream ? model_line(a, i) : 0,
+                   "%s, row %" PRId64 ": %g is not allowed; expected %s", k->array, i, *value, k->expected);
 }
 
 int materials_of(const model *m, int64_t i, material *to, err *e)
@@ -325,7 +326,7 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
         return -1;
     MATERIAL_KEYS(VALUE_TAKE)
     if (!isfinite(material_bulk(to)) || !(material_mu(to) > 0))
-        return err_set(e, NULL, 0, "material, row %" PRId64 ": E=%g with nu=%g is beyond what can be computed", i,
+        return err_set(e, m->stream, 0, "material, row %" PRId64 ": E=%g with nu=%g is beyond what can be computed", i,
                        to->E, to->nu);
     return 0;
 }

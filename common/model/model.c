@@ -74,6 +74,7 @@ void model_free(model *m)
     free(m->prov);
     free(m->axes);
     free(m->blocks);
+    free(m->stream);
     arrays_free(&m->arrays);
     *m = (model){0};
 }

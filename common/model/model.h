@@ -22,6 +22,7 @@ typedef struct model_array {
     char *axis;
     int32_t columns;
     int64_t rows; /* the axis's count */
+    int64_t line; /* of its heading, where it was read as text; its rows are the lines after it; else 0 */
     union {       /* rows x columns, row by row */
         void *data;
         float *f32;
@@ -62,6 +63,7 @@ typedef struct model {
     model_arrays arrays;
     model_block *blocks;
     int metas, provs, axis_count, block_count;
+    char *stream; /* the name of what it was read from, owned; NULL: it was made */
 } model;
 
 /* One frame of results. */
@@ -125,6 +127,12 @@ void model_axis_drop(model *m, const char *axis, notes *warnings);
 /* Surfaces carried: the names S of axes "S/vertex", but for the user's ("x-"). Returns the name of the i-th or NULL past the
  * last. */
 const char *model_surface(const model *m, int i, char *name, size_t size);
+
+/* The line of a row where the array was read as text, else 0: for messages. */
+static inline int64_t model_line(const model_array *a, int64_t row)
+{
+    return a->line > 0 ? a->line + 1 + row : 0;
+}
 
 size_t model_type_size(model_type t);
 const char *model_type_name(model_type t);

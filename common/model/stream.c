@@ -223,6 +223,7 @@ static int add_array(model_reader *r, model *m, item *it, err *e)
     if (mem_grow(&r->places, &r->place_capacity, m->arrays.count + 1, sizeof *r->places, "the model", e))
         return -1;
     r->places[m->arrays.count] = it->at;
+    it->array.line = r->from.how->lines ? it->at : 0;
     return model_arrays_take(&m->arrays, &it->array, e) ? 0 : -1;
 }
 
@@ -256,6 +257,10 @@ static int check_array(const model_reader *r, const model *m, const model_array 
 
 int model_read(model_reader *r, model *m, err *e)
 {
+    free(m->stream);
+    m->stream = mem_text(in_name(r->from.s), e);
+    if (!m->stream)
+        return -1;
     for (;;) {
         if (look(r, e))
             return -1;

@@ -136,6 +136,8 @@ static int showing_panel(work *w, int i, err *e)
                          .cut = cut,
                          .cuts = s->cuts,
                          .moved = panel->moved ? w->f : NULL,
+                         .slice = panel->moved ? s->slice : NULL,
+                         .body = s->body,
                          .field = panel->coloured && w->coloured ? &w->field : NULL};
     return showing_make(&w->showing[i], w->m, &want, e);
 }

@@ -47,6 +47,8 @@ typedef struct picture_spec {
     int names, clears;
     picture_cut cut[PICTURE_CUTS];
     int cuts;
+    const char *body;  /* see showing_want; NULL: none */
+    const char *slice; /* an image to be seen where it lies, see showing_want; NULL: none */
     double up[3], front[3];
     double angle;  /* field of view, degrees; 0: orthographic */
     double margin; /* share of the shorter side that stays free */

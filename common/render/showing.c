@@ -101,6 +101,10 @@ int showing_make(showing *b, const model *m, const showing_want *want, err *e)
         showing_spheres(b, m, want, e);
     if (!e->status)
         showing_probe(b, m, want, e);
+    if (!e->status)
+        showing_slice(b, want, e);
+    if (!e->status)
+        showing_body(b, want, e);
     free(at_nodes);
     if (!e->status && !scene_bounds(&b->scene, low, high))
         err_set(e, NULL, 0,

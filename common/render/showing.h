@@ -41,6 +41,8 @@ typedef struct showing_want {
     int cuts;
     const frame *moved; /* NULL: at rest */
     const field *field; /* NULL: in the colours of what things are */
+    const char *slice;  /* a file of us-slice (PGM, PPM), or a pattern as s_%04d.pgm for the frame's; NULL: none */
+    const char *body;   /* a body's file (volume/body.h) whose surfaces are to be seen; NULL: none */
 } showing_want;
 
 typedef struct showing {

@@ -311,6 +311,8 @@ int render_plan_of(render_plan *p, const render_options *o, err *e)
     picture_spec *s = &p->spec;
     *p = (render_plan){0};
     s->transparent = o->transparent;
+    s->slice = o->slice;
+    s->body = o->body;
     s->angle = o->angle;
     s->margin = .03;
     if (make_text(p, o, e))

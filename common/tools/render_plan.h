@@ -14,7 +14,7 @@ enum { RENDER_LAST, RENDER_ALL, RENDER_REST, RENDER_ONE };
 typedef struct render_options {
     opt_common common;
     opt_list show, clear, sheet, cut;
-    const char *view, *up, *front, *colour, *frame, *size, *font;
+    const char *view, *up, *front, *colour, *frame, *size, *font, *slice, *body;
     opt_lengths camera, range;
     double angle;
     bool transparent;

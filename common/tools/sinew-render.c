@@ -24,6 +24,8 @@ static const opt option_table[] = {
     {0, "color", "FIELD", OPT_TEXT, TO(colour), 0, 0, NULL, OPT_HIDDEN, "colour"},
     {0, "range", "A,B", OPT_LENGTHS, TO(range), 0, 2, NULL, 0, "ends of the scale, SI or with a unit"},
     {0, "cut", "AXIS=POS", OPT_LIST, TO(cut), 0, 0, NULL, 0, "m: opens the voxels, as x=0 or +y=2cm"},
+    {0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "surfaces around it, as us-slice --body"},
+    {0, "slice", "FILE.pgm", OPT_TEXT, TO(slice), 0, 0, NULL, OPT_FILE, "an image of us-slice where it lies"},
     {0, "frame", "N|last|all|rest", OPT_TEXT, TO(frame), 0, 0, NULL, 0, "all: -o f_%04d.png (default: last)"},
     {0, "sheet", "PANEL,...", OPT_LIST, TO(sheet), 0, 0, NULL, 0, "rest voxels deformed, VIEW, rest@VIEW"},
     {0, "size", "WxH", OPT_TEXT, TO(size), 0, 0, NULL, 0, "pixels (1280x720)"},

@@ -25,6 +25,7 @@ static const struct {
     {"us-import", "us-import", "a volume from DICOM, sweeps, MetaImage"},
     {"us-segment", "us-segment", "a part of a volume as a named label"},
     {"us-surface", "us-surface", "closed surfaces of labels or intensities"},
+    {"us-slice", "us-slice", "ultrasound images of a volume, as a model deforms it"},
     {"deform", "sinew-deform", "an OBJ as the model's results move it"},
     {"info", "sinew-info", "what a model holds"},
     {"diff", "sinew-diff", "where two models differ"},

@@ -158,9 +158,11 @@ static int64_t frame_of(const char *line, const char **key)
     return number;
 }
 
-/* The first size: of MetaImage's DimSize, NRRD's sizes. */
-static void take_width(plus *p, const char *key, const char *value)
+/* What all images have: the first size (of MetaImage's DimSize, NRRD's sizes), and where their axes point. */
+static void take_images(plus *p, const char *key, const char *value)
 {
+    if (!strcmp(key, "UltrasoundImageOrientation"))
+        snprintf(p->orientation, sizeof p->orientation, "%s", value);
     double size[4];
     if ((!strcmp(key, "DimSize") || !strcmp(key, "sizes")) && take_numbers(value, size, 4) > 0 && size[0] >= 1 &&
         size[0] <= 1e6)
@@ -188,7 +190,7 @@ static int take_line(plus *p, char *line, err *e)
         return 0;
     trim(line);
     if (number < 0) {
-        take_width(p, line, value);
+        take_images(p, line, value);
         p->ended |= !p->nrrd && !strcmp(line, "ElementDataFile");
         return 0;
     }

@@ -26,6 +26,7 @@ typedef struct plus {
     in *source;
     bool nrrd, ended;
     int64_t width;                       /* columns of its images, 0: not known yet */
+    char orientation[8];                 /* UltrasoundImageOrientation, as far as it fits; "": not said yet */
     char from[PLUS_NAME], to[PLUS_NAME]; /* what is asked for; "": not chosen yet */
     plus_frame frame;                    /* as far as its keys were read */
     char *held;                          /* the stream's line, which begins the frame after; NULL: none */

@@ -16,6 +16,9 @@ int poses_open(poses *p, in *source, const char *transform, err *e)
         return -1;
     p->sequence = first >= 'A' && first <= 'Z';
     keyfile_open(&p->lines, source);
+    if (!p->sequence && first >= 0 && transform)
+        return err_set(e, in_name(source), 0, "lines of poses have no transform %.100s; expected a PLUS sequence",
+                       transform);
     return p->sequence ? plus_open(&p->frames, source, transform, e) : 0;
 }
 

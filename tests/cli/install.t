@@ -5,7 +5,7 @@
 
 have make || skip_all "no make"
 root=$T/root
-tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render"
+tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render"
 
 # on ROOT's PREFIX: what was built for the tests, nothing else.
 # shellcheck disable=SC2317 # called by name
@@ -26,10 +26,11 @@ for tool in $tools; do
         "$tool: the page's synopsis is what --table mdoc says"
 done
 check "sinew-model(5) and sinew(7)" test -s "$root/usr/share/man/man5/sinew-model.5" -a -s "$root/usr/share/man/man7/sinew.7"
+check "sinew-performance(7)" test -s "$root/usr/share/man/man7/sinew-performance.7"
 
 # The front command finds the others beside itself, not on PATH, called by any name that leads to it.
 ln -s "$root/usr/bin/sinew" "$T/link"
-for tool in voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface deform info diff export render; do
+for tool in voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice deform info diff export render; do
     check "sinew $tool runs from its own folder" env PATH=/usr/bin:/bin "$root/usr/bin/sinew" "$tool" --version
     is "$(sed 's/ (.*//' "$T/stdout")" "$("$tool" -V 2>/dev/null | sed 's/ (.*//' | grep . || echo "sinew-$tool")" "and is $tool"
 done
@@ -40,7 +41,7 @@ fails 2 "a tool that is none" "no tool 'inof'; did you mean 'info'\?" sinew inof
 fails 2 "no tool" "^usage: sinew TOOL" sinew
 
 if have bash; then
-    for tool in voxelise attach tled-run msds-mesh msds-run us-import us-segment us-surface sinew sinew-deform sinew-info sinew-diff sinew-export; do
+    for tool in voxelise attach tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew sinew-deform sinew-info sinew-diff sinew-export; do
         # shellcheck disable=SC2016 # for bash
         check "$tool: its completion is for it, and has --help" \
             bash -c '. "$1" && complete -p "$2" | grep -q -e --help' - "$root/usr/share/bash-completion/completions/$tool" "$tool"

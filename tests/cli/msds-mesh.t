@@ -78,8 +78,12 @@ mesh --nodes 9x9x9 --like "$T/labels.nrrd" --labels "$T/labels.nrrd" --names 2=v
 is "$(get "$T/m" volume.count.vein) $(get "$T/m" axis.volume)" "1920 2" "labels of one name are one volume"
 is "$(cat "$T/warn")" "msds-mesh: warning: material bone is no volume's
 msds-mesh: warning: material label2 is no volume's" "materials that nothing is of are told"
-mesh --nodes 9x9x9 --size 1,1,1 --labels "$T/labels.nrrd"
+mesh --nodes 9x9x9 --size 1,1,1 --labels "$T/labels.nrrd" 2>"$T/warn"
+is "$(sed 's/ has no tetrahedron: .*//' "$T/warn" | tr '\n' ' ')" \
+    "msds-mesh: warning: label 1 (bone) msds-mesh: warning: label 2 " "labels that no tetrahedron has are told"
 is "$(rows volume.name | tr '\n' ' ')" '"tissue" ' "outside the image all is tissue"
+mesh --nodes 9x9x9 --like "$T/labels.nrrd" --labels "$T/labels.nrrd" --names 7=vein 2>"$T/warn"
+is "$(cat "$T/warn")" "msds-mesh: warning: label 7 (vein) is named, and no voxel has it" "so is a name of no label"
 gzip -c "$T/labels.nrrd" | msds-mesh -q --nodes 5x5x5 --like - >"$T/m" && is "$(get "$T/m" axis.element)" 320 "an image from a pipe"
 
 # ---- a voxel model
@@ -136,6 +140,7 @@ no 2 "--names is for --labels" --nodes 5x5x5 --size 1,1,1 --names 1=a
 no 2 "--names: '1'; expected LABEL=NAME" --nodes 5x5x5 --size 1,1,1 --labels "$T/labels.nrrd" --names 1
 no 2 "--young is for a mesh of --nodes" --young 5
 no 2 "--like - and --labels -: standard input is read once" --nodes 5x5x5 --like - --labels -
+no 2 "--names: label 1 is named twice" --nodes 5x5x5 --size 1,1,1 --labels "$T/labels.nrrd" --names 1=a,2=b,1=c
 no 1 "--fix: unknown side or volume 'zmim'; did you mean 'zmin'" --nodes 5x5x5 --size 1,1,1 --fix zmim
 no 1 "--fix: unknown side or volume ''" --nodes 5x5x5 --size 1,1,1 --fix xmin,
 no 1 "$T/none.nrrd: cannot open" --nodes 5x5x5 --like "$T/none.nrrd"

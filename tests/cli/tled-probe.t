@@ -72,6 +72,25 @@ END
 awk -v a="$force_sphere" -v b="$stiff" 'BEGIN { exit !(b > a && b < 1.1 * a) }'
 is $? 0 "four times the repulsion: $stiff N"
 
+# A plate on a cube that stands without friction: the force is the law's nominal stress at the stretch that comes of it, times the area.
+# W = mu/2 (J^-2/3 tr C - 3) + K/2 (J - 1)^2; the sides are free: their stretch b is where no stress is.
+sed -n '/^g bone/q; p' "$T/block.obj" | sed 's/8/4/g' | sed 's/^f .*//' >"$T/cube4.obj"
+printf 'f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n' >>"$T/cube4.obj"
+echo '0 displace -.001,-.001,-.001,.041,.041,.001 -,-,0' >"$T/stand.script"
+awk 'BEGIN { for (i = 0; i <= 20; i++) printf "%.3f .02 .02 %.6f 1 0 0 0\n", i / 40, .0401 - .0041 * i / 20 }' >"$T/plate.tum"
+voxelise -q --unit cm -s 1 --origin 0,0,0 "$T/cube4.obj" 2>/dev/null |
+    tled-run -q --text -m tissue.E=3000 -m tissue.nu=0.45 --script "$T/stand.script" --probe linear:30cm,20cm --poses "$T/plate.tum" --rest 1e-5 >"$T/uniaxial.sinew" 2>/dev/null
+read -r newton torque <<END
+$(force "$T/uniaxial.sinew")
+END
+stretch=$(sinew info --get node.displacement.at.0.02,0.02,0.04 "$T/uniaxial.sinew" | awk '{ print 1 + $3 / .04 }')
+want=$(awk -v l="$stretch" 'function side(b, J, I) { J = l * b * b; I = l * l + 2 * b * b; return mu * J ^ (-2 / 3) * (b - I / (3 * b)) + K * (J - 1) * J / b }
+    BEGIN { mu = 3000 / 2.9; K = 10000; low = .8; high = 1.3
+        for (i = 0; i < 100; i++) { b = (low + high) / 2; if (side(b) < 0) low = b; else high = b }
+        J = l * b * b; I = l * l + 2 * b * b
+        print -.0016 * (mu * J ^ (-2 / 3) * (l - I / (3 * l)) + K * (J - 1) * J / l) }')
+near "$newton" "$want" 1e-4 "a plate: $newton N at a stretch of $stretch, the law's $want"
+
 for n in 1 2 3; do
     tled-run -q --threads $n --probe linear:4cm,1cm --poses "$T/press.tum" -t .1 --every .02 <"$T/block.sinew" | cksum
 done | sort -u >"$T/sums"

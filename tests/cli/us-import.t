@@ -60,6 +60,7 @@ same "deflated as a whole" -- multi syntax=deflated
 same "many frames in a file" -- multi
 same "many frames, pixels in an ultrasound region's cm" -- multi regions=1
 is "$(line "$T/out.nrrd" "space directions")" "(0.5,0,0) (0,0.25,0) (0,0,0.75)" "its directions"
+same "regions that differ, and the distance that is said here" --spacing .5,.25,.75mm -- multi regions=2
 same "many frames, whose distance is said here" --spacing .5,.25,.75mm -- multi between=no
 same "Enhanced US Volume, its last frame first" -- enhanced
 is "$(line "$T/out.nrrd" "space origin")" "(10,-20,30)" "its origin"
@@ -74,6 +75,10 @@ dicom series slope=2 intercept=-5 columns=2 rows=1 slices=2
 check "slope and intercept" us-import -q --raw -o "$T/out.nrrd" "$T/in"
 is "$(line "$T/out.nrrd" type)" float "make floats"
 is "$(tail -c 16 "$T/out.nrrd" | od -A n -t fF | tr -s ' ' | sed 's/^ //')" "-5 -3 9 11" "of the right values"
+
+dicom enhanced scaled=1 columns=2 rows=1 slices=2
+check "a slope a frame" us-import -q --raw -o "$T/out.nrrd" "$T/in"
+is "$(tail -c 16 "$T/out.nrrd" | od -A n -t fF | tr -s ' ' | sed 's/^ //')" "0 1 14 16" "scales that frame"
 
 # says PATTERN FILE NAME, says_not: whether a file has a line like this.
 says() {
@@ -95,8 +100,10 @@ bad "two are" '2 missing between im07\.dcm and im14\.dcm' series drop=2,3
 bad "one is there twice" 'im11x\.dcm and im21\.dcm lie at one place' series dup=3
 bad "one is shifted" 'im14\.dcm and im21\.dcm lie 0\.95 mm apart; im21\.dcm and im28\.dcm lie 0\.55 mm apart' series shift=3:.2
 bad "frames of a file" '1 missing between frame 4 and frame 3|lie .* mm apart' enhanced shift=3:.2
+bad "a frame of other pixels" 'frame 2 has pixels of 1 x 0.25 mm, frame 1 of 0.5 x 0.25' enhanced wider=1
 bad "they are askew" 'beside where the first points' series tilt=.2
 bad "no spacing" 'no distance between pixels' series spacing=no
+bad "regions in cm that differ" 'no distance between pixels; expected PixelSpacing, or ultrasound regions in cm that agree' multi regions=2
 bad "no positions" 'without a position' series position=no
 bad "no distance between frames" '6 frames, and no distance between them' multi between=no
 bad "two series" '2 series: 1: 1 file of 7 x 5 from im00\.dcm, 2: 5 files .*--series N' series second=1
@@ -169,6 +176,14 @@ is "$(tail -c 108 "$T/out.nrrd" | head -c 1)$(tail -c 108 "$T/out.nrrd" | tail -
     "its voxels: of the first and last frames, and of one between"
 check "without filling" us-import -q --raw --voxel .5mm --fill 0 -o "$T/out.nrrd" "$T/sweep.mha"
 is "$(tail -c 96 "$T/out.nrrd" | head -c 1 | od -A n -t u1 | tr -d ' ')" 0 "a gap stays"
+sed '1a UltrasoundImageOrientation = UN' "$T/sweep.mha" >"$T/turned.mha"
+check "stored the other way round" us-import -q --raw --voxel .5mm -o "$T/out.nrrd" "$T/turned.mha"
+is "$(line "$T/out.nrrd" "space origin") $(line "$T/out.nrrd" "space directions" | sed 's/-0\([,)]\)/0\1/g')" "(2.5,3,0) (-0.5,0,0) (0,-0.5,0) (0,0,0.5)" \
+    "it lies where it did, and its axes go back"
+check "and cropped" us-import -q --raw --voxel .5mm --crop 1,0,4,2 -o "$T/out.nrrd" "$T/turned.mha"
+is "$(line "$T/out.nrrd" sizes) $(line "$T/out.nrrd" "space origin")" "3 2 9 (2,3,0)" "as the file counts"
+sed '1a UltrasoundImageOrientation = FM' "$T/sweep.mha" >"$T/turned.mha"
+fails 1 "images on their sides" "UltrasoundImageOrientation: 'FM'; expected MF, MN, UF or UN" us-import "$T/turned.mha"
 echo '1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2' >"$T/calibration"
 fails 1 "a calibration that is none" 'not a transform' us-import --calibration "$T/calibration" "$T/sweep.mha"
 fails 2 "options of DICOM" 'are for DICOM' us-import --series 1 "$T/sweep.mha"

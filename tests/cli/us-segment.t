@@ -56,6 +56,17 @@ seg "again" -n bone --low 80
 us-segment --raw -q -n bone --low 80 <"$T/v.nrrd" | cmp -s - "$T/l.nrrd"
 is $? 0 "the same from standard input"
 
+# One name, one number.
+fails 1 "a number that is another label's" "first.nrrd: label 1 is 'bone'; expected another --value, or that name" us-segment -n vein --value 1 --low 50 --onto "$T/first.nrrd" "$T/v.nrrd"
+fails 1 "a name that has another number" "first.nrrd: label 1 is 'bone'; expected that --value, or another name" us-segment -n bone --value 7 --low 50 --onto "$T/first.nrrd" "$T/v.nrrd"
+check "both as they are" us-segment -q -n bone --value 1 --low 50 --onto "$T/first.nrrd" -o "$T/l.nrrd" "$T/v.nrrd"
+for name in ' vein' 'vein ' ' ' "$(printf 'a\001b')" "$(printf '\377')"; do
+    fails 2 "a name that would not be read back" 'expected a name in UTF-8, without blanks' us-segment -n "$name" --low 50 "$T/v.nrrd"
+done
+check "a name with a blank, beyond ASCII" us-segment -q -n 'Vena Ångström' --low 50 -o "$T/l.nrrd" "$T/v.nrrd"
+us-surface -l 'Vena Ångström' "$T/l.nrrd" | grep -qx 'g Vena_Ångström'
+is $? 0 "is read back"
+
 fails 2 "no intensities" 'expected --low, --high' us-segment -n x "$T/v.nrrd"
 fails 2 "a tolerance without seeds" '--tolerance is from seeds' us-segment -n x --tolerance 3 "$T/v.nrrd"
 fails 2 "the wrong way" 'above --high' us-segment -n x --low 5 --high 3 "$T/v.nrrd"

@@ -53,6 +53,17 @@ is "$(grep '^g ' "$T/two.obj" | tr '\n' ,)" "g label_2,g inner_vein," "groups in
 us-surface -l 1 <"$T/right.nrrd" | cmp -s - "$T/right.obj"
 is $? 0 "a volume on standard input"
 
+# Each group is one surface.
+fails 1 "a label twice" "a second surface in group 'inner_vein'; expected labels once" us-surface -l 1,2 -l 'inner vein' -o "$T/none.obj" "$T/right.nrrd"
+sed 's/^Segment0_Label.*/&\nSegment1_Name:=inner_vein\nSegment1_LabelValue:=2/' "$T/right.nrrd" >"$T/same.nrrd"
+fails 1 "two names that become one group" "a second surface in group 'inner_vein'; .*names that differ" us-surface -l all "$T/same.nrrd"
+sed 's/^Segment0_Name.*/Segment0_Name:=vein, inner/' "$T/right.nrrd" >"$T/comma.nrrd"
+check "a name with a comma in it" us-surface -l 'vein, inner' -l 2 -o "$T/comma.obj" "$T/comma.nrrd"
+is "$(grep '^g ' "$T/comma.obj" | tr '\n' ,)" "g vein,_inner,g label_2," "is one label"
+for list in '' ',' '1,,2' '1,'; do
+    fails 2 "labels '$list'" 'expected names or numbers of labels between commas, or all' us-surface -l "$list" "$T/right.nrrd"
+done
+
 # A ball of intensities, 1 mm a voxel: radius 8 at level 100.
 {
     printf '%s\n' NRRD0004 'type: float' 'dimension: 3' 'space: left-posterior-superior' 'sizes: 24 24 24' \

@@ -86,6 +86,13 @@ look "$T/cross.obj"
 is "$status" 0 "two boxes that cross"
 is "$([ "$(of 'surface skin' 'pairs of triangles that cross')" -ge 6 ] && echo many)" many "their triangles cross"
 said "that is a warning" "warning: surface 'skin' crosses itself \([0-9]+ pairs of triangles\)"
+is "$(of 'surface skin' encloses)" "136 mm^3 if nothing crossed" "what it encloses is not known then"
+{
+    box skin 0 0 0 4 4 4
+    box skin 2 2 2 6 6 6
+} >"$T/half.obj"
+look "$T/half.obj"
+is "$([ "$(of 'surface skin' 'pairs of triangles that cross')" -ge 6 ] && echo many)" many "edges that cross edges"
 {
     box skin 0 0 0 4 4 4
     box skin 4 0 0 8 4 4
@@ -93,6 +100,23 @@ said "that is a warning" "warning: surface 'skin' crosses itself \([0-9]+ pairs 
 } >"$T/touch.obj"
 look "$T/touch.obj"
 is "$(of 'surface skin' 'pairs of triangles that cross')" 0 "what touches does not cross"
+
+# Thousands of shells within one, a third of them solid in hollows.
+awk 'function box(x, y, z, h, i) {
+        for (i = 0; i < 8; i++) print "v", x + (i % 2 ? h : -h), y + (int(i / 2) % 2 ? h : -h), z + (i > 3 ? h : -h)
+        print "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3"
+    }
+    BEGIN {
+        print "g skin"
+        box(50, 50, 50, 64)
+        for (n = 0; n < 1000; n++) {
+            x = 10 * (n % 10); y = 10 * (int(n / 10) % 10); z = 10 * int(n / 100)
+            box(x, y, z, 4); box(x, y, z, 3); box(x, y, z, 2)
+        }
+    }' >"$T/many.obj"
+look "$T/many.obj"
+is "$(of 'surface skin' shells) $(of 'surface skin' encloses)" \
+    "3001 1.73715e+06 mm^3" "shells in shells in shells: 128^3 - 1000 (8^3 - 6^3 + 4^3)"
 
 # Several surfaces of a volume, and their sizes.
 {

@@ -33,6 +33,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     int code = source ? sweep_read(&s, source, NULL, calibration, &e) : -1;
     if ((code != 0) != (e.status != 0))
         abort();
+    sweep_unflip(&s, (const int64_t[3]){4, 3, 1});
     if (!code && s.count < 1000) {
         put_together(&s, true);
         put_together(&s, false);

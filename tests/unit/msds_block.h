@@ -4,6 +4,7 @@
 #ifndef SINEW_MSDS_BLOCK_H
 #define SINEW_MSDS_BLOCK_H
 
+#include "base/mem.h"
 #include "model/materials.h"
 #include "msds/mesh_tets.h"
 #include "msds/problem.h"
@@ -89,6 +90,31 @@ static inline void tets_press(msds_plan *plan, double radius, double x, double y
     probe_pose pose = {{x, y, z}, {1, 0, 0, 0}};
     plan->touched = true;
     plan->probe = probe_place(&shape, &pose);
+}
+
+/* What warped elements leave of gravity at u, over what they pull with: from each element, whatever the solver says. */
+static inline double tets_left(const msds_problem *p, const double *u)
+{
+    err e = {0};
+    double *f = mem_array(p->nodes, 3 * sizeof *f, "test", &e), left = 0, pull = 0;
+    tets_must(f != NULL, &e);
+    for (int64_t t = 0; t < p->elements; t++) {
+        const int32_t *node = p->element_node + 4 * t;
+        double at[4][3], g[3][3], r[3][3], q[4] = {0, 0, 0, 1}, own[4][3];
+        for (int c = 0; c < 4; c++)
+            memcpy(at[c], u + 3 * (int64_t)node[c], sizeof at[c]);
+        simplex_derivative(&p->element[t], at, g);
+        simplex_rotation(g, q, r);
+        simplex_warped(&p->element[t], g, r, own);
+        for (int i = 0; i < 12; i++)
+            f[3 * (int64_t)node[i / 3] + i % 3] += own[i / 3][i % 3];
+    }
+    for (int64_t i = 0; i < 3 * p->nodes; i++) {
+        pull += f[i] * f[i];
+        left += p->fixed[i / 3] ? 0 : pow(p->weight[i / 3] * p->options.gravity[i % 3] - f[i], 2);
+    }
+    free(f);
+    return sqrt(left / pull);
 }
 
 #endif

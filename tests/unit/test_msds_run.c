@@ -208,6 +208,52 @@ static void test_momentum(void)
     free_problem(&m, &p);
 }
 
+/* The sum of what nodes carry, inertia times velocity. */
+static void sum_momentum(const msds_problem *p, void *state, double *v, double sum[3])
+{
+    err e = {0};
+    tets_must(!msds_cpu.get(state, MSDS_VELOCITY, v, &e), &e);
+    sum[0] = sum[1] = sum[2] = 0;
+    for (int64_t i = 0; i < 3 * p->nodes; i++)
+        sum[i % 3] += p->weight[i / 3] * p->mass_factor * v[i];
+}
+
+/* What moves a block that nothing holds is the probe alone: its force, damper and all, is what the next step adds. */
+static void test_push(void)
+{
+    model m = {0};
+    msds_problem p = {0};
+    msds_sight sight;
+    err e = {0};
+    msds_options o = tets_options();
+    tets b = {{6, 5, 4}, {.1, .1, .1}, 3000, .45, 1000, -1, false};
+    double before[3], after[3];
+    make_problem(&b, &o, &m, &p);
+    pool *workers = pool_create(2, &e);
+    void *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
+    double *v = mem_array(p.nodes, 3 * sizeof *v, "test", &e);
+    msds_plan plan = tets_plan(MSDS_SPRINGS);
+    tets_press(&plan, .04, .055, .045, .09);
+    tets_must(state && v, &e);
+    for (int i = 0; i < 4; i++) {
+        tets_must(!msds_cpu.step(state, &plan, 3, &e) && !msds_cpu.look(state, NULL, &sight, &e), &e);
+        sum_momentum(&p, state, v, before);
+        tets_must(!msds_cpu.step(state, &plan, 1, &e), &e);
+        sum_momentum(&p, state, v, after);
+        double off = 0, size = 0;
+        for (int a = 0; a < 3; a++) {
+            off = fmax(off, fabs((after[a] - before[a]) / plan.dt + sight.force[a]));
+            size = fmax(size, fabs(sight.force[a]));
+        }
+        ok(size > 0 && off < 1e-3 * size, "the force on the probe, %.4g N, is what the block gains, to %.2g", size,
+           off / size);
+    }
+    msds_cpu.destroy(state);
+    pool_destroy(workers);
+    free(v);
+    free_problem(&m, &p);
+}
+
 /* Small motion about rest: a step just below the bound dies out, one just above grows. */
 static void test_bound(void)
 {
@@ -403,6 +449,9 @@ static void test_warped(void)
     o.gravity[2] = -9.81;
     make_problem(&b, &o, &m, &p);
     msds_plan plan = tets_plan(MSDS_EXACT);
+    double *first = run_frames(&p, &plan, 2, 1, 20, &exact), left = tets_left(&p, first);
+    ok(exact.residual < 1e-6 && left < 1e-6, "warped, the first frame: residual %.2g, by its elements %.2g",
+       exact.residual, left);
     double *u = run_frames(&p, &plan, 2, 2, 20, &exact), off = 0;
     ok(exact.residual < 1e-6 && exact.largest > .02, "warped, %.3g m down: residual %.2g", exact.largest,
        exact.residual);
@@ -411,6 +460,7 @@ static void test_warped(void)
     for (int64_t i = 0; i < 3 * p.nodes; i++)
         off = fmax(off, fabs(u[i] - w[i]));
     ok(off < 1e-4 * exact.largest, "conjugate gradients come to the same to %.2g of the largest", off / exact.largest);
+    free(first);
     free(u);
     free(w);
     free_problem(&m, &p);
@@ -454,7 +504,7 @@ static void test_bad(void)
     static const char *const bad[] = {"sphere:0", "sphere:-1cm", "sphere:", "sphere:nan", "box:1", "sphere"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         e = (err){0};
-        ok(probe_of(&shape, bad[i], &e) && e.status == STATUS_USAGE, "%s", e.text);
+        ok(probe_of(&shape, bad[i], &e) && e.status == (i < 2 ? STATUS_BAD : STATUS_USAGE), "%s", e.text);
     }
     e = (err){0};
     ok(!probe_of(&shape, "sphere:2cm", &e) && shape.radius == .02, "a sphere of 2 cm");
@@ -515,6 +565,7 @@ int main(void)
     test_hanging();
     test_column();
     test_momentum();
+    test_push();
     test_bound();
     test_patch();
     test_contact();

@@ -219,26 +219,30 @@ static void test_text(const char *text)
 
 static void test_lines(void)
 {
-    static const char *const bad[] = {"box:1",
-                                      "linear:4cm",
-                                      "linear:4cm,0",
-                                      "linear:4cm,-1cm",
-                                      "linear:4cm,1cm,6mm",
-                                      "linear:4cm,1cm,1mm,1mm",
-                                      "linear:nan,1cm",
-                                      "curved:6cm,60",
-                                      "curved:6cm,0,1cm",
-                                      "curved:6cm,181,1cm",
-                                      "curved:6cm,60mm,1cm",
-                                      "curved:6cm,60,1cm,2cm",
-                                      "curved:0,60,1cm",
-                                      "convex:",
-                                      "linear:",
-                                      "linear:4cm,,1cm"};
+    static const struct {
+        const char *text;
+        int status;
+    } bad[] = {{"box:1", STATUS_USAGE},
+               {"linear:4cm", STATUS_USAGE},
+               {"linear:4cm,0", STATUS_BAD},
+               {"linear:4cm,-1cm", STATUS_BAD},
+               {"linear:4cm,1cm,6mm", STATUS_BAD},
+               {"linear:4cm,1cm,1mm,1mm", STATUS_USAGE},
+               {"linear:nan,1cm", STATUS_USAGE},
+               {"curved:6cm,60", STATUS_USAGE},
+               {"curved:6cm,0,1cm", STATUS_BAD},
+               {"curved:6cm,181,1cm", STATUS_BAD},
+               {"curved:6cm,60mm,1cm", STATUS_BAD},
+               {"curved:6cm,60,1cm,2cm", STATUS_BAD},
+               {"curved:0,60,1cm", STATUS_BAD},
+               {"convex:", STATUS_USAGE},
+               {"linear:", STATUS_USAGE},
+               {"linear:4cm,,1cm", STATUS_USAGE}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        err e = {0};
-        probe p;
-        ok(probe_of(&p, bad[i], &e) && e.status == STATUS_USAGE && strstr(e.text, "expected"), "%s", e.text);
+        err wrong = {0};
+        probe none;
+        ok(probe_of(&none, bad[i].text, &wrong) && wrong.status == bad[i].status && strstr(wrong.text, "expected"),
+           "%s", wrong.text);
     }
     err e = {0};
     probe p;

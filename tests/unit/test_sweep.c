@@ -5,6 +5,7 @@
 #include "tap.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -120,6 +121,54 @@ static void test_read(void)
     sweep_free(&none);
 }
 
+/* Images stored with their columns and rows the other way round lie where they did. */
+static void test_flipped(sweep *s, volume *images)
+{
+    int64_t count = WIDE * HIGH;
+    for (int f = 0; f < FRAMES; f++)
+        for (int64_t i = 0; i < count / 2; i++) {
+            unsigned char *a = (unsigned char *)images->data + f * count, kept = a[i];
+            a[i] = a[count - 1 - i];
+            a[count - 1 - i] = kept;
+        }
+    s->flipped[0] = s->flipped[1] = true;
+    sweep_unflip(s, images->size);
+    test_truth(s, images, true, 8, .5, 2);
+    sweep_unflip(s, images->size);
+    test_truth(s, images, true, 8, .5, 2);
+}
+
+/* What UltrasoundImageOrientation says; -1: refused, 0 to 3: columns, rows flipped. */
+static int orientation(const char *said)
+{
+    char text[400];
+    err e = {0};
+    sweep s = {0};
+    snprintf(text, sizeof text,
+             "ObjectType = Image\nNDims = 3\n%s%s\nDimSize = 4 3 1\n"
+             "Seq_Frame0000_ImageToTrackerTransform = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"
+             "Seq_Frame0000_ImageToTrackerTransformStatus = OK\nSeq_Frame0000_Timestamp = 1\nElementDataFile = LOCAL\n",
+             *said ? "UltrasoundImageOrientation = " : "", said);
+    in *source = in_memory(text, strlen(text), "sweep", &e);
+    int code = source ? sweep_read(&s, source, NULL, NULL, &e) : -2;
+    int flipped = s.flipped[0] + 2 * s.flipped[1];
+    in_close(source);
+    sweep_free(&s);
+    if (code == -1 && !strstr(e.text, "expected MF, MN, UF or UN"))
+        code = -2;
+    return code ? code : flipped;
+}
+
+static void test_orientation(void)
+{
+    static const struct {
+        const char *said;
+        int is;
+    } known[] = {{"MF", 0}, {"UF", 1}, {"MN", 2}, {"un", 3}, {"UNA", 3}, {"XX", 0}, {"", 0}, {"FM", -1}, {"M", -1}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        ok(orientation(known[i].said) == known[i].is, "orientation '%s'", known[i].said);
+}
+
 int main(void)
 {
     sweep s = {0};
@@ -133,6 +182,8 @@ int main(void)
     test_truth(&s, &images, true, 8, .25, 1.5);
     test_refused(&s, &images);
     test_read();
+    test_orientation();
+    test_flipped(&s, &images);
     sweep_free(&s);
     volume_free(&images);
     return done_testing();

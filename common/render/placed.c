@@ -1,0 +1,80 @@
+#include "render/placed.h"
+
+#include "base/mem.h"
+#include "base/num.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int bad(const in *s, err *e, const char *expected)
+{
+    return err_set(e, in_name(s), in_lines(s), "no image that says where it lies; expected %s, as us-slice writes them",
+                   expected);
+}
+
+/* Finite numbers between blanks, exactly so many. */
+static int take_numbers(char *text, double *to, int count)
+{
+    char *rest = NULL;
+    int got = 0;
+    for (char *word = strtok_r(text, " ", &rest); word; word = strtok_r(NULL, " ", &rest))
+        if (got == count || num_double(word, &to[got++]))
+            return -1;
+    return got == count ? 0 : -1;
+}
+
+static int read_head(placed *p, in *s, err *e)
+{
+    static const char mark[] = "# us-slice:";
+    char *line;
+    double place[9], side[2];
+    if (in_line(s, &line, NULL, e) < 0 || (strcmp(line, "P5") != 0 && strcmp(line, "P6") != 0))
+        return e->status ? -1 : bad(s, e, "P5 or P6");
+    p->channels = line[1] == '5' ? 1 : 3;
+    if (in_line(s, &line, NULL, e) < 0 || strncmp(line, mark, sizeof mark - 1) != 0 ||
+        take_numbers(line + sizeof mark - 1, place, 9))
+        return e->status ? -1 : bad(s, e, "'# us-slice:' and nine numbers");
+    memcpy(p->origin, place, sizeof p->origin);
+    memcpy(p->column, place + 3, sizeof p->column);
+    memcpy(p->row, place + 6, sizeof p->row);
+    if (in_line(s, &line, NULL, e) < 0 || take_numbers(line, side, 2))
+        return e->status ? -1 : bad(s, e, "columns and rows");
+    for (int i = 0; i < 2; i++)
+        if (!(side[i] >= 1 && side[i] <= PLACED_SIDE_MOST && side[i] == (int)side[i]))
+            return bad(s, e, "columns and rows of 1 to 16384");
+    p->columns = (int)side[0];
+    p->rows = (int)side[1];
+    if (in_line(s, &line, NULL, e) < 0 || strcmp(line, "255") != 0)
+        return e->status ? -1 : bad(s, e, "255");
+    return 0;
+}
+
+int placed_read(placed *p, in *s, err *e)
+{
+    int64_t capacity = 0, size = 0;
+    *p = (placed){0};
+    if (read_head(p, s, e))
+        return -1;
+    const int64_t all = (int64_t)p->columns * p->rows * p->channels;
+    while (size < all) {
+        const int64_t part = all - size < 1 << 20 ? all - size : 1 << 20;
+        if (MEM_ROOM(&p->pixel, &capacity, size + part, "an image", e))
+            break;
+        const int64_t got = in_read(s, p->pixel + size, (size_t)part, e);
+        size += got > 0 ? got : 0;
+        if (got < part) {
+            if (!e->status)
+                err_set(e, in_name(s), 0, "ends after %lld of %lld bytes of pixels", (long long)size, (long long)all);
+            break;
+        }
+    }
+    if (e->status)
+        placed_free(p);
+    return e->status ? -1 : 0;
+}
+
+void placed_free(placed *p)
+{
+    free(p->pixel);
+    *p = (placed){0};
+}

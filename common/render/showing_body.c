@@ -1,0 +1,76 @@
+#include "base/mem.h"
+#include "base/path.h"
+#include "mesh/obj.h"
+#include "render/showing_parts.h"
+#include "volume/body.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Polygons as fans of triangles; points and lines are nothing to be seen. */
+static int64_t triangles(const obj *o, uint32_t *to)
+{
+    int64_t count = 0;
+    for (int64_t f = 0; f < o->faces; f++)
+        for (int64_t k = o->face_start[f] + 2; k < o->face_start[f + 1]; k++, count++)
+            if (to) {
+                to[3 * count] = (uint32_t)o->corner_vertex[o->face_start[f]];
+                to[3 * count + 1] = (uint32_t)o->corner_vertex[k - 1];
+                to[3 * count + 2] = (uint32_t)o->corner_vertex[k];
+            }
+    return count;
+}
+
+/* In the volume's frame, which is the model's. */
+static int make_mesh(scene_mesh *mesh, const obj *o, const body *all, const body_part *part, err *e)
+{
+    static const float colour[3] = {.55F, .42F, .35F};
+    *mesh = (scene_mesh){.corners = 3, .vertices = o->vertices, .faces = triangles(o, NULL)};
+    memcpy(mesh->colour, colour, sizeof colour);
+    mesh->label = mem_text(part->file, e);
+    mesh->position = mem_array(3 * o->vertices, sizeof *mesh->position, "a surface", e);
+    mesh->corner = mem_array(3 * mesh->faces, sizeof *mesh->corner, "a surface", e);
+    if (e->status)
+        return -1;
+    triangles(o, mesh->corner);
+    for (int64_t v = 0; v < o->vertices; v++) {
+        double x[3], in_body[3];
+        for (int a = 0; a < 3; a++)
+            x[a] = part->scale * o->position[3 * v + a];
+        body_put(&part->place, x, in_body);
+        body_back(&all->volume, in_body, x);
+        for (int a = 0; a < 3; a++)
+            mesh->position[3 * v + a] = (float)x[a];
+    }
+    return scene_smooth(mesh, 40, e);
+}
+
+static int show_part(showing *b, const showing_want *want, const body *all, const body_part *part, err *e)
+{
+    scene_mesh mesh = {0};
+    obj o = {0};
+    char *path = path_join(want->body, path_folder(want->body), part->file, e);
+    in *s = path ? in_open(path, e) : NULL;
+    free(path);
+    if (s && !obj_read(&o, s, e) && make_mesh(&mesh, &o, all, part, e))
+        scene_mesh_free(&mesh);
+    else if (!e->status)
+        showing_add(b, &mesh, NULL, e);
+    in_close(s);
+    obj_free(&o);
+    return e->status ? -1 : 0;
+}
+
+int showing_body(showing *b, const showing_want *want, err *e)
+{
+    body all = {0};
+    if (!want->body)
+        return 0;
+    in *s = in_open(want->body, e);
+    if (s && !body_read(&all, s, e))
+        for (int i = 0; i < all.parts && !e->status; i++)
+            show_part(b, want, &all, &all.part[i], e);
+    in_close(s);
+    body_free(&all);
+    return e->status ? -1 : 0;
+}

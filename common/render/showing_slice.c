@@ -1,0 +1,66 @@
+#include "base/mem.h"
+#include "base/numbered.h"
+#include "render/placed.h"
+#include "render/showing_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A quadrilateral a pixel. */
+static int make_mesh(scene_mesh *mesh, const placed *p, err *e)
+{
+    const int64_t across = p->columns + 1, faces = (int64_t)p->columns * p->rows;
+    *mesh = (scene_mesh){.corners = 4, .vertices = across * (p->rows + 1), .faces = faces};
+    mesh->label = mem_text("the slice", e);
+    mesh->position = mem_array(3 * mesh->vertices, sizeof *mesh->position, "a slice", e);
+    mesh->corner = mem_array(4 * faces, sizeof *mesh->corner, "a slice", e);
+    mesh->face_colour = mem_array(3 * faces, sizeof *mesh->face_colour, "a slice", e);
+    if (e->status)
+        return -1;
+    for (int64_t i = 0; i < mesh->vertices; i++) {
+        const int64_t c = i % across, r = i / across;
+        for (int a = 0; a < 3; a++)
+            mesh->position[3 * i + a] =
+                (float)(p->origin[a] + p->column[a] * ((double)c - .5) + p->row[a] * ((double)r - .5));
+    }
+    for (int64_t i = 0; i < faces; i++) {
+        const uint32_t first = (uint32_t)(i / p->columns * across + i % p->columns);
+        const uint32_t corner[4] = {first, first + 1, first + (uint32_t)across + 1, first + (uint32_t)across};
+        uint8_t srgb[3];
+        for (int k = 0; k < 3; k++)
+            srgb[k] = p->pixel[p->channels * i + (p->channels == 3 ? k : 0)];
+        memcpy(mesh->corner + 4 * i, corner, sizeof corner);
+        showing_linear(srgb, mesh->face_colour + 3 * i);
+    }
+    return 0;
+}
+
+/* The file for the frame, where the name is a pattern. The caller frees it. */
+static char *slice_file(const showing_want *want, err *e)
+{
+    numbered names;
+    if (!strchr(want->slice, '%'))
+        return mem_text(want->slice, e);
+    if (numbered_of(&names, want->slice, "", e))
+        return NULL;
+    return numbered_name(&names, want->moved ? want->moved->index : 0, e);
+}
+
+int showing_slice(showing *b, const showing_want *want, err *e)
+{
+    placed p = {0};
+    scene_mesh mesh = {0};
+    if (!want->slice)
+        return 0;
+    char *file = slice_file(want, e);
+    in *s = file ? in_open(file, e) : NULL;
+    free(file);
+    if (s && !placed_read(&p, s, e) && make_mesh(&mesh, &p, e))
+        scene_mesh_free(&mesh);
+    else if (!e->status)
+        showing_add(b, &mesh, NULL, e);
+    in_close(s);
+    placed_free(&p);
+    return e->status ? -1 : 0;
+}

@@ -1,0 +1,203 @@
+#include "volume/body.h"
+
+#include "base/keyfile.h"
+#include "base/mem.h"
+#include "base/num.h"
+#include "volume/poses.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PARTS_MOST = 1000 };
+
+enum { KEY_MOVE, KEY_TURN, KEY_UNIT, KEY_IN };
+static const char *const keys[] = {"move", "turn", "unit", "in"};
+
+body_place body_none(void)
+{
+    return (body_place){.turn = {0, 0, 0, 1}};
+}
+
+static void turned(const double turn[4], const double v[3], double to[3])
+{
+    double r[9];
+    poses_matrix(turn, r);
+    for (int a = 0; a < 3; a++)
+        to[a] = r[3 * a] * v[0] + r[3 * a + 1] * v[1] + r[3 * a + 2] * v[2];
+}
+
+void body_put(const body_place *p, const double from[3], double to[3])
+{
+    double x[3];
+    turned(p->turn, from, x);
+    for (int a = 0; a < 3; a++)
+        to[a] = x[a] + p->move[a];
+}
+
+void body_back(const body_place *p, const double from[3], double to[3])
+{
+    const double back[4] = {-p->turn[0], -p->turn[1], -p->turn[2], p->turn[3]};
+    double x[3];
+    for (int a = 0; a < 3; a++)
+        x[a] = from[a] - p->move[a];
+    turned(back, x, to);
+}
+
+static void product(const double p[4], const double q[4], double to[4])
+{
+    const double r[4] = {
+        p[3] * q[0] + q[3] * p[0] + p[1] * q[2] - p[2] * q[1], p[3] * q[1] + q[3] * p[1] + p[2] * q[0] - p[0] * q[2],
+        p[3] * q[2] + q[3] * p[2] + p[0] * q[1] - p[1] * q[0], p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]};
+    memcpy(to, r, sizeof r);
+}
+
+void body_turn(const body_place *p, const double from[4], double to[4])
+{
+    product(p->turn, from, to);
+}
+
+void body_turn_back(const body_place *p, const double from[4], double to[4])
+{
+    const double back[4] = {-p->turn[0], -p->turn[1], -p->turn[2], p->turn[3]};
+    product(back, from, to);
+}
+
+/* ---- the file */
+
+typedef struct line {
+    body_place place;
+    double scale; /* 0: not given */
+    bool in_volume;
+} line;
+
+static int take_move(const keyfile *k, const char *text, double to[3], err *e)
+{
+    num_length list[3];
+    if (num_lengths_of(text, list, 3) != 3)
+        return keyfile_error(k, e, "move=%.100s; expected three lengths X,Y,Z, metres without a suffix", text);
+    for (int a = 0; a < 3; a++)
+        to[a] = num_length_in(list[a], num_unit_of("m"), num_unit_of("m"));
+    return 0;
+}
+
+static int take_turn(const keyfile *k, const char *text, double to[4], err *e)
+{
+    double q[4], square = 0;
+    int count = num_list(text, q, 4);
+    for (int i = 0; i < 4 && count == 4; i++)
+        square += q[i] * q[i];
+    if (count != 4 || !(fabs(sqrt(square) - 1) <= .01))
+        return keyfile_error(k, e, "turn=%.100s; expected a unit quaternion X,Y,Z,W, its length 1 to within 0.01",
+                             text);
+    for (int i = 0; i < 4; i++)
+        to[i] = q[i] / sqrt(square);
+    return 0;
+}
+
+static int take_key(const keyfile *k, int key, const char *value, bool surface, line *l, err *e)
+{
+    if (key == KEY_MOVE)
+        return take_move(k, value, l->place.move, e);
+    if (key == KEY_TURN)
+        return take_turn(k, value, l->place.turn, e);
+    if (!surface)
+        return keyfile_error(k, e, "%s= of the volume; expected move= or turn=", keys[key]);
+    if (key == KEY_UNIT) {
+        num_unit unit = num_unit_of(value);
+        if (!unit)
+            return keyfile_error(k, e, "unit=%.100s; expected " NUM_UNITS, value);
+        l->scale = num_length_in((num_length){1, unit}, unit, num_unit_of("m"));
+        return 0;
+    }
+    if (strcmp(value, "volume") && strcmp(value, "body"))
+        return keyfile_error(k, e, "in=%.100s; expected in=body or in=volume", value);
+    l->in_volume = !strcmp(value, "volume");
+    return 0;
+}
+
+static int take_keys(keyfile *k, int from, bool surface, line *l, err *e)
+{
+    uint64_t seen = 0;
+    *l = (line){.place = body_none()};
+    for (int i = from; i < k->count; i++) {
+        char *value;
+        int key = keyfile_pair(k, i, keys, sizeof keys / sizeof *keys, &seen, &value, e);
+        if (key < 0 || take_key(k, key, value, surface, l, e))
+            return -1;
+    }
+    return 0;
+}
+
+static int take_surface(body *b, keyfile *k, err *e)
+{
+    line l;
+    if (k->count < 2 || strchr(k->word[1], '='))
+        return keyfile_error(k, e, "a surface without a file; expected surface FILE.obj unit=mm ...");
+    if (strchr(k->word[1], '/'))
+        return keyfile_error(k, e, "'%.200s': expected the name of a file in the folder of this one", k->word[1]);
+    if (b->parts == PARTS_MOST)
+        return keyfile_error(k, e, "more than %d surfaces", PARTS_MOST);
+    if (take_keys(k, 2, true, &l, e))
+        return -1;
+    if (!(l.scale > 0))
+        return keyfile_error(k, e, "'%.200s' without unit=; expected " NUM_UNITS, k->word[1]);
+    char *file = mem_text(k->word[1], e);
+    if (!file || MEM_ROOM(&b->part, &b->room, b->parts + 1, "the parts of a body", e)) {
+        free(file);
+        return -1;
+    }
+    b->part[b->parts++] = (body_part){file, l.scale, l.place, l.in_volume};
+    return 0;
+}
+
+/* Parts in the volume go where it goes, once it is known. */
+static void place_parts(body *b)
+{
+    for (int i = 0; i < b->parts; i++) {
+        body_place *p = &b->part[i].place;
+        if (!b->part[i].in_volume)
+            continue;
+        body_put(&b->volume, p->move, p->move);
+        body_turn(&b->volume, p->turn, p->turn);
+    }
+}
+
+int body_read(body *b, in *s, err *e)
+{
+    keyfile k;
+    line l;
+    bool placed = false;
+    *b = (body){.volume = body_none()};
+    keyfile_open(&k, s);
+    while (keyfile_next(&k, e) > 0) {
+        if (!strcmp(k.word[0], "surface")) {
+            if (take_surface(b, &k, e))
+                break;
+        } else if (strcmp(k.word[0], "volume") != 0) {
+            keyfile_error(&k, e, "'%.100s'; expected volume or surface", k.word[0]);
+            break;
+        } else if (placed) {
+            keyfile_error(&k, e, "the volume is placed twice; expected once");
+            break;
+        } else {
+            if (take_keys(&k, 1, false, &l, e))
+                break;
+            b->volume = l.place;
+            placed = true;
+        }
+    }
+    if (!e->status)
+        place_parts(b);
+    if (e->status)
+        body_free(b);
+    return e->status ? -1 : 0;
+}
+
+void body_free(body *b)
+{
+    for (int i = 0; i < b->parts; i++)
+        free(b->part[i].file);
+    free(b->part);
+    *b = (body){0};
+}

@@ -1,0 +1,21 @@
+/* A tetrahedral model as us-slice cuts it: its elements with their nodes in ascending order (so that a face is the same from both its
+ * sides), and where its nodes are at rest in the volume. Owns what it made; the positions are the model's.
+ */
+#ifndef SINEW_SLICE_MESH_H
+#define SINEW_SLICE_MESH_H
+
+#include "model/model.h"
+#include "slice/slice_cells.h"
+
+typedef struct slice_mesh {
+    int64_t nodes, tets;
+    const double *rest; /* nodes x 3, m: the model's */
+    int32_t *node;      /* tets x 4 */
+    double *place;      /* nodes x 3: at rest, in cells */
+} slice_mesh;
+
+/* -1 with e filled: no tetrahedra, positions that are not finite. where: the stream's name. */
+int slice_mesh_of(slice_mesh *s, const model *m, const slice_cells *c, const char *where, err *e);
+void slice_mesh_free(slice_mesh *s);
+
+#endif

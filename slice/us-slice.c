@@ -1,0 +1,478 @@
+/* us-slice: ultrasound images of a volume that a mesh deforms, a frame each, where the probe of the frame looks. PST section IV. */
+#include "base/mem.h"
+#include "base/progress.h"
+#include "base/tool.h"
+#include "model/finite.h"
+#include "model/source.h"
+#include "slice/slice_cut.h"
+#include "slice/slice_grey.h"
+#include "slice/slice_overlay.h"
+#include "slice/slice_view.h"
+#include "slice/slice_write.h"
+#include "volume/body.h"
+#include "volume/poses.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SLICES = 5, SLICES_MOST = 99 };
+
+struct options {
+    opt_common common;
+    bool rigid;
+    int method;
+    const char *poses, *transform, *body, *size, *probe, *labels, *cut, *thickness;
+    opt_lengths depth, width;
+    opt_numbers tgc, range, window;
+    double gain;
+    int64_t regions;
+};
+
+#define TO(field) offsetof(struct options, field)
+static const opt option_list[] = {
+    {0, "poses", "FILE", OPT_TEXT, TO(poses), 0, 0, NULL, OPT_FILE, "where the probe is, not as frames say"},
+    {0, "transform", "NAME", OPT_TEXT, TO(transform), 0, 0, NULL, 0, "which, of poses in a PLUS sequence"},
+    {0, "rigid", NULL, OPT_FLAG, TO(rigid), 0, 0, NULL, 0, "no model: the volume as it lies"},
+    {0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "where it lies in the frame of --poses"},
+    {0, "size", "COLUMNSxROWS", OPT_TEXT, TO(size), 0, 0, NULL, 0, "pixels [512x512]"},
+    {0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, NULL, 0, "linear:W,T curved:R,ANGLE,T phased:ANGLE"},
+    {0, "depth", "D", OPT_LENGTHS, TO(depth), 0, 1, NULL, 0, "along a beam [5cm]"},
+    {0, "width", "W", OPT_LENGTHS, TO(width), 0, 1, NULL, 0, "of the image [the array's, or its fan's]"},
+    {0, "thickness", "T[,N]", OPT_TEXT, TO(thickness), 0, 0, NULL, 0, "of the beam: the mean of N slices [5]"},
+    {0, "gain", "DB", OPT_NUMBER, TO(gain), -200, 200, NULL, 0, "of the whole image"},
+    {0, "tgc", "DB,...", OPT_NUMBERS, TO(tgc), 1, 6, NULL, 0, "gains from the face to the depth"},
+    {0, "dynamic-range", "DB[,DB]", OPT_NUMBERS, TO(range), 1, 2, NULL, 0, "shown, and as recorded [60,60]"},
+    {0, "window", "LOW,HIGH", OPT_NUMBERS, TO(window), 2, 2, NULL, 0, "values of black and white"},
+    {0, "labels", "FILE", OPT_TEXT, TO(labels), 0, 0, NULL, OPT_FILE, "a map of labels to lay over, in colours"},
+    {0, "cut", "FILE.obj", OPT_TEXT, TO(cut), 0, 0, NULL, OPT_OUTPUT, "write the polygons that the slice cuts"},
+    {0, "method", "spans|paper", OPT_CHOICE, TO(method), 0, 0, "spans|paper", OPT_OUTPUT, "paper: rows halved, as PST"},
+    {0, "regions", "R", OPT_INT, TO(regions), 1, SLICE_SIDE_MOST, NULL, OPT_OUTPUT, "lists of tetrahedra [32]"},
+    {0}};
+
+static const opt_tool table = {
+    .name = "us-slice",
+    .purpose = "Ultrasound images of a volume, deformed by the model on stdin: PGM, PPM or PNG.",
+    .operands = "volume",
+    .operands_min = 1,
+    .operands_max = 1,
+    .threaded = true,
+    .options = option_list,
+};
+
+typedef struct job {
+    const struct options *o;
+    const tool *t;
+    pool *threads;
+    slice_cells cells;
+    source model;
+    slice_mesh mesh;
+    in *pose_source;
+    poses poses;
+    bool more_poses;
+    body_place place; /* of the volume */
+    slice_view view;
+    slice_cutter *cutter;
+    slice_grey grey;
+    slice_overlay overlay;
+    slice_writer writer;
+    double thickness; /* m */
+    int slices;
+    uint8_t *image, *colour, *one; /* rows x columns, x 3; a slice of several */
+    uint16_t *sum;
+    int64_t images;
+    notes warnings;
+} job;
+
+/* ---- options */
+
+static double metres(const opt_lengths *l, double otherwise)
+{
+    return l->count ? num_length_in(l->value[0], num_unit_of("m"), num_unit_of("m")) : otherwise;
+}
+
+static int check_options(const struct options *o, err *e)
+{
+    if (o->rigid && !o->poses)
+        return err_usage(e, "--rigid without --poses; expected where the probe is");
+    if (o->rigid && o->cut)
+        return err_usage(e, "--cut with --rigid: there are no tetrahedra to cut");
+    if (o->body && !o->poses)
+        return err_usage(e, "--body without --poses, whose frame it is; poses in frames are in the volume's");
+    if (o->transform && !o->poses)
+        return err_usage(e, "--transform without --poses");
+    if (o->depth.count && !(metres(&o->depth, 1) > 0))
+        return err_usage(e, "--depth: expected more than 0");
+    if (o->width.count && !(metres(&o->width, 1) > 0))
+        return err_usage(e, "--width: expected more than 0");
+    for (int i = 0; i < o->range.count; i++)
+        if (!(o->range.value[i] >= 1 && o->range.value[i] <= 200))
+            return err_usage(e, "--dynamic-range %g; expected 1 to 200 dB", o->range.value[i]);
+    for (int i = 0; i < o->tgc.count; i++)
+        if (!(o->tgc.value[i] >= -200 && o->tgc.value[i] <= 200))
+            return err_usage(e, "--tgc %g; expected -200 to 200 dB", o->tgc.value[i]);
+    if (o->window.count && !(o->window.value[0] < o->window.value[1]))
+        return err_usage(e, "--window %g,%g; expected LOW below HIGH", o->window.value[0], o->window.value[1]);
+    return 0;
+}
+
+static int read_thickness(job *j, err *e)
+{
+    char copy[64];
+    num_length length;
+    int64_t slices = SLICES;
+    const char *text = j->o->thickness;
+    j->slices = 1;
+    if (!text)
+        return 0;
+    if (strlen(text) >= sizeof copy)
+        return err_usage(e, "--thickness %.60s; expected T or T,N, as 3mm,5", text);
+    char *comma = strchr(strcpy(copy, text), ',');
+    if (comma)
+        *comma++ = '\0';
+    if (num_length_of(copy, &length) || (comma && num_int(comma, 1, SLICES_MOST, &slices)))
+        return err_usage(e, "--thickness %.60s; expected T or T,N, as 3mm,5, with N from 1 to %d", text, SLICES_MOST);
+    j->thickness = num_length_in(length, num_unit_of("m"), num_unit_of("m"));
+    j->slices = (int)slices;
+    return j->thickness > 0 ? 0 : err_usage(e, "--thickness %.60s; expected more than 0", text);
+}
+
+/* ---- what is there before the first image */
+
+static int read_volume(job *j, const char *path, err *e)
+{
+    volume v = {0};
+    if (!j->o->rigid && !strcmp(path, "-"))
+        return err_usage(e, "the volume is '-', but standard input holds the model; expected a file");
+    if (volume_load(&v, path, e))
+        return -1;
+    slice_window w = slice_window_of(&v);
+    if (j->o->window.count)
+        w = (slice_window){j->o->window.value[0], j->o->window.value[1]};
+    if (w.low != 0 || w.high != 255)
+        tool_say(j->t, "black is %.6g, white %.6g", w.low, w.high);
+    slice_cells_make(&j->cells, &v, w, j->threads, e);
+    volume_free(&v);
+    return e->status ? -1 : 0;
+}
+
+/* What --probe was of the tool that pressed; to holds it. */
+static bool pressed_by(const model *m, char *to, size_t size)
+{
+    for (int i = m->provs - 1; i >= 0; i--) {
+        const char *at = strstr(m->prov[i], "--probe ");
+        if (!at || (strncmp(m->prov[i], "msds-run ", 9) && strncmp(m->prov[i], "tled-run ", 9)))
+            continue;
+        at += strlen("--probe ");
+        size_t length = strcspn(at, " ");
+        snprintf(to, size, "%.*s", (int)(length < size ? length : size - 1), at);
+        return true;
+    }
+    return false;
+}
+
+static int make_view(job *j, err *e)
+{
+    const struct options *o = j->o;
+    slice_probe p = {.array = SLICE_LINEAR, .width = .04};
+    slice_size size;
+    char text[200] = "";
+    int none = 0;
+    if (o->probe) {
+        none = slice_probe_of(&p, o->probe, e);
+        if (none > 0)
+            return err_usage(e, "--probe %.100s makes no image; expected linear:W,T, curved:R,ANGLE,T or phased:ANGLE",
+                             o->probe);
+    } else if (!o->rigid && pressed_by(&j->model.body, text, sizeof text)) {
+        err ignored = {0};
+        none = !strncmp(text, "convex:", 7) || !strncmp(text, "sphere:", 7) ? 1 : slice_probe_of(&p, text, &ignored);
+    }
+    if (none < 0 && e->status)
+        return -1;
+    if (none)
+        tool_say(j->t, "the frames' probe, %s, makes no image: that of a linear array of 4 cm", text);
+    return slice_size_of(&size, o->size, e) ||
+           slice_view_make(&j->view, &p, size, metres(&o->depth, .05), metres(&o->width, 0), e);
+}
+
+static int make_grey(job *j, err *e)
+{
+    const struct options *o = j->o;
+    slice_knobs k = {o->gain, o->tgc.value, o->tgc.count, 60, 60};
+    k.shown = o->range.count ? o->range.value[0] : k.shown;
+    k.recorded = o->range.count > 1 ? o->range.value[1] : k.recorded;
+    return slice_grey_make(&j->grey, &j->view, &k, e);
+}
+
+static int make_overlay(job *j, err *e)
+{
+    volume labels = {0};
+    if (!j->o->labels)
+        return 0;
+    if (!volume_load(&labels, j->o->labels, e))
+        slice_overlay_make(&j->overlay, &labels, &j->cells, j->view.size, e);
+    volume_free(&labels);
+    return e->status ? -1 : 0;
+}
+
+static int make_images(job *j, err *e)
+{
+    const int64_t count = (int64_t)j->view.size.columns * j->view.size.rows;
+    j->image = mem_array(count, 1, "an image", e);
+    j->colour = j->image && j->o->labels ? mem_array(3 * count, 1, "an image", e) : NULL;
+    if (!e->status && j->slices > 1) {
+        j->sum = mem_array(count, sizeof *j->sum, "an image", e);
+        j->one = j->sum ? mem_array(count, 1, "an image", e) : NULL;
+    }
+    return e->status ? -1 : 0;
+}
+
+static int make_cutter(job *j, err *e)
+{
+    const slice_lanes *lanes = slice_lanes_choose(e);
+    const slice_setup s = {.cells = &j->cells,
+                           .mesh = j->o->rigid ? NULL : &j->mesh,
+                           .size = j->view.size,
+                           .shown = j->view.shown,
+                           .lanes = lanes,
+                           .method = j->o->method ? SLICE_PAPER : SLICE_SPANS,
+                           .regions = (int)j->o->regions,
+                           .threads = j->threads};
+    if (!lanes)
+        return -1;
+    j->cutter = slice_cutter_make(&s, e);
+    return j->cutter ? 0 : -1;
+}
+
+static int read_body(job *j, err *e)
+{
+    body b;
+    j->place = body_none();
+    if (!j->o->body)
+        return 0;
+    in *s = in_open(j->o->body, e);
+    if (s && !body_read(&b, s, e)) {
+        j->place = b.volume;
+        body_free(&b);
+    }
+    in_close(s);
+    return e->status ? -1 : 0;
+}
+
+/* The poses last: a FIFO opens when its writer comes. */
+static int prepare(job *j, const char *path, err *e)
+{
+    const int threads = tool_threads(j->t, e);
+    j->threads = threads > 0 ? pool_create(threads, e) : NULL;
+    if (!j->threads || read_thickness(j, e) || read_body(j, e) || slice_writer_open(&j->writer, j->o->common.output, e))
+        return -1;
+    if (read_volume(j, path, e) || (!j->o->rigid && source_open(&j->model, NULL, e)) || make_view(j, e))
+        return -1;
+    if (!j->o->rigid && slice_mesh_of(&j->mesh, &j->model.body, &j->cells, source_name(&j->model), e))
+        return -1;
+    if (make_grey(j, e) || make_overlay(j, e) || make_images(j, e) || make_cutter(j, e))
+        return -1;
+    if (!j->o->poses)
+        return 0;
+    j->pose_source = in_open(j->o->poses, e);
+    j->more_poses = true;
+    return j->pose_source ? poses_open(&j->poses, j->pose_source, j->o->transform, e) : -1;
+}
+
+/* ---- images */
+
+/* The mean of the slices; labels are those of the middle one. */
+static int draw(job *j, const double origin[3], const double turn[4], const double *displacement, slice_plane *at,
+                err *e)
+{
+    const int64_t count = (int64_t)j->view.size.columns * j->view.size.rows;
+    const int n = j->slices;
+    *at = slice_view_plane(&j->view, origin, turn, 0);
+    if (j->overlay.seen)
+        slice_cutter_also(j->cutter, slice_overlay_take, &j->overlay);
+    if (slice_cutter_image(j->cutter, at, displacement, j->image, NULL, e) || n == 1)
+        return e->status ? -1 : 0;
+    slice_cutter_also(j->cutter, NULL, NULL);
+    memset(j->sum, 0, (size_t)count * sizeof *j->sum);
+    for (int i = 0; i < n; i++) {
+        const double off = j->thickness * ((i + .5) / n - .5);
+        const slice_plane beside = slice_view_plane(&j->view, origin, turn, off);
+        const bool middle = 2 * i + 1 == n;
+        if (!middle && slice_cutter_image(j->cutter, &beside, displacement, j->one, NULL, e))
+            return -1;
+        const uint8_t *from = middle ? j->image : j->one;
+        for (int64_t k = 0; k < count; k++)
+            j->sum[k] = (uint16_t)(j->sum[k] + from[k]);
+    }
+    for (int64_t k = 0; k < count; k++)
+        j->image[k] = (uint8_t)((2 * j->sum[k] + n) / (2 * n));
+    return 0;
+}
+
+static int write_cut(job *j, const slice_plane *at, int64_t index, err *e)
+{
+    numbered names;
+    int64_t count = 0;
+    if (!j->o->cut)
+        return 0;
+    const bool pattern = strchr(j->o->cut, '%') != NULL;
+    if (pattern && numbered_of(&names, j->o->cut, "", e))
+        return -1;
+    char *name = pattern ? numbered_name(&names, index, e) : mem_text(j->o->cut, e);
+    out *to = name ? out_open(name, false, e) : NULL;
+    free(name);
+    if (!to)
+        return -1;
+    out_text(to, "# us-slice " SINEW_VERSION ": where the slice cuts the tetrahedra; mm, LPS\n");
+    if (slice_cut_write(j->cutter, at, &j->model.body, to, &count, e)) {
+        out_discard(to);
+        return -1;
+    }
+    tool_detail(j->t, "image %lld: the slice cuts %lld tetrahedra", (long long)index, (long long)count);
+    return out_close(to, e);
+}
+
+/* Where the image is in the frame that the poses are in. */
+static slice_plane placed(const job *j, const slice_plane *at)
+{
+    const body_place turn = {.turn = {j->place.turn[0], j->place.turn[1], j->place.turn[2], j->place.turn[3]}};
+    slice_plane p = {0};
+    body_put(&j->place, at->origin, p.origin);
+    body_put(&turn, at->column, p.column);
+    body_put(&turn, at->row, p.row);
+    return p;
+}
+
+/* origin, turn: of the probe, in the volume's frame. */
+static int put_image(job *j, int64_t index, const double origin[3], const double turn[4], const double *displacement,
+                     err *e)
+{
+    const int64_t count = (int64_t)j->view.size.columns * j->view.size.rows;
+    const double start = progress_clock();
+    slice_plane at;
+    if (draw(j, origin, turn, displacement, &at, e))
+        return -1;
+    slice_grey_apply(&j->grey, j->image, 0, count);
+    if (j->overlay.seen)
+        slice_overlay_paint(&j->overlay, j->image, count, j->colour);
+    const double took = progress_clock() - start;
+    const slice_plane out_at = placed(j, &at);
+    j->images++;
+    if (slice_writer_put(&j->writer, index, &out_at, j->view.size, j->overlay.seen ? j->colour : j->image,
+                         j->overlay.seen ? 3 : 1, e) ||
+        write_cut(j, &at, index, e))
+        return -1;
+    tool_detail(j->t, "image %lld: %.3f ms", (long long)index, 1e3 * took);
+    return 0;
+}
+
+/* The next pose, in the volume's frame. 1, 0 at the end, -1. */
+static int next_pose(job *j, double origin[3], double turn[4], err *e)
+{
+    poses_event at;
+    int got;
+    do
+        got = poses_next(&j->poses, &at, e);
+    while (got > 0 && at.kind != POSES_POSE);
+    if (got <= 0)
+        return got;
+    body_back(&j->place, at.origin, origin);
+    body_turn_back(&j->place, at.turn, turn);
+    return 1;
+}
+
+static int frame_pose(const job *j, double origin[3], double turn[4], err *e)
+{
+    const model_array *pose = frame_find(&j->model.frame, "probe.pose");
+    double square = 0;
+    if (!pose || pose->rows < 1)
+        return err_set(e, source_name(&j->model), 0,
+                       "frame %lld holds no probe.pose; expected frames of msds-run with --poses, or --poses here",
+                       (long long)j->model.frame.index);
+    if (finite_array(pose, source_name(&j->model), e))
+        return -1;
+    for (int i = 3; i < 7; i++)
+        square += pose->f64[i] * pose->f64[i];
+    if (!(fabs(sqrt(square) - 1) <= POSES_LENGTH))
+        return err_set(e, source_name(&j->model), 0,
+                       "frame %lld: probe.pose has a quaternion of length %.6g; expected 1, to within %g",
+                       (long long)j->model.frame.index, sqrt(square), POSES_LENGTH);
+    memcpy(origin, pose->f64, 3 * sizeof *origin);
+    for (int i = 0; i < 4; i++)
+        turn[i] = pose->f64[3 + i] / sqrt(square);
+    return 0;
+}
+
+/* The displacement of the last frame read; NULL: at rest. */
+static int displacement_of(const job *j, const double **to, err *e)
+{
+    const model_array *u = j->model.frames ? frame_find(&j->model.frame, "node.displacement") : NULL;
+    *to = u ? u->f64 : NULL;
+    return u ? finite_array(u, source_name(&j->model), e) : 0;
+}
+
+/* A frame an image. */
+static int slice_frames(job *j, err *e)
+{
+    int got;
+    while ((got = source_next(&j->model, e)) > 0) {
+        double origin[3], turn[4];
+        const double *u;
+        int pose = j->more_poses ? next_pose(j, origin, turn, e) : 1;
+        if (pose < 0 || (!j->more_poses && frame_pose(j, origin, turn, e)) || displacement_of(j, &u, e))
+            return -1;
+        if (!pose)
+            return err_set(e, in_name(j->pose_source), 0,
+                           "has %lld poses, fewer than there are frames; expected one each", (long long)j->images);
+        if (put_image(j, j->model.frame.index, origin, turn, u, e))
+            return -1;
+    }
+    if (!got && !j->model.frames && !j->more_poses)
+        return err_set(e, source_name(&j->model), 0, "the model has no frames; expected those of msds-run, or --poses");
+    return got;
+}
+
+/* A pose an image: of the volume as it lies, or as the last frame leaves it. */
+static int slice_poses(job *j, err *e)
+{
+    double origin[3], turn[4];
+    const double *u = NULL;
+    int got;
+    if (!j->o->rigid && displacement_of(j, &u, e))
+        return -1;
+    while ((got = next_pose(j, origin, turn, e)) > 0)
+        if (put_image(j, j->images, origin, turn, u, e))
+            return -1;
+    if (!got && !j->images)
+        return err_set(e, in_name(j->pose_source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
+    return got;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {.size = "512x512", .regions = SLICE_REGIONS};
+    err e = {0};
+    tool t = {0};
+    job j = {.o = &o, .t = &t};
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done || check_options(&o, &e))
+        goto out;
+    if (prepare(&j, argv[1], &e) || (!o.rigid && slice_frames(&j, &e)) || (j.more_poses && slice_poses(&j, &e)))
+        goto out;
+out:
+    tool_warn(&t, &j.warnings);
+    slice_writer_close(&j.writer, &e);
+    slice_cutter_free(j.cutter);
+    slice_overlay_free(&j.overlay);
+    slice_grey_free(&j.grey);
+    slice_view_free(&j.view);
+    slice_mesh_free(&j.mesh);
+    slice_cells_free(&j.cells);
+    source_close(&j.model);
+    in_close(j.pose_source);
+    pool_destroy(j.threads);
+    free(j.image);
+    free(j.colour);
+    free(j.one);
+    free(j.sum);
+    return tool_end(&t, &e);
+}
