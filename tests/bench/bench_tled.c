@@ -1,13 +1,14 @@
 /* `make bench-tled`: what a step of tled-run's solver takes, on each back end and in each precision that this machine has, over
- * blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio): CSV. After a warm-up, the median, the least and the most of
- * some rounds. A `step` is the back end's own; a `run` is one as tled-run makes it, with its looks, and with 60 frames a second of
- * the model's time; times_real_time is how much of the model's time one of these takes.
+ * blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio): CSV. After a warm-up, the
+ * median, the least and the most of some rounds. A `step` is the back end's own; a `run` is one as tled-run makes it, with its
+ * looks, and with 60 frames a second of the model's time; times_real_time is the time simulated over the time taken.
  *
  * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and written, 1/m,
- * and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, and its fibre (12) and share (4) where it
- * has them. flops_a_step is what flops.h counts, for each element and node once; `computed` says how many elements for each one of
- * the model are computed in fact, and lanes_filled how much of a processor's vectors they fill. Beside them stands what the machine did at most in the same rounds: copying (on a card of more than its
- * L2 cache holds or within it, as the bytes of a step are) and multiply-adds, in two instructions, of the same precision.
+ * and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, its share (4) where the model has them,
+ * and its fibre (12) where its muscle contracts. flops_a_step is what flops.h counts, for each element and node once; `computed`
+ * says how many elements for each one of the model are computed in fact, and lanes_filled how much of a processor's vectors they
+ * fill. Beside them stands what the machine did at most in the same rounds: copying (on a card of more than its L2 cache holds or
+ * within it, as the bytes of a step are) and multiply-adds, in two instructions, of the same precision.
  */
 // needs: tests/bench/roof.c tests/bench/flops.cc tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c
 #include "../unit/tled_bench.h"
@@ -81,21 +82,27 @@ static double say(measured *w, const bench *b, const char *what, int64_t steps)
     return middle;
 }
 
+/* Elements of volumes that contract. */
+static double active_of(const tled_problem *p)
+{
+    double sum = 0;
+    for (int32_t i = 0; i < p->volumes; i++)
+        sum += p->volume[i].contract < 0 ? 0 : (double)p->volume[i].elements;
+    return sum;
+}
+
 static double bytes_of(const tled_problem *p, bool single)
 {
     const int number = single ? sizeof(float) : sizeof(double);
-    return (double)p->nodes * (13 * number + 4) +
-           (double)p->elements * (4 + (p->fibre ? 12 : 0) + (p->fraction ? 4 : 0));
+    return (double)p->nodes * (13 * number + 4) + (double)p->elements * (4 + (p->fraction ? 4 : 0)) + 12 * active_of(p);
 }
 
 static double flops_of(const tled_problem *p)
 {
-    const double zero[24] = {0};
-    const flops rest = flops_of_element(0, zero, NULL), active = flops_of_element(1, zero, NULL);
-    double sum = (double)p->nodes * (double)flops_sum(flops_of_node());
-    for (int32_t i = 0; i < p->volumes; i++)
-        sum += (double)p->volume[i].elements * (double)flops_sum(p->volume[i].contract < 0 ? rest : active);
-    return sum;
+    const double zero[24] = {0}, active = active_of(p);
+    return (double)p->nodes * (double)flops_sum(flops_of_node()) +
+           ((double)p->elements - active) * (double)flops_sum(flops_of_element(0, zero, NULL)) +
+           active * (double)flops_sum(flops_of_element(1, zero, NULL));
 }
 
 static const char *copied_by(const measured *w, double bytes)
