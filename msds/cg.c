@@ -223,7 +223,7 @@ static void conclude(cg *g)
             load += (weight + by) * (weight + by) - weight * weight;
         }
     }
-    load = fmax(load, g->pull);
+    load = fmax(fmax(load, g->pull), g->p->slight);
     g->residual = load > 0 ? sqrt(fmax(0, square) / load) : 0;
 }
 

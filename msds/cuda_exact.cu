@@ -251,7 +251,7 @@ static __device__ bool contacts_missed(const tissue *t, const tissue_frame *f, g
 }
 
 typedef struct progress {
-    double load, residual; /* N2: the square of the frame's largest load */
+    double load, residual; /* N2: the square of the frame's largest load, or of a slight one */
     int solves;
 } progress;
 
@@ -307,7 +307,7 @@ static __global__ void __launch_bounds__(GRID_THREADS, 6) exact_kernel(tissue t,
 {
     __shared__ grid_scratch scratch;
     grid_scratch *s = &scratch;
-    progress p = {0, 0, 0};
+    progress p = {t.slight, 0, 0}; /* or tissue back at rest would never come to a share of what pulls it */
     bool good = true;
     for (int round = 0; round < ROUNDS && good; round++) {
         find_contacts(&t, &f, &x);

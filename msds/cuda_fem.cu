@@ -229,7 +229,8 @@ static __global__ void __launch_bounds__(GRID_THREADS, BLOCKS) fem_kernel(tissue
     }
     solve<AHEAD>(&t, &f, count, s);
     if (blockIdx.x == 0) {
-        const double left = total(&t, PART_LEFT, s), load = fmax(total(&t, PART_LOAD, s), total(&t, PART_PULLS, s));
+        const double left = total(&t, PART_LEFT, s);
+        const double load = fmax(t.slight, fmax(total(&t, PART_LOAD, s), total(&t, PART_PULLS, s)));
         sight_sum(&t, load > 0 ? sqrt(left / load) : 0, 0, s);
     }
 }

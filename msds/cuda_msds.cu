@@ -162,6 +162,7 @@ static int fill(cuda_state *s, err *e)
         return -1;
     s->t.nodes = (int32_t)s->order.nodes;
     s->t.chunks = (int32_t)pool_chunks(s->order.count, SLICES_CHUNK);
+    s->t.slight = s->p->slight;
     s->precise = true;
     return put_problem(s, e) || CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
                    CUDA_TRY(cudaMallocHost((void **)&s->outcome, sizeof *s->outcome)) ||
@@ -304,7 +305,8 @@ cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t,
                : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0, stream);
 }
 
-/* A convex probe's planes go to the card where they are not those of the frame before. */
+/* A convex probe's planes go to the card where they are not those of the frame before: by the stream of the frames, which waits for no
+ * other. */
 static int put_planes(cuda_state *s, const probe *shape, err *e)
 {
     const size_t bytes = 4 * (size_t)shape->planes * sizeof *s->planes;
@@ -318,7 +320,7 @@ static int put_planes(cuda_state *s, const probe *shape, err *e)
     s->planes_count = 0;
     s->planes_here = (double *)mem_array(shape->planes, 4 * sizeof *s->planes_here, "the probe", e);
     s->planes = s->planes_here ? (double *)card_take((int64_t)bytes, "the probe", e) : NULL;
-    if (!s->planes || CUDA_TRY(cudaMemcpy(s->planes, shape->plane, bytes, cudaMemcpyHostToDevice)))
+    if (!s->planes || CUDA_TRY(cudaMemcpyAsync(s->planes, shape->plane, bytes, cudaMemcpyHostToDevice, s->stream)))
         return -1;
     memcpy(s->planes_here, shape->plane, bytes);
     s->planes_count = shape->planes;

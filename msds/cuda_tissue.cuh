@@ -55,8 +55,9 @@ typedef struct tissue {
     double *precise;                /* nodes x 3, m: the displacement of exact frames */
     tissue_contact *contact;
     uint8_t *listed;
-    double *held; /* as contacts.h has it */
-    double *part; /* PARTS x chunks */
+    double *held;  /* as contacts.h has it */
+    double *part;  /* PARTS x chunks */
+    double slight; /* N2: msds_problem's */
     tissue_outcome *outcome;
     unsigned long long
         *arrived; /* of grid_barrier: TISSUE_KERNELS, each its own, whose number of blocks never changes */

@@ -12,23 +12,6 @@ enum {
     SWEEPS = 2000      /* of the complementarity problem; the next solve takes over what is left */
 };
 
-/* Where elements turn, rounding leaves strains of some 1e-16, so that tissue back at rest never comes to a share of what it still
- * pulls with: a strain of this size counts as load. */
-static const double slight = 1e-8;
-
-static double slight_load(const msds_problem *p)
-{
-    double sum = 0;
-    for (int64_t t = 0; t < p->elements; t++) {
-        const simplex *s = &p->element[t];
-        const double stress = slight * (3 * s->lambda + 2 * s->mu) * s->volume;
-        for (int c = 0; c < 4; c++)
-            for (int a = 0; a < 3; a++)
-                sum += stress * stress * s->gradient[c][a] * s->gradient[c][a];
-    }
-    return sum;
-}
-
 int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const lanes *loops, pool *threads, err *e)
 {
     x->p = p;
@@ -48,7 +31,7 @@ int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const
         x->cached[n] = -1;
     if (!k->turn)
         return 0;
-    x->slight = slight_load(p);
+    x->slight = p->slight;
     x->state = mem_array(p->nodes, 4 * sizeof *x->state, "the solver", e);
     x->by = mem_array(p->nodes, 4 * sizeof *x->by, "the solver", e);
     return x->state && x->by ? mixing_make(&x->mixing, 4 * p->nodes, 3 * p->nodes, e) : -1;

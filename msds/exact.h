@@ -29,7 +29,7 @@ typedef struct exact {
     double *schur, *want, *force; /* contacts squared; contacts */
     int64_t normal_room, schur_room, want_room, force_room;
     contacts *c;
-    double slight; /* N2: where elements turn, the square of the least that counts as load; else 0 */
+    double slight; /* N2: the problem's where elements turn; else 0 */
     double load;   /* N2: the square of the load or the pull where the frame began */
     double residual;
     int solves;

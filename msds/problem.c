@@ -11,6 +11,10 @@
 /* Lattices of five tetrahedra a cell with springs of k a tetrahedron act as E = 8.615 k / h, h the cell's side. */
 static const double lattice_stiffness = 8.615;
 
+/* Rounding leaves strains of some 1e-16, so that tissue back at rest never comes to a share of what it still pulls with: a strain of
+ * this size counts as load. */
+static const double slight = 1e-8;
+
 /* A tetrahedron flatter than this share of its longest edge cubed has no shape to speak of. */
 static const double flat = 1e-9;
 
@@ -160,12 +164,26 @@ static int make_repulsion(msds_problem *p, err *e)
     return p->repulsion ? 0 : -1;
 }
 
+static double slight_load(const msds_problem *p)
+{
+    double sum = 0;
+    for (int64_t t = 0; t < p->elements; t++) {
+        const simplex *s = &p->element[t];
+        const double stress = slight * (3 * s->lambda + 2 * s->mu) * s->volume;
+        for (int c = 0; c < 4; c++)
+            for (int a = 0; a < 3; a++)
+                sum += stress * stress * s->gradient[c][a] * s->gradient[c][a];
+    }
+    return sum;
+}
+
 int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, err *e)
 {
     p->options = *o;
     p->mass_factor = 1;
     if (check_arrays(p, m, e) || make_shapes(p, m, e) || make_materials(p, m, e) || make_nodes(p, m, e))
         return -1;
+    p->slight = slight_load(p);
     p->scale = o->scale > 0 ? o->scale : p->side / lattice_stiffness;
     return springs_make(p, p->scale, o->damping, e) || make_repulsion(p, e) ? -1 : 0;
 }

@@ -47,6 +47,7 @@ typedef struct msds_problem {
     double *velocity;            /* nodes x 3, m/s */
     double side;                 /* m: that a cell of five tetrahedra has in the mean */
     double scale;                /* m: what was taken */
+    double slight;               /* N2: the square of a load that is as good as none, which strains by 1e-8 */
     msds_options options;
 } msds_problem;
 
@@ -64,9 +65,10 @@ typedef struct msds_sight {
     double force[3];  /* N: on the probe */
     double torque[3]; /* N m: on it, about its frame's origin */
     int64_t contacts; /* nodes that it presses */
-    double residual;  /* |external - internal forces| over |internal forces|, where nodes are free to move; or nan */
-    double largest;   /* m: the largest displacement */
-    int solves;       /* that an exact frame took */
+    double
+        residual; /* |external - internal forces| over |external| or |internal|, or what is slight, as is most; or nan */
+    double largest; /* m: the largest displacement */
+    int solves;     /* that an exact frame took */
     bool finite;
 } msds_sight;
 

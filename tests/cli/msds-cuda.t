@@ -76,6 +76,15 @@ done
 same "a penalty" 1e-5 --method fem --contact penalty
 same "a penalty, exactly" 1e-5 --method fem --exact --contact penalty
 
+# ---- A probe that leaves, and stays away: frames find rest, and stay there.
+awk 'BEGIN { for (i = 0; i < 40; i++) printf "%g .06 .04 %.4f 1 0 0 0\n", i / 60, i < 4 ? .06 - .001 * i : .08 }' >"$T/leave.tum"
+for exact in '' --exact; do
+    # shellcheck disable=SC2086
+    check "a probe that leaves $exact" run -d cuda --residual --method fem $exact --poses "$T/leave.tum" -o "$T/leave.sinew"
+    is "$(awk '/ 0.65 s: / { sub(/.*residual /, ""); print $0 + 0 < 1e-5 }' "$T/stderr")" 1 "and leaves nothing but what is slight"
+    check "lets go of the tissue" awk -v u="$(sinew info --get node.displacement.max "$T/leave.sinew")" 'BEGIN { exit !(u < 1e-8) }'
+done
+
 # ---- Methods that change, and going on.
 { press 1 3; echo 'method fem'; press 4 6; echo 'method msds'; press 7 10; } >"$T/both.tum"
 same "methods change" 0 --poses "$T/both.tum"

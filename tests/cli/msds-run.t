@@ -51,6 +51,9 @@ for warp in '' --warp; do
     check "a probe that leaves exact frames $warp" msds-run --method fem --exact $warp --probe sphere:2cm --poses "$T/leave.tum" -o "$T/leave.sinew" <"$T/block.sinew"
     check "lets go of the tissue" awk -v u="$(sinew info --get node.displacement.max "$T/leave.sinew")" 'BEGIN { exit !(u < 1e-8) }'
 done
+awk 'BEGIN { for (i = 0; i < 60; i++) printf "%g .04 .04 %.4f 1 0 0 0\n", i / 60, i < 4 ? .06 - .001 * i : .08 }' >"$T/leave.tum"
+check "a probe that leaves frames of conjugate gradients" msds-run --residual --method fem --probe sphere:2cm --poses "$T/leave.tum" -o "$T/leave.sinew" <"$T/block.sinew"
+is "$(awk '/ s: fem, residual/ { sub(/.*residual /, ""); at = $0 + 0 < 1e-5 } END { print at + 0 }' "$T/stderr")" 1 "leaves nothing but what is slight"
 
 # Methods change between poses, and the state carries over.
 { sed -n 1,4p "$T/press.tum"; echo 'method fem'; sed -n 5,7p "$T/press.tum"; echo 'method msds'; sed -n 8,10p "$T/press.tum"; } >"$T/both.tum"
