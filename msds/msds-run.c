@@ -93,6 +93,7 @@ typedef struct session {
     msds_sight sight;   /* of the last frame */
     int64_t next_frame;
     bool pressed; /* some node, in some frame */
+    bool dented;  /* the skin */
     notes warnings;
 } session;
 
@@ -291,10 +292,16 @@ static void warn_of_pose(session *s, const poses_event *at, const press_moves *m
     const probe_placed placed = probe_place(&s->probe, &pose);
     if (first && probe_is_plate(&placed, s->problem.position, s->problem.nodes))
         notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
-    if (moves->inside > 0)
+    if (first && probe_is_thin(&s->probe, s->problem.side))
+        notes_add(
+            &s->warnings,
+            "the probe is %.3g mm thick, cells are %.3g mm wide: it may go in between nodes; expected a finer mesh",
+            2e3 * s->probe.size, 1e3 * s->problem.side);
+    if (moves->inside)
         notes_add(&s->warnings,
-                  "%s:%lld: the probe is %.3g mm inside the tissue at once; it is eased in along its axis, in %d moves",
-                  in_name(s->source), (long long)at->line, 1e3 * moves->inside, moves->count);
+                  "%s:%lld: the probe is inside the tissue at once; it is eased in along its axis, from %.3g mm back, "
+                  "in %d moves",
+                  in_name(s->source), (long long)at->line, 1e3 * moves->back, moves->count);
     tool_warn(s->t, &s->warnings);
 }
 
@@ -338,8 +345,10 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     int64_t count = make_moves(s, s->state, &moves, &plan, true, e);
     if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
         return -1;
-    if (!sight.finite || (s->skin.vertices && !isfinite(skin_largest(&s->skin))))
+    const double dent = s->skin.vertices ? skin_largest(&s->skin) : 0;
+    if (!sight.finite || !isfinite(dent))
         return diverged(s, at, e);
+    s->dented = s->dented || dent > 0;
     s->sight = sight;
     s->press.contacts = sight.contacts;
     say_frame(s, at->time, &sight);
@@ -388,6 +397,10 @@ static int simulate(session *s, err *e)
                   "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space, "
                   "and nodes closer together than the probe is wide",
                   (long long)frames);
+    if (!got && s->pressed && s->skin.vertices && !s->dented)
+        notes_add(&s->warnings,
+                  "the probe presses the tissue, but the skin in no frame; expected %s where the tissue is, in --unit",
+                  s->skin_name);
     return got;
 }
 

@@ -64,7 +64,7 @@ static double step_between(const press *s, const probe_pose *pose)
     return sqrt(square);
 }
 
-/* From where it touches nothing; or from as far as twice the tissue's and its own size, should that not be. */
+/* From where it touches nothing; or from a hundred times its size, should that not be. */
 static void ease_in(const press *s, const probe_pose *pose, press_moves *m)
 {
     const double stride = .5 * s->shape->size;
@@ -75,6 +75,7 @@ static void ease_in(const press *s, const probe_pose *pose, press_moves *m)
         if (deepest(s, &out) <= 0)
             break;
     }
+    m->back = back;
     m->count = (int)fmin(PRESS_MOVES, fmax(1, ceil(back / (ease * s->shape->size))));
     for (int i = 0; i < m->count; i++)
         m->list[i] = (press_move){drawn_back(s, pose, back * (m->count - 1 - i) / m->count), s->iterations};
@@ -120,7 +121,7 @@ int press_to(press *s, const backend *device, void *state, const probe_pose *pos
             return -1;
         double depth = deepest(s, pose);
         if (depth > (s->any ? inside_later : inside_first) * size) {
-            moves->inside = depth;
+            moves->inside = true;
             ease_in(s, pose, moves);
         }
     }

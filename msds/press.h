@@ -36,7 +36,8 @@ typedef struct press_move {
 typedef struct press_moves {
     press_move list[PRESS_MOVES];
     int count;
-    double inside; /* m: how deep in the tissue the probe would have begun; 0: it is not eased in */
+    bool inside; /* it would have begun deep in the tissue, and is eased in */
+    double back; /* m: from how far back along its axis */
 } press_moves;
 
 int press_make(press *s, const msds_problem *p, const probe *shape, int64_t iterations, double rate, err *e);

@@ -355,6 +355,12 @@ static void begin_collider(session *s, const struct options *o)
     if (inside > 0)
         notes_add(&s->warnings, "the probe begins %.3g mm inside the tissue: it comes up in %g s", 1e3 * inside,
                   o->ramp);
+    const double side = cbrt(s->problem.side[0] * s->problem.side[1] * s->problem.side[2]);
+    if (probe_is_thin(&s->collider.shape, side))
+        notes_add(
+            &s->warnings,
+            "the probe is %.3g mm thick, elements are %.3g mm wide: it may go in between nodes; expected a finer mesh",
+            2e3 * s->collider.shape.size, 1e3 * side);
     if (probe_is_plate(&first, s->problem.position, s->problem.nodes))
         notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
 }

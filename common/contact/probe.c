@@ -228,6 +228,11 @@ probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share)
     return to;
 }
 
+bool probe_is_thin(const probe *p, double side)
+{
+    return 2 * p->size < .99 * side;
+}
+
 bool probe_is_plate(const probe_placed *at, const double *position, int64_t nodes)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};

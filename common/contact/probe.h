@@ -99,6 +99,9 @@ void probe_farthest(const probe *p, const double d[3], double to[3]);
 /* A share (0 to 1) of the way from pose a to pose b, turning the shorter way round. */
 probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share);
 
+/* Whether it is thinner than cells of this side, m: nodes are so far apart that it may go in between them. */
+bool probe_is_thin(const probe *p, double side);
+
 /* Whether the probe's face is wider than what these points (x 3, m) span, both of its sides: it presses like a plate. */
 bool probe_is_plate(const probe_placed *at, const double *position, int64_t nodes);
 

@@ -104,6 +104,8 @@ check "starts inside" tled-run --probe sphere:2cm --poses "$T/inside.tum" -t .3 
 is "$(grep -c 'the probe begins 5 mm inside the tissue: it comes up in 0.1 s' "$T/stderr")" 1 "it says so"
 check "larger than the tissue" tled-run --probe linear:30cm,20cm --poses "$T/press.tum" -t .3 -o "$T/plate.sinew" <"$T/block.sinew"
 is "$(grep -c 'larger than the tissue: it presses like a plate' "$T/stderr")" 1 "it says so"
+check "thinner than an element" tled-run --probe linear:3cm,3mm --poses "$T/press.tum" -n 5 -o /dev/null <"$T/block.sinew"
+is "$(grep -c 'the probe is 3 mm thick, elements are [0-9.]* mm wide: it may go in between nodes' "$T/stderr")" 1 "it says so"
 fails 1 "no probe on CUDA" 'no contact with a probe; expected -d cpu or auto' tled-run -d cuda --probe sphere:2cm --poses "$T/press.tum" -t .1 <"$T/block.sinew"
 check "auto takes the CPU" tled-run -d auto --probe sphere:2cm --poses "$T/press.tum" -n 5 -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'cpu (the one with contact' "$T/stderr")" 1 "and says so"
