@@ -69,6 +69,29 @@ double collider_begin(collider *c, const tled_problem *p, double ramp)
     return c->rises > 0 ? deepest : 0;
 }
 
+bool collider_away(const collider *c, const tled_problem *p)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, room = 0;
+    for (int64_t i = 0; i < 3 * p->nodes; i++) {
+        low[i % 3] = fmin(low[i % 3], p->position[i]);
+        high[i % 3] = fmax(high[i % 3], p->position[i]);
+    }
+    for (int a = 0; a < 3; a++)
+        room = fmax(room, .5 * (high[a] - low[a]));
+    room += 2 * c->shape.reach; /* the ball's middle turns with the probe */
+    for (int64_t i = 0; i < c->poses; i++) {
+        const int64_t next = i + 1 < c->poses ? i + 1 : i;
+        const probe_placed from = probe_place(&c->shape, &c->pose[i]), to = probe_place(&c->shape, &c->pose[next]);
+        bool near = true;
+        for (int a = 0; a < 3; a++)
+            near = near && fmin(from.centre[a], to.centre[a]) < high[a] + room &&
+                   fmax(from.centre[a], to.centre[a]) > low[a] - room;
+        if (near)
+            return false;
+    }
+    return true;
+}
+
 probe_pose collider_pose(const collider *c, double time)
 {
     int64_t low = 0, high = c->poses - 1;

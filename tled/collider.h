@@ -30,6 +30,9 @@ void collider_join(collider *c, tled_problem *p, double repulsion);
 /* From the problem's start: how deep in the tissue it is then, m (0: it is not); ramp, s: how long it takes to come up if so. */
 double collider_begin(collider *c, const tled_problem *p, double ramp);
 
+/* Whether it never comes to where the tissue is: on none of its ways as near to it as half its size. */
+bool collider_away(const collider *c, const tled_problem *p);
+
 /* Where it is. */
 probe_pose collider_pose(const collider *c, double time);
 probe_placed collider_at(const collider *c, double time);

@@ -361,6 +361,9 @@ static void begin_collider(session *s, const struct options *o)
             &s->warnings,
             "the probe is %.3g mm thick, elements are %.3g mm wide: it may go in between nodes; expected a finer mesh",
             2e3 * s->collider.shape.size, 1e3 * side);
+    if (collider_away(&s->collider, &s->problem))
+        notes_add(&s->warnings,
+                  "the probe never comes near the tissue; expected poses in metres, in the model's space");
     if (probe_is_plate(&first, s->problem.position, s->problem.nodes))
         notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
 }
