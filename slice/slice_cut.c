@@ -52,14 +52,29 @@ static int put_vertices(const slice_piece *piece, int64_t count, const slice_pla
     return 0;
 }
 
-/* Corners that fell together are one; fewer than three are no polygon. */
+/* Twice the area; below 0 where the corners go around the other way. */
+static double area_of(const slice_piece *p)
+{
+    double sum = 0;
+    for (int k = 0; k < p->corners; k++) {
+        const int next = k + 1 < p->corners ? k + 1 : 0;
+        sum += (p->u[k] - p->u[0]) * (p->v[next] - p->v[0]) - (p->u[next] - p->u[0]) * (p->v[k] - p->v[0]);
+    }
+    return sum;
+}
+
+/* Corners that fell together are one; fewer than three are no polygon. All go around the same way: to whom looks along columns x rows,
+ * clockwise. */
 static int64_t put_face(const slice_piece *p, const int64_t *vertex, out *to)
 {
     int64_t list[4];
     int count = 0;
-    for (int k = 0; k < p->corners; k++)
-        if (!count || (list[count - 1] != vertex[k] && list[0] != vertex[k]))
-            list[count++] = vertex[k];
+    const bool back = area_of(p) < 0;
+    for (int k = 0; k < p->corners; k++) {
+        const int64_t at = vertex[back ? p->corners - 1 - k : k];
+        if (!count || (list[count - 1] != at && list[0] != at))
+            list[count++] = at;
+    }
     if (count < 3)
         return 0;
     out_text(to, "f");

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NODES = 1024, TETS = 2048, PIECES = 64 }; /* of a chunk */
+enum { NODES = 1024, TETS = 128 * SLICE_GROUP, PIECES = 64 }; /* of a chunk */
 
 typedef struct scratch {
     slice_places places;
@@ -15,6 +15,7 @@ typedef struct scratch {
     atomic_flag busy;
 } scratch;
 
+/* Regions; none where end is not above first. */
 typedef struct reach {
     int32_t first, end;
 } reach;
@@ -31,7 +32,7 @@ struct slice_cutter {
     int64_t count;
     void *piece; /* slice_piece or slice_paper_tet: of the list */
     int64_t room;
-    reach *reach; /* the rows of each, close together */
+    reach *reach; /* the regions of each, close together */
     int64_t reach_room;
     int32_t *region; /* lists of the regions, one after another: indices of pieces */
     int64_t region_room;
@@ -70,7 +71,7 @@ static int make_mesh(slice_cutter *c, err *e)
     c->code = c->at ? mem_array(m->nodes, sizeof *c->code, "nodes", e) : NULL;
     c->list = c->code ? mem_array(m->tets, sizeof *c->list, "tetrahedra", e) : NULL;
     c->chunk = c->list ? mem_array(pool_chunks(m->tets, TETS), sizeof *c->chunk, "tetrahedra", e) : NULL;
-    c->tets = (slice_tets){m->node, m->place, c->at, c->code};
+    c->tets = (slice_tets){m->node, m->group, m->start, m->place, c->at, c->code};
     return c->chunk ? 0 : -1;
 }
 
@@ -169,6 +170,14 @@ static const slice_piece *piece_at(const slice_cutter *c, int64_t i)
                                       : &((const slice_piece *)c->piece)[i];
 }
 
+static reach reach_of(const slice_cutter *c, const slice_piece *p)
+{
+    const uint32_t rows = (uint32_t)c->rows; /* unsigned divides sooner */
+    if (p->first >= p->end)
+        return (reach){0, 0};
+    return (reach){(int32_t)((uint32_t)p->first / rows), (int32_t)((uint32_t)(p->end - 1) / rows) + 1};
+}
+
 static void cut(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     slice_cutter *c = context;
@@ -180,7 +189,7 @@ static void cut(void *context, int64_t chunk, int64_t from, int64_t to)
         c->s.lanes->cut(&c->tets, c->s.cells, c->list + from, to - from, c->s.size.rows,
                         (slice_piece *)c->piece + from);
     for (int64_t i = from; i < to; i++)
-        c->reach[i] = (reach){piece_at(c, i)->first, piece_at(c, i)->end};
+        c->reach[i] = reach_of(c, piece_at(c, i));
 }
 
 static int make_pieces(slice_cutter *c, err *e)
@@ -201,16 +210,12 @@ static int make_pieces(slice_cutter *c, err *e)
 /* Counts, or (place) writes, each piece in the regions that it reaches: ascending in each. */
 static void deal(slice_cutter *c, int64_t *at, bool place)
 {
-    for (int64_t i = 0; i < c->count; i++) {
-        const reach p = c->reach[i];
-        if (p.first >= p.end)
-            continue;
-        for (int32_t r = p.first / c->rows; r <= (p.end - 1) / c->rows; r++) {
+    for (int64_t i = 0; i < c->count; i++)
+        for (int32_t r = c->reach[i].first; r < c->reach[i].end; r++) {
             if (place)
                 c->region[at[r]] = (int32_t)i;
             at[r]++;
         }
-    }
 }
 
 static int make_regions(slice_cutter *c, err *e)
@@ -309,7 +314,7 @@ static int make_whole(slice_cutter *c, const slice_plane *at, err *e)
     if ((c->room < 1 && mem_grow(&c->piece, &c->room, 1, sizeof(slice_piece), "pieces of an image", e)) ||
         MEM_ROOM(&c->reach, &c->reach_room, 1, "pieces of an image", e))
         return -1;
-    c->reach[0] = (reach){0, c->s.size.rows};
+    c->reach[0] = (reach){0, (c->s.size.rows + c->rows - 1) / c->rows};
     slice_piece *p = c->piece;
     *p = (slice_piece){.corners = 4,
                        .end = c->s.size.rows,

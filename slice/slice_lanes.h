@@ -12,6 +12,7 @@
 
 enum {
     SLICE_LANES = 16, /* rows of places are padded to a multiple of it */
+    SLICE_GROUP = 16, /* tetrahedra that are looked at together */
     SLICE_CUT_BEFORE = 1,
     SLICE_CUT_BEHIND = 2,
     SLICE_CUT_OUTSIDE = 60 /* left, right, above, below: a bit each */
@@ -31,6 +32,8 @@ typedef struct slice_node {
 /* Tetrahedra as the loops want them. */
 typedef struct slice_tets {
     const int32_t *node;  /* tetrahedra x 4, ascending */
+    const int32_t *group; /* nodes of groups of SLICE_GROUP tetrahedra, */
+    const int64_t *start; /* groups + 1: and where each begins */
     const double *place;  /* nodes x 3: at rest, in cells */
     const slice_node *at; /* nodes: deformed */
     const uint8_t *code;  /* nodes: SLICE_CUT_ */
@@ -72,7 +75,7 @@ typedef struct slice_lanes {
     /* Nodes [from, to) from their rest positions and displacements (nodes x 3, m; NULL: none). */
     void (*project)(const slice_projection *p, const double *rest, const double *displacement, int64_t from, int64_t to,
                     slice_node *at, uint8_t *code);
-    /* Which of the tetrahedra [from, to) may meet the image: their numbers to `list`; returns how many. */
+    /* Which of the tetrahedra [from, to) may meet the image: their numbers to `list`; returns how many. from: a group's first. */
     int64_t (*meet)(const slice_tets *t, int64_t from, int64_t to, int32_t *list);
     /* The pieces of the tetrahedra in a list. */
     void (*cut)(const slice_tets *t, const slice_cells *c, const int32_t *list, int64_t count, int32_t rows,

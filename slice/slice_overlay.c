@@ -27,7 +27,7 @@ static int take_voxels(slice_overlay *o, const volume *labels, err *e)
             else
                 high = middle;
         }
-        o->voxel[i] = value ? (uint8_t)(1 + low % COLOURS) : 0;
+        o->voxel[i] = (uint8_t)(value ? 1 + low % COLOURS : 0);
     }
     free(list);
     return o->voxel ? 0 : -1;

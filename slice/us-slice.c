@@ -81,6 +81,7 @@ typedef struct job {
     uint8_t *image, *colour, *one; /* rows x columns, x 3; a slice of several */
     uint16_t *sum;
     int64_t images;
+    bool lit; /* some image was not black */
     notes warnings;
 } job;
 
@@ -89,6 +90,12 @@ typedef struct job {
 static double metres(const opt_lengths *l, double otherwise)
 {
     return l->count ? num_length_in(l->value[0], num_unit_of("m"), num_unit_of("m")) : otherwise;
+}
+
+/* Of an image of tissue; a slip of the units is mostly not. */
+static bool is_side(double length)
+{
+    return length >= .999e-6 && length <= 10;
 }
 
 static int check_options(const struct options *o, err *e)
@@ -101,10 +108,10 @@ static int check_options(const struct options *o, err *e)
         return err_usage(e, "--body without --poses, whose frame it is; poses in frames are in the volume's");
     if (o->transform && !o->poses)
         return err_usage(e, "--transform without --poses");
-    if (o->depth.count && !(metres(&o->depth, 1) > 0))
-        return err_usage(e, "--depth: expected more than 0");
-    if (o->width.count && !(metres(&o->width, 1) > 0))
-        return err_usage(e, "--width: expected more than 0");
+    if (!is_side(metres(&o->depth, 1)))
+        return err_usage(e, "--depth: %g m; expected 1 um to 10 m", metres(&o->depth, 1));
+    if (!is_side(metres(&o->width, 1)))
+        return err_usage(e, "--width: %g m; expected 1 um to 10 m", metres(&o->width, 1));
     for (int i = 0; i < o->range.count; i++)
         if (!(o->range.value[i] >= 1 && o->range.value[i] <= 200))
             return err_usage(e, "--dynamic-range %g; expected 1 to 200 dB", o->range.value[i]);
@@ -352,6 +359,8 @@ static int put_image(job *j, int64_t index, const double origin[3], const double
     slice_plane at;
     if (draw(j, origin, turn, displacement, &at, e))
         return -1;
+    for (int64_t i = 0; !j->lit && i < count; i++)
+        j->lit = j->image[i] > 0;
     slice_grey_apply(&j->grey, j->image, 0, count);
     if (j->overlay.seen)
         slice_overlay_paint(&j->overlay, j->image, count, j->colour);
@@ -403,11 +412,15 @@ static int frame_pose(const job *j, double origin[3], double turn[4], err *e)
     return 0;
 }
 
-/* The displacement of the last frame read; NULL: at rest. */
+/* The displacement of the last frame read; NULL where there was no frame: at rest. */
 static int displacement_of(const job *j, const double **to, err *e)
 {
     const model_array *u = j->model.frames ? frame_find(&j->model.frame, "node.displacement") : NULL;
     *to = u ? u->f64 : NULL;
+    if (!u && j->model.frames)
+        return err_set(e, source_name(&j->model), 0,
+                       "frame %lld holds no node.displacement; expected frames of msds-run or tled-run",
+                       (long long)j->model.frame.index);
     return u ? finite_array(u, source_name(&j->model), e) : 0;
 }
 
@@ -458,6 +471,11 @@ int main(int argc, char **argv)
         goto out;
     if (prepare(&j, argv[1], &e) || (!o.rigid && slice_frames(&j, &e)) || (j.more_poses && slice_poses(&j, &e)))
         goto out;
+    if (!j.lit)
+        notes_add(&j.warnings,
+                  "all is black in every image (of %lld); expected poses in metres, in the volume's frame%s, that look "
+                  "into it",
+                  (long long)j.images, o.rigid ? "" : ", as the model is,");
 out:
     tool_warn(&t, &j.warnings);
     slice_writer_close(&j.writer, &e);

@@ -155,9 +155,9 @@ is "$(cat "$T/bad")" "0 96" "half seen through, where there are any"
 
 # Polygons: at rest they cover the cut through the block, 12 x 8 mm, without a gap.
 us-slice -q --poses "$T/native.tum" --size 12x8 --width 12mm --depth 8mm --cut "$T/cut.obj" "$T/noise.nrrd" <"$T/mesh.sinew" >/dev/null
-awk '$1 == "v" { x[++n] = $2; y[n] = $4 } $1 == "f" { for (k = 2; k <= NF; k++) { a = $k; b = $(k < NF ? k + 1 : 2); s[NR] += (x[a] * y[b] - x[b] * y[a]) / 2 } }
-    END { for (i in s) sum += s[i] < 0 ? -s[i] : s[i]; printf "%.6f", sum }' "$T/cut.obj" >"$T/area"
-near "$(cat "$T/area")" 96 1e-6 "the polygons of a slice cover the block"
+awk '$1 == "v" { x[++n] = $2; y[n] = $4 } $1 == "f" { for (k = 2; k <= NF; k++) { a = $k; b = $(k < NF ? k + 1 : 2); sum += (x[a] * y[b] - x[b] * y[a]) / 2 } }
+    END { printf "%.6f", sum }' "$T/cut.obj" >"$T/area"
+near "$(cat "$T/area")" 96 1e-6 "the polygons of a slice cover the block, all wound alike"
 is "$(grep -c '^g tissue' "$T/cut.obj")" 1 "grouped by volume"
 
 # A body: the volume turned by 90 degrees about z and moved; the same pose in it sees the same.
@@ -240,7 +240,8 @@ fails 2 "no volume" 'missing operand' us-slice --rigid --poses "$T/zero.tum"
 fails 2 "rigid without poses" '--rigid without --poses' us-slice --rigid "$T/noise.nrrd"
 fails 2 "a size that is none" '--size 12; expected COLUMNSxROWS' us-slice --rigid --poses "$T/zero.tum" --size 12 "$T/noise.nrrd"
 fails 2 "a size too large" 'each 1 to 16384' us-slice --rigid --poses "$T/zero.tum" --size 99999x4 "$T/noise.nrrd"
-fails 2 "no depth" '--depth: expected more than 0' us-slice --rigid --poses "$T/zero.tum" --depth 0 "$T/noise.nrrd"
+fails 2 "no depth" '--depth: 0 m; expected 1 um to 10 m' us-slice --rigid --poses "$T/zero.tum" --depth 0 "$T/noise.nrrd"
+fails 2 "a width that is none" '--width: 1e[+]300 m' us-slice --rigid --poses "$T/zero.tum" --width 1e300 "$T/noise.nrrd"
 fails 2 "a sphere makes no image" 'makes no image' us-slice --rigid --poses "$T/zero.tum" --probe sphere:2cm "$T/noise.nrrd"
 fails 2 "a fan past the half disc" 'expected phased:ANGLE' us-slice --rigid --poses "$T/zero.tum" --probe phased:200 "$T/noise.nrrd"
 fails 2 "a thickness that is none" '--thickness 0' us-slice --rigid --poses "$T/zero.tum" --thickness 0 "$T/noise.nrrd"
@@ -268,6 +269,13 @@ awk '/^array node.displacement/ { print; getline; print "nan 0 0"; next } { prin
 fails 1 "displacements that are none" 'node.displacement' us-slice "$T/noise.nrrd" <"$T/nan.txt"
 awk '/^array probe.pose/ { print; getline; print "0 0 0 0 0 0 2"; next } { print }' "$T/run.txt" >"$T/turn.txt"
 fails 1 "a turn that is none" 'quaternion of length 2' us-slice "$T/noise.nrrd" <"$T/turn.txt"
+sed 's/^array node.displacement /array x-moved /' "$T/run.txt" >"$T/still.txt"
+fails 1 "frames that do not say how far nodes moved" 'frame 0 holds no node.displacement' us-slice "$T/noise.nrrd" <"$T/still.txt"
+echo '0 5 0 0 0 0 0 1' >"$T/away.tum"
+us-slice --rigid --poses "$T/away.tum" -o "$T/away.pgm" "$T/noise.nrrd" 2>"$T/said"
+is "$? $(grep -c 'warning: all is black in every image (of 1)' "$T/said")" "0 1" "a pose that sees nothing is warned of"
+us-slice --rigid --poses "$T/native.tum" -o "$T/away.pgm" "$T/noise.nrrd" 2>"$T/said"
+is "$(cat "$T/said")" "" "one that sees something is not"
 awk '/^array node.displacement/ { print; getline; print "1e300 -1e300 1e200"; next } { print }' "$T/run.txt" >"$T/far.txt"
 check "a node that flew away" us-slice -o "$T/far.pgm" "$T/noise.nrrd" <"$T/far.txt"
 head -c 300 "$T/noise.nrrd" >"$T/short2.nrrd"
