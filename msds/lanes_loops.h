@@ -198,8 +198,9 @@ INLINE void pull_all(const lanes_springs *w, int64_t slice, const v8 x[3], const
         own_v[a] = both(v[a], v[a]);
     }
     for (int64_t slot = s->start[slice]; slot < end;) {
-        const int64_t one[2] = {slot, slot}, two[2] = {slot, slot + 1};
+        const int64_t one[2] = {slot, slot};
         if (TWO && slot + 1 < end && is_row(s, slot) && is_row(s, slot + 1)) {
+            const int64_t two[2] = {slot, slot + 1};
             pull(w, true, two, own_x, own_u, own_v, force);
             slot += 2;
             continue;
