@@ -184,7 +184,7 @@ static void time_import(subject *s)
     const bench_command packed = {s->bin, "us-import", {"-q", s->series, NULL}};
     const bench_command raw = {s->bin, "us-import", {"-q", "--raw", s->series, NULL}};
     const bench_command head = {s->bin, "us-import", {"-q", s->real, NULL}};
-    time_command(s, "us-import, 153 slices of 211 x 232 (issue: .3 s)", &packed, "voxel", voxels);
+    time_command(s, "us-import, 153 slices of 211 x 232 (asked: .3 s)", &packed, "voxel", voxels);
     time_command(s, "us-import --raw, the same", &raw, "voxel", voxels);
     if (s->real)
         time_command(s, "us-import, the fetal head", &head, "voxel", voxels);
@@ -199,7 +199,7 @@ static void time_surfaces(subject *s)
     const bench_command taubin = {s->bin, "us-surface", {"-q", "-l", "all", "--taubin", "10", s->labels, NULL}};
     const bench_command grow = {
         s->bin, "us-segment", {"-q", "-n", "a", "--low", "100", "--seed-voxel", "80,80,80", s->volume}};
-    time_command(s, "us-surface, a level (issue: 250000 triangles in .15 s; the paper: 243224 in 2 s)", &level,
+    time_command(s, "us-surface, a level (asked: 250000 triangles in .15 s; the paper: 243224 in 2 s)", &level,
                  "triangle", 0);
     time_command(s, "us-surface, the same, filtered before", &filtered, "triangle", 0);
     time_command(s, "us-surface, five labels, filtered before", &five, "triangle", 0);
