@@ -139,6 +139,15 @@ static int make_lattice(lattice *x, const level *fine, err *e)
     return x->nodes > 0 ? 0 : err_set(e, NULL, 0, "no node is free to move; expected one at least");
 }
 
+/* The slots of a slice of rows, which have so many entries each. */
+static int32_t slots_of(const int32_t *entries, int64_t rows, int64_t slice)
+{
+    int32_t most = 0;
+    for (int64_t row = slice * LANES; row < rows && row < (slice + 1) * LANES; row++)
+        most = entries[row] > most ? entries[row] : most;
+    return most;
+}
+
 /* Room for rows of so many entries each. */
 static int weights_room(levels_weights *w, const int32_t *entries, int64_t rows, err *e)
 {
@@ -146,12 +155,8 @@ static int weights_room(levels_weights *w, const int32_t *entries, int64_t rows,
     w->start = mem_array(w->count + 1, sizeof *w->start, "coarser lattices", e);
     if (!w->start)
         return -1;
-    for (int64_t i = 0; i < w->count; i++) {
-        int32_t most = 0;
-        for (int64_t row = i * LANES; row < rows && row < (i + 1) * LANES; row++)
-            most = entries[row] > most ? entries[row] : most;
-        w->start[i + 1] = w->start[i] + most;
-    }
+    for (int64_t i = 0; i < w->count; i++)
+        w->start[i + 1] = w->start[i] + slots_of(entries, rows, i);
     w->slots = w->start[w->count];
     w->column = mem_array(w->slots * LANES, sizeof *w->column, "coarser lattices", e);
     w->weight = mem_array(w->slots * LANES, sizeof *w->weight, "coarser lattices", e);
@@ -317,12 +322,8 @@ static int graph_room(level *l, const int32_t *entries, int64_t nodes, err *e)
     s->start = mem_array(s->count + 1, sizeof *s->start, "coarser lattices", e);
     if (!s->start)
         return -1;
-    for (int64_t i = 0; i < s->count; i++) {
-        int32_t most = 0;
-        for (int64_t n = i * LANES; n < nodes && n < (i + 1) * LANES; n++)
-            most = entries[n] > most ? entries[n] : most;
-        s->start[i + 1] = s->start[i] + most;
-    }
+    for (int64_t i = 0; i < s->count; i++)
+        s->start[i + 1] = s->start[i] + slots_of(entries, nodes, i);
     s->slots = s->start[s->count];
     s->first = mem_array(s->slots, sizeof *s->first, "coarser lattices", e);
     s->neighbour = mem_array(s->slots * LANES, sizeof *s->neighbour, "coarser lattices", e);

@@ -211,12 +211,17 @@ static int by_size(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
+void bench_sort(double *took, int64_t count)
+{
+    qsort(took, (size_t)count, sizeof *took, by_size);
+}
+
 void bench_print(const bench *b)
 {
     puts("case,rounds,best_s,median_s,amount,unit,best_rate");
     for (int i = 0; i < b->cases; i++) {
         bench_case c = b->of[i];
-        qsort(c.took, (size_t)c.rounds, sizeof *c.took, by_size);
+        bench_sort(c.took, c.rounds);
         double rate = c.amount / c.took[0] / (strcmp(c.unit, "B") ? 1 : 1e6);
         printf("\"%s\",%d,%.6g,%.6g,%.6g,%s,%.6g\n", c.name, c.rounds, c.took[0], c.took[c.rounds / 2], c.amount,
                c.unit, rate);

@@ -37,6 +37,9 @@ double bench_clock(void);
 /* Ends the program with e's text where it is not so. */
 void bench_must(bool good, const err *e);
 
+/* Least first. */
+void bench_sort(double *took, int64_t count);
+
 /* Keeps a result from being optimised away. */
 void bench_use(double result);
 

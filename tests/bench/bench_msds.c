@@ -69,12 +69,6 @@ static msds_plan plan_of(int method, int number)
     return plan;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 /* A convex body of 128 facets: a ball's. */
 static probe faceted(void)
 {
@@ -149,7 +143,7 @@ static void say(subject *s, const paper *from, int threads)
     for (int i = 0; i < METHODS; i++) {
         double *t = s->took[i];
         int n = s->count[i];
-        qsort(t, (size_t)n, sizeof *t, ascending);
+        bench_sort(t, n);
         printf("%dx%dx%d,%lld,%lld,%lld,%s,%d,%d,%.4g,%.4g,%.4g,", (int)from->nodes[0], (int)from->nodes[1],
                (int)from->nodes[2], (long long)s->p.nodes, (long long)s->p.elements, (long long)s->p.springs, names[i],
                threads, n, 1e3 * t[0], 1e3 * t[n / 2], 1e3 * t[n - 1 - n / 20]);

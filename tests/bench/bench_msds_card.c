@@ -62,12 +62,6 @@ static msds_plan plan_of(int method, int number)
     return plan;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 static void measure(subject *s, int method, int number)
 {
     err e = {0};
@@ -106,7 +100,7 @@ static void say(subject *s)
     for (int i = 0; i < METHODS; i++) {
         double *t = s->took[i];
         int n = s->count[i];
-        qsort(t, (size_t)n, sizeof *t, ascending);
+        bench_sort(t, n);
         say_row(s, names[i], n, t[0], t[n / 2], t[n - 1 - n / 20], s->from->ms[i]);
         s->card->destroy(s->state[i]);
     }

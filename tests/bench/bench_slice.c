@@ -63,15 +63,9 @@ static void take(times *t, double took)
         t->took[t->count++] = took;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 static void print_times(times *t, double reference, double ours_per_paper)
 {
-    qsort(t->took, (size_t)t->count, sizeof *t->took, ascending);
+    bench_sort(t->took, t->count);
     printf("%d,%.4g,%.4g,%.4g,", t->count, 1e3 * t->took[0], 1e3 * t->took[t->count / 2],
            1e3 * t->took[t->count - 1 - t->count / 20]);
     if (reference > 0)

@@ -20,7 +20,6 @@
 #include "tled/cpu_pass.h"
 
 #include <inttypes.h>
-#include <time.h>
 
 enum { ROUNDS = 7, CPU_MOST = 1100000 /* elements: more take too long there */ };
 
@@ -50,13 +49,6 @@ static const char *const header =
     "most_us,ns_an_element_step,simulated_us_a_step,times_real_time,bytes_a_step,flops_a_step,computed,GB_s,Gflop_s,"
     "copied,copy_GB_s,multiply_add_Gflop_s,share_of_copy,share_of_multiply_add,"
     "lanes_filled";
-
-static double clock_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static int ascending(const void *a, const void *b)
 {
@@ -155,12 +147,12 @@ static double time_steps(bench *b, const backend *d, void *state, tled_plan *pla
 {
     tled_sums answer;
     tled_question question = {.time = tled_time(plan, steps), .rest = INFINITY, .raise = 1.01};
-    double before = clock_now();
+    double before = roof_clock();
     bench_must(d->step(state, plan, steps, &b->e), &b->e);
     if (d->look)
         bench_must(d->look(state, &question, &answer, &b->e), &b->e); /* waits */
     plan->first += steps;
-    return clock_now() - before;
+    return roof_clock() - before;
 }
 
 /* Of the elements that are computed side by side, how many are any. */
@@ -202,10 +194,10 @@ static void measure_steps(measured *w, bench *b)
 
 static double time_run(bench *b, int64_t steps)
 {
-    double before = clock_now();
+    double before = roof_clock();
     bench_steps(b, steps, b->setup.damping);
     bench_must(bench_go(b), &b->e);
-    return clock_now() - before;
+    return roof_clock() - before;
 }
 
 /* Runs with looks, and 60 frames a second of the model's time or none, that are copied and dropped: what a longer run takes

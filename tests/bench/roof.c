@@ -21,7 +21,7 @@ typedef struct work {
     double sum[PARTS * MOST_THREADS];
 } work;
 
-static double clock_now(void)
+double roof_clock(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -124,11 +124,11 @@ roof_rates roof_take(const roof *r, bool single)
     const int chunks = PARTS * threads;
     const double each = 2. * CHAINS * LENGTH * k->bytes / (single ? sizeof(float) : sizeof(double));
     work w = {.r = r, .chains = k->chains[single]};
-    const double start = clock_now();
+    const double start = roof_clock();
     pool_run(r->threads, COPY / PIECE, 1, copy_work, &w);
-    const double middle = clock_now();
+    const double middle = roof_clock();
     pool_run(r->threads, chunks, 1, chain_work, &w);
-    const double end = clock_now();
+    const double end = roof_clock();
     volatile double kept = w.sum[0]; /* or the chains would not be computed */
     (void)kept;
     return (roof_rates){2. * COPY / (middle - start), each * chunks / (end - middle)};

@@ -17,6 +17,9 @@ typedef struct roof_rates {
     double copy, flops;
 } roof_rates;
 
+/* Seconds. */
+double roof_clock(void);
+
 /* -1 with e filled, and r to be freed all the same. */
 int roof_make(roof *r, pool *threads, const char *vectors, err *e);
 void roof_free(roof *r);

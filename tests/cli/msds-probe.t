@@ -14,23 +14,7 @@ press() {
 for hz in 30 60 120; do
     press "$hz" >"$T/press$hz.tum"
 done
-# A cube of 2 cm with its face at the origin, in mm.
-cat >"$T/cube.obj" <<'END'
-v -10 -10 -20
-v 10 -10 -20
-v 10 10 -20
-v -10 10 -20
-v -10 -10 0
-v 10 -10 0
-v 10 10 0
-v -10 10 0
-f 4 3 2 1
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-END
+cp tests/cli/cube.obj "$T"
 
 # Forces, N, at seconds .3, .5 and .8 of a run.
 forces() {

@@ -38,22 +38,7 @@ force() {
         END { print f, sqrt(t) }' "$1"
 }
 
-cat >"$T/cube.obj" <<'END'
-v -10 -10 -20
-v 10 -10 -20
-v 10 10 -20
-v -10 10 -20
-v -10 -10 0
-v 10 -10 0
-v 10 10 0
-v -10 10 0
-f 4 3 2 1
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-END
+cp tests/cli/cube.obj "$T"
 for probe in sphere:2cm linear:4cm,1cm curved:4cm,70,15mm "convex:$T/cube.obj"; do
     check "${probe%%:*}" tled-run -v --text --unit mm --probe "$probe" --poses "$T/press.tum" --rest 1e-3 -m tissue.E=10000 -o "$T/run.sinew" <"$T/block.sinew"
     force "$T/run.sinew" >"$T/force"
