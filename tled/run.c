@@ -33,7 +33,9 @@ typedef struct run {
     int unsure;
     int cuts;
     double damping;
-    double closest; /* to rest so far, as a share; and the step that it came so close in */
+    double dt, damped; /* s, 1/s: of the last steps */
+    int64_t taken;     /* steps, each part of a cut one for itself, and those that were taken again */
+    double closest;    /* to rest so far, as a share; and the step that it came so close in */
     int64_t closest_at;
     double remaining;
     err *e;
@@ -103,6 +105,19 @@ static bool is_sound(const run *n)
     return s->broken < 0 && s->stable >= step_now(n) * (1 - 1e-12);
 }
 
+/* Accounts for the state of now in the log; `shown`, by a row. */
+static int log_state(run *n, bool shown)
+{
+    const log_row row = {.step = n->plan.first - n->from,
+                         .taken = n->taken,
+                         .time = tled_time(&n->plan, 0),
+                         .dt = n->dt,
+                         .stable = n->watch->sight.stable,
+                         .damping = n->damped,
+                         .remaining = n->remaining};
+    return log_look(n->r->log, n->r->device, n->state, &row, shown, n->e);
+}
+
 /* Keeps what was looked at last, to come back to. */
 static int keep(run *n)
 {
@@ -113,6 +128,8 @@ static int keep(run *n)
 static int go_back(run *n)
 {
     n->plan.first = n->kept_first;
+    if (n->r->log && log_back(n->r->log, n->e))
+        return -1;
     return n->r->device->back(n->state, n->e);
 }
 
@@ -134,6 +151,9 @@ static int advance(run *n, int64_t to)
     tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, n->plan.first * parts, n->damping};
     if (n->r->device->step(n->state, &cut, (to - n->plan.first) * parts, n->e))
         return -1;
+    n->dt = step_now(n);
+    n->damped = n->damping;
+    n->taken += (to - n->plan.first) * parts;
     n->plan.first = to;
     return 0;
 }
@@ -164,10 +184,9 @@ static int write_frame(run *n)
     return 0;
 }
 
-/* The first step past `after` with a frame. */
-static int64_t next_frame(const run *n, int64_t after)
+/* The first step past `after` at or past a multiple of so many seconds; 0: never. */
+static int64_t next_multiple(const run *n, double every, int64_t after)
 {
-    double every = n->r->every;
     int64_t at = after;
     if (every == 0)
         return INT64_MAX;
@@ -177,6 +196,27 @@ static int64_t next_frame(const run *n, int64_t after)
     for (int more = 0; at <= after; more++)
         at = run_steps_to((passed + more) * every - n->plan.origin, n->r->rate);
     return at;
+}
+
+/* The first step past `after` with a frame; with a row of the log, but for those at checks. */
+static int64_t next_frame(const run *n, int64_t after)
+{
+    return next_multiple(n, n->r->every, after);
+}
+
+static int64_t next_row(const run *n, int64_t after)
+{
+    return next_multiple(n, n->r->log ? n->r->log->every : 0, after);
+}
+
+/* Of a state that is sound: in the log, where there is one, and a row of it where one is due. */
+static int log_sound(run *n)
+{
+    run_log *log = n->r->log;
+    if (!log)
+        return 0;
+    bool shown = log->every == 0 || next_row(n, n->plan.first - 1) == n->plan.first;
+    return log_state(n, shown) || log_keep(log, n->e) ? -1 : 0;
 }
 
 /* One part after another of the step past what is kept, until it breaks. */
@@ -206,7 +246,7 @@ static int find_break(run *n, int64_t to)
             return -1;
         if (!is_sound(n))
             break;
-        if (keep(n) || (next_frame(n, n->plan.first - 1) == n->plan.first && write_frame(n)))
+        if (log_sound(n) || keep(n) || (next_frame(n, n->plan.first - 1) == n->plan.first && write_frame(n)))
             return -1;
     }
     return find_part(n);
@@ -224,14 +264,24 @@ static bool can_take(const run *n, int64_t to)
     return false;
 }
 
+/* Goes to `to`, taking frames if so asked and making rows of the log on the way. */
+static int go_by(run *n, int64_t to, bool taking)
+{
+    for (;;) {
+        int64_t shot = taking ? next_frame(n, n->plan.first) : INT64_MAX, row = next_row(n, n->plan.first);
+        int64_t at = shot < row ? shot : row;
+        if (at >= to)
+            return advance(n, to);
+        if (advance(n, at) || (at == shot && take(n)) || (at == row && log_state(n, true)))
+            return -1;
+    }
+}
+
 /* Goes to the next check, or the end, in steps that are cut until its state is sound, taking frames if so asked. */
 static int cut_to(run *n, int64_t to, bool taking)
 {
     for (;; n->cuts++) {
-        for (int64_t at = next_frame(n, n->plan.first); taking && at < to; at = next_frame(n, at))
-            if (advance(n, at) || take(n))
-                return -1;
-        if (advance(n, to) || look(n))
+        if (go_by(n, to, taking) || look(n))
             return -1;
         if (is_sound(n))
             break;
@@ -242,7 +292,7 @@ static int cut_to(run *n, int64_t to, bool taking)
             return -1;
     }
     send(n);
-    return 0;
+    return n->r->log ? log_keep(n->r->log, n->e) : 0;
 }
 
 /* Goes on from what is kept to the next check, or the end, with the frames before it. */
@@ -309,6 +359,9 @@ static int loop(run *n, run_end *end)
     int over = look(n) ? -1 : n->watch->sight.broken >= 0 ? diverged(n) : check(n);
     if (over >= 0 && !is_sound(n))
         return diverged(n);
+    n->dt = step_now(n);
+    if (over >= 0 && log_sound(n))
+        return -1;
     if (over >= 0 && r->first) {
         written = n->plan.first;
         over = write_frame(n) ? -1 : over;
@@ -320,11 +373,15 @@ static int loop(run *n, run_end *end)
             return -1;
         if (to % r->check == 0)
             over = check(n);
+        if (over >= 0 && log_sound(n))
+            return -1;
         if (over >= 0 && next_frame(n, to - 1) == to) {
             written = to;
             over = write_frame(n) ? -1 : over;
         }
     }
+    if (over >= 0 && r->log && log_end(r->log, n->e))
+        return -1;
     end->steps = n->plan.first - n->from;
     end->sight = n->watch->sight;
     end->rested = over > 0;
@@ -354,6 +411,8 @@ static int prepare(run *n)
     if (r->rate_fixed)
         n->watch->raise = 1;
     n->watch->differences = r->rest >= 0;
+    if (r->log && log_begin(r->log, r->p, r->threads, n->e))
+        return -1;
     n->relax = relax_of(r->frequency, n->watch->rest_step);
     n->state = r->device->create(r->p, r->threads, n->e);
     n->out = n->state ? outbox_create(r->p, r->device, n->state, r->frame, r->context, n->e) : NULL;

@@ -13,6 +13,7 @@
 #define SINEW_RUN_H
 
 #include "device/backend.h"
+#include "tled/log.h"
 #include "tled/outbox.h"
 #include "tled/watch.h"
 
@@ -31,6 +32,7 @@ typedef struct run_setup {
     bool single;      /* numbers of single precision, which may come no closer to rest: then fail */
     double every;     /* s: a frame at each multiple; 0: the last state only */
     bool first;       /* and a frame of the state that the run begins from */
+    run_log *log;     /* opened, or NULL: a row a check, or at each multiple of its interval, and at the end */
     void *context;
     /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run, at a frame soon after. */
     outbox_frame *frame;

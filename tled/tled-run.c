@@ -23,11 +23,11 @@ static const double rest_tolerance = 1e-4;
 struct options {
     opt_common common;
     int device, precision;
-    double dt, seconds, rest, ramp, damping, hourglass, every; /* below 0: not given */
-    int64_t steps;                                             /* 0: not given */
+    double dt, seconds, rest, ramp, damping, hourglass, every, log_every; /* below 0: not given */
+    int64_t steps;                                                        /* 0: not given */
     opt_numbers gravity;
     opt_list contract, material;
-    const char *script, *materials, *probe, *poses, *unit;
+    const char *script, *materials, *probe, *poses, *unit, *log;
     double repulsion;
 };
 
@@ -65,6 +65,10 @@ static const opt option_list[] = {
     {0, "repulsion", "X", OPT_NUMBER, offsetof(struct options, repulsion), 1e-6, 1e3, NULL, OPT_OUTPUT,
      "of it, over tissue's own [1]"},
     {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of its OBJ"},
+    {0, "log", "FILE", OPT_TEXT, offsetof(struct options, log), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
+     "energies, residual, rates, as TSV"},
+    {0, "log-every", "S", OPT_NUMBER, offsetof(struct options, log_every), 1e-12, 1e9, NULL, OPT_OUTPUT,
+     "its rows, s [0.01]"},
     {0},
 };
 
@@ -88,6 +92,7 @@ typedef struct session {
     collider collider;
     pool *threads;
     run_setup run;
+    run_log log;
     progress progress;
     int64_t next_frame; /* its index */
     bool started;       /* the state that the run begins from has been written: as a frame that came */
@@ -101,6 +106,8 @@ static int check_end(const struct options *o, err *e)
     int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
     if (ends > 1)
         return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
+    if (o->log_every > 0 && !o->log)
+        return err_usage(e, "--log-every without --log; expected both");
     if (o->damping == 0 && (!ends || o->rest >= 0))
         return err_usage(e, "without damping nothing comes to rest; expected -t or -n to end, or a --damping above 0");
     return 0;
@@ -399,7 +406,10 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     s->run.device = choose_device(s, o, device, size, e);
     int threads = tool_threads(s->t, e);
     s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
-    return s->threads ? 0 : -1;
+    if (!s->threads || (o->log && log_open(&s->log, o->log, fmax(o->log_every, 0), e)))
+        return -1;
+    s->run.log = o->log ? &s->log : NULL;
+    return 0;
 }
 
 static int simulate(session *s, const struct options *o, const char *device, err *e)
@@ -436,6 +446,7 @@ int main(int argc, char **argv)
                         .damping = -1,
                         .hourglass = .0075,
                         .every = -1,
+                        .log_every = -1,
                         .repulsion = 1};
     err e = {0};
     tool t = {0};
@@ -449,6 +460,7 @@ int main(int argc, char **argv)
         goto out;
 out:
     tool_warn(&t, &s.warnings);
+    log_close(&s.log, &e);
     if (!t.done)
         stage_close(&s.stage, &t, &e);
     pool_destroy(s.threads);

@@ -56,6 +56,15 @@ cat >"$T/script" <<'SCRIPT'
 SCRIPT
 same "a script" "$T/block.sinew" --script "$T/script"
 same "a muscle" "$T/muscle.sinew" -c all=0.5 -g 0,0,-9.81
+for device in cpu cuda; do
+    run "$T/muscle.sinew" -q -d $device -c all=0.5 -t .2 --log-every .001 --log "$T/log.$device" >"$T/logged.$device"
+done
+run "$T/muscle.sinew" -q -d cuda -c all=0.5 -t .2 | cmp - "$T/logged.cuda"
+is $? 0 "a log leaves the result as it is"
+is "$(awk -F '\t' 'NR == FNR { for (i = 1; i <= 13; i++) there[FNR, i] = $i; next }
+    FNR == 1 { next }
+    { for (i = 1; i <= 13; i++) { off = $i - there[FNR, i]; if (i != 4 && off * off > 1e-12 * $11 * $11 + 1e-24) print FNR, i } }
+    END { if (FNR != 202) print FNR }' "$T/log.cpu" "$T/log.cuda")" "" "and says what the CPU's says"
 if [ -z "$SINEW_MODELS" ] && have voxelise; then
     SINEW_MODELS=$T
     make -s -C samples OUT="$T" SINEW_BIN="$SINEW_BIN" "$T/sphere.model" "$T/muscle.model" "$T/block.model" "$T/head.model"

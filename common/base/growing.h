@@ -1,0 +1,22 @@
+/* A file that is read while it is written: a log. What is put goes to the file at once, in one piece, so that readers see
+ * whole lines. Unlike out.h's it stands under its name from the start, and stays there whatever happens. The creator owns it.
+ */
+#ifndef SINEW_GROWING_H
+#define SINEW_GROWING_H
+
+#include "base/err.h"
+
+#include <stddef.h>
+
+typedef struct growing growing;
+
+/* Makes the file, or empties it; a device or FIFO is written as it is. "-" is refused. NULL with e filled. */
+growing *growing_open(const char *path, err *e);
+
+/* Adds whole lines. -1 with e filled: to a full disk nothing more is written, and a line begun is taken back. */
+int growing_put(growing *g, const void *lines, size_t size, err *e);
+
+/* Closes it and frees g, which may be NULL. 0, or -1 with e filled. */
+int growing_close(growing *g, err *e);
+
+#endif

@@ -1,0 +1,36 @@
+/* Where a run's energy comes from and goes: what the tissue holds, and the work done since the run began by gravity, forces,
+ * prescribed displacements, muscles, a probe and damping. An account looks at a state from outside, in double on this
+ * machine's threads, whatever the back end, and changes nothing of the run. Work between two looks goes by the mean of
+ * the forces at both, times the way between them: so the nearer looks are to each other, the better the sums balance. Sums go
+ * by chunks in a fixed order: the same bytes for any number of threads. The creator owns the account.
+ */
+#ifndef SINEW_ACCOUNT_H
+#define SINEW_ACCOUNT_H
+
+#include "tled/state.h"
+
+typedef struct account_sums {
+    double time;                       /* s */
+    double kinetic, strain, hourglass; /* J: held now; strain without hourglass energy, and without what muscles do */
+    double gravity, forces, held, muscles,
+        probe;                  /* J: work done on the tissue since the first look; held: by what is displaced */
+    double damping;             /* J: taken by it since */
+    double balance;             /* J: what is held, less what was held at first and came since: 0 but for errors */
+    double displacement, speed; /* m, m/s: the largest */
+    double acceleration; /* m/s2: of the forces out of balance, root mean square over the mass where nothing holds */
+} account_sums;
+
+typedef struct account account;
+
+account *account_create(const tled_problem *p, pool *threads, err *e);
+void account_destroy(account *a);
+
+/* Looks at the state, which stands at `time`; damping (1/s): on the way to it. What it finds is borrowed until the next
+ * look. NULL with e filled where the back end fails. */
+const account_sums *account_look(account *a, const backend *b, void *state, double time, double damping, err *e);
+
+/* Keeps what is known now, for a run that goes back; and goes back to it. */
+void account_keep(account *a);
+void account_back(account *a);
+
+#endif

@@ -1,0 +1,115 @@
+#include "tled/log.h"
+
+#include "base/progress.h"
+
+#include <math.h>
+
+/* Quantity and unit; the last two go by the clock, and differ from run to run. */
+static const char heading[] =
+    "time/s\tstep\tdt/s\tstable/s\tkinetic/J\tstrain/J\thourglass/J\tgravity/J\tforces/J\tdisplaced/J\tmuscles/"
+    "J\tprobe/J\t"
+    "damping/J\tbalance/J\tdisplacement/m\tspeed/(m/s)\tresidual/(m/s2)\tremaining\tsteps/(1/s)\telements/(1/s)\n";
+
+int log_open(run_log *l, const char *path, double every, err *e)
+{
+    l->every = every;
+    l->file = growing_open(path, e);
+    return l->file ? 0 : -1;
+}
+
+/* Sends the rows, and begins anew. */
+static int empty_rows(run_log *l, bool send, err *e)
+{
+    size_t size;
+    const unsigned char *bytes = out_bytes(l->rows, &size);
+    int bad = out_failed(l->rows, e);
+    if (!bad && send && size)
+        bad = growing_put(l->file, bytes, size, e);
+    out_discard(l->rows);
+    l->rows = bad ? NULL : out_memory(e);
+    l->is_pending = false;
+    return l->rows ? 0 : -1;
+}
+
+int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
+{
+    l->p = p;
+    l->began = progress_clock();
+    l->account = account_create(p, threads, e);
+    l->rows = l->account ? out_memory(e) : NULL;
+    if (!l->rows)
+        return -1;
+    out_text(l->rows, heading);
+    return empty_rows(l, true, e);
+}
+
+/* nan, where there is nothing to tell, is what plots leave out. */
+static void put_number(out *to, double value)
+{
+    if (isfinite(value))
+        out_format(to, "\t%.9g", value);
+    else
+        out_text(to, "\tnan");
+}
+
+static void put_row(run_log *l, const log_row *row, const account_sums *s)
+{
+    const double took = progress_clock() - l->began;
+    const double rate = took > 0 && row->taken > l->steps ? (double)(row->taken - l->steps) / took : NAN;
+    const double values[] = {
+        row->dt,         row->stable, s->kinetic,      s->strain,      s->hourglass, s->gravity,
+        s->forces,       s->held,     s->muscles,      s->probe,       s->damping,   s->balance,
+        s->displacement, s->speed,    s->acceleration, row->remaining, rate,         rate * (double)l->p->elements};
+    out_format(l->rows, "%.9g\t%lld", row->time, (long long)row->step);
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+        put_number(l->rows, values[i]);
+    out_text(l->rows, "\n");
+    l->steps = row->taken;
+    l->began = progress_clock();
+}
+
+int log_look(run_log *l, const backend *b, void *state, const log_row *row, bool shown, err *e)
+{
+    const account_sums *s = account_look(l->account, b, state, row->time, row->damping, e);
+    if (!s)
+        return -1;
+    if (shown)
+        put_row(l, row, s);
+    l->last = *row;
+    l->unshown = shown ? NULL : s;
+    l->is_pending = true;
+    return out_failed(l->rows, e);
+}
+
+int log_keep(run_log *l, err *e)
+{
+    account_keep(l->account);
+    return empty_rows(l, true, e);
+}
+
+int log_back(run_log *l, err *e)
+{
+    if (!l->is_pending)
+        return 0;
+    account_back(l->account);
+    return empty_rows(l, false, e);
+}
+
+int log_end(run_log *l, err *e)
+{
+    if (l->unshown)
+        put_row(l, &l->last, l->unshown);
+    l->unshown = NULL;
+    return empty_rows(l, true, e);
+}
+
+int log_close(run_log *l, err *e)
+{
+    account_destroy(l->account);
+    out_discard(l->rows);
+    l->account = NULL;
+    l->rows = NULL;
+    growing *file = l->file;
+    l->file = NULL;
+    return growing_close(file, e);
+}
