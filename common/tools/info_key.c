@@ -366,3 +366,29 @@ int info_key(const source *s, const char *key, out *to, err *e)
         return unknown_key(s, key, e);
     return put_array(&q, e);
 }
+
+const char *info_key_unit(const source *s, const char *key, err *e)
+{
+    static const char *const counts[] = {"rows", "columns", "nan"}, *const words[] = {"type", "unit", "axis"};
+    query q = {.s = s, .key = key};
+    const bool found = find_array(&q);
+    if (!found && strcmp(key, "frames") != 0 && strncmp(key, "axis.", 5) != 0 && strncmp(key, "meta.", 5) != 0 &&
+        strncmp(key, "frame.", 6) != 0 && strncmp(key, "volume.count.", 13) != 0) {
+        unknown_key(s, key, e);
+        return NULL;
+    }
+    bool is_number = found && frame_find(&s->frame, q.a->name) == q.a && q.a->type != MODEL_STR;
+    for (int i = 0; is_number && q.what && i < 3; i++)
+        is_number = strcmp(q.what, words[i]) != 0;
+    if (!is_number) {
+        err_set(e, source_name(s), 0,
+                "'%.80s' is no number that frames have; expected one of an array of frames, as "
+                "node.displacement.max",
+                key);
+        return NULL;
+    }
+    for (int i = 0; q.what && i < 3; i++)
+        if (!strcmp(q.what, counts[i]))
+            return "";
+    return q.a->unit;
+}

@@ -5,6 +5,7 @@
 #include "model/source.h"
 #include "tools/info_json.h"
 #include "tools/info_key.h"
+#include "tools/info_series.h"
 #include "tools/info_stats.h"
 
 #include <inttypes.h>
@@ -14,13 +15,15 @@
 
 struct options {
     opt_common common;
-    opt_list get;
+    opt_list get, tsv;
     bool json;
 };
 
 static const opt option_table[] = {
     {0, "get", "KEY", OPT_LIST, offsetof(struct options, get), 0, 0, NULL, OPT_OUTPUT,
      "one value, as node.displacement.max"},
+    {0, "tsv", "KEY", OPT_LIST, offsetof(struct options, tsv), 0, 0, NULL, OPT_OUTPUT,
+     "a value of each frame, a row a frame"},
     {0, "json", NULL, OPT_FLAG, offsetof(struct options, json), 0, 0, NULL, OPT_OUTPUT, "the summary as JSON"},
     {0}};
 
@@ -243,6 +246,31 @@ static int put(const source *s, const double *times, const struct options *o, ou
     return 0;
 }
 
+/* A row a frame, as frames come. */
+static int put_series(source *s, const opt_list *keys, out *to, err *e)
+{
+    info_series series = {{0}};
+    int got;
+    while ((got = source_next(s, e)) > 0)
+        if (info_series_row(&series, s, keys, to, e))
+            return -1;
+    if (!got && !s->frames)
+        return source_no_frame(s, NULL, e);
+    return got;
+}
+
+/* All else is said of the whole stream, once it is known to be right. */
+static int put_whole(source *s, const struct options *o, out *text, out *to, err *e)
+{
+    double times[2] = {NAN, NAN};
+    size_t size;
+    if (read_all(s, times, e) || put(s, times, o, text, e))
+        return -1;
+    const unsigned char *bytes = out_bytes(text, &size);
+    out_write(to, bytes, size);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     struct options o = {0};
@@ -250,25 +278,19 @@ int main(int argc, char **argv)
     tool t = {0};
     source s = {0};
     out *text = NULL, *to = NULL;
-    double times[2] = {NAN, NAN};
-    size_t size;
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (o.json && o.get.count) {
-        err_usage(&e, "--json and --get exclude each other; expected one of them");
+    if (o.json + (o.get.count > 0) + (o.tsv.count > 0) > 1) {
+        err_usage(&e, "--json, --get and --tsv exclude each other; expected one of them");
         goto out;
     }
-    if (source_open(&s, t.operands ? argv[1] : NULL, &e) || read_all(&s, times, &e))
+    if (source_open(&s, t.operands ? argv[1] : NULL, &e))
         goto out;
     text = out_memory(&e);
-    if (!text || put(&s, times, &o, text, &e))
+    to = text ? out_open(o.common.output, false, &e) : NULL;
+    if (!to || (o.tsv.count ? put_series(&s, &o.tsv, to, &e) : put_whole(&s, &o, text, to, &e)))
         goto out;
-    to = out_open(o.common.output, false, &e);
-    if (!to)
-        goto out;
-    const unsigned char *bytes = out_bytes(text, &size);
-    out_write(to, bytes, size);
 out:
     if (text)
         out_close(text, &e);

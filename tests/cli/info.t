@@ -55,6 +55,34 @@ check "-v says what arrays are" sh -c "sinew info -v $small | grep -q 'contracti
 printf '%%sinew 1 text\nmeta a "bell\x07 escape\x1b[31m"\nend\n' >"$T/rude"
 is "$(sinew info "$T/rude" | tr -d '[:print:]\n')" "" "the summary sends a terminal no control characters"
 
+# A time series.
+sinew info --tsv node.displacement.max --tsv node.displacement.at.0.2,0,0 "$small" >"$T/series"
+is "$(head -n 1 "$T/series" | tr '\t' ' ')" "frame time/s node.displacement.max/m node.displacement.at.0.2,0,0.x/m node.displacement.at.0.2,0,0.y/m node.displacement.at.0.2,0,0.z/m" \
+    "--tsv: a heading with units"
+is "$(sed -n 3p "$T/series" | tr '\t' ' ')" "10 0.5 0.05 0.03 0 0.04" "a row a frame"
+is "$(wc -l <"$T/series" | tr -d ' ') $(awk -F '\t' '{ print NF }' "$T/series" | sort -u)" "3 6" "as many as there are frames, all as wide"
+is "$(sinew info --tsv node.displacement.rows --tsv node.displacement.row.2 "$small" | sed -n '1p;3p' | tr '\t\n' '  ')" \
+    "frame time/s node.displacement.rows node.displacement.row.2.x/m node.displacement.row.2.y/m node.displacement.row.2.z/m 10 0.5 12 0.03 0 0.04 " "counts have no unit"
+sed -n '1,/^frame 10/p' "$small" | sinew info --tsv node.displacement.max 2>"$T/stderr" | { read -r _; read -r first && echo "$first" >"$T/live"; }
+is "$(cut -f 1 "$T/live")" "$(sed -n '2s/\t.*//p' "$T/series")" "a row comes when its frame is whole, not at the end"
+check "--tsv -o" sinew info --tsv node.displacement.max -o "$T/out.tsv" "$small"
+is "$(cut -f 1-3 "$T/series" | cksum)" "$(cksum <"$T/out.tsv")" "the same in a file"
+{ sed '$d' "$small" && echo 'fail 3 "tled-run: it diverged"'; } | sinew info --tsv node.displacement.max >"$T/failed.tsv"
+is "$? $(wc -l <"$T/failed.tsv" | tr -d ' ')" "3 3" "a stream that failed gives the rows that came, and its status"
+fails 1 "--tsv of an array of the body" "is no number that frames have" sinew info --tsv node.position.max "$small"
+fails 1 "of metadata" "is no number that frames have" sinew info --tsv meta.note "$small"
+fails 1 "of a type" "is no number that frames have" sinew info --tsv node.displacement.type "$small"
+fails 1 "of several rows" "several rows" sinew info --tsv node.displacement "$small"
+fails 1 "of what frames lack" "no node.velocity; it comes from tled-run" sinew info --tsv node.velocity.max "$small"
+fails 1 "of a slip" "did you mean 'node.displacement.max'" sinew info --tsv node.displacment.max "$small"
+is "$(cat "$T/stdout")" "" "without a heading"
+sed '/^frame/,$d' "$small" >"$T/body" && echo end >>"$T/body"
+fails 1 "of a model without frames" "frame" sinew info --tsv node.displacement.max "$T/body"
+fails 2 "--tsv with --get" "exclude each other" sinew info --tsv node.displacement.max --get frames "$small"
+sed '$d' "$small" >"$T/cut"
+fails 1 "of a stream that is cut" "cut" sinew info --tsv node.displacement.max -o "$T/never" "$T/cut"
+is "$(ls "$T/never" 2>/dev/null)" "" "leaves no file"
+
 # JSON.
 if have python3; then
     sinew info --json "$small" >"$T/json"
