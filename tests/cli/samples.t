@@ -46,6 +46,20 @@ for shape in muscle block; do
     check "$shape: a VTU" grep -q '<VTKFile' "$T/a/$shape.vtu"
 done
 
+# Plots of both: tables of a run's energies and of a place's way, and pictures of them where there is gnuplot.
+if have gnuplot; then
+    check "plots" samples "$T/a" -j2 plots
+    for shape in muscle block; do
+        for plot in energy way; do
+            check "$shape: $plot.png" sh -c "head -c 8 '$T/a/$shape.$plot.png' | grep -q PNG"
+        done
+        is "$(wc -l <"$T/a/$shape.way.tsv" | tr -d ' ')" 102 "$shape: a row each 2 ms, and a heading"
+        check "$shape: a log to its end" sh -c "tail -n 1 '$T/a/$shape.log.tsv' | grep -q '^0.2[[:space:]]'"
+    done
+else
+    skip 9 "no gnuplot"
+fi
+
 # The block that a ball presses, by both methods: what it says of the forces.
 check "a press, two at a time" samples "$T/a" -f press.mk -j2 NODES=9x7x7
 is "$(awk '!/^#/ { n++; if ($2 > springs) springs = $2; if ($3 > fem) fem = $3; if (n == 1 || n == 60) ends += $2 + $3 }
