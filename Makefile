@@ -27,7 +27,7 @@ PICTURES = -lpng -lfreetype
 COLLIDE = -lccd
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
-	sinew sinew-deform sinew-info sinew-diff sinew-export sinew-render
+	sinew sinew-deform sinew-info sinew-diff sinew-export sinew-import sinew-render
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -118,6 +118,7 @@ SURFACE_SRC := $(SAMPLES_SRC) $(wildcard slice/contour*.c) slice/cubes.c
 SLICE_SRC := $(SAMPLES_SRC) $(wildcard slice/slice_*.c)
 INFO_MODULES := $(wildcard common/tools/info_*.c)
 EXPORT_MODULES := $(wildcard common/tools/export_*.c)
+IMPORT_MODULES := $(wildcard common/tools/import_*.c)
 RENDER_MODULES := $(wildcard common/tools/render_*.c)
 
 define tool
@@ -140,6 +141,7 @@ $(eval $(call tool,sinew,common/tools/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))
 $(eval $(call tool,sinew-export,common/tools/sinew-export.c $(EXPORT_MODULES)))
+$(eval $(call tool,sinew-import,common/tools/sinew-import.c $(IMPORT_MODULES)))
 $(eval $(call tool,sinew-render,common/tools/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))
 
 .PHONY: clean

@@ -29,7 +29,8 @@ static const struct {
     {"deform", "sinew-deform", "an OBJ as the model's results move it"},
     {"info", "sinew-info", "what a model holds"},
     {"diff", "sinew-diff", "where two models differ"},
-    {"export", "sinew-export", "VTU, Abaqus .inp, OBJ"},
+    {"export", "sinew-export", "VTU, Abaqus .inp, Gmsh .msh, OBJ"},
+    {"import", "sinew-import", "a mesh from Abaqus .inp, Gmsh .msh, VTU"},
     {"render", "sinew-render", "pictures"},
 };
 

@@ -1,0 +1,165 @@
+/* sinew-import: a mesh of another program (Abaqus input, Gmsh, VTU) as a model. */
+#include "base/mem.h"
+#include "base/num.h"
+#include "model/stage.h"
+#include "tools/import_inp.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { AUTO, INP, MSH, VTU };
+
+struct options {
+    opt_common common;
+    int format, stress, density;
+    const char *unit, *volume, *material, *materials;
+    opt_list rigid;
+};
+
+static const opt option_list[] = {
+    {'f', "format", "inp|msh|vtu", OPT_CHOICE, offsetof(struct options, format), 0, 0, "auto|inp|msh|vtu", 0,
+     "the format [what it looks like]"},
+    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, OPT_REQUIRED,
+     "of the file's lengths"},
+    {0, "rigid", "SET,...", OPT_LIST, offsetof(struct options, rigid), 0, 0, NULL, 0,
+     "sets, groups or arrays of nodes to hold"},
+    {0, "volume", "NAME", OPT_TEXT, offsetof(struct options, volume), 0, 0, NULL, 0,
+     "of elements that are in none [tissue]"},
+    {0, "material", "NAME", OPT_TEXT, offsetof(struct options, material), 0, 0, NULL, 0,
+     "of volumes that have none [by name]"},
+    {0, "materials", "FILE", OPT_TEXT, offsetof(struct options, materials), 0, 0, NULL, OPT_FILE,
+     "materials, and not the file's"},
+    {0, "stress", "Pa|kPa|MPa|GPa", OPT_CHOICE, offsetof(struct options, stress), 0, 0, "auto|Pa|kPa|MPa|GPa", 0,
+     "of the file's moduli [--unit m: Pa]"},
+    {0, "density", "kg/m3|g/cm3|t/mm3", OPT_CHOICE, offsetof(struct options, density), 0, 0, "auto|kg/m3|g/cm3|t/mm3", 0,
+     "of its densities [--unit m: kg/m3]"},
+    {0},
+};
+
+static const opt_tool table = {
+    .name = "sinew-import",
+    .purpose = "Make a model of a mesh: Abaqus .inp, Gmsh .msh or VTU.",
+    .operands = "mesh|-",
+    .operands_min = 1,
+    .operands_max = 1,
+    .writes_model = true,
+    .options = option_list,
+};
+
+/* The names of --rigid, one by one. */
+typedef struct names {
+    char *text[64];
+    const char *name[256];
+    int count;
+} names;
+
+static int cut_names(names *n, const opt_list *list, err *e)
+{
+    for (int i = 0; i < list->count; i++) {
+        n->text[i] = mem_text(list->value[i], e);
+        if (!n->text[i])
+            return -1;
+        for (char *at = n->text[i], *next; at; at = next) {
+            if ((next = strchr(at, ',')))
+                *next++ = '\0';
+            if (!*at)
+                return err_usage(e, "--rigid '%.200s': an empty name; expected SET,...", list->value[i]);
+            if (n->count == 256)
+                return err_usage(e, "--rigid: more than 256 names");
+            n->name[n->count++] = at;
+        }
+    }
+    return 0;
+}
+
+static int make_wishes(const struct options *o, const names *n, import_wishes *w, err *e)
+{
+    static const double stress[] = {0, 1, 1e3, 1e6, 1e9}, density[] = {0, 1, 1e3, 1e12};
+    const num_unit unit = num_unit_of(o->unit), metre = num_unit_of("m");
+    if (!unit)
+        return err_usage(e, "--unit '%s': expected " NUM_UNITS, o->unit);
+    *w = (import_wishes){.scale = num_length_in((num_length){1, unit}, unit, metre),
+                         .stress = stress[o->stress ? o->stress : unit == metre],
+                         .density = density[o->density ? o->density : unit == metre],
+                         .volume = o->volume ? o->volume : "tissue",
+                         .material = o->material,
+                         .rigid = n->name,
+                         .rigids = n->count,
+                         .own_materials = o->materials != NULL};
+    return 0;
+}
+
+/* By the first byte; what it is not, its reader says. */
+static int sniff(in *s, const char *name, err *e)
+{
+    int first = in_peek(s, e);
+    if (first == -2)
+        return -1;
+    if (first == '<')
+        return VTU;
+    if (first == '$')
+        return MSH;
+    if (first == '*' || first == '\n' || first == '\r' || first == ' ')
+        return INP;
+    return err_set(e, name, 1, "%s; expected Abaqus input, Gmsh's MSH or VTK's VTU, or -f to say which",
+                   first < 0      ? "an empty file"
+                   : first == '#' ? "VTK's legacy format, or a comment"
+                                  : "a file that begins like none that is read");
+}
+
+static int read_mesh(import_mesh *mesh, const char *path, const struct options *o, const import_wishes *w,
+                     notes *warnings, err *e)
+{
+    in *s = in_open(path, e);
+    int format = s ? o->format : -1, result = -1;
+    if (format == AUTO)
+        format = sniff(s, mesh->name, e);
+    if (format == INP)
+        result = import_inp(mesh, s, w, warnings, e);
+    in_close(s);
+    return result;
+}
+
+static int read_materials(const struct options *o, model *m, err *e)
+{
+    in *s = o->materials ? in_open(o->materials, e) : NULL;
+    int result = o->materials && (!s || materials_read(m, s, e)) ? -1 : 0;
+    in_close(s);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    struct options o = {.format = AUTO};
+    err e = {0};
+    tool t = {0};
+    stage s = {0};
+    model m = {0};
+    names rigid = {.count = 0};
+    import_wishes w = {0};
+    import_mesh mesh = {0};
+    notes warnings = {0};
+    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+        goto out;
+    if (stage_open_output(&s, &t, &e) || cut_names(&rigid, &o.rigid, &e) || make_wishes(&o, &rigid, &w, &e))
+        goto out;
+    mesh.name = strcmp(argv[1], "-") ? argv[1] : "stdin";
+    if (!strcmp(argv[1], "-") && tool_need_stdin("a mesh", &e))
+        goto out;
+    if (read_materials(&o, &m, &e) || read_mesh(&mesh, argv[1], &o, &w, &warnings, &e) ||
+        model_meta_set(&m, "source.unit", o.unit, &e) || import_build(&mesh, &w, &m, &warnings, &e) ||
+        stage_write(&s, &m, &e))
+        goto out;
+    tool_say(&t, "%lld nodes, %lld elements of %d corners, %lld volumes", (long long)mesh.nodes,
+             (long long)mesh.elements, (int)mesh.columns, (long long)mesh.volume_count);
+out:
+    tool_warn(&t, &warnings);
+    if (!t.done)
+        stage_close(&s, &t, &e);
+    for (int i = 0; i < rigid.count && i < 64; i++)
+        free(rigid.text[i]);
+    import_free(&mesh);
+    model_free(&m);
+    return tool_end(&t, &e);
+}

@@ -1,0 +1,35 @@
+# A ball of hexahedra that conform to its surface, as Abaqus input, in metres: a cube of n^3 cells mapped onto it (W&M section
+# 4.3 has 13^3 = 2197 elements). Its faces are the cube's, whose edges and corners lie on the ball too: there elements are flat.
+#   awk -v n=13 -v r=0.1 -v top=0.06 -v E=3000 -v nu=0.4 -v rho=1000 -f samples/ball.awk
+# holds the surface's nodes at z of `top` or more.
+BEGIN {
+    if (!n) n = 13
+    if (!r) r = 0.1
+    if (top == "") top = 0.6 * r
+    if (!E) E = 3000
+    if (nu == "") nu = 0.4
+    if (!rho) rho = 1000
+    print "*HEADING\nA ball of " n "^3 hexahedra\n*NODE, NSET=NALL"
+    for (k = 0; k <= n; k++)
+        for (j = 0; j <= n; j++)
+            for (i = 0; i <= n; i++) {
+                x = 2 * i / n - 1; y = 2 * j / n - 1; z = 2 * k / n - 1
+                at_z = z * sqrt(1 - x * x / 2 - y * y / 2 + x * x * y * y / 3)
+                printf "%d, %.15g, %.15g, %.15g\n", ++node, r * x * sqrt(1 - y * y / 2 - z * z / 2 + y * y * z * z / 3),
+                    r * y * sqrt(1 - z * z / 2 - x * x / 2 + z * z * x * x / 3), r * at_z
+                outside = i == 0 || i == n || j == 0 || j == n || k == 0 || k == n
+                if (outside && r * at_z >= top - 1e-9 * r) held[++holds] = node
+            }
+    print "*ELEMENT, TYPE=C3D8R, ELSET=BALL"
+    w = n + 1
+    for (k = 0; k < n; k++)
+        for (j = 0; j < n; j++)
+            for (i = 1; i <= n; i++) {
+                a = (k * w + j) * w + i; b = a + w * w
+                printf "%d, %d, %d, %d, %d, %d, %d, %d, %d\n", ++element, a, a + 1, a + w + 1, a + w, b, b + 1, b + w + 1, b + w
+            }
+    print "*NSET, NSET=TOP"
+    for (i = 1; i <= holds; i++) printf "%d,\n", held[i]
+    printf "*MATERIAL, NAME=TISSUE\n*HYPERELASTIC, NEO HOOKE\n%.15g, %.15g\n*DENSITY\n%.15g\n", E / (4 * (1 + nu)), 6 * (1 - 2 * nu) / E, rho
+    print "*SOLID SECTION, ELSET=BALL, MATERIAL=TISSUE\n*BOUNDARY\nTOP, 1, 3"
+}
