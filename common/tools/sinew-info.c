@@ -54,7 +54,7 @@ static void put_end(const model_array *a, const info_stats *s, bool max, out *to
 
 static void put_range(const model_array *a, out *to)
 {
-    if (a->type == MODEL_STR) {
+    if (a->type == MODEL_STR || !a->rows) {
         out_text(to, "-");
         return;
     }
