@@ -184,21 +184,23 @@ BINDIR = $(DESTDIR)$(PREFIX)/bin
 MANDIR = $(DESTDIR)$(PREFIX)/share/man
 SAMPLEDIR = $(DESTDIR)$(PREFIX)/share/doc/sinew/samples
 COMPLETIONDIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
-# `bind` has no completion: bash-completion has a file of that name, for the shell's builtin.
+ZSHDIR = $(DESTDIR)$(PREFIX)/share/zsh/site-functions
+# `bind` has none in bash: bash-completion has a file of that name, for the shell's builtin.
 COMPLETIONS = $(filter-out bind,$(TOOLS))
 PAGES = $(wildcard man/*.[157])
 SAMPLES = $(filter-out samples/demo samples/arm samples/scan,$(wildcard samples/*))
 
 install: all
-	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
+	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
 	$(INSTALL) -m 755 $(TOOLS:%=$(BIN)/%) $(BINDIR)
 	for section in 1 5 7; do $(INSTALL) -m 644 man/*.$$section $(MANDIR)/man$$section || exit 1; done
 	$(INSTALL) -m 644 $(SAMPLES) $(SAMPLEDIR)
 	for tool in $(COMPLETIONS); do $(BIN)/$$tool --table bash >$(COMPLETIONDIR)/$$tool || exit 1; done
-	chmod 644 $(COMPLETIONS:%=$(COMPLETIONDIR)/%)
+	for tool in $(TOOLS); do $(BIN)/$$tool --table zsh >$(ZSHDIR)/_$$tool || exit 1; done
+	chmod 644 $(COMPLETIONS:%=$(COMPLETIONDIR)/%) $(TOOLS:%=$(ZSHDIR)/_%)
 
 uninstall:
-	rm -f $(TOOLS:%=$(BINDIR)/%) $(COMPLETIONS:%=$(COMPLETIONDIR)/%) \
+	rm -f $(TOOLS:%=$(BINDIR)/%) $(COMPLETIONS:%=$(COMPLETIONDIR)/%) $(TOOLS:%=$(ZSHDIR)/_%) \
 	    $(foreach page,$(PAGES),$(MANDIR)/man$(subst .,,$(suffix $(page)))/$(notdir $(page)))
 	rm -rf $(SAMPLEDIR)
 	rmdir $(dir $(SAMPLEDIR)) 2>/dev/null || :

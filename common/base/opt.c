@@ -20,7 +20,7 @@ static const opt common_options[] = {
     {'v', "verbose", NULL, OPT_FLAG, COMMON(verbose), 0, 0, NULL, OPT_OUTPUT, "say more"},
     {'h', "help", NULL, OPT_FLAG, COMMON(help), 0, 0, NULL, OPT_OUTPUT, "this text"},
     {'V', "version", NULL, OPT_FLAG, COMMON(version), 0, 0, NULL, OPT_OUTPUT, "the version"},
-    {0, "table", "mdoc|bash", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN, "for make"},
+    {0, "table", "mdoc|bash|zsh", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN, "for make"},
     {0}};
 
 static bool is_end(const opt *o)

@@ -41,7 +41,7 @@ enum {
     OPT_REQUIRED = 1, /* usage error without it (unless -h, -V) */
     OPT_OUTPUT = 2,   /* does not change the result: left out of provenance */
     OPT_HIDDEN = 4,   /* not for people: left out of every text */
-    OPT_FILE = 8      /* its text names a file: provenance has the base name only */
+    OPT_FILE = 8      /* its text names a file: provenance has the base name only, completion offers files */
 };
 
 typedef struct opt {
@@ -49,9 +49,9 @@ typedef struct opt {
     const char *name; /* long, without the dashes; NULL: letter only */
     const char *arg;  /* metavariable, e.g. "SECONDS"; NULL for a flag */
     opt_kind kind;
-    size_t to;        /* offsetof(options, field) */
-    double low, high; /* range, inclusive; both 0: any */
-    const char *choices;
+    size_t to;           /* offsetof(options, field) */
+    double low, high;    /* range, inclusive; both 0: any */
+    const char *choices; /* names between '|'; for an OPT_TEXT, what completion offers, with ':' what is gone on with */
     int flags;
     const char *help; /* a few words, unit included */
 } opt;
@@ -60,7 +60,7 @@ typedef struct opt_common {
     bool help, version, text, gzip, quiet, verbose;
     const char *output; /* -o */
     int64_t threads;    /* 0: not given */
-    const char *table;  /* --table mdoc|bash: for the manual and completion */
+    const char *table;  /* --table mdoc|bash|zsh: for the manual and completion */
 } opt_common;
 
 typedef struct opt_tool {
@@ -86,7 +86,7 @@ int opt_own(const opt_tool *tool);
 /* Usage: at most 24 lines of 80 columns. */
 void opt_usage(const opt_tool *tool, out *o);
 
-/* kind "mdoc": the manual's SYNOPSIS; "bash": a completion script. -1 with e filled for another kind. */
+/* kind "mdoc": the manual's SYNOPSIS; "bash", "zsh": a completion script. -1 with e filled for another kind. */
 int opt_table(const opt_tool *tool, const char *kind, out *o, err *e);
 
 /* What of the command line changes the result, for provenance: options in table order, then operands, which are files;

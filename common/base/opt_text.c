@@ -1,6 +1,7 @@
-/* What a table of options says of itself: usage, synopsis, completion, provenance. */
+/* What a table of options says of itself: usage, synopsis, provenance. */
 #include "base/mem.h"
 #include "base/opt.h"
+#include "base/opt_complete.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,27 +21,39 @@ static void put_option(const opt *o, char *to, size_t size)
 
 enum { USAGE_LINES = 24 };
 
-/* The options from number `from` on few lines, each word whole, at most 80 columns. Returns how many; to may be NULL. */
+enum { USAGE_COLUMNS = 80 };
+
+/* Puts text that stays in one piece behind what is there, or on the next line. Returns the column that it ends in. */
+static size_t put_piece(const char *text, size_t length, size_t column, int *lines, out *to)
+{
+    const bool fits = column && column + 1 + length <= USAGE_COLUMNS;
+    *lines += !fits;
+    if (to)
+        out_format(to, "%s%.*s", fits ? " " : column ? "\n  " : "  ", (int)length, text);
+    return (fits ? column + 1 : 2) + length;
+}
+
+/* The options from number `from` on one after another, lines broken between words of what is said of them. Returns how
+ * many lines; to may be NULL. */
 static int put_packed(const opt_tool *tool, int from, out *to)
 {
     const opt *o;
     size_t column = 0;
-    int lines = 1;
+    int lines = 0;
     for (int i = from; (o = opt_at(tool, i)); i++) {
-        char item[160], name[80];
+        char name[96], help[160];
         if (o->flags & OPT_HIDDEN)
             continue;
-        put_option(o, name, sizeof name);
-        int n = snprintf(item, sizeof item, "%s: %s", name, o->help);
-        if (column && column + (size_t)n + 2 > 78) {
-            if (to)
-                out_text(to, "\n");
-            column = 0;
-            lines++;
+        put_option(o, name, sizeof name - 1);
+        strcat(name, ":");
+        column = put_piece(name, strlen(name), column, &lines, to);
+        const opt *next = opt_at(tool, i + 1);
+        snprintf(help, sizeof help, "%s%s", o->help, next && !(next->flags & OPT_HIDDEN) ? ";" : "");
+        for (const char *word = help; *word; word += strspn(word, " ")) {
+            size_t length = strcspn(word, " ");
+            column = put_piece(word, length, column, &lines, to);
+            word += length;
         }
-        if (to)
-            out_format(to, "%s%s", column ? "; " : "  ", item);
-        column += (size_t)n + 2;
     }
     if (to)
         out_text(to, "\n");
@@ -117,24 +130,16 @@ static void put_mdoc(const opt_tool *tool, out *to)
     }
 }
 
-static void put_bash(const opt_tool *tool, out *to)
-{
-    const opt *o;
-    out_format(to, "complete -o default -W '");
-    for (int i = 0; (o = opt_at(tool, i)); i++)
-        if (o->name && !(o->flags & OPT_HIDDEN))
-            out_format(to, "%s--%s", i ? " " : "", o->name);
-    out_format(to, "' %s\n", tool->name);
-}
-
 int opt_table(const opt_tool *tool, const char *kind, out *to, err *e)
 {
     if (!strcmp(kind, "mdoc"))
         put_mdoc(tool, to);
     else if (!strcmp(kind, "bash"))
-        put_bash(tool, to);
+        opt_complete_bash(tool, to);
+    else if (!strcmp(kind, "zsh"))
+        opt_complete_zsh(tool, to);
     else
-        return err_usage(e, "--table '%s': expected mdoc or bash", kind);
+        return err_usage(e, "--table '%s': expected mdoc, bash or zsh", kind);
     return 0;
 }
 

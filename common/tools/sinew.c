@@ -55,12 +55,48 @@ static void put_mdoc(out *o)
     out_text(o, ".Nm sinew\n.Ar TOOL\n.Op Ar ARGUMENTS\n.Nm sinew\n.Fl h | V\n");
 }
 
+/* The tool's own completion does the rest: its table tells it, so that `sinew bind` has one though bash's bind has not. */
 static void put_bash(out *o)
 {
-    out_text(o, "complete -o default -W '");
+    out_text(o, "_sinew_complete_sinew() {\n"
+                "    local word=${COMP_WORDS[COMP_CWORD]} sinew=${COMP_WORDS[0]} tool=${COMP_WORDS[1]} name\n"
+                "    if [[ $COMP_CWORD -eq 1 ]]; then\n"
+                "        COMPREPLY=($(compgen -W '");
     for (int i = 0; i < TOOLS; i++)
         out_format(o, "%s ", tools[i].name);
-    out_text(o, "--help --version' sinew\n");
+    out_text(o, "--help --version' -- \"$word\"))\n"
+                "        return\n"
+                "    fi\n"
+                "    case $tool in\n");
+    for (int i = 0; i < TOOLS; i++)
+        out_format(o, "    %s) name=%s ;;\n", tools[i].name, tools[i].file);
+    out_text(o, "    *) return ;;\n"
+                "    esac\n"
+                "    name=_sinew_complete_${name//-/_}\n"
+                "    declare -F \"$name\" >/dev/null || eval \"$(command \"$sinew\" \"$tool\" --table bash 2>/dev/null "
+                "| sed '$d')\"\n"
+                "    COMP_WORDS=(\"${COMP_WORDS[@]:1}\")\n"
+                "    COMP_CWORD=$((COMP_CWORD - 1))\n"
+                "    declare -F \"$name\" >/dev/null && \"$name\"\n"
+                "}\n"
+                "complete -o default -F _sinew_complete_sinew sinew\n");
+}
+
+static void put_zsh(out *o)
+{
+    out_text(o, "#compdef sinew\nlocal -a tools\ntools=(");
+    for (int i = 0; i < TOOLS; i++)
+        out_format(o, "\n    \"%s:%s\"", tools[i].name, tools[i].purpose);
+    out_text(o, "\n    --help --version)\n"
+                "if (( CURRENT == 2 )); then\n"
+                "    _describe -t commands tool tools\n"
+                "    return\n"
+                "fi\n"
+                "local tool=$words[2]\n"
+                "(( $+functions[_sinew-$tool] )) && tool=sinew-$tool\n"
+                "shift words\n"
+                "(( CURRENT-- ))\n"
+                "if (( $+functions[_$tool] )); then _$tool; else _default; fi\n");
 }
 
 /* Standard output gets what put writes. */
@@ -81,7 +117,9 @@ static int table(const char *kind)
         return answer(put_mdoc);
     if (!strcmp(kind, "bash"))
         return answer(put_bash);
-    fprintf(stderr, "sinew: --table '%s': expected mdoc or bash\n", kind);
+    if (!strcmp(kind, "zsh"))
+        return answer(put_zsh);
+    fprintf(stderr, "sinew: --table '%s': expected mdoc, bash or zsh\n", kind);
     return STATUS_USAGE;
 }
 

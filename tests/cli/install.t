@@ -40,15 +40,11 @@ fails 1 "a tool that is not there" "cannot run .*usr/bin/sinew-info: No such fil
 fails 2 "a tool that is none" "no tool 'inof'; did you mean 'info'\?" sinew inof
 fails 2 "no tool" "^usage: sinew TOOL" sinew
 
-if have bash; then
-    for tool in voxelise attach tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew sinew-deform sinew-info sinew-diff sinew-export; do
-        # shellcheck disable=SC2016 # for bash
-        check "$tool: its completion is for it, and has --help" \
-            bash -c '. "$1" && complete -p "$2" | grep -q -e --help' - "$root/usr/share/bash-completion/completions/$tool" "$tool"
-    done
-else
-    skip 13 "no bash"
-fi
+# What completion offers: completion.t.
+for tool in $tools; do
+    check "$tool: zsh's completion" grep -q "^#compdef $tool$" "$root/usr/share/zsh/site-functions/_$tool"
+    [ "$tool" = bind ] || check "$tool: bash's" grep -q "^complete .* $tool$" "$root/usr/share/bash-completion/completions/$tool"
+done
 check "no completion for the shell's bind" test ! -e "$root/usr/share/bash-completion/completions/bind"
 
 check "make uninstall" make_here uninstall

@@ -137,11 +137,17 @@ static void texts(void)
     out_discard(to);
 
     to = out_memory(&e);
-    ok(!opt_table(&table, "mdoc", to, &e) && !opt_table(&table, "bash", to, &e), "tables");
+    ok(!opt_table(&table, "mdoc", to, &e) && !opt_table(&table, "bash", to, &e) && !opt_table(&table, "zsh", to, &e),
+       "tables");
     out_write(to, "", 1);
     text = (const char *)out_bytes(to, &size);
     ok(strstr(text, ".Fl s Ar H | HX,HY,HZ\n.Op Fl n Ar N\n"), "mdoc synopsis");
-    ok(strstr(text, "complete -o default -W '--size --cells"), "bash completion");
+    ok(strstr(text, "-d) compopt +o default; COMPREPLY=($(compgen -W 'auto cuda cpu' -- \"$word\")); return ;;\n") &&
+           strstr(text, "complete -o default -F _sinew_complete_tool tool\n"),
+       "bash completion");
+    ok(strstr(text, "#compdef tool\n") && strstr(text, "'(-n --cells)'{-n+,--cells=}'[cells]:N: '") &&
+           strstr(text, "'*:surface.obj|-:_files -g \"*.(obj|obj.gz)(-.)\"'\n"),
+       "zsh completion");
     ok(opt_table(&table, "html", to, &e) == -1 && e.status == STATUS_USAGE, "another kind is refused");
     out_discard(to);
 }

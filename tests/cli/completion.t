@@ -1,0 +1,78 @@
+#!/bin/sh
+# Completion in bash and zsh, made of the option tables: real shells at a pseudo-terminal are asked what they offer.
+. "$(dirname "$0")/lib.sh"
+
+have python3 || skip_all "no python3"
+tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-deform sinew-info sinew-diff sinew-export sinew-render"
+mkdir "$T/bash" "$T/zsh" "$T/here" "$T/here/sub"
+for tool in $tools sinew; do
+    "$tool" --table zsh >"$T/zsh/_$tool"
+    # As installed: bash's own bind has none.
+    [ "$tool" = bind ] || "$tool" --table bash >"$T/bash/$tool"
+done
+for file in face.obj face.txt head.obj.gz 'two words.obj' a.nrrd b.mhd; do
+    : >"$T/here/$file"
+done
+
+# What is asked, and what is to be offered.
+cat >"$T/asked" <<'END'
+tled-run -d |auto cpu cuda
+tled-run --device c|cpu cuda
+tled-run --pre|--precision
+tled-run --probe |convex: curved: linear: sphere:
+tled-run --dt |
+tled-run --script f|face.obj face.txt
+sinew export -f |inp model obj vtu
+sinew-export --frame |all last rest
+sinew-deform --format=p|pc2
+voxelise --unit |cm in m mm um
+voxelise f|face.obj
+voxelise -n 3 h|head.obj.gz
+msds-mesh --like |a.nrrd b.mhd sub
+us-slice |a.nrrd b.mhd sub
+attach --fibre |axis centre field
+sinew de|deform
+sinew |--help --version attach bind deform diff export info msds-mesh msds-run render tled-run us-import us-segment us-slice us-surface voxelise
+sinew bind --u|--unit
+sinew bind f|face.obj
+sinew info --t|--tsv
+sinew render --format |png ppm
+END
+for shell in bash zsh; do
+    if ! have $shell; then
+        skip 1 "no $shell"
+        continue
+    fi
+    for tool in $tools sinew; do
+        file=$T/bash/$tool
+        [ $shell = zsh ] && file=$T/zsh/_$tool
+        [ ! -e "$file" ] || $shell -n "$file" >>"$T/wrong" 2>&1
+    done
+    is "$(cat "$T/wrong" 2>/dev/null)" "" "$shell: every script is one"
+    set --
+    while IFS='|' read -r line _; do
+        set -- "$@" "$line"
+    done <"$T/asked"
+    for tool in $tools; do
+        [ "$shell $tool" = "bash bind" ] || set -- "$@" "$tool --"
+    done
+    folder=$T/$shell
+    harness=$ROOT/tests/cli/complete.py
+    # shellcheck disable=SC2016 # for the inner shell
+    check "$shell: it answers" sh -c 'cd "$1" && shift && exec python3 "$@"' - "$T/here" "$harness" $shell "$folder" "$@"
+    sed "s/^--format=//" "$T/stdout" >"$T/offered" # bash says it with what is there
+    number=0
+    while IFS='|' read -r line want; do
+        number=$((number + 1))
+        is "$(sed -n "${number}p" "$T/offered")" "$want" "$shell: $line"
+    done <"$T/asked"
+    # Every option that the usage names is offered.
+    for tool in $tools; do
+        [ "$shell $tool" = "bash bind" ] && continue
+        number=$((number + 1))
+        is "$(sed -n "${number}p" "$T/offered")" \
+            "$("$tool" --help | grep -oE '(^  |, |; )(-[a-zA-Z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+' | sort -u | tr '\n' ' ' | sed 's/ $//')" \
+            "$shell: $tool --"
+    done
+done
+done_testing
