@@ -1,7 +1,19 @@
 # A ball of hexahedra that conform to its surface, as Abaqus input, in metres: a cube of n^3 cells mapped onto it (W&M section
-# 4.3 has 13^3 = 2197 elements). Its faces are the cube's, whose edges and corners lie on the ball too: there elements are flat.
+# 4.3 has 13^3 = 2197 elements).
 #   awk -v n=13 -v r=0.1 -v top=0.06 -v E=3000 -v nu=0.4 -v rho=1000 -f samples/ball.awk
-# holds the surface's nodes at z of `top` or more.
+# holds the surface's nodes at z of `top` or more. A place on the cube, m from its middle (1: on its surface), goes to radius m r on
+# the ball at the surface, lines of equal angles on its six sides, and more like the cube the nearer to the middle: `core` (of
+# which 0.6 gives the longest stable step) is how large that cube is.
+function tangent(x) {
+    x *= atan2(0, -1) / 4
+    return sin(x) / cos(x)
+}
+function largest(a, b, c) {
+    if (a < 0) a = -a
+    if (b < 0) b = -b
+    if (c < 0) c = -c
+    return a > b ? (a > c ? a : c) : (b > c ? b : c)
+}
 BEGIN {
     if (!n) n = 13
     if (!r) r = 0.1
@@ -9,16 +21,24 @@ BEGIN {
     if (!E) E = 3000
     if (nu == "") nu = 0.4
     if (!rho) rho = 1000
+    if (!core) core = 0.6
     print "*HEADING\nA ball of " n "^3 hexahedra\n*NODE, NSET=NALL"
     for (k = 0; k <= n; k++)
         for (j = 0; j <= n; j++)
             for (i = 0; i <= n; i++) {
                 x = 2 * i / n - 1; y = 2 * j / n - 1; z = 2 * k / n - 1
-                at_z = z * sqrt(1 - x * x / 2 - y * y / 2 + x * x * y * y / 3)
-                printf "%d, %.15g, %.15g, %.15g\n", ++node, r * x * sqrt(1 - y * y / 2 - z * z / 2 + y * y * z * z / 3),
-                    r * y * sqrt(1 - z * z / 2 - x * x / 2 + z * z * x * x / 3), r * at_z
+                m = largest(x, y, z)
+                at_x = at_y = at_z = 0
+                if (m) {
+                    tx = tangent(x / m); ty = tangent(y / m); tz = tangent(z / m)
+                    share = m * m / sqrt(tx * tx + ty * ty + tz * tz)
+                    at_x = r * ((1 - m) * core * x + share * tx)
+                    at_y = r * ((1 - m) * core * y + share * ty)
+                    at_z = r * ((1 - m) * core * z + share * tz)
+                }
+                printf "%d, %.15g, %.15g, %.15g\n", ++node, at_x, at_y, at_z
                 outside = i == 0 || i == n || j == 0 || j == n || k == 0 || k == n
-                if (outside && r * at_z >= top - 1e-9 * r) held[++holds] = node
+                if (outside && at_z >= top - 1e-9 * r) held[++holds] = node
             }
     print "*ELEMENT, TYPE=C3D8R, ELSET=BALL"
     w = n + 1

@@ -16,7 +16,8 @@ UNIT := $(UNIT_SRC:%.c=$(BUILD)/%)
 FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
 # Embree and the rest only for those that turn out to use them. (A variable: the comma.)
 AS_NEEDED = -Wl,--as-needed
-needs = $(call objects,$(shell sed -n 's|^// needs: *||p' $(1)))
+# tled/*.c: all but the main and what only cards use.
+needs = $(call objects,$(patsubst tled/*.c,$(filter-out tled/tled-run.c,$(TLED_SRC)),$(shell sed -n 's|^// needs: *||p' $(1))))
 
 define test_program
 $(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB_CUDA) $(LIB)

@@ -235,4 +235,6 @@ static void slab_pass(const cpu_work *w, int32_t which)
 #endif
 }
 
-const cpu_pass CPU_PASS = {CPU_PASS_NAME, LANES, slab_pass};
+#include "tled/cpu_mesh_lanes.h"
+
+const cpu_pass CPU_PASS = {CPU_PASS_NAME, LANES, slab_pass, mesh_elements, mesh_nodes};

@@ -7,6 +7,7 @@
  */
 #include "base/mem.h"
 #include "tled/collider.h"
+#include "tled/conforming.h"
 #include "tled/cpu_pass.h"
 
 #include <stdlib.h>
@@ -32,13 +33,17 @@ typedef struct cpu_state {
     uint8_t *flags;                          /* rows.nodes: NODE_* */
     number *fibre, *fraction;                /* cells, with padding: 3 x and 1 x; or NULL */
     number *mixfibre, *mixture, *law;        /* likewise; law: 3 x */
-    number *kept;                            /* displacement, then velocity; made when first wanted, as are: */
+    number *shape, *force;                   /* without a lattice: cpu_work's, as is: */
+    int32_t *group_node;
+    number *kept; /* displacement, then velocity; made when first wanted, as are: */
     number *taken[TLED_TAKEN];
     bool spare_is_internal;
     double time;        /* where the state stands */
     double *now, *next; /* the curves' values */
     cpu_work work;
 } cpu_state;
+
+#include "tled/cpu_mesh.h"
 
 static void pass_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
@@ -90,7 +95,10 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
         cpu_contact contact = {s, collider_at(s->p->collider, time), time};
         pool_run(s->threads, s->p->nodes, CONTACT_CHUNK, contact_work, &contact);
     }
-    pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
+    if (s->p->conforming)
+        mesh_pass(s);
+    else
+        pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (what & PASS_BEGIN) {
         number *swap = s->displacement;
@@ -205,7 +213,7 @@ static int64_t cpu_bytes(const void *state)
     for (int i = 0; i < TLED_TAKEN; i++)
         nodes += s->taken[i] ? 6 : 0;
     return r->nodes * (nodes * (int64_t)sizeof(number) + 1 + 4) + r->runs * (int64_t)sizeof *r->run +
-           r->cells * (cells * (int64_t)sizeof(number) + 4);
+           r->cells * (cells * (int64_t)sizeof(number) + 4) + mesh_bytes(s);
 }
 
 /* ---- life */
@@ -228,6 +236,9 @@ static void cpu_destroy(void *state)
     free(s->mixfibre);
     free(s->mixture);
     free(s->law);
+    free(s->shape);
+    free(s->force);
+    free(s->group_node);
     free(s->kept);
     for (int i = 0; i < TLED_TAKEN; i++)
         free(s->taken[i]);
@@ -262,7 +273,7 @@ static int allocate(cpu_state *s, err *e)
     s->flags = mem_array(nodes, 1, "the solver", e);
     s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
     s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
-    bool cells_too = allocate_cells(s, e);
+    bool cells_too = allocate_cells(s, e) && (!s->p->conforming || !mesh_allocate(s, e));
     return s->kind && s->displacement && s->spare && s->velocity && s->sum && s->mass_inverse && s->flags &&
                    cells_too && s->now && s->next
                ? 0
@@ -318,6 +329,9 @@ static void make_work(cpu_state *s)
     w->flags = s->flags;
     w->fraction = s->fraction;
     w->mixture = s->mixture;
+    w->shape = s->shape;
+    w->group_node = s->group_node;
+    w->force = s->force;
     for (int a = 0; a < 3; a++) {
         w->velocity[a] = s->velocity + a * s->rows.nodes;
         w->sum[a] = s->sum + a * s->rows.nodes;
@@ -336,12 +350,16 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
     s->threads = threads;
     s->pass = cpu_pass_choose(CPU_PASSES, e);
     s->time = s->p->start;
-    if (!s->pass || rows_make(&s->rows, s->p, s->pass->lanes, pool_threads(threads), e) || allocate(s, e)) {
+    if (!s->pass ||
+        (s->p->conforming ? mesh_rows(s, e) : rows_make(&s->rows, s->p, s->pass->lanes, pool_threads(threads), e)) ||
+        allocate(s, e)) {
         cpu_destroy(s);
         return NULL;
     }
     fill_nodes(s);
     fill_cells(s);
+    if (s->p->conforming)
+        mesh_fill(s);
     make_work(s);
     return s;
 }

@@ -10,6 +10,9 @@
 
 #include "tled/rows.h"
 
+/* What an element without a lattice has, in a group's lanes: element_any, then mu, K and the hourglass stiffness. */
+enum { CPU_SHAPE = 37 };
+
 enum { NODE_FREE = 1, NODE_EXTRA = 8 }; /* flags of a node: NODE_FREE << a: nothing holds component a; an extra */
 
 typedef struct cpu_kind { /* what a volume's elements need */
@@ -28,12 +31,15 @@ typedef struct cpu_work {
     void *sum[3]; /* zeros, before and after */
     const void *mass_inverse;
     const uint8_t *flags;
-    const void *fibre[3];     /* cells, or NULL */
-    const void *fraction;     /* cells, or NULL */
-    const void *mixture;      /* cells, or NULL: none is mixed */
-    const void *law[3];       /* cells: mu, bulk, hourglass of those that are mixed; or NULL */
-    const void *mixfibre[3];  /* cells, or NULL */
-    const double *now, *next; /* the curves' values */
+    const void *fibre[3];      /* cells, or NULL */
+    const void *fraction;      /* cells, or NULL */
+    const void *mixture;       /* cells, or NULL: none is mixed */
+    const void *law[3];        /* cells: mu, bulk, hourglass of those that are mixed; or NULL */
+    const void *mixfibre[3];   /* cells, or NULL */
+    const void *shape;         /* without a lattice: groups x CPU_SHAPE x lanes; or NULL */
+    const int32_t *group_node; /* groups x 8 x lanes */
+    void *force;               /* groups x 3 x 8 x lanes: what each corner is pulled with */
+    const double *now, *next;  /* the curves' values */
     double dt, damping;
     int what;
 } cpu_work;
@@ -43,6 +49,9 @@ typedef struct cpu_pass {
     const char *name;
     int lanes;
     void (*slab)(const cpu_work *w, int32_t slab);
+    /* Without a lattice: all groups of elements, then all nodes, from a multiple of lanes on. */
+    void (*elements)(const cpu_work *w, int64_t from, int64_t to);
+    void (*nodes)(const cpu_work *w, int64_t from, int64_t to);
 } cpu_pass;
 
 extern const cpu_pass cpu_pass_base_double, cpu_pass_base_single;

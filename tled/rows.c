@@ -209,7 +209,7 @@ static int cut_slab(builder *b, int32_t which, int64_t *node, int64_t *element)
     return 0;
 }
 
-static bool is_extra(const tled_problem *p, int64_t n)
+bool rows_is_extra(const tled_problem *p, int64_t n)
 {
     const int32_t *hold = p->hold + 3 * n;
     return p->force_start[n + 1] > p->force_start[n] || hold[0] >= 0 || hold[1] >= 0 || hold[2] >= 0;
@@ -219,7 +219,7 @@ static int list_extras(builder *b)
 {
     rows *r = b->r;
     for (int64_t n = 0; n < b->p->nodes; n++)
-        r->extras += is_extra(b->p, n);
+        r->extras += rows_is_extra(b->p, n);
     r->extra = mem_array(r->extras, sizeof *r->extra, "the rows", b->e);
     r->extra_node = mem_array(r->extras, sizeof *r->extra_node, "the rows", b->e);
     if (!r->extra || !r->extra_node)
@@ -228,7 +228,7 @@ static int list_extras(builder *b)
     for (int64_t i = 0; i < b->p->nodes; i++) {
         int32_t n = b->node[i].index;
         rows_slab *s = &r->slab[b->slab_of[n]];
-        if (!is_extra(b->p, n))
+        if (!rows_is_extra(b->p, n))
             continue;
         s->extra = s->extras++ ? s->extra : at;
         r->extra[at] = r->place[n];

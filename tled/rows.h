@@ -50,6 +50,9 @@ typedef struct rows {
     int32_t *extra_node; /* extras: which of the model's nodes */
 } rows;
 
+/* Whether the script displaces or pushes a node. */
+bool rows_is_extra(const tled_problem *p, int64_t node);
+
 /* slabs: as many as that, or fewer. -1 with e filled and r to be freed all the same. */
 int rows_make(rows *r, const tled_problem *p, int lanes, int slabs, err *e);
 void rows_free(rows *r);

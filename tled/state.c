@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "mesh/lattice.h"
 #include "model/materials.h"
+#include "tled/conforming_step.h"
 #include "tled/stability.h"
 
 #include <math.h>
@@ -14,7 +15,9 @@ void tled_problem_free(tled_problem *p)
     free(p->mixed);
     free(p->law);
     free(p->volume);
+    conforming_free(p->conforming);
     free(p->corner);
+    free(p->corner_start);
     free(p->mass);
     free(p->hold);
     free(p->force_start);
@@ -51,7 +54,9 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
     if (!node || !position || !volume || !model_need(m, "volume.name", e) || !model_need(m, "volume.material", e))
         return -1;
     if (node->columns != 8)
-        return err_set(e, NULL, 0, "the model's elements have %d nodes; expected hexahedra, as voxelise makes them",
+        return err_set(e, NULL, 0,
+                       "the model's elements have %d nodes; expected hexahedra, as voxelise makes them (msds-run "
+                       "moves tetrahedra)",
                        node->columns);
     if (node->rows < 1 || node->rows > INT32_MAX / 8 - 1)
         return err_set(e, NULL, 0, "the model has %lld elements; expected 1 to %d", (long long)node->rows,
@@ -268,22 +273,26 @@ static int make_forces(tled_problem *p, err *e)
 int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e)
 {
     lattice l;
+    const bool boxes = model_meta_of(m, "lattice.spacing") || model_find(m, "element.lattice");
     p->script = s;
     p->kappa = kappa;
     p->gravity = find_curve(s, SCRIPT_GRAVITY, -1);
-    if (borrow_mesh(p, m, e) || lattice_of(m, &l, e))
+    if (borrow_mesh(p, m, e) || (boxes ? lattice_of(m, &l, e) : conforming_create(p, e)))
         return -1;
-    memcpy(p->side, l.spacing, sizeof p->side);
-    p->corner = mem_array(p->nodes, 8 * sizeof *p->corner, "the nodes", e);
+    if (boxes)
+        memcpy(p->side, l.spacing, sizeof p->side);
+    p->corner = mem_array(boxes ? p->nodes : p->elements, 8 * sizeof *p->corner, "the nodes", e);
     p->mass = mem_array(p->nodes, sizeof *p->mass, "the nodes", e);
     p->hold = mem_array(p->nodes, 3 * sizeof *p->hold, "the nodes", e);
     p->displacement = mem_array(p->nodes, 3 * sizeof *p->displacement, "the nodes", e);
     p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
     if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
         return -1;
-    if (check_boxes(p, e) || check_fractions(p, e) || check_mixtures(p, e) || make_volumes(p, m, e) ||
-        make_mixtures(p, e) || make_corners(p, e) || make_forces(p, e))
+    if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixtures(p, e) || make_volumes(p, m, e) ||
+        make_mixtures(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || make_forces(p, e))
         return -1;
+    if (!boxes)
+        conforming_join(p);
     make_holds(p, m);
     return 0;
 }
@@ -347,9 +356,11 @@ static void spread(const tled_problem *p, search *s, int64_t at)
 {
     for (; at < s->count; at++) {
         int64_t node = s->queue[at];
-        for (int i = 0; i < 8 && p->corner[8 * node + i] < p->elements * 8; i++)
+        const int64_t first = p->corner_start ? p->corner_start[node] : 8 * node;
+        const int64_t end = p->corner_start ? p->corner_start[node + 1] : first + 8;
+        for (int64_t i = first; i < end && p->corner[i] < p->elements * 8; i++)
             for (int c = 0; c < 8; c++)
-                reach_node(s, p->element_node[p->corner[8 * node + i] / 8 * 8 + c], s->steps[node] + 1);
+                reach_node(s, p->element_node[p->corner[i] / 8 * 8 + c], s->steps[node] + 1);
     }
 }
 

@@ -32,7 +32,8 @@ typedef struct tled_law {
 typedef struct tled_problem {
     int64_t nodes, elements;
     int32_t volumes;
-    double side[3];                /* m: of every element */
+    double side[3];                /* m: of every element; without a lattice, a cube's of the mean volume */
+    struct conforming *conforming; /* elements that are no lattice's (conforming.h), owned; NULL: boxes of `side` */
     double kappa;                  /* hourglass coefficient */
     const double *position;        /* nodes x 3, m */
     const int32_t *element_node;   /* elements x 8, VTK order */
@@ -45,8 +46,10 @@ typedef struct tled_problem {
     int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL where mix is. Owned, as is all below */
     tled_law *law;         /* of the mixed elements, in their order */
     int64_t laws;
-    tled_volume *volume;  /* volumes */
-    int32_t *corner;      /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
+    tled_volume *volume; /* volumes */
+    int32_t *corner;     /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
+    int32_t *
+        corner_start; /* nodes + 1; or NULL. Without a lattice: node n's are corner[corner_start[n]] and on, in the elements' order */
     double *mass;         /* nodes: kg */
     int32_t *hold;        /* nodes x 3 */
     int64_t held;         /* nodes with any component held */
@@ -108,7 +111,7 @@ typedef struct tled_sums {
     int64_t broken;            /* an element that is inverted (J <= 0) or not a number, or -1 */
 } tled_sums;
 
-/* Makes p (zeroed) of the model, whose lattice's boxes all elements must be; at rest at time 0. kappa: the hourglass
+/* Makes p (zeroed) of the model, at rest at time 0: all its elements must be its lattice's boxes, or it has no lattice. kappa: the hourglass
  * coefficient. -1 with e filled and p to be freed all the same. */
 int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e);
 void tled_problem_free(tled_problem *p);

@@ -1,5 +1,7 @@
 #include "tled/step.h"
 
+#include "tled/conforming_step.h"
+
 #include <math.h>
 
 void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
@@ -38,6 +40,11 @@ static double square_at_rest(const tled_problem *p, int64_t element)
 double step_at_rest(const tled_problem *p, int32_t *volume)
 {
     double highest = 0;
+    if (p->conforming) {
+        if (volume)
+            *volume = p->element_volume[p->conforming->stiffest];
+        return 2 / sqrt(p->conforming->square);
+    }
     for (int64_t i = 0; i < p->elements; i++) {
         double square = square_at_rest(p, i);
         if (square > highest && volume)

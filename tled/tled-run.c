@@ -306,9 +306,12 @@ static void say_start(const session *s, const char *device, const struct options
 {
     const tled_problem *p = &s->problem;
     const run_setup *r = &s->run;
-    tool_say(s->t, "%lld elements of %g x %g x %g mm, %lld nodes, %lld held; %s, %s precision", (long long)p->elements,
-             1e3 * p->side[0], 1e3 * p->side[1], 1e3 * p->side[2], (long long)p->nodes, (long long)p->held, device,
-             o->precision ? "single" : "double");
+    char sides[100];
+    snprintf(sides, sizeof sides, "%g x %g x %g mm", 1e3 * p->side[0], 1e3 * p->side[1], 1e3 * p->side[2]);
+    if (p->conforming)
+        snprintf(sides, sizeof sides, "any shape, %.4g mm in the mean", 1e3 * p->side[0]);
+    tool_say(s->t, "%lld elements of %s, %lld nodes, %lld held; %s, %s precision", (long long)p->elements, sides,
+             (long long)p->nodes, (long long)p->held, device, o->precision ? "single" : "double");
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable, 1e3 / r->rate, r->damping,
              r->adapt ? ", then adapted" : "");
     if (p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
@@ -375,18 +378,21 @@ static void begin_collider(session *s, const struct options *o)
         notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
 }
 
-/* The CPU alone has contact: auto takes it. */
+/* The CPU alone has contact, and elements off a lattice: auto takes it. */
 static const backend *choose_device(session *s, const struct options *o, char *device, size_t size, err *e)
 {
     const backend *const *backends = o->precision ? tled_backends_single : tled_backends_double;
     static const char *const names[] = {"auto", "cuda", "cpu"};
-    if (s->collider.poses && !strcmp(names[o->device], "cuda")) {
-        err_set(e, NULL, 0, "the CUDA back end has no contact with a probe; expected -d cpu or auto");
+    const char *lacks = s->problem.conforming ? "elements off a lattice"
+                        : s->collider.poses   ? "contact with a probe"
+                                              : NULL;
+    if (lacks && !strcmp(names[o->device], "cuda")) {
+        err_set(e, NULL, 0, "the CUDA back end has no %s; expected -d cpu or auto", lacks);
         return NULL;
     }
-    const backend *taken = backend_choose(backends, s->collider.poses ? "cpu" : names[o->device], device, size, e);
-    if (taken && s->collider.poses && !strcmp(names[o->device], "auto"))
-        snprintf(device, size, "cpu (the one with contact with a probe)");
+    const backend *taken = backend_choose(backends, lacks ? "cpu" : names[o->device], device, size, e);
+    if (taken && lacks && !strcmp(names[o->device], "auto"))
+        snprintf(device, size, "cpu (the one with %s)", lacks);
     return taken;
 }
 

@@ -3,6 +3,7 @@
 #include "tled/collider.h"
 
 #include "base/mem.h"
+#include "tled/conforming_step.h"
 #include "tled/step.h"
 
 #include <math.h>
@@ -42,6 +43,14 @@ static void look_at_step(const watch *w, const tled_law *law, int64_t i, element
     const tled_problem *p = w->p;
     const double s = tled_mixture(p, i);
     step_matrix a;
+    if (p->conforming) {
+        conforming_matrix(p, i, h, fibre_of(w, p->fibre, i, p->element_volume[i], 1), &a);
+        if (step_below(&a, conforming_room(p, i, part->sum.frequency)))
+            return;
+        part->sum.frequency = w->raise * conforming_square(p, i, step_largest(&a));
+        part->sum.frequency_element = i;
+        return;
+    }
     step_matrix_of(p, law, h, fibre_of(w, p->fibre, i, p->element_volume[i], 1 - s),
                    fibre_of(w, p->mixfibre, i, tled_mix(p, i), s), &a);
     if (step_below(&a, part->sum.frequency))
@@ -50,13 +59,29 @@ static void look_at_step(const watch *w, const tled_law *law, int64_t i, element
     part->sum.frequency_element = i;
 }
 
+/* H; the hourglass modes of an element that is no box lose what H has of them, its law gets its own stiffness against them. */
+static element_tensor gradient_of(const tled_problem *p, int64_t i, element_shape shape, element_modes *x,
+                                  element_modes *y, element_modes *z, tled_law *law)
+{
+    if (!p->conforming)
+        return element_gradient(*x, *y, *z, shape.slope);
+    const element_any any = conforming_shape(&p->conforming->element[i]);
+    element_tensor h = element_any_gradient(&any, *x, *y, *z);
+    *x = element_any_twisted(&any, *x, h.xx, h.xy, h.xz);
+    *y = element_any_twisted(&any, *y, h.yx, h.yy, h.yz);
+    *z = element_any_twisted(&any, *z, h.zx, h.zy, h.zz);
+    law->hourglass = p->conforming->element[i].hourglass;
+    return h;
+}
+
 static void look_at_element(const watch *w, int64_t i, element_shape shape, struct watch_part *part)
 {
     const tled_problem *p = w->p;
-    const tled_law law = tled_law_of(p, i);
+    tled_law law = tled_law_of(p, i);
     element_modes x = element_modes_of(corners_of(w, i, 0)), y = element_modes_of(corners_of(w, i, 1));
     element_modes z = element_modes_of(corners_of(w, i, 2));
-    element_tensor h = element_gradient(x, y, z, shape.slope);
+    element_tensor h = gradient_of(p, i, shape, &x, &y, &z, &law);
+    const double rest = p->conforming ? p->conforming->element[i].volume : p->side[0] * p->side[1] * p->side[2];
     double volume = 1 + element_dilation(h), energy = element_energy(h, law.mu, law.bulk);
     double hourglass = element_hourglass_energy(x, law.hourglass) + element_hourglass_energy(y, law.hourglass) +
                        element_hourglass_energy(z, law.hourglass);
@@ -65,7 +90,7 @@ static void look_at_element(const watch *w, int64_t i, element_shape shape, stru
         part->sum.broken = part->sum.broken < 0 ? i : part->sum.broken;
         return;
     }
-    part->sum.strain += tled_fraction(p, i) * (energy * p->side[0] * p->side[1] * p->side[2] + hourglass);
+    part->sum.strain += tled_fraction(p, i) * (energy * rest + hourglass);
     look_at_step(w, &law, i, h, part);
 }
 

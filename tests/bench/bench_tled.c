@@ -10,7 +10,7 @@
  * fill. Beside them stands what the machine did at most in the same rounds: copying (on a card of more than its L2 cache holds or
  * within it, as the bytes of a step are) and multiply-adds, in two instructions, of the same precision.
  */
-// needs: tests/bench/roof.c tests/bench/flops.cc tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/log.c tled/account.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c
+// needs: tests/bench/roof.c tests/bench/flops.cc tled/*.c
 #include "../unit/tled_bench.h"
 
 #include "card_roof.h"

@@ -2,7 +2,7 @@
  * than its own lists, gives the internal forces of a pass over elements, to the last bit. Slits are refused. And in rows: the
  * same, slits too.
  */
-// needs: tled/tiles.c tled/state.c tled/script.c tled/script_read.c tled/cpu_double.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c tled/step.c
+// needs: tled/tiles.c tled/*.c
 #include "mesh/element.h"
 #include "mesh/lattice.h"
 #include "tled/cpu.h"

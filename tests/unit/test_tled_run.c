@@ -1,7 +1,7 @@
 /* The time loop: what is conserved without damping, the same bytes whatever the threads and wherever a run was cut in two,
  * muscles at full contraction, steps that are too large, and the ends of runs.
  */
-// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/log.c tled/account.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c
+// needs: tled/*.c
 #include "tled_bench.h"
 
 #include <time.h>

@@ -1,7 +1,7 @@
 /* From a model to the solver's arrays: masses, corners, what is held, shares of forces, distances; and models that are no
  * lattice of boxes.
  */
-// needs: tled/state.c tled/script.c tled/script_read.c
+// needs: tled/state.c tled/conforming.c tled/conforming_step.c tled/script.c tled/script_read.c tled/step.c
 #include "tled/state.h"
 
 #include "tap.h"

@@ -1,6 +1,6 @@
 /* The stable step: against its formulas at rest, the element's matrix against the derivative of its stress, and the bound
  * against the largest frequency of a block, found by power iteration. */
-// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c
+// needs: tled/state.c tled/conforming.c tled/conforming_step.c tled/step.c tled/script.c tled/script_read.c
 #include "tled/step.h"
 
 #include "tap.h"

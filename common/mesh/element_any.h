@@ -1,0 +1,93 @@
+/* The maths of one element that is any hexahedron, one integration point, hourglass control as in element.h, whose stress, modes
+ * and conventions it takes. With B_ai the mean over the element of the derivative of corner a's shape function along axis i
+ * (Flanagan & Belytschko 1981: the exact integral over V, so that a mesh of any shape passes the patch test), and s_m the signs
+ * of mode m at the corners,
+ *     H_ki = sum_a u_ka B_ai = sum_m mode_m(u_k) slope_mi,   slope_mi = (1/8) sum_a s_ma B_ai,
+ *     gamma_g = s_g - sum_i twist_gi B_i,                     twist_gi = sum_a s_ga x_ai,
+ * g the four hourglass modes: gamma_g . u is mode_g(u) - sum_i twist_gi H_i, and nothing where u is linear in x. Of a box the slopes are
+ * 1/(4h) on the diagonal and nothing else, the twists are 0: element.h's.
+ */
+#ifndef SINEW_ELEMENT_ANY_H
+#define SINEW_ELEMENT_ANY_H
+
+#include "mesh/element.h"
+
+enum { ELEMENT_MODES = 7, ELEMENT_TWISTS = 4, ELEMENT_ANY = 3 * (ELEMENT_MODES + ELEMENT_TWISTS) + 1 };
+
+/* slope: of modes x, y, z, xy, yz, zx, xyz along axes x, y, z (1/m); twist: of xy, yz, zx, xyz (m); volume: m3. */
+typedef struct element_any {
+    element_vector slope[ELEMENT_MODES], twist[ELEMENT_TWISTS];
+    real volume;
+} element_any;
+
+ELEMENT_FUNCTION element_vector element_any_row(const element_any *s, element_modes u)
+{
+    element_vector h = {u.x * s->slope[0].x + u.y * s->slope[1].x + u.z * s->slope[2].x + u.xy * s->slope[3].x +
+                            u.yz * s->slope[4].x + u.zx * s->slope[5].x + u.xyz * s->slope[6].x,
+                        u.x * s->slope[0].y + u.y * s->slope[1].y + u.z * s->slope[2].y + u.xy * s->slope[3].y +
+                            u.yz * s->slope[4].y + u.zx * s->slope[5].y + u.xyz * s->slope[6].y,
+                        u.x * s->slope[0].z + u.y * s->slope[1].z + u.z * s->slope[2].z + u.xy * s->slope[3].z +
+                            u.yz * s->slope[4].z + u.zx * s->slope[5].z + u.xyz * s->slope[6].z};
+    return h;
+}
+
+/* H, the mean of grad u. */
+ELEMENT_FUNCTION element_tensor element_any_gradient(const element_any *s, element_modes x, element_modes y,
+                                                     element_modes z)
+{
+    element_vector a = element_any_row(s, x), b = element_any_row(s, y), c = element_any_row(s, z);
+    element_tensor h = {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z};
+    return h;
+}
+
+ELEMENT_FUNCTION real element_any_dot(element_vector a, real x, real y, real z)
+{
+    return a.x * x + a.y * y + a.z * z;
+}
+
+/* The hourglass modes of one component, gamma . u, in place of its own; hx, hy, hz: its row of H. */
+ELEMENT_FUNCTION element_modes element_any_twisted(const element_any *s, element_modes u, real hx, real hy, real hz)
+{
+    element_modes q = u;
+    q.xy = u.xy - element_any_dot(s->twist[0], hx, hy, hz);
+    q.yz = u.yz - element_any_dot(s->twist[1], hx, hy, hz);
+    q.zx = u.zx - element_any_dot(s->twist[2], hx, hy, hz);
+    q.xyz = u.xyz - element_any_dot(s->twist[3], hx, hy, hz);
+    return q;
+}
+
+/* One component of f_a = V P B_a + k sum_g gamma_g (gamma_g . u), from its modes q (twisted) and its row of P. */
+ELEMENT_FUNCTION element_corners element_any_gather(const element_any *s, element_modes q, real px, real py, real pz,
+                                                    real k)
+{
+    const element_vector *slope = s->slope, *twist = s->twist;
+    const real xy = k * q.xy, yz = k * q.yz, zx = k * q.zx, xyz = k * q.xyz;
+    const real x = s->volume * px - (twist[0].x * xy + twist[1].x * yz + twist[2].x * zx + twist[3].x * xyz);
+    const real y = s->volume * py - (twist[0].y * xy + twist[1].y * yz + twist[2].y * zx + twist[3].y * xyz);
+    const real z = s->volume * pz - (twist[0].z * xy + twist[1].z * yz + twist[2].z * zx + twist[3].z * xyz);
+    element_modes f = {element_any_dot(slope[0], x, y, z),      element_any_dot(slope[1], x, y, z),
+                       element_any_dot(slope[2], x, y, z),      element_any_dot(slope[3], x, y, z) + xy,
+                       element_any_dot(slope[4], x, y, z) + yz, element_any_dot(slope[5], x, y, z) + zx,
+                       element_any_dot(slope[6], x, y, z) + xyz};
+    return element_corners_of(f);
+}
+
+/* As element_force of element.h. */
+ELEMENT_FUNCTION element_field element_any_force(element_field u, const element_any *s, element_law law,
+                                                 element_fibre fibre, int is_active)
+{
+    element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
+    element_tensor h = element_any_gradient(s, x, y, z);
+    element_tensor p = element_stress(h, law.mu, law.bulk);
+    if (is_active)
+        p = element_sum(p, element_active(h, fibre));
+    x = element_any_twisted(s, x, h.xx, h.xy, h.xz);
+    y = element_any_twisted(s, y, h.yx, h.yy, h.yz);
+    z = element_any_twisted(s, z, h.zx, h.zy, h.zz);
+    element_field f = {element_any_gather(s, x, p.xx, p.xy, p.xz, law.hourglass),
+                       element_any_gather(s, y, p.yx, p.yy, p.yz, law.hourglass),
+                       element_any_gather(s, z, p.zx, p.zy, p.zz, law.hourglass)};
+    return f;
+}
+
+#endif

@@ -1,0 +1,247 @@
+#include "tled/conforming.h"
+
+#include "base/mem.h"
+#include "mesh/lattice.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MODES = 7, TWISTS = 4 };
+
+/* The sign of a mode (x, y, z, xy, yz, zx, xyz) at a corner. */
+static double sign(int mode, int corner)
+{
+    static const int factors[MODES] = {1, 2, 4, 3, 6, 5, 7};
+    double s = 1;
+    for (int a = 0; a < 3; a++)
+        if (factors[mode] & 1 << a)
+            s *= lattice_vtk[corner][a] ? 1 : -1;
+    return s;
+}
+
+/* ---- small symmetric matrices, row by row */
+
+/* The largest eigenvalue, by Jacobi's turns; n at most 4. a is used up. */
+static double largest_eigenvalue(double *a, int n)
+{
+    double largest = 0;
+    for (int sweep = 0; sweep < 30; sweep++)
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++) {
+                if (a[p * n + q] == 0)
+                    continue;
+                double theta = (a[q * n + q] - a[p * n + p]) / (2 * a[p * n + q]);
+                double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+                double c = 1 / sqrt(t * t + 1), s = t * c;
+                for (int i = 0; i < n; i++) {
+                    double left = a[i * n + p], right = a[i * n + q];
+                    a[i * n + p] = c * left - s * right;
+                    a[i * n + q] = s * left + c * right;
+                }
+                for (int i = 0; i < n; i++) {
+                    double left = a[p * n + i], right = a[q * n + i];
+                    a[p * n + i] = c * left - s * right;
+                    a[q * n + i] = s * left + c * right;
+                }
+            }
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, a[i * n + i]);
+    return largest;
+}
+
+/* a = L L^T, L lower. False: it is not positive definite. */
+static bool factor(const double *a, int n, double *l)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double sum = a[i * n + j];
+            for (int k = 0; k < j && k < i; k++)
+                sum -= l[i * n + k] * l[j * n + k];
+            if (i == j && !(sum > 0))
+                return false;
+            l[i * n + j] = i == j ? sqrt(sum) : i > j ? sum / l[j * n + j] : 0;
+        }
+    return true;
+}
+
+/* x = L^-1 x, x of n. */
+static void solve(const double *l, int n, double *x)
+{
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < i; k++)
+            x[i] -= l[i * n + k] * x[k];
+        x[i] /= l[i * n + i];
+    }
+}
+
+/* ---- the shape of an element */
+
+typedef struct corners {
+    double at[8][3]; /* m, from the first */
+    double b[8][3];  /* B, 1/m */
+} corners;
+
+/* Adds one Gauss point's part of V and V B. The derivatives times det J are cofactors of J: nothing is divided. */
+static void add_point(corners *x, const double point[3], double *volume)
+{
+    double slope[8][3], j[3][3] = {{0}}, cofactor[3][3];
+    for (int c = 0; c < 8; c++)
+        for (int a = 0; a < 3; a++) {
+            slope[c][a] = (lattice_vtk[c][a] ? 1. : -1.) / 8;
+            for (int b = 0; b < 3; b++)
+                slope[c][a] *= b == a ? 1 : 1 + (lattice_vtk[c][b] ? 1 : -1) * point[b];
+            for (int i = 0; i < 3; i++)
+                j[i][a] += x->at[c][i] * slope[c][a];
+        }
+    for (int i = 0; i < 3; i++)
+        for (int a = 0; a < 3; a++) {
+            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, a1 = (a + 1) % 3, a2 = (a + 2) % 3;
+            cofactor[i][a] = j[i1][a1] * j[i2][a2] - j[i1][a2] * j[i2][a1];
+        }
+    for (int a = 0; a < 3; a++)
+        *volume += j[0][a] * cofactor[0][a];
+    for (int c = 0; c < 8; c++)
+        for (int i = 0; i < 3; i++)
+            for (int a = 0; a < 3; a++)
+                x->b[c][i] += slope[c][a] * cofactor[i][a];
+}
+
+/* V and B: two points a direction integrate them exactly. */
+static double integrate(corners *x)
+{
+    const double at = 1 / sqrt(3);
+    double volume = 0;
+    for (int c = 0; c < 8; c++) {
+        double point[3];
+        for (int a = 0; a < 3; a++)
+            point[a] = lattice_vtk[c][a] ? at : -at;
+        add_point(x, point, &volume);
+    }
+    for (int i = 0; i < 24; i++)
+        x->b[i / 3][i % 3] /= volume;
+    return volume;
+}
+
+/* c^2, and the largest eigenvalue of the gammas' products. */
+static void find_couple(const corners *x, conforming_element *c)
+{
+    double gamma[4][8], grams[16], own[16], l[16], mixed[3][4], product[9];
+    for (int g = 0; g < 4; g++)
+        for (int a = 0; a < 8; a++) {
+            gamma[g][a] = sign(3 + g, a);
+            for (int i = 0; i < 3; i++)
+                gamma[g][a] -= c->twist[g][i] * x->b[a][i];
+        }
+    for (int g = 0; g < 4; g++)
+        for (int h = 0; h < 4; h++) {
+            double sum = 0;
+            for (int a = 0; a < 8; a++)
+                sum += gamma[g][a] * gamma[h][a];
+            grams[4 * g + h] = own[4 * g + h] = sum;
+        }
+    c->gammas = largest_eigenvalue(own, 4);
+    c->couple = 1;
+    if (!factor(grams, 4, l))
+        return;
+    for (int g = 0; g < 4; g++) { /* L^-1 B gamma^T */
+        double column[3] = {0};
+        for (int a = 0; a < 8; a++)
+            for (int i = 0; i < 3; i++)
+                column[i] += x->b[a][i] * gamma[g][a];
+        solve(&c->root[0][0], 3, column);
+        for (int i = 0; i < 3; i++)
+            mixed[i][g] = column[i];
+    }
+    for (int i = 0; i < 3; i++)
+        solve(l, 4, mixed[i]);
+    for (int i = 0; i < 9; i++) {
+        product[i] = 0;
+        for (int g = 0; g < 4; g++)
+            product[i] += mixed[i / 3][g] * mixed[i % 3][g];
+    }
+    c->couple = fmin(1, largest_eigenvalue(product, 3));
+}
+
+/* False: it has no inside. */
+static bool shape_of(const tled_problem *p, int64_t element, conforming_element *c)
+{
+    corners x = {.b = {{0}}};
+    double products[9] = {0};
+    const double *first = p->position + 3 * (int64_t)p->element_node[8 * element];
+    for (int i = 0; i < 24; i++)
+        x.at[i / 3][i % 3] = p->position[3 * (int64_t)p->element_node[8 * element + i / 3] + i % 3] - first[i % 3];
+    c->volume = integrate(&x);
+    for (int m = 0; m < MODES; m++)
+        for (int i = 0; i < 3; i++) {
+            double sum = 0, twist = 0;
+            for (int a = 0; a < 8; a++) {
+                sum += sign(m, a) * x.b[a][i];
+                twist += sign(m, a) * x.at[a][i];
+            }
+            c->slope[m][i] = sum / 8;
+            if (m >= 3)
+                c->twist[m - 3][i] = twist;
+        }
+    for (int i = 0; i < 9; i++)
+        for (int a = 0; a < 8; a++)
+            products[i] += x.b[a][i / 3] * x.b[a][i % 3];
+    c->squares = products[0] + products[4] + products[8];
+    if (!(c->volume > 0) || !isfinite(c->squares) || !factor(products, 3, &c->root[0][0]))
+        return false;
+    find_couple(&x, c);
+    return true;
+}
+
+int conforming_create(tled_problem *p, err *e)
+{
+    conforming *c = mem_array(1, sizeof *c, "the elements", e);
+    double volume = 0;
+    p->conforming = c;
+    if (!c || !(c->element = mem_array(p->elements, sizeof *c->element, "the elements", e)))
+        return -1;
+    if (p->mix)
+        return err_set(e, NULL, 0, "element.mix in a model without a lattice; expected elements of one volume each");
+    for (int64_t i = 0; i < p->elements; i++) {
+        if (!shape_of(p, i, &c->element[i]))
+            return err_set(
+                e, NULL, 0,
+                "element %lld has no inside, or is inside out; expected a hexahedron, its nodes in VTK's order",
+                (long long)i);
+        volume += c->element[i].volume;
+    }
+    for (int a = 0; a < 3; a++)
+        p->side[a] = cbrt(volume / (double)p->elements);
+    return 0;
+}
+
+void conforming_free(conforming *c)
+{
+    if (c)
+        free(c->element);
+    free(c);
+}
+
+/* ---- nodes */
+
+int conforming_corners(tled_problem *p, err *e)
+{
+    p->corner_start = mem_array(p->nodes + 2, sizeof *p->corner_start, "the nodes", e);
+    if (!p->corner_start)
+        return -1;
+    /* Counts two places on, so that filling moves each start to where it belongs. */
+    for (int64_t i = 0; i < 8 * p->elements; i++)
+        p->corner_start[p->element_node[i] + 2]++;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        if (!p->corner_start[n + 2])
+            return err_set(e, NULL, 0, "node %lld is in no element", (long long)n);
+        p->corner_start[n + 2] += p->corner_start[n + 1];
+    }
+    for (int64_t i = 0; i < 8 * p->elements; i++) {
+        const int64_t node = p->element_node[i];
+        p->corner[p->corner_start[node + 1]++] = (int32_t)i;
+        p->mass[node] +=
+            tled_law_of(p, i / 8).density * p->conforming->element[i / 8].volume / 8 * tled_fraction(p, i / 8);
+    }
+    return 0;
+}

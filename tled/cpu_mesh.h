@@ -1,0 +1,100 @@
+/* The CPU back end's memory for a problem without a lattice; part of cpu_loops.h. Nodes keep the model's order; elements lie in groups of as many as the
+ * pass has lanes, what fills the last being nothing: without volume or law, at the last element's nodes.
+ */
+#include "mesh/element_any.h"
+
+enum { MESH_GROUPS = 32, MESH_NODES = 512 }; /* to a chunk; the latter a multiple of any number of lanes */
+
+static int64_t mesh_groups(const cpu_state *s)
+{
+    return (s->p->elements + s->pass->lanes - 1) / s->pass->lanes;
+}
+
+/* Rows that are none: places, cells and extras only. */
+static int mesh_rows(cpu_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    rows *r = &s->rows;
+    *r = (rows){.lanes = s->pass->lanes, .cells = (int32_t)p->elements, .nodes = p->nodes + ROWS_PAD};
+    for (int64_t n = 0; n < p->nodes; n++)
+        r->extras += rows_is_extra(p, n);
+    r->place = mem_array(p->nodes, sizeof *r->place, "the solver", e);
+    r->cell_element = mem_array(p->elements, sizeof *r->cell_element, "the solver", e);
+    r->extra = mem_array(r->extras, sizeof *r->extra, "the solver", e);
+    r->extra_node = mem_array(r->extras, sizeof *r->extra_node, "the solver", e);
+    if (!r->place || !r->cell_element || !r->extra || !r->extra_node)
+        return -1;
+    for (int64_t i = 0; i < p->elements; i++)
+        r->cell_element[i] = (int32_t)i;
+    for (int64_t n = 0, at = 0; n < p->nodes; n++) {
+        r->place[n] = (int32_t)n;
+        if (rows_is_extra(p, n))
+            r->extra[at] = r->extra_node[at] = (int32_t)n, at++;
+    }
+    return 0;
+}
+
+static int mesh_allocate(cpu_state *s, err *e)
+{
+    const int64_t places = mesh_groups(s) * s->pass->lanes;
+    s->shape = mem_array(places, CPU_SHAPE * sizeof *s->shape, "the solver", e);
+    s->force = mem_array(places, 24 * sizeof *s->force, "the solver", e);
+    s->group_node = mem_array(places, 8 * sizeof *s->group_node, "the solver", e);
+    return s->shape && s->force && s->group_node ? 0 : -1;
+}
+
+/* What element i has of shape and law, in the order of element_any. */
+static void mesh_element(const cpu_state *s, int64_t i, double *own)
+{
+    const conforming_element *c = &s->p->conforming->element[i];
+    const tled_law law = tled_law_of(s->p, i);
+    const double share = tled_fraction(s->p, i);
+    memcpy(own, c->slope, sizeof c->slope);
+    memcpy(own + 3 * ELEMENT_MODES, c->twist, sizeof c->twist);
+    own[ELEMENT_ANY - 1] = c->volume;
+    own[ELEMENT_ANY] = share * law.mu;
+    own[ELEMENT_ANY + 1] = share * law.bulk;
+    own[ELEMENT_ANY + 2] = share * c->hourglass;
+}
+
+static void mesh_fill(cpu_state *s)
+{
+    const tled_problem *p = s->p;
+    const int64_t lanes = s->pass->lanes, places = mesh_groups(s) * lanes;
+    for (int64_t i = 0; i < places; i++) {
+        const int64_t element = i < p->elements ? i : p->elements - 1, group = i / lanes, lane = i % lanes;
+        double own[CPU_SHAPE] = {0};
+        if (i < p->elements)
+            mesh_element(s, i, own);
+        for (int k = 0; k < CPU_SHAPE; k++)
+            s->shape[(group * CPU_SHAPE + k) * lanes + lane] = (number)own[k];
+        for (int c = 0; c < 8; c++)
+            s->group_node[(group * 8 + c) * lanes + lane] = p->element_node[8 * element + c];
+    }
+}
+
+static void mesh_element_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cpu_state *s = context;
+    (void)chunk;
+    s->pass->elements(&s->work, from, to);
+}
+
+static void mesh_node_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cpu_state *s = context;
+    (void)chunk;
+    s->pass->nodes(&s->work, from, to);
+}
+
+static void mesh_pass(cpu_state *s)
+{
+    pool_run(s->threads, mesh_groups(s), MESH_GROUPS, mesh_element_work, s);
+    pool_run(s->threads, s->p->nodes, MESH_NODES, mesh_node_work, s);
+}
+
+static int64_t mesh_bytes(const cpu_state *s)
+{
+    const int64_t place = (CPU_SHAPE + 24) * (int64_t)sizeof(number) + 8 * (int64_t)sizeof *s->group_node;
+    return s->p->conforming ? mesh_groups(s) * s->pass->lanes * place : 0;
+}

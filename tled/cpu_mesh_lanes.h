@@ -1,0 +1,124 @@
+/* The CPU back end's pass over a problem without a lattice; part of cpu_lanes.h. Elements go in groups of LANES, side by side, and leave each
+ * corner's force in w->force; then nodes gather theirs in the elements' order: the same bytes for any number of lanes and threads.
+ */
+#include "mesh/element_any.h"
+
+/* One component at the corners of a group. */
+static inline element_corners mesh_corners(const void *u, const int32_t *node)
+{
+    element_corners c;
+    for (int i = 0; i < 8; i++)
+        for (int lane = 0; lane < LANES; lane++)
+            c.at[i][lane] = ((const real_one *)u)[node[i * LANES + lane]];
+    return c;
+}
+
+static inline element_vector mesh_vector(const real_one *at, int first)
+{
+    element_vector v = {load(at, first * LANES), load(at, (first + 1) * LANES), load(at, (first + 2) * LANES)};
+    return v;
+}
+
+static inline element_any mesh_shape(const real_one *at)
+{
+    element_any s;
+    for (int m = 0; m < ELEMENT_MODES; m++)
+        s.slope[m] = mesh_vector(at, 3 * m);
+    for (int g = 0; g < ELEMENT_TWISTS; g++)
+        s.twist[g] = mesh_vector(at, 3 * (ELEMENT_MODES + g));
+    s.volume = load(at, 3 * (ELEMENT_MODES + ELEMENT_TWISTS) * LANES);
+    return s;
+}
+
+/* What pulls along the fibres; *active: any of them does. */
+static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, bool *active)
+{
+    element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO};
+    *active = false;
+    for (int lane = 0; w->fibre[0] && lane < LANES && group * LANES + lane < w->p->elements; lane++) {
+        const int64_t i = group * LANES + lane;
+        const double tension = w->kind[w->p->element_volume[i]].tension;
+        if (tension == 0)
+            continue;
+        *active = true;
+        fibre.along.x[lane] = ((const real_one *)w->fibre[0])[i];
+        fibre.along.y[lane] = ((const real_one *)w->fibre[1])[i];
+        fibre.along.z[lane] = ((const real_one *)w->fibre[2])[i];
+        fibre.tension[lane] = (w->fraction ? ((const real_one *)w->fraction)[i] : 1) * (real_one)tension;
+    }
+    return fibre;
+}
+
+static inline void mesh_store(real_one *to, const element_corners *f)
+{
+    for (int i = 0; i < 8; i++)
+        store(to, i * LANES, f->at[i]);
+}
+
+static void mesh_elements(const cpu_work *w, int64_t from, int64_t to)
+{
+#ifdef ELEMENT_SINGLE
+    const unsigned before = flush_small();
+#endif
+    for (int64_t group = from; group < to; group++) {
+        const real_one *own = (const real_one *)w->shape + group * CPU_SHAPE * LANES;
+        const int32_t *node = w->group_node + group * 8 * LANES;
+        real_one *force = (real_one *)w->force + group * 24 * LANES;
+        const element_any shape = mesh_shape(own);
+        const element_law law = {load(own, ELEMENT_ANY * LANES), load(own, (ELEMENT_ANY + 1) * LANES),
+                                 load(own, (ELEMENT_ANY + 2) * LANES)};
+        const element_field u = {mesh_corners(w->from[0], node), mesh_corners(w->from[1], node),
+                                 mesh_corners(w->from[2], node)};
+        bool active;
+        const element_fibre fibre = mesh_fibre(w, group, &active);
+        const element_field f =
+            active ? element_any_force(u, &shape, law, fibre, true) : element_any_force(u, &shape, law, fibre, false);
+        mesh_store(force, &f.x);
+        mesh_store(force + 8 * LANES, &f.y);
+        mesh_store(force + 16 * LANES, &f.z);
+    }
+#ifdef ELEMENT_SINGLE
+    flush_as(before);
+#endif
+}
+
+/* Adds what the elements at a node pull with. */
+static inline void mesh_gather(const cpu_work *w, int64_t n)
+{
+    const tled_problem *p = w->p;
+    for (int64_t i = p->corner_start[n]; i < p->corner_start[n + 1]; i++) {
+        const int64_t element = p->corner[i] / 8, corner = p->corner[i] % 8;
+        const real_one *force = (const real_one *)w->force + (element / LANES * 24 + corner) * LANES + element % LANES;
+        for (int a = 0; a < 3; a++)
+            ((real_one *)w->sum[a])[n] += force[a * 8 * LANES];
+    }
+}
+
+/* from: a multiple of LANES. */
+static void mesh_nodes(const cpu_work *w, int64_t from, int64_t to)
+{
+#ifdef ELEMENT_SINGLE
+    const unsigned before = flush_small();
+#endif
+    const rows *r = w->r;
+    const node_factors k = node_factors_of(w->dt, w->damping);
+    const rows_layer l = {.node = (int32_t)from, .nodes = (int32_t)(to - from)};
+    int32_t extra = 0, high = r->extras;
+    while (extra < high) {
+        const int32_t middle = extra + (high - extra) / 2;
+        if (r->extra[middle] < from)
+            extra = middle + 1;
+        else
+            high = middle;
+    }
+    for (int64_t n = from; n < to; n++)
+        mesh_gather(w, n);
+    for (; extra < r->extras && r->extra[extra] < to; extra++)
+        for (int a = 0; a < 3; a++)
+            move_extra(w, r->extra[extra], r->extra_node[extra], a, k);
+    for (int a = 0; a < 3; a++)
+        move_nodes(w, &l, a, k);
+#ifdef ELEMENT_SINGLE
+    flush_as(before);
+#endif
+}
