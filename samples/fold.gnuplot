@@ -1,11 +1,15 @@
 # PST's figure 6: a section of the skin (black) that a ball (green) deforms; the anchors (red) pull it back to where it was (dashed).
 # table: x, z at rest, x, z now, mm, along the skin's middle row; ball: its radius and the x and z of its centre, mm.
-set terminal pngcairo size 1200,520 font 'DejaVu Sans,15'
-set output picture
+if (exists('ready')) {
+    set key below
+} else {
+    set terminal pngcairo size 1200,520 font 'DejaVu Sans,15'
+    set output picture
+    set key top right
+}
 set size ratio -1
 set xrange [-45:45]
 set yrange [-22:12]
-set key top right
 set xlabel 'mm'
 set ylabel 'mm'
 set object 1 circle at ball_x, ball_z size ball_r fc '#3f9d4a' fs transparent solid 0.35 border lc '#2c7a36'

@@ -1,0 +1,14 @@
+# PST's figure 9: bars of a mesh each. table: mesh, their MSDS and FEM, ours, ms.
+set style data histograms
+set style histogram clustered gap 1
+set style fill solid 1 noborder
+set boxwidth 0.9
+set logscale y
+set yrange [0.1:*]
+set format y '%g'
+set ylabel 'ms a frame'
+set key top left reverse Left
+set xtics font ',11'
+set yrange [0.1:5000]
+plot table using 2:xtic(1) lc '#9db7d8' title 'MSDS, paper', '' using 3 lc '#e0a9a0' title 'FEM, paper', \
+    '' using 4 lc '#2f6db5' title 'MSDS, here', '' using 5 lc '#c2483b' title 'FEM, here'
