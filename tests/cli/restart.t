@@ -101,8 +101,18 @@ if run -d cuda -n 1 >/dev/null 2>"$T/err"; then
     done
     model=$T/block.sinew
     same "CUDA, a script" -d cuda --script "$T/script" -t 0.4 --every 0.002
+    # A card that fails in the middle of a run.
+    model=$T/muscle.sinew
+    run -d cuda -c all=0.8 -t 20 --every 0.1 >"$T/want"
+    card=$(cd "${BUILD:-build}" && pwd)/tests/faults/card.so
+    fails 1 "a card that fails" 'tled-run: CUDA: .* failed at step [0-9]+: .*(illegal|misaligned|unspecified)' env LD_PRELOAD="$card" SINEW_FAULT_WHEN="$c.1" \
+        tled-run -d cuda -c all=0.8 -t 20 --every 0.1 --checkpoint "$c" --checkpoint-every 0.5 -o "$T/got" <"$model"
+    check "no output" [ ! -e "$T/got" ]
+    check "and the run goes on elsewhere" run -d cuda -c all=0.8 -t 20 --every 0.1 --restart "$c" -o "$T/got"
+    check "to the same bytes" cmp "$T/want" "$T/got"
+    rm "$T/got"
 else
-    skip 15 "on a card: $(sed 's/.*: //' "$T/err" | head -n 1)"
+    skip 19 "on a card: $(sed 's/.*: //' "$T/err" | head -n 1)"
 fi
 
 # Without frames, by the clock: -o has nothing until all is there.
@@ -186,12 +196,12 @@ fi
 # As make has it: killed again and again, until it is through.
 cat >"$T/Makefile" <<'MAKE'
 smile.sinew: muscle.sinew
-	tled-run -q -d cpu -c all=0.8 -t 2 $(if $(wildcard state),--restart,--checkpoint) state --checkpoint-every 0.01 -o $@ <$<
+	tled-run -q -d cpu -c all=0.8 -t 4 $(if $(wildcard state),--restart,--checkpoint) state --checkpoint-every 0.01 -o $@ <$<
 MAKE
 killed=0
 while ! sh -c 'cd "$1" && timeout -s KILL 0.25 make -s smile.sinew' - "$T" >"$T/out" 2>&1 && [ "$killed" -lt 200 ]; do
     killed=$((killed + 1))
 done
-run -d cpu -c all=0.8 -t 2 >"$T/want"
+run -d cpu -c all=0.8 -t 4 >"$T/want"
 check "make, killed $killed times" cmp "$T/want" "$T/smile.sinew"
 done_testing
