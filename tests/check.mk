@@ -29,6 +29,15 @@ $(eval $(call test_program,tests/cli/voxels))
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
 
+# What makes programs fail: libraries to preload.
+FAULTS := $(patsubst tests/%.c,$(BUILD)/tests/%.so,$(wildcard tests/faults/*.c)) $(if $(LIB_CUDA),$(BUILD)/tests/faults/card.so)
+$(BUILD)/tests/faults/%.so: tests/faults/%.c
+	@mkdir -p $(@D)
+	$(call run,LD $@,$(CC) $(CSTD) $(WARN) $(WERROR) -O2 -fPIC -shared -o $@ $< -ldl)
+$(BUILD)/tests/faults/card.so: tests/faults/card.cu
+	@mkdir -p $(@D)
+	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Xcompiler -fPIC -shared -o $@ $<)
+
 .PHONY: setup demo check unit check-unit check-cli check-tests check-long
 setup:
 	.ci/setup check
@@ -52,7 +61,7 @@ check:
 	.ci/setup check
 	MAKE='$(MAKE)' BUILD=$(BUILD) JOBS='$(JOBS)' tests/check
 
-unit: $(UNIT) $(COMPARE)
+unit: $(UNIT) $(COMPARE) $(FAULTS)
 
 # ---- the tests, as TAP under prove; V=1 shows every line
 PROVE = prove $(if $(V),-v) $(or $(JOBS),-j2)
@@ -62,7 +71,7 @@ CLI = $(sort $(wildcard tests/cli/*.t))
 check-unit: unit
 	$(ENVIRONMENT) $(PROVE) $(UNIT)
 
-check-cli: all $(COMPARE)
+check-cli: all $(COMPARE) $(FAULTS)
 	$(ENVIRONMENT) $(PROVE) $(CLI)
 
 check-tests: all unit

@@ -1,15 +1,17 @@
 #include "tled/run.h"
 
 #include "base/mem.h"
+#include "base/progress.h"
 #include "tled/collider.h"
-#include "tled/relax.h"
 #include "tled/step.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 enum {
     CUTS_MAX = 10, /* a step cut 2^10 times is no step */
+    SAVES = 60,    /* seconds between saves, by the clock */
     STUCK = 5000   /* steps, at least, without coming closer to rest */
 };
 
@@ -38,6 +40,8 @@ typedef struct run {
     double closest;    /* to rest so far, as a share; and the step that it came so close in */
     int64_t closest_at;
     double remaining;
+    double *saved;    /* nodes x 6, to be filled: displacement, then velocity; NULL: nothing is to be saved */
+    double next_save; /* s: of the model's time, or of the clock */
     err *e;
 } run;
 
@@ -351,12 +355,64 @@ static int check(run *n)
     return over;
 }
 
+static run_point point_of(const run *n)
+{
+    return (run_point){.origin = n->plan.origin,
+                       .first = n->plan.first,
+                       .from = n->from,
+                       .cuts = n->cuts,
+                       .damping = n->damping,
+                       .remaining = n->remaining,
+                       .closest = n->closest,
+                       .closest_at = n->closest_at,
+                       .moved_most = n->watch->sight.moved_most,
+                       .relax = n->relax};
+}
+
+static void go_on_from(run *n, const run_point *at)
+{
+    n->plan.origin = at->origin;
+    n->plan.first = at->first;
+    n->from = at->from;
+    n->cuts = at->cuts;
+    n->damping = at->damping;
+    n->remaining = at->remaining;
+    n->closest = at->closest;
+    n->closest_at = at->closest_at;
+    n->watch->sight.moved_most = at->moved_most;
+    n->relax = at->relax;
+}
+
+/* Whether it is time to save again; if so, also notes when the next time is. */
+static bool is_due(run *n)
+{
+    const double every = n->r->save_every > 0 ? n->r->save_every : SAVES;
+    const double now = n->r->save_every > 0 ? tled_time(&n->plan, 0) : progress_clock();
+    if (!n->saved || now < n->next_save)
+        return false;
+    n->next_save = (floor(now / every) + 1) * every;
+    return true;
+}
+
+/* Saves what was looked at last, once every frame before it is written. */
+static int save(run *n)
+{
+    const run_setup *r = n->r;
+    const run_point at = point_of(n);
+    double *velocity = n->saved + 3 * r->p->nodes;
+    if ((n->sent && outbox_wait(n->out, n->sent - 1, n->e)) ||
+        r->device->get(n->state, TLED_DISPLACEMENT, n->saved, n->e) ||
+        r->device->get(n->state, TLED_VELOCITY, velocity, n->e))
+        return -1;
+    return r->save(r->context, &at, tled_time(&n->plan, 0), n->saved, velocity, n->e);
+}
+
 /* Steps to the end. Decides only at checks. */
 static int loop(run *n, run_end *end)
 {
     const run_setup *r = n->r;
-    int64_t last = n->plan.first + r->steps, written = -1;
-    int over = look(n) ? -1 : n->watch->sight.broken >= 0 ? diverged(n) : check(n);
+    int64_t last = n->from + r->steps, written = -1;
+    int over = look(n) ? -1 : n->watch->sight.broken >= 0 ? diverged(n) : r->point ? 0 : check(n);
     if (over >= 0 && !is_sound(n))
         return diverged(n);
     n->dt = step_now(n);
@@ -367,6 +423,8 @@ static int loop(run *n, run_end *end)
         over = write_frame(n) ? -1 : over;
     }
     while (!over && n->plan.first < last) {
+        if (is_due(n) && save(n)) /* here: at a check, and not at the end */
+            return -1;
         int64_t to = (n->plan.first / r->check + 1) * r->check;
         to = to < last ? to : last;
         if (keep(n) || go_to(n, to))
@@ -414,6 +472,12 @@ static int prepare(run *n)
     if (r->log && log_begin(r->log, r->p, r->threads, n->e))
         return -1;
     n->relax = relax_of(r->frequency, n->watch->rest_step);
+    if (r->point)
+        go_on_from(n, r->point);
+    n->saved = r->save ? mem_array(r->p->nodes, 6 * sizeof *n->saved, "the state to save", n->e) : NULL;
+    n->next_save = -INFINITY;
+    if (r->save && !n->saved)
+        return -1;
     n->state = r->device->create(r->p, r->threads, n->e);
     n->out = n->state ? outbox_create(r->p, r->device, n->state, r->frame, r->context, n->e) : NULL;
     return n->out ? 0 : -1;
@@ -435,5 +499,6 @@ int run_go(const run_setup *r, run_end *end, err *e)
     if (n.state)
         r->device->destroy(n.state);
     watch_destroy(n.watch);
+    free(n.saved);
     return result;
 }

@@ -15,30 +15,48 @@
 #include "device/backend.h"
 #include "tled/log.h"
 #include "tled/outbox.h"
-#include "tled/watch.h"
+#include "tled/relax.h"
+
+/* Where a run stands at a check: with the state's displacement and velocity, all that decides how it goes on. */
+typedef struct run_point {
+    double origin;             /* s: tled_plan's */
+    int64_t first, from;       /* steps counted: by now; where the run began */
+    int cuts;                  /* each step is taken in 2^cuts */
+    double damping;            /* 1/s */
+    double remaining, closest; /* shares of the displacement: to rest, and the least so far */
+    int64_t closest_at;
+    double moved_most; /* m: watch_sight's */
+    relax relax;
+} run_point;
 
 typedef struct run_setup {
     const tled_problem *p;
     const backend *device;
     pool *threads;
-    double rate;      /* steps a second */
-    bool rate_fixed;  /* never cut the step: fail instead */
-    int64_t check;    /* steps between looks */
-    int64_t steps;    /* how many to take; with rest: at most */
-    double rest;      /* tolerance: end at rest; < 0: after `steps` */
-    double frequency; /* rad/s: relax_guess */
-    double damping;   /* 1/s */
-    bool adapt;       /* find the damping on the way, from the end of the script on */
-    bool single;      /* numbers of single precision, which may come no closer to rest: then fail */
-    double every;     /* s: a frame at each multiple; 0: the last state only */
-    bool first;       /* and a frame of the state that the run begins from */
-    run_log *log;     /* opened, or NULL: a row a check, or at each multiple of its interval, and at the end */
+    double rate;            /* steps a second */
+    bool rate_fixed;        /* never cut the step: fail instead */
+    int64_t check;          /* steps between looks */
+    int64_t steps;          /* how many to take; with rest: at most */
+    double rest;            /* tolerance: end at rest; < 0: after `steps` */
+    double frequency;       /* rad/s: relax_guess */
+    double damping;         /* 1/s */
+    bool adapt;             /* find the damping on the way, from the end of the script on */
+    bool single;            /* numbers of single precision, which may come no closer to rest: then fail */
+    double every;           /* s: a frame at each multiple; 0: the last state only */
+    bool first;             /* and a frame of the state that the run begins from */
+    run_log *log;           /* opened, or NULL: a row a check, or at each multiple of its interval, and at the end */
+    const run_point *point; /* goes on from there, the state's time p->start; NULL: begins */
+    double save_every;      /* s: save at the first check at or past each multiple; 0: each minute of the clock */
     void *context;
     /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run, at a frame soon after. */
     outbox_frame *frame;
     /* After every check. remaining: see run_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
                     double damping);
+    /* Every state before `at` is written; this one (m, m/s), with at, is what a run can go on from. First at the start. -1
+     * with e filled ends the run. NULL: nothing is to be saved. */
+    int (*save)(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
+                err *e);
 } run_setup;
 
 typedef struct run_end {

@@ -6,6 +6,7 @@
 #include "mesh/scale.h"
 #include "model/materials.h"
 #include "model/stage.h"
+#include "tled/checkpoint.h"
 #include "tled/collider.h"
 #include "tled/relax.h"
 #include "tled/run.h"
@@ -29,6 +30,8 @@ struct options {
     opt_list contract, material;
     const char *script, *materials, *probe, *poses, *unit, *log;
     double repulsion;
+    const char *checkpoint, *restart;
+    double checkpoint_every;
 };
 
 static const opt option_list[] = {
@@ -69,6 +72,12 @@ static const opt option_list[] = {
      "energies, residual, rates, as TSV"},
     {0, "log-every", "S", OPT_NUMBER, offsetof(struct options, log_every), 1e-12, 1e9, NULL, OPT_OUTPUT,
      "its rows, s [0.01]"},
+    {0, "checkpoint", "FILE", OPT_TEXT, offsetof(struct options, checkpoint), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
+     "save the state there"},
+    {0, "checkpoint-every", "S", OPT_NUMBER, offsetof(struct options, checkpoint_every), 1e-12, 1e9, NULL, OPT_OUTPUT,
+     "of its time [a minute of ours]"},
+    {0, "restart", "FILE", OPT_TEXT, offsetof(struct options, restart), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
+     "go on from there"},
     {0},
 };
 
@@ -94,15 +103,18 @@ typedef struct session {
     run_setup run;
     run_log log;
     progress progress;
-    int64_t next_frame; /* its index */
-    bool started;       /* the state that the run begins from has been written: as a frame that came */
-    int64_t cut;        /* parts of a step, as said last */
-    double stable;      /* s: at rest */
+    checkpoint *checkpoint; /* NULL: none */
+    int64_t next_frame;     /* its index */
+    bool started;           /* the state that the run begins from has been written: as a frame that came */
+    int64_t cut;            /* parts of a step, as said last */
+    double stable;          /* s: at rest */
     notes warnings;
 } session;
 
 static int check_end(const struct options *o, err *e)
 {
+    if (o->checkpoint_every > 0 && !o->checkpoint && !o->restart)
+        return err_usage(e, "--checkpoint-every without --checkpoint or --restart; expected one of them");
     int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
     if (ends > 1)
         return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
@@ -268,6 +280,12 @@ static int add_probe(const session *s, frame *f, const double *displacement, err
     return 0;
 }
 
+static int put_frame(void *context, const frame *f, err *e)
+{
+    const session *s = context;
+    return model_write_frame(s->stage.writer, f, e) ? -1 : out_failed(s->stage.sink, e);
+}
+
 static int write_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
 {
     session *s = context;
@@ -281,9 +299,16 @@ static int write_frame(void *context, double time, const double *displacement, c
         memcpy(v->f64, velocity, size);
     if (v && s->collider.poses && add_probe(s, &f, displacement, e))
         v = NULL;
-    int result = v && !model_write_frame(s->stage.writer, &f, e) ? out_failed(s->stage.sink, e) : -1;
+    int result = v && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
     frame_free(&f);
     return result;
+}
+
+static int replay_frame(void *context, const frame *f, err *e)
+{
+    session *s = context;
+    s->next_frame = f->index + 1;
+    return put_frame(s, f, e);
 }
 
 static void checked(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
@@ -302,6 +327,42 @@ static void checked(void *context, int64_t step, const watch_sight *sight, doubl
     s->cut = cut;
 }
 
+static int save(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
+                err *e)
+{
+    const session *s = context;
+    if (checkpoint_save(s->checkpoint, at, time, displacement, velocity, e))
+        return -1;
+    tool_detail(s->t, "%.6g s: saved", time);
+    return 0;
+}
+
+/* The last before the run: all that decides it stands. What went on is from then on the problem's start; frames from before
+ * go out again. */
+static int begin_checkpoints(session *s, const struct options *o, err *e)
+{
+    const likeness_run run = {s->t->provenance, &s->m, &s->run, &s->problem, s->next_frame};
+    if (!o->checkpoint && !o->restart)
+        return 0;
+    s->run.save = save;
+    s->run.save_every = o->checkpoint_every > 0 ? o->checkpoint_every : 0;
+    s->checkpoint =
+        o->restart ? checkpoint_resume(o->restart, &run, &s->warnings, e) : checkpoint_begin(o->checkpoint, &run, e);
+    if (!s->checkpoint || !o->restart)
+        return s->checkpoint ? 0 : -1;
+    s->run.point = checkpoint_take(s->checkpoint, &s->problem);
+    s->run.first = false;
+    return checkpoint_replay(s->checkpoint, replay_frame, s, e);
+}
+
+static void end_checkpoints(session *s, const err *e)
+{
+    const double saved = s->checkpoint ? checkpoint_saved(s->checkpoint) : NAN;
+    if (e->status == STATUS_BAD && isfinite(saved))
+        tool_say(s->t, "the run up to %.6g s is saved; --restart goes on from there", saved);
+    checkpoint_close(s->checkpoint, !e->status);
+}
+
 static void say_start(const session *s, const char *device, const struct options *o)
 {
     const tled_problem *p = &s->problem;
@@ -316,6 +377,8 @@ static void say_start(const session *s, const char *device, const struct options
              r->adapt ? ", then adapted" : "");
     if (p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
         tool_say(s->t, "past the ramp of %g s: -c and -g act in full at once", o->ramp);
+    if (r->point)
+        tool_say(s->t, "going on from step %lld", (long long)(r->point->first - r->point->from));
     if (r->rest >= 0)
         tool_say(s->t, "from %.6g s to rest, tolerance %g", p->start, r->rest);
     else
@@ -432,6 +495,8 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.frame = write_frame;
     s->run.checked = checked;
     s->cut = 1;
+    if (begin_checkpoints(s, o, e))
+        return -1;
     tool_warn(s->t, &s->warnings);
     say_start(s, device, o);
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
@@ -453,14 +518,16 @@ int main(int argc, char **argv)
                         .hourglass = .0075,
                         .every = -1,
                         .log_every = -1,
-                        .repulsion = 1};
+                        .repulsion = 1,
+                        .checkpoint_every = -1};
     err e = {0};
     tool t = {0};
     session s = {.t = &t};
     char device[300] = "";
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (check_end(&o, &e) || stage_open_output(&s.stage, &t, &e) || stage_read(&s.stage, &s.m, &e) ||
+    if (check_end(&o, &e) || checkpoint_check(o.checkpoint, o.restart, o.common.output, &e) ||
+        stage_open_output(&s.stage, &t, &e) || stage_read(&s.stage, &s.m, &e) ||
         prepare(&s, &o, device, sizeof device, &e) || say_provenance(&t, &s, &o, &e) ||
         stage_write(&s.stage, &s.m, &e) || simulate(&s, &o, device, &e))
         goto out;
@@ -469,6 +536,7 @@ out:
     log_close(&s.log, &e);
     if (!t.done)
         stage_close(&s.stage, &t, &e);
+    end_checkpoints(&s, &e);
     pool_destroy(s.threads);
     tled_problem_free(&s.problem);
     collider_free(&s.collider);

@@ -55,6 +55,8 @@ FOLDS static uint32_t by_folding(uint32_t crc, const unsigned char *p, size_t si
 
 uint32_t checksum_add(uint32_t crc, const void *bytes, size_t size)
 {
+    if (!size) /* of no bytes at NULL zlib would begin anew */
+        return crc;
     if (size >= LEAST && __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("sse4.1"))
         return by_folding(crc, bytes, size);
     return (uint32_t)crc32_z(crc, bytes, size);
@@ -64,6 +66,8 @@ uint32_t checksum_add(uint32_t crc, const void *bytes, size_t size)
 
 uint32_t checksum_add(uint32_t crc, const void *bytes, size_t size)
 {
+    if (!size)
+        return crc;
     return (uint32_t)crc32_z(crc, bytes, size);
 }
 

@@ -161,6 +161,11 @@ out *out_open(const char *path, bool gzip, err *e)
     return o;
 }
 
+out *out_take(int fd, const char *name, err *e)
+{
+    return out_new(fd, name, false, e);
+}
+
 out *out_memory(err *e)
 {
     return out_new(-1, "memory", false, e);
@@ -222,6 +227,15 @@ void out_format(out *o, const char *format, ...)
 void out_flush(out *o)
 {
     empty(o, Z_SYNC_FLUSH);
+}
+
+int out_sync(out *o, err *e)
+{
+    out_flush(o);
+    if (!o->failed.status && fsync(o->fd) && errno != EINVAL &&
+        errno != ENOTSUP) /* some can be written to, not synced */
+        err_system(&o->failed, o->name, errno, "cannot write");
+    return out_failed(o, e);
 }
 
 int out_failed(const out *o, err *e)

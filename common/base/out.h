@@ -15,6 +15,9 @@ typedef struct out out;
  * at out_close(); a device or FIFO is written directly. gzip: compress what is written. NULL with e filled. */
 out *out_open(const char *path, bool gzip, err *e);
 
+/* Writes to a descriptor from where it stands, as it is; it is out's from then on, but the caller's where this fails. */
+out *out_take(int fd, const char *name, err *e);
+
 /* Keeps what is written in memory (tests, CRCs, spools); out_bytes() shows it until out_discard(). */
 out *out_memory(err *e);
 const unsigned char *out_bytes(out *o, size_t *size);
@@ -25,6 +28,9 @@ void out_format(out *o, const char *format, ...) SINEW_PRINTF(2, 3);
 
 /* Sends on what is buffered (live streams). */
 void out_flush(out *o);
+
+/* Sends on what is buffered, and waits until all that was written is stored. -1 with e filled. */
+int out_sync(out *o, err *e);
 
 /* 0, or -1 with e filled where something could not be written: for who writes long and would rather end at once. */
 int out_failed(const out *o, err *e);

@@ -47,6 +47,7 @@ int main(void)
         bytes[at] = (unsigned char)(bytes[at] ^ bit);
     }
     ok(!wrong, "any one bit matters: %d did not", (int)wrong);
+    ok(checksum_add(whole, NULL, 0) == whole && checksum_add(whole, bytes, 0) == whole, "nothing changes nothing");
     free(bytes);
     return done_testing();
 }

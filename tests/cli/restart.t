@@ -1,0 +1,207 @@
+#!/bin/sh
+# tled-run --checkpoint and --restart: a run that is killed (kill -9) at any moment, and restarted, writes the same bytes as one that
+# was not. A run whose output nobody reads waits: so it is killed at known places of its output, while it is at work.
+. "$(dirname "$0")/lib.sh"
+
+awk -v nx=12 -v ny=6 -v nz=5 -v h=0.0025 -v held=low -v muscle=1 -f tests/cli/block.awk >"$T/muscle.sinew"
+awk -v nx=8 -v ny=6 -v nz=5 -v h=0.005 -v held=low -f tests/cli/block.awk >"$T/block.sinew"
+mkdir "$T/c" "$T/d"
+fast=$T
+[ -w /dev/shm ] && fast=$(mktemp -d /dev/shm/sinew-XXXXXX) && trap 'rm -rf "$T" "$fast"' EXIT
+c=$fast/state # nothing waits for a disk there
+tries=${SINEW_LONG:+40}
+tries=${tries:-4}
+
+run() { # ARG...: of the model that stands in $model
+    tled-run -q "$@" <"$model"
+}
+
+# killed_at BYTES ARG...: kills the run once that much of its output was read. What was saved is there.
+killed_at() {
+    bytes=$1
+    shift
+    rm -f "$T/pipe"
+    mkfifo "$T/pipe"
+    tled-run -q "$@" <"$model" >"$T/pipe" 2>"$T/err" &
+    pid=$!
+    exec 3<"$T/pipe"
+    head -c "$bytes" <&3 >/dev/null
+    kill -9 "$pid" 2>/dev/null
+    wait "$pid" 2>/dev/null
+    exec 3<&-
+}
+
+# same NAME ARG...: at $tries places; every other run is killed once more after it went on.
+same() {
+    name=$1
+    shift
+    run "$@" >"$T/want"
+    run "$@" --checkpoint "$c" --checkpoint-every 0.02 >"$T/got"
+    check "$name: checkpoints change nothing" cmp "$T/want" "$T/got"
+    is "$(find "$fast" -name 'state*')" "" "$name: and are removed at the end"
+    size=$(wc -c <"$T/want")
+    restarts=0 good=0
+    while [ "$restarts" -lt "$tries" ]; do
+        restarts=$((restarts + 1))
+        rm -f "$c" "$c.1" "$c.frames"
+        killed_at $((size * restarts / (tries + 1))) "$@" --checkpoint "$c" --checkpoint-every 0.02
+        if [ ! -e "$c" ]; then
+            diag "no checkpoint after $((size * restarts / (tries + 1))) of $size bytes: $(cat "$T/err")"
+            continue
+        fi
+        if [ $((restarts % 2)) -eq 0 ]; then
+            killed_at $((size * (restarts + 1) / (tries + 2))) "$@" --restart "$c" --checkpoint-every 0.01
+        fi
+        if run "$@" --restart "$c" -o "$T/got" 2>"$T/err" && cmp -s "$T/want" "$T/got" && [ ! -e "$c" ]; then
+            good=$((good + 1))
+        else
+            diag "$(cat "$T/err")"
+        fi
+        rm -f "$T/got"
+    done
+    is "$good" "$restarts" "$name: $restarts runs that were killed go on to the same bytes"
+}
+
+cat >"$T/script" <<'SCRIPT'
+0    gravity 0,0,0
+0.02 gravity 0,1,-9.81
+0    force 0.02,0.015,0.025 0.01 0,0,0
+0.03 force 0.02,0.015,0.025 0.01 .02,.01,0
+0.2  force 0.02,0.015,0.025 0.01 0,0,0
+0    displace 0.035,-1,-1,1,0.001,1 -,0,0
+0.04 displace 0.035,-1,-1,1,0.001,1 -,0.002,-0.003
+SCRIPT
+cat >"$T/poses" <<'POSES'
+0 0.02 0.015 0.031 1 0 0 0
+0.2 0.022 0.015 0.02 1 0 0 0
+0.3 0.022 0.015 0.024 1 0 0 0
+POSES
+
+model=$T/muscle.sinew
+same "contraction" -d cpu -c all=0.8 -t 0.4 --every 0.002
+same "single" -d cpu --precision single -c all=0.8 -t 0.4 --every 0.002
+same "to rest" -d cpu -c all=0.5 -g 0,0,-9.81 --rest 1e-6 --every 0.002
+same "as text" -d cpu -c all=0.5 -t 0.2 --every 0.002 --text
+same "gzipped" -d cpu -c all=0.5 -t 0.4 --every 0.002 -z
+same "steps that are given, threads" -d cpu -c all=0.5 -t 0.4 --dt 0.0001 --every 0.002 --threads 3
+run -d cpu -c all=0.5 -t 0.1 --every 0.01 >"$T/first.sinew"
+model=$T/first.sinew
+same "going on from frames" -d cpu -c all=0.5 -t 0.3 --every 0.002
+model=$T/block.sinew
+same "a script" -d cpu --script "$T/script" -t 0.4 --every 0.002
+same "a probe" -d cpu --probe sphere:1cm --poses "$T/poses" -t 0.4 --every 0.002
+same "a probe, to rest" -d cpu --probe linear:1cm,5mm --poses "$T/poses" --rest 1e-5 --every 0.002
+
+# The same on a card.
+if run -d cuda -n 1 >/dev/null 2>"$T/err"; then
+    model=$T/muscle.sinew
+    for precision in double single; do
+        same "CUDA, $precision" -d cuda --precision "$precision" -c all=0.8 -t 0.4 --every 0.002
+        same "CUDA, $precision, to rest" -d cuda --precision "$precision" -c all=0.5 -g 0,0,-9.81 --rest 1e-4 --every 0.002
+    done
+    model=$T/block.sinew
+    same "CUDA, a script" -d cuda --script "$T/script" -t 0.4 --every 0.002
+    # A card that fails in the middle of a run.
+    model=$T/muscle.sinew
+    run -d cuda -c all=0.8 -t 20 --every 0.1 >"$T/want"
+    card=$(cd "${BUILD:-build}" && pwd)/tests/faults/card.so
+    fails 1 "a card that fails" 'tled-run: CUDA: .* failed at step [0-9]+: .*(illegal|misaligned|unspecified)' env LD_PRELOAD="$card" SINEW_FAULT_WHEN="$c.1" \
+        tled-run -d cuda -c all=0.8 -t 20 --every 0.1 --checkpoint "$c" --checkpoint-every 0.5 -o "$T/got" <"$model"
+    check "no output" [ ! -e "$T/got" ]
+    check "and the run goes on elsewhere" run -d cuda -c all=0.8 -t 20 --every 0.1 --restart "$c" -o "$T/got"
+    check "to the same bytes" cmp "$T/want" "$T/got"
+    rm "$T/got"
+else
+    skip 19 "on a card: $(sed 's/.*: //' "$T/err" | head -n 1)"
+fi
+
+# Without frames, by the clock: -o has nothing until all is there.
+model=$T/muscle.sinew
+run -d cpu -c all=0.8 -t 2 >"$T/want"
+tled-run -q -d cpu -c all=0.8 -t 2 --checkpoint "$c" --checkpoint-every 0.01 -o "$T/got" <"$model" &
+pid=$!
+until [ -e "$c.1" ]; do
+    sleep 0.01
+done
+kill -9 "$pid"
+wait "$pid" 2>/dev/null
+check "no output of a run that was killed" [ ! -e "$T/got" ]
+sinew info "$c" >"$T/info"
+check "a checkpoint is a model" grep -q 'checkpoint.options' "$T/info"
+check "the run goes on" run -d cpu -c all=0.8 -t 2 --restart "$c" -o "$T/got"
+check "to the same bytes" cmp "$T/want" "$T/got"
+
+# Damage, other runs, what is missing.
+killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --checkpoint "$c" --checkpoint-every 0.02
+for file in state state.1 state.frames; do
+    cp "$fast/$file" "$T/d/$file"
+done
+# shellcheck disable=SC2317 # reached through check and fails
+back() {
+    for file in state state.1 state.frames; do
+        cp "$T/d/$file" "$fast/$file"
+    done
+}
+# shellcheck disable=SC2317
+again() { # ARG...: after which all is as before
+    run -d cpu --every 0.002 --restart "$c" "$@" >"$T/got" 2>"$T/err2"
+    status=$?
+    cat "$T/err2" >&2
+    back
+    return "$status"
+}
+run -d cpu -c all=0.8 -t 0.4 --every 0.002 >"$T/want"
+head -c 3000 "$T/d/state" >"$c"
+check "a checkpoint that is cut" again -c all=0.8 -t 0.4
+is "$(wc -l <"$T/err2" | tr -d ' ')" 1 "is told of in one line"
+is "$(sed -E 's,/[^ ]*/,,g; s,[0-9.]+ s$,T s,' "$T/err2")" "tled-run: warning: state: the model is cut short; expected \`end\` (did the tool before this one stop early?); going on from the one before, state.1, at T s" "which says what is wrong and what was taken"
+check "and the result is the same" cmp "$T/want" "$T/got"
+rm "$c"
+check "one that is missing is like it" again -c all=0.8 -t 0.4
+check "and the result is the same" cmp "$T/want" "$T/got"
+head -c 3000 "$T/d/state" >"$c"
+head -c 3000 "$T/d/state" >"$c.1"
+fails 1 "both damaged is an end" 'state: the model is cut short.*; and .*state.1: the model is cut short' again -c all=0.8 -t 0.4
+check "both stay" cmp "$T/d/state" "$c"
+fails 1 "other options are refused" "state: is of a run with other options, '-t 0.4'; expected '-t 0.5'" again -c all=0.8 -t 0.5
+fails 1 "so are other frames" "--every differs" again -c all=0.8 -t 0.4 --every 0.003
+fails 1 "so is another precision" "'\[cpu double,'; expected '\[cpu single,'" again -c all=0.8 -t 0.4 --precision single
+sed 's/30000/30001/' "$T/muscle.sinew" >"$T/other.sinew"
+model=$T/other.sinew
+fails 1 "so is another model" 'array material.peak differs' again -c all=0.8 -t 0.4
+model=$T/muscle.sinew
+fails 1 "a run that begins anew where one is" 'a checkpoint is there; expected --restart' \
+    run -d cpu -c all=0.8 -t 0.4 --checkpoint "$c"
+check "loses nothing" cmp "$T/d/state" "$c"
+fails 2 "another file to go on in" 'expected the same file' run -c all=0.8 -t 0.4 --checkpoint "$c" --restart "$T/none"
+fails 2 "the output's name" 'is a file of the checkpoint' run -c all=0.8 -t 0.4 --checkpoint "$T/out" -o "$T/out"
+fails 2 "no file for --checkpoint-every" 'without --checkpoint' run -c all=0.8 -t 0.4 --checkpoint-every 1
+fails 1 "nothing to restart from" 'none: cannot open: No such file' run -c all=0.8 -t 0.4 --restart "$T/none"
+fails 1 "no folder to save in" 'state.frames: cannot create: No such file' run -c all=0.8 -t 0.4 --checkpoint "$T/none/state"
+
+# A full disk ends the run, and what was saved stays.
+rm -f "$c" "$c.1" "$c.frames"
+if (ulimit -f 1000) 2>/dev/null; then
+    # shellcheck disable=SC2016 # for the inner shell
+    fails 1 "a disk that is full" 'cannot write: File too large' sh -c 'trap "" XFSZ
+        ulimit -f 300; tled-run -d cpu -c all=0.8 -t 0.4 --every 0.002 --checkpoint "$1" --checkpoint-every 0.01 <"$2" >/dev/null' \
+        - "$c" "$model"
+    is "$(sed -n -E 's/.* (s is saved; .*)/\1/p' "$T/stderr")" "s is saved; --restart goes on from there" "it says what is saved"
+    run -d cpu -c all=0.8 -t 0.4 --every 0.002 --restart "$c" >"$T/got"
+    check "and the run goes on once there is room" cmp "$T/want" "$T/got"
+else
+    skip 3 "no limit on the size of files"
+fi
+
+# As make has it: killed again and again, until it is through.
+cat >"$T/Makefile" <<'MAKE'
+smile.sinew: muscle.sinew
+	tled-run -q -d cpu -c all=0.8 -t 4 $(if $(wildcard state),--restart,--checkpoint) state --checkpoint-every 0.01 -o $@ <$<
+MAKE
+killed=0
+while ! sh -c 'cd "$1" && timeout -s KILL 0.25 make -s smile.sinew' - "$T" >"$T/out" 2>&1 && [ "$killed" -lt 200 ]; do
+    killed=$((killed + 1))
+done
+run -d cpu -c all=0.8 -t 4 >"$T/want"
+check "make, killed $killed times" cmp "$T/want" "$T/smile.sinew"
+done_testing

@@ -1,0 +1,421 @@
+#include "tled/checkpoint.h"
+
+#include "base/mem.h"
+#include "model/binary.h"
+#include "model/stream.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct checkpoint {
+    char *path, *before, *frames_path; /* FILE, FILE.1, FILE.frames; owned */
+    likeness like;
+    model body; /* of FILE, but for where the run stands */
+    int64_t nodes;
+    int axes;              /* of the model */
+    int lock;              /* a descriptor of FILE.frames, which holds the lock; -1: none */
+    out *frames;           /* what is added goes here */
+    int64_t count, length; /* of the frames: how many, and bytes */
+    int arrays;            /* of each */
+    bool stale;            /* FILE is damaged: it does not become FILE.1 */
+    ino_t saved;           /* FILE, as it was saved */
+    run_point point;
+    double time; /* nan: there is no state */
+    frame state;
+};
+
+/* ---- numbers of a point, in arrays of one row each */
+
+enum { NUMBERS = 11, COUNTS = 8 };
+
+static const char axis_name[] = "checkpoint", number_name[] = "checkpoint.number", count_name[] = "checkpoint.count";
+
+static void put_point(const checkpoint *c, const run_point *p, double *number, int64_t *count)
+{
+    const relax *r = &p->relax;
+    const double numbers[NUMBERS] = {p->origin, p->damping, p->remaining, p->closest, p->moved_most, r->guess,
+                                     r->low,    r->high,    r->frequency, r->lowest,  r->time};
+    const int64_t counts[COUNTS] = {p->first, p->from,  p->closest_at, p->cuts,
+                                    r->looks, c->count, c->length,     c->arrays};
+    memcpy(number, numbers, sizeof numbers);
+    memcpy(count, counts, sizeof counts);
+}
+
+static void take_point(checkpoint *c, const double *n, const int64_t *k)
+{
+    c->point = (run_point){.origin = n[0],
+                           .first = k[0],
+                           .from = k[1],
+                           .cuts = (int)k[3],
+                           .damping = n[1],
+                           .remaining = n[2],
+                           .closest = n[3],
+                           .closest_at = k[2],
+                           .moved_most = n[4],
+                           .relax = {n[5], n[6], n[7], n[8], n[9], n[10], (int)k[4]}};
+    c->count = k[5];
+    c->length = k[6];
+    c->arrays = (int)k[7];
+}
+
+/* ---- life */
+
+static bool is_one_of(const char *name, const char *path)
+{
+    const size_t n = strlen(path);
+    return !strncmp(name, path, n) && (!name[n] || !strcmp(name + n, ".1") || !strcmp(name + n, ".frames"));
+}
+
+int checkpoint_check(const char *begin, const char *resume, const char *output, err *e)
+{
+    const char *path = resume ? resume : begin;
+    if (begin && resume && strcmp(begin, resume) != 0)
+        return err_usage(e, "--checkpoint '%s' and --restart '%s'; expected the same file: a run goes on in it", begin,
+                         resume);
+    if (path && (!*path || !strcmp(path, "-")))
+        return err_usage(e, "'%s' for a checkpoint; expected the name of a file", path);
+    if (path && output && is_one_of(output, path))
+        return err_usage(e, "-o '%s' is a file of the checkpoint; expected another", output);
+    return 0;
+}
+
+static char *join(const char *path, const char *suffix, err *e)
+{
+    size_t size = strlen(path) + strlen(suffix) + 1;
+    char *text = mem_array((int64_t)size, 1, "text", e);
+    if (text)
+        snprintf(text, size, "%s%s", path, suffix);
+    return text;
+}
+
+void checkpoint_close(checkpoint *c, bool done)
+{
+    struct stat s;
+    if (!c)
+        return;
+    if (done && !isnan(c->time)) { /* what is there now may be the output, by mistake */
+        unlink(c->before);
+        if (!stat(c->path, &s) && s.st_ino == c->saved)
+            unlink(c->path);
+    }
+    if (done && c->lock >= 0)
+        unlink(c->frames_path);
+    out_discard(c->frames);
+    if (c->lock >= 0)
+        close(c->lock);
+    likeness_free(&c->like);
+    model_free(&c->body);
+    frame_free(&c->state);
+    free(c->path);
+    free(c->before);
+    free(c->frames_path);
+    free(c);
+}
+
+static int make_body(checkpoint *c, const likeness_run *run, err *e)
+{
+    const model *m = run->m;
+    for (int i = 0; i < m->axis_count; i++)
+        if (model_axis_add(&c->body, m->axes[i].name, m->axes[i].count, e))
+            return -1;
+    return likeness_make(&c->like, run, e) || likeness_put(&c->like, &c->body, e) ||
+                   model_axis_add(&c->body, axis_name, 1, e) ||
+                   !model_add_as(&c->body, number_name, MODEL_F64, "1", axis_name, NUMBERS, e) ||
+                   !model_add_as(&c->body, count_name, MODEL_I64, "1", axis_name, COUNTS, e)
+               ? -1
+               : 0;
+}
+
+static checkpoint *create(const char *path, const likeness_run *run, err *e)
+{
+    checkpoint *c = mem_array(1, sizeof *c, "the checkpoint", e);
+    if (!c)
+        return NULL;
+    c->lock = -1;
+    c->time = NAN;
+    c->nodes = run->p->nodes;
+    c->axes = run->m->axis_count;
+    c->path = join(path, "", e);
+    c->before = join(path, ".1", e);
+    c->frames_path = join(path, ".frames", e);
+    if (c->path && c->before && c->frames_path && !make_body(c, run, e))
+        return c;
+    checkpoint_close(c, false);
+    return NULL;
+}
+
+/* Opens FILE.frames and locks it. */
+static int open_frames(checkpoint *c, int flags, err *e)
+{
+    struct stat s;
+    c->lock = open(c->frames_path, O_RDWR | O_CLOEXEC | flags, 0666);
+    if (c->lock < 0)
+        return err_system(e, c->frames_path, errno, flags ? "cannot create" : "cannot open");
+    if (fstat(c->lock, &s) || !S_ISREG(s.st_mode))
+        return err_set(e, c->frames_path, 0, "is no regular file; expected one, or a new name");
+    if (flock(c->lock, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
+        return err_set(e, c->frames_path, 0, "another run is at it; expected one at a time");
+    return 0;
+}
+
+/* From here on frames are added, after the first `length` bytes. */
+static int start_adding(checkpoint *c, err *e)
+{
+    if (ftruncate(c->lock, (off_t)c->length) || lseek(c->lock, (off_t)c->length, SEEK_SET) < 0)
+        return err_system(e, c->frames_path, errno, "cannot write");
+    int fd = fcntl(c->lock, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    if (fd < 0)
+        return err_system(e, c->frames_path, errno, "cannot open");
+    c->frames = out_take(fd, c->frames_path, e);
+    if (!c->frames)
+        close(fd);
+    return c->frames ? 0 : -1;
+}
+
+checkpoint *checkpoint_begin(const char *path, const likeness_run *run, err *e)
+{
+    struct stat s;
+    checkpoint *c = create(path, run, e);
+    if (!c)
+        return NULL;
+    const char *there = !lstat(c->path, &s) ? c->path : !lstat(c->before, &s) ? c->before : NULL;
+    if (there)
+        err_set(e, there, 0, "a checkpoint is there; expected --restart to go on from it, or another name");
+    if (there || open_frames(c, O_CREAT, e) || start_adding(c, e))
+        goto fail;
+    binary_encoding.write_begin(c->frames);
+    for (int i = 0; i < c->axes; i++) {
+        const model_axis *a = &c->body.axes[i];
+        binary_encoding.write(c->frames, &(item){.kind = ITEM_AXIS, .key = a->name, .number = a->count});
+    }
+    return c;
+fail:
+    checkpoint_close(c, false);
+    return NULL;
+}
+
+/* ---- adding and saving */
+
+int checkpoint_add(checkpoint *c, const frame *f, err *e)
+{
+    binary_encoding.write(c->frames, &(item){.kind = ITEM_FRAME, .number = f->index, .time = f->time});
+    for (int i = 0; i < f->arrays.count; i++)
+        binary_encoding.write(c->frames, &(item){.kind = ITEM_ARRAY, .array = f->arrays.v[i]});
+    c->count++;
+    c->arrays = f->arrays.count;
+    return out_failed(c->frames, e);
+}
+
+/* FILE becomes FILE.1, and stays FILE until there is a new one, where the file system has links. */
+static int step_down(const checkpoint *c, err *e)
+{
+    if (unlink(c->before) && errno != ENOENT)
+        return err_system(e, c->before, errno, "cannot remove");
+    if (link(c->path, c->before) && errno != ENOENT && rename(c->path, c->before) && errno != ENOENT)
+        return err_system(e, c->before, errno, "cannot create");
+    return 0;
+}
+
+static int write_state(const checkpoint *c, const frame *state, err *e)
+{
+    out *o = out_open(c->path, false, e);
+    model_writer *w = o ? model_writer_open(o, false, e) : NULL;
+    int bad = !w || model_write(w, &c->body, e) || model_write_frame(w, state, e) || model_write_end(w, e) ||
+              out_sync(o, e) || (!c->stale && step_down(c, e));
+    model_writer_close(w);
+    if (!bad)
+        return out_close(o, e);
+    out_discard(o);
+    return -1;
+}
+
+int checkpoint_save(checkpoint *c, const run_point *at, double time, const double *displacement, const double *velocity,
+                    err *e)
+{
+    struct stat s;
+    const size_t size = 3 * (size_t)c->nodes * sizeof(double);
+    frame f = {.index = at->first, .time = time};
+    int bad = out_sync(c->frames, e);
+    model_array *u = bad ? NULL : frame_add(&f, &c->body, "node.displacement", e);
+    if (u)
+        memcpy(u->f64, displacement, size);
+    model_array *v = u ? frame_add(&f, &c->body, "node.velocity", e) : NULL;
+    if (v)
+        memcpy(v->f64, velocity, size);
+    if (v && !fstat(c->lock, &s))
+        c->length = (int64_t)s.st_size;
+    put_point(c, at, model_find(&c->body, number_name)->f64, model_find(&c->body, count_name)->i64);
+    bad = !v || write_state(c, &f, e) ? -1 : 0;
+    frame_free(&f);
+    if (bad)
+        return -1;
+    c->stale = false;
+    c->time = time;
+    if (!stat(c->path, &s))
+        c->saved = s.st_ino;
+    return 0;
+}
+
+double checkpoint_saved(const checkpoint *c)
+{
+    return c->time;
+}
+
+/* ---- going on */
+
+static const model_array *find_row(const model *m, const char *name, model_type type, int columns)
+{
+    const model_array *a = model_find(m, name);
+    return a && a->type == type && a->columns == columns && a->rows == 1 ? a : NULL;
+}
+
+/* All of it, to its end. Returns -1 with e filled; *foreign: it is whole, but not this run's. */
+static int read_state(checkpoint *c, const char *path, bool *foreign, err *e)
+{
+    model m = {0};
+    frame none = {0};
+    int result = -1;
+    in *s = in_open_plain(path, e);
+    model_reader *r = s ? model_reader_open(s, e) : NULL;
+    if (!r || model_read(r, &m, e) || model_read_frame(r, &m, &c->state, e) < 0 ||
+        model_read_frame(r, &m, &none, e) < 0)
+        goto out;
+    *foreign = true;
+    if (likeness_compare(&c->like, &m, path, e))
+        goto out;
+    const model_array *number = find_row(&m, number_name, MODEL_F64, NUMBERS);
+    const model_array *count = find_row(&m, count_name, MODEL_I64, COUNTS);
+    const model_array *u = frame_find(&c->state, "node.displacement"), *v = frame_find(&c->state, "node.velocity");
+    if (!number || !count || !u || !v || u->rows != c->nodes) {
+        err_set(e, path, 0, "is no checkpoint; expected one that tled-run wrote");
+        goto out;
+    }
+    take_point(c, number->f64, count->i64);
+    c->time = c->state.time;
+    result = 0;
+out:
+    frame_free(&none);
+    model_free(&m);
+    model_reader_close(r);
+    in_close(s);
+    return result;
+}
+
+/* The next frame of FILE.frames. -1 with e filled. */
+static int read_frame(item_source *s, int arrays, frame *f, err *e)
+{
+    item it = {0};
+    int bad = 0;
+    for (int i = -1; !bad && i < arrays; i++) {
+        item_free(&it);
+        bad = binary_encoding.read(s, &it, e);
+        if (!bad && it.kind != (i < 0 ? ITEM_FRAME : ITEM_ARRAY))
+            bad = item_error(s, &it, e, "is not what stands there in the frames of a checkpoint");
+        if (!bad && i < 0)
+            *f = (frame){.index = it.number, .time = it.time};
+        else if (!bad && !model_arrays_take(&f->arrays, &it.array, e))
+            bad = -1;
+    }
+    item_free(&it);
+    return bad;
+}
+
+/* Reads the first `count` frames, and gives each to take, which may be NULL. */
+static int read_frames(const checkpoint *c, checkpoint_frame *take, void *context, err *e)
+{
+    frame f = {0};
+    item it = {0};
+    in *stream = in_open_plain(c->frames_path, e);
+    item_source s = {.s = stream, .how = &binary_encoding};
+    int bad = !stream || s.how->begin(&s, e);
+    for (int i = 0; !bad && i < c->axes; i++) {
+        item_free(&it);
+        bad = s.how->read(&s, &it, e);
+        if (!bad)
+            bad = it.kind != ITEM_AXIS
+                      ? item_error(&s, &it, e, "is not what stands there in the frames of a checkpoint")
+                      : model_axis_add(&s.axes, it.key, it.number, e);
+    }
+    for (int64_t i = 0; !bad && i < c->count; i++) {
+        bad = read_frame(&s, c->arrays, &f, e) || (take && take(context, &f, e));
+        frame_free(&f);
+    }
+    item_free(&it);
+    model_free(&s.axes);
+    in_close(stream);
+    return bad ? -1 : 0;
+}
+
+/* Whether the state at path is whole, this run's, and all its frames are there. */
+static int try_state(checkpoint *c, const char *path, bool *foreign, err *e)
+{
+    struct stat s;
+    *foreign = false;
+    if (read_state(c, path, foreign, e))
+        return -1;
+    *foreign = false;
+    if (!fstat(c->lock, &s) && (int64_t)s.st_size < c->length)
+        return err_set(e, c->frames_path, 0, "has %lld bytes; expected %lld", (long long)s.st_size,
+                       (long long)c->length);
+    return read_frames(c, NULL, NULL, e);
+}
+
+/* FILE or FILE.1. */
+static int choose_state(checkpoint *c, notes *warnings, err *e)
+{
+    bool foreign;
+    err first = {0}, second = {0};
+    if (!try_state(c, c->path, &foreign, &first))
+        return 0;
+    if (!foreign && !try_state(c, c->before, &foreign, &second)) {
+        c->stale = true;
+        notes_add(warnings, "%s; going on from the one before, %s, at %.6g s", first.text, c->before, c->time);
+        return 0;
+    }
+    c->time = NAN;
+    if (second.status && access(c->before, F_OK) == 0)
+        return err_set(e, NULL, 0, "%.450s; and %.450s", first.text, second.text);
+    *e = first;
+    return -1;
+}
+
+checkpoint *checkpoint_resume(const char *path, const likeness_run *run, notes *warnings, err *e)
+{
+    struct stat s;
+    checkpoint *c = create(path, run, e);
+    if (!c)
+        return NULL;
+    if (access(c->path, F_OK) && access(c->before, F_OK)) {
+        err_system(e, c->path, errno, "cannot open");
+        goto fail;
+    }
+    if (open_frames(c, 0, e) || choose_state(c, warnings, e))
+        goto fail;
+    if (!stat(c->path, &s))
+        c->saved = s.st_ino;
+    return c;
+fail:
+    checkpoint_close(c, false);
+    return NULL;
+}
+
+const run_point *checkpoint_take(const checkpoint *c, tled_problem *p)
+{
+    const size_t size = 3 * (size_t)c->nodes * sizeof(double);
+    memcpy(p->displacement, frame_find(&c->state, "node.displacement")->f64, size);
+    memcpy(p->velocity, frame_find(&c->state, "node.velocity")->f64, size);
+    p->start = c->state.time;
+    return &c->point;
+}
+
+int checkpoint_replay(checkpoint *c, checkpoint_frame *take, void *context, err *e)
+{
+    return read_frames(c, take, context, e) || start_adding(c, e) ? -1 : 0;
+}
