@@ -2,7 +2,7 @@
  * whole, and what goes on from there writes the same frames as a run that never stopped. Checkpoints that are damaged, and
  * those of other runs.
  */
-// needs: tled/state.c tled/step.c tled/script.c tled/script_read.c tled/watch.c tled/relax.c tled/run.c tled/log.c tled/account.c tled/outbox.c tled/backends.c tled/cpu_double.c tled/cpu_single.c tled/rows.c tled/cpu_choose.c tled/cpu_pass_base_double.c tled/cpu_pass_base_single.c tled/cpu_pass_avx2_double.c tled/cpu_pass_avx2_single.c tled/cpu_pass_avx512_double.c tled/cpu_pass_avx512_single.c tled/collider.c tled/checkpoint.c tled/likeness.c
+// needs: tled/*.c
 #include "tled_bench.h"
 
 #include "base/checksum.h"
