@@ -198,7 +198,7 @@ ZSHDIR = $(DESTDIR)$(PREFIX)/share/zsh/site-functions
 # `bind` has none in bash: bash-completion has a file of that name, for the shell's builtin.
 COMPLETIONS = $(filter-out bind,$(TOOLS))
 PAGES = $(wildcard man/*.[157])
-SAMPLES = $(filter-out samples/demo samples/arm samples/scan,$(wildcard samples/*))
+SAMPLES = $(filter-out samples/demo samples/arm samples/scan samples/paper samples/paper.d,$(wildcard samples/*))
 
 install: all
 	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7

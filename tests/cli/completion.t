@@ -3,7 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 
 have python3 || skip_all "no python3"
-tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-deform sinew-info sinew-diff sinew-export sinew-render"
+tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-deform sinew-info sinew-diff sinew-export sinew-import sinew-render"
 mkdir "$T/bash" "$T/zsh" "$T/here" "$T/here/sub"
 for tool in $tools sinew; do
     "$tool" --table zsh >"$T/zsh/_$tool"
@@ -32,7 +32,7 @@ msds-mesh --like |a.nrrd b.mhd sub
 us-slice |a.nrrd b.mhd sub
 attach --fibre |axis centre field
 sinew de|deform
-sinew |--help --version attach bind deform diff export info msds-mesh msds-run render tled-run us-import us-segment us-slice us-surface voxelise
+sinew |--help --version attach bind deform diff export import info msds-mesh msds-run render tled-run us-import us-segment us-slice us-surface voxelise
 sinew bind --u|--unit
 sinew bind f|face.obj
 sinew info --t|--tsv
