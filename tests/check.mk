@@ -153,7 +153,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo samples/arm samples/scan tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup man/html samples/demo samples/arm samples/scan tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -176,6 +176,12 @@ lint-shell:
 
 lint-man:
 	@mandoc -Tlint -Wwarning $(wildcard man/*.[157])
+
+# ---- the manual pages as HTML
+.PHONY: html
+html:
+	@man/html out/man
+	@echo out/man/index.html
 
 # ---- installation
 .PHONY: install uninstall
@@ -224,6 +230,7 @@ help:
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
+	'make html         the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make clean        removes what was built' \
 	'' \
