@@ -36,8 +36,10 @@ else
 run = @echo "  $(1)"; $(2)
 endif
 
-# Every .c of these folders is the library, but for mains.
-LIB_SRC := $(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/volume/*.c common/contact/*.c common/device/*.c common/render/*.c)
+# Every .c of these folders is the library, but for what mains begin and end with, and say on standard error: that is linked beside it.
+MAIN_SRC := common/base/tool.c common/base/progress.c
+MAIN_OBJ := $(MAIN_SRC:%.c=$(BUILD)/%.o)
+LIB_SRC := $(filter-out $(MAIN_SRC),$(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/volume/*.c common/contact/*.c common/device/*.c common/render/*.c))
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -122,7 +124,7 @@ IMPORT_MODULES := $(wildcard common/tools/import_*.c)
 RENDER_MODULES := $(wildcard common/tools/render_*.c)
 
 define tool
-$(BIN)/$(1): $(call objects,$(2)) $(4) $(LIB)
+$(BIN)/$(1): $(call objects,$(2)) $(MAIN_OBJ) $(4) $(LIB)
 	@mkdir -p $$(@D)
 	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $(3) $(5) $$(LDLIBS))
 endef

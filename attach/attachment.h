@@ -5,7 +5,7 @@
 #define SINEW_ATTACHMENT_H
 
 #include "base/err.h"
-#include "body.h"
+#include "muscle_body.h"
 
 typedef struct attachment {
     int32_t muscle;

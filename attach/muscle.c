@@ -1,8 +1,8 @@
 #include "muscle.h"
 
 #include "base/mem.h"
-#include "body.h"
-#include "field.h"
+#include "muscle_body.h"
+#include "fibre_field.h"
 #include "mesh/lattice.h"
 
 #include <float.h>

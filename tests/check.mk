@@ -20,12 +20,12 @@ AS_NEEDED = -Wl,--as-needed
 needs = $(call objects,$(patsubst tled/*.c,$(filter-out tled/tled-run.c,$(TLED_SRC)),$(shell sed -n 's|^// needs: *||p' $(1))))
 
 define test_program
-$(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(LIB_CUDA) $(LIB)
+$(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(MAIN_OBJ) $(LIB_CUDA) $(LIB)
 	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
 endef
-COMPARE := $(BUILD)/tests/cli/compare $(BUILD)/tests/cli/voxels
-$(eval $(call test_program,tests/cli/compare))
-$(eval $(call test_program,tests/cli/voxels))
+COMPARE := $(BUILD)/tests/cli/compare_pictures $(BUILD)/tests/cli/list_voxels
+$(eval $(call test_program,tests/cli/compare_pictures))
+$(eval $(call test_program,tests/cli/list_voxels))
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
 
@@ -156,15 +156,15 @@ fuzz-run: $(FUZZ)
 	tests/fuzz/run $(FUZZ_SECONDS) $(FUZZ)
 
 # ---- lints
-.PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man
+.PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
 FOLDERS = $(filter-out $(BUILD)/ $(BIN)/ out/,$(wildcard */))
 # None found: something is wrong, and a lint of nothing would pass.
 found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(FOLDERS)))
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo samples/arm samples/scan tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
-lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
+SCRIPTS = .ci/run .ci/setup man/html samples/demo samples/arm samples/scan tests/check tests/shape tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
+lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
 
 lint-cppcheck:
 	@cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
@@ -186,6 +186,16 @@ lint-shell:
 
 lint-man:
 	@mandoc -Tlint -Wwarning $(wildcard man/*.[157])
+
+# What no compiler sees: tests/shape says what.
+lint-shape: all
+	@BUILD=$(BUILD) tests/shape
+
+# ---- the manual pages as HTML
+.PHONY: html
+html:
+	@man/html out/man
+	@echo out/man/index.html
 
 # ---- installation
 .PHONY: install uninstall
@@ -233,7 +243,8 @@ help:
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
-	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc' \
+	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc, and the shape of it all' \
+	'make html         the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make clean        removes what was built' \
 	'' \

@@ -4,7 +4,7 @@
 #define SINEW_REPORT_H
 
 #include "base/out.h"
-#include "voxelise/check.h"
+#include "voxelise/check_surfaces.h"
 #include "voxelise/volumes.h"
 
 /* unit: the name of the OBJ's. */

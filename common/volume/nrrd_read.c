@@ -67,57 +67,58 @@ static int take_sizes(header *h, const char *field, char *value, err *e)
     return 0;
 }
 
+static const struct {
+    const char *name;
+    volume_type type;
+} type_names[] = {
+    {"signed char", VOLUME_I8},
+    {"int8", VOLUME_I8},
+    {"int8_t", VOLUME_I8},
+    {"uchar", VOLUME_U8},
+    {"unsigned char", VOLUME_U8},
+    {"uint8", VOLUME_U8},
+    {"uint8_t", VOLUME_U8},
+    {"short", VOLUME_I16},
+    {"short int", VOLUME_I16},
+    {"signed short", VOLUME_I16},
+    {"signed short int", VOLUME_I16},
+    {"int16", VOLUME_I16},
+    {"int16_t", VOLUME_I16},
+    {"ushort", VOLUME_U16},
+    {"unsigned short", VOLUME_U16},
+    {"unsigned short int", VOLUME_U16},
+    {"uint16", VOLUME_U16},
+    {"uint16_t", VOLUME_U16},
+    {"int", VOLUME_I32},
+    {"signed int", VOLUME_I32},
+    {"int32", VOLUME_I32},
+    {"int32_t", VOLUME_I32},
+    {"uint", VOLUME_U32},
+    {"unsigned int", VOLUME_U32},
+    {"uint32", VOLUME_U32},
+    {"uint32_t", VOLUME_U32},
+    {"longlong", VOLUME_I64},
+    {"long long", VOLUME_I64},
+    {"long long int", VOLUME_I64},
+    {"signed long long", VOLUME_I64},
+    {"signed long long int", VOLUME_I64},
+    {"int64", VOLUME_I64},
+    {"int64_t", VOLUME_I64},
+    {"ulonglong", VOLUME_U64},
+    {"unsigned long long", VOLUME_U64},
+    {"unsigned long long int", VOLUME_U64},
+    {"uint64", VOLUME_U64},
+    {"uint64_t", VOLUME_U64},
+    {"float", VOLUME_F32},
+    {"double", VOLUME_F64},
+};
+
 static int take_type(header *h, const char *field, char *value, err *e)
 {
-    static const struct {
-        const char *name;
-        volume_type type;
-    } types[] = {
-        {"signed char", VOLUME_I8},
-        {"int8", VOLUME_I8},
-        {"int8_t", VOLUME_I8},
-        {"uchar", VOLUME_U8},
-        {"unsigned char", VOLUME_U8},
-        {"uint8", VOLUME_U8},
-        {"uint8_t", VOLUME_U8},
-        {"short", VOLUME_I16},
-        {"short int", VOLUME_I16},
-        {"signed short", VOLUME_I16},
-        {"signed short int", VOLUME_I16},
-        {"int16", VOLUME_I16},
-        {"int16_t", VOLUME_I16},
-        {"ushort", VOLUME_U16},
-        {"unsigned short", VOLUME_U16},
-        {"unsigned short int", VOLUME_U16},
-        {"uint16", VOLUME_U16},
-        {"uint16_t", VOLUME_U16},
-        {"int", VOLUME_I32},
-        {"signed int", VOLUME_I32},
-        {"int32", VOLUME_I32},
-        {"int32_t", VOLUME_I32},
-        {"uint", VOLUME_U32},
-        {"unsigned int", VOLUME_U32},
-        {"uint32", VOLUME_U32},
-        {"uint32_t", VOLUME_U32},
-        {"longlong", VOLUME_I64},
-        {"long long", VOLUME_I64},
-        {"long long int", VOLUME_I64},
-        {"signed long long", VOLUME_I64},
-        {"signed long long int", VOLUME_I64},
-        {"int64", VOLUME_I64},
-        {"int64_t", VOLUME_I64},
-        {"ulonglong", VOLUME_U64},
-        {"unsigned long long", VOLUME_U64},
-        {"unsigned long long int", VOLUME_U64},
-        {"uint64", VOLUME_U64},
-        {"uint64_t", VOLUME_U64},
-        {"float", VOLUME_F32},
-        {"double", VOLUME_F64},
-    };
     h->typed = true;
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (!strcmp(types[i].name, value)) {
-            h->v->type = types[i].type;
+    for (size_t i = 0; i < sizeof type_names / sizeof *type_names; i++)
+        if (!strcmp(type_names[i].name, value)) {
+            h->v->type = type_names[i].type;
             return 0;
         }
     return header_bad(h->s, e, field, value, "unsigned char, short, float or another type of one number");

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 
 have make || skip_all "no make"
-compare=${BUILD:-build}/tests/cli/compare
+compare=${BUILD:-build}/tests/cli/compare_pictures
 case $compare in /*) ;; *) compare=$ROOT/$compare ;; esac
 
 env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make -s -C samples OUT="$T" "$T/muscle.model" "$T/block.model" "$T/sphere.model" 2>"$T/made" ||

@@ -3,7 +3,7 @@
 # shellcheck source=tests/cli/lib.sh
 . "$(dirname "$0")/lib.sh"
 
-voxels=${BUILD:-build}/tests/cli/voxels
+voxels=${BUILD:-build}/tests/cli/list_voxels
 python=
 for p in python3 /usr/bin/python3; do
     "$p" -c 'import vtkmodules.vtkIOImage' 2>/dev/null && python=$p && break

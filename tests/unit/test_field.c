@@ -1,7 +1,7 @@
 /* Fibres by a potential: in a straight bar exactly along it; in a bent tube made from equations, its own axis; with both ends,
  * one or none attached, whatever the number of threads.
  */
-// needs: attach/muscle.c attach/attachment.c attach/field.c attach/laplace.c
+// needs: attach/muscle.c attach/attachment.c attach/fibre_field.c attach/laplace.c
 #include "attach/laplace.h"
 #include "attach/muscle.h"
 

@@ -1,6 +1,6 @@
 /* Contraction centres, fibres and axes against sums done by hand; and which surfaces are rigid, by name.
  */
-// needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/field.c attach/laplace.c
+// needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/fibre_field.c attach/laplace.c
 #include "attach/muscle.h"
 #include "attach/rigid.h"
 #include "mesh/surface.h"

@@ -1,8 +1,8 @@
 /* What muscles are made from and into: a model's arrays, its elements sorted by volume, and marks on nodes. An element mixed of
  * two volumes is one of both. Borrows the arrays; muscle_make owns the rest.
  */
-#ifndef SINEW_BODY_H
-#define SINEW_BODY_H
+#ifndef SINEW_MUSCLE_BODY_H
+#define SINEW_MUSCLE_BODY_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,8 +1,8 @@
 /* What is wrong with a surface, and what it encloses: for voxelise --check. Everything is borrowed but the result, which is
  * plain numbers.
  */
-#ifndef SINEW_CHECK_H
-#define SINEW_CHECK_H
+#ifndef SINEW_CHECK_SURFACES_H
+#define SINEW_CHECK_SURFACES_H
 
 #include "mesh/obj.h"
 

@@ -1,4 +1,4 @@
-#include "voxelise/check.h"
+#include "voxelise/check_surfaces.h"
 
 #include "base/mem.h"
 #include "mesh/triangulate.h"

@@ -1,4 +1,4 @@
-#include "field.h"
+#include "fibre_field.h"
 
 #include "base/mem.h"
 #include "laplace.h"

@@ -2,8 +2,8 @@
  * other, with no flow through its sides (as Rule & al. lay fibres in hearts). The creator owns it; what it is made of is
  * borrowed.
  */
-#ifndef SINEW_FIELD_H
-#define SINEW_FIELD_H
+#ifndef SINEW_FIBRE_FIELD_H
+#define SINEW_FIBRE_FIELD_H
 
 #include "attachment.h"
 #include "base/pool.h"

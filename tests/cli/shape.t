@@ -1,0 +1,116 @@
+#!/bin/sh
+# That tests/shape sees what it is there for; and what tools owe their users whatever they do: -V at once, every option in usage and page,
+# no privileges.
+. "$(dirname "$0")/lib.sh"
+
+tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-deform sinew-info sinew-diff sinew-export sinew-render"
+
+# ---- Breaches, one a check, in a tree of their own.
+mkdir -p "$T/tree/common/base" "$T/tree/common/model" "$T/tree/voxelise" "$T/tree/attach" "$T/tree/bind" "$T/tree/tled" "$T/tree/msds" \
+    "$T/tree/slice" "$T/tree/man" "$T/tree/samples" "$T/tree/tests" "$T/tree/.ci" "$T/tree/common/tools"
+cd "$T/tree" || exit 1
+touch README.md Makefile
+# found NAME CHECK PATTERN: the check complains, and of this.
+found() {
+    BUILD=$T/tree/build "$ROOT/tests/shape" "$2" >"$T/said" 2>&1
+    is "$? $(grep -Ec -e "$3" "$T/said")" "1 1" "$1"
+    [ -s "$T/said" ] && diag_file "$T/said"
+}
+printf '#ifndef SINEW_A_H\n#define SINEW_A_H\n#endif\n' >common/base/a.h
+is "$("$ROOT/tests/shape" names sizes includes builtin 2>&1)" "" "a tree without a breach"
+cp common/base/a.h voxelise/a.h
+found "two files of one name" names 'several files are called a\.h'
+mv voxelise/a.h voxelise/b.h
+found "two headers with one guard" names 'guarded by SINEW_A_H'
+rm voxelise/b.h
+awk 'BEGIN { print "int f(void)\n{"; for (i = 0; i < 51; i++) print "    ;"; print "}" }' >attach/long.c
+found "a long function" sizes 'attach/long.c:2: a function of 51 lines'
+awk 'BEGIN { for (i = 0; i < 601; i++) print "" }' >attach/long.c
+found "a long file" sizes 'attach/long.c: 601 lines'
+echo '#include "attach/body.h"' >voxelise/across.c
+found "a tool that includes another" includes 'voxelise/across.c includes attach/body.h'
+rm voxelise/across.c
+echo '#include "model/model.h"' >common/base/up.c
+found "base that knows a model" includes 'common/base/up.c includes model/model.h'
+rm common/base/up.c
+# shellcheck disable=SC2016 # these are what is looked for
+for line in 'attach | bind | tled-run' '    bind < a > b' '$ bind face.obj' 'x=$(bind face.obj)' 'voxelise a && bind -q' 'attach |bind'; do
+    printf '%s\n' "$line" >README.md
+    found "typed: $line" builtin 'README.md:1:'
+done
+# shellcheck disable=SC2016 # likewise
+printf '%s\n' 'attach | sinew bind' '`bind` is a builtin' '.Xr bind 1' '.Nm bind' 'they bind surfaces' >README.md
+is "$("$ROOT/tests/shape" builtin)" "" "prose of it is let be"
+if have "${CC:-cc}" && have nm; then
+    mkdir -p build/common/base
+    while IFS='|' read -r name pattern body; do
+        printf '%s\n' "$body" >common/base/bad.c
+        "${CC:-cc}" -O0 -c -o build/common/base/bad.o common/base/bad.c 2>"$T/cc" || diag_file "$T/cc"
+        found "$name" objects "common/base/bad.o $pattern"
+    done <<'END'
+an exit|uses exit|void exit(int); void f(void); void f(void) { exit(1); }
+a message|uses stderr|extern void *stderr; int fputc(int, void *); void g(void *); void f(void); void f(void) { g(stderr); }
+a print|uses puts|int puts(const char *); void f(void); void f(void) { puts("x"); }
+a variable|has the writable global count|int count = 1; int f(void); int f(void) { return ++count; }
+a zeroed one|has the writable global count|static int count; int f(void); int f(void) { return ++count; }
+a thread's|has the writable global count|static _Thread_local int count = 2; int f(void); int f(void) { return ++count; }
+a shell|calls system|int system(const char *); void f(void); void f(void) { system("ls"); }
+another program|calls execvp|int execvp(const char *, char *const *); void f(char **a); void f(char **a) { execvp(a[0], a); }
+another user|calls setuid|int setuid(unsigned); void f(void); void f(void) { setuid(0); }
+END
+    echo 'extern const char *const table[]; const char *const table[] = {"a", "b"}; static const int n = 3; int f(void); int f(void) { return n; }' >common/base/bad.c
+    "${CC:-cc}" -fPIE -c -o build/common/base/bad.o common/base/bad.c
+    is "$(BUILD=$T/tree/build "$ROOT/tests/shape" objects)" "" "constants are let be"
+else
+    skip 10 "no compiler or no nm"
+fi
+cd "$ROOT" || exit 1
+
+# ---- Every option stands in the usage and in the page, and the page has no other.
+for tool in $tools; do
+    "$tool" --help | grep -oE '(^  |; )(-[a-zA-Z](, )?)?(--[a-z-]+)?' | grep -oE -e '--?[a-zA-Z][a-z-]*' | sort -u >"$T/usage"
+    sed -n '/^\.Sh DESCRIPTION/,/^\.Sh \(EXIT\|ENV\)/s/^\.It Fl //p' "man/$tool.1" |
+        awk '{ for (i = 1; i <= NF; i++) { if ($i == "Ar" || $i == "Oo" || $i == "Cm" || $i == "Ns" || $i == "Li") break; if ($i != "," && $i != "Fl") print "-" $i } }' | sort -u >"$T/page"
+    check "$tool: $(wc -l <"$T/usage" | tr -d ' ') names of options, all in its page" diff "$T/usage" "$T/page"
+done
+
+# ---- -V: the least of 20, less what it takes to run anything; no card is looked at.
+for tool in $tools sinew; do
+    awk -v tool="$SINEW_BIN/$tool" 'function took(command,    from, to, i, least) {
+            for (i = 0; i < 20; i++) {
+                "date +%s.%N" | getline from; close("date +%s.%N")
+                system(command)
+                "date +%s.%N" | getline to; close("date +%s.%N")
+                if (!i || to - from < least) least = to - from
+            }
+            return least
+        }
+        BEGIN { least = 1000 * (took(tool " -V >/dev/null") - took("/bin/true -V >/dev/null")); printf "%.1f ms", least; exit !(least < 10) }' >"$T/took"
+    status=$?
+    if [ "${SINEW_SANITIZED:-}" ]; then
+        skip 1 "sanitizers take their time"
+    else
+        is $status 0 "$tool -V takes $(cat "$T/took") more than true"
+    fi
+done
+
+# ---- As nobody, in a folder that is nobody's.
+if [ "$(id -u)" -eq 0 ] && have setpriv; then
+    chmod 755 "$T"
+    mkdir -m 777 "$T/free"
+    cp tests/cli/cube.obj "$T/free/"
+    chmod a+rx "$SINEW_BIN" 2>/dev/null
+    # shellcheck disable=SC2016 # for the inner shell
+    if setpriv --reuid=65534 --regid=65534 --clear-groups --bounding-set=-all --inh-caps=-all test -x "$SINEW_BIN/voxelise" 2>/dev/null; then
+        check "nobody, without a capability, makes a model and moves it" \
+            setpriv --reuid=65534 --regid=65534 --clear-groups --bounding-set=-all --inh-caps=-all sh -c 'cd "$T/free" &&
+                voxelise -q --unit mm -s 5 cube.obj | attach -q | sinew bind | tled-run -q -d cpu -n 5 -o run.sinew &&
+                sinew render -o run.png run.sinew && sinew deform cube.obj -o moved.obj <run.sinew'
+    else
+        skip 1 "the tools lie where nobody gets"
+    fi
+else
+    check "not root: what every test does, it does without privileges" test "$(id -u)" -ne 0
+fi
+is "$(find "$SINEW_BIN" -perm /6000)" "" "no tool is set-user-id"
+done_testing
