@@ -1,7 +1,7 @@
 # A ball of hexahedra that conform to its surface, as Abaqus input, in metres: a cube of n^3 cells mapped onto it (W&M section
 # 4.3 has 13^3 = 2197 elements).
-#   awk -v n=13 -v r=0.1 -v top=0.06 -v E=3000 -v nu=0.4 -v rho=1000 -f samples/ball.awk
-# holds the surface's nodes at z of `top` or more. A place on the cube, m from its middle (1: on its surface), goes to radius m r on
+#   awk -v n=13 -v r=0.1 -v E=3000 -v nu=0.4 -v rho=1000 -f samples/ball.awk
+# holds what the cube's top side becomes: the part of the surface where z is the largest of |x|, |y| and z. A place on the cube, m from its middle (1: on its surface), goes to radius m r on
 # the ball at the surface, lines of equal angles on its six sides, and more like the cube the nearer to the middle: `core` (of
 # which 0.6 gives the longest stable step) is how large that cube is.
 function tangent(x) {
@@ -17,7 +17,6 @@ function largest(a, b, c) {
 BEGIN {
     if (!n) n = 13
     if (!r) r = 0.1
-    if (top == "") top = 0.6 * r
     if (!E) E = 3000
     if (nu == "") nu = 0.4
     if (!rho) rho = 1000
@@ -37,8 +36,7 @@ BEGIN {
                     at_z = r * ((1 - m) * core * z + share * tz)
                 }
                 printf "%d, %.15g, %.15g, %.15g\n", ++node, at_x, at_y, at_z
-                outside = i == 0 || i == n || j == 0 || j == n || k == 0 || k == n
-                if (outside && at_z >= top - 1e-9 * r) held[++holds] = node
+                if (k == n) held[++holds] = node
             }
     print "*ELEMENT, TYPE=C3D8R, ELSET=BALL"
     w = n + 1

@@ -3,6 +3,8 @@
 #include "base/num.h"
 #include "model/stage.h"
 #include "tools/import_inp.h"
+#include "tools/import_msh.h"
+#include "tools/import_vtu.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -117,6 +119,10 @@ static int read_mesh(import_mesh *mesh, const char *path, const struct options *
         format = sniff(s, mesh->name, e);
     if (format == INP)
         result = import_inp(mesh, s, w, warnings, e);
+    else if (format == MSH)
+        result = import_msh(mesh, s, w, e);
+    else if (format == VTU)
+        result = import_vtu(mesh, s, w, warnings, e);
     in_close(s);
     return result;
 }

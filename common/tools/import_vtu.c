@@ -1,0 +1,409 @@
+#include "tools/import_vtu.h"
+
+#include "base/chars.h"
+#include "base/mem.h"
+#include "base/near.h"
+#include "base/num.h"
+#include "tools/import_xml.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Where an array stands. */
+typedef enum section { NOWHERE, POINTS, CELLS, POINT_DATA, CELL_DATA, FIELD_DATA } section;
+
+typedef struct placed {
+    section where;
+    xml_array a;
+} placed;
+
+typedef struct reader {
+    import_mesh *m;
+    const import_wishes *w;
+    notes *warnings;
+    err *e;
+    xml x;
+    xml_style style;
+    placed *arrays;
+    int64_t count, room;
+    int64_t points, cells; /* -1: no piece yet */
+    int64_t *cell;         /* elements: which cell it is */
+    int64_t cell_room;
+} reader;
+
+static int wrong(const reader *r, const char *at, const char *what, const char *expected)
+{
+    return err_set(r->e, r->x.name, xml_line(&r->x, at), "%.200s; expected %s", what, expected);
+}
+
+/* ---- the XML */
+
+static int take_head(reader *r, const xml_tag *tag)
+{
+    const char *type = xml_value(tag, "type"), *order = xml_value(tag, "byte_order"),
+               *header = xml_value(tag, "header_type"), *compressor = xml_value(tag, "compressor");
+    char text[200];
+    snprintf(text, sizeof text, "a VTK file of %.100s", type ? type : "nothing");
+    if (!type || strcmp(type, "UnstructuredGrid") != 0)
+        return wrong(r, tag->begin, text, "UnstructuredGrid");
+    r->style.big = order && !strcmp(order, "BigEndian");
+    r->style.header = header && !strcmp(header, "UInt64") ? 8 : 4;
+    r->style.zlib = compressor && *compressor;
+    if (r->style.zlib && strcmp(compressor, "vtkZLibDataCompressor") != 0)
+        return wrong(r, tag->begin, compressor, "data that is not compressed, or by vtkZLibDataCompressor");
+    return 0;
+}
+
+static int take_piece(reader *r, const xml_tag *tag)
+{
+    const char *points = xml_value(tag, "NumberOfPoints"), *cells = xml_value(tag, "NumberOfCells");
+    if (r->points >= 0)
+        return wrong(r, tag->begin, "a second piece", "one");
+    if (!points || !cells || num_int(points, 0, INT32_MAX, &r->points) || num_int(cells, 0, INT32_MAX, &r->cells))
+        return wrong(r, tag->begin, "a piece without its counts", "NumberOfPoints and NumberOfCells");
+    return 0;
+}
+
+static void copy_value(char *to, const xml_tag *tag, const char *key, const char *otherwise)
+{
+    const char *value = xml_value(tag, key);
+    snprintf(to, XML_VALUE, "%s", value ? value : otherwise);
+}
+
+static int take_array(reader *r, const xml_tag *tag, section where)
+{
+    placed p = {.where = where, .a = {.components = 1, .offset = -1, .begin = r->x.at}};
+    const char *components = xml_value(tag, "NumberOfComponents"), *offset = xml_value(tag, "offset");
+    copy_value(p.a.name, tag, "Name", where == POINTS ? "Points" : "");
+    copy_value(p.a.type, tag, "type", "");
+    copy_value(p.a.format, tag, "format", "ascii");
+    if (components && num_int(components, 1, 1000, &p.a.components))
+        return wrong(r, tag->begin, "NumberOfComponents that is none", "1 to 1000");
+    if (offset && num_int(offset, 0, INT64_MAX, &p.a.offset))
+        return wrong(r, tag->begin, "an offset that is none", "a number");
+    p.a.line = xml_line(&r->x, tag->begin);
+    p.a.end = p.a.begin;
+    if (!tag->closed) {
+        const char *end = memchr(p.a.begin, '<', (size_t)(r->x.end - p.a.begin));
+        if (!end)
+            return wrong(r, tag->begin, "an array without an end", "</DataArray>");
+        p.a.end = end;
+    }
+    if (MEM_ROOM(&r->arrays, &r->room, r->count + 1, "arrays", r->e))
+        return -1;
+    r->arrays[r->count++] = p;
+    return 0;
+}
+
+/* What follows the underscore; its end is not looked for: raw data may hold anything. */
+static int take_appended(reader *r, const xml_tag *tag)
+{
+    const char *encoding = xml_value(tag, "encoding"), *under;
+    if (!encoding || (strcmp(encoding, "raw") != 0 && strcmp(encoding, "base64") != 0))
+        return wrong(r, tag->begin, "appended data of another encoding", "raw or base64");
+    under = memchr(r->x.at, '_', (size_t)(r->x.end - r->x.at));
+    if (!under)
+        return wrong(r, tag->begin, "appended data without its beginning", "an underscore");
+    r->style.base64 = !strcmp(encoding, "base64");
+    r->style.appended = under + 1;
+    r->style.appended_end = r->x.end;
+    return 0;
+}
+
+static section section_of(const char *name)
+{
+    static const char *const names[] = {"", "Points", "Cells", "PointData", "CellData", "FieldData"};
+    for (int i = 1; i < 6; i++)
+        if (!strcmp(names[i], name))
+            return (section)i;
+    return NOWHERE;
+}
+
+static int read_tags(reader *r)
+{
+    xml_tag tag;
+    section now = NOWHERE;
+    bool head = false;
+    int got;
+    while ((got = xml_next(&r->x, &tag, r->e)) > 0) {
+        if (!head && strcmp(tag.name, "VTKFile") != 0)
+            return wrong(r, tag.begin, "no VTK file", "<VTKFile type=\"UnstructuredGrid\">");
+        int bad = 0;
+        if (!strcmp(tag.name, "VTKFile")) {
+            bad = take_head(r, &tag);
+            head = true;
+        } else if (!strcmp(tag.name, "Piece"))
+            bad = take_piece(r, &tag);
+        else if (!strcmp(tag.name, "DataArray") || !strcmp(tag.name, "Array"))
+            bad = take_array(r, &tag, now);
+        else if (!strcmp(tag.name, "AppendedData"))
+            return take_appended(r, &tag);
+        else if (tag.name[0] != '/' && section_of(tag.name) != NOWHERE)
+            now = tag.closed ? NOWHERE : section_of(tag.name);
+        else if (tag.name[0] == '/' && section_of(tag.name + 1) != NOWHERE)
+            now = NOWHERE;
+        if (bad)
+            return -1;
+    }
+    return got;
+}
+
+/* ---- arrays */
+
+static const xml_array *array_of(const reader *r, section where, const char *name)
+{
+    for (int64_t i = 0; i < r->count; i++)
+        if (r->arrays[i].where == where && (!name || !strcmp(r->arrays[i].a.name, name)))
+            return &r->arrays[i].a;
+    return NULL;
+}
+
+/* NULL with e filled. */
+static double *need(const reader *r, section where, const char *name, int64_t components, int64_t rows)
+{
+    const xml_array *a = array_of(r, where, name);
+    if (!a) {
+        err_set(r->e, r->x.name, 0, "no array %s; expected the points and cells of a grid", name ? name : "of points");
+        return NULL;
+    }
+    if (a->components != components && rows >= 0) {
+        err_set(r->e, r->x.name, a->line, "array %.100s has %lld components; expected %lld", a->name,
+                (long long)a->components, (long long)components);
+        return NULL;
+    }
+    return xml_numbers(&r->x, &r->style, a, rows * components, r->e);
+}
+
+static int read_points(reader *r)
+{
+    double *at = need(r, POINTS, NULL, 3, r->points);
+    int bad = at ? 0 : -1;
+    for (int64_t i = 0; !bad && i < r->points; i++)
+        bad = import_add_node(r->m, at + 3 * i, r->e);
+    free(at);
+    return bad;
+}
+
+/* ---- cells */
+
+enum { WEDGE = 13, PYRAMID = 14, VOXEL = 11, HEXAHEDRON = 12, TETRAHEDRON = 10 };
+
+static int refuse_cell(const reader *r, int64_t cell, int type)
+{
+    const xml_array *a = array_of(r, CELLS, "types");
+    const char *what = type == WEDGE              ? "a wedge"
+                       : type == PYRAMID          ? "a pyramid"
+                       : type >= 21 && type <= 37 ? "of second order"
+                       : type >= 60               ? "of higher order"
+                                                  : "none that is read";
+    return err_set(r->e, r->x.name, a->line, "cell %lld is %s (type %d); expected hexahedra (12) or tetrahedra (10)",
+                   (long long)cell, what, type);
+}
+
+/* Of fewer dimensions: vertices, lines, triangles, polygons, quadrangles, and those of second order. */
+static bool is_lower(int type)
+{
+    return (type >= 1 && type <= 9) || (type >= 21 && type <= 23) || type == 28 || type == 30 || type == 34 ||
+           type == 0;
+}
+
+static int take_cell(reader *r, int64_t cell, double kind, const double *corner, int64_t corners)
+{
+    static const int voxel[8] = {0, 1, 3, 2, 4, 5, 7, 6};
+    const int type = kind >= 0 && kind < 256 ? (int)kind : 255;
+    int32_t own[8];
+    if (is_lower(type))
+        return 0;
+    if (type != HEXAHEDRON && type != TETRAHEDRON && type != VOXEL)
+        return refuse_cell(r, cell, type);
+    const int64_t expected = type == TETRAHEDRON ? 4 : 8;
+    const int64_t line = array_of(r, CELLS, "connectivity")->line;
+    if (corners != expected)
+        return err_set(r->e, r->x.name, line, "cell %lld has %lld points; expected %lld", (long long)cell,
+                       (long long)corners, (long long)expected);
+    for (int64_t c = 0; c < corners; c++) {
+        const double p = corner[type == VOXEL ? voxel[c] : c];
+        if (!(p >= 0 && p < (double)r->points && p == floor(p)))
+            return err_set(r->e, r->x.name, line, "cell %lld has a point %g; expected one of the %lld", (long long)cell,
+                           p, (long long)r->points);
+        own[c] = (int32_t)p;
+    }
+    if (MEM_ROOM(&r->cell, &r->cell_room, r->m->elements + 1, "elements", r->e))
+        return -1;
+    r->cell[r->m->elements] = cell;
+    return import_add_element(r->m, own, (int32_t)corners, -1, line, r->e);
+}
+
+static int read_cells(reader *r)
+{
+    double *types = need(r, CELLS, "types", 1, r->cells), *corner = NULL;
+    double *ends = types ? need(r, CELLS, "offsets", 1, r->cells) : NULL, last = 0;
+    int bad = ends ? 0 : -1;
+    for (int64_t i = 0; !bad && i < r->cells; last = ends[i++])
+        if (!(ends[i] >= last && ends[i] < 9e15 && ends[i] == floor(ends[i])))
+            bad = err_set(r->e, r->x.name, array_of(r, CELLS, "offsets")->line,
+                          "cell %lld ends before it begins; expected offsets that rise", (long long)i);
+    if (!bad && !(corner = need(r, CELLS, "connectivity", 1, (int64_t)last)))
+        bad = -1;
+    for (int64_t i = 0; !bad && i < r->cells; i++) {
+        const int64_t from = i ? (int64_t)ends[i - 1] : 0;
+        bad = take_cell(r, i, types[i], corner + from, (int64_t)ends[i] - from);
+    }
+    free(types);
+    free(ends);
+    free(corner);
+    return bad;
+}
+
+/* ---- volumes */
+
+/* The i-th of the strings, or NULL. */
+static char *string_at(char *text, size_t size, int64_t i)
+{
+    char *p = text;
+    for (; text && i > 0 && p < text + size; i--)
+        p += strlen(p) + 1;
+    return text && p < text + size && *p ? p : NULL;
+}
+
+static char *strings(const reader *r, const char *name, size_t *size)
+{
+    const xml_array *a = array_of(r, FIELD_DATA, name);
+    return a && !strcmp(a->type, "String") ? xml_strings(&r->x, &r->style, a, size, r->e) : NULL;
+}
+
+/* The volume of that number. known, of `many`: where it has been asked for before, or -1. */
+static int32_t volume_of(reader *r, double number, char *names, size_t size)
+{
+    char text[64], *name = number >= 0 && number < INT32_MAX ? string_at(names, size, (int64_t)number) : NULL;
+    snprintf(text, sizeof text, "volume%.15g", number);
+    if (name)
+        chars_mend(name);
+    return import_add_volume(r->m, name ? name : text, r->e);
+}
+
+/* Of an array of cells: each kept element's volume is named by its number. */
+static int read_volumes(reader *r)
+{
+    const bool by_volume = array_of(r, CELL_DATA, "volume") != NULL;
+    const char *from = by_volume ? "volume" : "material";
+    double *number, before = NAN;
+    int32_t volume = -1;
+    size_t size = 0;
+    if (!array_of(r, CELL_DATA, from))
+        return 0;
+    number = need(r, CELL_DATA, from, 1, r->cells);
+    char *names = number ? strings(r, by_volume ? "volume.name" : "material.name", &size) : NULL;
+    int bad = number && !r->e->status ? 0 : -1;
+    for (int64_t i = 0; !bad && i < r->m->elements; i++) {
+        if (number[r->cell[i]] != before)
+            volume = volume_of(r, number[r->cell[i]], names, size);
+        before = number[r->cell[i]];
+        r->m->volume[i] = volume;
+        bad = volume < 0 ? -1 : 0;
+    }
+    free(number);
+    free(names);
+    return bad;
+}
+
+/* Which material a volume is of, by name: a VTU does not say what it is made of, so that only a table can. */
+static int read_materials(reader *r)
+{
+    size_t size = 0;
+    if (!r->w->own_materials) {
+        notes_add(r->warnings, "a VTU says nothing of materials: all is of the default; --materials gives others");
+        return 0;
+    }
+    if (!array_of(r, CELL_DATA, "material") || !array_of(r, FIELD_DATA, "material.name"))
+        return 0;
+    double *number = need(r, CELL_DATA, "material", 1, r->cells);
+    char *names = number ? strings(r, "material.name", &size) : NULL;
+    int bad = number && !r->e->status ? 0 : -1;
+    for (int64_t i = 0; !bad && i < r->m->elements; i++) {
+        import_volume *v = r->m->volume[i] < 0 ? NULL : &r->m->volumes[r->m->volume[i]];
+        const double of = number[r->cell[i]];
+        char *name = v && v->material < 0 && of >= 0 && of < INT32_MAX ? string_at(names, size, (int64_t)of) : NULL;
+        if (!name)
+            continue;
+        chars_mend(name);
+        v->material = import_add_material(r->m, name, 0, r->e);
+        bad = v->material < 0 ? -1 : 0;
+    }
+    free(number);
+    free(names);
+    return bad;
+}
+
+static int read_fibres(reader *r)
+{
+    const xml_array *a = array_of(r, CELL_DATA, "fibre");
+    if (!a || a->components != 3)
+        return 0;
+    double *along = need(r, CELL_DATA, "fibre", 3, r->cells);
+    r->m->fibre = along ? mem_array(r->m->elements, 3 * sizeof *r->m->fibre, "fibres", r->e) : NULL;
+    for (int64_t i = 0; r->m->fibre && i < 3 * r->m->elements; i++)
+        r->m->fibre[i] = (float)along[3 * r->cell[i / 3] + i % 3];
+    free(along);
+    return r->m->fibre ? 0 : -1;
+}
+
+/* ---- rigid nodes */
+
+static int hold(reader *r, const char *name)
+{
+    double *number = need(r, POINT_DATA, name, 1, r->points);
+    int bad = number ? import_need_rigid(r->m, r->e) : -1;
+    for (int64_t i = 0; !bad && i < r->points; i++)
+        r->m->rigid[i] |= number[i] != 0;
+    free(number);
+    return bad;
+}
+
+static int read_rigid(reader *r)
+{
+    const char **names = mem_array(r->count, sizeof *names, "arrays", r->e);
+    int count = 0, bad = names ? 0 : -1;
+    for (int64_t i = 0; names && i < r->count; i++)
+        if (r->arrays[i].where == POINT_DATA)
+            names[count++] = r->arrays[i].a.name;
+    for (int i = 0; !bad && i < r->w->rigids; i++)
+        bad = array_of(r, POINT_DATA, r->w->rigid[i])
+                  ? hold(r, r->w->rigid[i])
+                  : near_unknown(r->e, r->m->name, 0, "array of points", r->w->rigid[i], names, count);
+    free(names);
+    if (!bad && array_of(r, POINT_DATA, "rigid"))
+        bad = hold(r, "rigid");
+    return bad;
+}
+
+static int read_all(reader *r)
+{
+    if (read_tags(r))
+        return -1;
+    if (r->points < 0)
+        return err_set(r->e, r->x.name, 0, "no piece; expected one with points and cells");
+    return read_points(r) || read_cells(r) || read_volumes(r) || read_materials(r) || read_fibres(r) || read_rigid(r)
+               ? -1
+               : 0;
+}
+
+int import_vtu(import_mesh *m, in *s, const import_wishes *wishes, notes *warnings, err *e)
+{
+    char *text = NULL;
+    int64_t size = in_all(s, &text, e);
+    reader r = {.m = m,
+                .w = wishes,
+                .warnings = warnings,
+                .e = e,
+                .x = {.name = m->name, .text = text, .at = text, .end = text + (size > 0 ? size : 0)},
+                .points = -1};
+    int bad = size < 0 ? -1 : read_all(&r);
+    free(r.arrays);
+    free(r.cell);
+    if (size >= 0)
+        free(text);
+    return bad;
+}
