@@ -300,6 +300,28 @@ void account_back(account *a)
     copy_moment(a->p, &a->kept, &a->now);
 }
 
+account_past account_past_of(const account *a)
+{
+    const account_sums *s = &a->now.sums;
+    return (account_past){a->now.first, s->gravity, s->forces, s->held, s->muscles, s->probe, s->damping};
+}
+
+int account_go_on(account *a, const backend *b, void *state, double time, const account_past *past, err *e)
+{
+    account_sums *s = &a->now.sums;
+    if (!account_look(a, b, state, time, 0, e))
+        return -1;
+    a->now.first = past->first;
+    s->gravity = past->gravity;
+    s->forces = past->forces;
+    s->held = past->held;
+    s->muscles = past->muscles;
+    s->probe = past->probe;
+    s->damping = past->damping;
+    account_keep(a);
+    return 0;
+}
+
 static bool has_muscles(const tled_problem *p)
 {
     for (int32_t i = 0; i < p->volumes; i++)

@@ -20,6 +20,11 @@ typedef struct account_sums {
     double acceleration; /* m/s2: of the forces out of balance, root mean square over the mass where nothing holds */
 } account_sums;
 
+/* What an account knows of a run but for the state: what was held at first, and the work since, J. */
+typedef struct account_past {
+    double first, gravity, forces, held, muscles, probe, damping;
+} account_past;
+
 typedef struct account account;
 
 account *account_create(const tled_problem *p, pool *threads, err *e);
@@ -32,5 +37,10 @@ const account_sums *account_look(account *a, const backend *b, void *state, doub
 /* Keeps what is known now, for a run that goes back; and goes back to it. */
 void account_keep(account *a);
 void account_back(account *a);
+
+/* For a run that is to be gone on with: what is known; and goes on from it, at the state that it was known at. -1 with e
+ * filled. */
+account_past account_past_of(const account *a);
+int account_go_on(account *a, const backend *b, void *state, double time, const account_past *past, err *e);
 
 #endif

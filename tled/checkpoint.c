@@ -33,17 +33,19 @@ struct checkpoint {
 
 /* ---- numbers of a point, in arrays of one row each */
 
-enum { NUMBERS = 11, COUNTS = 8 };
+enum { NUMBERS = 18, COUNTS = 10 };
 
 static const char axis_name[] = "checkpoint", number_name[] = "checkpoint.number", count_name[] = "checkpoint.count";
 
 static void put_point(const checkpoint *c, const run_point *p, double *number, int64_t *count)
 {
     const relax *r = &p->relax;
-    const double numbers[NUMBERS] = {p->origin, p->damping, p->remaining, p->closest, p->moved_most, r->guess,
-                                     r->low,    r->high,    r->frequency, r->lowest,  r->time};
-    const int64_t counts[COUNTS] = {p->first, p->from,  p->closest_at, p->cuts,
-                                    r->looks, c->count, c->length,     c->arrays};
+    const account_past *a = &p->log.past;
+    const double numbers[NUMBERS] = {p->origin,  p->damping, p->remaining, p->closest, p->moved_most, r->guess,
+                                     r->low,     r->high,    r->frequency, r->lowest,  r->time,       a->first,
+                                     a->gravity, a->forces,  a->held,      a->muscles, a->probe,      a->damping};
+    const int64_t counts[COUNTS] = {p->first, p->from,   p->closest_at, p->cuts,  r->looks,
+                                    c->count, c->length, c->arrays,     p->taken, p->log.length};
     memcpy(number, numbers, sizeof numbers);
     memcpy(count, counts, sizeof counts);
 }
@@ -59,7 +61,9 @@ static void take_point(checkpoint *c, const double *n, const int64_t *k)
                            .closest = n[3],
                            .closest_at = k[2],
                            .moved_most = n[4],
-                           .relax = {n[5], n[6], n[7], n[8], n[9], n[10], (int)k[4]}};
+                           .relax = {n[5], n[6], n[7], n[8], n[9], n[10], (int)k[4]},
+                           .taken = k[8],
+                           .log = {{n[11], n[12], n[13], n[14], n[15], n[16], n[17]}, k[9]}};
     c->count = k[5];
     c->length = k[6];
     c->arrays = (int)k[7];

@@ -10,10 +10,10 @@ static const char heading[] =
     "J\tprobe/J\t"
     "damping/J\tbalance/J\tdisplacement/m\tspeed/(m/s)\tresidual/(m/s2)\tremaining\tsteps/(1/s)\telements/(1/s)\n";
 
-int log_open(run_log *l, const char *path, double every, err *e)
+int log_open(run_log *l, const char *path, double every, const log_point *from, err *e)
 {
     l->every = every;
-    l->file = growing_open(path, e);
+    l->file = growing_open(path, from ? from->length : 0, e);
     return l->file ? 0 : -1;
 }
 
@@ -39,8 +39,19 @@ int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
     l->rows = l->account ? out_memory(e) : NULL;
     if (!l->rows)
         return -1;
-    out_text(l->rows, heading);
+    if (!growing_size(l->file))
+        out_text(l->rows, heading);
     return empty_rows(l, true, e);
+}
+
+log_point log_point_of(const run_log *l)
+{
+    return (log_point){account_past_of(l->account), growing_size(l->file)};
+}
+
+int log_go_on(run_log *l, const backend *b, void *state, double time, const log_point *from, err *e)
+{
+    return account_go_on(l->account, b, state, time, &from->past, e);
 }
 
 /* nan, where there is nothing to tell, is what plots leave out. */

@@ -32,14 +32,25 @@ typedef struct run_log {
     const account_sums *unshown;
 } run_log;
 
-/* Makes the file. -1 with e filled; log_close all the same. */
-int log_open(run_log *l, const char *path, double every, err *e);
+/* Of a run that is to be gone on with: what there was. */
+typedef struct log_point {
+    account_past past;
+    int64_t length; /* bytes of the file; 0: there was none */
+} log_point;
 
-/* Writes the heading, for this problem. -1 with e filled, as for all below. */
+/* Makes the file; from: NULL, or what to go on from: the file's rows up to there stay. -1 with e filled; log_close all the
+ * same. */
+int log_open(run_log *l, const char *path, double every, const log_point *from, err *e);
+
+/* Writes the heading, but to what is gone on with, for this problem. -1 with e filled, as for all below. */
 int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e);
 
 /* Looks at the state: `shown`, a row is to be made of it. */
 int log_look(run_log *l, const backend *b, void *state, const log_row *row, bool shown, err *e);
+
+/* After log_keep: to go on from there; and goes on, at that state, without a row of it. */
+log_point log_point_of(const run_log *l);
+int log_go_on(run_log *l, const backend *b, void *state, double time, const log_point *from, err *e);
 
 /* All since log_keep is sound: writes the rows, and keeps what is known. Or it is not: forgets them and goes back. */
 int log_keep(run_log *l, err *e);

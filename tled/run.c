@@ -223,6 +223,15 @@ static int log_sound(run *n)
     return log_state(n, shown) || log_keep(log, n->e) ? -1 : 0;
 }
 
+/* Of the state that the run begins from. */
+static int begin_log(run *n)
+{
+    const run_setup *r = n->r;
+    if (r->log && r->point && r->point->log.length)
+        return log_go_on(r->log, r->device, n->state, tled_time(&n->plan, 0), &r->point->log, n->e);
+    return log_sound(n);
+}
+
 /* One part after another of the step past what is kept, until it breaks. */
 static int find_part(run *n)
 {
@@ -366,7 +375,9 @@ static run_point point_of(const run *n)
                        .closest = n->closest,
                        .closest_at = n->closest_at,
                        .moved_most = n->watch->sight.moved_most,
-                       .relax = n->relax};
+                       .relax = n->relax,
+                       .taken = n->taken,
+                       .log = n->r->log ? log_point_of(n->r->log) : (log_point){.length = 0}};
 }
 
 static void go_on_from(run *n, const run_point *at)
@@ -381,6 +392,7 @@ static void go_on_from(run *n, const run_point *at)
     n->closest_at = at->closest_at;
     n->watch->sight.moved_most = at->moved_most;
     n->relax = at->relax;
+    n->taken = at->taken;
 }
 
 /* Whether it is time to save again; if so, also notes when the next time is. */
@@ -416,7 +428,7 @@ static int loop(run *n, run_end *end)
     if (over >= 0 && !is_sound(n))
         return diverged(n);
     n->dt = step_now(n);
-    if (over >= 0 && log_sound(n))
+    if (over >= 0 && begin_log(n))
         return -1;
     if (over >= 0 && r->first) {
         written = n->plan.first;

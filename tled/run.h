@@ -27,6 +27,8 @@ typedef struct run_point {
     int64_t closest_at;
     double moved_most; /* m: watch_sight's */
     relax relax;
+    int64_t taken; /* steps, each part of a cut one for itself */
+    log_point log;
 } run_point;
 
 typedef struct run_setup {

@@ -475,10 +475,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     s->run.device = choose_device(s, o, device, size, e);
     int threads = tool_threads(s->t, e);
     s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
-    if (!s->threads || (o->log && log_open(&s->log, o->log, fmax(o->log_every, 0), e)))
-        return -1;
-    s->run.log = o->log ? &s->log : NULL;
-    return 0;
+    return s->threads ? 0 : -1;
 }
 
 static int simulate(session *s, const struct options *o, const char *device, err *e)
@@ -495,8 +492,10 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.frame = write_frame;
     s->run.checked = checked;
     s->cut = 1;
-    if (begin_checkpoints(s, o, e))
+    if (begin_checkpoints(s, o, e) ||
+        (o->log && log_open(&s->log, o->log, fmax(o->log_every, 0), s->run.point ? &s->run.point->log : NULL, e)))
         return -1;
+    s->run.log = o->log ? &s->log : NULL;
     tool_warn(s->t, &s->warnings);
     say_start(s, device, o);
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,

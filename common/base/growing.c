@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 struct growing {
@@ -14,7 +15,27 @@ struct growing {
     off_t size; /* of what is whole */
 };
 
-growing *growing_open(const char *path, err *e)
+/* A new file, or what is to be kept of one. */
+static int open_at(const char *path, int64_t keep, err *e)
+{
+    struct stat s;
+    int fd = open(path, O_WRONLY | O_CREAT | (keep ? 0 : O_TRUNC) | O_APPEND | O_CLOEXEC, 0666);
+    if (fd < 0)
+        return err_system(e, path, errno, "cannot open for writing");
+    if (!keep || fstat(fd, &s) || !S_ISREG(s.st_mode))
+        return fd;
+    if (s.st_size < (off_t)keep)
+        err_set(e, path, 0, "has %lld bytes; expected the first %lld of this run's", (long long)s.st_size,
+                (long long)keep);
+    else if (ftruncate(fd, (off_t)keep))
+        err_system(e, path, errno, "cannot write");
+    else
+        return fd;
+    close(fd);
+    return -1;
+}
+
+growing *growing_open(const char *path, int64_t keep, err *e)
 {
     if (!strcmp(path, "-")) {
         err_set(e, path, 0, "standard output is the model's; expected a file");
@@ -24,11 +45,10 @@ growing *growing_open(const char *path, err *e)
     if (!g)
         return NULL;
     g->name = mem_text(path, e);
-    g->fd = g->name ? open(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666) : -1;
+    g->fd = g->name ? open_at(path, keep, e) : -1;
+    g->size = (off_t)keep;
     if (g->fd >= 0)
         return g;
-    if (g->name)
-        err_system(e, path, errno, "cannot open for writing");
     free(g->name);
     free(g);
     return NULL;
@@ -53,6 +73,11 @@ int growing_put(growing *g, const void *lines, size_t size, err *e)
     }
     g->size += (off_t)whole;
     return 0;
+}
+
+int64_t growing_size(const growing *g)
+{
+    return g->size;
 }
 
 int growing_close(growing *g, err *e)

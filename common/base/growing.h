@@ -10,8 +10,12 @@
 
 typedef struct growing growing;
 
-/* Makes the file, or empties it; a device or FIFO is written as it is. "-" is refused. NULL with e filled. */
-growing *growing_open(const char *path, err *e);
+/* Makes the file, or cuts it to its first `keep` bytes, which must be there (0: empties it); a device or FIFO is written as it
+ * is. "-" is refused. NULL with e filled. */
+growing *growing_open(const char *path, int64_t keep, err *e);
+
+/* Bytes of what is there, what was kept included. */
+int64_t growing_size(const growing *g);
 
 /* Adds whole lines. -1 with e filled: to a full disk nothing more is written, and a line begun is taken back. */
 int growing_put(growing *g, const void *lines, size_t size, err *e);
