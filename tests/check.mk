@@ -30,10 +30,11 @@ define replay_program
 $(BUILD)/tests/fuzz/replay_$(1): $(BUILD)/tests/fuzz/fuzz_$(1).o $(BUILD)/tests/fuzz/driver.o $(call needs,tests/fuzz/fuzz_$(1).c) $(LIB_CUDA) $(LIB)
 	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
 endef
-COMPARE := $(BUILD)/tests/cli/compare $(BUILD)/tests/cli/voxels $(BUILD)/tests/cli/peak $(REPLAY)
+COMPARE := $(BUILD)/tests/cli/compare $(BUILD)/tests/cli/voxels $(BUILD)/tests/cli/peak $(BUILD)/tests/cli/stream $(REPLAY)
 $(eval $(call test_program,tests/cli/compare))
 $(eval $(call test_program,tests/cli/voxels))
 $(eval $(call test_program,tests/cli/peak))
+$(eval $(call test_program,tests/cli/stream))
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
 $(foreach source,$(FUZZ_SRC:tests/fuzz/fuzz_%.c=%),$(eval $(call replay_program,$(source))))
