@@ -104,8 +104,9 @@ int mesh_fix(model *m, const char *list, const int32_t *nodes, err *e)
     unsigned sides = 0;
     if (!rigid && !(rigid = model_add(m, "node.rigid", e)))
         return -1;
-    for (const char *p = list; p; p = strchr(p, ','), p += p != NULL) {
+    for (const char *p = list, *comma; p; p = comma ? comma + 1 : NULL) {
         char word[WORD];
+        comma = strchr(p, ',');
         snprintf(word, sizeof word, "%.*s", (int)strcspn(p, ","), p);
         int known = find_word(word);
         if (known < 0 && !fix_volume(m, word, rigid->u8))

@@ -12,6 +12,7 @@
 #include "dcmtk/dcmjpls/djdecode.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <pthread.h>
@@ -21,6 +22,67 @@ extern "C" {
 }
 
 /* No exception may leave this file, and none is thrown in it but for want of memory. */
+
+/* DCMTK asks for as many bytes as an element claims to have, up to 4 GiB, before it looks whether they are there, and takes no limit; where
+ * the data set begins, and how it is written, it guesses in more ways than can be checked before. So C++'s allocation is replaced, which the
+ * language provides for: a thread's requests past its limit fail as if memory were at its end. */
+namespace
+{
+thread_local size_t most_at_once = SIZE_MAX;
+
+void *allocate(size_t size) noexcept
+{
+    return size <= most_at_once ? std::malloc(size ? size : 1) : nullptr;
+}
+
+void *allocate_or_throw(size_t size)
+{
+    void *p = allocate(size);
+    if (!p)
+        throw std::bad_alloc();
+    return p;
+}
+} // namespace
+
+void *operator new(size_t size)
+{
+    return allocate_or_throw(size);
+}
+
+void *operator new[](size_t size)
+{
+    return allocate_or_throw(size);
+}
+
+void *operator new(size_t size, const std::nothrow_t &) noexcept
+{
+    return allocate(size);
+}
+
+void *operator new[](size_t size, const std::nothrow_t &) noexcept
+{
+    return allocate(size);
+}
+
+void operator delete(void *p) noexcept
+{
+    std::free(p);
+}
+
+void operator delete[](void *p) noexcept
+{
+    std::free(p);
+}
+
+void operator delete(void *p, size_t) noexcept
+{
+    std::free(p);
+}
+
+void operator delete[](void *p, size_t) noexcept
+{
+    std::free(p);
+}
 
 struct dicom_file {
     DcmDataset *set;
@@ -111,6 +173,12 @@ int note_all(const dicom_file *f, err *e)
 
 /* ---- the file */
 
+/* What DCMTK may ask for at once while it reads: no value is longer than its file, whatever it claims. */
+size_t room_to_read(size_t size)
+{
+    return 2 * size + (size_t(4) << 20);
+}
+
 /* What a thread is given, and what it gives back. */
 struct errand {
     dicom_file *f;
@@ -128,7 +196,9 @@ int read_file(const errand *job)
     stream.setBuffer(job->bytes, offile_off_t(f->size));
     stream.setEos();
     file.transferInit();
+    most_at_once = room_to_read(f->size);
     OFCondition code = file.read(stream, EXS_Unknown, EGL_noChange, DCM_MaxReadLength);
+    most_at_once = SIZE_MAX;
     file.transferEnd();
     if (code.bad())
         return err_set(job->e, f->name, 0, "not whole, or damaged: %s", code.text());
@@ -152,6 +222,7 @@ void *run(void *given)
     } catch (const std::bad_alloc &) {
         job->code = err_memory(job->e, job->f->name);
     }
+    most_at_once = SIZE_MAX;
     return nullptr;
 }
 
@@ -315,9 +386,12 @@ int64_t dicom_pixels_size(dicom_file *f)
     return int64_t(element->getLength());
 }
 
-bool dicom_pixels_unpack(dicom_file *f)
+bool dicom_pixels_unpack(dicom_file *f, int64_t most)
 {
-    return f->set->chooseRepresentation(EXS_LittleEndianExplicit, nullptr).good();
+    most_at_once = size_t(most) + room_to_read(f->size);
+    bool good = f->set->chooseRepresentation(EXS_LittleEndianExplicit, nullptr).good();
+    most_at_once = SIZE_MAX;
+    return good;
 }
 
 const unsigned char *dicom_pixels(dicom_file *f, int bytes)

@@ -56,8 +56,9 @@ dicom_packing dicom_file_packing(dicom_file *f, const char **name);
 /* The bytes that they take, in the file, or unpacked; -1: there are none. */
 int64_t dicom_pixels_size(dicom_file *f);
 
-/* Decompresses those that DCMTK can, after which elements may say other things. False: it cannot. */
-bool dicom_pixels_unpack(dicom_file *f);
+/* Decompresses those that DCMTK can, after which elements may say other things. most: the bytes that it may take for it, beside what the
+ * file's size allows. False: it cannot. */
+bool dicom_pixels_unpack(dicom_file *f, int64_t most);
 
 /* Little-endian, of samples of 1 or 2 bytes; NULL where they cannot be had. */
 const unsigned char *dicom_pixels(dicom_file *f, int bytes);

@@ -34,6 +34,12 @@ static size_t end_of_head(const unsigned char *bytes, size_t size, size_t *synta
     return *syntax ? at : 0;
 }
 
+bool dicom_is_deflated(const unsigned char *bytes, size_t size)
+{
+    size_t syntax;
+    return end_of_head(bytes, size, &syntax) != 0;
+}
+
 typedef struct growing {
     unsigned char *bytes; /* owned */
     int64_t size, capacity;

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "slice/dicom_colour.h"
+#include "slice/dicom_jpeg.h"
 #include "slice/dicom_jpeg2000.h"
 #include "slice/dicom_tags.h"
 
@@ -117,11 +118,27 @@ static unsigned char *unpack_jpeg2000(dicom_samples *s, const dicom_image *d, di
     return NULL;
 }
 
+/* Frames of JPEG are as large as the image: a decoder believes them. (Pieces of RLE begin otherwise.) */
+static int check_jpeg(const dicom_image *d, dicom_file *f, err *e)
+{
+    for (int64_t i = 0; i < dicom_pieces(f); i++) {
+        size_t size = 0;
+        const unsigned char *piece = dicom_piece(f, i, &size);
+        if (piece && dicom_jpeg_begins(piece, size) && !dicom_jpeg_fits(piece, size, d->rows, d->columns))
+            return err_set(e, dicom_file_name(f), 0, "JPEG of another size than the image; expected %lld x %lld pixels",
+                           (long long)d->columns, (long long)d->rows);
+    }
+    return 0;
+}
+
 static int unpack(dicom_samples *s, const dicom_image *d, dicom_file *f, err *e)
 {
     const char *syntax;
     dicom_file_packing(f, &syntax);
-    if (dicom_pixels_unpack(f))
+    if (check_jpeg(d, f, e))
+        return -1;
+    /* Of three samples each at most, and once more while it works. */
+    if (dicom_pixels_unpack(f, 2 * 3 * s->plane * s->frames * s->bytes))
         return read_kind(s, d, f, e);
     return err_set(e, dicom_file_name(f), 0,
                    "pixels are compressed as %s, or not whole; expected none, RLE, JPEG, JPEG-LS or JPEG 2000", syntax);

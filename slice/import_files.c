@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/path.h"
 #include "slice/dicom_image.h"
+#include "slice/dicom_inflate.h"
 #include "slice/sweep.h"
 
 #include <dirent.h>
@@ -161,6 +162,12 @@ int64_t import_read(import_files *f, int64_t i, char **bytes, err *e)
         } else {
             free(more);
             got = rest < 0 ? -1 : err_memory(e, "a file");
+        }
+        if (got > 0 && in_is_gzip(s) && dicom_is_deflated((const unsigned char *)*bytes, (size_t)got)) {
+            free(*bytes);
+            *bytes = NULL;
+            got = err_set(e, import_base(f->path[i]), 0,
+                          "compressed twice, its elements and by gzip around them; expected once");
         }
     }
     in_close(s);

@@ -11,9 +11,10 @@
 
 static int phased_of(slice_probe *p, const char *text, err *e)
 {
+    const double least = 1e-6, most = 180;
     double degrees;
-    if (num_double(text + 7, &degrees) || !(degrees > 0 && degrees <= 180))
-        return err_usage(e, "--probe %.100s; expected phased:ANGLE, above 0 and at most 180 degrees", text);
+    if (num_double(text + 7, &degrees) || !(degrees >= least && degrees <= most))
+        return err_usage(e, "--probe %.100s; expected phased:ANGLE, %g to %g degrees", text, least, most);
     *p = (slice_probe){.array = SLICE_PHASED, .angle = degrees * PI / 180};
     return 0;
 }

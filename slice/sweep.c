@@ -192,9 +192,14 @@ static int find_box(const sweep *s, const volume *images, double axis[3][3], dou
     return 0;
 }
 
+/* A volume may have this many voxels, or so many for each pixel: two images that a bad transform puts far apart may not ask for any
+ * memory. */
+static const double voxels_free = 1 << 24, voxels_each = 1000;
+
 static int set_geometry(volume *v, const sweep *s, const volume *images, double side, err *e)
 {
     double axis[3][3], low[3], high[3], count = 1;
+    double most = fmax(voxels_free, voxels_each * (double)volume_count(images));
     if (find_axes(s, axis, e) || find_box(s, images, axis, low, high, e))
         return -1;
     v->type = images->type;
@@ -206,6 +211,12 @@ static int set_geometry(volume *v, const sweep *s, const volume *images, double 
                 e, NULL, 0,
                 "a volume of %g x %g x %g mm, in voxels of %g mm, is more than memory holds; expected a larger --voxel",
                 high[0] - low[0], high[1] - low[1], high[2] - low[2], side);
+        if (count > most)
+            return err_set(
+                e, NULL, 0,
+                "a volume of %g x %g x %g mm has more than %g voxels of %g mm for each pixel: images lie far "
+                "apart; expected a larger --voxel",
+                high[0] - low[0], high[1] - low[1], high[2] - low[2], voxels_each, side);
         v->size[a] = (int64_t)cells;
         for (int b = 0; b < 3; b++) {
             v->axis[a][b] = axis[a][b] * side;

@@ -5,7 +5,8 @@
 CLANG ?= clang
 CLANG_TIDY ?= clang-tidy
 CLANG_FORMAT ?= clang-format
-FUZZ_SECONDS ?= 5
+# Of each fuzz target; `make fuzz SECONDS=60` for longer.
+SECONDS ?= 5
 # As many jobs as processors, unless make was told (then its job server serves the inner makes too).
 JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
 
@@ -14,6 +15,8 @@ UNIT_SRC := $(wildcard tests/unit/test_*.c)
 FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
 UNIT := $(UNIT_SRC:%.c=$(BUILD)/%)
 FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
+# Each fuzz target with a plain main, which tries the inputs that it is given: no libFuzzer, any compiler.
+REPLAY := $(FUZZ_SRC:tests/fuzz/fuzz_%.c=$(BUILD)/tests/fuzz/replay_%)
 # Embree and the rest only for those that turn out to use them. (A variable: the comma.)
 AS_NEEDED = -Wl,--as-needed
 # tled/*.c: all but the main and what only cards use.
@@ -23,11 +26,16 @@ define test_program
 $(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(MAIN_OBJ) $(LIB_CUDA) $(LIB)
 	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
 endef
-COMPARE := $(BUILD)/tests/cli/compare_pictures $(BUILD)/tests/cli/list_voxels
-$(eval $(call test_program,tests/cli/compare_pictures))
-$(eval $(call test_program,tests/cli/list_voxels))
+define replay_program
+$(BUILD)/tests/fuzz/replay_$(1): $(BUILD)/tests/fuzz/fuzz_$(1).o $(BUILD)/tests/fuzz/driver.o $(call needs,tests/fuzz/fuzz_$(1).c) $(MAIN_OBJ) $(LIB_CUDA) $(LIB)
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
+endef
+TEST_TOOLS := compare_pictures list_voxels peak long_stream
+COMPARE := $(TEST_TOOLS:%=$(BUILD)/tests/cli/%) $(REPLAY)
+$(foreach tool,$(TEST_TOOLS),$(eval $(call test_program,tests/cli/$(tool))))
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
+$(foreach source,$(FUZZ_SRC:tests/fuzz/fuzz_%.c=%),$(eval $(call replay_program,$(source))))
 
 # What makes programs fail: libraries to preload.
 FAULTS := $(patsubst tests/%.c,$(BUILD)/tests/%.so,$(wildcard tests/faults/*.c)) $(if $(LIB_CUDA),$(BUILD)/tests/faults/card.so)
@@ -151,9 +159,9 @@ SANITIZE_GOAL = check-tests
 FUZZ_FLAGS = -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 fuzz:
 	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/fuzz BIN=$(BUILD)/fuzz/bin CFLAGS='$(FUZZ_FLAGS)' CUDA=no \
-	    FUZZ_SECONDS=$(FUZZ_SECONDS) fuzz-run
+	    SECONDS=$(SECONDS) fuzz-run
 fuzz-run: $(FUZZ)
-	tests/fuzz/run $(FUZZ_SECONDS) $(FUZZ)
+	tests/fuzz/run $(SECONDS) $(FUZZ)
 
 # ---- lints
 .PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
@@ -238,7 +246,7 @@ help:
 	'make check-tests  both, with the counts     make check-long  both, with what takes minutes' \
 	'make clang        the tools and unit tests, built by clang' \
 	'make sanitize     the tests under ASan and UBSan' \
-	'make fuzz         every fuzz target for FUZZ_SECONDS=$(FUZZ_SECONDS) each' \
+	'make fuzz         every fuzz target for SECONDS=$(SECONDS) each' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \

@@ -202,6 +202,9 @@ static int sort_triangles(inside *test, pool *threads, err *e)
     return status;
 }
 
+/* Slabs that may be kept a list each: a few triangles far apart may not ask for any memory. */
+enum { SLABS_MOST = 1 << 22 };
+
 int inside_create(inside *test, const grid *g, const inside_triangles *t, int ray, int multiple, pool *threads, err *e)
 {
     int row = (ray + 1) % 3, column = (ray + 2) % 3;
@@ -212,6 +215,9 @@ int inside_create(inside *test, const grid *g, const inside_triangles *t, int ra
     test->layers = layer * LAYERS <= SLAB_BITS ? LAYERS : layer <= SLAB_BITS ? (int64_t)(SLAB_BITS / layer) : 1;
     test->layers = (test->layers + multiple - 1) / multiple * multiple;
     test->slabs = pool_chunks(grid_cells(g, row), test->layers);
+    if (test->slabs > SLABS_MOST)
+        return err_set(e, NULL, 0, "a lattice of %lld layers of cells; expected fewer: use larger voxels, or a --box",
+                       (long long)grid_cells(g, row));
     test->volumes = t->triangles ? t->volume[t->triangles - 1] + 1 : 0;
     if (!place_vertices(test, threads, e) && !sort_triangles(test, threads, e))
         return 0;

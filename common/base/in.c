@@ -186,6 +186,7 @@ in *in_open_plain(const char *path, err *e)
 {
     return open_file(path, true, e);
 }
+
 in *in_memory(const void *bytes, size_t size, const char *name, err *e)
 {
     return in_new(-1, name, bytes, size, false, e);
@@ -203,6 +204,11 @@ void in_close(in *s)
 const char *in_name(const in *s)
 {
     return s->name;
+}
+
+bool in_is_gzip(const in *s)
+{
+    return s->gzip;
 }
 
 int64_t in_lines(const in *s)

@@ -7,7 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846, largest = 1e6 /* m */, usual_edge = .25;
+static const double pi = 3.14159265358979323846, usual_edge = .25;
+/* Sizes past which distances lose their meaning: m, and degrees. */
+static const double least_length = 1e-9, most_length = 1e6, least_angle = 1e-6, most_angle = 180;
 
 static const char expected[] = "sphere:RADIUS, linear:WIDTH,THICKNESS, curved:RADIUS,DEGREES,THICKNESS (both with an "
                                "edge's radius after it, if you like) "
@@ -56,9 +58,9 @@ probe probe_curved(double radius, double angle, double thickness, double edge)
     return p;
 }
 
-static bool above_0(double x)
+static bool is_length(double x)
 {
-    return x > 0 && x <= largest;
+    return x >= least_length && x <= most_length;
 }
 
 /* Lengths, or numbers, between commas: `least` to `most` of them, metres; degrees stands for which of them is an angle, or -1. */
@@ -71,12 +73,12 @@ static int numbers(const char *text, const char *list, int least, int most, int 
                          expected);
     for (int i = 0; i < count; i++) {
         to[i] = i == degrees ? length[i].value : num_length_in(length[i], num_unit_of("m"), num_unit_of("m"));
-        if (i == degrees && (length[i].unit || !(to[i] > 0) || to[i] > 180))
-            return err_set(e, NULL, 0, "--probe %.100s: an angle of %g%s; expected degrees above 0, at most 180", text,
-                           to[i], length[i].unit ? num_unit_name(length[i].unit) : "");
-        if (i != degrees && !above_0(to[i]) && !(i == most - 1 && i >= least && to[i] == 0))
-            return err_set(e, NULL, 0, "--probe %.100s: a length of %g m; expected one above 0, at most %g m", text,
-                           to[i], largest);
+        if (i == degrees && (length[i].unit || !(to[i] >= least_angle && to[i] <= most_angle)))
+            return err_set(e, NULL, 0, "--probe %.100s: an angle of %g%s; expected degrees, %g to %g", text, to[i],
+                           length[i].unit ? num_unit_name(length[i].unit) : "", least_angle, most_angle);
+        if (i != degrees && !is_length(to[i]) && !(i == most - 1 && i >= least && to[i] == 0))
+            return err_set(e, NULL, 0, "--probe %.100s: a length of %g m; expected %g to %g m", text, to[i],
+                           least_length, most_length);
     }
     return count;
 }
@@ -97,9 +99,9 @@ static int read_sphere(probe *p, const char *text, const char *list, err *e)
         return err_usage(e, "--probe %.100s: '%.80s' is no length; expected sphere:RADIUS, such as sphere:2cm", text,
                          list);
     double r = num_length_in(radius, num_unit_of("m"), num_unit_of("m"));
-    if (!above_0(r))
-        return err_set(e, NULL, 0, "--probe %.100s: a radius of %g m; expected one above 0, at most %g m", text, r,
-                       largest);
+    if (!is_length(r))
+        return err_set(e, NULL, 0, "--probe %.100s: a radius of %g m; expected %g to %g m", text, r, least_length,
+                       most_length);
     *p = probe_sphere(r);
     return 0;
 }

@@ -31,6 +31,9 @@ int lattice_save(const lattice *l, model *m, err *e)
     return model_meta_set_numbers(m, "lattice.spacing", l->spacing, 3, e);
 }
 
+/* A table of cells may be this large, or larger by so many cells for an element: a few elements far apart may not ask for any memory. */
+enum { CELLS_FREE = 1 << 22, CELLS_EACH = 1000 };
+
 /* The box of cells that the elements take, and its count of cells. -1 where no memory could hold a table of it. */
 static int64_t cells_covered(lattice_map *map, const int32_t *ijk, int64_t elements)
 {
@@ -77,6 +80,10 @@ int lattice_map_build(lattice_map *map, const model *m, err *e)
     if (ijk->rows > INT32_MAX)
         return err_set(e, NULL, 0, "%lld elements; at most %d are possible", (long long)ijk->rows, INT32_MAX);
     int64_t cells = cells_covered(map, ijk->i32, ijk->rows);
+    if (cells > CELLS_FREE && cells / CELLS_EACH > ijk->rows)
+        return err_set(e, NULL, 0,
+                       "element.lattice: %lld elements are spread over %lld cells; expected a model of one piece",
+                       (long long)ijk->rows, (long long)cells);
     if (cells < 0 || cells > mem_available() / (int64_t)sizeof *map->element)
         return err_set(e, NULL, 0, "element.lattice: %lld elements are spread over more cells than memory can hold",
                        (long long)ijk->rows);

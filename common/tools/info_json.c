@@ -125,7 +125,7 @@ static void put_row(const model *m, const char *axis, int64_t row, const int64_t
 
 static void put_table(const model *m, const char *axis, const int64_t *elements, out *to)
 {
-    int64_t rows = model_count(m, axis);
+    int64_t rows = info_table_rows(m, axis);
     out_format(to, "  \"%s\": [", axis);
     for (int64_t i = 0; i < rows; i++) {
         out_text(to, i ? ",\n    {" : "\n    {");

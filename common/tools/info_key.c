@@ -14,13 +14,25 @@
 
 #define NATURE "rows, columns, type, unit, axis, row.N, at.X,Y,Z (nodes, elements, vertices) and NAME (tables)"
 
+int64_t info_table_rows(const model *m, const char *axis)
+{
+    size_t n = strlen(axis);
+    for (int i = 0; i < m->arrays.count; i++) {
+        const model_array *a = &m->arrays.v[i];
+        if (!strcmp(a->axis, axis) && !strncmp(a->name, axis, n) && a->name[n] == '.')
+            return a->rows;
+    }
+    return 0;
+}
+
 int64_t *info_volume_counts(const model *m, err *e)
 {
     const model_array *of = model_find(m, "element.volume");
-    int64_t volumes = model_count(m, "volume");
-    int64_t *count = mem_array(volumes < 0 ? 0 : volumes, sizeof *count, "counts of elements", e);
+    int64_t volumes = info_table_rows(m, "volume");
+    int64_t *count = mem_array(volumes, sizeof *count, "counts of elements", e);
     for (int64_t i = 0; count && of && i < of->rows; i++)
-        count[of->i32[i]]++;
+        if (of->i32[i] < volumes)
+            count[of->i32[i]]++;
     return count;
 }
 

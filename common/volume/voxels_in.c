@@ -28,6 +28,8 @@ static int bytes_open(bytes *b, in *s, bool inflating, err *e)
     *b = (bytes){.s = s};
     if (!inflating)
         return 0;
+    if (in_is_gzip(s))
+        return err_set(e, in_name(s), 0, "compressed twice, by its encoding and by gzip around it; expected once");
     b->raw = mem_array(PIECE, 1, "compressed data", e);
     if (!b->raw)
         return -1;

@@ -1,5 +1,5 @@
 // needs: slice/dicom_image.c slice/dicom_file.cc slice/dicom_pixels.c slice/dicom_colour.c slice/dicom_inflate.c slice/dicom_jpeg2000.c
-// needs: slice/dicom_elements.c slice/dicom_lengths.c slice/series.c
+// needs: slice/dicom_elements.c slice/dicom_lengths.c slice/dicom_jpeg.c slice/series.c
 /* A DICOM file of any bytes is read or refused; what was read makes a volume, or not, twice over too. What DCMTK keeps for the whole of
  * a program's life is its own.
  */

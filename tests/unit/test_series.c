@@ -1,4 +1,4 @@
-// needs: slice/series.c slice/dicom_image.c slice/dicom_file.cc slice/dicom_pixels.c slice/dicom_colour.c slice/dicom_inflate.c
+// needs: slice/series.c slice/dicom_image.c slice/dicom_file.cc slice/dicom_pixels.c slice/dicom_jpeg.c slice/dicom_colour.c slice/dicom_inflate.c
 // needs: slice/dicom_jpeg2000.c slice/dicom_elements.c slice/dicom_lengths.c
 /* Series put in order: oblique stacks in any order of files, and what is wrong with them; times, kinds of data; scaled samples.
  */
