@@ -52,6 +52,11 @@ demo:
 arm: all
 	SINEW_BIN=$(BIN) samples/arm out/arm
 
+# The figures and tables of both papers, beside what they print: out/paper/paper.html, and the same as text.
+.PHONY: paper
+paper: all $(addprefix $(BUILD)/tests/bench/bench_,tled msds msds_card slice)
+	SINEW_BIN=$(BIN) BENCH=$(BUILD)/tests/bench samples/paper out/paper
+
 # The picture at the top of README.md: small, since it is kept in the repository; make demo leaves a larger one.
 .PHONY: picture
 picture: demo
@@ -163,7 +168,7 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup samples/demo samples/arm samples/scan tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
+SCRIPTS = .ci/run .ci/setup samples/demo samples/arm samples/scan samples/paper $(filter-out %.awk %.gnuplot %.css,$(wildcard samples/paper.d/*)) tests/check tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man
 
 lint-cppcheck:
@@ -221,6 +226,7 @@ help:
 	'make              the tools, into $(BIN)/' \
 	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
 	'make arm          an arm under a probe: the second example, into out/arm' \
+	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
 	'make picture      the demo, and the picture in README.md from it' \
 	'make check        set-up, and every check below but check-long' \
 	'make setup        installs what is missing, by apt (through sudo if not root), saying what' \
