@@ -86,11 +86,13 @@ measured() {
     "$bench/$program" "$@" || exit 1
 }
 
+has_card='' no_card=''
+
 # card: whether a CUDA card works; $no_card says why not.
 card() {
-    if [ -z "${has_card-}" ]; then
+    if [ -z "$has_card" ]; then
         models
-        has_card=yes no_card=
+        has_card=yes
         tled-run -d cuda -n 1 -o /dev/null <"$work/models/sphere.model" 2>"$work/card" || {
             has_card=no
             no_card=$(sed -n '$s/^tled-run: //p' "$work/card")

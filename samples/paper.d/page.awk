@@ -182,8 +182,8 @@ function table_html(caption,    r, i, tag, class)
         print "<tr>"
         for (i = 1; i <= columns; i++) {
             tag = r == 1 || i == 1 ? "th scope=\"" (r == 1 ? "col" : "row") "\"" : "td"
-            class = (numbers[i] ? "number" : "") (theirs(r, i) ? " theirs" : "")
-            printf "<%s%s>%s</%s>", tag, class == "" ? "" : " class=\"" class "\"", escape(cell[r, i]), substr(tag, 1, 2)
+            class = (numbers[i] ? " number" : "") (theirs(r, i) ? " theirs" : "") (i == 1 && length(cell[r, i]) > 20 ? " long" : "")
+            printf "<%s%s>%s</%s>", tag, class == "" ? "" : " class=\"" substr(class, 2) "\"", escape(cell[r, i]), substr(tag, 1, 2)
         }
         print "</tr>" (r == 1 ? "</thead><tbody>" : "")
     }

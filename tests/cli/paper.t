@@ -29,7 +29,7 @@ set_page txt "$T/page" >"$T/page.txt"
 is "$(python3 tests/cli/paper_page.py "$T/page.html" "$T/page.txt" 2>&1)" "" "well-formed, alone, and the same numbers in both"
 check "what is HTML's is escaped" grep -q '2 &lt; 3 &amp; 4 &gt; 3, &quot;so&quot;' "$T/page.html"
 check "a paper's column is marked" grep -q '<td class="number theirs">0.187</td><td class="number">1.50e-01</td>' "$T/page.html"
-check "so is a paper's row" grep -q '<th scope="row" class=" theirs">steps, paper</th><td class=" theirs">no number</td>' "$T/page.html"
+check "so is a paper's row" grep -q '<th scope="row" class="theirs">steps, paper</th><td class="theirs">no number</td>' "$T/page.html"
 check "pictures are side by side" grep -q '<div class="row">' "$T/page.html"
 is "$(grep -c '<div class="row">' "$T/page.html")" 1 "in one row"
 is "$(awk 'length > 80' "$T/page.txt")" "" "text is 80 wide"
@@ -55,6 +55,7 @@ is "$(python3 tests/cli/paper_page.py "$T/out/paper.html" "$T/out/paper.txt" 2>&
 check "it says that there is no real data" grep -q '^Not here: There is no real data' "$T/out/paper.txt"
 check "and that nothing was measured" grep -q '^Not here: Times are not here: there is no bench_tled' "$T/out/paper.txt"
 is "$(awk '$1 == "sphere" && $2 == 2176 { print $3, $4, $5; exit }' "$T/out/paper.txt")" "2176 2849 2849" "the ball has the paper's elements and nodes"
+is "$(awk '$1 == "nodes" && $2 == 2849 { print $3, $4, ($5 > 10000); exit }' "$T/out/paper.txt")" "480 6724 1" "Table 1 has ours below theirs"
 is "$(grep -c '<img' "$T/out/paper.html")" 10 "ten pictures"
 machine=$(tests/bench/machine | sed -n '2s/^# \([^,]*\),.*/\1/p')
 check "the machine is named" grep -qF "$machine" "$T/out/paper.html"
@@ -74,6 +75,30 @@ END
 else
     skip 1 "no chromium"
 fi
+
+# What is computed from measured times: here, of a thread that takes half of the paper's time for nodes as many as theirs.
+{
+    echo 'mesh,nodes,tetrahedra,springs,method,threads,frames,best_ms,median_ms,p95_ms,paper_ms,opentissue_ms'
+    for size in 20x10x10,2000,10,30 24x12x12,3456,17,60 28x14x14,5488,27,100 32x16x16,8192,40,150; do
+        echo $size | awk -F, '{ for (i = 3; i <= 4; i++) print $1 "," $2 ",9,9," (i == 3 ? "msds" : "fem 20 cg") ",2,9,9," $i / 2 ",9,9,"
+            print $1 "," $2 ",9,9,collision,2,9,9,0.05,9,9,"; print $1 "," $2 ",9,9,fem exact,2,9,9,0.05,9,9," }'
+    done
+} >"$T/frames"
+{
+    echo 'mesh,tetrahedra,in_the_image,what,threads,images,best_ms,median_ms,p95_ms,against_bare,paper_ms'
+    for size in 20x10x10 24x12x12 28x14x14 32x16x16; do
+        printf '%s\n' "$size,9,9,spans,2,9,9,2,9,9,9" "$size,9,9,frame: msds and image,2,9,9,4,9,,9" "$size,9,9,frame: fem 20 cg and image,2,9,9,8,9,,9"
+    done
+} >"$T/images"
+rows_of() {
+    awk -F, -v part="$1" -f samples/paper.d/times.awk "$T/frames" "$T/images" | tr '\t' ' '
+}
+is "$(rows_of times | grep -A 1 '^FEM 15')" 'FEM 15 30 50 75
+times as fast 2 2 2 2' "Table I: times as fast"
+is "$(rows_of times | sed -n '/^volume sampling, spans/,+1p' | tail -n 1)" "times as fast 7 8 10 11.5" "and of the images"
+is "$(rows_of rates | sed -n 3p)" "without visualisation 250 (125) 250 (125) 250 (125) 250 (125)" "Table II: a frame is what both take"
+check "half of their times grow as theirs do" sh -c "echo '$(rows_of words)' |
+    grep -q 'power 0.98 for .* and 1.14 for .* here as 0.98 and 1.14. .* here it is 3.00 and 3.75 times.$'"
 
 # A tool that fails ends it, with a word, and leaves no page.
 mkdir "$T/bin"
