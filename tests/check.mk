@@ -60,6 +60,11 @@ demo:
 arm: all
 	SINEW_BIN=$(BIN) samples/arm out/arm
 
+# The figures and tables of both papers, beside what they print: out/paper/paper.html, and the same as text.
+.PHONY: paper
+paper: all $(addprefix $(BUILD)/tests/bench/bench_,tled msds msds_card slice)
+	SINEW_BIN=$(BIN) BENCH=$(BUILD)/tests/bench samples/paper out/paper
+
 # The picture at the top of README.md: small, since it is kept in the repository; make demo leaves a larger one.
 .PHONY: picture
 picture: demo
@@ -171,7 +176,8 @@ found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(
 SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
-SCRIPTS = .ci/run .ci/setup man/html samples/demo samples/arm samples/scan tests/check tests/shape tests/fuzz/run tests/bench/machine tests/bench/fraction tests/bench/msds_compare tests/bench/table1 $(wildcard tests/cli/*.t tests/cli/*.sh)
+# Each file that begins as a script does, and those that scripts read.
+SCRIPTS = $(or $(sort $(shell grep -rlIE '^\#!/(usr/)?bin/(env )?(ba)?sh' .ci man samples tests) $(wildcard tests/cli/*.sh samples/paper.d/lib.sh)),$(error no scripts))
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
 
 lint-cppcheck:
@@ -239,6 +245,7 @@ help:
 	'make              the tools, into $(BIN)/' \
 	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
 	'make arm          an arm under a probe: the second example, into out/arm' \
+	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
 	'make picture      the demo, and the picture in README.md from it' \
 	'make check        set-up, and every check below but check-long' \
 	'make setup        installs what is missing, by apt (through sudo if not root), saying what' \

@@ -4,7 +4,7 @@ set style histogram clustered gap 1
 set style fill solid 1 noborder
 set boxwidth 0.9
 set logscale y
-set yrange [0.1:*]
+set grid noxtics ytics
 set format y '%g'
 set ylabel 'ms a frame'
 set key top left reverse Left

@@ -1,4 +1,4 @@
-# shellcheck shell=sh
+# shellcheck shell=sh disable=SC2034,SC2154 # variables of samples/paper, which reads this
 # What the sections of samples/paper share. They are read into it, so that whatever fails there ends it ($out, $work, $page, $bench and
 # $data are its own). A command in an argument would fail unnoticed: its output goes to a variable first.
 
@@ -18,6 +18,7 @@ title() { line title "$1"; }          # TEXT
 chapter() { line chapter "$1" "$2"; } # ID TEXT
 heading() { line heading "$1" "$2"; } # ID TEXT
 say() { line say "$1"; }              # TEXT
+note() { line note "$1"; }            # TEXT: a remark below a table
 missing() { line missing "$1"; }      # TEXT: what is not here, and why
 # FILE.tsv CAPTION: its first line are its heads; what the papers printed has `paper` in its head, or in its row's first cell.
 table() { line table "$1" "$2"; }
@@ -46,16 +47,17 @@ draw_square() {
 draw_sized() {
     file=$1 model=$2
     shift 2
-    sinew render --size $drawn "$@" -o "$out/$file" "$model"
+    sinew render --size "$drawn" "$@" -o "$out/$file" "$model"
 }
 
-# plot PICTURE.svg HEIGHT SCRIPT VARIABLES: of gnuplot, 480 wide; false where there is none, which the page then says.
+# plot PICTURE.svg HEIGHT SCRIPT VARIABLES: of gnuplot, 480 wide; false where there is none, which the page then
+# says. (In a condition `set -e` is off: so it exits where gnuplot fails, as measured does.)
 plot() {
     if ! command -v gnuplot >/dev/null 2>&1; then
         missing "A plot is not here: there is no gnuplot on this machine."
         return 1
     fi
-    gnuplot -e "picture = '$out/$1'; height = $2; $4" "$parts/svg.gnuplot" "$3"
+    gnuplot -e "picture = '$out/$1'; height = $2; $4" "$parts/svg.gnuplot" "$3" || exit 1
 }
 
 # calculate EXPRESSION: a number, of awk, to three digits.
@@ -81,20 +83,22 @@ measured() {
         missing "Times are not here: there is no $program in $bench; 'make paper' builds it."
         return 1
     fi
-    "$bench/$program" "$@"
+    "$bench/$program" "$@" || exit 1
 }
+
+has_card='' no_card=''
 
 # card: whether a CUDA card works; $no_card says why not.
 card() {
-    if [ -z "${has_card-}" ]; then
+    if [ -z "$has_card" ]; then
         models
-        has_card=yes no_card=
+        has_card=yes
         tled-run -d cuda -n 1 -o /dev/null <"$work/models/sphere.model" 2>"$work/card" || {
             has_card=no
             no_card=$(sed -n '$s/^tled-run: //p' "$work/card")
         }
     fi
-    [ $has_card = yes ]
+    [ "$has_card" = yes ]
 }
 
 # then_of FILE.csv: what its head says of the machine and the day, for tables that are not of this run.

@@ -1,5 +1,5 @@
-# Sets the page of samples/paper: `awk -v form=html|txt -v folder=FOLDER -v style=FILE.css -f page.awk PAGE`. PAGE is lines of a word and its
-# parts between tabs (see lib.sh); tables and pictures are files in FOLDER. HTML is one file that needs no other, and XML as well.
+# Sets the page of samples/paper: `awk -v form=html|txt -v folder=FOLDER -v style=FILE.css -f page.awk PAGE`. PAGE is lines of a word and
+# its parts between tabs (see lib.sh); tables and pictures are files in FOLDER. HTML is one file that needs no other, and XML as well.
 
 BEGIN { FS = "\t"; html = form == "html" }
 
@@ -44,6 +44,8 @@ function set(what, a, b, c)
         head(what, a, b)
     else if (what == "say")
         html ? tagged("p", "", a) : wrap(a, "", "")
+    else if (what == "note")
+        html ? tagged("p", " class=\"note\"", a) : wrap(a, "- ", "  ")
     else if (what == "missing")
         html ? tagged("p", " class=\"missing\"", a) : wrap(a, "Not here: ", "  ")
     else if (what == "table")
@@ -153,7 +155,7 @@ function read_table(file,    line, i, fields, got)
     for (i = 1; i <= columns; i++) {
         numbers[i] = i > 1
         for (r = 2; r <= rows; r++)
-            if (cell[r, i] !~ /^(|-|[-+]?[0-9][0-9.,e+-]*( \([-+]?[0-9.e+-]+\))?( %)?)$/)
+            if (cell[r, i] !~ /^(|-|[-+<]?[0-9][0-9.,e+-]*( \([-+]?[0-9.e+-]+\))?( %)?)$/)
                 numbers[i] = 0
     }
 }
@@ -180,8 +182,8 @@ function table_html(caption,    r, i, tag, class)
         print "<tr>"
         for (i = 1; i <= columns; i++) {
             tag = r == 1 || i == 1 ? "th scope=\"" (r == 1 ? "col" : "row") "\"" : "td"
-            class = (numbers[i] ? "number" : "") (theirs(r, i) ? " theirs" : "")
-            printf "<%s%s>%s</%s>", tag, class == "" ? "" : " class=\"" class "\"", escape(cell[r, i]), substr(tag, 1, 2)
+            class = (numbers[i] ? " number" : "") (theirs(r, i) ? " theirs" : "") (i == 1 && length(cell[r, i]) > 20 ? " long" : "")
+            printf "<%s%s>%s</%s>", tag, class == "" ? "" : " class=\"" substr(class, 2) "\"", escape(cell[r, i]), substr(tag, 1, 2)
         }
         print "</tr>" (r == 1 ? "</thead><tbody>" : "")
     }

@@ -1,5 +1,5 @@
-# W&M's Table 1 in its own shape, a column a model: facts of the models (tabs: name, nodes, elements, mm, contraction, stable and taken step in
-# ms, mm moved), then the CSV of bench_tled.
+# W&M's Table 1 in its own shape, a column a model: facts of the models (tabs: name, nodes, elements, mm, contraction, stable and taken
+# step in ms, mm moved), then the CSV of bench_tled.
 
 BEGIN {
     models = split("sphere muscle block face", name, " ")
@@ -28,7 +28,8 @@ $at["what"] == "step" {
     of = $1
     sub(/.*\//, "", of)
     sub(/[.]model$/, "", of)
-    way = $at["device"] == "cuda" ? "card, " $at["precision"] : $at["threads"] ($at["threads"] == 1 ? " thread, " : " threads, ") $at["precision"]
+    way = $at["device"] == "cuda" ? "card" : $at["threads"] ($at["threads"] == 1 ? " thread" : " threads")
+    way = way ", " $at["precision"]
     if (!(way in seen))
         ways[++count] = way
     seen[way] = 1
@@ -47,7 +48,7 @@ function ours(head, field,    i)
 {
     printf "%s", head
     for (i = 1; i <= models; i++)
-        printf "\t%s", field > 5 ? sprintf("%.3g", fact[i, field]) : fact[i, field]
+        printf (field > 5 ? "\t%.3g" : "\t%s"), fact[i, field]
     print ""
 }
 

@@ -1,5 +1,5 @@
-# PST's Tables I and II and figure 9 of what bench_msds and bench_slice write, commas between: -v part=times, bars, rates or words. With rates,
-# lines `MESH,SPRINGS,FEM` are the frames a second that were drawn.
+# PST's Tables I and II and figure 9 of what bench_msds and bench_slice write, commas between: -v part=times, bars, rates or words. With
+# rates, lines `MESH,SPRINGS,FEM` are the frames a second that were drawn.
 
 BEGIN {
     OFS = "\t"
@@ -138,9 +138,11 @@ function words(    i, springs, elements)
         springs[i] = ms["msds", mesh[i]]
         elements[i] = ms["fem 20 cg", mesh[i]]
     }
-    printf "The paper finds that time grows linearly with nodes. Fitted to its figures, it grows as their power %.2f for springs and %.2f for finite elements; here as %.2f and %.2f. ", \
+    printf "The paper finds that time grows linearly with nodes. Fitted to its figures, it grows as their power "
+    printf "%.2f for springs and %.2f for finite elements; here as %.2f and %.2f. ", \
         power(printed_msds), power(printed_fem), power(springs), power(elements)
-    printf "It finds springs more than three times faster than finite elements: %.2f times at %s and %.2f times at %s; here it is %.2f and %.2f times.\n", \
+    printf "It finds springs more than three times faster than finite elements: "
+    printf "%.2f times at %s and %.2f times at %s; here it is %.2f and %.2f times.\n", \
         printed_fem[1] / printed_msds[1], mesh[1], printed_fem[meshes] / printed_msds[meshes], mesh[meshes], \
         elements[1] / springs[1], elements[meshes] / springs[meshes]
 }
