@@ -67,6 +67,25 @@ awk -v n=4 -f samples/ball.awk | sed 's/BALL/MUSCLE_BALL/' | sinew import -q --u
 check "a muscle contracts" tled-run -q -c ball=0.02 -t 0.3 -o "$T/pulled" <"$T/muscle"
 is "$(sinew info --get node.displacement.max "$T/pulled" | awk '{ print ($1 > 1e-3 && $1 < 0.1) }')" 1 "by a good deal"
 
+# Surfaces bound to hexahedra of any shape: what is linear comes out linear, inside and a little outside.
+awk -v n=5 -v size=0.1 -v by=0.3 -f tests/cli/distorted.awk | sinew import -q --unit m - 2>/dev/null | sinew export -f model --text - |
+    awk '/^crc/ || $1 == "end" { next } { print } /^[a-z]/ { on = $2 == "node.position"; next } on { x[++n] = $1; y[n] = $2; z[n] = $3 }
+    END {
+        print "frame 0 0\narray node.displacement f64 m node 3"
+        for (i = 1; i <= n; i++) printf "%.17g %.17g %.17g\n", 0.1 * x[i] + 0.2 * y[i] + 0.01, 0.3 * z[i] - 0.1 * x[i], 0.05 * y[i] - 0.2 * z[i] + 0.1 * x[i]
+        print "end"
+    }' >"$T/linear"
+awk -v r=50 -v n=12 -f tests/cli/sphere.awk | awk '$1 == "v" { printf "v %.12g %.12g %.12g\n", 0.05 + $2 / 1000 * 1.02, 0.05 + $3 / 1000 * 1.02, 0.05 + $4 / 1000 * 1.02; next } { print }' >"$T/ball.obj"
+check "sinew bind takes them" sh -c "sinew bind -q <'$T/linear' >'$T/bound' '$T/ball.obj'"
+check "sinew deform" sh -c "sinew deform '$T/ball.obj' <'$T/bound' >'$T/moved.obj'"
+is "$(paste -d ' ' "$T/ball.obj" "$T/moved.obj" | awk '
+    function off(a, b) { a -= b; if (a < 0) a = -a; if (a > most) most = a }
+    $1 == "v" {
+        n++
+        off($6 - $2, 0.1 * $2 + 0.2 * $3 + 0.01); off($7 - $3, 0.3 * $4 - 0.1 * $2); off($8 - $4, 0.05 * $3 - 0.2 * $4 + 0.1 * $2)
+    }
+    END { print n, (most < 2e-9) }')" "266 1" "every vertex is moved as the field says"
+
 # The sample.
 if [ -n "${SINEW_LONG:-}" ]; then
     check "samples/conforming" samples/conforming "$T/tables"
