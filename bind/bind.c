@@ -4,6 +4,7 @@
 #include "base/pool.h"
 #include "bind/nearest.h"
 #include "bind/tetra.h"
+#include "mesh/hexahedron.h"
 #include "mesh/scale.h"
 #include "mesh/surface.h"
 #include "mesh/weights.h"
@@ -41,8 +42,9 @@ static const opt_tool table = {
 
 /* What the surfaces are bound to. */
 typedef struct target {
-    nearest voxels; /* or */
-    tetra tetrahedra;
+    nearest voxels;   /* or */
+    tetra tetrahedra; /* or hexahedra without a lattice */
+    bool by_lattice;
     pool *threads;
     const int32_t *node; /* elements x corners */
     int corners;
@@ -70,11 +72,12 @@ static int check_model(const model *m, err *e)
 static int target_open(target *to, const model *m, int threads, notes *warnings, err *e)
 {
     to->corners = model_find(m, "element.node")->columns;
-    if (to->corners == 8 ? nearest_build(&to->voxels, m, e) : tetra_build(&to->tetrahedra, m, e))
+    to->by_lattice = to->corners == 8 && (model_meta_of(m, "lattice.spacing") || model_find(m, "element.lattice"));
+    if (to->by_lattice ? nearest_build(&to->voxels, m, e) : tetra_build(&to->tetrahedra, m, e))
         return -1;
     if (to->tetrahedra.flat)
-        notes_add(warnings, "%lld of the tetrahedra have no volume, and nothing is bound to them",
-                  (long long)to->tetrahedra.flat);
+        notes_add(warnings, "%lld of the %s have no volume, and nothing is bound to them",
+                  (long long)to->tetrahedra.flat, to->corners == 4 ? "tetrahedra" : "hexahedra");
     to->threads = pool_create(threads, e);
     return to->threads ? 0 : -1;
 }
@@ -102,13 +105,22 @@ static void bind_to_tetrahedron(const binding *b, int64_t v)
     weights_tetrahedron(&b->to->node[4 * (int64_t)b->element[v]], b->to->position, point, &b->weight[4 * v]);
 }
 
+static void bind_to_hexahedron(const binding *b, int64_t v)
+{
+    const double *point = &b->position[3 * v];
+    b->element[v] = tetra_element(&b->to->tetrahedra, point);
+    hexahedron_weights(&b->to->node[8 * (int64_t)b->element[v]], b->to->position, point, &b->weight[3 * v]);
+}
+
 static void bind_some(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const binding *b = context;
     (void)chunk;
     for (int64_t v = from; v < to; v++)
-        if (b->to->corners == 8)
+        if (b->to->by_lattice)
             bind_to_voxel(b, v);
+        else if (b->to->corners == 8)
+            bind_to_hexahedron(b, v);
         else
             bind_to_tetrahedron(b, v);
 }
@@ -119,23 +131,23 @@ typedef struct outside {
     double furthest;
 } outside;
 
-/* A voxel's longest side, or a tetrahedron's. */
+/* A voxel's longest side, or a tetrahedron's; of another hexahedron its longest diagonal. */
 static double length_of(const target *to, int32_t element)
 {
     double longest = 0;
     const double *side = to->voxels.grid.spacing;
-    if (to->corners == 8)
+    const int32_t *node = &to->node[to->corners * (int64_t)element];
+    if (to->by_lattice)
         return fmax(fmax(side[0], side[1]), side[2]);
-    for (int i = 0; i < 6; i++) {
-        static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-        double square = 0;
-        for (int a = 0; a < 3; a++) {
-            double d = to->position[3 * (int64_t)to->node[4 * (int64_t)element + ends[i][0]] + a] -
-                       to->position[3 * (int64_t)to->node[4 * (int64_t)element + ends[i][1]] + a];
-            square += d * d;
+    for (int i = 0; i < to->corners; i++)
+        for (int j = 0; j < i; j++) {
+            double square = 0;
+            for (int a = 0; a < 3; a++) {
+                double d = to->position[3 * (int64_t)node[i] + a] - to->position[3 * (int64_t)node[j] + a];
+                square += d * d;
+            }
+            longest = fmax(longest, square);
         }
-        longest = fmax(longest, square);
-    }
     return sqrt(longest);
 }
 
@@ -143,9 +155,11 @@ static void add_outside(outside *o, const binding *b, int64_t v)
 {
     const int32_t *node = &b->to->node[b->to->corners * (int64_t)b->element[v]];
     double d;
-    if (b->to->corners == 8) {
+    if (b->to->by_lattice) {
         weights_box box = weights_box_of(node, b->to->position);
         d = weights_outside(&box, &b->weight[3 * v]);
+    } else if (b->to->corners == 8) {
+        d = hexahedron_outside(node, b->to->position, &b->position[3 * v]);
     } else {
         d = weights_tetrahedron_outside(node, b->to->position, &b->position[3 * v]);
     }
@@ -171,7 +185,7 @@ static int warn_of_far(const binding *b, const surface *s, num_unit unit, notes 
         notes_add(warnings,
                   "surface %s: %lld of %lld vertices lie further than a%s outside the elements, the furthest %.4g %s; "
                   "sinew deform --within leaves such vertices where they are",
-                  s->name, (long long)o.count, (long long)s->vertices, b->to->corners == 8 ? " voxel" : "n element",
+                  s->name, (long long)o.count, (long long)s->vertices, b->to->by_lattice ? " voxel" : "n element",
                   o.furthest / scale_of(unit), num_unit_name(unit));
     return 0;
 }

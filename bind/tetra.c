@@ -1,6 +1,7 @@
 #include "bind/tetra.h"
 
 #include "base/mem.h"
+#include "mesh/hexahedron.h"
 #include "mesh/weights.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 
 enum { LEAF = 4, WAITING = 96 }; /* elements; parts that wait: one a level, and halves of 2^31 make 31 levels */
 
-/* An element's middle, times four. */
+/* An element's middle, times its corners. */
 typedef struct middle {
     double at[3];
     int32_t element;
@@ -22,7 +23,7 @@ typedef struct part {
 
 static const double *corner(const tetra *t, int32_t element, int c)
 {
-    return &t->position[3 * (int64_t)t->node[4 * (int64_t)element + c]];
+    return &t->position[3 * (int64_t)t->node[t->corners * (int64_t)element + c]];
 }
 
 static bool is_before(int axis, const middle *a, const middle *b)
@@ -114,7 +115,7 @@ static void span_boxes(tetra *t)
             b->high[a] = -INFINITY;
         }
         for (int32_t e = b->first; e < b->first + b->count; e++)
-            for (int c = 0; c < 4; c++)
+            for (int c = 0; c < t->corners; c++)
                 include(b, corner(t, t->order[e], c), corner(t, t->order[e], c));
         if (!b->count) {
             include(b, b[1].low, b[1].high);
@@ -123,19 +124,34 @@ static void span_boxes(tetra *t)
     }
 }
 
+/* Of a hexahedron about that: what its box spans, or 0 where that is flat. */
+static double volume_of(const tetra *t, int32_t element)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    if (t->corners == 4)
+        return weights_tetrahedron_volume(&t->node[4 * (int64_t)element], t->position);
+    for (int c = 0; c < 8; c++)
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], corner(t, element, c)[a]);
+            high[a] = fmax(high[a], corner(t, element, c)[a]);
+        }
+    return (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]);
+}
+
 /* The elements that have a volume. */
 static int32_t collect(tetra *t, middle *m, int64_t elements)
 {
     int32_t found = 0;
     double size = 0;
     for (int32_t i = 0; i < elements; i++) {
-        double volume = weights_tetrahedron_volume(&t->node[4 * (int64_t)i], t->position);
+        double volume = volume_of(t, i);
         if (!(volume > 0))
             continue;
         size += cbrt(volume);
         m[found].element = i;
         for (int a = 0; a < 3; a++)
-            m[found].at[a] = corner(t, i, 0)[a] + corner(t, i, 1)[a] + corner(t, i, 2)[a] + corner(t, i, 3)[a];
+            for (int c = 0; c < t->corners; c++)
+                m[found].at[a] += corner(t, i, c)[a];
         found++;
     }
     t->flat = elements - found;
@@ -154,6 +170,7 @@ int tetra_build(tetra *t, const model *m, err *e)
     if (node->rows > INT32_MAX / 2)
         return err_set(e, NULL, 0, "%lld elements; at most %d are possible", (long long)node->rows, INT32_MAX / 2);
     t->node = node->i32;
+    t->corners = node->columns;
     t->position = position->f64;
     t->order = mem_array(node->rows, sizeof *t->order, "elements", e);
     t->box = t->order ? mem_array(node->rows, sizeof *t->box, "boxes of elements", e) : NULL;
@@ -162,7 +179,8 @@ int tetra_build(tetra *t, const model *m, err *e)
         goto out;
     int32_t elements = collect(t, middles, node->rows);
     if (!elements) {
-        err_set(e, NULL, 0, "no tetrahedron of the model has a volume; expected some to bind to");
+        err_set(e, NULL, 0, "no %s of the model has a volume; expected some to bind to",
+                t->corners == 4 ? "tetrahedron" : "hexahedron");
         goto out;
     }
     make_boxes(t, middles, elements);
@@ -206,7 +224,9 @@ static void look_at(search *s, const tetra_box *leaf, bool by_index)
         int32_t element = s->t->order[i];
         if (by_index && s->element >= 0 && element > s->element)
             continue;
-        double d = weights_tetrahedron_outside(&s->t->node[4 * (int64_t)element], s->t->position, s->point);
+        const int32_t *node = &s->t->node[s->t->corners * (int64_t)element];
+        double d = s->t->corners == 8 ? hexahedron_outside(node, s->t->position, s->point)
+                                      : weights_tetrahedron_outside(node, s->t->position, s->point);
         if (by_index && d <= s->limit)
             s->element = element;
         else if (!by_index)

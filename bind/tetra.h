@@ -1,4 +1,4 @@
-/* The tetrahedron that a point is in, or the nearest one: a tree of boxes over the elements of a model. Owns its tables, borrows
+/* The element that a point is in, or the nearest one, of tetrahedra or of hexahedra that are no lattice's: a tree of boxes over them. Owns its tables, borrows
  * the model's; searches may run in several threads.
  */
 #ifndef SINEW_TETRA_H
@@ -13,16 +13,17 @@ typedef struct tetra_box {
 } tetra_box;
 
 typedef struct tetra {
-    const int32_t *node;    /* elements x 4 */
+    const int32_t *node;    /* elements x corners */
+    int32_t corners;        /* 4 or 8 */
     const double *position; /* nodes x 3, m */
     int32_t *order;         /* elements that have a volume, by boxes */
     tetra_box *box;
     int32_t boxes;
     int64_t flat; /* elements without a volume, which take no part */
-    double tie;   /* distances that differ by no more are equal, m: a billionth of the mean tetrahedron's size */
+    double tie;   /* distances that differ by no more are equal, m: a billionth of the mean element's size */
 } tetra;
 
-/* m: with node.position, finite, and element.node of 4 columns, of which one at least has a volume. -1 with e filled. */
+/* m: with node.position, finite, and element.node; one element at least has a volume. -1 with e filled. */
 int tetra_build(tetra *t, const model *m, err *e);
 void tetra_free(tetra *t);
 

@@ -126,7 +126,7 @@ static double integrate(corners *x)
 /* c^2, and the largest eigenvalue of the gammas' products. */
 static void find_couple(const corners *x, conforming_element *c)
 {
-    double gamma[4][8], grams[16], own[16], l[16], mixed[3][4], product[9];
+    double gamma[4][8], grams[16], own[16], l[16] = {0}, mixed[3][4], product[9];
     for (int g = 0; g < 4; g++)
         for (int a = 0; a < 8; a++) {
             gamma[g][a] = sign(3 + g, a);

@@ -1,5 +1,6 @@
 #include "mesh/bound.h"
 
+#include "mesh/hexahedron.h"
 #include "mesh/weights.h"
 
 #include <string.h>
@@ -99,7 +100,10 @@ void bound_gradient(const bound *b, int64_t vertex, const double *u, double *f)
     double gradient[24];
     if (b->corners == 8) {
         weights_box box = weights_box_of(node, b->rest);
-        weights_gradients(&box, &b->weight[3 * vertex], gradient);
+        if (hexahedron_is_box(node, b->rest))
+            weights_gradients(&box, &b->weight[3 * vertex], gradient);
+        else
+            hexahedron_gradients(node, b->rest, &b->weight[3 * vertex], gradient);
     } else {
         weights_tetrahedron_gradients(node, b->rest, gradient);
     }
@@ -116,6 +120,8 @@ double bound_outside(const bound *b, int64_t vertex)
     const int32_t *node = &b->node[b->corners * (int64_t)b->element[vertex]];
     if (b->corners == 4)
         return weights_tetrahedron_outside(node, b->rest, &b->shape.position[3 * vertex]);
+    if (!hexahedron_is_box(node, b->rest))
+        return hexahedron_outside(node, b->rest, &b->shape.position[3 * vertex]);
     weights_box box = weights_box_of(node, b->rest);
     return weights_outside(&box, &b->weight[3 * vertex]);
 }

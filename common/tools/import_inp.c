@@ -412,8 +412,8 @@ static int take_held(inp_reader *r, char *line)
         if (moved != 0)
             return wrong(r, "*BOUNDARY that moves nodes", "0: tled-run's script moves them");
         h.mask = 0;
-        for (int64_t i = from; i <= to && i <= 3; i++)
-            h.mask |= (uint8_t)(1 << (i - 1));
+        for (int a = 0; a < 3; a++)
+            h.mask |= (uint8_t)((from <= a + 1 && a + 1 <= to) << a);
     }
     if (MEM_ROOM(&r->holds, &r->hold_room, r->hold_count + 1, "held nodes", r->e))
         return -1;

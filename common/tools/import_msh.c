@@ -356,8 +356,8 @@ static int read_tags(reader *r, int64_t tags, int dimension, int32_t *g)
 static int read_elements_2(reader *r)
 {
     char *line;
-    int64_t count, id, tags, alike = 1;
-    type t;
+    int64_t count, id, tags = 0, alike = 1;
+    type t = {0};
     int32_t g;
     int got = tokens_line(&r->t, &line, r->e);
     if (got || num_int(line, 0, INT32_MAX, &count))
@@ -465,7 +465,7 @@ static int read_section(reader *r, const char *line)
                     {"$Elements", {read_elements_2, read_elements_4}}};
     char name[64];
     snprintf(name, sizeof name, "%.60s", line);
-    r->t.section = name;
+    snprintf(r->t.section, sizeof r->t.section, "%s", name);
     int at = 0;
     while (at < 5 && strcmp(sections[at].name, name) != 0)
         at++;
@@ -477,7 +477,7 @@ static int read_section(reader *r, const char *line)
     if (!reads && r->t.binary && r->elements)
         return 1; /* where its binary ends only its readers know, and what is wanted has been read */
     int bad = !reads ? skip_section(r, name) : reads(r) || end_section(r, name) ? -1 : 0;
-    r->t.section = "";
+    *r->t.section = '\0';
     return bad;
 }
 
@@ -499,7 +499,7 @@ static int finish(reader *r)
 
 int import_msh(import_mesh *m, in *s, const import_wishes *wishes, err *e)
 {
-    reader r = {.m = m, .w = wishes, .e = e, .t = {.s = s, .name = m->name, .section = ""}};
+    reader r = {.m = m, .w = wishes, .e = e, .t = {.s = s, .name = m->name}};
     char *line;
     int got = 0, bad = 0;
     while (!bad && !(got = tokens_line(&r.t, &line, e)))

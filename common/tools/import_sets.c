@@ -27,7 +27,7 @@ int32_t import_sets_open(import_sets *s, const char *name, err *e)
 int import_sets_range(import_sets *s, int32_t at, int32_t first, int32_t last, int32_t step, err *e)
 {
     import_set *set = &s->set[at];
-    import_range *before = set->count ? &set->range[set->count - 1] : NULL;
+    import_range *before = set->range && set->count ? &set->range[set->count - 1] : NULL;
     if (before && before->first >= 0 && before->step == 1 && step == 1 && first == (int64_t)before->last + 1) {
         before->last = last;
         return 0;

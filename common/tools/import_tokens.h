@@ -8,7 +8,8 @@
 
 typedef struct tokens {
     in *s;
-    const char *name, *section; /* for messages; borrowed */
+    const char *name; /* for messages; borrowed */
+    char section[64]; /* likewise */
     bool binary;
     char *at; /* what is left of the line, or NULL */
 } tokens;

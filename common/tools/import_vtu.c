@@ -241,10 +241,12 @@ static int read_cells(reader *r)
     double *types = need(r, CELLS, "types", 1, r->cells), *corner = NULL;
     double *ends = types ? need(r, CELLS, "offsets", 1, r->cells) : NULL, last = 0;
     int bad = ends ? 0 : -1;
-    for (int64_t i = 0; !bad && i < r->cells; last = ends[i++])
+    for (int64_t i = 0; !bad && i < r->cells; i++) {
         if (!(ends[i] >= last && ends[i] < 9e15 && ends[i] == floor(ends[i])))
             bad = err_set(r->e, r->x.name, array_of(r, CELLS, "offsets")->line,
                           "cell %lld ends before it begins; expected offsets that rise", (long long)i);
+        last = ends[i];
+    }
     if (!bad && !(corner = need(r, CELLS, "connectivity", 1, (int64_t)last)))
         bad = -1;
     for (int64_t i = 0; !bad && i < r->cells; i++) {

@@ -1,4 +1,4 @@
-/* sinew-export: a model in the formats of other programs (VTU, Abaqus input, OBJ), or in either of its own. */
+/* sinew-export: a model in the formats of other programs (VTU, Abaqus input, Gmsh, OBJ), or in either of its own. */
 #include "base/mem.h"
 #include "base/num.h"
 #include "base/outs.h"
@@ -7,6 +7,7 @@
 #include "model/source.h"
 #include "tools/export_inp.h"
 #include "tools/export_model.h"
+#include "tools/export_msh.h"
 #include "tools/export_obj.h"
 #include "tools/export_vtu.h"
 
@@ -15,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MODEL, VTU, INP, OBJ };
+enum { MODEL, VTU, INP, OBJ, MSH };
 enum { REST, LAST, ALL, ONE };
 
 struct options {
@@ -27,10 +28,10 @@ struct options {
 };
 
 static const opt option_list[] = {
-    {'f', "format", "model|vtu|inp|obj", OPT_CHOICE, offsetof(struct options, format), 0, 0, "model|vtu|inp|obj",
-     OPT_REQUIRED, "the format; model: Sinew's own"},
+    {'f', "format", "model|vtu|inp|obj|msh", OPT_CHOICE, offsetof(struct options, format), 0, 0,
+     "model|vtu|inp|obj|msh", OPT_REQUIRED, "the format; model: Sinew's own"},
     {0, "frame", "N|last|all|rest", OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
-     "vtu, obj: which frame [last, if any]"},
+     "vtu, obj, msh: which frame [last, if any]"},
     {0, "deformed", NULL, OPT_FLAG, offsetof(struct options, deformed), 0, 0, NULL, 0,
      "vtu, obj: points as the frame moved them"},
     {0, "surface", "NAME", OPT_TEXT, offsetof(struct options, surface), 0, 0, NULL, 0,
@@ -44,7 +45,7 @@ static const opt option_list[] = {
     {0, "text", NULL, OPT_FLAG, offsetof(struct options, common.text), 0, 0, NULL, OPT_OUTPUT,
      "model: text, not binary"},
     {'z', "gzip", NULL, OPT_FLAG, offsetof(struct options, common.gzip), 0, 0, NULL, OPT_OUTPUT,
-     "model, inp, obj: gzip the output"},
+     "model, inp, obj, msh: gzip the output"},
     {0},
 };
 
@@ -88,6 +89,8 @@ static int check_options(job *j, err *e)
         return err_usage(e, "--frame, --deformed and --surface are for vtu and obj: model is the whole of it");
     if (o->format == INP && (o->frame || o->deformed || o->surface))
         return err_usage(e, "--frame, --deformed and --surface are for vtu and obj: inp holds the model at rest");
+    if (o->format == MSH && (o->deformed || o->surface))
+        return err_usage(e, "--deformed and --surface are for vtu and obj: msh holds the elements at rest");
     if (o->format != MODEL && o->common.text)
         return err_usage(e, "--text is for model");
     if (o->format != INP && (o->gravity.count || o->element))
@@ -95,15 +98,15 @@ static int check_options(job *j, err *e)
     if (o->format != OBJ && o->unit)
         return err_usage(e, "--unit is for obj; the others are in SI units");
     if (o->format == VTU && o->common.gzip)
-        return err_usage(e, "-z is for model, inp and obj; vtu is compressed as it is");
+        return err_usage(e, "-z is for model, inp, obj and msh; vtu is compressed as it is");
     if (o->unit && !num_unit_of(o->unit))
         return err_usage(e, "--unit '%s': expected " NUM_UNITS, o->unit);
     if (read_frame_option(j, e))
         return -1;
     if (j->which == REST && o->deformed)
         return err_usage(e, "--deformed wants a frame; --frame rest has none");
-    if (j->which == ALL && o->format != VTU)
-        return err_usage(e, "--frame all is for vtu; sinew deform --frame all writes an OBJ a frame");
+    if (j->which == ALL && o->format != VTU && o->format != MSH)
+        return err_usage(e, "--frame all is for vtu and msh; sinew deform --frame all writes an OBJ a frame");
     return 0;
 }
 
@@ -185,6 +188,21 @@ static int put_all_frames(job *j, out *collection, err *e)
     return got;
 }
 
+/* Each frame as it comes, in the one file. */
+static int put_all_data(job *j, out *to, err *e)
+{
+    int got;
+    export_msh(&j->x, to);
+    while ((got = source_next(&j->s, e)) > 0) {
+        if (export_shape_move(&j->x, &j->s.frame, e) || check_frame(j, &j->s.frame, e))
+            return -1;
+        export_msh_frame(&j->x, to);
+    }
+    if (!got && !j->s.frames)
+        return source_no_frame(&j->s, "all", e);
+    return got;
+}
+
 /* Reads to the end of the stream, keeping the frame asked for in *kept (it is f's from then on). NULL in *chosen: rest. */
 static int choose_frame(job *j, frame *kept, const frame **chosen, err *e)
 {
@@ -214,6 +232,11 @@ static int put_one(job *j, out *to, err *e)
         return export_vtu(&j->x, j->o->deformed, to, e);
     if (j->o->format == OBJ)
         return export_obj(&j->x, j->o->deformed, j->unit, to, e);
+    if (j->o->format == MSH) {
+        export_msh(&j->x, to);
+        export_msh_frame(&j->x, to);
+        return 0;
+    }
     export_inp_options options = {.element = j->o->element ? "C3D8" : "C3D8R"};
     memcpy(options.gravity, j->o->gravity.value, sizeof options.gravity);
     return export_inp(&j->s.body, &options, to, &j->warnings, e);
@@ -247,7 +270,7 @@ static int work(job *j, out *to, err *e)
     if (j->o->format != INP && export_shape_of(&j->x, &j->s.body, j->o->surface, e))
         return -1;
     if (j->which == ALL)
-        return put_all_frames(j, to, e);
+        return j->o->format == MSH ? put_all_data(j, to, e) : put_all_frames(j, to, e);
     int bad = choose_frame(j, &kept, &chosen, e);
     if (!bad && j->o->format != INP)
         bad = export_shape_move(&j->x, chosen, e) || check_moved(j, e) ? -1 : 0;
@@ -281,7 +304,8 @@ static void put_file(job *j, const char *path, err *e)
     const opt_common *c = &j->o->common;
     if (source_open(&j->s, path, e))
         return;
-    out *to = j->which == ALL ? outs_open(&j->files, c->output, e) : out_open(c->output, c->gzip, e);
+    out *to =
+        j->which == ALL && j->o->format == VTU ? outs_open(&j->files, c->output, e) : out_open(c->output, c->gzip, e);
     if (!to)
         return;
     if (work(j, to, e)) {
@@ -302,7 +326,7 @@ int main(int argc, char **argv)
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (check_options(&j, &e) || (j.which == ALL && read_stem(&j, &e)))
+    if (check_options(&j, &e) || (j.which == ALL && o.format == VTU && read_stem(&j, &e)))
         goto out;
     if (o.format == MODEL)
         export_model(&j.s, t.operands ? argv[1] : NULL, &copy, &t, &e);

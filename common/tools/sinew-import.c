@@ -34,8 +34,8 @@ static const opt option_list[] = {
      "materials, and not the file's"},
     {0, "stress", "Pa|kPa|MPa|GPa", OPT_CHOICE, offsetof(struct options, stress), 0, 0, "auto|Pa|kPa|MPa|GPa", 0,
      "of the file's moduli [--unit m: Pa]"},
-    {0, "density", "kg/m3|g/cm3|t/mm3", OPT_CHOICE, offsetof(struct options, density), 0, 0, "auto|kg/m3|g/cm3|t/mm3", 0,
-     "of its densities [--unit m: kg/m3]"},
+    {0, "density", "kg/m3|g/cm3|t/mm3", OPT_CHOICE, offsetof(struct options, density), 0, 0, "auto|kg/m3|g/cm3|t/mm3",
+     0, "of its densities [--unit m: kg/m3]"},
     {0},
 };
 

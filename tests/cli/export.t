@@ -105,6 +105,12 @@ is "$(cd "$T" && echo run*)" "run.pvd run_0000.vtu run_0001.vtu" "a collection a
 is "$(grep -c '<DataSet timestep="0" group="" part="0" file="run_0000.vtu"/>' "$T/run.pvd")" 1 "the first frame's time and file"
 is "$(grep -c '<DataSet timestep="0.5" group="" part="0" file="run_0001.vtu"/>' "$T/run.pvd")" 1 "the second's"
 vtk "the second frame" "$(array node.displacement 2)" "$T/run_0001.vtu" point displacement
+if [ -n "$python" ]; then
+    is "$("$python" tests/cli/read_pvd.py "$T/run.pvd" | tr '\n' ';')" "0 0 12 2 0;0.5 0.5 12 2 0.17;" \
+        "VTK reads each file of the collection: times, points, cells, displacement"
+else
+    skip 1 "no VTK for Python (python3-vtk9): the collection's files"
+fi
 have python3 && check "the collection is XML" python3 -c "import sys, xml.dom.minidom as x; x.parse(sys.argv[1])" "$T/run.pvd"
 { sed '$d' "$small" && echo 'fail 3 "tled-run: it diverged"'; } >"$T/failed"
 cat "$T"/run* >"$T/before"
@@ -161,9 +167,38 @@ if have ccx; then
     sinew export -f inp -g 0,0,-9.81 -o "$T/ccx.inp" "$small"
     check "CalculiX runs it" sh -c "cd '$T' && ccx -i ccx"
     is "$(grep -c '^ *[0-9]' "$T/ccx.dat")" 12 "and prints the displacement of every node"
+    awk -f tests/cli/read_frd.awk "$T/ccx.frd" >"$T/frd"
+    is "$(sed -n 's/^node [0-9]* //p' "$T/frd")" "$(array node.position 0)" "it has read the same nodes"
+    is "$(sed -n 's/^element [0-9]* //p' "$T/frd")" "$(array element.node 0 | awk '{ for (i = 1; i <= NF; i++) printf "%d%s", $i + 1, i < NF ? " " : "\n" }')" \
+        "and the same elements"
 else
-    skip 2 "no CalculiX (calculix-ccx)"
+    skip 4 "no CalculiX (calculix-ccx)"
 fi
+
+# Gmsh.
+check "MSH" sinew export -f msh --frame all -o "$T/a.msh" "$small"
+is "$(sed -n '/^.Nodes/,/^.EndNodes/s/^[0-9]* \(.* .*\)$/\1/p' "$T/a.msh")" "$(array node.position 0)" "its nodes"
+is "$(sed -n 's/^[0-9]* 5 2 \([0-9]*\) [0-9]* .*/\1/p' "$T/a.msh" | awk '{ print $1 - 1 }')" "$(array element.volume 0)" "its hexahedra, by volumes"
+is "$(grep -c NodeData "$T/a.msh")" 4 "a frame each"
+is "$(sinew export -f msh --frame rest "$small" | grep -c NodeData)" 0 "at rest there is none"
+is "$(sinew export -f msh -z "$small" | gzip -dc | grep -c '^.NodeData')" 1 "the last by itself; -z"
+if have gmsh; then
+    printf 'Merge "%s";\nSave View[0] "%s";\nExit;\n' "$T/a.msh" "$T/a.pos" >"$T/a.geo"
+    check "Gmsh reads it" sh -c "gmsh -v 3 '$T/a.geo' - >'$T/gmsh.log' 2>&1 && ! grep -i error '$T/gmsh.log'"
+    # VH(places of 8 corners){three components at each corner, then those of the next frame}
+    sed -n 's/^VH(\(.*\)){\(.*\)};$/\1,\2/p' "$T/a.pos" | tr ',' ' ' >"$T/pos"
+    is "$(awk '{ for (c = 0; c < 8; c++) printf "%g %g %g%s", $(3 * c + 1), $(3 * c + 2), $(3 * c + 3), c < 7 ? ";" : "\n" }' "$T/pos")" \
+        "$({ array node.position 0 && array element.node 0; } | awk 'NF == 3 { at[n++ + 0] = $0 } NF == 8 { for (i = 1; i <= 8; i++) printf "%s%s", at[$i], i < 8 ? ";" : "\n" }')" \
+        "the same elements in the same places"
+    is "$(awk '{ for (c = 0; c < 8; c++) printf "%g %g %g%s", $(49 + 3 * c), $(50 + 3 * c), $(51 + 3 * c), c < 7 ? ";" : "\n" }' "$T/pos")" \
+        "$({ array node.displacement 2 && array element.node 0; } | awk 'NF == 3 { at[n++ + 0] = $0 } NF == 8 { for (i = 1; i <= 8; i++) printf "%s%s", at[$i], i < 8 ? ";" : "\n" }')" \
+        "and the last frame's displacement at each corner"
+    gmsh -v 2 "$T/a.msh" -save -o "$T/b.msh" -format msh22 >"$T/gmsh.log" 2>&1
+    is "$(sed -n '/PhysicalNames/,/EndPhysicalNames/p' "$T/b.msh" | grep -c -e '^3 1 "skin"' -e '^3 2 "muscle_a"' -e '^0 3 "rigid"')" 3 "and the groups' names"
+else
+    skip 4 "no Gmsh (gmsh)"
+fi
+fails 2 "a surface as MSH" "msh holds the elements at rest" sinew export -f msh --surface s "$small"
 
 # OBJ.
 check "the elements' boundary" sinew export -f obj -o "$T/a.obj" "$small"
@@ -201,7 +236,7 @@ sed '$d' "$small" >"$T/cut"
 sed '/^frame 0/,$d' "$small" >"$T/still" && echo end >>"$T/still"
 printf '%%sinew 1 text\nend\n' >"$T/empty"
 printf '%%sinew 1 text\naxis node 0\naxis element 0\narray node.position f64 m node 3\narray element.node i32 @node element 8\nend\n' >"$T/none"
-fails 2 "no format" "missing option -f, --format; expected -f model.vtu.inp.obj" sinew export "$small"
+fails 2 "no format" "missing option -f, --format; expected -f model.vtu.inp.obj.msh" sinew export "$small"
 fails 2 "an unknown format" "--format 'stl': expected model\\|vtu\\|inp\\|obj" sinew export -f stl "$small"
 fails 2 "a frame that is no number" "--frame 'lst': expected a frame's index" sinew export -f vtu --frame lst "$small"
 fails 1 "a frame that is not there" "--frame 3: no such frame; expected one of the 2 there, of index 0 to 10\$" sinew export -f vtu --frame 3 -o "$T/x.vtu" "$small"
@@ -223,7 +258,7 @@ fails 2 "a frame in Abaqus input" "inp holds the model at rest" sinew export -f 
 fails 2 "two numbers of gravity" "--gravity '0,1'" sinew export -f inp -g 0,1 "$small"
 fails 2 "a unit for SI formats" "--unit is for obj" sinew export -f vtu --unit mm "$small"
 fails 2 "an unknown unit" "expected um, mm, cm, m or in" sinew export -f obj --unit furlong "$small"
-fails 2 "gzip of a VTU" "-z is for model, inp and obj" sinew export -f vtu -z "$small"
+fails 2 "gzip of a VTU" "-z is for model, inp, obj and msh" sinew export -f vtu -z "$small"
 fails 1 "an empty model" "node.position" sinew export -f vtu -o "$T/x.vtu" "$T/empty"
 fails 1 "no volumes" "element.volume|volume.name" sinew export -f inp -o "$T/x.inp" "$T/tet"
 sed 's/^0.45$/0.5/' "$small" >"$T/b"

@@ -30,7 +30,7 @@ check "sinew-performance(7)" test -s "$root/usr/share/man/man7/sinew-performance
 
 # The front command finds the others beside itself, not on PATH, called by any name that leads to it.
 ln -s "$root/usr/bin/sinew" "$T/link"
-for tool in voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice deform info diff export render; do
+for tool in voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice deform info diff export import render; do
     check "sinew $tool runs from its own folder" env PATH=/usr/bin:/bin "$root/usr/bin/sinew" "$tool" --version
     is "$(sed 's/ (.*//' "$T/stdout")" "$("$tool" -V 2>/dev/null | sed 's/ (.*//' | grep . || echo "sinew-$tool")" "and is $tool"
 done

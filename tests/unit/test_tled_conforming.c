@@ -234,8 +234,9 @@ static void test_bytes(int precision, const char *name)
     double *first = NULL;
     for (int i = 0; i < 4; i++) {
         setting s;
+        const char *vector = i ? vectors[i - 1] : "";
         if (i)
-            setenv("SINEW_VECTORS", vectors[i - 1], 1);
+            setenv("SINEW_VECTORS", vector, 1);
         err none = {0};
         if (i && !cpu_pass_choose(precision == BY_SINGLE ? cpu_passes_single : cpu_passes_double, &none)) {
             skip(1, "a vector unit that is not here");
@@ -245,7 +246,7 @@ static void test_bytes(int precision, const char *name)
         double *u = moved(&s, 60, .4 * step_at_rest(&s.p, NULL));
         if (first)
             ok(!memcmp(first, u, 3 * (size_t)s.p.nodes * sizeof *u), "%s: the same bytes by %d threads in %s", name,
-               1 + i, vectors[i - 1]);
+               1 + i, vector);
         else
             ok(furthest(u, NULL, 3 * s.p.nodes) > 1e-4, "%s: it moves", name);
         if (first)

@@ -1,0 +1,99 @@
+#!/bin/sh
+# Hexahedra of any shape through sinew import and tled-run: a ball and a distorted cube against CalculiX; boxes against the lattice; the stable
+# step; what the card does not do; and the tables of samples/conforming.
+# shellcheck source=tests/cli/lib.sh
+. "$(dirname "$0")/lib.sh"
+
+# compare NAME: CalculiX's answer and tled-run's on $T/NAME.sinew; leaves the differences (see calculix.awk).
+compare() {
+    sinew export -f inp -g 0,0,-9.81 -o "$T/$1.inp" "$T/$1.sinew"
+    check "$1: CalculiX takes it" sh -c "cd '$T' && ccx -i $1 >$1.log && grep -q 'Job finished' $1.log"
+    tled-run -q --text -g 0,0,-9.81 --rest 1e-6 <"$T/$1.sinew" >"$T/$1.rest"
+    awk -f tests/cli/calculix.awk "$T/$1.dat" "$T/$1.rest" >"$T/differences"
+    read -r worst mean furthest inside nodes <"$T/differences"
+    is "$nodes" "$2 $3" "$1: both have moved the same nodes"
+    diag "$1: of any node $worst, root mean square $mean, where it moved furthest $furthest, of any node inside $inside"
+}
+
+awk -v n=8 -v size=0.1 -v by=0.2 -f tests/cli/distorted.awk | sinew import -q --unit m -o "$T/cube.sinew" -
+awk -v nu=0.45 -f samples/ball.awk | sinew import -q --unit m -o "$T/ball.sinew" -
+is "$(sinew info --get axis.element "$T/ball.sinew") $(sinew info --get axis.node "$T/ball.sinew")" "2197 2744" \
+    "the ball has 13^3 elements, as W&M's"
+if have ccx; then
+    compare cube 729 343
+    near "$worst" 0 0.02 "cube: every node within 2 % of the largest displacement"
+    near "$mean" 0 0.005 "cube: 0.5 % in the mean"
+    near "$furthest" 0 0.003 "cube: 0.3 % where it moves furthest"
+    compare ball 2744 1728
+    near "$mean" 0 0.03 "ball: 3 % in the mean"
+    near "$furthest" 0 0.02 "ball: 2 % where it moves furthest"
+else
+    skip 7 "no CalculiX (calculix-ccx)"
+fi
+
+# Boxes without a lattice are the lattice's.
+awk -v x=0.1 -v y=0.1 -v z=0.1 -v held=top -f tests/cli/box.awk >"$T/box.obj"
+voxelise -q --unit m -s 0.025 "$T/box.obj" | attach -q >"$T/box.sinew"
+sinew export -f inp "$T/box.sinew" | sinew import -q --unit m -o "$T/mesh.sinew" -
+for model in box mesh; do
+    tled-run -q --dt 1e-3 -n 200 -g 3,0,-9.81 -o "$T/$model.run" <"$T/$model.sinew"
+done
+check "boxes, as a lattice and as a mesh: the same to rounding" sinew diff --abs 1e-12 --only node.displacement,node.velocity "$T/box.run" "$T/mesh.run"
+
+# One result whatever the threads; single comes near.
+tled-run -q --threads 1 --dt 5e-4 -n 100 -g 3,0,-9.81 -o "$T/one" <"$T/ball.sinew"
+tled-run -q --threads 3 --dt 5e-4 -n 100 -g 3,0,-9.81 -o "$T/three" <"$T/ball.sinew"
+check "the same bytes by one thread and by three" cmp "$T/one" "$T/three"
+tled-run -q --precision single --dt 5e-4 -n 100 -g 3,0,-9.81 -o "$T/single" <"$T/ball.sinew"
+check "single precision comes near" sinew diff --abs 1e-6 --only node.displacement "$T/one" "$T/single"
+tled-run -q --dt 5e-4 -n 60 -g 3,0,-9.81 <"$T/ball.sinew" | tled-run -q --dt 5e-4 -n 40 -g 3,0,-9.81 >"$T/on"
+sinew export -f obj -o "$T/one.obj" --deformed "$T/one" && sinew export -f obj -o "$T/on.obj" --deformed "$T/on"
+check "a run that goes on is one run" cmp "$T/one.obj" "$T/on.obj"
+
+# The stable step: what is above it is refused; just below it goes well.
+stable=$(tled-run --dt 1 -t 1 2>&1 >/dev/null <"$T/ball.sinew" | sed -n 's/.*expected at most \([^ ]*\) s .*/\1/p')
+near "$stable" 1.68e-3 0.01 "the ball's stable step: 1.68 ms, against 2.28 ms of voxels of 12.5 mm"
+check "0.9 of it goes well" tled-run -q --dt "$(awk "BEGIN { print 0.9 * $stable }")" -n 2000 -g 0,0,-1 -o "$T/x" <"$T/ball.sinew"
+fails 0 "auto takes the processor, and says so" "cpu \\(the one with elements off a lattice\\)" tled-run -n 1 -o "$T/x" <"$T/ball.sinew"
+fails 1 "the card has no such elements" "the CUDA back end has no elements off a lattice; expected -d cpu or auto" \
+    tled-run -d cuda -n 1 -o "$T/y" <"$T/ball.sinew"
+sinew export -f model --text "$T/box.sinew" | awk '/^crc/ { next } on && --on == 0 { $1 += 0.005 } /^array node.position/ { on = 2 } { print }' >"$T/moved"
+fails 1 "a model with a lattice that its elements do not keep" "is not a box" tled-run -n 1 -o "$T/y" <"$T/moved"
+fails 1 "attach is for voxels" "lattice" sh -c "attach <'$T/ball.sinew' >'$T/y'"
+
+# Muscle: fibres that a VTU brings pull.
+awk -v n=4 -f samples/ball.awk | sed 's/BALL/MUSCLE_BALL/' | sinew import -q --unit m - | sinew export -f model --text - |
+    awk '/^crc/ { next } /^array element.volume/ { print "array element.fibre f32 1 element 3"; for (i = 0; i < 64; i++) print "0 0.6 0.8" } { print }' >"$T/muscle"
+check "a muscle contracts" tled-run -q -c ball=0.02 -t 0.3 -o "$T/pulled" <"$T/muscle"
+is "$(sinew info --get node.displacement.max "$T/pulled" | awk '{ print ($1 > 1e-3 && $1 < 0.1) }')" 1 "by a good deal"
+
+# Surfaces bound to hexahedra of any shape: what is linear comes out linear, inside and a little outside.
+awk -v n=5 -v size=0.1 -v by=0.3 -f tests/cli/distorted.awk | sinew import -q --unit m - 2>/dev/null | sinew export -f model --text - |
+    awk '/^crc/ || $1 == "end" { next } { print } /^[a-z]/ { on = $2 == "node.position"; next } on { x[++n] = $1; y[n] = $2; z[n] = $3 }
+    END {
+        print "frame 0 0\narray node.displacement f64 m node 3"
+        for (i = 1; i <= n; i++) printf "%.17g %.17g %.17g\n", 0.1 * x[i] + 0.2 * y[i] + 0.01, 0.3 * z[i] - 0.1 * x[i], 0.05 * y[i] - 0.2 * z[i] + 0.1 * x[i]
+        print "end"
+    }' >"$T/linear"
+awk -v r=50 -v n=12 -f tests/cli/sphere.awk | awk '$1 == "v" { printf "v %.12g %.12g %.12g\n", 0.05 + $2 / 1000 * 1.02, 0.05 + $3 / 1000 * 1.02, 0.05 + $4 / 1000 * 1.02; next } { print }' >"$T/ball.obj"
+check "sinew bind takes them" sh -c "sinew bind -q <'$T/linear' >'$T/bound' '$T/ball.obj'"
+check "sinew deform" sh -c "sinew deform '$T/ball.obj' <'$T/bound' >'$T/moved.obj'"
+is "$(paste -d ' ' "$T/ball.obj" "$T/moved.obj" | awk '
+    function off(a, b) { a -= b; if (a < 0) a = -a; if (a > most) most = a }
+    $1 == "v" {
+        n++
+        off($6 - $2, 0.1 * $2 + 0.2 * $3 + 0.01); off($7 - $3, 0.3 * $4 - 0.1 * $2); off($8 - $4, 0.05 * $3 - 0.2 * $4 + 0.1 * $2)
+    }
+    END { print n, (most < 2e-9) }')" "266 1" "every vertex is moved as the field says"
+
+# The sample.
+if [ -n "${SINEW_LONG:-}" ]; then
+    check "samples/conforming" samples/conforming "$T/tables"
+    is "$(awk -F '\t' 'NF != 7' "$T/tables/table2.tsv" "$T/tables/table3.tsv" | wc -l)" 0 "its tables have seven columns"
+    is "$(awk -F '\t' '$1 ~ /largest E/ { n += $6 > 1.5 * $5 } END { print n }' "$T/tables/table3.tsv")" 2 "voxels take stiffer material, as the paper says"
+    is "$(awk -F '\t' '$1 ~ /sinks/ { c = $5 < 0 ? -$5 : $5; v = $6 < 0 ? -$6 : $6; print c < v / 3 }' "$T/tables/table2.tsv")" 1 "the conforming ball is the more accurate"
+else
+    skip 4 "samples/conforming takes 20 s: SINEW_LONG is not set"
+fi
+
+done_testing
