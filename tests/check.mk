@@ -38,11 +38,11 @@ $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize
 $(foreach source,$(FUZZ_SRC:tests/fuzz/fuzz_%.c=%),$(eval $(call replay_program,$(source))))
 
 # What makes programs fail: libraries to preload.
-FAULTS := $(patsubst tests/%.c,$(BUILD)/tests/%.so,$(wildcard tests/faults/*.c)) $(if $(LIB_CUDA),$(BUILD)/tests/faults/card.so)
+FAULTS := $(patsubst tests/%.c,$(BUILD)/tests/%.so,$(wildcard tests/faults/*.c)) $(if $(LIB_CUDA),$(BUILD)/tests/faults/wreck_card.so)
 $(BUILD)/tests/faults/%.so: tests/faults/%.c
 	@mkdir -p $(@D)
 	$(call run,LD $@,$(CC) $(CSTD) $(WARN) $(WERROR) -O2 -fPIC -shared -o $@ $< -ldl)
-$(BUILD)/tests/faults/card.so: tests/faults/card.cu
+$(BUILD)/tests/faults/wreck_card.so: tests/faults/wreck_card.cu
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Xcompiler -fPIC -shared -o $@ $<)
 

@@ -1,8 +1,8 @@
 #include "tled/account.h"
 
 #include "base/mem.h"
-#include "mesh/element.h"
 #include "tled/collider.h"
+#include "tled/deformed.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,18 +50,19 @@ static double stretch_of(const float *along, int64_t i, element_tensor h)
     return element_length(element_fibre_now(h, a));
 }
 
-/* The work (J) of the muscle that the volume is, along one of an element's fibres, since the moment before. */
-static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume, double share)
+/* The work (J) of the muscle that the volume is, along one of an element's fibres, since the moment before. rest (m3): of the
+ * tissue that is its. */
+static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume, double rest)
 {
     const tled_problem *p = a->p;
     const double was = a->before.stretch[2 * i + fibre], is = a->now.stretch[2 * i + fibre];
     const double tension = (tled_tension(p, volume, a->before.curves) + tled_tension(p, volume, a->now.curves)) / 2;
     if (tension == 0)
         return 0;
-    return -share * tension * (force_length_sum(is) - force_length_sum(was)) * p->side[0] * p->side[1] * p->side[2];
+    return -rest * tension * (force_length_sum(is) - force_length_sum(was));
 }
 
-static void look_at_muscles(account *a, int64_t i, element_tensor h, account_sums *sum)
+static void look_at_muscles(account *a, int64_t i, const deformed *d, account_sums *sum)
 {
     const tled_problem *p = a->p;
     const float *const along[2] = {p->fibre, p->mixfibre};
@@ -70,33 +71,20 @@ static void look_at_muscles(account *a, int64_t i, element_tensor h, account_sum
     for (int k = 0; k < 2; k++) {
         if (!along[k] || volume[k] < 0 || p->volume[volume[k]].contract < 0)
             continue;
-        a->now.stretch[2 * i + k] = stretch_of(along[k], i, h);
+        a->now.stretch[2 * i + k] = stretch_of(along[k], i, d->h);
         if (a->before.known)
-            sum->muscles += tled_fraction(p, i) * muscle_work(a, i, k, volume[k], share[k]);
+            sum->muscles += muscle_work(a, i, k, volume[k], tled_fraction(p, i) * share[k] * d->rest);
     }
 }
 
-static element_modes modes_of(const account *a, int64_t element, int axis)
+static void look_at_element(account *a, int64_t i, element_shape box, account_sums *sum)
 {
-    element_corners c;
-    for (int i = 0; i < 8; i++)
-        c.at[i] = a->now.displacement[3 * (int64_t)a->p->element_node[8 * element + i] + axis];
-    return element_modes_of(c);
-}
-
-static void look_at_element(account *a, int64_t i, element_shape shape, account_sums *sum)
-{
-    const tled_problem *p = a->p;
-    const tled_law law = tled_law_of(p, i);
-    const element_modes x = modes_of(a, i, 0), y = modes_of(a, i, 1), z = modes_of(a, i, 2);
-    const element_tensor h = element_gradient(x, y, z, shape.slope);
-    const double fraction = tled_fraction(p, i), volume = p->side[0] * p->side[1] * p->side[2];
-    sum->strain += fraction * volume * element_energy(h, law.mu, law.bulk);
-    sum->hourglass +=
-        fraction * (element_hourglass_energy(x, law.hourglass) + element_hourglass_energy(y, law.hourglass) +
-                    element_hourglass_energy(z, law.hourglass));
+    const deformed d = deformed_of(a->p, i, box, a->now.displacement);
+    const double fraction = tled_fraction(a->p, i);
+    sum->strain += fraction * d.rest * d.energy;
+    sum->hourglass += fraction * d.hourglass;
     if (a->now.stretch)
-        look_at_muscles(a, i, h, sum);
+        look_at_muscles(a, i, &d, sum);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)

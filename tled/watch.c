@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "tled/conforming_step.h"
+#include "tled/deformed.h"
 #include "tled/step.h"
 
 #include <math.h>
@@ -16,14 +17,6 @@ struct watch_part { /* of one chunk */
     tled_sums sum;
     bool inverted;
 };
-
-static element_corners corners_of(const watch *w, int64_t element, int a)
-{
-    element_corners c;
-    for (int i = 0; i < 8; i++)
-        c.at[i] = w->displacement[3 * (int64_t)w->p->element_node[8 * element + i] + a];
-    return c;
-}
 
 /* along: elements x 3, or NULL; share: of the tissue that is the volume's. */
 static element_fibre fibre_of(const watch *w, const float *along, int64_t i, int32_t volume, double share)
@@ -59,39 +52,17 @@ static void look_at_step(const watch *w, const tled_law *law, int64_t i, element
     part->sum.frequency_element = i;
 }
 
-/* H; the hourglass modes of an element that is no box lose what H has of them, its law gets its own stiffness against them. */
-static element_tensor gradient_of(const tled_problem *p, int64_t i, element_shape shape, element_modes *x,
-                                  element_modes *y, element_modes *z, tled_law *law)
+static void look_at_element(const watch *w, int64_t i, element_shape box, struct watch_part *part)
 {
-    if (!p->conforming)
-        return element_gradient(*x, *y, *z, shape.slope);
-    const element_any any = conforming_shape(&p->conforming->element[i]);
-    element_tensor h = element_any_gradient(&any, *x, *y, *z);
-    *x = element_any_twisted(&any, *x, h.xx, h.xy, h.xz);
-    *y = element_any_twisted(&any, *y, h.yx, h.yy, h.yz);
-    *z = element_any_twisted(&any, *z, h.zx, h.zy, h.zz);
-    law->hourglass = p->conforming->element[i].hourglass;
-    return h;
-}
-
-static void look_at_element(const watch *w, int64_t i, element_shape shape, struct watch_part *part)
-{
-    const tled_problem *p = w->p;
-    tled_law law = tled_law_of(p, i);
-    element_modes x = element_modes_of(corners_of(w, i, 0)), y = element_modes_of(corners_of(w, i, 1));
-    element_modes z = element_modes_of(corners_of(w, i, 2));
-    element_tensor h = gradient_of(p, i, shape, &x, &y, &z, &law);
-    const double rest = p->conforming ? p->conforming->element[i].volume : p->side[0] * p->side[1] * p->side[2];
-    double volume = 1 + element_dilation(h), energy = element_energy(h, law.mu, law.bulk);
-    double hourglass = element_hourglass_energy(x, law.hourglass) + element_hourglass_energy(y, law.hourglass) +
-                       element_hourglass_energy(z, law.hourglass);
-    if (!(volume > 0) || !isfinite(energy) || !isfinite(hourglass)) {
+    const deformed d = deformed_of(w->p, i, box, w->displacement);
+    const double volume = 1 + d.dilation;
+    if (!(volume > 0) || !isfinite(d.energy) || !isfinite(d.hourglass)) {
         part->inverted = part->sum.broken < 0 ? volume <= 0 : part->inverted;
         part->sum.broken = part->sum.broken < 0 ? i : part->sum.broken;
         return;
     }
-    part->sum.strain += tled_fraction(p, i) * (energy * rest + hourglass);
-    look_at_step(w, &law, i, h, part);
+    part->sum.strain += tled_fraction(w->p, i) * (d.energy * d.rest + d.hourglass);
+    look_at_step(w, &d.law, i, d.h, part);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)

@@ -64,3 +64,29 @@ char *path_target(const char *path, err *e)
     free(at);
     return NULL;
 }
+
+static bool is_within(const char *folder, const char *file)
+{
+    size_t n = strlen(folder);
+    return !strncmp(folder, file, n) && (n == 1 || file[n] == '/');
+}
+
+char *path_beside(const char *path, const char *name, const char *place, err *e)
+{
+    char root[PATH_MAX], real[PATH_MAX];
+    struct stat about;
+    size_t n = path_folder(path);
+    char *folder = path_join(path, n, n ? "" : ".", e);
+    char *file = folder ? path_join(path, name[0] == '/' ? 0 : n, name, e) : NULL;
+    if (file && (!realpath(folder, root) || !realpath(file, real)))
+        err_system(e, file, errno, "cannot open");
+    else if (file && !is_within(root, real))
+        err_set(e, place, 0, "names '%.200s', outside its folder; expected a file beside it", name);
+    else if (file && (stat(real, &about) || !S_ISREG(about.st_mode)))
+        err_set(e, file, 0, "is no regular file; expected one that %.200s names", place);
+    free(folder);
+    if (!e->status)
+        return file;
+    free(file);
+    return NULL;
+}

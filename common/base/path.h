@@ -1,4 +1,4 @@
-/* Paths of files to write: the folder in one, what a link stands for. What is returned is the caller's to free.
+/* Paths of files: the folder in one, what a link stands for, what lies beside a file. What is returned is the caller's to free.
  */
 #ifndef SINEW_PATH_H
 #define SINEW_PATH_H
@@ -12,6 +12,10 @@ size_t path_folder(const char *path);
 
 /* The folder (its first n bytes) and name joined. NULL with e filled. */
 char *path_join(const char *folder, size_t n, const char *name, err *e);
+
+/* The path of a regular file that an input names, from the input's own path: beside it or in a folder beside it, links
+ * followed; no other is opened for an input's asking. place: the input, for messages. NULL with e filled. */
+char *path_beside(const char *path, const char *name, const char *place, err *e);
 
 /* Where a file named path would be, links followed, even one to nothing. NULL with e filled where there can be none. */
 char *path_target(const char *path, err *e);

@@ -49,7 +49,7 @@ static int show_part(showing *b, const showing_want *want, const body *all, cons
 {
     scene_mesh mesh = {0};
     obj o = {0};
-    char *path = path_join(want->body, path_folder(want->body), part->file, e);
+    char *path = path_beside(want->body, part->file, want->body, e);
     in *s = path ? in_open(path, e) : NULL;
     free(path);
     if (s && !obj_read(&o, s, e) && make_mesh(&mesh, &o, all, part, e))

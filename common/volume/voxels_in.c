@@ -4,12 +4,9 @@
 #include "base/num.h"
 #include "base/path.h"
 
-#include <errno.h>
 #include <inttypes.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <zlib.h>
 
 enum { PIECE = 1 << 20, WORD = 64 }; /* bytes read at a time; of a number as text */
@@ -268,36 +265,13 @@ static void swap(volume *v)
 
 /* ---- files beside the header */
 
-/* Where both are, links followed: whether the file is in the folder. */
-static bool is_within(const char *folder, const char *file)
-{
-    size_t n = strlen(folder);
-    return !strncmp(folder, file, n) && (n == 1 || file[n] == '/');
-}
-
 /* The path of the data's file, which has to be one, in the header's folder; the caller frees it. */
 static char *find_file(const char *name, const char *header, const char *path, err *e)
 {
-    char root[PATH_MAX], real[PATH_MAX];
-    struct stat about;
-    if (!path) {
-        err_set(e, header, 0, "its data are in a file of their own, '%.200s', and it is in no folder; expected a path",
-                name);
-        return NULL;
-    }
-    size_t n = path_folder(path);
-    char *folder = path_join(path, n, n ? "" : ".", e),
-         *file = folder ? path_join(path, name[0] == '/' ? 0 : n, name, e) : NULL;
-    if (file && (!realpath(folder, root) || !realpath(file, real)))
-        err_system(e, file, errno, "cannot open");
-    else if (file && !is_within(root, real))
-        err_set(e, header, 0, "its data are in '%.200s', outside its folder; expected a file beside it", name);
-    else if (file && (stat(real, &about) || !S_ISREG(about.st_mode)))
-        err_set(e, file, 0, "is no regular file; expected the data of %.200s", header);
-    free(folder);
-    if (!e->status)
-        return file;
-    free(file);
+    if (path)
+        return path_beside(path, name, header, e);
+    err_set(e, header, 0, "its data are in a file of their own, '%.200s', and it is in no folder; expected a path",
+            name);
     return NULL;
 }
 

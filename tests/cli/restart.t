@@ -104,7 +104,7 @@ if run -d cuda -n 1 >/dev/null 2>"$T/err"; then
     # A card that fails in the middle of a run.
     model=$T/muscle.sinew
     run -d cuda -c all=0.8 -t 20 --every 0.1 >"$T/want"
-    card=$(cd "${BUILD:-build}" && pwd)/tests/faults/card.so
+    card=$(cd "${BUILD:-build}" && pwd)/tests/faults/wreck_card.so
     fails 1 "a card that fails" 'tled-run: CUDA: .* failed at step [0-9]+: .*(illegal|misaligned|unspecified)' env LD_PRELOAD="$card" SINEW_FAULT_WHEN="$c.1" \
         tled-run -d cuda -c all=0.8 -t 20 --every 0.1 --checkpoint "$c" --checkpoint-every 0.5 -o "$T/got" <"$model"
     check "no output" [ ! -e "$T/got" ]

@@ -35,6 +35,8 @@ logged "a displacement" displaced .01 "$T/block.sinew" --script "$T/displace" --
 logged "a muscle" muscles .01 "$T/muscle.sinew" -c all=0.5 -t .2
 logged "a muscle and gravity, in single precision" muscles .01 "$T/muscle.sinew" --precision single -c all=0.5 -g 0,0,-9.81 -t .2
 logged "a probe" probe .02 "$T/block.sinew" --probe sphere:2cm --poses "$T/press.tum" -t .2
+awk -v n=5 -f samples/ball.awk | sinew import -q --unit m -o "$T/ball.sinew" -
+logged "gravity on elements that are no boxes" gravity .01 "$T/ball.sinew" -g 0,3,-9.81 --damping 5 -t .1
 logged "a poor hourglass control" hourglass .2 "$T/block.sinew" --hourglass .0005 --script "$T/force" --damping 5 -t .1
 
 # ---- Rows.
