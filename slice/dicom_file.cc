@@ -214,11 +214,43 @@ int read_file(const errand *job)
     return dicom_file_take(f, job->to, job->e);
 }
 
+/* The one object of the program's life: DCMTK's own registers are such, too. */
+bool begun;
+
+/* What DCMTK takes for its dictionary and registers, and more: it does not look whether it got it. */
+const size_t ROOM = size_t(32) << 20;
+
+bool has_room(err *e)
+{
+    void *room = std::malloc(ROOM);
+    if (!room)
+        err_memory(e, "DCMTK's data dictionary");
+    std::free(room);
+    return room;
+}
+
+int begin(err *e)
+{
+    if (!begun && !has_room(e))
+        return -1;
+    if (!begun) {
+        OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+        DcmRLEDecoderRegistration::registerCodecs();
+        DJDecoderRegistration::registerCodecs();
+        DJLSDecoderRegistration::registerCodecs();
+    }
+    begun = true;
+    if (dcmDataDict.isDictionaryLoaded())
+        return 0;
+    return err_set(e, nullptr, 0,
+                   "DCMTK has no data dictionary; expected its dicom.dic (or DCMDICTPATH to say where it is)");
+}
+
 void *run(void *given)
 {
     errand *job = static_cast<errand *>(given);
     try {
-        job->code = read_file(job);
+        job->code = begin(job->e) ? -1 : read_file(job);
     } catch (const std::bad_alloc &) {
         job->code = err_memory(job->e, job->f->name);
     }
@@ -243,24 +275,6 @@ void run_on_large_stack(errand *job)
         pthread_join(thread, nullptr);
 }
 
-/* The one object of the program's life: DCMTK's own registers are such, too. */
-bool begun;
-
-int begin(err *e)
-{
-    if (!begun) {
-        OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-        DcmRLEDecoderRegistration::registerCodecs();
-        DJDecoderRegistration::registerCodecs();
-        DJLSDecoderRegistration::registerCodecs();
-    }
-    begun = true;
-    if (dcmDataDict.isDictionaryLoaded())
-        return 0;
-    return err_set(e, nullptr, 0,
-                   "DCMTK has no data dictionary; expected its dicom.dic (or DCMDICTPATH to say where it is)");
-}
-
 DcmPixelSequence *pieces_of(dicom_file *f)
 {
     DcmElement *element = nullptr;
@@ -280,7 +294,7 @@ int dicom_file_read(const unsigned char *bytes, size_t size, const char *name, d
     dicom_file f = {nullptr, name, size, seen, -1, nullptr};
     errand job = {&f, bytes, to, e, -1};
     int64_t items = dicom_lengths_items(bytes, size);
-    if (dicom_lengths_check(bytes, size, name, e) || begin(e))
+    if (dicom_lengths_check(bytes, size, name, e))
         return -1;
     if (items > MOST_ITEMS)
         return err_set(e, name, 0, "more than %d items; expected fewer", int(MOST_ITEMS));

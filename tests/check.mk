@@ -30,7 +30,7 @@ define replay_program
 $(BUILD)/tests/fuzz/replay_$(1): $(BUILD)/tests/fuzz/fuzz_$(1).o $(BUILD)/tests/fuzz/driver.o $(call needs,tests/fuzz/fuzz_$(1).c) $(MAIN_OBJ) $(LIB_CUDA) $(LIB)
 	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
 endef
-TEST_TOOLS := compare_pictures list_voxels peak long_stream
+TEST_TOOLS := compare_pictures list_voxels peak long_stream reader
 COMPARE := $(TEST_TOOLS:%=$(BUILD)/tests/cli/%) $(REPLAY)
 $(foreach tool,$(TEST_TOOLS),$(eval $(call test_program,tests/cli/$(tool))))
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
@@ -41,7 +41,7 @@ $(foreach source,$(FUZZ_SRC:tests/fuzz/fuzz_%.c=%),$(eval $(call replay_program,
 FAULTS := $(patsubst tests/%.c,$(BUILD)/tests/%.so,$(wildcard tests/faults/*.c)) $(if $(LIB_CUDA),$(BUILD)/tests/faults/wreck_card.so)
 $(BUILD)/tests/faults/%.so: tests/faults/%.c
 	@mkdir -p $(@D)
-	$(call run,LD $@,$(CC) $(CSTD) $(WARN) $(WERROR) -O2 -fPIC -shared -o $@ $< -ldl)
+	$(call run,LD $@,$(CC) $(CSTD) -D_GNU_SOURCE $(WARN) $(WERROR) -O2 -fPIC -shared -o $@ $< -ldl)
 $(BUILD)/tests/faults/wreck_card.so: tests/faults/wreck_card.cu
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Xcompiler -fPIC -shared -o $@ $<)

@@ -232,8 +232,7 @@ void out_flush(out *o)
 int out_sync(out *o, err *e)
 {
     out_flush(o);
-    if (!o->failed.status && fsync(o->fd) && errno != EINVAL &&
-        errno != ENOTSUP) /* some can be written to, not synced */
+    if (!o->failed.status && replace_store(o->fd))
         err_system(&o->failed, o->name, errno, "cannot write");
     return out_failed(o, e);
 }
@@ -250,8 +249,12 @@ int out_patch(out *o, int64_t offset, const void *bytes, size_t size, err *e)
     if (!o->file.target || o->gzip)
         return err_set(e, o->name, 0, "cannot go back in this output; expected -o with a file");
     empty(o, Z_NO_FLUSH);
-    if (!o->failed.status && pwrite(o->fd, bytes, size, (off_t)offset) != (ssize_t)size)
-        return err_system(e, o->name, errno, "cannot write");
+    for (size_t done = 0; done < size && !o->failed.status;) {
+        ssize_t n = pwrite(o->fd, (const char *)bytes + done, size - done, (off_t)offset + (off_t)done);
+        if (n < 0 && errno != EINTR)
+            return err_system(e, o->name, errno, "cannot write");
+        done += n > 0 ? (size_t)n : 0;
+    }
     return 0;
 }
 

@@ -76,17 +76,20 @@ int replace_open(replace *r, const char *path, err *e)
     return 0;
 }
 
-/* Some of what can be written to cannot be synced; nothing is wrong then. */
-static bool stored(int fd)
+int replace_store(int fd)
 {
-    return !fsync(fd) || errno == EINVAL || errno == ENOTSUP;
+    int bad;
+    do
+        bad = fsync(fd);
+    while (bad && errno == EINTR);
+    return bad && errno != EINVAL && errno != ENOTSUP ? -1 : 0;
 }
 
 int replace_finish(replace *r, const char *name, err *e)
 {
     char self[64];
     snprintf(self, sizeof self, "/proc/self/fd/%d", r->fd);
-    int bad = stored(r->fd) ? 0 : err_system(e, name, errno, "cannot write");
+    int bad = !replace_store(r->fd) ? 0 : err_system(e, name, errno, "cannot write");
     if (!bad && !r->temporary)
         bad = take_name(r, self, name, e);
     int fd = r->fd;

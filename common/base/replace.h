@@ -20,6 +20,10 @@ int replace_open(replace *r, const char *path, err *e);
  * and on failure no file is left and the place is as it was. */
 int replace_finish(replace *r, const char *name, err *e);
 
+/* Waits until what was written is stored: 0, or -1 with errno. Some of what can be written to cannot be synced; nothing is wrong
+ * then. */
+int replace_store(int fd);
+
 /* Removes the file. */
 void replace_discard(replace *r);
 
