@@ -30,8 +30,8 @@ is "$(python3 tests/cli/paper_page.py "$T/page.html" "$T/page.txt" 2>&1)" "" "we
 check "what is HTML's is escaped" grep -q '2 &lt; 3 &amp; 4 &gt; 3, &quot;so&quot;' "$T/page.html"
 check "a paper's column is marked" grep -q '<td class="number theirs">0.187</td><td class="number">1.50e-01</td>' "$T/page.html"
 check "so is a paper's row" grep -q '<th scope="row" class="theirs">steps, paper</th><td class="theirs">no number</td>' "$T/page.html"
-check "pictures are side by side" grep -q '<div class="row">' "$T/page.html"
-is "$(grep -c '<div class="row">' "$T/page.html")" 1 "in one row"
+check "pictures are side by side" grep -q '<div class="row pairs">' "$T/page.html"
+is "$(grep -c '<div class="row pairs">' "$T/page.html")" 1 "in one row"
 is "$(awk 'length > 80' "$T/page.txt")" "" "text is 80 wide"
 is "$(sed -n '/^  model/,/gone/p' "$T/page.txt")" '  model             ms, paper        ms
   ----------------  ---------  --------
