@@ -122,7 +122,10 @@ models() {
         face=$folder/head.obj box=-15,-82,-30,85,40,111 up=y side=0.7,0.1,1 contract=zyg
         face_words="the part of our own head about its left muscle"
     fi
-    voxelise -q --unit mm -s 2.5 --box="$box" "$face" 2>"$work/said" | attach -q 2>>"$work/said" >"$folder/face.model"
+    quietly face_model
+}
+face_model() {
+    voxelise -q --unit mm -s 2.5 --box="$box" "$face" | attach -q -o "$folder/face.model"
 }
 
 # samples_make FOLDER TARGET...
@@ -132,12 +135,26 @@ samples_make() {
     quietly env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make -s -C samples OUT="$folder" "$@"
 }
 
+# went FILE: how far its poses (TUM lines) are from the first at most, mm.
+went() {
+    awk 'NR == 1 { x = $2; y = $3; z = $4 } { d = sqrt(($2 - x) ^ 2 + ($3 - y) ^ 2 + ($4 - z) ^ 2); if (d > most) most = d }
+        END { printf "%.3g", 1000 * most }' "$1"
+}
+
 # scanned: samples/scan, once, in $work/scan, with the real fetal head where that is ($head is its folder, else empty).
 scanned() {
     [ ! -d "$work/scan" ] || return 0
     head=
     [ ! -d "$data/ultrasound/fetal-head" ] || head=$data/ultrasound/fetal-head
     IMAGES=24 quietly samples/scan "$work/scan" ${head:+"$head"}
+}
+
+# heard COMMAND...: what it says on standard error is in $work/said, and is seen where it fails.
+heard() {
+    "$@" 2>"$work/said" || {
+        cat "$work/said" >&2
+        return 1
+    }
 }
 
 # quietly COMMAND...: what it says is only seen where it fails.

@@ -47,7 +47,7 @@ function set(what, a, b, c)
     else if (what == "note")
         html ? tagged("p", " class=\"note\"", a) : wrap(a, "- ", "  ")
     else if (what == "missing")
-        html ? tagged("p", " class=\"missing\"", a) : wrap(a, "Not here: ", "  ")
+        html ? tagged("p", " class=\"missing\"", a) : wrap(a, "Note: ", "  ")
     else if (what == "table")
         table(folder "/" a, b)
     else if (what == "picture")
@@ -213,6 +213,14 @@ function table_text(caption,    r, i, wide, line, rule, dashes)
     print ""
 }
 
+# How many pictures follow each other from line n on: an even number stands in pairs.
+function in_row(    count)
+{
+    while (word[n + count] == "picture")
+        count++
+    return count
+}
+
 # A file as a data: URI; `change` is for sed, on the way.
 function encoded(file, type, change,    command, line)
 {
@@ -229,7 +237,7 @@ function figure(file, caption, alt,    size, got)
         stop(file ": no such picture")
     close(file)
     if (!rowed)
-        print "<div class=\"row\">"
+        print "<div class=\"row" (in_row() % 2 ? "" : " pairs") "\">"
     rowed = 1
     print "<figure>"
     if (file ~ /[.]svg$/) {

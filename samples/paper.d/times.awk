@@ -63,7 +63,7 @@ function value(kind, i,    m)
         return slices ? sprintf("%.0f (%.0f)", frame["frame: msds and image", m], frame["frame: fem 20 cg and image", m]) : "-"
     if (kind == "drawn")
         return drawn[m]
-    return sprintf("%.3g", ms[kind, m])
+    return sprintf(ms[kind, m] < 1000 ? "%.3g" : "%.0f", ms[kind, m])
 }
 
 function head(    i, line)

@@ -30,15 +30,15 @@ is "$(python3 tests/cli/paper_page.py "$T/page.html" "$T/page.txt" 2>&1)" "" "we
 check "what is HTML's is escaped" grep -q '2 &lt; 3 &amp; 4 &gt; 3, &quot;so&quot;' "$T/page.html"
 check "a paper's column is marked" grep -q '<td class="number theirs">0.187</td><td class="number">1.50e-01</td>' "$T/page.html"
 check "so is a paper's row" grep -q '<th scope="row" class="theirs">steps, paper</th><td class="theirs">no number</td>' "$T/page.html"
-check "pictures are side by side" grep -q '<div class="row">' "$T/page.html"
-is "$(grep -c '<div class="row">' "$T/page.html")" 1 "in one row"
+check "pictures are side by side" grep -q '<div class="row pairs">' "$T/page.html"
+is "$(grep -c '<div class="row pairs">' "$T/page.html")" 1 "in one row"
 is "$(awk 'length > 80' "$T/page.txt")" "" "text is 80 wide"
 is "$(sed -n '/^  model/,/gone/p' "$T/page.txt")" '  model             ms, paper        ms
   ----------------  ---------  --------
   ball & bowl           0.187  1.50e-01
   longer name        12 (3.4)         -
   what <is> "gone"                    7' "a table of text is aligned"
-check "what is missing is said" grep -q '^Not here: There is no 10' "$T/page.txt"
+check "what is missing is said" grep -q '^Note: There is no 10' "$T/page.txt"
 # shellcheck disable=SC2016 # for sed
 sed -n 's/.*srcset="data:image.svg+xml;base64,\([^"]*\)".*/\1/p' "$T/page.html" | base64 -d >"$T/dark.svg"
 check "plots are light on dark" sh -c "grep -q '#e3e7ec' '$T/dark.svg' && ! grep -q black '$T/dark.svg'"
@@ -52,8 +52,8 @@ fails 1 "a word that is none" "'song' is no word" set_page txt "$T/bad"
 # Two sections, without real data and without the programs that measure.
 check "two sections" env SINEW_SHARED="$T/none" BENCH="$T/none" samples/paper "$T/out" wm-models wm-table-1
 is "$(python3 tests/cli/paper_page.py "$T/out/paper.html" "$T/out/paper.txt" 2>&1)" "" "a page, and the same numbers in its text"
-check "it says that there is no real data" grep -q '^Not here: There is no real data' "$T/out/paper.txt"
-check "and that nothing was measured" grep -q '^Not here: Times are not here: there is no bench_tled' "$T/out/paper.txt"
+check "it says that there is no real data" grep -q '^Note: There is no real data' "$T/out/paper.txt"
+check "and that nothing was measured" grep -q '^Note: Times are not here: there is no bench_tled' "$T/out/paper.txt"
 is "$(awk '$1 == "sphere" && $2 == 2176 { print $3, $4, $5; exit }' "$T/out/paper.txt")" "2176 2849 2849" "the ball has the paper's elements and nodes"
 is "$(awk '$1 == "nodes" && $2 == 2849 { print $3, $4, ($5 > 10000); exit }' "$T/out/paper.txt")" "480 6724 1" "Table 1 has ours below theirs"
 is "$(grep -c '<img' "$T/out/paper.html")" 10 "ten pictures"
