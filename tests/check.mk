@@ -161,6 +161,15 @@ sanitize:
 	    $(MAKE) $(JOBS) BUILD=$(BUILD)/sanitize BIN=$(BUILD)/sanitize/bin CFLAGS='$(SANITIZE)' CUDA=no $(SANITIZE_GOAL)
 SANITIZE_GOAL = check-tests
 
+# Data races: what has threads, under ThreadSanitizer. (Embree, which is not built so, is seen from outside only.)
+.PHONY: tsan tsan-run
+TSAN = -O1 -g -fsanitize=thread -fno-omit-frame-pointer
+TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool tled_step tled_run msds_run slice voxelise_voxels)
+tsan:
+	TSAN_OPTIONS=exitcode=99 SINEW_SANITIZED=1 REPEATS=1 $(MAKE) $(JOBS) BUILD=$(BUILD)/tsan BIN=$(BUILD)/tsan/bin CFLAGS='$(TSAN)' CUDA=no tsan-run
+tsan-run: all $(TSAN_UNIT)
+	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t
+
 FUZZ_FLAGS = -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 fuzz:
 	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/fuzz BIN=$(BUILD)/fuzz/bin CFLAGS='$(FUZZ_FLAGS)' CUDA=no \
@@ -253,6 +262,7 @@ help:
 	'make check-tests  both, with the counts     make check-long  both, with what takes minutes' \
 	'make clang        the tools and unit tests, built by clang' \
 	'make sanitize     the tests under ASan and UBSan' \
+	'make tsan         what has threads, under ThreadSanitizer' \
 	'make fuzz         every fuzz target for SECONDS=$(SECONDS) each' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \

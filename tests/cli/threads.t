@@ -56,6 +56,15 @@ many "tled-run, double" "$T/whole" tled-run -q -d cpu -c a=0.4 -g 0,0,-9.81 -n 4
 many "tled-run, single" "$T/whole" tled-run -q -d cpu --precision single -c a=0.4 -g 0,0,-9.81 -n 40
 many "tled-run, of shares" "$T/ball" tled-run -q -d cpu -c a=0.2 -n 40
 many "tled-run, pressed by a probe" "$T/whole" tled-run -q -d cpu --probe sphere:2cm --poses "$T/onto" -t 0.02
+# A card has as many threads as it likes; here --threads counts for nothing, and each run is one more.
+if tled-run -q -d cuda -n 1 <"$T/whole" >"$T/first" 2>"$T/stderr"; then
+    many "tled-run, on a card, double" "$T/whole" tled-run -q -d cuda -c a=0.4 -n 40
+    many "tled-run, on a card, single" "$T/ball" tled-run -q -d cuda --precision single -c a=0.2 -n 40
+    many "msds-run, springs on a card" "$T/block" msds-run -q -d cuda --probe linear:4cm,2.5cm --poses "$T/poses"
+    many "msds-run, FEM on a card" "$T/block" msds-run -q -d cuda --method fem --probe linear:4cm,2.5cm --poses "$T/poses"
+else
+    skip 4 "no card"
+fi
 many "msds-run, springs" "$T/block" msds-run -q -d cpu --probe linear:4cm,2.5cm --poses "$T/poses"
 many "msds-run, FEM" "$T/block" msds-run -q -d cpu --method fem --probe linear:4cm,2.5cm --poses "$T/poses"
 many "msds-run, FEM, warped" "$T/block" msds-run -q -d cpu --method fem --warp --probe linear:4cm,2.5cm --poses "$T/poses"
