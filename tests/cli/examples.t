@@ -28,6 +28,7 @@ coarser() {
     sed -E 's/-s 2\.5 /-s 10 /; s/-s 2,2,0\.5 /-s 6,6,1.5 /; s/-n 128 /-n 24 /; s/-t (0\.5|1|2)( |$)/-t 0.03\2/; s/--every 0\.0[0-9]/--every 0.01/
         s/--nodes 32x16x16 --like arm/--nodes 12x10x10 --like patient/; s/--nodes 32x16x16/--nodes 9x5x7/; s/-gt 20000/-gt 500/; s/^mkfifo poses$/&; cat press.tum >poses \&/
         s/--crop 110,40,710,560 volume.dcm/--crop 4,4,20,20 patient/; s/--seed 12,-30,41mm/--seed 9,11,0mm/; s/--tolerance 15/--tolerance 30/
+        s/awk -f (samples\/ball)/awk -v n=4 -f \1/; s/gmsh -3/gmsh -v 1 -3/
         s/^vi /sed -n 1p /; s/^less /sed -n 1p /; s/(sinew render .*)--(up|view)/\1--size 300x200 --\2/; s/ffmpeg -f/ffmpeg -v error -y -f/' "$1"
 }
 
@@ -67,6 +68,11 @@ cp press.tum sweep.tum
     voxelise -q --unit mm -s 5 "$ROOT/tests/cli/cube.obj" | attach -q --rigid '*' >cube.sinew
     msds-mesh -q --nodes 9x5x7 --like map.nrrd >tissue.sinew
     cp tissue.sinew arm.sinew
+    # A box of hexahedra for gmsh, one of whose sides is a group.
+    printf '%s\n' 'Point(1) = {0, 0, 0, 10};' 'Extrude {20, 0, 0} { Point{1}; Layers{2}; }' 'Extrude {0, 20, 0} { Curve{1}; Layers{2}; Recombine; }' \
+        'Extrude {0, 0, 20} { Surface{5}; Layers{2}; Recombine; }' 'Physical Surface("porta") = {5};' 'Physical Volume("liver") = {1};' >liver.geo
+    printf '%s\n' 'liver E=2000 nu=0.45 density=1060' 'tissue E=2000' >liver.txt
+    ln -s "$ROOT/samples" samples
     msds-mesh -q --nodes 9x5x7 --size 16cm,8cm,8cm >block.sinew
     printf '%s\n' 'tissue E=10e3' 'bone   E=1e7 nu=0.3 density=1900' 'vein   E=500' >materials
     us-segment -q -n bone --low 210 --largest patient.nrrd >bone.nrrd && us-segment -q -n vein --low 45 --high 90 --onto bone.nrrd patient.nrrd >labels.nrrd
@@ -98,6 +104,8 @@ for example in "$T"/examples/*; do
     esac
     if grep -q 'ffmpeg' "$T/commands" && ! have ffmpeg; then
         skip 1 "$name: no ffmpeg"
+    elif grep -q '^gmsh' "$T/commands" && ! have gmsh; then
+        skip 1 "$name: no gmsh"
     elif grep -q '^ccx' "$T/commands" && ! have ccx; then
         skip 1 "$name: no ccx"
     elif grep -q 'sweep\.igs\.mha' "$T/commands"; then

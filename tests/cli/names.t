@@ -58,6 +58,11 @@ for canary in ../out/canary "$T/out/canary" link; do
     done
     refused "NRRD, a list of files" "LIST" us-import list.nhdr
     refused "a tracked sequence" "outside its folder|is no regular file|expected" us-import sweep.seq.mhd
+    # ---- Abaqus input in several files.
+    for line in "*INCLUDE, INPUT=$canary" "*NODE, INPUT=$canary"; do
+        printf '%s\n' "$line" >named.inp
+        refused "$line" 'expected (all in one file|x, y, z written out)' sinew import --unit m -o out.sinew named.inp
+    done
     # ---- A body's surfaces.
     printf 'surface %s unit=mm\n' "$canary" >body
     refused "a body that names $canary" "expected the name of a file in the folder|outside its folder" \

@@ -35,6 +35,8 @@ cat >"$T/models" <<'END'
 2|1|tled-run -q -d cpu --dt .00035 -c all=1 -t .2 --ramp .01 < muscle.sinew | sinew diff - muscle.sinew
 1|1|msds-mesh --nodes 3x3x3 --like none.nrrd | sinew bind --unit mm vein.obj | msds-run --probe sphere:2cm --poses press.tum | us-slice --depth 5cm labels.nrrd
 1|1|msds-run -q --probe sphere:2cm --poses bad.tum < arm.sinew | us-slice --depth 5cm labels.nrrd
+1|1|sinew import --unit m -f inp none.inp | attach | sinew info
+1|1|sinew import --unit m -f inp box.obj | tled-run -n 1 | sinew info
 1|1|sinew export -f model cut.sinew | attach | sinew info
 1|1|attach -q < cut.sinew | sinew bind | sinew info
 1|2|nonesuch-tool | attach | sinew info
