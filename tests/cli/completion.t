@@ -22,7 +22,7 @@ tled-run --pre|--precision
 tled-run --probe |convex: curved: linear: sphere:
 tled-run --dt |
 tled-run --script f|face.obj face.txt
-sinew export -f |inp model obj vtu
+sinew export -f |inp model msh obj vtu
 sinew-export --frame |all last rest
 sinew-deform --format=p|pc2
 voxelise --unit |cm in m mm um
