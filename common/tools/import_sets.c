@@ -24,15 +24,22 @@ int32_t import_sets_open(import_sets *s, const char *name, err *e)
     return s->set[s->count].name ? (int32_t)s->count++ : -1;
 }
 
+static int need_room(import_set *set, err *e)
+{
+    if (set->range && set->count < set->room)
+        return 0;
+    return mem_grow(&set->range, &set->room, set->count + 1, sizeof *set->range, "sets", e);
+}
+
 int import_sets_range(import_sets *s, int32_t at, int32_t first, int32_t last, int32_t step, err *e)
 {
     import_set *set = &s->set[at];
-    import_range *before = set->range && set->count ? &set->range[set->count - 1] : NULL;
+    import_range *before = set->count ? &set->range[set->count - 1] : NULL;
     if (before && before->first >= 0 && before->step == 1 && step == 1 && first == (int64_t)before->last + 1) {
         before->last = last;
         return 0;
     }
-    if (MEM_ROOM(&set->range, &set->room, set->count + 1, "sets", e))
+    if (need_room(set, e))
         return -1;
     set->range[set->count++] = (import_range){first, last, step};
     return 0;
@@ -41,7 +48,7 @@ int import_sets_range(import_sets *s, int32_t at, int32_t first, int32_t last, i
 int import_sets_include(import_sets *s, int32_t at, int32_t other, err *e)
 {
     import_set *set = &s->set[at];
-    if (MEM_ROOM(&set->range, &set->room, set->count + 1, "sets", e))
+    if (need_room(set, e))
         return -1;
     set->range[set->count++] = (import_range){-1 - other, 0, 0};
     return 0;

@@ -75,6 +75,11 @@ cp press.tum sweep.tum
     ln -s "$ROOT/samples" samples
     msds-mesh -q --nodes 9x5x7 --size 16cm,8cm,8cm >block.sinew
     printf '%s\n' 'tissue E=10e3' 'bone   E=1e7 nu=0.3 density=1900' 'vein   E=500' >materials
+    mkdir samples && cp "$ROOT/samples/ball.awk" samples
+    # A box of 40 mm for Gmsh, with a volume and a side of it named.
+    printf '%s\n' 'SetFactory("OpenCASCADE");' 'Box(1) = {0, 0, 0, 40, 40, 40};' 'Physical Volume("liver") = {1};' \
+        'Physical Surface("porta") = {1};' 'Mesh.MeshSizeMin = 20;' >liver.geo
+    echo 'liver E=5000 nu=0.45' >liver.txt
     us-segment -q -n bone --low 210 --largest patient.nrrd >bone.nrrd && us-segment -q -n vein --low 45 --high 90 --onto bone.nrrd patient.nrrd >labels.nrrd
 } >"$T/made" 2>&1
 [ -s "$T/made" ] && diag_file "$T/made"
@@ -108,6 +113,8 @@ for example in "$T"/examples/*; do
         skip 1 "$name: no gmsh"
     elif grep -q '^ccx' "$T/commands" && ! have ccx; then
         skip 1 "$name: no ccx"
+    elif grep -q '^gmsh' "$T/commands" && ! have gmsh; then
+        skip 1 "$name: no gmsh"
     elif grep -q 'sweep\.igs\.mha' "$T/commands"; then
         skip 1 "$name: a tracked sweep is a recording; us-import.t makes one and runs this"
     else
