@@ -2,6 +2,7 @@
  * comes: with EINTR, or with fewer bytes than were asked for. Which, goes by the numbers that SINEW_FAULT_SEED begins. Where
  * SINEW_FAULT_COUNT names a file, it gets how many calls were interrupted.
  */
+// NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -97,3 +98,4 @@ __attribute__((destructor)) static void end(void)
     fprintf(f, "%lld\n", (long long)atomic_load(&chance.count));
     fclose(f);
 }
+// NOLINTEND(readability-inconsistent-declaration-parameter-name)

@@ -2,6 +2,7 @@
  * SINEW_FAULT_AT gives, from 1, gets nothing; with SINEW_FAULT_ON set, so do all after it. Where SINEW_FAULT_COUNT names a
  * file, it gets their number at the end. For the GNU C library, whose own names for these functions it uses.
  */
+// NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -105,3 +106,4 @@ int __libc_start_main(int (*begin)(int, char **, char **), int argc, char **argv
     fault.begin = begin;
     return next(begin_counting, argc, argv, init, fini, rtld_fini, stack_end);
 }
+// NOLINTEND(readability-inconsistent-declaration-parameter-name)
