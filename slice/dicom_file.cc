@@ -391,6 +391,11 @@ dicom_packing dicom_file_packing(dicom_file *f, const char **name)
     return jpeg2000 ? DICOM_JPEG2000 : DICOM_DCMTK;
 }
 
+bool dicom_file_is_jpeg(dicom_file *f)
+{
+    return dicom_file_packing(f, nullptr) == DICOM_DCMTK && f->set->getOriginalXfer() != EXS_RLELossless;
+}
+
 int64_t dicom_pixels_size(dicom_file *f)
 {
     DcmElement *element = nullptr;

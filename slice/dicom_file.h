@@ -53,6 +53,9 @@ int64_t dicom_words(dicom_file *f, uint32_t tag, const uint16_t **words);
 /* How they are compressed; *name (may be NULL): the transfer syntax, in words. */
 dicom_packing dicom_file_packing(dicom_file *f, const char **name);
 
+/* Whether those that DCMTK unpacks are JPEG or JPEG-LS, not RLE. */
+bool dicom_file_is_jpeg(dicom_file *f);
+
 /* The bytes that they take, in the file, or unpacked; -1: there are none. */
 int64_t dicom_pixels_size(dicom_file *f);
 

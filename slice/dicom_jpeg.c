@@ -2,6 +2,7 @@
 
 enum {
     SOI = 0xD8,
+    EOI = 0xD9,
     SOF0 = 0xC0,
     SOF15 = 0xCF,
     DHT = 0xC4,
@@ -48,8 +49,9 @@ bool dicom_jpeg_fits(const unsigned char *bytes, size_t size, int64_t rows, int6
     if (!dicom_jpeg_begins(bytes, size))
         return false;
     while ((marker = next_marker(bytes, size, &at))) {
-        if ((marker >= RST0 && marker <= RST7) || marker == TEM)
-            continue;
+        /* Markers without a length have no place before it; DCMTK 3.6.7 never comes past TEM. */
+        if ((marker >= RST0 && marker <= RST7) || marker == TEM || marker == EOI)
+            return false;
         if (size - at < 7 || marker == SOI)
             return false;
         if (is_frame(marker))

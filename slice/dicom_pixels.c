@@ -124,7 +124,10 @@ static int check_jpeg(const dicom_image *d, dicom_file *f, err *e)
     for (int64_t i = 0; i < dicom_pieces(f); i++) {
         size_t size = 0;
         const unsigned char *piece = dicom_piece(f, i, &size);
-        if (piece && dicom_jpeg_begins(piece, size) && !dicom_jpeg_fits(piece, size, d->rows, d->columns))
+        bool frame = piece && dicom_jpeg_begins(piece, size);
+        if (!i && !frame && dicom_file_is_jpeg(f))
+            return refuse(f, e, "JPEG that does not begin with SOI", "a frame at the beginning of the pixels");
+        if (frame && !dicom_jpeg_fits(piece, size, d->rows, d->columns))
             return err_set(e, dicom_file_name(f), 0, "JPEG of another size than the image; expected %lld x %lld pixels",
                            (long long)d->columns, (long long)d->rows);
     }

@@ -220,8 +220,9 @@ const char *num_unit_name(num_unit unit)
 
 int num_length_of(const char *text, num_length *length)
 {
+    const double most = 1e300; /* finite in any unit */
     const char *end = text + strlen(text), *stop;
-    if (num_scan(text, end, &stop, &length->value))
+    if (num_scan(text, end, &stop, &length->value) || !(fabs(length->value) <= most))
         return -1;
     length->unit = *stop ? num_unit_of(stop) : 0;
     return *stop && !length->unit ? -1 : 0;
