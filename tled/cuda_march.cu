@@ -18,11 +18,10 @@ enum {
     NODE = 16,       /* bytes of 4 floats, of a node's displacement, velocity or force */
     STAGES = 4,      /* layers of displacements in shared memory */
     STAGE = GRID * GRID * NODE,
-    VELOCITIES = STAGES * STAGE,
-    FORCE = MARCH_THREADS * NODE,
+    VELOCITIES = STAGES * STAGE, /* from here on the place of a node has as much room, and one grid fewer rows */
+    FORCE = GRID * SIDE * NODE,
     FORCES = VELOCITIES + FORCE, /* two times three of them: on corners (1, 0), (0, 1), (1, 1) */
-    GRAVITY = FORCES + 6 * FORCE,
-    SHARED = GRAVITY + NODE,
+    SHARED = FORCES + 6 * FORCE,
     EXTRA = 2 * SIDE + 1, /* words of places beyond the threads' */
     TOGETHER = 3          /* blocks of a multiprocessor */
 };
@@ -31,12 +30,6 @@ enum {
 typedef struct face {
     float mean[3], x[3], y[3], xy[3];
 } face;
-
-/* What stands where in shared memory for a thread. */
-typedef struct places {
-    uint32_t node, extra, velocity, force, gravity;
-    bool has_extra;
-} places;
 
 /* What goes from layer to layer. */
 typedef struct flow {
@@ -47,6 +40,13 @@ typedef struct flow {
     float force[3];               /* on corner (0, 0) */
     face below;                   /* forces of the layer of cells below */
 } flow;
+
+/* A thread's place in the grid of a layer's nodes. */
+static __device__ __forceinline__ int place_of(int thread)
+{
+    const int warp = thread / 32, lane = thread % 32;
+    return (warp / 2 * 4 + lane / 8) * GRID + warp % 2 * 8 + lane % 8;
+}
 
 static __device__ __forceinline__ uint32_t shared_at(const void *p)
 {
@@ -107,12 +107,25 @@ static __device__ __forceinline__ const float4 *node_of(const float4 *p, uint32_
     return (const float4 *)at;
 }
 
-static __device__ __forceinline__ void send_layer(const cuda_march_pass &p, const places &at, uint32_t stage, uint32_t word,
+/* The first threads have a place beyond the threads' as well. */
+static __device__ __forceinline__ bool has_extra(void)
+{
+    return threadIdx.x < EXTRA;
+}
+
+/* at: the thread's own place. */
+static __device__ __forceinline__ uint32_t extra_at(uint32_t at)
+{
+    const int t = (int)threadIdx.x, own = place_of(t), extra = t < GRID ? t * GRID + SIDE : SIDE * GRID + t - GRID;
+    return at + (uint32_t)((extra - own) * NODE);
+}
+
+static __device__ __forceinline__ void send_layer(const cuda_march_pass &p, uint32_t at, uint32_t stage, uint32_t word,
                                                   uint32_t extra)
 {
-    send(at.node + stage, node_of(p.from, word), word & MARCH_THERE);
-    if (at.has_extra)
-        send(at.extra + stage, node_of(p.from, extra), extra & MARCH_THERE);
+    send(at + stage, node_of(p.from, word), word & MARCH_THERE);
+    if (has_extra())
+        send(extra_at(at) + stage, node_of(p.from, extra), extra & MARCH_THERE);
 }
 
 static __device__ __forceinline__ face face_at(uint32_t node)
@@ -275,18 +288,20 @@ static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to
     shared_store(to + 2 * FORCE, xy[0], xy[1], xy[2]);
 }
 
+static __shared__ float4 gravity; /* its part of a velocity */
+
 /* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces on it. It is worked on where it
  * stands in shared memory, component by component: few nodes are such, and others are to keep their registers. */
-static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, const places &at,
+static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
                                                  uint32_t word, uint32_t node, uint32_t bits, int a, float pull)
 {
     const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)(word & MARCH_NODE)) : NULL;
     const int axis = m.axis[a];
-    float u = shared_number(node + 4 * a), v = shared_number(at.velocity + 4 * a), net = -pull;
+    float u = shared_number(node + 4 * a), v = shared_number(at + VELOCITIES + 4 * a), net = -pull;
     for (int32_t k = 0; x && k < x->forces; k++)
         net += (float)(m.v.force_share[x->force + k] * p.now[3 * m.v.force_curve[x->force + k] + axis]);
     if (bits >> (MARCH_FREE + a) & 1) {
-        v = p.keep * v + shared_number(at.gravity + 4 * a) + p.push * shared_number(node + 12) * net;
+        v = p.keep * v + (a == 0 ? gravity.x : a == 1 ? gravity.y : gravity.z) + p.push * shared_number(node + 12) * net;
         u += p.dt * v;
     } else if (p.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
         const float to = (float)p.next[3 * x->hold[axis] + axis];
@@ -294,23 +309,22 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
         u = to;
     }
     shared_number_store(node + 4 * a, u);
-    shared_number_store(at.velocity + 4 * a, v);
+    shared_number_store(at + VELOCITIES + 4 * a, v);
 }
 
 /* The forces at a thread's node, and its step. */
-static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, const places &at,
+static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
                                                  const flow &f, uint32_t forces, uint32_t node)
 {
-    const float4 x = shared_load(forces - NODE), y = shared_load(forces + FORCE - SIDE * NODE);
-    const float4 xy = shared_load(forces + 2 * FORCE - (SIDE + 1) * NODE);
+    const float4 x = shared_load(forces - NODE), y = shared_load(forces + FORCE - GRID * NODE);
+    const float4 xy = shared_load(forces + 2 * FORCE - (GRID + 1) * NODE);
     const float3 sum = {(f.force[0] + x.x) + (y.x + xy.x), (f.force[1] + x.y) + (y.y + xy.y),
                         (f.force[2] + x.z) + (y.z + xy.z)};
-    float4 u = shared_load(node), v = shared_load(at.velocity);
+    float4 u = shared_load(node), v = shared_load(at + VELOCITIES);
     const uint32_t bits = __float_as_uint(v.w);
     if (p.what & PASS_INTERNAL)
         *(float4 *)node_of(p.to, f.now) = make_float4(sum.x, sum.y, sum.z, u.w);
     if (bits == 7) {
-        const float4 gravity = shared_load(at.gravity);
         const float push = p.push * u.w;
         v.x = (p.keep * v.x + gravity.x) - push * sum.x;
         v.y = (p.keep * v.y + gravity.y) - push * sum.y;
@@ -323,7 +337,7 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
         for (int a = 0; a < 3; a++)
             move_held(m, p, at, f.now, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
         u = shared_load(node);
-        v = shared_load(at.velocity);
+        v = shared_load(at + VELOCITIES);
     }
     if (p.what & PASS_BEGIN)
         *(float4 *)node_of(p.to, f.now) = u;
@@ -334,30 +348,30 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
 /* Layer c of cells, whose lower face is `low`, and of nodes; odd: c is. here, next, free: where the displacements of layers c and
  * c + 1 stand, and those of c + 3 may. inner: the layer's nodes are this unit's; goes_on: there is a layer c + 3. */
 template <bool SPECIAL, int ODD>
-static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, const places &at, flow *f,
+static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, uint32_t at, flow *f,
                                              uint32_t here, uint32_t next, uint32_t free, bool inner, bool goes_on,
                                              const face &low, face *high)
 {
     const uint32_t *ahead = f->word + MARCH_AHEAD * MARCH_WORDS;
-    const uint32_t forces = at.force + ODD * 3 * FORCE;
+    const uint32_t forces = at + FORCES + ODD * 3 * FORCE;
     const bool owned = f->now & MARCH_OWN;
     if (owned)
-        send(at.velocity, node_of(p.velocity, f->now), true);
+        send(at + VELOCITIES, node_of(p.velocity, f->now), true);
     sent();
     if (goes_on)
         send_layer(p, at, free, f->far, f->more);
     sent();
     f->far = ahead[0];
-    if (at.has_extra)
+    if (has_extra())
         f->more = ahead[MARCH_THREADS];
     const bool any = f->any;
     f->any = __any_sync(~0u, f->then & MARCH_CELL);
     if (any || f->any)
-        *high = face_at(at.node + next);
+        *high = face_at(at + next);
     if (any || f->was) {
         face sum = f->below;
         if (any)
-            cell_forces<SPECIAL>(m, p, f, low, *high, at.node + here, &sum);
+            cell_forces<SPECIAL>(m, p, f, low, *high, at + here, &sum);
         else
             f->below = face{};
         share_forces(sum, forces, f->force);
@@ -371,34 +385,23 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     arrived<1>(); /* this layer's velocity, and displacements of c + 2 */
     __syncthreads();
     if (owned && inner)
-        move_node(m, p, at, *f, forces, at.node + here);
+        move_node(m, p, at, *f, forces, at + here);
     f->now = f->then;
     f->then = after;
     f->word += MARCH_WORDS;
 }
 
-static __device__ void find_places(places *at, uint32_t base)
-{
-    const int t = (int)threadIdx.x, warp = t / 32, lane = t % 32;
-    const int i = warp % 2 * 8 + lane % 8, j = warp / 2 * 4 + lane / 8;
-    at->node = base + (uint32_t)(j * GRID + i) * NODE;
-    at->extra = base + (uint32_t)(t < GRID ? t * GRID + SIDE : SIDE * GRID + t - GRID) * NODE;
-    at->velocity = base + VELOCITIES + (uint32_t)t * NODE;
-    at->force = base + FORCES + (uint32_t)(j * SIDE + i) * NODE;
-    at->gravity = base + GRAVITY;
-    at->has_extra = t < EXTRA;
-}
-
-/* Thread 0's work: gravity's part of a velocity. */
-static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p, uint32_t to)
+/* Thread 0's work. */
+static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p)
 {
     const double *g = m.v.gravity < 0 ? NULL : p.now + 3 * m.v.gravity;
-    shared_store(to, g ? p.push * (float)g[m.axis[0]] : 0, g ? p.push * (float)g[m.axis[1]] : 0,
-                 g ? p.push * (float)g[m.axis[2]] : 0);
+    gravity.x = g ? p.push * (float)g[m.axis[0]] : 0;
+    gravity.y = g ? p.push * (float)g[m.axis[1]] : 0;
+    gravity.z = g ? p.push * (float)g[m.axis[2]] : 0;
 }
 
 /* The first layers of a unit are on their way. What the pass before wrote may be read from here on. */
-static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, const places &at,
+static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
                                              const march_unit &unit, flow *f)
 {
     const uint32_t *word = m.word + MARCH_WORDS * (int64_t)unit.base + threadIdx.x;
@@ -408,7 +411,7 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
     f->now = word[0];
     f->then = word[MARCH_WORDS];
     f->far = word[3 * MARCH_WORDS];
-    if (at.has_extra) {
+    if (has_extra()) {
 #pragma unroll
         for (int k = 0; k < 3; k++)
             extra[k] = word[k * MARCH_WORDS + MARCH_THREADS];
@@ -421,7 +424,7 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
     send_layer(p, at, 2 * STAGE, third, extra[2]);
     sent();
     if (threadIdx.x == 0)
-        put_gravity(m, p, at.gravity);
+        put_gravity(m, p);
     arrived<1>();
     __syncthreads();
     f->any = __any_sync(~0u, f->now & MARCH_CELL);
@@ -431,11 +434,10 @@ template <bool SPECIAL>
 static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p,
                                                      const march_unit &unit, uint32_t memory)
 {
-    places at;
+    const uint32_t at = memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
     flow f = {};
-    find_places(&at, memory);
     begin(m, p, at, unit, &f);
-    face even = face_at(at.node), odd;
+    face even = face_at(at), odd;
     const int last = unit.cells;
     uint32_t half = 0; /* where an even layer stands */
 #pragma unroll 1
