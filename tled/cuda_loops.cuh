@@ -16,9 +16,9 @@ static int march_pass(cuda_state *s, const cuda_pass *p, err *e)
     const bool begins = p->what & PASS_BEGIN, ends = p->what & PASS_FINISH;
     const real keep = (begins ? f.slow : 1) * (ends ? f.keep : 1);
     const real push = begins && ends ? f.dt * f.slow : begins ? f.half * f.slow : ends ? f.half : 0;
-    const cuda_march_pass q = {(const float4 *)p->from, (float4 *)p->to,           (float4 *)p->velocity,
-                               p->now,                  p->next,                   (float)keep,
-                               (float)push,             begins ? (float)f.dt : 0, p->what};
+    const cuda_march_pass q = {
+        (const float4 *)p->from,  (float4 *)p->to, (float4 *)p->velocity, p->now, p->next, (float)keep, (float)push,
+        begins ? (float)f.dt : 0, p->what};
     return card_check(cuda_march_start(&s->walk, &q, s->march.units, s->stream), "the start of a pass", s->step, e);
 }
 
@@ -206,7 +206,8 @@ static int cuda_get(void *state, int what, double *to, err *e)
     if (what == TLED_INTERNAL && find_internal(s, e))
         return -1;
     const real *from = what == TLED_DISPLACEMENT ? s->displacement : what == TLED_VELOCITY ? s->velocity : s->spare;
-    if (CUDA_TRY(cudaMemcpyAsync(s->staging, from, (size_t)s->numbers * sizeof(real), cudaMemcpyDeviceToHost, s->stream)) ||
+    if (CUDA_TRY(
+            cudaMemcpyAsync(s->staging, from, (size_t)s->numbers * sizeof(real), cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
     permute(s, s->staging, to);
@@ -236,8 +237,7 @@ static int cuda_keep(void *state, err *e)
     s->has_kept_internal = s->kept_internal != NULL;
     s->kept_step = s->step;
     s->kept_time = s->time;
-    return to_rows(s, s->kept_displacement, s->displacement, e) ||
-                   to_rows(s, s->kept_displacement + n, s->velocity, e)
+    return to_rows(s, s->kept_displacement, s->displacement, e) || to_rows(s, s->kept_displacement + n, s->velocity, e)
                ? -1
                : 0;
 }
@@ -312,7 +312,8 @@ static int cuda_taken(void *state, int slot, void *to, err *e)
     cuda_state *s = (cuda_state *)state;
     const tled_taken *out = (const tled_taken *)to;
     const cuda_frame *f = &s->taken[slot];
-    const permutation u = {s, f->host, out->displacement, f->in_rows}, v = {s, f->host + s->numbers, out->velocity, false};
+    const permutation u = {s, f->host, out->displacement, f->in_rows},
+                      v = {s, f->host + s->numbers, out->velocity, false};
     if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
         return -1;
     permute_work((void *)&u, 0, 0, s->tiles.nodes);
@@ -433,8 +434,8 @@ static int fill(cuda_state *s, err *e)
         return -1;
     if (s->marches)
         begin_march(s);
-    if (make_events(s, e) || set(s, s->displacement, p->displacement, e) ||
-        set(s, s->velocity, p->velocity, e) || CUDA_TRY(cudaDeviceSynchronize()))
+    if (make_events(s, e) || set(s, s->displacement, p->displacement, e) || set(s, s->velocity, p->velocity, e) ||
+        CUDA_TRY(cudaDeviceSynchronize()))
         return -1;
     if (s->resident &&
         CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))

@@ -3,8 +3,9 @@
  * node the sums of one. Compiled with fused multiplications and additions: its bytes are not the processor's.
  *
  * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from three layers before
- * they are wanted. One barrier a layer stands between the forces of its cells, which go to neighbours in buffers that take turns,
- * and its nodes' sums.
+ * they are wanted. Forces on neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells of the
+ * next one are computed: a warp says that it is done with a layer, and only after it has computed the next one does it wait until
+ * all have said so, so that those with fewer cells seldom keep others waiting.
  */
 #define ELEMENT_SINGLE
 extern "C" {
@@ -16,12 +17,14 @@ enum {
     SIDE = MARCH_SIDE,
     GRID = SIDE + 1, /* nodes along a side */
     NODE = 16,       /* bytes of 4 floats, of a node's displacement, velocity or force */
-    STAGES = 4,      /* layers of displacements in shared memory */
+    STAGES = 5,      /* layers of displacements in shared memory */
     STAGE = GRID * GRID * NODE,
     VELOCITIES = STAGES * STAGE, /* from here on the place of a node has as much room, and one grid fewer rows */
     FORCE = GRID * SIDE * NODE,
-    FORCES = VELOCITIES + FORCE, /* two times three of them: on corners (1, 0), (0, 1), (1, 1) */
-    SHARED = FORCES + 6 * FORCE,
+    FORCES = VELOCITIES + FORCE, /* two times four of them: on corners (1, 0), (0, 1), (1, 1), (0, 0) */
+    FORCES_EACH = 4 * FORCE,
+    SHARED = FORCES + 2 * FORCES_EACH,
+    WARPS = MARCH_THREADS / 32,
     EXTRA = 2 * SIDE + 1, /* words of places beyond the threads' */
     TOGETHER = 3          /* blocks of a multiprocessor */
 };
@@ -33,12 +36,11 @@ typedef struct face {
 
 /* What goes from layer to layer. */
 typedef struct flow {
-    const uint32_t *word;         /* of the layer that the loop is at, this thread's */
-    uint32_t now, then, far, more; /* words of layers c, c + 1, c + 3, and that of the extra place in c + 3 */
-    bool any, was;                /* this warp has cells in layers c, c - 1 */
-    int clean;                    /* buffers of forces in which this warp's are zero */
-    float force[3];               /* on corner (0, 0) */
-    face below;                   /* forces of the layer of cells below */
+    const uint32_t *word; /* of the layer that the loop is at, this thread's */
+    uint32_t now, then;   /* words of layers c, c + 1 */
+    bool any, was;        /* this warp has cells in layers c, c - 1 */
+    int clean;            /* buffers of forces in which this warp's are zero */
+    face below;           /* forces of the layer of cells below */
 } flow;
 
 /* A thread's place in the grid of a layer's nodes. */
@@ -73,6 +75,13 @@ static __device__ __forceinline__ float shared_number(uint32_t at)
 static __device__ __forceinline__ void shared_number_store(uint32_t at, float x)
 {
     asm volatile("st.shared.f32 [%0], %1;" ::"r"(at), "f"(x) : "memory");
+}
+
+static __device__ __forceinline__ void shared_store_with(uint32_t at, float x, float y, float z, uint32_t word)
+{
+    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z),
+                 "f"(__uint_as_float(word))
+                 : "memory");
 }
 
 /* The fourth number is whatever stands in some register. */
@@ -170,10 +179,15 @@ static __device__ __forceinline__ element_tensor stress(element_tensor h, float 
                         (1.f / 3);
     const float j = is ? 1 + dilation : 1, scale = mu * power(j), pressure = bulk * dilation;
     const float all = pressure + scale * (dilation - third), own = scale * j, g = pressure - (scale + scale * third);
-    const element_tensor p = {
-        all + own * h.xx + g * (trace - h.xx + m.xx), own * h.xy + g * (m.xy - h.yx), own * h.xz + g * (m.xz - h.zx),
-        own * h.yx + g * (m.yx - h.xy), all + own * h.yy + g * (trace - h.yy + m.yy), own * h.yz + g * (m.yz - h.zy),
-        own * h.zx + g * (m.zx - h.xz), own * h.zy + g * (m.zy - h.yz), all + own * h.zz + g * (trace - h.zz + m.zz)};
+    const element_tensor p = {all + own * h.xx + g * (trace - h.xx + m.xx),
+                              own * h.xy + g * (m.xy - h.yx),
+                              own * h.xz + g * (m.xz - h.zx),
+                              own * h.yx + g * (m.yx - h.xy),
+                              all + own * h.yy + g * (trace - h.yy + m.yy),
+                              own * h.yz + g * (m.yz - h.zy),
+                              own * h.zx + g * (m.zx - h.xz),
+                              own * h.zy + g * (m.zy - h.yz),
+                              all + own * h.zz + g * (trace - h.zz + m.zz)};
     return p;
 }
 
@@ -230,10 +244,11 @@ static __device__ __forceinline__ element_tensor active(const cuda_march &m, con
 
 static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m, const face &low, const face &high)
 {
-    const element_tensor h = {
-        (low.x[0] + high.x[0]) * m.slope[0], (low.y[0] + high.y[0]) * m.slope[1], (high.mean[0] - low.mean[0]) * m.slope[2],
-        (low.x[1] + high.x[1]) * m.slope[0], (low.y[1] + high.y[1]) * m.slope[1], (high.mean[1] - low.mean[1]) * m.slope[2],
-        (low.x[2] + high.x[2]) * m.slope[0], (low.y[2] + high.y[2]) * m.slope[1], (high.mean[2] - low.mean[2]) * m.slope[2]};
+    const element_tensor h = {(low.x[0] + high.x[0]) * m.slope[0],       (low.y[0] + high.y[0]) * m.slope[1],
+                              (high.mean[0] - low.mean[0]) * m.slope[2], (low.x[1] + high.x[1]) * m.slope[0],
+                              (low.y[1] + high.y[1]) * m.slope[1],       (high.mean[1] - low.mean[1]) * m.slope[2],
+                              (low.x[2] + high.x[2]) * m.slope[0],       (low.y[2] + high.y[2]) * m.slope[1],
+                              (high.mean[2] - low.mean[2]) * m.slope[2]};
     return h;
 }
 
@@ -270,10 +285,10 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, const cu
     }
 }
 
-/* The forces on the corners of a face; those of other threads' nodes go to shared memory. */
-static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to, float own[3])
+/* The forces on the corners of a face go to shared memory, and the word with those on the thread's own. */
+static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to, uint32_t word)
 {
-    float x[3], y[3], xy[3];
+    float own[3], x[3], y[3], xy[3];
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         const float low = sum.mean[a] - sum.y[a], high = sum.mean[a] + sum.y[a];
@@ -286,6 +301,7 @@ static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to
     shared_store(to, x[0], x[1], x[2]);
     shared_store(to + FORCE, y[0], y[1], y[2]);
     shared_store(to + 2 * FORCE, xy[0], xy[1], xy[2]);
+    shared_store_with(to + 3 * FORCE, own[0], own[1], own[2], word);
 }
 
 static __shared__ float4 gravity; /* its part of a velocity */
@@ -301,7 +317,11 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
     for (int32_t k = 0; x && k < x->forces; k++)
         net += (float)(m.v.force_share[x->force + k] * p.now[3 * m.v.force_curve[x->force + k] + axis]);
     if (bits >> (MARCH_FREE + a) & 1) {
-        v = p.keep * v + (a == 0 ? gravity.x : a == 1 ? gravity.y : gravity.z) + p.push * shared_number(node + 12) * net;
+        v = p.keep * v +
+            (a == 0   ? gravity.x
+             : a == 1 ? gravity.y
+                      : gravity.z) +
+            p.push * shared_number(node + 12) * net;
         u += p.dt * v;
     } else if (p.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
         const float to = (float)p.next[3 * x->hold[axis] + axis];
@@ -312,18 +332,21 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
     shared_number_store(at + VELOCITIES + 4 * a, v);
 }
 
-/* The forces at a thread's node, and its step. */
+/* The forces at a thread's node, and its step, if it is owned; forces, node: where its forces and displacement stand. */
 static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
-                                                 const flow &f, uint32_t forces, uint32_t node)
+                                                 uint32_t forces, uint32_t node)
 {
+    const float4 own = shared_load(forces + 3 * FORCE);
+    const uint32_t word = __float_as_uint(own.w);
+    if (!(word & MARCH_OWN))
+        return;
     const float4 x = shared_load(forces - NODE), y = shared_load(forces + FORCE - GRID * NODE);
     const float4 xy = shared_load(forces + 2 * FORCE - (GRID + 1) * NODE);
-    const float3 sum = {(f.force[0] + x.x) + (y.x + xy.x), (f.force[1] + x.y) + (y.y + xy.y),
-                        (f.force[2] + x.z) + (y.z + xy.z)};
+    const float3 sum = {(own.x + x.x) + (y.x + xy.x), (own.y + x.y) + (y.y + xy.y), (own.z + x.z) + (y.z + xy.z)};
     float4 u = shared_load(node), v = shared_load(at + VELOCITIES);
     const uint32_t bits = __float_as_uint(v.w);
     if (p.what & PASS_INTERNAL)
-        *(float4 *)node_of(p.to, f.now) = make_float4(sum.x, sum.y, sum.z, u.w);
+        *(float4 *)node_of(p.to, word) = make_float4(sum.x, sum.y, sum.z, u.w);
     if (bits == 7) {
         const float push = p.push * u.w;
         v.x = (p.keep * v.x + gravity.x) - push * sum.x;
@@ -335,57 +358,70 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
     } else {
 #pragma unroll 1
         for (int a = 0; a < 3; a++)
-            move_held(m, p, at, f.now, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
+            move_held(m, p, at, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
         u = shared_load(node);
         v = shared_load(at + VELOCITIES);
     }
     if (p.what & PASS_BEGIN)
-        *(float4 *)node_of(p.to, f.now) = u;
+        *(float4 *)node_of(p.to, word) = u;
     if (p.what & (PASS_BEGIN | PASS_FINISH))
-        *(float4 *)node_of(p.velocity, f.now) = v;
+        *(float4 *)node_of(p.velocity, word) = v;
 }
 
-/* Layer c of cells, whose lower face is `low`, and of nodes; odd: c is. here, next, free: where the displacements of layers c and
- * c + 1 stand, and those of c + 3 may. inner: the layer's nodes are this unit's; goes_on: there is a layer c + 3. */
-template <bool SPECIAL, int ODD>
-static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, uint32_t at, flow *f,
-                                             uint32_t here, uint32_t next, uint32_t free, bool inner, bool goes_on,
-                                             const face &low, face *high)
+/* Says that this warp is done with a layer: its forces are there, and displacements of the layer after the next. */
+static __device__ __forceinline__ void say_done(uint32_t said)
 {
-    const uint32_t *ahead = f->word + MARCH_AHEAD * MARCH_WORDS;
-    const uint32_t forces = at + FORCES + ODD * 3 * FORCE;
-    const bool owned = f->now & MARCH_OWN;
-    if (owned)
-        send(at + VELOCITIES, node_of(p.velocity, f->now), true);
-    sent();
-    if (goes_on)
-        send_layer(p, at, free, f->far, f->more);
-    sent();
-    f->far = ahead[0];
-    if (has_extra())
-        f->more = ahead[MARCH_THREADS];
+    __syncwarp();
+    if (threadIdx.x % 32 == 0)
+        asm volatile("{ .reg .b64 state; mbarrier.arrive.shared::cta.b64 state, [%0]; }" ::"r"(said) : "memory");
+}
+
+/* Waits until all warps have said so of an even or odd layer. */
+static __device__ __forceinline__ void wait_done(uint32_t said, int odd)
+{
+    asm volatile(
+        "{ .reg .pred is; again%=: mbarrier.try_wait.parity.shared::cta.b64 is, [%0], %1; @!is bra again%=; }" ::"r"(
+            said),
+        "r"(odd)
+        : "memory");
+}
+
+/* Layer c of cells, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the displacements of layer c + 1 stand;
+ * old: those of c - 1, and those of c + 4 from here on. goes_on: there is a layer c + 4. */
+template <bool SPECIAL, int ODD>
+static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
+                                             flow *f, int c, uint32_t next, uint32_t old, bool goes_on, const face &low,
+                                             face *high)
+{
+    const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
+    const uint32_t far = f->word[MARCH_AHEAD * MARCH_WORDS], after = f->word[2 * MARCH_WORDS];
+    const uint32_t more = has_extra() ? f->word[MARCH_AHEAD * MARCH_WORDS + MARCH_THREADS] : 0;
     const bool any = f->any;
     f->any = __any_sync(~0u, f->then & MARCH_CELL);
+    face sum = f->below;
     if (any || f->any)
         *high = face_at(at + next);
-    if (any || f->was) {
-        face sum = f->below;
-        if (any)
-            cell_forces<SPECIAL>(m, p, f, low, *high, at + here, &sum);
-        else
-            f->below = face{};
-        share_forces(sum, forces, f->force);
-        f->clean = 0;
-    } else if (f->clean < 2) {
-        share_forces(face{}, forces, f->force);
-        f->clean++;
-    }
+    if (any)
+        cell_forces<SPECIAL>(m, p, f, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE), &sum);
+    else
+        f->below = face{};
+    arrived<0>(); /* displacements of c + 3, and velocities of c - 1 */
+    if (c)
+        wait_done(said, 1 - ODD);
+    if (any || f->was || f->clean < 2)
+        share_forces(sum, forces, f->now);
+    else
+        shared_store_with(forces + 3 * FORCE, 0, 0, 0, f->now);
+    f->clean = any || f->was ? 0 : f->clean + 1;
+    if (c > 1)
+        move_node(m, p, at, before, at + old);
+    if (f->now & MARCH_OWN)
+        send(at + VELOCITIES, node_of(p.velocity, f->now), true);
+    if (goes_on)
+        send_layer(p, at, old, far, more);
+    sent();
+    say_done(said);
     f->was = any;
-    const uint32_t after = f->word[2 * MARCH_WORDS];
-    arrived<1>(); /* this layer's velocity, and displacements of c + 2 */
-    __syncthreads();
-    if (owned && inner)
-        move_node(m, p, at, *f, forces, at + here);
     f->now = f->then;
     f->then = after;
     f->word += MARCH_WORDS;
@@ -400,57 +436,63 @@ static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p
     gravity.z = g ? p.push * (float)g[m.axis[2]] : 0;
 }
 
-/* The first layers of a unit are on their way. What the pass before wrote may be read from here on. */
-static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
+/* The first layers of a unit are there. What the pass before wrote may be read from here on. */
+static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
                                              const march_unit &unit, flow *f)
 {
-    const uint32_t *word = m.word + MARCH_WORDS * (int64_t)unit.base + threadIdx.x;
-    const uint32_t third = word[2 * MARCH_WORDS];
-    uint32_t extra[3] = {0, 0, 0};
-    f->word = word;
-    f->now = word[0];
-    f->then = word[MARCH_WORDS];
-    f->far = word[3 * MARCH_WORDS];
-    if (has_extra()) {
+    uint32_t word[MARCH_AHEAD], extra[MARCH_AHEAD];
+    f->word = m.word + MARCH_WORDS * (int64_t)unit.base + threadIdx.x;
 #pragma unroll
-        for (int k = 0; k < 3; k++)
-            extra[k] = word[k * MARCH_WORDS + MARCH_THREADS];
-        f->more = word[3 * MARCH_WORDS + MARCH_THREADS];
+    for (int k = 0; k < MARCH_AHEAD; k++) {
+        word[k] = f->word[k * MARCH_WORDS];
+        extra[k] = has_extra() ? f->word[k * MARCH_WORDS + MARCH_THREADS] : 0;
     }
+    f->now = word[0];
+    f->then = word[1];
     asm volatile("griddepcontrol.wait;" ::: "memory");
-    send_layer(p, at, 0, f->now, extra[0]);
-    send_layer(p, at, STAGE, f->then, extra[1]);
+#pragma unroll
+    for (int k = 0; k < MARCH_AHEAD; k++)
+        if (k <= unit.cells)
+            send_layer(p, at, k * STAGE, word[k], extra[k]);
     sent();
-    send_layer(p, at, 2 * STAGE, third, extra[2]);
-    sent();
-    if (threadIdx.x == 0)
+    if (threadIdx.x == 0) {
         put_gravity(m, p);
-    arrived<1>();
+        asm volatile("mbarrier.init.shared::cta.b64 [%0], %1;" ::"r"(said), "r"(WARPS) : "memory");
+    }
+    arrived<0>();
     __syncthreads();
     f->any = __any_sync(~0u, f->now & MARCH_CELL);
 }
 
+static __device__ __forceinline__ uint32_t after(uint32_t stage)
+{
+    return stage == (STAGES - 1) * STAGE ? 0 : stage + STAGE;
+}
+
 template <bool SPECIAL>
 static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p,
-                                                     const march_unit &unit, uint32_t memory)
+                                                     const march_unit &unit, uint32_t memory, uint32_t said)
 {
     const uint32_t at = memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
     flow f = {};
-    begin(m, p, at, unit, &f);
+    begin(m, p, at, said, unit, &f);
     face even = face_at(at), odd;
     const int last = unit.cells;
-    uint32_t half = 0; /* where an even layer stands */
+    uint32_t next = STAGE, old = (STAGES - 1) * STAGE;
 #pragma unroll 1
     for (int c = 0;;) {
-        layer<SPECIAL, 0>(m, p, at, &f, half, half + STAGE, 3 * STAGE - half, c > 0, c + 3 <= last, even, &odd);
+        layer<SPECIAL, 0>(m, p, at, said, &f, c, next, old, c + 4 <= last, even, &odd);
+        next = after(next), old = after(old);
         if (++c == last)
             break;
-        layer<SPECIAL, 1>(m, p, at, &f, half + STAGE, 2 * STAGE - half, half, true, c + 3 <= last, odd, &even);
+        layer<SPECIAL, 1>(m, p, at, said, &f, c, next, old, c + 4 <= last, odd, &even);
+        next = after(next), old = after(old);
         if (++c == last)
             break;
-        half = 2 * STAGE - half;
     }
     arrived<0>();
+    wait_done(said, (last - 1) % 2);
+    move_node(m, p, at, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old);
 }
 
 /* What special cells take in registers, units without them do without. */
@@ -458,12 +500,13 @@ static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {
     extern __shared__ float4 memory[];
+    __shared__ uint64_t said;
     const march_unit unit = m.unit[blockIdx.x];
     asm volatile("griddepcontrol.launch_dependents;"); /* the next pass may come when there is room, and wait */
     if (unit.special)
-        march_unit_of<true>(m, p, unit, shared_at(memory));
+        march_unit_of<true>(m, p, unit, shared_at(memory), shared_at(&said));
     else
-        march_unit_of<false>(m, p, unit, shared_at(memory));
+        march_unit_of<false>(m, p, unit, shared_at(memory), shared_at(&said));
 }
 
 /* ---- from and to rows */
@@ -519,7 +562,8 @@ cudaError_t cuda_march_slots(int64_t *slots)
         return e;
     e = cudaFuncSetAttribute(march_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
-    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel, MARCH_THREADS, SHARED) : e;
+    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel, MARCH_THREADS, SHARED)
+                         : e;
     *slots = (int64_t)processors * each;
     return e;
 }

@@ -31,7 +31,7 @@ typedef struct cuda_state {
     element_shape shape;
     bool marches; /* by `march`, not by tiles: the state stands node by node */
     march march;
-    cuda_march walk; /* what its kernels see */
+    cuda_march walk;            /* what its kernels see */
     char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
     int64_t bytes, used;        /* of memory */
     real *displacement, *spare; /* each `numbers`, as is velocity; all else in rows: 3 x stride */
@@ -116,7 +116,8 @@ static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
         put(s, &v->force_curve, p->force_curve, p->force_start[p->nodes], e) ||
         put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
         (!s->marches && put(s, &v->mass_inverse, numbers->mass_inverse, t->nodes, e)) ||
-        (s->marches && put_march(s, e)) || put(s, &v->kind, numbers->kind, p->volumes, e) || put(s, &v->law, numbers->law, LAW_NUMBERS * p->volumes, e))
+        (s->marches && put_march(s, e)) || put(s, &v->kind, numbers->kind, p->volumes, e) ||
+        put(s, &v->law, numbers->law, LAW_NUMBERS * p->volumes, e))
         return -1;
     s->displacement = (real *)room(s, s->numbers, sizeof(real));
     s->spare = (real *)room(s, s->numbers, sizeof(real));

@@ -82,14 +82,15 @@ template <class S> struct cuda_view {
     const cuda_kind *kind;
     const S *law; /* volumes x LAW_NUMBERS: mu, bulk, hourglass */
     int64_t stride;
-    int64_t offset[3], along, mass_along; /* mass_along: of mass_inverse */
+    int64_t offset[3], along, mass_along;    /* mass_along: of mass_inverse */
     int32_t nodes, extras, volumes, gravity; /* gravity: its curve, or -1 */
     double side[3];
 };
 
 /* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on its way
  * at once: first where, then what. ROWS: u stands so, whatever the view says. */
-template <class G, bool ROWS, class S> __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
+template <class G, bool ROWS, class S>
+__device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
 {
     constexpr int OWN = G::OWN, HALO = G::HALO;
     int32_t node[OWN + HALO], place[OWN + HALO];

@@ -385,7 +385,8 @@ int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e)
     c.order = mem_array(p->nodes, sizeof *c.order, "the tiles", e);
     if (!c.part || !c.at || !c.order)
         goto out;
-    if (places_find(p, c.part, c.at, e) || find_tiles(&c) || order_nodes(&c) || list_cells(&c) || cut_tiles(&c) || list_extras(&c))
+    if (places_find(p, c.part, c.at, e) || find_tiles(&c) || order_nodes(&c) || list_cells(&c) || cut_tiles(&c) ||
+        list_extras(&c))
         goto out;
     result = 0;
 out:

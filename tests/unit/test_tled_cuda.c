@@ -42,7 +42,8 @@ static double apart(const bench *a, const bench *b)
 }
 
 /* As lump, of so many elements that a card marches in single precision; and boxes, so that its axes differ. */
-static const block marched = {{80, 80, 64}, {.002125, .0009, .001171875}, 30000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0, false};
+static const block marched = {
+    {80, 80, 64}, {.002125, .0009, .001171875}, 30000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0, false};
 
 /* All that a script can do, on a block of several bricks that hangs from a side. */
 static void add_script(bench *b)

@@ -128,8 +128,8 @@ static void test_cut(const block *what, int axis, bool scripted, int64_t slots, 
        "%s: along %c, %lld units, %.3g threads an element: each node moved once, of all its elements %s", name,
        "xyz"[cut.axis[2]], (long long)cut.units, cut.computed, e.text);
     const bool all = scripted || what->fraction < 0;
-    ok(all ? s.special >= p.elements : s.special == (cut.cells ? s.special : 0), "%s: %lld special cells are the problem's",
-       name, (long long)s.special);
+    ok(all ? s.special >= p.elements : s.special == (cut.cells ? s.special : 0),
+       "%s: %lld special cells are the problem's", name, (long long)s.special);
     march_free(&cut);
     free(list);
     tled_problem_free(&p);
@@ -150,8 +150,8 @@ static void test_thin(void)
     int32_t *order = NULL;
     const int failed = tled_problem_make(&p, &m, &played, .0075, &e) ||
                        !(order = calloc((size_t)p.nodes, sizeof *order)) || march_make(&cut, &p, order, 396, &e);
-    ok(!failed && cut.units == 0, "a row of elements is none for a march: %.3g threads an element %s",
-       cut.computed, e.text);
+    ok(!failed && cut.units == 0, "a row of elements is none for a march: %.3g threads an element %s", cut.computed,
+       e.text);
     march_free(&cut);
     free(order);
     tled_problem_free(&p);
@@ -174,8 +174,8 @@ static void test_units(void)
         layers += unit[i].cells - 1;
         longest = unit[i].cells > longest ? unit[i].cells : longest;
     }
-    ok(!failed && units == 60 && layers == 600 && longest == 11, "600 layers for 60 blocks: %lld units, the longest of %d",
-       (long long)units, longest);
+    ok(!failed && units == 60 && layers == 600 && longest == 11,
+       "600 layers for 60 blocks: %lld units, the longest of %d", (long long)units, longest);
     free(unit);
     march_runs_free(&runs);
 }
