@@ -125,7 +125,7 @@ static double time_of(pieces *p)
 static int choose(pieces *p, const march_runs *r, double all, double *best, err *e)
 {
     double least = INFINITY, most = 2 * all / (double)p->slots;
-    for (int i = 0; i < TRIALS && most > layer_cost; i++, most *= .93) {
+    for (int i = 0; i < TRIALS && most > layer_cost; i++) {
         if (cut_runs(p, r, most, e))
             return -1;
         const double time = time_of(p);
@@ -133,6 +133,7 @@ static int choose(pieces *p, const march_runs *r, double all, double *best, err 
             least = time;
             *best = most;
         }
+        most *= .93;
     }
     return 0;
 }
