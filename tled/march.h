@@ -7,7 +7,7 @@
  * there. A layer's words stand in the order of threads, each warp having 8 by 4 of them, so that warps without any cell in a layer,
  * as in a shell, have little to do; then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
  *
- * Which axis is marched along is chosen by how many warps have cells, summed over layers; a unit is what one block does: layers in
+ * Rows go along x, and the march along y or z, by which fewer warps have cells, summed over layers; a unit is what one block does: layers in
  * a row. Columns are cut into units so that they take the card the shortest time, by a model: a layer takes a block 2, and 1 for each
  * warp with cells, a unit 10 more; the longest units start first, and each that ends is followed by the next.
  * The creator owns the march; it holds no pointer into the problem.
