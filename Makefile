@@ -61,11 +61,16 @@ $(BUILD)/%.o: %.cc
 # CUDA: machine code for sm_90, and for the rest from sm_75 on what the driver compiles. As with C, no multiply and add is fused,
 # so that a card computes what a processor does. Objects are linked by cc, so they must not want C++'s library.
 CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_75,code=compute_75
-NVCC_FLAGS = -std=c++17 -O3 -lineinfo -fmad=false $(CUDA_ARCH) -Werror all-warnings \
+CUDA_FUSED = false
+NVCC_FLAGS = -std=c++17 -O3 -lineinfo -fmad=$(CUDA_FUSED) $(CUDA_ARCH) -Werror all-warnings \
 	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
 $(BUILD)/tled/cuda_single.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/msds/cuda_%.o: NVCC_FLAGS += -ftz=true
+# The march keeps no processor's bytes, and may fuse; it is for cards from sm_90 on.
+$(BUILD)/tled/cuda_march.o: NVCC_FLAGS += -ftz=true
+$(BUILD)/tled/cuda_march.o: CUDA_FUSED = true
+$(BUILD)/tled/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_90,code=compute_90
 CUDA_SRC := $(wildcard common/device/*.cu tled/*.cu msds/*.cu)
 $(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
@@ -74,7 +79,7 @@ CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
 endif
 
 # What only cards use, in C, is in it too.
-CUDA_ONLY := tled/tiles.c msds/levels.c msds/parts.c
+CUDA_ONLY := tled/tiles.c tled/places.c tled/march.c tled/march_units.c msds/levels.c msds/parts.c
 $(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
 	@rm -f $@
 	@ar rcs $@ $^

@@ -264,7 +264,7 @@ __global__ void __launch_bounds__(G::THREADS, together<G>())
     cuda_pass p = given;
     bring_laws(v, &p, near);
     bring_gravity(v, p.now, near);
-    cuda_load<G>(v, t, p.from, u);
+    cuda_load<G, true>(v, t, p.from, u);
     __syncthreads();
     cell_forces<G, MIXED>(v, p, t, first, u, force);
     own_node own = node_at(v, p, t, threadIdx.x);

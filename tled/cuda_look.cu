@@ -145,7 +145,7 @@ static __global__ void __launch_bounds__(G::THREADS) cells_kernel(cuda_look<S> l
     __shared__ double scratch[G::THREADS];
     __shared__ int least;
     const tile t = l.view.tiles[blockIdx.x];
-    cuda_load<G>(l.view, t, l.displacement, u);
+    cuda_load<G, false>(l.view, t, l.displacement, u);
     __syncthreads();
     highest h = {l.question.rest, -1};
     double strain = 0;
@@ -175,7 +175,7 @@ template <class S> static __device__ void look_at_node(const cuda_look<S> &l, in
 {
     const cuda_view<S> &v = l.view;
     const uint32_t info = v.node_info[n];
-    const double mass = 1 / (double)v.mass_inverse[n];
+    const double mass = 1 / (double)v.mass_inverse[n * v.mass_along];
     double outside[3] = {0, 0, 0}, square = 0;
     for (int a = 0; a < 3 && v.gravity >= 0; a++)
         outside[a] = mass * l.now[3 * v.gravity + a];
@@ -186,7 +186,7 @@ template <class S> static __device__ void look_at_node(const cuda_look<S> &l, in
                 outside[a] += v.force_share[k] * l.now[3 * v.force_curve[k] + a];
     }
     for (int a = 0; a < 3; a++) {
-        const int64_t at = a * v.stride + n;
+        const int64_t at = v.offset[a] + n * v.along, kept = a * v.stride + n;
         const double u = l.displacement[at], speed = l.velocity[at], drive = mass * speed * speed;
         const double gap = outside[a] - l.internal[at];
         to->kinetic += drive / 2;
@@ -196,8 +196,8 @@ template <class S> static __device__ void look_at_node(const cuda_look<S> &l, in
         to->acceleration += gap * gap / mass;
         to->speed += drive;
         if (l.kept_displacement) {
-            const double du = u - l.kept_displacement[at];
-            to->stiffness += du * (l.internal[at] - (double)l.kept_internal[at]);
+            const double du = u - l.kept_displacement[kept];
+            to->stiffness += du * (l.internal[at] - (double)l.kept_internal[kept]);
             to->inertia += mass * du * du;
         }
     }

@@ -9,8 +9,23 @@
 
 /* ---- passes */
 
+/* What a march takes of a pass: v = (keep v + half a) slow where a step begins, and so on. */
+static int march_pass(cuda_state *s, const cuda_pass *p, err *e)
+{
+    const node_factors f = p->factors;
+    const bool begins = p->what & PASS_BEGIN, ends = p->what & PASS_FINISH;
+    const real keep = (begins ? f.slow : 1) * (ends ? f.keep : 1);
+    const real push = begins && ends ? f.dt * f.slow : begins ? f.half * f.slow : ends ? f.half : 0;
+    const cuda_march_pass q = {
+        (const float4 *)p->from,  (float4 *)p->to, (float4 *)p->velocity, p->now, p->next, (float)keep, (float)push,
+        begins ? (float)f.dt : 0, p->what};
+    return card_check(cuda_march_start(&s->walk, &q, s->march.units, s->stream), "the start of a pass", s->step, e);
+}
+
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
+    if (s->marches)
+        return march_pass(s, p, e);
     with_brick(s->size, [&](auto g) { pass_start<decltype(g)>(s->view, *p, s->tiles.count, s->stream); });
     return card_check(cudaGetLastError(), "the start of a pass", s->step, e);
 }
@@ -134,10 +149,11 @@ static int find_internal(cuda_state *s, err *e)
 
 /* ---- in and out */
 
-typedef struct permutation { /* of arrays of 3 x stride in the tiles' order, to nodes x 3 in the model's */
+typedef struct permutation { /* of arrays in the tiles' order, as the state or in rows, to nodes x 3 in the model's */
     const cuda_state *s;
     const real *from;
     double *to;
+    bool in_rows;
 } permutation;
 
 static void permute_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -146,22 +162,42 @@ static void permute_work(void *context, int64_t chunk, int64_t from, int64_t to)
     (void)chunk;
     for (int64_t k = from; k < to; k++)
         for (int a = 0; a < 3; a++)
-            m->to[3 * (int64_t)m->s->tiles.node[k] + a] = m->from[a * m->s->view.stride + k];
+            m->to[3 * (int64_t)m->s->tiles.node[k] + a] =
+                m->from[m->in_rows ? a * m->s->view.stride + k : m->s->view.offset[a] + k * m->s->view.along];
 }
 
 static void permute(const cuda_state *s, const real *from, double *to)
 {
-    permutation m = {s, from, to};
+    permutation m = {s, from, to, false};
     pool_run(s->threads, s->tiles.nodes, COPY_CHUNK, permute_work, &m);
+}
+
+/* The fourth number of a node where it marches: of a displacement, or else of a velocity. */
+static float fourth(const cuda_state *s, bool is_displacement, int64_t k)
+{
+    const uint32_t info = s->tiles.node_info[k];
+    uint32_t bits = (info >> TILE_EXTRA & 1) << MARCH_EXTRA;
+    float number;
+    if (is_displacement)
+        return (float)(1 / s->p->mass[s->tiles.node[k]]);
+    for (int a = 0; a < 3; a++)
+        bits |= (info >> (TILE_FREE + s->march.axis[a]) & 1) << (MARCH_FREE + a);
+    memcpy(&number, &bits, sizeof number);
+    return number;
 }
 
 static int set(cuda_state *s, real *to, const double *from, err *e)
 {
-    const int64_t stride = s->view.stride;
-    for (int64_t k = 0; k < s->tiles.nodes; k++)
+    const cuda_view<real> *v = &s->view;
+    for (int64_t k = 0; k < s->tiles.nodes; k++) {
         for (int a = 0; a < 3; a++)
-            s->staging[a * stride + k] = (real)from[3 * (int64_t)s->tiles.node[k] + a];
-    return CUDA_TRY(cudaMemcpy(to, s->staging, 3 * (size_t)stride * sizeof(real), cudaMemcpyHostToDevice));
+            s->staging[v->offset[a] + k * v->along] = (real)from[3 * (int64_t)s->tiles.node[k] + a];
+        if (s->marches) {
+            const float number = fourth(s, to == s->displacement, k);
+            memcpy(&s->staging[4 * k + 3], &number, sizeof number);
+        }
+    }
+    return CUDA_TRY(cudaMemcpy(to, s->staging, (size_t)s->numbers * sizeof(real), cudaMemcpyHostToDevice));
 }
 
 static int cuda_get(void *state, int what, double *to, err *e)
@@ -170,30 +206,38 @@ static int cuda_get(void *state, int what, double *to, err *e)
     if (what == TLED_INTERNAL && find_internal(s, e))
         return -1;
     const real *from = what == TLED_DISPLACEMENT ? s->displacement : what == TLED_VELOCITY ? s->velocity : s->spare;
-    if (CUDA_TRY(cudaMemcpyAsync(s->staging, from, 3 * (size_t)s->view.stride * sizeof(real), cudaMemcpyDeviceToHost,
-                                 s->stream)) ||
+    if (CUDA_TRY(
+            cudaMemcpyAsync(s->staging, from, (size_t)s->numbers * sizeof(real), cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
     permute(s, s->staging, to);
     return 0;
 }
 
-/* Copies n real numbers on the card. */
-static int copy(cuda_state *s, real *to, const real *from, int64_t n, err *e)
+/* A state's displacements, velocities or forces into rows of their own on the card, and back. */
+static int to_rows(cuda_state *s, real *to, const real *from, err *e)
 {
-    return CUDA_TRY(cudaMemcpyAsync(to, from, (size_t)n * sizeof(real), cudaMemcpyDeviceToDevice, s->stream));
+    return s->marches ? CUDA_TRY(cuda_march_pack(&s->walk, (const float4 *)from, (float *)to, s->stream))
+                      : CUDA_TRY(cudaMemcpyAsync(to, from, (size_t)s->numbers * sizeof(real), cudaMemcpyDeviceToDevice,
+                                                 s->stream));
+}
+
+static int from_rows(cuda_state *s, real *to, const real *from, err *e)
+{
+    return s->marches ? CUDA_TRY(cuda_march_unpack(&s->walk, (const float *)from, (float4 *)to, s->stream))
+                      : to_rows(s, to, from, e);
 }
 
 static int cuda_keep(void *state, err *e)
 {
     cuda_state *s = (cuda_state *)state;
     const int64_t n = 3 * s->view.stride;
-    if (s->kept_internal && (find_internal(s, e) || copy(s, s->kept_internal, s->spare, n, e)))
+    if (s->kept_internal && (find_internal(s, e) || to_rows(s, s->kept_internal, s->spare, e)))
         return -1;
     s->has_kept_internal = s->kept_internal != NULL;
     s->kept_step = s->step;
     s->kept_time = s->time;
-    return copy(s, s->kept_displacement, s->displacement, n, e) || copy(s, s->kept_displacement + n, s->velocity, n, e)
+    return to_rows(s, s->kept_displacement, s->displacement, e) || to_rows(s, s->kept_displacement + n, s->velocity, e)
                ? -1
                : 0;
 }
@@ -205,7 +249,8 @@ static int cuda_back(void *state, err *e)
     s->spare_is_internal = false;
     s->step = s->kept_step;
     s->time = s->kept_time;
-    return copy(s, s->displacement, s->kept_displacement, n, e) || copy(s, s->velocity, s->kept_displacement + n, n, e)
+    return from_rows(s, s->displacement, s->kept_displacement, e) ||
+                   from_rows(s, s->velocity, s->kept_displacement + n, e)
                ? -1
                : 0;
 }
@@ -217,13 +262,13 @@ static int make_frame(cuda_state *s, cuda_frame *f, err *e)
     const int64_t bytes = 6 * s->view.stride * (int64_t)sizeof(real);
     if (bytes > FRAME_DIRECT && !s->kept_internal && !s->frame && !s->frame_direct) {
         err full = {0};
-        s->frame = (real *)card_take(bytes / 2, "a frame", &full);
+        s->frame = (real *)card_take(bytes / 2, "a frame", &full); /* in rows */
         s->frame_direct = !s->frame;
     }
     if (f->host)
         return 0;
     return CUDA_TRY(cudaEventCreateWithFlags(&f->arrived, cudaEventDisableTiming)) ||
-                   CUDA_TRY(cudaMallocHost((void **)&f->host, (size_t)bytes))
+                   CUDA_TRY(cudaMallocHost((void **)&f->host, 2 * (size_t)s->numbers * sizeof(real)))
                ? -1
                : 0;
 }
@@ -232,19 +277,19 @@ static int make_frame(cuda_state *s, cuda_frame *f, err *e)
  * goes in a stream of its own while the steps go on. */
 static int send_frame(cuda_state *s, const cuda_frame *f, err *e)
 {
-    const int64_t n = 3 * s->view.stride;
-    const size_t bytes = (size_t)n * sizeof(real);
-    if (CUDA_TRY(cudaMemcpyAsync(f->host + n, s->velocity, bytes, cudaMemcpyDeviceToHost, s->stream)))
+    const size_t bytes = (size_t)s->numbers * sizeof(real);
+    if (CUDA_TRY(cudaMemcpyAsync(f->host + s->numbers, s->velocity, bytes, cudaMemcpyDeviceToHost, s->stream)))
         return -1;
     if (!s->frame)
         return CUDA_TRY(cudaMemcpyAsync(f->host, s->displacement, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
                        CUDA_TRY(cudaEventRecord(f->arrived, s->stream))
                    ? -1
                    : 0;
-    return CUDA_TRY(cudaStreamWaitEvent(s->stream, s->frame_free, 0)) || copy(s, s->frame, s->displacement, n, e) ||
+    return CUDA_TRY(cudaStreamWaitEvent(s->stream, s->frame_free, 0)) || to_rows(s, s->frame, s->displacement, e) ||
                    CUDA_TRY(cudaEventRecord(s->frame_ready, s->stream)) ||
                    CUDA_TRY(cudaStreamWaitEvent(s->sending, s->frame_ready, 0)) ||
-                   CUDA_TRY(cudaMemcpyAsync(f->host, s->frame, bytes, cudaMemcpyDeviceToHost, s->sending)) ||
+                   CUDA_TRY(cudaMemcpyAsync(f->host, s->frame, 3 * (size_t)s->view.stride * sizeof(real),
+                                            cudaMemcpyDeviceToHost, s->sending)) ||
                    CUDA_TRY(cudaEventRecord(s->frame_free, s->sending)) ||
                    CUDA_TRY(cudaEventRecord(f->arrived, s->sending))
                ? -1
@@ -258,6 +303,7 @@ static int cuda_take(void *state, int slot, err *e)
     if (make_frame(s, f, e))
         return -1;
     f->step = s->step;
+    f->in_rows = s->frame != NULL;
     return send_frame(s, f, e);
 }
 
@@ -266,7 +312,8 @@ static int cuda_taken(void *state, int slot, void *to, err *e)
     cuda_state *s = (cuda_state *)state;
     const tled_taken *out = (const tled_taken *)to;
     const cuda_frame *f = &s->taken[slot];
-    const permutation u = {s, f->host, out->displacement}, v = {s, f->host + 3 * s->view.stride, out->velocity};
+    const permutation u = {s, f->host, out->displacement, f->in_rows},
+                      v = {s, f->host + s->numbers, out->velocity, false};
     if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
         return -1;
     permute_work((void *)&u, 0, 0, s->tiles.nodes);
@@ -343,7 +390,27 @@ static void cuda_destroy(void *state)
     if (s->sending)
         cudaStreamDestroy(s->sending);
     tiles_free(&s->tiles);
+    march_free(&s->march);
     free(s);
+}
+
+/* What a march's kernels see beside its lists. */
+static void begin_march(cuda_state *s)
+{
+    const tled_problem *p = s->p;
+    const tled_volume *plain = &p->volume[s->march.plain];
+    const int *axis = s->march.axis;
+    cuda_march *w = &s->walk;
+    const double law[3] = {plain->mu, plain->bulk, plain->hourglass};
+    static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");
+    memcpy(&w->v, &s->view, sizeof w->v);
+    for (int a = 0; a < 3; a++) {
+        const double side = p->side[axis[a]];
+        w->axis[a] = axis[a];
+        w->law[a] = (float)law[a];
+        w->slope[a] = (float)(1 / (4 * side));
+        w->area[a] = (float)(p->side[0] * p->side[1] * p->side[2] / (4 * side));
+    }
 }
 
 static int fill(cuda_state *s, err *e)
@@ -353,14 +420,22 @@ static int fill(cuda_state *s, err *e)
         return -1;
     s->view.stride = (p->nodes + 31) / 32 * 32;
     s->view.nodes = (int32_t)p->nodes;
+    s->numbers = (s->marches ? 4 : 3) * s->view.stride;
+    s->view.along = s->view.mass_along = s->marches ? 4 : 1;
+    for (int a = 0; a < 3; a++)
+        s->view.offset[s->marches ? s->march.axis[a] : a] = s->marches ? a : a * s->view.stride;
     s->view.volumes = p->volumes;
     s->view.extras = (int32_t)s->tiles.extras;
     s->view.gravity = (int32_t)p->gravity;
     memcpy(s->view.side, p->side, sizeof p->side);
     s->shape = element_box(p->side[0], p->side[1], p->side[2]);
     s->time = p->start;
-    if (put_problem(s, e) || make_events(s, e) || set(s, s->displacement, p->displacement, e) ||
-        set(s, s->velocity, p->velocity, e) || CUDA_TRY(cudaDeviceSynchronize()))
+    if (put_problem(s, e))
+        return -1;
+    if (s->marches)
+        begin_march(s);
+    if (make_events(s, e) || set(s, s->displacement, p->displacement, e) || set(s, s->velocity, p->velocity, e) ||
+        CUDA_TRY(cudaDeviceSynchronize()))
         return -1;
     if (s->resident &&
         CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))
@@ -384,7 +459,8 @@ static void *cuda_create(const void *problem, pool *threads, err *e)
 
 static int64_t cuda_computed(const void *state)
 {
-    return ((const cuda_state *)state)->tiles.cells;
+    const cuda_state *s = (const cuda_state *)state;
+    return s->marches ? (int64_t)(s->march.computed * (double)s->p->elements) : s->tiles.cells;
 }
 
 const backend CUDA_BACKEND = {"cuda",    card_unusable, cuda_create,  cuda_step,  cuda_get,     cuda_keep,    cuda_back,

@@ -154,7 +154,7 @@ __global__ void __launch_bounds__(G::THREADS, together<G>())
     cuda_pass p = r.pass;
     bring_laws(v, &p, near);
     p.now = memory, p.next = memory + 3 * r.curves;
-    cuda_load<G>(v, t, p.from, u);
+    cuda_load<G, true>(v, t, p.from, u);
 #pragma unroll
     for (int k = 0; k < G::OWN; k++)
         own[k] = node_at(v, p, t, (int)threadIdx.x + k * G::THREADS);

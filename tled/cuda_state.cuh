@@ -6,6 +6,8 @@
 
 #include "tled/cuda_resident.cuh"
 
+#include "tled/cuda_march.cuh" /* wants element.h before it */
+
 enum {
     TABLE_STEPS = 256,
     TABLES = 2,
@@ -16,6 +18,7 @@ enum {
 typedef struct cuda_frame { /* results on their way to the host; made when first wanted */
     real *host;             /* pinned: displacement, then velocity */
     cudaEvent_t arrived;
+    bool in_rows; /* its displacement is; the velocity stands as in the state */
     int64_t step; /* that it was taken at, for messages: the state's own goes on meanwhile */
 } cuda_frame;
 
@@ -26,10 +29,14 @@ typedef struct cuda_state {
     cuda_size size; /* of its bricks */
     cuda_view<real> view;
     element_shape shape;
+    bool marches; /* by `march`, not by tiles: the state stands node by node */
+    march march;
+    cuda_march walk;            /* what its kernels see */
     char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
     int64_t bytes, used;        /* of memory */
-    real *displacement, *spare; /* each 3 x stride, as is velocity */
+    real *displacement, *spare; /* each `numbers`, as is velocity; all else in rows: 3 x stride */
     real *velocity;
+    int64_t numbers;         /* 3 x stride, or, where it marches, 4 x stride */
     uint64_t *message;       /* between tiles that are resident */
     uint32_t messages;       /* passes that they have sent them for */
     real *kept_displacement; /* and velocity after it */
@@ -44,7 +51,7 @@ typedef struct cuda_state {
     int64_t tables; /* filled so far */
     void *look_parts;
     tled_sums *sums, *sums_host;
-    real *staging; /* pinned: 3 x stride */
+    real *staging; /* pinned: `numbers` */
     cuda_frame taken[TLED_TAKEN];
     int64_t step, kept_step; /* for messages */
     double time, kept_time;  /* where the state stands */
@@ -67,6 +74,20 @@ template <class T> static int put(cuda_state *s, const T **to, const T *from, in
     T *at = (T *)room(s, count, sizeof(T));
     *to = at;
     return at ? CUDA_TRY(cudaMemcpy(at, from, (size_t)count * sizeof(T), cudaMemcpyHostToDevice)) : 0;
+}
+
+static int put_march(cuda_state *s, err *e)
+{
+    const march *m = &s->march;
+    cuda_march *w = &s->walk;
+    return put(s, &w->unit, m->unit, m->units, e) ||
+                   put(s, &w->word, m->word, (m->layers + MARCH_AHEAD) * MARCH_WORDS, e) ||
+                   put(s, &w->detail, m->detail, m->layers, e) ||
+                   put(s, &w->which, m->which, m->details * MARCH_THREADS, e) ||
+                   put(s, &w->cell, m->cell, m->cells, e) || put(s, &w->fibre, m->fibre, 3 * m->directions, e) ||
+                   (m->mixfibre && put(s, &w->mixfibre, m->mixfibre, 3 * m->directions, e))
+               ? -1
+               : 0;
 }
 
 /* What the card gets of the problem's numbers. */
@@ -94,12 +115,15 @@ static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
         put(s, &v->extra, t->extra, t->extras, e) ||
         put(s, &v->force_curve, p->force_curve, p->force_start[p->nodes], e) ||
         put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
-        put(s, &v->mass_inverse, numbers->mass_inverse, t->nodes, e) ||
-        put(s, &v->kind, numbers->kind, p->volumes, e) || put(s, &v->law, numbers->law, LAW_NUMBERS * p->volumes, e))
+        (!s->marches && put(s, &v->mass_inverse, numbers->mass_inverse, t->nodes, e)) ||
+        (s->marches && put_march(s, e)) || put(s, &v->kind, numbers->kind, p->volumes, e) ||
+        put(s, &v->law, numbers->law, LAW_NUMBERS * p->volumes, e))
         return -1;
-    s->displacement = (real *)room(s, rows, sizeof(real));
-    s->spare = (real *)room(s, rows, sizeof(real));
-    s->velocity = (real *)room(s, rows, sizeof(real));
+    s->displacement = (real *)room(s, s->numbers, sizeof(real));
+    s->spare = (real *)room(s, s->numbers, sizeof(real));
+    s->velocity = (real *)room(s, s->numbers, sizeof(real));
+    if (s->marches)
+        v->mass_inverse = s->displacement + 3;
     s->kept_displacement = (real *)room(s, 2 * rows, sizeof(real));
     if (s->resident)
         s->message = (uint64_t *)room(s, MESSAGES * MESSAGE_WORDS * v->stride, sizeof *s->message);
@@ -118,7 +142,7 @@ static int make_events(cuda_state *s, err *e)
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_free, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_ready, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaMallocHost((void **)&s->sums_host, sizeof *s->sums_host)) ||
-        CUDA_TRY(cudaMallocHost((void **)&s->staging, 3 * (size_t)s->view.stride * sizeof(real))))
+        CUDA_TRY(cudaMallocHost((void **)&s->staging, (size_t)s->numbers * sizeof(real))))
         return -1;
     for (int i = 0; i < TABLES; i++)
         if (CUDA_TRY(cudaMallocHost((void **)&s->table_host[i], (TABLE_STEPS + 1) * row)) ||
@@ -203,9 +227,28 @@ static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
     });
 }
 
+/* Whether what does not stay marches: in single precision, on a card that can, where the model is suited. */
+static int choose_march(cuda_state *s, err *e)
+{
+    int64_t slots = 0;
+    if (s->resident || sizeof(real) != sizeof(float))
+        return 0;
+    if (CUDA_TRY(cuda_march_slots(&slots)))
+        return -1;
+    if (!slots)
+        return 0;
+    int32_t *order = (int32_t *)mem_array(s->tiles.nodes, sizeof *order, "the march", e);
+    for (int32_t k = 0; order && k < s->tiles.nodes; k++)
+        order[s->tiles.node[k]] = k;
+    const int result = order ? march_make(&s->march, s->p, order, slots, e) : -1;
+    s->marches = s->march.units > 0;
+    free(order);
+    return result;
+}
+
 /* The smallest bricks that are all resident: the more there are, the less each has to do. Else the largest that the card has shared
  * memory for. So measured on an H200. */
-static int cut(cuda_state *s, err *e)
+static int cut_tiles(cuda_state *s, err *e)
 {
     for (int size = CUDA_SMALL; size < CUDA_SIZES; size++) {
         int64_t nodes, places = places_of(s, (cuda_size)size, &nodes);
@@ -221,6 +264,11 @@ static int cut(cuda_state *s, err *e)
             return 0;
     }
     return 0;
+}
+
+static int cut(cuda_state *s, err *e)
+{
+    return cut_tiles(s, e) || choose_march(s, e) ? -1 : 0;
 }
 
 #endif

@@ -1,7 +1,8 @@
 /* What the CUDA kernels of tled-run see, and the shape of their blocks; the headers of C that they share with the CPU. A view
  * is passed to kernels by value and owns nothing. S is the type of the state's numbers: float or double.
  *
- * Arrays over nodes are in the tiles' order, one component after another: component a of node n at a * stride + n.
+ * Arrays over nodes are in the tiles' order, one component after another: component a of node n at a * stride + n. Those of the
+ * state alone, displacements, velocities and internal forces, may stand node by node: at offset[a] + n * along.
  */
 #ifndef SINEW_CUDA_VIEW_CUH
 #define SINEW_CUDA_VIEW_CUH
@@ -81,13 +82,15 @@ template <class S> struct cuda_view {
     const cuda_kind *kind;
     const S *law; /* volumes x LAW_NUMBERS: mu, bulk, hourglass */
     int64_t stride;
+    int64_t offset[3], along, mass_along;    /* mass_along: of mass_inverse */
     int32_t nodes, extras, volumes, gravity; /* gravity: its curve, or -1 */
     double side[3];
 };
 
 /* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on its way
- * at once: first where, then what. */
-template <class G, class S> __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
+ * at once: first where, then what. ROWS: u stands so, whatever the view says. */
+template <class G, bool ROWS, class S>
+__device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
 {
     constexpr int OWN = G::OWN, HALO = G::HALO;
     int32_t node[OWN + HALO], place[OWN + HALO];
@@ -105,7 +108,7 @@ template <class G, class S> __device__ void cuda_load(const cuda_view<S> &v, con
     for (int k = 0; k < OWN + HALO; k++)
 #pragma unroll
         for (int a = 0; a < 3; a++)
-            value[3 * k + a] = node[k] >= 0 ? u[a * v.stride + node[k]] : 0;
+            value[3 * k + a] = node[k] >= 0 ? u[ROWS ? a * v.stride + node[k] : v.offset[a] + node[k] * v.along] : 0;
 #pragma unroll
     for (int k = 0; k < OWN + HALO; k++)
 #pragma unroll

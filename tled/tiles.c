@@ -1,9 +1,8 @@
 #include "tled/tiles.h"
 
 #include "base/mem.h"
-#include "mesh/lattice.h"
+#include "tled/places.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,51 +37,6 @@ void tiles_free(tiles *t)
     free(t->mixfibre);
     free(t->extra);
     memset(t, 0, sizeof *t);
-}
-
-static int32_t root(int32_t *part, int32_t n)
-{
-    while (part[n] != n)
-        n = part[n] = part[part[n]];
-    return n;
-}
-
-/* Parts hang together by elements. The root of each is its lowest node. */
-static void find_parts(cutter *c)
-{
-    const tled_problem *p = c->p;
-    for (int32_t n = 0; n < p->nodes; n++)
-        c->part[n] = n;
-    for (int64_t i = 0; i < 8 * p->elements; i++) {
-        int32_t a = root(c->part, p->element_node[i / 8 * 8]), b = root(c->part, p->element_node[i]);
-        c->part[a > b ? a : b] = a > b ? b : a;
-    }
-    for (int32_t n = 0; n < p->nodes; n++)
-        c->part[n] = root(c->part, n);
-}
-
-static int no_lattice(cutter *c, int64_t element)
-{
-    return err_set(c->e, NULL, 0,
-                   "element %lld: two nodes share a place in the lattice, or it is off it; expected elements "
-                   "of one part to share their nodes, or -d cpu",
-                   (long long)element);
-}
-
-static int find_places(cutter *c)
-{
-    const tled_problem *p = c->p;
-    for (int64_t n = 0; n < p->nodes; n++)
-        for (int a = 0; a < 3; a++) {
-            double way = p->position[3 * n + a] - p->position[3 * (int64_t)c->part[n] + a];
-            c->at[3 * n + a] = (int32_t)nearbyint(way / p->side[a]);
-        }
-    for (int64_t i = 0; i < 8 * p->elements; i++)
-        for (int a = 0; a < 3; a++)
-            if (c->at[3 * (int64_t)p->element_node[i] + a] !=
-                c->at[3 * (int64_t)p->element_node[i / 8 * 8] + a] + lattice_vtk[i % 8][a])
-                return no_lattice(c, i / 8);
-    return 0;
 }
 
 static int32_t floor_division(int32_t a, int32_t b)
@@ -210,7 +164,7 @@ static int order_nodes(cutter *c)
         to->node = (int32_t)first;
         first += to->nodes;
         if (to->nodes > most)
-            return no_lattice(c, c->p->corner[8 * (int64_t)c->brick[4 * i]] / 8);
+            return places_none(c->e, c->p->corner[8 * (int64_t)c->brick[4 * i]] / 8);
         to->nodes = 0;
     }
     for (int32_t n = 0; n < t->nodes; n++) {
@@ -311,7 +265,7 @@ static int put_cell(cutter *c, int64_t which, int64_t at)
     int32_t place = place_in(c, which, corner[0]);
     uint32_t own = c->part[corner[0]] == which;
     if (c->taken[place])
-        return no_lattice(c, element);
+        return places_none(c->e, element);
     c->taken[place] = true;
     if (t->share)
         t->share[at] = c->p->fraction[element];
@@ -321,7 +275,7 @@ static int put_cell(cutter *c, int64_t which, int64_t at)
     for (int i = 0; i < 8; i++) {
         int32_t *here = &c->here[place_in(c, which, corner[i])];
         if (*here >= 0 && *here != corner[i])
-            return no_lattice(c, element);
+            return places_none(c->e, element);
         *here = corner[i];
     }
     return 0;
@@ -375,7 +329,7 @@ static int cut_tiles(cutter *c)
     tiles *t = c->t;
     for (int64_t i = 0; i < t->count; i++) {
         if (t->tile[i].cells > TILE_PLACES)
-            return no_lattice(c, t->cell_element[t->tile[i].cell]);
+            return places_none(c->e, t->cell_element[t->tile[i].cell]);
         sort_cells(c, i);
         if (cut_tile(c, i))
             return -1;
@@ -431,8 +385,8 @@ int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e)
     c.order = mem_array(p->nodes, sizeof *c.order, "the tiles", e);
     if (!c.part || !c.at || !c.order)
         goto out;
-    find_parts(&c);
-    if (find_places(&c) || find_tiles(&c) || order_nodes(&c) || list_cells(&c) || cut_tiles(&c) || list_extras(&c))
+    if (places_find(p, c.part, c.at, e) || find_tiles(&c) || order_nodes(&c) || list_cells(&c) || cut_tiles(&c) ||
+        list_extras(&c))
         goto out;
     result = 0;
 out:

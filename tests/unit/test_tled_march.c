@@ -1,0 +1,202 @@
+/* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners, and what is
+ * said of special cells is the problem's. Along either axis; in two parts as well; and not where too few threads would
+ * have a cell. And units: as many as there is room for at once where their layers are all alike.
+ */
+// needs: tled/march.c tled/march_units.c tled/places.c tled/*.c
+#include "mesh/lattice.h"
+#include "tled/march_units.h"
+
+#include "tap.h"
+#include "tled_block.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct seen {
+    const tled_problem *p;
+    const march *m;
+    int32_t *element; /* nodes: whose low corner it is, or -1 */
+    int32_t *elements, *moved;
+    int64_t wrong, special;
+} seen;
+
+/* The word of a place in a layer, as march.h orders them. */
+static uint32_t word_at(const march *m, int64_t layer, int i, int j)
+{
+    const uint32_t *word = m->word + layer * MARCH_WORDS;
+    if (i == MARCH_SIDE)
+        return word[MARCH_THREADS + j];
+    if (j == MARCH_SIDE)
+        return word[MARCH_THREADS + MARCH_SIDE + 1 + i];
+    return word[32 * (i / 8 + 2 * (j / 4)) + 8 * (j % 4) + i % 8];
+}
+
+static int corner_of(const march *m, const int way[3])
+{
+    int at[3], c = 0;
+    for (int a = 0; a < 3; a++)
+        at[m->axis[a]] = way[a];
+    while (memcmp((int[]){lattice_vtk[c][0], lattice_vtk[c][1], lattice_vtk[c][2]}, at, sizeof at) != 0)
+        c++;
+    return c;
+}
+
+static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
+{
+    const int32_t *which = s->m->which + MARCH_THREADS * (int64_t)s->m->detail[layer];
+    const march_cell *cell = &s->m->cell[which[32 * (i / 8 + 2 * (j / 4)) + 8 * (j % 4) + i % 8]];
+    s->special++;
+    s->wrong += cell->volume != s->p->element_volume[element] ||
+                cell->mixed != (s->p->mixed ? s->p->mixed[element] : -1) ||
+                (double)cell->share != tled_fraction(s->p, element);
+    if (cell->direction >= 0)
+        s->wrong += memcmp(s->m->fibre + 3 * (int64_t)cell->direction, s->p->fibre + 3 * (int64_t)element,
+                           3 * sizeof(float)) != 0;
+}
+
+/* A cell of a unit: its corners, and which of them the unit moves. */
+static void see_cell(seen *s, const march_unit *u, int c, int i, int j)
+{
+    const uint32_t own = word_at(s->m, u->base + c, i, j);
+    const int32_t element = s->element[own & MARCH_NODE];
+    if (!(own & MARCH_THERE) || element < 0) {
+        s->wrong++;
+        return;
+    }
+    if (own & MARCH_SPECIAL)
+        see_special(s, u->base + c, i, j, element);
+    for (int k = 0; k < 8; k++) {
+        const int way[3] = {k & 1, k >> 1 & 1, k >> 2};
+        const int layer = c + way[2];
+        const uint32_t word = word_at(s->m, u->base + layer, i + way[0], j + way[1]);
+        const int32_t node = (int32_t)(word & MARCH_NODE);
+        s->wrong += !(word & MARCH_THERE) || node != s->p->element_node[8 * (int64_t)element + corner_of(s->m, way)];
+        if (word & MARCH_OWN && layer > 0 && layer < u->cells)
+            s->elements[node]++;
+    }
+}
+
+static void see_unit(seen *s, const march_unit *u)
+{
+    for (int c = 0; c < u->cells; c++)
+        for (int j = 0; j < MARCH_SIDE; j++)
+            for (int i = 0; i < MARCH_SIDE; i++) {
+                const uint32_t word = word_at(s->m, u->base + c, i, j);
+                if (word & MARCH_OWN && c > 0)
+                    s->moved[word & MARCH_NODE]++;
+                if (word & MARCH_CELL)
+                    see_cell(s, u, c, i, j);
+            }
+}
+
+static bool all_seen(seen *s)
+{
+    const tled_problem *p = s->p;
+    for (int32_t n = 0; n < p->nodes; n++)
+        s->element[n] = -1;
+    for (int32_t i = 0; i < p->elements; i++)
+        s->element[p->element_node[8 * (int64_t)i]] = i;
+    for (int64_t i = 0; i < s->m->units; i++)
+        see_unit(s, &s->m->unit[i]);
+    for (int32_t n = 0; n < p->nodes; n++) {
+        int at = 0;
+        while (at < 8 && p->corner[8 * (int64_t)n + at] < 8 * p->elements)
+            at++;
+        s->wrong += s->moved[n] != 1 || s->elements[n] != at;
+    }
+    return !s->wrong;
+}
+
+static void test_cut(const block *what, int axis, bool scripted, int64_t slots, const char *name)
+{
+    model m = {0};
+    script played = {0};
+    tled_problem p = {0};
+    march cut;
+    err e = {0};
+    block_make(what, &m);
+    if (scripted && script_add_contract(&played, &m, "m=.5", .1, NULL, &e))
+        printf("Bail out! %s\n", e.text);
+    if (tled_problem_make(&p, &m, &played, .0075, &e))
+        printf("Bail out! %s\n", e.text);
+    int32_t *list = calloc((size_t)p.nodes * 4, sizeof *list), *order = list + 3 * p.nodes;
+    for (int32_t n = 0; n < p.nodes; n++)
+        order[n] = n;
+    const int failed = march_make(&cut, &p, order, slots, &e);
+    seen s = {&p, &cut, list, list + p.nodes, list + 2 * p.nodes, 0, 0};
+    ok(!failed && cut.units > 0 && cut.axis[2] == axis && all_seen(&s),
+       "%s: along %c, %lld units, %.3g threads an element: each node moved once, of all its elements %s", name,
+       "xyz"[cut.axis[2]], (long long)cut.units, cut.computed, e.text);
+    const bool all = scripted || what->fraction < 0;
+    ok(all ? s.special >= p.elements : s.special == (cut.cells ? s.special : 0),
+       "%s: %lld special cells are the problem's", name, (long long)s.special);
+    march_free(&cut);
+    free(list);
+    tled_problem_free(&p);
+    script_free(&played);
+    model_free(&m);
+}
+
+/* A row of elements is too thin. */
+static void test_thin(void)
+{
+    const block thin = {{1, 1, 200}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0, false};
+    model m = {0};
+    script played = {0};
+    tled_problem p = {0};
+    march cut;
+    err e = {0};
+    block_make(&thin, &m);
+    int32_t *order = NULL;
+    const int failed = tled_problem_make(&p, &m, &played, .0075, &e) ||
+                       !(order = calloc((size_t)p.nodes, sizeof *order)) || march_make(&cut, &p, order, 396, &e);
+    ok(!failed && cut.units == 0, "a row of elements is none for a march: %.3g threads an element %s", cut.computed,
+       e.text);
+    march_free(&cut);
+    free(order);
+    tled_problem_free(&p);
+    model_free(&m);
+}
+
+static void test_units(void)
+{
+    march_runs runs = {0};
+    march_unit *unit = NULL;
+    int64_t units = 0, layers = 0;
+    int32_t longest = 0;
+    uint8_t warps[100];
+    err e = {0};
+    memset(warps, 0xff, sizeof warps);
+    for (int i = 0; i < 6; i++)
+        ok(!march_runs_add(&runs, 102 * i, warps, 100, &e), "a run is added");
+    const int failed = march_runs_cut(&runs, 60, &unit, &units, &e);
+    for (int64_t i = 0; i < units; i++) {
+        layers += unit[i].cells - 1;
+        longest = unit[i].cells > longest ? unit[i].cells : longest;
+    }
+    ok(!failed && units == 60 && layers == 600 && longest == 11,
+       "600 layers for 60 blocks: %lld units, the longest of %d", (long long)units, longest);
+    free(unit);
+    march_runs_free(&runs);
+}
+
+int main(void)
+{
+    const block tall = {{33, 31, 40}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
+    block flat = tall, cut = tall, mixed = tall;
+    cut.fraction = -1;
+    mixed.fraction = -1;
+    mixed.mixed = true;
+    test_cut(&tall, 1, false, 7, "a block");
+    for (int a = 1; a < 3; a++) {
+        flat.cells[0] = flat.cells[3 - a] = 44;
+        flat.cells[a] = 20;
+        test_cut(&flat, a, false, 400, "a flat block");
+    }
+    test_cut(&tall, 1, true, 20, "a muscle");
+    test_cut(&cut, 1, false, 20, "cut elements");
+    test_cut(&mixed, 1, false, 3, "mixed elements");
+    test_thin();
+    test_units();
+    return done_testing();
+}

@@ -1,0 +1,585 @@
+/* The step in single precision by a march: see march.h. A thread keeps what the face between two elements has of modes (the mean, x, y
+ * and xy of each component, sums and differences over four corners) and of forces on them; so an element takes one new face, and a
+ * node the sums of one. Compiled with fused multiplications and additions: its bytes are not the processor's.
+ *
+ * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from three layers before
+ * they are wanted. Forces on neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells of the
+ * next one are computed: a warp says that it is done with a layer, and only after it has computed the next one does it wait until
+ * all have said so, so that those with fewer cells seldom keep others waiting.
+ */
+#define ELEMENT_SINGLE
+extern "C" {
+#include "mesh/element.h"
+}
+#include "tled/cuda_march.cuh"
+
+enum {
+    SIDE = MARCH_SIDE,
+    GRID = SIDE + 1, /* nodes along a side */
+    NODE = 16,       /* bytes of 4 floats, of a node's displacement, velocity or force */
+    STAGES = 5,      /* layers of displacements in shared memory */
+    STAGE = GRID * GRID * NODE,
+    VELOCITIES = STAGES * STAGE, /* from here on the place of a node has as much room, and one grid fewer rows */
+    FORCE = GRID * SIDE * NODE,
+    FORCES = VELOCITIES + FORCE, /* two times four of them: on corners (1, 0), (0, 1), (1, 1), (0, 0) */
+    FORCES_EACH = 4 * FORCE,
+    SHARED = FORCES + 2 * FORCES_EACH,
+    WARPS = MARCH_THREADS / 32,
+    EXTRA = 2 * SIDE + 1, /* words of places beyond the threads' */
+    TOGETHER = 3          /* blocks of a multiprocessor */
+};
+
+/* Modes of a face's four nodes, or forces on them. */
+typedef struct face {
+    float mean[3], x[3], y[3], xy[3];
+} face;
+
+/* What goes from layer to layer. */
+typedef struct flow {
+    const uint32_t *word; /* of the layer that the loop is at, this thread's */
+    uint32_t now, then;   /* words of layers c, c + 1 */
+    bool any, was;        /* this warp has cells in layers c, c - 1 */
+    int clean;            /* buffers of forces in which this warp's are zero */
+    face below;           /* forces of the layer of cells below */
+} flow;
+
+/* A thread's place in the grid of a layer's nodes. */
+static __device__ __forceinline__ int place_of(int thread)
+{
+    const int warp = thread / 32, lane = thread % 32;
+    return (warp / 2 * 4 + lane / 8) * GRID + warp % 2 * 8 + lane % 8;
+}
+
+static __device__ __forceinline__ uint32_t shared_at(const void *p)
+{
+    return (uint32_t)__cvta_generic_to_shared(p);
+}
+
+static __device__ __forceinline__ float4 shared_load(uint32_t at)
+{
+    float4 x;
+    asm volatile("ld.shared.v4.f32 {%0, %1, %2, %3}, [%4];"
+                 : "=f"(x.x), "=f"(x.y), "=f"(x.z), "=f"(x.w)
+                 : "r"(at)
+                 : "memory");
+    return x;
+}
+
+static __device__ __forceinline__ float shared_number(uint32_t at)
+{
+    float x;
+    asm volatile("ld.shared.f32 %0, [%1];" : "=f"(x) : "r"(at) : "memory");
+    return x;
+}
+
+static __device__ __forceinline__ void shared_number_store(uint32_t at, float x)
+{
+    asm volatile("st.shared.f32 [%0], %1;" ::"r"(at), "f"(x) : "memory");
+}
+
+static __device__ __forceinline__ void shared_store_with(uint32_t at, float x, float y, float z, uint32_t word)
+{
+    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z),
+                 "f"(__uint_as_float(word))
+                 : "memory");
+}
+
+/* The fourth number is whatever stands in some register. */
+static __device__ __forceinline__ void shared_store(uint32_t at, float x, float y, float z)
+{
+    float any;
+    asm("" : "=f"(any));
+    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z), "f"(any) : "memory");
+}
+
+/* On its way to shared memory; with is false: zeros. */
+static __device__ __forceinline__ void send(uint32_t to, const float4 *from, bool is)
+{
+    asm volatile("cp.async.cg.shared.global [%0], [%1], 16, %2;" ::"r"(to), "l"(from), "r"(is ? 16 : 0) : "memory");
+}
+
+static __device__ __forceinline__ void sent(void)
+{
+    asm volatile("cp.async.commit_group;" ::: "memory");
+}
+
+/* Waits for all that was sent but for the last n groups. */
+template <int N> static __device__ __forceinline__ void arrived(void)
+{
+    asm volatile("cp.async.wait_group %0;" ::"n"(N) : "memory");
+}
+
+static __device__ __forceinline__ const float4 *node_of(const float4 *p, uint32_t word)
+{
+    uint64_t at;
+    asm("mad.wide.u32 %0, %1, 16, %2;" : "=l"(at) : "r"(word & MARCH_NODE), "l"(p));
+    return (const float4 *)at;
+}
+
+/* The first threads have a place beyond the threads' as well. */
+static __device__ __forceinline__ bool has_extra(void)
+{
+    return threadIdx.x < EXTRA;
+}
+
+/* at: the thread's own place. */
+static __device__ __forceinline__ uint32_t extra_at(uint32_t at)
+{
+    const int t = (int)threadIdx.x, own = place_of(t), extra = t < GRID ? t * GRID + SIDE : SIDE * GRID + t - GRID;
+    return at + (uint32_t)((extra - own) * NODE);
+}
+
+static __device__ __forceinline__ void send_layer(const cuda_march_pass &p, uint32_t at, uint32_t stage, uint32_t word,
+                                                  uint32_t extra)
+{
+    send(at + stage, node_of(p.from, word), word & MARCH_THERE);
+    if (has_extra())
+        send(extra_at(at) + stage, node_of(p.from, extra), extra & MARCH_THERE);
+}
+
+static __device__ __forceinline__ face face_at(uint32_t node)
+{
+    const float4 a = shared_load(node), b = shared_load(node + NODE);
+    const float4 c = shared_load(node + GRID * NODE), d = shared_load(node + GRID * NODE + NODE);
+    const float low[2][3] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}}, high[2][3] = {{c.x, c.y, c.z}, {d.x, d.y, d.z}};
+    face f;
+#pragma unroll
+    for (int i = 0; i < 3; i++) {
+        const float s = low[0][i] + low[1][i], t = low[1][i] - low[0][i];
+        const float sum = high[0][i] + high[1][i], gap = high[1][i] - high[0][i];
+        f.mean[i] = s + sum;
+        f.y[i] = sum - s;
+        f.x[i] = t + gap;
+        f.xy[i] = gap - t;
+    }
+    return f;
+}
+
+/* x^(-5/3), to 4e-7 of it. */
+static __device__ __forceinline__ float power(float x)
+{
+    float y;
+    asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+    asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(y * (-5.f / 3)));
+    return y;
+}
+
+/* element_stress, in fewer operations. With s = mu J^-5/3, d = J - 1, e = tr(C - I), G = cof F - I, all of it first order in H:
+ *     P = (s (d - e/3) + K d) I + s J H + (K d - s (1 + e/3)) G.
+ * No cell: mu and bulk are 0, and J is not looked at. */
+static __device__ __forceinline__ element_tensor stress(element_tensor h, float mu, float bulk, bool is)
+{
+    const element_tensor m = {h.yy * h.zz - h.yz * h.zy, h.yz * h.zx - h.yx * h.zz, h.yx * h.zy - h.yy * h.zx,
+                              h.xz * h.zy - h.xy * h.zz, h.xx * h.zz - h.xz * h.zx, h.xy * h.zx - h.xx * h.zy,
+                              h.xy * h.yz - h.xz * h.yy, h.xz * h.yx - h.xx * h.yz, h.xx * h.yy - h.xy * h.yx};
+    const float trace = h.xx + h.yy + h.zz;
+    const float dilation = trace + ((m.xx + m.yy + m.zz) + (h.xx * m.xx + h.xy * m.xy + h.xz * m.xz));
+    const float third = (2 * trace + (h.xx * h.xx + h.xy * h.xy + h.xz * h.xz + h.yx * h.yx + h.yy * h.yy +
+                                      h.yz * h.yz + h.zx * h.zx + h.zy * h.zy + h.zz * h.zz)) *
+                        (1.f / 3);
+    const float j = is ? 1 + dilation : 1, scale = mu * power(j), pressure = bulk * dilation;
+    const float all = pressure + scale * (dilation - third), own = scale * j, g = pressure - (scale + scale * third);
+    const element_tensor p = {all + own * h.xx + g * (trace - h.xx + m.xx),
+                              own * h.xy + g * (m.xy - h.yx),
+                              own * h.xz + g * (m.xz - h.zx),
+                              own * h.yx + g * (m.yx - h.xy),
+                              all + own * h.yy + g * (trace - h.yy + m.yy),
+                              own * h.yz + g * (m.yz - h.zy),
+                              own * h.zx + g * (m.zx - h.xz),
+                              own * h.zy + g * (m.zy - h.yz),
+                              all + own * h.zz + g * (trace - h.zz + m.zz)};
+    return p;
+}
+
+static __device__ element_vector along(const cuda_march &m, const float *fibre, int32_t direction)
+{
+    const float *at = fibre + 3 * (int64_t)direction;
+    const element_vector a = {at[m.axis[0]], at[m.axis[1]], at[m.axis[2]]};
+    return a;
+}
+
+static __device__ float tension_of(const cuda_march &m, const cuda_march_pass &p, int32_t volume)
+{
+    const cuda_kind &kind = m.v.kind[volume];
+    return kind.contract < 0 ? 0 : (float)(kind.peak * p.now[3 * kind.contract]);
+}
+
+/* What a cell is made of; and how far that counts: a special cell's share. */
+typedef struct cell_law {
+    float mu, bulk, hourglass;
+} cell_law;
+
+static __device__ __forceinline__ march_cell special_of(const cuda_march &m, const uint32_t *word)
+{
+    const int64_t at = (word - m.word) / MARCH_WORDS;
+    return m.cell[m.which[MARCH_THREADS * (int64_t)m.detail[at] + threadIdx.x]];
+}
+
+static __device__ __forceinline__ cell_law law_of(const cuda_march &m, const march_cell &cell)
+{
+    if (cell.mixed < 0) {
+        const float *law = m.v.law + LAW_NUMBERS * (int64_t)cell.volume;
+        return {cell.share * law[0], cell.share * law[1], cell.share * law[2]};
+    }
+    const cuda_mixed &mixed = m.v.mixture[cell.mixed];
+    return {cell.share * (float)mixed.mu, cell.share * (float)mixed.bulk, cell.share * (float)mixed.hourglass};
+}
+
+/* Adds what muscles do in a special cell. */
+static __device__ __forceinline__ element_tensor active(const cuda_march &m, const cuda_march_pass &p,
+                                                        const march_cell &cell, element_tensor h, element_tensor sum)
+{
+    const cuda_mixed *mixed = cell.mixed < 0 ? NULL : &m.v.mixture[cell.mixed];
+    const float other = mixed ? (float)mixed->share : 0;
+#pragma unroll 1
+    for (int k = 0; k < (mixed && m.mixfibre ? 2 : 1); k++) {
+        const float tension = tension_of(m, p, k ? mixed->mix : cell.volume);
+        const element_fibre fibre = {along(m, k ? m.mixfibre : m.fibre, cell.direction),
+                                     cell.share * (k ? other : 1 - other) * tension};
+        if (fibre.tension != 0)
+            sum = element_sum(sum, element_active(h, fibre));
+    }
+    return sum;
+}
+
+static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m, const face &low, const face &high)
+{
+    const element_tensor h = {(low.x[0] + high.x[0]) * m.slope[0],       (low.y[0] + high.y[0]) * m.slope[1],
+                              (high.mean[0] - low.mean[0]) * m.slope[2], (low.x[1] + high.x[1]) * m.slope[0],
+                              (low.y[1] + high.y[1]) * m.slope[1],       (high.mean[1] - low.mean[1]) * m.slope[2],
+                              (low.x[2] + high.x[2]) * m.slope[0],       (low.y[2] + high.y[2]) * m.slope[1],
+                              (high.mean[2] - low.mean[2]) * m.slope[2]};
+    return h;
+}
+
+/* The forces of a layer of cells: `sum` gets those on its lower face, with f->below, which becomes those on its upper face. A special
+ * cell's gradient is found once more, so that others need not keep theirs. */
+template <bool SPECIAL>
+static __device__ __forceinline__ void cell_forces(const cuda_march &m, const cuda_march_pass &p, flow *f,
+                                                   const face &low, const face &high, uint32_t here, face *sum)
+{
+    const bool is = f->now & MARCH_CELL;
+    cell_law law = {is ? m.law[0] : 0, is ? m.law[1] : 0, is ? m.law[2] : 0};
+    if (SPECIAL && f->now & MARCH_SPECIAL)
+        law = law_of(m, special_of(m, f->word));
+    element_tensor s = stress(gradient_of(m, low, high), law.mu, law.bulk, is);
+    if (SPECIAL && f->now & MARCH_SPECIAL) {
+        const march_cell cell = special_of(m, f->word);
+        if (cell.direction >= 0)
+            s = active(m, p, cell, gradient_of(m, face_at(here), high), s);
+    }
+    const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
+    face *below = &f->below;
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        const float zx = law.hourglass * (high.x[a] - low.x[a]), yz = law.hourglass * (high.y[a] - low.y[a]);
+        const float z = pz[a] * m.area[2];
+        sum->mean[a] = below->mean[a] - z;
+        sum->x[a] = (below->x[a] - zx) + px[a] * m.area[0];
+        sum->y[a] = (below->y[a] - yz) + py[a] * m.area[1];
+        sum->xy[a] = below->xy[a] + 2 * law.hourglass * low.xy[a];
+        below->mean[a] = z;
+        below->x[a] = zx + px[a] * m.area[0];
+        below->y[a] = yz + py[a] * m.area[1];
+        below->xy[a] = 2 * law.hourglass * high.xy[a];
+    }
+}
+
+/* The forces on the corners of a face go to shared memory, and the word with those on the thread's own. */
+static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to, uint32_t word)
+{
+    float own[3], x[3], y[3], xy[3];
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        const float low = sum.mean[a] - sum.y[a], high = sum.mean[a] + sum.y[a];
+        const float low_x = sum.x[a] - sum.xy[a], high_x = sum.x[a] + sum.xy[a];
+        own[a] = low - low_x;
+        x[a] = low + low_x;
+        y[a] = high - high_x;
+        xy[a] = high + high_x;
+    }
+    shared_store(to, x[0], x[1], x[2]);
+    shared_store(to + FORCE, y[0], y[1], y[2]);
+    shared_store(to + 2 * FORCE, xy[0], xy[1], xy[2]);
+    shared_store_with(to + 3 * FORCE, own[0], own[1], own[2], word);
+}
+
+static __shared__ float4 gravity; /* its part of a velocity */
+
+/* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces on it. It is worked on where it
+ * stands in shared memory, component by component: few nodes are such, and others are to keep their registers. */
+static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
+                                                 uint32_t word, uint32_t node, uint32_t bits, int a, float pull)
+{
+    const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)(word & MARCH_NODE)) : NULL;
+    const int axis = m.axis[a];
+    float u = shared_number(node + 4 * a), v = shared_number(at + VELOCITIES + 4 * a), net = -pull;
+    for (int32_t k = 0; x && k < x->forces; k++)
+        net += (float)(m.v.force_share[x->force + k] * p.now[3 * m.v.force_curve[x->force + k] + axis]);
+    if (bits >> (MARCH_FREE + a) & 1) {
+        v = p.keep * v +
+            (a == 0   ? gravity.x
+             : a == 1 ? gravity.y
+                      : gravity.z) +
+            p.push * shared_number(node + 12) * net;
+        u += p.dt * v;
+    } else if (p.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
+        const float to = (float)p.next[3 * x->hold[axis] + axis];
+        v = (to - u) / p.dt;
+        u = to;
+    }
+    shared_number_store(node + 4 * a, u);
+    shared_number_store(at + VELOCITIES + 4 * a, v);
+}
+
+/* The forces at a thread's node, and its step, if it is owned; forces, node: where its forces and displacement stand. */
+static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
+                                                 uint32_t forces, uint32_t node)
+{
+    const float4 own = shared_load(forces + 3 * FORCE);
+    const uint32_t word = __float_as_uint(own.w);
+    if (!(word & MARCH_OWN))
+        return;
+    const float4 x = shared_load(forces - NODE), y = shared_load(forces + FORCE - GRID * NODE);
+    const float4 xy = shared_load(forces + 2 * FORCE - (GRID + 1) * NODE);
+    const float3 sum = {(own.x + x.x) + (y.x + xy.x), (own.y + x.y) + (y.y + xy.y), (own.z + x.z) + (y.z + xy.z)};
+    float4 u = shared_load(node), v = shared_load(at + VELOCITIES);
+    const uint32_t bits = __float_as_uint(v.w);
+    if (p.what & PASS_INTERNAL)
+        *(float4 *)node_of(p.to, word) = make_float4(sum.x, sum.y, sum.z, u.w);
+    if (bits == 7) {
+        const float push = p.push * u.w;
+        v.x = (p.keep * v.x + gravity.x) - push * sum.x;
+        v.y = (p.keep * v.y + gravity.y) - push * sum.y;
+        v.z = (p.keep * v.z + gravity.z) - push * sum.z;
+        u.x += p.dt * v.x;
+        u.y += p.dt * v.y;
+        u.z += p.dt * v.z;
+    } else {
+#pragma unroll 1
+        for (int a = 0; a < 3; a++)
+            move_held(m, p, at, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
+        u = shared_load(node);
+        v = shared_load(at + VELOCITIES);
+    }
+    if (p.what & PASS_BEGIN)
+        *(float4 *)node_of(p.to, word) = u;
+    if (p.what & (PASS_BEGIN | PASS_FINISH))
+        *(float4 *)node_of(p.velocity, word) = v;
+}
+
+/* Says that this warp is done with a layer: its forces are there, and displacements of the layer after the next. */
+static __device__ __forceinline__ void say_done(uint32_t said)
+{
+    __syncwarp();
+    if (threadIdx.x % 32 == 0)
+        asm volatile("{ .reg .b64 state; mbarrier.arrive.shared::cta.b64 state, [%0]; }" ::"r"(said) : "memory");
+}
+
+/* Waits until all warps have said so of an even or odd layer. */
+static __device__ __forceinline__ void wait_done(uint32_t said, int odd)
+{
+    asm volatile(
+        "{ .reg .pred is; again%=: mbarrier.try_wait.parity.shared::cta.b64 is, [%0], %1; @!is bra again%=; }" ::"r"(
+            said),
+        "r"(odd)
+        : "memory");
+}
+
+/* Layer c of cells, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the displacements of layer c + 1 stand;
+ * old: those of c - 1, and those of c + 4 from here on. goes_on: there is a layer c + 4. */
+template <bool SPECIAL, int ODD>
+static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
+                                             flow *f, int c, uint32_t next, uint32_t old, bool goes_on, const face &low,
+                                             face *high)
+{
+    const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
+    const uint32_t far = f->word[MARCH_AHEAD * MARCH_WORDS], after = f->word[2 * MARCH_WORDS];
+    const uint32_t more = has_extra() ? f->word[MARCH_AHEAD * MARCH_WORDS + MARCH_THREADS] : 0;
+    const bool any = f->any;
+    f->any = __any_sync(~0u, f->then & MARCH_CELL);
+    face sum = f->below;
+    if (any || f->any)
+        *high = face_at(at + next);
+    if (any)
+        cell_forces<SPECIAL>(m, p, f, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE), &sum);
+    else
+        f->below = face{};
+    arrived<0>(); /* displacements of c + 3, and velocities of c - 1 */
+    if (c)
+        wait_done(said, 1 - ODD);
+    if (any || f->was || f->clean < 2)
+        share_forces(sum, forces, f->now);
+    else
+        shared_store_with(forces + 3 * FORCE, 0, 0, 0, f->now);
+    f->clean = any || f->was ? 0 : f->clean + 1;
+    if (c > 1)
+        move_node(m, p, at, before, at + old);
+    if (f->now & MARCH_OWN)
+        send(at + VELOCITIES, node_of(p.velocity, f->now), true);
+    if (goes_on)
+        send_layer(p, at, old, far, more);
+    sent();
+    say_done(said);
+    f->was = any;
+    f->now = f->then;
+    f->then = after;
+    f->word += MARCH_WORDS;
+}
+
+/* Thread 0's work. */
+static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p)
+{
+    const double *g = m.v.gravity < 0 ? NULL : p.now + 3 * m.v.gravity;
+    gravity.x = g ? p.push * (float)g[m.axis[0]] : 0;
+    gravity.y = g ? p.push * (float)g[m.axis[1]] : 0;
+    gravity.z = g ? p.push * (float)g[m.axis[2]] : 0;
+}
+
+/* The first layers of a unit are there. What the pass before wrote may be read from here on. */
+static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
+                                             const march_unit &unit, flow *f)
+{
+    uint32_t word[MARCH_AHEAD], extra[MARCH_AHEAD];
+    f->word = m.word + MARCH_WORDS * (int64_t)unit.base + threadIdx.x;
+#pragma unroll
+    for (int k = 0; k < MARCH_AHEAD; k++) {
+        word[k] = f->word[k * MARCH_WORDS];
+        extra[k] = has_extra() ? f->word[k * MARCH_WORDS + MARCH_THREADS] : 0;
+    }
+    f->now = word[0];
+    f->then = word[1];
+    asm volatile("griddepcontrol.wait;" ::: "memory");
+#pragma unroll
+    for (int k = 0; k < MARCH_AHEAD; k++)
+        if (k <= unit.cells)
+            send_layer(p, at, k * STAGE, word[k], extra[k]);
+    sent();
+    if (threadIdx.x == 0) {
+        put_gravity(m, p);
+        asm volatile("mbarrier.init.shared::cta.b64 [%0], %1;" ::"r"(said), "r"(WARPS) : "memory");
+    }
+    arrived<0>();
+    __syncthreads();
+    f->any = __any_sync(~0u, f->now & MARCH_CELL);
+}
+
+static __device__ __forceinline__ uint32_t after(uint32_t stage)
+{
+    return stage == (STAGES - 1) * STAGE ? 0 : stage + STAGE;
+}
+
+template <bool SPECIAL>
+static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p,
+                                                     const march_unit &unit, uint32_t memory, uint32_t said)
+{
+    const uint32_t at = memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
+    flow f = {};
+    begin(m, p, at, said, unit, &f);
+    face even = face_at(at), odd;
+    const int last = unit.cells;
+    uint32_t next = STAGE, old = (STAGES - 1) * STAGE;
+#pragma unroll 1
+    for (int c = 0;;) {
+        layer<SPECIAL, 0>(m, p, at, said, &f, c, next, old, c + 4 <= last, even, &odd);
+        next = after(next), old = after(old);
+        if (++c == last)
+            break;
+        layer<SPECIAL, 1>(m, p, at, said, &f, c, next, old, c + 4 <= last, odd, &even);
+        next = after(next), old = after(old);
+        if (++c == last)
+            break;
+    }
+    arrived<0>();
+    wait_done(said, (last - 1) % 2);
+    move_node(m, p, at, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old);
+}
+
+/* What special cells take in registers, units without them do without. */
+static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
+    march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
+{
+    extern __shared__ float4 memory[];
+    __shared__ uint64_t said;
+    const march_unit unit = m.unit[blockIdx.x];
+    asm volatile("griddepcontrol.launch_dependents;"); /* the next pass may come when there is room, and wait */
+    if (unit.special)
+        march_unit_of<true>(m, p, unit, shared_at(memory), shared_at(&said));
+    else
+        march_unit_of<false>(m, p, unit, shared_at(memory), shared_at(&said));
+}
+
+/* ---- from and to rows */
+
+enum { PACK_THREADS = 256 };
+
+static __global__ void pack_kernel(const __grid_constant__ cuda_march m, const float4 *from, float *to)
+{
+    const int64_t n = (int64_t)blockIdx.x * PACK_THREADS + threadIdx.x;
+    if (n >= m.v.nodes)
+        return;
+    const float4 x = from[n];
+    to[m.axis[0] * m.v.stride + n] = x.x;
+    to[m.axis[1] * m.v.stride + n] = x.y;
+    to[m.axis[2] * m.v.stride + n] = x.z;
+}
+
+static __global__ void unpack_kernel(const __grid_constant__ cuda_march m, const float *from, float4 *to)
+{
+    const int64_t n = (int64_t)blockIdx.x * PACK_THREADS + threadIdx.x;
+    if (n >= m.v.nodes)
+        return;
+    to[n] = make_float4(from[m.axis[0] * m.v.stride + n], from[m.axis[1] * m.v.stride + n],
+                        from[m.axis[2] * m.v.stride + n], to[n].w);
+}
+
+static unsigned pack_blocks(const cuda_march *m)
+{
+    return (unsigned)((m->v.nodes + PACK_THREADS - 1) / PACK_THREADS);
+}
+
+cudaError_t cuda_march_pack(const cuda_march *m, const float4 *from, float *to, cudaStream_t stream)
+{
+    pack_kernel<<<pack_blocks(m), PACK_THREADS, 0, stream>>>(*m, from, to);
+    return cudaGetLastError();
+}
+
+cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to, cudaStream_t stream)
+{
+    unpack_kernel<<<pack_blocks(m), PACK_THREADS, 0, stream>>>(*m, from, to);
+    return cudaGetLastError();
+}
+
+/* ---- starting */
+
+cudaError_t cuda_march_slots(int64_t *slots)
+{
+    int device = 0, processors = 0, each = 0, major = 0;
+    *slots = 0;
+    cudaError_t e = cudaGetDevice(&device);
+    e = e == cudaSuccess ? cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) : e;
+    if (e != cudaSuccess || major < 9)
+        return e;
+    e = cudaFuncSetAttribute(march_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
+    e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
+    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel, MARCH_THREADS, SHARED)
+                         : e;
+    *slots = (int64_t)processors * each;
+    return e;
+}
+
+/* A pass may start before the one before it has ended: it waits in begin(). */
+cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t units, cudaStream_t stream)
+{
+    cudaLaunchAttribute attribute = {};
+    attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    attribute.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t how = {};
+    how.gridDim = dim3((unsigned)units);
+    how.blockDim = dim3(MARCH_THREADS);
+    how.dynamicSmemBytes = SHARED;
+    how.stream = stream;
+    how.attrs = &attribute;
+    how.numAttrs = 1;
+    return cudaLaunchKernelEx(&how, march_kernel, *m, *p);
+}

@@ -1,0 +1,49 @@
+/* What the march takes of the CUDA back end in single precision: cuda_march.cu. Its state stands node by node, in the tiles' order of
+ * nodes: 4 floats each, of which the first three are components along the march's axes: rows, across, march. The fourth of a
+ * displacement, and of an internal force, is 1/m; that of a velocity is what move_node needs to know: MARCH_FREE, MARCH_EXTRA, as bits.
+ * The view's pointers and these are the card's, borrowed.
+ */
+#ifndef SINEW_CUDA_MARCH_CUH
+#define SINEW_CUDA_MARCH_CUH
+
+#include "tled/cuda_view.cuh"
+
+extern "C" {
+#include "tled/march.h"
+}
+
+enum {
+    MARCH_FREE = 0, /* bit MARCH_FREE + a: nothing holds component a */
+    MARCH_EXTRA = 3 /* displaced by the script, or forces act on it */
+};
+
+typedef struct cuda_march {
+    cuda_view<float> v;
+    const march_unit *unit;
+    const uint32_t *word;
+    const int32_t *detail, *which;
+    const march_cell *cell;
+    const float *fibre, *mixfibre; /* mixfibre: or NULL */
+    float law[LAW_NUMBERS];        /* of plain cells */
+    float slope[3], area[3];       /* element_shape's, along the march's axes */
+    int32_t axis[3];               /* of the model: which these are */
+} cuda_march;
+
+/* One pass: v = keep v + push a, with what a step begins and ends; u += dt v. */
+typedef struct cuda_march_pass {
+    const float4 *from;
+    float4 *to, *velocity;    /* to: displacements, or internal forces */
+    const double *now, *next; /* the curves' values */
+    float keep, push, dt;
+    int32_t what;
+} cuda_march_pass;
+
+/* Blocks that the card runs at once; 0: it cannot run any, being of before compute capability 9.0. */
+cudaError_t cuda_march_slots(int64_t *slots);
+cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t units, cudaStream_t stream);
+
+/* Between the march's order of components and 3 rows of `stride` in the model's; unpack leaves the fourth. */
+cudaError_t cuda_march_pack(const cuda_march *m, const float4 *from, float *to, cudaStream_t stream);
+cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to, cudaStream_t stream);
+
+#endif

@@ -1,0 +1,61 @@
+/* A problem cut for a march through its lattice, as the CUDA back end takes it in single precision. The lattice is cut into columns
+ * of 15 by 15 nodes, of which blocks of 16 by 16 threads go layer by layer along one axis: thread (i, j) computes the cell whose
+ * low corner has place (i, j) in the column, and moves the node of that place. Places 1 to 15 are owned, 0 and 16 are of columns
+ * beside this one.
+ *
+ * What stands at the places of a layer is told by words: which node, whether it is owned, whether a cell has its low corner
+ * there. A layer's words stand in the order of threads, each warp having 8 by 4 of them, so that warps without any cell in a layer,
+ * as in a shell, have little to do; then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
+ *
+ * Rows go along x, and the march along y or z, by which fewer warps have cells, summed over layers; a unit is what one block does: layers in
+ * a row. Columns are cut into units so that they take the card the shortest time, by a model: a layer takes a block 2, and 1 for each
+ * warp with cells, a unit 10 more; the longest units start first, and each that ends is followed by the next.
+ * The creator owns the march; it holds no pointer into the problem.
+ */
+#ifndef SINEW_MARCH_H
+#define SINEW_MARCH_H
+
+#include "tled/state.h"
+
+enum {
+    MARCH_SIDE = 16,            /* cells along a column's side: one more than owned nodes */
+    MARCH_THREADS = 256,        /* cells of a layer */
+    MARCH_WORDS = 296,          /* of a layer: 256 and 33, and 7 of no use */
+    MARCH_AHEAD = 4,            /* layers of nothing after the last, which are read before they are known to be none */
+    MARCH_NODE = (1 << 28) - 1, /* of a word: the node, in the caller's order */
+    MARCH_SPECIAL = 1 << 28,    /* its cell is not of the plain law: see `which` */
+    MARCH_THERE = 1 << 29,      /* there is a node */
+    MARCH_OWN = 1 << 30         /* and this column moves it */
+};
+#define MARCH_CELL (UINT32_C(1) << 31) /* there is a cell */
+
+/* Layers of nodes base to base + cells, and of cells base to base + cells - 1, whose nodes all but the first and last are moved. */
+typedef struct march_unit {
+    int32_t base, cells, special, unused; /* special: it has special cells */
+} march_unit;
+
+/* A cell that is not plain: of another volume, contracting, mixed, or not all tissue. */
+typedef struct march_cell {
+    int32_t volume, mixed, direction; /* mixed: the problem's; direction: in fibre; or -1 */
+    float share;
+} march_cell;
+
+typedef struct march {
+    int axis[3];   /* the model's axes along the rows of columns, across them, and along the march */
+    int32_t plain; /* the volume of plain cells */
+    int64_t layers, units, details, cells, directions;
+    double computed;  /* threads of warps with cells, over elements */
+    uint32_t *word;   /* (layers + MARCH_AHEAD) x MARCH_WORDS */
+    march_unit *unit; /* units: none where the problem is not suited */
+    int32_t *detail;  /* layers: where its special cells stand in `which`, in layers; or -1 */
+    int32_t *which;   /* details x MARCH_THREADS: in cell */
+    march_cell *cell;
+    float *fibre, *mixfibre; /* directions x 3, along the model's axes; mixfibre: or NULL */
+} march;
+
+/* order: of each node, where it stands among all; slots: blocks that the card runs at once. A problem whose cells fill too few
+ * threads has no units. -1 with e filled, and m to be freed all the same. */
+int march_make(march *m, const tled_problem *p, const int32_t *order, int64_t slots, err *e);
+void march_free(march *m);
+
+#endif
