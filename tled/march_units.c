@@ -103,8 +103,9 @@ static int longer(const void *a, const void *b)
 static double time_of(pieces *p)
 {
     double end = 0;
-    if (p->count && p->of)
-        qsort(p->of, (size_t)p->count, sizeof *p->of, longer);
+    if (!p->of)
+        return 0;
+    qsort(p->of, (size_t)p->count, sizeof *p->of, longer);
     memset(p->busy, 0, (size_t)p->slots * sizeof *p->busy);
     for (int64_t i = 0; i < p->count; i++) {
         const double until = p->busy[0] + p->of[i].cost;
