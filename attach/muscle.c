@@ -1,9 +1,9 @@
 #include "muscle.h"
 
 #include "base/mem.h"
-#include "muscle_body.h"
 #include "fibre_field.h"
 #include "mesh/lattice.h"
+#include "muscle_body.h"
 
 #include <float.h>
 #include <math.h>

@@ -3,9 +3,9 @@
  *     stream large ROWS [AT] < MODEL    the model (binary) with an axis x-rows and an array x-large of as many u8, AT's one more than it would be
  * Neither is ever held: frames are written one at a time, the large array a piece at a time.
  */
-#include "model/stream.h"
 #include "base/checksum.h"
 #include "base/num.h"
+#include "model/stream.h"
 
 #include <stdio.h>
 #include <stdlib.h>
