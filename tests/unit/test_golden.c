@@ -111,7 +111,7 @@ static void flip_text(const char *name, const char *binary)
     size_t silent = 0, taken = 0;
     bytes b = golden(name), plain = golden(binary);
     b.at[b.size] = 0;
-    bool *covered = calloc(b.size, sizeof *covered);
+    bool *covered = calloc(b.size + 1, sizeof *covered);
     size_t count = covered ? find_covered(&b, covered) : 0;
     for (size_t bit = 0; covered && bit < 8 * b.size; bit++) {
         flip(&b, bit);
