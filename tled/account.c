@@ -258,6 +258,11 @@ const account_sums *account_look(account *a, const backend *b, void *state, doub
     return &a->now.sums;
 }
 
+const double *account_displacement(const account *a)
+{
+    return a->now.displacement;
+}
+
 /* Copies what `from` knows; each keeps its own arrays. */
 static void copy_moment(const tled_problem *p, const moment *from, moment *to)
 {

@@ -34,6 +34,9 @@ void account_destroy(account *a);
  * look. NULL with e filled where the back end fails. */
 const account_sums *account_look(account *a, const backend *b, void *state, double time, double damping, err *e);
 
+/* Of the last look, nodes x 3, m; borrowed until the next. */
+const double *account_displacement(const account *a);
+
 /* Keeps what is known now, for a run that goes back; and goes back to it. */
 void account_keep(account *a);
 void account_back(account *a);

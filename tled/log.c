@@ -1,19 +1,76 @@
 #include "tled/log.h"
 
+#include "base/in.h"
 #include "base/progress.h"
+#include "model/nearest.h"
 
 #include <math.h>
+#include <string.h>
+#include <sys/stat.h>
 
-/* Quantity and unit; the last two go by the clock, and differ from run to run. */
+/* Quantity and unit; the last two go by the clock, and differ from run to run. Nodes' come after them. */
 static const char heading[] =
     "time/s\tstep\tdt/s\tstable/s\tkinetic/J\tstrain/J\thourglass/J\tgravity/J\tforces/J\tdisplaced/J\tmuscles/"
     "J\tprobe/J\t"
-    "damping/J\tbalance/J\tdisplacement/m\tspeed/(m/s)\tresidual/(m/s2)\tremaining\tsteps/(1/s)\telements/(1/s)\n";
+    "damping/J\tbalance/J\tdisplacement/m\tspeed/(m/s)\tresidual/(m/s2)\tremaining\tsteps/(1/s)\telements/(1/s)";
 
-int log_open(run_log *l, const char *path, double every, const log_point *from, err *e)
+static const char trace[] = "node.displacement.at.";
+
+int log_check_key(const char *key, err *e)
 {
-    l->every = every;
-    l->file = growing_open(path, from ? from->length : 0, e);
+    double place[3];
+    if (!strncmp(key, trace, sizeof trace - 1) && nearest_place(key + sizeof trace - 1, place))
+        return 0;
+    return err_usage(e, "--tsv '%.80s': expected %sX,Y,Z, three lengths between commas (metres, or with a unit)", key,
+                     trace);
+}
+
+static void put_heading(const run_log *l, out *to)
+{
+    out_text(to, heading);
+    for (int i = 0; i < l->keys->count; i++)
+        for (int a = 0; a < 3; a++)
+            out_format(to, "\t%s.%c/m", l->keys->value[i], "xyz"[a]);
+    out_text(to, "\n");
+}
+
+/* That the file to go on with begins with the heading of this run. What is shorter than what is to be kept is growing_open's to refuse,
+ * and what is no regular file is written as it is. */
+static int check_heading(const run_log *l, const char *path, int64_t keep, err *e)
+{
+    size_t size;
+    char *line = NULL;
+    struct stat s;
+    if (stat(path, &s) || !S_ISREG(s.st_mode) || s.st_size < (off_t)keep)
+        return 0;
+    out *want = out_memory(e);
+    in *file = want ? in_open_plain(path, e) : NULL;
+    if (file && in_line(file, &line, NULL, e) > -2) {
+        put_heading(l, want);
+        const unsigned char *bytes = out_bytes(want, &size);
+        if (!out_failed(want, e) && (!line || strlen(line) + 1 != size || memcmp(line, bytes, size - 1) != 0))
+            err_set(e, path, 1,
+                    "is not the heading of this run's log; expected the file and the --tsv that it began with");
+    }
+    in_close(file);
+    out_discard(want);
+    return e->status ? -1 : 0;
+}
+
+int log_open(run_log *l, const char *path, const opt_list *keys, const model *m, const log_point *from, err *e)
+{
+    l->keys = keys;
+    for (int i = 0; i < keys->count; i++) {
+        double place[3];
+        if (log_check_key(keys->value[i], e))
+            return -1;
+        nearest_place(keys->value[i] + sizeof trace - 1, place);
+        l->node[i] = nearest_row(m, "node", place);
+    }
+    const int64_t keep = from ? from->length : 0;
+    if (keep && check_heading(l, path, keep, e))
+        return -1;
+    l->file = growing_open(path, keep, e);
     return l->file ? 0 : -1;
 }
 
@@ -40,7 +97,7 @@ int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
     if (!l->rows)
         return -1;
     if (!growing_size(l->file))
-        out_text(l->rows, heading);
+        put_heading(l, l->rows);
     return empty_rows(l, true, e);
 }
 
@@ -74,6 +131,9 @@ static void put_row(run_log *l, const log_row *row, const account_sums *s)
     out_format(l->rows, "%.9g\t%lld", row->time, (long long)row->step);
     for (size_t i = 0; i < sizeof values / sizeof *values; i++)
         put_number(l->rows, values[i]);
+    const double *moved = account_displacement(l->account);
+    for (int i = 0; i < 3 * l->keys->count; i++)
+        put_number(l->rows, moved[3 * l->node[i / 3] + i % 3]);
     out_text(l->rows, "\n");
     l->steps = row->taken;
     l->began = progress_clock();

@@ -6,7 +6,9 @@
 #define SINEW_LOG_H
 
 #include "base/growing.h"
+#include "base/opt.h"
 #include "base/out.h"
+#include "model/model.h"
 #include "tled/account.h"
 
 /* What a row says besides what the account knows. */
@@ -20,10 +22,12 @@ typedef struct log_row {
 } log_row;
 
 typedef struct run_log {
-    double every; /* s: a row at each multiple of it; 0: a row a check */
+    double every; /* s, the creator's: a row at each multiple of it; 0: a row a check */
     growing *file;
     out *rows; /* not yet known to be sound */
     account *account;
+    const opt_list *keys; /* node.displacement.at.X,Y,Z: three columns each, after the others */
+    int64_t node[64];     /* of each */
     const tled_problem *p;
     int64_t steps; /* of the last row, each part of a cut step for itself */
     double began;  /* when the last row was, by the clock */
@@ -38,9 +42,12 @@ typedef struct log_point {
     int64_t length; /* bytes of the file; 0: there was none */
 } log_point;
 
-/* Makes the file; from: NULL, or what to go on from: the file's rows up to there stay. -1 with e filled; log_close all the
- * same. */
-int log_open(run_log *l, const char *path, double every, const log_point *from, err *e);
+/* Whether it is a key of a log: a usage error, where it is not. */
+int log_check_key(const char *key, err *e);
+
+/* Finds the keys' nodes; and makes the file; from: NULL, or what to go on from: the file's rows up to there stay, which must have the same columns. The keys are
+ * borrowed. -1 with e filled; log_close all the same. */
+int log_open(run_log *l, const char *path, const opt_list *keys, const model *m, const log_point *from, err *e);
 
 /* Writes the heading, but to what is gone on with, for this problem. -1 with e filled, as for all below. */
 int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e);

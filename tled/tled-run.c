@@ -27,7 +27,7 @@ struct options {
     double dt, seconds, rest, ramp, damping, hourglass, every, log_every; /* below 0: not given */
     int64_t steps;                                                        /* 0: not given */
     opt_numbers gravity;
-    opt_list contract, material;
+    opt_list contract, material, tsv;
     const char *script, *materials, *probe, *poses, *unit, *log;
     double repulsion;
     const char *checkpoint, *restart;
@@ -72,6 +72,8 @@ static const opt option_list[] = {
      "energies, residual, rates, as TSV"},
     {0, "log-every", "S", OPT_NUMBER, offsetof(struct options, log_every), 1e-12, 1e9, NULL, OPT_OUTPUT,
      "its rows, s [0.01]"},
+    {0, "tsv", "KEY", OPT_LIST, offsetof(struct options, tsv), 0, 0, NULL, OPT_OUTPUT,
+     "in it: node.displacement.at.X,Y,Z"},
     {0, "checkpoint", "FILE", OPT_TEXT, offsetof(struct options, checkpoint), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
      "save the state there"},
     {0, "checkpoint-every", "S", OPT_NUMBER, offsetof(struct options, checkpoint_every), 1e-12, 1e9, NULL, OPT_OUTPUT,
@@ -120,6 +122,11 @@ static int check_end(const struct options *o, err *e)
         return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
     if (o->log_every > 0 && !o->log)
         return err_usage(e, "--log-every without --log; expected both");
+    if (o->tsv.count && !o->log)
+        return err_usage(e, "--tsv without --log, in which it adds columns; expected both");
+    for (int i = 0; i < o->tsv.count; i++)
+        if (log_check_key(o->tsv.value[i], e))
+            return -1;
     if (o->damping == 0 && (!ends || o->rest >= 0))
         return err_usage(e, "without damping nothing comes to rest; expected -t or -n to end, or a --damping above 0");
     return 0;
@@ -492,8 +499,9 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.frame = write_frame;
     s->run.checked = checked;
     s->cut = 1;
+    s->log.every = fmax(o->log_every, 0);
     if (begin_checkpoints(s, o, e) ||
-        (o->log && log_open(&s->log, o->log, fmax(o->log_every, 0), s->run.point ? &s->run.point->log : NULL, e)))
+        (o->log && log_open(&s->log, o->log, &o->tsv, &s->m, s->run.point ? &s->run.point->log : NULL, e)))
         return -1;
     s->run.log = o->log ? &s->log : NULL;
     tool_warn(s->t, &s->warnings);

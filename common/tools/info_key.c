@@ -4,6 +4,7 @@
 #include "base/near.h"
 #include "base/num.h"
 #include "model/known.h"
+#include "model/nearest.h"
 #include "tools/info_stats.h"
 
 #include <inttypes.h>
@@ -76,44 +77,6 @@ static int64_t named_row(const model *m, const char *axis, const char *name)
     return exact_row(m, axis, whole);
 }
 
-/* The rest position of row i of an axis: its own, or the mean of an element's nodes. */
-static void place_of(const model_array *position, const model_array *node, int64_t i, double *place)
-{
-    if (!node) {
-        memcpy(place, position->f64 + 3 * i, 3 * sizeof *place);
-        return;
-    }
-    for (int a = 0; a < 3; a++) {
-        place[a] = 0;
-        for (int32_t c = 0; c < node->columns; c++)
-            place[a] += position->f64[3 * (int64_t)node->i32[i * node->columns + c] + a] / node->columns;
-    }
-}
-
-/* The row of the axis that rests nearest to `to`, the lower one of two as near; -1 where the axis has no places. */
-static int64_t nearest_row(const model *m, const char *axis, const double *to)
-{
-    char name[MODEL_NAME + 16];
-    bool elements = !strcmp(axis, "element");
-    snprintf(name, sizeof name, "%s.position", elements ? "node" : axis);
-    const model_array *position = model_find(m, name), *node = elements ? model_find(m, "element.node") : NULL;
-    int64_t best = -1;
-    double least = INFINITY;
-    if (!position || position->type != MODEL_F64 || position->columns != 3 || (elements && !node))
-        return -1;
-    for (int64_t i = 0; i < (node ? node->rows : position->rows); i++) {
-        double place[3], square = 0;
-        place_of(position, node, i, place);
-        for (int a = 0; a < 3; a++)
-            square += (place[a] - to[a]) * (place[a] - to[a]);
-        if (square < least) {
-            least = square;
-            best = i;
-        }
-    }
-    return best;
-}
-
 /* A request: the array, and what of it. */
 typedef struct query {
     const source *s;
@@ -129,12 +92,9 @@ static int no_value(const query *q, err *e, const char *why)
 
 static int put_at(const query *q, err *e)
 {
-    num_length where[3];
     double to[3];
-    if (num_lengths_of(q->what + 3, where, 3) != 3)
+    if (!nearest_place(q->what + 3, to))
         return no_value(q, e, "expected at.X,Y,Z, three lengths between commas (metres, or with a unit)");
-    for (int a = 0; a < 3; a++)
-        to[a] = num_length_in(where[a], num_unit_of("m"), num_unit_of("m"));
     int64_t row = nearest_row(&q->s->body, q->a->axis, to);
     if (row < 0)
         return no_value(q, e, "at.X,Y,Z is for arrays of nodes, elements and vertices, and there must be some");

@@ -103,7 +103,7 @@ card() {
 
 # then_of FILE.csv: what its head says of the machine and the day, for tables that are not of this run.
 then_of() {
-    sed -n 's/^# //p; /^[^#]/q' "$1" | tr '\n' ';' | sed 's/;$//; s/;/; /g'
+    sed -n '/^[^#]/q; s/^# //p' "$1" | tr '\n' ';' | sed 's/;$//; s/;/; /g'
 }
 
 # models: W&M's four, once, as samples/Makefile makes them, in $work/models. The face is the left half of the real one where that is there

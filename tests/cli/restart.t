@@ -133,17 +133,18 @@ check "the run goes on" run -d cpu -c all=0.8 -t 2 --restart "$c" -o "$T/got"
 check "to the same bytes" cmp "$T/want" "$T/got"
 
 # The log goes on too: the same rows, but for the clock's columns.
-for every in '' '--log-every 0.003'; do
+place='--tsv node.displacement.at.25mm,5mm,5mm'
+for every in '' "--log-every 0.003 $place"; do
     rm -f "$T/log"
     # shellcheck disable=SC2086 # two words, or none
     run -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" $every >"$T/want"
-    cut -f 1-18 "$T/log" >"$T/rows"
+    cut -f 1-18,21- "$T/log" >"$T/rows"
     # shellcheck disable=SC2086
     killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" $every --checkpoint "$c" --checkpoint-every 0.02
     check "the log of a run that was killed, ${every:-a row a look}" test "$(wc -l <"$T/log")" -lt "$(wc -l <"$T/rows")"
     # shellcheck disable=SC2086
     check "it goes on" run -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" $every --restart "$c" -o "$T/got"
-    cut -f 1-18 "$T/log" >"$T/got_rows"
+    cut -f 1-18,21- "$T/log" >"$T/got_rows"
     check "to the same rows" cmp "$T/rows" "$T/got_rows"
     check "and bytes" cmp "$T/want" "$T/got"
 done
@@ -152,6 +153,16 @@ head -c 500 "$T/rows" >"$T/log"
 fails 1 "another log" 'log: has 500 bytes; expected the first [0-9]* of this run' \
     run -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" --restart "$c"
 is "$(wc -c <"$T/log" | tr -d ' ')" 500 "stays"
+yes 'This is no log.' | head -n 10000 >"$T/log"
+fails 1 "another file" 'log:1: is not the heading of this run' \
+    run -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" --restart "$c"
+is "$(wc -l <"$T/log" | tr -d ' ')" 10000 "stays too"
+killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" --checkpoint "$c" --checkpoint-every 0.02
+cp "$T/log" "$T/rows"
+# shellcheck disable=SC2086 # two words
+fails 1 "other columns" 'log:1: is not the heading of this run' \
+    run -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" $place --restart "$c"
+check "leave the log as it was" cmp "$T/rows" "$T/log"
 check "without it, the run goes on" run -d cpu -c all=0.8 -t 0.4 --every 0.002 --restart "$c" -o "$T/got"
 check "to the same bytes" cmp "$T/want" "$T/got"
 

@@ -70,6 +70,19 @@ check "what remains, in the end: $(column remaining "$T/log")" awk "BEGIN { exit
 check "a run gone on with" sh -c "tled-run -q -d cpu -g 0,0,-9.81 -t .05 --log '$T/log' <'$T/out' >/dev/null"
 is "$(awk -F '\t' 'NR == 2 { print $8 + $13, $14 }' "$T/log")" "0 0" "counts from its start"
 
+# ---- Places.
+check "--tsv" tled-run -q -d cpu -c all=0.5 -t .1 --every .01 --log "$T/log" --tsv node.displacement.at.25mm,5mm,5mm --tsv node.displacement.at.0.02,0.001,0.0101 -o "$T/out" <"$T/muscle.sinew"
+is "$(head -n 1 "$T/log" | cut -f 19- | tr '\t' ' ')" "steps/(1/s) elements/(1/s) node.displacement.at.25mm,5mm,5mm.x/m node.displacement.at.25mm,5mm,5mm.y/m node.displacement.at.25mm,5mm,5mm.z/m node.displacement.at.0.02,0.001,0.0101.x/m node.displacement.at.0.02,0.001,0.0101.y/m node.displacement.at.0.02,0.001,0.0101.z/m" "columns after the others"
+# What sinew info says of the frames, in nine digits as in a log.
+sinew info --tsv node.displacement.at.25mm,5mm,5mm --tsv node.displacement.at.0.02,0.001,0.0101 "$T/out" |
+    awk -F '\t' 'NR > 1 { printf "%.9g", $2; for (i = 3; i <= 8; i++) printf "\t%.9g", $i; print "" }' >"$T/frames"
+sed 1d "$T/log" | cut -f 1,21-26 >"$T/rows"
+is "$(wc -l <"$T/rows" | tr -d ' ')" 11 "a row a look"
+check "the same as of frames" cmp "$T/frames" "$T/rows"
+tled-run -q -d cpu -c all=0.5 -t .1 --log "$T/log" --log-every .0005 --tsv node.displacement.at.25mm,5mm,5mm -o "$T/plain" <"$T/muscle.sinew"
+is "$(awk -F '\t' 'NR > 1 && NF == 23 { n++ } END { print n }' "$T/log")" 201 "finer than frames, without any"
+is "$(sinew info --get frames "$T/plain") $(sinew info "$T/plain" | grep -c -e --tsv)" "1 0" "and no word of it in provenance"
+
 # ---- What goes wrong.
 fails 3 "a run that diverges" "diverged at step" tled-run -q -d cpu --dt .00035 -c all=1 -t .2 --ramp .01 --log "$T/log" -o "$T/none" <"$T/muscle.sinew"
 is "$(awk -F '\t' 'NF != 20 { print NR } NR > 1 && ($5 != $5 + 0 || $6 != $6 + 0) { print NR }' "$T/log")" "" "leaves whole rows of what was sound"
@@ -79,5 +92,10 @@ is "$(ls "$T/never" 2>/dev/null)" "" "leaves no model"
 fails 1 "no such folder" "nonesuch/log: cannot open" tled-run -q -n 10 --log "$T/nonesuch/log" -o "$T/never" <"$T/block.sinew"
 fails 1 "standard output" "standard output is the model's" tled-run -q -n 10 --log - -o "$T/never" <"$T/block.sinew"
 fails 2 "--log-every alone" "log-every without --log" tled-run -q -n 10 --log-every 1 <"$T/block.sinew"
+fails 2 "--tsv alone" "tsv without --log" tled-run -q -n 10 --tsv node.displacement.at.0,0,0 <"$T/block.sinew"
+for key in node.displacement.max node.velocity.at.0,0,0 node.displacement.at.1,2 node.displacement.at.1,2,3,4 node.displacement.at.1,2,3parsec node.displacement.at.nan,0,0 ''; do
+    fails 2 "--tsv '$key'" "expected node.displacement.at.X,Y,Z, three lengths" tled-run -q -n 10 --log "$T/none.log" --tsv "$key" <"$T/block.sinew"
+done
+is "$(ls "$T/none.log" 2>/dev/null)" "" "makes no log"
 is "$(sinew info "$T/plain" | grep -c -e --log)" 0 "no word of it in provenance"
 done_testing
