@@ -35,6 +35,8 @@ struct checkpoint {
 
 enum { NUMBERS = 18, COUNTS = 10 };
 
+static const char frames_key[] = "checkpoint.frames"; /* by which FILE.frames is known for ours */
+
 static const char axis_name[] = "checkpoint", number_name[] = "checkpoint.number", count_name[] = "checkpoint.count";
 
 static void put_point(const checkpoint *c, const run_point *p, double *number, int64_t *count)
@@ -158,7 +160,7 @@ static checkpoint *create(const char *path, const likeness_run *run, err *e)
 /* Opens FILE.frames and locks it. */
 static int open_frames(checkpoint *c, int flags, err *e)
 {
-    struct stat s;
+    struct stat s, named;
     c->lock = open(c->frames_path, O_RDWR | O_CLOEXEC | flags, 0666);
     if (c->lock < 0)
         return err_system(e, c->frames_path, errno, flags ? "cannot create" : "cannot open");
@@ -166,7 +168,45 @@ static int open_frames(checkpoint *c, int flags, err *e)
         return err_set(e, c->frames_path, 0, "is no regular file; expected one, or a new name");
     if (flock(c->lock, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         return err_set(e, c->frames_path, 0, "another run is at it; expected one at a time");
+    if (stat(c->frames_path, &named) || named.st_ino != s.st_ino || named.st_dev != s.st_dev)
+        return err_set(e, c->frames_path, 0, "another run was at it until now; expected one at a time");
     return 0;
+}
+
+static void begin_frames(out *to)
+{
+    char key[sizeof frames_key], text[] = "1";
+    memcpy(key, frames_key, sizeof key);
+    binary_encoding.write_begin(to);
+    binary_encoding.write(to, &(item){.kind = ITEM_META, .key = key, .text = text});
+}
+
+/* What stands under the name of FILE.frames, without a FILE, is what is left of a run that was killed as it began; anything else
+ * is not ours to empty. */
+static int check_frames(const checkpoint *c, err *e)
+{
+    unsigned char found[256];
+    size_t size = 0;
+    ssize_t n = pread(c->lock, found, sizeof found, 0);
+    out *head = out_memory(e);
+    if (!head)
+        return -1;
+    begin_frames(head);
+    const unsigned char *want = out_bytes(head, &size);
+    int bad = out_failed(head, e);
+    if (!bad && (n < 0 || memcmp(found, want, (size_t)n < size ? (size_t)n : size) != 0))
+        bad = err_set(e, c->frames_path, 0, "is there, and no checkpoint's; expected another name for --checkpoint");
+    out_discard(head);
+    return bad;
+}
+
+/* Whether something is there to go on from. */
+static int check_none(const checkpoint *c, err *e)
+{
+    struct stat s;
+    const char *there = !lstat(c->path, &s) ? c->path : !lstat(c->before, &s) ? c->before : NULL;
+    return there ? err_set(e, there, 0, "a checkpoint is there; expected --restart to go on from it, or another name")
+                 : 0;
 }
 
 /* From here on frames are added, after the first `length` bytes. */
@@ -185,16 +225,13 @@ static int start_adding(checkpoint *c, err *e)
 
 checkpoint *checkpoint_begin(const char *path, const likeness_run *run, err *e)
 {
-    struct stat s;
     checkpoint *c = create(path, run, e);
     if (!c)
         return NULL;
-    const char *there = !lstat(c->path, &s) ? c->path : !lstat(c->before, &s) ? c->before : NULL;
-    if (there)
-        err_set(e, there, 0, "a checkpoint is there; expected --restart to go on from it, or another name");
-    if (there || open_frames(c, O_CREAT, e) || start_adding(c, e))
+    /* Twice: before anything is made, and once no other run can make one. */
+    if (check_none(c, e) || open_frames(c, O_CREAT, e) || check_none(c, e) || check_frames(c, e) || start_adding(c, e))
         goto fail;
-    binary_encoding.write_begin(c->frames);
+    begin_frames(c->frames);
     for (int i = 0; i < c->axes; i++) {
         const model_axis *a = &c->body.axes[i];
         binary_encoding.write(c->frames, &(item){.kind = ITEM_AXIS, .key = a->name, .number = a->count});
@@ -312,6 +349,11 @@ out:
     return result;
 }
 
+static int misplaced(const item_source *s, const item *it, err *e)
+{
+    return item_error(s, it, e, "is not what stands there in the frames of a checkpoint");
+}
+
 /* The next frame of FILE.frames. -1 with e filled. */
 static int read_frame(item_source *s, int arrays, frame *f, err *e)
 {
@@ -321,7 +363,7 @@ static int read_frame(item_source *s, int arrays, frame *f, err *e)
         item_free(&it);
         bad = binary_encoding.read(s, &it, e);
         if (!bad && it.kind != (i < 0 ? ITEM_FRAME : ITEM_ARRAY))
-            bad = item_error(s, &it, e, "is not what stands there in the frames of a checkpoint");
+            bad = misplaced(s, &it, e);
         if (!bad && i < 0)
             *f = (frame){.index = it.number, .time = it.time};
         else if (!bad && !model_arrays_take(&f->arrays, &it.array, e))
@@ -338,14 +380,14 @@ static int read_frames(const checkpoint *c, checkpoint_frame *take, void *contex
     item it = {0};
     in *stream = in_open_plain(c->frames_path, e);
     item_source s = {.s = stream, .how = &binary_encoding};
-    int bad = !stream || s.how->begin(&s, e);
+    int bad = !stream || s.how->begin(&s, e) || s.how->read(&s, &it, e);
+    if (!bad && (it.kind != ITEM_META || strcmp(it.key, frames_key) != 0))
+        bad = misplaced(&s, &it, e);
     for (int i = 0; !bad && i < c->axes; i++) {
         item_free(&it);
         bad = s.how->read(&s, &it, e);
         if (!bad)
-            bad = it.kind != ITEM_AXIS
-                      ? item_error(&s, &it, e, "is not what stands there in the frames of a checkpoint")
-                      : model_axis_add(&s.axes, it.key, it.number, e);
+            bad = it.kind != ITEM_AXIS ? misplaced(&s, &it, e) : model_axis_add(&s.axes, it.key, it.number, e);
     }
     for (int64_t i = 0; !bad && i < c->count; i++) {
         bad = read_frame(&s, c->arrays, &f, e) || (take && take(context, &f, e));

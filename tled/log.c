@@ -101,6 +101,11 @@ int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
     return empty_rows(l, true, e);
 }
 
+int log_store(run_log *l, err *e)
+{
+    return growing_store(l->file, e);
+}
+
 log_point log_point_of(const run_log *l)
 {
     return (log_point){account_past_of(l->account), growing_size(l->file)};

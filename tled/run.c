@@ -406,13 +406,13 @@ static bool is_due(run *n)
     return true;
 }
 
-/* Saves what was looked at last, once every frame before it is written. */
+/* Saves what was looked at last, once every frame before it is written, and every row of the log stored. */
 static int save(run *n)
 {
     const run_setup *r = n->r;
     const run_point at = point_of(n);
     double *velocity = n->saved + 3 * r->p->nodes;
-    if ((n->sent && outbox_wait(n->out, n->sent - 1, n->e)) ||
+    if ((n->sent && outbox_wait(n->out, n->sent - 1, n->e)) || (r->log && log_store(r->log, n->e)) ||
         r->device->get(n->state, TLED_DISPLACEMENT, n->saved, n->e) ||
         r->device->get(n->state, TLED_VELOCITY, velocity, n->e))
         return -1;

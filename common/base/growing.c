@@ -1,6 +1,7 @@
 #include "base/growing.h"
 
 #include "base/mem.h"
+#include "base/replace.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -78,6 +79,11 @@ int growing_put(growing *g, const void *lines, size_t size, err *e)
 int64_t growing_size(const growing *g)
 {
     return g->size;
+}
+
+int growing_store(growing *g, err *e)
+{
+    return replace_store(g->fd) ? err_system(e, g->name, errno, "cannot write") : 0;
 }
 
 int growing_close(growing *g, err *e)

@@ -10,7 +10,7 @@ fast=$T
 [ -w /dev/shm ] && fast=$(mktemp -d /dev/shm/sinew-XXXXXX) && trap 'rm -rf "$T" "$fast"' EXIT
 c=$fast/state # nothing waits for a disk there
 tries=${SINEW_LONG:+40}
-tries=${tries:-4}
+tries=${tries:-2}
 
 run() { # ARG...: of the model that stands in $model
     tled-run -q "$@" <"$model"
@@ -166,6 +166,35 @@ check "leave the log as it was" cmp "$T/rows" "$T/log"
 check "without it, the run goes on" run -d cpu -c all=0.8 -t 0.4 --every 0.002 --restart "$c" -o "$T/got"
 check "to the same bytes" cmp "$T/want" "$T/got"
 
+# The loss of power: at each time that something is stored, what was written since and is not is gone.
+power=$(cd "${BUILD:-build}" && pwd)/tests/faults/power.so
+if [ -n "$SINEW_SANITIZED" ]; then
+    skip 1 "sanitizers come first in the list of libraries"
+else
+    set -- -d cpu -c all=0.8 -t 0.2 --every 0.002 --log "$T/log"
+    run "$@" >"$T/want"
+    cut -f 1-18 "$T/log" >"$T/rows"
+    LD_PRELOAD=$power SINEW_FAULT_COUNT=$T/count run "$@" --checkpoint "$c" --checkpoint-every 0.02 -o "$T/got"
+    syncs=$(cat "$T/count")
+    [ "$syncs" -gt 10 ] || not_ok "$syncs times that something is stored"
+    at=1 lost=0 good=0
+    while [ "$at" -le "$syncs" ]; do
+        rm -f "$c" "$c.1" "$c.frames" "$T/log" "$T/got"
+        LD_PRELOAD=$power SINEW_FAULT_AT=$at run "$@" --checkpoint "$c" --checkpoint-every 0.02 -o "$T/got" 2>/dev/null
+        status=$?
+        how=--restart
+        [ -e "$c" ] || how=--checkpoint
+        lost=$((lost + 1))
+        if [ "$status" -eq 137 ] && [ ! -e "$T/got" ] && run "$@" "$how" "$c" -o "$T/got" && cmp -s "$T/want" "$T/got" &&
+            cut -f 1-18 "$T/log" | cmp -s "$T/rows" -; then
+            good=$((good + 1))
+        fi
+        at=$((at + (tries < 40 ? syncs / 5 : 1)))
+    done 2>"$T/err"
+    is "$good" "$lost" "a loss of power, $lost times, at one of the $syncs that something is stored: the same bytes and rows"
+    [ "$good" -eq "$lost" ] || diag_file "$T/err"
+fi
+
 # Damage, other runs, what is missing.
 killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --checkpoint "$c" --checkpoint-every 0.02
 for file in state state.1 state.frames; do
@@ -227,6 +256,20 @@ if (ulimit -f 1000) 2>/dev/null; then
 else
     skip 3 "no limit on the size of files"
 fi
+
+# A folder that goes away while the run is at work: the end, and what was saved is what can be gone on from.
+mkdir "$fast/here"
+rm -f "$T/got"
+run -d cpu -c all=0.8 -t 20 --checkpoint "$fast/here/state" --checkpoint-every 0.001 -o "$T/got" 2>"$T/err" &
+pid=$!
+until [ -e "$fast/here/state.1" ]; do
+    sleep 0.01
+done
+mv "$fast/here" "$fast/there"
+wait "$pid"
+is "$? $(grep -c 'here/state: cannot create: No such file' "$T/err")" "1 1" "a folder that goes away ends the run"
+check "no output" [ ! -e "$T/got" ]
+check "what was saved is whole" sinew info -o "$T/info" "$fast/there/state"
 
 # As make has it: killed again and again, until it is through.
 cat >"$T/Makefile" <<'MAKE'

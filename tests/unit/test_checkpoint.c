@@ -405,6 +405,34 @@ static void test_others(void)
     ok(!there(frames_path), "a run that saved nothing leaves nothing");
 }
 
+/* FILE.frames, where there is no FILE. */
+static void test_left_over(void)
+{
+    static const unsigned char kept[] = "what someone keeps";
+    record r;
+    size_t size = 0;
+    backend b = breaking(&tled_cpu_double, 60);
+    make(&r, &b, false);
+    begin(&r);
+    end(&r, false);
+    unlink(path);
+    unlink(before);
+    free(slurp(frames_path, &size));
+    make(&r, &tled_cpu_double, false);
+    const likeness_run run = run_of(&r);
+    r.c = checkpoint_begin(path, &run, &r.b.e);
+    ok(size > 1000 && r.c, "%zu bytes of frames that a run left are begun anew %s", size, r.b.e.text);
+    checkpoint_close(r.c, false);
+    spill(frames_path, kept, sizeof kept);
+    r.c = checkpoint_begin(path, &run, &r.b.e);
+    ok(!r.c && strstr(r.b.e.text, "is there, and no checkpoint's"), "another's file of that name: %s", r.b.e.text);
+    unsigned char *now = slurp(frames_path, &size);
+    ok(size == sizeof kept && !memcmp(now, kept, size), "stays as it was");
+    free(now);
+    end(&r, false);
+    remove_all();
+}
+
 int main(void)
 {
     const char *why;
@@ -431,6 +459,7 @@ int main(void)
         }
     test_damage();
     test_others();
+    test_left_over();
     rmdir(folder);
     return done_testing();
 }
