@@ -198,7 +198,7 @@ static int begin_law(inp_reader *r, const keyword *k)
     if (r->w->own_materials)
         return 0;
     if (elastic && type && !same(type, "ISO") && !same(type, "ISOTROPIC"))
-        return wrong(r, "*INP_ELASTIC that is not isotropic", "E and nu");
+        return wrong(r, "*ELASTIC that is not isotropic", "E and nu");
     if (!elastic && !density && !parameter(k, "NEO HOOKE"))
         return wrong(r, "*HYPERELASTIC of another law", "NEO HOOKE, with C10 and D1");
     if (!elastic && !density && parameter(k, "TEST DATA INPUT"))

@@ -19,6 +19,15 @@ awk -v n=8 -v size=0.1 -v by=0.2 -f tests/cli/distorted.awk | sinew import -q --
 awk -v nu=0.45 -f samples/ball.awk | sinew import -q --unit m -o "$T/ball.sinew" -
 is "$(sinew info --get axis.element "$T/ball.sinew") $(sinew info --get axis.node "$T/ball.sinew")" "2197 2744" \
     "the ball has 13^3 elements, as W&M's"
+
+# held N INSIDE OUTSIDE: the ball of N^3 elements, held where it is less than INSIDE or more than OUTSIDE from its middle (m), as a model.
+held() {
+    awk -v nu=0.45 -v n="$1" -f samples/ball.awk | awk -v inside="$2" -v outside="$3" '
+        /^\*/ { on = /^\*NODE/; top = /NSET=TOP/; print; if (top) for (i = 1; i <= count; i++) print keep[i] "," }
+        on && !/^\*/ { split($0, f, ", "); r = sqrt(f[2] ^ 2 + f[3] ^ 2 + f[4] ^ 2); if (r < inside || r > outside) keep[++count] = f[1] }
+        !/^\*/ && !top' | sinew import -q --unit m -
+}
+
 if have ccx; then
     compare cube 729 343
     near "$worst" 0 0.02 "cube: every node within 2 % of the largest displacement"
@@ -27,8 +36,22 @@ if have ccx; then
     compare ball 2744 1728
     near "$mean" 0 0.03 "ball: 3 % in the mean"
     near "$furthest" 0 0.02 "ball: 2 % where it moves furthest"
+    near "$inside" 0 0.05 "ball: 5 % at every node inside"
+    # Its worst node is 9.4 % off, on the surface just below a corner of the cube that it was mapped from, where the hold ends. Stress has no bound
+    # there, so that what one element does about hourglass modes decides. It is that edge, not the elements that the mapping makes
+    # flat: held all around, where no hold ends, all nodes are within 1.3 %; held at its core, with all that is flat free to move, the worst is
+    # again the first past the hold, inside, and the surface comes out.
+    held 9 0 0.0999999 >"$T/around.sinew"
+    compare around 1000 512
+    near "$worst" 0 0.02 "around: every node within 2 %, the flat elements' too"
+    near "$mean" 0 0.01 "around: 1 % in the mean"
+    held 9 0.04 1 >"$T/core.sinew"
+    compare core 1000 512
+    near "$worst" 0 "$inside" "core: the worst node is one inside"
+    near "$mean" 0 0.02 "core: 2 % in the mean"
+    near "$furthest" 0 0.012 "core: 1.2 % where it moves furthest"
 else
-    skip 7 "no CalculiX (calculix-ccx)"
+    skip 19 "no CalculiX (calculix-ccx)"
 fi
 
 # Boxes without a lattice are the lattice's.
@@ -91,9 +114,11 @@ if [ -n "${SINEW_LONG:-}" ]; then
     check "samples/conforming" samples/conforming "$T/tables"
     is "$(awk -F '\t' 'NF != 7' "$T/tables/table2.tsv" "$T/tables/table3.tsv" | wc -l)" 0 "its tables have seven columns"
     is "$(awk -F '\t' '$1 ~ /largest E/ { n += $6 > 1.5 * $5 } END { print n }' "$T/tables/table3.tsv")" 2 "voxels take stiffer material, as the paper says"
-    is "$(awk -F '\t' '$1 ~ /sinks/ { c = $5 < 0 ? -$5 : $5; v = $6 < 0 ? -$6 : $6; print c < v / 3 }' "$T/tables/table2.tsv")" 1 "the conforming ball is the more accurate"
+    is "$(awk -F '\t' '$1 ~ /surface held/ && $5 + 0 < 0 && $5 > -10 && $6 + 0 < 0 && $6 > -10' "$T/tables/table2.tsv" | wc -l)" 1 \
+        "held alike, both balls are within 10 % of the answer, and the stiffer"
+    is "$(awk -F '\t' '$1 ~ /held by attach/ && $6 < -20' "$T/tables/table2.tsv" | wc -l)" 1 "held by attach, voxels are held deeper"
 else
-    skip 4 "samples/conforming takes 20 s: SINEW_LONG is not set"
+    skip 5 "samples/conforming takes 20 s: SINEW_LONG is not set"
 fi
 
 done_testing
