@@ -12,6 +12,7 @@ set style line 3 lw 3 lc '#3f9d4a'
 set style line 4 lw 3 lc '#8a5fb0'
 set style line 5 lw 3 lc '#d9892b'
 set style line 6 lw 2 lc '#555555' dt 2
+set bmargin 7
 set multiplot layout 2,2 title name
 set xlabel 'time, s'
 set ylabel 'held, mJ'
@@ -21,8 +22,8 @@ plot table using 1:(1000 * column('strain/J')) ls 1 title 'strain', \
 set ylabel 'done since the start, mJ'
 plot table using 1:(1000 * column('gravity/J')) ls 1 title 'gravity', \
     '' using 1:(1000 * column('muscles/J')) ls 2 title 'muscles', \
-    '' using 1:(1000 * (column('forces/J') + column('displaced/J') + column('probe/J'))) ls 3 title 'forces, displacements, a probe', \
-    '' using 1:(1000 * column('damping/J')) ls 4 title 'taken by damping', \
+    '' using 1:(1000 * (column('forces/J') + column('displaced/J') + column('probe/J'))) ls 3 title 'other forces', \
+    '' using 1:(1000 * column('damping/J')) ls 4 title 'damping, taken', \
     '' using 1:(1000 * column('balance/J')) ls 6 title 'left over'
 set ylabel 'largest'
 plot table using 1:(1000 * column('displacement/m')) ls 1 title 'displacement, mm', \

@@ -2,7 +2,7 @@
 
 #include "base/in.h"
 #include "base/progress.h"
-#include "model/nearest.h"
+#include "model/rest_place.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static const char trace[] = "node.displacement.at.";
 int log_check_key(const char *key, err *e)
 {
     double place[3];
-    if (!strncmp(key, trace, sizeof trace - 1) && nearest_place(key + sizeof trace - 1, place))
+    if (!strncmp(key, trace, sizeof trace - 1) && rest_place_of(key + sizeof trace - 1, place))
         return 0;
     return err_usage(e, "--tsv '%.80s': expected %sX,Y,Z, three lengths between commas (metres, or with a unit)", key,
                      trace);
@@ -64,8 +64,8 @@ int log_open(run_log *l, const char *path, const opt_list *keys, const model *m,
         double place[3];
         if (log_check_key(keys->value[i], e))
             return -1;
-        nearest_place(keys->value[i] + sizeof trace - 1, place);
-        l->node[i] = nearest_row(m, "node", place);
+        rest_place_of(keys->value[i] + sizeof trace - 1, place);
+        l->node[i] = rest_place_row(m, "node", place);
     }
     const int64_t keep = from ? from->length : 0;
     if (keep && check_heading(l, path, keep, e))

@@ -113,13 +113,10 @@ typedef struct session {
     notes warnings;
 } session;
 
-static int check_end(const struct options *o, err *e)
+/* The log begins anew at once: where it is read or written elsewhere too, something would be lost. */
+static int check_log(const struct options *o, err *e)
 {
-    if (o->checkpoint_every > 0 && !o->checkpoint && !o->restart)
-        return err_usage(e, "--checkpoint-every without --checkpoint or --restart; expected one of them");
-    int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
-    if (ends > 1)
-        return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
+    const char *const others[] = {o->common.output, o->checkpoint, o->restart, o->script, o->materials, o->poses};
     if (o->log_every > 0 && !o->log)
         return err_usage(e, "--log-every without --log; expected both");
     if (o->tsv.count && !o->log)
@@ -127,6 +124,21 @@ static int check_end(const struct options *o, err *e)
     for (int i = 0; i < o->tsv.count; i++)
         if (log_check_key(o->tsv.value[i], e))
             return -1;
+    for (size_t i = 0; o->log && i < sizeof others / sizeof *others; i++)
+        if (others[i] && !strcmp(o->log, others[i]) && strncmp(o->log, "/dev/", 5) != 0)
+            return err_usage(e, "--log '%s' is another file of this run too; expected one of its own", o->log);
+    return 0;
+}
+
+static int check_end(const struct options *o, err *e)
+{
+    if (o->checkpoint_every > 0 && !o->checkpoint && !o->restart)
+        return err_usage(e, "--checkpoint-every without --checkpoint or --restart; expected one of them");
+    int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
+    if (ends > 1)
+        return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
+    if (check_log(o, e))
+        return -1;
     if (o->damping == 0 && (!ends || o->rest >= 0))
         return err_usage(e, "without damping nothing comes to rest; expected -t or -n to end, or a --damping above 0");
     return 0;

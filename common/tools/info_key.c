@@ -4,7 +4,7 @@
 #include "base/near.h"
 #include "base/num.h"
 #include "model/known.h"
-#include "model/nearest.h"
+#include "model/rest_place.h"
 #include "tools/info_stats.h"
 
 #include <inttypes.h>
@@ -93,9 +93,9 @@ static int no_value(const query *q, err *e, const char *why)
 static int put_at(const query *q, err *e)
 {
     double to[3];
-    if (!nearest_place(q->what + 3, to))
+    if (!rest_place_of(q->what + 3, to))
         return no_value(q, e, "expected at.X,Y,Z, three lengths between commas (metres, or with a unit)");
-    int64_t row = nearest_row(&q->s->body, q->a->axis, to);
+    int64_t row = rest_place_row(&q->s->body, q->a->axis, to);
     if (row < 0)
         return no_value(q, e, "at.X,Y,Z is for arrays of nodes, elements and vertices, and there must be some");
     source_put_row(q->a, row, false, q->to);

@@ -11,5 +11,5 @@ set key top left reverse Left
 set xtics scale 0 font ',11'
 set xrange [-0.7:3.7]
 set yrange [0.1:5000]
-plot table using 2:xtic(1) lc '#9db7d8' title 'MSDS, paper', '' using 3 lc '#e0a9a0' title 'FEM, paper', \
-    '' using 4 lc '#2f6db5' title 'MSDS, here', '' using 5 lc '#c2483b' title 'FEM, here'
+plot table skip 1 using 2:xtic(1) lc '#9db7d8' title 'MSDS, paper', '' skip 1 using 3 lc '#e0a9a0' title 'FEM, paper', \
+    '' skip 1 using 4 lc '#2f6db5' title 'MSDS, here', '' skip 1 using 5 lc '#c2483b' title 'FEM, here'

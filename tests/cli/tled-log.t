@@ -97,5 +97,11 @@ for key in node.displacement.max node.velocity.at.0,0,0 node.displacement.at.1,2
     fails 2 "--tsv '$key'" "expected node.displacement.at.X,Y,Z, three lengths" tled-run -q -n 10 --log "$T/none.log" --tsv "$key" <"$T/block.sinew"
 done
 is "$(ls "$T/none.log" 2>/dev/null)" "" "makes no log"
+cp "$T/force" "$T/both"
+for option in --script --materials --checkpoint --restart; do
+    fails 2 "a log that is the file of $option too" "both' is another file of this run too" tled-run -q -n 10 --log "$T/both" $option "$T/both" <"$T/block.sinew"
+done
+check "stays as it was" cmp "$T/force" "$T/both"
+fails 2 "a log that is the output too" "output.s' is another file of this run too" tled-run -q -n 10 --log "$T/output.s" -o "$T/output.s" <"$T/block.sinew"
 is "$(sinew info "$T/plain" | grep -c -e --log)" 0 "no word of it in provenance"
 done_testing

@@ -23,6 +23,7 @@ run() {
 folder sh
 check "sh" run sh sh -e "$T/tutorial"
 is "$(find "$T/sh" -name 'pulled_*.obj' | wc -l)" 6 "an OBJ every 20 ms, from 0 on"
+is "$(wc -l <"$T/sh/way.tsv" | tr -d ' ')" 7 "and its row in the table"
 check "what was said to be the same is: no words of sinew diff" test "$(grep -c differ "$T/stdout")" -eq 0
 
 if have bash; then

@@ -1,4 +1,4 @@
-#include "model/nearest.h"
+#include "model/rest_place.h"
 
 #include "base/num.h"
 
@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-bool nearest_place(const char *text, double *place)
+bool rest_place_of(const char *text, double *place)
 {
     num_length length[3];
     if (num_lengths_of(text, length, 3) != 3)
@@ -30,7 +30,7 @@ static void place_of(const model_array *position, const model_array *node, int64
     }
 }
 
-int64_t nearest_row(const model *m, const char *axis, const double *place)
+int64_t rest_place_row(const model *m, const char *axis, const double *place)
 {
     char name[MODEL_NAME + 16];
     bool elements = !strcmp(axis, "element");
