@@ -1,6 +1,7 @@
 #include "tled/checkpoint.h"
 
 #include "base/mem.h"
+#include "base/path.h"
 #include "model/binary.h"
 #include "model/stream.h"
 
@@ -73,13 +74,27 @@ static void take_point(checkpoint *c, const double *n, const int64_t *k)
 
 /* ---- life */
 
-static bool is_one_of(const char *name, const char *path)
+static char *join(const char *path, const char *suffix, err *e)
 {
-    const size_t n = strlen(path);
-    return !strncmp(name, path, n) && (!name[n] || !strcmp(name + n, ".1") || !strcmp(name + n, ".frames"));
+    return path_join(path, strlen(path), suffix, e);
 }
 
-int checkpoint_check(const char *begin, const char *resume, const char *output, err *e)
+static int check_other(const char *option, const char *name, const char *path, err *e)
+{
+    static const char *const suffixes[] = {"", ".1", ".frames"};
+    for (int i = 0; name && i < 3; i++) {
+        char *file = join(path, suffixes[i], e);
+        if (!file)
+            return -1;
+        bool same = path_is_same(name, file);
+        free(file);
+        if (same)
+            return err_usage(e, "%s '%s' is a file of the checkpoint; expected another", option, name);
+    }
+    return 0;
+}
+
+int checkpoint_check(const char *begin, const char *resume, const char *output, const char *log, err *e)
 {
     const char *path = resume ? resume : begin;
     if (begin && resume && strcmp(begin, resume) != 0)
@@ -87,18 +102,7 @@ int checkpoint_check(const char *begin, const char *resume, const char *output, 
                          resume);
     if (path && (!*path || !strcmp(path, "-")))
         return err_usage(e, "'%s' for a checkpoint; expected the name of a file", path);
-    if (path && output && is_one_of(output, path))
-        return err_usage(e, "-o '%s' is a file of the checkpoint; expected another", output);
-    return 0;
-}
-
-static char *join(const char *path, const char *suffix, err *e)
-{
-    size_t size = strlen(path) + strlen(suffix) + 1;
-    char *text = mem_array((int64_t)size, 1, "text", e);
-    if (text)
-        snprintf(text, size, "%s%s", path, suffix);
-    return text;
+    return path && (check_other("-o", output, path, e) || check_other("--log", log, path, e)) ? -1 : 0;
 }
 
 void checkpoint_close(checkpoint *c, bool done)

@@ -16,9 +16,9 @@ typedef struct checkpoint checkpoint;
 /* A frame from before, in its order. -1 with e filled. */
 typedef int checkpoint_frame(void *context, const frame *f, err *e);
 
-/* What the options ask for: -1 with e filled where a run would go on in another file, or where `output`, which may be NULL,
- * would become one of these. Each may be NULL. */
-int checkpoint_check(const char *begin, const char *resume, const char *output, err *e);
+/* What the options ask for: -1 with e filled where a run would go on in another file, or where the output or the log would
+ * become one of these. Each may be NULL. */
+int checkpoint_check(const char *begin, const char *resume, const char *output, const char *log, err *e);
 
 /* Begins anew: none may be there. NULL with e filled. */
 checkpoint *checkpoint_begin(const char *path, const likeness_run *run, err *e);

@@ -2,6 +2,7 @@
  * muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
  */
 #include "base/mem.h"
+#include "base/path.h"
 #include "base/progress.h"
 #include "mesh/scale.h"
 #include "model/materials.h"
@@ -125,7 +126,7 @@ static int check_log(const struct options *o, err *e)
         if (log_check_key(o->tsv.value[i], e))
             return -1;
     for (size_t i = 0; o->log && i < sizeof others / sizeof *others; i++)
-        if (others[i] && !strcmp(o->log, others[i]) && strncmp(o->log, "/dev/", 5) != 0)
+        if (others[i] && path_is_same(o->log, others[i]) && strncmp(o->log, "/dev/", 5) != 0)
             return err_usage(e, "--log '%s' is another file of this run too; expected one of its own", o->log);
     return 0;
 }
@@ -394,11 +395,12 @@ static void say_start(const session *s, const char *device, const struct options
              (long long)p->nodes, (long long)p->held, device, o->precision ? "single" : "double");
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable, 1e3 / r->rate, r->damping,
              r->adapt ? ", then adapted" : "");
-    if (p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
+    if (!r->point && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
         tool_say(s->t, "past the ramp of %g s: -c and -g act in full at once", o->ramp);
     if (r->point)
-        tool_say(s->t, "going on from step %lld", (long long)(r->point->first - r->point->from));
-    if (r->rest >= 0)
+        tool_say(s->t, "going on from %.6g s, after %lld steps", p->start,
+                 (long long)(r->point->first - r->point->from));
+    else if (r->rest >= 0)
         tool_say(s->t, "from %.6g s to rest, tolerance %g", p->start, r->rest);
     else
         tool_say(s->t, "from %.6g s, %lld steps", p->start, (long long)r->steps);
@@ -545,7 +547,7 @@ int main(int argc, char **argv)
     char device[300] = "";
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (check_end(&o, &e) || checkpoint_check(o.checkpoint, o.restart, o.common.output, &e) ||
+    if (check_end(&o, &e) || checkpoint_check(o.checkpoint, o.restart, o.common.output, o.log, &e) ||
         stage_open_output(&s.stage, &t, &e) || stage_read(&s.stage, &s.m, &e) ||
         prepare(&s, &o, device, sizeof device, &e) || say_provenance(&t, &s, &o, &e) ||
         stage_write(&s.stage, &s.m, &e) || simulate(&s, &o, device, &e))

@@ -65,6 +65,29 @@ char *path_target(const char *path, err *e)
     return NULL;
 }
 
+/* The folder that a path's file is in. */
+static bool stat_folder(const char *path, struct stat *s)
+{
+    err ignored = {0};
+    const size_t n = path_folder(path);
+    char *folder = path_join(n ? path : ".", n ? n : 1, "", &ignored);
+    bool found = folder && !stat(folder, s);
+    free(folder);
+    return found;
+}
+
+bool path_is_same(const char *a, const char *b)
+{
+    struct stat s, t;
+    err ignored = {0};
+    char *x = path_target(a, &ignored), *y = path_target(b, &ignored);
+    bool same = x && y && !strcmp(x + path_folder(x), y + path_folder(y)) && stat_folder(x, &s) && stat_folder(y, &t) &&
+                s.st_dev == t.st_dev && s.st_ino == t.st_ino && (stat(x, &s) || S_ISREG(s.st_mode));
+    free(x);
+    free(y);
+    return same;
+}
+
 static bool is_within(const char *folder, const char *file)
 {
     size_t n = strlen(folder);

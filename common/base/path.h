@@ -5,6 +5,7 @@
 
 #include "base/err.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* The length of the folder's part of a path, its last slash included; 0: it has none. */
@@ -19,5 +20,8 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
 
 /* Where a file named path would be, links followed, even one to nothing. NULL with e filled where there can be none. */
 char *path_target(const char *path, err *e);
+
+/* Whether two paths are of one file, or would be once it is there: a regular one. */
+bool path_is_same(const char *a, const char *b);
 
 #endif

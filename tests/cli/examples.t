@@ -68,14 +68,9 @@ cp press.tum sweep.tum
     voxelise -q --unit mm -s 5 "$ROOT/tests/cli/cube.obj" | attach -q --rigid '*' >cube.sinew
     msds-mesh -q --nodes 9x5x7 --like map.nrrd >tissue.sinew
     cp tissue.sinew arm.sinew
-    # A box of hexahedra for gmsh, one of whose sides is a group.
-    printf '%s\n' 'Point(1) = {0, 0, 0, 10};' 'Extrude {20, 0, 0} { Point{1}; Layers{2}; }' 'Extrude {0, 20, 0} { Curve{1}; Layers{2}; Recombine; }' \
-        'Extrude {0, 0, 20} { Surface{5}; Layers{2}; Recombine; }' 'Physical Surface("porta") = {5};' 'Physical Volume("liver") = {1};' >liver.geo
-    printf '%s\n' 'liver E=2000 nu=0.45 density=1060' 'tissue E=2000' >liver.txt
     ln -s "$ROOT/samples" samples
     msds-mesh -q --nodes 9x5x7 --size 16cm,8cm,8cm >block.sinew
     printf '%s\n' 'tissue E=10e3' 'bone   E=1e7 nu=0.3 density=1900' 'vein   E=500' >materials
-    mkdir samples && cp "$ROOT/samples/ball.awk" samples
     # A box of 40 mm for Gmsh, with a volume and a side of it named.
     printf '%s\n' 'SetFactory("OpenCASCADE");' 'Box(1) = {0, 0, 0, 40, 40, 40};' 'Physical Volume("liver") = {1};' \
         'Physical Surface("porta") = {1};' 'Mesh.MeshSizeMin = 20;' >liver.geo
@@ -113,8 +108,6 @@ for example in "$T"/examples/*; do
         skip 1 "$name: no gmsh"
     elif grep -q '^ccx' "$T/commands" && ! have ccx; then
         skip 1 "$name: no ccx"
-    elif grep -q '^gmsh' "$T/commands" && ! have gmsh; then
-        skip 1 "$name: no gmsh"
     elif grep -q 'sweep\.igs\.mha' "$T/commands"; then
         skip 1 "$name: a tracked sweep is a recording; us-import.t makes one and runs this"
     else

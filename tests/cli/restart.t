@@ -239,6 +239,12 @@ fails 1 "a run that begins anew where one is" 'a checkpoint is there; expected -
 check "loses nothing" cmp "$T/d/state" "$c"
 fails 2 "another file to go on in" 'expected the same file' run -c all=0.8 -t 0.4 --checkpoint "$c" --restart "$T/none"
 fails 2 "the output's name" 'is a file of the checkpoint' run -c all=0.8 -t 0.4 --checkpoint "$T/out" -o "$T/out"
+ln -s "$T/out.frames" "$T/link"
+fails 2 "by another name" 'is a file of the checkpoint' run -c all=0.8 -t 0.4 --checkpoint "$T/out" -o "$T/c/../out.1"
+fails 2 "by a link" 'is a file of the checkpoint' run -c all=0.8 -t 0.4 --restart "$T/out" -o "$T/link"
+fails 2 "the log's name" "--log '.*out.frames' is a file of the checkpoint" run -c all=0.8 -t 0.4 --checkpoint "$T/out" --log "$T/out.frames"
+fails 2 "a log that is the output" "--log '.*' is the output" run -c all=0.8 -t 0.4 --log "$T/out" -o "$T/out"
+is "$(find "$T" -name 'out*')" "" "and nothing is made"
 fails 2 "no file for --checkpoint-every" 'without --checkpoint' run -c all=0.8 -t 0.4 --checkpoint-every 1
 fails 1 "nothing to restart from" 'none: cannot open: No such file' run -c all=0.8 -t 0.4 --restart "$T/none"
 fails 1 "no folder to save in" 'state.frames: cannot create: No such file' run -c all=0.8 -t 0.4 --checkpoint "$T/none/state"

@@ -1,11 +1,14 @@
 /* Lets allocations fail: preloaded into a program (LD_PRELOAD), it counts them from the beginning of main on, and the one whose number
  * SINEW_FAULT_AT gives, from 1, gets nothing; with SINEW_FAULT_ON set, so do all after it. Where SINEW_FAULT_COUNT names a
- * file, it gets their number at the end. For the GNU C library, whose own names for these functions it uses.
+ * file, it gets their number at the end. Where SINEW_FAULT_DEATH names one, that gets the program's and libraries' names that a program
+ * which dies by SIGSEGV, SIGBUS or SIGABRT was in, the innermost first, a line a call. For the GNU C library, whose own names for these functions it uses.
  */
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
 #include <dlfcn.h>
 #include <errno.h>
+#include <execinfo.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -87,12 +90,43 @@ static void tell(void)
     close(fd);
 }
 
+enum { CALLS = 100 };
+
+/* Whose code it was in. */
+static void tell_death(int signal_number)
+{
+    void *call[CALLS];
+    Dl_info at;
+    fault.counting = false;
+    signal(signal_number, SIG_DFL);
+    int fd = open(getenv("SINEW_FAULT_DEATH"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    int calls = backtrace(call, CALLS);
+    for (int i = 1; fd >= 0 && i < calls; i++)
+        if (dladdr(call[i], &at) && at.dli_fname)
+            dprintf(fd, "%s\n", at.dli_fname);
+    raise(signal_number);
+}
+
+static void watch_deaths(void)
+{
+    static char stack[1 << 16];
+    void *call[1];
+    const stack_t own = {.ss_sp = stack, .ss_size = sizeof stack};
+    if (!getenv("SINEW_FAULT_DEATH") || !backtrace(call, 1)) /* it loads what it needs, the first time */
+        return;
+    sigaltstack(&own, NULL);
+    const int signals[] = {SIGSEGV, SIGBUS, SIGABRT};
+    for (int i = 0; i < 3; i++)
+        sigaction(signals[i], &(struct sigaction){.sa_handler = tell_death, .sa_flags = SA_ONSTACK}, NULL);
+}
+
 static int begin_counting(int argc, char **argv, char **environment)
 {
     const char *at = getenv("SINEW_FAULT_AT");
     fault.at = at ? atoll(at) : 0;
     fault.on = getenv("SINEW_FAULT_ON") != NULL;
     atexit(tell);
+    watch_deaths();
     fault.counting = true;
     return fault.begin(argc, argv, environment);
 }

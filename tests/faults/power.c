@@ -2,6 +2,7 @@
  * kill -9, and takes from every file that it has open what was written since that file was stored last. Where SINEW_FAULT_COUNT
  * names a file, that gets the number of syncs at the end.
  */
+// NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -99,3 +100,4 @@ __attribute__((destructor)) static void end(void)
     fprintf(f, "%lld\n", syncs);
     fclose(f);
 }
+// NOLINTEND(readability-inconsistent-declaration-parameter-name)
