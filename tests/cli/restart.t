@@ -243,7 +243,7 @@ ln -s "$T/out.frames" "$T/link"
 fails 2 "by another name" 'is a file of the checkpoint' run -c all=0.8 -t 0.4 --checkpoint "$T/out" -o "$T/c/../out.1"
 fails 2 "by a link" 'is a file of the checkpoint' run -c all=0.8 -t 0.4 --restart "$T/out" -o "$T/link"
 fails 2 "the log's name" "--log '.*out.frames' is a file of the checkpoint" run -c all=0.8 -t 0.4 --checkpoint "$T/out" --log "$T/out.frames"
-fails 2 "a log that is the output" "--log '.*' is the output" run -c all=0.8 -t 0.4 --log "$T/out" -o "$T/out"
+fails 2 "a log that is the output" "--log '.*' is another file of this run" run -c all=0.8 -t 0.4 --log "$T/out" -o "$T/out"
 is "$(find "$T" -name 'out*')" "" "and nothing is made"
 fails 2 "no file for --checkpoint-every" 'without --checkpoint' run -c all=0.8 -t 0.4 --checkpoint-every 1
 fails 1 "nothing to restart from" 'none: cannot open: No such file' run -c all=0.8 -t 0.4 --restart "$T/none"
