@@ -55,6 +55,11 @@ int32_t names_number(names *n, const char *name, err *e)
     return *slot = n->count++;
 }
 
+int32_t names_find(const names *n, const char *name)
+{
+    return n->slots ? *find_slot(n, name) : -1;
+}
+
 void names_free(names *n)
 {
     for (int32_t i = 0; i < n->count; i++)

@@ -15,6 +15,10 @@ typedef struct names {
 
 /* The number of the name, which is added where it is new. -1 with e filled on no memory. */
 int32_t names_number(names *n, const char *name, err *e);
+
+/* The number of the name, or -1 where it has none. */
+int32_t names_find(const names *n, const char *name);
+
 void names_free(names *n);
 
 #endif

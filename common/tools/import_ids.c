@@ -61,6 +61,14 @@ int32_t import_ids_find(const import_ids *s, int64_t id)
     return s->index ? s->index[low] : (int32_t)low;
 }
 
+int32_t import_ids_of(const import_ids *s, int32_t index)
+{
+    int64_t at = s->index ? 0 : index;
+    while (s->index && at + 1 < s->count && s->index[at] != index)
+        at++;
+    return s->id[at];
+}
+
 void import_ids_free(import_ids *s)
 {
     free(s->id);

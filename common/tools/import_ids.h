@@ -22,6 +22,9 @@ int import_ids_close(import_ids *s, const char *what, const char *place, err *e)
 /* Whose number it is, or -1. */
 int32_t import_ids_find(const import_ids *s, int64_t id);
 
+/* The number of one of ours, for messages. */
+int32_t import_ids_of(const import_ids *s, int32_t index);
+
 void import_ids_free(import_ids *s);
 
 #endif

@@ -496,6 +496,7 @@ static int read_lines(inp_reader *r)
 int import_inp(import_mesh *m, in *s, const import_wishes *wishes, notes *warnings, err *e)
 {
     inp_reader r = {.m = m, .s = s, .w = wishes, .warnings = warnings, .e = e, .set = -1, .material = -1};
+    m->any_case = true;
     int result = read_lines(&r) || import_inp_finish(&r, wishes) ? -1 : 0;
     import_ids_free(&r.element_id);
     import_sets_free(&r.nodes);

@@ -19,8 +19,7 @@ static int give_volume(void *context, int32_t element)
     import_mesh *m = g->r->m;
     if (m->volume[element] >= 0 && m->volume[element] != g->volume && g->line)
         return err_set(g->r->e, m->name, g->line, "element %d has a section already, %.200s; expected one for each",
-                       g->r->element_id.index ? element : g->r->element_id.id[element],
-                       m->volumes[m->volume[element]].name);
+                       import_ids_of(&g->r->element_id, element), m->volumes[m->volume[element]].name);
     if (m->volume[element] < 0)
         m->volume[element] = g->volume;
     return 0;
@@ -39,7 +38,7 @@ static int make_volumes(inp_reader *r)
         const inp_section *s = r->section_count ? &r->sections[i] : NULL;
         const int32_t set = s ? s->set : (int32_t)i;
         giving g = {.r = r, .line = s ? s->line : 0};
-        g.volume = import_add_volume(r->m, r->elements.set[set].name, r->e);
+        g.volume = import_add_volume(r->m, r->elements.names.name[set], r->e);
         if (g.volume < 0)
             return -1;
         if (s)
@@ -51,16 +50,21 @@ static int make_volumes(inp_reader *r)
 }
 
 /* sinew export puts V_ and M_ before names: they go again, where that leaves each its own. */
-static void strip(char **name, size_t stride, int64_t count, const char *prefix)
+static int strip(char **name, size_t stride, int64_t count, const char *prefix, err *e)
 {
-    for (int64_t i = 0; i < count; i++) {
+    names all = {0};
+    int bad = 0;
+    for (int64_t i = 0; !bad && i < count; i++)
+        bad = names_number(&all, *(char **)((char *)name + (size_t)i * stride), e) < 0;
+    for (int64_t i = 0; !bad && i < count; i++) {
         char *own = *(char **)((char *)name + (size_t)i * stride);
-        bool free_name = !strncmp(own, prefix, 2) && own[2];
-        for (int64_t k = 0; free_name && k < count; k++)
-            free_name = strcmp(own + 2, *(char **)((char *)name + (size_t)k * stride)) != 0;
-        if (free_name)
-            memmove(own, own + 2, strlen(own + 2) + 1);
+        if (strncmp(own, prefix, 2) != 0 || !own[2] || names_find(&all, own + 2) >= 0)
+            continue;
+        memmove(own, own + 2, strlen(own + 2) + 1);
+        bad = names_number(&all, own, e) < 0;
     }
+    names_free(&all);
+    return bad ? -1 : 0;
 }
 
 /* A volume without elements is none: sets that sections do not name are not volumes. */
@@ -85,16 +89,10 @@ static int drop_empty(import_mesh *m, err *e)
     return 0;
 }
 
-/* The node sets by their names, for messages. */
 static int unknown_set(const inp_reader *r, const char *name)
 {
-    const char **names = mem_array(r->nodes.count, sizeof *names, "sets", r->e);
-    for (int64_t i = 0; names && i < r->nodes.count; i++)
-        names[i] = r->nodes.set[i].name;
-    if (names)
-        near_unknown(r->e, r->m->name, 0, "node set", name, names, r->nodes.count < 1000 ? (int)r->nodes.count : 1000);
-    free(names);
-    return -1;
+    const int32_t count = r->nodes.names.count < 1000 ? r->nodes.names.count : 1000;
+    return near_unknown(r->e, r->m->name, 0, "node set", name, (const char *const *)r->nodes.names.name, count);
 }
 
 static int hold_named(inp_reader *r, const import_wishes *w, giving *g)
@@ -151,9 +149,9 @@ int import_inp_finish(inp_reader *r, const import_wishes *w)
         import_ids_close(&r->element_id, "element", m->name, r->e) || import_resolve(m, r->e) || make_volumes(r) ||
         drop_empty(m, r->e) || make_rigid(r, w))
         return -1;
-    if (m->volume_count)
-        strip(&m->volumes[0].name, sizeof *m->volumes, m->volume_count, "v_");
-    if (m->materials)
-        strip(&m->material[0].name, sizeof *m->material, m->materials, "m_");
-    return 0;
+    names_free(&m->volume_names); /* they are others now */
+    names_free(&m->material_names);
+    if (m->volume_count && strip(&m->volumes[0].name, sizeof *m->volumes, m->volume_count, "v_", r->e))
+        return -1;
+    return m->materials ? strip(&m->material[0].name, sizeof *m->material, m->materials, "m_", r->e) : 0;
 }

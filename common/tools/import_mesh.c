@@ -36,9 +36,12 @@ int import_add_element(import_mesh *m, const int32_t *corner, int32_t columns, i
 
 int32_t import_add_volume(import_mesh *m, const char *name, err *e)
 {
-    for (int64_t i = 0; i < m->volume_count; i++)
-        if (!strcmp(m->volumes[i].name, name))
-            return (int32_t)i;
+    for (int64_t i = m->volume_names.count; i < m->volume_count; i++)
+        if (names_number(&m->volume_names, m->volumes[i].name, e) < 0)
+            return -1;
+    const int32_t at = names_find(&m->volume_names, name);
+    if (at >= 0)
+        return at;
     if (MEM_ROOM(&m->volumes, &m->volumes_room, m->volume_count + 1, "volumes", e))
         return -1;
     m->volumes[m->volume_count] = (import_volume){mem_text(name, e), -1};
@@ -47,9 +50,12 @@ int32_t import_add_volume(import_mesh *m, const char *name, err *e)
 
 int32_t import_add_material(import_mesh *m, const char *name, int64_t line, err *e)
 {
-    for (int64_t i = 0; i < m->materials; i++)
-        if (!strcmp(m->material[i].name, name))
-            return (int32_t)i;
+    for (int64_t i = m->material_names.count; i < m->materials; i++)
+        if (names_number(&m->material_names, m->material[i].name, e) < 0)
+            return -1;
+    const int32_t at = names_find(&m->material_names, name);
+    if (at >= 0)
+        return at;
     if (MEM_ROOM(&m->material, &m->material_room, m->materials + 1, "materials", e))
         return -1;
     m->material[m->materials] = (import_material){mem_text(name, e), NAN, NAN, NAN, MATERIAL_NEO_HOOKEAN, line};
@@ -81,6 +87,8 @@ void import_free(import_mesh *m)
         free(m->volumes[i].name);
     for (int64_t i = 0; i < m->materials; i++)
         free(m->material[i].name);
+    names_free(&m->volume_names);
+    names_free(&m->material_names);
     import_ids_free(&m->node_id);
     free(m->position);
     free(m->corner);

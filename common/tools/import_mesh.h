@@ -5,6 +5,7 @@
 #ifndef SINEW_IMPORT_MESH_H
 #define SINEW_IMPORT_MESH_H
 
+#include "mesh/names.h"
 #include "model/materials.h"
 #include "model/model.h"
 #include "tools/import_ids.h"
@@ -37,9 +38,11 @@ typedef struct import_mesh {
     float *fibre; /* elements x 3, or NULL */
     import_volume *volumes;
     int64_t volume_count, volumes_room;
+    bool any_case; /* the file's names have no case: they came in lower case */
     import_material *material;
     int64_t materials, material_room;
-    uint8_t *rigid; /* nodes, or NULL: the file holds none */
+    names volume_names, material_names; /* of the first of them, so that they are found; free them where names change */
+    uint8_t *rigid;                     /* nodes, or NULL: the file holds none */
 } import_mesh;
 
 /* What is asked for on the command line. */

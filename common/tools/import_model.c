@@ -166,8 +166,8 @@ static int drop_nodes(import_mesh *m, notes *warnings, err *e)
 /* Those of the file become the model's. */
 static int put_materials(const import_mesh *mesh, const import_wishes *w, model *m, notes *warnings, err *e)
 {
-    const char *const names[] = {"material.name", "material.law",     "material.E",
-                                 "material.nu",   "material.density", "material.peak"};
+    const char *const array_names[] = {"material.name", "material.law",     "material.E",
+                                       "material.nu",   "material.density", "material.peak"};
     model_array *a[6];
     const material usual = materials_fallback();
     if (!(w->stress > 0) || !(w->density > 0))
@@ -177,10 +177,10 @@ static int put_materials(const import_mesh *mesh, const import_wishes *w, model 
     if (model_axis_add(m, "material", mesh->materials, e))
         return -1;
     for (int i = 0; i < 6; i++)
-        if (!model_add(m, names[i], e))
+        if (!model_add(m, array_names[i], e))
             return -1;
     for (int i = 0; i < 6; i++)
-        a[i] = model_find(m, names[i]);
+        a[i] = model_find(m, array_names[i]);
     for (int64_t i = 0; i < mesh->materials; i++) {
         const import_material *from = &mesh->material[i];
         material check;
@@ -210,14 +210,27 @@ static int make_materials(const import_mesh *mesh, const import_wishes *w, model
     return mesh->materials ? put_materials(mesh, w, m, warnings, e) : materials_default(m, e);
 }
 
+/* Of the model's table, in which names have a case though the file's have none: as it is written, or the first that differs by case alone. */
+static int32_t find_material(const import_mesh *mesh, const model *m, const char *name)
+{
+    const model_array *a = model_find(m, "material.name");
+    int32_t at = materials_find(m, name);
+    for (int64_t i = 0; mesh->any_case && at < 0 && i < a->rows; i++)
+        if (!strcasecmp(a->str[i], name))
+            at = (int32_t)i;
+    return at;
+}
+
 /* A volume is of the material that the file says; else of the one asked for; else of one that is named as the volume is; else of the only one. */
 static int32_t material_of(const import_mesh *mesh, const import_wishes *w, const model *m, const import_volume *v,
                            err *e)
 {
     const char *name = w->material;
+    if (v->material >= 0 && !w->own_materials)
+        return v->material; /* the model's table is the file's */
     if (v->material >= 0)
         name = mesh->material[v->material].name;
-    int32_t at = materials_find(m, name ? name : v->name);
+    int32_t at = find_material(mesh, m, name ? name : v->name);
     if (at < 0 && name && !(w->own_materials && model_count(m, "material") == 1))
         return materials_unknown(m, name, mesh->name, v->material >= 0 ? mesh->material[v->material].line : 0, e);
     if (at < 0 && model_count(m, "material") > 1)
@@ -230,12 +243,12 @@ static int32_t material_of(const import_mesh *mesh, const import_wishes *w, cons
 
 static int put_volumes(const import_mesh *mesh, const import_wishes *w, model *m, err *e)
 {
-    static const char *const names[] = {"volume.level", "volume.priority", "volume.name", "volume.material",
-                                        "volume.muscle"};
+    static const char *const array_names[] = {"volume.level", "volume.priority", "volume.name", "volume.material",
+                                              "volume.muscle"};
     if (model_axis_add(m, "volume", mesh->volume_count, e))
         return -1;
     for (int i = 0; i < 5; i++)
-        if (!model_add(m, names[i], e))
+        if (!model_add(m, array_names[i], e))
             return -1;
     for (int64_t i = 0; i < mesh->volume_count; i++) {
         const import_volume *v = &mesh->volumes[i];

@@ -34,6 +34,8 @@ typedef struct reader {
     int version; /* 2 or 4 */
     group *groups;
     int64_t group_count, group_room;
+    names keys;   /* of groups, in their order: DIMENSION TAG */
+    int32_t last; /* group that was asked for */
     entity *entities;
     int64_t entity_count, entity_room;
     int32_t *held; /* numbers of nodes of rigid groups */
@@ -87,12 +89,17 @@ static int whole(reader *r, int size, int64_t low, int64_t high, int64_t *value)
 
 static int32_t group_of(reader *r, int64_t dimension, int64_t tag)
 {
-    for (int64_t i = 0; i < r->group_count; i++)
-        if (r->groups[i].dimension == dimension && r->groups[i].tag == tag)
-            return (int32_t)i;
+    char key[48];
+    if (r->group_count && r->groups[r->last].dimension == dimension && r->groups[r->last].tag == tag)
+        return r->last;
+    snprintf(key, sizeof key, "%lld %lld", (long long)dimension, (long long)tag);
+    const int32_t at = names_find(&r->keys, key);
+    if (at >= 0)
+        return r->last = at;
     if (r->group_count == GROUPS_MOST)
         return (int32_t)wrong(r, "too many physical groups", "at most 100000");
-    if (MEM_ROOM(&r->groups, &r->group_room, r->group_count + 1, "groups", r->e))
+    if (MEM_ROOM(&r->groups, &r->group_room, r->group_count + 1, "groups", r->e) ||
+        names_number(&r->keys, key, r->e) < 0)
         return -1;
     r->groups[r->group_count] = (group){(int32_t)dimension, (int32_t)tag, NULL, -1, false, false};
     return (int32_t)r->group_count++;
@@ -140,19 +147,19 @@ static int read_names(reader *r)
 /* Every name of --rigid must be one of a group. */
 static int check_rigid(reader *r)
 {
-    const char **names = mem_array(r->group_count, sizeof *names, "groups", r->e);
-    int count = 0, bad = names ? 0 : -1;
-    for (int64_t i = 0; names && i < r->group_count; i++)
+    const char **named = mem_array(r->group_count, sizeof *named, "groups", r->e);
+    int count = 0, bad = named ? 0 : -1;
+    for (int64_t i = 0; named && i < r->group_count; i++)
         if (r->groups[i].name)
-            names[count++] = r->groups[i].name;
+            named[count++] = r->groups[i].name;
     for (int i = 0; !bad && i < r->w->rigids; i++) {
         bool found = false;
         for (int k = 0; k < count; k++)
-            found |= !strcmp(names[k], r->w->rigid[i]);
+            found |= !strcmp(named[k], r->w->rigid[i]);
         if (!found)
-            bad = near_unknown(r->e, r->m->name, 0, "physical group", r->w->rigid[i], names, count);
+            bad = near_unknown(r->e, r->m->name, 0, "physical group", r->w->rigid[i], named, count);
     }
-    free(names);
+    free(named);
     return bad;
 }
 
@@ -508,6 +515,7 @@ int import_msh(import_mesh *m, in *s, const import_wishes *wishes, err *e)
     for (int64_t i = 0; i < r.group_count; i++)
         free(r.groups[i].name);
     free(r.groups);
+    names_free(&r.keys);
     free(r.entities);
     free(r.held);
     return bad;

@@ -3,25 +3,21 @@
 #include "base/mem.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 int32_t import_sets_find(const import_sets *s, const char *name)
 {
-    for (int64_t i = 0; i < s->count; i++)
-        if (!strcmp(s->set[i].name, name))
-            return (int32_t)i;
-    return -1;
+    return names_find(&s->names, name);
 }
 
 int32_t import_sets_open(import_sets *s, const char *name, err *e)
 {
-    int32_t at = import_sets_find(s, name);
-    if (at >= 0)
+    const int32_t at = names_number(&s->names, name, e);
+    if (at < s->count)
         return at;
     if (MEM_ROOM(&s->set, &s->room, s->count + 1, "sets", e))
         return -1;
-    s->set[s->count] = (import_set){.name = mem_text(name, e)};
-    return s->set[s->count].name ? (int32_t)s->count++ : -1;
+    s->set[s->count++] = (import_set){.count = 0};
+    return at;
 }
 
 static int need_room(import_set *set, err *e)
@@ -71,37 +67,38 @@ static int go_range(const import_range *r, const import_ids *ids, import_sets_ea
     return result;
 }
 
+static int see(import_sets *s, int32_t at, int64_t *queued, err *e)
+{
+    if (s->set[at].seen == s->goes)
+        return 0;
+    if (MEM_ROOM(&s->queue, &s->queue_room, *queued + 1, "sets", e))
+        return -1;
+    s->set[at].seen = s->goes;
+    s->queue[(*queued)++] = at;
+    return 0;
+}
+
 int import_sets_go(import_sets *s, int32_t at, const import_ids *ids, import_sets_each *each, void *context, err *e)
 {
-    int32_t *queue = mem_array(s->count, sizeof *queue, "sets", e);
-    int64_t queued = 1;
-    int result = queue ? 0 : -1;
-    for (int64_t i = 0; i < s->count; i++)
-        s->set[i].seen = i == at;
-    if (queue)
-        queue[0] = at;
+    int64_t queued = 0;
+    s->goes++;
+    int result = see(s, at, &queued, e);
     for (int64_t q = 0; !result && q < queued; q++) {
-        const import_set *set = &s->set[queue[q]];
+        const import_set *set = &s->set[s->queue[q]];
         for (int64_t i = 0; !result && i < set->count; i++) {
-            int32_t other = -1 - set->range[i].first;
-            if (other < 0)
-                result = go_range(&set->range[i], ids, each, context);
-            else if (!s->set[other].seen) {
-                s->set[other].seen = true;
-                queue[queued++] = other;
-            }
+            const import_range *r = &set->range[i];
+            result = r->first < 0 ? see(s, -1 - r->first, &queued, e) : go_range(r, ids, each, context);
         }
     }
-    free(queue);
     return result;
 }
 
 void import_sets_free(import_sets *s)
 {
-    for (int64_t i = 0; i < s->count; i++) {
-        free(s->set[i].name);
+    for (int64_t i = 0; i < s->count; i++)
         free(s->set[i].range);
-    }
     free(s->set);
+    free(s->queue);
+    names_free(&s->names);
     *s = (import_sets){.count = 0};
 }

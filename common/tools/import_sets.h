@@ -4,6 +4,7 @@
 #ifndef SINEW_IMPORT_SETS_H
 #define SINEW_IMPORT_SETS_H
 
+#include "mesh/names.h"
 #include "tools/import_ids.h"
 
 typedef struct import_range {
@@ -11,15 +12,18 @@ typedef struct import_range {
 } import_range;
 
 typedef struct import_set {
-    char *name;
     import_range *range;
     int64_t count, room;
-    bool seen;
+    int64_t seen; /* by which call of import_sets_go last */
 } import_set;
 
 typedef struct import_sets {
+    names names; /* of the sets, in their order */
     import_set *set;
     int64_t count, room;
+    int64_t goes; /* calls of import_sets_go */
+    int32_t *queue;
+    int64_t queue_room;
 } import_sets;
 
 /* The index of the set so named, or -1; open adds it where there is none (-1 with e filled). */

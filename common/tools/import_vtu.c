@@ -28,6 +28,8 @@ typedef struct reader {
     xml_style style;
     placed *arrays;
     int64_t count, room;
+    const char *lined; /* how far lines have been counted: so many */
+    int64_t lines;
     int64_t points, cells; /* -1: no piece yet */
     int64_t *cell;         /* elements: which cell it is */
     int64_t cell_room;
@@ -83,7 +85,9 @@ static int take_array(reader *r, const xml_tag *tag, section where)
         return wrong(r, tag->begin, "NumberOfComponents that is none", "1 to 1000");
     if (offset && num_int(offset, 0, INT64_MAX, &p.a.offset))
         return wrong(r, tag->begin, "an offset that is none", "a number");
-    p.a.line = xml_line(&r->x, tag->begin);
+    for (r->lined = r->lined ? r->lined : r->x.text; r->lined < tag->begin; r->lined++)
+        r->lines += *r->lined == '\n';
+    p.a.line = 1 + r->lines;
     p.a.end = p.a.begin;
     if (!tag->closed) {
         const char *end = memchr(p.a.begin, '<', (size_t)(r->x.end - p.a.begin));
@@ -114,9 +118,9 @@ static int take_appended(reader *r, const xml_tag *tag)
 
 static section section_of(const char *name)
 {
-    static const char *const names[] = {"", "Points", "Cells", "PointData", "CellData", "FieldData"};
+    static const char *const sections[] = {"", "Points", "Cells", "PointData", "CellData", "FieldData"};
     for (int i = 1; i < 6; i++)
-        if (!strcmp(names[i], name))
+        if (!strcmp(sections[i], name))
             return (section)i;
     return NOWHERE;
 }
@@ -261,25 +265,45 @@ static int read_cells(reader *r)
 
 /* ---- volumes */
 
-/* The i-th of the strings, or NULL. */
-static char *string_at(char *text, size_t size, int64_t i)
+/* The strings of an array. */
+typedef struct word_list {
+    char *text, **at; /* owned; at: in the text */
+    int64_t count, room;
+} word_list;
+
+/* The i-th, or NULL where there is none or nothing in it. */
+static char *word_at(const word_list *w, double i)
 {
-    char *p = text;
-    for (; text && i > 0 && p < text + size; i--)
-        p += strlen(p) + 1;
-    return text && p < text + size && *p ? p : NULL;
+    char *word = i >= 0 && i < (double)w->count ? w->at[(int64_t)i] : NULL;
+    return word && *word ? word : NULL;
 }
 
-static char *strings(const reader *r, const char *name, size_t *size)
+/* Of the field data; none where there is no such array. */
+static int read_words(const reader *r, const char *name, word_list *w)
 {
     const xml_array *a = array_of(r, FIELD_DATA, name);
-    return a && !strcmp(a->type, "String") ? xml_strings(&r->x, &r->style, a, size, r->e) : NULL;
+    size_t size = 0;
+    if (!a || strcmp(a->type, "String") != 0)
+        return 0;
+    w->text = xml_strings(&r->x, &r->style, a, &size, r->e);
+    for (char *p = w->text; p && p < w->text + size; p += strlen(p) + 1) {
+        if (MEM_ROOM(&w->at, &w->room, w->count + 1, "names", r->e))
+            return -1;
+        w->at[w->count++] = p;
+    }
+    return w->text ? 0 : -1;
 }
 
-/* The volume of that number. known, of `many`: where it has been asked for before, or -1. */
-static int32_t volume_of(reader *r, double number, char *names, size_t size)
+static void free_words(word_list *w)
 {
-    char text[64], *name = number >= 0 && number < INT32_MAX ? string_at(names, size, (int64_t)number) : NULL;
+    free(w->text);
+    free(w->at);
+}
+
+/* The volume of that number. */
+static int32_t volume_of(reader *r, double number, const word_list *words)
+{
+    char text[64], *name = word_at(words, number);
     snprintf(text, sizeof text, "volume%.15g", number);
     if (name)
         chars_mend(name);
@@ -293,28 +317,26 @@ static int read_volumes(reader *r)
     const char *from = by_volume ? "volume" : "material";
     double *number, before = NAN;
     int32_t volume = -1;
-    size_t size = 0;
+    word_list words = {.count = 0};
     if (!array_of(r, CELL_DATA, from))
         return 0;
     number = need(r, CELL_DATA, from, 1, r->cells);
-    char *names = number ? strings(r, by_volume ? "volume.name" : "material.name", &size) : NULL;
-    int bad = number && !r->e->status ? 0 : -1;
+    int bad = number ? read_words(r, by_volume ? "volume.name" : "material.name", &words) : -1;
     for (int64_t i = 0; !bad && i < r->m->elements; i++) {
         if (number[r->cell[i]] != before)
-            volume = volume_of(r, number[r->cell[i]], names, size);
+            volume = volume_of(r, number[r->cell[i]], &words);
         before = number[r->cell[i]];
         r->m->volume[i] = volume;
         bad = volume < 0 ? -1 : 0;
     }
     free(number);
-    free(names);
+    free_words(&words);
     return bad;
 }
 
 /* Which material a volume is of, by name: a VTU does not say what it is made of, so that only a table can. */
 static int read_materials(reader *r)
 {
-    size_t size = 0;
     if (!r->w->own_materials) {
         notes_add(r->warnings, "a VTU says nothing of materials: all is of the default; --materials gives others");
         return 0;
@@ -322,12 +344,12 @@ static int read_materials(reader *r)
     if (!array_of(r, CELL_DATA, "material") || !array_of(r, FIELD_DATA, "material.name"))
         return 0;
     double *number = need(r, CELL_DATA, "material", 1, r->cells);
-    char *names = number ? strings(r, "material.name", &size) : NULL;
-    int bad = number && !r->e->status ? 0 : -1;
+    word_list words = {.count = 0};
+    int bad = number ? read_words(r, "material.name", &words) : -1;
     for (int64_t i = 0; !bad && i < r->m->elements; i++) {
         import_volume *v = r->m->volume[i] < 0 ? NULL : &r->m->volumes[r->m->volume[i]];
         const double of = number[r->cell[i]];
-        char *name = v && v->material < 0 && of >= 0 && of < INT32_MAX ? string_at(names, size, (int64_t)of) : NULL;
+        char *name = v && v->material < 0 ? word_at(&words, of) : NULL;
         if (!name)
             continue;
         chars_mend(name);
@@ -335,7 +357,7 @@ static int read_materials(reader *r)
         bad = v->material < 0 ? -1 : 0;
     }
     free(number);
-    free(names);
+    free_words(&words);
     return bad;
 }
 
@@ -366,16 +388,16 @@ static int hold(reader *r, const char *name)
 
 static int read_rigid(reader *r)
 {
-    const char **names = mem_array(r->count, sizeof *names, "arrays", r->e);
-    int count = 0, bad = names ? 0 : -1;
-    for (int64_t i = 0; names && i < r->count; i++)
+    const char **words = mem_array(r->count, sizeof *words, "arrays", r->e);
+    int count = 0, bad = words ? 0 : -1;
+    for (int64_t i = 0; words && i < r->count; i++)
         if (r->arrays[i].where == POINT_DATA)
-            names[count++] = r->arrays[i].a.name;
+            words[count++] = r->arrays[i].a.name;
     for (int i = 0; !bad && i < r->w->rigids; i++)
         bad = array_of(r, POINT_DATA, r->w->rigid[i])
                   ? hold(r, r->w->rigid[i])
-                  : near_unknown(r->e, r->m->name, 0, "array of points", r->w->rigid[i], names, count);
-    free(names);
+                  : near_unknown(r->e, r->m->name, 0, "array of points", r->w->rigid[i], words, count);
+    free(words);
     if (!bad && array_of(r, POINT_DATA, "rigid"))
         bad = hold(r, "rigid");
     return bad;

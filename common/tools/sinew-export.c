@@ -86,9 +86,12 @@ static int check_options(job *j, err *e)
 {
     const struct options *o = j->o;
     if (o->format == MODEL && (o->frame || o->deformed || o->surface))
-        return err_usage(e, "--frame, --deformed and --surface are for vtu and obj: model is the whole of it");
+        return err_usage(
+            e, "--frame is for vtu, obj and msh, --deformed and --surface for vtu and obj: model is the whole of it");
     if (o->format == INP && (o->frame || o->deformed || o->surface))
-        return err_usage(e, "--frame, --deformed and --surface are for vtu and obj: inp holds the model at rest");
+        return err_usage(
+            e,
+            "--frame is for vtu, obj and msh, --deformed and --surface for vtu and obj: inp holds the model at rest");
     if (o->format == MSH && (o->deformed || o->surface))
         return err_usage(e, "--deformed and --surface are for vtu and obj: msh holds the elements at rest");
     if (o->format != MODEL && o->common.text)

@@ -50,13 +50,13 @@ static const opt_tool table = {
 };
 
 /* The names of --rigid, one by one. */
-typedef struct names {
+typedef struct rigid_names {
     char *text[64];
     const char *name[256];
     int count;
-} names;
+} rigid_names;
 
-static int cut_names(names *n, const opt_list *list, err *e)
+static int cut_names(rigid_names *n, const opt_list *list, err *e)
 {
     for (int i = 0; i < list->count; i++) {
         n->text[i] = mem_text(list->value[i], e);
@@ -75,7 +75,7 @@ static int cut_names(names *n, const opt_list *list, err *e)
     return 0;
 }
 
-static int make_wishes(const struct options *o, const names *n, import_wishes *w, err *e)
+static int make_wishes(const struct options *o, const rigid_names *n, import_wishes *w, err *e)
 {
     static const double stress[] = {0, 1, 1e3, 1e6, 1e9}, density[] = {0, 1, 1e3, 1e12};
     const num_unit unit = num_unit_of(o->unit), metre = num_unit_of("m");
@@ -142,7 +142,7 @@ int main(int argc, char **argv)
     tool t = {0};
     stage s = {0};
     model m = {0};
-    names rigid = {.count = 0};
+    rigid_names rigid = {.count = 0};
     import_wishes w = {0};
     import_mesh mesh = {0};
     notes warnings = {0};

@@ -287,7 +287,7 @@ sinew export -f model -z <"$T/text" | sinew export -f model - >"$T/back"
 check "binary -> gzip -> binary: the same bytes" cmp "$T/binary" "$T/back"
 check "and the same model as that written by hand" sinew diff "$small" "$T/binary"
 fails 2 "text of another format" "--text is for model" sinew export -f obj --text "$small"
-fails 2 "a frame of the whole" "are for vtu and obj" sinew export -f model --frame 0 "$small"
+fails 2 "a frame of the whole" "frame is for vtu, obj and msh" sinew export -f model --frame 0 "$small"
 head -n 150 "$T/text" >"$T/cut"
 fails 1 "a model that is cut" "cut short" sinew export -f model -o "$T/gone" "$T/cut"
 [ ! -e "$T/gone" ]

@@ -167,6 +167,9 @@ is "$(run -q --rigid low,ALL "$T/ok.inp" 2>/dev/null | sinew info --get node.rig
 echo 'soft E=1000
 hard E=9000' >"$T/table"
 check "--materials and --material" sh -c "sinew import -q --unit mm --materials $T/table --material hard $T/tets.msh | sinew info --get material.E.sum -"
+printf 'FAT E=1000\nlean E=9000\n' >"$T/case"
+is "$(sinew import -q --unit mm --materials "$T/case" --text "$T/ok.inp" 2>/dev/null | awk '$2 == "volume.material" { getline; print; getline; print }' | tr '\n' ' ')" \
+    "0 1 " "a table's names are found whatever their case"
 fails 1 "a table without the name" "unknown material 'fat'" sinew import -q --unit mm --materials "$T/table" "$T/ok.inp"
 fails 1 "a table, and nothing that says which" "nothing says which material volume tissue is of" sinew import -q --unit mm --materials "$T/table" "$T/tets.msh"
 sed 's/C3D8R$/C3D8R, ELSET=One/;/MATERIAL/,$d' "$T/ok.inp" >"$T/plain.inp"
@@ -201,6 +204,8 @@ bad "collapsed" "[0-9]*: element 0 has one node at two" 's/^1, 7, 2, 3, 4/1, 7, 
 bad "flat" "20: element 0 has no inside" 's/^\( *1[0-9]*, .*\), 10$/\1, 0/'
 bad "hexahedra and tetrahedra" "[0-9]*: an element of 4 nodes among elements of 8" 's/TYPE=S4/TYPE=C3D4/'
 bad "two sections" "37: element 1 has a section already, rest" 's/^20, 2000000000, 10/1, 20, 1/'
+bad "two sections, of elements whose numbers fall" "37: element 9 has a section already, rest" 's/^1, 7,/30, 7,/;s/^20, 105,/9, 105,/;s/^1$/9/;s/^20, 2000000000, 10/9, 20, 1/'
+bad "a law that is not isotropic" "[0-9]*: .ELASTIC that is not isotropic" 's/^.ELASTIC/*ELASTIC, TYPE=ENGINEERING CONSTANTS/'
 bad "a law that is not read" "[0-9]*: .HYPERELASTIC of another law" 's/NEO HOOKE/OGDEN/'
 bad "incompressible" "[0-9]*: C10 or D1 that is not above 0" 's/^0.0005, 200./0.0005, 0/'
 bad "a nu that is none" "[0-9]*: .*nu" 's/^0.003, 0.45/0.003, 0.5/'
@@ -265,5 +270,27 @@ is "$(cd "$T" && ls x 2>/dev/null)" "" "none of these left a file"
 printf '<VTKFile type="UnstructuredGrid"><Piece NumberOfPoints="1000000000" NumberOfCells="1"><Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">1 2 3</DataArray>' >"$T/huge.vtu"
 fails 1 "points that are not there take no memory" "too few numbers" sh -c "ulimit -v 400000; sinew import --unit m '$T/huge.vtu'"
 check "a set of two billion takes none" sh -c "ulimit -v 400000; $run -q -o '$T/y' '$T/ok.inp' 2>/dev/null"
+
+# Nor do many names take long: so many sets, sections, materials, groups and arrays as a file of megabytes can have.
+cubes='function corners(i) { return 4 * i + 1 " " 4 * i + 2 " " 4 * i + 3 " " 4 * i + 4 " " 4 * i + 5 " " 4 * i + 6 " " 4 * i + 7 " " 4 * i + 8 }
+    function node(i) { return int(i / 4) * 4 + 1 + i % 4 " " (i % 4 == 1 || i % 4 == 2) " " (i % 4 > 1) " " int(i / 4) }'
+awk -v n=40000 "$cubes"' BEGIN {
+    print "*NODE"
+    for (i = 0; i < 4 * n + 4; i++) { line = node(i); gsub(" ", ",", line); print line }
+    for (i = 0; i < n; i++) { line = corners(i); gsub(" ", ",", line); printf "*ELEMENT,TYPE=C3D8,ELSET=v_e%d\n%d,%s\n", i, i + 1, line }
+    for (i = 0; i < n; i++)
+        printf "*MATERIAL,NAME=m_%d\n*ELASTIC\n3000,.4\n*DENSITY\n1000\n*SOLID SECTION,ELSET=v_e%d,MATERIAL=m_%d\n*NSET,NSET=n%d\n1\n*BOUNDARY\nn%d,1,3\n", i, i, i, i, i
+}' >"$T/many.inp"
+awk -v n=100000 "$cubes"' BEGIN {
+    print "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" 4 * n + 4
+    for (i = 0; i < 4 * n + 4; i++) print node(i)
+    print "$EndNodes\n$Elements\n" n
+    for (i = 0; i < n; i++) print i + 1, 5, 2, i + 1, 1, corners(i)
+    print "$EndElements"
+}' >"$T/many.msh"
+awk -v n=30000 '{ print } /<CellData>/ { for (i = 0; i < n; i++) printf "<DataArray type=\"Int8\" Name=\"a%d\" format=\"ascii\">1</DataArray>\n", i }' "$T/ascii.vtu" >"$T/many.vtu"
+for format in inp msh vtu; do
+    check "many names in $format take seconds" sh -c "ulimit -t 5; sinew import -q --unit m -o '$T/y' '$T/many.$format' 2>/dev/null"
+done
 
 done_testing
