@@ -99,7 +99,8 @@ static void tell_death(int signal_number)
     Dl_info at;
     fault.counting = false;
     signal(signal_number, SIG_DFL);
-    int fd = open(getenv("SINEW_FAULT_DEATH"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    const char *path = getenv("SINEW_FAULT_DEATH");
+    int fd = path ? open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666) : -1;
     int calls = backtrace(call, CALLS);
     for (int i = 1; fd >= 0 && i < calls; i++)
         if (dladdr(call[i], &at) && at.dli_fname)

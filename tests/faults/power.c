@@ -2,6 +2,9 @@
  * kill -9, and takes from every file that it has open what was written since that file was stored last. Where SINEW_FAULT_COUNT
  * names a file, that gets the number of syncs at the end.
  */
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE 1 /* RTLD_NEXT */
+#endif
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
 #include <dlfcn.h>
 #include <fcntl.h>
