@@ -3,6 +3,9 @@
  * file, it gets their number at the end. Where SINEW_FAULT_DEATH names one, that gets the program's and libraries' names that a program
  * which dies by SIGSEGV, SIGBUS or SIGABRT was in, the innermost first, a line a call. For the GNU C library, whose own names for these functions it uses.
  */
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE 1 /* Dl_info, RTLD_NEXT */
+#endif
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
 #include <dlfcn.h>
 #include <errno.h>
