@@ -39,8 +39,8 @@ static int read_kind(dicom_samples *s, const dicom_image *d, dicom_file *f, err 
     s->bytes = (int)allocated / 8;
     s->stored = (int)stored;
     s->high = (int)high;
-    s->negative = one && (int)number(f, TAG_SIGNED, 0) == 1;
-    s->planar = !one && (int)number(f, TAG_PLANAR, 0) == 1;
+    s->negative = one && number(f, TAG_SIGNED, 0) == 1;
+    s->planar = !one && number(f, TAG_PLANAR, 0) == 1;
     return 0;
 }
 
@@ -58,6 +58,7 @@ static dicom_palette *read_palette(dicom_file *f, bool negative, err *e)
         int64_t count = dicom_words(f, TAG_PALETTE_DATA + c, &table[c]);
         words = count < words ? count : words;
     }
+    whole = whole && kind[1] >= INT16_MIN && kind[1] <= UINT16_MAX;
     if (whole) { /* 65536 entries are written as 0 */
         p->count = kind[0] >= 1 && kind[0] < DICOM_ENTRIES ? (int32_t)kind[0] : DICOM_ENTRIES;
         p->first = negative ? (int16_t)(int32_t)kind[1] : (int32_t)kind[1] & 65535;
