@@ -2,7 +2,7 @@
  * than its own lists, gives the internal forces of a pass over elements, to the last bit. Slits are refused. And in rows: the
  * same, slits too.
  */
-// needs: tled/tiles.c tled/*.c
+// needs: tled/tiles.c tled/places.c tled/*.c
 #include "mesh/element.h"
 #include "mesh/lattice.h"
 #include "tled/cpu.h"
