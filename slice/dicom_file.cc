@@ -84,6 +84,16 @@ void operator delete[](void *p, size_t) noexcept
     std::free(p);
 }
 
+void operator delete(void *p, const std::nothrow_t &) noexcept
+{
+    std::free(p);
+}
+
+void operator delete[](void *p, const std::nothrow_t &) noexcept
+{
+    std::free(p);
+}
+
 struct dicom_file {
     DcmDataset *set;
     const char *name;
