@@ -268,8 +268,10 @@ is "$(cd "$T" && ls x 2>/dev/null)" "" "none of these left a file"
 
 # A line that says much takes little: 2 10^9 numbers in a set, 10^9 points in a file of 300 bytes.
 printf '<VTKFile type="UnstructuredGrid"><Piece NumberOfPoints="1000000000" NumberOfCells="1"><Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">1 2 3</DataArray>' >"$T/huge.vtu"
-fails 1 "points that are not there take no memory" "too few numbers" sh -c "ulimit -v 400000; sinew import --unit m '$T/huge.vtu'"
-check "a set of two billion takes none" sh -c "ulimit -v 400000; $run -q -o '$T/y' '$T/ok.inp' 2>/dev/null"
+limit='ulimit -v 400000;'
+[ -z "$SINEW_SANITIZED" ] || limit= # a sanitizer reserves much more than it takes
+fails 1 "points that are not there take no memory" "too few numbers" sh -c "$limit sinew import --unit m '$T/huge.vtu'"
+check "a set of two billion takes none" sh -c "$limit $run -q -o '$T/y' '$T/ok.inp' 2>/dev/null"
 
 # Nor do many names take long: so many sets, sections, materials, groups and arrays as a file of megabytes can have.
 cubes='function corners(i) { return 4 * i + 1 " " 4 * i + 2 " " 4 * i + 3 " " 4 * i + 4 " " 4 * i + 5 " " 4 * i + 6 " " 4 * i + 7 " " 4 * i + 8 }
