@@ -201,19 +201,30 @@ static double add_parts(account *a, int64_t count, double *mass)
     return driven;
 }
 
+static account_past past_of(const moment *m)
+{
+    const account_sums *s = &m->sums;
+    return (account_past){m->first, s->gravity, s->forces, s->held, s->muscles, s->probe, s->damping};
+}
+
+static void set_past(moment *m, const account_past *past)
+{
+    account_sums *s = &m->sums;
+    m->first = past->first;
+    s->gravity = past->gravity;
+    s->forces = past->forces;
+    s->held = past->held;
+    s->muscles = past->muscles;
+    s->probe = past->probe;
+    s->damping = past->damping;
+}
+
 /* Work goes on from the moment before; the rest begins at nothing. */
 static void begin_sums(account *a, double time)
 {
-    const account_sums *was = &a->before.sums;
+    const account_past past = a->before.known ? past_of(&a->before) : (account_past){0};
     a->now.sums = (account_sums){.time = time};
-    if (!a->before.known)
-        return;
-    a->now.sums.gravity = was->gravity;
-    a->now.sums.forces = was->forces;
-    a->now.sums.held = was->held;
-    a->now.sums.muscles = was->muscles;
-    a->now.sums.probe = was->probe;
-    a->now.sums.damping = was->damping;
+    set_past(&a->now, &past);
 }
 
 /* Damping takes alpha m v^2: twice alpha times the kinetic energy. */
@@ -227,7 +238,8 @@ static void close_sums(account *a, double damping, double mass)
         s->damping += span * (before->sums.kinetic + s->kinetic);
         s->held += a->now.driven - before->driven + span * (before->driven + a->now.driven);
     }
-    a->now.first = before->known ? before->first : held;
+    if (!before->known)
+        a->now.first = held;
     s->balance = held - a->now.first - s->gravity - s->forces - s->held - s->muscles - s->probe + s->damping;
     s->displacement = sqrt(s->displacement);
     s->speed = sqrt(s->speed);
@@ -295,22 +307,14 @@ void account_back(account *a)
 
 account_past account_past_of(const account *a)
 {
-    const account_sums *s = &a->now.sums;
-    return (account_past){a->now.first, s->gravity, s->forces, s->held, s->muscles, s->probe, s->damping};
+    return past_of(&a->now);
 }
 
 int account_go_on(account *a, const backend *b, void *state, double time, const account_past *past, err *e)
 {
-    account_sums *s = &a->now.sums;
     if (!account_look(a, b, state, time, 0, e))
         return -1;
-    a->now.first = past->first;
-    s->gravity = past->gravity;
-    s->forces = past->forces;
-    s->held = past->held;
-    s->muscles = past->muscles;
-    s->probe = past->probe;
-    s->damping = past->damping;
+    set_past(&a->now, past);
     account_keep(a);
     return 0;
 }
