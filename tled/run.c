@@ -399,8 +399,10 @@ static void go_on_from(run *n, const run_point *at)
 static bool is_due(run *n)
 {
     const double every = n->r->save_every > 0 ? n->r->save_every : SAVES;
+    if (!n->saved)
+        return false;
     const double now = n->r->save_every > 0 ? tled_time(&n->plan, 0) : progress_clock();
-    if (!n->saved || now < n->next_save)
+    if (now < n->next_save)
         return false;
     n->next_save = (floor(now / every) + 1) * every;
     return true;
