@@ -16,13 +16,18 @@ static const char heading[] =
 
 static const char trace[] = "node.displacement.at.";
 
-int log_check_key(const char *key, err *e)
+static int place_of(const char *key, double *place, err *e)
 {
-    double place[3];
     if (!strncmp(key, trace, sizeof trace - 1) && rest_place_of(key + sizeof trace - 1, place))
         return 0;
     return err_usage(e, "--tsv '%.80s': expected %sX,Y,Z, three lengths between commas (metres, or with a unit)", key,
                      trace);
+}
+
+int log_check_key(const char *key, err *e)
+{
+    double place[3];
+    return place_of(key, place, e);
 }
 
 static void put_heading(const run_log *l, out *to)
@@ -62,9 +67,8 @@ int log_open(run_log *l, const char *path, const opt_list *keys, const model *m,
     l->keys = keys;
     for (int i = 0; i < keys->count; i++) {
         double place[3];
-        if (log_check_key(keys->value[i], e))
+        if (place_of(keys->value[i], place, e))
             return -1;
-        rest_place_of(keys->value[i] + sizeof trace - 1, place);
         l->node[i] = rest_place_row(m, "node", place);
     }
     const int64_t keep = from ? from->length : 0;
