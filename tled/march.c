@@ -276,8 +276,9 @@ static void list_special(cutter *c)
     for (int64_t i = 0; i < p->elements; i++) {
         if (!is_special(c, i))
             continue;
+        const bool fibred = is_fibred(p, i);
         const int64_t cell = m->cells++, direction = m->directions;
-        m->directions += is_fibred(p, i);
+        m->directions += fibred;
         if (!m->cell) {
             for (int k = spots_of(c, p->element_node[8 * i], true, at); k--;)
                 if (m->detail[c->slot[at[k].layer]] < 0)
@@ -285,8 +286,8 @@ static void list_special(cutter *c)
             continue;
         }
         m->cell[cell] = (march_cell){p->element_volume[i], p->mixed ? p->mixed[i] : -1,
-                                     is_fibred(p, i) ? (int32_t)direction : -1, (float)tled_fraction(p, i)};
-        for (int a = 0; a < 3 && is_fibred(p, i); a++) {
+                                     fibred ? (int32_t)direction : -1, (float)tled_fraction(p, i)};
+        for (int a = 0; a < 3 && fibred; a++) {
             m->fibre[3 * direction + a] = p->fibre ? p->fibre[3 * i + a] : 0;
             if (m->mixfibre)
                 m->mixfibre[3 * direction + a] = p->mixfibre[3 * i + a];

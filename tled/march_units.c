@@ -25,10 +25,7 @@ typedef struct pieces {
 
 int march_warps(uint8_t mask)
 {
-    int count = 0;
-    for (; mask; mask &= (uint8_t)(mask - 1))
-        count++;
-    return count;
+    return __builtin_popcount(mask);
 }
 
 int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, int64_t owned, err *e)
