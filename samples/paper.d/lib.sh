@@ -101,9 +101,9 @@ card() {
     [ "$has_card" = yes ]
 }
 
-# then_of FILE.csv: what its head says of the machine and the day, for tables that are not of this run.
-then_of() {
-    sed -n '/^[^#]/q; s/^# //p' "$1" | tr '\n' ';' | sed 's/;$//; s/;/; /g'
+# say_no_card FILE.csv: a figure that this run did not make is not on the page; where it can be found is.
+say_no_card() {
+    say "No card ran here: $no_card. What a card printed on another day is in tests/bench/$1."
 }
 
 # models: W&M's four, once, as samples/Makefile makes them, in $work/models. The face is the left half of the real one where that is there
