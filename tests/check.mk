@@ -22,20 +22,17 @@ AS_NEEDED = -Wl,--as-needed
 # tled/*.c: all but the main and what only cards use.
 needs = $(call objects,$(patsubst tled/*.c,$(filter-out tled/tled-run.c,$(TLED_SRC)),$(shell sed -n 's|^// needs: *||p' $(1))))
 
+# $(1): the program; $(2): flags; $(3), $(4): its source, where that has another name, and an object more.
 define test_program
-$(BUILD)/$(1): $(BUILD)/$(1).o $(call needs,$(1).c) $(MAIN_OBJ) $(LIB_CUDA) $(LIB)
+$(BUILD)/$(1): $(BUILD)/$(or $(3),$(1)).o $(4) $(call needs,$(or $(3),$(1)).c) $(MAIN_OBJ) $(LIB_CUDA) $(LIB)
 	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
-endef
-define replay_program
-$(BUILD)/tests/fuzz/replay_$(1): $(BUILD)/tests/fuzz/fuzz_$(1).o $(BUILD)/tests/fuzz/driver.o $(call needs,tests/fuzz/fuzz_$(1).c) $(MAIN_OBJ) $(LIB_CUDA) $(LIB)
-	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
 endef
 TEST_TOOLS := compare_pictures list_voxels peak long_stream reader
 COMPARE := $(TEST_TOOLS:%=$(BUILD)/tests/cli/%) $(REPLAY)
 $(foreach tool,$(TEST_TOOLS),$(eval $(call test_program,tests/cli/$(tool))))
 $(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
-$(foreach source,$(FUZZ_SRC:tests/fuzz/fuzz_%.c=%),$(eval $(call replay_program,$(source))))
+$(foreach source,$(FUZZ_SRC:tests/fuzz/fuzz_%.c=%),$(eval $(call test_program,tests/fuzz/replay_$(source),,tests/fuzz/fuzz_$(source),$(BUILD)/tests/fuzz/driver.o)))
 
 # What makes programs fail: libraries to preload.
 FAULTS := $(patsubst tests/%.c,$(BUILD)/tests/%.so,$(wildcard tests/faults/*.c)) $(if $(LIB_CUDA),$(BUILD)/tests/faults/wreck_card.so)

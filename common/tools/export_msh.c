@@ -6,14 +6,18 @@
 
 enum { POINT = 15, TETRAHEDRON = 4, HEXAHEDRON = 5 };
 
-static void put_numbers(const double *value, int count, out *to)
+/* Each node's number and three of its own. */
+static void put_rows(const double *value, int64_t rows, out *to)
 {
     char text[NUM_TEXT];
-    for (int i = 0; i < count; i++) {
-        num_text(value[i], false, text);
-        out_format(to, " %s", text);
+    for (int64_t i = 0; i < rows; i++) {
+        out_format(to, "%" PRId64, i + 1);
+        for (int a = 0; a < 3; a++) {
+            num_text(value[3 * i + a], false, text);
+            out_format(to, " %s", text);
+        }
+        out_text(to, "\n");
     }
-    out_text(to, "\n");
 }
 
 /* A name as it can stand between quotes on a line. */
@@ -75,10 +79,7 @@ void export_msh(const export_shape *x, out *to)
     out_text(to, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
     put_groups(name, count_rigid(rigid) > 0, to);
     out_format(to, "$Nodes\n%" PRId64 "\n", x->points);
-    for (int64_t i = 0; i < x->points; i++) {
-        out_format(to, "%" PRId64, i + 1);
-        put_numbers(&x->rest[3 * i], 3, to);
-    }
+    put_rows(x->rest, x->points, to);
     out_text(to, "$EndNodes\n");
     put_elements(x, volume, rigid, (name ? name->rows : 0) + 1, to);
 }
@@ -91,9 +92,6 @@ void export_msh_frame(const export_shape *x, out *to)
     num_text(x->f->time, false, time);
     out_format(to, "$NodeData\n1\n\"displacement\"\n1\n%s\n3\n%" PRId64 "\n3\n%" PRId64 "\n", time, x->f->index,
                x->points);
-    for (int64_t i = 0; i < x->points; i++) {
-        out_format(to, "%" PRId64, i + 1);
-        put_numbers(&x->displacement[3 * i], 3, to);
-    }
+    put_rows(x->displacement, x->points, to);
     out_text(to, "$EndNodeData\n");
 }

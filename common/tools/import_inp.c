@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { PARAMETERS = 32 };
 
@@ -52,9 +53,7 @@ static char *next_field(char **at)
 
 static bool same(const char *a, const char *b)
 {
-    for (; *a && toupper((unsigned char)*a) == *b; a++, b++)
-        ;
-    return !*a && !*b;
+    return !strcasecmp(a, b);
 }
 
 /* Abaqus's names have no case: they are kept in lower case, without the quotes and the instance that they may have. */
@@ -76,9 +75,10 @@ static int take_id(const inp_reader *r, const char *field, int32_t *id)
 {
     int64_t value;
     char text[64];
-    snprintf(text, sizeof text, "'%.40s'", field);
-    if (num_int(field, 1, INT32_MAX, &value))
+    if (num_int(field, 1, INT32_MAX, &value)) {
+        snprintf(text, sizeof text, "'%.40s'", field);
         return wrong(r, text, "a number from 1 up");
+    }
     *id = (int32_t)value;
     return 0;
 }
@@ -87,6 +87,8 @@ static int take_id(const inp_reader *r, const char *field, int32_t *id)
 static int take_number(const inp_reader *r, char *field, const char *expected, double *value)
 {
     char text[64];
+    if (field && !num_double(field, value))
+        return 0;
     snprintf(text, sizeof text, "'%.40s'", field ? field : "");
     for (char *p = field; p && *p; p++)
         *p = *p == 'D' || *p == 'd' ? 'e' : *p;
@@ -151,10 +153,7 @@ static int begin_element(inp_reader *r, const keyword *k)
     r->pending_count = 0;
     r->columns = type && one_of(type, hexahedra) ? 8 : type && one_of(type, tetrahedra) ? 4 : -1;
     for (int i = 0; type && r->columns < 0 && lower[i]; i++) {
-        size_t n = strlen(lower[i]);
-        char head[8] = "";
-        snprintf(head, sizeof head, "%.*s", (int)n, type);
-        if (same(head, lower[i])) {
+        if (!strncasecmp(type, lower[i], strlen(lower[i]))) {
             notes_add(r->warnings, "%s:%lld: elements of type %.30s are no solids: left out", r->m->name,
                       (long long)in_lines(r->s), type);
             r->columns = 0;

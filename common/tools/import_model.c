@@ -39,25 +39,14 @@ static double inside_of_tet(const import_mesh *m, int64_t element, double *longe
     return determinant(side);
 }
 
-/* The corner that differs from corner c along an axis. */
-static int along(int c, int axis)
-{
-    for (int d = 0; d < 8; d++) {
-        int other = 0;
-        for (int a = 0; a < 3; a++)
-            other |= (lattice_vtk[c][a] != lattice_vtk[d][a]) << a;
-        if (other == 1 << axis)
-            return d;
-    }
-    return c;
-}
-
 /* What the map from a cube does to volume at a corner. */
 static double corner_of_hex(const import_mesh *m, int64_t element, int c)
 {
+    static const int along[3] = {1, 3,
+                                 4}; /* the corner that differs along an axis: c ^ along, as lattice_vtk numbers them */
     double side[3][3];
     for (int axis = 0; axis < 3; axis++) {
-        const double *other = place(m, element, along(c, axis)), *own = place(m, element, c);
+        const double *other = place(m, element, c ^ along[axis]), *own = place(m, element, c);
         for (int a = 0; a < 3; a++)
             side[axis][a] = (other[a] - own[a]) * (lattice_vtk[c][axis] ? -1 : 1);
     }

@@ -85,6 +85,16 @@ static int whole(reader *r, int size, int64_t low, int64_t high, int64_t *value)
     return tokens_int(&r->t, size, low, high, value, r->e);
 }
 
+/* The line of a section that says how many it has. */
+static int read_count(reader *r, int64_t most, const char *none, int64_t *count)
+{
+    char *line;
+    int got = tokens_line(&r->t, &line, r->e);
+    if (got || num_int(line, 0, most, count))
+        return got < -1 ? -1 : wrong(r, none, "one");
+    return 0;
+}
+
 /* ---- groups */
 
 static int32_t group_of(reader *r, int64_t dimension, int64_t tag)
@@ -133,11 +143,10 @@ static int read_names(reader *r)
 {
     char *line;
     int64_t count;
-    int got = tokens_line(&r->t, &line, r->e);
-    if (got || num_int(line, 0, GROUPS_MOST, &count))
-        return got < -1 ? -1 : wrong(r, "no count of physical names", "one");
+    if (read_count(r, GROUPS_MOST, "no count of physical names", &count))
+        return -1;
     for (; count > 0; count--) {
-        got = tokens_line(&r->t, &line, r->e);
+        int got = tokens_line(&r->t, &line, r->e);
         if (got || read_name(r, line))
             return got < -1 || !got ? -1 : wrong(r, "the file ends in $PhysicalNames", "more names");
     }
@@ -230,11 +239,9 @@ static int read_node(reader *r, int64_t tag)
 
 static int read_nodes_2(reader *r)
 {
-    char *line;
     int64_t count, tag;
-    int got = tokens_line(&r->t, &line, r->e);
-    if (got || num_int(line, 0, INT32_MAX, &count))
-        return got < -1 ? -1 : wrong(r, "no count of nodes", "one");
+    if (read_count(r, INT32_MAX, "no count of nodes", &count))
+        return -1;
     for (int64_t i = 0; i < count; i++)
         if (whole(r, 4, 1, INT32_MAX, &tag) || read_node(r, tag))
             return -1;
@@ -339,8 +346,10 @@ static int take_type(reader *r, type *t)
     if (whole(r, 4, 1, 10000, &number))
         return -1;
     *t = type_of(number);
-    snprintf(text, sizeof text, "%s (type %d)", t->refused ? t->refused : "", (int)number);
-    return t->refused ? wrong(r, text, "hexahedra of 8 nodes (5) or tetrahedra of 4 (4)") : 0;
+    if (!t->refused)
+        return 0;
+    snprintf(text, sizeof text, "%s (type %d)", t->refused, (int)number);
+    return wrong(r, text, "hexahedra of 8 nodes (5) or tetrahedra of 4 (4)");
 }
 
 /* The tags of an element of 2.2: the first is its physical group. */
@@ -362,13 +371,11 @@ static int read_tags(reader *r, int64_t tags, int dimension, int32_t *g)
 
 static int read_elements_2(reader *r)
 {
-    char *line;
     int64_t count, id, tags = 0, alike = 1;
     type t = {0};
     int32_t g;
-    int got = tokens_line(&r->t, &line, r->e);
-    if (got || num_int(line, 0, INT32_MAX, &count))
-        return got < -1 ? -1 : wrong(r, "no count of elements", "one");
+    if (read_count(r, INT32_MAX, "no count of elements", &count))
+        return -1;
     while (count > 0) {
         if (r->t.binary && (take_type(r, &t) || whole(r, 4, 1, count, &alike) || whole(r, 4, 0, 1000, &tags)))
             return -1;

@@ -30,8 +30,8 @@ int tokens_line(tokens *t, char **line, err *e)
     return (int)n;
 }
 
-/* The next word of text: 0 with its ends, or -1 with e filled. */
-static int next_word(tokens *t, char **word, char **end, err *e)
+/* The next word of text, cut out of its line: 0, or -1 with e filled. */
+static int next_word(tokens *t, char **word, err *e)
 {
     while (t->at && isspace((unsigned char)*t->at))
         t->at++;
@@ -45,7 +45,8 @@ static int next_word(tokens *t, char **word, char **end, err *e)
     *word = t->at;
     while (*t->at && !isspace((unsigned char)*t->at))
         t->at++;
-    *end = t->at;
+    if (*t->at)
+        *t->at++ = '\0';
     return 0;
 }
 
@@ -70,28 +71,30 @@ static int take_binary(tokens *t, int size, uint64_t *bits, err *e)
 
 int tokens_int(tokens *t, int size, int64_t low, int64_t high, int64_t *value, err *e)
 {
-    char *word = NULL, *end = NULL, text[64], expected[80];
+    char *word = NULL, text[64], expected[80];
     uint64_t bits = 0;
     bool bad;
-    if (t->binary ? take_binary(t, size, &bits, e) : next_word(t, &word, &end, e))
+    if (t->binary ? take_binary(t, size, &bits, e) : next_word(t, &word, e))
         return -1;
     if (t->binary) {
         *value = size == 4 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
-        snprintf(text, sizeof text, "%lld", (long long)*value);
         bad = *value < low || *value > high;
     } else {
-        snprintf(text, sizeof text, "%.*s", end - word < 40 ? (int)(end - word) : 40, word);
-        bad = num_int(text, low, high, value) != 0;
+        bad = num_int(word, low, high, value) != 0;
     }
     if (!bad)
         return 0;
+    if (t->binary)
+        snprintf(text, sizeof text, "%lld", (long long)*value);
+    else
+        snprintf(text, sizeof text, "%.40s", word);
     snprintf(expected, sizeof expected, "a whole number from %lld to %lld", (long long)low, (long long)high);
     return tokens_wrong(t, e, text, expected);
 }
 
 int tokens_real(tokens *t, double *value, err *e)
 {
-    char *word, *end, text[64];
+    char *word, text[64];
     if (t->binary) {
         uint64_t bits;
         if (take_binary(t, 8, &bits, e))
@@ -99,19 +102,21 @@ int tokens_real(tokens *t, double *value, err *e)
         memcpy(value, &bits, sizeof bits);
         return isfinite(*value) ? 0 : tokens_wrong(t, e, "a number that is none", "a finite number");
     }
-    if (next_word(t, &word, &end, e))
+    if (next_word(t, &word, e))
         return -1;
-    snprintf(text, sizeof text, "%.*s", end - word < 40 ? (int)(end - word) : 40, word);
-    return num_double(text, value) ? tokens_wrong(t, e, text, "a number") : 0;
+    if (!num_double(word, value))
+        return 0;
+    snprintf(text, sizeof text, "%.40s", word);
+    return tokens_wrong(t, e, text, "a number");
 }
 
 int tokens_skip(tokens *t, int64_t count, int size, err *e)
 {
-    char *word, *end;
+    char *word;
     unsigned char bytes[4096];
     if (!t->binary) {
         for (; count > 0; count--)
-            if (next_word(t, &word, &end, e))
+            if (next_word(t, &word, e))
                 return -1;
         return 0;
     }
