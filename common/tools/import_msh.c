@@ -90,9 +90,11 @@ static int read_count(reader *r, int64_t most, const char *none, int64_t *count)
 {
     char *line;
     int got = tokens_line(&r->t, &line, r->e);
-    if (got || num_int(line, 0, most, count))
-        return got < -1 ? -1 : wrong(r, none, "one");
-    return 0;
+    if (!got && !num_int(line, 0, most, count))
+        return 0;
+    if (got >= -1)
+        wrong(r, none, "one");
+    return -1;
 }
 
 /* ---- groups */
