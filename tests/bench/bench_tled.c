@@ -1,7 +1,8 @@
 /* `make bench-tled`: what a step of tled-run's solver takes, on each back end and in each precision that this machine has, over
  * blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio): CSV. After a warm-up, the
  * median, the least and the most of some rounds. A `step` is the back end's own; a `run` is one as tled-run makes it, with its
- * looks, and with 60 frames a second of the model's time; times_real_time is the time simulated over the time taken.
+ * looks, and with 60 frames a second of the model's time; times_real_time is the time simulated over the time taken. A run's steps
+ * are known to be done when it looks, after each window of them: worst_window_us_a_step is of the slowest of all rounds.
  *
  * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and written, 1/m,
  * and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, its share (4) where the model has them,
@@ -44,11 +45,20 @@ typedef struct measured {
     double took[ROUNDS], copy[ROUNDS], flops[ROUNDS]; /* s; bytes and operations a second, of the machine */
 } measured;
 
+/* A run by the clock, from one look to the next. */
+typedef struct windows {
+    bench *b;
+    int64_t from; /* steps: those before are no part of it */
+    int64_t step; /* of the last look */
+    double clock; /* at that */
+    double worst; /* s a step */
+} windows;
+
 static const char *const header =
     "model,device,threads,precision,what,elements,nodes,bytes_an_element,steps,rounds,median_us_a_step,least_us,"
     "most_us,ns_an_element_step,simulated_us_a_step,times_real_time,bytes_a_step,flops_a_step,computed,GB_s,Gflop_s,"
     "copied,copy_GB_s,multiply_add_Gflop_s,share_of_copy,share_of_multiply_add,"
-    "lanes_filled";
+    "lanes_filled,window_steps,worst_window_us_a_step";
 
 static int ascending(const void *a, const void *b)
 {
@@ -111,16 +121,16 @@ static void say_shares(measured *w, const bench *b, int64_t steps)
 {
     const double middle = say(w, b, "step", steps), bytes = bytes_of(&b->problem, w->single);
     const double operations = flops_of(&b->problem), copy = middle_of(w->copy), most = middle_of(w->flops);
-    printf("%.0f,%.0f,%.4g,%.4g,%.4g,%s,%.4g,%.4g,%.4g,%.4g,%.4g\n", bytes, operations, w->computed,
+    printf("%.0f,%.0f,%.4g,%.4g,%.4g,%s,%.4g,%.4g,%.4g,%.4g,%.4g,,\n", bytes, operations, w->computed,
            1e-9 * bytes / middle, 1e-9 * operations / middle, copied_by(w, bytes), 1e-9 * copy, 1e-9 * most,
            bytes / middle / copy, operations / middle / most, w->filled);
     fflush(stdout);
 }
 
-static void say_run(measured *w, const bench *b, const char *what, int64_t steps)
+static void say_run(measured *w, const bench *b, const char *what, int64_t steps, double worst)
 {
     say(w, b, what, steps);
-    puts(",,,,,,,,,,");
+    printf(",,,,,,,,,,,%" PRId64 ",%.4g\n", b->setup.check, 1e6 * worst);
     fflush(stdout);
 }
 
@@ -192,9 +202,29 @@ static void measure_steps(measured *w, bench *b)
     roof_free(&r);
 }
 
-static double time_run(bench *b, int64_t steps)
+static int window_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
+{
+    const windows *w = context;
+    return bench_frame(w->b, time, displacement, velocity, e);
+}
+
+static void window_end(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+                       double damping)
+{
+    windows *w = context;
+    const double now = roof_clock();
+    bench_checked(w->b, step, sight, remaining, cut, damping);
+    if (w->step >= w->from && step > w->step)
+        w->worst = fmax(w->worst, (now - w->clock) / (double)(step - w->step));
+    w->step = step;
+    w->clock = now;
+}
+
+static double time_run(bench *b, windows *w, int64_t steps)
 {
     double before = roof_clock();
+    w->step = 0;
+    w->clock = before;
     bench_steps(b, steps, b->setup.damping);
     bench_must(bench_go(b), &b->e);
     return roof_clock() - before;
@@ -205,12 +235,18 @@ static double time_run(bench *b, int64_t steps)
 static void measure_run(measured *w, bench *b, double every, const char *what, int64_t steps)
 {
     const int64_t first = (int64_t)ceil(4. / 60 * b->setup.rate);
+    const run_setup setup = b->setup;
+    windows seen = {.b = b, .from = first};
     b->setup.device = w->device;
     b->setup.every = every;
-    time_run(b, b->setup.check);
+    b->setup.context = &seen;
+    b->setup.frame = window_frame;
+    b->setup.checked = window_end;
+    time_run(b, &seen, b->setup.check);
     for (int i = 0; i < ROUNDS; i++)
-        w->took[i] = -time_run(b, first) + time_run(b, first + steps);
-    say_run(w, b, what, steps);
+        w->took[i] = -time_run(b, &seen, first) + time_run(b, &seen, first + steps);
+    say_run(w, b, what, steps, seen.worst);
+    b->setup = setup;
 }
 
 /* One back end in one precision: on the CPU with one thread and with all; on a device runs too. */
@@ -298,7 +334,7 @@ static void measure_file(const char *path, const options *o)
 /* In GB/s or Gflop/s. */
 static void say_probe(const char *precision, const char *what, double rate, bool flops_too)
 {
-    printf("probe,cuda,,%s,%s,,,,,1,,,,,,,,,,%s%.4g,%s,,,,,\n", precision, what, flops_too ? "," : "", rate,
+    printf("probe,cuda,,%s,%s,,,,,1,,,,,,,,,,%s%.4g,%s,,,,,,,\n", precision, what, flops_too ? "," : "", rate,
            flops_too ? "" : ",");
 }
 #endif
