@@ -9,6 +9,7 @@
 extern "C" {
 #include "tled/node.h"
 }
+#include "tled/cuda_ptx.cuh"
 #include "tled/cuda_view.cuh"
 
 typedef struct cuda_pass {
@@ -257,7 +258,7 @@ template <class G, bool MIXED>
 __global__ void __launch_bounds__(G::THREADS, together<G>())
     pass_kernel(cuda_view<real> v, const __grid_constant__ cuda_pass given)
 {
-    extern __shared__ double memory[];
+    DYNAMIC_SHARED(double, memory);
     real *u = (real *)memory, *near = u + 3 * G::PLACES, *force = near + NEAR_NUMBERS;
     const tile t = v.tiles[blockIdx.x];
     const uint32_t first = cell_at(v, t, threadIdx.x);
@@ -291,12 +292,11 @@ template <class G> static cudaError_t pass_allow(void)
                                       (int)pass_shared<G>());
 }
 
-template <class G> static void pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t s)
+template <class G>
+static cudaError_t pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t stream)
 {
-    if (v.mixed)
-        pass_kernel<G, true><<<(unsigned)tiles, G::THREADS, pass_shared<G>(), s>>>(v, p);
-    else
-        pass_kernel<G, false><<<(unsigned)tiles, G::THREADS, pass_shared<G>(), s>>>(v, p);
+    const card_blocks blocks = {tiles, G::THREADS, pass_shared<G>(), stream};
+    return v.mixed ? card_start(pass_kernel<G, true>, blocks, v, p) : card_start(pass_kernel<G, false>, blocks, v, p);
 }
 
 #endif

@@ -288,13 +288,14 @@ template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums 
     look_cells *cells = (look_cells *)l->parts;
     look_nodes *nodes = (look_nodes *)((char *)l->parts + cells_bytes(l->count));
     const int64_t blocks = node_blocks(l->view.nodes);
-    with_brick(l->size, [&](auto g) {
+    cudaError_t e = with_brick(l->size, [&](auto g) {
         typedef decltype(g) G;
-        cells_kernel<G><<<(unsigned)l->count, G::THREADS, 0, stream>>>(*l, cells);
+        return card_start(cells_kernel<G, S>, {l->count, G::THREADS, 0, stream}, *l, cells);
     });
-    nodes_kernel<<<(unsigned)blocks, NODE_THREADS, 0, stream>>>(*l, nodes);
-    sums_kernel<<<1, SUM_THREADS, 0, stream>>>(cells, l->count, nodes, blocks, l->question.rest, sums);
-    return cudaGetLastError();
+    e = e == cudaSuccess ? card_start(nodes_kernel<S>, {blocks, NODE_THREADS, 0, stream}, *l, nodes) : e;
+    return e == cudaSuccess ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, cells, l->count, nodes, blocks,
+                                         l->question.rest, sums)
+                            : e;
 }
 
 template cudaError_t cuda_look_start<float>(const cuda_look<float> *, tled_sums *, cudaStream_t);

@@ -26,8 +26,9 @@ static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
     if (s->marches)
         return march_pass(s, p, e);
-    with_brick(s->size, [&](auto g) { pass_start<decltype(g)>(s->view, *p, s->tiles.count, s->stream); });
-    return card_check(cudaGetLastError(), "the start of a pass", s->step, e);
+    const cudaError_t started =
+        with_brick(s->size, [&](auto g) { return pass_start<decltype(g)>(s->view, *p, s->tiles.count, s->stream); });
+    return card_check(started, "the start of a pass", s->step, e);
 }
 
 /* Puts the curves' values of steps `first` to first + count of a plan on the card; *rows gets where. */

@@ -12,6 +12,7 @@ extern "C" {
 #include "mesh/element.h"
 }
 #include "tled/cuda_march.cuh"
+#include "tled/cuda_ptx.cuh"
 
 enum {
     SIDE = MARCH_SIDE,
@@ -50,70 +51,9 @@ static __device__ __forceinline__ int place_of(int thread)
     return (warp / 2 * 4 + lane / 8) * GRID + warp % 2 * 8 + lane % 8;
 }
 
-static __device__ __forceinline__ uint32_t shared_at(const void *p)
-{
-    return (uint32_t)__cvta_generic_to_shared(p);
-}
-
-static __device__ __forceinline__ float4 shared_load(uint32_t at)
-{
-    float4 x;
-    asm volatile("ld.shared.v4.f32 {%0, %1, %2, %3}, [%4];"
-                 : "=f"(x.x), "=f"(x.y), "=f"(x.z), "=f"(x.w)
-                 : "r"(at)
-                 : "memory");
-    return x;
-}
-
-static __device__ __forceinline__ float shared_number(uint32_t at)
-{
-    float x;
-    asm volatile("ld.shared.f32 %0, [%1];" : "=f"(x) : "r"(at) : "memory");
-    return x;
-}
-
-static __device__ __forceinline__ void shared_number_store(uint32_t at, float x)
-{
-    asm volatile("st.shared.f32 [%0], %1;" ::"r"(at), "f"(x) : "memory");
-}
-
-static __device__ __forceinline__ void shared_store_with(uint32_t at, float x, float y, float z, uint32_t word)
-{
-    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z),
-                 "f"(__uint_as_float(word))
-                 : "memory");
-}
-
-/* The fourth number is whatever stands in some register. */
-static __device__ __forceinline__ void shared_store(uint32_t at, float x, float y, float z)
-{
-    float any;
-    asm("" : "=f"(any));
-    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z), "f"(any) : "memory");
-}
-
-/* On its way to shared memory; with is false: zeros. */
-static __device__ __forceinline__ void send(uint32_t to, const float4 *from, bool is)
-{
-    asm volatile("cp.async.cg.shared.global [%0], [%1], 16, %2;" ::"r"(to), "l"(from), "r"(is ? 16 : 0) : "memory");
-}
-
-static __device__ __forceinline__ void sent(void)
-{
-    asm volatile("cp.async.commit_group;" ::: "memory");
-}
-
-/* Waits for all that was sent but for the last n groups. */
-template <int N> static __device__ __forceinline__ void arrived(void)
-{
-    asm volatile("cp.async.wait_group %0;" ::"n"(N) : "memory");
-}
-
 static __device__ __forceinline__ const float4 *node_of(const float4 *p, uint32_t word)
 {
-    uint64_t at;
-    asm("mad.wide.u32 %0, %1, 16, %2;" : "=l"(at) : "r"(word & MARCH_NODE), "l"(p));
-    return (const float4 *)at;
+    return nth(p, word & MARCH_NODE);
 }
 
 /* The first threads have a place beyond the threads' as well. */
@@ -158,10 +98,7 @@ static __device__ __forceinline__ face face_at(uint32_t node)
 /* x^(-5/3), to 4e-7 of it. */
 static __device__ __forceinline__ float power(float x)
 {
-    float y;
-    asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-    asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(y * (-5.f / 3)));
-    return y;
+    return near_exp2(near_log2(x) * (-5.f / 3));
 }
 
 /* element_stress, in fewer operations. With s = mu J^-5/3, d = J - 1, e = tr(C - I), G = cof F - I, all of it first order in H:
@@ -304,7 +241,7 @@ static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to
     shared_store_with(to + 3 * FORCE, own[0], own[1], own[2], word);
 }
 
-static __shared__ float4 gravity; /* its part of a velocity */
+__shared__ float4 gravity; /* its part of a velocity */
 
 /* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces on it. It is worked on where it
  * stands in shared memory, component by component: few nodes are such, and others are to keep their registers. */
@@ -373,17 +310,7 @@ static __device__ __forceinline__ void say_done(uint32_t said)
 {
     __syncwarp();
     if (threadIdx.x % 32 == 0)
-        asm volatile("{ .reg .b64 state; mbarrier.arrive.shared::cta.b64 state, [%0]; }" ::"r"(said) : "memory");
-}
-
-/* Waits until all warps have said so of an even or odd layer. */
-static __device__ __forceinline__ void wait_done(uint32_t said, int odd)
-{
-    asm volatile(
-        "{ .reg .pred is; again%=: mbarrier.try_wait.parity.shared::cta.b64 is, [%0], %1; @!is bra again%=; }" ::"r"(
-            said),
-        "r"(odd)
-        : "memory");
+        barrier_arrive(said);
 }
 
 /* Layer c of cells, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the displacements of layer c + 1 stand;
@@ -407,7 +334,7 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
         f->below = face{};
     arrived<0>(); /* displacements of c + 3, and velocities of c - 1 */
     if (c)
-        wait_done(said, 1 - ODD);
+        barrier_wait(said, 1 - ODD);
     if (any || f->was || f->clean < 2)
         share_forces(sum, forces, f->now);
     else
@@ -449,7 +376,7 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
     }
     f->now = word[0];
     f->then = word[1];
-    asm volatile("griddepcontrol.wait;" ::: "memory");
+    wait_for_last();
 #pragma unroll
     for (int k = 0; k < MARCH_AHEAD; k++)
         if (k <= unit.cells)
@@ -457,7 +384,7 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
     sent();
     if (threadIdx.x == 0) {
         put_gravity(m, p);
-        asm volatile("mbarrier.init.shared::cta.b64 [%0], %1;" ::"r"(said), "r"(WARPS) : "memory");
+        barrier_make(said, WARPS);
     }
     arrived<0>();
     __syncthreads();
@@ -491,7 +418,7 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
             break;
     }
     arrived<0>();
-    wait_done(said, (last - 1) % 2);
+    barrier_wait(said, (last - 1) % 2);
     move_node(m, p, at, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old);
 }
 
@@ -499,10 +426,10 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {
-    extern __shared__ float4 memory[];
+    DYNAMIC_SHARED(float4, memory);
     __shared__ uint64_t said;
     const march_unit unit = m.unit[blockIdx.x];
-    asm volatile("griddepcontrol.launch_dependents;"); /* the next pass may come when there is room, and wait */
+    let_next_begin(); /* the next pass may come when there is room, and wait */
     if (unit.special)
         march_unit_of<true>(m, p, unit, shared_at(memory), shared_at(&said));
     else
@@ -533,21 +460,19 @@ static __global__ void unpack_kernel(const __grid_constant__ cuda_march m, const
                         from[m.axis[2] * m.v.stride + n], to[n].w);
 }
 
-static unsigned pack_blocks(const cuda_march *m)
+static int64_t pack_blocks(const cuda_march *m)
 {
-    return (unsigned)((m->v.nodes + PACK_THREADS - 1) / PACK_THREADS);
+    return (m->v.nodes + PACK_THREADS - 1) / PACK_THREADS;
 }
 
 cudaError_t cuda_march_pack(const cuda_march *m, const float4 *from, float *to, cudaStream_t stream)
 {
-    pack_kernel<<<pack_blocks(m), PACK_THREADS, 0, stream>>>(*m, from, to);
-    return cudaGetLastError();
+    return card_start(pack_kernel, {pack_blocks(m), PACK_THREADS, 0, stream}, *m, from, to);
 }
 
 cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to, cudaStream_t stream)
 {
-    unpack_kernel<<<pack_blocks(m), PACK_THREADS, 0, stream>>>(*m, from, to);
-    return cudaGetLastError();
+    return card_start(unpack_kernel, {pack_blocks(m), PACK_THREADS, 0, stream}, *m, from, to);
 }
 
 /* ---- starting */
@@ -571,15 +496,7 @@ cudaError_t cuda_march_slots(int64_t *slots)
 /* A pass may start before the one before it has ended: it waits in begin(). */
 cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t units, cudaStream_t stream)
 {
-    cudaLaunchAttribute attribute = {};
-    attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-    attribute.val.programmaticStreamSerializationAllowed = 1;
-    cudaLaunchConfig_t how = {};
-    how.gridDim = dim3((unsigned)units);
-    how.blockDim = dim3(MARCH_THREADS);
-    how.dynamicSmemBytes = SHARED;
-    how.stream = stream;
-    how.attrs = &attribute;
-    how.numAttrs = 1;
-    return cudaLaunchKernelEx(&how, march_kernel, *m, *p);
+    return card_start(march_kernel,
+                      {units, MARCH_THREADS, SHARED, stream, cudaLaunchAttributeProgrammaticStreamSerialization}, *m,
+                      *p);
 }

@@ -30,15 +30,7 @@ typedef struct cuda_resident {
 
 static __device__ void message_put(uint64_t *to, uint32_t bits, uint32_t count)
 {
-    const uint64_t word = (uint64_t)count << 32 | bits;
-    asm volatile("st.relaxed.gpu.global.u64 [%0], %1;" ::"l"(to), "l"(word) : "memory");
-}
-
-static __device__ uint64_t message_get(const uint64_t *from)
-{
-    uint64_t word;
-    asm volatile("ld.relaxed.gpu.global.u64 %0, [%1];" : "=l"(word) : "l"(from) : "memory");
-    return word;
+    relaxed_store(to, (uint64_t)count << 32 | bits);
 }
 
 /* A node's displacement, component by component. */
@@ -101,7 +93,7 @@ static __device__ void hear(const cuda_halo<G> &h, const uint64_t *message, int6
         for (int b = 0; b < G::HALO; b++)
 #pragma unroll
             for (int w = 0; w < MESSAGE_WORDS; w++)
-                word[b][w] = b < h.count ? message_get(message + w * stride + h.node[b]) : 0;
+                word[b][w] = b < h.count ? relaxed_load(message + w * stride + h.node[b]) : 0;
 #pragma unroll
         for (int b = 0; b < G::HALO; b++)
 #pragma unroll
@@ -145,7 +137,7 @@ template <class G, bool MIXED>
 __global__ void __launch_bounds__(G::THREADS, together<G>())
     resident_kernel(cuda_view<real> v, const __grid_constant__ cuda_resident r)
 {
-    extern __shared__ double memory[];
+    DYNAMIC_SHARED(double, memory);
     real *u = (real *)(memory + 6 * r.curves), *near = u + 3 * G::PLACES, *force = near + NEAR_NUMBERS;
     const tile t = v.tiles[blockIdx.x];
     const uint32_t first = cell_at(v, t, threadIdx.x);
@@ -214,9 +206,8 @@ template <class G, bool MIXED> static int64_t resident_places(int64_t curves)
 template <class G, bool MIXED>
 static cudaError_t resident_start(const cuda_view<real> &v, const cuda_resident &r, int64_t tiles, cudaStream_t s)
 {
-    void *arguments[] = {(void *)&v, (void *)&r};
-    return cudaLaunchCooperativeKernel((const void *)resident_kernel<G, MIXED>, dim3((unsigned)tiles), dim3(G::THREADS),
-                                       arguments, resident_shared<G>(r.curves), s);
+    return card_start(resident_kernel<G, MIXED>,
+                      {tiles, G::THREADS, resident_shared<G>(r.curves), s, cudaLaunchAttributeCooperative}, v, r);
 }
 
 #endif

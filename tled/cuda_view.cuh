@@ -22,7 +22,7 @@ extern "C" {
 #include "tled/tiles.h"
 }
 
-#include <cuda_runtime.h>
+#include "device/start.cuh"
 
 /* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one; HALO: the most
  * places around it for a thread; TOGETHER: blocks that a multiprocessor is to have registers for, in single precision. THREADS is a power of 2. */

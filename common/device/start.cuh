@@ -1,0 +1,39 @@
+/* How a kernel is started: one way for all of them, so that its errors come out of the start itself. */
+#ifndef SINEW_START_CUH
+#define SINEW_START_CUH
+
+#include <cuda_runtime.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct card_blocks {
+    int64_t count;
+    int threads;   /* each */
+    size_t shared; /* bytes of a block, beside what the kernel declares */
+    cudaStream_t stream;
+    cudaLaunchAttributeID
+        how; /* nothing: after the one before has ended. Cooperative: all blocks at once, so that they may wait for
+                                * each other. ProgrammaticStreamSerialization: perhaps before the one before has ended */
+} card_blocks;
+
+/* Arguments are of the kernel's types, or become so. */
+template <class... P, class... A>
+static cudaError_t card_start(void (*kernel)(P...), const card_blocks &blocks, const A &...argument)
+{
+    cudaLaunchAttribute attribute = {};
+    attribute.id = blocks.how;
+    if (blocks.how == cudaLaunchAttributeCooperative)
+        attribute.val.cooperative = 1;
+    if (blocks.how == cudaLaunchAttributeProgrammaticStreamSerialization)
+        attribute.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t how = {};
+    how.gridDim = dim3((unsigned)blocks.count);
+    how.blockDim = dim3((unsigned)blocks.threads);
+    how.dynamicSmemBytes = blocks.shared;
+    how.stream = blocks.stream;
+    how.attrs = &attribute;
+    how.numAttrs = blocks.how != cudaLaunchAttributeIgnore;
+    return cudaLaunchKernelEx(&how, kernel, argument...);
+}
+
+#endif

@@ -1,0 +1,156 @@
+/* What a card of compute capability 9.0 does that CUDA C++ has no words for, or none that leave no choice to the compiler: all of
+ * tled-run's assembly is here, and how its kernels come by shared memory whose size the launch says. No card is needed where another
+ * header of this name is found first: tests/emulate.
+ *
+ * Shared memory is told by address: 32 bits, from shared_at().
+ */
+#ifndef SINEW_CUDA_PTX_CUH
+#define SINEW_CUDA_PTX_CUH
+
+#include <cuda_runtime.h>
+#include <stdint.h>
+
+/* Declares `name`, in a kernel: an array as long as the launch says. One type a file. */
+#define DYNAMIC_SHARED(type, name) extern __shared__ type name[]
+
+/* ---- shared memory, where it stands */
+
+static __device__ __forceinline__ uint32_t shared_at(const void *p)
+{
+    return (uint32_t)__cvta_generic_to_shared(p);
+}
+
+static __device__ __forceinline__ float4 shared_load(uint32_t at)
+{
+    float4 x;
+    asm volatile("ld.shared.v4.f32 {%0, %1, %2, %3}, [%4];"
+                 : "=f"(x.x), "=f"(x.y), "=f"(x.z), "=f"(x.w)
+                 : "r"(at)
+                 : "memory");
+    return x;
+}
+
+static __device__ __forceinline__ float shared_number(uint32_t at)
+{
+    float x;
+    asm volatile("ld.shared.f32 %0, [%1];" : "=f"(x) : "r"(at) : "memory");
+    return x;
+}
+
+static __device__ __forceinline__ void shared_number_store(uint32_t at, float x)
+{
+    asm volatile("st.shared.f32 [%0], %1;" ::"r"(at), "f"(x) : "memory");
+}
+
+static __device__ __forceinline__ void shared_store_with(uint32_t at, float x, float y, float z, uint32_t word)
+{
+    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z),
+                 "f"(__uint_as_float(word))
+                 : "memory");
+}
+
+/* The fourth number is whatever stands in some register. */
+static __device__ __forceinline__ void shared_store(uint32_t at, float x, float y, float z)
+{
+    float any;
+    asm("" : "=f"(any));
+    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z), "f"(any) : "memory");
+}
+
+/* ---- copies that the thread does not wait for */
+
+/* On its way to shared memory; with is false: zeros. */
+static __device__ __forceinline__ void send(uint32_t to, const float4 *from, bool is)
+{
+    asm volatile("cp.async.cg.shared.global [%0], [%1], 16, %2;" ::"r"(to), "l"(from), "r"(is ? 16 : 0) : "memory");
+}
+
+/* What was sent since the last call is a group. */
+static __device__ __forceinline__ void sent(void)
+{
+    asm volatile("cp.async.commit_group;" ::: "memory");
+}
+
+/* Waits for all that was sent but for the last N groups. */
+template <int N> static __device__ __forceinline__ void arrived(void)
+{
+    asm volatile("cp.async.wait_group %0;" ::"n"(N) : "memory");
+}
+
+/* ---- barriers in shared memory, of 8 bytes each. They end phase after phase, 0, 1, ... */
+
+/* A phase ends when `count` have arrived. Threads other than the caller may know of it after a __syncthreads(). */
+static __device__ __forceinline__ void barrier_make(uint32_t barrier, uint32_t count)
+{
+    asm volatile("mbarrier.init.shared::cta.b64 [%0], %1;" ::"r"(barrier), "r"(count) : "memory");
+}
+
+static __device__ __forceinline__ void barrier_arrive(uint32_t barrier)
+{
+    asm volatile("{ .reg .b64 state; mbarrier.arrive.shared::cta.b64 state, [%0]; }" ::"r"(barrier) : "memory");
+}
+
+/* Waits for the end of the phase that goes on or of the one before it: whichever is `odd`. */
+static __device__ __forceinline__ void barrier_wait(uint32_t barrier, int odd)
+{
+    asm volatile(
+        "{ .reg .pred is; again%=: mbarrier.try_wait.parity.shared::cta.b64 is, [%0], %1; @!is bra again%=; }" ::"r"(
+            barrier),
+        "r"(odd)
+        : "memory");
+}
+
+/* ---- a launch that may begin before the one before it has ended */
+
+/* The launch after this one may begin when there is room. */
+static __device__ __forceinline__ void let_next_begin(void)
+{
+    asm volatile("griddepcontrol.launch_dependents;");
+}
+
+/* What launches before this one wrote may be read from here on, and what they read written. */
+static __device__ __forceinline__ void wait_for_last(void)
+{
+    asm volatile("griddepcontrol.wait;" ::: "memory");
+}
+
+/* ---- words that blocks tell each other: 64 bits as one, without any order among them */
+
+static __device__ __forceinline__ void relaxed_store(uint64_t *to, uint64_t word)
+{
+    asm volatile("st.relaxed.gpu.global.u64 [%0], %1;" ::"l"(to), "l"(word) : "memory");
+}
+
+static __device__ __forceinline__ uint64_t relaxed_load(const uint64_t *from)
+{
+    uint64_t word;
+    asm volatile("ld.relaxed.gpu.global.u64 %0, [%1];" : "=l"(word) : "l"(from) : "memory");
+    return word;
+}
+
+/* ---- arithmetic */
+
+/* p + n, in one instruction. */
+static __device__ __forceinline__ const float4 *nth(const float4 *p, uint32_t n)
+{
+    uint64_t at;
+    asm("mad.wide.u32 %0, %1, 16, %2;" : "=l"(at) : "r"(n), "l"(p));
+    return (const float4 *)at;
+}
+
+/* To some 1e-7 of 1, and of the answer. */
+static __device__ __forceinline__ float near_log2(float x)
+{
+    float y;
+    asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+    return y;
+}
+
+static __device__ __forceinline__ float near_exp2(float x)
+{
+    float y;
+    asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+    return y;
+}
+
+#endif
