@@ -23,7 +23,7 @@ typedef struct cuda_pass {
     int what;
 } cuda_pass;
 
-template <class G> __device__ element_field cell_field(const real *u, int place)
+template <class G> static __device__ element_field cell_field(const real *u, int place)
 {
     element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
                         cuda_corners<G>(u + 2 * G::PLACES, place)};
@@ -44,8 +44,9 @@ static __device__ real cell_tension(const cuda_kind &kind, const cuda_pass &p)
 
 /* A cell mixed of two volumes. */
 template <class G>
-__device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, const real *u,
-                                     int place, const cuda_kind &kind, const cuda_mixed &mixed, real share)
+static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
+                                            const real *u, int place, const cuda_kind &kind, const cuda_mixed &mixed,
+                                            real share)
 {
     const cuda_kind &mix = v.kind[mixed.mix];
     const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
@@ -67,8 +68,8 @@ __device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &
 }
 
 template <class G>
-__device__ element_field plain_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, const real *u,
-                                     int place, uint32_t volume, real share)
+static __device__ element_field plain_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
+                                            const real *u, int place, uint32_t volume, real share)
 {
     const real *stiff = p.law + LAW_NUMBERS * volume;
     element_law law = {share * stiff[0], share * stiff[1], share * stiff[2]};
@@ -83,8 +84,8 @@ __device__ element_field plain_force(const cuda_view<real> &v, const cuda_pass &
 
 /* MIXED: there are cells mixed of two volumes; a kernel of its own, so that others do without. */
 template <class G, bool MIXED>
-__device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, uint32_t cell,
-                           const real *u, real *force)
+static __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, uint32_t cell,
+                                  const real *u, real *force)
 {
     const int place = cell & TILE_PLACE;
     const uint32_t volume = cell >> TILE_VOLUME;
@@ -108,8 +109,8 @@ static __device__ uint32_t cell_at(const cuda_view<real> &v, const tile &t, int 
 }
 
 template <class G, bool MIXED>
-__device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p, const tile &t, uint32_t first, const real *u,
-                            real *force)
+static __device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p, const tile &t, uint32_t first,
+                                   const real *u, real *force)
 {
     uint32_t cell = first;
 #pragma unroll 1
@@ -139,7 +140,7 @@ static __device__ void bring_laws(const cuda_view<real> &v, cuda_pass *p, real *
 }
 
 /* The sum of the pulls at a node, elements in the lattice's order. */
-template <class G> __device__ element_vector node_internal(uint32_t info, const real *force)
+template <class G> static __device__ element_vector node_internal(uint32_t info, const real *force)
 {
     constexpr int order[8] = {6, 7, 5, 4, 2, 3, 1, 0};
     const int place = info & TILE_PLACE;
@@ -228,8 +229,8 @@ static __device__ own_node node_at(const cuda_view<real> &v, const cuda_pass &p,
 }
 
 template <class G>
-__device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, own_node own,
-                         const real *grid, const real *force)
+static __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, own_node own,
+                                const real *grid, const real *force)
 {
     const int32_t n = t.node + i;
     const int place = own.info & TILE_PLACE;
@@ -249,13 +250,13 @@ __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const til
 }
 
 /* Double precision takes more registers than so many blocks would leave it. */
-template <class G> constexpr int together(void)
+template <class G> static constexpr int together(void)
 {
     return sizeof(real) == sizeof(float) ? G::TOGETHER : 1;
 }
 
 template <class G, bool MIXED>
-__global__ void __launch_bounds__(G::THREADS, together<G>())
+static __global__ void __launch_bounds__(G::THREADS, together<G>())
     pass_kernel(cuda_view<real> v, const __grid_constant__ cuda_pass given)
 {
     DYNAMIC_SHARED(double, memory);

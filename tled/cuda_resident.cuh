@@ -134,7 +134,7 @@ static __device__ void resident_node(const cuda_view<real> &v, const cuda_reside
 }
 
 template <class G, bool MIXED>
-__global__ void __launch_bounds__(G::THREADS, together<G>())
+static __global__ void __launch_bounds__(G::THREADS, together<G>())
     resident_kernel(cuda_view<real> v, const __grid_constant__ cuda_resident r)
 {
     DYNAMIC_SHARED(double, memory);

@@ -90,7 +90,7 @@ template <class S> struct cuda_view {
 /* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on its way
  * at once: first where, then what. ROWS: u stands so, whatever the view says. */
 template <class G, bool ROWS, class S>
-__device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
+static __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
 {
     constexpr int OWN = G::OWN, HALO = G::HALO;
     int32_t node[OWN + HALO], place[OWN + HALO];
@@ -118,14 +118,14 @@ __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *t
 }
 
 /* Where corner c of a cell lies, from its low corner; VTK order. */
-template <class G> __device__ constexpr int cuda_corner(int c)
+template <class G> static __device__ constexpr int cuda_corner(int c)
 {
     return (c == 1 || c == 2 || c == 5 || c == 6) + G::GX * (c == 2 || c == 3 || c == 6 || c == 7) +
            G::GX * G::GY * (c >= 4);
 }
 
 /* One component at a cell's corners. */
-template <class G, class S> __device__ element_corners cuda_corners(const S *u, int place)
+template <class G, class S> static __device__ element_corners cuda_corners(const S *u, int place)
 {
     const S *at = u + place;
     element_corners c = {{at[cuda_corner<G>(0)], at[cuda_corner<G>(1)], at[cuda_corner<G>(2)], at[cuda_corner<G>(3)],
@@ -134,7 +134,7 @@ template <class G, class S> __device__ element_corners cuda_corners(const S *u, 
 }
 
 /* What the script does to a node whose TILE_EXTRA is set. */
-template <class S> __device__ const tile_extra *cuda_extra(const cuda_view<S> &v, int32_t node)
+template <class S> static __device__ const tile_extra *cuda_extra(const cuda_view<S> &v, int32_t node)
 {
     int32_t low = 0, high = v.extras - 1;
     while (low < high) {
