@@ -1,0 +1,95 @@
+/* What tests of the CUDA back end have in common, whoever plays the card: models, a script, and the look. */
+#ifndef SINEW_TLED_CARD_H
+#define SINEW_TLED_CARD_H
+
+#include "tled_bench.h"
+
+#include <inttypes.h>
+
+static const block lump = {{17, 9, 6}, {.01, .008, .0125}, 30000, .45, 1000, 30000, 0, 1, 0, {0, 0, 0}, 0, false};
+static const block muscle = {{11, 6, 5}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0, false};
+
+/* Of two columns whose threads nearly all have an element, and of layers that end. */
+static const block small = {{29, 14, 9}, {.001, .001, .001}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
+
+static inline void read_script(bench *b, const char *text)
+{
+    in *source = in_memory(text, strlen(text), "script", &b->e);
+    bench_must(!source || script_read(&b->script, source, &b->m, NULL, &b->e), &b->e);
+    in_close(source);
+    tled_problem_free(&b->problem);
+    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, .0075, &b->e), &b->e);
+}
+
+/* All that a script can do, on a block of several bricks that hangs from a side. */
+static inline void add_script(bench *b)
+{
+    read_script(b, "0 gravity 0,0,0\n"
+                   "0.02 gravity 0,1,-9.81\n"
+                   "0 force 0.17,0.072,0.075 0.03 0,0,0\n"
+                   "0.03 force 0.17,0.072,0.075 0.03 .01,.005,0\n"
+                   "0 force 0.17,0.05,0.075 0.05 .001,.002,.003\n"
+                   "0 displace 0.169,-1,-1,1,0.001,1 -,0,0\n"
+                   "0.04 displace 0.169,-1,-1,1,0.001,1 -,0.002,-0.003\n");
+}
+
+/* So many steps of a fraction of the stable one, which is never cut, so that both take the same. */
+static inline void make(bench *b, const block *what, double level, bool scripted, const backend *device, int64_t steps)
+{
+    bench_make(b, what, NULL, level, .0075, 2);
+    if (scripted)
+        add_script(b);
+    bench_steps(b, steps, b->setup.damping);
+    b->setup.device = device;
+    b->setup.rate = 3 / step_at_rest(&b->problem, NULL);
+    b->setup.rate_fixed = true;
+    b->setup.check = 50;
+    b->setup.every = .0123;
+}
+
+static inline bool close_to(double a, double b, double tolerance)
+{
+    return fabs(a - b) <= tolerance * fmax(fabs(a), fabs(b));
+}
+
+/* The device's look, after so many steps and as many more, against that of the watch on what get() gives. */
+static inline void test_look(const block *what, bool scripted, int64_t steps, const backend *cuda, const char *name,
+                             double tolerance)
+{
+    bench b;
+    backend blind = *cuda;
+    tled_plan plan = {0};
+    blind.look = NULL;
+    make(&b, what, scripted ? 0 : .8, scripted, cuda, steps);
+    plan.rate = b.setup.rate;
+    void *state = cuda->create(&b.problem, b.setup.threads, &b.e);
+    watch *w = watch_create(&b.problem, b.setup.threads, &b.e), *v = watch_create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || !w || !v, &b.e);
+    w->differences = v->differences = true;
+    for (int part = 0; part < 2; part++, plan.first += steps) {
+        bench_must(cuda->step(state, &plan, steps, &b.e), &b.e);
+        bench_must(watch_look(w, cuda, state, tled_time(&plan, steps), &b.e), &b.e);
+        bench_must(watch_look(v, &blind, state, tled_time(&plan, steps), &b.e), &b.e);
+        if (!part)
+            bench_must(watch_keep(v, &blind, state, &b.e) || watch_keep(w, cuda, state, &b.e), &b.e);
+    }
+    const watch_sight *s = &w->sight, *t = &v->sight;
+    ok(close_to(s->kinetic, t->kinetic, tolerance) && close_to(s->strain, t->strain, tolerance) &&
+           close_to(s->acceleration, t->acceleration, tolerance) && close_to(s->speed, t->speed, tolerance) &&
+           close_to(s->moved, t->moved, tolerance) && close_to(s->largest, t->largest, tolerance),
+       "%s: the same energies and means: %.9g %.9g J", name, s->kinetic, t->kinetic);
+    ok(close_to(s->stiffness, t->stiffness, tolerance) && close_to(s->inertia, t->inertia, tolerance) && s->inertia > 0,
+       "%s: and differences: %.9g %.9g", name, s->stiffness, t->stiffness);
+    ok(close_to(s->stable, t->stable, .011) && s->broken == t->broken, "%s: the stable step %.6g, %.6g ms", name,
+       1e3 * s->stable, 1e3 * t->stable);
+    w->raise = v->raise = 1;
+    bench_must(watch_look(w, cuda, state, tled_time(&plan, 0), &b.e), &b.e);
+    bench_must(watch_look(v, &blind, state, tled_time(&plan, 0), &b.e), &b.e);
+    ok(close_to(s->stable, t->stable, 1e-12), "%s: exactly %.12g, %.12g ms", name, 1e3 * s->stable, 1e3 * t->stable);
+    cuda->destroy(state);
+    watch_destroy(w);
+    watch_destroy(v);
+    bench_free(&b);
+}
+
+#endif
