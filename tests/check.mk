@@ -30,7 +30,8 @@ endef
 TEST_TOOLS := compare_pictures list_voxels peak long_stream reader
 COMPARE := $(TEST_TOOLS:%=$(BUILD)/tests/cli/%) $(REPLAY)
 $(foreach tool,$(TEST_TOOLS),$(eval $(call test_program,tests/cli/$(tool))))
-$(foreach source,$(UNIT_SRC:.c=),$(eval $(call test_program,$(source))))
+include tests/emulate/emulate.mk
+$(foreach source,$(filter-out $(EMULATED),$(UNIT_SRC:.c=)),$(eval $(call test_program,$(source))))
 $(foreach source,$(FUZZ_SRC:.c=),$(eval $(call test_program,$(source),-fsanitize=fuzzer)))
 $(foreach source,$(FUZZ_SRC:tests/fuzz/fuzz_%.c=%),$(eval $(call test_program,tests/fuzz/replay_$(source),,tests/fuzz/fuzz_$(source),$(BUILD)/tests/fuzz/driver.o)))
 

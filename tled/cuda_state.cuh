@@ -25,12 +25,12 @@ typedef struct cuda_frame { /* results on their way to the host; made when first
 typedef struct cuda_state {
     const tled_problem *p;
     pool *threads;
-    tiles tiles;
+    struct tiles tiles;
     cuda_size size; /* of its bricks */
     cuda_view<real> view;
     element_shape shape;
     bool marches; /* by `march`, not by tiles: the state stands node by node */
-    march march;
+    struct march march;
     cuda_march walk;            /* what its kernels see */
     char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
     int64_t bytes, used;        /* of memory */

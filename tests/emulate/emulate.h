@@ -1,0 +1,50 @@
+/* A CUDA card that a processor plays, for tests where there is no card: the kernels' sources, unchanged, compiled by g++ with the two
+ * headers here in place of CUDA's and of tled/cuda_ptx.cuh. A block's threads are fibres, one of which runs at a time until it has to
+ * wait; which, is drawn by lot. It says nothing of speed, nor of what nvcc makes of the sources.
+ *
+ * What a run has to show for itself: each access of a kernel to memory, and each copy that it does not wait for, is looked at
+ * (shadow.cc) for what a card lets pass. The first fault ends the launch, and what is called next fails with the fault's text, as does
+ * all after it.
+ *
+ * What is put in a stream is done as late as something waits for it, or earlier, by lot. The card is one, and is the process's.
+ */
+#ifndef SINEW_EMULATE_H
+#define SINEW_EMULATE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What the card is to do as though the kernel had not said so: a test of the tests. */
+typedef enum emulated_omission {
+    OMIT_NOTHING,
+    OMIT_SYNC_BLOCK,
+    OMIT_SYNC_WARP,
+    OMIT_BARRIER_WAIT, /* the card's barriers: nobody waits */
+    OMIT_COPY_WAIT,    /* of all groups but the last */
+    OMIT_LAUNCH_WAIT
+} emulated_omission;
+
+typedef struct emulated_card {
+    int capability; /* 10 major + minor */
+    int processors; /* each of an H200's threads and shared memory; registers are not counted */
+    bool together;  /* starts kernels whose blocks wait for each other */
+    uint64_t seed;  /* of the lots */
+    emulated_omission omission;
+} emulated_card;
+
+/* A card from here on; faults of before are forgotten. false: this processor cannot play one. */
+bool emulate(const emulated_card *card);
+
+/* Blocks that ran, since then. */
+int64_t emulated_blocks(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

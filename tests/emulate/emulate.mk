@@ -1,0 +1,33 @@
+# An emulated card, and the program that tests kernels on it: where there is g++, for x86-64. Nothing of CUDA is wanted.
+# $(BUILD)/emulate has tled's CUDA as g++ makes it: each access of theirs a call (-fsanitize=thread), which comes to shadow.cc.
+
+EMULATE_CXX ?= $(if $(filter x86_64,$(shell uname -m)),$(shell command -v g++))
+EMULATE_CU := tled/cuda_march tled/cuda_single tled/cuda_double tled/cuda_look common/device/card tests/emulate/wrong
+EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) fibres shadow streams tled/march)) \
+	$(addprefix $(BUILD)/tled/,march_units.o places.o tiles.o)
+EMULATE_FLAGS = -std=c++17 -g -mavx2 -mfma -Wall $(WERROR) -Itests/emulate $(CPPFLAGS) -MMD -MP
+EMULATE_CU_FLAGS = -O2 -fsanitize=thread,undefined -fno-sanitize-recover=undefined -fno-math-errno -Wno-sign-compare \
+	-Wno-unknown-pragmas -Wno-unused-function
+
+$(BUILD)/emulate/%.o: %.cu
+	@mkdir -p $(@D)
+	$(call run,EMULATE $<,$(EMULATE_CXX) $(EMULATE_FLAGS) $(EMULATE_CU_FLAGS) -ffp-contract=$(EMULATE_CONTRACT) -x c++ -c -o $@ $<)
+EMULATE_CONTRACT = off
+$(BUILD)/emulate/tled/cuda_march.o: EMULATE_CONTRACT = fast
+
+$(BUILD)/emulate/%.o: tests/emulate/%.cc
+	@mkdir -p $(@D)
+	$(call run,EMULATE $<,$(EMULATE_CXX) $(EMULATE_FLAGS) -O3 -Wextra -c -o $@ $<)
+
+# Whatever its shape, a model marches here.
+$(BUILD)/emulate/tled/march.o: tled/march.c
+	@mkdir -p $(@D)
+	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -DMARCH_SPARSE=1e9 -c -o $@ $<)
+
+# Elsewhere it is a unit test as others are, and skips.
+EMULATED := $(if $(EMULATE_CXX),tests/unit/test_tled_emulated)
+ifneq ($(EMULATED),)
+$(BUILD)/$(EMULATED).o: CPPFLAGS += -DSINEW_EMULATED
+$(BUILD)/$(EMULATED): $(BUILD)/$(EMULATED).o $(EMULATE_OBJ) $(call needs,$(EMULATED).c) $(MAIN_OBJ) $(LIB)
+	$(call run,LD $@,$(EMULATE_CXX) $(CFLAGS) $(LDFLAGS) -fsanitize=address -fsanitize=undefined -o $@ $^ $(AS_NEEDED) $(EMBREE) $(PICTURES) $(COLLIDE) $(LDLIBS))
+endif

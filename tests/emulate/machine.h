@@ -1,0 +1,143 @@
+/* What runs on an emulated card, as its own files see it: blocks and their threads, and what each thread knows of the others.
+ *
+ * Time is told by clocks, one a thread (a vector clock: Lamport 1978, Mattern 1989). A thread's own counts on where it lets others know
+ * what it did; where it waits for others, it takes over what they knew. What another did at a time past the one known here, is in no
+ * order with what is done here: a race, whether or not the bytes show it.
+ */
+#ifndef SINEW_MACHINE_H
+#define SINEW_MACHINE_H
+
+#include "cuda_runtime.h"
+#include "emulate.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <vector>
+
+typedef std::vector<uint32_t> clocks; /* of a block's threads */
+
+/* When a thread did something. */
+struct moment {
+    int32_t thread;
+    uint32_t clock;
+};
+
+/* What is known of 4 bytes of memory. `seen` is the block, of shared memory, or the launch, else, that the rest is of. */
+struct word {
+    uint32_t seen = 0;
+    uint32_t wrote = 0;               /* the launch, or the host's copy, that did so last; 0: none */
+    int32_t writer = -1, reader = -1; /* blocks, or none, or SEVERAL */
+    moment write = {0, 0};
+    bool atomic = false, flying = false; /* written so; a copy to it is on its way */
+    const char *unsure = NULL;           /* a copy to it was not to be relied on: why */
+    std::vector<moment> reads;           /* of the block `reader`, none known to a later one */
+};
+
+/* Bytes, and what is known of them. */
+struct memory {
+    char *at = NULL;
+    size_t size = 0;
+    std::vector<word> words;
+};
+
+struct fibre;
+
+/* Where `threads` meet, round after round. */
+struct meeting {
+    int came = 0;
+    bool value = false, answer = false; /* whether any says so, of this round and the last */
+    clocks known, answered;
+    std::vector<fibre *> waiting;
+};
+
+/* One of the card's, in shared memory. */
+struct barrier {
+    uint32_t count = 0, came = 0, phase = 0;
+    clocks known, ended[2]; /* phases even and odd */
+    std::vector<fibre *> waiting;
+};
+
+struct block {
+    uint32_t serial = 0; /* among all that ever ran */
+    int32_t index = 0;
+    int threads = 0;
+    bool heard = false;        /* another's word, in this launch */
+    memory dynamic, own;       /* shared memory: as the launch says; what kernels declare, which blocks have by turns */
+    std::vector<char> statics; /* these, while another block has them */
+    ~block()
+    {
+        free(dynamic.at);
+    }
+    meeting all;
+    std::vector<meeting> warps, votes;
+    std::map<uint32_t, barrier> barriers;
+};
+
+/* On its way to shared memory. */
+struct flight {
+    uint32_t to;
+    const float4 *from; /* NULL: zeros */
+    float4 value;       /* when it began */
+    int group;
+    const char *unsure; /* why the value is not to be relied on, or NULL */
+};
+
+struct fibre {
+    void *stack_pointer = NULL;
+    char *stack = NULL;
+    block *home = NULL;
+    int thread = 0;
+    clocks clock;
+    std::vector<flight> flights;
+    int group = 0;        /* that is sent next */
+    bool settled = false; /* what launches before did may be relied on */
+    bool ended = false;
+    const void *place = NULL; /* in the program, of what it does or waits for */
+};
+
+enum {
+    STACK = 256 << 10,
+    DYNAMIC_AT = 1 << 20 /* the address, in shared memory, of what launches ask for; below: kernels' own */
+};
+
+/* ---- fibres.cc */
+extern __thread fibre *now; /* NULL: the host */
+extern emulated_card card;
+
+/* A number below `most`, by lot. */
+uint32_t lot(uint32_t most);
+/* Ends the launch. */
+[[noreturn]] void fault(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* Others run; until something has changed for one that looks again and again. */
+void pass_on();
+void changed();
+/* Where a kernel calls from. */
+#define HERE() (now->place = __builtin_return_address(0))
+
+/* ---- streams.cc */
+/* Is done in its turn: at once, in no stream. */
+void ask(cudaStream_t stream, std::function<void()> what);
+
+/* ---- shadow.cc */
+enum { SEVERAL = -2 };
+/* What the host and launches do to the card's memory is numbered; a launch that may begin early relies on what came before
+ * `settled` only. */
+typedef struct history {
+    uint32_t at, settled;
+    const char *call; /* a launch's arguments, which its threads may read */
+    size_t call_size;
+} history;
+extern history past;
+
+/* The card's memory is closed to the host but for its copies. */
+void open_memory(bool open);
+/* Of anything: what nobody wrote is drawn by lot. */
+memory memory_of(size_t size);
+/* A thread reads or writes; atomic: as others may at once. */
+void touch(const void *at, size_t size, bool writes, bool atomic = false);
+/* The same of shared memory. Where it is for the processor. */
+char *touch_shared(uint32_t at, size_t size, bool writes);
+void end_flights();
+
+#endif

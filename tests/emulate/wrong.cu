@@ -1,0 +1,247 @@
+/* See wrong.h. Blocks of 64 threads, with 64 numbers on the card and as many in shared memory; the right ones stand beside those
+ * that are wrong. */
+#include "tests/emulate/wrong.h"
+
+#include "device/start.cuh"
+#include "tled/cuda_ptx.cuh"
+
+#include <stdlib.h>
+
+enum { THREADS = 64 };
+
+struct task {
+    float4 *data; /* THREADS, with their numbers; and as many that nobody wrote */
+    uint64_t *word;
+};
+
+/* ---- shared memory */
+
+template <bool RIGHT> static __global__ void neighbours(task)
+{
+    DYNAMIC_SHARED(float, x);
+    x[threadIdx.x] = 1;
+    if (RIGHT)
+        __syncthreads();
+    x[threadIdx.x] += RIGHT ? 1 : x[(threadIdx.x + 1) % THREADS];
+}
+
+template <bool RIGHT> static __global__ void later(task)
+{
+    DYNAMIC_SHARED(float, x);
+    x[threadIdx.x] = 1;
+    __syncthreads();
+    const float next = x[(threadIdx.x + 1) % THREADS];
+    if (RIGHT)
+        __syncthreads();
+    x[threadIdx.x] = next;
+}
+
+/* A warp's meeting orders its threads, and no others. */
+template <bool RIGHT> static __global__ void warps(task)
+{
+    __shared__ float x[THREADS];
+    x[threadIdx.x] = 1;
+    __syncwarp();
+    x[threadIdx.x] = x[RIGHT ? threadIdx.x : THREADS - 1 - threadIdx.x];
+}
+
+/* A vote orders nothing. */
+static __global__ void vote(task)
+{
+    __shared__ float x[THREADS];
+    x[threadIdx.x] = 1;
+    if (__any_sync(~0u, 1))
+        x[threadIdx.x] = x[threadIdx.x ^ 1];
+}
+
+static __global__ void nobody(task)
+{
+    DYNAMIC_SHARED(float, x);
+    if (threadIdx.x == 5)
+        x[0] = x[1];
+}
+
+template <int AT> static __global__ void place(task)
+{
+    DYNAMIC_SHARED(float4, x);
+    if (threadIdx.x == 0)
+        shared_store(shared_at(x) + AT, 1, 2, 3);
+}
+
+static __global__ void beyond(task t)
+{
+    if (threadIdx.x == 0)
+        t.data[2 * THREADS].x = 1;
+}
+
+template <bool RIGHT> static __global__ void least(task)
+{
+    __shared__ int x;
+    if (threadIdx.x == 0)
+        x = THREADS;
+    __syncthreads();
+    if (RIGHT)
+        atomicMin(&x, (int)threadIdx.x);
+    else if (x > (int)threadIdx.x)
+        x = (int)threadIdx.x;
+}
+
+/* ---- blocks and launches */
+
+template <bool RIGHT> static __global__ void blocks(task t)
+{
+    if (threadIdx.x == 0)
+        t.data[RIGHT ? blockIdx.x : 0].x = 1;
+}
+
+template <bool RIGHT> static __global__ void early(task t)
+{
+    let_next_begin();
+    if (RIGHT)
+        wait_for_last();
+    if (threadIdx.x == 0 && blockIdx.x == 0)
+        t.data[0].x += 1;
+}
+
+static __global__ void uninitialised(task t)
+{
+    t.data[THREADS + threadIdx.x].x += 1;
+}
+
+/* Each waits for the other's word. */
+template <bool RIGHT> static __global__ void words(task t)
+{
+    if (threadIdx.x)
+        return;
+    if (RIGHT || blockIdx.x)
+        relaxed_store(t.word + blockIdx.x, 1);
+    while (!relaxed_load(t.word + (1 - blockIdx.x)))
+        ;
+}
+
+/* ---- copies */
+
+template <int BUT_FOR, bool MEET> static __global__ void copies(task t)
+{
+    DYNAMIC_SHARED(float4, x);
+    const unsigned at = shared_at(x + threadIdx.x / 2), i = threadIdx.x;
+    if (i % 2) {
+        send(at, t.data + i, true);
+        sent();
+        sent();
+    }
+    arrived<BUT_FOR>();
+    if (MEET)
+        __syncthreads();
+    else
+        __syncwarp();
+    if (shared_load(shared_at(x + (MEET ? THREADS / 2 - 1 - i / 2 : i / 2))).x < 0)
+        t.data[i].x = 0;
+    arrived<0>();
+}
+
+static __global__ void left(task t)
+{
+    DYNAMIC_SHARED(float4, x);
+    send(shared_at(x) + 16 * threadIdx.x, t.data, true);
+    sent();
+    arrived<1>();
+}
+
+static __global__ void open_group(task t)
+{
+    DYNAMIC_SHARED(float4, x);
+    send(shared_at(x) + 16 * threadIdx.x, t.data, true);
+    arrived<0>();
+}
+
+/* ---- barriers */
+
+template <bool MADE, int COUNT, bool WAITED> static __global__ void barriers(task)
+{
+    __shared__ uint64_t said;
+    __shared__ float x;
+    if (MADE && threadIdx.x == 0)
+        barrier_make(shared_at(&said), COUNT);
+    __syncthreads();
+    if (threadIdx.x == 0)
+        x = 1;
+    if (threadIdx.x % 32 == 0)
+        barrier_arrive(shared_at(&said));
+    if (WAITED)
+        barrier_wait(shared_at(&said), 0);
+    if (threadIdx.x == 40)
+        x += 1;
+}
+
+static __global__ void unequal(task)
+{
+    if (threadIdx.x < 60)
+        __syncthreads();
+}
+
+/* ---- the list */
+
+/* `times` launches of `count` blocks. */
+static int run(void (*kernel)(task), int64_t count = 1, cudaLaunchAttributeID how = cudaLaunchAttributeIgnore,
+               int times = 1)
+{
+    const float4 number[THREADS] = {};
+    task t = {};
+    int e = cudaMalloc((void **)&t.data, 2 * sizeof number);
+    e = e ? e : cudaMalloc((void **)&t.word, 2 * sizeof *t.word);
+    e = e ? e : cudaMemcpy(t.data, number, sizeof number, cudaMemcpyHostToDevice);
+    e = e ? e : cudaMemset(t.word, 0, 2 * sizeof *t.word);
+    for (int i = 0; i < times && !e; i++)
+        e = card_start(kernel, {count, THREADS, THREADS * sizeof(float4), NULL, how}, t);
+    cudaFree(t.data);
+    cudaFree(t.word);
+    return e;
+}
+
+static const cudaLaunchAttributeID together = cudaLaunchAttributeCooperative,
+                                   overlapping = cudaLaunchAttributeProgrammaticStreamSerialization;
+
+#define KERNEL(says, ...)                                                                                              \
+    {                                                                                                                  \
+#__VA_ARGS__, says, [] { return run(__VA_ARGS__); }                                                            \
+    }
+const wrong_kernel wrong_kernels[] = {
+    KERNEL(NULL, neighbours<true>),
+    KERNEL("reads what ", neighbours<false>),
+    KERNEL(NULL, later<true>),
+    KERNEL("a race", later<false>),
+    KERNEL(NULL, warps<true>),
+    KERNEL("reads what ", warps<false>),
+    KERNEL("reads what ", vote),
+    KERNEL("reads what nobody wrote", nobody),
+    KERNEL(NULL, place<16>),
+    KERNEL("no multiple of 16", place<8>),
+    KERNEL("past the block's shared memory", place<16 * THREADS>),
+    KERNEL("which is not the card's", beyond),
+    KERNEL(NULL, least<true>),
+    KERNEL("a race", least<false>),
+    KERNEL(NULL, blocks<true>, 3),
+    KERNEL("what another block writes", blocks<false>, 3),
+    KERNEL(NULL, early<true>, 2, overlapping, 3),
+    KERNEL("what a launch wrote that may not have ended", early<false>, 2, overlapping, 3),
+    KERNEL("reads what nobody wrote", uninitialised),
+    KERNEL(NULL, words<true>, 2, together),
+    KERNEL("waits for a word that nobody writes", words<false>, 2, together),
+    KERNEL(NULL, copies<0, true>),
+    KERNEL(NULL, copies<1, true>),
+    KERNEL(NULL, copies<1, false>),
+    KERNEL("reads what is on its way", copies<2, true>),
+    KERNEL("ends with copies on their way", left),
+    KERNEL("ends with copies on their way", open_group),
+    KERNEL(NULL, barriers<true, 2, true>),
+    KERNEL("reads what ", barriers<true, 2, false>),
+    KERNEL("waits for ever", barriers<true, 3, true>),
+    KERNEL("reads what nobody wrote", barriers<false, 2, true>),
+    KERNEL("waits for ever", unequal),
+    {}};
+
+const char *wrong_text(int error)
+{
+    return cudaGetErrorString((cudaError_t)error);
+}

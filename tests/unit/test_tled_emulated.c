@@ -1,0 +1,236 @@
+/* The CUDA back end's kernels on a card that the processor plays (tests/emulate): the march, its bricks, those that stay, and looks, each by
+ * several lots; and that the card finds what is wrong, in kernels that are, and in ours where it leaves out what they say. */
+// needs: tled/*.c
+#include "tled_card.h"
+
+#ifdef SINEW_EMULATED
+#include "tests/emulate/emulate.h"
+#include "tests/emulate/wrong.h"
+#include "tled/cuda.h"
+
+/* Cards that march, that have bricks only, and on which they stay. */
+static const emulated_card marching = {.capability = 90, .processors = 4}, plain = {.capability = 80, .processors = 4},
+                           staying = {.capability = 80, .processors = 132, .together = true};
+
+/* Some lots, on so many of the card's processors. */
+static void put_in(const emulated_card *card, uint64_t seed, int processors)
+{
+    emulated_card c = *card;
+    c.seed = seed;
+    c.processors = processors;
+    emulate(&c);
+}
+
+/* A state that is everywhere bent, in the middle of what curves do. */
+static void bend(bench *b)
+{
+    const tled_problem *p = &b->problem;
+    for (int64_t i = 0; i < 3 * p->nodes; i++) {
+        p->displacement[i] = .07 * p->side[i % 3] * sin((double)(i * i % 1009));
+        p->velocity[i] = 30 * p->displacement[i];
+    }
+    b->problem.start = .03;
+}
+
+typedef struct trial {
+    const char *name;
+    block what;
+    double level;
+    bool scripted;
+    int32_t cells[3]; /* in place of the block's, if not 0 */
+} trial;
+
+/* What a back end makes of it: displacements, velocities and internal forces, and displacements a step later. */
+enum { PARTS = 4 };
+typedef struct answer {
+    bench b;
+    double *numbers;
+    int64_t count; /* of each */
+    bool gone;
+} answer;
+
+/* Steps up to `last`: now one at once, now two. */
+static int go_on(const backend *device, void *state, tled_plan *plan, int64_t last, err *e)
+{
+    for (int64_t count; plan->first < last; plan->first += count) {
+        count = plan->first % 3 == 1 && plan->first + 1 < last ? 2 : 1;
+        if (device->step(state, plan, count, e))
+            return -1;
+    }
+    return 0;
+}
+
+/* `steps` steps, after one that is taken back, and one more. */
+static void find(answer *a, const trial *t, const backend *device, int64_t steps)
+{
+    block what = t->what;
+    if (t->cells[0])
+        memcpy(what.cells, t->cells, sizeof what.cells);
+    bench *b = &a->b;
+    make(b, &what, t->level, t->scripted, device, steps);
+    bend(b);
+    tled_plan plan = {.origin = b->problem.start, .rate = b->setup.rate, .damping = b->setup.damping}, once = plan;
+    a->count = 3 * b->problem.nodes;
+    a->numbers = calloc(PARTS * (size_t)a->count, sizeof *a->numbers);
+    tled_taken taken = {a->numbers, a->numbers + a->count};
+    void *state = device->create(&b->problem, b->setup.threads, &b->e);
+    a->gone = !a->numbers || !state || device->keep(state, &b->e) || go_on(device, state, &once, 1, &b->e) ||
+              device->back(state, &b->e) || go_on(device, state, &plan, steps, &b->e) ||
+              device->get(state, TLED_INTERNAL, a->numbers + 2 * a->count, &b->e) || device->take(state, 0, &b->e) ||
+              go_on(device, state, &plan, steps + 1, &b->e) || device->taken(state, 0, &taken, &b->e) ||
+              device->get(state, TLED_DISPLACEMENT, a->numbers + 3 * a->count, &b->e);
+    device->destroy(state);
+}
+
+static void answer_free(answer *a)
+{
+    bench_free(&a->b);
+    free(a->numbers);
+}
+
+/* The largest difference of one of these, as a share of the largest there is. */
+static double off(const answer *a, const answer *b)
+{
+    double worst = 0;
+    for (int i = 0; i < PARTS; i++) {
+        double most = 0, size = 0;
+        for (int64_t k = i * a->count; k < (i + 1) * a->count; k++) {
+            most = fmax(most, fabs(a->numbers[k] - b->numbers[k]));
+            size = fmax(size, fabs(b->numbers[k]));
+        }
+        worst = fmax(worst, most / size);
+    }
+    return a->gone || b->gone ? INFINITY : worst;
+}
+
+/* The CPU's answer, to within a share, or its very bytes; and the same bytes by other lots, and in other units. */
+static void try(const trial *t, const emulated_card *card, const backend *device, const backend *cpu, int64_t steps,
+                double tolerance)
+{
+    answer here, there, again;
+    find(&here, t, cpu, steps);
+    put_in(card, 1, card->processors);
+    find(&there, t, device, steps);
+    const int64_t blocks = emulated_blocks();
+    put_in(card, 2, card->together ? card->processors : 1);
+    find(&again, t, device, steps);
+    ok(off(&there, &here) <= tolerance, "%s: %.2g off by %" PRId64 " blocks %s", t->name, off(&there, &here), blocks,
+       there.b.e.text);
+    ok(off(&again, &there) == 0, "%s: the same by other lots %s", t->name, again.b.e.text);
+    answer_free(&here);
+    answer_free(&there);
+    answer_free(&again);
+}
+
+static void test_wrong(void)
+{
+    for (const wrong_kernel *k = wrong_kernels; k->name; k++) {
+        const char *said = NULL;
+        int as_told = 0;
+        for (uint64_t seed = 1; seed <= 3; seed++) {
+            put_in(&staying, seed, 2);
+            const int e = k->start();
+            said = e ? wrong_text(e) : "nothing";
+            as_told += k->says ? e && strstr(said, k->says) : !e;
+        }
+        ok(as_told == 3, "%s: %s", k->name, said);
+    }
+}
+
+static block mixed_of(block what)
+{
+    what.fraction = -1;
+    what.mixed = true;
+    return what;
+}
+
+static void test_marches(int64_t steps)
+{
+    block cut = small;
+    cut.fraction = -1;
+    const trial all[] = {{"a muscle", small, .5, false, {0}},
+                         {"cut elements", cut, .5, false, {0}},
+                         {"mixed elements", mixed_of(small), .5, false, {0}},
+                         {"a script", lump, 0, true, {0}},
+                         {"mixed elements, a script", mixed_of(lump), 0, true, {0}}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        try(&all[i], &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+}
+
+/* Plates and rods of 1 to 3 elements along every axis. */
+static void test_thin(int64_t steps)
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (int n = 1; n <= 3; n++) {
+            char name[40];
+            trial plate = {name, mixed_of(small), .5, false, {17, 17, 17}}, rod = {name, small, .5, false, {n, n, n}};
+            plate.cells[axis] = n;
+            rod.cells[axis] = 33;
+            plate.what.fixed_axis = (axis + 1) % 3;
+            rod.what.fixed_axis = axis;
+            snprintf(name, sizeof name, "a plate of %d along %c", n, 'x' + axis);
+            try(&plate, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+            snprintf(name, sizeof name, "a rod of %d along %c", n, 'x' + axis);
+            try(&rod, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+        }
+}
+
+static void test_bricks(int64_t steps)
+{
+    const trial all[] = {{"a script in bricks", lump, 0, true, {0}},
+                         {"a muscle in bricks", muscle, .5, false, {0}},
+                         {"mixed elements in bricks", mixed_of(muscle), .5, false, {0}}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        try(&all[i], &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+        try(&all[i], &staying, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    }
+    try(&all[0], &plain, &tled_cuda_double, &tled_cpu_double, steps, 0);
+}
+
+static void test_looks(int64_t steps)
+{
+    put_in(&marching, 3, 4);
+    test_look(&small, false, steps, &tled_cuda_single, "a look where it marches", 1e-6);
+    put_in(&plain, 4, 4);
+    test_look(&lump, true, steps, &tled_cuda_single, "a look at a script", 1e-6);
+}
+
+/* A card that leaves out what kernels say is found out. */
+static void test_omissions(void)
+{
+    static const char *const name[] = {"nothing",        "__syncthreads()", "__syncwarp()",
+                                       "barrier_wait()", "arrived()",       "wait_for_last()"};
+    const trial t = {"", mixed_of(lump), 0, true, {0}};
+    for (int i = OMIT_NOTHING; i <= OMIT_LAUNCH_WAIT; i++) {
+        answer a;
+        emulated_card card = marching;
+        card.omission = i;
+        put_in(&card, 5, 4);
+        find(&a, &t, &tled_cuda_single, 3);
+        ok(a.gone == (i != OMIT_NOTHING), "without %s: %s", name[i], a.b.e.text);
+        answer_free(&a);
+    }
+}
+
+int main(void)
+{
+    const int64_t more = getenv("SINEW_LONG") ? 20 : 1;
+    if (!emulate(&plain)) {
+        skip(1, "this processor has no fused operations");
+        return done_testing();
+    }
+    test_wrong();
+    test_omissions();
+    test_marches(4 * more);
+    test_thin(2 * more);
+    test_bricks(2 * more);
+    test_looks(2 * more);
+    return done_testing();
+}
+#else
+int main(void)
+{
+    skip(1, "no g++ for x86-64");
+    return done_testing();
+}
+#endif
