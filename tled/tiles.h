@@ -5,6 +5,9 @@
  * In a tile all stand in a grid of places, one more than the brick on each side: a node's place is i + gx (j + gy k), with
  * i, j, k from 1 where owned; a cell's place is that of its low corner. So a cell finds its corners, and a node its cells, by
  * adding constants. For that a place must mean one node: a model in which two nodes of one part have the same place (a slit) is refused.
+ *
+ * Arrays over nodes are in the tiles' order, tile by tile, or in one that tiles_reorder is given: then those that a tile owns
+ * stand where `order` says.
  * The creator owns the tiles; they hold no pointer into the problem.
  */
 #ifndef SINEW_TILES_H
@@ -14,7 +17,7 @@
 
 /* What one tile has of each list below. */
 typedef struct tile {
-    int32_t node, nodes;       /* owned: the first, in the tiles' order of nodes, and how many */
+    int32_t node, nodes;       /* owned: the first, in the tiles' order, and how many */
     int32_t halo, halos;       /* in halo_node, halo_place */
     int32_t cell, cells;       /* in cell */
     int32_t fibred, direction; /* the first `fibred` of its cells may contract: fibre from row `direction` on */
@@ -33,7 +36,7 @@ enum {
 
 /* What the script does to a node, apart from gravity. */
 typedef struct tile_extra {
-    int32_t node; /* in the tiles' order */
+    int32_t node; /* where it stands */
     int32_t hold[3];
     int32_t force, forces; /* in force_curve, force_share of the problem */
 } tile_extra;
@@ -45,7 +48,8 @@ typedef struct tiles {
     tile *tile;
     int32_t *node;         /* nodes: which of the model's it is */
     uint32_t *node_info;   /* nodes: TILE_* */
-    int32_t *halo_node;    /* halos: in the tiles' order */
+    int32_t *order;        /* nodes, in the tiles' order: where each stands; NULL: there */
+    int32_t *halo_node;    /* halos: where it stands */
     uint16_t *halo_place;  /* halos */
     uint32_t *cell;        /* cells: TILE_*, those with fibres first, then by place */
     int32_t *cell_element; /* cells: which of the model's elements it is */
@@ -53,11 +57,14 @@ typedef struct tiles {
     float *share;          /* cells: the problem's fraction; NULL where that is */
     int32_t *mixed;        /* cells: the problem's; NULL where that is */
     float *mixfibre;       /* directions x 3: of cells' second volumes; or NULL */
-    tile_extra *extra;     /* extras, by node */
+    tile_extra *extra;     /* extras, by where their nodes stand */
 } tiles;
 
 /* brick: at most 8 each. -1 with e filled, and t to be freed all the same: no memory, or a model that cannot be cut so. */
 int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e);
 void tiles_free(tiles *t);
+
+/* Puts the nodes of new tiles in another order: where each of the model's is to stand. -1 with e filled: no memory. */
+int tiles_reorder(tiles *t, const int32_t *order, err *e);
 
 #endif

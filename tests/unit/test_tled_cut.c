@@ -1,6 +1,6 @@
 /* A problem cut into tiles: every node owned once, every element owned once, and a pass over the tiles, each seeing no more
- * than its own lists, gives the internal forces of a pass over elements, to the last bit. Slits are refused. And in rows: the
- * same, slits too.
+ * than its own lists, gives the internal forces of a pass over elements, to the last bit; and so when nodes stand in another order.
+ * Slits are refused. And in rows: the same, slits too.
  */
 // needs: tled/tiles.c tled/places.c tled/*.c
 #include "mesh/element.h"
@@ -71,12 +71,18 @@ static int corner_step(const tiles *t, int c)
     return lattice_vtk[c][0] + t->grid[0] * (lattice_vtk[c][1] + t->grid[1] * lattice_vtk[c][2]);
 }
 
+/* Where a tile's k-th node stands. */
+static int32_t stands(const tiles *t, const tile *own, int32_t k)
+{
+    return t->order ? t->order[own->node + k] : own->node + k;
+}
+
 static void load(const tiles *t, const tile *own, room *r)
 {
     memset(r, 0, sizeof *r);
     for (int32_t k = 0; k < own->nodes + own->halos; k++) {
         bool inside = k < own->nodes;
-        int32_t n = inside ? own->node + k : t->halo_node[own->halo + k - own->nodes];
+        int32_t n = inside ? stands(t, own, k) : t->halo_node[own->halo + k - own->nodes];
         int place = inside ? (int)(t->node_info[n] & TILE_PLACE) : t->halo_place[own->halo + k - own->nodes];
         r->known[place] = true;
         for (int a = 0; a < 3; a++)
@@ -110,17 +116,49 @@ static bool by_tiles(const tled_problem *p, const tiles *t, double *sum, int *ow
                     !memcmp(t->mixfibre + 3 * (own->direction + k), p->mixfibre + 3 * element, 12);
             good &= k >= own->fibred || !memcmp(t->fibre + 3 * (own->direction + k), p->fibre + 3 * element, 12);
         }
-        for (int32_t n = own->node; n < own->node + own->nodes; n++)
+        for (int32_t k = 0; k < own->nodes; k++) {
+            const int32_t n = stands(t, own, k);
             for (int i = 0; i < 8; i++)
                 for (int a = 0; t->node_info[n] >> (TILE_CORNERS + order[i]) & 1 && a < 3; a++)
                     sum[3 * t->node[n] + a] +=
                         r->f[(int)(t->node_info[n] & TILE_PLACE) - corner_step(t, order[i])][order[i]][a];
+        }
     }
     free(r);
     return good;
 }
 
-static void test_pass(const tled_problem *p, const int brick[3])
+/* Whether what the script does to nodes is listed as they stand. */
+static bool are_extras(const tled_problem *p, const tiles *t)
+{
+    int64_t next = 0;
+    for (int32_t at = 0; at < t->nodes; at++) {
+        const int32_t n = t->node[at];
+        if (!(t->node_info[at] >> TILE_EXTRA & 1))
+            continue;
+        if (next == t->extras || t->extra[next].node != at ||
+            memcmp(t->extra[next].hold, p->hold + 3 * (int64_t)n, sizeof t->extra->hold) ||
+            t->extra[next].forces != p->force_start[n + 1] - p->force_start[n])
+            return false;
+        next++;
+    }
+    return next && next == t->extras;
+}
+
+/* An order with no two neighbours as they were. */
+static int reorder(tiles *t, err *e)
+{
+    int32_t *order = calloc((size_t)t->nodes, sizeof *order);
+    if (!order)
+        exit(1);
+    for (int64_t n = 0, half = (t->nodes + 1) / 2; n < t->nodes; n++)
+        order[n] = (int32_t)(n < half ? 2 * n : 2 * (n - half) + 1);
+    const int failed = tiles_reorder(t, order, e);
+    free(order);
+    return failed;
+}
+
+static void test_pass(const tled_problem *p, const int brick[3], bool other)
 {
     tiles t;
     err e = {0};
@@ -128,10 +166,11 @@ static void test_pass(const tled_problem *p, const int brick[3])
     int *owned = calloc((size_t)p->elements, sizeof *owned), once = 0;
     if (!want || !got || !owned)
         exit(1);
-    int failed = tiles_make(&t, p, brick, &e);
-    ok(!failed && t.count > 1, "bricks of %d x %d x %d: %lld tiles, %.3g cells an element %s", brick[0], brick[1],
-       brick[2], (long long)t.count, (double)t.cells / (double)p->elements, e.text);
+    int failed = tiles_make(&t, p, brick, &e) || (other && reorder(&t, &e));
+    ok(!failed && t.count > 1, "bricks of %d x %d x %d%s: %lld tiles, %.3g cells an element %s", brick[0], brick[1],
+       brick[2], other ? ", another order" : "", (long long)t.count, (double)t.cells / (double)p->elements, e.text);
     by_elements(p, want);
+    ok(!failed && are_extras(p, &t), "%lld nodes have extras", (long long)t.extras);
     ok(!failed && by_tiles(p, &t, got, owned), "each knows what it needs");
     for (int64_t i = 0; i < p->elements; i++)
         once += owned[i] == 1;
@@ -204,6 +243,15 @@ static void make(model *m, script *s, tled_problem *p)
     }
 }
 
+static void add_pulls(script *s, const model *m)
+{
+    static const char text[] = "0 force .08,.09,.09 .05 1,2,3\n0 displace .1,.1,.1,.2,.15,.2 -,0,0\n";
+    err e = {0};
+    in *source = in_memory(text, sizeof text - 1, "script", &e);
+    ok(source && !script_read(s, source, m, NULL, &e), "and nodes are pulled %s", e.text);
+    in_close(source);
+}
+
 static void test_block(const block *what, const char *name)
 {
     static const int bricks[][3] = {{4, 4, 4}, {8, 8, 4}, {8, 8, 8}, {1, 2, 3}};
@@ -213,9 +261,10 @@ static void test_block(const block *what, const char *name)
     err e = {0};
     block_make(what, &m);
     ok(!script_add_contract(&s, &m, what->mixed ? "m=.3,n=.3" : "m=.3", 0, NULL, &e), "a muscle contracts %s", e.text);
+    add_pulls(&s, &m);
     make(&m, &s, &p);
     for (int i = 0; i < 4; i++)
-        test_pass(&p, bricks[i]);
+        test_pass(&p, bricks[i], false), test_pass(&p, bricks[i], true);
     for (int i = 1; i < 9; i++)
         test_rows(&p, i < 5 ? 4 : 16, i * i);
     for (int64_t i = 0; i < 3 * p.nodes; i++)
