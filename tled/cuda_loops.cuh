@@ -150,7 +150,7 @@ static int find_internal(cuda_state *s, err *e)
 
 /* ---- in and out */
 
-typedef struct permutation { /* of arrays in the tiles' order, as the state or in rows, to nodes x 3 in the model's */
+typedef struct permutation { /* of arrays as the state or in rows, to nodes x 3 in the model's order */
     const cuda_state *s;
     const real *from;
     double *to;

@@ -29,7 +29,7 @@ typedef struct cuda_state {
     cuda_size size; /* of its bricks */
     cuda_view<real> view;
     element_shape shape;
-    bool marches; /* by `march`, not by tiles: the state stands node by node */
+    bool marches; /* by `march`, not by tiles: the state stands node by node, in its order */
     struct march march;
     cuda_march walk;            /* what its kernels see */
     char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
@@ -106,9 +106,9 @@ static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
     const int64_t rows = 3 * v->stride;
     s->used = 0;
     if (put(s, &v->tiles, t->tile, t->count, e) || put(s, &v->node_info, t->node_info, t->nodes, e) ||
-        put(s, &v->cell, t->cell, t->cells, e) || put(s, &v->halo_node, t->halo_node, t->halos, e) ||
-        put(s, &v->halo_place, t->halo_place, t->halos, e) || put(s, &v->fibre, t->fibre, 3 * t->directions, e) ||
-        (t->share && put(s, &v->share, t->share, t->cells, e)) ||
+        (t->order && put(s, &v->order, t->order, t->nodes, e)) || put(s, &v->cell, t->cell, t->cells, e) ||
+        put(s, &v->halo_node, t->halo_node, t->halos, e) || put(s, &v->halo_place, t->halo_place, t->halos, e) ||
+        put(s, &v->fibre, t->fibre, 3 * t->directions, e) || (t->share && put(s, &v->share, t->share, t->cells, e)) ||
         (t->mixed && put(s, &v->mixed, t->mixed, t->cells, e)) ||
         (t->mixed && put(s, &v->mixture, numbers->mixture, p->laws, e)) ||
         (t->mixfibre && put(s, &v->mixfibre, t->mixfibre, 3 * t->directions, e)) ||
@@ -237,13 +237,10 @@ static int choose_march(cuda_state *s, err *e)
         return -1;
     if (!slots)
         return 0;
-    int32_t *order = (int32_t *)mem_array(s->tiles.nodes, sizeof *order, "the march", e);
-    for (int32_t k = 0; order && k < s->tiles.nodes; k++)
-        order[s->tiles.node[k]] = k;
-    const int result = order ? march_make(&s->march, s->p, order, slots, e) : -1;
+    if (march_make(&s->march, s->p, slots, e))
+        return -1;
     s->marches = s->march.units > 0;
-    free(order);
-    return result;
+    return s->marches ? tiles_reorder(&s->tiles, s->march.order, e) : 0;
 }
 
 /* The smallest bricks that are all resident: the more there are, the less each has to do. Else the largest that the card has shared

@@ -1,8 +1,8 @@
 /* What the CUDA kernels of tled-run see, and the shape of their blocks; the headers of C that they share with the CPU. A view
  * is passed to kernels by value and owns nothing. S is the type of the state's numbers: float or double.
  *
- * Arrays over nodes are in the tiles' order, one component after another: component a of node n at a * stride + n. Those of the
- * state alone, displacements, velocities and internal forces, may stand node by node: at offset[a] + n * along.
+ * Arrays over nodes are in the tiles' order or, where it marches, in the march's, one component after another: component a of node n at
+ * a * stride + n. Those of the state alone, displacements, velocities and internal forces, may stand node by node: at offset[a] + n * along.
  */
 #ifndef SINEW_CUDA_VIEW_CUH
 #define SINEW_CUDA_VIEW_CUH
@@ -73,6 +73,7 @@ template <class S> struct cuda_view {
     const uint16_t *halo_place;
     const float *fibre, *share; /* share: or NULL, as are: */
     const float *mixfibre;
+    const int32_t *order; /* the tiles' */
     const int32_t *mixed; /* cells: which of: */
     const cuda_mixed *mixture;
     const tile_extra *extra;
@@ -88,7 +89,7 @@ template <class S> struct cuda_view {
 };
 
 /* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on its way
- * at once: first where, then what. ROWS: u stands so, whatever the view says. */
+ * at once: first where, then what. ROWS: u stands so, in the tiles' order, whatever the view says. */
 template <class G, bool ROWS, class S>
 static __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
 {
@@ -99,8 +100,10 @@ static __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *
     for (int k = 0; k < OWN + HALO; k++) {
         const int i = (int)threadIdx.x + (k < OWN ? k : k - OWN) * G::THREADS;
         node[k] = -1;
-        if (k < OWN && i < t.nodes)
-            node[k] = t.node + i, place[k] = v.node_info[t.node + i] & TILE_PLACE;
+        if (k < OWN && i < t.nodes) {
+            node[k] = ROWS || !v.order ? t.node + i : v.order[t.node + i];
+            place[k] = v.node_info[node[k]] & TILE_PLACE;
+        }
         if (k >= OWN && i < t.halos)
             node[k] = v.halo_node[t.halo + i], place[k] = v.halo_place[t.halo + i];
     }

@@ -14,8 +14,8 @@ enum {
     PATCH_Y = 4
 };
 
-/* Threads for each element: with more, bricks are taken. On an H200 blocks of 1.20 and 1.21 were faster so, faces of 1.43
- * (along x, its rows along z) and 1.72 slower. (Tests march all the same.) */
+/* Threads for each element: with more, bricks are taken. On an H200, with nodes still in the order of bricks, blocks of 1.20 and
+ * 1.21 were faster so, faces of 1.43 (along x, its rows along z) and 1.72 slower. (Tests march all the same.) */
 #ifndef MARCH_SPARSE
 #define MARCH_SPARSE 1.35
 #endif
@@ -30,7 +30,6 @@ typedef struct box {
 typedef struct cutter {
     march *m;
     const tled_problem *p;
-    const int32_t *order;
     int32_t *part, *at; /* nodes: its box; nodes x 3: places_find's */
     box *boxes;
     int64_t parts, cells; /* cells: of the arrays below: layers of all columns, filled or not */
@@ -47,6 +46,7 @@ typedef struct spot {
 
 void march_free(march *m)
 {
+    free(m->order);
     free(m->word);
     free(m->unit);
     free(m->detail);
@@ -175,10 +175,10 @@ static int make_layers(cutter *c)
     return c->warps ? 0 : -1;
 }
 
-/* The axes by which the fewest warps have cells, of those that lay_out takes. Rows are along x, as the order of nodes is. */
+/* The axes by which the fewest warps have cells, of those that lay_out takes; of several, the first. */
 static int choose_axes(cutter *c)
 {
-    static const int all[][3] = {{0, 1, 2}, {0, 2, 1}};
+    static const int all[][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
     enum { CHOICES = sizeof all / sizeof *all };
     int64_t least = INT64_MAX;
     int best = -1;
@@ -245,10 +245,29 @@ static int put_words(cutter *c)
         for (int k = spots_of(c, n, false, at); k--;)
             if (c->slot[at[k].layer] >= 0)
                 m->word[MARCH_WORDS * (int64_t)c->slot[at[k].layer] + word_of(at[k].i, at[k].j)] =
-                    (uint32_t)c->order[n] | MARCH_THERE | (k ? 0 : MARCH_OWN);
+                    (uint32_t)n | MARCH_THERE | (k ? 0 : MARCH_OWN);
     for (int64_t i = 0; i < c->p->elements; i++)
         for (int k = spots_of(c, c->p->element_node[8 * i], true, at); k--;)
             m->word[MARCH_WORDS * (int64_t)c->slot[at[k].layer] + word_of(at[k].i, at[k].j)] |= MARCH_CELL;
+    return 0;
+}
+
+/* Orders the nodes as words own them, and says in all words where theirs stands. */
+static int order_nodes(cutter *c)
+{
+    march *m = c->m;
+    int32_t count = 0;
+    m->order = mem_array(c->p->nodes, sizeof *m->order, "the march", c->e);
+    if (!m->order)
+        return -1;
+    for (const uint32_t *layer = m->word; layer < m->word + MARCH_WORDS * m->layers; layer += MARCH_WORDS)
+        for (int32_t j = 1; j <= OWNED; j++)
+            for (int32_t i = 1; i <= OWNED; i++)
+                if (layer[word_of(i, j)] & MARCH_OWN)
+                    m->order[layer[word_of(i, j)] & MARCH_NODE] = count++;
+    for (uint32_t *word = m->word; word < m->word + MARCH_WORDS * m->layers; word++)
+        if (*word & MARCH_THERE)
+            *word = (*word & ~(uint32_t)MARCH_NODE) | (uint32_t)m->order[*word & MARCH_NODE];
     return 0;
 }
 
@@ -333,10 +352,10 @@ static void mark_units(march *m)
             m->unit[i].special |= m->detail[m->unit[i].base + k] >= 0;
 }
 
-int march_make(march *m, const tled_problem *p, const int32_t *order, int64_t slots, err *e)
+int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
 {
     memset(m, 0, sizeof *m);
-    cutter c = {.m = m, .p = p, .order = order, .e = e};
+    cutter c = {.m = m, .p = p, .e = e};
     march_runs runs = {0};
     int result = -1;
     if (p->nodes > MARCH_NODE)
@@ -348,7 +367,7 @@ int march_make(march *m, const tled_problem *p, const int32_t *order, int64_t sl
     result = 0;
     if (m->computed == 0 || m->computed > MARCH_SPARSE)
         goto out;
-    result = number_layers(&c, &runs) || put_words(&c) || put_special(&c)
+    result = number_layers(&c, &runs) || put_words(&c) || order_nodes(&c) || put_special(&c)
                  ? -1
                  : march_runs_cut(&runs, slots, &m->unit, &m->units, e);
     if (!result)

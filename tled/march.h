@@ -7,9 +7,12 @@
  * there. A layer's words stand in the order of threads, each warp having 8 by 4 of them, so that warps without any cell in a layer,
  * as in a shell, have little to do; then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
  *
- * Rows go along x, and the march along y or z, by which fewer warps have cells, summed over layers; a unit is what one block does: layers in
- * a row. Columns are cut into units so that they take the card the shortest time, by a model: a layer takes a block 2, and 1 for each
- * warp with cells, a unit 10 more; the longest units start first, and each that ends is followed by the next.
+ * Nodes stand in an order of the march's own: by part and column, each in the one that owns it, then by layer, then row by row. So what
+ * a column owns of a layer stands in one piece, whatever axes are taken.
+ *
+ * The axes are those by which the fewest warps have cells, summed over layers; a unit is what one block does: layers in a row. Columns
+ * are cut into units so that they take the card the shortest time, by a model: a layer takes a block 2, and 1 for each warp with
+ * cells, a unit 10 more; the longest units start first, and each that ends is followed by the next.
  * The creator owns the march; it holds no pointer into the problem.
  */
 #ifndef SINEW_MARCH_H
@@ -22,7 +25,7 @@ enum {
     MARCH_THREADS = 256,        /* cells of a layer */
     MARCH_WORDS = 296,          /* of a layer: 256 and 33, and 7 of no use */
     MARCH_AHEAD = 4,            /* layers of nothing after the last, which are read before they are known to be none */
-    MARCH_NODE = (1 << 28) - 1, /* of a word: the node, in the caller's order */
+    MARCH_NODE = (1 << 28) - 1, /* of a word: where its node stands */
     MARCH_SPECIAL = 1 << 28,    /* its cell is not of the plain law: see `which` */
     MARCH_THERE = 1 << 29,      /* there is a node */
     MARCH_OWN = 1 << 30         /* and this column moves it */
@@ -45,6 +48,7 @@ typedef struct march {
     int32_t plain; /* the volume of plain cells */
     int64_t layers, units, details, cells, directions;
     double computed;  /* threads of warps with cells, over elements */
+    int32_t *order;   /* nodes: where each stands */
     uint32_t *word;   /* (layers + MARCH_AHEAD) x MARCH_WORDS */
     march_unit *unit; /* units: none where the problem is not suited */
     int32_t *detail;  /* layers: where its special cells stand in `which`, in layers; or -1 */
@@ -53,9 +57,9 @@ typedef struct march {
     float *fibre, *mixfibre; /* directions x 3, along the model's axes; mixfibre: or NULL */
 } march;
 
-/* order: of each node, where it stands among all; slots: blocks that the card runs at once. A problem whose cells fill too few
- * threads has no units. -1 with e filled, and m to be freed all the same. */
-int march_make(march *m, const tled_problem *p, const int32_t *order, int64_t slots, err *e);
+/* slots: blocks that the card runs at once. A problem whose cells fill too few threads has no units, and no order. -1 with e
+ * filled, and m to be freed all the same. */
+int march_make(march *m, const tled_problem *p, int64_t slots, err *e);
 void march_free(march *m);
 
 #endif

@@ -1,6 +1,7 @@
 /* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners, and what is
- * said of special cells is the problem's. Along either axis; in two parts as well; and not where too few threads would
- * have a cell. And units: as many as there is room for at once where their layers are all alike.
+ * said of special cells is the problem's. Nodes stand in one order, in which what is owned of a layer is one piece. With each of the
+ * six axes; and not where too few threads would have a cell. And units: as many as there is room for at once where their layers are
+ * all alike.
  */
 // needs: tled/march.c tled/march_units.c tled/places.c tled/*.c
 #include "mesh/lattice.h"
@@ -15,6 +16,7 @@
 typedef struct seen {
     const tled_problem *p;
     const march *m;
+    int32_t *node;    /* of the march's order: the problem's */
     int32_t *element; /* nodes: whose low corner it is, or -1 */
     int32_t *elements, *moved;
     int64_t wrong, special;
@@ -29,6 +31,30 @@ static uint32_t word_at(const march *m, int64_t layer, int i, int j)
     if (j == MARCH_SIDE)
         return word[MARCH_THREADS + MARCH_SIDE + 1 + i];
     return word[32 * (i / 8 + 2 * (j / 4)) + 8 * (j % 4) + i % 8];
+}
+
+static int32_t node_of(const seen *s, uint32_t word)
+{
+    return s->node[word & MARCH_NODE];
+}
+
+/* Whether owned nodes stand as they come in layers, each in a row of its place; and all nodes are owned. Notes which stands where. */
+static bool in_order(seen *s)
+{
+    int32_t next = 0;
+    for (int32_t n = 0; n < s->p->nodes; n++)
+        if (s->m->order[n] >= 0 && s->m->order[n] < s->p->nodes)
+            s->node[s->m->order[n]] = n;
+    for (int32_t n = 0; n < s->p->nodes; n++)
+        s->wrong += s->m->order[s->node[n]] != n;
+    for (int64_t layer = 0; layer < s->m->layers; layer++)
+        for (int j = 0; j <= MARCH_SIDE; j++)
+            for (int i = 0; i <= MARCH_SIDE; i++) {
+                const uint32_t word = word_at(s->m, layer, i, j);
+                s->wrong += word & MARCH_OWN && (int32_t)(word & MARCH_NODE) != next;
+                next += (word & MARCH_OWN) != 0;
+            }
+    return !s->wrong && next == s->p->nodes;
 }
 
 static int corner_of(const march *m, const int way[3])
@@ -58,8 +84,8 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
 static void see_cell(seen *s, const march_unit *u, int c, int i, int j)
 {
     const uint32_t own = word_at(s->m, u->base + c, i, j);
-    const int32_t element = s->element[own & MARCH_NODE];
-    if (!(own & MARCH_THERE) || element < 0) {
+    const int32_t element = own & MARCH_THERE ? s->element[node_of(s, own)] : -1;
+    if (element < 0) {
         s->wrong++;
         return;
     }
@@ -69,7 +95,7 @@ static void see_cell(seen *s, const march_unit *u, int c, int i, int j)
         const int way[3] = {k & 1, k >> 1 & 1, k >> 2};
         const int layer = c + way[2];
         const uint32_t word = word_at(s->m, u->base + layer, i + way[0], j + way[1]);
-        const int32_t node = (int32_t)(word & MARCH_NODE);
+        const int32_t node = node_of(s, word);
         s->wrong += !(word & MARCH_THERE) || node != s->p->element_node[8 * (int64_t)element + corner_of(s->m, way)];
         if (word & MARCH_OWN && layer > 0 && layer < u->cells)
             s->elements[node]++;
@@ -83,7 +109,7 @@ static void see_unit(seen *s, const march_unit *u)
             for (int i = 0; i < MARCH_SIDE; i++) {
                 const uint32_t word = word_at(s->m, u->base + c, i, j);
                 if (word & MARCH_OWN && c > 0)
-                    s->moved[word & MARCH_NODE]++;
+                    s->moved[node_of(s, word)]++;
                 if (word & MARCH_CELL)
                     see_cell(s, u, c, i, j);
             }
@@ -107,7 +133,7 @@ static bool all_seen(seen *s)
     return !s->wrong;
 }
 
-static void test_cut(const block *what, int axis, bool scripted, int64_t slots, const char *name)
+static void test_cut(const block *what, const int axis[3], bool scripted, int64_t slots, const char *name)
 {
     model m = {0};
     script played = {0};
@@ -119,14 +145,13 @@ static void test_cut(const block *what, int axis, bool scripted, int64_t slots, 
         printf("Bail out! %s\n", e.text);
     if (tled_problem_make(&p, &m, &played, .0075, &e))
         printf("Bail out! %s\n", e.text);
-    int32_t *list = calloc((size_t)p.nodes * 4, sizeof *list), *order = list + 3 * p.nodes;
-    for (int32_t n = 0; n < p.nodes; n++)
-        order[n] = n;
-    const int failed = march_make(&cut, &p, order, slots, &e);
-    seen s = {&p, &cut, list, list + p.nodes, list + 2 * p.nodes, 0, 0};
-    ok(!failed && cut.units > 0 && cut.axis[2] == axis && all_seen(&s),
-       "%s: along %c, %lld units, %.3g threads an element: each node moved once, of all its elements %s", name,
-       "xyz"[cut.axis[2]], (long long)cut.units, cut.computed, e.text);
+    int32_t *list = calloc((size_t)p.nodes * 4, sizeof *list);
+    const int failed = march_make(&cut, &p, slots, &e);
+    seen s = {&p, &cut, list, list + p.nodes, list + 2 * p.nodes, list + 3 * p.nodes, 0, 0};
+    ok(!failed && cut.units > 0 && in_order(&s), "%s: nodes stand as they are owned %s", name, e.text);
+    ok(cut.units > 0 && !memcmp(cut.axis, axis, sizeof cut.axis) && all_seen(&s),
+       "%s: rows along %c, across %c, %lld units, %.3g threads an element: each node moved once, of all its elements",
+       name, "xyz"[cut.axis[0]], "xyz"[cut.axis[1]], (long long)cut.units, cut.computed);
     const bool all = scripted || what->fraction < 0;
     ok(all ? s.special >= p.elements : s.special == (cut.cells ? s.special : 0),
        "%s: %lld special cells are the problem's", name, (long long)s.special);
@@ -147,13 +172,10 @@ static void test_thin(void)
     march cut;
     err e = {0};
     block_make(&thin, &m);
-    int32_t *order = NULL;
-    const int failed = tled_problem_make(&p, &m, &played, .0075, &e) ||
-                       !(order = calloc((size_t)p.nodes, sizeof *order)) || march_make(&cut, &p, order, 396, &e);
-    ok(!failed && cut.units == 0, "a row of elements is none for a march: %.3g threads an element %s", cut.computed,
-       e.text);
+    const int failed = tled_problem_make(&p, &m, &played, .0075, &e) || march_make(&cut, &p, 396, &e);
+    ok(!failed && cut.units == 0 && !cut.order, "a row of elements is none for a march: %.3g threads an element %s",
+       cut.computed, e.text);
     march_free(&cut);
-    free(order);
     tled_problem_free(&p);
     model_free(&m);
 }
@@ -183,19 +205,24 @@ static void test_units(void)
 int main(void)
 {
     const block tall = {{33, 31, 40}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
+    static const int axes[][3] = {{2, 0, 1}, {0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 1, 0}},
+                     sides[] = {27, 18, 9};
     block flat = tall, cut = tall, mixed = tall;
     cut.fraction = -1;
     mixed.fraction = -1;
     mixed.mixed = true;
-    test_cut(&tall, 1, false, 7, "a block");
-    for (int a = 1; a < 3; a++) {
-        flat.cells[0] = flat.cells[3 - a] = 44;
-        flat.cells[a] = 20;
-        test_cut(&flat, a, false, 400, "a flat block");
+    test_cut(&tall, axes[0], false, 7, "a block");
+    for (int i = 0; i < 6; i++) {
+        for (int a = 0; a < 3; a++)
+            flat.cells[axes[i][a]] = sides[a];
+        test_cut(&flat, axes[i], false, 40, "a flat block");
     }
-    test_cut(&tall, 1, true, 20, "a muscle");
-    test_cut(&cut, 1, false, 20, "cut elements");
-    test_cut(&mixed, 1, false, 3, "mixed elements");
+    for (int a = 0; a < 3; a++)
+        flat.cells[a] = 29;
+    test_cut(&flat, axes[1], false, 40, "a cube");
+    test_cut(&tall, axes[0], true, 20, "a muscle");
+    test_cut(&cut, axes[0], false, 20, "cut elements");
+    test_cut(&mixed, axes[0], false, 3, "mixed elements");
     test_thin();
     test_units();
     return done_testing();
