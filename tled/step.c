@@ -10,6 +10,12 @@ void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h
     stability_matrix(law->mu, law->bulk, law->density, p->side, h, fibre, second, a);
 }
 
+stability_range step_range_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
+                              element_fibre second)
+{
+    return stability_range_of(law->mu, law->bulk, law->density, p->side, h, fibre, second);
+}
+
 bool step_below(const step_matrix *a, double limit)
 {
     return stability_below(a, limit);

@@ -22,6 +22,10 @@ double step_at_rest(const tled_problem *p, int32_t *volume);
 void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
                     element_fibre second, step_matrix *a);
 
+/* Between which its largest eigenvalue lies, without it; not finite where anything is not. */
+stability_range step_range_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
+                              element_fibre second);
+
 /* Whether all its eigenvalues are below the limit; false where anything is not finite. */
 bool step_below(const step_matrix *a, double limit);
 

@@ -29,27 +29,40 @@ static element_fibre fibre_of(const watch *w, const float *along, int64_t i, int
     return fibre;
 }
 
-/* Where an element's matrix reaches past the largest frequency of its chunk, that is raised to 1 % above the element's: so few
- * elements need more than one test. */
+static void take_frequency(struct watch_part *part, int64_t i, double square)
+{
+    part->sum.frequency = square;
+    part->sum.frequency_element = i;
+}
+
+static void look_at_conforming(const watch *w, int64_t i, element_tensor h, struct watch_part *part)
+{
+    const tled_problem *p = w->p;
+    step_matrix a;
+    conforming_matrix(p, i, h, fibre_of(w, p->fibre, i, p->element_volume[i], 1), &a);
+    if (!step_below(&a, conforming_room(p, i, part->sum.frequency)))
+        take_frequency(part, i, w->raise * conforming_square(p, i, step_largest(&a)));
+}
+
+/* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far. Where they are
+ * too wide the matrix tells, and the frequency is raised to 1 % above the element's: so few need more than one test. */
 static void look_at_step(const watch *w, const tled_law *law, int64_t i, element_tensor h, struct watch_part *part)
 {
     const tled_problem *p = w->p;
     const double s = tled_mixture(p, i);
+    const element_fibre own = fibre_of(w, p->fibre, i, p->element_volume[i], 1 - s);
+    const element_fibre other = fibre_of(w, p->mixfibre, i, tled_mix(p, i), s);
+    const stability_range range = step_range_of(p, law, h, own, other);
     step_matrix a;
-    if (p->conforming) {
-        conforming_matrix(p, i, h, fibre_of(w, p->fibre, i, p->element_volume[i], 1), &a);
-        if (step_below(&a, conforming_room(p, i, part->sum.frequency)))
-            return;
-        part->sum.frequency = w->raise * conforming_square(p, i, step_largest(&a));
-        part->sum.frequency_element = i;
+    if (range.high <= part->sum.frequency)
+        return;
+    if (range.high <= w->raise * range.low) {
+        take_frequency(part, i, range.high);
         return;
     }
-    step_matrix_of(p, law, h, fibre_of(w, p->fibre, i, p->element_volume[i], 1 - s),
-                   fibre_of(w, p->mixfibre, i, tled_mix(p, i), s), &a);
-    if (step_below(&a, part->sum.frequency))
-        return;
-    part->sum.frequency = w->raise * step_largest(&a);
-    part->sum.frequency_element = i;
+    step_matrix_of(p, law, h, own, other, &a);
+    if (!step_below(&a, part->sum.frequency))
+        take_frequency(part, i, w->raise * step_largest(&a));
 }
 
 static void look_at_element(const watch *w, int64_t i, element_shape box, struct watch_part *part)
@@ -62,7 +75,10 @@ static void look_at_element(const watch *w, int64_t i, element_shape box, struct
         return;
     }
     part->sum.strain += tled_fraction(w->p, i) * (d.energy * d.rest + d.hourglass);
-    look_at_step(w, &d.law, i, d.h, part);
+    if (w->p->conforming)
+        look_at_conforming(w, i, d.h, part);
+    else
+        look_at_step(w, &d.law, i, d.h, part);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)

@@ -83,6 +83,50 @@ static void test_matrix(element_tensor h, element_fibre fibre, element_fibre sec
 }
 
 /* The internal forces of the whole block, element by element. */
+/* Numbers from -1 to 1, the same in every run. */
+static double number(void)
+{
+    static uint32_t seed = 1;
+    seed = seed * 1664525 + 1013904223;
+    return (double)seed / 2147483648. - 1;
+}
+
+static element_fibre fibre_by_chance(double tension)
+{
+    element_fibre fibre = {{number(), number(), number()}, tension};
+    const double length = element_length(fibre.along);
+    fibre.along.x /= length, fibre.along.y /= length, fibre.along.z /= length;
+    return fibre;
+}
+
+/* Bounds of the largest eigenvalue hold at gradients up to `strain`, with muscles of up to `tension`; in the median they are as
+ * near each other as `near`. */
+static void test_range(double mu, double bulk, double strain, double tension, double near)
+{
+    int wrong = 0, close = 0, count = 0;
+    while (count < 2000) {
+        const double side[3] = {.01 + .005 * number(), .01 + .005 * number(), .01};
+        double entry[9];
+        element_tensor h;
+        step_matrix a;
+        for (int i = 0; i < 9; i++)
+            entry[i] = strain * number();
+        memcpy(&h, entry, sizeof h);
+        const element_fibre first = fibre_by_chance(tension * number()), second = fibre_by_chance(tension);
+        if (!(element_dilation(h) > -.9))
+            continue;
+        count++;
+        stability_matrix(mu, bulk, 1000, side, h, first, second, &a);
+        const stability_range range = stability_range_of(mu, bulk, 1000, side, h, first, second);
+        const double largest = stability_largest(&a);
+        wrong += !(range.low <= largest && largest <= range.high);
+        close += range.high <= (1 + near) * range.low;
+    }
+    ok(!wrong, "bounds of %d eigenvalues, mu %g, K %g, H to %g, tension %g: %d wrong", count, mu, bulk, strain, tension,
+       wrong);
+    ok(close > count / 2, "half of them within %g: %d", near, close);
+}
+
 static void pull(const tled_problem *p, const double *u, double *f)
 {
     element_shape shape = element_box(p->side[0], p->side[1], p->side[2]);
@@ -201,6 +245,16 @@ static void test_rate(void)
     near_(step_rate(1, &check), 100, 0, "never fewer than 100");
 }
 
+static void test_ranges(void)
+{
+    test_range(1000, 9700, 0, 0, .001);   /* nu = .45, at rest */
+    test_range(1000, 49700, .2, 0, .001); /* nu = .49 */
+    test_range(1000, 9700, .1, 3000, .5);
+    test_range(1000, 9700, .3, 30000, 10);
+    test_range(1000, 2000, .5, 3000, 1);
+    test_range(1000, 300, .5, 1000, 10);
+}
+
 int main(void)
 {
     const element_tensor bent = {.2, .3, -.1, .05, -.2, .2, -.15, .1, .1}, rest = {0};
@@ -222,5 +276,6 @@ int main(void)
     test_mixed(1, .49, .95);
     test_mixed(5, .3, .4);
     test_rate();
+    test_ranges();
     return done_testing();
 }
