@@ -6,7 +6,7 @@ extern "C" {
 }
 #include "tled/cuda_view.cuh"
 
-enum { NODE_THREADS = 256, SUM_THREADS = 256 };
+enum { NODE_THREADS = 256, SUM_THREADS = 256, SOLVERS = 512 /* blocks, of matrices_kernel */ };
 
 typedef struct look_nodes { /* of a block; tled_sums' */
     double kinetic, acceleration, speed, moved, mass, stiffness, inertia, largest;
@@ -15,6 +15,7 @@ typedef struct look_nodes { /* of a block; tled_sums' */
 typedef struct look_cells { /* of a tile */
     double strain, frequency;
     int32_t frequency_cell, broken; /* cells, or -1 */
+    int32_t open;                   /* its frequency is not known by bounds: matrices_kernel's */
 } look_cells;
 
 static int64_t node_blocks(int64_t nodes)
@@ -61,10 +62,12 @@ static __device__ int block_least(int mine, int *shared)
     return *shared;
 }
 
-typedef struct one_cell { /* what a thread found of its cell */
-    double strain;
-    bool broken;
-    step_matrix matrix;
+/* What a thread's cell is made of, and how it is deformed. */
+typedef struct one_cell {
+    cuda_mixed own;
+    element_tensor h;
+    element_fibre fibre, mixfibre;
+    double hourglass; /* its energy */
 } one_cell;
 
 /* along: over cells that may contract, or NULL; share: of the tissue that is of this kind. */
@@ -81,38 +84,94 @@ static __device__ element_fibre look_fibre(const cuda_look<S> &l, const tile &t,
     return fibre;
 }
 
-template <class G, class S>
-static __device__ void look_at_cell(const cuda_look<S> &l, const tile &t, int i, const S *u, one_cell *c)
+template <class G, class S> static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u)
 {
     const cuda_view<S> &v = l.view;
     const uint32_t cell = v.cell[t.cell + i];
     const int place = cell & TILE_PLACE;
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
     const int32_t mixed = v.mixed ? v.mixed[t.cell + i] : -1;
-    cuda_mixed own = {kind.mu, kind.bulk, kind.density, kind.hourglass, 0, (int32_t)(cell >> TILE_VOLUME)};
-    if (mixed >= 0)
-        own = v.mixture[mixed];
     const element_shape shape = element_box(v.side[0], v.side[1], v.side[2]);
     element_modes x = element_modes_of(cuda_corners<G>(u, place));
     element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
     element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
-    element_tensor h = element_gradient(x, y, z, shape.slope);
-    const element_fibre fibre = look_fibre(l, t, i, v.fibre, kind, 1 - own.share);
-    const element_fibre mixfibre = look_fibre(l, t, i, mixed < 0 ? NULL : v.mixfibre, v.kind[own.mix], own.share);
-    double volume = 1 + element_dilation(h);
-    double energy = element_energy(h, own.mu, own.bulk);
-    double hourglass = element_hourglass_energy(x, own.hourglass) + element_hourglass_energy(y, own.hourglass) +
-                       element_hourglass_energy(z, own.hourglass);
-    c->broken = !(volume > 0) || !isfinite(energy) || !isfinite(hourglass);
-    c->strain = (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + hourglass);
-    stability_matrix(own.mu, own.bulk, own.density, v.side, h, fibre, mixfibre, &c->matrix);
+    one_cell c;
+    c.own = {kind.mu, kind.bulk, kind.density, kind.hourglass, 0, (int32_t)(cell >> TILE_VOLUME)};
+    if (mixed >= 0)
+        c.own = v.mixture[mixed];
+    c.h = element_gradient(x, y, z, shape.slope);
+    c.fibre = look_fibre(l, t, i, v.fibre, kind, 1 - c.own.share);
+    c.mixfibre = look_fibre(l, t, i, mixed < 0 ? NULL : v.mixfibre, v.kind[c.own.mix], c.own.share);
+    c.hourglass = element_hourglass_energy(x, c.own.hourglass) + element_hourglass_energy(y, c.own.hourglass) +
+                  element_hourglass_energy(z, c.own.hourglass);
+    return c;
+}
+
+/* Its strain energy; not finite where the cell is broken. */
+template <class S> static __device__ double strain_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
+{
+    const cuda_view<S> &v = l.view;
+    const double energy = element_energy(c.h, c.own.mu, c.own.bulk);
+    if (!(1 + element_dilation(c.h) > 0) || !isfinite(energy) || !isfinite(c.hourglass))
+        return INFINITY;
+    return (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + c.hourglass);
 }
 
 /* What a tile's block knows of its highest frequency so far. */
 typedef struct highest {
-    double limit;
+    double limit, proven; /* no cell is past limit; one reaches proven, or that is the one at rest */
     int32_t cell;
+    bool open; /* or nothing is known */
 } highest;
+
+/* Raises the limit to the highest bound of those past it. That it is too high by `raise` at most is to be known, too. */
+template <int THREADS>
+static __device__ void raise_by_bounds(stability_range range, bool past, double raise, int32_t cell, highest *h,
+                                       double *scratch, int *least)
+{
+    const double bound = isnan(range.high) ? INFINITY : range.high;
+    h->proven = fmax(block_sum<THREADS>(past ? range.low : 0, true, scratch), h->proven);
+    h->limit = block_sum<THREADS>(past ? bound : 0, true, scratch);
+    h->cell = block_least(past && bound == h->limit ? cell : INT32_MAX, least);
+    h->open = h->limit > raise * h->proven;
+}
+
+/* Bounds of frequencies alone, so that the numbers of matrices are in nobody's way. */
+template <class G, class S>
+static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
+    cells_kernel(const __grid_constant__ cuda_look<S> l, look_cells *out)
+{
+    __shared__ S u[3 * G::PLACES];
+    __shared__ double scratch[G::THREADS];
+    __shared__ int least;
+    const tile t = l.view.tiles[blockIdx.x];
+    cuda_load<G, false>(l.view, t, l.displacement, u);
+    __syncthreads();
+    highest h = {l.question.rest, l.question.rest, -1, false};
+    double strain = 0;
+    int broken = INT32_MAX;
+    for (int base = 0; base < t.cells; base += G::THREADS) {
+        const int i = base + (int)threadIdx.x;
+        const bool mine = i < t.cells && l.view.cell[t.cell + i] >> TILE_OWN & 1;
+        stability_range range = {0, 0};
+        double own = 0;
+        if (mine) {
+            const one_cell c = cell_of<G>(l, t, i, u);
+            own = strain_of(l, t, i, c);
+            range = stability_range_of(c.own.mu, c.own.bulk, c.own.density, l.view.side, c.h, c.fibre, c.mixfibre);
+        }
+        const bool whole = own < INFINITY, past = mine && whole && !(range.high <= h.limit);
+        if (!whole && broken == INT32_MAX)
+            broken = t.cell + i;
+        strain += whole ? own : 0;
+        if (__syncthreads_or(past))
+            raise_by_bounds<G::THREADS>(range, past, l.question.raise, t.cell + i, &h, scratch, &least);
+    }
+    strain = block_sum<G::THREADS>(strain, false, scratch);
+    broken = block_least(broken, &least);
+    if (threadIdx.x == 0)
+        out[blockIdx.x] = {strain, h.limit, h.cell, broken == INT32_MAX ? -1 : broken, h.open};
+}
 
 /* Some thread's matrix reaches past the limit: raises it by halving until it is the highest, or too high by `raise` at most. */
 template <int THREADS>
@@ -138,37 +197,52 @@ static __device__ void raise_limit(const step_matrix *a, bool past, double raise
     h->cell = which;
 }
 
+/* The frequency of a tile by its cells' matrices. */
 template <class G, class S>
-static __global__ void __launch_bounds__(G::THREADS) cells_kernel(cuda_look<S> l, look_cells *out)
+static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, look_cells *out, S *u, double *scratch,
+                                  int *least)
+{
+    highest h = {l.question.rest, 0, -1, false};
+    __syncthreads();
+    cuda_load<G, false>(l.view, t, l.displacement, u);
+    __syncthreads();
+    for (int base = 0; base < t.cells; base += G::THREADS) {
+        const int i = base + (int)threadIdx.x;
+        bool past = i < t.cells && l.view.cell[t.cell + i] >> TILE_OWN & 1;
+        step_matrix a;
+        if (past) {
+            const one_cell c = cell_of<G>(l, t, i, u);
+            past = strain_of(l, t, i, c) < INFINITY;
+            stability_matrix(c.own.mu, c.own.bulk, c.own.density, l.view.side, c.h, c.fibre, c.mixfibre, &a);
+        }
+        past = past && !stability_below(&a, h.limit);
+        if (__syncthreads_or(past))
+            raise_limit<G::THREADS>(&a, past, l.question.raise, t.cell + i, &h, scratch, least);
+    }
+    if (threadIdx.x == 0) {
+        out->frequency = h.limit;
+        out->frequency_cell = h.cell;
+    }
+}
+
+/* Goes through tiles, every gridDim.x-th, for those that are open. */
+template <class G, class S>
+static __global__ void __launch_bounds__(G::THREADS)
+    matrices_kernel(const __grid_constant__ cuda_look<S> l, look_cells *out)
 {
     __shared__ S u[3 * G::PLACES];
     __shared__ double scratch[G::THREADS];
     __shared__ int least;
-    const tile t = l.view.tiles[blockIdx.x];
-    cuda_load<G, false>(l.view, t, l.displacement, u);
-    __syncthreads();
-    highest h = {l.question.rest, -1};
-    double strain = 0;
-    int broken = INT32_MAX;
-    for (int base = 0; base < t.cells; base += G::THREADS) {
-        const int i = base + (int)threadIdx.x;
-        const bool mine = i < t.cells && l.view.cell[t.cell + i] >> TILE_OWN & 1;
-        one_cell c;
-        c.broken = false;
-        if (mine)
-            look_at_cell<G>(l, t, i, u, &c);
-        if (c.broken && broken == INT32_MAX)
-            broken = t.cell + i;
-        const bool whole = mine && !c.broken;
-        strain += whole ? c.strain : 0;
-        const bool past = whole && !stability_below(&c.matrix, h.limit);
-        if (__syncthreads_or(past))
-            raise_limit<G::THREADS>(&c.matrix, past, l.question.raise, t.cell + i, &h, scratch, &least);
+    const int64_t stride = gridDim.x;
+    for (int64_t base = blockIdx.x; base < l.count; base += G::THREADS * stride) {
+        const int64_t own = base + threadIdx.x * stride;
+        int next = own < l.count && out[own].open ? (int)threadIdx.x : INT32_MAX;
+        for (int which; (which = block_least(next, &least)) != INT32_MAX;) {
+            const int64_t at = base + which * stride;
+            solve_tile<G>(l, l.view.tiles[at], &out[at], u, scratch, &least);
+            next = next == which ? INT32_MAX : next;
+        }
     }
-    strain = block_sum<G::THREADS>(strain, false, scratch);
-    broken = block_least(broken, &least);
-    if (threadIdx.x == 0)
-        out[blockIdx.x] = {strain, h.limit, h.cell, broken == INT32_MAX ? -1 : broken};
 }
 
 template <class S> static __device__ void look_at_node(const cuda_look<S> &l, int32_t n, look_nodes *to)
@@ -290,7 +364,10 @@ template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums 
     const int64_t blocks = node_blocks(l->view.nodes);
     cudaError_t e = with_brick(l->size, [&](auto g) {
         typedef decltype(g) G;
-        return card_start(cells_kernel<G, S>, {l->count, G::THREADS, 0, stream}, *l, cells);
+        const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
+        const cudaError_t bounds = card_start(cells_kernel<G, S>, {l->count, G::THREADS, 0, stream}, *l, cells);
+        return bounds == cudaSuccess ? card_start(matrices_kernel<G, S>, {solvers, G::THREADS, 0, stream}, *l, cells)
+                                     : bounds;
     });
     e = e == cudaSuccess ? card_start(nodes_kernel<S>, {blocks, NODE_THREADS, 0, stream}, *l, nodes) : e;
     return e == cudaSuccess ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, cells, l->count, nodes, blocks,

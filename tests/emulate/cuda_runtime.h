@@ -69,7 +69,7 @@ static inline double __hiloint2double(int high, int low)
 
 /* ---- of a thread */
 
-extern dim3 threadIdx, blockIdx;
+extern dim3 threadIdx, blockIdx, gridDim;
 void __syncthreads();
 int __syncthreads_or(int value);
 void __syncwarp();

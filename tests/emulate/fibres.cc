@@ -11,7 +11,7 @@
 
 __thread fibre *now;
 emulated_card card;
-dim3 threadIdx, blockIdx;
+dim3 threadIdx, blockIdx, gridDim;
 
 /* The launch that runs, and what went wrong in one before: a card's state, of which there is one. */
 static struct {
@@ -197,6 +197,7 @@ static void run_threads()
 static void run_blocks(const uint32_t *order, size_t count, const cudaLaunchConfig_t *how)
 {
     const size_t threads = how->blockDim.x;
+    gridDim = how->gridDim;
     if (machine.blocks.size() < count)
         machine.blocks.resize(count);
     if (machine.fibres.size() < count * threads)
