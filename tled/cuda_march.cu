@@ -2,8 +2,8 @@
  * and xy of each component, sums and differences over four corners) and of forces on them; so an element takes one new face, and a
  * node the sums of one. Compiled with fused multiplications and additions: its bytes are not the processor's.
  *
- * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from three layers before
- * they are wanted. Forces on neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells of the
+ * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from four layers before
+ * they are wanted, velocities from two, and have the time of two layers of cells for that. Forces on neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells of the
  * next one are computed: a warp says that it is done with a layer, and only after it has computed the next one does it wait until
  * all have said so, so that those with fewer cells seldom keep others waiting.
  */
@@ -16,13 +16,14 @@ extern "C" {
 
 enum {
     SIDE = MARCH_SIDE,
-    GRID = SIDE + 1, /* nodes along a side */
-    NODE = 16,       /* bytes of 4 floats, of a node's displacement, velocity or force */
-    STAGES = 5,      /* layers of displacements in shared memory */
+    GRID = SIDE + 1,          /* nodes along a side */
+    NODE = 16,                /* bytes of 4 floats, of a node's displacement, velocity or force */
+    STAGES = MARCH_AHEAD + 1, /* layers of displacements in shared memory */
     STAGE = GRID * GRID * NODE,
-    VELOCITIES = STAGES * STAGE, /* from here on the place of a node has as much room, and one grid fewer rows */
+    VELOCITIES =
+        STAGES * STAGE, /* two layers; from here on the place of a node has as much room, and one grid fewer rows */
     FORCE = GRID * SIDE * NODE,
-    FORCES = VELOCITIES + FORCE, /* two times four of them: on corners (1, 0), (0, 1), (1, 1), (0, 0) */
+    FORCES = VELOCITIES + 2 * FORCE, /* two times four of them: on corners (1, 0), (0, 1), (1, 1), (0, 0) */
     FORCES_EACH = 4 * FORCE,
     SHARED = FORCES + 2 * FORCES_EACH,
     WARPS = MARCH_THREADS / 32,
@@ -245,12 +246,12 @@ __shared__ float4 gravity; /* its part of a velocity */
 
 /* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces on it. It is worked on where it
  * stands in shared memory, component by component: few nodes are such, and others are to keep their registers. */
-static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
+static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, uint32_t speed,
                                                  uint32_t word, uint32_t node, uint32_t bits, int a, float pull)
 {
     const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)(word & MARCH_NODE)) : NULL;
     const int axis = m.axis[a];
-    float u = shared_number(node + 4 * a), v = shared_number(at + VELOCITIES + 4 * a), net = -pull;
+    float u = shared_number(node + 4 * a), v = shared_number(speed + 4 * a), net = -pull;
     for (int32_t k = 0; x && k < x->forces; k++)
         net += (float)(m.v.force_share[x->force + k] * p.now[3 * m.v.force_curve[x->force + k] + axis]);
     if (bits >> (MARCH_FREE + a) & 1) {
@@ -266,12 +267,12 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
         u = to;
     }
     shared_number_store(node + 4 * a, u);
-    shared_number_store(at + VELOCITIES + 4 * a, v);
+    shared_number_store(speed + 4 * a, v);
 }
 
-/* The forces at a thread's node, and its step, if it is owned; forces, node: where its forces and displacement stand. */
-static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, uint32_t at,
-                                                 uint32_t forces, uint32_t node)
+/* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its forces, displacement and velocity stand. */
+static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, uint32_t forces,
+                                                 uint32_t node, uint32_t speed)
 {
     const float4 own = shared_load(forces + 3 * FORCE);
     const uint32_t word = __float_as_uint(own.w);
@@ -280,7 +281,7 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
     const float4 x = shared_load(forces - NODE), y = shared_load(forces + FORCE - GRID * NODE);
     const float4 xy = shared_load(forces + 2 * FORCE - (GRID + 1) * NODE);
     const float3 sum = {(own.x + x.x) + (y.x + xy.x), (own.y + x.y) + (y.y + xy.y), (own.z + x.z) + (y.z + xy.z)};
-    float4 u = shared_load(node), v = shared_load(at + VELOCITIES);
+    float4 u = shared_load(node), v = shared_load(speed);
     const uint32_t bits = __float_as_uint(v.w);
     if (p.what & PASS_INTERNAL)
         *(float4 *)node_of(p.to, word) = make_float4(sum.x, sum.y, sum.z, u.w);
@@ -295,9 +296,9 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
     } else {
 #pragma unroll 1
         for (int a = 0; a < 3; a++)
-            move_held(m, p, at, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
+            move_held(m, p, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
         u = shared_load(node);
-        v = shared_load(at + VELOCITIES);
+        v = shared_load(speed);
     }
     if (p.what & PASS_BEGIN)
         *(float4 *)node_of(p.to, word) = u;
@@ -314,13 +315,14 @@ static __device__ __forceinline__ void say_done(uint32_t said)
 }
 
 /* Layer c of cells, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the displacements of layer c + 1 stand;
- * old: those of c - 1, and those of c + 4 from here on. goes_on: there is a layer c + 4. */
+ * old: those of c - 1, and those of c + 5 from here on. goes_on: there is a layer c + 5. */
 template <bool SPECIAL, int ODD>
 static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
                                              flow *f, int c, uint32_t next, uint32_t old, bool goes_on, const face &low,
                                              face *high)
 {
     const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
+    const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
     const uint32_t far = f->word[MARCH_AHEAD * MARCH_WORDS], after = f->word[2 * MARCH_WORDS];
     const uint32_t more = has_extra() ? f->word[MARCH_AHEAD * MARCH_WORDS + MARCH_THREADS] : 0;
     const bool any = f->any;
@@ -332,7 +334,7 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
         cell_forces<SPECIAL>(m, p, f, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE), &sum);
     else
         f->below = face{};
-    arrived<0>(); /* displacements of c + 3, and velocities of c - 1 */
+    arrived<1>(); /* displacements of c + 3, and velocities of c - 1: all but what was sent in the layer before */
     if (c)
         barrier_wait(said, 1 - ODD);
     if (any || f->was || f->clean < 2)
@@ -341,9 +343,9 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
         shared_store_with(forces + 3 * FORCE, 0, 0, 0, f->now);
     f->clean = any || f->was ? 0 : f->clean + 1;
     if (c > 1)
-        move_node(m, p, at, before, at + old);
-    if (f->now & MARCH_OWN)
-        send(at + VELOCITIES, node_of(p.velocity, f->now), true);
+        move_node(m, p, before, at + old, speed);
+    if (f->then & MARCH_OWN)
+        send(speed, node_of(p.velocity, f->then), true);
     if (goes_on)
         send_layer(p, at, old, far, more);
     sent();
@@ -408,18 +410,19 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
     uint32_t next = STAGE, old = (STAGES - 1) * STAGE;
 #pragma unroll 1
     for (int c = 0;;) {
-        layer<SPECIAL, 0>(m, p, at, said, &f, c, next, old, c + 4 <= last, even, &odd);
+        layer<SPECIAL, 0>(m, p, at, said, &f, c, next, old, c + MARCH_AHEAD <= last, even, &odd);
         next = after(next), old = after(old);
         if (++c == last)
             break;
-        layer<SPECIAL, 1>(m, p, at, said, &f, c, next, old, c + 4 <= last, odd, &even);
+        layer<SPECIAL, 1>(m, p, at, said, &f, c, next, old, c + MARCH_AHEAD <= last, odd, &even);
         next = after(next), old = after(old);
         if (++c == last)
             break;
     }
     arrived<0>();
     barrier_wait(said, (last - 1) % 2);
-    move_node(m, p, at, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old);
+    move_node(m, p, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
+              at + VELOCITIES + (uint32_t)(last - 1) % 2 * FORCE);
 }
 
 /* What special cells take in registers, units without them do without. */
