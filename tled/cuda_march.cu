@@ -293,7 +293,7 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
         u.x += p.dt * v.x;
         u.y += p.dt * v.y;
         u.z += p.dt * v.z;
-    } else {
+    } else if (bits) { /* of what is held and not displaced, all stays */
 #pragma unroll 1
         for (int a = 0; a < 3; a++)
             move_held(m, p, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
