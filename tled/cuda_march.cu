@@ -129,55 +129,12 @@ static __device__ __forceinline__ element_tensor stress(element_tensor h, float 
     return p;
 }
 
-static __device__ element_vector along(const cuda_march &m, const float *fibre, int32_t direction)
-{
-    const float *at = fibre + 3 * (int64_t)direction;
-    const element_vector a = {at[m.axis[0]], at[m.axis[1]], at[m.axis[2]]};
-    return a;
-}
+static_assert(offsetof(march_cell, fibre) % 16 == 0 && sizeof(march_cell) % 16 == 0, "read 16 bytes at a time");
 
-static __device__ float tension_of(const cuda_march &m, const cuda_march_pass &p, int32_t volume)
+/* layer: of all. */
+static __device__ __forceinline__ const march_cell *special_of(const cuda_march &m, int32_t layer)
 {
-    const cuda_kind &kind = m.v.kind[volume];
-    return kind.contract < 0 ? 0 : (float)(kind.peak * p.now[3 * kind.contract]);
-}
-
-/* What a cell is made of; and how far that counts: a special cell's share. */
-typedef struct cell_law {
-    float mu, bulk, hourglass;
-} cell_law;
-
-static __device__ __forceinline__ march_cell special_of(const cuda_march &m, const uint32_t *word)
-{
-    const int64_t at = (word - m.word) / MARCH_WORDS;
-    return m.cell[m.which[MARCH_THREADS * (int64_t)m.detail[at] + threadIdx.x]];
-}
-
-static __device__ __forceinline__ cell_law law_of(const cuda_march &m, const march_cell &cell)
-{
-    if (cell.mixed < 0) {
-        const float *law = m.v.law + LAW_NUMBERS * (int64_t)cell.volume;
-        return {cell.share * law[0], cell.share * law[1], cell.share * law[2]};
-    }
-    const cuda_mixed &mixed = m.v.mixture[cell.mixed];
-    return {cell.share * (float)mixed.mu, cell.share * (float)mixed.bulk, cell.share * (float)mixed.hourglass};
-}
-
-/* Adds what muscles do in a special cell. */
-static __device__ __forceinline__ element_tensor active(const cuda_march &m, const cuda_march_pass &p,
-                                                        const march_cell &cell, element_tensor h, element_tensor sum)
-{
-    const cuda_mixed *mixed = cell.mixed < 0 ? NULL : &m.v.mixture[cell.mixed];
-    const float other = mixed ? (float)mixed->share : 0;
-#pragma unroll 1
-    for (int k = 0; k < (mixed && m.mixfibre ? 2 : 1); k++) {
-        const float tension = tension_of(m, p, k ? mixed->mix : cell.volume);
-        const element_fibre fibre = {along(m, k ? m.mixfibre : m.fibre, cell.direction),
-                                     cell.share * (k ? other : 1 - other) * tension};
-        if (fibre.tension != 0)
-            sum = element_sum(sum, element_active(h, fibre));
-    }
-    return sum;
+    return m.cell + m.which[MARCH_THREADS * (int64_t)m.detail[layer] + threadIdx.x];
 }
 
 static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m, const face &low, const face &high)
@@ -190,37 +147,66 @@ static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m
     return h;
 }
 
-/* The forces of a layer of cells: `sum` gets those on its lower face, with f->below, which becomes those on its upper face. A special
- * cell's gradient is found once more, so that others need not keep theirs. */
-template <bool SPECIAL>
-static __device__ __forceinline__ void cell_forces(const cuda_march &m, const cuda_march_pass &p, flow *f,
-                                                   const face &low, const face &high, uint32_t here, face *sum)
+/* The forces of a layer of cells: `sum` gets those on its lower face, with `below`, which becomes those on its upper face. */
+static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu, float bulk, float hourglass, bool is,
+                                                   const face &low, const face &high, face *sum, face *below)
 {
-    const bool is = f->now & MARCH_CELL;
-    cell_law law = {is ? m.law[0] : 0, is ? m.law[1] : 0, is ? m.law[2] : 0};
-    if (SPECIAL && f->now & MARCH_SPECIAL)
-        law = law_of(m, special_of(m, f->word));
-    element_tensor s = stress(gradient_of(m, low, high), law.mu, law.bulk, is);
-    if (SPECIAL && f->now & MARCH_SPECIAL) {
-        const march_cell cell = special_of(m, f->word);
-        if (cell.direction >= 0)
-            s = active(m, p, cell, gradient_of(m, face_at(here), high), s);
-    }
+    const element_tensor s = stress(gradient_of(m, low, high), mu, bulk, is);
     const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
-    face *below = &f->below;
 #pragma unroll
     for (int a = 0; a < 3; a++) {
-        const float zx = law.hourglass * (high.x[a] - low.x[a]), yz = law.hourglass * (high.y[a] - low.y[a]);
+        const float zx = hourglass * (high.x[a] - low.x[a]), yz = hourglass * (high.y[a] - low.y[a]);
         const float z = pz[a] * m.area[2];
         sum->mean[a] = below->mean[a] - z;
         sum->x[a] = (below->x[a] - zx) + px[a] * m.area[0];
         sum->y[a] = (below->y[a] - yz) + py[a] * m.area[1];
-        sum->xy[a] = below->xy[a] + 2 * law.hourglass * low.xy[a];
+        sum->xy[a] = below->xy[a] + 2 * hourglass * low.xy[a];
         below->mean[a] = z;
         below->x[a] = zx + px[a] * m.area[0];
         below->y[a] = yz + py[a] * m.area[1];
-        below->xy[a] = 2 * law.hourglass * high.xy[a];
+        below->xy[a] = 2 * hourglass * high.xy[a];
     }
+}
+
+/* Adds those of a cell's muscles. The gradient is found once more, so that other cells need not keep theirs; here, next: where the
+ * displacements of the cell's layers stand. */
+static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const cuda_march_pass &p,
+                                                     const march_cell *cell, uint32_t here, uint32_t next, face *sum,
+                                                     face *below)
+{
+#pragma unroll 1
+    for (int k = 0; k < cell->muscles; k++) {
+        const float4 along = *(const float4 *)cell->fibre[k];
+        const element_fibre fibre = {{along.x, along.y, along.z}, cell->peak[k] * (float)p.now[3 * cell->curve[k]]};
+        const element_tensor s = element_active(gradient_of(m, face_at(here), face_at(next)), fibre);
+        const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
+#pragma unroll
+        for (int a = 0; a < 3; a++) {
+            sum->mean[a] -= pz[a] * m.area[2];
+            sum->x[a] += px[a] * m.area[0];
+            sum->y[a] += py[a] * m.area[1];
+            below->mean[a] += pz[a] * m.area[2];
+            below->x[a] += px[a] * m.area[0];
+            below->y[a] += py[a] * m.area[1];
+        }
+    }
+}
+
+/* As cell_forces, of any cell. c: its layer, of all. */
+template <bool SPECIAL>
+static __device__ __forceinline__ void forces_of(const cuda_march &m, const cuda_march_pass &p, flow *f, int32_t c,
+                                                 const face &low, const face &high, uint32_t here, uint32_t next,
+                                                 face *sum)
+{
+    const bool is = f->now & MARCH_CELL, special = SPECIAL && f->now & MARCH_SPECIAL;
+    float mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
+    if (special) {
+        const float4 law = *(const float4 *)special_of(m, c);
+        mu = law.x, bulk = law.y, hourglass = law.z;
+    }
+    cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
+    if (special)
+        muscle_forces(m, p, special_of(m, c), here, next, sum, &f->below);
 }
 
 /* The forces on the corners of a face go to shared memory, and the word with those on the thread's own. */
@@ -314,12 +300,12 @@ static __device__ __forceinline__ void say_done(uint32_t said)
         barrier_arrive(said);
 }
 
-/* Layer c of cells, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the displacements of layer c + 1 stand;
+/* Layer c of cells of a unit from layer `base` on, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the displacements of layer c + 1 stand;
  * old: those of c - 1, and those of c + 5 from here on. goes_on: there is a layer c + 5. */
 template <bool SPECIAL, int ODD>
 static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
-                                             flow *f, int c, uint32_t next, uint32_t old, bool goes_on, const face &low,
-                                             face *high)
+                                             flow *f, int32_t base, int c, uint32_t next, uint32_t old, bool goes_on,
+                                             const face &low, face *high)
 {
     const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
     const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
@@ -331,7 +317,8 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     if (any || f->any)
         *high = face_at(at + next);
     if (any)
-        cell_forces<SPECIAL>(m, p, f, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE), &sum);
+        forces_of<SPECIAL>(m, p, f, base + c, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE), at + next,
+                           &sum);
     else
         f->below = face{};
     arrived<1>(); /* displacements of c + 3, and velocities of c - 1: all but what was sent in the layer before */
@@ -410,11 +397,11 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
     uint32_t next = STAGE, old = (STAGES - 1) * STAGE;
 #pragma unroll 1
     for (int c = 0;;) {
-        layer<SPECIAL, 0>(m, p, at, said, &f, c, next, old, c + MARCH_AHEAD <= last, even, &odd);
+        layer<SPECIAL, 0>(m, p, at, said, &f, unit.base, c, next, old, c + MARCH_AHEAD <= last, even, &odd);
         next = after(next), old = after(old);
         if (++c == last)
             break;
-        layer<SPECIAL, 1>(m, p, at, said, &f, c, next, old, c + MARCH_AHEAD <= last, odd, &even);
+        layer<SPECIAL, 1>(m, p, at, said, &f, unit.base, c, next, old, c + MARCH_AHEAD <= last, odd, &even);
         next = after(next), old = after(old);
         if (++c == last)
             break;

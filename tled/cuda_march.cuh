@@ -23,10 +23,9 @@ typedef struct cuda_march {
     const uint32_t *word;
     const int32_t *detail, *which;
     const march_cell *cell;
-    const float *fibre, *mixfibre; /* mixfibre: or NULL */
-    float law[LAW_NUMBERS];        /* of plain cells */
-    float slope[3], area[3];       /* element_shape's, along the march's axes */
-    int32_t axis[3];               /* of the model: which these are */
+    float law[LAW_NUMBERS];  /* of plain cells */
+    float slope[3], area[3]; /* element_shape's, along the march's axes */
+    int32_t axis[3];         /* of the model: which these are */
 } cuda_march;
 
 /* One pass: v = keep v + push a, with what a step begins and ends; u += dt v. */

@@ -83,9 +83,7 @@ static int put_march(cuda_state *s, err *e)
     return put(s, &w->unit, m->unit, m->units, e) ||
                    put(s, &w->word, m->word, (m->layers + MARCH_AHEAD) * MARCH_WORDS, e) ||
                    put(s, &w->detail, m->detail, m->layers, e) ||
-                   put(s, &w->which, m->which, m->details * MARCH_THREADS, e) ||
-                   put(s, &w->cell, m->cell, m->cells, e) || put(s, &w->fibre, m->fibre, 3 * m->directions, e) ||
-                   (m->mixfibre && put(s, &w->mixfibre, m->mixfibre, 3 * m->directions, e))
+                   put(s, &w->which, m->which, m->details * MARCH_THREADS, e) || put(s, &w->cell, m->cell, m->cells, e)
                ? -1
                : 0;
 }

@@ -52,8 +52,6 @@ void march_free(march *m)
     free(m->detail);
     free(m->which);
     free(m->cell);
-    free(m->fibre);
-    free(m->mixfibre);
     memset(m, 0, sizeof *m);
 }
 
@@ -271,53 +269,62 @@ static int order_nodes(cutter *c)
     return 0;
 }
 
-static bool is_fibred(const tled_problem *p, int64_t element)
+/* What a cell has of a volume's muscle, if that may contract; share: of the cell. */
+static void add_muscle(const cutter *c, march_cell *to, const float *fibre, int32_t volume, double share)
 {
-    if (p->fibre && p->volume[p->element_volume[element]].contract >= 0)
-        return true;
-    return p->mixfibre && tled_mix(p, element) >= 0 && p->volume[p->mix[element]].contract >= 0;
+    const tled_volume *v = &c->p->volume[volume];
+    const int k = to->muscles;
+    if (!fibre || v->contract < 0)
+        return;
+    to->curve[k] = (int32_t)v->contract;
+    to->peak[k] = (float)(share * v->peak);
+    for (int a = 0; a < 3; a++)
+        to->fibre[k][a] = fibre[c->m->axis[a]];
+    to->muscles++;
 }
 
-static bool is_special(const cutter *c, int64_t element)
+static march_cell cell_of(const cutter *c, int64_t element)
 {
     const tled_problem *p = c->p;
-    const tled_volume *own = &p->volume[p->element_volume[element]], *plain = &p->volume[c->m->plain];
-    return (float)own->mu != (float)plain->mu || (float)own->bulk != (float)plain->bulk ||
-           (float)own->hourglass != (float)plain->hourglass || is_fibred(p, element) || tled_mix(p, element) >= 0 ||
-           (p->fraction && p->fraction[element] != 1);
+    const tled_law law = tled_law_of(p, element);
+    const double share = tled_fraction(p, element), other = tled_mixture(p, element);
+    march_cell cell = {
+        (float)(share * law.mu), (float)(share * law.bulk), (float)(share * law.hourglass), 0, {0}, {0}, {{0}}};
+    add_muscle(c, &cell, p->fibre ? p->fibre + 3 * element : NULL, p->element_volume[element], share * (1 - other));
+    if (tled_mix(p, element) >= 0)
+        add_muscle(c, &cell, p->mixfibre ? p->mixfibre + 3 * element : NULL, tled_mix(p, element), share * other);
+    return cell;
+}
+
+static bool is_special(const cutter *c, const march_cell *cell)
+{
+    const tled_volume *plain = &c->p->volume[c->m->plain];
+    return cell->muscles || cell->mu != (float)plain->mu || cell->bulk != (float)plain->bulk ||
+           cell->hourglass != (float)plain->hourglass;
 }
 
 /* The special cells: first counted, then, with their arrays made, filled. */
 static void list_special(cutter *c)
 {
     march *m = c->m;
-    const tled_problem *p = c->p;
     spot at[4];
-    m->cells = m->directions = 0;
-    for (int64_t i = 0; i < p->elements; i++) {
-        if (!is_special(c, i))
+    m->cells = 0;
+    for (int64_t i = 0; i < c->p->elements; i++) {
+        const march_cell cell = cell_of(c, i);
+        if (!is_special(c, &cell))
             continue;
-        const bool fibred = is_fibred(p, i);
-        const int64_t cell = m->cells++, direction = m->directions;
-        m->directions += fibred;
-        if (!m->cell) {
-            for (int k = spots_of(c, p->element_node[8 * i], true, at); k--;)
-                if (m->detail[c->slot[at[k].layer]] < 0)
-                    m->detail[c->slot[at[k].layer]] = (int32_t)m->details++;
-            continue;
-        }
-        m->cell[cell] = (march_cell){p->element_volume[i], p->mixed ? p->mixed[i] : -1,
-                                     fibred ? (int32_t)direction : -1, (float)tled_fraction(p, i)};
-        for (int a = 0; a < 3 && fibred; a++) {
-            m->fibre[3 * direction + a] = p->fibre ? p->fibre[3 * i + a] : 0;
-            if (m->mixfibre)
-                m->mixfibre[3 * direction + a] = p->mixfibre[3 * i + a];
-        }
-        for (int k = spots_of(c, p->element_node[8 * i], true, at); k--;) {
+        const int64_t number = m->cells++;
+        if (m->cell)
+            m->cell[number] = cell;
+        for (int k = spots_of(c, c->p->element_node[8 * i], true, at); k--;) {
             const int64_t layer = c->slot[at[k].layer];
             const int word = word_of(at[k].i, at[k].j);
+            if (m->detail[layer] < 0)
+                m->detail[layer] = (int32_t)m->details++;
+            if (!m->cell)
+                continue;
             m->word[MARCH_WORDS * layer + word] |= MARCH_SPECIAL;
-            m->which[MARCH_THREADS * (int64_t)m->detail[layer] + word] = (int32_t)cell;
+            m->which[MARCH_THREADS * (int64_t)m->detail[layer] + word] = (int32_t)number;
         }
     }
 }
@@ -336,9 +343,7 @@ static int put_special(cutter *c)
     list_special(c);
     m->which = mem_array(m->details, MARCH_THREADS * sizeof *m->which, "the march", c->e);
     m->cell = mem_array(m->cells, sizeof *m->cell, "the march", c->e);
-    m->fibre = mem_array(m->directions, 3 * sizeof *m->fibre, "the march", c->e);
-    m->mixfibre = p->mixfibre ? mem_array(m->directions, 3 * sizeof *m->mixfibre, "the march", c->e) : NULL;
-    if (!m->which || !m->cell || !m->fibre || (p->mixfibre && !m->mixfibre))
+    if (!m->which || !m->cell)
         return -1;
     if (m->cells)
         list_special(c);

@@ -37,16 +37,20 @@ typedef struct march_unit {
     int32_t base, cells, special, unused; /* special: it has special cells */
 } march_unit;
 
-/* A cell that is not plain: of another volume, contracting, mixed, or not all tissue. */
+/* A cell that is not plain: of another law, contracting, mixed, or not all tissue. What it has is multiplied by its share of tissue,
+ * and a muscle's peak by the muscle's share of the cell. */
 typedef struct march_cell {
-    int32_t volume, mixed, direction; /* mixed: the problem's; direction: in fibre; or -1 */
-    float share;
+    float mu, bulk, hourglass;
+    int32_t muscles;   /* of its volumes, those that may contract: */
+    int32_t curve[2];  /* the script's */
+    float peak[2];     /* Pa */
+    float fibre[2][4]; /* a direction along the march's axes, and 0 */
 } march_cell;
 
 typedef struct march {
     int axis[3];   /* the model's axes along the rows of columns, across them, and along the march */
     int32_t plain; /* the volume of plain cells */
-    int64_t layers, units, details, cells, directions;
+    int64_t layers, units, details, cells;
     double computed;  /* threads of warps with cells, over elements */
     int32_t *order;   /* nodes: where each stands */
     uint32_t *word;   /* (layers + MARCH_AHEAD) x MARCH_WORDS */
@@ -54,7 +58,6 @@ typedef struct march {
     int32_t *detail;  /* layers: where its special cells stand in `which`, in layers; or -1 */
     int32_t *which;   /* details x MARCH_THREADS: in cell */
     march_cell *cell;
-    float *fibre, *mixfibre; /* directions x 3, along the model's axes; mixfibre: or NULL */
 } march;
 
 /* slots: blocks that the card runs at once. A problem whose cells fill too few threads has no units, and no order. -1 with e

@@ -67,17 +67,37 @@ static int corner_of(const march *m, const int way[3])
     return c;
 }
 
+/* Whether a special cell has the muscle of a volume of an element, if that may contract; at: its next. */
+static bool has_muscle(const seen *s, const march_cell *cell, int *at, const float *fibre, int32_t volume, double share)
+{
+    const tled_volume *v = &s->p->volume[volume];
+    if (!fibre || v->contract < 0)
+        return true;
+    const int k = (*at)++;
+    bool good =
+        k < cell->muscles && cell->curve[k] == (int32_t)v->contract && cell->peak[k] == (float)(share * v->peak);
+    for (int a = 0; a < 3; a++)
+        good &= cell->fibre[k][a] == fibre[s->m->axis[a]];
+    return good;
+}
+
 static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
 {
+    const tled_problem *p = s->p;
     const int32_t *which = s->m->which + MARCH_THREADS * (int64_t)s->m->detail[layer];
     const march_cell *cell = &s->m->cell[which[32 * (i / 8 + 2 * (j / 4)) + 8 * (j % 4) + i % 8]];
+    const tled_law law = tled_law_of(p, element);
+    const double share = tled_fraction(p, element), other = tled_mixture(p, element);
+    const int32_t mix = tled_mix(p, element);
+    int muscles = 0;
     s->special++;
-    s->wrong += cell->volume != s->p->element_volume[element] ||
-                cell->mixed != (s->p->mixed ? s->p->mixed[element] : -1) ||
-                (double)cell->share != tled_fraction(s->p, element);
-    if (cell->direction >= 0)
-        s->wrong += memcmp(s->m->fibre + 3 * (int64_t)cell->direction, s->p->fibre + 3 * (int64_t)element,
-                           3 * sizeof(float)) != 0;
+    s->wrong += cell->mu != (float)(share * law.mu) || cell->bulk != (float)(share * law.bulk) ||
+                cell->hourglass != (float)(share * law.hourglass);
+    s->wrong += !has_muscle(s, cell, &muscles, p->fibre ? p->fibre + 3 * (int64_t)element : NULL,
+                            p->element_volume[element], share * (1 - other));
+    s->wrong += mix >= 0 && !has_muscle(s, cell, &muscles, p->mixfibre ? p->mixfibre + 3 * (int64_t)element : NULL, mix,
+                                        share * other);
+    s->wrong += cell->muscles != muscles;
 }
 
 /* A cell of a unit: its corners, and which of them the unit moves. */
