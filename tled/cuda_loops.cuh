@@ -435,13 +435,13 @@ static int fill(cuda_state *s, err *e)
         return -1;
     if (s->marches)
         begin_march(s);
-    if (make_events(s, e) || set(s, s->displacement, p->displacement, e) || set(s, s->velocity, p->velocity, e) ||
-        CUDA_TRY(cudaDeviceSynchronize()))
+    if (make_events(s, e) || set(s, s->displacement, p->displacement, e) || set(s, s->velocity, p->velocity, e))
         return -1;
     if (s->resident &&
         CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))
         return -1;
-    return find_internal(s, e);
+    /* Streams that do not block wait for none of it by themselves. */
+    return CUDA_TRY(cudaDeviceSynchronize()) ? -1 : find_internal(s, e);
 }
 
 static void *cuda_create(const void *problem, pool *threads, err *e)
