@@ -116,8 +116,10 @@ void changed();
 #define HERE() (now->place = __builtin_return_address(0))
 
 /* ---- streams.cc */
-/* Is done in its turn: at once, in no stream. */
+/* Is done in its turn. */
 void ask(cudaStream_t stream, std::function<void()> what);
+/* All that was asked of no stream is done. */
+void finish_none();
 
 /* ---- shadow.cc */
 enum { SEVERAL = -2 };
@@ -139,5 +141,7 @@ void touch(const void *at, size_t size, bool writes, bool atomic = false);
 /* The same of shared memory. Where it is for the processor. */
 char *touch_shared(uint32_t at, size_t size, bool writes);
 void end_flights();
+/* At once. false: these are not where `kind` says. */
+bool copy(void *to, const void *from, size_t size, cudaMemcpyKind kind);
 
 #endif

@@ -476,26 +476,51 @@ static void note_written(const void *at, size_t size)
         p->words[(size_t)((const char *)at - p->at) / 4 + i].wrote = past.at;
 }
 
-cudaError_t cudaMemcpy(void *to, const void *from, size_t size, cudaMemcpyKind kind)
+static bool is_there(const void *to, const void *from, size_t size, cudaMemcpyKind kind)
 {
-    if ((kind != cudaMemcpyDeviceToHost) != (piece_of(to, size) != NULL) ||
-        (kind != cudaMemcpyHostToDevice) != (piece_of(from, size) != NULL))
-        return cudaErrorInvalidValue;
+    return (kind != cudaMemcpyDeviceToHost) == (piece_of(to, size) != NULL) &&
+           (kind != cudaMemcpyHostToDevice) == (piece_of(from, size) != NULL);
+}
+
+bool copy(void *to, const void *from, size_t size, cudaMemcpyKind kind)
+{
+    if (!is_there(to, from, size, kind))
+        return false;
     open_memory(true);
     memcpy(to, from, size);
     open_memory(false);
     if (kind != cudaMemcpyDeviceToHost)
         note_written(to, size);
-    return cudaSuccess;
+    return true;
 }
 
+/* What goes to the card may still be on its way when this returns. */
+cudaError_t cudaMemcpy(void *to, const void *from, size_t size, cudaMemcpyKind kind)
+{
+    if (!is_there(to, from, size, kind))
+        return cudaErrorInvalidValue;
+    if (kind == cudaMemcpyDeviceToHost) {
+        finish_none();
+        copy(to, from, size, kind);
+    } else if (kind == cudaMemcpyHostToDevice) {
+        const std::vector<char> bytes((const char *)from, (const char *)from + size);
+        ask(NULL, [=] { copy(to, bytes.data(), size, kind); });
+    } else {
+        ask(NULL, [=] { copy(to, from, size, kind); });
+    }
+    return cudaGetLastError();
+}
+
+/* Is not waited for. */
 cudaError_t cudaMemset(void *at, int value, size_t size)
 {
     if (!piece_of(at, size))
         return cudaErrorInvalidValue;
-    open_memory(true);
-    memset(at, value, size);
-    open_memory(false);
-    note_written(at, size);
-    return cudaSuccess;
+    ask(NULL, [=] {
+        open_memory(true);
+        memset(at, value, size);
+        open_memory(false);
+        note_written(at, size);
+    });
+    return cudaGetLastError();
 }

@@ -17,7 +17,9 @@ struct emulated_event {
     uint64_t number = 0;
 };
 
-static std::vector<cudaStream_t> streams;
+/* The first is what stands for none: other streams do not wait for it. */
+static emulated_stream none;
+static std::vector<cudaStream_t> streams = {&none};
 
 static void run_until(cudaStream_t stream, uint64_t number)
 {
@@ -36,13 +38,15 @@ static uint64_t asked_of(cudaStream_t stream)
 
 void ask(cudaStream_t stream, std::function<void()> what)
 {
-    if (!stream) {
-        what();
-        return;
-    }
+    stream = stream ? stream : &none;
     stream->asked.push_back(std::move(what));
     if (lot(2))
         run_until(stream, stream->done + lot((uint32_t)stream->asked.size() + 1));
+}
+
+void finish_none()
+{
+    run_until(&none, asked_of(&none));
 }
 
 cudaError_t cudaDeviceSynchronize()
@@ -107,7 +111,7 @@ cudaError_t cudaEventDestroy(cudaEvent_t event)
 cudaError_t cudaMemcpyAsync(void *to, const void *from, size_t size, cudaMemcpyKind kind, cudaStream_t stream)
 {
     ask(stream, [=] {
-        if (cudaMemcpy(to, from, size, kind) != cudaSuccess)
+        if (!copy(to, from, size, kind))
             fault("copies what is not where it should be");
     });
     return cudaGetLastError();

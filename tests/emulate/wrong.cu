@@ -194,6 +194,7 @@ static int run(void (*kernel)(task), int64_t count = 1, cudaLaunchAttributeID ho
     e = e ? e : cudaMemset(t.word, 0, 2 * sizeof *t.word);
     for (int i = 0; i < times && !e; i++)
         e = card_start(kernel, {count, THREADS, THREADS * sizeof(float4), NULL, how}, t);
+    e = e ? e : cudaDeviceSynchronize();
     cudaFree(t.data);
     cudaFree(t.word);
     return e;
