@@ -88,19 +88,24 @@ static void answer_free(answer *a)
     free(a->numbers);
 }
 
-/* The largest difference of one of these, as a share of the largest there is. */
+/* The largest difference of one of these, as a share of the largest there is; infinite where there is no number. */
 static double off(const answer *a, const answer *b)
 {
     double worst = 0;
+    if (a->gone || b->gone)
+        return INFINITY;
     for (int i = 0; i < PARTS; i++) {
         double most = 0, size = 0;
         for (int64_t k = i * a->count; k < (i + 1) * a->count; k++) {
-            most = fmax(most, fabs(a->numbers[k] - b->numbers[k]));
+            const double gap = fabs(a->numbers[k] - b->numbers[k]);
+            if (!isfinite(gap))
+                return INFINITY;
+            most = fmax(most, gap);
             size = fmax(size, fabs(b->numbers[k]));
         }
         worst = fmax(worst, most / size);
     }
-    return a->gone || b->gone ? INFINITY : worst;
+    return worst;
 }
 
 /* The CPU's answer, to within a share, or its very bytes; and the same bytes by other lots, and in other units. */
