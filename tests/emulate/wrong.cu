@@ -54,6 +54,22 @@ static __global__ void vote(task)
         x[threadIdx.x] = x[threadIdx.x ^ 1];
 }
 
+/* Not even where all have read, by the clock on the wall, before any writes. */
+static __global__ void vote_late(task)
+{
+    __shared__ float x[THREADS];
+    x[threadIdx.x] = 1;
+    __syncwarp();
+    const float next = x[threadIdx.x ^ 1];
+    if (__any_sync(~0u, 1))
+        x[threadIdx.x] = next;
+}
+
+static __global__ void vote_of_some(task)
+{
+    __any_sync(1, 1);
+}
+
 static __global__ void nobody(task)
 {
     DYNAMIC_SHARED(float, x);
@@ -94,6 +110,23 @@ template <bool RIGHT> static __global__ void blocks(task t)
         t.data[RIGHT ? blockIdx.x : 0].x = 1;
 }
 
+/* Whichever comes first, the other finds something. */
+template <bool FIRST> static __global__ void another(task t)
+{
+    float4 *own = t.data + blockIdx.x, *other = t.data + 1 - blockIdx.x;
+    if (threadIdx.x)
+        return;
+    if (FIRST)
+        own->x = 1;
+    own->x = other->x;
+}
+
+static __global__ void early_write(task t)
+{
+    if (threadIdx.x == 0 && blockIdx.x == 0)
+        t.data[0].x = 1;
+}
+
 template <bool RIGHT> static __global__ void early(task t)
 {
     let_next_begin();
@@ -119,6 +152,11 @@ template <bool RIGHT> static __global__ void words(task t)
         ;
 }
 
+static __global__ void hears(task t)
+{
+    relaxed_load((const uint64_t *)(t.data + THREADS));
+}
+
 /* ---- copies */
 
 template <int BUT_FOR, bool MEET> static __global__ void copies(task t)
@@ -138,6 +176,36 @@ template <int BUT_FOR, bool MEET> static __global__ void copies(task t)
     if (shared_load(shared_at(x + (MEET ? THREADS / 2 - 1 - i / 2 : i / 2))).x < 0)
         t.data[i].x = 0;
     arrived<0>();
+}
+
+/* BYTE: where what it copies begins; NOTHING: zeros instead. */
+template <int BYTE, bool NOTHING> static __global__ void copies_from(task t)
+{
+    DYNAMIC_SHARED(float4, x);
+    const unsigned at = shared_at(x + threadIdx.x);
+    send(at, (const float4 *)((const char *)t.data + BYTE), !NOTHING);
+    sent();
+    arrived<0>();
+    shared_load(at);
+}
+
+static __global__ void copies_shared(task)
+{
+    DYNAMIC_SHARED(float4, x);
+    send(shared_at(x + threadIdx.x), x, true);
+}
+
+/* Of what changes on the way. */
+template <bool READ> static __global__ void copies_change(task t)
+{
+    DYNAMIC_SHARED(float4, x);
+    const unsigned at = shared_at(x + threadIdx.x);
+    send(at, t.data + threadIdx.x, true);
+    sent();
+    t.data[threadIdx.x].x += 1;
+    arrived<0>();
+    if (READ)
+        shared_load(at);
 }
 
 static __global__ void left(task t)
@@ -163,6 +231,8 @@ template <bool MADE, int COUNT, bool WAITED> static __global__ void barriers(tas
     __shared__ float x;
     if (MADE && threadIdx.x == 0)
         barrier_make(shared_at(&said), COUNT);
+    else if (threadIdx.x == 0)
+        said = 0;
     __syncthreads();
     if (threadIdx.x == 0)
         x = 1;
@@ -174,6 +244,15 @@ template <bool MADE, int COUNT, bool WAITED> static __global__ void barriers(tas
         x += 1;
 }
 
+static __global__ void made_again(task)
+{
+    __shared__ uint64_t said;
+    if (threadIdx.x == 0)
+        barrier_make(shared_at(&said), 2);
+    if (threadIdx.x == 0)
+        barrier_make(shared_at(&said), 2);
+}
+
 static __global__ void unequal(task)
 {
     if (threadIdx.x < 60)
@@ -182,9 +261,9 @@ static __global__ void unequal(task)
 
 /* ---- the list */
 
-/* `times` launches of `count` blocks. */
+/* `times` launches of `count` blocks; shared: bytes. */
 static int run(void (*kernel)(task), int64_t count = 1, cudaLaunchAttributeID how = cudaLaunchAttributeIgnore,
-               int times = 1)
+               int times = 1, size_t shared = THREADS * sizeof(float4))
 {
     const float4 number[THREADS] = {};
     task t = {};
@@ -193,14 +272,14 @@ static int run(void (*kernel)(task), int64_t count = 1, cudaLaunchAttributeID ho
     e = e ? e : cudaMemcpy(t.data, number, sizeof number, cudaMemcpyHostToDevice);
     e = e ? e : cudaMemset(t.word, 0, 2 * sizeof *t.word);
     for (int i = 0; i < times && !e; i++)
-        e = card_start(kernel, {count, THREADS, THREADS * sizeof(float4), NULL, how}, t);
+        e = card_start(kernel, {count, THREADS, shared, NULL, how}, t);
     e = e ? e : cudaDeviceSynchronize();
     cudaFree(t.data);
     cudaFree(t.word);
     return e;
 }
 
-static const cudaLaunchAttributeID together = cudaLaunchAttributeCooperative,
+static const cudaLaunchAttributeID alone = cudaLaunchAttributeIgnore, together = cudaLaunchAttributeCooperative,
                                    overlapping = cudaLaunchAttributeProgrammaticStreamSerialization;
 
 #define KERNEL(says, ...)                                                                                              \
@@ -215,6 +294,8 @@ const wrong_kernel wrong_kernels[] = {
     KERNEL(NULL, warps<true>),
     KERNEL("reads what ", warps<false>),
     KERNEL("reads what ", vote),
+    KERNEL("writes what thread ", vote_late),
+    KERNEL("asks some of its warp only", vote_of_some),
     KERNEL("reads what nobody wrote", nobody),
     KERNEL(NULL, place<16>),
     KERNEL("no multiple of 16", place<8>),
@@ -224,21 +305,37 @@ const wrong_kernel wrong_kernels[] = {
     KERNEL("a race", least<false>),
     KERNEL(NULL, blocks<true>, 3),
     KERNEL("what another block writes", blocks<false>, 3),
+    KERNEL("reads what another block writes", another<false>, 2),
+    KERNEL("writes what another block reads", another<true>, 2),
     KERNEL(NULL, early<true>, 2, overlapping, 3),
     KERNEL("what a launch wrote that may not have ended", early<false>, 2, overlapping, 3),
+    KERNEL("writes before it has waited", early_write, 2, overlapping, 2),
     KERNEL("reads what nobody wrote", uninitialised),
     KERNEL(NULL, words<true>, 2, together),
     KERNEL("waits for a word that nobody writes", words<false>, 2, together),
+    KERNEL("hears what nobody wrote", hears),
+    KERNEL("the emulated card cannot", words<true>, 65, together),
+    KERNEL(NULL, blocks<true>, 1, alone, 1, 48 << 10),
+    KERNEL("the emulated card cannot", blocks<true>, 1, alone, 1, 49 << 10),
     KERNEL(NULL, copies<0, true>),
     KERNEL(NULL, copies<1, true>),
     KERNEL(NULL, copies<1, false>),
     KERNEL("reads what is on its way", copies<2, true>),
+    KERNEL(NULL, copies_from<0, false>),
+    KERNEL(NULL, copies_from<THREADS * 16, true>),
+    KERNEL("reads a copy of what nobody wrote", copies_from<THREADS * 16, false>),
+    KERNEL("no multiple of 16", copies_from<8, false>),
+    KERNEL("which is not the card's", copies_from<2 * THREADS * 16, false>),
+    KERNEL("which is not the card's", copies_shared),
+    KERNEL(NULL, copies_change<false>),
+    KERNEL("reads a copy of what has changed", copies_change<true>),
     KERNEL("ends with copies on their way", left),
     KERNEL("ends with copies on their way", open_group),
     KERNEL(NULL, barriers<true, 2, true>),
     KERNEL("reads what ", barriers<true, 2, false>),
     KERNEL("waits for ever", barriers<true, 3, true>),
-    KERNEL("reads what nobody wrote", barriers<false, 2, true>),
+    KERNEL("uses a barrier that nobody made", barriers<false, 2, true>),
+    KERNEL("makes a barrier again", made_again),
     KERNEL("waits for ever", unequal),
     {}};
 
