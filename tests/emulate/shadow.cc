@@ -427,7 +427,8 @@ static word *told(const void *at)
 void relaxed_store(uint64_t *to, uint64_t word)
 {
     HERE();
-    told(to)[0].wrote = told(to)[1].wrote = past.at;
+    told(to);
+    touch(to, sizeof *to, true, true);
     *to = word;
     changed();
 }
@@ -467,13 +468,20 @@ cudaError_t cudaFree(void *at)
     return at ? cudaErrorInvalidValue : cudaSuccess;
 }
 
-/* From here on these bytes are written. */
-static void note_written(const void *at, size_t size)
+static word *words_at(const void *at, size_t size)
 {
     memory *p = piece_of(at, size);
+    return p ? &p->words[(size_t)((const char *)at - p->at) / 4] : NULL;
+}
+
+/* From here on these bytes are written, but for what was copied from where nobody wrote. */
+static void note_written(const void *at, size_t size, const void *from)
+{
+    word *to = words_at(at, size);
+    const word *old = words_at(from, size);
     past.settled = ++past.at;
     for (size_t i = 0; i < words_in(at, size); i++)
-        p->words[(size_t)((const char *)at - p->at) / 4 + i].wrote = past.at;
+        to[i].wrote = old && !old[i].wrote ? 0 : past.at;
 }
 
 static bool is_there(const void *to, const void *from, size_t size, cudaMemcpyKind kind)
@@ -490,7 +498,7 @@ bool copy(void *to, const void *from, size_t size, cudaMemcpyKind kind)
     memcpy(to, from, size);
     open_memory(false);
     if (kind != cudaMemcpyDeviceToHost)
-        note_written(to, size);
+        note_written(to, size, from);
     return true;
 }
 
@@ -520,7 +528,7 @@ cudaError_t cudaMemset(void *at, int value, size_t size)
         open_memory(true);
         memset(at, value, size);
         open_memory(false);
-        note_written(at, size);
+        note_written(at, size, NULL);
     });
     return cudaGetLastError();
 }

@@ -152,6 +152,15 @@ template <bool RIGHT> static __global__ void words(task t)
         ;
 }
 
+/* Words are for those who know that they are. */
+static __global__ void overhears(task t)
+{
+    if (threadIdx.x == 0 && blockIdx.x)
+        relaxed_store(t.word, 1);
+    else if (threadIdx.x == 0)
+        t.data[0].x = t.word[0];
+}
+
 static __global__ void hears(task t)
 {
     relaxed_load((const uint64_t *)(t.data + THREADS));
@@ -313,6 +322,7 @@ const wrong_kernel wrong_kernels[] = {
     KERNEL("reads what nobody wrote", uninitialised),
     KERNEL(NULL, words<true>, 2, together),
     KERNEL("waits for a word that nobody writes", words<false>, 2, together),
+    KERNEL("what another block ", overhears, 2),
     KERNEL("hears what nobody wrote", hears),
     KERNEL("the emulated card cannot", words<true>, 65, together),
     KERNEL(NULL, blocks<true>, 1, alone, 1, 48 << 10),
