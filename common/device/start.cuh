@@ -11,9 +11,9 @@ typedef struct card_blocks {
     int threads;   /* each */
     size_t shared; /* bytes of a block, beside what the kernel declares */
     cudaStream_t stream;
-    cudaLaunchAttributeID
-        how; /* nothing: after the one before has ended. Cooperative: all blocks at once, so that they may wait for
-                                * each other. ProgrammaticStreamSerialization: perhaps before the one before has ended */
+    /* Ignore, or left out: after the one before has ended. Cooperative: all blocks at once, so that they may wait for each other.
+     * ProgrammaticStreamSerialization: perhaps before the one before has ended. */
+    cudaLaunchAttributeID how;
 } card_blocks;
 
 /* Arguments are of the kernel's types, or become so. */
