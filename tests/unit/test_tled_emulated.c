@@ -190,6 +190,7 @@ static void test_bricks(int64_t steps)
         try(&all[i], &staying, &tled_cuda_single, &tled_cpu_single, steps, 0);
     }
     try(&all[0], &plain, &tled_cuda_double, &tled_cpu_double, steps, 0);
+    try(&all[0], &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
 }
 
 static void test_looks(int64_t steps)
