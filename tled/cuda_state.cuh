@@ -8,12 +8,12 @@
 
 #include "tled/cuda_march.cuh" /* wants element.h before it */
 
-enum {
-    TABLE_STEPS = 256,
-    TABLES = 2,
-    COPY_CHUNK = 4096,
-    FRAME_DIRECT = 2 << 20 /* bytes: a frame that is copied sooner than it is worth its own memory on the card */
-};
+enum { TABLE_STEPS = 256, TABLES = 2, COPY_CHUNK = 4096 };
+
+/* Bytes: a frame that is copied sooner than it is worth its own memory on the card. */
+#ifndef FRAME_DIRECT
+#define FRAME_DIRECT (2 << 20)
+#endif
 
 typedef struct cuda_frame { /* results on their way to the host; made when first wanted */
     real *host;             /* pinned: displacement, then velocity */

@@ -77,7 +77,8 @@ static void find(answer *a, const trial *t, const backend *device, int64_t steps
     a->gone = !a->numbers || !state || device->keep(state, &b->e) || go_on(device, state, &once, 1, &b->e) ||
               device->back(state, &b->e) || go_on(device, state, &plan, steps, &b->e) ||
               device->get(state, TLED_INTERNAL, a->numbers + 2 * a->count, &b->e) || device->take(state, 0, &b->e) ||
-              go_on(device, state, &plan, steps + 1, &b->e) || device->taken(state, 0, &taken, &b->e) ||
+              go_on(device, state, &plan, steps + 1, &b->e) || device->take(state, 1, &b->e) ||
+              device->taken(state, 0, &taken, &b->e) ||
               device->get(state, TLED_DISPLACEMENT, a->numbers + 3 * a->count, &b->e);
     device->destroy(state);
 }
