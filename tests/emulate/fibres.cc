@@ -147,6 +147,7 @@ static void start(fibre *f, block *home, int thread)
     f->group = 0;
     f->settled = past.settled == past.at - 1;
     f->ended = false;
+    f->slow = thread % 32 ? (f - 1)->slow : !lot(4);
     f->place = NULL;
     machine.started.push_back(f);
 }
@@ -171,6 +172,16 @@ static void begin(block *b, int32_t index, const cudaLaunchConfig_t *how)
     b->statics.clear();
 }
 
+/* By lot; slow ones are passed over most of the time. */
+static fibre *&next()
+{
+    for (;;) {
+        fibre *&f = machine.ready[lot((uint32_t)machine.ready.size())];
+        if (!f->slow || !lot(32))
+            return f;
+    }
+}
+
 static void run_threads()
 {
     while (machine.left && !machine.over) {
@@ -180,7 +191,7 @@ static void run_threads()
             machine.over = true;
             break;
         }
-        fibre *&pick = machine.ready[lot((uint32_t)machine.ready.size())];
+        fibre *&pick = next();
         now = pick;
         pick = machine.ready.back();
         machine.ready.pop_back();

@@ -93,6 +93,7 @@ struct fibre {
     int group = 0;        /* that is sent next */
     bool settled = false; /* what launches before did may be relied on */
     bool ended = false;
+    bool slow = false;        /* as is all of its warp: others get far ahead of it */
     const void *place = NULL; /* in the program, of what it does or waits for */
 };
 

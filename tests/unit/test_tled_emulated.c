@@ -230,7 +230,7 @@ int main(void)
     test_omissions();
     test_marches(4 * more);
     test_thin(2 * more);
-    test_bricks(4 * more);
+    test_bricks(3 * more);
     test_looks(2 * more);
     return done_testing();
 }
