@@ -120,11 +120,11 @@ template <class S> static __device__ double strain_of(const cuda_look<S> &l, con
 /* What a tile's block knows of its highest frequency so far. */
 typedef struct highest {
     double limit, proven; /* no cell is past limit; one reaches proven, or that is the one at rest */
-    int32_t cell;
-    bool open; /* or nothing is known */
+    int32_t cell;         /* whose the limit is, or -1: that at rest */
+    bool open;            /* the limit may be too high by more than `raise` */
 } highest;
 
-/* Raises the limit to the highest bound of those past it. That it is too high by `raise` at most is to be known, too. */
+/* Raises the limit to the highest bound of those past it. */
 template <int THREADS>
 static __device__ void raise_by_bounds(stability_range range, bool past, double raise, int32_t cell, highest *h,
                                        double *scratch, int *least)
@@ -136,7 +136,7 @@ static __device__ void raise_by_bounds(stability_range range, bool past, double 
     h->open = h->limit > raise * h->proven;
 }
 
-/* Bounds of frequencies alone, so that the numbers of matrices are in nobody's way. */
+/* Strain energies, what is broken, and bounds of frequencies; no matrices, which take a thread nearly twice the registers. */
 template <class G, class S>
 static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     cells_kernel(const __grid_constant__ cuda_look<S> l, look_cells *out)

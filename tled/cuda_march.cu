@@ -3,9 +3,10 @@
  * node the sums of one. Compiled with fused multiplications and additions: its bytes are not the processor's.
  *
  * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from four layers before
- * they are wanted, velocities from two, and have the time of two layers of cells for that. Forces on neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells of the
- * next one are computed: a warp says that it is done with a layer, and only after it has computed the next one does it wait until
- * all have said so, so that those with fewer cells seldom keep others waiting.
+ * they are wanted, velocities from two: both have the time of two layers of cells before a thread waits for them. Forces on
+ * neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells of the next one are computed: a
+ * warp says that it is done with a layer, and only after it has computed the next one does it wait until all have said so, so that
+ * those with fewer cells seldom keep others waiting.
  */
 #define ELEMENT_SINGLE
 extern "C" {
@@ -20,8 +21,7 @@ enum {
     NODE = 16,                /* bytes of 4 floats, of a node's displacement, velocity or force */
     STAGES = MARCH_AHEAD + 1, /* layers of displacements in shared memory */
     STAGE = GRID * GRID * NODE,
-    VELOCITIES =
-        STAGES * STAGE, /* two layers; from here on the place of a node has as much room, and one grid fewer rows */
+    VELOCITIES = STAGES * STAGE, /* two layers; from here on grids have a row fewer */
     FORCE = GRID * SIDE * NODE,
     FORCES = VELOCITIES + 2 * FORCE, /* two times four of them: on corners (1, 0), (0, 1), (1, 1), (0, 0) */
     FORCES_EACH = 4 * FORCE,
@@ -256,7 +256,8 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
     shared_number_store(speed + 4 * a, v);
 }
 
-/* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its forces, displacement and velocity stand. */
+/* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its forces, displacement and velocity
+ * stand. */
 static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, uint32_t forces,
                                                  uint32_t node, uint32_t speed)
 {
@@ -292,7 +293,7 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
         *(float4 *)node_of(p.velocity, word) = v;
 }
 
-/* Says that this warp is done with a layer: its forces are there, and displacements of the layer after the next. */
+/* Says that this warp is done with layer c: its forces are there, and displacements of layers up to c + 3. */
 static __device__ __forceinline__ void say_done(uint32_t said)
 {
     __syncwarp();
@@ -300,8 +301,8 @@ static __device__ __forceinline__ void say_done(uint32_t said)
         barrier_arrive(said);
 }
 
-/* Layer c of cells of a unit from layer `base` on, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the displacements of layer c + 1 stand;
- * old: those of c - 1, and those of c + 5 from here on. goes_on: there is a layer c + 5. */
+/* Layer c of cells of a unit from layer `base` on, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the
+ * displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. goes_on: there is a layer c + 5. */
 template <bool SPECIAL, int ODD>
 static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
                                              flow *f, int32_t base, int c, uint32_t next, uint32_t old, bool goes_on,

@@ -217,12 +217,13 @@ ELEMENT_FUNCTION double stability_muscle_along(element_tensor h, element_fibre f
     return (fmax(s.t, 0.) + fmax(s.slope, 0.) * l * l) * length * length;
 }
 
-/* Of stability_matrix, B = D A D with D_j = 2/(sqrt(rho) h_j), by the direction x = D G, which the bulk's term makes nearly that of its
- * largest eigenvalue. Its Rayleigh quotient is the lower bound. Across it, where z:G = 0 for z = D y, the terms of bulk and mixed
- * vanish, and as y:(dG/dF y) = 2 F:cof y is at most 2 s |y|^2, s the largest stretch, the rest is at most
- *     m = D^2 (a + 2 |p| s + the muscles').
- * So with r, what B x has across x, the largest eigenvalue is at most that of the 2 x 2 matrix of low, r, m. Both bounds leave
- * room for rounding. */
+/* Of stability_matrix, B = D A D with D_j = 2/(sqrt(rho) h_j), by the direction x = D G, which the bulk's term makes nearly that of
+ * its largest eigenvalue. The Rayleigh quotient q of x is the lower bound. Across it, for z:x = 0, |z| = 1 and y = D z, is G:y = 0:
+ * the terms of bulk and mixed vanish in z:(B z); and as y:(dG/dF y) = 2 F:cof y is at most 2 s |y|^2, s the largest stretch, the
+ * others are at most
+ *     m = max(D_j)^2 (a + 2 |p| s + the muscles').
+ * So with r, the length of what B x/|x| has across x, the largest eigenvalue is at most that of the 2 x 2 matrix (q r, r m). Both
+ * bounds leave room for rounding. Where F's cofactors all vanish they are no numbers. */
 ELEMENT_FUNCTION stability_range stability_range_of(double mu, double k, double density, const double side[3],
                                                     element_tensor h, element_fibre fibre, element_fibre second)
 {

@@ -203,7 +203,7 @@ static void take_sums(watch *w, const tled_sums *sum)
 int watch_look(watch *w, const backend *b, void *state, double time, err *e)
 {
     tled_sums sum;
-    /* A rounding above the frequency at rest, so that elements at rest do not pass it. */
+    /* A rounding above the frequency at rest, so that no matrix at rest passes it. (Bounds may, of elements with unlike sides.) */
     w->question = (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences};
     if (b->look ? b->look(state, &w->question, &sum, e) : look_here(w, b, state, &sum, e))
         return -1;
