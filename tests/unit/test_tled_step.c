@@ -1,5 +1,5 @@
-/* The stable step: against its formulas at rest, the element's matrix against the derivative of its stress, and the bound
- * against the largest frequency of a block, found by power iteration. */
+/* The stable step: against its formulas at rest, the element's matrix against the derivative of its stress, its largest eigenvalue
+ * against bounds of it, and the model's bound against the largest frequency of a block, found by power iteration. */
 // needs: tled/state.c tled/conforming.c tled/conforming_step.c tled/step.c tled/script.c tled/script_read.c
 #include "tled/step.h"
 
@@ -82,7 +82,6 @@ static void test_matrix(element_tensor h, element_fibre fibre, element_fibre sec
     ok(step_below(&a, largest * (1 + 1e-9)) && !step_below(&a, largest * (1 - 1e-9)), "its largest eigenvalue splits");
 }
 
-/* The internal forces of the whole block, element by element. */
 /* Numbers from -1 to 1, the same in every run. */
 static double number(void)
 {
@@ -127,6 +126,7 @@ static void test_range(double mu, double bulk, double strain, double tension, do
     ok(close > count / 2, "half of them within %g: %d", near, close);
 }
 
+/* The internal forces of the whole block, element by element. */
 static void pull(const tled_problem *p, const double *u, double *f)
 {
     element_shape shape = element_box(p->side[0], p->side[1], p->side[2]);
@@ -245,6 +245,51 @@ static void test_rate(void)
     near_(step_rate(1, &check), 100, 0, "never fewer than 100");
 }
 
+/* What is nearly flat, or a line, its volume down to 1e-16: gradients of which cofactors keep few digits. */
+static void test_collapsed(void)
+{
+    int wrong = 0, count = 0;
+    while (count < 2000) {
+        static const double side[3] = {.01, .0125, .02};
+        const double thin = pow(10, -8 * fabs(number())), thinner = number() > 0 ? thin : 1;
+        double f[9];
+        element_tensor h;
+        step_matrix a;
+        for (int i = 0; i < 9; i++)
+            f[i] = number() * (i < 3 ? 1 : i < 6 ? thinner : thin);
+        for (int i = 0; i < 3; i++) { /* rows that are nearly one row's multiples */
+            f[3 + i] += thinner < 1 ? f[i] / 2 : 0;
+            f[6 + i] += f[i] / 3 + f[3 + i] / 4;
+        }
+        f[0] -= 1, f[4] -= 1, f[8] -= 1;
+        memcpy(&h, f, sizeof h);
+        if (!(1 + element_dilation(h) > 0))
+            continue;
+        count++;
+        const element_fibre first = fibre_by_chance(30000 * number()), second = fibre_by_chance(3000);
+        stability_matrix(1000, 9700, 1000, side, h, first, second, &a);
+        const stability_range range = stability_range_of(1000, 9700, 1000, side, h, first, second);
+        const double largest = stability_largest(&a);
+        wrong += !(range.low <= largest && largest <= range.high);
+    }
+    ok(!wrong, "bounds of %d eigenvalues of elements that are nearly flat: %d wrong", count, wrong);
+}
+
+/* Where there is no answer there are no bounds: whoever asks has to take the matrix, which says so. */
+static void test_no_range(void)
+{
+    static const double side[3] = {.01, .01, .01};
+    const element_fibre none = {0}, lost = {{NAN, 0, 1}, 3000}, wild = {{0, 0, 1}, INFINITY};
+    const element_tensor rest = {0}, point = {-1, 0, 0, 0, -1, 0, 0, 0, -1}, broken = {0, 0, 0, 0, 0, NAN, 0, 0, 0};
+    const stability_range range[] = {stability_range_of(1000, 9700, 1000, side, point, none, none),
+                                     stability_range_of(1000, 9700, 1000, side, broken, none, none),
+                                     stability_range_of(1000, 9700, 1000, side, rest, lost, none),
+                                     stability_range_of(1000, 9700, 1000, side, rest, none, wild),
+                                     stability_range_of(1000, 9700, 0, side, rest, none, none)};
+    for (size_t i = 0; i < sizeof range / sizeof *range; i++)
+        ok(!isfinite(range[i].high), "no bounds of what is not finite: %g to %g", range[i].low, range[i].high);
+}
+
 static void test_ranges(void)
 {
     test_range(1000, 9700, 0, 0, .001);   /* nu = .45, at rest */
@@ -253,6 +298,8 @@ static void test_ranges(void)
     test_range(1000, 9700, .3, 30000, 10);
     test_range(1000, 2000, .5, 3000, 1);
     test_range(1000, 300, .5, 1000, 10);
+    test_collapsed();
+    test_no_range();
 }
 
 int main(void)
