@@ -1,7 +1,7 @@
-/* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners, and what is
- * said of special cells is the problem's. Nodes stand in one order, in which what is owned of a layer is one piece. With each of the
- * six axes; and not where too few threads would have a cell. And units: as many as there is room for at once where their layers are
- * all alike.
+/* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners; what is said of
+ * special cells is the problem's, and others are of the plain law. Nodes stand in one order, in which what is owned of a layer is
+ * one piece. With each of the six axes; and not where too few threads would have a cell. And units: as many as there is room for at
+ * once where their layers are all alike.
  */
 // needs: tled/march.c tled/march_units.c tled/places.c tled/*.c
 #include "mesh/lattice.h"
@@ -100,6 +100,19 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
     s->wrong += cell->muscles != muscles;
 }
 
+/* Whether an element is all of the plain law, and nothing of it may contract. */
+static bool is_plain(const seen *s, int32_t element)
+{
+    const tled_problem *p = s->p;
+    const tled_law law = tled_law_of(p, element);
+    const tled_volume *plain = &p->volume[s->m->plain];
+    const int32_t mix = tled_mix(p, element);
+    return tled_fraction(p, element) == 1 && (float)law.mu == (float)plain->mu &&
+           (float)law.bulk == (float)plain->bulk && (float)law.hourglass == (float)plain->hourglass &&
+           !(p->fibre && p->volume[p->element_volume[element]].contract >= 0) &&
+           !(p->mixfibre && mix >= 0 && p->volume[mix].contract >= 0);
+}
+
 /* A cell of a unit: its corners, and which of them the unit moves. */
 static void see_cell(seen *s, const march_unit *u, int c, int i, int j)
 {
@@ -111,6 +124,8 @@ static void see_cell(seen *s, const march_unit *u, int c, int i, int j)
     }
     if (own & MARCH_SPECIAL)
         see_special(s, u->base + c, i, j, element);
+    else
+        s->wrong += !is_plain(s, element);
     for (int k = 0; k < 8; k++) {
         const int way[3] = {k & 1, k >> 1 & 1, k >> 2};
         const int layer = c + way[2];
@@ -153,7 +168,8 @@ static bool all_seen(seen *s)
     return !s->wrong;
 }
 
-static void test_cut(const block *what, const int axis[3], bool scripted, int64_t slots, const char *name)
+/* contract: what does, or NULL. */
+static void test_cut(const block *what, const int axis[3], const char *contract, int64_t slots, const char *name)
 {
     model m = {0};
     script played = {0};
@@ -161,7 +177,7 @@ static void test_cut(const block *what, const int axis[3], bool scripted, int64_
     march cut;
     err e = {0};
     block_make(what, &m);
-    if (scripted && script_add_contract(&played, &m, "m=.5", .1, NULL, &e))
+    if (contract && script_add_contract(&played, &m, contract, .1, NULL, &e))
         printf("Bail out! %s\n", e.text);
     if (tled_problem_make(&p, &m, &played, .0075, &e))
         printf("Bail out! %s\n", e.text);
@@ -172,9 +188,8 @@ static void test_cut(const block *what, const int axis[3], bool scripted, int64_
     ok(cut.units > 0 && !memcmp(cut.axis, axis, sizeof cut.axis) && all_seen(&s),
        "%s: rows along %c, across %c, %lld units, %.3g threads an element: each node moved once, of all its elements",
        name, "xyz"[cut.axis[0]], "xyz"[cut.axis[1]], (long long)cut.units, cut.computed);
-    const bool all = scripted || what->fraction < 0;
-    ok(all ? s.special >= p.elements : s.special == (cut.cells ? s.special : 0),
-       "%s: %lld special cells are the problem's", name, (long long)s.special);
+    ok((contract || what->mixed || what->fraction < 0) == (s.special > 0), "%s: %lld special cells are the problem's",
+       name, (long long)s.special);
     march_free(&cut);
     free(list);
     tled_problem_free(&p);
@@ -227,22 +242,23 @@ int main(void)
     const block tall = {{33, 31, 40}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
     static const int axes[][3] = {{2, 0, 1}, {0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 1, 0}},
                      sides[] = {27, 18, 9};
-    block flat = tall, cut = tall, mixed = tall;
-    cut.fraction = -1;
-    mixed.fraction = -1;
-    mixed.mixed = true;
-    test_cut(&tall, axes[0], false, 7, "a block");
+    block flat = tall, cut = tall, mixed = tall, both = tall;
+    cut.fraction = both.fraction = -1;
+    mixed.mixed = both.mixed = true;
+    test_cut(&tall, axes[0], NULL, 7, "a block");
     for (int i = 0; i < 6; i++) {
         for (int a = 0; a < 3; a++)
             flat.cells[axes[i][a]] = sides[a];
-        test_cut(&flat, axes[i], false, 40, "a flat block");
+        test_cut(&flat, axes[i], NULL, 40, "a flat block");
     }
     for (int a = 0; a < 3; a++)
         flat.cells[a] = 29;
-    test_cut(&flat, axes[1], false, 40, "a cube");
-    test_cut(&tall, axes[0], true, 20, "a muscle");
-    test_cut(&cut, axes[0], false, 20, "cut elements");
-    test_cut(&mixed, axes[0], false, 3, "mixed elements");
+    test_cut(&flat, axes[1], NULL, 40, "a cube");
+    test_cut(&tall, axes[0], "m=.5", 20, "a muscle");
+    test_cut(&cut, axes[0], NULL, 20, "cut elements");
+    test_cut(&mixed, axes[0], NULL, 3, "mixed elements");
+    test_cut(&mixed, axes[0], "n=.5", 20, "mixed elements, one volume of which contracts");
+    test_cut(&both, axes[0], "m=.5,n=.3", 20, "cut and mixed elements that contract");
     test_thin();
     test_units();
     return done_testing();
