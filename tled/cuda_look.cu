@@ -6,16 +6,20 @@ extern "C" {
 }
 #include "tled/cuda_view.cuh"
 
-enum { NODE_THREADS = 256, SUM_THREADS = 256, SOLVERS = 512 /* blocks, of matrices_kernel */ };
+enum {
+    NODE_THREADS = 256,
+    SUM_THREADS = 256,
+    SOLVERS = 132 /* blocks of matrices_kernel: what an H200 has room for */
+};
 
 typedef struct look_nodes { /* of a block; tled_sums' */
     double kinetic, acceleration, speed, moved, mass, stiffness, inertia, largest;
 } look_nodes;
 
 typedef struct look_cells { /* of a tile */
-    double strain, frequency;
+    double strain;
+    double frequency, proven;       /* as in `highest`: the limit, and what is proven */
     int32_t frequency_cell, broken; /* cells, or -1 */
-    int32_t open;                   /* its frequency is not known by bounds: matrices_kernel's */
 } look_cells;
 
 static int64_t node_blocks(int64_t nodes)
@@ -33,7 +37,7 @@ size_t cuda_look_bytes(int64_t tiles, int64_t nodes)
     return cells_bytes(tiles) + (size_t)node_blocks(nodes) * sizeof(look_nodes);
 }
 
-/* A sum, or with `most` the largest, over a block's threads, in one order; the answer is thread 0's. scratch: a number a thread. */
+/* A sum, or with `most` the largest, over a block's threads, in one order; all get it. scratch: a number a thread. */
 template <int THREADS> static __device__ double block_sum(double x, bool most, double *scratch)
 {
     __syncthreads();
@@ -121,19 +125,17 @@ template <class S> static __device__ double strain_of(const cuda_look<S> &l, con
 typedef struct highest {
     double limit, proven; /* no cell is past limit; one reaches proven, or that is the one at rest */
     int32_t cell;         /* whose the limit is, or -1: that at rest */
-    bool open;            /* the limit may be too high by more than `raise` */
 } highest;
 
 /* Raises the limit to the highest bound of those past it. */
 template <int THREADS>
-static __device__ void raise_by_bounds(stability_range range, bool past, double raise, int32_t cell, highest *h,
-                                       double *scratch, int *least)
+static __device__ void raise_by_bounds(stability_range range, bool past, int32_t cell, highest *h, double *scratch,
+                                       int *least)
 {
     const double bound = isnan(range.high) ? INFINITY : range.high;
     h->proven = fmax(block_sum<THREADS>(past ? range.low : 0, true, scratch), h->proven);
     h->limit = block_sum<THREADS>(past ? bound : 0, true, scratch);
     h->cell = block_least(past && bound == h->limit ? cell : INT32_MAX, least);
-    h->open = h->limit > raise * h->proven;
 }
 
 /* Strain energies, what is broken, and bounds of frequencies; no matrices, which take a thread nearly twice the registers. */
@@ -147,7 +149,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     const tile t = l.view.tiles[blockIdx.x];
     cuda_load<G, false>(l.view, t, l.displacement, u);
     __syncthreads();
-    highest h = {l.question.rest, l.question.rest, -1, false};
+    highest h = {l.question.rest, l.question.rest, -1};
     double strain = 0;
     int broken = INT32_MAX;
     for (int base = 0; base < t.cells; base += G::THREADS) {
@@ -165,12 +167,12 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
             broken = t.cell + i;
         strain += whole ? own : 0;
         if (__syncthreads_or(past))
-            raise_by_bounds<G::THREADS>(range, past, l.question.raise, t.cell + i, &h, scratch, &least);
+            raise_by_bounds<G::THREADS>(range, past, t.cell + i, &h, scratch, &least);
     }
     strain = block_sum<G::THREADS>(strain, false, scratch);
     broken = block_least(broken, &least);
     if (threadIdx.x == 0)
-        out[blockIdx.x] = {strain, h.limit, h.cell, broken == INT32_MAX ? -1 : broken, h.open};
+        out[blockIdx.x] = {strain, h.limit, h.proven, h.cell, broken == INT32_MAX ? -1 : broken};
 }
 
 /* Some thread's matrix reaches past the limit: raises it by halving until it is the highest, or too high by `raise` at most. */
@@ -202,7 +204,7 @@ template <class G, class S>
 static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, look_cells *out, S *u, double *scratch,
                                   int *least)
 {
-    highest h = {l.question.rest, 0, -1, false};
+    highest h = {l.question.rest, 0, -1};
     __syncthreads();
     cuda_load<G, false>(l.view, t, l.displacement, u);
     __syncthreads();
@@ -225,7 +227,18 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, look_cel
     }
 }
 
-/* Goes through tiles, every gridDim.x-th, for those that are open. */
+/* The highest frequency that a cell of any tile is known to reach. */
+template <int THREADS>
+static __device__ double proven_of_all(const look_cells *cells, int64_t tiles, double rest, double *scratch)
+{
+    double proven = rest;
+    for (int64_t i = threadIdx.x; i < tiles; i += THREADS)
+        proven = fmax(proven, cells[i].proven);
+    return block_sum<THREADS>(proven, true, scratch);
+}
+
+/* Goes through tiles, every gridDim.x-th, for those whose limit is past `raise` times what some tile is known to reach: others' limits
+ * may stay, for if one of them is the highest of all, it is too high by `raise` at most. */
 template <class G, class S>
 static __global__ void __launch_bounds__(G::THREADS)
     matrices_kernel(const __grid_constant__ cuda_look<S> l, look_cells *out)
@@ -234,9 +247,10 @@ static __global__ void __launch_bounds__(G::THREADS)
     __shared__ double scratch[G::THREADS];
     __shared__ int least;
     const int64_t stride = gridDim.x;
+    const double enough = l.question.raise * proven_of_all<G::THREADS>(out, l.count, l.question.rest, scratch);
     for (int64_t base = blockIdx.x; base < l.count; base += G::THREADS * stride) {
         const int64_t own = base + threadIdx.x * stride;
-        int next = own < l.count && out[own].open ? (int)threadIdx.x : INT32_MAX;
+        int next = own < l.count && out[own].frequency > enough ? (int)threadIdx.x : INT32_MAX;
         for (int which; (which = block_least(next, &least)) != INT32_MAX;) {
             const int64_t at = base + which * stride;
             solve_tile<G>(l, l.view.tiles[at], &out[at], u, scratch, &least);
