@@ -24,7 +24,7 @@ enum {
     MARCH_SIDE = 16,            /* cells along a column's side: one more than owned nodes */
     MARCH_THREADS = 256,        /* cells of a layer */
     MARCH_WORDS = 296,          /* of a layer: 256 and 33, and 7 of no use */
-    MARCH_AHEAD = 5,            /* layers of nothing after the last, which are read before they are known to be none */
+    MARCH_AHEAD = 5,            /* layers that copies are ahead, and words: so many of nothing follow the last */
     MARCH_NODE = (1 << 28) - 1, /* of a word: where its node stands */
     MARCH_SPECIAL = 1 << 28,    /* its cell is not of the plain law: see `which` */
     MARCH_THERE = 1 << 29,      /* there is a node */
