@@ -238,7 +238,8 @@ static __device__ double proven_of_all(const look_cells *cells, int64_t tiles, d
 }
 
 /* Goes through tiles, every gridDim.x-th, for those whose limit is past `raise` times what some tile is known to reach: others' limits
- * may stay, for if one of them is the highest of all, it is too high by `raise` at most. */
+ * may stay, for if one of them is the highest of all, it is too high by `raise` at most. Where no tile is known to pass the frequency
+ * at rest, it is for all that may. */
 template <class G, class S>
 static __global__ void __launch_bounds__(G::THREADS)
     matrices_kernel(const __grid_constant__ cuda_look<S> l, look_cells *out)
@@ -247,7 +248,8 @@ static __global__ void __launch_bounds__(G::THREADS)
     __shared__ double scratch[G::THREADS];
     __shared__ int least;
     const int64_t stride = gridDim.x;
-    const double enough = l.question.raise * proven_of_all<G::THREADS>(out, l.count, l.question.rest, scratch);
+    const double rest = l.question.rest, proven = proven_of_all<G::THREADS>(out, l.count, rest, scratch);
+    const double enough = proven > rest ? l.question.raise * proven : rest;
     for (int64_t base = blockIdx.x; base < l.count; base += G::THREADS * stride) {
         const int64_t own = base + threadIdx.x * stride;
         int next = own < l.count && out[own].frequency > enough ? (int)threadIdx.x : INT32_MAX;

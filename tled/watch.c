@@ -45,7 +45,8 @@ static void look_at_conforming(const watch *w, int64_t i, element_tensor h, stru
 }
 
 /* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far. Where they are
- * too wide the matrix tells, and the frequency is raised to 1 % above the element's: so few need more than one test. */
+ * too wide, or leave open whether any reaches past the one at rest, the matrix tells, and the frequency is raised to 1 % above the
+ * element's: so few need more than one test. */
 static void look_at_step(const watch *w, const tled_law *law, int64_t i, element_tensor h, struct watch_part *part)
 {
     const tled_problem *p = w->p;
@@ -56,7 +57,8 @@ static void look_at_step(const watch *w, const tled_law *law, int64_t i, element
     step_matrix a;
     if (range.high <= part->sum.frequency)
         return;
-    if (range.high <= w->raise * range.low) {
+    const bool past_rest = part->sum.frequency_element >= 0 || range.low > part->sum.frequency;
+    if (past_rest && range.high <= w->raise * range.low) {
         take_frequency(part, i, range.high);
         return;
     }

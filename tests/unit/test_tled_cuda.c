@@ -316,6 +316,8 @@ int main(void)
     test_repeats(twice, "double");
     test_repeats(once, "single");
     test_again(&large, once, "single, marched");
+    ok(bench_look_at_rest(&lump, once) == 1 && bench_look_at_rest(&lump, twice) == 1,
+       "a look at rest, with unlike sides, finds the stable step at rest");
     test_look(&lump, true, 300, twice, "double, a script", 1e-10);
     test_look(&muscle, false, 300, twice, "double, a muscle", 1e-10);
     test_look(&muscle, false, 300, once, "single, a muscle", 1e-6);

@@ -198,6 +198,8 @@ static void test_looks(int64_t steps)
 {
     put_in(&marching, 3, 4);
     test_look(&small, false, steps, &tled_cuda_single, "a look where it marches", 1e-6);
+    ok(bench_look_at_rest(&lump, &tled_cuda_single) == 1,
+       "a look at rest, with unlike sides, finds the stable step at rest");
     const block mixed = mixed_of(small);
     test_look(&mixed, false, steps, &tled_cuda_single, "a look at mixed elements", 1e-6);
     put_in(&plain, 4, 4);

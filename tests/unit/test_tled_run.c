@@ -400,6 +400,8 @@ int main(void)
     test_contraction(&muscle, "a muscle on its side");
     test_contraction(&bound, "a muscle by its end");
     test_step_too_large();
+    ok(bench_look_at_rest(&lump, &tled_cpu_double) == 1,
+       "a look at rest, with unlike sides, finds the stable step at rest");
     test_diverged();
     test_just_stable();
     test_place(true);

@@ -132,4 +132,19 @@ static inline void bench_free(bench *b)
     free(b->displacement);
 }
 
+/* The stable step that a device's look finds of a block at rest, as a share of that at rest. */
+static inline double bench_look_at_rest(const block *what, const backend *device)
+{
+    bench b;
+    bench_make(&b, what, NULL, 0, .0075, 1);
+    void *state = device->create(&b.problem, b.setup.threads, &b.e);
+    watch *w = watch_create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || !w || watch_look(w, device, state, 0, &b.e), &b.e);
+    const double share = w->sight.stable / step_at_rest(&b.problem, NULL);
+    device->destroy(state);
+    watch_destroy(w);
+    bench_free(&b);
+    return share;
+}
+
 #endif
