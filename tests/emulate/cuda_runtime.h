@@ -74,6 +74,20 @@ void __syncthreads();
 int __syncthreads_or(int value);
 void __syncwarp();
 int __any_sync(unsigned mask, int value);
+unsigned __ballot_sync(unsigned mask, int value);
+uint64_t emulated_exchange(unsigned mask, uint64_t bits, int with);
+static inline double __shfl_xor_sync(unsigned mask, double x, int with)
+{
+    return emulated_bits<double>(emulated_exchange(mask, emulated_bits<uint64_t>(x), with));
+}
+static inline int __shfl_xor_sync(unsigned mask, int x, int with)
+{
+    return (int)emulated_exchange(mask, (unsigned)x, with);
+}
+static inline int __popc(unsigned x)
+{
+    return __builtin_popcount(x);
+}
 int atomicMin(int *at, int value);
 
 /* ---- of the host */

@@ -349,6 +349,7 @@ static bool meet(meeting &m, int want, bool says, bool orders)
         m.answer = m.value;
         m.answered = m.known;
         m.came = 0;
+        m.round++;
         m.value = false;
         wake(m.waiting);
     }
@@ -383,12 +384,42 @@ void __syncwarp()
         meet(now->home->warps[(size_t)now->thread / 32], warp_size(), false, true);
 }
 
-int __any_sync(unsigned mask, int value)
+/* A warp's threads tell each other, which orders nothing: what all of them say. It stands until they have met once more. */
+static const uint64_t *say(unsigned mask, uint64_t what, bool *any)
 {
-    HERE();
+    meeting &m = now->home->votes[(size_t)now->thread / 32];
+    uint64_t *said = m.said[m.round % 2];
     if (mask != ~0u)
         fault("asks some of its warp only, which is not emulated");
-    return meet(now->home->votes[(size_t)now->thread / 32], warp_size(), value != 0, false);
+    said[now->thread % 32] = what;
+    *any = meet(m, warp_size(), what != 0, false);
+    return said;
+}
+
+int __any_sync(unsigned mask, int value)
+{
+    bool any;
+    HERE();
+    say(mask, value != 0, &any);
+    return any;
+}
+
+unsigned __ballot_sync(unsigned mask, int value)
+{
+    bool any;
+    unsigned who = 0;
+    HERE();
+    const uint64_t *said = say(mask, value != 0, &any);
+    for (int i = 0; i < warp_size(); i++)
+        who |= (unsigned)said[i] << i;
+    return who;
+}
+
+uint64_t emulated_exchange(unsigned mask, uint64_t bits, int with)
+{
+    bool any;
+    HERE();
+    return say(mask, bits, &any)[now->thread % 32 ^ with];
 }
 
 /* ---- the card's barriers */

@@ -45,8 +45,9 @@ struct fibre;
 
 /* Where `threads` meet, round after round. */
 struct meeting {
-    int came = 0;
+    int came = 0, round = 0;
     bool value = false, answer = false; /* whether any says so, of this round and the last */
+    uint64_t said[2][32];               /* by a warp's threads, in rounds even and odd */
     clocks known, answered;
     std::vector<fibre *> waiting;
 };

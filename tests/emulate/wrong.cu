@@ -70,6 +70,17 @@ static __global__ void vote_of_some(task)
     __any_sync(1, 1);
 }
 
+/* What a warp's threads tell each other arrives, and orders nothing either. */
+template <bool RIGHT> static __global__ void told(task t)
+{
+    __shared__ float x[THREADS];
+    const int i = (int)threadIdx.x;
+    const bool arrived = __shfl_xor_sync(~0u, i, 5) == (i ^ 5) && __shfl_xor_sync(~0u, i + .5, 16) == (i ^ 16) + .5 &&
+                         __ballot_sync(~0u, i & 2) == 0xcccccccc;
+    x[i] = arrived ? 1 : t.data[THREADS].x;
+    x[i] = x[i ^ (__shfl_xor_sync(~0u, 1, 1) - RIGHT)];
+}
+
 static __global__ void nobody(task)
 {
     DYNAMIC_SHARED(float, x);
@@ -305,6 +316,8 @@ const wrong_kernel wrong_kernels[] = {
     KERNEL("reads what ", vote),
     KERNEL("writes what thread ", vote_late),
     KERNEL("asks some of its warp only", vote_of_some),
+    KERNEL(NULL, told<true>),
+    KERNEL("a race", told<false>),
     KERNEL("reads what nobody wrote", nobody),
     KERNEL(NULL, place<16>),
     KERNEL("no multiple of 16", place<8>),
