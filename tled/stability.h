@@ -35,12 +35,12 @@ typedef struct stability_law {
 ELEMENT_FUNCTION stability_law stability_law_at(double mu, double k, element_tensor h)
 {
     const double dilation = element_dilation(h), volume = 1 + dilation;
-    const double root = element_cube_root_inverse(volume), shear = mu * root * root;
+    const double root = element_cube_root_inverse(volume), shear = mu * root * root, inverse = 1 / volume;
     const double trace = 3 + 2 * (h.xx + h.yy + h.zz) +
                          (h.xx * h.xx + h.xy * h.xy + h.xz * h.xz + h.yx * h.yx + h.yy * h.yy + h.yz * h.yz +
                           h.zx * h.zx + h.zy * h.zy + h.zz * h.zz);
-    const stability_law law = {shear, k + 5. / 9 * shear * trace / (volume * volume), 2. / 3 * shear / volume,
-                               k * dilation - shear * trace / (3 * volume)};
+    const stability_law law = {shear, k + 5. / 9 * shear * trace * inverse * inverse, 2. / 3 * shear * inverse,
+                               k * dilation - 1. / 3 * shear * trace * inverse};
     return law;
 }
 
@@ -223,16 +223,16 @@ ELEMENT_FUNCTION double stability_muscle_along(element_tensor h, element_fibre f
  * others are at most
  *     m = max(D_j)^2 (a + 2 |p| s + the muscles').
  * So with r, the length of what B x/|x| has across x, the largest eigenvalue is at most that of the 2 x 2 matrix (q r, r m). Both
- * bounds leave room for rounding. Where F's cofactors all vanish they are no numbers. */
-ELEMENT_FUNCTION stability_range stability_range_of(double mu, double k, double density, const double side[3],
-                                                    element_tensor h, element_fibre fibre, element_fibre second)
+ * bounds leave room for rounding. Where F's cofactors all vanish they are no numbers. d: D's diagonal. */
+ELEMENT_FUNCTION stability_range stability_range_scaled(double mu, double k, element_vector d, element_tensor h,
+                                                        element_fibre fibre, element_fibre second)
 {
-    const double unit = 2 / sqrt(density), slack = 1e-12;
-    const element_vector d = {unit / side[0], unit / side[1], unit / side[2]};
+    const double slack = 1e-12;
     const stability_law law = stability_law_at(mu, k, h);
     const element_tensor g = element_cofactor(h), x = stability_scaled(g, d), y = stability_scaled(x, d);
     const element_tensor f = {1 + h.xx, h.xy, h.xz, h.yx, 1 + h.yy, h.yz, h.zx, h.zy, 1 + h.zz};
     const double square = stability_dot(x, x), along = stability_dot(f, y), most = fmax(d.x, fmax(d.y, d.z));
+    const double inverse = 1 / square;
     element_tensor z = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     stability_add(&z, law.shear, y);
     stability_add(&z, law.bulk * square - law.mixed * along, g);
@@ -240,13 +240,22 @@ ELEMENT_FUNCTION stability_range stability_range_of(double mu, double k, double 
     stability_add(&z, law.pressure, stability_cofactor_along(h, y));
     const double muscles = stability_muscle_along(h, fibre, y, &z) + stability_muscle_along(h, second, y, &z);
     const double across = most * most * (law.shear + 2 * fabs(law.pressure) * stability_stretch(h) + muscles);
+    const double quotient = stability_dot(y, z) * inverse; /* x:(z D) */
     z = stability_scaled(z, d);
-    const double quotient = stability_dot(x, z) / square;
-    const double rest = fmax(stability_dot(z, z) / square - quotient * quotient, 0.) + slack * quotient * quotient;
+    const double rest = fmax(stability_dot(z, z) * inverse - quotient * quotient, 0.) + slack * quotient * quotient;
     const double half = (quotient - across) / 2;
     const stability_range range = {quotient - slack * fabs(quotient),
                                    ((quotient + across) / 2 + sqrt(half * half + rest)) * (1 + slack)};
     return range;
+}
+
+/* Of an element of these sides. */
+ELEMENT_FUNCTION stability_range stability_range_of(double mu, double k, double density, const double side[3],
+                                                    element_tensor h, element_fibre fibre, element_fibre second)
+{
+    const double unit = 2 / sqrt(density);
+    const element_vector d = {unit / side[0], unit / side[1], unit / side[2]};
+    return stability_range_scaled(mu, k, d, h, fibre, second);
 }
 
 #endif
