@@ -1,5 +1,5 @@
 /* What the watch wants to know of a state, found where it is: watch.c's sums over elements and nodes, in double whatever
- * the state is in, in a fixed order. Kernels of blocks leave parts, a last one adds them up.
+ * the state is in, in a fixed order. Blocks leave parts; some blocks settle the frequency and add up parts, one adds up what these have.
  */
 extern "C" {
 #include "tled/stability.h"
@@ -7,108 +7,217 @@ extern "C" {
 #include "tled/cuda_view.cuh"
 
 enum {
-    NODE_THREADS = 256,
-    SUM_THREADS = 256,
-    SOLVERS = 132 /* blocks of matrices_kernel: what an H200 has room for */
+    LOOK_THREADS = 64, /* which go through a brick's cells: blocks that are small load and compute at different times */
+    NODES_AT_ONCE = 2, /* of a thread, on their way together */
+    SOLVERS = 132,     /* blocks of settle_kernel: what an H200 has room for */
+    SUM_THREADS = 256
 };
 
-typedef struct look_nodes { /* of a block; tled_sums' */
-    double kinetic, acceleration, speed, moved, mass, stiffness, inertia, largest;
-} look_nodes;
+/* A block of the look has a tile and as many of the nodes, in the order of memory, as any other. It leaves a part of the answer,
+ * with cells for elements, whose frequency no cell of the tile is past; and what is proven: that a cell reaches it, or else that at rest. */
+typedef struct look_parts {
+    tled_sums *block;     /* then, of SOLVERS blocks at most, what they found of some each */
+    double *proven;       /* blocks */
+    int64_t share;        /* nodes of a block */
+    element_vector slope; /* element_shape's: kernels then divide less */
+} look_parts;
 
-typedef struct look_cells { /* of a tile */
-    double strain;
-    double frequency, proven;       /* as in `highest`: the limit, and what is proven */
-    int32_t frequency_cell, broken; /* cells, or -1 */
-} look_cells;
-
-static int64_t node_blocks(int64_t nodes)
+size_t cuda_look_bytes(int64_t tiles)
 {
-    return (nodes + NODE_THREADS - 1) / NODE_THREADS;
+    return (size_t)tiles * (sizeof(tled_sums) + sizeof(double));
 }
 
-static size_t cells_bytes(int64_t tiles)
+template <class S> static look_parts parts_of(const cuda_look<S> *l)
 {
-    return ((size_t)tiles * sizeof(look_cells) + 255) / 256 * 256;
+    const double *side = l->view.side;
+    tled_sums *block = (tled_sums *)l->parts;
+    return {block, (double *)(block + l->count), (l->view.nodes + l->count - 1) / l->count,
+            element_box(side[0], side[1], side[2]).slope};
 }
 
-size_t cuda_look_bytes(int64_t tiles, int64_t nodes)
+/* ---- sums and the like, in one order whatever the card */
+
+enum { NONE = INT32_MAX }; /* of cells; the least of some is told */
+
+/* Over a warp; all its threads get it. */
+static __device__ double warp_sum(double x)
 {
-    return cells_bytes(tiles) + (size_t)node_blocks(nodes) * sizeof(look_nodes);
+    for (int with = 16; with; with /= 2)
+        x += __shfl_xor_sync(~0u, x, with);
+    return x;
 }
 
-/* A sum, or with `most` the largest, over a block's threads, in one order; all get it. scratch: a number a thread. */
-template <int THREADS> static __device__ double block_sum(double x, bool most, double *scratch)
+static __device__ double warp_most(double x)
 {
-    __syncthreads();
-    scratch[threadIdx.x] = x;
-    for (int half = THREADS / 2; half; half /= 2) {
-        __syncthreads();
-        if (threadIdx.x < half) {
-            double a = scratch[threadIdx.x], b = scratch[threadIdx.x + half];
-            scratch[threadIdx.x] = most ? fmax(a, b) : a + b;
-        }
+    for (int with = 16; with; with /= 2)
+        x = fmax(x, __shfl_xor_sync(~0u, x, with));
+    return x;
+}
+
+static __device__ int warp_least(int x)
+{
+    for (int with = 16; with; with /= 2) {
+        const int other = __shfl_xor_sync(~0u, x, with);
+        x = other < x ? other : x;
     }
-    __syncthreads();
-    return scratch[0];
+    return x;
 }
 
-/* The least of what threads say, or INT32_MAX where none does. */
+/* The largest over a block. scratch: a number a warp. */
+template <int THREADS> static __device__ double block_most(double x, double *scratch)
+{
+    x = warp_most(x);
+    __syncthreads();
+    if (threadIdx.x % 32 == 0)
+        scratch[threadIdx.x / 32] = x;
+    __syncthreads();
+    for (int i = 0; i < THREADS / 32; i++)
+        x = fmax(x, scratch[i]);
+    return x;
+}
+
+/* The least of what threads say, or NONE. */
 static __device__ int block_least(int mine, int *shared)
 {
     __syncthreads();
     if (threadIdx.x == 0)
-        *shared = INT32_MAX;
+        *shared = NONE;
     __syncthreads();
-    if (mine != INT32_MAX)
+    if (mine != NONE)
         atomicMin(shared, mine);
     __syncthreads();
     return *shared;
 }
 
+static __device__ tled_sums nothing_seen(double rest)
+{
+    tled_sums s = {};
+    s.frequency = rest;
+    s.frequency_element = s.broken = -1;
+    return s;
+}
+
+/* -1 is past all others. */
+static __device__ bool before(int64_t a, int64_t b)
+{
+    return (uint64_t)a < (uint64_t)b;
+}
+
+static __device__ void add_part(tled_sums *to, const tled_sums &part)
+{
+    to->kinetic += part.kinetic;
+    to->strain += part.strain;
+    to->acceleration += part.acceleration;
+    to->speed += part.speed;
+    to->moved += part.moved;
+    to->mass += part.mass;
+    to->stiffness += part.stiffness;
+    to->inertia += part.inertia;
+    to->largest = fmax(to->largest, part.largest);
+    if (part.frequency > to->frequency ||
+        (part.frequency == to->frequency && before(part.frequency_element, to->frequency_element))) {
+        to->frequency = part.frequency;
+        to->frequency_element = part.frequency_element;
+    }
+    to->broken = before(part.broken, to->broken) ? part.broken : to->broken;
+}
+
+/* A warp's sums over nodes; all its threads get them. */
+static __device__ void sum_nodes(tled_sums *s, bool differences)
+{
+    s->kinetic = warp_sum(s->kinetic);
+    s->acceleration = warp_sum(s->acceleration);
+    s->speed = warp_sum(s->speed);
+    s->moved = warp_sum(s->moved);
+    s->mass = warp_sum(s->mass);
+    s->largest = warp_most(s->largest);
+    if (differences) {
+        s->stiffness = warp_sum(s->stiffness);
+        s->inertia = warp_sum(s->inertia);
+    }
+}
+
+/* And over cells. */
+static __device__ void sum_cells(tled_sums *s)
+{
+    const double highest = warp_most(s->frequency);
+    const bool mine = s->frequency == highest && s->frequency_element >= 0;
+    const int cell = warp_least(mine ? (int)s->frequency_element : NONE);
+    const int broken = warp_least(s->broken >= 0 ? (int)s->broken : NONE);
+    s->strain = warp_sum(s->strain);
+    s->frequency = highest;
+    s->frequency_element = cell == NONE ? -1 : cell;
+    s->broken = broken == NONE ? -1 : broken;
+}
+
+/* Adds up what a block's threads have, in `to`. scratch: one a warp. */
+template <int THREADS>
+static __device__ void sum_block(tled_sums mine, bool differences, tled_sums *scratch, tled_sums *to)
+{
+    sum_nodes(&mine, differences);
+    sum_cells(&mine);
+    if (threadIdx.x % 32 == 0)
+        scratch[threadIdx.x / 32] = mine;
+    __syncthreads();
+    if (threadIdx.x)
+        return;
+    for (int i = 1; i < THREADS / 32; i++)
+        add_part(&mine, scratch[i]);
+    *to = mine;
+}
+
+/* ---- cells */
+
 /* What a thread's cell is made of, and how it is deformed. */
 typedef struct one_cell {
     cuda_mixed own;
     element_tensor h;
-    element_fibre fibre, mixfibre;
     double hourglass; /* its energy */
 } one_cell;
 
-/* along: over cells that may contract, or NULL; share: of the tissue that is of this kind. */
-template <class S>
-static __device__ element_fibre look_fibre(const cuda_look<S> &l, const tile &t, int i, const float *along,
-                                           const cuda_kind &kind, double share)
-{
-    element_fibre fibre = {{0, 0, 0}, 0};
-    if (i >= t.fibred || !along || kind.contract < 0)
-        return fibre;
-    along += 3 * (int64_t)(t.direction + i);
-    fibre.along.x = along[0], fibre.along.y = along[1], fibre.along.z = along[2];
-    fibre.tension = share * (kind.peak * l.now[3 * kind.contract]);
-    return fibre;
-}
-
-template <class G, class S> static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u)
+template <class G, class S>
+static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u, element_vector slope)
 {
     const cuda_view<S> &v = l.view;
     const uint32_t cell = v.cell[t.cell + i];
     const int place = cell & TILE_PLACE;
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
     const int32_t mixed = v.mixed ? v.mixed[t.cell + i] : -1;
-    const element_shape shape = element_box(v.side[0], v.side[1], v.side[2]);
     element_modes x = element_modes_of(cuda_corners<G>(u, place));
     element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
     element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
     one_cell c;
-    c.own = {kind.mu, kind.bulk, kind.density, kind.hourglass, 0, (int32_t)(cell >> TILE_VOLUME)};
+    c.own = {kind.mu, kind.bulk, kind.density, kind.hourglass, 0, -1};
     if (mixed >= 0)
         c.own = v.mixture[mixed];
-    c.h = element_gradient(x, y, z, shape.slope);
-    c.fibre = look_fibre(l, t, i, v.fibre, kind, 1 - c.own.share);
-    c.mixfibre = look_fibre(l, t, i, mixed < 0 ? NULL : v.mixfibre, v.kind[c.own.mix], c.own.share);
+    c.h = element_gradient(x, y, z, slope);
     c.hourglass = element_hourglass_energy(x, c.own.hourglass) + element_hourglass_energy(y, c.own.hourglass) +
                   element_hourglass_energy(z, c.own.hourglass);
     return c;
+}
+
+/* along: over cells that may contract, or NULL; share: of the tissue that is of this kind. */
+template <class S>
+static __device__ element_fibre look_fibre(const cuda_look<S> &l, const tile &t, int i, const float *along,
+                                           uint32_t kind, double share)
+{
+    element_fibre fibre = {{0, 0, 0}, 0};
+    const int32_t contract = i < t.fibred && along ? l.view.kind[kind].contract : -1;
+    if (contract < 0)
+        return fibre;
+    along += 3 * (int64_t)(t.direction + i);
+    fibre.along.x = along[0], fibre.along.y = along[1], fibre.along.z = along[2];
+    fibre.tension = share * (l.view.kind[kind].peak * l.now[3 * contract]);
+    return fibre;
+}
+
+/* Its muscles: of its own volume, and of the second. */
+template <class S>
+static __device__ void fibres_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c, element_fibre *two)
+{
+    const cuda_view<S> &v = l.view;
+    two[0] = look_fibre(l, t, i, v.fibre, v.cell[t.cell + i] >> TILE_VOLUME, 1 - c.own.share);
+    two[1] = look_fibre(l, t, i, c.own.mix < 0 ? NULL : v.mixfibre, (uint32_t)c.own.mix, c.own.share);
 }
 
 /* Its strain energy; not finite where the cell is broken. */
@@ -121,66 +230,96 @@ template <class S> static __device__ double strain_of(const cuda_look<S> &l, con
     return (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + c.hourglass);
 }
 
+/* The cells that a tile owns: of each cell and each of its nodes, one. */
+template <class G> struct own_cells {
+    enum { WARPS = G::THREADS / 32, ROUNDS = ((G::BX + 1) * (G::BY + 1) * (G::BZ + 1) + G::THREADS - 1) / G::THREADS };
+    int32_t cell[G::NODES];
+    int32_t count[ROUNDS * WARPS]; /* in each 32 cells */
+};
+
+/* Who of the threads beside this one has one of the tile's own, in each round; their counts go to *to. */
+template <class G>
+static __device__ void count_own(const uint32_t *cell, const tile &t, unsigned *who, own_cells<G> *to)
+{
+    constexpr int ROUNDS = own_cells<G>::ROUNDS, WARPS = own_cells<G>::WARPS;
+    uint32_t mine[ROUNDS];
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++) {
+        const int i = k * G::THREADS + (int)threadIdx.x;
+        mine[k] = i < t.cells ? cell[t.cell + i] : 0;
+    }
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++) {
+        who[k] = __ballot_sync(~0u, mine[k] >> TILE_OWN & 1);
+        if (threadIdx.x % 32 == 0)
+            to->count[k * WARPS + threadIdx.x / 32] = __popc(who[k]);
+    }
+}
+
+/* Lists them, in their order, when the counts are there. Returns how many there are. */
+template <class G> static __device__ int list_own(const unsigned *who, own_cells<G> *to)
+{
+    constexpr int ROUNDS = own_cells<G>::ROUNDS, WARPS = own_cells<G>::WARPS;
+    const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
+    int count = 0;
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++)
+        for (unsigned w = 0; w < WARPS; w++) {
+            if (w == warp && who[k] >> lane & 1)
+                to->cell[count + __popc(who[k] & ((1u << lane) - 1))] = (int)(k * G::THREADS + threadIdx.x);
+            count += to->count[k * WARPS + w];
+        }
+    return count;
+}
+
+/* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread nearly twice the
+ * registers. Returns what is proven. */
+template <class G, class S>
+static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
+                                       int count, element_vector slope, tled_sums *to)
+{
+    double proven = l.question.rest;
+#pragma unroll 1
+    for (int k = threadIdx.x; k < count; k += G::THREADS) {
+        const int i = own.cell[k];
+        const one_cell c = cell_of<G>(l, t, i, u, slope);
+        const double strain = strain_of(l, t, i, c);
+        if (!(strain < INFINITY)) {
+            to->broken = to->broken < 0 ? t.cell + i : to->broken;
+            continue;
+        }
+        to->strain += strain;
+        element_fibre fibre[2];
+        fibres_of(l, t, i, c, fibre);
+        const double unit = 8 / sqrt(c.own.density);
+        const element_vector d = {unit * slope.x, unit * slope.y, unit * slope.z};
+        const stability_range range = stability_range_scaled(c.own.mu, c.own.bulk, d, c.h, fibre[0], fibre[1]);
+        if (range.high <= l.question.rest)
+            continue;
+        const double bound = isnan(range.high) ? INFINITY : range.high;
+        proven = fmax(proven, range.low);
+        if (bound > to->frequency) {
+            to->frequency = bound;
+            to->frequency_element = t.cell + i;
+        }
+    }
+    return proven;
+}
+
+/* ---- matrices */
+
 /* What a tile's block knows of its highest frequency so far. */
 typedef struct highest {
-    double limit, proven; /* no cell is past limit; one reaches proven, or that is the one at rest */
-    int32_t cell;         /* whose the limit is, or -1: that at rest */
+    double limit; /* no cell is past it */
+    int32_t cell; /* whose the limit is, or -1: that at rest */
 } highest;
-
-/* Raises the limit to the highest bound of those past it. */
-template <int THREADS>
-static __device__ void raise_by_bounds(stability_range range, bool past, int32_t cell, highest *h, double *scratch,
-                                       int *least)
-{
-    const double bound = isnan(range.high) ? INFINITY : range.high;
-    h->proven = fmax(block_sum<THREADS>(past ? range.low : 0, true, scratch), h->proven);
-    h->limit = block_sum<THREADS>(past ? bound : 0, true, scratch);
-    h->cell = block_least(past && bound == h->limit ? cell : INT32_MAX, least);
-}
-
-/* Strain energies, what is broken, and bounds of frequencies; no matrices, which take a thread nearly twice the registers. */
-template <class G, class S>
-static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
-    cells_kernel(const __grid_constant__ cuda_look<S> l, look_cells *out)
-{
-    __shared__ S u[3 * G::PLACES];
-    __shared__ double scratch[G::THREADS];
-    __shared__ int least;
-    const tile t = l.view.tiles[blockIdx.x];
-    cuda_load<G, false>(l.view, t, l.displacement, u);
-    __syncthreads();
-    highest h = {l.question.rest, l.question.rest, -1};
-    double strain = 0;
-    int broken = INT32_MAX;
-    for (int base = 0; base < t.cells; base += G::THREADS) {
-        const int i = base + (int)threadIdx.x;
-        const bool mine = i < t.cells && l.view.cell[t.cell + i] >> TILE_OWN & 1;
-        stability_range range = {0, 0};
-        double own = 0;
-        if (mine) {
-            const one_cell c = cell_of<G>(l, t, i, u);
-            own = strain_of(l, t, i, c);
-            range = stability_range_of(c.own.mu, c.own.bulk, c.own.density, l.view.side, c.h, c.fibre, c.mixfibre);
-        }
-        const bool whole = own < INFINITY, past = mine && whole && !(range.high <= h.limit);
-        if (!whole && broken == INT32_MAX)
-            broken = t.cell + i;
-        strain += whole ? own : 0;
-        if (__syncthreads_or(past))
-            raise_by_bounds<G::THREADS>(range, past, t.cell + i, &h, scratch, &least);
-    }
-    strain = block_sum<G::THREADS>(strain, false, scratch);
-    broken = block_least(broken, &least);
-    if (threadIdx.x == 0)
-        out[blockIdx.x] = {strain, h.limit, h.proven, h.cell, broken == INT32_MAX ? -1 : broken};
-}
 
 /* Some thread's matrix reaches past the limit: raises it by halving until it is the highest, or too high by `raise` at most. */
 template <int THREADS>
 static __device__ void raise_limit(const step_matrix *a, bool past, double raise, int32_t cell, highest *h,
                                    double *scratch, int *least)
 {
-    double low = h->limit, high = block_sum<THREADS>(past ? stability_bound(a) : 0, true, scratch);
+    double low = h->limit, high = block_most<THREADS>(past ? stability_bound(a) : 0, scratch);
     const double gap = fmax(raise - 1, 1e-13);
     high = fmax(high, low);
     bool at_low = past;
@@ -194,17 +333,17 @@ static __device__ void raise_limit(const step_matrix *a, bool past, double raise
             high = middle;
         }
     }
-    int32_t which = block_least(at_low ? cell : INT32_MAX, least);
+    int32_t which = block_least(at_low ? cell : NONE, least);
     h->limit = high;
     h->cell = which;
 }
 
 /* The frequency of a tile by its cells' matrices. */
 template <class G, class S>
-static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, look_cells *out, S *u, double *scratch,
-                                  int *least)
+static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, element_vector slope, tled_sums *out, S *u,
+                                  double *scratch, int *least)
 {
-    highest h = {l.question.rest, 0, -1};
+    highest h = {l.question.rest, -1};
     __syncthreads();
     cuda_load<G, false>(l.view, t, l.displacement, u);
     __syncthreads();
@@ -213,9 +352,11 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, look_cel
         bool past = i < t.cells && l.view.cell[t.cell + i] >> TILE_OWN & 1;
         step_matrix a;
         if (past) {
-            const one_cell c = cell_of<G>(l, t, i, u);
+            const one_cell c = cell_of<G>(l, t, i, u, slope);
+            element_fibre fibre[2];
+            fibres_of(l, t, i, c, fibre);
             past = strain_of(l, t, i, c) < INFINITY;
-            stability_matrix(c.own.mu, c.own.bulk, c.own.density, l.view.side, c.h, c.fibre, c.mixfibre, &a);
+            stability_matrix(c.own.mu, c.own.bulk, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
         }
         past = past && !stability_below(&a, h.limit);
         if (__syncthreads_or(past))
@@ -223,71 +364,78 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, look_cel
     }
     if (threadIdx.x == 0) {
         out->frequency = h.limit;
-        out->frequency_cell = h.cell;
+        out->frequency_element = h.cell;
     }
 }
 
-/* The highest frequency that a cell of any tile is known to reach. */
-template <int THREADS>
-static __device__ double proven_of_all(const look_cells *cells, int64_t tiles, double rest, double *scratch)
-{
-    double proven = rest;
-    for (int64_t i = threadIdx.x; i < tiles; i += THREADS)
-        proven = fmax(proven, cells[i].proven);
-    return block_sum<THREADS>(proven, true, scratch);
-}
+/* ---- nodes */
 
-/* Goes through tiles, every gridDim.x-th, for those whose limit is past `raise` times what some tile is known to reach: others' limits
- * may stay, for if one of them is the highest of all, it is too high by `raise` at most. Where no tile is known to pass the frequency
- * at rest, it is for all that may. */
-template <class G, class S>
-static __global__ void __launch_bounds__(G::THREADS)
-    matrices_kernel(const __grid_constant__ cuda_look<S> l, look_cells *out)
+/* A node's state, along the model's axes. */
+template <class S> struct look_node {
+    S u[3], speed[3], internal[3], mass_inverse;
+    uint32_t info;
+};
+
+/* Where it stands node by node, as it may in single precision, at one go. */
+template <class S> static __device__ void load_three(const cuda_view<S> &v, const S *from, int64_t n, S *to)
 {
-    __shared__ S u[3 * G::PLACES];
-    __shared__ double scratch[G::THREADS];
-    __shared__ int least;
-    const int64_t stride = gridDim.x;
-    const double rest = l.question.rest, proven = proven_of_all<G::THREADS>(out, l.count, rest, scratch);
-    const double enough = proven > rest ? l.question.raise * proven : rest;
-    for (int64_t base = blockIdx.x; base < l.count; base += G::THREADS * stride) {
-        const int64_t own = base + threadIdx.x * stride;
-        int next = own < l.count && out[own].frequency > enough ? (int)threadIdx.x : INT32_MAX;
-        for (int which; (which = block_least(next, &least)) != INT32_MAX;) {
-            const int64_t at = base + which * stride;
-            solve_tile<G>(l, l.view.tiles[at], &out[at], u, scratch, &least);
-            next = next == which ? INT32_MAX : next;
+    if constexpr (sizeof(S) == sizeof(float)) {
+        if (v.along == 4) {
+            const float4 x = ((const float4 *)from)[n];
+            for (int a = 0; a < 3; a++)
+                to[a] = v.offset[a] == 0 ? x.x : v.offset[a] == 1 ? x.y : x.z;
+            return;
         }
     }
+    for (int a = 0; a < 3; a++)
+        to[a] = from[v.offset[a] + n * v.along];
 }
 
-template <class S> static __device__ void look_at_node(const cuda_look<S> &l, int32_t n, look_nodes *to)
+template <class S> static __device__ look_node<S> node_at(const cuda_look<S> &l, int64_t n)
+{
+    look_node<S> x;
+    load_three(l.view, l.displacement, n, x.u);
+    load_three(l.view, l.velocity, n, x.speed);
+    load_three(l.view, l.internal, n, x.internal);
+    x.mass_inverse = l.view.mass_inverse[n * l.view.mass_along];
+    x.info = l.view.node_info[n];
+    return x;
+}
+
+/* What acts on it from outside. */
+template <class S>
+static __device__ void forces_on(const cuda_look<S> &l, int32_t n, const look_node<S> &x, double mass, double *to)
 {
     const cuda_view<S> &v = l.view;
-    const uint32_t info = v.node_info[n];
-    const double mass = 1 / (double)v.mass_inverse[n * v.mass_along];
-    double outside[3] = {0, 0, 0}, square = 0;
-    for (int a = 0; a < 3 && v.gravity >= 0; a++)
-        outside[a] = mass * l.now[3 * v.gravity + a];
-    if (info >> TILE_EXTRA & 1) {
-        const tile_extra *x = cuda_extra(v, n);
-        for (int32_t k = x->force; k < x->force + x->forces; k++)
-            for (int a = 0; a < 3; a++)
-                outside[a] += v.force_share[k] * l.now[3 * v.force_curve[k] + a];
-    }
+    for (int a = 0; a < 3; a++)
+        to[a] = v.gravity >= 0 ? mass * l.now[3 * v.gravity + a] : 0;
+    if (!(x.info >> TILE_EXTRA & 1))
+        return;
+    const tile_extra *extra = cuda_extra(v, n);
+    for (int32_t k = extra->force; k < extra->force + extra->forces; k++)
+        for (int a = 0; a < 3; a++)
+            to[a] += v.force_share[k] * l.now[3 * v.force_curve[k] + a];
+}
+
+template <class S>
+static __device__ void look_at_node(const cuda_look<S> &l, int32_t n, const look_node<S> &x, tled_sums *to)
+{
+    const double inverse = x.mass_inverse, mass = 1 / inverse;
+    double outside[3], square = 0;
+    forces_on(l, n, x, mass, outside);
     for (int a = 0; a < 3; a++) {
-        const int64_t at = v.offset[a] + n * v.along, kept = a * v.stride + n;
-        const double u = l.displacement[at], speed = l.velocity[at], drive = mass * speed * speed;
-        const double gap = outside[a] - l.internal[at];
+        const double u = x.u[a], speed = x.speed[a], drive = mass * speed * speed;
+        const double gap = outside[a] - x.internal[a];
         to->kinetic += drive / 2;
         square += u * u;
-        if (!(info >> (TILE_FREE + a) & 1))
+        if (!(x.info >> (TILE_FREE + a) & 1))
             continue;
-        to->acceleration += gap * gap / mass;
+        to->acceleration += gap * gap * inverse;
         to->speed += drive;
         if (l.kept_displacement) {
+            const int64_t kept = a * l.view.stride + n;
             const double du = u - l.kept_displacement[kept];
-            to->stiffness += du * (l.internal[at] - (double)l.kept_internal[kept]);
+            to->stiffness += du * (x.internal[a] - (double)l.kept_internal[kept]);
             to->inertia += mass * du * du;
         }
     }
@@ -296,99 +444,134 @@ template <class S> static __device__ void look_at_node(const cuda_look<S> &l, in
     to->largest = fmax(to->largest, square);
 }
 
-/* Sums over a block's threads; thread 0's is good. */
-template <int THREADS> static __device__ look_nodes sum_nodes(look_nodes x, double *scratch)
+/* A thread's of a block's share of the nodes. */
+template <int THREADS, class S>
+static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_sums *to)
 {
-    look_nodes s;
-    s.kinetic = block_sum<THREADS>(x.kinetic, false, scratch);
-    s.acceleration = block_sum<THREADS>(x.acceleration, false, scratch);
-    s.speed = block_sum<THREADS>(x.speed, false, scratch);
-    s.moved = block_sum<THREADS>(x.moved, false, scratch);
-    s.mass = block_sum<THREADS>(x.mass, false, scratch);
-    s.stiffness = block_sum<THREADS>(x.stiffness, false, scratch);
-    s.inertia = block_sum<THREADS>(x.inertia, false, scratch);
-    s.largest = block_sum<THREADS>(x.largest, true, scratch);
-    return s;
+    const int64_t all = l.view.nodes, first = blockIdx.x * share;
+    const int64_t end = first + share < all ? first + share : all;
+#pragma unroll 1
+    for (int64_t n = first + threadIdx.x; n < end; n += NODES_AT_ONCE * THREADS) {
+        look_node<S> x[NODES_AT_ONCE];
+#pragma unroll
+        for (int k = 0; k < NODES_AT_ONCE; k++)
+            if (n + k * THREADS < end)
+                x[k] = node_at(l, n + k * THREADS);
+#pragma unroll
+        for (int k = 0; k < NODES_AT_ONCE; k++)
+            if (n + k * THREADS < end)
+                look_at_node(l, (int32_t)(n + k * THREADS), x[k], to);
+    }
 }
 
-template <class S> static __global__ void __launch_bounds__(NODE_THREADS) nodes_kernel(cuda_look<S> l, look_nodes *out)
-{
-    __shared__ double scratch[NODE_THREADS];
-    const int32_t n = (int32_t)(blockIdx.x * NODE_THREADS + threadIdx.x);
-    look_nodes mine = {0};
-    if (n < l.view.nodes)
-        look_at_node(l, n, &mine);
-    mine = sum_nodes<NODE_THREADS>(mine, scratch);
-    if (threadIdx.x == 0)
-        out[blockIdx.x] = mine;
-}
+/* ---- kernels */
 
-/* One block adds up all parts, in the order of its threads' shares. */
-static __global__ void __launch_bounds__(SUM_THREADS)
-    sums_kernel(const look_cells *cells, int64_t tiles, const look_nodes *nodes, int64_t blocks, double rest,
-                tled_sums *out)
+/* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one block is beside
+ * what computes in others. */
+template <class G, class S>
+static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
+    look_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts out)
 {
-    __shared__ double scratch[SUM_THREADS];
-    __shared__ int least;
-    look_nodes mine = {0};
-    double strain = 0, frequency = rest;
-    int cell = INT32_MAX, broken = INT32_MAX;
-    for (int64_t i = threadIdx.x; i < blocks; i += SUM_THREADS) {
-        mine.kinetic += nodes[i].kinetic;
-        mine.acceleration += nodes[i].acceleration;
-        mine.speed += nodes[i].speed;
-        mine.moved += nodes[i].moved;
-        mine.mass += nodes[i].mass;
-        mine.stiffness += nodes[i].stiffness;
-        mine.inertia += nodes[i].inertia;
-        mine.largest = fmax(mine.largest, nodes[i].largest);
+    constexpr int WARPS = G::THREADS / 32;
+    __shared__ S u[3 * G::PLACES];
+    __shared__ own_cells<G> own;
+    __shared__ tled_sums part[WARPS];
+    __shared__ double proven[WARPS];
+    const unsigned warp = threadIdx.x / 32;
+    const tile t = l.view.tiles[blockIdx.x];
+    unsigned who[own_cells<G>::ROUNDS];
+    count_own<G>(l.view.cell, t, who, &own);
+    cuda_load<G, false>(l.view, t, l.displacement, u);
+    tled_sums mine = nothing_seen(l.question.rest);
+    look_at_nodes<G::THREADS>(l, out.share, &mine);
+    sum_nodes(&mine, l.kept_displacement);
+    if (threadIdx.x % 32 == 0)
+        part[warp] = mine;
+    __syncthreads();
+    const int count = list_own<G>(who, &own);
+    __syncthreads();
+    mine = nothing_seen(l.question.rest);
+    const double most = warp_most(look_at_cells<G>(l, t, u, own, count, out.slope, &mine));
+    sum_cells(&mine);
+    if (threadIdx.x % 32 == 0) {
+        add_part(&part[warp], mine);
+        proven[warp] = most;
     }
-    for (int64_t i = threadIdx.x; i < tiles; i += SUM_THREADS) {
-        strain += cells[i].strain;
-        if (cells[i].frequency_cell >= 0 && cells[i].frequency > frequency) {
-            frequency = cells[i].frequency;
-            cell = cells[i].frequency_cell;
-        }
-        if (cells[i].broken >= 0 && cells[i].broken < broken)
-            broken = cells[i].broken;
-    }
-    mine = sum_nodes<SUM_THREADS>(mine, scratch);
-    strain = block_sum<SUM_THREADS>(strain, false, scratch);
-    const double highest = block_sum<SUM_THREADS>(frequency, true, scratch);
-    cell = block_least(frequency == highest ? cell : INT32_MAX, &least);
-    broken = block_least(broken, &least);
+    __syncthreads();
     if (threadIdx.x)
         return;
-    *out = {mine.kinetic,
-            strain,
-            mine.acceleration,
-            mine.speed,
-            mine.moved,
-            mine.mass,
-            mine.stiffness,
-            mine.inertia,
-            mine.largest,
-            highest,
-            cell == INT32_MAX ? -1 : cell,
-            broken == INT32_MAX ? -1 : broken};
+    for (int i = 1; i < WARPS; i++) {
+        add_part(&part[0], part[i]);
+        proven[0] = fmax(proven[0], proven[i]);
+    }
+    out.block[blockIdx.x] = part[0];
+    out.proven[blockIdx.x] = proven[0];
+}
+
+/* The highest frequency that a cell of any tile is known to reach. */
+template <int THREADS>
+static __device__ double proven_of_all(const double *proven, int64_t tiles, double rest, double *scratch)
+{
+    double most = rest;
+#pragma unroll 8
+    for (int64_t i = threadIdx.x; i < tiles; i += THREADS)
+        most = fmax(most, proven[i]);
+    return block_most<THREADS>(most, scratch);
+}
+
+/* Goes through tiles, every gridDim.x-th, for those whose limit is past `raise` times what some tile is known to reach: others' limits
+ * may stay, for if one of them is the highest of all, it is too high by `raise` at most. Where no tile is known to pass the frequency
+ * at rest, it is for all that may. Then it adds up what their blocks left, where the first of these was. */
+template <class G, class S>
+static __global__ void __launch_bounds__(G::THREADS)
+    settle_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts parts)
+{
+    __shared__ S u[3 * G::PLACES];
+    __shared__ tled_sums scratch[G::THREADS / 32];
+    __shared__ double number[G::THREADS / 32];
+    __shared__ int least;
+    const int64_t stride = gridDim.x;
+    const double rest = l.question.rest, proven = proven_of_all<G::THREADS>(parts.proven, l.count, rest, number);
+    const double enough = proven > rest ? l.question.raise * proven : rest;
+    tled_sums mine = nothing_seen(rest);
+    for (int64_t base = blockIdx.x; base < l.count; base += G::THREADS * stride) {
+        const int64_t own = base + threadIdx.x * stride;
+        int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
+        for (int which; (which = block_least(next, &least)) != NONE;) {
+            const int64_t at = base + which * stride;
+            solve_tile<G>(l, l.view.tiles[at], parts.slope, &parts.block[at], u, number, &least);
+            next = next == which ? NONE : next;
+        }
+        if (own < l.count)
+            add_part(&mine, parts.block[own]);
+    }
+    sum_block<G::THREADS>(mine, l.kept_displacement, scratch, &parts.block[blockIdx.x]);
+}
+
+static __global__ void __launch_bounds__(SUM_THREADS)
+    sums_kernel(const tled_sums *part, int64_t count, double rest, tled_sums *out)
+{
+    __shared__ tled_sums scratch[SUM_THREADS / 32];
+    tled_sums mine = nothing_seen(rest);
+    for (int64_t i = threadIdx.x; i < count; i += SUM_THREADS)
+        add_part(&mine, part[i]);
+    sum_block<SUM_THREADS>(mine, true, scratch, out);
 }
 
 template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream)
 {
-    look_cells *cells = (look_cells *)l->parts;
-    look_nodes *nodes = (look_nodes *)((char *)l->parts + cells_bytes(l->count));
-    const int64_t blocks = node_blocks(l->view.nodes);
+    const look_parts parts = parts_of(l);
+    const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
     cudaError_t e = with_brick(l->size, [&](auto g) {
         typedef decltype(g) G;
-        const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
-        const cudaError_t bounds = card_start(cells_kernel<G, S>, {l->count, G::THREADS, 0, stream}, *l, cells);
-        return bounds == cudaSuccess ? card_start(matrices_kernel<G, S>, {solvers, G::THREADS, 0, stream}, *l, cells)
+        typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
+        const cudaError_t bounds = card_start(look_kernel<W, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
+        return bounds == cudaSuccess ? card_start(settle_kernel<G, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
                                      : bounds;
     });
-    e = e == cudaSuccess ? card_start(nodes_kernel<S>, {blocks, NODE_THREADS, 0, stream}, *l, nodes) : e;
-    return e == cudaSuccess ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, cells, l->count, nodes, blocks,
-                                         l->question.rest, sums)
-                            : e;
+    return e == cudaSuccess
+               ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, parts.block, solvers, l->question.rest, sums)
+               : e;
 }
 
 template cudaError_t cuda_look_start<float>(const cuda_look<float> *, tled_sums *, cudaStream_t);

@@ -127,7 +127,7 @@ static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
         s->message = (uint64_t *)room(s, MESSAGES * MESSAGE_WORDS * v->stride, sizeof *s->message);
     for (int i = 0; i < TABLES; i++)
         s->table[i] = (double *)room(s, (TABLE_STEPS + 1) * 3 * p->script->curves, sizeof(double));
-    s->look_parts = room(s, (int64_t)cuda_look_bytes(t->count, t->nodes), 1);
+    s->look_parts = room(s, (int64_t)cuda_look_bytes(t->count), 1);
     s->sums = (tled_sums *)room(s, 1, sizeof *s->sums);
     return 0;
 }

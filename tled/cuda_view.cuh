@@ -161,7 +161,7 @@ template <class S> struct cuda_look {
     void *parts; /* cuda_look_bytes of them */
 };
 
-size_t cuda_look_bytes(int64_t tiles, int64_t nodes);
+size_t cuda_look_bytes(int64_t tiles);
 
 /* Starts the work on the stream; *sums (on the device) gets the answer, with cells for elements. */
 template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream);

@@ -194,8 +194,27 @@ static void test_bricks(int64_t steps)
     try(&all[0], &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
 }
 
+/* A look at a bent block, in bricks, by one lot. */
+static tled_sums look_by(uint64_t seed)
+{
+    bench b;
+    tled_sums sums = {0};
+    const tled_question question = {.time = .03, .raise = 1.01, .differences = true};
+    put_in(&plain, seed, 4);
+    make(&b, &lump, 0, true, &tled_cuda_single, 1);
+    bend(&b);
+    void *state = tled_cuda_single.create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || tled_cuda_single.keep(state, &b.e) || tled_cuda_single.look(state, &question, &sums, &b.e),
+               &b.e);
+    tled_cuda_single.destroy(state);
+    bench_free(&b);
+    return sums;
+}
+
 static void test_looks(int64_t steps)
 {
+    const tled_sums once = look_by(7), again = look_by(8);
+    ok(once.frequency_element >= 0 && !memcmp(&once, &again, sizeof once), "a look in bricks: the same by other lots");
     put_in(&marching, 3, 4);
     test_look(&small, false, steps, &tled_cuda_single, "a look where it marches", 1e-6);
     ok(bench_look_at_rest(&lump, &tled_cuda_single) == 1,
