@@ -67,7 +67,8 @@ NVCC_FLAGS = -std=c++17 -O3 -lineinfo -fmad=$(CUDA_FUSED) $(CUDA_ARCH) -Werror a
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
 $(BUILD)/tled/cuda_single.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/msds/cuda_%.o: NVCC_FLAGS += -ftz=true
-# The march keeps no processor's bytes, and may fuse; it is for cards from sm_90 on.
+# Looks and the march keep no processor's bytes, and may fuse; the march is for cards from sm_90 on.
+$(BUILD)/tled/cuda_look.o: CUDA_FUSED = true
 $(BUILD)/tled/cuda_march.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/tled/cuda_march.o: CUDA_FUSED = true
 $(BUILD)/tled/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_90,code=compute_90

@@ -13,7 +13,7 @@ $(BUILD)/emulate/%.o: %.cu
 	@mkdir -p $(@D)
 	$(call run,EMULATE $<,$(EMULATE_CXX) $(EMULATE_FLAGS) $(EMULATE_CU_FLAGS) -ffp-contract=$(EMULATE_CONTRACT) -x c++ -c -o $@ $<)
 EMULATE_CONTRACT = off
-$(BUILD)/emulate/tled/cuda_march.o: EMULATE_CONTRACT = fast
+$(BUILD)/emulate/tled/cuda_march.o $(BUILD)/emulate/tled/cuda_look.o: EMULATE_CONTRACT = fast
 # However small, a frame has its own memory on the card.
 $(BUILD)/emulate/tled/cuda_single.o: EMULATE_CU_FLAGS += -DFRAME_DIRECT=0
 
