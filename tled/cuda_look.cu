@@ -376,27 +376,12 @@ template <class S> struct look_node {
     uint32_t info;
 };
 
-/* Where it stands node by node, as it may in single precision, at one go. */
-template <class S> static __device__ void load_three(const cuda_view<S> &v, const S *from, int64_t n, S *to)
-{
-    if constexpr (sizeof(S) == sizeof(float)) {
-        if (v.along == 4) {
-            const float4 x = ((const float4 *)from)[n];
-            for (int a = 0; a < 3; a++)
-                to[a] = v.offset[a] == 0 ? x.x : v.offset[a] == 1 ? x.y : x.z;
-            return;
-        }
-    }
-    for (int a = 0; a < 3; a++)
-        to[a] = from[v.offset[a] + n * v.along];
-}
-
 template <class S> static __device__ look_node<S> node_at(const cuda_look<S> &l, int64_t n)
 {
     look_node<S> x;
-    load_three(l.view, l.displacement, n, x.u);
-    load_three(l.view, l.velocity, n, x.speed);
-    load_three(l.view, l.internal, n, x.internal);
+    cuda_three<false>(l.view, l.displacement, n, x.u);
+    cuda_three<false>(l.view, l.velocity, n, x.speed);
+    cuda_three<false>(l.view, l.internal, n, x.internal);
     x.mass_inverse = l.view.mass_inverse[n * l.view.mass_along];
     x.info = l.view.node_info[n];
     return x;

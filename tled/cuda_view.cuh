@@ -88,14 +88,30 @@ template <class S> struct cuda_view {
     double side[3];
 };
 
+/* A node's three components along the model's axes: at one go where they stand node by node, as they may in single precision. ROWS: they
+ * stand so, whatever the view says. */
+template <bool ROWS, class S> static __device__ void cuda_three(const cuda_view<S> &v, const S *from, int64_t n, S *to)
+{
+    if constexpr (!ROWS && sizeof(S) == sizeof(float)) {
+        if (v.along == 4) {
+            const float4 x = ((const float4 *)from)[n];
+            for (int a = 0; a < 3; a++)
+                to[a] = v.offset[a] == 0 ? x.x : v.offset[a] == 1 ? x.y : x.z;
+            return;
+        }
+    }
+    for (int a = 0; a < 3; a++)
+        to[a] = from[ROWS ? a * v.stride + n : v.offset[a] + n * v.along];
+}
+
 /* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on its way
- * at once: first where, then what. ROWS: u stands so, in the tiles' order, whatever the view says. */
+ * at once: first where, then what. ROWS: also, the tiles' order is the nodes'. */
 template <class G, bool ROWS, class S>
 static __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
 {
     constexpr int OWN = G::OWN, HALO = G::HALO;
     int32_t node[OWN + HALO], place[OWN + HALO];
-    S value[3 * (OWN + HALO)];
+    S value[3 * (OWN + HALO)] = {};
 #pragma unroll
     for (int k = 0; k < OWN + HALO; k++) {
         const int i = (int)threadIdx.x + (k < OWN ? k : k - OWN) * G::THREADS;
@@ -109,9 +125,8 @@ static __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *
     }
 #pragma unroll
     for (int k = 0; k < OWN + HALO; k++)
-#pragma unroll
-        for (int a = 0; a < 3; a++)
-            value[3 * k + a] = node[k] >= 0 ? u[ROWS ? a * v.stride + node[k] : v.offset[a] + node[k] * v.along] : 0;
+        if (node[k] >= 0)
+            cuda_three<ROWS>(v, u, node[k], &value[3 * k]);
 #pragma unroll
     for (int k = 0; k < OWN + HALO; k++)
 #pragma unroll
