@@ -232,15 +232,14 @@ static int from_rows(cuda_state *s, real *to, const real *from, err *e)
 static int cuda_keep(void *state, err *e)
 {
     cuda_state *s = (cuda_state *)state;
-    const int64_t n = 3 * s->view.stride;
-    if (s->kept_internal && (find_internal(s, e) || to_rows(s, s->kept_internal, s->spare, e)))
+    if (s->kept_internal && find_internal(s, e))
         return -1;
+    const cuda_kept<real> kept = {{s->displacement, s->velocity, s->kept_internal ? s->spare : NULL},
+                                  {s->kept_displacement, s->kept_displacement + 3 * s->view.stride, s->kept_internal}};
     s->has_kept_internal = s->kept_internal != NULL;
     s->kept_step = s->step;
     s->kept_time = s->time;
-    return to_rows(s, s->kept_displacement, s->displacement, e) || to_rows(s, s->kept_displacement + n, s->velocity, e)
-               ? -1
-               : 0;
+    return card_check(cuda_keep_start(&s->view, &kept, s->stream), "the start of a copy", s->step, e);
 }
 
 static int cuda_back(void *state, err *e)

@@ -181,4 +181,13 @@ size_t cuda_look_bytes(int64_t tiles);
 /* Starts the work on the stream; *sums (on the device) gets the answer, with cells for elements. */
 template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream);
 
+/* Arrays over nodes that go into rows, as the state stands or stood when it was kept. */
+enum { CUDA_KEPT = 3 };
+template <class S> struct cuda_kept {
+    const S *from[CUDA_KEPT]; /* or NULL: not that one */
+    S *to[CUDA_KEPT];
+};
+
+template <class S> cudaError_t cuda_keep_start(const cuda_view<S> *v, const cuda_kept<S> *k, cudaStream_t stream);
+
 #endif
