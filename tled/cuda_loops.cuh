@@ -5,7 +5,7 @@
  * internal forces where displacements go else. All of a step's data stays on the card; the curves' values of some steps at
  * a time go there.
  */
-#include "tled/cuda_state.cuh"
+#include "tled/cuda_frame.cuh"
 
 /* ---- passes */
 
@@ -150,29 +150,6 @@ static int find_internal(cuda_state *s, err *e)
 
 /* ---- in and out */
 
-typedef struct permutation { /* of arrays as the state or in rows, to nodes x 3 in the model's order */
-    const cuda_state *s;
-    const real *from;
-    double *to;
-    bool in_rows;
-} permutation;
-
-static void permute_work(void *context, int64_t chunk, int64_t from, int64_t to)
-{
-    const permutation *m = (const permutation *)context;
-    (void)chunk;
-    for (int64_t k = from; k < to; k++)
-        for (int a = 0; a < 3; a++)
-            m->to[3 * (int64_t)m->s->tiles.node[k] + a] =
-                m->from[m->in_rows ? a * m->s->view.stride + k : m->s->view.offset[a] + k * m->s->view.along];
-}
-
-static void permute(const cuda_state *s, const real *from, double *to)
-{
-    permutation m = {s, from, to, false};
-    pool_run(s->threads, s->tiles.nodes, COPY_CHUNK, permute_work, &m);
-}
-
 /* The fourth number of a node where it marches: of a displacement, or else of a velocity. */
 static float fourth(const cuda_state *s, bool is_displacement, int64_t k)
 {
@@ -255,77 +232,11 @@ static int cuda_back(void *state, err *e)
                : 0;
 }
 
-/* Where the card has no room for the copy, a frame holds up the steps: better than a run that ends at its first frame, which may be
- * its last state. */
-static int make_frame(cuda_state *s, cuda_frame *f, err *e)
-{
-    const int64_t bytes = 6 * s->view.stride * (int64_t)sizeof(real);
-    if (bytes > FRAME_DIRECT && !s->kept_internal && !s->frame && !s->frame_direct) {
-        err full = {0};
-        s->frame = (real *)card_take(bytes / 2, "a frame", &full); /* in rows */
-        s->frame_direct = !s->frame;
-    }
-    if (f->host)
-        return 0;
-    return CUDA_TRY(cudaEventCreateWithFlags(&f->arrived, cudaEventDisableTiming)) ||
-                   CUDA_TRY(cudaMallocHost((void **)&f->host, 2 * (size_t)s->numbers * sizeof(real)))
-               ? -1
-               : 0;
-}
-
-/* The velocity goes to the host between two steps; so does the displacement, or it is copied on the card, and from there
- * goes in a stream of its own while the steps go on. */
-static int send_frame(cuda_state *s, const cuda_frame *f, err *e)
-{
-    const size_t bytes = (size_t)s->numbers * sizeof(real);
-    if (CUDA_TRY(cudaMemcpyAsync(f->host + s->numbers, s->velocity, bytes, cudaMemcpyDeviceToHost, s->stream)))
-        return -1;
-    if (!s->frame)
-        return CUDA_TRY(cudaMemcpyAsync(f->host, s->displacement, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
-                       CUDA_TRY(cudaEventRecord(f->arrived, s->stream))
-                   ? -1
-                   : 0;
-    return CUDA_TRY(cudaStreamWaitEvent(s->stream, s->frame_free, 0)) || to_rows(s, s->frame, s->displacement, e) ||
-                   CUDA_TRY(cudaEventRecord(s->frame_ready, s->stream)) ||
-                   CUDA_TRY(cudaStreamWaitEvent(s->sending, s->frame_ready, 0)) ||
-                   CUDA_TRY(cudaMemcpyAsync(f->host, s->frame, 3 * (size_t)s->view.stride * sizeof(real),
-                                            cudaMemcpyDeviceToHost, s->sending)) ||
-                   CUDA_TRY(cudaEventRecord(s->frame_free, s->sending)) ||
-                   CUDA_TRY(cudaEventRecord(f->arrived, s->sending))
-               ? -1
-               : 0;
-}
-
-static int cuda_take(void *state, int slot, err *e)
-{
-    cuda_state *s = (cuda_state *)state;
-    cuda_frame *f = &s->taken[slot];
-    if (make_frame(s, f, e))
-        return -1;
-    f->step = s->step;
-    f->in_rows = s->frame != NULL;
-    return send_frame(s, f, e);
-}
-
-static int cuda_taken(void *state, int slot, void *to, err *e)
-{
-    cuda_state *s = (cuda_state *)state;
-    const tled_taken *out = (const tled_taken *)to;
-    const cuda_frame *f = &s->taken[slot];
-    const permutation u = {s, f->host, out->displacement, f->in_rows},
-                      v = {s, f->host + s->numbers, out->velocity, false};
-    if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
-        return -1;
-    permute_work((void *)&u, 0, 0, s->tiles.nodes);
-    permute_work((void *)&v, 0, 0, s->tiles.nodes);
-    return 0;
-}
-
 static int64_t cuda_bytes(const void *state)
 {
     const cuda_state *s = (const cuda_state *)state;
     const int64_t rows = 3 * s->view.stride * (int64_t)sizeof(real);
-    return s->bytes + (s->kept_internal ? rows : 0) + (s->frame ? rows : 0);
+    return s->bytes + (s->kept_internal ? rows : 0) + (s->frame ? frame_bytes(s) : 0);
 }
 
 static int cuda_look_at(void *state, const void *question, void *answer, err *e)

@@ -1,5 +1,5 @@
 /* What the CUDA back end has of a problem: cut into tiles that the card has a place for, and laid out in its memory. Included by
- * cuda_loops.cuh alone.
+ * cuda_frame.cuh alone.
  */
 #ifndef SINEW_CUDA_STATE_CUH
 #define SINEW_CUDA_STATE_CUH
@@ -16,9 +16,8 @@ enum { TABLE_STEPS = 256, TABLES = 2, COPY_CHUNK = 4096 };
 #endif
 
 typedef struct cuda_frame { /* results on their way to the host; made when first wanted */
-    real *host;             /* pinned: displacement, then velocity */
+    real *host;             /* pinned: what `frame` has; without one, displacement, then velocity, as they stand */
     cudaEvent_t arrived;
-    bool in_rows; /* its displacement is; the velocity stands as in the state */
     int64_t step; /* that it was taken at, for messages: the state's own goes on meanwhile */
 } cuda_frame;
 
@@ -41,7 +40,7 @@ typedef struct cuda_state {
     uint32_t messages;       /* passes that they have sent them for */
     real *kept_displacement; /* and velocity after it */
     real *kept_internal;     /* made when first wanted */
-    real *frame;             /* a copy of displacement to send; likewise, unless that is: one of the two */
+    real *frame;             /* to send (cuda_frame.cuh); likewise, unless that is: one of the two */
     bool spare_is_internal, has_kept_internal;
     bool resident;              /* all tiles have a place on the card at once */
     bool frame_direct;          /* there is no room for `frame` */

@@ -15,7 +15,7 @@ $(BUILD)/emulate/%.o: %.cu
 EMULATE_CONTRACT = off
 $(BUILD)/emulate/tled/cuda_march.o $(BUILD)/emulate/tled/cuda_look.o: EMULATE_CONTRACT = fast
 # However small, a frame has its own memory on the card.
-$(BUILD)/emulate/tled/cuda_single.o: EMULATE_CU_FLAGS += -DFRAME_DIRECT=0
+$(BUILD)/emulate/tled/cuda_single.o $(BUILD)/emulate/tled/cuda_double.o: EMULATE_CU_FLAGS += -DFRAME_DIRECT=0
 
 $(BUILD)/emulate/%.o: tests/emulate/%.cc
 	@mkdir -p $(@D)

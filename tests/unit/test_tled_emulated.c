@@ -38,10 +38,12 @@ typedef struct trial {
     double level;
     bool scripted;
     int32_t cells[3]; /* in place of the block's, if not 0 */
+    bool rests;       /* it keeps what leaves the card no memory for frames */
 } trial;
 
-/* What a back end makes of it: displacements, velocities and internal forces, and displacements a step later. */
-enum { PARTS = 4 };
+/* What a back end makes of it: displacements and velocities of a frame, and of one a step later; internal forces at the first,
+ * displacements at the second. */
+enum { PARTS = 6 };
 typedef struct answer {
     bench b;
     double *numbers;
@@ -60,6 +62,14 @@ static int go_on(const backend *device, void *state, tled_plan *plan, int64_t la
     return 0;
 }
 
+/* As in a run to rest, where the back end looks itself. */
+static int look_for_rest(const backend *device, void *state, err *e)
+{
+    tled_sums sums;
+    const tled_question question = {.rest = INFINITY, .raise = 1.01, .differences = true};
+    return device->look ? device->look(state, &question, &sums, e) : 0;
+}
+
 /* `steps` steps, after one that is taken back, and one more. */
 static void find(answer *a, const trial *t, const backend *device, int64_t steps)
 {
@@ -72,13 +82,15 @@ static void find(answer *a, const trial *t, const backend *device, int64_t steps
     tled_plan plan = {.origin = b->problem.start, .rate = b->setup.rate, .damping = b->setup.damping}, once = plan;
     a->count = 3 * b->problem.nodes;
     a->numbers = calloc(PARTS * (size_t)a->count, sizeof *a->numbers);
-    tled_taken taken = {a->numbers, a->numbers + a->count};
+    tled_taken first = {a->numbers, a->numbers + a->count},
+               second = {a->numbers + 4 * a->count, a->numbers + 5 * a->count};
     void *state = device->create(&b->problem, b->setup.threads, &b->e);
-    a->gone = !a->numbers || !state || device->keep(state, &b->e) || go_on(device, state, &once, 1, &b->e) ||
-              device->back(state, &b->e) || go_on(device, state, &plan, steps, &b->e) ||
+    a->gone = !a->numbers || !state || (t->rests && look_for_rest(device, state, &b->e)) ||
+              device->keep(state, &b->e) || go_on(device, state, &once, 1, &b->e) || device->back(state, &b->e) ||
+              go_on(device, state, &plan, steps, &b->e) ||
               device->get(state, TLED_INTERNAL, a->numbers + 2 * a->count, &b->e) || device->take(state, 0, &b->e) ||
               go_on(device, state, &plan, steps + 1, &b->e) || device->take(state, 1, &b->e) ||
-              device->taken(state, 0, &taken, &b->e) ||
+              device->taken(state, 0, &first, &b->e) || device->taken(state, 1, &second, &b->e) ||
               device->get(state, TLED_DISPLACEMENT, a->numbers + 3 * a->count, &b->e);
     device->destroy(state);
 }
@@ -154,11 +166,12 @@ static void test_marches(int64_t steps)
 {
     block cut = small;
     cut.fraction = -1;
-    const trial all[] = {{"a muscle", small, .5, false, {0}},
-                         {"cut elements", cut, .5, false, {0}},
-                         {"mixed elements", mixed_of(small), .5, false, {0}},
-                         {"a script", lump, 0, true, {0}},
-                         {"mixed elements, a script", mixed_of(lump), 0, true, {0}}};
+    const trial all[] = {{"a muscle", small, .5, false, {0}, false},
+                         {"cut elements", cut, .5, false, {0}, false},
+                         {"mixed elements", mixed_of(small), .5, false, {0}, false},
+                         {"a script", lump, 0, true, {0}, false},
+                         {"mixed elements, a script", mixed_of(lump), 0, true, {0}, false},
+                         {"a run to rest", small, .5, false, {0}, true}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         try(&all[i], &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
 }
@@ -169,7 +182,8 @@ static void test_thin(int64_t steps)
     for (int axis = 0; axis < 3; axis++)
         for (int n = 1; n <= 3; n++) {
             char name[40];
-            trial plate = {name, mixed_of(small), .5, false, {17, 17, 17}}, rod = {name, small, .5, false, {n, n, n}};
+            trial plate = {name, mixed_of(small), .5, false, {17, 17, 17}, false},
+                  rod = {name, small, .5, false, {n, n, n}, false};
             plate.cells[axis] = n;
             rod.cells[axis] = 33;
             plate.what.fixed_axis = (axis + 1) % 3;
@@ -183,15 +197,17 @@ static void test_thin(int64_t steps)
 
 static void test_bricks(int64_t steps)
 {
-    const trial all[] = {{"a script in bricks", lump, 0, true, {0}},
-                         {"a muscle in bricks", muscle, .5, false, {0}},
-                         {"mixed elements in bricks", mixed_of(muscle), .5, false, {0}}};
+    const trial all[] = {{"a script in bricks", lump, 0, true, {0}, false},
+                         {"a muscle in bricks", muscle, .5, false, {0}, false},
+                         {"mixed elements in bricks", mixed_of(muscle), .5, false, {0}, false}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         try(&all[i], &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
         try(&all[i], &staying, &tled_cuda_single, &tled_cpu_single, steps, 0);
     }
     try(&all[0], &plain, &tled_cuda_double, &tled_cpu_double, steps, 0);
     try(&all[0], &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
+    const trial rests = {"a script in bricks, to rest", lump, 0, true, {0}, true};
+    try(&rests, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
 }
 
 /* A look at a bent block, in bricks, by one lot. */
@@ -231,7 +247,7 @@ static void test_omissions(void)
 {
     static const char *const name[] = {"nothing",        "__syncthreads()", "__syncwarp()",
                                        "barrier_wait()", "arrived()",       "wait_for_last()"};
-    const trial t = {"", mixed_of(lump), 0, true, {0}};
+    const trial t = {"", mixed_of(lump), 0, true, {0}, false};
     for (int i = OMIT_NOTHING; i <= OMIT_LAUNCH_WAIT; i++) {
         answer a;
         emulated_card card = marching;
