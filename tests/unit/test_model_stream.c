@@ -215,6 +215,50 @@ static void test_writer(void)
 
 /* ---- numbers ---- */
 
+/* A binary model of n numbers, all 1 but for that at `at`. */
+static out *write_with(model_type type, int64_t n, int64_t at, const void *number)
+{
+    err e = {0};
+    model m = {0};
+    model_axis_add(&m, "n", n, &e);
+    model_array *a = model_add_as(&m, "a", type, "1", "n", 1, &e);
+    for (int64_t i = 0; i < n; i++)
+        if (type == MODEL_F32)
+            a->f32[i] = 1;
+        else
+            a->f64[i] = 1;
+    memcpy(a->u8 + (size_t)at * model_type_size(type), number, model_type_size(type));
+    out *o = out_memory(&e);
+    model_writer *w = model_writer_open(o, false, &e);
+    model_write(w, &m, &e);
+    model_writer_close(w);
+    model_free(&m);
+    return o;
+}
+
+static bool is_made_one(model_type type, int64_t n, int64_t at, const void *odd, const void *one)
+{
+    out *o[2] = {write_with(type, n, at, odd), write_with(type, n, at, one)};
+    size_t size[2];
+    const unsigned char *b[2] = {out_bytes(o[0], &size[0]), out_bytes(o[1], &size[1])};
+    bool same = size[0] == size[1] && !memcmp(b[0], b[1], size[0]);
+    out_discard(o[0]);
+    out_discard(o[1]);
+    return same;
+}
+
+/* Wherever it stands. (Readers would mend it, so it is looked for in what was written.) */
+static void test_one_nan(void)
+{
+    static const uint64_t odd64 = UINT64_C(0xfff0000000000001), one64 = UINT64_C(0x7ff8000000000000);
+    static const uint32_t odd32 = 0xff800001, one32 = 0x7fc00000;
+    int wrong = 0;
+    for (int64_t n = 1; n <= 8; n++)
+        for (int64_t at = 0; at < n; at++)
+            wrong += !is_made_one(MODEL_F64, n, at, &odd64, &one64) || !is_made_one(MODEL_F32, n, at, &odd32, &one32);
+    ok(!wrong, "a nan is the one nan wherever it stands: %d are not", wrong);
+}
+
 static void test_nan(void)
 {
     err e = {0};
@@ -345,6 +389,7 @@ int main(void)
     test_flips();
     test_writer();
     test_nan();
+    test_one_nan();
     test_floats();
     test_liveness();
     test_changed();
