@@ -1,5 +1,5 @@
 /* The CRC-32 of gzip and PNG, as zlib's crc32() computes it, several times faster where the processor multiplies
- * polynomials (x86-64 with PCLMULQDQ; asked at run time). Keeps nothing.
+ * polynomials (x86-64 with PCLMULQDQ, or VPCLMULQDQ and AVX-512; asked at run time). Keeps nothing.
  */
 #ifndef SINEW_CHECKSUM_H
 #define SINEW_CHECKSUM_H
