@@ -285,19 +285,13 @@ int checkpoint_save(checkpoint *c, const run_point *at, double time, const doubl
                     err *e)
 {
     struct stat s;
-    const size_t size = 3 * (size_t)c->nodes * sizeof(double);
     frame f = {.index = at->first, .time = time};
-    int bad = out_sync(c->frames, e);
-    model_array *u = bad ? NULL : frame_add(&f, &c->body, "node.displacement", e);
-    if (u)
-        memcpy(u->f64, displacement, size);
-    model_array *v = u ? frame_add(&f, &c->body, "node.velocity", e) : NULL;
-    if (v)
-        memcpy(v->f64, velocity, size);
-    if (v && !fstat(c->lock, &s))
+    bool whole = !out_sync(c->frames, e) && frame_lend(&f, &c->body, "node.displacement", displacement, e) &&
+                 frame_lend(&f, &c->body, "node.velocity", velocity, e);
+    if (whole && !fstat(c->lock, &s))
         c->length = (int64_t)s.st_size;
     put_point(c, at, model_find(&c->body, number_name)->f64, model_find(&c->body, count_name)->i64);
-    bad = !v || write_state(c, &f, e) ? -1 : 0;
+    int bad = !whole || write_state(c, &f, e) ? -1 : 0;
     frame_free(&f);
     if (bad)
         return -1;

@@ -310,16 +310,10 @@ static int write_frame(void *context, double time, const double *displacement, c
 {
     session *s = context;
     frame f = {.index = s->next_frame++, .time = time};
-    size_t size = 3 * (size_t)s->problem.nodes * sizeof(double);
-    model_array *u = frame_add(&f, &s->m, "node.displacement", e);
-    if (u)
-        memcpy(u->f64, displacement, size);
-    model_array *v = u ? frame_add(&f, &s->m, "node.velocity", e) : NULL;
-    if (v)
-        memcpy(v->f64, velocity, size);
-    if (v && s->collider.poses && add_probe(s, &f, displacement, e))
-        v = NULL;
-    int result = v && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
+    bool whole = frame_lend(&f, &s->m, "node.displacement", displacement, e) &&
+                 frame_lend(&f, &s->m, "node.velocity", velocity, e) &&
+                 !(s->collider.poses && add_probe(s, &f, displacement, e));
+    int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
     frame_free(&f);
     return result;
 }

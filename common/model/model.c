@@ -43,7 +43,8 @@ void model_array_free(model_array *a)
     if (a->type == MODEL_STR && a->data)
         for (int64_t i = 0; i < a->rows * a->columns; i++)
             free(a->str[i]);
-    free(a->data);
+    if (!a->lent)
+        free(a->data);
     free(a->name);
     free(a->unit);
     free(a->axis);
@@ -286,12 +287,12 @@ static int make_strings(model_array *a, int64_t n, err *e)
     return 0;
 }
 
-/* A zeroed array, owned by the caller; the names are checked. */
+/* An array, owned by the caller, of what is lent, or zeroed; the names are checked. */
 static int make(model_array *a, const char *name, model_type type, const char *unit, const char *axis, int64_t rows,
-                int32_t columns, err *e)
+                int32_t columns, const double *lent, err *e)
 {
     int64_t n = check_count(rows, columns, model_type_size(type));
-    *a = (model_array){.type = type, .columns = columns, .rows = rows};
+    *a = (model_array){.type = type, .columns = columns, .rows = rows, .lent = lent != NULL};
     if (!check_name(name) || !check_unit(unit))
         return err_set(e, NULL, 0, "array '%.60s' in '%.60s': expected a name and a unit without spaces", name, unit);
     if (rows < 0)
@@ -301,7 +302,10 @@ static int make(model_array *a, const char *name, model_type type, const char *u
     a->name = mem_text(name, e);
     a->unit = mem_text(unit, e);
     a->axis = mem_text(axis, e);
-    a->data = mem_array(n, model_type_size(type), name, e);
+    if (lent)
+        memcpy(&a->f64, &lent, sizeof lent); /* not const there, but only read */
+    else
+        a->data = mem_array(n, model_type_size(type), name, e);
     if (!a->name || !a->unit || !a->axis || !a->data || (type == MODEL_STR && make_strings(a, n, e))) {
         model_array_free(a);
         return -1;
@@ -310,10 +314,10 @@ static int make(model_array *a, const char *name, model_type type, const char *u
 }
 
 static model_array *add(model_arrays *list, const model *m, const char *name, model_type type, const char *unit,
-                        const char *axis, int32_t columns, err *e)
+                        const char *axis, int32_t columns, const double *lent, err *e)
 {
     model_array a;
-    if (make(&a, name, type, unit, axis, model_count(m, axis), columns, e))
+    if (make(&a, name, type, unit, axis, model_count(m, axis), columns, lent, e))
         return NULL;
     model_array *at = model_arrays_take(list, &a, e);
     if (!at)
@@ -321,7 +325,8 @@ static model_array *add(model_arrays *list, const model *m, const char *name, mo
     return at;
 }
 
-static model_array *add_known(model_arrays *list, const model *m, const char *name, int in_frame, err *e)
+static model_array *add_known(model_arrays *list, const model *m, const char *name, int in_frame, const double *lent,
+                              err *e)
 {
     char unit[MODEL_NAME], axis[MODEL_NAME];
     const known *k = known_find(name);
@@ -331,23 +336,28 @@ static model_array *add_known(model_arrays *list, const model *m, const char *na
     }
     known_expand(k->unit, name, unit, sizeof unit);
     known_expand(k->axis, name, axis, sizeof axis);
-    return add(list, m, name, k->type, unit, axis, k->columns_max, e);
+    return add(list, m, name, k->type, unit, axis, k->columns_max, lent, e);
 }
 
 model_array *model_add(model *m, const char *name, err *e)
 {
-    return add_known(&m->arrays, m, name, 0, e);
+    return add_known(&m->arrays, m, name, 0, NULL, e);
 }
 
 model_array *frame_add(frame *f, const model *m, const char *name, err *e)
 {
-    return add_known(&f->arrays, m, name, KNOWN_FRAME, e);
+    return add_known(&f->arrays, m, name, KNOWN_FRAME, NULL, e);
+}
+
+model_array *frame_lend(frame *f, const model *m, const char *name, const double *numbers, err *e)
+{
+    return add_known(&f->arrays, m, name, KNOWN_FRAME, numbers, e);
 }
 
 model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
                           int32_t columns, err *e)
 {
-    return add(&m->arrays, m, name, type, unit, axis, columns, e);
+    return add(&m->arrays, m, name, type, unit, axis, columns, NULL, e);
 }
 
 int model_set_text(model_array *a, int64_t at, const char *text, err *e)

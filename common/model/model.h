@@ -32,6 +32,7 @@ typedef struct model_array {
         uint8_t *u8;
         char **str; /* each owned, UTF-8, never NULL */
     };
+    bool lent; /* the data is someone else's, and only read */
 } model_array;
 
 typedef struct model_arrays {
@@ -103,6 +104,8 @@ model_array *model_need(const model *m, const char *name, err *e);
 model_array *model_add(model *m, const char *name, err *e);
 /* The same for a frame of model m. */
 model_array *frame_add(frame *f, const model *m, const char *name, err *e);
+/* The same of one whose numbers stand there already, and stay there unchanged as long as the frame is. */
+model_array *frame_lend(frame *f, const model *m, const char *name, const double *numbers, err *e);
 /* Adds a zeroed array of any kind. */
 model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
                           int32_t columns, err *e);
