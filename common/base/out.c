@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* F_SETPIPE_SZ */
 #include "base/out.h"
 
 #include "base/mem.h"
@@ -15,13 +16,13 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { CHUNK = 1 << 18 };
+enum { CHUNK = 1 << 18, PIPE = 1 << 20 };
 
 struct out {
-    int fd;       /* -1: memory */
-    char *name;   /* for messages */
-    replace file; /* no target: fd is written directly */
-    bool gzip;
+    int fd;           /* -1: memory */
+    char *name;       /* for messages */
+    replace file;     /* no target: fd is written directly */
+    bool gzip, large; /* large: a piece of CHUNK was written */
     z_stream z;
     unsigned char *packed;
     unsigned char *buffer;
@@ -39,6 +40,19 @@ static void end_by_sigpipe(void)
     signal(SIGPIPE, SIG_DFL);
     pthread_sigmask(SIG_UNBLOCK, &only, NULL);
     raise(SIGPIPE);
+}
+
+/* A pipe of 64 KB has whoever writes much and whoever reads it wait for each other all the time. (One of what is small stays as it
+ * is: a reader that falls behind would see all that fits into it late.) */
+static void widen_pipe(int fd)
+{
+#ifdef F_SETPIPE_SZ
+    int size = fcntl(fd, F_GETPIPE_SZ);
+    if (size > 0 && size < PIPE)
+        (void)!fcntl(fd, F_SETPIPE_SZ, (int)PIPE);
+#else
+    (void)fd;
+#endif
 }
 
 static void put(out *o, const unsigned char *bytes, size_t size)
@@ -185,8 +199,11 @@ void out_write(out *o, const void *bytes, size_t size)
     if (o->fd < 0) {
         if (mem_grow(&o->buffer, &o->capacity, o->filled + (int64_t)size, 1, "an output stream", &o->failed))
             return;
-    } else if ((int64_t)size > o->capacity - o->filled) {
+    } else if ((int64_t)size >= o->capacity - o->filled) {
         empty(o, Z_NO_FLUSH);
+        if (size >= CHUNK && !o->large)
+            widen_pipe(o->fd);
+        o->large = o->large || size >= CHUNK;
         while (size >= CHUNK && !o->failed.status) {
             send(o, bytes, CHUNK, Z_NO_FLUSH);
             bytes = (const char *)bytes + CHUNK;
