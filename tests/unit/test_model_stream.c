@@ -213,6 +213,33 @@ static void test_writer(void)
     out_discard(o);
 }
 
+/* A frame of numbers that stand elsewhere is written as one with its own, and leaves them there. */
+static void test_lent(void)
+{
+    err e = {0};
+    double numbers[6] = {1, -2, NAN, 4e-300, 5, -0.};
+    out *o[2] = {out_memory(&e), out_memory(&e)};
+    model m = {0};
+    model_axis_add(&m, "node", 2, &e);
+    for (int lent = 0; lent < 2; lent++) {
+        frame f = {.index = 3, .time = .5};
+        model_array *a =
+            lent ? frame_lend(&f, &m, "node.displacement", numbers, &e) : frame_add(&f, &m, "node.displacement", &e);
+        if (a && !lent)
+            memcpy(a->f64, numbers, sizeof numbers);
+        model_writer *w = model_writer_open(o[lent], false, &e);
+        ok(a && !model_write(w, &m, &e) && !model_write_frame(w, &f, &e), "written %s", e.text);
+        model_writer_close(w);
+        frame_free(&f);
+    }
+    size_t size[2];
+    const unsigned char *b[2] = {out_bytes(o[0], &size[0]), out_bytes(o[1], &size[1])};
+    ok(size[0] == size[1] && !memcmp(b[0], b[1], size[0]) && numbers[4] == 5, "lent or not, the same bytes");
+    out_discard(o[0]);
+    out_discard(o[1]);
+    model_free(&m);
+}
+
 /* ---- numbers ---- */
 
 /* A binary model of n numbers, all 1 but for that at `at`. */
@@ -388,6 +415,7 @@ int main(void)
     test_cut();
     test_flips();
     test_writer();
+    test_lent();
     test_nan();
     test_one_nan();
     test_floats();
