@@ -65,15 +65,27 @@ static int32_t *frame_place(const cuda_state *s)
     return (int32_t *)(s->frame + 6 * s->tiles.nodes);
 }
 
-/* Puts on the card where each of the model's nodes stands. */
+/* Puts on the card where each of the model's nodes stands; by way of `staging`, which only the stream writes from now on. */
 static int put_place(cuda_state *s, err *e)
 {
-    int32_t *place =
-        (int32_t *)s->staging; /* the host next writes there at the end of what is asked of the stream after this */
+    int32_t *place = (int32_t *)s->staging;
     for (int64_t k = 0; k < s->tiles.nodes; k++)
         place[s->tiles.node[k]] = (int32_t)k;
     return CUDA_TRY(cudaMemcpyAsync(frame_place(s), place, (size_t)s->tiles.nodes * sizeof *place,
                                     cudaMemcpyHostToDevice, s->stream));
+}
+
+/* What a frame goes by, where there is room for it on the card. */
+static int make_way(cuda_state *s, err *e)
+{
+    err full = {0};
+    s->frame = (real *)card_take(frame_bytes(s), "a frame", &full);
+    s->frame_direct = !s->frame;
+    if (s->frame_direct)
+        return 0;
+    const int threads = pool_threads(s->threads);
+    s->wideners = pool_create(threads < WIDENERS ? threads : WIDENERS, e);
+    return s->wideners ? put_place(s, e) : -1;
 }
 
 /* Where the card has no room for it, a frame holds up the steps: better than a run that ends at its first frame, which may be
@@ -81,13 +93,8 @@ static int put_place(cuda_state *s, err *e)
 static int make_frame(cuda_state *s, cuda_frame *f, err *e)
 {
     const int64_t bytes = 6 * s->view.stride * (int64_t)sizeof(real);
-    if (bytes > FRAME_DIRECT && !s->kept_internal && !s->frame && !s->frame_direct) {
-        err full = {0};
-        s->frame = (real *)card_take(frame_bytes(s), "a frame", &full);
-        s->frame_direct = !s->frame;
-        if (s->frame && put_place(s, e))
-            return -1;
-    }
+    if (bytes > FRAME_DIRECT && !s->kept_internal && !s->frame && !s->frame_direct && make_way(s, e))
+        return -1;
     if (f->host)
         return 0;
     const int64_t numbers = s->frame ? 6 * s->tiles.nodes : 2 * s->numbers;
@@ -139,10 +146,19 @@ static int cuda_take(void *state, int slot, err *e)
     return send_frame(s, f, e);
 }
 
-static void widen(const real *__restrict__ from, double *__restrict__ to, int64_t count)
+typedef struct widening { /* of a frame that came */
+    const real *displacement, *velocity;
+    const tled_taken *to;
+} widening;
+
+static void widen_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    for (int64_t i = 0; i < count; i++)
-        to[i] = from[i];
+    const widening *w = (const widening *)context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        w->to->displacement[i] = w->displacement[i];
+    for (int64_t i = from; i < to; i++)
+        w->to->velocity[i] = w->velocity[i];
 }
 
 static int cuda_taken(void *state, int slot, void *to, err *e)
@@ -150,12 +166,13 @@ static int cuda_taken(void *state, int slot, void *to, err *e)
     cuda_state *s = (cuda_state *)state;
     const tled_taken *out = (const tled_taken *)to;
     const cuda_frame *f = &s->taken[slot];
+    const int64_t numbers = 3 * s->tiles.nodes;
     const permutation u = {s, f->host, out->displacement}, v = {s, f->host + s->numbers, out->velocity};
+    widening w = {f->host, f->host + numbers, out};
     if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
         return -1;
     if (s->frame) {
-        widen(f->host, out->displacement, 3 * s->tiles.nodes);
-        widen(f->host + 3 * s->tiles.nodes, out->velocity, 3 * s->tiles.nodes);
+        pool_run(s->wideners, numbers, COPY_CHUNK, widen_work, &w);
         return 0;
     }
     permute_work((void *)&u, 0, 0, s->tiles.nodes);

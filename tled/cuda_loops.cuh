@@ -292,6 +292,7 @@ static void cuda_destroy(void *state)
     card_give(s->memory);
     card_give(s->kept_internal);
     card_give(s->frame);
+    pool_destroy(s->wideners);
     if (s->frame_free)
         cudaEventDestroy(s->frame_free);
     if (s->frame_ready)

@@ -8,7 +8,7 @@
 
 #include "tled/cuda_march.cuh" /* wants element.h before it */
 
-enum { TABLE_STEPS = 256, TABLES = 2, COPY_CHUNK = 4096 };
+enum { TABLE_STEPS = 256, TABLES = 2, COPY_CHUNK = 4096, WIDENERS = 4 };
 
 /* Bytes: a frame that is copied sooner than it is worth its own memory on the card. */
 #ifndef FRAME_DIRECT
@@ -41,6 +41,7 @@ typedef struct cuda_state {
     real *kept_displacement; /* and velocity after it */
     real *kept_internal;     /* made when first wanted */
     real *frame;             /* to send (cuda_frame.cuh); likewise, unless that is: one of the two */
+    pool *wideners;          /* make doubles of it on the host, beside those of the run: made with it */
     bool spare_is_internal, has_kept_internal;
     bool resident;              /* all tiles have a place on the card at once */
     bool frame_direct;          /* there is no room for `frame` */
