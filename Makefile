@@ -80,7 +80,7 @@ CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
 endif
 
 # What only cards use, in C, is in it too.
-CUDA_ONLY := tled/tiles.c tled/places.c tled/march.c tled/march_units.c msds/levels.c msds/parts.c
+CUDA_ONLY := tled/tiles.c tled/places.c tled/march.c tled/march_units.c tled/march_near.c msds/levels.c msds/parts.c
 $(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
 	@rm -f $@
 	@ar rcs $@ $^

@@ -9,23 +9,34 @@
 
 /* ---- passes */
 
-/* What a march takes of a pass: v = (keep v + half a) slow where a step begins, and so on. */
-static int march_pass(cuda_state *s, const cuda_pass *p, err *e)
+/* Passes of a march: v = (keep v + half a) slow where a step begins, and so on. */
+static int march_passes(cuda_state *s, const cuda_pass *p, int64_t passes, err *e)
 {
     const node_factors f = p->factors;
     const bool begins = p->what & PASS_BEGIN, ends = p->what & PASS_FINISH;
     const real keep = (begins ? f.slow : 1) * (ends ? f.keep : 1);
     const real push = begins && ends ? f.dt * f.slow : begins ? f.half * f.slow : ends ? f.half : 0;
-    const cuda_march_pass q = {
-        (const float4 *)p->from,  (float4 *)p->to, (float4 *)p->velocity, p->now, p->next, (float)keep, (float)push,
-        begins ? (float)f.dt : 0, p->what};
-    return card_check(cuda_march_start(&s->walk, &q, s->march.units, s->stream), "the start of a pass", s->step, e);
+    const cuda_march_pass q = {{(float4 *)p->from, (float4 *)p->to},
+                               (float4 *)p->velocity,
+                               p->now,
+                               (float)keep,
+                               (float)push,
+                               begins ? (float)f.dt : 0,
+                               p->what,
+                               3 * (int32_t)s->p->script->curves,
+                               (int32_t)passes,
+                               s->walked + 1,
+                               s->tickets};
+    s->walked += (uint32_t)passes;
+    s->tickets += (uint32_t)(passes * s->march.units + s->walkers);
+    return card_check(cuda_march_start(&s->walk, &q, s->walkers, s->stream), "the start of passes", s->step, e);
 }
 
-static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
+/* passes: more than one only where it marches. */
+static int begin_pass(cuda_state *s, const cuda_pass *p, int64_t passes, err *e)
 {
     if (s->marches)
-        return march_pass(s, p, e);
+        return march_passes(s, p, passes, e);
     const cudaError_t started =
         with_brick(s->size, [&](auto g) { return pass_start<decltype(g)>(s->view, *p, s->tiles.count, s->stream); });
     return card_check(started, "the start of a pass", s->step, e);
@@ -57,8 +68,8 @@ static void swap_displacements(cuda_state *s)
     s->spare = to;
 }
 
-/* One pass; now: the row of the curves' values where the state stands. */
-static int pass(cuda_state *s, const tled_plan *plan, const double *now, int what, err *e)
+/* One pass, or where it marches several; now: the row of the curves' values where the state stands. */
+static int pass(cuda_state *s, const tled_plan *plan, const double *now, int what, int64_t passes, err *e)
 {
     cuda_pass p = {s->displacement,
                    s->spare,
@@ -71,9 +82,9 @@ static int pass(cuda_state *s, const tled_plan *plan, const double *now, int wha
                    node_factors_of(1 / plan->rate, plan->damping),
                    what};
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
-    if (begin_pass(s, &p, e))
+    if (begin_pass(s, &p, passes, e))
         return -1;
-    if (what & PASS_BEGIN)
+    if (what & PASS_BEGIN && passes % 2)
         swap_displacements(s);
     return 0;
 }
@@ -125,11 +136,13 @@ static int cuda_step(void *state, const void *plan, int64_t count, err *e)
             return -1;
         if (s->resident && stay(s, t, rows, first, passes, count, e))
             return -1;
-        for (int64_t i = first; i < first + passes; i++) {
-            int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
-            if (!s->resident && pass(s, t, rows + (i - first) * 3 * s->p->script->curves, what, e))
+        for (int64_t i = first, many; i < first + passes; i += many) {
+            const int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
+            const int64_t until = first + passes < count ? first + passes : count; /* whole steps */
+            many = s->marches && i > 0 && i < until ? until - i : 1;
+            if (!s->resident && pass(s, t, rows + (i - first) * 3 * s->p->script->curves, what, many, e))
                 return -1;
-            s->step += i > 0;
+            s->step += many - (i == 0);
         }
     }
     s->time = count > 0 ? tled_time(t, count) : s->time;
@@ -145,7 +158,7 @@ static int find_internal(cuda_state *s, err *e)
     if (s->spare_is_internal)
         return 0;
     here.origin = s->time;
-    return put_table(s, &here, 0, 0, &rows, e) ? -1 : pass(s, &here, rows, PASS_INTERNAL, e);
+    return put_table(s, &here, 0, 0, &rows, e) ? -1 : pass(s, &here, rows, PASS_INTERNAL, 1, e);
 }
 
 /* ---- in and out */
@@ -314,6 +327,8 @@ static void begin_march(cuda_state *s)
     const int *axis = s->march.axis;
     cuda_march *w = &s->walk;
     const double law[3] = {plain->mu, plain->bulk, plain->hourglass};
+    w->nears = (int32_t)s->march.nears;
+    w->units = (int32_t)s->march.units;
     static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");
     memcpy(&w->v, &s->view, sizeof w->v);
     for (int a = 0; a < 3; a++) {
@@ -350,6 +365,9 @@ static int fill(cuda_state *s, err *e)
         return -1;
     if (s->resident &&
         CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))
+        return -1;
+    if (s->marches &&
+        CUDA_TRY(cudaMemset(s->walk.done, 0, ((size_t)s->march.units + 1) * sizeof *s->walk.done)))
         return -1;
     /* Streams that do not block wait for none of it by themselves. */
     return CUDA_TRY(cudaDeviceSynchronize()) ? -1 : find_internal(s, e);

@@ -25,10 +25,15 @@ enum {
     FORCE = GRID * SIDE * NODE,
     FORCES = VELOCITIES + 2 * FORCE, /* two times four of them: on corners (1, 0), (0, 1), (1, 1), (0, 0) */
     FORCES_EACH = 4 * FORCE,
-    SHARED = FORCES + 2 * FORCES_EACH,
+    GRAVITY = FORCES + 2 * FORCES_EACH, /* its part of a velocity */
+    SAID = GRAVITY + NODE,              /* the barrier */
+    NEXT = SAID + 16,                   /* the unit that the block takes next, and in which pass: */
+    TURN = NEXT + 16,
+    SHARED = TURN + 16,
     WARPS = MARCH_THREADS / 32,
     EXTRA = 2 * SIDE + 1, /* words of places beyond the threads' */
-    TOGETHER = 3          /* blocks of a multiprocessor */
+    TAKEN = 4,            /* layers before its last, a block takes its next unit */
+    TOGETHER = 2          /* blocks of a multiprocessor */
 };
 
 /* Modes of a face's four nodes, or forces on them. */
@@ -36,25 +41,55 @@ typedef struct face {
     float mean[3], x[3], y[3], xy[3];
 } face;
 
+/* Forces of the cell below on a face; on its xy: those are twice `hourglass` times the face's. */
+typedef struct push {
+    float mean[3], x[3], y[3], hourglass;
+} push;
+
 /* What goes from layer to layer. */
 typedef struct flow {
-    const uint32_t *word; /* of the layer that the loop is at, this thread's */
-    uint32_t now, then;   /* words of layers c, c + 1 */
+    const uint32_t *word; /* of the layer after the one that the loop is at, this thread's */
+    uint32_t after, far, more; /* words of layer c + 2, and c + MARCH_AHEAD, and there of the place beyond */
+    uint32_t last, now, then; /* words of layers c - 1, c, c + 1 */
     bool any, was;        /* this warp has cells in layers c, c - 1 */
     int clean;            /* buffers of forces in which this warp's are zero */
-    face below;           /* forces of the layer of cells below */
+    push below;
 } flow;
 
 /* A thread's place in the grid of a layer's nodes. */
 static __device__ __forceinline__ int place_of(int thread)
 {
     const int warp = thread / 32, lane = thread % 32;
-    return (warp / 2 * 4 + lane / 8) * GRID + warp % 2 * 8 + lane % 8;
+    const int half = warp / 4, row = (warp + 2 * half) % 4; /* march_warp's */
+    return (row * 4 + lane / 8) * GRID + half * 8 + lane % 8;
 }
+
+/* What a block is at: pass `pass` of a launch, of a unit. memory: where its shared memory stands. */
+typedef struct turn {
+    uint32_t pass;
+    int32_t base, cells;
+    uint32_t memory;
+} turn;
 
 static __device__ __forceinline__ const float4 *node_of(const float4 *p, uint32_t word)
 {
     return nth(p, word & MARCH_NODE);
+}
+
+static __device__ __forceinline__ const float4 *from_of(const cuda_march_pass &p, const turn &t)
+{
+    return p.state[t.pass % 2];
+}
+
+static __device__ __forceinline__ float4 *to_of(const cuda_march_pass &p, const turn &t)
+{
+    return p.state[1 - t.pass % 2];
+}
+
+/* The curves' values at the state that the pass reads. */
+static __device__ __forceinline__ const double *now_of(const cuda_march_pass &p, const turn &t)
+{
+    return p.now + (int64_t)t.pass * p.row;
 }
 
 /* The first threads have a place beyond the threads' as well. */
@@ -70,12 +105,12 @@ static __device__ __forceinline__ uint32_t extra_at(uint32_t at)
     return at + (uint32_t)((extra - own) * NODE);
 }
 
-static __device__ __forceinline__ void send_layer(const cuda_march_pass &p, uint32_t at, uint32_t stage, uint32_t word,
+static __device__ __forceinline__ void send_layer(const float4 *from, uint32_t at, uint32_t stage, uint32_t word,
                                                   uint32_t extra)
 {
-    send(at + stage, node_of(p.from, word), word & MARCH_THERE);
+    send(at + stage, node_of(from, word), word & MARCH_THERE);
     if (has_extra())
-        send(extra_at(at) + stage, node_of(p.from, extra), extra & MARCH_THERE);
+        send(extra_at(at) + stage, node_of(from, extra), extra & MARCH_THERE);
 }
 
 static __device__ __forceinline__ face face_at(uint32_t node)
@@ -149,10 +184,11 @@ static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m
 
 /* The forces of a layer of cells: `sum` gets those on its lower face, with `below`, which becomes those on its upper face. */
 static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu, float bulk, float hourglass, bool is,
-                                                   const face &low, const face &high, face *sum, face *below)
+                                                   const face &low, const face &high, face *sum, push *below)
 {
     const element_tensor s = stress(gradient_of(m, low, high), mu, bulk, is);
     const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
+    const float both = 2 * (below->hourglass + hourglass);
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         const float zx = hourglass * (high.x[a] - low.x[a]), yz = hourglass * (high.y[a] - low.y[a]);
@@ -160,24 +196,24 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu
         sum->mean[a] = below->mean[a] - z;
         sum->x[a] = (below->x[a] - zx) + px[a] * m.area[0];
         sum->y[a] = (below->y[a] - yz) + py[a] * m.area[1];
-        sum->xy[a] = below->xy[a] + 2 * hourglass * low.xy[a];
+        sum->xy[a] = both * low.xy[a];
         below->mean[a] = z;
         below->x[a] = zx + px[a] * m.area[0];
         below->y[a] = yz + py[a] * m.area[1];
-        below->xy[a] = 2 * hourglass * high.xy[a];
     }
+    below->hourglass = hourglass;
 }
 
 /* Adds those of a cell's muscles. The gradient is found once more, so that other cells need not keep theirs; here, next: where the
  * displacements of the cell's layers stand. */
-static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const cuda_march_pass &p,
+static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const double *now,
                                                      const march_cell *cell, uint32_t here, uint32_t next, face *sum,
-                                                     face *below)
+                                                     push *below)
 {
 #pragma unroll 1
     for (int k = 0; k < cell->muscles; k++) {
         const float4 along = *(const float4 *)cell->fibre[k];
-        const element_fibre fibre = {{along.x, along.y, along.z}, cell->peak[k] * (float)p.now[3 * cell->curve[k]]};
+        const element_fibre fibre = {{along.x, along.y, along.z}, cell->peak[k] * (float)now[3 * cell->curve[k]]};
         const element_tensor s = element_active(gradient_of(m, face_at(here), face_at(next)), fibre);
         const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
 #pragma unroll
@@ -192,9 +228,22 @@ static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const 
     }
 }
 
+static __device__ __forceinline__ face face_of(const push &below, const face &low)
+{
+    face f;
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        f.mean[a] = below.mean[a];
+        f.x[a] = below.x[a];
+        f.y[a] = below.y[a];
+        f.xy[a] = 2 * below.hourglass * low.xy[a];
+    }
+    return f;
+}
+
 /* As cell_forces, of any cell. c: its layer, of all. */
 template <bool SPECIAL>
-static __device__ __forceinline__ void forces_of(const cuda_march &m, const cuda_march_pass &p, flow *f, int32_t c,
+static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, flow *f, int32_t c,
                                                  const face &low, const face &high, uint32_t here, uint32_t next,
                                                  face *sum)
 {
@@ -206,11 +255,11 @@ static __device__ __forceinline__ void forces_of(const cuda_march &m, const cuda
     }
     cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
     if (special)
-        muscle_forces(m, p, special_of(m, c), here, next, sum, &f->below);
+        muscle_forces(m, now, special_of(m, c), here, next, sum, &f->below);
 }
 
-/* The forces on the corners of a face go to shared memory, and the word with those on the thread's own. */
-static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to, uint32_t word)
+/* The forces on the corners of a face go to shared memory. */
+static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to)
 {
     float own[3], x[3], y[3], xy[3];
 #pragma unroll
@@ -225,30 +274,26 @@ static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to
     shared_store(to, x[0], x[1], x[2]);
     shared_store(to + FORCE, y[0], y[1], y[2]);
     shared_store(to + 2 * FORCE, xy[0], xy[1], xy[2]);
-    shared_store_with(to + 3 * FORCE, own[0], own[1], own[2], word);
+    shared_store(to + 3 * FORCE, own[0], own[1], own[2]);
 }
-
-__shared__ float4 gravity; /* its part of a velocity */
 
 /* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces on it. It is worked on where it
  * stands in shared memory, component by component: few nodes are such, and others are to keep their registers. */
-static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, uint32_t speed,
-                                                 uint32_t word, uint32_t node, uint32_t bits, int a, float pull)
+static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                                 uint32_t speed, uint32_t word, uint32_t node, uint32_t bits, int a,
+                                                 float pull)
 {
     const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)(word & MARCH_NODE)) : NULL;
+    const double *now = now_of(p, t);
     const int axis = m.axis[a];
     float u = shared_number(node + 4 * a), v = shared_number(speed + 4 * a), net = -pull;
     for (int32_t k = 0; x && k < x->forces; k++)
-        net += (float)(m.v.force_share[x->force + k] * p.now[3 * m.v.force_curve[x->force + k] + axis]);
+        net += (float)(m.v.force_share[x->force + k] * now[3 * m.v.force_curve[x->force + k] + axis]);
     if (bits >> (MARCH_FREE + a) & 1) {
-        v = p.keep * v +
-            (a == 0   ? gravity.x
-             : a == 1 ? gravity.y
-                      : gravity.z) +
-            p.push * shared_number(node + 12) * net;
+        v = p.keep * v + shared_number(t.memory + GRAVITY + 4 * a) + p.push * shared_number(node + 12) * net;
         u += p.dt * v;
     } else if (p.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
-        const float to = (float)p.next[3 * x->hold[axis] + axis];
+        const float to = (float)now[p.row + 3 * x->hold[axis] + axis];
         v = (to - u) / p.dt;
         u = to;
     }
@@ -258,20 +303,21 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
 
 /* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its forces, displacement and velocity
  * stand. */
-static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, uint32_t forces,
-                                                 uint32_t node, uint32_t speed)
+template <bool STEP>
+static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                                 uint32_t word, uint32_t forces, uint32_t node, uint32_t speed)
 {
-    const float4 own = shared_load(forces + 3 * FORCE);
-    const uint32_t word = __float_as_uint(own.w);
     if (!(word & MARCH_OWN))
         return;
-    const float4 x = shared_load(forces - NODE), y = shared_load(forces + FORCE - GRID * NODE);
+    const float4 own = shared_load(forces + 3 * FORCE), x = shared_load(forces - NODE);
+    const float4 y = shared_load(forces + FORCE - GRID * NODE);
     const float4 xy = shared_load(forces + 2 * FORCE - (GRID + 1) * NODE);
-    const float3 sum = {(own.x + x.x) + (y.x + xy.x), (own.y + x.y) + (y.y + xy.y), (own.z + x.z) + (y.z + xy.z)};
     float4 u = shared_load(node), v = shared_load(speed);
+    const float4 gravity = shared_load(t.memory + GRAVITY);
+    const float3 sum = {(own.x + x.x) + (y.x + xy.x), (own.y + x.y) + (y.y + xy.y), (own.z + x.z) + (y.z + xy.z)};
     const uint32_t bits = __float_as_uint(v.w);
-    if (p.what & PASS_INTERNAL)
-        *(float4 *)node_of(p.to, word) = make_float4(sum.x, sum.y, sum.z, u.w);
+    if (!STEP && p.what & PASS_INTERNAL)
+        *(float4 *)node_of(to_of(p, t), word) = make_float4(sum.x, sum.y, sum.z, u.w);
     if (bits == 7) {
         const float push = p.push * u.w;
         v.x = (p.keep * v.x + gravity.x) - push * sum.x;
@@ -283,99 +329,117 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
     } else if (bits) { /* of what is held and not displaced, all stays */
 #pragma unroll 1
         for (int a = 0; a < 3; a++)
-            move_held(m, p, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
+            move_held(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
         u = shared_load(node);
         v = shared_load(speed);
     }
-    if (p.what & PASS_BEGIN)
-        *(float4 *)node_of(p.to, word) = u;
-    if (p.what & (PASS_BEGIN | PASS_FINISH))
+    if (STEP || p.what & PASS_BEGIN)
+        *(float4 *)node_of(to_of(p, t), word) = u;
+    if (STEP || p.what & (PASS_BEGIN | PASS_FINISH))
         *(float4 *)node_of(p.velocity, word) = v;
 }
 
-/* Says that this warp is done with layer c: its forces are there, and displacements of layers up to c + 3. */
-static __device__ __forceinline__ void say_done(uint32_t said)
+/* Says that this warp is done with a layer: its forces are there, and displacements of layers up to c + 3. */
+static __device__ __forceinline__ void say_done(const turn &t)
 {
     __syncwarp();
     if (threadIdx.x % 32 == 0)
-        barrier_arrive(said);
+        barrier_arrive(t.memory + SAID);
 }
 
-/* Layer c of cells of a unit from layer `base` on, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the
- * displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. goes_on: there is a layer c + 5. */
-template <bool SPECIAL, int ODD>
-static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
-                                             flow *f, int32_t base, int c, uint32_t next, uint32_t old, bool goes_on,
-                                             const face &low, face *high)
+/* Words of the layer after the next are on their way while a layer is worked on. */
+static __device__ __forceinline__ void fetch_words(flow *f)
 {
-    const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
-    const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
-    const uint32_t far = f->word[MARCH_AHEAD * MARCH_WORDS], after = f->word[2 * MARCH_WORDS];
-    const uint32_t more = has_extra() ? f->word[MARCH_AHEAD * MARCH_WORDS + MARCH_THREADS] : 0;
-    const bool any = f->any;
-    f->any = __any_sync(~0u, f->then & MARCH_CELL);
-    face sum = f->below;
-    if (any || f->any)
-        *high = face_at(at + next);
-    if (any)
-        forces_of<SPECIAL>(m, p, f, base + c, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE), at + next,
-                           &sum);
-    else
-        f->below = face{};
-    arrived<1>(); /* displacements of c + 3, and velocities of c - 1: all but what was sent in the layer before */
-    if (c)
-        barrier_wait(said, 1 - ODD);
-    if (any || f->was || f->clean < 2)
-        share_forces(sum, forces, f->now);
-    else
-        shared_store_with(forces + 3 * FORCE, 0, 0, 0, f->now);
-    f->clean = any || f->was ? 0 : f->clean + 1;
-    if (c > 1)
-        move_node(m, p, before, at + old, speed);
-    if (f->then & MARCH_OWN)
-        send(speed, node_of(p.velocity, f->then), true);
-    if (goes_on)
-        send_layer(p, at, old, far, more);
-    sent();
-    say_done(said);
-    f->was = any;
-    f->now = f->then;
-    f->then = after;
+    f->after = f->word[2 * MARCH_WORDS];
+    f->far = f->word[MARCH_AHEAD * MARCH_WORDS];
+    f->more = has_extra() ? f->word[MARCH_AHEAD * MARCH_WORDS + MARCH_THREADS] : 0;
     f->word += MARCH_WORDS;
 }
 
-/* Thread 0's work. */
-static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p)
+/* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the
+ * displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. */
+template <bool SPECIAL, bool STEP, int ODD>
+static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, const turn &t, uint32_t at,
+                                             flow *f, int c, uint32_t next, uint32_t old, const face &low, face *high)
 {
-    const double *g = m.v.gravity < 0 ? NULL : p.now + 3 * m.v.gravity;
-    gravity.x = g ? p.push * (float)g[m.axis[0]] : 0;
-    gravity.y = g ? p.push * (float)g[m.axis[1]] : 0;
-    gravity.z = g ? p.push * (float)g[m.axis[2]] : 0;
+    const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
+    const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
+    const uint32_t after = f->after, far = f->far, more = f->more;
+    const bool any = f->any;
+    fetch_words(f);
+    f->any = __any_sync(~0u, f->then & MARCH_CELL);
+    face sum;
+    if (any || f->any)
+        *high = face_at(at + next);
+    if (any) {
+        forces_of<SPECIAL>(m, now_of(p, t), f, t.base + c, low, *high,
+                           at + (next ? next - STAGE : (STAGES - 1) * STAGE), at + next, &sum);
+    } else {
+        sum = f->was ? face_of(f->below, low) : face{}; /* else `low` may be anything */
+        f->below = push{};
+    }
+    arrived<1>(); /* displacements of c + 3, and velocities of c - 1: all but what was sent in the layer before */
+    if (c)
+        barrier_wait(t.memory + SAID, 1 - ODD);
+    if (any || f->was || f->clean < 2)
+        share_forces(sum, forces);
+    f->clean = any || f->was ? 0 : f->clean + 1;
+    if (c > 1)
+        move_node<STEP>(m, p, t, f->last, before, at + old, speed);
+    send(speed, node_of(p.velocity, f->then), f->then & MARCH_OWN && c + 1 < t.cells); /* the last layer's are another's */
+    if (c + MARCH_AHEAD <= t.cells)
+        send_layer(from_of(p, t), at, old, far, more);
+    sent();
+    say_done(t);
+    f->was = any;
+    f->last = f->now;
+    f->now = f->then;
+    f->then = after;
+}
+
+/* Thread 0's work. */
+static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p, const turn &t)
+{
+    const double *g = m.v.gravity < 0 ? NULL : now_of(p, t) + 3 * m.v.gravity;
+    for (int a = 0; a < 3; a++)
+        shared_number_store(t.memory + GRAVITY + 4 * a, g ? p.push * (float)g[m.axis[a]] : 0);
+    shared_number_store(t.memory + GRAVITY + 12, 0);
+}
+
+/* Waits until the units that have to do with this one have made the pass before: what they wrote may be read, and what they read
+ * written. Units are taken in turn, so that those of the first turn that is not done wait for none. */
+static __device__ __forceinline__ void wait_for_near(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                                     uint32_t unit)
+{
+    const int32_t *near = m.near + (int64_t)unit * m.nears;
+    for (int32_t i = (int32_t)threadIdx.x; i < m.nears; i += MARCH_THREADS)
+        while (near[i] >= 0 && (int32_t)(hear_done(&m.done[near[i]]) - (p.number + t.pass - 1)) < 0)
+            ;
+    __syncthreads();
 }
 
 /* The first layers of a unit are there. What the pass before wrote may be read from here on. */
-static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, uint32_t at, uint32_t said,
-                                             const march_unit &unit, flow *f)
+static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                             uint32_t unit, uint32_t at, flow *f)
 {
     uint32_t word[MARCH_AHEAD], extra[MARCH_AHEAD];
-    f->word = m.word + MARCH_WORDS * (int64_t)unit.base + threadIdx.x;
+    f->word = m.word + MARCH_WORDS * (int64_t)t.base + threadIdx.x;
 #pragma unroll
     for (int k = 0; k < MARCH_AHEAD; k++) {
         word[k] = f->word[k * MARCH_WORDS];
         extra[k] = has_extra() ? f->word[k * MARCH_WORDS + MARCH_THREADS] : 0;
     }
+    fetch_words(f);
     f->now = word[0];
     f->then = word[1];
-    wait_for_last();
+    wait_for_near(m, p, t, unit);
 #pragma unroll
     for (int k = 0; k < MARCH_AHEAD; k++)
-        if (k <= unit.cells)
-            send_layer(p, at, k * STAGE, word[k], extra[k]);
+        if (k <= t.cells)
+            send_layer(from_of(p, t), at, k * STAGE, word[k], extra[k]);
     sent();
-    if (threadIdx.x == 0) {
-        put_gravity(m, p);
-        barrier_make(said, WARPS);
-    }
+    if (threadIdx.x == 0)
+        put_gravity(m, p, t);
     arrived<0>();
     __syncthreads();
     f->any = __any_sync(~0u, f->now & MARCH_CELL);
@@ -386,45 +450,98 @@ static __device__ __forceinline__ uint32_t after(uint32_t stage)
     return stage == (STAGES - 1) * STAGE ? 0 : stage + STAGE;
 }
 
-template <bool SPECIAL>
-static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p,
-                                                     const march_unit &unit, uint32_t memory, uint32_t said)
+/* Thread 0's work: says which unit the block takes next, and in which pass. What that is, is on its way. */
+static __device__ __forceinline__ void note_next(const cuda_march &m, const cuda_march_pass &p, uint32_t memory,
+                                                 uint32_t ticket)
 {
-    const uint32_t at = memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
+    const uint32_t next = ticket - p.ticket, units = (uint32_t)m.units;
+    const bool is = next < units * (uint32_t)p.passes;
+    shared_number_store(memory + TURN, __uint_as_float(next));
+    send(memory + NEXT, (const float4 *)&m.unit[is ? next % units : 0], is);
+}
+
+/* Takes a ticket at the start of a layer, and looks at it a layer later, when it is there. ago: layers since. */
+static __device__ __forceinline__ void take_next(const cuda_march &m, const cuda_march_pass &p, const turn &t, int ago,
+                                                 uint32_t *ticket)
+{
+    if (ago == 0 && threadIdx.x == 0)
+        *ticket = take_ticket(m.ticket);
+    if (ago == 1 && threadIdx.x == 0)
+        note_next(m, p, t.memory, *ticket);
+}
+
+template <bool SPECIAL, bool STEP>
+static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                                     uint32_t unit)
+{
+    const uint32_t at = t.memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
     flow f = {};
-    begin(m, p, at, said, unit, &f);
+    begin(m, p, t, unit, at, &f);
     face even = face_at(at), odd;
-    const int last = unit.cells;
+    const int last = t.cells;
+    const int take = last > TAKEN ? last - TAKEN : 0;
+    uint32_t ticket = 0;
     uint32_t next = STAGE, old = (STAGES - 1) * STAGE;
 #pragma unroll 1
     for (int c = 0;;) {
-        layer<SPECIAL, 0>(m, p, at, said, &f, unit.base, c, next, old, c + MARCH_AHEAD <= last, even, &odd);
+        take_next(m, p, t, c - take, &ticket);
+        layer<SPECIAL, STEP, 0>(m, p, t, at, &f, c, next, old, even, &odd);
         next = after(next), old = after(old);
         if (++c == last)
             break;
-        layer<SPECIAL, 1>(m, p, at, said, &f, unit.base, c, next, old, c + MARCH_AHEAD <= last, odd, &even);
+        take_next(m, p, t, c - take, &ticket);
+        layer<SPECIAL, STEP, 1>(m, p, t, at, &f, c, next, old, odd, &even);
         next = after(next), old = after(old);
         if (++c == last)
             break;
     }
+    if (last == 1)
+        take_next(m, p, t, 1, &ticket);
     arrived<0>();
-    barrier_wait(said, (last - 1) % 2);
-    move_node(m, p, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
-              at + VELOCITIES + (uint32_t)(last - 1) % 2 * FORCE);
+    barrier_wait(t.memory + SAID, (last - 1) % 2);
+    move_node<STEP>(m, p, t, f.last, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
+                    at + VELOCITIES + (uint32_t)(last - 1) % 2 * FORCE);
+    if (last % 2)
+        say_done(t); /* the next unit's first phase is even again */
 }
 
-/* What special cells take in registers, units without them do without. */
+/* Thread 0's work: the first unit of a block, as its next. */
+static __device__ __forceinline__ void take_first(const cuda_march &m, const cuda_march_pass &p, const turn &t)
+{
+    barrier_make(t.memory + SAID, WARPS);
+    note_next(m, p, t.memory, take_ticket(m.ticket));
+    sent();
+    arrived<0>();
+}
+
+/* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without. STEP: the passes end
+ * a step and begin the next. */
+template <bool STEP>
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {
-    DYNAMIC_SHARED(float4, memory);
-    __shared__ uint64_t said;
-    const march_unit unit = m.unit[blockIdx.x];
-    let_next_begin(); /* the next pass may come when there is room, and wait */
-    if (unit.special)
-        march_unit_of<true>(m, p, unit, shared_at(memory), shared_at(&said));
-    else
-        march_unit_of<false>(m, p, unit, shared_at(memory), shared_at(&said));
+    DYNAMIC_SHARED(float4, shared);
+    const uint32_t units = (uint32_t)m.units;
+    turn t = {.memory = shared_at(shared)};
+    if (threadIdx.x == 0)
+        take_first(m, p, t);
+    __syncthreads();
+    for (;;) {
+        const uint32_t turn = __float_as_uint(shared_number(t.memory + TURN)), pass = turn / units;
+        const float4 next = shared_load(t.memory + NEXT);
+        if (pass >= (uint32_t)p.passes)
+            break;
+        t.pass = pass;
+        t.base = (int32_t)__float_as_uint(next.x);
+        t.cells = (int32_t)__float_as_uint(next.y);
+        if (__float_as_uint(next.z))
+            march_unit_of<true, STEP>(m, p, t, turn - pass * units);
+        else
+            march_unit_of<false, STEP>(m, p, t, turn - pass * units);
+        __syncthreads();
+        if (threadIdx.x == 0)
+            tell_done(&m.done[turn - pass * units], p.number + pass);
+    }
 }
 
 /* ---- from and to rows */
@@ -476,18 +593,18 @@ cudaError_t cuda_march_slots(int64_t *slots)
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) : e;
     if (e != cudaSuccess || major < 9)
         return e;
-    e = cudaFuncSetAttribute(march_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
+    e = cudaFuncSetAttribute(march_kernel<true>, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
+    e = e == cudaSuccess ? cudaFuncSetAttribute(march_kernel<false>, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED)
+                         : e;
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
-    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel, MARCH_THREADS, SHARED)
+    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel<true>, MARCH_THREADS, SHARED)
                          : e;
     *slots = (int64_t)processors * each;
     return e;
 }
 
-/* A pass may start before the one before it has ended: it waits in begin(). */
-cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t units, cudaStream_t stream)
+cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t blocks, cudaStream_t stream)
 {
-    return card_start(march_kernel,
-                      {units, MARCH_THREADS, SHARED, stream, cudaLaunchAttributeProgrammaticStreamSerialization}, *m,
-                      *p);
+    return card_start(p->what == (PASS_BEGIN | PASS_FINISH) ? march_kernel<true> : march_kernel<false>,
+                      {blocks, MARCH_THREADS, SHARED, stream}, *m, *p);
 }

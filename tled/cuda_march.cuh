@@ -20,6 +20,11 @@ enum {
 typedef struct cuda_march {
     cuda_view<float> v;
     const march_unit *unit;
+    const int32_t *near; /* march's */
+    int32_t nears;
+    uint32_t *done;   /* units: the last pass that each has made */
+    uint32_t *ticket; /* how many units were taken, of all passes */
+    int32_t units;
     const uint32_t *word;
     const int32_t *detail, *which;
     const march_cell *cell;
@@ -28,18 +33,19 @@ typedef struct cuda_march {
     int32_t axis[3];         /* of the model: which these are */
 } cuda_march;
 
-/* One pass: v = keep v + push a, with what a step begins and ends; u += dt v. */
+/* Passes, each of the state that the one before left: v = keep v + push a, with what a step begins and ends; u += dt v. */
 typedef struct cuda_march_pass {
-    const float4 *from;
-    float4 *to, *velocity;    /* to: displacements, or internal forces */
-    const double *now, *next; /* the curves' values */
+    float4 *state[2], *velocity; /* the first pass reads displacements in state[0] and leaves them, or internal forces, in state[1] */
+    const double *now;           /* the curves' values: `row` of them where the state stands, and so many more for each step */
     float keep, push, dt;
-    int32_t what;
+    int32_t what, row, passes;
+    uint32_t number, ticket; /* of the first pass, from 1 on; units taken before */
 } cuda_march_pass;
 
 /* Blocks that the card runs at once; 0: it cannot run any, being of before compute capability 9.0. */
 cudaError_t cuda_march_slots(int64_t *slots);
-cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t units, cudaStream_t stream);
+/* By so many blocks, no more than the card runs at once; each takes one ticket more than there are units in all. */
+cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t blocks, cudaStream_t stream);
 
 /* Between the march's order of components and 3 rows of `stride` in the model's; unpack leaves the fourth. */
 cudaError_t cuda_march_pack(const cuda_march *m, const float4 *from, float *to, cudaStream_t stream);

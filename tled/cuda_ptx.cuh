@@ -128,6 +128,29 @@ static __device__ __forceinline__ uint64_t relaxed_load(const uint64_t *from)
     return word;
 }
 
+/* A number from 0 on, each once. */
+static __device__ __forceinline__ uint32_t take_ticket(uint32_t *from)
+{
+    uint32_t number;
+    asm volatile("atom.relaxed.gpu.global.add.u32 %0, [%1], 1;" : "=r"(number) : "l"(from) : "memory");
+    return number;
+}
+
+/* ---- a word by which a block says what it has done, to who reads it: that may be relied on from then on */
+
+/* What the caller's block did before its last __syncthreads() is known to who reads this word. */
+static __device__ __forceinline__ void tell_done(uint32_t *to, uint32_t word)
+{
+    asm volatile("st.release.gpu.global.u32 [%0], %1;" ::"l"(to), "r"(word) : "memory");
+}
+
+static __device__ __forceinline__ uint32_t hear_done(const uint32_t *from)
+{
+    uint32_t word;
+    asm volatile("ld.acquire.gpu.global.u32 %0, [%1];" : "=r"(word) : "l"(from) : "memory");
+    return word;
+}
+
 /* ---- arithmetic */
 
 /* p + n, in one instruction. */

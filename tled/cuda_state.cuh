@@ -31,6 +31,8 @@ typedef struct cuda_state {
     bool marches; /* by `march`, not by tiles: the state stands node by node, in its order */
     struct march march;
     cuda_march walk;            /* what its kernels see */
+    int64_t walkers;            /* blocks of it */
+    uint32_t walked, tickets;   /* passes of it, and units of all of them, and one more a block */
     char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
     int64_t bytes, used;        /* of memory */
     real *displacement, *spare; /* each `numbers`, as is velocity; all else in rows: 3 x stride */
@@ -80,7 +82,9 @@ static int put_march(cuda_state *s, err *e)
 {
     const march *m = &s->march;
     cuda_march *w = &s->walk;
-    return put(s, &w->unit, m->unit, m->units, e) ||
+    w->done = (uint32_t *)room(s, m->units + 1, sizeof *w->done);
+    w->ticket = w->done + m->units;
+    return put(s, &w->unit, m->unit, m->units, e) || put(s, &w->near, m->near, m->units * m->nears, e) ||
                    put(s, &w->word, m->word, (m->layers + MARCH_AHEAD) * MARCH_WORDS, e) ||
                    put(s, &w->detail, m->detail, m->layers, e) ||
                    put(s, &w->which, m->which, m->details * MARCH_THREADS, e) || put(s, &w->cell, m->cell, m->cells, e)
@@ -238,6 +242,7 @@ static int choose_march(cuda_state *s, err *e)
     if (march_make(&s->march, s->p, slots, e))
         return -1;
     s->marches = s->march.units > 0;
+    s->walkers = s->march.units < slots ? s->march.units : slots;
     return s->marches ? tiles_reorder(&s->tiles, s->march.order, e) : 0;
 }
 

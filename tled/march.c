@@ -1,6 +1,7 @@
 #include "tled/march.h"
 
 #include "base/mem.h"
+#include "tled/march_near.h"
 #include "tled/march_units.h"
 #include "tled/places.h"
 
@@ -17,7 +18,7 @@ enum {
 /* Threads for each element: with more, bricks are taken. On an H200, with nodes still in the order of bricks, blocks of 1.20 and
  * 1.21 were faster so, faces of 1.43 (along x, its rows along z) and 1.72 slower. (Tests march all the same.) */
 #ifndef MARCH_SPARSE
-#define MARCH_SPARSE 1.35
+#define MARCH_SPARSE 2.5
 #endif
 
 /* The box around a part, in columns and layers. */
@@ -49,6 +50,7 @@ void march_free(march *m)
     free(m->order);
     free(m->word);
     free(m->unit);
+    free(m->near);
     free(m->detail);
     free(m->which);
     free(m->cell);
@@ -137,9 +139,11 @@ static int spots_of(const cutter *c, int32_t node, bool is_cell, spot to[4])
     return count;
 }
 
+/* A multiprocessor has four schedulers, and every fourth warp is one's: neighbours are of different ones, along rows and across. */
 static int warp_of(int32_t i, int32_t j)
 {
-    return i / PATCH_X + MARCH_SIDE / PATCH_X * (j / PATCH_Y);
+    const int half = i / PATCH_X;
+    return 4 * half + (j / PATCH_Y + 2 * half) % 4;
 }
 
 /* The word of a place in its layer. */
@@ -374,7 +378,7 @@ int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
         goto out;
     result = number_layers(&c, &runs) || put_words(&c) || order_nodes(&c) || put_special(&c)
                  ? -1
-                 : march_runs_cut(&runs, slots, &m->unit, &m->units, e);
+                 : march_runs_cut(&runs, slots, &m->unit, &m->units, e) || march_near_find(m, p->nodes, e);
     if (!result)
         mark_units(m);
 out:

@@ -5,14 +5,15 @@
  *
  * What stands at the places of a layer is told by words: which node, whether it is owned, whether a cell has its low corner
  * there. A layer's words stand in the order of threads, each warp having 8 by 4 of them, so that warps without any cell in a layer,
- * as in a shell, have little to do; then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
+ * as in a shell, have little to do: warps 0 to 3 those of places 0 to 7 along rows, one after another across, 6, 7, 4 and 5 the others; then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
  *
  * Nodes stand in an order of the march's own: by part and column, each in the one that owns it, then by layer, then row by row. So what
  * a column owns of a layer stands in one piece, whatever axes are taken.
  *
- * The axes are those by which the fewest warps have cells, summed over layers; a unit is what one block does: layers in a row. Columns
- * are cut into units so that they take the card the shortest time, by a model: a layer takes a block 2, and 1 for each warp with
- * cells, a unit 10 more; the longest units start first, and each that ends is followed by the next.
+ * The axes are those by which the fewest warps have cells, summed over layers; a unit is what a block takes at once: layers in a row.
+ * Columns are cut into units of nearly equal cost, some for each block that the card runs at once: a layer takes a block 2, and 1 for
+ * each warp with cells. Blocks take units in turn, in the order of columns and layers, pass after pass; a unit waits for those near it
+ * alone, in the pass before, which this order has long since left behind.
  * The creator owns the march; it holds no pointer into the problem.
  */
 #ifndef SINEW_MARCH_H
@@ -51,10 +52,12 @@ typedef struct march {
     int axis[3];   /* the model's axes along the rows of columns, across them, and along the march */
     int32_t plain; /* the volume of plain cells */
     int64_t layers, units, details, cells;
+    int64_t nears;    /* a row of `near`, a multiple of 32 */
     double computed;  /* threads of warps with cells, over elements */
     int32_t *order;   /* nodes: where each stands */
     uint32_t *word;   /* (layers + MARCH_AHEAD) x MARCH_WORDS */
     march_unit *unit; /* units: none where the problem is not suited */
+    int32_t *near;    /* units x nears: the units that have nodes which this one moves, or move what it has, itself too; then -1 */
     int32_t *detail;  /* layers: where its special cells stand in `which`, in layers; or -1 */
     int32_t *which;   /* details x MARCH_THREADS: in cell */
     march_cell *cell;

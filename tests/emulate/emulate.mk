@@ -4,7 +4,7 @@
 EMULATE_CXX ?= $(if $(filter x86_64,$(shell uname -m)),$(shell command -v g++))
 EMULATE_CU := tled/cuda_march tled/cuda_single tled/cuda_double tled/cuda_look common/device/card tests/emulate/wrong
 EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) fibres shadow streams tled/march)) \
-	$(addprefix $(BUILD)/tled/,march_units.o places.o tiles.o)
+	$(addprefix $(BUILD)/tled/,march_units.o march_near.o places.o tiles.o)
 EMULATE_FLAGS = -std=c++17 -g -Wall $(WERROR) -Itests/emulate $(CPPFLAGS) -MMD -MP
 EMULATE_CU_FLAGS = -O2 -mavx2 -mfma -fsanitize=thread,undefined -fno-sanitize-recover=undefined -fno-math-errno -Wno-sign-compare \
 	-Wno-unknown-pragmas -Wno-unused-function

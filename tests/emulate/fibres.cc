@@ -159,6 +159,7 @@ static void begin(block *b, int32_t index, const cudaLaunchConfig_t *how)
     b->serial = ++machine.serial;
     b->index = index;
     b->heard = false;
+    b->heard_of.clear();
     b->threads = (int)how->blockDim.x;
     if (b->dynamic.size != how->dynamicSmemBytes) {
         free(b->dynamic.at);
@@ -240,21 +241,27 @@ cudaError_t emulated_fit(int *blocks, int threads, size_t shared)
     return cudaSuccess;
 }
 
+/* Whether all blocks have room at once. */
+static bool has_room(const cudaLaunchConfig_t *how)
+{
+    int each = 0;
+    emulated_fit(&each, (int)how->blockDim.x, how->dynamicSmemBytes);
+    return how->gridDim.x <= (unsigned)(each * card.processors);
+}
+
 /* Whether blocks of this kind can start; together: all of them at once. */
 static bool fits(const void *kernel, const cudaLaunchConfig_t *how, bool together)
 {
     const auto more = machine.allowed.find(kernel);
     const size_t most = std::max((size_t)SHARED_PLAIN, more == machine.allowed.end() ? 0 : more->second);
-    int each = 0;
     if (!how->gridDim.x || !how->blockDim.x || how->blockDim.x > THREADS_MOST || how->dynamicSmemBytes > most)
         return false;
-    emulated_fit(&each, (int)how->blockDim.x, how->dynamicSmemBytes);
-    return !together || (card.together && how->gridDim.x <= (unsigned)(each * card.processors));
+    return !together || (card.together && has_room(how));
 }
 
 static void launch(const cudaLaunchConfig_t *how, cudaLaunchAttributeID as, const std::vector<char> &call)
 {
-    const bool together = as == cudaLaunchAttributeCooperative;
+    const bool together = as == cudaLaunchAttributeCooperative || (has_room(how) && lot(2));
     if (machine.over)
         return;
     past.at++;

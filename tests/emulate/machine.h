@@ -32,6 +32,7 @@ struct word {
     bool atomic = false, flying = false; /* written so; a copy to it is on its way */
     const char *unsure = NULL;           /* a copy to it was not to be relied on: why */
     std::vector<moment> reads;           /* of the block `reader`, none known to a later one */
+    std::vector<std::pair<int32_t, moment>> read_by; /* the card's: blocks of this launch that did, and when last */
 };
 
 /* Bytes, and what is known of them. */
@@ -59,11 +60,20 @@ struct barrier {
     std::vector<fibre *> waiting;
 };
 
+/* That a block says in a launch that something is done: what its threads did by those clocks. by: who heard it. */
+struct telling {
+    int32_t block;
+    uint32_t launch;
+    clocks clock;
+    moment by;
+};
+
 struct block {
     uint32_t serial = 0; /* among all that ever ran */
     int32_t index = 0;
     int threads = 0;
     bool heard = false;        /* another's word, in this launch */
+    std::map<int32_t, telling> heard_of; /* other blocks: what they told last */
     memory dynamic, own;       /* shared memory: as the launch says; what kernels declare, which blocks have by turns */
     std::vector<char> statics; /* these, while another block has them */
     ~block()

@@ -85,10 +85,19 @@ static void forget(word *w, uint32_t at, bool shared)
     w->seen = at;
     w->writer = w->reader = -1;
     w->reads.clear();
+    w->read_by.clear();
     if (shared) {
         w->wrote = 0;
         w->flying = false;
     }
+}
+
+/* Whether what a thread of another block did then is known here, since that block has told of it. */
+static bool is_told(int32_t block, moment when)
+{
+    const auto found = now->home->heard_of.find(block);
+    return found != now->home->heard_of.end() && known(found->second.by) &&
+           when.clock <= found->second.clock[(size_t)when.thread];
 }
 
 /* What is the matter with reading or writing it, or NULL. */
@@ -102,7 +111,7 @@ static const char *trouble(const word *w, bool atomic)
     if (atomic && w->atomic)
         return NULL;
     if (other)
-        return "what another block writes";
+        return is_told(w->writer, w->write) ? NULL : "what another block writes";
     return w->writer == -1 || known(w->write) ? NULL : "what another thread writes: a race";
 }
 
@@ -122,10 +131,24 @@ static void note_read(word *w)
     reads.push_back({now->thread, now->clock[(size_t)now->thread]});
 }
 
-static void read_word(word *w)
+static void note_reader(word *w)
+{
+    const int32_t own = now->home->index;
+    const moment when = {now->thread, now->clock[(size_t)now->thread]};
+    for (auto &read : w->read_by)
+        if (read.first == own) {
+            read.second = when;
+            return;
+        }
+    w->read_by.push_back({own, when});
+}
+
+static void read_word(word *w, bool shared)
 {
     const int32_t own = now->home->index;
     const char *what = trouble_in_reading(w);
+    if (!shared)
+        note_reader(w);
     if (what)
         fault("reads %s", what);
     if (w->unsure)
@@ -143,12 +166,14 @@ static void write_word(word *w, bool atomic)
     const char *what = trouble(w, atomic);
     if (what)
         fault("writes %s", what);
-    if (w->reader != -1 && w->reader != own && !now->home->heard)
-        fault("writes what another block reads");
+    for (const auto &read : w->read_by)
+        if (read.first != own && !now->home->heard && !is_told(read.first, read.second))
+            fault("writes what another block reads");
     for (const moment &m : w->reads)
         if (!known(m))
             fault("writes what thread %d reads: a race", m.thread);
     w->reads.clear();
+    w->read_by.clear();
     w->reader = -1;
     w->writer = own;
     w->write = {now->thread, now->clock[(size_t)now->thread]};
@@ -214,7 +239,7 @@ void touch(const void *at, size_t size, bool writes, bool atomic)
         if (writes)
             write_word(w, atomic);
         else
-            read_word(w);
+            read_word(w, shared);
 }
 
 /* An access of code that is compiled for it: a kernel's, or the host's beside it. */
@@ -348,11 +373,22 @@ static const char *trouble_in_copying(const float4 *from)
     return what;
 }
 
+/* Where the copy is of use. */
+static void note_copied(const float4 *from)
+{
+    bool shared;
+    word *w = find(from, sizeof *from, &shared);
+    for (int i = 0; i < 4; i++)
+        note_reader(&w[i]);
+}
+
 void send(uint32_t to, const float4 *from, bool is)
 {
     HERE();
     float4 *at = (float4 *)touch_shared(to, sizeof *at, true);
     const char *unsure = is ? trouble_in_copying(from) : NULL;
+    if (is && !unsure)
+        note_copied(from);
     now->flights.push_back({to, is ? from : NULL, is ? *from : float4(), now->group, unsure});
     bool shared;
     word *w = find(at, sizeof *at, &shared);
@@ -442,6 +478,41 @@ uint64_t relaxed_load(const uint64_t *from)
     pass_on();
     now->home->heard |= w->wrote == past.at;
     return *from;
+}
+
+static std::map<const uint32_t *, telling> told_done;
+
+void tell_done(uint32_t *to, uint32_t word)
+{
+    HERE();
+    touch(to, sizeof *to, true, true);
+    told_done[to] = {now->home->index, past.at, now->clock, {}};
+    *to = word;
+    changed();
+}
+
+uint32_t hear_done(const uint32_t *from)
+{
+    HERE();
+    bool shared;
+    const word *w = find(from, sizeof *from, &shared);
+    if (!w || shared || !w->wrote)
+        fault("hears what nobody wrote");
+    pass_on();
+    const auto found = told_done.find(from);
+    if (card.omission != OMIT_LAUNCH_WAIT && found != told_done.end() && found->second.launch == past.at) {
+        telling &t = now->home->heard_of[found->second.block];
+        t = found->second;
+        t.by = {now->thread, now->clock[(size_t)now->thread]};
+    }
+    return *from;
+}
+
+uint32_t take_ticket(uint32_t *from)
+{
+    HERE();
+    touch(from, sizeof *from, true, true);
+    return (*from)++;
 }
 
 /* ---- the host's side */

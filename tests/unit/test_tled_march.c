@@ -3,7 +3,7 @@
  * one piece. With each of the six axes; and not where too few threads would have a cell. And units: as many as there is room for at
  * once where their layers are all alike.
  */
-// needs: tled/march.c tled/march_units.c tled/places.c tled/*.c
+// needs: tled/march.c tled/march_units.c tled/march_near.c tled/places.c tled/*.c
 #include "mesh/lattice.h"
 #include "tled/march_units.h"
 
@@ -22,6 +22,13 @@ typedef struct seen {
     int64_t wrong, special;
 } seen;
 
+/* The thread of a place, as march.h has them. */
+static int thread_of(int i, int j)
+{
+    const int warp = i < 8 ? j / 4 : 4 + (j / 4 + 2) % 4;
+    return 32 * warp + 8 * (j % 4) + i % 8;
+}
+
 /* The word of a place in a layer, as march.h orders them. */
 static uint32_t word_at(const march *m, int64_t layer, int i, int j)
 {
@@ -30,7 +37,7 @@ static uint32_t word_at(const march *m, int64_t layer, int i, int j)
         return word[MARCH_THREADS + j];
     if (j == MARCH_SIDE)
         return word[MARCH_THREADS + MARCH_SIDE + 1 + i];
-    return word[32 * (i / 8 + 2 * (j / 4)) + 8 * (j % 4) + i % 8];
+    return word[thread_of(i, j)];
 }
 
 static int32_t node_of(const seen *s, uint32_t word)
@@ -85,7 +92,7 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
 {
     const tled_problem *p = s->p;
     const int32_t *which = s->m->which + MARCH_THREADS * (int64_t)s->m->detail[layer];
-    const march_cell *cell = &s->m->cell[which[32 * (i / 8 + 2 * (j / 4)) + 8 * (j % 4) + i % 8]];
+    const march_cell *cell = &s->m->cell[which[thread_of(i, j)]];
     const tled_law law = tled_law_of(p, element);
     const double share = tled_fraction(p, element), other = tled_mixture(p, element);
     const int32_t mix = tled_mix(p, element);

@@ -32,6 +32,10 @@ void wait_for_last();
 void relaxed_store(uint64_t *to, uint64_t word);
 uint64_t relaxed_load(const uint64_t *from);
 
+uint32_t take_ticket(uint32_t *from);
+void tell_done(uint32_t *to, uint32_t word);
+uint32_t hear_done(const uint32_t *from);
+
 static inline const float4 *nth(const float4 *p, uint32_t n)
 {
     return p + n;
