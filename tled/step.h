@@ -33,7 +33,7 @@ bool step_below(const step_matrix *a, double limit);
 double step_largest(const step_matrix *a);
 
 /* The steps a second that are taken by default: at least twice what is just stable, and so many that a whole number
- * of them makes 1/100 s and so does a whole number of checks, at most 50 steps apart. *check gets the steps between checks. */
+ * of them makes 1/100 s and so does a whole number of checks, at most 200 steps apart. *check gets the steps between checks. */
 double step_rate(double stable, int64_t *check);
 
 #endif
