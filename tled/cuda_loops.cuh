@@ -9,34 +9,8 @@
 
 /* ---- passes */
 
-/* Passes of a march: v = (keep v + half a) slow where a step begins, and so on. */
-static int march_passes(cuda_state *s, const cuda_pass *p, int64_t passes, err *e)
+static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
-    const node_factors f = p->factors;
-    const bool begins = p->what & PASS_BEGIN, ends = p->what & PASS_FINISH;
-    const real keep = (begins ? f.slow : 1) * (ends ? f.keep : 1);
-    const real push = begins && ends ? f.dt * f.slow : begins ? f.half * f.slow : ends ? f.half : 0;
-    const cuda_march_pass q = {{(float4 *)p->from, (float4 *)p->to},
-                               (float4 *)p->velocity,
-                               p->now,
-                               (float)keep,
-                               (float)push,
-                               begins ? (float)f.dt : 0,
-                               p->what,
-                               3 * (int32_t)s->p->script->curves,
-                               (int32_t)passes,
-                               s->walked + 1,
-                               s->tickets};
-    s->walked += (uint32_t)passes;
-    s->tickets += (uint32_t)(passes * s->march.units + s->walkers);
-    return card_check(cuda_march_start(&s->walk, &q, s->walkers, s->stream), "the start of passes", s->step, e);
-}
-
-/* passes: more than one only where it marches. */
-static int begin_pass(cuda_state *s, const cuda_pass *p, int64_t passes, err *e)
-{
-    if (s->marches)
-        return march_passes(s, p, passes, e);
     const cudaError_t started =
         with_brick(s->size, [&](auto g) { return pass_start<decltype(g)>(s->view, *p, s->tiles.count, s->stream); });
     return card_check(started, "the start of a pass", s->step, e);
@@ -68,8 +42,8 @@ static void swap_displacements(cuda_state *s)
     s->spare = to;
 }
 
-/* One pass, or where it marches several; now: the row of the curves' values where the state stands. */
-static int pass(cuda_state *s, const tled_plan *plan, const double *now, int what, int64_t passes, err *e)
+/* One pass; now: the row of the curves' values where the state stands. */
+static int pass(cuda_state *s, const tled_plan *plan, const double *now, int what, err *e)
 {
     cuda_pass p = {s->displacement,
                    s->spare,
@@ -82,9 +56,43 @@ static int pass(cuda_state *s, const tled_plan *plan, const double *now, int wha
                    node_factors_of(1 / plan->rate, plan->damping),
                    what};
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
-    if (begin_pass(s, &p, passes, e))
+    if (begin_pass(s, &p, e))
         return -1;
-    if (what & PASS_BEGIN && passes % 2)
+    if (what & PASS_BEGIN)
+        swap_displacements(s);
+    return 0;
+}
+
+/* What a march does in a pass: v = (keep v + half a) slow where a step begins, and so on. */
+static cuda_march_kind kind_of(const tled_plan *plan, int what)
+{
+    const node_factors f = node_factors_of(1 / plan->rate, plan->damping);
+    const bool begins = what & PASS_BEGIN, ends = what & PASS_FINISH;
+    const real keep = (begins ? f.slow : 1) * (ends ? f.keep : 1);
+    const real push = begins && ends ? f.dt * f.slow : begins ? f.half * f.slow : ends ? f.half : 0;
+    return {(float)keep, (float)push, begins ? (float)f.dt : 0, what};
+}
+
+/* `passes` passes of a march in one launch. first: what the first does; ends: the last leaves the internal forces. */
+static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int64_t passes, int first, bool ends,
+                    err *e)
+{
+    const cuda_march_pass p = {
+        {(float4 *)s->displacement, (float4 *)s->spare},
+        (float4 *)s->velocity,
+        now,
+        {kind_of(plan, first), kind_of(plan, PASS_BEGIN | PASS_FINISH), kind_of(plan, PASS_FINISH | PASS_INTERNAL)},
+        3 * (int32_t)s->p->script->curves,
+        (int32_t)passes,
+        ends,
+        s->walked + 1,
+        s->tickets};
+    s->walked += (uint32_t)passes;
+    s->tickets += (uint32_t)(passes * s->march.units + s->walkers);
+    s->spare_is_internal = ends;
+    if (card_check(cuda_march_start(&s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
+        return -1;
+    if ((passes - ends) % 2)
         swap_displacements(s);
     return 0;
 }
@@ -125,6 +133,23 @@ static int stay(cuda_state *s, const tled_plan *plan, const double *now, int64_t
     return 0;
 }
 
+/* Passes from pass `first` of `count` steps on. */
+static int make_passes(cuda_state *s, const tled_plan *plan, const double *rows, int64_t first, int64_t passes,
+                       int64_t count, err *e)
+{
+    if (s->resident)
+        return stay(s, plan, rows, first, passes, count, e);
+    if (s->marches)
+        return march_on(s, plan, rows, passes, first ? PASS_BEGIN | PASS_FINISH : PASS_BEGIN, first + passes > count,
+                        e);
+    for (int64_t i = first; i < first + passes; i++) {
+        const int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
+        if (pass(s, plan, rows + (i - first) * 3 * s->p->script->curves, what, e))
+            return -1;
+    }
+    return 0;
+}
+
 static int cuda_step(void *state, const void *plan, int64_t count, err *e)
 {
     cuda_state *s = (cuda_state *)state;
@@ -132,18 +157,10 @@ static int cuda_step(void *state, const void *plan, int64_t count, err *e)
     const double *rows = NULL;
     for (int64_t first = 0; count > 0 && first <= count; first += TABLE_STEPS) {
         const int64_t passes = count + 1 - first < TABLE_STEPS ? count + 1 - first : TABLE_STEPS;
-        if (put_table(s, t, first, first + passes > count ? passes - 1 : passes, &rows, e))
+        if (put_table(s, t, first, first + passes > count ? passes - 1 : passes, &rows, e) ||
+            make_passes(s, t, rows, first, passes, count, e))
             return -1;
-        if (s->resident && stay(s, t, rows, first, passes, count, e))
-            return -1;
-        for (int64_t i = first, many; i < first + passes; i += many) {
-            const int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
-            const int64_t until = first + passes < count ? first + passes : count; /* whole steps */
-            many = s->marches && i > 0 && i < until ? until - i : 1;
-            if (!s->resident && pass(s, t, rows + (i - first) * 3 * s->p->script->curves, what, many, e))
-                return -1;
-            s->step += many - (i == 0);
-        }
+        s->step += passes - (first == 0);
     }
     s->time = count > 0 ? tled_time(t, count) : s->time;
     return 0;
@@ -158,7 +175,9 @@ static int find_internal(cuda_state *s, err *e)
     if (s->spare_is_internal)
         return 0;
     here.origin = s->time;
-    return put_table(s, &here, 0, 0, &rows, e) ? -1 : pass(s, &here, rows, PASS_INTERNAL, 1, e);
+    if (put_table(s, &here, 0, 0, &rows, e))
+        return -1;
+    return s->marches ? march_on(s, &here, rows, 1, PASS_INTERNAL, true, e) : pass(s, &here, rows, PASS_INTERNAL, e);
 }
 
 /* ---- in and out */
@@ -319,6 +338,30 @@ static void cuda_destroy(void *state)
     free(s);
 }
 
+/* Velocities, which a pass reads and writes, and words, which stand after them, are what the cache is to keep while the rest goes
+ * through it: three fifths of what it could; with more, models many times its size had too little left. Nothing is lost
+ * where it cannot. */
+static int keep_near(cuda_state *s, err *e)
+{
+    int device = 0, most = 0;
+    if (CUDA_TRY(cudaGetDevice(&device)) ||
+        CUDA_TRY(cudaDeviceGetAttribute(&most, cudaDevAttrMaxPersistingL2CacheSize, device)))
+        return -1;
+    const char *end = (const char *)(s->walk.word + s->march.layers * MARCH_WORDS);
+    const size_t bytes = (size_t)(end - (const char *)s->velocity), room = (size_t)most / 5 * 3;
+    cudaStreamAttrValue value = {};
+    value.accessPolicyWindow.base_ptr = s->velocity;
+    value.accessPolicyWindow.num_bytes = bytes < room ? bytes : room;
+    value.accessPolicyWindow.hitRatio = 1;
+    value.accessPolicyWindow.hitProp = cudaAccessPropertyPersisting;
+    value.accessPolicyWindow.missProp = cudaAccessPropertyStreaming;
+    if (!most ||
+        cudaDeviceSetLimit(cudaLimitPersistingL2CacheSize, value.accessPolicyWindow.num_bytes) != cudaSuccess ||
+        cudaStreamSetAttribute(s->stream, cudaStreamAttributeAccessPolicyWindow, &value) != cudaSuccess)
+        cudaGetLastError(); /* it has said so */
+    return 0;
+}
+
 /* What a march's kernels see beside its lists. */
 static void begin_march(cuda_state *s)
 {
@@ -366,8 +409,9 @@ static int fill(cuda_state *s, err *e)
     if (s->resident &&
         CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))
         return -1;
-    if (s->marches &&
-        CUDA_TRY(cudaMemset(s->walk.done, 0, ((size_t)s->march.units + 1) * sizeof *s->walk.done)))
+    if (s->marches && CUDA_TRY(cudaMemset(s->walk.done, 0, ((size_t)s->march.units + 1) * sizeof *s->walk.done)))
+        return -1;
+    if (s->marches && keep_near(s, e))
         return -1;
     /* Streams that do not block wait for none of it by themselves. */
     return CUDA_TRY(cudaDeviceSynchronize()) ? -1 : find_internal(s, e);

@@ -12,8 +12,7 @@
 extern "C" {
 #include "mesh/element.h"
 }
-#include "tled/cuda_march.cuh"
-#include "tled/cuda_ptx.cuh"
+#include "tled/cuda_cells.cuh"
 
 enum {
     SIDE = MARCH_SIDE,
@@ -29,30 +28,23 @@ enum {
     SAID = GRAVITY + NODE,              /* the barrier */
     NEXT = SAID + 16,                   /* the unit that the block takes next, and in which pass: */
     TURN = NEXT + 16,
-    SHARED = TURN + 16,
+    RECORDS = TURN + 16, /* three layers of halves of special cells, one half after the other, for each thread */
+    RECORD = MARCH_THREADS * NODE,
+    SHARED = RECORDS + 3 * 2 * RECORD,
     WARPS = MARCH_THREADS / 32,
     EXTRA = 2 * SIDE + 1, /* words of places beyond the threads' */
     TAKEN = 4,            /* layers before its last, a block takes its next unit */
     TOGETHER = 2          /* blocks of a multiprocessor */
 };
 
-/* Modes of a face's four nodes, or forces on them. */
-typedef struct face {
-    float mean[3], x[3], y[3], xy[3];
-} face;
-
-/* Forces of the cell below on a face; on its xy: those are twice `hourglass` times the face's. */
-typedef struct push {
-    float mean[3], x[3], y[3], hourglass;
-} push;
-
 /* What goes from layer to layer. */
 typedef struct flow {
-    const uint32_t *word; /* of the layer after the one that the loop is at, this thread's */
+    const uint32_t *word;      /* of the layer after the one that the loop is at, this thread's */
     uint32_t after, far, more; /* words of layer c + 2, and c + MARCH_AHEAD, and there of the place beyond */
-    uint32_t last, now, then; /* words of layers c - 1, c, c + 1 */
-    bool any, was;        /* this warp has cells in layers c, c - 1 */
-    int clean;            /* buffers of forces in which this warp's are zero */
+    int32_t which, detail;     /* march's: which, of layer c + 3; detail, of layer c + 4 */
+    uint32_t last, now, then;  /* words of layers c - 1, c, c + 1 */
+    bool any, was;             /* this warp has cells in layers c, c - 1 */
+    int clean;                 /* buffers of forces in which this warp's are zero */
     push below;
 } flow;
 
@@ -67,6 +59,7 @@ static __device__ __forceinline__ int place_of(int thread)
 /* What a block is at: pass `pass` of a launch, of a unit. memory: where its shared memory stands. */
 typedef struct turn {
     uint32_t pass;
+    int32_t kind; /* of the pass */
     int32_t base, cells;
     uint32_t memory;
 } turn;
@@ -84,6 +77,13 @@ static __device__ __forceinline__ const float4 *from_of(const cuda_march_pass &p
 static __device__ __forceinline__ float4 *to_of(const cuda_march_pass &p, const turn &t)
 {
     return p.state[1 - t.pass % 2];
+}
+
+/* What the pass does; STEP: it is one of those that end a step and begin the next. */
+template <bool STEP>
+static __device__ __forceinline__ const cuda_march_kind &kind_of(const cuda_march_pass &p, const turn &t)
+{
+    return p.kind[STEP ? (int)MARCH_STEP : t.kind];
 }
 
 /* The curves' values at the state that the pass reads. */
@@ -115,147 +115,67 @@ static __device__ __forceinline__ void send_layer(const float4 *from, uint32_t a
 
 static __device__ __forceinline__ face face_at(uint32_t node)
 {
-    const float4 a = shared_load(node), b = shared_load(node + NODE);
-    const float4 c = shared_load(node + GRID * NODE), d = shared_load(node + GRID * NODE + NODE);
-    const float low[2][3] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}}, high[2][3] = {{c.x, c.y, c.z}, {d.x, d.y, d.z}};
-    face f;
-#pragma unroll
-    for (int i = 0; i < 3; i++) {
-        const float s = low[0][i] + low[1][i], t = low[1][i] - low[0][i];
-        const float sum = high[0][i] + high[1][i], gap = high[1][i] - high[0][i];
-        f.mean[i] = s + sum;
-        f.y[i] = sum - s;
-        f.x[i] = t + gap;
-        f.xy[i] = gap - t;
-    }
-    return f;
+    return face_between(shared_load(node), shared_load(node + NODE), shared_load(node + GRID * NODE),
+                        shared_load(node + GRID * NODE + NODE));
 }
 
-/* x^(-5/3), to 4e-7 of it. */
-static __device__ __forceinline__ float power(float x)
+static_assert(offsetof(march_cell, muscle) == 16 && sizeof(march_cell) % 16 == 0, "read 16 bytes at a time");
+
+/* Which special cell is this thread's, by a layer's detail; 0: none. */
+static __device__ __forceinline__ int32_t which_of(const cuda_march &m, int32_t detail)
 {
-    return near_exp2(near_log2(x) * (-5.f / 3));
+    return detail < 0 ? 0 : m.which[MARCH_THREADS * (int64_t)detail + threadIdx.x];
 }
 
-/* element_stress, in fewer operations. With s = mu J^-5/3, d = J - 1, e = tr(C - I), G = cof F - I, all of it first order in H:
- *     P = (s (d - e/3) + K d) I + s J H + (K d - s (1 + e/3)) G.
- * No cell: mu and bulk are 0, and J is not looked at. */
-static __device__ __forceinline__ element_tensor stress(element_tensor h, float mu, float bulk, bool is)
+/* The first halves of layer c's special cells are on their way. They are the thread's own: nobody else reads them. */
+static __device__ __forceinline__ void send_special(const cuda_march &m, uint32_t memory, int c, int32_t which)
 {
-    const element_tensor m = {h.yy * h.zz - h.yz * h.zy, h.yz * h.zx - h.yx * h.zz, h.yx * h.zy - h.yy * h.zx,
-                              h.xz * h.zy - h.xy * h.zz, h.xx * h.zz - h.xz * h.zx, h.xy * h.zx - h.xx * h.zy,
-                              h.xy * h.yz - h.xz * h.yy, h.xz * h.yx - h.xx * h.yz, h.xx * h.yy - h.xy * h.yx};
-    const float trace = h.xx + h.yy + h.zz;
-    const float dilation = trace + ((m.xx + m.yy + m.zz) + (h.xx * m.xx + h.xy * m.xy + h.xz * m.xz));
-    const float third = (2 * trace + (h.xx * h.xx + h.xy * h.xy + h.xz * h.xz + h.yx * h.yx + h.yy * h.yy +
-                                      h.yz * h.yz + h.zx * h.zx + h.zy * h.zy + h.zz * h.zz)) *
-                        (1.f / 3);
-    const float j = is ? 1 + dilation : 1, scale = mu * power(j), pressure = bulk * dilation;
-    const float all = pressure + scale * (dilation - third), own = scale * j, g = pressure - (scale + scale * third);
-    const element_tensor p = {all + own * h.xx + g * (trace - h.xx + m.xx),
-                              own * h.xy + g * (m.xy - h.yx),
-                              own * h.xz + g * (m.xz - h.zx),
-                              own * h.yx + g * (m.yx - h.xy),
-                              all + own * h.yy + g * (trace - h.yy + m.yy),
-                              own * h.yz + g * (m.yz - h.zy),
-                              own * h.zx + g * (m.zx - h.xz),
-                              own * h.zy + g * (m.zy - h.yz),
-                              all + own * h.zz + g * (trace - h.zz + m.zz)};
-    return p;
+    const float4 *cell = (const float4 *)(m.cell + which - 1);
+    const uint32_t to = memory + RECORDS + (uint32_t)(c % 3) * 2 * RECORD + threadIdx.x * NODE;
+    if (!which)
+        return;
+    send(to, cell, true);
+    send(to + RECORD, cell + 1, true);
 }
 
-static_assert(offsetof(march_cell, fibre) % 16 == 0 && sizeof(march_cell) % 16 == 0, "read 16 bytes at a time");
-
-/* layer: of all. */
-static __device__ __forceinline__ const march_cell *special_of(const cuda_march &m, int32_t layer)
-{
-    return m.cell + m.which[MARCH_THREADS * (int64_t)m.detail[layer] + threadIdx.x];
-}
-
-static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m, const face &low, const face &high)
-{
-    const element_tensor h = {(low.x[0] + high.x[0]) * m.slope[0],       (low.y[0] + high.y[0]) * m.slope[1],
-                              (high.mean[0] - low.mean[0]) * m.slope[2], (low.x[1] + high.x[1]) * m.slope[0],
-                              (low.y[1] + high.y[1]) * m.slope[1],       (high.mean[1] - low.mean[1]) * m.slope[2],
-                              (low.x[2] + high.x[2]) * m.slope[0],       (low.y[2] + high.y[2]) * m.slope[1],
-                              (high.mean[2] - low.mean[2]) * m.slope[2]};
-    return h;
-}
-
-/* The forces of a layer of cells: `sum` gets those on its lower face, with `below`, which becomes those on its upper face. */
-static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu, float bulk, float hourglass, bool is,
-                                                   const face &low, const face &high, face *sum, push *below)
-{
-    const element_tensor s = stress(gradient_of(m, low, high), mu, bulk, is);
-    const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
-    const float both = 2 * (below->hourglass + hourglass);
-#pragma unroll
-    for (int a = 0; a < 3; a++) {
-        const float zx = hourglass * (high.x[a] - low.x[a]), yz = hourglass * (high.y[a] - low.y[a]);
-        const float z = pz[a] * m.area[2];
-        sum->mean[a] = below->mean[a] - z;
-        sum->x[a] = (below->x[a] - zx) + px[a] * m.area[0];
-        sum->y[a] = (below->y[a] - yz) + py[a] * m.area[1];
-        sum->xy[a] = both * low.xy[a];
-        below->mean[a] = z;
-        below->x[a] = zx + px[a] * m.area[0];
-        below->y[a] = yz + py[a] * m.area[1];
-    }
-    below->hourglass = hourglass;
-}
-
-/* Adds those of a cell's muscles. The gradient is found once more, so that other cells need not keep theirs; here, next: where the
- * displacements of the cell's layers stand. */
-static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const double *now,
-                                                     const march_cell *cell, uint32_t here, uint32_t next, face *sum,
+/* Adds those of a special cell's muscles. The gradient is found once more, so that other cells need not keep theirs; here, next: where
+ * the displacements of the cell's layers stand; layer: of all; few cells have a second muscle, which is looked for there. */
+static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const double *now, uint32_t record,
+                                                     int32_t layer, uint32_t here, uint32_t next, face *sum,
                                                      push *below)
 {
-#pragma unroll 1
-    for (int k = 0; k < cell->muscles; k++) {
-        const float4 along = *(const float4 *)cell->fibre[k];
-        const element_fibre fibre = {{along.x, along.y, along.z}, cell->peak[k] * (float)now[3 * cell->curve[k]]};
-        const element_tensor s = element_active(gradient_of(m, face_at(here), face_at(next)), fibre);
-        const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
-#pragma unroll
-        for (int a = 0; a < 3; a++) {
-            sum->mean[a] -= pz[a] * m.area[2];
-            sum->x[a] += px[a] * m.area[0];
-            sum->y[a] += py[a] * m.area[1];
-            below->mean[a] += pz[a] * m.area[2];
-            below->x[a] += px[a] * m.area[0];
-            below->y[a] += py[a] * m.area[1];
-        }
-    }
+    const float4 first = shared_load(record + RECORD);
+    const int32_t curve = (int32_t)__float_as_uint(first.w);
+    if (curve < 0)
+        return;
+    const element_tensor h = gradient_of(m, face_at(here), face_at(next));
+    const float peak = shared_number(record + 12);
+    add_tension(m, h, {{first.x, first.y, first.z}, peak * (float)now[3 * (curve & ~MARCH_SECOND)]}, sum, below);
+    if (!(curve & MARCH_SECOND))
+        return;
+    const march_cell *cell = m.cell + which_of(m, m.detail[layer]) - 1;
+    const march_muscle &second = cell->muscle[1];
+    add_tension(m, h,
+                {{second.fibre[0], second.fibre[1], second.fibre[2]}, cell->second_peak * (float)now[3 * second.curve]},
+                sum, below);
 }
 
-static __device__ __forceinline__ face face_of(const push &below, const face &low)
-{
-    face f;
-#pragma unroll
-    for (int a = 0; a < 3; a++) {
-        f.mean[a] = below.mean[a];
-        f.x[a] = below.x[a];
-        f.y[a] = below.y[a];
-        f.xy[a] = 2 * below.hourglass * low.xy[a];
-    }
-    return f;
-}
-
-/* As cell_forces, of any cell. c: its layer, of all. */
+/* As cell_forces, of any cell of layer c. */
 template <bool SPECIAL>
-static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, flow *f, int32_t c,
+static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, const turn &t, flow *f, int c,
                                                  const face &low, const face &high, uint32_t here, uint32_t next,
                                                  face *sum)
 {
     const bool is = f->now & MARCH_CELL, special = SPECIAL && f->now & MARCH_SPECIAL;
+    const uint32_t record = t.memory + RECORDS + (uint32_t)(c % 3) * 2 * RECORD + threadIdx.x * NODE;
     float mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
     if (special) {
-        const float4 law = *(const float4 *)special_of(m, c);
+        const float4 law = shared_load(record);
         mu = law.x, bulk = law.y, hourglass = law.z;
     }
     cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
     if (special)
-        muscle_forces(m, now, special_of(m, c), here, next, sum, &f->below);
+        muscle_forces(m, now, record, t.base + c, here, next, sum, &f->below);
 }
 
 /* The forces on the corners of a face go to shared memory. */
@@ -279,22 +199,24 @@ static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to
 
 /* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces on it. It is worked on where it
  * stands in shared memory, component by component: few nodes are such, and others are to keep their registers. */
+template <bool STEP>
 static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                  uint32_t speed, uint32_t word, uint32_t node, uint32_t bits, int a,
                                                  float pull)
 {
     const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)(word & MARCH_NODE)) : NULL;
     const double *now = now_of(p, t);
+    const cuda_march_kind &k = kind_of<STEP>(p, t);
     const int axis = m.axis[a];
     float u = shared_number(node + 4 * a), v = shared_number(speed + 4 * a), net = -pull;
-    for (int32_t k = 0; x && k < x->forces; k++)
-        net += (float)(m.v.force_share[x->force + k] * now[3 * m.v.force_curve[x->force + k] + axis]);
+    for (int32_t i = 0; x && i < x->forces; i++)
+        net += (float)(m.v.force_share[x->force + i] * now[3 * m.v.force_curve[x->force + i] + axis]);
     if (bits >> (MARCH_FREE + a) & 1) {
-        v = p.keep * v + shared_number(t.memory + GRAVITY + 4 * a) + p.push * shared_number(node + 12) * net;
-        u += p.dt * v;
-    } else if (p.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
+        v = k.keep * v + shared_number(t.memory + GRAVITY + 4 * a) + k.push * shared_number(node + 12) * net;
+        u += k.dt * v;
+    } else if (k.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
         const float to = (float)now[p.row + 3 * x->hold[axis] + axis];
-        v = (to - u) / p.dt;
+        v = (to - u) / k.dt;
         u = to;
     }
     shared_number_store(node + 4 * a, u);
@@ -316,26 +238,27 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
     const float4 gravity = shared_load(t.memory + GRAVITY);
     const float3 sum = {(own.x + x.x) + (y.x + xy.x), (own.y + x.y) + (y.y + xy.y), (own.z + x.z) + (y.z + xy.z)};
     const uint32_t bits = __float_as_uint(v.w);
-    if (!STEP && p.what & PASS_INTERNAL)
+    const cuda_march_kind &k = kind_of<STEP>(p, t);
+    if (!STEP && k.what & PASS_INTERNAL)
         *(float4 *)node_of(to_of(p, t), word) = make_float4(sum.x, sum.y, sum.z, u.w);
     if (bits == 7) {
-        const float push = p.push * u.w;
-        v.x = (p.keep * v.x + gravity.x) - push * sum.x;
-        v.y = (p.keep * v.y + gravity.y) - push * sum.y;
-        v.z = (p.keep * v.z + gravity.z) - push * sum.z;
-        u.x += p.dt * v.x;
-        u.y += p.dt * v.y;
-        u.z += p.dt * v.z;
+        const float push = k.push * u.w;
+        v.x = (k.keep * v.x + gravity.x) - push * sum.x;
+        v.y = (k.keep * v.y + gravity.y) - push * sum.y;
+        v.z = (k.keep * v.z + gravity.z) - push * sum.z;
+        u.x += k.dt * v.x;
+        u.y += k.dt * v.y;
+        u.z += k.dt * v.z;
     } else if (bits) { /* of what is held and not displaced, all stays */
 #pragma unroll 1
         for (int a = 0; a < 3; a++)
-            move_held(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
+            move_held<STEP>(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
         u = shared_load(node);
         v = shared_load(speed);
     }
-    if (STEP || p.what & PASS_BEGIN)
+    if (STEP || k.what & PASS_BEGIN)
         *(float4 *)node_of(to_of(p, t), word) = u;
-    if (STEP || p.what & (PASS_BEGIN | PASS_FINISH))
+    if (STEP || k.what & (PASS_BEGIN | PASS_FINISH))
         *(float4 *)node_of(p.velocity, word) = v;
 }
 
@@ -356,6 +279,25 @@ static __device__ __forceinline__ void fetch_words(flow *f)
     f->word += MARCH_WORDS;
 }
 
+/* Special cells of layer c + 3 are sent for, into the place of those of layer c; what later ones are is on its way. */
+static __device__ __forceinline__ void go_on_special(const cuda_march &m, const turn &t, flow *f, int c)
+{
+    if (c + 3 < t.cells)
+        send_special(m, t.memory, c + 3, f->which);
+    f->which = which_of(m, f->detail);
+    f->detail = m.detail[t.base + c + 5];
+}
+
+static __device__ __forceinline__ void begin_special(const cuda_march &m, const turn &t, flow *f)
+{
+#pragma unroll
+    for (int k = 0; k < 3; k++)
+        if (k < t.cells)
+            send_special(m, t.memory, k, which_of(m, m.detail[t.base + k]));
+    f->which = which_of(m, m.detail[t.base + 3]);
+    f->detail = m.detail[t.base + 4];
+}
+
 /* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the
  * displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. */
 template <bool SPECIAL, bool STEP, int ODD>
@@ -372,8 +314,8 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     if (any || f->any)
         *high = face_at(at + next);
     if (any) {
-        forces_of<SPECIAL>(m, now_of(p, t), f, t.base + c, low, *high,
-                           at + (next ? next - STAGE : (STAGES - 1) * STAGE), at + next, &sum);
+        forces_of<SPECIAL>(m, now_of(p, t), t, f, c, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE),
+                           at + next, &sum);
     } else {
         sum = f->was ? face_of(f->below, low) : face{}; /* else `low` may be anything */
         f->below = push{};
@@ -386,9 +328,12 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     f->clean = any || f->was ? 0 : f->clean + 1;
     if (c > 1)
         move_node<STEP>(m, p, t, f->last, before, at + old, speed);
-    send(speed, node_of(p.velocity, f->then), f->then & MARCH_OWN && c + 1 < t.cells); /* the last layer's are another's */
+    send(speed, node_of(p.velocity, f->then),
+         f->then & MARCH_OWN && c + 1 < t.cells); /* the last layer's are another's */
     if (c + MARCH_AHEAD <= t.cells)
         send_layer(from_of(p, t), at, old, far, more);
+    if (SPECIAL)
+        go_on_special(m, t, f, c);
     sent();
     say_done(t);
     f->was = any;
@@ -402,7 +347,7 @@ static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p
 {
     const double *g = m.v.gravity < 0 ? NULL : now_of(p, t) + 3 * m.v.gravity;
     for (int a = 0; a < 3; a++)
-        shared_number_store(t.memory + GRAVITY + 4 * a, g ? p.push * (float)g[m.axis[a]] : 0);
+        shared_number_store(t.memory + GRAVITY + 4 * a, g ? p.kind[t.kind].push * (float)g[m.axis[a]] : 0);
     shared_number_store(t.memory + GRAVITY + 12, 0);
 }
 
@@ -419,6 +364,7 @@ static __device__ __forceinline__ void wait_for_near(const cuda_march &m, const 
 }
 
 /* The first layers of a unit are there. What the pass before wrote may be read from here on. */
+template <bool SPECIAL>
 static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                              uint32_t unit, uint32_t at, flow *f)
 {
@@ -437,6 +383,8 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
     for (int k = 0; k < MARCH_AHEAD; k++)
         if (k <= t.cells)
             send_layer(from_of(p, t), at, k * STAGE, word[k], extra[k]);
+    if (SPECIAL)
+        begin_special(m, t, f);
     sent();
     if (threadIdx.x == 0)
         put_gravity(m, p, t);
@@ -476,7 +424,7 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
 {
     const uint32_t at = t.memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
     flow f = {};
-    begin(m, p, t, unit, at, &f);
+    begin<SPECIAL>(m, p, t, unit, at, &f);
     face even = face_at(at), odd;
     const int last = t.cells;
     const int take = last > TAKEN ? last - TAKEN : 0;
@@ -514,33 +462,36 @@ static __device__ __forceinline__ void take_first(const cuda_march &m, const cud
     arrived<0>();
 }
 
-/* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without. STEP: the passes end
- * a step and begin the next. */
-template <bool STEP>
+/* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor do passes that
+ * end a step and begin the next ask what they are. */
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {
     DYNAMIC_SHARED(float4, shared);
-    const uint32_t units = (uint32_t)m.units;
     turn t = {.memory = shared_at(shared)};
     if (threadIdx.x == 0)
         take_first(m, p, t);
     __syncthreads();
     for (;;) {
-        const uint32_t turn = __float_as_uint(shared_number(t.memory + TURN)), pass = turn / units;
+        const uint32_t units = (uint32_t)m.units, turn = __float_as_uint(shared_number(t.memory + TURN));
+        const uint32_t unit = turn % units;
         const float4 next = shared_load(t.memory + NEXT);
-        if (pass >= (uint32_t)p.passes)
+        t.pass = turn / units;
+        if (t.pass >= (uint32_t)p.passes)
             break;
-        t.pass = pass;
+        t.kind = t.pass == 0 ? MARCH_FIRST : p.ends && t.pass + 1 == (uint32_t)p.passes ? MARCH_LAST : MARCH_STEP;
         t.base = (int32_t)__float_as_uint(next.x);
         t.cells = (int32_t)__float_as_uint(next.y);
-        if (__float_as_uint(next.z))
-            march_unit_of<true, STEP>(m, p, t, turn - pass * units);
+        const bool special = __float_as_uint(next.z);
+        if (t.kind == MARCH_STEP && special)
+            march_unit_of<true, true>(m, p, t, unit);
+        else if (t.kind == MARCH_STEP)
+            march_unit_of<false, true>(m, p, t, unit);
         else
-            march_unit_of<false, STEP>(m, p, t, turn - pass * units);
+            march_unit_of<true, false>(m, p, t, unit);
         __syncthreads();
         if (threadIdx.x == 0)
-            tell_done(&m.done[turn - pass * units], p.number + pass);
+            tell_done(&m.done[unit], p.number + t.pass);
     }
 }
 
@@ -593,11 +544,9 @@ cudaError_t cuda_march_slots(int64_t *slots)
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) : e;
     if (e != cudaSuccess || major < 9)
         return e;
-    e = cudaFuncSetAttribute(march_kernel<true>, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
-    e = e == cudaSuccess ? cudaFuncSetAttribute(march_kernel<false>, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED)
-                         : e;
+    e = cudaFuncSetAttribute(march_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
-    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel<true>, MARCH_THREADS, SHARED)
+    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel, MARCH_THREADS, SHARED)
                          : e;
     *slots = (int64_t)processors * each;
     return e;
@@ -605,6 +554,5 @@ cudaError_t cuda_march_slots(int64_t *slots)
 
 cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t blocks, cudaStream_t stream)
 {
-    return card_start(p->what == (PASS_BEGIN | PASS_FINISH) ? march_kernel<true> : march_kernel<false>,
-                      {blocks, MARCH_THREADS, SHARED, stream}, *m, *p);
+    return card_start(march_kernel, {blocks, MARCH_THREADS, SHARED, stream}, *m, *p);
 }

@@ -33,17 +33,28 @@ typedef struct cuda_march {
     int32_t axis[3];         /* of the model: which these are */
 } cuda_march;
 
-/* Passes, each of the state that the one before left: v = keep v + push a, with what a step begins and ends; u += dt v. */
-typedef struct cuda_march_pass {
-    float4 *state[2], *velocity; /* the first pass reads displacements in state[0] and leaves them, or internal forces, in state[1] */
-    const double *now;           /* the curves' values: `row` of them where the state stands, and so many more for each step */
+/* What a pass does: v = keep v + push a, with what a step begins and ends; u += dt v. */
+typedef struct cuda_march_kind {
     float keep, push, dt;
-    int32_t what, row, passes;
+    int32_t what;
+} cuda_march_kind;
+
+enum { MARCH_FIRST, MARCH_STEP, MARCH_LAST, MARCH_KINDS };
+
+/* Passes, each of the state that the one before left. */
+typedef struct cuda_march_pass {
+    float4 *state[2],
+        *velocity; /* the first pass reads displacements in state[0] and leaves them, or internal forces, in state[1] */
+    const double *now; /* the curves' values: `row` of them where the state stands, and so many more for each step */
+    cuda_march_kind
+        kind[MARCH_KINDS]; /* of the first, the last, where it `ends` and is not the first, and those between */
+    int32_t row, passes, ends;
     uint32_t number, ticket; /* of the first pass, from 1 on; units taken before */
 } cuda_march_pass;
 
 /* Blocks that the card runs at once; 0: it cannot run any, being of before compute capability 9.0. */
 cudaError_t cuda_march_slots(int64_t *slots);
+
 /* By so many blocks, no more than the card runs at once; each takes one ticket more than there are units in all. */
 cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t blocks, cudaStream_t stream);
 

@@ -85,8 +85,7 @@ static int put_march(cuda_state *s, err *e)
     w->done = (uint32_t *)room(s, m->units + 1, sizeof *w->done);
     w->ticket = w->done + m->units;
     return put(s, &w->unit, m->unit, m->units, e) || put(s, &w->near, m->near, m->units * m->nears, e) ||
-                   put(s, &w->word, m->word, (m->layers + MARCH_AHEAD) * MARCH_WORDS, e) ||
-                   put(s, &w->detail, m->detail, m->layers, e) ||
+                   put(s, &w->detail, m->detail, m->layers + MARCH_AHEAD, e) ||
                    put(s, &w->which, m->which, m->details * MARCH_THREADS, e) || put(s, &w->cell, m->cell, m->cells, e)
                ? -1
                : 0;
@@ -124,8 +123,11 @@ static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
     s->displacement = (real *)room(s, s->numbers, sizeof(real));
     s->spare = (real *)room(s, s->numbers, sizeof(real));
     s->velocity = (real *)room(s, s->numbers, sizeof(real));
-    if (s->marches)
+    if (s->marches) {
         v->mass_inverse = s->displacement + 3;
+        if (put(s, &s->walk.word, s->march.word, (s->march.layers + MARCH_AHEAD) * MARCH_WORDS, e)) /* for keep_near */
+            return -1;
+    }
     s->kept_displacement = (real *)room(s, 2 * rows, sizeof(real));
     if (s->resident)
         s->message = (uint64_t *)room(s, MESSAGES * MESSAGE_WORDS * v->stride, sizeof *s->message);

@@ -35,6 +35,7 @@ typedef struct cutter {
     box *boxes;
     int64_t parts, cells; /* cells: of the arrays below: layers of all columns, filled or not */
     uint8_t *warps;       /* of the layer's warps, those with cells */
+    bool *special;        /* the layer has special cells */
     int32_t *slot;        /* its number, or -1; before: 0 where a node is owned */
     err *e;
 } cutter;
@@ -203,6 +204,62 @@ static int choose_axes(cutter *c)
     return 0;
 }
 
+/* What a cell has of a volume's muscle, if that may contract; share: of the cell. */
+static void add_muscle(const cutter *c, march_cell *to, const float *fibre, int32_t volume, double share)
+{
+    const tled_volume *v = &c->p->volume[volume];
+    const bool second = to->muscle[0].curve >= 0;
+    march_muscle *muscle = &to->muscle[second];
+    if (!fibre || v->contract < 0)
+        return;
+    if (second)
+        to->muscle[0].curve |= MARCH_SECOND;
+    muscle->curve = (int32_t)v->contract;
+    *(second ? &to->second_peak : &to->peak) = (float)(share * v->peak);
+    for (int a = 0; a < 3; a++)
+        muscle->fibre[a] = fibre[c->m->axis[a]];
+}
+
+static march_cell cell_of(const cutter *c, int64_t element)
+{
+    const tled_problem *p = c->p;
+    const tled_law law = tled_law_of(p, element);
+    const double share = tled_fraction(p, element), other = tled_mixture(p, element);
+    march_cell cell = {.mu = (float)(share * law.mu),
+                       .bulk = (float)(share * law.bulk),
+                       .hourglass = (float)(share * law.hourglass),
+                       .muscle = {{.curve = -1}, {.curve = -1}}};
+    add_muscle(c, &cell, p->fibre ? p->fibre + 3 * element : NULL, p->element_volume[element], share * (1 - other));
+    if (tled_mix(p, element) >= 0)
+        add_muscle(c, &cell, p->mixfibre ? p->mixfibre + 3 * element : NULL, tled_mix(p, element), share * other);
+    return cell;
+}
+
+static bool is_special(const cutter *c, const march_cell *cell)
+{
+    const tled_volume *plain = &c->p->volume[c->m->plain];
+    return cell->muscle[0].curve >= 0 || cell->mu != (float)plain->mu || cell->bulk != (float)plain->bulk ||
+           cell->hourglass != (float)plain->hourglass;
+}
+
+static int mark_special(cutter *c)
+{
+    const tled_problem *p = c->p;
+    spot at[4];
+    for (int32_t i = 1; i < p->volumes; i++)
+        if (p->volume[i].elements > p->volume[c->m->plain].elements)
+            c->m->plain = i;
+    c->special = mem_array(c->cells, sizeof *c->special, "the march", c->e);
+    if (!c->special)
+        return -1;
+    for (int64_t i = 0; i < p->elements; i++) {
+        const march_cell cell = cell_of(c, i);
+        for (int k = is_special(c, &cell) ? spots_of(c, p->element_node[8 * i], true, at) : 0; k--;)
+            c->special[at[k].layer] = true;
+    }
+    return 0;
+}
+
 /* Numbers the layers that have owned nodes, and the empty ones before and after each run of them; a list of the runs. */
 static int number_layers(cutter *c, march_runs *runs)
 {
@@ -230,7 +287,7 @@ static int number_layers(cutter *c, march_runs *runs)
         for (; i < end && c->slot[i] >= 0; i++)
             c->slot[i] = (int32_t)c->m->layers++;
         c->m->layers++;
-        if (march_runs_add(runs, base, c->warps + first, i - first, c->e))
+        if (march_runs_add(runs, base, c->warps + first, c->special + first, i - first, c->e))
             return -1;
     }
     return 0;
@@ -273,40 +330,6 @@ static int order_nodes(cutter *c)
     return 0;
 }
 
-/* What a cell has of a volume's muscle, if that may contract; share: of the cell. */
-static void add_muscle(const cutter *c, march_cell *to, const float *fibre, int32_t volume, double share)
-{
-    const tled_volume *v = &c->p->volume[volume];
-    const int k = to->muscles;
-    if (!fibre || v->contract < 0)
-        return;
-    to->curve[k] = (int32_t)v->contract;
-    to->peak[k] = (float)(share * v->peak);
-    for (int a = 0; a < 3; a++)
-        to->fibre[k][a] = fibre[c->m->axis[a]];
-    to->muscles++;
-}
-
-static march_cell cell_of(const cutter *c, int64_t element)
-{
-    const tled_problem *p = c->p;
-    const tled_law law = tled_law_of(p, element);
-    const double share = tled_fraction(p, element), other = tled_mixture(p, element);
-    march_cell cell = {
-        (float)(share * law.mu), (float)(share * law.bulk), (float)(share * law.hourglass), 0, {0}, {0}, {{0}}};
-    add_muscle(c, &cell, p->fibre ? p->fibre + 3 * element : NULL, p->element_volume[element], share * (1 - other));
-    if (tled_mix(p, element) >= 0)
-        add_muscle(c, &cell, p->mixfibre ? p->mixfibre + 3 * element : NULL, tled_mix(p, element), share * other);
-    return cell;
-}
-
-static bool is_special(const cutter *c, const march_cell *cell)
-{
-    const tled_volume *plain = &c->p->volume[c->m->plain];
-    return cell->muscles || cell->mu != (float)plain->mu || cell->bulk != (float)plain->bulk ||
-           cell->hourglass != (float)plain->hourglass;
-}
-
 /* The special cells: first counted, then, with their arrays made, filled. */
 static void list_special(cutter *c)
 {
@@ -328,7 +351,7 @@ static void list_special(cutter *c)
             if (!m->cell)
                 continue;
             m->word[MARCH_WORDS * layer + word] |= MARCH_SPECIAL;
-            m->which[MARCH_THREADS * (int64_t)m->detail[layer] + word] = (int32_t)number;
+            m->which[MARCH_THREADS * (int64_t)m->detail[layer] + word] = (int32_t)number + 1;
         }
     }
 }
@@ -336,14 +359,10 @@ static void list_special(cutter *c)
 static int put_special(cutter *c)
 {
     march *m = c->m;
-    const tled_problem *p = c->p;
-    for (int32_t i = 1; i < p->volumes; i++)
-        if (p->volume[i].elements > p->volume[m->plain].elements)
-            m->plain = i;
-    m->detail = mem_array(m->layers, sizeof *m->detail, "the march", c->e);
+    m->detail = mem_array(m->layers + MARCH_AHEAD, sizeof *m->detail, "the march", c->e);
     if (!m->detail)
         return -1;
-    memset(m->detail, 0xff, (size_t)m->layers * sizeof *m->detail);
+    memset(m->detail, 0xff, (size_t)(m->layers + MARCH_AHEAD) * sizeof *m->detail);
     list_special(c);
     m->which = mem_array(m->details, MARCH_THREADS * sizeof *m->which, "the march", c->e);
     m->cell = mem_array(m->cells, sizeof *m->cell, "the march", c->e);
@@ -376,7 +395,7 @@ int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
     result = 0;
     if (m->computed == 0 || m->computed > MARCH_SPARSE)
         goto out;
-    result = number_layers(&c, &runs) || put_words(&c) || order_nodes(&c) || put_special(&c)
+    result = mark_special(&c) || number_layers(&c, &runs) || put_words(&c) || order_nodes(&c) || put_special(&c)
                  ? -1
                  : march_runs_cut(&runs, slots, &m->unit, &m->units, e) || march_near_find(m, p->nodes, e);
     if (!result)
@@ -386,6 +405,7 @@ out:
     free(c.at);
     free(c.boxes);
     free(c.warps);
+    free(c.special);
     free(c.slot);
     march_runs_free(&runs);
     return result;

@@ -5,15 +5,16 @@
  *
  * What stands at the places of a layer is told by words: which node, whether it is owned, whether a cell has its low corner
  * there. A layer's words stand in the order of threads, each warp having 8 by 4 of them, so that warps without any cell in a layer,
- * as in a shell, have little to do: warps 0 to 3 those of places 0 to 7 along rows, one after another across, 6, 7, 4 and 5 the others; then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
+ * as in a shell, have little to do: warps 0 to 3 those of places 0 to 7 along rows, one after another across, 6, 7, 4 and 5 the
+ * others. Then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
  *
  * Nodes stand in an order of the march's own: by part and column, each in the one that owns it, then by layer, then row by row. So what
  * a column owns of a layer stands in one piece, whatever axes are taken.
  *
  * The axes are those by which the fewest warps have cells, summed over layers; a unit is what a block takes at once: layers in a row.
- * Columns are cut into units of nearly equal cost, some for each block that the card runs at once: a layer takes a block 2, and 1 for
- * each warp with cells. Blocks take units in turn, in the order of columns and layers, pass after pass; a unit waits for those near it
- * alone, in the pass before, which this order has long since left behind.
+ * Columns are cut into units of nearly equal cost, some for each block that the card runs at once: a layer takes a block 2, 4 more
+ * where it has special cells, and 1 for each warp with cells. Blocks take units in turn, in the order of columns and layers, pass after
+ * pass; a unit waits for those near it alone, in the pass before, which this order has long since left behind.
  * The creator owns the march; it holds no pointer into the problem.
  */
 #ifndef SINEW_MARCH_H
@@ -38,14 +39,19 @@ typedef struct march_unit {
     int32_t base, cells, special, unused; /* special: it has special cells */
 } march_unit;
 
+/* A muscle of a cell, or none: curve is -1. */
+typedef struct march_muscle {
+    float fibre[3]; /* a direction along the march's axes */
+    int32_t curve;  /* the script's; MARCH_SECOND: there is another */
+} march_muscle;
+enum { MARCH_SECOND = 1 << 30 };
+
 /* A cell that is not plain: of another law, contracting, mixed, or not all tissue. What it has is multiplied by its share of tissue,
- * and a muscle's peak by the muscle's share of the cell. */
+ * and a muscle's peak by the muscle's share of the cell. What most of them need comes first. */
 typedef struct march_cell {
-    float mu, bulk, hourglass;
-    int32_t muscles;   /* of its volumes, those that may contract: */
-    int32_t curve[2];  /* the script's */
-    float peak[2];     /* Pa */
-    float fibre[2][4]; /* a direction along the march's axes, and 0 */
+    float mu, bulk, hourglass, peak; /* Pa; peak: of the first of: */
+    march_muscle muscle[2];          /* of its volumes, those that may contract */
+    float second_peak, unused[3];
 } march_cell;
 
 typedef struct march {
@@ -57,9 +63,10 @@ typedef struct march {
     int32_t *order;   /* nodes: where each stands */
     uint32_t *word;   /* (layers + MARCH_AHEAD) x MARCH_WORDS */
     march_unit *unit; /* units: none where the problem is not suited */
-    int32_t *near;    /* units x nears: the units that have nodes which this one moves, or move what it has, itself too; then -1 */
-    int32_t *detail;  /* layers: where its special cells stand in `which`, in layers; or -1 */
-    int32_t *which;   /* details x MARCH_THREADS: in cell */
+    int32_t *
+        near; /* units x nears: the units that have nodes which this one moves, or move what it has, itself too; then -1 */
+    int32_t *detail; /* layers + MARCH_AHEAD: where its special cells stand in `which`, in layers; or -1 */
+    int32_t *which;  /* details x MARCH_THREADS: in cell, from 1 on; 0: none */
     march_cell *cell;
 } march;
 

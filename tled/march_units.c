@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a layer takes beside its warps with cells. */
-static const double layer_cost = 2;
+/* What a layer takes beside its warps with cells, and one with special cells more: it waits for what these are. */
+static const double layer_cost = 2, special_cost = 4;
 
 /* A block takes so many units a pass. With fewer, those that wait for longer ones near them hold up others in turn; each of more has
  * its start, and one more layer of cells. */
-static const double units_a_slot = 2;
+static const double units_a_slot = 1.3;
 
 typedef struct pieces {
     march_unit *of;
@@ -23,14 +23,14 @@ int march_warps(uint8_t mask)
     return __builtin_popcount(mask);
 }
 
-int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, int64_t owned, err *e)
+int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, const bool *special, int64_t owned, err *e)
 {
     if (MEM_ROOM(&r->run, &r->capacity, r->count + 1, "the march", e) ||
         MEM_ROOM(&r->cost, &r->costs_capacity, r->costs + owned, "the march", e))
         return -1;
     r->run[r->count++] = (march_run){base, (int32_t)owned, r->costs};
     for (int64_t i = 0; i < owned; i++)
-        r->cost[r->costs++] = layer_cost + march_warps(warps[i]);
+        r->cost[r->costs++] = layer_cost + (special[i] ? special_cost : 0) + march_warps(warps[i]);
     return 0;
 }
 

@@ -21,8 +21,8 @@ typedef struct march_runs {
 /* Warps that a layer's mask says. */
 int march_warps(uint8_t mask);
 
-/* warps: of each layer with owned nodes: those with cells. */
-int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, int64_t owned, err *e);
+/* warps, special: of each layer with owned nodes: those with cells, and whether any of these is special. */
+int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, const bool *special, int64_t owned, err *e);
 int march_runs_cut(const march_runs *r, int64_t slots, march_unit **unit, int64_t *units, err *e);
 void march_runs_free(march_runs *r);
 

@@ -105,7 +105,19 @@ enum cudaDeviceAttr {
     cudaDevAttrComputeCapabilityMajor,
     cudaDevAttrComputeCapabilityMinor,
     cudaDevAttrMultiProcessorCount,
-    cudaDevAttrCooperativeLaunch
+    cudaDevAttrCooperativeLaunch,
+    cudaDevAttrMaxPersistingL2CacheSize /* none */
+};
+enum cudaLimit { cudaLimitPersistingL2CacheSize };
+enum cudaAccessProperty { cudaAccessPropertyStreaming, cudaAccessPropertyPersisting };
+enum cudaStreamAttrID { cudaStreamAttributeAccessPolicyWindow };
+struct cudaStreamAttrValue {
+    struct {
+        void *base_ptr;
+        size_t num_bytes;
+        float hitRatio;
+        cudaAccessProperty hitProp, missProp;
+    } accessPolicyWindow;
 };
 enum cudaFuncAttribute { cudaFuncAttributeMaxDynamicSharedMemorySize };
 enum cudaMemcpyKind { cudaMemcpyHostToDevice, cudaMemcpyDeviceToHost, cudaMemcpyDeviceToDevice };
@@ -141,6 +153,14 @@ static inline cudaError_t cudaGetDevice(int *device)
 {
     *device = 0;
     return cudaSuccess;
+}
+static inline cudaError_t cudaDeviceSetLimit(cudaLimit, size_t)
+{
+    return cudaErrorInvalidValue;
+}
+static inline cudaError_t cudaStreamSetAttribute(cudaStream_t, cudaStreamAttrID, const cudaStreamAttrValue *)
+{
+    return cudaErrorInvalidValue;
 }
 static inline cudaError_t cudaMemGetInfo(size_t *left, size_t *all)
 {

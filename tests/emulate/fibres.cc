@@ -315,7 +315,8 @@ cudaError_t cudaDeviceGetAttribute(int *value, cudaDeviceAttr which, int)
     *value = which == cudaDevAttrComputeCapabilityMajor   ? card.capability / 10
              : which == cudaDevAttrComputeCapabilityMinor ? card.capability % 10
              : which == cudaDevAttrMultiProcessorCount    ? card.processors
-                                                          : card.together;
+             : which == cudaDevAttrCooperativeLaunch      ? card.together
+                                                          : 0;
     return cudaSuccess;
 }
 

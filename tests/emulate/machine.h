@@ -29,9 +29,9 @@ struct word {
     uint32_t wrote = 0;               /* the launch, or the host's copy, that did so last; 0: none */
     int32_t writer = -1, reader = -1; /* blocks, or none, or SEVERAL */
     moment write = {0, 0};
-    bool atomic = false, flying = false; /* written so; a copy to it is on its way */
-    const char *unsure = NULL;           /* a copy to it was not to be relied on: why */
-    std::vector<moment> reads;           /* of the block `reader`, none known to a later one */
+    bool atomic = false, flying = false;             /* written so; a copy to it is on its way */
+    const char *unsure = NULL;                       /* a copy to it was not to be relied on: why */
+    std::vector<moment> reads;                       /* of the block `reader`, none known to a later one */
     std::vector<std::pair<int32_t, moment>> read_by; /* the card's: blocks of this launch that did, and when last */
 };
 
@@ -64,15 +64,17 @@ struct barrier {
 struct telling {
     int32_t block;
     uint32_t launch;
+    int64_t told; /* later, the greater */
     clocks clock;
     moment by;
+    std::vector<telling> heard; /* what its block had heard of others by then */
 };
 
 struct block {
     uint32_t serial = 0; /* among all that ever ran */
     int32_t index = 0;
     int threads = 0;
-    bool heard = false;        /* another's word, in this launch */
+    bool heard = false;                  /* another's word, in this launch */
     std::map<int32_t, telling> heard_of; /* other blocks: what they told last */
     memory dynamic, own;       /* shared memory: as the launch says; what kernels declare, which blocks have by turns */
     std::vector<char> statics; /* these, while another block has them */

@@ -484,11 +484,26 @@ static std::map<const uint32_t *, telling> told_done;
 
 void tell_done(uint32_t *to, uint32_t word)
 {
+    static int64_t times;
     HERE();
     touch(to, sizeof *to, true, true);
-    told_done[to] = {now->home->index, past.at, now->clock, {}};
+    telling t = {now->home->index, past.at, ++times, now->clock, {}, {}};
+    for (const auto &heard : now->home->heard_of)
+        t.heard.push_back(heard.second);
+    told_done[to] = t;
     *to = word;
     changed();
+}
+
+/* The later of what a block told is known to the caller's. */
+static void note_told(const telling &other)
+{
+    telling &t = now->home->heard_of[other.block];
+    if (!t.clock.empty() && t.told > other.told)
+        return;
+    t = other;
+    t.heard.clear();
+    t.by = {now->thread, now->clock[(size_t)now->thread]};
 }
 
 uint32_t hear_done(const uint32_t *from)
@@ -501,9 +516,9 @@ uint32_t hear_done(const uint32_t *from)
     pass_on();
     const auto found = told_done.find(from);
     if (card.omission != OMIT_LAUNCH_WAIT && found != told_done.end() && found->second.launch == past.at) {
-        telling &t = now->home->heard_of[found->second.block];
-        t = found->second;
-        t.by = {now->thread, now->clock[(size_t)now->thread]};
+        note_told(found->second);
+        for (const telling &t : found->second.heard)
+            note_told(t);
     }
     return *from;
 }
