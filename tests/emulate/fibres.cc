@@ -19,7 +19,9 @@ static struct {
     void *host;               /* its stack */
     std::deque<block> blocks; /* which stay where they are */
     std::vector<fibre> fibres;
-    std::vector<fibre *> started, ready;
+    std::vector<fibre *> started;
+    std::vector<block *> live; /* those that have a thread which need not wait */
+    block *turn;               /* whose threads run: for a while, since what is known of its memory stands near then */
     std::map<const void *, size_t> allowed; /* bytes of shared memory that kernels may ask for */
     size_t left;                            /* threads that have not ended */
     int64_t idle, ran;                      /* looks at words since anything changed; blocks so far */
@@ -34,7 +36,8 @@ enum {
     SHARED_MOST = 227 << 10,
     SHARED_ALL = 228 << 10,
     SHARED_PLAIN = 48 << 10,
-    IDLE_MOST = 2000
+    IDLE_MOST = 2000,
+    TURN = 64 /* threads that run before another block has its turn, about */
 };
 
 bool emulate(const emulated_card *c)
@@ -101,7 +104,8 @@ void pass_on()
 {
     if (++machine.idle > IDLE_MOST * (int64_t)machine.left)
         fault("waits for a word that nobody writes");
-    machine.ready.push_back(now);
+    now->home->ready.push_back(now);
+    machine.turn = NULL;
     to_host();
 }
 
@@ -110,9 +114,11 @@ void changed()
     machine.idle = 0;
 }
 
+/* These are of the block whose thread runs. */
 static void wake(std::vector<fibre *> &waiting)
 {
-    machine.ready.insert(machine.ready.end(), waiting.begin(), waiting.end());
+    std::vector<fibre *> &ready = now->home->ready;
+    ready.insert(ready.end(), waiting.begin(), waiting.end());
     waiting.clear();
     changed();
 }
@@ -150,6 +156,7 @@ static void start(fibre *f, block *home, int thread)
     f->slow = thread % 32 ? (f - 1)->slow : !lot(4);
     f->place = NULL;
     machine.started.push_back(f);
+    home->ready.push_back(f);
 }
 
 /* ---- launches */
@@ -159,12 +166,14 @@ static void begin(block *b, int32_t index, const cudaLaunchConfig_t *how)
     b->serial = ++machine.serial;
     b->index = index;
     b->heard = false;
-    b->heard_of.clear();
+    b->tellings.clear();
+    b->ready.clear();
     b->threads = (int)how->blockDim.x;
-    if (b->dynamic.size != how->dynamicSmemBytes) {
+    if (4 * b->dynamic.words.size() < how->dynamicSmemBytes) {
         free(b->dynamic.at);
         b->dynamic = memory_of(how->dynamicSmemBytes);
     }
+    b->dynamic.size = how->dynamicSmemBytes; /* what is more, of launches before, stays where it is */
     const size_t warps = ((size_t)b->threads + 31) / 32;
     b->all = meeting();
     b->warps.assign(warps, meeting());
@@ -173,29 +182,45 @@ static void begin(block *b, int32_t index, const cudaLaunchConfig_t *how)
     b->statics.clear();
 }
 
+/* The block whose turn it is, by lot; NULL: all threads wait. A block without a ready thread has none later: only its own wake them. */
+static block *next_block()
+{
+    std::vector<block *> &live = machine.live;
+    while (!live.empty() && (!machine.turn || machine.turn->ready.empty() || !lot(TURN))) {
+        block *&pick = live[lot((uint32_t)live.size())];
+        machine.turn = pick;
+        if (!pick->ready.empty())
+            break;
+        pick = live.back();
+        live.pop_back();
+    }
+    return live.empty() ? NULL : machine.turn;
+}
+
 /* By lot; slow ones are passed over most of the time. */
-static fibre *&next()
+static fibre *next_thread(std::vector<fibre *> &ready)
 {
     for (;;) {
-        fibre *&f = machine.ready[lot((uint32_t)machine.ready.size())];
-        if (!f->slow || !lot(32))
-            return f;
+        fibre *&pick = ready[lot((uint32_t)ready.size())], *f = pick;
+        if (f->slow && lot(32))
+            continue;
+        pick = ready.back();
+        ready.pop_back();
+        return f;
     }
 }
 
 static void run_threads()
 {
     while (machine.left && !machine.over) {
-        if (machine.ready.empty()) {
+        block *b = next_block();
+        if (!b) {
             now = *std::find_if(machine.started.begin(), machine.started.end(), [](fibre *f) { return !f->ended; });
             snprintf(machine.what, sizeof machine.what, "waits for ever, as do %zu others", machine.left - 1);
             machine.over = true;
             break;
         }
-        fibre *&pick = next();
-        now = pick;
-        pick = machine.ready.back();
-        machine.ready.pop_back();
+        now = next_thread(b->ready);
         threadIdx.x = (unsigned)now->thread;
         blockIdx.x = (unsigned)now->home->index;
         emulated_switch(&machine.host, now->stack_pointer);
@@ -215,12 +240,15 @@ static void run_blocks(const uint32_t *order, size_t count, const cudaLaunchConf
     if (machine.fibres.size() < count * threads)
         machine.fibres.resize(count * threads);
     machine.started.clear();
+    machine.live.clear();
+    machine.turn = NULL;
     for (size_t i = 0; i < count; i++) {
-        begin(&machine.blocks[i], (int32_t)order[i], how);
+        block *b = &machine.blocks[i];
+        begin(b, (int32_t)order[i], how);
         for (size_t t = 0; t < threads; t++)
-            start(&machine.fibres[i * threads + t], &machine.blocks[i], (int)t);
+            start(&machine.fibres[i * threads + t], b, (int)t);
+        machine.live.push_back(b);
     }
-    machine.ready = machine.started;
     machine.left = count * threads;
     machine.idle = 0;
     run_threads();

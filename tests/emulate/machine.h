@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <memory>
 #include <vector>
 
 typedef std::vector<uint32_t> clocks; /* of a block's threads */
@@ -23,16 +24,23 @@ struct moment {
     uint32_t clock;
 };
 
-/* What is known of 4 bytes of memory. `seen` is the block, of shared memory, or the launch, else, that the rest is of. */
+/* Reads of 4 bytes before the last. */
+struct readings {
+    std::vector<moment> own;                        /* of the same block, none known to a later one */
+    std::vector<std::pair<int32_t, moment>> others; /* other blocks' last */
+};
+
+/* What is known of 4 bytes of memory. `seen` is the block, of shared memory, or the launch, else, that the rest is of. There are many
+ * of these: most are read by one thread, or by some that know of each other. */
 struct word {
     uint32_t seen = 0;
     uint32_t wrote = 0;               /* the launch, or the host's copy, that did so last; 0: none */
-    int32_t writer = -1, reader = -1; /* blocks, or none, or SEVERAL */
-    moment write = {0, 0};
-    bool atomic = false, flying = false;             /* written so; a copy to it is on its way */
-    const char *unsure = NULL;                       /* a copy to it was not to be relied on: why */
-    std::vector<moment> reads;                       /* of the block `reader`, none known to a later one */
-    std::vector<std::pair<int32_t, moment>> read_by; /* the card's: blocks of this launch that did, and when last */
+    int32_t writer = -1, reader = -1; /* the last blocks, or none */
+    moment write = {0, 0}, read = {0, 0};
+    bool atomic = false, flying = false; /* written so; a copy to it is on its way */
+    bool copied = false;       /* `read` is a copy's: a write while that is on its way spoils the copy alone */
+    const char *unsure = NULL; /* a copy to it was not to be relied on: why */
+    std::unique_ptr<readings> more;
 };
 
 /* Bytes, and what is known of them. */
@@ -60,28 +68,28 @@ struct barrier {
     std::vector<fibre *> waiting;
 };
 
-/* That a block says in a launch that something is done: what its threads did by those clocks. by: who heard it. */
+/* That a thread of a block said in a launch that something is done: what its own block, and others of which it had heard, did by these
+ * clocks. said, heard: when that was. */
 struct telling {
     int32_t block;
     uint32_t launch;
-    int64_t told; /* later, the greater */
-    clocks clock;
-    moment by;
-    std::vector<telling> heard; /* what its block had heard of others by then */
+    moment said, heard;
+    std::shared_ptr<const std::map<int32_t, clocks>> done;
 };
 
 struct block {
     uint32_t serial = 0; /* among all that ever ran */
     int32_t index = 0;
     int threads = 0;
-    bool heard = false;                  /* another's word, in this launch */
-    std::map<int32_t, telling> heard_of; /* other blocks: what they told last */
+    bool heard = false;            /* another's word, in this launch */
+    std::vector<telling> tellings; /* others', that it heard */
     memory dynamic, own;       /* shared memory: as the launch says; what kernels declare, which blocks have by turns */
     std::vector<char> statics; /* these, while another block has them */
     ~block()
     {
         free(dynamic.at);
     }
+    std::vector<fibre *> ready; /* threads that need not wait */
     meeting all;
     std::vector<meeting> warps, votes;
     std::map<uint32_t, barrier> barriers;
@@ -136,7 +144,6 @@ void ask(cudaStream_t stream, std::function<void()> what);
 void finish_none();
 
 /* ---- shadow.cc */
-enum { SEVERAL = -2 };
 /* What the host and launches do to the card's memory is numbered; a launch that may begin early relies on what came before
  * `settled` only. */
 typedef struct history {
@@ -150,6 +157,11 @@ extern history past;
 void open_memory(bool open);
 /* Of anything: what nobody wrote is drawn by lot. */
 memory memory_of(size_t size);
+/* Whether the thread that runs knows of it. */
+bool known(moment m);
+/* The first of the words that bytes are of, all of them with what is of use by now; NULL where they are neither the block's nor the
+ * card's. */
+word *find(const void *at, size_t size, bool *shared);
 /* A thread reads or writes; atomic: as others may at once. */
 void touch(const void *at, size_t size, bool writes, bool atomic = false);
 /* The same of shared memory. Where it is for the processor. */
@@ -157,5 +169,9 @@ char *touch_shared(uint32_t at, size_t size, bool writes);
 void end_flights();
 /* At once. false: these are not where `kind` says. */
 bool copy(void *to, const void *from, size_t size, cudaMemcpyKind kind);
+
+/* ---- telling.cc */
+/* Whether what a thread of another block did then is known here, since that block has told of it. */
+bool is_told(int32_t block, moment when);
 
 #endif

@@ -72,9 +72,18 @@ memory memory_of(size_t size)
 
 /* ---- words */
 
-static bool known(moment m)
+bool known(moment m)
 {
     return m.thread == now->thread || m.clock <= now->clock[(size_t)m.thread];
+}
+
+static void forget_reads(word *w)
+{
+    w->reader = -1;
+    if (!w->more)
+        return;
+    w->more->own.clear();
+    w->more->others.clear();
 }
 
 /* What the word knows of an earlier block, or launch, is of no more use. */
@@ -83,21 +92,12 @@ static void forget(word *w, uint32_t at, bool shared)
     if (w->seen == at)
         return;
     w->seen = at;
-    w->writer = w->reader = -1;
-    w->reads.clear();
-    w->read_by.clear();
+    w->writer = -1;
+    forget_reads(w);
     if (shared) {
         w->wrote = 0;
         w->flying = false;
     }
-}
-
-/* Whether what a thread of another block did then is known here, since that block has told of it. */
-static bool is_told(int32_t block, moment when)
-{
-    const auto found = now->home->heard_of.find(block);
-    return found != now->home->heard_of.end() && known(found->second.by) &&
-           when.clock <= found->second.clock[(size_t)when.thread];
 }
 
 /* What is the matter with reading or writing it, or NULL. */
@@ -120,44 +120,83 @@ static const char *trouble_in_reading(const word *w)
     return w->wrote ? trouble(w, false) : "what nobody wrote";
 }
 
+static readings *more_of(word *w)
+{
+    if (!w->more)
+        w->more.reset(new readings);
+    return w->more.get();
+}
+
+/* The block that read last is another than this one, of which its last read is kept; so is this one's, from here on as `read`. */
+static void note_other(word *w)
+{
+    auto &others = more_of(w)->others;
+    const auto is_own = [](const std::pair<int32_t, moment> &r) { return r.first == now->home->index; };
+    const auto at = std::find_if(others.begin(), others.end(), is_own);
+    if (at == others.end())
+        others.push_back({w->reader, w->read});
+    else
+        *at = {w->reader, w->read};
+    w->more->own.clear();
+}
+
 /* Now and then those go that are known here: who writes next and knows this read knows them as well. */
-static void note_read(word *w)
+static void note_earlier(word *w)
 {
-    std::vector<moment> &reads = w->reads;
-    if (!reads.empty() && reads.back().thread == now->thread)
-        reads.pop_back();
-    if (reads.size() >= 4 && (reads.size() & (reads.size() - 1)) == 0)
-        reads.erase(std::remove_if(reads.begin(), reads.end(), known), reads.end());
-    reads.push_back({now->thread, now->clock[(size_t)now->thread]});
+    std::vector<moment> &own = more_of(w)->own;
+    if (own.size() >= 4 && (own.size() & (own.size() - 1)) == 0)
+        own.erase(std::remove_if(own.begin(), own.end(), known), own.end());
+    own.push_back(w->read);
 }
 
-static void note_reader(word *w)
+static void note_read(word *w, bool copied)
 {
-    const int32_t own = now->home->index;
-    const moment when = {now->thread, now->clock[(size_t)now->thread]};
-    for (auto &read : w->read_by)
-        if (read.first == own) {
-            read.second = when;
-            return;
-        }
-    w->read_by.push_back({own, when});
+    if (w->reader != -1 && w->reader != now->home->index)
+        note_other(w);
+    else if (w->reader != -1 && !w->copied && (copied || !known(w->read)))
+        note_earlier(w);
+    w->reader = now->home->index;
+    w->read = {now->thread, now->clock[(size_t)now->thread]};
+    w->copied = copied;
 }
 
-static void read_word(word *w, bool shared)
+static void read_word(word *w)
 {
-    const int32_t own = now->home->index;
     const char *what = trouble_in_reading(w);
-    if (!shared)
-        note_reader(w);
     if (what)
         fault("reads %s", what);
     if (w->unsure)
         fault("reads a copy of %s", w->unsure);
-    if (w->reader != own) {
-        w->reader = w->reader == -1 ? own : SEVERAL;
-        w->reads.clear();
-    }
-    note_read(w);
+    note_read(w, false);
+}
+
+/* A write after this block's read; after another block's. */
+static void after_own(moment read)
+{
+    if (!known(read))
+        fault("writes what thread %d reads: a race", read.thread);
+}
+
+static void after_other(int32_t reader, moment read)
+{
+    if (!now->home->heard && !is_told(reader, read))
+        fault("writes what another block reads");
+}
+
+static void after_reads(const word *w)
+{
+    if (w->reader != -1 && w->reader != now->home->index)
+        after_other(w->reader, w->read);
+    else if (w->reader != -1 && !w->copied)
+        after_own(w->read);
+    if (!w->more)
+        return;
+    for (const auto &read : w->more->others)
+        if (read.first != now->home->index)
+            after_other(read.first, read.second);
+    for (const moment &read : w->more->own)
+        if (w->reader == now->home->index)
+            after_own(read);
 }
 
 static void write_word(word *w, bool atomic)
@@ -166,15 +205,8 @@ static void write_word(word *w, bool atomic)
     const char *what = trouble(w, atomic);
     if (what)
         fault("writes %s", what);
-    for (const auto &read : w->read_by)
-        if (read.first != own && !now->home->heard && !is_told(read.first, read.second))
-            fault("writes what another block reads");
-    for (const moment &m : w->reads)
-        if (!known(m))
-            fault("writes what thread %d reads: a race", m.thread);
-    w->reads.clear();
-    w->read_by.clear();
-    w->reader = -1;
+    after_reads(w);
+    forget_reads(w);
     w->writer = own;
     w->write = {now->thread, now->clock[(size_t)now->thread]};
     w->atomic = atomic;
@@ -204,8 +236,7 @@ static void take_statics()
     home = b;
 }
 
-/* The first of the words that bytes are of, all of them with what is of use by now; NULL where they are neither the block's nor the card's. */
-static word *find(const void *at, size_t size, bool *shared)
+word *find(const void *at, size_t size, bool *shared)
 {
     block *b = now->home;
     const bool own = within(at, size, statics.at, statics.size);
@@ -239,7 +270,7 @@ void touch(const void *at, size_t size, bool writes, bool atomic)
         if (writes)
             write_word(w, atomic);
         else
-            read_word(w, shared);
+            read_word(w);
 }
 
 /* An access of code that is compiled for it: a kernel's, or the host's beside it. */
@@ -379,7 +410,7 @@ static void note_copied(const float4 *from)
     bool shared;
     word *w = find(from, sizeof *from, &shared);
     for (int i = 0; i < 4; i++)
-        note_reader(&w[i]);
+        note_read(&w[i], true);
 }
 
 void send(uint32_t to, const float4 *from, bool is)
@@ -436,98 +467,6 @@ void end_flights()
 {
     if (!now->flights.empty())
         fault("ends with copies on their way");
-}
-
-/* ---- launches that begin early; words that blocks tell each other, by which no write of theirs comes to be known, but that what they
- * read before has been read (roughly: any word of any block) */
-
-void let_next_begin()
-{
-}
-
-void wait_for_last()
-{
-    if (card.omission != OMIT_LAUNCH_WAIT)
-        now->settled = true;
-}
-
-static word *told(const void *at)
-{
-    bool shared;
-    word *w = find(at, sizeof(uint64_t), &shared);
-    if (!w || shared || (uintptr_t)at % sizeof(uint64_t))
-        fault("tells others at %p, which is not the card's memory", at);
-    return w;
-}
-
-void relaxed_store(uint64_t *to, uint64_t word)
-{
-    HERE();
-    told(to);
-    touch(to, sizeof *to, true, true);
-    *to = word;
-    changed();
-}
-
-uint64_t relaxed_load(const uint64_t *from)
-{
-    HERE();
-    const word *w = told(from);
-    if (!w->wrote)
-        fault("hears what nobody wrote");
-    pass_on();
-    now->home->heard |= w->wrote == past.at;
-    return *from;
-}
-
-static std::map<const uint32_t *, telling> told_done;
-
-void tell_done(uint32_t *to, uint32_t word)
-{
-    static int64_t times;
-    HERE();
-    touch(to, sizeof *to, true, true);
-    telling t = {now->home->index, past.at, ++times, now->clock, {}, {}};
-    for (const auto &heard : now->home->heard_of)
-        t.heard.push_back(heard.second);
-    told_done[to] = t;
-    *to = word;
-    changed();
-}
-
-/* The later of what a block told is known to the caller's. */
-static void note_told(const telling &other)
-{
-    telling &t = now->home->heard_of[other.block];
-    if (!t.clock.empty() && t.told > other.told)
-        return;
-    t = other;
-    t.heard.clear();
-    t.by = {now->thread, now->clock[(size_t)now->thread]};
-}
-
-uint32_t hear_done(const uint32_t *from)
-{
-    HERE();
-    bool shared;
-    const word *w = find(from, sizeof *from, &shared);
-    if (!w || shared || !w->wrote)
-        fault("hears what nobody wrote");
-    pass_on();
-    const auto found = told_done.find(from);
-    if (card.omission != OMIT_LAUNCH_WAIT && found != told_done.end() && found->second.launch == past.at) {
-        note_told(found->second);
-        for (const telling &t : found->second.heard)
-            note_told(t);
-    }
-    return *from;
-}
-
-uint32_t take_ticket(uint32_t *from)
-{
-    HERE();
-    touch(from, sizeof *from, true, true);
-    return (*from)++;
 }
 
 /* ---- the host's side */

@@ -163,6 +163,31 @@ template <bool RIGHT> static __global__ void words(task t)
         ;
 }
 
+/* Each number once, whoever takes it. */
+template <bool RIGHT> static __global__ void tickets(task t)
+{
+    uint32_t *next = (uint32_t *)t.word;
+    if (threadIdx.x == 0)
+        t.data[RIGHT ? take_ticket(next) : (*next)++].x = 1;
+}
+
+/* Block after block; the third relies on the first by way of the second. */
+template <bool BEFORE, bool MEET> static __global__ void done(task t)
+{
+    uint32_t *word = (uint32_t *)t.word + blockIdx.x;
+    while (threadIdx.x == 0 && blockIdx.x && !hear_done(word - 1))
+        ;
+    if (MEET)
+        __syncthreads();
+    if (!BEFORE && threadIdx.x == 0)
+        tell_done(word, 1);
+    if (threadIdx.x == 1)
+        t.data[0].x += 1;
+    __syncthreads();
+    if (BEFORE && threadIdx.x == 0)
+        tell_done(word, 1);
+}
+
 /* Words are for those who know that they are. */
 static __global__ void overhears(task t)
 {
@@ -335,6 +360,11 @@ const wrong_kernel wrong_kernels[] = {
     KERNEL("reads what nobody wrote", uninitialised),
     KERNEL(NULL, words<true>, 2, together),
     KERNEL("waits for a word that nobody writes", words<false>, 2, together),
+    KERNEL(NULL, tickets<true>, 3),
+    KERNEL("what another block ", tickets<false>, 3),
+    KERNEL(NULL, done<true, true>, 3, together),
+    KERNEL("what another block ", done<true, false>, 3, together),
+    KERNEL("what another block ", done<false, true>, 3, together),
     KERNEL("what another block ", overhears, 2),
     KERNEL("hears what nobody wrote", hears),
     KERNEL("the emulated card cannot", words<true>, 65, together),

@@ -7,10 +7,33 @@
 #include "tests/emulate/emulate.h"
 #include "tests/emulate/wrong.h"
 #include "tled/cuda.h"
+#include "tled/march_near.h"
+
+/* Steps, of a lump on so many processors, in a test of what is left out. */
+enum { OMITTED_STEPS = 8, OMITTED_ON = 4, OMITTED_NODES = 18 * 10 * 7 };
 
 /* Cards that march, that have bricks only, and on which they stay. */
-static const emulated_card marching = {.capability = 90, .processors = 4}, plain = {.capability = 80, .processors = 4},
+static const emulated_card marching = {.capability = 90, .processors = 2}, plain = {.capability = 80, .processors = 4},
                            staying = {.capability = 80, .processors = 132, .together = true};
+
+/* Of all pairs of units that wait for each other in a march that is made, the number of the one that is left out, if not -1. */
+static int64_t near_left_out = -1;
+
+/* march_near_find to the march.c that is tried here: emulate.mk. */
+int near_find_tried(march *m, int64_t nodes, err *e);
+int near_find_tried(march *m, int64_t nodes, err *e)
+{
+    int64_t left = near_left_out;
+    if (march_near_find(m, nodes, e))
+        return -1;
+    for (int64_t i = 0; i < m->units && left >= 0; i++) {
+        int32_t *row = m->near + i * m->nears;
+        for (int64_t k = 0; k < m->nears && row[k] >= 0 && left >= 0; k++)
+            if (row[k] != i && left-- == 0)
+                memmove(row + k, row + k + 1, (size_t)(m->nears - k - 1) * sizeof *row);
+    }
+    return 0;
+}
 
 /* Some lots, on so many of the card's processors. */
 static void put_in(const emulated_card *card, uint64_t seed, int processors)
@@ -51,11 +74,11 @@ typedef struct answer {
     bool gone;
 } answer;
 
-/* Steps up to `last`: now one at once, now two. */
+/* Steps up to `last`: now some at once, whose middle passes a march makes in one launch, now one. */
 static int go_on(const backend *device, void *state, tled_plan *plan, int64_t last, err *e)
 {
     for (int64_t count; plan->first < last; plan->first += count) {
-        count = plan->first % 3 == 1 && plan->first + 1 < last ? 2 : 1;
+        count = plan->first % 4 == 0 && plan->first + 3 <= last ? 3 : 1;
         if (device->step(state, plan, count, e))
             return -1;
     }
@@ -231,7 +254,7 @@ static void test_looks(int64_t steps)
 {
     const tled_sums once = look_by(7), again = look_by(8);
     ok(once.frequency_element >= 0 && !memcmp(&once, &again, sizeof once), "a look in bricks: the same by other lots");
-    put_in(&marching, 3, 4);
+    put_in(&marching, 3, 2);
     test_look(&small, false, steps, &tled_cuda_single, "a look where it marches", 1e-6);
     ok(bench_look_at_rest(&lump, &tled_cuda_single) == 1,
        "a look at rest, with unlike sides, finds the stable step at rest");
@@ -242,21 +265,56 @@ static void test_looks(int64_t steps)
     test_look(&muscle, false, steps, &tled_cuda_double, "a look in double precision", 1e-10);
 }
 
-/* A card that leaves out what kernels say is found out. */
+/* A march of some steps at once, on a card that omits something: displacements to `to`. */
+static int march_at_once(emulated_omission what, uint64_t seed, double *to, err *e)
+{
+    const block mixed = mixed_of(lump);
+    const backend *device = &tled_cuda_single;
+    emulated_card omits = marching;
+    bench b;
+    omits.omission = what;
+    put_in(&omits, seed, OMITTED_ON);
+    make(&b, &mixed, 0, true, device, 1);
+    bend(&b);
+    const tled_plan plan = {.origin = b.problem.start, .rate = b.setup.rate, .damping = b.setup.damping};
+    void *state = device->create(&b.problem, b.setup.threads, e);
+    const int gone =
+        !state || device->step(state, &plan, OMITTED_STEPS, e) || device->get(state, TLED_DISPLACEMENT, to, e);
+    device->destroy(state);
+    bench_free(&b);
+    return gone;
+}
+
+/* Whether what is omitted is found out by some lot: a fault, or another answer than the right one. (Where blocks run one after another,
+ * they need not wait.) */
+static void try_omission(emulated_omission what, const double *right, const char *name)
+{
+    const size_t size = 3 * OMITTED_NODES * sizeof(double);
+    double *to = malloc(size);
+    const bool none = what == OMIT_NOTHING && near_left_out < 0;
+    uint64_t lots = 0;
+    bool found = false;
+    err e = {0};
+    while (!found && lots < (none ? 3 : 12))
+        found = march_at_once(what, ++lots, to, &e) || memcmp(to, right, size) != 0;
+    ok(found != none, "without %s: after %d lots, %s", name, (int)lots,
+       found ? *e.text ? e.text : "another answer" : "nothing");
+    free(to);
+}
+
 static void test_omissions(void)
 {
-    static const char *const name[] = {"nothing",        "__syncthreads()", "__syncwarp()",
-                                       "barrier_wait()", "arrived()",       "wait_for_last()"};
-    const trial t = {"", mixed_of(lump), 0, true, {0}, false};
-    for (int i = OMIT_NOTHING; i <= OMIT_LAUNCH_WAIT; i++) {
-        answer a;
-        emulated_card card = marching;
-        card.omission = i;
-        put_in(&card, 5, 4);
-        find(&a, &t, &tled_cuda_single, 3);
-        ok(a.gone == (i != OMIT_NOTHING), "without %s: %s", name[i], a.b.e.text);
-        answer_free(&a);
-    }
+    static const char *const name[] = {"nothing",   "__syncthreads()", "__syncwarp()",    "barrier_wait()",
+                                       "arrived()", "hear_done()",     "each ticket once"};
+    double *right = calloc(OMITTED_NODES, 3 * sizeof *right);
+    err e = {0};
+    bench_must(march_at_once(OMIT_NOTHING, 99, right, &e), &e);
+    for (int i = OMIT_NOTHING; i <= OMIT_TICKET; i++)
+        try_omission((emulated_omission)i, right, name[i]);
+    for (near_left_out = 0; near_left_out < 20; near_left_out += 5)
+        try_omission(OMIT_NOTHING, right, "waiting for one of its neighbours");
+    near_left_out = -1;
+    free(right);
 }
 
 int main(void)
@@ -269,7 +327,7 @@ int main(void)
     test_wrong();
     test_omissions();
     test_marches(4 * more);
-    test_thin(2 * more);
+    test_thin(3 * more);
     test_bricks(3 * more);
     test_looks(2 * more);
     return done_testing();
