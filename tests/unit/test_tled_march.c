@@ -1,10 +1,11 @@
 /* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners; what is said of
  * special cells is the problem's, and others are of the plain law. Nodes stand in one order, in which what is owned of a layer is
- * one piece. With each of the six axes; and not where too few threads would have a cell. And units: as many as there is room for at
- * once where their layers are all alike.
+ * one piece. With each of the six axes; and not where too few threads would have a cell. Which units wait for which, by trying all
+ * pairs. And units: two for each block that there is room for at once where their layers are all alike, in the order of these.
  */
 // needs: tled/march.c tled/march_units.c tled/march_near.c tled/places.c tled/*.c
 #include "mesh/lattice.h"
+#include "tled/march_near.h"
 #include "tled/march_units.h"
 
 #include "tap.h"
@@ -175,6 +176,64 @@ static bool all_seen(seen *s)
     return !s->wrong;
 }
 
+/* has[unit x nodes + node]: whether one of the unit's words has it; own: whether it moves it. */
+static void see_nodes(const march *m, int64_t nodes, uint8_t *has, uint8_t *own)
+{
+    for (int64_t i = 0; i < m->units; i++)
+        for (int c = 0; c <= m->unit[i].cells; c++)
+            for (int k = 0; k < MARCH_WORDS; k++) {
+                const uint32_t word = m->word[(m->unit[i].base + c) * (int64_t)MARCH_WORDS + k];
+                const int64_t at = i * nodes + (int64_t)(word & MARCH_NODE);
+                if (word & MARCH_THERE)
+                    has[at] = 1;
+                if (word & MARCH_OWN && c > 0 && c < m->unit[i].cells)
+                    own[at] = 1;
+            }
+}
+
+static bool share_nodes(const uint8_t *has, const uint8_t *own, int64_t nodes)
+{
+    for (int64_t n = 0; n < nodes; n++)
+        if (has[n] && own[n])
+            return true;
+    return false;
+}
+
+/* Whether a row of `near` has a unit so many times, and ends with nothing but -1. */
+static bool has_times(const march *m, int64_t row, int32_t unit, int times)
+{
+    const int32_t *near = m->near + row * m->nears;
+    bool over = false;
+    for (int64_t k = 0; k < m->nears; k++) {
+        if (near[k] < -1 || near[k] >= m->units || (over && near[k] != -1))
+            return false;
+        over |= near[k] == -1;
+        times -= near[k] == unit;
+    }
+    return times == 0;
+}
+
+/* Whether each unit waits for itself, and for those that have nodes which it moves or move what it has, once; *most: for how many. */
+static bool near_right(const march *m, int64_t nodes, int64_t *most)
+{
+    uint8_t *has = calloc((size_t)(m->units * nodes), 2), *own = has + m->units * nodes;
+    int64_t wrong = m->nears % 32;
+    see_nodes(m, nodes, has, own);
+    *most = 0;
+    for (int64_t i = 0; i < m->units; i++) {
+        int64_t count = 0;
+        for (int64_t k = 0; k < m->units; k++) {
+            const bool is = i == k || share_nodes(has + i * nodes, own + k * nodes, nodes) ||
+                            share_nodes(has + k * nodes, own + i * nodes, nodes);
+            wrong += !has_times(m, i, (int32_t)k, is);
+            count += is;
+        }
+        *most = count > *most ? count : *most;
+    }
+    free(has);
+    return !wrong;
+}
+
 /* contract: what does, or NULL. */
 static void test_cut(const block *what, const int axis[3], const char *contract, int64_t slots, const char *name)
 {
@@ -197,6 +256,9 @@ static void test_cut(const block *what, const int axis[3], const char *contract,
        name, "xyz"[cut.axis[0]], "xyz"[cut.axis[1]], (long long)cut.units, cut.computed);
     ok((contract || what->mixed || what->fraction < 0) == (s.special > 0), "%s: %lld special cells are the problem's",
        name, (long long)s.special);
+    int64_t most = 0;
+    const bool is_near = cut.units > 1 && near_right(&cut, p.nodes, &most);
+    ok(is_near, "%s: units wait for those near them, at most %lld", name, (long long)most);
     march_free(&cut);
     free(list);
     tled_problem_free(&p);
@@ -222,24 +284,45 @@ static void test_thin(void)
     model_free(&m);
 }
 
+/* Three units of a node each, in the middle one of three layers; one of them has another's as well, in any of its layers, and that one
+ * nothing of it: both wait all the same. */
+static void test_one_way(void)
+{
+    enum { UNITS = 3, LAYERS = 3 * UNITS };
+    int64_t most = 0, wrong = 0;
+    err e = {0};
+    for (int layer = 0; layer < LAYERS; layer++)
+        for (uint32_t other = 0; other < UNITS; other++) {
+            march_unit unit[UNITS];
+            march m = {.layers = LAYERS, .units = UNITS, .unit = unit};
+            m.word = calloc(LAYERS * MARCH_WORDS, sizeof *m.word);
+            for (int32_t i = 0; i < UNITS; i++) {
+                unit[i] = (march_unit){.base = 3 * i, .cells = 2};
+                m.word[(3 * i + 1) * MARCH_WORDS + 40] = (uint32_t)i | MARCH_THERE | MARCH_OWN;
+            }
+            m.word[layer * MARCH_WORDS + MARCH_WORDS - 8] = other | MARCH_THERE;
+            wrong += march_near_find(&m, UNITS, &e) || !near_right(&m, UNITS, &most);
+            m.unit = NULL;
+            march_free(&m);
+        }
+    ok(!wrong, "a unit that has another's node: %lld wrong of %d", (long long)wrong, LAYERS * UNITS);
+}
+
 static void test_units(void)
 {
     march_runs runs = {0};
     march_unit *unit = NULL;
-    int64_t units = 0, layers = 0;
-    int32_t longest = 0;
+    int64_t units = 0, wrong = 0;
     uint8_t warps[100];
     err e = {0};
     memset(warps, 0xff, sizeof warps);
     for (int i = 0; i < 6; i++)
         ok(!march_runs_add(&runs, 102 * i, warps, 100, &e), "a run is added");
     const int failed = march_runs_cut(&runs, 60, &unit, &units, &e);
-    for (int64_t i = 0; i < units; i++) {
-        layers += unit[i].cells - 1;
-        longest = unit[i].cells > longest ? unit[i].cells : longest;
-    }
-    ok(!failed && units == 60 && layers == 600 && longest == 11,
-       "600 layers for 60 blocks: %lld units, the longest of %d", (long long)units, longest);
+    for (int64_t i = 0; i < units; i++)
+        wrong += unit[i].base != 102 * (i / 20) + 5 * (i % 20) || unit[i].cells != 6;
+    ok(!failed && units == 120 && !wrong, "600 layers for 60 blocks: %lld units of 5 in their order, %lld not so",
+       (long long)units, (long long)wrong);
     free(unit);
     march_runs_free(&runs);
 }
@@ -267,6 +350,7 @@ int main(void)
     test_cut(&mixed, axes[0], "n=.5", 20, "mixed elements, one volume of which contracts");
     test_cut(&both, axes[0], "m=.5,n=.3", 20, "cut and mixed elements that contract");
     test_thin();
+    test_one_way();
     test_units();
     return done_testing();
 }
