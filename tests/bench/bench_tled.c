@@ -2,7 +2,8 @@
  * blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio): CSV. After a warm-up, the
  * median, the least and the most of some rounds. A `step` is the back end's own; a `run` is one as tled-run makes it, with its
  * looks, and with 60 frames a second of the model's time; times_real_time is the time simulated over the time taken. A run's steps
- * are known to be done when it looks, after each window of them: worst_window_us_a_step is of the slowest of all rounds.
+ * are known to be done when it looks, after each window of them: it is timed from a look after its first frames to its last, and
+ * worst_window_us_a_step is of the slowest of all rounds.
  *
  * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and written, 1/m,
  * and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, its share (4) where the model has them,
@@ -45,13 +46,13 @@ typedef struct measured {
     double took[ROUNDS], copy[ROUNDS], flops[ROUNDS]; /* s; bytes and operations a second, of the machine */
 } measured;
 
-/* A run by the clock, from one look to the next. */
+/* A run by the clock, from one look to the next: at each all steps before are done. */
 typedef struct windows {
     bench *b;
-    int64_t from; /* steps: those before are no part of it */
-    int64_t step; /* of the last look */
-    double clock; /* at that */
-    double worst; /* s a step */
+    int64_t from;        /* steps: it is timed from the first look at or past these */
+    int64_t first, last; /* steps at that look, and at the last so far */
+    double begun, clock; /* when these were */
+    double worst;        /* s a step, of all rounds */
 } windows;
 
 static const char *const header =
@@ -202,10 +203,13 @@ static void measure_steps(measured *w, bench *b)
     roof_free(&r);
 }
 
+/* It is not copied: tled-run writes it from where it stands. */
 static int window_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
 {
     const windows *w = context;
-    return bench_frame(w->b, time, displacement, velocity, e);
+    (void)time, (void)displacement, (void)velocity, (void)e;
+    w->b->frames++;
+    return 0;
 }
 
 static void window_end(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
@@ -214,38 +218,40 @@ static void window_end(void *context, int64_t step, const watch_sight *sight, do
     windows *w = context;
     const double now = roof_clock();
     bench_checked(w->b, step, sight, remaining, cut, damping);
-    if (w->step >= w->from && step > w->step)
-        w->worst = fmax(w->worst, (now - w->clock) / (double)(step - w->step));
-    w->step = step;
+    if (w->last >= w->from && step > w->last) {
+        w->worst = fmax(w->worst, (now - w->clock) / (double)(step - w->last));
+    } else if (step >= w->from) {
+        w->first = step;
+        w->begun = now;
+    }
+    w->last = step;
     w->clock = now;
 }
 
+/* s, of the steps from w->first to w->last. */
 static double time_run(bench *b, windows *w, int64_t steps)
 {
-    double before = roof_clock();
-    w->step = 0;
-    w->clock = before;
+    w->last = 0;
     bench_steps(b, steps, b->setup.damping);
     bench_must(bench_go(b), &b->e);
-    return roof_clock() - before;
+    return w->clock - w->begun;
 }
 
-/* Runs with looks, and 60 frames a second of the model's time or none, that are copied and dropped: what a longer run takes
- * more than one of four frames, which has all the memory that it will need. */
+/* Runs with looks, and 60 frames a second of the model's time or none, that are counted and dropped. What is timed lies between two
+ * looks of one run: its start takes longer than many steps, and a frame has its memory made, as many times as there may be under way. */
 static void measure_run(measured *w, bench *b, double every, const char *what, int64_t steps)
 {
-    const int64_t first = (int64_t)ceil(4. / 60 * b->setup.rate);
+    const int64_t check = b->setup.check, start = (int64_t)ceil(TLED_TAKEN / 60. * b->setup.rate);
     const run_setup setup = b->setup;
-    windows seen = {.b = b, .from = first};
+    windows seen = {.b = b, .from = (start + check - 1) / check * check};
     b->setup.device = w->device;
     b->setup.every = every;
     b->setup.context = &seen;
     b->setup.frame = window_frame;
     b->setup.checked = window_end;
-    time_run(b, &seen, b->setup.check);
     for (int i = 0; i < ROUNDS; i++)
-        w->took[i] = -time_run(b, &seen, first) + time_run(b, &seen, first + steps);
-    say_run(w, b, what, steps, seen.worst);
+        w->took[i] = time_run(b, &seen, seen.from + steps);
+    say_run(w, b, what, seen.last - seen.first, seen.worst);
     b->setup = setup;
 }
 
