@@ -343,7 +343,7 @@ int main(void)
     test_look(&large, false, 300, once, "single, many bricks", 1e-6);
     for (int rests = 0; rests < 2; rests++) {
         test_memory(&middle, rests, once, 167); /* resident: its tiles have messages as well */
-        test_memory(&large, rests, once, 120);
+        test_memory(&large, rests, once, 140);
     }
     test_diverged(&tled_cpu_double, twice);
     return done_testing();

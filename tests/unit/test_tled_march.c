@@ -82,10 +82,11 @@ static bool has_muscle(const seen *s, const march_cell *cell, int *at, const flo
     if (!fibre || v->contract < 0)
         return true;
     const int k = (*at)++;
-    bool good =
-        k < cell->muscles && cell->curve[k] == (int32_t)v->contract && cell->peak[k] == (float)(share * v->peak);
+    const march_muscle *muscle = &cell->muscle[k];
+    bool good = (muscle->curve & ~MARCH_SECOND) == (int32_t)v->contract &&
+                (k ? cell->second_peak : cell->peak) == (float)(share * v->peak);
     for (int a = 0; a < 3; a++)
-        good &= cell->fibre[k][a] == fibre[s->m->axis[a]];
+        good &= muscle->fibre[a] == fibre[s->m->axis[a]];
     return good;
 }
 
@@ -93,7 +94,7 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
 {
     const tled_problem *p = s->p;
     const int32_t *which = s->m->which + MARCH_THREADS * (int64_t)s->m->detail[layer];
-    const march_cell *cell = &s->m->cell[which[thread_of(i, j)]];
+    const march_cell *cell = &s->m->cell[which[thread_of(i, j)] - 1];
     const tled_law law = tled_law_of(p, element);
     const double share = tled_fraction(p, element), other = tled_mixture(p, element);
     const int32_t mix = tled_mix(p, element);
@@ -105,7 +106,11 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
                             p->element_volume[element], share * (1 - other));
     s->wrong += mix >= 0 && !has_muscle(s, cell, &muscles, p->mixfibre ? p->mixfibre + 3 * (int64_t)element : NULL, mix,
                                         share * other);
-    s->wrong += cell->muscles != muscles;
+    const int32_t first = cell->muscle[0].curve;
+    s->wrong += muscles != (first < 0              ? 0
+                            : first & MARCH_SECOND ? 2
+                                                   : 1) ||
+                (muscles < 2 && cell->muscle[1].curve >= 0);
 }
 
 /* Whether an element is all of the plain law, and nothing of it may contract. */
@@ -314,15 +319,42 @@ static void test_units(void)
     march_unit *unit = NULL;
     int64_t units = 0, wrong = 0;
     uint8_t warps[100];
+    bool special[100] = {0};
     err e = {0};
     memset(warps, 0xff, sizeof warps);
     for (int i = 0; i < 6; i++)
-        ok(!march_runs_add(&runs, 102 * i, warps, 100, &e), "a run is added");
-    const int failed = march_runs_cut(&runs, 60, &unit, &units, &e);
+        ok(!march_runs_add(&runs, 102 * i, warps, special, 100, &e), "a run is added");
+    const int failed = march_runs_cut(&runs, 44, &unit, &units, &e);
     for (int64_t i = 0; i < units; i++)
-        wrong += unit[i].base != 102 * (i / 20) + 5 * (i % 20) || unit[i].cells != 6;
-    ok(!failed && units == 120 && !wrong, "600 layers for 60 blocks: %lld units of 5 in their order, %lld not so",
+        wrong += unit[i].base != 102 * (i / 10) + 10 * (i % 10) || unit[i].cells != 11;
+    ok(!failed && units == 60 && !wrong, "600 layers for 44 blocks: %lld units of 10 in their order, %lld not so",
        (long long)units, (long long)wrong);
+    free(unit);
+    march_runs_free(&runs);
+}
+
+/* A layer costs 10, with special cells 14. */
+static void test_special_units(void)
+{
+    march_runs runs = {0};
+    march_unit *unit = NULL;
+    int64_t units = 0, layers = 0;
+    double most = 0, least = 1e9;
+    uint8_t warps[100];
+    bool special[100] = {0};
+    err e = {0};
+    memset(warps, 0xff, sizeof warps);
+    memset(special, true, 50);
+    const int failed = march_runs_add(&runs, 0, warps, special, 100, &e) || march_runs_cut(&runs, 9, &unit, &units, &e);
+    for (int64_t i = 0; i < units; i++) {
+        double cost = 0;
+        for (int32_t k = 0; k < unit[i].cells - 1; k++)
+            cost += special[layers++] ? 14 : 10;
+        most = fmax(most, cost);
+        least = fmin(least, cost);
+    }
+    ok(!failed && units == 12 && layers == 100 && most - least <= 14,
+       "100 layers, half of them special: %lld units that cost %g to %g", (long long)units, least, most);
     free(unit);
     march_runs_free(&runs);
 }
@@ -352,5 +384,6 @@ int main(void)
     test_thin();
     test_one_way();
     test_units();
+    test_special_units();
     return done_testing();
 }

@@ -239,7 +239,7 @@ static void test_rate(void)
     near_(step_rate(2.28218e-3, &check), 900, 0, "900 steps a second for a stable step of 2.28 ms");
     ok(check == 9, "looked at every 9 steps");
     near_(step_rate(5e-5, &check), 40000, 0, "40000 for 0.05 ms");
-    ok(check == 50, "looked at every 50");
+    ok(check == 200, "looked at every 200");
     double rate = step_rate(4.7e-5, &check);
     ok(rate >= 2 / 4.7e-5 && fmod(rate / 100, (double)check) == 0, "checks divide 1/100 s");
     near_(step_rate(1, &check), 100, 0, "never fewer than 100");
