@@ -84,8 +84,8 @@ static int make_way(cuda_state *s, err *e)
     if (s->frame_direct)
         return 0;
     const int threads = pool_threads(s->threads);
-    s->wideners = pool_create(threads < WIDENERS ? threads : WIDENERS, e);
-    return s->wideners ? put_place(s, e) : -1;
+    s->wideners = pool_create(threads < WIDENERS ? threads : WIDENERS, &full); /* or the caller does without */
+    return put_place(s, e);
 }
 
 /* Where the card has no room for it, a frame holds up the steps: better than a run that ends at its first frame, which may be
@@ -172,7 +172,10 @@ static int cuda_taken(void *state, int slot, void *to, err *e)
     if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
         return -1;
     if (s->frame) {
-        pool_run(s->wideners, numbers, COPY_CHUNK, widen_work, &w);
+        if (s->wideners)
+            pool_run(s->wideners, numbers, COPY_CHUNK, widen_work, &w);
+        else
+            widen_work(&w, 0, 0, numbers);
         return 0;
     }
     permute_work((void *)&u, 0, 0, s->tiles.nodes);

@@ -7,10 +7,14 @@ extern "C" {
 #include "tled/cuda_sums.cuh"
 #include "tled/cuda_view.cuh"
 
+/* Blocks of settle_kernel: what an H200 has room for. */
+#ifndef SOLVERS
+#define SOLVERS 132
+#endif
+
 enum {
     LOOK_THREADS = 64, /* which go through a brick's cells: blocks that are small load and compute at different times */
     NODES_AT_ONCE = 2, /* of a thread, on their way together */
-    SOLVERS = 132,     /* blocks of settle_kernel: what an H200 has room for */
     SUM_THREADS = 256,
     KEEP_THREADS = 256
 };

@@ -87,11 +87,11 @@ static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int
         ends,
         s->walked + 1,
         s->tickets};
+    if (card_check(cuda_march_start(&s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
+        return -1;
     s->walked += (uint32_t)passes;
     s->tickets += (uint32_t)(passes * s->march.units + s->walkers);
     s->spare_is_internal = ends;
-    if (card_check(cuda_march_start(&s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
-        return -1;
     if ((passes - ends) % 2)
         swap_displacements(s);
     return 0;
@@ -133,6 +133,12 @@ static int stay(cuda_state *s, const tled_plan *plan, const double *now, int64_t
     return 0;
 }
 
+/* What pass i of `count` steps does: all but the first end one, all but the last begin one. */
+static int what_of(int64_t i, int64_t count)
+{
+    return (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
+}
+
 /* Passes from pass `first` of `count` steps on. */
 static int make_passes(cuda_state *s, const tled_plan *plan, const double *rows, int64_t first, int64_t passes,
                        int64_t count, err *e)
@@ -140,13 +146,10 @@ static int make_passes(cuda_state *s, const tled_plan *plan, const double *rows,
     if (s->resident)
         return stay(s, plan, rows, first, passes, count, e);
     if (s->marches)
-        return march_on(s, plan, rows, passes, first ? PASS_BEGIN | PASS_FINISH : PASS_BEGIN, first + passes > count,
-                        e);
-    for (int64_t i = first; i < first + passes; i++) {
-        const int what = (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
-        if (pass(s, plan, rows + (i - first) * 3 * s->p->script->curves, what, e))
+        return march_on(s, plan, rows, passes, what_of(first, count), first + passes > count, e);
+    for (int64_t i = first; i < first + passes; i++)
+        if (pass(s, plan, rows + (i - first) * 3 * s->p->script->curves, what_of(i, count), e))
             return -1;
-    }
     return 0;
 }
 
@@ -224,18 +227,12 @@ static int cuda_get(void *state, int what, double *to, err *e)
     return 0;
 }
 
-/* A state's displacements, velocities or forces into rows of their own on the card, and back. */
-static int to_rows(cuda_state *s, real *to, const real *from, err *e)
-{
-    return s->marches ? CUDA_TRY(cuda_march_pack(&s->walk, (const float4 *)from, (float *)to, s->stream))
-                      : CUDA_TRY(cudaMemcpyAsync(to, from, (size_t)s->numbers * sizeof(real), cudaMemcpyDeviceToDevice,
-                                                 s->stream));
-}
-
+/* What is kept, in rows, into the state again. */
 static int from_rows(cuda_state *s, real *to, const real *from, err *e)
 {
     return s->marches ? CUDA_TRY(cuda_march_unpack(&s->walk, (const float *)from, (float4 *)to, s->stream))
-                      : to_rows(s, to, from, e);
+                      : CUDA_TRY(cudaMemcpyAsync(to, from, (size_t)s->numbers * sizeof(real), cudaMemcpyDeviceToDevice,
+                                                 s->stream));
 }
 
 static int cuda_keep(void *state, err *e)
@@ -333,6 +330,8 @@ static void cuda_destroy(void *state)
         cudaStreamDestroy(s->stream);
     if (s->sending)
         cudaStreamDestroy(s->sending);
+    if (s->marches)
+        cudaCtxResetPersistingL2Cache();
     tiles_free(&s->tiles);
     march_free(&s->march);
     free(s);
@@ -340,7 +339,7 @@ static void cuda_destroy(void *state)
 
 /* Velocities, which a pass reads and writes, and words, which stand after them, are what the cache is to keep while the rest goes
  * through it: three fifths of what it could; with more, models many times its size had too little left. Nothing is lost
- * where it cannot. */
+ * where it cannot. The limit is the process's, and is left. */
 static int keep_near(cuda_state *s, err *e)
 {
     int device = 0, most = 0;

@@ -443,8 +443,6 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
         if (++c == last)
             break;
     }
-    if (last == 1)
-        take_next(m, p, t, 1, &ticket);
     arrived<0>();
     barrier_wait(t.memory + SAID, (last - 1) % 2);
     move_node<STEP>(m, p, t, f.last, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
@@ -495,20 +493,9 @@ static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     }
 }
 
-/* ---- from and to rows */
+/* ---- from rows */
 
 enum { PACK_THREADS = 256 };
-
-static __global__ void pack_kernel(const __grid_constant__ cuda_march m, const float4 *from, float *to)
-{
-    const int64_t n = (int64_t)blockIdx.x * PACK_THREADS + threadIdx.x;
-    if (n >= m.v.nodes)
-        return;
-    const float4 x = from[n];
-    to[m.axis[0] * m.v.stride + n] = x.x;
-    to[m.axis[1] * m.v.stride + n] = x.y;
-    to[m.axis[2] * m.v.stride + n] = x.z;
-}
 
 static __global__ void unpack_kernel(const __grid_constant__ cuda_march m, const float *from, float4 *to)
 {
@@ -522,11 +509,6 @@ static __global__ void unpack_kernel(const __grid_constant__ cuda_march m, const
 static int64_t pack_blocks(const cuda_march *m)
 {
     return (m->v.nodes + PACK_THREADS - 1) / PACK_THREADS;
-}
-
-cudaError_t cuda_march_pack(const cuda_march *m, const float4 *from, float *to, cudaStream_t stream)
-{
-    return card_start(pack_kernel, {pack_blocks(m), PACK_THREADS, 0, stream}, *m, from, to);
 }
 
 cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to, cudaStream_t stream)

@@ -47,7 +47,7 @@ typedef struct cuda_march_pass {
         *velocity; /* the first pass reads displacements in state[0] and leaves them, or internal forces, in state[1] */
     const double *now; /* the curves' values: `row` of them where the state stands, and so many more for each step */
     cuda_march_kind
-        kind[MARCH_KINDS]; /* of the first, the last, where it `ends` and is not the first, and those between */
+        kind[MARCH_KINDS]; /* of the first; of the last, where it `ends` and is not the first; of the others */
     int32_t row, passes, ends;
     uint32_t number, ticket; /* of the first pass, from 1 on; units taken before */
 } cuda_march_pass;
@@ -58,8 +58,7 @@ cudaError_t cuda_march_slots(int64_t *slots);
 /* By so many blocks, no more than the card runs at once; each takes one ticket more than there are units in all. */
 cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t blocks, cudaStream_t stream);
 
-/* Between the march's order of components and 3 rows of `stride` in the model's; unpack leaves the fourth. */
-cudaError_t cuda_march_pack(const cuda_march *m, const float4 *from, float *to, cudaStream_t stream);
+/* From 3 rows of `stride` in the model's order of components into the march's; leaves the fourth. */
 cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to, cudaStream_t stream);
 
 #endif

@@ -243,7 +243,8 @@ static int choose_march(cuda_state *s, err *e)
         return 0;
     if (march_make(&s->march, s->p, slots, e))
         return -1;
-    s->marches = s->march.units > 0;
+    s->marches =
+        s->march.units > 0 && s->march.units < UINT32_MAX / (TABLE_STEPS + 1); /* units of a launch are counted */
     s->walkers = s->march.units < slots ? s->march.units : slots;
     return s->marches ? tiles_reorder(&s->tiles, s->march.order, e) : 0;
 }

@@ -15,8 +15,8 @@ enum {
     PATCH_Y = 4
 };
 
-/* Threads for each element: with more, bricks are taken. On an H200, with nodes still in the order of bricks, blocks of 1.20 and
- * 1.21 were faster so, faces of 1.43 (along x, its rows along z) and 1.72 slower. (Tests march all the same.) */
+/* Threads for each element: with more, bricks are taken. On an H200 blocks of 1.20 and 1.21 and faces of 1.43 and 1.72 were faster so, the
+ * last by a third. (Tests march all the same.) */
 #ifndef MARCH_SPARSE
 #define MARCH_SPARSE 2.5
 #endif
@@ -395,9 +395,10 @@ int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
     result = 0;
     if (m->computed == 0 || m->computed > MARCH_SPARSE)
         goto out;
-    result = mark_special(&c) || number_layers(&c, &runs) || put_words(&c) || order_nodes(&c) || put_special(&c)
+    result = mark_special(&c) || number_layers(&c, &runs) || put_words(&c) || order_nodes(&c) || put_special(&c) ||
+                     march_runs_cut(&runs, slots, &m->unit, &m->units, e) || march_near_find(m, p->nodes, e)
                  ? -1
-                 : march_runs_cut(&runs, slots, &m->unit, &m->units, e) || march_near_find(m, p->nodes, e);
+                 : 0;
     if (!result)
         mark_units(m);
 out:

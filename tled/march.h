@@ -36,7 +36,7 @@ enum {
 
 /* Layers of nodes base to base + cells, and of cells base to base + cells - 1, whose nodes all but the first and last are moved. */
 typedef struct march_unit {
-    int32_t base, cells, special, unused; /* special: it has special cells */
+    int32_t base, cells, special, unused; /* cells: 2 or more; special: it has special cells */
 } march_unit;
 
 /* A muscle of a cell, or none: curve is -1. */

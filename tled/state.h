@@ -85,7 +85,7 @@ enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL };
 enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
 
 /* Slots for results that were taken. */
-enum { TLED_TAKEN = 8 };
+enum { TLED_TAKEN = 24 };
 
 /* What taken() fills, nodes x 3 each: m, m/s. */
 typedef struct tled_taken {

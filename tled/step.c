@@ -63,7 +63,7 @@ double step_at_rest(const tled_problem *p, int32_t *volume)
 double step_rate(double stable, int64_t *check)
 {
     double parts, steps = fmax(1, ceil(.01 / (.5 * stable)));
-    parts = ceil(steps / 200);
+    parts = ceil(steps / STEP_UNSEEN);
     *check = (int64_t)ceil(steps / parts);
     return 100 * parts * (double)*check;
 }

@@ -195,7 +195,7 @@ static int choose_rate(session *s, const struct options *o, err *e)
     s->run.rate_fixed = o->dt > 0;
     s->run.rate = o->dt > 0 ? 1 / o->dt : step_rate(s->stable, &s->run.check);
     if (o->dt > 0)
-        s->run.check = 50;
+        s->run.check = STEP_UNSEEN_GIVEN;
     if (o->dt > s->stable)
         return err_set(e, NULL, 0, "--dt %g is above the stable step; expected at most %.6g s (volume '%s')", o->dt,
                        s->stable * (1 - 1e-5), s->problem.volume[stiffest].name); /* rounded down */

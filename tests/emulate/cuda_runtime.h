@@ -158,6 +158,10 @@ static inline cudaError_t cudaDeviceSetLimit(cudaLimit, size_t)
 {
     return cudaErrorInvalidValue;
 }
+static inline cudaError_t cudaCtxResetPersistingL2Cache()
+{
+    return cudaSuccess;
+}
 static inline cudaError_t cudaStreamSetAttribute(cudaStream_t, cudaStreamAttrID, const cudaStreamAttrValue *)
 {
     return cudaErrorInvalidValue;

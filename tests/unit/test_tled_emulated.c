@@ -317,6 +317,42 @@ static void test_omissions(void)
     free(right);
 }
 
+/* Displacements after `steps` steps in one call, and two, from a bent state. */
+static void call_once(const block *what, const backend *device, int64_t steps, double *to)
+{
+    bench b;
+    make(&b, what, 0, false, device, 1);
+    bend(&b);
+    tled_plan plan = {.origin = b.problem.start, .rate = b.setup.rate, .damping = b.setup.damping};
+    void *state = device->create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || device->step(state, &plan, steps, &b.e), &b.e);
+    plan.first += steps;
+    bench_must(device->step(state, &plan, 2, &b.e) || device->get(state, TLED_DISPLACEMENT, to, &b.e), &b.e);
+    device->destroy(state);
+    bench_free(&b);
+}
+
+/* A call of as many passes as curves' values go to the card at once, and one: of steps, and of their end. */
+static void test_long_calls(void)
+{
+    enum { X = 5, Y = 4, Z = 3, COUNT = 3 * (X + 1) * (Y + 1) * (Z + 1) };
+    block what = lump;
+    double want[COUNT], got[COUNT];
+    memcpy(what.cells, (int32_t[]){X, Y, Z}, sizeof what.cells);
+    for (int64_t steps = 255; steps < 258; steps++) {
+        double off = 0, most = 0;
+        put_in(&marching, 9, 2);
+        call_once(&what, &tled_cpu_double, steps, want);
+        call_once(&what, &tled_cuda_single, steps, got);
+        for (int i = 0; i < COUNT; i++) {
+            off = fmax(off, fabs(got[i] - want[i]));
+            most = fmax(most, fabs(want[i]));
+        }
+        ok(off < 1e-3 * most, "%lld steps in one call: %.2g of the largest displacement off", (long long)steps,
+           off / most);
+    }
+}
+
 int main(void)
 {
     const int64_t more = getenv("SINEW_LONG") ? 20 : 1;
@@ -328,6 +364,7 @@ int main(void)
     test_omissions();
     test_marches(4 * more);
     test_thin(3 * more);
+    test_long_calls();
     test_bricks(3 * more);
     test_looks(2 * more);
     return done_testing();

@@ -1,7 +1,7 @@
 /* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners; what is said of
  * special cells is the problem's, and others are of the plain law. Nodes stand in one order, in which what is owned of a layer is
  * one piece. With each of the six axes; and not where too few threads would have a cell. Which units wait for which, by trying all
- * pairs. And units: two for each block that there is room for at once where their layers are all alike, in the order of these.
+ * pairs. And units: some for each block that there is room for at once where their layers are all alike, in the order of these.
  */
 // needs: tled/march.c tled/march_units.c tled/march_near.c tled/places.c tled/*.c
 #include "mesh/lattice.h"
