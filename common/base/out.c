@@ -209,6 +209,8 @@ void out_write(out *o, const void *bytes, size_t size)
             bytes = (const char *)bytes + CHUNK;
             size -= CHUNK;
         }
+        if (o->failed.status)
+            return; /* what is left may be more than the buffer holds */
     }
     if (size)
         memcpy(o->buffer + o->filled, bytes, size);

@@ -39,6 +39,8 @@ full() { # NAME INPUT COMMAND...
 }
 if [ -w /dev/full ]; then
     each_command full
+    full "render, megabytes at once" "$T/in/frames.sinew" sinew render --size 1280x960 --format ppm
+    is "$(wc -l <"$T/err" | tr -d ' ')" 1 "and nothing else is said"
 else
     skip 1 "no /dev/full"
 fi

@@ -114,16 +114,29 @@ static void refused(const char *folder, const char *path)
     e = (err){0};
     ok(!out_open("/nonexistent/x", false, &e) && strstr(e.text, "cannot create"), "no such folder: %s", e.text);
     e = (err){0};
-    out *o = out_open("/dev/full", false, &e);
-    if (o) {
-        out_text(o, "x");
-        ok(out_close(o, &e) == -1 && strstr(e.text, "No space"), "a full disk: %s", e.text);
-    }
-    e = (err){0};
     in *s = in_memory("a\0b\n", 4, "memory", &e);
     char *line;
     ok(in_line(s, &line, NULL, &e) == -2 && strstr(e.text, "memory:1: a NUL byte"), "%s", e.text);
     in_close(s);
+}
+
+/* Less than is buffered, and so much that the first of its pieces fails. */
+static void full(void)
+{
+    static const size_t sizes[] = {1, 8 << 20};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        err e = {0};
+        out *o = out_open("/dev/full", false, &e);
+        char *bytes = o ? calloc(sizes[i], 1) : NULL;
+        if (bytes) {
+            out_write(o, bytes, sizes[i]);
+            ok(out_close(o, &e) == -1 && strstr(e.text, "No space"), "%zu bytes, a full disk: %s", sizes[i], e.text);
+        } else {
+            out_discard(o);
+            skip(1, "no /dev/full");
+        }
+        free(bytes);
+    }
 }
 
 static void given_up(const char *folder, const char *path)
@@ -239,6 +252,7 @@ int main(void)
     padded(path);
     long_line();
     refused(folder, path);
+    full();
     given_up(folder, path);
     groups(folder);
     widened();
