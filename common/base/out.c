@@ -16,7 +16,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { CHUNK = 1 << 18, PIPE = 1 << 20 };
+enum { CHUNK = 1 << 18 };
 
 struct out {
     int fd;           /* -1: memory */
@@ -42,14 +42,15 @@ static void end_by_sigpipe(void)
     raise(SIGPIPE);
 }
 
-/* A pipe of 64 KB has whoever writes much and whoever reads it wait for each other all the time. (One of what is small stays as it
- * is: a reader that falls behind would see all that fits into it late.) */
+/* A pipe of 64 KB has whoever writes much and whoever reads it wait for each other all the time. No wider than a piece: all pipes
+ * of a user share what Linux allows (pipe-user-pages-soft, 64 MB unless set), and once that is used up each new one has 8 KB. (One of
+ * what is small stays as it is: a reader that falls behind would see all that fits into it late.) */
 static void widen_pipe(int fd)
 {
 #ifdef F_SETPIPE_SZ
     int size = fcntl(fd, F_GETPIPE_SZ);
-    if (size > 0 && size < PIPE)
-        (void)!fcntl(fd, F_SETPIPE_SZ, (int)PIPE);
+    if (size > 0 && size < CHUNK)
+        (void)!fcntl(fd, F_SETPIPE_SZ, (int)CHUNK);
 #else
     (void)fd;
 #endif
