@@ -330,6 +330,10 @@ static model_array *add_known(model_arrays *list, const model *m, const char *na
 {
     char unit[MODEL_NAME], axis[MODEL_NAME];
     const known *k = known_find(name);
+    if (lent && k && k->type != MODEL_F64) {
+        err_set(e, NULL, 0, "array %s is of %s; expected f64 of what is lent", name, model_type_name(k->type));
+        return NULL;
+    }
     if (!k || (k->flags & KNOWN_FRAME) != in_frame) {
         err_set(e, NULL, 0, "array %s is not known %s", name, in_frame ? "in frames" : "in a model's body");
         return NULL;

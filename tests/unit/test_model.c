@@ -128,6 +128,11 @@ static void test_frames(void)
     model_axis_add(&m, "node", 3, &e);
     ok(frame_add(&f, &m, "node.displacement", &e) && frame_find(&f, "node.displacement")->rows == 3, "a frame's array");
     ok(!frame_add(&f, &m, "node.position", &e) && says(&e, "in frames"), "an array of the body in a frame");
+    static const double numbers[9] = {0};
+    e = (err){0};
+    ok(!frame_lend(&f, &m, "node.position", numbers, &e) && says(&e, "in frames"), "nor may one be lent");
+    e = (err){0};
+    ok(!frame_lend(&f, &m, "node.rigid", numbers, &e) && says(&e, "node.rigid is of u8"), "nor one of another type");
     frame_free(&f);
     model_free(&m);
 }
