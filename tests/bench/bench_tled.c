@@ -23,7 +23,11 @@
 
 #include <inttypes.h>
 
-enum { ROUNDS = 7, CPU_MOST = 1100000 /* elements: more take too long there */ };
+enum {
+    ROUNDS = 7,
+    FRAMES_FIRST = 8 /* more than are ever under way */,
+    CPU_MOST = 1100000 /* elements: more take too long there */
+};
 
 typedef struct options {
     int threads;
@@ -241,7 +245,7 @@ static double time_run(bench *b, windows *w, int64_t steps)
  * looks of one run: its start takes longer than many steps, and a frame has its memory made, as many times as there may be under way. */
 static void measure_run(measured *w, bench *b, double every, const char *what, int64_t steps)
 {
-    const int64_t check = b->setup.check, start = (int64_t)ceil(TLED_TAKEN / 60. * b->setup.rate);
+    const int64_t check = b->setup.check, start = (int64_t)ceil(FRAMES_FIRST / 60. * b->setup.rate);
     const run_setup setup = b->setup;
     windows seen = {.b = b, .from = (start + check - 1) / check * check};
     b->setup.device = w->device;

@@ -50,8 +50,8 @@ static void add_pushes(bench *b)
     char text[4096] = "";
     size_t at = 0;
     for (int i = 0; i < 40; i++)
-        at += (size_t)snprintf(text + at, sizeof text - at, "0 force .0%02d,.01,.008 .004 1e-4,%de-6,-2e-5\n",
-                               i % 28 + 1, 7 * i - 100);
+        at += (size_t)snprintf(text + at, sizeof text - at, "0 force .0%02d,.0%02d,.008 .004 1e-4,%de-6,-2e-5\n",
+                               i % 20 + 4, i < 20 ? 10 : 4, 7 * i - 100);
     read_script(b, text);
 }
 
