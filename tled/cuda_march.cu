@@ -52,7 +52,7 @@ typedef struct flow {
 static __device__ __forceinline__ int place_of(int thread)
 {
     const int warp = thread / 32, lane = thread % 32;
-    const int half = warp / 4, row = (warp + 2 * half) % 4; /* march_warp's */
+    const int half = warp / 4, row = (warp + 2 * half) % 4; /* march.c's warp_of */
     return (row * 4 + lane / 8) * GRID + half * 8 + lane % 8;
 }
 
@@ -127,11 +127,17 @@ static __device__ __forceinline__ int32_t which_of(const cuda_march &m, int32_t 
     return detail < 0 ? 0 : m.which[MARCH_THREADS * (int64_t)detail + threadIdx.x];
 }
 
+/* Where what this thread's special cell of layer c is made of stands. */
+static __device__ __forceinline__ uint32_t record_of(uint32_t memory, int c)
+{
+    return memory + RECORDS + (uint32_t)(c % 3) * 2 * RECORD + threadIdx.x * NODE;
+}
+
 /* The first halves of layer c's special cells are on their way. They are the thread's own: nobody else reads them. */
 static __device__ __forceinline__ void send_special(const cuda_march &m, uint32_t memory, int c, int32_t which)
 {
     const float4 *cell = (const float4 *)(m.cell + which - 1);
-    const uint32_t to = memory + RECORDS + (uint32_t)(c % 3) * 2 * RECORD + threadIdx.x * NODE;
+    const uint32_t to = record_of(memory, c);
     if (!which)
         return;
     send(to, cell, true);
@@ -167,7 +173,7 @@ static __device__ __forceinline__ void forces_of(const cuda_march &m, const doub
                                                  face *sum)
 {
     const bool is = f->now & MARCH_CELL, special = SPECIAL && f->now & MARCH_SPECIAL;
-    const uint32_t record = t.memory + RECORDS + (uint32_t)(c % 3) * 2 * RECORD + threadIdx.x * NODE;
+    const uint32_t record = record_of(t.memory, c);
     float mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
     if (special) {
         const float4 law = shared_load(record);

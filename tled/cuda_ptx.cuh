@@ -42,13 +42,6 @@ static __device__ __forceinline__ void shared_number_store(uint32_t at, float x)
     asm volatile("st.shared.f32 [%0], %1;" ::"r"(at), "f"(x) : "memory");
 }
 
-static __device__ __forceinline__ void shared_store_with(uint32_t at, float x, float y, float z, uint32_t word)
-{
-    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z),
-                 "f"(__uint_as_float(word))
-                 : "memory");
-}
-
 /* The fourth number is whatever stands in some register. */
 static __device__ __forceinline__ void shared_store(uint32_t at, float x, float y, float z)
 {

@@ -374,12 +374,6 @@ void shared_number_store(uint32_t at, float x)
     *(float *)touch_shared(at, sizeof(float), true) = x;
 }
 
-void shared_store_with(uint32_t at, float x, float y, float z, uint32_t word)
-{
-    HERE();
-    *(float4 *)touch_shared(at, sizeof(float4), true) = {x, y, z, __uint_as_float(word)};
-}
-
 void shared_store(uint32_t at, float x, float y, float z)
 {
     HERE();

@@ -11,7 +11,6 @@ uint32_t shared_at(const void *p);
 float4 shared_load(uint32_t at);
 float shared_number(uint32_t at);
 void shared_number_store(uint32_t at, float x);
-void shared_store_with(uint32_t at, float x, float y, float z, uint32_t word);
 void shared_store(uint32_t at, float x, float y, float z);
 
 void send(uint32_t to, const float4 *from, bool is);
