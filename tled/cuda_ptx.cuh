@@ -1,6 +1,6 @@
 /* What a card does that CUDA C++ has no words for, or none that leave no choice to the compiler: all of tled-run's assembly is here,
- * and how its kernels come by shared memory whose size the launch says. Copies take compute capability 8.0; barriers, and launches that
- * begin early, 9.0. No card is needed where another header of this name is found first: tests/emulate.
+ * and how its kernels come by shared memory whose size the launch says. Copies take compute capability 8.0; barriers, 9.0. No card is
+ * needed where another header of this name is found first: tests/emulate.
  *
  * Shared memory is told by address: 32 bits, from shared_at().
  */
@@ -91,20 +91,6 @@ static __device__ __forceinline__ void barrier_wait(uint32_t barrier, int odd)
             barrier),
         "r"(odd)
         : "memory");
-}
-
-/* ---- a launch that may begin before the one before it has ended */
-
-/* The launch after this one may begin when there is room. */
-static __device__ __forceinline__ void let_next_begin(void)
-{
-    asm volatile("griddepcontrol.launch_dependents;");
-}
-
-/* What launches before this one wrote may be read from here on, and what they read written. */
-static __device__ __forceinline__ void wait_for_last(void)
-{
-    asm volatile("griddepcontrol.wait;" ::: "memory");
 }
 
 /* ---- words that blocks tell each other: 64 bits as one, without any order among them */

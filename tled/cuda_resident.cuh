@@ -206,8 +206,7 @@ template <class G, bool MIXED> static int64_t resident_places(int64_t curves)
 template <class G, bool MIXED>
 static cudaError_t resident_start(const cuda_view<real> &v, const cuda_resident &r, int64_t tiles, cudaStream_t s)
 {
-    return card_start(resident_kernel<G, MIXED>,
-                      {tiles, G::THREADS, resident_shared<G>(r.curves), s, cudaLaunchAttributeCooperative}, v, r);
+    return card_start(resident_kernel<G, MIXED>, {tiles, G::THREADS, resident_shared<G>(r.curves), s, true}, v, r);
 }
 
 #endif

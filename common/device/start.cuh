@@ -11,9 +11,7 @@ typedef struct card_blocks {
     int threads;   /* each */
     size_t shared; /* bytes of a block, beside what the kernel declares */
     cudaStream_t stream;
-    /* Ignore, or left out: after the one before has ended. Cooperative: all blocks at once, so that they may wait for each other.
-     * ProgrammaticStreamSerialization: perhaps before the one before has ended. */
-    cudaLaunchAttributeID how;
+    bool together; /* all at once, so that they may wait for each other */
 } card_blocks;
 
 /* Arguments are of the kernel's types, or become so. */
@@ -21,18 +19,15 @@ template <class... P, class... A>
 static cudaError_t card_start(void (*kernel)(P...), const card_blocks &blocks, const A &...argument)
 {
     cudaLaunchAttribute attribute = {};
-    attribute.id = blocks.how;
-    if (blocks.how == cudaLaunchAttributeCooperative)
-        attribute.val.cooperative = 1;
-    if (blocks.how == cudaLaunchAttributeProgrammaticStreamSerialization)
-        attribute.val.programmaticStreamSerializationAllowed = 1;
+    attribute.id = cudaLaunchAttributeCooperative;
+    attribute.val.cooperative = 1;
     cudaLaunchConfig_t how = {};
     how.gridDim = dim3((unsigned)blocks.count);
     how.blockDim = dim3((unsigned)blocks.threads);
     how.dynamicSmemBytes = blocks.shared;
     how.stream = blocks.stream;
     how.attrs = &attribute;
-    how.numAttrs = blocks.how != cudaLaunchAttributeIgnore;
+    how.numAttrs = blocks.together;
     return cudaLaunchKernelEx(&how, kernel, argument...);
 }
 

@@ -122,15 +122,11 @@ struct cudaStreamAttrValue {
 enum cudaFuncAttribute { cudaFuncAttributeMaxDynamicSharedMemorySize };
 enum cudaMemcpyKind { cudaMemcpyHostToDevice, cudaMemcpyDeviceToHost, cudaMemcpyDeviceToDevice };
 enum { cudaStreamNonBlocking, cudaEventDisableTiming };
-enum cudaLaunchAttributeID {
-    cudaLaunchAttributeIgnore,
-    cudaLaunchAttributeCooperative,
-    cudaLaunchAttributeProgrammaticStreamSerialization
-};
+enum cudaLaunchAttributeID { cudaLaunchAttributeCooperative };
 struct cudaLaunchAttribute {
     cudaLaunchAttributeID id;
     struct {
-        int cooperative, programmaticStreamSerializationAllowed;
+        int cooperative;
     } val;
 };
 struct cudaLaunchConfig_t {

@@ -151,7 +151,6 @@ static void start(fibre *f, block *home, int thread)
     f->clock[(size_t)thread] = 1;
     f->flights.clear();
     f->group = 0;
-    f->settled = past.settled == past.at - 1;
     f->ended = false;
     f->slow = thread % 32 ? (f - 1)->slow : !lot(4);
     f->place = NULL;
@@ -287,14 +286,12 @@ static bool fits(const void *kernel, const cudaLaunchConfig_t *how, bool togethe
     return !together || (card.together && has_room(how));
 }
 
-static void launch(const cudaLaunchConfig_t *how, cudaLaunchAttributeID as, const std::vector<char> &call)
+static void launch(const cudaLaunchConfig_t *how, bool together, const std::vector<char> &call)
 {
-    const bool together = as == cudaLaunchAttributeCooperative || (has_room(how) && lot(2));
+    const bool at_once = together || (has_room(how) && lot(2));
     if (machine.over)
         return;
     past.at++;
-    if (as != cudaLaunchAttributeProgrammaticStreamSerialization)
-        past.settled = past.at - 1;
     past.call = call.data();
     past.call_size = call.size();
     std::vector<uint32_t> order(how->gridDim.x);
@@ -306,8 +303,8 @@ static void launch(const cudaLaunchConfig_t *how, cudaLaunchAttributeID as, cons
     const unsigned rounding = _mm_getcsr();
     _mm_setcsr(rounding | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); /* as -ftz=true */
     open_memory(true);
-    for (size_t i = 0; i < order.size() && !machine.over; i += together ? order.size() : 1)
-        run_blocks(&order[i], together ? order.size() : 1, how);
+    for (size_t i = 0; i < order.size() && !machine.over; i += at_once ? order.size() : 1)
+        run_blocks(&order[i], at_once ? order.size() : 1, how);
     open_memory(false);
     _mm_setcsr(rounding);
 }
@@ -315,14 +312,14 @@ static void launch(const cudaLaunchConfig_t *how, cudaLaunchAttributeID as, cons
 cudaError_t emulated_launch(const void *kernel, const cudaLaunchConfig_t *how, void (*run)(const void *),
                             const void *call, size_t size)
 {
-    const cudaLaunchAttributeID as = how->numAttrs ? how->attrs->id : cudaLaunchAttributeIgnore;
-    if (!fits(kernel, how, as == cudaLaunchAttributeCooperative))
+    const bool together = how->numAttrs && how->attrs->val.cooperative;
+    if (!fits(kernel, how, together))
         return cudaErrorInvalidValue;
     const std::vector<char> with((const char *)call, (const char *)call + size);
     const cudaLaunchConfig_t own = *how;
     ask(how->stream, [=] {
         machine.run = run;
-        launch(&own, as, with);
+        launch(&own, together, with);
     });
     return cudaGetLastError();
 }

@@ -111,8 +111,7 @@ struct fibre {
     int thread = 0;
     clocks clock;
     std::vector<flight> flights;
-    int group = 0;        /* that is sent next */
-    bool settled = false; /* what launches before did may be relied on */
+    int group = 0; /* that is sent next */
     bool ended = false;
     bool slow = false;        /* as is all of its warp: others get far ahead of it */
     const void *place = NULL; /* in the program, of what it does or waits for */
@@ -144,10 +143,9 @@ void ask(cudaStream_t stream, std::function<void()> what);
 void finish_none();
 
 /* ---- shadow.cc */
-/* What the host and launches do to the card's memory is numbered; a launch that may begin early relies on what came before
- * `settled` only. */
+/* What the host and launches do to the card's memory is numbered. */
 typedef struct history {
-    uint32_t at, settled;
+    uint32_t at;      /* the last so far */
     const char *call; /* a launch's arguments, which its threads may read */
     size_t call_size;
 } history;

@@ -106,8 +106,6 @@ static const char *trouble(const word *w, bool atomic)
     const bool other = w->writer != -1 && w->writer != now->home->index;
     if (w->flying)
         return "what is on its way";
-    if (!now->settled && w->wrote > past.settled && w->wrote != past.at)
-        return "what a launch wrote that may not have ended";
     if (atomic && w->atomic)
         return NULL;
     if (other)
@@ -264,8 +262,6 @@ void touch(const void *at, size_t size, bool writes, bool atomic)
         return;
     if (!w)
         fault("%s at %p, which is not the card's", writes ? "writes" : "reads", at);
-    if (writes && !shared && !now->settled)
-        fault("writes before it has waited for the launch before");
     for (const word *end = w + words_in(at, size); w < end; w++)
         if (writes)
             write_word(w, atomic);
@@ -498,7 +494,7 @@ static void note_written(const void *at, size_t size, const void *from)
 {
     word *to = words_at(at, size);
     const word *old = words_at(from, size);
-    past.settled = ++past.at;
+    past.at++;
     for (size_t i = 0; i < words_in(at, size); i++)
         to[i].wrote = old && !old[i].wrote ? 0 : past.at;
 }

@@ -1,4 +1,4 @@
-/* What an emulated card's blocks tell each other, and launches that begin early.
+/* What an emulated card's blocks tell each other.
  *
  * Words of relaxed_store() say nothing of what their writers did: but that what these read has been read, which is roughly taken for
  * known once any word of any block was heard. tell_done() hands on the clocks of what its thread knows to be done, by its block and by
@@ -6,15 +6,6 @@
  */
 #include "machine.h"
 #include "tled/cuda_ptx.cuh"
-
-void let_next_begin()
-{
-}
-
-void wait_for_last()
-{
-    now->settled = true;
-}
 
 /* ---- words without order */
 

@@ -113,7 +113,7 @@ template <bool RIGHT> static __global__ void least(task)
         x = (int)threadIdx.x;
 }
 
-/* ---- blocks and launches */
+/* ---- blocks */
 
 template <bool RIGHT> static __global__ void blocks(task t)
 {
@@ -130,21 +130,6 @@ template <bool FIRST> static __global__ void another(task t)
     if (FIRST)
         own->x = 1;
     own->x = other->x;
-}
-
-static __global__ void early_write(task t)
-{
-    if (threadIdx.x == 0 && blockIdx.x == 0)
-        t.data[0].x = 1;
-}
-
-template <bool RIGHT> static __global__ void early(task t)
-{
-    let_next_begin();
-    if (RIGHT)
-        wait_for_last();
-    if (threadIdx.x == 0 && blockIdx.x == 0)
-        t.data[0].x += 1;
 }
 
 static __global__ void uninitialised(task t)
@@ -306,9 +291,8 @@ static __global__ void unequal(task)
 
 /* ---- the list */
 
-/* `times` launches of `count` blocks; shared: bytes. */
-static int run(void (*kernel)(task), int64_t count = 1, cudaLaunchAttributeID how = cudaLaunchAttributeIgnore,
-               int times = 1, size_t shared = THREADS * sizeof(float4))
+/* A launch of `count` blocks; shared: bytes. */
+static int run(void (*kernel)(task), int64_t count = 1, bool together = false, size_t shared = THREADS * sizeof(float4))
 {
     const float4 number[THREADS] = {};
     task t = {};
@@ -316,16 +300,14 @@ static int run(void (*kernel)(task), int64_t count = 1, cudaLaunchAttributeID ho
     e = e ? e : cudaMalloc((void **)&t.word, 2 * sizeof *t.word);
     e = e ? e : cudaMemcpy(t.data, number, sizeof number, cudaMemcpyHostToDevice);
     e = e ? e : cudaMemset(t.word, 0, 2 * sizeof *t.word);
-    for (int i = 0; i < times && !e; i++)
-        e = card_start(kernel, {count, THREADS, shared, NULL, how}, t);
+    e = e ? e : card_start(kernel, {count, THREADS, shared, NULL, together}, t);
     e = e ? e : cudaDeviceSynchronize();
     cudaFree(t.data);
     cudaFree(t.word);
     return e;
 }
 
-static const cudaLaunchAttributeID alone = cudaLaunchAttributeIgnore, together = cudaLaunchAttributeCooperative,
-                                   overlapping = cudaLaunchAttributeProgrammaticStreamSerialization;
+static const bool alone = false, together = true;
 
 #define KERNEL(says, ...)                                                                                              \
     {                                                                                                                  \
@@ -354,9 +336,6 @@ const wrong_kernel wrong_kernels[] = {
     KERNEL("what another block writes", blocks<false>, 3),
     KERNEL("reads what another block writes", another<false>, 2),
     KERNEL("writes what another block reads", another<true>, 2),
-    KERNEL(NULL, early<true>, 2, overlapping, 3),
-    KERNEL("what a launch wrote that may not have ended", early<false>, 2, overlapping, 3),
-    KERNEL("writes before it has waited", early_write, 2, overlapping, 2),
     KERNEL("reads what nobody wrote", uninitialised),
     KERNEL(NULL, words<true>, 2, together),
     KERNEL("waits for a word that nobody writes", words<false>, 2, together),
@@ -368,8 +347,8 @@ const wrong_kernel wrong_kernels[] = {
     KERNEL("what another block ", overhears, 2),
     KERNEL("hears what nobody wrote", hears),
     KERNEL("the emulated card cannot", words<true>, 65, together),
-    KERNEL(NULL, blocks<true>, 1, alone, 1, 48 << 10),
-    KERNEL("the emulated card cannot", blocks<true>, 1, alone, 1, 49 << 10),
+    KERNEL(NULL, blocks<true>, 1, alone, 48 << 10),
+    KERNEL("the emulated card cannot", blocks<true>, 1, alone, 49 << 10),
     KERNEL(NULL, copies<0, true>),
     KERNEL(NULL, copies<1, true>),
     KERNEL(NULL, copies<1, false>),
@@ -390,7 +369,8 @@ const wrong_kernel wrong_kernels[] = {
     KERNEL("uses a barrier that nobody made", barriers<false, 2, true>),
     KERNEL("makes a barrier again", made_again),
     KERNEL("waits for ever", unequal),
-    {}};
+    {},
+};
 
 const char *wrong_text(int error)
 {

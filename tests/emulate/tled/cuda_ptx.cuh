@@ -25,9 +25,6 @@ void barrier_make(uint32_t barrier, uint32_t count);
 void barrier_arrive(uint32_t barrier);
 void barrier_wait(uint32_t barrier, int odd);
 
-void let_next_begin();
-void wait_for_last();
-
 void relaxed_store(uint64_t *to, uint64_t word);
 uint64_t relaxed_load(const uint64_t *from);
 
