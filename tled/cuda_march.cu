@@ -453,8 +453,10 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
     barrier_wait(t.memory + SAID, (last - 1) % 2);
     move_node<STEP>(m, p, t, f.last, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
                     at + VELOCITIES + (uint32_t)(last - 1) % 2 * FORCE);
-    if (last % 2)
-        say_done(t); /* the next unit's first phase is even again */
+    if (last % 2) { /* the next unit's first phase is even again */
+        say_done(t);
+        barrier_wait(t.memory + SAID, 1);
+    }
 }
 
 /* Thread 0's work: the first unit of a block, as its next. */
