@@ -14,6 +14,7 @@ struct growing {
     int fd;
     char *name;
     off_t size; /* of what is whole */
+    bool named; /* its name is stored */
 };
 
 /* A new file, or what is to be kept of one. */
@@ -83,7 +84,10 @@ int64_t growing_size(const growing *g)
 
 int growing_store(growing *g, err *e)
 {
-    return replace_store(g->fd) ? err_system(e, g->name, errno, "cannot write") : 0;
+    if (replace_store(g->fd) || (!g->named && replace_store_names(g->name)))
+        return err_system(e, g->name, errno, "cannot write");
+    g->named = true;
+    return 0;
 }
 
 int growing_close(growing *g, err *e)

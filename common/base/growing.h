@@ -20,7 +20,7 @@ int64_t growing_size(const growing *g);
 /* Adds whole lines. -1 with e filled: to a full disk nothing more is written, and a line begun is taken back. */
 int growing_put(growing *g, const void *lines, size_t size, err *e);
 
-/* Waits until all that was put is stored. -1 with e filled. */
+/* Waits until all that was put is stored, and the file's name. -1 with e filled. */
 int growing_store(growing *g, err *e);
 
 /* Closes it and frees g, which may be NULL. 0, or -1 with e filled. */

@@ -2,12 +2,14 @@
 
 #include "base/mem.h"
 #include "base/path.h"
+#include "base/replace.h"
 #include "base/temporary.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -78,6 +80,18 @@ static void keep_mode(const outs_file *f)
         (void)!chmod(f->part, s.st_mode & 07777);
 }
 
+/* Waits for the names of files, once for each run of them in one folder. */
+static int store_names(const outs *s, err *e)
+{
+    for (int64_t i = 0; i < s->count; i++) {
+        const char *at = s->file[i].target, *next = i + 1 < s->count ? s->file[i + 1].target : NULL;
+        const size_t n = path_folder(at);
+        if ((!next || n != path_folder(next) || memcmp(at, next, n) != 0) && replace_store_names(at))
+            return err_system(e, at, errno, "is in place, but its folder cannot be stored");
+    }
+    return 0;
+}
+
 int outs_commit(outs *s, err *e)
 {
     for (int64_t i = 0; i < s->count; i++) {
@@ -89,7 +103,7 @@ int outs_commit(outs *s, err *e)
         free(f->part);
         f->part = NULL;
     }
-    return 0;
+    return store_names(s, e);
 }
 
 void outs_free(outs *s)

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -85,6 +86,20 @@ int replace_store(int fd)
     return bad && errno != EINVAL && errno != ENOTSUP ? -1 : 0;
 }
 
+int replace_store_names(const char *path)
+{
+    char folder[PATH_MAX];
+    const size_t n = path_folder(path);
+    snprintf(folder, sizeof folder, "%.*s", n ? (int)n : 1, n ? path : ".");
+    const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0)
+        return errno == EACCES ? 0 : -1;
+    const int bad = replace_store(fd), code = errno;
+    close(fd);
+    errno = code;
+    return bad;
+}
+
 int replace_finish(replace *r, const char *name, err *e)
 {
     char self[64];
@@ -102,6 +117,8 @@ int replace_finish(replace *r, const char *name, err *e)
         temporary_drop(r->temporary);
         free(r->temporary);
         r->temporary = NULL;
+        if (replace_store_names(r->target))
+            bad = err_system(e, name, errno, "is in place, but its folder cannot be stored");
     }
     replace_discard(r);
     return bad;

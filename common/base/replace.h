@@ -16,13 +16,17 @@ typedef struct replace {
  * A name that cannot be given is refused now, not after the work. */
 int replace_open(replace *r, const char *path, err *e);
 
-/* Puts the file in its place, once every byte of it is known to be stored. name: for messages. In every case r is zeroed,
- * and on failure no file is left and the place is as it was. */
+/* Puts the file in its place, once every byte of it is known to be stored, and waits until its name is. name: for messages. In every
+ * case r is zeroed, and on failure no file is left and the place is as it was, unless it is the name that could not be stored. */
 int replace_finish(replace *r, const char *name, err *e);
 
 /* Waits until what was written is stored: 0, or -1 with errno. Some of what can be written to cannot be synced; nothing is wrong
  * then. */
 int replace_store(int fd);
+
+/* Waits until the names in the folder of path are stored, or no longer there: 0, or -1 with errno. No memory
+ * is asked for. A folder that may be written but not read takes names and cannot be synced; nothing is wrong then. */
+int replace_store_names(const char *path);
 
 /* Removes the file. */
 void replace_discard(replace *r);

@@ -1,4 +1,4 @@
-/* How a kernel is started: one way for all of them, so that its errors come out of the start itself. */
+/* How a kernel is started, so that its errors come out of the start itself. */
 #ifndef SINEW_START_CUH
 #define SINEW_START_CUH
 

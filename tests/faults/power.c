@@ -1,6 +1,7 @@
 /* The loss of power: preloaded into a program (LD_PRELOAD), it ends it at its n-th fsync, from 1, that SINEW_FAULT_AT gives, as by
- * kill -9, and takes from every file that it has open what was written since that file was stored last. Where SINEW_FAULT_COUNT
- * names a file, that gets the number of syncs at the end.
+ * kill -9, and takes from every file that it has open what was written since that file was stored last. A name that was made, given to
+ * another file or removed since its folder was stored is as it was, but for those whose bits SINEW_FAULT_KEPT has, in the order in
+ * which they were touched. Where SINEW_FAULT_COUNT names a file, that gets the number of syncs at the end.
  */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 /* RTLD_NEXT */
@@ -8,15 +9,17 @@
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { FILES = 256 };
+enum { FILES = 256, NAMES = 4096 };
 
 /* A regular file, by whatever descriptors, and how much of it would be there. */
 typedef struct known {
@@ -25,10 +28,20 @@ typedef struct known {
     off_t stored;
 } known;
 
+/* A name whose folder has not been stored since it was touched. */
+typedef struct touched {
+    char *name;
+    char *was;    /* another name of what it was of before, or NULL: of nothing */
+    dev_t device; /* of its folder */
+    ino_t folder;
+} touched;
+
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static known file[FILES];
 static int files;
-static long long syncs;
+static touched changed[NAMES];
+static int changes;
+static long long syncs, backups;
 
 static void *real_function(const char *name)
 {
@@ -36,6 +49,30 @@ static void *real_function(const char *name)
     if (!found)
         abort();
     return found;
+}
+
+/* Declares `next`, the C library's function of that name. */
+#define NEXT(type, name, ...)                                                                                          \
+    type (*next)(__VA_ARGS__);                                                                                         \
+    void *found = real_function(name);                                                                                 \
+    memcpy(&next, &found, sizeof next)
+
+static int really_link(const char *from, const char *to)
+{
+    NEXT(int, "link", const char *, const char *);
+    return next(from, to);
+}
+
+static int really_unlink(const char *path)
+{
+    NEXT(int, "unlink", const char *);
+    return next(path);
+}
+
+static int really_rename(const char *from, const char *to)
+{
+    NEXT(int, "rename", const char *, const char *);
+    return next(from, to);
 }
 
 /* The file at fd, noted as it is now where it is new; NULL: it is no regular one. */
@@ -52,37 +89,140 @@ static known *find(int fd, struct stat *s)
     return file + files++;
 }
 
+/* A name is about to change: what it is of gets another one, until that is stored. */
+static void touch(const char *path)
+{
+    char beside[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    const int length = slash ? (int)(slash - path) + 1 : 0;
+    struct stat s;
+    for (int i = 0; i < changes; i++)
+        if (!strcmp(changed[i].name, path))
+            return;
+    snprintf(beside, sizeof beside, "%.*s", length ? length : 1, length ? path : ".");
+    if (changes == NAMES || stat(beside, &s))
+        return; /* whatever it is, it fails */
+    touched t = {.name = strdup(path), .device = s.st_dev, .folder = s.st_ino};
+    snprintf(beside, sizeof beside, "%.*s.power-%lld-%lld", length, path, (long long)getpid(), backups++);
+    if (!lstat(path, &s)) {
+        if (really_link(path, beside))
+            abort();
+        t.was = strdup(beside);
+    }
+    if (!t.name)
+        abort();
+    changed[changes++] = t;
+}
+
+static void drop(const touched *t)
+{
+    if (t->was)
+        really_unlink(t->was);
+    free(t->name);
+    free(t->was);
+}
+
 static void lose(void)
 {
     struct stat s;
+    const char *kept = getenv("SINEW_FAULT_KEPT");
+    const long bits = kept ? atol(kept) : 0;
     for (int fd = STDERR_FILENO + 1; fd < FILES; fd++) {
         const int writes = fcntl(fd, F_GETFL) & O_ACCMODE;
         const known *k = writes ? find(fd, &s) : NULL;
         if (k && s.st_size > k->stored && ftruncate(fd, k->stored))
             abort();
     }
+    for (int i = 0; i < changes; i++) {
+        if (i < 31 && bits >> i & 1)
+            drop(&changed[i]);
+        else if (!changed[i].was)
+            really_unlink(changed[i].name);
+        else if (really_rename(changed[i].was, changed[i].name) ||
+                 (!lstat(changed[i].was, &s) && really_unlink(changed[i].was)))
+            abort(); /* names of one file stay two */
+    }
     kill(getpid(), SIGKILL);
+}
+
+/* The names of that folder are stored. */
+static void keep_names(const struct stat *folder)
+{
+    int left = 0;
+    for (int i = 0; i < changes; i++)
+        if (changed[i].folder == folder->st_ino && changed[i].device == folder->st_dev)
+            drop(&changed[i]);
+        else
+            changed[left++] = changed[i];
+    changes = left;
 }
 
 ssize_t write(int fd, const void *from, size_t size)
 {
-    ssize_t (*next)(int, const void *, size_t);
     struct stat s;
-    void *found = real_function("write");
-    memcpy(&next, &found, sizeof next);
+    NEXT(ssize_t, "write", int, const void *, size_t);
     pthread_mutex_lock(&mutex);
     find(fd, &s);
     pthread_mutex_unlock(&mutex);
     return next(fd, from, size);
 }
 
+int open(const char *path, int flags, ...)
+{
+    mode_t mode = 0;
+    NEXT(int, "open", const char *, int, ...);
+    if (flags & (O_CREAT | O_TMPFILE)) {
+        va_list more;
+        va_start(more, flags);
+        mode = va_arg(more, mode_t);
+        va_end(more);
+    }
+    pthread_mutex_lock(&mutex);
+    if (flags & O_CREAT)
+        touch(path);
+    pthread_mutex_unlock(&mutex);
+    return next(path, flags, mode);
+}
+
+int link(const char *from, const char *to)
+{
+    pthread_mutex_lock(&mutex);
+    touch(to);
+    pthread_mutex_unlock(&mutex);
+    return really_link(from, to);
+}
+
+int linkat(int from_folder, const char *from, int to_folder, const char *to, int flags)
+{
+    NEXT(int, "linkat", int, const char *, int, const char *, int);
+    pthread_mutex_lock(&mutex);
+    touch(to);
+    pthread_mutex_unlock(&mutex);
+    return next(from_folder, from, to_folder, to, flags);
+}
+
+int unlink(const char *path)
+{
+    pthread_mutex_lock(&mutex);
+    touch(path);
+    pthread_mutex_unlock(&mutex);
+    return really_unlink(path);
+}
+
+int rename(const char *from, const char *to)
+{
+    pthread_mutex_lock(&mutex);
+    touch(from);
+    touch(to);
+    pthread_mutex_unlock(&mutex);
+    return really_rename(from, to);
+}
+
 int fsync(int fd)
 {
-    int (*next)(int);
     struct stat s;
     const char *at = getenv("SINEW_FAULT_AT");
-    void *found = real_function("fsync");
-    memcpy(&next, &found, sizeof next);
+    NEXT(int, "fsync", int);
     pthread_mutex_lock(&mutex);
     if (++syncs == (at ? atoll(at) : 0))
         lose();
@@ -90,6 +230,8 @@ int fsync(int fd)
     known *k = find(fd, &s);
     if (k && !bad)
         k->stored = s.st_size;
+    if (!k && !bad && !fstat(fd, &s) && S_ISDIR(s.st_mode))
+        keep_names(&s);
     pthread_mutex_unlock(&mutex);
     return bad;
 }
@@ -97,6 +239,8 @@ int fsync(int fd)
 __attribute__((destructor)) static void end(void)
 {
     const char *path = getenv("SINEW_FAULT_COUNT");
+    while (changes)
+        drop(&changed[--changes]);
     FILE *f = path ? fopen(path, "w") : NULL;
     if (!f)
         return;
