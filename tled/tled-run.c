@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/path.h"
 #include "base/progress.h"
+#include "base/replace.h"
 #include "mesh/scale.h"
 #include "model/materials.h"
 #include "model/stage.h"
@@ -13,10 +14,13 @@
 #include "tled/run.h"
 #include "tled/step.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { REST_STEPS = 200000 }; /* after the script's end, before a run to rest gives up */
 
@@ -369,6 +373,20 @@ static int begin_checkpoints(session *s, const struct options *o, err *e)
     return checkpoint_replay(s->checkpoint, replay_frame, s, e);
 }
 
+/* Ends the log and the output. Where there is a checkpoint, which then goes, both are stored first, also by a shell's `>`. */
+static void end_output(session *s, const tool *t, err *e)
+{
+    const int output = s->checkpoint ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : -1;
+    if (s->checkpoint && !e->status && s->log.file)
+        log_store(&s->log, e);
+    log_close(&s->log, e);
+    stage_close(&s->stage, t, e);
+    if (s->checkpoint && !e->status && (output < 0 || replace_store(output)))
+        err_system(e, "stdout", errno, "cannot write");
+    if (output >= 0)
+        close(output);
+}
+
 static void end_checkpoints(session *s, const err *e)
 {
     const double saved = s->checkpoint ? checkpoint_saved(s->checkpoint) : NAN;
@@ -548,9 +566,8 @@ int main(int argc, char **argv)
         goto out;
 out:
     tool_warn(&t, &s.warnings);
-    log_close(&s.log, &e);
     if (!t.done)
-        stage_close(&s.stage, &t, &e);
+        end_output(&s, &t, &e);
     end_checkpoints(&s, &e);
     pool_destroy(s.threads);
     tled_problem_free(&s.problem);

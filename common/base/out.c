@@ -176,6 +176,14 @@ out *out_open(const char *path, bool gzip, err *e)
     return o;
 }
 
+out *out_open_passing(const char *path, err *e)
+{
+    out *o = out_open(path, false, e);
+    if (o)
+        o->file.passing = true;
+    return o;
+}
+
 out *out_take(int fd, const char *name, err *e)
 {
     return out_new(fd, name, false, e);

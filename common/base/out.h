@@ -1,6 +1,6 @@
 /* A stream of bytes to write, checked to its end: standard output, or a file that appears whole under its
- * name when out_close() succeeds and not at all otherwise. Errors stick: write on, and out_close() says. A
- * closed pipe ends the process quietly by SIGPIPE.
+ * name when out_close() succeeds and not at all otherwise, unless all that fails is to store its name. Errors stick: write on, and
+ * out_close() says. A closed pipe ends the process quietly by SIGPIPE.
  */
 #ifndef SINEW_OUT_H
 #define SINEW_OUT_H
@@ -14,6 +14,9 @@ typedef struct out out;
 /* path NULL or "-": standard output. Other paths: a regular or new file is written beside its place and renamed
  * at out_close(); a device or FIFO is written directly. gzip: compress what is written. NULL with e filled. */
 out *out_open(const char *path, bool gzip, err *e);
+
+/* The same of a new file that the caller renames once more: its name is not stored. */
+out *out_open_passing(const char *path, err *e);
 
 /* Writes to a descriptor from where it stands, as it is; it is out's from then on, but the caller's where this fails. */
 out *out_take(int fd, const char *name, err *e);

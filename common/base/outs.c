@@ -60,7 +60,7 @@ out *outs_open(outs *s, const char *path, err *e)
     outs_file f = {.target = find_target(path, e)};
     if (f.target && !check_folder(path, f.target, e))
         f.part = name_part(s, f.target, e);
-    out *o = f.part && !temporary_add(f.part, e) ? out_open(f.part, false, e) : NULL;
+    out *o = f.part && !temporary_add(f.part, e) ? out_open_passing(f.part, e) : NULL;
     if (!o) {
         if (f.part)
             temporary_drop(f.part);

@@ -88,13 +88,14 @@ int replace_store(int fd)
 
 int replace_store_names(const char *path)
 {
-    char folder[PATH_MAX];
-    const size_t n = path_folder(path);
-    snprintf(folder, sizeof folder, "%.*s", n ? (int)n : 1, n ? path : ".");
+    char real[PATH_MAX], folder[PATH_MAX];
+    const char *at = realpath(path, real) ? real : path; /* /dev/stdout is, of a pipe, nothing */
+    const size_t n = path_folder(at);
+    snprintf(folder, sizeof folder, "%.*s", n ? (int)n : 1, n ? at : ".");
     const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (fd < 0)
         return errno == EACCES ? 0 : -1;
-    const int bad = replace_store(fd), code = errno;
+    const int bad = replace_store(fd) && errno != EROFS ? -1 : 0, code = errno;
     close(fd);
     errno = code;
     return bad;
@@ -117,7 +118,7 @@ int replace_finish(replace *r, const char *name, err *e)
         temporary_drop(r->temporary);
         free(r->temporary);
         r->temporary = NULL;
-        if (replace_store_names(r->target))
+        if (!r->passing && replace_store_names(r->target))
             bad = err_system(e, name, errno, "is in place, but its folder cannot be stored");
     }
     replace_discard(r);

@@ -6,10 +6,13 @@
 
 #include "base/err.h"
 
+#include <stdbool.h>
+
 typedef struct replace {
     int fd;          /* what to write to */
     char *target;    /* where the file goes, links followed; owned; NULL: nothing is open */
     char *temporary; /* its name until then; owned; NULL while it has none (O_TMPFILE) */
+    bool passing;    /* the caller renames it again: its name is not stored; false after replace_open() */
 } replace;
 
 /* Opens a file that is to appear as path, which is a regular file or none; a link stays a link, even one to nothing.
@@ -24,8 +27,9 @@ int replace_finish(replace *r, const char *name, err *e);
  * then. */
 int replace_store(int fd);
 
-/* Waits until the names in the folder of path are stored, or no longer there: 0, or -1 with errno. No memory
- * is asked for. A folder that may be written but not read takes names and cannot be synced; nothing is wrong then. */
+/* Waits until what stands under the names in the folder of a file is stored; path may be a link to the file. 0, or -1 with errno. No
+ * memory is asked for. A folder that may be written but not read takes names and cannot be synced, and one of a file system that is
+ * read-only has none to store; nothing is wrong then. */
 int replace_store_names(const char *path);
 
 /* Removes the file. */

@@ -1,7 +1,8 @@
 /* The loss of power: preloaded into a program (LD_PRELOAD), it ends it at its n-th fsync, from 1, that SINEW_FAULT_AT gives, as by
- * kill -9, and takes from every file that it has open what was written since that file was stored last. A name that was made, given to
+ * kill -9, or after all is done, where n is one past the last; and takes from every file what was written since that file was stored last. A name that was made, given to
  * another file or removed since its folder was stored is as it was, but for those whose bits SINEW_FAULT_KEPT has, in the order in
- * which they were touched. Where SINEW_FAULT_COUNT names a file, that gets the number of syncs at the end.
+ * which they were touched. Where SINEW_FAULT_COUNT names a file, that gets the number of syncs at the end. It knows the calls below, of
+ * the C library's many.
  */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 /* RTLD_NEXT */
@@ -13,13 +14,14 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { FILES = 256, NAMES = 4096 };
+enum { FILES = 256, NAMES = 4096, CLOSED = 512 }; /* closed: files that are stay open to us from this number on */
 
 /* A regular file, by whatever descriptors, and how much of it would be there. */
 typedef struct known {
@@ -75,7 +77,7 @@ static int really_rename(const char *from, const char *to)
     return next(from, to);
 }
 
-/* The file at fd, noted as it is now where it is new; NULL: it is no regular one. */
+/* The file at fd, noted as it is now where it is new; NULL: it is no regular one. What is noted keeps its number: see close(). */
 static known *find(int fd, struct stat *s)
 {
     if (fstat(fd, s) || !S_ISREG(s->st_mode))
@@ -100,7 +102,9 @@ static void touch(const char *path)
         if (!strcmp(changed[i].name, path))
             return;
     snprintf(beside, sizeof beside, "%.*s", length ? length : 1, length ? path : ".");
-    if (changes == NAMES || stat(beside, &s))
+    if (changes == NAMES)
+        abort();
+    if (stat(beside, &s))
         return; /* whatever it is, it fails */
     touched t = {.name = strdup(path), .device = s.st_dev, .folder = s.st_ino};
     snprintf(beside, sizeof beside, "%.*s.power-%lld-%lld", length, path, (long long)getpid(), backups++);
@@ -127,9 +131,9 @@ static void lose(void)
     struct stat s;
     const char *kept = getenv("SINEW_FAULT_KEPT");
     const long bits = kept ? atol(kept) : 0;
-    for (int fd = STDERR_FILENO + 1; fd < FILES; fd++) {
+    for (int fd = STDOUT_FILENO; fd < CLOSED + FILES; fd++) {
         const int writes = fcntl(fd, F_GETFL) & O_ACCMODE;
-        const known *k = writes ? find(fd, &s) : NULL;
+        const known *k = writes && fd != STDERR_FILENO ? find(fd, &s) : NULL;
         if (k && s.st_size > k->stored && ftruncate(fd, k->stored))
             abort();
     }
@@ -171,7 +175,7 @@ int open(const char *path, int flags, ...)
 {
     mode_t mode = 0;
     NEXT(int, "open", const char *, int, ...);
-    if (flags & (O_CREAT | O_TMPFILE)) {
+    if (flags & O_CREAT || (flags & O_TMPFILE) == O_TMPFILE) {
         va_list more;
         va_start(more, flags);
         mode = va_arg(more, mode_t);
@@ -218,13 +222,32 @@ int rename(const char *from, const char *to)
     return really_rename(from, to);
 }
 
+/* Whether it is the n-th sync. */
+static bool is_time(long long n)
+{
+    const char *at = getenv("SINEW_FAULT_AT");
+    return at && atoll(at) == n;
+}
+
+/* What was written is to be lost all the same, and nothing else is to be taken for that file. */
+int close(int fd)
+{
+    struct stat s;
+    NEXT(int, "close", int);
+    pthread_mutex_lock(&mutex);
+    const int how = fcntl(fd, F_GETFL);
+    if (fd < CLOSED && how >= 0 && how & O_ACCMODE && find(fd, &s) && fcntl(fd, F_DUPFD_CLOEXEC, CLOSED) < 0)
+        abort();
+    pthread_mutex_unlock(&mutex);
+    return next(fd);
+}
+
 int fsync(int fd)
 {
     struct stat s;
-    const char *at = getenv("SINEW_FAULT_AT");
     NEXT(int, "fsync", int);
     pthread_mutex_lock(&mutex);
-    if (++syncs == (at ? atoll(at) : 0))
+    if (is_time(++syncs))
         lose();
     int bad = next(fd);
     known *k = find(fd, &s);
@@ -239,6 +262,8 @@ int fsync(int fd)
 __attribute__((destructor)) static void end(void)
 {
     const char *path = getenv("SINEW_FAULT_COUNT");
+    if (is_time(syncs + 1))
+        lose();
     while (changes)
         drop(&changed[--changes]);
     FILE *f = path ? fopen(path, "w") : NULL;

@@ -1,7 +1,9 @@
 /* Outputs that fail late: what stood under the name stays, and nothing is left beside it. This program's fsync, close and
  * rename are its own, so that each can fail.
  */
+#include "base/growing.h"
 #include "base/out.h"
+#include "base/outs.h"
 
 #include "tap.h"
 
@@ -17,15 +19,18 @@
 #include <unistd.h>
 
 /* The call that is to fail next; an object that must change, as the tests are told by no other way. */
-static enum { NONE, FSYNC, CLOSE, RENAME } failing;
-static int synced;
+static enum { NONE, FSYNC, CLOSE, RENAME, FOLDER } failing;
+static int synced, named; /* files, folders */
+static ino_t last_named;
 
 int fsync(int fd)
 {
-    (void)fd;
-    synced++;
+    struct stat s;
+    const bool folder = !fstat(fd, &s) && S_ISDIR(s.st_mode);
+    *(folder ? &named : &synced) += 1;
+    last_named = folder ? s.st_ino : last_named;
     errno = ENOSPC;
-    return failing == FSYNC ? -1 : 0;
+    return failing == (folder ? FOLDER : FSYNC) ? -1 : 0;
 }
 
 int close(int fd)
@@ -79,7 +84,7 @@ static void late_failures(void)
     static const char *const want[] = {"", "cannot write: No space left", "cannot write: Disk quota exceeded",
                                        "cannot rename into place: Permission denied"};
     put("file", "old");
-    ok(synced, "what is written is known to be stored before it is renamed");
+    ok(synced == 1 && named == 1, "what is written is known to be stored before it is renamed, and then its name");
     int before = files_here();
     for (int which = FSYNC; which <= RENAME; which++) {
         err e = {0};
@@ -92,7 +97,61 @@ static void late_failures(void)
         ok(failed && strstr(e.text, want[which]), "%s fails: %s", name[which], e.text);
         ok(holds("file", "old") && files_here() == before, "the old file stays, alone");
     }
+    err e = {0};
+    out *o = out_open("file", false, &e);
+    out_text(o, "new");
+    failing = FOLDER;
+    ok(out_close(o, &e) == -1 && strstr(e.text, "file: is in place, but its folder cannot be stored: No space left"),
+       "a name that is not stored is told of: %s", e.text);
+    failing = NONE;
+    ok(holds("file", "new") && files_here() == before, "what it is of is whole");
     unlink("file");
+}
+
+/* Of many files that appear together the folder is stored once. */
+static void together(void)
+{
+    outs all = {0};
+    err e = {0};
+    synced = named = 0;
+    for (int i = 0; i < 5; i++) {
+        out *o = outs_open(&all, (const char *[]){"a", "b", "c", "folder/a", "folder/b"}[i], &e);
+        ok(o && (out_text(o, "x"), !out_close(o, &e)), "one of some files %s", e.text);
+    }
+    ok(synced == 5 && !named, "each is stored");
+    ok(!outs_commit(&all, &e) && synced == 5 && named == 2, "and the names of two folders once");
+    outs_free(&all);
+    ok(holds("a", "x") && holds("folder/b", "x"), "all are there");
+    for (int i = 0; i < 5; i++)
+        unlink((const char *[]){"a", "b", "c", "folder/a", "folder/b"}[i]);
+}
+
+/* A log by a link: its name stands in another folder, which is stored, once. */
+static void grows(void)
+{
+    struct stat s;
+    err e = {0};
+    synced = named = 0;
+    ok(!symlink("folder/log", "link"), "a link");
+    growing *g = growing_open("link", 0, &e);
+    ok(g && !growing_put(g, "x\n", 2, &e) && !growing_store(g, &e) && !growing_put(g, "y\n", 2, &e) &&
+           !growing_store(g, &e) && synced == 2,
+       "a log is stored %s", e.text);
+    ok(named == 1 && !stat("folder", &s) && last_named == s.st_ino, "its name where it is");
+    ok(!growing_close(g, &e) && holds("folder/log", "x\ny\n"), "and it is there");
+    unlink("link");
+    unlink("folder/log");
+}
+
+/* A folder that takes names but may not be read, to whoever this is: root may read all. */
+static void unreadable(void)
+{
+    const bool root = !geteuid();
+    ok(!chmod("folder", 0333) && (!root || !seteuid(65534)), "a folder that may not be read");
+    put("folder/file", "x");
+    ok(!root || !seteuid(0), "as before");
+    ok(!chmod("folder", 0700) && holds("folder/file", "x"), "takes a file");
+    unlink("folder/file");
 }
 
 static void names(void)
@@ -195,6 +254,12 @@ int main(void)
     late_failures();
     names();
     links();
+    mkdir("folder", 0700);
+    together();
+    grows();
+    chmod(".", 0711);
+    unreadable();
+    rmdir("folder");
     ok(!chdir("/") && !rmdir(folder), "the folder is empty");
     ok(at_closed_pipe(as_it_is) == SIGPIPE, "a closed pipe ends the process by SIGPIPE");
     ok(at_closed_pipe(ignored) == SIGPIPE, "where SIGPIPE was ignored, too");
