@@ -418,16 +418,17 @@ int import_vtu(import_mesh *m, in *s, const import_wishes *wishes, notes *warnin
 {
     char *text = NULL;
     int64_t size = in_all(s, &text, e);
+    if (size < 0)
+        return -1;
     reader r = {.m = m,
                 .w = wishes,
                 .warnings = warnings,
                 .e = e,
-                .x = {.name = m->name, .text = text, .at = text, .end = text + (size > 0 ? size : 0)},
+                .x = {.name = m->name, .text = text, .at = text, .end = text + size},
                 .points = -1};
-    int bad = size < 0 ? -1 : read_all(&r);
+    int bad = read_all(&r);
     free(r.arrays);
     free(r.cell);
-    if (size >= 0)
-        free(text);
+    free(text);
     return bad;
 }
