@@ -6,58 +6,112 @@
 #include <signal.h>
 #include <stdlib.h>
 
+enum { FRAMES = 2, RING = TLED_TAKEN + FRAMES };
+
 struct outbox {
     const backend *device;
     void *state;
     outbox_frame *write;
     void *context;
-    tled_taken frame;     /* what is being written */
-    int slot[TLED_TAKEN]; /* what is sent: a ring */
-    double time[TLED_TAKEN];
-    int64_t sent, written; /* how many so far */
-    bool closing, running;
-    err e; /* the thread's */
-    pthread_t thread;
+    tled_taken frame[FRAMES]; /* by number: what is being fetched, and what is being written */
+    int slot[RING];           /* what is sent */
+    double time[RING];
+    int64_t sent, fetched, written; /* how many so far */
+    int64_t whole;                  /* so many can be written: those before the first that something was wrong with */
+    bool closing;
+    int running; /* threads: one fetches, and one writes what the first has fetched */
+    err e;
+    pthread_t thread[2];
     pthread_mutex_t lock;
     pthread_cond_t changed;
 };
 
-/* Writes what is sent, until there is no more to come. After an error it only counts. */
-static void *deliver(void *context)
+/* Tells the others of one frame more; something is wrong with it where `of` says so. The lock is held. */
+static void note(outbox *o, int64_t index, const err *of)
+{
+    if (of->status && index < o->whole) {
+        o->whole = index;
+        o->e = *of;
+    }
+    pthread_cond_broadcast(&o->changed);
+}
+
+/* Fetches what is sent, until there is no more to come. After an error it only counts. */
+static void *fetch(void *context)
 {
     outbox *o = context;
     pthread_mutex_lock(&o->lock);
     for (;;) {
-        while (o->written == o->sent && !o->closing)
+        while ((o->fetched == o->sent && !o->closing) || o->fetched - o->written == FRAMES)
             pthread_cond_wait(&o->changed, &o->lock);
-        if (o->written == o->sent)
+        const int64_t index = o->fetched;
+        if (index == o->sent)
             break;
-        int slot = o->slot[o->written % TLED_TAKEN];
-        double time = o->time[o->written % TLED_TAKEN];
-        bool broken = o->e.status != 0;
+        const int slot = o->slot[index % RING];
+        const bool whole = index < o->whole;
         pthread_mutex_unlock(&o->lock);
         err e = {0};
-        if (!broken && !o->device->taken(o->state, slot, &o->frame, &e))
-            o->write(o->context, time, o->frame.displacement, o->frame.velocity, &e);
+        if (whole)
+            o->device->taken(o->state, slot, &o->frame[index % FRAMES], &e);
         pthread_mutex_lock(&o->lock);
-        if (!broken)
-            o->e = e;
-        o->written++;
-        pthread_cond_broadcast(&o->changed);
+        o->fetched++;
+        note(o, index, &e);
     }
     pthread_mutex_unlock(&o->lock);
     return NULL;
 }
 
-/* Starts the thread; signals are the main thread's, as with the pool's. 0 or errno's code. */
+/* Writes what is fetched, likewise. */
+static void *deliver(void *context)
+{
+    outbox *o = context;
+    pthread_mutex_lock(&o->lock);
+    for (;;) {
+        while (o->written == o->fetched && !(o->closing && o->written == o->sent))
+            pthread_cond_wait(&o->changed, &o->lock);
+        const int64_t index = o->written;
+        if (index == o->fetched)
+            break;
+        const tled_taken *what = &o->frame[index % FRAMES];
+        const double time = o->time[index % RING];
+        const bool whole = index < o->whole;
+        pthread_mutex_unlock(&o->lock);
+        err e = {0};
+        if (whole)
+            o->write(o->context, time, what->displacement, what->velocity, &e);
+        pthread_mutex_lock(&o->lock);
+        o->written++;
+        note(o, index, &e);
+    }
+    pthread_mutex_unlock(&o->lock);
+    return NULL;
+}
+
+/* Starts the threads; signals are the main thread's, as with the pool's. 0 or errno's code. */
 static int start(outbox *o)
 {
+    void *(*const work[])(void *) = {fetch, deliver};
     sigset_t all, before;
+    int code = 0;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, &before);
-    int code = pthread_create(&o->thread, NULL, deliver, o);
+    while (!code && o->running < 2) {
+        code = pthread_create(&o->thread[o->running], NULL, work[o->running], o);
+        o->running += !code;
+    }
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return code;
+}
+
+static int make_frames(outbox *o, int64_t nodes, err *e)
+{
+    for (int i = 0; i < FRAMES; i++) {
+        o->frame[i].displacement = mem_array(nodes, 3 * sizeof *o->frame[i].displacement, "the frames", e);
+        o->frame[i].velocity = mem_array(nodes, 3 * sizeof *o->frame[i].velocity, "the frames", e);
+        if (!o->frame[i].displacement || !o->frame[i].velocity)
+            return -1;
+    }
+    return 0;
 }
 
 outbox *outbox_create(const tled_problem *p, const backend *device, void *state, outbox_frame *write, void *context,
@@ -70,17 +124,14 @@ outbox *outbox_create(const tled_problem *p, const backend *device, void *state,
     o->state = state;
     o->write = write;
     o->context = context;
+    o->whole = INT64_MAX;
     pthread_mutex_init(&o->lock, NULL);
     pthread_cond_init(&o->changed, NULL);
-    o->frame.displacement = mem_array(p->nodes, 3 * sizeof *o->frame.displacement, "the frames", e);
-    o->frame.velocity = mem_array(p->nodes, 3 * sizeof *o->frame.velocity, "the frames", e);
-    bool whole = o->frame.displacement && o->frame.velocity;
-    int code = whole ? start(o) : 0;
-    o->running = whole && !code;
-    if (code)
-        err_system(e, NULL, code, "a thread for the frames");
-    if (o->running)
+    int code = make_frames(o, p->nodes, e) ? -1 : start(o);
+    if (!code)
         return o;
+    if (code > 0)
+        err_system(e, NULL, code, "a thread for the frames");
     outbox_close(o, e);
     return NULL;
 }
@@ -88,41 +139,53 @@ outbox *outbox_create(const tled_problem *p, const backend *device, void *state,
 void outbox_send(outbox *o, int slot, double time)
 {
     pthread_mutex_lock(&o->lock);
-    o->slot[o->sent % TLED_TAKEN] = slot;
-    o->time[o->sent % TLED_TAKEN] = time;
+    o->slot[o->sent % RING] = slot;
+    o->time[o->sent % RING] = time;
     o->sent++;
     pthread_cond_broadcast(&o->changed);
     pthread_mutex_unlock(&o->lock);
 }
 
-int outbox_wait(outbox *o, int64_t index, err *e)
+/* Until *count is past index. -1 with e filled where something was wrong with a frame. */
+static int wait_for(outbox *o, const int64_t *count, int64_t index, err *e)
 {
     pthread_mutex_lock(&o->lock);
-    while (o->written <= index)
+    while (*count <= index)
         pthread_cond_wait(&o->changed, &o->lock);
-    bool broken = o->e.status != 0;
+    const bool broken = o->e.status != 0;
     if (broken && !e->status)
         *e = o->e;
     pthread_mutex_unlock(&o->lock);
     return broken ? -1 : 0;
 }
 
+int outbox_wait_fetched(outbox *o, int64_t index, err *e)
+{
+    return wait_for(o, &o->fetched, index, e);
+}
+
+int outbox_wait(outbox *o, int64_t index, err *e)
+{
+    return wait_for(o, &o->written, index, e);
+}
+
 int outbox_close(outbox *o, err *e)
 {
     if (!o)
         return 0;
-    if (o->running) {
-        pthread_mutex_lock(&o->lock);
-        o->closing = true;
-        pthread_cond_broadcast(&o->changed);
-        pthread_mutex_unlock(&o->lock);
-        pthread_join(o->thread, NULL);
-    }
-    bool broken = o->e.status != 0;
+    pthread_mutex_lock(&o->lock);
+    o->closing = true;
+    pthread_cond_broadcast(&o->changed);
+    pthread_mutex_unlock(&o->lock);
+    while (o->running)
+        pthread_join(o->thread[--o->running], NULL);
+    const bool broken = o->e.status != 0;
     if (broken && !e->status)
         *e = o->e;
-    free(o->frame.displacement);
-    free(o->frame.velocity);
+    for (int i = 0; i < FRAMES; i++) {
+        free(o->frame[i].displacement);
+        free(o->frame[i].velocity);
+    }
     pthread_mutex_destroy(&o->lock);
     pthread_cond_destroy(&o->changed);
     free(o);

@@ -166,7 +166,7 @@ static int advance(run *n, int64_t to)
 static int take(run *n)
 {
     int64_t index = n->sent + n->unsure++;
-    if (index >= n->slots && outbox_wait(n->out, index - n->slots, n->e))
+    if (index >= n->slots && outbox_wait_fetched(n->out, index - n->slots, n->e))
         return -1;
     n->frame_time[index % n->slots] = tled_time(&n->plan, 0);
     return n->r->device->take(n->state, (int)(index % n->slots), n->e);
@@ -466,7 +466,7 @@ static int loop(run *n, run_end *end)
     return over < 0 ? -1 : written == n->plan.first ? 0 : write_frame(n);
 }
 
-/* As many as frames between two checks, and one that is still being written; where those are too many, fewer. */
+/* As many as frames between two checks, and one that is still being fetched; where those are too many, fewer. */
 static int choose_slots(const run_setup *r)
 {
     double between = r->every > 0 ? ceil((double)r->check / r->rate / r->every) : 0;

@@ -1,0 +1,114 @@
+/* Frames on their way out: in order, each fetched from its own slot; one is fetched while another is written; and what was sound before
+ * something went wrong is written all the same.
+ */
+// needs: tled/outbox.c
+#include "tled/outbox.h"
+
+#include "tap.h"
+
+#include <pthread.h>
+#include <string.h>
+
+enum { NODES = 50, SLOTS = 3, NEVER = 1 << 20 };
+
+/* A device whose frame is the number in its slot, and what came of its frames. */
+typedef struct world {
+    int64_t slot[SLOTS];
+    int64_t bad_fetch, bad_write; /* frames that fail */
+    int64_t fetched, written;
+    bool whole;  /* each written frame was the one that was due, all of it */
+    bool beside; /* a frame was fetched while another was being written, and that waited for it */
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+} world;
+
+static int fetch(void *state, int slot, void *to, err *e)
+{
+    world *w = state;
+    const tled_taken *t = to;
+    pthread_mutex_lock(&w->lock);
+    const int64_t number = w->slot[slot];
+    for (int i = 0; i < 3 * NODES; i++)
+        t->displacement[i] = (double)number, t->velocity[i] = -(double)number;
+    w->fetched++;
+    pthread_cond_broadcast(&w->changed);
+    pthread_mutex_unlock(&w->lock);
+    return number == w->bad_fetch ? err_set(e, NULL, 0, "no frame %lld", (long long)number) : 0;
+}
+
+static int put(void *context, double time, const double *displacement, const double *velocity, err *e)
+{
+    world *w = context;
+    pthread_mutex_lock(&w->lock);
+    const int64_t number = w->written;
+    while (number == 0 && w->beside && w->fetched < 2)
+        pthread_cond_wait(&w->changed, &w->lock); /* for ever, where frames go one by one */
+    w->whole = w->whole && time == (double)number;
+    for (int i = 0; i < 3 * NODES; i++)
+        w->whole = w->whole && displacement[i] == (double)number && velocity[i] == -(double)number;
+    w->written++;
+    pthread_mutex_unlock(&w->lock);
+    return number == w->bad_write ? err_set(e, NULL, 0, "no room for %lld", (long long)number) : 0;
+}
+
+/* Sends frames as run.c does; how many were sent before something was known to be wrong. */
+static int64_t send_all(world *w, int64_t frames, err *e)
+{
+    const tled_problem p = {.nodes = NODES};
+    const backend device = {.taken = fetch};
+    int64_t i = 0;
+    outbox *o = outbox_create(&p, &device, w, put, w, e);
+    ok(o, "an outbox");
+    for (; o && i < frames; i++) {
+        if (i >= SLOTS && outbox_wait_fetched(o, i - SLOTS, e))
+            break;
+        pthread_mutex_lock(&w->lock);
+        w->slot[i % SLOTS] = i;
+        pthread_mutex_unlock(&w->lock);
+        outbox_send(o, (int)(i % SLOTS), (double)i);
+        if (i == frames / 2 && !e->status && outbox_wait(o, i, e))
+            break;
+        if (i == frames / 2)
+            ok(w->written == i + 1, "what was waited for is written");
+    }
+    outbox_close(o, e);
+    return i;
+}
+
+static world make(void)
+{
+    world w = {.bad_fetch = NEVER, .bad_write = NEVER, .whole = true};
+    pthread_mutex_init(&w.lock, NULL);
+    pthread_cond_init(&w.changed, NULL);
+    return w;
+}
+
+int main(void)
+{
+    err e = {0};
+    world w = make();
+    ok(send_all(&w, 1000, &e) == 1000 && !e.status && w.whole && w.written == 1000, "1000 frames, in order, whole %s",
+       e.text);
+    w = make();
+    w.beside = true;
+    ok(send_all(&w, 100, &e) == 100 && w.whole && w.written == 100, "the second is fetched while the first is written");
+    w = make();
+    w.bad_fetch = 20;
+    ok(send_all(&w, 1000, &e) < 1000 && !strcmp(e.text, "no frame 20") && w.whole && w.written == 20,
+       "a frame that is not to be had: those before it are written: %s", e.text);
+    w = make();
+    w.bad_write = 20;
+    e = (err){0};
+    ok(send_all(&w, 1000, &e) < 1000 && !strcmp(e.text, "no room for 20") && w.whole && w.written == 21,
+       "one that cannot be written is the last: %s", e.text);
+    w = make();
+    w.bad_fetch = 2;
+    w.bad_write = 1;
+    e = (err){0};
+    send_all(&w, 1000, &e);
+    ok(!strcmp(e.text, "no room for 1") && w.written == 2, "of two, the first is told: %s", e.text);
+    w = make();
+    e = (err){0};
+    ok(send_all(&w, 0, &e) == 0 && !e.status, "none");
+    return done_testing();
+}
