@@ -236,10 +236,9 @@ checkpoint *checkpoint_begin(const char *path, const likeness_run *run, err *e)
     /* Twice: before anything is made, and once no other run can make one. */
     if (check_none(c, e) || open_frames(c, O_CREAT, e) || check_none(c, e) || check_frames(c, e) || start_adding(c, e))
         goto fail;
-    if (replace_store_names(c->frames_path)) { /* before the name of a state that counts on it is */
-        err_system(e, c->frames_path, errno, "cannot write");
+    /* Before the name of a state that counts on it is. */
+    if (replace_store_names(c->frames_path, c->frames_path, e))
         goto fail;
-    }
     begin_frames(c->frames);
     for (int i = 0; i < c->axes; i++) {
         const model_axis *a = &c->body.axes[i];

@@ -146,11 +146,12 @@ void outbox_send(outbox *o, int slot, double time)
     pthread_mutex_unlock(&o->lock);
 }
 
-/* Until *count is past index. -1 with e filled where something was wrong with a frame. */
+/* Until *count is past index. -1 with e filled where something was wrong with a frame: the first such, so that those before it are
+ * waited for. */
 static int wait_for(outbox *o, const int64_t *count, int64_t index, err *e)
 {
     pthread_mutex_lock(&o->lock);
-    while (*count <= index)
+    while (*count <= index || (o->e.status && o->written < o->whole))
         pthread_cond_wait(&o->changed, &o->lock);
     const bool broken = o->e.status != 0;
     if (broken && !e->status)

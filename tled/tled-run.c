@@ -373,16 +373,28 @@ static int begin_checkpoints(session *s, const struct options *o, err *e)
     return checkpoint_replay(s->checkpoint, replay_frame, s, e);
 }
 
+/* What the shell opened for the output, and its name. */
+static void store_output(int output, err *e)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/proc/self/fd/%d", output);
+    if (output < 0 || replace_store(output))
+        err_system(e, "stdout", errno, "cannot write");
+    else if (!access(path, F_OK))
+        replace_store_names(path, "stdout", e);
+}
+
 /* Ends the log and the output. Where there is a checkpoint, which then goes, both are stored first, also by a shell's `>`. */
 static void end_output(session *s, const tool *t, err *e)
 {
-    const int output = s->checkpoint ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : -1;
+    const bool ours = s->checkpoint && s->stage.sink && !out_is_file(s->stage.sink);
+    const int output = ours ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : -1;
     if (s->checkpoint && !e->status && s->log.file)
         log_store(&s->log, e);
     log_close(&s->log, e);
     stage_close(&s->stage, t, e);
-    if (s->checkpoint && !e->status && (output < 0 || replace_store(output)))
-        err_system(e, "stdout", errno, "cannot write");
+    if (ours && !e->status)
+        store_output(output, e);
     if (output >= 0)
         close(output);
 }

@@ -84,8 +84,10 @@ int64_t growing_size(const growing *g)
 
 int growing_store(growing *g, err *e)
 {
-    if (replace_store(g->fd) || (!g->named && replace_store_names(g->name)))
+    if (replace_store(g->fd))
         return err_system(e, g->name, errno, "cannot write");
+    if (!g->named && replace_store_names(g->name, g->name, e))
+        return -1;
     g->named = true;
     return 0;
 }

@@ -86,8 +86,8 @@ static int store_names(const outs *s, err *e)
     for (int64_t i = 0; i < s->count; i++) {
         const char *at = s->file[i].target, *next = i + 1 < s->count ? s->file[i + 1].target : NULL;
         const size_t n = path_folder(at);
-        if ((!next || n != path_folder(next) || memcmp(at, next, n) != 0) && replace_store_names(at))
-            return err_system(e, at, errno, "is in place, but its folder cannot be stored");
+        if ((!next || n != path_folder(next) || memcmp(at, next, n) != 0) && replace_store_names(at, at, e))
+            return -1;
     }
     return 0;
 }

@@ -86,7 +86,8 @@ int replace_store(int fd)
     return bad && errno != EINVAL && errno != ENOTSUP ? -1 : 0;
 }
 
-int replace_store_names(const char *path)
+/* 0, or -1 with errno. */
+static int store_names(const char *path)
 {
     char real[PATH_MAX], folder[PATH_MAX];
     const char *at = realpath(path, real) ? real : path; /* /dev/stdout is, of a pipe, nothing */
@@ -99,6 +100,11 @@ int replace_store_names(const char *path)
     close(fd);
     errno = code;
     return bad;
+}
+
+int replace_store_names(const char *path, const char *name, err *e)
+{
+    return store_names(path) ? err_system(e, name, errno, "is there, but its folder cannot be stored") : 0;
 }
 
 int replace_finish(replace *r, const char *name, err *e)
@@ -118,8 +124,8 @@ int replace_finish(replace *r, const char *name, err *e)
         temporary_drop(r->temporary);
         free(r->temporary);
         r->temporary = NULL;
-        if (!r->passing && replace_store_names(r->target))
-            bad = err_system(e, name, errno, "is in place, but its folder cannot be stored");
+        if (!r->passing)
+            bad = replace_store_names(r->target, name, e);
     }
     replace_discard(r);
     return bad;

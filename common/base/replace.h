@@ -27,10 +27,9 @@ int replace_finish(replace *r, const char *name, err *e);
  * then. */
 int replace_store(int fd);
 
-/* Waits until what stands under the names in the folder of a file is stored; path may be a link to the file. 0, or -1 with errno. No
- * memory is asked for. A folder that may be written but not read takes names and cannot be synced, and one of a file system that is
+/* Waits until what stands under the names in the folder of a file is stored; path may be a link to the file. name: for messages. A folder that may be written but not read takes names and cannot be synced, and one of a file system that is
  * read-only has none to store; nothing is wrong then. */
-int replace_store_names(const char *path);
+int replace_store_names(const char *path, const char *name, err *e);
 
 /* Removes the file. */
 void replace_discard(replace *r);

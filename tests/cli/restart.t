@@ -201,6 +201,8 @@ else
             status=$?
             how=--restart
             [ -e "$c" ] || how=--checkpoint
+            # It is gone only where it was not there yet, or is not wanted any more.
+            [ -e "$c" ] || [ -e "$T/got" ] || [ "$at" -le 10 ] || status=gone
             lost=$((lost + 1))
             # Its name may be kept while its folder is being stored, and then it is whole.
             if [ "$status" -eq 137 ] && { [ ! -e "$T/got" ] || cmp -s "$T/want" "$T/got"; } && run "$@" "$how" "$c" -o "$T/got" &&
@@ -211,6 +213,7 @@ else
             fi
         done
         at=$((at + 1))
+        [ "$at" -ne 11 ] || [ "$last" -ne 10 ] || at=$((syncs - 3)) last=$syncs names='0 15 255'
     done >"$T/err" 2>&1
     is "$good" "$lost" "a loss of power, $lost times, at one of the $syncs that something is stored: the same bytes and rows"
     [ "$good" -eq "$lost" ] || diag_file "$T/err"

@@ -1,8 +1,8 @@
 /* The loss of power: preloaded into a program (LD_PRELOAD), it ends it at its n-th fsync, from 1, that SINEW_FAULT_AT gives, as by
- * kill -9, or after all is done, where n is one past the last; and takes from every file what was written since that file was stored last. A name that was made, given to
- * another file or removed since its folder was stored is as it was, but for those whose bits SINEW_FAULT_KEPT has, in the order in
- * which they were touched. Where SINEW_FAULT_COUNT names a file, that gets the number of syncs at the end. It knows the calls below, of
- * the C library's many.
+ * kill -9, or after all is done, where n is one past the last. What write() gave a file since that was stored last is taken from it. A
+ * name that was made, given to another file or removed since its folder was stored is as it was, but for those whose bits
+ * SINEW_FAULT_KEPT has, in the order in which they were touched. Where SINEW_FAULT_COUNT names a file, that gets the number of syncs at
+ * the end. Only the calls below are known, of all that the C library has.
  */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 /* RTLD_NEXT */

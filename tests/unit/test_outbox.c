@@ -8,6 +8,7 @@
 
 #include <pthread.h>
 #include <string.h>
+#include <time.h>
 
 enum { NODES = 50, SLOTS = 3, NEVER = 1 << 20 };
 
@@ -17,7 +18,7 @@ typedef struct world {
     int64_t bad_fetch, bad_write; /* frames that fail */
     int64_t fetched, written;
     bool whole;  /* each written frame was the one that was due, all of it */
-    bool beside; /* a frame was fetched while another was being written, and that waited for it */
+    bool beside; /* the first waits, while it is written, for the second to be fetched; false once that was in vain */
     pthread_mutex_t lock;
     pthread_cond_t changed;
 } world;
@@ -41,8 +42,16 @@ static int put(void *context, double time, const double *displacement, const dou
     world *w = context;
     pthread_mutex_lock(&w->lock);
     const int64_t number = w->written;
+    if (number == w->bad_write) { /* the next has long been fetched */
+        pthread_mutex_unlock(&w->lock);
+        nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+        pthread_mutex_lock(&w->lock);
+    }
+    struct timespec end;
+    clock_gettime(CLOCK_REALTIME, &end);
+    end.tv_sec += 20;
     while (number == 0 && w->beside && w->fetched < 2)
-        pthread_cond_wait(&w->changed, &w->lock); /* for ever, where frames go one by one */
+        w->beside = !pthread_cond_timedwait(&w->changed, &w->lock, &end); /* in vain, where frames go one by one */
     w->whole = w->whole && time == (double)number;
     for (int i = 0; i < 3 * NODES; i++)
         w->whole = w->whole && displacement[i] == (double)number && velocity[i] == -(double)number;
@@ -75,39 +84,40 @@ static int64_t send_all(world *w, int64_t frames, err *e)
     return i;
 }
 
-static world make(void)
+static void begin(world *w)
 {
-    world w = {.bad_fetch = NEVER, .bad_write = NEVER, .whole = true};
-    pthread_mutex_init(&w.lock, NULL);
-    pthread_cond_init(&w.changed, NULL);
-    return w;
+    *w = (world){.bad_fetch = NEVER, .bad_write = NEVER, .whole = true};
+    pthread_mutex_init(&w->lock, NULL);
+    pthread_cond_init(&w->changed, NULL);
 }
 
 int main(void)
 {
     err e = {0};
-    world w = make();
+    world w;
+    begin(&w);
     ok(send_all(&w, 1000, &e) == 1000 && !e.status && w.whole && w.written == 1000, "1000 frames, in order, whole %s",
        e.text);
-    w = make();
+    begin(&w);
     w.beside = true;
-    ok(send_all(&w, 100, &e) == 100 && w.whole && w.written == 100, "the second is fetched while the first is written");
-    w = make();
+    ok(send_all(&w, 100, &e) == 100 && w.whole && w.written == 100 && w.beside,
+       "the second is fetched while the first is written");
+    begin(&w);
     w.bad_fetch = 20;
     ok(send_all(&w, 1000, &e) < 1000 && !strcmp(e.text, "no frame 20") && w.whole && w.written == 20,
        "a frame that is not to be had: those before it are written: %s", e.text);
-    w = make();
+    begin(&w);
     w.bad_write = 20;
     e = (err){0};
     ok(send_all(&w, 1000, &e) < 1000 && !strcmp(e.text, "no room for 20") && w.whole && w.written == 21,
        "one that cannot be written is the last: %s", e.text);
-    w = make();
+    begin(&w);
     w.bad_fetch = 2;
     w.bad_write = 1;
     e = (err){0};
     send_all(&w, 1000, &e);
     ok(!strcmp(e.text, "no room for 1") && w.written == 2, "of two, the first is told: %s", e.text);
-    w = make();
+    begin(&w);
     e = (err){0};
     ok(send_all(&w, 0, &e) == 0 && !e.status, "none");
     return done_testing();

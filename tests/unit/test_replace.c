@@ -101,7 +101,7 @@ static void late_failures(void)
     out *o = out_open("file", false, &e);
     out_text(o, "new");
     failing = FOLDER;
-    ok(out_close(o, &e) == -1 && strstr(e.text, "file: is in place, but its folder cannot be stored: No space left"),
+    ok(out_close(o, &e) == -1 && strstr(e.text, "file: is there, but its folder cannot be stored: No space left"),
        "a name that is not stored is told of: %s", e.text);
     failing = NONE;
     ok(holds("file", "new") && files_here() == before, "what it is of is whole");
@@ -147,10 +147,13 @@ static void grows(void)
 static void unreadable(void)
 {
     const bool root = !geteuid();
-    ok(!chmod("folder", 0333) && (!root || !seteuid(65534)), "a folder that may not be read");
+    ok(!chmod("folder", 0333), "a folder that may not be read");
+    if (root && seteuid(65534)) {
+        skip(2, "nobody else to be");
+        return;
+    }
     put("folder/file", "x");
-    ok(!root || !seteuid(0), "as before");
-    ok(!chmod("folder", 0700) && holds("folder/file", "x"), "takes a file");
+    ok((!root || !seteuid(0)) && !chmod("folder", 0700) && holds("folder/file", "x"), "it takes a file");
     unlink("folder/file");
 }
 
