@@ -210,7 +210,7 @@ static int check_none(const checkpoint *c, err *e)
 {
     struct stat s;
     const char *there = !lstat(c->path, &s) ? c->path : !lstat(c->before, &s) ? c->before : NULL;
-    return there ? err_set(e, there, 0, "a checkpoint is there; expected --restart to go on from it, or another name")
+    return there ? err_set(e, there, 0, "is there; expected --restart, to go on from a checkpoint, or another name")
                  : 0;
 }
 

@@ -276,7 +276,7 @@ sed 's/30000/30001/' "$T/muscle.sinew" >"$T/other.sinew"
 model=$T/other.sinew
 fails 1 "so is another model" 'array material.peak differs' again -c all=0.8 -t 0.4
 model=$T/muscle.sinew
-fails 1 "a run that begins anew where one is" 'a checkpoint is there; expected --restart' \
+fails 1 "a run that begins anew where one is" 'state: is there; expected --restart' \
     run -d cpu -c all=0.8 -t 0.4 --checkpoint "$c"
 check "loses nothing" cmp "$T/d/state" "$c"
 fails 2 "another file to go on in" 'expected the same file' run -c all=0.8 -t 0.4 --checkpoint "$c" --restart "$T/none"

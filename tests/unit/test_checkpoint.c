@@ -391,7 +391,7 @@ static void test_others(void)
     refused(&r, NULL, "meta extra is there only now", "one more meta");
     const likeness_run run = run_of(&r);
     checkpoint *c = checkpoint_begin(path, &run, &r.b.e);
-    ok(!c && strstr(r.b.e.text, "a checkpoint is there"), "a run that begins: %s", r.b.e.text);
+    ok(!c && strstr(r.b.e.text, "file: is there; expected --restart"), "a run that begins: %s", r.b.e.text);
     spill(path, (const unsigned char *)"%sinew 1 text\nend\n", 18);
     refused(&r, NULL, "is no checkpoint", "another model");
     end(&r, false);
