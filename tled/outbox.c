@@ -8,6 +8,14 @@
 
 enum { FRAMES = 2, RING = TLED_TAKEN + FRAMES };
 
+/* What one of the threads does. */
+typedef struct stage {
+    outbox *o;
+    int (*work)(outbox *o, int64_t index, err *e);
+    const int64_t *ready; /* how many it can have done */
+    int64_t *done;
+} stage;
+
 struct outbox {
     const backend *device;
     void *state;
@@ -19,69 +27,50 @@ struct outbox {
     int64_t sent, fetched, written; /* how many so far */
     int64_t whole;                  /* so many can be written: those before the first that something was wrong with */
     bool closing;
-    int running; /* threads: one fetches, and one writes what the first has fetched */
+    int running;    /* threads */
+    stage stage[2]; /* one fetches, and one writes what the first has fetched */
     err e;
     pthread_t thread[2];
     pthread_mutex_t lock;
     pthread_cond_t changed;
 };
 
-/* Tells the others of one frame more; something is wrong with it where `of` says so. The lock is held. */
-static void note(outbox *o, int64_t index, const err *of)
+static int fetch(outbox *o, int64_t index, err *e)
 {
-    if (of->status && index < o->whole) {
-        o->whole = index;
-        o->e = *of;
-    }
-    pthread_cond_broadcast(&o->changed);
+    return o->device->taken(o->state, o->slot[index % RING], &o->frame[index % FRAMES], e);
 }
 
-/* Fetches what is sent, until there is no more to come. After an error it only counts. */
-static void *fetch(void *context)
+static int put(outbox *o, int64_t index, err *e)
 {
-    outbox *o = context;
+    const tled_taken *what = &o->frame[index % FRAMES];
+    return o->write(o->context, o->time[index % RING], what->displacement, what->velocity, e);
+}
+
+/* Does its work with the frames that are ready for it, until there are no more to come. After one that something was wrong with it only
+ * counts. */
+static void *work(void *context)
+{
+    const stage *s = context;
+    outbox *o = s->o;
     pthread_mutex_lock(&o->lock);
     for (;;) {
-        while ((o->fetched == o->sent && !o->closing) || o->fetched - o->written == FRAMES)
+        /* Nothing is ready, and more may come; or there is no room for one more. */
+        while (*s->done == *s->ready ? !o->closing || *s->done < o->sent : *s->done - o->written == FRAMES)
             pthread_cond_wait(&o->changed, &o->lock);
-        const int64_t index = o->fetched;
-        if (index == o->sent)
+        const int64_t index = *s->done;
+        if (index == *s->ready)
             break;
-        const int slot = o->slot[index % RING];
         const bool whole = index < o->whole;
         pthread_mutex_unlock(&o->lock);
         err e = {0};
-        if (whole)
-            o->device->taken(o->state, slot, &o->frame[index % FRAMES], &e);
+        const bool wrong = whole && s->work(o, index, &e);
         pthread_mutex_lock(&o->lock);
-        o->fetched++;
-        note(o, index, &e);
-    }
-    pthread_mutex_unlock(&o->lock);
-    return NULL;
-}
-
-/* Writes what is fetched, likewise. */
-static void *deliver(void *context)
-{
-    outbox *o = context;
-    pthread_mutex_lock(&o->lock);
-    for (;;) {
-        while (o->written == o->fetched && !(o->closing && o->written == o->sent))
-            pthread_cond_wait(&o->changed, &o->lock);
-        const int64_t index = o->written;
-        if (index == o->fetched)
-            break;
-        const tled_taken *what = &o->frame[index % FRAMES];
-        const double time = o->time[index % RING];
-        const bool whole = index < o->whole;
-        pthread_mutex_unlock(&o->lock);
-        err e = {0};
-        if (whole)
-            o->write(o->context, time, what->displacement, what->velocity, &e);
-        pthread_mutex_lock(&o->lock);
-        o->written++;
-        note(o, index, &e);
+        if (wrong && index < o->whole) {
+            o->whole = index;
+            o->e = e;
+        }
+        ++*s->done;
+        pthread_cond_broadcast(&o->changed);
     }
     pthread_mutex_unlock(&o->lock);
     return NULL;
@@ -90,13 +79,12 @@ static void *deliver(void *context)
 /* Starts the threads; signals are the main thread's, as with the pool's. 0 or errno's code. */
 static int start(outbox *o)
 {
-    void *(*const work[])(void *) = {fetch, deliver};
     sigset_t all, before;
     int code = 0;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, &before);
     while (!code && o->running < 2) {
-        code = pthread_create(&o->thread[o->running], NULL, work[o->running], o);
+        code = pthread_create(&o->thread[o->running], NULL, work, &o->stage[o->running]);
         o->running += !code;
     }
     pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -125,6 +113,8 @@ outbox *outbox_create(const tled_problem *p, const backend *device, void *state,
     o->write = write;
     o->context = context;
     o->whole = INT64_MAX;
+    o->stage[0] = (stage){o, fetch, &o->sent, &o->fetched};
+    o->stage[1] = (stage){o, put, &o->fetched, &o->written};
     pthread_mutex_init(&o->lock, NULL);
     pthread_cond_init(&o->changed, NULL);
     int code = make_frames(o, p->nodes, e) ? -1 : start(o);
