@@ -4,7 +4,6 @@
 #include "base/mem.h"
 #include "base/path.h"
 #include "base/progress.h"
-#include "base/replace.h"
 #include "mesh/scale.h"
 #include "model/materials.h"
 #include "model/stage.h"
@@ -14,13 +13,10 @@
 #include "tled/run.h"
 #include "tled/step.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { REST_STEPS = 200000 }; /* after the script's end, before a run to rest gives up */
 
@@ -373,30 +369,15 @@ static int begin_checkpoints(session *s, const struct options *o, err *e)
     return checkpoint_replay(s->checkpoint, replay_frame, s, e);
 }
 
-/* What the shell opened for the output, and its name. */
-static void store_output(int output, err *e)
-{
-    char path[64];
-    snprintf(path, sizeof path, "/proc/self/fd/%d", output);
-    if (output < 0 || replace_store(output))
-        err_system(e, "stdout", errno, "cannot write");
-    else if (!access(path, F_OK))
-        replace_store_names(path, "stdout", e);
-}
-
 /* Ends the log and the output. Where there is a checkpoint, which then goes, both are stored first, also by a shell's `>`. */
 static void end_output(session *s, const tool *t, err *e)
 {
-    const bool ours = s->checkpoint && s->stage.sink && !out_is_file(s->stage.sink);
-    const int output = ours ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : -1;
-    if (s->checkpoint && !e->status && s->log.file)
+    if (s->checkpoint && s->log.file && !e->status)
         log_store(&s->log, e);
+    if (s->checkpoint && s->stage.sink)
+        out_outlast(s->stage.sink);
     log_close(&s->log, e);
     stage_close(&s->stage, t, e);
-    if (ours && !e->status)
-        store_output(output, e);
-    if (output >= 0)
-        close(output);
 }
 
 static void end_checkpoints(session *s, const err *e)

@@ -23,6 +23,7 @@ struct out {
     char *name;       /* for messages */
     replace file;     /* no target: fd is written directly */
     bool gzip, large; /* large: a piece of CHUNK was written */
+    bool outlast;     /* it is stored before it is closed */
     z_stream z;
     unsigned char *packed;
     unsigned char *buffer;
@@ -184,6 +185,11 @@ out *out_open_passing(const char *path, err *e)
     return o;
 }
 
+void out_outlast(out *o)
+{
+    o->outlast = true;
+}
+
 out *out_take(int fd, const char *name, err *e)
 {
     return out_new(fd, name, false, e);
@@ -301,6 +307,16 @@ bool out_is_terminal(const out *o)
     return o->fd >= 0 && isatty(o->fd);
 }
 
+/* What others opened, and its name, where the system can tell which that is. */
+static int store_open(const out *o, err *e)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/proc/self/fd/%d", o->fd);
+    if (replace_store(o->fd))
+        return err_system(e, o->name, errno, "cannot write");
+    return access(path, F_OK) ? 0 : replace_store_names(path, o->name, e);
+}
+
 int out_close(out *o, err *e)
 {
     empty(o, Z_FINISH);
@@ -311,7 +327,8 @@ int out_close(out *o, err *e)
         bad = replace_finish(&o->file, o->name, e);
         o->fd = -1;
     } else if (!bad && o->fd >= 0) {
-        if (close(o->fd) && errno != EINTR)
+        bad = o->outlast ? store_open(o, e) : 0;
+        if (close(o->fd) && errno != EINTR && !bad)
             bad = err_system(e, o->name, errno, "cannot write");
         o->fd = -1;
     }

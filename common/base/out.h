@@ -18,6 +18,9 @@ out *out_open(const char *path, bool gzip, err *e);
 /* The same of a new file that the caller renames once more: its name is not stored. */
 out *out_open_passing(const char *path, err *e);
 
+/* When closed, it is stored in any case, also where the shell has opened it, and so is its name: before what it was made from goes. */
+void out_outlast(out *o);
+
 /* Writes to a descriptor from where it stands, as it is; it is out's from then on, but the caller's where this fails. */
 out *out_take(int fd, const char *name, err *e);
 
