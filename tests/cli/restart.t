@@ -179,25 +179,16 @@ check "to the same bytes" cmp "$T/want" "$T/got"
 
 # The loss of power: at each time that something is stored, what was written since and is not is gone.
 power=$(cd "${BUILD:-build}" && pwd)/tests/faults/power.so
-if [ -n "$SINEW_SANITIZED" ]; then
-    skip 8 "sanitizers come first in the list of libraries"
-elif [ ! -e "$power" ]; then
-    not_ok "$power is not there: make unit builds it"
-else
-    set -- -d cpu -c all=0.8 -t 0.2 --every 0.002 --log "$T/log"
-    run "$@" >"$T/want"
-    cut -f 1-18 "$T/log" >"$T/rows"
-    LD_PRELOAD=$power SINEW_FAULT_COUNT=$T/count run "$@" --checkpoint "$c" --checkpoint-every 0.02 -o "$T/got"
-    syncs=$(cat "$T/count")
-    [ "${syncs:=0}" -gt 10 ] || not_ok "$syncs times that something is stored"
-    # Of names that were touched, in the order of their touching, some are as they were, by bits.
-    at=1 lost=0 good=0
-    last=$syncs names='0 1 2 3 4 5 6 7 8 15'
-    [ "$tries" -ge 40 ] || last=10 names='0 2 8'
-    while [ "$at" -le "$last" ]; do
+
+# lose_at PLACES NAMES ARG...: power is lost at each of the places, with each choice of names that stay as they are made, by bits in the
+# order of their touching; and the run goes on.
+lose_at() {
+    places=$1 names=$2
+    shift 2
+    for at in $places; do
         for kept in $names; do
             rm -f "$c" "$c.1" "$c.frames" "$T/log" "$T/got"
-            LD_PRELOAD=$power SINEW_FAULT_AT=$at SINEW_FAULT_KEPT=$kept run "$@" --checkpoint "$c" --checkpoint-every 0.02 -o "$T/got" 2>/dev/null
+            LD_PRELOAD=$power SINEW_FAULT_AT=$at SINEW_FAULT_KEPT=$kept run "$@" --checkpoint "$c" -o "$T/got" 2>/dev/null
             status=$?
             how=--restart
             [ -e "$c" ] || how=--checkpoint
@@ -212,23 +203,45 @@ else
                 echo "power $at, names $kept: status $status, $how"
             fi
         done
-        at=$((at + 1))
-        [ "$at" -ne 11 ] || [ "$last" -ne 10 ] || at=$((syncs - 3)) last=$syncs names='0 15 255'
-    done >"$T/err" 2>&1
+    done
+}
+
+put() { # ARG...: to $T/got, by $output
+    if [ "$output" = -o ]; then
+        run "$@" -o "$T/got"
+    else
+        run "$@" >"$T/got"
+    fi
+}
+
+if [ -n "$SINEW_SANITIZED" ]; then
+    skip 8 "sanitizers come first in the list of libraries"
+elif [ ! -e "$power" ]; then
+    not_ok "$power is not there: make unit builds it"
+else
+    set -- -d cpu -c all=0.8 -t 0.2 --every 0.002 --log "$T/log"
+    run "$@" >"$T/want"
+    cut -f 1-18 "$T/log" >"$T/rows"
+    LD_PRELOAD=$power SINEW_FAULT_COUNT=$T/count run "$@" --checkpoint "$c" --checkpoint-every 0.02 -o "$T/got"
+    syncs=$(cat "$T/count")
+    [ "${syncs:=0}" -gt 10 ] || not_ok "$syncs times that something is stored"
+    set -- "$@" --checkpoint-every 0.02
+    lost=0 good=0
+    if [ "$tries" -lt 40 ]; then
+        lose_at '1 2 3 4 5 6 7 8 9 10' '0 2 8' "$@"
+        lose_at "$((syncs - 3)) $((syncs - 2)) $((syncs - 1)) $syncs" '0 15 255' "$@"
+    else
+        lose_at "$(awk -v n="$syncs" 'BEGIN { while (++i <= n) print i }')" '0 1 2 3 4 5 6 7 8 15' "$@"
+    fi >"$T/err" 2>&1
     is "$good" "$lost" "a loss of power, $lost times, at one of the $syncs that something is stored: the same bytes and rows"
     [ "$good" -eq "$lost" ] || diag_file "$T/err"
     # Once the run has ended, and its checkpoint is gone.
-    set -- "$@" --checkpoint "$c" --checkpoint-every 0.02
     for output in -o '>'; do
+        rm -f "$T/log" "$T/got"
+        LD_PRELOAD=$power SINEW_FAULT_COUNT=$T/count put "$@" --checkpoint "$c"
         for kept in 0 15 255; do
             rm -f "$c" "$c.1" "$c.frames" "$T/log" "$T/got"
-            if [ "$output" = -o ]; then
-                LD_PRELOAD=$power SINEW_FAULT_COUNT=$T/count run "$@" -o "$T/got"
-                LD_PRELOAD=$power SINEW_FAULT_AT=$(($(cat "$T/count") + 1)) SINEW_FAULT_KEPT=$kept run "$@" -o "$T/got" 2>"$T/err"
-            else
-                LD_PRELOAD=$power SINEW_FAULT_COUNT=$T/count run "$@" >"$T/got"
-                LD_PRELOAD=$power SINEW_FAULT_AT=$(($(cat "$T/count") + 1)) SINEW_FAULT_KEPT=$kept run "$@" >"$T/got" 2>"$T/err"
-            fi
+            LD_PRELOAD=$power SINEW_FAULT_AT=$(($(cat "$T/count") + 1)) SINEW_FAULT_KEPT=$kept put "$@" --checkpoint "$c" 2>"$T/err"
             status=$?
             cut -f 1-18 "$T/log" | cmp -s - "$T/rows"
             is "$status $? $(cmp "$T/want" "$T/got" 2>&1)" '137 0 ' "a loss of power when all is done, $output, names $kept: output and log are there"

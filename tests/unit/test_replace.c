@@ -111,11 +111,12 @@ static void late_failures(void)
 /* Of many files that appear together the folder is stored once. */
 static void together(void)
 {
+    static const char *const path[] = {"a", "b", "c", "folder/a", "folder/b"};
     outs all = {0};
     err e = {0};
     synced = named = 0;
     for (int i = 0; i < 5; i++) {
-        out *o = outs_open(&all, (const char *[]){"a", "b", "c", "folder/a", "folder/b"}[i], &e);
+        out *o = outs_open(&all, path[i], &e);
         ok(o && (out_text(o, "x"), !out_close(o, &e)), "one of some files %s", e.text);
     }
     ok(synced == 5 && !named, "each is stored");
@@ -123,7 +124,7 @@ static void together(void)
     outs_free(&all);
     ok(holds("a", "x") && holds("folder/b", "x"), "all are there");
     for (int i = 0; i < 5; i++)
-        unlink((const char *[]){"a", "b", "c", "folder/a", "folder/b"}[i]);
+        unlink(path[i]);
 }
 
 /* A log by a link: its name stands in another folder, which is stored, once. */
