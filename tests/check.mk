@@ -206,7 +206,7 @@ lint-shell:
 	@shellcheck --external-sources --source-path=SCRIPTDIR $(SCRIPTS)
 
 lint-man:
-	@mandoc -Tlint -Wwarning $(wildcard man/*.[157])
+	@tests/pages $(wildcard man/*.[157])
 
 # What no compiler sees: tests/shape says what.
 lint-shape: all
@@ -266,7 +266,7 @@ help:
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
-	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc, and the shape of it all' \
+	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc, groff, and the shape of it all' \
 	'make html         the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make clean        removes what was built' \
