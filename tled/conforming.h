@@ -1,6 +1,6 @@
 /* The part of a problem whose elements are hexahedra of any shape, not a lattice's boxes: what each of them is at rest, and its stable
  * step. Derivatives are the element's mean ones and hourglass vectors Flanagan & Belytschko's (element_any.h); the hourglass stiffness is
- * DESIGN's formula with the element's own V and B; a corner has an eighth of the element's mass. The
+ * element_hourglass's formula with the element's own V and B; a corner has an eighth of the element's mass. The
  * problem owns it.
  */
 #ifndef SINEW_CONFORMING_H

@@ -69,7 +69,7 @@ void conforming_join(tled_problem *p)
     for (int64_t i = 0; i < p->elements; i++) {
         const tled_law law = tled_law_of(p, i);
         conforming_element *own = &c->element[i];
-        own->hourglass = p->kappa * (law.bulk + 4. / 3 * law.mu) * own->volume * own->squares / 8;
+        own->hourglass = p->kappa * element_hourglass_modulus(law.mu, law.bulk) * own->volume * own->squares / 8;
         conforming_matrix(p, i, rest, none, &a);
         if (i && step_below(&a, conforming_room(p, i, c->square)))
             continue;

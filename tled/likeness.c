@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char likeness_bounded[] = ", hourglass modulus at most 11 mu";
+
 void likeness_free(likeness *l)
 {
     for (int64_t i = 0; i < l->parts; i++)
@@ -132,6 +134,14 @@ int likeness_put(const likeness *l, model *to, err *e)
     return sum ? 0 : -1;
 }
 
+/* Whether `here` is `there` and likeness_bounded. */
+static bool is_bounded_now(const char *there, const char *here)
+{
+    const char *at = strstr(here, likeness_bounded);
+    return at && !strncmp(there, here, (size_t)(at - here)) &&
+           !strcmp(there + (at - here), at + strlen(likeness_bounded));
+}
+
 /* Where an option begins, or what ran. */
 static bool begins(const char *word)
 {
@@ -159,6 +169,10 @@ static int compare_options(const char *there, const char *here, const char *plac
     int size[2];
     if (!strcmp(there, here))
         return 0;
+    if (is_bounded_now(there, here))
+        return err_set(e, place, 0,
+                       "is of a run whose hourglass modulus is lambda + 2 mu, of an earlier version or another nu; "
+                       "expected at most 11 mu: the run must begin anew");
     find_option(text, size);
     return err_set(e, place, 0, "is of a run with other options, '%.*s'; expected '%.*s'", size[0], text[0], size[1],
                    text[1]);

@@ -316,6 +316,16 @@ int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
     return 0;
 }
 
+bool tled_bounds_hourglass(const tled_problem *p)
+{
+    for (int64_t i = 0; i < p->elements; i++) {
+        const tled_law law = tled_law_of(p, i);
+        if (element_hourglass_modulus(law.mu, law.bulk) < law.bulk + 4. / 3 * law.mu)
+            return true;
+    }
+    return false;
+}
+
 double tled_tension(const tled_problem *p, int32_t volume, const double *value)
 {
     const tled_volume *v = &p->volume[volume];

@@ -145,6 +145,9 @@ static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
     return p->mixed && p->mixed[element] >= 0 ? p->law[p->mixed[element]] : own;
 }
 
+/* Whether any element's hourglass modulus is 11 mu, being less than lambda + 2 mu: nu above .45. */
+bool tled_bounds_hourglass(const tled_problem *p);
+
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);
 

@@ -9,6 +9,7 @@
 #include "model/stage.h"
 #include "tled/checkpoint.h"
 #include "tled/collider.h"
+#include "tled/likeness.h"
 #include "tled/relax.h"
 #include "tled/run.h"
 #include "tled/step.h"
@@ -239,10 +240,10 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
         snprintf(until, sizeof until, "-n %lld", (long long)o->steps);
     else
         snprintf(until, sizeof until, "-t %.9g", o->seconds);
-    snprintf(ran, sizeof ran, "%s%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s]",
+    snprintf(ran, sizeof ran, "%s%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s%s]",
              *t->provenance ? " " : "", press, until, o->ramp, o->hourglass, r->device->name,
              o->precision ? "single" : "double", 1 / r->rate, r->rate_fixed ? "" : " or cut", r->damping,
-             r->adapt ? " adapted" : "");
+             r->adapt ? " adapted" : "", tled_bounds_hourglass(&s->problem) ? likeness_bounded : "");
     size_t size = strlen(t->provenance) + strlen(ran) + 1;
     char *all = mem_array((int64_t)size, 1, "provenance", e);
     if (!all)

@@ -120,11 +120,20 @@ ELEMENT_FUNCTION element_shape element_box(double hx, double hy, double hz)
     return s;
 }
 
-/* k = kappa (lambda + 2 mu) V sum(B^2) / 8, the sum over all corners and axes: sum(B^2) = sum(1/h^2) / 2. */
+/* min(lambda + 2 mu, 11 mu), lambda + 2 mu = K + 4/3 mu (Pa): the modulus that hourglass modes are held by. With lambda + 2 mu alone
+ * they grow stiff with K, and an element locks in bending toward nu = .5, as bending is what these modes are. The two are the same at
+ * nu = .45, where rounding is not to decide: up to there it is lambda + 2 mu to the last bit. */
+ELEMENT_FUNCTION double element_hourglass_modulus(double mu, double bulk)
+{
+    double wave = bulk + 4. / 3 * mu, most = 11 * mu;
+    return wave > most * (1 + 1e-12) ? most : wave;
+}
+
+/* k = kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8, the sum over all corners and axes: sum(B^2) = sum(1/h^2) / 2. */
 ELEMENT_FUNCTION double element_hourglass(double kappa, double mu, double bulk, double hx, double hy, double hz)
 {
     double squares = (1 / (hx * hx) + 1 / (hy * hy) + 1 / (hz * hz)) / 2;
-    return kappa * (bulk + 4. / 3 * mu) * hx * hy * hz * squares / 8;
+    return kappa * element_hourglass_modulus(mu, bulk) * hx * hy * hz * squares / 8;
 }
 
 /* The modes of one component: sums and differences along x, then y, then z. */

@@ -285,6 +285,11 @@ check "both stay" cmp "$T/d/state" "$c"
 fails 1 "other options are refused" "state: is of a run with other options, '-t 0.4'; expected '-t 0.5'" again -c all=0.8 -t 0.5
 fails 1 "so are other frames" "--every differs" again -c all=0.8 -t 0.4 --every 0.003
 fails 1 "so is another precision" "'\[cpu double,'; expected '\[cpu single,'" again -c all=0.8 -t 0.4 --precision single
+killed_at 500000 -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --checkpoint "$T/old" --checkpoint-every 0.02
+sinew export -f model --text "$T/old" | sed '/^crc/d; s/, hourglass modulus at most 11 mu\]/]/' >"$T/cut" && mv "$T/cut" "$T/old"
+fails 1 "so is one of another hourglass modulus" 'old: is of a run whose hourglass modulus is lambda \+ 2 mu' \
+    run -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --restart "$T/old"
+rm -f "$T"/old*
 sed 's/30000/30001/' "$T/muscle.sinew" >"$T/other.sinew"
 model=$T/other.sinew
 fails 1 "so is another model" 'array material.peak differs' again -c all=0.8 -t 0.4

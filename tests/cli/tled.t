@@ -44,6 +44,18 @@ else
     rest "cantilever, 32 x 8 x 8" 0.08,0.01,0.01 3 -4.2577e-2 1e-2
 fi
 
+# Toward nu = .5 the cantilever is softer than 16 x 4 x 4 quadratic elements (C3D20R) are by nearly the same share, whatever nu.
+set -- # all of them
+for case in .45=-.04197 .49=-.04149 .499=-.04120 .4999=-.04107; do
+    model 80 20 20 low 5 "E=30e3 nu=0${case%=*}"
+    rest "cantilever, nu = ${case%=*}, to 4.5 %" 0.08,0.01,0.01 3 "${case#*=}" 4.5e-2
+    set -- "$@" "$(awk -v got="$got" -v want="$want" 'BEGIN { print got / want }')"
+done
+near "$4" "$1" 1.5e-2 "from nu = .45 to .4999 that share changes by 1.5 % at most: $*"
+# The coefficient that makes kappa 11 mu into kappa (lambda + 2 mu) at .499 brings back what the manual says of that.
+model 80 20 20 low 5 'E=30e3 nu=0.499'
+rest "held by lambda + 2 mu, at nu = .499, it locks" 0.08,0.01,0.01 3 -0.0263841 1e-5 --hourglass 0.341590909
+
 # A muscle that nothing resists: mu, K and a s f(l) in balance, solved apart from this program.
 awk -v nx=4 -v ny=4 -v nz=4 -v h=0.005 -v nu=0.49 -v muscle=1 -f tests/cli/block.awk >"$T/model"
 cat >"$T/symmetry" <<'SCRIPT'
@@ -121,6 +133,10 @@ fails 0 "other materials drop the frames" 'warning: .*1 frames? dropped' \
 is "$(sinew info --get frames <"$T/second")" 1 "and leave the new one"
 sinew info "$T/second" >"$T/info"
 check "provenance says what was run and with what" grep -q 'tled-run 0.1.0 .*-m tissue.E=4000.*hourglass 0.0075 .*dt [0-9.]*.*damping [0-9.]*' "$T/info"
+for case in "0.45 " "0.451 , hourglass modulus at most 11 mu"; do
+    is "$(run -q -m "tissue.nu=${case%% *}" -n 1 | sinew info | sed -n 's/.*damping [0-9.]*\(.*\)\]$/\1/p')" "${case#* }" \
+        "and by what hourglass modes are held: nu = ${case%% *}"
+done
 
 tled-run -q -g 0,0,-1 -t 0.3 <"$T/model" >"$T/first"
 check "what sets in at once on a model that moves already is no jump too far" \
