@@ -49,6 +49,7 @@ static const opt_tool table = {
 
 /* Which frames, and what becomes of them. */
 typedef struct plan {
+    const tool *t;
     enum { FRAME_LAST, FRAME_ALL, FRAME_ONE } frames;
     const char *asked; /* --frame, or what it is without */
     int64_t index;     /* FRAME_ONE */
@@ -250,7 +251,7 @@ static int move(mover *w, const frame *f, err *e)
 static int write_file(plan *p, const mover *w, int64_t index, err *e)
 {
     char *name = numbered_name(&p->names, index, e);
-    out *to = name ? outs_open(&p->written, name, e) : NULL;
+    out *to = name && !tool_check_written(p->t, "-o", name, e) ? outs_open(&p->written, name, e) : NULL;
     free(name);
     if (!to)
         return -1;
@@ -325,7 +326,7 @@ int main(int argc, char **argv)
     err e = {0};
     tool t = {0};
     source s = {0};
-    plan p = {0};
+    plan p = {.t = &t};
     mover w = {0};
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)

@@ -1,5 +1,6 @@
 /* us-slice: ultrasound images of a volume that a mesh deforms, a frame each, where the probe of the frame looks. PST section IV. */
 #include "base/mem.h"
+#include "base/path.h"
 #include "base/progress.h"
 #include "base/tool.h"
 #include "model/finite.h"
@@ -46,7 +47,8 @@ static const opt option_list[] = {
     {0, "dynamic-range", "DB[,DB]", OPT_NUMBERS, TO(range), 1, 2, NULL, 0, "shown, and as recorded [60,60]"},
     {0, "window", "LOW,HIGH", OPT_NUMBERS, TO(window), 2, 2, NULL, 0, "values of black and white"},
     {0, "labels", "FILE", OPT_TEXT, TO(labels), 0, 0, NULL, OPT_FILE, "a map of labels to lay over, in colours"},
-    {0, "cut", "FILE.obj", OPT_TEXT, TO(cut), 0, 0, NULL, OPT_OUTPUT, "write the polygons that the slice cuts"},
+    {0, "cut", "FILE.obj", OPT_TEXT, TO(cut), 0, 0, NULL, OPT_OUTPUT | OPT_WRITES,
+     "write the polygons that the slice cuts"},
     {0, "method", "spans|paper", OPT_CHOICE, TO(method), 0, 0, "spans|paper", OPT_OUTPUT, "paper: rows halved, as PST"},
     {0, "regions", "R", OPT_INT, TO(regions), 1, SLICE_SIDE_MOST, NULL, OPT_OUTPUT, "lists of tetrahedra [32]"},
     {0}};
@@ -317,16 +319,37 @@ static int draw(job *j, const double origin[3], const double turn[4], const doub
     return 0;
 }
 
-static int write_cut(job *j, const slice_plane *at, int64_t index, err *e)
+/* The file of --cut for an image; the caller frees it. */
+static char *cut_name(const job *j, int64_t index, err *e)
 {
     numbered names;
+    if (!strchr(j->o->cut, '%'))
+        return mem_text(j->o->cut, e);
+    return numbered_of(&names, j->o->cut, "", e) ? NULL : numbered_name(&names, index, e);
+}
+
+/* That the numbered files of an image are none that is read, nor each other. */
+static int check_files(const job *j, int64_t index, err *e)
+{
+    char *image = j->writer.stream ? NULL : numbered_name(&j->writer.names, index, e);
+    char *cut = !e->status && j->o->cut ? cut_name(j, index, e) : NULL;
+    if (!e->status && image)
+        tool_check_written(j->t, "-o", image, e);
+    if (!e->status && cut)
+        tool_check_written(j->t, "--cut", cut, e);
+    if (!e->status && image && cut && path_is_same(image, cut))
+        err_usage(e, "--cut '%.400s' would overwrite the file of -o '%.400s'; expected another file", cut, image);
+    free(image);
+    free(cut);
+    return e->status ? -1 : 0;
+}
+
+static int write_cut(job *j, const slice_plane *at, int64_t index, err *e)
+{
     int64_t count = 0;
     if (!j->o->cut)
         return 0;
-    const bool pattern = strchr(j->o->cut, '%') != NULL;
-    if (pattern && numbered_of(&names, j->o->cut, "", e))
-        return -1;
-    char *name = pattern ? numbered_name(&names, index, e) : mem_text(j->o->cut, e);
+    char *name = cut_name(j, index, e);
     out *to = name ? out_open(name, false, e) : NULL;
     free(name);
     if (!to)
@@ -358,7 +381,7 @@ static int put_image(job *j, int64_t index, const double origin[3], const double
     const int64_t count = (int64_t)j->view.size.columns * j->view.size.rows;
     const double start = progress_clock();
     slice_plane at;
-    if (draw(j, origin, turn, displacement, &at, e))
+    if (check_files(j, index, e) || draw(j, origin, turn, displacement, &at, e))
         return -1;
     for (int64_t i = 0; !j->lit && i < count; i++)
         j->lit = j->image[i] > 0;

@@ -75,35 +75,10 @@ static void take_point(checkpoint *c, const double *n, const int64_t *k)
 
 /* ---- life */
 
-static char *join(const char *path, const char *suffix, err *e)
+char *checkpoint_file(const char *path, int i, err *e)
 {
-    return path_join(path, strlen(path), suffix, e);
-}
-
-static int check_other(const char *option, const char *name, const char *path, err *e)
-{
-    static const char *const suffixes[] = {"", ".1", ".frames"};
-    for (int i = 0; name && i < 3; i++) {
-        char *file = join(path, suffixes[i], e);
-        if (!file)
-            return -1;
-        bool same = path_is_same(name, file);
-        free(file);
-        if (same)
-            return err_usage(e, "%s '%s' is a file of the checkpoint; expected another", option, name);
-    }
-    return 0;
-}
-
-int checkpoint_check(const char *begin, const char *resume, const char *output, const char *log, err *e)
-{
-    const char *path = resume ? resume : begin;
-    if (begin && resume && strcmp(begin, resume) != 0)
-        return err_usage(e, "--checkpoint '%s' and --restart '%s'; expected the same file: a run goes on in it", begin,
-                         resume);
-    if (path && (!*path || !strcmp(path, "-")))
-        return err_usage(e, "'%s' for a checkpoint; expected the name of a file", path);
-    return path && (check_other("-o", output, path, e) || check_other("--log", log, path, e)) ? -1 : 0;
+    static const char *const suffixes[CHECKPOINT_FILES] = {"", ".1", ".frames"};
+    return path_join(path, strlen(path), suffixes[i], e);
 }
 
 void checkpoint_close(checkpoint *c, bool done)
@@ -153,9 +128,9 @@ static checkpoint *create(const char *path, const likeness_run *run, err *e)
     c->time = NAN;
     c->nodes = run->p->nodes;
     c->axes = run->m->axis_count;
-    c->path = join(path, "", e);
-    c->before = join(path, ".1", e);
-    c->frames_path = join(path, ".frames", e);
+    c->path = checkpoint_file(path, 0, e);
+    c->before = checkpoint_file(path, 1, e);
+    c->frames_path = checkpoint_file(path, 2, e);
     if (c->path && c->before && c->frames_path && !make_body(c, run, e))
         return c;
     checkpoint_close(c, false);

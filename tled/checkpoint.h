@@ -16,9 +16,10 @@ typedef struct checkpoint checkpoint;
 /* A frame from before, in its order. -1 with e filled. */
 typedef int checkpoint_frame(void *context, const frame *f, err *e);
 
-/* What the options ask for: -1 with e filled where a run would go on in another file, or where the output or the log would
- * become one of these. Each may be NULL. */
-int checkpoint_check(const char *begin, const char *resume, const char *output, const char *log, err *e);
+enum { CHECKPOINT_FILES = 3 };
+
+/* The name of FILE, FILE.1 or FILE.frames, for i 0 to 2; the caller frees it. NULL with e filled. */
+char *checkpoint_file(const char *path, int i, err *e);
 
 /* Begins anew: none may be there. NULL with e filled. */
 checkpoint *checkpoint_begin(const char *path, const likeness_run *run, err *e);

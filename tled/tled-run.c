@@ -2,7 +2,6 @@
  * muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
  */
 #include "base/mem.h"
-#include "base/path.h"
 #include "base/progress.h"
 #include "mesh/scale.h"
 #include "model/materials.h"
@@ -70,7 +69,7 @@ static const opt option_list[] = {
     {0, "repulsion", "X", OPT_NUMBER, offsetof(struct options, repulsion), 1e-6, 1e3, NULL, OPT_OUTPUT,
      "of it, over tissue's own [1]"},
     {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of its OBJ"},
-    {0, "log", "FILE", OPT_TEXT, offsetof(struct options, log), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
+    {0, "log", "FILE", OPT_TEXT, offsetof(struct options, log), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
      "energies, residual, rates, as TSV"},
     {0, "log-every", "S", OPT_NUMBER, offsetof(struct options, log_every), 1e-12, 1e9, NULL, OPT_OUTPUT,
      "its rows, s [0.01]"},
@@ -115,10 +114,8 @@ typedef struct session {
     notes warnings;
 } session;
 
-/* The log begins anew at once: where it is read or written elsewhere too, something would be lost. */
 static int check_log(const struct options *o, err *e)
 {
-    const char *const others[] = {o->common.output, o->checkpoint, o->restart, o->script, o->materials, o->poses};
     if (o->log_every > 0 && !o->log)
         return err_usage(e, "--log-every without --log; expected both");
     if (o->tsv.count && !o->log)
@@ -126,9 +123,30 @@ static int check_log(const struct options *o, err *e)
     for (int i = 0; i < o->tsv.count; i++)
         if (log_check_key(o->tsv.value[i], e))
             return -1;
-    for (size_t i = 0; o->log && i < sizeof others / sizeof *others; i++)
-        if (others[i] && path_is_same(o->log, others[i]) && strncmp(o->log, "/dev/", 5) != 0)
-            return err_usage(e, "--log '%s' is another file of this run too; expected one of its own", o->log);
+    return 0;
+}
+
+/* The three files of a checkpoint, by either option. */
+static int check_checkpoint(const tool *t, struct options *o, err *e)
+{
+    const char *path = o->restart ? o->restart : o->checkpoint;
+    if (!path)
+        return 0;
+    if (o->restart && o->checkpoint && strcmp(o->checkpoint, o->restart) != 0)
+        return err_usage(e, "--checkpoint '%s' and --restart '%s'; expected the same file: a run goes on in it",
+                         o->checkpoint, o->restart);
+    if (!*path || !strcmp(path, "-"))
+        return err_usage(e, "'%s' for a checkpoint; expected the name of a file", path);
+    if (o->restart)
+        o->checkpoint = NULL;
+    for (int i = 0; i < CHECKPOINT_FILES; i++) {
+        char *file = checkpoint_file(path, i, e);
+        if (file)
+            tool_check_written(t, o->restart ? "--restart" : "--checkpoint", file, e);
+        free(file);
+        if (e->status)
+            return -1;
+    }
     return 0;
 }
 
@@ -553,10 +571,9 @@ int main(int argc, char **argv)
     char device[300] = "";
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (check_end(&o, &e) || checkpoint_check(o.checkpoint, o.restart, o.common.output, o.log, &e) ||
-        stage_open_output(&s.stage, &t, &e) || stage_read(&s.stage, &s.m, &e) ||
-        prepare(&s, &o, device, sizeof device, &e) || say_provenance(&t, &s, &o, &e) ||
-        stage_write(&s.stage, &s.m, &e) || simulate(&s, &o, device, &e))
+    if (check_end(&o, &e) || check_checkpoint(&t, &o, &e) || stage_open_output(&s.stage, &t, &e) ||
+        stage_read(&s.stage, &s.m, &e) || prepare(&s, &o, device, sizeof device, &e) ||
+        say_provenance(&t, &s, &o, &e) || stage_write(&s.stage, &s.m, &e) || simulate(&s, &o, device, &e))
         goto out;
 out:
     tool_warn(&t, &s.warnings);

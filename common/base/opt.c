@@ -11,7 +11,7 @@ enum { MODELS = 1 << 9, THREADED = 1 << 10 };
 /* What every tool has. MODELS: only those that write a model; THREADED: only those with threads. */
 #define COMMON(field) offsetof(opt_common, field)
 static const opt common_options[] = {
-    {'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
+    {'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
      "write FILE, whole or not at all"},
     {0, "text", NULL, OPT_FLAG, COMMON(text), 0, 0, NULL, OPT_OUTPUT | MODELS, "write text, not binary"},
     {'z', "gzip", NULL, OPT_FLAG, COMMON(gzip), 0, 0, NULL, OPT_OUTPUT | MODELS, "gzip the output"},

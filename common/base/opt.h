@@ -41,7 +41,8 @@ enum {
     OPT_REQUIRED = 1, /* usage error without it (unless -h, -V) */
     OPT_OUTPUT = 2,   /* does not change the result: left out of provenance */
     OPT_HIDDEN = 4,   /* not for people: left out of every text */
-    OPT_FILE = 8      /* its text names a file: provenance has the base name only, completion offers files */
+    OPT_FILE = 8,     /* its text names a file: provenance has the base name only, completion offers files */
+    OPT_WRITES = 16   /* its text names a file, or files by a number in it, that are written: nothing else may be */
 };
 
 typedef struct opt {

@@ -76,16 +76,37 @@ static bool stat_folder(const char *path, struct stat *s)
     return found;
 }
 
-bool path_is_same(const char *a, const char *b)
+static bool is_one(const struct stat *s, const struct stat *t)
+{
+    return s->st_dev == t->st_dev && s->st_ino == t->st_ino;
+}
+
+/* Whether two names, of which neither is there, would be of one file. */
+static bool would_be_one(const char *a, const char *b)
 {
     struct stat s, t;
     err ignored = {0};
     char *x = path_target(a, &ignored), *y = path_target(b, &ignored);
     bool same = x && y && !strcmp(x + path_folder(x), y + path_folder(y)) && stat_folder(x, &s) && stat_folder(y, &t) &&
-                s.st_dev == t.st_dev && s.st_ino == t.st_ino && (stat(x, &s) || S_ISREG(s.st_mode));
+                is_one(&s, &t);
     free(x);
     free(y);
     return same;
+}
+
+bool path_is_same(const char *a, const char *b)
+{
+    struct stat s, t;
+    const bool is_a = !stat(a, &s), is_b = !stat(b, &t);
+    if (is_a && is_b)
+        return S_ISREG(s.st_mode) && is_one(&s, &t);
+    return !is_a && !is_b && would_be_one(a, b);
+}
+
+bool path_is_open(const char *path, int fd)
+{
+    struct stat s, t;
+    return !stat(path, &s) && S_ISREG(s.st_mode) && !fstat(fd, &t) && is_one(&s, &t);
 }
 
 static bool is_within(const char *folder, const char *file)

@@ -21,7 +21,10 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
 /* Where a file named path would be, links followed, even one to nothing. NULL with e filled where there can be none. */
 char *path_target(const char *path, err *e);
 
-/* Whether two paths are of one file, or would be once it is there: a regular one. */
+/* Whether two paths are of one regular file, by whatever links, or would be once it is there. */
 bool path_is_same(const char *a, const char *b);
+
+/* Whether the path is of the regular file that is open at fd. */
+bool path_is_open(const char *path, int fd);
 
 #endif

@@ -1,13 +1,15 @@
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "base/tool.h"
 
+#include "base/path.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { LINE = 4096 }; /* the most bytes of a message */
@@ -44,27 +46,69 @@ static int fill_descriptors(err *e)
     return 0;
 }
 
-/* Whether -o would write over the file at path. */
-static bool is_output(const opt_common *c, const char *path)
+/* What is written over while it is read, or for want of a second look at the command line, is lost. */
+static int refuse(const char *option, const char *path, const char *what, const char *other, err *e)
 {
-    struct stat a, b;
-    return path && c->output && !stat(c->output, &a) && !stat(path, &b) && S_ISREG(a.st_mode) && a.st_dev == b.st_dev &&
-           a.st_ino == b.st_ino;
+    return err_usage(e, "%s '%.400s' would overwrite %s '%.400s'; expected another file", option, path, what, other);
 }
 
-/* What is written over while it is read, or for want of a second look at the command line, is lost. */
-static int check_output(const tool *t, char *const *operand, const void *options, err *e)
+/* "-o", "--log". */
+static const char *option_name(const opt *o, char to[64])
 {
-    const char *lost = NULL;
+    if (o->name && strcmp(o->name, "output") != 0)
+        snprintf(to, 64, "--%s", o->name);
+    else
+        snprintf(to, 64, "-%c", o->letter);
+    return to;
+}
+
+/* The file that an option names, or NULL. */
+static const char *file_of(const tool *t, const opt *o)
+{
+    const char *text = o->kind == OPT_TEXT ? *(const char *const *)((const char *)t->common + o->to) : NULL;
+    if (text && o->choices && strstr(o->choices, "convex:"))
+        return strncmp(text, "convex:", 7) ? NULL : text + 7;
+    return o->flags & (OPT_FILE | OPT_WRITES) ? text : NULL;
+}
+
+static int check_streams(const tool *t, const char *option, const char *path, err *e)
+{
+    const char *output = t->common->output, *lost = NULL;
+    if (path_is_open(path, STDIN_FILENO))
+        lost = "what is read on standard input";
+    else if ((!output || !strcmp(output, "-")) && path_is_open(path, STDOUT_FILENO))
+        lost = "what goes to standard output";
+    return lost ? err_usage(e, "%s '%.400s' would overwrite %s; expected another file", option, path, lost) : 0;
+}
+
+int tool_check_written(const tool *t, const char *option, const char *path, err *e)
+{
+    char name[64], what[80];
+    const opt *o;
+    if (!strcmp(path, "-"))
+        return 0;
     for (int i = 0; i < t->operands; i++)
-        lost = is_output(t->common, operand[i]) ? operand[i] : lost;
-    for (int i = 0; i < opt_own(t->table); i++) {
-        const opt *o = opt_at(t->table, i);
-        const char *path =
-            o->flags & OPT_FILE && o->kind == OPT_TEXT ? *(const char *const *)((const char *)options + o->to) : NULL;
-        lost = is_output(t->common, path) ? path : lost;
+        if (path_is_same(path, t->operand[i]))
+            return refuse(option, path, "what is read,", t->operand[i], e);
+    for (int i = 0; (o = opt_at(t->table, i)); i++) {
+        const char *other = strcmp(option_name(o, name), option) != 0 ? file_of(t, o) : NULL;
+        snprintf(what, sizeof what, "the file of %s", name);
+        if (other && path_is_same(path, other))
+            return refuse(option, path, what, other, e);
     }
-    return lost ? err_usage(e, "-o '%s' would overwrite what is read; expected another file", lost) : 0;
+    return strcmp(option, "-o") != 0 ? check_streams(t, option, path, e) : 0;
+}
+
+static int check_written(const tool *t, err *e)
+{
+    char name[64];
+    const opt *o;
+    for (int i = 0; (o = opt_at(t->table, i)); i++) {
+        const char *path = o->flags & OPT_WRITES ? file_of(t, o) : NULL;
+        if (path && tool_check_written(t, option_name(o, name), path, e))
+            return -1;
+    }
+    return 0;
 }
 
 int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *options, err *e)
@@ -77,7 +121,8 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
         return -1;
     if (t->common->help || t->common->version || t->common->table)
         return answer(t, e);
-    if (check_output(t, argv + 1, options, e))
+    t->operand = argv + 1;
+    if (check_written(t, e))
         return -1;
     t->provenance = opt_provenance(table, options, t->operands, argv + 1, e);
     return t->provenance ? 0 : -1;

@@ -60,6 +60,7 @@ static const opt_tool table = {
 /* What was asked for, understood. */
 typedef struct job {
     const struct options *o;
+    const tool *t;
     int which;     /* REST, LAST, ALL or ONE */
     int64_t index; /* of ONE; in the end, of the frame chosen */
     bool frame_given, chosen;
@@ -139,7 +140,7 @@ static char *frame_file(const job *j, int64_t k, err *e)
 
 static int put_frame_file(job *j, const char *file, err *e)
 {
-    out *to = outs_open(&j->files, file, e);
+    out *to = tool_check_written(j->t, "-o", file, e) ? NULL : outs_open(&j->files, file, e);
     if (!to)
         return -1;
     if (export_vtu(&j->x, j->o->deformed, to, e)) {
@@ -322,9 +323,9 @@ static void put_file(job *j, const char *path, err *e)
 int main(int argc, char **argv)
 {
     struct options o = {0};
-    job j = {.o = &o};
     err e = {0};
     tool t = {0};
+    job j = {.o = &o, .t = &t};
     stage copy = {0};
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)

@@ -31,7 +31,7 @@ static const opt option_table[] = {
     {0, "size", "WxH", OPT_TEXT, TO(size), 0, 0, NULL, 0, "pixels (1280x720)"},
     {0, "transparent", NULL, OPT_FLAG, TO(transparent), 0, 0, NULL, 0, "no background"},
     {0, "format", "png|ppm", OPT_CHOICE, TO(format), 0, 0, "png|ppm", 0, "ppm: a stream, for ffmpeg"},
-    {0, "font", "FILE", OPT_TEXT, TO(font), 0, 0, NULL, 0, "of the words (DejaVu Sans)"},
+    {0, "font", "FILE", OPT_TEXT, TO(font), 0, 0, NULL, OPT_FILE, "of the words (DejaVu Sans)"},
     {0}};
 
 static const opt_tool table = {
@@ -127,7 +127,7 @@ static int draw(job *j, const frame *f, err *e)
     if (!j->plan.files || !f)
         return put(j, j->sink, e);
     char *name = numbered_name(&j->plan.names, f->index, e);
-    out *to = name ? outs_open(&j->files, name, e) : NULL;
+    out *to = name && !tool_check_written(j->t, "-o", name, e) ? outs_open(&j->files, name, e) : NULL;
     free(name);
     if (to && put(j, to, e)) {
         out_discard(to);
