@@ -35,17 +35,44 @@ int slice_probe_of(slice_probe *p, const char *text, err *e)
     return kind == PROBE_LINEAR || kind == PROBE_CURVED ? 0 : 1;
 }
 
+static bool near(double a, double b)
+{
+    return fabs(a - b) <= 1e-6 * fmax(fabs(a), fabs(b));
+}
+
+bool slice_probe_same(const slice_probe *a, const slice_probe *b)
+{
+    return a->array == b->array && near(a->width, b->width) && near(a->radius, b->radius) && near(a->angle, b->angle);
+}
+
 int slice_size_of(slice_size *s, const char *text, err *e)
 {
-    char copy[64];
-    int64_t side[2];
-    char *by = strlen(text) < sizeof copy ? strchr(strcpy(copy, text), 'x') : NULL;
+    char copy[64] = "";
+    int64_t side[2] = {SLICE_COLUMNS, 0};
+    const size_t length = text ? strlen(text) : 0;
+    char *by = length < sizeof copy && text ? strchr(strcpy(copy, text), 'x') : NULL;
     if (by)
-        *by = '\0';
-    if (!by || num_int(copy, 1, SLICE_SIDE_MOST, &side[0]) || num_int(by + 1, 1, SLICE_SIDE_MOST, &side[1]))
-        return err_usage(e, "--size %.60s; expected COLUMNSxROWS, such as 512x512, each 1 to %d", text,
-                         SLICE_SIDE_MOST);
-    *s = (slice_size){(int32_t)side[0], (int32_t)side[1]};
+        *by++ = '\0';
+    if (text && (length >= sizeof copy || ((*copy || !by) && num_int(copy, 1, SLICE_SIDE_MOST, &side[0])) ||
+                 (by && num_int(by, 1, SLICE_SIDE_MOST, &side[1]))))
+        return err_usage(e,
+                         "--size %.60s; expected COLUMNS, xROWS or COLUMNSxROWS, such as 512 or 512x640, each 1 to %d",
+                         text, SLICE_SIDE_MOST);
+    *s = (slice_size){*copy || !by ? (int32_t)side[0] : 0, (int32_t)side[1]};
+    return 0;
+}
+
+/* The even number of pixels, as large as the other side's `across` pixels over `wide`, that goes over `tall`. */
+static int follow(int32_t *side, int32_t across, double wide, double tall, err *e)
+{
+    const double rows = fmax(2, 2 * floor(.5 * across * tall / wide + .5));
+    if (rows > SLICE_SIDE_MOST)
+        return err_usage(
+            e,
+            "an image of %.4g x %.4g mm, in pixels that are square, has a side of %.0f; expected at most %d: "
+            "another --size, --depth or --width",
+            1e3 * wide, 1e3 * tall, rows, SLICE_SIDE_MOST);
+    *side = (int32_t)rows;
     return 0;
 }
 
@@ -77,7 +104,7 @@ static void show_row(slice_view *v, int32_t row)
 int slice_view_make(slice_view *v, const slice_probe *p, slice_size size, double depth, double width, err *e)
 {
     double top = 0;
-    *v = (slice_view){.probe = *p, .size = size, .depth = depth};
+    *v = (slice_view){.probe = *p, .depth = depth};
     if (p->array == SLICE_LINEAR) {
         width = width > 0 ? width : p->width;
     } else {
@@ -85,6 +112,10 @@ int slice_view_make(slice_view *v, const slice_probe *p, slice_size size, double
         width = width > 0 ? width : 2 * reach * sin(half);
         top = p->radius * (cos(half) - 1);
     }
+    if ((!size.rows && follow(&size.rows, size.columns, width, depth - top, e)) ||
+        (!size.columns && follow(&size.columns, size.rows, depth - top, width, e)))
+        return -1;
+    v->size = size;
     v->pixel[0] = width / size.columns;
     v->pixel[1] = (depth - top) / size.rows;
     v->corner[0] = (.5 - .5 * size.columns) * v->pixel[0];

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "render/png.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,42 +22,48 @@ int slice_writer_open(slice_writer *w, const char *path, err *e)
     return -1;
 }
 
-static void put_comment(const slice_plane *at, out *to)
+static void put_comment(const slice_plane *at, const slice_view *view, out *to)
 {
     const double *list[3] = {at->origin, at->column, at->row};
+    const slice_probe *p = &view->probe;
     out_text(to, "# us-slice:");
     for (int i = 0; i < 3; i++)
         for (int a = 0; a < 3; a++)
             out_format(to, " %.9g", list[i][a]);
+    if (p->array != SLICE_LINEAR)
+        out_format(to, " fan %.9g %.9g %.9g %.9g", p->radius + view->corner[1], p->radius, p->radius + view->depth,
+                   p->angle * 180 / M_PI);
     out_text(to, "\n");
 }
 
-static void put_pnm(const slice_plane *at, slice_size size, const uint8_t *pixel, int channels, out *to)
+static void put_pnm(const slice_plane *at, const slice_view *view, const uint8_t *pixel, int channels, out *to)
 {
     out_format(to, "P%d\n", channels == 3 ? 6 : 5);
-    put_comment(at, to);
-    out_format(to, "%d %d\n255\n", (int)size.columns, (int)size.rows);
-    out_write(to, pixel, (size_t)size.columns * (size_t)size.rows * (size_t)channels);
+    put_comment(at, view, to);
+    out_format(to, "%d %d\n255\n", (int)view->size.columns, (int)view->size.rows);
+    out_write(to, pixel, (size_t)view->size.columns * (size_t)view->size.rows * (size_t)channels);
 }
 
-static int put_png(slice_size size, const uint8_t *pixel, int channels, out *to, err *e)
+static int put_png(const slice_view *view, const uint8_t *pixel, int channels, out *to, err *e)
 {
-    const int64_t count = (int64_t)size.columns * size.rows;
+    const int columns = view->size.columns, rows = view->size.rows;
+    const int64_t count = (int64_t)columns * rows;
+    const double each[2] = {1 / view->pixel[0], 1 / view->pixel[1]};
     if (channels == 3)
-        return png_put(pixel, size.columns, size.rows, 3, to, e);
+        return png_put_scaled(pixel, columns, rows, 3, each, to, e);
     uint8_t *colour = mem_array(3 * count, 1, "a picture", e);
     for (int64_t i = 0; colour && i < count; i++)
         memset(colour + 3 * i, pixel[i], 3);
-    const int bad = colour ? png_put(colour, size.columns, size.rows, 3, to, e) : -1;
+    const int bad = colour ? png_put_scaled(colour, columns, rows, 3, each, to, e) : -1;
     free(colour);
     return bad;
 }
 
-int slice_writer_put(slice_writer *w, int64_t index, const slice_plane *at, slice_size size, const uint8_t *pixel,
-                     int channels, err *e)
+int slice_writer_put(slice_writer *w, int64_t index, const slice_plane *at, const slice_view *view,
+                     const uint8_t *pixel, int channels, err *e)
 {
     if (w->stream) {
-        put_pnm(at, size, pixel, channels, w->stream);
+        put_pnm(at, view, pixel, channels, w->stream);
         out_flush(w->stream);
         return out_failed(w->stream, e);
     }
@@ -68,8 +75,8 @@ int slice_writer_put(slice_writer *w, int64_t index, const slice_plane *at, slic
     if (!to)
         return -1;
     if (!png)
-        put_pnm(at, size, pixel, channels, to);
-    else if (put_png(size, pixel, channels, to, e)) {
+        put_pnm(at, view, pixel, channels, to);
+    else if (put_png(view, pixel, channels, to, e)) {
         out_discard(to);
         return -1;
     }

@@ -13,6 +13,7 @@
 #include "volume/body.h"
 #include "volume/poses.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +37,7 @@ static const opt option_list[] = {
     {0, "transform", "NAME", OPT_TEXT, TO(transform), 0, 0, NULL, 0, "which, of poses in a PLUS sequence"},
     {0, "rigid", NULL, OPT_FLAG, TO(rigid), 0, 0, NULL, 0, "no model: the volume as it lies"},
     {0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "where it lies in the frame of --poses"},
-    {0, "size", "COLUMNSxROWS", OPT_TEXT, TO(size), 0, 0, NULL, 0, "pixels [512x512]"},
+    {0, "size", "COLUMNSxROWS", OPT_TEXT, TO(size), 0, 0, NULL, 0, "pixels; or COLUMNS or xROWS, to scale [512]"},
     {0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "sphere:|linear:|curved:|convex:", 0,
      "linear:W,T curved:R,ANGLE,T phased:ANGLE"},
     {0, "depth", "D", OPT_LENGTHS, TO(depth), 0, 1, NULL, 0, "along a beam [5cm]"},
@@ -84,7 +85,8 @@ typedef struct job {
     uint8_t *image, *colour, *one; /* rows x columns, x 3; a slice of several */
     uint16_t *sum;
     int64_t images;
-    bool lit; /* some image was not black */
+    bool lit;  /* some image was not black */
+    bool said; /* where poses come from */
     notes warnings;
 } job;
 
@@ -166,43 +168,68 @@ static int read_volume(job *j, const char *path, err *e)
     return e->status ? -1 : 0;
 }
 
-/* What --probe was of the tool that pressed; to holds it. */
-static bool pressed_by(const model *m, char *to, size_t size)
+/* The array that pressed, as the model says it. 1: it makes no image, or none is known, and *p is as it was; why says which. -1: e filled. */
+static int pressed_by(const job *j, slice_probe *p, char *why, size_t size, err *e)
 {
-    for (int i = m->provs - 1; i >= 0; i--) {
-        const char *at = strstr(m->prov[i], "--probe ");
-        if (!at || (strncmp(m->prov[i], "msds-run ", 9) && strncmp(m->prov[i], "tled-run ", 9)))
-            continue;
-        at += strlen("--probe ");
-        size_t length = strcspn(at, " ");
-        snprintf(to, size, "%.*s", (int)(length < size ? length : size - 1), at);
-        return true;
+    const char *text = j->o->rigid ? NULL : model_meta_of(&j->model.body, "probe.shape");
+    err wrong = {0};
+    if (!text) {
+        snprintf(why, size, j->o->rigid ? "no --probe" : "the model has no probe.shape");
+        return 1;
     }
-    return false;
+    const int none = !strncmp(text, "convex:", 7) ? 1 : slice_probe_of(p, text, &wrong);
+    snprintf(why, size, "the model's probe.shape, %.100s, makes no image", text);
+    return none < 0 ? err_set(e, source_name(&j->model), 0,
+                              "metadata, probe.shape: '%.100s' is no probe; expected one as msds-run writes it", text)
+                    : none;
+}
+
+/* The image's array: --probe's; else that of the model; else a usual one. */
+static int choose_probe(job *j, slice_probe *p, err *e)
+{
+    slice_probe pressed = {0};
+    char why[160];
+    const int none = pressed_by(j, &pressed, why, sizeof why, e);
+    if (none < 0)
+        return -1;
+    *p = pressed;
+    if (!j->o->probe) {
+        if (none)
+            *p = (slice_probe){.array = SLICE_LINEAR, .width = .04};
+        tool_say(j->t,
+                 none ? "%s: the image is that of a linear array of 4 cm; --probe says another"
+                      : "probe: %s, the model's probe.shape",
+                 none ? why : model_meta_of(&j->model.body, "probe.shape"));
+        return 0;
+    }
+    const int bad = slice_probe_of(p, j->o->probe, e);
+    if (bad > 0)
+        return err_usage(e, "--probe %.100s makes no image; expected linear:W,T, curved:R,ANGLE,T or phased:ANGLE",
+                         j->o->probe);
+    if (!bad && !none && p->array != SLICE_PHASED && !slice_probe_same(p, &pressed)) {
+        const char *text = model_meta_of(&j->model.body, "probe.shape");
+        notes_add(&j->warnings,
+                  "the image is that of %.100s, but %.100s pressed (the model's probe.shape); expected --probe %.100s, "
+                  "or none",
+                  j->o->probe, text, text);
+        tool_warn(j->t, &j->warnings);
+    }
+    return bad ? -1 : 0;
 }
 
 static int make_view(job *j, err *e)
 {
     const struct options *o = j->o;
-    slice_probe p = {.array = SLICE_LINEAR, .width = .04};
+    slice_probe p;
     slice_size size;
-    char text[200] = "";
-    int none = 0;
-    if (o->probe) {
-        none = slice_probe_of(&p, o->probe, e);
-        if (none > 0)
-            return err_usage(e, "--probe %.100s makes no image; expected linear:W,T, curved:R,ANGLE,T or phased:ANGLE",
-                             o->probe);
-    } else if (!o->rigid && pressed_by(&j->model.body, text, sizeof text)) {
-        err ignored = {0};
-        none = !strncmp(text, "convex:", 7) || !strncmp(text, "sphere:", 7) ? 1 : slice_probe_of(&p, text, &ignored);
-    }
-    if (none < 0 && e->status)
+    if (slice_size_of(&size, o->size, e) || choose_probe(j, &p, e) ||
+        slice_view_make(&j->view, &p, size, metres(&o->depth, .05), metres(&o->width, 0), e))
         return -1;
-    if (none)
-        tool_say(j->t, "the frames' probe, %s, makes no image: that of a linear array of 4 cm", text);
-    return slice_size_of(&size, o->size, e) ||
-           slice_view_make(&j->view, &p, size, metres(&o->depth, .05), metres(&o->width, 0), e);
+    const double *pixel = j->view.pixel;
+    if (size.columns && size.rows && fabs(pixel[0] - pixel[1]) > .01 * fmin(pixel[0], pixel[1]))
+        tool_say(j->t, "pixels are %.4g mm wide and %.4g mm high: the image is not to scale; --size %d is",
+                 1e3 * pixel[0], 1e3 * pixel[1], (int)j->view.size.columns);
+    return 0;
 }
 
 static int make_grey(job *j, err *e)
@@ -391,12 +418,28 @@ static int put_image(job *j, int64_t index, const double origin[3], const double
     const double took = progress_clock() - start;
     const slice_plane out_at = placed(j, &at);
     j->images++;
-    if (slice_writer_put(&j->writer, index, &out_at, j->view.size, j->overlay.seen ? j->colour : j->image,
+    if (slice_writer_put(&j->writer, index, &out_at, &j->view, j->overlay.seen ? j->colour : j->image,
                          j->overlay.seen ? 3 : 1, e) ||
         write_cut(j, &at, index, e))
         return -1;
     tool_detail(j->t, "image %lld: %.3f ms", (long long)index, 1e3 * took);
     return 0;
+}
+
+/* Where poses come from, once the first is there: which transform a sequence gives, it says itself. */
+static void say_poses(job *j)
+{
+    const plus *p = &j->poses.frames;
+    const char *in_frame = j->o->body ? "that of the body, in which the volume lies as --body says" : "the volume's";
+    if (j->said)
+        return;
+    j->said = true;
+    if (!j->more_poses)
+        tool_say(j->t, "poses: the frames' own");
+    else if (j->poses.sequence)
+        tool_say(j->t, "poses: %sTo%s of %s; their frame is %s", p->from, p->to, in_name(j->pose_source), in_frame);
+    else
+        tool_say(j->t, "poses: lines of %s; their frame is %s", in_name(j->pose_source), in_frame);
 }
 
 /* The next pose, in the volume's frame. 1, 0 at the end, -1. */
@@ -409,12 +452,13 @@ static int next_pose(job *j, double origin[3], double turn[4], err *e)
     while (got > 0 && at.kind != POSES_POSE);
     if (got <= 0)
         return got;
+    say_poses(j);
     body_back(&j->place, at.origin, origin);
     body_turn_back(&j->place, at.turn, turn);
     return 1;
 }
 
-static int frame_pose(const job *j, double origin[3], double turn[4], err *e)
+static int frame_pose(job *j, double origin[3], double turn[4], err *e)
 {
     const model_array *pose = frame_find(&j->model.frame, "probe.pose");
     double square = 0;
@@ -430,6 +474,7 @@ static int frame_pose(const job *j, double origin[3], double turn[4], err *e)
         return err_set(e, source_name(&j->model), 0,
                        "frame %lld: probe.pose has a quaternion of length %.6g; expected 1, to within %g",
                        (long long)j->model.frame.index, sqrt(square), POSES_LENGTH);
+    say_poses(j);
     memcpy(origin, pose->f64, 3 * sizeof *origin);
     for (int i = 0; i < 4; i++)
         turn[i] = pose->f64[3 + i] / sqrt(square);
@@ -487,7 +532,7 @@ static int slice_poses(job *j, err *e)
 
 int main(int argc, char **argv)
 {
-    struct options o = {.size = "512x512", .regions = SLICE_REGIONS};
+    struct options o = {.regions = SLICE_REGIONS};
     err e = {0};
     tool t = {0};
     job j = {.o = &o, .t = &t};
@@ -499,7 +544,7 @@ int main(int argc, char **argv)
         notes_add(&j.warnings,
                   "all is black in every image (of %lld); expected poses in metres, in the volume's frame%s, that look "
                   "into it",
-                  (long long)j.images, o.rigid ? "" : ", as the model is,");
+                  (long long)j.images, o.rigid ? "" : " (which is the model's too)");
 out:
     tool_warn(&t, &j.warnings);
     slice_writer_close(&j.writer, &e);

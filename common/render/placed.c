@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/num.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,20 +24,50 @@ static int take_numbers(char *text, double *to, int count)
     return got == count ? 0 : -1;
 }
 
+/* What is after the mark: nine numbers, and four more where there is a fan. */
+static int take_place(placed *p, char *text)
+{
+    static const char word[] = " fan ";
+    double place[9], fan[4] = {0};
+    char *more = strstr(text, word);
+    p->fan = more != NULL;
+    if (more)
+        *more = '\0';
+    if (take_numbers(text, place, 9) || (more && take_numbers(more + sizeof word - 1, fan, 4)))
+        return -1;
+    memcpy(p->origin, place, sizeof p->origin);
+    memcpy(p->column, place + 3, sizeof p->column);
+    memcpy(p->row, place + 6, sizeof p->row);
+    p->tip = fan[0];
+    p->radius[0] = fan[1];
+    p->radius[1] = fan[2];
+    p->angle = fan[3];
+    return !more || (fan[1] >= 0 && fan[2] > fan[1] && fan[3] > 0 && fan[3] <= 180) ? 0 : -1;
+}
+
+static double length(const double v[3])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+bool placed_shows(const placed *p, int column, int row)
+{
+    const double x = length(p->column) * (column - .5 * (p->columns - 1)), z = p->tip + length(p->row) * row;
+    const double away = sqrt(x * x + z * z);
+    return !p->fan || (away >= p->radius[0] && away <= p->radius[1] && fabs(atan2(x, z)) <= .5 * p->angle * M_PI / 180);
+}
+
 static int read_head(placed *p, in *s, err *e)
 {
     static const char mark[] = "# us-slice:";
     char *line;
-    double place[9], side[2];
+    double side[2];
     if (in_line(s, &line, NULL, e) < 0 || (strcmp(line, "P5") != 0 && strcmp(line, "P6") != 0))
         return e->status ? -1 : bad(s, e, "P5 or P6");
     p->channels = line[1] == '5' ? 1 : 3;
     if (in_line(s, &line, NULL, e) < 0 || strncmp(line, mark, sizeof mark - 1) != 0 ||
-        take_numbers(line + sizeof mark - 1, place, 9))
-        return e->status ? -1 : bad(s, e, "'# us-slice:' and nine numbers");
-    memcpy(p->origin, place, sizeof p->origin);
-    memcpy(p->column, place + 3, sizeof p->column);
-    memcpy(p->row, place + 6, sizeof p->row);
+        take_place(p, line + sizeof mark - 1))
+        return e->status ? -1 : bad(s, e, "'# us-slice:' and nine numbers, or those of a fan");
     if (in_line(s, &line, NULL, e) < 0 || take_numbers(line, side, 2))
         return e->status ? -1 : bad(s, e, "columns and rows");
     for (int i = 0; i < 2; i++)

@@ -7,15 +7,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A quadrilateral a pixel. */
+static void put_face(scene_mesh *mesh, const placed *p, int column, int row)
+{
+    const int64_t face = mesh->faces++;
+    const int64_t pixel = (int64_t)p->channels * ((int64_t)row * p->columns + column);
+    const uint32_t across = (uint32_t)p->columns + 1, first = (uint32_t)row * across + (uint32_t)column;
+    const uint32_t corner[4] = {first, first + 1, first + across + 1, first + across};
+    uint8_t srgb[3];
+    for (int k = 0; k < 3; k++)
+        srgb[k] = p->pixel[pixel + (p->channels == 3 ? k : 0)];
+    memcpy(mesh->corner + 4 * face, corner, sizeof corner);
+    showing_linear(srgb, mesh->face_colour + 3 * face);
+}
+
+/* A quadrilateral a pixel; around a fan there is none. */
 static int make_mesh(scene_mesh *mesh, const placed *p, err *e)
 {
-    const int64_t across = p->columns + 1, faces = (int64_t)p->columns * p->rows;
-    *mesh = (scene_mesh){.corners = 4, .vertices = across * (p->rows + 1), .faces = faces};
+    const int64_t across = p->columns + 1, pixels = (int64_t)p->columns * p->rows;
+    *mesh = (scene_mesh){.corners = 4, .vertices = across * (p->rows + 1)};
     mesh->label = mem_text("the slice", e);
     mesh->position = mem_array(3 * mesh->vertices, sizeof *mesh->position, "a slice", e);
-    mesh->corner = mem_array(4 * faces, sizeof *mesh->corner, "a slice", e);
-    mesh->face_colour = mem_array(3 * faces, sizeof *mesh->face_colour, "a slice", e);
+    mesh->corner = mem_array(4 * pixels, sizeof *mesh->corner, "a slice", e);
+    mesh->face_colour = mem_array(3 * pixels, sizeof *mesh->face_colour, "a slice", e);
     if (e->status)
         return -1;
     for (int64_t i = 0; i < mesh->vertices; i++) {
@@ -24,15 +37,10 @@ static int make_mesh(scene_mesh *mesh, const placed *p, err *e)
             mesh->position[3 * i + a] =
                 (float)(p->origin[a] + p->column[a] * ((double)c - .5) + p->row[a] * ((double)r - .5));
     }
-    for (int64_t i = 0; i < faces; i++) {
-        const uint32_t first = (uint32_t)(i / p->columns * across + i % p->columns);
-        const uint32_t corner[4] = {first, first + 1, first + (uint32_t)across + 1, first + (uint32_t)across};
-        uint8_t srgb[3];
-        for (int k = 0; k < 3; k++)
-            srgb[k] = p->pixel[p->channels * i + (p->channels == 3 ? k : 0)];
-        memcpy(mesh->corner + 4 * i, corner, sizeof corner);
-        showing_linear(srgb, mesh->face_colour + 3 * i);
-    }
+    for (int row = 0; row < p->rows; row++)
+        for (int column = 0; column < p->columns; column++)
+            if (placed_shows(p, column, row))
+                put_face(mesh, p, column, row);
     return 0;
 }
 

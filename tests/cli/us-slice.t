@@ -115,6 +115,43 @@ flat --probe linear:4cm,1cm --depth 4cm --size 40x40
 is "$(pixels "$T/flat.pgm" | sort -u | tr -d ' \n')" 200 "a linear array fills its image"
 is "$(sed -n 2p "$T/flat.pgm" | cut -d ' ' -f 3-)" "-0.0195 0 0.0005 0.001 0 0 0 0 0.001" "from its face on"
 
+# To scale by itself: the side that is not given follows from width and depth, even; what is given stands, and is said to be stretched.
+sides() {
+    head -c 300 "$1" | sed -n 3p
+}
+flat
+is "$(sides "$T/flat.pgm")" "512 640" "512 columns of 4 cm, and as many rows as 5 cm have"
+is "$(sed -n 2p "$T/flat.pgm" | awk '{ print ($6 == $11), $6 }')" "1 7.8125e-05" "pixels are square"
+flat --size 99 --depth 3cm
+is "$(sides "$T/flat.pgm")" "99 74" "columns alone: an even number of rows"
+flat --size x99 --depth 3cm
+is "$(sides "$T/flat.pgm")" "132 99" "rows alone"
+flat --probe curved:3cm,60,1cm --depth 4cm
+is "$(sides "$T/flat.pgm")" "512 322" "a fan: 7 cm wide, 4.4019 high" # 512 x 44.019 / 70 = 321.97
+us-slice --rigid --poses "$T/zero.tum" --size 512x512 -o "$T/flat.pgm" "$T/flat.nrrd" 2>"$T/said"
+is "$(sides "$T/flat.pgm") $(grep -c 'pixels are 0.07812 mm wide and 0.09766 mm high: the image is not to scale; --size 512 is' "$T/said")" \
+    "512 512 1" "two sides are taken as they are, and said"
+us-slice --rigid --poses "$T/zero.tum" --size 512x640 -o "$T/flat.pgm" "$T/flat.nrrd" 2>"$T/said"
+is "$(grep -c 'to scale' "$T/said")" 0 "unless they are to scale"
+fails 2 "a side of too many" 'an image of 1 x 9000 mm, in pixels that are square, has a side of 4608000; expected at most 16384' \
+    us-slice --rigid --poses "$T/zero.tum" --width 1mm --depth 9m "$T/flat.nrrd"
+# phys FILE: pixels a metre along x and y, and the unit, of a PNG's chunk pHYs.
+phys() {
+    tail -c +42 "$1" | head -c 9 | od -An -v -tu1 | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4, (($5 * 256 + $6) * 256 + $7) * 256 + $8, $9 }'
+}
+us-slice -q --rigid --poses "$T/zero.tum" --size 400x100 --probe linear:4cm,1cm --depth 2cm -o "$T/phys_%d.png" "$T/flat.nrrd"
+is "$(tail -c +38 "$T/phys_0.png" | head -c 4) $(phys "$T/phys_0.png")" "pHYs 10000 5000 1" "a PNG says how large it is, along each side: .1 and .2 mm a pixel"
+if /usr/bin/python3 -c 'import vtk' 2>/dev/null; then
+    /usr/bin/python3 -c 'import sys, vtk
+r = vtk.vtkPNGReader()
+r.SetFileName(sys.argv[1])
+r.Update()
+print(r.GetOutput().GetDimensions(), r.GetOutput().GetScalarRange())' "$T/phys_0.png" >"$T/read"
+    is "$(cat "$T/read")" "(400, 100, 1) (200.0, 200.0)" "and VTK reads it"
+else
+    skip 1 "Debian's python3-vtk9 is not installed"
+fi
+
 # Knobs: level 200 of 60 dB is -12.94 dB.
 knob() {
     name=$1 want=$2
@@ -207,6 +244,64 @@ is "$(cmp -l "$T/paper.pgm" "$T/run.pgm" | awk '{ a = substr($2, 1, length($2) -
     b = substr($3, 1, length($3) - 2) * 64 + substr($3, length($3) - 1, 1) * 8 + substr($3, length($3)); d = a > b ? a - b : b - a; if (d > 1) bad++ } END { print bad + 0 }')" 0 \
     "PST's own steps give the same to a grey level"
 
+# The probe is the model's probe.shape, whatever provenance says; where it came from is said, and where poses do.
+us-slice -o "$T/x.pgm" "$T/noise.nrrd" <"$T/run.sinew" 2>"$T/said"
+is "$(grep -c "^us-slice: probe: linear:0.006m,0.004m,0.001m, the model's probe.shape$" "$T/said") $(grep -c "^us-slice: poses: the frames' own$" "$T/said")" \
+    "1 1" "which probe and which poses are said"
+is "$(us-slice -q "$T/noise.nrrd" <"$T/run.sinew" 2>&1 >"$T/x.pgm")" "" "not with -q"
+sinew export -f model --text "$T/run.sinew" | sed -e '/^crc/d' -e '/^prov msds-run/s/linear:0.006m,0.004m,0.001m/linear:0.009m,0.004m,0.001m/' >"$T/prose.txt"
+us-slice -q --depth 7mm --size 60x70 "$T/noise.nrrd" <"$T/prose.txt" | cmp -s - "$T/run.pgm"
+is "$? $(grep -c '^prov.*0.009m' "$T/prose.txt")" "0 1" "what provenance says is prose"
+grep -v '^meta probe.shape' "$T/prose.txt" >"$T/bare.txt"
+us-slice -o "$T/x.pgm" "$T/noise.nrrd" <"$T/bare.txt" 2>"$T/said"
+is "$(grep -c 'the model has no probe.shape: the image is that of a linear array of 4 cm; --probe says another' "$T/said")" 1 "a model that does not say is said"
+sed 's/^meta probe.shape .*/meta probe.shape "sphere:2cm"/' "$T/prose.txt" >"$T/ball.txt"
+us-slice -o "$T/x.pgm" "$T/noise.nrrd" <"$T/ball.txt" 2>"$T/said"
+is "$(grep -c "probe.shape, sphere:2cm, makes no image: the image is that of a linear array of 4 cm" "$T/said")" 1 "and one whose probe makes no image"
+sed 's/^meta probe.shape .*/meta probe.shape "linear:wide"/' "$T/prose.txt" >"$T/wide.txt"
+fails 1 "a shape that is none" "stdin: metadata, probe.shape: 'linear:wide' is no probe; expected one as msds-run writes it" us-slice "$T/noise.nrrd" <"$T/wide.txt"
+
+# Pressed by one face and seen by another: one line that names both.
+msds-run -q --probe curved:4mm,40,3mm,.5mm --poses "$T/press.tum" <"$T/mesh.sinew" >"$T/curved.sinew" 2>/dev/null
+seen() {
+    us-slice --probe "$1" --depth 5mm -o "$T/x.pgm" "$T/noise.nrrd" <"${2:-$T/curved.sinew}" 2>&1 | grep warning
+}
+is "$(seen curved:4mm,80,3mm)" "us-slice: warning: the image is that of curved:4mm,80,3mm, but curved:0.004m,40,0.003m,0.0005m pressed \
+(the model's probe.shape); expected --probe curved:0.004m,40,0.003m,0.0005m, or none" "another fan is warned of"
+is "$(seen linear:4mm,3mm | grep -c 'but curved:0.004m,40')" 1 "and another kind"
+is "$(seen curved:4.01mm,40,3mm | grep -c 'but curved:0.004m,40')" 1 "and another radius"
+is "$(seen linear:7mm,4mm "$T/run.sinew" | grep -c 'but linear:0.006m')" 1 "and another width"
+for same in curved:4mm,40,3mm curved:.4cm,40,9mm,1mm phased:90; do
+    is "$(seen "$same")" "" "$same is not: the same face, or a phased array, which no shape that presses is"
+done
+is "$(seen linear:7mm,4mm "$T/ball.txt")" "" "nor is any array after a sphere"
+
+# Around a fan the slice is not there, in space: the same image drawn as one that does not say what its fan is has a dark frame.
+us-slice -q --depth 5mm --size 40x40 -o "$T/fan_%d.pgm" "$T/noise.nrrd" <"$T/curved.sinew"
+is "$(sed -n 2p "$T/fan_0.pgm" | cut -d ' ' -f 12-)" "fan 0.00382428585 0.004 0.009 40" "a fan's image says its tip, radii and angle"
+dark() {
+    sinew render --show voxels --clear voxels --slice "$1" --frame 0 --view 0,-1,0 --up=-z --size 200x160 --format ppm "$T/curved.sinew" |
+        tail -c 96000 | od -An -v -tu1 -w3 | awk '$1 < 100 && $2 < 100 && $3 < 100 { n++ } END { print n + 0 }'
+}
+sed '2s/ fan .*//' "$T/fan_0.pgm" >"$T/frame_0.pgm"
+with=$(dark "$T/fan_0.pgm") without=$(dark "$T/frame_0.pgm")
+if [ "$with" -lt $((without / 2)) ]; then ok "and is drawn without its corners: $with dark pixels, not $without"; else not_ok "dark pixels: $with, and without a fan $without"; fi
+sed '2s/ 40$/ 240/' "$T/fan_0.pgm" >"$T/wrong_0.pgm"
+fails 1 "a fan that is none" "wrong_0.pgm:2: no image that says where it lies; expected '# us-slice:' and nine numbers, or those of a fan" \
+    sinew render --show voxels --slice "$T/wrong_0.pgm" --frame 0 -o "$T/r.png" "$T/curved.sinew"
+
+# A tracked sequence: which of its transforms is taken.
+sequence() {
+    printf '%s\n' 'ObjectType = Image' 'DimSize = 3 3 1'
+    printf 'Seq_Frame0000_%s = 1 0 0 %s 0 1 0 4 0 0 1 0 0 0 0 1\n' ProbeToTrackerTransform 5.5 ProbeToReferenceTransform 5
+    printf '%s\n' 'Seq_Frame0000_Timestamp = 0' 'ElementDataFile = LOCAL'
+}
+sequence >"$T/plus.mha"
+us-slice --rigid --poses "$T/plus.mha" --size 12x8 --width 12mm --depth 8mm -o "$T/x.pgm" "$T/noise.nrrd" 2>"$T/said"
+is "$(grep -c "^us-slice: poses: ProbeToReference of .*plus.mha; their frame is the volume's$" "$T/said")" 1 "the transform that was taken is said"
+us-slice --rigid --poses "$T/plus.mha" --transform ProbeToTracker --body "$T/body" -o "$T/x.pgm" "$T/noise.nrrd" 2>"$T/said"
+is "$(grep -c "^us-slice: poses: ProbeToTracker of .*plus.mha; their frame is that of the body, in which the volume lies as --body says$" "$T/said")" 1 "and where the volume lies"
+
 # Live: one pose in, one image out, before the next pose is written. (A reader knows that the first frame is whole when the second comes.)
 take_image() {
     for _ in 1 2 3 4; do
@@ -238,7 +333,7 @@ fi
 
 fails 2 "no volume" 'missing operand' us-slice --rigid --poses "$T/zero.tum"
 fails 2 "rigid without poses" '--rigid without --poses' us-slice --rigid "$T/noise.nrrd"
-fails 2 "a size that is none" '--size 12; expected COLUMNSxROWS' us-slice --rigid --poses "$T/zero.tum" --size 12 "$T/noise.nrrd"
+fails 2 "a size that is none" "--size 12x; expected COLUMNS, xROWS or COLUMNSxROWS" us-slice --rigid --poses "$T/zero.tum" --size 12x "$T/noise.nrrd"
 fails 2 "a size too large" 'each 1 to 16384' us-slice --rigid --poses "$T/zero.tum" --size 99999x4 "$T/noise.nrrd"
 fails 2 "no depth" '--depth: 0 m; expected 1 um to 10 m' us-slice --rigid --poses "$T/zero.tum" --depth 0 "$T/noise.nrrd"
 fails 2 "a width that is none" '--width: 1e[+]300 m' us-slice --rigid --poses "$T/zero.tum" --width 1e300 "$T/noise.nrrd"
@@ -273,8 +368,11 @@ sed 's/^array node.displacement /array x-moved /' "$T/run.txt" >"$T/still.txt"
 fails 1 "frames that do not say how far nodes moved" 'frame 0 holds no node.displacement' us-slice "$T/noise.nrrd" <"$T/still.txt"
 echo '0 5 0 0 0 0 0 1' >"$T/away.tum"
 us-slice --rigid --poses "$T/away.tum" -o "$T/away.pgm" "$T/noise.nrrd" 2>"$T/said"
-is "$? $(grep -c 'warning: all is black in every image (of 1)' "$T/said")" "0 1" "a pose that sees nothing is warned of"
-us-slice --rigid --poses "$T/native.tum" -o "$T/away.pgm" "$T/noise.nrrd" 2>"$T/said"
+is "$? $(grep -c 'warning: all is black in every image (of 1); expected poses in metres, in the volume.s frame, that look into it' "$T/said")" "0 1" \
+    "a pose that sees nothing is warned of"
+us-slice --poses "$T/away.tum" -o "$T/away.pgm" "$T/noise.nrrd" <"$T/mesh.sinew" 2>"$T/said"
+is "$(grep -c "in the volume's frame (which is the model's too), that look into it" "$T/said") $(grep -c ,, "$T/said")" "1 0" "with a model too"
+us-slice -q --rigid --poses "$T/native.tum" -o "$T/away.pgm" "$T/noise.nrrd" 2>"$T/said"
 is "$(cat "$T/said")" "" "one that sees something is not"
 awk '/^array node.displacement/ { print; getline; print "1e300 -1e300 1e200"; next } { print }' "$T/run.txt" >"$T/far.txt"
 check "a node that flew away" us-slice -o "$T/far.pgm" "$T/noise.nrrd" <"$T/far.txt"

@@ -91,7 +91,7 @@ static void images(const char *text)
     got = slice_size_of(&s, text, &e);
     must((got < 0) == (e.status != 0));
     if (!got)
-        must(s.columns > 0 && s.rows > 0);
+        must(s.columns >= 0 && s.rows >= 0 && s.columns + s.rows > 0);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

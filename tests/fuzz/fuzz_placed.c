@@ -18,6 +18,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             abort();
         for (int64_t i = 0; i < (int64_t)p.columns * p.rows * p.channels; i++)
             sum += p.pixel[i];
+        sum += placed_shows(&p, 0, 0) + placed_shows(&p, p.columns - 1, p.rows - 1);
         for (int a = 0; a < 3; a++)
             if (!isfinite(p.origin[a]) || !isfinite(p.column[a]) || !isfinite(p.row[a]) || sum < 0)
                 abort();
