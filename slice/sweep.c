@@ -5,6 +5,7 @@
 #include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -96,6 +97,8 @@ int sweep_read(sweep *s, in *source, const char *transform, const double *image_
             more = -1;
     }
     s->skipped = p.skipped;
+    snprintf(s->from, sizeof s->from, "%s", p.from);
+    snprintf(s->to, sizeof s->to, "%s", p.to);
     if (!more && !s->count)
         return err_set(e, in_name(source), 0, "no frame that was tracked");
     return more ? more : take_orientation(s, &p, e);

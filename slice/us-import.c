@@ -181,6 +181,16 @@ static int crop_images(job *j, volume *images, sweep *s, err *e)
     return 0;
 }
 
+static void say_transform(const job *j, const sweep *s)
+{
+    const char *more = "";
+    if (!strcmp(s->from, "Probe"))
+        more = ", after --calibration";
+    else if (j->o->calibration)
+        more = ", which says where the image is: --calibration is not used";
+    tool_say(j->t, "transform: %sTo%s%s", s->from, s->to, more);
+}
+
 static int put_together(job *j, volume *images, sweep *s, const double *image_to_probe, err *e)
 {
     const char *path = j->files.path[0];
@@ -195,6 +205,7 @@ static int put_together(job *j, volume *images, sweep *s, const double *image_to
     in_close(source);
     if (code)
         return -1;
+    say_transform(j, s);
     sweep_unflip(s, images->size);
     if (crop_images(j, images, s, e) || sweep_volume(&j->v, s, images, &wish, filled, e))
         return -1;

@@ -174,6 +174,7 @@ check "a sweep" us-import --raw --voxel .5mm -o "$T/out.nrrd" "$T/sweep.mha"
 is "$(line "$T/out.nrrd" sizes) $(line "$T/out.nrrd" "space origin")" "4 3 9 (1,2,0)" "its size and place"
 is "$(tail -c 108 "$T/out.nrrd" | head -c 1)$(tail -c 108 "$T/out.nrrd" | tail -c 84 | head -c 1)$(tail -c 1 "$T/out.nrrd")" "AIa" \
     "its voxels: of the first and last frames, and of one between"
+says '^us-import: transform: ImageToReference$' "$T/stderr" "the transform that was taken"
 check "without filling" us-import -q --raw --voxel .5mm --fill 0 -o "$T/out.nrrd" "$T/sweep.mha"
 is "$(tail -c 96 "$T/out.nrrd" | head -c 1 | od -A n -t u1 | tr -d ' ')" 0 "a gap stays"
 sed '1a UltrasoundImageOrientation = UN' "$T/sweep.mha" >"$T/turned.mha"
@@ -190,7 +191,7 @@ fails 2 "options of DICOM" 'are for DICOM' us-import --series 1 "$T/sweep.mha"
 
 # ---- real data
 if [ -z "$DATA" ]; then
-    skip 8 "no shared data"
+    skip 9 "no shared data"
     done_testing
 fi
 U=$DATA/ultrasound
@@ -202,6 +203,7 @@ check "the spine phantom" us-import -o "$T/spine.nrrd" "$U/SpinePhantomFreehandR
 # An array of 38 mm is 467 pixels wide; how the image lies to its marker is not known, so that pixels lie along the marker's axes.
 printf '0.0814 0 0 -33.34\n0 0.0814 0 -0.16\n0 0 0.0814 0\n0 0 0 1\n' >"$T/calibration"
 check "the bone sweep" us-import --voxel .4mm --crop 176,2,643,616 --calibration "$T/calibration" -o "$T/bone.nrrd" "$U/BoneUltrasound_L14.igs.mha"
+says '^us-import: transform: ProbeToReference, after --calibration$' "$T/stderr" "and which transform was taken"
 says '21 frames (0 without tracking left out) to 99 x 127 x 24 voxels of 0.4 mm' "$T/stderr" "its size: 38 mm wide, 50 deep"
 
 reader=
