@@ -158,22 +158,45 @@ static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t
     return !along_axis || m->axis[0] != 0 || m->axis[1] != 0 || m->axis[2] != 0;
 }
 
+static bool can_move(const body *b, int64_t element)
+{
+    for (int n = 0; n < b->columns; n++)
+        if (!b->rigid[b->node[b->columns * element + n]])
+            return true;
+    return false;
+}
+
+/* What of a muscle will not contract: elements `without` a fibre, and those that are `still`, with rigid nodes alone. */
+static void warn_of(const muscle *m, muscle_fibre kind, int64_t without, int64_t still, notes *warnings)
+{
+    if (!m->elements)
+        notes_add(warnings, "%s has no elements: it will not contract; voxelise says why", m->name);
+    else if (still == m->elements)
+        notes_add(warnings,
+                  "%s has no node that is free: it will not contract; smaller voxels or a lower --strictness may leave "
+                  "some free",
+                  m->name);
+    else if (!m->rigid_nodes && kind == MUSCLE_CENTRE)
+        notes_add(warnings,
+                  "%s has no rigid node, so no contraction centre and no fibres: it will not contract; --fibre field "
+                  "gives it fibres all the same",
+                  m->name);
+    else if (without)
+        notes_add(warnings,
+                  "%s has no axis that is the longest: %lld of its %lld elements have no fibre and will not contract; "
+                  "%s",
+                  m->name, (long long)without, (long long)m->elements,
+                  kind == MUSCLE_FIELD ? "smaller voxels give it a shape" : "--fibre field needs no axis");
+}
+
 static void set_fibres(const body *b, const muscle *m, muscle_fibre kind, notes *warnings)
 {
-    int64_t without = 0;
-    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++)
+    int64_t without = 0, still = 0;
+    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
         without += !set_fibre(b, m, kind, b->element[at]);
-    if (!m->elements)
-        notes_add(warnings, "%s has no elements: it cannot contract", m->name);
-    else if (!m->rigid_nodes && kind == MUSCLE_CENTRE)
-        notes_add(warnings, "%s has no rigid node, so no contraction centre and no fibres: it will not contract",
-                  m->name);
-    else if (!m->rigid_nodes)
-        notes_add(warnings, "%s has no rigid node, so no contraction centre", m->name);
-    if (without && (m->rigid_nodes || kind != MUSCLE_CENTRE))
-        notes_add(warnings,
-                  "%s has no axis that is the longest: %lld of its %lld elements have no fibre and will not contract",
-                  m->name, (long long)without, (long long)m->elements);
+        still += !can_move(b, b->element[at]);
+    }
+    warn_of(m, kind, without, still, warnings);
 }
 
 static int check_fractions(const model_array *fraction, err *e)

@@ -132,7 +132,7 @@ static int all_used(const names *patterns, const model *m, err *e)
         while (n < all.count && !surface_in_group(all.name[n], patterns->name[p]))
             n++;
         if (n == all.count) {
-            near_unknown(e, NULL, 0, "surface", patterns->name[p], (const char *const *)all.name, all.count);
+            near_option(e, NULL, "surface", patterns->name[p], (const char *const *)all.name, all.count);
             goto out;
         }
     }
@@ -150,7 +150,7 @@ int rigid_collect(rigid *r, const model *m, const opt_list *patterns, err *e)
         if (add_words(&list, patterns->value[i], ",", e))
             goto out;
     if (patterns->count && !list.count) {
-        err_set(e, NULL, 0, "--rigid names no surface; expected names between commas");
+        err_option(e, "--rigid", "'%.200s' names no surface; expected names between commas", patterns->value[0]);
         goto out;
     }
     if (patterns->count && all_used(&list, m, e))

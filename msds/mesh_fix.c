@@ -85,7 +85,7 @@ static int unknown(const model *m, const char *word, err *e)
     for (int64_t i = 0; list && i < WORDS + volumes; i++)
         list[i] = i < WORDS ? words[i] : names->str[i - WORDS];
     if (list)
-        near_unknown(e, "--fix", 0, "side or volume", word, list, (int)(WORDS + volumes));
+        near_option(e, "--fix", "side or volume", word, list, (int)(WORDS + volumes));
     free(list);
     return -1;
 }

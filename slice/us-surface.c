@@ -204,7 +204,7 @@ static int write_named(job *j, const char *name, err *e)
         for (int i = 0; known && i < j->v.labels; i++)
             known[i] = j->v.label[i].name;
         if (known)
-            near_unknown(e, NULL, 0, "label", name, known, j->v.labels);
+            near_option(e, NULL, "label", name, known, j->v.labels);
         free(known);
         return -1;
     }

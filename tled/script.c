@@ -6,6 +6,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -142,7 +143,10 @@ static int unknown_muscle(const model_array *names, const model_array *muscle, c
     for (int64_t i = 0; i < names->rows && count < INT32_MAX; i++)
         if (muscle->u8[i])
             list[count++] = whole ? names->str[i] : short_name(names->str[i]);
-    near_unknown(e, place, line, "muscle", name, list, count);
+    if (line)
+        near_unknown(e, place, line, "muscle", name, list, count);
+    else
+        near_option(e, place, "muscle", name, list, count);
     free(list);
     return -1;
 }
@@ -161,26 +165,103 @@ int32_t script_muscle(const model *m, const char *name, const char *place, int64
     return unknown_muscle(names, muscle, name, place, line, e);
 }
 
-static bool has_fibre(const model *m, int32_t volume)
+/* What of a muscle's elements makes it contract. */
+typedef struct fitness {
+    int64_t elements, fibres, moving; /* of it; those with a fibre; of these, those with a node that is not rigid */
+} fitness;
+
+static bool can_move(const model_array *node, const model_array *rigid, int64_t element)
 {
-    static const char *const name[2][2] = {{"element.volume", "element.fibre"}, {"element.mix", "element.mixfibre"}};
-    for (int k = 0; k < 2; k++) {
-        const model_array *of = model_find(m, name[k][0]), *fibre = model_find(m, name[k][1]);
-        for (int64_t i = 0; of && fibre && i < of->rows; i++)
-            if (of->i32[i] == volume &&
-                (fibre->f32[3 * i] != 0 || fibre->f32[3 * i + 1] != 0 || fibre->f32[3 * i + 2] != 0))
-                return true;
-    }
+    const int32_t *of = node->i32 + node->columns * element;
+    for (int i = 0; i < node->columns; i++)
+        if (!rigid || !rigid->u8[of[i]])
+            return true;
     return false;
 }
 
-void script_warn_of_fibres(const model *m, int32_t volume, notes *warnings)
+/* Adds up, for each volume, the elements that `which` says are of it. */
+static void count_fit(fitness *of, const model *m, const char *which, const char *fibre_of)
 {
-    if (!has_fibre(m, volume))
-        notes_add(warnings,
-                  "%s has no element with a fibre direction, so its contraction does nothing; "
-                  "attach gives fibres to muscles that touch a rigid node",
-                  model_find(m, "volume.name")->str[volume]);
+    const model_array *volume = model_find(m, which), *fibre = model_find(m, fibre_of);
+    const model_array *node = model_find(m, "element.node"), *rigid = model_find(m, "node.rigid");
+    for (int64_t i = 0; volume && i < volume->rows; i++) {
+        if (volume->i32[i] < 0)
+            continue;
+        fitness *f = &of[volume->i32[i]];
+        const float *along = fibre ? fibre->f32 + 3 * i : NULL;
+        bool has = along && (along[0] != 0 || along[1] != 0 || along[2] != 0);
+        f->elements++;
+        f->fibres += has;
+        f->moving += has && (!node || can_move(node, rigid, i));
+    }
+}
+
+/* Why a muscle cannot contract, and what would help. */
+static void say_why(const model *m, const fitness *f, char *to, size_t size)
+{
+    if (!f->elements)
+        snprintf(to, size, "it has no elements; smaller voxels (voxelise -s) may give it some");
+    else if (f->fibres)
+        snprintf(to, size,
+                 "all nodes of its elements with a fibre (%" PRId64 ") are rigid; smaller voxels or a lower attach "
+                 "--strictness may leave some free",
+                 f->fibres);
+    else if (!model_find(m, "element.lattice"))
+        snprintf(to, size, "its elements (%" PRId64 ") have no fibre; expected directions in element.fibre",
+                 f->elements);
+    else if (!model_find(m, "element.fibre"))
+        snprintf(to, size, "the model has no fibres (element.fibre); run attach, which gives muscles theirs");
+    else
+        snprintf(to, size,
+                 "its elements (%" PRId64 ") have no fibre; attach --fibre field gives fibres also to a muscle that "
+                 "touches no bone",
+                 f->elements);
+}
+
+static bool is_idle(const script_curve *c, const fitness *of)
+{
+    return c->verb == SCRIPT_CONTRACT && !of[c->volume].moving;
+}
+
+/* Warns of the muscles that cannot contract, or refuses where none can. */
+static int weigh(const script *s, const model *m, const fitness *of, notes *warnings, err *e)
+{
+    int64_t muscles = 0, idle = 0;
+    char why[300];
+    for (int64_t i = 0; i < s->curves; i++) {
+        muscles += s->curve[i].verb == SCRIPT_CONTRACT;
+        idle += is_idle(&s->curve[i], of);
+    }
+    for (int64_t i = 0; i < s->curves; i++) {
+        if (!is_idle(&s->curve[i], of))
+            continue;
+        const int32_t volume = s->curve[i].volume;
+        const char *name = model_find(m, "volume.name")->str[volume];
+        say_why(m, &of[volume], why, sizeof why);
+        if (idle == muscles && muscles == 1)
+            return err_set(e, NULL, 0, "%.200s cannot contract: %s", name, why);
+        if (idle == muscles)
+            return err_set(e, NULL, 0, "none of the %" PRId64 " muscles can contract; %.200s: %s", muscles, name, why);
+        notes_add(warnings, "%.200s will not contract: %s", name, why);
+    }
+    return 0;
+}
+
+int script_check_muscles(const script *s, const model *m, notes *warnings, err *e)
+{
+    bool any = false;
+    for (int64_t i = 0; i < s->curves; i++)
+        any |= s->curve[i].verb == SCRIPT_CONTRACT;
+    if (!any)
+        return 0;
+    fitness *of = mem_array(model_count(m, "volume"), sizeof *of, "the muscles", e);
+    if (!of)
+        return -1;
+    count_fit(of, m, "element.volume", "element.fibre");
+    count_fit(of, m, "element.mix", "element.mixfibre");
+    int status = weigh(s, m, of, warnings, e);
+    free(of);
+    return status;
 }
 
 int script_level(const char *text, double *level)
@@ -189,29 +270,28 @@ int script_level(const char *text, double *level)
 }
 
 /* "MUSCLE=LEVEL", cut in place. */
-static int add_level(script *s, const model *m, char *item, double ramp, notes *warnings, err *e)
+static int add_level(script *s, const model *m, char *item, double ramp, err *e)
 {
     double value[3] = {0};
     char *equals = strrchr(item, '=');
     if (!equals || equals == item)
-        return err_set(e, "-c", 0, "'%.200s'; expected MUSCLE=LEVEL, such as zyg=0.4", item);
+        return err_option(e, "-c", "'%.200s'; expected MUSCLE=LEVEL, such as zyg=0.4", item);
     *equals = '\0';
     if (script_level(equals + 1, &value[0]))
-        return err_set(e, "-c", 0, "level '%.200s' of %.200s; expected a number from 0 to 1", equals + 1, item);
+        return err_option(e, "-c", "level '%.200s' of %.200s; expected a number from 0 to 1", equals + 1, item);
     script_curve c = {.verb = SCRIPT_CONTRACT, .volume = script_muscle(m, item, "-c", 0, e), .target = item};
     if (c.volume < 0)
         return -1;
     int64_t other = script_find(s, &c);
     if (other >= 0 && s->curve[other].line)
-        return err_set(e, "-c", 0, "muscle '%.200s' is contracted by line %" PRId64 " of the script too; expected one",
-                       item, s->curve[other].line);
+        return err_option(e, "-c", "muscle '%.200s' is contracted by line %" PRId64 " of the script too; expected one",
+                          item, s->curve[other].line);
     if (other >= 0)
-        return err_set(e, "-c", 0, "muscle '%.200s' is given twice; expected once", item);
-    script_warn_of_fibres(m, c.volume, warnings);
+        return err_option(e, "-c", "muscle '%.200s' is given twice; expected once", item);
     return curve_add_ramp(s, &c, ramp, value, e);
 }
 
-int script_add_contract(script *s, const model *m, const char *list, double ramp, notes *warnings, err *e)
+int script_add_contract(script *s, const model *m, const char *list, double ramp, err *e)
 {
     char *text = mem_text(list, e);
     int status = text ? 0 : -1;
@@ -219,7 +299,7 @@ int script_add_contract(script *s, const model *m, const char *list, double ramp
         next = strchr(item, ',');
         if (next)
             *next++ = '\0';
-        status = add_level(s, m, item, ramp, warnings, e);
+        status = add_level(s, m, item, ramp, e);
     }
     free(text);
     return status;
@@ -231,7 +311,7 @@ int script_add_gravity(script *s, const double *g, double ramp, err *e)
     script_curve c = {.verb = SCRIPT_GRAVITY, .volume = -1, .target = target};
     int64_t other = script_find(s, &c);
     if (other >= 0)
-        return err_set(e, "-g", 0, "gravity is set by line %" PRId64 " of the script too; expected one",
-                       s->curve[other].line);
+        return err_option(e, "-g", "gravity is set by line %" PRId64 " of the script too; expected one",
+                          s->curve[other].line);
     return curve_add_ramp(s, &c, ramp, g, e);
 }

@@ -20,7 +20,6 @@ typedef struct entry {
 typedef struct reader {
     script *s;
     const model *m;
-    notes *warnings;
     keyfile k;
     entry *entries;
     int64_t count, capacity;
@@ -201,8 +200,6 @@ static int line_contract(reader *r, double time, err *e)
         return keyfile_error(k, e, "level '%.200s'; expected a number from 0 to 1", k->word[3]);
     bool fresh;
     int64_t at = curve_of(r, &c, &fresh, e);
-    if (at >= 0 && fresh)
-        script_warn_of_fibres(r->m, c.volume, r->warnings);
     return at < 0 ? -1 : key_add(r, at, time, value, e);
 }
 
@@ -358,9 +355,9 @@ static void take_near(reader *r)
         r->near[a] = known ? 1e-9 * l.spacing[a] : 0;
 }
 
-int script_read(script *s, in *source, const model *m, notes *warnings, err *e)
+int script_read(script *s, in *source, const model *m, err *e)
 {
-    reader r = {.s = s, .m = m, .warnings = warnings, .first = s->curves};
+    reader r = {.s = s, .m = m, .first = s->curves};
     int more, status = -1;
     keyfile_open(&r.k, source);
     take_near(&r);

@@ -177,13 +177,13 @@ static int change_materials(session *s, const struct options *o, err *e)
 static int make_script(session *s, const struct options *o, err *e)
 {
     in *source = o->script ? in_open(o->script, e) : NULL;
-    int result = o->script && (!source || script_read(&s->script, source, &s->m, &s->warnings, e)) ? -1 : 0;
+    int result = o->script && (!source || script_read(&s->script, source, &s->m, e)) ? -1 : 0;
     in_close(source);
     for (int i = 0; !result && i < o->contract.count; i++)
-        result = script_add_contract(&s->script, &s->m, o->contract.value[i], o->ramp, &s->warnings, e);
+        result = script_add_contract(&s->script, &s->m, o->contract.value[i], o->ramp, e);
     if (!result && o->gravity.count)
         result = script_add_gravity(&s->script, o->gravity.value, o->ramp, e);
-    return result;
+    return result ? result : script_check_muscles(&s->script, &s->m, &s->warnings, e);
 }
 
 static int check_held(session *s, err *e)

@@ -15,27 +15,39 @@ static size_t put_place(char *to, size_t size, const char *place, int64_t line)
     return n < 0 ? 0 : (size_t)n < size ? (size_t)n : size - 1;
 }
 
-int err_set(err *e, const char *place, int64_t line, const char *format, ...)
+static int fill(err *e, int status, const char *place, int64_t line, const char *format, va_list args)
 {
     if (e->status)
         return -1;
-    e->status = STATUS_BAD;
+    e->status = status;
     size_t at = put_place(e->text, sizeof e->text, place, line);
+    vsnprintf(e->text + at, sizeof e->text - at, format, args);
+    return -1;
+}
+
+int err_set(err *e, const char *place, int64_t line, const char *format, ...)
+{
     va_list args;
     va_start(args, format);
-    vsnprintf(e->text + at, sizeof e->text - at, format, args);
+    fill(e, STATUS_BAD, place, line, format, args);
     va_end(args);
     return -1;
 }
 
 int err_usage(err *e, const char *format, ...)
 {
-    if (e->status)
-        return -1;
-    e->status = STATUS_USAGE;
     va_list args;
     va_start(args, format);
-    vsnprintf(e->text, sizeof e->text, format, args);
+    fill(e, STATUS_USAGE, NULL, 0, format, args);
+    va_end(args);
+    return -1;
+}
+
+int err_option(err *e, const char *option, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    fill(e, STATUS_USAGE, option, 0, format, args);
     va_end(args);
     return -1;
 }

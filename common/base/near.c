@@ -85,16 +85,31 @@ void near_list(char *to, size_t size, const char *const *names, int count)
     }
 }
 
+/* "did you mean 'near'? expected one of: a, b, c". */
+static void offer(char *to, size_t size, const char *name, const char *const *names, int count)
+{
+    char list[320], meant[SUGGESTIONS * (SUGGESTION_MOST + 8)];
+    near_list(list, sizeof list, names, count);
+    suggest(meant, sizeof meant, name, names, count);
+    if (!count)
+        snprintf(to, size, "there is none here");
+    else
+        snprintf(to, size, "%s%s%sexpected one of: %s", *meant ? "did you mean " : "", meant, *meant ? "? " : "", list);
+}
+
+enum { OFFER = 800 };
+
 int near_unknown(err *e, const char *place, int64_t line, const char *what, const char *name, const char *const *names,
                  int count)
 {
-    char list[320], meant[SUGGESTIONS * (SUGGESTION_MOST + 8)];
-    if (!count)
-        return err_set(e, place, line, "unknown %s '%.200s'; there is none here", what, name);
-    near_list(list, sizeof list, names, count);
-    suggest(meant, sizeof meant, name, names, count);
-    if (!*meant)
-        return err_set(e, place, line, "unknown %s '%.200s'; expected one of: %s", what, name, list);
-    return err_set(e, place, line, "unknown %s '%.200s'; did you mean %s? expected one of: %s", what, name, meant,
-                   list);
+    char text[OFFER];
+    offer(text, sizeof text, name, names, count);
+    return err_set(e, place, line, "unknown %s '%.200s'; %s", what, name, text);
+}
+
+int near_option(err *e, const char *option, const char *what, const char *name, const char *const *names, int count)
+{
+    char text[OFFER];
+    offer(text, sizeof text, name, names, count);
+    return err_option(e, option, "unknown %s '%.200s'; %s", what, name, text);
 }

@@ -8,6 +8,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,20 +71,31 @@ static int law_of(const char *name)
     return -1;
 }
 
-/* name: an index into key_names. place and line as in err_set. */
+/* An unknown name in a file, or, with line 0, in the option `place`. */
+static int unknown(err *e, const char *place, int64_t line, const char *what, const char *name,
+                   const char *const *names, int count)
+{
+    return line ? near_unknown(e, place, line, what, name, names, count)
+                : near_option(e, place, what, name, names, count);
+}
+
+/* name: an index into key_names. place and line: as of unknown. */
 static int row_take(row *r, int name, const char *text, const char *place, int64_t line, err *e)
 {
     if (name == 0) {
         int law = law_of(text);
         if (law < 0)
-            return near_unknown(e, place, line, "law", text, law_names, MATERIAL_LAWS);
+            return unknown(e, place, line, "law", text, law_names, MATERIAL_LAWS);
         r->law = (material_law)law;
         return 0;
     }
     const key *k = &keys[name - 1];
     double v;
-    if (num_double(text, &v) || !k->valid(v))
+    bool good = !num_double(text, &v) && k->valid(v);
+    if (!good && line)
         return err_set(e, place, line, "'%s=%.100s' is not allowed; expected %s", k->name, text, k->expected);
+    if (!good)
+        return err_option(e, place, "'%s=%.100s' is not allowed; expected %s", k->name, text, k->expected);
     r->value[name - 1] = v;
     return 0;
 }
@@ -256,15 +268,17 @@ static int assignment_cut(char *text, char **name, char **value)
 
 static int assign(model *m, const char *which, const char *name, const char *text, err *e)
 {
+    char place[220];
     int32_t at = materials_find(m, which);
     if (at < 0)
-        return materials_unknown(m, which, NULL, 0, e);
+        return materials_unknown(m, which, "-m", 0, e);
+    snprintf(place, sizeof place, "-m %.200s", which);
     for (int i = 0; i <= KEYS; i++) {
         row r = {0};
         if (!strcmp(key_names[i], name))
-            return row_take(&r, i, text, which, 0, e) ? -1 : row_store(m, at, &r, UINT64_C(1) << i, e);
+            return row_take(&r, i, text, place, 0, e) ? -1 : row_store(m, at, &r, UINT64_C(1) << i, e);
     }
-    return near_unknown(e, which, 0, "key", name, key_names, KEYS + 1);
+    return unknown(e, place, 0, "key", name, key_names, KEYS + 1);
 }
 
 int materials_set(model *m, const char *assignment, err *e)
@@ -276,7 +290,7 @@ int materials_set(model *m, const char *assignment, err *e)
         return -1;
     int status = -1;
     if (assignment_cut(text, &name, &value))
-        err_set(e, NULL, 0, "'%.200s'; expected MATERIAL.KEY=VALUE, such as tissue.E=3000", assignment);
+        err_option(e, "-m", "'%.200s'; expected MATERIAL.KEY=VALUE, such as tissue.E=3000", assignment);
     else
         status = assign(m, text, name, value, e);
     free(text);
@@ -296,7 +310,7 @@ int materials_unknown(const model *m, const char *name, const char *place, int64
 {
     const model_array *a = model_find(m, "material.name");
     int count = !a ? 0 : a->rows < INT32_MAX ? (int)a->rows : INT32_MAX;
-    return near_unknown(e, place, line, "material", name, a ? (const char *const *)a->str : NULL, count);
+    return unknown(e, place, line, "material", name, a ? (const char *const *)a->str : NULL, count);
 }
 
 /* The value of key k of material i, or what the table says where there is none. */

@@ -47,13 +47,14 @@ int materials_read_with(model *m, in *s, const material *fallback, err *e);
  * could be made of it. */
 int materials_override(model *m, in *s, err *e);
 
-/* Changes one value: "NAME.KEY=VALUE" (KEY may be law). NAME may hold dots. */
+/* Changes one value, as -m asks: "NAME.KEY=VALUE" (KEY may be law). NAME may hold dots. What is wrong with it is an error of the
+ * command line. */
 int materials_set(model *m, const char *assignment, err *e);
 
 /* The index of the material named so, or -1. */
 int32_t materials_find(const model *m, const char *name);
 
-/* "unknown material 'name'; ..." at place:line, with near names. Returns -1. */
+/* "unknown material 'name'; ..." at place:line, with near names. line 0: place is an option of the command line. Returns -1. */
 int materials_unknown(const model *m, const char *name, const char *place, int64_t line, err *e);
 
 /* Material i, checked: a model may have been edited by hand. A missing array or a nan is an error, but for peak (0). */

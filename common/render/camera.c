@@ -83,7 +83,7 @@ int camera_view(camera *c, const char *name, const double up[3], const double fr
             found = i;
     }
     if (found < 0)
-        return near_unknown(e, NULL, 0, "view", name, names, VIEWS);
+        return near_option(e, NULL, "view", name, names, VIEWS);
     double axis[3][3], forward[3], above[3];
     memcpy(axis[1], up, sizeof axis[1]);
     cross(up, front, axis[2]);

@@ -194,7 +194,7 @@ static int unknown(const model *m, const frame *f, const char *name, err *e)
     if (f)
         note_arrays(&f->arrays, &names);
     note_arrays(&m->arrays, &names);
-    near_unknown(e, NULL, 0, "field", name, (const char *const *)names.line, names.count);
+    near_option(e, NULL, "field", name, (const char *const *)names.line, names.count);
     notes_free(&names);
     return -1;
 }

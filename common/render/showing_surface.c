@@ -258,7 +258,7 @@ int showing_check_names(const model *m, const showing_want *w, err *e)
         while (i < there.count && !surface_in_group(there.line[i], name))
             i++;
         if (i == there.count)
-            bad = near_unknown(e, NULL, 0, "thing", name, (const char *const *)there.line, there.count);
+            bad = near_option(e, NULL, "thing", name, (const char *const *)there.line, there.count);
     }
     notes_free(&there);
     return bad;

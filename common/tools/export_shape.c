@@ -15,7 +15,7 @@ static int no_surface(const model *m, const char *name, err *e)
     notes names = {0};
     for (int i = 0; model_surface(m, i, one, sizeof one); i++)
         notes_add(&names, "%s", one);
-    near_unknown(e, NULL, 0, "surface", name, (const char *const *)names.line, names.count);
+    near_option(e, NULL, "surface", name, (const char *const *)names.line, names.count);
     notes_free(&names);
     return -1;
 }

@@ -92,7 +92,7 @@ static int drop_empty(import_mesh *m, err *e)
 static int unknown_set(const inp_reader *r, const char *name)
 {
     const int32_t count = r->nodes.names.count < 1000 ? r->nodes.names.count : 1000;
-    return near_unknown(r->e, r->m->name, 0, "node set", name, (const char *const *)r->nodes.names.name, count);
+    return near_option(r->e, "--rigid", "node set", name, (const char *const *)r->nodes.names.name, count);
 }
 
 static int hold_named(inp_reader *r, const import_wishes *w, giving *g)

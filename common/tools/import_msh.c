@@ -168,7 +168,7 @@ static int check_rigid(reader *r)
         for (int k = 0; k < count; k++)
             found |= !strcmp(named[k], r->w->rigid[i]);
         if (!found)
-            bad = near_unknown(r->e, r->m->name, 0, "physical group", r->w->rigid[i], named, count);
+            bad = near_option(r->e, "--rigid", "physical group", r->w->rigid[i], named, count);
     }
     free(named);
     return bad;

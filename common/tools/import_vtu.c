@@ -396,7 +396,7 @@ static int read_rigid(reader *r)
     for (int i = 0; !bad && i < r->w->rigids; i++)
         bad = array_of(r, POINT_DATA, r->w->rigid[i])
                   ? hold(r, r->w->rigid[i])
-                  : near_unknown(r->e, r->m->name, 0, "array of points", r->w->rigid[i], words, count);
+                  : near_option(r->e, "--rigid", "array of points", r->w->rigid[i], words, count);
     free(words);
     if (!bad && array_of(r, POINT_DATA, "rigid"))
         bad = hold(r, "rigid");

@@ -153,7 +153,7 @@ static int unknown_panel(const char *name, err *e)
         }
         names[count++] = word;
     }
-    return near_unknown(e, NULL, 0, "panel", name, names, count);
+    return near_option(e, NULL, "panel", name, names, count);
 }
 
 /* "rest", "left", "rest@left". */

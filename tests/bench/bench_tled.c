@@ -333,7 +333,7 @@ static void measure_file(const char *path, const options *o)
     for (int64_t i = 0; muscle && i < muscle->rows && !*contract; i++)
         if (muscle->u8[i])
             snprintf(contract, sizeof contract, "%s=.05", names->str[i]);
-    bench_must(*contract && script_add_contract(&b.script, &b.m, contract, .1, NULL, &b.e), &b.e);
+    bench_must(*contract && script_add_contract(&b.script, &b.m, contract, .1, &b.e), &b.e);
     bench_must(tled_problem_make(&b.problem, &b.m, &b.script, .0075, &b.e), &b.e);
     bench_finish(&b, o->threads);
     measure(name, &b, o);

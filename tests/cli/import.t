@@ -213,7 +213,7 @@ bad "nodes that are moved" "[0-9]*: .BOUNDARY that moves" 's/^Ends, 1, 3/Ends, 1
 fails 1 "materials in unknown units" "materials in units that only you know" sinew import -q --unit mm -o "$T/x" "$T/ok.inp"
 fails 2 "no unit" "missing option --unit" sinew import "$T/ok.inp"
 fails 2 "a unit that is none" "expected um, mm" sinew import --unit ell "$T/ok.inp"
-fails 1 "a node set that is not there" "unknown node set 'lows'; did you mean 'low'" run --rigid lows "$T/ok.inp"
+fails 2 "a node set that is not there" "--rigid: unknown node set 'lows'; did you mean 'low'" run --rigid lows "$T/ok.inp"
 fails 1 "no mesh" "begins like none" sinew import --unit m "$small"
 fails 1 "VTK's legacy format" "legacy" sh -c "echo '# vtk DataFile' | sinew import --unit m -"
 fails 1 "nothing" "empty file" sinew import --unit m /dev/null
@@ -261,7 +261,7 @@ badvtu "too few numbers" "7: array Points: no number; expected 24" '6s/1 1 1$/1 
 badvtu "offsets that fall" "10: cell 1 ends before" 's/>2 10</>2 1</'
 badvtu "another grid" "2: a VTK file of PolyData" 's/="UnstructuredGrid"/="PolyData"/'
 badvtu "no XML" "4: a tag that is none" 's/<Piece Num/<Piece = Num/'
-fails 1 "vtu: no such array" "unknown array of points 'hold'; did you mean 'held'" sinew import --unit m --rigid hold "$T/ascii.vtu"
+fails 2 "vtu: no such array" "--rigid: unknown array of points 'hold'; did you mean 'held'" sinew import --unit m --rigid hold "$T/ascii.vtu"
 head -c 700 "$T/small.vtu" >"$T/cut.vtu"
 fails 1 "vtu: cut" "cut.vtu" sinew import --unit m -o "$T/x" "$T/cut.vtu"
 is "$(cd "$T" && ls x 2>/dev/null)" "" "none of these left a file"

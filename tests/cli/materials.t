@@ -89,6 +89,6 @@ for bad in 'tissue.E=-1|0.001 to 1e12 Pa' 'tissue.E=|expected MATERIAL.KEY=VALUE
     'E=3|expected MATERIAL.KEY=VALUE' 'tissue=3|expected MATERIAL.KEY=VALUE' "tisue.E=3|did you mean 'tissue'" \
     "tissue.dens=3|unknown key 'dens'" 'tissue.nu=half|-0.99 to 0.4999' 'tissue.law=mooney|unknown law' \
     'tissue.E=1e400|0.001 to 1e12 Pa' '|expected MATERIAL.KEY=VALUE'; do
-    fails 1 "-m '${bad%%|*}' is refused" "^tled-run: .*${bad#*|}" moved -m "${bad%%|*}"
+    fails 2 "-m '${bad%%|*}' is refused" "^tled-run: -m.*: .*${bad#*|}" moved -m "${bad%%|*}"
 done
 done_testing

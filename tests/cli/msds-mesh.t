@@ -141,8 +141,8 @@ no 2 "--names: '1'; expected LABEL=NAME" --nodes 5x5x5 --size 1,1,1 --labels "$T
 no 2 "--young is for a mesh of --nodes" --young 5
 no 2 "--like - and --labels -: standard input is read once" --nodes 5x5x5 --like - --labels -
 no 2 "--names: label 1 is named twice" --nodes 5x5x5 --size 1,1,1 --labels "$T/labels.nrrd" --names 1=a,2=b,1=c
-no 1 "--fix: unknown side or volume 'zmim'; did you mean 'zmin'" --nodes 5x5x5 --size 1,1,1 --fix zmim
-no 1 "--fix: unknown side or volume ''" --nodes 5x5x5 --size 1,1,1 --fix xmin,
+no 2 "--fix: unknown side or volume 'zmim'; did you mean 'zmin'" --nodes 5x5x5 --size 1,1,1 --fix zmim
+no 2 "--fix: unknown side or volume ''" --nodes 5x5x5 --size 1,1,1 --fix xmin,
 no 1 "$T/none.nrrd: cannot open" --nodes 5x5x5 --like "$T/none.nrrd"
 no 1 "no model on stdin \(0 bytes\)"
 printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n1 1 1 1.5 1 1 1 1\n' >"$T/half.nrrd"

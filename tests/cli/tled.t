@@ -212,11 +212,21 @@ for bad in '-t -1' '-t x' '-g 1,2' '-g 0,0,0,0' '-t 1 -n 3' '--rest 1e-3 -t 1' '
     fails 2 "usage: $bad" '^tled-run: .*' run $bad
 done
 [ -e /dev/nvidia0 ] || fails 1 "-d cuda without a device" 'CUDA|cuda' run -d cuda -n 1
-fails 1 "an unknown muscle" "unknown muscle 'baz'; did you mean 'bar'\\?" run -c baz=1
-fails 1 "a volume that is no muscle" "unknown muscle 'skin'" run -c skin=1
-fails 1 "a level of 2" "level '2' of bar; expected a number from 0 to 1" run -c bar=2
-fails 1 "a muscle twice" "given twice" run -c bar=0.1 -c muscle_bar=0.2
-fails 1 "no level" "expected MUSCLE=LEVEL" run -c bar
+fails 2 "an unknown muscle" "^tled-run: -c: unknown muscle 'baz'; did you mean 'bar'\\?" run -c baz=1
+fails 2 "a volume that is no muscle" "unknown muscle 'skin'" run -c skin=1
+fails 2 "a level of 2" "level '2' of bar; expected a number from 0 to 1" run -c bar=2
+fails 2 "a muscle twice" "given twice" run -c bar=0.1 -c muscle_bar=0.2
+fails 2 "no level" "expected MUSCLE=LEVEL" run -c bar
+# A model that never saw attach has no fibres, and nothing would come of a contraction.
+run -q -n 1 --text | sed -e '/^crc/d' -e '/^frame/,$d' |
+    sed '/^array element.fibre/,/^array /{/^array element.fibre/d;/^array /!d;}' >"$T/fibreless"
+echo end >>"$T/fibreless"
+for device in cpu auto; do
+    fails 1 "contraction without fibres, $device" 'muscle_bar cannot contract: the model has no fibres .*run attach' \
+        sh -c "tled-run -q -d $device -c bar=0.4 -t 0.1 -o '$T/left' <'$T/fibreless'"
+done
+[ ! -e "$T/left" ]
+is $? 0 "no output is left"
 fails 1 "a full disk" 'No space left' run -q -n 1 -o /dev/full
 fails 1 "and a long run ends there" 'No space left' timeout 60 tled-run -q -t 1e6 --every 0.01 -o /dev/full <"$T/model"
 timeout 60 sh -c "tled-run -q -c bar=0.1 -t 1e6 --every 0.01 <'$T/model' 2>'$T/stderr' | head -c 100 >/dev/null"

@@ -104,7 +104,7 @@ done
 fails 2 "neither" 'expected -l LABEL' us-surface "$T/ball.nrrd"
 fails 2 "both" 'expected -l LABEL' us-surface -l 1 -i 5 "$T/ball.nrrd"
 fails 2 "a length without a unit" 'a length without its unit' us-surface -i 100 --smooth 1 "$T/ball.nrrd"
-fails 1 "no such name" "unknown label 'inner vien'; did you mean 'inner vein'" us-surface -l 'inner vien' "$T/right.nrrd"
+fails 2 "no such name" "unknown label 'inner vien'; did you mean 'inner vein'" us-surface -l 'inner vien' "$T/right.nrrd"
 fails 1 "no voxels" "label '9' has no voxels" us-surface -l 9 "$T/right.nrrd"
 fails 1 "a level that nothing reaches" 'nothing is left' us-surface -i 1e6 -o "$T/none.obj" "$T/ball.nrrd"
 check "no output is left" test ! -e "$T/none.obj"

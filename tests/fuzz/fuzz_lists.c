@@ -73,7 +73,7 @@ static void contract(const model *m, const char *text)
 {
     script s = {0};
     err e = {0};
-    int status = script_add_contract(&s, m, text, .1, NULL, &e);
+    int status = script_add_contract(&s, m, text, .1, &e);
     must((status != 0) == (*e.text != '\0'));
     for (int64_t i = 0; !status && i < s.keys; i++)
         must(s.value[3 * i] >= 0 && s.value[3 * i] <= 1);

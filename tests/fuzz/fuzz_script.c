@@ -49,7 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     in *source = in_memory(data, size, "fuzz", &e);
     if (e.status)
         abort();
-    if (script_read(&s, source, &m, NULL, &e)) {
+    if (script_read(&s, source, &m, &e)) {
         if (!e.text[0])
             abort();
     } else {

@@ -49,6 +49,10 @@ static void unknown(void)
     e = (err){0};
     near_unknown(&e, NULL, 0, "muscle", "", muscles, 5);
     ok(!strstr(e.text, "did you mean"), "all begin with nothing: %s", e.text);
+    e = (err){0};
+    ok(near_option(&e, "-c", "key", "levl", keys, 4) == -1 && e.status == STATUS_USAGE &&
+           !strncmp(e.text, "-c: unknown key 'levl'; did you mean 'level'? expected one of: level", 68),
+       "on the command line: %s", e.text);
     const char *many[100];
     for (int i = 0; i < 100; i++)
         many[i] = "a_long_name_of_a_thing";

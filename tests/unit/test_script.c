@@ -32,13 +32,14 @@ static void make_model(model *m, err *e)
     int32_t *of = model_add(m, "element.volume", e)->i32;
     for (int i = 0; i < 4; i++)
         model_set_text(model_find(m, "volume.name"), i, volume[i], e), muscle[i] = i > 0, of[i] = i;
+    model_add(m, "element.lattice", e);
     model_add(m, "element.fibre", e)->f32[3] = 1;
 }
 
-static int read_text(script *s, const model *m, const char *text, notes *warnings, err *e)
+static int read_text(script *s, const model *m, const char *text, err *e)
 {
     in *source = in_memory(text, strlen(text), "s.txt", e);
-    int status = source ? script_read(s, source, m, warnings, e) : -1;
+    int status = source ? script_read(s, source, m, e) : -1;
     if (source)
         in_close(source);
     return status;
@@ -55,16 +56,14 @@ static void curves(const model *m)
 {
     script s = {0};
     err e = {0};
-    notes warnings = {0};
     ok(!read_text(&s, m,
                   "0.5 contract zyg 0\n0.25 gravity 0,0,-9.81\n1.5 contract muscle_zyg 0.4\n1.5 contract zyg 0.1\n"
                   "2 contract zyg 1 # done\n",
-                  &warnings, &e),
+                  &e),
        "a script is read: %s", e.text);
     ok(s.curves == 2 && s.keys == 5 && s.curve[0].key_count == 4 && s.curve[1].key_count == 1,
        "short and long name are one muscle: 2 curves");
     ok(s.curve[0].verb == SCRIPT_CONTRACT && s.curve[0].volume == 1 && s.curve[0].line == 1, "the muscle's volume");
-    ok(warnings.count == 0, "no warning");
     near_(at(&s, 0, 0, 0), 0, 0, "0 before the first key");
     near_(at(&s, 0, 1, 0), .2, 1e-15, "linear between keys");
     near_(at(&s, 0, 1.5 - 1e-9, 0), .4, 1e-8, "up to a jump");
@@ -76,7 +75,6 @@ static void curves(const model *m)
     near_(at(&s, 1, .25, 2), -9.81, 0, "gravity from its key on");
     near_(script_end(&s), 2, 0, "the end of the script");
     script_free(&s);
-    notes_free(&warnings);
 }
 
 static void many_keys(const model *m)
@@ -88,7 +86,7 @@ static void many_keys(const model *m)
     err e = {0};
     for (int i = 0; text && i < KEYS; i++)
         n += (size_t)sprintf(text + n, "%d contract zyg %g\n%d gravity %d,0,0\n", i, i % 2 * .5, i, i);
-    ok(text && !read_text(&s, m, text, NULL, &e), "2000 lines of two curves, interleaved: %s", e.text);
+    ok(text && !read_text(&s, m, text, &e), "2000 lines of two curves, interleaved: %s", e.text);
     double worst = 0;
     for (int i = 0; i < KEYS - 1; i++) {
         worst = fmax(worst, fabs(at(&s, 0, i + .5, 0) - .25));
@@ -105,7 +103,7 @@ static void forces(const model *m)
     err e = {0};
     ok(!read_text(&s, m,
                   "0 force 1cm,10mm,0.01 10.5mm 0,0,1\n1 force 0.01,0.01,0.01 0.0105 0,0,3\n0 force 0,0,0 1mm 1,0,0\n",
-                  NULL, &e),
+                  &e),
        "forces: %s", e.text);
     ok(s.curves == 2 && s.curve[0].key_count == 2, "suffixes do not matter: one target");
     ok(s.curve[0].node_count == 7 && s.curve[0].node_first == 0, "the node and its 6 neighbours within 10.5 mm");
@@ -123,7 +121,7 @@ static void displacements(const model *m)
     ok(!read_text(&s, m,
                   "0 displace SKULL* -,0,1mm\n0.5 displace skull* -,2mm,0.001\n"
                   "0 displace 0,0,0.02,0.02,2cm,20mm 0,-,-\n0 displace 0,0,0,0.02,0.02,0 1mm,-,-\n",
-                  NULL, &e),
+                  &e),
        "displacements: %s", e.text);
     ok(s.curves == 3 && s.curve[0].key_count == 2 && s.curve[0].node_count == 9, "a pattern of surfaces, in any case");
     ok(s.curve[0].mask == 6 && s.curve[1].mask == 1, "free components");
@@ -132,7 +130,7 @@ static void displacements(const model *m)
     near_(at(&s, 0, .25, 1), .001, 1e-18, "metres between keys");
     near_(at(&s, 0, .25, 2), .001, 1e-18, "a constant");
     script_free(&s);
-    ok(!read_text(&s, m, "0 displace skull_left 0,0,-5mm\n", NULL, &e) && s.curve[0].node_count == 3, "one surface: %s",
+    ok(!read_text(&s, m, "0 displace skull_left 0,0,-5mm\n", &e) && s.curve[0].node_count == 3, "one surface: %s",
        e.text);
     near_(at(&s, 0, 0, 2), -.005, 1e-18, "a minus sign is not '-'");
     script_free(&s);
@@ -142,32 +140,86 @@ static void command_line(const model *m)
 {
     script s = {0};
     err e = {0};
-    notes warnings = {0};
     double g[3] = {0, 0, -9.81};
-    ok(!script_add_contract(&s, m, "zyg=0.4,buccinator=1", .2, &warnings, &e), "-c: %s", e.text);
+    ok(!script_add_contract(&s, m, "zyg=0.4,buccinator=1", .2, &e), "-c: %s", e.text);
     ok(!script_add_gravity(&s, g, 0, &e), "-g");
     ok(s.curves == 3 && s.curve[0].volume == 1 && s.curve[1].volume == 3, "two muscles and gravity");
     near_(at(&s, 0, .1, 0), .2, 1e-15, "half of the ramp");
     near_(at(&s, 1, .2, 0), 1, 0, "its end");
     near_(at(&s, 2, 0, 2), -9.81, 0, "no ramp: at once");
     near_(script_end(&s), .2, 0, "the end");
-    ok(warnings.count == 1 && strstr(warnings.line[0], "buccinator has no element with a fibre"), "a warning: %s",
-       warnings.count ? warnings.line[0] : "none");
-    ok(!read_text(&s, m, "0 contract Muscle_lev 1\n", NULL, &e) && s.curve[3].key_first == 5, "and a script after it");
+    ok(!read_text(&s, m, "0 contract Muscle_lev 1\n", &e) && s.curve[3].key_first == 5, "and a script after it");
     near_(at(&s, 3, 0, 0), 1, 0, "whose keys come last");
     near_(at(&s, 1, .2, 0), 1, 0, "the others stay");
-    ok(read_text(&s, m, "0 contract muscle_zyg 1\n", NULL, &e) == -1 &&
-           strstr(e.text, "s.txt:1: 'muscle_zyg' is set on"),
+    ok(read_text(&s, m, "0 contract muscle_zyg 1\n", &e) == -1 && strstr(e.text, "s.txt:1: 'muscle_zyg' is set on"),
        "the same muscle in both: %s", e.text);
     script_free(&s);
+}
+
+/* Muscles that cannot contract: a warning where others can, an error where none can. want: what the message begins with. */
+static void muscles(const model *m, const char *list, int warned, int status, const char *want)
+{
+    script s = {0};
+    err e = {0};
+    notes warnings = {0};
+    ok(!script_add_contract(&s, m, list, 0, &e) && script_check_muscles(&s, m, &warnings, &e) == (status ? -1 : 0) &&
+           e.status == status,
+       "-c %s: status %d", list, status);
+    ok(warnings.count == warned, "%d warnings", warnings.count);
+    const char *got = status ? e.text : warned ? warnings.line[0] : "";
+    ok(!strncmp(got, want, strlen(want)), "'%s'", got);
+    script_free(&s);
     notes_free(&warnings);
+}
+
+static void muscles_without_fibres(const model *m)
+{
+    model bare;
+    err e = {0};
+    muscles(m, "zyg=1", 0, 0, "");
+    muscles(m, "zyg=1,buccinator=1", 1, 0,
+            "buccinator will not contract: its elements (1) have no fibre; attach --fibre field");
+    muscles(m, "buccinator=1", 0, STATUS_BAD, "buccinator cannot contract: its elements (1) have no fibre; attach");
+    muscles(m, "buccinator=1,lev=1", 0, STATUS_BAD, "none of the 2 muscles can contract; buccinator: its elements");
+    make_model(&bare, &e);
+    model_remove(&bare, "element.fibre");
+    muscles(&bare, "zyg=0", 0, STATUS_BAD,
+            "muscle_zyg cannot contract: the model has no fibres (element.fibre); run attach");
+    model_remove(&bare, "element.lattice");
+    muscles(&bare, "zyg=0", 0, STATUS_BAD, "muscle_zyg cannot contract: its elements (1) have no fibre; expected");
+    memset(model_find(&bare, "element.volume")->i32, 0, 4 * sizeof(int32_t));
+    muscles(&bare, "zyg=1", 0, STATUS_BAD, "muscle_zyg cannot contract: it has no elements; smaller voxels");
+    ok(!e.status, "the model: %s", e.text);
+    model_free(&bare);
+}
+
+static void muscles_that_are_held(void)
+{
+    model m;
+    err e = {0};
+    make_model(&m, &e);
+    int32_t *node = model_add(&m, "element.node", &e)->i32;
+    uint8_t *rigid = model_add(&m, "node.rigid", &e)->u8;
+    for (int n = 0; n < 8; n++)
+        node[8 + n] = 3 + n, rigid[3 + n] = n > 0;
+    muscles(&m, "zyg=1", 0, 0, "");
+    rigid[3] = 1;
+    muscles(&m, "zyg=1", 0, STATUS_BAD,
+            "muscle_zyg cannot contract: all nodes of its elements with a fibre (1) are rigid");
+    model_add(&m, "element.mix", &e)->i32[0] = 1; /* of the first element, whose node 0 is free */
+    model_add(&m, "element.mixfibre", &e)->f32[1] = 1;
+    for (int i = 1; i < 4; i++)
+        model_find(&m, "element.mix")->i32[i] = -1;
+    muscles(&m, "zyg=1", 0, 0, "");
+    ok(!e.status, "the model: %s", e.text);
+    model_free(&m);
 }
 
 static void refuse(const model *m, const char *text, const char *want)
 {
     script s = {0};
     err e = {0};
-    ok(read_text(&s, m, text, NULL, &e) == -1 && strstr(e.text, want), "refused: %s", e.text);
+    ok(read_text(&s, m, text, &e) == -1 && e.status == STATUS_BAD && strstr(e.text, want), "refused: %s", e.text);
     script_free(&s);
 }
 
@@ -175,7 +227,8 @@ static void refuse_contract(const model *m, const char *list, const char *want)
 {
     script s = {0};
     err e = {0};
-    ok(script_add_contract(&s, m, list, 0, NULL, &e) == -1 && strstr(e.text, want), "-c '%s': %s", list, e.text);
+    ok(script_add_contract(&s, m, list, 0, &e) == -1 && e.status == STATUS_USAGE && strstr(e.text, want), "-c '%s': %s",
+       list, e.text);
     script_free(&s);
 }
 
@@ -184,10 +237,10 @@ static void refuse_after_script(const model *m)
     script s = {0};
     err e = {0};
     double g[3] = {0};
-    read_text(&s, m, "0 gravity 0,0,0\n0 contract zyg 1\n", NULL, &e);
+    read_text(&s, m, "0 gravity 0,0,0\n0 contract zyg 1\n", &e);
     ok(script_add_gravity(&s, g, 0, &e) == -1 && strstr(e.text, "line 1 of the script"), "%s", e.text);
     e = (err){0};
-    ok(script_add_contract(&s, m, "zyg=1", 0, NULL, &e) == -1 && strstr(e.text, "line 2 of the script"), "%s", e.text);
+    ok(script_add_contract(&s, m, "zyg=1", 0, &e) == -1 && strstr(e.text, "line 2 of the script"), "%s", e.text);
     script_free(&s);
 }
 
@@ -257,6 +310,8 @@ int main(void)
     forces(&m);
     displacements(&m);
     command_line(&m);
+    muscles_without_fibres(&m);
+    muscles_that_are_held();
     refuse_after_script(&m);
     refuse_forms(&m);
     refuse_targets(&m);

@@ -64,7 +64,7 @@ static void begin(setting *s, block b, bool boxes, double by, double kappa, int 
     distort(&b, &s->m, by);
     if (b.fibre[0] != 0) {
         char level[] = "m=0.03";
-        if (script_add_contract(&s->s, &s->m, level, 0, NULL, &e))
+        if (script_add_contract(&s->s, &s->m, level, 0, &e))
             die(e.text);
     }
     const double gravity[3] = {1, 2, -9.81};

@@ -248,7 +248,7 @@ static void add_pulls(script *s, const model *m)
     static const char text[] = "0 force .08,.09,.09 .05 1,2,3\n0 displace .1,.1,.1,.2,.15,.2 -,0,0\n";
     err e = {0};
     in *source = in_memory(text, sizeof text - 1, "script", &e);
-    ok(source && !script_read(s, source, m, NULL, &e), "and nodes are pulled %s", e.text);
+    ok(source && !script_read(s, source, m, &e), "and nodes are pulled %s", e.text);
     in_close(source);
 }
 
@@ -260,7 +260,7 @@ static void test_block(const block *what, const char *name)
     tled_problem p = {0};
     err e = {0};
     block_make(what, &m);
-    ok(!script_add_contract(&s, &m, what->mixed ? "m=.3,n=.3" : "m=.3", 0, NULL, &e), "a muscle contracts %s", e.text);
+    ok(!script_add_contract(&s, &m, what->mixed ? "m=.3,n=.3" : "m=.3", 0, &e), "a muscle contracts %s", e.text);
     add_pulls(&s, &m);
     make(&m, &s, &p);
     for (int i = 0; i < 4; i++)

@@ -248,7 +248,7 @@ static void test_cut(const block *what, const int axis[3], const char *contract,
     march cut;
     err e = {0};
     block_make(what, &m);
-    if (contract && script_add_contract(&played, &m, contract, .1, NULL, &e))
+    if (contract && script_add_contract(&played, &m, contract, .1, &e))
         printf("Bail out! %s\n", e.text);
     if (tled_problem_make(&p, &m, &played, .0075, &e))
         printf("Bail out! %s\n", e.text);

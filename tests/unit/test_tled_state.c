@@ -15,7 +15,7 @@ static void read_script(script *s, const model *m, const char *text)
 {
     err e = {0};
     in *source = in_memory(text, strlen(text), "script", &e);
-    ok(source && !script_read(s, source, m, NULL, &e), "the script: %s", e.text);
+    ok(source && !script_read(s, source, m, &e), "the script: %s", e.text);
     in_close(source);
 }
 

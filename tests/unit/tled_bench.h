@@ -96,7 +96,7 @@ static inline void bench_make(bench *b, const block *what, const double gravity[
     if (gravity)
         bench_must(script_add_gravity(&b->script, gravity, .1, &b->e), &b->e);
     if (level > 0)
-        bench_must(script_add_contract(&b->script, &b->m, contract, .1, NULL, &b->e), &b->e);
+        bench_must(script_add_contract(&b->script, &b->m, contract, .1, &b->e), &b->e);
     bench_must(tled_problem_make(&b->problem, &b->m, &b->script, kappa, &b->e), &b->e);
     bench_finish(b, threads);
 }

@@ -15,7 +15,7 @@ static const block small = {{29, 14, 9}, {.001, .001, .001}, 3000, .45, 1000, 30
 static inline void read_script(bench *b, const char *text)
 {
     in *source = in_memory(text, strlen(text), "script", &b->e);
-    bench_must(!source || script_read(&b->script, source, &b->m, NULL, &b->e), &b->e);
+    bench_must(!source || script_read(&b->script, source, &b->m, &b->e), &b->e);
     in_close(source);
     tled_problem_free(&b->problem);
     bench_must(tled_problem_make(&b->problem, &b->m, &b->script, .0075, &b->e), &b->e);
