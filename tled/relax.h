@@ -16,7 +16,7 @@ typedef struct relax {
 } relax;
 
 /* A guess of the lowest frequency: that of a column of the slowest shear waves, w = (pi/2) c / L, c the least of
- * sqrt(mu/rho), L the model's reach (tled_parts). Critical damping is 2 w. */
+ * sqrt(mu/rho), L the model's reach (support.h). Critical damping is 2 w. */
 double relax_guess(const tled_problem *p, double reach);
 
 /* stable: the stable step at rest (s). */

@@ -157,19 +157,6 @@ void tled_external(const tled_problem *p, const double *value, int64_t n, double
 /* The values of all curves at a time, 3 a curve. */
 void tled_curves(const tled_problem *p, double time, double *value);
 
-/* How elements hang together, node by node, and on what is held. */
-typedef struct tled_parts {
-    double reach;    /* m: the farthest that a node is from a held one, in steps from element to element times the
-                        longest side; where nothing is held, the diagonal of the bounding box */
-    int64_t loose;   /* parts that nothing holds */
-    int64_t first;   /* the first element of them, or -1 */
-    int64_t in_them; /* elements */
-    bool pushed;     /* gravity or a force acts on one of them */
-} tled_parts;
-
-/* -1 with e filled. */
-int tled_parts_of(const tled_problem *p, tled_parts *parts, err *e);
-
 /* The back ends of tled-run, NULL-terminated, by the precision of their numbers. */
 extern const backend *const tled_backends_double[];
 extern const backend *const tled_backends_single[];

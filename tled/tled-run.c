@@ -12,6 +12,7 @@
 #include "tled/relax.h"
 #include "tled/run.h"
 #include "tled/step.h"
+#include "tled/support.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -100,7 +101,7 @@ typedef struct session {
     model m;
     script script;
     tled_problem problem;
-    tled_parts parts;
+    support support;
     collider collider;
     pool *threads;
     run_setup run;
@@ -186,26 +187,6 @@ static int make_script(session *s, const struct options *o, err *e)
     return result ? result : script_check_muscles(&s->script, &s->m, &s->warnings, e);
 }
 
-static int check_held(session *s, err *e)
-{
-    char what[200] = "the model: no node is rigid or displaced";
-    const tled_parts *parts = &s->parts;
-    if (tled_parts_of(&s->problem, &s->parts, e))
-        return -1;
-    if (s->problem.held && parts->loose)
-        snprintf(what, sizeof what, "%lld %s of the model, %lld elements, the first of them %lld (volume '%.100s')",
-                 (long long)parts->loose, parts->loose == 1 ? "part" : "parts", (long long)parts->in_them,
-                 (long long)parts->first, s->problem.volume[s->problem.element_volume[parts->first]].name);
-    if (parts->pushed && s->run.rest >= 0)
-        return err_set(e, NULL, 0,
-                       "nothing holds %s, so that it never comes to rest under a load; expected rigid nodes (attach "
-                       "makes them), or -t or -n to end",
-                       what);
-    if (parts->loose)
-        notes_add(&s->warnings, "nothing holds %s", what);
-    return 0;
-}
-
 /* The step: half the stable one, or --dt if that is not above it. */
 static int choose_rate(session *s, const struct options *o, err *e)
 {
@@ -238,7 +219,7 @@ static int choose_end(session *s, const struct options *o, err *e)
 
 static void choose_damping(session *s, const struct options *o)
 {
-    s->run.frequency = relax_guess(&s->problem, s->parts.reach);
+    s->run.frequency = relax_guess(&s->problem, s->support.reach);
     s->run.damping = o->damping >= 0 ? o->damping : 2 * s->run.frequency;
     s->run.adapt = o->damping < 0 && s->run.rest >= 0;
 }
@@ -509,7 +490,8 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
 {
     s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps ? rest_tolerance : -1;
     if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
-        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) || check_held(s, e))
+        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) || support_of(&s->problem, &s->support, e) ||
+        support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;
     if (s->collider.poses)
         collider_join(&s->collider, &s->problem, o->repulsion);

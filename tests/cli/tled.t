@@ -163,6 +163,25 @@ fails 1 "a part that nothing holds never comes to rest under its weight" \
 fails 0 "it is warned of where no load acts on it" 'warning: nothing holds 1 part' \
     sh -c "tled-run --script '$T/hold' <'$T/two' >'$T/out'"
 
+# ---- Held in some components: damping is pi c / L, L the farthest of any component; c = 1.0171 m/s.
+awk -v nx=5 -v ny=1 -v nz=25 -v h=0.001 -v nu=0.45 -f tests/cli/block.awk >"$T/slice"
+printf '0 displace -1,-1,-1,1,1,1 -,0,-\n0 displace -1,-1,-1,1,1,0 0,-,0\n' >"$T/plane"
+printf '0 displace -1,-1,-1,0,1,1 0,-,-\n0 displace -1,-1,-1,1,0,1 -,0,-\n0 displace -1,-1,-1,1,1,0 -,-,0\n' >"$T/planes"
+head -n 2 "$T/planes" >"$T/fall"
+for case in plane planes; do
+    damping=$(tled-run --script "$T/$case" -n 1 <"$T/slice" 2>&1 >/dev/null | sed -n 's/.*damping \([0-9.]*\) 1.*/\1/p')
+    near "$damping" "$(awk 'BEGIN { print 3.14159265 * sqrt(3000 / 2.9 / 1000) / 0.025 }')" 1e-3 "$case: the damping of a column of 25 mm, $damping"
+done
+fails 1 "what gravity pulls along an axis on which nothing holds it" \
+    "nothing holds the part of element 0 \(volume 'skin'\) along z, where gravity pulls it, so that it never comes to rest" \
+    tled-run --script "$T/fall" -g 0,0,-1 -o "$T/left" <"$T/slice"
+fails 0 "falls for so long as is asked" "warning: nothing holds the part of element 0 \(volume 'skin'\) along z, where gravity pulls it" \
+    tled-run --script "$T/fall" -g 0,0,-1 -n 1 -o "$T/out" <"$T/slice"
+echo '0 force 0,0,0 1 0,0,0.001' >>"$T/fall"
+fails 0 "a force may bear it" "warning: nothing holds the part of element 0" \
+    tled-run --script "$T/fall" -g 0,0,-1 --rest 1 -o "$T/out" <"$T/slice"
+is "$(tled-run --script "$T/planes" -g 1,2,-9 -n 1 <"$T/slice" 2>&1 >/dev/null | grep -c warning)" 0 "what planes of symmetry hold does not fall"
+
 # ---- Rest: a soft beam on a hard block that is squeezed, whose forces are far greater than the beam's weight.
 {
     cat "$T/boxes.awk"

@@ -1,8 +1,8 @@
 /* From a model to the solver's arrays: masses, corners, what is held, shares of forces, distances; and models that are no
  * lattice of boxes.
  */
-// needs: tled/state.c tled/conforming.c tled/conforming_step.c tled/script.c tled/script_read.c tled/step.c
-#include "tled/state.h"
+// needs: tled/state.c tled/conforming.c tled/conforming_step.c tled/script.c tled/script_read.c tled/step.c tled/support.c
+#include "tled/support.h"
 
 #include "tap.h"
 #include "tled_block.h"
@@ -63,8 +63,8 @@ static void test_arrays(void)
     near_(total[2], 3 - 10 * mass, 1e-12, "z, with the weight");
     tled_external(&p, value, block_node(&brick, 2, 2, 3), force);
     near_(force[0], .5 + .5, 1e-12, "two forces on one node");
-    tled_parts parts;
-    ok(!tled_parts_of(&p, &parts, &e) && parts.loose == 0 && !parts.pushed, "all hangs on what is held");
+    support parts;
+    ok(!support_of(&p, &parts, &e) && parts.loose == 0 && !parts.pushed, "all hangs on what is held");
     near_(parts.reach, 2 * .03, 1e-15, "the farthest node is two elements from what is held");
     tled_problem_free(&p);
     script_free(&s);
@@ -77,7 +77,7 @@ static void test_loose(bool weight)
     model m = {0};
     script s = {0};
     tled_problem p = {0};
-    tled_parts parts;
+    support parts;
     err e = {0};
     block free_brick = brick;
     const double down[3] = {0, 0, -1};
@@ -85,13 +85,52 @@ static void test_loose(bool weight)
     block_make(&free_brick, &m);
     if (weight)
         script_add_gravity(&s, down, .1, &e);
-    ok(!tled_problem_make(&p, &m, &s, .0075, &e) && !tled_parts_of(&p, &parts, &e), "a brick: %s", e.text);
+    ok(!tled_problem_make(&p, &m, &s, .0075, &e) && !support_of(&p, &parts, &e), "a brick: %s", e.text);
     ok(parts.loose == 1 && parts.first == 0 && parts.in_them == 12 && parts.pushed == weight,
        "hangs on nothing, and is %s", weight ? "pushed" : "not pushed");
     near_(parts.reach, sqrt(.02 * .02 + .04 * .04 + .09 * .09), 1e-15, "its diagonal counts for the reach");
     tled_problem_free(&p);
     script_free(&s);
     model_free(&m);
+}
+
+/* How far it is to what is held in the same component: a block of 10 x 4 x 25 elements of 1 mm. */
+static void reaches(const char *text, double want, const char *name)
+{
+    static const block slice = {{10, 4, 25}, {.001, .001, .001}, 3000, .45, 1000, 0, 0, 0, 0, {0, 0, 0}, 0, false};
+    model m = {0};
+    script s = {0};
+    tled_problem p = {0};
+    support held;
+    err e = {0};
+    block_make(&slice, &m);
+    read_script(&s, &m, text);
+    ok(!tled_problem_make(&p, &m, &s, .0075, &e) && !support_of(&p, &held, &e), "a slice: %s", e.text);
+    near_(held.reach, want, 1e-15, "%s", name);
+    ok(!held.loose && held.falling < 0, "and nothing is loose");
+    tled_problem_free(&p);
+    script_free(&s);
+    model_free(&m);
+}
+
+#define ALL    "-1,-1,-1,1,1,1"
+#define BOTTOM "-1,-1,-1,1,1,0"
+#define LEFT   "-1,-1,-1,0,1,1"
+#define FRONT  "-1,-1,-1,1,0,1"
+
+static void test_reach(void)
+{
+    const double whole = 1e-3 * sqrt(10 * 10 + 4 * 4 + 25 * 25);
+    reaches("0 displace " BOTTOM " 0,0,0\n", .025, "held at the bottom: its height");
+    reaches("0 displace " ALL " -,0,-\n0 displace " BOTTOM " 0,-,0\n", .025, "and in plane strain no less");
+    reaches("0 displace " ALL " -,0,-\n0 displace " LEFT " 0,-,-\n0 displace " BOTTOM " -,-,0\n", .025,
+            "in plane strain with x held on one side and z on another: the farther");
+    reaches("0 displace " LEFT " 0,-,-\n0 displace " FRONT " -,0,-\n0 displace " BOTTOM " -,-,0\n", .025,
+            "three planes of symmetry: the longest side");
+    reaches("0 displace " BOTTOM " -,-,0\n", .025, "on rollers: its height");
+    reaches("0 displace " LEFT " 0,-,-\n", .01, "on rollers at the left: its width");
+    reaches("0 displace " ALL " -,0,-\n", whole, "in plane strain and else free: its diagonal");
+    reaches("0 displace " ALL " 0,0,0\n", .001, "held everywhere: one element");
 }
 
 static void refused(model *m, const char *want)
@@ -180,6 +219,7 @@ int main(void)
     test_arrays();
     test_loose(false);
     test_loose(true);
+    test_reach();
     test_refused();
     test_start();
     return done_testing();

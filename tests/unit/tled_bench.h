@@ -8,6 +8,7 @@
 #include "tled/relax.h"
 #include "tled/run.h"
 #include "tled/step.h"
+#include "tled/support.h"
 
 #include "tap.h"
 #include "tled_block.h"
@@ -77,9 +78,9 @@ static inline void bench_finish(bench *b, int threads)
                            .frame = bench_frame,
                            .checked = bench_checked};
     b->setup.rate = step_rate(step_at_rest(&b->problem, NULL), &b->setup.check);
-    tled_parts parts;
-    bench_must(tled_parts_of(&b->problem, &parts, &b->e), &b->e);
-    b->setup.frequency = relax_guess(&b->problem, parts.reach);
+    support held;
+    bench_must(support_of(&b->problem, &held, &b->e), &b->e);
+    b->setup.frequency = relax_guess(&b->problem, held.reach);
     b->setup.damping = 2 * b->setup.frequency;
     b->setup.threads = pool_create(threads, &b->e);
     bench_must(!b->displacement || !b->setup.threads || b->e.status, &b->e);
