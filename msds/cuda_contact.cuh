@@ -124,6 +124,7 @@ static __device__ inline void sight_sum(const tissue *t, double residual, int so
     sight.finite = grid_total(t->part + PART_BROKEN * t->chunks, t->chunks, s) == 0;
     sight.residual = residual;
     sight.solves = solves;
+    sight.met = *(const volatile bool *)&t->outcome->sight.met || sight.contacts > 0; /* any block may have set it */
     if (threadIdx.x == 0)
         t->outcome->sight = sight;
 }

@@ -46,8 +46,12 @@ static __device__ void push(const tissue *t, const tissue_frame *f, int32_t n, f
     const probe_touch at = probe_at(&f->probe, x);
     const double speed = at.way[0] * (double)v.x + at.way[1] * (double)v.y + at.way[2] * (double)v.z;
     const double pushed = (double)t->weight[n].w * (at.depth - f->damping * speed);
-    for (int a = 0; a < 3 && at.depth > 0 && pushed > 0; a++)
+    if (!(at.depth > 0 && pushed > 0))
+        return;
+    for (int a = 0; a < 3; a++)
         force[a] += (float)(pushed * at.way[a]);
+    if (place.w > 0)
+        t->outcome->sight.met = true;
 }
 
 /* AHEAD springs are loaded before the first of them is computed, each whole with its neighbour's number: what is computed has

@@ -26,6 +26,7 @@ typedef struct lanes_springs {
     const float *repulsion; /* nodes: N/m */
     double damping;         /* s: of the repulsion, over its stiffness */
     const probe_placed *probe;
+    bool *met; /* set where the probe pushes a node that is free; by any thread, atomically */
 } lanes_springs;
 
 /* A sparse matrix of 3 x 3 blocks with the graph of the slices. Rows of what is fixed are zero. */

@@ -55,8 +55,12 @@ static void push(const lanes_springs *w, int64_t own, v8 force[3])
         for (int a = 0; a < 3; a++)
             speed += t.way[a] * (double)w->v.x[a][own + l];
         double pushed = (double)w->repulsion[own + l] * (t.depth - w->damping * speed);
-        for (int a = 0; a < 3 && t.depth > 0 && pushed > 0; a++)
+        if (!(t.depth > 0 && pushed > 0))
+            continue;
+        for (int a = 0; a < 3; a++)
             force[a][l] += (float)(pushed * t.way[a]);
+        if (w->inverse[own + l] > 0)
+            __atomic_store_n(w->met, true, __ATOMIC_RELAXED);
     }
 }
 

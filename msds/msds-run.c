@@ -2,6 +2,7 @@
  * and dampers or by linear finite elements. PST sections III and the appendix.
  */
 #include "base/mem.h"
+#include "contact/probe_carry.h"
 #include "mesh/scale.h"
 #include "model/stage.h"
 #include "msds/compare.h"
@@ -143,16 +144,6 @@ static int choose_step(session *s, err *e)
     return 0;
 }
 
-/* So that pictures can show it. */
-static int note_shape(session *s, err *e)
-{
-    char text[300];
-    if (!s->o->probe)
-        return 0;
-    probe_text(&s->probe, text, sizeof text);
-    return model_meta_set(&s->m, "probe.shape", text, e);
-}
-
 static int make_problem(session *s, err *e)
 {
     const struct options *o = s->o;
@@ -164,7 +155,7 @@ static int make_problem(session *s, err *e)
         return -1;
     tool_say(s->t, "%lld nodes, %lld tetrahedra, %lld springs; k = %.6g m E", (long long)s->problem.nodes,
              (long long)s->problem.elements, (long long)s->problem.springs, s->problem.scale);
-    return note_shape(s, e) ? -1 : choose_step(s, e);
+    return o->probe && probe_carry(&s->probe, &s->m, &s->warnings, e) ? -1 : choose_step(s, e);
 }
 
 static int say_provenance(tool *t, const session *s, err *e)
@@ -389,7 +380,7 @@ static int simulate(session *s, err *e)
             return -1;
         if (s->other)
             say_difference(s, at.time);
-        s->pressed = s->pressed || s->sight.contacts > 0;
+        s->pressed = s->pressed || s->sight.met;
     }
     if (!got && !frames)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");

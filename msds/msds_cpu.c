@@ -32,6 +32,7 @@ typedef struct cpu_state {
     double *place; /* the model's nodes x 3, m: where exact frames stand */
     msds_plan plan;
     bool precise; /* place is the state; else w.u */
+    bool met;     /* as the sight's */
     int solves;
 } cpu_state;
 
@@ -129,6 +130,7 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
     s->w.inverse = s->inverse;
     s->w.repulsion = s->repulsion;
     s->w.damping = s->p->options.damping;
+    s->w.met = &s->met;
     fill_nodes(s);
     slices_springs(&s->order, s->p, s->stiffness, s->damper, s->rest);
     memcpy(s->place, s->p->displacement, 3 * (size_t)s->p->nodes * sizeof *s->place);
@@ -270,6 +272,7 @@ static int cpu_step(void *state, const void *plan, int64_t count, err *e)
     }
     s->precise = s->plan.method == MSDS_EXACT;
     contacts_hold(&s->contacts, s->p);
+    s->met = s->met || contacts_held(&s->contacts, s->p) > 0;
     return result;
 }
 
@@ -291,7 +294,7 @@ static int cpu_look(void *state, const void *question, void *answer, err *e)
     double square = 0;
     (void)question;
     (void)e;
-    *sight = (msds_sight){.residual = NAN, .solves = s->solves, .finite = true};
+    *sight = (msds_sight){.residual = NAN, .solves = s->solves, .finite = true, .met = s->met};
     sight->contacts = contacts_sum(&s->contacts, sight->force);
     if (s->plan.touched)
         contacts_twist(&s->contacts, &s->w, s->p, s->precise ? s->place : NULL, sight->torque);

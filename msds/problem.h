@@ -70,6 +70,7 @@ typedef struct msds_sight {
     double largest; /* m: the largest displacement */
     int solves;     /* that an exact frame took */
     bool finite;
+    bool met; /* the probe has pressed a node in some step since the state was made */
 } msds_sight;
 
 /* Makes p (zeroed) of the model at rest. -1 with e filled, and p to be freed all the same, for a model of other elements, an

@@ -3,6 +3,7 @@
  */
 #include "base/mem.h"
 #include "base/progress.h"
+#include "contact/probe_carry.h"
 #include "mesh/scale.h"
 #include "model/materials.h"
 #include "model/stage.h"
@@ -426,7 +427,6 @@ static void say_end(const session *s, const run_end *end)
 /* What presses, and where. Its stiffness is part of the stable step. */
 static int read_collider(session *s, const struct options *o, err *e)
 {
-    char text[300];
     double scale = 1;
     if (!o->probe && !o->poses)
         return 0;
@@ -441,8 +441,7 @@ static int read_collider(session *s, const struct options *o, err *e)
     }
     if (collider_read(&s->collider, o->probe, scale, o->poses, NULL, e) || model_axis_add(&s->m, "probe", 1, e))
         return -1;
-    probe_text(&s->collider.shape, text, sizeof text);
-    return model_meta_set(&s->m, "probe.shape", text, e);
+    return probe_carry(&s->collider.shape, &s->m, &s->warnings, e);
 }
 
 static void begin_collider(session *s, const struct options *o)

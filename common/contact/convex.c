@@ -210,6 +210,36 @@ static int make_planes(convex *c, probe *p, err *e)
     return 0;
 }
 
+/* A triangle, turned out as its place says: a fan over a polygon that is not convex has some that lie the other way. */
+static void add_face(const convex *c, probe *p, int32_t first, int32_t second, int32_t third)
+{
+    if (first == second || second == third || third == first)
+        return;
+    const double *x = p->corner + 3 * (int64_t)first, *y = p->corner + 3 * (int64_t)second,
+                 *z = p->corner + 3 * (int64_t)third;
+    double outward = 0;
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3, d = (a + 2) % 3;
+        outward += ((y[b] - x[b]) * (z[d] - x[d]) - (y[d] - x[d]) * (z[b] - x[b])) * (x[a] - c->centre[a]);
+    }
+    int32_t *to = p->face + 3 * (int64_t)p->faces++;
+    to[0] = first;
+    to[1] = outward < 0 ? third : second;
+    to[2] = outward < 0 ? second : third;
+}
+
+/* A fan over each polygon, which covers it: what lies in its plane is a convex part of the surface. */
+static int make_faces(const convex *c, probe *p, err *e)
+{
+    p->face = mem_array(c->o->corners - 2 * c->o->faces, 3 * sizeof *p->face, "the probe", e);
+    for (int64_t f = 0; p->face && f < c->o->faces; f++) {
+        const int32_t *v = c->o->corner_vertex + c->o->face_start[f];
+        for (int64_t i = 1; i + 1 < c->o->face_start[f + 1] - c->o->face_start[f]; i++)
+            add_face(c, p, c->own[v[0]], c->own[v[i]], c->own[v[i + 1]]);
+    }
+    return p->face ? 0 : -1;
+}
+
 int convex_of(probe *p, const obj *o, double scale, err *e)
 {
     convex c = {.o = o, .scale = scale};
@@ -220,7 +250,7 @@ int convex_of(probe *p, const obj *o, double scale, err *e)
     if (weld(&c, p, e))
         goto out;
     bound(&c, p);
-    result = check_edges(&c, e) || make_planes(&c, p, e) ? -1 : 0;
+    result = check_edges(&c, e) || make_planes(&c, p, e) || make_faces(&c, p, e) ? -1 : 0;
 out:
     free(c.own);
     free(c.edge);

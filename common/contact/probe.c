@@ -255,6 +255,8 @@ void probe_free(probe *p)
 {
     free(p->plane);
     free(p->corner);
+    free(p->face);
     p->plane = p->corner = NULL;
-    p->planes = p->corners = 0;
+    p->face = NULL;
+    p->planes = p->corners = p->faces = 0;
 }

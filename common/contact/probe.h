@@ -1,6 +1,6 @@
 /* The rigid bodies that press on tissue, and the one question that a solver asks of them: how deep is a point inside, and
  * which way is out. A probe is its shape; a pose is where it is. Each question is answered by `static inline` functions that
- * nvcc compiles too. A probe owns its planes and corners, if it has any (probe_free); a placed one borrows them, is copied by value, and
+ * nvcc compiles too. A probe owns its planes, corners and faces, if it has any (probe_free); a placed one borrows them, is copied by value, and
  * may be given a device's copy of the planes instead.
  *
  * A probe's frame: origin at the middle of its face, +z into the tissue, +x along an image's columns.
@@ -50,6 +50,8 @@ typedef struct probe {
     int32_t planes, corners; /* of a convex one */
     double *plane;           /* planes x 4: unit normal out, and how far from the frame's origin, m */
     double *corner;          /* corners x 3: m */
+    int32_t faces;           /* of a convex one */
+    int32_t *face;           /* faces x 3: corners of triangles that cover it, turned out */
 } probe;
 
 typedef struct probe_pose {

@@ -64,6 +64,10 @@ typedef struct known {
       "rigid surface that holds most of its nodes")                                                                    \
     X("attachment.nodes", MODEL_I32, "1", "attachment", 1, 1, 0, "attach", "how many rigid nodes")                     \
     X("attachment.centre", MODEL_F64, "m", "attachment", 3, 3, 0, "attach", "the mean of its rigid nodes")             \
+    X("probe-vertex.position", MODEL_F64, "m", "probe-vertex", 3, 3, 0, "msds-run or tled-run",                        \
+      "of a convex probe: a corner, in the probe's frame")                                                             \
+    X("probe-face.vertex", MODEL_I32, "@probe-vertex", "probe-face", 3, 3, KNOWN_EVERY, "msds-run or tled-run",        \
+      "the corners of a triangle of it, turned out")                                                                   \
     X("*/vertex.position", MODEL_F64, "m", "*/vertex", 3, 3, 0, "voxelise or bind", "rest position")                   \
     X("*/vertex.element", MODEL_I32, "@element", "*/vertex", 1, 1, KNOWN_EVERY, "bind", "element it is bound to")      \
     X("*/vertex.weight", MODEL_F64, "1", "*/vertex", 3, 4, 0, "bind",                                                  \

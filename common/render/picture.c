@@ -149,13 +149,15 @@ static int check_clears(const work *w, err *e)
     uint64_t cleared = 0;
     for (int i = 0; i < s->panels; i++)
         cleared |= w->showing[i].cleared;
-    for (int k = 0; k < s->clears; k++)
-        if (!(cleared >> k & 1))
-            return err_set(
-                e, NULL, 0,
-                "--clear %s: nothing that is drawn has that name; expected it with --show, or one of what is "
-                "drawn",
-                s->clear[k]);
+    for (int k = 0; k < s->clears; k++) {
+        if (cleared >> k & 1)
+            continue;
+        const bool spheres = !strcmp(s->clear[k], "rigid") || !strcmp(s->clear[k], "centres");
+        return err_set(e, NULL, 0,
+                       "--clear %s: %s; expected surface, voxels, muscles, probe or the name of a surface or group, of "
+                       "what is drawn",
+                       s->clear[k], spheres ? "these are never seen through" : "nothing that is drawn has that name");
+    }
     return 0;
 }
 

@@ -35,7 +35,8 @@ typedef struct showing_want {
     int things;
     const char *const *name; /* surfaces or groups to be seen besides, by name; a '*' at the end matches any rest */
     int names;
-    const char *const *clear; /* those of the names (or "voxels", "muscles") through which one sees; 64 at most */
+    const char *const
+        *clear; /* those of the names (or "surface", "voxels", "muscles", "probe") through which one sees; 64 at most */
     int clears;
     const showing_cut *cut;
     int cuts;

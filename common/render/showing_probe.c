@@ -1,6 +1,7 @@
-/* The probe where a frame has it: a mesh of the points that are farthest along directions all around. */
+/* The probe where a frame has it: a mesh of the points that are farthest along directions all around; of a convex one
+ * its own triangles. */
 #include "base/mem.h"
-#include "contact/probe.h"
+#include "contact/probe_carry.h"
 #include "render/showing_parts.h"
 
 #include <math.h>
@@ -12,19 +13,19 @@ enum { AROUND = 192, RINGS = 96 };
 static const double crease = 30; /* degrees */
 static const uint8_t grey[3] = {92, 104, 122};
 
-/* The shape that msds-run wrote beside its results. 1: there is one; 0: none; -1: e filled. */
-static int shape_of(probe *p, const model *m, err *e)
+/* The v-th of a shape's places, in its own frame. */
+static void place_of(const probe *p, int64_t v, double to[3])
 {
-    const char *text = model_meta_of(m, "probe.shape");
-    if (!text)
-        return 0;
-    if (probe_of(p, text, e))
-        return -1;
+    /* Half a step off, so that no direction lies in a plane of symmetry. */
+    const int64_t ring = v / AROUND;
+    double across = M_PI * (double)ring / RINGS, round = 2 * M_PI * ((double)(v % AROUND) + .5) / AROUND;
+    const double wide =
+        ring < RINGS ? sin(across) : 0; /* the last is one point, as the first is: what is flat there is closed */
+    double d[3] = {wide * cos(round), wide * sin(round), cos(across)};
     if (p->kind == PROBE_CONVEX)
-        return err_set(e, NULL, 0,
-                       "the probe is the OBJ %s, which the model does not hold; expected another shape to show",
-                       p->file);
-    return 1;
+        memcpy(to, p->corner + 3 * v, 3 * sizeof *to);
+    else
+        probe_farthest(p, d, to);
 }
 
 static int place(const probe *p, const double pose[7], scene_mesh *to, err *e)
@@ -32,14 +33,11 @@ static int place(const probe *p, const double pose[7], scene_mesh *to, err *e)
     probe_pose at;
     memcpy(at.position, pose, sizeof at.position);
     memcpy(at.quaternion, pose + 3, sizeof at.quaternion);
-    to->vertices = (int64_t)AROUND * (RINGS + 1);
+    to->vertices = p->kind == PROBE_CONVEX ? p->corners : (int64_t)AROUND * (RINGS + 1);
     to->position = mem_array(to->vertices, 3 * sizeof *to->position, "the probe", e);
     for (int64_t v = 0; to->position && v < to->vertices; v++) {
-        /* Half a step off, so that no direction lies in a plane of symmetry. */
-        const int64_t ring = v / AROUND;
-        double across = M_PI * (double)ring / RINGS, round = 2 * M_PI * ((double)(v % AROUND) + .5) / AROUND;
-        double d[3] = {sin(across) * cos(round), sin(across) * sin(round), cos(across)}, own[3], world[3];
-        probe_farthest(p, d, own);
+        double own[3], world[3];
+        place_of(p, v, own);
         probe_turn(at.quaternion, own, world);
         for (int a = 0; a < 3; a++)
             to->position[3 * v + a] = (float)(world[a] + at.position[a]);
@@ -63,38 +61,61 @@ static bool is_face(const scene_mesh *m, const uint32_t c[3])
     return n > 1e-12 * size * size;
 }
 
-static int join(scene_mesh *to, err *e)
+static void add_face(scene_mesh *to, const uint32_t corner[3])
 {
-    to->corner = mem_array((int64_t)AROUND * RINGS * 2, 3 * sizeof *to->corner, "the probe", e);
-    for (uint32_t r = 0; to->corner && r < RINGS; r++)
+    if (is_face(to, corner))
+        memcpy(to->corner + 3 * to->faces++, corner, 3 * sizeof *corner);
+}
+
+static void join_rings(scene_mesh *to)
+{
+    for (uint32_t r = 0; r < RINGS; r++)
         for (uint32_t i = 0; i < AROUND; i++) {
             const uint32_t a = r * AROUND + i, b = r * AROUND + (i + 1) % AROUND;
-            const uint32_t two[2][3] = {{a, a + AROUND, b + AROUND}, {a, b + AROUND, b}};
-            for (int t = 0; t < 2; t++)
-                if (is_face(to, two[t]))
-                    memcpy(to->corner + 3 * to->faces++, two[t], sizeof two[t]);
+            add_face(to, (uint32_t[]){a, a + AROUND, b + AROUND});
+            add_face(to, (uint32_t[]){a, b + AROUND, b});
         }
+}
+
+static int join(const probe *p, scene_mesh *to, err *e)
+{
+    const bool convex = p->kind == PROBE_CONVEX;
+    to->corner = mem_array(convex ? p->faces : (int64_t)AROUND * RINGS * 2, 3 * sizeof *to->corner, "the probe", e);
+    if (to->corner && !convex)
+        join_rings(to);
+    for (int64_t f = 0; to->corner && convex && f < p->faces; f++) {
+        const int32_t *c = p->face + 3 * f;
+        add_face(to, (uint32_t[]){(uint32_t)c[0], (uint32_t)c[1], (uint32_t)c[2]});
+    }
     return to->corner ? 0 : -1;
 }
 
-int showing_probe(showing *b, const model *m, const showing_want *want, err *e)
+static int add_probe(showing *b, const probe *p, const double pose[7], const showing_want *want, err *e)
 {
-    probe p;
-    const model_array *pose = want->moved ? frame_find(want->moved, "probe.pose") : NULL;
-    if (!(want->things & SHOWING_PROBE) || !want->moved)
-        return 0;
-    int there = shape_of(&p, m, e);
-    if (there < 0)
-        return -1;
-    if (!there || !pose || pose->rows < 1)
-        return err_set(e, NULL, 0, "the model has no probe to show; expected a model from msds-run --probe");
-    scene_mesh mesh = {.corners = 3};
+    const uint64_t cleared = showing_cleared(want, "probe");
+    scene_mesh mesh = {.corners = 3, .transparency = cleared ? .75f : 0};
     mesh.label = mem_text("probe", e);
     showing_linear(grey, mesh.colour);
-    if (mesh.label && !place(&p, pose->f64, &mesh, e) && !join(&mesh, e) && !scene_smooth(&mesh, crease, e)) {
+    if (mesh.label && !place(p, pose, &mesh, e) && !join(p, &mesh, e) && !scene_smooth(&mesh, crease, e)) {
         b->seen |= SHOWING_PROBE;
+        b->cleared |= cleared;
         return showing_add(b, &mesh, NULL, e);
     }
     scene_mesh_free(&mesh);
     return -1;
+}
+
+int showing_probe(showing *b, const model *m, const showing_want *want, err *e)
+{
+    probe p = {0};
+    const model_array *pose = want->moved ? frame_find(want->moved, "probe.pose") : NULL;
+    if (!(want->things & SHOWING_PROBE) || !want->moved)
+        return 0;
+    int there = probe_carried(&p, m, e), bad = -1;
+    if (there > 0 && pose && pose->rows > 0)
+        bad = add_probe(b, &p, pose->f64, want, e);
+    else if (there >= 0)
+        err_set(e, NULL, 0, "the model has no probe to show; expected one from msds-run or tled-run with --probe");
+    probe_free(&p);
+    return bad;
 }

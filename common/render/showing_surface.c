@@ -53,6 +53,15 @@ static bool has_skin(const surface *s)
     return false;
 }
 
+/* By the word that stands for all surfaces: bit k for clear[k]. */
+static uint64_t all_cleared(const showing_want *w)
+{
+    uint64_t by = 0;
+    for (int k = 0; k < w->clears; k++)
+        by |= (uint64_t)!strcmp(w->clear[k], showing_things[0]) << k;
+    return by;
+}
+
 /* Muscles lie within the skin, where there is one: they are seen only where they are named. */
 static int choose_groups(part *p, const showing_want *w, err *e)
 {
@@ -68,7 +77,7 @@ static int choose_groups(part *p, const showing_want *w, err *e)
         int kind = kind_of(name);
         bool outside = w->things & SHOWING_SURFACES && !(skin && kind == MUSCLE);
         if (outside || showing_named(w->name, w->names, s->name) || showing_named(w->name, w->names, name)) {
-            uint64_t cleared = showing_cleared(w, s->name) | showing_cleared(w, name);
+            uint64_t cleared = showing_cleared(w, s->name) | showing_cleared(w, name) | all_cleared(w);
             p->take[g] = cleared ? 2 : 1;
             p->cleared |= cleared;
         }
@@ -254,7 +263,7 @@ int showing_check_names(const model *m, const showing_want *w, err *e)
     int bad = note_names(m, &there, e);
     for (int n = 0; n < w->names + w->clears && !bad; n++) {
         const char *name = n < w->names ? w->name[n] : w->clear[n - w->names];
-        int i = n < w->names ? SHOWING_THINGS : 1;
+        int i = n < w->names ? SHOWING_THINGS : 0;
         while (i < there.count && !surface_in_group(there.line[i], name))
             i++;
         if (i == there.count)

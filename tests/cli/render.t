@@ -105,7 +105,8 @@ r 2 "unknown thing 'voxel'; did you mean 'voxels'\?.*rigid_end" --show voxel
 r 2 "unknown thing 'skin'.*muscle" --clear skin
 r 1 '--clear voxels: nothing that is drawn' --clear voxels
 r 1 '--clear muscle: nothing that is drawn' --show voxels --clear muscle
-r 1 '--clear rigid: nothing that is drawn' --show voxels,rigid --clear voxels,rigid
+r 1 '--clear rigid: these are never seen through; expected surface, voxels' --show voxels,rigid --clear voxels,rigid
+r 1 '--clear probe: nothing that is drawn' --show voxels --clear probe
 r 2 "unknown field 'displacment'; did you mean 'displacement'\?.*stress" --colour displacment
 r 1 'at rest there are none' --colour strain --frame rest
 r 1 'frames 1 to|frames 0 to' --frame 99

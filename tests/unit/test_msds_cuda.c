@@ -114,6 +114,7 @@ static void frame_of(pair *c, const msds_plan *plan, int64_t count)
     }
     c->largest = fmax(c->largest, c->sight[0].largest);
     compare_wrench(c);
+    c->different += c->sight[1].met != c->sight[0].met;
     if (!(fabs(c->sight[1].largest - c->sight[0].largest) <= 1e-5 * c->largest))
         c->different++;
 }

@@ -114,8 +114,8 @@ static double *run_lanes(const lanes *loops, const slices *s, int64_t *count)
     }
     for (int64_t k = 0; k < slots; k++)
         number[k] = 1 + (float)cos(.7 * (double)k);
-    lanes_springs w = {s,      number, number + 8, number + 16, f[0], f[1], f[2], f[3], f[4],
-                       number, f[5],   .01F,       false,       {0},  0,    NULL, 0,    NULL};
+    lanes_springs w = {s,    number, number + 8, number + 16, f[0], f[1], f[2], f[3], f[4], number,
+                       f[5], .01F,   false,      {0},         0,    NULL, 0,    NULL, NULL};
     lanes_matrix a = {s, number, number};
     loops->step(&w, 0, s->count);
     *to++ = loops->multiply(&a, &f[1], &f[5], 0, s->count);

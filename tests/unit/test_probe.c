@@ -54,6 +54,11 @@ static probe of_text(const char *text, const char *name)
 
 static const char cube[] = "v -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
                            "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+/* Its face is cut along an L, which is not convex; and one corner stands twice. */
+static const char cut_cube[] =
+    "v -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 1 0\n"
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 4 3 2 1\nf 10 11 6 5 8 9\nf 9 12 11 10\nf 1 2 6 5\n"
+    "f 2 3 7 11 6\nf 3 4 8 9 12\nf 4 1 5 8\n";
 static const char wedge[] = "v 0 0 0\nv 4 0 -1\nv 0 3 -1\nv -2 -2 -1.5\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 /* A ball of many facets, as OBJ text: rings of vertices on a sphere of 2, the polygons of its hull. */
@@ -202,8 +207,57 @@ static void test_bounds(const probe *p, const char *name)
     near_(probe_at(&placed, face).depth, 0, 1e-15, "%s: the middle of the face is the origin", name);
 }
 
+/* Where the ray from `from` along d meets a triangle, in lengths of d; below 0: nowhere. */
+static double meet(const double from[3], const double d[3], const double *x, const double *y, const double *z)
+{
+    double u[3], v[3], w[3], n[3], uv[3];
+    for (int a = 0; a < 3; a++)
+        u[a] = y[a] - x[a], v[a] = z[a] - x[a], w[a] = from[a] - x[a];
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        n[a] = d[b] * v[c] - d[c] * v[b];
+        uv[a] = w[b] * u[c] - w[c] * u[b];
+    }
+    const double whole = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
+    const double s = (w[0] * n[0] + w[1] * n[1] + w[2] * n[2]) / whole;
+    const double t = (d[0] * uv[0] + d[1] * uv[1] + d[2] * uv[2]) / whole;
+    return s >= -1e-9 && t >= -1e-9 && s + t <= 1 + 1e-9 ? (v[0] * uv[0] + v[1] * uv[1] + v[2] * uv[2]) / whole : -1;
+}
+
+/* The triangles are its surface: every ray out of its middle meets one, at the surface, that is turned out. */
+static void test_faces(const probe *p, const char *name)
+{
+    int missed = 0, turned = 0;
+    double off = 0;
+    for (int i = 0; i < POINTS / 4; i++) {
+        const double d[3] = {any(), any(), any()};
+        int met = 0;
+        for (int32_t f = 0; f < p->faces; f++) {
+            const int32_t *c = p->face + 3 * (int64_t)f;
+            const double *x = p->corner + 3 * c[0], *y = p->corner + 3 * c[1], *z = p->corner + 3 * c[2];
+            const double along = meet(p->middle, d, x, y, z);
+            if (along < 0)
+                continue;
+            double at[3], facing = 0;
+            for (int a = 0; a < 3; a++) {
+                const int b = (a + 1) % 3, e = (a + 2) % 3;
+                at[a] = p->middle[a] + along * d[a];
+                facing += d[a] * ((y[b] - x[b]) * (z[e] - x[e]) - (y[e] - x[e]) * (z[b] - x[b]));
+            }
+            met++;
+            turned += facing < 0;
+            off = fmax(off, fabs(probe_at_own(p, at).depth) / p->reach);
+        }
+        missed += !met;
+    }
+    ok(p->faces >= 4 && !missed && !turned && off < 1e-6,
+       "%s: %d triangles are its surface: %d rays miss, %d from behind, %.2g off", name, p->faces, missed, turned, off);
+}
+
 static void test_shape(const probe *p, const char *name)
 {
+    if (p->kind == PROBE_CONVEX)
+        test_faces(p, name);
     test_narrow(p, name);
     test_distance(p, name);
     test_bounds(p, name);
@@ -296,6 +350,10 @@ int main(void)
     p = of_text(cube, "cube");
     ok(p.planes == 6 && p.corners == 8, "a cube has 6 planes");
     test_shape(&p, "cube");
+    probe_free(&p);
+    p = of_text(cut_cube, "cut cube");
+    ok(p.planes == 6 && p.corners == 11, "a corner that stands twice is one: %d", p.corners);
+    test_faces(&p, "cut cube");
     probe_free(&p);
     p = of_text(wedge, "wedge");
     test_shape(&p, "wedge");
