@@ -2,11 +2,10 @@
 #include "base/out.h"
 
 #include "base/mem.h"
-#include "base/replace.h"
+#include "base/temporary.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -22,6 +21,7 @@ struct out {
     int fd;           /* -1: memory */
     char *name;       /* for messages */
     replace file;     /* no target: fd is written directly */
+    replace *kept;    /* where the file goes at the end, or NULL: into its place */
     bool gzip, large; /* large: a piece of CHUNK was written */
     bool outlast;     /* it is stored before it is closed */
     z_stream z;
@@ -32,29 +32,14 @@ struct out {
     err failed;
 };
 
-/* Someone had SIGPIPE ignored or blocked: end as quietly all the same. Returns only where that cannot be. */
-static void end_by_sigpipe(void)
-{
-    sigset_t only;
-    sigemptyset(&only);
-    sigaddset(&only, SIGPIPE);
-    signal(SIGPIPE, SIG_DFL);
-    pthread_sigmask(SIG_UNBLOCK, &only, NULL);
-    raise(SIGPIPE);
-}
-
 /* A pipe of 64 KB has whoever writes much and whoever reads it wait for each other all the time. No wider than a piece: all pipes
  * of a user share what Linux allows (pipe-user-pages-soft, 64 MB unless set), and once that is used up each new one has 8 KB. (One of
  * what is small stays as it is: a reader that falls behind would see all that fits into it late.) */
 static void widen_pipe(int fd)
 {
-#ifdef F_SETPIPE_SZ
     int size = fcntl(fd, F_GETPIPE_SZ);
     if (size > 0 && size < CHUNK)
         (void)!fcntl(fd, F_SETPIPE_SZ, (int)CHUNK);
-#else
-    (void)fd;
-#endif
 }
 
 static void put(out *o, const unsigned char *bytes, size_t size)
@@ -65,7 +50,7 @@ static void put(out *o, const unsigned char *bytes, size_t size)
             bytes += n;
             size -= (size_t)n;
         } else if (errno == EPIPE) {
-            end_by_sigpipe();
+            temporary_end(SIGPIPE); /* someone had it ignored or blocked: end as quietly all the same */
             err_system(&o->failed, o->name, EPIPE, "cannot write");
             o->failed.silent = true;
         } else if (errno != EINTR) {
@@ -150,6 +135,19 @@ static out *open_direct(const char *path, bool gzip, err *e)
     return o;
 }
 
+static out *open_replacing(const char *path, bool gzip, err *e)
+{
+    replace file;
+    if (replace_open(&file, path, e))
+        return NULL;
+    out *o = out_new(file.fd, path, gzip, e);
+    if (o)
+        o->file = file;
+    else
+        replace_discard(&file);
+    return o;
+}
+
 out *out_open(const char *path, bool gzip, err *e)
 {
     struct stat s;
@@ -166,22 +164,14 @@ out *out_open(const char *path, bool gzip, err *e)
         err_system(e, path, errno, "cannot write");
         return NULL;
     }
-    replace file;
-    if (replace_open(&file, path, e))
-        return NULL;
-    out *o = out_new(file.fd, path, gzip, e);
-    if (o)
-        o->file = file;
-    else
-        replace_discard(&file);
-    return o;
+    return open_replacing(path, gzip, e);
 }
 
-out *out_open_passing(const char *path, err *e)
+out *out_open_kept(const char *path, replace *to, err *e)
 {
-    out *o = out_open(path, false, e);
+    out *o = open_replacing(path, false, e);
     if (o)
-        o->file.passing = true;
+        o->kept = to;
     return o;
 }
 
@@ -323,7 +313,12 @@ int out_close(out *o, err *e)
     int bad = o->failed.status ? -1 : 0;
     if (bad && !e->status)
         *e = o->failed;
-    if (!bad && o->file.target) {
+    if (!bad && o->kept) {
+        bad = replace_settle(&o->file, o->name, e);
+        *o->kept = bad ? (replace){0} : o->file;
+        o->file = bad ? o->file : (replace){0};
+        o->fd = -1;
+    } else if (!bad && o->file.target) {
         bad = replace_finish(&o->file, o->name, e);
         o->fd = -1;
     } else if (!bad && o->fd >= 0) {

@@ -1,19 +1,19 @@
-/* Files of one run that appear together: each is written beside its place, and all are renamed once it is known that the
- * run went well, so that a run that fails leaves the files of an earlier one as they were. Files are written one at a
- * time, so any number takes one descriptor. The caller owns the struct; begin with a zeroed one.
+/* Files of one run that appear together: each is written beside its place, and all are put there once it is known that the
+ * run went well, so that a run that fails leaves the files of an earlier one as they were. Each keeps a descriptor, as long as there
+ * are enough of them: what has no name is gone with the process. The caller owns the struct; begin with a zeroed one.
  */
 #ifndef SINEW_OUTS_H
 #define SINEW_OUTS_H
 
 #include "base/out.h"
 
-typedef struct outs_file {
-    char *part, *target; /* where it is, where it goes; each owned */
-} outs_file;
+typedef struct outs_file outs_file;
 
 typedef struct outs {
-    outs_file *file;
-    int64_t count, capacity, number; /* number: of the next name */
+    outs_file *first, *last; /* owned */
+    outs_file *open;         /* the first that may have a descriptor */
+    int64_t descriptors;     /* from there on */
+    int64_t most;            /* to have; 0: not known yet */
 } outs;
 
 /* Opens the next file, which is to appear as path; a link stays a link. The caller closes it (out_close) or gives it up

@@ -1,5 +1,7 @@
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "base/replace.h"
 
+#include "base/mem.h"
 #include "base/path.h"
 #include "base/temporary.h"
 
@@ -8,10 +10,12 @@
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/file.h>
+#include <sys/sendfile.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { NAMES = 1000 }; /* to try, at most */
+enum { NAMES = 1000, PIECE = 1 << 24 }; /* names to try, at most; bytes */
 
 /* The permissions that a file made by open(2) would have, or those of the file that it replaces. */
 static mode_t wanted_mode(const char *target)
@@ -24,42 +28,63 @@ static mode_t wanted_mode(const char *target)
     return 0666 & ~mask;
 }
 
-/* Gives the file a name beside its place that nothing else has: a new file (nameless NULL) or the nameless one. */
-static int take_name(replace *r, const char *nameless, const char *path, err *e)
+/* The lock tells whoever sweeps that the file is somebody's. */
+static int open_locked(const char *path, int flags)
 {
-    char name[64];
-    for (int i = 0; i < NAMES; i++) {
-        snprintf(name, sizeof name, ".sinew-%ld-%d.tmp", (long)getpid(), i);
-        r->temporary = path_join(r->target, path_folder(r->target), name, e);
-        if (!r->temporary)
-            return -1;
-        int done = nameless ? linkat(AT_FDCWD, nameless, AT_FDCWD, r->temporary, AT_SYMLINK_FOLLOW)
-                            : (r->fd = open(r->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
-        if (done >= 0)
-            return temporary_add(r->temporary, e);
-        int code = errno;
-        free(r->temporary);
-        r->temporary = NULL;
-        if (code != EEXIST)
-            return err_system(e, path, code, "cannot create");
-    }
-    return err_system(e, path, EEXIST, "cannot create");
+    const int fd = open(path, flags | O_RDWR | O_CLOEXEC, 0600);
+    if (fd >= 0)
+        (void)flock(fd, LOCK_EX | LOCK_NB);
+    return fd;
 }
 
-/* A file without a name where the system can: a killed process then leaves nothing. -1: it cannot. */
+static int make_new(const void *context, const char *path)
+{
+    (void)context;
+    return open_locked(path, O_CREAT | O_EXCL);
+}
+
+/* Gives the nameless file at *context that name. */
+static int make_link(const void *context, const char *path)
+{
+    const int *fd = context;
+    char self[64];
+    snprintf(self, sizeof self, "/proc/self/fd/%d", *fd);
+    return linkat(AT_FDCWD, self, AT_FDCWD, path, AT_SYMLINK_FOLLOW);
+}
+
+/* Makes a file of a name beside its place that nothing else has. Returns what make does, or -1 with errno, which is 0 where e is filled. */
+static int take_name(replace *r, int (*make)(const void *context, const char *path), err *e)
+{
+    char name[TEMPORARY_NAME];
+    const size_t n = path_folder(r->target);
+    char *folder = path_join(r->target, n, "", e);
+    int made = -1, code = folder ? EEXIST : 0;
+    if (folder)
+        temporary_sweep(folder);
+    for (int i = 0; code == EEXIST && i < NAMES; i++) {
+        temporary_name(name);
+        free(r->temporary);
+        r->temporary = path_join(r->target, n, name, e);
+        made = r->temporary ? temporary_make(r->temporary, make, &r->fd, e) : -1;
+        code = e->status || made >= 0 ? 0 : errno;
+    }
+    if (made < 0) {
+        free(r->temporary);
+        r->temporary = NULL;
+    }
+    free(folder);
+    errno = code;
+    return made;
+}
+
+/* -1: the file system has no files without a name. */
 static int open_nameless(const char *target)
 {
-    int fd = -1;
-#ifdef O_TMPFILE
     err ignored = {0};
     size_t n = path_folder(target);
     char *folder = path_join(n ? target : "./", n ? n : 2, "", &ignored);
-    if (folder && !access("/proc/self/fd", X_OK))
-        fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    const int fd = folder && !access("/proc/self/fd", X_OK) ? open_locked(folder, O_TMPFILE) : -1;
     free(folder);
-#else
-    (void)target;
-#endif
     return fd;
 }
 
@@ -69,12 +94,17 @@ int replace_open(replace *r, const char *path, err *e)
     if (!r->target)
         return -1;
     r->fd = open_nameless(r->target);
-    if (r->fd < 0 && take_name(r, NULL, path, e)) {
-        replace_discard(r);
-        return -1;
+    if (r->fd < 0) {
+        r->fd = take_name(r, make_new, e);
+        if (r->fd < 0 && errno)
+            err_system(e, path, errno, "cannot create");
     }
-    fchmod(r->fd, wanted_mode(r->target));
-    return 0;
+    if (r->fd >= 0) {
+        fchmod(r->fd, wanted_mode(r->target));
+        return 0;
+    }
+    replace_discard(r);
+    return -1;
 }
 
 int replace_store(int fd)
@@ -107,27 +137,94 @@ int replace_store_names(const char *path, const char *name, err *e)
     return store_names(path) ? err_system(e, name, errno, "is there, but its folder cannot be stored") : 0;
 }
 
+int replace_settle(replace *r, const char *name, err *e)
+{
+    if (replace_store(r->fd))
+        return err_system(e, name, errno, "cannot write");
+    /* What only close() would tell: a name is given while the file is open. */
+    const int copy = fcntl(r->fd, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    return copy >= 0 && close(copy) && errno != EINTR ? err_system(e, name, errno, "cannot write") : 0;
+}
+
+/* What a file system that has files without names may say when one is to get one. */
+static bool is_refusal(int code)
+{
+    return code == EPERM || code == EXDEV || code == EOPNOTSUPP || code == ENOSYS || code == EINVAL || code == ENOENT;
+}
+
+static int copy_bytes(int from, int to)
+{
+    off_t at = 0;
+    ssize_t n;
+    do
+        n = sendfile(to, from, &at, PIECE);
+    while (n > 0 || (n < 0 && errno == EINTR));
+    return n < 0 ? -1 : 0;
+}
+
+/* The nameless file becomes another, which has a name. */
+static int copy_nameless(replace *r, err *e)
+{
+    struct stat s;
+    const int from = r->fd, to = fstat(from, &s) ? -1 : take_name(r, make_new, e);
+    if (to < 0)
+        return -1;
+    fchmod(to, s.st_mode & 07777);
+    r->fd = to;
+    const int bad = copy_bytes(from, to) || replace_store(to) ? -1 : 0, code = errno;
+    close(from);
+    errno = code;
+    return bad;
+}
+
+static int name_nameless(replace *r, const char *name, err *e)
+{
+    if (take_name(r, make_link, e) >= 0)
+        return 0;
+    if (!is_refusal(errno) || copy_nameless(r, e))
+        return errno ? err_system(e, name, errno, "cannot create") : -1;
+    return 0;
+}
+
+int replace_park(replace *r, const char *name, err *e)
+{
+    if (!r->temporary && name_nameless(r, name, e))
+        return -1;
+    close(r->fd);
+    r->fd = -1;
+    return 0;
+}
+
+/* A nameless file goes where none is at once. No link replaces a file: there it takes a name beside it first. */
+static int put_in_place(replace *r, const char *name, err *e)
+{
+    if (!r->temporary && !make_link(&r->fd, r->target))
+        return 0;
+    if (!r->temporary && name_nameless(r, name, e))
+        return -1;
+    if (rename(r->temporary, r->target))
+        return err_system(e, name, errno, "cannot rename into place");
+    temporary_drop(r->temporary);
+    free(r->temporary);
+    r->temporary = NULL;
+    return 0;
+}
+
+int replace_place(replace *r, const char *name, err *e)
+{
+    const int bad = put_in_place(r, name, e);
+    replace_discard(r);
+    return bad;
+}
+
 int replace_finish(replace *r, const char *name, err *e)
 {
-    char self[64];
-    snprintf(self, sizeof self, "/proc/self/fd/%d", r->fd);
-    int bad = !replace_store(r->fd) ? 0 : err_system(e, name, errno, "cannot write");
-    if (!bad && !r->temporary)
-        bad = take_name(r, self, name, e);
-    int fd = r->fd;
-    r->fd = -1;
-    if (close(fd) && errno != EINTR && !bad)
-        bad = err_system(e, name, errno, "cannot write");
-    if (!bad && rename(r->temporary, r->target))
-        bad = err_system(e, name, errno, "cannot rename into place");
-    if (!bad) {
-        temporary_drop(r->temporary);
-        free(r->temporary);
-        r->temporary = NULL;
-        if (!r->passing)
-            bad = replace_store_names(r->target, name, e);
-    }
+    char *target = mem_text(r->target, e);
+    int bad = !target || replace_settle(r, name, e) || put_in_place(r, name, e) ? -1 : 0;
     replace_discard(r);
+    if (!bad)
+        bad = replace_store_names(target, name, e);
+    free(target);
     return bad;
 }
 

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <sched.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,6 +115,7 @@ static int check_written(const tool *t, err *e)
 int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *options, err *e)
 {
     *t = (tool){.table = table, .common = options};
+    signal(SIGXFSZ, SIG_IGN); /* write() then says what is wrong */
     if (fill_descriptors(e))
         return -1;
     t->operands = opt_parse(table, argc, argv, options, e);

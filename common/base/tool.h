@@ -18,7 +18,8 @@ typedef struct tool {
     char *provenance; /* owned */
 } tool;
 
-/* Sees to it that descriptors 0 to 2 are open (no file may become one of them), parses the command line and answers -h, -V and --table. Returns 0; -1 with e filled (status 2). When t->done,
+/* Sees to it that descriptors 0 to 2 are open (no file may become one of them) and that a limit on the size of files fails what writes, not
+ * the process; parses the command line and answers -h, -V and --table. Returns 0; -1 with e filled (status 2). When t->done,
  * go straight to tool_end. */
 int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *options, err *e);
 

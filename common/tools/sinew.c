@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -103,6 +104,7 @@ static void put_zsh(out *o)
 static int answer(void (*put)(out *o))
 {
     err e = {0};
+    signal(SIGXFSZ, SIG_IGN); /* as tool_begin() has it */
     out *o = out_open(NULL, false, &e);
     if (o)
         put(o);

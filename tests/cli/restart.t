@@ -313,7 +313,7 @@ fails 1 "no folder to save in" 'state.frames: cannot create: No such file' run -
 rm -f "$c" "$c.1" "$c.frames"
 if (ulimit -f 1000) 2>/dev/null; then
     # shellcheck disable=SC2016 # for the inner shell
-    fails 1 "a disk that is full" 'cannot write: File too large' sh -c 'trap "" XFSZ
+    fails 1 "a disk that is full" 'cannot write: File too large' sh -c '
         ulimit -f 300; tled-run -d cpu -c all=0.8 -t 0.4 --every 0.002 --checkpoint "$1" --checkpoint-every 0.01 <"$2" >/dev/null' \
         - "$c" "$model"
     is "$(sed -n -E 's/.* (s is saved; .*)/\1/p' "$T/stderr")" "s is saved; --restart goes on from there" "it says what is saved"

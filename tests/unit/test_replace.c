@@ -1,9 +1,11 @@
-/* Outputs that fail late: what stood under the name stays, and nothing is left beside it. This program's fsync, close and
- * rename are its own, so that each can fail.
+/* Outputs that fail late: what stood under the name stays, and nothing is left beside it. This program's fsync, close, rename, open and
+ * linkat are its own, so that each can fail; all is tried where files need no name, where they do, and where what has none gets none.
  */
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "base/growing.h"
 #include "base/out.h"
 #include "base/outs.h"
+#include "base/temporary.h"
 
 #include "tap.h"
 
@@ -11,8 +13,10 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -22,6 +26,10 @@
 static enum { NONE, FSYNC, CLOSE, RENAME, FOLDER } failing;
 static int synced, named; /* files, folders */
 static ino_t last_named;
+
+/* What the file system is like: has files without a name; or not; or gives them none. */
+static enum { NAMELESS, NAMED, UNLINKED, LIKES } like;
+static int nameless, linked;
 
 int fsync(int fd)
 {
@@ -45,6 +53,30 @@ int rename(const char *from, const char *to)
 {
     errno = EACCES;
     return failing == RENAME ? -1 : renameat(AT_FDCWD, from, AT_FDCWD, to);
+}
+
+/* NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name) */
+int open(const char *path, int flags, ...)
+{
+    va_list more;
+    va_start(more, flags);
+    const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(more, mode_t) : 0;
+    va_end(more);
+    const bool without = (flags & O_TMPFILE) == O_TMPFILE;
+    if (without && like == NAMED) {
+        errno = EOPNOTSUPP;
+        return -1;
+    }
+    nameless += without;
+    return openat(AT_FDCWD, path, flags, mode);
+}
+
+/* NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the C library's names are its own */
+int linkat(int from_folder, const char *from, int to_folder, const char *to, int flags)
+{
+    errno = EPERM;
+    linked++;
+    return like == UNLINKED ? -1 : (int)syscall(SYS_linkat, from_folder, from, to_folder, to, flags);
 }
 
 static int files_here(void)
@@ -84,7 +116,8 @@ static void late_failures(void)
     static const char *const want[] = {"", "cannot write: No space left", "cannot write: Disk quota exceeded",
                                        "cannot rename into place: Permission denied"};
     put("file", "old");
-    ok(synced == 1 && named == 1, "what is written is known to be stored before it is renamed, and then its name");
+    ok(synced == (like == UNLINKED ? 2 : 1) && named == 1,
+       "what is written is known to be stored before it is renamed, and then its name");
     int before = files_here();
     for (int which = FSYNC; which <= RENAME; which++) {
         err e = {0};
@@ -120,7 +153,8 @@ static void together(void)
         ok(o && (out_text(o, "x"), !out_close(o, &e)), "one of some files %s", e.text);
     }
     ok(synced == 5 && !named, "each is stored");
-    ok(!outs_commit(&all, &e) && synced == 5 && named == 2, "and the names of two folders once");
+    ok(!outs_commit(&all, &e) && synced == (like == UNLINKED ? 10 : 5) && named == 2,
+       "and the names of two folders once");
     outs_free(&all);
     ok(holds("a", "x") && holds("folder/b", "x"), "all are there");
     for (int i = 0; i < 5; i++)
@@ -158,6 +192,24 @@ static void unreadable(void)
     unlink("folder/file");
 }
 
+/* The name of a file of a process; ours is the like of it. */
+static const char *name_of(char name[TEMPORARY_NAME], pid_t pid, long long number)
+{
+    char host[9];
+    temporary_name(name);
+    snprintf(host, sizeof host, "%.8s", name + strlen(".sinew-"));
+    snprintf(name, TEMPORARY_NAME, ".sinew-%s-%ld-%lld.tmp", host, (long)pid, number);
+    return name;
+}
+
+/* The number after those that the three names to come take themselves. */
+static long long next_number(void)
+{
+    char name[TEMPORARY_NAME];
+    temporary_name(name);
+    return atoll(strrchr(name, '-') + 1) + 4;
+}
+
 static void names(void)
 {
     char longest[256], too_long[257], taken[64];
@@ -174,16 +226,105 @@ static void names(void)
     ok(!out_open("new/", false, &e) && strstr(e.text, "Is a directory"), "so is a folder's: %s", e.text);
 
     /* What a killed process of the same number left. */
-    for (int i = 0; i < 3; i++) {
-        snprintf(taken, sizeof taken, ".sinew-%ld-%d.tmp", (long)getpid(), i);
-        fclose(fopen(taken, "w"));
-    }
+    put("file", "old");
+    const long long next = next_number();
+    for (int i = 0; i < 3; i++)
+        fclose(fopen(name_of(taken, getpid(), next + i), "w"));
     put("file", "x");
     ok(holds("file", "x") && files_here() == 4, "names that are taken are passed by");
-    for (int i = 0; i < 3; i++) {
-        snprintf(taken, sizeof taken, ".sinew-%ld-%d.tmp", (long)getpid(), i);
-        unlink(taken);
+    for (int i = 0; i < 3; i++)
+        unlink(name_of(taken, getpid(), next + i));
+    unlink("file");
+}
+
+/* The pid of a process that is gone. */
+static pid_t gone(void)
+{
+    const pid_t child = fork();
+    if (!child)
+        _exit(0);
+    waitpid(child, NULL, 0);
+    return child;
+}
+
+static bool is_there(const char *path)
+{
+    struct stat s;
+    return !lstat(path, &s);
+}
+
+/* What processes left that were killed goes when the next one makes such a file there; nothing else does. */
+static void sweeps(const char *here, const char *folder)
+{
+    char left[TEMPORARY_NAME], alive[TEMPORARY_NAME], locked[TEMPORARY_NAME], link[TEMPORARY_NAME];
+    char other[TEMPORARY_NAME] = ".sinew-00000000-", longer[TEMPORARY_NAME + 1];
+    const pid_t pid = gone();
+    ok(!chdir(folder), "a folder that was not swept before");
+    fclose(fopen(name_of(left, pid, 7), "w"));
+    fclose(fopen(name_of(alive, getppid(), 7), "w"));
+    const int fd = openat(AT_FDCWD, name_of(locked, pid, 8), O_CREAT | O_RDWR, 0600);
+    ok(fd >= 0 && !flock(fd, LOCK_EX), "a file that is locked");
+    ok(!symlink("nowhere", name_of(link, pid, 9)), "a link");
+    snprintf(other + 16, sizeof other - 16, "%s", left + 16);
+    fclose(fopen(other, "w"));
+    snprintf(longer, sizeof longer, "%sx", left);
+    fclose(fopen(longer, "w"));
+    put("file", "old"); /* the first may need no name */
+    put("file", "new");
+    ok(!is_there(left), "what a process left that is gone goes");
+    ok(is_there(alive) && is_there(locked) && is_there(link) && is_there(other) && is_there(longer) &&
+           files_here() == 6,
+       "what is alive, locked, a link, another host's or none of ours stays");
+    close(fd);
+    const char *const all[] = {"file", alive, locked, link, other, longer};
+    for (int i = 0; i < 6; i++)
+        unlink(all[i]);
+    ok(!chdir("..") && !rmdir(folder) && !chdir(here), "and that is all");
+}
+
+/* More files at once than there are descriptors: some wait under a name. */
+static void scarce(void)
+{
+    enum { COUNT = 40 };
+    char name[16];
+    outs all = {.most = 10};
+    err e = {0};
+    int good = 0;
+    for (int i = 0; i < COUNT; i++) {
+        snprintf(name, sizeof name, "f%d", i);
+        if (i == 17)
+            put(name, "old");
+        out *o = outs_open(&all, name, &e);
+        good += o && (out_text(o, name), !out_close(o, &e));
     }
+    ok(good == COUNT && files_here() == (like == NAMELESS   ? COUNT - 10
+                                         : like == UNLINKED ? COUNT - 10
+                                                            : COUNT) +
+                                            1,
+       "%d files %s, %d names", good, e.text, files_here());
+    ok(!outs_commit(&all, &e) && files_here() == COUNT, "all take their places %s", e.text);
+    outs_free(&all);
+    for (int i = 0; i < COUNT; i++) {
+        snprintf(name, sizeof name, "f%d", i);
+        good -= holds(name, name);
+        unlink(name);
+    }
+    ok(!good && !files_here(), "each has what was written to it");
+}
+
+/* A new file goes to its place without another name, and keeps to umask; one that is replaced hands its permissions on. */
+static void modes(void)
+{
+    struct stat s;
+    const mode_t before = umask(027);
+    const int was = linked;
+    put("file", "x");
+    ok(!stat("file", &s) && (s.st_mode & 07777) == 0640, "a new file's permissions");
+    ok(linked - was == (like == NAMELESS ? 1 : like == NAMED ? 0 : 2), "%d links", linked - was);
+    ok(!chmod("file", 0604), "others");
+    put("file", "y");
+    ok(!stat("file", &s) && (s.st_mode & 07777) == 0604 && holds("file", "y"), "are kept");
+    umask(before);
     unlink("file");
 }
 
@@ -250,20 +391,46 @@ static void blocked(void)
     sigprocmask(SIG_BLOCK, &only, NULL);
 }
 
-int main(void)
+static void all_of_it(void)
 {
-    char folder[] = "/tmp/sinew-replace-XXXXXX";
-    if (!mkdtemp(folder) || chdir(folder))
-        return 1;
     late_failures();
     names();
     links();
+    modes();
+    scarce();
     mkdir("folder", 0700);
     together();
     grows();
     chmod(".", 0711);
     unreadable();
     rmdir("folder");
+}
+
+int main(void)
+{
+    static const char *const work[] = {"nameless", "named", "unlinked"}, *const swept[] = {"swept0", "swept1",
+                                                                                           "swept2"};
+    char folder[] = "/tmp/sinew-replace-XXXXXX";
+    if (!mkdtemp(folder) || chdir(folder))
+        return 1;
+    for (int i = 0; i < LIKES; i++) /* at first: a folder that is swept is known by its inode */
+        ok(!mkdir(work[i], 0700) && !mkdir(swept[i], 0700), "folders");
+    const int fd = open(".", O_TMPFILE | O_RDWR, 0600);
+    const bool can = fd >= 0;
+    close(fd);
+    chmod(".", 0711);
+    for (int i = 0; i < LIKES; i++) {
+        like = can ? i : NAMED;
+        nameless = synced = named = 0;
+        ok(!chdir(work[i]), "%s", work[i]);
+        all_of_it();
+        ok(!chdir(".."), "back");
+        sweeps(folder, swept[i]);
+        ok(like == NAMED ? !nameless : nameless > 50, "%d files without a name", nameless);
+        ok(!rmdir(work[i]), "nothing is left");
+    }
+    if (!can)
+        skip(1, "no files without a name here");
     ok(!chdir("/") && !rmdir(folder), "the folder is empty");
     ok(at_closed_pipe(as_it_is) == SIGPIPE, "a closed pipe ends the process by SIGPIPE");
     ok(at_closed_pipe(ignored) == SIGPIPE, "where SIGPIPE was ignored, too");
