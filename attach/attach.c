@@ -45,7 +45,7 @@ static const opt_tool table = {
 };
 
 /* Reads the OBJ into a model of its own, in metres. */
-static int read_rigid_file(const char *path, const model *m, model *file, err *e)
+static int read_rigid_file(const char *path, bool nameless, const model *m, model *file, err *e)
 {
     const char *unit_name = model_meta_of(m, "source.unit");
     num_unit unit = unit_name ? num_unit_of(unit_name) : 0, metre = num_unit_of("m");
@@ -54,7 +54,7 @@ static int read_rigid_file(const char *path, const model *m, model *file, err *e
                        unit_name ? "" : "not given", unit_name ? unit_name : "");
     obj o = {0};
     char name[MODEL_NAME];
-    surface_name(path, name, sizeof name);
+    surface_name(nameless ? "surface_1" : path, name, sizeof name);
     in *source = in_open(path, e);
     int rc = source ? obj_read(&o, source, e) : -1;
     if (!rc)
@@ -68,7 +68,8 @@ static int collect(const struct options *o, const model *m, model *file, rigid *
 {
     if (rigid_collect(r, m, &o->rigid, e))
         return -1;
-    if (o->rigid_file && (read_rigid_file(o->rigid_file, m, file, e) || rigid_collect_all(r, file, e)))
+    if (o->rigid_file &&
+        (read_rigid_file(o->rigid_file, o->common.anonymous, m, file, e) || rigid_collect_all(r, file, e)))
         return -1;
     if (!r->primitives)
         notes_add(warnings, "no surface of the model is rigid (skull*, bone*, rigid*); --rigid names others");

@@ -260,7 +260,10 @@ static int bind_file(const tool *t, target *to, model *m, const char *path, cons
     in *s = in_open(path, e);
     int code = s ? obj_read(&file, s, e) : -1;
     in_close(s);
-    surface_name(path, from_path, sizeof from_path);
+    if (!code && o->common.anonymous)
+        surface_nameless(m, &file, scale_of(unit), from_path, sizeof from_path);
+    else
+        surface_name(path, from_path, sizeof from_path);
     if (!code && !carry(m, name, &file, scale_of(unit), e))
         code = bind_surface(t, to, m, name, unit, warnings, e);
     else
@@ -276,7 +279,7 @@ static int bind_files(const tool *t, target *to, model *m, char *const *path, co
     char name[SURFACE_NAME_MOST + 1], other[SURFACE_NAME_MOST + 1];
     for (int i = 0; i < t->operands; i++) {
         surface_name(path[i], name, sizeof name);
-        for (int j = 0; j < i; j++) {
+        for (int j = 0; j < i && !o->common.anonymous; j++) {
             surface_name(path[j], other, sizeof other);
             if (!strcmp(name, other))
                 return err_set(e, path[i], 0,

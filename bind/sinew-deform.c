@@ -67,13 +67,13 @@ typedef struct mover {
     obj file;
     bound b;
     bone bone;
-    double scale;                     /* metres in the OBJ's unit */
-    bool *held;                       /* vertices: too far outside to be moved */
-    bool *straight;                   /* vertices: held, or carried by bone; their normals do not turn */
-    double *position;                 /* vertices x 3, in the OBJ's unit */
-    double *normal;                   /* normals x 3 */
-    const double *u;                  /* nodes x 3, m: of the frame at hand */
-    char skin[SURFACE_NAME_MOST + 1]; /* the surface's name, where frames move it themselves; else "" */
+    double scale;          /* metres in the OBJ's unit */
+    bool *held;            /* vertices: too far outside to be moved */
+    bool *straight;        /* vertices: held, or carried by bone; their normals do not turn */
+    double *position;      /* vertices x 3, in the OBJ's unit */
+    double *normal;        /* normals x 3 */
+    const double *u;       /* nodes x 3, m: of the frame at hand */
+    char skin[MODEL_NAME]; /* the surface's name, where frames move it themselves; else "" */
     pool *threads;
 } mover;
 
@@ -132,15 +132,28 @@ static int hold(mover *w, const tool *t, double within, err *e)
     return 0;
 }
 
-/* A surface that is carried and not bound may be a skin, which frames move themselves. */
+/* A surface that is carried and not bound may be a skin, which frames move themselves: the one of that name, or, where the model has none of
+ * it, one that is this OBJ. */
 static int as_skin(mover *w, const model *m, const char *name, err *e)
 {
     surface s;
-    if (!surface_there(m, name) || surface_part(m, name, "vertex.element"))
+    char other[MODEL_NAME];
+    if (surface_there(m, name)) {
+        if (surface_part(m, name, "vertex.element"))
+            return 0;
+        if (surface_of(m, name, &s, e) || surface_is(&s, &w->file, w->scale, e))
+            return -1;
+        snprintf(w->skin, sizeof w->skin, "%s", name);
         return 0;
-    if (surface_of(m, name, &s, e) || surface_is(&s, &w->file, w->scale, e))
-        return -1;
-    snprintf(w->skin, sizeof w->skin, "%s", name);
+    }
+    for (int i = 0; model_surface(m, i, other, sizeof other); i++) {
+        err ignored = {0};
+        if (surface_of(m, other, &s, &ignored) || surface_is(&s, &w->file, w->scale, &ignored))
+            continue;
+        if (!surface_part(m, other, "vertex.element"))
+            snprintf(w->skin, sizeof w->skin, "%s", other);
+        return 0;
+    }
     return 0;
 }
 

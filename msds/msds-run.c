@@ -405,7 +405,11 @@ static int take_probe(session *s, err *e)
     if (s->probe.kind != PROBE_CONVEX)
         return 0;
     num_unit unit = scale_unit(s->o->unit, &s->m, e);
-    return unit ? probe_load(&s->probe, scale_of(unit), e) : -1;
+    if (!unit || probe_load(&s->probe, scale_of(unit), e))
+        return -1;
+    if (s->o->common.anonymous)
+        s->probe.file = "FILE.obj";
+    return 0;
 }
 
 /* The skin's surface joins the body; its springs are made when there are threads. */
@@ -414,7 +418,7 @@ static int carry_skin(session *s, err *e)
     if (!s->o->skin)
         return 0;
     num_unit unit = scale_unit(s->o->unit, &s->m, e);
-    return unit ? skin_model_carry(&s->m, s->o->skin, scale_of(unit), s->skin_name, e) : -1;
+    return unit ? skin_model_carry(&s->m, s->o->skin, s->o->common.anonymous, scale_of(unit), s->skin_name, e) : -1;
 }
 
 static int make_skin(session *s, err *e)

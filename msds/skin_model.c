@@ -5,14 +5,17 @@
 #include <stdio.h>
 #include <string.h>
 
-int skin_model_carry(model *m, const char *path, double scale, char name[SURFACE_NAME_MOST + 1], err *e)
+int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1], err *e)
 {
     obj o = {0};
     surface there;
     in *source = in_open(path, e);
     int result = source ? obj_read(&o, source, e) : -1;
     in_close(source);
-    surface_name(path, name, SURFACE_NAME_MOST + 1);
+    if (!result && nameless)
+        surface_nameless(m, &o, scale, name, SURFACE_NAME_MOST + 1);
+    else
+        surface_name(path, name, SURFACE_NAME_MOST + 1);
     if (!result && surface_there(m, name))
         result = surface_of(m, name, &there, e) || surface_is(&there, &o, scale, e) ? -1 : 0;
     else if (!result)

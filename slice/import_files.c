@@ -25,7 +25,7 @@ const char *import_base(const char *path)
 typedef struct found {
     char *path; /* owned */
     bool named;
-    int depth;
+    int depth, operand;
 } found;
 
 typedef struct pending {
@@ -34,13 +34,13 @@ typedef struct pending {
 } pending;
 
 /* path becomes the list's. */
-static int push(pending *p, char *path, bool named, int depth, err *e)
+static int push(pending *p, char *path, bool named, int depth, int operand, err *e)
 {
     if (!path || MEM_ROOM(&p->one, &p->capacity, p->count + 1, "files", e)) {
         free(path);
         return -1;
     }
-    p->one[p->count++] = (found){path, named, depth};
+    p->one[p->count++] = (found){path, named, depth, operand};
     return 0;
 }
 
@@ -70,7 +70,7 @@ static int push_folder(pending *p, const found *folder, err *e)
         return err_system(e, place, errno, "cannot read the folder");
     for (struct dirent *one = readdir(d); one && !e->status; one = readdir(d))
         if (one->d_name[0] != '.')
-            push(p, join(folder->path, one->d_name, e), false, folder->depth + 1, e);
+            push(p, join(folder->path, one->d_name, e), false, folder->depth + 1, folder->operand, e);
     closedir(d);
     if (p->count > first)
         qsort(p->one + first, (size_t)(p->count - first), sizeof *p->one, by_name);
@@ -105,9 +105,10 @@ int import_find(import_files *f, char *const *operand, int count, err *e)
 {
     pending p = {0};
     for (int i = count - 1; i >= 0 && !e->status; i--)
-        push(&p, mem_text(operand[i], e), true, 0, e);
+        push(&p, mem_text(operand[i], e), true, 0, i, e);
     while (p.count && !e->status) {
         found one = p.one[--p.count];
+        f->operand = one.operand;
         look_at(f, &p, &one, e);
         free(one.path);
     }

@@ -12,6 +12,7 @@ typedef struct import_files {
     char **path;                    /* owned */
     bool *named;                    /* on the command line, so that it must be an image */
     int64_t count, capacity, other; /* other: in folders, and no DICOM */
+    int operand;                    /* that import_find looked at last, from 0 */
 } import_files;
 
 /* Every regular file of the folders among the operands, and of the folders in these (IMPORT_DEPTH deep), and the files. */

@@ -270,7 +270,7 @@ static int by_place(const void *a, const void *b)
     const slice *p = a, *q = b;
     if (p->along != q->along)
         return p->along > q->along ? 1 : -1;
-    int order = strcmp(p->file->name, q->file->name);
+    int order = (p->file > q->file) - (p->file < q->file);
     return order ? order : (p->frame > q->frame) - (p->frame < q->frame);
 }
 

@@ -3,6 +3,7 @@
 #include "base/tool.h"
 #include "slice/crop.h"
 #include "slice/import_files.h"
+#include "slice/import_hide.h"
 #include "slice/import_report.h"
 #include "slice/length.h"
 #include "slice/series.h"
@@ -11,6 +12,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,6 +65,8 @@ typedef struct job {
     const tool *t;
     import_files files;
     import_report report;
+    bool found;            /* files */
+    char of[IMPORT_LABEL]; /* the file that an error is of, without its name; "": none is at hand */
     volume v;
     series dicom;
     notes warnings;
@@ -97,10 +101,17 @@ static int crop(job *j, err *e)
 
 /* ---- DICOM */
 
-static int read_dicom_file(job *j, const char *path, const char *bytes, int64_t size, err *e)
+/* File i is the one at hand. What messages call it: its name only with -v. */
+static const char *call_file(job *j, int64_t i)
+{
+    snprintf(j->of, sizeof j->of, "file %" PRId64 " of %" PRId64, i + 1, j->files.count);
+    return j->o->common.verbose ? import_base(j->files.path[i]) : j->of;
+}
+
+static int read_dicom_file(job *j, const char *name, const char *bytes, int64_t size, err *e)
 {
     dicom_image image = {0};
-    int code = dicom_read(&image, bytes, (size_t)size, import_base(path), &j->report.elements, e);
+    int code = dicom_read(&image, bytes, (size_t)size, name, &j->report.elements, e);
     if (code < 0)
         return -1;
     if (code == 1) {
@@ -111,7 +122,7 @@ static int read_dicom_file(job *j, const char *path, const char *bytes, int64_t 
     j->report.unsaid += image.burned == DICOM_NOT_SAID;
     j->report.own_frame |= image.own_frame;
     j->report.private_geometry |= image.private_geometry;
-    return series_add(&j->dicom, import_base(path), &image, e);
+    return series_add(&j->dicom, name, &image, e);
 }
 
 static int read_dicom(job *j, err *e)
@@ -121,12 +132,14 @@ static int read_dicom(job *j, err *e)
         return -1;
     for (int64_t i = 0; i < j->files.count; i++) {
         char *bytes = NULL;
+        const char *name = call_file(j, i);
         int64_t size = import_read(&j->files, i, &bytes, e);
-        int code = size < 0 ? -1 : size ? read_dicom_file(j, j->files.path[i], bytes, size, e) : 0;
+        int code = size < 0 ? -1 : size ? read_dicom_file(j, name, bytes, size, e) : 0;
         free(bytes);
         if (code)
             return -1;
     }
+    *j->of = '\0'; /* the series names its files itself */
     if (j->files.other)
         notes_add(&j->warnings, "%" PRId64 " file%s without a DICOM image left out", j->files.other,
                   j->files.other == 1 ? "" : "s");
@@ -200,6 +213,7 @@ static int put_together(job *j, volume *images, sweep *s, const double *image_to
         return -1;
     if (j->o->voxel.count && !(wish.voxel > 0))
         return err_usage(e, "--voxel: expected more than 0");
+    call_file(j, 0);
     in *source = in_open(path, e);
     int code = !source || sweep_read(s, source, j->o->transform, image_to_probe, e) || volume_load(images, path, e);
     in_close(source);
@@ -223,6 +237,7 @@ static int read_sweep(job *j, err *e)
     double calibration[16];
     volume images = {0};
     sweep s = {0};
+    snprintf(j->of, sizeof j->of, "the calibration");
     if (!j->o->calibration || !read_calibration(j->o->calibration, calibration, e))
         put_together(j, &images, &s, j->o->calibration ? calibration : NULL, e);
     volume_free(&images);
@@ -249,6 +264,7 @@ static int check_options(const struct options *o, import_kind kind, err *e)
 
 static int read_all(job *j, struct options *o, err *e)
 {
+    call_file(j, 0);
     import_kind kind = import_kind_of(&j->files, e);
     if (e->status || check_options(o, kind, e))
         return -1;
@@ -262,6 +278,19 @@ static int read_all(job *j, struct options *o, err *e)
     return volume_load(&j->v, j->files.path[0], e) || crop(j, e) ? -1 : 0;
 }
 
+/* Names of files and what is in them, out of the error. */
+static void hide(const job *j, char *const *operand, err *e)
+{
+    char of[IMPORT_LABEL];
+    snprintf(of, sizeof of, "argument %d of %d", j->files.operand + 1, j->t->operands);
+    if (e->status && (e->status != STATUS_USAGE || e->place))
+        import_hide(e, j->found ? j->of : of);
+    for (int i = 0; i < j->t->operands; i++)
+        import_hide_word(e, operand[i]);
+    if (j->o->common.output)
+        import_hide_word(e, j->o->common.output);
+}
+
 int main(int argc, char **argv)
 {
     struct options o = {.series = -1, .time = -1, .fill = -1, .splat = -1};
@@ -270,16 +299,22 @@ int main(int argc, char **argv)
     job j = {.o = &o, .t = &t};
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (import_find(&j.files, argv + 1, t.operands, &e) || read_all(&j, &o, &e))
+    if (import_find(&j.files, argv + 1, t.operands, &e))
+        goto out;
+    j.found = true;
+    if (read_all(&j, &o, &e))
         goto out;
     if (o.report)
         import_print(&j.report, &j.v, &t);
+    snprintf(j.of, sizeof j.of, "the output");
     out *to = out_open(o.common.output, false, &e);
     if (to && nrrd_write(&j.v, !o.raw, to, &e))
         out_discard(to);
     else if (to)
         out_close(to, &e);
 out:
+    if (!o.common.verbose)
+        hide(&j, argv + 1, &e);
     tool_warn(&t, &j.warnings);
     import_free(&j.files);
     dicom_elements_free(&j.report.elements);

@@ -441,6 +441,8 @@ static int read_collider(session *s, const struct options *o, err *e)
     }
     if (collider_read(&s->collider, o->probe, scale, o->poses, NULL, e) || model_axis_add(&s->m, "probe", 1, e))
         return -1;
+    if (o->common.anonymous && s->collider.shape.file)
+        s->collider.shape.file = "FILE.obj";
     return probe_carry(&s->collider.shape, &s->m, &s->warnings, e);
 }
 

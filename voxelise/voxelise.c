@@ -289,7 +289,7 @@ static int make_model(const job *j, model *m, err *e)
         l.origin[a] = in_metres(j, j->g.origin[a] + j->g.offset[a]);
         l.spacing[a] = in_metres(j, j->g.spacing[a]);
     }
-    surface_name(j->path, name, sizeof name);
+    surface_name(j->o->common.anonymous ? "surface_1" : j->path, name, sizeof name);
     if (model_meta_set(m, "source.unit", num_unit_name(j->unit), e) || lattice_save(&l, m, e) ||
         build_elements(m, &j->x, &l, j->threads, e) || build_volumes(m, &j->plan, e))
         return -1;

@@ -21,6 +21,7 @@ static int fill(err *e, int status, const char *place, int64_t line, const char 
         return -1;
     e->status = status;
     size_t at = put_place(e->text, sizeof e->text, place, line);
+    e->place = place ? (int)strnlen(place, at) : 0;
     vsnprintf(e->text + at, sizeof e->text - at, format, args);
     return -1;
 }

@@ -14,6 +14,7 @@ typedef struct err {
     int status;      /* the exit status it asks for; 0: no error */
     bool silent;     /* the tool before us in the pipe has said it already */
     bool usage;      /* the usage would help: it is printed after the text */
+    int place;       /* bytes of text that are the place's name */
     char text[1000]; /* "place:line: what is wrong; what was expected" */
 } err;
 

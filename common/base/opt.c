@@ -15,6 +15,8 @@ static const opt common_options[] = {
      "write FILE, whole or not at all"},
     {0, "text", NULL, OPT_FLAG, COMMON(text), 0, 0, NULL, OPT_OUTPUT | MODELS, "write text, not binary"},
     {'z', "gzip", NULL, OPT_FLAG, COMMON(gzip), 0, 0, NULL, OPT_OUTPUT | MODELS, "gzip the output"},
+    {0, "anonymous-names", NULL, OPT_FLAG, COMMON(anonymous), 0, 0, NULL, OPT_OUTPUT | MODELS,
+     "no names of files in the model"},
     {0, "threads", "N", OPT_INT, COMMON(threads), 1, 1024, NULL, OPT_OUTPUT | THREADED, "threads"},
     {'q', "quiet", NULL, OPT_FLAG, COMMON(quiet), 0, 0, NULL, OPT_OUTPUT, "say only what is wrong"},
     {'v', "verbose", NULL, OPT_FLAG, COMMON(verbose), 0, 0, NULL, OPT_OUTPUT, "say more"},

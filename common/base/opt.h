@@ -58,7 +58,7 @@ typedef struct opt {
 } opt;
 
 typedef struct opt_common {
-    bool help, version, text, gzip, quiet, verbose;
+    bool help, version, text, gzip, anonymous, quiet, verbose;
     const char *output; /* -o */
     int64_t threads;    /* 0: not given */
     const char *table;  /* --table mdoc|bash|zsh: for the manual and completion */
@@ -69,7 +69,7 @@ typedef struct opt_tool {
     const char *purpose;  /* one line */
     const char *operands; /* as in the usage, e.g. "surface.obj|-"; "" for none */
     int operands_min, operands_max;
-    bool writes_model;  /* has --text and -z */
+    bool writes_model;  /* has --text, -z and --anonymous-names */
     bool threaded;      /* has --threads */
     const opt *options; /* ends with {.name = NULL, .letter = 0} */
 } opt_tool;
@@ -91,7 +91,7 @@ void opt_usage(const opt_tool *tool, out *o);
 int opt_table(const opt_tool *tool, const char *kind, out *o, err *e);
 
 /* What of the command line changes the result, for provenance: options in table order, then operands, which are files;
- * base names of files, and quoted as for the shell where they have blanks or quotes. The caller frees it; NULL with e filled. */
+ * base names of files (FILE where names are to be left out), and quoted as for the shell where they have blanks or quotes. The caller frees it; NULL with e filled. */
 char *opt_provenance(const opt_tool *tool, const void *options, int operands, char *const *operand, err *e);
 
 #endif

@@ -3,6 +3,7 @@
 #include "base/opt.h"
 #include "base/opt_complete.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -95,14 +96,19 @@ void opt_usage(const opt_tool *tool, out *to)
     put_packed(tool, alone, to);
 }
 
-/* mdoc wants its special characters away from macros' arguments; '|' is a delimiter and stands by itself. */
+/* mdoc wants its special characters away from macros' arguments: '|' is a delimiter and stands by itself, and a word such as Pa is a macro
+ * unless \& is before it. */
 static void put_mdoc_arg(const char *arg, out *to)
 {
-    for (const char *p = arg; *p; p++)
+    for (const char *p = arg; *p; p++) {
+        const bool begins = p == arg || p[-1] == '|';
+        if (begins && isupper((unsigned char)p[0]) && islower((unsigned char)p[1]) && (!p[2] || p[2] == '|'))
+            out_text(to, "\\&");
         if (*p == '|')
             out_text(to, " | ");
         else
             out_write(to, p, 1);
+    }
 }
 
 static void put_mdoc(const opt_tool *tool, out *to)
@@ -151,9 +157,8 @@ static const char *base_name(const char *path)
 }
 
 /* A word of the command line, in single quotes where it would not stay one as it is. */
-static void put_word(bool file, const char *word, out *to)
+static void put_word(const char *text, out *to)
 {
-    const char *text = file ? base_name(word) : word;
     out_text(to, out_count(to) ? " " : "");
     if (*text && !strpbrk(text, " \t\n\r\v\f'\"\\")) {
         out_text(to, text);
@@ -163,6 +168,15 @@ static void put_word(bool file, const char *word, out *to)
     for (const char *p = text; *p; p++)
         out_write(to, *p == '\'' ? "'\\''" : p, *p == '\'' ? 4 : 1);
     out_text(to, "'");
+}
+
+/* The text of an option or an operand; of a file's name only its base, or that it is one. */
+static void put_text(bool file, const char *text, const void *options, out *to)
+{
+    const opt_common *common = options;
+    if (file)
+        text = common->anonymous ? "FILE" : base_name(text);
+    put_word(text, to);
 }
 
 static void put_number(const char *before, double value, out *to)
@@ -216,13 +230,13 @@ static void put_value(const opt *o, const void *options, out *to)
     if (o->kind == OPT_LIST) {
         for (int i = 0; i < list->count; i++) {
             put_name(o, to);
-            put_word(o->flags & OPT_FILE, list->value[i], to);
+            put_text(o->flags & OPT_FILE, list->value[i], options, to);
         }
         return;
     }
     put_name(o, to);
     if (o->kind == OPT_TEXT)
-        put_word(o->flags & OPT_FILE, *(const char *const *)at, to);
+        put_text(o->flags & OPT_FILE, *(const char *const *)at, options, to);
     else if (o->kind == OPT_INT)
         out_format(to, " %lld", (long long)*(const int64_t *)at);
     else if (o->kind == OPT_NUMBER)
@@ -244,7 +258,7 @@ char *opt_provenance(const opt_tool *tool, const void *options, int operands, ch
         if (!(opt_at(tool, i)->flags & OPT_OUTPUT))
             put_value(opt_at(tool, i), options, to);
     for (int i = 0; i < operands; i++)
-        put_word(true, operand[i], to);
+        put_text(true, operand[i], options, to);
     out_write(to, "", 1);
     size_t size;
     char *text = mem_text((const char *)out_bytes(to, &size), e);

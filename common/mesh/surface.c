@@ -170,6 +170,20 @@ void surface_name(const char *path, char *name, size_t size)
         name[1] = '_';
 }
 
+void surface_nameless(const model *m, const obj *o, double scale, char *name, size_t size)
+{
+    surface s;
+    for (int i = 0; model_surface(m, i, name, size); i++) {
+        err ignored = {0};
+        if (!surface_of(m, name, &s, &ignored) && !surface_is(&s, o, scale, &ignored))
+            return;
+    }
+    int number = 1;
+    do
+        snprintf(name, size, "surface_%d", number++);
+    while (surface_there(m, name));
+}
+
 static bool matches(const char *name, size_t n, const char *pattern)
 {
     size_t m = strlen(pattern);

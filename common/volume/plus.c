@@ -40,9 +40,17 @@ int plus_open(plus *p, in *source, const char *transform, err *e)
 
 /* ---- one key */
 
-static int bad_line(const plus *p, err *e, const char *key, const char *expected)
+static int bad_line(const plus *p, err *e, const char *what, const char *expected)
 {
-    return err_set(e, in_name(p->source), in_lines(p->source), "%.100s; expected %s", key, expected);
+    return err_set(e, in_name(p->source), in_lines(p->source), "%.110s; expected %s", what, expected);
+}
+
+/* The same of a key, as the file has it. */
+static int bad_key(const plus *p, err *e, const char *key, const char *expected)
+{
+    char quoted[110];
+    snprintf(quoted, sizeof quoted, "'%.100s'", key);
+    return bad_line(p, e, quoted, expected);
 }
 
 static char *trim(char *text)
@@ -86,14 +94,14 @@ static plus_transform *transform_of(plus *p, const char *name, size_t length, er
 {
     plus_transform t = {0};
     if (split_name(name, length, t.from, t.to)) {
-        bad_line(p, e, name, "Seq_FrameNNNN_FROMToTOTransform, of shorter names");
+        bad_key(p, e, name, "Seq_FrameNNNN_FROMToTOTransform, of shorter names");
         return NULL;
     }
     for (int i = 0; i < p->frame.count; i++)
         if (!strcmp(p->frame.transform[i].from, t.from) && !strcmp(p->frame.transform[i].to, t.to))
             return &p->frame.transform[i];
     if (p->frame.count == PLUS_TRANSFORMS) {
-        bad_line(p, e, name, "fewer transforms in a frame");
+        bad_key(p, e, name, "fewer transforms in a frame");
         return NULL;
     }
     p->frame.transform[p->frame.count] = t;
@@ -112,12 +120,12 @@ static int take_matrix(plus *p, const char *name, size_t length, const char *val
     if (!t)
         return -1;
     if (t->set)
-        return bad_line(p, e, name, "each transform of a frame once");
+        return bad_key(p, e, name, "each transform of a frame once");
     if (take_numbers(value, t->m, 16) != 16)
-        return bad_line(p, e, name, "16 finite numbers");
+        return bad_key(p, e, name, "16 finite numbers");
     for (int i = 0; i < 4; i++)
         if (fabs(t->m[12 + i] - (i == 3)) > 0)
-            return bad_line(p, e, name, "0 0 0 1 as the last of its four rows");
+            return bad_key(p, e, name, "0 0 0 1 as the last of its four rows");
     t->set = true;
     return 0;
 }
@@ -310,7 +318,7 @@ static int refuse(const plus *p, err *e)
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%sTo%s", i ? ", " : "", p->frame.transform[i].from,
                                  p->frame.transform[i].to);
     return err_set(e, in_name(p->source), p->frame.line,
-                   "frame %" PRId64 " does not say where %s is in %s; expected transforms that do, among: %s",
+                   "frame %" PRId64 " does not say where %s is in %s; expected transforms that do, among: '%s'",
                    p->frame.number, p->from[0] ? p->from : "Image or Probe", p->to[0] ? p->to : "Reference or Tracker",
                    list[0] ? list : "(none)");
 }

@@ -51,12 +51,12 @@ for canary in ../out/canary "$T/out/canary" link; do
         'Seq_Frame0000_ProbeToTrackerTransform = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1' 'Seq_Frame0000_Timestamp = 0' \
         "ElementDataFile = $canary" >sweep.seq.mhd
     for volume in a.nhdr a.mhd; do
-        for tool in us-import 'us-segment -n a --low 1' 'us-surface -i 1' 'msds-mesh --nodes 3x3x3 --like'; do
+        for tool in 'us-import -v' 'us-segment -n a --low 1' 'us-surface -i 1' 'msds-mesh --nodes 3x3x3 --like'; do
             # shellcheck disable=SC2086 # a tool and its options
             refused "${tool%% *}, $volume: $canary" "outside its folder" $tool $volume
         done
     done
-    refused "NRRD, a list of files" "LIST" us-import list.nhdr
+    refused "NRRD, a list of files" "LIST" us-import -v list.nhdr
     refused "a tracked sequence" "outside its folder|is no regular file|expected" us-import sweep.seq.mhd
     # ---- Abaqus input in several files.
     for line in "*INCLUDE, INPUT=$canary" "*NODE, INPUT=$canary"; do

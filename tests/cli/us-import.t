@@ -93,7 +93,7 @@ bad() {
     name=$1 pattern=$2
     shift 2
     dicom "$@"
-    fails 1 "$name" "$pattern" us-import -o "$T/bad.nrrd" "$T/in"
+    fails 1 "$name" "$pattern" us-import -v -o "$T/bad.nrrd" "$T/in"
 }
 bad "a slice is missing" 'slices: 1 missing between im07\.dcm and im14\.dcm; expected all 0\.75 mm apart' series drop=2
 bad "two are" '2 missing between im07\.dcm and im14\.dcm' series drop=2,3
@@ -123,7 +123,7 @@ fails 1 "no such time" 'volumes of 1 time; expected --time 1' us-import --time 2
 echo text >"$T/in/notes.txt"
 check "a file of another kind in a folder" us-import -o "$T/out.nrrd" "$T/in"
 says '1 file without a DICOM image' "$T/stderr" "is said"
-fails 1 "by name it is an error" 'notes\.txt: not a DICOM file' us-import "$T/in/notes.txt" "$T/in/im00.dcm"
+fails 1 "by name it is an error" 'notes\.txt: not a DICOM file' us-import -v "$T/in/notes.txt" "$T/in/im00.dcm"
 fails 1 "no file" 'cannot read' us-import "$T/none"
 mkdir "$T/empty"
 fails 1 "an empty folder" 'no files' us-import "$T/empty"
@@ -184,7 +184,7 @@ is "$(line "$T/out.nrrd" "space origin") $(line "$T/out.nrrd" "space directions"
 check "and cropped" us-import -q --raw --voxel .5mm --crop 1,0,4,2 -o "$T/out.nrrd" "$T/turned.mha"
 is "$(line "$T/out.nrrd" sizes) $(line "$T/out.nrrd" "space origin")" "3 2 9 (2,3,0)" "as the file counts"
 sed '1a UltrasoundImageOrientation = FM' "$T/sweep.mha" >"$T/turned.mha"
-fails 1 "images on their sides" "UltrasoundImageOrientation: 'FM'; expected MF, MN, UF or UN" us-import "$T/turned.mha"
+fails 1 "images on their sides" "UltrasoundImageOrientation: 'FM'; expected MF, MN, UF or UN" us-import -v "$T/turned.mha"
 echo '1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2' >"$T/calibration"
 fails 1 "a calibration that is none" 'not a transform' us-import --calibration "$T/calibration" "$T/sweep.mha"
 fails 2 "options of DICOM" 'are for DICOM' us-import --series 1 "$T/sweep.mha"

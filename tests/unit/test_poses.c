@@ -131,7 +131,7 @@ static void composed(void)
     e = (err){0};
     ok(read_with(text, "StylusToTracker", v, 4, NULL, &e) == -1 &&
            strstr(e.text, "p:6: frame 7 does not say where Stylus is in Tracker") &&
-           strstr(e.text, "among: ProbeToTracker, ReferenceToTracker"),
+           strstr(e.text, "among: 'ProbeToTracker, ReferenceToTracker'"),
        "%s", e.text);
 }
 
@@ -140,7 +140,7 @@ static void refused_sequences(void)
 #define POSE "Seq_Frame0000_ProbeToTrackerTransform = "
 #define TIME "Seq_Frame0000_Timestamp = 1\n"
     refuse(HEAD POSE "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0\n" TIME TAIL,
-           "p:4: ProbeToTrackerTransform; expected 16 finite numbers");
+           "p:4: 'ProbeToTrackerTransform'; expected 16 finite numbers");
     refuse(HEAD POSE "nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n" TIME TAIL, "expected 16 finite numbers");
     refuse(HEAD POSE "1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\n" TIME TAIL, "expected 0 0 0 1 as the last");
     refuse(HEAD POSE "1 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1\n" TIME TAIL, "ProbeToTracker is no rotation");
@@ -148,7 +148,7 @@ static void refused_sequences(void)
     refuse(HEAD POSE "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1\n" TIME TAIL, "ProbeToTracker is no rotation");
     refuse(HEAD POSE UNIT "\n" TAIL, "p:4: frame 0 has no Timestamp");
     refuse(HEAD POSE UNIT "\n" POSE UNIT "\n" TIME TAIL,
-           "p:5: ProbeToTrackerTransform; expected each transform of a frame once");
+           "p:5: 'ProbeToTrackerTransform'; expected each transform of a frame once");
     refuse(HEAD POSE UNIT "\nSeq_Frame0000_Timestamp = soon\n" TAIL, "p:5: Timestamp; expected a finite number");
     refuse(HEAD TIME TAIL, "does not say where Image or Probe is in Reference or Tracker");
     refuse(HEAD "Seq_Frame0001_Timestamp = 1\n" TIME TAIL, "p:5: a frame that comes after a later one");
