@@ -54,7 +54,7 @@ void collider_join(collider *c, tled_problem *p, double repulsion)
     p->collider = c;
 }
 
-double collider_begin(collider *c, const tled_problem *p, double ramp)
+static double begin_inside(collider *c, const tled_problem *p, double ramp)
 {
     const probe_placed first = collider_at(c, p->start);
     double deepest = 0;
@@ -69,7 +69,7 @@ double collider_begin(collider *c, const tled_problem *p, double ramp)
     return c->rises > 0 ? deepest : 0;
 }
 
-bool collider_away(const collider *c, const tled_problem *p)
+static bool is_away(const collider *c, const tled_problem *p)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, room = 0;
     for (int64_t i = 0; i < 3 * p->nodes; i++) {
@@ -90,6 +90,23 @@ bool collider_away(const collider *c, const tled_problem *p)
             return false;
     }
     return true;
+}
+
+void collider_begin(collider *c, const tled_problem *p, double ramp, notes *warnings)
+{
+    const double inside = begin_inside(c, p, ramp), side = cbrt(p->side[0] * p->side[1] * p->side[2]);
+    const probe_placed first = collider_at(c, p->start);
+    if (inside > 0)
+        notes_add(warnings, "the probe begins %.3g mm inside the tissue: it comes up in %g s", 1e3 * inside, ramp);
+    if (probe_is_thin(&c->shape, side))
+        notes_add(
+            warnings,
+            "the probe is %.3g mm thick, elements are %.3g mm wide: it may go in between nodes; expected a finer mesh",
+            2e3 * c->shape.size, 1e3 * side);
+    if (is_away(c, p))
+        notes_add(warnings, "the probe never comes near the tissue; expected poses in metres, in the model's space");
+    if (probe_is_plate(&first, p->position, p->nodes))
+        notes_add(warnings, "the probe's face is larger than the tissue: it presses like a plate");
 }
 
 probe_pose collider_pose(const collider *c, double time)

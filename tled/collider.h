@@ -27,11 +27,9 @@ void collider_free(collider *c);
 /* Makes it part of the problem, which says how stiff it is. */
 void collider_join(collider *c, tled_problem *p, double repulsion);
 
-/* From the problem's start: how deep in the tissue it is then, m (0: it is not); ramp, s: how long it takes to come up if so. */
-double collider_begin(collider *c, const tled_problem *p, double ramp);
-
-/* Whether it never comes to where the tissue is: on none of its ways as near to it as half its size. */
-bool collider_away(const collider *c, const tled_problem *p);
+/* From the problem's start; ramp, s: how long it takes to come up if it is inside of the tissue then. Warns where it is, never comes
+ * near the tissue, or is of a size that these elements are not for. */
+void collider_begin(collider *c, const tled_problem *p, double ramp, notes *warnings);
 
 /* Where it is. */
 probe_pose collider_pose(const collider *c, double time);

@@ -6,6 +6,7 @@
 #include "base/tool.h"
 #include "model/binary.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,7 +56,8 @@ static int add_number(likeness *l, const char *name, double value, err *e)
 static int add_numbers(likeness *l, const likeness_run *run, err *e)
 {
     const run_setup *r = run->setup;
-    return add_number(l, "--every", r->every, e) || add_number(l, "--dt", r->rate, e) ||
+    return (isfinite(r->end) && add_number(l, "--time to its end", r->end, e)) ||
+                   add_number(l, "--every", r->every, e) || add_number(l, "--dt", r->rate, e) ||
                    add_number(l, "--damping", r->damping, e) || add_number(l, "--rest", r->rest, e) ||
                    add_number(l, "--time", (double)r->steps, e) || add_number(l, "--hourglass", run->p->kappa, e) ||
                    (run->p->collider && add_number(l, "--repulsion", run->p->collider->stiffness, e))

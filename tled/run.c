@@ -26,6 +26,8 @@ typedef struct run {
     outbox *out;
     tled_plan plan;     /* plan.first: steps counted */
     int64_t from;       /* the first of this run */
+    int64_t last;       /* where it ends at the latest */
+    bool is_last_short; /* the step to there, which ends at r->end */
     int64_t kept_first; /* plan.first of the state that is kept: that at the last check */
     /* Frames are numbered, and taken into slots by their numbers modulo `slots`: `sent` of them are the outbox's, then come
      * those not yet known to be sound. */
@@ -34,6 +36,7 @@ typedef struct run {
     int64_t sent;
     int unsure;
     int cuts;
+    int cuts_told;
     double damping;
     double dt, damped; /* s, 1/s: of the last steps */
     int64_t taken;     /* steps, each part of a cut one for itself, and those that were taken again */
@@ -45,9 +48,17 @@ typedef struct run {
     err *e;
 } run;
 
+/* Of a step: what is no farther from a whole number of them is one. */
+static const double run_tolerance = 1e-6;
+
 int64_t run_steps_to(double t, double rate)
 {
-    return (int64_t)fmin(ceil(t * rate - 1e-6), 9e18); /* farther than any run */
+    return (int64_t)fmin(ceil(t * rate - run_tolerance), 9e18); /* farther than any run */
+}
+
+bool run_is_between(double t, double rate)
+{
+    return ceil(t * rate - run_tolerance) - t * rate > run_tolerance;
 }
 
 tled_plan run_plan(double start, double rate)
@@ -64,6 +75,12 @@ tled_plan run_plan(double start, double rate)
 double run_share(const watch_sight *s, double way)
 {
     return way == 0 ? 0 : way / fmax(s->moved, .01 * s->moved_most);
+}
+
+/* Where the state of now stands (s). */
+static double now(const run *n)
+{
+    return n->is_last_short && n->plan.first == n->last ? n->r->end : tled_time(&n->plan, 0);
 }
 
 static double step_now(const run *n)
@@ -99,7 +116,7 @@ static int look_at(run *n, double time)
 
 static int look(run *n)
 {
-    return look_at(n, tled_time(&n->plan, 0));
+    return look_at(n, now(n));
 }
 
 /* Whether the steps of now can have led to what was looked at last: nothing is broken, and they are stable still. */
@@ -114,7 +131,7 @@ static int log_state(run *n, bool shown)
 {
     const log_row row = {.step = n->plan.first - n->from,
                          .taken = n->taken,
-                         .time = tled_time(&n->plan, 0),
+                         .time = now(n),
                          .dt = n->dt,
                          .stable = n->watch->sight.stable,
                          .damping = n->damped,
@@ -137,6 +154,16 @@ static int go_back(run *n)
     return n->r->device->back(n->state, n->e);
 }
 
+/* Says so where steps are cut in more parts than they ever were, and why. */
+static void tell_cut(run *n, const watch_sight *why)
+{
+    if (n->cuts <= n->cuts_told)
+        return;
+    n->cuts_told = n->cuts;
+    if (n->r->cut)
+        n->r->cut(n->r->context, why, INT64_C(1) << n->cuts);
+}
+
 /* Chooses how often a step is cut: from the state alone, so that it is the same whatever went before. */
 static int choose_step(run *n)
 {
@@ -149,17 +176,39 @@ static int choose_step(run *n)
     return diverged(n);
 }
 
-static int advance(run *n, int64_t to)
+/* The steps from `first` on, as they are cut: all of one length, but the last where it is short. Of that one times are counted back
+ * from its end, so that this is met to the last bit. */
+static tled_plan cut_plan(const run *n, int64_t first)
 {
-    int64_t parts = INT64_C(1) << n->cuts;
-    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, n->plan.first * parts, n->damping};
-    if (n->r->device->step(n->state, &cut, (to - n->plan.first) * parts, n->e))
+    const int64_t parts = INT64_C(1) << n->cuts;
+    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, first * parts, n->damping};
+    if (n->is_last_short && first == n->last - 1) {
+        const double begins = tled_time(&n->plan, first - n->plan.first);
+        cut = (tled_plan){n->r->end, (double)parts / (n->r->end - begins), -parts, n->damping};
+    }
+    return cut;
+}
+
+/* Steps of one length. */
+static int step_to(run *n, int64_t to)
+{
+    const int64_t count = (to - n->plan.first) << n->cuts;
+    const tled_plan cut = cut_plan(n, n->plan.first);
+    if (n->r->device->step(n->state, &cut, count, n->e))
         return -1;
-    n->dt = step_now(n);
+    n->dt = 1 / cut.rate;
     n->damped = n->damping;
-    n->taken += (to - n->plan.first) * parts;
+    n->taken += count;
     n->plan.first = to;
     return 0;
+}
+
+static int advance(run *n, int64_t to)
+{
+    const int64_t even = n->is_last_short && to == n->last ? to - 1 : to;
+    if (even > n->plan.first && step_to(n, even))
+        return -1;
+    return to > n->plan.first ? step_to(n, to) : 0;
 }
 
 /* Takes a frame of the state of now, which may yet turn out to be unsound. */
@@ -168,7 +217,7 @@ static int take(run *n)
     int64_t index = n->sent + n->unsure++;
     if (index >= n->slots && outbox_wait_fetched(n->out, index - n->slots, n->e))
         return -1;
-    n->frame_time[index % n->slots] = tled_time(&n->plan, 0);
+    n->frame_time[index % n->slots] = now(n);
     return n->r->device->take(n->state, (int)(index % n->slots), n->e);
 }
 
@@ -228,7 +277,7 @@ static int begin_log(run *n)
 {
     const run_setup *r = n->r;
     if (r->log && r->point && r->point->log.length)
-        return log_go_on(r->log, r->device, n->state, tled_time(&n->plan, 0), &r->point->log, n->e);
+        return log_go_on(r->log, r->device, n->state, now(n), &r->point->log, n->e);
     return log_sound(n);
 }
 
@@ -236,7 +285,7 @@ static int begin_log(run *n)
 static int find_part(run *n)
 {
     int64_t parts = INT64_C(1) << n->cuts;
-    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, n->kept_first * parts, n->damping};
+    tled_plan cut = cut_plan(n, n->kept_first);
     if (go_back(n))
         return -1;
     n->plan.first++;
@@ -293,18 +342,22 @@ static int go_by(run *n, int64_t to, bool taking)
 /* Goes to the next check, or the end, in steps that are cut until its state is sound, taking frames if so asked. */
 static int cut_to(run *n, int64_t to, bool taking)
 {
+    const int cuts = n->cuts;
+    watch_sight why = n->watch->sight;
     for (;; n->cuts++) {
         if (go_by(n, to, taking) || look(n))
             return -1;
         if (is_sound(n))
             break;
         n->unsure = 0;
+        why = n->cuts == cuts ? n->watch->sight : why;
         if (n->r->rate_fixed || n->cuts == CUTS_MAX)
             return find_break(n, to);
         if (go_back(n))
             return -1;
     }
     send(n);
+    tell_cut(n, &why);
     return n->r->log ? log_keep(n->r->log, n->e) : 0;
 }
 
@@ -354,6 +407,7 @@ static int check(run *n)
     int over = 0;
     if (choose_step(n))
         return -1;
+    tell_cut(n, &n->watch->sight);
     if (settled) {
         relax_update(&n->relax, s);
         over = is_at_rest(n);
@@ -401,10 +455,10 @@ static bool is_due(run *n)
     const double every = n->r->save_every > 0 ? n->r->save_every : SAVES;
     if (!n->saved)
         return false;
-    const double now = n->r->save_every > 0 ? tled_time(&n->plan, 0) : progress_clock();
-    if (now < n->next_save)
+    const double at = n->r->save_every > 0 ? now(n) : progress_clock();
+    if (at < n->next_save)
         return false;
-    n->next_save = (floor(now / every) + 1) * every;
+    n->next_save = (floor(at / every) + 1) * every;
     return true;
 }
 
@@ -418,14 +472,14 @@ static int save(run *n)
         r->device->get(n->state, TLED_DISPLACEMENT, n->saved, n->e) ||
         r->device->get(n->state, TLED_VELOCITY, velocity, n->e))
         return -1;
-    return r->save(r->context, &at, tled_time(&n->plan, 0), n->saved, velocity, n->e);
+    return r->save(r->context, &at, now(n), n->saved, velocity, n->e);
 }
 
 /* Steps to the end. Decides only at checks. */
 static int loop(run *n, run_end *end)
 {
     const run_setup *r = n->r;
-    int64_t last = n->from + r->steps, written = -1;
+    int64_t written = -1;
     int over = look(n) ? -1 : n->watch->sight.broken >= 0 ? diverged(n) : r->point ? 0 : check(n);
     if (over >= 0 && !is_sound(n))
         return diverged(n);
@@ -436,11 +490,11 @@ static int loop(run *n, run_end *end)
         written = n->plan.first;
         over = write_frame(n) ? -1 : over;
     }
-    while (!over && n->plan.first < last) {
+    while (!over && n->plan.first < n->last) {
         if (is_due(n) && save(n)) /* here: at a check, and not at the end */
             return -1;
         int64_t to = (n->plan.first / r->check + 1) * r->check;
-        to = to < last ? to : last;
+        to = to < n->last ? to : n->last;
         if (keep(n) || go_to(n, to))
             return -1;
         if (to % r->check == 0)
@@ -455,6 +509,8 @@ static int loop(run *n, run_end *end)
     if (over >= 0 && r->log && log_end(r->log, n->e))
         return -1;
     end->steps = n->plan.first - n->from;
+    end->taken = n->taken;
+    end->parts = INT64_C(1) << n->cuts_told;
     end->sight = n->watch->sight;
     end->rested = over > 0;
     end->remaining = n->remaining;
@@ -488,6 +544,10 @@ static int prepare(run *n)
     n->relax = relax_of(r->frequency, n->watch->rest_step);
     if (r->point)
         go_on_from(n, r->point);
+    n->last = n->from + r->steps;
+    const double begins = tled_time(&n->plan, n->last - 1 - n->plan.first);
+    n->is_last_short = r->steps > 0 && r->end > begins && r->end < tled_time(&n->plan, n->last - n->plan.first) &&
+                       run_is_between(r->end - begins, r->rate);
     n->saved = r->save ? mem_array(r->p->nodes, 6 * sizeof *n->saved, "the state to save", n->e) : NULL;
     n->next_save = -INFINITY;
     if (r->save && !n->saved)

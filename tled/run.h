@@ -39,6 +39,7 @@ typedef struct run_setup {
     bool rate_fixed;        /* never cut the step: fail instead */
     int64_t check;          /* steps between looks */
     int64_t steps;          /* how many to take; with rest: at most */
+    double end;             /* s: where it lies within the last of them, that step is shorter and ends there */
     double rest;            /* tolerance: end at rest; < 0: after `steps` */
     double frequency;       /* rad/s: relax_guess */
     double damping;         /* 1/s */
@@ -55,6 +56,9 @@ typedef struct run_setup {
     /* After every check. remaining: see run_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
                     double damping);
+    /* Steps are cut in more parts than they were in this run so far: from the check on that `sight` is of; or those to there, which
+     * it found not sound, were taken again. May be NULL. */
+    void (*cut)(void *context, const watch_sight *sight, int64_t parts);
     /* Every state before `at` is written; this one (m, m/s), with at, is what a run can go on from. First at the start. -1
      * with e filled ends the run. NULL: nothing is to be saved. */
     int (*save)(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
@@ -63,14 +67,19 @@ typedef struct run_setup {
 
 typedef struct run_end {
     int64_t steps; /* taken, cuts not counted */
+    int64_t taken; /* each part of a cut step for itself, and those taken again */
+    int64_t parts; /* the most that a step was cut in, since the restart if there was one */
     bool rested;
     double remaining;  /* with rest: at the last check */
     watch_sight sight; /* of the last state */
     int64_t bytes;     /* of the device's memory, in the end */
 } run_end;
 
-/* The least step count whose time is at or past t, seen from the plan's origin. */
+/* The least step count whose time is at or past t, to a millionth of a step, seen from the plan's origin. */
 int64_t run_steps_to(double t, double rate);
+
+/* Whether t lies between two steps, by more than that. */
+bool run_is_between(double t, double rate);
 
 /* Where the run that begins at p->start counts from: an origin of 0 where its start is a whole number of steps,
  * so that it goes on as if it had never stopped. */

@@ -215,6 +215,7 @@ static int choose_end(session *s, const struct options *o, err *e)
     if (!(first + left * r->rate < 1e15))
         return err_set(e, NULL, 0, "a run up to step %g; expected fewer than 1e15", first + left * r->rate);
     r->steps = o->steps > 0 ? o->steps : run_steps_to(left, r->rate) + (r->rest >= 0 ? REST_STEPS : 0);
+    r->end = o->seconds >= 0 && run_is_between(left, r->rate) ? s->problem.start + left : -INFINITY;
     return 0;
 }
 
@@ -342,6 +343,16 @@ static void checked(void *context, int64_t step, const watch_sight *sight, doubl
     s->cut = cut;
 }
 
+static void say_cut(void *context, const watch_sight *sight, int64_t parts)
+{
+    session *s = context;
+    char why[400];
+    watch_words(&s->problem, sight, why, sizeof why);
+    progress_clear(&s->progress);
+    tool_say(s->t, "at %.6g s each step is cut in %lld, to %.4g ms: %s", sight->time, (long long)parts,
+             1e3 / (s->run.rate * (double)parts), why);
+}
+
 static int save(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
                 err *e)
 {
@@ -409,13 +420,31 @@ static void say_start(const session *s, const char *device, const struct options
     else if (r->rest >= 0)
         tool_say(s->t, "from %.6g s to rest, tolerance %g", p->start, r->rest);
     else
-        tool_say(s->t, "from %.6g s, %lld steps", p->start, (long long)r->steps);
+        tool_say(s->t, "from %.6g s, %lld step%s%s", p->start, (long long)r->steps, r->steps == 1 ? "" : "s",
+                 isfinite(r->end) ? ", the last one shorter" : "");
+}
+
+/* Where multiples of an option's interval lie between two steps. */
+static void say_between(const session *s, const char *option, const char *what, double every)
+{
+    const double rate = s->run.rate, start = s->problem.start;
+    if (every == 0)
+        return;
+    const double first = (floor(start / every) + 1) * every - run_plan(start, rate).origin;
+    if (every * rate < 1)
+        tool_say(s->t, "%s %g s is shorter than a step: a %s a step", option, every, what);
+    else if (run_is_between(every, rate) || run_is_between(first, rate))
+        tool_say(s->t, "multiples of %s %g s lie between steps: a %s is of the first step past one, up to %.3g ms late",
+                 option, every, what, 1e3 / rate);
 }
 
 static void say_end(const session *s, const run_end *end)
 {
     const watch_sight *w = &end->sight;
     char left[80] = "";
+    if (end->parts > 1)
+        tool_say(s->t, "steps were cut, in up to %lld: %lld were taken for %lld", (long long)end->parts,
+                 (long long)end->taken, (long long)end->steps);
     if (end->rested)
         snprintf(left, sizeof left, ", %.3g of its displacement to go", end->remaining);
     tool_say(s->t, "%s %.6g s, after %lld steps: kinetic energy %.3g J, largest displacement %.6g mm%s",
@@ -444,28 +473,6 @@ static int read_collider(session *s, const struct options *o, err *e)
     if (o->common.anonymous && s->collider.shape.file)
         s->collider.shape.file = "FILE.obj";
     return probe_carry(&s->collider.shape, &s->m, &s->warnings, e);
-}
-
-static void begin_collider(session *s, const struct options *o)
-{
-    if (!s->collider.poses)
-        return;
-    double inside = collider_begin(&s->collider, &s->problem, s->next_frame ? 0 : o->ramp);
-    const probe_placed first = collider_at(&s->collider, s->problem.start);
-    if (inside > 0)
-        notes_add(&s->warnings, "the probe begins %.3g mm inside the tissue: it comes up in %g s", 1e3 * inside,
-                  o->ramp);
-    const double side = cbrt(s->problem.side[0] * s->problem.side[1] * s->problem.side[2]);
-    if (probe_is_thin(&s->collider.shape, side))
-        notes_add(
-            &s->warnings,
-            "the probe is %.3g mm thick, elements are %.3g mm wide: it may go in between nodes; expected a finer mesh",
-            2e3 * s->collider.shape.size, 1e3 * side);
-    if (collider_away(&s->collider, &s->problem))
-        notes_add(&s->warnings,
-                  "the probe never comes near the tissue; expected poses in metres, in the model's space");
-    if (probe_is_plate(&first, s->problem.position, s->problem.nodes))
-        notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
 }
 
 /* The CPU alone has contact, and elements off a lattice: auto takes it. */
@@ -511,7 +518,8 @@ static int simulate(session *s, const struct options *o, const char *device, err
     run_end end = {0};
     if (take_frames(s, o->materials || o->material.count, e) || choose_end(s, o, e))
         return -1;
-    begin_collider(s, o);
+    if (s->collider.poses)
+        collider_begin(&s->collider, &s->problem, s->next_frame ? 0 : o->ramp, &s->warnings);
     s->run.p = &s->problem;
     s->run.threads = s->threads;
     s->run.every = o->every > 0 ? o->every : 0;
@@ -519,6 +527,7 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.context = s;
     s->run.frame = write_frame;
     s->run.checked = checked;
+    s->run.cut = say_cut;
     s->cut = 1;
     s->log.every = fmax(o->log_every, 0);
     if (begin_checkpoints(s, o, e) ||
@@ -527,6 +536,8 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.log = o->log ? &s->log : NULL;
     tool_warn(s->t, &s->warnings);
     say_start(s, device, o);
+    say_between(s, "--every", "frame", s->run.every);
+    say_between(s, "--log-every", "row", s->log.every);
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
                    o->common.quiet || o->common.verbose);
     int result = run_go(&s->run, &end, e);

@@ -8,6 +8,7 @@
 #include "tled/step.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -234,6 +235,24 @@ int watch_keep(watch *w, const backend *b, void *state, err *e)
         memcpy(w->kept_internal, w->internal, size);
     }
     return b->keep(state, e);
+}
+
+void watch_words(const tled_problem *p, const watch_sight *s, char *to, size_t size)
+{
+    const int64_t element = s->broken >= 0 ? s->broken : s->stable_element;
+    double middle[3] = {0, 0, 0}; /* mm */
+    if (element < 0) {
+        snprintf(to, size, "the stable step is %.4g ms", 1e3 * s->stable);
+        return;
+    }
+    for (int i = 0; i < 24; i++)
+        middle[i % 3] += 1e3 / 8 * p->position[3 * (int64_t)p->element_node[8 * element + i / 3] + i % 3];
+    int n = snprintf(to, size, "element %lld (volume '%.100s', at %.4gmm,%.4gmm,%.4gmm) ", (long long)element,
+                     p->volume[p->element_volume[element]].name, middle[0], middle[1], middle[2]);
+    if (s->broken >= 0)
+        snprintf(to + n, size - (size_t)n, "was inverted or not finite after longer ones");
+    else
+        snprintf(to + n, size - (size_t)n, "has a stable step of %.4g ms", 1e3 * s->stable);
 }
 
 watch *watch_create(const tled_problem *p, pool *threads, err *e)

@@ -32,9 +32,14 @@ void progress_at(progress *p, double done)
         fprintf(stderr, "\r%s: %.0f %s, %.4g/s \033[K", p->tool, done, p->what, rate);
 }
 
-void progress_stop(progress *p)
+void progress_clear(const progress *p)
 {
     if (p->on)
         fputs("\r\033[K", stderr);
+}
+
+void progress_stop(progress *p)
+{
+    progress_clear(p);
     p->on = false;
 }

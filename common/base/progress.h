@@ -16,7 +16,9 @@ typedef struct progress {
 
 void progress_start(progress *p, const char *tool, const char *what, double total, bool quiet);
 void progress_at(progress *p, double done);
-/* Clears the line. */
+/* Clears the line until it is shown again: for a message. */
+void progress_clear(const progress *p);
+/* Clears it for good. */
 void progress_stop(progress *p);
 
 /* Seconds of a clock that only goes forward. */

@@ -84,6 +84,7 @@ model=$T/muscle.sinew
 same "contraction" -d cpu -c all=0.8 -t 0.4 --every 0.002
 same "single" -d cpu --precision single -c all=0.8 -t 0.4 --every 0.002
 same "to rest" -d cpu -c all=0.5 -g 0,0,-9.81 --rest 1e-6 --every 0.002
+same "to a time between steps" -d cpu -c all=0.8 -t 0.2001234 --every 0.002
 same "as text" -d cpu -c all=0.5 -t 0.2 --every 0.002 --text
 same "gzipped" -d cpu -c all=0.5 -t 0.4 --every 0.002 -z
 same "steps that are given, threads" -d cpu -c all=0.5 -t 0.4 --dt 0.0001 --every 0.002 --threads 3

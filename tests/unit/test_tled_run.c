@@ -116,6 +116,55 @@ static void test_same_bytes(const backend *device, const char *name)
     bench_free(&whole);
 }
 
+/* An end between two steps: of a body that falls, u = -g t^2/2 and v = -g t there, which these steps have exactly, whatever their
+ * length. In one step, or many; cut in parts too. */
+static void test_end(const backend *device, double tolerance, const char *name)
+{
+    static const double end[] = {1e-7, .0003, .0123457, .02}, gravity[3] = {0, 0, -9.81};
+    for (int i = 0; i < 4; i++) {
+        bench b;
+        bench_make(&b, &lump, gravity, 0, .0075, 2);
+        for (int64_t k = 0; k < 3 * b.script.keys; k++) /* at once */
+            b.script.value[k] = gravity[k % 3];
+        bench_steps(&b, run_steps_to(end[i], b.setup.rate), 0);
+        b.setup.device = device;
+        b.setup.end = end[i];
+        const int gone = bench_go(&b);
+        double fallen = 0, speed = 0;
+        for (int64_t n = 0; n < b.problem.nodes; n++) {
+            fallen = fmax(fallen, fabs(b.displacement[3 * n + 2] / (-9.81 / 2 * end[i] * end[i]) - 1));
+            speed = fmax(speed, fabs(b.velocity[3 * n + 2] / (-9.81 * end[i]) - 1));
+        }
+        ok(!gone && b.time == end[i] && b.end.sight.time == end[i], "%s: the run ends at %.17g s, in %lld steps %s",
+           name, b.time, (long long)b.end.steps, b.e.text);
+        ok(fallen < tolerance && speed < tolerance, "%s: it has fallen as far as it does, to %.2g, as fast, to %.2g",
+           name, fallen, speed);
+        bench_free(&b);
+    }
+}
+
+/* The same where steps are cut on the way there, which ends on 1 and 2 threads at the same bytes; and is what many more steps come to. */
+static void test_end_cut(const backend *device, const char *name)
+{
+    bench b[3];
+    for (int i = 0; i < 3; i++) {
+        bench_make(&b[i], &muscle, NULL, 1, .0075, 1 + i % 2);
+        b[i].setup.rate *= i == 2 ? 32 : 1;
+        bench_steps(&b[i], run_steps_to(.0671, b[i].setup.rate), b[i].setup.damping);
+        b[i].setup.device = device;
+        b[i].setup.every = i == 1 ? .0007 : 0;
+        b[i].setup.end = .0671;
+        const int gone = bench_go(&b[i]);
+        ok(!gone && b[i].time == .0671, "%s: a muscle for .0671 s, %lld steps, cut in %lld %s", name,
+           (long long)b[i].end.steps, (long long)b[i].end.parts, b[i].e.text);
+    }
+    ok(same(&b[0], &b[1]), "%s: the same bytes on two threads, with frames", name);
+    ok(b[0].end.parts == b[0].cuts && b[0].cuts > 1 && b[0].end.taken > b[0].end.steps, "%s: cut on the way", name);
+    near_(b[0].end.sight.largest / b[2].end.sight.largest, 1, 1e-4, "%s: as steps of 1/32 have it", name);
+    for (int i = 0; i < 3; i++)
+        bench_free(&b[i]);
+}
+
 /* At full contraction by default settings: stable, all elements right way out, and it comes to rest. */
 static void test_contraction(const block *what, const char *name)
 {
@@ -320,6 +369,7 @@ static void test_times(void)
     ok(p.origin == .3001 && p.first == 0, "0.3001 s is no step");
     ok(run_steps_to(.5, 4400) == 2200 && run_steps_to(.04, 4400) == 176, "times are whole numbers of steps");
     ok(run_steps_to(.0123, 900) == 12, "or the next step");
+    ok(!run_is_between(.5, 4400) && !run_is_between(.3, 900) && run_is_between(.0123, 900), "which are told apart");
     ok(run_steps_to(1e9, 1e12) > INT64_C(1000000000000000), "what no run comes to is far");
 }
 
@@ -384,6 +434,8 @@ static void test_device(const backend *device, const char *name)
 {
     test_conserved(device, name);
     test_same_bytes(device, name);
+    test_end(device, strstr(name, "double") ? 1e-9 : 1e-4, name);
+    test_end_cut(device, name);
     test_jump(device, name);
     test_fraction(device, name);
     test_frame_fails(device, name);
