@@ -184,6 +184,60 @@ static void test_contraction(const block *what, const char *name)
     bench_free(&b);
 }
 
+/* The whole block strained by F = diag(x, y, z). */
+static void strain(bench *b, double x, double y, double z)
+{
+    const double by[3] = {x - 1, y - 1, z - 1};
+    for (int64_t i = 0; i < 3 * b->problem.nodes; i++)
+        b->problem.displacement[i] = by[i % 3] * b->problem.position[i];
+}
+
+/* A step that is given is judged by the stable one of the state that it led to, and by nothing less or more. */
+static void test_judged(void)
+{
+    static const struct {
+        double share;
+        bool taken;
+    } cases[] = {{.6, true}, {.99, true}, {1.01, false}, {1.5, false}, {1.9, false}};
+    const element_tensor h = {.3, 0, 0, 0, .2, 0, 0, 0, .1};
+    const element_fibre none = {0};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        bench b;
+        step_matrix a;
+        bench_make(&b, &lump, NULL, 0, .0075, 1);
+        strain(&b, 1.3, 1.2, 1.1);
+        const tled_law law = tled_law_of(&b.problem, 0);
+        step_matrix_of(&b.problem, &law, h, none, none, &a);
+        bench_steps(&b, 0, 0);
+        b.setup.rate = 1 / (cases[i].share * 2 / sqrt(step_largest(&a)));
+        b.setup.rate_fixed = true;
+        b.setup.check = 50;
+        const int gone = bench_go(&b);
+        ok(cases[i].taken ? !gone : gone && strstr(b.e.text, "stable step of") && strstr(b.e.text, "below the step"),
+           "a step of %g of the stable one of a block that is strained: %s", cases[i].share, gone ? b.e.text : "taken");
+        bench_free(&b);
+    }
+}
+
+/* J = 0 to the last bit, and below: an element is inverted, whatever its energy is then. */
+static void test_inverted(void)
+{
+    static const double flat[] = {0, -1e-9, -.01, -.1, -.5, -1, -2};
+    block half = lump;
+    half.side[0] = half.side[1] = half.side[2] = 1. / 128; /* of which nothing rounds */
+    for (size_t i = 0; i < sizeof flat / sizeof *flat; i++)
+        for (int a = 0; a < 3; a++) {
+            bench b;
+            bench_make(&b, &half, NULL, 0, .0075, 1);
+            strain(&b, a == 0 ? flat[i] : 1, a == 1 ? flat[i] : 1, a == 2 ? flat[i] : 1);
+            bench_steps(&b, 10, 0);
+            const int gone = bench_go(&b);
+            ok(gone && b.e.status == STATUS_DIVERGED && strstr(b.e.text, "element 0 (volume 'skin') is inverted"),
+               "J = %g along %c: %s", flat[i], "xyz"[a], b.e.text);
+            bench_free(&b);
+        }
+}
+
 static void test_step_too_large(void)
 {
     int gone;
@@ -452,6 +506,8 @@ int main(void)
     test_contraction(&muscle, "a muscle on its side");
     test_contraction(&bound, "a muscle by its end");
     test_step_too_large();
+    test_judged();
+    test_inverted();
     ok(bench_look_at_rest(&lump, &tled_cpu_double) == 1,
        "a look at rest, with unlike sides, finds the stable step at rest");
     test_diverged();
