@@ -24,6 +24,7 @@ struct options {
     const char *frame, *unit;
     opt_lengths within;
     int format;
+    bool salvage;
 };
 
 static const opt option_list[] = {
@@ -34,6 +35,8 @@ static const opt option_list[] = {
     {0, "format", "obj|pc2", OPT_CHOICE, offsetof(struct options, format), 0, 0, "obj|pc2", 0,
      "OBJ, or a point cache [obj]"},
     {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of the OBJ [source.unit]"},
+    {0, "salvage", NULL, OPT_FLAG, offsetof(struct options, salvage), 0, 0, NULL, OPT_OUTPUT,
+     "take the frames before a cut"},
     {0},
 };
 
@@ -344,7 +347,7 @@ int main(int argc, char **argv)
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (plan_of(&p, &o, argv[1], &e) || source_open(&s, NULL, &e) ||
+    if (plan_of(&p, &o, argv[1], &e) || source_open_part(&s, NULL, o.salvage, &e) ||
         mover_open(&w, &t, &s.body, argv[1], &o, p.within, &e))
         goto out;
     if (open_sink(&p, &o, w.file.vertices, &e) || take_frames(&p, &w, &s, &e))
@@ -352,6 +355,7 @@ int main(int argc, char **argv)
     finish(&p, &w, &e);
 out:
     plan_close(&p);
+    source_end(&s, &e);
     mover_close(&w);
     source_close(&s);
     return tool_end(&t, &e);

@@ -23,6 +23,7 @@ struct in {
     size_t at, filled; /* the plain bytes not yet taken: buffer[at..filled) */
     char *line;
     int64_t line_capacity, lines;
+    int64_t taken; /* bytes */
 };
 
 /* Bytes as they come from the file or memory. Returns how many, 0 at the end, -1 on failure. */
@@ -93,6 +94,8 @@ static int gzip_fill(in *s, err *e)
         }
         int code = inflate(&s->z, Z_NO_FLUSH);
         s->member_ended = code == Z_STREAM_END;
+        if (code != Z_OK && code != Z_STREAM_END && s->z.avail_out < CHUNK)
+            break; /* what came out is good; the next call says that no more does */
         if (code != Z_OK && code != Z_STREAM_END)
             return err_set(e, s->name, 0, "gzip data is damaged (%s)", s->z.msg ? s->z.msg : "no reason given");
     }
@@ -216,6 +219,11 @@ int64_t in_lines(const in *s)
     return s->lines;
 }
 
+int64_t in_taken(const in *s)
+{
+    return s->taken;
+}
+
 /* What is much goes where it is wanted, past the empty buffer. Returns how many bytes came; `ended` is set where nothing
  * more does. */
 static int64_t fetch_past(in *s, void *bytes, size_t size, err *e)
@@ -236,6 +244,7 @@ int64_t in_read(in *s, void *bytes, size_t size, err *e)
             if (n < 0)
                 return -1;
             got += (size_t)n;
+            s->taken += n;
             continue;
         }
         if (s->at == s->filled) {
@@ -246,6 +255,7 @@ int64_t in_read(in *s, void *bytes, size_t size, err *e)
         size_t n = s->filled - s->at < size - got ? s->filled - s->at : size - got;
         memcpy((char *)bytes + got, s->buffer + s->at, n);
         s->at += n;
+        s->taken += (int64_t)n;
         got += n;
     }
     return (int64_t)got;
@@ -281,6 +291,7 @@ int64_t in_line(in *s, char **line, bool *ended, err *e)
         n += part;
         whole = lf != NULL;
         s->at += (size_t)part + whole;
+        s->taken += part + whole;
     }
     if (!whole && !n)
         return -1;

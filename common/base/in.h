@@ -33,6 +33,9 @@ bool in_is_gzip(const in *s);
 /* Lines taken so far by in_line: the number of the line it gave last. */
 int64_t in_lines(const in *s);
 
+/* Bytes taken so far, as they are once gunzipped. */
+int64_t in_taken(const in *s);
+
 /* Reads up to size bytes; less only at the end. -1 with e filled where reading or gunzipping fails. */
 int64_t in_read(in *s, void *bytes, size_t size, err *e);
 

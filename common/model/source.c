@@ -4,6 +4,7 @@
 #include "base/tool.h"
 
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,9 +20,19 @@ static int tell(const source *s, err *e)
     return -1;
 }
 
-int source_open(source *s, const char *path, err *e)
+/* Adds to the text of an e. */
+SINEW_PRINTF(2, 3) static void add(err *e, const char *format, ...)
 {
-    *s = (source){.from_stdin = !path || !strcmp(path, "-")};
+    const size_t n = strlen(e->text);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(e->text + n, sizeof e->text - n, format, args);
+    va_end(args);
+}
+
+static int open_and_read(source *s, const char *path, err *e)
+{
+    s->from_stdin = !path || !strcmp(path, "-");
     if (s->from_stdin && tool_need_stdin("a model", e))
         return -1;
     s->stream = in_open(path, e);
@@ -32,16 +43,63 @@ int source_open(source *s, const char *path, err *e)
         return -1;
     s->text = first == '%';
     s->reader = model_reader_open(s->stream, e);
-    if (!s->reader || model_read(s->reader, &s->body, e))
-        return tell(s, e);
-    return 0;
+    if (s->reader && !model_read(s->reader, &s->body, e))
+        return 0;
+    tell(s, e);
+    if (s->salvages && s->reader && !e->silent)
+        add(e, "; nothing can be salvaged before the first frame");
+    return -1;
+}
+
+int source_open(source *s, const char *path, err *e)
+{
+    *s = (source){0};
+    return open_and_read(s, path, e);
+}
+
+int source_open_part(source *s, const char *path, bool salvage, err *e)
+{
+    *s = (source){.offers = true, .salvages = salvage};
+    return open_and_read(s, path, e);
+}
+
+/* The stream has no more frames that are whole: its end, where that is asked for. */
+static int stop(source *s, err *e)
+{
+    tell(s, e);
+    if (s->salvages) {
+        s->lost = *e;
+        *e = (err){0};
+        return 0;
+    }
+    if (s->offers && s->frames && !e->silent)
+        add(e, "; --salvage takes the %" PRId64 " frame%s before that", s->frames, s->frames == 1 ? "" : "s");
+    return -1;
+}
+
+void source_end(const source *s, err *e)
+{
+    const char *name = source_name(s), *why = s->lost.text;
+    const size_t n = strlen(name);
+    const bool first = !e->status;
+    if (!s->lost.status)
+        return;
+    if (first && s->frames)
+        err_set(e, name, 0, "salvaged %" PRId64 " frame%s, up to index %" PRId64 " at %.9g s", s->frames,
+                s->frames == 1 ? "" : "s", s->frame.index, s->frame.time);
+    else if (first)
+        err_set(e, name, 0, "salvaged the model, and no frame");
+    why += !strncmp(why, name, n) && !strncmp(why + n, ": ", 2) ? n + 2 : 0;
+    add(e, "; reading stopped at byte %" PRId64 ": %s", in_taken(s->stream), why);
 }
 
 int source_next(source *s, err *e)
 {
+    if (s->lost.status)
+        return 0;
     int got = model_read_frame(s->reader, &s->body, &s->spare, e);
     if (got < 0)
-        return tell(s, e);
+        return stop(s, e);
     if (!got)
         return 0;
     frame last = s->frame;

@@ -17,7 +17,7 @@ typedef struct render_options {
     const char *view, *up, *front, *colour, *frame, *size, *font, *slice, *body;
     opt_lengths camera, range;
     double angle;
-    bool transparent;
+    bool transparent, salvage;
     int format;
 } render_options;
 

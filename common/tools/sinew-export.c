@@ -23,7 +23,7 @@ struct options {
     opt_common common;
     int format, element;
     const char *frame, *surface, *unit;
-    bool deformed;
+    bool deformed, salvage;
     opt_numbers gravity;
 };
 
@@ -46,6 +46,8 @@ static const opt option_list[] = {
      "model: text, not binary"},
     {'z', "gzip", NULL, OPT_FLAG, offsetof(struct options, common.gzip), 0, 0, NULL, OPT_OUTPUT,
      "model, inp, obj, msh: gzip the output"},
+    {0, "salvage", NULL, OPT_FLAG, offsetof(struct options, salvage), 0, 0, NULL, OPT_OUTPUT,
+     "take the frames before a cut"},
     {0},
 };
 
@@ -306,7 +308,7 @@ static void say(const job *j, const tool *t)
 static void put_file(job *j, const char *path, err *e)
 {
     const opt_common *c = &j->o->common;
-    if (source_open(&j->s, path, e))
+    if (source_open_part(&j->s, path, j->o->salvage, e))
         return;
     out *to =
         j->which == ALL && j->o->format == VTU ? outs_open(&j->files, c->output, e) : out_open(c->output, c->gzip, e);
@@ -333,7 +335,7 @@ int main(int argc, char **argv)
     if (check_options(&j, &e) || (j.which == ALL && o.format == VTU && read_stem(&j, &e)))
         goto out;
     if (o.format == MODEL)
-        export_model(&j.s, t.operands ? argv[1] : NULL, &copy, &t, &e);
+        export_model(&j.s, t.operands ? argv[1] : NULL, o.salvage, &copy, &t, &e);
     else
         put_file(&j, t.operands ? argv[1] : NULL, &e);
     if (!e.status)
@@ -344,6 +346,7 @@ out:
     outs_free(&j.files);
     if (!e.status)
         tool_warn(&t, &j.warnings);
+    source_end(&j.s, &e);
     notes_free(&j.warnings);
     export_shape_free(&j.x);
     source_close(&j.s);

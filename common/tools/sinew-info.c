@@ -16,7 +16,7 @@
 struct options {
     opt_common common;
     opt_list get, tsv;
-    bool json;
+    bool json, salvage;
 };
 
 static const opt option_table[] = {
@@ -25,6 +25,8 @@ static const opt option_table[] = {
     {0, "tsv", "KEY", OPT_LIST, offsetof(struct options, tsv), 0, 0, NULL, OPT_OUTPUT,
      "a value of each frame, a row a frame"},
     {0, "json", NULL, OPT_FLAG, offsetof(struct options, json), 0, 0, NULL, OPT_OUTPUT, "the summary as JSON"},
+    {0, "salvage", NULL, OPT_FLAG, offsetof(struct options, salvage), 0, 0, NULL, OPT_OUTPUT,
+     "take the frames before a cut"},
     {0}};
 
 static const opt_tool table = {
@@ -285,7 +287,7 @@ int main(int argc, char **argv)
         err_usage(&e, "--json, --get and --tsv exclude each other; expected one of them");
         goto out;
     }
-    if (source_open(&s, t.operands ? argv[1] : NULL, &e))
+    if (source_open_part(&s, t.operands ? argv[1] : NULL, o.salvage, &e))
         goto out;
     text = out_memory(&e);
     to = text ? out_open(o.common.output, false, &e) : NULL;
@@ -298,6 +300,7 @@ out:
         out_discard(to);
     else if (to)
         out_close(to, &e);
+    source_end(&s, &e);
     source_close(&s);
     return tool_end(&t, &e);
 }

@@ -32,6 +32,7 @@ static const opt option_table[] = {
     {0, "transparent", NULL, OPT_FLAG, TO(transparent), 0, 0, NULL, 0, "no background"},
     {0, "format", "png|ppm", OPT_CHOICE, TO(format), 0, 0, "png|ppm", 0, "ppm: a stream, for ffmpeg"},
     {0, "font", "FILE", OPT_TEXT, TO(font), 0, 0, NULL, OPT_FILE, "of the words (DejaVu Sans)"},
+    {0, "salvage", NULL, OPT_FLAG, TO(salvage), 0, 0, NULL, OPT_OUTPUT, "take the frames before a cut"},
     {0}};
 
 static const opt_tool table = {
@@ -204,12 +205,14 @@ int main(int argc, char **argv)
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (render_plan_of(&j.plan, &o, &e) || open_sink(&j, &e) || source_open(&j.s, t.operands ? argv[1] : NULL, &e))
+    if (render_plan_of(&j.plan, &o, &e) || open_sink(&j, &e) ||
+        source_open_part(&j.s, t.operands ? argv[1] : NULL, o.salvage, &e))
         goto out;
     if (open_picture(&j, &e) || draw_frames(&j, &e))
         goto out;
     finish(&j, &e);
 out:
+    source_end(&j.s, &e);
     job_close(&j);
     return tool_end(&t, &e);
 }
