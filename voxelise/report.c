@@ -86,9 +86,9 @@ void report_volume(out *o, const volumes_volume *v, const check_result *r, int64
 void report_warn(notes *n, const char *what, const char *name, const check_result *r)
 {
     if (r->met)
-        notes_add(n, "%s '%s' crosses itself (%lld pairs of triangles): what is inside twice is outside", what, name,
+        notes_add(n, "%s %s crosses itself (%lld pairs of triangles): what is inside twice is outside", what, name,
                   (long long)r->met);
     if (r->thin > 0.5)
-        notes_add(n, "%s '%s' is thinner than a voxel over %.3g %% of its area: it has voxels there by chance", what,
+        notes_add(n, "%s %s is thinner than a voxel over %.3g %% of its area: it has voxels there by chance", what,
                   name, 100 * r->thin);
 }

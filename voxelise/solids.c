@@ -89,22 +89,22 @@ static int report(const work *w, const char *volume, const closed_result *r, boo
 {
     if (r->cancelled)
         notes_add(warnings,
-                  "volume '%s' gives polygons again (%lld of them): they cancel in pairs, as where two solids touch",
+                  "volume %s gives polygons again (%lld of them): they cancel in pairs, as where two solids touch",
                   volume, (long long)r->cancelled);
     if (r->once)
-        notes_add(warnings, "volume '%s' gives polygons again (%lld of them): each counts once", volume,
+        notes_add(warnings, "volume %s gives polygons again (%lld of them): each counts once", volume,
                   (long long)r->once);
     if (!r->open)
         return 0;
     char names[500];
     name_open(w, r, names, sizeof names);
     if (allow_open) {
-        notes_add(warnings, "volume '%s' is open: %lld open edges (%s); what is inside it is a guess", volume,
+        notes_add(warnings, "volume %s is open: %lld open edges (%s); what is inside it is a guess", volume,
                   (long long)r->open, names);
         return 0;
     }
     return err_set(e, w->o->name, 0,
-                   "volume '%s' is open: %lld open edges (%s); expected every edge to join two polygons "
+                   "volume %s is open: %lld open edges (%s); expected every edge to join two polygons "
                    "(--allow-open goes on all the same)",
                    volume, (long long)r->open, names);
 }

@@ -1,5 +1,7 @@
 #include "mesh/obj_words.h"
 
+#include "base/chars.h"
+
 #include <string.h>
 
 bool obj_seek_word(obj_words *w)
@@ -64,12 +66,16 @@ void obj_next_line(obj_words *w)
 
 int obj_bad_word(const obj_words *w, const char *what, const char *expected)
 {
-    char word[40];
+    char word[60];
     size_t n = (size_t)(obj_word_end(w) - w->p), most = sizeof word - 1;
-    memcpy(word, w->p, n < most ? n : most);
-    word[n < most ? n : most] = 0;
+    bool cut = n > most;
+    for (n = cut ? most : n; cut && n && ((unsigned char)w->p[n] & 0xc0) == 0x80;)
+        n--; /* a character stays whole */
+    memcpy(word, w->p, n);
+    word[n] = 0;
     for (char *c = word; *c; c++)
-        if ((unsigned char)*c < ' ' || (unsigned char)*c >= 127)
+        if ((unsigned char)*c < ' ' || *c == 127)
             *c = '?';
-    return err_set(w->e, w->name, w->line, "%s '%s%s'; expected %s", what, word, n > most ? "..." : "", expected);
+    chars_mend(word);
+    return err_set(w->e, w->name, w->line, "%s '%s'%s; expected %s", what, word, cut ? "..." : "", expected);
 }

@@ -284,6 +284,8 @@ static int text_read(item_source *s, item *it, err *e)
             it->kind = (item_kind)k;
             return keywords[k].read(s, it, line, e);
         }
+    if (!*key)
+        return item_error(s, it, e, "an empty line; expected meta, prov, axis, array, block, frame, end or fail");
     return item_error(s, it, e, "'%.40s'; expected meta, prov, axis, array, block, frame, end or fail", key);
 }
 

@@ -77,7 +77,7 @@ static int take_id(const inp_reader *r, const char *field, int32_t *id)
     char text[64];
     if (num_int(field, 1, INT32_MAX, &value)) {
         snprintf(text, sizeof text, "'%.40s'", field);
-        return wrong(r, text, "a number from 1 up");
+        return wrong(r, *field ? text : "nothing between two commas", "a number from 1 up");
     }
     *id = (int32_t)value;
     return 0;
@@ -86,10 +86,11 @@ static int take_id(const inp_reader *r, const char *field, int32_t *id)
 /* Fortran's D for an exponent is taken too. */
 static int take_number(const inp_reader *r, char *field, const char *expected, double *value)
 {
-    char text[64];
+    char text[64] = "the line ends, or nothing stands between two commas";
     if (field && !num_double(field, value))
         return 0;
-    snprintf(text, sizeof text, "'%.40s'", field ? field : "");
+    if (field && *field)
+        snprintf(text, sizeof text, "'%.40s'", field);
     for (char *p = field; p && *p; p++)
         *p = *p == 'D' || *p == 'd' ? 'e' : *p;
     return !field || num_double(field, value) ? wrong(r, text, expected) : 0;
@@ -146,8 +147,9 @@ static int begin_element(inp_reader *r, const keyword *k)
                                         "S3",  "S4",  "S6",   "S8",     "STRI",    "M3D",  "SFM3D",
                                         "R3D", "R2D", "MASS", "SPRING", "DASHPOT", "CONN", NULL};
     const char *type = parameter(k, "TYPE");
-    char text[64];
-    snprintf(text, sizeof text, "elements of type '%.30s'", type ? type : "");
+    char text[64] = "elements of no TYPE";
+    if (type && *type)
+        snprintf(text, sizeof text, "elements of type '%.30s'", type);
     r->now = INP_ELEMENTS;
     r->set = set_of(r, &r->elements, k, "ELSET");
     r->pending_count = 0;
@@ -177,13 +179,25 @@ static int begin_set(inp_reader *r, const keyword *k, bool of_nodes)
     return r->set >= 0 ? 0 : r->set < -1 ? -1 : wrong(r, "a set without a name", of_nodes ? "NSET=NAME" : "ELSET=NAME");
 }
 
+/* The field becomes the name that it is found by. */
+static int32_t add_material(inp_reader *r, char *field)
+{
+    char *written = mem_text(field, r->e);
+    int32_t at = written ? import_add_material(r->m, import_inp_name(field), in_lines(r->s), r->e) : -1;
+    if (at < 0 || r->m->material[at].written)
+        free(written);
+    else
+        r->m->material[at].written = written;
+    return at;
+}
+
 static int begin_material(inp_reader *r, const keyword *k)
 {
     char *name = parameter(k, "NAME");
     if (!name || !*name)
         return wrong(r, "*MATERIAL without a name", "NAME=NAME");
     r->now = INP_NOTHING;
-    r->material = import_add_material(r->m, import_inp_name(name), in_lines(r->s), r->e);
+    r->material = add_material(r, name);
     return r->material < 0 ? -1 : 0;
 }
 
@@ -214,7 +228,7 @@ static int begin_section(inp_reader *r, const keyword *k)
         return wrong(r, "*SOLID SECTION of nothing", "ELSET=NAME, MATERIAL=NAME");
     inp_section s = {.line = in_lines(r->s)};
     s.set = import_sets_open(&r->elements, import_inp_name(set), r->e);
-    s.material = s.set < 0 ? -1 : import_add_material(r->m, import_inp_name(of), s.line, r->e);
+    s.material = s.set < 0 ? -1 : add_material(r, of);
     if (s.material < 0 || MEM_ROOM(&r->sections, &r->section_room, r->section_count + 1, "sections", r->e))
         return -1;
     r->sections[r->section_count++] = s;
@@ -362,8 +376,8 @@ static int take_members(inp_reader *r, import_sets *sets, char *line)
                 return -1;
             continue;
         }
+        snprintf(text, sizeof text, "no set '%.50s'", field); /* as it is written: the next makes lower case of it */
         other = import_sets_find(sets, import_inp_name(field));
-        snprintf(text, sizeof text, "no set '%.50s'", field);
         if (other < 0)
             return wrong(r, text, "a number, or a set that stands before");
         if (import_sets_include(sets, r->set, other, r->e))

@@ -58,7 +58,7 @@ int32_t import_add_material(import_mesh *m, const char *name, int64_t line, err 
         return at;
     if (MEM_ROOM(&m->material, &m->material_room, m->materials + 1, "materials", e))
         return -1;
-    m->material[m->materials] = (import_material){mem_text(name, e), NAN, NAN, NAN, MATERIAL_NEO_HOOKEAN, line};
+    m->material[m->materials] = (import_material){mem_text(name, e), NAN, NAN, NAN, MATERIAL_NEO_HOOKEAN, line, NULL};
     return m->material[m->materials].name ? (int32_t)m->materials++ : -1;
 }
 
@@ -85,8 +85,10 @@ void import_free(import_mesh *m)
 {
     for (int64_t i = 0; i < m->volume_count; i++)
         free(m->volumes[i].name);
-    for (int64_t i = 0; i < m->materials; i++)
+    for (int64_t i = 0; i < m->materials; i++) {
         free(m->material[i].name);
+        free(m->material[i].written);
+    }
     names_free(&m->volume_names);
     names_free(&m->material_names);
     import_ids_free(&m->node_id);

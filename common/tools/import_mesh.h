@@ -16,6 +16,7 @@ typedef struct import_material {
     double E, nu, density; /* in the file's units; nan: not given */
     material_law law;
     int64_t line;
+    char *written; /* the name as the file writes it, for messages; NULL: as `name` is */
 } import_material;
 
 typedef struct import_volume {

@@ -220,9 +220,11 @@ static int32_t material_of(const import_mesh *mesh, const import_wishes *w, cons
     if (v->material >= 0)
         name = mesh->material[v->material].name;
     int32_t at = find_material(mesh, m, name ? name : v->name);
+    const char *written = v->material >= 0 ? mesh->material[v->material].written : NULL;
     if (at < 0 && name && !(w->own_materials && model_count(m, "material") == 1))
-        return v->material < 0 ? materials_unknown(m, name, "--material", 0, e)
-                               : materials_unknown(m, name, mesh->name, mesh->material[v->material].line, e);
+        return v->material < 0
+                   ? materials_unknown(m, name, "--material", 0, e)
+                   : materials_unknown(m, written ? written : name, mesh->name, mesh->material[v->material].line, e);
     if (at < 0 && model_count(m, "material") > 1)
         return err_set(e, mesh->name, 0,
                        "nothing says which material volume %.200s is of; expected --material NAME, or a material of "

@@ -30,9 +30,16 @@ char *header_word(char **p)
     return word;
 }
 
-int header_bad(const in *s, err *e, const char *key, const char *what, const char *expected)
+int header_bad(const in *s, err *e, const char *key, const char *word, const char *expected)
 {
-    return err_set(e, in_name(s), in_lines(s), "%.60s: '%.100s'; expected %s", key, what, expected);
+    if (!*word)
+        return header_wrong(s, e, key, "nothing", expected);
+    return err_set(e, in_name(s), in_lines(s), "%.60s: '%.100s'; expected %s", key, word, expected);
+}
+
+int header_wrong(const in *s, err *e, const char *key, const char *what, const char *expected)
+{
+    return err_set(e, in_name(s), in_lines(s), "%.60s: %s; expected %s", key, what, expected);
 }
 
 int header_numbers(const in *s, const char *key, char *value, double *to, int count, err *e)
@@ -43,7 +50,7 @@ int header_numbers(const in *s, const char *key, char *value, double *to, int co
     for (char *word; (word = header_word(&value)); got++)
         if (got == count || num_double(word, &to[got]))
             return header_bad(s, e, key, word, expected);
-    return got == count ? 0 : header_bad(s, e, key, "too few", expected);
+    return got == count ? 0 : header_wrong(s, e, key, "too few", expected);
 }
 
 int header_integers(const in *s, const char *key, char *value, int64_t low, int64_t high, int64_t *to, int count,
@@ -56,5 +63,5 @@ int header_integers(const in *s, const char *key, char *value, int64_t low, int6
     for (char *word; (word = header_word(&value)); got++)
         if (got == count || num_int(word, low, high, &to[got]))
             return header_bad(s, e, key, word, expected);
-    return got == count ? 0 : header_bad(s, e, key, "too few", expected);
+    return got == count ? 0 : header_wrong(s, e, key, "too few", expected);
 }

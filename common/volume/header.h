@@ -12,8 +12,10 @@ char *header_trim(char *text);
 /* The next word, cut out; NULL at the end. *p steps past it. */
 char *header_word(char **p);
 
-/* err_set at the stream's last line: "key: what; expected ...". Returns -1. */
-int header_bad(const in *s, err *e, const char *key, const char *what, const char *expected);
+/* err_set at the stream's last line: "key: 'word'; expected ...", of a word that stands there; or what is wrong, in words of
+ * ours, which get no quotes. Return -1. */
+int header_bad(const in *s, err *e, const char *key, const char *word, const char *expected);
+int header_wrong(const in *s, err *e, const char *key, const char *what, const char *expected);
 
 /* Exactly `count` finite numbers between blanks, or whole numbers within low to high. */
 int header_numbers(const in *s, const char *key, char *value, double *to, int count, err *e);

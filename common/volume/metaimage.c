@@ -44,7 +44,7 @@ static int take_truth(const header *h, const char *key, const char *value, bool 
 /* Lists come after NDims, which says how long they are. */
 static int need_axes(const header *h, const char *key, err *e)
 {
-    return h->axes ? 0 : header_bad(h->s, e, key, "comes first", "NDims before it");
+    return h->axes ? 0 : header_wrong(h->s, e, key, "comes first", "NDims before it");
 }
 
 static int take_object(header *h, const char *key, char *value, err *e)
@@ -91,7 +91,7 @@ static int take_positive(header *h, const char *key, char *value, double *to, er
         return -1;
     for (int a = 0; a < h->axes; a++)
         if (!(to[a] > 0))
-            return header_bad(h->s, e, key, "a distance that is not above 0", "distances between voxels, mm");
+            return header_wrong(h->s, e, key, "a distance that is not above 0", "distances between voxels, mm");
     return 0;
 }
 
@@ -125,7 +125,7 @@ static int take_direction(header *h, const char *key, char *value, err *e)
         const double *row = &h->direction[3 * i];
         double length = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
         if (!(fabs(length - 1) <= .01))
-            return header_bad(h->s, e, key, "a direction whose length is not 1", "unit vectors");
+            return header_wrong(h->s, e, key, "a direction whose length is not 1", "unit vectors");
     }
     return 0;
 }

@@ -48,7 +48,7 @@ typedef int take(header *h, const char *field, char *value, err *e);
 
 static int need_axes(const header *h, const char *field, err *e)
 {
-    return h->axes ? 0 : header_bad(h->s, e, field, "comes first", "dimension before it");
+    return h->axes ? 0 : header_wrong(h->s, e, field, "comes first", "dimension before it");
 }
 
 static int take_dimension(header *h, const char *field, char *value, err *e)
@@ -228,6 +228,12 @@ static int take_origin(header *h, const char *field, char *value, err *e)
     return got < 0 ? -1 : 0;
 }
 
+/* word: NULL: the line has ended. */
+static int bad_word(const header *h, const char *field, const char *word, const char *expected, err *e)
+{
+    return word ? header_bad(h->s, e, field, word, expected) : header_wrong(h->s, e, field, "too few", expected);
+}
+
 static int take_spacings(header *h, const char *field, char *value, err *e)
 {
     if (need_axes(h, field, e))
@@ -238,7 +244,7 @@ static int take_spacings(header *h, const char *field, char *value, err *e)
         if (word && !strcasecmp(word, "nan"))
             *to = 1;
         else if (!word || num_double(word, to) || !(*to > 0))
-            return header_bad(h->s, e, field, word ? word : "too few", "a distance above 0, or nan, for each axis");
+            return bad_word(h, field, word, "a distance above 0, or nan, for each axis", e);
     }
     h->spaced = true;
     return 0;
@@ -251,7 +257,7 @@ static int take_kinds(header *h, const char *field, char *value, err *e)
     for (int a = 0; a < h->axes; a++) {
         char *word = header_word(&value);
         if (!word || strlen(word) >= sizeof h->axis[a].kind)
-            return header_bad(h->s, e, field, word ? word : "too few", "a kind for each axis");
+            return bad_word(h, field, word, "a kind for each axis", e);
         snprintf(h->axis[a].kind, sizeof h->axis[a].kind, "%s", word);
     }
     return 0;

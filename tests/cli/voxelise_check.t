@@ -58,7 +58,7 @@ is "$status $(numbers 'surface skin')$(of 'surface skin' encloses)" "0 6 12 8 1 
 sed 's/^f -8 -6 -5 -7$/&\nf -6 -5 -7 -8/' "$T/box.obj" >"$T/again.obj"
 look "$T/again.obj"
 is "$status $(numbers 'surface skin')" "0 7 12 8 1 0 0 0 1 0 0 " "a face is given twice"
-said "that is a warning" "warning: volume 'skin' gives polygons again \(1 of them\): each counts once"
+said "that is a warning" "warning: volume skin gives polygons again \(1 of them\): each counts once"
 {
     cat "$T/box.obj"
     printf 'v 1 0 0\nf -9 -1 -9\n'
@@ -85,7 +85,7 @@ is "$(of 'surface skin' shells) $(of 'surface skin' encloses)" "3 64 mm^3" "thre
 look "$T/cross.obj"
 is "$status" 0 "two boxes that cross"
 is "$([ "$(of 'surface skin' 'pairs of triangles that cross')" -ge 6 ] && echo many)" many "their triangles cross"
-said "that is a warning" "warning: surface 'skin' crosses itself \([0-9]+ pairs of triangles\)"
+said "that is a warning" "warning: surface skin crosses itself \([0-9]+ pairs of triangles\)"
 is "$(of 'surface skin' encloses)" "136 mm^3 if nothing crossed" "what it encloses is not known then"
 {
     box skin 0 0 0 4 4 4
@@ -129,7 +129,7 @@ is "$(of 'surface skull' bounds) $(of 'volume skin' surfaces)" "skin skin skull"
 is "$(of 'volume skin' encloses) $(of 'volume skin' shells)" "488 mm^3 2" "together"
 is "$(of 'volume skin' 'level, priority') $(of 'volume muscle_a' 'level, priority')" "0, 0 1, 0" "levels and priorities"
 is "$(of 'surface skin' 'thinner than a voxel')" "0 % of its area" "skin alone is thick"
-said "a flat muscle" "warning: surface 'muscle_a' is thinner than a voxel over [0-9.]+ % of its area"
+said "a flat muscle" "warning: surface muscle_a is thinner than a voxel over [0-9.]+ % of its area"
 look -s 2,2,0.25 "$T/head.obj"
 is "$(of 'surface muscle_a' 'thinner than a voxel')" "0 % of its area" "not with flat voxels"
 look -s 1e-3 "$T/head.obj"

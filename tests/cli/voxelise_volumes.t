@@ -88,7 +88,7 @@ is "$(rows volume.name)" '"A_thing" ' "an object where there are no groups"
 sed 's/ skin_none//' "$T/marks.obj" >"$T/marked.obj"
 vox "$T/marked.obj"
 is "$(rows volume.name)$(counts skin muscle_m)" '"skin" "muscle_m" 56 8 ' "rigid names beside others only mark faces"
-fails 1 "a face of a muscle in the skin opens it" "volume 'skin' is open: 8 open edges \(skin_none 8\)" voxelise --unit mm -s 1 "$T/marks.obj"
+fails 1 "a face of a muscle in the skin opens it" "volume skin is open: 8 open edges \(skin_none 8\)" voxelise --unit mm -s 1 "$T/marks.obj"
 
 # Materials by the name of the volume.
 printf 'first E=1000\nskin E=2000\nmuscle E=3000\nmuscle_a E=4000\n' >"$T/materials"
@@ -152,15 +152,15 @@ soup "$T/head.obj" >"$T/soup.obj"
 vox "$T/soup.obj"
 is "$(counts skin muscle_a Muscle_b)" "896 16 24 " "polygons that share no vertex are welded by their places"
 sed '/^g SKULL/,/^g/ { /^f -8 -7/d; }' "$T/head.obj" >"$T/open.obj"
-fails 1 "an open surface" "open.obj: volume 'skin' is open: 4 open edges \(SKULL 4\); expected every edge" \
+fails 1 "an open surface" "open.obj: volume skin is open: 4 open edges \(SKULL 4\); expected every edge" \
     voxelise --unit mm -s 1 -o "$T/out" "$T/open.obj"
 is "$([ -e "$T/out" ] && echo left)" "" "no output is left"
 vox --allow-open "$T/open.obj"
-said "--allow-open warns" "warning: volume 'skin' is open: 4 open edges \(SKULL 4\)"
+said "--allow-open warns" "warning: volume skin is open: 4 open edges \(SKULL 4\)"
 sed 's/^f -8 -6 -5 -7$/&\nf -6 -5 -7 -8\nf -7 -5 -6 -8/' "$T/one.obj" >"$T/again.obj"
 vox "$T/again.obj"
 is "$(counts gland)" "8 " "a polygon given three times counts once"
-said "that is said" "warning: volume 'gland' gives polygons again \(2 of them\): each counts once"
+said "that is said" "warning: volume gland gives polygons again \(2 of them\): each counts once"
 sed 's/^f .*$/&\n&/' "$T/one.obj" >"$T/twice.obj"
 vox "$T/twice.obj"
 is "$(counts gland)" "8 " "a surface given twice counts once"
@@ -191,7 +191,7 @@ said "leaves the other as it is" "gives polygons again \(18 of them\): each coun
 vox --allow-open "$T/apart.obj"
 said "one part's gap is its own" "is open: 4 open edges \(d 4\)"
 sed '$d' "$T/one.obj" | sed 's/^f .*$/&\n&/' >"$T/torn.obj"
-fails 1 "a torn surface given twice is open, not gone" "'gland' is open: 4 open edges \(gland 4\)" \
+fails 1 "a torn surface given twice is open, not gone" "gland is open: 4 open edges \(gland 4\)" \
     voxelise --unit mm -s 1 "$T/torn.obj"
 # What two solids share need not be flat, nor begin at the same corner or go the same way round.
 for face in '2 4 8 6' '4 8 6 2' '6 8 4 2' '4 2 6 8'; do

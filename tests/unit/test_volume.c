@@ -283,12 +283,12 @@ static void refused_nrrd(void)
     refuse("\x89PNG\n", "", 0, "v: is no volume that is known");
     refuse("NRRD0004\n", "", 0, "v:1: the header ends here");
     refuse("NRRD0004\n\n", "", 0, "a header without dimension");
-    refuse("NRRD0004\nsizes: 2 2 2\n\n", "", 0, "v:2: sizes: 'comes first'; expected dimension before it");
+    refuse("NRRD0004\nsizes: 2 2 2\n\n", "", 0, "v:2: sizes: comes first; expected dimension before it");
     refuse("NRRD0004\ntyp: uchar\n\n", "", 0, "v:2: field: 'typ'; expected a field of NRRD");
     refuse("NRRD0004\ntype: block\n\n", "", 0, "type: 'block'");
     refuse("NRRD0004\ntype uchar\n\n", "", 0, "v:2: the header: 'type uchar'");
     refuse("NRRD0004\ndimension: 17\n\n", "", 0, "dimension: '17'; expected 1 whole number from 1 to 16");
-    refuse("NRRD0004\ndimension: 3\nsizes: 2 2\n\n", "", 0, "sizes: 'too few'");
+    refuse("NRRD0004\ndimension: 3\nsizes: 2 2\n\n", "", 0, "sizes: too few");
     refuse("NRRD0004\ndimension: 3\nsizes: 2 0 2\n\n", "", 0, "sizes: '0'");
     refuse("NRRD0004\ndimension: 3\nsizes: 2 -3 2\n\n", "", 0, "sizes: '-3'");
     refuse("NRRD0004\ndimension: 3\nsizes: 2 2 2 2\n\n", "", 0, "sizes: '2'");
@@ -306,7 +306,7 @@ static void refused_nrrd(void)
     refuse(NRRD("space origin: none\n"), "01234567", 8, "space origin: 'none'");
     refuse(NRRD("space origin: (1e30,0,0)\n"), "01234567", 8, "an origin at 1e+30 mm");
     refuse(NRRD("spacings: 1 -1 1\n"), "01234567", 8, "spacings: '-1'; expected a distance above 0");
-    refuse(NRRD("spacings: 1 1\n"), "01234567", 8, "spacings: 'too few'");
+    refuse(NRRD("spacings: 1 1\n"), "01234567", 8, "spacings: too few");
     refuse(NRRD("space units: \"mm\" \"mm\" \"ell\"\n"), "01234567", 8, "space units: 'ell'");
     refuse(NRRD("axis mins: 0 0 0\n"), "01234567", 8, "axis mins: '0 0 0'; expected space directions");
     refuse(NRRD("kinds: RGB-color domain domain\n"), "01234567", 8, "axis 0 holds 2 values of each voxel");
@@ -341,20 +341,20 @@ static void refused_meta(void)
     refuse("ObjectType = Image\nNDims = 3\nElementDataFile = LOCAL\n", "", 0, "a header without DimSize");
     refuse("ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementDataFile = LOCAL\n", "", 0,
            "a header without ElementType");
-    refuse("ObjectType = Image\nDimSize = 2 2 2\n", "", 0, "v:2: DimSize: 'comes first'; expected NDims before it");
+    refuse("ObjectType = Image\nDimSize = 2 2 2\n", "", 0, "v:2: DimSize: comes first; expected NDims before it");
     refuse("ObjectType = Image\nNDims = 4\n", "", 0, "NDims: '4'");
     refuse("ObjectType = Image\nwhat\n", "", 0, "v:2: the header: 'what'");
     refuse(META("ElementType = MET_LONG\n"), "", 0,
            "ElementType: 'MET_LONG'; expected a type of one length everywhere");
     refuse(META("ElementType = MET_ODD\n"), "", 0, "ElementType: 'MET_ODD'");
     refuse(META("ElementNumberOfChannels = 3\n"), "", 0, "ElementNumberOfChannels: '3'");
-    refuse(META("ElementSpacing = 1 -1 1\n"), "01234567", 8, "ElementSpacing: 'a distance that is not above 0'");
+    refuse(META("ElementSpacing = 1 -1 1\n"), "01234567", 8, "ElementSpacing: a distance that is not above 0");
     refuse(META("ElementSpacing = 1 nan 1\n"), "01234567", 8, "ElementSpacing: 'nan'; expected 3 finite numbers");
     refuse(META("TransformMatrix = 1 0 0 0 1 0 1 0 0\n"), "01234567", 8, "axes that lie in a plane");
     refuse(META("TransformMatrix = 2 0 0 0 1 0 0 0 1\n"), "01234567", 8, "a direction whose length is not 1");
     refuse(META("TransformMatrix = 0 0 0 0 1 0 0 0 1\n"), "01234567", 8, "a direction whose length is not 1");
     refuse(META("TransformMatrix = 1 0 0 0 1 0 0 0\n"), "01234567", 8,
-           "TransformMatrix: 'too few'; expected 9 finite numbers");
+           "TransformMatrix: too few; expected 9 finite numbers");
     refuse(META("Offset = 1 2 inf\n"), "01234567", 8, "Offset: 'inf'");
     refuse(META("BinaryData = maybe\n"), "01234567", 8, "BinaryData: 'maybe'; expected True or False");
     refuse(META("BinaryData = False\nCompressedData = True\n"), "01234567", 8, "expected one of them");
