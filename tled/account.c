@@ -2,13 +2,12 @@
 
 #include "base/mem.h"
 #include "tled/collider.h"
-#include "tled/deformed.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 256 }; /* elements, or nodes */
+enum { CHUNK = STRAINED_CHUNK }; /* elements, or nodes */
 
 /* What is known of one moment. */
 typedef struct moment {
@@ -32,6 +31,7 @@ struct account {
     moment now, before, kept;
     double *velocity;
     struct account_part *part;
+    strained_view view; /* of now */
     probe_placed probe; /* of now */
 };
 
@@ -80,9 +80,7 @@ static void look_at_muscles(account *a, int64_t i, const deformed *d, account_su
 static void look_at_element(account *a, int64_t i, element_shape box, account_sums *sum)
 {
     const deformed d = deformed_of(a->p, i, box, a->now.displacement);
-    const double fraction = tled_fraction(a->p, i);
-    sum->strain += fraction * d.rest * d.energy;
-    sum->hourglass += fraction * d.hourglass;
+    strained_add(&sum->tissue, &a->view, i, &d);
     if (a->now.stretch)
         look_at_muscles(a, i, &d, sum);
 }
@@ -90,11 +88,20 @@ static void look_at_element(account *a, int64_t i, element_shape box, account_su
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     account *a = context;
-    account_sums sum = {0};
+    account_sums sum = {.tissue = strained_none()};
     const element_shape shape = element_box(a->p->side[0], a->p->side[1], a->p->side[2]);
     for (int64_t i = from; i < to; i++)
         look_at_element(a, i, shape, &sum);
     a->part[chunk].sum = sum;
+}
+
+static void add_elements(account *a)
+{
+    account_sums *to = &a->now.sums;
+    for (int64_t c = 0; c < pool_chunks(a->p->elements, CHUNK); c++) {
+        strained_join(&to->tissue, &a->part[c].sum.tissue);
+        to->muscles += a->part[c].sum.muscles;
+    }
 }
 
 /* What acts on a node at a moment, N. */
@@ -177,20 +184,17 @@ static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
 }
 
 /* Adds what the chunks found to what is known: energies are of now, work adds up. */
-static double add_parts(account *a, int64_t count, double *mass)
+static double add_nodes(account *a, double *mass)
 {
     account_sums *to = &a->now.sums;
     double driven = 0;
-    for (int64_t c = 0; c < pool_chunks(count, CHUNK); c++) {
+    for (int64_t c = 0; c < pool_chunks(a->p->nodes, CHUNK); c++) {
         const struct account_part *part = &a->part[c];
         const account_sums *s = &part->sum;
         to->kinetic += s->kinetic;
-        to->strain += s->strain;
-        to->hourglass += s->hourglass;
         to->gravity += s->gravity;
         to->forces += s->forces;
         to->held += s->held;
-        to->muscles += s->muscles;
         to->probe += s->probe;
         to->acceleration += s->acceleration;
         to->displacement = fmax(to->displacement, s->displacement);
@@ -223,7 +227,7 @@ static void set_past(moment *m, const account_past *past)
 static void begin_sums(account *a, double time)
 {
     const account_past past = a->before.known ? past_of(&a->before) : (account_past){0};
-    a->now.sums = (account_sums){.time = time};
+    a->now.sums = (account_sums){.time = time, .tissue = strained_none()};
     set_past(&a->now, &past);
 }
 
@@ -232,7 +236,7 @@ static void close_sums(account *a, double damping, double mass)
 {
     account_sums *s = &a->now.sums;
     const moment *before = &a->before;
-    const double held = s->kinetic + s->strain + s->hourglass;
+    const double held = s->kinetic + s->tissue.strain + s->tissue.hourglass;
     if (before->known) {
         const double span = damping * (s->time - before->sums.time);
         s->damping += span * (before->sums.kinetic + s->kinetic);
@@ -261,11 +265,11 @@ const account_sums *account_look(account *a, const backend *b, void *state, doub
     tled_curves(p, time, a->now.curves);
     if (p->collider)
         a->probe = collider_at(p->collider, time);
-    memset(a->part, 0, (size_t)pool_chunks(p->elements, CHUNK) * sizeof *a->part);
+    a->view = strained_view_of(p, a->now.displacement, a->before.sums.tissue.quality.element);
     pool_run(a->threads, p->elements, CHUNK, element_work, a);
-    add_parts(a, p->elements, &mass);
+    add_elements(a);
     pool_run(a->threads, p->nodes, CHUNK, node_work, a);
-    a->now.driven = add_parts(a, p->nodes, &mass);
+    a->now.driven = add_nodes(a, &mass);
     close_sums(a, damping, mass);
     return &a->now.sums;
 }

@@ -7,11 +7,12 @@
 #ifndef SINEW_ACCOUNT_H
 #define SINEW_ACCOUNT_H
 
-#include "tled/state.h"
+#include "tled/strained.h"
 
 typedef struct account_sums {
-    double time;                       /* s */
-    double kinetic, strain, hourglass; /* J: held now; strain without hourglass energy, and without what muscles do */
+    double time;     /* s */
+    double kinetic;  /* J: held now */
+    strained tissue; /* the energy that elements hold now, and which of them are folded */
     double gravity, forces, held, muscles,
         probe;                  /* J: work done on the tissue since the first look; held: by what is displaced */
     double damping;             /* J: taken by it since */

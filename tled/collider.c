@@ -176,6 +176,23 @@ int64_t collider_sum(const tled_problem *p, double time, const double *displacem
     return count;
 }
 
+int collider_add(const tled_problem *p, frame *f, const model *m, const double *displacement, err *e)
+{
+    static const char *const names[] = {"probe.pose", "probe.force", "probe.torque"};
+    const probe_pose at = collider_pose(p->collider, f->time);
+    double *to[3];
+    for (int i = 0; i < 3; i++) {
+        model_array *a = frame_add(f, m, names[i], e);
+        if (!a)
+            return -1;
+        to[i] = a->f64;
+    }
+    memcpy(to[0], at.position, sizeof at.position);
+    memcpy(to[0] + 3, at.quaternion, sizeof at.quaternion);
+    collider_sum(p, f->time, displacement, to[1], to[2]);
+    return 0;
+}
+
 double collider_step(const tled_problem *p, double step)
 {
     return p->collider ? 2 / sqrt(4 / (step * step) + p->collider->stiffness) : step;

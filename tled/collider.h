@@ -45,6 +45,9 @@ bool collider_push(const collider *c, const probe_placed *at, double time, const
 /* The force on the probe and its torque about its origin at these displacements (nodes x 3). Returns how many nodes push. */
 int64_t collider_sum(const tled_problem *p, double time, const double *displacement, double force[3], double torque[3]);
 
+/* Adds to a frame where the probe is, and what the tissue at these displacements pushes it with. -1 with e filled. */
+int collider_add(const tled_problem *p, frame *f, const model *m, const double *displacement, err *e);
+
 /* A stable step, s, of the elements, with contact. p->collider may be NULL. */
 double collider_step(const tled_problem *p, double step);
 

@@ -1,24 +1,11 @@
 #include "tled/conforming.h"
 
 #include "base/mem.h"
-#include "mesh/lattice.h"
+#include "mesh/hexahedron.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MODES = 7, TWISTS = 4 };
-
-/* The sign of a mode (x, y, z, xy, yz, zx, xyz) at a corner. */
-static double sign(int mode, int corner)
-{
-    static const int factors[MODES] = {1, 2, 4, 3, 6, 5, 7};
-    double s = 1;
-    for (int a = 0; a < 3; a++)
-        if (factors[mode] & 1 << a)
-            s *= lattice_vtk[corner][a] ? 1 : -1;
-    return s;
-}
 
 /* ---- small symmetric matrices, row by row */
 
@@ -82,54 +69,13 @@ typedef struct corners {
     double b[8][3];  /* B, 1/m */
 } corners;
 
-/* Adds one Gauss point's part of V and V B. The derivatives times det J are cofactors of J: nothing is divided. */
-static void add_point(corners *x, const double point[3], double *volume)
-{
-    double slope[8][3], j[3][3] = {{0}}, cofactor[3][3];
-    for (int c = 0; c < 8; c++)
-        for (int a = 0; a < 3; a++) {
-            slope[c][a] = (lattice_vtk[c][a] ? 1. : -1.) / 8;
-            for (int b = 0; b < 3; b++)
-                slope[c][a] *= b == a ? 1 : 1 + (lattice_vtk[c][b] ? 1 : -1) * point[b];
-            for (int i = 0; i < 3; i++)
-                j[i][a] += x->at[c][i] * slope[c][a];
-        }
-    for (int i = 0; i < 3; i++)
-        for (int a = 0; a < 3; a++) {
-            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, a1 = (a + 1) % 3, a2 = (a + 2) % 3;
-            cofactor[i][a] = j[i1][a1] * j[i2][a2] - j[i1][a2] * j[i2][a1];
-        }
-    for (int a = 0; a < 3; a++)
-        *volume += j[0][a] * cofactor[0][a];
-    for (int c = 0; c < 8; c++)
-        for (int i = 0; i < 3; i++)
-            for (int a = 0; a < 3; a++)
-                x->b[c][i] += slope[c][a] * cofactor[i][a];
-}
-
-/* V and B: two points a direction integrate them exactly. */
-static double integrate(corners *x)
-{
-    const double at = 1 / sqrt(3);
-    double volume = 0;
-    for (int c = 0; c < 8; c++) {
-        double point[3];
-        for (int a = 0; a < 3; a++)
-            point[a] = lattice_vtk[c][a] ? at : -at;
-        add_point(x, point, &volume);
-    }
-    for (int i = 0; i < 24; i++)
-        x->b[i / 3][i % 3] /= volume;
-    return volume;
-}
-
 /* c^2, and the largest eigenvalue of the gammas' products. */
 static void find_couple(const corners *x, conforming_element *c)
 {
     double gamma[4][8], grams[16], own[16], l[16] = {0}, mixed[3][4], product[9];
     for (int g = 0; g < 4; g++)
         for (int a = 0; a < 8; a++) {
-            gamma[g][a] = sign(3 + g, a);
+            gamma[g][a] = hexahedron_sign(3 + g, a);
             for (int i = 0; i < 3; i++)
                 gamma[g][a] -= c->twist[g][i] * x->b[a][i];
         }
@@ -171,18 +117,8 @@ static bool shape_of(const tled_problem *p, int64_t element, conforming_element 
     const double *first = p->position + 3 * (int64_t)p->element_node[8 * element];
     for (int i = 0; i < 24; i++)
         x.at[i / 3][i % 3] = p->position[3 * (int64_t)p->element_node[8 * element + i / 3] + i % 3] - first[i % 3];
-    c->volume = integrate(&x);
-    for (int m = 0; m < MODES; m++)
-        for (int i = 0; i < 3; i++) {
-            double sum = 0, twist = 0;
-            for (int a = 0; a < 8; a++) {
-                sum += sign(m, a) * x.b[a][i];
-                twist += sign(m, a) * x.at[a][i];
-            }
-            c->slope[m][i] = sum / 8;
-            if (m >= 3)
-                c->twist[m - 3][i] = twist;
-        }
+    c->volume = hexahedron_mean(&x.at[0][0], &x.b[0][0]);
+    hexahedron_modes(&x.at[0][0], &x.b[0][0], &c->slope[0][0], &c->twist[0][0]);
     for (int i = 0; i < 9; i++)
         for (int a = 0; a < 8; a++)
             products[i] += x.b[a][i / 3] * x.b[a][i % 3];

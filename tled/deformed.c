@@ -17,12 +17,8 @@ static element_tensor gradient_of(const tled_problem *p, int64_t i, element_shap
     if (!p->conforming)
         return element_gradient(*x, *y, *z, box.slope);
     const element_any any = conforming_shape(&p->conforming->element[i]);
-    element_tensor h = element_any_gradient(&any, *x, *y, *z);
-    *x = element_any_twisted(&any, *x, h.xx, h.xy, h.xz);
-    *y = element_any_twisted(&any, *y, h.yx, h.yy, h.yz);
-    *z = element_any_twisted(&any, *z, h.zx, h.zy, h.zz);
     law->hourglass = p->conforming->element[i].hourglass;
-    return h;
+    return element_any_twist(&any, x, y, z);
 }
 
 deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, const double *displacement)

@@ -8,11 +8,13 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Quantity and unit; the last two go by the clock, and differ from run to run. Nodes' come after them. */
+/* Quantity and unit; the last two go by the clock, and differ from run to run. Nodes' come after them, then what elements are like. */
 static const char heading[] =
     "time/s\tstep\tdt/s\tstable/s\tkinetic/J\tstrain/J\thourglass/J\tgravity/J\tforces/J\tdisplaced/J\tmuscles/"
     "J\tprobe/J\t"
     "damping/J\tbalance/J\tdisplacement/m\tspeed/(m/s)\tresidual/(m/s2)\tremaining\tsteps/(1/s)\telements/(1/s)";
+
+static const char heading_end[] = "\tquality.j.centre\tquality.j.corner\tquality.folded\tquality.hourglass\n";
 
 static const char trace[] = "node.displacement.at.";
 
@@ -36,7 +38,7 @@ static void put_heading(const run_log *l, out *to)
     for (int i = 0; i < l->keys->count; i++)
         for (int a = 0; a < 3; a++)
             out_format(to, "\t%s.%c/m", l->keys->value[i], "xyz"[a]);
-    out_text(to, "\n");
+    out_text(to, heading_end);
 }
 
 /* That the file to go on with begins with the heading of this run. What is shorter than what is to be kept is growing_open's to refuse,
@@ -133,16 +135,34 @@ static void put_row(run_log *l, const log_row *row, const account_sums *s)
 {
     const double took = progress_clock() - l->began;
     const double rate = took > 0 && row->taken > l->steps ? (double)(row->taken - l->steps) / took : NAN;
-    const double values[] = {
-        row->dt,         row->stable, s->kinetic,      s->strain,      s->hourglass, s->gravity,
-        s->forces,       s->held,     s->muscles,      s->probe,       s->damping,   s->balance,
-        s->displacement, s->speed,    s->acceleration, row->remaining, rate,         rate * (double)l->p->elements};
+    const double values[] = {row->dt,
+                             row->stable,
+                             s->kinetic,
+                             s->tissue.strain,
+                             s->tissue.hourglass,
+                             s->gravity,
+                             s->forces,
+                             s->held,
+                             s->muscles,
+                             s->probe,
+                             s->damping,
+                             s->balance,
+                             s->displacement,
+                             s->speed,
+                             s->acceleration,
+                             row->remaining,
+                             rate,
+                             rate * (double)l->p->elements};
     out_format(l->rows, "%.9g\t%lld", row->time, (long long)row->step);
     for (size_t i = 0; i < sizeof values / sizeof *values; i++)
         put_number(l->rows, values[i]);
     const double *moved = account_displacement(l->account);
     for (int i = 0; i < 3 * l->keys->count; i++)
         put_number(l->rows, moved[3 * l->node[i / 3] + i % 3]);
+    put_number(l->rows, s->tissue.quality.centre);
+    put_number(l->rows, s->tissue.quality.corner);
+    out_format(l->rows, "\t%lld", (long long)s->tissue.quality.folded);
+    put_number(l->rows, quality_hourglass(s->tissue.hourglass, s->tissue.strain));
     out_text(l->rows, "\n");
     l->steps = row->taken;
     l->began = progress_clock();

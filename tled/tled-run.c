@@ -9,6 +9,7 @@
 #include "model/stage.h"
 #include "tled/checkpoint.h"
 #include "tled/collider.h"
+#include "tled/folds.h"
 #include "tled/likeness.h"
 #include "tled/relax.h"
 #include "tled/run.h"
@@ -113,6 +114,8 @@ typedef struct session {
     bool started;           /* the state that the run begins from has been written: as a frame that came */
     int64_t cut;            /* parts of a step, as said last */
     double stable;          /* s: at rest */
+    folds folds;            /* of the frames written */
+    double strain;          /* J: the most at a check */
     notes warnings;
 } session;
 
@@ -284,28 +287,15 @@ out:
     return result;
 }
 
-/* Where the probe is, and what the tissue pushes it with. */
-static int add_probe(const session *s, frame *f, const double *displacement, err *e)
+/* Writes it first: who waits for it need not wait for what is to be said of it. */
+static int put_frame(session *s, const frame *f, err *e)
 {
-    static const char *const names[] = {"probe.pose", "probe.force", "probe.torque"};
-    const probe_pose at = collider_pose(&s->collider, f->time);
-    double *to[3];
-    for (int i = 0; i < 3; i++) {
-        model_array *a = frame_add(f, &s->m, names[i], e);
-        if (!a)
-            return -1;
-        to[i] = a->f64;
-    }
-    memcpy(to[0], at.position, sizeof at.position);
-    memcpy(to[0] + 3, at.quaternion, sizeof at.quaternion);
-    collider_sum(&s->problem, f->time, displacement, to[1], to[2]);
+    if (model_write_frame(s->stage.writer, f, e) || out_failed(s->stage.sink, e))
+        return -1;
+    const model_array *u = frame_find(f, "node.displacement");
+    if (u && u->rows == s->problem.nodes)
+        folds_look(&s->folds, f->time, u->f64);
     return 0;
-}
-
-static int put_frame(void *context, const frame *f, err *e)
-{
-    const session *s = context;
-    return model_write_frame(s->stage.writer, f, e) ? -1 : out_failed(s->stage.sink, e);
 }
 
 static int write_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
@@ -314,7 +304,7 @@ static int write_frame(void *context, double time, const double *displacement, c
     frame f = {.index = s->next_frame++, .time = time};
     bool whole = frame_lend(&f, &s->m, "node.displacement", displacement, e) &&
                  frame_lend(&f, &s->m, "node.velocity", velocity, e) &&
-                 !(s->collider.poses && add_probe(s, &f, displacement, e));
+                 !(s->collider.poses && collider_add(&s->problem, &f, &s->m, displacement, e));
     int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
     frame_free(&f);
     return result;
@@ -333,6 +323,7 @@ static void checked(void *context, int64_t step, const watch_sight *sight, doubl
     session *s = context;
     char left[60] = "";
     progress_at(&s->progress, (double)step);
+    s->strain = fmax(s->strain, sight->strain);
     if (isfinite(remaining))
         snprintf(left, sizeof left, "%.3g of its displacement to go, ", remaining);
     tool_detail(s->t, "%.6g s: %skinetic %.3g J, strain %.3g J, stable step %.4g ms, damping %.4g 1/s", sight->time,
@@ -438,10 +429,10 @@ static void say_between(const session *s, const char *option, const char *what, 
                  option, every, what, 1e3 / rate);
 }
 
-static void say_end(const session *s, const run_end *end)
+static void say_end(session *s, const run_end *end)
 {
     const watch_sight *w = &end->sight;
-    char left[80] = "";
+    char left[80] = "", folded[FOLDS_TEXT];
     if (end->parts > 1)
         tool_say(s->t, "steps were cut, in up to %lld: %lld were taken for %lld", (long long)end->parts,
                  (long long)end->taken, (long long)end->steps);
@@ -449,6 +440,9 @@ static void say_end(const session *s, const run_end *end)
         snprintf(left, sizeof left, ", %.3g of its displacement to go", end->remaining);
     tool_say(s->t, "%s %.6g s, after %lld steps: kinetic energy %.3g J, largest displacement %.6g mm%s",
              end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic, 1e3 * w->largest, left);
+    folds_text(&s->folds, folded);
+    tool_say(s->t, "%s", folded);
+    folds_warn(&s->folds, s->strain, &s->warnings);
     tool_detail(s->t, "%s: %.4g MB, %.4g bytes an element", s->run.device->name, 1e-6 * (double)end->bytes,
                 (double)end->bytes / (double)s->problem.elements);
 }
@@ -498,7 +492,9 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
 {
     s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps ? rest_tolerance : -1;
     if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
-        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) || support_of(&s->problem, &s->support, e) ||
+        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) ||
+        model_meta_set_numbers(&s->m, "hourglass.kappa", &o->hourglass, 1, e) ||
+        support_of(&s->problem, &s->support, e) ||
         support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;
     if (s->collider.poses)
@@ -510,7 +506,8 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     s->run.device = choose_device(s, o, device, size, e);
     int threads = tool_threads(s->t, e);
     s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
-    return s->threads ? 0 : -1;
+    /* Where a device computes, processors are free for frames. */
+    return s->threads ? folds_make(&s->folds, &s->problem, &s->m, s->run.device->look ? threads : 1, e) : -1;
 }
 
 static int simulate(session *s, const struct options *o, const char *device, err *e)
@@ -575,6 +572,7 @@ out:
         end_output(&s, &t, &e);
     end_checkpoints(&s, &e);
     pool_destroy(s.threads);
+    folds_free(&s.folds);
     tled_problem_free(&s.problem);
     collider_free(&s.collider);
     script_free(&s.script);

@@ -56,6 +56,17 @@ ELEMENT_FUNCTION element_modes element_any_twisted(const element_any *s, element
     return q;
 }
 
+/* H; and the hourglass modes of all three components in place of their own. */
+ELEMENT_FUNCTION element_tensor element_any_twist(const element_any *s, element_modes *x, element_modes *y,
+                                                  element_modes *z)
+{
+    element_tensor h = element_any_gradient(s, *x, *y, *z);
+    *x = element_any_twisted(s, *x, h.xx, h.xy, h.xz);
+    *y = element_any_twisted(s, *y, h.yx, h.yy, h.yz);
+    *z = element_any_twisted(s, *z, h.zx, h.zy, h.zz);
+    return h;
+}
+
 /* One component of f_a = V P B_a + k sum_g gamma_g (gamma_g . u), from its modes q (twisted) and its row of P. */
 ELEMENT_FUNCTION element_corners element_any_gather(const element_any *s, element_modes q, real px, real py, real pz,
                                                     real k)

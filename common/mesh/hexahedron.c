@@ -135,3 +135,70 @@ void hexahedron_gradients(const int32_t *node, const double *position, const dou
                 gradient[3 * c + i] += slope[c][a] * inverse[a][i];
         }
 }
+
+/* Adds one Gauss point's part of V and V B. The derivatives times det J are cofactors of J: nothing is divided. */
+static void add_point(const double *at, const double point[3], double *b, double *volume)
+{
+    double slope[8][3], j[3][3] = {{0}}, cofactor[3][3];
+    for (int c = 0; c < 8; c++)
+        for (int a = 0; a < 3; a++) {
+            slope[c][a] = (lattice_vtk[c][a] ? 1. : -1.) / 8;
+            for (int k = 0; k < 3; k++)
+                slope[c][a] *= k == a ? 1 : 1 + (lattice_vtk[c][k] ? 1 : -1) * point[k];
+            for (int i = 0; i < 3; i++)
+                j[i][a] += at[3 * c + i] * slope[c][a];
+        }
+    for (int i = 0; i < 3; i++)
+        for (int a = 0; a < 3; a++) {
+            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, a1 = (a + 1) % 3, a2 = (a + 2) % 3;
+            cofactor[i][a] = j[i1][a1] * j[i2][a2] - j[i1][a2] * j[i2][a1];
+        }
+    for (int a = 0; a < 3; a++)
+        *volume += j[0][a] * cofactor[0][a];
+    for (int c = 0; c < 8; c++)
+        for (int i = 0; i < 3; i++)
+            for (int a = 0; a < 3; a++)
+                b[3 * c + i] += slope[c][a] * cofactor[i][a];
+}
+
+/* Two points a direction integrate them exactly. */
+double hexahedron_mean(const double *at, double *b)
+{
+    const double off = 1 / sqrt(3);
+    double volume = 0;
+    memset(b, 0, 24 * sizeof *b);
+    for (int c = 0; c < 8; c++) {
+        double point[3];
+        for (int a = 0; a < 3; a++)
+            point[a] = lattice_vtk[c][a] ? off : -off;
+        add_point(at, point, b, &volume);
+    }
+    for (int i = 0; i < 24; i++)
+        b[i] /= volume;
+    return volume;
+}
+
+double hexahedron_sign(int mode, int corner)
+{
+    static const int factors[7] = {1, 2, 4, 3, 6, 5, 7};
+    double s = 1;
+    for (int a = 0; a < 3; a++)
+        if (factors[mode] & 1 << a)
+            s *= lattice_vtk[corner][a] ? 1 : -1;
+    return s;
+}
+
+void hexahedron_modes(const double *at, const double *b, double *slope, double *twist)
+{
+    for (int m = 0; m < 7; m++)
+        for (int i = 0; i < 3; i++) {
+            double sum = 0, turn = 0;
+            for (int c = 0; c < 8; c++) {
+                sum += hexahedron_sign(m, c) * b[3 * c + i];
+                turn += hexahedron_sign(m, c) * at[3 * c + i];
+            }
+            slope[3 * m + i] = sum / 8;
+            if (m >= 3)
+                twist[3 * (m - 3) + i] = turn;
+        }
+}

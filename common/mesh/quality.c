@@ -4,9 +4,8 @@
 #include <string.h>
 
 /* The edges of a hexahedron along each axis, from and to; and those that meet at each corner. */
-static const int edge_ends[3][4][2] = {{{0, 1}, {3, 2}, {4, 5}, {7, 6}},
-                                       {{0, 3}, {1, 2}, {4, 7}, {5, 6}},
-                                       {{0, 4}, {1, 5}, {2, 6}, {3, 7}}};
+static const int edge_ends[3][4][2] = {
+    {{0, 1}, {3, 2}, {4, 5}, {7, 6}}, {{0, 3}, {1, 2}, {4, 7}, {5, 6}}, {{0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 static const int corner_edges[8][3] = {{0, 0, 0}, {0, 1, 1}, {1, 1, 2}, {1, 0, 3},
                                        {2, 2, 0}, {2, 3, 1}, {3, 3, 2}, {3, 2, 3}};
 
@@ -118,7 +117,7 @@ static quality_j of_rest(const quality_mesh *m, const int32_t *node)
 {
     const double none[24] = {0};
     int32_t own[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    double rest[24];
+    double rest[24] = {0};
     if (m->side)
         return of_box(own, m->side, none);
     for (int c = 0; c < m->corners; c++)

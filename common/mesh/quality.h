@@ -28,9 +28,17 @@ typedef struct quality_j {
 typedef struct quality {
     double centre, corner; /* the smallest of each, nan left out; nan: there is none */
     int64_t folded;        /* elements whose J is not above 0 in the middle or at a corner */
-    int64_t element;       /* the one with the smallest at a corner, one with nan before all others; -1: there is none */
-    double worst;          /* its smallest J at a corner */
+    int64_t element; /* the one with the smallest at a corner, one with nan before all others; -1: there is none */
+    double worst;    /* its smallest J at a corner */
 } quality;
+
+/* Hourglass energy as a share of strain energy, which is without it; 0 where there is none. Past QUALITY_HOURGLASS, elements are too
+ * coarse for how they bend, or the coefficient is wrong. */
+#define QUALITY_HOURGLASS .1
+static inline double quality_hourglass(double hourglass, double strain)
+{
+    return hourglass == 0 ? 0 : hourglass / strain;
+}
 
 /* u: displacement, nodes x 3, m; NULL: at rest. */
 quality_j quality_of(const quality_mesh *m, int64_t element, const double *u);

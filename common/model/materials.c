@@ -355,3 +355,25 @@ material material_mixed(const material *a, const material *b, double s)
                       .density = (1 - s) * a->density + s * b->density,
                       .peak = (1 - s) * a->peak + s * b->peak};
 }
+
+material *materials_of_volumes(const model *m, err *e)
+{
+    const model_array *of = model_need(m, "volume.material", e);
+    material *law = of ? mem_array(of->rows, sizeof *law, "materials", e) : NULL;
+    for (int64_t v = 0; law && v < of->rows; v++)
+        if (materials_of(m, of->i32[v], &law[v], e)) {
+            free(law);
+            return NULL;
+        }
+    return law;
+}
+
+material materials_of_element(const model *m, const material *of_volume, int64_t element)
+{
+    const model_array *mix = model_find(m, "element.mix"), *mixture = model_find(m, "element.mixture");
+    const material *own = &of_volume[model_find(m, "element.volume")->i32[element]];
+    int32_t second = mix && mixture ? mix->i32[element] : -1;
+    return second < 0 || of_volume[second].law != own->law
+               ? *own
+               : material_mixed(own, &of_volume[second], mixture->f32[element]);
+}

@@ -60,6 +60,12 @@ int materials_unknown(const model *m, const char *name, const char *place, int64
 /* Material i, checked: a model may have been edited by hand. A missing array or a nan is an error, but for peak (0). */
 int materials_of(const model *m, int64_t i, material *to, err *e);
 
+/* Of every volume, checked; the caller frees them. NULL with e filled. */
+material *materials_of_volumes(const model *m, err *e);
+
+/* An element's material, from those of the volumes: its volume's, or one between those of the two that it is mixed of. */
+material materials_of_element(const model *m, const material *of_volume, int64_t element);
+
 /* mu and K, in Pa. */
 static inline double material_mu(const material *a)
 {

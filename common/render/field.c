@@ -120,19 +120,6 @@ static int of_names(field *to, const model *m, bool of_material, err *e)
 
 /* ---- strain and stress */
 
-/* The material of every volume; the caller frees them. */
-static material *laws(const model *m, err *e)
-{
-    const model_array *of = model_need(m, "volume.material", e);
-    material *law = of ? mem_array(of->rows, sizeof *law, "materials", e) : NULL;
-    for (int64_t v = 0; law && v < of->rows; v++)
-        if (materials_of(m, of->i32[v], &law[v], e)) {
-            free(law);
-            return NULL;
-        }
-    return law;
-}
-
 static double strained(int which, const double h[9], const material *law)
 {
     double strain[9];
@@ -144,15 +131,6 @@ static double strained(int which, const double h[9], const material *law)
     return which == STRAIN ? 2. / 3 * gradient_mises(strain) : gradient_largest(strain);
 }
 
-/* An element's material: its volume's, or one between those of the two that it is mixed of. */
-static material law_of(const model *m, const material *law, int64_t element)
-{
-    const model_array *mix = model_find(m, "element.mix"), *mixture = model_find(m, "element.mixture");
-    const material *own = &law[model_find(m, "element.volume")->i32[element]];
-    int32_t second = mix && mixture ? mix->i32[element] : -1;
-    return second < 0 || law[second].law != own->law ? *own : material_mixed(own, &law[second], mixture->f32[element]);
-}
-
 static int of_strain(field *to, const model *m, const frame *f, int which, err *e)
 {
     const double *u = displacement(f, ours[which], e);
@@ -161,7 +139,7 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
     const model_array *volume = rest && which == STRESS ? model_need(m, "element.volume", e) : NULL;
     if (!rest || (which == STRESS && !volume))
         return -1;
-    material *law = which == STRESS ? laws(m, e) : NULL;
+    material *law = which == STRESS ? materials_of_volumes(m, e) : NULL;
     if ((which == STRESS && !law) || make(to, true, node->rows, ours[which], which == STRESS ? "Pa" : "", e)) {
         free(law);
         return -1;
@@ -170,7 +148,7 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
     for (int64_t n = 0; n < node->rows; n++) {
         double h[9];
         gradient_of(&node->i32[n * node->columns], node->columns, rest->f64, u, h);
-        material own = law ? law_of(m, law, n) : (material){0};
+        material own = law ? materials_of_element(m, law, n) : (material){0};
         to->value[n] = strained(which, h, law ? &own : NULL);
     }
     free(law);

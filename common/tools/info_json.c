@@ -3,6 +3,7 @@
 #include "base/num.h"
 #include "model/known.h"
 #include "tools/info_key.h"
+#include "tools/info_quality.h"
 #include "tools/info_stats.h"
 
 #include <inttypes.h>
@@ -159,6 +160,20 @@ static void put_head(const source *s, out *to)
     out_text(to, "},\n");
 }
 
+/* What is folded in the last frame, where anything is. */
+static void put_folded(const source *s, out *to)
+{
+    quality q;
+    if (!info_quality_look(s, &q) || !q.folded)
+        return;
+    out_format(to, ", \"quality\": {\"folded\": %" PRId64 ", \"element\": %" PRId64 ", \"j.centre\": ", q.folded,
+               q.element);
+    put_number(q.centre, MODEL_F64, to);
+    out_text(to, ", \"j.corner\": ");
+    put_number(q.corner, MODEL_F64, to);
+    out_text(to, "}");
+}
+
 void info_json(const source *s, const double *times, const int64_t *elements, out *to)
 {
     out_text(to, "{\n");
@@ -177,6 +192,7 @@ void info_json(const source *s, const double *times, const int64_t *elements, ou
         put_number(times[1], MODEL_F64, to);
         out_text(to, ", \"arrays\": ");
         put_arrays(&s->frame.arrays, to);
+        put_folded(s, to);
         out_text(to, "}\n}\n");
     } else {
         out_text(to, "null,\n  \"last\": null\n}\n");

@@ -5,6 +5,7 @@
 #include "base/num.h"
 #include "model/known.h"
 #include "model/rest_place.h"
+#include "tools/info_quality.h"
 #include "tools/info_stats.h"
 
 #include <inttypes.h>
@@ -228,6 +229,8 @@ static void note_keys(const source *s, const char *key, notes *list)
     notes_add(list, "frames");
     notes_add(list, "frame.time");
     notes_add(list, "frame.index");
+    for (int i = 0; i < INFO_QUALITY_KEYS; i++)
+        notes_add(list, "%s", info_quality_keys[i]);
     for (int i = 0; i < m->axis_count; i++)
         notes_add(list, "axis.%s", m->axes[i].name);
     for (int i = 0; i < m->metas; i++)
@@ -292,10 +295,14 @@ static int unknown_key(const source *s, const char *key, err *e)
         lacking(s, key, k, e);
     else if (near >= 0)
         err_set(e, source_name(s), 0, "no key '%.80s'; did you mean '%s'?", key, list.line[near]);
-    else {
+    else if (!strncmp(key, "quality", 7) && (key[7] == '.' || !key[7])) {
+        near_list(all, sizeof all, info_quality_keys, INFO_QUALITY_KEYS);
+        err_set(e, source_name(s), 0, "no key '%.80s'; expected one of these: %s", key, all);
+    } else {
         near_list(all, sizeof all, (const char *const *)arrays.line, arrays.count);
         err_set(e, source_name(s), 0,
-                "no key '%.80s'; expected frames, frame.time, frame.index, axis.NAME, meta.KEY, volume.count.NAME or "
+                "no key '%.80s'; expected frames, frame.time, frame.index, axis.NAME, meta.KEY, volume.count.NAME, "
+                "quality.KEY or "
                 "ARRAY.VALUE with one of these arrays: %s",
                 key, all);
     }
@@ -323,7 +330,7 @@ static int put_plain(const source *s, const char *key, out *to, err *e)
             return 1;
         return put_volume_count(&s->body, v, to, e);
     } else {
-        return 1;
+        return info_quality(s, key, to, e);
     }
     return 0;
 }
@@ -343,6 +350,8 @@ const char *info_key_unit(const source *s, const char *key, err *e)
 {
     static const char *const counts[] = {"rows", "columns", "nan"}, *const words[] = {"type", "unit", "axis"};
     query q = {.s = s, .key = key};
+    if (info_quality_unit(key))
+        return info_quality_unit(key);
     const bool found = find_array(&q);
     if (!found && strcmp(key, "frames") != 0 && strncmp(key, "axis.", 5) != 0 && strncmp(key, "meta.", 5) != 0 &&
         strncmp(key, "frame.", 6) != 0 && strncmp(key, "volume.count.", 13) != 0) {

@@ -10,7 +10,7 @@
  * there is. */
 int info_key(const source *s, const char *key, out *to, err *e);
 
-/* The unit of the key's value, "" for counts, where it is a number or several of an array of the frame read last. NULL with e filled: of
+/* The unit of the key's value, "" for counts, where it is a number or several of the frame read last. NULL with e filled: of
  * anything else. Borrowed from the source. */
 const char *info_key_unit(const source *s, const char *key, err *e);
 

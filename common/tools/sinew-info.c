@@ -5,6 +5,7 @@
 #include "model/source.h"
 #include "tools/info_json.h"
 #include "tools/info_key.h"
+#include "tools/info_quality.h"
 #include "tools/info_series.h"
 #include "tools/info_stats.h"
 
@@ -183,6 +184,23 @@ static void put_displacement(const source *s, out *to)
     out_text(to, "\n");
 }
 
+/* What is folded in the last frame, where anything is. */
+static void put_folded(const source *s, out *to)
+{
+    quality q;
+    double place[3];
+    if (!info_quality_look(s, &q) || !q.folded)
+        return;
+    info_quality_place(s, q.element, place);
+    out_format(to, "  folded elements %" PRId64 ", the worst element %" PRId64 " at ", q.folded, q.element);
+    for (int a = 0; a < 3; a++) {
+        put_short(place[a], MODEL_F64, to);
+        out_text(to, a < 2 ? " " : ": J ");
+    }
+    put_short(q.worst, MODEL_F64, to);
+    out_text(to, " at a corner\n");
+}
+
 static void put_frames(const source *s, const double *times, bool meanings, out *to)
 {
     if (!s->frames) {
@@ -197,6 +215,7 @@ static void put_frames(const source *s, const double *times, bool meanings, out 
     for (int i = 0; i < s->frame.arrays.count; i++)
         put_array(&s->frame.arrays.v[i], meanings, to);
     put_displacement(s, to);
+    put_folded(s, to);
 }
 
 static void put_summary(const source *s, const double *times, const int64_t *elements, bool meanings, out *to)

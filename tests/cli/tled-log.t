@@ -41,7 +41,7 @@ logged "a poor hourglass control" hourglass .2 "$T/block.sinew" --hourglass .000
 
 # ---- Rows.
 is "$(head -n 1 "$T/log" | tr '\t' '\n' | sed -n '1p;4p;14p;20p' | tr '\n' ' ')" "time/s stable/s balance/J elements/(1/s) " "a heading with units"
-is "$(awk -F '\t' 'NF != 20 || (NR > 2 && $1 <= before) { print NR } { before = $1 }' "$T/log")" "" "20 columns, times that rise"
+is "$(awk -F '\t' 'NF != 24 || (NR > 2 && $1 <= before) { print NR } { before = $1 }' "$T/log")" "" "24 columns, times that rise"
 tled-run -q -d cpu -c all=1 -t .2 -o "$T/plain" <"$T/muscle.sinew"
 for every in '' '--log-every .0007' '--log-every 1e-9' '--log-every 5'; do
     # shellcheck disable=SC2086 # two words, or none
@@ -54,13 +54,13 @@ tled-run -q -d cpu -c all=1 -t .2 --log "$T/log" -o "$T/out" <"$T/muscle.sinew"
 # shellcheck disable=SC2016 # for awk
 check "the step was cut on the way" awk -F '\t' 'NR == 2 { first = $3 } NR > 2 && $3 < first { cut = 1 } END { exit !cut }' "$T/log"
 tled-run -q -d cpu -c all=1 -t .2 --every .001 --log "$T/film" -o "$T/out" <"$T/muscle.sinew"
-is "$(cut -f 1-18 "$T/film" | cksum)" "$(cut -f 1-18 "$T/log" | cksum)" "the same rows whatever frames are written"
+is "$(cut -f 1-18,21- "$T/film" | cksum)" "$(cut -f 1-18,21- "$T/log" | cksum)" "the same rows whatever frames are written"
 for threads in 1 2 3; do
     tled-run -q -d cpu --threads $threads -c all=1 -t .2 --log-every .003 --log "$T/log$threads" -o "$T/out" <"$T/muscle.sinew"
 done
-cut -f 1-18 "$T/log1" >"$T/first"
+cut -f 1-18,21- "$T/log1" >"$T/first"
 for threads in 2 3; do
-    cut -f 1-18 "$T/log$threads" >"$T/other"
+    cut -f 1-18,21- "$T/log$threads" >"$T/other"
     check "$threads threads: the same bytes, but for the clock's columns" cmp "$T/first" "$T/other"
 done
 near "$(sinew info --get node.displacement.max "$T/out")" "$(column displacement "$T/log1")" 1e-8 "the largest displacement"
@@ -72,7 +72,7 @@ is "$(awk -F '\t' 'NR == 2 { print $8 + $13, $14 }' "$T/log")" "0 0" "counts fro
 
 # ---- Places.
 check "--tsv" tled-run -q -d cpu -c all=0.5 -t .1 --every .01 --log "$T/log" --tsv node.displacement.at.25mm,5mm,5mm --tsv node.displacement.at.0.02,0.001,0.0101 -o "$T/out" <"$T/muscle.sinew"
-is "$(head -n 1 "$T/log" | cut -f 19- | tr '\t' ' ')" "steps/(1/s) elements/(1/s) node.displacement.at.25mm,5mm,5mm.x/m node.displacement.at.25mm,5mm,5mm.y/m node.displacement.at.25mm,5mm,5mm.z/m node.displacement.at.0.02,0.001,0.0101.x/m node.displacement.at.0.02,0.001,0.0101.y/m node.displacement.at.0.02,0.001,0.0101.z/m" "columns after the others"
+is "$(head -n 1 "$T/log" | cut -f 19- | tr '\t' ' ')" "steps/(1/s) elements/(1/s) node.displacement.at.25mm,5mm,5mm.x/m node.displacement.at.25mm,5mm,5mm.y/m node.displacement.at.25mm,5mm,5mm.z/m node.displacement.at.0.02,0.001,0.0101.x/m node.displacement.at.0.02,0.001,0.0101.y/m node.displacement.at.0.02,0.001,0.0101.z/m quality.j.centre quality.j.corner quality.folded quality.hourglass" "columns after the others, and before those of quality.t"
 # What sinew info says of the frames, in nine digits as in a log.
 sinew info --tsv node.displacement.at.25mm,5mm,5mm --tsv node.displacement.at.0.02,0.001,0.0101 "$T/out" |
     awk -F '\t' 'NR > 1 { printf "%.9g", $2; for (i = 3; i <= 8; i++) printf "\t%.9g", $i; print "" }' >"$T/frames"
@@ -80,12 +80,12 @@ sed 1d "$T/log" | cut -f 1,21-26 >"$T/rows"
 is "$(wc -l <"$T/rows" | tr -d ' ')" 11 "a row a look"
 check "the same as of frames" cmp "$T/frames" "$T/rows"
 tled-run -q -d cpu -c all=0.5 -t .1 --log "$T/log" --log-every .0005 --tsv node.displacement.at.25mm,5mm,5mm -o "$T/plain" <"$T/muscle.sinew"
-is "$(awk -F '\t' 'NR > 1 && NF == 23 { n++ } END { print n }' "$T/log")" 201 "finer than frames, without any"
+is "$(awk -F '\t' 'NR > 1 && NF == 27 { n++ } END { print n }' "$T/log")" 201 "finer than frames, without any"
 is "$(sinew info --get frames "$T/plain") $(sinew info "$T/plain" | grep -c -e --tsv)" "1 0" "and no word of it in provenance"
 
 # ---- What goes wrong.
 fails 3 "a run that diverges" "diverged at step" tled-run -q -d cpu --dt .00035 -c all=1 -t .2 --ramp .01 --log "$T/log" -o "$T/none" <"$T/muscle.sinew"
-is "$(awk -F '\t' 'NF != 20 { print NR } NR > 1 && ($5 != $5 + 0 || $6 != $6 + 0) { print NR }' "$T/log")" "" "leaves whole rows of what was sound"
+is "$(awk -F '\t' 'NF != 24 { print NR } NR > 1 && ($5 != $5 + 0 || $6 != $6 + 0) { print NR }' "$T/log")" "" "leaves whole rows of what was sound"
 check "up to where it broke" test "$(wc -l <"$T/log")" -ge 2
 fails 1 "a full disk" "/dev/full: cannot write: No space left" tled-run -q -d cpu -n 10 --log /dev/full -o "$T/never" <"$T/block.sinew"
 is "$(ls "$T/never" 2>/dev/null)" "" "leaves no model"

@@ -1,4 +1,4 @@
-// needs: attach/rigid.c msds/mesh_fix.c msds/mesh_tets.c msds/mesh_labels.c tled/script.c tled/script_read.c common/tools/info_key.c common/tools/info_stats.c
+// needs: attach/rigid.c msds/mesh_fix.c msds/mesh_tets.c msds/mesh_labels.c tled/script.c tled/script_read.c common/tools/info_key.c common/tools/info_quality.c common/tools/info_stats.c
 /* Any text as the lists of names that options take, over a small model: attach --rigid, msds-mesh --fix and --names, tled-run -c; and as a key of
  * sinew info --get. Each is taken or is one error with a text.
  */

@@ -1,0 +1,111 @@
+#include "mesh/energy.h"
+
+#include "mesh/element_any.h"
+#include "mesh/hexahedron.h"
+#include "mesh/lattice.h"
+#include "model/materials.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A frame's elements; arrays are the model's and the frame's. */
+typedef struct view {
+    const int32_t *node;
+    const double *rest, *u;
+    bool is_lattice; /* all are boxes of `side` */
+    double side[3];
+    double kappa;
+} view;
+
+static element_modes modes_of(const view *v, int64_t element, int axis)
+{
+    element_corners c;
+    for (int i = 0; i < 8; i++)
+        c.at[i] = v->u[3 * (int64_t)v->node[8 * element + i] + axis];
+    return element_modes_of(c);
+}
+
+/* Of an element that is no box: its shape, and sum(B^2), 1/m2. */
+static element_any shape_of(const view *v, int64_t element, double *squares)
+{
+    element_any s;
+    double at[24], b[24], slope[21], twist[12];
+    for (int i = 0; i < 24; i++)
+        at[i] = v->rest[3 * (int64_t)v->node[8 * element + i / 3] + i % 3] -
+                v->rest[3 * (int64_t)v->node[8 * element] + i % 3];
+    s.volume = hexahedron_mean(at, b);
+    hexahedron_modes(at, b, slope, twist);
+    for (int m = 0; m < ELEMENT_MODES; m++)
+        s.slope[m] = (element_vector){slope[3 * m], slope[3 * m + 1], slope[3 * m + 2]};
+    for (int g = 0; g < ELEMENT_TWISTS; g++)
+        s.twist[g] = (element_vector){twist[3 * g], twist[3 * g + 1], twist[3 * g + 2]};
+    *squares = 0;
+    for (int i = 0; i < 24; i++)
+        *squares += b[i] * b[i];
+    return s;
+}
+
+static void add_element(const view *v, int64_t element, double mu, double bulk, double fraction, energy *to)
+{
+    element_modes x = modes_of(v, element, 0), y = modes_of(v, element, 1), z = modes_of(v, element, 2);
+    const double *side = v->side;
+    double volume = side[0] * side[1] * side[2], k, squares;
+    element_tensor h;
+    if (v->is_lattice) {
+        h = element_gradient(x, y, z, element_box(side[0], side[1], side[2]).slope);
+        k = element_hourglass(v->kappa, mu, bulk, side[0], side[1], side[2]);
+    } else {
+        const element_any any = shape_of(v, element, &squares);
+        h = element_any_twist(&any, &x, &y, &z);
+        volume = any.volume;
+        k = v->kappa * element_hourglass_modulus(mu, bulk) * volume * squares / 8;
+    }
+    to->strain += fraction * volume * element_energy(h, mu, bulk);
+    to->hourglass +=
+        fraction * (element_hourglass_energy(x, k) + element_hourglass_energy(y, k) + element_hourglass_energy(z, k));
+}
+
+static int view_of(view *v, const model *m, const frame *f, err *e)
+{
+    const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
+    const model_array *u = frame_find(f, "node.displacement");
+    lattice l = {0};
+    if (!u)
+        err_set(e, NULL, 0, "frame %lld has no node.displacement; it comes from tled-run", (long long)f->index);
+    if (!node || !rest || !u)
+        return -1;
+    *v = (view){.node = node->i32, .rest = rest->f64, .u = u->f64};
+    v->is_lattice = model_meta_of(m, "lattice.spacing") != NULL;
+    if (node->columns != 8)
+        return err_set(e, NULL, 0, "hourglass energy is of hexahedra, and these elements have %d nodes; expected 8",
+                       (int)node->columns);
+    if (!model_meta_of(m, "hourglass.kappa"))
+        return err_set(e, NULL, 0,
+                       "hourglass energy is not known: the model has no metadata hourglass.kappa; it comes from "
+                       "tled-run");
+    if (model_meta_numbers(m, "hourglass.kappa", &v->kappa, 1, e) || (v->is_lattice && lattice_of(m, &l, e)))
+        return -1;
+    if (!(v->kappa >= 0 && isfinite(v->kappa)))
+        return err_set(e, NULL, 0, "hourglass.kappa holds %g; expected a finite number, at least 0", v->kappa);
+    memcpy(v->side, l.spacing, sizeof v->side);
+    return 0;
+}
+
+int energy_of(energy *to, const model *m, const frame *f, err *e)
+{
+    view v;
+    const model_array *fraction = model_find(m, "element.fraction");
+    *to = (energy){0};
+    if (view_of(&v, m, f, e) || !model_need(m, "element.volume", e))
+        return -1;
+    material *law = materials_of_volumes(m, e);
+    if (!law)
+        return -1;
+    for (int64_t i = 0; i < model_count(m, "element"); i++) {
+        const material own = materials_of_element(m, law, i);
+        add_element(&v, i, material_mu(&own), material_bulk(&own), fraction ? (double)fraction->f32[i] : 1, to);
+    }
+    free(law);
+    return 0;
+}

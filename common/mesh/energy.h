@@ -1,0 +1,17 @@
+/* What the elements of a model hold in a frame of tled-run: strain energy, and that of the modes that hourglass control holds, as the
+ * solver has them (element.h, element_any.h). The coefficient of hourglass control is the model's metadata hourglass.kappa. Owns nothing.
+ */
+#ifndef SINEW_ENERGY_H
+#define SINEW_ENERGY_H
+
+#include "model/model.h"
+
+typedef struct energy {
+    double strain, hourglass; /* J; strain without hourglass energy, and without what muscles do */
+} energy;
+
+/* -1 with e filled: the elements are no hexahedra, it is not known by what coefficient their modes were held, or the model lacks what it
+ * takes. */
+int energy_of(energy *to, const model *m, const frame *f, err *e);
+
+#endif

@@ -1,0 +1,112 @@
+#include "tools/info_quality.h"
+
+#include "mesh/energy.h"
+#include "tools/info_stats.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+enum { CENTRE, CORNER, FOLDED, ELEMENT, PLACE, HOURGLASS, KEYS = INFO_QUALITY_KEYS };
+
+const char *const info_quality_keys[KEYS] = {"quality.j.centre", "quality.j.corner", "quality.folded",
+                                             "quality.element",  "quality.place",    "quality.hourglass"};
+
+static int which(const char *key)
+{
+    int i = 0;
+    while (i < KEYS && strcmp(key, info_quality_keys[i]) != 0)
+        i++;
+    return i;
+}
+
+const char *info_quality_unit(const char *key)
+{
+    const int i = which(key);
+    return i == KEYS ? NULL : i == PLACE ? "m" : "";
+}
+
+static const quality_mesh none = {0};
+
+/* .node NULL: there are no elements of a kind that is known. */
+static quality_mesh mesh_of(const source *s)
+{
+    const model_array *node = model_find(&s->body, "element.node"), *rest = model_find(&s->body, "node.position");
+    if (!node || !rest || (node->columns != 8 && node->columns != 4))
+        return none;
+    return (quality_mesh){node->i32, node->columns, node->rows, rest->f64, NULL};
+}
+
+bool info_quality_look(const source *s, quality *to)
+{
+    const quality_mesh m = mesh_of(s);
+    const model_array *u = s->frames ? frame_find(&s->frame, "node.displacement") : NULL;
+    if (!m.node || (s->frames && !u))
+        return false;
+    *to = quality_look(&m, u ? u->f64 : NULL, 0, m.elements);
+    return true;
+}
+
+void info_quality_place(const source *s, int64_t element, double *place)
+{
+    const quality_mesh m = mesh_of(s);
+    memset(place, 0, 3 * sizeof *place);
+    for (int i = 0; i < 3 * m.corners; i++)
+        place[i % 3] += m.rest[3 * (int64_t)m.node[element * m.corners + i / 3] + i % 3];
+    for (int a = 0; a < 3; a++)
+        place[a] /= m.corners;
+}
+
+static int no_value(const source *s, const char *key, const char *why, err *e)
+{
+    return err_set(e, source_name(s), 0, "no key '%.80s': %s", key, why);
+}
+
+/* The share in the last frame. */
+static int put_hourglass(const source *s, const char *key, out *to, err *e)
+{
+    energy of;
+    err why = {0};
+    if (!s->frames)
+        return no_value(s, key, "the model has no frames; they come from tled-run", e);
+    if (energy_of(&of, &s->body, &s->frame, &why))
+        return no_value(s, key, why.text, e);
+    info_put_number(quality_hourglass(of.hourglass, of.strain), MODEL_F64, to);
+    return 0;
+}
+
+/* What is wrong with a model that has no J. */
+static int no_quality(const source *s, const char *key, err *e)
+{
+    const model_array *node = model_find(&s->body, "element.node");
+    if (!node || !model_find(&s->body, "node.position"))
+        return no_value(s, key, "the model has no elements; they come from voxelise, msds-mesh or sinew import", e);
+    if (node->columns != 8 && node->columns != 4)
+        return no_value(s, key, "its elements are neither hexahedra nor tetrahedra", e);
+    return no_value(s, key, "the last frame has no node.displacement; it comes from tled-run or msds-run", e);
+}
+
+int info_quality(const source *s, const char *key, out *to, err *e)
+{
+    quality q;
+    double place[3];
+    const int i = which(key);
+    if (i == KEYS)
+        return 1;
+    if (i == HOURGLASS)
+        return put_hourglass(s, key, to, e);
+    if (!info_quality_look(s, &q))
+        return no_quality(s, key, e);
+    if (i == PLACE && q.element < 0)
+        return no_value(s, key, "the model has no elements", e);
+    if (i == CENTRE || i == CORNER)
+        info_put_number(i == CENTRE ? q.centre : q.corner, MODEL_F64, to);
+    if (i == FOLDED || i == ELEMENT)
+        out_format(to, "%" PRId64, i == FOLDED ? q.folded : q.element);
+    if (i == PLACE)
+        info_quality_place(s, q.element, place);
+    for (int a = 0; i == PLACE && a < 3; a++) {
+        out_text(to, a ? " " : "");
+        info_put_number(place[a], MODEL_F64, to);
+    }
+    return 0;
+}

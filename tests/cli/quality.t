@@ -1,0 +1,135 @@
+#!/bin/sh
+# Which elements are folded, and how much hourglass control holds: by sinew info against closed forms, at the end of a run and in its
+# log against sinew info, in pictures and VTU against VTK's own Jacobian; what is warned of, and what is not.
+. "$(dirname "$0")/lib.sh"
+. tests/cli/boxes.sh
+
+get() { # KEY FILE
+    sinew info --get "quality.$1" "$2" 2>&1
+}
+
+# ---- Closed forms. Two cubes of 10 cm; the node that is corner 6 of the second alone goes d of a side along each axis: J there is
+# 1 + 3 d, as I + d times ones has it, and 1 + 3 d / 4 in the middle.
+two() { # FRAME-LINES
+    awk -v nx=2 -v ny=1 -v nz=1 -v h=0.1 -v held=low -f tests/cli/block.awk | sed '/^end/d'
+    cat
+    echo end
+}
+pushed() { # D KAPPA
+    awk -v d="$1" 'BEGIN { print "frame 0 0\narray node.displacement f64 m node 3"
+        for (n = 0; n < 12; n++) print n == 11 ? d / 10 " " d / 10 " " d / 10 : "0 0 0" }' | two
+}
+for d in 0.3 -0.25 -0.34 -0.5; do
+    pushed "$d" >"$T/pushed"
+    near "$(get j.corner "$T/pushed")" "$(awk -v d=$d 'BEGIN { print d < 0 ? 1 + 3 * d : 1 }')" 1e-12 "a corner pushed by $d: J there"
+    near "$(get j.centre "$T/pushed")" "$(awk -v d=$d 'BEGIN { print d < 0 ? 1 + .75 * d : 1 }')" 1e-12 "and in the middle"
+    is "$(get folded "$T/pushed")" "$(awk -v d=$d 'BEGIN { print (1 + 3 * d <= 0) + 0 }')" "how many are folded"
+done
+is "$(get element "$T/pushed"); $(get place "$T/pushed" | awk '{ printf "%.12g %.12g %.12g", $1, $2, $3 }')" "1; 0.15 0.05 0.05" \
+    "which is the worst, and where it rests"
+is "$(sinew info "$T/pushed" | grep folded)" "  folded elements 1, the worst element 1 at 0.15 0.05 0.05: J -0.5 at a corner" "the summary says so"
+if have python3; then
+    is "$(sinew info --json "$T/pushed" | python3 -c 'import json, sys; q = json.load(sys.stdin)["last"]["quality"]; print(q["folded"], q["element"], q["j.corner"], q["j.centre"])')" \
+        "1 1 -0.5 0.625" "and JSON"
+else
+    skip 1 "no python3"
+fi
+pushed -0.25 >"$T/sound"
+is "$(sinew info "$T/sound" | grep -c folded)$(sinew info --json "$T/sound" | grep -c folded)" 00 "of nothing that is folded there is no word"
+awk -v nx=2 -v ny=1 -v nz=1 -v h=0.1 -f tests/cli/block.awk >"$T/rest"
+is "$(get j.centre "$T/rest") $(get j.corner "$T/rest") $(get folded "$T/rest")" "1 1 0" "at rest J is 1"
+is "$(get j.corner tests/golden/v1/tet.text)" "$(get j.centre tests/golden/v1/tet.text)" "tetrahedra have one J"
+
+# A shear of .2 in all (J 1, W = mu / 2 .04) and u_x = a (1, -1, 1, -1, ...) by the signs of xy in both cubes: modes of 8 a.
+{
+    sed '/^end/d; s/^meta source.unit.*/&\nmeta hourglass.kappa "0.0075"/' "$T/rest"
+    awk 'BEGIN { print "frame 0 0\narray node.displacement f64 m node 3"
+        for (k = 0; k < 2; k++) for (j = 0; j < 2; j++) for (i = 0; i < 3; i++)
+            printf "%.17g 0 0\n", .2 * .1 * k + .001 * ((i + j) % 2 ? -1 : 1) }
+        END { print "end" }' /dev/null
+} >"$T/twisted"
+near "$(get hourglass "$T/twisted")" "$(awk 'BEGIN { mu = 3000 / 2.9; wave = 3000 / .3 + 4 / 3 * mu; k = .0075 * wave * .001 * 150 / 8
+    print k / 2 * (8 * .001) ^ 2 / (mu / 2 * .04 * .001) }')" 1e-9 "hourglass energy over strain energy"
+fails 1 "of a run that does not say its coefficient" "quality.hourglass': hourglass energy is not known: the model has no metadata hourglass.kappa; it comes from tled-run" \
+    sinew info --get quality.hourglass "$T/pushed"
+fails 1 "without frames" "quality.hourglass': the model has no frames" sinew info --get quality.hourglass "$T/rest"
+fails 1 "of tetrahedra" "of hexahedra, and these elements have 4 nodes" sinew info --get quality.hourglass tests/golden/v1/tet.text
+for kappa in nan -1 inf '' '1 2' x; do
+    sed "s/^meta hourglass.kappa.*/meta hourglass.kappa \"$kappa\"/" "$T/twisted" >"$T/bad"
+    fails 1 "a coefficient of '$kappa'" 'hourglass.kappa' sinew info --get quality.hourglass "$T/bad"
+done
+fails 1 "no elements" "quality.folded': the model has no elements; they come from voxelise" sinew info --get quality.folded tests/golden/v1/empty.text
+fails 1 "a slip" "did you mean 'quality.j.centre'" sinew info --get quality.j.center "$T/rest"
+fails 1 "no such key" "expected one of these: quality.j.centre, quality.j.corner, quality.folded, quality.element, quality.place, quality.hourglass" \
+    sinew info --get quality.x "$T/rest"
+
+# ---- A run's log says what sinew info says of its frames, to the nine digits of a log.
+# logged NAME MODEL FOLDED ARG...: as many, at least, are folded at the end.
+logged() {
+    name=$1 model=$2 folded=$3
+    shift 3
+    tled-run -q -d cpu --every .02 --log "$T/log" --log-every .02 -o "$T/out" "$@" <"$model" 2>"$T/said"
+    cut -f 1,21- "$T/log" | sed 1d >"$T/rows"
+    sinew info --tsv quality.j.centre --tsv quality.j.corner --tsv quality.folded --tsv quality.hourglass "$T/out" | sed 1d | cut -f 2- >"$T/frames"
+    is "$(paste "$T/rows" "$T/frames" | awk '{ for (i = 1; i <= 5; i++) { d = $i - $(i + 5); if (d < 0) d = -d
+        s = $i < 0 ? -$i : $i; if (NF != 10 || d > 6e-9 * s) print } }')" "" "$name: the log and sinew info say the same, $(wc -l <"$T/rows" | tr -d ' ') times"
+    check "$name: $(get folded "$T/out") folded" test "$(get folded "$T/out")" -ge "$folded"
+}
+awk -v nx=10 -v ny=4 -v nz=4 -v h=0.0025 -v held=low -v muscle=1 -v nu=.49 -f tests/cli/block.awk >"$T/muscle"
+logged "a muscle" "$T/muscle" 1 -c all=1 -t .1
+is "$(head -n 1 "$T/log" | cut -f 21- | tr '\t' ' ')" "quality.j.centre quality.j.corner quality.folded quality.hourglass" "named as the keys"
+is "$(sinew info --tsv quality.place --tsv quality.folded --tsv quality.element "$T/out" | sed -n 1p | tr '\t' ' ')" \
+    "frame time/s quality.place.x/m quality.place.y/m quality.place.z/m quality.folded quality.element" "a table of frames has units"
+logged "single precision" "$T/muscle" 1 --precision single -c all=1 -t .1
+awk -v n=5 -f samples/ball.awk | sinew import -q --unit m -o "$T/ball" -
+logged "elements that are no boxes" "$T/ball" 1 -g 0,3,-30 -t .1
+{
+    box skin 0 0 0 47 23 23
+    box muscle_a 3 3 3 44 20 20
+    box skull -1 -1 -1 3 24 24
+} >"$T/parts.obj"
+printf 'skin surfaces=skin material=soft\nmuscle_a level=1 surfaces=muscle_a material=stiff\n' >"$T/volumes"
+printf 'soft E=3000 nu=0.45 density=1000\nstiff E=9000 nu=0.48 density=1500\n' >"$T/materials"
+voxelise -q --unit mm -s 5 --fraction 3 --volumes "$T/volumes" --materials "$T/materials" "$T/parts.obj" | attach -q >"$T/parts"
+is "$(sinew info "$T/parts" | grep -c -e 'element.fraction' -e 'element.mixture')" 2 "a model of parts of elements, and of mixed ones"
+logged "elements of two materials" "$T/parts" 0 -c a=1 -t .1
+
+# ---- What is said at the end, and warned of.
+line='smallest J -?[0-9.e-]* in the middle of an element, -?[0-9.e-]* at a corner; [0-9]* folded; hourglass energy [0-9.e-]* % of strain energy'
+check "a run that folds elements is none that failed" sh -c "tled-run -d cpu -c all=1 -t .1 -o '$T/out' <'$T/muscle'"
+cp "$T/stderr" "$T/folded"
+check "it says the smallest J" grep -Eq "^tled-run: $line\$" "$T/folded"
+is "$(sed -n 's/.*; \([0-9]*\) folded;.*/\1/p' "$T/folded") $(sed -n 's/.*warning: \([0-9]*\) of 160 elements .*/\1/p' "$T/folded")" \
+    "$(get folded "$T/out") $(get folded "$T/out")" "and how many are folded, as sinew info does"
+is "$(sed -n "s/.*folded at the end (J <= 0 in the middle or at a corner); the worst is element \([0-9]*\) (volume 'muscle_all') at .*m,.*m,.*m, J .*/\1/p" "$T/folded")" \
+    "$(get element "$T/out")" "the worst by number, volume and place"
+place=$(sed -n "s/.*the worst is element [0-9]* (volume 'muscle_all') at \([^ ]*\), J.*/\1/p" "$T/folded")
+is "$(sinew info --get "element.node.at.$place" "$T/out")" "$(sinew info --get "element.node.row.$(get element "$T/out")" "$T/out")" \
+    "a place that keys of sinew info take: $place"
+check "with what helps" grep -q 'warning: .*expected less load or contraction there, or a larger --hourglass$' "$T/folded"
+check "with -q" sh -c "tled-run -q -d cpu -c all=1 -t .1 -o '$T/out' <'$T/muscle'"
+is "$(grep -c . "$T/stderr") $(grep -c 'folded at the end' "$T/stderr")" "1 1" "the warning stays, the line does not"
+check "with a larger --hourglass" tled-run -d cpu --hourglass .1 -c all=1 -t .1 -o "$T/out" <"$T/muscle"
+is "$(grep -c -e folded "$T/stderr") $(get folded "$T/out")" "1 0" "none is folded, and none is warned of: that does help"
+printf '0 contract all 0\n.04 contract all 1\n.06 contract all 1\n.1 contract all 0\n' >"$T/script"
+check "a muscle that lets go" tled-run -q -d cpu --script "$T/script" -t .3 --every .02 -o "$T/out" <"$T/muscle"
+sinew info --tsv quality.folded --tsv quality.j.corner "$T/out" | awk -F '\t' 'NR > 1 && $3 > 0 { n++ } NR > 1 && $4 < least { least = $4; at = $2; many = $3 }
+    END { print n " of " NR - 1 " frames, worst at " at " s, " many " of 160;" }' >"$T/want"
+is "$(sed -n 's/.*elements are folded on the way (J <= 0 in the middle or at a corner), in \(.*;\) the worst is element [0-9]* .*/\1/p' "$T/stderr")" "$(cat "$T/want")" \
+    "what is folded in frames on the way is told: $(cat "$T/want")"
+is "$(get folded "$T/out") $(grep -c . "$T/stderr")" "0 1" "once, and nothing else: hourglass energy is little of what there was"
+check "a run that is killed" sh -c "tled-run -q -d cpu --script '$T/script' -t .3 --every .02 --checkpoint '$T/state' --checkpoint-every .1 <'$T/muscle' | head -c 100000 >/dev/null; test -e '$T/state'"
+check "and goes on" tled-run -q -d cpu --script "$T/script" -t .3 --every .02 --restart "$T/state" -o "$T/out" <"$T/muscle"
+is "$(grep -Fc "in $(cat "$T/want")" "$T/stderr")" 1 "says the same of all frames, with those from before"
+awk -v nx=6 -v ny=2 -v nz=1 -v h=0.005 -v held=low -f tests/cli/block.awk >"$T/thin"
+check "a strip one element thick that bends" tled-run -d cpu -g 0,0,-9.81 -t .1 -o "$T/out" <"$T/thin"
+share=$(get hourglass "$T/out" | awk '{ printf "%.3g", 100 * $1 }')
+is "$(grep -Ec "warning: hourglass energy is $share % of strain energy at the end, expected at most 10 %: .* element [0-9]* \(volume 'skin'\) at .*m,.*m,.*m holds the most of it, .*; expected smaller voxels\$" "$T/stderr")" \
+    1 "is past 10 %: $share %"
+check "four elements thick" sh -c "awk -v nx=24 -v ny=8 -v nz=4 -v h=0.00125 -v held=low -f tests/cli/block.awk | tled-run -d cpu -g 0,0,-9.81 -t .1 -o '$T/out'"
+is "$(grep -c warning "$T/stderr")" 0 "it is not ($(get hourglass "$T/out")): smaller voxels do help"
+check "a run in which nothing happens" tled-run -d cpu -n 3 -o "$T/out" <"$T/muscle"
+is "$(sed -n "s/.*\(smallest.*\)/\1/p" "$T/stderr"); $(grep -c warning "$T/stderr"); $(get hourglass "$T/out")" \
+    "smallest J 1 in the middle of an element, 1 at a corner; 0 folded; hourglass energy 0 % of strain energy; 0; 0" "has nothing to warn of"
+
+done_testing
