@@ -107,7 +107,7 @@ NDims = 3\
 ElementType = MET_UCHAR' && printf 'abcdefghijklabcdefghijklabcdefghijkl'
 } >"$T/a.mha"
 grep -q 1000000 "$T/a.mha" || diag "the sweep was not changed"
-little "a sweep with an image a kilometre away" 'far apart|more than memory' us-import --voxel 0.5mm "$T/a.mha"
+little "a sweep with an image a kilometre away" 'far apart|more than memory' us-import -q --voxel 0.5mm "$T/a.mha"
 
 # Meshes: what an OBJ points to and does not have, numbers as large as can be.
 printf 'v 0 0 0\nf 1 2147483648 4611686018427387904\n' >"$T/a.obj"
@@ -136,11 +136,11 @@ head_of() { # SYNTAX, of 18 bytes
 for syntax in '1.2.840.10008.1.2 ' '1.2.840.10008.1.2.' '1.2.              '; do
     for vr in OB UN UT '??' zz; do
         { head_of "$syntax" && bytes '\340\177\020\000' && printf '%s' "$vr" && bytes '\000\000\376\377\377\377ab'; } >"$T/a.dcm"
-        little "DICOM: ($syntax) $vr of 4 GiB" 'a.dcm: ' us-import "$T/a.dcm"
+        little "DICOM: ($syntax) $vr of 4 GiB" 'us-import: file 1 of 1: ' us-import "$T/a.dcm"
     done
 done
 { head_of '1.2.840.10008.1.2.' && bytes '\010\000\000\001UN\000\000\377\377\377\377\376\377\000\340\377\377\377\377\010\000\000\001\376\377\377\177ab'; } >"$T/a.dcm"
-little "DICOM: 2 GiB within an item within UN" 'a.dcm: ' us-import "$T/a.dcm"
+little "DICOM: 2 GiB within an item within UN" 'us-import: file 1 of 1: ' us-import "$T/a.dcm"
 if [ ! -f tests/fuzz/seeds/dicom/jpegbase ] || ! have perl; then
     skip 5 "no perl"
 else

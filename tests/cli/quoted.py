@@ -157,7 +157,7 @@ CASES = [  # name, text, command, standard input
     ("x.sinew", MODEL, ["sinew-info", "x.sinew"], None),
     ("x.nrrd", NRRD, ["us-surface", "-q", "-i", "1", "x.nrrd"], None),
     ("x.mha", META, ["us-surface", "-q", "-i", "1", "x.mha"], None),
-    ("s.mha", SWEEP, ["us-import", "-q", "--voxel", "1mm", "s.mha"], None),
+    ("s.mha", SWEEP, ["us-import", "-v", "--voxel", "1mm", "s.mha"], None),
     ("x.tum", POSES, ["msds-run", "-q", "-d", "cpu", "--probe", "sphere:1cm", "--poses", "x.tum"], "tets.sinew"),
     ("x.body", BODY, ["us-slice", "-q", "--rigid", "--poses", "none.tum", "--body", "x.body", "right.nrrd"], None),
     ("x.volumes", VOLUMES, VOXELISE + ["--materials", "right.materials", "--volumes", "x.volumes", "cube.obj"], None),
@@ -199,7 +199,7 @@ for name, text, command, given in CASES:
         open(name, "w").write(bad)
         source = open(given) if given else subprocess.DEVNULL
         done = subprocess.run(command, stdin=source, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, timeout=20)
-        said = done.stderr.decode("utf-8", "replace").split("\n")[0]
+        said = done.stderr.decode("utf-8", "replace").strip().split("\n")[-1]
         kind = re.sub(r"[\d.]+", "0", said)
         if done.returncode != 1 or kind in kinds:
             continue
