@@ -105,7 +105,7 @@ static int collect(rigid *r, const model *m, const names *patterns, err *e)
 {
     char name[MODEL_NAME];
     surface s;
-    for (int i = 0; model_surface(m, i, name, sizeof name); i++)
+    for (int at = 0; model_surface(m, &at, name, sizeof name);)
         if (surface_of(m, name, &s, e) || collect_surface(r, &s, patterns, e))
             return -1;
     if (r->primitives)
@@ -120,7 +120,7 @@ static int all_used(const names *patterns, const model *m, err *e)
     char name[MODEL_NAME];
     names all = {0};
     surface s;
-    for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
+    for (int at = 0; model_surface(m, &at, name, sizeof name);) {
         if (surface_of(m, name, &s, e))
             goto out;
         for (int64_t g = 0; g < s.groups; g++)

@@ -299,13 +299,13 @@ static int bind_carried(const tool *t, target *to, model *m, const struct option
     const char *source = model_meta_of(m, "source.unit");
     num_unit unit = source ? num_unit_of(source) : 0; /* for messages only */
     unit = unit ? unit : num_unit_of("m");
-    if (!model_surface(m, 0, name, sizeof name))
+    if (!model_surface(m, &(int){0}, name, sizeof name))
         return err_set(e, NULL, 0, "the model carries no surface; expected an OBJ: sinew bind surface.obj");
     if (o->name && !surface_there(m, o->name))
         return err_set(e, NULL, 0, "the model carries no surface %s; the first that it carries is %s", o->name, name);
     if (o->name)
         return bind_surface(t, to, m, o->name, unit, warnings, e);
-    for (int i = 0; model_surface(m, i, name, sizeof name); i++)
+    for (int at = 0; model_surface(m, &at, name, sizeof name);)
         if (bind_surface(t, to, m, name, unit, warnings, e))
             return -1;
     return 0;

@@ -1,6 +1,7 @@
 #include "msds/mesh_tets.h"
 
 #include "base/mem.h"
+#include "model/known.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -172,21 +173,18 @@ static int keep(split *s, const model *m, err *e)
 static void note_bound(const model *m, notes *warnings)
 {
     char name[MODEL_NAME], array[2 * MODEL_NAME];
-    for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
+    for (int at = 0; model_surface(m, &at, name, sizeof name);) {
         snprintf(array, sizeof array, "%s/vertex.element", name);
         if (model_find(m, array))
             notes_add(warnings, "surface %s is no longer bound: bind it to the tetrahedra", name);
     }
 }
 
-/* Weights in hexahedra mean nothing without the elements. */
-static void drop_weights(model *m)
+static bool is_weight(const model_array *a, const void *context)
 {
-    char name[MODEL_NAME], array[2 * MODEL_NAME];
-    for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
-        snprintf(array, sizeof array, "%s/vertex.weight", name);
-        model_remove(m, array);
-    }
+    const known *k = known_find(a->name);
+    (void)context;
+    return k && !strcmp(k->name, "*/vertex.weight");
 }
 
 int mesh_split(model *m, notes *warnings, err *e)
@@ -196,7 +194,7 @@ int mesh_split(model *m, notes *warnings, err *e)
     if (cut_cells(&s, m, e) || keep(&s, m, e) || !s.node)
         goto out;
     note_bound(m, warnings);
-    drop_weights(m);
+    model_remove_all(m, is_weight, NULL); /* in hexahedra, they mean nothing without the elements */
     model_axis_drop(m, "element", warnings);
     if (model_axis_add(m, "element", s.cells * MESH_TETS, e))
         goto out;

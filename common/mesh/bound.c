@@ -32,11 +32,11 @@ int bound_of(bound *b, const model *m, const char *name, err *e)
     return 1;
 }
 
-/* The i-th bound surface's name, or NULL past the last. */
-static const char *bound_name(const model *m, int at, char *name, size_t size)
+/* The next bound surface's name, as model_surface() has it. */
+static const char *next_bound(const model *m, int *at, char *name, size_t size)
 {
-    for (int i = 0; model_surface(m, i, name, size); i++)
-        if (is_bound(m, name) && !at--)
+    while (model_surface(m, at, name, size))
+        if (is_bound(m, name))
             return name;
     return NULL;
 }
@@ -46,13 +46,14 @@ static int nothing_fits(const model *m, const char *name, const obj *o, double s
 {
     char first[MODEL_NAME], second[MODEL_NAME];
     surface s;
-    if (!bound_name(m, 0, first, sizeof first))
-        return model_surface(m, 0, second, sizeof second)
+    int at = 0;
+    if (!next_bound(m, &at, first, sizeof first))
+        return model_surface(m, &(int){0}, second, sizeof second)
                    ? err_set(e, NULL, 0,
                              "the model carries surface %s, but it is not bound; expected a model from sinew bind",
                              second)
                    : err_set(e, NULL, 0, "the model carries no surface; expected a model from sinew bind");
-    if (bound_name(m, 1, second, sizeof second))
+    if (next_bound(m, &at, second, sizeof second))
         return err_set(e, o->name, 0, "is none of the bound surfaces (%s, %s, ...); expected the OBJ that was bound",
                        first, second);
     (void)name;
@@ -66,7 +67,7 @@ int bound_find(bound *b, const model *m, const char *name, const obj *o, double 
     surface s;
     if (is_bound(m, name) && !surface_of(m, name, &s, &differs) && !surface_is(&s, o, scale, &differs))
         return bound_of(b, m, s.name, e) < 0 ? -1 : 0;
-    for (int i = 0; bound_name(m, i, other, sizeof other); i++) {
+    for (int at = 0; next_bound(m, &at, other, sizeof other);) {
         err ignored = {0};
         if (surface_of(m, other, &s, e))
             return -1;

@@ -3,14 +3,13 @@
 #ifndef SINEW_NAMES_H
 #define SINEW_NAMES_H
 
-#include "base/err.h"
+#include "base/lookup.h"
 
 typedef struct names {
     char **name; /* each owned */
     int32_t count;
     int64_t room;
-    int32_t *slot; /* hash table of numbers: -1 = free */
-    int64_t slots; /* a power of two, or 0 */
+    lookup index;
 } names;
 
 /* The number of the name, which is added where it is new. -1 with e filled on no memory. */

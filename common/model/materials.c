@@ -172,14 +172,6 @@ int materials_default(model *m, err *e)
     return materials_make(m, &of, e);
 }
 
-static int refuse_duplicate(const keyfile *k, const row *rows, int64_t count, err *e)
-{
-    for (int64_t i = 0; i < count; i++)
-        if (!strcmp(rows[i].name, k->word[0]))
-            return keyfile_error(k, e, "material '%.200s' is given twice; expected each name once", k->word[0]);
-    return 0;
-}
-
 int materials_read(model *m, in *s, err *e)
 {
     return materials_read_with(m, s, NULL, e);
@@ -190,19 +182,26 @@ int materials_read_with(model *m, in *s, const material *fallback, err *e)
     material usual = materials_fallback();
     keyfile k;
     row *rows = NULL;
-    int64_t count = 0, capacity = 0;
+    lookup index = {0};
+    int32_t count = 0;
+    int64_t capacity = 0;
     int more, status = -1;
     keyfile_open(&k, s);
     while ((more = keyfile_next(&k, e)) > 0) {
-        if (parse_name(&k, e) || refuse_duplicate(&k, rows, count, e) ||
-            mem_grow(&rows, &capacity, count + 1, sizeof *rows, "materials", e))
+        if (parse_name(&k, e))
+            goto out;
+        if (lookup_find(&index, rows, sizeof *rows, k.word[0]) >= 0) {
+            keyfile_error(&k, e, "material '%.200s' is given twice; expected each name once", k.word[0]);
+            goto out;
+        }
+        if (mem_grow(&rows, &capacity, (int64_t)count + 1, sizeof *rows, "materials", e))
             goto out;
         row *r = &rows[count];
         *r = row_of(fallback ? fallback : &usual);
         if (!(r->name = mem_text(k.word[0], e)))
             goto out;
         count++;
-        if (row_parse(r, &k, e))
+        if (lookup_add(&index, rows, sizeof *rows, count, e) || row_parse(r, &k, e))
             goto out;
     }
     if (more < 0)
@@ -212,19 +211,20 @@ int materials_read_with(model *m, in *s, const material *fallback, err *e)
     else
         status = table_make(m, rows, count, e);
 out:
-    for (int64_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < count; i++)
         free(rows[i].name);
     free(rows);
+    lookup_free(&index);
     return status;
 }
 
-/* One line of an override. seen: 1 for the rows that had theirs. */
-static int override_line(model *m, keyfile *k, uint8_t *seen, err *e)
+/* One line of an override. index: of names' strings; seen: 1 for the rows that had theirs. */
+static int override_line(model *m, keyfile *k, const lookup *index, const model_array *names, uint8_t *seen, err *e)
 {
     row r = {0};
     if (parse_name(k, e))
         return -1;
-    int32_t at = materials_find(m, k->word[0]);
+    int32_t at = lookup_find(index, names->str, sizeof *names->str, k->word[0]);
     if (at < 0)
         return materials_unknown(m, k->word[0], k->name, k->line, e);
     if (seen[at]++)
@@ -236,16 +236,21 @@ int materials_override(model *m, in *s, err *e)
 {
     keyfile k;
     int more = -1;
+    lookup index = {0};
     const model_array *names = model_need(m, "material.name", e);
     uint8_t *seen = names ? mem_array(names->rows, 1, "materials", e) : NULL;
-    if (!seen)
+    int32_t rows = !names ? 0 : names->rows < INT32_MAX ? (int32_t)names->rows : INT32_MAX;
+    if (!seen || lookup_add(&index, names->str, sizeof *names->str, rows, e)) {
+        free(seen);
         return -1;
+    }
     keyfile_open(&k, s);
     while ((more = keyfile_next(&k, e)) > 0)
-        if (override_line(m, &k, seen, e)) {
+        if (override_line(m, &k, &index, names, seen, e)) {
             more = -1;
             break;
         }
+    lookup_free(&index);
     free(seen);
     return more;
 }

@@ -56,6 +56,7 @@ static void arrays_free(model_arrays *list)
     for (int i = 0; i < list->count; i++)
         model_array_free(&list->v[i]);
     free(list->v);
+    lookup_free(&list->index);
     *list = (model_arrays){0};
 }
 
@@ -76,6 +77,8 @@ void model_free(model *m)
     free(m->axes);
     free(m->blocks);
     free(m->stream);
+    lookup_free(&m->meta_index);
+    lookup_free(&m->axis_index);
     arrays_free(&m->arrays);
     *m = (model){0};
 }
@@ -86,24 +89,28 @@ void frame_free(frame *f)
     *f = (frame){0};
 }
 
-/* Room for one more in a list that has count things; the list's pointer is at `list`. */
-static int one_more(void *list, int count, size_t size, err *e)
+/* Room for one more in a list that has count things; the list's pointer is at `list`. Returns that room, or NULL. */
+static void *one_more(void *list, int count, size_t size, err *e)
 {
     /* Doubling by counts alone: room is made at each power of two. */
     int64_t capacity = count;
-    if (count & (count - 1))
-        return 0;
-    if (count > INT32_MAX / 2)
-        return err_memory(e, "the model");
-    return mem_grow(list, &capacity, count ? 2 * (int64_t)count : 16, size, "the model", e);
+    char *first;
+    if (!(count & (count - 1))) {
+        if (count > INT32_MAX / 2) {
+            err_memory(e, "the model");
+            return NULL;
+        }
+        if (mem_grow(list, &capacity, count ? 2 * (int64_t)count : 16, size, "the model", e))
+            return NULL;
+    }
+    memcpy(&first, list, sizeof first);
+    return first + (size_t)count * size;
 }
 
 static char **meta_at(const model *m, const char *key)
 {
-    for (int i = 0; i < m->metas; i++)
-        if (!strcmp(m->meta[i].key, key))
-            return &m->meta[i].value;
-    return NULL;
+    int i = lookup_find(&m->meta_index, m->meta, sizeof *m->meta, key);
+    return i < 0 ? NULL : &m->meta[i].value;
 }
 
 const char *model_meta_of(const model *m, const char *key)
@@ -128,13 +135,18 @@ int model_meta_set(model *m, const char *key, const char *value, err *e)
         return 0;
     }
     char *name = mem_text(key, e);
-    if (!name || one_more(&m->meta, m->metas, sizeof *m->meta, e)) {
-        free(name);
-        free(copy);
-        return -1;
-    }
-    m->meta[m->metas++] = (model_meta){name, copy};
+    model_meta *at = name ? one_more(&m->meta, m->metas, sizeof *m->meta, e) : NULL;
+    if (!at)
+        goto fail;
+    *at = (model_meta){name, copy};
+    if (lookup_add(&m->meta_index, m->meta, sizeof *m->meta, m->metas + 1, e))
+        goto fail;
+    m->metas++;
     return 0;
+fail:
+    free(name);
+    free(copy);
+    return -1;
 }
 
 int model_meta_numbers(const model *m, const char *key, double *value, int count, err *e)
@@ -181,22 +193,21 @@ int model_prov_add(model *m, const char *tool, const char *version, const char *
         return err_set(e, NULL, 0, "provenance of %s: %zu bytes; expected at most %" PRIu32, tool, size - 1,
                        UINT32_MAX);
     char *line = mem_array((int64_t)size, 1, "provenance", e);
-    if (!line || one_more(&m->prov, m->provs, sizeof *m->prov, e)) {
+    char **at = line ? one_more(&m->prov, m->provs, sizeof *m->prov, e) : NULL;
+    if (!at) {
         free(line);
         return -1;
     }
     snprintf(line, size, "%s %s%s%s", tool, version, *options ? " " : "", options);
     chars_mend(line);
-    m->prov[m->provs++] = line;
+    *at = line;
+    m->provs++;
     return 0;
 }
 
 static int axis_at(const model *m, const char *axis)
 {
-    for (int i = 0; i < m->axis_count; i++)
-        if (!strcmp(m->axes[i].name, axis))
-            return i;
-    return -1;
+    return lookup_find(&m->axis_index, m->axes, sizeof *m->axes, axis);
 }
 
 int64_t model_count(const model *m, const char *axis)
@@ -216,29 +227,34 @@ int model_axis_add(model *m, const char *axis, int64_t count, err *e)
     if (!check_name(axis) || count < 0)
         return err_set(e, NULL, 0, "axis '%.60s': expected a name of letters, digits and . _ - / and a count", axis);
     char *name = mem_text(axis, e);
-    if (!name || one_more(&m->axes, m->axis_count, sizeof *m->axes, e)) {
-        free(name);
-        return -1;
-    }
-    m->axes[m->axis_count++] = (model_axis){name, count};
+    model_axis *at = name ? one_more(&m->axes, m->axis_count, sizeof *m->axes, e) : NULL;
+    if (!at)
+        goto fail;
+    *at = (model_axis){name, count};
+    if (lookup_add(&m->axis_index, m->axes, sizeof *m->axes, m->axis_count + 1, e))
+        goto fail;
+    m->axis_count++;
     return 0;
+fail:
+    free(name);
+    return -1;
 }
 
 int model_block_take(model *m, model_block *b, err *e)
 {
-    if (one_more(&m->blocks, m->block_count, sizeof *m->blocks, e))
+    model_block *at = one_more(&m->blocks, m->block_count, sizeof *m->blocks, e);
+    if (!at)
         return -1;
-    m->blocks[m->block_count++] = *b;
+    *at = *b;
+    m->block_count++;
     *b = (model_block){0};
     return 0;
 }
 
 model_array *model_arrays_find(const model_arrays *list, const char *name)
 {
-    for (int i = 0; i < list->count; i++)
-        if (!strcmp(list->v[i].name, name))
-            return &list->v[i];
-    return NULL;
+    int i = lookup_find(&list->index, list->v, sizeof *list->v, name);
+    return i < 0 ? NULL : &list->v[i];
 }
 
 model_array *model_find(const model *m, const char *name)
@@ -267,12 +283,16 @@ model_array *model_arrays_take(model_arrays *list, model_array *a, err *e)
     model_array *at = model_arrays_find(list, a->name);
     if (at) {
         model_array_free(at);
+        *at = *a;
     } else {
-        if (one_more(&list->v, list->count, sizeof *list->v, e))
+        at = one_more(&list->v, list->count, sizeof *list->v, e);
+        if (!at)
             return NULL;
-        at = &list->v[list->count++];
+        *at = *a;
+        if (lookup_add(&list->index, list->v, sizeof *list->v, list->count + 1, e))
+            return NULL;
+        list->count++;
     }
-    *at = *a;
     *a = (model_array){0};
     return at;
 }
@@ -377,18 +397,42 @@ int model_set_text(model_array *a, int64_t at, const char *text, err *e)
     return 0;
 }
 
-static void remove_at(model *m, int i)
+void model_remove_all(model *m, bool goes(const model_array *a, const void *context), const void *context)
 {
-    model_array_free(&m->arrays.v[i]);
-    m->arrays.count--;
-    memmove(&m->arrays.v[i], &m->arrays.v[i + 1], (size_t)(m->arrays.count - i) * sizeof *m->arrays.v);
+    model_arrays *list = &m->arrays;
+    int kept = 0, had = list->count;
+    for (int i = 0; i < had; i++) {
+        if (goes(&list->v[i], context))
+            model_array_free(&list->v[i]);
+        else
+            list->v[kept++] = list->v[i];
+    }
+    list->count = kept;
+    if (kept < had)
+        lookup_again(&list->index, list->v, sizeof *list->v, kept);
+}
+
+static bool is_named(const model_array *a, const void *name)
+{
+    return !strcmp(a->name, name);
 }
 
 void model_remove(model *m, const char *name)
 {
-    model_array *a = model_find(m, name);
-    if (a)
-        remove_at(m, (int)(a - m->arrays.v));
+    char copy[MODEL_NAME];
+    snprintf(copy, sizeof copy, "%s", name); /* it may be the array's own */
+    if (model_find(m, name))
+        model_remove_all(m, is_named, copy);
+}
+
+static bool is_over(const model_array *a, const char *axis)
+{
+    return !strcmp(a->axis, axis);
+}
+
+static bool is_of_axis(const model_array *a, const void *axis)
+{
+    return is_over(a, axis) || (a->unit[0] == '@' && !strcmp(a->unit + 1, axis));
 }
 
 void model_axis_drop(model *m, const char *axis, notes *warnings)
@@ -396,29 +440,27 @@ void model_axis_drop(model *m, const char *axis, notes *warnings)
     int at = axis_at(m, axis);
     for (int i = m->arrays.count - 1; i >= 0; i--) {
         const model_array *a = &m->arrays.v[i];
-        bool over = !strcmp(a->axis, axis), to = a->unit[0] == '@' && !strcmp(a->unit + 1, axis);
-        if (!over && !to)
-            continue;
-        if (!known_find(a->name))
+        if (is_of_axis(a, axis) && !known_find(a->name))
             notes_add(warnings, "array %s is dropped: it %s axis %s, which changes", a->name,
-                      over ? "is over" : "points to", axis);
-        remove_at(m, i);
+                      is_over(a, axis) ? "is over" : "points to", axis);
     }
+    model_remove_all(m, is_of_axis, axis);
     if (at < 0)
         return;
     free(m->axes[at].name);
     m->axis_count--;
     memmove(&m->axes[at], &m->axes[at + 1], (size_t)(m->axis_count - at) * sizeof *m->axes);
+    lookup_again(&m->axis_index, m->axes, sizeof *m->axes, m->axis_count);
 }
 
-const char *model_surface(const model *m, int i, char *name, size_t size)
+const char *model_surface(const model *m, int *at, char *name, size_t size)
 {
     static const char end[] = "/vertex";
     size_t tail = sizeof end - 1;
-    for (int k = 0; k < m->axis_count; k++) {
-        const char *axis = m->axes[k].name;
+    while (*at < m->axis_count) {
+        const char *axis = m->axes[(*at)++].name;
         size_t n = strlen(axis);
-        if (n <= tail || strcmp(axis + n - tail, end) || known_users(axis) || i--)
+        if (n <= tail || strcmp(axis + n - tail, end) != 0 || known_users(axis))
             continue;
         snprintf(name, size, "%.*s", (int)(n - tail), axis);
         return name;

@@ -6,7 +6,7 @@
 #ifndef SINEW_MODEL_H
 #define SINEW_MODEL_H
 
-#include "base/err.h"
+#include "base/lookup.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -38,6 +38,7 @@ typedef struct model_array {
 typedef struct model_arrays {
     model_array *v;
     int count;
+    lookup index; /* of v */
 } model_arrays;
 
 typedef struct model_axis {
@@ -64,6 +65,7 @@ typedef struct model {
     model_arrays arrays;
     model_block *blocks;
     int metas, provs, axis_count, block_count;
+    lookup meta_index, axis_index;
     char *stream; /* the name of what it was read from, owned; NULL: it was made */
 } model;
 
@@ -123,13 +125,16 @@ int model_set_text(model_array *a, int64_t at, const char *text, err *e);
 
 void model_remove(model *m, const char *name);
 
+/* Removes every array that is to go, all at once. */
+void model_remove_all(model *m, bool goes(const model_array *a, const void *context), const void *context);
+
 /* For a tool that changes an axis (its count or its order): removes the axis and every array that is over it or
  * points to it, noting those that the known table lacks. */
 void model_axis_drop(model *m, const char *axis, notes *warnings);
 
-/* Surfaces carried: the names S of axes "S/vertex", but for the user's ("x-"). Returns the name of the i-th or NULL past the
- * last. */
-const char *model_surface(const model *m, int i, char *name, size_t size);
+/* Surfaces carried: the names S of axes "S/vertex", but for the user's ("x-"). *at, 0 at first, is how far the axes have been
+ * walked. Returns the name of the next, or NULL past the last. */
+const char *model_surface(const model *m, int *at, char *name, size_t size);
 
 /* The line of a row where the array was read as text, else 0: for messages. */
 static inline int64_t model_line(const model_array *a, int64_t row)

@@ -114,7 +114,7 @@ static int things_of(const work *w, const picture_panel *panel)
     char name[8];
     int things = panel->things & ~SHOWING_PROBE, some = SHOWING_MUSCLES | SHOWING_RIGID | SHOWING_CENTRES;
     if (!things && !(panel->names && w->p->spec->names))
-        things = model_surface(w->m, 0, name, sizeof name) ? SHOWING_SURFACES : SHOWING_VOXELS;
+        things = model_surface(w->m, &(int){0}, name, sizeof name) ? SHOWING_SURFACES : SHOWING_VOXELS;
     things |= panel->things & SHOWING_PROBE;
     return panel->what_there_is ? things & (~some | showing_there(w->m)) : things;
 }

@@ -246,7 +246,7 @@ static int note_names(const model *m, notes *there, err *e)
     char name[MODEL_NAME];
     for (int i = 0; i < SHOWING_THINGS; i++)
         notes_add(there, "%s", showing_things[i]);
-    for (int i = 0; model_surface(m, i, name, sizeof name); i++) {
+    for (int at = 0; model_surface(m, &at, name, sizeof name);) {
         surface s;
         if (surface_of(m, name, &s, e))
             return -1;
@@ -276,11 +276,11 @@ int showing_check_names(const model *m, const showing_want *w, err *e)
 int showing_surfaces(showing *b, const model *m, const showing_want *want, const double *at_nodes, err *e)
 {
     char name[MODEL_NAME];
-    if (!model_surface(m, 0, name, sizeof name))
+    if (!model_surface(m, &(int){0}, name, sizeof name))
         return err_set(e, NULL, 0,
                        "the model carries no surface; expected a model from voxelise or sinew bind, or "
                        "--show voxels");
-    for (int i = 0; model_surface(m, i, name, sizeof name); i++)
+    for (int at = 0; model_surface(m, &at, name, sizeof name);)
         if (add_surface(b, m, want, at_nodes, name, e) < 0)
             return -1;
     return 0;

@@ -13,7 +13,7 @@ static int no_surface(const model *m, const char *name, err *e)
 {
     char one[MODEL_NAME];
     notes names = {0};
-    for (int i = 0; model_surface(m, i, one, sizeof one); i++)
+    for (int at = 0; model_surface(m, &at, one, sizeof one);)
         notes_add(&names, "%s", one);
     near_option(e, NULL, "surface", name, (const char *const *)names.line, names.count);
     notes_free(&names);

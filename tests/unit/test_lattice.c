@@ -45,7 +45,7 @@ static void metadata(void)
     model_free(&m);
 }
 
-static void lookup(void)
+static void find_places(void)
 {
     err e = {0};
     model m = {0};
@@ -99,7 +99,7 @@ static void refused(void)
 int main(void)
 {
     metadata();
-    lookup();
+    find_places();
     refused();
     for (int n = 0; n < 8; n++) /* VTK_HEXAHEDRON: round the bottom, then round the top */
         ok(lattice_vtk[n][0] == (n % 4 == 1 || n % 4 == 2) && lattice_vtk[n][1] == (n % 4 > 1) &&

@@ -174,15 +174,16 @@ static void test_surfaces(void)
     model m = {0};
     err e = {0};
     char name[64];
+    int at = 0;
     model_axis_add(&m, "node", 3, &e);
     model_axis_add(&m, "a/vertex", 3, &e);
     model_axis_add(&m, "/vertex", 3, &e);
     model_axis_add(&m, "a/face", 3, &e);
     model_axis_add(&m, "x-b/vertex", 3, &e);
     model_axis_add(&m, "b/c/vertex", 3, &e);
-    ok(model_surface(&m, 0, name, sizeof name) && !strcmp(name, "a"), "the first surface");
-    ok(model_surface(&m, 1, name, sizeof name) && !strcmp(name, "b/c"), "the second, with a slash in its name");
-    ok(!model_surface(&m, 2, name, sizeof name), "no third: one that begins x- is the user's");
+    ok(model_surface(&m, &at, name, sizeof name) && !strcmp(name, "a"), "the first surface");
+    ok(model_surface(&m, &at, name, sizeof name) && !strcmp(name, "b/c"), "the second, with a slash in its name");
+    ok(!model_surface(&m, &at, name, sizeof name), "no third: one that begins x- is the user's");
     model_free(&m);
 }
 

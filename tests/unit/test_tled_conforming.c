@@ -38,6 +38,7 @@ static void forget_lattice(model *m)
         free(m->meta[i].value);
     }
     m->metas = 0;
+    lookup_free(&m->meta_index);
 }
 
 /* by: of a side, how far nodes inside may move along each axis; outer ones stay on their planes where nothing is asked of them. */
