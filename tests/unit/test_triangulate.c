@@ -272,6 +272,122 @@ static void test_large(void)
     check_disc(&p, "scribble");
 }
 
+/* ---- the definition, at its plainest: every question looks at every corner that is left */
+
+typedef struct plain {
+    const double (*at)[2];
+    int32_t left[MOST]; /* corners, in order */
+    bool maybe[MOST];   /* by place in left */
+    int count, doubted;
+} plain;
+
+static double plain_area(const plain *p, int a, int b, int c)
+{
+    const double *x = p->at[p->left[a]], *y = p->at[p->left[b]], *z = p->at[p->left[c]];
+    return (y[0] - x[0]) * (z[1] - x[1]) - (y[1] - x[1]) * (z[0] - x[0]);
+}
+
+static bool plain_same(const plain *p, int a, int b)
+{
+    return !memcmp(p->at[p->left[a]], p->at[p->left[b]], sizeof *p->at);
+}
+
+static bool plain_ear(const plain *p, int b)
+{
+    int a = (b + p->count - 1) % p->count, c = (b + 1) % p->count;
+    bool ear = plain_area(p, a, b, c) > 0;
+    for (int d = 0; d < p->count && ear; d++)
+        ear = d == a || d == b || d == c || plain_same(p, a, d) || plain_same(p, b, d) || plain_same(p, c, d) ||
+              !(plain_area(p, a, b, d) >= 0 && plain_area(p, b, c, d) >= 0 && plain_area(p, c, a, d) >= 0);
+    return ear;
+}
+
+static int plain_least(const plain *p)
+{
+    int best = 0;
+    double least = INFINITY;
+    for (int i = 0; i < p->count; i++) {
+        double s = fabs(plain_area(p, (i + p->count - 1) % p->count, i, (i + 1) % p->count));
+        if (s < least)
+            best = i, least = s;
+    }
+    return best;
+}
+
+static int plain_next(plain *p, int i)
+{
+    for (;;) {
+        for (int k = 0; k < p->count; k++, i = (i + 1) % p->count) {
+            if (p->maybe[i] && plain_ear(p, i))
+                return i;
+            p->maybe[i] = false;
+        }
+        if (p->count >= p->doubted - p->doubted / 16)
+            return plain_least(p);
+        memset(p->maybe, true, sizeof p->maybe);
+        p->doubted = p->count;
+    }
+}
+
+/* Of a polygon that runs anticlockwise in the plane of x and y. */
+static void plain_cut(const double (*at)[2], int count, int32_t *triangle)
+{
+    static plain p;
+    p.at = at;
+    p.count = p.doubted = count;
+    memset(p.maybe, true, sizeof p.maybe);
+    for (int i = 0; i < count; i++)
+        p.left[i] = i;
+    for (int i = 1; p.count > 2; triangle += 3) {
+        i = p.count > 3 ? plain_next(&p, i % p.count) : 1;
+        int before = (i + p.count - 1) % p.count, next = (i + 1) % p.count;
+        triangle[0] = p.left[before], triangle[1] = p.left[i], triangle[2] = p.left[next];
+        p.maybe[before] = p.maybe[next] = true;
+        memmove(&p.left[i], &p.left[i + 1], (size_t)(p.count - i - 1) * sizeof *p.left);
+        memmove(&p.maybe[i], &p.maybe[i + 1], (size_t)(p.count - i - 1));
+        p.count--;
+    }
+}
+
+/* A corner of the sort of polygon that round tells: stars, scribbles, on a grid, through one place, far apart by turns. */
+static void place_plain(int round, int i, int count, double *at)
+{
+    double angle = 2 * M_PI * i / count, r = .1 + rand() / (double)RAND_MAX;
+    double x[] = {r * cos(angle), rand() % 1000, rand() % 9, i % 3 ? cos(angle) : 0, ldexp(r, -(rand() % 60)), i / 2};
+    double y[] = {r * sin(angle),           rand() % 1000, rand() % 9, i % 3 ? sin(angle) : 0,
+                  ldexp(r, -(rand() % 60)), i * i % 5};
+    at[0] = x[round % 6], at[1] = y[round % 6];
+}
+
+static void test_plain(void)
+{
+    static polygon p;
+    static double at[MOST][2];
+    static int32_t want[3 * MOST];
+    int wrong = 0, rounds = 240;
+    srand(11);
+    for (int round = 0; round < rounds; round++) {
+        int count = round % 4 ? 4 + rand() % 120 : 257 + rand() % 300;
+        double area = 0;
+        p.count = 0;
+        for (int i = 0; i < count; i++)
+            place_plain(round, i, count, at[i]);
+        for (int i = 1; i + 1 < count; i++)
+            area +=
+                (at[i][0] - at[0][0]) * (at[i + 1][1] - at[0][1]) - (at[i][1] - at[0][1]) * (at[i + 1][0] - at[0][0]);
+        for (int i = 0; i < count; i++) {
+            double x = at[i][0];
+            at[i][0] = area < 0 ? at[i][1] : x; /* as triangulate() looks from the other side */
+            at[i][1] = area < 0 ? x : at[i][1];
+            add(&p, area < 0 ? at[i][1] : at[i][0], area < 0 ? at[i][0] : at[i][1]);
+        }
+        cut(&p);
+        plain_cut((const double(*)[2])at, count, want);
+        wrong += memcmp(p.triangle, want, 3 * (size_t)(count - 2) * sizeof *want) != 0;
+    }
+    ok(!wrong, "%d polygons, crossed ones too: the very triangles of the plain algorithm; %d wrong", rounds, wrong);
+}
+
 int main(void)
 {
     test_simple();
@@ -279,6 +395,7 @@ int main(void)
     test_collinear();
     test_hopeless();
     test_random();
+    test_plain();
     test_large();
     return done_testing();
 }

@@ -1,0 +1,169 @@
+/* Time grows with what is read, not with its square: eight times as much takes eight times as long, and not sixty-four. Of a
+ * processor's time, and the least of several runs, so that a busy machine changes little. */
+#include "mesh/triangulate.h"
+#include "streams.h"
+#include "tap.h"
+
+#include <time.h>
+
+enum { FEW = 2000, MANY = 8 * FEW, RUNS = 3 };
+
+/* The geometric mean of 8 and 64. */
+static const double most = 22.6;
+
+typedef struct text {
+    char *at;
+    size_t n;
+} text;
+
+SINEW_PRINTF(2, 3) static void put(text *t, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    t->n += (size_t)vsprintf(t->at + t->n, format, list);
+    va_end(list);
+}
+
+/* Models of so many names. */
+
+static void put_meta(text *t, int count)
+{
+    for (int i = 0; i < count; i++)
+        put(t, "meta k%d \"v\"\n", i);
+}
+
+static void put_axes(text *t, int count)
+{
+    for (int i = 0; i < count; i++)
+        put(t, "axis k%d/vertex 0\n", i);
+}
+
+static void put_arrays(text *t, int count)
+{
+    put(t, "axis n 1\n");
+    for (int i = 0; i < count; i++)
+        put(t, "array k%d u8 1 n 1\n1\n", i);
+}
+
+static void put_frame(text *t, int count)
+{
+    put(t, "axis n 1\nframe 0 0\n");
+    for (int i = 0; i < count; i++)
+        put(t, "array k%d u8 1 n 1\n1\n", i);
+}
+
+/* Walks over the surfaces and drops an axis: each looks at all that there is. */
+static void use(const void *model_text, size_t size, err *e)
+{
+    char name[MODEL_NAME];
+    model m = {0};
+    in *s = in_memory(model_text, size, "stdin", e);
+    model_reader *r = s ? model_reader_open(s, e) : NULL;
+    if (r && !model_read(r, &m, e)) {
+        for (int at = 0; model_surface(&m, &at, name, sizeof name);)
+            model_find(&m, name);
+        model_axis_drop(&m, "n", NULL);
+    }
+    model_reader_close(r);
+    in_close(s);
+    model_free(&m);
+}
+
+static double read_time(void (*fill)(text *t, int count), int count, err *e)
+{
+    double least = INFINITY;
+    text t = {malloc(40 * (size_t)count + 100), 0};
+    put(&t, "%%sinew 1 text\n");
+    fill(&t, count);
+    put(&t, "end\n");
+    for (int run = 0; run < RUNS; run++) {
+        clock_t from = clock();
+        bytes b = convert(t.at, t.n, false, e);
+        use(t.at, t.n, e);
+        least = fmin(least, (double)(clock() - from));
+        free(b.at);
+    }
+    free(t.at);
+    return least;
+}
+
+static void test_names(void)
+{
+    static const struct {
+        const char *what;
+        void (*fill)(text *t, int count);
+    } all[] = {{"meta lines", put_meta}, {"axes", put_axes}, {"arrays", put_arrays}, {"arrays of a frame", put_frame}};
+    for (int i = 0; i < (int)(sizeof all / sizeof *all); i++) {
+        err e = {0};
+        double few = read_time(all[i].fill, FEW, &e), many = read_time(all[i].fill, MANY, &e);
+        ok(!e.status && many < most * few, "%d %s take %.3g times as long as %d %s", MANY, all[i].what, many / few, FEW,
+           e.text);
+    }
+}
+
+/* Polygons of so many corners. */
+
+static void star(double *p, int i, int count)
+{
+    double r = i % 2 ? 1 : .05, angle = 2 * M_PI * i / count;
+    p[0] = r * cos(angle), p[1] = r * sin(angle);
+}
+
+static void one_centre(double *p, int i, int count)
+{
+    double r = i % 3 ? 1 : 0, angle = 2 * M_PI * i / count;
+    p[0] = r * cos(angle), p[1] = r * sin(angle);
+}
+
+static void to_and_fro(double *p, int i, int count)
+{
+    p[0] = (double)((int64_t)i * i % 7 + count), p[1] = 0;
+}
+
+static void scribble(double *p, int i, int count)
+{
+    p[0] = (double)((int64_t)i * 7919 % 10007), p[1] = (double)((int64_t)i * 104729 % (count + 1));
+}
+
+static double cut_time(void (*place)(double *p, int i, int count), int count, err *e)
+{
+    double least = INFINITY, *p = calloc((size_t)count, 3 * sizeof *p);
+    int32_t *corner = malloc((size_t)count * sizeof *corner), *triangle = malloc((size_t)count * 3 * sizeof *triangle);
+    for (int i = 0; i < count; i++) {
+        corner[i] = i;
+        place(&p[(size_t)i * 3], i, count);
+    }
+    for (int run = 0; run < RUNS; run++) {
+        clock_t from = clock();
+        triangulate(p, corner, count, triangle, e);
+        least = fmin(least, (double)(clock() - from));
+    }
+    free(p);
+    free(corner);
+    free(triangle);
+    return least;
+}
+
+static void test_polygons(void)
+{
+    static const struct {
+        const char *what;
+        void (*place)(double *p, int i, int count);
+    } all[] = {{"a star", star},
+               {"a rosette through one place", one_centre},
+               {"a line to and fro", to_and_fro},
+               {"a scribble", scribble}};
+    for (int i = 0; i < (int)(sizeof all / sizeof *all); i++) {
+        err e = {0};
+        double few = cut_time(all[i].place, FEW, &e), many = cut_time(all[i].place, MANY, &e);
+        ok(!e.status && many < most * few, "%s of %d corners takes %.3g times as long as of %d %s", all[i].what, MANY,
+           many / few, FEW, e.text);
+    }
+}
+
+int main(void)
+{
+    test_names();
+    test_polygons();
+    return done_testing();
+}
