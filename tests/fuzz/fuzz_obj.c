@@ -61,7 +61,7 @@ static void cut(const obj *o)
     err e = {0};
     for (int64_t f = 0; f < o->faces; f++) {
         int64_t count = o->face_start[f + 1] - o->face_start[f];
-        if (count < 3 || count > 4000)
+        if (count < 3)
             continue;
         int32_t *triangle = malloc(3 * (size_t)(count - 2) * sizeof *triangle);
         if (!triangle || triangulate(o->position, o->corner_vertex + o->face_start[f], count, triangle, &e))
