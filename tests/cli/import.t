@@ -197,7 +197,13 @@ bad "wedges" "19: elements of type 'C3D6'" 's/type=C3D8R/type=C3D6/'
 bad "second order" "19: elements of type 'C3D20R'; expected hexahedra" 's/type=C3D8R/type=C3D20R/'
 bad "no number" "7: 'x'; expected a node's number" 's/^   2,  10/   2,  x/'
 bad "no such node" "[0-9]*: no node has the number 77" 's/^1, 7,/1, 77,/'
-bad "a node twice" "" 's/^  13,/  12,/'
+# Numbers that stand twice, where all else is sound: side by side, far apart, at another place, in another block.
+bad "a node twice" "12: a node.s number a second time; expected one of its own for each" "/^ *12,/p"
+bad "a node once more, elsewhere" " node 12 is given twice" '/^ *14,/a12, 7, 8, 9'
+# shellcheck disable=SC2016 # sed's $
+bad "a node in a block of its own" " node 2 is given twice" '$a*NODE\n2, 1, 1, 1'
+bad "an element twice" " element 1 is given twice; expected a number of its own for each" '/^1, 7, 2/{N;p;}'
+bad "an element's number for another" " element 1 is given twice" 's/^20, 105/1, 105/'
 bad "an element cut short" "2[0-9]: an element of 6 numbers; expected its own and 8" '/^12, 13, 14$/d'
 bad "inside out" "[0-9]*: element 0 is inside out" 's/^1, 7, 2, 3, 4, 105,/1, 105, 12, 13, 14, 7,/;s/^12, 13, 14$/2, 3, 4/'
 bad "collapsed" "[0-9]*: element 0 has one node at two" 's/^1, 7, 2, 3, 4/1, 7, 2, 3, 3/'
@@ -229,6 +235,8 @@ badmsh "no number" "12: y; expected a number" 's/^1 0 0 0$/1 0 y 0/'
 badmsh "a node that is not there" "27: no node has the number 99" 's/^1 5 2 1 1 1/1 5 2 1 1 99/'
 badmsh "too many nodes said" "[0-9]*: .EndNodes; expected a whole number" '11s/12/13/'
 badmsh "too few said" "[0-9]*: more in a section" '11s/12/11/'
+badmsh "a node twice" " node 3 is given twice" 's/^4 /3 /'
+badmsh "a node of the last's number" " node 12 is given twice" 's/^11 \([^ ]* [^ ]* [^ ]*\)$/12 \1/'
 badmsh "cut" "28: the file ends in the middle" '29,999d'
 badvtu() {
     sed "$3" "$T/ascii.vtu" >"$T/bad.vtu"
