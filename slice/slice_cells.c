@@ -29,87 +29,112 @@ static uint8_t grey(double x, slice_window w)
     return share > 0 ? (uint8_t)lrint(fmin(share, 1) * 255) : 0; /* also for a nan */
 }
 
-/* The voxels in 8 bits: the volume's own, where it has them, or *made, which the caller frees. */
-static const uint8_t *voxels(const volume *v, slice_window w, uint8_t **made, err *e)
+/* The voxels in 8 bits, at the beginning of their own memory. */
+static void to_bytes(volume *v, slice_window w)
 {
-    *made = NULL;
+    uint8_t *to = v->data;
     if (v->type == VOLUME_U8 && w.low == 0 && w.high == 255)
-        return v->data;
-    *made = mem_array(volume_count(v), 1, "a volume in 8 bits", e);
-    for (int64_t i = 0, n = *made ? volume_count(v) : 0; i < n; i++)
-        (*made)[i] = grey(volume_value(v, i), w);
-    return *made;
+        return;
+    for (int64_t i = 0, n = volume_count(v); i < n; i++)
+        to[i] = grey(volume_value(v, i), w);
 }
 
+enum { BRICK = 9, PAST = 16 }; /* bytes of a brick for each x; that the last load may read past the end */
+
+/* Bricks along y and along z; after these a layer of them is black. */
+static int64_t bricks(int64_t size)
+{
+    return (size + 2) / 2;
+}
+
+static double bytes_of(const volume *v)
+{
+    return BRICK * (double)(v->size[0] + 2) * (double)bricks(v->size[1]) * (double)(bricks(v->size[2]) + 1) + PAST;
+}
+
+double slice_cells_peak(const volume *v)
+{
+    return fmax((double)volume_count(v) * (double)volume_type_size(v->type), bytes_of(v));
+}
+
+/* A layer of bricks that is made; the voxels wait at the end of the same memory. */
 typedef struct laying {
     const slice_cells *c;
     const uint8_t *voxel;
+    int64_t z;
 } laying;
 
-static int32_t within(int32_t at, int32_t size)
+static int64_t within(int64_t at, int64_t size)
 {
     return at < 0 ? 0 : at < size ? at : size - 1;
 }
 
-/* A row of cells from the four rows of voxels around it. */
-static void lay_row(uint64_t *word, const uint8_t *const around[4], int32_t size)
+/* A brick from its nine rows of voxels, of which the first and the last go on past their ends. */
+static void lay_brick(const uint8_t *const row[BRICK], int64_t size, uint8_t *to)
 {
-    for (int32_t x = 0; x <= size; x++) {
-        const int32_t left = within(x - 1, size), right = within(x, size);
-        uint64_t w = 0;
-        for (int i = 3; i >= 0; i--)
-            w = w << 16 | (uint64_t)around[i][right] << 8 | (uint64_t)around[i][left];
-        word[x] = w;
-    }
+    for (int64_t x = 0; x < size; x++)
+        for (int i = 0; i < BRICK; i++)
+            to[BRICK * (x + 1) + i] = row[i][x];
+    memcpy(to, to + BRICK, BRICK);
+    memcpy(to + BRICK * (size + 1), to + BRICK * size, BRICK);
 }
 
-static void lay(void *context, int64_t chunk, int64_t from, int64_t to)
+static void lay_bricks(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const laying *l = context;
     const int32_t *size = l->c->size;
     (void)chunk;
-    for (int64_t z = from; z < to; z++)
-        for (int32_t y = 0; y <= size[1]; y++) {
-            const uint8_t *around[4];
-            for (int i = 0; i < 4; i++)
-                around[i] = l->voxel + size[0] * ((int64_t)size[1] * within((int32_t)z - 1 + i / 2, size[2]) +
-                                                  within(y - 1 + i % 2, size[1]));
-            lay_row(l->c->word + z * l->c->layer + (int64_t)y * l->c->row, around, size[0]);
-        }
+    for (int64_t y = from; y < to; y++) {
+        const uint8_t *row[BRICK];
+        for (int i = 0; i < BRICK; i++)
+            row[i] = l->voxel +
+                     size[0] * (size[1] * within(2 * l->z - 1 + i / 3, size[2]) + within(2 * y - 1 + i % 3, size[1]));
+        lay_brick(row, size[0], l->c->byte + (size_t)l->z * l->c->layer + (size_t)y * l->c->row);
+    }
 }
 
-int slice_cells_make(slice_cells *c, const volume *v, slice_window w, pool *threads, err *e)
+/* Layer by layer from the first: a layer of bricks is larger than its two of voxels, and the black one is free until the end; so that layer z
+ * ends before voxels 2 z - 1 begin. */
+static void lay(slice_cells *c, int64_t bytes, int64_t voxels, pool *threads)
+{
+    const int64_t layers = bricks(c->size[2]);
+    laying l = {c, memmove(c->byte + bytes - voxels, c->byte, (size_t)voxels), 0};
+    for (; l.z < layers; l.z++)
+        pool_run(threads, bricks(c->size[1]), 16, lay_bricks, &l);
+    memset(c->byte + (size_t)layers * c->layer, 0, (size_t)(bytes - layers * c->layer));
+}
+
+int slice_cells_make(slice_cells *c, volume *v, slice_window w, pool *threads, err *e)
 {
     enum { SIDE_MOST = 32000 };
-    volume_finder f = volume_finder_of(v);
-    uint8_t *made;
-    double words = (double)(v->size[2] + 2); /* a layer of them black */
+    const volume_finder f = volume_finder_of(v);
+    const double bytes = bytes_of(v);
     *c = (slice_cells){0};
     for (int a = 0; a < 3; a++) {
         if (v->size[a] > SIDE_MOST)
             return err_set(e, NULL, 0, "the volume has %lld voxels along an axis; expected at most %d",
                            (long long)v->size[a], SIDE_MOST);
         c->size[a] = (int32_t)v->size[a];
-        words *= a < 2 ? (double)(v->size[a] + 1) : 1;
     }
-    if (words > INT32_MAX)
-        return err_set(e, NULL, 0, "the volume has %.3g voxels; expected at most 2e9", words);
+    if (bytes > UINT32_MAX)
+        return err_set(e, NULL, 0, "the volume has %.3g voxels; expected at most 1.9e9", (double)volume_count(v));
     memcpy(c->origin, f.origin, sizeof c->origin);
     memcpy(c->axis, f.row, sizeof c->axis);
-    c->row = c->size[0] + 1;
-    c->layer = c->row * (c->size[1] + 1);
-    c->black = (c->size[2] + 1) * SLICE_ONE;
-    c->word = mem_array((int64_t)words, sizeof *c->word, "a volume's cells", e);
-    const uint8_t *voxel = c->word ? voxels(v, w, &made, e) : NULL;
-    if (!voxel)
-        return -1;
-    pool_run(threads, c->size[2] + 1, 4, lay, &(laying){c, voxel});
-    free(made);
+    c->row = BRICK * (uint32_t)(c->size[0] + 2);
+    c->layer = c->row * (uint32_t)bricks(c->size[1]);
+    c->black = 2 * (int32_t)bricks(c->size[2]) * SLICE_ONE;
+    to_bytes(v, w);
+    c->byte = realloc(v->data, (size_t)bytes);
+    if (!c->byte)
+        return err_memory(e, "a volume's cells");
+    v->data = NULL;
+    mem_large(c->byte, (size_t)bytes);
+    lay(c, (int64_t)bytes, volume_count(v), threads);
     return 0;
 }
 
 void slice_cells_free(slice_cells *c)
 {
-    free(c->word);
+    free(c->byte);
     *c = (slice_cells){0};
 }

@@ -12,12 +12,13 @@ static const uint8_t colours[][3] = {{213, 94, 0},  {86, 180, 233},  {0, 158, 11
 
 enum { COLOURS = sizeof colours / sizeof *colours };
 
-static int take_voxels(slice_overlay *o, const volume *labels, err *e)
+/* Colours in the place of labels, in the map's own memory. */
+static int take_voxels(slice_overlay *o, volume *labels, err *e)
 {
     samples_label *list = NULL;
     const int64_t count = samples_labels(labels, &list, e), voxels = volume_count(labels);
-    o->voxel = count >= 0 ? mem_array(voxels, 1, "labels", e) : NULL;
-    for (int64_t i = 0; o->voxel && i < voxels; i++) {
+    uint8_t *to = labels->data;
+    for (int64_t i = 0; count >= 0 && i < voxels; i++) {
         const int64_t value = (int64_t)volume_value(labels, i);
         int64_t low = 0, high = count; /* list[low - 1] < value <= list[high] */
         while (value && low < high) {
@@ -27,10 +28,15 @@ static int take_voxels(slice_overlay *o, const volume *labels, err *e)
             else
                 high = middle;
         }
-        o->voxel[i] = (uint8_t)(value ? 1 + low % COLOURS : 0);
+        to[i] = (uint8_t)(value ? 1 + low % COLOURS : 0);
     }
     free(list);
-    return o->voxel ? 0 : -1;
+    if (count < 0)
+        return -1;
+    uint8_t *less = realloc(to, (size_t)voxels);
+    o->voxel = less ? less : to;
+    labels->data = NULL;
+    return 0;
 }
 
 /* The inverse of cells->axis: cells to metres. */
@@ -48,7 +54,7 @@ static void invert(double m[3][3], double to[3][3])
             to[a][b] /= six;
 }
 
-int slice_overlay_make(slice_overlay *o, const volume *labels, const slice_cells *c, slice_size size, err *e)
+int slice_overlay_make(slice_overlay *o, volume *labels, const slice_cells *c, slice_size size, err *e)
 {
     volume_finder f = volume_finder_of(labels);
     double axis[3][3], back[3][3], zero[3], place[3];

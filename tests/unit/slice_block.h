@@ -8,6 +8,8 @@
 
 #include "slice/slice_cutter.h"
 
+#include <string.h>
+
 typedef struct slice_block {
     volume v;
     model m;
@@ -36,7 +38,10 @@ static inline void block_make(slice_block *b, const int32_t nodes[3], double ben
     for (int64_t i = 0; i < volume_count(&b->v); i++)
         ((uint8_t *)b->v.data)[i] = (uint8_t)block_random(&seed);
     tets_make(&t, &b->m);
-    tets_must(!slice_cells_make(&b->cells, &b->v, slice_window_of(&b->v), threads, &e) &&
+    volume laid = b->v; /* whose voxels the cells take */
+    tets_must(!volume_make(&laid, &e), &e);
+    memcpy(laid.data, b->v.data, (size_t)volume_count(&laid));
+    tets_must(!slice_cells_make(&b->cells, &laid, slice_window_of(&laid), threads, &e) &&
                   !slice_mesh_of(&b->mesh, &b->m, &b->cells, "block", &e),
               &e);
     b->u = calloc((size_t)b->mesh.nodes * 3, sizeof *b->u);

@@ -195,6 +195,70 @@ static void test_folded(pool *threads)
     block_free(&b);
 }
 
+/* Linear between the voxels of a volume of 8 bits, at a place in cells. */
+static double linear(const uint8_t *voxel, const int64_t size[3], const int32_t at[3])
+{
+    double sum = 0;
+    for (int c = 0; c < 8; c++) {
+        double weight = 1;
+        int64_t index = 0;
+        for (int a = 2; a >= 0; a--) {
+            const int32_t cell = at[a] >> 16;
+            const double share = (at[a] & 0xffff) / 65536.;
+            int64_t i = cell - 1 + (c >> a & 1);
+            i = i < 0 ? 0 : i < size[a] ? i : size[a] - 1;
+            weight *= c >> a & 1 ? share : 1 - share;
+            index = index * size[a] + i;
+        }
+        sum += weight * voxel[index];
+    }
+    return sum;
+}
+
+/* Samples at random places of a volume, with its ends and one row of odd length, against the definition; by each set of instructions. */
+static void test_cells(const int64_t size[3], volume_type type, pool *threads)
+{
+    enum { PLACES = 2003 };
+    static const char *const vectors[] = {"plain", "AVX2", "AVX-512"};
+    static int32_t at[3][PLACES];
+    static uint8_t first[PLACES], got[PLACES], voxel[4096];
+    err e = {0};
+    uint32_t seed = 11;
+    slice_cells c;
+    volume v = {.type = type, .size = {size[0], size[1], size[2]}, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    tets_must(!volume_make(&v, &e), &e);
+    for (int64_t i = 0; i < volume_count(&v); i++) {
+        voxel[i] = (uint8_t)block_random(&seed);
+        if (type == VOLUME_U8)
+            ((uint8_t *)v.data)[i] = voxel[i];
+        else
+            ((int32_t *)v.data)[i] = voxel[i];
+    }
+    tets_must(!slice_cells_make(&c, &v, (slice_window){0, 255}, threads, &e), &e);
+    for (int i = 0; i < PLACES; i++)
+        for (int a = 0; a < 3; a++)
+            at[a][i] = i == 1 ? SLICE_ONE / 2
+                              : (int32_t)(block_random(&seed) % (uint32_t)(size[a] * SLICE_ONE + 1)) + SLICE_ONE / 2;
+    at[2][0] = c.black;
+    double worst = 0;
+    for (int k = 0; k < 3; k++) {
+        setenv("SINEW_VECTORS", vectors[k], 1);
+        const slice_lanes *lanes = slice_lanes_choose(&e);
+        e = (err){0};
+        if (!lanes)
+            continue;
+        lanes->sample(&c, at[0], at[1], at[2], PLACES, k ? got : first);
+        ok(!k || !memcmp(got, first, sizeof got), "%d x %d x %d voxels: samples by %s", (int)size[0], (int)size[1],
+           (int)size[2], vectors[k]);
+    }
+    for (int i = 1; i < PLACES; i++)
+        worst = fmax(worst, fabs(linear(voxel, size, (int32_t[3]){at[0][i], at[1][i], at[2][i]}) - first[i]));
+    ok(worst <= 1.05 && !first[0], "are linear between voxels, to %.3g grey levels, and black beyond", worst);
+    ok(!v.data, "in the volume's own memory");
+    slice_cells_free(&c);
+    volume_free(&v);
+}
+
 int main(void)
 {
     err e = {0};
@@ -214,6 +278,11 @@ int main(void)
     test_aligned(threads);
     test_rigid(threads);
     test_folded(threads);
+    test_cells((const int64_t[3]){1, 1, 1}, VOLUME_U8, threads);
+    test_cells((const int64_t[3]){7, 2, 1}, VOLUME_U8, threads);
+    test_cells((const int64_t[3]){3, 40, 2}, VOLUME_U8, threads);
+    test_cells((const int64_t[3]){4, 5, 9}, VOLUME_I32, threads);
+    test_cells((const int64_t[3]){13, 12, 14}, VOLUME_U8, threads);
     block_free(&b);
     pool_destroy(threads);
     return done_testing();
