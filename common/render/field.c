@@ -4,6 +4,7 @@
 #include "base/near.h"
 #include "base/num.h"
 #include "mesh/gradient.h"
+#include "mesh/quality.h"
 #include "model/materials.h"
 #include "model/source.h"
 
@@ -13,8 +14,9 @@
 #include <string.h>
 
 /* The fields that are not arrays. */
-static const char *const ours[] = {"displacement", "strain", "strain.max", "stress", "volume", "material"};
-enum { DISPLACEMENT, STRAIN, STRAIN_MAX, STRESS, VOLUME, MATERIAL, OURS };
+static const char *const ours[] = {"displacement",     "strain",           "strain.max", "stress",
+                                   "quality.j.centre", "quality.j.corner", "volume",     "material"};
+enum { DISPLACEMENT, STRAIN, STRAIN_MAX, STRESS, CENTRE, CORNER, VOLUME, MATERIAL, OURS };
 
 /* The displacements of a frame, or NULL with e filled. */
 static const double *displacement(const frame *f, const char *name, err *e)
@@ -155,6 +157,27 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
     return 0;
 }
 
+static int of_quality(field *to, const model *m, const frame *f, int which, err *e)
+{
+    const double *u = displacement(f, ours[which], e);
+    const model_array *node = u ? model_need(m, "element.node", e) : NULL;
+    const model_array *rest = node ? model_need(m, "node.position", e) : NULL;
+    if (!rest)
+        return -1;
+    if (node->columns != 8 && node->columns != 4)
+        return err_set(e, NULL, 0, "%s is of hexahedra and tetrahedra, and these elements have %d nodes", ours[which],
+                       (int)node->columns);
+    const quality_mesh mesh = {node->i32, node->columns, node->rows, rest->f64, NULL};
+    if (make(to, true, node->rows, ours[which], "", e))
+        return -1;
+    to->below_zero = to->folds = true;
+    for (int64_t n = 0; n < node->rows; n++) {
+        const quality_j j = quality_of(&mesh, n, u);
+        to->value[n] = which == CENTRE ? j.centre : j.corner;
+    }
+    return 0;
+}
+
 /* ---- all of them by name */
 
 static void note_arrays(const model_arrays *list, notes *names)
@@ -195,6 +218,8 @@ static int of_name(field *to, const model *m, const frame *f, const char *name, 
         return of_names(to, m, which == MATERIAL, e);
     if (which == STRAIN || which == STRAIN_MAX || which == STRESS)
         return of_strain(to, m, f, which, e);
+    if (which == CENTRE || which == CORNER)
+        return of_quality(to, m, f, which, e);
     if (which == DISPLACEMENT && !displacement(f, name, e))
         return -1;
     snprintf(full, sizeof full, "%s%.300s", which == DISPLACEMENT ? "node." : "", name);
@@ -228,8 +253,12 @@ static void add_elements(const field *f, const model_array *node, double *sum, i
 {
     for (int64_t n = 0; n < f->count; n++)
         for (int c = 0; c < node->columns && !isnan(f->value[n]); c++) {
-            sum[node->i32[n * node->columns + c]] += f->value[n];
-            count[node->i32[n * node->columns + c]]++;
+            int32_t i = node->i32[n * node->columns + c];
+            if (f->folds)
+                sum[i] = count[i] ? fmin(sum[i], f->value[n]) : f->value[n];
+            else
+                sum[i] += f->value[n];
+            count[i] += !f->folds || !count[i];
         }
 }
 

@@ -182,8 +182,9 @@ static void find_range(work *w)
         }
     if (!(w->low <= w->high))
         w->low = w->high = 0;
-    if (!w->field.below_zero && w->low > 0)
+    if (w->field.folds || (!w->field.below_zero && w->low > 0))
         w->low = 0;
+    w->high = fmax(w->low, w->high);
     if (s->ranged)
         w->low = s->low, w->high = s->high;
     for (int i = 0; i < s->panels; i++)
@@ -219,6 +220,13 @@ static void add_names(work *w, int i)
     }
 }
 
+/* Whether anything in a panel is folded. */
+static bool has_folded(const work *w, int i)
+{
+    double low, high;
+    return w->field.folds && showing_range(&w->showing[i], &low, &high) && low <= 0;
+}
+
 static bool has_field(const work *w, int i)
 {
     return w->coloured && w->p->spec->panel[i].coloured;
@@ -230,6 +238,8 @@ static void make_keys(work *w)
         int seen = w->showing[i].seen;
         if (has_field(w, i) && w->field.name)
             add_names(w, i);
+        if (has_field(w, i) && has_folded(w, i))
+            add_key(w, i, "folded (J not above 0)", showing_red, false);
         if (!w->p->spec->captions)
             continue;
         if (seen & SHOWING_MUSCLES && !has_field(w, i))

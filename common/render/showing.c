@@ -152,6 +152,8 @@ void showing_colour(showing *b, const field *f, const colourmap *map, double low
             double x = b->value[i][n];
             if (f->name && x >= 0)
                 colourmap_name((int64_t)x, &colour[3 * n]);
+            else if (f->folds && x <= 0)
+                showing_linear(showing_red, &colour[3 * n]);
             else
                 colourmap_at(map,
                              f->name      ? (double)NAN

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/num.h"
+#include "mesh/quality.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -183,11 +184,33 @@ static int put_material(writer *w, err *e)
     return bad;
 }
 
+/* J of each element where a frame moves it: in the middle, and the smallest at its corners. */
+static int put_quality(writer *w, err *e)
+{
+    const export_shape *x = w->x;
+    if (x->is_surface || !x->displacement || (x->node->columns != 8 && x->node->columns != 4))
+        return 0;
+    const quality_mesh mesh = {x->node->i32, x->node->columns, x->cells, x->rest, NULL};
+    double *j = mem_array(2 * x->cells, sizeof *j, "J of elements", e);
+    if (!j)
+        return -1;
+    for (int64_t i = 0; i < x->cells; i++) {
+        const quality_j of = quality_of(&mesh, i, x->displacement);
+        j[i] = of.centre;
+        j[x->cells + i] = of.corner;
+    }
+    const size_t size = (size_t)x->cells * sizeof *j;
+    int bad = put_data(w, "quality.j.centre", MODEL_F64, 1, -1, j, size, e) ||
+              put_data(w, "quality.j.corner", MODEL_F64, 1, -1, j + x->cells, size, e);
+    free(j);
+    return bad ? -1 : 0;
+}
+
 static int put_cell_data(writer *w, err *e)
 {
     bool volumes = !w->x->is_surface && model_find(w->x->m, "element.volume");
     out_format(w->xml, "<CellData%s>\n", volumes ? " Scalars=\"volume\"" : "");
-    if (put_arrays(w, w->x->cell_axis, e) || put_material(w, e))
+    if (put_arrays(w, w->x->cell_axis, e) || put_material(w, e) || put_quality(w, e))
         return -1;
     out_text(w->xml, "</CellData>\n");
     return 0;

@@ -42,6 +42,8 @@ cell lattice int 3
 cell volume int 1
 cell fibre float 3
 cell material int 1
+cell quality.j.centre double 1
+cell quality.j.corner double 1
 field TimeValue double 1
 field volume.name string 1
 field material.name string 1

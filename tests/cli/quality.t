@@ -132,4 +132,59 @@ check "a run in which nothing happens" tled-run -d cpu -n 3 -o "$T/out" <"$T/mus
 is "$(sed -n "s/.*\(smallest.*\)/\1/p" "$T/stderr"); $(grep -c warning "$T/stderr"); $(get hourglass "$T/out")" \
     "smallest J 1 in the middle of an element, 1 at a corner; 0 folded; hourglass energy 0 % of strain energy; 0; 0" "has nothing to warn of"
 
+# ---- VTU: VTK's own Jacobian of hexahedra is the smallest of the corners' and the middle's, of the places that they have moved to.
+python=
+for p in python3 /usr/bin/python3; do
+    "$p" -c 'import vtkmodules.vtkFiltersVerdict' 2>/dev/null && python=$p && break
+done
+tled-run -q -d cpu -c all=1 -t .1 --every .05 -o "$T/out" <"$T/muscle" 2>"$T/said"
+check "VTU of each frame" sinew export -f vtu --deformed --frame all -o "$T/film.pvd" "$T/out"
+sinew export -f vtu --frame rest -o "$T/rest.vtu" "$T/out"
+if [ -n "$python" ]; then
+    sinew info --tsv quality.folded --tsv quality.j.corner "$T/out" | sed 1d >"$T/frames"
+    for file in "$T"/film*.vtu; do
+        "$python" tests/cli/vtk_jacobian.py "$file" >"$T/theirs"
+        for part in centre corner; do
+            "$python" tests/cli/read_vtu.py "$file" cell quality.j.$part >"$T/$part"
+        done
+        paste "$T/theirs" "$T/centre" "$T/corner" | awk '{ j = $2 < $3 ? $2 : $3; d = $1 / .0025 ^ 3 - j; if (d < 0) d = -d
+            if (d > off) off = d; if (NR == 1 || $3 < least) least = $3; n += j <= 0 }
+            END { printf "%d %s %.9g\n", NR, off < 1e-12 ? "alike" : off, least; print n > "/dev/stderr" }' >"$T/got" 2>"$T/count"
+        is "$(cat "$T/got")" "$(sed -n 1p "$T/frames" | awk '{ printf "160 alike %.9g", $4 }')" "J of 160 elements is VTK's, and the smallest that of sinew info"
+        is "$(cat "$T/count")" "$(sed -n 1p "$T/frames" | cut -f 3)" "and as many are folded"
+        sed -i 1d "$T/frames"
+    done
+    is "$(wc -l <"$T/frames" | tr -d ' ')" 0 "for each frame"
+    is "$("$python" tests/cli/read_vtu.py "$T/rest.vtu" | grep -c quality)" 0 "at rest there is none"
+    sinew export -f vtu -o "$T/tet.vtu" tests/golden/v1/tet.text
+    sinew export -f vtu --deformed -o "$T/moved.vtu" tests/golden/v1/tet.text
+    sinew export -f vtu --frame rest -o "$T/still.vtu" tests/golden/v1/tet.text
+    "$python" tests/cli/vtk_jacobian.py "$T/moved.vtu" >"$T/moved"
+    "$python" tests/cli/vtk_jacobian.py "$T/still.vtu" >"$T/still"
+    "$python" tests/cli/read_vtu.py "$T/tet.vtu" cell quality.j.corner >"$T/corner"
+    is "$(paste "$T/moved" "$T/still" "$T/corner" | awk '{ d = $1 / $2 - $3 } d < -1e-12 || d > 1e-12')$(wc -l <"$T/corner" | tr -d ' ')" 90 "of 90 tetrahedra too"
+else
+    skip 9 "no VTK for Python (python3-vtk9)"
+fi
+
+# ---- Pictures: what is folded is red, and nothing else is; the legend says what red is.
+# red NAME MODEL ARG...: how many pixels are.
+red() {
+    sinew render --colour quality.j.corner --size 160x120 --format ppm -o "$T/picture" "$@" 2>"$T/said" || cat "$T/said"
+    tail -c 57600 "$T/picture" | od -An -v -tu1 -w3 | awk '$1 > 90 && $1 > 2.5 * $2 && $1 > 2.5 * $3 { n++ } END { print n + 0 }'
+}
+check "folded elements are red: $(red --show voxels "$T/pushed") pixels" test "$(red --show voxels "$T/pushed")" -gt 300
+is "$(red --show voxels "$T/sound")" 0 "where none is, nothing is"
+check "with --range too" test "$(red --show voxels --range 0.5,1 "$T/pushed")" -gt 300
+is "$(sinew render --colour quality.j.centre --show voxels --size 160x120 --format ppm "$T/pushed" | cksum)" \
+    "$(sinew render --colour quality.j.centre --show voxels --size 160x120 --format ppm "$T/pushed" --range 0,1 | cksum)" "the scale begins at 0"
+fails 1 "at rest" "quality.j.corner is of results, and at rest there are none" sinew render --colour quality.j.corner --frame rest -o "$T/none.png" "$T/pushed"
+fails 2 "a slip in a field" "did you mean 'quality.j.corner'" sinew render --colour quality.j.corners -o "$T/none.png" "$T/pushed"
+box skin 0 0 0 200 100 100 >"$T/skin.obj"
+{
+    voxelise -q --text --unit mm -s 100 "$T/skin.obj" 2>"$T/said" | sinew bind -q --text | grep -v -e '^crc' -e '^end'
+    awk 'BEGIN { print "frame 0 0\narray node.displacement f64 m node 3"; for (n = 0; n < 12; n++) print n == 11 ? "-.05 -.05 -.05" : "0 0 0"; print "end" }'
+} >"$T/bound"
+check "on a surface the smallest of the elements round a node counts: $(red "$T/bound") pixels" test "$(red "$T/bound")" -gt 750
+
 done_testing

@@ -58,6 +58,14 @@ picture block-inside --show 'surface,muscle*' --clear skin --view back --size 32
 picture sphere --transparent --size 320x240 --view bottom --angle 0 "$T/sphere.model"
 picture tetrahedra --show voxels --colour x-hot --size 320x240 --view 2,-3,1 "$T/tet.sinew"
 picture material --show voxels,rigid --colour volume --size 320x240 --camera 0.1,0.06,0.24,0,0,0 "$block"
+# Two cubes, a corner of one pushed through its middle.
+{
+    awk -v nx=2 -v ny=1 -v nz=1 -v h=0.1 -v held=low -f tests/cli/block.awk | sed '/^end/d'
+    awk 'BEGIN { print "frame 0 0\narray node.displacement f64 m node 3"
+        for (n = 0; n < 12; n++) print n == 11 ? "-.06 -.06 -.06" : n == 3 ? "0 -.02 .01" : "0 0 0"
+        print "end" }'
+} >"$T/folded.sinew"
+picture folded --show voxels --colour quality.j.corner --size 320x240 --view 1,1,2 "$T/folded.sinew"
 if [ -x "$compare" ]; then
     "$compare" tests/golden/block.png tests/golden/material.png >"$T/stdout"
     is "$?" 1 "two pictures that differ are told apart"
