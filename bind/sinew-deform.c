@@ -149,7 +149,7 @@ static int as_skin(mover *w, const model *m, const char *name, err *e)
         snprintf(w->skin, sizeof w->skin, "%s", name);
         return 0;
     }
-    for (int i = 0; model_surface(m, i, other, sizeof other); i++) {
+    for (int at = 0; model_surface(m, &at, other, sizeof other);) {
         err ignored = {0};
         if (surface_of(m, other, &s, &ignored) || surface_is(&s, &w->file, w->scale, &ignored))
             continue;

@@ -173,7 +173,7 @@ void surface_name(const char *path, char *name, size_t size)
 void surface_nameless(const model *m, const obj *o, double scale, char *name, size_t size)
 {
     surface s;
-    for (int i = 0; model_surface(m, i, name, size); i++) {
+    for (int at = 0; model_surface(m, &at, name, size);) {
         err ignored = {0};
         if (!surface_of(m, name, &s, &ignored) && !surface_is(&s, o, scale, &ignored))
             return;
