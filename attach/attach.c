@@ -176,7 +176,7 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
     muscles list = {0};
     pool *threads = NULL;
     int rc = -1, count = tool_threads(t, e);
-    if (count < 0 || finite_array(model_find(m, "node.position"), NULL, e) || finite_elements(m, NULL, e))
+    if (count < 0 || finite_elements(m, NULL, e))
         return -1;
     threads = pool_create(o->fibre == MUSCLE_FIELD ? count : 1, e);
     if (!threads || collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||

@@ -199,25 +199,12 @@ static void set_fibres(const body *b, const muscle *m, muscle_fibre kind, notes 
     warn_of(m, kind, without, still, warnings);
 }
 
-static int check_fractions(const model_array *fraction, err *e)
+static int check_mixes(const body *b, const model_array *mix, err *e)
 {
-    for (int64_t i = 0; fraction && i < fraction->rows; i++)
-        if (!(fraction->f32[i] >= 0 && fraction->f32[i] <= 1))
-            return err_set(e, NULL, 0, "element.fraction, row %lld is %g; expected a share from 0 to 1", (long long)i,
-                           (double)fraction->f32[i]);
-    return 0;
-}
-
-static int check_mixtures(const body *b, const model_array *mix, const model_array *mixture, err *e)
-{
-    for (int64_t i = 0; mix && i < mix->rows; i++) {
-        if (mix->i32[i] >= 0 && !(mixture->f32[i] >= 0 && mixture->f32[i] <= 1))
-            return err_set(e, NULL, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)i,
-                           (double)mixture->f32[i]);
+    for (int64_t i = 0; mix && i < mix->rows; i++)
         if (mix->i32[i] == b->volume[i])
             return err_set(e, NULL, 0, "element.mix, row %lld is its own volume; expected another, or -1",
                            (long long)i);
-    }
     return 0;
 }
 
@@ -226,7 +213,7 @@ static int find_mixes(const model *m, body *b, err *e)
 {
     const model_array *mix = model_find(m, "element.mix");
     const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
-    if ((mix && !mixture) || check_mixtures(b, mix, mixture, e))
+    if ((mix && !mixture) || check_mixes(b, mix, e))
         return -1;
     b->mix = mix ? mix->i32 : NULL;
     b->mixture = mixture ? mixture->f32 : NULL;
@@ -255,7 +242,7 @@ static int find_arrays(const model *m, body *b, err *e)
     b->part = b->held ? mem_array(b->nodes, sizeof *b->part, "nodes", e) : NULL;
     for (int64_t n = 0; b->part && n < b->nodes; n++)
         b->seen[n] = b->part[n] = -1;
-    return b->part && !check_fractions(fraction, e) ? find_mixes(m, b, e) : -1;
+    return b->part ? find_mixes(m, b, e) : -1;
 }
 
 /* The elements of each volume, in their order, then those that it is the second in. */

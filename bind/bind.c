@@ -9,7 +9,6 @@
 #include "mesh/surface.h"
 #include "mesh/weights.h"
 #include "model/check.h"
-#include "model/finite.h"
 #include "model/known.h"
 #include "model/stage.h"
 
@@ -66,7 +65,7 @@ static int check_model(const model *m, err *e)
         return -1;
     if (!node->rows)
         return err_set(e, NULL, 0, "the model has no elements; expected some to bind to");
-    return finite_array(position, NULL, e);
+    return 0;
 }
 
 static int target_open(target *to, const model *m, int threads, notes *warnings, err *e)

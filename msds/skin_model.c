@@ -1,7 +1,5 @@
 #include "msds/skin_model.h"
 
-#include "model/finite.h"
-
 #include <stdio.h>
 #include <string.h>
 
@@ -38,8 +36,6 @@ int skin_model_start(skin *s, const frame *f, err *e)
     if (!u)
         return err_set(e, NULL, 0, "frame %lld has no %s; expected it, to go on from there, or a model without frames",
                        (long long)f->index, name);
-    if (finite_array(u, NULL, e))
-        return -1;
     memcpy(s->u, u->f64, 3 * (size_t)s->vertices * sizeof *s->u);
     return 0;
 }

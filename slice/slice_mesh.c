@@ -47,7 +47,7 @@ int slice_mesh_of(slice_mesh *s, const model *m, const slice_cells *c, const cha
 {
     *s = (slice_mesh){0};
     const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
-    if (!node || !rest || finite_array(rest, where, e) || finite_elements(m, where, e))
+    if (!node || !rest || finite_elements(m, where, e))
         return -1;
     if (node->columns != 4)
         return err_set(e, where, 0, "elements of %d nodes; expected tetrahedra, as msds-mesh makes them",

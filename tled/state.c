@@ -75,22 +75,18 @@ static int borrow_mesh(tled_problem *p, const model *m, err *e)
 static int check_fractions(const tled_problem *p, err *e)
 {
     for (int64_t i = 0; p->fraction && i < p->elements; i++)
-        if (!(p->fraction[i] > 0 && p->fraction[i] <= 1))
+        if (!(p->fraction[i] > 0))
             return err_set(e, NULL, 0, "element.fraction of element %lld is %g; expected above 0, and at most 1",
                            (long long)i, (double)p->fraction[i]);
     return 0;
 }
 
-static int check_mixtures(const tled_problem *p, err *e)
+static int check_mixes(const tled_problem *p, err *e)
 {
-    for (int64_t i = 0; p->mix && i < p->elements; i++) {
-        if (p->mix[i] >= 0 && !(p->mixture[i] >= 0 && p->mixture[i] <= 1))
-            return err_set(e, NULL, 0, "element.mixture of element %lld is %g; expected a share from 0 to 1",
-                           (long long)i, (double)p->mixture[i]);
+    for (int64_t i = 0; p->mix && i < p->elements; i++)
         if (p->mix[i] == p->element_volume[i])
             return err_set(e, NULL, 0, "element.mix of element %lld is its own volume; expected another, or -1",
                            (long long)i);
-    }
     return 0;
 }
 
@@ -288,7 +284,7 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
     p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
     if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
         return -1;
-    if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixtures(p, e) || make_volumes(p, m, e) ||
+    if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || make_volumes(p, m, e) ||
         make_mixtures(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || make_forces(p, e))
         return -1;
     if (!boxes)

@@ -2,7 +2,6 @@
 
 #include "base/chars.h"
 #include "base/mem.h"
-#include "model/finite.h"
 
 #include <string.h>
 
@@ -39,8 +38,6 @@ static int convex_carried(probe *p, const model *m, err *e)
                        "the probe is the OBJ %s, which the model does not hold; expected its corners and triangles "
                        "(probe-vertex.position, probe-face.vertex), as msds-run and tled-run write them",
                        p->file);
-    if (finite_array(corner, m->stream, e))
-        return -1;
     p->corners = (int32_t)corner->rows;
     p->faces = (int32_t)face->rows;
     p->corner = mem_array(p->corners, 3 * sizeof *p->corner, "the probe", e);

@@ -64,7 +64,8 @@ static int more_room(unsigned char **bytes, uint64_t *have, uint64_t size, size_
 }
 
 /* Exactly size bytes of the payload, in memory that grows as they come: a length is only a claim. `extra` bytes more are
- * allocated. canonical: the type whose nan are made so, or MODEL_TYPES. The caller frees it; NULL with e filled. */
+ * allocated. canonical: the type whose nan are made so, and whose values the item then says to be finite or not, or
+ * MODEL_TYPES. The caller frees it; NULL with e filled. */
 static void *take_grown(block *b, uint64_t size, size_t extra, model_type canonical, err *e)
 {
     unsigned char *bytes = NULL;
@@ -80,7 +81,7 @@ static void *take_grown(block *b, uint64_t size, size_t extra, model_type canoni
         if (take(b, bytes + done, n, e))
             goto fail;
         if (canonical != MODEL_TYPES)
-            item_canonical(canonical, bytes + done, (int64_t)(n / model_type_size(canonical)));
+            b->it->finite &= item_canonical(canonical, bytes + done, (int64_t)(n / model_type_size(canonical)));
         done += n;
     } while (done < size);
     return bytes;
@@ -151,6 +152,7 @@ static int read_array(block *b, err *e)
         return read_strings(b, n, e);
     if (b->left != (uint64_t)n * model_type_size(a->type))
         return item_error(b->s, b->it, e, "its length is not that of its rows and columns; the stream is damaged");
+    b->it->finite = true;
     a->data = take_grown(b, b->left, 0, a->type, e);
     return a->data ? 0 : -1;
 }
@@ -317,13 +319,13 @@ static void put_canonical(sink *k, model_type type, const unsigned char *bytes, 
     }
 }
 
-static void put_values(sink *k, const model_array *a)
+static void put_values(sink *k, const model_array *a, bool finite)
 {
     size_t each = model_type_size(a->type), left = (size_t)(a->rows * a->columns) * each;
     const unsigned char *bytes = a->data;
     while (left) {
         size_t n = left < PIECE ? left : PIECE;
-        if (has_nan(a->type, bytes, (int64_t)(n / each)))
+        if (!finite && has_nan(a->type, bytes, (int64_t)(n / each)))
             put_canonical(k, a->type, bytes, n);
         else
             put(k, bytes, n);
@@ -348,15 +350,16 @@ static uint64_t array_length(const model_array *a)
     return length;
 }
 
-static void put_array(sink *k, const model_array *a)
+static void put_array(sink *k, const item *it)
 {
+    const model_array *a = &it->array;
     put_text(k, a->name);
     put_text(k, a->unit);
     put_text(k, a->axis);
     put_u32(k, a->type);
     put_u32(k, (uint32_t)a->columns);
     if (a->type != MODEL_STR)
-        put_values(k, a);
+        put_values(k, a, it->finite);
     else
         for (int64_t i = 0; i < a->rows * a->columns; i++)
             put_text(k, a->str[i]);
@@ -400,7 +403,7 @@ static void put_payload(sink *k, const item *it)
         put_u64(k, (uint64_t)it->number);
         break;
     case ITEM_ARRAY:
-        put_array(k, &it->array);
+        put_array(k, it);
         break;
     case ITEM_BLOCK:
         for (uint64_t at = 0; at < it->block.length; at += PIECE)

@@ -2,6 +2,7 @@
 
 #include "base/chars.h"
 #include "model/known.h"
+#include "model/values.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -137,30 +138,35 @@ static int check_strings(const site *s)
     return 0;
 }
 
-/* Faces are told apart by where they start, so each must have a corner of its own. */
-static int check_starts(const site *s)
+/* What the table says of the values themselves. */
+static int check_values(const site *s, const known *k, bool finite)
 {
-    const model_array *a = s->a;
-    for (int64_t i = 0; i < a->rows; i++)
-        if (i ? a->i64[i] <= a->i64[i - 1] : a->i64[i] != 0)
-            return err_set(s->e, s->where, row_line(s, i),
-                           "array %s, row %" PRId64 ": a face starts at %" PRId64
-                           "; expected 0 first, then each more than the one before",
-                           a->name, i, a->i64[i]);
-    return 0;
+    char words[KNOWN_WORDS], values[VALUES_TEXT];
+    const int64_t row = values_bad_row(k, s->a, finite);
+    if (row < 0)
+        return 0;
+    known_words(k, words);
+    values_text(s->a, row, values);
+    return err_set(s->e, s->where, row_line(s, row), "array %s, row %" PRId64 ": %s; expected %s%s", s->a->name, row,
+                   values, words, k->flags & KNOWN_NAN ? ", or nan" : "");
+}
+
+int check_array(const model_array *a, bool finite, const char *where, int64_t line, err *e)
+{
+    const site s = {a, where, line, e};
+    const known *k = known_find(a->name);
+    if ((k && check_known(&s, k)) || (a->type == MODEL_STR && check_strings(&s)))
+        return -1;
+    return k ? check_values(&s, k, finite) : 0;
+}
+
+int check_indexed(const model *m, const model_array *a, const char *where, int64_t line, err *e)
+{
+    const site s = {a, where, line, e};
+    return a->unit[0] == '@' ? check_indices(&s, m, known_find(a->name)) : 0;
 }
 
 int model_check(const model *m, const model_array *a, const char *where, int64_t line, err *e)
 {
-    site s = {a, where, line, e};
-    const known *k = known_find(a->name);
-    if (k && check_known(&s, k))
-        return -1;
-    if (a->unit[0] == '@' && check_indices(&s, m, k))
-        return -1;
-    if (a->type == MODEL_STR && check_strings(&s))
-        return -1;
-    if (k && !strcmp(k->name, "*/face.start") && check_starts(&s))
-        return -1;
-    return 0;
+    return check_array(a, false, where, line, e) || check_indexed(m, a, where, line, e) ? -1 : 0;
 }

@@ -18,6 +18,11 @@ bool check_type(const char *type);
 /* What is wrong with a string, after its name ("is not UTF-8"), or NULL. A string has a length of 32 bits. */
 const char *check_text(const char *text);
 
+/* The two parts of model_check: all but the range of indices, and that, which needs every axis. finite: it is known that all
+ * values are, so that they need not be looked at for that. */
+int check_array(const model_array *a, bool finite, const char *where, int64_t line, err *e);
+int check_indexed(const model *m, const model_array *a, const char *where, int64_t line, err *e);
+
 /* rows x columns, or -1 where that many things of `size` bytes cannot be. */
 int64_t check_count(int64_t rows, int32_t columns, size_t size);
 

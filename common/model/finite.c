@@ -1,19 +1,6 @@
 #include "model/finite.h"
 
 #include <inttypes.h>
-#include <math.h>
-
-int finite_array(const model_array *a, const char *where, err *e)
-{
-    if (!a || (a->type != MODEL_F32 && a->type != MODEL_F64))
-        return 0;
-    for (int64_t row = 0; row < a->rows; row++)
-        for (int64_t at = row * a->columns; at < (row + 1) * a->columns; at++)
-            if (!isfinite(a->type == MODEL_F32 ? (double)a->f32[at] : a->f64[at]))
-                return err_set(e, where, where ? model_line(a, row) : 0,
-                               "%s, row %" PRId64 " is not finite; expected finite numbers", a->name, row);
-    return 0;
-}
 
 static int different(const int32_t *node, int count)
 {

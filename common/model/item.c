@@ -1,6 +1,7 @@
 #include "model/item.h"
 
 #include "model/check.h"
+#include "model/values.h"
 
 #include <inttypes.h>
 #include <stdarg.h>
@@ -73,8 +74,10 @@ int64_t item_heading(const item_source *s, item *it, err *e)
     return n;
 }
 
-void item_canonical(model_type type, void *values, int64_t n)
+bool item_canonical(model_type type, void *values, int64_t n)
 {
+    if (values_finite(type, values, n))
+        return true;
     static const uint32_t nan32 = UINT32_C(0x7fc00000);
     static const uint64_t nan64 = UINT64_C(0x7ff8000000000000);
     float *f = values, quiet32;
@@ -87,4 +90,5 @@ void item_canonical(model_type type, void *values, int64_t n)
     if (type == MODEL_F64)
         for (int64_t i = 0; i < n; i++)
             d[i] = d[i] == d[i] ? d[i] : quiet64;
+    return false;
 }

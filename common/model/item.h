@@ -31,6 +31,7 @@ typedef struct item {
     int64_t number;
     double time;
     model_array array;
+    bool finite; /* of array: it is known that all values are finite */
     model_block block;
 } item;
 
@@ -73,7 +74,7 @@ int item_cut(const item_source *s, err *e);
  * -1. */
 int64_t item_heading(const item_source *s, item *it, err *e);
 
-/* Makes every nan among n values the one that is written: quiet, positive, no payload. */
-void item_canonical(model_type type, void *values, int64_t n);
+/* Makes every nan among n values the one that is written: quiet, positive, no payload. Returns whether all are finite. */
+bool item_canonical(model_type type, void *values, int64_t n);
 
 #endif

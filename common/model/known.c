@@ -1,10 +1,11 @@
 #include "model/known.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#define ROW(name, type, unit, axis, low, high, flags, maker, meaning)                                                  \
-    {name, type, unit, axis, low, high, flags, maker, meaning},
+#define ROW(name, type, unit, axis, few, most, flags, rule, low, high, maker, meaning)                                 \
+    {name, type, unit, axis, few, most, flags, rule, low, high, maker, meaning},
 
 static const known rows[] = {KNOWN_ARRAYS(ROW)};
 
@@ -38,6 +39,57 @@ const known *known_find(const char *name)
 const known *known_row(int i)
 {
     return i >= 0 && i < ROWS ? &rows[i] : NULL;
+}
+
+/* 1e12, as people write it. */
+static int put_bound(char *to, size_t size, double bound)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.6g", bound);
+    char *e = strchr(text, 'e');
+    if (!e)
+        return snprintf(to, size, "%s", text);
+    *e = '\0';
+    return snprintf(to, size, "%se%d", text, atoi(e + 1));
+}
+
+static void put_range(const known *k, char *to, size_t size)
+{
+    size_t n = (size_t)put_bound(to, size, k->low);
+    if (k->high < (double)INT32_MAX || k->type == MODEL_F64) {
+        n += (size_t)snprintf(to + n, size - n, " to ");
+        n += (size_t)put_bound(to + n, size - n, k->high);
+    } else
+        n += (size_t)snprintf(to + n, size - n, " or more");
+    if (strcmp(k->unit, "1") != 0)
+        snprintf(to + n, size - n, " %s", k->unit);
+}
+
+void known_words(const known *k, char to[KNOWN_WORDS])
+{
+    to[0] = '\0';
+    switch (k->rule) {
+    case KNOWN_ANY:
+        break;
+    case KNOWN_FINITE:
+        snprintf(to, KNOWN_WORDS, "finite numbers");
+        break;
+    case KNOWN_FROM:
+        put_range(k, to, KNOWN_WORDS);
+        break;
+    case KNOWN_DIRECTION:
+        snprintf(to, KNOWN_WORDS, "rows of length 1, to %g, or 0 0 0", KNOWN_LENGTH);
+        break;
+    case KNOWN_POSE:
+        snprintf(to, KNOWN_WORDS, "a place and a quaternion of length 1, to %g", KNOWN_LENGTH);
+        break;
+    case KNOWN_WEIGHTS:
+        snprintf(to, KNOWN_WORDS, "finite numbers; four must add to 1");
+        break;
+    case KNOWN_STARTS:
+        snprintf(to, KNOWN_WORDS, "0 first, then each more than the one before");
+        break;
+    }
 }
 
 void known_expand(const char *pattern, const char *name, char *to, size_t size)

@@ -8,8 +8,23 @@
 
 enum {
     KNOWN_EVERY = 1, /* index arrays: -1 (none) is not allowed */
-    KNOWN_FRAME = 2  /* lives in frames */
+    KNOWN_FRAME = 2, /* lives in frames */
+    KNOWN_NAN = 4    /* rows that are nan in every column say that there is none */
 };
+
+/* What the values must be, besides what their type and unit say. */
+typedef enum known_rule {
+    KNOWN_ANY,
+    KNOWN_FINITE,
+    KNOWN_FROM,      /* from `low` to `high`, both included */
+    KNOWN_DIRECTION, /* each row has length 1, to KNOWN_LENGTH, or is 0 */
+    KNOWN_POSE,      /* finite; the last four columns are a quaternion of length 1, to KNOWN_LENGTH */
+    KNOWN_WEIGHTS,   /* finite; where there are four columns they add to 1, to KNOWN_SUM of the largest */
+    KNOWN_STARTS     /* 0 first, then each more than the one before */
+} known_rule;
+
+#define KNOWN_LENGTH 1e-3 /* so that three digits written by hand pass */
+#define KNOWN_SUM    1e-6
 
 typedef struct known {
     const char *name;
@@ -17,79 +32,98 @@ typedef struct known {
     const char *unit, *axis;
     int columns_min, columns_max; /* a new array gets columns_max unless the caller says otherwise */
     int flags;
+    known_rule rule;
+    double low, high;    /* of KNOWN_FROM */
     const char *maker;   /* the tool that adds it; NULL: none yet, the name is reserved */
     const char *meaning; /* one line, for the manual */
 } known;
 
-/* X(name, type, unit, axis, columns_min, columns_max, flags, maker, meaning) */
+/* X(name, type, unit, axis, columns_min, columns_max, flags, rule, low, high, maker, meaning) */
 #define KNOWN_ARRAYS(X)                                                                                                \
-    X("node.position", MODEL_F64, "m", "node", 3, 3, 0, "voxelise or msds-mesh", "rest position")                      \
-    X("node.lattice", MODEL_I32, "1", "node", 3, 3, 0, "voxelise", "corner of the lattice: i, j, k")                   \
-    X("node.rigid", MODEL_U8, "1", "node", 1, 1, 0, "attach or msds-mesh", "1 = fixed")                                \
-    X("node.anchor", MODEL_I32, "@anchor", "node", 1, 1, 0, "attach", "rigid surface that holds the node, -1 = none")  \
-    X("anchor.name", MODEL_STR, "1", "anchor", 1, 1, 0, "attach", "name of a rigid surface")                           \
-    X("element.node", MODEL_I32, "@node", "element", 4, 8, KNOWN_EVERY, "voxelise or msds-mesh",                       \
+    X("node.position", MODEL_F64, "m", "node", 3, 3, 0, KNOWN_FINITE, 0, 0, "voxelise or msds-mesh", "rest position")  \
+    X("node.lattice", MODEL_I32, "1", "node", 3, 3, 0, KNOWN_ANY, 0, 0, "voxelise", "corner of the lattice: i, j, k")  \
+    X("node.rigid", MODEL_U8, "1", "node", 1, 1, 0, KNOWN_FROM, 0, 1, "attach or msds-mesh", "1 = fixed")              \
+    X("node.anchor", MODEL_I32, "@anchor", "node", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                                 \
+      "rigid surface that holds the node, -1 = none")                                                                  \
+    X("anchor.name", MODEL_STR, "1", "anchor", 1, 1, 0, KNOWN_ANY, 0, 0, "attach", "name of a rigid surface")          \
+    X("element.node", MODEL_I32, "@node", "element", 4, 8, KNOWN_EVERY, KNOWN_ANY, 0, 0, "voxelise or msds-mesh",      \
       "nodes in VTK order: 8 (hexahedron) or 4 (tetrahedron, its volume above 0)")                                     \
-    X("element.lattice", MODEL_I32, "1", "element", 3, 3, 0, "voxelise", "cell of the lattice: i, j, k")               \
-    X("element.volume", MODEL_I32, "@volume", "element", 1, 1, KNOWN_EVERY, "voxelise or msds-mesh",                   \
+    X("element.lattice", MODEL_I32, "1", "element", 3, 3, 0, KNOWN_ANY, 0, 0, "voxelise",                              \
+      "cell of the lattice: i, j, k")                                                                                  \
+    X("element.volume", MODEL_I32, "@volume", "element", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "voxelise or msds-mesh",  \
       "volume it belongs to")                                                                                          \
-    X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, "voxelise",                                              \
+    X("element.fraction", MODEL_F32, "1", "element", 1, 1, 0, KNOWN_FROM, 0, 1, "voxelise",                            \
       "share of it that is enclosed: the part that it has of its mass and forces; without the array all is")           \
-    X("element.mix", MODEL_I32, "@volume", "element", 1, 1, 0, "voxelise",                                             \
+    X("element.mix", MODEL_I32, "@volume", "element", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise",                            \
       "second volume that it is mixed of, -1 = none")                                                                  \
-    X("element.mixture", MODEL_F32, "1", "element", 1, 1, 0, "voxelise",                                               \
+    X("element.mixture", MODEL_F32, "1", "element", 1, 1, 0, KNOWN_FROM, 0, 1, "voxelise",                             \
       "share of what is enclosed that is of element.mix; the rest is of element.volume")                               \
-    X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, "attach",                                                   \
+    X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "attach",                            \
       "unit direction of contraction; 0 0 0 where there is none")                                                      \
-    X("element.mixfibre", MODEL_F32, "1", "element", 3, 3, 0, "attach", "the same of element.mix")                     \
-    X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, "voxelise or msds-mesh", "name")                               \
-    X("volume.level", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise or msds-mesh", "level, 0 the lowest")               \
-    X("volume.priority", MODEL_I32, "1", "volume", 1, 1, 0, "voxelise or msds-mesh",                                   \
+    X("element.mixfibre", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "attach",                         \
+      "the same of element.mix")                                                                                       \
+    X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh", "name")              \
+    X("volume.level", MODEL_I32, "1", "volume", 1, 1, 0, KNOWN_FROM, 0, INT32_MAX, "voxelise or msds-mesh",            \
+      "level, 0 the lowest")                                                                                           \
+    X("volume.priority", MODEL_I32, "1", "volume", 1, 1, 0, KNOWN_FROM, 0, INT32_MAX, "voxelise or msds-mesh",         \
       "priority within the level, 0 the first")                                                                        \
-    X("volume.material", MODEL_I32, "@material", "volume", 1, 1, KNOWN_EVERY, "voxelise or msds-mesh", "material")     \
-    X("volume.muscle", MODEL_U8, "1", "volume", 1, 1, 0, "voxelise or msds-mesh", "1 = a muscle")                      \
-    X("material.name", MODEL_STR, "1", "material", 1, 1, 0, "voxelise or msds-mesh", "name")                           \
-    X("material.law", MODEL_STR, "1", "material", 1, 1, 0, "voxelise or msds-mesh", "law: neo-hookean or linear")      \
-    X("material.E", MODEL_F64, "Pa", "material", 1, 1, 0, "voxelise or msds-mesh", "Young's modulus")                  \
-    X("material.nu", MODEL_F64, "1", "material", 1, 1, 0, "voxelise or msds-mesh", "Poisson's ratio")                  \
-    X("material.density", MODEL_F64, "kg/m3", "material", 1, 1, 0, "voxelise or msds-mesh", "mass density at rest")    \
-    X("material.peak", MODEL_F64, "Pa", "material", 1, 1, 0, "voxelise or msds-mesh",                                  \
+    X("volume.material", MODEL_I32, "@material", "volume", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0,                         \
+      "voxelise or msds-mesh", "material")                                                                             \
+    X("volume.muscle", MODEL_U8, "1", "volume", 1, 1, 0, KNOWN_FROM, 0, 1, "voxelise or msds-mesh", "1 = a muscle")    \
+    X("material.name", MODEL_STR, "1", "material", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh", "name")          \
+    X("material.law", MODEL_STR, "1", "material", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh",                   \
+      "law: neo-hookean or linear")                                                                                    \
+    X("material.E", MODEL_F64, "Pa", "material", 1, 1, 0, KNOWN_FROM, 1e-3, 1e12, "voxelise or msds-mesh",             \
+      "Young's modulus")                                                                                               \
+    X("material.nu", MODEL_F64, "1", "material", 1, 1, 0, KNOWN_FROM, -.99, .4999, "voxelise or msds-mesh",            \
+      "Poisson's ratio")                                                                                               \
+    X("material.density", MODEL_F64, "kg/m3", "material", 1, 1, 0, KNOWN_FROM, 1e-3, 1e6, "voxelise or msds-mesh",     \
+      "mass density at rest")                                                                                          \
+    X("material.peak", MODEL_F64, "Pa", "material", 1, 1, KNOWN_NAN, KNOWN_FROM, 0, 1e12, "voxelise or msds-mesh",     \
       "peak active stress of its muscles")                                                                             \
-    X("muscle.volume", MODEL_I32, "@volume", "muscle", 1, 1, KNOWN_EVERY, "attach", "volume of the muscle")            \
-    X("muscle.centre", MODEL_F64, "m", "muscle", 3, 3, 0, "attach",                                                    \
+    X("muscle.volume", MODEL_I32, "@volume", "muscle", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                   \
+      "volume of the muscle")                                                                                          \
+    X("muscle.centre", MODEL_F64, "m", "muscle", 3, 3, KNOWN_NAN, KNOWN_FINITE, 0, 0, "attach",                        \
       "contraction centre, the mean of its rigid nodes; nan where it has none")                                        \
-    X("attachment.muscle", MODEL_I32, "@muscle", "attachment", 1, 1, KNOWN_EVERY, "attach",                            \
+    X("attachment.muscle", MODEL_I32, "@muscle", "attachment", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",           \
       "muscle that is fixed there: a connected part of its rigid nodes; the largest first")                            \
-    X("attachment.anchor", MODEL_I32, "@anchor", "attachment", 1, 1, 0, "attach",                                      \
+    X("attachment.anchor", MODEL_I32, "@anchor", "attachment", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                     \
       "rigid surface that holds most of its nodes")                                                                    \
-    X("attachment.nodes", MODEL_I32, "1", "attachment", 1, 1, 0, "attach", "how many rigid nodes")                     \
-    X("attachment.centre", MODEL_F64, "m", "attachment", 3, 3, 0, "attach", "the mean of its rigid nodes")             \
-    X("probe-vertex.position", MODEL_F64, "m", "probe-vertex", 3, 3, 0, "msds-run or tled-run",                        \
+    X("attachment.nodes", MODEL_I32, "1", "attachment", 1, 1, 0, KNOWN_FROM, 1, INT32_MAX, "attach",                   \
+      "how many rigid nodes")                                                                                          \
+    X("attachment.centre", MODEL_F64, "m", "attachment", 3, 3, 0, KNOWN_FINITE, 0, 0, "attach",                        \
+      "the mean of its rigid nodes")                                                                                   \
+    X("probe-vertex.position", MODEL_F64, "m", "probe-vertex", 3, 3, 0, KNOWN_FINITE, 0, 0, "msds-run or tled-run",    \
       "of a convex probe: a corner, in the probe's frame")                                                             \
-    X("probe-face.vertex", MODEL_I32, "@probe-vertex", "probe-face", 3, 3, KNOWN_EVERY, "msds-run or tled-run",        \
-      "the corners of a triangle of it, turned out")                                                                   \
-    X("*/vertex.position", MODEL_F64, "m", "*/vertex", 3, 3, 0, "voxelise or bind", "rest position")                   \
-    X("*/vertex.element", MODEL_I32, "@element", "*/vertex", 1, 1, KNOWN_EVERY, "bind", "element it is bound to")      \
-    X("*/vertex.weight", MODEL_F64, "1", "*/vertex", 3, 4, 0, "bind",                                                  \
+    X("probe-face.vertex", MODEL_I32, "@probe-vertex", "probe-face", 3, 3, KNOWN_EVERY, KNOWN_ANY, 0, 0,               \
+      "msds-run or tled-run", "the corners of a triangle of it, turned out")                                           \
+    X("*/vertex.position", MODEL_F64, "m", "*/vertex", 3, 3, 0, KNOWN_FINITE, 0, 0, "voxelise or bind",                \
+      "rest position")                                                                                                 \
+    X("*/vertex.element", MODEL_I32, "@element", "*/vertex", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "bind",               \
+      "element it is bound to")                                                                                        \
+    X("*/vertex.weight", MODEL_F64, "1", "*/vertex", 3, 4, 0, KNOWN_WEIGHTS, 0, 0, "bind",                             \
       "3 weights in a hexahedron (W&M eq. 1) or 4 in a tetrahedron")                                                   \
-    X("*/face.start", MODEL_I64, "@*/corner", "*/face", 1, 1, KNOWN_EVERY, "voxelise or bind",                         \
+    X("*/face.start", MODEL_I64, "@*/corner", "*/face", 1, 1, KNOWN_EVERY, KNOWN_STARTS, 0, 0, "voxelise or bind",     \
       "its first corner; it ends where the next begins")                                                               \
-    X("*/face.vertex", MODEL_I32, "@*/vertex", "*/corner", 1, 1, KNOWN_EVERY, "voxelise or bind",                      \
+    X("*/face.vertex", MODEL_I32, "@*/vertex", "*/corner", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "voxelise or bind",     \
       "vertices of the faces: 1 = point, 2 = line, 3 and more = polygon")                                              \
-    X("*/face.group", MODEL_I32, "@*/group", "*/face", 1, 1, KNOWN_EVERY, "voxelise or bind", "group it is in")        \
-    X("*/group.name", MODEL_STR, "1", "*/group", 1, 1, 0, "voxelise or bind",                                          \
+    X("*/face.group", MODEL_I32, "@*/group", "*/face", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "voxelise or bind",         \
+      "group it is in")                                                                                                \
+    X("*/group.name", MODEL_STR, "1", "*/group", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or bind",                         \
       "names between spaces: a face may be in several")                                                                \
-    X("node.displacement", MODEL_F64, "m", "node", 3, 3, KNOWN_FRAME, "tled-run or msds-run",                          \
+    X("node.displacement", MODEL_F64, "m", "node", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run or msds-run",      \
       "displacement from rest")                                                                                        \
-    X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, "tled-run or msds-run", "velocity")                \
-    X("probe.pose", MODEL_F64, "1", "probe", 7, 7, KNOWN_FRAME, "msds-run or tled-run",                                \
+    X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run or msds-run",        \
+      "velocity")                                                                                                      \
+    X("probe.pose", MODEL_F64, "1", "probe", 7, 7, KNOWN_FRAME, KNOWN_POSE, 0, 0, "msds-run or tled-run",              \
       "place of its frame, m, and its turn, a unit quaternion x y z w")                                                \
-    X("probe.force", MODEL_F64, "N", "probe", 3, 3, KNOWN_FRAME, "msds-run or tled-run", "force of the tissue on it")  \
-    X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, "msds-run or tled-run",                            \
+    X("probe.force", MODEL_F64, "N", "probe", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run or tled-run",           \
+      "force of the tissue on it")                                                                                     \
+    X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run or tled-run",        \
       "torque of the tissue on it, about the origin of its frame")                                                     \
-    X("*/vertex.displacement", MODEL_F64, "m", "*/vertex", 3, 3, KNOWN_FRAME, "msds-run",                              \
+    X("*/vertex.displacement", MODEL_F64, "m", "*/vertex", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run",          \
       "of a skin: displacement from rest")                                                                             \
-    X("*/vertex.normal", MODEL_F64, "1", "*/vertex", 3, 3, KNOWN_FRAME, "msds-run",                                    \
+    X("*/vertex.normal", MODEL_F64, "1", "*/vertex", 3, 3, KNOWN_FRAME, KNOWN_DIRECTION, 0, 0, "msds-run",             \
       "of a skin: unit normal as it is moved")
 
 /* Whether a name is the user's: it begins "x-", and nothing is known of it, whatever follows. */
@@ -100,6 +134,10 @@ const known *known_find(const char *name);
 
 /* The i-th row, or NULL past the last. */
 const known *known_row(int i);
+
+/* "finite numbers", "0 to 1", "0.001 to 1e12 Pa": what the rule expects; "" where it is KNOWN_ANY. Not whether nan is allowed. */
+enum { KNOWN_WORDS = 100 };
+void known_words(const known *k, char to[KNOWN_WORDS]);
 
 /* Writes pattern (an axis or unit of the row) for the array `name`, its * replaced. */
 void known_expand(const char *pattern, const char *name, char *to, size_t size);

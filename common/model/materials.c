@@ -4,7 +4,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "model/check.h"
+#include "model/known.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -15,24 +15,14 @@
 typedef struct key {
     const char *name, *array;
     double fallback, absent;
-    bool (*valid)(double v);
-    const char *expected;
 } key;
 
-#define VALID(name, unit, fallback, absent, condition, words)                                                          \
-    static bool valid_##name(double v)                                                                                 \
-    {                                                                                                                  \
-        return isfinite(v) && (condition);                                                                             \
-    }
-MATERIAL_KEYS(VALID)
-
-#define KEY_ROW(name, unit, fallback, absent, condition, words)                                                        \
-    {#name, "material." #name, fallback, absent, valid_##name, words},
+#define KEY_ROW(name, fallback, absent) {#name, "material." #name, fallback, absent},
 static const key keys[] = {MATERIAL_KEYS(KEY_ROW)};
 
 enum { KEYS = sizeof keys / sizeof *keys };
 
-#define KEY_NAME(name, unit, fallback, absent, condition, words) #name,
+#define KEY_NAME(name, fallback, absent) #name,
 static const char *const key_names[] = {"law", MATERIAL_KEYS(KEY_NAME)};
 
 static const char *const law_names[MATERIAL_LAWS] = {
@@ -46,19 +36,19 @@ typedef struct row {
     double value[KEYS];
 } row;
 
-#define VALUE_INDEX(name, unit, fallback, absent, condition, words) AT_##name,
+#define VALUE_INDEX(name, fallback, absent) AT_##name,
 enum { MATERIAL_KEYS(VALUE_INDEX) };
 
 material materials_fallback(void)
 {
-#define VALUE_FALLBACK(name, unit, fallback, absent, condition, words) .name = (fallback),
+#define VALUE_FALLBACK(name, fallback, absent) .name = (fallback),
     return (material){.law = MATERIAL_NEO_HOOKEAN, MATERIAL_KEYS(VALUE_FALLBACK)};
 }
 
 static row row_of(const material *of)
 {
     row r = {.law = of->law};
-#define VALUE_PUT(name, unit, fallback, absent, condition, words) r.value[AT_##name] = of->name;
+#define VALUE_PUT(name, fallback, absent) r.value[AT_##name] = of->name;
     MATERIAL_KEYS(VALUE_PUT)
     return r;
 }
@@ -69,6 +59,14 @@ static int law_of(const char *name)
         if (!strcmp(law_names[i], name))
             return i;
     return -1;
+}
+
+/* Whether the table of known arrays allows it; words: what it expects. */
+static bool valid(const key *k, double value, char words[KNOWN_WORDS])
+{
+    const known *of = known_find(k->array);
+    known_words(of, words);
+    return value >= of->low && value <= of->high;
 }
 
 /* An unknown name in a file, or, with line 0, in the option `place`. */
@@ -91,11 +89,12 @@ static int row_take(row *r, int name, const char *text, const char *place, int64
     }
     const key *k = &keys[name - 1];
     double v;
-    bool good = !num_double(text, &v) && k->valid(v);
+    char words[KNOWN_WORDS];
+    bool good = valid(k, num_double(text, &v) ? NAN : v, words);
     if (!good && line)
-        return err_set(e, place, line, "'%s=%.100s' is not allowed; expected %s", k->name, text, k->expected);
+        return err_set(e, place, line, "'%s=%.100s' is not allowed; expected %s", k->name, text, words);
     if (!good)
-        return err_option(e, place, "'%s=%.100s' is not allowed; expected %s", k->name, text, k->expected);
+        return err_option(e, place, "'%s=%.100s' is not allowed; expected %s", k->name, text, words);
     r->value[name - 1] = v;
     return 0;
 }
@@ -159,9 +158,10 @@ int materials_make(model *m, const material *of, err *e)
 {
     char name[] = "tissue";
     row r = row_of(of);
+    char words[KNOWN_WORDS];
     for (int i = 0; i < KEYS; i++)
-        if (!keys[i].valid(r.value[i]))
-            return err_set(e, NULL, 0, "%s=%g is not allowed; expected %s", keys[i].name, r.value[i], keys[i].expected);
+        if (!valid(&keys[i], r.value[i], words))
+            return err_set(e, NULL, 0, "%s=%g is not allowed; expected %s", keys[i].name, r.value[i], words);
     r.name = name;
     return table_make(m, &r, 1, e);
 }
@@ -324,11 +324,12 @@ static int value_of(const model *m, int64_t i, const key *k, double *value, err 
     const model_array *a = isnan(k->absent) ? model_need(m, k->array, e) : model_find(m, k->array);
     if (!a && isnan(k->absent))
         return -1;
+    char words[KNOWN_WORDS];
     *value = !a || isnan(a->f64[i]) ? k->absent : a->f64[i];
-    if (k->valid(*value))
+    if (valid(k, *value, words))
         return 0;
     return err_set(e, m->stream, a && m->stream ? model_line(a, i) : 0,
-                   "%s, row %" PRId64 ": %g is not allowed; expected %s", k->array, i, *value, k->expected);
+                   "%s, row %" PRId64 ": %g is not allowed; expected %s", k->array, i, *value, words);
 }
 
 int materials_of(const model *m, int64_t i, material *to, err *e)
@@ -340,7 +341,7 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
     if (which < 0)
         return near_unknown(e, "material.law", 0, "law", law->str[i], law_names, MATERIAL_LAWS);
     to->law = (material_law)which;
-#define VALUE_TAKE(name, unit, fallback, absent, condition, words)                                                     \
+#define VALUE_TAKE(name, fallback, absent)                                                                             \
     if (value_of(m, i, &keys[AT_##name], &to->name, e))                                                                \
         return -1;
     MATERIAL_KEYS(VALUE_TAKE)

@@ -148,7 +148,7 @@ const char *model_type_name(model_type t);
 model_type model_type_of(const char *name);
 
 /* All of sinew-model(5)'s rules that a table can hold, on one array: known name with its type, unit, axis and
- * columns; indices in range. Where: the stream's name; line: 0, or the line of its heading (its rows follow, one a line).
+ * columns; indices and values in range. Where: the stream's name; line: 0, or the line of its heading (its rows follow, one a line).
  * Index ranges need all axes. Of a frame's array, m is the model that the frame belongs to. */
 int model_check(const model *m, const model_array *a, const char *where, int64_t line, err *e);
 

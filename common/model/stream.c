@@ -7,6 +7,7 @@
 #include "model/item.h"
 #include "model/known.h"
 #include "model/text.h"
+#include "model/values.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -213,6 +214,21 @@ static int add_axis(model_reader *r, model *m, item *it, err *e)
     return model_axis_add(m, it->key, it->number, e) || model_axis_add(&r->from.axes, it->key, it->number, e);
 }
 
+/* All of an array's rules but the range of its indices, which may be into an axis that comes later. */
+static int check_part(const model_reader *r, const item *it, err *e)
+{
+    char place[ITEM_PLACE];
+    item_place(&r->from, it, place, sizeof place);
+    return check_array(&it->array, it->finite, place, r->from.how->lines ? it->at : 0, e);
+}
+
+static int check_rest(const model_reader *r, const model *m, const model_array *a, int64_t at, err *e)
+{
+    char place[ITEM_PLACE];
+    item_place(&r->from, &(item){.kind = ITEM_ARRAY, .at = at, .array.name = a->name}, place, sizeof place);
+    return check_indexed(m, a, place, r->from.how->lines ? at : 0, e);
+}
+
 static int add_array(model_reader *r, model *m, item *it, err *e)
 {
     const char *name = it->array.name, *wrong = belongs(name, false);
@@ -221,6 +237,8 @@ static int add_array(model_reader *r, model *m, item *it, err *e)
     if (model_find(m, name))
         return item_error(&r->from, it, e, "a second array %s; expected one", name);
     if (mem_grow(&r->places, &r->place_capacity, m->arrays.count + 1, sizeof *r->places, "the model", e))
+        return -1;
+    if (check_part(r, it, e))
         return -1;
     r->places[m->arrays.count] = it->at;
     it->array.line = r->from.how->lines ? it->at : 0;
@@ -248,13 +266,6 @@ static int add_item(model_reader *r, model *m, item *it, err *e)
     return 0;
 }
 
-static int check_array(const model_reader *r, const model *m, const model_array *a, int64_t at, err *e)
-{
-    char place[ITEM_PLACE];
-    item_place(&r->from, &(item){.kind = ITEM_ARRAY, .at = at, .array.name = a->name}, place, sizeof place);
-    return model_check(m, a, place, r->from.how->lines ? at : 0, e);
-}
-
 int model_read(model_reader *r, model *m, err *e)
 {
     free(m->stream);
@@ -273,7 +284,7 @@ int model_read(model_reader *r, model *m, err *e)
             return -1;
     }
     for (int i = 0; i < m->arrays.count; i++)
-        if (check_array(r, m, &m->arrays.v[i], r->places[i], e))
+        if (check_rest(r, m, &m->arrays.v[i], r->places[i], e))
             return -1;
     return r->next.kind == ITEM_END ? finish(r, &r->next, e) : 0;
 }
@@ -291,7 +302,7 @@ static int add_frame_array(model_reader *r, const model *m, frame *f, item *it, 
     if (m && model_count(m, it->array.axis) != it->array.rows)
         return item_error(&r->from, it, e, "array %s is over axis %s, which has changed; expected no frames", name,
                           it->array.axis);
-    if (check_array(r, &r->from.axes, &it->array, it->at, e))
+    if (check_part(r, it, e) || check_rest(r, &r->from.axes, &it->array, it->at, e))
         return -1;
     return model_arrays_take(&f->arrays, &it->array, e) ? 0 : -1;
 }
@@ -375,6 +386,13 @@ static void write_item(model_writer *w, const item *it)
     w->how->write(w->o, it);
 }
 
+/* An array that was checked. */
+static void write_array(model_writer *w, const model_array *a)
+{
+    const known *k = known_find(a->name);
+    write_item(w, &(item){.kind = ITEM_ARRAY, .array = *a, .finite = k && values_must_be_finite(k)});
+}
+
 static int check_body(const model *m, err *e)
 {
     for (int i = 0; i < m->arrays.count; i++) {
@@ -402,7 +420,7 @@ int model_write(model_writer *w, const model *m, err *e)
     for (int i = 0; i < m->axis_count; i++)
         write_item(w, &(item){.kind = ITEM_AXIS, .key = m->axes[i].name, .number = m->axes[i].count});
     for (int i = 0; i < m->arrays.count; i++)
-        write_item(w, &(item){.kind = ITEM_ARRAY, .array = m->arrays.v[i]});
+        write_array(w, &m->arrays.v[i]);
     for (int i = 0; i < m->block_count; i++)
         write_item(w, &(item){.kind = ITEM_BLOCK, .block = m->blocks[i]});
     w->body = true;
@@ -438,7 +456,7 @@ int model_write_frame(model_writer *w, const frame *f, err *e)
     w->order = (order){f->index, true};
     write_item(w, &(item){.kind = ITEM_FRAME, .number = f->index, .time = f->time});
     for (int i = 0; i < f->arrays.count; i++)
-        write_item(w, &(item){.kind = ITEM_ARRAY, .array = f->arrays.v[i]});
+        write_array(w, &f->arrays.v[i]);
     out_flush(w->o);
     return 0;
 }

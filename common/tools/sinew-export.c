@@ -163,12 +163,11 @@ static int check_moved(const job *j, err *e)
                    j->o->surface);
 }
 
-/* What a frame moves must arrive somewhere. */
-static int check_frame(job *j, const frame *f, err *e)
+/* Which frame is written now, if any. */
+static void note_frame(job *j, const frame *f)
 {
     j->chosen = f != NULL;
     j->index = f ? f->index : j->index;
-    return f ? finite_array(frame_find(f, "node.displacement"), source_name(&j->s), e) : 0;
 }
 
 /* Each frame as it comes, in a file of its own. */
@@ -178,8 +177,8 @@ static int put_all_frames(job *j, out *collection, err *e)
     export_pvd_begin(collection);
     while ((got = source_next(&j->s, e)) > 0) {
         char *file = frame_file(j, j->s.frames - 1, e);
-        int bad = !file || export_shape_move(&j->x, &j->s.frame, e) || check_moved(j, e) ||
-                  check_frame(j, &j->s.frame, e) || put_frame_file(j, file, e);
+        note_frame(j, &j->s.frame);
+        int bad = !file || export_shape_move(&j->x, &j->s.frame, e) || check_moved(j, e) || put_frame_file(j, file, e);
         if (!bad) {
             const char *slash = strrchr(file, '/');
             export_pvd_add(collection, j->s.frame.time, slash ? slash + 1 : file);
@@ -200,7 +199,8 @@ static int put_all_data(job *j, out *to, err *e)
     int got;
     export_msh(&j->x, to);
     while ((got = source_next(&j->s, e)) > 0) {
-        if (export_shape_move(&j->x, &j->s.frame, e) || check_frame(j, &j->s.frame, e))
+        note_frame(j, &j->s.frame);
+        if (export_shape_move(&j->x, &j->s.frame, e))
             return -1;
         export_msh_frame(&j->x, to);
     }
@@ -256,14 +256,9 @@ static int choose_unit(job *j, err *e)
     return j->unit ? 0 : err_set(e, source_name(&j->s), 0, "source.unit '%.40s': expected " NUM_UNITS, name);
 }
 
-/* Other programs take nan for a number, or for nothing. Where they calculate, an element needs an inside too. */
+/* Where other programs calculate, an element needs an inside. */
 static int check_rest(const job *j, err *e)
 {
-    char name[MODEL_NAME + 32];
-    snprintf(name, sizeof name, "%.255s%s", j->o->surface ? j->o->surface : "node",
-             j->o->surface ? "/vertex.position" : ".position");
-    if (finite_array(model_find(&j->s.body, name), source_name(&j->s), e))
-        return -1;
     return j->o->surface ? 0 : finite_elements(&j->s.body, source_name(&j->s), e);
 }
 
@@ -280,8 +275,9 @@ static int work(job *j, out *to, err *e)
     int bad = choose_frame(j, &kept, &chosen, e);
     if (!bad && j->o->format != INP)
         bad = export_shape_move(&j->x, chosen, e) || check_moved(j, e) ? -1 : 0;
+    note_frame(j, chosen);
     if (!bad)
-        bad = check_frame(j, chosen, e) || put_one(j, to, e) ? -1 : 0;
+        bad = put_one(j, to, e);
     frame_free(&kept);
     return bad;
 }

@@ -219,7 +219,7 @@ fails 1 "a lattice wider than memory" 'memory' attach -o "$T/no" <"$T/wide"
 sed '/lattice.spacing/s/0.01 0.01"/0 0.01"/' "$T/bar" >"$T/flat"
 fails 1 "voxels without thickness" 'lattice\.spacing' attach -o "$T/no" <"$T/flat"
 sed 's/^0.002 0.02 -0.01$/nan 0.02 -0.01/' "$T/bar" >"$T/nan"
-fails 1 "a vertex that is nowhere" 'surface bar: vertex 1 ' attach -o "$T/no" <"$T/nan"
+fails 1 "a vertex that is nowhere" 'stdin:51: array bar/vertex.position, row 1: nan 0.02 -0.01; expected finite numbers' attach -o "$T/no" <"$T/nan"
 check "no output is left of any failure" test ! -e "$T/no"
 echo 'fail 3 "voxelise: no"' >"$T/failed"
 sed '$d' "$T/bar" | cat - "$T/failed" | attach -o "$T/no" 2>"$T/stderr"
@@ -260,7 +260,7 @@ is $? 0 "thrice is once"
 # Nodes that are nowhere, elements that enclose nothing.
 small=$ROOT/tests/cli/small.sinew
 sed 's/^0.1 0.1 0.1$/0.1 nan 0.1/' "$small" >"$T/nan"
-fails 1 "a node that is nowhere" "^attach: node.position, row 10 is not finite; expected" attach -o "$T/none" <"$T/nan"
+fails 1 "a node that is nowhere" "^attach: stdin:29: array node.position, row 10: 0.1 nan 0.1; expected finite numbers" attach -o "$T/none" <"$T/nan"
 sed 's/^0 1 4 3 6 7 10 9$/0 0 0 0 0 0 0 0/' "$small" >"$T/flat"
 fails 1 "an element of one node" "^attach: element.node, row 0 has 1 different node; expected 4 or more" \
     attach -o "$T/none" <"$T/flat"

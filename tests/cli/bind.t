@@ -136,7 +136,7 @@ is "$(array "$T/bound" in/vertex.element)$(grep -c '1 of the tetrahedra have no 
 sed 's/^0 1 2 3$/0 1 2 2/; s/^4 3 2 1$/4 4 4 4/' "$T/tet" >"$T/flat"
 fails 1 "none with a volume" 'no tetrahedron of the model has a volume' sinew bind -o "$T/none" "$T/in.obj" <"$T/flat"
 sed 's/^0 0 0.01$/0 0 nan/' "$T/tet" >"$T/nan"
-fails 1 "a node that is nowhere" 'node.position, row 3 is not finite' sinew bind -o "$T/none" "$T/in.obj" <"$T/nan"
+fails 1 "a node that is nowhere" 'stdin:9: array node.position, row 3: 0 0 nan; expected finite numbers' sinew bind -o "$T/none" "$T/in.obj" <"$T/nan"
 
 # Several files.
 check "several files" sinew bind --text "$T/dots.obj" "$T/far.obj" -o "$T/both" <"$T/model"

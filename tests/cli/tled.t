@@ -260,7 +260,11 @@ edit() { # NAME PATTERN SED: the model, edited as text, is refused
 run -q -n 1 --text | sed -e '/^crc/d' -e '/^frame/,$d' >"$T/whole_text"
 echo end >>"$T/whole_text"
 check "a model may be edited as text" sh -c "tled-run -q -n 1 <'$T/whole_text'"
-edit "a negative modulus" 'material.E, row 0: -5 is not allowed; expected 0.001 to 1e12 Pa' '/^array material.E/{n;s/.*/-5/;}'
+edit "a negative modulus" 'stdin:[0-9]+: array material.E, row 0: -5; expected 0.001 to 1e12 Pa' '/^array material.E/{n;s/.*/-5/;}'
+edit "a fibre of another length" 'stdin:[0-9]+: array element.fibre, row [0-9]+: 0 0 2; expected rows of length 1, to 0.001, or 0 0 0' \
+    '/^array element.fibre/{n;s/.*/0 0 2/;}'
+edit "a node that is nowhere" 'array node.position, row 0: nan 0 0; expected finite numbers' \
+    '/^array node.position/{n;s/.*/nan 0 0/;}'
 edit "an unknown law" "unknown law 'mooney'" 's/"neo-hookean"/"mooney"/'
 edit "no lattice" 'lattice.spacing' '/lattice.spacing/d'
 edit "another spacing" 'not a box' 's/^\(meta lattice.spacing\).*/\1 "0.005 0.005 0.006"/'

@@ -323,7 +323,9 @@ static void test_check(void)
     add(&m, "x-n", MODEL_I32, "@nowhere", "element");
     ok(checked(&m, "x-n", &e) && says(&e, "points to axis nowhere"), "indices into no axis");
     a = model_add(&m, "s/face.start", &e);
-    ok(checked(&m, "s/face.start", &e) && says(&e, "place:12") && says(&e, "a face starts at 0"), "an empty face");
+    ok(checked(&m, "s/face.start", &e) && says(&e, "place:12") &&
+           says(&e, "row 1: 0; expected 0 first, then each more"),
+       "an empty face");
     a->i64[0] = 1, a->i64[1] = 2, a->i64[2] = 3;
     ok(checked(&m, "s/face.start", &e) && says(&e, "place:11"), "a first face that does not start at 0");
     a->i64[0] = 0;

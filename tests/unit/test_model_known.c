@@ -17,6 +17,7 @@ static void print_part(out *o, bool in_frames)
 {
     out_text(o, ".Bl -tag -width 4n\n");
     const known *k;
+    char words[KNOWN_WORDS];
     for (int i = 0; (k = known_row(i)); i++) {
         if (!!(k->flags & KNOWN_FRAME) != in_frames)
             continue;
@@ -24,8 +25,11 @@ static void print_part(out *o, bool in_frames)
         if (k->columns_min < k->columns_max)
             out_format(o, "%d|", k->columns_min);
         out_format(o, "%d\n", k->columns_max);
-        out_format(o, "%s%s%s: %s.\n", k->maker ? "By " : "Reserved", k->maker ? k->maker : "",
-                   k->flags & KNOWN_EVERY ? "; never \\-1" : "", k->meaning);
+        known_words(k, words);
+        bool told = *words && k->rule != KNOWN_FINITE;
+        out_format(o, "%s%s%s%s%s%s: %s.\n", k->maker ? "By " : "Reserved", k->maker ? k->maker : "",
+                   k->flags & KNOWN_EVERY ? "; never \\-1" : "", told ? "; " : "", told ? words : "",
+                   told && k->flags & KNOWN_NAN ? ", or nan" : "", k->meaning);
     }
     out_text(o, ".El\n");
 }

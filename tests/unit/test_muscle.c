@@ -164,12 +164,6 @@ static void mixed(void)
        "%s", e.text);
     notes_free(&warnings);
     muscles_free(&list);
-    e = (err){0};
-    model_find(&m, "element.mixture")->f32[2] = -1;
-    ok(muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) && strstr(e.text, "element.mixture, row 2 is -1"), "%s",
-       e.text);
-    notes_free(&warnings);
-    muscles_free(&list);
     model_free(&m);
 }
 
