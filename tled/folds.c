@@ -64,6 +64,8 @@ static void name_element(const folds *f, int64_t element, char *to, size_t size)
              num_unit_name(unit));
 }
 
+static const double usual_kappa = .0075; /* of --hourglass, where it is not given */
+
 /* What was seen to help, on faces: smaller voxels do not, where a muscle's end pulls at a few elements. */
 #define REMEDY "expected less load or contraction there, or a larger --hourglass"
 
@@ -101,9 +103,10 @@ static void warn_of_hourglass(const folds *f, notes *warnings)
     notes_add(
         warnings,
         "hourglass energy is %.3g %% of strain energy at the end, expected at most %g %%: elements are too coarse "
-        "for how they bend; %s holds the most of it, %.3g %%; expected %s",
+        "for how they bend; %s holds the most of it, %.3g %%; expected %s%s",
         100 * share(s), 100 * QUALITY_HOURGLASS, where, 100 * s->most / s->hourglass,
-        f->p->conforming ? "a finer mesh" : "smaller voxels");
+        f->p->conforming ? "a finer mesh" : "smaller voxels",
+        f->p->kappa > usual_kappa ? ", or a smaller --hourglass" : "");
 }
 
 void folds_warn(const folds *f, double most_strain, notes *warnings)

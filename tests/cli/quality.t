@@ -126,6 +126,8 @@ check "a strip one element thick that bends" tled-run -d cpu -g 0,0,-9.81 -t .1 
 share=$(get hourglass "$T/out" | awk '{ printf "%.3g", 100 * $1 }')
 is "$(grep -Ec "warning: hourglass energy is $share % of strain energy at the end, expected at most 10 %: .* element [0-9]* \(volume 'skin'\) at .*m,.*m,.*m holds the most of it, .*; expected smaller voxels\$" "$T/stderr")" \
     1 "is past 10 %: $share %"
+tled-run -q -d cpu --hourglass .1 -g 0,0,-9.81 -t .1 -o "$T/out" <"$T/thin" 2>"$T/said"
+is "$(grep -c 'expected smaller voxels, or a smaller --hourglass$' "$T/said")" 1 "where --hourglass is large, that is told too"
 check "four elements thick" sh -c "awk -v nx=24 -v ny=8 -v nz=4 -v h=0.00125 -v held=low -f tests/cli/block.awk | tled-run -d cpu -g 0,0,-9.81 -t .1 -o '$T/out'"
 is "$(grep -c warning "$T/stderr")" 0 "it is not ($(get hourglass "$T/out")): smaller voxels do help"
 check "a run in which nothing happens" tled-run -d cpu -n 3 -o "$T/out" <"$T/muscle"
