@@ -205,7 +205,7 @@ static int check_options(const struct options *o, err *e)
     return 0;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.strictness = 0.75};
     err e = {0};
@@ -224,4 +224,9 @@ out:
         stage_close(&s, &t, &e);
     model_free(&m);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -324,7 +324,7 @@ static int check_options(const struct options *o, int count, char *const *path, 
     return 0;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
     err e = {0};
@@ -354,4 +354,9 @@ out:
     target_close(&to);
     model_free(&m);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

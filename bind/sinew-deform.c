@@ -336,7 +336,7 @@ static void plan_close(plan *p)
     outs_free(&p->written);
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
     err e = {0};
@@ -359,4 +359,9 @@ out:
     mover_close(&w);
     source_close(&s);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

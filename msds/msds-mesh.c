@@ -233,7 +233,7 @@ static int from_model(const struct options *o, stage *s, model *m, notes *warnin
     return o->fix ? mesh_fix(m, o->fix, NULL, e) : 0;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.young = NAN, .poisson = NAN, .density = NAN};
     mesh_box b = {0};
@@ -257,4 +257,9 @@ out:
         stage_close(&s, &t, &e);
     model_free(&m);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -469,7 +469,7 @@ static int make_states(session *s, err *e)
     return s->source ? poses_open(&s->poses, s->source, s->o->transform, e) : -1;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.iterations = 20,
                         .rate = 60,
@@ -504,4 +504,9 @@ out:
     probe_free(&s.probe);
     model_free(&s.m);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -291,7 +291,7 @@ static void hide(const job *j, char *const *operand, err *e)
         import_hide_word(e, j->o->common.output);
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.series = -1, .time = -1, .fill = -1, .splat = -1};
     err e = {0};
@@ -322,4 +322,9 @@ out:
     volume_free(&j.v);
     dicom_end();
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

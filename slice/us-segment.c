@@ -334,7 +334,7 @@ static int put_label(job *j, err *e)
     return volume_name(&j->labels, value, j->o->name, e);
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.value = -1, .low = NAN, .high = NAN, .tolerance = NAN};
     err e = {0};
@@ -358,4 +358,9 @@ out:
     volume_free(&j.v);
     volume_free(&j.labels);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -521,7 +521,7 @@ static int slice_poses(job *j, err *e)
     return got;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.regions = SLICE_REGIONS};
     err e = {0};
@@ -553,4 +553,9 @@ out:
     free(j.one);
     free(j.sum);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -254,7 +254,7 @@ static int write_level(job *j, err *e)
     return write_surface(j, j->o->name ? j->o->name : "surface", &whole, NULL, e);
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.iso = NAN};
     err e = {0};
@@ -282,4 +282,9 @@ out:
     free(j.group);
     volume_free(&j.v);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -1,6 +1,7 @@
 #include "tled/outbox.h"
 
 #include "base/mem.h"
+#include "base/thread.h"
 
 #include <pthread.h>
 #include <signal.h>
@@ -84,7 +85,7 @@ static int start(outbox *o)
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, &before);
     while (!code && o->running < 2) {
-        code = pthread_create(&o->thread[o->running], NULL, work, &o->stage[o->running]);
+        code = thread_start(&o->thread[o->running], work, &o->stage[o->running]);
         o->running += !code;
     }
     pthread_sigmask(SIG_SETMASK, &before, NULL);

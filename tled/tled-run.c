@@ -544,7 +544,7 @@ static int simulate(session *s, const struct options *o, const char *device, err
     return result;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.dt = -1,
                         .seconds = -1,
@@ -578,4 +578,9 @@ out:
     script_free(&s.script);
     model_free(&s.m);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

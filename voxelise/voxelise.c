@@ -504,7 +504,7 @@ static int work(job *j, model *m, err *e)
     return 0;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.cells = -1, .fraction = -1, .least = NAN};
     err e = {0};
@@ -529,4 +529,9 @@ out:
     job_free(&j);
     model_free(&m);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -1,6 +1,7 @@
 #include "base/pool.h"
 
 #include "base/mem.h"
+#include "base/thread.h"
 
 #include <pthread.h>
 #include <signal.h>
@@ -156,7 +157,7 @@ pool *pool_create(int threads, err *e)
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, &before);
     while (p->worker && p->share && p->started < p->threads - 1) {
-        int code = pthread_create(&p->worker[p->started], NULL, worker_main, p);
+        int code = thread_start(&p->worker[p->started], worker_main, p);
         if (code) {
             err_system(e, NULL, code, "cannot start a thread");
             break;

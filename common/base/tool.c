@@ -2,6 +2,7 @@
 #include "base/tool.h"
 
 #include "base/path.h"
+#include "base/thread.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -11,9 +12,50 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 enum { LINE = 4096 }; /* the most bytes of a message */
+
+/* Bytes: with a smaller stack, libraries that tools call end in SIGSEGV (Embree, by 64 KiB). */
+static const rlim_t enough_stack = (rlim_t)2 << 20;
+
+typedef struct errand {
+    int (*work)(int argc, char **argv);
+    int argc;
+    char **argv;
+    sigset_t signals; /* the process's mask */
+    int status;
+} errand;
+
+static void *run_errand(void *given)
+{
+    errand *r = given;
+    pthread_sigmask(SIG_SETMASK, &r->signals, NULL);
+    r->status = r->work(r->argc, r->argv);
+    return NULL;
+}
+
+int tool_run(int (*work)(int argc, char **argv), int argc, char **argv)
+{
+    errand r = {.work = work, .argc = argc, .argv = argv, .status = STATUS_BAD};
+    struct rlimit stack;
+    pthread_t thread;
+    sigset_t all;
+    if (getrlimit(RLIMIT_STACK, &stack) || stack.rlim_cur >= enough_stack)
+        return work(argc, argv);
+    /* Signals are that thread's: this one only waits. */
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &r.signals);
+    int code = thread_start(&thread, run_errand, &r);
+    if (code)
+        dprintf(STDERR_FILENO,
+                "%s: %llu KiB of stack (ulimit -s) are too few, and a thread with more cannot be started: %s\n",
+                argv[0] + path_folder(argv[0]), (unsigned long long)stack.rlim_cur / 1024, strerror(code));
+    else
+        pthread_join(thread, NULL);
+    return r.status;
+}
 
 /* Answers -h, -V and --table on stdout. */
 static int answer(tool *t, err *e)

@@ -1,11 +1,15 @@
 /* What every main begins and ends with: the command line, and messages on stderr. The only file that prints
- * messages. A main reads: tool_begin, work, tool_end.
+ * messages. A main is tool_run() of what reads: tool_begin, work, tool_end.
  */
 #ifndef SINEW_TOOL_H
 #define SINEW_TOOL_H
 
 #include "base/err.h"
 #include "base/opt.h"
+
+/* A whole tool, from the command line to the exit status: work(argc, argv). Where ulimit -s leaves the process little stack, it runs
+ * on a thread that has enough. A main is this alone. */
+int tool_run(int (*work)(int argc, char **argv), int argc, char **argv);
 
 #define SINEW_VERSION "0.1.0"
 

@@ -380,7 +380,7 @@ static int open_both(diff *d, char *const *path, err *e)
     return source_open(&d->a, path[0], e) || source_open(&d->b, path[1], e) ? -1 : 0;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
     err e = {0};
@@ -415,4 +415,9 @@ out:
     source_close(&d.b);
     int status = tool_end(&t, &e);
     return status ? TROUBLE : d.different ? DIFFERENT : SAME;
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -318,7 +318,7 @@ static void put_file(job *j, const char *path, err *e)
         outs_commit(&j->files, e);
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
     err e = {0};
@@ -348,4 +348,9 @@ out:
     source_close(&j.s);
     free(j.stem);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -135,7 +135,7 @@ static int read_materials(const struct options *o, model *m, err *e)
     return result;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {.format = AUTO};
     err e = {0};
@@ -168,4 +168,9 @@ out:
     import_free(&mesh);
     model_free(&m);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

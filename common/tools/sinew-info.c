@@ -292,7 +292,7 @@ static int put_whole(source *s, const struct options *o, out *text, out *to, err
     return 0;
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
     err e = {0};
@@ -322,4 +322,9 @@ out:
     source_end(&s, &e);
     source_close(&s);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

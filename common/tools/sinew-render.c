@@ -196,7 +196,7 @@ static void job_close(job *j)
     render_plan_free(&j->plan);
 }
 
-int main(int argc, char **argv)
+static int run_tool(int argc, char **argv)
 {
     render_options o = {.size = "1280x720", .angle = 20};
     err e = {0};
@@ -215,4 +215,9 @@ out:
     source_end(&j.s, &e);
     job_close(&j);
     return tool_end(&t, &e);
+}
+
+int main(int argc, char **argv)
+{
+    return tool_run(run_tool, argc, argv);
 }

@@ -1,0 +1,12 @@
+/* Threads whose stack is of one size, whatever ulimit -s says: by default a thread's is as large as that limit, and what
+ * computes, or a library that it calls, may need more.
+ */
+#ifndef SINEW_THREAD_H
+#define SINEW_THREAD_H
+
+#include <pthread.h>
+
+/* pthread_create() with a stack of 8 MiB. Returns 0, or an errno value. */
+int thread_start(pthread_t *thread, void *(*work)(void *), void *context);
+
+#endif
