@@ -71,16 +71,19 @@ static const double usual_kappa = .0075; /* of --hourglass, where it is not give
 
 static void warn_of_folds(const folds *f, notes *warnings)
 {
-    char where[300], others[100] = "";
+    char where[300], others[100] = "", j[40] = "inside out at a corner at rest already";
     const quality *q = &f->last.quality;
     name_element(f, q->element, where, sizeof where);
+    if (!isnan(q->worst))
+        snprintf(j, sizeof j, "J %.3g", q->worst);
     if (f->folded > 1)
         snprintf(others, sizeof others, ", and some in %lld of %lld frames", (long long)f->folded,
                  (long long)f->frames);
     notes_add(warnings,
-              "%lld of %lld elements %s folded at the end%s (J <= 0 in the middle or at a corner); the worst is %s, J "
-              "%.3g: the result is wrong there; " REMEDY,
-              (long long)q->folded, (long long)f->p->elements, q->folded == 1 ? "is" : "are", others, where, q->worst);
+              "%lld of %lld elements %s folded at the end%s (J <= 0 in the middle or at a corner); the worst is %s, "
+              "%s: the result is wrong there; %s",
+              (long long)q->folded, (long long)f->p->elements, q->folded == 1 ? "is" : "are", others, where, j,
+              isnan(q->worst) ? "expected a mesh without such elements" : REMEDY);
 }
 
 /* In frames before the last, which has none. */

@@ -130,6 +130,11 @@ tled-run -q -d cpu --hourglass .1 -g 0,0,-9.81 -t .1 -o "$T/out" <"$T/thin" 2>"$
 is "$(grep -c 'expected smaller voxels, or a smaller --hourglass$' "$T/said")" 1 "where --hourglass is large, that is told too"
 check "four elements thick" sh -c "awk -v nx=24 -v ny=8 -v nz=4 -v h=0.00125 -v held=low -f tests/cli/block.awk | tled-run -d cpu -g 0,0,-9.81 -t .1 -o '$T/out'"
 is "$(grep -c warning "$T/stderr")" 0 "it is not ($(get hourglass "$T/out")): smaller voxels do help"
+printf '*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,.3,.3,.3\n8,0,1,1\n*ELEMENT,TYPE=C3D8R,ELSET=a\n1,1,2,3,4,5,6,7,8\n*NSET,NSET=low\n1,2,3,4\n*BOUNDARY\nlow,1,3\n' |
+    sinew import -q --unit m -o "$T/inside" - 2>"$T/said"
+tled-run -q -d cpu -g 0,0,-1 -n 20 -o "$T/out" <"$T/inside" 2>"$T/said"
+is "$(grep -c "the worst is element 0 (volume 'a') at .*, inside out at a corner at rest already: .*; expected a mesh without such elements$" "$T/said")$(get folded "$T/out")" 11 \
+    "an element that is folded as it came is told apart"
 check "a run in which nothing happens" tled-run -d cpu -n 3 -o "$T/out" <"$T/muscle"
 is "$(sed -n "s/.*\(smallest.*\)/\1/p" "$T/stderr"); $(grep -c warning "$T/stderr"); $(get hourglass "$T/out")" \
     "smallest J 1 in the middle of an element, 1 at a corner; 0 folded; hourglass energy 0 % of strain energy; 0; 0" "has nothing to warn of"
