@@ -81,18 +81,34 @@ char *checkpoint_file(const char *path, int i, err *e)
     return path_join(path, strlen(path), suffixes[i], e);
 }
 
-void checkpoint_close(checkpoint *c, bool done)
+/* Removes a file, unless there is none. */
+static int remove_file(const char *path, err *e)
+{
+    return unlink(path) && errno != ENOENT
+               ? err_system(e, path, errno, "is left of a run that has ended: cannot remove")
+               : 0;
+}
+
+/* The state first: with all of its frames, what is left can be gone on from. */
+int checkpoint_remove(const checkpoint *c, err *e)
 {
     struct stat s;
+    if (!isnan(c->time)) {
+        if (remove_file(c->before, e))
+            return -1;
+        const bool is_there = !stat(c->path, &s); /* what is there now may be the output, by mistake */
+        if (!is_there && errno != ENOENT)
+            return err_system(e, c->path, errno, "is left of a run that has ended");
+        if (is_there && s.st_ino == c->saved && remove_file(c->path, e))
+            return -1;
+    }
+    return c->lock >= 0 ? remove_file(c->frames_path, e) : 0;
+}
+
+void checkpoint_close(checkpoint *c)
+{
     if (!c)
         return;
-    if (done && !isnan(c->time)) { /* what is there now may be the output, by mistake */
-        unlink(c->before);
-        if (!stat(c->path, &s) && s.st_ino == c->saved)
-            unlink(c->path);
-    }
-    if (done && c->lock >= 0)
-        unlink(c->frames_path);
     out_discard(c->frames);
     if (c->lock >= 0)
         close(c->lock);
@@ -133,7 +149,7 @@ static checkpoint *create(const char *path, const likeness_run *run, err *e)
     c->frames_path = checkpoint_file(path, 2, e);
     if (c->path && c->before && c->frames_path && !make_body(c, run, e))
         return c;
-    checkpoint_close(c, false);
+    checkpoint_close(c);
     return NULL;
 }
 
@@ -144,11 +160,16 @@ static int open_frames(checkpoint *c, int flags, err *e)
     c->lock = open(c->frames_path, O_RDWR | O_CLOEXEC | flags, 0666);
     if (c->lock < 0)
         return err_system(e, c->frames_path, errno, flags ? "cannot create" : "cannot open");
-    if (fstat(c->lock, &s) || !S_ISREG(s.st_mode))
+    if (fstat(c->lock, &s))
+        return err_system(e, c->frames_path, errno, "cannot open");
+    if (!S_ISREG(s.st_mode))
         return err_set(e, c->frames_path, 0, "is no regular file; expected one, or a new name");
     if (flock(c->lock, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         return err_set(e, c->frames_path, 0, "another run is at it; expected one at a time");
-    if (stat(c->frames_path, &named) || named.st_ino != s.st_ino || named.st_dev != s.st_dev)
+    const bool is_there = !stat(c->frames_path, &named);
+    if (!is_there && errno != ENOENT)
+        return err_system(e, c->frames_path, errno, "cannot open");
+    if (!is_there || named.st_ino != s.st_ino || named.st_dev != s.st_dev)
         return err_set(e, c->frames_path, 0, "another run was at it until now; expected one at a time");
     return 0;
 }
@@ -183,10 +204,14 @@ static int check_frames(const checkpoint *c, err *e)
 /* Whether something is there to go on from. */
 static int check_none(const checkpoint *c, err *e)
 {
+    const char *const paths[] = {c->path, c->before};
     struct stat s;
-    const char *there = !lstat(c->path, &s) ? c->path : !lstat(c->before, &s) ? c->before : NULL;
-    return there ? err_set(e, there, 0, "is there; expected --restart, to go on from a checkpoint, or another name")
-                 : 0;
+    for (int i = 0; i < 2; i++)
+        if (!lstat(paths[i], &s))
+            return err_set(e, paths[i], 0, "is there; expected --restart, to go on from a checkpoint, or another name");
+        else if (errno != ENOENT && errno != ENOTDIR)
+            return err_system(e, paths[i], errno, "cannot create");
+    return 0;
 }
 
 /* From here on frames are added, after the first `length` bytes. */
@@ -221,7 +246,7 @@ checkpoint *checkpoint_begin(const char *path, const likeness_run *run, err *e)
     }
     return c;
 fail:
-    checkpoint_close(c, false);
+    checkpoint_close(c);
     return NULL;
 }
 
@@ -267,7 +292,9 @@ int checkpoint_save(checkpoint *c, const run_point *at, double time, const doubl
     frame f = {.index = at->first, .time = time};
     bool whole = !out_sync(c->frames, e) && frame_lend(&f, &c->body, "node.displacement", displacement, e) &&
                  frame_lend(&f, &c->body, "node.velocity", velocity, e);
-    if (whole && !fstat(c->lock, &s))
+    if (whole && fstat(c->lock, &s))
+        whole = !err_system(e, c->frames_path, errno, "cannot write");
+    if (whole)
         c->length = (int64_t)s.st_size;
     put_point(c, at, model_find(&c->body, number_name)->f64, model_find(&c->body, count_name)->i64);
     int bad = !whole || write_state(c, &f, e) ? -1 : 0;
@@ -276,8 +303,9 @@ int checkpoint_save(checkpoint *c, const run_point *at, double time, const doubl
         return -1;
     c->stale = false;
     c->time = time;
-    if (!stat(c->path, &s))
-        c->saved = s.st_ino;
+    if (stat(c->path, &s))
+        return err_system(e, c->path, errno, "cannot read");
+    c->saved = s.st_ino;
     return 0;
 }
 
@@ -384,7 +412,9 @@ static int try_state(checkpoint *c, const char *path, bool *foreign, err *e)
     if (read_state(c, path, foreign, e))
         return -1;
     *foreign = false;
-    if (!fstat(c->lock, &s) && (int64_t)s.st_size < c->length)
+    if (fstat(c->lock, &s))
+        return err_system(e, c->frames_path, errno, "cannot read");
+    if ((int64_t)s.st_size < c->length)
         return err_set(e, c->frames_path, 0, "has %lld bytes; expected %lld", (long long)s.st_size,
                        (long long)c->length);
     return read_frames(c, NULL, NULL, e);
@@ -423,9 +453,13 @@ checkpoint *checkpoint_resume(const char *path, const likeness_run *run, notes *
         goto fail;
     if (!stat(c->path, &s))
         c->saved = s.st_ino;
+    else if (errno != ENOENT) {
+        err_system(e, c->path, errno, "cannot open");
+        goto fail;
+    }
     return c;
 fail:
-    checkpoint_close(c, false);
+    checkpoint_close(c);
     return NULL;
 }
 

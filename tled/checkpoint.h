@@ -43,7 +43,10 @@ int checkpoint_save(checkpoint *c, const run_point *at, double time, const doubl
 /* How far the run can go back to, s; nan: nothing is saved. */
 double checkpoint_saved(const checkpoint *c);
 
-/* done: the run's output is whole, and its files are removed. c may be NULL. */
-void checkpoint_close(checkpoint *c, bool done);
+/* The run's output is whole: removes the files. -1 with e filled where one stays. */
+int checkpoint_remove(const checkpoint *c, err *e);
+
+/* c may be NULL. */
+void checkpoint_close(checkpoint *c);
 
 #endif

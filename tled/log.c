@@ -1,12 +1,12 @@
 #include "tled/log.h"
 
 #include "base/in.h"
+#include "base/path.h"
 #include "base/progress.h"
 #include "model/rest_place.h"
 
 #include <math.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* Quantity and unit; the last two go by the clock, and differ from run to run. Nodes' come after them, then what elements are like. */
 static const char heading[] =
@@ -48,8 +48,9 @@ static int check_heading(const run_log *l, const char *path, int64_t keep, err *
     size_t size;
     char *line = NULL;
     struct stat s;
-    if (stat(path, &s) || !S_ISREG(s.st_mode) || s.st_size < (off_t)keep)
-        return 0;
+    const int there = path_look(path, &s, e);
+    if (there < 1 || !S_ISREG(s.st_mode) || s.st_size < (off_t)keep)
+        return there < 0 ? -1 : 0;
     out *want = out_memory(e);
     in *file = want ? in_open_plain(path, e) : NULL;
     if (file && in_line(file, &line, NULL, e) > -2) {

@@ -383,12 +383,14 @@ static void end_output(session *s, const tool *t, err *e)
     stage_close(&s->stage, t, e);
 }
 
-static void end_checkpoints(session *s, const err *e)
+static void end_checkpoints(session *s, err *e)
 {
     const double saved = s->checkpoint ? checkpoint_saved(s->checkpoint) : NAN;
     if (e->status == STATUS_BAD && isfinite(saved))
         tool_say(s->t, "the run up to %.6g s is saved; --restart goes on from there", saved);
-    checkpoint_close(s->checkpoint, !e->status);
+    else if (s->checkpoint && !e->status)
+        checkpoint_remove(s->checkpoint, e);
+    checkpoint_close(s->checkpoint);
 }
 
 static void say_start(const session *s, const char *device, const struct options *o)

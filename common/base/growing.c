@@ -24,12 +24,13 @@ static int open_at(const char *path, int64_t keep, err *e)
     int fd = open(path, O_WRONLY | O_CREAT | (keep ? 0 : O_TRUNC) | O_APPEND | O_CLOEXEC, 0666);
     if (fd < 0)
         return err_system(e, path, errno, "cannot open for writing");
-    if (!keep || fstat(fd, &s) || !S_ISREG(s.st_mode))
+    const bool unknown = keep && fstat(fd, &s);
+    if (!keep || (!unknown && !S_ISREG(s.st_mode)))
         return fd;
-    if (s.st_size < (off_t)keep)
+    if (!unknown && s.st_size < (off_t)keep)
         err_set(e, path, 0, "has %lld bytes; expected the first %lld of this run's", (long long)s.st_size,
                 (long long)keep);
-    else if (ftruncate(fd, (off_t)keep))
+    else if (unknown || ftruncate(fd, (off_t)keep))
         err_system(e, path, errno, "cannot write");
     else
         return fd;

@@ -2,6 +2,7 @@
 #include "base/out.h"
 
 #include "base/mem.h"
+#include "base/path.h"
 #include "base/temporary.h"
 
 #include <errno.h>
@@ -11,7 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -153,7 +153,9 @@ out *out_open(const char *path, bool gzip, err *e)
     struct stat s;
     if (!path || !strcmp(path, "-"))
         return out_new(STDOUT_FILENO, "stdout", gzip, e);
-    bool there = !stat(path, &s);
+    const int there = path_look(path, &s, e);
+    if (there < 0)
+        return NULL;
     if (there && S_ISDIR(s.st_mode)) {
         err_set(e, path, 0, "is a folder; expected a file to write");
         return NULL;

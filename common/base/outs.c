@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 struct outs_file {
@@ -22,7 +21,9 @@ enum { FEW = 16, MANY = 1 << 16 }; /* descriptors */
 static int check_place(const char *path, err *e)
 {
     struct stat s;
-    const bool there = !stat(path, &s);
+    const int there = path_look(path, &s, e);
+    if (there < 0)
+        return -1;
     if (there && !S_ISREG(s.st_mode))
         return err_set(e, path, 0, "is no regular file; expected one, or a new name");
     return there && access(path, W_OK) ? err_system(e, path, errno, "cannot write") : 0;

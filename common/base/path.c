@@ -76,6 +76,13 @@ static bool stat_folder(const char *path, struct stat *s)
     return found;
 }
 
+int path_look(const char *path, struct stat *s, err *e)
+{
+    if (!stat(path, s))
+        return 1;
+    return errno == ENOENT ? 0 : err_system(e, path, errno, "cannot create");
+}
+
 static bool is_one(const struct stat *s, const struct stat *t)
 {
     return s->st_dev == t->st_dev && s->st_ino == t->st_ino;

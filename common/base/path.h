@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <sys/stat.h>
 
 /* The length of the folder's part of a path, its last slash included; 0: it has none. */
 size_t path_folder(const char *path);
@@ -20,6 +21,9 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
 
 /* Where a file named path would be, links followed, even one to nothing. NULL with e filled where there can be none. */
 char *path_target(const char *path, err *e);
+
+/* What is at a path that is to be written, links followed: 1; 0: nothing; -1 with e filled where the system does not say. */
+int path_look(const char *path, struct stat *s, err *e);
 
 /* Whether two paths are of one regular file, by whatever links, or would be once it is there. */
 bool path_is_same(const char *a, const char *b);

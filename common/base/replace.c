@@ -17,15 +17,24 @@
 
 enum { NAMES = 1000, PIECE = 1 << 24 }; /* names to try, at most; bytes */
 
-/* The permissions that a file made by open(2) would have, or those of the file that it replaces. */
-static mode_t wanted_mode(const char *target)
+/* False: errno. A file system that has no permissions to give has its own. */
+static bool give_mode(int fd, mode_t mode)
+{
+    return !fchmod(fd, mode) || errno == EPERM || errno == ENOTSUP || errno == ENOSYS;
+}
+
+/* Gives a file the permissions that one made by open(2) would have, or those of the file that it replaces. */
+static int set_mode(int fd, const char *target, err *e)
 {
     struct stat s;
-    if (!stat(target, &s))
-        return s.st_mode & 07777;
-    mode_t mask = umask(0);
+    const int there = path_look(target, &s, e);
+    if (there < 0)
+        return -1;
+    const mode_t mask = umask(0);
     umask(mask);
-    return 0666 & ~mask;
+    return give_mode(fd, there ? s.st_mode & 07777 : 0666 & ~mask)
+               ? 0
+               : err_system(e, target, errno, "cannot set its permissions");
 }
 
 /* The lock tells whoever sweeps that the file is somebody's. */
@@ -99,10 +108,8 @@ int replace_open(replace *r, const char *path, err *e)
         if (r->fd < 0 && errno)
             err_system(e, path, errno, "cannot create");
     }
-    if (r->fd >= 0) {
-        fchmod(r->fd, wanted_mode(r->target));
+    if (r->fd >= 0 && !set_mode(r->fd, r->target, e))
         return 0;
-    }
     replace_discard(r);
     return -1;
 }
@@ -169,9 +176,9 @@ static int copy_nameless(replace *r, err *e)
     const int from = r->fd, to = fstat(from, &s) ? -1 : take_name(r, make_new, e);
     if (to < 0)
         return -1;
-    fchmod(to, s.st_mode & 07777);
     r->fd = to;
-    const int bad = copy_bytes(from, to) || replace_store(to) ? -1 : 0, code = errno;
+    const int bad = !give_mode(to, s.st_mode & 07777) || copy_bytes(from, to) || replace_store(to) ? -1 : 0,
+              code = errno;
     close(from);
     errno = code;
     return bad;

@@ -176,7 +176,9 @@ static int resume(record *r, notes *warnings)
 
 static void end(record *r, bool done)
 {
-    checkpoint_close(r->c, done);
+    if (done)
+        ok(!checkpoint_remove(r->c, &(err){0}), "its files are removed");
+    checkpoint_close(r->c);
     bench_free(&r->b);
 }
 
@@ -285,7 +287,7 @@ static bool falls_back(record *r, double want)
                 strstr(warnings.line[0], "going on from the one before");
     if (!good)
         printf("# %s%s\n", e.text, warnings.count ? warnings.line[0] : "");
-    checkpoint_close(c, false);
+    checkpoint_close(c);
     notes_free(&warnings);
     return good;
 }
@@ -308,7 +310,7 @@ static void test_damage(void)
     unlink(path);
     checkpoint *c = checkpoint_resume(path, &run, NULL, &r.b.e);
     const double earlier = c ? checkpoint_saved(c) : NAN;
-    checkpoint_close(c, false);
+    checkpoint_close(c);
     ok(earlier < last && earlier > 0, "and the one before it, at %g s %s", earlier, r.b.e.text);
     for (size_t bit = 0; bit < 8 * size; bit += each, flips++) {
         bytes[bit / 8] ^= (unsigned char)(1 << bit % 8);
@@ -330,7 +332,7 @@ static void test_damage(void)
     spill(before, bytes_1, size - 1);
     c = checkpoint_resume(path, &run, NULL, &r.b.e);
     ok(!c && strstr(r.b.e.text, frames_path) && strstr(r.b.e.text, before), "both damaged: %s", r.b.e.text);
-    checkpoint_close(c, false);
+    checkpoint_close(c);
     /* Those were the frames: whole again, and gone on from the one before, it ends as ever. */
     record whole;
     make(&whole, &tled_cpu_double, false);
@@ -360,7 +362,7 @@ static void refused(const record *r, const char *options, const char *want, cons
     run.options = options ? options : run.options;
     checkpoint *c = checkpoint_resume(path, &run, NULL, &e);
     ok(!c && e.status == STATUS_BAD && strstr(e.text, want), "%s: %s", name, e.text);
-    checkpoint_close(c, false);
+    checkpoint_close(c);
 }
 
 static void test_others(void)
@@ -422,7 +424,7 @@ static void test_left_over(void)
     const likeness_run run = run_of(&r);
     r.c = checkpoint_begin(path, &run, &r.b.e);
     ok(size > 1000 && r.c, "%zu bytes of frames that a run left are begun anew %s", size, r.b.e.text);
-    checkpoint_close(r.c, false);
+    checkpoint_close(r.c);
     spill(frames_path, kept, sizeof kept);
     r.c = checkpoint_begin(path, &run, &r.b.e);
     ok(!r.c && strstr(r.b.e.text, "is there, and no checkpoint's"), "another's file of that name: %s", r.b.e.text);
