@@ -85,6 +85,8 @@ typedef struct session {
     char skin_name[SURFACE_NAME_MOST + 1];
     largest largest;
     int64_t substeps;
+    double stable, sure; /* s: steps of springs that are stable at rest, and in any configuration */
+    bool springs_told;
     const backend *device;
     pool *threads;
     void *state;
@@ -126,22 +128,34 @@ static int choose_step(session *s, err *e)
     msds_problem *p = &s->problem;
     if (largest_of(p, &s->largest, e))
         return -1;
-    double stable = largest_step(s->largest.rest, o->damping), sure = largest_step(s->largest.bound, o->damping);
+    s->stable = largest_step(s->largest.rest, o->damping);
+    s->sure = largest_step(s->largest.bound, o->damping);
     s->substeps = 1;
     if (o->mass == MASS_LUMPED)
-        s->substeps = sure < o->dt ? (int64_t)fmin(ceil(o->dt / sure), 1e15) : 1;
+        s->substeps = s->sure < o->dt ? (int64_t)fmin(ceil(o->dt / s->sure), 1e15) : 1;
     else
         p->mass_factor = fmax(1, largest_factor(s->largest.bound, o->damping, o->dt));
-    tool_say(s->t, "springs: stable step %.4g ms at rest, %.4g ms in any configuration, dt %.4g ms", 1e3 * stable,
-             1e3 * sure, 1e3 * o->dt);
     if (s->substeps > SUBSTEPS_MOST)
         return err_set(e, NULL, 0, "--dt %g is %.3g times the stable step; expected at most %.3g s, or --mass stable",
-                       o->dt, o->dt / sure, SUBSTEPS_MOST * sure);
+                       o->dt, o->dt / s->sure, SUBSTEPS_MOST * s->sure);
+    return 0;
+}
+
+/* Once, and only where springs move the tissue. */
+static void say_springs(session *s)
+{
+    const struct options *o = s->o;
+    const msds_problem *p = &s->problem;
+    if (s->springs_told)
+        return;
+    s->springs_told = true;
+    tool_say(s->t, "springs: %lld; k = %.6g m E", (long long)p->springs, p->scale);
+    tool_say(s->t, "springs: stable step %.4g ms at rest, %.4g ms in any configuration, dt %.4g ms", 1e3 * s->stable,
+             1e3 * s->sure, 1e3 * o->dt);
     if (o->mass == MASS_STABLE)
         tool_say(s->t, "springs: inertia is %.6g times the mass, for that step", p->mass_factor);
     else if (s->substeps > 1)
         tool_say(s->t, "springs: each step is taken in %lld", (long long)s->substeps);
-    return 0;
 }
 
 static int make_problem(session *s, err *e)
@@ -153,8 +167,7 @@ static int make_problem(session *s, err *e)
     if (read_scale(o->scale, &options.scale, e) || msds_problem_make(&s->problem, &s->m, &options, e) ||
         model_axis_add(&s->m, "probe", 1, e))
         return -1;
-    tool_say(s->t, "%lld nodes, %lld tetrahedra, %lld springs; k = %.6g m E", (long long)s->problem.nodes,
-             (long long)s->problem.elements, (long long)s->problem.springs, s->problem.scale);
+    tool_say(s->t, "%lld nodes, %lld tetrahedra", (long long)s->problem.nodes, (long long)s->problem.elements);
     return o->probe && probe_carry(&s->probe, &s->m, &s->warnings, e) ? -1 : choose_step(s, e);
 }
 
@@ -372,6 +385,8 @@ static int simulate(session *s, err *e)
     while ((got = poses_next(&s->poses, &at, e)) > 0) {
         if (at.kind != POSES_POSE) {
             s->method = method_of(s, at.kind == POSES_FEM);
+            if (s->method == MSDS_SPRINGS)
+                say_springs(s);
             tool_detail(s->t, "line %lld: from here on by %s", (long long)at.line, s->method ? "fem" : "msds");
             continue;
         }
@@ -450,6 +465,8 @@ static int prepare(session *s, err *e)
         return -1;
     tool_say(s->t, "%s", device);
     s->method = method_of(s, o->method);
+    if (s->method == MSDS_SPRINGS || o->compare)
+        say_springs(s);
     return make_skin(s, e) ? -1 : press_make(&s->press, &s->problem, &s->probe, o->iterations, o->rate, e);
 }
 
