@@ -8,6 +8,7 @@
 enum {
     PATHS_MOST = 2048, /* kept; past that all are forgotten */
     BATCH = 16,        /* paths made side by side */
+    ROWS = 64,         /* of the Schur complement, likewise */
     STALE = 20,        /* solves of one frame by one factor at most, where elements turn */
     SWEEPS = 2000      /* of the complementarity problem; the next solve takes over what is left */
 };
@@ -18,6 +19,7 @@ int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const
     x->k = k;
     x->c = c;
     x->threads = threads;
+    x->factor.watch = x->watch;
     if (factor_make(&x->factor, p, k, loops, threads, e))
         return -1;
     x->left = mem_array(p->nodes, 3 * sizeof *x->left, "the solver", e);
@@ -55,6 +57,13 @@ void exact_free(exact *x)
     free(x->by);
     mixing_free(&x->mixing);
     *x = (exact){0};
+}
+
+static void tell(const exact *x, const char *what, int64_t done, int64_t all)
+{
+    const msds_doing doing = {what, all ? (double)done / (double)all : 0, x->solves + 1, x->residual, x->c->count};
+    if (x->watch)
+        x->watch->at(x->watch->context, &doing);
 }
 
 static float *path_at(const exact *x, int64_t i)
@@ -107,6 +116,7 @@ static int make_paths(exact *x, err *e)
         if (x->cached[x->c->list[i].node] < 0)
             batch[count++] = x->c->list[i].node;
         if (count == BATCH || (count && i == x->c->count - 1)) {
+            tell(x, "solving for unit loads on them", i, x->c->count);
             if (make_batch(x, batch, count, e))
                 return -1;
             count = 0;
@@ -148,7 +158,7 @@ static void schur_work(void *context, int64_t chunk, int64_t from, int64_t to)
     exact *x = context;
     const int64_t count = x->c->count, stride = x->factor.path;
     (void)chunk;
-    for (int64_t i = from; i < to; i++)
+    for (int64_t i = x->row + from; i < x->row + to; i++)
         for (int64_t j = 0; j <= i; j++) {
             int64_t shared = factor_shared(&x->factor, x->c->list[i].node, x->c->list[j].node);
             x->schur[i * count + j] = x->schur[j * count + i] =
@@ -167,14 +177,17 @@ static int make_schur(exact *x, err *e)
         MEM_ROOM(&x->force, &x->force_room, count, "contact", e))
         return -1;
     pool_run(x->threads, count, 1, normal_work, x);
-    pool_run(x->threads, count, 1, schur_work, x);
+    for (x->row = 0; x->row < count; x->row += ROWS) {
+        tell(x, "compliances between them", x->row * x->row, count * count);
+        pool_run(x->threads, count - x->row < ROWS ? count - x->row : ROWS, 1, schur_work, x);
+    }
     for (int64_t i = 0; i < count && x->p->options.penalty; i++)
         x->schur[i * count + i] += 1 / x->p->repulsion[x->c->list[i].node];
     return 0;
 }
 
 /* Finds f >= 0 with S f - want >= 0 and one of the two 0, by Gauss and Seidel's sweeps, from the forces of now. */
-static void solve_forces(const exact *x)
+static void solve_forces(exact *x)
 {
     const int64_t count = x->c->count;
     double scale = 0;
@@ -184,6 +197,7 @@ static void solve_forces(const exact *x)
     }
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         double moved = 0;
+        tell(x, "sweeps over contact, of 2000 at most", sweep, SWEEPS);
         for (int64_t i = 0; i < count; i++) {
             const double *row = x->schur + i * count;
             double sum = x->want[i];
@@ -306,12 +320,15 @@ static int turn_again(exact *x, const double *u, err *e)
 
 int exact_solve(exact *x, double *u, bool first, double tolerance, double reach, err *e)
 {
+    x->solves = 0;
+    x->residual = NAN;
     if (make_schur(x, e))
         return -1;
     mixing_begin(&x->mixing);
     int fresh = 0; /* the solve that the factor was made for */
     x->residual = find_left(x, u, first);
-    for (x->solves = 0; x->residual > tolerance || !in_place(x, u, tolerance * reach);) {
+    while (x->residual > tolerance || !in_place(x, u, tolerance * reach)) {
+        tell(x, "solving", 0, 0);
         if (x->solves == EXACT_SOLVES || !isfinite(x->residual))
             return err_set(e, NULL, 0, "after %d solves the residual is still %.3g; expected %.3g", x->solves,
                            x->residual, tolerance);

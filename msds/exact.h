@@ -25,6 +25,7 @@ typedef struct exact {
     int64_t paths, room, whose_room;
     double *work;                 /* for paths being made */
     int64_t fresh;                /* the first of them */
+    int64_t row;                  /* of schur: the first of those being made */
     float *normal;                /* contacts x factor.path: along each contact's way */
     double *schur, *want, *force; /* contacts squared; contacts */
     int64_t normal_room, schur_room, want_room, force_room;
@@ -33,8 +34,9 @@ typedef struct exact {
     double load;   /* N2: the square of the load or the pull where the frame began */
     double residual;
     int solves;
-    mixing mixing;      /* where elements turn: of displacements, which lead, and contact forces */
-    double *state, *by; /* nodes x 4: those, as mixing wants them */
+    const msds_watch *watch; /* set before exact_make; NULL: nobody */
+    mixing mixing;           /* where elements turn: of displacements, which lead, and contact forces */
+    double *state, *by;      /* nodes x 4: those, as mixing wants them */
 } exact;
 
 /* Factors. -1 with e filled, and to be freed all the same. */

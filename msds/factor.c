@@ -404,10 +404,34 @@ int factor_make(factor *f, const msds_problem *p, const stiffness *k, const lane
     return dissect(&f->tree, p, e) || order_levels(f, e) || allocate(f, e) ? -1 : factor_again(f, e);
 }
 
+/* About how many multiplications the fronts of a level take. */
+static double work_of(const factor *f, int64_t level)
+{
+    double work = 0;
+    for (int64_t i = f->begin[level]; i < f->begin[level + 1]; i++) {
+        const front *t = &f->tree.front[f->level[i]];
+        work += (double)t->columns * (double)size_of(t) * (double)size_of(t);
+    }
+    return work;
+}
+
+static void tell(const factor *f, double done, double all)
+{
+    const msds_doing doing = {.what = "factoring the stiffness matrix", .share = done / all, .residual = NAN};
+    if (f->watch)
+        f->watch->at(f->watch->context, &doing);
+}
+
 int factor_again(factor *f, err *e)
 {
+    double done = 0, all = 0;
     for (int64_t level = 0; level < f->levels; level++)
+        all += work_of(f, level);
+    for (int64_t level = 0; level < f->levels; level++) {
+        tell(f, done, all);
         run_level(f, level, factor_work);
+        done += work_of(f, level);
+    }
     int32_t failed = f->failed[f->tree.fronts - 1];
     if (failed == FAIL_MEMORY)
         return err_memory(e, "the factor");

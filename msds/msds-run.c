@@ -2,6 +2,7 @@
  * and dampers or by linear finite elements. PST sections III and the appendix.
  */
 #include "base/mem.h"
+#include "base/progress.h"
 #include "contact/probe_carry.h"
 #include "mesh/scale.h"
 #include "model/stage.h"
@@ -96,8 +97,12 @@ typedef struct session {
     msds_method method; /* now */
     msds_sight sight;   /* of the last frame */
     int64_t next_frame;
-    bool pressed; /* some node, in some frame */
-    bool dented;  /* the skin */
+    progress progress;
+    msds_watch watch;
+    int64_t posed; /* poses taken */
+    double time;   /* s: of the last */
+    bool pressed;  /* some node, in some frame */
+    bool dented;   /* the skin */
     notes warnings;
 } session;
 
@@ -266,6 +271,25 @@ out:
     return result;
 }
 
+/* Shows which pose, and, where that takes long, what of it. */
+static void show_work(void *context, const msds_doing *doing)
+{
+    session *s = context;
+    char text[300], left[40] = "", at[80] = "", share[20] = "";
+    if (!progress_due(&s->progress))
+        return;
+    if (doing && doing->share > 0)
+        snprintf(share, sizeof share, ", %.0f %%", 100 * doing->share);
+    if (doing && !isnan(doing->residual))
+        snprintf(left, sizeof left, ", residual %.2g", doing->residual);
+    if (doing && doing->solve)
+        snprintf(at, sizeof at, "solve %d%s, %lld nodes near the probe: ", doing->solve, left,
+                 (long long)doing->contacts);
+    snprintf(text, sizeof text, "pose %lld, %.6g s%s%s%s%s", (long long)s->posed, s->time, doing ? ": " : "", at,
+             doing ? doing->what : "", share);
+    progress_text(&s->progress, text);
+}
+
 static double size_of(const double force[3])
 {
     return sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
@@ -282,6 +306,8 @@ static void say_frame(const session *s, double time, const msds_sight *sight)
         snprintf(left + strlen(left), sizeof left - strlen(left), " after %d solves", sight->solves);
     if (s->o->probe)
         snprintf(force, sizeof force, ", %lld nodes press with %.4g N", (long long)sight->contacts, size);
+    if (s->o->residual || s->o->common.verbose)
+        progress_clear(&s->progress);
     if (s->o->residual)
         tool_say(s->t, "%.6g s: %s%s%s", time, names[s->method], left, force);
     else
@@ -307,6 +333,8 @@ static void warn_of_pose(session *s, const poses_event *at, const press_moves *m
                   "%s:%lld: the probe is inside the tissue at once; it is eased in along its axis, from %.3g mm back, "
                   "in %d moves",
                   in_name(s->source), (long long)at->line, 1e3 * moves->back, moves->count);
+    if (s->warnings.count)
+        progress_clear(&s->progress);
     tool_warn(s->t, &s->warnings);
 }
 
@@ -336,7 +364,10 @@ static int diverged(const session *s, const poses_event *at, err *e)
 
 static int solve_frame(session *s, const poses_event *at, err *e)
 {
-    msds_plan plan = {.method = s->method, .dt = s->o->dt / (double)s->substeps, .touched = s->o->probe != NULL};
+    msds_plan plan = {.method = s->method,
+                      .dt = s->o->dt / (double)s->substeps,
+                      .touched = s->o->probe != NULL,
+                      .watch = s->progress.on ? &s->watch : NULL};
     msds_sight sight = {0};
     press_moves moves;
     probe_pose pose;
@@ -373,6 +404,7 @@ static void say_difference(const session *s, double time)
     bool springs = s->method == MSDS_SPRINGS;
     if (s->o->probe)
         snprintf(force, sizeof force, "; %.4g N against %.4g N", springs ? ours : other, springs ? other : ours);
+    progress_clear(&s->progress);
     tool_say(s->t, "%.6g s: msds against fem: root mean square %.4g, at most %.4g of the largest displacement%s", time,
              s->other->mean, s->other->worst, force);
 }
@@ -381,29 +413,33 @@ static int simulate(session *s, err *e)
 {
     poses_event at;
     int got;
-    int64_t frames = 0;
+    progress_start(&s->progress, table.name, "poses", 0, s->o->common.quiet);
+    s->watch = (msds_watch){show_work, s};
     while ((got = poses_next(&s->poses, &at, e)) > 0) {
         if (at.kind != POSES_POSE) {
+            progress_clear(&s->progress);
             s->method = method_of(s, at.kind == POSES_FEM);
             if (s->method == MSDS_SPRINGS)
                 say_springs(s);
             tool_detail(s->t, "line %lld: from here on by %s", (long long)at.line, s->method ? "fem" : "msds");
             continue;
         }
-        frames++;
+        s->posed++;
+        s->time = at.time;
+        show_work(s, NULL);
         if (solve_frame(s, &at, e))
             return -1;
         if (s->other)
             say_difference(s, at.time);
         s->pressed = s->pressed || s->sight.met;
     }
-    if (!got && !frames)
+    if (!got && !s->posed)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
     if (!got && s->o->probe && !s->pressed)
         notes_add(&s->warnings,
                   "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space, "
                   "and nodes closer together than the probe is wide",
-                  (long long)frames);
+                  (long long)s->posed);
     if (!got && s->pressed && s->skin.vertices && !s->dented)
         notes_add(&s->warnings,
                   "the probe presses the tissue, but the skin in no frame; expected %s where the tissue is, in --unit",
@@ -507,6 +543,7 @@ static int run_tool(int argc, char **argv)
         simulate(&s, &e))
         goto out;
 out:
+    progress_stop(&s.progress);
     tool_warn(&t, &s.warnings);
     if (!t.done)
         stage_close(&s.stage, &t, &e);

@@ -234,6 +234,8 @@ static int step_exact(cpu_state *s, err *e)
 {
     if (!s->exact) {
         s->exact = mem_array(1, sizeof *s->exact, "the solver", e);
+        if (s->exact)
+            s->exact->watch = s->plan.watch;
         if (!s->exact || make_stiffness(s, e) ||
             exact_make(s->exact, s->p, &s->k, &s->contacts, s->loops, s->threads, e))
             return -1;

@@ -51,11 +51,27 @@ typedef struct msds_problem {
     msds_options options;
 } msds_problem;
 
+/* What a step that takes long is at. */
+typedef struct msds_doing {
+    const char *what; /* "solving" */
+    double share;     /* of that, 0 to 1 */
+    int solve;        /* of the frame, from 1; 0: none yet */
+    double residual;  /* after the solve before; nan: not known yet */
+    int64_t contacts; /* nodes near the probe */
+} msds_doing;
+
+/* Who is told of it, as it goes on, by the thread that steps. The card's exact frames are one launch, and tell nothing. */
+typedef struct msds_watch {
+    void (*at)(void *context, const msds_doing *doing);
+    void *context;
+} msds_watch;
+
 typedef struct msds_plan {
     msds_method method;
     double dt; /* s: of one step of springs */
     bool touched;
-    probe_placed probe; /* where touched */
+    probe_placed probe;      /* where touched */
+    const msds_watch *watch; /* NULL: nobody */
 } msds_plan;
 
 /* What get() gives, nodes x 3 doubles each: m, m/s. */

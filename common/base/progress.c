@@ -18,18 +18,29 @@ void progress_start(progress *p, const char *tool, const char *what, double tota
         p->started = p->shown = progress_clock();
 }
 
+bool progress_due(const progress *p)
+{
+    return p->on && progress_clock() - p->shown >= .1;
+}
+
+void progress_text(progress *p, const char *text)
+{
+    p->shown = progress_clock();
+    fprintf(stderr, "\r%s: %s \033[K", p->tool, text);
+}
+
 void progress_at(progress *p, double done)
 {
-    double now = p->on ? progress_clock() : 0;
-    if (!p->on || now - p->shown < .1)
+    char text[200];
+    if (!progress_due(p))
         return;
-    double rate = done / (now - p->started);
-    p->shown = now;
+    double rate = done / (progress_clock() - p->started);
     if (p->total > 0 && rate > 0)
-        fprintf(stderr, "\r%s: %3.0f %% of %.0f %s, %.4g/s, %.0f s left \033[K", p->tool, 100 * done / p->total,
-                p->total, p->what, rate, (p->total - done) / rate);
+        snprintf(text, sizeof text, "%3.0f %% of %.0f %s, %.4g/s, %.0f s left", 100 * done / p->total, p->total,
+                 p->what, rate, (p->total - done) / rate);
     else
-        fprintf(stderr, "\r%s: %.0f %s, %.4g/s \033[K", p->tool, done, p->what, rate);
+        snprintf(text, sizeof text, "%.0f %s, %.4g/s", done, p->what, rate);
+    progress_text(p, text);
 }
 
 void progress_clear(const progress *p)

@@ -16,6 +16,9 @@ typedef struct progress {
 
 void progress_start(progress *p, const char *tool, const char *what, double total, bool quiet);
 void progress_at(progress *p, double done);
+/* For what has no count: whether it is time to show something, and what is shown. */
+bool progress_due(const progress *p);
+void progress_text(progress *p, const char *text);
 /* Clears the line until it is shown again: for a message. */
 void progress_clear(const progress *p);
 /* Clears it for good. */

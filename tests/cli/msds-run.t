@@ -123,6 +123,25 @@ for method in msds 'fem' 'fem --exact' 'fem --warp' 'fem --exact --warp'; do
     is "$(wc -l <"$T/sums" | tr -d ' ')" 1 "$method: the same bytes by 1, 2 and 3 threads"
 done
 
+# Exact frames of a plate on a slab take long: on a terminal it is shown which pose and what of it, and a pipe and -q see nothing.
+msds-mesh -q --nodes 41x41x4 --size 8cm,8cm,1cm --young 10000 --poisson 0.4 >"$T/slab.sinew"
+echo '0 .04 .04 .0095 1 0 0 0' >"$T/slab.tum"
+slab="--threads 1 --method fem --exact --probe linear:7cm,7cm --poses $T/slab.tum -o $T/slab.out"
+if have script; then
+    script -qec "msds-run $slab <$T/slab.sinew" /dev/null >"$T/shown"
+    tr '\r' '\n' <"$T/shown" >"$T/lines"
+    is "$(grep -c '^msds-run: pose 1, 0 s: solve 1, .*[1-9][0-9]* nodes near the probe: [a-z ]*, [0-9]* %' "$T/lines" |
+        awk '{ print ($1 > 2) }')" 1 "progress within a pose"
+    is "$(tail -c 4 "$T/shown" | od -An -c | tr -d ' \n')" '\r033[K' "the line is cleared at the end"
+    script -qec "msds-run -q $slab <$T/slab.sinew" /dev/null >"$T/shown"
+    is "$(grep -c pose "$T/shown")" 0 "none with -q"
+    # shellcheck disable=SC2086
+    msds-run $slab <"$T/slab.sinew" 2>"$T/stderr"
+    is "$(grep -c pose "$T/stderr")" 0 "nor where nobody watches"
+else
+    skip 4 "no script of util-linux"
+fi
+
 # Physical masses: substeps, or a refusal.
 check "physical masses" msds-run --mass lumped --dt 1e-4 --iterations 5 --probe sphere:2cm --poses "$T/first.tum" -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'each step is taken in' "$T/stderr")" 1 "substeps are said"
