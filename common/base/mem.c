@@ -12,14 +12,10 @@
 
 void mem_large(void *p, size_t size)
 {
-#ifdef MADV_HUGEPAGE
     enum { LARGE = 1 << 22 };
     size_t page = (size_t)sysconf(_SC_PAGESIZE), before = (uintptr_t)p % page;
     if (size >= LARGE) /* from the page's start: a mapping of two minds cannot be moved when it grows */
         madvise((char *)p - before, before + size, MADV_HUGEPAGE);
-#else
-    (void)p, (void)size;
-#endif
 }
 
 void *mem_array(int64_t count, size_t size, const char *what, err *e)

@@ -100,5 +100,7 @@ is "$(over sinew-info -o some ../in/small.sinew)" "sinew-info: some: cannot writ
 status 1" "-o"
 is "$(over tled-run -q -d cpu -n 3 --log log -o /dev/null <../in/frames | grep -v warning)" "tled-run: log: cannot write: File too large
 status 1" "a log"
+LD_PRELOAD=$library SINEW_FAULT_CALL=write SINEW_FAULT_AT=1 SINEW_FAULT_SIGNAL=25 sinew-info -o out ../in/small.sinew
+is "$? $(sinew-info ../in/small.sinew | cmp - out)" "0 " "nor by one that comes from elsewhere"
 is "$(find . -type f | sort | tr '\n' ' ')" "./log ./out " "and nothing is left"
 done_testing
