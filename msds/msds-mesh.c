@@ -42,6 +42,7 @@ static const opt_tool table = {
     .purpose = "Makes regular meshes of tetrahedra.",
     .operands = "",
     .writes_model = true,
+    .reads_volumes = true,
     .options = option_list,
 };
 
@@ -124,7 +125,7 @@ static int make_box(const struct options *o, mesh_box *b, model *m, err *e)
     volume like = {0};
     int status = 0;
     if (o->like) {
-        status = volume_load(&like, o->like, e);
+        status = volume_load(&like, o->like, &(volume_budget){.most = o->common.memory}, e);
         if (!status) {
             box_of_volume(&like, b);
             status = model_meta_set(m, "source.unit", "mm", e);
@@ -160,7 +161,7 @@ static int make_volumes(const struct options *o, model *m, notes *warnings, err 
     volume labels = {0};
     if (!o->labels)
         return mesh_label(m, NULL, NULL, warnings, e);
-    int status = volume_load(&labels, o->labels, e);
+    int status = volume_load(&labels, o->labels, &(volume_budget){.most = o->common.memory}, e);
     if (!status && o->names)
         status = mesh_label_names(&labels, o->names, e);
     if (!status)

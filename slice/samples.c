@@ -213,3 +213,102 @@ int samples_filter(float *value, const int64_t size[3], const double sigma[3], e
     }
     return e->status ? -1 : 0;
 }
+
+/* ---- plane by plane */
+
+/* The planes around the one that is to be given, filtered along x and y, each in the place of its number modulo `count`. */
+typedef struct ring {
+    const int64_t *size;
+    int64_t reach[3], count;
+    float *weight[3]; /* owned, as the rest; NULL: not along that axis */
+    float *plane, *out, *sheet, *row;
+} ring;
+
+static int64_t ring_planes(const int64_t size[3], int64_t reach)
+{
+    return 2 * reach + 1 < size[2] ? 2 * reach + 1 : size[2];
+}
+
+double samples_planes_bytes(const int64_t size[3], const double sigma[3])
+{
+    const double area = (double)size[0] * (double)size[1];
+    return sizeof(float) * area * (double)(ring_planes(size, samples_reach(sigma[2])) + 2);
+}
+
+static int ring_make(ring *r, const int64_t size[3], const double sigma[3], err *e)
+{
+    const int64_t area = size[0] * size[1];
+    *r = (ring){.size = size};
+    for (int a = 0; a < 3 && !e->status; a++) {
+        r->reach[a] = samples_reach(sigma[a]);
+        r->weight[a] = r->reach[a] ? mem_array(r->reach[a] + 1, sizeof(float), "a filter", e) : NULL;
+        if (r->weight[a])
+            weigh(sigma[a], r->reach[a], r->weight[a]);
+    }
+    r->count = ring_planes(size, r->reach[2]);
+    if (!e->status)
+        r->plane = mem_array(r->count * area, sizeof(float), "planes of samples", e);
+    r->out = r->plane ? mem_array(area, sizeof(float), "a plane of samples", e) : NULL;
+    r->sheet = r->out ? mem_array(area, sizeof(float), "a plane of samples", e) : NULL;
+    r->row = r->sheet ? mem_array(size[0] + 2 * r->reach[0], sizeof(float), "a row of samples", e) : NULL;
+    return r->row ? 0 : -1;
+}
+
+static void ring_free(ring *r)
+{
+    for (int a = 0; a < 3; a++)
+        free(r->weight[a]);
+    free(r->plane);
+    free(r->out);
+    free(r->sheet);
+    free(r->row);
+}
+
+static float *ring_at(const ring *r, int64_t z)
+{
+    const int64_t last = r->size[2] - 1;
+    z = z < 0 ? 0 : z > last ? last : z;
+    return r->plane + z % r->count * r->size[0] * r->size[1];
+}
+
+static void ring_take(const ring *r, const samples_planes *p, int64_t z)
+{
+    float *plane = ring_at(r, z);
+    p->take(p->context, z, plane);
+    for (int64_t y = 0; r->weight[0] && y < r->size[1]; y++)
+        filter_row(plane + y * r->size[0], r->size[0], r->weight[0], r->reach[0], r->row);
+    if (r->weight[1])
+        filter_sheet(plane, r->size[1], r->size[0], r->size[0], r->weight[1], r->reach[1], r->sheet);
+}
+
+static const float *ring_filter(const ring *r, int64_t z)
+{
+    const int64_t area = r->size[0] * r->size[1];
+    const float *here = ring_at(r, z);
+    if (!r->weight[2])
+        return here;
+    for (int64_t i = 0; i < area; i++)
+        r->out[i] = here[i] * r->weight[2][0];
+    for (int64_t k = 1; k <= r->reach[2]; k++) {
+        const float *a = ring_at(r, z - k), *b = ring_at(r, z + k), w = r->weight[2][k];
+        for (int64_t i = 0; i < area; i++)
+            r->out[i] += w * (a[i] + b[i]);
+    }
+    return r->out;
+}
+
+int samples_filter_planes(const samples_planes *p, const int64_t size[3], const double sigma[3], int64_t from,
+                          int64_t to, err *e)
+{
+    ring r;
+    if (!ring_make(&r, size, sigma, e)) {
+        int64_t next = from > r.reach[2] ? from - r.reach[2] : 0;
+        for (int64_t z = from; z < to; z++) {
+            for (; next < size[2] && next <= z + r.reach[2]; next++)
+                ring_take(&r, p, next);
+            p->give(p->context, z, ring_filter(&r, z));
+        }
+    }
+    ring_free(&r);
+    return e->status ? -1 : 0;
+}

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-enum { OUT, IN, SEEN };
+enum { OUT, IN, SEEN, WAITING };
 
 void region_free(region *r)
 {
@@ -17,31 +17,79 @@ static int64_t count_of(const region *r)
     return r->size[0] * r->size[1] * r->size[2];
 }
 
-/* A voxel is turned when it is put on the stack, so that it is there once. */
-static int hold(region *r, int64_t *held, int64_t at, uint8_t from, uint8_t to, err *e)
+/* A walk over a region: what is held is to be gone on from; what waits is marked so in the mask, within low to high. */
+typedef struct walk {
+    region *r;
+    uint8_t from, to;
+    int64_t held, most, low, high, waiting;
+} walk;
+
+static int64_t room_of(int64_t voxels)
 {
-    if (r->mask[at] != from)
+    return voxels / REGION_SHARE > REGION_LEAST ? voxels / REGION_SHARE : REGION_LEAST;
+}
+
+double region_bytes(double voxels)
+{
+    return sizeof(int64_t) * (double)room_of((int64_t)voxels);
+}
+
+/* A voxel is turned when it is held, so that it is held once. */
+static int hold(walk *w, int64_t at, err *e)
+{
+    region *r = w->r;
+    if (r->mask[at] != w->from)
         return 0;
-    if (MEM_ROOM(&r->held, &r->capacity, *held + 1, "a region", e))
+    if (w->held == w->most) {
+        r->mask[at] = WAITING;
+        w->low = !w->waiting || at < w->low ? at : w->low;
+        w->high = !w->waiting || at > w->high ? at : w->high;
+        w->waiting++;
+        return 0;
+    }
+    if (MEM_ROOM(&r->held, &r->capacity, w->held + 1, "a region", e))
         return -1;
-    r->mask[at] = to;
-    r->held[(*held)++] = at;
+    r->mask[at] = w->to;
+    r->held[w->held++] = at;
     return 0;
+}
+
+/* Goes on until nothing is held. Returns how many voxels that were, or -1. */
+static int64_t go_on(walk *w, err *e)
+{
+    const region *r = w->r;
+    const int64_t apart[3] = {1, r->size[0], r->size[0] * r->size[1]};
+    int64_t count = 0;
+    for (; w->held; count++) {
+        const int64_t here = r->held[--w->held];
+        for (int a = 0; a < 3; a++) {
+            const int64_t place = here / apart[a] % r->size[a];
+            if (place > 0 && hold(w, here - apart[a], e))
+                return -1;
+            if (place + 1 < r->size[a] && hold(w, here + apart[a], e))
+                return -1;
+        }
+    }
+    return count;
 }
 
 int64_t region_flood(region *r, int64_t at, uint8_t from, uint8_t to, err *e)
 {
-    int64_t held = 0, count = 0, apart[3] = {1, r->size[0], r->size[0] * r->size[1]};
-    if (hold(r, &held, at, from, to, e))
+    walk w = {.r = r, .from = from, .to = to, .most = room_of(count_of(r))};
+    if (hold(&w, at, e))
         return -1;
-    for (; held; count++) {
-        int64_t here = r->held[--held];
-        for (int a = 0; a < 3; a++) {
-            int64_t place = here / apart[a] % r->size[a];
-            if (place > 0 && hold(r, &held, here - apart[a], from, to, e))
+    int64_t count = go_on(&w, e);
+    while (count >= 0 && w.waiting) {
+        const int64_t low = w.low, high = w.high;
+        w.waiting = 0;
+        for (int64_t i = low; i <= high; i++) {
+            if (r->mask[i] != WAITING)
+                continue;
+            r->mask[i] = from;
+            const int64_t more = hold(&w, i, e) ? -1 : go_on(&w, e);
+            if (more < 0)
                 return -1;
-            if (place + 1 < r->size[a] && hold(r, &held, here + apart[a], from, to, e))
-                return -1;
+            count += more;
         }
     }
     return count;

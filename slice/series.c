@@ -420,7 +420,7 @@ static int fill(volume *v, const stack *k, err *e)
               : d->bytes == 1 ? (d->negative ? VOLUME_I8 : VOLUME_U8)
               : d->negative   ? VOLUME_I16
                               : VOLUME_U16;
-    if (volume_make(v, e))
+    if (volume_afford(k->wish->budget, v, NULL, e) || volume_make(v, e))
         return -1;
     int64_t plane = v->size[0] * v->size[1];
     for (int64_t s = 0; s < k->count; s++) {

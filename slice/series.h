@@ -25,6 +25,7 @@ typedef struct series_wish {
     int64_t number;    /* which series, of those that there are in the order of their files, from 1; -1: the only one */
     int64_t time;      /* which time, from 1; -1: the only one */
     const char *kind;  /* which kind of data, as TISSUE_INTENSITY; NULL: the only one */
+    const volume_budget *budget; /* may be NULL */
 } series_wish;
 
 /* The volume, from the first slice along rows x columns to the last. Slices that are missing, lie at one place, unevenly or

@@ -47,14 +47,19 @@ static int64_t bricks(int64_t size)
     return (size + 2) / 2;
 }
 
-static double bytes_of(const volume *v)
+static double bytes_of(int64_t x, int64_t y, int64_t z)
 {
-    return BRICK * (double)(v->size[0] + 2) * (double)bricks(v->size[1]) * (double)(bricks(v->size[2]) + 1) + PAST;
+    return BRICK * (double)(x + 2) * (double)bricks(y) * (double)(bricks(z) + 1) + PAST;
+}
+
+double slice_cells_bytes(const slice_cells *c)
+{
+    return bytes_of(c->size[0], c->size[1], c->size[2]);
 }
 
 double slice_cells_peak(const volume *v)
 {
-    return fmax((double)volume_count(v) * (double)volume_type_size(v->type), bytes_of(v));
+    return fmax(volume_memory(v), bytes_of(v->size[0], v->size[1], v->size[2]));
 }
 
 /* A layer of bricks that is made; the voxels wait at the end of the same memory. */
@@ -108,7 +113,7 @@ int slice_cells_make(slice_cells *c, volume *v, slice_window w, pool *threads, e
 {
     enum { SIDE_MOST = 32000 };
     const volume_finder f = volume_finder_of(v);
-    const double bytes = bytes_of(v);
+    const double bytes = bytes_of(v->size[0], v->size[1], v->size[2]);
     *c = (slice_cells){0};
     for (int a = 0; a < 3; a++) {
         if (v->size[a] > SIDE_MOST)

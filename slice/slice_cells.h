@@ -41,6 +41,9 @@ int slice_cells_make(slice_cells *c, volume *v, slice_window w, pool *threads, e
 
 /* The most bytes that are taken at once for the voxels of such a volume and its cells. */
 double slice_cells_peak(const volume *v);
+
+/* What they take once they are made. */
+double slice_cells_bytes(const slice_cells *c);
 void slice_cells_free(slice_cells *c);
 
 /* A place in metres (the volume's frame), in cells. */

@@ -1,6 +1,7 @@
 #include "slice/sweep.h"
 
 #include "base/mem.h"
+#include "base/num.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -199,7 +200,16 @@ static int find_box(const sweep *s, const volume *images, double axis[3][3], dou
  * memory. */
 static const double voxels_free = 1 << 24, voxels_each = 1000;
 
-static int set_geometry(volume *v, const sweep *s, const volume *images, double side, err *e)
+static int refuse(double need, double memory, double side, err *e)
+{
+    char has[NUM_TEXT], most[NUM_TEXT];
+    return err_set(e, NULL, 0,
+                   "the images, and their volume in voxels of %g mm, take %s of memory or more; --memory allows %s: "
+                   "expected a larger --voxel, or more",
+                   side, num_size_text(need, has), num_size_text(memory, most));
+}
+
+static int set_geometry(volume *v, const sweep *s, const volume *images, double side, double memory, err *e)
 {
     double axis[3][3], low[3], high[3], count = 1;
     double most = fmax(voxels_free, voxels_each * (double)volume_count(images));
@@ -209,7 +219,10 @@ static int set_geometry(volume *v, const sweep *s, const volume *images, double 
     for (int a = 0; a < 3; a++) {
         double cells = ceil((high[a] - low[a]) / side - 1e-6) + 1;
         count *= cells;
-        if (!(count * (2 * sizeof(float) + (double)volume_type_size(v->type)) < (double)mem_available()))
+        const double need = count * (2 * sizeof(float) + (double)volume_type_size(v->type));
+        if (memory > 0 && need + volume_memory(images) > memory)
+            return refuse(need + volume_memory(images), memory, side, e);
+        if (!(need < (double)mem_available()))
             return err_set(
                 e, NULL, 0,
                 "a volume of %g x %g x %g mm, in voxels of %g mm, is more than memory holds; expected a larger --voxel",
@@ -377,7 +390,7 @@ int sweep_volume(volume *v, const sweep *s, const volume *images, const sweep_wi
 {
     double side = isnan(wish->voxel) ? sweep_voxel(s, images, e) : wish->voxel;
     splat to = {.v = v, .side = side};
-    if (e->status || set_geometry(v, s, images, side, e) || volume_make(v, e))
+    if (e->status || set_geometry(v, s, images, side, wish->memory, e) || volume_make(v, e))
         return -1;
     to.sum = mem_array(volume_count(v), sizeof *to.sum, "voxels", e);
     to.weight = mem_array(volume_count(v), sizeof *to.weight, "voxels", e);

@@ -23,9 +23,10 @@ typedef struct sweep {
 } sweep;
 
 typedef struct sweep_wish {
-    bool linear;  /* else nearest */
-    int64_t fill; /* voxels: the widest gap that is filled */
-    double voxel; /* mm; nan: as sweep_voxel says */
+    bool linear;   /* else nearest */
+    int64_t fill;  /* voxels: the widest gap that is filled */
+    double voxel;  /* mm; nan: as sweep_voxel says */
+    double memory; /* bytes that images and volume may take at once; 0: what there is */
 } sweep_wish;
 
 /* Whether this header's text has tracked frames. */

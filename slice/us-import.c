@@ -57,6 +57,7 @@ static const opt_tool table = {
     .operands = "DIR|FILE...",
     .operands_min = 1,
     .operands_max = 1 << 20,
+    .reads_volumes = true,
     .options = option_list,
 };
 
@@ -69,6 +70,7 @@ typedef struct job {
     char of[IMPORT_LABEL]; /* the file that an error is of, without its name; "": none is at hand */
     volume v;
     series dicom;
+    double pixels; /* bytes: of DICOM files */
     notes warnings;
 } job;
 
@@ -108,6 +110,24 @@ static const char *call_file(job *j, int64_t i)
     return j->o->common.verbose ? import_base(j->files.path[i]) : j->of;
 }
 
+/* Pixels are kept until the volume is made of them, so they count twice. */
+static int afford_pixels(const job *j, err *e)
+{
+    char need[NUM_TEXT], most[NUM_TEXT];
+    const double most_bytes = (double)j->o->common.memory;
+    if (!(most_bytes > 0 && 2 * j->pixels > most_bytes))
+        return 0;
+    return err_set(e, NULL, 0,
+                   "pixels of %s by %s, and the volume that is made of them, take more memory than --memory allows, %s",
+                   num_size_text(j->pixels, need), j->of, num_size_text(most_bytes, most));
+}
+
+static double peak_of_series(const volume *v, const void *context)
+{
+    const job *j = context;
+    return j->pixels + volume_memory(v);
+}
+
 static int read_dicom_file(job *j, const char *name, const char *bytes, int64_t size, err *e)
 {
     dicom_image image = {0};
@@ -118,6 +138,11 @@ static int read_dicom_file(job *j, const char *name, const char *bytes, int64_t 
         j->files.other++;
         return 0;
     }
+    j->pixels += (double)(image.frames * image.rows * image.columns) * image.bytes;
+    if (afford_pixels(j, e)) {
+        dicom_free(&image);
+        return -1;
+    }
     j->report.burned += image.burned == DICOM_BURNED;
     j->report.unsaid += image.burned == DICOM_NOT_SAID;
     j->report.own_frame |= image.own_frame;
@@ -127,7 +152,8 @@ static int read_dicom_file(job *j, const char *name, const char *bytes, int64_t 
 
 static int read_dicom(job *j, err *e)
 {
-    series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, j->o->series, j->o->time, j->o->data};
+    const volume_budget budget = {j->o->common.memory, peak_of_series, j};
+    series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, j->o->series, j->o->time, j->o->data, &budget};
     if (j->o->spacing.count && length_mm(&j->o->spacing, "--spacing", wish.spacing, e))
         return -1;
     for (int64_t i = 0; i < j->files.count; i++) {
@@ -207,7 +233,8 @@ static void say_transform(const job *j, const sweep *s)
 static int put_together(job *j, volume *images, sweep *s, const double *image_to_probe, err *e)
 {
     const char *path = j->files.path[0];
-    sweep_wish wish = {j->o->splat == 1, j->o->fill, (double)NAN};
+    const volume_budget budget = {.most = j->o->common.memory};
+    sweep_wish wish = {j->o->splat == 1, j->o->fill, (double)NAN, (double)j->o->common.memory};
     int64_t filled[2] = {0};
     if (j->o->voxel.count && length_mm(&j->o->voxel, "--voxel", &wish.voxel, e))
         return -1;
@@ -215,7 +242,8 @@ static int put_together(job *j, volume *images, sweep *s, const double *image_to
         return err_usage(e, "--voxel: expected more than 0");
     call_file(j, 0);
     in *source = in_open(path, e);
-    int code = !source || sweep_read(s, source, j->o->transform, image_to_probe, e) || volume_load(images, path, e);
+    int code =
+        !source || sweep_read(s, source, j->o->transform, image_to_probe, e) || volume_load(images, path, &budget, e);
     in_close(source);
     if (code)
         return -1;
@@ -275,7 +303,7 @@ static int read_all(job *j, struct options *o, err *e)
         return read_dicom(j, e);
     if (kind == IMPORT_SWEEP)
         return read_sweep(j, e);
-    return volume_load(&j->v, j->files.path[0], e) || crop(j, e) ? -1 : 0;
+    return volume_load(&j->v, j->files.path[0], &(volume_budget){.most = o->common.memory}, e) || crop(j, e) ? -1 : 0;
 }
 
 /* Names of files and what is in them, out of the error. */

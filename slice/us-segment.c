@@ -51,6 +51,7 @@ static const opt_tool table = {
     .purpose = "Mark a part of a volume (NRRD, MetaImage) as a label; writes the labels, NRRD.",
     .operands = "volume",
     .operands_max = 1,
+    .reads_volumes = true,
     .options = option_list,
 };
 
@@ -60,9 +61,9 @@ typedef struct job {
     const struct options *o;
     const tool *t;
     volume v, labels;
-    float *value; /* v's, filtered */
-    region r;     /* its mask is owned here */
+    region r; /* its mask is owned here */
     int64_t seed[SEEDS];
+    float at_seed[SEEDS]; /* the intensity there, filtered */
     int seeds;
     double low, high;
 } job;
@@ -165,8 +166,8 @@ static void find_range(job *j)
     if (isnan(j->o->tolerance))
         return;
     for (int i = 0; i < j->seeds; i++) {
-        low = fmin(low, (double)j->value[j->seed[i]]);
-        high = fmax(high, (double)j->value[j->seed[i]]);
+        low = fmin(low, (double)j->at_seed[i]);
+        high = fmax(high, (double)j->at_seed[i]);
     }
     j->low = fmax(j->low, low - j->o->tolerance);
     j->high = fmin(j->high, high + j->o->tolerance);
@@ -188,7 +189,7 @@ static int grow(job *j, err *e)
     for (int i = 0; i < j->seeds; i++) {
         if (!j->r.mask[j->seed[i]])
             return err_set(e, NULL, 0, "seed %d has intensity %g; expected one from %g to %g", i + 1,
-                           (double)j->value[j->seed[i]], j->low, j->high);
+                           (double)j->at_seed[i], j->low, j->high);
         if (region_flood(&j->r, j->seed[i], 1, 2, e) < 0)
             return -1;
     }
@@ -197,40 +198,87 @@ static int grow(job *j, err *e)
     return 0;
 }
 
+static int64_t plane_of(const job *j)
+{
+    return j->v.size[0] * j->v.size[1];
+}
+
+static void take_mask(void *context, int64_t z, float *plane)
+{
+    const job *j = context;
+    const uint8_t *mask = j->r.mask + z * plane_of(j);
+    for (int64_t i = 0; i < plane_of(j); i++)
+        plane[i] = mask[i];
+}
+
+static void give_mask(void *context, int64_t z, const float *plane)
+{
+    job *j = context;
+    uint8_t *mask = j->r.mask + z * plane_of(j);
+    for (int64_t i = 0; i < plane_of(j); i++)
+        mask[i] = plane[i] >= .5F;
+}
+
 /* What is at least half inside after the filter. */
 static int smooth(job *j, err *e)
 {
     double sigma[3];
     if (sigma_of(j, &j->o->smooth, "--smooth", sigma, e))
         return -1;
-    if (!(sigma[0] > 0))
-        return 0;
-    for (int64_t i = 0; i < volume_count(&j->v); i++)
-        j->value[i] = j->r.mask[i];
-    if (samples_filter(j->value, j->v.size, sigma, e))
-        return -1;
-    for (int64_t i = 0; i < volume_count(&j->v); i++)
-        j->r.mask[i] = j->value[i] >= .5F;
-    return 0;
+    const samples_planes planes = {take_mask, give_mask, j};
+    return sigma[0] > 0 ? samples_filter_planes(&planes, j->v.size, sigma, 0, j->v.size[2], e) : 0;
+}
+
+static void take_values(void *context, int64_t z, float *plane)
+{
+    const job *j = context;
+    const samples_box box = {{0, 0, z}, {j->v.size[0], j->v.size[1], z + 1}};
+    samples_take(&j->v, &box, plane);
+}
+
+static void give_seeds(void *context, int64_t z, const float *plane)
+{
+    job *j = context;
+    for (int i = 0; i < j->seeds; i++)
+        if (j->seed[i] / plane_of(j) == z)
+            j->at_seed[i] = plane[j->seed[i] % plane_of(j)];
+}
+
+static void give_inside(void *context, int64_t z, const float *plane)
+{
+    job *j = context;
+    uint8_t *mask = j->r.mask + z * plane_of(j);
+    const float low = (float)j->low, high = (float)j->high;
+    for (int64_t i = 0; i < plane_of(j); i++)
+        mask[i] = plane[i] >= low && plane[i] <= high;
+}
+
+/* The intensities at the seeds, from the planes that these lie in. */
+static int look_at_seeds(job *j, const double sigma[3], err *e)
+{
+    const samples_planes planes = {take_values, give_seeds, j};
+    int64_t from = INT64_MAX, to = 0;
+    for (int i = 0; i < j->seeds; i++) {
+        const int64_t z = j->seed[i] / plane_of(j);
+        from = z < from ? z : from;
+        to = z + 1 > to ? z + 1 : to;
+    }
+    return j->seeds ? samples_filter_planes(&planes, j->v.size, sigma, from, to, e) : 0;
 }
 
 static int find(job *j, err *e)
 {
     double sigma[3];
-    samples_box whole = samples_whole(&j->v);
-    int64_t count = volume_count(&j->v);
-    j->value = mem_array(count, sizeof *j->value, "samples", e);
-    j->r.mask = mem_array(count, 1, "a mask", e);
-    memcpy(j->r.size, j->v.size, sizeof j->r.size);
-    if (e->status || find_seeds(j, e) || sigma_of(j, &j->o->filter, "--filter", sigma, e))
-        return -1;
-    samples_take(&j->v, &whole, j->value);
-    if (samples_filter(j->value, j->v.size, sigma, e))
+    const samples_planes planes = {take_values, give_inside, j};
+    if (find_seeds(j, e) || sigma_of(j, &j->o->filter, "--filter", sigma, e) || look_at_seeds(j, sigma, e))
         return -1;
     find_range(j);
-    float low = (float)j->low, high = (float)j->high;
-    for (int64_t i = 0; i < count; i++)
-        j->r.mask[i] = j->value[i] >= low && j->value[i] <= high;
+    memcpy(j->r.size, j->v.size, sizeof j->r.size);
+    j->r.mask = mem_array(volume_count(&j->v), 1, "a mask", e);
+    if (!j->r.mask || samples_filter_planes(&planes, j->v.size, sigma, 0, j->v.size[2], e))
+        return -1;
+    free(j->v.data); /* from here on its geometry is enough */
+    j->v.data = NULL;
     if (grow(j, e) || smooth(j, e) || (j->o->largest && region_largest(&j->r, e)) ||
         (j->o->fill && region_fill(&j->r, e)))
         return -1;
@@ -255,11 +303,20 @@ static int check_same_place(const volume *a, const volume *b, const char *name, 
     return same ? 0 : err_set(e, name, 0, "labels of another size or place than the volume");
 }
 
+/* The mask, the walk over it and the labels, which join it when the volume has gone. */
+static double peak_of_labels(const volume *l, const void *context)
+{
+    const job *j = context;
+    const double count = (double)volume_count(&j->v);
+    return count + region_bytes(count) + volume_memory(l);
+}
+
 static int open_labels(job *j, err *e)
 {
     volume *l = &j->labels;
+    const volume_budget budget = {j->o->common.memory, peak_of_labels, j};
     if (j->o->onto) {
-        if (volume_load(l, j->o->onto, e) || check_same_place(&j->v, l, j->o->onto, e))
+        if (volume_load(l, j->o->onto, &budget, e) || check_same_place(&j->v, l, j->o->onto, e))
             return -1;
         if (l->type == VOLUME_F32 || l->type == VOLUME_F64)
             return err_set(e, j->o->onto, 0, "voxels that are no whole numbers; expected a map of labels");
@@ -269,7 +326,7 @@ static int open_labels(job *j, err *e)
     memcpy(l->size, j->v.size, sizeof l->size);
     memcpy(l->origin, j->v.origin, sizeof l->origin);
     memcpy(l->axis, j->v.axis, sizeof l->axis);
-    return volume_make(l, e);
+    return volume_afford(&budget, l, NULL, e) || volume_make(l, e) ? -1 : 0;
 }
 
 /* A name is of one number, and a number of one name: else what is there would be called by the new name, or a name be of two. */
@@ -334,15 +391,34 @@ static int put_label(job *j, err *e)
     return volume_name(&j->labels, value, j->o->name, e);
 }
 
+/* The volume with its mask, and planes that are filtered; or, with the mask, what the walk holds, and the labels of 8 bits. */
+static double peak_of_volume(const volume *v, const void *context)
+{
+    const job *j = context;
+    const double count = (double)volume_count(v);
+    double sigma[3] = {0}, planes = 0;
+    for (int i = 0; i < 2; i++) {
+        const opt_lengths *l = i ? &j->o->smooth : &j->o->filter;
+        err ignored = {0};
+        double mm = 0;
+        for (int a = 0; a < 3 && !length_mm(l, "", &mm, &ignored); a++)
+            sigma[a] = fmin(fmax(mm / volume_spacing(v, a), 0), (double)v->size[a]);
+        planes = fmax(planes, samples_planes_bytes(v->size, sigma));
+    }
+    return count + fmax(volume_memory(v) + planes, region_bytes(count) + fmax(planes, count));
+}
+
 static int run_tool(int argc, char **argv)
 {
     struct options o = {.value = -1, .low = NAN, .high = NAN, .tolerance = NAN};
     err e = {0};
     tool t = {0};
     job j = {.o = &o, .t = &t};
+    volume_budget budget = {.peak = peak_of_volume, .context = &j};
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done || check_options(&o, &e))
         goto out;
-    if ((!t.operands && tool_need_stdin("a volume", &e)) || volume_load(&j.v, t.operands ? argv[1] : NULL, &e))
+    budget.most = o.common.memory;
+    if ((!t.operands && tool_need_stdin("a volume", &e)) || volume_load(&j.v, t.operands ? argv[1] : NULL, &budget, &e))
         goto out;
     if (find(&j, &e) || put_label(&j, &e))
         goto out;
@@ -352,7 +428,6 @@ static int run_tool(int argc, char **argv)
     else if (to)
         out_close(to, &e);
 out:
-    free(j.value);
     free(j.r.mask);
     region_free(&j.r);
     volume_free(&j.v);

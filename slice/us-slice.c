@@ -60,6 +60,7 @@ static const opt_tool table = {
     .operands_min = 1,
     .operands_max = 1,
     .threaded = true,
+    .reads_volumes = true,
     .options = option_list,
 };
 
@@ -150,12 +151,26 @@ static int read_thickness(job *j, err *e)
 
 /* ---- what is there before the first image */
 
+static double peak_of_volume(const volume *v, const void *context)
+{
+    (void)context;
+    return slice_cells_peak(v);
+}
+
+/* Beside the cells. */
+static double peak_of_labels(const volume *labels, const void *context)
+{
+    const slice_cells *c = context;
+    return volume_memory(labels) + slice_cells_bytes(c);
+}
+
 static int read_volume(job *j, const char *path, err *e)
 {
     volume v = {0};
+    const volume_budget budget = {.most = j->o->common.memory, .peak = peak_of_volume};
     if (!j->o->rigid && !strcmp(path, "-"))
         return err_usage(e, "the volume is '-', but standard input holds the model; expected a file");
-    if (volume_load(&v, path, e))
+    if (volume_load(&v, path, &budget, e))
         return -1;
     slice_window w = slice_window_of(&v);
     if (j->o->window.count)
@@ -243,9 +258,10 @@ static int make_grey(job *j, err *e)
 static int make_overlay(job *j, err *e)
 {
     volume labels = {0};
+    const volume_budget budget = {j->o->common.memory, peak_of_labels, &j->cells};
     if (!j->o->labels)
         return 0;
-    if (!volume_load(&labels, j->o->labels, e))
+    if (!volume_load(&labels, j->o->labels, &budget, e))
         slice_overlay_make(&j->overlay, &labels, &j->cells, j->view.size, e);
     volume_free(&labels);
     return e->status ? -1 : 0;

@@ -40,6 +40,7 @@ static const opt_tool table = {
     .purpose = "Write closed surfaces of a volume (NRRD, MetaImage) as OBJ, mm, LPS.",
     .operands = "volume",
     .operands_max = 1,
+    .reads_volumes = true,
     .options = option_list,
 };
 
@@ -69,8 +70,16 @@ static int check_options(const struct options *o, err *e)
     return 0;
 }
 
+/* The volume, and the samples of all of it where a level of it is sought; how large labels and surfaces are is not known yet. */
+static double peak_of(const volume *v, const void *context)
+{
+    const job *j = context;
+    return volume_memory(v) + (isnan(j->o->iso) ? 0 : sizeof(float) * (double)volume_count(v));
+}
+
 static int read_volume(job *j, const char *path, err *e)
 {
+    const volume_budget budget = {j->o->common.memory, peak_of, j};
     double sigma = 0;
     if (length_mm(&j->o->smooth, "--smooth", &sigma, e))
         return -1;
@@ -78,7 +87,7 @@ static int read_volume(job *j, const char *path, err *e)
         return err_usage(e, "--smooth: expected 0 or more");
     if (!path && tool_need_stdin("a volume", e))
         return -1;
-    if (volume_load(&j->v, path, e))
+    if (volume_load(&j->v, path, &budget, e))
         return -1;
     for (int a = 0; a < 3; a++) {
         j->sigma[a] = sigma / volume_spacing(&j->v, a);
@@ -121,6 +130,17 @@ static void say_surface(job *j, const contour *c, const char *group, const sampl
                   (double)label->count * voxel);
 }
 
+/* Of the samples of a label, which may be in a small part of the volume. */
+static int check_memory(const job *j, const char *group, const samples_box *box, err *e)
+{
+    char need[NUM_TEXT], most[NUM_TEXT];
+    const double peak = volume_memory(&j->v) + sizeof(float) * (double)samples_count(box);
+    if (!j->o->common.memory || peak <= (double)j->o->common.memory)
+        return 0;
+    return err_set(e, NULL, 0, "%s: the volume and the samples around this label take %s of memory; --memory allows %s",
+                   group, num_size_text(peak, need), num_size_text((double)j->o->common.memory, most));
+}
+
 static int write_surface(job *j, const char *group, const samples_box *inner, const samples_label *label, err *e)
 {
     contour c = {0};
@@ -128,6 +148,8 @@ static int write_surface(job *j, const char *group, const samples_box *inner, co
     for (int a = 0; a < 3; a++)
         reach[a] = samples_reach(j->sigma[a]) + 1;
     samples_box box = samples_wider(&j->v, inner, reach);
+    if (check_memory(j, group, &box, e))
+        return -1;
     float *value = mem_array(samples_count(&box), sizeof *value, "samples", e);
     if (value) {
         if (label)

@@ -254,6 +254,36 @@ static bool list_item(const char **p, char *item, size_t size)
     return true;
 }
 
+static const char size_prefixes[] = " kMGTP";
+
+int num_size_of(const char *text, int64_t *bytes)
+{
+    const char *end = text + strlen(text), *unit;
+    double value;
+    if (num_scan(text, end, &unit, &value))
+        return -1;
+    unit += strspn(unit, " ");
+    const char *prefix = *unit && *unit != ' ' ? strchr(size_prefixes, *unit) : NULL;
+    prefix = prefix ? prefix : *unit == 'K' ? size_prefixes + 1 : NULL;
+    const bool binary = prefix && unit[1] == 'i';
+    if (strcmp(unit + (prefix ? 1 : 0) + (binary ? 1 : 0), "B") != 0)
+        return -1;
+    value *= prefix ? pow(binary ? 1024 : 1000, (double)(prefix - size_prefixes)) : 1;
+    if (!(value >= 1 && value < 9e18))
+        return -1;
+    *bytes = (int64_t)value;
+    return 0;
+}
+
+char *num_size_text(double bytes, char *to)
+{
+    int prefix = 0;
+    for (; bytes >= 999.5 && size_prefixes[prefix + 1]; prefix++)
+        bytes /= 1000;
+    snprintf(to, NUM_TEXT, prefix ? "%.3g %cB" : "%.0f bytes", bytes, size_prefixes[prefix]);
+    return to;
+}
+
 int num_lengths_of(const char *text, num_length *list, int most)
 {
     char item[64];

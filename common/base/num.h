@@ -8,6 +8,8 @@
 
 #include <stddef.h>
 
+enum { NUM_TEXT = 32 }; /* bytes that hold any number as text */
+
 /* A unit of length, as its count of micrometres; 0: none was written. */
 typedef int num_unit;
 
@@ -40,6 +42,12 @@ int num_length_of(const char *text, num_length *length);
  * cm or m. */
 double num_length_in(num_length length, num_unit unsuffixed, num_unit to);
 
+/* "500MB", "2GiB", "1.5 GB", "4096B": bytes, in units of 1000 or 1024; the whole of text, more than 0. Returns 0 or -1. */
+int num_size_of(const char *text, int64_t *bytes);
+
+/* Bytes for people: "2.35 GB". to holds at least NUM_TEXT bytes, and is returned. */
+char *num_size_text(double bytes, char *to);
+
 /* A list of lengths between commas, at most `most`. Returns how many, or -1. */
 int num_lengths_of(const char *text, num_length *list, int most);
 
@@ -48,7 +56,6 @@ int num_list(const char *text, double *list, int most);
 
 /* The shortest text that reads back as the same double (single: as the same float), C locale; to holds at least
  * NUM_TEXT bytes. "nan" has no sign. Returns its length. */
-enum { NUM_TEXT = 32 };
 int num_text(double value, bool single, char *to);
 
 #endif

@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MODELS = 1 << 9, THREADED = 1 << 10 };
+enum { MODELS = 1 << 9, THREADED = 1 << 10, VOLUMES = 1 << 11 };
 
-/* What every tool has. MODELS: only those that write a model; THREADED: only those with threads. */
+/* What every tool has. MODELS: only those that write a model; THREADED: only those with threads; VOLUMES: those that read volume images. */
 #define COMMON(field) offsetof(opt_common, field)
 static const opt common_options[] = {
     {'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
@@ -18,6 +18,8 @@ static const opt common_options[] = {
     {0, "anonymous-names", NULL, OPT_FLAG, COMMON(anonymous), 0, 0, NULL, OPT_OUTPUT | MODELS,
      "no names of files in the model"},
     {0, "threads", "N", OPT_INT, COMMON(threads), 1, 1024, NULL, OPT_OUTPUT | THREADED, "threads"},
+    {0, "memory", "SIZE", OPT_SIZE, COMMON(memory), 0, 0, NULL, OPT_OUTPUT | VOLUMES,
+     "refuse volumes that take more, as 2GB"},
     {'q', "quiet", NULL, OPT_FLAG, COMMON(quiet), 0, 0, NULL, OPT_OUTPUT, "say only what is wrong"},
     {'v', "verbose", NULL, OPT_FLAG, COMMON(verbose), 0, 0, NULL, OPT_OUTPUT, "say more"},
     {'h', "help", NULL, OPT_FLAG, COMMON(help), 0, 0, NULL, OPT_OUTPUT, "this text"},
@@ -45,7 +47,8 @@ const opt *opt_at(const opt_tool *tool, int i)
         if (!i--)
             return o;
     for (o = common_options; !is_end(o); o++) {
-        if ((o->flags & MODELS && !tool->writes_model) || (o->flags & THREADED && !tool->threaded))
+        if ((o->flags & MODELS && !tool->writes_model) || (o->flags & THREADED && !tool->threaded) ||
+            (o->flags & VOLUMES && !tool->reads_volumes))
             continue;
         if (!i--)
             return o;
@@ -214,6 +217,8 @@ static int set_value(const opt *o, const char *text, void *options, err *e)
         return *text ? 0 : bad_value(o, text, o->arg, e);
     case OPT_INT:
         return set_int(o, text, to, e);
+    case OPT_SIZE:
+        return num_size_of(text, to) ? bad_value(o, text, "a size such as 500MB or 2GiB", e) : 0;
     case OPT_NUMBER:
         return set_number(o, text, to, e);
     case OPT_LENGTHS:

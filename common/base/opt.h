@@ -15,6 +15,7 @@ typedef enum opt_kind {
     OPT_FLAG,    /* bool */
     OPT_TEXT,    /* const char * */
     OPT_INT,     /* int64_t within low..high; the caller's default -1 means: not given */
+    OPT_SIZE,    /* int64_t, bytes: a size such as 500MB or 2GiB; the caller's default 0 means: not given */
     OPT_NUMBER,  /* double within low..high; the caller's default NAN means: not given */
     OPT_LENGTHS, /* opt_lengths: 1 to `high` lengths between commas, each with its suffix or none */
     OPT_NUMBERS, /* opt_numbers: `low` to `high` numbers between commas */
@@ -61,6 +62,7 @@ typedef struct opt_common {
     bool help, version, text, gzip, anonymous, quiet, verbose;
     const char *output; /* -o */
     int64_t threads;    /* 0: not given */
+    int64_t memory;     /* bytes; 0: not given */
     const char *table;  /* --table mdoc|bash|zsh: for the manual and completion */
 } opt_common;
 
@@ -71,6 +73,7 @@ typedef struct opt_tool {
     int operands_min, operands_max;
     bool writes_model;  /* has --text, -z and --anonymous-names */
     bool threaded;      /* has --threads */
+    bool reads_volumes; /* has --memory */
     const opt *options; /* ends with {.name = NULL, .letter = 0} */
 } opt_tool;
 

@@ -243,7 +243,7 @@ static void take_geometry(header *h)
     }
 }
 
-int metaimage_read(volume *v, in *s, char *line, const char *path, err *e)
+int metaimage_read(volume *v, in *s, char *line, const char *path, const volume_budget *b, err *e)
 {
     header h = {.s = s, .v = v, .binary = true, .spacing = {1, 1, 1}, .direction = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     int status = take_header(&h, line, e);
@@ -260,7 +260,7 @@ int metaimage_read(volume *v, in *s, char *line, const char *path, err *e)
         status =
             err_set(e, in_name(s), in_lines(s), "HeaderSize = -1 of data that are no plain bytes; expected 0 or more");
     if (!status)
-        status = voxels_in_read(v, &h.x, s, path, e);
+        status = voxels_in_read(v, &h.x, s, path, b, e);
     free(h.x.file);
     return status;
 }

@@ -12,6 +12,6 @@ bool metaimage_is(const char *line);
 
 /* See volume_read; line: the stream's first, which it has still to take in. The rows of TransformMatrix are the directions of the axes; AnatomicalOrientation repeats them, and
  * CenterOfRotation moves nothing, as ITK has it. */
-int metaimage_read(volume *v, in *s, char *line, const char *path, err *e);
+int metaimage_read(volume *v, in *s, char *line, const char *path, const volume_budget *b, err *e);
 
 #endif

@@ -12,7 +12,7 @@ bool nrrd_is(const char *line);
 /* See volume_read; the first line was taken and was one. Spaces LPS, RAS and LAS become LPS; space units become mm. Where a header names no space or one without
  * directions of the body, it is taken as LPS, and as mm. Names of labels are Slicer's keys SegmentN_Name and
  * SegmentN_LabelValue. */
-int nrrd_read(volume *v, in *s, const char *path, err *e);
+int nrrd_read(volume *v, in *s, const char *path, const volume_budget *b, err *e);
 
 /* Writes the volume, gzip at level 1 (fast; level 6 saves some per cent) or raw; errors stick in the out. -1 with e filled on no
  * memory. */

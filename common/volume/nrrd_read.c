@@ -482,13 +482,13 @@ static int check_data(const header *h, err *e)
     return 0;
 }
 
-int nrrd_read(volume *v, in *s, const char *path, err *e)
+int nrrd_read(volume *v, in *s, const char *path, const volume_budget *b, err *e)
 {
     header h = {.s = s, .v = v, .sign = {1, 1, 1}, .unit = {1, 1, 1}};
     for (int a = 0; a < AXES; a++)
         h.axis[a].spacing = 1;
     int status = take_header(&h, e) || take_geometry(&h, e) || check_data(&h, e) ||
-                         voxels_in_read(v, &h.x, s, path, e) || labels_in_give(&h.labels, v, e)
+                         voxels_in_read(v, &h.x, s, path, b, e) || labels_in_give(&h.labels, v, e)
                      ? -1
                      : 0;
     labels_in_free(&h.labels);

@@ -1,6 +1,7 @@
 #include "volume/volume.h"
 
 #include "base/mem.h"
+#include "base/num.h"
 #include "volume/metaimage.h"
 #include "volume/nrrd.h"
 
@@ -31,7 +32,7 @@ int volume_make(volume *v, err *e)
     return v->data ? 0 : -1;
 }
 
-int volume_read(volume *v, in *s, const char *path, err *e)
+int volume_read(volume *v, in *s, const char *path, const volume_budget *b, err *e)
 {
     *v = (volume){0};
     int first = in_peek(s, e), status = -1;
@@ -45,9 +46,9 @@ int volume_read(volume *v, in *s, const char *path, err *e)
     if (in_line(s, &line, NULL, e) < 0)
         return -1;
     if (nrrd_is(line))
-        status = nrrd_read(v, s, path, e);
+        status = nrrd_read(v, s, path, b, e);
     else if (metaimage_is(line))
-        status = metaimage_read(v, s, line, path, e);
+        status = metaimage_read(v, s, line, path, b, e);
     else
         err_set(e, in_name(s), 1, "'%.40s' begins no volume that is known; expected NRRD or MetaImage", line);
     if (status)
@@ -55,14 +56,33 @@ int volume_read(volume *v, in *s, const char *path, err *e)
     return status;
 }
 
-int volume_load(volume *v, const char *path, err *e)
+int volume_load(volume *v, const char *path, const volume_budget *b, err *e)
 {
     bool standard = !path || !strcmp(path, "-");
     *v = (volume){0};
     in *s = in_open(path, e);
-    int status = s ? volume_read(v, s, standard ? NULL : path, e) : -1;
+    int status = s ? volume_read(v, s, standard ? NULL : path, b, e) : -1;
     in_close(s);
     return status;
+}
+
+/* ---- memory */
+
+double volume_memory(const volume *v)
+{
+    return (double)v->size[0] * (double)v->size[1] * (double)v->size[2] * (double)volume_type_size(v->type);
+}
+
+int volume_afford(const volume_budget *b, const volume *v, const char *place, err *e)
+{
+    char need[NUM_TEXT], most[NUM_TEXT];
+    const double peak = !b || !b->most ? 0 : b->peak ? b->peak(v, b->context) : volume_memory(v);
+    if (!b || !b->most || peak <= (double)b->most)
+        return 0;
+    return err_set(e, place, 0, "%lld x %lld x %lld voxels of %d byte%s take %s of memory here; --memory allows %s",
+                   (long long)v->size[0], (long long)v->size[1], (long long)v->size[2], (int)volume_type_size(v->type),
+                   volume_type_size(v->type) == 1 ? "" : "s", num_size_text(peak, need),
+                   num_size_text((double)b->most, most));
 }
 
 /* ---- geometry */

@@ -41,12 +41,26 @@ typedef struct volume {
     int labels;
 } volume;
 
+/* How much memory a volume may take: asked once its type and size are known, before there is any for its voxels. */
+typedef struct volume_budget {
+    int64_t most; /* bytes; 0: no limit but what memory there is */
+    double (*peak)(const volume *v,
+                   const void *context); /* what is taken at once on its account, bytes; NULL: its voxels */
+    const void *context;
+} volume_budget;
+
+/* Refuses what is beyond a budget (which may be NULL): -1 with e filled. place: the file; NULL: none. */
+int volume_afford(const volume_budget *b, const volume *v, const char *place, err *e);
+
+/* The bytes of its voxels. */
+double volume_memory(const volume *v);
+
 /* Reads all of a NRRD or MetaImage file; which, its first bytes say. path: where it is, so that data in a file of their own are
- * found in the same folder; NULL: nowhere, and such data are refused. -1 with e filled: file, line and reason. */
-int volume_read(volume *v, in *s, const char *path, err *e);
+ * found in the same folder; NULL: nowhere, and such data are refused. b: may be NULL. -1 with e filled: file, line and reason. */
+int volume_read(volume *v, in *s, const char *path, const volume_budget *b, err *e);
 
 /* The same from a path; NULL or "-": standard input. */
-int volume_load(volume *v, const char *path, err *e);
+int volume_load(volume *v, const char *path, const volume_budget *b, err *e);
 void volume_free(volume *v);
 
 size_t volume_type_size(volume_type t);

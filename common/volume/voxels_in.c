@@ -115,10 +115,8 @@ static int take_binary(volume *v, bytes *b, int64_t need, err *e)
     char *data = NULL;
     while (got < need) {
         int64_t piece = need - got < PIECE ? need - got : PIECE;
-        if (mem_grow(&data, &room, got + piece, 1, "a volume's voxels", e)) {
-            free(data);
+        if (MEM_ROOM(&data, &room, got + piece, "a volume's voxels", e))
             return -1;
-        }
         v->data = data;
         int64_t n = bytes_some(b, data + got, (size_t)piece, e);
         if (n < 0)
@@ -211,17 +209,38 @@ static int take_voxels(volume *v, const voxels_in *x, in *s, int64_t need, err *
     return status ? -1 : 0;
 }
 
-/* All that is there, of which the last bytes are the voxels. */
+static void reverse(char *from, char *to)
+{
+    for (; from < --to; from++) {
+        const char one = *from;
+        *from = *to;
+        *to = one;
+    }
+}
+
+/* The last bytes of all that comes are the voxels: a ring of so many as are needed. */
 static int take_last(volume *v, in *s, int64_t need, err *e)
 {
-    char *all;
-    int64_t size = in_all(s, &all, e);
-    if (size < 0)
+    int64_t room = 0, at = 0, n = 1;
+    bool full = false;
+    char *data = NULL;
+    while (n > 0) {
+        const int64_t piece = need - at < PIECE ? need - at : PIECE;
+        if (!full && MEM_ROOM(&data, &room, at + piece, "a volume's voxels", e))
+            return -1;
+        v->data = data;
+        n = in_read(s, data + at, (size_t)piece, e);
+        at += n > 0 ? n : 0;
+        full |= at == need;
+        at = at == need ? 0 : at;
+    }
+    if (n < 0)
         return -1;
-    v->data = all;
-    if (size < need)
-        return wrong_length(v, in_name(s), "data for only", size / (int64_t)volume_type_size(v->type), e);
-    memmove(all, all + (size - need), (size_t)need);
+    if (!full)
+        return wrong_length(v, in_name(s), "data for only", at / (int64_t)volume_type_size(v->type), e);
+    reverse(data, data + at); /* the ring's oldest byte comes first */
+    reverse(data + at, data + need);
+    reverse(data, data + need);
     return 0;
 }
 
@@ -275,13 +294,13 @@ static char *find_file(const char *name, const char *header, const char *path, e
     return NULL;
 }
 
-int voxels_in_read(volume *v, const voxels_in *x, in *s, const char *path, err *e)
+int voxels_in_read(volume *v, const voxels_in *x, in *s, const char *path, const volume_budget *b, err *e)
 {
     char *file = x->file ? find_file(x->file, in_name(s), path, e) : NULL;
     in *own = file ? in_open_plain(file, e) : NULL, *from = x->file ? own : s;
     int status = -1;
     int64_t need = from ? bytes_needed(v, in_name(from), e) : -1;
-    if (need >= 0 && !skip(x, from, e))
+    if (need >= 0 && !volume_afford(b, v, in_name(from), e) && !skip(x, from, e))
         status = x->bytes < 0 ? take_last(v, from, need, e) : take_voxels(v, x, from, need, e);
     if (!status && x->encoding != VOXELS_TEXT && x->big != is_big())
         swap(v);

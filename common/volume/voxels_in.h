@@ -18,6 +18,6 @@ typedef struct voxels_in {
 
 /* Reads what v's type and sizes need into v->data, from s or from the file, which has to be in the folder that path is
  * in, links followed. Fewer or more than that is an error. */
-int voxels_in_read(volume *v, const voxels_in *x, in *s, const char *path, err *e);
+int voxels_in_read(volume *v, const voxels_in *x, in *s, const char *path, const volume_budget *b, err *e);
 
 #endif

@@ -19,7 +19,7 @@ int main(int argc, char **argv)
 {
     volume v = {0};
     err e = {0};
-    if (argc > 1 && !volume_load(&v, argv[1], &e))
+    if (argc > 1 && !volume_load(&v, argv[1], NULL, &e))
         put(&v);
     if (argc > 2 && !e.status) {
         out *to = out_open(argv[2], false, &e);

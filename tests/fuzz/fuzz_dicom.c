@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 static void make_volume(const series *s, bool spaced)
 {
-    series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, 1, 1, NULL};
+    series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, 1, 1, NULL, NULL};
     volume v = {0};
     err e = {0};
     for (int a = 0; spaced && a < 3; a++)

@@ -56,7 +56,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         memcpy(image, first, n);
         memcpy(image + n, end + 1, rest);
         in *s = in_memory(image, n + rest, "fuzz", &e);
-        if (s && !volume_read(&labels, s, NULL, &e))
+        if (s && !volume_read(&labels, s, NULL, NULL, &e))
             label(&labels, names);
         in_close(s);
         volume_free(&labels);

@@ -35,7 +35,7 @@ static const opt option_table[] = {{'f', "flag", NULL, OPT_FLAG, TO(flag), 0, 0,
                                    {'m', "method", "one|two", OPT_CHOICE, TO(choice), 0, 0, "one|two", 0, "a choice"},
                                    {'c', "list", "A=B,...", OPT_LIST, TO(list), 0, 0, NULL, 0, "a list"},
                                    {0}};
-static const opt_tool table = {"fuzz", "Takes anything.", "A B", 0, 2, true, true, option_table};
+static const opt_tool table = {"fuzz", "Takes anything.", "A B", 0, 2, true, true, true, option_table};
 
 static void must(bool good)
 {

@@ -17,7 +17,7 @@ static void put_together(const sweep *s, bool linear)
     for (int i = 0; i < 4 * 3 * 8; i++)
         pixel[i] = (unsigned char)(i * 7);
     /* Voxels so large that there are few. */
-    sweep_wish wish = {linear, 3, 4 * sweep_voxel(s, &images, &e)};
+    sweep_wish wish = {linear, 3, 4 * sweep_voxel(s, &images, &e), 0};
     int code = sweep_volume(&v, s, &images, &wish, filled, &e);
     if ((code != 0) != (e.status != 0) || (!code && filled[0] + filled[1] > volume_count(&v)))
         abort();

@@ -15,7 +15,7 @@ static inline int volume_bytes_read(volume *v, const void *bytes, size_t size)
 {
     err e = {0};
     in *s = in_memory(bytes, size, "fuzz", &e);
-    int status = s ? volume_read(v, s, NULL, &e) : -1;
+    int status = s ? volume_read(v, s, NULL, NULL, &e) : -1;
     if ((status != 0) != (e.text[0] != '\0'))
         abort();
     in_close(s);

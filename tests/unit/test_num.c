@@ -123,8 +123,34 @@ static void lengths(void)
     ok(num_lengths_of("1,2,3,4", list, 3) == -1 && num_lengths_of("1,,3", list, 3) == -1, "four, or a gap: refused");
 }
 
+static void test_sizes(void)
+{
+    static const struct {
+        const char *text;
+        int64_t bytes;
+    } good[] = {{"1B", 1},          {"500MB", 500000000},      {"2GiB", 2147483648}, {"1.5 GB", 1500000000},
+                {"64KiB", 65536},   {"64kiB", 65536},          {"3kB", 3000},        {"3KB", 3000},
+                {"1e3kB", 1000000}, {"8PiB", 9007199254740992}};
+    static const char *const bad[] = {"",    "5",   "5G",    "5gb",    "GB",   "-1GB",   "0B",
+                                      ".9B", "1iB", "1 B B", "1e30PB", "nanB", "5 000B", "5XB"};
+    char text[NUM_TEXT];
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        int64_t got = 0;
+        ok(!num_size_of(good[i].text, &got) && got == good[i].bytes, "%s is %lld bytes", good[i].text, (long long)got);
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        int64_t got = 0;
+        ok(num_size_of(bad[i], &got) && !got, "'%s' is no size", bad[i]);
+    }
+    ok(!strcmp(num_size_text(999, text), "999 bytes"), "%s", text);
+    ok(!strcmp(num_size_text(999.6, text), "1 kB"), "%s", text);
+    ok(!strcmp(num_size_text(2348e6, text), "2.35 GB"), "%s", text);
+    ok(!strcmp(num_size_text(1e25, text), "1e+10 PB"), "%s", text);
+}
+
 int main(void)
 {
+    test_sizes();
     against_strtod();
     in_lines();
     refuses();

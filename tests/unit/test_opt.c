@@ -32,7 +32,7 @@ static const opt options[] = {
     {'m', NULL, "KEY=VALUE", OPT_LIST, TO(set), 0, 0, NULL, 0, "set"},
     {0, "file", "FILE", OPT_TEXT, TO(file), 0, 0, NULL, OPT_FILE, "file"},
     {0}};
-static const opt_tool table = {"tool", "Does a thing.", "surface.obj|-", 1, 2, true, true, options};
+static const opt_tool table = {"tool", "Does a thing.", "surface.obj|-", 1, 2, true, true, true, options};
 
 enum { WORDS = 16 };
 

@@ -112,9 +112,58 @@ static void test_regions(void)
     region_free(&r);
 }
 
+typedef struct planes {
+    const float *from;
+    float *to;
+    int64_t area, taken, given;
+    bool in_order;
+} planes;
+
+static void take(void *context, int64_t z, float *plane)
+{
+    planes *p = context;
+    memcpy(plane, p->from + z * p->area, (size_t)p->area * sizeof *plane);
+    p->in_order &= z == p->taken++;
+}
+
+static void give(void *context, int64_t z, const float *plane)
+{
+    planes *p = context;
+    memcpy(p->to + z * p->area, plane, (size_t)p->area * sizeof *plane);
+    p->in_order &= z == p->given++;
+}
+
+/* Plane by plane, the same bits as all at once, wherever it begins and ends. */
+static void test_planes(double x, double y, double z, int64_t from, int64_t to)
+{
+    enum { X = 9, Y = 7, Z = 11, ALL = X * Y * Z };
+    static float value[ALL], want[ALL], got[ALL];
+    const int64_t size[3] = {X, Y, Z};
+    const double sigma[3] = {x, y, z};
+    const int64_t reach = samples_reach(z), first = from > reach ? from - reach : 0;
+    err e = {0};
+    uint32_t seed = 3;
+    for (int i = 0; i < ALL; i++) {
+        seed = seed * 1664525U + 1013904223U;
+        want[i] = value[i] = (float)(seed >> 16);
+    }
+    planes p = {value, got, X * Y, first, from, true};
+    const samples_planes each = {take, give, &p};
+    ok(!samples_filter(want, size, sigma, &e) && !samples_filter_planes(&each, size, sigma, from, to, &e),
+       "filtered by %g %g %g voxels", x, y, z);
+    ok(p.in_order && p.given == to && p.taken <= Z, "planes are taken and given in order");
+    ok(!memcmp(got + from * X * Y, want + from * X * Y, (size_t)((to - from) * X * Y) * sizeof *got),
+       "planes %d to %d have the same bits", (int)from, (int)to - 1);
+}
+
 int main(void)
 {
     test_filter();
+    test_planes(1.2, .8, 1.5, 0, 11);
+    test_planes(1.2, .8, 1.5, 3, 9);
+    test_planes(0, 0, 0, 0, 11);
+    test_planes(.4, 0, 11, 0, 11);
+    test_planes(2, 2, .3, 10, 11);
     test_labels();
     test_crop();
     test_regions();

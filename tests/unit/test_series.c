@@ -14,7 +14,7 @@
 enum { WIDE = 3, HIGH = 2 };
 
 static const double along_row[3] = {.6, 0, -.8}, along_column[3] = {0, 1, 0}, normal[3] = {.8, 0, .6};
-static const series_wish any = {{(double)NAN, (double)NAN, (double)NAN}, -1, -1, NULL};
+static const series_wish any = {{(double)NAN, (double)NAN, (double)NAN}, -1, -1, NULL, NULL};
 
 /* A file of `frames`, the first of which lies `at` mm along the normal, the others .5 mm each behind it. Pixels count up
  * from `value`. */

@@ -62,7 +62,7 @@ static void compare(const volume *v, double *most, double *mean, int64_t *count)
 static void test_truth(const sweep *s, const volume *images, bool linear, int64_t fill, double voxel, double allowed)
 {
     volume v = {0};
-    sweep_wish wish = {linear, fill, voxel};
+    sweep_wish wish = {linear, fill, voxel, 0};
     int64_t filled[2] = {0}, count;
     double most, mean;
     err e = {0};
@@ -79,7 +79,7 @@ static void test_truth(const sweep *s, const volume *images, bool linear, int64_
 static void test_refused(const sweep *s, const volume *images)
 {
     volume v = {0}, few = *images;
-    sweep_wish wish = {true, 0, 1e-5};
+    sweep_wish wish = {true, 0, 1e-5, 0};
     int64_t filled[2];
     err e = {0}, e2 = {0};
     ok(sweep_volume(&v, s, images, &wish, filled, &e) == -1 && strstr(e.text, "more than memory holds"),

@@ -15,7 +15,7 @@
 static int read_bytes(volume *v, const void *bytes, size_t size, err *e)
 {
     in *s = in_memory(bytes, size, "v", e);
-    int status = s ? volume_read(v, s, NULL, e) : -1;
+    int status = s ? volume_read(v, s, NULL, NULL, e) : -1;
     in_close(s);
     return status;
 }
@@ -388,7 +388,7 @@ static void load(const char *folder, const char *data, const char *fields, const
     snprintf(header, sizeof header, NRRD("%sdata file: %s\n"), fields, data);
     snprintf(path, sizeof path, "%s/v.nhdr", folder);
     bool there = put(folder, "v.nhdr", header, strlen(header));
-    int status = volume_load(&v, path, &e);
+    int status = volume_load(&v, path, NULL, &e);
     ok(there && (want ? status && strstr(e.text, want) : !status && volume_value(&v, 7) == '7'), "data file: %s %s",
        data, e.text);
     volume_free(&v);
@@ -440,7 +440,7 @@ static void real(void)
         skip(1, "no shared data");
         return;
     }
-    ok(!volume_load(&v, path, &e) && v.size[0] == 147 && v.size[1] == 106 && v.size[2] == 104 && v.type == VOLUME_U8 &&
+    ok(!volume_load(&v, path, NULL, &e) && v.size[0] == 147 && v.size[1] == 106 && v.size[2] == 104 && v.type == VOLUME_U8 &&
            v.axis[1][1] == .5 && v.origin[0] == -74.5217,
        "the spine phantom: 147 x 106 x 104, 0.5 mm %s", e.text);
     volume_free(&v);
