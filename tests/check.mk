@@ -168,6 +168,13 @@ tsan:
 tsan-run: all $(TSAN_UNIT)
 	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t
 
+# Every tool under valgrind's memcheck: a minute or so, and no part of check.
+.PHONY: check-valgrind
+check-valgrind:
+	.ci/setup valgrind
+	$(MAKE) $(JOBS) all
+	$(ENVIRONMENT) prove $(if $(V),-v) tests/cli/valgrind.sh
+
 FUZZ_FLAGS = -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 fuzz:
 	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/fuzz BIN=$(BUILD)/fuzz/bin CFLAGS='$(FUZZ_FLAGS)' CUDA=no \
@@ -261,6 +268,7 @@ help:
 	'make clang        the tools and unit tests, built by clang' \
 	'make sanitize     the tests under ASan and UBSan' \
 	'make tsan         what has threads, under ThreadSanitizer' \
+	'make check-valgrind  set-up, and every tool under valgrind, on small inputs' \
 	'make fuzz         every fuzz target for SECONDS=$(SECONDS) each' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
