@@ -24,6 +24,11 @@ said() { # PATTERN
     tail -n 1 "$T/err" | grep -aEq -e "$1"
 }
 
+# of FILE: what a message calls the file of -o. us-import says no names, which may be a patient's.
+of() {
+    [ "$name" = us-import ] && echo 'the output' || echo "$1"
+}
+
 # ---- Full disks: a device, and files that may not grow past a number of blocks.
 full() { # NAME INPUT COMMAND...
     name=$1 input=$2
@@ -34,7 +39,7 @@ full() { # NAME INPUT COMMAND...
     said 'cannot write: No space left on device' || out="$out, $(tail -n 1 "$T/err")"
     limited "$@" -o /dev/full <"$input" 2>"$T/err"
     file=$?
-    said '/dev/full: cannot write: No space left on device' || file="$file, $(tail -n 1 "$T/err")"
+    said "$(of /dev/full): cannot write: No space left on device" || file="$file, $(tail -n 1 "$T/err")"
     is "$out $file" "1 1" "$name: a full device"
 }
 if [ -w /dev/full ]; then
@@ -202,13 +207,13 @@ folders() { # NAME INPUT COMMAND...
     got=
     limited "$@" -o "$T/none/out" <"$input" >/dev/null 2>"$T/err"
     got="$got $?"
-    said 'none/out: cannot create: No such file or directory' || got="$got $(tail -n 1 "$T/err")"
+    said "$(of none/out): cannot create: No such file or directory" || got="$got $(tail -n 1 "$T/err")"
     limited "$@" -o "$T/old/out" <"$input" >/dev/null 2>"$T/err"
     got="$got $?"
-    said 'old/out: cannot [a-z]*: Not a directory' || got="$got $(tail -n 1 "$T/err")"
+    said "$(of old/out): cannot [a-z]*: Not a directory" || got="$got $(tail -n 1 "$T/err")"
     limited "$@" -o "$T/locked" <"$input" >/dev/null 2>"$T/err"
     got="$got $?"
-    said 'locked: is a folder' || got="$got $(tail -n 1 "$T/err")"
+    said "$(of locked): is a folder" || got="$got $(tail -n 1 "$T/err")"
     is "$got" " $bad $bad $bad" "$name: -o in no folder, in a file, to a folder"
     if [ "$input" != /dev/null ]; then
         limited "$@" <"$T/in" >/dev/null 2>"$T/err"
@@ -220,11 +225,11 @@ folders() { # NAME INPUT COMMAND...
     # shellcheck disable=SC2086 # words
     limited $nobody "$@" -o "$T/locked/new" <"$input" >/dev/null 2>"$T/err"
     got=$?
-    said 'locked/new: cannot create: Permission denied' || got="$got $(tail -n 1 "$T/err")"
+    said "$(of locked/new): cannot create: Permission denied" || got="$got $(tail -n 1 "$T/err")"
     # shellcheck disable=SC2086
     limited $nobody "$@" -o "$T/locked/there" <"$input" >/dev/null 2>"$T/err"
     got="$got $?"
-    said 'locked/there: cannot write: Permission denied' || got="$got $(tail -n 1 "$T/err")"
+    said "$(of locked/there): cannot write: Permission denied" || got="$got $(tail -n 1 "$T/err")"
     is "$got $(cat "$T/locked/there") $(ls -A "$T/locked")" "$bad $bad old there" "$name: -o in a folder, to a file that may not be written"
 }
 each_command folders
