@@ -103,4 +103,12 @@ fails 2 "poses without a probe" 'expected both' tled-run --poses "$T/press.tum" 
 { cat "$T/inside.tum"; echo 'method fem'; } >"$T/method.tum"
 fails 1 "a change of method" 'method.tum:2: .*expected poses alone' tled-run --probe sphere:2cm --poses "$T/method.tum" -t .1 <"$T/block.sinew"
 fails 1 "a step too long with contact" 'above the stable step' tled-run --probe sphere:2cm --poses "$T/press.tum" --dt "$(tled-run -n 1 -o /dev/null <"$T/block.sinew" 2>&1 | sed -n 's/.*stable step \([^ ]*\) ms.*/\1/p' | awk '{ print $1 * .9e-3 }')" -n 5 <"$T/block.sinew"
+# A ball without friction that leans by .3: all of its force goes through its centre, 1 cm behind the origin, and the torque with it.
+awk -v nx=6 -v ny=6 -v nz=3 -v h=0.005 -v held=low -f tests/cli/block.awk >"$T/lean.sinew"
+echo '0 .02 .015 .012 .98877107793604228 0 -.14943813247359922 0' >"$T/lean.tum"
+tled-run -q -d cpu --text --probe sphere:1cm --poses "$T/lean.tum" -t .15 <"$T/lean.sinew" 2>/dev/null |
+    awk '/^array / { what = $2; next } what == "probe.force" { x = $1; z = $3 } what == "probe.torque" { print .01 * (cos(.3) * x - sin(.3) * z), $2 } { what = "" }' >"$T/lean"
+read -r want got <"$T/lean"
+near "$got" "$want" 1e-6 "the torque of a ball is its force's, through its centre: $got N m"
+
 done_testing
