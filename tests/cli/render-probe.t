@@ -76,7 +76,7 @@ refused() {
 refused "a shape that is none" "bad.sinew: metadata, probe.shape: 'cone:3' is no probe; expected one as" 's/^meta probe.shape .*/meta probe.shape "cone:3"/'
 refused "no corners" 'the probe is the OBJ cube.obj, which the model does not hold; expected its corners' 's/probe-vertex.position/x-position/'
 refused "no triangles" 'which the model does not hold' 's/probe-face.vertex/x-face/'
-refused "a corner at infinity" 'probe-vertex.position, row 0 is not finite' '/^array probe-vertex.position/,+3s/^-0.01.*/inf 0 0/'
+refused "a corner at infinity" 'array probe-vertex.position, row 0: inf 0 0; expected finite numbers' '/^array probe-vertex.position/,+3s/^-0.01.*/inf 0 0/'
 refused "a corner that there is not" 'probe-face.vertex' '/^array probe-face.vertex/,+1s/^[0-9].*/0 1 8/'
 refused "no corner at all" 'probe-face.vertex' '/^array probe-face.vertex/,+1s/^[0-9].*/0 1 -1/'
 refused "no probe" 'the model has no probe to show; expected one from msds-run or tled-run with --probe' '/^meta probe.shape/d'
