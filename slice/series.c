@@ -85,8 +85,9 @@ static int refuse_many(const series *s, const int64_t *number, int64_t last, int
     if (wanted < 0)
         return err_set(e, NULL, 0, "%" PRId64 " series:%s; expected --series N to choose one", last, list);
     if (last == 1)
-        return err_set(e, NULL, 0, "--series %" PRId64 ": there is one series,%s; expected 1, or no --series", wanted,
-                       list + strlen(" 1:"));
+        return err_set(e, NULL, 0,
+                       "--series %" PRId64 ": there is one series, of %" PRId64 " file%s; expected 1, or no --series",
+                       wanted, s->count, s->count == 1 ? "" : "s");
     return err_set(e, NULL, 0, "--series %" PRId64 ": there are %" PRId64 " series:%s; expected 1 to %" PRId64, wanted,
                    last, list, last);
 }
