@@ -218,6 +218,17 @@ is "$(sort -u "$T/sums" | wc -l | tr -d ' ')" 3 "differs with each"
 printf 'P5\n12 8\n255\n' >"$T/bare.pgm"
 fails 1 "an image that does not say where it lies" "bare.pgm:2: no image that says where it lies; expected '# us-slice:'" \
     sinew render --show probe --slice "$T/bare.pgm" -o "$T/r.png" "$T/one.sinew"
+for comment in '# us-slice: 0 0 0 1 0 0 0 0' '# us-slice: 0 0 0 1 0 0 0 0 1 2' '# us-slice: 0 0 0 1 0 0 0 0 one' '# us-slice: 0 0 0 1 0 0 0 0 1 more words' \
+    '# us-slice: 0 0 0 1 0 0 0 0 1 fan 1 2 3' '# us-slice: 0 0 0 1 0 0 0 0 1 fan 1 2 3 60 5' '# us-slice: fan 1 2 3 60' '# us-slice: 0 0 0 1 0 0 0 0 1 fan 1 2 3 60 fan'; do
+    sed "2s/.*/$comment/" "$T/s_0.pgm" >"$T/bare.pgm"
+    fails 1 "an image with '$comment'" "bare.pgm:2: no image that says where it lies; expected '# us-slice:' and nine numbers, or those of a fan" \
+        sinew render --show probe --slice "$T/bare.pgm" -o "$T/r.png" "$T/one.sinew"
+done
+for sides in 12 '12 8 1'; do
+    sed "3s/.*/$sides/" "$T/s_0.pgm" >"$T/bare.pgm"
+    fails 1 "an image with sides of '$sides'" "bare.pgm:3: no image that says where it lies; expected columns and rows" \
+        sinew render --show probe --slice "$T/bare.pgm" -o "$T/r.png" "$T/one.sinew"
+done
 head -c 90 "$T/s_0.pgm" >"$T/bare.pgm"
 fails 1 "an image cut off" 'bare.pgm: ends after .* of 96 bytes' sinew render --show probe --slice "$T/bare.pgm" -o "$T/r.png" "$T/one.sinew"
 

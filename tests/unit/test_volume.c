@@ -440,14 +440,87 @@ static void real(void)
         skip(1, "no shared data");
         return;
     }
-    ok(!volume_load(&v, path, NULL, &e) && v.size[0] == 147 && v.size[1] == 106 && v.size[2] == 104 && v.type == VOLUME_U8 &&
-           v.axis[1][1] == .5 && v.origin[0] == -74.5217,
+    ok(!volume_load(&v, path, NULL, &e) && v.size[0] == 147 && v.size[1] == 106 && v.size[2] == 104 &&
+           v.type == VOLUME_U8 && v.axis[1][1] == .5 && v.origin[0] == -74.5217,
        "the spine phantom: 147 x 106 x 104, 0.5 mm %s", e.text);
     volume_free(&v);
 }
 
+/* ---- comments, and lists that are too long or too short */
+
+#define NRRD_BODY                                                                                                      \
+    "type: uint8\ndimension: 3\nspace: LPS\nsizes: 2 1 1\nspace directions: (1,0,0) (0,2,0) (0,0,3)\n"                 \
+    "encoding: raw\nspace origin: (4,5,6)\nSegment0_Name:=vein\nSegment0_LabelValue:=1\n"
+
+/* A comment may say anything, among it what would be a field or a key, anywhere between the first line and the empty one. */
+static void comments(void)
+{
+    static const char *const comment[] = {"#",
+                                          "# more words",
+                                          "# type: float",
+                                          "#sizes: 9 9 9",
+                                          "# field: with a value, and more words: yes",
+                                          "# Segment0_Name:=artery",
+                                          "#Segment0_LabelValue:=7 or 8",
+                                          "# key:=value: of more words",
+                                          "# field: key:=value",
+                                          "#:=",
+                                          "#: ",
+                                          "# ends with a colon:",
+                                          "# no such field: 3"};
+    for (size_t i = 0; i < sizeof comment / sizeof *comment; i++)
+        for (int after = 0; after < 2; after++) {
+            char text[600];
+            volume v;
+            err e = {0};
+            snprintf(text, sizeof text, "NRRD0004\n%s\n" NRRD_BODY "%s\n\n", after ? "# made by hand" : comment[i],
+                     after ? comment[i] : "#");
+            const bool read = !read_parts(&v, text, "ab", 2, &e);
+            ok(read && v.type == VOLUME_U8 && v.size[0] == 2 && v.origin[2] == 6 && v.labels == 1 &&
+                   v.label[0].value == 1 && !strcmp(v.label[0].name, "vein"),
+               "'%s' is passed over %s", comment[i], e.text);
+            volume_free(&v);
+        }
+    refuse("NRRD0004\nno comment\n" NRRD_BODY "\n", "ab", 2, "the header: 'no comment'");
+}
+
+/* A list of numbers has as many as are expected: what is more is not read, and what is less is not made up. */
+static void lists(void)
+{
+    static const struct {
+        const char *key, *right;
+        int count;
+    } list[] = {{"TransformMatrix", "1 0 0 0 1 0 0 0 1", 9}, {"Offset", "4 5 6", 3}, {"ElementSpacing", "1 2 3", 3}};
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
+        for (int off = -1; off < 2; off++) {
+            char text[600], value[60], want[100];
+            volume v;
+            err e = {0};
+            const size_t n = strlen(list[i].right);
+            snprintf(value, sizeof value, "%.*s%s", (int)(off < 0 ? n - 2 : n), list[i].right, off > 0 ? " 7" : "");
+            snprintf(text, sizeof text,
+                     "ObjectType = Image\nNDims = 3\nDimSize = 2 1 1\nElementType = MET_UCHAR\n%s = %s\n"
+                     "ElementDataFile = LOCAL\n",
+                     list[i].key, value);
+            if (off) {
+                snprintf(want, sizeof want, "v:5: %s: %s; expected %d finite numbers", list[i].key,
+                         off > 0 ? "'7'" : "too few", list[i].count);
+                refuse(text, "ab", 2, want);
+                continue;
+            }
+            ok(!read_parts(&v, text, "ab", 2, &e), "%s = %s %s", list[i].key, value, e.text);
+            volume_free(&v);
+        }
+    refuse("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 1 1 1\nencoding: raw\n\n", "ab", 2,
+           "v:4: sizes: '1'; expected 3 whole numbers");
+    refuse("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 1\nencoding: raw\n\n", "ab", 2,
+           "v:4: sizes: too few; expected 3 whole numbers");
+}
+
 int main(void)
 {
+    comments();
+    lists();
     types();
     geometry();
     places();
