@@ -167,7 +167,7 @@ static void test_bad_lines(void)
     bad("end\n\n", "something follows the model's end");
     bad("end\nend\n", "something follows");
     bad("nonsense\n", "stdin:2: 'nonsense'; expected meta, prov");
-    bad("\nend\n", "stdin:2: ''; expected meta");
+    bad("\nend\n", "stdin:2: an empty line; expected meta");
     bad("meta k v\nend\n", "stdin:2: expected meta KEY \"VALUE\"");
     bad("meta k \"v\" x\nend\n", "expected meta KEY");
     bad("meta k \"v\nend\n", "expected meta KEY");
