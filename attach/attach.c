@@ -45,7 +45,7 @@ static const opt_tool table = {
 };
 
 /* Reads the OBJ into a model of its own, in metres. */
-static int read_rigid_file(const char *path, bool nameless, const model *m, model *file, err *e)
+static int read_rigid_file(const char *path, bool nameless, const model *m, model *file, notes *warnings, err *e)
 {
     const char *unit_name = model_meta_of(m, "source.unit");
     num_unit unit = unit_name ? num_unit_of(unit_name) : 0, metre = num_unit_of("m");
@@ -57,8 +57,10 @@ static int read_rigid_file(const char *path, bool nameless, const model *m, mode
     surface_name(nameless ? "surface_1" : path, name, sizeof name);
     in *source = in_open(path, e);
     int rc = source ? obj_read(&o, source, e) : -1;
-    if (!rc)
+    if (!rc) {
+        obj_notes(&o, warnings);
         rc = surface_add(file, name, &o, num_length_in((num_length){1, unit}, unit, metre), e);
+    }
     obj_free(&o);
     in_close(source);
     return rc;
@@ -69,7 +71,7 @@ static int collect(const struct options *o, const model *m, model *file, rigid *
     if (rigid_collect(r, m, &o->rigid, e))
         return -1;
     if (o->rigid_file &&
-        (read_rigid_file(o->rigid_file, o->common.anonymous, m, file, e) || rigid_collect_all(r, file, e)))
+        (read_rigid_file(o->rigid_file, o->common.anonymous, m, file, warnings, e) || rigid_collect_all(r, file, e)))
         return -1;
     if (!r->primitives)
         notes_add(warnings, "no surface of the model is rigid (skull*, bone*, rigid*); --rigid names others");

@@ -259,6 +259,8 @@ static int bind_file(const tool *t, target *to, model *m, const char *path, cons
     in *s = in_open(path, e);
     int code = s ? obj_read(&file, s, e) : -1;
     in_close(s);
+    if (!code)
+        obj_notes(&file, warnings);
     if (!code && o->common.anonymous)
         surface_nameless(m, &file, scale_of(unit), from_path, sizeof from_path);
     else

@@ -103,11 +103,15 @@ static int plan_of(plan *p, const struct options *o, const char *path, err *e)
     return 0;
 }
 
-static int read_obj(obj *o, const char *path, err *e)
+static int read_obj(const tool *t, obj *o, const char *path, err *e)
 {
+    notes warnings = {0};
     in *s = in_open(path, e);
     int code = s ? obj_read(o, s, e) : -1;
     in_close(s);
+    if (!code)
+        obj_notes(o, &warnings);
+    tool_warn(t, &warnings);
     return code;
 }
 
@@ -166,7 +170,7 @@ static int mover_open(mover *w, const tool *t, const model *m, const char *path,
     char name[SURFACE_NAME_MOST + 1];
     num_unit unit = scale_unit(o->unit, m, e);
     int threads = unit ? tool_threads(t, e) : -1;
-    if (threads < 0 || read_obj(&w->file, path, e))
+    if (threads < 0 || read_obj(t, &w->file, path, e))
         return -1;
     surface_name(path, name, sizeof name);
     w->scale = scale_of(unit);

@@ -1,5 +1,6 @@
 #include "msds/mesh_fix.h"
 
+#include "base/chars.h"
 #include "base/mem.h"
 #include "base/near.h"
 
@@ -67,7 +68,7 @@ static bool fix_volume(const model *m, const char *name, uint8_t *rigid)
     const model_array *node = model_find(m, "element.node"), *of = model_find(m, "element.volume");
     const model_array *names = model_find(m, "volume.name");
     for (int64_t v = 0; names && of && v < names->rows; v++) {
-        if (strcmp(names->str[v], name))
+        if (!chars_mean(name, names->str[v]))
             continue;
         for (int64_t n = 0; n < of->rows; n++)
             for (int c = 0; of->i32[n] == v && c < node->columns; c++)

@@ -469,7 +469,9 @@ static int carry_skin(session *s, err *e)
     if (!s->o->skin)
         return 0;
     num_unit unit = scale_unit(s->o->unit, &s->m, e);
-    return unit ? skin_model_carry(&s->m, s->o->skin, s->o->common.anonymous, scale_of(unit), s->skin_name, e) : -1;
+    return unit ? skin_model_carry(&s->m, s->o->skin, s->o->common.anonymous, scale_of(unit), s->skin_name,
+                                   &s->warnings, e)
+                : -1;
 }
 
 static int make_skin(session *s, err *e)

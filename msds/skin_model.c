@@ -3,13 +3,16 @@
 #include <stdio.h>
 #include <string.h>
 
-int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1], err *e)
+int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1],
+                     notes *warnings, err *e)
 {
     obj o = {0};
     surface there;
     in *source = in_open(path, e);
     int result = source ? obj_read(&o, source, e) : -1;
     in_close(source);
+    if (!result)
+        obj_notes(&o, warnings);
     if (!result && nameless)
         surface_nameless(m, &o, scale, name, SURFACE_NAME_MOST + 1);
     else

@@ -8,7 +8,8 @@
 
 /* Carries the OBJ, its coordinates times scale, as the surface of its base name (or of one that says nothing, where that is to be), unless the model
  * does so already; name gets that. */
-int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1], err *e);
+int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1],
+                     notes *warnings, err *e);
 
 /* Starts from a frame, whose displacement of it goes into u; at rest in speed. */
 int skin_model_start(skin *s, const frame *f, err *e);

@@ -186,7 +186,7 @@ static int read_calibration(const char *path, double m[16], err *e)
     in *s = in_open(path, e);
     char *text = NULL, *rest = NULL;
     int count = 0;
-    if (s && in_all(s, &text, e) >= 0) {
+    if (s && in_peek(s, e) != -2 && in_all(s, &text, e) >= 0) { /* without a byte order mark */
         for (char *word = strtok_r(text, " \t\r\n,", &rest); word; word = strtok_r(NULL, " \t\r\n,", &rest)) {
             if (count == 16 || num_double(word, &m[count])) {
                 err_set(e, path, 0, "'%.40s' at number %d; expected 16 numbers, row by row", word, count + 1);

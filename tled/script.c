@@ -1,5 +1,6 @@
 #include "tled/script.h"
 
+#include "base/chars.h"
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
@@ -157,10 +158,10 @@ int32_t script_muscle(const model *m, const char *name, const char *place, int64
     if (!names || !muscle)
         return -1;
     for (int64_t i = 0; i < names->rows; i++)
-        if (muscle->u8[i] && !strcmp(names->str[i], name))
+        if (muscle->u8[i] && chars_mean(name, names->str[i]))
             return (int32_t)i;
     for (int64_t i = 0; i < names->rows; i++)
-        if (muscle->u8[i] && !strcmp(short_name(names->str[i]), name))
+        if (muscle->u8[i] && chars_mean(name, short_name(names->str[i])))
             return (int32_t)i;
     return unknown_muscle(names, muscle, name, place, line, e);
 }

@@ -475,6 +475,7 @@ static int prepare(job *j, model *m, err *e)
         return -1;
     if (!j->unit)
         return ask_for_unit(&j->surface, e);
+    obj_notes(&j->surface, &j->warnings);
     clock = say_time(j, "reading", clock);
     int threads = tool_threads(j->t, e);
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;

@@ -1,5 +1,8 @@
 #include "base/chars.h"
 
+#include <string.h>
+#include <strings.h>
+
 /* The length of the well-formed UTF-8 character at p (not NUL), or 0. */
 static int utf8_length(const unsigned char *p)
 {
@@ -36,4 +39,77 @@ void chars_mend(char *text)
             *p = '?';
         p += n ? n : 1;
     }
+}
+
+static int digit(char c)
+{
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+}
+
+int chars_escaped(const char *p)
+{
+    if (p[0] != '\\' || p[1] != 'x' || digit(p[2]) < 0 || digit(p[3]) < 0)
+        return -1;
+    return 16 * digit(p[2]) + digit(p[3]);
+}
+
+enum { ESCAPED = 4 };
+
+/* What stands for the character at p, at most ESCAPED bytes: *length of them, for *used of p's. own: p is in a file's own bytes; else
+ * what is written as \xHH already stays. */
+static void escape_one(const char *p, bool own, char *to, size_t *length, size_t *used)
+{
+    static const char digits[] = "0123456789abcdef";
+    unsigned char c = (unsigned char)*p;
+    int n = utf8_length((const unsigned char *)p);
+    if (n && c >= ' ' && c != 0x7f && !(own && chars_escaped(p) >= 0)) {
+        memcpy(to, p, (size_t)n);
+        *length = *used = (size_t)n;
+        return;
+    }
+    to[0] = '\\';
+    to[1] = 'x';
+    to[2] = digits[c >> 4];
+    to[3] = digits[c & 15];
+    *length = ESCAPED;
+    *used = 1;
+}
+
+size_t chars_escape(const char *text, size_t n, char *to)
+{
+    size_t size = 0;
+    for (size_t at = 0, length, used; at < n; at += used, size += length)
+        escape_one(text + at, true, to + size, &length, &used);
+    to[size] = 0;
+    return size;
+}
+
+static bool same(const char *a, const char *b, size_t n, int flags)
+{
+    return flags & CHARS_ANY_CASE ? !strncasecmp(a, b, n) : !strncmp(a, b, n);
+}
+
+static bool means(const char *typed, size_t m, const char *name, size_t n, int flags, bool own)
+{
+    size_t done = 0;
+    for (size_t at = 0, length, used; at < m; at += used, done += length) {
+        char one[ESCAPED];
+        escape_one(typed + at, own, one, &length, &used);
+        if (length > n - done || !same(one, name + done, length, flags))
+            return false;
+    }
+    return done == n || flags & CHARS_BEGINS;
+}
+
+bool chars_means(const char *typed, size_t m, const char *name, size_t n, int flags)
+{
+    return means(typed, m, name, n, flags, false) || means(typed, m, name, n, flags, true);
+}
+
+bool chars_mean(const char *typed, const char *name)
+{
+    return chars_means(typed, strlen(typed), name, strlen(name), 0);
 }

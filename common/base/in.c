@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { CHUNK = 1 << 18, MUCH = 1 << 15 }; /* bytes */
+enum { CHUNK = 1 << 18, MUCH = 1 << 15, MARK = 3 }; /* bytes */
 
 struct in {
     char *name;
@@ -17,6 +17,7 @@ struct in {
     const unsigned char *memory;
     size_t memory_left;
     bool gzip, member_ended, ended;
+    bool begun; /* it is past the place where a byte order mark may be */
     z_stream z;
     unsigned char *raw; /* compressed bytes, where gzip */
     unsigned char *buffer;
@@ -68,12 +69,14 @@ static void skip_padding(in *s)
         s->z.avail_in--;
 }
 
-/* Inflates into the empty buffer until at least a byte came or the data ended. */
+/* Inflates into the empty buffer until at least a byte came, of the first so many that a byte order mark shows, or the data
+ * ended. */
 static int gzip_fill(in *s, err *e)
 {
+    const uInt least = s->begun ? 1 : MARK;
     s->z.next_out = s->buffer;
     s->z.avail_out = CHUNK;
-    while (s->z.avail_out == CHUNK) {
+    while (CHUNK - s->z.avail_out < least) {
         if (!s->z.avail_in) {
             int64_t n = fetch(s, s->raw, CHUNK, e);
             if (n < 0)
@@ -120,10 +123,10 @@ static int fill(in *s, err *e)
     return 0;
 }
 
-/* The first bytes say whether it is gzip; a pipe may give them one at a time. */
+/* The first bytes say whether it is gzip, or begins with a byte order mark; a pipe may give them one at a time. */
 static int sniff(in *s, err *e)
 {
-    while (s->filled < 2) {
+    while (s->filled < MARK) {
         int64_t n = fetch(s, s->buffer + s->filled, CHUNK - s->filled, e);
         if (n < 0)
             return -1;
@@ -236,6 +239,7 @@ static int64_t fetch_past(in *s, void *bytes, size_t size, err *e)
 int64_t in_read(in *s, void *bytes, size_t size, err *e)
 {
     size_t got = 0;
+    s->begun = true;
     while (got < size) {
         if (s->at == s->filled && s->ended)
             break;
@@ -261,11 +265,23 @@ int64_t in_read(in *s, void *bytes, size_t size, err *e)
     return (int64_t)got;
 }
 
+/* Editors on some systems begin a text with this mark, and nobody sees it. */
+static void skip_mark(in *s)
+{
+    if (s->filled - s->at >= MARK && !memcmp(s->buffer + s->at, "\xef\xbb\xbf", MARK))
+        s->at += MARK;
+    s->begun = true;
+}
+
 int in_peek(in *s, err *e)
 {
-    if (s->at == s->filled && !s->ended && fill(s, e))
-        return -2;
-    return s->at < s->filled ? s->buffer[s->at] : -1;
+    for (;;) {
+        if (s->at == s->filled && !s->ended && fill(s, e))
+            return -2;
+        if (s->begun)
+            return s->at < s->filled ? s->buffer[s->at] : -1;
+        skip_mark(s);
+    }
 }
 
 int64_t in_line(in *s, char **line, bool *ended, err *e)

@@ -22,12 +22,6 @@ int keyfile_error(const keyfile *k, err *e, const char *format, ...)
     return err_set(e, k->name, k->line, "%s", text);
 }
 
-/* Editors on some systems begin a file with this mark, and nobody sees it. */
-static char *past_mark(char *text, int64_t line)
-{
-    return line == 1 && !strncmp(text, "\xEF\xBB\xBF", 3) ? text + 3 : text;
-}
-
 static int check_characters(const keyfile *k, const char *text, err *e)
 {
     for (const char *p = text; *p; p++)
@@ -56,12 +50,22 @@ static int split(keyfile *k, char *text, err *e)
     return 0;
 }
 
+static int not_utf8(const keyfile *k, int word, err *e)
+{
+    enum { MOST = 60 };
+    char text[4 * MOST + 1];
+    size_t n = strlen(k->word[word]);
+    chars_escape(k->word[word], n < MOST ? n : MOST, text);
+    return keyfile_error(k, e, "word %d is not UTF-8; expected text in UTF-8, where a name's bytes stand so: %s%s",
+                         word + 1, text, n > MOST ? "..." : "");
+}
+
 /* What is in a comment does not matter. */
 static int check_words(const keyfile *k, err *e)
 {
     for (int i = 0; i < k->count; i++)
         if (!chars_utf8(k->word[i]))
-            return keyfile_error(k, e, "word %d is not UTF-8; expected text in UTF-8", i + 1);
+            return not_utf8(k, i, e);
     return 0;
 }
 
@@ -75,7 +79,6 @@ int keyfile_next(keyfile *k, err *e)
         k->line = in_lines(k->source);
         if (length > KEYFILE_LINE)
             return keyfile_error(k, e, "a line of %lld bytes; expected at most %d", (long long)length, KEYFILE_LINE);
-        text = past_mark(text, k->line);
         if (check_characters(k, text, e) || split(k, text, e) || check_words(k, e))
             return -1;
         if (k->count)

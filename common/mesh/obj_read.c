@@ -110,15 +110,6 @@ static int enter_group(reader *r, const char *name)
     return r->current < 0 ? -1 : 0;
 }
 
-/* Whether a word may be part of a name: what control characters do to a terminal or a model is not wanted. */
-static bool is_plain(const char *word)
-{
-    for (; *word; word++)
-        if ((unsigned char)*word < ' ' || *word == 127)
-            return false;
-    return true;
-}
-
 /* The words that are left on the line, joined by `joint`, into r->name: their length, or -1. */
 static int64_t read_names(reader *r, char joint)
 {
@@ -126,15 +117,11 @@ static int64_t read_names(reader *r, char joint)
     while (obj_next_word(&r->w)) {
         const char *stop = obj_word_end(&r->w);
         int64_t length = stop - r->w.p;
-        if (mem_grow(&r->name, &r->name_room, n + length + 2, 1, "a group's name", r->w.e))
+        if (mem_grow(&r->name, &r->name_room, n + 4 * length + 2, 1, "a group's name", r->w.e))
             return -1;
         if (n)
             r->name[n++] = joint;
-        memcpy(r->name + n, r->w.p, (size_t)length);
-        r->name[n + length] = 0;
-        if (!chars_utf8(r->name + n) || !is_plain(r->name + n))
-            return obj_bad_word(&r->w, "not a name in UTF-8:", "printable UTF-8");
-        n += length;
+        n += (int64_t)chars_escape(r->w.p, (size_t)length, r->name + n);
         r->w.p = stop;
     }
     return n;
@@ -315,10 +302,12 @@ static int pass_over(reader *r)
     return 0;
 }
 
-static int refuse_free_form(reader *r)
+/* Curves and surfaces beside polygons. */
+static int skip_free_form(reader *r)
 {
-    r->w.p = r->keyword;
-    return obj_bad_word(&r->w, "free-form geometry:", "polygons (convert curves and surfaces to a mesh first)");
+    if (!r->o->free_form++)
+        r->o->free_form_line = r->w.line;
+    return pass_over(r);
 }
 
 static int refuse_call(reader *r)
@@ -343,7 +332,7 @@ static const statement statements[] = {
     {"l", read_line},
     {"p", read_point},
     {"vp cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech bsp bzp cdc cdp res",
-     refuse_free_form},
+     skip_free_form},
     {"call csh", refuse_call},
 };
 

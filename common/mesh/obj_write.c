@@ -24,6 +24,30 @@ void obj_free(obj *o)
     *o = (obj){0};
 }
 
+void obj_notes(const obj *o, notes *warnings)
+{
+    if (o->free_form)
+        notes_add(warnings,
+                  "%s:%lld: free-form curves and surfaces are skipped, %lld line%s from here on; to have them, convert "
+                  "them to "
+                  "polygons",
+                  o->name, (long long)o->free_form_line, (long long)o->free_form, o->free_form == 1 ? "" : "s");
+}
+
+void obj_box(const obj *o, double low[3], double high[3])
+{
+    for (int a = 0; a < 3; a++) {
+        low[a] = INFINITY;
+        high[a] = -INFINITY;
+    }
+    for (int64_t i = 0; i < (o->corners ? o->corners : o->vertices); i++)
+        for (int a = 0; a < 3; a++) {
+            double x = o->position[3 * (o->corners ? o->corner_vertex[i] : i) + a];
+            low[a] = fmin(low[a], x);
+            high[a] = fmax(high[a], x);
+        }
+}
+
 int64_t obj_line_number(const obj *o, int64_t offset)
 {
     int64_t line = 1;
@@ -73,16 +97,11 @@ static void write_joined(const char *from, const char *to, out *sink)
  * it. Of the vertices that something uses, if any is. */
 static int digits_of(const obj *o)
 {
-    double extent = 0, farthest = 0;
+    double extent = 0, farthest = 0, low[3], high[3];
+    obj_box(o, low, high);
     for (int a = 0; a < 3; a++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int64_t i = 0; i < (o->corners ? o->corners : o->vertices); i++) {
-            double x = o->position[3 * (o->corners ? o->corner_vertex[i] : i) + a];
-            low = fmin(low, x);
-            high = fmax(high, x);
-            farthest = fmax(farthest, fabs(x));
-        }
-        extent = fmax(extent, high - low);
+        extent = fmax(extent, high[a] - low[a]);
+        farthest = fmax(farthest, fmax(-low[a], high[a]));
     }
     int digits = 9;
     while (extent < farthest && digits < 17) {

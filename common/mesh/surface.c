@@ -1,5 +1,6 @@
 #include "mesh/surface.h"
 
+#include "base/chars.h"
 #include "model/known.h"
 
 #include <inttypes.h>
@@ -188,8 +189,8 @@ static bool matches(const char *name, size_t n, const char *pattern)
 {
     size_t m = strlen(pattern);
     if (m && pattern[m - 1] == '*')
-        return n >= m - 1 && !strncasecmp(name, pattern, m - 1);
-    return n == m && !strncasecmp(name, pattern, m);
+        return chars_means(pattern, m - 1, name, n, CHARS_ANY_CASE | CHARS_BEGINS);
+    return chars_means(pattern, m, name, n, CHARS_ANY_CASE);
 }
 
 bool surface_in_group(const char *names, const char *pattern)

@@ -1,5 +1,6 @@
 #include "model/materials.h"
 
+#include "base/chars.h"
 #include "base/keyfile.h"
 #include "base/mem.h"
 #include "base/near.h"
@@ -306,7 +307,7 @@ int32_t materials_find(const model *m, const char *name)
 {
     const model_array *a = model_find(m, "material.name");
     for (int64_t i = 0; a && i < a->rows; i++)
-        if (!strcmp(a->str[i], name))
+        if (chars_mean(name, a->str[i]))
             return (int32_t)i;
     return -1;
 }

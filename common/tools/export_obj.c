@@ -1,5 +1,6 @@
 #include "tools/export_obj.h"
 
+#include "base/chars.h"
 #include "base/mem.h"
 
 #include <inttypes.h>
@@ -35,13 +36,27 @@ static void put_vertex(const writer *w, int64_t point)
     out_format(w->to, "v %.9g %.9g %.9g\n", at[0], at[1], at[2]);
 }
 
-/* A group's name as an OBJ can hold it: blanks and control characters would end it. */
+/* Whether a byte would end a name, or the line. */
+static bool ends_name(int byte)
+{
+    return byte == 0 || byte == ' ' || byte == '\t' || byte == '\n' || byte == '\r';
+}
+
+/* A group's name in the bytes of the OBJ that it came from. Blanks and control characters of names that came from elsewhere would end
+ * it, and a backslash at its end would join the next line to it. */
 static void put_group(const char *name, bool several, out *to)
 {
     out_text(to, "g ");
     for (const char *p = *name ? name : "unnamed"; *p; p++) {
+        const int byte = chars_escaped(p);
+        const char own = (char)byte;
         bool blank = (unsigned char)*p <= ' ' && !(several && *p == ' ');
-        out_write(to, blank || *p == 0x7f ? "_" : p, 1);
+        if (byte >= 0 && !ends_name(byte)) {
+            out_write(to, &own, 1);
+            p += 3;
+        } else {
+            out_write(to, blank || *p == 0x7f || (*p == '\\' && !p[1]) ? "_" : p, 1);
+        }
     }
     out_text(to, "\n");
 }

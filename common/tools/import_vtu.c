@@ -417,7 +417,7 @@ static int read_all(reader *r)
 int import_vtu(import_mesh *m, in *s, const import_wishes *wishes, notes *warnings, err *e)
 {
     char *text = NULL;
-    int64_t size = in_all(s, &text, e);
+    int64_t size = in_peek(s, e) == -2 ? -1 : in_all(s, &text, e); /* a byte order mark goes */
     if (size < 0)
         return -1;
     reader r = {.m = m,

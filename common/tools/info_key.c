@@ -1,5 +1,6 @@
 #include "tools/info_key.h"
 
+#include "base/chars.h"
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
@@ -62,7 +63,7 @@ static int64_t exact_row(const model *m, const char *axis, const char *name)
     if (!a || a->type != MODEL_STR || a->columns != 1)
         return -1;
     for (int64_t i = 0; i < (of ? of->rows : a->rows); i++)
-        if (!strcmp(a->str[of ? of->i32[i] : i], name))
+        if (chars_mean(name, a->str[of ? of->i32[i] : i]))
             return i;
     return -1;
 }

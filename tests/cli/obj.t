@@ -72,10 +72,8 @@ bad "a number too large" 5 "'1e400'" 'v 0 1e400 3\n'
 bad "a decimal comma" 5 "'0,5'" 'v 0,5 0 3\n'
 bad "two numbers" 5 "a vertex of 2 numbers" 'v 0 1\n'
 bad "an unknown statement" 7 "'vvv'" '# c\n\nvvv 1 2 3\n'
-bad "a curve" 5 "free-form geometry: 'cstype'" 'cstype bezier\n'
 bad "a NUL byte" 5 "NUL" 'f 1 2 3\0000\n'
 bad "a CR within a line" 5 "CR" 'f 1 2 3\rf 1 2 3\n'
-bad "a name that is not UTF-8" 5 "UTF-8" 'g \0377\n'
 bad "an error after continuations" 7 "'x'" 'f 1 \\\n2 \\\nx\n'
 head -c 3000 /bin/ls >"$T/bad.obj"
 fails 1 "refused: a program" "^bind: .*/bad\\.obj:[0-9]+: " sinew bind -q "$T/bad.obj" <"$T/model"

@@ -233,13 +233,9 @@ static void test_nonsense(void)
         {"V 1 2 3\n", "m.obj:1: unknown statement 'V'"},
         {"ply\nformat ascii 1.0\n", "m.obj:1: unknown statement 'ply'"},
         {"\x89PNG\r\n\x1a\n", "m.obj:1: unknown statement '?PNG'"},
-        {"v 1 2 3\ncurv 0 1 1 2\n", "m.obj:2: free-form geometry: 'curv'"},
         {SQUARE "usemtl a # b\\\nusemtl c \\\n d\nx\n", "m.obj:8: unknown statement 'x'"},
-        {"v 1 2 3\n \\\n curv 0 1 1 2\n", "m.obj:3: free-form geometry: 'curv'"},
-        {"v 1 2 3\nend\n", "m.obj:2: free-form geometry: 'end'"},
+        {"v 1 2 3\n \\\n curv 0 1 1 2\nx\n", "m.obj:4: unknown statement 'x'"},
         {"call other.obj\n", "m.obj:1: a statement that runs other files: 'call'"},
-        {"g \xff\xfe\n", "m.obj:1: not a name in UTF-8: '?\?'"},
-        {"g a\x1b[1m\n", "m.obj:1: not a name in UTF-8: 'a?[1m'"},
         {"v 0 0 0\rv 1 0 0\rv 1 1 0\r", "m.obj:1: a CR within the line"},
         {"v 0 0 0\nv 1 0 0\rv 1 1 0\n", "m.obj:2: a CR within the line"},
     };
@@ -257,6 +253,42 @@ static void test_nonsense(void)
     obj o;
     err e;
     ok(read_bytes("v 1 2 3\nv\0 1", 12, &o, &e) == -1 && !strncmp(e.text, "m.obj:2: a NUL byte", 19), "refused: NUL");
+}
+
+/* Curves and surfaces beside polygons, as a modeller writes them: skipped, counted, and written again to the byte. */
+static void test_free_form(void)
+{
+    static const char text[] = SQUARE "# a patch\nvp 0.5 1\ncstype rat bspline\ndeg 3 3\nsurf 0 1 0 1 1 2 \\\n3 4\n"
+                                      "parm u 0 0 \\\n 1 1\nparm v 0 0 1 1\nend\nf 1 2 3\n";
+    notes n = {0};
+    obj o = read_good(text), plain = read_good(SQUARE "f 1 2 3\n");
+    ok(o.free_form == 7 && o.free_form_line == 6, "free-form lines: %d, from line %d on", (int)o.free_form,
+       (int)o.free_form_line);
+    ok(o.faces == 1 && o.vertices == 4 && corners_are(&o, 0, "0 1 2"), "polygons beside them are read");
+    ok(writes(&o, o.position, o.normal, text), "written again to the byte");
+    obj_notes(&plain, &n);
+    ok(!n.count, "nothing is said where there are none");
+    obj_notes(&o, &n);
+    ok(n.count == 1 && !strncmp(n.line[0], "m.obj:6: free-form curves and surfaces are skipped, 7 lines", 58),
+       "said once: %s", n.count ? n.line[0] : "");
+    notes_free(&n);
+    obj_free(&o);
+    obj_free(&plain);
+}
+
+/* Names of any bytes, each its own. */
+static void test_names(void)
+{
+    static const char text[] =
+        "v 0 0 0\ng caf\xe9 \x1b[1m\np 1\ng caf\xc3\xa9\np 1\no a\\xe9 b\np 1\ng caf\\xe9\np 1\n";
+    obj o = read_good(text);
+    ok(o.groups == 4 && !strcmp(group_of(&o, 0), "caf\\xe9 \\x1b[1m"), "Latin-1 and control characters: %s",
+       group_of(&o, 0));
+    ok(!strcmp(group_of(&o, 1), "caf\xc3\xa9"), "UTF-8 stays");
+    ok(!strcmp(group_of(&o, 2), "a\\x5cxe9_b") && !strcmp(group_of(&o, 3), "caf\\x5cxe9"),
+       "what only looks like a byte is another name");
+    ok(writes(&o, o.position, o.normal, text), "written again in its own bytes");
+    obj_free(&o);
 }
 
 /* Cut anywhere, an OBJ is read or refused, and what was read can be written. */
@@ -290,6 +322,8 @@ int main(void)
     test_comments();
     test_gzip();
     test_nonsense();
+    test_free_form();
+    test_names();
     test_cuts();
     return done_testing();
 }
