@@ -1,8 +1,10 @@
-/* What voxelise --check says of a surface, as text for people: one thing a line, in two columns. Nothing is kept.
+/* What voxelise --check says of a surface, as text for people: one thing a line, in two columns; and what any run says of the size
+ * of all. Nothing is kept.
  */
 #ifndef SINEW_REPORT_H
 #define SINEW_REPORT_H
 
+#include "base/num.h"
 #include "base/out.h"
 #include "voxelise/check_surfaces.h"
 #include "voxelise/volumes.h"
@@ -15,5 +17,11 @@ void report_volume(out *o, const volumes_volume *v, const check_result *r, int64
 
 /* What is to be feared of it. what: "surface". */
 void report_warn(notes *n, const char *what, const char *name, const check_result *r);
+
+/* The sides of the box about all, in the OBJ's unit. */
+void report_sides(const obj *o, double side[3]);
+
+/* Notes an OBJ that is larger than any body, beyond 3 m, or smaller than 3 mm in this unit, with the unit that it may be in. */
+void report_size(notes *n, const obj *o, num_unit unit);
 
 #endif

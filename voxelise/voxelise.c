@@ -152,16 +152,8 @@ static int read_surface(job *j, err *e)
  * for the user to know. */
 static int ask_for_unit(const obj *o, err *e)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, d[3];
-    for (int64_t f = 0; f < o->faces; f++)
-        for (int64_t c = o->face_start[f]; c < o->face_start[f + 1]; c++)
-            for (int a = 0; a < 3; a++) {
-                double x = o->position[3 * (int64_t)o->corner_vertex[c] + a];
-                low[a] = fmin(low[a], x);
-                high[a] = fmax(high[a], x);
-            }
-    for (int a = 0; a < 3; a++)
-        d[a] = high[a] - low[a];
+    double d[3];
+    report_sides(o, d);
     return err_usage(
         e,
         "%s: is in a unit that only you know: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "
@@ -345,6 +337,9 @@ static double enclosed(const job *j)
 static void say_plan(job *j, const model *m)
 {
     const grid *g = &j->g;
+    double d[3];
+    report_sides(&j->surface, d);
+    tool_say(j->t, "surfaces of %.4g x %.4g x %.4g %s", d[0], d[1], d[2], num_unit_name(j->unit));
     tool_say(j->t, "lattice of %lld x %lld x %lld cells, %g x %g x %g %s each", (long long)grid_cells(g, 0),
              (long long)grid_cells(g, 1), (long long)grid_cells(g, 2), g->spacing[0], g->spacing[1], g->spacing[2],
              num_unit_name(j->unit));
@@ -476,6 +471,7 @@ static int prepare(job *j, model *m, err *e)
     if (!j->unit)
         return ask_for_unit(&j->surface, e);
     obj_notes(&j->surface, &j->warnings);
+    report_size(&j->warnings, &j->surface, j->unit);
     clock = say_time(j, "reading", clock);
     int threads = tool_threads(j->t, e);
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;

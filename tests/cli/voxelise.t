@@ -104,4 +104,24 @@ is "$(voxelise --unit mm -s 2 --threads 3 "$T/cube.obj" 2>/dev/null | sinew info
 vox --unit mm -s 2 "$T/cube.obj"
 is "$(cells | awk '{ n = ($3 * 3 + $2) * 3 + $1; if (n != NR - 1) bad = 1 } END { print NR, bad + 0 }')" "27 0" "elements in k, j, i order"
 is "$(awk '/^array element.node/ { getline; print }' "$T/m")" "0 1 5 4 16 17 21 20" "nodes in VTK order"
+
+# The size of all is said, and warned of beyond 3 m and below 3 mm, with the unit that it may be in.
+# sized SIDE UNIT: a cube of that side in that unit; what is said of its size, and the warnings about it.
+sized() {
+    awk -v s="$1" '/^v / { print "v", ($2 + 10) / 20 * s, ($3 + 10) / 20 * s, ($4 + 20) / 20 * s; next } { print }' tests/cli/cube.obj >"$T/sized.obj"
+    voxelise --unit "$2" -n 4 -o "$T/sized.sinew" "$T/sized.obj" 2>"$T/said" || diag "voxelise fails"
+    sed -n 's/^voxelise: surfaces of //p; s/^voxelise: warning: .*sized.obj is //p' "$T/said" | tr '\n' ':'
+}
+is "$(sized 142 mm)" "142 x 142 x 142 mm:" "the size is said, in the OBJ's unit"
+is "$(sized 142 m)" "142 x 142 x 142 m:142 x 142 x 142 m with --unit m, beyond 3 m; with --unit mm it is 0.142 x 0.142 x 0.142 m:" \
+    "a face of 142 m is warned of"
+is "$(sized .142 mm)" "0.142 x 0.142 x 0.142 mm:0.000142 x 0.000142 x 0.000142 m with --unit mm, below 3 mm; with --unit m it is 0.142 x 0.142 x 0.142 m:" \
+    "and one of .14 mm"
+is "$(sized 3 m)$(sized 3 mm)" "3 x 3 x 3 m:3 x 3 x 3 mm:" "3 m and 3 mm are not"
+is "$(sized 3.001 m)" "3.001 x 3.001 x 3.001 m:3.001 x 3.001 x 3.001 m with --unit m, beyond 3 m; with --unit mm it is 0.003001 x 0.003001 x 0.003001 m:" \
+    "beyond them they are"
+is "$(sized 1e9 mm)" "1e+09 x 1e+09 x 1e+09 mm:1e+06 x 1e+06 x 1e+06 m with --unit mm, beyond 3 m; no other unit makes a body of it:" \
+    "no unit helps there"
+voxelise -q --unit m -n 4 -o "$T/sized.sinew" "$T/sized.obj" 2>"$T/said"
+is "$(grep -c 'surfaces of' "$T/said") $(grep -c 'beyond 3 m' "$T/said")" "0 1" "-q keeps the warning"
 done_testing
