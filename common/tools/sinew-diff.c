@@ -15,7 +15,7 @@ struct options {
 
 static const opt option_table[] = {
     {0, "abs", "[ARRAY=]A", OPT_LIST, offsetof(struct options, abs), 0, 0, NULL, 0,
-     "equal where |a - b| <= A, in the array's unit"},
+     "equal where |a - b| <= A, in the array's unit, or a length"},
     {0, "rel", "[ARRAY=]R", OPT_LIST, offsetof(struct options, rel), 0, 0, NULL, 0,
      "equal where |a - b| <= R max(|a|, |b|)"},
     {0, "only", "ARRAY,...", OPT_LIST, offsetof(struct options, only), 0, 0, NULL, 0, "compare these arrays only"},
@@ -32,11 +32,11 @@ static const opt_tool table = {
 
 enum { SAME = 0, DIFFERENT = 1, TROUBLE = 2, RULES = 64 };
 
-/* "ARRAY=NUMBER" or "NUMBER" (name NULL: every array of floats), or a name of --only. */
+/* "ARRAY=NUMBER" or "NUMBER" (name "": every array of floats; those that are lengths, where it has a unit), or a name of --only. */
 typedef struct rule {
     char name[MODEL_NAME];
-    double value;
-    bool seen; /* an array of this name was met */
+    num_length value; /* unit 0: in the array's */
+    bool seen;        /* an array of this name was met */
 } rule;
 
 typedef struct rules {
@@ -59,7 +59,7 @@ typedef struct finding {
     double abs, rel;     /* the largest differences; nan where a value has no difference to another */
 } finding;
 
-static int add_rule(rules *r, const char *name, size_t length, double value, err *e)
+static int add_rule(rules *r, const char *name, size_t length, num_length value, err *e)
 {
     if (r->count == RULES || length >= MODEL_NAME)
         return err_usage(e, "too many arrays or too long a name; expected at most %d", RULES);
@@ -69,13 +69,16 @@ static int add_rule(rules *r, const char *name, size_t length, double value, err
     return 0;
 }
 
-static int read_tolerances(const opt_list *list, const char *option, rules *r, err *e)
+/* lengths: a unit is taken. */
+static int read_tolerances(const opt_list *list, const char *option, bool lengths, rules *r, err *e)
 {
     for (int i = 0; i < list->count; i++) {
-        const char *text = list->value[i], *equals = strrchr(text, '=');
-        double value;
-        if (num_double(equals ? equals + 1 : text, &value) || value < 0 || equals == text)
-            return err_usage(e, "%s '%s': expected a number from 0 on, or ARRAY=NUMBER", option, text);
+        const char *text = list->value[i], *equals = strrchr(text, '='), *number = equals ? equals + 1 : text;
+        num_length value = {0};
+        if ((lengths ? num_length_of(number, &value) : num_double(number, &value.value)) || value.value < 0 ||
+            equals == text)
+            return err_usage(e, "%s '%s': expected a number from 0 on%s, or ARRAY=NUMBER", option, text,
+                             lengths ? ", which may have a unit of length" : "");
         if (add_rule(r, text, equals ? (size_t)(equals - text) : 0, value, e))
             return -1;
     }
@@ -89,26 +92,39 @@ static int read_only(const opt_list *list, rules *r, err *e)
             size_t n = strcspn(p, ",");
             if (!n)
                 return err_usage(e, "--only '%s': expected names of arrays between commas", list->value[i]);
-            if (add_rule(r, p, n, 0, e))
+            if (add_rule(r, p, n, (num_length){0}, e))
                 return -1;
             p = p[n] ? p + n + 1 : NULL;
         }
     return 0;
 }
 
-/* The rule for the array: its own, else (tolerances) the last one for all. NULL: none. */
-static const rule *rule_for(rules *r, const char *name)
+/* The rule for the array: its own, else (tolerances) the last one for all that its unit allows. NULL: none. */
+static const rule *rule_for(rules *r, const model_array *a)
 {
     const rule *general = NULL;
     for (int i = r->count; i-- > 0;) {
-        if (!strcmp(r->v[i].name, name)) {
+        if (!strcmp(r->v[i].name, a->name)) {
             r->v[i].seen = true;
             return &r->v[i];
         }
-        if (!r->v[i].name[0] && !general)
+        if (!r->v[i].name[0] && !general && (!r->v[i].value.unit || num_unit_of(a->unit)))
             general = &r->v[i];
     }
     return general;
+}
+
+/* The tolerance in the array's unit; 0 without a rule. -1: e filled. */
+static int tolerance(const rule *r, const model_array *a, double *to, err *e)
+{
+    const num_unit own = num_unit_of(a->unit);
+    *to = 0;
+    if (r && r->value.unit && !own)
+        return err_usage(e, "--abs '%s=%g%s': its unit is %s, not a length; expected a number in that unit", a->name,
+                         r->value.value, num_unit_name(r->value.unit), a->unit);
+    if (r)
+        *to = r->value.unit ? num_length_in(r->value, own, own) : r->value.value;
+    return 0;
 }
 
 /* Begins a line of the report. */
@@ -263,13 +279,16 @@ static bool alike(diff *d, const model_array *a, const model_array *b)
 static int compare_array(diff *d, const model_array *a, const model_array *b, err *e)
 {
     const model_array *one = a ? a : b;
-    if (d->only.count && !rule_for(&d->only, one->name))
+    double most_abs, most_rel;
+    if (d->only.count && !rule_for(&d->only, one))
         return 0;
-    const rule *most_abs = rule_for(&d->abs, one->name), *most_rel = rule_for(&d->rel, one->name);
+    const rule *by_abs = rule_for(&d->abs, one), *by_rel = rule_for(&d->rel, one);
     bool floats = one->type == MODEL_F32 || one->type == MODEL_F64;
-    if (!floats && ((most_abs && most_abs->name[0]) || (most_rel && most_rel->name[0])))
+    if (!floats && ((by_abs && by_abs->name[0]) || (by_rel && by_rel->name[0])))
         return err_set(e, NULL, 0, "%s is of type %s: a tolerance is for f32 and f64", one->name,
                        model_type_name(one->type));
+    if (tolerance(by_abs, one, &most_abs, e) || tolerance(by_rel, one, &most_rel, e))
+        return -1;
     if (!a || !b) {
         say_texts(d, "array", one->name, a ? "" : NULL, b ? "" : NULL);
         return 0;
@@ -277,7 +296,7 @@ static int compare_array(diff *d, const model_array *a, const model_array *b, er
     if (!alike(d, a, b))
         return 0;
     d->compared++;
-    finding f = compare_rows(a, b, most_abs ? most_abs->value : 0, most_rel ? most_rel->value : 0);
+    finding f = compare_rows(a, b, most_abs, most_rel);
     if (f.rows)
         say_finding(d, a, b, &f);
     return 0;
@@ -314,7 +333,7 @@ static bool counts(diff *d, const frame *f)
 {
     bool any = !d->only.count;
     for (int i = 0; i < f->arrays.count; i++)
-        any = rule_for(&d->only, f->arrays.v[i].name) || any;
+        any = rule_for(&d->only, &f->arrays.v[i]) || any;
     return any;
 }
 
@@ -391,7 +410,7 @@ static int run_tool(int argc, char **argv)
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (read_tolerances(&o.abs, "--abs", &d.abs, &e) || read_tolerances(&o.rel, "--rel", &d.rel, &e) ||
+    if (read_tolerances(&o.abs, "--abs", true, &d.abs, &e) || read_tolerances(&o.rel, "--rel", false, &d.rel, &e) ||
         read_only(&o.only, &d.only, &e))
         goto out;
     if (open_both(&d, argv + 1, &e) || !(d.to = out_memory(&e)) || compare(&d, &e))

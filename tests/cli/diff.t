@@ -115,4 +115,20 @@ differs "nothing and something" "^axis node: only in $small$" "$T/empty" "$small
 is "$(sinew diff -v "$small" "$small" 2>&1)" "sinew-diff: $(($(grep -c '^array' "$small"))) arrays compared; frames: 2 and 2" \
     "-v says how much was compared"
 
+# A length with its unit, for arrays of lengths.
+awk '/^array node.displacement/ && n++ == 0 { print; getline; $1 = $1 + 0.0009; print; next } /^crc/ { next } { print }' "$small" >"$T/b"
+sed '/^crc/d' "$small" >"$T/a"
+differs "a displacement that is .9 mm off" "^frame 1: node.displacement: 1 of 12 rows" "$T/a" "$T/b"
+check "within 1 mm" sinew diff --abs node.displacement=1mm "$T/a" "$T/b"
+check "within .1 cm" sinew diff --abs node.displacement=.1cm "$T/a" "$T/b"
+differs "not within 800 um" "^frame 1: node.displacement: 1 of 12 rows" --abs node.displacement=800um "$T/a" "$T/b"
+check "1 mm for every array of lengths" sinew diff --abs 1mm "$T/a" "$T/b"
+edited 's/^3000$/3000.0005/'
+differs "which says nothing of those that are none" "^material.E" --abs 1mm "$small" "$T/b"
+check "these may have a number beside it" sinew diff --abs 1e-3 --abs 1um "$small" "$T/b"
+fails 2 "a length for what is none" "--abs 'material.E=1mm': its unit is Pa, not a length; expected a number" \
+    sinew diff --abs material.E=1mm "$small" "$T/b"
+fails 2 "a unit for a share" "--rel 'node.displacement=1mm': expected a number" sinew diff --rel node.displacement=1mm "$small" "$T/b"
+fails 2 "no unit of ours" "--abs 'node.displacement=1ft': expected" sinew diff --abs node.displacement=1ft "$small" "$T/b"
+fails 2 "a length below 0" "--abs 'node.displacement=-1mm': expected" sinew diff --abs node.displacement=-1mm "$small" "$T/b"
 done_testing
