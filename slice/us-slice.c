@@ -231,6 +231,19 @@ static int choose_probe(job *j, slice_probe *p, err *e)
     return bad ? -1 : 0;
 }
 
+/* Where pixels are not square, in two sides that were asked for; or in one that could only be 2. */
+static void say_scale(const job *j, slice_size asked)
+{
+    const double *pixel = j->view.pixel, off = fabs(pixel[0] - pixel[1]) / fmin(pixel[0], pixel[1]);
+    const bool both = asked.columns && asked.rows;
+    char remedy[40] = "more pixels are";
+    if (both)
+        snprintf(remedy, sizeof remedy, "--size %d is", (int)asked.columns);
+    if (off > (both ? .01 : .2))
+        tool_say(j->t, "pixels are %.4g mm wide and %.4g mm high: the image is not to scale; %s", 1e3 * pixel[0],
+                 1e3 * pixel[1], remedy);
+}
+
 static int make_view(job *j, err *e)
 {
     const struct options *o = j->o;
@@ -239,10 +252,7 @@ static int make_view(job *j, err *e)
     if (slice_size_of(&size, o->size, e) || choose_probe(j, &p, e) ||
         slice_view_make(&j->view, &p, size, metres(&o->depth, .05), metres(&o->width, 0), e))
         return -1;
-    const double *pixel = j->view.pixel;
-    if (size.columns && size.rows && fabs(pixel[0] - pixel[1]) > .01 * fmin(pixel[0], pixel[1]))
-        tool_say(j->t, "pixels are %.4g mm wide and %.4g mm high: the image is not to scale; --size %d is",
-                 1e3 * pixel[0], 1e3 * pixel[1], (int)j->view.size.columns);
+    say_scale(j, size);
     return 0;
 }
 

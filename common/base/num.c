@@ -280,7 +280,7 @@ char *num_size_text(double bytes, char *to)
     int prefix = 0;
     for (; bytes >= 999.5 && size_prefixes[prefix + 1]; prefix++)
         bytes /= 1000;
-    snprintf(to, NUM_TEXT, prefix ? "%.3g %cB" : "%.0f bytes", bytes, size_prefixes[prefix]);
+    snprintf(to, NUM_TEXT, prefix ? "%.3g %cB" : "%.0f B", bytes, size_prefixes[prefix]);
     return to;
 }
 

@@ -26,7 +26,7 @@ def run(method, folder, mesh, volume, under_way):
     os.mkfifo(fifo)
     solver = subprocess.Popen([bin + "/msds-run", "-q", "--method", method, "--probe", "linear:4cm,1cm", "--poses", fifo, "--threads", threads],
                               stdin=open(mesh, "rb"), stdout=subprocess.PIPE)
-    slicer = subprocess.Popen([bin + "/us-slice", "-q", "--depth", "8cm", "--width", "16cm", "--threads", threads, volume],
+    slicer = subprocess.Popen([bin + "/us-slice", "--size", "512x512", "-q", "--depth", "8cm", "--width", "16cm", "--threads", threads, volume],
                               stdin=solver.stdout, stdout=subprocess.PIPE)
     solver.stdout.close()
     sent, took = [], []

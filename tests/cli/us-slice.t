@@ -133,6 +133,8 @@ is "$(sides "$T/flat.pgm") $(grep -c 'pixels are 0.07812 mm wide and 0.09766 mm 
     "512 512 1" "two sides are taken as they are, and said"
 us-slice --rigid --poses "$T/zero.tum" --size 512x640 -o "$T/flat.pgm" "$T/flat.nrrd" 2>"$T/said"
 is "$(grep -c 'to scale' "$T/said")" 0 "unless they are to scale"
+us-slice --rigid --poses "$T/zero.tum" --width 1m --depth 1um -o "$T/flat.pgm" "$T/flat.nrrd" 2>"$T/said"
+is "$(sides "$T/flat.pgm") $(grep -c 'wide and 0.0005 mm high: the image is not to scale; more pixels are' "$T/said")" "512 2 1" "nor are rows that could only be two"
 fails 2 "a side of too many" 'an image of 1 x 9000 mm, in pixels that are square, has a side of 4608000; expected at most 16384' \
     us-slice --rigid --poses "$T/zero.tum" --width 1mm --depth 9m "$T/flat.nrrd"
 # phys FILE: pixels a metre along x and y, and the unit, of a PNG's chunk pHYs.

@@ -142,7 +142,7 @@ static void test_sizes(void)
         int64_t got = 0;
         ok(num_size_of(bad[i], &got) && !got, "'%s' is no size", bad[i]);
     }
-    ok(!strcmp(num_size_text(999, text), "999 bytes"), "%s", text);
+    ok(!strcmp(num_size_text(999, text), "999 B"), "%s", text);
     ok(!strcmp(num_size_text(999.6, text), "1 kB"), "%s", text);
     ok(!strcmp(num_size_text(2348e6, text), "2.35 GB"), "%s", text);
     ok(!strcmp(num_size_text(1e25, text), "1e+10 PB"), "%s", text);
