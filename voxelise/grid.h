@@ -46,6 +46,19 @@ static inline int64_t grid_cells(const grid *g, int axis)
 }
 double grid_count(const grid *g);
 
+/* The longest side of a cell. */
+static inline double grid_longest(const grid *g)
+{
+    double side = g->spacing[0] > g->spacing[1] ? g->spacing[0] : g->spacing[1];
+    return side > g->spacing[2] ? side : g->spacing[2];
+}
+
+/* The centre of cell i, rounded; i may be between cells. */
+static inline double grid_place(const grid *g, int axis, double i)
+{
+    return g->origin[axis] + g->offset[axis] + (i + .5) * g->spacing[axis];
+}
+
 /* A coordinate from the corner of cell 0, rounded: within 2^-52 (|x - origin| + |offset|) of the exact one. */
 static inline double grid_local(const grid *g, int axis, double x)
 {

@@ -245,6 +245,8 @@ typedef struct drawing {
     int32_t low, high; /* cells along the ray where it can be crossed */
     bool planned;
     crossing_plane plane;
+    inside_crossing *take; /* NULL: bits are turned over */
+    void *context;
 } drawing;
 
 static void flip(uint64_t *words, int64_t bit)
@@ -273,15 +275,19 @@ static void draw_columns(drawing *d, int32_t row, int32_t from, int32_t to)
     const crossing_mesh *m = &d->test->mesh;
     const inside_part *p = d->part;
     int32_t first = p->box.low[m->column], past = p->box.high[m->ray];
-    if (d->low >= past)
+    if (!d->take && d->low >= past)
         return;
-    if (d->low == d->high) {
+    if (!d->take && d->low == d->high) {
         flip_all(inside_words(d->test, p, row, d->low), from - first, to - first);
         return;
     }
     if (!d->planned)
         d->plane = crossing_plane_of(m, d->triangle);
     d->planned = true;
+    if (d->take) {
+        d->take(d->context, (d->triangle - d->test->t.vertex) / 3, &d->plane, row, from, to);
+        return;
+    }
     uint64_t *layer = inside_words(d->test, p, row, p->box.low[m->ray]);
     for (int32_t i = from; i < to; i++) {
         int32_t at = crossing_plane_at(&d->plane, row, i);
@@ -303,8 +309,10 @@ static void draw_rows(drawing *d, int32_t from, int32_t to, const crossing_line 
 }
 
 /* The corners in order of their rows: the first to the last is an edge across all rows, which the middle one divides. */
-static void draw_triangle(const inside *test, const inside_part *p, int64_t triangle)
+static void draw_triangle(drawing *d, int64_t triangle)
 {
+    const inside *test = d->test;
+    const inside_part *p = d->part;
     const crossing_mesh *m = &test->mesh;
     const int32_t *t = test->t.vertex + 3 * triangle;
     int32_t v[3] = {t[0], t[1], t[2]}, row[3];
@@ -319,17 +327,19 @@ static void draw_triangle(const inside *test, const inside_part *p, int64_t tria
         row[a] = row[b], row[b] = rows;
     }
     inside_box box = box_of(test, triangle);
-    drawing d = {.test = test, .part = p, .triangle = t, .low = box.low[m->ray], .high = box.high[m->ray]};
+    d->triangle = t;
+    d->low = box.low[m->ray], d->high = box.high[m->ray];
+    d->planned = false;
     int32_t from = larger(row[0], p->box.low[m->row]), to = smaller(row[2], p->box.high[m->row]);
     int32_t middle = smaller(larger(row[1], from), to);
     crossing_line whole = crossing_line_of(m, v[0], v[2]);
     if (from < middle) {
         crossing_line line = crossing_line_of(m, v[0], v[1]);
-        draw_rows(&d, from, middle, &line, &whole);
+        draw_rows(d, from, middle, &line, &whole);
     }
     if (middle < to) {
         crossing_line line = crossing_line_of(m, v[1], v[2]);
-        draw_rows(&d, middle, to, &line, &whole);
+        draw_rows(d, middle, to, &line, &whole);
     }
 }
 
@@ -409,11 +419,23 @@ int inside_look(const inside *test, int64_t number, inside_slab *slab, err *e)
     int64_t i = test->start[number];
     for (int64_t n = 0; n < slab->parts; n++) {
         const inside_part *p = &slab->part[n];
+        drawing d = {.test = test, .part = p};
         for (; i < test->start[number + 1] && slab_volume(test, i) == (uint32_t)p->volume; i++)
-            draw_triangle(test, p, test->triangle[i]);
+            draw_triangle(&d, test->triangle[i]);
         run_along(test, p);
     }
     return 0;
+}
+
+void inside_cross(const inside *test, int64_t number, inside_crossing *take, void *context)
+{
+    inside_part part = {.volume = -1};
+    drawing d = {.test = test, .part = &part, .take = take, .context = context};
+    for (int64_t i = test->start[number]; i < test->start[number + 1]; i++) {
+        if (slab_volume(test, i) != (uint32_t)part.volume)
+            part = part_of(test, (int32_t)slab_volume(test, i), number);
+        draw_triangle(&d, test->triangle[i]);
+    }
 }
 
 void inside_slab_free(inside_slab *slab)

@@ -65,6 +65,13 @@ typedef struct inside_slab {
 int inside_look(const inside *test, int64_t number, inside_slab *slab, err *e);
 void inside_slab_free(inside_slab *slab);
 
+/* Takes the columns from <= i < to of a row, whose rays cross a triangle in this plane. */
+typedef void inside_crossing(void *context, int64_t triangle, const crossing_plane *plane, int32_t row, int32_t from,
+                             int32_t to);
+
+/* Gives every crossing in a slab, triangle after triangle; but for those beyond the lattice's last cell along the ray. */
+void inside_cross(const inside *test, int64_t number, inside_crossing *take, void *context);
+
 /* The words of one layer and cell along the ray, both within the part's box. */
 static inline uint64_t *inside_words(const inside *test, const inside_part *p, int64_t layer, int64_t along)
 {

@@ -295,3 +295,14 @@ int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const 
     free(w.layer);
     return status;
 }
+
+int64_t layers_at(const layers *l, const volumes *plan, int32_t volume)
+{
+    int64_t layer = volume - (lowest_volumes(plan) - l->layers);
+    return layer >= 0 && layer < l->layers ? layer : -1;
+}
+
+double layers_thickness(const layers *l, int64_t layer)
+{
+    return l->layer[layer].depth - (layer ? l->layer[layer - 1].depth : 0);
+}

@@ -29,4 +29,10 @@ void layers_free(layers *l);
  * lattice of voxels. */
 int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const grid *g, pool *threads, err *e);
 
+/* Of a plan that has the layers: which of them a volume is, or -1. */
+int64_t layers_at(const layers *l, const volumes *plan, int32_t volume);
+
+/* How thick one is, in the OBJ's unit. */
+double layers_thickness(const layers *l, int64_t layer);
+
 #endif

@@ -1,6 +1,7 @@
 #include "voxelise/report.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static void line(out *o, const char *what)
 {
@@ -95,8 +96,8 @@ void report_warn(notes *n, const char *what, const char *name, const check_resul
 
 /* ---- the size of all */
 
-static const double least = 3e-3,
-                    most = 3; /* m: the longest side of a body, or of a part of one that somebody models */
+static const double smallest = 3e-3,
+                    largest = 3; /* m: the longest side of a body, or of a part of one that somebody models */
 
 void report_sides(const obj *o, double side[3])
 {
@@ -113,7 +114,7 @@ static double in_metres(double length, num_unit unit)
 
 static bool fits(double side, num_unit unit)
 {
-    return in_metres(side, unit) >= least && in_metres(side, unit) <= most;
+    return in_metres(side, unit) >= smallest && in_metres(side, unit) <= largest;
 }
 
 /* The unit in which it would fit: that of most OBJ first. NULL: none. */
@@ -133,7 +134,7 @@ void report_size(notes *n, const obj *o, num_unit unit)
     double side = fmax(d[0], fmax(d[1], d[2]));
     if (!(side > 0) || fits(side, unit))
         return;
-    const char *name = better(side), *what = in_metres(side, unit) > most ? "beyond 3 m" : "below 3 mm";
+    const char *name = better(side), *what = in_metres(side, unit) > largest ? "beyond 3 m" : "below 3 mm";
     num_unit other = name ? num_unit_of(name) : unit;
     if (name)
         notes_add(n, "%s is %.4g x %.4g x %.4g m with --unit %s, %s; with --unit %s it is %.4g x %.4g x %.4g m",
@@ -142,4 +143,67 @@ void report_size(notes *n, const obj *o, num_unit unit)
     else
         notes_add(n, "%s is %.4g x %.4g x %.4g m with --unit %s, %s; no other unit makes a body of it", o->name,
                   in_metres(d[0], unit), in_metres(d[1], unit), in_metres(d[2], unit), num_unit_name(unit), what);
+}
+
+/* ---- gaps that elements fill */
+
+/* "2 mm", or "2 x 2 x 1 mm": the voxel's sides times a factor. */
+static void put_voxel(char *to, size_t size, const grid *g, double factor, num_unit unit)
+{
+    const double *h = g->spacing;
+    if (h[0] == h[1] && h[1] == h[2])
+        snprintf(to, size, "%.3g %s", h[0] * factor, num_unit_name(unit));
+    else
+        snprintf(to, size, "%.3g x %.3g x %.3g %s", h[0] * factor, h[1] * factor, h[2] * factor, num_unit_name(unit));
+}
+
+/* By centres one of them lies in every gap that is as wide as a voxel; by shares a voxel lies in it far enough not to be an element,
+ * wherever the gap is, from twice the rest of a share on. */
+static double voxel_for(double width, double least)
+{
+    return isnan(least) || least >= .5 ? width : width / (2 * (1 - least));
+}
+
+void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_unit unit)
+{
+    if (!found->count)
+        return;
+    const gap *middle = &found->gap[found->count / 2];
+    const char *name = num_unit_name(unit);
+    double at[3];
+    char voxel[100];
+    for (int a = 0; a < 3; a++)
+        at[a] = grid_place(g, a, middle->middle[a]);
+    put_voxel(voxel, sizeof voxel, g, voxel_for(middle->width, least), unit);
+    notes_add(n,
+              "elements fill gaps between surfaces in %lld place%s of a voxel's width, as at %.6g%s,%.6g%s,%.6g%s, "
+              "where the gap is "
+              "%.3g %s wide along %c: what it parts moves as one; voxels of at most %s part half of these places%s",
+              (long long)found->count, found->count == 1 ? "" : "s", at[0], name, at[1], name, at[2], name,
+              middle->width * g->spacing[middle->axis], name, 'x' + middle->axis, voxel,
+              isnan(least) ? "" : ", and so may a larger --least");
+}
+
+/* ---- layers */
+
+/* Each voxel is of a layer or not, by its centre alone. */
+void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, const voxels *x, const grid *g,
+                  num_unit unit)
+{
+    const double thickness = layers_thickness(l, layer), side = grid_longest(g);
+    const double kept = (double)x->count[volume].kept;
+    const char *name = num_unit_name(unit), *which = l->layer[layer].name;
+    char what[256] = "no centre is in it, and no element stands for it";
+    int64_t r = 0;
+    while (r < x->runs && x->run[r].volume != volume)
+        r++;
+    if (r < x->runs)
+        snprintf(
+            what, sizeof what,
+            "%.0f whole elements (%.3g %% of all) stand for it, in stripes where centres happen to be in it, the first "
+            "at %.6g%s,%.6g%s,%.6g%s",
+            kept, 100 * kept / (double)x->elements, grid_place(g, 0, x->run[r].from), name,
+            grid_place(g, 1, x->run[r].j), name, grid_place(g, 2, x->run[r].k), name);
+    notes_add(n, "layer %s is %.4g %s thick, less than a voxel of %.4g %s: %s; voxels of at most %.4g %s resolve it",
+              which, thickness, name, side, name, what, thickness, name);
 }

@@ -7,6 +7,8 @@
 #include "base/num.h"
 #include "base/out.h"
 #include "voxelise/check_surfaces.h"
+#include "voxelise/gaps.h"
+#include "voxelise/layers.h"
 #include "voxelise/volumes.h"
 
 /* unit: the name of the OBJ's. */
@@ -23,5 +25,12 @@ void report_sides(const obj *o, double side[3]);
 
 /* Notes an OBJ that is larger than any body, beyond 3 m, or smaller than 3 mm in this unit, with the unit that it may be in. */
 void report_size(notes *n, const obj *o, num_unit unit);
+
+/* Notes gaps that elements fill. least: of a voxel, the share from which on it is an element; NAN: by centres. */
+void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_unit unit);
+
+/* Notes a layer that is thinner than a voxel: the volume of that number. */
+void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, const voxels *x, const grid *g,
+                  num_unit unit);
 
 #endif

@@ -19,7 +19,7 @@ typedef struct work {
     int64_t *face;    /* polygons, volume after volume */
     int32_t *surface; /* polygons */
     int32_t *cut;     /* triangles of one polygon */
-    int64_t cut_capacity, vertex_capacity, volume_capacity;
+    int64_t cut_capacity, vertex_capacity, volume_capacity, rigid_capacity;
 } work;
 
 static void work_free(work *w)
@@ -109,30 +109,32 @@ static int report(const work *w, const char *volume, const closed_result *r, boo
                    volume, (long long)r->open, names);
 }
 
-static int add_triangle(work *w, int32_t volume, const int32_t *corner, const int32_t *cut, err *e)
+static int add_triangle(work *w, int32_t volume, bool rigid, const int32_t *corner, const int32_t *cut, err *e)
 {
     solids *s = w->s;
     if (mem_grow(&s->vertex, &w->vertex_capacity, 3 * (s->triangles + 1), sizeof *s->vertex, "triangles", e) ||
-        mem_grow(&s->volume, &w->volume_capacity, s->triangles + 1, sizeof *s->volume, "triangles", e))
+        mem_grow(&s->volume, &w->volume_capacity, s->triangles + 1, sizeof *s->volume, "triangles", e) ||
+        mem_grow(&s->rigid, &w->rigid_capacity, s->triangles + 1, sizeof *s->rigid, "triangles", e))
         return -1;
     for (int i = 0; i < 3; i++)
         s->vertex[3 * s->triangles + i] = w->place.of[corner[cut[i]]];
+    s->rigid[s->triangles] = rigid;
     s->volume[s->triangles++] = volume;
     return 0;
 }
 
-static int add_polygon(work *w, int32_t volume, int64_t face, err *e)
+static int add_polygon(work *w, int32_t volume, bool rigid, int64_t face, err *e)
 {
     static const int32_t whole[3] = {0, 1, 2};
     int64_t from = w->o->face_start[face], count = w->o->face_start[face + 1] - from;
     const int32_t *corner = &w->o->corner_vertex[from];
     if (count == 3)
-        return add_triangle(w, volume, corner, whole, e);
+        return add_triangle(w, volume, rigid, corner, whole, e);
     if (mem_grow(&w->cut, &w->cut_capacity, 3 * (count - 2), sizeof *w->cut, "triangles", e) ||
         triangulate(w->o->position, corner, count, w->cut, e))
         return -1;
     for (int64_t t = 0; t < count - 2; t++)
-        if (add_triangle(w, volume, corner, &w->cut[3 * t], e))
+        if (add_triangle(w, volume, rigid, corner, &w->cut[3 * t], e))
             return -1;
     return 0;
 }
@@ -153,7 +155,7 @@ static int build_volume(work *w, int32_t volume, bool allow_open, notes *warning
     int status = report(w, w->plan->volume[volume].name, &r, allow_open, warnings, e);
     for (int64_t i = 0; !status && i < p.polygons; i++)
         if (!r.drop[i])
-            status = add_polygon(w, volume, p.face[i], e);
+            status = add_polygon(w, volume, volumes_is_rigid(w->plan->surface[p.surface[i]].name), p.face[i], e);
     closed_free(&r);
     return status;
 }
@@ -190,6 +192,7 @@ void solids_free(solids *s)
     free(s->position);
     free(s->vertex);
     free(s->volume);
+    free(s->rigid);
     free(s->open);
     *s = (solids){0};
 }

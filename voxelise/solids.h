@@ -11,6 +11,7 @@ typedef struct solids {
     int64_t vertices;
     int32_t *vertex; /* triangles x 3 */
     int32_t *volume; /* triangles */
+    bool *rigid;     /* triangles: of a surface that is rigid by name */
     int64_t triangles;
     double low[3], high[3]; /* the box of the vertices */
     int64_t *open;          /* volumes: open edges */

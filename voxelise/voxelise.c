@@ -6,6 +6,7 @@
 #include "model/materials.h"
 #include "model/stage.h"
 #include "voxelise/build.h"
+#include "voxelise/gaps.h"
 #include "voxelise/layers.h"
 #include "voxelise/report.h"
 #include "voxelise/solids.h"
@@ -268,6 +269,21 @@ static int find_voxels(job *j, err *e)
                    j->g.spacing[0], j->g.spacing[1], j->g.spacing[2], num_unit_name(j->unit));
 }
 
+/* Where a volume is open, what is inside it is a guess. */
+static int find_gaps(job *j, err *e)
+{
+    gaps found;
+    for (int32_t v = 0; v < j->plan.volumes; v++)
+        if (j->solid.open[v])
+            return 0;
+    if (gaps_find(&found, &j->solid, &j->plan, &j->x, &j->g, j->threads, e))
+        return -1;
+    const double least = isnan(j->o->least) ? 0 : j->o->least;
+    report_gaps(&j->warnings, &found, &j->g, j->x.fraction ? least : NAN, j->unit);
+    gaps_free(&found);
+    return 0;
+}
+
 static double in_metres(const job *j, double length)
 {
     return num_length_in((num_length){length, j->unit}, j->unit, num_unit_of("m"));
@@ -314,7 +330,10 @@ static void warn_volume(job *j, int32_t v)
 {
     const volumes_volume *a = &j->plan.volume[v];
     const climb_count *n = &j->x.count[v];
-    if (n->inside == 0)
+    const int64_t layer = layers_at(&j->layer, &j->plan, v);
+    if (layer >= 0 && layers_thickness(&j->layer, layer) < grid_longest(&j->g))
+        report_layer(&j->warnings, &j->layer, layer, v, &j->x, &j->g, j->unit);
+    else if (n->inside == 0)
         notes_add(&j->warnings,
                   "%s has no voxel: no centre is inside it (it is thinner than a voxel, or off the lattice%s)", a->name,
                   j->o->box.count ? " or the --box" : "");
@@ -489,6 +508,9 @@ static int work(job *j, model *m, err *e)
     if (make_grid(j, e) || find_voxels(j, e))
         return -1;
     clock = say_time(j, "finding what is inside", clock);
+    if (find_gaps(j, e))
+        return -1;
+    clock = say_time(j, "finding gaps", clock);
     if (j->layer.layers) {
         if (layers_apply(&j->layer, &j->x, &j->plan, &j->surface, &j->g, j->threads, e))
             return -1;
