@@ -15,6 +15,7 @@ static size_t put_place(char *to, size_t size, const char *place, int64_t line)
     return n < 0 ? 0 : (size_t)n < size ? (size_t)n : size - 1;
 }
 
+SINEW_PRINTF(5, 0)
 static int fill(err *e, int status, const char *place, int64_t line, const char *format, va_list args)
 {
     if (e->status)
