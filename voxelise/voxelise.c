@@ -144,6 +144,8 @@ static int read_surface(job *j, err *e)
     in *source = in_open(j->path, e);
     int status = source ? obj_read(&j->surface, source, e) : -1;
     in_close(source);
+    if (!status)
+        obj_notes(&j->surface, &j->warnings);
     if (!status && j->surface.faces == 0)
         status = volumes_no_polygons(&j->surface, e);
     return status;
@@ -489,7 +491,6 @@ static int prepare(job *j, model *m, err *e)
         return -1;
     if (!j->unit)
         return ask_for_unit(&j->surface, e);
-    obj_notes(&j->surface, &j->warnings);
     report_size(&j->warnings, &j->surface, j->unit);
     clock = say_time(j, "reading", clock);
     int threads = tool_threads(j->t, e);
