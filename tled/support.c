@@ -102,13 +102,20 @@ static int32_t search_from_held(const tled_problem *p, search *s, unsigned compo
     return s->count ? s->steps[s->queue[s->count - 1]] : 0;
 }
 
+/* Of gravity's largest component: what is no more has come of turning it. */
+static const double rounding = 1e-9;
+
 /* The first element that gravity pulls along an axis, and that the search from nodes held along that axis did not reach; or -1. */
 static int64_t find_falling(const tled_problem *p, const search *s, int axis)
 {
     const script_curve *g = p->gravity < 0 ? NULL : &p->script->curve[p->gravity];
-    bool pulls = false;
-    for (int32_t i = 0; g && i < g->key_count; i++)
-        pulls |= p->script->value[3 * (g->key_first + i) + axis] != 0;
+    double along = 0, largest = 0;
+    for (int32_t i = 0; g && i < 3 * g->key_count; i++) {
+        const double value = fabs(p->script->value[3 * (int64_t)g->key_first + i]);
+        largest = fmax(largest, value);
+        along = i % 3 == axis ? fmax(along, value) : along;
+    }
+    const bool pulls = along > rounding * largest;
     for (int64_t i = 0; pulls && i < p->elements; i++)
         if (s->steps[p->element_node[8 * i]] < 0)
             return i;

@@ -181,6 +181,12 @@ echo '0 force 0,0,0 1 0,0,0.001' >>"$T/fall"
 fails 0 "a force may bear it" "warning: nothing holds the part of element 0" \
     tled-run --script "$T/fall" -g 0,0,-1 --rest 1 -o "$T/out" <"$T/slice"
 is "$(tled-run --script "$T/planes" -g 1,2,-9 -n 1 <"$T/slice" 2>&1 >/dev/null | grep -c warning)" 0 "what planes of symmetry hold does not fall"
+awk 'NR == 2 { next } { print }' "$T/planes" >"$T/level" # z and x alone are held
+is "$(tled-run --script "$T/level" -g 3,1e-17,-9 --rest 1 -o "$T/out" <"$T/slice" 2>&1 | grep -c 'nothing holds')" 0 \
+    "a component that is rounding beside the largest pulls nothing"
+fails 1 "1e-6 of it does" "nothing holds the part of element 0 .* along y" tled-run --script "$T/level" -g 3,1e-5,-9 --rest 1 -o "$T/left" <"$T/slice"
+printf '0 gravity 6e-16,1e-17,-9\n1 gravity 0,0,0\n' >>"$T/level"
+is "$(tled-run --script "$T/level" -n 1 -o "$T/out" <"$T/slice" 2>&1 | grep -c 'nothing holds')" 0 "nor in a script"
 
 # ---- Rest: a soft beam on a hard block that is squeezed, whose forces are far greater than the beam's weight.
 {
