@@ -35,10 +35,14 @@ static int add(likeness *l, const char *kind, const char *name, uint32_t crc, er
     return 0;
 }
 
+/* What --hourglass says already: models of runs before may lack it. */
+static const char kappa_key[] = "hourglass.kappa", kappa_part[] = "meta hourglass.kappa";
+
 static int add_model(likeness *l, const model *m, err *e)
 {
     for (int i = 0; i < m->metas; i++)
-        if (add(l, "meta", m->meta[i].key, checksum_add(0, m->meta[i].value, strlen(m->meta[i].value)), e))
+        if (strcmp(m->meta[i].key, kappa_key) != 0 &&
+            add(l, "meta", m->meta[i].key, checksum_add(0, m->meta[i].value, strlen(m->meta[i].value)), e))
             return -1;
     for (int i = 0; i < m->arrays.count; i++) {
         const item it = {.kind = ITEM_ARRAY, .array = m->arrays.v[i]};
@@ -53,13 +57,15 @@ static int add_number(likeness *l, const char *name, double value, err *e)
     return add(l, name, "", checksum_add(0, &value, sizeof value), e);
 }
 
+static const char end_part[] = "--time to its end"; /* of a -t that ends between two steps */
+
 static int add_numbers(likeness *l, const likeness_run *run, err *e)
 {
     const run_setup *r = run->setup;
-    return (isfinite(r->end) && add_number(l, "--time to its end", r->end, e)) ||
-                   add_number(l, "--every", r->every, e) || add_number(l, "--dt", r->rate, e) ||
-                   add_number(l, "--damping", r->damping, e) || add_number(l, "--rest", r->rest, e) ||
-                   add_number(l, "--time", (double)r->steps, e) || add_number(l, "--hourglass", run->p->kappa, e) ||
+    return (isfinite(r->end) && add_number(l, end_part, r->end, e)) || add_number(l, "--every", r->every, e) ||
+                   add_number(l, "--dt", r->rate, e) || add_number(l, "--damping", r->damping, e) ||
+                   add_number(l, "--rest", r->rest, e) || add_number(l, "--time", (double)r->steps, e) ||
+                   add_number(l, "--hourglass", run->p->kappa, e) ||
                    (run->p->collider && add_number(l, "--repulsion", run->p->collider->stiffness, e))
                ? -1
                : 0;
@@ -212,7 +218,12 @@ int likeness_compare(const likeness *l, const model *from, const char *place, er
         return err_set(e, place, 0, "is no checkpoint; expected one that tled-run wrote");
     if (compare_options(there, l->options, place, e))
         return -1;
+    if (find_part(l, end_part) && !has(name->str, name->rows, end_part))
+        return err_set(e, place, 0,
+                       "is of an earlier version, which rounded -t up to a whole step; the run must begin anew");
     for (int64_t i = 0; i < name->rows; i++) {
+        if (!strcmp(name->str[i], kappa_part))
+            continue;
         const likeness_part *here = find_part(l, name->str[i]);
         if (!here || here->crc != sum->i64[i])
             return differ(place, name->str[i], here ? "differs" : "is not there now", e);
