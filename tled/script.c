@@ -20,6 +20,7 @@ void script_free(script *s)
     free(s->time);
     free(s->value);
     free(s->node);
+    free(s->file);
     *s = (script){0};
 }
 
@@ -219,9 +220,18 @@ static void say_why(const model *m, const fitness *f, char *to, size_t size)
                  f->elements);
 }
 
-static bool is_idle(const script_curve *c, const fitness *of)
+/* Whether it is of a muscle whose level is above 0 at any time. */
+static bool contracts(const script *s, const script_curve *c)
 {
-    return c->verb == SCRIPT_CONTRACT && !of[c->volume].moving;
+    bool any = false;
+    for (int32_t i = 0; c->verb == SCRIPT_CONTRACT && i < c->key_count; i++)
+        any |= s->value[3 * ((int64_t)c->key_first + i)] > 0;
+    return any;
+}
+
+static bool is_idle(const script *s, const script_curve *c, const fitness *of)
+{
+    return contracts(s, c) && !of[c->volume].moving;
 }
 
 /* Warns of the muscles that cannot contract, or refuses where none can. */
@@ -230,20 +240,26 @@ static int weigh(const script *s, const model *m, const fitness *of, notes *warn
     int64_t muscles = 0, idle = 0;
     char why[300];
     for (int64_t i = 0; i < s->curves; i++) {
-        muscles += s->curve[i].verb == SCRIPT_CONTRACT;
-        idle += is_idle(&s->curve[i], of);
+        muscles += contracts(s, &s->curve[i]);
+        idle += is_idle(s, &s->curve[i], of);
     }
     for (int64_t i = 0; i < s->curves; i++) {
-        if (!is_idle(&s->curve[i], of))
+        if (!is_idle(s, &s->curve[i], of))
             continue;
         const int32_t volume = s->curve[i].volume;
+        const int64_t line = s->curve[i].line; /* 0: of the command line */
+        const char *place = line ? s->file : "-c";
         const char *name = model_find(m, "volume.name")->str[volume];
         say_why(m, &of[volume], why, sizeof why);
         if (idle == muscles && muscles == 1)
-            return err_set(e, NULL, 0, "%.200s cannot contract: %s", name, why);
+            return err_set(e, place, line, "%.200s cannot contract: %s", name, why);
         if (idle == muscles)
-            return err_set(e, NULL, 0, "none of the %" PRId64 " muscles can contract; %.200s: %s", muscles, name, why);
-        notes_add(warnings, "%.200s will not contract: %s", name, why);
+            return err_set(e, place, line, "none of the %" PRId64 " muscles can contract; %.200s: %s", muscles, name,
+                           why);
+        if (line)
+            notes_add(warnings, "%s:%" PRId64 ": %.200s will not contract: %s", place, line, name, why);
+        else
+            notes_add(warnings, "%s: %.200s will not contract: %s", place, name, why);
     }
     return 0;
 }
@@ -252,7 +268,7 @@ int script_check_muscles(const script *s, const model *m, notes *warnings, err *
 {
     bool any = false;
     for (int64_t i = 0; i < s->curves; i++)
-        any |= s->curve[i].verb == SCRIPT_CONTRACT;
+        any |= contracts(s, &s->curve[i]);
     if (!any)
         return 0;
     fitness *of = mem_array(model_count(m, "volume"), sizeof *of, "the muscles", e);

@@ -36,6 +36,7 @@ typedef struct script {
     double *time;  /* keys: s */
     double *value; /* keys x 3 */
     int32_t *node; /* a component of a node is displaced by one curve at most */
+    char *file;    /* the name of the file read, owned; NULL: none was */
     int64_t curves, keys, nodes;
     int64_t curve_capacity, time_capacity, value_capacity, node_capacity;
 } script;
@@ -54,7 +55,8 @@ int script_add_contract(script *s, const model *m, const char *list, double ramp
 int script_add_gravity(script *s, const double *g, double ramp, err *e);
 
 /* Of the whole script: whether its muscles can contract. A muscle does that has an element with a fibre and a node that is
- * not rigid. Warns of those that have none; where all have none, -1 with e filled: nothing would come of any. */
+ * not rigid; one whose level stays 0 need not. Warns of those that cannot, by the script's line or as of -c; where none can, -1 with e
+ * filled: nothing would come of any. */
 int script_check_muscles(const script *s, const model *m, notes *warnings, err *e);
 
 /* The curve at a time: 3 values (contract: the first counts). */

@@ -359,6 +359,8 @@ int script_read(script *s, in *source, const model *m, err *e)
 {
     reader r = {.s = s, .m = m, .first = s->curves};
     int more, status = -1;
+    if (!s->file && !(s->file = mem_text(in_name(source), e)))
+        return -1;
     keyfile_open(&r.k, source);
     take_near(&r);
     while ((more = keyfile_next(&r.k, e)) > 0)

@@ -144,6 +144,20 @@ tled-run -q --script "$T/odd" <"$T/model" >"$T/a" && tled-run -q --script "$T/od
 is "$(at 0.02,0.02,0.02)" "$u" "a script from another system, gzipped"
 sed '/^array element.fibre/,/^array volume.name/{/^array volume.name/!d}' "$T/model" >"$T/plain"
 mv "$T/plain" "$T/model"
-fails 1 "a muscle without fibres" 'muscle_all cannot contract: its elements .64. have no fibre' \
+fails 1 "a muscle without fibres" "^tled-run: $T/odd:2: muscle_all cannot contract: its elements .64. have no fibre" \
     moved --script "$T/odd" -t 0.01
+printf '0 gravity 0,0,-1\n0 contract all 0\n1 contract all 0\n' >"$T/idle"
+check "at a level of 0 it need have none" moved -q --script "$T/idle" -t 0.01 -o "$T/out"
+is "$(cat "$T/stderr")" "" "and nothing is said of it"
+# A second muscle, of the upper half; it alone has fibres.
+awk '/^axis volume/ { $3 = 2 } /^array element.volume/ { print; for (n = 0; n < 64; n++) { getline; print (n >= 32) + 0 }
+    print "array element.fibre f32 1 element 3"; for (n = 0; n < 64; n++) print (n >= 32) + 0, 0, 0; next }
+    { print } /^"muscle_all"/ { print "\"muscle_up\"" } p ~ /^array volume\.(level|priority|material|muscle)/ { print } { p = $0 }' "$T/model" >"$T/two"
+printf '0 contract up 0\n.01 contract up .1\n0 contract all 0\n.01 contract all .1\n' >"$T/half"
+check "one of two muscles" sh -c "tled-run -q --script '$T/half' -t .01 -o '$T/out' <'$T/two'"
+is "$(sed 's/; .*//' "$T/stderr")" "tled-run: warning: $T/half:3: muscle_all will not contract: its elements (32) have no fibre" \
+    "is warned of with the script's line"
+check "by -c" sh -c "tled-run -q -c up=.1,all=.1 -t .01 -o '$T/out' <'$T/two'"
+is "$(sed 's/; .*//' "$T/stderr")" "tled-run: warning: -c: muscle_all will not contract: its elements (32) have no fibre" \
+    "with the option"
 done_testing

@@ -247,11 +247,12 @@ run -q -n 1 --text | sed -e '/^crc/d' -e '/^frame/,$d' |
     sed '/^array element.fibre/,/^array /{/^array element.fibre/d;/^array /!d;}' >"$T/fibreless"
 echo end >>"$T/fibreless"
 for device in cpu auto; do
-    fails 1 "contraction without fibres, $device" 'muscle_bar cannot contract: the model has no fibres .*run attach' \
+    fails 1 "contraction without fibres, $device" '^tled-run: -c: muscle_bar cannot contract: the model has no fibres .*run attach' \
         sh -c "tled-run -q -d $device -c bar=0.4 -t 0.1 -o '$T/left' <'$T/fibreless'"
 done
 [ ! -e "$T/left" ]
 is $? 0 "no output is left"
+check "a sweep may begin at 0" sh -c "tled-run -q -d cpu -c bar=0 -t 0.01 -o '$T/out' <'$T/fibreless'"
 fails 1 "a full disk" 'No space left' run -q -n 1 -o /dev/full
 fails 1 "and a long run ends there" 'No space left' timeout 60 tled-run -q -t 1e6 --every 0.01 -o /dev/full <"$T/model"
 timeout 60 sh -c "tled-run -q -c bar=0.1 -t 1e6 --every 0.01 <'$T/model' 2>'$T/stderr' | head -c 100 >/dev/null"

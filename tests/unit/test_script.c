@@ -178,17 +178,20 @@ static void muscles_without_fibres(const model *m)
     err e = {0};
     muscles(m, "zyg=1", 0, 0, "");
     muscles(m, "zyg=1,buccinator=1", 1, 0,
-            "buccinator will not contract: its elements (1) have no fibre; attach --fibre field");
-    muscles(m, "buccinator=1", 0, STATUS_BAD, "buccinator cannot contract: its elements (1) have no fibre; attach");
-    muscles(m, "buccinator=1,lev=1", 0, STATUS_BAD, "none of the 2 muscles can contract; buccinator: its elements");
+            "-c: buccinator will not contract: its elements (1) have no fibre; attach --fibre field");
+    muscles(m, "buccinator=1", 0, STATUS_BAD, "-c: buccinator cannot contract: its elements (1) have no fibre; attach");
+    muscles(m, "buccinator=1,lev=1", 0, STATUS_BAD, "-c: none of the 2 muscles can contract; buccinator: its elements");
     make_model(&bare, &e);
     model_remove(&bare, "element.fibre");
-    muscles(&bare, "zyg=0", 0, STATUS_BAD,
-            "muscle_zyg cannot contract: the model has no fibres (element.fibre); run attach");
+    muscles(&bare, "zyg=0,lev=0", 0, 0, "");
+    muscles(&bare, "zyg=0,lev=.1", 0, STATUS_BAD, "-c: Muscle_lev cannot contract: the model has no fibres");
+    muscles(&bare, "zyg=0.1", 0, STATUS_BAD,
+            "-c: muscle_zyg cannot contract: the model has no fibres (element.fibre); run attach");
     model_remove(&bare, "element.lattice");
-    muscles(&bare, "zyg=0", 0, STATUS_BAD, "muscle_zyg cannot contract: its elements (1) have no fibre; expected");
+    muscles(&bare, "zyg=0.1", 0, STATUS_BAD,
+            "-c: muscle_zyg cannot contract: its elements (1) have no fibre; expected");
     memset(model_find(&bare, "element.volume")->i32, 0, 4 * sizeof(int32_t));
-    muscles(&bare, "zyg=1", 0, STATUS_BAD, "muscle_zyg cannot contract: it has no elements; smaller voxels");
+    muscles(&bare, "zyg=1", 0, STATUS_BAD, "-c: muscle_zyg cannot contract: it has no elements; smaller voxels");
     ok(!e.status, "the model: %s", e.text);
     model_free(&bare);
 }
@@ -205,7 +208,7 @@ static void muscles_that_are_held(void)
     muscles(&m, "zyg=1", 0, 0, "");
     rigid[3] = 1;
     muscles(&m, "zyg=1", 0, STATUS_BAD,
-            "muscle_zyg cannot contract: all nodes of its elements with a fibre (1) are rigid");
+            "-c: muscle_zyg cannot contract: all nodes of its elements with a fibre (1) are rigid");
     model_add(&m, "element.mix", &e)->i32[0] = 1; /* of the first element, whose node 0 is free */
     model_add(&m, "element.mixfibre", &e)->f32[1] = 1;
     for (int i = 1; i < 4; i++)
