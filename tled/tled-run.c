@@ -417,16 +417,19 @@ static void say_start(const session *s, const char *device, const struct options
                  isfinite(r->end) ? ", the last one shorter" : "");
 }
 
-/* Where multiples of an option's interval lie between two steps. */
+/* Where multiples of an option's interval lie between two steps, other than the last's end, which is met. */
 static void say_between(const session *s, const char *option, const char *what, double every)
 {
-    const double rate = s->run.rate, start = s->problem.start;
+    const run_setup *r = &s->run;
+    const double rate = r->rate, start = s->problem.start, origin = run_plan(start, rate).origin;
     if (every == 0)
         return;
-    const double first = (floor(start / every) + 1) * every - run_plan(start, rate).origin;
+    const double end = (isfinite(r->end) ? r->end : start + (double)r->steps / rate) - origin;
+    const double first = (floor(start / every) + 1) * every - origin;
+    const double last = end - 1e-6 / rate;
     if (every * rate < 1)
         tool_say(s->t, "%s %g s is shorter than a step: a %s a step", option, every, what);
-    else if (run_is_between(every, rate) || run_is_between(first, rate))
+    else if ((first < last && run_is_between(first, rate)) || (first + every < last && run_is_between(every, rate)))
         tool_say(s->t, "multiples of %s %g s lie between steps: a %s is of the first step past one, up to %.3g ms late",
                  option, every, what, 1e3 / rate);
 }

@@ -49,6 +49,11 @@ is "$(frame_times | awk '{ for (i = 2; i < NF; i++) { late = $i - 0.003 * (i - 1
     "each is as late as that at most"
 check "frames on steps" run -c all=0.5 -t 0.02 --every 0.01
 is "$(said multiples)" 0 "are not"
+for case in '-t 0.037 --every 0.037 0' '-t 0.037 --every 0.0185 1' '-t 0.037 --every 0.05 0' '-n 20 --every 0.0123 0' '-n 80 --every 0.0123 1'; do
+    # shellcheck disable=SC2086 # options
+    check "${case% *}" run -c all=0.5 ${case% *}
+    is "$(said multiples)" "${case##* }" "what is late is told of, and nothing else: its end is met"
+done
 
 # ---- Cuts.
 check "a muscle that contracts fully" run -c all=1 -t 0.1 --log "$T/log"
