@@ -90,11 +90,16 @@ static int put_data(writer *w, const char *name, model_type type, int columns, i
     return append(w, bytes, size, e);
 }
 
-static int put_array(writer *w, const model_array *a, err *e)
+/* Without its axis, where it begins with that. */
+static const char *data_name(const model_array *a)
 {
     size_t n = strlen(a->axis);
-    bool own = !strncmp(a->name, a->axis, n) && a->name[n] == '.';
-    return put_data(w, own ? a->name + n + 1 : a->name, a->type, a->columns, -1, a->data,
+    return !strncmp(a->name, a->axis, n) && a->name[n] == '.' ? a->name + n + 1 : a->name;
+}
+
+static int put_array(writer *w, const model_array *a, err *e)
+{
+    return put_data(w, data_name(a), a->type, a->columns, -1, a->data,
                     (size_t)a->rows * (size_t)a->columns * model_type_size(a->type), e);
 }
 
@@ -123,6 +128,17 @@ static int put_arrays(writer *w, const char *axis, err *e)
                 return -1;
         }
     return 0;
+}
+
+/* Whether put_arrays puts one by this name: what we compute must not stand twice. */
+static bool has_data(const writer *w, const char *axis, const char *name)
+{
+    const model_arrays *list[2] = {w->x->f ? &w->x->f->arrays : NULL, &w->x->m->arrays};
+    bool has = false;
+    for (int l = 0; l < 2; l++)
+        for (int i = 0; list[l] && i < list[l]->count; i++)
+            has |= is_data(w, &list[l]->v[i], axis) && !strcmp(data_name(&list[l]->v[i]), name);
+    return has;
 }
 
 /* A string array: each string with its NUL. */
@@ -172,7 +188,7 @@ static int put_point_data(writer *w, err *e)
 static int put_material(writer *w, err *e)
 {
     const model_array *volume = model_find(w->x->m, "element.volume"), *of = model_find(w->x->m, "volume.material");
-    if (!volume || !of || w->x->is_surface || model_find(w->x->m, "element.material"))
+    if (!volume || !of || w->x->is_surface || has_data(w, w->x->cell_axis, "material"))
         return 0;
     int32_t *material = mem_array(volume->rows, sizeof *material, "materials", e);
     if (!material)
@@ -188,7 +204,8 @@ static int put_material(writer *w, err *e)
 static int put_quality(writer *w, err *e)
 {
     const export_shape *x = w->x;
-    if (x->is_surface || !x->displacement || (x->node->columns != 8 && x->node->columns != 4))
+    static const char *const names[] = {"quality.j.centre", "quality.j.corner"};
+    if (x->is_surface || !x->displacement)
         return 0;
     const quality_mesh mesh = {x->node->i32, x->node->columns, x->cells, x->rest, NULL};
     double *j = mem_array(2 * x->cells, sizeof *j, "J of elements", e);
@@ -200,10 +217,12 @@ static int put_quality(writer *w, err *e)
         j[x->cells + i] = of.corner;
     }
     const size_t size = (size_t)x->cells * sizeof *j;
-    int bad = put_data(w, "quality.j.centre", MODEL_F64, 1, -1, j, size, e) ||
-              put_data(w, "quality.j.corner", MODEL_F64, 1, -1, j + x->cells, size, e);
+    int bad = 0;
+    for (int i = 0; !bad && i < 2; i++)
+        if (!has_data(w, x->cell_axis, names[i]))
+            bad = put_data(w, names[i], MODEL_F64, 1, -1, j + i * x->cells, size, e);
     free(j);
-    return bad ? -1 : 0;
+    return bad;
 }
 
 static int put_cell_data(writer *w, err *e)

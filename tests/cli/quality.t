@@ -147,6 +147,11 @@ done
 tled-run -q -d cpu -c all=1 -t .1 --every .05 -o "$T/out" <"$T/muscle" 2>"$T/said"
 check "VTU of each frame" sinew export -f vtu --deformed --frame all -o "$T/film.pvd" "$T/out"
 sinew export -f vtu --frame rest -o "$T/rest.vtu" "$T/out"
+awk '/^frame/ && !n++ { print "array element.quality.j.centre f64 1 element 1"; for (i = 0; i < 160; i++) print 5 } { print }' <<END >"$T/own"
+$(sinew export -f model --text "$T/out" | grep -v '^crc')
+END
+sinew export -f vtu -o "$T/own.vtu" "$T/own"
+is "$(grep -ac 'Name="quality.j.centre"' "$T/own.vtu")$(grep -ac 'Name="quality.j.corner"' "$T/own.vtu")" 11 "an array of the model by one of these names stands alone"
 if [ -n "$python" ]; then
     sinew info --tsv quality.folded --tsv quality.j.corner "$T/out" | sed 1d >"$T/frames"
     for file in "$T"/film*.vtu; do
