@@ -35,7 +35,8 @@ struct checkpoint {
 
 /* ---- numbers of a point, in arrays of one row each */
 
-enum { NUMBERS = 18, COUNTS = 10 };
+/* The last number is not in those that were written without it. */
+enum { NUMBERS = 19, NUMBERS_BEFORE = 18, COUNTS = 10 };
 
 static const char frames_key[] = "checkpoint.frames"; /* by which FILE.frames is known for ours */
 
@@ -45,17 +46,19 @@ static void put_point(const checkpoint *c, const run_point *p, double *number, i
 {
     const relax *r = &p->relax;
     const account_past *a = &p->log.past;
-    const double numbers[NUMBERS] = {p->origin,  p->damping, p->remaining, p->closest, p->moved_most, r->guess,
-                                     r->low,     r->high,    r->frequency, r->lowest,  r->time,       a->first,
-                                     a->gravity, a->forces,  a->held,      a->muscles, a->probe,      a->damping};
+    const double numbers[NUMBERS] = {p->origin,  p->damping, p->remaining, p->closest,    p->moved_most,
+                                     r->guess,   r->low,     r->high,      r->frequency,  r->lowest,
+                                     r->time,    a->first,   a->gravity,   a->forces,     a->held,
+                                     a->muscles, a->probe,   a->damping,   p->most_strain};
     const int64_t counts[COUNTS] = {p->first, p->from,   p->closest_at, p->cuts,  r->looks,
                                     c->count, c->length, c->arrays,     p->taken, p->log.length};
     memcpy(number, numbers, sizeof numbers);
     memcpy(count, counts, sizeof counts);
 }
 
-static void take_point(checkpoint *c, const double *n, const int64_t *k)
+static void take_point(checkpoint *c, const model_array *number, const int64_t *k)
 {
+    const double *n = number->f64;
     c->point = (run_point){.origin = n[0],
                            .first = k[0],
                            .from = k[1],
@@ -67,6 +70,7 @@ static void take_point(checkpoint *c, const double *n, const int64_t *k)
                            .moved_most = n[4],
                            .relax = {n[5], n[6], n[7], n[8], n[9], n[10], (int)k[4]},
                            .taken = k[8],
+                           .most_strain = number->columns == NUMBERS ? n[18] : 0,
                            .log = {{n[11], n[12], n[13], n[14], n[15], n[16], n[17]}, k[9]}};
     c->count = k[5];
     c->length = k[6];
@@ -337,13 +341,14 @@ static int read_state(checkpoint *c, const char *path, bool *foreign, err *e)
     if (likeness_compare(&c->like, &m, path, e))
         goto out;
     const model_array *number = find_row(&m, number_name, MODEL_F64, NUMBERS);
+    number = number ? number : find_row(&m, number_name, MODEL_F64, NUMBERS_BEFORE);
     const model_array *count = find_row(&m, count_name, MODEL_I64, COUNTS);
     const model_array *u = frame_find(&c->state, "node.displacement"), *v = frame_find(&c->state, "node.velocity");
     if (!number || !count || !u || !v || u->rows != c->nodes) {
         err_set(e, path, 0, "is no checkpoint; expected one that tled-run wrote");
         goto out;
     }
-    take_point(c, number->f64, count->i64);
+    take_point(c, number, count->i64);
     c->time = c->state.time;
     result = 0;
 out:

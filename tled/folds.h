@@ -14,11 +14,12 @@ typedef struct folds {
     strained *part;
     strained last;          /* of the frame seen last */
     int64_t frames, folded; /* seen; with a folded element */
-    quality worst;          /* of the frame whose J at a corner is the smallest */
+    double time;            /* s: of the last */
+    strained worst;         /* of the frame whose J at a corner is the smallest */
     double worst_time;      /* s */
 } folds;
 
-enum { FOLDS_TEXT = 400 };
+enum { FOLDS_TEXT = 500 };
 
 /* -1 with e filled, and to be freed all the same. */
 int folds_make(folds *f, const tled_problem *p, const model *m, int threads, err *e);
@@ -27,11 +28,11 @@ void folds_free(folds *f);
 /* A frame, m: nodes x 3. Not in two threads at once. */
 void folds_look(folds *f, double time, const double *displacement);
 
-/* The last frame in a line. */
-void folds_text(const folds *f, char text[FOLDS_TEXT]);
+/* The last frame in a line; where the run did not come to its end, also when that is. */
+void folds_text(const folds *f, bool ended, char text[FOLDS_TEXT]);
 
 /* What is folded, in the last frame and on the way; and where hourglass energy is past QUALITY_HOURGLASS of strain energy, or of 1/100 of
  * the most that there was (J), for what is let go. */
-void folds_warn(const folds *f, double most_strain, notes *warnings);
+void folds_warn(const folds *f, bool ended, double most_strain, notes *warnings);
 
 #endif

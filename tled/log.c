@@ -132,6 +132,15 @@ static void put_number(out *to, double value)
         out_text(to, "\tnan");
 }
 
+/* inf is a share too: of strain energy that is none. */
+static void put_share(out *to, double value)
+{
+    if (isinf(value))
+        out_text(to, "\tinf");
+    else
+        put_number(to, value);
+}
+
 static void put_row(run_log *l, const log_row *row, const account_sums *s)
 {
     const double took = progress_clock() - l->began;
@@ -163,7 +172,7 @@ static void put_row(run_log *l, const log_row *row, const account_sums *s)
     put_number(l->rows, s->tissue.quality.centre);
     put_number(l->rows, s->tissue.quality.corner);
     out_format(l->rows, "\t%lld", (long long)s->tissue.quality.folded);
-    put_number(l->rows, quality_hourglass(s->tissue.hourglass, s->tissue.strain));
+    put_share(l->rows, quality_hourglass(s->tissue.hourglass, s->tissue.strain, s->tissue.scale));
     out_text(l->rows, "\n");
     l->steps = row->taken;
     l->began = progress_clock();

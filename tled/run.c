@@ -43,8 +43,9 @@ typedef struct run {
     double closest;    /* to rest so far, as a share; and the step that it came so close in */
     int64_t closest_at;
     double remaining;
-    double *saved;    /* nodes x 6, to be filled: displacement, then velocity; NULL: nothing is to be saved */
-    double next_save; /* s: of the model's time, or of the clock */
+    double most_strain; /* J: at a check, so far */
+    double *saved;      /* nodes x 6, to be filled: displacement, then velocity; NULL: nothing is to be saved */
+    double next_save;   /* s: of the model's time, or of the clock */
     err *e;
 } run;
 
@@ -405,6 +406,7 @@ static int check(run *n)
     const watch_sight *s = &n->watch->sight;
     bool settled = r->rest >= 0 && s->time >= collider_events_end(r->p);
     int over = 0;
+    n->most_strain = fmax(n->most_strain, s->strain);
     if (choose_step(n))
         return -1;
     tell_cut(n, &n->watch->sight);
@@ -431,6 +433,7 @@ static run_point point_of(const run *n)
                        .moved_most = n->watch->sight.moved_most,
                        .relax = n->relax,
                        .taken = n->taken,
+                       .most_strain = n->most_strain,
                        .log = n->r->log ? log_point_of(n->r->log) : (log_point){.length = 0}};
 }
 
@@ -447,6 +450,7 @@ static void go_on_from(run *n, const run_point *at)
     n->watch->sight.moved_most = at->moved_most;
     n->relax = at->relax;
     n->taken = at->taken;
+    n->most_strain = at->most_strain;
 }
 
 /* Whether it is time to save again; if so, also notes when the next time is. */
@@ -567,6 +571,7 @@ int run_go(const run_setup *r, run_end *end, err *e)
              .e = e};
     n.from = n.closest_at = n.plan.first;
     int result = prepare(&n) ? -1 : loop(&n, end);
+    end->most_strain = n.most_strain;
     end->bytes = n.state ? r->device->bytes(n.state) : 0;
     if (outbox_close(n.out, e)) /* what is sound is written whatever happened then */
         result = -1;

@@ -27,7 +27,8 @@ typedef struct run_point {
     int64_t closest_at;
     double moved_most; /* m: watch_sight's */
     relax relax;
-    int64_t taken; /* steps, each part of a cut one for itself */
+    int64_t taken;      /* steps, each part of a cut one for itself */
+    double most_strain; /* J: at a check, so far */
     log_point log;
 } run_point;
 
@@ -72,7 +73,9 @@ typedef struct run_end {
     bool rested;
     double remaining;  /* with rest: at the last check */
     watch_sight sight; /* of the last state */
-    int64_t bytes;     /* of the device's memory, in the end */
+    /* However it ended: */
+    double most_strain; /* J: at a check */
+    int64_t bytes;      /* of the device's memory, in the end */
 } run_end;
 
 /* The least step count whose time is at or past t, to a millionth of a step, seen from the plan's origin. */

@@ -57,6 +57,7 @@ void strained_add(strained *to, const strained_view *v, int64_t element, const d
     const double fraction = tled_fraction(v->p, element), hourglass = fraction * d->hourglass;
     to->strain += fraction * d->rest * d->energy;
     to->hourglass += hourglass;
+    to->scale += fraction * d->rest * d->law.mu;
     if (hourglass > to->most) {
         to->most = hourglass;
         to->twisted = element;
@@ -68,6 +69,7 @@ void strained_join(strained *to, const strained *later)
 {
     to->strain += later->strain;
     to->hourglass += later->hourglass;
+    to->scale += later->scale;
     if (later->most > to->most) {
         to->most = later->most;
         to->twisted = later->twisted;

@@ -115,7 +115,6 @@ typedef struct session {
     int64_t cut;            /* parts of a step, as said last */
     double stable;          /* s: at rest */
     folds folds;            /* of the frames written */
-    double strain;          /* J: the most at a check */
     notes warnings;
 } session;
 
@@ -323,7 +322,6 @@ static void checked(void *context, int64_t step, const watch_sight *sight, doubl
     session *s = context;
     char left[60] = "";
     progress_at(&s->progress, (double)step);
-    s->strain = fmax(s->strain, sight->strain);
     if (isfinite(remaining))
         snprintf(left, sizeof left, "%.3g of its displacement to go, ", remaining);
     tool_detail(s->t, "%.6g s: %skinetic %.3g J, strain %.3g J, stable step %.4g ms, damping %.4g 1/s", sight->time,
@@ -338,10 +336,11 @@ static void say_cut(void *context, const watch_sight *sight, int64_t parts)
 {
     session *s = context;
     char why[400];
-    watch_words(&s->problem, sight, why, sizeof why);
+    watch_words(&s->m, sight, why, sizeof why);
     progress_clear(&s->progress);
     tool_say(s->t, "at %.6g s each step is cut in %lld, to %.4g ms: %s", sight->time, (long long)parts,
              1e3 / (s->run.rate * (double)parts), why);
+    s->cut = parts;
 }
 
 static int save(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
@@ -434,10 +433,22 @@ static void say_between(const session *s, const char *option, const char *what, 
                  option, every, what, 1e3 / rate);
 }
 
+/* Of the frames that were written, whether the run came to its end or not. */
+static void say_folds(session *s, const run_end *end, bool ended)
+{
+    char folded[FOLDS_TEXT];
+    err lost = {0};
+    if (!s->folds.frames || out_failed(s->stage.sink, &lost))
+        return;
+    folds_text(&s->folds, ended, folded);
+    tool_say(s->t, "%s", folded);
+    folds_warn(&s->folds, ended, end->most_strain, &s->warnings);
+}
+
 static void say_end(session *s, const run_end *end)
 {
     const watch_sight *w = &end->sight;
-    char left[80] = "", folded[FOLDS_TEXT];
+    char left[80] = "";
     if (end->parts > 1)
         tool_say(s->t, "steps were cut, in up to %lld: %lld were taken for %lld", (long long)end->parts,
                  (long long)end->taken, (long long)end->steps);
@@ -445,9 +456,7 @@ static void say_end(session *s, const run_end *end)
         snprintf(left, sizeof left, ", %.3g of its displacement to go", end->remaining);
     tool_say(s->t, "%s %.6g s, after %lld steps: kinetic energy %.3g J, largest displacement %.6g mm%s",
              end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic, 1e3 * w->largest, left);
-    folds_text(&s->folds, folded);
-    tool_say(s->t, "%s", folded);
-    folds_warn(&s->folds, s->strain, &s->warnings);
+    say_folds(s, end, true);
     tool_detail(s->t, "%s: %.4g MB, %.4g bytes an element", s->run.device->name, 1e-6 * (double)end->bytes,
                 (double)end->bytes / (double)s->problem.elements);
 }
@@ -544,7 +553,9 @@ static int simulate(session *s, const struct options *o, const char *device, err
                    o->common.quiet || o->common.verbose);
     int result = run_go(&s->run, &end, e);
     progress_stop(&s->progress);
-    if (!result)
+    if (result)
+        say_folds(s, &end, false);
+    else
         say_end(s, &end);
     return result;
 }

@@ -3,6 +3,7 @@
 #include "tled/collider.h"
 
 #include "base/mem.h"
+#include "mesh/element_place.h"
 #include "tled/conforming_step.h"
 #include "tled/deformed.h"
 #include "tled/step.h"
@@ -237,22 +238,19 @@ int watch_keep(watch *w, const backend *b, void *state, err *e)
     return b->keep(state, e);
 }
 
-void watch_words(const tled_problem *p, const watch_sight *s, char *to, size_t size)
+void watch_words(const model *m, const watch_sight *s, char *to, size_t size)
 {
     const int64_t element = s->broken >= 0 ? s->broken : s->stable_element;
-    double middle[3] = {0, 0, 0}; /* mm */
+    char where[ELEMENT_PLACE];
     if (element < 0) {
         snprintf(to, size, "the stable step is %.4g ms", 1e3 * s->stable);
         return;
     }
-    for (int i = 0; i < 24; i++)
-        middle[i % 3] += 1e3 / 8 * p->position[3 * (int64_t)p->element_node[8 * element + i / 3] + i % 3];
-    int n = snprintf(to, size, "element %lld (volume '%.100s', at %.4gmm,%.4gmm,%.4gmm) ", (long long)element,
-                     p->volume[p->element_volume[element]].name, middle[0], middle[1], middle[2]);
+    element_place_text(m, element, where);
     if (s->broken >= 0)
-        snprintf(to + n, size - (size_t)n, "was inverted or not finite after longer ones");
+        snprintf(to, size, "%s was inverted or not finite after longer ones", where);
     else
-        snprintf(to + n, size - (size_t)n, "has a stable step of %.4g ms", 1e3 * s->stable);
+        snprintf(to, size, "%s has a stable step of %.4g ms", where, 1e3 * s->stable);
 }
 
 watch *watch_create(const tled_problem *p, pool *threads, err *e)

@@ -53,6 +53,6 @@ int watch_keep(watch *w, const backend *b, void *state, err *e);
 int watch_look(watch *w, const backend *b, void *state, double time, err *e);
 
 /* What keeps the stable step small, or broke, in words: an element, its volume and where it is at rest. */
-void watch_words(const tled_problem *p, const watch_sight *s, char *to, size_t size);
+void watch_words(const model *m, const watch_sight *s, char *to, size_t size);
 
 #endif

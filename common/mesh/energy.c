@@ -61,6 +61,7 @@ static void add_element(const view *v, int64_t element, double mu, double bulk, 
         volume = any.volume;
         k = v->kappa * element_hourglass_modulus(mu, bulk) * volume * squares / 8;
     }
+    to->scale += fraction * volume * mu;
     to->strain += fraction * volume * element_energy(h, mu, bulk);
     to->hourglass +=
         fraction * (element_hourglass_energy(x, k) + element_hourglass_energy(y, k) + element_hourglass_energy(z, k));
@@ -102,8 +103,10 @@ int energy_of(energy *to, const model *m, const frame *f, err *e)
     material *law = materials_of_volumes(m, e);
     if (!law)
         return -1;
-    for (int64_t i = 0; i < model_count(m, "element"); i++) {
-        const material own = materials_of_element(m, law, i);
+    const materials_map map = materials_map_of(m, law);
+    const int64_t elements = model_count(m, "element");
+    for (int64_t i = 0; i < elements; i++) {
+        const material own = materials_of_element(&map, i);
         add_element(&v, i, material_mu(&own), material_bulk(&own), fraction ? (double)fraction->f32[i] : 1, to);
     }
     free(law);

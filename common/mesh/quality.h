@@ -6,6 +6,7 @@
 #ifndef SINEW_QUALITY_H
 #define SINEW_QUALITY_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -32,12 +33,16 @@ typedef struct quality {
     double worst;    /* its smallest J at a corner */
 } quality;
 
-/* Hourglass energy as a share of strain energy, which is without it; 0 where there is none. Past QUALITY_HOURGLASS, elements are too
- * coarse for how they bend, or the coefficient is wrong. */
+/* Hourglass energy as a share of strain energy, which is without it. What is at most 1e-15 of `scale`, the sum of mu V (J), is
+ * rounding: 0 where both are, inf where strain energy alone is. Past QUALITY_HOURGLASS, elements are too coarse for how they bend, or
+ * the coefficient is wrong. */
 #define QUALITY_HOURGLASS .1
-static inline double quality_hourglass(double hourglass, double strain)
+static inline double quality_hourglass(double hourglass, double strain, double scale)
 {
-    return hourglass == 0 ? 0 : hourglass / strain;
+    const double rounding = 1e-15 * scale;
+    if (strain <= rounding)
+        return hourglass <= rounding ? 0 : (double)INFINITY;
+    return hourglass / strain;
 }
 
 /* u: displacement, nodes x 3, m; NULL: at rest. */

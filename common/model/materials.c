@@ -375,12 +375,22 @@ material *materials_of_volumes(const model *m, err *e)
     return law;
 }
 
-material materials_of_element(const model *m, const material *of_volume, int64_t element)
+materials_map materials_map_of(const model *m, const material *of_volume)
 {
     const model_array *mix = model_find(m, "element.mix"), *mixture = model_find(m, "element.mixture");
-    const material *own = &of_volume[model_find(m, "element.volume")->i32[element]];
-    int32_t second = mix && mixture ? mix->i32[element] : -1;
-    return second < 0 || of_volume[second].law != own->law
+    materials_map map = {.of_volume = of_volume, .volume = model_find(m, "element.volume")->i32};
+    if (mix && mixture) {
+        map.mix = mix->i32;
+        map.mixture = mixture->f32;
+    }
+    return map;
+}
+
+material materials_of_element(const materials_map *map, int64_t element)
+{
+    const material *own = &map->of_volume[map->volume[element]];
+    const int32_t second = map->mix ? map->mix[element] : -1;
+    return second < 0 || map->of_volume[second].law != own->law
                ? *own
-               : material_mixed(own, &of_volume[second], mixture->f32[element]);
+               : material_mixed(own, &map->of_volume[second], map->mixture[element]);
 }

@@ -63,8 +63,17 @@ int materials_of(const model *m, int64_t i, material *to, err *e);
 /* Of every volume, checked; the caller frees them. NULL with e filled. */
 material *materials_of_volumes(const model *m, err *e);
 
+/* What elements are made of, looked up once: all borrowed from the model, which has element.volume, and of those of the volumes. */
+typedef struct materials_map {
+    const material *of_volume;
+    const int32_t *volume, *mix; /* mix NULL: no element is mixed */
+    const float *mixture;
+} materials_map;
+
+materials_map materials_map_of(const model *m, const material *of_volume);
+
 /* An element's material, from those of the volumes: its volume's, or one between those of the two that it is mixed of. */
-material materials_of_element(const model *m, const material *of_volume, int64_t element);
+material materials_of_element(const materials_map *map, int64_t element);
 
 /* mu and K, in Pa. */
 static inline double material_mu(const material *a)

@@ -146,11 +146,12 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
         free(law);
         return -1;
     }
+    const materials_map map = law ? materials_map_of(m, law) : (materials_map){0};
     to->below_zero = which == STRAIN_MAX;
     for (int64_t n = 0; n < node->rows; n++) {
         double h[9];
         gradient_of(&node->i32[n * node->columns], node->columns, rest->f64, u, h);
-        material own = law ? materials_of_element(m, law, n) : (material){0};
+        material own = law ? materials_of_element(&map, n) : (material){0};
         to->value[n] = strained(which, h, law ? &own : NULL);
     }
     free(law);
@@ -164,9 +165,6 @@ static int of_quality(field *to, const model *m, const frame *f, int which, err 
     const model_array *rest = node ? model_need(m, "node.position", e) : NULL;
     if (!rest)
         return -1;
-    if (node->columns != 8 && node->columns != 4)
-        return err_set(e, NULL, 0, "%s is of hexahedra and tetrahedra, and these elements have %d nodes", ours[which],
-                       (int)node->columns);
     const quality_mesh mesh = {node->i32, node->columns, node->rows, rest->f64, NULL};
     if (make(to, true, node->rows, ours[which], "", e))
         return -1;

@@ -6,7 +6,6 @@
 #include "base/num.h"
 #include "model/known.h"
 #include "model/rest_place.h"
-#include "tools/info_quality.h"
 #include "tools/info_stats.h"
 
 #include <inttypes.h>
@@ -313,7 +312,7 @@ static int unknown_key(const source *s, const char *key, err *e)
 }
 
 /* Keys that are of no array. 1: it was none of these; -1: e filled. */
-static int put_plain(const source *s, const char *key, out *to, err *e)
+static int put_plain(const source *s, info_quality_seen *seen, const char *key, out *to, err *e)
 {
     if (!strcmp(key, "frames")) {
         out_format(to, "%" PRId64, s->frames);
@@ -331,15 +330,15 @@ static int put_plain(const source *s, const char *key, out *to, err *e)
             return 1;
         return put_volume_count(&s->body, v, to, e);
     } else {
-        return info_quality(s, key, to, e);
+        return info_quality(s, seen, key, to, e);
     }
     return 0;
 }
 
-int info_key(const source *s, const char *key, out *to, err *e)
+int info_key(const source *s, info_quality_seen *seen, const char *key, out *to, err *e)
 {
     query q = {.s = s, .key = key, .to = to};
-    int other = put_plain(s, key, to, e);
+    int other = put_plain(s, seen, key, to, e);
     if (other <= 0)
         return other;
     if (!find_array(&q))

@@ -5,10 +5,11 @@
 
 #include "base/out.h"
 #include "model/source.h"
+#include "tools/info_quality.h"
 
-/* Writes the value of the key, without a line end. Returns 0, or -1 with e filled: what is wrong with the key, and what
+/* Writes the value of the key, without a line end; seen: of keys before, in the same frame or others. Returns 0, or -1 with e filled: what is wrong with the key, and what
  * there is. */
-int info_key(const source *s, const char *key, out *to, err *e);
+int info_key(const source *s, info_quality_seen *seen, const char *key, out *to, err *e);
 
 /* The unit of the key's value, "" for counts, where it is a number or several of the frame read last. NULL with e filled: of
  * anything else. Borrowed from the source. */

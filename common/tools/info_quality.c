@@ -1,5 +1,6 @@
 #include "tools/info_quality.h"
 
+#include "mesh/element_place.h"
 #include "mesh/energy.h"
 #include "tools/info_stats.h"
 
@@ -25,15 +26,11 @@ const char *info_quality_unit(const char *key)
     return i == KEYS ? NULL : i == PLACE ? "m" : "";
 }
 
-static const quality_mesh none = {0};
-
-/* .node NULL: there are no elements of a kind that is known. */
+/* .node NULL: there are no elements. */
 static quality_mesh mesh_of(const source *s)
 {
     const model_array *node = model_find(&s->body, "element.node"), *rest = model_find(&s->body, "node.position");
-    if (!node || !rest || (node->columns != 8 && node->columns != 4))
-        return none;
-    return (quality_mesh){node->i32, node->columns, node->rows, rest->f64, NULL};
+    return node && rest ? (quality_mesh){node->i32, node->columns, node->rows, rest->f64, NULL} : (quality_mesh){0};
 }
 
 bool info_quality_look(const source *s, quality *to)
@@ -44,16 +41,6 @@ bool info_quality_look(const source *s, quality *to)
         return false;
     *to = quality_look(&m, u ? u->f64 : NULL, 0, m.elements);
     return true;
-}
-
-void info_quality_place(const source *s, int64_t element, double *place)
-{
-    const quality_mesh m = mesh_of(s);
-    memset(place, 0, 3 * sizeof *place);
-    for (int i = 0; i < 3 * m.corners; i++)
-        place[i % 3] += m.rest[3 * (int64_t)m.node[element * m.corners + i / 3] + i % 3];
-    for (int a = 0; a < 3; a++)
-        place[a] /= m.corners;
 }
 
 static int no_value(const source *s, const char *key, const char *why, err *e)
@@ -70,7 +57,7 @@ static int put_hourglass(const source *s, const char *key, out *to, err *e)
         return no_value(s, key, "the model has no frames; they come from tled-run", e);
     if (energy_of(&of, &s->body, &s->frame, &why))
         return no_value(s, key, why.text, e);
-    info_put_number(quality_hourglass(of.hourglass, of.strain), MODEL_F64, to);
+    info_put_number(quality_hourglass(of.hourglass, of.strain, of.scale), MODEL_F64, to);
     return 0;
 }
 
@@ -80,33 +67,45 @@ static int no_quality(const source *s, const char *key, err *e)
     const model_array *node = model_find(&s->body, "element.node");
     if (!node || !model_find(&s->body, "node.position"))
         return no_value(s, key, "the model has no elements; they come from voxelise, msds-mesh or sinew import", e);
-    if (node->columns != 8 && node->columns != 4)
-        return no_value(s, key, "its elements are neither hexahedra nor tetrahedra", e);
     return no_value(s, key, "the last frame has no node.displacement; it comes from tled-run or msds-run", e);
 }
 
-int info_quality(const source *s, const char *key, out *to, err *e)
+static bool look_once(const source *s, info_quality_seen *seen)
 {
-    quality q;
+    if (seen->looks != s->frames + 1) {
+        seen->looks = s->frames + 1;
+        seen->is_known = info_quality_look(s, &seen->of);
+    }
+    return seen->is_known;
+}
+
+static void put_place(const source *s, int64_t element, out *to)
+{
     double place[3];
+    element_place(&s->body, element, place);
+    for (int a = 0; a < 3; a++) {
+        out_text(to, a ? " " : "");
+        info_put_number(place[a], MODEL_F64, to);
+    }
+}
+
+int info_quality(const source *s, info_quality_seen *seen, const char *key, out *to, err *e)
+{
     const int i = which(key);
+    const quality *q = &seen->of;
     if (i == KEYS)
         return 1;
     if (i == HOURGLASS)
         return put_hourglass(s, key, to, e);
-    if (!info_quality_look(s, &q))
+    if (!look_once(s, seen))
         return no_quality(s, key, e);
-    if (i == PLACE && q.element < 0)
+    if ((i == ELEMENT || i == PLACE) && q->element < 0)
         return no_value(s, key, "the model has no elements", e);
     if (i == CENTRE || i == CORNER)
-        info_put_number(i == CENTRE ? q.centre : q.corner, MODEL_F64, to);
+        info_put_number(i == CENTRE ? q->centre : q->corner, MODEL_F64, to);
     if (i == FOLDED || i == ELEMENT)
-        out_format(to, "%" PRId64, i == FOLDED ? q.folded : q.element);
+        out_format(to, "%" PRId64, i == FOLDED ? q->folded : q->element);
     if (i == PLACE)
-        info_quality_place(s, q.element, place);
-    for (int a = 0; i == PLACE && a < 3; a++) {
-        out_text(to, a ? " " : "");
-        info_put_number(place[a], MODEL_F64, to);
-    }
+        put_place(s, q->element, to);
     return 0;
 }

@@ -7,14 +7,14 @@
 #include <string.h>
 
 /* A value's text, spaces made tabs. Returns how many values they are, or -1 with e filled. */
-static int put_values(const source *s, const char *key, out *to, err *e)
+static int put_values(info_series *series, const source *s, const char *key, out *to, err *e)
 {
     size_t size;
     int count = 1;
     out *text = out_memory(e);
     if (!text)
         return -1;
-    if (info_key(s, key, text, e)) {
+    if (info_key(s, &series->seen, key, text, e)) {
         out_discard(text);
         return -1;
     }
@@ -52,7 +52,7 @@ static int put_heading(info_series *series, const source *s, const opt_list *key
     out_text(to, "frame\ttime/s");
     for (int i = 0; i < keys->count && !e->status; i++) {
         const char *unit = info_key_unit(s, keys->value[i], e);
-        series->values[i] = unit ? put_values(s, keys->value[i], nothing, e) : -1;
+        series->values[i] = unit ? put_values(series, s, keys->value[i], nothing, e) : -1;
         if (series->values[i] > 0)
             put_names(keys->value[i], unit, series->values[i], to);
     }
@@ -70,7 +70,7 @@ int info_series_row(info_series *series, const source *s, const opt_list *keys, 
     for (int i = 0; i < keys->count; i++) {
         if (!info_key_unit(s, keys->value[i], e))
             return -1;
-        int values = put_values(s, keys->value[i], to, e);
+        int values = put_values(series, s, keys->value[i], to, e);
         if (values < 0)
             return -1;
         if (values != series->values[i])

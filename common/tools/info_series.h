@@ -6,9 +6,11 @@
 
 #include "base/opt.h"
 #include "model/source.h"
+#include "tools/info_quality.h"
 
 typedef struct info_series {
     int values[64]; /* how many each key has in a frame */
+    info_quality_seen seen;
 } info_series;
 
 /* Writes the row of the frame read last, and before the first the heading. -1 with e filled: a key that frames have no

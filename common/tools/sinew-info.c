@@ -1,6 +1,7 @@
 /* sinew-info: what a model holds, for people, as JSON, or one value at a time. */
 #include "base/num.h"
 #include "base/tool.h"
+#include "mesh/element_place.h"
 #include "model/known.h"
 #include "model/source.h"
 #include "tools/info_json.h"
@@ -188,15 +189,13 @@ static void put_displacement(const source *s, out *to)
 static void put_folded(const source *s, out *to)
 {
     quality q;
-    double place[3];
+    char where[ELEMENT_PLACE];
     if (!info_quality_look(s, &q) || !q.folded)
         return;
-    info_quality_place(s, q.element, place);
-    out_format(to, "  folded elements %" PRId64 ", the worst element %" PRId64 " at ", q.folded, q.element);
-    for (int a = 0; a < 3; a++) {
-        put_short(place[a], MODEL_F64, to);
-        out_text(to, a < 2 ? " " : ": J ");
-    }
+    element_place_text(&s->body, q.element, where);
+    out_format(to, "  folded elements %" PRId64 ", the worst ", q.folded);
+    source_put_text(where, to);
+    out_text(to, ": J ");
     put_short(q.worst, MODEL_F64, to);
     out_text(to, " at a corner\n");
 }
@@ -249,8 +248,9 @@ static int read_all(source *s, double *times, err *e)
 /* Nothing is written before all of it is known to be right. */
 static int put(const source *s, const double *times, const struct options *o, out *to, err *e)
 {
+    info_quality_seen seen = {0};
     for (int i = 0; i < o->get.count; i++) {
-        if (info_key(s, o->get.value[i], to, e))
+        if (info_key(s, &seen, o->get.value[i], to, e))
             return -1;
         out_text(to, "\n");
     }
@@ -270,7 +270,7 @@ static int put(const source *s, const double *times, const struct options *o, ou
 /* A row a frame, as frames come. */
 static int put_series(source *s, const opt_list *keys, out *to, err *e)
 {
-    info_series series = {{0}};
+    info_series series = {0};
     int got;
     while ((got = source_next(s, e)) > 0)
         if (info_series_row(&series, s, keys, to, e))

@@ -27,7 +27,7 @@ for d in 0.3 -0.25 -0.34 -0.5; do
 done
 is "$(get element "$T/pushed"); $(get place "$T/pushed" | awk '{ printf "%.12g %.12g %.12g", $1, $2, $3 }')" "1; 0.15 0.05 0.05" \
     "which is the worst, and where it rests"
-is "$(sinew info "$T/pushed" | grep folded)" "  folded elements 1, the worst element 1 at 0.15 0.05 0.05: J -0.5 at a corner" "the summary says so"
+is "$(sinew info "$T/pushed" | grep folded)" "  folded elements 1, the worst element 1 (volume 'skin') at 0.15m,0.05m,0.05m: J -0.5 at a corner" "the summary says so"
 if have python3; then
     is "$(sinew info --json "$T/pushed" | python3 -c 'import json, sys; q = json.load(sys.stdin)["last"]["quality"]; print(q["folded"], q["element"], q["j.corner"], q["j.centre"])')" \
         "1 1 -0.5 0.625" "and JSON"
@@ -50,6 +50,23 @@ is "$(get j.corner tests/golden/v1/tet.text)" "$(get j.centre tests/golden/v1/te
 } >"$T/twisted"
 near "$(get hourglass "$T/twisted")" "$(awk 'BEGIN { mu = 3000 / 2.9; wave = 3000 / .3 + 4 / 3 * mu; k = .0075 * wave * .001 * 150 / 8
     print k / 2 * (8 * .001) ^ 2 / (mu / 2 * .04 * .001) }')" 1e-9 "hourglass energy over strain energy"
+# Modes alone hold no strain: inf, wherever it is told. And where nothing but rounding is held, the share is 0.
+{
+    sed '/^end/d' "$T/rest"
+    awk 'BEGIN { print "frame 0 0\narray node.displacement f64 m node 3"
+        for (k = 0; k < 2; k++) for (j = 0; j < 2; j++) for (i = 0; i < 3; i++) print (i + j) % 2 ? "-.001 0 0" : ".001 0 0"
+        print "array node.velocity f64 m/s node 3"; for (n = 0; n < 12; n++) print "0 0 0"; print "end" }' /dev/null
+} >"$T/modes"
+check "modes alone" tled-run -d cpu -t 0 --log "$T/log" -o "$T/out" <"$T/modes"
+is "$(get hourglass "$T/out") $(tail -n 1 "$T/log" | cut -f 24) $(sed -n 's/.*; hourglass energy \(.*\) of strain energy$/\1/p' "$T/stderr")" \
+    "inf inf inf %" "the share is inf, in a frame, the log and the line at the end"
+is "$(grep -c 'warning: hourglass energy is inf % of strain energy at the end' "$T/stderr")" 1 "and that is warned of"
+awk -v nx=10 -v ny=4 -v nz=4 -v h=0.0025 -v held=low -f tests/cli/block.awk >"$T/block"
+for g in 1e-9 1e-7 1e-6; do
+    check "a weight of $g m/s2" tled-run -d cpu -g 0,0,-$g -t .05 --log "$T/log" -o "$T/out" <"$T/block"
+    is "$(get hourglass "$T/out") $(tail -n 1 "$T/log" | cut -f 24) $(sed -n 's/.*; hourglass energy \(.*\) of strain energy$/\1/p' "$T/stderr")" \
+        "0 0 0 %" "strain of that size is rounding: no share of it"
+done
 fails 1 "of a run that does not say its coefficient" "quality.hourglass': hourglass energy is not known: the model has no metadata hourglass.kappa; it comes from tled-run" \
     sinew info --get quality.hourglass "$T/pushed"
 fails 1 "without frames" "quality.hourglass': the model has no frames" sinew info --get quality.hourglass "$T/rest"
@@ -57,6 +74,10 @@ fails 1 "of tetrahedra" "of hexahedra, and these elements have 4 nodes" sinew in
 for kappa in nan -1 inf '' '1 2' x; do
     sed "s/^meta hourglass.kappa.*/meta hourglass.kappa \"$kappa\"/" "$T/twisted" >"$T/bad"
     fails 1 "a coefficient of '$kappa'" 'hourglass.kappa' sinew info --get quality.hourglass "$T/bad"
+done
+awk -v nx=0 -v ny=1 -v nz=1 -v h=0.1 -f tests/cli/block.awk >"$T/flat"
+for key in element place; do
+    fails 1 "quality.$key of 0 elements" "quality.$key': the model has no elements\$" sinew info --get quality.$key "$T/flat"
 done
 fails 1 "no elements" "quality.folded': the model has no elements; they come from voxelise" sinew info --get quality.folded tests/golden/v1/empty.text
 fails 1 "a slip" "did you mean 'quality.j.centre'" sinew info --get quality.j.center "$T/rest"
@@ -122,12 +143,29 @@ check "a run that is killed" sh -c "tled-run -q -d cpu --script '$T/script' -t .
 check "and goes on" tled-run -q -d cpu --script "$T/script" -t .3 --every .02 --restart "$T/state" -o "$T/out" <"$T/muscle"
 is "$(grep -Fc "in $(cat "$T/want")" "$T/stderr")" 1 "says the same of all frames, with those from before"
 awk -v nx=6 -v ny=2 -v nz=1 -v h=0.005 -v held=low -f tests/cli/block.awk >"$T/thin"
+printf '0 gravity 0,0,0\n.05 gravity 0,0,-200\n.1 gravity 0,0,-200\n.15 gravity 0,0,0\n' >"$T/script"
+set -- -d cpu --damping 40 --script "$T/script" -t .6 --every .004
+check "a strip that is let go" tled-run "$@" -o "$T/out" <"$T/thin"
+is "$(get hourglass "$T/out" | awk '{ print ($1 > 1) }')$(grep -c 'warning: hourglass' "$T/stderr")" 10 "its modes are most of what is left, and little of what there was"
+check "killed after that" sh -c "tled-run -q $* --checkpoint '$T/state' --checkpoint-every .25 <'$T/thin' | head -c 200000 >/dev/null; test -e '$T/state'"
+check "and gone on" tled-run "$@" --restart "$T/state" -o "$T/out" <"$T/thin"
+is "$(grep -c 'warning: hourglass' "$T/stderr")" 0 "it is still little of what there was"
 check "a strip one element thick that bends" tled-run -d cpu -g 0,0,-9.81 -t .1 -o "$T/out" <"$T/thin"
 share=$(get hourglass "$T/out" | awk '{ printf "%.3g", 100 * $1 }')
 is "$(grep -Ec "warning: hourglass energy is $share % of strain energy at the end, expected at most 10 %: .* element [0-9]* \(volume 'skin'\) at .*m,.*m,.*m holds the most of it, .*; expected smaller voxels\$" "$T/stderr")" \
     1 "is past 10 %: $share %"
 tled-run -q -d cpu --hourglass .1 -g 0,0,-9.81 -t .1 -o "$T/out" <"$T/thin" 2>"$T/said"
 is "$(grep -c 'expected smaller voxels, or a smaller --hourglass$' "$T/said")" 1 "where --hourglass is large, that is told too"
+printf '0 force 0.03,0.01,0.005 1mm 0,0,0\n.05 force 0.03,0.01,0.005 1mm 0,0,-.02\n' >"$T/script"
+check "one corner of it pushed" tled-run -q -d cpu --script "$T/script" -t .1 -o "$T/out" <"$T/thin"
+is "$(grep -c 'hourglass energy is [0-9]* %' "$T/stderr")$(grep -c 'folded at the end.*expected less load or contraction there$' "$T/stderr")" 11 \
+    "where it folds elements at a share past 10 %, no larger --hourglass is advised"
+printf '.06 force 0.03,0.01,0.005 1mm 0,0,0\n' >>"$T/script"
+tled-run -q -d cpu --script "$T/script" -t .2 --every .05 -o "$T/out" <"$T/thin" 2>"$T/said"
+is "$(grep -c 'folded on the way.*expected less load or contraction there$' "$T/said")" 1 "nor of frames on the way"
+sed -i 's/-.02$/-.08/' "$T/script"
+tled-run -q -d cpu --hourglass .02 --script "$T/script" -t .05 -o "$T/out" <"$T/thin" 2>"$T/said"
+is "$(grep -c 'folded at the end' "$T/said")$(grep -c 'expected smaller voxels$' "$T/said")" 11 "nor a smaller one, which would fold more"
 check "four elements thick" sh -c "awk -v nx=24 -v ny=8 -v nz=4 -v h=0.00125 -v held=low -f tests/cli/block.awk | tled-run -d cpu -g 0,0,-9.81 -t .1 -o '$T/out'"
 is "$(grep -c warning "$T/stderr")" 0 "it is not ($(get hourglass "$T/out")): smaller voxels do help"
 printf '*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,.3,.3,.3\n8,0,1,1\n*ELEMENT,TYPE=C3D8R,ELSET=a\n1,1,2,3,4,5,6,7,8\n*NSET,NSET=low\n1,2,3,4\n*BOUNDARY\nlow,1,3\n' |
@@ -135,6 +173,9 @@ printf '*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,.3,.3,.3\
 tled-run -q -d cpu -g 0,0,-1 -n 20 -o "$T/out" <"$T/inside" 2>"$T/said"
 is "$(grep -c "the worst is element 0 (volume 'a') at .*, inside out at a corner at rest already: .*; expected a mesh without such elements$" "$T/said")$(get folded "$T/out")" 11 \
     "an element that is folded as it came is told apart"
+fails 3 "a run that diverges" 'diverged at step' tled-run -d cpu -c all=1 -t .1 --dt .000145 --every .0005 -o "$T/none" <"$T/muscle"
+is "$(sed -n "s/^tled-run: the last frame, at 0.0[0-9]* s: $line\$/told/p" "$T/stderr")" told "tells of the last frame before"
+is "$(grep -c 'warning: [0-9]* of 160 elements are folded at 0.0[0-9]* s, in the last frame, and some in [0-9]* of [0-9]* frames' "$T/stderr")" 1 "and of what it folded"
 check "a run in which nothing happens" tled-run -d cpu -n 3 -o "$T/out" <"$T/muscle"
 is "$(sed -n "s/.*\(smallest.*\)/\1/p" "$T/stderr"); $(grep -c warning "$T/stderr"); $(get hourglass "$T/out")" \
     "smallest J 1 in the middle of an element, 1 at a corner; 0 folded; hourglass energy 0 % of strain energy; 0; 0" "has nothing to warn of"

@@ -58,11 +58,11 @@ done
 # ---- Cuts.
 check "a muscle that contracts fully" run -c all=1 -t 0.1 --log "$T/log"
 is "$(said 'each step is cut')" 1 "a step that is cut is told of once"
-is "$(said "^tled-run: at 0\.0[0-9]* s each step is cut in 2, to 0\.1136 ms: element [0-9]+ \(volume 'muscle_all', at [0-9.]+mm,[0-9.]+mm,[0-9.]+mm\) has a stable step of 0\.2[0-9]* ms$")" 1 \
+is "$(said "^tled-run: at 0\.0[0-9]* s each step is cut in 2, to 0\.1136 ms: element [0-9]+ \(volume 'muscle_all'\) at [0-9.]+m,[0-9.]+m,[0-9.]+m has a stable step of 0\.2[0-9]* ms$")" 1 \
     "when, how far, where, and why"
 element=$(sed -n 's/.*: element \([0-9]*\) .*/\1/p' "$T/stderr")
-is "$(sed -n 's/.*, at \(.*\)) has.*/\1/p' "$T/stderr")" \
-    "$(awk -v e="$element" 'BEGIN { printf "%gmm,%gmm,%gmm", 2.5 * (e % 12) + 1.25, 2.5 * (int(e / 12) % 4) + 1.25, 2.5 * int(e / 48) + 1.25 }')" "the place is the element's"
+is "$(sed -n 's/.*) at \(.*\) has.*/\1/p' "$T/stderr")" \
+    "$(awk -v e="$element" 'BEGIN { printf "%.4gm,%.4gm,%.4gm", .0025 * (e % 12) + .00125, .0025 * (int(e / 12) % 4) + .00125, .0025 * int(e / 48) + .00125 }')" "the place is the element's"
 is "$(said 'steps were cut, in up to 2: [0-9]+ were taken for 440$')" 1 "and at the end, with what it took"
 at=$(sed -n 's/.*at \([0-9.]*\) s each.*/\1/p' "$T/stderr")
 # shellcheck disable=SC2016 # for awk
@@ -74,7 +74,7 @@ is "$(said 'each step is cut')" 1 "one line, however often it was tried"
 is "$(said "at 0\.01 s each step is cut in (8|16|32|64), to .* ms: element [0-9]+ .* was inverted or not finite after longer ones")" 1 "says what broke"
 printf '0 contract all 0\n.02 contract all 1\n.05 contract all 1\n.06 contract all 0\n.1 contract all 0\n.12 contract all 1\n' >"$T/twice"
 check "a cut that ends and comes again" run --script "$T/twice" -t 0.15 -v
-is "$(said 'each step is cut in 2,') $(said 'each step is taken in 2 from now on')" "1 2" "is told of once, but with -v"
+is "$(said 'each step is cut in 2,') $(said 'each step is taken in 2 from now on')" "1 1" "is told of once, but with -v: each time once"
 check "no cut" run -c all=0.1 -t 0.1
 is "$(said 'cut')" 0 "no word of it"
 done_testing

@@ -96,7 +96,8 @@ static void key(const source *s, const char *text)
 {
     err e = {0};
     out *to = out_memory(&e);
-    int status = to ? info_key(s, text, to, &e) : -1;
+    info_quality_seen seen = {0};
+    int status = to ? info_key(s, &seen, text, to, &e) : -1;
     must((status != 0) == (*e.text != '\0'));
     out_discard(to);
 }
