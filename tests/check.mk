@@ -152,10 +152,10 @@ bench-fraction: all
 clang:
 	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/clang BIN=$(BUILD)/clang/bin all unit
 
-# A sanitizer's complaint is exit status 99, which no test expects.
+# A sanitizer's complaint is exit status 99, which no test expects. An allocation that is too large is refused, as it is without.
 SANITIZE = -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 sanitize:
-	ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=exitcode=99:print_stacktrace=1 SINEW_SANITIZED=1 \
+	ASAN_OPTIONS=exitcode=99:allocator_may_return_null=1 UBSAN_OPTIONS=exitcode=99:print_stacktrace=1 SINEW_SANITIZED=1 \
 	    $(MAKE) $(JOBS) BUILD=$(BUILD)/sanitize BIN=$(BUILD)/sanitize/bin CFLAGS='$(SANITIZE)' CUDA=no $(SANITIZE_GOAL)
 SANITIZE_GOAL = check-tests
 

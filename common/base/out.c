@@ -317,8 +317,11 @@ int out_close(out *o, err *e)
         *e = o->failed;
     if (!bad && o->kept) {
         bad = replace_settle(&o->file, o->name, e);
-        *o->kept = bad ? (replace){0} : o->file;
-        o->file = bad ? o->file : (replace){0};
+        *o->kept = (replace){0};
+        if (!bad) {
+            *o->kept = o->file;
+            o->file = (replace){0};
+        }
         o->fd = -1;
     } else if (!bad && o->file.target) {
         bad = replace_finish(&o->file, o->name, e);

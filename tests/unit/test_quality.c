@@ -130,7 +130,8 @@ static void test_none(void)
         ok(isnan(j.centre) && isnan(j.corner) && quality_is_folded(j), "a displacement that is no number");
     }
     u[20] = 0;
-    memcpy(rest, rest + 3, 3 * sizeof *rest);
+    for (int a = 0; a < 3; a++)
+        rest[a] = rest[3 + a];
     quality_j j = quality_of(&any, 0, u);
     ok(j.centre == 1 && isnan(j.corner) && quality_is_folded(j), "two corners in one place at rest");
     memset(rest, 0, sizeof rest);
