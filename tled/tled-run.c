@@ -421,11 +421,10 @@ static void say_between(const session *s, const char *option, const char *what, 
 {
     const run_setup *r = &s->run;
     const double rate = r->rate, start = s->problem.start, origin = run_plan(start, rate).origin;
+    const double end = isfinite(r->end) ? r->end : start + (double)r->steps / rate, last = end - 1e-6 / rate - origin;
     if (every == 0)
         return;
-    const double end = (isfinite(r->end) ? r->end : start + (double)r->steps / rate) - origin;
     const double first = (floor(start / every) + 1) * every - origin;
-    const double last = end - 1e-6 / rate;
     if (every * rate < 1)
         tool_say(s->t, "%s %g s is shorter than a step: a %s a step", option, every, what);
     else if ((first < last && run_is_between(first, rate)) || (first + every < last && run_is_between(every, rate)))
@@ -437,8 +436,7 @@ static void say_between(const session *s, const char *option, const char *what, 
 static void say_folds(session *s, const run_end *end, bool ended)
 {
     char folded[FOLDS_TEXT];
-    err lost = {0};
-    if (!s->folds.frames || out_failed(s->stage.sink, &lost))
+    if (!s->folds.frames || out_failed(s->stage.sink, &(err){0}))
         return;
     folds_text(&s->folds, ended, folded);
     tool_say(s->t, "%s", folded);
