@@ -229,6 +229,24 @@ check "frames" attach --text -o "$T/out" <tests/cli/small.sinew
 is "$(grep -c '^frame' "$T/out") $(grep -c '2 frames' "$T/stderr")" "0 1" "are dropped, and it is said"
 
 
+# A cube, which has no longest axis, and whose elements are held or not.
+. tests/cli/boxes.sh
+for high in 4 18; do
+    {
+        box skin 0 0 0 40 40 40
+        box muscle_m 10 10 10 30 30 30
+        box skull 0 0 0 40 40 $high
+    } >"$T/cube.obj"
+    voxelise -q --unit mm -s 10 "$T/cube.obj" 2>"$T/said" >"$T/cube$high"
+done
+is "$(attach --fibre axis <"$T/cube4" 2>&1 >"$T/x")" "attach: warning: muscle_m has no axis that is the longest: 8 of its 8 elements have \
+no fibre and will not contract; --fibre field needs no axis" "a cube has no axis, which is told with what helps"
+is "$(attach --fibre field <"$T/cube4" 2>&1 >"$T/out")" "" "and does help"
+is "$(tled-run -q -d cpu --ramp 0 -c m=0.1 -n 10 <"$T/out" 2>&1 | sinew info --get node.displacement.max | awk '{ print ($1 > 1e-6) }')" 1 "it contracts"
+is "$(attach --strictness 1 <"$T/cube18" 2>&1 >"$T/x")" "attach: warning: muscle_m has no node that is free: it will not contract; smaller \
+voxels or a lower --strictness may leave some free" "one whose nodes are all held"
+is "$(attach --strictness 0.75 <"$T/cube18" 2>&1 >"$T/x")" "" "has some with a lower --strictness"
+
 if [ ! "$DATA" ]; then
     skip 10 "no shared data"
     done_testing
