@@ -33,7 +33,8 @@ typedef struct block {
 static int take_raw(item_source *s, void *to, size_t size, err *e)
 {
     int64_t got = in_read(s->s, to, size, e);
-    return got < 0 ? -1 : (size_t)got < size ? item_cut(s, e) : 0;
+    s->stopped = got < 0 || (size_t)got < size;
+    return got < 0 ? -1 : s->stopped ? item_cut(s, e) : 0;
 }
 
 /* Exactly size bytes of the payload. */
@@ -213,10 +214,12 @@ static int find_kind(const block *b, err *e)
 
 static int binary_read(item_source *s, item *it, err *e)
 {
-    unsigned char head[HEAD];
+    unsigned char head[HEAD] = {0};
     uint32_t crc;
     it->at = ++s->blocks;
-    if (take_raw(s, head, HEAD, e))
+    const int cut = take_raw(s, head, HEAD, e);
+    s->within = (char)head[0];
+    if (cut)
         return -1;
     memcpy(it->block.type, head, 4);
     memcpy(&it->block.flags, head + 4, sizeof it->block.flags);

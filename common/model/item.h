@@ -54,6 +54,8 @@ struct item_source {
     model axes;     /* the axes so far, and nothing else: arrays take their rows from here */
     int64_t blocks; /* binary: blocks begun */
     char *held;     /* text: a line that was looked at and not taken; NULL: none */
+    bool stopped;   /* it gave no more bytes where an item was to begin or go on */
+    char within;    /* the first character of the item last begun; 0: of none, the stream stopped before it */
 };
 
 void item_free(item *it);

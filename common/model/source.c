@@ -43,6 +43,8 @@ static int open_and_read(source *s, const char *path, err *e)
         return -1;
     s->text = first == '%';
     s->reader = model_reader_open(s->stream, e);
+    if (s->reader && s->offers)
+        model_reader_give_cut(s->reader);
     if (s->reader && !model_read(s->reader, &s->body, e))
         return 0;
     tell(s, e);

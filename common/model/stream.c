@@ -11,6 +11,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,6 +34,8 @@ struct model_reader {
     item_source from;
     item next; /* read, not yet taken, where `waiting` */
     bool waiting, ended;
+    bool gives_cut;  /* see model_reader_give_cut */
+    err cut;         /* of the next frame: the stream was cut behind the one that was given */
     int64_t *places; /* where the body's arrays stood: lines or blocks */
     int64_t place_capacity;
     pattern pattern;
@@ -138,6 +141,11 @@ void model_reader_close(model_reader *r)
     pattern_free(&r->pattern);
     free(r->places);
     free(r);
+}
+
+void model_reader_give_cut(model_reader *r)
+{
+    r->gives_cut = true;
 }
 
 /* The stream said `end` or `fail`: nothing may follow. */
@@ -307,13 +315,37 @@ static int add_frame_array(model_reader *r, const model *m, frame *f, item *it, 
     return model_arrays_take(&f->arrays, &it->array, e) ? 0 : -1;
 }
 
+/* Whether a failed look shows the first frame to be whole, as far as the stream tells: it stopped behind an array, or within an item
+ * that is none. All encodings' names of what may follow a frame begin so. */
+static bool is_whole(const model_reader *r, const frame *f)
+{
+    return r->gives_cut && !r->pattern.set && f->arrays.count && r->from.stopped &&
+           (!r->from.within || strchr("FEfe", r->from.within));
+}
+
+/* The error waits for the next frame. */
+static void keep_cut(model_reader *r, const frame *f, err *e)
+{
+    const size_t n = strlen(e->text);
+    const int count = f->arrays.count;
+    if (!r->from.within)
+        snprintf(e->text + n, sizeof e->text - n,
+                 " (the first frame has %d array%s before that, and may have had more)", count, count == 1 ? "" : "s");
+    r->cut = *e;
+    *e = (err){0};
+}
+
 /* The arrays of a frame whose heading was taken. From the second frame on their number is known, so that a frame is
  * given out when its last array is there, and not only when the next frame comes. */
 static int read_frame_arrays(model_reader *r, const model *m, frame *f, int64_t at, err *e)
 {
     while (!r->pattern.set || f->arrays.count < r->pattern.count) {
-        if (look(r, e))
-            return -1;
+        if (look(r, e)) {
+            if (!is_whole(r, f))
+                return -1;
+            keep_cut(r, f, e);
+            break;
+        }
         if (r->next.kind != ITEM_ARRAY)
             break;
         r->waiting = false;
@@ -336,6 +368,10 @@ int model_read_frame(model_reader *r, const model *m, frame *f, err *e)
     frame_free(f);
     if (r->ended)
         return 0;
+    if (r->cut.status) {
+        *e = r->cut;
+        return -1;
+    }
     if (look(r, e))
         return -1;
     item *it = &r->next;

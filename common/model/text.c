@@ -26,6 +26,7 @@ static int next_line(item_source *s, char **line, err *e)
         return 1;
     }
     int64_t n = in_line(s->s, line, &ended, e);
+    s->stopped = n == -1 || (n >= 0 && !ended);
     if (n < 0)
         return n == -1 ? 0 : -1;
     return ended ? 1 : item_cut(s, e);
@@ -274,8 +275,10 @@ enum { KEYWORDS = sizeof keywords / sizeof *keywords };
 
 static int text_read(item_source *s, item *it, err *e)
 {
-    char *line;
-    if (need_line(s, &line, e))
+    char none[] = "", *line = none;
+    const int cut = need_line(s, &line, e);
+    s->within = *text_blanks(line);
+    if (cut)
         return -1;
     it->at = in_lines(s->s);
     const char *key = text_word(&line);

@@ -46,6 +46,16 @@ salvaged "of text" 3 cut.text rows --salvage cut.text
 first
 fails 1 "of gzip" "cut.gz: salvaged [1-4] frames.*gzip data is cut short" rows --salvage cut.gz
 first
+second=$(grep -abo '^frame 1 ' film.text | cut -d: -f1)
+head -c "$second" film.text >edge
+salvaged "of the first frame alone" 1 edge rows --salvage edge
+cp stderr told
+first
+check "and that it may have had more" grep -q '(the first frame has [0-9]* arrays before that, and may have had more)$' told
+head -c "$((second + 3))" film.text >within
+salvaged "some bytes into the second" 1 within rows --salvage within
+first
+fails 1 "which is offered" "cut short; .*; --salvage takes the 1 frame before that$" sinew info within
 is "$(sinew info --salvage film 2>&1 | cmp - /dev/stdin 2>&1 <<X
 $(sinew info film)
 X

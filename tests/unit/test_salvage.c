@@ -1,5 +1,6 @@
 /* What --salvage takes of a stream that is cut at each of its bytes, damaged, or ended by `fail`, in either encoding: every frame that is whole
- * before that, as it was written, and nothing else. The first frame is whole where something follows it: before, more arrays could.
+ * before that, as it was written, and nothing else. Of the first frame nothing says how many arrays it has: cut right behind one, it is
+ * taken with those before the cut.
  */
 #include "model/source.h"
 
@@ -11,14 +12,14 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { FRAMES = 4, NODES = 5 };
+enum { FRAMES = 4, NODES = 5, PART = 100 }; /* PART: one frame, with its first array alone */
 
 /* A stream, and where its parts end. */
 typedef struct made {
     unsigned char bytes[16384];
     size_t size;
     size_t first;        /* the end of the first frame's heading: the body is known to be whole from here on */
-    size_t second;       /* the end of what follows the first frame */
+    size_t part[2];      /* the end of the first array of the first frame, without its checksum's line and with it */
     size_t end[FRAMES];  /* of each frame */
     size_t bare[FRAMES]; /* text: and where its last line, a checksum, is not needed */
 } made;
@@ -42,12 +43,14 @@ static void put_frame(model_writer *w, const model *m, int k, err *e)
     frame_free(&f);
 }
 
-/* The end of the item that begins at a byte. */
-static size_t item_end(const made *s, size_t at, bool text)
+/* The end of the item of some lines of text that begins at a byte. */
+static size_t item_end(const made *s, size_t at, bool text, int lines)
 {
     uint64_t length;
+    while (text && lines--)
+        at += strcspn((const char *)s->bytes + at, "\n") + 1;
     if (text)
-        return at + strcspn((const char *)s->bytes + at, "\n") + 1;
+        return at;
     memcpy(&length, s->bytes + at + 8, sizeof length);
     return at + 16 + (size_t)length + 4;
 }
@@ -75,8 +78,9 @@ static void make(made *s, bool text, const char *fail, err *e)
         model_write_end(w, e);
     const unsigned char *bytes = out_bytes(o, &s->size);
     memcpy(s->bytes, bytes, s->size < sizeof s->bytes ? s->size : sizeof s->bytes - 1);
-    s->first = item_end(s, body, text);
-    s->second = item_end(s, s->end[0], text);
+    s->first = item_end(s, body, text, 1);
+    s->part[0] = item_end(s, s->first, text, 1 + NODES);
+    s->part[1] = item_end(s, s->first, text, 1 + NODES + 1);
     model_writer_close(w);
     out_discard(o);
     model_free(&m);
@@ -86,17 +90,18 @@ static void make(made *s, bool text, const char *fail, err *e)
 static int salvage(const char *path, err *e)
 {
     source s = {0};
-    int count = -1;
+    int count = -1, parts = 0;
     if (!source_open_part(&s, path, true, e)) {
         bool same = true;
         for (count = 0; source_next(&s, e) > 0; count++) {
             const model_array *u = source_find(&s, "node.displacement"), *v = source_find(&s, "node.velocity");
-            same = same && u && v && s.frame.index == 2 * count && fabs(s.frame.time - .1 * count) < 1e-15;
+            same = same && u && (v || !count) && s.frame.index == 2 * count && fabs(s.frame.time - .1 * count) < 1e-15;
             for (int i = 0; same && i < 3 * NODES; i++)
-                same = u->f64[i] == value_of(count, i, false) && v->f64[i] == value_of(count, i, true);
+                same = u->f64[i] == value_of(count, i, false) && (!v || v->f64[i] == value_of(count, i, true));
+            parts += !v;
         }
         source_end(&s, e);
-        count = same ? count : -2;
+        count = !same ? -2 : parts && count == 1 ? PART : count;
     }
     source_close(&s);
     return count;
@@ -107,8 +112,8 @@ static int expected(const made *s, size_t size)
     int count = 0;
     if (size < s->first)
         return -1;
-    if (size < s->second)
-        return 0;
+    if (size == s->part[0] || size == s->part[1])
+        return PART;
     while (count < FRAMES && (size >= s->end[count] || size == s->bare[count]))
         count++;
     return count;
