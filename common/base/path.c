@@ -113,7 +113,8 @@ bool path_is_same(const char *a, const char *b)
 bool path_is_open(const char *path, int fd)
 {
     struct stat s, t;
-    return !stat(path, &s) && S_ISREG(s.st_mode) && !fstat(fd, &t) && is_one(&s, &t);
+    return !stat(path, &s) && (S_ISREG(s.st_mode) || S_ISFIFO(s.st_mode) || S_ISSOCK(s.st_mode)) && !fstat(fd, &t) &&
+           is_one(&s, &t);
 }
 
 static bool is_within(const char *folder, const char *file)

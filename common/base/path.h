@@ -28,7 +28,7 @@ int path_look(const char *path, struct stat *s, err *e);
 /* Whether two paths are of one regular file, by whatever links, or would be once it is there. */
 bool path_is_same(const char *a, const char *b);
 
-/* Whether the path is of the regular file that is open at fd. */
+/* Whether the path is of the regular file, pipe or socket that is open at fd. Devices may be read and written at once. */
 bool path_is_open(const char *path, int fd);
 
 #endif

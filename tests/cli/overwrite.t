@@ -57,8 +57,19 @@ kept "--log to a file of the checkpoint" "--checkpoint 'new.frames' would overwr
 run --log out >>out <model 2>err
 is "$? $(cat err)" "2 tled-run: --log 'out' would overwrite what goes to standard output; expected another file" "--log to standard output"
 is "$(find . -name 'zz*' -o -name 'new*' -o -name 'state*')" "" "nothing is made"
+kept "--log to a pipe that standard output goes to" "^tled-run: --log '/dev/stdout' would overwrite what goes to standard output; expected another file$" \
+    sh -c 'tled-run -q -d cpu -n 3 --log /dev/stdout <model 2>err | cat >mixed; cat err >&2; test ! -s err || exit 2'
+kept "to one that standard input comes from" "^tled-run: --log '/dev/stdin' would overwrite what is read on standard input; expected another file$" \
+    sh -c 'cat model | tled-run -q -d cpu -n 3 --log /dev/stdin -o zz'
+mkfifo fifo
+kept "to one with a name" "^tled-run: --log 'fifo' would overwrite what is read on standard input; expected another file$" \
+    sh -c 'cat model >fifo & tled-run -q -d cpu -n 3 --log fifo -o zz <fifo'
+kept "to a socket" "^tled-run: --log '/dev/stdin' would overwrite what is read on standard input; expected another file$" \
+    python3 -c 'import socket, subprocess, sys
+sys.exit(subprocess.run("tled-run -q -d cpu -n 3 --log /dev/stdin -o zz".split(), stdin=socket.socketpair()[0]).returncode)'
 check "-o may name standard input" sh -c 'cp model own && tled-run -q -d cpu -n 3 -o own <own && sinew info --get axis.node own'
 check "devices are no files" run --log /dev/null -o /dev/null <model
+check "a pipe of its own" sh -c 'tled-run -q -d cpu -n 3 --log /dev/stderr -o zz 2>&1 <model | grep -q kinetic'
 check "a log by descriptor" sh -c 'tled-run -q -d cpu -n 3 --log /dev/fd/3 -o zz 3>rows <model && grep -q kinetic rows'
 rm zz
 
