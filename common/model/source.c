@@ -92,7 +92,8 @@ void source_end(const source *s, err *e)
     else if (first)
         err_set(e, name, 0, "salvaged the model, and no frame");
     why += !strncmp(why, name, n) && !strncmp(why + n, ": ", 2) ? n + 2 : 0;
-    add(e, "; reading stopped at byte %" PRId64 ": %s", in_taken(s->stream), why);
+    add(e, "; reading stopped at byte %" PRId64 "%s: %s", in_taken(s->stream),
+        in_is_gzip(s->stream) ? " of what gunzip gives" : "", why);
 }
 
 int source_next(source *s, err *e)
