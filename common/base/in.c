@@ -227,8 +227,8 @@ int64_t in_taken(const in *s)
     return s->taken;
 }
 
-/* What is much goes where it is wanted, past the empty buffer. Returns how many bytes came; `ended` is set where nothing
- * more does. */
+/* Reads straight into the caller's memory: a large read needs no buffer, which is empty here. Returns how many bytes came; sets
+ * `ended` where none did. */
 static int64_t fetch_past(in *s, void *bytes, size_t size, err *e)
 {
     int64_t n = fetch(s, bytes, size < CHUNK ? size : CHUNK, e);

@@ -153,7 +153,7 @@ int replace_settle(replace *r, const char *name, err *e)
     return copy >= 0 && close(copy) && errno != EINTR ? err_system(e, name, errno, "cannot write") : 0;
 }
 
-/* What a file system that has files without names may say when one is to get one. */
+/* Whether link(2) failed because the file system cannot give a name to a nameless file; other errors are errors. */
 static bool is_refusal(int code)
 {
     return code == EPERM || code == EXDEV || code == EOPNOTSUPP || code == ENOSYS || code == EINVAL || code == ENOENT;

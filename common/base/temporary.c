@@ -28,7 +28,7 @@ static struct {
     } swept[FOLDERS];
     int64_t sweeps;
     atomic_llong number; /* of the next name */
-    atomic_flag busy;    /* someone has the list; who ends the process keeps it */
+    atomic_flag busy; /* a thread uses the list. One that ends the process never clears it: the list stays as it is */
 } list = {.busy = ATOMIC_FLAG_INIT};
 
 /* All that end a process from outside and can be caught. */
