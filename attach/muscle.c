@@ -166,7 +166,8 @@ static bool can_move(const body *b, int64_t element)
     return false;
 }
 
-/* What of a muscle will not contract: elements `without` a fibre, and those that are `still`, with rigid nodes alone. */
+/* What of a muscle will not contract: elements `without` a fibre, and those that are `still`, with rigid nodes
+ * alone. */
 static void warn_of(const muscle *m, muscle_fibre kind, int64_t without, int64_t still, notes *warnings)
 {
     if (!m->elements)

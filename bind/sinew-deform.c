@@ -139,8 +139,8 @@ static int hold(mover *w, const tool *t, double within, err *e)
     return 0;
 }
 
-/* A surface that is carried and not bound may be a skin, which frames move themselves: the one of that name, or, where the model has none of
- * it, one that is this OBJ. */
+/* A surface that is carried and not bound may be a skin, which frames move themselves: the one of that name, or, where
+ * the model has none of it, one that is this OBJ. */
 static int as_skin(mover *w, const model *m, const char *name, err *e)
 {
     surface s;

@@ -60,7 +60,8 @@ typedef struct msds_doing {
     int64_t contacts; /* nodes near the probe */
 } msds_doing;
 
-/* Who is told of it, as it goes on, by the thread that steps. The card's exact frames are one launch, and tell nothing. */
+/* Who is told of it, as it goes on, by the thread that steps. The card's exact frames are one launch, and tell
+ * nothing. */
 typedef struct msds_watch {
     void (*at)(void *context, const msds_doing *doing);
     void *context;

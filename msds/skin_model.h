@@ -6,8 +6,8 @@
 
 #include "msds/skin.h"
 
-/* Carries the OBJ, its coordinates times scale, as the surface of its base name (or of one that says nothing, where that is to be), unless the model
- * does so already; name gets that. */
+/* Carries the OBJ, its coordinates times scale, as the surface of its base name (or of one that says nothing, where
+ * that is to be), unless the model does so already; name gets that. */
 int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1],
                      notes *warnings, err *e);
 

@@ -15,7 +15,8 @@ static void put(err *e, size_t at, size_t length, const char *instead)
     snprintf(e->text + at, sizeof e->text - at, "%s%s", instead, rest);
 }
 
-/* From the first quote to the last, so that a quote in a name ends nothing. An apostrophe stands between letters, a quote does not. */
+/* From the first quote to the last, so that a quote in a name ends nothing. An apostrophe stands between letters, a
+ * quote does not. */
 static bool hide_quoted(err *e, size_t from)
 {
     char *first = strchr(e->text + from, '\''), *last = strrchr(e->text + from, '\'');

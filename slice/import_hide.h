@@ -1,5 +1,6 @@
-/* What us-import says of files without their names and contents, which may be of people: an error's place becomes a number or a word for the
- * file, and what stands between single quotes (names, words of a header) is left out. Keeps nothing.
+/* What us-import says of files without their names and contents, which may be of people: an error's place becomes a
+ * number or a word for the file, and what stands between single quotes (names, words of a header) is left out. Keeps
+ * nothing.
  */
 #ifndef SINEW_IMPORT_HIDE_H
 #define SINEW_IMPORT_HIDE_H

@@ -216,7 +216,8 @@ int samples_filter(float *value, const int64_t size[3], const double sigma[3], e
 
 /* ---- plane by plane */
 
-/* The planes around the one that is to be given, filtered along x and y, each in the place of its number modulo `count`. */
+/* The planes around the one that is to be given, filtered along x and y, each in the place of its number modulo
+ * `count`. */
 typedef struct ring {
     const int64_t *size;
     int64_t reach[3], count;

@@ -36,8 +36,9 @@ int64_t samples_labels(const volume *v, samples_label **list, err *e);
  */
 int samples_filter(float *value, const int64_t size[3], const double sigma[3], err *e);
 
-/* The same of planes across z that need not all be there at once: those of z `from` to `to` - 1 are given one after another, filtered, and no
- * plane is taken after one that is `samples_reach` before it was given. Takes samples_planes_bytes of memory. */
+/* The same of planes across z that need not all be there at once: those of z `from` to `to` - 1 are given one after
+ * another, filtered, and no plane is taken after one that is `samples_reach` before it was given. Takes
+ * samples_planes_bytes of memory. */
 typedef struct samples_planes {
     void (*take)(void *context, int64_t z, float *plane);
     void (*give)(void *context, int64_t z, const float *plane);

@@ -1,5 +1,6 @@
-/* Regions of a mask of voxels: what is joined, through faces of voxels, to a place. Masks are the caller's; the walk's memory, at most
- * 8 bytes for every REGION_SHARE voxels, is kept from one call to the next: voxels that it has no room for are marked, and found again.
+/* Regions of a mask of voxels: what is joined, through faces of voxels, to a place. Masks are the caller's; the walk's
+ * memory, at most 8 bytes for every REGION_SHARE voxels, is kept from one call to the next: voxels that it has no room
+ * for are marked, and found again.
  */
 #ifndef SINEW_SEGMENT_REGION_H
 #define SINEW_SEGMENT_REGION_H

@@ -98,8 +98,8 @@ static void lay_bricks(void *context, int64_t chunk, int64_t from, int64_t to)
     }
 }
 
-/* Layer by layer from the first: a layer of bricks is larger than its two of voxels, and the black one is free until the end; so that layer z
- * ends before voxels 2 z - 1 begin. */
+/* Layer by layer from the first: a layer of bricks is larger than its two of voxels, and the black one is free until
+ * the end; so that layer z ends before voxels 2 z - 1 begin. */
 static void lay(slice_cells *c, int64_t bytes, int64_t voxels, pool *threads)
 {
     const int64_t layers = bricks(c->size[2]);

@@ -1,10 +1,12 @@
-/* A volume laid out for sampling: 8 bits a voxel, in bricks, so that the eight voxels around a place lie within 16 bytes: a sample is one load.
- * A brick is two by two cells along y and z, so three by three voxels, all along x: 9 bytes for every 4 cells, 2.25 a voxel. Half a voxel
- * around the outermost centres belongs to the volume and goes on as they do, as the extent of a voxel has it; what lies beyond is black. Owns
- * its bricks, which are made in the volume's own memory.
+/* A volume laid out for sampling: 8 bits a voxel, in bricks, so that the eight voxels around a place lie within 16
+ * bytes: a sample is one load. A brick is two by two cells along y and z, so three by three voxels, all along x: 9
+ * bytes for every 4 cells, 2.25 a voxel. Half a voxel around the outermost centres belongs to the volume and goes on as
+ * they do, as the extent of a voxel has it; what lies beyond is black. Owns its bricks, which are made in the volume's
+ * own memory.
  *
- * Places are in cells: those of voxels (the centre of 0 0 0 is 0 0 0) plus 1; the volume is what lies within .5 and size + .5. Cell (x, y, z) is
- * between voxels x - 1 and x, and so on; voxels past the ends are those at the ends. Its bytes, from the first of the cell:
+ * Places are in cells: those of voxels (the centre of 0 0 0 is 0 0 0) plus 1; the volume is what lies within .5 and
+ * size + .5. Cell (x, y, z) is between voxels x - 1 and x, and so on; voxels past the ends are those at the ends. Its
+ * bytes, from the first of the cell:
  *
  *              x - 1           x
  *            y - 1   y     y - 1   y

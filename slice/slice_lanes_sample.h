@@ -51,7 +51,8 @@ INLINE __m512i four_cells(const uint8_t *byte, const uint32_t *at)
     return _mm512_inserti64x4(_mm512_castsi256_si512(cells(byte, at[0], at[4])), cells(byte, at[8], at[12]), 1);
 }
 
-/* Cells of pixels 0 1, 4 5, 8 9 and 12 13 of `at`: with those of 2 3 and so on, one shuffle brings halves in order. A gather is slower. */
+/* Cells of pixels 0 1, 4 5, 8 9 and 12 13 of `at`: with those of 2 3 and so on, one shuffle brings halves in order. A
+ * gather is slower. */
 INLINE __m512i words(const uint8_t *byte, const uint32_t *at)
 {
     const __m512i even = _mm512_broadcast_i32x4(_mm_setr_epi8(CELL_BYTES, NO_BYTES));

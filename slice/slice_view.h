@@ -41,8 +41,8 @@ enum { SLICE_COLUMNS = 512 };
 /* "512x400"; "512" or "x400", whose other side is 0: it follows from the first; NULL: SLICE_COLUMNS. */
 int slice_size_of(slice_size *s, const char *text, err *e);
 
-/* width: m, of the image; 0: the array's, or all of its fan. A side of size that is 0 becomes the even number (films want one) whose pixels
- * are nearest to squares. -1 with e filled: more than SLICE_SIDE_MOST, or no memory. */
+/* width: m, of the image; 0: the array's, or all of its fan. A side of size that is 0 becomes the even number (films
+ * want one) whose pixels are nearest to squares. -1 with e filled: more than SLICE_SIDE_MOST, or no memory. */
 int slice_view_make(slice_view *v, const slice_probe *p, slice_size size, double depth, double width, err *e);
 void slice_view_free(slice_view *v);
 

@@ -1,9 +1,9 @@
-/* Images going out: a stream of PGM or PPM (each flushed as it is done, so that whoever shows them is not behind), or a file each, PNG or
- * PGM or PPM by the name's end, each whole under its name as soon as it is done. A comment in PGM and PPM says where the image
- * lies: nine numbers, m: the centre of pixel 0 0, the step to the next column, and to the next row; and of a fan, after that word, four more:
- * how far above the first row its tip is, the radii of its face and its end (m), and the angle by which it opens (degrees). A PNG says how many
- * pixels a metre has.
- * The writer owns its stream; begin with a zeroed one.
+/* Images going out: a stream of PGM or PPM (each flushed as it is done, so that whoever shows them is not behind), or a
+ * file each, PNG or PGM or PPM by the name's end, each whole under its name as soon as it is done. A comment in PGM and
+ * PPM says where the image lies: nine numbers, m: the centre of pixel 0 0, the step to the next column, and to the next
+ * row; and of a fan, after that word, four more: how far above the first row its tip is, the radii of its face and its
+ * end (m), and the angle by which it opens (degrees). A PNG says how many pixels a metre has. The writer owns its
+ * stream; begin with a zeroed one.
  */
 #ifndef SINEW_SLICE_WRITE_H
 #define SINEW_SLICE_WRITE_H

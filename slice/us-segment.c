@@ -391,7 +391,8 @@ static int put_label(job *j, err *e)
     return volume_name(&j->labels, value, j->o->name, e);
 }
 
-/* The volume with its mask, and planes that are filtered; or, with the mask, what the walk holds, and the labels of 8 bits. */
+/* The volume with its mask, and planes that are filtered; or, with the mask, what the walk holds, and the labels of 8
+ * bits. */
 static double peak_of_volume(const volume *v, const void *context)
 {
     const job *j = context;

@@ -182,7 +182,8 @@ static int read_volume(job *j, const char *path, err *e)
     return e->status ? -1 : 0;
 }
 
-/* The array that pressed, as the model says it. 1: it makes no image, or none is known, and *p is as it was; why says which. -1: e filled. */
+/* The array that pressed, as the model says it. 1: it makes no image, or none is known, and *p is as it was; why says
+ * which. -1: e filled. */
 static int pressed_by(const job *j, slice_probe *p, char *why, size_t size, err *e)
 {
     const char *text = j->o->rigid ? NULL : model_meta_of(&j->model.body, "probe.shape");

@@ -70,7 +70,8 @@ static int check_options(const struct options *o, err *e)
     return 0;
 }
 
-/* The volume, and the samples of all of it where a level of it is sought; how large labels and surfaces are is not known yet. */
+/* The volume, and the samples of all of it where a level of it is sought; how large labels and surfaces are is not
+ * known yet. */
 static double peak_of(const volume *v, const void *context)
 {
     const job *j = context;

@@ -27,8 +27,8 @@ void collider_free(collider *c);
 /* Makes it part of the problem, which says how stiff it is. */
 void collider_join(collider *c, tled_problem *p, double repulsion);
 
-/* From the problem's start; ramp, s: how long it takes to come up if it is inside of the tissue then. Warns where it is, never comes
- * near the tissue, or is of a size that these elements are not for. */
+/* From the problem's start; ramp, s: how long it takes to come up if it is inside of the tissue then. Warns where it
+ * is, never comes near the tissue, or is of a size that these elements are not for. */
 void collider_begin(collider *c, const tled_problem *p, double ramp, notes *warnings);
 
 /* Where it is. */

@@ -63,8 +63,8 @@ void folds_text(const folds *f, bool ended, char text[FOLDS_TEXT])
 
 static const double usual_kappa = .0075; /* of --hourglass, where it is not given */
 
-/* What was seen to help, on faces: smaller voxels do not, where a muscle's end pulls at a few elements; a larger --hourglass does, but
- * not where it holds too much already. */
+/* What was seen to help, on faces: smaller voxels do not, where a muscle's end pulls at a few elements; a larger
+ * --hourglass does, but not where it holds too much already. */
 static const char *remedy(const strained *s)
 {
     return share(s) > QUALITY_HOURGLASS ? "expected less load or contraction there"

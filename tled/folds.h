@@ -1,5 +1,6 @@
-/* What a run has to say of its elements once it is over, from the frames that it wrote: the smallest J, how many elements are folded and
- * where, and how much of the energy hourglass control holds. The creator owns it; problem and model are borrowed.
+/* What a run has to say of its elements once it is over, from the frames that it wrote: the smallest J, how many
+ * elements are folded and where, and how much of the energy hourglass control holds. The creator owns it; problem and
+ * model are borrowed.
  */
 #ifndef SINEW_FOLDS_H
 #define SINEW_FOLDS_H
@@ -31,8 +32,8 @@ void folds_look(folds *f, double time, const double *displacement);
 /* The last frame in a line; where the run did not come to its end, also when that is. */
 void folds_text(const folds *f, bool ended, char text[FOLDS_TEXT]);
 
-/* What is folded, in the last frame and on the way; and where hourglass energy is past QUALITY_HOURGLASS of strain energy, or of 1/100 of
- * the most that there was (J), for what is let go. */
+/* What is folded, in the last frame and on the way; and where hourglass energy is past QUALITY_HOURGLASS of strain
+ * energy, or of 1/100 of the most that there was (J), for what is let go. */
 void folds_warn(const folds *f, bool ended, double most_strain, notes *warnings);
 
 #endif

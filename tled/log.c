@@ -8,7 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Quantity and unit; the last two go by the clock, and differ from run to run. Nodes' come after them, then what elements are like. */
+/* Quantity and unit; the last two go by the clock, and differ from run to run. Nodes' come after them, then what
+ * elements are like. */
 static const char heading[] =
     "time/s\tstep\tdt/s\tstable/s\tkinetic/J\tstrain/J\thourglass/J\tgravity/J\tforces/J\tdisplaced/J\tmuscles/"
     "J\tprobe/J\t"

@@ -177,8 +177,8 @@ static int choose_step(run *n)
     return diverged(n);
 }
 
-/* The steps from `first` on, as they are cut: all of one length, but the last where it is short. Of that one times are counted back
- * from its end, so that this is met to the last bit. */
+/* The steps from `first` on, as they are cut: all of one length, but the last where it is short. Of that one times are
+ * counted back from its end, so that this is met to the last bit. */
 static tled_plan cut_plan(const run *n, int64_t first)
 {
     const int64_t parts = INT64_C(1) << n->cuts;

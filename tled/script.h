@@ -43,20 +43,20 @@ typedef struct script {
 
 void script_free(script *s);
 
-/* Adds a script file; m: the rest model. -1 with e filled at the first thing that is wrong: file:line. The same target in
- * the file and on the command line is an error, whichever comes first. */
+/* Adds a script file; m: the rest model. -1 with e filled at the first thing that is wrong: file:line. The same target
+ * in the file and on the command line is an error, whichever comes first. */
 int script_read(script *s, in *source, const model *m, err *e);
 
-/* Adds -c: "MUSCLE=LEVEL,...", from 0 at time 0 up to LEVEL at `ramp` s (0: at once). What is wrong with it is an error of the
- * command line, as with -g. */
+/* Adds -c: "MUSCLE=LEVEL,...", from 0 at time 0 up to LEVEL at `ramp` s (0: at once). What is wrong with it is an error
+ * of the command line, as with -g. */
 int script_add_contract(script *s, const model *m, const char *list, double ramp, err *e);
 
 /* Adds -g: from 0 at time 0 up to g (3, m/s2) at `ramp` s (0: at once). */
 int script_add_gravity(script *s, const double *g, double ramp, err *e);
 
-/* Of the whole script: whether its muscles can contract. A muscle does that has an element with a fibre and a node that is
- * not rigid; one whose level stays 0 need not. Warns of those that cannot, by the script's line or as of -c; where none can, -1 with e
- * filled: nothing would come of any. */
+/* Of the whole script: whether its muscles can contract. A muscle does that has an element with a fibre and a node that
+ * is not rigid; one whose level stays 0 need not. Warns of those that cannot, by the script's line or as of -c; where
+ * none can, -1 with e filled: nothing would come of any. */
 int script_check_muscles(const script *s, const model *m, notes *warnings, err *e);
 
 /* The curve at a time: 3 values (contract: the first counts). */
@@ -65,8 +65,8 @@ void script_value(const script *s, const script_curve *c, double time, double *v
 /* The time of the last key of all (s): from there on nothing changes. 0 where there are no curves. */
 double script_end(const script *s);
 
-/* The volume of the muscle so named, the prefix muscle_ given or not: its index, or -1 with e filled at place:line. line 0: place
- * is an option of the command line. */
+/* The volume of the muscle so named, the prefix muscle_ given or not: its index, or -1 with e filled at place:line.
+ * line 0: place is an option of the command line. */
 int32_t script_muscle(const model *m, const char *name, const char *place, int64_t line, err *e);
 
 /* What script.c and script_read.c share. */

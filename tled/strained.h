@@ -1,6 +1,6 @@
-/* What the elements of a state hold, and which of them are folded: strain and hourglass energy, and J in their middles and at their
- * corners (mesh/quality.h), from the displacements of nodes, in double, whatever the back end. Sums go by chunks in a fixed order: the
- * same bytes for any number of threads. Owns nothing.
+/* What the elements of a state hold, and which of them are folded: strain and hourglass energy, and J in their middles
+ * and at their corners (mesh/quality.h), from the displacements of nodes, in double, whatever the back end. Sums go by
+ * chunks in a fixed order: the same bytes for any number of threads. Owns nothing.
  */
 #ifndef SINEW_STRAINED_H
 #define SINEW_STRAINED_H
@@ -20,8 +20,9 @@ typedef struct strained {
 
 strained strained_none(void);
 
-/* Where corners are looked at: every element that may be worse than the one that was the worst before, or -1. What comes of it does
- * not depend on which that is, only how long it takes: most bounds are far above the J of one that is still nearly the worst. */
+/* Where corners are looked at: every element that may be worse than the one that was the worst before, or -1. What
+ * comes of it does not depend on which that is, only how long it takes: most bounds are far above the J of one that is
+ * still nearly the worst. */
 typedef struct strained_view {
     const tled_problem *p;
     const double *displacement; /* nodes x 3, m */

@@ -89,7 +89,8 @@ static bool is_held_alike(const tled_problem *p)
     return alike;
 }
 
-/* A search from the nodes that are held in any of these components (bits). Returns how many steps away the farthest is. */
+/* A search from the nodes that are held in any of these components (bits). Returns how many steps away the farthest
+ * is. */
 static int32_t search_from_held(const tled_problem *p, search *s, unsigned components)
 {
     s->count = 0;
@@ -105,7 +106,8 @@ static int32_t search_from_held(const tled_problem *p, search *s, unsigned compo
 /* Of gravity's largest component: what is no more has come of turning it. */
 static const double rounding = 1e-9;
 
-/* The first element that gravity pulls along an axis, and that the search from nodes held along that axis did not reach; or -1. */
+/* The first element that gravity pulls along an axis, and that the search from nodes held along that axis did not
+ * reach; or -1. */
 static int64_t find_falling(const tled_problem *p, const search *s, int axis)
 {
     const script_curve *g = p->gravity < 0 ? NULL : &p->script->curve[p->gravity];

@@ -6,8 +6,9 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* Of a unit normal, the least share along the line: surfaces face each other across it at 60 degrees at most from upright. A gap of any
- * direction is met so along one axis at least (1/sqrt(3) is more than a half), and one that a line grazes is none. */
+/* Of a unit normal, the least share along the line: surfaces face each other across it at 60 degrees at most from
+ * upright. A gap of any direction is met so along one axis at least (1/sqrt(3) is more than a half), and one that a
+ * line grazes is none. */
 static const double facing = .5;
 
 /* In voxels: what is wider has one that is no element, and what is narrower is surfaces that touch. */
@@ -151,7 +152,8 @@ static bool is_filled(const work *w, const meeting *from, const meeting *to)
 
 /* ---- lines */
 
-/* Whether two surfaces face each other across the line, and more so than across a line along another axis: so a gap is met once. */
+/* Whether two surfaces face each other across the line, and more so than across a line along another axis: so a gap is
+ * met once. */
 static bool face_each_other(const meeting *a, const meeting *b, int ray)
 {
     for (int i = 0; i < 3; i++) {
@@ -162,8 +164,8 @@ static bool face_each_other(const meeting *a, const meeting *b, int ray)
     return fabsf(a->normal[ray]) >= (float)facing && fabsf(b->normal[ray]) >= (float)facing;
 }
 
-/* Whether the line, which came in at `entered`, leaves and enters again across a gap. Where it seems to leave by a surface that faces as
- * the one it came in by, it is inside of two. */
+/* Whether the line, which came in at `entered`, leaves and enters again across a gap. Where it seems to leave by a
+ * surface that faces as the one it came in by, it is inside of two. */
 static bool is_gap(const meeting *entered, const meeting *leaves, const meeting *enters, int ray)
 {
     double width = enters->at - leaves->at;

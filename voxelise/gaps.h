@@ -1,7 +1,8 @@
-/* Gaps between surfaces that elements fill: along the lines through the centres of voxels, along each axis, the places where a line
- * leaves the lowest level by a surface and enters it again by one that faces it, and every voxel in between is an element. What lies
- * on either side then moves as one. Bone within tissue, whose nodes are fixed anyway, is no gap; nor is what lies inside of a
- * surface twice, nor the end of a gap that is open but for that. The caller owns a gaps.
+/* Gaps between surfaces that elements fill: along the lines through the centres of voxels, along each axis, the places
+ * where a line leaves the lowest level by a surface and enters it again by one that faces it, and every voxel in
+ * between is an element. What lies on either side then moves as one. Bone within tissue, whose nodes are fixed anyway,
+ * is no gap; nor is what lies inside of a surface twice, nor the end of a gap that is open but for that. The caller
+ * owns a gaps.
  */
 #ifndef SINEW_GAPS_H
 #define SINEW_GAPS_H
@@ -21,8 +22,8 @@ typedef struct gaps {
     int64_t count;
 } gaps;
 
-/* plan: volumes, of which those of level 0 come first. g: the lattice of voxels. The same for any number of threads. -1 with e
- * filled on no memory. */
+/* plan: volumes, of which those of level 0 come first. g: the lattice of voxels. The same for any number of threads. -1
+ * with e filled on no memory. */
 int gaps_find(gaps *found, const solids *s, const volumes *plan, const voxels *x, const grid *g, pool *threads, err *e);
 void gaps_free(gaps *found);
 

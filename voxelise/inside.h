@@ -69,7 +69,8 @@ void inside_slab_free(inside_slab *slab);
 typedef void inside_crossing(void *context, int64_t triangle, const crossing_plane *plane, int32_t row, int32_t from,
                              int32_t to);
 
-/* Gives every crossing in a slab, triangle after triangle; but for those beyond the lattice's last cell along the ray. */
+/* Gives every crossing in a slab, triangle after triangle; but for those beyond the lattice's last cell along the
+ * ray. */
 void inside_cross(const inside *test, int64_t number, inside_crossing *take, void *context);
 
 /* The words of one layer and cell along the ray, both within the part's box. */

@@ -157,8 +157,8 @@ static void put_voxel(char *to, size_t size, const grid *g, double factor, num_u
         snprintf(to, size, "%.3g x %.3g x %.3g %s", h[0] * factor, h[1] * factor, h[2] * factor, num_unit_name(unit));
 }
 
-/* By centres one of them lies in every gap that is as wide as a voxel; by shares a voxel lies in it far enough not to be an element,
- * wherever the gap is, from twice the rest of a share on. */
+/* By centres one of them lies in every gap that is as wide as a voxel; by shares a voxel lies in it far enough not to
+ * be an element, wherever the gap is, from twice the rest of a share on. */
 static double voxel_for(double width, double least)
 {
     return isnan(least) || least >= .5 ? width : width / (2 * (1 - least));

@@ -1,5 +1,5 @@
-/* What voxelise --check says of a surface, as text for people: one thing a line, in two columns; and what any run says of the size
- * of all. Nothing is kept.
+/* What voxelise --check says of a surface, as text for people: one thing a line, in two columns; and what any run says
+ * of the size of all. Nothing is kept.
  */
 #ifndef SINEW_REPORT_H
 #define SINEW_REPORT_H
@@ -23,7 +23,8 @@ void report_warn(notes *n, const char *what, const char *name, const check_resul
 /* The sides of the box about all, in the OBJ's unit. */
 void report_sides(const obj *o, double side[3]);
 
-/* Notes an OBJ that is larger than any body, beyond 3 m, or smaller than 3 mm in this unit, with the unit that it may be in. */
+/* Notes an OBJ that is larger than any body, beyond 3 m, or smaller than 3 mm in this unit, with the unit that it may
+ * be in. */
 void report_size(notes *n, const obj *o, num_unit unit);
 
 /* Notes gaps that elements fill. least: of a voxel, the share from which on it is an element; NAN: by centres. */

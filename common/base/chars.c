@@ -58,8 +58,8 @@ int chars_escaped(const char *p)
 
 enum { ESCAPED = 4 };
 
-/* What stands for the character at p, at most ESCAPED bytes: *length of them, for *used of p's. own: p is in a file's own bytes; else
- * what is written as \xHH already stays. */
+/* What stands for the character at p, at most ESCAPED bytes: *length of them, for *used of p's. own: p is in a file's
+ * own bytes; else what is written as \xHH already stays. */
 static void escape_one(const char *p, bool own, char *to, size_t *length, size_t *used)
 {
     static const char digits[] = "0123456789abcdef";

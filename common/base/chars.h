@@ -17,9 +17,9 @@ bool chars_utf8(const char *text);
 /* Replaces each byte that is not part of well-formed UTF-8 by '?'. */
 void chars_mend(char *text);
 
-/* Names in files of any encoding, as UTF-8: a byte that is not part of well-formed UTF-8, or is a control character, stands as \xHH (two
- * hexadecimal digits, lower case), and a backslash before an x and two such digits as \x5c; all else stands as it is. So different
- * names stay different, and each can be had back. */
+/* Names in files of any encoding, as UTF-8: a byte that is not part of well-formed UTF-8, or is a control character,
+ * stands as \xHH (two hexadecimal digits, lower case), and a backslash before an x and two such digits as \x5c; all
+ * else stands as it is. So different names stay different, and each can be had back. */
 
 /* Writes so what n bytes of text are to `to`, which has room for 4 n + 1. Returns its length. */
 size_t chars_escape(const char *text, size_t n, char *to);
@@ -29,8 +29,8 @@ int chars_escaped(const char *p);
 
 enum { CHARS_ANY_CASE = 1, CHARS_BEGINS = 2 };
 
-/* Whether somebody who typed so (m bytes) means this name (n bytes; CHARS_BEGINS: one that begins so): as it stands here, or in the
- * bytes of the file that it comes from. */
+/* Whether somebody who typed so (m bytes) means this name (n bytes; CHARS_BEGINS: one that begins so): as it stands
+ * here, or in the bytes of the file that it comes from. */
 bool chars_means(const char *typed, size_t m, const char *name, size_t n, int flags);
 
 /* The same, of whole strings and with the case that they have. */

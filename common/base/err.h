@@ -36,7 +36,8 @@ int err_set(err *e, const char *place, int64_t line, const char *format, ...) SI
 /* The same for what the command line asks, without a place: status 2. */
 int err_usage(err *e, const char *format, ...) SINEW_PRINTF(2, 3);
 
-/* The same for the value of one option: "option: what is wrong", as where only the input shows it. NULL: no option is named. */
+/* The same for the value of one option: "option: what is wrong", as where only the input shows it. NULL: no option is
+ * named. */
 int err_option(err *e, const char *option, const char *format, ...) SINEW_PRINTF(3, 4);
 
 /* err_set for a failed system call: appends strerror of the given errno value. */

@@ -69,8 +69,8 @@ static void skip_padding(in *s)
         s->z.avail_in--;
 }
 
-/* Inflates into the empty buffer until at least a byte came, of the first so many that a byte order mark shows, or the data
- * ended. */
+/* Inflates into the empty buffer until at least a byte came, of the first so many that a byte order mark shows, or the
+ * data ended. */
 static int gzip_fill(in *s, err *e)
 {
     const uInt least = s->begun ? 1 : MARK;
@@ -227,8 +227,8 @@ int64_t in_taken(const in *s)
     return s->taken;
 }
 
-/* Reads straight into the caller's memory: a large read needs no buffer, which is empty here. Returns how many bytes came; sets
- * `ended` where none did. */
+/* Reads straight into the caller's memory: a large read needs no buffer, which is empty here. Returns how many bytes
+ * came; sets `ended` where none did. */
 static int64_t fetch_past(in *s, void *bytes, size_t size, err *e)
 {
     int64_t n = fetch(s, bytes, size < CHUNK ? size : CHUNK, e);

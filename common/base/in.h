@@ -39,8 +39,9 @@ int64_t in_taken(const in *s);
 /* Reads up to size bytes; less only at the end. -1 with e filled where reading or gunzipping fails. */
 int64_t in_read(in *s, void *bytes, size_t size, err *e);
 
-/* Looks at the next byte without taking it: 0 to 255, -1 at the end, -2 with e filled on failure. A UTF-8 byte order mark that the
- * stream begins with is stepped over, as by in_line; in_read and in_all, before either of these, give it. */
+/* Looks at the next byte without taking it: 0 to 255, -1 at the end, -2 with e filled on failure. A UTF-8 byte order
+ * mark that the stream begins with is stepped over, as by in_line; in_read and in_all, before either of these, give
+ * it. */
 int in_peek(in *s, err *e);
 
 /* The next line, without its end (LF or CR LF), NUL-terminated, valid until the next call on s.

@@ -1,6 +1,7 @@
-/* Which of many things has a name, in a time that does not depend on how many there are: an index beside an array of structs, each
- * of which begins with a pointer to its name. The things stay the caller's, in the caller's order; the index holds their places.
- * Begin with a zeroed one, and say of every thing that is added that it is there. The creator owns it.
+/* Which of many things has a name, in a time that does not depend on how many there are: an index beside an array of
+ * structs, each of which begins with a pointer to its name. The things stay the caller's, in the caller's order; the
+ * index holds their places. Begin with a zeroed one, and say of every thing that is added that it is there. The creator
+ * owns it.
  */
 #ifndef SINEW_LOOKUP_H
 #define SINEW_LOOKUP_H
@@ -21,7 +22,8 @@ int32_t lookup_find(const lookup *l, const void *things, size_t size, const char
 /* Takes in the things that were added behind those that it holds, so that it holds `count`. */
 int lookup_add(lookup *l, const void *things, size_t size, int32_t count, err *e);
 
-/* Things have moved: takes in the `count` that are there anew. Fewer than before need no memory, so this cannot fail. */
+/* Things have moved: takes in the `count` that are there anew. Fewer than before need no memory, so this cannot
+ * fail. */
 void lookup_again(lookup *l, const void *things, size_t size, int32_t count);
 
 void lookup_free(lookup *l);

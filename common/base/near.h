@@ -13,8 +13,9 @@ int near_name(const char *name, const char *const *names, int count);
 /* The names between commas into `to`, as many as fit: ", ..." stands for the rest. */
 void near_list(char *to, size_t size, const char *const *names, int count);
 
-/* "unknown WHAT 'name'; did you mean 'near'? expected one of: a, b, c" as an error at place:line. Where none is near, those
- * that begin with the name are offered, three at most. Says so where there are no names at all; long lists are cut. Returns -1. */
+/* "unknown WHAT 'name'; did you mean 'near'? expected one of: a, b, c" as an error at place:line. Where none is near,
+ * those that begin with the name are offered, three at most. Says so where there are no names at all; long lists are
+ * cut. Returns -1. */
 int near_unknown(err *e, const char *place, int64_t line, const char *what, const char *name, const char *const *names,
                  int count);
 

@@ -42,7 +42,8 @@ int num_length_of(const char *text, num_length *length);
  * cm or m. */
 double num_length_in(num_length length, num_unit unsuffixed, num_unit to);
 
-/* "500MB", "2GiB", "1.5 GB", "4096B": bytes, in units of 1000 or 1024; the whole of text, more than 0. Returns 0 or -1. */
+/* "500MB", "2GiB", "1.5 GB", "4096B": bytes, in units of 1000 or 1024; the whole of text, more than 0. Returns 0 or
+ * -1. */
 int num_size_of(const char *text, int64_t *bytes);
 
 /* Bytes for people: "2.35 GB". to holds at least NUM_TEXT bytes, and is returned. */

@@ -94,7 +94,8 @@ void opt_usage(const opt_tool *tool, out *o);
 int opt_table(const opt_tool *tool, const char *kind, out *o, err *e);
 
 /* What of the command line changes the result, for provenance: options in table order, then operands, which are files;
- * base names of files (FILE where names are to be left out), and quoted as for the shell where they have blanks or quotes. The caller frees it; NULL with e filled. */
+ * base names of files (FILE where names are to be left out), and quoted as for the shell where they have blanks or
+ * quotes. The caller frees it; NULL with e filled. */
 char *opt_provenance(const opt_tool *tool, const void *options, int operands, char *const *operand, err *e);
 
 #endif

@@ -96,8 +96,8 @@ void opt_usage(const opt_tool *tool, out *to)
     put_packed(tool, alone, to);
 }
 
-/* mdoc wants its special characters away from macros' arguments: '|' is a delimiter and stands by itself, and a word such as Pa is a macro
- * unless \& is before it. */
+/* mdoc wants its special characters away from macros' arguments: '|' is a delimiter and stands by itself, and a word
+ * such as Pa is a macro unless \& is before it. */
 static void put_mdoc_arg(const char *arg, out *to)
 {
     for (const char *p = arg; *p; p++) {

@@ -16,8 +16,8 @@ typedef struct out out;
  * at out_close(); a device or FIFO is written directly. gzip: compress what is written. NULL with e filled. */
 out *out_open(const char *path, bool gzip, err *e);
 
-/* The same of a regular file that is not to be in its place before the caller puts it there: out_close() settles it, and it is in *to from
- * then on, to be put in place or discarded (replace.h). */
+/* The same of a regular file that is not to be in its place before the caller puts it there: out_close() settles it,
+ * and it is in *to from then on, to be put in place or discarded (replace.h). */
 out *out_open_kept(const char *path, replace *to, err *e);
 
 /* When closed, it is stored in any case, also where the shell has opened it, and so is its name: before what it was made from goes. */

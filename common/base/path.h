@@ -22,13 +22,15 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
 /* Where a file named path would be, links followed, even one to nothing. NULL with e filled where there can be none. */
 char *path_target(const char *path, err *e);
 
-/* What is at a path that is to be written, links followed: 1; 0: nothing; -1 with e filled where the system does not say. */
+/* What is at a path that is to be written, links followed: 1; 0: nothing; -1 with e filled where the system does not
+ * say. */
 int path_look(const char *path, struct stat *s, err *e);
 
 /* Whether two paths are of one regular file, by whatever links, or would be once it is there. */
 bool path_is_same(const char *a, const char *b);
 
-/* Whether the path is of the regular file, pipe or socket that is open at fd. Devices may be read and written at once. */
+/* Whether the path is of the regular file, pipe or socket that is open at fd. Devices may be read and written at
+ * once. */
 bool path_is_open(const char *path, int fd);
 
 #endif

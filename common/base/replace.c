@@ -61,7 +61,8 @@ static int make_link(const void *context, const char *path)
     return linkat(AT_FDCWD, self, AT_FDCWD, path, AT_SYMLINK_FOLLOW);
 }
 
-/* Makes a file of a name beside its place that nothing else has. Returns what make does, or -1 with errno, which is 0 where e is filled. */
+/* Makes a file of a name beside its place that nothing else has. Returns what make does, or -1 with errno, which is 0
+ * where e is filled. */
 static int take_name(replace *r, int (*make)(const void *context, const char *path), err *e)
 {
     char name[TEMPORARY_NAME];

@@ -1,6 +1,6 @@
-/* A file that is written beside its place, without a name where the file system can (O_TMPFILE), else under one of its own, and put there
- * once it is whole. Until then the place is as it was. A process that is killed leaves nothing, but where the file had a name (kill -9):
- * see temporary.h. The caller owns the struct; begin with a zeroed one.
+/* A file that is written beside its place, without a name where the file system can (O_TMPFILE), else under one of its
+ * own, and put there once it is whole. Until then the place is as it was. A process that is killed leaves nothing, but
+ * where the file had a name (kill -9): see temporary.h. The caller owns the struct; begin with a zeroed one.
  */
 #ifndef SINEW_REPLACE_H
 #define SINEW_REPLACE_H
@@ -20,24 +20,25 @@ int replace_open(replace *r, const char *path, err *e);
 /* Waits until every byte of it is known to be stored. name: for messages. -1 with e filled. */
 int replace_settle(replace *r, const char *name, err *e);
 
-/* Closes a file that was settled, which takes a name until it is put in its place: where descriptors are scarce. -1 with e filled. */
+/* Closes a file that was settled, which takes a name until it is put in its place: where descriptors are scarce. -1
+ * with e filled. */
 int replace_park(replace *r, const char *name, err *e);
 
-/* Puts a file that was settled in its place. Its name there is not stored yet. In every case r is zeroed, and on failure no file is left
- * and the place is as it was. */
+/* Puts a file that was settled in its place. Its name there is not stored yet. In every case r is zeroed, and on
+ * failure no file is left and the place is as it was. */
 int replace_place(replace *r, const char *name, err *e);
 
-/* All of it: settles the file, puts it in its place, and waits until its name is stored. In every case r is zeroed, and on failure no
- * file is left and the place is as it was, unless it is the name that could not be stored. */
+/* All of it: settles the file, puts it in its place, and waits until its name is stored. In every case r is zeroed, and
+ * on failure no file is left and the place is as it was, unless it is the name that could not be stored. */
 int replace_finish(replace *r, const char *name, err *e);
 
 /* Waits until what was written is stored: 0, or -1 with errno. Some of what can be written to cannot be synced; nothing is wrong
  * then. */
 int replace_store(int fd);
 
-/* Waits until what stands under the names in the folder of a file is stored; path may be a link to the file. name: for messages. A
- * folder that may be written but not read takes names and cannot be synced, and one of a file system that is read-only has none to
- * store; nothing is wrong then. */
+/* Waits until what stands under the names in the folder of a file is stored; path may be a link to the file. name: for
+ * messages. A folder that may be written but not read takes names and cannot be synced, and one of a file system that
+ * is read-only has none to store; nothing is wrong then. */
 int replace_store_names(const char *path, const char *name, err *e);
 
 /* Removes the file. */

@@ -7,8 +7,8 @@
 #include "base/err.h"
 #include "base/opt.h"
 
-/* A whole tool, from the command line to the exit status: work(argc, argv). Where ulimit -s leaves the process little stack, it runs
- * on a thread that has enough. A main is this alone. */
+/* A whole tool, from the command line to the exit status: work(argc, argv). Where ulimit -s leaves the process little
+ * stack, it runs on a thread that has enough. A main is this alone. */
 int tool_run(int (*work)(int argc, char **argv), int argc, char **argv);
 
 #define SINEW_VERSION "0.1.0"
@@ -22,15 +22,15 @@ typedef struct tool {
     char *provenance; /* owned */
 } tool;
 
-/* Sees to it that descriptors 0 to 2 are open (no file may become one of them) and that a limit on the size of files fails what writes, not
- * the process; parses the command line and answers -h, -V and --table. Returns 0; -1 with e filled (status 2). When t->done,
- * go straight to tool_end. */
+/* Sees to it that descriptors 0 to 2 are open (no file may become one of them) and that a limit on the size of files
+ * fails what writes, not the process; parses the command line and answers -h, -V and --table. Returns 0; -1 with e
+ * filled (status 2). When t->done, go straight to tool_end. */
 int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *options, err *e);
 
-/* Refuses (status 2) a file that is to be written, as the option says that has its name ("-o", "--log"), where it is an operand or a
- * file that another option names, by whatever links; or what standard input or output is, unless it is -o's, which replaces it
- * only when all is read. tool_begin() asks for what the options name; this is for names that are made of those: of numbered
- * files, of checkpoints. */
+/* Refuses (status 2) a file that is to be written, as the option says that has its name ("-o", "--log"), where it is an
+ * operand or a file that another option names, by whatever links; or what standard input or output is, unless it is
+ * -o's, which replaces it only when all is read. tool_begin() asks for what the options name; this is for names that
+ * are made of those: of numbered files, of checkpoints. */
 int tool_check_written(const tool *t, const char *option, const char *path, err *e);
 
 /* Prints e, where there is one that was not said already, and frees t. Returns the exit status. Every message is one

@@ -1,7 +1,7 @@
-/* The rigid bodies that press on tissue, and the one question that a solver asks of them: how deep is a point inside, and
- * which way is out. A probe is its shape; a pose is where it is. Each question is answered by `static inline` functions that
- * nvcc compiles too. A probe owns its planes, corners and faces, if it has any (probe_free); a placed one borrows them, is copied by value, and
- * may be given a device's copy of the planes instead.
+/* The rigid bodies that press on tissue, and the one question that a solver asks of them: how deep is a point inside,
+ * and which way is out. A probe is its shape; a pose is where it is. Each question is answered by `static inline`
+ * functions that nvcc compiles too. A probe owns its planes, corners and faces, if it has any (probe_free); a placed
+ * one borrows them, is copied by value, and may be given a device's copy of the planes instead.
  *
  * A probe's frame: origin at the middle of its face, +z into the tissue, +x along an image's columns.
  *     sphere   radius R: it touches the origin with the pole that points along +z; its centre is at -R along z.
@@ -9,9 +9,9 @@
  *     curved   a sector of a disc of radius R in the x-z plane that opens by an angle about +z, its tip at -R along z,
  *              extruded by thickness T along y; its edges and corners rounded.
  *     convex   a convex polyhedron of an OBJ file, in whose coordinates the frame is.
- * Rounded is: all that a ball of the edge's radius, which stays inside the sharp shape, gets to. Depths of all of them are
- * exact: inside, the distance to the surface; outside, minus that, but for the convex one, where minus the distance to the
- * plane that is farthest, which is never more.
+ * Rounded is: all that a ball of the edge's radius, which stays inside the sharp shape, gets to. Depths of all of them
+ * are exact: inside, the distance to the surface; outside, minus that, but for the convex one, where minus the distance
+ * to the plane that is farthest, which is never more.
  */
 #ifndef SINEW_PROBE_H
 #define SINEW_PROBE_H

@@ -166,8 +166,8 @@ int32_t corner_tree_smallest(const corner_tree *t)
     return t->node[1].smallest;
 }
 
-/* Whether the whole box is to the right of the line from a to b. The area is largest at one of the box's corners, rounded too:
- * every operation that it is made of keeps the order of what it is given. */
+/* Whether the whole box is to the right of the line from a to b. The area is largest at one of the box's corners,
+ * rounded too: every operation that it is made of keeps the order of what it is given. */
 static bool is_right(const corner *a, const corner *b, const node *n)
 {
     const corner most = {.u = b->v - a->v >= 0 ? n->low_u : n->high_u, .v = b->u - a->u >= 0 ? n->high_v : n->low_v};

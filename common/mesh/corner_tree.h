@@ -1,7 +1,7 @@
-/* The corners that are left of a large polygon, in the plane that it is looked at in: whether one of them lies in a triangle, and
- * whose own triangle is the smallest, in a time that grows as the logarithm of their number. A binary tree over the corners in
- * Z-order of their ranks along u and v, so that neighbours in the plane are mostly neighbours there, however their distances differ;
- * a node knows the box of its corners. The creator owns it.
+/* The corners that are left of a large polygon, in the plane that it is looked at in: whether one of them lies in a
+ * triangle, and whose own triangle is the smallest, in a time that grows as the logarithm of their number. A binary
+ * tree over the corners in Z-order of their ranks along u and v, so that neighbours in the plane are mostly neighbours
+ * there, however their distances differ; a node knows the box of its corners. The creator owns it.
  */
 #ifndef SINEW_CORNER_TREE_H
 #define SINEW_CORNER_TREE_H
@@ -44,7 +44,8 @@ void corner_tree_cut(corner_tree *t, int32_t i);
 /* Whether a corner that is left blocks the triangle of these three. */
 bool corner_tree_blocks(const corner_tree *t, const corner *a, const corner *b, const corner *c);
 
-/* The first of those whose triangle with their neighbours is the smallest; -1 where none has an area that is a number. */
+/* The first of those whose triangle with their neighbours is the smallest; -1 where none has an area that is a
+ * number. */
 int32_t corner_tree_smallest(const corner_tree *t);
 
 #endif

@@ -120,9 +120,10 @@ ELEMENT_FUNCTION element_shape element_box(double hx, double hy, double hz)
     return s;
 }
 
-/* min(lambda + 2 mu, 11 mu), lambda + 2 mu = K + 4/3 mu (Pa): the modulus that hourglass modes are held by. With lambda + 2 mu alone
- * they grow stiff with K, and an element locks in bending toward nu = .5, as bending is what these modes are. The two are the same at
- * nu = .45, where rounding is not to decide: up to there it is lambda + 2 mu to the last bit. */
+/* min(lambda + 2 mu, 11 mu), lambda + 2 mu = K + 4/3 mu (Pa): the modulus that hourglass modes are held by. With lambda
+ * + 2 mu alone they grow stiff with K, and an element locks in bending toward nu = .5, as bending is what these modes
+ * are. The two are the same at nu = .45, where rounding is not to decide: up to there it is lambda + 2 mu to the last
+ * bit. */
 ELEMENT_FUNCTION double element_hourglass_modulus(double mu, double bulk)
 {
     double wave = bulk + 4. / 3 * mu, most = 11 * mu;

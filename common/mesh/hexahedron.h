@@ -21,8 +21,8 @@ double hexahedron_outside(const int32_t *node, const double *position, const dou
 /* The gradients of the nodes' shares, 1/m: 8 x 3. */
 void hexahedron_gradients(const int32_t *node, const double *position, const double *weight, double *gradient);
 
-/* The mean over an element of its shape functions' derivatives, B (8 x 3, 1/m), which is exact; returns its volume V, m3. at: its corners,
- * 8 x 3, m. B is no number where V is 0. */
+/* The mean over an element of its shape functions' derivatives, B (8 x 3, 1/m), which is exact; returns its volume V,
+ * m3. at: its corners, 8 x 3, m. B is no number where V is 0. */
 double hexahedron_mean(const double *at, double *b);
 
 /* The sign of a mode (x, y, z, xy, yz, zx, xyz) at a corner. */

@@ -32,17 +32,18 @@ typedef struct obj {
     int64_t free_form, free_form_line; /* lines of curves and surfaces that were skipped, and the first of them */
 } obj;
 
-/* Reads all of s. Every index form, negative indices, `g`, `o`, continuation lines. A face is in the groups of the
- * last `g`; where no `g` was seen since the last `o`, in the object (its blanks as '_'); else in "default". A word
- * that begins with '#' begins a comment, in every statement. Names are of any bytes. Lines of free-form geometry are skipped.
- * Errors name the line. */
+/* Reads all of s. Every index form, negative indices, `g`, `o`, continuation lines. A face is in the groups of the last
+ * `g`; where no `g` was seen since the last `o`, in the object (its blanks as '_'); else in "default". A word that
+ * begins with '#' begins a comment, in every statement. Names are of any bytes. Lines of free-form geometry are
+ * skipped. Errors name the line. */
 int obj_read(obj *o, in *s, err *e);
 void obj_free(obj *o);
 
 /* Notes what was skipped. */
 void obj_notes(const obj *o, notes *warnings);
 
-/* The box about the vertices that something uses; where nothing uses any, about all. Without vertices it is the wrong way round. */
+/* The box about the vertices that something uses; where nothing uses any, about all. Without vertices it is the wrong
+ * way round. */
 void obj_box(const obj *o, double low[3], double high[3]);
 
 /* The number of the line that the byte at `offset` of the text is on. */

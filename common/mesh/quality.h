@@ -1,7 +1,7 @@
-/* Whether elements are folded: J = det F, the volume now over that at rest, of the map that the element's shape functions make of
- * its nodes; in its middle, where a solver with one integration point sees it, and at its corners, where it sees nothing. A
- * hexahedron's map is trilinear: at a corner, J is the triple product of the three edges there, now over at rest. A tetrahedron has
- * one J. Owns nothing, and nothing here allocates.
+/* Whether elements are folded: J = det F, the volume now over that at rest, of the map that the element's shape
+ * functions make of its nodes; in its middle, where a solver with one integration point sees it, and at its corners,
+ * where it sees nothing. A hexahedron's map is trilinear: at a corner, J is the triple product of the three edges
+ * there, now over at rest. A tetrahedron has one J. Owns nothing, and nothing here allocates.
  */
 #ifndef SINEW_QUALITY_H
 #define SINEW_QUALITY_H
@@ -19,8 +19,8 @@ typedef struct quality_mesh {
     const double *side; /* 3, m: of every element, where all are boxes along the axes; NULL: any shape */
 } quality_mesh;
 
-/* Of one element: J in the middle, and the smallest at its corners. nan where it is flat or inside out at rest, or where a
- * displacement is no number. */
+/* Of one element: J in the middle, and the smallest at its corners. nan where it is flat or inside out at rest, or
+ * where a displacement is no number. */
 typedef struct quality_j {
     double centre, corner;
 } quality_j;
@@ -33,9 +33,9 @@ typedef struct quality {
     double worst;    /* its smallest J at a corner */
 } quality;
 
-/* Hourglass energy as a share of strain energy, which is without it. What is at most 1e-15 of `scale`, the sum of mu V (J), is
- * rounding: 0 where both are, inf where strain energy alone is. Past QUALITY_HOURGLASS, elements are too coarse for how they bend, or
- * the coefficient is wrong. */
+/* Hourglass energy as a share of strain energy, which is without it. What is at most 1e-15 of `scale`, the sum of mu V
+ * (J), is rounding: 0 where both are, inf where strain energy alone is. Past QUALITY_HOURGLASS, elements are too coarse
+ * for how they bend, or the coefficient is wrong. */
 #define QUALITY_HOURGLASS .1
 static inline double quality_hourglass(double hourglass, double strain, double scale)
 {

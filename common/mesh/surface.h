@@ -53,7 +53,8 @@ int surface_is(const surface *s, const obj *o, double scale, err *e);
  * does the '-' of "x-" at its start, which is the user's; "stdin" for "-". */
 void surface_name(const char *path, char *name, size_t size);
 
-/* A name that says nothing of the file: that of the first surface that is this OBJ, else the first of surface_1, surface_2, ... that is free. */
+/* A name that says nothing of the file: that of the first surface that is this OBJ, else the first of surface_1,
+ * surface_2, ... that is free. */
 void surface_nameless(const model *m, const obj *o, double scale, char *name, size_t size);
 
 /* Whether one of the names between spaces in `names` matches the pattern (any case; a '*' at its end matches any

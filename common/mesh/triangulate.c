@@ -18,7 +18,8 @@ typedef struct corners {
 } corners;
 
 /* What is left of a polygon. A corner is seen along the axis that the polygon's normal is nearest to: u and v are its
- * coordinates along the other two, in the order that makes the polygon run anticlockwise. Dropping a coordinate rounds nothing. */
+ * coordinates along the other two, in the order that makes the polygon run anticlockwise. Dropping a coordinate rounds
+ * nothing. */
 typedef struct polygon {
     corner *corner;
     int32_t count, left, first;

@@ -18,8 +18,8 @@ bool check_type(const char *type);
 /* What is wrong with a string, after its name ("is not UTF-8"), or NULL. A string has a length of 32 bits. */
 const char *check_text(const char *text);
 
-/* The two parts of model_check: all but the range of indices, and that, which needs every axis. finite: it is known that all
- * values are, so that they need not be looked at for that. */
+/* The two parts of model_check: all but the range of indices, and that, which needs every axis. finite: it is known
+ * that all values are, so that they need not be looked at for that. */
 int check_array(const model_array *a, bool finite, const char *where, int64_t line, err *e);
 int check_indexed(const model *m, const model_array *a, const char *where, int64_t line, err *e);
 

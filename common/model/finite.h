@@ -1,4 +1,5 @@
-/* Whether finite elements can be calculated with: that their numbers are finite is seen to where a model is read (values.h).
+/* Whether finite elements can be calculated with: that their numbers are finite is seen to where a model is read
+ * (values.h).
  */
 #ifndef SINEW_FINITE_H
 #define SINEW_FINITE_H

@@ -76,7 +76,8 @@ int item_cut(const item_source *s, err *e);
  * -1. */
 int64_t item_heading(const item_source *s, item *it, err *e);
 
-/* Makes every nan among n values the one that is written: quiet, positive, no payload. Returns whether all are finite. */
+/* Makes every nan among n values the one that is written: quiet, positive, no payload. Returns whether all are
+ * finite. */
 bool item_canonical(model_type type, void *values, int64_t n);
 
 #endif

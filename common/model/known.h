@@ -135,7 +135,8 @@ const known *known_find(const char *name);
 /* The i-th row, or NULL past the last. */
 const known *known_row(int i);
 
-/* "finite numbers", "0 to 1", "0.001 to 1e12 Pa": what the rule expects; "" where it is KNOWN_ANY. Not whether nan is allowed. */
+/* "finite numbers", "0 to 1", "0.001 to 1e12 Pa": what the rule expects; "" where it is KNOWN_ANY. Not whether nan is
+ * allowed. */
 enum { KNOWN_WORDS = 100 };
 void known_words(const known *k, char to[KNOWN_WORDS]);
 

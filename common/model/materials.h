@@ -17,9 +17,9 @@
  * it is what the first becomes where strains are small, with the same E and nu. */
 typedef enum material_law { MATERIAL_NEO_HOOKEAN, MATERIAL_LINEAR, MATERIAL_LAWS } material_law;
 
-/* X(key, default, where the model has none). E, nu and density: W&M section 4.2; peak is not in the paper. What is allowed is
- * in the table of known arrays, material.KEY: a nu below 0 (auxetic) is a material too; toward .5 the bulk modulus grows
- * without bound and the step shrinks to nothing. What lies outside is a slip of the pen. */
+/* X(key, default, where the model has none). E, nu and density: W&M section 4.2; peak is not in the paper. What is
+ * allowed is in the table of known arrays, material.KEY: a nu below 0 (auxetic) is a material too; toward .5 the bulk
+ * modulus grows without bound and the step shrinks to nothing. What lies outside is a slip of the pen. */
 #define MATERIAL_KEYS(X)                                                                                               \
     X(E, 3000, NAN)                                                                                                    \
     X(nu, 0.49, NAN)                                                                                                   \
@@ -47,14 +47,15 @@ int materials_read_with(model *m, in *s, const material *fallback, err *e);
  * could be made of it. */
 int materials_override(model *m, in *s, err *e);
 
-/* Changes one value, as -m asks: "NAME.KEY=VALUE" (KEY may be law). NAME may hold dots. What is wrong with it is an error of the
- * command line. */
+/* Changes one value, as -m asks: "NAME.KEY=VALUE" (KEY may be law). NAME may hold dots. What is wrong with it is an
+ * error of the command line. */
 int materials_set(model *m, const char *assignment, err *e);
 
 /* The index of the material named so, or -1. */
 int32_t materials_find(const model *m, const char *name);
 
-/* "unknown material 'name'; ..." at place:line, with near names. line 0: place is an option of the command line. Returns -1. */
+/* "unknown material 'name'; ..." at place:line, with near names. line 0: place is an option of the command line.
+ * Returns -1. */
 int materials_unknown(const model *m, const char *name, const char *place, int64_t line, err *e);
 
 /* Material i, checked: a model may have been edited by hand. A missing array or a nan is an error, but for peak (0). */
@@ -63,7 +64,8 @@ int materials_of(const model *m, int64_t i, material *to, err *e);
 /* Of every volume, checked; the caller frees them. NULL with e filled. */
 material *materials_of_volumes(const model *m, err *e);
 
-/* What elements are made of, looked up once: all borrowed from the model, which has element.volume, and of those of the volumes. */
+/* What elements are made of, looked up once: all borrowed from the model, which has element.volume, and of those of the
+ * volumes. */
 typedef struct materials_map {
     const material *of_volume;
     const int32_t *volume, *mix; /* mix NULL: no element is mixed */
@@ -72,7 +74,8 @@ typedef struct materials_map {
 
 materials_map materials_map_of(const model *m, const material *of_volume);
 
-/* An element's material, from those of the volumes: its volume's, or one between those of the two that it is mixed of. */
+/* An element's material, from those of the volumes: its volume's, or one between those of the two that it is mixed
+ * of. */
 material materials_of_element(const materials_map *map, int64_t element);
 
 /* mu and K, in Pa. */

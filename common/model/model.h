@@ -132,8 +132,8 @@ void model_remove_all(model *m, bool goes(const model_array *a, const void *cont
  * points to it, noting those that the known table lacks. */
 void model_axis_drop(model *m, const char *axis, notes *warnings);
 
-/* Surfaces carried: the names S of axes "S/vertex", but for the user's ("x-"). *at, 0 at first, is how far the axes have been
- * walked. Returns the name of the next, or NULL past the last. */
+/* Surfaces carried: the names S of axes "S/vertex", but for the user's ("x-"). *at, 0 at first, is how far the axes
+ * have been walked. Returns the name of the next, or NULL past the last. */
 const char *model_surface(const model *m, int *at, char *name, size_t size);
 
 /* The line of a row where the array was read as text, else 0: for messages. */
@@ -147,9 +147,9 @@ const char *model_type_name(model_type t);
 /* MODEL_TYPES where the name is none. */
 model_type model_type_of(const char *name);
 
-/* All of sinew-model(5)'s rules that a table can hold, on one array: known name with its type, unit, axis and
- * columns; indices and values in range. Where: the stream's name; line: 0, or the line of its heading (its rows follow, one a line).
- * Index ranges need all axes. Of a frame's array, m is the model that the frame belongs to. */
+/* All of sinew-model(5)'s rules that a table can hold, on one array: known name with its type, unit, axis and columns;
+ * indices and values in range. Where: the stream's name; line: 0, or the line of its heading (its rows follow, one a
+ * line). Index ranges need all axes. Of a frame's array, m is the model that the frame belongs to. */
 int model_check(const model *m, const model_array *a, const char *where, int64_t line, err *e);
 
 #endif

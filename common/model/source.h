@@ -25,11 +25,13 @@ typedef struct source {
  * closed in every case. */
 int source_open(source *s, const char *path, err *e);
 
-/* The same for a tool that has --salvage, and whether that is given: then frames end where the stream is cut, damaged or ends with
- * `fail`, with source_next() 0, and source_end() says so. A body that is not whole is refused all the same. */
+/* The same for a tool that has --salvage, and whether that is given: then frames end where the stream is cut, damaged
+ * or ends with `fail`, with source_next() 0, and source_end() says so. A body that is not whole is refused all the
+ * same. */
 int source_open_part(source *s, const char *path, bool salvage, err *e);
 
-/* Where not all was taken: fills e (status 1) with how much was and why, once the output is whole; or adds that to an e that is filled. */
+/* Where not all was taken: fills e (status 1) with how much was and why, once the output is whole; or adds that to an e
+ * that is filled. */
 void source_end(const source *s, err *e);
 
 /* The next frame, into s->frame. 1: a frame; 0: the end, and s->frame stays the last; -1: e filled. */

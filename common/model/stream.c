@@ -315,8 +315,8 @@ static int add_frame_array(model_reader *r, const model *m, frame *f, item *it, 
     return model_arrays_take(&f->arrays, &it->array, e) ? 0 : -1;
 }
 
-/* Whether a failed look shows the first frame to be whole, as far as the stream tells: it stopped behind an array, or within an item
- * that is none. All encodings' names of what may follow a frame begin so. */
+/* Whether a failed look shows the first frame to be whole, as far as the stream tells: it stopped behind an array, or
+ * within an item that is none. All encodings' names of what may follow a frame begin so. */
 static bool is_whole(const model_reader *r, const frame *f)
 {
     return r->gives_cut && !r->pattern.set && f->arrays.count && r->from.stopped &&

@@ -17,8 +17,9 @@ typedef struct model_writer model_writer;
 model_reader *model_reader_open(in *s, err *e);
 void model_reader_close(model_reader *r);
 
-/* For those who take the frames before a cut: what a first frame has to have nothing says, so where the stream is cut behind one of its
- * arrays, or within an item that is none, it is given as it is, and the cut is the next frame's error. (Else it is its own.) */
+/* For those who take the frames before a cut: what a first frame has to have nothing says, so where the stream is cut
+ * behind one of its arrays, or within an item that is none, it is given as it is, and the cut is the next frame's
+ * error. (Else it is its own.) */
 void model_reader_give_cut(model_reader *r);
 
 /* The body, all of it, checked. A stream that ended with `fail` gives -1 with e filled: the status and text as they

@@ -27,8 +27,8 @@ static double value_at(const model_array *a, int64_t i)
 
 /* ---- all values at once, for speed: false where some may be bad */
 
-/* x - x is 0, or nan where x is nan or an infinity, and nan stays. In lanes, which a compiler makes vectors of: this is done
- * to each number that is read. */
+/* x - x is 0, or nan where x is nan or an infinity, and nan stays. In lanes, which a compiler makes vectors of: this is
+ * done to each number that is read. */
 #define FINITE(number)                                                                                                 \
     static bool finite_##number(const number *v, int64_t n)                                                            \
     {                                                                                                                  \

@@ -1,12 +1,13 @@
-/* Whether the values of a known array are what the table of known arrays says (known.h): finite, in their range, of length 1.
+/* Whether the values of a known array are what the table of known arrays says (known.h): finite, in their range, of
+ * length 1.
  */
 #ifndef SINEW_VALUES_H
 #define SINEW_VALUES_H
 
 #include "model/known.h"
 
-/* The first row that breaks the rule, or -1. The array's type and columns are k's. finite: it is known that all are. One pass
- * over what is good, at most. */
+/* The first row that breaks the rule, or -1. The array's type and columns are k's. finite: it is known that all are.
+ * One pass over what is good, at most. */
 int64_t values_bad_row(const known *k, const model_array *a, bool finite);
 
 /* Whether n numbers of a type are all finite; those that are not real are. */

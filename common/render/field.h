@@ -21,10 +21,11 @@ typedef struct field {
     int64_t names;
 } field;
 
-/* displacement, displacement.x|y|z, strain (von Mises' equivalent of Green-Lagrange's), strain.max (its largest principal
- * value), stress (von Mises' equivalent of Cauchy's, without active stress), quality.j.centre, quality.j.corner (mesh/quality.h), volume, material, or an array over nodes or
- * elements by its name: its numbers, .x|y|z of its three, or their norm. f NULL: at rest, where only what the body
- * holds is there. -1 with e filled: no such field (with the names there are), or the model lacks what it takes. */
+/* displacement, displacement.x|y|z, strain (von Mises' equivalent of Green-Lagrange's), strain.max (its largest
+ * principal value), stress (von Mises' equivalent of Cauchy's, without active stress), quality.j.centre,
+ * quality.j.corner (mesh/quality.h), volume, material, or an array over nodes or elements by its name: its numbers,
+ * .x|y|z of its three, or their norm. f NULL: at rest, where only what the body holds is there. -1 with e filled: no
+ * such field (with the names there are), or the model lacks what it takes. */
 int field_of(field *to, const model *m, const frame *f, const char *name, err *e);
 void field_free(field *f);
 
@@ -34,8 +35,8 @@ bool field_moves(const model *m, const char *name);
 /* The value of a vector: its component, or its norm. */
 double field_of_vector(const field *f, const double vector[3]);
 
-/* Values at the nodes: as they are, or the mean of the elements round a node, of J the smallest. nan where there is none. The caller
- * frees them. */
+/* Values at the nodes: as they are, or the mean of the elements round a node, of J the smallest. nan where there is
+ * none. The caller frees them. */
 double *field_at_nodes(const field *f, const model *m, err *e);
 
 /* How numbers up to `most` are shown: multiplied by *scale, in the unit that is returned. Lengths are in the model's

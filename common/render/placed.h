@@ -1,6 +1,7 @@
-/* Images that know where they lie, as us-slice writes them: PGM or PPM of 8 bits with the comment `# us-slice:` and nine numbers, m: the centre
- * of pixel 0 0, the step to the next column and the step to the next row; where the image is a fan, then the word fan, how far above the first row
- * its tip is, the radii of its face and its end, m, and the angle by which it opens, degrees. The caller owns what is read.
+/* Images that know where they lie, as us-slice writes them: PGM or PPM of 8 bits with the comment `# us-slice:` and
+ * nine numbers, m: the centre of pixel 0 0, the step to the next column and the step to the next row; where the image
+ * is a fan, then the word fan, how far above the first row its tip is, the radii of its face and its end, m, and the
+ * angle by which it opens, degrees. The caller owns what is read.
  */
 #ifndef SINEW_PLACED_H
 #define SINEW_PLACED_H

@@ -42,8 +42,8 @@ static bool ends_name(int byte)
     return byte == 0 || byte == ' ' || byte == '\t' || byte == '\n' || byte == '\r';
 }
 
-/* A group's name in the bytes of the OBJ that it came from. Blanks and control characters of names that came from elsewhere would end
- * it, and a backslash at its end would join the next line to it. */
+/* A group's name in the bytes of the OBJ that it came from. Blanks and control characters of names that came from
+ * elsewhere would end it, and a backslash at its end would join the next line to it. */
 static void put_group(const char *name, bool several, out *to)
 {
     out_text(to, "g ");

@@ -7,12 +7,12 @@
 #include "model/source.h"
 #include "tools/info_quality.h"
 
-/* Writes the value of the key, without a line end; seen: of keys before, in the same frame or others. Returns 0, or -1 with e filled: what is wrong with the key, and what
- * there is. */
+/* Writes the value of the key, without a line end; seen: of keys before, in the same frame or others. Returns 0, or -1
+ * with e filled: what is wrong with the key, and what there is. */
 int info_key(const source *s, info_quality_seen *seen, const char *key, out *to, err *e);
 
-/* The unit of the key's value, "" for counts, where it is a number or several of the frame read last. NULL with e filled: of
- * anything else. Borrowed from the source. */
+/* The unit of the key's value, "" for counts, where it is a number or several of the frame read last. NULL with e
+ * filled: of anything else. Borrowed from the source. */
 const char *info_key_unit(const source *s, const char *key, err *e);
 
 /* The rows of a table: of its columns, arrays of the axis whose names begin with its name and a point; 0 where there are none, whatever the

@@ -1,5 +1,6 @@
-/* `sinew info --get quality.KEY`: which elements of a model are folded, by J = det F (mesh/quality.h), in the frame read last, or at rest
- * where there are none; and what share of energy hourglass control holds. Keys are described in sinew-info(1).
+/* `sinew info --get quality.KEY`: which elements of a model are folded, by J = det F (mesh/quality.h), in the frame
+ * read last, or at rest where there are none; and what share of energy hourglass control holds. Keys are described in
+ * sinew-info(1).
  */
 #ifndef SINEW_INFO_QUALITY_H
 #define SINEW_INFO_QUALITY_H

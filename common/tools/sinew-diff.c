@@ -32,7 +32,8 @@ static const opt_tool table = {
 
 enum { SAME = 0, DIFFERENT = 1, TROUBLE = 2, RULES = 64 };
 
-/* "ARRAY=NUMBER" or "NUMBER" (name "": every array of floats; those that are lengths, where it has a unit), or a name of --only. */
+/* "ARRAY=NUMBER" or "NUMBER" (name "": every array of floats; those that are lengths, where it has a unit), or a name
+ * of --only. */
 typedef struct rule {
     char name[MODEL_NAME];
     num_length value; /* unit 0: in the array's */

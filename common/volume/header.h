@@ -12,8 +12,8 @@ char *header_trim(char *text);
 /* The next word, cut out; NULL at the end. *p steps past it. */
 char *header_word(char **p);
 
-/* err_set at the stream's last line: "key: 'word'; expected ...", of a word that stands there; or what is wrong, in words of
- * ours, which get no quotes. Return -1. */
+/* err_set at the stream's last line: "key: 'word'; expected ...", of a word that stands there; or what is wrong, in
+ * words of ours, which get no quotes. Return -1. */
 int header_bad(const in *s, err *e, const char *key, const char *word, const char *expected);
 int header_wrong(const in *s, err *e, const char *key, const char *what, const char *expected);
 

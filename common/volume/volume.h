@@ -55,8 +55,9 @@ int volume_afford(const volume_budget *b, const volume *v, const char *place, er
 /* The bytes of its voxels. */
 double volume_memory(const volume *v);
 
-/* Reads all of a NRRD or MetaImage file; which, its first bytes say. path: where it is, so that data in a file of their own are
- * found in the same folder; NULL: nowhere, and such data are refused. b: may be NULL. -1 with e filled: file, line and reason. */
+/* Reads all of a NRRD or MetaImage file; which, its first bytes say. path: where it is, so that data in a file of their
+ * own are found in the same folder; NULL: nowhere, and such data are refused. b: may be NULL. -1 with e filled: file,
+ * line and reason. */
 int volume_read(volume *v, in *s, const char *path, const volume_budget *b, err *e);
 
 /* The same from a path; NULL or "-": standard input. */

@@ -1,8 +1,9 @@
-/* Lets the calls fail by which files are written, or ends the program at one: preloaded into a program (LD_PRELOAD), it counts the calls of
- * the kind that SINEW_FAULT_CALL names (open, stat, write, fsync, link, rename, unlink, truncate, chmod, lock, close; any: all of them), from the
- * beginning of main on, and the one whose number SINEW_FAULT_AT gives, from 1, fails with the error that SINEW_FAULT_ERROR names; with
- * SINEW_FAULT_ON set, so do all after it. Or the process gets the signal of the number SINEW_FAULT_SIGNAL, before that call, or with
- * SINEW_FAULT_AFTER set after it. With SINEW_FAULT_NAMED set, no file system has files without a name. Where SINEW_FAULT_COUNT names a file, it gets
+/* Lets the calls fail by which files are written, or ends the program at one: preloaded into a program (LD_PRELOAD), it
+ * counts the calls of the kind that SINEW_FAULT_CALL names (open, stat, write, fsync, link, rename, unlink, truncate,
+ * chmod, lock, close; any: all of them), from the beginning of main on, and the one whose number SINEW_FAULT_AT gives,
+ * from 1, fails with the error that SINEW_FAULT_ERROR names; with SINEW_FAULT_ON set, so do all after it. Or the
+ * process gets the signal of the number SINEW_FAULT_SIGNAL, before that call, or with SINEW_FAULT_AFTER set after it.
+ * With SINEW_FAULT_NAMED set, no file system has files without a name. Where SINEW_FAULT_COUNT names a file, it gets
  * the number of calls at the end. A close that fails has closed.
  */
 #ifndef _GNU_SOURCE

@@ -1,5 +1,5 @@
-/* Names of any bytes as UTF-8: every short text over bytes that could be mistaken comes back, is well formed, and is meant by what people
- * type. */
+/* Names of any bytes as UTF-8: every short text over bytes that could be mistaken comes back, is well formed, and is
+ * meant by what people type. */
 #include "base/chars.h"
 
 #include "tap.h"

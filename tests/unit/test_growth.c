@@ -1,5 +1,5 @@
-/* Time grows with what is read, not with its square: eight times as much takes eight times as long, and not sixty-four. Of a
- * processor's time, and the least of several runs, so that a busy machine changes little. */
+/* Time grows with what is read, not with its square: eight times as much takes eight times as long, and not sixty-four.
+ * Of a processor's time, and the least of several runs, so that a busy machine changes little. */
 #include "mesh/triangulate.h"
 #include "streams.h"
 #include "tap.h"

@@ -1,5 +1,5 @@
-/* What the table of known arrays says of their values holds for whoever reads them, in the body and in frames, as text and as
- * binary, and for whoever writes them; every array of real numbers has a rule. */
+/* What the table of known arrays says of their values holds for whoever reads them, in the body and in frames, as text
+ * and as binary, and for whoever writes them; every array of real numbers has a rule. */
 #include "model/known.h"
 #include "streams.h"
 #include "tap.h"
@@ -26,7 +26,8 @@ static size_t model_of(char *to, size_t size, const known *k, const char *name, 
                                 model_type_name(k->type), unit, axis, columns, rows);
 }
 
-/* In a binary model the array that has a name of the user's gets this one, which is as long, and its block's checksum. */
+/* In a binary model the array that has a name of the user's gets this one, which is as long, and its block's
+ * checksum. */
 static void rename_array(bytes b, const char *from, const char *to)
 {
     const size_t n = strlen(from);

@@ -1,6 +1,7 @@
-/* What msds-run says a probe feels, held to figures of our own. The contacts of a ball have no friction, so that all their forces
- * go through its centre, and their torque about any other point is that of the whole force there. What the FEM's nodes are pushed
- * with is what their elements pull with, from stresses made here by hand. And what is fixed presses nothing.
+/* What msds-run says a probe feels, held to figures of our own. The contacts of a ball have no friction, so that all
+ * their forces go through its centre, and their torque about any other point is that of the whole force there. What the
+ * FEM's nodes are pushed with is what their elements pull with, from stresses made here by hand. And what is fixed
+ * presses nothing.
  */
 // needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/largest.c
 #include "msds_block.h"
@@ -65,7 +66,8 @@ static double apart(const double a[3], const double b[3])
     return length(d);
 }
 
-/* Adds the forces that a tetrahedron pulls its nodes with where they are moved by u: V sigma grad N, sigma of Cauchy's strain. */
+/* Adds the forces that a tetrahedron pulls its nodes with where they are moved by u: V sigma grad N, sigma of Cauchy's
+ * strain. */
 static void pull(const double *x, const double *u, const int32_t node[4], double young, double poisson, double *f)
 {
     const double mu = young / (2 * (1 + poisson)), lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));

@@ -12,7 +12,8 @@ enum { SIDE = 400 };
 
 static const double pi = 3.14159265358979323846;
 
-/* An image of SIDE x SIDE pixels over all of a fan from radius r to s that opens by `angle` degrees, and `cut` of its width. */
+/* An image of SIDE x SIDE pixels over all of a fan from radius r to s that opens by `angle` degrees, and `cut` of its
+ * width. */
 static void test_fan(double r, double s, double angle, double cut)
 {
     static char text[SIDE * SIDE + 400];

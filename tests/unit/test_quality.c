@@ -1,5 +1,5 @@
-/* J in the middle and at the corners: against closed forms, against gradients that come by inverting the map, of boxes, other hexahedra
- * and tetrahedra; what is folded; sums by parts. (VTK's Jacobian: tests/cli/quality.t.) */
+/* J in the middle and at the corners: against closed forms, against gradients that come by inverting the map, of boxes,
+ * other hexahedra and tetrahedra; what is folded; sums by parts. (VTK's Jacobian: tests/cli/quality.t.) */
 #include "mesh/quality.h"
 
 #include "mesh/gradient.h"
@@ -33,8 +33,8 @@ static double determinant(const double f[9])
     return f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
 }
 
-/* A corner goes d of each side outward: the three edges there are those of I + d times ones, of which det is 1 + 3 d. The neighbours
- * have one edge that ends there: 1 + d. The middle has a quarter of it all: 1 + 3 d / 4. */
+/* A corner goes d of each side outward: the three edges there are those of I + d times ones, of which det is 1 + 3 d.
+ * The neighbours have one edge that ends there: 1 + d. The middle has a quarter of it all: 1 + 3 d / 4. */
 static void test_pushed(int corner, double d, bool box)
 {
     double rest[24], u[24] = {0};

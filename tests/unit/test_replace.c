@@ -1,5 +1,6 @@
-/* Outputs that fail late: what stood under the name stays, and nothing is left beside it. This program's fsync, close, rename, open and
- * linkat are its own, so that each can fail; all is tried where files need no name, where they do, and where what has none gets none.
+/* Outputs that fail late: what stood under the name stays, and nothing is left beside it. This program's fsync, close,
+ * rename, open and linkat are its own, so that each can fail; all is tried where files need no name, where they do, and
+ * where what has none gets none.
  */
 #define _GNU_SOURCE /* O_TMPFILE */
 #include "base/growing.h"
@@ -312,7 +313,8 @@ static void scarce(void)
     ok(!good && !files_here(), "each has what was written to it");
 }
 
-/* A new file goes to its place without another name, and keeps to umask; one that is replaced hands its permissions on. */
+/* A new file goes to its place without another name, and keeps to umask; one that is replaced hands its permissions
+ * on. */
 static void modes(void)
 {
     struct stat s;

@@ -1,6 +1,6 @@
-/* What --salvage takes of a stream that is cut at each of its bytes, damaged, or ended by `fail`, in either encoding: every frame that is whole
- * before that, as it was written, and nothing else. Of the first frame nothing says how many arrays it has: cut right behind one, it is
- * taken with those before the cut.
+/* What --salvage takes of a stream that is cut at each of its bytes, damaged, or ended by `fail`, in either encoding:
+ * every frame that is whole before that, as it was written, and nothing else. Of the first frame nothing says how many
+ * arrays it has: cut right behind one, it is taken with those before the cut.
  */
 #include "model/source.h"
 

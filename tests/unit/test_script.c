@@ -156,7 +156,8 @@ static void command_line(const model *m)
     script_free(&s);
 }
 
-/* Muscles that cannot contract: a warning where others can, an error where none can. want: what the message begins with. */
+/* Muscles that cannot contract: a warning where others can, an error where none can. want: what the message begins
+ * with. */
 static void muscles(const model *m, const char *list, int warned, int status, const char *want)
 {
     script s = {0};

@@ -215,7 +215,8 @@ static double linear(const uint8_t *voxel, const int64_t size[3], const int32_t 
     return sum;
 }
 
-/* Samples at random places of a volume, with its ends and one row of odd length, against the definition; by each set of instructions. */
+/* Samples at random places of a volume, with its ends and one row of odd length, against the definition; by each set of
+ * instructions. */
 static void test_cells(const int64_t size[3], volume_type type, pool *threads)
 {
     enum { PLACES = 2003 };

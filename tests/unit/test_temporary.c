@@ -1,4 +1,5 @@
-/* A process that is told to end removes the files that it noted, and still ends by the signal: whichever thread gets it, and whenever. */
+/* A process that is told to end removes the files that it noted, and still ends by the signal: whichever thread gets
+ * it, and whenever. */
 #include "base/temporary.h"
 
 #include "tap.h"

@@ -116,8 +116,8 @@ static void test_same_bytes(const backend *device, const char *name)
     bench_free(&whole);
 }
 
-/* An end between two steps: of a body that falls, u = -g t^2/2 and v = -g t there, which these steps have exactly, whatever their
- * length. In one step, or many; cut in parts too. */
+/* An end between two steps: of a body that falls, u = -g t^2/2 and v = -g t there, which these steps have exactly,
+ * whatever their length. In one step, or many; cut in parts too. */
 static void test_end(const backend *device, double tolerance, const char *name)
 {
     static const double end[] = {1e-7, .0003, .0123457, .02}, gravity[3] = {0, 0, -9.81};
@@ -143,7 +143,8 @@ static void test_end(const backend *device, double tolerance, const char *name)
     }
 }
 
-/* The same where steps are cut on the way there, which ends on 1 and 2 threads at the same bytes; and is what many more steps come to. */
+/* The same where steps are cut on the way there, which ends on 1 and 2 threads at the same bytes; and is what many more
+ * steps come to. */
 static void test_end_cut(const backend *device, const char *name)
 {
     bench b[3];

@@ -349,7 +349,8 @@ static void plain_cut(const double (*at)[2], int count, int32_t *triangle)
     }
 }
 
-/* A corner of the sort of polygon that round tells: stars, scribbles, on a grid, through one place, far apart by turns. */
+/* A corner of the sort of polygon that round tells: stars, scribbles, on a grid, through one place, far apart by
+ * turns. */
 static void place_plain(int round, int i, int count, double *at)
 {
     double angle = 2 * M_PI * i / count, r = .1 + rand() / (double)RAND_MAX;

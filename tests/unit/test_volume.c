@@ -452,7 +452,8 @@ static void real(void)
     "type: uint8\ndimension: 3\nspace: LPS\nsizes: 2 1 1\nspace directions: (1,0,0) (0,2,0) (0,0,3)\n"                 \
     "encoding: raw\nspace origin: (4,5,6)\nSegment0_Name:=vein\nSegment0_LabelValue:=1\n"
 
-/* A comment may say anything, among it what would be a field or a key, anywhere between the first line and the empty one. */
+/* A comment may say anything, among it what would be a field or a key, anywhere between the first line and the empty
+ * one. */
 static void comments(void)
 {
     static const char *const comment[] = {"#",
