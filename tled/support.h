@@ -8,9 +8,9 @@
 #include "tled/state.h"
 
 typedef struct support {
-    /* m: the farthest that a node is from one that is held in the same component, in steps from element to element times
-     * the longest side, of the component where that is most. One that is held everywhere, or nowhere, has none; where none
-     * has one, the diagonal of the bounding box. */
+    /* m: the farthest that a node is from one that is held in the same component, in steps from element to element
+     * times the longest side, of the component where that is most. One that is held everywhere, or nowhere, has none;
+     * where none has one, the diagonal of the bounding box. */
     double reach;
     int64_t loose;   /* parts that nothing holds in any component */
     int64_t first;   /* the first element of them, or -1 */
