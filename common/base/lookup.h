@@ -1,7 +1,8 @@
-/* Which of many things has a name, in a time that does not depend on how many there are: an index beside an array of
- * structs, each of which begins with a pointer to its name. The things stay the caller's, in the caller's order; the
- * index holds their places. Begin with a zeroed one, and say of every thing that is added that it is there. The creator
- * owns it.
+/* Which of many things has a name, in a time that does not depend on how many there are, nor on who chose their names:
+ * an index beside an array of structs, each of which begins with a pointer to its name. The things stay the caller's,
+ * in the caller's order; the index holds their places, by a hash whose key is drawn at random for each index: nothing
+ * may depend on the order of the slots. Begin with a zeroed one, and say of every thing that is added that it is there.
+ * The creator owns it.
  */
 #ifndef SINEW_LOOKUP_H
 #define SINEW_LOOKUP_H
@@ -9,11 +10,18 @@
 #include "base/err.h"
 
 #include <stddef.h>
+#include <stdint.h>
+
+typedef struct lookup_slot {
+    uint64_t hash; /* of the name */
+    int32_t place; /* -1: free */
+} lookup_slot;
 
 typedef struct lookup {
-    int32_t *slot; /* places: -1 = free */
-    int64_t slots; /* a power of two, or 0 */
-    int32_t count; /* how many things it holds: the first ones */
+    lookup_slot *slot;
+    int64_t slots;   /* a power of two, or 0 */
+    int32_t count;   /* how many things it holds: the first ones */
+    uint64_t key[2]; /* of the hash */
 } lookup;
 
 /* The place of the first thing of that name, or -1. A thing has `size` bytes. */

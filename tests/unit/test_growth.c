@@ -32,6 +32,55 @@ static void put_meta(text *t, int count)
         put(t, "meta k%d \"v\"\n", i);
 }
 
+/* ---- names that agree in the low BITS of FNV-1a, which has no key: each is a row of words, and of each word there are two that take the
+ * hash from one state to one other */
+
+enum { BITS = 20, WORD = 4, WORDS = 14 }; /* 2^WORDS names */
+
+static uint64_t fnv(uint64_t h, const char *word)
+{
+    for (int i = 0; i < WORD; i++)
+        h = (h ^ (unsigned char)word[i]) * UINT64_C(1099511628211);
+    return h & ((1u << BITS) - 1);
+}
+
+static void word_of(int number, char *word)
+{
+    for (int i = 0; i < WORD; i++, number /= 26)
+        word[i] = (char)('a' + number % 26);
+}
+
+/* Returns the state behind both words. first: what word led to a state, + 1. */
+static uint64_t find_pair(uint64_t state, char pair[2][WORD], int *first)
+{
+    memset(first, 0, sizeof *first << BITS);
+    for (int i = 0;; i++) {
+        word_of(i, pair[1]);
+        uint64_t to = fnv(state, pair[1]);
+        if (first[to]) {
+            word_of(first[to] - 1, pair[0]);
+            return to;
+        }
+        first[to] = i + 1;
+    }
+}
+
+static void put_alike(text *t, int count)
+{
+    char pair[WORDS][2][WORD];
+    int *first = malloc(sizeof *first << BITS);
+    uint64_t state = UINT64_C(14695981039346656037) & ((1u << BITS) - 1);
+    for (int i = 0; i < WORDS; i++)
+        state = find_pair(state, pair[i], first);
+    free(first);
+    for (int i = 0; i < count; i++) {
+        put(t, "meta ");
+        for (int k = 0; k < WORDS; k++)
+            put(t, "%.*s", WORD, pair[k][i >> k & 1]);
+        put(t, " \"v\"\n");
+    }
+}
+
 static void put_axes(text *t, int count)
 {
     for (int i = 0; i < count; i++)
@@ -72,7 +121,7 @@ static void use(const void *model_text, size_t size, err *e)
 static double read_time(void (*fill)(text *t, int count), int count, err *e)
 {
     double least = INFINITY;
-    text t = {malloc(40 * (size_t)count + 100), 0};
+    text t = {malloc(80 * (size_t)count + 100), 0};
     put(&t, "%%sinew 1 text\n");
     fill(&t, count);
     put(&t, "end\n");
@@ -92,7 +141,11 @@ static void test_names(void)
     static const struct {
         const char *what;
         void (*fill)(text *t, int count);
-    } all[] = {{"meta lines", put_meta}, {"axes", put_axes}, {"arrays", put_arrays}, {"arrays of a frame", put_frame}};
+    } all[] = {{"meta lines", put_meta},
+               {"meta lines that collide without a key", put_alike},
+               {"axes", put_axes},
+               {"arrays", put_arrays},
+               {"arrays of a frame", put_frame}};
     for (int i = 0; i < (int)(sizeof all / sizeof *all); i++) {
         err e = {0};
         double few = read_time(all[i].fill, FEW, &e), many = read_time(all[i].fill, MANY, &e);
