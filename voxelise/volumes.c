@@ -39,14 +39,20 @@ void volumes_free(volumes *v)
 
 /* ---- the surfaces of an OBJ */
 
+char *volumes_lower(const char *name, size_t length, err *e)
+{
+    char *lower = mem_array((int64_t)length + 1, 1, "names", e);
+    for (size_t i = 0; lower && i < length; i++)
+        lower[i] = (char)tolower((unsigned char)name[i]);
+    return lower;
+}
+
 /* The index of the surface so named, in any case, new or not; -1 with e filled. seen: names in lower case. */
 static int32_t surface_named(volumes *v, names *seen, int64_t *capacity, const char *name, size_t length, err *e)
 {
-    char *lower = mem_array((int64_t)length + 1, 1, "surfaces", e);
+    char *lower = volumes_lower(name, length, e);
     if (!lower)
         return -1;
-    for (size_t i = 0; i < length; i++)
-        lower[i] = (char)tolower((unsigned char)name[i]);
     int32_t at = names_number(seen, lower, e);
     if (at != v->surfaces) {
         free(lower);
@@ -156,29 +162,27 @@ static int compare_links(const void *a, const void *b)
     return (x->volume > y->volume) - (x->volume < y->volume);
 }
 
-static bool is_member(const volumes *v, int32_t group, int32_t volume)
-{
-    for (int64_t i = v->group_start[group]; i < v->members; i++)
-        if (v->member[i].volume == volume)
-            return true;
-    return false;
-}
+typedef struct joined {
+    const volumes_link *link; /* by surface */
+    const int64_t *start;     /* surfaces + 1: a surface's first link */
+    int32_t *last;            /* volumes: the last group that each has, + 1 */
+} joined;
 
-/* link_start: surfaces + 1. */
-static int join_group(volumes *v, int32_t group, const volumes_link *link, const int64_t *link_start, bool marks,
-                      err *e)
+static int join_group(volumes *v, int32_t group, const joined *j, bool marks, err *e)
 {
     bool rigid = group_is_rigid(v, group);
     for (int64_t t = v->token_start[group]; t < v->token_start[group + 1]; t++) {
         int32_t s = v->token[t];
         if (marks && !rigid && volumes_is_rigid(v->surface[s].name))
             continue;
-        for (int64_t l = link_start[s]; l < link_start[s + 1]; l++) {
-            if (is_member(v, group, link[l].volume))
+        for (int64_t l = j->start[s]; l < j->start[s + 1]; l++) {
+            int32_t volume = j->link[l].volume;
+            if (j->last[volume] == group + 1)
                 continue;
+            j->last[volume] = group + 1;
             if (mem_grow(&v->member, &v->capacity, v->members + 1, sizeof *v->member, "volumes", e))
                 return -1;
-            v->member[v->members++] = (volumes_member){group, link[l].volume, s};
+            v->member[v->members++] = (volumes_member){group, volume, s};
         }
     }
     v->group_start[group + 1] = v->members;
@@ -219,8 +223,9 @@ int volumes_join(volumes *v, const volumes_link *link, int64_t links, bool marks
     int status = -1;
     volumes_link *sorted = mem_array(links, sizeof *sorted, "volumes", e);
     int64_t *start = mem_array((int64_t)v->surfaces + 1, sizeof *start, "volumes", e);
+    int32_t *last = mem_array(v->volumes, sizeof *last, "volumes", e);
     v->group_start = mem_array((int64_t)v->groups + 1, sizeof *v->group_start, "volumes", e);
-    if (!sorted || !start || !v->group_start)
+    if (!sorted || !start || !last || !v->group_start)
         goto out;
     memcpy(sorted, link, (size_t)links * sizeof *sorted);
     qsort(sorted, (size_t)links, sizeof *sorted, compare_links);
@@ -230,13 +235,15 @@ int volumes_join(volumes *v, const volumes_link *link, int64_t links, bool marks
     }
     for (int32_t s = 0; s < v->surfaces; s++)
         start[s + 1] += start[s];
+    const joined j = {sorted, start, last};
     for (int32_t g = 0; g < v->groups; g++)
-        if (join_group(v, g, sorted, start, marks, e))
+        if (join_group(v, g, &j, marks, e))
             goto out;
     status = list_surfaces(v, sorted, links, e);
 out:
     free(sorted);
     free(start);
+    free(last);
     return status;
 }
 

@@ -74,6 +74,9 @@ typedef struct volumes_link {
  * beside another only marks. */
 int volumes_join(volumes *v, const volumes_link *link, int64_t links, bool marks, err *e);
 
+/* The first length characters of a name, in lower case; the caller frees it. NULL with e filled on no memory. */
+char *volumes_lower(const char *name, size_t length, err *e);
+
 bool volumes_begins(const char *name, const char *with);
 bool volumes_is_rigid(const char *name);
 

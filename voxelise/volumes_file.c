@@ -5,9 +5,11 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
+#include "mesh/names.h"
 #include "mesh/surface.h"
 #include "model/materials.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -23,6 +25,9 @@ typedef struct reader {
     volumes *v;
     const model *materials;
     const char **surface; /* names of v's surfaces, borrowed */
+    names surfaces;       /* the same in lower case */
+    names volumes;        /* names of v's volumes, in lower case */
+    names ranks;          /* "LEVEL PRIORITY" of v's volumes */
     int64_t *line;        /* of each volume */
     volumes_link *link;
     int64_t volume_capacity, line_capacity, links, link_capacity;
@@ -46,11 +51,39 @@ static int take_muscle(reader *r, const char *value, bool *to, err *e)
     return 0;
 }
 
+/* Where the name is in a set of names in lower case: -1 where it is not, -2 on no memory. */
+static int32_t find_lower(const names *set, const char *name, err *e)
+{
+    char *lower = volumes_lower(name, strlen(name), e);
+    int32_t at = lower ? names_find(set, lower) : -2;
+    free(lower);
+    return at;
+}
+
+static int add_lower(names *set, const char *name, err *e)
+{
+    char *lower = volumes_lower(name, strlen(name), e);
+    int status = lower && names_number(set, lower, e) >= 0 ? 0 : -1;
+    free(lower);
+    return status;
+}
+
+/* Whether it can mean the surface of that very name only: no *, and nothing that may stand for other bytes. */
+static bool is_plain(const char *pattern)
+{
+    while (*pattern > ' ' && *pattern < 0x7f && *pattern != '*' && *pattern != '\\')
+        pattern++;
+    return !*pattern;
+}
+
 /* Links the surfaces that one pattern matches to the volume that is being read. */
 static int take_pattern(reader *r, const char *pattern, err *e)
 {
     int64_t polygons = 0, matched = 0;
-    for (int32_t s = 0; s < r->v->surfaces; s++) {
+    int32_t only = is_plain(pattern) ? find_lower(&r->surfaces, pattern, e) : -1;
+    if (only < -1)
+        return -1;
+    for (int32_t s = only < 0 ? 0 : only; s < (only < 0 ? r->v->surfaces : only + 1); s++) {
         if (!surface_in_group(r->surface[s], pattern))
             continue;
         if (mem_grow(&r->link, &r->link_capacity, r->links + 1, sizeof *r->link, "volumes", e))
@@ -98,21 +131,24 @@ static int take_pair(reader *r, volumes_volume *to, int key, char *value, err *e
     }
 }
 
-/* Against the volumes of the lines before. */
+/* Against the volumes of the lines before: of that name, and of that level and priority. */
 static int check_new(reader *r, const volumes_volume *new_one, err *e)
 {
-    for (int32_t i = 0; i < r->v->volumes; i++) {
-        const volumes_volume *other = &r->v->volume[i];
-        if (strcasecmp(other->name, new_one->name) == 0)
-            return keyfile_error(&r->k, e, "volume '%s' was given on line %lld; expected another name", new_one->name,
-                                 (long long)r->line[i]);
-        if (other->level == new_one->level && other->priority == new_one->priority)
-            return keyfile_error(&r->k, e,
-                                 "'%s' has level %d and priority %d, as '%s' on line %lld has; expected "
-                                 "another priority, to say which keeps a voxel of both",
-                                 new_one->name, new_one->level, new_one->priority, other->name, (long long)r->line[i]);
-    }
-    return 0;
+    char rank[32];
+    snprintf(rank, sizeof rank, "%d %d", new_one->level, new_one->priority);
+    int32_t same = find_lower(&r->volumes, new_one->name, e), level = names_find(&r->ranks, rank);
+    if (same < -1)
+        return -1;
+    if (same >= 0 && (level < 0 || same <= level))
+        return keyfile_error(&r->k, e, "volume '%s' was given on line %lld; expected another name", new_one->name,
+                             (long long)r->line[same]);
+    if (level >= 0)
+        return keyfile_error(&r->k, e,
+                             "'%s' has level %d and priority %d, as '%s' on line %lld has; expected "
+                             "another priority, to say which keeps a voxel of both",
+                             new_one->name, new_one->level, new_one->priority, r->v->volume[level].name,
+                             (long long)r->line[level]);
+    return add_lower(&r->volumes, new_one->name, e) || names_number(&r->ranks, rank, e) < 0 ? -1 : 0;
 }
 
 static int take_line(reader *r, err *e)
@@ -148,31 +184,42 @@ static int take_line(reader *r, err *e)
     return 0;
 }
 
+/* A volume, and which one it is in the file. */
+typedef struct place {
+    volumes_volume volume;
+    int64_t line;
+    int32_t was;
+} place;
+
+/* No two volumes have one level and one priority. */
+static int by_rank(const void *a, const void *b)
+{
+    const volumes_volume *p = &((const place *)a)->volume, *q = &((const place *)b)->volume;
+    if (p->level != q->level)
+        return p->level < q->level ? -1 : 1;
+    return (p->priority > q->priority) - (p->priority < q->priority);
+}
+
 /* Sorts the volumes by level and priority; their lines and links go along. */
 static int sort_volumes(reader *r, err *e)
 {
     volumes *v = r->v;
     int32_t *rank = mem_array(v->volumes, sizeof *rank, "volumes", e);
-    volumes_volume *sorted = mem_array(v->volumes, sizeof *sorted, "volumes", e);
-    int64_t *line = mem_array(v->volumes, sizeof *line, "volumes", e);
-    int status = rank && sorted && line ? 0 : -1;
+    place *sorted = mem_array(v->volumes, sizeof *sorted, "volumes", e);
+    int status = rank && sorted ? 0 : -1;
+    for (int32_t i = 0; !status && i < v->volumes; i++)
+        sorted[i] = (place){v->volume[i], r->line[i], i};
+    if (!status)
+        qsort(sorted, (size_t)v->volumes, sizeof *sorted, by_rank);
     for (int32_t i = 0; !status && i < v->volumes; i++) {
-        for (int32_t j = 0; j < v->volumes; j++) {
-            const volumes_volume *a = &v->volume[i], *b = &v->volume[j];
-            rank[i] += b->level < a->level || (b->level == a->level && b->priority < a->priority);
-        }
-        sorted[rank[i]] = v->volume[i];
-        line[rank[i]] = r->line[i];
+        v->volume[i] = sorted[i].volume;
+        r->line[i] = sorted[i].line;
+        rank[sorted[i].was] = i;
     }
-    if (!status) {
-        memcpy(v->volume, sorted, (size_t)v->volumes * sizeof *sorted);
-        memcpy(r->line, line, (size_t)v->volumes * sizeof *line);
-        for (int64_t i = 0; i < r->links; i++)
-            r->link[i].volume = rank[r->link[i].volume];
-    }
+    for (int64_t i = 0; !status && i < r->links; i++)
+        r->link[i].volume = rank[r->link[i].volume];
     free(rank);
     free(sorted);
-    free(line);
     return status;
 }
 
@@ -210,8 +257,11 @@ int volumes_read(volumes *v, in *file, const obj *o, const model *materials, not
     r.surface = mem_array(v->surfaces, sizeof *r.surface, "surfaces", e);
     if (!r.surface)
         goto out;
-    for (int32_t s = 0; s < v->surfaces; s++)
+    for (int32_t s = 0; s < v->surfaces; s++) {
         r.surface[s] = v->surface[s].name;
+        if (add_lower(&r.surfaces, v->surface[s].name, e))
+            goto out;
+    }
     while ((got = keyfile_next(&r.k, e)) > 0)
         if (take_line(&r, e))
             goto out;
@@ -227,6 +277,9 @@ int volumes_read(volumes *v, in *file, const obj *o, const model *materials, not
     status = 0;
 out:
     free(r.surface);
+    names_free(&r.surfaces);
+    names_free(&r.volumes);
+    names_free(&r.ranks);
     free(r.line);
     free(r.link);
     return status;
