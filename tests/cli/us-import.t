@@ -117,7 +117,10 @@ bad "too deep" 'more than 100000 items' multi deep=120000
 bad "one slice" 'one slice' series slices=1
 check "no output is left" test ! -e "$T/bad.nrrd"
 dicom series
-fails 1 "no such series" 'us-import: --series 3: there (is one series, of [1-9][0-9]* files?|are [12] series: 1: ).*; expected 1' us-import --series 3 "$T/in"
+fails 1 "no such series" '^us-import: --series 3: there is one series, of 6 files; expected 1, or no --series$' us-import --series 3 "$T/in"
+dicom series second=1
+fails 1 "of two" '^us-import: --series 3: there are 2 series: 1: 1 file of 7 x 5 from file 1 of 6, 2: 5 files of 7 x 5 from file 2 of 6; expected 1 to 2 \(-v says all\)$' us-import --series 3 "$T/in"
+dicom series
 fails 1 "no such data" 'no frames of FLOW; expected --data of: .not said.' us-import --data FLOW "$T/in"
 fails 1 "no such time" 'volumes of 1 time; expected --time 1' us-import --time 2 "$T/in"
 echo text >"$T/in/notes.txt"
