@@ -240,12 +240,13 @@ static int add_surface(showing *b, const model *m, const showing_want *w, const 
     return seen < 0 ? -1 : seen > 0;
 }
 
-/* The names of all things, surfaces and groups. */
-static int note_names(const model *m, notes *there, err *e)
+/* The names of the things among `things`, and of all surfaces and groups. */
+static int note_names(const model *m, int things, notes *there, err *e)
 {
     char name[MODEL_NAME];
     for (int i = 0; i < SHOWING_THINGS; i++)
-        notes_add(there, "%s", showing_things[i]);
+        if (things >> i & 1)
+            notes_add(there, "%s", showing_things[i]);
     for (int at = 0; model_surface(m, &at, name, sizeof name);) {
         surface s;
         if (surface_of(m, name, &s, e))
@@ -257,20 +258,37 @@ static int note_names(const model *m, notes *there, err *e)
     return 0;
 }
 
-int showing_check_names(const model *m, const showing_want *w, err *e)
+static bool is_thing(const char *name)
+{
+    int i = 0;
+    while (i < SHOWING_THINGS && strcmp(name, showing_things[i]) != 0)
+        i++;
+    return i < SHOWING_THINGS;
+}
+
+/* Names of one option that takes the things among `things`; what else of them it is given is not for here. */
+static int check_names(const model *m, const char *option, int things, const char *const *names, int count, err *e)
 {
     notes there = {0};
-    int bad = note_names(m, &there, e);
-    for (int n = 0; n < w->names + w->clears && !bad; n++) {
-        const char *name = n < w->names ? w->name[n] : w->clear[n - w->names];
-        int i = n < w->names ? SHOWING_THINGS : 0;
-        while (i < there.count && !surface_in_group(there.line[i], name))
+    int bad = note_names(m, things, &there, e);
+    for (int n = 0; n < count && !bad; n++) {
+        int i = 0;
+        while (i < there.count && !surface_in_group(there.line[i], names[n]))
             i++;
-        if (i == there.count)
-            bad = near_option(e, NULL, "thing", name, (const char *const *)there.line, there.count);
+        if (i == there.count && !is_thing(names[n]))
+            bad = near_option(e, option, "thing", names[n], (const char *const *)there.line, there.count);
     }
     notes_free(&there);
     return bad;
+}
+
+int showing_check_names(const model *m, const showing_want *w, err *e)
+{
+    const int all = (1 << SHOWING_THINGS) - 1, whole = SHOWING_RIGID | SHOWING_CENTRES;
+    return check_names(m, "--show", all, w->name, w->names, e) ||
+                   check_names(m, "--clear", all & ~whole, w->clear, w->clears, e)
+               ? -1
+               : 0;
 }
 
 int showing_surfaces(showing *b, const model *m, const showing_want *want, const double *at_nodes, err *e)

@@ -109,8 +109,9 @@ r 2 'WIDTHxHEIGHT' --size 0x100
 r 2 'WIDTHxHEIGHT' --size 100
 r 1 'expected a larger one' --size 12x12
 r 2 '--angle' --angle -1
-r 2 "unknown thing 'voxel'; did you mean 'voxels'\?.*rigid_end" --show voxel
-r 2 "unknown thing 'skin'.*muscle" --clear skin
+r 2 "^sinew-render: --show: unknown thing 'voxel'; did you mean 'voxels'\?.*rigid_end" --show voxel
+r 2 "^sinew-render: --clear: unknown thing 'skin'.*muscle" --clear skin
+r 2 "^sinew-render: --clear: unknown thing 'prob'; did you mean 'probe'\? expected one of: surface, voxels, muscles, probe, muscle, " --clear prob
 r 1 '--clear voxels: nothing that is drawn' --clear voxels
 r 1 '--clear muscle: nothing that is drawn' --show voxels --clear muscle
 r 1 '--clear rigid: these are never seen through; expected surface, voxels' --show voxels,rigid --clear voxels,rigid
