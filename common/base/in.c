@@ -1,11 +1,13 @@
 #include "base/in.h"
 
+#include "base/inputs.h"
 #include "base/mem.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -185,7 +187,12 @@ in *in_open(const char *path, err *e)
 {
     if (!path || !strcmp(path, "-"))
         return in_new(STDIN_FILENO, "stdin", NULL, 0, false, e);
-    return open_file(path, false, e);
+    struct stat s;
+    in *file = open_file(path, false, e);
+    if (!file || fstat(file->fd, &s) || !inputs_note(&s, e))
+        return file;
+    in_close(file);
+    return NULL;
 }
 
 in *in_open_plain(const char *path, err *e)

@@ -1,5 +1,6 @@
 #include "base/path.h"
 
+#include "base/inputs.h"
 #include "base/mem.h"
 
 #include <errno.h>
@@ -136,6 +137,8 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
         err_set(e, place, 0, "names '%.200s', outside its folder; expected a file beside it", name);
     else if (file && (stat(real, &about) || !S_ISREG(about.st_mode)))
         err_set(e, file, 0, "is no regular file; expected one that '%.200s' names", place);
+    else if (file)
+        inputs_note(&about, e);
     free(folder);
     if (!e->status)
         return file;

@@ -16,7 +16,7 @@ size_t path_folder(const char *path);
 char *path_join(const char *folder, size_t n, const char *name, err *e);
 
 /* The path of a regular file that an input names, from the input's own path: beside it or in a folder beside it, links
- * followed; no other is opened for an input's asking. place: the input, for messages. NULL with e filled. */
+ * followed; no other is opened for an input's asking, and no output replaces it (see inputs.h). place: the input, for messages. NULL with e filled. */
 char *path_beside(const char *path, const char *name, const char *place, err *e);
 
 /* Where a file named path would be, links followed, even one to nothing. NULL with e filled where there can be none. */

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* O_TMPFILE */
 #include "base/replace.h"
 
+#include "base/inputs.h"
 #include "base/mem.h"
 #include "base/path.h"
 #include "base/temporary.h"
@@ -147,6 +148,8 @@ int replace_store_names(const char *path, const char *name, err *e)
 
 int replace_settle(replace *r, const char *name, err *e)
 {
+    if (inputs_has(r->target))
+        return err_set(e, name, 0, "is a file that was read; expected another to write");
     if (replace_store(r->fd))
         return err_system(e, name, errno, "cannot write");
     /* What only close() would tell: a name is given while the file is open. */

@@ -108,6 +108,34 @@ kept "--cut to the output" "--cut 'out' would overwrite the file of -o 'out'|-o 
 ln -s mesh c_0.obj
 kept "a numbered cut to the model" "--cut 'c_0.obj' would overwrite what is read on standard input" slice --cut c_%d.obj -o i_%d.pgm
 kept "a numbered cut to the numbered image" "--cut 'i_0.pgm' would overwrite the file of -o 'i_0.pgm'" slice --cut i_%d.pgm -o i_%01d.pgm
+
+# Files that only an input names.
+printf '%s\n' 'ObjectType = Image' 'NDims = 3' 'DimSize = 6 6 6' 'ElementType = MET_UCHAR' 'ElementSpacing = 4 4 4' \
+    'ElementDataFile = vol.raw' >vol.mhd
+head -c 216 mesh >vol.raw
+ln vol.raw raw.link
+kept_files='vol.mhd vol.raw'
+sum >before
+# named NAME FILE COMMAND...: that file was read, so it stays.
+named() {
+    name=$1 file=$2
+    shift 2
+    fails 1 "$name" "^[a-z-]*: $file: is a file that was read; expected another to write$" "$@"
+    sum | cmp -s - before || not_ok "$name: a file was lost"
+    [ "$(wc -l <stderr)" -eq 1 ] || not_ok "$name: one line"
+}
+named "the voxels of a header" vol.raw us-segment -q -n a --low 100 -o vol.raw vol.mhd
+named "by another name" raw.link us-segment -q -n a --low 100 -o raw.link vol.mhd
+check "another file" us-segment -q -n a --low 100 -o labels.nrrd vol.mhd
+check "which is there" us-segment -q -n a --low 100 -o labels.nrrd vol.mhd
+if have python3; then
+    python3 "$ROOT/tests/cli/dicom.py" images series && rm images/expected
+    kept_files='images/im00.dcm images/im07.dcm'
+    sum >before
+    named "an image in a folder" images/im07.dcm us-import -v -q -o images/im07.dcm images
+fi
+is "$(find . -name '.sinew*')" "" "none is left"
+
 check "each its own" slice --cut d_%d.obj -o i_%d.pgm
 is "$(ls d_0.obj i_0.pgm)" "d_0.obj
 i_0.pgm" "both are there"
