@@ -15,15 +15,18 @@ static void put(err *e, size_t at, size_t length, const char *instead)
     snprintf(e->text + at, sizeof e->text - at, "%s%s", instead, rest);
 }
 
-/* From the first quote to the last, so that a quote in a name ends nothing. An apostrophe stands between letters, a
- * quote does not. */
-static bool hide_quoted(err *e, size_t from)
+/* From the first quote to the last, so that a quote in a name ends nothing; to the end of the text where it has none,
+ * or where the text was cut, so that the last may be one of the name's. An apostrophe stands between letters, a quote
+ * does not. */
+static bool hide_quoted(err *e, size_t from, bool cut)
 {
     char *first = strchr(e->text + from, '\''), *last = strrchr(e->text + from, '\'');
     while (first && first > e->text + from && first[-1] != ' ' && first[-1] != '(')
         first = strchr(first + 1, '\'');
-    if (!first || last <= first)
+    if (!first)
         return false;
+    if (cut || last == first)
+        last = e->text + strlen(e->text);
     put(e, (size_t)(first + 1 - e->text), (size_t)(last - first - 1), left_out);
     return true;
 }
@@ -39,10 +42,10 @@ static bool numbers_a_file(const char *text)
 
 void import_hide(err *e, const char *of)
 {
-    const bool placed = e->place && *of;
+    const bool placed = e->place && *of, cut = strlen(e->text) == sizeof e->text - 1;
     if (placed)
         put(e, 0, (size_t)e->place, of);
-    const bool quoted = hide_quoted(e, placed ? strlen(of) : 0);
+    const bool quoted = hide_quoted(e, placed ? strlen(of) : 0, cut);
     const size_t n = strlen(e->text);
     if (placed || quoted || numbers_a_file(e->text))
         snprintf(e->text + n, sizeof e->text - n, "%s", way);

@@ -179,7 +179,26 @@ static int read_dicom(job *j, err *e)
     return crop(j, e);
 }
 
-/* ---- sweeps */
+/* ---- volumes and sweeps */
+
+/* Whether the error's place is another file than the one at hand: a long path stands there by its end. */
+static bool is_beside(const job *j, const err *e)
+{
+    const int skip = strncmp(e->text, "...", 3) ? 0 : 3;
+    const size_t place = (size_t)(e->place - skip), length = strlen(j->files.path[0]);
+    return place > length || memcmp(e->text + skip, j->files.path[0] + length - place, place) != 0;
+}
+
+/* Volumes have their voxels in the file at hand, or in one that its header names. */
+static int read_volume(job *j, volume *to, err *e)
+{
+    const volume_budget budget = {.most = j->o->common.memory};
+    if (!volume_load(to, j->files.path[0], &budget, e))
+        return 0;
+    if (e->place && is_beside(j, e))
+        snprintf(j->of, sizeof j->of, "the data file of file 1 of 1");
+    return -1;
+}
 
 static int read_calibration(const char *path, double m[16], err *e)
 {
@@ -233,7 +252,6 @@ static void say_transform(const job *j, const sweep *s)
 static int put_together(job *j, volume *images, sweep *s, const double *image_to_probe, err *e)
 {
     const char *path = j->files.path[0];
-    const volume_budget budget = {.most = j->o->common.memory};
     sweep_wish wish = {j->o->splat == 1, j->o->fill, (double)NAN, (double)j->o->common.memory};
     int64_t filled[2] = {0};
     if (j->o->voxel.count && length_mm(&j->o->voxel, "--voxel", &wish.voxel, e))
@@ -242,8 +260,7 @@ static int put_together(job *j, volume *images, sweep *s, const double *image_to
         return err_usage(e, "--voxel: expected more than 0");
     call_file(j, 0);
     in *source = in_open(path, e);
-    int code =
-        !source || sweep_read(s, source, j->o->transform, image_to_probe, e) || volume_load(images, path, &budget, e);
+    int code = !source || sweep_read(s, source, j->o->transform, image_to_probe, e) || read_volume(j, images, e);
     in_close(source);
     if (code)
         return -1;
@@ -303,7 +320,7 @@ static int read_all(job *j, struct options *o, err *e)
         return read_dicom(j, e);
     if (kind == IMPORT_SWEEP)
         return read_sweep(j, e);
-    return volume_load(&j->v, j->files.path[0], &(volume_budget){.most = o->common.memory}, e) || crop(j, e) ? -1 : 0;
+    return read_volume(j, &j->v, e) || crop(j, e) ? -1 : 0;
 }
 
 /* Names of files and what is in them, out of the error. */

@@ -5,14 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t put_place(char *to, size_t size, const char *place, int64_t line)
+/* The end of a long path stands for it, so that what is wrong has room. Returns how much of the text is the place's name. */
+static size_t put_place(char *to, size_t size, const char *place)
 {
-    int n = 0;
-    if (place && line > 0)
-        n = snprintf(to, size, "%s:%lld: ", place, (long long)line);
-    else if (place)
-        n = snprintf(to, size, "%s: ", place);
-    return n < 0 ? 0 : (size_t)n < size ? (size_t)n : size - 1;
+    enum { MOST = 500 };
+    const size_t n = strlen(place);
+    const int put = n > MOST ? snprintf(to, size, "...%s", place + n - MOST) : snprintf(to, size, "%s", place);
+    return put < 0 ? 0 : (size_t)put;
 }
 
 SINEW_PRINTF(5, 0)
@@ -21,8 +20,12 @@ static int fill(err *e, int status, const char *place, int64_t line, const char 
     if (e->status)
         return -1;
     e->status = status;
-    size_t at = put_place(e->text, sizeof e->text, place, line);
-    e->place = place ? (int)strnlen(place, at) : 0;
+    size_t at = place ? put_place(e->text, sizeof e->text, place) : 0;
+    e->place = (int)at;
+    if (place && line > 0)
+        at += (size_t)snprintf(e->text + at, sizeof e->text - at, ":%lld: ", (long long)line);
+    else if (place)
+        at += (size_t)snprintf(e->text + at, sizeof e->text - at, ": ");
     vsnprintf(e->text + at, sizeof e->text - at, format, args);
     return -1;
 }

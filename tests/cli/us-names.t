@@ -59,6 +59,18 @@ done
 left=$(us-import --report -o "$T/v.nrrd" "$T/in" 2>&1 | grep -c '^us-import: left out: ')
 if [ "$left" -gt 2000 ]; then ok "the report lists all that was left out: $left elements"; else not_ok "the report lists $left elements"; fi
 
+# What is wrong with such files, in a folder and under names that are planted too.
+for wrong in drop=2 dup=3 second=1 cut=2000; do
+    mkdir -p "$T/Planted"
+    in=$T/Planted/planted_$wrong
+    "$python" tests/cli/dicom.py "$in" series plant=1 "$wrong" && rm -f "$in/expected"
+    for f in "$in"/*; do mv "$f" "$in/planted $(basename "$f")"; done
+    us-import --report "$in" >"$T/w.nrrd" 2>"$T/stderr"
+    is "$? $(grep -aciE "$WORDS" "$T/stderr") $(wc -c <"$T/w.nrrd")" "1 0 0" "$wrong: the error names nobody"
+    us-import -q "$in" >"$T/w.nrrd" 2>"$T/stderr"
+    is "$? $(grep -aciE "$WORDS" "$T/stderr") $(wc -c <"$T/w.nrrd")" "1 0 0" "$wrong: nor with -q"
+done
+
 # On from there: every tool that the volume passes through.
 "$python" tests/cli/dicom.py "$T/in2" series plant=1 columns=24 rows=20 slices=16 && rm "$T/in2/expected"
 us-import -q -o "$T/v.nrrd" "$T/in2"

@@ -65,13 +65,25 @@ sed "s/^kinds: .*/O'Kowal: 7/" "$P/good.nrrd" >"$P/KOWAL_bad.nrrd"
 hides "NRRD, a field of its own" "^us-import: file 1 of 1:7: field: '\.\.\.'; expected" us-import "$P/KOWAL_bad.nrrd"
 sed 's/^7$/Kowal/' "$P/good.nrrd" >"$P/KOWAL_bad.nrrd"
 hides "NRRD, a voxel" "^us-import: file 1 of 1: voxel 0: '\.\.\.'; expected a number" us-import "$P/KOWAL_bad.nrrd"
-for place in KOWAL.raw ../KOWAL.raw; do
-    sed "s,^encoding.*,&\ndata file: $place," "$P/good.nrrd" >"$P/KOWAL_bad.nrrd"
-    hides "NRRD, data in $place" "^us-import: file 1 of 1: .*(No such file|outside its folder|expected)" us-import "$P/KOWAL_bad.nrrd"
+sed "s,^encoding.*,&\ndata file: KOWAL.raw," "$P/good.nrrd" >"$P/KOWAL_bad.nrrd"
+hides "NRRD, data that are not there" "^us-import: the data file of file 1 of 1: cannot open: No such file" us-import "$P/KOWAL_bad.nrrd"
+: >"$P/KOWAL.raw"
+hides "NRRD, a data file that is empty" "^us-import: the data file of file 1 of 1: .*expected" us-import "$P/KOWAL_bad.nrrd"
+rm "$P/KOWAL.raw"
+sed "s,^encoding.*,&\ndata file: ../KOWAL.raw," "$P/good.nrrd" >"$P/KOWAL_bad.nrrd"
+hides "NRRD, data in ../KOWAL.raw" "^us-import: (the data file of )?file 1 of 1: .*(No such file|outside its folder|expected)" us-import "$P/KOWAL_bad.nrrd"
+# Folders so long that a path and what is wrong are more than one message holds.
+long=$P/$(printf 'x%.0s' $(seq 200))
+long=$long/$(basename "$long")/$(basename "$long")/$(basename "$long")
+mkdir -p "$long"
+for length in $(seq 900 20 1060); do
+    file=$long/$(printf 'k%.0s' $(seq $((length - ${#long} - 1))))
+    sed "s/^type: .*/type: Jane Kowal of Cracow O'Kowal/" "$P/good.nrrd" >"$file"
+    hides "NRRD, a path of $length characters" "^us-import: file 1 of 1:2: type: '\.\.\.'; expected unsigned char" us-import "$file"
 done
 mkdir "$P/KOWAL.raw"
 sed "s,^encoding.*,&\ndata file: KOWAL.raw," "$P/good.nrrd" >"$P/KOWAL_bad.nrrd"
-hides "NRRD, data in a folder" "^us-import: file 1 of 1: is no regular file; expected one that '\.\.\.' names" us-import "$P/KOWAL_bad.nrrd"
+hides "NRRD, data in a folder" "^us-import: the data file of file 1 of 1: is no regular file; expected one that '\.\.\.' names" us-import "$P/KOWAL_bad.nrrd"
 printf '%s\n' 'ObjectType = Image' 'NDims = 3' 'BinaryData = False' 'TransformMatrix = 1 0 0 0 1 0 0 0 1' 'Offset = 0 0 0' \
     'ElementSpacing = 1 1 1' 'DimSize = 1 1 1' 'ElementType = MET_UCHAR' 'ElementDataFile = LOCAL' 7 >"$P/good.mha"
 for key in ObjectType NDims BinaryData TransformMatrix Offset ElementSpacing DimSize ElementType; do
