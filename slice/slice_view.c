@@ -35,9 +35,10 @@ int slice_probe_of(slice_probe *p, const char *text, err *e)
     return kind == PROBE_LINEAR || kind == PROBE_CURVED ? 0 : 1;
 }
 
+/* As two people write down one probe: far less than a pixel. */
 static bool near(double a, double b)
 {
-    return fabs(a - b) <= 1e-6 * fmax(fabs(a), fabs(b));
+    return fabs(a - b) <= 1e-3 * fmax(fabs(a), fabs(b));
 }
 
 bool slice_probe_same(const slice_probe *a, const slice_probe *b)

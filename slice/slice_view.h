@@ -33,7 +33,7 @@ typedef struct slice_view {
  * it was; -1 with e filled (status 2) where it is none. */
 int slice_probe_of(slice_probe *p, const char *text, err *e);
 
-/* Whether two probes make the same image. */
+/* Whether two probes make the same image: to a thousandth of their lengths and angle. */
 bool slice_probe_same(const slice_probe *a, const slice_probe *b);
 
 enum { SLICE_COLUMNS = 512 };

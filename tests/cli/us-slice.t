@@ -284,7 +284,7 @@ is "$(seen curved:4mm,80,3mm)" "us-slice: warning: the image is that of curved:4
 is "$(seen linear:4mm,3mm | grep -c 'but curved:0.004m,40')" 1 "and another kind"
 is "$(seen curved:4.01mm,40,3mm | grep -c 'but curved:0.004m,40')" 1 "and another radius"
 is "$(seen linear:7mm,4mm "$T/run.sinew" | grep -c 'but linear:0.006m')" 1 "and another width"
-for same in curved:4mm,40,3mm curved:.4cm,40,9mm,1mm phased:90; do
+for same in curved:4mm,40,3mm curved:4.003mm,40.02,3mm curved:.4cm,40,9mm,1mm phased:90; do
     is "$(seen "$same")" "" "$same is not: the same face, or a phased array, which no shape that presses is"
 done
 is "$(seen linear:7mm,4mm "$T/ball.txt")" "" "nor is any array after a sphere"
