@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The end of a long path stands for it, so that what is wrong has room. Returns how much of the text is the place's name. */
+/* The end of a long path stands for it, so that what is wrong has room. Returns how much of the text is the place's
+ * name. */
 static size_t put_place(char *to, size_t size, const char *place)
 {
     enum { MOST = 500 };
