@@ -73,6 +73,7 @@ static int take_line(reader *r, err *e)
     if (!(seen & 1u << KEY_THICKNESS))
         return keyfile_error(&r->k, e, "layer '%s' has no thickness; expected thickness=LENGTH", name);
     one.material = one.material < 0 ? 0 : one.material;
+    one.thickness = thickness;
     one.depth = thickness + (l->layers ? l->layer[l->layers - 1].depth : 0);
     if (l->layers == DEPTHS_MOST)
         return keyfile_error(&r->k, e, "too many layers; at most %d are possible", DEPTHS_MOST);
@@ -304,5 +305,5 @@ int64_t layers_at(const layers *l, const volumes *plan, int32_t volume)
 
 double layers_thickness(const layers *l, int64_t layer)
 {
-    return l->layer[layer].depth - (layer ? l->layer[layer - 1].depth : 0);
+    return l->layer[layer].thickness;
 }

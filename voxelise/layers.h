@@ -10,8 +10,8 @@
 #include "voxelise/voxels.h"
 
 typedef struct layers_layer {
-    char *name;   /* owned */
-    double depth; /* of its lower side below the surface, in the OBJ's unit */
+    char *name;              /* owned */
+    double thickness, depth; /* of its lower side below the surface; in the OBJ's unit */
     int32_t material;
 } layers_layer;
 
