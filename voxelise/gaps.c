@@ -11,8 +11,12 @@
  * line grazes is none. */
 static const double facing = .5;
 
-/* In voxels: what is wider has one that is no element, and what is narrower is surfaces that touch. */
-static const double widest = 8, narrowest = 1e-6;
+/* In voxels: what is wider has one that is no element, and what is narrower is surfaces that touch, which facets that
+ * are cut differently, and places that are rounded, keep from being the same. */
+static const double widest = 8, narrowest = .05;
+
+/* Widths nearer to each other than this are one. */
+static const double same_width = 1e-6;
 
 /* Where a line crosses a surface of the lowest level. */
 typedef struct meeting {
@@ -245,6 +249,14 @@ static int by_width(const void *a, const void *b)
 
 enum { NONE, OPEN, FILLED };
 
+/* Whether a gap lies before the place on the line of this row and column. Those of one line are in order and apart. */
+static bool is_before(const crossed *c, int64_t row, int64_t column, double place)
+{
+    if (c->row != row)
+        return c->row < row;
+    return c->column != column ? c->column < column : c->to <= place;
+}
+
 /* What the gap is on a line beside. */
 static int beside(const crossed_list *all, const crossed *g, int rows, int columns)
 {
@@ -253,16 +265,16 @@ static int beside(const crossed_list *all, const crossed *g, int rows, int colum
     int what = NONE;
     while (low < high) {
         int64_t middle = low + (high - low) / 2;
-        const crossed *c = &all->v[middle];
-        if (c->row < row || (c->row == row && c->column < column))
+        if (is_before(&all->v[middle], row, column, g->from))
             low = middle + 1;
         else
             high = middle;
     }
-    for (; low < all->count && all->v[low].row == row && all->v[low].column == column; low++) {
+    for (; low < all->count && what != OPEN; low++) {
         const crossed *c = &all->v[low];
-        if (c->from < g->to && c->to > g->from)
-            what = c->filled && what != OPEN ? FILLED : OPEN;
+        if (c->row != row || c->column != column || c->from >= g->to)
+            break;
+        what = c->filled ? FILLED : OPEN;
     }
     return what;
 }
@@ -304,7 +316,7 @@ static int keep(const work *w, const crossed_list *all, gaps *found, int64_t *ca
             return -1;
         gap *g = &found->gap[found->count++];
         g->axis = m->ray;
-        g->width = rint((c->to - c->from) / narrowest) * narrowest; /* so that the same widths are equal */
+        g->width = rint((c->to - c->from) / same_width) * same_width;
         g->middle[m->ray] = (c->from + c->to) / 2;
         g->middle[m->row] = c->row;
         g->middle[m->column] = c->column;

@@ -164,6 +164,17 @@ static double voxel_for(double width, double least)
     return isnan(least) || least >= .5 ? width : width / (2 * (1 - least));
 }
 
+/* What all lines across a gap stand for: a voxel's side each. */
+static double gaps_area(const gaps *found, const grid *g)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < found->count; i++) {
+        const int axis = found->gap[i].axis;
+        sum += g->spacing[(axis + 1) % 3] * g->spacing[(axis + 2) % 3];
+    }
+    return sum;
+}
+
 void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_unit unit)
 {
     if (!found->count)
@@ -176,11 +187,11 @@ void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_u
         at[a] = grid_place(g, a, middle->middle[a]);
     put_voxel(voxel, sizeof voxel, g, voxel_for(middle->width, least), unit);
     notes_add(n,
-              "elements fill gaps between surfaces in %lld place%s of a voxel's width, as at %.6g%s,%.6g%s,%.6g%s, "
-              "where the gap is "
-              "%.3g %s wide along %c: what it parts moves as one; voxels of at most %s part half of these places%s",
-              (long long)found->count, found->count == 1 ? "" : "s", at[0], name, at[1], name, at[2], name,
-              middle->width * g->spacing[middle->axis], name, 'x' + middle->axis, voxel,
+              "elements fill gaps between surfaces in %lld place%s of a voxel's width, %.4g %s^2, as at "
+              "%.6g%s,%.6g%s,%.6g%s, where the gap is %.3g %s wide along %c: what it parts moves as one; voxels of at "
+              "most %s part half of these places%s",
+              (long long)found->count, found->count == 1 ? "" : "s", gaps_area(found, g), name, at[0], name, at[1],
+              name, at[2], name, middle->width * g->spacing[middle->axis], name, 'x' + middle->axis, voxel,
               isnan(least) ? "" : ", and so may a larger --least");
 }
 

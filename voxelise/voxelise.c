@@ -271,12 +271,12 @@ static int find_voxels(job *j, err *e)
                    j->g.spacing[0], j->g.spacing[1], j->g.spacing[2], num_unit_name(j->unit));
 }
 
-/* Where a volume is open, what is inside it is a guess. */
+/* Where a volume of level 0 is open, what is inside it is a guess. */
 static int find_gaps(job *j, err *e)
 {
     gaps found;
     for (int32_t v = 0; v < j->plan.volumes; v++)
-        if (j->solid.open[v])
+        if (j->solid.open[v] && j->plan.volume[v].level == 0)
             return 0;
     if (gaps_find(&found, &j->solid, &j->plan, &j->x, &j->g, j->threads, e))
         return -1;
@@ -328,12 +328,15 @@ static void say_volume(const job *j, const model *m, int32_t v)
                  (long long)(n->inside - n->reached), (long long)n->inside, counted(j));
 }
 
+/* Of a length: what is nearer to another than this is as long. */
+static const double rounding = 1e-9;
+
 static void warn_volume(job *j, int32_t v)
 {
     const volumes_volume *a = &j->plan.volume[v];
     const climb_count *n = &j->x.count[v];
     const int64_t layer = layers_at(&j->layer, &j->plan, v);
-    if (layer >= 0 && layers_thickness(&j->layer, layer) < grid_longest(&j->g))
+    if (layer >= 0 && layers_thickness(&j->layer, layer) < grid_longest(&j->g) * (1 - rounding))
         report_layer(&j->warnings, &j->layer, layer, v, &j->x, &j->g, j->unit);
     else if (n->inside == 0)
         notes_add(&j->warnings,

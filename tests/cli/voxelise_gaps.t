@@ -71,6 +71,11 @@ slit 0.2
 sed '$d' "$T/slit.obj" >"$T/open.obj"
 is "$(vox -s 2 --allow-open "$T/open.obj" | sed 's/.*: //')" none "an open surface: what is inside is a guess"
 
+{ cat "$T/slit.obj" && box muscle 2 2 2 8 8 8 | sed '$d'; } >"$T/open.obj"
+is "$(vox -s 2 --allow-open "$T/open.obj" | sed 's/.*: //')" "200 20mm,1mm,31mm 0.2 x 0.2" "an open muscle is no concern of level 0"
+vox -s 2,2,1 "$T/slit.obj" >"$T/got"
+check "the area of all places: 20 x 40" grep -q "in 400 places of a voxel's width, 800 mm^2, as at" "$T/said"
+
 # Two volumes with a gap between, or none.
 printf 'a priority=0 surfaces=left\nb priority=1 surfaces=right\n' >"$T/volumes"
 { box left 0 0 0 19.9 40 40 && box right 20.1 0 0 40 40 40; } >"$T/two.obj"
@@ -80,6 +85,52 @@ is "$(vox -s 2 --volumes "$T/volumes" "$T/two.obj")" "8000: none" "two that touc
 { box left 0 0 0 20 40 40 && box right 0 0 0 40 40 40; } >"$T/two.obj"
 is "$(vox -s 2 --volumes "$T/volumes" "$T/two.obj")" "8000: none" "two that overlap"
 is "$(vox -s 2 --fraction 2 --volumes "$T/volumes" "$T/two.obj")" "8000: none" "by shares too"
+
+# A curved interface, of which each side has triangles of its own: a ball within a skin's cavity.
+
+# facets SECOND NAME FORMAT FILE: an OBJ's quadrangles as triangles from the first corner or the second; a bump makes them warped.
+facets() {
+    awk -v second="$1" -v name="$2" -v format="$3" '$1 == "v" {
+            r = 1 + .02 * sin($2 / 4) * sin($3 / 5 + $4 / 6)
+            printf "v %." format " %." format " %." format "\n", $2 * r, $3 * r, $4 * r }
+        $1 == "g" { print "g", name }
+        $1 == "f" { for (i = 2; i <= NF; i++) c[i - 2] = $i
+            if (NF == 4) print "f", c[0], c[1], c[2]
+            else if (second) print "f", c[1], c[2], c[3] "\nf", c[3], c[0], c[1]
+            else print "f", c[0], c[1], c[2] "\nf", c[2], c[3], c[0] }' "$4"
+}
+# touching ORGAN.obj: within a box whose cavity is the ball of 24 bands.
+touching() {
+    box outer -40 -40 -40 40 40 40
+    facets 0 cavity 9g "$T/ball24.obj" | awk '$1 == "f" { print "f", $4 + 8, $3 + 8, $2 + 8; next } { print }'
+    awk -v n="$((8 + $(grep -c '^v ' "$T/ball24.obj")))" '$1 == "f" { print "f", $2 + n, $3 + n, $4 + n; next } { print }' "$1"
+}
+printf 'skin priority=0 surfaces=outer,cavity\norgan priority=1 surfaces=organ\n' >"$T/volumes"
+for n in 24 32; do
+    awk -v r=25 -v n=$n -f tests/cli/sphere.awk >"$T/ball$n.obj"
+done
+for how in "1 9g 24 cut the other way" "1 6g 24 and rounded" "1 3f 24 and rounded to a micrometre" "0 9g 32 with other vertices"; do
+    # shellcheck disable=SC2086
+    set -- $how
+    facets "$1" organ "$2" "$T/ball$3.obj" >"$T/organ.obj"
+    touching "$T/organ.obj" >"$T/touching.obj"
+    shift 3
+    is "$(vox -s 2.5 --volumes "$T/volumes" "$T/touching.obj" | sed "s/.*: //")" none "a curved interface $*: it touches"
+done
+
+# Many gaps on one line, as a comb has: eight times as many take eight times as long, and not sixty-four.
+
+# seconds TEETH: of a processor, the least of two runs.
+seconds() {
+    awk -v n="$1" -f tests/cli/comb.awk >"$T/comb.obj"
+    for _ in 1 2; do
+        (SINEW_THREADS=1 voxelise -q --unit mm -s 1 --fraction 2 -o "$T/m" "$T/comb.obj" 2>"$T/said" && times) | tail -n 1
+    done | sed 's/m/ /; s/s .*//' | awk '{ t = 60 * $1 + $2; if (NR == 1 || t < least) least = t } END { print least }'
+}
+few=$(seconds 2000)
+check "a comb's gaps are filled" grep -q "elements fill gaps" "$T/said"
+many=$(seconds 16000)
+check "a comb of eight times the teeth: $few s, then $many s" awk -v few="$few" -v many="$many" 'BEGIN { exit !(many > 0 && many < 22.6 * few) }'
 
 # ---- layers
 
@@ -94,6 +145,8 @@ is "$(layers -s 1 --layers "$T/layers" "$T/box.obj")" "" "a layer as thick as a 
 is "$(layers -s 1.25 --layers "$T/layers" "$T/box.obj")" \
     "a is 1 mm thick, less than a voxel of 1.25 mm: 296 whole elements (57.8 % of all) stand for it, in stripes where centres happen to be in it, the first at 0.625mm,0.625mm,0.625mm; voxels of at most 1 mm resolve it" \
     "one that is thinner"
+printf 'a thickness=1.2\nb thickness=1.1\nc thickness=1.1\n' >"$T/layers"
+is "$(layers -s 1.1 --layers "$T/layers" "$T/box.obj")" "" "layers as thick as a voxel below another"
 printf 'a thickness=0.1\nb thickness=2\nc thickness=0.3\n' >"$T/layers"
 layers -s 1 --layers "$T/layers" "$T/box.obj" >"$T/got"
 is "$(wc -l <"$T/got") $(grep -c '^a is 0.1 mm thick, .* no centre is in it, .*at most 0.1 mm resolve' "$T/got") $(grep -c '^c is 0.3 mm' "$T/got")" \
