@@ -141,17 +141,20 @@ static int unknown(const char *name)
 /* Only returns where it fails. */
 static int run(const char *file, char **argv)
 {
-    char self[PATH_MAX], path[PATH_MAX + 64];
-    ssize_t n = readlink("/proc/self/exe", self, sizeof self - 1);
+    enum { NAME = 64 };
+    char *path = malloc(PATH_MAX + NAME); /* the stack may be of 32 KiB */
+    ssize_t n = path ? readlink("/proc/self/exe", path, PATH_MAX) : -1;
     if (n < 0) {
         fprintf(stderr, "sinew: cannot find its own folder: %s\n", strerror(errno));
+        free(path);
         return STATUS_BAD;
     }
-    self[n] = 0;
-    char *slash = strrchr(self, '/');
-    snprintf(path, sizeof path, "%.*s/%s", slash ? (int)(slash - self) : 1, slash ? self : ".", file);
+    while (n && path[n - 1] != '/')
+        n--;
+    snprintf(path + n, NAME, "%s", file);
     execv(path, argv);
     fprintf(stderr, "sinew: cannot run %s: %s\n", path, strerror(errno));
+    free(path);
     return STATUS_BAD;
 }
 
