@@ -32,6 +32,8 @@ static ino_t last_named;
 static enum { NAMELESS, NAMED, UNLINKED, LIKES } like;
 static int nameless, linked;
 
+static const char *taken_over; /* the name that another process's file gets just before a lock is had */
+
 int fsync(int fd)
 {
     struct stat s;
@@ -70,6 +72,17 @@ int open(const char *path, int flags, ...)
     }
     nameless += without;
     return openat(AT_FDCWD, path, flags, mode);
+}
+
+/* NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the C library's names are its own */
+int flock(int fd, int how)
+{
+    if (taken_over) {
+        unlink(taken_over);
+        syscall(SYS_close, openat(AT_FDCWD, taken_over, O_CREAT | O_EXCL | O_RDWR, 0600));
+        taken_over = NULL;
+    }
+    return (int)syscall(SYS_flock, fd, how);
 }
 
 /* NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the C library's names are its own */
@@ -254,6 +267,73 @@ static bool is_there(const char *path)
     return !lstat(path, &s);
 }
 
+/* Whether a file can be locked by someone who opens it. */
+static bool is_free(const char *path)
+{
+    const int fd = openat(AT_FDCWD, path, O_RDWR | O_CLOEXEC);
+    const bool is = fd >= 0 && !flock(fd, LOCK_EX | LOCK_NB);
+    ok(fd >= 0 && (is || errno == EWOULDBLOCK), "%s is there", path);
+    close(fd);
+    return is;
+}
+
+/* The one temporary file here. */
+static bool find_temporary(char name[256])
+{
+    int n = 0;
+    DIR *d = opendir(".");
+    for (struct dirent *f; d && (f = readdir(d));)
+        if (!strncmp(f->d_name, ".sinew-", 7) && !n++)
+            snprintf(name, 256, "%s", f->d_name);
+    if (d)
+        closedir(d);
+    return n == 1;
+}
+
+/* A file with a name is locked while it is written: that, and no pid, is what a sweep from elsewhere sees of it. */
+static void locks(void)
+{
+    err e = {0};
+    char name[256] = "";
+    if (like != NAMED)
+        return;
+    out *o = out_open("file", false, &e);
+    ok(o && find_temporary(name) && !is_free(name), "a file that is written is locked: %s", name);
+    out_close(o, &e);
+    ok(!e.status && !find_temporary(name), "until it is in its place");
+    unlink("file");
+}
+
+/* What another user's process left is another user's. */
+static void others(const char *here)
+{
+    char left[TEMPORARY_NAME];
+    if (geteuid()) {
+        skip(1, "not root: no file can be another user's");
+        rmdir("others");
+        return;
+    }
+    ok(!chdir("others"), "a folder that was not swept before");
+    fclose(fopen(name_of(left, gone(), 7), "w"));
+    ok(!chown(left, 65534, 65534), "a file of another user's");
+    like = NAMED;
+    put("file", "x");
+    ok(is_there(left), "stays, though its process is gone");
+    ok(!chown(left, 0, 0) && !unlink(left) && !unlink("file") && !chdir(here) && !rmdir("others"), "and that is all");
+}
+
+/* The name went to another file between the sweep's opening what it saw and locking that. */
+static void taken(const char *here)
+{
+    char left[TEMPORARY_NAME];
+    ok(!chdir("taken"), "a folder that was not swept before");
+    fclose(fopen(name_of(left, gone(), 7), "w"));
+    taken_over = left;
+    temporary_sweep("");
+    ok(!taken_over && is_there(left), "another file that has the name now stays");
+    ok(!unlink(left) && !chdir(here) && !rmdir("taken"), "and that is all");
+}
+
 /* What processes left that were killed goes when the next one makes such a file there; nothing else does. */
 static void sweeps(const char *here, const char *folder)
 {
@@ -417,6 +497,7 @@ int main(void)
         return 1;
     for (int i = 0; i < LIKES; i++) /* at first: a folder that is swept is known by its inode */
         ok(!mkdir(work[i], 0700) && !mkdir(swept[i], 0700), "folders");
+    ok(!mkdir("others", 0700) && !mkdir("taken", 0700), "folders");
     const int fd = open(".", O_TMPFILE | O_RDWR, 0600);
     const bool can = fd >= 0;
     close(fd);
@@ -427,10 +508,13 @@ int main(void)
         ok(!chdir(work[i]), "%s", work[i]);
         all_of_it();
         ok(!chdir(".."), "back");
+        locks();
         sweeps(folder, swept[i]);
         ok(like == NAMED ? !nameless : nameless > 50, "%d files without a name", nameless);
         ok(!rmdir(work[i]), "nothing is left");
     }
+    others(folder);
+    taken(folder);
     if (!can)
         skip(1, "no files without a name here");
     ok(!chdir("/") && !rmdir(folder), "the folder is empty");
