@@ -178,7 +178,49 @@ static void scribble(double *p, int i, int count)
     p[0] = (double)((int64_t)i * 7919 % 10007), p[1] = (double)((int64_t)i * 104729 % (count + 1));
 }
 
-static double cut_time(void (*place)(double *p, int i, int count), int count, err *e)
+static double area(const double *p, int a, int b, int c)
+{
+    const double *x = &p[(size_t)a * 3], *y = &p[(size_t)b * 3], *z = &p[(size_t)c * 3];
+    return (y[0] - x[0]) * (z[1] - x[1]) - (y[1] - x[1]) * (z[0] - x[0]);
+}
+
+/* A thin strip of two straight sides, one place after the other, turned by an angle. */
+static void slanted(double *p, int i, int count, double degrees)
+{
+    int half = count / 2;
+    double x = i < half ? i : count - 1 - i, y = i < half ? 0 : .5, angle = degrees * M_PI / 180;
+    p[0] = x * cos(angle) - y * sin(angle), p[1] = x * sin(angle) + y * cos(angle);
+}
+
+static void strip_30(double *p, int i, int count)
+{
+    slanted(p, i, count, 30);
+}
+
+static void strip_45(double *p, int i, int count)
+{
+    slanted(p, i, count, 45);
+}
+
+/* A comb along the diagonal, its back below. */
+static void comb(double *p, int i, int count)
+{
+    double x = i < count - 2 ? i : i == count - 2 ? count : -1, y = i < count - 2 ? i % 2 * 10 : -1;
+    p[0] = x - y, p[1] = x + y;
+}
+
+/* The triangles' areas sum to the polygon's: they overlap nowhere. */
+static bool is_covered(const double *p, int count, const int32_t *triangle)
+{
+    double whole = 0, sum = 0;
+    for (int i = 1; i + 1 < count; i++)
+        whole += area(p, 0, i, i + 1);
+    for (int i = 0; i < count - 2; i++)
+        sum += fabs(area(p, triangle[3 * i], triangle[3 * i + 1], triangle[3 * i + 2]));
+    return fabs(sum - fabs(whole)) <= 1e-7 * sum;
+}
+
+static double cut_time(void (*place)(double *p, int i, int count), int count, bool *covered, err *e)
 {
     double least = INFINITY, *p = calloc((size_t)count, 3 * sizeof *p);
     int32_t *corner = malloc((size_t)count * sizeof *corner), *triangle = malloc((size_t)count * 3 * sizeof *triangle);
@@ -191,6 +233,7 @@ static double cut_time(void (*place)(double *p, int i, int count), int count, er
         triangulate(p, corner, count, triangle, e);
         least = fmin(least, (double)(clock() - from));
     }
+    *covered = is_covered(p, count, triangle);
     free(p);
     free(corner);
     free(triangle);
@@ -202,15 +245,22 @@ static void test_polygons(void)
     static const struct {
         const char *what;
         void (*place)(double *p, int i, int count);
-    } all[] = {{"a star", star},
-               {"a rosette through one place", one_centre},
-               {"a line to and fro", to_and_fro},
-               {"a scribble", scribble}};
+        bool simple; /* it crosses itself nowhere */
+    } all[] = {{"a star", star, true},
+               {"a strip at 30 degrees", strip_30, true},
+               {"a strip at 45 degrees", strip_45, true},
+               {"a comb at 45 degrees", comb, true},
+               {"a rosette through one place", one_centre, false},
+               {"a line to and fro", to_and_fro, false},
+               {"a scribble", scribble, false}};
     for (int i = 0; i < (int)(sizeof all / sizeof *all); i++) {
         err e = {0};
-        double few = cut_time(all[i].place, FEW, &e), many = cut_time(all[i].place, MANY, &e);
+        bool covered;
+        double few = cut_time(all[i].place, FEW, &covered, &e), many = cut_time(all[i].place, MANY, &covered, &e);
         ok(!e.status && many < most * few, "%s of %d corners takes %.3g times as long as of %d %s", all[i].what, MANY,
            many / few, FEW, e.text);
+        if (all[i].simple)
+            ok(covered, "%s: all of it, once", all[i].what);
     }
 }
 
