@@ -87,8 +87,8 @@ static void widen(strip *s, const strip *a)
     s->high_w = more(s->high_w, w + more(s_low, s_high) + more(c_low, c_high) + lost);
 }
 
-/* Whether all that the strip holds is to the right of the line from a to b, as corner_area() sees it: by more than both may be
- * wrong by rounding. */
+/* Whether all that the strip holds is to the right of the line from a to b, as corner_area() sees it: by more than both
+ * may be wrong by rounding. */
 static bool strip_is_right(const corner *a, const corner *b, const strip *s)
 {
     double u = b->u - a->u, v = b->v - a->v, pu = s->p[0] - a->u, pv = s->p[1] - a->v;

@@ -1,7 +1,8 @@
 /* The corners that are left of a large polygon, in the plane that it is looked at in: whether one of them lies in a
  * triangle, and whose own triangle is the smallest, in a time that grows as the logarithm of their number. A binary
  * tree over the corners in Z-order of their ranks along u and v, so that neighbours in the plane are mostly neighbours
- * there, however their distances differ; a node knows the box of its corners, and a strip that lies as they do. The creator owns it.
+ * there, however their distances differ; a node knows the box of its corners, and a strip that lies as they do. The
+ * creator owns it.
  */
 #ifndef SINEW_CORNER_TREE_H
 #define SINEW_CORNER_TREE_H

@@ -32,8 +32,8 @@ static void put_meta(text *t, int count)
         put(t, "meta k%d \"v\"\n", i);
 }
 
-/* ---- names that agree in the low BITS of FNV-1a, which has no key: each is a row of words, and of each word there are two that take the
- * hash from one state to one other */
+/* ---- names that agree in the low BITS of FNV-1a, which has no key: each is a row of words, and of each word there are
+ * two that take the hash from one state to one other */
 
 enum { BITS = 20, WORD = 4, WORDS = 14 }; /* 2^WORDS names */
 
