@@ -106,27 +106,33 @@ static void lay(slice_cells *c, int64_t bytes, int64_t voxels, pool *threads)
     laying l = {c, memmove(c->byte + bytes - voxels, c->byte, (size_t)voxels), 0};
     for (; l.z < layers; l.z++)
         pool_run(threads, bricks(c->size[1]), 16, lay_bricks, &l);
-    memset(c->byte + (size_t)layers * c->layer, 0, (size_t)(bytes - layers * c->layer));
+    memset(c->byte + (size_t)layers * c->layer, 0, (size_t)bytes - (size_t)layers * c->layer);
+}
+
+int slice_cells_check(const volume *v, const char *place, err *e)
+{
+    enum { SIDE_MOST = 32000 }; /* a place in fixed point has 31 bits */
+    for (int a = 0; a < 3; a++)
+        if (v->size[a] > SIDE_MOST)
+            return err_set(e, place, 0,
+                           "%lld voxels along axis %d; expected at most %d: us-import --crop keeps a part of them",
+                           (long long)v->size[a], a, SIDE_MOST);
+    return 0;
 }
 
 int slice_cells_make(slice_cells *c, volume *v, slice_window w, pool *threads, err *e)
 {
-    enum { SIDE_MOST = 32000 };
     const volume_finder f = volume_finder_of(v);
     const double bytes = bytes_of(v->size[0], v->size[1], v->size[2]);
     *c = (slice_cells){0};
-    for (int a = 0; a < 3; a++) {
-        if (v->size[a] > SIDE_MOST)
-            return err_set(e, NULL, 0, "the volume has %lld voxels along an axis; expected at most %d",
-                           (long long)v->size[a], SIDE_MOST);
+    if (slice_cells_check(v, NULL, e))
+        return -1;
+    for (int a = 0; a < 3; a++)
         c->size[a] = (int32_t)v->size[a];
-    }
-    if (bytes > UINT32_MAX)
-        return err_set(e, NULL, 0, "the volume has %.3g voxels; expected at most 1.9e9", (double)volume_count(v));
     memcpy(c->origin, f.origin, sizeof c->origin);
     memcpy(c->axis, f.row, sizeof c->axis);
     c->row = BRICK * (uint32_t)(c->size[0] + 2);
-    c->layer = c->row * (uint32_t)bricks(c->size[1]);
+    c->layer = c->row * (uint64_t)bricks(c->size[1]);
     c->black = 2 * (int32_t)bricks(c->size[2]) * SLICE_ONE;
     to_bytes(v, w);
     c->byte = realloc(v->data, (size_t)bytes);

@@ -24,7 +24,7 @@ enum { SLICE_ONE = 65536 }; /* of a place in fixed point: a cell */
 typedef struct slice_cells {
     int32_t size[3]; /* voxels */
     uint32_t row;    /* bytes from a brick to the next along y: 9 (size[0] + 2); */
-    uint32_t layer;  /* and along z */
+    uint64_t layer;  /* and along z */
     uint8_t *byte;
     int32_t black;                /* the z, in fixed point, of cells whose words are 0 */
     double origin[3], axis[3][3]; /* m to cells: axis[a] . (p - origin) + 1 */
@@ -37,6 +37,9 @@ typedef struct slice_window {
 
 /* 0 to 255 for whole numbers that are within them; otherwise the lowest and highest value that there are. */
 slice_window slice_window_of(const volume *v);
+
+/* Refuses a volume that is too large to be numbered, by its sizes: -1 with e filled. place: the file; NULL: none. */
+int slice_cells_check(const volume *v, const char *place, err *e);
 
 /* v's voxels become the cells', v->data NULL. -1 with e filled: too large to be numbered, or no memory. */
 int slice_cells_make(slice_cells *c, volume *v, slice_window w, pool *threads, err *e);

@@ -16,8 +16,8 @@ INLINE uint8_t sample_one(const slice_cells *c, uint32_t x, uint32_t y, uint32_t
     y = y < most[1] ? y : most[1];
     z = z < most[2] ? z : most[2];
     const int32_t fx = (int32_t)(x & 0xffff) >> 1, fy = (int32_t)(y & 0xffff) >> 1, fz = (int32_t)(z & 0xffff) >> 1;
-    const uint32_t at = 9 * (x >> 16) + (y >> 17) * c->row + (y >> 16 & 1) + (z >> 17) * c->layer + 3 * (z >> 16 & 1);
-    const uint8_t *b = c->byte + at;
+    const uint32_t at = 9 * (x >> 16) + (y >> 16 & 1) + 3 * (z >> 16 & 1);
+    const uint8_t *b = c->byte + (size_t)(z >> 17) * c->layer + (size_t)(y >> 17) * c->row + at;
     int16_t v[4];
     for (int i = 0; i < 4; i++) {
         const int j = 9 * (i & 1) + (i >> 1);
@@ -72,8 +72,8 @@ INLINE __m512i mix(__m512i a, __m512i b, __m512i by)
     return _mm512_add_epi16(a, _mm512_mulhrs_epi16(_mm512_sub_epi16(b, a), by));
 }
 
-static void sample(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
-                   uint8_t *to)
+static void sample_near(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
+                        uint8_t *to)
 {
     const __m512i row = _mm512_set1_epi32((int32_t)c->row), layer = _mm512_set1_epi32((int32_t)c->layer);
     const __m512i second = _mm512_set1_epi32(SLICE_ONE), one = _mm512_set1_epi32(1), three = _mm512_set1_epi32(3);
@@ -138,8 +138,8 @@ INLINE __m256i within8(const int32_t *p, int32_t most)
     return _mm256_min_epu32(_mm256_loadu_si256((const __m256i *)(const void *)p), _mm256_set1_epi32(most));
 }
 
-static void sample(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
-                   uint8_t *to)
+static void sample_near(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
+                        uint8_t *to)
 {
     const __m256i row = _mm256_set1_epi32((int32_t)c->row), layer = _mm256_set1_epi32((int32_t)c->layer);
     const __m256i one = _mm256_set1_epi32(1), three = _mm256_set1_epi32(3);
@@ -180,11 +180,58 @@ static void sample(const slice_cells *c, const int32_t *x, const int32_t *y, con
 
 #else
 
-static void sample(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
-                   uint8_t *to)
+static void sample_near(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
+                        uint8_t *to)
 {
     for (int64_t i = 0; i < count; i++)
         to[i] = sample_one(c, (uint32_t)x[i], (uint32_t)y[i], (uint32_t)z[i]);
 }
 
 #endif
+
+/* ---- volumes whose bytes do not all have a number of 32 bits */
+
+/* Whether all have: the layers, the black one among them. */
+INLINE bool is_near(const slice_cells *c)
+{
+    return (uint64_t)(c->black / (2 * SLICE_ONE) + 1) * c->layer <= UINT32_MAX;
+}
+
+enum { TOGETHER = 32 }; /* places that are looked at together; pixels beside each other mostly are in the same layers */
+
+/* The samples at up to TOGETHER places, their layers counted from the lowest of these; one by one where they lie too
+ * far apart for that. */
+INLINE void sample_run(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
+                       uint8_t *to)
+{
+    uint32_t low = (uint32_t)c->black, high = 0;
+    int32_t from_low[TOGETHER];
+    for (int64_t i = 0; i < count; i++) {
+        const uint32_t at = (uint32_t)z[i] < (uint32_t)c->black ? (uint32_t)z[i] : (uint32_t)c->black;
+        low = at < low ? at : low;
+        high = at > high ? at : high;
+    }
+    low &= ~(uint32_t)(2 * SLICE_ONE - 1);
+    if ((double)((high - low) / (2 * SLICE_ONE) + 1) * (double)c->layer > UINT32_MAX) {
+        for (int64_t i = 0; i < count; i++)
+            to[i] = sample_one(c, (uint32_t)x[i], (uint32_t)y[i], (uint32_t)z[i]);
+        return;
+    }
+    slice_cells near = *c;
+    near.byte += (size_t)(low / (2 * SLICE_ONE)) * c->layer;
+    near.black = (int32_t)((uint32_t)c->black - low);
+    for (int64_t i = 0; i < count; i++)
+        from_low[i] = (int32_t)((uint32_t)z[i] - low);
+    sample_near(&near, x, y, from_low, count, to);
+}
+
+static void sample(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
+                   uint8_t *to)
+{
+    if (is_near(c)) {
+        sample_near(c, x, y, z, count, to);
+        return;
+    }
+    for (int64_t i = 0; i < count; i += TOGETHER)
+        sample_run(c, x + i, y + i, z + i, count - i < TOGETHER ? count - i : TOGETHER, to + i);
+}

@@ -152,7 +152,7 @@ static int read_dicom_file(job *j, const char *name, const char *bytes, int64_t 
 
 static int read_dicom(job *j, err *e)
 {
-    const volume_budget budget = {j->o->common.memory, peak_of_series, j};
+    const volume_budget budget = {.most = j->o->common.memory, .peak = peak_of_series, .context = j};
     series_wish wish = {{(double)NAN, (double)NAN, (double)NAN}, j->o->series, j->o->time, j->o->data, &budget};
     if (j->o->spacing.count && length_mm(&j->o->spacing, "--spacing", wish.spacing, e))
         return -1;

@@ -314,7 +314,7 @@ static double peak_of_labels(const volume *l, const void *context)
 static int open_labels(job *j, err *e)
 {
     volume *l = &j->labels;
-    const volume_budget budget = {j->o->common.memory, peak_of_labels, j};
+    const volume_budget budget = {.most = j->o->common.memory, .peak = peak_of_labels, .context = j};
     if (j->o->onto) {
         if (volume_load(l, j->o->onto, &budget, e) || check_same_place(&j->v, l, j->o->onto, e))
             return -1;

@@ -167,7 +167,7 @@ static double peak_of_labels(const volume *labels, const void *context)
 static int read_volume(job *j, const char *path, err *e)
 {
     volume v = {0};
-    const volume_budget budget = {.most = j->o->common.memory, .peak = peak_of_volume};
+    const volume_budget budget = {.most = j->o->common.memory, .peak = peak_of_volume, .check = slice_cells_check};
     if (!j->o->rigid && !strcmp(path, "-"))
         return err_usage(e, "the volume is '-', but standard input holds the model; expected a file");
     if (volume_load(&v, path, &budget, e))
@@ -269,7 +269,7 @@ static int make_grey(job *j, err *e)
 static int make_overlay(job *j, err *e)
 {
     volume labels = {0};
-    const volume_budget budget = {j->o->common.memory, peak_of_labels, &j->cells};
+    const volume_budget budget = {.most = j->o->common.memory, .peak = peak_of_labels, .context = &j->cells};
     if (!j->o->labels)
         return 0;
     if (!volume_load(&labels, j->o->labels, &budget, e))

@@ -80,7 +80,7 @@ static double peak_of(const volume *v, const void *context)
 
 static int read_volume(job *j, const char *path, err *e)
 {
-    const volume_budget budget = {j->o->common.memory, peak_of, j};
+    const volume_budget budget = {.most = j->o->common.memory, .peak = peak_of, .context = j};
     double sigma = 0;
     if (length_mm(&j->o->smooth, "--smooth", &sigma, e))
         return -1;

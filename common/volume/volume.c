@@ -76,6 +76,8 @@ double volume_memory(const volume *v)
 int volume_afford(const volume_budget *b, const volume *v, const char *place, err *e)
 {
     char need[NUM_TEXT], most[NUM_TEXT];
+    if (b && b->check && b->check(v, place, e))
+        return -1;
     const double peak = !b || !b->most ? 0 : b->peak ? b->peak(v, b->context) : volume_memory(v);
     if (!b || !b->most || peak <= (double)b->most)
         return 0;

@@ -47,6 +47,7 @@ typedef struct volume_budget {
     double (*peak)(const volume *v,
                    const void *context); /* what is taken at once on its account, bytes; NULL: its voxels */
     const void *context;
+    int (*check)(const volume *v, const char *place, err *e); /* refuses sizes that are not for this tool; NULL: none */
 } volume_budget;
 
 /* Refuses what is beyond a budget (which may be NULL): -1 with e filled. place: the file; NULL: none. */

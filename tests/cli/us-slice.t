@@ -274,6 +274,13 @@ is "$(grep -c "probe.shape, sphere:2cm, makes no image: the image is that of a l
 sed 's/^meta probe.shape .*/meta probe.shape "linear:wide"/' "$T/prose.txt" >"$T/wide.txt"
 fails 1 "a shape that is none" "stdin: metadata, probe.shape: 'linear:wide' is no probe; expected one as msds-run writes it" us-slice "$T/noise.nrrd" <"$T/wide.txt"
 
+# Refused by its header, whose data are not even there: named, with what helps.
+printf '%s\n' NRRD0004 'type: uint8' 'dimension: 3' 'sizes: 2 32001 2' 'spacings: 1 1 1' 'encoding: raw' '' >"$T/long.nrrd"
+fails 1 "too many voxels along an axis" 'long\.nrrd: 32001 voxels along axis 1; expected at most 32000: us-import --crop keeps a part of them' \
+    us-slice --rigid --poses "$T/native.tum" -o "$T/x.pgm" "$T/long.nrrd"
+sed -i 's/32001/32000/' "$T/long.nrrd"
+fails 1 "as many as there may be" 'long\.nrrd: data for only 0 of 2 x 32000 x 2 voxels' us-slice --rigid --poses "$T/native.tum" -o "$T/x.pgm" "$T/long.nrrd"
+
 # Pressed by one face and seen by another: one line that names both.
 msds-run -q --probe curved:4mm,40,3mm,.5mm --poses "$T/press.tum" <"$T/mesh.sinew" >"$T/curved.sinew" 2>/dev/null
 seen() {

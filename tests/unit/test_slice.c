@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 enum { COLUMNS = 97, ROWS = 83, PIXELS = COLUMNS * ROWS };
 
@@ -260,6 +261,53 @@ static void test_cells(const int64_t size[3], volume_type type, pool *threads)
     volume_free(&v);
 }
 
+/* Bricks whose numbers take more than 32 bits: the same samples as from bricks close together. Only what is touched
+ * takes memory. */
+static void test_far(uint64_t layer, pool *threads)
+{
+    enum { SIDE = 9, LAYERS = (SIDE + 2) / 2, PLACES = 1003 };
+    static const char *const vectors[] = {"plain", "AVX2", "AVX-512"};
+    static int32_t at[3][PLACES];
+    static uint8_t expected[PLACES], got[PLACES];
+    err e = {0};
+    uint32_t seed = 7;
+    slice_cells c;
+    volume v = {.type = VOLUME_U8, .size = {SIDE, SIDE, SIDE}, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    tets_must(!volume_make(&v, &e), &e);
+    for (int64_t i = 0; i < volume_count(&v); i++)
+        ((uint8_t *)v.data)[i] = (uint8_t)block_random(&seed);
+    tets_must(!slice_cells_make(&c, &v, (slice_window){0, 255}, threads, &e), &e);
+    for (int i = 0; i < PLACES; i++) /* rows along every axis, places anywhere, and black ones among them */
+        for (int a = 0; a < 3; a++)
+            at[a][i] = i % 7 == 5 && i > 400 ? c.black
+                       : i / 100 % 4 == a    ? SLICE_ONE / 2 + i % 100 * (SIDE * SLICE_ONE / 100)
+                       : i > 800             ? (int32_t)(block_random(&seed) % (SIDE * SLICE_ONE)) + SLICE_ONE / 2
+                                             : (i / 100 + 1) * SLICE_ONE;
+    slice_lanes_plain.sample(&c, at[0], at[1], at[2], PLACES, expected);
+    const size_t size = (size_t)layer * (LAYERS + 1) + 64;
+    slice_cells far = c;
+    far.layer = layer;
+    far.byte = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (far.byte == MAP_FAILED) {
+        skip(3, "no room for so many addresses");
+    } else {
+        for (int k = 0; k < LAYERS; k++)
+            memcpy(far.byte + (size_t)k * layer, c.byte + (size_t)k * c.layer, c.layer);
+        for (int k = 0; k < 3; k++) {
+            setenv("SINEW_VECTORS", vectors[k], 1);
+            const slice_lanes *lanes = slice_lanes_choose(&e);
+            e = (err){0};
+            if (lanes)
+                lanes->sample(&far, at[0], at[1], at[2], PLACES, got);
+            ok(!lanes || !memcmp(got, expected, sizeof got), "bricks in %.3g bytes: samples by %s", (double)size,
+               vectors[k]);
+        }
+        munmap(far.byte, size);
+    }
+    slice_cells_free(&c);
+    volume_free(&v);
+}
+
 int main(void)
 {
     err e = {0};
@@ -284,6 +332,9 @@ int main(void)
     test_cells((const int64_t[3]){3, 40, 2}, VOLUME_U8, threads);
     test_cells((const int64_t[3]){4, 5, 9}, VOLUME_I32, threads);
     test_cells((const int64_t[3]){13, 12, 14}, VOLUME_U8, threads);
+    test_far(0x20000000, threads);
+    test_far(0x70000000, threads);
+    test_far(5000000000, threads);
     block_free(&b);
     pool_destroy(threads);
     return done_testing();
