@@ -78,13 +78,23 @@ static void escape_one(const char *p, bool own, char *to, size_t *length, size_t
     *used = 1;
 }
 
-size_t chars_escape(const char *text, size_t n, char *to)
+static size_t escape(const char *text, size_t n, bool own, char *to)
 {
     size_t size = 0;
     for (size_t at = 0, length, used; at < n; at += used, size += length)
-        escape_one(text + at, true, to + size, &length, &used);
+        escape_one(text + at, own, to + size, &length, &used);
     to[size] = 0;
     return size;
+}
+
+size_t chars_escape(const char *text, size_t n, char *to)
+{
+    return escape(text, n, true, to);
+}
+
+size_t chars_show(const char *text, size_t n, char *to)
+{
+    return escape(text, n, false, to);
 }
 
 static bool same(const char *a, const char *b, size_t n, int flags)
@@ -92,12 +102,33 @@ static bool same(const char *a, const char *b, size_t n, int flags)
     return flags & CHARS_ANY_CASE ? !strncasecmp(a, b, n) : !strncmp(a, b, n);
 }
 
-static bool means(const char *typed, size_t m, const char *name, size_t n, int flags, bool own)
+typedef enum reading { AS_IT_STANDS, OWN_BYTES, DECODED } reading;
+
+/* escape_one of the bytes that what is typed stands for; m: what is left of it. */
+static void decode_one(const char *typed, size_t m, char *to, size_t *length, size_t *used)
+{
+    char byte[ESCAPED + 1] = "";
+    size_t end[ESCAPED + 1] = {0}; /* where in `typed` each byte ends */
+    int n = 0;
+    for (size_t at = 0; n < ESCAPED && at < m; n++) {
+        const int value = m - at >= ESCAPED ? chars_escaped(typed + at) : -1;
+        byte[n] = value < 0 ? typed[at] : (char)value;
+        at += value < 0 ? 1 : ESCAPED;
+        end[n + 1] = at;
+    }
+    escape_one(byte, true, to, length, used);
+    *used = end[*used];
+}
+
+static bool means(const char *typed, size_t m, const char *name, size_t n, int flags, reading how)
 {
     size_t done = 0;
     for (size_t at = 0, length, used; at < m; at += used, done += length) {
         char one[ESCAPED];
-        escape_one(typed + at, own, one, &length, &used);
+        if (how == DECODED)
+            decode_one(typed + at, m - at, one, &length, &used);
+        else
+            escape_one(typed + at, how == OWN_BYTES, one, &length, &used);
         if (length > n - done || !same(one, name + done, length, flags))
             return false;
     }
@@ -106,7 +137,8 @@ static bool means(const char *typed, size_t m, const char *name, size_t n, int f
 
 bool chars_means(const char *typed, size_t m, const char *name, size_t n, int flags)
 {
-    return means(typed, m, name, n, flags, false) || means(typed, m, name, n, flags, true);
+    return means(typed, m, name, n, flags, AS_IT_STANDS) || means(typed, m, name, n, flags, OWN_BYTES) ||
+           means(typed, m, name, n, flags, DECODED);
 }
 
 bool chars_mean(const char *typed, const char *name)

@@ -24,13 +24,16 @@ void chars_mend(char *text);
 /* Writes so what n bytes of text are to `to`, which has room for 4 n + 1. Returns its length. */
 size_t chars_escape(const char *text, size_t n, char *to);
 
+/* The same of what somebody typed, to show it: what is written as \xHH already stays. */
+size_t chars_show(const char *text, size_t n, char *to);
+
 /* The byte that the \xHH at p stands for, or -1 where there is none. */
 int chars_escaped(const char *p);
 
 enum { CHARS_ANY_CASE = 1, CHARS_BEGINS = 2 };
 
 /* Whether somebody who typed so (m bytes) means this name (n bytes; CHARS_BEGINS: one that begins so): as it stands
- * here, or in the bytes of the file that it comes from. */
+ * here, in the bytes of the file that it comes from, or with \xHH for any of these, in digits of either case. */
 bool chars_means(const char *typed, size_t m, const char *name, size_t n, int flags);
 
 /* The same, of whole strings and with the case that they have. */

@@ -1,5 +1,7 @@
 #include "base/near.h"
 
+#include "base/chars.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -97,19 +99,27 @@ static void offer(char *to, size_t size, const char *name, const char *const *na
         snprintf(to, size, "%s%s%sexpected one of: %s", *meant ? "did you mean " : "", meant, *meant ? "? " : "", list);
 }
 
-enum { OFFER = 800 };
+enum { OFFER = 800, SHOWN_MOST = 200 };
+
+/* The first of a name, whatever its bytes are. */
+static void show(char *to, const char *name)
+{
+    chars_show(name, strnlen(name, SHOWN_MOST), to);
+}
 
 int near_unknown(err *e, const char *place, int64_t line, const char *what, const char *name, const char *const *names,
                  int count)
 {
-    char text[OFFER];
+    char text[OFFER], shown[4 * SHOWN_MOST + 1];
+    show(shown, name);
     offer(text, sizeof text, name, names, count);
-    return err_set(e, place, line, "unknown %s '%.200s'; %s", what, name, text);
+    return err_set(e, place, line, "unknown %s '%.200s'; %s", what, shown, text);
 }
 
 int near_option(err *e, const char *option, const char *what, const char *name, const char *const *names, int count)
 {
-    char text[OFFER];
+    char text[OFFER], shown[4 * SHOWN_MOST + 1];
+    show(shown, name);
     offer(text, sizeof text, name, names, count);
-    return err_option(e, option, "unknown %s '%.200s'; %s", what, name, text);
+    return err_option(e, option, "unknown %s '%.200s'; %s", what, shown, text);
 }

@@ -78,10 +78,24 @@ static void test_meaning(void)
        "as a beginning");
 }
 
+static void test_typed(void)
+{
+    ok(chars_mean("caf\\xE9", "caf\\xe9") && chars_mean("caf\\xC3\\xa9", "caf\xc3\xa9"), "digits of either case");
+    ok(chars_mean("a\\x2cb\\x3D", "a,b=") && !chars_mean("a\\x2c", "a") && !chars_mean("a\\x00b", "a"),
+       "any byte may be written so");
+    ok(chars_mean("m\\x41", "m\\x41") && chars_mean("m\\x41", "mA") && chars_mean("m\\x41", "m\\x5cx41"),
+       "a name that has it as it stands is meant too");
+    ok(!chars_means("a\\x4", 3, "a", 1, 0) && chars_means("a\\x41", 4, "a\\x4", 4, 0), "not beyond what was typed");
+    char to[64];
+    chars_show("caf\xe8\\xE8", strlen("caf\xe8\\xE8"), to);
+    ok(!strcmp(to, "caf\\xe8\\xE8"), "is shown as %s", to);
+}
+
 int main(void)
 {
     test_names();
     test_all();
     test_meaning();
+    test_typed();
     return done_testing();
 }

@@ -53,6 +53,9 @@ static void unknown(void)
     ok(near_option(&e, "-c", "key", "levl", keys, 4) == -1 && e.status == STATUS_USAGE &&
            !strncmp(e.text, "-c: unknown key 'levl'; did you mean 'level'? expected one of: level", 68),
        "on the command line: %s", e.text);
+    e = (err){0};
+    near_unknown(&e, NULL, 0, "key", "caf\xe8\x1b", keys, 4);
+    ok(!strncmp(e.text, "unknown key 'caf\\xe8\\x1b'; ", 27), "bytes of any kind: %s", e.text);
     const char *many[100];
     for (int i = 0; i < 100; i++)
         many[i] = "a_long_name_of_a_thing";
