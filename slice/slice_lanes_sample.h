@@ -212,7 +212,7 @@ INLINE void sample_run(const slice_cells *c, const int32_t *x, const int32_t *y,
         high = at > high ? at : high;
     }
     low &= ~(uint32_t)(2 * SLICE_ONE - 1);
-    if ((double)((high - low) / (2 * SLICE_ONE) + 1) * (double)c->layer > UINT32_MAX) {
+    if (((uint64_t)(high - low) / (2 * SLICE_ONE) + 1) * c->layer > UINT32_MAX) {
         for (int64_t i = 0; i < count; i++)
             to[i] = sample_one(c, (uint32_t)x[i], (uint32_t)y[i], (uint32_t)z[i]);
         return;
