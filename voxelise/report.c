@@ -96,53 +96,12 @@ void report_warn(notes *n, const char *what, const char *name, const check_resul
 
 /* ---- the size of all */
 
-static const double smallest = 3e-3,
-                    largest = 3; /* m: the longest side of a body, or of a part of one that somebody models */
-
 void report_sides(const obj *o, double side[3])
 {
     double low[3], high[3];
     obj_box(o, low, high);
     for (int a = 0; a < 3; a++)
         side[a] = high[a] - low[a];
-}
-
-static double in_metres(double length, num_unit unit)
-{
-    return num_length_in((num_length){length, unit}, unit, num_unit_of("m"));
-}
-
-static bool fits(double side, num_unit unit)
-{
-    return in_metres(side, unit) >= smallest && in_metres(side, unit) <= largest;
-}
-
-/* The unit in which it would fit: that of most OBJ first. NULL: none. */
-static const char *better(double side)
-{
-    static const char *const units[] = {"mm", "m", "cm", "in", "um"};
-    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-        if (fits(side, num_unit_of(units[i])))
-            return units[i];
-    return NULL;
-}
-
-void report_size(notes *n, const obj *o, num_unit unit)
-{
-    double d[3];
-    report_sides(o, d);
-    double side = fmax(d[0], fmax(d[1], d[2]));
-    if (!(side > 0) || fits(side, unit))
-        return;
-    const char *name = better(side), *what = in_metres(side, unit) > largest ? "beyond 3 m" : "below 3 mm";
-    num_unit other = name ? num_unit_of(name) : unit;
-    if (name)
-        notes_add(n, "%s is %.4g x %.4g x %.4g m with --unit %s, %s; with --unit %s it is %.4g x %.4g x %.4g m",
-                  o->name, in_metres(d[0], unit), in_metres(d[1], unit), in_metres(d[2], unit), num_unit_name(unit),
-                  what, name, in_metres(d[0], other), in_metres(d[1], other), in_metres(d[2], other));
-    else
-        notes_add(n, "%s is %.4g x %.4g x %.4g m with --unit %s, %s; no other unit makes a body of it", o->name,
-                  in_metres(d[0], unit), in_metres(d[1], unit), in_metres(d[2], unit), num_unit_name(unit), what);
 }
 
 /* ---- gaps that elements fill */

@@ -23,10 +23,6 @@ void report_warn(notes *n, const char *what, const char *name, const check_resul
 /* The sides of the box about all, in the OBJ's unit. */
 void report_sides(const obj *o, double side[3]);
 
-/* Notes an OBJ that is larger than any body, beyond 3 m, or smaller than 3 mm in this unit, with the unit that it may
- * be in. */
-void report_size(notes *n, const obj *o, num_unit unit);
-
 /* Notes gaps that elements fill. least: of a voxel, the share from which on it is an element; NAN: by centres. */
 void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_unit unit);
 

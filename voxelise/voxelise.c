@@ -2,6 +2,7 @@
 #include "base/mem.h"
 #include "base/num.h"
 #include "base/pool.h"
+#include "mesh/extent.h"
 #include "mesh/surface.h"
 #include "model/materials.h"
 #include "model/stage.h"
@@ -489,12 +490,14 @@ static int check(job *j, err *e)
 
 static int prepare(job *j, model *m, err *e)
 {
+    double side[3];
     double clock = progress_clock();
     if (read_surface(j, e))
         return -1;
     if (!j->unit)
         return ask_for_unit(&j->surface, e);
-    report_size(&j->warnings, &j->surface, j->unit);
+    report_sides(&j->surface, side);
+    extent_note(&j->warnings, j->surface.name, side, j->unit);
     clock = say_time(j, "reading", clock);
     int threads = tool_threads(j->t, e);
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;

@@ -1,6 +1,7 @@
 /* sinew-import: a mesh of another program (Abaqus input, Gmsh, VTU) as a model. */
 #include "base/mem.h"
 #include "base/num.h"
+#include "mesh/extent.h"
 #include "model/stage.h"
 #include "tools/import_inp.h"
 #include "tools/import_msh.h"
@@ -135,6 +136,19 @@ static int read_materials(const struct options *o, model *m, err *e)
     return result;
 }
 
+/* The sides of the box about all nodes, in the file's unit. */
+static void find_sides(const import_mesh *mesh, double side[3])
+{
+    for (int a = 0; a < 3; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int64_t n = 0; n < mesh->nodes; n++) {
+            low = fmin(low, mesh->position[3 * n + a]);
+            high = fmax(high, mesh->position[3 * n + a]);
+        }
+        side[a] = high - low;
+    }
+}
+
 static int run_tool(int argc, char **argv)
 {
     struct options o = {.format = AUTO};
@@ -146,6 +160,7 @@ static int run_tool(int argc, char **argv)
     import_wishes w = {0};
     import_mesh mesh = {0};
     notes warnings = {0};
+    double side[3];
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
     if (stage_open_output(&s, &t, &e) || cut_names(&rigid, &o.rigid, &e) || make_wishes(&o, &rigid, &w, &e))
@@ -157,6 +172,9 @@ static int run_tool(int argc, char **argv)
         model_meta_set(&m, "source.unit", o.unit, &e) || import_build(&mesh, &w, &m, &warnings, &e) ||
         stage_write(&s, &m, &e))
         goto out;
+    find_sides(&mesh, side);
+    extent_note(&warnings, mesh.name, side, num_unit_of(o.unit));
+    tool_say(&t, "a mesh of %.4g x %.4g x %.4g %s", side[0], side[1], side[2], o.unit);
     tool_say(&t, "%lld nodes, %lld elements of %d corners, %lld volumes", (long long)mesh.nodes,
              (long long)mesh.elements, (int)mesh.columns, (long long)mesh.volume_count);
 out:

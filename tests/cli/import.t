@@ -303,4 +303,12 @@ for format in inp msh vtu; do
     check "many names in $format take seconds" sh -c "ulimit -t 5; sinew import -q --unit m -o '$T/y' '$T/many.$format' 2>/dev/null"
 done
 
+# The size of all is said, and warned of where no body has it.
+voxelise -q --unit mm -s 5 tests/cli/cube.obj 2>"$T/said" | sinew export -q -f inp -o "$T/size.inp" 2>"$T/said"
+check "a mesh in metres" sinew import --unit m -o "$T/m" "$T/size.inp"
+cp "$T/stderr" "$T/said"
+is "$(grep -c 'a mesh of .* x .* x .* m$' "$T/said") $(grep -c 'with --unit m, b' "$T/said")" "1 0" "says its size, and is not warned of"
+check "taken as one in mm" sinew import -q --unit mm --stress Pa --density kg/m3 -o "$T/m" "$T/size.inp"
+cp "$T/stderr" "$T/said"
+check "it is warned of" grep -q "warning: $T/size.inp is .* m with --unit mm, below 3 mm; with --unit m it is " "$T/said"
 done_testing

@@ -120,6 +120,7 @@ is "$(sized .142 mm)" "0.142 x 0.142 x 0.142 mm:0.000142 x 0.000142 x 0.000142 m
 is "$(sized 3 m)$(sized 3 mm)" "3 x 3 x 3 m:3 x 3 x 3 mm:" "3 m and 3 mm are not"
 is "$(sized 3.001 m)" "3.001 x 3.001 x 3.001 m:3.001 x 3.001 x 3.001 m with --unit m, beyond 3 m; with --unit mm it is 0.003001 x 0.003001 x 0.003001 m:" \
     "beyond them they are"
+is "$(sized 3.0000001 m)" "3 x 3 x 3 m:" "what rounding adds to 3 m is no more than 3 m"
 is "$(sized 1e9 mm)" "1e+09 x 1e+09 x 1e+09 mm:1e+06 x 1e+06 x 1e+06 m with --unit mm, beyond 3 m; no other unit makes a body of it:" \
     "no unit helps there"
 voxelise -q --unit m -n 4 -o "$T/sized.sinew" "$T/sized.obj" 2>"$T/said"

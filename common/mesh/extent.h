@@ -1,0 +1,13 @@
+/* How large a body is: what is no body's size is in another unit. Nothing is kept.
+ */
+#ifndef SINEW_EXTENT_H
+#define SINEW_EXTENT_H
+
+#include "base/err.h"
+#include "base/num.h"
+
+/* Notes what is larger than any body, beyond 3 m, or smaller than 3 mm in this unit, with the unit that it may be in.
+ * of: the file. d: the sides of the box about it, in this unit. */
+void extent_note(notes *n, const char *of, const double d[3], num_unit unit);
+
+#endif
