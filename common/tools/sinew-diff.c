@@ -15,7 +15,7 @@ struct options {
 
 static const opt option_table[] = {
     {0, "abs", "[ARRAY=]A", OPT_LIST, offsetof(struct options, abs), 0, 0, NULL, 0,
-     "equal where |a - b| <= A; a length may have its unit"},
+     "equal where |a - b| <= A (a length: 1mm)"},
     {0, "rel", "[ARRAY=]R", OPT_LIST, offsetof(struct options, rel), 0, 0, NULL, 0,
      "equal where |a - b| <= R max(|a|, |b|)"},
     {0, "only", "ARRAY,...", OPT_LIST, offsetof(struct options, only), 0, 0, NULL, 0, "compare these arrays only"},
