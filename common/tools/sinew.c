@@ -142,11 +142,10 @@ static int unknown(const char *name)
 static int run(const char *file, char **argv)
 {
     enum { NAME = 64 };
-    char *path = malloc(PATH_MAX + NAME); /* the stack may be of 32 KiB */
-    ssize_t n = path ? readlink("/proc/self/exe", path, PATH_MAX) : -1;
+    char path[PATH_MAX + NAME]; /* one alone: the stack may be of 32 KiB */
+    ssize_t n = readlink("/proc/self/exe", path, PATH_MAX);
     if (n < 0) {
         fprintf(stderr, "sinew: cannot find its own folder: %s\n", strerror(errno));
-        free(path);
         return STATUS_BAD;
     }
     while (n && path[n - 1] != '/')
@@ -154,7 +153,6 @@ static int run(const char *file, char **argv)
     snprintf(path + n, NAME, "%s", file);
     execv(path, argv);
     fprintf(stderr, "sinew: cannot run %s: %s\n", path, strerror(errno));
-    free(path);
     return STATUS_BAD;
 }
 
