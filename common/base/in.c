@@ -187,9 +187,8 @@ in *in_open(const char *path, err *e)
 {
     if (!path || !strcmp(path, "-"))
         return in_new(STDIN_FILENO, "stdin", NULL, 0, false, e);
-    struct stat s;
     in *file = open_file(path, false, e);
-    if (!file || fstat(file->fd, &s) || !inputs_note(&s, e))
+    if (!file || !inputs_note(file->fd, e))
         return file;
     in_close(file);
     return NULL;

@@ -138,7 +138,7 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
     else if (file && (stat(real, &about) || !S_ISREG(about.st_mode)))
         err_set(e, file, 0, "is no regular file; expected one that '%.200s' names", place);
     else if (file)
-        inputs_note(&about, e);
+        inputs_note_path(real, e);
     free(folder);
     if (!e->status)
         return file;

@@ -1,6 +1,7 @@
 /* Streams: what is written comes back, plain and gzipped, whole or not at all. */
 #define _GNU_SOURCE /* F_GETPIPE_SZ */
 #include "base/in.h"
+#include "base/inputs.h"
 #include "base/mem.h"
 #include "base/out.h"
 
@@ -175,6 +176,25 @@ static void put_file(const char *folder, const char *name, const char *text)
     }
 }
 
+/* What was read is known again, by another name too; a new file that got the inode of one that was read is not taken for it. */
+static void inputs(const char *folder)
+{
+    char first[128], second[128];
+    err e = {0};
+    snprintf(first, sizeof first, "%s/first", folder);
+    snprintf(second, sizeof second, "%s/second", folder);
+    put_file(folder, "first", "read");
+    in_close(in_open(first, &e));
+    ok(inputs_has(first) && !link(first, second) && inputs_has(second), "a file that was read, by both of its names");
+    unlink(first);
+    unlink(second);
+    ok(!inputs_has(first), "not once it is gone");
+    usleep(20000); /* a clock of files may tick so rarely */
+    put_file(folder, "second", "new");
+    ok(!inputs_has(second), "nor what came in its place");
+    unlink(second);
+}
+
 /* Memory in control groups: the least that one of them leaves, caches not counted. */
 static void groups(const char *folder)
 {
@@ -255,6 +275,7 @@ int main(void)
     refused(folder, path);
     full();
     given_up(folder, path);
+    inputs(folder);
     groups(folder);
     widened();
     rmdir(folder);
