@@ -37,7 +37,7 @@ $(foreach source,$(FUZZ_SRC:tests/fuzz/fuzz_%.c=%),$(eval $(call test_program,te
 
 # What makes programs fail: libraries to preload.
 FAULTS := $(patsubst tests/%.c,$(BUILD)/tests/%.so,$(wildcard tests/faults/*.c)) $(if $(LIB_CUDA),$(BUILD)/tests/faults/wreck_card.so)
-$(BUILD)/tests/faults/%.so: tests/faults/%.c
+$(BUILD)/tests/faults/%.so: tests/faults/%.c tests/faults/next.h
 	@mkdir -p $(@D)
 	$(call run,LD $@,$(CC) $(CSTD) -D_GNU_SOURCE $(WARN) $(WERROR) -O2 -fPIC -shared -o $@ $< -ldl)
 $(BUILD)/tests/faults/wreck_card.so: tests/faults/wreck_card.cu

@@ -10,7 +10,8 @@
 #define _GNU_SOURCE 1 /* RTLD_NEXT, O_TMPFILE */
 #endif
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
-#include <dlfcn.h>
+#include "next.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -36,20 +37,6 @@ static struct {
     bool on, after, named, counting;
     int (*begin)(int, char **, char **);
 } fault;
-
-static void *real_function(const char *name)
-{
-    void *found = dlsym(RTLD_NEXT, name);
-    if (!found)
-        abort();
-    return found;
-}
-
-/* Declares `next`, the C library's function of that name. */
-#define NEXT(type, name, ...)                                                                                          \
-    type (*next)(__VA_ARGS__);                                                                                         \
-    void *found = real_function(name);                                                                                 \
-    memcpy(&next, &found, sizeof next)
 
 typedef struct fate {
     bool fails, ends; /* ends: the signal comes after the call */

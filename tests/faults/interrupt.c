@@ -3,7 +3,8 @@
  * SINEW_FAULT_COUNT names a file, it gets how many calls were interrupted.
  */
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
-#include <dlfcn.h>
+#include "next.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdatomic.h>
@@ -30,14 +31,6 @@ __attribute__((constructor)) static void begin(void)
 {
     const char *seed = getenv("SINEW_FAULT_SEED");
     atomic_store(&chance.state, seed ? strtoull(seed, NULL, 10) : 1);
-}
-
-static void *real_function(const char *name)
-{
-    void *found = dlsym(RTLD_NEXT, name);
-    if (!found)
-        abort();
-    return found;
 }
 
 /* Of the bytes that were asked for, how many are to be tried: all, some, or none, with EINTR. */

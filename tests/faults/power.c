@@ -8,7 +8,8 @@
 #define _GNU_SOURCE 1 /* RTLD_NEXT */
 #endif
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
-#include <dlfcn.h>
+#include "next.h"
+
 #include <fcntl.h>
 #include <limits.h>
 #include <pthread.h>
@@ -44,20 +45,6 @@ static int files;
 static touched changed[NAMES];
 static int changes;
 static long long syncs, backups;
-
-static void *real_function(const char *name)
-{
-    void *found = dlsym(RTLD_NEXT, name);
-    if (!found)
-        abort();
-    return found;
-}
-
-/* Declares `next`, the C library's function of that name. */
-#define NEXT(type, name, ...)                                                                                          \
-    type (*next)(__VA_ARGS__);                                                                                         \
-    void *found = real_function(name);                                                                                 \
-    memcpy(&next, &found, sizeof next)
 
 static int really_link(const char *from, const char *to)
 {
