@@ -13,11 +13,12 @@ typedef struct in in;
 
 enum { IN_LINE_MOST = 1 << 28 }; /* the most bytes of a line */
 
-/* Opens path, which from now on no output replaces (see inputs.h); "-" or NULL is standard input, named "stdin". NULL with e filled on
- * failure. */
+/* Opens path, which from now on no output replaces (see inputs.h); "-" or NULL is standard input, named "stdin". NULL
+ * with e filled on failure. */
 in *in_open(const char *path, err *e);
 
-/* Opens a file whose bytes are taken as they are, though they may look like gzip. It may be replaced: checkpoints are. */
+/* Opens a file whose bytes are taken as they are, though they may look like gzip. An output may replace it, as a
+ * checkpoint is replaced. */
 in *in_open_plain(const char *path, err *e);
 
 /* Reads from bytes that stay the caller's (for tests and fuzzers). */

@@ -9,7 +9,8 @@
 #include <stdint.h>
 #include <sys/stat.h>
 
-/* A file system gives the inode of a file that is gone to the next one: the time of birth tells them apart, where it has one. */
+/* A file system gives the inode of a file that is gone to the next one. The time of birth, where it is known, tells them
+ * apart. */
 typedef struct input {
     uint32_t major, minor;
     uint64_t inode;
@@ -23,7 +24,7 @@ static struct {
     int64_t count, capacity;
 } list = {.busy = PTHREAD_MUTEX_INITIALIZER};
 
-/* Of the file at path, or of fd where path is "". Whether it is there, and a regular file. */
+/* Fills *to of the file at path, or of fd where path is "". Returns whether it is there and a regular file. */
 static bool find(int fd, const char *path, input *to)
 {
     struct statx s;

@@ -8,7 +8,7 @@
 
 enum { MODELS = 1 << 9, THREADED = 1 << 10, VOLUMES = 1 << 11 };
 
-/* What every tool has. MODELS: only those that write a model; THREADED: only those with threads; VOLUMES: those that
+/* The options that every tool has. MODELS: only those that write a model; THREADED: only those with threads; VOLUMES: those that
  * read volume images. */
 #define COMMON(field) offsetof(opt_common, field)
 static const opt common_options[] = {

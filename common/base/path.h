@@ -16,21 +16,22 @@ size_t path_folder(const char *path);
 char *path_join(const char *folder, size_t n, const char *name, err *e);
 
 /* The path of a regular file that an input names, from the input's own path: beside it or in a folder beside it, links
- * followed; no other is opened for an input's asking, and no output replaces it (see inputs.h). place: the input, for messages. NULL with e filled. */
+ * followed; no other is opened for an input's asking, and no output replaces it (see inputs.h). place: the input, for
+ * messages. NULL with e filled. */
 char *path_beside(const char *path, const char *name, const char *place, err *e);
 
 /* Where a file named path would be, links followed, even one to nothing. NULL with e filled where there can be none. */
 char *path_target(const char *path, err *e);
 
-/* What is at a path that is to be written, links followed: 1; 0: nothing; -1 with e filled where the system does not
- * say. */
+/* Looks, links followed, at a path that is to be written. Returns 1 with *s filled where something is there, 0 where
+ * nothing is, -1 with e filled where the system does not say. */
 int path_look(const char *path, struct stat *s, err *e);
 
-/* Whether two paths are of one regular file, by whatever links, or would be once it is there. */
+/* Tells whether two paths lead to one regular file, through any links, or would once it is there. */
 bool path_is_same(const char *a, const char *b);
 
-/* Whether the path is of the regular file, pipe or socket that is open at fd. Devices may be read and written at
- * once. */
+/* Tells whether the path leads to the regular file, pipe or socket that is open at fd. A device may be read and written
+ * at once, so it never counts. */
 bool path_is_open(const char *path, int fd);
 
 #endif

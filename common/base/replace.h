@@ -17,8 +17,8 @@ typedef struct replace {
  * A name that cannot be given is refused now, not after the work. */
 int replace_open(replace *r, const char *path, err *e);
 
-/* Waits until every byte of it is known to be stored. name: for messages. -1 with e filled, also where it would replace a file that was
- * read (see inputs.h). */
+/* Waits until every byte of it is known to be stored. name: for messages. -1 with e filled, also where it would replace
+ * a file that was read (see inputs.h). */
 int replace_settle(replace *r, const char *name, err *e);
 
 /* Closes a file that was settled, which takes a name until it is put in its place: where descriptors are scarce. -1

@@ -176,7 +176,7 @@ static void put_file(const char *folder, const char *name, const char *text)
     }
 }
 
-/* What was read is known again, by another name too; a new file that got the inode of one that was read is not taken for it. */
+/* A file that was read is known again, by another name too. A new file that got its inode is not taken for it. */
 static void inputs(const char *folder)
 {
     char first[128], second[128];
