@@ -58,16 +58,10 @@ cp press.tum sweep.tum
     tled-run -q -c zyg=0.4 -t 0.03 <face.sinew >smile.sinew
     cp face.sinew old.sinew
     cp face.sinew new.sinew
-    cp face.obj fine.obj
-    # A small box within the face, in cm; a plate beside it, in mm; another box whose walls are called as the jaw's.
-    sed 's/^v \([-0-9]*\) \([-0-9]*\) \([-0-9]*\)/v \1e-2 \2e-2 \3e-2/' "$ROOT/tests/cli/cube.obj" >teeth.obj
-    cp "$ROOT/tests/cli/cube.obj" plate.obj
-    sed 's/^g skull$/g skull_upper/' face.obj | voxelise -q --unit mm -s 10 - >in.sinew
     sed 's/^g skull$/g skull_jaw/' face.obj | voxelise -q --unit mm -s 10 - | attach -q >jaw.sinew
     awk -v nx=4 -v ny=4 -v nz=4 -v h=0.005 -v held=none -f "$ROOT/tests/cli/block.awk" >stretch.sinew
     voxelise -q --unit mm -s 5 "$ROOT/tests/cli/cube.obj" | attach -q --rigid '*' >cube.sinew
-    msds-mesh -q --nodes 9x5x7 --like map.nrrd >tissue.sinew
-    cp tissue.sinew arm.sinew
+    msds-mesh -q --nodes 9x5x7 --like map.nrrd >arm.sinew
     ln -s "$ROOT/samples" samples
     msds-mesh -q --nodes 9x5x7 --size 16cm,8cm,8cm >block.sinew
     printf '%s\n' 'tissue E=10e3' 'bone   E=1e7 nu=0.3 density=1900' 'vein   E=500' >materials
