@@ -44,7 +44,11 @@ LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
 .PHONY: all
-all: $(TOOLS:%=$(BIN)/%)
+all: $(TOOLS:%=$(BIN)/%) $(BIN)/voxelize
+
+# The American spelling of the name runs the same tool.
+$(BIN)/voxelize: $(BIN)/voxelise
+	@ln -sf voxelise $@
 
 $(LIB): $(LIB_OBJ)
 	@rm -f $@

@@ -1,4 +1,5 @@
 /* sinew-deform: an OBJ as the results of a model move it. */
+#include "base/frames.h"
 #include "base/mem.h"
 #include "base/num.h"
 #include "base/numbered.h"
@@ -28,8 +29,7 @@ struct options {
 };
 
 static const opt option_list[] = {
-    {0, "frame", "N|last|all", OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
-     "all: -o f_%04d.obj, or pc2 [last; pc2: all]"},
+    {0, "frame", FRAMES_ARG, OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0, "all: -o f_%04d.obj [last]"},
     {0, "within", "D", OPT_LENGTHS, offsetof(struct options, within), 0, 1, NULL, 0,
      "m: hold vertices further than D outside [any]"},
     {0, "format", "obj|pc2", OPT_CHOICE, offsetof(struct options, format), 0, 0, "obj|pc2", 0,
@@ -53,9 +53,9 @@ static const opt_tool table = {
 /* Which frames, and what becomes of them. */
 typedef struct plan {
     const tool *t;
-    enum { FRAME_LAST, FRAME_ALL, FRAME_ONE } frames;
+    frames_which frames;
     const char *asked; /* --frame, or what it is without */
-    int64_t index;     /* FRAME_ONE */
+    int64_t index;     /* FRAMES_ONE */
     bool found;
     bool files;    /* a file a frame */
     double within; /* m; infinite: any */
@@ -85,11 +85,10 @@ static int plan_of(plan *p, const struct options *o, const char *path, err *e)
 {
     const char *which = o->frame ? o->frame : o->format == FORMAT_PC2 ? "all" : "last", *output = o->common.output;
     p->asked = which;
-    p->frames = !strcmp(which, "last") ? FRAME_LAST : !strcmp(which, "all") ? FRAME_ALL : FRAME_ONE;
-    p->files = p->frames == FRAME_ALL && o->format == FORMAT_OBJ;
+    if (frames_asked(which, &p->frames, &p->index, e))
+        return -1;
+    p->files = p->frames == FRAMES_ALL && o->format == FORMAT_OBJ;
     p->within = o->within.count ? num_length_in(o->within.value[0], num_unit_of("m"), num_unit_of("m")) : INFINITY;
-    if (p->frames == FRAME_ONE && num_int(which, 0, INT64_MAX, &p->index))
-        return err_usage(e, "--frame '%s': expected a frame's index, last or all", which);
     if (p->within < 0)
         return err_usage(e, "--within: a distance below 0; expected 0 or more");
     if (!strcmp(path, "-"))
@@ -279,14 +278,26 @@ static int write_file(plan *p, const mover *w, int64_t index, err *e)
     return out_close(to, e);
 }
 
-/* Takes a frame that is wanted. */
+/* The undeformed state: what was read, to the byte. */
+static void stay(mover *w)
+{
+    if (w->file.vertices)
+        memcpy(w->position, w->file.position, 3 * (size_t)w->file.vertices * sizeof *w->position);
+    if (w->file.normals)
+        memcpy(w->normal, w->file.normal, 3 * (size_t)w->file.normals * sizeof *w->normal);
+}
+
+/* Takes a frame that is wanted; NULL: the undeformed state. */
 static int take(plan *p, mover *w, const frame *f, err *e)
 {
-    if (move(w, f, e))
+    const int64_t index = f ? f->index : 0;
+    if (!f)
+        stay(w);
+    else if (move(w, f, e))
         return -1;
     if (p->cache.to)
-        return pointcache_add(&p->cache, f->index, w->position, e);
-    return p->files ? write_file(p, w, f->index, e) : 0;
+        return pointcache_add(&p->cache, index, w->position, e);
+    return p->files ? write_file(p, w, index, e) : 0;
 }
 
 /* Reads to the end, whatever is wanted: only there is it known that the run went well. */
@@ -294,16 +305,18 @@ static int take_frames(plan *p, mover *w, source *s, err *e)
 {
     int got;
     while ((got = source_next(s, e)) > 0) {
-        bool one = p->frames == FRAME_ONE && s->frame.index == p->index && !p->found;
-        if ((one || p->frames == FRAME_ALL) && take(p, w, &s->frame, e))
+        bool one = p->frames == FRAMES_ONE && s->frame.index == p->index && !p->found;
+        if ((one || p->frames == FRAMES_ALL) && take(p, w, &s->frame, e))
             return -1;
         p->found |= one;
     }
     if (got < 0)
         return -1;
-    if (!s->frames || (p->frames == FRAME_ONE && !p->found))
+    if (p->frames == FRAMES_REST)
+        return take(p, w, NULL, e);
+    if (!s->frames || (p->frames == FRAMES_ONE && !p->found))
         return source_no_frame(s, s->frames ? p->asked : NULL, e);
-    return p->frames == FRAME_LAST ? take(p, w, &s->frame, e) : 0;
+    return p->frames == FRAMES_LAST ? take(p, w, &s->frame, e) : 0;
 }
 
 static int open_sink(plan *p, const struct options *o, int64_t vertices, err *e)

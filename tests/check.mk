@@ -241,14 +241,18 @@ SAMPLES = $(filter-out samples/demo samples/arm samples/scan samples/paper sampl
 install: all
 	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
 	$(INSTALL) -m 755 $(TOOLS:%=$(BIN)/%) $(BINDIR)
+	ln -sf voxelise $(BINDIR)/voxelize
 	for section in 1 5 7; do $(INSTALL) -m 644 man/*.$$section $(MANDIR)/man$$section || exit 1; done
 	$(INSTALL) -m 644 $(SAMPLES) $(SAMPLEDIR)
 	for tool in $(COMPLETIONS); do $(BIN)/$$tool --table bash >$(COMPLETIONDIR)/$$tool || exit 1; done
 	for tool in $(TOOLS); do $(BIN)/$$tool --table zsh >$(ZSHDIR)/_$$tool || exit 1; done
+	ln -sf voxelise.1 $(MANDIR)/man1/voxelize.1
+	ln -sf voxelise $(COMPLETIONDIR)/voxelize
 	chmod 644 $(COMPLETIONS:%=$(COMPLETIONDIR)/%) $(TOOLS:%=$(ZSHDIR)/_%)
 
 uninstall:
 	rm -f $(TOOLS:%=$(BINDIR)/%) $(COMPLETIONS:%=$(COMPLETIONDIR)/%) $(TOOLS:%=$(ZSHDIR)/_%) \
+	    $(BINDIR)/voxelize $(MANDIR)/man1/voxelize.1 $(COMPLETIONDIR)/voxelize \
 	    $(foreach page,$(PAGES),$(MANDIR)/man$(subst .,,$(suffix $(page)))/$(notdir $(page)))
 	rm -rf $(SAMPLEDIR)
 	rmdir $(dir $(SAMPLEDIR)) 2>/dev/null || :

@@ -1,6 +1,7 @@
 #include "base/opt.h"
 
 #include "base/near.h"
+#include "base/spelling.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -82,20 +83,30 @@ static int unknown_option(const opt_tool *tool, const char *name, size_t length,
     return err_usage(e, "no option --%s; see %s --help", word, tool->name);
 }
 
-/* An exact name, or the only one that begins so. */
-static const opt *find_name(const opt_tool *tool, const char *name, size_t length, err *e)
+/* An exact name, or the only one that begins so. count: how many begin so. */
+static const opt *look_up(const opt_tool *tool, const char *name, size_t length, int *count)
 {
     const opt *o, *found = NULL;
-    int count = 0;
+    *count = 0;
     for (int i = 0; (o = opt_at(tool, i)); i++) {
         if (!o->name || strncmp(o->name, name, length) != 0 || (o->flags & OPT_HIDDEN && o->name[length]))
             continue;
         if (!o->name[length])
             return o;
         found = o;
-        count++;
+        ++*count;
     }
-    if (count == 1)
+    return *count == 1 ? found : NULL;
+}
+
+static const opt *find_name(const opt_tool *tool, const char *name, size_t length, err *e)
+{
+    char british[64];
+    int count;
+    const opt *found = look_up(tool, name, length, &count);
+    if (!count && !found && spelling_british(name, length, british, sizeof british))
+        found = look_up(tool, british, strlen(british), &count);
+    if (found)
         return found;
     if (count > 1)
         err_usage(e, "--%.*s could be several options; write more of it", (int)length, name);
@@ -183,19 +194,30 @@ static int set_numbers(const opt *o, const char *text, opt_numbers *to, err *e)
     return bad_value(o, text, want, e);
 }
 
+/* The index of a word among choices, or -1. */
+static int find_choice(const char *choices, const char *word)
+{
+    const size_t length = strlen(word);
+    for (int i = 0;; i++) {
+        const size_t n = strcspn(choices, "|");
+        if (length == n && !strncmp(choices, word, n))
+            return i;
+        if (!choices[n])
+            return -1;
+        choices += n + 1;
+    }
+}
+
 static int set_choice(const opt *o, const char *text, int *to, err *e)
 {
-    const char *p = o->choices;
-    size_t length = strlen(text);
-    for (int i = 0; p; i++) {
-        const char *bar = strchr(p, '|');
-        if (length == (bar ? (size_t)(bar - p) : strlen(p)) && !strncmp(p, text, length)) {
-            *to = i;
-            return 0;
-        }
-        p = bar ? bar + 1 : NULL;
-    }
-    return bad_value(o, text, o->choices, e);
+    char british[64];
+    int found = find_choice(o->choices, text);
+    if (found < 0 && spelling_british(text, strlen(text), british, sizeof british))
+        found = find_choice(o->choices, british);
+    if (found < 0)
+        return bad_value(o, text, o->choices, e);
+    *to = found;
+    return 0;
 }
 
 static int add_to_list(const opt *o, const char *text, opt_list *to, err *e)

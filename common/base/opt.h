@@ -43,7 +43,9 @@ enum {
     OPT_OUTPUT = 2,   /* does not change the result: left out of provenance */
     OPT_HIDDEN = 4,   /* not for people: left out of every text */
     OPT_FILE = 8,     /* its text names a file: provenance has the base name only, completion offers files */
-    OPT_WRITES = 16   /* its text names a file, or files by a number in it, that are written: nothing else may be */
+    OPT_ALSO =
+        32, /* another name of the option before it, with the same `to`: shown beside it, left out of the synopsis */
+    OPT_WRITES = 16 /* its text names a file, or files by a number in it, that are written: nothing else may be */
 };
 
 typedef struct opt {
@@ -77,7 +79,9 @@ typedef struct opt_tool {
     const opt *options; /* ends with {.name = NULL, .letter = 0} */
 } opt_tool;
 
-/* Parses argv into options (with its defaults set by the caller) and moves the operands to the front of argv, from
+/* Names of options and choices are taken in American spelling too (base/spelling.h), and recorded as the table has them.
+ *
+ * Parses argv into options (with its defaults set by the caller) and moves the operands to the front of argv, from
  * argv[1]. Returns the count of operands, or -1 with e filled (status 2). With -h, -V or --table, nothing more is
  * required. */
 int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e);

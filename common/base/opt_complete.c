@@ -1,5 +1,7 @@
 #include "base/opt_complete.h"
 
+#include "base/spelling.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -52,6 +54,16 @@ static const char *const *endings_of(const char *arg)
 static bool is_file(const opt *o)
 {
     return o->flags & OPT_FILE;
+}
+
+/* What the tool is called by, to the end of the line. */
+static void put_tool_names(const opt_tool *tool, out *to)
+{
+    const char *american = spelling_american(tool->name);
+    out_format(to, " %s", tool->name);
+    if (american)
+        out_format(to, " %s", american);
+    out_text(to, "\n");
 }
 
 /* ---- bash */
@@ -124,7 +136,7 @@ void opt_complete_bash(const opt_tool *tool, out *to)
         out_text(to, "compopt +o default; COMPREPLY=()");
     out_text(to, "\n    fi\n}\ncomplete -o default -F ");
     put_bash_name(tool, to);
-    out_format(to, " %s\n", tool->name);
+    put_tool_names(tool, to);
 }
 
 /* ---- zsh */
@@ -194,7 +206,9 @@ void opt_complete_zsh(const opt_tool *tool, out *to)
 {
     const opt *o;
     const bool many = tool->operands_max > 1;
-    out_format(to, "#compdef %s\n_arguments -s -S", tool->name);
+    out_text(to, "#compdef");
+    put_tool_names(tool, to);
+    out_text(to, "_arguments -s -S");
     for (int i = 0; (o = opt_at(tool, i)); i++)
         if (!(o->flags & OPT_HIDDEN))
             put_zsh_option(o, to);

@@ -116,7 +116,7 @@ static void put_mdoc(const opt_tool *tool, out *to)
     const opt *o;
     out_format(to, ".Nm %s\n", tool->name);
     for (int i = 0; (o = opt_at(tool, i)); i++) {
-        if (o->flags & OPT_HIDDEN)
+        if (o->flags & (OPT_HIDDEN | OPT_ALSO))
             continue;
         out_text(to, o->flags & OPT_REQUIRED ? ".Fl" : ".Op Fl");
         if (o->letter)
@@ -255,7 +255,7 @@ char *opt_provenance(const opt_tool *tool, const void *options, int operands, ch
     if (!to)
         return NULL;
     for (int i = 0; i < opt_own(tool); i++)
-        if (!(opt_at(tool, i)->flags & OPT_OUTPUT))
+        if (!(opt_at(tool, i)->flags & (OPT_OUTPUT | OPT_ALSO)))
             put_value(opt_at(tool, i), options, to);
     for (int i = 0; i < operands; i++)
         put_text(true, operand[i], options, to);

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
+#include "base/spelling.h"
 #include "mesh/gradient.h"
 #include "mesh/quality.h"
 #include "model/materials.h"
@@ -207,10 +208,21 @@ static int own(const char *name)
     return i < OURS ? i : strncmp(name, "displacement.", 13) ? OURS : DISPLACEMENT;
 }
 
-static int of_name(field *to, const model *m, const frame *f, const char *name, err *e)
+enum { NAME = 120 };
+
+/* The field's name, in our spelling where there is none in that typed. */
+static const char *spelled(const model *m, const frame *f, const char *typed, char to[NAME])
 {
+    int component;
+    const bool there = own(typed) < OURS || find(m, f, typed, &component);
+    return there || !spelling_british(typed, strlen(typed), to, NAME) ? typed : to;
+}
+
+static int of_name(field *to, const model *m, const frame *f, const char *typed, err *e)
+{
+    char full[320], british[NAME];
+    const char *name = spelled(m, f, typed, british);
     int which = own(name), component;
-    char full[320];
     const model_array *a;
     if (which == VOLUME || which == MATERIAL)
         return of_names(to, m, which == MATERIAL, e);
@@ -243,6 +255,8 @@ void field_free(field *f)
 
 bool field_moves(const model *m, const char *name)
 {
+    char british[NAME];
+    name = spelled(m, NULL, name, british);
     int component, which = own(name);
     return which != VOLUME && which != MATERIAL && !find(m, NULL, name, &component);
 }

@@ -4,8 +4,10 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
+#include "base/spelling.h"
 #include "model/known.h"
 #include "model/rest_place.h"
+#include "tools/info_names.h"
 #include "tools/info_stats.h"
 
 #include <inttypes.h>
@@ -229,6 +231,10 @@ static void note_keys(const source *s, const char *key, notes *list)
     notes_add(list, "frames");
     notes_add(list, "frame.time");
     notes_add(list, "frame.index");
+    notes_add(list, "surface.name");
+    notes_add(list, "array.name");
+    if (model_find(m, "muscle.volume"))
+        notes_add(list, INFO_NAMES_MUSCLES);
     for (int i = 0; i < INFO_QUALITY_KEYS; i++)
         notes_add(list, "%s", info_quality_keys[i]);
     for (int i = 0; i < m->axis_count; i++)
@@ -289,7 +295,9 @@ static int unknown_key(const source *s, const char *key, err *e)
     note_keys(s, key, &list);
     note_arrays(s, &arrays);
     int near = near_name(key, (const char *const *)list.line, list.count);
-    if (!strncmp(key, "frame.", 6) && !s->frames)
+    if (!strcmp(key, INFO_NAMES_MUSCLES))
+        lacking(s, key, known_find("muscle.volume"), e);
+    else if (!strncmp(key, "frame.", 6) && !s->frames)
         err_set(e, source_name(s), 0, "no key '%.80s': the model has no frames; they come from tled-run", key);
     else if (k)
         lacking(s, key, k, e);
@@ -333,6 +341,24 @@ static int put_plain(const source *s, info_quality_seen *seen, const char *key, 
         return info_quality(s, seen, key, to, e);
     }
     return 0;
+}
+
+const char *info_key_spelled(const source *s, const char *key, char to[INFO_KEY])
+{
+    const size_t length = strlen(key);
+    if (find_array(&(query){.s = s, .key = key}))
+        return key;
+    for (size_t n = length; n > 0; n--) {
+        if ((key[n] && key[n] != '.') || !spelling_british(key, n, to, INFO_KEY) ||
+            (!known_find(to) && !info_quality_unit(to)))
+            continue;
+        const size_t head = strlen(to);
+        if (head + (length - n) >= INFO_KEY)
+            return key;
+        memcpy(to + head, key + n, length - n + 1);
+        return to;
+    }
+    return key;
 }
 
 int info_key(const source *s, info_quality_seen *seen, const char *key, out *to, err *e)

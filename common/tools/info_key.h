@@ -7,6 +7,12 @@
 #include "model/source.h"
 #include "tools/info_quality.h"
 
+enum { INFO_KEY = 512 };
+
+/* The key in our spelling, in `to`, where what it begins with is no array as typed and one in that; else the key itself. Names behind
+ * that are the user's, and stay. */
+const char *info_key_spelled(const source *s, const char *key, char to[INFO_KEY]);
+
 /* Writes the value of the key, without a line end; seen: of keys before, in the same frame or others. Returns 0, or -1
  * with e filled: what is wrong with the key, and what there is. */
 int info_key(const source *s, info_quality_seen *seen, const char *key, out *to, err *e);

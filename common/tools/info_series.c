@@ -51,10 +51,11 @@ static int put_heading(info_series *series, const source *s, const opt_list *key
         return -1;
     out_text(to, "frame\ttime/s");
     for (int i = 0; i < keys->count && !e->status; i++) {
-        const char *unit = info_key_unit(s, keys->value[i], e);
-        series->values[i] = unit ? put_values(series, s, keys->value[i], nothing, e) : -1;
+        char british[INFO_KEY];
+        const char *key = info_key_spelled(s, keys->value[i], british), *unit = info_key_unit(s, key, e);
+        series->values[i] = unit ? put_values(series, s, key, nothing, e) : -1;
         if (series->values[i] > 0)
-            put_names(keys->value[i], unit, series->values[i], to);
+            put_names(key, unit, series->values[i], to);
     }
     out_text(to, "\n");
     out_discard(nothing);
@@ -68,14 +69,16 @@ int info_series_row(info_series *series, const source *s, const opt_list *keys, 
     out_format(to, "%" PRId64 "\t", s->frame.index);
     info_put_number(s->frame.time, MODEL_F64, to);
     for (int i = 0; i < keys->count; i++) {
-        if (!info_key_unit(s, keys->value[i], e))
+        char british[INFO_KEY];
+        const char *key = info_key_spelled(s, keys->value[i], british);
+        if (!info_key_unit(s, key, e))
             return -1;
-        int values = put_values(series, s, keys->value[i], to, e);
+        int values = put_values(series, s, key, to, e);
         if (values < 0)
             return -1;
         if (values != series->values[i])
             return err_set(e, source_name(s), 0, "frame %" PRId64 ": '%.80s' has %d values; expected %d, as before",
-                           s->frame.index, keys->value[i], values, series->values[i]);
+                           s->frame.index, key, values, series->values[i]);
     }
     out_text(to, "\n");
     out_flush(to);

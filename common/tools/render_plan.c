@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/near.h"
+#include "base/spelling.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -113,6 +114,7 @@ static int read_axes(picture_spec *s, const render_options *o, err *e)
 /* ---- panels */
 
 static const char *const panels[] = {"rest", "voxels", "deformed"};
+static const char undeformed[] = "undeformed"; /* the same as rest */
 enum { REST, VOXELS, DEFORMED, VIEWED };
 
 /* A panel's name is one of these, or a view: then all else is as the other options say. */
@@ -163,7 +165,8 @@ static int read_panel(picture_panel *p, const picture_spec *s, const picture_pan
     size_t n = at ? (size_t)(at - text) : strlen(text), used;
     int which = 0;
     err ignored = {0};
-    while (which < VIEWED && (strlen(panels[which]) != n || strncmp(panels[which], text, n) != 0))
+    const bool at_rest = n == strlen(undeformed) && !strncmp(text, undeformed, n);
+    while (!at_rest && which < VIEWED && (strlen(panels[which]) != n || strncmp(panels[which], text, n) != 0))
         which++;
     p->view = as_asked->view;
     if (which == VIEWED && (at || view_named(&p->view, s, text, &ignored)))
@@ -236,18 +239,25 @@ static int read_frames(render_plan *p, const render_options *o, err *e)
 {
     const char *f = o->frame;
     p->frame_given = f != NULL;
-    p->frames = !f || !strcmp(f, "last") ? RENDER_LAST
-                : !strcmp(f, "all")      ? RENDER_ALL
-                : !strcmp(f, "rest")     ? RENDER_REST
-                                         : RENDER_ONE;
-    p->files = p->frames == RENDER_ALL && o->format == RENDER_PNG;
-    if (p->frames == RENDER_ONE && num_int(f, 0, INT64_MAX, &p->index))
-        return err_set(e, NULL, 0, "--frame '%s': expected a frame's index, last, all or rest", f);
-    if (p->frames == RENDER_ALL && p->spec.field && !p->spec.ranged)
+    if (frames_asked(f ? f : "last", &p->frames, &p->index, e))
+        return -1;
+    p->files = p->frames == FRAMES_ALL && o->format == RENDER_PNG;
+    if (p->frames == FRAMES_ALL && p->spec.field && !p->spec.ranged)
         return err_set(e, NULL, 0,
                        "--frame all with --colour: expected --range A,B, so that a colour means the same in "
                        "every frame");
     return p->files ? numbered_of(&p->names, o->common.output, ", or --format ppm", e) : 0;
+}
+
+/* Which of the things that are shown; SHOWING_THINGS: none of them. */
+static int thing_named(const char *name)
+{
+    char british[16];
+    const char *ours = spelling_british(name, strlen(name), british, sizeof british) ? british : name;
+    int t = 0;
+    while (t < SHOWING_THINGS && strcmp(name, showing_things[t]) != 0 && strcmp(ours, showing_things[t]) != 0)
+        t++;
+    return t;
 }
 
 /* The one panel, or what those of a sheet begin with. */
@@ -259,9 +269,7 @@ static int read_panel_asked(render_plan *p, const render_options *o, char **at, 
     int count = split(&o->show, "--show", at, things, 64, e);
     *panel = (picture_panel){.moved = true, .coloured = true, .names = true};
     for (int i = 0; i < count && things[i]; i++) {
-        int t = 0;
-        while (t < SHOWING_THINGS && strcmp(things[i], showing_things[t]) != 0)
-            t++;
+        const int t = thing_named(things[i]);
         if (t < SHOWING_THINGS)
             panel->things |= 1 << t;
         else

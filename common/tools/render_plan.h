@@ -4,12 +4,12 @@
 #ifndef SINEW_RENDER_PLAN_H
 #define SINEW_RENDER_PLAN_H
 
+#include "base/frames.h"
 #include "base/numbered.h"
 #include "base/opt.h"
 #include "render/picture.h"
 
 enum { RENDER_PNG, RENDER_PPM };
-enum { RENDER_LAST, RENDER_ALL, RENDER_REST, RENDER_ONE };
 
 typedef struct render_options {
     opt_common common;
@@ -23,8 +23,8 @@ typedef struct render_options {
 
 typedef struct render_plan {
     picture_spec spec;
-    int frames;    /* RENDER_LAST, … */
-    int64_t index; /* of RENDER_ONE */
+    frames_which frames;
+    int64_t index; /* of FRAMES_ONE */
     bool frame_given;
     bool files;       /* a file a frame: `names` */
     bool ranged_bare; /* --range has no unit: SI of whatever is coloured */

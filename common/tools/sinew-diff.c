@@ -1,6 +1,8 @@
 /* sinew-diff: where two models differ. Streaming: two bodies and one frame of each are in memory at a time. */
 #include "base/num.h"
+#include "base/spelling.h"
 #include "base/tool.h"
+#include "model/known.h"
 #include "model/source.h"
 
 #include <inttypes.h>
@@ -35,9 +37,9 @@ enum { SAME = 0, DIFFERENT = 1, TROUBLE = 2, RULES = 64 };
 /* "ARRAY=NUMBER" or "NUMBER" (name "": every array of floats; those that are lengths, where it has a unit), or a name
  * of --only. */
 typedef struct rule {
-    char name[MODEL_NAME];
-    num_length value; /* unit 0: in the array's */
-    bool seen;        /* an array of this name was met */
+    char name[MODEL_NAME], british[MODEL_NAME]; /* in our spelling, where that is an array's; else "" */
+    num_length value;                           /* unit 0: in the array's */
+    bool seen;                                  /* an array of this name was met */
 } rule;
 
 typedef struct rules {
@@ -67,6 +69,8 @@ static int add_rule(rules *r, const char *name, size_t length, num_length value,
     rule *new = &r->v[r->count++];
     *new = (rule){.value = value};
     snprintf(new->name, sizeof new->name, "%.*s", (int)length, name);
+    if (!spelling_british(name, length, new->british, sizeof new->british) || !known_find(new->british))
+        new->british[0] = 0;
     return 0;
 }
 
@@ -105,7 +109,7 @@ static const rule *rule_for(rules *r, const model_array *a)
 {
     const rule *general = NULL;
     for (int i = r->count; i-- > 0;) {
-        if (!strcmp(r->v[i].name, a->name)) {
+        if (!strcmp(r->v[i].name, a->name) || !strcmp(r->v[i].british, a->name)) {
             r->v[i].seen = true;
             return &r->v[i];
         }

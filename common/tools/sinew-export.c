@@ -1,4 +1,5 @@
 /* sinew-export: a model in the formats of other programs (VTU, Abaqus input, Gmsh, OBJ), or in either of its own. */
+#include "base/frames.h"
 #include "base/mem.h"
 #include "base/num.h"
 #include "base/outs.h"
@@ -17,7 +18,6 @@
 #include <string.h>
 
 enum { MODEL, VTU, INP, OBJ, MSH };
-enum { REST, LAST, ALL, ONE };
 
 struct options {
     opt_common common;
@@ -30,7 +30,7 @@ struct options {
 static const opt option_list[] = {
     {'f', "format", "model|vtu|inp|obj|msh", OPT_CHOICE, offsetof(struct options, format), 0, 0,
      "model|vtu|inp|obj|msh", OPT_REQUIRED, "the format; model: Sinew's own"},
-    {0, "frame", "N|last|all|rest", OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
+    {0, "frame", FRAMES_ARG, OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0,
      "vtu, obj, msh: which frame [last, if any]"},
     {0, "deformed", NULL, OPT_FLAG, offsetof(struct options, deformed), 0, 0, NULL, 0,
      "vtu, obj: points as the frame moved them"},
@@ -63,25 +63,22 @@ static const opt_tool table = {
 typedef struct job {
     const struct options *o;
     const tool *t;
-    int which;     /* REST, LAST, ALL or ONE */
-    int64_t index; /* of ONE; in the end, of the frame chosen */
+    frames_which which;
+    int64_t index; /* of FRAMES_ONE; in the end, of the frame chosen */
     bool frame_given, chosen;
     num_unit unit;
     source s;
     export_shape x;
     notes warnings;
-    char *stem; /* of the files of ALL: NAME of NAME.pvd */
-    outs files; /* of ALL */
+    char *stem; /* of the files of FRAMES_ALL: NAME of NAME.pvd */
+    outs files; /* of FRAMES_ALL */
 } job;
 
 static int read_frame_option(job *j, err *e)
 {
     const char *f = j->o->frame;
     j->frame_given = f != NULL;
-    j->which = !f || !strcmp(f, "last") ? LAST : !strcmp(f, "all") ? ALL : !strcmp(f, "rest") ? REST : ONE;
-    if (j->which != ONE || !num_int(f, INT64_MIN, INT64_MAX, &j->index))
-        return 0;
-    return err_usage(e, "--frame '%s': expected a frame's index, last, all or rest", f);
+    return frames_asked(f ? f : "last", &j->which, &j->index, e);
 }
 
 /* An option that says nothing to this format is a slip, not to be passed over. */
@@ -109,9 +106,9 @@ static int check_options(job *j, err *e)
         return err_usage(e, "--unit '%s': expected " NUM_UNITS, o->unit);
     if (read_frame_option(j, e))
         return -1;
-    if (j->which == REST && o->deformed)
-        return err_usage(e, "--deformed wants a frame; --frame rest has none");
-    if (j->which == ALL && o->format != VTU && o->format != MSH)
+    if (j->which == FRAMES_REST && o->deformed)
+        return err_usage(e, "--deformed wants a frame; --frame %s has none", o->frame);
+    if (j->which == FRAMES_ALL && o->format != VTU && o->format != MSH)
         return err_usage(e, "--frame all is for vtu and msh; sinew deform --frame all writes an OBJ a frame");
     return 0;
 }
@@ -215,16 +212,16 @@ static int choose_frame(job *j, frame *kept, const frame **chosen, err *e)
     int got;
     *chosen = NULL;
     while ((got = source_next(&j->s, e)) > 0)
-        if (j->which == ONE && !*chosen && j->s.frame.index == j->index) {
+        if (j->which == FRAMES_ONE && !*chosen && j->s.frame.index == j->index) {
             *kept = j->s.frame;
             j->s.frame = (frame){.index = kept->index};
             *chosen = kept;
         }
     if (got < 0)
         return -1;
-    if (j->which == LAST && j->s.frames)
+    if (j->which == FRAMES_LAST && j->s.frames)
         *chosen = &j->s.frame;
-    if (!*chosen && (j->which == ONE || (j->which == LAST && j->frame_given)))
+    if (!*chosen && (j->which == FRAMES_ONE || (j->which == FRAMES_LAST && j->frame_given)))
         return source_no_frame(&j->s, j->o->frame, e);
     if (!*chosen && j->o->deformed)
         return err_set(e, source_name(&j->s), 0,
@@ -270,7 +267,7 @@ static int work(job *j, out *to, err *e)
         return -1;
     if (j->o->format != INP && export_shape_of(&j->x, &j->s.body, j->o->surface, e))
         return -1;
-    if (j->which == ALL)
+    if (j->which == FRAMES_ALL)
         return j->o->format == MSH ? put_all_data(j, to, e) : put_all_frames(j, to, e);
     int bad = choose_frame(j, &kept, &chosen, e);
     if (!bad && j->o->format != INP)
@@ -290,7 +287,7 @@ static void say(const job *j, const tool *t)
     else if (j->o->format == INP)
         tool_detail(t, "%" PRId64 " nodes and %" PRId64 " elements at rest", model_count(&j->s.body, "node"),
                     model_count(&j->s.body, "element"));
-    else if (j->which == ALL)
+    else if (j->which == FRAMES_ALL)
         tool_detail(t, "%" PRId64 " points and %" PRId64 " cells in each of %" PRId64 " frames", j->x.points,
                     j->x.cells, j->s.frames);
     else if (j->chosen)
@@ -306,8 +303,8 @@ static void put_file(job *j, const char *path, err *e)
     const opt_common *c = &j->o->common;
     if (source_open_part(&j->s, path, j->o->salvage, e))
         return;
-    out *to =
-        j->which == ALL && j->o->format == VTU ? outs_open(&j->files, c->output, e) : out_open(c->output, c->gzip, e);
+    out *to = j->which == FRAMES_ALL && j->o->format == VTU ? outs_open(&j->files, c->output, e)
+                                                            : out_open(c->output, c->gzip, e);
     if (!to)
         return;
     if (work(j, to, e)) {
@@ -328,7 +325,7 @@ static int run_tool(int argc, char **argv)
 
     if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (check_options(&j, &e) || (j.which == ALL && o.format == VTU && read_stem(&j, &e)))
+    if (check_options(&j, &e) || (j.which == FRAMES_ALL && o.format == VTU && read_stem(&j, &e)))
         goto out;
     if (o.format == MODEL)
         export_model(&j.s, t.operands ? argv[1] : NULL, o.salvage, &copy, &t, &e);

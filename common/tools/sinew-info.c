@@ -6,6 +6,7 @@
 #include "model/source.h"
 #include "tools/info_json.h"
 #include "tools/info_key.h"
+#include "tools/info_names.h"
 #include "tools/info_quality.h"
 #include "tools/info_series.h"
 #include "tools/info_stats.h"
@@ -245,15 +246,27 @@ static int read_all(source *s, double *times, err *e)
     return got;
 }
 
+/* A value is a line, a list of names as many as there are. */
+static int put_key(const source *s, info_quality_seen *seen, const char *typed, out *to, err *e)
+{
+    char british[INFO_KEY];
+    const char *key = info_key_spelled(s, typed, british);
+    int other = info_names(s, key, to, e);
+    if (other <= 0)
+        return other;
+    if (info_key(s, seen, key, to, e))
+        return -1;
+    out_text(to, "\n");
+    return 0;
+}
+
 /* Nothing is written before all of it is known to be right. */
 static int put(const source *s, const double *times, const struct options *o, out *to, err *e)
 {
     info_quality_seen seen = {0};
-    for (int i = 0; i < o->get.count; i++) {
-        if (info_key(s, &seen, o->get.value[i], to, e))
+    for (int i = 0; i < o->get.count; i++)
+        if (put_key(s, &seen, o->get.value[i], to, e))
             return -1;
-        out_text(to, "\n");
-    }
     if (o->get.count)
         return 0;
     int64_t *elements = info_volume_counts(&s->body, e);

@@ -21,12 +21,11 @@ static const opt option_table[] = {
     {0, "up", "AXIS", OPT_TEXT, TO(up), 0, 0, NULL, 0, "x, y, z, -x... (y)"},
     {0, "front", "AXIS", OPT_TEXT, TO(front), 0, 0, NULL, 0, "the way that it looks (z; y if up is z)"},
     {0, "colour", "FIELD", OPT_TEXT, TO(colour), 0, 0, NULL, 0, "displacement strain stress material..."},
-    {0, "color", "FIELD", OPT_TEXT, TO(colour), 0, 0, NULL, OPT_HIDDEN, "colour"},
     {0, "range", "A,B", OPT_LENGTHS, TO(range), 0, 2, NULL, 0, "ends of the scale, SI or with a unit"},
     {0, "cut", "AXIS=POS", OPT_LIST, TO(cut), 0, 0, NULL, 0, "m: opens the voxels, as x=0 or +y=2cm"},
     {0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "surfaces around it, as us-slice --body"},
     {0, "slice", "FILE.pgm", OPT_TEXT, TO(slice), 0, 0, NULL, OPT_FILE, "an image of us-slice where it lies"},
-    {0, "frame", "N|last|all|rest", OPT_TEXT, TO(frame), 0, 0, NULL, 0, "all: -o f_%04d.png (default: last)"},
+    {0, "frame", FRAMES_ARG, OPT_TEXT, TO(frame), 0, 0, NULL, 0, "all: -o f_%04d.png (default: last)"},
     {0, "sheet", "PANEL,...", OPT_LIST, TO(sheet), 0, 0, NULL, 0, "rest voxels deformed, VIEW, rest@VIEW"},
     {0, "size", "WxH", OPT_TEXT, TO(size), 0, 0, NULL, 0, "pixels (1280x720)"},
     {0, "transparent", NULL, OPT_FLAG, TO(transparent), 0, 0, NULL, 0, "no background"},
@@ -151,26 +150,27 @@ static int no_frame(const job *j, int64_t first, err *e)
 static int draw_frames(job *j, err *e)
 {
     int64_t first = 0;
-    int got, which = j->plan.frames;
+    int got;
+    const frames_which which = j->plan.frames;
     bool found = false;
     progress bar = {0};
-    progress_start(&bar, "sinew-render", "frames", 0, j->o->common.quiet || which != RENDER_ALL);
+    progress_start(&bar, "sinew-render", "frames", 0, j->o->common.quiet || which != FRAMES_ALL);
     while ((got = source_next(&j->s, e)) > 0) {
-        bool one = which == RENDER_ONE && !found && j->s.frame.index == j->plan.index;
+        bool one = which == FRAMES_ONE && !found && j->s.frame.index == j->plan.index;
         first = j->s.frames == 1 ? j->s.frame.index : first;
         found |= one;
-        if ((one || which == RENDER_ALL) && draw(j, &j->s.frame, e))
+        if ((one || which == FRAMES_ALL) && draw(j, &j->s.frame, e))
             break;
         progress_at(&bar, (double)j->s.frames);
     }
     progress_stop(&bar);
     if (got || e->status)
         return -1;
-    if ((which == RENDER_ONE && !found) ||
-        (!j->s.frames && (which == RENDER_ALL || (which == RENDER_LAST && j->plan.frame_given))))
+    if ((which == FRAMES_ONE && !found) ||
+        (!j->s.frames && (which == FRAMES_ALL || (which == FRAMES_LAST && j->plan.frame_given))))
         return no_frame(j, first, e);
-    if (which == RENDER_REST || which == RENDER_LAST)
-        return draw(j, which == RENDER_LAST && j->s.frames ? &j->s.frame : NULL, e);
+    if (which == FRAMES_REST || which == FRAMES_LAST)
+        return draw(j, which == FRAMES_LAST && j->s.frames ? &j->s.frame : NULL, e);
     return 0;
 }
 

@@ -2,7 +2,7 @@
  * generic names (info, diff) stay off the PATH and `sinew bind` is never the shell's builtin.
  */
 #include "base/near.h"
-#include "base/num.h"
+#include "base/spelling.h"
 #include "base/tool.h"
 
 #include <errno.h>
@@ -56,6 +56,15 @@ static void put_mdoc(out *o)
     out_text(o, ".Nm sinew\n.Ar TOOL\n.Op Ar ARGUMENTS\n.Nm sinew\n.Fl h | V\n");
 }
 
+/* A tool's name as a pattern of a shell's `case`: its American spelling is taken, too. */
+static void put_pattern(const char *name, out *o)
+{
+    const char *american = spelling_american(name);
+    out_text(o, name);
+    if (american)
+        out_format(o, "|%s", american);
+}
+
 /* The tool's own completion does the rest: its table tells it, so that `sinew bind` has one though bash's bind has not. */
 static void put_bash(out *o)
 {
@@ -69,8 +78,11 @@ static void put_bash(out *o)
                 "        return\n"
                 "    fi\n"
                 "    case $tool in\n");
-    for (int i = 0; i < TOOLS; i++)
-        out_format(o, "    %s) name=%s ;;\n", tools[i].name, tools[i].file);
+    for (int i = 0; i < TOOLS; i++) {
+        out_text(o, "    ");
+        put_pattern(tools[i].name, o);
+        out_format(o, ") name=%s ;;\n", tools[i].file);
+    }
     out_text(o, "    *) return ;;\n"
                 "    esac\n"
                 "    name=_sinew_complete_${name//-/_}\n"
@@ -156,8 +168,18 @@ static int run(const char *file, char **argv)
     return STATUS_BAD;
 }
 
+/* The tool of that name, or -1. */
+static int find(const char *name)
+{
+    for (int i = 0; i < TOOLS; i++)
+        if (!strcmp(name, tools[i].name) || !strcmp(name, tools[i].file))
+            return i;
+    return -1;
+}
+
 int main(int argc, char **argv)
 {
+    char british[32];
     if (argc < 2) {
         fputs("usage: sinew TOOL [ARGUMENTS]; see sinew --help\n", stderr);
         return STATUS_USAGE;
@@ -168,8 +190,8 @@ int main(int argc, char **argv)
         return answer(put_version);
     if (!strcmp(argv[1], "--table") && argc == 3)
         return table(argv[2]);
-    for (int i = 0; i < TOOLS; i++)
-        if (!strcmp(argv[1], tools[i].name) || !strcmp(argv[1], tools[i].file))
-            return run(tools[i].file, argv + 1);
-    return unknown(argv[1]);
+    int found = find(argv[1]);
+    if (found < 0 && spelling_british(argv[1], strlen(argv[1]), british, sizeof british))
+        found = find(british);
+    return found < 0 ? unknown(argv[1]) : run(tools[found].file, argv + 1);
 }

@@ -10,6 +10,7 @@ for tool in $tools sinew; do
     # As installed: bash's own bind has none.
     [ "$tool" = bind ] || "$tool" --table bash >"$T/bash/$tool"
 done
+ln -s voxelise "$T/bash/voxelize"
 for file in face.obj face.txt head.obj.gz 'two words.obj' a.nrrd b.mhd; do
     : >"$T/here/$file"
 done
@@ -23,8 +24,9 @@ tled-run --probe |convex: curved: linear: sphere:
 tled-run --dt |
 tled-run --script f|face.obj face.txt
 sinew export -f |inp model msh obj vtu
-sinew-export --frame |all last rest
+sinew-export --frame |all last rest undeformed
 sinew-deform --format=p|pc2
+voxelize --unit |cm in m mm um
 voxelise --unit |cm in m mm um
 voxelise f|face.obj
 voxelise -n 3 h|head.obj.gz

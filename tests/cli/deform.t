@@ -200,7 +200,7 @@ for pattern in f.obj f_%s.obj f_%d_%d.obj f_%d%%.obj; do
     fails 2 "--frame all, -o $pattern" "expected one number" \
         sinew deform --frame all "$T/skin.obj" -o "$T/$pattern" <"$T/bound"
 done
-fails 2 "--frame first" "expected a frame's index, last or all" sinew deform --frame first "$T/skin.obj" <"$T/bound"
+fails 2 "--frame first" "expected a frame's index, last, all, rest or undeformed" sinew deform --frame first "$T/skin.obj" <"$T/bound"
 fails 2 "--within below 0" "expected 0 or more" sinew deform --within -1mm "$T/skin.obj" <"$T/bound"
 fails 2 "--within of no length" "within" sinew deform --within far "$T/skin.obj" <"$T/bound"
 fails 2 "no OBJ" "missing operand" sinew deform <"$T/bound"

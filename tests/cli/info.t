@@ -44,6 +44,24 @@ is "$(get muscle.centre)" "0 0.05 0.05" "an array of one row needs nothing more"
 is "$(get x-word.row.1)" "two words" "a string by its row"
 is "$(sinew info --get frames --get axis.element "$small" | tr '\n' ' ')" "2 2 " "several keys, in order; a file as operand"
 
+# Lists of names, one a line.
+lines() {
+    sinew info --get "$1" "$2" | tr '\n' '|'
+}
+is "$(lines volume.name "$small")" "skin|muscle_a|" "names of volumes"
+is "$(lines material.name "$small")$(lines muscle.name "$small")$(lines surface.name "$small")" "tissue|Tissue|muscle_a|s|" "of materials, muscles, surfaces"
+is "$(lines array.name "$small" | tr '|' '\n' | sort | tr '\n' ' ')" "$(sed -n 's/^array \([^ ]*\).*/\1/p' "$small" | sort -u | tr '\n' ' ')" \
+    "of arrays, those of frames too"
+printf '%%sinew 1 text\naxis anchor 4\narray anchor.name str 1 anchor 1\n"two\\nlines"\n"tab\\t, \\x1b[31m"\n"a\\\\x2cb"\n"caf\303\251"\nend\n' >"$T/names"
+is "$(lines anchor.name "$T/names")" "two\\x0alines|tab\\x09, \\x1b[31m|a\\x2cb|$(printf 'caf\303\251')|" "bytes that are no text of a line as \\xHH"
+is "$(sinew info --get anchor.name.row.3 "$T/names")" "$(printf 'caf\303\251')" "one of them"
+printf '%%sinew 1 text\naxis anchor 0\narray anchor.name str 1 anchor 1\naxis x-a 2\narray x-a.b str 1 x-a 2\n"a" "b"\n"c" "d"\nend\n' >"$T/none"
+is "$(sinew info --get anchor.name --get axis.anchor --get surface.name "$T/none" | tr '\n' '|')" "0|" "a list of none is no line"
+is "$(lines x-a.b "$T/none" | tr '\t' ' ')" "a b|c d|" "columns between tabs"
+fails 1 "a model without muscles" "no key 'muscle.name': the model has no muscle.volume; it comes from attach" sinew info --get muscle.name "$T/none"
+fails 1 "without that array" "no key 'anchor.name': the model has no anchor.name; it comes from attach" sinew info --get anchor.name tests/golden/v1/tet.text
+fails 1 "a slip in one" "no key 'muscle.nam'; did you mean 'muscle.name'" sinew info --get muscle.nam "$small"
+
 # The summary.
 check "the summary, by -o" sinew info -o "$T/summary" "$small"
 for line in "text encoding" "node.displacement .*norm 0 to 0.05" "skin: 1 element, level 0, priority 0, material tissue" \

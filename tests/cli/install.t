@@ -14,7 +14,7 @@ make_here() {
 }
 
 check "make install" make_here install
-is "$(cd "$root/usr/bin" && echo *)" "$(for tool in $tools; do echo "$tool"; done | LC_ALL=C sort | tr '\n' ' ' | sed 's/ $//')" \
+is "$(cd "$root/usr/bin" && echo *)" "$(for tool in $tools voxelize; do echo "$tool"; done | LC_ALL=C sort | tr '\n' ' ' | sed 's/ $//')" \
     "usr/bin has the tools and nothing else"
 is "$(find "$root" -type f ! -path '*/bin/*' ! -perm 644)" "" "what is not a tool is 644"
 for tool in $tools; do
@@ -40,13 +40,17 @@ fails 1 "a tool that is not there" "cannot run .*usr/bin/sinew-info: No such fil
 fails 2 "a tool that is none" "no tool 'inof'; did you mean 'info'\?" sinew inof
 fails 2 "no tool" "^usage: sinew TOOL" sinew
 
+# The American spelling of a name is a link.
+is "$(readlink "$root/usr/bin/voxelize") $(readlink "$root/usr/share/man/man1/voxelize.1") $("$root/usr/bin/voxelize" -V | sed 's/ (.*//')" \
+    "voxelise voxelise.1 voxelise" "voxelize runs voxelise, and has its page"
+
 # What completion offers: completion.t.
 for tool in $tools; do
-    check "$tool: zsh's completion" grep -q "^#compdef $tool$" "$root/usr/share/zsh/site-functions/_$tool"
-    [ "$tool" = bind ] || check "$tool: bash's" grep -q "^complete .* $tool$" "$root/usr/share/bash-completion/completions/$tool"
+    check "$tool: zsh's completion" grep -q "^#compdef $tool\( voxelize\)*$" "$root/usr/share/zsh/site-functions/_$tool"
+    [ "$tool" = bind ] || check "$tool: bash's" grep -q "^complete .* $tool\( voxelize\)*$" "$root/usr/share/bash-completion/completions/$tool"
 done
 check "no completion for the shell's bind" test ! -e "$root/usr/share/bash-completion/completions/bind"
 
 check "make uninstall" make_here uninstall
-is "$(find "$root" -type f)" "" "and nothing is left"
+is "$(find "$root" ! -type d)" "" "and nothing is left"
 done_testing

@@ -80,7 +80,7 @@ for key in element place; do
     fails 1 "quality.$key of 0 elements" "quality.$key': the model has no elements\$" sinew info --get quality.$key "$T/flat"
 done
 fails 1 "no elements" "quality.folded': the model has no elements; they come from voxelise" sinew info --get quality.folded tests/golden/v1/empty.text
-fails 1 "a slip" "did you mean 'quality.j.centre'" sinew info --get quality.j.center "$T/rest"
+fails 1 "a slip" "did you mean 'quality.j.centre'" sinew info --get quality.j.centr "$T/rest"
 fails 1 "no such key" "expected one of these: quality.j.centre, quality.j.corner, quality.folded, quality.element, quality.place, quality.hourglass" \
     sinew info --get quality.x "$T/rest"
 

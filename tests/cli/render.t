@@ -119,7 +119,7 @@ r 1 '--clear probe: nothing that is drawn' --show voxels --clear probe
 r 2 "unknown field 'displacment'; did you mean 'displacement'\?.*stress" --colour displacment
 r 1 'at rest there are none' --colour strain --frame rest
 r 1 'frames 1 to|frames 0 to' --frame 99
-r 2 'index, last, all or rest' --frame first
+r 2 'index, last, all, rest or undeformed' --frame first
 r 2 "unknown panel 'rst'; did you mean 'rest'\?.*deformed" --sheet rst
 r 2 'AXIS=POSITION' --cut w=0
 r 1 'to leave some' --show voxels --cut +x=-1

@@ -1,0 +1,84 @@
+#include "tools/info_names.h"
+
+#include "base/chars.h"
+#include "base/mem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int put_text(const char *text, out *to, err *e)
+{
+    const size_t n = strlen(text);
+    char *shown = mem_array(4 * (int64_t)n + 1, 1, "a name", e);
+    if (!shown)
+        return -1;
+    chars_show(text, n, shown);
+    out_text(to, shown);
+    free(shown);
+    return 0;
+}
+
+static int put_name(const char *name, out *to, err *e)
+{
+    if (put_text(name, to, e))
+        return -1;
+    out_text(to, "\n");
+    return 0;
+}
+
+/* A row a line, columns between tabs. */
+static int put_strings(const model_array *a, out *to, err *e)
+{
+    const int64_t values = a->rows * a->columns;
+    for (int64_t i = 0; i < values; i++) {
+        if (put_text(a->str[i], to, e))
+            return -1;
+        out_text(to, (i + 1) % a->columns ? "\t" : "\n");
+    }
+    return 0;
+}
+
+static int put_muscles(const model *m, out *to, err *e)
+{
+    const model_array *volume = model_find(m, "muscle.volume"), *name = model_find(m, "volume.name");
+    if (!volume || !name)
+        return 1;
+    for (int64_t i = 0; i < volume->rows; i++)
+        if (put_name(name->str[volume->i32[i]], to, e))
+            return -1;
+    return 0;
+}
+
+static int put_surfaces(const model *m, out *to, err *e)
+{
+    char name[MODEL_NAME];
+    for (int at = 0; model_surface(m, &at, name, sizeof name);)
+        if (put_name(name, to, e))
+            return -1;
+    return 0;
+}
+
+/* Those of the body, then those of frames. */
+static int put_arrays(const source *s, out *to, err *e)
+{
+    const model_arrays *const lists[] = {&s->body.arrays, s->frames ? &s->frame.arrays : NULL};
+    for (int l = 0; l < 2 && lists[l]; l++)
+        for (int i = 0; i < lists[l]->count; i++)
+            if (put_name(lists[l]->v[i].name, to, e))
+                return -1;
+    return 0;
+}
+
+int info_names(const source *s, const char *key, out *to, err *e)
+{
+    const model_array *a = source_find(s, key);
+    if (a)
+        return a->type == MODEL_STR ? put_strings(a, to, e) : 1;
+    if (!strcmp(key, INFO_NAMES_MUSCLES))
+        return put_muscles(&s->body, to, e);
+    if (!strcmp(key, "surface.name"))
+        return put_surfaces(&s->body, to, e);
+    if (!strcmp(key, "array.name"))
+        return put_arrays(s, to, e);
+    return 1;
+}
