@@ -26,7 +26,7 @@ done
 # coarser FILE: for a test's patience, and where a number is of other data than ours.
 coarser() {
     sed -E 's/-s 2\.5 /-s 10 /; s/-s 2,2,0\.5 /-s 6,6,1.5 /; s/-n 128 /-n 24 /; s/-t (0\.5|1|2)( |$)/-t 0.03\2/; s/--every 0\.0[0-9]/--every 0.01/
-        s/--nodes 32x16x16 --like arm/--nodes 12x10x10 --like patient/; s/--nodes 32x16x16/--nodes 9x5x7/; s/-gt 20000/-gt 500/; s/^mkfifo poses$/&; cat press.tum >poses \&/
+        s/--nodes 32x16x16 --like arm/--nodes 12x10x10 --like patient/; s/--nodes 32x16x16/--nodes 9x5x7/; s/-gt 20000/-gt 500/
         s/--crop 110,40,710,560 volume.dcm/--crop 4,4,20,20 patient/; s/--seed 12,-30,41mm/--seed 9,11,0mm/; s/--tolerance 15/--tolerance 30/
         s/awk -f (samples\/ball)/awk -v n=4 -f \1/; s/gmsh -3/gmsh -v 1 -3/
         s/^vi /sed -n 1p /; s/^less /sed -n 1p /; s/(sinew render .*)--(up|view)/\1--size 300x200 --\2/; s/ffmpeg -f/ffmpeg -v error -y -f/' "$1"
