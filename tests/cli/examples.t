@@ -1,6 +1,6 @@
 #!/bin/sh
 # The EXAMPLES of every page of section 1, run as they stand there, on small files of the names that they use: coarser and shorter, with
-# our own shapes for a patient's; and what they call scripts, read as such. Listed at the end of this file: what is not run, and why.
+# our own shapes for a patient's. Listed at the end of this file: what is not run, and why.
 . "$(dirname "$0")/lib.sh"
 
 # ---- The examples: a file each, as a reader sees them. Where commands stand behind a $, other lines are what they print.
@@ -58,8 +58,6 @@ cp press.tum sweep.tum
     tled-run -q -c zyg=0.4 -t 0.03 <face.sinew >smile.sinew
     cp face.sinew old.sinew
     cp face.sinew new.sinew
-    sed 's/^g skull$/g skull_jaw/' face.obj | voxelise -q --unit mm -s 10 - | attach -q >jaw.sinew
-    awk -v nx=4 -v ny=4 -v nz=4 -v h=0.005 -v held=none -f "$ROOT/tests/cli/block.awk" >stretch.sinew
     voxelise -q --unit mm -s 5 "$ROOT/tests/cli/cube.obj" | attach -q --rigid '*' >cube.sinew
     msds-mesh -q --nodes 9x5x7 --like map.nrrd >arm.sinew
     ln -s "$ROOT/samples" samples
@@ -85,17 +83,6 @@ for example in "$T"/examples/*; do
     rm -rf "${T:?}/here"
     cp -R "$T/all" "$T/here"
     cd "$T/here" || exit 1
-    case $(head -n 1 "$T/commands") in
-    # Lines of a script of tled-run: a jaw's, with its columns named; and the stretch of a cube.
-    '# time '*)
-        check "$title" tled-run -q --script "$T/commands" -t 0.03 -o out.sinew <"$T/all/jaw.sinew"
-        continue
-        ;;
-    '0    displace'*)
-        check "$title" tled-run -q --script "$T/commands" -t 0.03 -o out.sinew <"$T/all/stretch.sinew"
-        continue
-        ;;
-    esac
     if grep -q 'ffmpeg' "$T/commands" && ! have ffmpeg; then
         skip 1 "$name: no ffmpeg"
     elif grep -q '^gmsh' "$T/commands" && ! have gmsh; then
