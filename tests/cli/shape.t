@@ -5,7 +5,7 @@
 
 tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew-deform sinew-info sinew-diff sinew-export sinew-import sinew-render"
 # A tool that is new is told of here.
-is "$(for tool in $tools sinew; do echo "$tool"; done | LC_ALL=C sort | tr '\n' ' ')" "$(cd "$SINEW_BIN" && echo * | tr '\n' ' ')" "these are all tools"
+is "$(for tool in $tools sinew voxelize; do echo "$tool"; done | LC_ALL=C sort | tr '\n' ' ')" "$(cd "$SINEW_BIN" && echo * | tr '\n' ' ')" "these are all tools"
 
 # ---- Breaches, one a check, in a tree of their own.
 mkdir -p "$T/tree/common/base" "$T/tree/common/model" "$T/tree/voxelise" "$T/tree/attach" "$T/tree/bind" "$T/tree/tled" "$T/tree/msds" \
