@@ -3,6 +3,7 @@
  */
 #include "anchor.h"
 #include "base/tool.h"
+#include "held_report.h"
 #include "mesh/surface.h"
 #include "model/finite.h"
 #include "model/stage.h"
@@ -78,91 +79,6 @@ static int collect(const struct options *o, const model *m, model *file, rigid *
     return 0;
 }
 
-/* The last primitive after which the run that begins at i ends: faces that follow one another and hold no node. */
-static int64_t run_end(const rigid *r, int64_t i)
-{
-    const rigid_primitive *p = r->primitive;
-    while (i + 1 < r->primitives && p[i + 1].idle && p[i + 1].surface == p[i].surface && p[i + 1].of == p[i].of &&
-           p[i + 1].face == p[i].face + 1)
-        i++;
-    return i;
-}
-
-/* One line: from i on, the faces of one surface that hold no node, a few runs of them. Returns where the next line begins. */
-static int64_t report_run(const tool *t, const rigid *r, int64_t which, int64_t i)
-{
-    enum { FEW = 20 };
-    char text[FEW * 44] = "";
-    int n = 0;
-    const rigid_primitive *first = &r->primitive[i], *p = first;
-    for (int runs = 0; i < r->primitives && runs < FEW && p->surface == which && p->of == first->of; runs += p->idle) {
-        int64_t last = p->idle ? run_end(r, i) : i;
-        if (p->idle)
-            n += snprintf(text + n, sizeof text - (size_t)n, "%s%lld", n ? ", " : "", (long long)p->face + 1);
-        if (last > i)
-            n += snprintf(text + n, sizeof text - (size_t)n, "-%lld", (long long)r->primitive[last].face + 1);
-        i = last + 1;
-        p = i < r->primitives ? &r->primitive[i] : p;
-    }
-    if (n)
-        tool_say(t, "%s: no node is held by faces of %s: %s", r->surface[which].name, first->of, text);
-    return i;
-}
-
-/* The first line, and with -v however many there are. */
-static void report_idle(const tool *t, const rigid *r, int64_t which)
-{
-    int64_t i = 0, left = 0;
-    while (i < r->primitives && (r->primitive[i].surface != which || !r->primitive[i].idle))
-        i++;
-    for (bool more = true; more && i < r->primitives && r->primitive[i].surface == which; more = t->common->verbose)
-        i = report_run(t, r, which, i);
-    for (; i < r->primitives && r->primitive[i].surface == which; i++)
-        left += r->primitive[i].idle;
-    if (left)
-        tool_say(t, "%s: nor by %lld more; -v lists them", r->surface[which].name, (long long)left);
-}
-
-static void report_surfaces(const tool *t, const rigid *r)
-{
-    for (int64_t i = 0; i < r->surfaces; i++) {
-        const rigid_surface *s = &r->surface[i];
-        tool_say(t, "%s holds %lld nodes; %lld of its %lld primitives hold none", s->name, (long long)s->nodes,
-                 (long long)s->idle, (long long)s->primitives);
-        if (s->idle < s->primitives)
-            report_idle(t, r, i);
-    }
-}
-
-static void report_attachments(const tool *t, const muscles *list, int64_t which, const rigid *r)
-{
-    int64_t number = 0, all = 0;
-    for (int64_t i = 0; i < list->attached.count; i++)
-        all += list->attached.of[i].muscle == which;
-    for (int64_t i = 0; all > 1 && i < list->attached.count; i++) {
-        const attachment *a = &list->attached.of[i];
-        if (a->muscle == which)
-            tool_say(t, "%s, attachment %lld of %lld: %lld rigid nodes, %s, centre %.6g %.6g %.6g m",
-                     list->of[which].name, (long long)++number, (long long)all, (long long)a->nodes,
-                     a->anchor < 0 ? "no anchor" : r->surface[a->anchor].name, a->centre[0], a->centre[1],
-                     a->centre[2]);
-    }
-}
-
-static void report_muscles(const tool *t, const muscles *list, const rigid *r)
-{
-    for (int64_t i = 0; i < list->count; i++) {
-        const muscle *m = &list->of[i];
-        char centre[100] = "no contraction centre";
-        if (m->rigid_nodes)
-            snprintf(centre, sizeof centre, "contraction centre %.6g %.6g %.6g m", m->centre[0], m->centre[1],
-                     m->centre[2]);
-        tool_say(t, "%s: %lld elements, %lld rigid nodes, %s", m->name, (long long)m->elements,
-                 (long long)m->rigid_nodes, centre);
-        report_attachments(t, list, i, r);
-    }
-}
-
 /* Whether all that was rigid was too far from the voxels. */
 static void check_held(const rigid *r, notes *warnings)
 {
@@ -185,11 +101,7 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
         muscle_make(m, (muscle_fibre)o->fibre, threads, &list, warnings, e))
         goto out;
     check_held(&r, warnings);
-    if (o->report) {
-        report_surfaces(t, &r);
-        report_muscles(t, &list, &r);
-    }
-    rc = 0;
+    rc = o->report && (held_report_surfaces(t, &r, e) || held_report_muscles(t, &list, &r, e)) ? -1 : 0;
 out:
     muscles_free(&list);
     pool_destroy(threads);

@@ -1,5 +1,6 @@
 #include "muscle.h"
 
+#include "base/listing.h"
 #include "base/mem.h"
 #include "fibre_field.h"
 #include "mesh/lattice.h"
@@ -137,8 +138,11 @@ static void find_axis(const body *b, muscle *m)
             m->axis[a] = -m->axis[a];
 }
 
-/* The fibre of one element; false where it can have none. */
-static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t element)
+/* What an element has its fibre by: the rule that was asked for, the axis in its stead, or nothing. */
+typedef enum rule { BY_RULE, BY_AXIS, BY_NONE } rule;
+
+/* Sets the fibre of one element. */
+static rule set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t element)
 {
     double line[3], length = 0, centre[3];
     body_centre(b, element, centre);
@@ -148,14 +152,16 @@ static bool set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t
     }
     length = sqrt(length);
     if (kind == MUSCLE_CENTRE && !m->rigid_nodes)
-        return false;
+        return BY_NONE;
     float *fibre = body_fibre(b, element, m->volume);
     if (kind == MUSCLE_FIELD && (fibre[0] != 0 || fibre[1] != 0 || fibre[2] != 0))
-        return true;
+        return BY_RULE;
     bool along_axis = kind != MUSCLE_CENTRE || length <= 1e-9 * element_size(b, element);
     for (int a = 0; a < 3; a++)
         fibre[a] = (float)(along_axis ? m->axis[a] : line[a] / length);
-    return !along_axis || m->axis[0] != 0 || m->axis[1] != 0 || m->axis[2] != 0;
+    if (along_axis && m->axis[0] == 0 && m->axis[1] == 0 && m->axis[2] == 0)
+        return BY_NONE;
+    return along_axis && kind != MUSCLE_AXIS ? BY_AXIS : BY_RULE;
 }
 
 static bool can_move(const body *b, int64_t element)
@@ -166,38 +172,95 @@ static bool can_move(const body *b, int64_t element)
     return false;
 }
 
-/* What of a muscle will not contract: elements `without` a fibre, and those that are `still`, with rigid nodes
- * alone. */
-static void warn_of(const muscle *m, muscle_fibre kind, int64_t without, int64_t still, notes *warnings)
+/* What of a muscle will not contract, and why. */
+typedef enum lack { NOTHING, NO_ELEMENT, NO_FREE_NODE, NO_RIGID_NODE, NO_AXIS, LACKS } lack;
+
+static lack lack_of(const muscle *m, muscle_fibre kind)
 {
     if (!m->elements)
+        return NO_ELEMENT;
+    if (m->still == m->elements)
+        return NO_FREE_NODE;
+    if (!m->rigid_nodes && kind == MUSCLE_CENTRE)
+        return NO_RIGID_NODE;
+    return m->without ? NO_AXIS : NOTHING;
+}
+
+/* One muscle: its own sentence. */
+static void warn_of_one(const muscle *m, muscle_fibre kind, notes *warnings)
+{
+    switch (lack_of(m, kind)) {
+    case NO_ELEMENT:
         notes_add(warnings, "%s has no elements: it will not contract; voxelise says why", m->name);
-    else if (still == m->elements)
+        break;
+    case NO_FREE_NODE:
         notes_add(warnings,
                   "%s has no node that is free: it will not contract; smaller voxels or a lower --strictness may leave "
                   "some free",
                   m->name);
-    else if (!m->rigid_nodes && kind == MUSCLE_CENTRE)
+        break;
+    case NO_RIGID_NODE:
         notes_add(warnings,
                   "%s has no rigid node, so no contraction centre and no fibres: it will not contract; --fibre field "
                   "gives it fibres all the same",
                   m->name);
-    else if (without)
+        break;
+    case NO_AXIS:
         notes_add(warnings,
                   "%s has no axis that is the longest: %lld of its %lld elements have no fibre and will not contract; "
                   "%s",
-                  m->name, (long long)without, (long long)m->elements,
+                  m->name, (long long)m->without, (long long)m->elements,
                   kind == MUSCLE_FIELD ? "smaller voxels give it a shape" : "--fibre field needs no axis");
+        break;
+    default:
+        break;
+    }
 }
 
-static void set_fibres(const body *b, const muscle *m, muscle_fibre kind, notes *warnings)
+/* Several muscles that lack the same: one sentence for all. */
+static void warn_of_many(lack what, listing *names, muscle_fibre kind, notes *warnings)
 {
-    int64_t without = 0, still = 0;
-    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
-        without += !set_fibre(b, m, kind, b->element[at]);
-        still += !can_move(b, b->element[at]);
+    static const char *const have[LACKS] = {
+        [NO_ELEMENT] = "no elements, and will not contract",
+        [NO_FREE_NODE] = "no node that is free, and will not contract",
+        [NO_RIGID_NODE] = "no rigid node, so no contraction centre and no fibres, and will not contract",
+        [NO_AXIS] = "no axis that is the longest, and elements without a fibre, which will not contract"};
+    static const char *const remedy[LACKS] = {[NO_ELEMENT] = "voxelise says why",
+                                              [NO_FREE_NODE] =
+                                                  "smaller voxels or a lower --strictness may leave some free",
+                                              [NO_RIGID_NODE] = "--fibre field gives them fibres all the same",
+                                              [NO_AXIS] = "--fibre field needs no axis"};
+    const long long count = names->count;
+    notes_add(warnings, "%lld muscles have %s: %s; %s", count, have[what], listing_text(names),
+              what == NO_AXIS && kind == MUSCLE_FIELD ? "smaller voxels give them a shape" : remedy[what]);
+}
+
+/* One line for each thing that muscles lack. */
+static void warn_of_all(const muscles *list, notes *warnings)
+{
+    for (lack what = NO_ELEMENT; what < LACKS; what++) {
+        listing names = {0};
+        const muscle *last = NULL;
+        for (int64_t i = 0; i < list->count; i++)
+            if (lack_of(&list->of[i], list->kind) == what) {
+                last = &list->of[i];
+                listing_add(&names, "%s", last->name);
+            }
+        if (names.count == 1)
+            warn_of_one(last, list->kind, warnings);
+        else if (names.count)
+            warn_of_many(what, &names, list->kind, warnings);
     }
-    warn_of(m, kind, without, still, warnings);
+}
+
+static void set_fibres(const body *b, muscle *m, muscle_fibre kind)
+{
+    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
+        const rule by = set_fibre(b, m, kind, b->element[at]);
+        m->by_axis += by == BY_AXIS;
+        m->without += by == BY_NONE;
+        m->still += !can_move(b, b->element[at]);
+    }
 }
 
 static int check_mixes(const body *b, const model_array *mix, err *e)
@@ -353,7 +416,7 @@ int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, note
 {
     body b = {0};
     int rc = -1;
-    *list = (muscles){0};
+    *list = (muscles){.kind = fibre};
     model_axis_drop(m, "muscle", warnings);
     model_axis_drop(m, "attachment", warnings);
     model_remove(m, "element.fibre");
@@ -369,7 +432,8 @@ int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, note
     if (add_arrays(m, &b, list, e) || (fibre == MUSCLE_FIELD && follow_fields(m, &b, list, threads, e)))
         goto out;
     for (int64_t i = 0; i < list->count; i++)
-        set_fibres(&b, &list->of[i], fibre, warnings);
+        set_fibres(&b, &list->of[i], fibre);
+    warn_of_all(list, warnings);
     rc = 0;
 out:
     free(b.seen);

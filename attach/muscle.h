@@ -18,6 +18,9 @@ typedef struct muscle {
     const char *name; /* borrowed from volume.name */
     int32_t volume;
     int64_t elements, rigid_nodes; /* elements: with those that it is the second volume of */
+    int64_t by_axis;               /* elements whose fibre is along the axis because the rule asked for gives none */
+    int64_t without;               /* elements without a fibre */
+    int64_t still;                 /* elements whose nodes are all rigid */
     double weight;                 /* the sum of its shares of its elements */
     double centre[3];              /* contraction centre, m; nan where it has none */
     double middle[3];              /* the mean of its elements' centres, by enclosed share */
@@ -27,6 +30,7 @@ typedef struct muscle {
 typedef struct muscles {
     muscle *of;
     int64_t count;
+    muscle_fibre kind;
     attachments attached;
 } muscles;
 
@@ -36,6 +40,13 @@ typedef struct muscles {
  * Notes the muscles that can have no centre or no fibres. Spreads are weighted by its shares. threads: for
  * MUSCLE_FIELD. The caller frees the list, on failure too. */
 int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, notes *warnings, err *e);
+
+/* Whether it has an element that has a fibre, and one that has a free node. */
+static inline bool muscle_contracts(const muscle *m)
+{
+    return m->without < m->elements && m->still < m->elements;
+}
+
 void muscles_free(muscles *list);
 
 #endif

@@ -11,6 +11,7 @@
 #include "voxelise/layers.h"
 #include "voxelise/report.h"
 #include "voxelise/solids.h"
+#include "voxelise/summary.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -309,48 +310,6 @@ static int make_model(const job *j, model *m, err *e)
 
 /* ---- say */
 
-/* What is counted of a volume: voxels by their centres, or samples. */
-static const char *counted(const job *j)
-{
-    return j->x.fraction ? "samples" : "voxels";
-}
-
-static void say_volume(const job *j, const model *m, int32_t v)
-{
-    const volumes_volume *a = &j->plan.volume[v];
-    const climb_count *n = &j->x.count[v];
-    const char *of = model_find(m, "material.name")->str[a->material];
-    tool_say(j->t, "%s%s: level %d, priority %d, material %s, surfaces %s: %lld elements", a->muscle ? "muscle " : "",
-             a->name, a->level, a->priority, of, a->surfaces, (long long)n->kept);
-    if (n->mixed)
-        tool_say(j->t, "%s: the second volume of %lld elements more", a->name, (long long)n->mixed);
-    if (n->reached > 0 && n->reached < n->inside)
-        tool_say(j->t, "%s: outside level %d, and ignored: %lld of its %lld %s", a->name, a->level - 1,
-                 (long long)(n->inside - n->reached), (long long)n->inside, counted(j));
-}
-
-/* Of a length: what is nearer to another than this is as long. */
-static const double rounding = 1e-9;
-
-static void warn_volume(job *j, int32_t v)
-{
-    const volumes_volume *a = &j->plan.volume[v];
-    const climb_count *n = &j->x.count[v];
-    const int64_t layer = layers_at(&j->layer, &j->plan, v);
-    if (layer >= 0 && layers_thickness(&j->layer, layer) < grid_longest(&j->g) * (1 - rounding))
-        report_layer(&j->warnings, &j->layer, layer, v, &j->x, &j->g, j->unit);
-    else if (n->inside == 0)
-        notes_add(&j->warnings,
-                  "%s has no voxel: no centre is inside it (it is thinner than a voxel, or off the lattice%s)", a->name,
-                  j->o->box.count ? " or the --box" : "");
-    else if (n->reached == 0)
-        notes_add(&j->warnings, "%s is ignored: none of its %lld %s is in a volume of level %d", a->name,
-                  (long long)n->inside, counted(j), a->level - 1);
-    else if (n->kept == 0 && n->mixed == 0)
-        notes_add(&j->warnings, "%s has no voxel: other volumes keep all %lld %s that it could have", a->name,
-                  (long long)n->reached, counted(j));
-}
-
 static double enclosed(const job *j)
 {
     double sum = 0;
@@ -359,7 +318,24 @@ static double enclosed(const job *j)
     return sum;
 }
 
-static void say_plan(job *j, const model *m)
+static int say_volumes(job *j, const model *m, err *e)
+{
+    const summary s = {.plan = &j->plan,
+                       .layer = &j->layer,
+                       .x = &j->x,
+                       .g = &j->g,
+                       .unit = j->unit,
+                       .material = (const char *const *)model_find(m, "material.name")->str,
+                       .samples = j->x.fraction ? j->o->fraction : 1,
+                       .boxed = j->o->box.count > 0,
+                       .verbose = j->t->common->verbose};
+    text_table *rows = summary_table(&s, e);
+    int rc = rows ? tool_table(j->t, rows, e, "%lld volumes", (long long)j->plan.volumes) : -1;
+    text_table_free(rows);
+    return rc ? -1 : summary_warn(&s, &j->warnings, e);
+}
+
+static int say_plan(job *j, const model *m, err *e)
 {
     const grid *g = &j->g;
     double d[3];
@@ -368,16 +344,15 @@ static void say_plan(job *j, const model *m)
     tool_say(j->t, "lattice of %lld x %lld x %lld cells, %g x %g x %g %s each", (long long)grid_cells(g, 0),
              (long long)grid_cells(g, 1), (long long)grid_cells(g, 2), g->spacing[0], g->spacing[1], g->spacing[2],
              num_unit_name(j->unit));
-    for (int32_t v = 0; v < j->plan.volumes; v++) {
-        say_volume(j, m, v);
-        warn_volume(j, v);
-    }
+    if (say_volumes(j, m, e))
+        return -1;
     if (j->x.fraction)
         tool_say(j->t, "enclosed: %.9g of the elements' %lld voxels", enclosed(j), (long long)j->x.elements);
     tool_say(j->t, "%lld elements, %lld nodes", (long long)model_count(m, "element"),
              (long long)model_count(m, "node"));
     if (!j->plan.rigid)
         notes_add(&j->warnings, "nothing is rigid: no surface begins skull, bone or rigid");
+    return 0;
 }
 
 /* With -v: how long each step took. */
@@ -526,8 +501,7 @@ static int work(job *j, model *m, err *e)
     if (make_model(j, m, e))
         return -1;
     say_time(j, "building the model", clock);
-    say_plan(j, m);
-    return 0;
+    return say_plan(j, m, e);
 }
 
 static int run_tool(int argc, char **argv)

@@ -1,5 +1,6 @@
 #include "base/chars.h"
 
+#include <stdint.h>
 #include <string.h>
 #include <strings.h>
 
@@ -39,6 +40,53 @@ void chars_mend(char *text)
             *p = '?';
         p += n ? n : 1;
     }
+}
+
+void chars_tame(char *text)
+{
+    for (unsigned char *p = (unsigned char *)text; *p; p++) {
+        const bool c1 = p[0] == 0xc2 && p[1] >= 0x80 && p[1] < 0xa0;
+        if (c1)
+            p[1] = '?';
+        if (c1 || p[0] < 0x20 || p[0] == 0x7f)
+            p[0] = '?';
+    }
+}
+
+/* The number of the character whose n bytes are well-formed UTF-8. */
+static uint32_t code_of(const unsigned char *p, int n)
+{
+    uint32_t code = n == 1 ? p[0] : p[0] & (0x7fu >> n);
+    for (int i = 1; i < n; i++)
+        code = code << 6 | (p[i] & 0x3fu);
+    return code;
+}
+
+/* Unicode's blocks of combining marks, and of characters that are wide or full-width. */
+static int columns_of(uint32_t code)
+{
+    static const struct {
+        uint32_t from, to;
+        int columns;
+    } block[] = {{0x300, 0x36f, 0},     {0x1100, 0x115f, 2},  {0x200b, 0x200f, 0}, {0x20d0, 0x20ff, 0},
+                 {0x2e80, 0xa4cf, 2},   {0xac00, 0xd7a3, 2},  {0xf900, 0xfaff, 2}, {0xfe00, 0xfe0f, 0},
+                 {0xfe20, 0xfe2f, 0},   {0xfe30, 0xfe6f, 2},  {0xff00, 0xff60, 2}, {0xffe0, 0xffe6, 2},
+                 {0x1f300, 0x1faff, 2}, {0x20000, 0x3fffd, 2}};
+    for (size_t i = 0; i < sizeof block / sizeof *block; i++)
+        if (code >= block[i].from && code <= block[i].to)
+            return block[i].columns;
+    return 1;
+}
+
+int chars_width(const char *text)
+{
+    int width = 0;
+    for (const unsigned char *p = (const unsigned char *)text; *p;) {
+        const int n = utf8_length(p);
+        width += n ? columns_of(code_of(p, n)) : 1;
+        p += n ? n : 1;
+    }
+    return width;
 }
 
 static int digit(char c)

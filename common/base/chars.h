@@ -17,6 +17,13 @@ bool chars_utf8(const char *text);
 /* Replaces each byte that is not part of well-formed UTF-8 by '?'. */
 void chars_mend(char *text);
 
+/* Replaces each control character by '?': C0, DEL, and both bytes of C1 in UTF-8. What is left steers no terminal. */
+void chars_tame(char *text);
+
+/* How many columns of a terminal the text takes: two for each wide character of East Asia, none for a combining accent,
+ * one for any other, and for a byte that is not part of well-formed UTF-8. */
+int chars_width(const char *text);
+
 /* Names in files of any encoding, as UTF-8: a byte that is not part of well-formed UTF-8, or is a control character,
  * stands as \xHH (two hexadecimal digits, lower case), and a backslash before an x and two such digits as \x5c; all
  * else stands as it is. So different names stay different, and each can be had back. */

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "base/tool.h"
 
+#include "base/chars.h"
 #include "base/path.h"
 #include "base/thread.h"
 
@@ -172,13 +173,6 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
     return t->provenance ? 0 : -1;
 }
 
-/* Whether a character at p steers a terminal: C0, DEL, and C1 in UTF-8 (the first of its two bytes). */
-static bool steers(const char *p)
-{
-    unsigned char c = (unsigned char)p[0], next = (unsigned char)(c ? p[1] : 0);
-    return c < 0x20 || c == 0x7f || (c == 0xc2 && next >= 0x80 && next < 0xa0);
-}
-
 /* "tool: kind: text": one line in one write, so that those of the tools in a pipe do not mix. */
 static void print(const tool *t, const char *kind, const char *text)
 {
@@ -186,11 +180,8 @@ static void print(const tool *t, const char *kind, const char *text)
     int n = snprintf(line, sizeof line, "%s: %s%s", t->table->name, kind, text);
     if (n > LINE - 2)
         n = LINE - 2;
-    for (char *p = line; *p; p++)
-        if (steers(p)) {
-            p[1] = (unsigned char)*p == 0xc2 ? '?' : p[1];
-            *p = '?';
-        }
+    line[n] = '\0';
+    chars_tame(line);
     line[n++] = '\n';
     fwrite(line, 1, (size_t)n, stderr);
 }
@@ -250,6 +241,29 @@ void tool_detail(const tool *t, const char *format, ...)
     if (t->common->verbose && !t->common->quiet)
         say(t, format, args);
     va_end(args);
+}
+
+int tool_table(const tool *t, const text_table *rows, err *e, const char *title, ...)
+{
+    char text[LINE];
+    va_list args;
+    if (t->common->quiet)
+        return 0;
+    va_start(args, title);
+    vsnprintf(text, sizeof text, title, args);
+    va_end(args);
+    chars_tame(text);
+    char *lines = text_table_lines(rows, e);
+    out *o = lines ? out_memory(e) : NULL;
+    if (o) {
+        size_t size;
+        out_format(o, "%s: %s\n%s", t->table->name, text, lines);
+        const unsigned char *bytes = out_bytes(o, &size);
+        fwrite(bytes, 1, size, stderr);
+        out_discard(o);
+    }
+    free(lines);
+    return o ? 0 : -1;
 }
 
 void tool_warn(const tool *t, notes *n)

@@ -6,6 +6,7 @@
 
 #include "base/err.h"
 #include "base/opt.h"
+#include "base/text_table.h"
 
 /* A whole tool, from the command line to the exit status: work(argc, argv). Where ulimit -s leaves the process little
  * stack, it runs on a thread that has enough. A main is this alone. */
@@ -45,6 +46,9 @@ void tool_say(const tool *t, const char *format, ...) SINEW_PRINTF(2, 3);
 
 /* The same, only with -v. */
 void tool_detail(const tool *t, const char *format, ...) SINEW_PRINTF(2, 3);
+
+/* "tool: title" and the table's lines on stderr in one write, unless -q. -1 with e filled for want of memory. */
+int tool_table(const tool *t, const text_table *rows, err *e, const char *title, ...) SINEW_PRINTF(4, 5);
 
 /* "tool: warning: text" for each note; frees them. Not silenced by -q. */
 void tool_warn(const tool *t, notes *n);

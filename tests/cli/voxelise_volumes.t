@@ -48,8 +48,14 @@ is "$(rows volume.name)" '"skin" "muscle_a" "Muscle_b" ' "skin and skull make on
 is "$(rows volume.level)$(rows volume.priority)$(rows volume.muscle)" "0 1 1 0 0 1 0 1 1 " "levels, priorities, muscles"
 is "$(counts skin muscle_a Muscle_b)" "896 16 24 " "the first muscle keeps what both could have; none leaves the skin"
 is "$(sinew info --get axis.element <"$T/m")" 936 "elements: the block without the skull"
-said "the plan" "^voxelise: skin: level 0, priority 0, material tissue, surfaces Skin_face SKULL: 896 elements$"
-said "what lies outside" "^voxelise: Muscle_b: outside level 0, and ignored: 8 of its 40 voxels$"
+is "$(grep -A 5 '^voxelise: 3 volumes' "$T/said")" "voxelise: 3 volumes
+                                        voxels     voxels  kept
+  volume    level  material  elements  outside  to others     %
+  skin          0  tissue         896        0         40    95
+  muscle_a      1  tissue          16        0          0   100
+  Muscle_b      1  tissue          24        8          8    60" "the plan"
+voxelise -v --unit mm -s 1 -o "$T/m" "$T/head.obj" 2>"$T/said"
+said "-v says of which surfaces" "^  skin +0 +0  tissue +896 +0 +40 +95 +Skin_face SKULL$"
 silent "the skull is rigid" "nothing is rigid"
 check "-q says nothing of it" sh -c "voxelise -q --unit mm -s 1 '$T/head.obj' 2>&1 >/dev/null | wc -c | grep -qx 0"
 
@@ -69,6 +75,18 @@ said "a muscle outside" "warning: muscle_out is ignored: none of its 1 voxels is
 said "a muscle thinner than a voxel" "warning: muscle_thin has no voxel: no centre is inside it"
 said "a muscle that comes too late" "warning: muscle_late has no voxel: other volumes keep all 1 voxels"
 said "nothing rigid" "warning: nothing is rigid"
+said "those are marked" "^  muscle_out +1 .* 0 +1 +0 +0  !$"
+silent "and not said twice" "at most half"
+{
+    box skin 0 0 0 4 4 4
+    box muscle_half 2 0 0 6 1 1
+    box muscle_third 0 3 0 4 9 1
+    box muscle_more 0 0 3 4 1 4
+} >"$T/half.obj"
+vox "$T/half.obj"
+said "muscles that lose half" "warning: 2 muscles keep at most half of their voxels, .*: muscle_half \(50 %\), muscle_third \(16 %\); "
+is "$(grep -c '!$' "$T/said")" 2 "are marked too"
+check "-q keeps the warning alone" sh -c "voxelise -q --unit mm -s 1 --origin 0,0,0 '$T/half.obj' 2>&1 >/dev/null | grep -v 'nothing is rigid' | grep -c . | grep -qx 1"
 box "gland" 0 0 0 2 2 2 >"$T/one.obj"
 vox "$T/one.obj"
 is "$(rows volume.name)" '"gland" ' "the only other surface names its volume"

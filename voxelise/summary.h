@@ -1,0 +1,32 @@
+/* What any run of voxelise says of its volumes: a table of what each has and has lost, and warnings about those that
+ * have nothing, or a muscle that has lost half of its voxels. Nothing is kept.
+ */
+#ifndef SINEW_SUMMARY_H
+#define SINEW_SUMMARY_H
+
+#include "base/text_table.h"
+#include "voxelise/grid.h"
+#include "voxelise/layers.h"
+#include "voxelise/volumes.h"
+#include "voxelise/voxels.h"
+
+/* What a run has found; borrowed. */
+typedef struct summary {
+    const volumes *plan;
+    const layers *layer;
+    const voxels *x;
+    const grid *g;
+    num_unit unit;
+    const char *const *material; /* names */
+    int64_t samples;             /* of a voxel, along each axis; 1: by centres */
+    bool boxed;                  /* --box */
+    bool verbose;                /* priorities and surfaces too */
+} summary;
+
+/* A row a volume, in the model's order. The caller frees it. NULL with e filled. */
+text_table *summary_table(const summary *s, err *e);
+
+/* Notes the volumes that have no voxel, layers that are too thin, and muscles that keep half of their voxels or less. */
+int summary_warn(const summary *s, notes *warnings, err *e);
+
+#endif
