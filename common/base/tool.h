@@ -12,7 +12,8 @@
  * stack, it runs on a thread that has enough. A main is this alone. */
 int tool_run(int (*work)(int argc, char **argv), int argc, char **argv);
 
-#define SINEW_VERSION "0.1.0"
+/* Of all tools. debian/changelog and CHANGELOG.md name it too; tests/cli/package.t compares them. */
+#define SINEW_VERSION "0.2.0"
 
 typedef struct tool {
     const opt_tool *table;

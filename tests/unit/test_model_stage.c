@@ -165,17 +165,18 @@ static bool gives(const result *r, int status, const char *written, const char *
 static void test_copies(void)
 {
     result r = run("--text", HEAD BODY FRAME "end\n");
-    ok(gives(&r, 0, HEAD "prov filter 0.1.0 \"\"\n" BODY CRC FRAME FCRC "end\n", ""), "a model and its frames");
+    ok(gives(&r, 0, HEAD "prov filter " SINEW_VERSION " \"\"\n" BODY CRC FRAME FCRC "end\n", ""),
+       "a model and its frames");
     r = run("--text --axis x-b --threads 1", HEAD BODY "end\n");
     ok(r.status == STATUS_USAGE, "an option that the tool has not");
     r = run("--text --axis x-b", HEAD BODY "end\n");
     ok(gives(&r, 0,
-             HEAD "prov filter 0.1.0 \"--axis x-b\"\naxis node 1\naxis x-b 1\n"
+             HEAD "prov filter " SINEW_VERSION " \"--axis x-b\"\naxis node 1\naxis x-b 1\n"
                   "array node.rigid u8 1 node 1\n1\n" CRC "end\n",
              ""),
        "provenance has what changes the result");
     r = run("--text --drop", HEAD BODY FRAME NEXT "end\n");
-    ok(gives(&r, 0, HEAD "prov filter 0.1.0 \"--drop\"\n" BODY CRC "end\n",
+    ok(gives(&r, 0, HEAD "prov filter " SINEW_VERSION " \"--drop\"\n" BODY CRC "end\n",
              "filter: warning: 2 frames are dropped: the model that they belong to changes\n"),
        "frames that are dropped are counted");
     r = run("", HEAD BODY "end\n");
@@ -195,12 +196,13 @@ static void test_failures(void)
     r = run("--text", HEAD BODY "fail 3 \"tled-run: diverged\"\n");
     ok(gives(&r, 3, HEAD "fail 3 \"tled-run: diverged\"\n", ""), "a failure before us is copied, silently");
     r = run("--text", HEAD BODY FRAME "fail 3 \"tled-run: diverged\"\n");
-    ok(gives(&r, 3, HEAD "prov filter 0.1.0 \"\"\n" BODY CRC FRAME FCRC "fail 3 \"tled-run: diverged\"\n", ""),
+    ok(gives(&r, 3, HEAD "prov filter " SINEW_VERSION " \"\"\n" BODY CRC FRAME FCRC "fail 3 \"tled-run: diverged\"\n",
+             ""),
        "one after the frames too");
     r = run("--text --drop", HEAD BODY FRAME "fail 3 \"tled-run: diverged\"\n");
     ok(r.status == 3 && strstr(r.out, CRC "fail 3") && !*r.say, "and where the frames are dropped");
     r = run("--text --late", HEAD BODY "end\n");
-    ok(gives(&r, 1, HEAD "prov filter 0.1.0 \"--late\"\n" BODY CRC "fail 1 \"filter: too late\"\n",
+    ok(gives(&r, 1, HEAD "prov filter " SINEW_VERSION " \"--late\"\n" BODY CRC "fail 1 \"filter: too late\"\n",
              "filter: too late\n"),
        "a failure after the model was written");
     r = run("--text --bogus", HEAD BODY "end\n");
@@ -240,7 +242,7 @@ static void test_files(void)
     in *s = in_open(file, &(err){0});
     char *text = NULL;
     ok(r.status == 0 && s && in_all(s, &text, &(err){0}) > 0 &&
-           text_is(text, HEAD "prov filter 0.1.0 \"\"\n" BODY CRC "end\n"),
+           text_is(text, HEAD "prov filter " SINEW_VERSION " \"\"\n" BODY CRC "end\n"),
        "a file");
     free(text);
     in_close(s);
