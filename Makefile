@@ -93,6 +93,7 @@ $(BUILD)/%.o: %.cu
 	$(if $(NVCC),,$(error there is no nvcc for CUDA=yes; expected NVCC with its path, or CUDA=no))
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Icommon -I. -MMD -MP -MF $(@:.o=.d) -c -o $@ $<)
+	@objcopy -w -N 'tmpxft_*' $@ # the name of a temporary file: the same source is to give the same bytes
 
 # Which of the two is built is known to few files, made again when that changes.
 KNOW_CUDA := $(addprefix $(BUILD)/,tled/backends.o tests/unit/test_tled_cuda.o msds/msds_backends.o tests/unit/test_msds_cuda.o)
