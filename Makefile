@@ -162,5 +162,6 @@ clean:
 	rm -rf $(BUILD) $(BIN) out
 
 include tests/check.mk
+include debian/package.mk
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

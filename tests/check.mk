@@ -281,6 +281,8 @@ help:
 	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc, groff, and the shape of it all' \
 	'make html         the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
+	'make deb          set-up, and a Debian package, $(DEB)' \
+	'make deb-check    that, installed, tried and removed in a bare system of its own (by mmdebstrap, from the network)' \
 	'make clean        removes what was built' \
 	'' \
 	'CC, CFLAGS, BUILD, BIN, CUDA=no, WERROR= are the variables to know.'
