@@ -120,17 +120,24 @@ done
 
 # Many gaps on one line, as between thin plates: eight times as many take eight times as long, and not sixty-four.
 
-# seconds PLATES: of a processor, the least of two runs.
-seconds() {
-    awk -v n="$1" -f tests/cli/plates.awk >"$T/plates.obj"
-    for _ in 1 2; do
-        (SINEW_THREADS=1 voxelise -q --unit mm -s 1 --fraction 2 -o "$T/m" "$T/plates.obj" 2>"$T/said" && times) | tail -n 1
-    done | sed 's/m/ /; s/s .*//' | awk '{ t = 60 * $1 + $2; if (NR == 1 || t < least) least = t } END { print least }'
+# filled PLATES TIMES: gaps between so many plates, so often; a processor's seconds in all.
+filled() {
+    (for _ in $(seq "$2"); do
+        SINEW_THREADS=1 voxelise -q --unit mm -s 1 --fraction 2 -o "$T/m" "$T/plates$1.obj" 2>"$T/said" || exit
+    done && times) | tail -n 1 | sed 's/m/ /; s/s .*//' | awk '{ print 60 * $1 + $2 }'
 }
-few=$(seconds 2000)
-check "gaps between thin plates are filled" grep -q "elements fill gaps" "$T/said"
-many=$(seconds 16000)
-check "between eight times the plates: $few s, then $many s" awk -v few="$few" -v many="$many" 'BEGIN { exit !(many > 0 && many < 40 * few) }'
+for plates in 2000 16000; do
+    awk -v n=$plates -f tests/cli/plates.awk >"$T/plates$plates.obj"
+done
+# In turn, and again where others' work was in the way. (Few are filled eight times: what took 10 ms would be told to the nearest 10.)
+for _ in 1 2 3 4 5; do
+    few=$(filled 2000 8)
+    check "gaps between thin plates are filled" grep -q "elements fill gaps" "$T/said"
+    many=$(filled 16000 1)
+    awk -v few="$few" -v many="$many" 'BEGIN { exit !(many > 0 && many < 5 * few) }' && break
+done
+check "between eight times the plates as fast: $few s for eight times few, then $many s" \
+    awk -v few="$few" -v many="$many" 'BEGIN { exit !(many > 0 && many < 5 * few) }'
 
 # ---- layers
 
