@@ -69,7 +69,7 @@ are() {
 
 # preloaded COMMAND...: the n-th call of $call fails by $error; n 0: none.
 preloaded() {
-    timeout 30 env LD_PRELOAD="$library" SINEW_FAULT_CALL="$call" SINEW_FAULT_AT="$n" SINEW_FAULT_ERROR="$error" SINEW_FAULT_COUNT="$T/count" \
+    timeout 180 env LD_PRELOAD="$library" SINEW_FAULT_CALL="$call" SINEW_FAULT_AT="$n" SINEW_FAULT_ERROR="$error" SINEW_FAULT_COUNT="$T/count" \
         ${named:+SINEW_FAULT_NAMED=1} "$@" <"$input" >/dev/null 2>"$T/err"
 }
 

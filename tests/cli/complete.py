@@ -28,7 +28,7 @@ def start():
     return terminal
 
 
-def wait(terminal, path, seconds=20):
+def wait(terminal, path, seconds=180):
     """Until the file is there; what the shell echoes is read, and dropped."""
     end = time.time() + seconds
     said = b""

@@ -16,7 +16,7 @@ many=${SINEW_LONG:+1}
 
 # limited COMMAND...: ends a command that hangs.
 limited() {
-    timeout 60 "$@"
+    timeout 180 "$@"
 }
 
 # said: one line that ends with the tool's word on it, whatever else it told before.

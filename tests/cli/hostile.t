@@ -23,7 +23,7 @@ little() {
     tool=$1
     [ "$tool" != sinew ] || tool=sinew-$2
     # shellcheck disable=SC2016 # for the inner shell
-    timeout 60 sh -c "$limit"' exec "$@"' sh "$peak" "$T/peak" "$@" <"$T/in" >"$T/stdout" 2>"$T/stderr"
+    timeout 180 sh -c "$limit"' exec "$@"' sh "$peak" "$T/peak" "$@" <"$T/in" >"$T/stdout" 2>"$T/stderr"
     status=$?
     used=$(($(cat "$T/peak") - $(base "$tool")))
     lines=$(grep -c -v 'warning:' "$T/stderr")
@@ -56,7 +56,7 @@ for count in $large; do
     little "text: a block of $count bytes" 'cut short' sinew info
     for axis in node element volume material muscle anchor s/vertex; do
         printf '%%sinew 1 text\naxis %s %s\nend\n' "$axis" "$count" >"$T/in"
-        is "$("$peak" "$T/peak" timeout 20 sinew info --json <"$T/in" | grep -c "\"$axis\": $count")" 1 \
+        is "$("$peak" "$T/peak" timeout 180 sinew info --json <"$T/in" | grep -c "\"$axis\": $count")" 1 \
             "an axis $axis of $count and nothing over it is described, row by row of nothing"
         little "and attach says what it lacks" 'the model has no ' attach
     done

@@ -47,7 +47,7 @@ every_n() { # NAME INPUT COMMAND...
         while [ "$n" -le "$all" ]; do
             cp "$T/old" "$T/out"
             : >"$T/death"
-            timeout 30 env LD_PRELOAD="$library" SINEW_FAULT_DEATH="$T/death" SINEW_FAULT_AT="$n" ${on:+SINEW_FAULT_ON=1} "$@" -o "$T/out" <"$input" >/dev/null 2>"$T/err"
+            timeout 180 env LD_PRELOAD="$library" SINEW_FAULT_DEATH="$T/death" SINEW_FAULT_AT="$n" ${on:+SINEW_FAULT_ON=1} "$@" -o "$T/out" <"$input" >/dev/null 2>"$T/err"
             status=$?
             runs=$((runs + 1))
             if [ "$status" -eq 0 ] && cmp -s "$T/want" "$T/out"; then

@@ -34,7 +34,7 @@ seen=
 for i in 1 2 3; do
     sed -n "${i}p" "$T/press.tum" >&3
     tries=0
-    while [ "$(grep -c '^frame ' "$T/live.sinew")" -lt "$i" ] && [ "$tries" -lt 100 ]; do
+    while [ "$(grep -c '^frame ' "$T/live.sinew")" -lt "$i" ] && [ "$tries" -lt 1800 ]; do
         sleep 0.1
         tries=$((tries + 1))
     done

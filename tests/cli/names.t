@@ -17,13 +17,13 @@ check "whoever opens it waits" sh -c 'timeout 0.2 cat ../out/canary; [ $? -eq 12
 ignored() {
     name=$1
     shift
-    check "$name" timeout 20 "$@"
+    check "$name" timeout 180 "$@"
 }
 # refused NAME PATTERN COMMAND...
 refused() {
     name=$1 pattern=$2
     shift 2
-    fails 1 "$name" "$pattern" timeout 20 "$@"
+    fails 1 "$name" "$pattern" timeout 180 "$@"
 }
 
 for canary in ../out/canary "$T/out/canary" link; do

@@ -254,8 +254,8 @@ done
 is $? 0 "no output is left"
 check "a sweep may begin at 0" sh -c "tled-run -q -d cpu -c bar=0 -t 0.01 -o '$T/out' <'$T/fibreless'"
 fails 1 "a full disk" 'No space left' run -q -n 1 -o /dev/full
-fails 1 "and a long run ends there" 'No space left' timeout 60 tled-run -q -t 1e6 --every 0.01 -o /dev/full <"$T/model"
-timeout 60 sh -c "tled-run -q -c bar=0.1 -t 1e6 --every 0.01 <'$T/model' 2>'$T/stderr' | head -c 100 >/dev/null"
+fails 1 "and a long run ends there" 'No space left' timeout 180 tled-run -q -t 1e6 --every 0.01 -o /dev/full <"$T/model"
+timeout 180 sh -c "tled-run -q -c bar=0.1 -t 1e6 --every 0.01 <'$T/model' 2>'$T/stderr' | head -c 100 >/dev/null"
 is "$? $(cat "$T/stderr")" "0 " "or where nobody reads, silently"
 
 edit() { # NAME PATTERN SED: the model, edited as text, is refused

@@ -332,8 +332,8 @@ take_image() {
 }
 if have mkfifo && have timeout; then
     mkfifo "$T/poses" "$T/images"
-    timeout 20 msds-run -q --probe linear:6mm,4mm --poses "$T/poses" <"$T/mesh.sinew" |
-        timeout 20 us-slice --depth 7mm --size 60x70 "$T/noise.nrrd" >"$T/images" &
+    timeout 180 msds-run -q --probe linear:6mm,4mm --poses "$T/poses" <"$T/mesh.sinew" |
+        timeout 180 us-slice --depth 7mm --size 60x70 "$T/noise.nrrd" >"$T/images" &
     exec 4>"$T/poses" 5<"$T/images"
     head -n 2 "$T/press.tum" >&4
     take_image

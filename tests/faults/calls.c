@@ -218,6 +218,8 @@ static int begin_counting(int argc, char **argv, char **environment)
     fault.on = getenv("SINEW_FAULT_ON") != NULL;
     fault.after = getenv("SINEW_FAULT_AFTER") != NULL;
     fault.named = getenv("SINEW_FAULT_NAMED") != NULL;
+    if (fault.signal) /* who started the tests may ignore it, as shells do for what runs in the background */
+        signal(fault.signal, SIG_DFL);
     atexit(tell);
     fault.counting = true;
     return fault.begin(argc, argv, environment);

@@ -49,7 +49,7 @@ static int put(void *context, double time, const double *displacement, const dou
     }
     struct timespec end;
     clock_gettime(CLOCK_REALTIME, &end);
-    end.tv_sec += 20;
+    end.tv_sec += 180;
     while (number == 0 && w->beside && w->fetched < 2)
         w->beside = !pthread_cond_timedwait(&w->changed, &w->lock, &end); /* in vain, where frames go one by one */
     w->whole = w->whole && time == (double)number;

@@ -185,7 +185,7 @@ static void live(void)
     bool whole = write(end[1], line, strlen(line)) == (ssize_t)strlen(line);
     snprintf(path, sizeof path, "/dev/fd/%d", end[0]);
     in *s = in_open(path, &e);
-    alarm(20);
+    alarm(180);
     ok(whole && s && !poses_open(&p, s, NULL, &e) && poses_next(&p, &v, &e) == 1 && v.time == 1,
        "an event comes before the next line does %s", e.text);
     alarm(0);

@@ -444,7 +444,7 @@ static int at_closed_pipe(void (*before)(void))
     pid_t child = fork();
     if (!child) {
         err e = {0};
-        alarm(20); /* it ends by this where it hangs */
+        alarm(180); /* it ends by this where it hangs */
         before();
         dup2(pipes[1], STDOUT_FILENO);
         out *o = out_open(NULL, false, &e);

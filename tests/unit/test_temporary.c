@@ -31,7 +31,7 @@ static int make_and_raise(const void *context, const char *path)
 static int child(char path[3][64], int number, bool within)
 {
     err e = {0};
-    alarm(20);
+    alarm(180);
     for (int i = 0; i < 3; i++)
         temporary_make(path[i], make, NULL, &e);
     temporary_drop(path[1]);
@@ -79,7 +79,7 @@ static void by_another(const char *folder)
         sigset_t all, before;
         pthread_t thread;
         err e = {0};
-        alarm(20);
+        alarm(180);
         pthread_create(&thread, NULL, wait_for_ever, NULL);
         sigfillset(&all);
         pthread_sigmask(SIG_BLOCK, &all, &before);
