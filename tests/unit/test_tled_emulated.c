@@ -335,7 +335,7 @@ static void call_once(const block *what, const backend *device, int64_t steps, d
 /* A call of as many passes as curves' values go to the card at once, and one: of steps, and of their end. */
 static void test_long_calls(void)
 {
-    enum { X = 5, Y = 4, Z = 3, COUNT = 3 * (X + 1) * (Y + 1) * (Z + 1) };
+    enum { X = 2, Y = 2, Z = 1, COUNT = 3 * (X + 1) * (Y + 1) * (Z + 1) };
     block what = lump;
     double want[COUNT], got[COUNT];
     memcpy(what.cells, (int32_t[]){X, Y, Z}, sizeof what.cells);
