@@ -1,12 +1,29 @@
 # What stands around the tools: set-up, the demo, every check, installation. The top Makefile includes this last; its
 # variables and pattern rules are used here. A bare machine has neither compiler nor libraries when make begins,
 # so `demo` and `check` run .ci/setup and only then call make again for the rest.
+#
+# ---- What runs where. tests/check has the lists of parts; these are their times on two processors of an AMD EPYC with little else to do, from
+# a clean clone and without a compiler cache. (With eight others at work on the same two, each takes six to ten times as long.)
+#   make check      before every commit: the build by gcc, and by nvcc where it is, 66 s; clang-format 2 s, shellcheck 7 s, manual pages 2 s,
+#                   shape 1 s; all unit and command tests, CUDA's kernels on a card that the processor plays among them, 130 s
+#   .ci/run         that, and clang's build, cppcheck, clang-tidy, the unit tests with ASan and UBSan, 2 s of each fuzz target, and the browser:
+#                   about 10 minutes more; at most 15
+#   make check-all  that, with all tests sanitized and 10 s of each fuzz target, and tsan, valgrind and the slow tests: half an hour
+#   make soak       300 s of each fuzz target, tests that take many minutes with SINEW_LONG, tests/long/run1e6: hours
+# What a test lacks (a program, data, a card) it names, and is skipped. .ci/setup check installs what is small, so that a visitor's results are
+# compared with CalculiX, pydicom and DCMTK; VTK, Gmsh, gnuplot, clang, cppcheck, valgrind and chromium come with .ci/setup check-all.
 
 CLANG ?= clang
 CLANG_TIDY ?= clang-tidy
 CLANG_FORMAT ?= clang-format
 # Of each fuzz target; `make fuzz SECONDS=60` for longer.
 SECONDS ?= 5
+# Tests that do much more where SINEW_LONG is set: make check-all runs those of SLOW so, which take at most a few minutes each then, and
+# make soak those of SOAK, which take longer.
+SLOW = tests/cli/voxelise_exact.t $(UNIT_TEST)voxelise_scan $(UNIT_TEST)voxelise_inside $(UNIT_TEST)checkpoint \
+	$(addprefix tests/cli/,calculix.t conforming.t killed.t msds-long.t)
+SOAK = $(UNIT_TEST)tled_emulated $(addprefix tests/cli/,calls.t faults.t memory.t restart.t streams.t threads.t)
+UNIT_TEST = $(BUILD)/tests/unit/test_
 # As many jobs as processors, unless make was told (then its job server serves the inner makes too).
 JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2))
 
@@ -44,7 +61,7 @@ $(BUILD)/tests/faults/wreck_card.so: tests/faults/wreck_card.cu
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Xcompiler -fPIC -shared -o $@ $<)
 
-.PHONY: setup demo check unit check-unit check-cli check-tests check-long
+.PHONY: setup demo check check-all check-ci soak unit check-unit check-cli check-tests check-slow check-soak check-run1e6
 setup:
 	.ci/setup check
 
@@ -68,15 +85,30 @@ paper: all $(addprefix $(BUILD)/tests/bench/bench_,tled msds msds_card slice)
 picture: demo
 	$(BIN)/sinew render --view 0.6,0.1,1 --cut x=0 --sheet rest,voxels,deformed --size 900x360 -o samples/face.png out/smile.sinew
 
+CHECK = BUILD=$(BUILD) JOBS='$(JOBS)' tests/check
 check:
 	.ci/setup check
-	MAKE='$(MAKE)' BUILD=$(BUILD) JOBS='$(JOBS)' tests/check
+	MAKE='$(MAKE)' $(CHECK) check
+
+check-all:
+	.ci/setup check-all
+	MAKE='$(MAKE)' $(CHECK) all
+
+# For .ci/run, which has done the set-up.
+check-ci:
+	MAKE='$(MAKE)' $(CHECK) ci
+
+soak:
+	.ci/setup check-all
+	MAKE='$(MAKE)' $(CHECK) soak
 
 unit: $(UNIT) $(COMPARE) $(FAULTS)
 
 # ---- the tests, as TAP under prove; V=1 shows every line
 PROVE = prove $(if $(V),-v) $(or $(JOBS),-j2)
-ENVIRONMENT = SINEW_BIN=$(BIN) BUILD=$(BUILD) CC='$(CC)' NVCC='$(NVCC)' MAKE='$(MAKE)'
+# A shell ignores signals for the commands that it runs in the background; tests want their default actions.
+SIGNALS := $(shell env --default-signal=INT,QUIT,PIPE true 2>/dev/null && echo env --default-signal=INT,QUIT,PIPE)
+ENVIRONMENT = $(SIGNALS) SINEW_BIN=$(BIN) BUILD=$(BUILD) CC='$(CC)' NVCC='$(NVCC)' MAKE='$(MAKE)'
 CLI = $(sort $(wildcard tests/cli/*.t))
 
 check-unit: unit
@@ -88,9 +120,15 @@ check-cli: all $(COMPARE) $(FAULTS)
 check-tests: all unit
 	$(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
 
-# With what takes minutes: SINEW_LONG is set, which some of the tests heed.
-check-long: all unit
-	SINEW_LONG=1 $(ENVIRONMENT) $(PROVE) $(UNIT) $(CLI)
+check-slow: all unit
+	$(ENVIRONMENT) SINEW_LONG=1 $(PROVE) $(SLOW)
+
+# Runs with threads, and runs that are killed, are repeated a hundred times.
+check-soak: all unit
+	$(ENVIRONMENT) SINEW_LONG=1 REPEATS=100 $(PROVE) $(SOAK)
+
+check-run1e6: all
+	SINEW_BIN=$(BIN) tests/long/run1e6 5 50000
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
 .PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction compare-msds
@@ -168,19 +206,22 @@ tsan:
 tsan-run: all $(TSAN_UNIT)
 	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t
 
-# Every tool under valgrind's memcheck: a minute or so, and no part of check.
-.PHONY: check-valgrind
+# Every tool under valgrind's memcheck; and the HTML pages that samples/paper and man/html make, in a browser.
+.PHONY: check-valgrind valgrind browser
 check-valgrind:
 	.ci/setup valgrind
-	$(MAKE) $(JOBS) all
+	$(MAKE) $(JOBS) valgrind
+valgrind: all
 	$(ENVIRONMENT) prove $(if $(V),-v) tests/cli/valgrind.sh
+browser: all
+	$(ENVIRONMENT) prove $(if $(V),-v) tests/cli/browser.sh
 
 FUZZ_FLAGS = -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 fuzz:
 	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/fuzz BIN=$(BUILD)/fuzz/bin CFLAGS='$(FUZZ_FLAGS)' CUDA=no \
 	    SECONDS=$(SECONDS) fuzz-run
 fuzz-run: $(FUZZ)
-	tests/fuzz/run $(SECONDS) $(FUZZ)
+	$(PROVE) --exec 'tests/fuzz/run $(SECONDS)' $(FUZZ)
 
 # ---- lints
 .PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
@@ -191,7 +232,7 @@ SOURCES = $(call found,*.c)
 HEADERS = $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
 # Each file that begins as a script does, and those that scripts read.
-SCRIPTS = $(or $(sort $(shell grep -rlIE '^\#!/(usr/)?bin/(env )?(ba)?sh' .ci man samples tests) $(wildcard tests/cli/*.sh) $(filter-out %.awk %.gnuplot %.css,$(wildcard samples/paper.d/*))),$(error no scripts))
+SCRIPTS := $(or $(sort $(shell grep -rlIE '^\#!/(usr/)?bin/(env )?(ba)?sh' .ci man samples tests) $(wildcard tests/cli/*.sh) $(filter-out %.awk %.gnuplot %.css,$(wildcard samples/paper.d/*))),$(error no scripts))
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
 
 lint-cppcheck:
@@ -209,8 +250,11 @@ $(BUILD)/tidy/%.ok: %.c .clang-tidy tests/.clang-tidy $(HEADERS)
 lint-format:
 	@$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS) $(call found,*.cc) $(CUDA_FILES)
 
-lint-shell:
-	@shellcheck --external-sources --source-path=SCRIPTDIR $(SCRIPTS)
+lint-shell: $(SCRIPTS:%=$(BUILD)/shellcheck/%.ok)
+$(BUILD)/shellcheck/%.ok: % $(filter %.sh,$(SCRIPTS))
+	@mkdir -p $(@D)
+	$(call run,SHELLCHECK $<,shellcheck --external-sources --source-path=SCRIPTDIR $<)
+	@touch $@
 
 lint-man:
 	@tests/pages $(wildcard man/*.[157])
@@ -265,20 +309,28 @@ help:
 	'make arm          an arm under a probe: the second example, into out/arm' \
 	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
 	'make picture      the demo, and the picture in README.md from it' \
-	'make check        set-up, and every check below but check-long' \
-	'make setup        installs what is missing, by apt (through sudo if not root), saying what' \
+	'' \
+	'make check        set-up, the build, all tests, and small lints: run it before each commit; 4 minutes on two processors' \
+	'make check-all    that, and clang, sanitizers, fuzzers, clang-tidy, cppcheck, valgrind, a browser, slow tests; half an hour' \
+	'make soak         the long runs: fuzzing, a fault at every call, a hundred repeats, 50000 steps; hours' \
+	'make check-ci     what continuous integration runs (.ci/run): check, and a fixed list of the parts of check-all' \
+	'' \
+	'make setup        installs by apt what make check needs (through sudo if not root), and names it' \
 	'make check-unit   the unit tests            make check-cli   the tests of the commands' \
-	'make check-tests  both, with the counts     make check-long  both, with what takes minutes' \
+	'make check-tests  both, with the counts     make check-slow  slow tests, at their full length' \
+	'make lint         clang-format, shellcheck, manual pages, shape; and cppcheck and clang-tidy, which take minutes' \
+	'make lint-NAME    one of them: cppcheck, tidy, format, shell, man, shape' \
 	'make clang        the tools and unit tests, built by clang' \
 	'make sanitize     the tests under ASan and UBSan' \
-	'make tsan         what has threads, under ThreadSanitizer' \
-	'make check-valgrind  set-up, and every tool under valgrind, on small inputs' \
+	'make tsan         the tests of threads under ThreadSanitizer' \
 	'make fuzz         every fuzz target for SECONDS=$(SECONDS) each' \
+	'make check-valgrind  set-up, and every tool under valgrind, on small inputs' \
+	'make browser      the HTML pages of make paper and make html, in headless chromium' \
+	'' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
-	'make lint         cppcheck, clang-tidy, clang-format, shellcheck, mandoc, groff, and the shape of it all' \
 	'make html         the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make deb          set-up, and a Debian package, $(DEB)' \

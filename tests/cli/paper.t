@@ -65,22 +65,6 @@ else
     skip 1 "a card ran here"
 fi
 
-if have chromium; then
-    # A window cannot be as narrow as a telephone: a frame can.
-    cat >"$T/frame.html" <<'END'
-<!DOCTYPE html><html><body style="margin:0"><iframe id="f" style="border:0;width:360px;height:700px" src="out/paper.html"></iframe><script>
-onload = () => { const d = document.getElementById("f").contentDocument, i = [...d.images];
-document.title = d.documentElement.scrollWidth + " " + i.filter(p => p.naturalWidth > 0).length + " " + d.querySelectorAll("h3").length; };
-</script></body></html>
-END
-    HOME=$T timeout 60 chromium --headless=new --no-sandbox --hide-scrollbars --user-data-dir="$T/profile" --allow-file-access-from-files \
-        --dump-dom "file://$T/frame.html" >"$T/dom" 2>"$T/chromium"
-    is "$(sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' "$T/dom")" "360 10 4" \
-        "360 pixels: nothing is wider, all pictures are there, all headings"
-else
-    skip 1 "no chromium"
-fi
-
 # What is computed from measured times: here, of a thread that takes half of the paper's time for nodes as many as theirs.
 {
     echo 'mesh,nodes,tetrahedra,springs,method,threads,frames,best_ms,median_ms,p95_ms,paper_ms,opentissue_ms'
