@@ -84,6 +84,52 @@ void report_volume(out *o, const volumes_volume *v, const check_result *r, int64
         say_numbers(o, r, unit);
 }
 
+/* ---- tables */
+
+text_table *report_surfaces(bool sized, err *e)
+{
+    const char *const heads[] = {
+        "<surface",      ">polygons",     ">edges\nopen",           ">edges\n> 2",      ">edges\nturned",
+        ">poly.\nagain", ">pairs\ncross", sized ? ">thin\n%" : "<", sized ? "<" : NULL, NULL};
+    return text_table_create(heads, e);
+}
+
+/* Whether report_warn() warns of it. An open surface may be closed by another: that is asked of the volume. */
+static bool is_wrong(const check_result *r)
+{
+    return r->met || r->thin > 0.5;
+}
+
+void report_surface_row(text_table *t, const char *name, const check_result *r, bool sized)
+{
+    text_table_cell(t, "%s", name);
+    text_table_count(t, r->polygons);
+    text_table_count(t, r->open);
+    text_table_count(t, r->crowded);
+    text_table_count(t, r->turned);
+    text_table_count(t, r->repeated);
+    text_table_count(t, r->met);
+    if (sized)
+        text_table_number(t, 100 * r->thin, 0);
+    text_table_cell(t, "%s", is_wrong(r) ? "!" : "");
+}
+
+text_table *report_volumes(err *e)
+{
+    static const char *const heads[] = {"<volume", ">level", ">priority", ">edges\nopen", "<", "<surfaces", NULL};
+    return text_table_create(heads, e);
+}
+
+void report_volume_row(text_table *t, const volumes_volume *v, int64_t open)
+{
+    text_table_cell(t, "%s", v->name);
+    text_table_count(t, v->level);
+    text_table_count(t, v->priority);
+    text_table_count(t, open);
+    text_table_cell(t, "%s", open ? "!" : "");
+    text_table_cell(t, "%s", v->surfaces);
+}
+
 void report_warn(notes *n, const char *what, const char *name, const check_result *r)
 {
     if (r->met)

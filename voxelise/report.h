@@ -1,4 +1,4 @@
-/* What voxelise --check says of a surface, as text for people: one thing a line, in two columns; and what any run says
+/* What voxelise --check says of surfaces and volumes, as text for people: a row each, and with -v one thing a line; and what any run says
  * of the size of all. Nothing is kept.
  */
 #ifndef SINEW_REPORT_H
@@ -6,6 +6,7 @@
 
 #include "base/num.h"
 #include "base/out.h"
+#include "base/text_table.h"
 #include "voxelise/check_surfaces.h"
 #include "voxelise/gaps.h"
 #include "voxelise/layers.h"
@@ -16,6 +17,13 @@ void report_surface(out *o, const volumes *plan, int32_t surface, const check_re
 
 /* A volume: open is the count of its open edges. r (NULL: not asked): of all its surfaces together. */
 void report_volume(out *o, const volumes_volume *v, const check_result *r, int64_t open, const char *unit);
+
+/* Tables of what is wrong, a row for each: empty ones, which the caller frees, and their rows. sized: with the share
+ * that is thinner than a voxel. */
+text_table *report_surfaces(bool sized, err *e);
+void report_surface_row(text_table *t, const char *name, const check_result *r, bool sized);
+text_table *report_volumes(err *e);
+void report_volume_row(text_table *t, const volumes_volume *v, int64_t open);
 
 /* What is to be feared of it. what: "surface". */
 void report_warn(notes *n, const char *what, const char *name, const check_result *r);

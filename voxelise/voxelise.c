@@ -387,7 +387,8 @@ typedef struct checking {
     job *j;
     const double *voxel; /* NULL: none was given */
     int64_t *face;       /* room for all of the OBJ's */
-    out *to;
+    text_table *surfaces, *volumes;
+    out *detail; /* with -v */
 } checking;
 
 static int look_at(const checking *c, bool (*is_of)(const volumes *v, int32_t group, int32_t number), int32_t number,
@@ -410,7 +411,8 @@ static int check_surfaces(const checking *c, err *e)
             continue;
         if (look_at(c, is_of_surface, s, &r, e))
             return -1;
-        report_surface(c->to, &j->plan, s, &r, num_unit_name(j->unit));
+        report_surface_row(c->surfaces, j->plan.surface[s].name, &r, c->voxel != NULL);
+        report_surface(c->detail, &j->plan, s, &r, num_unit_name(j->unit));
         report_warn(&j->warnings, "surface", j->plan.surface[s].name, &r);
     }
     return 0;
@@ -426,11 +428,52 @@ static int check_volumes(const checking *c, err *e)
         bool several = strchr(a->surfaces, ' ') != NULL;
         if (several && look_at(c, is_of_volume, v, &r, e))
             return -1;
-        report_volume(c->to, a, several ? &r : NULL, j->solid.open[v], num_unit_name(j->unit));
+        report_volume_row(c->volumes, a, j->solid.open[v]);
+        report_volume(c->detail, a, several ? &r : NULL, j->solid.open[v], num_unit_name(j->unit));
         if (several)
             report_warn(&j->warnings, "volume", a->name, &r);
     }
     return 0;
+}
+
+static int put_table(out *to, const text_table *rows, err *e)
+{
+    char *lines = text_table_lines(rows, e);
+    out_text(to, lines ? lines : "");
+    free(lines);
+    return lines ? 0 : -1;
+}
+
+/* What was found: the tables, and with -v all of each surface and volume. */
+static int put_report(const checking *c, err *e)
+{
+    const tool *t = c->j->t;
+    size_t size;
+    out *to = out_open(t->common->output, t->common->gzip, e);
+    int status = to ? put_table(to, c->surfaces, e) : -1;
+    if (!status) {
+        out_text(to, "\n");
+        status = put_table(to, c->volumes, e);
+    }
+    if (status) {
+        out_discard(to);
+        return -1;
+    }
+    const unsigned char *detail = out_bytes(c->detail, &size);
+    if (t->common->verbose) {
+        out_text(to, "\n");
+        out_write(to, detail, size);
+    }
+    return out_close(to, e);
+}
+
+static int find_report(checking *c, err *e)
+{
+    c->face = mem_array(c->j->surface.faces, sizeof *c->face, "polygons", e);
+    c->detail = c->face ? out_memory(e) : NULL;
+    c->surfaces = c->detail ? report_surfaces(c->voxel != NULL, e) : NULL;
+    c->volumes = c->surfaces ? report_volumes(e) : NULL;
+    return c->volumes && !check_surfaces(c, e) && !check_volumes(c, e) ? put_report(c, e) : -1;
 }
 
 /* Writes the report; fails where a volume is open, as a run without --check would. */
@@ -441,19 +484,16 @@ static int check(job *j, err *e)
     if (sized && find_spacing(j, spacing, e))
         return -1;
     checking c = {.j = j, .voxel = sized ? spacing : NULL};
-    c.face = mem_array(j->surface.faces, sizeof *c.face, "polygons", e);
-    c.to = c.face ? out_open(j->t->common->output, j->t->common->gzip, e) : NULL;
-    int status = c.to && !check_surfaces(&c, e) && !check_volumes(&c, e) ? 0 : -1;
+    int status = find_report(&c, e);
     free(c.face);
-    if (status) {
-        out_discard(c.to);
+    text_table_free(c.surfaces);
+    text_table_free(c.volumes);
+    out_discard(c.detail);
+    if (status)
         return -1;
-    }
     int64_t open = 0;
     for (int32_t v = 0; v < j->plan.volumes; v++)
         open += j->solid.open[v];
-    if (out_close(c.to, e))
-        return -1;
     if (!open || j->o->allow_open)
         return 0;
     return err_set(e, j->surface.name, 0,

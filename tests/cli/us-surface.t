@@ -20,12 +20,12 @@ for case in '7 .1' '7 .5' '7 .9' '1 .03' '2 .1' '3 .2' '4 .3' '5 .4' '6 .5' '8 .
     map "$seed" "$chance" '(0.5,0,0) (0,0.7,0) (0,0,0.6)' >"$T/map.nrrd"
     voxels=$(sed '1,/^$/d' "$T/map.nrrd" | grep -c '^1$')
     check "labels at $chance" us-surface -l 'inner vein' -o "$T/vein.obj" "$T/map.nrrd"
-    voxelise --unit mm --check "$T/vein.obj" >"$T/check" 2>&1
+    voxelise -v --unit mm --check "$T/vein.obj" >"$T/check" 2>&1
     is "$(value "$T/check" 'edges of one polygon (open)') $(value "$T/check" 'edges of more than two') $(value "$T/check" 'edges where facing turns') $(value "$T/check" 'triangles without area') $(value "$T/check" 'pairs of triangles that cross')" \
         "0 0 0 0 0" "it is closed, faces one way, and does not cross itself"
     near "$(value "$T/check" encloses)" "$(awk "BEGIN { print $voxels * .5 * .7 * .6 }")" .01 "it encloses what the label does"
     check "the same, filtered" us-surface -l 'inner vein' --smooth 0.3mm -o "$T/vein.obj" "$T/map.nrrd"
-    voxelise --unit mm --check "$T/vein.obj" >"$T/check" 2>&1
+    voxelise -v --unit mm --check "$T/vein.obj" >"$T/check" 2>&1
     is "$(value "$T/check" 'edges of one polygon (open)') $(value "$T/check" 'edges of more than two') $(value "$T/check" 'edges where facing turns')" \
         "0 0 0" "it is closed, and faces one way"
     near "$(value "$T/check" encloses)" "$(awk "BEGIN { print $voxels * .5 * .7 * .6 }")" .01 "it encloses what the label does"
@@ -120,6 +120,6 @@ us-import -q --raw "$DATA/ultrasound/fetal-head" >"$T/head.nrrd" 2>/dev/null
 check "the fetal head's surface" us-surface -v -i 90 --smooth 1.5mm -o "$T/head.obj" "$T/head.nrrd"
 triangles=$(sed -n 's/.*: \([0-9]*\) triangles.*/\1/p' "$T/stderr")
 if [ "$triangles" -gt 100000 ]; then ok "of $triangles triangles"; else not_ok "of $triangles triangles"; fi
-voxelise --unit mm --check "$T/head.obj" >"$T/check" 2>&1
+voxelise -v --unit mm --check "$T/head.obj" >"$T/check" 2>&1
 is "$(value "$T/check" 'edges of one polygon (open)') $(value "$T/check" 'pairs of triangles that cross')" "0 0" "is closed and does not cross itself"
 done_testing

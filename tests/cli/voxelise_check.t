@@ -3,9 +3,9 @@
 . "$(dirname "$0")/lib.sh"
 . tests/cli/boxes.sh
 
-# look ARGS...: the report into $T/report, messages into $T/said.
+# look ARGS...: the report with all of each surface into $T/report, messages into $T/said.
 look() {
-    voxelise --check --unit mm "$@" >"$T/report" 2>"$T/said"
+    voxelise -v --check --unit mm "$@" >"$T/report" 2>"$T/said"
     status=$?
 }
 # of WHAT KEY: the value in the block that begins with the line WHAT; KEY as the report has it.
@@ -129,6 +129,19 @@ is "$(of 'surface skull' bounds) $(of 'volume skin' surfaces)" "skin skin skull"
 is "$(of 'volume skin' encloses) $(of 'volume skin' shells)" "488 mm^3 2" "together"
 is "$(of 'volume skin' 'level, priority') $(of 'volume muscle_a' 'level, priority')" "0, 0 1, 0" "levels and priorities"
 is "$(of 'surface skin' 'thinner than a voxel')" "0 % of its area" "skin alone is thick"
+is "$(voxelise --check --unit mm -s 2 "$T/head.obj" 2>"$T/stderr")" \
+    "                      edges  edges   edges  poly.  pairs  thin
+  surface   polygons   open    > 2  turned  again  cross     %
+  skin             6      0      0       0      0      0     0
+  skull            6      0      0       0      0      0     0
+  muscle_a         6      0      0       0      0      0    77  !
+
+                             edges
+  volume    level  priority   open    surfaces
+  skin          0         0      0    skin skull
+  muscle_a      1         0      0    muscle_a" "without -v: a row for each, and a mark"
+is "$(voxelise --check --unit mm --allow-open "$T/open.obj" 2>"$T/stderr" | grep '!$\|! ')" "  skin        0         0      4  !  skin" \
+    "an open volume is marked"
 said "a flat muscle" "warning: surface muscle_a is thinner than a voxel over [0-9.]+ % of its area"
 look -s 2,2,0.25 "$T/head.obj"
 is "$(of 'surface muscle_a' 'thinner than a voxel')" "0 % of its area" "not with flat voxels"

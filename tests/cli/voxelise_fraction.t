@@ -92,7 +92,7 @@ is "$(awk '$1 == "array" { on = $2; n = 0; next } /^[a-z]/ { on = "" } on == "el
 # What each volume has, of a ball in a ball: its shares come to it, where whole voxels do not.
 awk -v r=100 -v n=96 -v g=skin -f tests/cli/sphere.awk >"$T/two.obj"
 awk -v r=57 -v n=96 -v g=muscle_m -f tests/cli/sphere.awk | awk -v from="$((2 + 95 * 192))" '$1 == "f" { for (i = 2; i <= NF; i++) $i += from } 1' >>"$T/two.obj"
-inner=$(voxelise --check --unit mm "$T/two.obj" | awk '$1 == "volume" { on = $2 == "muscle_m" } $1 == "surface" { on = $2 == "muscle_m" } on && $1 == "encloses" && $2 > 0 { v = $2 } END { print v }')
+inner=$(voxelise -v --check --unit mm "$T/two.obj" | awk '$1 == "volume" { on = $2 == "muscle_m" } $1 == "surface" { on = $2 == "muscle_m" } on && $1 == "encloses" && $2 > 0 { v = $2 } END { print v }')
 for size in 25 12.5 6.25; do
     vox -s "$size" --fraction 8 --threads 3 "$T/two.obj"
     cp "$T/m" "$T/three"
@@ -108,7 +108,7 @@ done
 
 # The volume of a ball: shares are nearer than centres by far.
 awk -v r=100 -v n=96 -f tests/cli/sphere.awk >"$T/ball.obj"
-true_volume=$(voxelise --check --unit mm "$T/ball.obj" | awk '$1 == "encloses" { print $2; exit }')
+true_volume=$(voxelise -v --check --unit mm "$T/ball.obj" | awk '$1 == "encloses" { print $2; exit }')
 for size in 25 12.5 6.25; do
     vox -s "$size" --fraction 8 --threads 1 "$T/ball.obj"
     cp "$T/m" "$T/one"
