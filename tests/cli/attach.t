@@ -110,7 +110,7 @@ is "$(values element.fibre "$T/out")" "-1 0 0,-1 0 0,0 0 0" "fibres"
 is "$(grep -c 'rigid_far holds no node' "$T/stderr") $(wc -l <"$T/stderr")" "1 1" "one warning: a bone out of reach"
 is "$(values x-word "$T/out") $(values x-heat "$T/out")" '"one","two words" 1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16' \
     "unknown arrays pass"
-is "$(grep '^prov' "$T/out")" 'prov attach 0.1.0 "--strictness 0.75 --fibre centre"' "provenance"
+is "$(sed -n 's/^\(prov attach\) [0-9.]*/\1/p' "$T/out")" 'prov attach "--strictness 0.75 --fibre centre"' "provenance"
 
 check "again" attach --text -q -o "$T/again" <"$T/out"
 is "$(grep -v '^prov' "$T/again" | cksum)" "$(grep -v '^prov' "$T/out" | cksum)" "changes nothing"
@@ -124,7 +124,7 @@ fibres: it will not contract; --fibre field gives it fibres all the same" "is a 
 attach --text --rigid 'BONE*' --fibre axis <"$T/bar" >"$T/out" 2>"$T/stderr"
 is "$(values element.fibre "$T/out") $(cat "$T/stderr")" "1 0 0,1 0 0,0 0 0 " \
     "along the axis it has fibres all the same, and nothing is said"
-is "$(grep '^prov' "$T/out")" 'prov attach 0.1.0 "--rigid BONE* --strictness 0.75 --fibre axis"' "options are in the provenance"
+is "$(sed -n 's/^\(prov attach\) [0-9.]*/\1/p' "$T/out")" 'prov attach "--rigid BONE* --strictness 0.75 --fibre axis"' "options are in the provenance"
 is "$(attach --text --strictness 1 --rigid bone_b <"$T/bar" 2>&1 | values node.rigid -)" \
     0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1 "--strictness 1 takes the whole voxel"
 

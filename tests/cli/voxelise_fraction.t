@@ -117,7 +117,7 @@ for size in 25 12.5 6.25; do
     vox -s "$size" --fraction 8 --threads 3 "$T/ball.obj"
     check "the same bytes on three threads" cmp "$T/m" "$T/one"
 done
-is "$(sinew info <"$T/m" | sed -n 's/^  voxelise 0.1.0 //p')" "--unit mm -s 6.25 --fraction 8 ball.obj" "provenance"
+is "$(sinew info <"$T/m" | sed -n 's/^  voxelise [0-9.]* //p')" "--unit mm -s 6.25 --fraction 8 ball.obj" "provenance"
 fails 2 "no samples" "--fraction '0': expected a whole number from 1" voxelise --unit mm -s 1 --fraction 0 "$T/box.obj"
 fails 2 "--least without --fraction" "--least is for --fraction" voxelise --unit mm -s 1 --least 0.5 "$T/box.obj"
 fails 2 "--least past 1" "--least '1.5'" voxelise --unit mm -s 1 --fraction 2 --least 1.5 "$T/box.obj"
