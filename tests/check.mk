@@ -128,7 +128,7 @@ check-soak: all unit
 	$(ENVIRONMENT) SINEW_LONG=1 REPEATS=100 $(PROVE) $(SOAK)
 
 check-run1e6: all
-	SINEW_BIN=$(BIN) tests/long/run1e6 5 50000
+	SINEW_BIN=$(BIN) tests/long/run1e6 5
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
 .PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction compare-msds
@@ -312,7 +312,7 @@ help:
 	'' \
 	'make check        set-up, the build, all tests, and small lints: run it before each commit; 4 minutes on two processors' \
 	'make check-all    that, and clang, sanitizers, fuzzers, clang-tidy, cppcheck, valgrind, a browser, slow tests; half an hour' \
-	'make soak         the long runs: fuzzing, a fault at every call, a hundred repeats, 50000 steps; hours' \
+	'make soak         the long runs: fuzzing, a fault at every call, a hundred repeats, a million steps; hours' \
 	'make check-ci     what continuous integration runs (.ci/run): check, and a fixed list of the parts of check-all' \
 	'' \
 	'make setup        installs by apt what make check needs (through sudo if not root), and names it' \
