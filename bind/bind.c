@@ -64,7 +64,7 @@ static int check_model(const model *m, err *e)
     if (!node || !position)
         return -1;
     if (!node->rows)
-        return err_set(e, NULL, 0, "the model has no elements; expected some to bind to");
+        return err_set(e, NULL, 0, "the model has no elements; expected elements to bind to");
     return 0;
 }
 
@@ -207,7 +207,7 @@ static int bind_surface(const tool *t, target *to, model *m, const char *name, n
     snprintf(weight, sizeof weight, "%s/vertex.weight", name);
     snprintf(axis, sizeof axis, "%s/vertex", name);
     if (model_find(m, element))
-        tool_say(t, "surface %s was bound before; it is bound anew", name);
+        tool_say(t, "surface %s was bound already; the new binding replaces the old one", name);
     if (!model_add(m, element, e) || !model_add_as(m, weight, MODEL_F64, "1", axis, to->corners == 8 ? 3 : 4, e) ||
         surface_of(m, name, &s, e) || check_finite(&s, e))
         return -1;
@@ -283,9 +283,10 @@ static int bind_files(const tool *t, target *to, model *m, char *const *path, co
         for (int j = 0; j < i && !o->common.anonymous; j++) {
             surface_name(path[j], other, sizeof other);
             if (!strcmp(name, other))
-                return err_set(e, path[i], 0,
-                               "would be surface %s, as %s is; expected another name, or --name in a run of its own",
-                               name, path[j]);
+                return err_set(
+                    e, path[i], 0,
+                    "would be named surface %s, as %s is; expected another name, or --name in a run of its own", name,
+                    path[j]);
         }
         if (bind_file(t, to, m, path[i], o, warnings, e))
             return -1;

@@ -130,7 +130,7 @@ static int hold(mover *w, const tool *t, double within, err *e)
         held += w->held[v];
         furthest = fmax(furthest, d);
     }
-    tool_detail(t, "%lld vertices are bone's", (long long)w->bone.count);
+    tool_detail(t, "%lld vertices move with a rigid surface", (long long)w->bone.count);
     if (held)
         tool_say(t,
                  "%lld of %lld vertices lie further than %.4g m outside and stay where they are, the furthest %.4g m",

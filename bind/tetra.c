@@ -179,7 +179,7 @@ int tetra_build(tetra *t, const model *m, err *e)
         goto out;
     int32_t elements = collect(t, middles, node->rows);
     if (!elements) {
-        err_set(e, NULL, 0, "no %s of the model has a volume; expected some to bind to",
+        err_set(e, NULL, 0, "no %s of the model has a volume; expected elements to bind to",
                 t->corners == 4 ? "tetrahedron" : "hexahedron");
         goto out;
     }

@@ -438,7 +438,7 @@ int factor_again(factor *f, err *e)
     if (failed >= 0)
         return err_set(
             e, NULL, 0,
-            "nothing holds node %d's part of the model, so that the FEM has no one solution; expected rigid nodes",
+            "nothing holds node %d's part of the model, so that the FEM has no unique solution; expected rigid nodes",
             (int)failed);
     return 0;
 }

@@ -183,17 +183,17 @@ static void note_missed(const found *f, const volume *labels, notes *warnings)
     find_missed(&m, f, labels);
     for (int i = 0; i < m.count; i++)
         note_one(labels, m.value[i],
-                 "has no tetrahedron: none has its centre in it; expected it where the mesh is, and more nodes for "
-                 "what is thin",
+                 "has no tetrahedron, because no tetrahedron has its centre in it; expected a label inside the mesh, "
+                 "and more nodes where it is thin",
                  warnings);
     if (m.more)
-        notes_add(warnings, "nor have other labels");
+        notes_add(warnings, "other labels have no tetrahedron either");
     for (int i = 0; i < labels->labels && !m.more; i++) {
         bool any = bsearch(&labels->label[i].value, f->value, (size_t)f->count, sizeof *f->value, compare) != NULL;
         for (int k = 0; k < m.count; k++)
             any = any || m.value[k] == labels->label[i].value;
         if (!any && labels->label[i].value)
-            note_one(labels, labels->label[i].value, "is named, and no voxel has it", warnings);
+            note_one(labels, labels->label[i].value, "is named, but no voxel has this label", warnings);
     }
 }
 

@@ -172,25 +172,33 @@ static int make_volumes(const struct options *o, model *m, notes *warnings, err 
 
 /* ---- say */
 
-static void say_volumes(const tool *t, const model *m, notes *warnings)
+static int say_volumes(const tool *t, const model *m, notes *warnings, err *e)
 {
+    static const char *const heads[] = {"<volume", ">tetrahedra", "<material", NULL};
     const model_array *of = model_find(m, "element.volume"), *name = model_find(m, "volume.name");
     const model_array *of_volume = model_find(m, "volume.material"), *called = model_find(m, "material.name");
     if (!of || !name || !of_volume || !called)
-        return;
-    for (int64_t v = 0; v < name->rows; v++) {
+        return 0;
+    text_table *rows = text_table_create(heads, e);
+    for (int64_t v = 0; rows && v < name->rows; v++) {
         int64_t count = 0;
         for (int64_t n = 0; n < of->rows; n++)
             count += of->i32[n] == v;
-        tool_say(t, "%s: material %s, %lld tetrahedra", name->str[v], called->str[of_volume->i32[v]], (long long)count);
+        text_table_cell(rows, "%s", name->str[v]);
+        text_table_count(rows, count);
+        text_table_cell(rows, "%s", called->str[of_volume->i32[v]]);
     }
+    const int rc =
+        rows ? tool_table(t, rows, e, "%lld volume%s", (long long)name->rows, name->rows == 1 ? "" : "s") : -1;
+    text_table_free(rows);
     for (int64_t i = 0; i < called->rows; i++) {
         bool used = false;
         for (int64_t v = 0; v < of_volume->rows; v++)
             used |= of_volume->i32[v] == i;
         if (!used)
-            notes_add(warnings, "material %s is no volume's", called->str[i]);
+            notes_add(warnings, "material %s belongs to no volume", called->str[i]);
     }
+    return rc;
 }
 
 static double length_of(const double v[3])
@@ -206,14 +214,16 @@ static void say_cells(const tool *t, const mesh_box *b)
     tool_say(t, "cells of %.6g x %.6g x %.6g mm", side[0], side[1], side[2]);
 }
 
-static void say_all(const tool *t, const model *m, notes *warnings)
+static int say_all(const tool *t, const model *m, notes *warnings, err *e)
 {
     int64_t fixed = mesh_fixed(m);
-    say_volumes(t, m, warnings);
-    tool_say(t, "%lld nodes, of them fixed %lld; %lld tetrahedra", (long long)model_count(m, "node"), (long long)fixed,
+    if (say_volumes(t, m, warnings, e))
+        return -1;
+    tool_say(t, "%lld nodes, %lld of them fixed; %lld tetrahedra", (long long)model_count(m, "node"), (long long)fixed,
              (long long)model_count(m, "element"));
     if (!fixed)
         notes_add(warnings, "no node is fixed: nothing holds the mesh");
+    return 0;
 }
 
 /* ---- the two ways to a mesh */
@@ -250,7 +260,8 @@ static int run_tool(int argc, char **argv)
         goto out;
     if (o.nodes)
         say_cells(&t, &b);
-    say_all(&t, &m, &warnings);
+    if (say_all(&t, &m, &warnings, &e))
+        goto out;
     stage_write(&s, &m, &e);
 out:
     tool_warn(&t, &warnings);

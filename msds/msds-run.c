@@ -160,7 +160,7 @@ static void say_springs(session *s)
     if (o->mass == MASS_STABLE)
         tool_say(s->t, "springs: inertia is %.6g times the mass, for that step", p->mass_factor);
     else if (s->substeps > 1)
-        tool_say(s->t, "springs: each step is taken in %lld", (long long)s->substeps);
+        tool_say(s->t, "springs: each step is cut into %lld", (long long)s->substeps);
 }
 
 static int make_problem(session *s, err *e)
@@ -326,12 +326,12 @@ static void warn_of_pose(session *s, const poses_event *at, const press_moves *m
     if (first && probe_is_thin(&s->probe, s->problem.side))
         notes_add(
             &s->warnings,
-            "the probe is %.3g mm thick, cells are %.3g mm wide: it may go in between nodes; expected a finer mesh",
+            "the probe is %.3g mm thick, cells are %.3g mm wide: it may slip between nodes; expected a finer mesh",
             2e3 * s->probe.size, 1e3 * s->problem.side);
     if (moves->inside)
         notes_add(&s->warnings,
-                  "%s:%lld: the probe is inside the tissue at once; it is eased in along its axis, from %.3g mm back, "
-                  "in %d moves",
+                  "%s:%lld: the probe begins inside the tissue; it is moved in along its axis, from %.3g mm back, in "
+                  "%d moves",
                   in_name(s->source), (long long)at->line, 1e3 * moves->back, moves->count);
     if (s->warnings.count)
         progress_clear(&s->progress);
@@ -421,7 +421,8 @@ static int simulate(session *s, err *e)
             s->method = method_of(s, at.kind == POSES_FEM);
             if (s->method == MSDS_SPRINGS)
                 say_springs(s);
-            tool_detail(s->t, "line %lld: from here on by %s", (long long)at.line, s->method ? "fem" : "msds");
+            tool_detail(s->t, "line %lld: the method is %s from here on", (long long)at.line,
+                        s->method ? "fem" : "msds");
             continue;
         }
         s->posed++;
@@ -436,13 +437,15 @@ static int simulate(session *s, err *e)
     if (!got && !s->posed)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
     if (!got && s->o->probe && !s->pressed)
-        notes_add(&s->warnings,
-                  "the probe touches nothing in any frame (of %lld); expected poses in metres, in the model's space, "
-                  "and nodes closer together than the probe is wide",
-                  (long long)s->posed);
+        notes_add(
+            &s->warnings,
+            "the probe touches nothing in any frame (%lld in all); expected poses in metres, in the model's space, "
+            "and nodes closer together than the probe is wide",
+            (long long)s->posed);
     if (!got && s->pressed && s->skin.vertices && !s->dented)
         notes_add(&s->warnings,
-                  "the probe presses the tissue, but the skin in no frame; expected %s where the tissue is, in --unit",
+                  "the probe presses the tissue, but touches the skin in no frame; expected %s in the place of the "
+                  "tissue; check --unit",
                   s->skin_name);
     return got;
 }

@@ -34,7 +34,7 @@ int parts_held(const msds_problem *p, err *e)
     for (int64_t n = 0; n < p->nodes && !result; n++)
         if (!p->fixed[n] && held[first_of(toward, (int32_t)n)] < HOLD)
             result = err_set(e, NULL, 0,
-                             "nothing holds node %lld's part of the model, so that the FEM has no one solution; "
+                             "nothing holds node %lld's part of the model, so that the FEM has no unique solution; "
                              "expected rigid nodes",
                              (long long)n);
     free(toward);

@@ -216,9 +216,10 @@ int read_file(const errand *job)
     OFString syntax;
     if (file.getMetaInfo()->findAndGetOFString(DCM_TransferSyntaxUID, syntax).good() &&
         DcmXfer(syntax.c_str()).getXfer() == EXS_Unknown)
-        return err_set(job->e, f->name, 0,
-                       "transfer syntax '%.64s'; expected pixels that are plain, RLE, JPEG, JPEG-LS or JPEG 2000",
-                       syntax.c_str());
+        return err_set(
+            job->e, f->name, 0,
+            "transfer syntax '%.64s'; expected pixels that are uncompressed, RLE, JPEG, JPEG-LS or JPEG 2000",
+            syntax.c_str());
     if (f->seen && note_all(f, job->e))
         return -1;
     return dicom_file_take(f, job->to, job->e);

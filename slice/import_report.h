@@ -16,6 +16,6 @@ typedef struct import_report {
     bool own_frame, private_geometry;
 } import_report;
 
-void import_print(const import_report *r, const volume *v, const tool *t);
+int import_print(const import_report *r, const volume *v, const tool *t, err *e);
 
 #endif

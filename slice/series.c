@@ -177,7 +177,7 @@ static int place_frame(const stack *k, const series_file *f, int64_t frame, slic
     const double *position = d->position + 3 * frame;
     if (!d->placed) {
         if (k->files > 1)
-            return err_set(e, f->name, 0, "an image without a position among others; expected ImagePositionPatient");
+            return err_set(e, f->name, 0, "one of several images has no position; expected ImagePositionPatient");
         if (frame && !(k->spacing[2] > 0))
             return err_set(e, f->name, 0,
                            "%" PRId64
@@ -346,9 +346,10 @@ static int check_even(const stack *k, double usual, err *e)
             off += beside * beside;
         }
         if (sqrt(off) > EVEN_MM + EVEN_SHARE * (s->along - first->along + usual))
-            return err_set(e, NULL, 0,
-                           "slices: %s lies %.6g mm beside where the first points; expected a straight stack (no tilt)",
-                           slice_name(s, one), sqrt(off));
+            return err_set(
+                e, NULL, 0,
+                "slices: %s lies %.6g mm beside the normal of the first slice; expected a straight stack (no tilt)",
+                slice_name(s, one), sqrt(off));
     }
     return last->along > first->along ? 0 : -1;
 }
@@ -360,7 +361,8 @@ static int put_in_order(stack *k, err *e)
     if (k->count == 1) {
         if (k->spacing[2] > 0)
             return 0;
-        return err_set(e, k->file[0]->name, 0, "one slice, and no distance to a next one; expected more, or --spacing");
+        return err_set(e, k->file[0]->name, 0,
+                       "one slice, and no distance to a next one; expected more slices, or --spacing");
     }
     if (usual_gap(k, &usual, e))
         return -1;

@@ -164,7 +164,7 @@ static int find_axes(const sweep *s, double axis[3][3], err *e)
     length[2] = length[0] * length[1];
     if (!(length[2] > 1e-12 * length[0] * length[0]) || !isfinite(length[2]))
         return err_set(e, NULL, 0,
-                       "an image whose columns and rows lie on a line; expected a transform that keeps them apart");
+                       "an image whose columns and rows are parallel; expected a transform that keeps them apart");
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
             axis[a][b] /= sqrt(length[a]);

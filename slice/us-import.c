@@ -349,8 +349,8 @@ static int run_tool(int argc, char **argv)
     j.found = true;
     if (read_all(&j, &o, &e))
         goto out;
-    if (o.report)
-        import_print(&j.report, &j.v, &t);
+    if (o.report && import_print(&j.report, &j.v, &t, &e))
+        goto out;
     snprintf(j.of, sizeof j.of, "the output");
     out *to = out_open(o.common.output, false, &e);
     if (to && nrrd_write(&j.v, !o.raw, to, &e))

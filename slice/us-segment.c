@@ -86,9 +86,9 @@ static int check_options(const struct options *o, err *e)
     if (!is_name(o->name))
         return err_usage(e, "-n '%s': expected a name in UTF-8, without blanks at its ends", o->name);
     if (!isnan(o->tolerance) && !seeds)
-        return err_usage(e, "--tolerance is from seeds; expected --seed or --seed-voxel");
+        return err_usage(e, "--tolerance is relative to the intensity of a seed; expected --seed or --seed-voxel");
     if (isnan(o->low) && isnan(o->high) && isnan(o->tolerance))
-        return err_usage(e, "which intensities? expected --low, --high, or --tolerance with seeds");
+        return err_usage(e, "no intensities are given; expected --low, --high, or --tolerance with seeds");
     if (o->low > o->high)
         return err_usage(e, "--low %g is above --high %g", o->low, o->high);
     return 0;

@@ -194,9 +194,10 @@ static int pressed_by(const job *j, slice_probe *p, char *why, size_t size, err 
     }
     const int none = !strncmp(text, "convex:", 7) ? 1 : slice_probe_of(p, text, &wrong);
     snprintf(why, size, "the model's probe.shape, %.100s, makes no image", text);
-    return none < 0 ? err_set(e, source_name(&j->model), 0,
-                              "metadata, probe.shape: '%.100s' is no probe; expected one as msds-run writes it", text)
-                    : none;
+    return none < 0
+               ? err_set(e, source_name(&j->model), 0,
+                         "metadata, probe.shape: '%.100s' is not a probe; expected one as msds-run writes it", text)
+               : none;
 }
 
 /* The image's array: --probe's; else that of the model; else a usual one. */
@@ -461,7 +462,7 @@ static void say_poses(job *j)
         return;
     j->said = true;
     if (!j->more_poses)
-        tool_say(j->t, "poses: the frames' own");
+        tool_say(j->t, "poses: those of the frames");
     else if (j->poses.sequence)
         tool_say(j->t, "poses: %sTo%s of %s; their frame is %s", p->from, p->to, in_name(j->pose_source), in_frame);
     else
@@ -560,7 +561,7 @@ static int run_tool(int argc, char **argv)
         goto out;
     if (!j.lit)
         notes_add(&j.warnings,
-                  "all is black in every image (of %lld); expected poses in metres, in the volume's frame%s, that look "
+                  "every image (of %lld) is black; expected poses in metres, in the volume's frame%s, that look "
                   "into it",
                   (long long)j.images, o.rigid ? "" : " (which is the model's too)");
 out:

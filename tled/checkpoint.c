@@ -89,7 +89,7 @@ char *checkpoint_file(const char *path, int i, err *e)
 static int remove_file(const char *path, err *e)
 {
     return unlink(path) && errno != ENOENT
-               ? err_system(e, path, errno, "is left of a run that has ended: cannot remove")
+               ? err_system(e, path, errno, "belongs to a run that has ended: cannot remove")
                : 0;
 }
 
@@ -102,7 +102,7 @@ int checkpoint_remove(const checkpoint *c, err *e)
             return -1;
         const bool is_there = !stat(c->path, &s); /* what is there now may be the output, by mistake */
         if (!is_there && errno != ENOENT)
-            return err_system(e, c->path, errno, "is left of a run that has ended");
+            return err_system(e, c->path, errno, "belongs to a run that has ended");
         if (is_there && s.st_ino == c->saved && remove_file(c->path, e))
             return -1;
     }
@@ -169,12 +169,12 @@ static int open_frames(checkpoint *c, int flags, err *e)
     if (!S_ISREG(s.st_mode))
         return err_set(e, c->frames_path, 0, "is no regular file; expected one, or a new name");
     if (flock(c->lock, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
-        return err_set(e, c->frames_path, 0, "another run is at it; expected one at a time");
+        return err_set(e, c->frames_path, 0, "another run is using it; expected one run at a time");
     const bool is_there = !stat(c->frames_path, &named);
     if (!is_there && errno != ENOENT)
         return err_system(e, c->frames_path, errno, "cannot open");
     if (!is_there || named.st_ino != s.st_ino || named.st_dev != s.st_dev)
-        return err_set(e, c->frames_path, 0, "another run was at it until now; expected one at a time");
+        return err_set(e, c->frames_path, 0, "another run was using it until now; expected one run at a time");
     return 0;
 }
 
@@ -200,7 +200,7 @@ static int check_frames(const checkpoint *c, err *e)
     const unsigned char *want = out_bytes(head, &size);
     int bad = out_failed(head, e);
     if (!bad && (n < 0 || memcmp(found, want, (size_t)n < size ? (size_t)n : size) != 0))
-        bad = err_set(e, c->frames_path, 0, "is there, and no checkpoint's; expected another name for --checkpoint");
+        bad = err_set(e, c->frames_path, 0, "exists, and is not a checkpoint; expected another name for --checkpoint");
     out_discard(head);
     return bad;
 }
@@ -212,7 +212,8 @@ static int check_none(const checkpoint *c, err *e)
     struct stat s;
     for (int i = 0; i < 2; i++)
         if (!lstat(paths[i], &s))
-            return err_set(e, paths[i], 0, "is there; expected --restart, to go on from a checkpoint, or another name");
+            return err_set(e, paths[i], 0,
+                           "exists already; expected --restart, to go on from a checkpoint, or another name");
         else if (errno != ENOENT && errno != ENOTDIR)
             return err_system(e, paths[i], errno, "cannot create");
     return 0;
@@ -361,7 +362,7 @@ out:
 
 static int misplaced(const item_source *s, const item *it, err *e)
 {
-    return item_error(s, it, e, "is not what stands there in the frames of a checkpoint");
+    return item_error(s, it, e, "does not belong in the frames of a checkpoint");
 }
 
 /* The next frame of FILE.frames. -1 with e filled. */
@@ -434,7 +435,8 @@ static int choose_state(checkpoint *c, notes *warnings, err *e)
         return 0;
     if (!foreign && !try_state(c, c->before, &foreign, &second)) {
         c->stale = true;
-        notes_add(warnings, "%s; going on from the one before, %s, at %.6g s", first.text, c->before, c->time);
+        notes_add(warnings, "%s; the run goes on from the checkpoint before it, %s, at %.6g s", first.text, c->before,
+                  c->time);
         return 0;
     }
     c->time = NAN;

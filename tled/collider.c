@@ -97,11 +97,12 @@ void collider_begin(collider *c, const tled_problem *p, double ramp, notes *warn
     const double inside = begin_inside(c, p, ramp), side = cbrt(p->side[0] * p->side[1] * p->side[2]);
     const probe_placed first = collider_at(c, p->start);
     if (inside > 0)
-        notes_add(warnings, "the probe begins %.3g mm inside the tissue: it comes up in %g s", 1e3 * inside, ramp);
+        notes_add(warnings, "the probe begins %.3g mm inside the tissue: its contact force rises over %g s",
+                  1e3 * inside, ramp);
     if (probe_is_thin(&c->shape, side))
         notes_add(
             warnings,
-            "the probe is %.3g mm thick, elements are %.3g mm wide: it may go in between nodes; expected a finer mesh",
+            "the probe is %.3g mm thick, elements are %.3g mm wide: it may slip between nodes; expected a finer mesh",
             2e3 * c->shape.size, 1e3 * side);
     if (is_away(c, p))
         notes_add(warnings, "the probe never comes near the tissue; expected poses in metres, in the model's space");

@@ -104,11 +104,12 @@ static void warn_of_frames(const folds *f, notes *warnings)
     char where[ELEMENT_PLACE];
     const quality *q = &f->worst.quality;
     element_place_text(f->m, q->element, where);
-    notes_add(warnings,
-              "elements are folded on the way (J <= 0 in the middle or at a corner), in %lld of %lld frames, worst at "
-              "%.6g s, %lld of %lld; the worst is %s, J %.3g: the result is wrong there; %s",
-              (long long)f->folded, (long long)f->frames, f->worst_time, (long long)q->folded,
-              (long long)f->p->elements, where, q->worst, remedy(&f->worst));
+    notes_add(
+        warnings,
+        "elements are folded during the run (J <= 0 in the middle or at a corner), in %lld of %lld frames, worst at "
+        "%.6g s, %lld of %lld; the worst is %s, J %.3g: the result is wrong there; %s",
+        (long long)f->folded, (long long)f->frames, f->worst_time, (long long)q->folded, (long long)f->p->elements,
+        where, q->worst, remedy(&f->worst));
 }
 
 /* A smaller --hourglass would fold more. */

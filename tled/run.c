@@ -394,7 +394,7 @@ static int is_at_rest(run *n)
     if (!r->single || (double)(n->plan.first - n->closest_at) <= fmax(STUCK, 20 * period * r->rate))
         return 0;
     return err_set(n->e, NULL, 0,
-                   "in single precision it comes no closer to rest than %.3g of its displacement, expected %.3g; a "
+                   "not at rest: single precision leaves %.3g of the displacement to go; expected at most %.3g, a "
                    "larger --rest, or --precision double",
                    n->closest, r->rest);
 }
@@ -520,8 +520,8 @@ static int loop(run *n, run_end *end)
     end->remaining = n->remaining;
     if (over >= 0 && r->rest >= 0 && !end->rested)
         return err_set(n->e, NULL, 0,
-                       "not at rest after %lld steps, %.6g s: still %.3g of its displacement to go, expected %.3g; a "
-                       "larger --rest, or -t to stop at a time",
+                       "not at rest after %lld steps, %.6g s: %.3g of the displacement is still to go; expected at "
+                       "most %.3g, a larger --rest, or -t to end at a time",
                        (long long)end->steps, end->sight.time, n->remaining, r->rest);
     return over < 0 ? -1 : written == n->plan.first ? 0 : write_frame(n);
 }

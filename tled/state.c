@@ -297,11 +297,12 @@ int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
 {
     const model_array *u = frame_find(f, "node.displacement"), *v = frame_find(f, "node.velocity");
     if (!isfinite(f->time))
-        return err_set(e, NULL, 0, "frame %lld has no time to go on from", (long long)f->index);
+        return err_set(e, NULL, 0, "frame %lld has no time, so the run cannot go on from it", (long long)f->index);
     if (!u)
-        return err_set(e, NULL, 0, "frame %lld has no node.displacement to go on from", (long long)f->index);
+        return err_set(e, NULL, 0, "frame %lld has no node.displacement, so the run cannot go on from it",
+                       (long long)f->index);
     if (!v)
-        notes_add(warnings, "frame %lld has no node.velocity: going on from rest", (long long)f->index);
+        notes_add(warnings, "frame %lld has no node.velocity: the run begins with velocity 0", (long long)f->index);
     memcpy(p->displacement, u->f64, (size_t)p->nodes * 3 * sizeof *p->displacement);
     if (v)
         memcpy(p->velocity, v->f64, (size_t)p->nodes * 3 * sizeof *p->velocity);

@@ -316,7 +316,7 @@ static void checked(void *context, int64_t step, const watch_sight *sight, doubl
     tool_detail(s->t, "%.6g s: %skinetic %.3g J, strain %.3g J, stable step %.4g ms, damping %.4g 1/s", sight->time,
                 left, sight->kinetic, sight->strain, 1e3 * sight->stable, damping);
     if (cut != s->cut)
-        tool_detail(s->t, "each step is taken in %lld from now on, for element %lld", (long long)cut,
+        tool_detail(s->t, "each step is cut into %lld from now on, because of element %lld", (long long)cut,
                     (long long)sight->stable_element);
     s->cut = cut;
 }
@@ -327,7 +327,7 @@ static void say_cut(void *context, const watch_sight *sight, int64_t parts)
     char why[400];
     watch_words(&s->m, sight, why, sizeof why);
     progress_clear(&s->progress);
-    tool_say(s->t, "at %.6g s each step is cut in %lld, to %.4g ms: %s", sight->time, (long long)parts,
+    tool_say(s->t, "at %.6g s each step is cut into %lld, of %.4g ms: %s", sight->time, (long long)parts,
              1e3 / (s->run.rate * (double)parts), why);
     s->cut = parts;
 }
@@ -394,9 +394,9 @@ static void say_start(const session *s, const char *device, const struct options
     tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable, 1e3 / r->rate, r->damping,
              r->adapt ? ", then adapted" : "");
     if (!r->point && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
-        tool_say(s->t, "past the ramp of %g s: -c and -g act in full at once", o->ramp);
+        tool_say(s->t, "the run begins after the ramp of %g s: -c and -g act in full from the first step", o->ramp);
     if (r->point)
-        tool_say(s->t, "going on from %.6g s, after %lld steps", p->start,
+        tool_say(s->t, "the run goes on from %.6g s, after %lld steps", p->start,
                  (long long)(r->point->first - r->point->from));
     else if (r->rest >= 0)
         tool_say(s->t, "from %.6g s to rest, tolerance %g", p->start, r->rest);
@@ -415,9 +415,10 @@ static void say_between(const session *s, const char *option, const char *what, 
         return;
     const double first = (floor(start / every) + 1) * every - origin;
     if (every * rate < 1)
-        tool_say(s->t, "%s %g s is shorter than a step: a %s a step", option, every, what);
+        tool_say(s->t, "%s %g s is shorter than a step: one %s is written for each step", option, every, what);
     else if ((first < last && run_is_between(first, rate)) || (first + every < last && run_is_between(every, rate)))
-        tool_say(s->t, "multiples of %s %g s lie between steps: a %s is of the first step past one, up to %.3g ms late",
+        tool_say(s->t,
+                 "multiples of %s %g s lie between steps: each %s is of the first step after one, up to %.3g ms late",
                  option, every, what, 1e3 / rate);
 }
 
@@ -437,7 +438,7 @@ static void say_end(session *s, const run_end *end)
     const watch_sight *w = &end->sight;
     char left[80] = "";
     if (end->parts > 1)
-        tool_say(s->t, "steps were cut, in up to %lld: %lld were taken for %lld", (long long)end->parts,
+        tool_say(s->t, "steps were cut into up to %lld: %lld steps were taken in place of %lld", (long long)end->parts,
                  (long long)end->taken, (long long)end->steps);
     if (end->rested)
         snprintf(left, sizeof left, ", %.3g of its displacement to go", end->remaining);

@@ -248,7 +248,7 @@ void watch_words(const model *m, const watch_sight *s, char *to, size_t size)
     }
     element_place_text(m, element, where);
     if (s->broken >= 0)
-        snprintf(to, size, "%s was inverted or not finite after longer ones", where);
+        snprintf(to, size, "%s was inverted or not finite after longer steps", where);
     else
         snprintf(to, size, "%s has a stable step of %.4g ms", where, 1e3 * s->stable);
 }

@@ -133,11 +133,11 @@ void report_volume_row(text_table *t, const volumes_volume *v, int64_t open)
 void report_warn(notes *n, const char *what, const char *name, const check_result *r)
 {
     if (r->met)
-        notes_add(n, "%s %s crosses itself (%lld pairs of triangles): what is inside twice is outside", what, name,
-                  (long long)r->met);
+        notes_add(n, "%s %s crosses itself (%lld pairs of triangles): a place that is enclosed twice counts as outside",
+                  what, name, (long long)r->met);
     if (r->thin > 0.5)
-        notes_add(n, "%s %s is thinner than a voxel over %.3g %% of its area: it has voxels there by chance", what,
-                  name, 100 * r->thin);
+        notes_add(n, "%s %s is thinner than a voxel over %.3g %% of its area: whether it has voxels there is chance",
+                  what, name, 100 * r->thin);
 }
 
 /* ---- the size of all */
@@ -193,8 +193,8 @@ void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_u
     put_voxel(voxel, sizeof voxel, g, voxel_for(middle->width, least), unit);
     notes_add(n,
               "elements fill gaps between surfaces in %lld place%s of a voxel's width, %.4g %s^2, as at "
-              "%.6g%s,%.6g%s,%.6g%s, where the gap is %.3g %s wide along %c: what it parts moves as one; voxels of at "
-              "most %s part half of these places%s",
+              "%.6g%s,%.6g%s,%.6g%s, where the gap is %.3g %s wide along %c: both sides move as one there; voxels of "
+              "at most %s separate them in half of these places%s",
               (long long)found->count, found->count == 1 ? "" : "s", gaps_area(found, g), name, at[0], name, at[1],
               name, at[2], name, middle->width * g->spacing[middle->axis], name, 'x' + middle->axis, voxel,
               isnan(least) ? "" : ", and so may a larger --least");
@@ -209,17 +209,16 @@ void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, cons
     const double thickness = layers_thickness(l, layer), side = grid_longest(g);
     const double kept = (double)x->count[volume].kept;
     const char *name = num_unit_name(unit), *which = l->layer[layer].name;
-    char what[256] = "no centre is in it, and no element stands for it";
+    char what[256] = "no voxel centre is in it, so it has no element";
     int64_t r = 0;
     while (r < x->runs && x->run[r].volume != volume)
         r++;
     if (r < x->runs)
-        snprintf(
-            what, sizeof what,
-            "%.0f whole elements (%.3g %% of all) stand for it, in stripes where centres happen to be in it, the first "
-            "at %.6g%s,%.6g%s,%.6g%s",
-            kept, 100 * kept / (double)x->elements, grid_place(g, 0, x->run[r].from), name,
-            grid_place(g, 1, x->run[r].j), name, grid_place(g, 2, x->run[r].k), name);
+        snprintf(what, sizeof what,
+                 "it has %.0f elements (%.3g %% of all), in stripes where voxel centres happen to lie in it, the first "
+                 "at %.6g%s,%.6g%s,%.6g%s",
+                 kept, 100 * kept / (double)x->elements, grid_place(g, 0, x->run[r].from), name,
+                 grid_place(g, 1, x->run[r].j), name, grid_place(g, 2, x->run[r].k), name);
     notes_add(n, "layer %s is %.4g %s thick, less than a voxel of %.4g %s: %s; voxels of at most %.4g %s resolve it",
               which, thickness, name, side, name, what, thickness, name);
 }

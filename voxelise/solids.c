@@ -89,11 +89,10 @@ static int report(const work *w, const char *volume, const closed_result *r, boo
 {
     if (r->cancelled)
         notes_add(warnings,
-                  "volume %s gives polygons again (%lld of them): they cancel in pairs, as where two solids touch",
-                  volume, (long long)r->cancelled);
+                  "volume %s repeats polygons (%lld of them): they cancel in pairs, as where two solids touch", volume,
+                  (long long)r->cancelled);
     if (r->once)
-        notes_add(warnings, "volume %s gives polygons again (%lld of them): each counts once", volume,
-                  (long long)r->once);
+        notes_add(warnings, "volume %s repeats polygons (%lld of them): each counts once", volume, (long long)r->once);
     if (!r->open)
         return 0;
     char names[500];
@@ -104,8 +103,8 @@ static int report(const work *w, const char *volume, const closed_result *r, boo
         return 0;
     }
     return err_set(e, w->o->name, 0,
-                   "volume %s is open: %lld open edges (%s); expected every edge to join two polygons "
-                   "(--allow-open goes on all the same)",
+                   "volume %s is open: %lld open edges (%s); expected every edge to join two polygons (--allow-open "
+                   "accepts open edges)",
                    volume, (long long)r->open, names);
 }
 

@@ -347,9 +347,10 @@ void volumes_notes(const volumes *v, bool by_name, notes *warnings)
     for (int32_t s = 0; s < v->surfaces; s++) {
         const char *name = v->surface[s].name, *word = by_name ? almost(name) : NULL;
         if (v->surface[s].polygons == 0)
-            notes_add(warnings, "surface %s is named and has no polygon", name);
+            notes_add(warnings, "surface %s has no polygon", name);
         else if (word)
-            notes_add(warnings, "surface %s bounds a volume as other names do; names that begin %s are near", name,
+            notes_add(warnings,
+                      "the name of surface %s begins with no known word; did you mean one that begins with %s?", name,
                       word);
     }
 }

@@ -161,7 +161,7 @@ static int ask_for_unit(const obj *o, err *e)
     report_sides(o, d);
     return err_usage(
         e,
-        "%s: is in a unit that only you know: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "
+        "%s: an OBJ does not say its unit: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "
         "%.4g m; expected --unit mm|cm|m|in|um",
         o->name, d[0] / 1e3, d[1] / 1e3, d[2] / 1e3, d[0], d[1], d[2]);
 }
@@ -347,7 +347,8 @@ static int say_plan(job *j, const model *m, err *e)
     if (say_volumes(j, m, e))
         return -1;
     if (j->x.fraction)
-        tool_say(j->t, "enclosed: %.9g of the elements' %lld voxels", enclosed(j), (long long)j->x.elements);
+        tool_say(j->t, "the surfaces enclose the volume of %.9g voxels, in %lld elements", enclosed(j),
+                 (long long)j->x.elements);
     tool_say(j->t, "%lld elements, %lld nodes", (long long)model_count(m, "element"),
              (long long)model_count(m, "node"));
     if (!j->plan.rigid)
@@ -497,7 +498,7 @@ static int check(job *j, err *e)
     if (!open || j->o->allow_open)
         return 0;
     return err_set(e, j->surface.name, 0,
-                   "%lld open edges; expected every edge to join two polygons (--allow-open goes on all the same)",
+                   "%lld open edges; expected every edge to join two polygons (--allow-open accepts open edges)",
                    (long long)open);
 }
 

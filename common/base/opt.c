@@ -333,7 +333,7 @@ static int check_required(const scan *s, int operands, err *e)
                          *s->tool->operands ? s->tool->operands : "none");
     for (int i = 1; i <= operands; i++)
         if (!*s->argv[i])
-            return err_usage(e, "operand '' has no text; expected %s", s->tool->operands);
+            return err_usage(e, "operand '' is empty; expected %s", s->tool->operands);
     return 0;
 }
 

@@ -69,8 +69,7 @@ static int numbers(const char *text, const char *list, int least, int most, int 
     num_length length[4];
     int count = num_lengths_of(list, length, most);
     if (count < least)
-        return err_usage(e, "--probe %.100s: '%.80s' is none of its lists of lengths; expected %s", text, list,
-                         expected);
+        return err_usage(e, "--probe %.100s: '%.80s' is not a list of lengths; expected %s", text, list, expected);
     for (int i = 0; i < count; i++) {
         to[i] = i == degrees ? length[i].value : num_length_in(length[i], num_unit_of("m"), num_unit_of("m"));
         if (i == degrees && (length[i].unit || !(to[i] >= least_angle && to[i] <= most_angle)))
@@ -88,8 +87,8 @@ static int check_edge(const char *text, double edge, double most, err *e)
 {
     if (edge <= most)
         return 0;
-    return err_set(e, NULL, 0, "--probe %.100s: an edge of %g m does not go into it; expected at most %g m", text, edge,
-                   most);
+    return err_set(e, NULL, 0, "--probe %.100s: an edge of %g m does not fit into it; expected at most %g m", text,
+                   edge, most);
 }
 
 static int read_sphere(probe *p, const char *text, const char *list, err *e)

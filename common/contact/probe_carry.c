@@ -59,6 +59,6 @@ int probe_carried(probe *p, const model *m, err *e)
         return 0;
     if (probe_of(p, text, &ignored))
         return err_set(e, m->stream, 0,
-                       "metadata, probe.shape: '%.100s' is no probe; expected one as msds-run writes it", text);
+                       "metadata, probe.shape: '%.100s' is not a probe; expected one as msds-run writes it", text);
     return p->kind == PROBE_CONVEX ? convex_carried(p, m, e) : 1;
 }

@@ -69,7 +69,7 @@ void *card_take(int64_t bytes, const char *what, err *e)
     if (code == cudaErrorMemoryAllocation) {
         cudaGetLastError();
         err_set(e, NULL, 0,
-                "%s takes %.4g GB of the card's memory, which has %.4g GB free of %.4g; -d cpu does without it", what,
+                "%s takes %.4g GB of the card's memory, which has %.4g GB free of %.4g; -d cpu needs none of it", what,
                 1e-9 * (double)bytes, 1e-9 * (double)left, 1e-9 * (double)all);
         return NULL;
     }

@@ -24,6 +24,6 @@ bool vectors_are(const char *name)
 void vectors_none(err *e)
 {
     const char *wanted = getenv("SINEW_VECTORS");
-    err_set(e, "SINEW_VECTORS", 0, "'%.100s' is not to be had here; expected plain, AVX2 or AVX-512",
+    err_set(e, "SINEW_VECTORS", 0, "'%.100s' is not available here; expected plain, AVX2 or AVX-512",
             wanted ? wanted : "");
 }

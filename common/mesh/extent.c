@@ -41,6 +41,6 @@ void extent_note(notes *n, const char *of, const double d[3], num_unit unit)
                   in_metres(d[0], unit), in_metres(d[1], unit), in_metres(d[2], unit), num_unit_name(unit), what, name,
                   in_metres(d[0], other), in_metres(d[1], other), in_metres(d[2], other));
     else
-        notes_add(n, "%s is %.4g x %.4g x %.4g m with --unit %s, %s; no other unit makes a body of it", of,
+        notes_add(n, "%s is %.4g x %.4g x %.4g m with --unit %s, %s; no other unit gives it the size of a body", of,
                   in_metres(d[0], unit), in_metres(d[1], unit), in_metres(d[2], unit), num_unit_name(unit), what);
 }

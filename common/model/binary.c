@@ -199,7 +199,7 @@ static int find_kind(const block *b, err *e)
         if (k != ITEM_BLOCK && !strcmp(item_type(&(item){.kind = (item_kind)k}), it->block.type)) {
             it->kind = (item_kind)k;
             return it->block.flags
-                       ? item_error(b->s, it, e, "its flags are not known; expected 0 (a newer sinew wrote it?)")
+                       ? item_error(b->s, it, e, "its flags are unknown; expected 0 (a newer sinew wrote it?)")
                        : 0;
         }
     it->kind = ITEM_BLOCK;

@@ -111,7 +111,7 @@ int camera_look(camera *c, const double eye[3], const double target[3], const do
         size += fabs(eye[i]) + fabs(target[i]) + fabs(up[i]);
     }
     if (!isfinite(size))
-        return err_set(e, NULL, 0, "the camera's place is not finite");
+        return err_set(e, NULL, 0, "the camera's position is not finite");
     if (!(dot(forward, forward) > 0))
         return err_set(e, NULL, 0, "the camera and what it looks at are at one place: %g,%g,%g", eye[0], eye[1],
                        eye[2]);

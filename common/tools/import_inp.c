@@ -156,7 +156,7 @@ static int begin_element(inp_reader *r, const keyword *k)
     r->columns = type && one_of(type, hexahedra) ? 8 : type && one_of(type, tetrahedra) ? 4 : -1;
     for (int i = 0; type && r->columns < 0 && lower[i]; i++) {
         if (!strncasecmp(type, lower[i], strlen(lower[i]))) {
-            notes_add(r->warnings, "%s:%lld: elements of type %.30s are no solids: left out", r->m->name,
+            notes_add(r->warnings, "%s:%lld: elements of type %.30s are not solids, and are left out", r->m->name,
                       (long long)in_lines(r->s), type);
             r->columns = 0;
         }

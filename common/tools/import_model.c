@@ -160,9 +160,10 @@ static int put_materials(const import_mesh *mesh, const import_wishes *w, model 
     model_array *a[6];
     const material usual = materials_fallback();
     if (!(w->stress > 0) || !(w->density > 0))
-        return err_set(e, mesh->name, mesh->material[0].line,
-                       "materials in units that only you know; expected --stress Pa|kPa|MPa|GPa and --density "
-                       "kg/m3|g/cm3|t/mm3, or --materials FILE, where --unit is not m");
+        return err_set(
+            e, mesh->name, mesh->material[0].line,
+            "the file does not say the units of its materials; expected --stress Pa|kPa|MPa|GPa and --density "
+            "kg/m3|g/cm3|t/mm3, or --materials FILE, where --unit is not m");
     if (model_axis_add(m, "material", mesh->materials, e))
         return -1;
     for (int i = 0; i < 6; i++)
@@ -227,7 +228,7 @@ static int32_t material_of(const import_mesh *mesh, const import_wishes *w, cons
                    : materials_unknown(m, written ? written : name, mesh->name, mesh->material[v->material].line, e);
     if (at < 0 && model_count(m, "material") > 1)
         return err_set(e, mesh->name, 0,
-                       "nothing says which material volume %.200s is of; expected --material NAME, or a material of "
+                       "no material is given for volume %.200s; expected --material NAME, or a material of "
                        "the volume's name",
                        v->name);
     return at < 0 ? 0 : at;

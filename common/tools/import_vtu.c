@@ -338,7 +338,7 @@ static int read_volumes(reader *r)
 static int read_materials(reader *r)
 {
     if (!r->w->own_materials) {
-        notes_add(r->warnings, "a VTU says nothing of materials: all is of the default; --materials gives others");
+        notes_add(r->warnings, "a VTU holds no materials: all elements get the default; --materials gives others");
         return 0;
     }
     if (!array_of(r, CELL_DATA, "material") || !array_of(r, FIELD_DATA, "material.name"))

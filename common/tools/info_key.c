@@ -389,9 +389,7 @@ const char *info_key_unit(const source *s, const char *key, err *e)
         is_number = strcmp(q.what, words[i]) != 0;
     if (!is_number) {
         err_set(e, source_name(s), 0,
-                "'%.80s' is no number that frames have; expected one of an array of frames, as "
-                "node.displacement.max",
-                key);
+                "'%.80s' is not a number of a frame; expected one of a frame's array, as node.displacement.max", key);
         return NULL;
     }
     for (int i = 0; q.what && i < 3; i++)

@@ -57,30 +57,63 @@ static void put_end(const model_array *a, const info_stats *s, bool max, out *to
         info_put_end(a, s, max, to);
 }
 
-static void put_range(const model_array *a, out *to)
+/* The lines of a table, which it frees. */
+static int put_table(text_table *t, out *to, err *e)
 {
+    char *lines = t ? text_table_lines(t, e) : NULL;
+    text_table_free(t);
+    out_text(to, lines ? lines : "");
+    free(lines);
+    return lines ? 0 : -1;
+}
+
+/* Adds a cell of the text that is in a memory's out, and empties it. */
+static void take_cell(text_table *t, out *text)
+{
+    size_t size;
+    const char *bytes = (const char *)out_bytes(text, &size);
+    text_table_cell(t, "%.*s", (int)size, bytes);
+    out_discard(text);
+}
+
+static void add_range(text_table *t, const model_array *a, err *e)
+{
+    out *text = out_memory(e);
+    if (!text)
+        return;
     if (a->type == MODEL_STR || !a->rows) {
-        out_text(to, "-");
+        out_text(text, "-");
+        take_cell(t, text);
         return;
     }
     info_stats s = info_stats_of(a);
-    out_text(to, info_is_vector(a) ? "norm " : "");
-    put_end(a, &s, false, to);
-    out_text(to, " to ");
-    put_end(a, &s, true, to);
+    out_text(text, info_is_vector(a) ? "norm " : "");
+    put_end(a, &s, false, text);
+    out_text(text, " to ");
+    put_end(a, &s, true, text);
     if (s.nans)
-        out_format(to, ", %" PRId64 " nan", s.nans);
+        out_format(text, ", %" PRId64 " nan", s.nans);
+    take_cell(t, text);
 }
 
-static void put_array(const model_array *a, bool meanings, out *to)
+static int put_arrays(const model_arrays *list, bool meanings, out *to, err *e)
 {
-    const known *k = known_find(a->name);
-    out_format(to, "  %-22s %-3s x %d  %-10s %-10s ", a->name, model_type_name(a->type), (int)a->columns, a->axis,
-               a->unit);
-    put_range(a, to);
-    out_text(to, "\n");
-    if (meanings)
-        out_format(to, "      %s\n", k ? k->meaning : "not one of Sinew's: passed on as it is");
+    const char *const heads[] = {
+        "<array", "<type", ">columns", "<axis", "<unit", "<range", meanings ? "<meaning" : NULL, NULL};
+    text_table *t = text_table_create(heads, e);
+    for (int i = 0; t && i < list->count; i++) {
+        const model_array *a = &list->v[i];
+        const known *k = known_find(a->name);
+        text_table_cell(t, "%s", a->name);
+        text_table_cell(t, "%s", model_type_name(a->type));
+        text_table_count(t, a->columns);
+        text_table_cell(t, "%s", a->axis);
+        text_table_cell(t, "%s", a->unit);
+        add_range(t, a, e);
+        if (meanings)
+            text_table_cell(t, "%s", k ? k->meaning : "not one of Sinew's: passed on as it is");
+    }
+    return put_table(t, to, e);
 }
 
 static void put_line(const char *title, const char *key, const char *value, out *to)
@@ -120,50 +153,52 @@ static void put_extent(const model *m, out *to)
     }
 }
 
-/* The value in a row of a table's column, or "-" where the model lacks the column. */
-static void put_cell(const model *m, const char *column, int64_t row, out *to)
+/* The number in a row of a volume's array, or "-" where the model lacks the array. */
+static void add_number(text_table *t, const model *m, const char *array, int64_t row)
 {
-    const model_array *a = model_find(m, column);
+    const model_array *a = model_find(m, array);
     if (a)
-        source_put_row(a, row, true, to);
+        text_table_cell(t, "%.0f", source_value(a, row));
     else
-        out_text(to, "-");
+        text_table_cell(t, "-");
 }
 
-static void put_volume(const char *title, const char *name, int64_t elements, out *to)
+static int put_volumes(const model *m, const int64_t *elements, out *to, err *e)
 {
-    out_format(to, "%s  ", title);
-    source_put_text(name, to);
-    out_format(to, ": %" PRId64 " element%s", elements, elements == 1 ? "" : "s");
-}
-
-static void put_volumes(const model *m, const int64_t *elements, out *to)
-{
+    static const char *const heads[] = {"<volume", ">elements", ">level", ">priority", "<material", NULL};
     const model_array *name = model_find(m, "volume.name"), *material = model_find(m, "volume.material");
     const model_array *materials = model_find(m, "material.name");
-    for (int64_t i = 0; name && i < name->rows; i++) {
-        put_volume(i ? "" : "volumes\n", name->str[i], elements[i], to);
-        out_text(to, ", level ");
-        put_cell(m, "volume.level", i, to);
-        out_text(to, ", priority ");
-        put_cell(m, "volume.priority", i, to);
-        if (material && materials) {
-            out_text(to, ", material ");
-            source_put_text(materials->str[material->i32[i]], to);
-        }
-        out_text(to, "\n");
+    if (!name || !name->rows)
+        return 0;
+    text_table *t = text_table_create(heads, e);
+    for (int64_t i = 0; t && i < name->rows; i++) {
+        text_table_cell(t, "%s", name->str[i]);
+        text_table_count(t, elements[i]);
+        add_number(t, m, "volume.level", i);
+        add_number(t, m, "volume.priority", i);
+        text_table_cell(t, "%s", material && materials ? materials->str[material->i32[i]] : "-");
     }
+    out_text(to, "volumes\n");
+    return put_table(t, to, e);
 }
 
-static void put_muscles(const model *m, const int64_t *elements, out *to)
+static int put_muscles(const model *m, const int64_t *elements, out *to, err *e)
 {
+    static const char *const heads[] = {"<muscle", ">elements", ">centre x\nm", ">y\nm", ">z\nm", NULL};
     const model_array *volume = model_find(m, "muscle.volume"), *name = model_find(m, "volume.name");
-    for (int64_t i = 0; volume && name && i < volume->rows; i++) {
-        put_volume(i ? "" : "muscles\n", name->str[volume->i32[i]], elements[volume->i32[i]], to);
-        out_text(to, ", centre ");
-        put_cell(m, "muscle.centre", i, to);
-        out_text(to, " m\n");
+    const model_array *centre = model_find(m, "muscle.centre");
+    if (!volume || !name || !volume->rows)
+        return 0;
+    const int decimals = centre ? text_table_decimals(info_stats_of(centre).max, 5) : 0;
+    text_table *t = text_table_create(heads, e);
+    for (int64_t i = 0; t && i < volume->rows; i++) {
+        text_table_cell(t, "%s", name->str[volume->i32[i]]);
+        text_table_count(t, elements[volume->i32[i]]);
+        for (int a = 0; a < 3; a++)
+            text_table_number(t, centre ? centre->f64[3 * i + a] : NAN, decimals);
     }
+    out_text(to, "muscles\n");
+    return put_table(t, to, e);
 }
 
 /* Where the nodes went furthest in the last frame. */
@@ -201,38 +236,40 @@ static void put_folded(const source *s, out *to)
     out_text(to, " at a corner\n");
 }
 
-static void put_frames(const source *s, const double *times, bool meanings, out *to)
+static int put_frames(const source *s, const double *times, bool meanings, out *to, err *e)
 {
     if (!s->frames) {
         out_text(to, "frames  none\n");
-        return;
+        return 0;
     }
     out_format(to, "frames  %" PRId64 ", the last of index %" PRId64 "; times ", s->frames, s->frame.index);
     put_short(times[0], MODEL_F64, to);
     out_text(to, " to ");
     put_short(times[1], MODEL_F64, to);
     out_text(to, " s; in the last\n");
-    for (int i = 0; i < s->frame.arrays.count; i++)
-        put_array(&s->frame.arrays.v[i], meanings, to);
+    if (put_arrays(&s->frame.arrays, meanings, to, e))
+        return -1;
     put_displacement(s, to);
     put_folded(s, to);
+    return 0;
 }
 
-static void put_summary(const source *s, const double *times, const int64_t *elements, bool meanings, out *to)
+static int put_summary(const source *s, const double *times, const int64_t *elements, bool meanings, out *to, err *e)
 {
     const model *m = &s->body;
     put_head(s, to);
-    for (int i = 0; i < m->arrays.count; i++) {
-        out_text(to, i ? "" : "arrays (type, columns, axis, unit, range)\n");
-        put_array(&m->arrays.v[i], meanings, to);
+    if (m->arrays.count) {
+        out_text(to, "arrays\n");
+        if (put_arrays(&m->arrays, meanings, to, e))
+            return -1;
     }
     for (int i = 0; i < m->block_count; i++)
         out_format(to, "%s%s %" PRIu64 " bytes\n", i ? "  " : "unknown blocks\n  ", m->blocks[i].type,
                    m->blocks[i].length);
     put_extent(m, to);
-    put_volumes(m, elements, to);
-    put_muscles(m, elements, to);
-    put_frames(s, times, meanings, to);
+    if (put_volumes(m, elements, to, e) || put_muscles(m, elements, to, e))
+        return -1;
+    return put_frames(s, times, meanings, to, e);
 }
 
 /* Reads frames to the end of the stream; times: of the first and of the last. */
@@ -270,14 +307,13 @@ static int put(const source *s, const double *times, const struct options *o, ou
     if (o->get.count)
         return 0;
     int64_t *elements = info_volume_counts(&s->body, e);
-    if (!elements)
-        return -1;
-    if (o->json)
+    int rc = elements ? 0 : -1;
+    if (!rc && o->json)
         info_json(s, times, elements, to);
-    else
-        put_summary(s, times, elements, o->common.verbose, to);
+    else if (!rc)
+        rc = put_summary(s, times, elements, o->common.verbose, to, e);
     free(elements);
-    return 0;
+    return rc;
 }
 
 /* A row a frame, as frames come. */

@@ -258,7 +258,7 @@ int metaimage_read(volume *v, in *s, char *line, const char *path, const volume_
         h.x.encoding = VOXELS_TEXT;
     if (!status && h.x.bytes < 0 && h.x.encoding != VOXELS_RAW)
         status =
-            err_set(e, in_name(s), in_lines(s), "HeaderSize = -1 of data that are no plain bytes; expected 0 or more");
+            err_set(e, in_name(s), in_lines(s), "HeaderSize = -1 with data that are not raw bytes; expected 0 or more");
     if (!status)
         status = voxels_in_read(v, &h.x, s, path, b, e);
     free(h.x.file);

@@ -42,7 +42,7 @@ int volume_read(volume *v, in *s, const char *path, const volume_budget *b, err 
     if (first == -1)
         return err_set(e, in_name(s), 0, "no volume in it (0 bytes); expected NRRD or MetaImage");
     if (!isalpha(first))
-        return err_set(e, in_name(s), 0, "is no volume that is known; expected NRRD or MetaImage");
+        return err_set(e, in_name(s), 0, "is not a volume of a known format; expected NRRD or MetaImage");
     if (in_line(s, &line, NULL, e) < 0)
         return -1;
     if (nrrd_is(line))
@@ -50,7 +50,7 @@ int volume_read(volume *v, in *s, const char *path, const volume_budget *b, err 
     else if (metaimage_is(line))
         status = metaimage_read(v, s, line, path, b, e);
     else
-        err_set(e, in_name(s), 1, "'%.40s' begins no volume that is known; expected NRRD or MetaImage", line);
+        err_set(e, in_name(s), 1, "'%.40s' begins no volume of a known format; expected NRRD or MetaImage", line);
     if (status)
         volume_free(v);
     return status;

@@ -42,7 +42,7 @@ is "$(array "$T/both" x-my/vertex.position):$(grep -c '^array x_wing/' "$T/both"
 
 # Which surface.
 check "without an OBJ, every surface carried" sinew bind --text -o "$T/again" <"$T/bound"
-is "$(cat "$T/stderr")" "bind: surface dots was bound before; it is bound anew" "and says what was bound before"
+is "$(cat "$T/stderr")" "bind: surface dots was bound already; the new binding replaces the old one" "and says what was bound before"
 is "$(array "$T/again" dots/vertex.weight)" "$(array "$T/bound" dots/vertex.weight)" "the same weights"
 check "the same OBJ again" sinew bind -q "$T/dots.obj" -o "$T/again" <"$T/bound"
 sed 's/^v 10 10 15$/v 10 10 14/' "$T/dots.obj" >"$T/other.obj"
@@ -144,7 +144,7 @@ is "$(array "$T/both" dots/vertex.element)$(array "$T/both" far/vertex.element)"
 sinew bind -q "$T/dots.obj" <"$T/model" 2>/dev/null | sinew bind -q --text "$T/far.obj" 2>/dev/null | grep -v ^prov >"$T/one"
 grep -v ^prov "$T/both" >"$T/two"
 check "as one after the other" cmp "$T/one" "$T/two"
-fails 1 "two of one name" 'd/dots.obj: would be surface dots, as .*/dots.obj is' \
+fails 1 "two of one name" 'd/dots.obj: would be named surface dots, as .*/dots.obj is' \
     sinew bind "$T/dots.obj" "$T/d/dots.obj" -o "$T/none" <"$T/model"
 fails 2 "two files and one name" 'name names one surface, but 2 files' sinew bind --name x "$T/dots.obj" "$T/far.obj" <"$T/model"
 

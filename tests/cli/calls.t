@@ -173,7 +173,7 @@ goes_on() {
         return
     fi
     [ "$status" -eq 1 ] && said || return 1
-    if are new && grep -aqE 'is there, but its folder cannot be stored|is left of a run that has ended' "$T/err"; then
+    if are new && grep -aqE 'is there, but its folder cannot be stored|belongs to a run that has ended' "$T/err"; then
         late=$((late + 1))
     elif are old; then
         ended=$((ended + 1))

@@ -1,9 +1,11 @@
 #!/bin/sh
 # The format frozen at 1: the models of tests/golden/v1, in both encodings, gzipped and not, are read, come out as the same bytes from
-# every way round, and `sinew info` says of them what it said. Flips and cuts of them are tests/unit/test_golden.c's.
+# every way round, and `sinew info --json` says of them what it said. The summary for people, which is
+# not frozen, is that of tests/golden/summary. Flips and cuts of the models are tests/unit/test_golden.c's.
 . "$(dirname "$0")/lib.sh"
 
 golden=tests/golden/v1
+summary=tests/golden/summary
 
 # status NAME: what a tool that reads it exits with.
 status() {
@@ -51,9 +53,9 @@ for name in empty failed hex tet types; do
         file=$golden/$name.$encoding
         is "$(round "$name" "$file")" "" "$name.$encoding: read, and written to the same bytes"
         is "$(round "$name" "$file.gz")" "" "$name.$encoding.gz too"
-        is "$(info "$name" "$file" "$file.info")$(info "$name" "$file.gz" "$file.info")" "" \
-            "$name.$encoding: sinew info says what it said, gzipped or not"
-        is "$(info "$name" "$file" "$golden/$name.json.$encoding" --json)" "" "$name.$encoding: and as JSON"
+        is "$(info "$name" "$file" "$summary/$name.$encoding.info")$(info "$name" "$file.gz" "$summary/$name.$encoding.info")" "" \
+            "$name.$encoding: the summary, gzipped or not"
+        is "$(info "$name" "$file" "$golden/$name.json.$encoding" --json)" "" "$name.$encoding: sinew info --json says what it said"
     done
     is "$(packed "$name")" "" "$name: gzipped by -z, and back"
 done

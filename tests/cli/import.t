@@ -149,7 +149,7 @@ run() {
 }
 run --text -o "$T/hand" "$T/ok.inp" 2>"$T/stderr"
 is $? 0 "by hand"
-is "$(grep -c -e ':24: elements of type S4 are no solids' -e '1 of the 13 nodes are in no element' -e 'EXPANSION is not read' \
+is "$(grep -c -e ':24: elements of type S4 are not solids' -e '1 of the 13 nodes are in no element' -e 'EXPANSION is not read' \
     -e '1 node is held in one or two components only' -e 'material lean has no density' "$T/stderr")" 5 "what was left out is said"
 diag_file "$T/stderr"
 is "$(sinew info --get axis.node "$T/hand") $(sinew info --get axis.element "$T/hand")" "12 2" "12 nodes, 2 elements"
@@ -171,7 +171,7 @@ printf 'FAT E=1000\nlean E=9000\n' >"$T/case"
 is "$(sinew import -q --unit mm --materials "$T/case" --text "$T/ok.inp" 2>/dev/null | awk '$2 == "volume.material" { getline; print; getline; print }' | tr '\n' ' ')" \
     "0 1 " "a table's names are found whatever their case"
 fails 1 "a table without the name" "unknown material 'Fat'" sinew import -q --unit mm --materials "$T/table" "$T/ok.inp"
-fails 1 "a table, and nothing that says which" "nothing says which material volume tissue is of" sinew import -q --unit mm --materials "$T/table" "$T/tets.msh"
+fails 1 "a table, and nothing that says which" "no material is given for volume tissue" sinew import -q --unit mm --materials "$T/table" "$T/tets.msh"
 sed 's/C3D8R$/C3D8R, ELSET=One/;/MATERIAL/,$d' "$T/ok.inp" >"$T/plain.inp"
 is "$(run -q --volume other --text "$T/plain.inp" 2>/dev/null | awk '$2 == "volume.name" { on = 1; next } /^crc/ { on = 0 } on' | tr '\n' ' ')" \
     '"one" "muscle_a" ' "without sections, ELSETs are volumes"
@@ -216,7 +216,7 @@ bad "a law that is not read" "[0-9]*: .HYPERELASTIC of another law" 's/NEO HOOKE
 bad "incompressible" "[0-9]*: C10 or D1 that is not above 0" 's/^0.0005, 200./0.0005, 0/'
 bad "a nu that is none" "[0-9]*: .*nu" 's/^0.003, 0.45/0.003, 0.5/'
 bad "nodes that are moved" "[0-9]*: .BOUNDARY that moves" 's/^Ends, 1, 3/Ends, 1, 3, 0.1/'
-fails 1 "materials in unknown units" "materials in units that only you know" sinew import -q --unit mm -o "$T/x" "$T/ok.inp"
+fails 1 "materials in unknown units" "the file does not say the units of its materials" sinew import -q --unit mm -o "$T/x" "$T/ok.inp"
 fails 2 "no unit" "missing option --unit" sinew import "$T/ok.inp"
 fails 2 "a unit that is none" "expected um, mm" sinew import --unit ell "$T/ok.inp"
 fails 2 "a node set that is not there" "--rigid: unknown node set 'lows'; did you mean 'low'" run --rigid lows "$T/ok.inp"

@@ -64,8 +64,8 @@ fails 1 "a slip in one" "no key 'muscle.nam'; did you mean 'muscle.name'" sinew 
 
 # The summary.
 check "the summary, by -o" sinew info -o "$T/summary" "$small"
-for line in "text encoding" "node.displacement .*norm 0 to 0.05" "skin: 1 element, level 0, priority 0, material tissue" \
-    "muscle_a: 1 element, centre 0 0.05 0.05 m" "frames  2, the last of index 10; times 0 to 0.5 s" \
+for line in "text encoding" "node.displacement .*norm 0 to 0.05" "^  skin  *1  *0  *0  tissue$" \
+    "^  muscle_a  *1  *0.0*  *0.050*  *0.050*$" "frames  2, the last of index 10; times 0 to 0.5 s" \
     "largest displacement 0.05 m, node 2 at 0.2 0 0" "x 0 to 0.2" "peak .*30000 to 30000, 1 nan"; do
     check "the summary has: $line" grep -q "$line" "$T/summary"
 done
@@ -87,9 +87,9 @@ check "--tsv -o" sinew info --tsv node.displacement.max -o "$T/out.tsv" "$small"
 is "$(cut -f 1-3 "$T/series" | cksum)" "$(cksum <"$T/out.tsv")" "the same in a file"
 { sed '$d' "$small" && echo 'fail 3 "tled-run: it diverged"'; } | sinew info --tsv node.displacement.max >"$T/failed.tsv"
 is "$? $(wc -l <"$T/failed.tsv" | tr -d ' ')" "3 3" "a stream that failed gives the rows that came, and its status"
-fails 1 "--tsv of an array of the body" "is no number that frames have" sinew info --tsv node.position.max "$small"
-fails 1 "of metadata" "is no number that frames have" sinew info --tsv meta.note "$small"
-fails 1 "of a type" "is no number that frames have" sinew info --tsv node.displacement.type "$small"
+fails 1 "--tsv of an array of the body" "is not a number of a frame" sinew info --tsv node.position.max "$small"
+fails 1 "of metadata" "is not a number of a frame" sinew info --tsv meta.note "$small"
+fails 1 "of a type" "is not a number of a frame" sinew info --tsv node.displacement.type "$small"
 fails 1 "of several rows" "several rows" sinew info --tsv node.displacement "$small"
 fails 1 "of what frames lack" "no node.velocity; it comes from tled-run" sinew info --tsv node.velocity.max "$small"
 fails 1 "of a slip" "did you mean 'node.displacement.max'" sinew info --tsv node.displacment.max "$small"

@@ -76,14 +76,14 @@ is "$(rows node.rigid | sed -n '163p;171p')" "1
 0" "bone is at the beginning of the image's first axis"
 mesh --nodes 9x9x9 --like "$T/labels.nrrd" --labels "$T/labels.nrrd" --names 2=vein,1=vein --materials "$T/materials" 2>"$T/warn"
 is "$(get "$T/m" volume.count.vein) $(get "$T/m" axis.volume)" "1920 2" "labels of one name are one volume"
-is "$(cat "$T/warn")" "msds-mesh: warning: material bone is no volume's
-msds-mesh: warning: material label2 is no volume's" "materials that nothing is of are told"
+is "$(cat "$T/warn")" "msds-mesh: warning: material bone belongs to no volume
+msds-mesh: warning: material label2 belongs to no volume" "materials that nothing is of are told"
 mesh --nodes 9x9x9 --size 1,1,1 --labels "$T/labels.nrrd" 2>"$T/warn"
-is "$(sed 's/ has no tetrahedron: .*//' "$T/warn" | tr '\n' ' ')" \
+is "$(sed 's/ has no tetrahedron, .*//' "$T/warn" | tr '\n' ' ')" \
     "msds-mesh: warning: label 1 (bone) msds-mesh: warning: label 2 " "labels that no tetrahedron has are told"
 is "$(rows volume.name | tr '\n' ' ')" '"tissue" ' "outside the image all is tissue"
 mesh --nodes 9x9x9 --like "$T/labels.nrrd" --labels "$T/labels.nrrd" --names 7=vein 2>"$T/warn"
-is "$(cat "$T/warn")" "msds-mesh: warning: label 7 (vein) is named, and no voxel has it" "so is a name of no label"
+is "$(cat "$T/warn")" "msds-mesh: warning: label 7 (vein) is named, but no voxel has this label" "so is a name of no label"
 gzip -c "$T/labels.nrrd" | msds-mesh -q --nodes 5x5x5 --like - >"$T/m" && is "$(get "$T/m" axis.element)" 320 "an image from a pipe"
 
 # ---- a voxel model

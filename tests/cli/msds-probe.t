@@ -64,7 +64,7 @@ for method in msds fem 'fem --exact'; do
     for probe in linear:3cm,1cm sphere:15mm; do
         # shellcheck disable=SC2086
         check "$probe: starts inside, $method" msds-run --method $method --probe $probe --poses "$T/inside.tum" -o "$T/inside.sinew" <"$T/block.sinew"
-        is "$(grep -c 'inside.tum:1: the probe is inside the tissue at once; it is eased in along its axis, from [1-9][0-9.]* mm back' "$T/stderr")" 1 "it says so"
+        is "$(grep -c 'inside.tum:1: the probe begins inside the tissue; it is moved in along its axis, from [1-9][0-9.]* mm back' "$T/stderr")" 1 "it says so"
         deep=$(sinew info --get node.displacement.at.0.06,0.03,0.04 "$T/inside.sinew" | awk '{ print -1e3 * $3 }')
         awk -v d="$deep" 'BEGIN { exit !(d > 7 && d < 11) }'
         is $? 0 "and tissue goes down before it: $deep mm"
@@ -79,7 +79,7 @@ done
 # Thinner than cells are wide: it goes in between their nodes.
 awk '{ $2 = .063; $3 = .033; print }' "$T/press30.tum" >"$T/gap.tum"
 check "thinner than cells" msds-run --probe linear:3cm,4mm --poses "$T/gap.tum" -o "$T/gap.sinew" <"$T/block.sinew"
-is "$(grep -c 'the probe is 4 mm thick, cells are 5[0-9.]* mm wide: it may go in between nodes' "$T/stderr")" 1 "it says so"
+is "$(grep -c 'the probe is 4 mm thick, cells are 5[0-9.]* mm wide: it may slip between nodes' "$T/stderr")" 1 "it says so"
 check "as thick as cells" msds-run --probe linear:3cm,6mm --poses "$T/gap.tum" -o "$T/gap.sinew" <"$T/block.sinew"
 is "$(grep -c 'between nodes' "$T/stderr")" 0 "has no such word"
 

@@ -144,7 +144,7 @@ fi
 
 # Physical masses: substeps, or a refusal.
 check "physical masses" msds-run --mass lumped --dt 1e-4 --iterations 5 --probe sphere:2cm --poses "$T/first.tum" -o /dev/null <"$T/block.sinew"
-is "$(grep -c 'each step is taken in' "$T/stderr")" 1 "substeps are said"
+is "$(grep -c 'each step is cut into' "$T/stderr")" 1 "substeps are said"
 fails 1 "a step past all substeps" 'times the stable step; expected' msds-run --mass lumped --dt 10 --poses "$T/first.tum" <"$T/block.sinew"
 
 # What is bad.
@@ -174,7 +174,7 @@ fails 1 "a FIFO whose writer goes in the middle of a pose" 'fifo:2: 2 words' msd
 fails 1 "a FIFO whose writer says nothing" 'fifo: no pose' msds-run -o "$T/left" --poses "$T/fifo" <"$T/block.sinew"
 check "no output is left" test ! -e "$T/left"
 echo '0 .04 .04 .5 1 0 0 0' >"$T/far.tum"
-fails 0 "a probe that never touches" 'warning: the probe touches nothing in any frame \(of 1\)' \
+fails 0 "a probe that never touches" 'warning: the probe touches nothing in any frame \(1 in all\)' \
     msds-run --probe sphere:2cm --poses "$T/far.tum" -o /dev/null <"$T/block.sinew"
 fails 0 "and one that does" 'node' msds-run --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
 is "$(grep -c warning "$T/stderr")" 0 "has no such word"

@@ -41,7 +41,7 @@ check "goes on from frames" sh -c "msds-run -q --unit mm --skin '$T/sheet.obj' -
 is "$(sinew info --get frames "$T/whole.sinew")" 60 "all frames are there"
 
 check "a skin of another unit" msds-run --unit m --skin "$T/sheet.obj" --probe sphere:2cm --poses "$T/first.tum" -o /dev/null <"$T/block.sinew"
-is "$(grep -c 'presses the tissue, but the skin in no frame; expected sheet where the tissue is, in --unit' "$T/stderr")" 1 "is said to be away"
+is "$(grep -c 'presses the tissue, but touches the skin in no frame; expected sheet in the place of the tissue; check --unit' "$T/stderr")" 1 "is said to be away"
 check "one of the right unit" msds-run --unit mm --skin "$T/sheet.obj" --probe sphere:2cm --poses "$T/first.tum" -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'the skin in no frame' "$T/stderr")" 0 "has no such word"
 fails 1 "no unit" 'expected --unit' msds-run --skin "$T/sheet.obj" --probe sphere:2cm --poses "$T/press.tum" <"$T/block.sinew"

@@ -136,7 +136,7 @@ printf '0 contract all 0\n.04 contract all 1\n.06 contract all 1\n.1 contract al
 check "a muscle that lets go" tled-run -q -d cpu --script "$T/script" -t .3 --every .02 -o "$T/out" <"$T/muscle"
 sinew info --tsv quality.folded --tsv quality.j.corner "$T/out" | awk -F '\t' 'NR > 1 && $3 > 0 { n++ } NR > 1 && $4 < least { least = $4; at = $2; many = $3 }
     END { print n " of " NR - 1 " frames, worst at " at " s, " many " of 160;" }' >"$T/want"
-is "$(sed -n 's/.*elements are folded on the way (J <= 0 in the middle or at a corner), in \(.*;\) the worst is element [0-9]* .*/\1/p' "$T/stderr")" "$(cat "$T/want")" \
+is "$(sed -n 's/.*elements are folded during the run (J <= 0 in the middle or at a corner), in \(.*;\) the worst is element [0-9]* .*/\1/p' "$T/stderr")" "$(cat "$T/want")" \
     "what is folded in frames on the way is told: $(cat "$T/want")"
 is "$(get folded "$T/out") $(grep -c . "$T/stderr")" "0 1" "once, and nothing else: hourglass energy is little of what there was"
 check "a run that is killed" sh -c "tled-run -q -d cpu --script '$T/script' -t .3 --every .02 --checkpoint '$T/state' --checkpoint-every .1 <'$T/muscle' | head -c 100000 >/dev/null; test -e '$T/state'"
@@ -162,7 +162,7 @@ is "$(grep -c 'hourglass energy is [0-9]* %' "$T/stderr")$(grep -c 'folded at th
     "where it folds elements at a share past 10 %, no larger --hourglass is advised"
 printf '.06 force 0.03,0.01,0.005 1mm 0,0,0\n' >>"$T/script"
 tled-run -q -d cpu --script "$T/script" -t .2 --every .05 -o "$T/out" <"$T/thin" 2>"$T/said"
-is "$(grep -c 'folded on the way.*expected less load or contraction there$' "$T/said")" 1 "nor of frames on the way"
+is "$(grep -c 'folded during the run.*expected less load or contraction there$' "$T/said")" 1 "nor of frames on the way"
 sed -i 's/-.02$/-.08/' "$T/script"
 tled-run -q -d cpu --hourglass .02 --script "$T/script" -t .05 -o "$T/out" <"$T/thin" 2>"$T/said"
 is "$(grep -c 'folded at the end' "$T/said")$(grep -c 'expected smaller voxels$' "$T/said")" 11 "nor a smaller one, which would fold more"

@@ -73,7 +73,7 @@ refused() {
     sed "$3" "$T/text" >"$T/bad.sinew"
     fails 1 "$1" "$2" sinew render --show voxels,probe --size 60x40 -o "$T/bad.png" "$T/bad.sinew"
 }
-refused "a shape that is none" "bad.sinew: metadata, probe.shape: 'cone:3' is no probe; expected one as" 's/^meta probe.shape .*/meta probe.shape "cone:3"/'
+refused "a shape that is none" "bad.sinew: metadata, probe.shape: 'cone:3' is not a probe; expected one as" 's/^meta probe.shape .*/meta probe.shape "cone:3"/'
 refused "no corners" 'the probe is the OBJ cube.obj, which the model does not hold; expected its corners' 's/probe-vertex.position/x-position/'
 refused "no triangles" 'which the model does not hold' 's/probe-face.vertex/x-face/'
 refused "a corner at infinity" 'array probe-vertex.position, row 0: inf 0 0; expected finite numbers' '/^array probe-vertex.position/,+3s/^-0.01.*/inf 0 0/'
@@ -96,7 +96,7 @@ check "a probe that goes through an edge between two poses" msds-run -d cpu --pr
 is "$(grep -c 'touches nothing' "$T/stderr"):$(sinew info --get node.displacement.max "$T/run.sinew" | awk '{ print ($1 > 1e-3) }')" 0:1 \
     "is not said to touch nothing, as springs moved by a millimetre"
 sed 's/[.]036/.06/' "$T/through.tum" >"$T/above.tum"
-fails 0 "one that goes above it is" 'the probe touches nothing in any frame \(of 2\)' msds-run -d cpu --probe sphere:1cm --poses "$T/above.tum" -o /dev/null <"$T/tets.sinew"
+fails 0 "one that goes above it is" 'the probe touches nothing in any frame \(2 in all\)' msds-run -d cpu --probe sphere:1cm --poses "$T/above.tum" -o /dev/null <"$T/tets.sinew"
 fails 0 "by finite elements, which know no way between, the first is too" 'touches nothing in any frame' \
     msds-run -d cpu --method fem --probe sphere:1cm --poses "$T/through.tum" -o "$T/run.sinew" <"$T/tets.sinew"
 is "$(sinew info --get node.displacement.max "$T/run.sinew")" 0 "and nothing moved"

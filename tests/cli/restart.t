@@ -279,7 +279,7 @@ head -c 3000 "$T/d/state" >"$c"
 check "a checkpoint that is cut" again -c all=0.8 -t 0.4
 sed -i '/elements are folded/d' "$T/err2" # as they are in the whole run too
 is "$(wc -l <"$T/err2" | tr -d ' ')" 1 "is told of in one line"
-is "$(sed -E 's,/[^ ]*/,,g; s,[0-9.]+ s$,T s,' "$T/err2")" "tled-run: warning: state: the model is cut short; expected \`end\` (did the tool before this one stop early?); going on from the one before, state.1, at T s" "which says what is wrong and what was taken"
+is "$(sed -E 's,/[^ ]*/,,g; s,[0-9.]+ s$,T s,' "$T/err2")" "tled-run: warning: state: the model is cut short; expected \`end\` (did the tool before this one stop early?); the run goes on from the checkpoint before it, state.1, at T s" "which says what is wrong and what was taken"
 check "and the result is the same" cmp "$T/want" "$T/got"
 rm "$c"
 check "one that is missing is like it" again -c all=0.8 -t 0.4
@@ -332,7 +332,7 @@ sed 's/30000/30001/' "$T/muscle.sinew" >"$T/other.sinew"
 model=$T/other.sinew
 fails 1 "so is another model" 'array material.peak differs' again -c all=0.8 -t 0.4
 model=$T/muscle.sinew
-fails 1 "a run that begins anew where one is" 'state: is there; expected --restart' \
+fails 1 "a run that begins anew where one is" 'state: exists already; expected --restart' \
     run -d cpu -c all=0.8 -t 0.4 --checkpoint "$c"
 check "loses nothing" cmp "$T/d/state" "$c"
 fails 2 "another file to go on in" 'expected the same file' run -c all=0.8 -t 0.4 --checkpoint "$c" --restart "$T/none"

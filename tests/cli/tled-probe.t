@@ -86,11 +86,11 @@ is "$(sinew info --get node.displacement.max "$T/one.sinew")" "$(sinew info --ge
 
 echo '0 .04 .04 .035 1 0 0 0' >"$T/inside.tum"
 check "starts inside" tled-run --probe sphere:2cm --poses "$T/inside.tum" -t .3 -o "$T/inside.sinew" <"$T/block.sinew"
-is "$(grep -c 'the probe begins 5 mm inside the tissue: it comes up in 0.1 s' "$T/stderr")" 1 "it says so"
+is "$(grep -c 'the probe begins 5 mm inside the tissue: its contact force rises over 0.1 s' "$T/stderr")" 1 "it says so"
 check "larger than the tissue" tled-run --probe linear:30cm,20cm --poses "$T/press.tum" -t .3 -o "$T/plate.sinew" <"$T/block.sinew"
 is "$(grep -c 'larger than the tissue: it presses like a plate' "$T/stderr")" 1 "it says so"
 check "thinner than an element" tled-run --probe linear:3cm,3mm --poses "$T/press.tum" -n 5 -o /dev/null <"$T/block.sinew"
-is "$(grep -c 'the probe is 3 mm thick, elements are [0-9.]* mm wide: it may go in between nodes' "$T/stderr")" 1 "it says so"
+is "$(grep -c 'the probe is 3 mm thick, elements are [0-9.]* mm wide: it may slip between nodes' "$T/stderr")" 1 "it says so"
 awk '{ $2 *= 1000; $3 *= 1000; $4 *= 1000; print }' "$T/press.tum" >"$T/mm.tum"
 check "poses in millimetres" tled-run --probe sphere:2cm --poses "$T/mm.tum" -n 5 -o /dev/null <"$T/block.sinew"
 is "$(grep -c 'the probe never comes near the tissue; expected poses in metres' "$T/stderr")" 1 "are said to be far away"

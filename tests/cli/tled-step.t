@@ -43,8 +43,8 @@ near "$(tled-run -q -d cpu -c all=0.5 -t 0.0131 <"$T/one" | sinew info --get nod
 
 # ---- Multiples that lie between steps.
 check "frames between steps" run -c all=0.5 -t 0.01 --every 0.003 --log "$T/log" --log-every 1e-5
-is "$(said 'multiples of --every 0.003 s lie between steps: a frame is of the first step past one, up to 0.227 ms late')" 1 "are told of"
-is "$(said '--log-every 1e-05 s is shorter than a step: a row a step')" 1 "so are rows"
+is "$(said 'multiples of --every 0.003 s lie between steps: each frame is of the first step after one, up to 0.227 ms late')" 1 "are told of"
+is "$(said '--log-every 1e-05 s is shorter than a step: one row is written for each step')" 1 "so are rows"
 is "$(frame_times | awk '{ for (i = 2; i < NF; i++) { late = $i - 0.003 * (i - 1); n += late >= 0 && late < 0.000228 } print n, $NF }')" "3 0.01" \
     "each is as late as that at most"
 check "frames on steps" run -c all=0.5 -t 0.02 --every 0.01
@@ -58,12 +58,12 @@ done
 # ---- Cuts.
 check "a muscle that contracts fully" run -c all=1 -t 0.1 --log "$T/log"
 is "$(said 'each step is cut')" 1 "a step that is cut is told of once"
-is "$(said "^tled-run: at 0\.0[0-9]* s each step is cut in 2, to 0\.1136 ms: element [0-9]+ \(volume 'muscle_all'\) at [0-9.]+m,[0-9.]+m,[0-9.]+m has a stable step of 0\.2[0-9]* ms$")" 1 \
+is "$(said "^tled-run: at 0\.0[0-9]* s each step is cut into 2, of 0\.1136 ms: element [0-9]+ \(volume 'muscle_all'\) at [0-9.]+m,[0-9.]+m,[0-9.]+m has a stable step of 0\.2[0-9]* ms$")" 1 \
     "when, how far, where, and why"
 element=$(sed -n 's/.*: element \([0-9]*\) .*/\1/p' "$T/stderr")
 is "$(sed -n 's/.*) at \(.*\) has.*/\1/p' "$T/stderr")" \
     "$(awk -v e="$element" 'BEGIN { printf "%.4gm,%.4gm,%.4gm", .0025 * (e % 12) + .00125, .0025 * (int(e / 12) % 4) + .00125, .0025 * int(e / 48) + .00125 }')" "the place is the element's"
-is "$(said 'steps were cut, in up to 2: [0-9]+ were taken for 440$')" 1 "and at the end, with what it took"
+is "$(said 'steps were cut into up to 2: [0-9]+ steps were taken in place of 440$')" 1 "and at the end, with what it took"
 at=$(sed -n 's/.*at \([0-9.]*\) s each.*/\1/p' "$T/stderr")
 # shellcheck disable=SC2016 # for awk
 check "the log has it from then on" awk -v at="$at" 'NR > 2 && ($3 < .0002) != ($1 > at) { exit 1 }' "$T/log"
@@ -71,10 +71,10 @@ check "with -q" run -q -c all=1 -t 0.1
 is "$(grep -v 'elements are folded' "$T/stderr")" "" "nothing is said of it"
 check "at once" run -c all=1 -t 0.05 --ramp 0
 is "$(said 'each step is cut')" 1 "one line, however often it was tried"
-is "$(said "at 0\.01 s each step is cut in (8|16|32|64), to .* ms: element [0-9]+ .* was inverted or not finite after longer ones")" 1 "says what broke"
+is "$(said "at 0\.01 s each step is cut into (8|16|32|64), of .* ms: element [0-9]+ .* was inverted or not finite after longer steps")" 1 "says what broke"
 printf '0 contract all 0\n.02 contract all 1\n.05 contract all 1\n.06 contract all 0\n.1 contract all 0\n.12 contract all 1\n' >"$T/twice"
 check "a cut that ends and comes again" run --script "$T/twice" -t 0.15 -v
-is "$(said 'each step is cut in 2,') $(said 'each step is taken in 2 from now on')" "1 1" "is told of once, but with -v: each time once"
+is "$(said 'each step is cut into 2,') $(said 'each step is cut into 2 from now on')" "1 1" "is told of once, but with -v: each time once"
 check "no cut" run -c all=0.1 -t 0.1
 is "$(said 'cut')" 0 "no word of it"
 done_testing

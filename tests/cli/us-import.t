@@ -101,10 +101,10 @@ bad "one is there twice" 'im11x\.dcm and im21\.dcm lie at one place' series dup=
 bad "one is shifted" 'im14\.dcm and im21\.dcm lie 0\.95 mm apart; im21\.dcm and im28\.dcm lie 0\.55 mm apart' series shift=3:.2
 bad "frames of a file" '1 missing between frame 4 and frame 3|lie .* mm apart' enhanced shift=3:.2
 bad "a frame of other pixels" 'frame 2 has pixels of 1 x 0.25 mm, frame 1 of 0.5 x 0.25' enhanced wider=1
-bad "they are askew" 'beside where the first points' series tilt=.2
+bad "they are askew" 'beside the normal of the first slice' series tilt=.2
 bad "no spacing" 'no distance between pixels' series spacing=no
 bad "regions in cm that differ" 'no distance between pixels; expected PixelSpacing, or ultrasound regions in cm that agree' multi regions=2
-bad "no positions" 'without a position' series position=no
+bad "no positions" 'has no position' series position=no
 bad "no distance between frames" '6 frames, and no distance between them' multi between=no
 bad "two series" '2 series: 1: 1 file of 7 x 5 from im00\.dcm, 2: 5 files .*--series N' series second=1
 bad "two times" 'volumes of 2 times; expected --time 1 to 2' enhanced times=2
@@ -159,7 +159,7 @@ for kind in series multi enhanced philips; do
     cat "$T/out.nrrd" "$T/raw.nrrd" "$T/plain" "$T/report" >"$T/all"
     says_not planted "$T/all" "$kind: no name in any output"
 done
-says 'left out: (0010,0010) PatientName, 1 file' "$T/report" "the report names elements"
+says '(0010,0010) *1  PatientName' "$T/report" "the report names elements"
 says "from a maker's private elements" "$T/report" "and private geometry"
 
 # ---- a sweep

@@ -45,7 +45,7 @@ dicom series cut=20
 hides "a file that is cut" '^us-import: file 1 of 6: not whole' us-import "$P/scan"
 dicom series
 echo 'Jane Kowal, born 1942' >"$P/KOWAL.txt"
-hides "a file that is none" '^us-import: file 1 of 1:1: .*\.\.\.. begins no volume that is known; expected NRRD or MetaImage' us-import "$P/KOWAL.txt"
+hides "a file that is none" '^us-import: file 1 of 1:1: .*\.\.\.. begins no volume of a known format; expected NRRD or MetaImage' us-import "$P/KOWAL.txt"
 hides "among others" '^us-import: file 1 of 7: not a DICOM file' us-import "$P/KOWAL.txt" "$P/scan"
 hides "a folder that is not there" '^us-import: argument 2 of 2: cannot read: No such file' us-import "$P/scan" "$P/KOWAL_none"
 hides "an output that cannot be" '^us-import: the output: .*No such file or directory' us-import -o "$P/none/KOWAL.nrrd" "$P/scan"

@@ -68,7 +68,7 @@ us-surface -l 'Vena Ångström' "$T/l.nrrd" | grep -qx 'g Vena_Ångström'
 is $? 0 "is read back"
 
 fails 2 "no intensities" 'expected --low, --high' us-segment -n x "$T/v.nrrd"
-fails 2 "a tolerance without seeds" '--tolerance is from seeds' us-segment -n x --tolerance 3 "$T/v.nrrd"
+fails 2 "a tolerance without seeds" '--tolerance is relative to the intensity of a seed' us-segment -n x --tolerance 3 "$T/v.nrrd"
 fails 2 "the wrong way" 'above --high' us-segment -n x --low 5 --high 3 "$T/v.nrrd"
 fails 2 "a seed without a unit" 'a length without its unit' us-segment -n x --low 5 --seed 1,2,3 "$T/v.nrrd"
 fails 2 "a seed outside" 'outside of the volume' us-segment -n x --low 5 --seed 1,2,3m "$T/v.nrrd"

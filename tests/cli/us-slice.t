@@ -259,7 +259,7 @@ is "$(cmp -l "$T/paper.pgm" "$T/run.pgm" | awk '{ a = substr($2, 1, length($2) -
 
 # The probe is the model's probe.shape, whatever provenance says; where it came from is said, and where poses do.
 us-slice -o "$T/x.pgm" "$T/noise.nrrd" <"$T/run.sinew" 2>"$T/said"
-is "$(grep -c "^us-slice: probe: linear:0.006m,0.004m,0.001m, the model's probe.shape$" "$T/said") $(grep -c "^us-slice: poses: the frames' own$" "$T/said")" \
+is "$(grep -c "^us-slice: probe: linear:0.006m,0.004m,0.001m, the model's probe.shape$" "$T/said") $(grep -c "^us-slice: poses: those of the frames$" "$T/said")" \
     "1 1" "which probe and which poses are said"
 is "$(us-slice -q "$T/noise.nrrd" <"$T/run.sinew" 2>&1 >"$T/x.pgm")" "" "not with -q"
 sinew export -f model --text "$T/run.sinew" | sed -e '/^crc/d' -e '/^prov msds-run/s/linear:0.006m,0.004m,0.001m/linear:0.009m,0.004m,0.001m/' >"$T/prose.txt"
@@ -272,7 +272,7 @@ sed 's/^meta probe.shape .*/meta probe.shape "sphere:2cm"/' "$T/prose.txt" >"$T/
 us-slice -o "$T/x.pgm" "$T/noise.nrrd" <"$T/ball.txt" 2>"$T/said"
 is "$(grep -c "probe.shape, sphere:2cm, makes no image: the image is that of a linear array of 4 cm" "$T/said")" 1 "and one whose probe makes no image"
 sed 's/^meta probe.shape .*/meta probe.shape "linear:wide"/' "$T/prose.txt" >"$T/wide.txt"
-fails 1 "a shape that is none" "stdin: metadata, probe.shape: 'linear:wide' is no probe; expected one as msds-run writes it" us-slice "$T/noise.nrrd" <"$T/wide.txt"
+fails 1 "a shape that is none" "stdin: metadata, probe.shape: 'linear:wide' is not a probe; expected one as msds-run writes it" us-slice "$T/noise.nrrd" <"$T/wide.txt"
 
 # Refused by its header, whose data are not even there: named, with what helps.
 printf '%s\n' NRRD0004 'type: uint8' 'dimension: 3' 'sizes: 2 32001 2' 'spacings: 1 1 1' 'encoding: raw' '' >"$T/long.nrrd"
@@ -388,7 +388,7 @@ sed 's/^array node.displacement /array x-moved /' "$T/run.txt" >"$T/still.txt"
 fails 1 "frames that do not say how far nodes moved" 'frame 0 holds no node.displacement' us-slice "$T/noise.nrrd" <"$T/still.txt"
 echo '0 5 0 0 0 0 0 1' >"$T/away.tum"
 us-slice --rigid --poses "$T/away.tum" -o "$T/away.pgm" "$T/noise.nrrd" 2>"$T/said"
-is "$? $(grep -c 'warning: all is black in every image (of 1); expected poses in metres, in the volume.s frame, that look into it' "$T/said")" "0 1" \
+is "$? $(grep -c 'warning: every image (of 1) is black; expected poses in metres, in the volume.s frame, that look into it' "$T/said")" "0 1" \
     "a pose that sees nothing is warned of"
 us-slice --poses "$T/away.tum" -o "$T/away.pgm" "$T/noise.nrrd" <"$T/mesh.sinew" 2>"$T/said"
 is "$(grep -c "in the volume's frame (which is the model's too), that look into it" "$T/said") $(grep -c ,, "$T/said")" "1 0" "with a model too"

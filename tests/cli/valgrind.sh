@@ -47,7 +47,7 @@ else
     skip 2 "no compiler"
 fi
 # shellcheck disable=SC2086
-fails 1 "AVX-512 is hidden" "'AVX-512' is not to be had here" env SINEW_VECTORS=AVX-512 $checked "$SINEW_BIN/tled-run" -d cpu -n 1 <"$T/tiny"
+fails 1 "AVX-512 is hidden" "'AVX-512' is not available here" env SINEW_VECTORS=AVX-512 $checked "$SINEW_BIN/tled-run" -d cpu -n 1 <"$T/tiny"
 
 # ---- From a surface to pictures and files.
 clean 0 voxelise voxelise -q --unit mm -s 5 "$T/box.obj"

@@ -41,7 +41,7 @@ for method in msds fem 'fem --exact'; do
 done
 echo '0 0 0 1 0 0 0 1' >"$T/pose"
 SINEW_VECTORS=MMX fails 1 "msds-run: an unknown instruction set" \
-    "^msds-run: SINEW_VECTORS: 'MMX' is not to be had here; expected plain, AVX2 or AVX-512$" msds-run -q --poses "$T/pose" <"$T/block"
+    "^msds-run: SINEW_VECTORS: 'MMX' is not available here; expected plain, AVX2 or AVX-512$" msds-run -q --poses "$T/pose" <"$T/block"
 SINEW_VECTORS=MMX fails 1 "an unknown instruction set" \
-    "^tled-run: SINEW_VECTORS: 'MMX' is not to be had here; expected plain, AVX2 or AVX-512$" run double 1
+    "^tled-run: SINEW_VECTORS: 'MMX' is not available here; expected plain, AVX2 or AVX-512$" run double 1
 done_testing

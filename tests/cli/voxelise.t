@@ -121,7 +121,7 @@ is "$(sized 3 m)$(sized 3 mm)" "3 x 3 x 3 m:3 x 3 x 3 mm:" "3 m and 3 mm are not
 is "$(sized 3.001 m)" "3.001 x 3.001 x 3.001 m:3.001 x 3.001 x 3.001 m with --unit m, beyond 3 m; with --unit mm it is 0.003001 x 0.003001 x 0.003001 m:" \
     "beyond them they are"
 is "$(sized 3.0000001 m)" "3 x 3 x 3 m:" "what rounding adds to 3 m is no more than 3 m"
-is "$(sized 1e9 mm)" "1e+09 x 1e+09 x 1e+09 mm:1e+06 x 1e+06 x 1e+06 m with --unit mm, beyond 3 m; no other unit makes a body of it:" \
+is "$(sized 1e9 mm)" "1e+09 x 1e+09 x 1e+09 mm:1e+06 x 1e+06 x 1e+06 m with --unit mm, beyond 3 m; no other unit gives it the size of a body:" \
     "no unit helps there"
 voxelise -q --unit m -n 4 -o "$T/sized.sinew" "$T/sized.obj" 2>"$T/said"
 is "$(grep -c 'surfaces of' "$T/said") $(grep -c 'beyond 3 m' "$T/said")" "0 1" "-q keeps the warning"

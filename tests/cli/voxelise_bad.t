@@ -12,7 +12,7 @@ wrong() {
     shift 2
     fails 2 "$name" "^voxelise: $pattern" voxelise -o "$T/out" "$@" "$cube"
 }
-wrong "no unit: the extents in mm and in m" "$cube: is in a unit that only you know: with --unit mm it is 0.006 x 0.006 x 0.006 m, with --unit m 6 x 6 x 6 m" -s 1
+wrong "no unit: the extents in mm and in m" "$cube: an OBJ does not say its unit: with --unit mm it is 0.006 x 0.006 x 0.006 m, with --unit m 6 x 6 x 6 m" -s 1
 wrong "unknown unit" "--unit 'furlong': expected mm, cm" --unit furlong -s 1
 wrong "no size" "no voxel size; expected -s H" --unit mm
 wrong "two sizes" "-s and -n both" --unit mm -s 1 -n 3
@@ -27,7 +27,7 @@ wrong "a box upside down" "--box: expected .* with X0 < X1" --unit mm -s 1 --box
 wrong "no such option" "no option --volmues; did you mean --volumes" --unit mm -s 1 --volmues x
 wrong "one surface too many" "extra operand" --unit mm -s 1 "$cube"
 fails 1 "nothing to ask the unit of" "^voxelise: stdin: no polygons; expected closed surfaces" voxelise -s 1 -o "$T/out" -
-fails 2 "a name without text" "^voxelise: operand '' has no text; expected surface.obj" voxelise -s 1 -o "$T/out" ''
+fails 2 "a name without text" "^voxelise: operand '' is empty; expected surface.obj" voxelise -s 1 -o "$T/out" ''
 fails 2 "no surface" "^voxelise: missing operand; expected surface.obj" voxelise --unit mm -s 1 -o "$T/out"
 
 # bad NAME PATTERN ARGS...: refused.

@@ -58,7 +58,7 @@ is "$status $(numbers 'surface skin')$(of 'surface skin' encloses)" "0 6 12 8 1 
 sed 's/^f -8 -6 -5 -7$/&\nf -6 -5 -7 -8/' "$T/box.obj" >"$T/again.obj"
 look "$T/again.obj"
 is "$status $(numbers 'surface skin')" "0 7 12 8 1 0 0 0 1 0 0 " "a face is given twice"
-said "that is a warning" "warning: volume skin gives polygons again \(1 of them\): each counts once"
+said "that is a warning" "warning: volume skin repeats polygons \(1 of them\): each counts once"
 {
     cat "$T/box.obj"
     printf 'v 1 0 0\nf -9 -1 -9\n'
@@ -155,13 +155,13 @@ is "$(grep -c warning "$T/said")" 0 "nor with small ones"
     echo "g muscle_empty"
 } >"$T/names.obj"
 look "$T/names.obj"
-said "a name that is all but one" "warning: surface musle_a bounds a volume as other names do; names that begin muscle are near"
-said "a name without polygons" "warning: surface muscle_empty is named and has no polygon"
+said "a name that is all but one" "warning: the name of surface musle_a begins with no known word; did you mean one that begins with muscle?"
+said "a name without polygons" "warning: surface muscle_empty has no polygon"
 printf 'a surfaces=skin\n' >"$T/volumes"
 look --volumes "$T/volumes" "$T/names.obj"
 said "a surface in no volume" "warning: .*surface 'musle_a' is in no volume"
 is "$(of 'surface musle_a' bounds)" "no volume" "the report says so too"
-fails 2 "a unit is needed" "is in a unit that only you know" voxelise --check "$T/box.obj"
+fails 2 "a unit is needed" "an OBJ does not say its unit" voxelise --check "$T/box.obj"
 
 if [ -n "$DATA" ]; then
     look -s 2.5 "$DATA/face/face_zyg.obj"

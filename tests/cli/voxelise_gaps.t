@@ -11,7 +11,7 @@ export SINEW_THREADS=2
 vox() {
     voxelise --unit mm -o "$T/m" "$@" 2>"$T/said" || diag_file "$T/said"
     sed -n 's/^voxelise: \([0-9]*\) elements, .*/\1:/p' "$T/said" | tr '\n' ' '
-    said=$(sed -n 's/^voxelise: warning: elements fill gaps between surfaces in \([0-9]*\) places\{0,1\} .* as at \([^ ]*\), where the gap is \([^ ]*\) mm wide along \(.\): .* voxels of at most \(.*\) mm part half.*/\1 \2 \3 \4 \5/p' "$T/said")
+    said=$(sed -n 's/^voxelise: warning: elements fill gaps between surfaces in \([0-9]*\) places\{0,1\} .* as at \([^ ]*\), where the gap is \([^ ]*\) mm wide along \(.\): .* voxels of at most \(.*\) mm separate them in half.*/\1 \2 \3 \4 \5/p' "$T/said")
     echo "${said:-none}"
 }
 # slit WIDTH [TURN]
@@ -150,13 +150,13 @@ box skin 0 0 0 10 10 10 >"$T/box.obj"
 echo 'a thickness=1' >"$T/layers"
 is "$(layers -s 1 --layers "$T/layers" "$T/box.obj")" "" "a layer as thick as a voxel"
 is "$(layers -s 1.25 --layers "$T/layers" "$T/box.obj")" \
-    "a is 1 mm thick, less than a voxel of 1.25 mm: 296 whole elements (57.8 % of all) stand for it, in stripes where centres happen to be in it, the first at 0.625mm,0.625mm,0.625mm; voxels of at most 1 mm resolve it" \
+    "a is 1 mm thick, less than a voxel of 1.25 mm: it has 296 elements (57.8 % of all), in stripes where voxel centres happen to lie in it, the first at 0.625mm,0.625mm,0.625mm; voxels of at most 1 mm resolve it" \
     "one that is thinner"
 printf 'a thickness=1.2\nb thickness=1.1\nc thickness=1.1\n' >"$T/layers"
 is "$(layers -s 1.1 --layers "$T/layers" "$T/box.obj")" "" "layers as thick as a voxel below another"
 printf 'a thickness=0.1\nb thickness=2\nc thickness=0.3\n' >"$T/layers"
 layers -s 1 --layers "$T/layers" "$T/box.obj" >"$T/got"
-is "$(wc -l <"$T/got") $(grep -c '^a is 0.1 mm thick, .* no centre is in it, .*at most 0.1 mm resolve' "$T/got") $(grep -c '^c is 0.3 mm' "$T/got")" \
+is "$(wc -l <"$T/got") $(grep -c '^a is 0.1 mm thick, .* no voxel centre is in it, .*at most 0.1 mm resolve' "$T/got") $(grep -c '^c is 0.3 mm' "$T/got")" \
     "2 1 1" "one without an element, and one below another"
 is "$(grep -c 'a has no voxel' "$T/said")" 0 "which is said once"
 echo 'a thickness=0.7' >"$T/layers"

@@ -284,7 +284,7 @@ static bool falls_back(record *r, double want)
     err e = {0};
     checkpoint *c = checkpoint_resume(path, &run, &warnings, &e);
     bool good = c && checkpoint_saved(c) == want && warnings.count == 1 && strstr(warnings.line[0], path) &&
-                strstr(warnings.line[0], "going on from the one before");
+                strstr(warnings.line[0], "the run goes on from the checkpoint before it");
     if (!good)
         printf("# %s%s\n", e.text, warnings.count ? warnings.line[0] : "");
     checkpoint_close(c);
@@ -393,7 +393,7 @@ static void test_others(void)
     refused(&r, NULL, "meta extra is there only now", "one more meta");
     const likeness_run run = run_of(&r);
     checkpoint *c = checkpoint_begin(path, &run, &r.b.e);
-    ok(!c && strstr(r.b.e.text, "file: is there; expected --restart"), "a run that begins: %s", r.b.e.text);
+    ok(!c && strstr(r.b.e.text, "file: exists already; expected --restart"), "a run that begins: %s", r.b.e.text);
     spill(path, (const unsigned char *)"%sinew 1 text\nend\n", 18);
     refused(&r, NULL, "is no checkpoint", "another model");
     end(&r, false);
@@ -402,7 +402,7 @@ static void test_others(void)
     refused(&r, NULL, "No such file", "none");
     r.c = checkpoint_begin(path, &run, &r.b.e);
     c = checkpoint_begin(path, &run, &r.b.e);
-    ok(r.c && !c && strstr(r.b.e.text, "another run is at it"), "two runs: %s", r.b.e.text);
+    ok(r.c && !c && strstr(r.b.e.text, "another run is using it"), "two runs: %s", r.b.e.text);
     end(&r, true);
     ok(!there(frames_path), "a run that saved nothing leaves nothing");
 }
@@ -427,7 +427,7 @@ static void test_left_over(void)
     checkpoint_close(r.c);
     spill(frames_path, kept, sizeof kept);
     r.c = checkpoint_begin(path, &run, &r.b.e);
-    ok(!r.c && strstr(r.b.e.text, "is there, and no checkpoint's"), "another's file of that name: %s", r.b.e.text);
+    ok(!r.c && strstr(r.b.e.text, "exists, and is not a checkpoint"), "another's file of that name: %s", r.b.e.text);
     unsigned char *now = slurp(frames_path, &size);
     ok(size == sizeof kept && !memcmp(now, kept, size), "stays as it was");
     free(now);

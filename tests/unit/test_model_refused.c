@@ -74,7 +74,7 @@ static void test_blocks(void)
     static const char meta[] = "\1\0\0\0k\1\0\0\0v", nul[] = "\1\0\0\0k\1\0\0\0\0", tail[] = "\1\0\0\0k\1\0\0\0vx";
     static const char huge[] = "\xff\xff\xff\xffk";
     one_block("META", 0, 10, meta, 10, "", "a block by hand");
-    one_block("META", 1, 10, meta, 10, "block 1 (META): its flags are not known", "unknown flags");
+    one_block("META", 1, 10, meta, 10, "block 1 (META): its flags are unknown", "unknown flags");
     one_block("METB", 0, 10, meta, 10, "block 1 (METB): its type is not known and may not be skipped",
               "upper-case type");
     one_block("mETB", 7, 10, meta, 10, "", "lower-case type, with flags");

@@ -113,7 +113,7 @@ static void refused(void)
     err e = {0};
     char tool[] = "tool", option[] = "-s1", none[] = "", *argv[] = {tool, none, option};
     ok(opt_parse(&table, 3, argv, &o, &e) == -1 && e.status == STATUS_USAGE &&
-           strstr(e.text, "operand '' has no text; expected surface.obj|-"),
+           strstr(e.text, "operand '' is empty; expected surface.obj|-"),
        "an operand without text: %s", e.text);
 }
 

@@ -279,8 +279,8 @@ static void written(bool gzip)
 static void refused_nrrd(void)
 {
     refuse("", "", 0, "no volume in it (0 bytes)");
-    refuse("hello\n", "", 0, "v:1: 'hello' begins no volume that is known");
-    refuse("\x89PNG\n", "", 0, "v: is no volume that is known");
+    refuse("hello\n", "", 0, "v:1: 'hello' begins no volume of a known format");
+    refuse("\x89PNG\n", "", 0, "v: is not a volume of a known format");
     refuse("NRRD0004\n", "", 0, "v:1: the header ends here");
     refuse("NRRD0004\n\n", "", 0, "a header without dimension");
     refuse("NRRD0004\nsizes: 2 2 2\n\n", "", 0, "v:2: sizes: comes first; expected dimension before it");
@@ -360,7 +360,7 @@ static void refused_meta(void)
     refuse(META("BinaryData = False\nCompressedData = True\n"), "01234567", 8, "expected one of them");
     refuse(META("CompressedData = True\n"), "01234567", 8, "compressed data is damaged");
     refuse(META("CompressedData = True\nHeaderSize = -1\n"), "01234567", 8,
-           "HeaderSize = -1 of data that are no plain bytes");
+           "HeaderSize = -1 with data that are not raw bytes");
     refuse(META(""), "0123456", 7, "data for only 7 of 2 x 2 x 2 voxels");
     refuse(META(""), "012345678", 9, "data for more than 8 of");
     refuse("ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LIST\n", "", 0,
