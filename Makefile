@@ -164,4 +164,4 @@ clean:
 include tests/check.mk
 include debian/package.mk
 
--include $(shell find $(BUILD) -name '*.d' -type f 2>/dev/null)
+-include $(shell find $(BUILD) -path $(BUILD)/mutate -prune -o -name '*.d' -type f -print 2>/dev/null)

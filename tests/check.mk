@@ -185,6 +185,8 @@ compare-msds: all
 bench-fraction: all
 	@tests/bench/fraction $(BIN) $(BENCH_FACE)
 
+include tests/gate/gate.mk
+
 # ---- other builds, each in its own folder
 .PHONY: clang sanitize fuzz fuzz-run
 clang:
@@ -325,6 +327,8 @@ help:
 	'make tsan         the tests of threads under ThreadSanitizer' \
 	'make fuzz         every fuzz target for SECONDS=$(SECONDS) each' \
 	'make check-valgrind  set-up, and every tool under valgrind, on small inputs' \
+	'make coverage     the lines and branches that make check reaches, by folder; those never reached in $(BUILD)/coverage/branches.txt' \
+	'make mutate       changes the code of FOLDER=all at N=$(N) places, one at a time, and names the changes that no test notices' \
 	'make browser      the HTML pages of make paper and make html, in headless chromium' \
 	'' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
