@@ -22,23 +22,26 @@ struct options {
     bool report;
 };
 
+#define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
-    {0, "rigid", "NAME,...", OPT_LIST, offsetof(struct options, rigid), 0, 0, NULL, 0,
-     "rigid surfaces [skull*,bone*,rigid*]"},
-    {0, "rigid-file", "FILE.obj", OPT_TEXT, offsetof(struct options, rigid_file), 0, 0, NULL, OPT_FILE,
-     "more that is rigid, in the model's source.unit"},
-    {0, "strictness", "S", OPT_NUMBER, offsetof(struct options, strictness), 0, 0, NULL, 0,
-     "reach of nodes: 0, excluded, to 1 voxel [0.75]"},
-    {0, "fibre", "centre|axis|field", OPT_CHOICE, offsetof(struct options, fibre), 0, 0, "centre|axis|field", 0,
-     "to centre, along axis, end to end [centre]"},
-    {0, "report", NULL, OPT_FLAG, offsetof(struct options, report), 0, 0, NULL, OPT_OUTPUT,
-     "say what each surface and muscle got"},
+    {OPT_INPUT, 0, "rigid", "NAME,...", OPT_LIST, TO(rigid), 0, 0, NULL, 0,
+     "rigid surfaces [default skull*,bone*,rigid*]"},
+    {OPT_INPUT, 0, "rigid-file", "FILE.obj", OPT_TEXT, TO(rigid_file), 0, 0, NULL, OPT_FILE,
+     "further rigid surfaces, in the model's unit"},
+    {OPT_ACTION, 0, "strictness", "S", OPT_NUMBER, TO(strictness), 0, 0, NULL, 0,
+     "fix nodes this near to a surface, up to 1 [voxel sides; default 0.75]"},
+    {OPT_ACTION, 0, "fibre", "centre|axis|field", OPT_CHOICE, TO(fibre), 0, 0, "centre|axis|field", 0,
+     "toward the contraction centre, along the muscle's axis, or from end to end [default centre]"},
+    {OPT_RESULT, 0, "report", NULL, OPT_FLAG, TO(report), 0, 0, NULL, OPT_OUTPUT,
+     "print what each surface and muscle got"},
     {0},
 };
 
 static const opt_tool table = {
     .name = "attach",
-    .purpose = "Fix the nodes at rigid surfaces, and give muscles centres and fibres.",
+    .usage = "[options] < model > result",
+    .purpose = "Fixes the nodes at rigid surfaces, and gives muscles contraction centres and\nfibre directions.",
+    .example = "voxelise --unit mm -s 2.5 face.obj | attach --fibre field > face.sinew",
     .operands = "",
     .writes_model = true,
     .threaded = true,

@@ -23,15 +23,20 @@ struct options {
     const char *unit;
 };
 
+#define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
-    {0, "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, 0, "of the surface [the file's name]"},
-    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of the OBJ [source.unit]"},
+    {OPT_INPUT, 0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0, "name of the surface [default that of the file]"},
+    {OPT_INPUT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0, "unit of the OBJ [default the model's]"},
     {0},
 };
 
 static const opt_tool table = {
     .name = "bind",
-    .purpose = "Bind surfaces to the elements of the model on standard input.",
+    .command = "sinew bind",
+    .usage = "[options] [surface.obj...] < model > result",
+    .purpose = "Binds surfaces to the elements of a model, so that they move with them.\nWithout surface.obj: the "
+               "surfaces that the model carries.",
+    .example = "sinew bind --unit mm vein.obj artery.obj < arm.sinew > bound.sinew",
     .operands = "surface.obj...",
     .operands_max = 1000,
     .writes_model = true,

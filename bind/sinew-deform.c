@@ -28,21 +28,27 @@ struct options {
     bool salvage;
 };
 
+#define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
-    {0, "frame", FRAMES_ARG, OPT_TEXT, offsetof(struct options, frame), 0, 0, NULL, 0, "all: -o f_%04d.obj [last]"},
-    {0, "within", "D", OPT_LENGTHS, offsetof(struct options, within), 0, 1, NULL, 0,
-     "m: hold vertices further than D outside [any]"},
-    {0, "format", "obj|pc2", OPT_CHOICE, offsetof(struct options, format), 0, 0, "obj|pc2", 0,
-     "OBJ, or a point cache [obj]"},
-    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, offsetof(struct options, unit), 0, 0, NULL, 0, "of the OBJ [source.unit]"},
-    {0, "salvage", NULL, OPT_FLAG, offsetof(struct options, salvage), 0, 0, NULL, OPT_OUTPUT,
-     "take the frames before a cut"},
+    {OPT_INPUT, 0, "frame", FRAMES_ARG, OPT_TEXT, TO(frame), 0, 0, NULL, 0,
+     "all: a file each, -o f_%04d.obj [default last, of pc2 all]"},
+    {OPT_ACTION, 0, "within", "D", OPT_LENGTHS, TO(within), 0, 1, NULL, 0,
+     "do not move vertices further than D outside the elements [length; default move all]"},
+    {OPT_RESULT, 0, "format", "obj|pc2", OPT_CHOICE, TO(format), 0, 0, "obj|pc2", 0,
+     "OBJ, or a point cache for Blender [default obj]"},
+    {OPT_INPUT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0, "unit of the OBJ [default the model's]"},
+    {OPT_INPUT, 0, "salvage", NULL, OPT_FLAG, TO(salvage), 0, 0, NULL, OPT_OUTPUT,
+     "use whole frames of a stream that ends too early"},
     {0},
 };
 
 static const opt_tool table = {
     .name = "sinew-deform",
-    .purpose = "Move a bound OBJ by the results of the model on standard input.",
+    .command = "sinew deform",
+    .usage = "[options] surface.obj < result > deformed.obj",
+    .purpose = "Moves a bound OBJ surface as the results of a model say.",
+    .note = "Lengths are in m, unless they have a suffix (um, mm, cm, m, in), e.g. 5cm.",
+    .example = "sinew deform face.obj < smile.sinew > smile.obj",
     .operands = "surface.obj",
     .operands_min = 1,
     .operands_max = 1,

@@ -23,21 +23,26 @@ struct options {
     int64_t taubin;
 };
 
+#define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
-    {'l', "label", "NAME,...", OPT_LIST, offsetof(struct options, labels), 0, 0, NULL, 0,
-     "of these labels, by name or number; or all"},
-    {'i', "iso", "LEVEL", OPT_NUMBER, offsetof(struct options, iso), 0, 0, NULL, 0, "or of all that is LEVEL or more"},
-    {0, "name", "NAME", OPT_TEXT, offsetof(struct options, name), 0, 0, NULL, 0, "its group, with -i [surface]"},
-    {0, "smooth", "SIGMA", OPT_LENGTHS, offsetof(struct options, smooth), 0, 1, NULL, 0,
-     "Gaussian filter before, as 1mm [none]"},
-    {0, "taubin", "PASSES", OPT_INT, offsetof(struct options, taubin), 0, 1000, NULL, 0,
-     "Taubin's smoothing after, 10 is much [0]"},
+    {OPT_INPUT, 'l', "label", "NAME,...", OPT_LIST, TO(labels), 0, 0, NULL, 0,
+     "surfaces of these labels, names or numbers, or all"},
+    {OPT_INPUT, 'i', "iso", "LEVEL", OPT_NUMBER, TO(iso), 0, 0, NULL, 0, "or of what has this intensity or more"},
+    {OPT_RESULT, 0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0,
+     "name of the group, with --iso [default surface]"},
+    {OPT_ACTION, 0, "smooth", "SIGMA", OPT_LENGTHS, TO(smooth), 0, 1, NULL, 0,
+     "Gaussian filter before [length; default none]"},
+    {OPT_ACTION, 0, "taubin", "PASSES", OPT_INT, TO(taubin), 0, 1000, NULL, 0,
+     "passes of Taubin smoothing; 10 are many [default 0]"},
     {0},
 };
 
 static const opt_tool table = {
     .name = "us-surface",
-    .purpose = "Write closed surfaces of a volume (NRRD, MetaImage) as OBJ, mm, LPS.",
+    .usage = "[options] volume > surface.obj\n[options] < volume > surface.obj",
+    .purpose = "Writes closed surfaces of labels, or of an intensity, as OBJ (mm, LPS).",
+    .note = "A length needs its unit, e.g. 0.5mm or 1cm.",
+    .example = "us-surface --label vein --smooth 0.5mm labels.nrrd > vein.obj",
     .operands = "volume",
     .operands_max = 1,
     .reads_volumes = true,

@@ -11,6 +11,7 @@
 #include "tled/collider.h"
 #include "tled/folds.h"
 #include "tled/likeness.h"
+#include "tled/options.h"
 #include "tled/relax.h"
 #include "tled/run.h"
 #include "tled/step.h"
@@ -24,66 +25,6 @@
 enum { REST_STEPS = 200000 }; /* after the script's end, before a run to rest gives up */
 
 static const double rest_tolerance = 1e-4;
-
-struct options {
-    opt_common common;
-    int device, precision;
-    double dt, seconds, rest, ramp, damping, hourglass, every, log_every; /* below 0: not given */
-    int64_t steps;                                                        /* 0: not given */
-    opt_numbers gravity;
-    opt_list contract, material, tsv;
-    const char *script, *materials, *probe, *poses, *unit, *log;
-    double repulsion;
-    const char *checkpoint, *restart;
-    double checkpoint_every;
-};
-
-#define TO(field) offsetof(struct options, field)
-static const opt option_list[] = {
-    {'d', "device", "auto|cuda|cpu", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT, "what computes [auto]"},
-    {0, "precision", "double|single", OPT_CHOICE, TO(precision), 0, 0, "double|single", OPT_OUTPUT,
-     "of the solver's numbers [double]"},
-    {0, "dt", "S", OPT_NUMBER, TO(dt), 1e-12, 1e6, NULL, OPT_OUTPUT, "time step, s [half the stable one]"},
-    {'t', "time", "SECONDS", OPT_NUMBER, TO(seconds), 0, 1e9, NULL, OPT_OUTPUT, "simulate so long, s"},
-    {'n', "steps", "STEPS", OPT_INT, TO(steps), 1, 1e15, NULL, OPT_OUTPUT, "take so many steps"},
-    {0, "rest", "TOL", OPT_NUMBER, TO(rest), 1e-15, 1, NULL, OPT_OUTPUT,
-     "run to rest [to 1e-4, where no end is given]"},
-    {0, "equilibrium", "TOL", OPT_NUMBER, TO(rest), 1e-15, 1, NULL, OPT_OUTPUT | OPT_ALSO, "run to rest"},
-    {'g', "gravity", "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "gravity, m/s2 [none]"},
-    {'c', "contract", "MUSCLE=LEVEL,...", OPT_LIST, TO(contract), 0, 0, NULL, 0, "contract muscles to levels 0 to 1"},
-    {0, "ramp", "S", OPT_NUMBER, TO(ramp), 0, 1e9, NULL, OPT_OUTPUT, "time that -c and -g take to come up, s [0.1]"},
-    {0, "script", "FILE", OPT_TEXT, TO(script), 0, 0, NULL, OPT_FILE, "what happens when"},
-    {0, "materials", "FILE", OPT_TEXT, TO(materials), 0, 0, NULL, OPT_FILE, "change the materials by a file"},
-    {'m', "material", "MATERIAL.KEY=VALUE", OPT_LIST, TO(material), 0, 0, NULL, 0, "change one value of a material"},
-    {0, "damping", "A", OPT_NUMBER, TO(damping), 0, 1e12, NULL, OPT_OUTPUT,
-     "mass damping, 1/s [critical; to rest: adapted]"},
-    {0, "hourglass", "K", OPT_NUMBER, TO(hourglass), 0, 1e3, NULL, OPT_OUTPUT, "hourglass coefficient [0.0075]"},
-    {0, "every", "S", OPT_NUMBER, TO(every), 1e-12, 1e9, NULL, OPT_OUTPUT,
-     "write a frame at the start and each S seconds"},
-    {0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "sphere:|linear:|curved:|convex:", OPT_OUTPUT,
-     "sphere:R linear:W,T curved:R,A,T convex:OBJ"},
-    {0, "poses", "FILE", OPT_TEXT, TO(poses), 0, 0, NULL, OPT_FILE, "where it is"},
-    {0, "repulsion", "X", OPT_NUMBER, TO(repulsion), 1e-6, 1e3, NULL, OPT_OUTPUT, "of it, over tissue's own [1]"},
-    {0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0, "of its OBJ"},
-    {0, "log", "FILE", OPT_TEXT, TO(log), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
-     "energies, residual, rates, as TSV"},
-    {0, "log-every", "S", OPT_NUMBER, TO(log_every), 1e-12, 1e9, NULL, OPT_OUTPUT, "its rows, s [0.01]"},
-    {0, "tsv", "KEY", OPT_LIST, TO(tsv), 0, 0, NULL, OPT_OUTPUT, "in it: node.displacement.at.X,Y,Z"},
-    {0, "checkpoint", "FILE", OPT_TEXT, TO(checkpoint), 0, 0, NULL, OPT_OUTPUT | OPT_FILE, "save the state there"},
-    {0, "checkpoint-every", "S", OPT_NUMBER, TO(checkpoint_every), 1e-12, 1e9, NULL, OPT_OUTPUT,
-     "of its time [a minute of ours]"},
-    {0, "restart", "FILE", OPT_TEXT, TO(restart), 0, 0, NULL, OPT_OUTPUT | OPT_FILE, "go on from there"},
-    {0},
-};
-
-static const opt_tool table = {
-    .name = "tled-run",
-    .purpose = "Move a model by total Lagrangian explicit dynamics.",
-    .operands = "",
-    .writes_model = true,
-    .threaded = true,
-    .options = option_list,
-};
 
 /* What the functions called by the time loop share with main. */
 typedef struct session {
@@ -564,7 +505,7 @@ static int run_tool(int argc, char **argv)
     tool t = {0};
     session s = {.t = &t};
     char device[300] = "";
-    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+    if (tool_begin(&t, &options_table, argc, argv, &o, &e) || t.done)
         goto out;
     if (check_end(&o, &e) || check_checkpoint(&t, &o, &e) || stage_open_output(&s.stage, &t, &e) ||
         stage_read(&s.stage, &s.m, &e) || prepare(&s, &o, device, sizeof device, &e) ||

@@ -43,6 +43,7 @@ int err_set(err *e, const char *place, int64_t line, const char *format, ...)
 int err_usage(err *e, const char *format, ...)
 {
     va_list args;
+    e->help = e->status ? e->help : ERR_TRY_HELP;
     va_start(args, format);
     fill(e, STATUS_USAGE, NULL, 0, format, args);
     va_end(args);

@@ -10,10 +10,13 @@
 
 enum { STATUS_OK = 0, STATUS_BAD = 1, STATUS_USAGE = 2, STATUS_DIVERGED = 3 };
 
+/* For what the command line asks: "try TOOL --help"; and, on lines of their own, how the tool is called. */
+enum { ERR_TRY_HELP = 1, ERR_SHOW_USAGE };
+
 typedef struct err {
     int status;      /* the exit status it asks for; 0: no error */
     bool silent;     /* the tool before us in the pipe has said it already */
-    bool usage;      /* the usage would help: it is printed after the text */
+    int help;        /* what is said after the text: one of the ERR_ below */
     int place;       /* bytes of text that are the place's name */
     char text[1000]; /* "place:line: what is wrong; what was expected" */
 } err;
@@ -33,11 +36,11 @@ typedef struct notes {
  * a second call on a filled err changes nothing. */
 int err_set(err *e, const char *place, int64_t line, const char *format, ...) SINEW_PRINTF(4, 5);
 
-/* The same for what the command line asks, without a place: status 2. */
+/* The same for what the command line asks, without a place: status 2, and ERR_TRY_HELP. */
 int err_usage(err *e, const char *format, ...) SINEW_PRINTF(2, 3);
 
-/* The same for the value of one option: "option: what is wrong", as where only the input shows it. NULL: no option is
- * named. */
+/* The same for the value of one option: "option: what is wrong", as where only the input shows it, so that the help
+ * is no help. NULL: no option is named. */
 int err_option(err *e, const char *option, const char *format, ...) SINEW_PRINTF(3, 4);
 
 /* err_set for a failed system call: appends strerror of the given errno value. */

@@ -13,25 +13,28 @@ enum { MODELS = 1 << 9, THREADED = 1 << 10, VOLUMES = 1 << 11 };
  * read volume images. */
 #define COMMON(field) offsetof(opt_common, field)
 static const opt common_options[] = {
-    {'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
-     "write FILE, whole or not at all"},
-    {0, "text", NULL, OPT_FLAG, COMMON(text), 0, 0, NULL, OPT_OUTPUT | MODELS, "write text, not binary"},
-    {'z', "gzip", NULL, OPT_FLAG, COMMON(gzip), 0, 0, NULL, OPT_OUTPUT | MODELS, "gzip the output"},
-    {0, "anonymous-names", NULL, OPT_FLAG, COMMON(anonymous), 0, 0, NULL, OPT_OUTPUT | MODELS,
-     "no names of files in the model"},
-    {0, "threads", "N", OPT_INT, COMMON(threads), 1, 1024, NULL, OPT_OUTPUT | THREADED, "threads"},
-    {0, "memory", "SIZE", OPT_SIZE, COMMON(memory), 0, 0, NULL, OPT_OUTPUT | VOLUMES,
-     "refuse volumes that take more, as 2GB"},
-    {'q', "quiet", NULL, OPT_FLAG, COMMON(quiet), 0, 0, NULL, OPT_OUTPUT, "say only what is wrong"},
-    {'v', "verbose", NULL, OPT_FLAG, COMMON(verbose), 0, 0, NULL, OPT_OUTPUT, "say more"},
-    {'h', "help", NULL, OPT_FLAG, COMMON(help), 0, 0, NULL, OPT_OUTPUT, "this text"},
-    {'V', "version", NULL, OPT_FLAG, COMMON(version), 0, 0, NULL, OPT_OUTPUT, "the version"},
-    {0, "table", "mdoc|bash|zsh", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN, "for make"},
+    {OPT_COMMON, 'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
+     "write FILE, whole or not at all [default stdout]"},
+    {OPT_COMMON, 0, "text", NULL, OPT_FLAG, COMMON(text), 0, 0, NULL, OPT_OUTPUT | MODELS,
+     "write the model as text [default binary]"},
+    {OPT_COMMON, 'z', "gzip", NULL, OPT_FLAG, COMMON(gzip), 0, 0, NULL, OPT_OUTPUT | MODELS,
+     "compress the output with gzip"},
+    {OPT_COMMON, 0, "anonymous-names", NULL, OPT_FLAG, COMMON(anonymous), 0, 0, NULL, OPT_OUTPUT | MODELS,
+     "write no names of files into the model"},
+    {OPT_COMMON, 0, "threads", "N", OPT_INT, COMMON(threads), 1, 1024, NULL, OPT_OUTPUT | THREADED,
+     "threads [default SINEW_THREADS, or all processors]"},
+    {OPT_COMMON, 0, "memory", "SIZE", OPT_SIZE, COMMON(memory), 0, 0, NULL, OPT_OUTPUT | VOLUMES,
+     "most memory for volumes, e.g. 2GB [default any]"},
+    {OPT_COMMON, 'q', "quiet", NULL, OPT_FLAG, COMMON(quiet), 0, 0, NULL, OPT_OUTPUT, "print only warnings and errors"},
+    {OPT_COMMON, 'v', "verbose", NULL, OPT_FLAG, COMMON(verbose), 0, 0, NULL, OPT_OUTPUT, "print more"},
+    {OPT_COMMON, 'h', "help", NULL, OPT_FLAG, COMMON(help), 0, 0, NULL, OPT_OUTPUT, "print this help"},
+    {OPT_COMMON, 'V', "version", NULL, OPT_FLAG, COMMON(version), 0, 0, NULL, OPT_OUTPUT, "print the version"},
+    {OPT_COMMON, 0, "table", "mdoc|bash|zsh", OPT_TEXT, COMMON(table), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN, "for make"},
     {0}};
 
 static bool is_end(const opt *o)
 {
-    return !o->name && !o->letter;
+    return o->group == OPT_END;
 }
 
 int opt_own(const opt_tool *tool)
@@ -80,7 +83,7 @@ static int unknown_option(const opt_tool *tool, const char *name, size_t length,
     int near = near_name(word, names, n);
     if (near >= 0)
         return err_usage(e, "no option --%s; did you mean --%s?", word, names[near]);
-    return err_usage(e, "no option --%s; see %s --help", word, tool->name);
+    return err_usage(e, "no option --%s", word);
 }
 
 /* An exact name, or the only one that begins so. count: how many begin so. */
@@ -303,7 +306,7 @@ static int take_letters(scan *s, const char *letters, err *e)
     for (; *letters; letters++) {
         const opt *o = find_letter(s->tool, *letters);
         if (!o)
-            return err_usage(e, "no option -%c; see %s --help", *letters, s->tool->name);
+            return err_usage(e, "no option -%c", *letters);
         if (o->kind != OPT_FLAG)
             return take(s, o, letters[1] ? letters + 1 : NULL, e);
         if (take(s, o, NULL, e))
@@ -312,12 +315,11 @@ static int take_letters(scan *s, const char *letters, err *e)
     return 0;
 }
 
-static int missing_option(const opt_tool *tool, const opt *o, err *e)
+static int missing_option(const opt *o, err *e)
 {
     if (o->letter)
-        return err_usage(e, "missing option -%c, --%s; expected -%c %s; see %s --help", o->letter, o->name, o->letter,
-                         o->arg, tool->name);
-    return err_usage(e, "missing option --%s; expected --%s %s; see %s --help", o->name, o->name, o->arg, tool->name);
+        return err_usage(e, "missing option -%c, --%s; expected -%c %s", o->letter, o->name, o->letter, o->arg);
+    return err_usage(e, "missing option --%s; expected --%s %s", o->name, o->name, o->arg);
 }
 
 static int check_required(const scan *s, int operands, err *e)
@@ -325,7 +327,7 @@ static int check_required(const scan *s, int operands, err *e)
     const opt *o;
     for (int i = 0; i < 64 && (o = opt_at(s->tool, i)); i++)
         if (o->flags & OPT_REQUIRED && !(s->seen >> i & 1))
-            return missing_option(s->tool, o, e);
+            return missing_option(o, e);
     if (operands < s->tool->operands_min)
         return err_usage(e, "missing operand; expected %s", s->tool->operands);
     if (operands > s->tool->operands_max)

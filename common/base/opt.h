@@ -11,6 +11,17 @@
 
 #include <stddef.h>
 
+/* The headings that the help has options under, in their order there. */
+typedef enum opt_group {
+    OPT_END,      /* no option: the end of a table */
+    OPT_INPUT,    /* what is read, and how it is taken */
+    OPT_ACTION,   /* what happens to it */
+    OPT_NUMERICS, /* how that is computed */
+    OPT_RESULT,   /* what is written, and how */
+    OPT_COMMON,   /* what all tools have */
+    OPT_GROUPS
+} opt_group;
+
 typedef enum opt_kind {
     OPT_FLAG,    /* bool */
     OPT_TEXT,    /* const char * */
@@ -49,6 +60,7 @@ enum {
 };
 
 typedef struct opt {
+    opt_group group;
     char letter;      /* 0: none */
     const char *name; /* long, without the dashes; NULL: letter only */
     const char *arg;  /* metavariable, e.g. "SECONDS"; NULL for a flag */
@@ -57,7 +69,7 @@ typedef struct opt {
     double low, high;    /* range, inclusive; both 0: any */
     const char *choices; /* names between '|'; for an OPT_TEXT, what completion offers, with ':' what is gone on with */
     int flags;
-    const char *help; /* a few words, unit included */
+    const char *help; /* a few words; units and defaults last, in brackets: [UNIT], [default X] or [UNIT; default X] */
 } opt;
 
 typedef struct opt_common {
@@ -70,13 +82,17 @@ typedef struct opt_common {
 
 typedef struct opt_tool {
     const char *name;     /* "voxelise" */
-    const char *purpose;  /* one line */
-    const char *operands; /* as in the usage, e.g. "surface.obj|-"; "" for none */
+    const char *command;  /* how it is called, "sinew bind"; NULL: by its name */
+    const char *usage;    /* what follows that on a command line, its place in a pipe included; a line for each way */
+    const char *purpose;  /* what it does: a sentence, in lines of 80 columns */
+    const char *note;     /* what holds for several options, as units of lengths; NULL: nothing */
+    const char *example;  /* one command line */
+    const char *operands; /* as in messages and the synopsis, e.g. "surface.obj|-"; "" for none */
     int operands_min, operands_max;
     bool writes_model;  /* has --text, -z and --anonymous-names */
     bool threaded;      /* has --threads */
     bool reads_volumes; /* has --memory */
-    const opt *options; /* ends with {.name = NULL, .letter = 0} */
+    const opt *options; /* ends with OPT_END */
 } opt_tool;
 
 /* Names of options and choices are taken in American spelling too (base/spelling.h), and recorded as the table has them.
@@ -91,8 +107,12 @@ int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e
 const opt *opt_at(const opt_tool *tool, int i);
 int opt_own(const opt_tool *tool);
 
-/* Usage: at most 24 lines of 80 columns. */
+/* How people call the tool: "sinew bind". */
+const char *opt_command(const opt_tool *tool);
+
+/* "usage: ...", a line for each way to call the tool; and the help, which begins with these, in 80 columns. */
 void opt_usage(const opt_tool *tool, out *o);
+void opt_help(const opt_tool *tool, out *o);
 
 /* kind "mdoc": the manual's SYNOPSIS; "bash", "zsh": a completion script. -1 with e filled for another kind. */
 int opt_table(const opt_tool *tool, const char *kind, out *o, err *e);

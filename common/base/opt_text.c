@@ -1,4 +1,4 @@
-/* What a table of options says of itself: usage, synopsis, provenance. */
+/* What a table of options says of itself: the synopsis, provenance. */
 #include "base/mem.h"
 #include "base/opt.h"
 #include "base/opt_complete.h"
@@ -7,94 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-/* "-s, --size H|HX,HY,HZ" */
-static void put_option(const opt *o, char *to, size_t size)
-{
-    int n = 0;
-    if (o->letter)
-        n = snprintf(to, size, "-%c%s", o->letter, o->name ? ", " : "");
-    if (o->name)
-        n += snprintf(to + n, size - (size_t)n, "--%s", o->name);
-    if (o->arg)
-        snprintf(to + n, size - (size_t)n, " %s", o->arg);
-}
-
-enum { USAGE_LINES = 24 };
-
-enum { USAGE_COLUMNS = 80 };
-
-/* Puts text that stays in one piece behind what is there, or on the next line. Returns the column that it ends in. */
-static size_t put_piece(const char *text, size_t length, size_t column, int *lines, out *to)
-{
-    const bool fits = column && column + 1 + length <= USAGE_COLUMNS;
-    *lines += !fits;
-    if (to)
-        out_format(to, "%s%.*s", fits ? " " : column ? "\n  " : "  ", (int)length, text);
-    return (fits ? column + 1 : 2) + length;
-}
-
-/* The options from number `from` on one after another, lines broken between words of what is said of them. Returns how
- * many lines; to may be NULL. */
-static int put_packed(const opt_tool *tool, int from, out *to)
-{
-    const opt *o;
-    size_t column = 0;
-    int lines = 0;
-    for (int i = from; (o = opt_at(tool, i)); i++) {
-        char name[96], help[160];
-        if (o->flags & OPT_HIDDEN)
-            continue;
-        put_option(o, name, sizeof name - 1);
-        strcat(name, ":");
-        column = put_piece(name, strlen(name), column, &lines, to);
-        const opt *next = opt_at(tool, i + 1);
-        snprintf(help, sizeof help, "%s%s", o->help, next && !(next->flags & OPT_HIDDEN) ? ";" : "");
-        for (const char *word = help; *word; word += strspn(word, " ")) {
-            size_t length = strcspn(word, " ");
-            column = put_piece(word, length, column, &lines, to);
-            word += length;
-        }
-    }
-    if (to)
-        out_text(to, "\n");
-    return lines;
-}
-
-/* How many of its own options have a line each: all, or as many as leave room for the rest. */
-static int apart(const opt_tool *tool)
-{
-    int lines = 2, own = opt_own(tool), count = own;
-    for (int i = 0; i < own; i++)
-        lines += !(opt_at(tool, i)->flags & OPT_HIDDEN);
-    while (count > 0 && lines + put_packed(tool, count, NULL) > USAGE_LINES)
-        lines -= !(opt_at(tool, --count)->flags & OPT_HIDDEN);
-    return count;
-}
-
-void opt_usage(const opt_tool *tool, out *to)
-{
-    const opt *o;
-    int own = opt_own(tool), alone = apart(tool);
-    out_format(to, "usage: %s", tool->name);
-    for (int i = 0; i < own; i++)
-        if ((o = opt_at(tool, i))->flags & OPT_REQUIRED)
-            out_format(to, " --%s %s", o->name, o->arg);
-    if (!*tool->operands)
-        out_format(to, " [options]\n%s\n", tool->purpose);
-    else
-        out_format(to, tool->operands_min ? " [options] %s\n%s\n" : " [options] [%s]\n%s\n", tool->operands,
-                   tool->purpose);
-    for (int i = 0; i < alone; i++) {
-        char name[80];
-        o = opt_at(tool, i);
-        if (o->flags & OPT_HIDDEN)
-            continue;
-        put_option(o, name, sizeof name);
-        out_format(to, strlen(name) > 30 ? "  %s  %s\n" : "  %-30s  %s\n", name, o->help);
-    }
-    put_packed(tool, alone, to);
-}
 
 /* mdoc wants its special characters away from macros' arguments: '|' is a delimiter and stands by itself, and a word
  * such as Pa is a macro unless \& is before it. */

@@ -67,7 +67,7 @@ static int answer(tool *t, err *e)
         return -1;
     t->done = true;
     if (c->help)
-        opt_usage(t->table, o);
+        opt_help(t->table, o);
     else if (c->version)
         out_format(o, "%s (Sinew) %s\n", t->table->name, SINEW_VERSION);
     else if (opt_table(t->table, c->table, o, e)) {
@@ -199,11 +199,21 @@ static void print_usage(const tool *t)
     out_discard(o);
 }
 
+static void print_error(const tool *t, const err *e)
+{
+    char text[LINE];
+    const size_t n = strlen(e->text);
+    if (e->help)
+        snprintf(text, sizeof text, "%s%s try %s --help", e->text, n && e->text[n - 1] == '?' ? "" : ";",
+                 opt_command(t->table));
+    print(t, "", e->help ? text : e->text);
+}
+
 int tool_end(tool *t, const err *e)
 {
     if (e->status && !e->silent)
-        print(t, "", e->text);
-    if (e->status && e->usage)
+        print_error(t, e);
+    if (e->status && e->help == ERR_SHOW_USAGE)
         print_usage(t);
     free(t->provenance);
     t->provenance = NULL;
@@ -214,8 +224,11 @@ int tool_need_stdin(const char *what, err *e)
 {
     if (!isatty(STDIN_FILENO))
         return 0;
-    e->usage = !e->status;
-    return err_usage(e, "reads %s on stdin, which is a terminal", what);
+    if (e->status)
+        return -1;
+    err_usage(e, "reads %s on stdin, which is a terminal", what);
+    e->help = ERR_SHOW_USAGE;
+    return -1;
 }
 
 SINEW_PRINTF(2, 0) static void say(const tool *t, const char *format, va_list args)

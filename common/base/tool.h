@@ -35,11 +35,11 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
  * are made of those: of numbered files, of checkpoints. */
 int tool_check_written(const tool *t, const char *option, const char *path, err *e);
 
-/* Prints e, where there is one that was not said already, and frees t. Returns the exit status. Every message is one
+/* Prints e, where there is one that was not said already, with what helps (e->help), and frees t. Returns the exit status. Every message is one
  * line in one write; control characters in it become '?'. */
 int tool_end(tool *t, const err *e);
 
-/* Where standard input is a terminal: what is read from it ("a model") is not typed, so status 2 and the usage. */
+/* Where standard input is a terminal: what is read from it ("a model") is not typed, so status 2 and ERR_SHOW_USAGE. */
 int tool_need_stdin(const char *what, err *e);
 
 /* "tool: text" on stderr, unless -q. */

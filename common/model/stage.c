@@ -15,6 +15,7 @@ int stage_open_output(stage *s, const tool *t, err *e)
     if (out_is_terminal(s->sink) && (!c->text || c->gzip)) {
         out_discard(s->sink);
         s->sink = NULL;
+        e->help = e->status ? e->help : ERR_SHOW_USAGE;
         return err_set(e, "stdout", 0,
                        "is a terminal, and a binary model is not for reading; expected --text, -o FILE or a pipe");
     }

@@ -15,17 +15,22 @@ struct options {
     opt_list abs, rel, only;
 };
 
+#define TO(field) offsetof(struct options, field)
 static const opt option_table[] = {
-    {0, "abs", "[ARRAY=]A", OPT_LIST, offsetof(struct options, abs), 0, 0, NULL, 0,
-     "equal where |a - b| <= A (a length: 1mm)"},
-    {0, "rel", "[ARRAY=]R", OPT_LIST, offsetof(struct options, rel), 0, 0, NULL, 0,
-     "equal where |a - b| <= R max(|a|, |b|)"},
-    {0, "only", "ARRAY,...", OPT_LIST, offsetof(struct options, only), 0, 0, NULL, 0, "compare these arrays only"},
+    {OPT_ACTION, 0, "abs", "[ARRAY=]A", OPT_LIST, TO(abs), 0, 0, NULL, 0,
+     "equal if |a - b| <= A, e.g. 1e-6 or 1um [default 0]"},
+    {OPT_ACTION, 0, "rel", "[ARRAY=]R", OPT_LIST, TO(rel), 0, 0, NULL, 0,
+     "equal if |a - b| <= R max(|a|, |b|) [default 0]"},
+    {OPT_ACTION, 0, "only", "ARRAY,...", OPT_LIST, TO(only), 0, 0, NULL, 0, "compare only these arrays"},
     {0}};
 
 static const opt_tool table = {
     .name = "sinew-diff",
-    .purpose = "Say where two models differ: exit status 0 same, 1 different, 2 trouble.",
+    .command = "sinew diff",
+    .usage = "[options] A B",
+    .purpose = "Compares two models. The exit status is 0 if they are equal, 1 if they differ,\nand 2 if they cannot "
+               "be compared.",
+    .example = "sinew diff --abs node.displacement=1um before.sinew after.sinew",
     .operands = "A B",
     .operands_min = 2,
     .operands_max = 2,

@@ -22,19 +22,23 @@ struct options {
     bool json, salvage;
 };
 
+#define TO(field) offsetof(struct options, field)
 static const opt option_table[] = {
-    {0, "get", "KEY", OPT_LIST, offsetof(struct options, get), 0, 0, NULL, OPT_OUTPUT,
-     "one value, as node.displacement.max"},
-    {0, "tsv", "KEY", OPT_LIST, offsetof(struct options, tsv), 0, 0, NULL, OPT_OUTPUT,
-     "a value of each frame, a row a frame"},
-    {0, "json", NULL, OPT_FLAG, offsetof(struct options, json), 0, 0, NULL, OPT_OUTPUT, "the summary as JSON"},
-    {0, "salvage", NULL, OPT_FLAG, offsetof(struct options, salvage), 0, 0, NULL, OPT_OUTPUT,
-     "take the frames before a cut"},
+    {OPT_RESULT, 0, "get", "KEY", OPT_LIST, TO(get), 0, 0, NULL, OPT_OUTPUT,
+     "print one value or list, e.g. frames, muscle.name, node.displacement.max"},
+    {OPT_RESULT, 0, "tsv", "KEY", OPT_LIST, TO(tsv), 0, 0, NULL, OPT_OUTPUT,
+     "print a value of each frame, a row a frame (TSV)"},
+    {OPT_RESULT, 0, "json", NULL, OPT_FLAG, TO(json), 0, 0, NULL, OPT_OUTPUT, "print the summary as JSON"},
+    {OPT_INPUT, 0, "salvage", NULL, OPT_FLAG, TO(salvage), 0, 0, NULL, OPT_OUTPUT,
+     "use whole frames of a stream that ends too early"},
     {0}};
 
 static const opt_tool table = {
     .name = "sinew-info",
-    .purpose = "Say what a model holds; read MODEL or standard input.",
+    .command = "sinew info",
+    .usage = "[options] model\n[options] < model",
+    .purpose = "Prints what a model contains: materials, volumes, muscles, arrays and frames.",
+    .example = "sinew info --get muscle.name face.sinew",
     .operands = "MODEL",
     .operands_max = 1,
     .options = option_table,

@@ -13,36 +13,47 @@
 #include <string.h>
 #include <unistd.h>
 
+enum { MODELS, SIMULATION, RESULTS, ULTRASOUND, GROUPS };
+
+static const char *const headings[GROUPS] = {"Models", "Simulation", "Results", "Ultrasound images"};
+
 /* The tools, in the order of the data's way. */
 static const struct {
+    int group;
     const char *name, *file, *purpose;
 } tools[] = {
-    {"voxelise", "voxelise", "closed surfaces to hexahedral elements"},
-    {"attach", "attach", "rigid nodes, muscle centres and fibres"},
-    {"bind", "bind", "surfaces to elements, to move with them"},
-    {"tled-run", "tled-run", "total Lagrangian explicit dynamics"},
-    {"msds-mesh", "msds-mesh", "regular meshes of tetrahedra"},
-    {"msds-run", "msds-run", "press a probe on tetrahedra, by springs or finite elements"},
-    {"us-import", "us-import", "a volume from DICOM, sweeps, MetaImage"},
-    {"us-segment", "us-segment", "a part of a volume as a named label"},
-    {"us-surface", "us-surface", "closed surfaces of labels or intensities"},
-    {"us-slice", "us-slice", "ultrasound images of a volume, as a model deforms it"},
-    {"deform", "sinew-deform", "an OBJ as the model's results move it"},
-    {"info", "sinew-info", "what a model holds"},
-    {"diff", "sinew-diff", "where two models differ"},
-    {"export", "sinew-export", "VTU, Abaqus .inp, Gmsh .msh, OBJ"},
-    {"import", "sinew-import", "a mesh from Abaqus .inp, Gmsh .msh, VTU"},
-    {"render", "sinew-render", "pictures"},
+    {MODELS, "voxelise", "voxelise", "closed surfaces to hexahedral elements"},
+    {MODELS, "attach", "attach", "rigid nodes, muscle centres and fibres"},
+    {MODELS, "bind", "bind", "surfaces to elements, to move with them"},
+    {SIMULATION, "tled-run", "tled-run", "total Lagrangian explicit dynamics"},
+    {MODELS, "msds-mesh", "msds-mesh", "regular meshes of tetrahedra"},
+    {SIMULATION, "msds-run", "msds-run", "press a probe on tetrahedra, by springs or finite elements"},
+    {ULTRASOUND, "us-import", "us-import", "a volume from DICOM, sweeps, MetaImage"},
+    {ULTRASOUND, "us-segment", "us-segment", "a part of a volume as a named label"},
+    {ULTRASOUND, "us-surface", "us-surface", "closed surfaces of labels or intensities"},
+    {ULTRASOUND, "us-slice", "us-slice", "ultrasound images of a volume, as a model deforms it"},
+    {RESULTS, "deform", "sinew-deform", "an OBJ as the model's results move it"},
+    {RESULTS, "info", "sinew-info", "what a model holds"},
+    {RESULTS, "diff", "sinew-diff", "where two models differ"},
+    {RESULTS, "export", "sinew-export", "VTU, Abaqus .inp, Gmsh .msh, OBJ"},
+    {MODELS, "import", "sinew-import", "a mesh from Abaqus .inp, Gmsh .msh, VTU"},
+    {RESULTS, "render", "sinew-render", "pictures"},
 };
 
 enum { TOOLS = sizeof tools / sizeof *tools };
 
 static void put_list(out *o)
 {
-    out_text(o, "usage: sinew TOOL [ARGUMENTS]\nRuns one of Sinew's tools; sinew TOOL --help says more of each.\n");
-    for (int i = 0; i < TOOLS; i++)
-        out_format(o, "  %-10s  %s\n", tools[i].name, tools[i].purpose);
-    out_text(o, "  -h, --help  this text; -V, --version  the version\n");
+    out_text(o, "usage: sinew TOOL [ARGUMENTS]\n\n"
+                "Runs one of the tools of Sinew; 'sinew TOOL --help' has the options of each.\n");
+    for (int g = 0; g < GROUPS; g++) {
+        out_format(o, "\n%s:\n", headings[g]);
+        for (int i = 0; i < TOOLS; i++)
+            if (tools[i].group == g)
+                out_format(o, "  %-13s  %s\n", tools[i].name, tools[i].purpose);
+    }
+    out_text(o, "\nCommon:\n  -h, --help     print this help\n  -V, --version  print the version\n"
+                "\nExample:\n  sinew info --get muscle.name face.sinew\n\nManual: man sinew, man 7 sinew\n");
 }
 
 static void put_version(out *o)
@@ -146,7 +157,7 @@ static int unknown(const char *name)
     if (near >= 0)
         fprintf(stderr, "sinew: no tool '%s'; did you mean '%s'?\n", name, names[near]);
     else
-        fprintf(stderr, "sinew: no tool '%s'; see sinew --help\n", name);
+        fprintf(stderr, "sinew: no tool '%s'; try sinew --help\n", name);
     return STATUS_USAGE;
 }
 
@@ -181,7 +192,7 @@ int main(int argc, char **argv)
 {
     char british[32];
     if (argc < 2) {
-        fputs("usage: sinew TOOL [ARGUMENTS]; see sinew --help\n", stderr);
+        fputs("sinew: missing tool; try sinew --help\nusage: sinew TOOL [ARGUMENTS]\n", stderr);
         return STATUS_USAGE;
     }
     if (!strcmp(argv[1], "-h") || !strcmp(argv[1], "--help"))

@@ -73,7 +73,7 @@ for shell in bash zsh; do
         [ "$shell $tool" = "bash bind" ] && continue
         number=$((number + 1))
         is "$(sed -n "${number}p" "$T/offered")" \
-            "$("$tool" --help | grep -oE '(^  |, |; )(-[a-zA-Z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+' | sort -u | tr '\n' ' ' | sed 's/ $//')" \
+            "$(options_of "$tool" | grep -e '^--' | tr '\n' ' ' | sed 's/ $//')" \
             "$shell: $tool --"
     done
 done

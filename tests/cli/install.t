@@ -18,8 +18,25 @@ is "$(cd "$root/usr/bin" && echo *)" "$(for tool in $tools voxelize; do echo "$t
     "usr/bin has the tools and nothing else"
 is "$(find "$root" -type f ! -path '*/bin/*' ! -perm 644)" "" "what is not a tool is 644"
 for tool in $tools; do
-    is "$("$tool" --help | awk 'length > 80 { print } END { if (NR > 24 || !NR) print NR " lines" }')" "" \
-        "$tool: its usage is at most 24 lines of 80 columns"
+    "$tool" --help >"$T/help"
+    is "$(awk 'length > 80' "$T/help")" "" "$tool: its help has 80 columns"
+    is "$(awk '/^(Input|What happens|Numerics|Output|Common):$/ { printf "%s", $0 }' "$T/help" |
+        grep -cE '^(Input:)?(What happens:)?(Numerics:)?(Output:)?Common:$')" 1 "$tool: its groups are in their order"
+    is "$(sed -n '1s/:.*//p' "$T/help") $(grep -A 1 '^Example:$' "$T/help" | tail -n 1 | grep -cE "^  .*${tool#sinew-}") $(tail -n 1 "$T/help")" \
+        "usage 1 Manual: man $tool, man 7 sinew" "$tool: from how it is called to an example and the manual"
+    # Units and defaults: [UNIT], [default X] or [UNIT; default X], at the end of what is said of an option.
+    is "$(awk 'function said() {
+            sub(/^ +/, "", option)
+            text = substr(option, index(option, "  "))
+            if (text ~ /\[/ && text !~ /^[^[]* \[(([^];[]+; )?default [^];[]+|[^];[]+)\]$/) print option
+            option = ""
+        }
+        /^[A-Z].*:$/ { inside = 1 }
+        !/^  / || /^  (-|    --)/ { said() }
+        inside && /^  / { option = option $0 }
+        /^Common/ { inside = 1 }
+        /^(Lengths|Example)/ { inside = 0 }
+        END { said() }' "$T/help")" "" "$tool: units and defaults have one form"
     page=$root/usr/share/man/man1/$tool.1
     check "$tool: its page" test -s "$page"
     is "$("$tool" --table mdoc)" "$(sed -n '/^\.\\" synopsis$/,/^\.\\" end synopsis$/{/^\.\\"/!p;}' "$page")" \

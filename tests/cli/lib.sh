@@ -105,6 +105,11 @@ near() {
     fi
 }
 
+# options_of TOOL: the options that its help has, letters and names, one a line, sorted.
+options_of() {
+    "$1" --help | grep -E '^  (-[a-zA-Z]|    --)' | sed 's/^ *//; s/  .*//' | tr ' ,' '\n\n' | grep -E '^(-[a-zA-Z]|--[a-z-]+)$' | sort -u
+}
+
 # skip N REASON: N tests that cannot be made here.
 skip() {
     tap_skips=$1

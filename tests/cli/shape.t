@@ -78,7 +78,7 @@ cd "$ROOT" || exit 1
 
 # ---- Every option stands in the usage and in the page, and the page has no other.
 for tool in $tools; do
-    "$tool" --help | grep -oE '(^  |; )(-[a-zA-Z](, )?)?(--[a-z-]+)?' | grep -oE -e '--?[a-zA-Z][a-z-]*' | sort -u >"$T/usage"
+    options_of "$tool" >"$T/usage"
     sed -n '/^\.Sh DESCRIPTION/,/^\.Sh \(EXIT\|ENV\)/s/^\.It Fl //p' "man/$tool.1" |
         awk '{ for (i = 1; i <= NF; i++) { if ($i == "Ar" || $i == "Oo" || $i == "Cm" || $i == "Ns" || $i == "Li") break; if ($i != "," && $i != "Fl") print "-" $i } }' | sort -u >"$T/page"
     check "$tool: $(wc -l <"$T/usage" | tr -d ' ') names of options, all in its page" diff "$T/usage" "$T/page"

@@ -25,17 +25,27 @@ struct options {
 };
 
 #define TO(field) offsetof(struct options, field)
-static const opt option_table[] = {{'f', "flag", NULL, OPT_FLAG, TO(flag), 0, 0, NULL, 0, "a flag"},
-                                   {'t', "text", "TEXT", OPT_TEXT, TO(text), 0, 0, NULL, 0, "text"},
-                                   {0, "text-file", "FILE", OPT_TEXT, TO(file), 0, 0, NULL, OPT_FILE, "a file"},
-                                   {'n', NULL, "N", OPT_INT, TO(whole), 1, 1000, NULL, 0, "whole"},
-                                   {'x', "number", "X", OPT_NUMBER, TO(number), -1, 1e6, NULL, 0, "a number"},
-                                   {'s', "lengths", "L,L,L", OPT_LENGTHS, TO(lengths), 0, 3, NULL, 0, "lengths"},
-                                   {'g', "numbers", "X,Y,Z", OPT_NUMBERS, TO(numbers), 3, 3, NULL, 0, "numbers"},
-                                   {'m', "method", "one|two", OPT_CHOICE, TO(choice), 0, 0, "one|two", 0, "a choice"},
-                                   {'c', "list", "A=B,...", OPT_LIST, TO(list), 0, 0, NULL, 0, "a list"},
-                                   {0}};
-static const opt_tool table = {"fuzz", "Takes anything.", "A B", 0, 2, true, true, true, option_table};
+static const opt option_table[] = {
+    {OPT_INPUT, 'f', "flag", NULL, OPT_FLAG, TO(flag), 0, 0, NULL, 0, "a flag"},
+    {OPT_INPUT, 't', "text", "TEXT", OPT_TEXT, TO(text), 0, 0, NULL, 0, "text"},
+    {OPT_INPUT, 0, "text-file", "FILE", OPT_TEXT, TO(file), 0, 0, NULL, OPT_FILE, "a file"},
+    {OPT_INPUT, 'n', NULL, "N", OPT_INT, TO(whole), 1, 1000, NULL, 0, "whole"},
+    {OPT_INPUT, 'x', "number", "X", OPT_NUMBER, TO(number), -1, 1e6, NULL, 0, "a number"},
+    {OPT_INPUT, 's', "lengths", "L,L,L", OPT_LENGTHS, TO(lengths), 0, 3, NULL, 0, "lengths"},
+    {OPT_INPUT, 'g', "numbers", "X,Y,Z", OPT_NUMBERS, TO(numbers), 3, 3, NULL, 0, "numbers"},
+    {OPT_INPUT, 'm', "method", "one|two", OPT_CHOICE, TO(choice), 0, 0, "one|two", 0, "a choice"},
+    {OPT_INPUT, 'c', "list", "A=B,...", OPT_LIST, TO(list), 0, 0, NULL, 0, "a list"},
+    {0}};
+static const opt_tool table = {.name = "fuzz",
+                               .usage = "[options] A B",
+                               .purpose = "Takes anything.",
+                               .example = "fuzz",
+                               .operands = "A B",
+                               .operands_max = 2,
+                               .writes_model = true,
+                               .threaded = true,
+                               .reads_volumes = true,
+                               .options = option_table};
 
 static void must(bool good)
 {

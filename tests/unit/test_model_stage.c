@@ -20,17 +20,33 @@ struct options {
 };
 
 static const opt options_table[] = {
-    {.name = "drop", .kind = OPT_FLAG, .to = offsetof(struct options, drop), .help = "drop the frames"},
-    {.name = "late", .kind = OPT_FLAG, .to = offsetof(struct options, late), .help = "fail late"},
-    {.name = "axis", .arg = "NAME", .kind = OPT_TEXT, .to = offsetof(struct options, axis), .help = "add an axis"},
-    {.name = NULL},
+    {.group = OPT_RESULT,
+     .name = "drop",
+     .kind = OPT_FLAG,
+     .to = offsetof(struct options, drop),
+     .help = "drop the frames"},
+    {.group = OPT_RESULT, .name = "late", .kind = OPT_FLAG, .to = offsetof(struct options, late), .help = "fail late"},
+    {.group = OPT_RESULT,
+     .name = "axis",
+     .arg = "NAME",
+     .kind = OPT_TEXT,
+     .to = offsetof(struct options, axis),
+     .help = "add an axis"},
+    {.group = OPT_END},
 };
 
-static const opt_tool filter_table = {
-    .name = "filter", .purpose = "Copy a model", .operands = "", .writes_model = true, .options = options_table};
+static const opt_tool filter_table = {.name = "filter",
+                                      .usage = "[options] < model",
+                                      .purpose = "Copy a model",
+                                      .operands = "",
+                                      .writes_model = true,
+                                      .options = options_table};
 
-static const opt_tool looker_table = {
-    .name = "looker", .purpose = "Look at a model", .operands = "", .options = options_table};
+static const opt_tool looker_table = {.name = "looker",
+                                      .usage = "[options] < model",
+                                      .purpose = "Look at a model",
+                                      .operands = "",
+                                      .options = options_table};
 
 static int work(stage *s, model *m, const struct options *o, notes *warnings, err *e)
 {
@@ -262,7 +278,10 @@ static void test_terminals(void)
         return;
     }
     result r = run_on(&filter_table, "--text", dup(tty), scratch(""));
-    ok(r.status == 2 && strstr(r.say, "reads a model on stdin, which is a terminal\nusage: "), "stdin is a terminal");
+    ok(r.status == 2 &&
+           strstr(r.say,
+                  "reads a model on stdin, which is a terminal; try filter --help\nusage: filter [options] < model\n"),
+       "stdin is a terminal");
     ok(strstr(r.out, "fail 2 \"filter: reads a model"), "the next tool hears of it");
     r = run_on(&filter_table, "", scratch(HEAD BODY "end\n"), dup(tty));
     ok(r.status == 1 && strstr(r.say, "stdout: is a terminal") && strstr(r.say, "expected --text"),

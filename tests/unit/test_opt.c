@@ -21,18 +21,33 @@ struct options {
 
 #define TO(field) offsetof(struct options, field)
 static const opt options[] = {
-    {'s', "size", "H|HX,HY,HZ", OPT_LENGTHS, TO(size), 1, 3, NULL, OPT_REQUIRED, "voxel sides"},
-    {'n', "cells", "N", OPT_INT, TO(cells), 1, 100, NULL, 0, "cells"},
-    {0, "level", "L", OPT_NUMBER, TO(level), 0, 1, NULL, 0, "level"},
-    {0, "weight", "W", OPT_NUMBER, TO(weight), 1e-12, 1e15, NULL, 0, "weight"},
-    {'g', NULL, "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "gravity (m/s2)"},
-    {'d', NULL, "DEVICE", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT, "device"},
-    {0, "open", NULL, OPT_FLAG, TO(open), 0, 0, NULL, 0, "open"},
-    {0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0, "name"},
-    {'m', NULL, "KEY=VALUE", OPT_LIST, TO(set), 0, 0, NULL, 0, "set"},
-    {0, "file", "FILE", OPT_TEXT, TO(file), 0, 0, NULL, OPT_FILE, "file"},
+    {OPT_ACTION, 's', "size", "H|HX,HY,HZ", OPT_LENGTHS, TO(size), 1, 3, NULL, OPT_REQUIRED, "voxel sides"},
+    {OPT_ACTION, 'n', "cells", "N", OPT_INT, TO(cells), 1, 100, NULL, 0, "cells"},
+    {OPT_INPUT, 0, "level", "L", OPT_NUMBER, TO(level), 0, 1, NULL, 0,
+     "a level, which is said in so many words that they do not go into one line of it [mm; default as much as it "
+     "takes]"},
+    {OPT_INPUT, 0, "weight", "W", OPT_NUMBER, TO(weight), 1e-12, 1e15, NULL, 0, "weight"},
+    {OPT_ACTION, 'g', NULL, "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "gravity (m/s2)"},
+    {OPT_NUMERICS, 'd', NULL, "DEVICE", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT, "device"},
+    {OPT_INPUT, 0, "open", NULL, OPT_FLAG, TO(open), 0, 0, NULL, 0, "open"},
+    {OPT_INPUT, 0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0, "name"},
+    {OPT_INPUT, 'm', NULL, "KEY=VALUE", OPT_LIST, TO(set), 0, 0, NULL, 0, "set"},
+    {OPT_INPUT, 0, "file", "FILE", OPT_TEXT, TO(file), 0, 0, NULL, OPT_FILE, "file"},
+    {OPT_INPUT, 0, "recorded-to", "FILE", OPT_TEXT, TO(file), 0, 0, NULL, OPT_FILE | OPT_ALSO, "file"},
     {0}};
-static const opt_tool table = {"tool", "Does a thing.", "surface.obj|-", 1, 2, true, true, true, options};
+static const opt_tool table = {.name = "tool",
+                               .command = "sinew tool",
+                               .usage = "-s H [options] surface.obj > model\n-s H [options] - < surface.obj > model",
+                               .purpose = "Does a thing.",
+                               .note = "All is in m.",
+                               .example = "sinew tool -s 1 a.obj",
+                               .operands = "surface.obj|-",
+                               .operands_min = 1,
+                               .operands_max = 2,
+                               .writes_model = true,
+                               .threaded = true,
+                               .reads_volumes = true,
+                               .options = options};
 
 enum { WORDS = 16 };
 
@@ -83,7 +98,7 @@ static void refused(void)
     static const struct {
         const char *line, *text;
     } bad[] = {
-        {"tool a.obj", "missing option -s, --size; expected -s H|HX,HY,HZ; see tool --help"},
+        {"tool a.obj", "missing option -s, --size; expected -s H|HX,HY,HZ"},
         {"tool -s 1", "missing operand; expected surface.obj|-"},
         {"tool -s 1 a b c", "extra operand 'c'"},
         {"tool -s 1 a --sise 2", "no option --sise; did you mean --size?"},
@@ -117,23 +132,45 @@ static void refused(void)
        "an operand without text: %s", e.text);
 }
 
+static const char help[] = "usage: sinew tool -s H [options] surface.obj > model\n"
+                           "       sinew tool -s H [options] - < surface.obj > model\n"
+                           "\n"
+                           "Does a thing.\n"
+                           "\n"
+                           "Input:\n"
+                           "      --level L          a level, which is said in so many words that they do\n"
+                           "                         not go into one line of it\n"
+                           "                         [mm; default as much as it takes]\n"
+                           "      --weight W         weight\n"
+                           "      --open             open\n"
+                           "      --name NAME        name\n"
+                           "  -m KEY=VALUE           set\n"
+                           "      --file, --recorded-to FILE\n"
+                           "                         file\n"
+                           "\n"
+                           "What happens:\n"
+                           "  -s, --size H|HX,HY,HZ  voxel sides\n"
+                           "  -n, --cells N          cells\n"
+                           "  -g X,Y,Z               gravity (m/s2)\n"
+                           "\n"
+                           "Numerics:\n"
+                           "  -d DEVICE              device\n"
+                           "\n"
+                           "Common:\n";
+
 static void texts(void)
 {
     err e = {0};
     out *to = out_memory(&e);
-    opt_usage(&table, to);
+    opt_help(&table, to);
     out_write(to, "", 1);
     size_t size;
-    const char *text = (const char *)out_bytes(to, &size);
-    int lines = 0, longest = 0, column = 0;
-    for (const char *p = text; *p; p++) {
-        column = *p == '\n' ? 0 : column + 1;
-        lines += *p == '\n';
-        longest = column > longest ? column : longest;
-    }
-    ok(lines <= 24 && longest <= 80, "usage is %d lines of at most %d columns", lines, longest);
-    ok(strstr(text, "usage: tool --size H|HX,HY,HZ [options] surface.obj|-\n"), "usage line");
-    ok(!strstr(text, "--table"), "--table is hidden");
+    const char *text = (const char *)out_bytes(to, &size), *end = "Manual: man tool, man 7 sinew\n";
+    ok(!strncmp(text, help, strlen(help)), "the help, group by group: %s", text);
+    ok(strstr(text, "\n\nAll is in m.\n\nExample:\n  sinew tool -s 1 a.obj\n\n") &&
+           !strcmp(text + strlen(text) - strlen(end), end),
+       "and its end");
+    ok(!strstr(text, "--table") && strstr(text, "--memory SIZE"), "--table is hidden, what all tools have is not");
     out_discard(to);
 
     to = out_memory(&e);

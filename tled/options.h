@@ -1,0 +1,22 @@
+/* The command line of tled-run: its table, and the struct that it is read into. */
+#ifndef SINEW_TLED_OPTIONS_H
+#define SINEW_TLED_OPTIONS_H
+
+#include "base/opt.h"
+
+struct options {
+    opt_common common;
+    int device, precision;
+    double dt, seconds, rest, ramp, damping, hourglass, every, log_every; /* below 0: not given */
+    int64_t steps;                                                        /* 0: not given */
+    opt_numbers gravity;
+    opt_list contract, material, tsv;
+    const char *script, *materials, *probe, *poses, *unit, *log;
+    double repulsion;
+    const char *checkpoint, *restart;
+    double checkpoint_every;
+};
+
+extern const opt_tool options_table;
+
+#endif
