@@ -93,7 +93,9 @@ static int fill_descriptors(err *e)
 /* What is written over while it is read, or for want of a second look at the command line, is lost. */
 static int refuse(const char *option, const char *path, const char *what, const char *other, err *e)
 {
-    return err_usage(e, "%s '%.400s' would overwrite %s '%.400s'; expected another file", option, path, what, other);
+    err_usage(e, "%s '%.400s' would overwrite %s '%.400s'; expected another file", option, path, what, other);
+    e->help = 0; /* the help does not know the files */
+    return -1;
 }
 
 /* "-o", "--log". */
@@ -122,7 +124,11 @@ static int check_streams(const tool *t, const char *option, const char *path, er
         lost = "what is read on standard input";
     else if ((!output || !strcmp(output, "-")) && path_is_open(path, STDOUT_FILENO))
         lost = "what goes to standard output";
-    return lost ? err_usage(e, "%s '%.400s' would overwrite %s; expected another file", option, path, lost) : 0;
+    if (!lost)
+        return 0;
+    err_usage(e, "%s '%.400s' would overwrite %s; expected another file", option, path, lost);
+    e->help = 0;
+    return -1;
 }
 
 int tool_check_written(const tool *t, const char *option, const char *path, err *e)
