@@ -82,6 +82,9 @@ for tool in $tools; do
     sed -n '/^\.Sh DESCRIPTION/,/^\.Sh \(EXIT\|ENV\)/s/^\.It Fl //p' "man/$tool.1" |
         awk '{ for (i = 1; i <= NF; i++) { if ($i == "Ar" || $i == "Oo" || $i == "Cm" || $i == "Ns" || $i == "Li") break; if ($i != "," && $i != "Fl") print "-" $i } }' | sort -u >"$T/page"
     check "$tool: $(wc -l <"$T/usage" | tr -d ' ') names of options, all in its page" diff "$T/usage" "$T/page"
+    "$tool" --help | sed -nE 's/^(Input|What happens|Numerics|Output|Common):$/\1/p; s/^ {2,6}(-[a-zA-Z], )?--([a-z-]+).*/\2/p; s/^  -([a-zA-Z])( .*|$)/\1/p' >"$T/usage"
+    sed -n '/^\.Sh OPTIONS/,/^\.Sh [^O]/p' "man/$tool.1" | sed -nE 's/^\.Ss //p; s/^\.It Fl ([a-zA-Z] , )?-?([a-zA-Z-]+).*/\2/p' >"$T/page"
+    check "$tool: its page has them in the groups and the order of --help" diff "$T/usage" "$T/page"
 done
 
 # ---- And stands there under the heading that the help has it under, in that order.
