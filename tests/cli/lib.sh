@@ -107,7 +107,7 @@ near() {
 
 # options_of TOOL: the options that its help has, letters and names, one a line, sorted.
 options_of() {
-    "$1" --help | grep -E '^  (-[a-zA-Z]|    --)' | sed 's/^ *//; s/  .*//' | tr ' ,' '\n\n' | grep -E '^(-[a-zA-Z]|--[a-z-]+)$' | sort -u
+    "$1" --help | grep -E '^  (-[a-zA-Z]|    --)' | sed 's/^ *//; s/  .*//' | tr ' ,' '[\n*]' | grep -E '^(-[a-zA-Z]|--[a-z-]+)$' | sort -u
 }
 
 # skip N REASON: N tests that cannot be made here.
