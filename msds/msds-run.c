@@ -64,7 +64,7 @@ static const opt option_list[] = {
      "contact stiffness relative to springs [default 1]"},
     {OPT_ACTION, 'g', "gravity", "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "gravity [m/s2; default none]"},
     {OPT_INPUT, 0, "skin", "OBJ", OPT_TEXT, TO(skin), 0, 0, NULL, OPT_FILE,
-     "a skin with nodes of its own, bound to the tissue"},
+     "a skin of its own, which the probe dents"},
     {OPT_NUMERICS, 0, "skin-stiffness", "K", OPT_NUMBER, TO(skin_stiffness), 1e-9, 1e9, NULL, OPT_OUTPUT,
      "stiffness of the skin's edges [N/m; default 100]"},
     {OPT_NUMERICS, 0, "skin-anchors", "X", OPT_NUMBER, TO(skin_anchors), 1e-6, 1e6, NULL, OPT_OUTPUT,
