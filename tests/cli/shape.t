@@ -87,15 +87,6 @@ for tool in $tools; do
     check "$tool: its page has them in the groups and the order of --help" diff "$T/usage" "$T/page"
 done
 
-# ---- And stands there under the heading that the help has it under, in that order.
-for tool in $tools; do
-    "$tool" --help | awk '/^[A-Z][A-Za-z ]*:$/ { sub(":", ""); group = $0 }
-        group && /^  +-/ { name = $1 ~ /^-.,$/ ? $2 : $1; sub(",", "", name); print group ": " name }' >"$T/usage"
-    awk '/^\.Sh/ { on = /OPTIONS/ } on && /^\.Ss/ { group = substr($0, 5) }
-        on && /^\.It Fl/ { print group ": -" ($4 == "," && length($3) == 1 ? $5 : $3) }' "man/$tool.1" >"$T/page"
-    check "$tool: its page has $(sed 's/:.*//' "$T/usage" | uniq | wc -l | tr -d ' ') groups of options as its help does" cmp "$T/usage" "$T/page"
-done
-
 # ---- -V takes a few milliseconds of a processor, not of a clock, which others' work makes run on; no card is looked at.
 for tool in $tools sinew; do
     # In milliseconds, of ten: times tells hundredths of a second.
