@@ -314,23 +314,52 @@ static double size_of(const double force[3])
     return sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
 }
 
-static void say_frame(const session *s, double time, const msds_sight *sight)
+/* A row of the report on frames: with --residual, --compare or -v. */
+static void say_row(const session *s, const char *row)
 {
-    static const char *const names[] = {"msds", "fem", "fem, exact"};
-    char left[60] = "", force[100] = "";
-    double size = size_of(sight->force);
-    if (!isnan(sight->residual))
-        snprintf(left, sizeof left, ", residual %.3g", sight->residual);
-    if (sight->solves)
-        snprintf(left + strlen(left), sizeof left - strlen(left), " after %d solves", sight->solves);
-    if (s->o->probe)
-        snprintf(force, sizeof force, ", %lld nodes press with %.4g N", (long long)sight->contacts, size);
-    if (s->o->residual || s->o->common.verbose)
-        progress_clear(&s->progress);
-    if (s->o->residual)
-        tool_say(s->t, "%.6g s: %s%s%s", time, names[s->method], left, force);
+    progress_clear(&s->progress);
+    if (s->o->residual || s->other)
+        tool_say(s->t, "%s", row);
     else
-        tool_detail(s->t, "%.6g s: %s%s%s", time, names[s->method], left, force);
+        tool_detail(s->t, "%s", row);
+}
+
+static void say_heading(const session *s)
+{
+    char row[200];
+    snprintf(row, sizeof row, "%10s  %-10s  %7s  %9s  %9s  %6s%s", "time/s", "method", "pressed", "force/N", "residual",
+             "solves", s->other ? "  other's/N   rms/rms   max/max" : "");
+    say_row(s, row);
+}
+
+static void say_frame(const session *s, double time)
+{
+    static const char *const names[] = {"msds", "fem", "fem-exact"};
+    const msds_sight *sight = &s->sight;
+    char left[40] = "-", solves[40] = "-", other[100] = "", row[300];
+    if (!isnan(sight->residual))
+        snprintf(left, sizeof left, "%.3g", sight->residual);
+    if (sight->solves)
+        snprintf(solves, sizeof solves, "%d", sight->solves);
+    if (s->other)
+        snprintf(other, sizeof other, "  %9.4g  %8.4g  %8.4g", size_of(s->other->sight.force), s->other->mean,
+                 s->other->worst);
+    snprintf(row, sizeof row, "%10.6g  %-10s  %7lld  %9.4g  %9s  %6s%s", time, names[s->method],
+             (long long)sight->contacts, size_of(sight->force), left, solves, other);
+    if (s->posed == 1)
+        say_heading(s);
+    say_row(s, row);
+}
+
+/* The last frame. */
+static void say_end(const session *s)
+{
+    char force[100] = "";
+    if (s->o->probe)
+        snprintf(force, sizeof force, ", %.4g N on the probe, from %lld node%s", size_of(s->sight.force),
+                 (long long)s->sight.contacts, s->sight.contacts == 1 ? "" : "s");
+    tool_say(s->t, "at %.6g s, after %lld pose%s: largest displacement %.6g mm%s", s->time, (long long)s->posed,
+             s->posed == 1 ? "" : "s", 1e3 * s->sight.largest, force);
 }
 
 /* What the first pose shows of the probe, and where it enters tissue at once. */
@@ -406,7 +435,6 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     s->dented = s->dented || dent > 0;
     s->sight = sight;
     s->press.contacts = sight.contacts;
-    say_frame(s, at->time, &sight);
     if (write_frame(s, at, &sight, e))
         return -1;
     if (!s->other)
@@ -414,18 +442,6 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     plan.method = method_of(s, s->method == MSDS_SPRINGS);
     count = make_moves(s, s->other->state, &moves, &plan, false, e);
     return count < 0 ? -1 : compare_frame(s->other, s->device, s->state, &plan, count, e);
-}
-
-static void say_difference(const session *s, double time)
-{
-    char force[100] = "";
-    double ours = size_of(s->sight.force), other = size_of(s->other->sight.force);
-    bool springs = s->method == MSDS_SPRINGS;
-    if (s->o->probe)
-        snprintf(force, sizeof force, "; %.4g N against %.4g N", springs ? ours : other, springs ? other : ours);
-    progress_clear(&s->progress);
-    tool_say(s->t, "%.6g s: msds against fem: root mean square %.4g, at most %.4g of the largest displacement%s", time,
-             s->other->mean, s->other->worst, force);
 }
 
 static int simulate(session *s, err *e)
@@ -449,8 +465,7 @@ static int simulate(session *s, err *e)
         show_work(s, NULL);
         if (solve_frame(s, &at, e))
             return -1;
-        if (s->other)
-            say_difference(s, at.time);
+        say_frame(s, at.time);
         s->pressed = s->pressed || s->sight.met;
     }
     if (!got && !s->posed)
@@ -466,6 +481,9 @@ static int simulate(session *s, err *e)
                   "the probe presses the tissue, but touches the skin in no frame; expected %s in the place of the "
                   "tissue; check --unit",
                   s->skin_name);
+    progress_clear(&s->progress);
+    if (!got)
+        say_end(s);
     return got;
 }
 

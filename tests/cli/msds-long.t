@@ -16,9 +16,9 @@ for probe in sphere:2cm linear:4cm,2cm; do
         name="$method, ${probe%%:*}"
         msds-run -v --spring-scale auto --method $method --probe $probe --poses "$T/press.tum" <"$T/block.sinew" 2>"$T/said" |
             sinew info --get node.displacement.max >"$T/most"
-        is "$(grep -c ' press with ' "$T/said")" "$poses" "$name: a frame for each of $poses poses"
+        is "$(grep -Ec '^msds-run: +[0-9.]+  (msds|fem) ' "$T/said")" "$poses" "$name: a frame for each of $poses poses"
         # The forces at the deepest, each 10 seconds at the same place, from the second time on; the last against the first of them.
-        awk -v n=$poses '/ press with / { t = $2 % 10; f = $(NF - 1); if (f != f + 0 || f > 100) bad++; if (t < 9.01 && t > 8.99) last = f
+        awk -v n=$poses '$3 == "msds" || $3 == "fem" { t = $2 % 10; f = $5; if (f != f + 0 || f > 100) bad++; if (t < 9.01 && t > 8.99) last = f
                 if (t < 9.01 && t > 8.99 && !first) first = f } END { print first, last; exit bad || !(first > .5) || (last / first - 1) ^ 2 > .02 ^ 2 }' \
             "$T/said" >"$T/forces"
         is $? 0 "$name: as hard at the end as at first: $(cat "$T/forces") N, and finite throughout"

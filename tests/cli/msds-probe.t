@@ -18,7 +18,7 @@ cp tests/cli/cube.obj "$T"
 
 # Forces, N, at seconds .3, .5 and .8 of a run.
 forces() {
-    msds-run -v -o "$T/run.sinew" "$@" <"$T/block.sinew" 2>&1 | awk '$2 == .3 || $2 == .5 || $2 == .8 { printf "%s ", $(NF - 1) }'
+    msds-run -v -o "$T/run.sinew" "$@" <"$T/block.sinew" 2>&1 | awk '$2 == .3 || $2 == .5 || $2 == .8 { printf "%s ", $5 }'
 }
 
 for probe in sphere:2cm linear:4cm,1cm curved:4cm,70,15mm "convex:$T/cube.obj"; do
