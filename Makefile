@@ -66,7 +66,9 @@ $(BUILD)/%.o: %.cc
 # so that a card computes what a processor does. Objects are linked by cc, so they must not want C++'s library.
 CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_75,code=compute_75
 CUDA_FUSED = false
-NVCC_FLAGS = -std=c++17 -O3 -lineinfo -fmad=$(CUDA_FUSED) $(CUDA_ARCH) -Werror all-warnings \
+# For profilers. They hold the folder's path, so the Debian package does without.
+CUDA_LINES = -lineinfo
+NVCC_FLAGS = -std=c++17 -O3 $(CUDA_LINES) -fmad=$(CUDA_FUSED) $(CUDA_ARCH) -Werror all-warnings \
 	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
 $(BUILD)/tled/cuda_single.o: NVCC_FLAGS += -ftz=true

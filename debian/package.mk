@@ -1,7 +1,10 @@
 # The Debian package: `make deb` builds it into out/, `make deb-check` installs and tries it in a bare root. The top Makefile includes this.
+# Other goals have no use for it, and need no dpkg.
+.PHONY: deb deb-check
+ifneq ($(filter deb deb-check out/sinew_%.deb,$(MAKECMDGOALS)),)
 
 VERSION := $(shell sed -n 's/^.define SINEW_VERSION "\(.*\)"/\1/p' common/base/tool.h)
-DEB = out/sinew_$(VERSION)_$(shell dpkg --print-architecture).deb
+DEB := out/sinew_$(VERSION)_$(shell dpkg --print-architecture).deb
 # dpkg-buildpackage writes beside the folder that it is called in, so that has to be a copy. It stays where the build fails.
 DEB_TREE = out/deb/sinew-$(VERSION)
 DEB_FOLDERS = attach bind common debian man msds samples slice tled voxelise
@@ -11,7 +14,6 @@ DEB_JOBS = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),$(shell nproc 2>/de
 DEB_ENVIRONMENT = env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL -u MAKEOVERRIDES -u DESTDIR \
 	CUDA='$(CUDA)' NVCC='$(NVCC)' CUDA_HOME='$(CUDA_HOME)' DEB_BUILD_OPTIONS='noautodbgsym parallel=$(DEB_JOBS)'
 
-.PHONY: deb deb-check
 deb:
 	.ci/setup deb
 	$(MAKE) --no-print-directory $(DEB)
@@ -23,9 +25,7 @@ deb-check: deb
 	.ci/setup deb-check
 	tests/deb/check $(DEB)
 
-ifneq ($(filter deb deb-check $(DEB),$(MAKECMDGOALS)),)
 DEB_SOURCES := $(shell find $(DEB_FOLDERS) -type f) tests/check.mk $(DEB_FILES)
-endif
 $(DEB): $(DEB_SOURCES) $(BUILD)/deb-cuda-$(CUDA)
 	rm -rf $(dir $(DEB_TREE))
 	mkdir -p $(DEB_TREE)
@@ -39,3 +39,5 @@ $(BUILD)/deb-cuda-$(CUDA):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/deb-cuda-*
 	@touch $@
+
+endif

@@ -337,7 +337,7 @@ help:
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make html         the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
-	'make deb          set-up, and a Debian package, $(DEB)' \
+	'make deb          set-up, and a Debian package of what make install installs, into out/' \
 	'make deb-check    that, installed, tried and removed in a bare system of its own (by mmdebstrap, from the network)' \
 	'make clean        removes what was built' \
 	'' \
