@@ -177,6 +177,12 @@ static int compare_options(const char *there, const char *here, const char *plac
     int size[2];
     if (!strcmp(there, here))
         return 0;
+    const int version = (int)strcspn(there, " "), ours = (int)strcspn(here, " ");
+    if (version != ours || strncmp(there, here, (size_t)ours) != 0)
+        return err_set(e, place, 0,
+                       "was written by version %.*s, and this is version %.*s; expected a checkpoint of this version: "
+                       "continue with that version, or begin the run anew",
+                       version, there, ours, here);
     if (is_bounded_now(there, here))
         return err_set(e, place, 0,
                        "is of a run whose hourglass modulus is lambda + 2 mu, of an earlier version or another nu; "

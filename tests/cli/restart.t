@@ -295,6 +295,9 @@ killed_at 500000 -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --chec
 sinew export -f model --text "$T/old" | sed '/^crc/d; s/, hourglass modulus at most 11 mu\]/]/' >"$T/cut" && mv "$T/cut" "$T/old"
 fails 1 "so is one of another hourglass modulus" 'old: is of a run whose hourglass modulus is lambda \+ 2 mu' \
     run -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --restart "$T/old"
+sed 's/^\(meta checkpoint.options "\)[0-9.]* /\10.1.0 /' "$T/old" >"$T/cut" && mv "$T/cut" "$T/old"
+fails 1 "so is one of another version" 'old: was written by version 0\.1\.0, and this is version [0-9.]*; expected a checkpoint of this version' \
+    run -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --restart "$T/old"
 rm -f "$T"/old*
 # without PART: what is saved in $T/old, as by a version that did not compare that part; with a row more where there is none.
 without() {
