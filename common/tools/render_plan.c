@@ -267,7 +267,7 @@ static int read_panel_asked(render_plan *p, const render_options *o, char **at, 
     picture_panel *panel = &s->panel[0];
     const char *things[64] = {0};
     int count = split(&o->show, "--show", at, things, 64, e);
-    *panel = (picture_panel){.moved = true, .coloured = true, .names = true};
+    *panel = (picture_panel){.moved = true, .coloured = o->colour != NULL, .names = true};
     for (int i = 0; i < count && things[i]; i++) {
         const int t = thing_named(things[i]);
         if (t < SHOWING_THINGS)

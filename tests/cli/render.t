@@ -80,6 +80,15 @@ check "and 5" cmp "$T/1.png" "$T/5.png"
 sinew render --sheet rest,voxels,deformed,left --size 480x240 <"$muscle" >"$T/piped.png"
 check "and from standard input" cmp "$T/1.png" "$T/piped.png"
 
+# In a sheet, deformed is coloured by displacement unless --colour says otherwise, and the panel of a view only where --colour is given.
+# yellow OPTION...: of the left and the right half of a sheet of two panels, whether there are colours of the scale's high end.
+yellow() {
+    sinew render --size 200x100 --format ppm "$@" "$muscle" | tail -c 60000 | od -An -v -tu1 -w3 |
+        awk '$2 > $3 + 60 && $2 > .8 * $1 { seen[(NR - 1) % 200 < 100]++ } END { print (seen[1] > 100), (seen[0] > 100) }'
+}
+is "$(yellow --view front --sheet front,deformed)" "0 1" "the panel of a view keeps the surfaces' colours"
+is "$(yellow --view front --colour displacement --sheet front,deformed)" "1 1" "but with --colour"
+
 # Films.
 frames=$(sinew info --get frames "$muscle")
 check "a run of several frames: $frames" test "$frames" -ge 3
