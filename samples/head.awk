@@ -1,5 +1,6 @@
-# A head: skin and skull from polar equations about the middle of the head, and the left zygomaticus major, a tube from the
-# cheekbone, where it begins inside the skull, to the corner of the mouth. y is up, z forward, x to the head's left.
+# A head: skin and skull from polar equations about the middle of the head, and both zygomaticus major muscles, the ones that pull
+# the corners of the mouth when one smiles: each a tube from the cheekbone, where it begins inside the skull, to the corner of the
+# mouth. y is up, z forward, x to the head's left.
 # Along a direction, a is the longitude from straight ahead, b the latitude, both in radians.
 
 function tan(x)
@@ -65,10 +66,11 @@ function radius_of(name, a, b,    dx, dy, dz)
     return name == "skin" ? skin(a, b, dx, dy, dz) : skull(a, b, dx, dy, dz)
 }
 
-# The muscle's line, t from 0 to 1: from a little inside the cheekbone to the middle of the tissue at the mouth's corner.
+# The line of a muscle, t from 0 to 1: from a little inside the cheekbone to the middle of the tissue at the corner of the mouth.
+# side is 1 for the left muscle and -1 for the right one.
 function muscle_line(t,    a, b, inner, outer, depth)
 {
-    a = 0.80 + (0.33 - 0.80) * t
+    a = side * (0.80 + (0.33 - 0.80) * t)
     b = -0.10 + (-0.51 + 0.10) * t
     inner = radius_of("skull", a, b)
     outer = radius_of("skin", a, b)
@@ -99,7 +101,8 @@ function point_muscle(u, i, rows,    t, x, y, z, tx, ty, tz, ox, oy, oz, sx, sy,
 
 function point(name, u, i, rows,    a, b)
 {
-    if (name == "muscle_zyg") {
+    if (name ~ /^muscle/) {
+        side = name ~ /left/ ? 1 : -1
         point_muscle(u, i, rows)
         return
     }
@@ -110,13 +113,15 @@ function point(name, u, i, rows,    a, b)
 
 BEGIN {
     PI = atan2(0, -1)
-    begin("a head: skin, skull, left zygomaticus major")
+    begin("a head: skin, skull, left and right zygomaticus major")
     polar(radius_of("skin", 0.32, -0.515), 0.32, -0.515)
     print "# the mouth's left corner: " number(X) " " number(Y) " " number(Z)
     closed("skin", 96, 128)
     flush("skin", "skin")
     closed("skull", 64, 96)
     flush("skull", "bone")
-    closed("muscle_zyg", 34, 24)
-    flush("muscle_zyg", "muscle")
+    closed("muscle_zyg_left", 34, 24)
+    flush("muscle_zyg_left", "muscle")
+    closed("muscle_zyg_right", 34, 24)
+    flush("muscle_zyg_right", "muscle")
 }

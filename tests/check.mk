@@ -21,7 +21,7 @@ SECONDS ?= 5
 # Tests that do much more where SINEW_LONG is set: make check-all runs those of SLOW so, which take at most a few minutes each then, and
 # make soak those of SOAK, which take longer.
 SLOW = tests/cli/voxelise_exact.t $(UNIT_TEST)voxelise_scan $(UNIT_TEST)voxelise_inside $(UNIT_TEST)checkpoint \
-	$(addprefix tests/cli/,calculix.t conforming.t killed.t msds-long.t)
+	$(addprefix tests/cli/,calculix.t conforming.t killed.t msds-long.t readme.t)
 SOAK = $(UNIT_TEST)tled_emulated $(addprefix tests/cli/,calls.t faults.t memory.t restart.t streams.t threads.t)
 UNIT_TEST = $(BUILD)/tests/unit/test_
 # As many jobs as processors, unless make was told (then its job server serves the inner makes too).
@@ -80,10 +80,19 @@ arm: all
 paper: all $(addprefix $(BUILD)/tests/bench/bench_,tled msds msds_card slice)
 	SINEW_BIN=$(BIN) BENCH=$(BUILD)/tests/bench samples/paper out/paper
 
-# The picture at the top of README.md: small, since it is kept in the repository; make demo leaves a larger one.
+# The third: from an ultrasound volume to images of it as a probe presses it, with a video where there is ffmpeg.
+.PHONY: scan
+scan: all
+	SINEW_BIN=$(BIN) samples/scan out/scan
+
+# The pictures in README.md: small, since they are kept in the repository; make demo and make scan leave larger ones.
 .PHONY: picture
-picture: demo
-	$(BIN)/sinew render --view 0.6,0.1,1 --cut x=0 --sheet rest,voxels,deformed --size 900x360 -o samples/face.png out/smile.sinew
+picture: demo scan
+	$(BIN)/sinew render --view front --cut x=0 --sheet rest,voxels,front,deformed --size 1200x400 -o samples/face.png out/smile.sinew
+	cd out/scan && ../../$(BIN)/us-slice -q --depth 38mm --width 56mm --size 400 -o picture_%d.png arm.nrrd <arm.sinew
+	cp out/scan/picture_0.png samples/vein_open.png
+	cp out/scan/picture_45.png samples/vein_closed.png
+	rm out/scan/picture_*.png
 
 CHECK = BUILD=$(BUILD) JOBS='$(JOBS)' tests/check
 check:
@@ -308,9 +317,10 @@ help:
 	@printf '%s\n' \
 	'make              the tools, into $(BIN)/' \
 	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
-	'make arm          an arm under a probe: the second example, into out/arm' \
+	'make arm          an arm under a probe, by springs and by finite elements, into out/arm' \
+	'make scan         from an ultrasound volume to images of it under a probe, into out/scan' \
 	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
-	'make picture      the demo, and the picture in README.md from it' \
+	'make picture      the pictures in README.md' \
 	'' \
 	'make check        set-up, the build, all tests, and small lints: run it before each commit; 4 minutes on two processors' \
 	'make check-all    that, and clang, sanitizers, fuzzers, clang-tidy, cppcheck, valgrind, a browser, slow tests; half an hour' \

@@ -119,7 +119,7 @@ models() {
         face_words="the real face of ArtiSynth's reference model, its left half"
     else
         samples_make "$folder" "$folder/head.obj"
-        face=$folder/head.obj box=-15,-82,-30,85,40,111 up=y side=0.7,0.1,1 contract=zyg
+        face=$folder/head.obj box=-15,-82,-30,85,40,111 up=y side=0.7,0.1,1 contract=zyg_left
         face_words="the part of our own head about its left muscle"
     fi
     quietly face_model

@@ -76,7 +76,7 @@ for model in "$SINEW_MODELS"/*.model; do
     sphere*) set -- -g 0,-9.81,0 ;;
     muscle*) set -- -c muscle=0.4 ;;
     block*) set -- --script samples/block.script ;;
-    head*) set -- -c zyg=0.4 ;;
+    head*) set -- -c zyg_left=0.4,zyg_right=0.4 ;;
     face*) set -- -c zyg_xneg=0.4,zyg_xpos=0.2 ;;
     *) continue ;;
     esac

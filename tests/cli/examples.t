@@ -37,7 +37,7 @@ cd "$T/here" || exit 1
     ln -s "$ROOT/samples" samples
     awk -f samples/shape.awk -f samples/head.awk >face.obj
     voxelise -q --unit mm -s 10 face.obj | attach -q | sinew bind -q >face.sinew
-    tled-run -q -c zyg=0.4 -t 0.03 <face.sinew >smile.sinew
+    tled-run -q -c zyg_left=0.4 -t 0.03 <face.sinew >smile.sinew
     mkdir patient && awk -v folder=patient -f samples/patient.awk
     us-import -q patient/ >patient.nrrd
     us-segment -q -n bone --low 210 --largest patient.nrrd >bone.nrrd && us-segment -q -n vein --low 45 --high 90 --onto bone.nrrd patient.nrrd >labels.nrrd

@@ -1,59 +1,159 @@
 #!/bin/sh
-# The commands of README.md, as a reader types them, one block after another in a folder with our head as face.obj: coarser and shorter,
-# that is all. A block that is new here must be told of below: run, or why not.
+# README.md as its reader types it: the commands of each block marked sh, in order, in one shell, in a folder that holds what a clone does
+# (samples/, and the tools in bin/). bash runs them as they stand; sh runs them on coarser meshes, since bash has shown the figures. A block
+# that is one `make TARGET` takes minutes: here it must be a target. Checked too: the files that the commands name, the lines of the blocks
+# marked text, and that figures, make targets, pages and files that the text names are what they are called.
 . "$(dirname "$0")/lib.sh"
 
-# Each block of indented lines is a file.
-mkdir "$T/blocks" "$T/here" "$T/here/faces"
-awk -v to="$T/blocks" '/^    / { if (!on) n++; on = 1; sub(/^    /, ""); print >sprintf("%s/%02d", to, n); next } { on = 0 }' README.md
-check "there are blocks: $(find "$T/blocks" -type f | wc -l | tr -d ' ')" test "$(find "$T/blocks" -type f | wc -l)" -ge 8
+have make || skip_all "no make"
+have bash || skip_all "no bash"
 
-cd "$T/here" || exit 1
-ln -s "$ROOT/samples" samples
-cp samples/arm.materials .
-awk -f samples/shape.awk -f samples/head.awk >face.obj
-awk -f samples/shape.awk -f samples/muscle.awk >faces/one.obj
-cp faces/one.obj faces/two.obj
-for surface in vein artery bone; do
-    awk -v what=$surface -f samples/arm.awk >$surface.obj
-done
-awk -v what=labels -f samples/arm.awk >labels.nrrd
-awk -v what=poses -v hz=60 -f samples/arm.awk >press.tum
+mkdir "$T/blocks"
+awk -v to="$T/blocks" '
+    /^```/ { on = !on; if (on) { n++; kind = substr($0, 4) } next }
+    on { print >sprintf("%s/%02d.%s", to, n, kind) }' README.md
+check "there are blocks of commands" test "$(find "$T/blocks" -name '*.sh' | wc -l)" -ge 7
+is "$(find "$T/blocks" -type f ! -name '*.sh' ! -name '*.text')" "" "each block is marked sh or text"
 
-# coarser FILE: its commands, for a test's patience.
-coarser() {
-    sed 's/-s 2\.5 /-s 8 /; s/-t 0\.5/-t 0.05/; s/--nodes 33x11x17/--nodes 13x5x7/' "$1"
+# The rules of make, by name.
+env -u MAKEFLAGS -u MAKELEVEL make -pRrq : 2>/dev/null | sed -n 's/^\([a-z][a-z0-9-]*\):.*/\1/p' | sort -u >"$T/targets"
+# is_target NAME
+is_target() {
+    grep -qx -e "$1" "$T/targets"
 }
-for block in "$T/blocks"/*; do
-    title="$(head -n 1 "$block" | cut -c 1-50)"
-    case $title in
-    'make demo '* | 'elements  '*) continue ;; # the two commands themselves; what one prints
-    voxelise* | msds-mesh* | 'sinew export'* | tled-run* | 'make -C samples'*) ;;
-    msds-run*)
-        if ! have ffmpeg; then
-            skip 1 "no ffmpeg"
+
+# clone FOLDER
+clone() {
+    mkdir "$1" && cp -R samples "$1/samples" && ln -s "$SINEW_BIN" "$1/bin"
+}
+
+# typed FOLDER SED: a script of all blocks, each edited by SED, what each says in FOLDER/said-NN.
+typed() {
+    printf 'cd "%s"\n' "$1"
+    for block in "$T/blocks"/*.sh; do
+        number=$(basename "$block" .sh)
+        if [ "$(wc -l <"$block")" -eq 1 ] && grep -qx 'make [a-z-]*' "$block"; then
             continue
         fi
-        ;;
-    *)
-        not_ok "a block that this test does not know: $title"
+        if grep -q ffmpeg "$block" && ! have ffmpeg; then
+            continue
+        fi
+        printf '{\n'
+        sed "$2" "$block"
+        printf '} >"%s/said-%s" 2>&1\n' "$1" "$number"
+    done
+}
+for block in "$T/blocks"/*.sh; do
+    if [ "$(wc -l <"$block")" -eq 1 ] && grep -qx 'make [a-z-]*' "$block"; then
+        check "a target: $(cat "$block")" is_target "$(sed 's/make //' "$block")"
+    fi
+done
+
+# run_typed FOLDER SHELL...: the script of FOLDER, by that shell; where it stops, what the last block said.
+# shellcheck disable=SC2317 # called by name
+run_typed() {
+    typed_in=$1
+    shift
+    if ! env -u MAKEFLAGS -u MAKELEVEL "$@" "$typed_in.script"; then
+        tail -n 5 "$(find "$typed_in" -name 'said-*' | sort | tail -n 1)"
+        return 1
+    fi
+}
+coarser='s/-s 2\.5 --fraction 4/-s 6/; s/-t 0\.2/-t 0.04/; s/--nodes 32x10x24/--nodes 13x5x11/; s/seconds=2/seconds=0.5/; s/--sheet/--size 400x150 --sheet/'
+clone "$T/bash"
+# (With sanitizers coarser too: what is printed is no test of memory.)
+typed "$T/bash" "${SINEW_SANITIZED:+$coarser}" >"$T/bash.script"
+# -H and -o history: a '!' means what it does to one who types.
+check "all commands, typed in bash" run_typed "$T/bash" bash -e -H -o history
+clone "$T/sh"
+typed "$T/sh" "$coarser" >"$T/sh.script"
+check "and in sh" run_typed "$T/sh" sh -e
+
+# Files that commands write, behind > or -o: each is there and not empty, but for the report of sinew diff.
+cat "$T/blocks"/*.sh | grep -oE "(>| -o) *'?[A-Za-z][A-Za-z0-9_.%/]*" | sed "s/^\(>\| -o\) *'*//; s/%04d/0000/" | sort -u >"$T/files"
+have ffmpeg || skip 1 "no ffmpeg: no arm.mp4"
+while read -r file; do
+    case $file in
+    arm.mp4) have ffmpeg || continue ;;
+    differences)
+        check "$file is empty" test -e "$T/bash/out/$file" -a ! -s "$T/bash/out/$file"
         continue
         ;;
     esac
-    coarser "$block" >"$T/commands"
-    # make finds the tools where ours are, and is none of a make above.
-    check "$title" env -u MAKEFLAGS -u MAKELEVEL sh -e "$T/commands"
-    cat "$T/stdout" >>"$T/said"
-    if have bash && [ "${title#make}" = "$title" ]; then
-        check "the same in bash" bash -e "$T/commands"
+    check "$file" test -s "$T/bash/out/$file" -a -s "$T/sh/out/$file"
+done <"$T/files"
+check "files are named" test "$(wc -l <"$T/files")" -ge 20
+is "$(cd "$T/bash/out/moved" && echo *.moved.obj)" "anna.moved.obj ben.moved.obj" "a folder of OBJ files"
+is "$(wc -l <"$T/bash/out/corner.tsv")" "$(($(sinew info --get frames "$T/bash/out/smile.sinew") + 1))" "a row for each frame"
+check "a film for ParaView" grep -q '<DataSet' "$T/bash/out/smile.pvd"
+is "$(diff "$T/bash/out/head.obj" "$T/bash/out/smile.obj" | sed -n 's/^[<>] \([a-z#]*\) .*/\1/p' | sort -u | tr '\n' ' ')" "v vn " "only v and vn lines change"
+if [ -z "${SINEW_SANITIZED:-}" ]; then
+    is "$(cat "$T/bash"/said-* | grep -c 'warning: ')" 0 "no tool warns"
+else
+    skip 1 "coarser with sanitizers"
+fi
+
+# What README says was printed, was. The lines of longer commands are checked by their own runs: of `make scan` in samples.t too.
+cat "$T/bash"/said-* >"$T/said"
+if [ -n "${SINEW_LONG:-}" ]; then
+    samples/arm "$T/arm" >>"$T/said" 2>&1
+    IMAGES=24 samples/scan "$T/scan" >>"$T/said" 2>&1
+fi
+cat "$T/blocks"/*.text >"$T/lines"
+while IFS= read -r line; do
+    if [ -n "${SINEW_SANITIZED:-}" ]; then
+        skip 1 "coarser with sanitizers"
+        continue
     fi
+    case $line in
+    'at 12 mm: springs leave '* | 'arm: of the vein '*)
+        if [ -z "${SINEW_LONG:-}" ]; then
+            skip 1 "SINEW_LONG is not set: printed was '$line'"
+            continue
+        fi
+        ;;
+    esac
+    check "printed: $line" grep -qxF -e "$line" "$T/said"
+done <"$T/lines"
+
+# quotes TEXT: README has it, wherever its lines end.
+tr '\n' ' ' <README.md >"$T/readme"
+quotes() {
+    check "README says: $1" grep -qF -e "$1" "$T/readme"
+}
+quotes "$(sed -n 's/^\(-*[0-9.]* -*[0-9.]* -*[0-9.]*\)$/\1/p' "$T/lines" | awk '{
+    printf "moves %.1f mm: %.1f mm to its side, %.1f mm up and %.1f mm back", 1000 * sqrt($1 ^ 2 + $2 ^ 2 + $3 ^ 2), 1000 * $1, 1000 * $2, -1000 * $3 }')"
+# real_time CSV MODEL DEVICE,THREADS,PRECISION: how many times real time
+real_time() {
+    awk -F, -v row="$2,$3,step" 'index($0, row) == 1 { print $16 }' "tests/bench/$1"
+}
+quotes "$(real_time nvidia-h200.csv face_2.5mm cuda,16,single | awk '{ printf "24,297 elements runs %.0f times as fast as real time", $1 }')"
+quotes "$(real_time nvidia-h200.csv face_1.25mm cuda,16,single | awk '{ printf "194,192 elements %.1f times", $1 }')"
+quotes "$({
+    real_time amd-epyc-2-processors.csv face_2.5mm cpu,2,double
+    real_time amd-epyc-2-processors.csv face_1.25mm cpu,2,double
+} | awk '{ s[NR] = 1 / $1 } END { printf "take %.1f s and %.0f s", s[1], s[2] }')"
+quotes "$(sed -n 's/^# Table II, 32x16x16: \([0-9]*\) .*/\1 frames a second/p' tests/bench/amd-epyc-2-processors.csv)"
+
+# What README and CONTRIBUTING.md name is there: targets of make, pages of the manual, files.
+for file in README.md CONTRIBUTING.md; do
+    # shellcheck disable=SC2016 # `make TARGET` in the text
+    grep -oE '`[^`]*`' "$file" | grep -oE '(^`|[ =0-9])make( [a-z][a-z-]*)+' | sed 's/.*make //' | tr ' ' '\n' | sort -u >"$T/named"
+    unknown=
+    while read -r target; do
+        is_target "$target" || unknown="$unknown $target"
+    done <"$T/named"
+    is "$unknown" "" "$file names targets that make has: $(wc -l <"$T/named")"
+    unknown=
+    grep -oE '[a-z][a-z-]*\([157]\)' "$file" | grep -vxF 'diff(1)' | sed 's/(/./; s/)//' | sort -u >"$T/named"
+    while read -r page; do
+        test -e "man/$page" || unknown="$unknown $page"
+    done <"$T/named"
+    is "$unknown" "" "$file names pages that there are: $(wc -l <"$T/named")"
+    grep -oE '\]\([^)#]*\)' "$file" | sed 's/](//; s/)//' | grep -v '^http' >"$T/named"
+    while read -r linked; do
+        test -e "$linked" || unknown="$unknown $linked"
+    done <"$T/named"
+    is "$unknown" "" "and files that there are: $(wc -l <"$T/named")"
 done
-for file in smile.sinew smile.obj face.png face.sinew face.log film.sinew corner.tsv film.pvd face.pc2 arm.sinew fem.sinew arm.png; do
-    check "$file came out" test -s $file
-done
-check "film.pvd has its frames" test "$(grep -c '<DataSet' film.pvd)" -ge 4
-is "$(grep -c 'not as it was' "$T/said")" 0 "two runs are the same"
-is "$(wc -l <corner.tsv | tr -d ' ')" "$(($(sinew info --get frames film.sinew) + 1))" "the corner, in each frame"
-is "$(cd results && echo *.moved.obj)" "one.moved.obj two.moved.obj" "a folder of models"
-have ffmpeg && check "a video" test -s arm.mp4
 done_testing

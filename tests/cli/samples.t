@@ -36,7 +36,9 @@ for shape in sphere muscle block head; do
     rigid=$(count "$T/a/$shape.model" node.rigid.sum)
     check "$shape: some nodes are rigid, not all" test "$rigid" -gt 0 -a "$rigid" -lt "$(count "$T/a/$shape.model" axis.node)"
 done
-check "the head's muscle has elements" test "$(count "$T/a/head.model" volume.count.muscle_zyg)" -gt 50
+for side in left right; do
+    check "the head's $side muscle has elements" test "$(count "$T/a/head.model" volume.count.muscle_zyg_$side)" -gt 50
+done
 
 # The quick ones to their end: moved OBJ files and VTU.
 check "the muscle and the block move" samples "$T/a" -j2 SHAPES='muscle block'
