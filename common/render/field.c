@@ -253,14 +253,6 @@ void field_free(field *f)
     *f = (field){0};
 }
 
-bool field_moves(const model *m, const char *name)
-{
-    char british[NAME];
-    name = spelled(m, NULL, name, british);
-    int component, which = own(name);
-    return which != VOLUME && which != MATERIAL && !find(m, NULL, name, &component);
-}
-
 static void add_elements(const field *f, const model_array *node, double *sum, int32_t *count)
 {
     for (int64_t n = 0; n < f->count; n++)

@@ -29,9 +29,6 @@ typedef struct field {
 int field_of(field *to, const model *m, const frame *f, const char *name, err *e);
 void field_free(field *f);
 
-/* Whether the name can only be had from a frame. */
-bool field_moves(const model *m, const char *name);
-
 /* The value of a vector: its component, or its norm. */
 double field_of_vector(const field *f, const double vector[3]);
 

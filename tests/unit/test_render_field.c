@@ -106,6 +106,10 @@ static void test_gradient(void)
     double shear[9] = {0, .2, 0, 0, 0, 0, 0, 0, 0};
     double wanted = sqrt(3 * (206.8966 * 206.8966) + 41.3793 * 41.3793);
     near_(gradient_stress(shear, mu, bulk), wanted, 1e-3, "simple shear: von Mises' equivalent");
+    double stretch[9] = {.02, 0, 0, 0, -.01, 0, 0, 0, -.01};
+    near_(gradient_stress_linear(shear, mu), sqrt(3) * .2 * mu, 1e-9, "linear elasticity, shear: sqrt(3) mu gamma");
+    near_(gradient_stress_linear(stretch, mu), 6 * .01 * mu, 1e-9,
+          "and stretched at constant volume: 6 mu times a side's strain");
     double inside_out[9] = {-3, 0, 0, 0, 0, 0, 0, 0, 0};
     ok(isnan(gradient_stress(inside_out, mu, bulk)), "inside out: none");
     gradient_strain(shear, strain);
