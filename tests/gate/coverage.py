@@ -221,7 +221,8 @@ def fingerprint(path):
 def main():
     build = sys.argv[1]
     counters = os.path.join(build, "counters")
-    folders = [os.path.abspath(os.path.join(counters, name)) for name in sorted(os.listdir(counters))]
+    names = sorted(os.listdir(counters)) if os.path.isdir(counters) else []
+    folders = [os.path.abspath(os.path.join(counters, name)) for name in names]
     folders = [folder for folder in folders if os.path.exists(os.path.join(folder, "seconds"))]
     if not folders:
         sys.exit(f"coverage: no counters in {counters}; expected those of the tests, by `make coverage`")
