@@ -209,6 +209,7 @@ class Bench:
         for name, seconds in zip(cover["tests"], cover["seconds"]):
             self.cpu[self.program(name)] = seconds
         self.sound, self.lock = {}, threading.Lock()
+        self.running, self.ended = set(), False
 
     @staticmethod
     def program(name):
@@ -230,6 +231,9 @@ class Bench:
         command = [SANDBOX, slot, *(["sh"] if test.endswith(".t") else []), test]
         process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                    stderr=subprocess.DEVNULL, text=True, errors="replace")
+        self.running.add(process)
+        if self.ended:
+            process.kill()
         timer = threading.Timer(wall - time.monotonic(), process.kill)
         timer.start()
         wrong = ""
@@ -240,11 +244,20 @@ class Bench:
                 break
         status = process.wait()
         timer.cancel()
+        self.running.discard(process)
+        if self.ended:
+            raise KeyboardInterrupt
         if status == 125:
             fail("tests/gate/sandbox cannot be had here; it wants Linux's namespaces, and root")
         if not wrong and status:
             wrong = "time limit" if time.monotonic() > wall or status in (-9, 137, 152) else f"status {status}"
         return wrong
+
+    def stop(self):
+        """Ends what runs, and with it all that it started."""
+        self.ended = True
+        for process in list(self.running):
+            process.kill()
 
     def is_sound(self, test):
         with self.lock:
@@ -319,7 +332,10 @@ def main():
     build, folder, count, seed = sys.argv[1:5]
     signal.signal(signal.SIGQUIT, signal.SIG_DFL)  # a shell ignores it, and SIGINT, for what it runs in the background;
     signal.signal(signal.SIGINT, signal.default_int_handler)  # tests want the default actions
-    only = {int(number) for number in sys.argv[5].split(",")} if sys.argv[5:] else set()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    only = sys.argv[5] if sys.argv[5:] else ""
+    if not re.fullmatch(r"(\d+(,\d+)*)?", only):
+        fail(f"ONLY is '{only}'; expected numbers of mutants, as 3,17")
     if not re.fullmatch(r"[1-9]\d*", count) or not re.fullmatch(r"\d+", seed):
         fail(f"N is '{count}' and SEED '{seed}'; expected a number of mutants and a seed, whole numbers")
     cover = read_cover(build)
@@ -328,7 +344,7 @@ def main():
     build_base(base)
     chosen, dropped = choose(cover, folder, int(count), seed, base, slots[0])
     bench = Bench(base, cover)
-    chosen = [mutant for mutant in chosen if not only or mutant.number in only]
+    chosen = [mutant for mutant in chosen if not only or str(mutant.number) in only.split(",")]
     free = list(slots)
 
     def try_next(mutant):
@@ -339,10 +355,18 @@ def main():
             free.append(slot)
 
     with ThreadPoolExecutor(SLOTS) as pool:
-        for result in [pool.submit(try_next, mutant) for mutant in chosen]:
-            result.result()
+        try:
+            for result in [pool.submit(try_next, mutant) for mutant in chosen]:
+                result.result()
+        except BaseException:
+            bench.stop()
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     tell(chosen, dropped, f"make mutate FOLDER={folder} N={count} SEED={seed}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit("mutate: interrupted; the checkout is as it was")
