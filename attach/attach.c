@@ -24,7 +24,7 @@ struct options {
 
 #define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
-    {OPT_INPUT, 0, "rigid", "NAME,...", OPT_LIST, TO(rigid), 0, 0, NULL, 0,
+    {OPT_INPUT, 0, "rigid", "NAME,...", OPT_LIST, TO(rigid), 0, 0, "@group.name", 0,
      "rigid surfaces [default skull*,bone*,rigid*]"},
     {OPT_INPUT, 0, "rigid-file", "FILE.obj", OPT_TEXT, TO(rigid_file), 0, 0, NULL, OPT_FILE,
      "further rigid surfaces, in the model's unit"},

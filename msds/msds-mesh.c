@@ -36,7 +36,7 @@ static const opt option_list[] = {
     {OPT_ACTION, 0, "poisson", "NU", OPT_NUMBER, TO(poisson), -0.99, 0.4999, NULL, 0, "Poisson's ratio [default 0.45]"},
     {OPT_ACTION, 0, "density", "RHO", OPT_NUMBER, TO(density), 1e-3, 1e6, NULL, 0,
      "mass density [kg/m3; default 1000]"},
-    {OPT_ACTION, 0, "fix", "LIST", OPT_TEXT, TO(fix), 0, 0, NULL, 0,
+    {OPT_ACTION, 0, "fix", "LIST", OPT_TEXT, TO(fix), 0, 0, "xmin|xmax|ymin|ymax|zmin|zmax|sides|none|@volume.name", 0,
      "fix these sides and volumes, or none [default zmin]"},
     {0},
 };

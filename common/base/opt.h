@@ -65,9 +65,12 @@ typedef struct opt {
     const char *name; /* long, without the dashes; NULL: letter only */
     const char *arg;  /* metavariable, e.g. "SECONDS"; NULL for a flag */
     opt_kind kind;
-    size_t to;           /* offsetof(options, field) */
-    double low, high;    /* range, inclusive; both 0: any */
-    const char *choices; /* names between '|'; for an OPT_TEXT, what completion offers, with ':' what is gone on with */
+    size_t to;        /* offsetof(options, field) */
+    double low, high; /* range, inclusive; both 0: any */
+    /* Names between '|'; for an OPT_TEXT or OPT_LIST, what completion offers: with ':' or '=' at the end what is gone on with; with
+     * '@' before it a key of `sinew info --get`, whose names are offered of a model that stands on the line, each followed by what is
+     * behind the key that is no letter: "@muscle.name=". */
+    const char *choices;
     int flags;
     const char *help; /* a few words; units and defaults last, in brackets: [UNIT], [default X] or [UNIT; default X] */
 } opt;

@@ -37,6 +37,41 @@ static int put_words(const opt *o, const char *between, out *to)
     return count;
 }
 
+/* ---- names out of a model that stands on the line */
+
+static bool has_names(const opt *o)
+{
+    return o->choices && strchr(o->choices, '@');
+}
+
+static bool any_names(const opt_tool *tool)
+{
+    const opt *o;
+    for (int i = 0; (o = opt_at(tool, i)); i++)
+        if (has_names(o))
+            return true;
+    return false;
+}
+
+/* Arguments of the scripts' _sinew_names: the words that are offered besides, what follows a name, the keys. */
+static void put_names_call(const opt *o, const char *quote, out *to)
+{
+    const char *p = o->choices;
+    char word[64], follows[2] = "";
+    int count = 0;
+    out_format(to, "_sinew_names %s", quote);
+    while (next_word(&p, true, word))
+        if (*word != '@')
+            out_format(to, "%s%s", count++ ? " " : "", word);
+        else if (!isalnum((unsigned char)word[strlen(word) - 1]))
+            follows[0] = word[strlen(word) - 1];
+    out_format(to, "%s %s%s%s", quote, quote, follows, quote);
+    p = o->choices;
+    while (next_word(&p, true, word))
+        if (*word == '@')
+            out_format(to, " %.*s", (int)(strlen(word) - 1 - (follows[0] != 0)), word + 1);
+}
+
 /* The endings of the files that a metavariable or operand means, NULL-terminated; none: any file. */
 static const char *const *endings_of(const char *arg)
 {
@@ -81,6 +116,33 @@ static void put_bash_files(const char *arg, out *to)
     out_text(to, "))");
 }
 
+/* Offers names of the models among the words of the command, and behind `<`. They are a stranger's: nothing of them is evaluated, and
+ * what the shell would take for something else is quoted. */
+static const char bash_names[] =
+    "_sinew_names() {\n"
+    "    local suffix=$2 element=${value##*,} list file name quoted tool=${sinew:-${COMP_WORDS[0]}} info\n"
+    "    local words=$1\n"
+    "    list=${word%\"$element\"}\n"
+    "    compopt +o default\n"
+    "    COMPREPLY=()\n"
+    "    [[ $suffix == = && $element == *=* ]] && return\n"
+    "    for name in $words; do\n"
+    "        [[ $name == \"$element\"* ]] && COMPREPLY+=(\"$list$name\")\n"
+    "    done\n"
+    "    shift 2\n"
+    "    info=$(type -P sinew-info) || info=${tool%/*}/sinew-info\n"
+    "    for file in \"${COMP_WORDS[@]:1}\"; do\n"
+    "        file=${file//\\\\/} file=${file#[\\\"\\']} file=${file%[\\\"\\']}\n"
+    "        [[ $file == '~/'* ]] && file=$HOME/${file:2}\n"
+    "        [[ -f $file && -r $file && $file != - ]] || continue\n"
+    "        while IFS= read -r name; do\n"
+    "            printf -v quoted %q \"$name\"\n"
+    "            [[ $name == \"$element\"* || $quoted == \"$element\"* ]] && COMPREPLY+=(\"$list$quoted$suffix\")\n"
+    "        done < <(\"$info\" --names \"${@/#/--get=}\" -- \"$file\" 2>/dev/null </dev/null)\n"
+    "    done\n"
+    "    [[ $suffix ]] && compopt -o nospace\n"
+    "}\n";
+
 static void put_bash_value(const opt *o, out *to)
 {
     out_text(to, "    ");
@@ -89,7 +151,9 @@ static void put_bash_value(const opt *o, out *to)
     if (o->name)
         out_format(to, "--%s", o->name);
     out_text(to, ") ");
-    if (put_words(o, "", NULL)) {
+    if (has_names(o)) {
+        put_names_call(o, "'", to);
+    } else if (put_words(o, "", NULL)) {
         out_text(to, "compopt +o default; COMPREPLY=($(compgen -W '");
         put_words(o, " ", to);
         out_text(to, "' -- \"$word\"))");
@@ -114,12 +178,20 @@ static void put_bash_name(const opt_tool *tool, out *to)
 void opt_complete_bash(const opt_tool *tool, out *to)
 {
     const opt *o;
+    if (any_names(tool))
+        out_text(to, bash_names);
     put_bash_name(tool, to);
+    /* bash cuts words at `=`: the option is the word before those that belong to the value. */
     out_text(to, "() {\n"
-                 "    local IFS=$' \\n' word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
-                 "    [[ $before == = ]] && before=${COMP_WORDS[COMP_CWORD-2]}\n"
+                 "    local IFS=$' \\n' word=${COMP_WORDS[COMP_CWORD]} value at=$((COMP_CWORD - 1))\n"
+                 "    while ((at > 0)) && [[ ${COMP_WORDS[at]} == = || (${COMP_WORDS[at]} != -* && ${COMP_WORDS[at+1]} "
+                 "== =) ]]; do\n"
+                 "        ((at--))\n"
+                 "    done\n"
+                 "    printf -v value %s \"${COMP_WORDS[@]:at+1:COMP_CWORD-at}\"\n"
+                 "    value=${value#=}\n"
                  "    [[ $word == = ]] && word=\n"
-                 "    case $before in\n");
+                 "    case ${COMP_WORDS[at]} in\n");
     for (int i = 0; (o = opt_at(tool, i)); i++)
         if (o->arg && !(o->flags & OPT_HIDDEN))
             put_bash_value(o, to);
@@ -166,6 +238,11 @@ static void put_zsh_action(const opt *o, out *to)
     out_text(to, ":");
     put_zsh_text(o->arg, to);
     out_text(to, ":");
+    if (has_names(o)) {
+        out_text(to, " ");
+        put_names_call(o, "\"", to);
+        return;
+    }
     const bool parts = o->choices && strchr(o->choices, ':');
     if (parts) { /* a colon ends an action */
         out_text(to, "compadd -S \"\" - ");
@@ -181,6 +258,25 @@ static void put_zsh_action(const opt *o, out *to)
         out_text(to, " ");
     }
 }
+
+/* The same as in bash. zsh leaves redirections out of the words, but the line has them. */
+static const char zsh_names[] =
+    "_sinew_names() {\n"
+    "    local suffix=$2 file info=${commands[sinew-info]:-${words[1]:h}/sinew-info}\n"
+    "    local -a names plain\n"
+    "    plain=(${=1})\n"
+    "    shift 2\n"
+    "    compset -P '*,'\n"
+    "    [[ $suffix == = && $PREFIX == *=* ]] && return 1\n"
+    "    for file in ${(Q)${(z)BUFFER}}; do\n"
+    "        file=${file/#\\~\\//$HOME/}\n"
+    "        [[ -f $file && -r $file && $file != - ]] || continue\n"
+    "        names+=(${(f)\"$($info --names --get=${^@} -- $file 2>/dev/null </dev/null)\"})\n"
+    "    done\n"
+    "    (( $#plain )) && compadd -- $plain\n"
+    "    (( $#names )) || return $(( ! $#plain ))\n"
+    "    if [[ -n $suffix ]]; then compadd -S $suffix -- $names; else compadd -- $names; fi\n"
+    "}\n";
 
 static void put_zsh_option(const opt *o, out *to)
 {
@@ -208,6 +304,8 @@ void opt_complete_zsh(const opt_tool *tool, out *to)
     const bool many = tool->operands_max > 1;
     out_text(to, "#compdef");
     put_tool_names(tool, to);
+    if (any_names(tool))
+        out_text(to, zsh_names);
     out_text(to, "_arguments -s -S");
     for (int i = 0; (o = opt_at(tool, i)); i++)
         if (!(o->flags & OPT_HIDDEN))

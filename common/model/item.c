@@ -74,6 +74,21 @@ int64_t item_heading(const item_source *s, item *it, err *e)
     return n;
 }
 
+bool item_passes(const item_source *s, const item *it, int64_t n)
+{
+    enum { SHORT = 1 << 13 };
+    return s->names && it->array.type != MODEL_STR && n > SHORT;
+}
+
+int item_hurries(const item_source *s, err *e)
+{
+    enum { TEXT = 1 << 26, GUNZIPPED = 1 << 25 }; /* bytes; about a tenth of a second */
+    const int64_t most = in_is_gzip(s->s) ? GUNZIPPED : s->how->lines ? TEXT : INT64_MAX;
+    return s->names && in_taken(s->s) > most
+               ? err_set(e, in_name(s->s), 0, "is too large to be looked through for names")
+               : 0;
+}
+
 bool item_canonical(model_type type, void *values, int64_t n)
 {
     if (values_finite(type, values, n))

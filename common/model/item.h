@@ -32,6 +32,7 @@ typedef struct item {
     double time;
     model_array array;
     bool finite; /* of array: it is known that all values are finite */
+    bool passed; /* its values were passed over: array has none */
     model_block block;
 } item;
 
@@ -55,6 +56,7 @@ struct item_source {
     int64_t blocks; /* binary: blocks begun */
     char *held;     /* text: a line that was looked at and not taken; NULL: none */
     bool stopped;   /* it gave no more bytes where an item was to begin or go on */
+    bool names;     /* names alone are wanted: see item_passes */
     char within;    /* the first character of the item last begun; 0: of none, the stream stopped before it */
 };
 
@@ -75,6 +77,13 @@ int item_cut(const item_source *s, err *e);
 /* Checks the heading of an array just read (name, unit, axis, columns) and sets its rows. Returns its count of values, or
  * -1. */
 int64_t item_heading(const item_source *s, item *it, err *e);
+
+/* Whether the values of an array, n of them, are passed over without a check: where names alone are wanted, all but strings and short
+ * arrays. */
+bool item_passes(const item_source *s, const item *it, int64_t n);
+
+/* Where names alone are wanted: -1 with e filled once so much of a text or of what gunzip gives was read that it takes time. */
+int item_hurries(const item_source *s, err *e);
 
 /* Makes every nan among n values the one that is written: quiet, positive, no payload. Returns whether all are
  * finite. */

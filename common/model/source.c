@@ -45,6 +45,8 @@ static int open_and_read(source *s, const char *path, err *e)
     s->reader = model_reader_open(s->stream, e);
     if (s->reader && s->offers)
         model_reader_give_cut(s->reader);
+    if (s->reader && s->names)
+        model_reader_names(s->reader);
     if (s->reader && !model_read(s->reader, &s->body, e))
         return 0;
     tell(s, e);
@@ -62,6 +64,12 @@ int source_open(source *s, const char *path, err *e)
 int source_open_part(source *s, const char *path, bool salvage, err *e)
 {
     *s = (source){.offers = true, .salvages = salvage};
+    return open_and_read(s, path, e);
+}
+
+int source_open_names(source *s, const char *path, err *e)
+{
+    *s = (source){.names = true};
     return open_and_read(s, path, e);
 }
 

@@ -16,6 +16,7 @@ typedef struct source {
     frame spare;
     bool text; /* the encoding */
     bool from_stdin;
+    bool names;            /* source_open_names */
     bool offers, salvages; /* --salvage: the tool has it; it was given */
     err lost;              /* what it did not take, and why */
 } source;
@@ -29,6 +30,9 @@ int source_open(source *s, const char *path, err *e);
  * or ends with `fail`, with source_next() 0, and source_end() says so. A body that is not whole is refused all the
  * same. */
 int source_open_part(source *s, const char *path, bool salvage, err *e);
+
+/* The body alone, of which names alone are wanted: see model_reader_names. Frames are not to be read. */
+int source_open_names(source *s, const char *path, err *e);
 
 /* Where not all was taken: fills e (status 1) with how much was and why, once the output is whole; or adds that to an e
  * that is filled. */

@@ -148,6 +148,11 @@ void model_reader_give_cut(model_reader *r)
     r->gives_cut = true;
 }
 
+void model_reader_names(model_reader *r)
+{
+    r->from.names = true;
+}
+
 /* The stream said `end` or `fail`: nothing may follow. */
 static int finish(model_reader *r, const item *it, err *e)
 {
@@ -246,7 +251,7 @@ static int add_array(model_reader *r, model *m, item *it, err *e)
         return item_error(&r->from, it, e, "a second array %s; expected one", name);
     if (mem_grow(&r->places, &r->place_capacity, m->arrays.count + 1, sizeof *r->places, "the model", e))
         return -1;
-    if (check_part(r, it, e))
+    if (!it->passed && check_part(r, it, e))
         return -1;
     r->places[m->arrays.count] = it->at;
     it->array.line = r->from.how->lines ? it->at : 0;
@@ -292,7 +297,7 @@ int model_read(model_reader *r, model *m, err *e)
             return -1;
     }
     for (int i = 0; i < m->arrays.count; i++)
-        if (check_rest(r, m, &m->arrays.v[i], r->places[i], e))
+        if (m->arrays.v[i].data && check_rest(r, m, &m->arrays.v[i], r->places[i], e))
             return -1;
     return r->next.kind == ITEM_END ? finish(r, &r->next, e) : 0;
 }

@@ -163,6 +163,17 @@ static int read_rows(item_source *s, model_array *a, err *e)
     return 0;
 }
 
+/* Takes the rows of an array, which are not kept. */
+static int pass_over(item_source *s, item *it, err *e)
+{
+    char *line;
+    it->passed = true;
+    for (int64_t row = 0; row < it->array.rows; row++)
+        if (need_line(s, &line, e) || item_hurries(s, e))
+            return -1;
+    return 0;
+}
+
 static int read_hex8(const char *text, uint32_t *value)
 {
     *value = 0;
@@ -191,7 +202,7 @@ static int read_crc(item_source *s, const item *it, err *e)
     p += 3;
     if (read_hex8(text_word(&p), &crc) || !text_ended(p))
         return bad_line(s, e, "crc and 8 hexadecimal digits");
-    want = binary_crc(it);
+    want = it->passed ? crc : binary_crc(it);
     if (crc == want)
         return 0;
     return line_error(
@@ -213,9 +224,11 @@ static int read_array(item_source *s, item *it, char *p, err *e)
     a->name = mem_text(name, e);
     a->unit = mem_text(unit, e);
     a->axis = mem_text(axis, e);
-    if (!a->name || !a->unit || !a->axis || item_heading(s, it, e) < 0)
+    const int64_t n = a->name && a->unit && a->axis ? item_heading(s, it, e) : -1;
+    if (n < 0)
         return -1;
-    return read_rows(s, a, e) || read_crc(s, it, e);
+    const int bad = item_passes(s, it, n) ? pass_over(s, it, e) : read_rows(s, a, e);
+    return bad || read_crc(s, it, e);
 }
 
 /* The bytes of one line, at most what is left of the block. */

@@ -232,6 +232,7 @@ static void note_keys(const source *s, const char *key, notes *list)
     notes_add(list, "frame.time");
     notes_add(list, "frame.index");
     notes_add(list, "surface.name");
+    notes_add(list, "group.name");
     notes_add(list, "array.name");
     if (model_find(m, "muscle.volume"))
         notes_add(list, INFO_NAMES_MUSCLES);

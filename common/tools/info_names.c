@@ -41,7 +41,7 @@ static int put_strings(const model_array *a, out *to, err *e)
 static int put_muscles(const model *m, out *to, err *e)
 {
     const model_array *volume = model_find(m, "muscle.volume"), *name = model_find(m, "volume.name");
-    if (!volume || !name)
+    if (!volume || !name || !volume->data)
         return 1;
     for (int64_t i = 0; i < volume->rows; i++)
         if (put_name(name->str[volume->i32[i]], to, e))
@@ -69,6 +69,54 @@ static int put_arrays(const source *s, out *to, err *e)
     return 0;
 }
 
+/* Whether the words of a row, which are names between spaces, have this one. */
+static bool has_word(const char *row, const char *word, size_t n)
+{
+    for (const char *p = row; *p; p += strcspn(p, " "), p += strspn(p, " "))
+        if (strcspn(p, " ") == n && !strncmp(p, word, n))
+            return true;
+    return false;
+}
+
+static int put_word(const char *word, size_t n, out *to, err *e)
+{
+    char *name = mem_array((int64_t)n + 1, 1, "a name", e);
+    if (!name)
+        return -1;
+    memcpy(name, word, n);
+    const int status = put_name(name, to, e);
+    free(name);
+    return status;
+}
+
+/* The groups of a surface, in their order, each once. */
+static int put_groups_of(const model_array *a, out *to, err *e)
+{
+    for (int64_t i = 0; i < a->rows; i++)
+        for (const char *p = a->str[i]; *p; p += strcspn(p, " "), p += strspn(p, " ")) {
+            const size_t n = strcspn(p, " ");
+            bool before = false;
+            for (int64_t k = 0; k < i && !before; k++)
+                before = has_word(a->str[k], p, n);
+            if (n && !before && put_word(p, n, to, e))
+                return -1;
+        }
+    return 0;
+}
+
+static int put_groups(const model *m, out *to, err *e)
+{
+    static const char ending[] = "/group.name";
+    for (int i = 0; i < m->arrays.count; i++) {
+        const model_array *a = &m->arrays.v[i];
+        const size_t n = strlen(a->name);
+        if (a->type == MODEL_STR && n > strlen(ending) && !strcmp(a->name + n - strlen(ending), ending) &&
+            put_groups_of(a, to, e))
+            return -1;
+    }
+    return 0;
+}
+
 int info_names(const source *s, const char *key, out *to, err *e)
 {
     const model_array *a = source_find(s, key);
@@ -78,6 +126,8 @@ int info_names(const source *s, const char *key, out *to, err *e)
         return put_muscles(&s->body, to, e);
     if (!strcmp(key, "surface.name"))
         return put_surfaces(&s->body, to, e);
+    if (!strcmp(key, "group.name"))
+        return put_groups(&s->body, to, e);
     if (!strcmp(key, "array.name"))
         return put_arrays(s, to, e);
     return 1;

@@ -17,11 +17,12 @@ struct options {
 
 #define TO(field) offsetof(struct options, field)
 static const opt option_table[] = {
-    {OPT_ACTION, 0, "abs", "[ARRAY=]A", OPT_LIST, TO(abs), 0, 0, NULL, 0,
+    {OPT_ACTION, 0, "abs", "[ARRAY=]A", OPT_LIST, TO(abs), 0, 0, "@array.name=|node.displacement=|node.velocity=", 0,
      "equal if |a - b| <= A, e.g. 1e-6 or 1um [default 0]"},
-    {OPT_ACTION, 0, "rel", "[ARRAY=]R", OPT_LIST, TO(rel), 0, 0, NULL, 0,
+    {OPT_ACTION, 0, "rel", "[ARRAY=]R", OPT_LIST, TO(rel), 0, 0, "@array.name=|node.displacement=|node.velocity=", 0,
      "equal if |a - b| <= R max(|a|, |b|) [default 0]"},
-    {OPT_ACTION, 0, "only", "ARRAY,...", OPT_LIST, TO(only), 0, 0, NULL, 0, "compare only these arrays"},
+    {OPT_ACTION, 0, "only", "ARRAY,...", OPT_LIST, TO(only), 0, 0, "@array.name|node.displacement|node.velocity", 0,
+     "compare only these arrays"},
     {0}};
 
 static const opt_tool table = {

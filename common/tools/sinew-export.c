@@ -35,7 +35,7 @@ static const opt option_list[] = {
      "vtu, obj, msh: which frame [default last, else rest]"},
     {OPT_ACTION, 0, "deformed", NULL, OPT_FLAG, TO(deformed), 0, 0, NULL, 0,
      "vtu, obj: move the points as the frame says"},
-    {OPT_INPUT, 0, "surface", "NAME", OPT_TEXT, TO(surface), 0, 0, NULL, 0,
+    {OPT_INPUT, 0, "surface", "NAME", OPT_TEXT, TO(surface), 0, 0, "@surface.name", 0,
      "vtu, obj: this surface, in place of elements"},
     {OPT_RESULT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0,
      "obj: unit of length [default the model's]"},

@@ -19,18 +19,22 @@
 struct options {
     opt_common common;
     opt_list get, tsv;
-    bool json, salvage;
+    bool json, salvage, names;
 };
 
 #define TO(field) offsetof(struct options, field)
 static const opt option_table[] = {
-    {OPT_RESULT, 0, "get", "KEY", OPT_LIST, TO(get), 0, 0, NULL, OPT_OUTPUT,
-     "print one value or list, e.g. frames, muscle.name, node.displacement.max"},
-    {OPT_RESULT, 0, "tsv", "KEY", OPT_LIST, TO(tsv), 0, 0, NULL, OPT_OUTPUT,
-     "print a value of each frame, a row a frame (TSV)"},
+    {OPT_RESULT, 0, "get", "KEY", OPT_LIST, TO(get), 0, 0,
+     "frames|frame.time|frame.index|muscle.name|surface.name|group.name|array.name|quality.folded|node.displacement."
+     "max|@array.name",
+     OPT_OUTPUT, "print one value or list, e.g. frames, muscle.name, node.displacement.max"},
+    {OPT_RESULT, 0, "tsv", "KEY", OPT_LIST, TO(tsv), 0, 0,
+     "node.displacement.max|node.velocity.max|quality.folded|quality.j.centre|quality.j.corner|quality.hourglass",
+     OPT_OUTPUT, "print a value of each frame, a row a frame (TSV)"},
     {OPT_RESULT, 0, "json", NULL, OPT_FLAG, TO(json), 0, 0, NULL, OPT_OUTPUT, "print the summary as JSON"},
     {OPT_INPUT, 0, "salvage", NULL, OPT_FLAG, TO(salvage), 0, 0, NULL, OPT_OUTPUT,
      "use whole frames of a stream that ends too early"},
+    {OPT_INPUT, 0, "names", NULL, OPT_FLAG, TO(names), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN, "for completion"},
     {0}};
 
 static const opt_tool table = {
@@ -345,6 +349,15 @@ static int put_whole(source *s, const struct options *o, out *text, out *to, err
     return 0;
 }
 
+/* For completion: the lists of names that there are, of a body that is not checked. */
+static int put_names(const source *s, const opt_list *keys, out *to, err *e)
+{
+    for (int i = 0; i < keys->count; i++)
+        if (info_names(s, keys->value[i], to, e) < 0)
+            return -1;
+    return 0;
+}
+
 static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
@@ -359,11 +372,14 @@ static int run_tool(int argc, char **argv)
         err_usage(&e, "--json, --get and --tsv exclude each other; expected one of them");
         goto out;
     }
-    if (source_open_part(&s, t.operands ? argv[1] : NULL, o.salvage, &e))
+    if (o.names ? source_open_names(&s, t.operands ? argv[1] : NULL, &e)
+                : source_open_part(&s, t.operands ? argv[1] : NULL, o.salvage, &e))
         goto out;
     text = out_memory(&e);
     to = text ? out_open(o.common.output, false, &e) : NULL;
-    if (!to || (o.tsv.count ? put_series(&s, &o.tsv, to, &e) : put_whole(&s, &o, text, to, &e)))
+    if (!to || (o.names       ? put_names(&s, &o.get, to, &e)
+                : o.tsv.count ? put_series(&s, &o.tsv, to, &e)
+                              : put_whole(&s, &o, text, to, &e)))
         goto out;
 out:
     if (text)

@@ -13,9 +13,11 @@
 
 #define TO(field) offsetof(render_options, field)
 static const opt option_table[] = {
-    {OPT_ACTION, 0, "show", "THING,...", OPT_LIST, TO(show), 0, 0, NULL, 0,
+    {OPT_ACTION, 0, "show", "THING,...", OPT_LIST, TO(show), 0, 0,
+     "surface|voxels|muscles|rigid|centres|probe|@surface.name|@group.name", 0,
      "surface, voxels, muscles, rigid, centres, probe, or names of surfaces and groups [default surface, else voxels]"},
-    {OPT_ACTION, 0, "clear", "THING,...", OPT_LIST, TO(clear), 0, 0, NULL, 0, "draw these of them transparent"},
+    {OPT_ACTION, 0, "clear", "THING,...", OPT_LIST, TO(clear), 0, 0,
+     "surface|voxels|muscles|probe|@surface.name|@group.name", 0, "draw these of them transparent"},
     {OPT_ACTION, 0, "view", "VIEW", OPT_TEXT, TO(view), 0, 0, NULL, 0,
      "front, back, left, right, top, bottom, three-quarter or X,Y,Z [default three-quarter]"},
     {OPT_ACTION, 0, "camera", "EYE,TARGET", OPT_LENGTHS, TO(camera), 0, 6, NULL, 0,
@@ -26,7 +28,8 @@ static const opt option_table[] = {
      "axis that points up: x, y, z, -x, -y, -z [default y]"},
     {OPT_ACTION, 0, "front", "AXIS", OPT_TEXT, TO(front), 0, 0, NULL, 0,
      "axis that faces the front [default z, or y if z is up]"},
-    {OPT_ACTION, 0, "colour", "FIELD", OPT_TEXT, TO(colour), 0, 0, NULL, 0,
+    {OPT_ACTION, 0, "colour", "FIELD", OPT_TEXT, TO(colour), 0, 0,
+     "displacement|strain|strain.max|stress|quality.j.centre|quality.j.corner|volume|material|@array.name", 0,
      "displacement, strain, stress, material, volume, quality.j.corner, ... or an array"},
     {OPT_ACTION, 0, "range", "A,B", OPT_LENGTHS, TO(range), 0, 2, NULL, 0,
      "ends of the colour scale [SI unit or length; default the extremes]"},

@@ -48,8 +48,9 @@ wait(terminal, mark + ".ready")
 for line in lines:
     words = line.split(" ")
     if shell == "bash":
-        # All but the word asked for is known, and left out; an empty line of answers is none.
-        os.write(terminal, ("SHIFT=%d; %s\x1b*\n" % (len(words) - 2, line)).encode())
+        # All but the word asked for is known, and left out; what is read by `<` is no word of the command. An empty line of answers is none.
+        known = len(words) - 2 - 2 * words.count("<")
+        os.write(terminal, ("SHIFT=%d; %s\x1b*\n" % (known, line)).encode())
     else:
         os.write(terminal, (line + "\x14").encode())
     wait(terminal, mark)

@@ -14,6 +14,13 @@ ln -s voxelise "$T/bash/voxelize"
 for file in face.obj face.txt head.obj.gz 'two words.obj' a.nrrd b.mhd; do
     : >"$T/here/$file"
 done
+cp tests/cli/small.sinew "$T/here/small"
+# Names are a stranger's.
+sed '/^crc/d; s/"muscle_a"/"muscle_$(touch pwned) `touch pwned`;x"/' tests/cli/small.sinew >"$T/here/rude"
+gzip -c tests/cli/small.sinew >"$T/here/small.gz"
+head -c 300 tests/cli/small.sinew >"$T/here/cut"
+mkfifo "$T/here/pipe"
+ln -s small "$T/here/-"
 
 # What is asked, and what is to be offered.
 cat >"$T/asked" <<'END'
@@ -39,6 +46,26 @@ sinew bind --u|--unit
 sinew bind f|face.obj
 sinew info --t|--tsv
 sinew render --format |png ppm
+tled-run -c |
+tled-run < small -c |muscle_a
+tled-run < small.gz --contract |muscle_a
+tled-run < small --contract=|muscle_a
+tled-run < small -c mu|muscle_a
+tled-run < small -c muscle_a=0.4,|muscle_a
+tled-run < small -m |Tissue tissue
+tled-run < face.txt -c |
+tled-run < cut -c |
+tled-run < sub -c |
+tled-run < - -d cpu -c |
+tled-run < rude -c |muscle_$(touch pwned) `touch pwned`;x
+sinew tled-run < small -c |muscle_a
+sinew export small -f obj --surface |s
+sinew-render small --show vo|voxels
+sinew-render small --clear s|s skin surface
+sinew info small --get mus|muscle.centre muscle.name muscle.volume
+sinew-diff small small --only volume.m|volume.material volume.muscle
+attach < small --rigid |edge lip skin
+msds-mesh < small --fix s|sides skin
 END
 for shell in bash zsh; do
     if ! have $shell; then
@@ -62,7 +89,8 @@ for shell in bash zsh; do
     harness=$ROOT/tests/cli/complete.py
     # shellcheck disable=SC2016 # for the inner shell
     check "$shell: it answers" sh -c 'cd "$1" && shift && exec python3 "$@"' - "$T/here" "$harness" $shell "$folder" "$@"
-    sed "s/^--format=//" "$T/stdout" >"$T/offered" # bash says it with what is there
+    # bash says it with what is there, and with what follows a name
+    sed -E 's/\\//g; s/^--(format|contract)=//; s/^muscle_a=0.4,//; s/([a-zA-Z_x])[=.]( |$)/\1\2/g' "$T/stdout" >"$T/offered"
     number=0
     while IFS='|' read -r line want; do
         number=$((number + 1))
@@ -77,4 +105,18 @@ for shell in bash zsh; do
             "$shell: $tool --"
     done
 done
+# What no shell can be asked at its prompt: a FIFO that nobody writes to, a file that is not there; and a cursor before the model.
+if have bash; then
+    while IFS='|' read -r words want; do
+        # shellcheck disable=SC2016 # for the inner shell
+        is "$(cd "$T/here" && timeout 10 bash -c '. "$1/tled-run"; compopt() { :; }; COMP_WORDS=($2) COMP_CWORD=2; COMP_WORDS[2]=; _sinew_complete_tled_run
+            echo "${COMPREPLY[*]}"' - "$T/bash" "$words" 2>&1)" "$want" "bash: $words"
+    done <<'END'
+tled-run -c X < small|muscle_a=
+tled-run -c X < nonesuch|
+tled-run -c X < pipe|
+tled-run -c X < /dev/zero|
+END
+fi
+is "$(ls "$T/here/pwned" 2>/dev/null)" "" "no name of a model was run"
 done_testing

@@ -62,6 +62,23 @@ fails 1 "a model without muscles" "no key 'muscle.name': the model has no muscle
 fails 1 "without that array" "no key 'anchor.name': the model has no anchor.name; it comes from attach" sinew info --get anchor.name tests/golden/v1/tet.text
 fails 1 "a slip in one" "no key 'muscle.nam'; did you mean 'muscle.name'" sinew info --get muscle.nam "$small"
 
+is "$(lines group.name "$small")" "skin|edge|lip|" "groups of surfaces, each once"
+
+# For completion: names alone, without a look at long arrays.
+awk 'BEGIN { print "%sinew 1 text\naxis x-a 9000\narray x-a.b f64 1 x-a 2"; for (i = 0; i < 9000; i++) print i, "0.5"
+    print "axis anchor 1\narray anchor.name str 1 anchor 1\n\"bone\"\nend" }' >"$T/long"
+sinew export -f model -o "$T/long.bin" "$T/long"
+gzip -c "$T/long.bin" >"$T/long.gz"
+for file in long long.bin long.gz; do
+    is "$(sinew info --names --get muscle.name --get anchor.name "$T/$file")" bone "--names of $file"
+done
+sed 's/^7 0.5$/7 what/' "$T/long" >"$T/passed"
+is "$(sinew info --names --get anchor.name "$T/passed")" bone "a value of a long array is passed over"
+fails 1 "which else is read" "expected 2 numbers" sinew info --get anchor.name "$T/passed"
+head -c 9000 "$T/long.bin" >"$T/long.cut"
+fails 1 "--names of what is cut" "cut" sinew info --names --get anchor.name "$T/long.cut"
+is "$(cat "$T/stdout")" "" "has none"
+
 # The summary.
 check "the summary, by -o" sinew info -o "$T/summary" "$small"
 for line in "text encoding" "node.displacement .*norm 0 to 0.05" "^  skin  *1  *0  *0  tissue$" \
