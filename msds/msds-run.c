@@ -10,6 +10,7 @@
 #include "msds/largest.h"
 #include "msds/press.h"
 #include "msds/problem.h"
+#include "msds/run_options.h"
 #include "msds/skin_model.h"
 #include "volume/poses.h"
 
@@ -20,78 +21,6 @@
 enum { SUBSTEPS_MOST = 1000 };
 
 enum { MASS_STABLE, MASS_LUMPED };
-
-struct options {
-    opt_common common;
-    int device, method, mass, contact;
-    bool exact, warp, residual, compare;
-    const char *probe, *unit, *poses, *transform, *scale;
-    int64_t iterations;
-    double dt, damping, repulsion, rate, skin_stiffness, skin_anchors, skin_tension;
-    const char *skin;
-    opt_numbers gravity;
-};
-
-#define TO(field) offsetof(struct options, field)
-static const opt option_list[] = {
-    {OPT_NUMERICS, 'd', "device", "auto|cuda|cpu", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT,
-     "auto takes a CUDA card that works [default auto]"},
-    {OPT_NUMERICS, 0, "method", "msds|fem", OPT_CHOICE, TO(method), 0, 0, "msds|fem", OPT_OUTPUT,
-     "springs (msds) or finite elements [default msds]"},
-    {OPT_NUMERICS, 0, "exact", NULL, OPT_FLAG, TO(exact), 0, 0, NULL, 0, "fem: solve to a relative residual of 1e-6"},
-    {OPT_NUMERICS, 0, "warp", NULL, OPT_FLAG, TO(warp), 0, 0, NULL, 0,
-     "fem: remove each element's rotation (corotational)"},
-    {OPT_ACTION, 0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "sphere:|linear:|curved:|convex:", OPT_OUTPUT,
-     "sphere:R, linear:W,T, curved:R,A,T or convex:OBJ [default none]"},
-    {OPT_INPUT, 0, "poses", "FILE", OPT_TEXT, TO(poses), 0, 0, NULL, OPT_REQUIRED | OPT_FILE,
-     "poses: TUM lines or a PLUS sequence; required"},
-    {OPT_INPUT, 0, "transform", "NAME", OPT_TEXT, TO(transform), 0, 0, NULL, 0, "which transform of a PLUS sequence"},
-    {OPT_NUMERICS, 0, "iterations", "N", OPT_INT, TO(iterations), 1, 1e6, NULL, OPT_OUTPUT,
-     "spring steps or conjugate gradients in 1/60 s [default 20]"},
-    {OPT_NUMERICS, 0, "rate", "HZ", OPT_NUMBER, TO(rate), 0, 1e6, NULL, OPT_OUTPUT,
-     "frame rate for --iterations; 0: any [Hz; default 60]"},
-    {OPT_NUMERICS, 0, "dt", "S", OPT_NUMBER, TO(dt), 1e-9, 1e3, NULL, OPT_OUTPUT,
-     "time step of springs [s; default 0.01]"},
-    {OPT_NUMERICS, 0, "mass", "stable|lumped", OPT_CHOICE, TO(mass), 0, 0, "stable|lumped", OPT_OUTPUT,
-     "stable scales the inertia to --dt [default stable]"},
-    {OPT_NUMERICS, 0, "spring-scale", "M|auto", OPT_TEXT, TO(scale), 0, 0, NULL, OPT_OUTPUT,
-     "spring stiffness over Young's modulus [m; default 0.002]"},
-    {OPT_NUMERICS, 0, "damping", "S", OPT_NUMBER, TO(damping), 0, 1e6, NULL, OPT_OUTPUT,
-     "spring damping over its stiffness [s; default 0.1]"},
-    {OPT_NUMERICS, 0, "contact", "prescribed|penalty", OPT_CHOICE, TO(contact), 0, 0, "prescribed|penalty", OPT_OUTPUT,
-     "fem: prescribed displacements, or penalty forces [default prescribed]"},
-    {OPT_NUMERICS, 0, "repulsion", "X", OPT_NUMBER, TO(repulsion), 1e-6, 1e6, NULL, OPT_OUTPUT,
-     "contact stiffness relative to springs [default 1]"},
-    {OPT_ACTION, 'g', "gravity", "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "gravity [m/s2; default none]"},
-    {OPT_INPUT, 0, "skin", "OBJ", OPT_TEXT, TO(skin), 0, 0, NULL, OPT_FILE,
-     "a skin of its own, which the probe dents"},
-    {OPT_NUMERICS, 0, "skin-stiffness", "K", OPT_NUMBER, TO(skin_stiffness), 1e-9, 1e9, NULL, OPT_OUTPUT,
-     "stiffness of the skin's edges [N/m; default 100]"},
-    {OPT_NUMERICS, 0, "skin-anchors", "X", OPT_NUMBER, TO(skin_anchors), 1e-6, 1e6, NULL, OPT_OUTPUT,
-     "stiffness of its anchors relative to its edges [default 0.01]"},
-    {OPT_NUMERICS, 0, "skin-tension", "X", OPT_NUMBER, TO(skin_tension), 0, 1e3, NULL, OPT_OUTPUT,
-     "stiffness across its edges relative to along them [default 0.5]"},
-    {OPT_INPUT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0,
-     "unit of OBJ files [default the model's]"},
-    {OPT_RESULT, 0, "residual", NULL, OPT_FLAG, TO(residual), 0, 0, NULL, OPT_OUTPUT,
-     "print the residual of each frame of fem"},
-    {OPT_RESULT, 0, "compare", NULL, OPT_FLAG, TO(compare), 0, 0, NULL, OPT_OUTPUT,
-     "run the other method too, print the difference"},
-    {0},
-};
-
-static const opt_tool table = {
-    .name = "msds-run",
-    .usage = "--poses FILE [options] < model > result",
-    .purpose = "Presses an ultrasound probe on a model of tetrahedra, by springs and dampers or\nby linear finite "
-               "elements, and adds a frame of results for each pose.",
-    .note = "Lengths are in m, unless they have a suffix (um, mm, cm, m, in), e.g. 5cm.",
-    .example = "msds-run --probe linear:4cm,1cm --poses press.tum < arm.sinew > out.sinew",
-    .operands = "",
-    .writes_model = true,
-    .threaded = true,
-    .options = option_list,
-};
 
 typedef struct session {
     const tool *t;
@@ -448,7 +377,7 @@ static int simulate(session *s, err *e)
 {
     poses_event at;
     int got;
-    progress_start(&s->progress, table.name, "poses", 0, s->o->common.quiet);
+    progress_start(&s->progress, run_options_table.name, "poses", 0, s->o->common.quiet);
     s->watch = (msds_watch){show_work, s};
     while ((got = poses_next(&s->poses, &at, e)) > 0) {
         if (at.kind != POSES_POSE) {
@@ -578,7 +507,7 @@ static int run_tool(int argc, char **argv)
     err e = {0};
     tool t = {0};
     session s = {.t = &t, .o = &o};
-    if (tool_begin(&t, &table, argc, argv, &o, &e) || t.done)
+    if (tool_begin(&t, &run_options_table, argc, argv, &o, &e) || t.done)
         goto out;
     if (stage_open_output(&s.stage, &t, &e) || stage_read(&s.stage, &s.m, &e) || prepare(&s, &e) ||
         say_provenance(&t, &s, &e) || stage_write(&s.stage, &s.m, &e) || take_frames(&s, &e) || make_states(&s, &e) ||

@@ -16,6 +16,7 @@ for file in face.obj face.txt head.obj.gz 'two words.obj' a.nrrd b.mhd; do
 done
 cp tests/cli/small.sinew "$T/here/small"
 # Names are a stranger's.
+# shellcheck disable=SC2016 # that is the name
 sed '/^crc/d; s/"muscle_a"/"muscle_$(touch pwned) `touch pwned`;x"/' tests/cli/small.sinew >"$T/here/rude"
 gzip -c tests/cli/small.sinew >"$T/here/small.gz"
 head -c 300 tests/cli/small.sinew >"$T/here/cut"

@@ -1,0 +1,20 @@
+/* The command line of msds-run: its table, and the struct that it is read into. */
+#ifndef SINEW_MSDS_RUN_OPTIONS_H
+#define SINEW_MSDS_RUN_OPTIONS_H
+
+#include "base/opt.h"
+
+struct options {
+    opt_common common;
+    int device, method, mass, contact;
+    bool exact, warp, residual, compare;
+    const char *probe, *unit, *poses, *transform, *scale;
+    int64_t iterations;
+    double dt, damping, repulsion, rate, skin_stiffness, skin_anchors, skin_tension;
+    const char *skin;
+    opt_numbers gravity;
+};
+
+extern const opt_tool run_options_table;
+
+#endif
