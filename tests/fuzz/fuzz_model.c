@@ -69,9 +69,28 @@ static void must_be_same(out *a, out *b)
     }
 }
 
+/* Names alone: what is passed over may be anything; what is kept stands as in the model that is read whole. */
+static void read_names(const unsigned char *data, size_t size)
+{
+    err e = {0};
+    model m = {0};
+    in *s = in_memory(data, size, "input", &e);
+    model_reader *r = s ? model_reader_open(s, &e) : NULL;
+    if (r)
+        model_reader_names(r);
+    if (r && !model_read(r, &m, &e))
+        for (int i = 0; i < m.arrays.count; i++)
+            if (m.arrays.v[i].type == MODEL_STR && m.arrays.v[i].rows && !m.arrays.v[i].data)
+                abort();
+    model_free(&m);
+    model_reader_close(r);
+    in_close(s);
+}
+
 static void try(const unsigned char *data, size_t size)
 {
     err e = {0};
+    read_names(data, size);
     out *text = convert(data, size, true, &e);
     if (!text) {
         if (!e.status || (!*e.text && !e.silent))
