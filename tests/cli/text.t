@@ -69,7 +69,7 @@ us-surface --iso 1 "$T/file" >"$T/marked.out" 2>"$T/marked.said"
 us-surface --iso 1 "$T/twice" >"$T/plain.out"
 check "and within gzip" cmp "$T/plain.out" "$T/marked.out"
 printf '\357\273\277\357\273\277NRRD0004\n' >"$T/file"
-fails 1 "two marks are one too many" "is no volume" us-surface --iso 1 "$T/file"
+fails 1 "two marks are one too many" "is not a volume" us-surface --iso 1 "$T/file"
 
 # ---- names of any bytes: a box whose upper half is a muscle in Latin-1, on a skull
 
@@ -137,7 +137,7 @@ awk -v stitch=1 'BEGIN { print "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nv 0 0 10
 printf 'g skin\nf 1 4 3 2\nf 5 6 7 8\nf 1 9 6 5\nf 9 2 6\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n' >>"$T/open.obj"
 { cat "$T/open.obj" && echo 'f 1//1 2//1 9//1'; } >"$T/closed.obj"
 fails 1 "without it the cube is open" "3 open edges" voxelise -q --unit mm -s 2 "$T/open.obj"
-check "with it the cube is closed" voxelise --unit mm -s 2 --check -o "$T/report" "$T/closed.obj"
+check "with it the cube is closed" voxelise -v --unit mm -s 2 --check -o "$T/report" "$T/closed.obj"
 check "and the report says so" grep -q 'triangles without area  *1$' "$T/report"
 voxelise -q --unit mm -s 2 -o "$T/box.sinew" "$T/closed.obj" 2>"$T/said"
 is "$(sinew info --get axis.element "$T/box.sinew")" 125 "125 elements, by its centres"
