@@ -115,8 +115,8 @@ a singular orientation|im.*orientation|series|00200037:DS:1\0\0\1\0\0
 negative spacing|no distance between pixels|series|00280030:DS:-0.5\-0.5
 spacing 0|no distance between pixels|series|00280030:DS:0\0
 spacing that is no number|no distance between pixels|series|00280030:DS:much\more
-a position that is no number|without a position|series|00200032:DS:here
-a position that is infinite|without a position|series|00200032:DS:1e999\0\0
+a position that is no number|one of several images has no position|series|00200032:DS:here
+a position that is infinite|one of several images has no position|series|00200032:DS:1e999\0\0
 no place twice|lie at one place|series|00200032:DS:1\2\3
 planes of a maker without end|planes of its depth need|philips|30011001:UL:60000
 no distance of a maker|private elements of its depth|philips|30011003:FD:nan

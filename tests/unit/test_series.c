@@ -132,7 +132,7 @@ static void test_unlike(void)
     refused(&s, &any, "c lies 0.1 mm beside", "askew");
     s = stack_of((const double[]){0, .5}, 2);
     s.file[1].image.placed = false;
-    refused(&s, &any, "b: an image without a position", "no position");
+    refused(&s, &any, "b: one of several images has no position", "no position");
 }
 
 static void test_several(void)
