@@ -46,6 +46,11 @@ cd "$T/here" || exit 1
 mkdir "$T/all"
 cp -R . "$T/all"
 
+# ---- What voxelise(1) prints of a check is what a check prints.
+sed -n '/^\$ voxelise --check/,/^\.Ed/p' "$ROOT/man/voxelise.1" | sed '1d; $d' >"$T/printed"
+voxelise --check --unit mm -s 2.5 face.obj >"$T/report" 2>/dev/null
+check "voxelise(1) shows the report on the head" diff "$T/printed" "$T/report"
+
 # ---- Those of a page in their order, with all of that in their folder.
 last=
 for example in "$T"/examples/*; do
