@@ -73,7 +73,7 @@ NVCC_FLAGS = -std=c++17 -O3 $(CUDA_LINES) -fmad=$(CUDA_FUSED) $(CUDA_ARCH) -Werr
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
 $(BUILD)/tled/cuda_single.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/msds/cuda_%.o: NVCC_FLAGS += -ftz=true
-# Looks and the march keep no processor's bytes, and may fuse; the march is for cards from sm_90 on.
+# The results of these two files need not have the bytes of the processor, so they may fuse; the march is for cards from sm_90 on.
 $(BUILD)/tled/cuda_look.o: CUDA_FUSED = true
 $(BUILD)/tled/cuda_march.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/tled/cuda_march.o: CUDA_FUSED = true
