@@ -89,7 +89,7 @@ static int add_run(found *f, int64_t value, const int64_t at[3], int64_t length,
     int64_t i = place_of(f, value);
     if (i == f->count || f->one[i].value != value) {
         if (f->count == SAMPLES_LABELS)
-            return err_set(e, NULL, 0, "more than %d values; expected a map of labels", SAMPLES_LABELS);
+            return err_set(e, NULL, 0, "more than %d values; expected a label image", SAMPLES_LABELS);
         if (MEM_ROOM(&f->one, &f->capacity, f->count + 1, "labels", e))
             return -1;
         memmove(f->one + i + 1, f->one + i, (size_t)(f->count++ - i) * sizeof *f->one);
@@ -127,7 +127,7 @@ int64_t samples_labels(const volume *v, samples_label **list, err *e)
     samples_box whole = samples_whole(v);
     *list = NULL;
     if (v->type == VOLUME_F32 || v->type == VOLUME_F64)
-        return err_set(e, NULL, 0, "voxels that are no whole numbers; expected a map of labels");
+        return err_set(e, NULL, 0, "voxels that are no whole numbers; expected a label image");
     if (find[v->type](v, &whole, &f, e)) {
         free(f.one);
         return -1;

@@ -12,7 +12,7 @@ static const uint8_t colours[][3] = {{213, 94, 0},  {86, 180, 233},  {0, 158, 11
 
 enum { COLOURS = sizeof colours / sizeof *colours };
 
-/* Colours in the place of labels, in the map's own memory. */
+/* Colours in the place of labels, in the memory of the label image. */
 static int take_voxels(slice_overlay *o, volume *labels, err *e)
 {
     samples_label *list = NULL;

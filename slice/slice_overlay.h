@@ -1,5 +1,5 @@
 /* Labels over an image: for each pixel, the label of the voxel that holds its place in the undeformed volume, in a colour of its own, half
- * seen through. The map of labels may have a geometry of its own. Owns its table and what it has seen of the last image.
+ * seen through. The label image may have a geometry of its own. Owns its table and what it has seen of the last image.
  */
 #ifndef SINEW_SLICE_OVERLAY_H
 #define SINEW_SLICE_OVERLAY_H
@@ -7,7 +7,7 @@
 #include "slice/slice_cutter.h"
 
 typedef struct slice_overlay {
-    int64_t size[3];            /* of the map of labels */
+    int64_t size[3];            /* of the label image */
     uint8_t *voxel;             /* its labels as indices of colours, 0: none */
     double from[3], axis[3][3]; /* fixed-point places in cells to voxels of the map */
     int32_t black;

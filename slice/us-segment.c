@@ -1,4 +1,4 @@
-/* us-segment: marks a part of a volume, by intensity and from seeds, as a named label in a map of labels. */
+/* us-segment: marks a part of a volume, by intensity and from seeds, as a named label in a label image. */
 #include "base/chars.h"
 #include "base/mem.h"
 #include "base/tool.h"
@@ -29,7 +29,7 @@ static const opt option_list[] = {
     {OPT_RESULT, 0, "value", "N", OPT_INT, TO(value), 1, 1e9, NULL, 0,
      "number of the label [default the name's, or the next]"},
     {OPT_INPUT, 0, "onto", "LABELS", OPT_TEXT, TO(onto), 0, 0, NULL, OPT_FILE,
-     "add the label to this map [default a new one]"},
+     "add the label to this label image [default a new one]"},
     {OPT_ACTION, 0, "low", "LEVEL", OPT_NUMBER, TO(low), 0, 0, NULL, 0, "voxels of this intensity or more"},
     {OPT_ACTION, 0, "high", "LEVEL", OPT_NUMBER, TO(high), 0, 0, NULL, 0, "voxels of this intensity or less"},
     {OPT_ACTION, 0, "seed", "X,Y,Z", OPT_LIST, TO(seeds), 0, 0, NULL, 0,
@@ -323,7 +323,7 @@ static int open_labels(job *j, err *e)
         if (volume_load(l, j->o->onto, &budget, e) || check_same_place(&j->v, l, j->o->onto, e))
             return -1;
         if (l->type == VOLUME_F32 || l->type == VOLUME_F64)
-            return err_set(e, j->o->onto, 0, "voxels that are no whole numbers; expected a map of labels");
+            return err_set(e, j->o->onto, 0, "voxels that are no whole numbers; expected a label image");
         return 0;
     }
     l->type = VOLUME_U8;

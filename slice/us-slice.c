@@ -51,7 +51,7 @@ static const opt option_list[] = {
      "dynamic range [dB; default 60,60]"},
     {OPT_ACTION, 0, "window", "LOW,HIGH", OPT_NUMBERS, TO(window), 2, 2, NULL, 0,
      "values of black and white [default 0,255 or extremes]"},
-    {OPT_INPUT, 0, "labels", "FILE", OPT_TEXT, TO(labels), 0, 0, NULL, OPT_FILE, "draw this map of labels over it"},
+    {OPT_INPUT, 0, "labels", "FILE", OPT_TEXT, TO(labels), 0, 0, NULL, OPT_FILE, "tint what this label image marks"},
     {OPT_RESULT, 0, "cut", "FILE.obj", OPT_TEXT, TO(cut), 0, 0, NULL, OPT_OUTPUT | OPT_WRITES,
      "write the polygons where the slice cuts tetrahedra"},
     {OPT_NUMERICS, 0, "method", "spans|paper", OPT_CHOICE, TO(method), 0, 0, "spans|paper", OPT_OUTPUT,

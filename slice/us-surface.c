@@ -27,13 +27,14 @@ struct options {
 static const opt option_list[] = {
     {OPT_INPUT, 'l', "label", "NAME,...", OPT_LIST, TO(labels), 0, 0, NULL, 0,
      "surfaces of these labels, names or numbers, or all"},
-    {OPT_INPUT, 'i', "iso", "LEVEL", OPT_NUMBER, TO(iso), 0, 0, NULL, 0, "or of what has this intensity or more"},
+    {OPT_INPUT, 'i', "iso", "LEVEL", OPT_NUMBER, TO(iso), 0, 0, NULL, 0,
+     "or around all voxels of this intensity or more"},
     {OPT_RESULT, 0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0,
      "name of the group, with --iso [default surface]"},
     {OPT_ACTION, 0, "smooth", "SIGMA", OPT_LENGTHS, TO(smooth), 0, 1, NULL, 0,
-     "Gaussian filter before [length; default none]"},
+     "Gaussian filter of the volume or labels [length; default none]"},
     {OPT_ACTION, 0, "taubin", "PASSES", OPT_INT, TO(taubin), 0, 1000, NULL, 0,
-     "passes of Taubin smoothing; 10 are many [default 0]"},
+     "passes of Taubin smoothing, e.g. 10 [default 0]"},
     {0},
 };
 

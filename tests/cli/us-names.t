@@ -110,7 +110,7 @@ for f in h.nrrd h.mha; do
     names_nobody "$T/o.nrrd" "$f: volume"
     names_nobody "$T/stderr" "$f: report"
     us-segment -q -n a --low 1 --onto "$T/$f" -o "$T/o.nrrd" "$T/$f"
-    names_nobody "$T/o.nrrd" "$f: map of labels"
+    names_nobody "$T/o.nrrd" "$f: label image"
     us-surface -q -i 1 "$T/$f" >"$T/o.obj"
     names_nobody "$T/o.obj" "$f: surface"
 done

@@ -91,7 +91,7 @@ static contour make(const float *value, const int64_t size[3], float level, cons
     return c;
 }
 
-/* A map of labels at random, each voxel in with this chance. */
+/* A label image at random, each voxel in with this chance. */
 static void test_labels(const cubes *t, int64_t nx, int64_t ny, int64_t nz, double chance, uint64_t seed)
 {
     int64_t size[3] = {nx, ny, nz}, count = nx * ny * nz, voxels = 0;
