@@ -32,6 +32,7 @@ finds "a word that is a macro nobody calls" 'x\.1:13: word: In is a macro' '.Em 
 finds "a value that gets an option's dash" 'x\.1:13: word: 8 would be an option' '.Fl -fraction 8 ,'
 finds "words that get one behind a comma" 'x\.1:13: word: and would be an option' '.Fl -density, and the law'
 finds "a journal's number before its volume" 'x\.1:16: word: a number is printed before' '.Rs' '.%A A. Author' '.%V 23' '.%N 2' '.Re'
+finds "a command that is printed over two lines" 'x\.1:13: width: 68 characters' ".Dl tool --file $(printf '%056d' 0)"
 finds "a macro that there is not" 'x\.1: groff: .*(warning|error)' '.Zz word'
 finds "what mandoc alone warns of" 'mandoc: .*WARNING: skipping paragraph' '.Pp'
 rm "$T/x.1"
