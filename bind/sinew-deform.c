@@ -38,7 +38,7 @@ static const opt option_list[] = {
      "OBJ, or a point cache for Blender [default obj]"},
     {OPT_INPUT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0, "unit of the OBJ [default the model's]"},
     {OPT_INPUT, 0, "salvage", NULL, OPT_FLAG, TO(salvage), 0, 0, NULL, OPT_OUTPUT,
-     "use whole frames of a stream that ends too early"},
+     "use the complete frames of an incomplete stream"},
     {0},
 };
 

@@ -46,7 +46,7 @@ static const opt option_list[] = {
     {OPT_RESULT, 'z', "gzip", NULL, OPT_FLAG, TO(common.gzip), 0, 0, NULL, OPT_OUTPUT,
      "model, inp, obj, msh: compress with gzip"},
     {OPT_INPUT, 0, "salvage", NULL, OPT_FLAG, TO(salvage), 0, 0, NULL, OPT_OUTPUT,
-     "use whole frames of a stream that ends too early"},
+     "use the complete frames of an incomplete stream"},
     {0},
 };
 

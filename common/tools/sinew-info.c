@@ -33,7 +33,7 @@ static const opt option_table[] = {
      OPT_OUTPUT, "print a value of each frame, a row a frame (TSV)"},
     {OPT_RESULT, 0, "json", NULL, OPT_FLAG, TO(json), 0, 0, NULL, OPT_OUTPUT, "print the summary as JSON"},
     {OPT_INPUT, 0, "salvage", NULL, OPT_FLAG, TO(salvage), 0, 0, NULL, OPT_OUTPUT,
-     "use whole frames of a stream that ends too early"},
+     "use the complete frames of an incomplete stream"},
     {OPT_INPUT, 0, "names", NULL, OPT_FLAG, TO(names), 0, 0, NULL, OPT_OUTPUT | OPT_HIDDEN, "for completion"},
     {0}};
 

@@ -50,7 +50,7 @@ static const opt option_table[] = {
     {OPT_RESULT, 0, "font", "FILE", OPT_TEXT, TO(font), 0, 0, NULL, OPT_FILE,
      "font of the words [default DejaVu Sans]"},
     {OPT_INPUT, 0, "salvage", NULL, OPT_FLAG, TO(salvage), 0, 0, NULL, OPT_OUTPUT,
-     "use whole frames of a stream that ends too early"},
+     "use the complete frames of an incomplete stream"},
     {0}};
 
 static const opt_tool table = {

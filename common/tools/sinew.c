@@ -23,7 +23,7 @@ static const struct {
     const char *name, *file, *purpose;
 } tools[] = {
     {MODELS, "voxelise", "voxelise", "closed surfaces to hexahedral elements"},
-    {MODELS, "attach", "attach", "rigid nodes, muscle centres and fibres"},
+    {MODELS, "attach", "attach", "rigid nodes, contraction centres and fibres"},
     {MODELS, "bind", "bind", "surfaces to elements, to move with them"},
     {SIMULATION, "tled-run", "tled-run", "total Lagrangian explicit dynamics"},
     {MODELS, "msds-mesh", "msds-mesh", "regular meshes of tetrahedra"},
@@ -33,7 +33,7 @@ static const struct {
     {ULTRASOUND, "us-surface", "us-surface", "closed surfaces of labels or intensities"},
     {ULTRASOUND, "us-slice", "us-slice", "ultrasound images of a volume, as a model deforms it"},
     {RESULTS, "deform", "sinew-deform", "an OBJ as the model's results move it"},
-    {RESULTS, "info", "sinew-info", "what a model holds"},
+    {RESULTS, "info", "sinew-info", "what a model contains"},
     {RESULTS, "diff", "sinew-diff", "where two models differ"},
     {RESULTS, "export", "sinew-export", "VTU, Abaqus .inp, Gmsh .msh, OBJ"},
     {MODELS, "import", "sinew-import", "a mesh from Abaqus .inp, Gmsh .msh, VTU"},
