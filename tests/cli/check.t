@@ -41,6 +41,14 @@ for list in ci all; do
     sort "$SAYS/asked" | comm -23 "$T/check" - >"$T/left"
     is "$(cat "$T/stdout" "$T/left" | sed 's/[0-9]* passed/n passed/')" "0 n passed, 0 failed, 0 skipped" "$list: has every part of check, and passes"
 done
+counts ci >"$T/stdout"
+sort "$SAYS/asked" >"$T/ci"
+counts all >"$T/stdout"
+sort "$SAYS/asked" | comm -23 "$T/ci" - >"$T/left"
+is "$(cat "$T/left")" "" "all: has every part of ci"
+sed -n '/^SLOW = /,/^UNIT_TEST/p' tests/check.mk | grep -oE '[a-z_0-9-]+\.t|UNIT_TEST\)[a-z_]+' | sed 's/.*)/test_/' | sort >"$T/long"
+grep -lE 'SINEW_LONG' tests/cli/*.t tests/unit/*.c | grep -v '/check\.t$' | sed 's|.*/||; s|\.c$||' | sort >"$T/heed"
+is "$(diff "$T/heed" "$T/long")" "" "each test that does more with SINEW_LONG is of make check-all's slow tests or of make soak"
 is "$(counts soak | sed 's/[0-9]* passed/n passed/')" "0 n passed, 0 failed, 0 skipped" "soak"
 is "$(part_counts unit 'x.c:1: error\nfail\n' check)" "1 $((parts - 1)) passed, 1 failed, 0 skipped" "a build that fails is one failure"
 check "what it said is shown" grep -q '^    x.c:1: error$' "$T/said"
@@ -53,6 +61,16 @@ is "$(part_counts check-tests 'ok 1 - a\nx.t (Wstat: 139 (Signal: SEGV) Tests: 1
     "1 $parts passed, 1 failed, 0 skipped" "a test file that dies is one failure"
 is "$(part_counts check-tests 'ok 1 - a\nfail\n' check)" "1 $parts passed, 1 failed, 0 skipped" "so is a part that fails for no test's sake"
 is "$(part_counts check-tests 'nothing\n' check)" "1 $((parts - 1)) passed, 1 failed, 0 skipped" "and one that runs no test"
+# One that hangs: timeout is told what the table says, and stands for time here.
+mkdir "$T/late"
+# shellcheck disable=SC2016 # for the inner shell
+printf '#!/bin/sh\ncase " $* " in *" check-tests "*) exit "$LATE" ;; esac\nshift 2\nexec "$@"\n' >"$T/late/timeout"
+chmod +x "$T/late/timeout"
+for LATE in 124 137; do
+    export LATE
+    is "$(PATH=$T/late:$PATH counts check)" "1 $((parts - 1)) passed, 1 failed, 0 skipped" "a part that is stopped is one failure: status $LATE"
+    check "what ended it is shown" grep -qE '^    tests: (stopped|killed) after [0-9]+ minutes' "$T/said"
+done
 fails 2 "a list that is none" "list 'chekc'; expected some of check, ci, all, soak" tests/check chekc
 fails 2 "a second one" "list 'many'; expected" tests/check check many
 fails 2 "no list" "expected some of check" tests/check

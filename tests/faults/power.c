@@ -78,7 +78,8 @@ static known *find(int fd, struct stat *s)
     return file + files++;
 }
 
-/* A name is about to change: what it is of gets another one, until that is stored. */
+/* A name is about to change: what it is of gets another one, until that is stored. A device keeps its name whatever is done: what is lost
+ * with the power is of disks, and links in /dev are for nobody to make. */
 static void touch(const char *path)
 {
     char beside[PATH_MAX];
@@ -96,6 +97,10 @@ static void touch(const char *path)
     touched t = {.name = strdup(path), .device = s.st_dev, .folder = s.st_ino};
     snprintf(beside, sizeof beside, "%.*s.power-%lld-%lld", length, path, (long long)getpid(), backups++);
     if (!lstat(path, &s)) {
+        if (!S_ISREG(s.st_mode) && !S_ISLNK(s.st_mode)) {
+            free(t.name);
+            return;
+        }
         if (really_link(path, beside))
             abort();
         t.was = strdup(beside);

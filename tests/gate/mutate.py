@@ -64,7 +64,9 @@ def put(source, target):
 
 
 def files_of(folder):
-    return {os.path.relpath(os.path.join(top, name), folder) for top, _, names in os.walk(folder) for name in names}
+    """The paths of files, and of links whatever they lead to: nothing is to be written through one that a broken program made."""
+    return {os.path.relpath(os.path.join(top, name), folder) for top, folders, names in os.walk(folder)
+            for name in names + [name for name in folders if os.path.islink(os.path.join(top, name))]}
 
 
 def restore(base, slot):
