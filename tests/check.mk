@@ -11,7 +11,7 @@
 #   make check-all  that, with all tests sanitized and 10 s of each fuzz target, and tsan, valgrind and the slow tests: half an hour
 #   make soak       300 s of each fuzz target, tests that take many minutes with SINEW_LONG, tests/long/run1e6: hours
 # What a test lacks (a program, data, a card) it names, and is skipped. .ci/setup check installs what is small, so that a visitor's results are
-# compared with CalculiX, pydicom and DCMTK; VTK, Gmsh, gnuplot, clang, cppcheck, valgrind and chromium come with .ci/setup check-all.
+# compared with CalculiX, pydicom and DCMTK; VTK, Gmsh, gnuplot, ffmpeg, clang, cppcheck, valgrind and chromium come with .ci/setup check-all.
 
 CLANG ?= clang
 CLANG_TIDY ?= clang-tidy
@@ -287,7 +287,9 @@ BINDIR = $(DESTDIR)$(PREFIX)/bin
 MANDIR = $(DESTDIR)$(PREFIX)/share/man
 SAMPLEDIR = $(DESTDIR)$(PREFIX)/share/doc/sinew/samples
 COMPLETIONDIR = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
-ZSHDIR = $(DESTDIR)$(PREFIX)/share/zsh/site-functions
+# Debian's packages have another folder for these, and its zsh does not read this one below /usr.
+ZSH_COMPLETIONS = $(PREFIX)/share/zsh/site-functions
+ZSHDIR = $(DESTDIR)$(ZSH_COMPLETIONS)
 # `bind` has none in bash: bash-completion has a file of that name, for the shell's builtin.
 COMPLETIONS = $(filter-out bind,$(TOOLS))
 PAGES = $(wildcard man/*.[157])

@@ -110,7 +110,7 @@ done
 if have bash; then
     while IFS='|' read -r words want; do
         # shellcheck disable=SC2016 # for the inner shell
-        is "$(cd "$T/here" && timeout 10 bash -c '. "$1/tled-run"; compopt() { :; }; COMP_WORDS=($2) COMP_CWORD=2; COMP_WORDS[2]=; _sinew_complete_tled_run
+        is "$(cd "$T/here" && timeout 180 bash -c '. "$1/tled-run"; compopt() { :; }; COMP_WORDS=($2) COMP_CWORD=2; COMP_WORDS[2]=; _sinew_complete_tled_run
             echo "${COMPREPLY[*]}"' - "$T/bash" "$words" 2>&1)" "$want" "bash: $words"
     done <<'END'
 tled-run -c X < small|muscle_a=

@@ -18,7 +18,14 @@ is "$(grep -rnE '\b0\.[0-9]+\.[0-9]+\b' Makefile debian/rules debian/control deb
 
 # ---- what is in it
 root=$T/root
-check "make install" env -u MAKEFLAGS -u MAKELEVEL make -s BIN="$SINEW_BIN" DESTDIR="$root" PREFIX=/usr install
+zsh=$(sed -n 's/^SETTINGS = .* ZSH_COMPLETIONS=\([^ ]*\) .*/\1/p' debian/rules)
+check "make install" env -u MAKEFLAGS -u MAKELEVEL make -s BIN="$SINEW_BIN" DESTDIR="$root" PREFIX=/usr ZSH_COMPLETIONS="$zsh" install
+if have zsh && [ -e /etc/debian_version ]; then
+    check "$zsh is where Debian's zsh looks for completions of packages" sh -c "zsh -f -c 'print -l \$fpath' | grep -qx '$zsh'"
+else
+    skip 1 "no zsh of Debian's"
+fi
+check "and they are there" test -s "$root$zsh/_tled-run"
 check "the package is what make install installs" grep -q "dh_auto_install -- " debian/rules
 check "under /usr" grep -q "^SETTINGS = .*PREFIX=/usr " debian/rules
 is "$(find debian -name '*.install' -o -name '*.manpages')" "" "no list beside that has to be kept"
