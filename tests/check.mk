@@ -277,6 +277,7 @@ lint-shape: all
 # ---- the manual pages as HTML
 .PHONY: html
 html:
+	.ci/setup html
 	@man/html out/man
 	@echo out/man/index.html
 
@@ -322,7 +323,7 @@ help:
 	'make arm          an arm under a probe, by springs and by finite elements, into out/arm' \
 	'make scan         from an ultrasound volume to images of it under a probe, into out/scan' \
 	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
-	'make picture      the pictures in README.md' \
+	'make picture      the pictures in README.md, anew: replaces samples/*.png' \
 	'' \
 	'make check        set-up, the build, all tests, and small lints: run it before each commit; 4 minutes on two processors' \
 	'make check-all    that, and clang, sanitizers, fuzzers, clang-tidy, cppcheck, valgrind, a browser, slow tests; half an hour' \

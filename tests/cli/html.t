@@ -25,4 +25,10 @@ is "$(grep -L 'href="index.html"' -- *.[157].html)" "" "each leads back to the i
 is "$(for page in *.[157].html; do grep -q "href=\"$page\"" index.html || echo "$page"; done)" "" "which leads to each"
 check "light and dark" grep -q 'prefers-color-scheme: dark' man.css
 is "$(grep -c 'url(\|@import' man.css)" 0 "the style needs no other file"
+
+mkdir "$T/bin"
+printf '#!/bin/sh\nexit 1\n' >"$T/bin/mandoc"
+chmod +x "$T/bin/mandoc"
+check "where mandoc fails, so does man/html" sh -c '! PATH="$1:$PATH" "$2/man/html" "$3"' - "$T/bin" "$ROOT" "$T/failed"
+is "$(find "$T/failed" -name '*.part')" "" "nothing unfinished is left"
 done_testing
