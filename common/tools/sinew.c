@@ -52,7 +52,8 @@ static void put_list(out *o)
             if (tools[i].group == g)
                 out_format(o, "  %-13s  %s\n", tools[i].name, tools[i].purpose);
     }
-    out_text(o, "\nCommon:\n  -h, --help     print this help\n  -V, --version  print the version\n"
+    out_text(o, "\nCommon:\n  -h, --help     print this help; 'sinew help TOOL' prints that of a tool\n"
+                "  -V, --version  print the version\n"
                 "\nExample:\n  sinew info --get muscle.name face.sinew\n\nManual: man sinew, man 7 sinew\n");
 }
 
@@ -64,7 +65,7 @@ static void put_version(out *o)
 /* What the option tables of the other tools say of them: the manual's synopsis, completion. */
 static void put_mdoc(out *o)
 {
-    out_text(o, ".Nm sinew\n.Ar TOOL\n.Op Ar ARGUMENTS\n.Nm sinew\n.Fl h | V\n");
+    out_text(o, ".Nm sinew\n.Ar TOOL\n.Op Ar ARGUMENTS\n.Nm sinew\n.Cm help\n.Op Ar TOOL\n.Nm sinew\n.Fl h | V\n");
 }
 
 /* A tool's name as a pattern of a shell's `case`: its American spelling is taken, too. */
@@ -81,11 +82,11 @@ static void put_bash(out *o)
 {
     out_text(o, "_sinew_complete_sinew() {\n"
                 "    local word=${COMP_WORDS[COMP_CWORD]} sinew=${COMP_WORDS[0]} tool=${COMP_WORDS[1]} name\n"
-                "    if [[ $COMP_CWORD -eq 1 ]]; then\n"
+                "    if [[ $COMP_CWORD -eq 1 || $COMP_CWORD -eq 2 && $tool == help ]]; then\n"
                 "        COMPREPLY=($(compgen -W '");
     for (int i = 0; i < TOOLS; i++)
         out_format(o, "%s ", tools[i].name);
-    out_text(o, "--help --version' -- \"$word\"))\n"
+    out_text(o, "help --help --version' -- \"$word\"))\n"
                 "        return\n"
                 "    fi\n"
                 "    case $tool in\n");
@@ -111,8 +112,8 @@ static void put_zsh(out *o)
     out_text(o, "#compdef sinew\nlocal -a tools\ntools=(");
     for (int i = 0; i < TOOLS; i++)
         out_format(o, "\n    \"%s:%s\"", tools[i].name, tools[i].purpose);
-    out_text(o, "\n    --help --version)\n"
-                "if (( CURRENT == 2 )); then\n"
+    out_text(o, "\n    'help:the options of a tool' --help --version)\n"
+                "if (( CURRENT == 2 )) || [[ CURRENT -eq 3 && $words[2] == help ]]; then\n"
                 "    _describe -t commands tool tools\n"
                 "    return\n"
                 "fi\n"
@@ -179,8 +180,7 @@ static int run(const char *file, char **argv)
     return STATUS_BAD;
 }
 
-/* The tool of that name, or -1. */
-static int find(const char *name)
+static int find_exactly(const char *name)
 {
     for (int i = 0; i < TOOLS; i++)
         if (!strcmp(name, tools[i].name) || !strcmp(name, tools[i].file))
@@ -188,21 +188,45 @@ static int find(const char *name)
     return -1;
 }
 
-int main(int argc, char **argv)
+/* The tool of that name, in either spelling, or -1. */
+static int find(const char *name)
 {
     char british[32];
+    int found = find_exactly(name);
+    if (found < 0 && spelling_british(name, strlen(name), british, sizeof british))
+        found = find_exactly(british);
+    return found;
+}
+
+/* sinew help [TOOL]: the list of tools, or the tool's own help. */
+static int help(int argc, char **argv)
+{
+    if (argc > 3) {
+        fprintf(stderr, "sinew: help %s: extra operand '%s'; expected one tool\n", argv[2], argv[3]);
+        return STATUS_USAGE;
+    }
+    if (argc == 2)
+        return answer(put_list);
+    int found = find(argv[2]);
+    char option[] = "--help";
+    char *asked[] = {argv[2], option, NULL};
+    return found < 0 ? unknown(argv[2]) : run(tools[found].file, asked);
+}
+
+int main(int argc, char **argv)
+{
     if (argc < 2) {
         fputs("sinew: missing tool; try sinew --help\nusage: sinew TOOL [ARGUMENTS]\n", stderr);
         return STATUS_USAGE;
     }
     if (!strcmp(argv[1], "-h") || !strcmp(argv[1], "--help"))
         return answer(put_list);
+    if (!strcmp(argv[1], "help"))
+        return help(argc, argv);
     if (!strcmp(argv[1], "-V") || !strcmp(argv[1], "--version"))
         return answer(put_version);
     if (!strcmp(argv[1], "--table") && argc == 3)
         return table(argv[2]);
     int found = find(argv[1]);
-    if (found < 0 && spelling_british(argv[1], strlen(argv[1]), british, sizeof british))
-        found = find(british);
     return found < 0 ? unknown(argv[1]) : run(tools[found].file, argv + 1);
 }

@@ -42,7 +42,8 @@ msds-mesh --like |a.nrrd b.mhd sub
 us-slice |a.nrrd b.mhd sub
 attach --fibre |axis centre field
 sinew de|deform
-sinew |--help --version attach bind deform diff export import info msds-mesh msds-run render tled-run us-import us-segment us-slice us-surface voxelise
+sinew |--help --version attach bind deform diff export help import info msds-mesh msds-run render tled-run us-import us-segment us-slice us-surface voxelise
+sinew help def|deform
 sinew bind --u|--unit
 sinew bind f|face.obj
 sinew info --t|--tsv

@@ -22,7 +22,7 @@ for tool in $tools; do
     is "$(awk 'length > 80' "$T/help")" "" "$tool: its help has 80 columns"
     is "$(awk '/^(Input|What happens|Numerics|Output|Common):$/ { printf "%s", $0 }' "$T/help" |
         grep -cE '^(Input:)?(What happens:)?(Numerics:)?(Output:)?Common:$')" 1 "$tool: its groups are in their order"
-    is "$(sed -n '1s/:.*//p' "$T/help") $(grep -A 1 '^Example:$' "$T/help" | tail -n 1 | grep -cE "^  .*${tool#sinew-}") $(tail -n 1 "$T/help")" \
+    is "$(sed -n '1s/:.*//p' "$T/help") $(sed -n '/^Example:$/,/^$/p' "$T/help" | grep -cE "^  .*${tool#sinew-}( |$)") $(tail -n 1 "$T/help")" \
         "usage 1 Manual: man $tool, man 7 sinew" "$tool: from how it is called to an example and the manual"
     # Units and defaults: [UNIT], [default X] or [UNIT; default X], at the end of what is said of an option.
     is "$(awk 'function said() {
@@ -56,6 +56,12 @@ rm "$root/usr/bin/sinew-info"
 fails 1 "a tool that is not there" "cannot run .*usr/bin/sinew-info: No such file" "$root/usr/bin/sinew" info --version
 fails 2 "a tool that is none" "no tool 'inof'; did you mean 'info'\?" sinew inof
 fails 2 "no tool" "^usage: sinew TOOL" sinew
+is "$(sinew help)" "$(sinew --help)" "help: the list of tools"
+for tool in info tled-run voxelize sinew-diff; do
+    is "$(sinew help $tool)" "$(sinew $tool --help)" "help $tool: the tool's help"
+done
+fails 2 "help on a tool that is none" "no tool 'inof'; did you mean 'info'\?" sinew help inof
+fails 2 "help on two" "help info: extra operand 'diff'; expected one tool" sinew help info diff
 
 # The American spelling of a name is a link.
 is "$(readlink "$root/usr/bin/voxelize") $(readlink "$root/usr/share/man/man1/voxelize.1") $("$root/usr/bin/voxelize" -V | sed 's/ (.*//')" \
