@@ -41,7 +41,8 @@ static const opt_tool table = {
     .name = "attach",
     .usage = "[options] < model > result",
     .purpose = "Fixes the nodes at rigid surfaces, and gives muscles contraction centres and\nfibre directions.",
-    .example = "voxelise --unit mm -s 2.5 face.obj | attach --fibre field > face.sinew",
+    .example = "voxelise --unit mm -s 2.5 --fraction 4 --materials head.materials head.obj |\n"
+               "      attach --fibre field > head.sinew",
     .operands = "",
     .writes_model = true,
     .threaded = true,

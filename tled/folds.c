@@ -63,12 +63,17 @@ void folds_text(const folds *f, bool ended, char text[FOLDS_TEXT])
 
 static const double usual_kappa = .0075; /* of --hourglass, where it is not given */
 
-/* What was seen to help, on faces: smaller voxels do not, where a muscle's end pulls at a few elements; a larger
- * --hourglass does, but not where it holds too much already. */
-static const char *remedy(const strained *s)
+enum { REMEDY_TEXT = 160 };
+
+/* What was seen to help, on faces: shares of voxels and a stiffer muscle; smaller voxels do not, where a muscle's end
+ * pulls at a few elements; a larger --hourglass does, but not where it holds too much already. */
+static const char *remedy(const folds *f, const strained *s, char text[REMEDY_TEXT])
 {
-    return share(s) > QUALITY_HOURGLASS ? "expected less load or contraction there"
-                                        : "expected less load or contraction there, or a larger --hourglass";
+    const bool whole = !f->p->conforming && !model_find(f->m, "element.fraction");
+    const bool bends = share(s) > QUALITY_HOURGLASS;
+    snprintf(text, REMEDY_TEXT, "expected %sa stiffer material, %sless load or contraction there%s",
+             whole ? "voxelise --fraction 4, " : "", bends ? "or " : "", bends ? "" : ", or a larger --hourglass");
+    return text;
 }
 
 /* When the last frame is. */
@@ -82,7 +87,8 @@ static void say_when(const folds *f, bool ended, char text[60])
 
 static void warn_of_folds(const folds *f, bool ended, notes *warnings)
 {
-    char where[ELEMENT_PLACE], when[60], others[100] = "", j[40] = "inside out at a corner at rest already";
+    char where[ELEMENT_PLACE], when[60], others[100] = "", help[REMEDY_TEXT],
+                                         j[40] = "inside out at a corner at rest already";
     const quality *q = &f->last.quality;
     element_place_text(f->m, q->element, where);
     say_when(f, ended, when);
@@ -95,13 +101,13 @@ static void warn_of_folds(const folds *f, bool ended, notes *warnings)
               "%lld of %lld elements %s folded %s%s (J <= 0 in the middle or at a corner); the worst is %s, "
               "%s: the result is wrong there; %s",
               (long long)q->folded, (long long)f->p->elements, q->folded == 1 ? "is" : "are", when, others, where, j,
-              isnan(q->worst) ? "expected a mesh without such elements" : remedy(&f->last));
+              isnan(q->worst) ? "expected a mesh without such elements" : remedy(f, &f->last, help));
 }
 
 /* In frames before the last, which has none. */
 static void warn_of_frames(const folds *f, notes *warnings)
 {
-    char where[ELEMENT_PLACE];
+    char where[ELEMENT_PLACE], help[REMEDY_TEXT];
     const quality *q = &f->worst.quality;
     element_place_text(f->m, q->element, where);
     notes_add(
@@ -109,7 +115,7 @@ static void warn_of_frames(const folds *f, notes *warnings)
         "elements are folded during the run (J <= 0 in the middle or at a corner), in %lld of %lld frames, worst at "
         "%.6g s, %lld of %lld; the worst is %s, J %.3g: the result is wrong there; %s",
         (long long)f->folded, (long long)f->frames, f->worst_time, (long long)q->folded, (long long)f->p->elements,
-        where, q->worst, remedy(&f->worst));
+        where, q->worst, remedy(f, &f->worst, help));
 }
 
 /* A smaller --hourglass would fold more. */

@@ -61,7 +61,7 @@ const opt_tool options_table = {
         "Simulates a soft-tissue model by total Lagrangian explicit dynamics, and adds\nframes of results to it.",
     .note = "Without -t, -n and --rest, the run ends when the tissue is at rest.\nLengths are in m, unless they have a "
             "suffix (um, mm, cm, m, in), e.g. 5cm.",
-    .example = "tled-run -c zyg_left=0.4 -t 0.5 < face.sinew > smile.sinew",
+    .example = "tled-run -c zyg_left=0.4,zyg_right=0.4 -t 0.2 < head.sinew > smile.sinew",
     .operands = "",
     .writes_model = true,
     .threaded = true,

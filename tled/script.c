@@ -292,7 +292,7 @@ static int add_level(script *s, const model *m, char *item, double ramp, err *e)
     double value[3] = {0};
     char *equals = strrchr(item, '=');
     if (!equals || equals == item)
-        return err_option(e, "-c", "'%.200s'; expected MUSCLE=LEVEL, such as zyg=0.4", item);
+        return err_option(e, "-c", "'%.200s'; expected MUSCLE=LEVEL, such as zyg_left=0.4", item);
     *equals = '\0';
     if (script_level(equals + 1, &value[0]))
         return err_option(e, "-c", "level '%.200s' of %.200s; expected a number from 0 to 1", equals + 1, item);

@@ -57,7 +57,8 @@ static const opt_tool table = {
     .usage = "[options] surface.obj > model\n[options] - < surface.obj > model",
     .purpose = "Converts closed surfaces to a finite element model of voxels (hexahedra).",
     .note = "Lengths are in --unit, unless they have a suffix (um, mm, cm, m, in), as 2.5mm.",
-    .example = "voxelise --unit mm -s 2.5 face.obj | attach | sinew bind > face.sinew",
+    .example = "voxelise --unit mm -s 2.5 --fraction 4 --materials head.materials head.obj |\n"
+               "      attach --fibre field | sinew bind > head.sinew",
     .operands = "surface.obj|-",
     .operands_min = 1,
     .operands_max = 1,

@@ -25,7 +25,7 @@ done
 
 # coarser FILE: so that a test does not take long. The head is made once.
 coarser() {
-    sed -E 's/-s (2\.5|5) /-s 10 /; s/-s 2,2,0\.5 /-s 6,6,1.5 /; s/-s 1\.5 /-s 3,3,1.5 /; s/-n 128 /-n 24 /; s/-t (0\.5|1|2)( |$)/-t 0.03\2/; s/--every 0\.0[0-9]/--every 0.01/
+    sed -E 's/-s (2\.5|5) /-s 10 /; s/-s 2,2,0\.5 /-s 6,6,1.5 /; s/-s 1\.5 /-s 3,3,1.5 /; s/-n 128 /-n 24 /; s/-t (0\.2|0\.5|1|2)( |$)/-t 0.03\2/; s/--every 0\.0[0-9]/--every 0.01/
         s/--nodes 32x16x16/--nodes 9x5x7/; s/--nodes 32x10x24/--nodes 9x5x7/; s/i <= 30/i <= 3/; s/-gt 20000/-gt 500/; s/^awk .*head\.awk > face\.obj$/test -s face.obj/
         s/awk -f (samples\/ball)/awk -v n=4 -f \1/; s/gmsh -3/gmsh -v 1 -3/
         s/^vi /sed -n 1p /; s/^less /sed -n 1p /; s/(sinew render .*)--(up|view)/\1--size 300x200 --\2/; s/ffmpeg -f/ffmpeg -v error -y -f/' "$1"

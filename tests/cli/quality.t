@@ -127,7 +127,7 @@ is "$(sed -n "s/.*folded at the end (J <= 0 in the middle or at a corner); the w
 place=$(sed -n "s/.*the worst is element [0-9]* (volume 'muscle_all') at \([^ ]*\), J.*/\1/p" "$T/folded")
 is "$(sinew info --get "element.node.at.$place" "$T/out")" "$(sinew info --get "element.node.row.$(get element "$T/out")" "$T/out")" \
     "a place that keys of sinew info take: $place"
-check "with what helps" grep -q 'warning: .*expected less load or contraction there, or a larger --hourglass$' "$T/folded"
+check "with what helps" grep -q 'warning: .*expected voxelise --fraction 4, a stiffer material, less load or contraction there, or a larger --hourglass$' "$T/folded"
 check "with -q" sh -c "tled-run -q -d cpu -c all=1 -t .1 -o '$T/out' <'$T/muscle'"
 is "$(grep -c . "$T/stderr") $(grep -c 'folded at the end' "$T/stderr")" "1 1" "the warning stays, the line does not"
 check "with a larger --hourglass" tled-run -d cpu --hourglass .1 -c all=1 -t .1 -o "$T/out" <"$T/muscle"
@@ -158,11 +158,11 @@ tled-run -q -d cpu --hourglass .1 -g 0,0,-9.81 -t .1 -o "$T/out" <"$T/thin" 2>"$
 is "$(grep -c 'expected smaller voxels, or a smaller --hourglass$' "$T/said")" 1 "where --hourglass is large, that is told too"
 printf '0 force 0.03,0.01,0.005 1mm 0,0,0\n.05 force 0.03,0.01,0.005 1mm 0,0,-.02\n' >"$T/script"
 check "one corner of it pushed" tled-run -q -d cpu --script "$T/script" -t .1 -o "$T/out" <"$T/thin"
-is "$(grep -c 'hourglass energy is [0-9]* %' "$T/stderr")$(grep -c 'folded at the end.*expected less load or contraction there$' "$T/stderr")" 11 \
+is "$(grep -c 'hourglass energy is [0-9]* %' "$T/stderr")$(grep -c 'folded at the end.*expected voxelise --fraction 4, a stiffer material, or less load or contraction there$' "$T/stderr")" 11 \
     "where it folds elements at a share past 10 %, no larger --hourglass is advised"
 printf '.06 force 0.03,0.01,0.005 1mm 0,0,0\n' >>"$T/script"
 tled-run -q -d cpu --script "$T/script" -t .2 --every .05 -o "$T/out" <"$T/thin" 2>"$T/said"
-is "$(grep -c 'folded during the run.*expected less load or contraction there$' "$T/said")" 1 "nor of frames on the way"
+is "$(grep -c 'folded during the run.*expected voxelise --fraction 4, a stiffer material, or less load or contraction there$' "$T/said")" 1 "nor of frames on the way"
 sed -i 's/-.02$/-.08/' "$T/script"
 tled-run -q -d cpu --hourglass .02 --script "$T/script" -t .05 -o "$T/out" <"$T/thin" 2>"$T/said"
 is "$(grep -c 'folded at the end' "$T/said")$(grep -c 'expected smaller voxels$' "$T/said")" 11 "nor a smaller one, which would fold more"
