@@ -256,12 +256,10 @@ static bool has_bar(const work *w, int i)
     return has_field(w, i) && !w->field.name;
 }
 
-/* The size of letters, pixels: readable, but no wider than a panel has room for. */
-static int letters(const picture_spec *s)
+/* The size of letters, pixels: readable, but no wider than a panel of this width has room for. */
+static int letters(const picture_spec *s, int panel_width)
 {
-    sheet bare;
-    sheet_make(&bare, s->width, s->height, s->panels, 0, 0);
-    int size = (int)fmin(fmin(s->width, s->height) / 36., sheet_panel(&bare, 0).width / 22.);
+    int size = (int)fmin(fmin(s->width, s->height) / 36., panel_width / 22.);
     return size < 11 ? 11 : size > 40 ? 40 : size;
 }
 
@@ -297,19 +295,36 @@ static int bar_height(const work *w, bool there)
     return there ? legend_bar_height(w->letters) : 0;
 }
 
-/* The room that the tallest legend takes. Columns depend on it and it on their width: the first guess has none. */
+/* The height of the tallest legend that stands in a panel. */
+static int legend_room(const work *w)
+{
+    int tallest = 0;
+    for (int i = 0; i < w->p->spec->panels; i++) {
+        int width = sheet_panel(&w->sheet, i).width;
+        int room = bar_height(w, has_bar(w, i) && !w->one_bar) + (w->one_key ? 0 : keys_height(w, i, width));
+        tallest = room > tallest ? room : tallest;
+    }
+    return tallest;
+}
+
+/* The number of columns depends on the room for legends, and that room on the width of a column and the size of letters.
+ * So this begins with large letters and no room, and lets letters shrink and room grow until all fits. */
 static int lay_out(work *w, err *e)
 {
     const picture_spec *s = w->p->spec;
-    int head = s->captions ? 2 * w->letters : 0, foot = 0;
-    int height = s->height - bar_height(w, w->one_bar) - (w->one_key ? keys_height(w, 0, s->width) : 0);
-    sheet_make(&w->sheet, s->width, height, s->panels, head, 0);
-    for (int i = 0; i < s->panels; i++) {
-        int width = sheet_panel(&w->sheet, i).width;
-        int room = bar_height(w, has_bar(w, i) && !w->one_bar) + (w->one_key ? 0 : keys_height(w, i, width));
-        foot = room > foot ? room : foot;
+    int foot = 0;
+    w->letters = letters(s, s->width);
+    for (bool fits = false; !fits;) {
+        if (w->p->font && font_set(w->p->font, w->letters, e))
+            return -1;
+        int head = s->captions ? 2 * w->letters : 0;
+        int height = s->height - bar_height(w, w->one_bar) - (w->one_key ? keys_height(w, 0, s->width) : 0);
+        sheet_make(&w->sheet, s->width, height, s->panels, head, foot);
+        int size = letters(s, sheet_panel(&w->sheet, 0).width), room = legend_room(w);
+        fits = size >= w->letters && room <= foot;
+        foot = size < w->letters ? 0 : room > foot ? room : foot;
+        w->letters = size < w->letters ? size : w->letters;
     }
-    sheet_make(&w->sheet, s->width, height, s->panels, head, foot);
     sheet_cell c = sheet_picture(&w->sheet, 0);
     if (c.width < 16 || c.height < 16)
         return err_set(e, NULL, 0, "--size %dx%d leaves %d x %d pixels for each picture; expected a larger one",
@@ -418,9 +433,6 @@ static int draw(work *w, err *e)
 {
     picture *p = w->p;
     const picture_spec *s = p->spec;
-    w->letters = letters(s);
-    if (p->font && font_set(p->font, w->letters, e))
-        return -1;
     if (s->field && field_of(&w->field, w->m, w->f, s->field, e))
         return -1;
     w->coloured = s->field != NULL;

@@ -89,6 +89,10 @@ yellow() {
 is "$(yellow --view front --sheet front,deformed)" "0 1" "the panel of a view keeps the surfaces' colours"
 is "$(yellow --view front --colour displacement --sheet front,deformed)" "1 1" "but with --colour"
 
+# Panels that stand side by side only because of their legends: the legends end above the lower edge.
+is "$(sinew render --view front --sheet rest,voxels,front,deformed --size 1280x720 --format ppm "$muscle" |
+    tail -c 3840 | od -An -v -tu1 -w1 | sort -u | tr -d ' ')" 255 "a sheet has room for its legends"
+
 # Films.
 frames=$(sinew info --get frames "$muscle")
 check "a run of several frames: $frames" test "$frames" -ge 3
