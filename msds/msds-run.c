@@ -22,6 +22,12 @@ enum { SUBSTEPS_MOST = 1000 };
 
 enum { MASS_STABLE, MASS_LUMPED };
 
+/* The largest value of all poses: of a displacement (m) or of the force on the probe (N). */
+typedef struct peak {
+    double value, time;
+    int64_t contacts;
+} peak;
+
 typedef struct session {
     const tool *t;
     const struct options *o;
@@ -49,8 +55,9 @@ typedef struct session {
     msds_watch watch;
     int64_t posed; /* poses taken */
     double time;   /* s: of the last */
-    bool pressed;  /* some node, in some frame */
-    bool dented;   /* the skin */
+    peak moved, pushed;
+    bool pressed; /* some node, in some frame */
+    bool dented;  /* the skin */
     notes warnings;
 } session;
 
@@ -280,15 +287,28 @@ static void say_frame(const session *s, double time)
     say_row(s, row);
 }
 
-/* The last frame. */
+/* The largest values so far: the last pose may have left the tissue. */
+static void find_peaks(session *s)
+{
+    const double force = size_of(s->sight.force);
+    if (s->posed == 1 || s->sight.largest > s->moved.value)
+        s->moved = (peak){s->sight.largest, s->time, 0};
+    if (force > s->pushed.value)
+        s->pushed = (peak){force, s->time, s->sight.contacts};
+}
+
+/* Of all poses. */
 static void say_end(const session *s)
 {
-    char force[100] = "";
-    if (s->o->probe)
-        snprintf(force, sizeof force, ", %.4g N on the probe, from %lld node%s", size_of(s->sight.force),
-                 (long long)s->sight.contacts, s->sight.contacts == 1 ? "" : "s");
-    tool_say(s->t, "at %.6g s, after %lld pose%s: largest displacement %.6g mm%s", s->time, (long long)s->posed,
-             s->posed == 1 ? "" : "s", 1e3 * s->sight.largest, force);
+    char force[200] = "";
+    const peak *u = &s->moved, *f = &s->pushed;
+    if (f->value > 0)
+        snprintf(force, sizeof force, "; largest force on the probe %.4g N, from %lld node%s, at %.6g s", f->value,
+                 (long long)f->contacts, f->contacts == 1 ? "" : "s", f->time);
+    else if (s->o->probe)
+        snprintf(force, sizeof force, "; no force on the probe");
+    tool_say(s->t, "%lld pose%s, to %.6g s: largest displacement %.6g mm, at %.6g s%s", (long long)s->posed,
+             s->posed == 1 ? "" : "s", s->time, 1e3 * u->value, u->time, force);
 }
 
 /* What the first pose shows of the probe, and where it enters tissue at once. */
@@ -395,6 +415,7 @@ static int simulate(session *s, err *e)
         if (solve_frame(s, &at, e))
             return -1;
         say_frame(s, at.time);
+        find_peaks(s);
         s->pressed = s->pressed || s->sight.met;
     }
     if (!got && !s->posed)

@@ -49,6 +49,13 @@ awk 'BEGIN { for (i = 0; i < 12; i++) printf "%g .04 .04 %.4f 1 0 0 0\n", i / 60
 for warp in '' --warp; do
     # shellcheck disable=SC2086
     check "a probe that leaves exact frames $warp" msds-run --method fem --exact $warp --probe sphere:2cm --poses "$T/leave.tum" -o "$T/leave.sinew" <"$T/block.sinew"
+    cp "$T/stderr" "$T/leave.said"
+    sinew info --tsv node.displacement.max --tsv probe.force "$T/leave.sinew" | awk -F '\t' '
+        function size() { return sqrt($4 ^ 2 + $5 ^ 2 + $6 ^ 2) }
+        NR > 1 && $3 > u { u = $3; at = $2 }
+        NR > 1 && size() > f { f = size(); when = $2 }
+        END { printf "12 poses, to %.6g s: largest displacement %.6g mm, at %.6g s; largest force on the probe %.4g N, at %.6g s\n", $2, 1e3 * u, at, f, when }' >"$T/want"
+    is "$(sed -n '/poses, to/{s/^msds-run: //;s/ from [0-9]* nodes*,//;p;}' "$T/leave.said")" "$(cat "$T/want")" "the largest of all poses, when"
     check "lets go of the tissue" awk -v u="$(sinew info --get node.displacement.max "$T/leave.sinew")" 'BEGIN { exit !(u < 1e-8) }'
 done
 awk 'BEGIN { for (i = 0; i < 60; i++) printf "%g .04 .04 %.4f 1 0 0 0\n", i / 60, i < 4 ? .06 - .001 * i : .08 }' >"$T/leave.tum"
@@ -71,7 +78,7 @@ check "in two parts: the same" sinew diff --rel 1e-4 --abs 1e-8 --only node.disp
 
 check "compares" msds-run --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
 is "$(awk '/time\/s/ { on = NF; next } on && NF == on { rows++ } END { print on, rows + 0 }' "$T/stderr")" "10 10" "a difference a frame"
-is "$(grep -Ec '^msds-run: at [0-9.]+ s, after 10 poses: largest displacement [0-9.]+ mm, [0-9.]+ N on the probe, from [0-9]+ nodes$' "$T/stderr")" 1 "and the end"
+is "$(grep -Ec '^msds-run: 10 poses, to [0-9.]+ s: largest displacement [0-9.]+ mm, at [0-9.]+ s; largest force on the probe [0-9.]+ N, from [0-9]+ nodes, at [0-9.]+ s$' "$T/stderr")" 1 "and the end"
 
 # The root mean square of their difference, by hand from both.
 for method in msds 'fem --exact'; do
