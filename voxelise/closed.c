@@ -321,6 +321,16 @@ static void cancel(const edges *t)
     }
 }
 
+/* The ends of an edge: what it is kept by. */
+static void edge_ends(const table *t, const uint64_t *entry, int32_t end[2])
+{
+    int64_t v = 0;
+    while (t->start[v + 1] <= entry - t->entry)
+        v++;
+    end[0] = (int32_t)(t->low + v);
+    end[1] = (int32_t)(*entry >> 32);
+}
+
 /* Each open edge is told of the first surface that has it: entries are in order of their polygons. */
 static void tell_open(void *context, const uint64_t *entry, int64_t count)
 {
@@ -329,7 +339,8 @@ static void tell_open(void *context, const uint64_t *entry, int64_t count)
     bool even = count % 2 == 0;
     if (!t->part ? even : cancels(part_of(t, first)) ? even : !is_open(t, entry, count))
         return;
-    t->r->open++;
+    if (!t->r->open++)
+        edge_ends(&t->by_vertex, entry, t->r->first);
     t->r->open_of[t->p->surface[first]]++;
 }
 

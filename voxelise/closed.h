@@ -20,6 +20,7 @@ typedef struct closed_polygons {
 typedef struct closed_result {
     bool *drop;        /* polygons: to be left out; owned */
     int64_t *open_of;  /* surfaces: open edges of each; owned */
+    int32_t first[2];  /* of an open surface: the first open edge, from one of the welded vertices to the other */
     int64_t open;      /* edges used an odd number of times, by polygons not dropped */
     int64_t once;      /* polygons that were given before, and dropped */
     int64_t cancelled; /* polygons that were given before, and cancel in pairs: they bound nothing */

@@ -68,7 +68,8 @@ void report_surface(out *o, const volumes *plan, int32_t surface, const check_re
     say_numbers(o, r, unit);
 }
 
-void report_volume(out *o, const volumes_volume *v, const check_result *r, int64_t open, const char *unit)
+void report_volume(out *o, const volumes_volume *v, const check_result *r, int64_t open, const double at[3],
+                   const char *unit)
 {
     out_format(o, "volume %s\n", v->name);
     line(o, "surfaces");
@@ -77,7 +78,8 @@ void report_volume(out *o, const volumes_volume *v, const check_result *r, int64
     out_format(o, "%d, %d\n", v->level, v->priority);
     line(o, "closed");
     if (open)
-        out_format(o, "no: %lld open edges\n", (long long)open);
+        out_format(o, "no: %lld open edges, the first at %.6g%s,%.6g%s,%.6g%s\n", (long long)open, at[0], unit, at[1],
+                   unit, at[2], unit);
     else
         out_text(o, "yes\n");
     if (r)

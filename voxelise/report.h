@@ -15,8 +15,10 @@
 /* unit: the name of the OBJ's. */
 void report_surface(out *o, const volumes *plan, int32_t surface, const check_result *r, const char *unit);
 
-/* A volume: open is the count of its open edges. r (NULL: not asked): of all its surfaces together. */
-void report_volume(out *o, const volumes_volume *v, const check_result *r, int64_t open, const char *unit);
+/* A volume: open is the count of its open edges, the first of them at a place. r (NULL: not asked): of all its
+ * surfaces together. */
+void report_volume(out *o, const volumes_volume *v, const check_result *r, int64_t open, const double at[3],
+                   const char *unit);
 
 /* Tables of what is wrong, a row for each: empty ones, which the caller frees, and their rows. sized: with the share
  * that is thinner than a voxel. */

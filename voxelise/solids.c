@@ -14,6 +14,7 @@ typedef struct work {
     const obj *o;
     const volumes *plan;
     solids *s;
+    num_unit unit;
     weld place;       /* the vertices of s */
     int64_t *start;   /* volumes + 1: the first of a volume's polygons */
     int64_t *face;    /* polygons, volume after volume */
@@ -85,8 +86,16 @@ static void name_open(const work *w, const closed_result *r, char *text, size_t 
     }
 }
 
-static int report(const work *w, const char *volume, const closed_result *r, bool allow_open, notes *warnings, err *e)
+static void find_open(const work *w, const closed_result *r, double at[3])
 {
+    for (int a = 0; a < 3 && r->open; a++)
+        at[a] = (w->place.position[3 * r->first[0] + a] + w->place.position[3 * r->first[1] + a]) / 2;
+}
+
+static int report(const work *w, int32_t number, const closed_result *r, bool allow_open, notes *warnings, err *e)
+{
+    const char *volume = w->plan->volume[number].name, *unit = num_unit_name(w->unit);
+    const double *at = w->s->open_at[number];
     if (r->cancelled)
         notes_add(warnings,
                   "volume %s repeats polygons (%lld of them): they cancel in pairs, as where two solids touch", volume,
@@ -98,14 +107,16 @@ static int report(const work *w, const char *volume, const closed_result *r, boo
     char names[500];
     name_open(w, r, names, sizeof names);
     if (allow_open) {
-        notes_add(warnings, "volume %s is open: %lld open edges (%s); what is inside it is a guess", volume,
-                  (long long)r->open, names);
+        notes_add(
+            warnings,
+            "volume %s is open: %lld open edges (%s), the first at %.6g%s,%.6g%s,%.6g%s; what is inside it is a guess",
+            volume, (long long)r->open, names, at[0], unit, at[1], unit, at[2], unit);
         return 0;
     }
     return err_set(e, w->o->name, 0,
-                   "volume %s is open: %lld open edges (%s); expected every edge to join two polygons (--allow-open "
-                   "accepts open edges)",
-                   volume, (long long)r->open, names);
+                   "volume %s is open: %lld open edges (%s), the first at %.6g%s,%.6g%s,%.6g%s; expected every edge to "
+                   "join two polygons (--allow-open accepts open edges)",
+                   volume, (long long)r->open, names, at[0], unit, at[1], unit, at[2], unit);
 }
 
 static int add_triangle(work *w, int32_t volume, bool rigid, const int32_t *corner, const int32_t *cut, err *e)
@@ -151,7 +162,8 @@ static int build_volume(work *w, int32_t volume, bool allow_open, notes *warning
     if (closed_check(&p, &r, e))
         return -1;
     w->s->open[volume] = r.open;
-    int status = report(w, w->plan->volume[volume].name, &r, allow_open, warnings, e);
+    find_open(w, &r, w->s->open_at[volume]);
+    int status = report(w, volume, &r, allow_open, warnings, e);
     for (int64_t i = 0; !status && i < p.polygons; i++)
         if (!r.drop[i])
             status = add_polygon(w, volume, volumes_is_rigid(w->plan->surface[p.surface[i]].name), p.face[i], e);
@@ -169,13 +181,14 @@ static void take_places(work *w)
     w->place.position = NULL;
 }
 
-int solids_build(solids *s, const obj *o, const volumes *plan, bool allow_open, notes *warnings, err *e)
+int solids_build(solids *s, const obj *o, const volumes *plan, num_unit unit, bool allow_open, notes *warnings, err *e)
 {
     *s = (solids){0};
-    work w = {.o = o, .plan = plan, .s = s};
+    work w = {.o = o, .plan = plan, .s = s, .unit = unit};
     s->open = mem_array(plan->volumes, sizeof *s->open, "volumes", e);
+    s->open_at = s->open ? mem_array(plan->volumes, sizeof *s->open_at, "volumes", e) : NULL;
     int status =
-        !s->open || gather_polygons(&w, e) || weld_make(&w.place, o, w.face, w.start[plan->volumes], e) ? -1 : 0;
+        !s->open_at || gather_polygons(&w, e) || weld_make(&w.place, o, w.face, w.start[plan->volumes], e) ? -1 : 0;
     for (int32_t v = 0; !status && v < plan->volumes; v++)
         status = build_volume(&w, v, allow_open, warnings, e);
     if (!status)
@@ -193,5 +206,6 @@ void solids_free(solids *s)
     free(s->volume);
     free(s->rigid);
     free(s->open);
+    free(s->open_at);
     *s = (solids){0};
 }

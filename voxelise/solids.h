@@ -4,6 +4,7 @@
 #ifndef SINEW_SOLIDS_H
 #define SINEW_SOLIDS_H
 
+#include "base/num.h"
 #include "voxelise/volumes.h"
 
 typedef struct solids {
@@ -15,11 +16,12 @@ typedef struct solids {
     int64_t triangles;
     double low[3], high[3]; /* the box of the vertices */
     int64_t *open;          /* volumes: open edges */
+    double (*open_at)[3];   /* volumes: the middle of the first of them */
 } solids;
 
-/* -1 with e filled where a volume is open (with allow_open that is a note). Coordinates too small for exact arithmetic
- * (grid.h) are taken as 0, those too large refused. */
-int solids_build(solids *s, const obj *o, const volumes *plan, bool allow_open, notes *warnings, err *e);
+/* unit: of the source file, for messages. -1 with e filled where a volume is open (with allow_open that is a note).
+ * Coordinates too small for exact arithmetic (grid.h) are taken as 0, those too large refused. */
+int solids_build(solids *s, const obj *o, const volumes *plan, num_unit unit, bool allow_open, notes *warnings, err *e);
 
 void solids_free(solids *s);
 

@@ -436,7 +436,7 @@ static int check_volumes(const checking *c, err *e)
         if (several && look_at(c, is_of_volume, v, &r, e))
             return -1;
         report_volume_row(c->volumes, a, j->solid.open[v]);
-        report_volume(c->detail, a, several ? &r : NULL, j->solid.open[v], num_unit_name(j->unit));
+        report_volume(c->detail, a, several ? &r : NULL, j->solid.open[v], j->solid.open_at[v], num_unit_name(j->unit));
         if (several)
             report_warn(&j->warnings, "volume", a->name, &r);
     }
@@ -525,7 +525,7 @@ static int prepare(job *j, model *m, err *e)
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;
     bool allow_open = j->o->allow_open || j->o->check;
     if (!j->threads || read_materials(j, m, e) || make_plan(j, m, e) ||
-        solids_build(&j->solid, &j->surface, &j->plan, allow_open, &j->warnings, e))
+        solids_build(&j->solid, &j->surface, &j->plan, j->unit, allow_open, &j->warnings, e))
         return -1;
     say_time(j, "checking surfaces", clock);
     return 0;

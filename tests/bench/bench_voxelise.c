@@ -87,7 +87,7 @@ static int check_surfaces(subject *s, err *e)
     volumes_free(&s->plan);
     double start = bench_clock();
     int status = volumes_by_name(&s->plan, &s->surface, &s->materials, e) ||
-                         solids_build(&s->solid, &s->surface, &s->plan, false, NULL, e)
+                         solids_build(&s->solid, &s->surface, &s->plan, num_unit_of("mm"), false, NULL, e)
                      ? -1
                      : 0;
     bench_take(&s->all, "checking surfaces", (double)s->solid.triangles, "triangle", bench_clock() - start);

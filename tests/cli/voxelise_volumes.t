@@ -170,11 +170,11 @@ soup "$T/head.obj" >"$T/soup.obj"
 vox "$T/soup.obj"
 is "$(counts skin muscle_a Muscle_b)" "896 16 24 " "polygons that share no vertex are welded by their places"
 sed '/^g SKULL/,/^g/ { /^f -8 -7/d; }' "$T/head.obj" >"$T/open.obj"
-fails 1 "an open surface" "open.obj: volume skin is open: 4 open edges \(SKULL 4\); expected every edge" \
+fails 1 "an open surface" "open.obj: volume skin is open: 4 open edges \(SKULL 4\), the first at 5mm,3mm,3mm; expected every edge" \
     voxelise --unit mm -s 1 -o "$T/out" "$T/open.obj"
 is "$([ -e "$T/out" ] && echo left)" "" "no output is left"
 vox --allow-open "$T/open.obj"
-said "--allow-open warns" "warning: volume skin is open: 4 open edges \(SKULL 4\)"
+said "--allow-open warns" "warning: volume skin is open: 4 open edges \(SKULL 4\), the first at 5mm,3mm,3mm; what"
 sed 's/^f -8 -6 -5 -7$/&\nf -6 -5 -7 -8\nf -7 -5 -6 -8/' "$T/one.obj" >"$T/again.obj"
 vox "$T/again.obj"
 is "$(counts gland)" "8 " "a polygon given three times counts once"
