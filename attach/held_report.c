@@ -13,7 +13,7 @@ static int64_t run_end(const rigid *r, int64_t i)
     return i;
 }
 
-/* One line: from i on, the faces of one surface that hold no node, a few runs of them. Returns where the next line begins. */
+/* One line: from i on, a few runs of faces of one surface that hold no node. Returns where the next line begins. */
 static int64_t report_run(const tool *t, const rigid *r, int64_t which, int64_t i)
 {
     enum { FEW = 20 };
@@ -70,7 +70,7 @@ int held_report_surfaces(const tool *t, const rigid *r, err *e)
 
 /* ---- muscles */
 
-/* By which rule its fibres are: where not all are by one, how many are not. */
+/* The rule that gave the fibres, and how many elements have another rule or no fibre. */
 static void add_rule(text_table *rows, const muscle *m, muscle_fibre kind)
 {
     static const char *const name[] = {[MUSCLE_CENTRE] = "centre", [MUSCLE_AXIS] = "axis", [MUSCLE_FIELD] = "field"};
@@ -91,7 +91,7 @@ static void add_centre(text_table *rows, const double *centre, int decimals)
         text_table_number(rows, 1e3 * centre[a], decimals);
 }
 
-/* Those of a muscle that has several. */
+/* The attachments of a muscle, if it has several. */
 static void add_attachments(text_table *rows, const muscles *list, int64_t which, const rigid *r, int decimals)
 {
     int64_t number = 0, all = 0;

@@ -1,4 +1,4 @@
-/* What attach --report says: a table of the rigid surfaces, the faces that hold no node, and a table of the muscles
+/* What attach --report prints: a table of the rigid surfaces, the faces that hold no node, and a table of the muscles
  * with their attachments. Nothing is kept.
  */
 #ifndef SINEW_HELD_REPORT_H

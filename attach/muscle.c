@@ -138,7 +138,7 @@ static void find_axis(const body *b, muscle *m)
             m->axis[a] = -m->axis[a];
 }
 
-/* What an element has its fibre by: the rule that was asked for, the axis in its stead, or nothing. */
+/* Which rule gave an element its fibre: the one asked for, the axis in its place, or none. */
 typedef enum rule { BY_RULE, BY_AXIS, BY_NONE } rule;
 
 /* Sets the fibre of one element. */
@@ -202,7 +202,7 @@ static void warn_of_one(const muscle *m, muscle_fibre kind, notes *warnings)
     case NO_RIGID_NODE:
         notes_add(warnings,
                   "%s has no rigid node, so no contraction centre and no fibres: it will not contract; --fibre field "
-                  "gives it fibres all the same",
+                  "gives it fibres without one",
                   m->name);
         break;
     case NO_AXIS:
@@ -217,7 +217,7 @@ static void warn_of_one(const muscle *m, muscle_fibre kind, notes *warnings)
     }
 }
 
-/* Several muscles that lack the same: one sentence for all. */
+/* Several muscles with the same lack: one sentence for all. */
 static void warn_of_many(lack what, listing *names, muscle_fibre kind, notes *warnings)
 {
     static const char *const have[LACKS] = {
@@ -228,7 +228,7 @@ static void warn_of_many(lack what, listing *names, muscle_fibre kind, notes *wa
     static const char *const remedy[LACKS] = {[NO_ELEMENT] = "voxelise says why",
                                               [NO_FREE_NODE] =
                                                   "smaller voxels or a lower --strictness may leave some free",
-                                              [NO_RIGID_NODE] = "--fibre field gives them fibres all the same",
+                                              [NO_RIGID_NODE] = "--fibre field gives them fibres without one",
                                               [NO_AXIS] = "--fibre field needs no axis"};
     const long long count = names->count;
     notes_add(warnings, "%lld muscles have %s: %s; %s", count, have[what], listing_text(names),
@@ -267,7 +267,8 @@ static int check_mixes(const body *b, const model_array *mix, err *e)
 {
     for (int64_t i = 0; mix && i < mix->rows; i++)
         if (mix->i32[i] == b->volume[i])
-            return err_set(e, NULL, 0, "element.mix, row %lld is its own volume; expected another, or -1",
+            return err_set(e, NULL, 0,
+                           "element.mix, row %lld repeats the volume of the element; expected another, or -1",
                            (long long)i);
     return 0;
 }

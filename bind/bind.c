@@ -290,7 +290,7 @@ static int bind_files(const tool *t, target *to, model *m, char *const *path, co
             if (!strcmp(name, other))
                 return err_set(
                     e, path[i], 0,
-                    "would be named surface %s, as %s is; expected another name, or --name in a run of its own", name,
+                    "would be named surface %s, as %s is; expected another name, or --name in a separate run", name,
                     path[j]);
         }
         if (bind_file(t, to, m, path[i], o, warnings, e))

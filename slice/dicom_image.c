@@ -47,7 +47,7 @@ static int set_axes(const reading *r, const double o[6])
         dot += o[i] * o[3 + i];
     }
     if (!(fabs(length[0] - 1) < .01 && fabs(length[1] - 1) < .01 && fabs(dot) < .01))
-        return refuse(r, "an orientation of rows and columns that is none", "two unit vectors at a right angle");
+        return refuse(r, "an invalid orientation of rows and columns", "two unit vectors at a right angle");
     for (int i = 0; i < 3; i++) {
         r->d->along_row[i] = o[i] / sqrt(length[0]);
         r->d->along_column[i] = o[3 + i] / sqrt(length[1]);

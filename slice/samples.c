@@ -127,7 +127,7 @@ int64_t samples_labels(const volume *v, samples_label **list, err *e)
     samples_box whole = samples_whole(v);
     *list = NULL;
     if (v->type == VOLUME_F32 || v->type == VOLUME_F64)
-        return err_set(e, NULL, 0, "voxels that are no whole numbers; expected a label image");
+        return err_set(e, NULL, 0, "voxels that are not whole numbers; expected a label image");
     if (find[v->type](v, &whole, &f, e)) {
         free(f.one);
         return -1;

@@ -323,7 +323,7 @@ static int open_labels(job *j, err *e)
         if (volume_load(l, j->o->onto, &budget, e) || check_same_place(&j->v, l, j->o->onto, e))
             return -1;
         if (l->type == VOLUME_F32 || l->type == VOLUME_F64)
-            return err_set(e, j->o->onto, 0, "voxels that are no whole numbers; expected a label image");
+            return err_set(e, j->o->onto, 0, "voxels that are not whole numbers; expected a label image");
         return 0;
     }
     l->type = VOLUME_U8;

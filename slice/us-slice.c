@@ -38,7 +38,7 @@ static const opt option_list[] = {
     {OPT_INPUT, 0, "body", "FILE", OPT_TEXT, TO(body), 0, 0, NULL, OPT_FILE, "where the volume lies for --poses"},
     {OPT_RESULT, 0, "size", "COLUMNSxROWS", OPT_TEXT, TO(size), 0, 0, NULL, 0,
      "one side alone: to scale [pixels; default 512 columns]"},
-    {OPT_ACTION, 0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "sphere:|linear:|curved:|convex:", 0,
+    {OPT_ACTION, 0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "linear:|curved:|phased:", 0,
      "linear:W,T, curved:R,ANGLE,T or phased:ANGLE [default the probe that pressed]"},
     {OPT_ACTION, 0, "depth", "D", OPT_LENGTHS, TO(depth), 0, 1, NULL, 0, "depth along a beam [length; default 5cm]"},
     {OPT_ACTION, 0, "width", "W", OPT_LENGTHS, TO(width), 0, 1, NULL, 0, "width [length; default the probe's]"},

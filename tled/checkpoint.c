@@ -167,7 +167,7 @@ static int open_frames(checkpoint *c, int flags, err *e)
     if (fstat(c->lock, &s))
         return err_system(e, c->frames_path, errno, "cannot open");
     if (!S_ISREG(s.st_mode))
-        return err_set(e, c->frames_path, 0, "is no regular file; expected one, or a new name");
+        return err_set(e, c->frames_path, 0, "is not a regular file; expected one, or a new name");
     if (flock(c->lock, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         return err_set(e, c->frames_path, 0, "another run is using it; expected one run at a time");
     const bool is_there = !stat(c->frames_path, &named);
@@ -346,7 +346,7 @@ static int read_state(checkpoint *c, const char *path, bool *foreign, err *e)
     const model_array *count = find_row(&m, count_name, MODEL_I64, COUNTS);
     const model_array *u = frame_find(&c->state, "node.displacement"), *v = frame_find(&c->state, "node.velocity");
     if (!number || !count || !u || !v || u->rows != c->nodes) {
-        err_set(e, path, 0, "is no checkpoint; expected one that tled-run wrote");
+        err_set(e, path, 0, "is not a checkpoint; expected one that tled-run wrote");
         goto out;
     }
     take_point(c, number, count->i64);

@@ -11,8 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char likeness_bounded[] = ", hourglass modulus at most 11 mu";
-
 void likeness_free(likeness *l)
 {
     for (int64_t i = 0; i < l->parts; i++)
@@ -35,8 +33,8 @@ static int add(likeness *l, const char *kind, const char *name, uint32_t crc, er
     return 0;
 }
 
-/* What --hourglass says already: models of runs before may lack it. */
-static const char kappa_key[] = "hourglass.kappa", kappa_part[] = "meta hourglass.kappa";
+/* Not compared: it is --hourglass of the run that wrote the frames, and this run's is. */
+static const char kappa_key[] = "hourglass.kappa";
 
 static int add_model(likeness *l, const model *m, err *e)
 {
@@ -57,15 +55,13 @@ static int add_number(likeness *l, const char *name, double value, err *e)
     return add(l, name, "", checksum_add(0, &value, sizeof value), e);
 }
 
-static const char end_part[] = "--time to its end"; /* of a -t that ends between two steps */
-
 static int add_numbers(likeness *l, const likeness_run *run, err *e)
 {
     const run_setup *r = run->setup;
-    return (isfinite(r->end) && add_number(l, end_part, r->end, e)) || add_number(l, "--every", r->every, e) ||
-                   add_number(l, "--dt", r->rate, e) || add_number(l, "--damping", r->damping, e) ||
-                   add_number(l, "--rest", r->rest, e) || add_number(l, "--time", (double)r->steps, e) ||
-                   add_number(l, "--hourglass", run->p->kappa, e) ||
+    return (isfinite(r->end) && add_number(l, "--time to its end", r->end, e)) ||
+                   add_number(l, "--every", r->every, e) || add_number(l, "--dt", r->rate, e) ||
+                   add_number(l, "--damping", r->damping, e) || add_number(l, "--rest", r->rest, e) ||
+                   add_number(l, "--time", (double)r->steps, e) || add_number(l, "--hourglass", run->p->kappa, e) ||
                    (run->p->collider && add_number(l, "--repulsion", run->p->collider->stiffness, e))
                ? -1
                : 0;
@@ -142,14 +138,6 @@ int likeness_put(const likeness *l, model *to, err *e)
     return sum ? 0 : -1;
 }
 
-/* Whether `here` is `there` and likeness_bounded. */
-static bool is_bounded_now(const char *there, const char *here)
-{
-    const char *at = strstr(here, likeness_bounded);
-    return at && !strncmp(there, here, (size_t)(at - here)) &&
-           !strcmp(there + (at - here), at + strlen(likeness_bounded));
-}
-
 /* Where an option begins, or what ran. */
 static bool begins(const char *word)
 {
@@ -183,13 +171,9 @@ static int compare_options(const char *there, const char *here, const char *plac
                        "was written by version %.*s, and this is version %.*s; expected a checkpoint of this version: "
                        "continue with that version, or begin the run anew",
                        version, there, ours, here);
-    if (is_bounded_now(there, here))
-        return err_set(e, place, 0,
-                       "is of a run whose hourglass modulus is lambda + 2 mu, of an earlier version or another nu; "
-                       "expected at most 11 mu: the run must begin anew");
     find_option(text, size);
-    return err_set(e, place, 0, "is of a run with other options, '%.*s'; expected '%.*s'", size[0], text[0], size[1],
-                   text[1]);
+    return err_set(e, place, 0, "was saved by a run with other options, '%.*s'; expected '%.*s'", size[0], text[0],
+                   size[1], text[1]);
 }
 
 static bool has(char *const *name, int64_t names, const char *wanted)
@@ -211,7 +195,7 @@ static const likeness_part *find_part(const likeness *l, const char *name)
 static int differ(const char *place, const char *name, const char *how, err *e)
 {
     return err_set(e, place, 0,
-                   "is of another run: %s %s; expected the command that it was made by, on the same model and files",
+                   "belongs to another run: %s %s; expected the command that made it, with the same model and files",
                    name, how);
 }
 
@@ -221,21 +205,16 @@ int likeness_compare(const likeness *l, const model *from, const char *place, er
     const model_array *name = model_find(from, part_name), *sum = model_find(from, crc_name);
     if (!there || !name || name->type != MODEL_STR || name->columns != 1 || !sum || sum->type != MODEL_I64 ||
         sum->columns != 1 || sum->rows != name->rows)
-        return err_set(e, place, 0, "is no checkpoint; expected one that tled-run wrote");
+        return err_set(e, place, 0, "is not a checkpoint; expected one that tled-run wrote");
     if (compare_options(there, l->options, place, e))
         return -1;
-    if (find_part(l, end_part) && !has(name->str, name->rows, end_part))
-        return err_set(e, place, 0,
-                       "is of an earlier version, which rounded -t up to a whole step; the run must begin anew");
     for (int64_t i = 0; i < name->rows; i++) {
-        if (!strcmp(name->str[i], kappa_part))
-            continue;
         const likeness_part *here = find_part(l, name->str[i]);
         if (!here || here->crc != sum->i64[i])
-            return differ(place, name->str[i], here ? "differs" : "is not there now", e);
+            return differ(place, name->str[i], here ? "differs" : "is missing now", e);
     }
     for (int64_t i = 0; i < l->parts; i++)
         if (!has(name->str, name->rows, l->part[i].name))
-            return differ(place, l->part[i].name, "is there only now", e);
+            return differ(place, l->part[i].name, "is new", e);
     return 0;
 }

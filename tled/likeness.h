@@ -29,10 +29,6 @@ typedef struct likeness_run {
     int64_t next_frame; /* the index of the first frame that it writes */
 } likeness_run;
 
-/* What options end with, within their bracket, where tled_bounds_hourglass. A run that lacks them, and nothing else, is
- * of the formula that holds up to nu = .45. */
-extern const char likeness_bounded[];
-
 /* -1 with e filled, and to be freed all the same. */
 int likeness_make(likeness *l, const likeness_run *run, err *e);
 void likeness_free(likeness *l);

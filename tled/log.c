@@ -43,7 +43,7 @@ static void put_heading(const run_log *l, out *to)
 }
 
 /* That the file to go on with begins with the heading of this run. What is shorter than what is to be kept is growing_open's to refuse,
- * and what is no regular file is written as it is. */
+ * and what is not a regular file is written as it is. */
 static int check_heading(const run_log *l, const char *path, int64_t keep, err *e)
 {
     size_t size;

@@ -85,7 +85,8 @@ static int check_mixes(const tled_problem *p, err *e)
 {
     for (int64_t i = 0; p->mix && i < p->elements; i++)
         if (p->mix[i] == p->element_volume[i])
-            return err_set(e, NULL, 0, "element.mix of element %lld is its own volume; expected another, or -1",
+            return err_set(e, NULL, 0,
+                           "element.mix of element %lld repeats the volume of the element; expected another, or -1",
                            (long long)i);
     return 0;
 }
@@ -135,7 +136,7 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
     v->name = model_find(m, "volume.name")->str[i];
     if (law.law != MATERIAL_NEO_HOOKEAN)
         return err_set(e, NULL, 0,
-                       "volume '%s' is of the law '%s'; expected neo-hookean, here or by -m MATERIAL.law=", v->name,
+                       "volume '%s' has the law '%s'; expected neo-hookean, here or by -m MATERIAL.law=", v->name,
                        model_find(m, "material.law")->str[model_find(m, "volume.material")->i32[i]]);
     v->mu = material_mu(&law);
     v->bulk = material_bulk(&law);

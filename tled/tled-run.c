@@ -67,8 +67,9 @@ static int check_checkpoint(const tool *t, struct options *o, err *e)
     if (!path)
         return 0;
     if (o->restart && o->checkpoint && strcmp(o->checkpoint, o->restart) != 0)
-        return err_usage(e, "--checkpoint '%s' and --restart '%s'; expected the same file: a run goes on in it",
-                         o->checkpoint, o->restart);
+        return err_usage(
+            e, "--checkpoint '%s' and --restart '%s'; expected the same file: a continued run saves its state there",
+            o->checkpoint, o->restart);
     if (!*path || !strcmp(path, "-"))
         return err_usage(e, "'%s' for a checkpoint; expected the name of a file", path);
     if (o->restart)
@@ -176,7 +177,7 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
     snprintf(ran, sizeof ran, "%s%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s%s]",
              *t->provenance ? " " : "", press, until, o->ramp, o->hourglass, r->device->name,
              o->precision ? "single" : "double", 1 / r->rate, r->rate_fixed ? "" : " or cut", r->damping,
-             r->adapt ? " adapted" : "", tled_bounds_hourglass(&s->problem) ? likeness_bounded : "");
+             r->adapt ? " adapted" : "", tled_bounds_hourglass(&s->problem) ? ", hourglass modulus at most 11 mu" : "");
     size_t size = strlen(t->provenance) + strlen(ran) + 1;
     char *all = mem_array((int64_t)size, 1, "provenance", e);
     if (!all)

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static void line(out *o, const char *what)
 {
@@ -132,14 +133,24 @@ void report_volume_row(text_table *t, const volumes_volume *v, int64_t open)
     text_table_cell(t, "%s", v->surfaces);
 }
 
-void report_warn(notes *n, const char *what, const char *name, const check_result *r)
+void report_warn(notes *n, listing *thin, const char *what, const char *name, const check_result *r)
 {
     if (r->met)
         notes_add(n, "%s %s crosses itself (%lld pairs of triangles): a place that is enclosed twice counts as outside",
                   what, name, (long long)r->met);
     if (r->thin > 0.5)
-        notes_add(n, "%s %s is thinner than a voxel over %.3g %% of its area: whether it has voxels there is chance",
-                  what, name, 100 * r->thin);
+        listing_add(thin, "%s%s (%.3g %%)", strcmp(what, "surface") != 0 ? "volume " : "", name, 100 * r->thin);
+}
+
+void report_thin(notes *n, listing *thin)
+{
+    const bool one = thin->count == 1;
+    if (thin->count)
+        notes_add(n,
+                  "%lld surface%s thinner than a voxel over more than half of %s area: %s; whether %s voxels there is "
+                  "chance, so use smaller or flatter voxels (-s)",
+                  (long long)thin->count, one ? " is" : "s are", one ? "its" : "their", listing_text(thin),
+                  one ? "it has" : "they have");
 }
 
 /* ---- the size of all */

@@ -1,9 +1,10 @@
-/* What voxelise --check says of surfaces and volumes, as text for people: a row each, and with -v one thing a line; and what any run says
- * of the size of all. Nothing is kept.
+/* What voxelise --check prints about surfaces and volumes: a row each in tables, and with -v one property a line. Also
+ * what every run prints about sizes and gaps. Nothing is kept.
  */
 #ifndef SINEW_REPORT_H
 #define SINEW_REPORT_H
 
+#include "base/listing.h"
 #include "base/num.h"
 #include "base/out.h"
 #include "base/text_table.h"
@@ -27,8 +28,11 @@ void report_surface_row(text_table *t, const char *name, const check_result *r, 
 text_table *report_volumes(err *e);
 void report_volume_row(text_table *t, const volumes_volume *v, int64_t open);
 
-/* What is to be feared of it. what: "surface". */
-void report_warn(notes *n, const char *what, const char *name, const check_result *r);
+/* Warns where it crosses itself, and adds it to those that are thin. what: "surface" or "volume". */
+void report_warn(notes *n, listing *thin, const char *what, const char *name, const check_result *r);
+
+/* Warns of those that are thin, in one line. */
+void report_thin(notes *n, listing *thin);
 
 /* The sides of the box about all, in the OBJ's unit. */
 void report_sides(const obj *o, double side[3]);

@@ -47,10 +47,10 @@ static lost find_lost(const summary *s, const double *owned, int32_t v)
     return l;
 }
 
-/* Whether a muscle has so little left that somebody should look at it. */
+/* Whether a muscle keeps at most half of its voxels, or has none at all (kept is nan). */
 static bool keeps_half(const summary *s, int32_t v, const lost *l)
 {
-    return s->plan->volume[v].muscle && l->kept <= 50;
+    return s->plan->volume[v].muscle && !(l->kept > 50);
 }
 
 static void add_row(const summary *s, int32_t v, const lost *l, bool mixes, text_table *t)
@@ -114,16 +114,16 @@ text_table *summary_table(const summary *s, err *e)
 
 /* ---- warnings */
 
-/* Of a length: what is nearer to another than this is as long. */
+/* Lengths that differ by less than this share are equal. */
 static const double rounding = 1e-9;
 
-/* What is wrong with a volume, where it is alone with it. Whether something is. */
+/* Warns of what is wrong with one volume alone. Whether something is. */
 static bool warn_of(const summary *s, int32_t v, notes *warnings)
 {
     const volumes_volume *a = &s->plan->volume[v];
     const climb_count *n = &s->x->count[v];
     const int64_t layer = layers_at(s->layer, s->plan, v);
-    const char *counted = s->x->fraction ? "samples" : "voxels";
+    const char *counted = s->x->fraction ? "sample" : "voxel";
     if (layer >= 0 && layers_thickness(s->layer, layer) < grid_longest(s->g) * (1 - rounding))
         report_layer(warnings, s->layer, layer, v, s->x, s->g, s->unit);
     else if (n->inside == 0)
@@ -131,11 +131,11 @@ static bool warn_of(const summary *s, int32_t v, notes *warnings)
                   "%s has no voxel: no centre is inside it (it is thinner than a voxel, or off the lattice%s)", a->name,
                   s->boxed ? " or the --box" : "");
     else if (n->reached == 0)
-        notes_add(warnings, "%s is ignored: none of its %lld %s is in a volume of level %d", a->name,
-                  (long long)n->inside, counted, a->level - 1);
+        notes_add(warnings, "%s is ignored: all of it is outside the volumes of level %d (%lld %s%s)", a->name,
+                  a->level - 1, (long long)n->inside, counted, n->inside == 1 ? "" : "s");
     else if (n->kept == 0 && n->mixed == 0)
-        notes_add(warnings, "%s has no voxel: other volumes keep all %lld %s that it could have", a->name,
-                  (long long)n->reached, counted);
+        notes_add(warnings, "%s has no voxel: other volumes take all of it (%lld %s%s)", a->name, (long long)n->reached,
+                  counted, n->reached == 1 ? "" : "s");
     else
         return false;
     return true;

@@ -26,7 +26,7 @@ typedef struct summary {
 /* A row a volume, in the model's order. The caller frees it. NULL with e filled. */
 text_table *summary_table(const summary *s, err *e);
 
-/* Notes the volumes that have no voxel, layers that are too thin, and muscles that keep half of their voxels or less. */
+/* Warns of volumes without voxels, of layers that are too thin, and of muscles that keep at most half of their voxels. */
 int summary_warn(const summary *s, notes *warnings, err *e);
 
 #endif

@@ -56,7 +56,7 @@ static const opt_tool table = {
     .name = "voxelise",
     .usage = "[options] surface.obj > model\n[options] - < surface.obj > model",
     .purpose = "Converts closed surfaces to a finite element model of voxels (hexahedra).",
-    .note = "Lengths are in --unit, unless they have a suffix (um, mm, cm, m, in), as 2.5mm.",
+    .note = "Lengths are in --unit, unless they have a suffix (um, mm, cm, m, in), e.g. 2mm.",
     .example = "voxelise --unit mm -s 2.5 --fraction 4 --materials head.materials head.obj |\n"
                "      attach --fibre field | sinew bind > head.sinew",
     .operands = "surface.obj|-",
@@ -336,7 +336,8 @@ static int say_volumes(job *j, const model *m, err *e)
                        .boxed = j->o->box.count > 0,
                        .verbose = j->t->common->verbose};
     text_table *rows = summary_table(&s, e);
-    int rc = rows ? tool_table(j->t, rows, e, "%lld volumes", (long long)j->plan.volumes) : -1;
+    int rc =
+        rows ? tool_table(j->t, rows, e, "%d volume%s", (int)j->plan.volumes, j->plan.volumes == 1 ? "" : "s") : -1;
     text_table_free(rows);
     return rc ? -1 : summary_warn(&s, &j->warnings, e);
 }
@@ -395,6 +396,7 @@ typedef struct checking {
     const double *voxel; /* NULL: none was given */
     int64_t *face;       /* room for all of the OBJ's */
     text_table *surfaces, *volumes;
+    listing *thin;
     out *detail; /* with -v */
 } checking;
 
@@ -420,7 +422,7 @@ static int check_surfaces(const checking *c, err *e)
             return -1;
         report_surface_row(c->surfaces, j->plan.surface[s].name, &r, c->voxel != NULL);
         report_surface(c->detail, &j->plan, s, &r, num_unit_name(j->unit));
-        report_warn(&j->warnings, "surface", j->plan.surface[s].name, &r);
+        report_warn(&j->warnings, c->thin, "surface", j->plan.surface[s].name, &r);
     }
     return 0;
 }
@@ -438,7 +440,7 @@ static int check_volumes(const checking *c, err *e)
         report_volume_row(c->volumes, a, j->solid.open[v]);
         report_volume(c->detail, a, several ? &r : NULL, j->solid.open[v], j->solid.open_at[v], num_unit_name(j->unit));
         if (several)
-            report_warn(&j->warnings, "volume", a->name, &r);
+            report_warn(&j->warnings, c->thin, "volume", a->name, &r);
     }
     return 0;
 }
@@ -490,8 +492,10 @@ static int check(job *j, err *e)
     bool sized = j->o->size.count || j->o->cells >= 0;
     if (sized && find_spacing(j, spacing, e))
         return -1;
-    checking c = {.j = j, .voxel = sized ? spacing : NULL};
+    listing thin = {0};
+    checking c = {.j = j, .voxel = sized ? spacing : NULL, .thin = &thin};
     int status = find_report(&c, e);
+    report_thin(&j->warnings, &thin);
     free(c.face);
     text_table_free(c.surfaces);
     text_table_free(c.volumes);

@@ -10,7 +10,7 @@
 
 enum { STATUS_OK = 0, STATUS_BAD = 1, STATUS_USAGE = 2, STATUS_DIVERGED = 3 };
 
-/* For what the command line asks: "try TOOL --help"; and, on lines of their own, how the tool is called. */
+/* After errors of the command line: "try TOOL --help"; and, on lines of their own, how the tool is called. */
 enum { ERR_TRY_HELP = 1, ERR_SHOW_USAGE };
 
 typedef struct err {
@@ -39,8 +39,8 @@ int err_set(err *e, const char *place, int64_t line, const char *format, ...) SI
 /* The same for what the command line asks, without a place: status 2, and ERR_TRY_HELP. */
 int err_usage(err *e, const char *format, ...) SINEW_PRINTF(2, 3);
 
-/* The same for the value of one option: "option: what is wrong", as where only the input shows it, so that the help
- * is no help. NULL: no option is named. */
+/* The same for the value of one option: "option: what is wrong", where only the input shows that it is wrong, so that
+ * --help would not tell. NULL: no option is named. */
 int err_option(err *e, const char *option, const char *format, ...) SINEW_PRINTF(3, 4);
 
 /* err_set for a failed system call: appends strerror of the given errno value. */

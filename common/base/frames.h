@@ -10,7 +10,8 @@
 
 typedef enum frames_which { FRAMES_LAST, FRAMES_ALL, FRAMES_REST, FRAMES_ONE } frames_which;
 
-/* Reads a frame's index, last, all, rest, or undeformed, which is rest; index: of FRAMES_ONE. -1 with e filled (status 2). */
+/* Reads a frame's index, last, all, rest, or undeformed, which is the same as rest. index: set for FRAMES_ONE.
+ * -1 with e filled (status 2). */
 int frames_asked(const char *text, frames_which *which, int64_t *index, err *e);
 
 #endif

@@ -68,7 +68,7 @@ int growing_put(growing *g, const void *lines, size_t size, err *e)
             size -= (size_t)n;
         } else if (errno != EINTR) {
             const int code = errno;
-            /* What of it is no regular file cannot be taken back. */
+            /* What of it is not a regular file cannot be taken back. */
             if (size < whole && ftruncate(g->fd, g->size))
                 errno = code;
             return err_system(e, g->name, code, "cannot write");

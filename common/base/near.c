@@ -94,7 +94,7 @@ static void offer(char *to, size_t size, const char *name, const char *const *na
     near_list(list, sizeof list, names, count);
     suggest(meant, sizeof meant, name, names, count);
     if (!count)
-        snprintf(to, size, "there is none here");
+        snprintf(to, size, "there are none here");
     else
         snprintf(to, size, "%s%s%sexpected one of: %s", *meant ? "did you mean " : "", meant, *meant ? "? " : "", list);
 }

@@ -54,9 +54,8 @@ enum {
     OPT_OUTPUT = 2,   /* does not change the result: left out of provenance */
     OPT_HIDDEN = 4,   /* not for people: left out of every text */
     OPT_FILE = 8,     /* its text names a file: provenance has the base name only, completion offers files */
-    OPT_ALSO =
-        32, /* another name of the option before it, with the same `to`: shown beside it, left out of the synopsis */
-    OPT_WRITES = 16 /* its text names a file, or files by a number in it, that are written: nothing else may be */
+    OPT_WRITES = 16,  /* its text names a file, or files by a number in it, that are written: nothing else may be */
+    OPT_ALSO = 32     /* another name of the option before it, with the same `to`: left out of the synopsis */
 };
 
 typedef struct opt {
@@ -67,9 +66,9 @@ typedef struct opt {
     opt_kind kind;
     size_t to;        /* offsetof(options, field) */
     double low, high; /* range, inclusive; both 0: any */
-    /* Names between '|'; for an OPT_TEXT or OPT_LIST, what completion offers: with ':' or '=' at the end what is gone on with; with
-     * '@' before it a key of `sinew info --get`, whose names are offered of a model that stands on the line, each followed by what is
-     * behind the key that is no letter: "@muscle.name=". */
+    /* Names between '|'. For an OPT_TEXT or OPT_LIST: what completion offers. A word that ends in ':' or '=' is typed on
+     * after it. A word that begins with '@' is a key of `sinew info --get`: the names that a model on the command line has
+     * under it are offered, each followed by the key's last character if that is no letter or digit: "@muscle.name=". */
     const char *choices;
     int flags;
     const char *help; /* a few words; units and defaults last, in brackets: [UNIT], [default X] or [UNIT; default X] */
@@ -98,7 +97,7 @@ typedef struct opt_tool {
     const opt *options; /* ends with OPT_END */
 } opt_tool;
 
-/* Names of options and choices are taken in American spelling too (base/spelling.h), and recorded as the table has them.
+/* Names of options and choices may have American spelling (base/spelling.h), and are recorded as the table has them.
  *
  * Parses argv into options (with its defaults set by the caller) and moves the operands to the front of argv, from
  * argv[1]. Returns the count of operands, or -1 with e filled (status 2). With -h, -V or --table, nothing more is

@@ -91,7 +91,7 @@ static bool is_file(const opt *o)
     return o->flags & OPT_FILE;
 }
 
-/* What the tool is called by, to the end of the line. */
+/* The names of the tool, in both spellings, and the end of the line. */
 static void put_tool_names(const opt_tool *tool, out *to)
 {
     const char *american = spelling_american(tool->name);
@@ -116,8 +116,8 @@ static void put_bash_files(const char *arg, out *to)
     out_text(to, "))");
 }
 
-/* Offers names of the models among the words of the command, and behind `<`. They are a stranger's: nothing of them is evaluated, and
- * what the shell would take for something else is quoted. */
+/* Offers names from the models among the words of the command, and behind `<`. The names are not trusted: none is evaluated
+ * by the shell, and its special characters are quoted. */
 static const char bash_names[] =
     "_sinew_names() {\n"
     "    local suffix=$2 element=${value##*,} list file name quoted tool=${sinew:-${COMP_WORDS[0]}} info\n"

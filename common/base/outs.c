@@ -25,7 +25,7 @@ static int check_place(const char *path, err *e)
     if (there < 0)
         return -1;
     if (there && !S_ISREG(s.st_mode))
-        return err_set(e, path, 0, "is no regular file; expected one, or a new name");
+        return err_set(e, path, 0, "is not a regular file; expected one, or a new name");
     return there && access(path, W_OK) ? err_system(e, path, errno, "cannot write") : 0;
 }
 

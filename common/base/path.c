@@ -136,7 +136,7 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
     else if (file && !is_within(root, real))
         err_set(e, place, 0, "names '%.200s', outside its folder; expected a file beside it", name);
     else if (file && (stat(real, &about) || !S_ISREG(about.st_mode)))
-        err_set(e, file, 0, "is no regular file; expected one that '%.200s' names", place);
+        err_set(e, file, 0, "is not a regular file; expected one that '%.200s' names", place);
     else if (file)
         inputs_note_path(real, e);
     free(folder);

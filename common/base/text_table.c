@@ -55,6 +55,11 @@ void text_table_cell(text_table *t, const char *format, ...)
         t->cell[t->cells++] = copy;
 }
 
+bool text_table_is_empty(const text_table *t)
+{
+    return !t->cells && !t->failed.status;
+}
+
 void text_table_count(text_table *t, int64_t number)
 {
     text_table_cell(t, "%lld", (long long)number);

@@ -1,4 +1,4 @@
-/* A report as a table of text: a title, a line or two of headings, and rows whose columns are aligned, whatever
+/* A report as a table of text: a line or two of headings, and rows whose columns are aligned, whatever
  * characters are in them. The caller owns it. Errors stick: text_table_lines() returns them.
  */
 #ifndef SINEW_TEXT_TABLE_H
@@ -8,8 +8,8 @@
 
 typedef struct text_table text_table;
 
-/* heads: of the columns (at most 16), up to NULL, each with its alignment first: "<name" to the left, ">size\nmm" to the right; a
- * newline begins the second line. The texts are borrowed. NULL with e filled. */
+/* heads: of the columns (at most 16), up to NULL, each with its alignment first: "<name" to the left, ">size\nmm" to
+ * the right; a newline begins the second line. The texts are borrowed. NULL with e filled. */
 text_table *text_table_create(const char *const *heads, err *e);
 void text_table_free(text_table *t);
 
@@ -19,6 +19,9 @@ void text_table_cell(text_table *t, const char *format, ...) SINEW_PRINTF(2, 3);
 /* A cell of a whole number, and one of a number with so many decimals ("-": nan). */
 void text_table_count(text_table *t, int64_t number);
 void text_table_number(text_table *t, double number, int decimals);
+
+/* Whether it has no rows. */
+bool text_table_is_empty(const text_table *t);
 
 /* How many decimals show `digits` digits of the largest of some numbers: 0 to 9. */
 int text_table_decimals(double largest, int digits);

@@ -2,6 +2,7 @@
 #include "base/tool.h"
 
 #include "base/chars.h"
+#include "base/mem.h"
 #include "base/path.h"
 #include "base/thread.h"
 
@@ -94,7 +95,7 @@ static int fill_descriptors(err *e)
 static int refuse(const char *option, const char *path, const char *what, const char *other, err *e)
 {
     err_usage(e, "%s '%.400s' would overwrite %s '%.400s'; expected another file", option, path, what, other);
-    e->help = 0; /* the help does not know the files */
+    e->help = 0; /* --help says nothing of these files */
     return -1;
 }
 
@@ -272,7 +273,7 @@ int tool_table(const tool *t, const text_table *rows, err *e, const char *title,
     vsnprintf(text, sizeof text, title, args);
     va_end(args);
     chars_tame(text);
-    char *lines = text_table_lines(rows, e);
+    char *lines = text_table_is_empty(rows) ? mem_text("", e) : text_table_lines(rows, e);
     out *o = lines ? out_memory(e) : NULL;
     if (o) {
         size_t size;

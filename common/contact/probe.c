@@ -95,7 +95,7 @@ static int read_sphere(probe *p, const char *text, const char *list, err *e)
 {
     num_length radius;
     if (num_length_of(list, &radius))
-        return err_usage(e, "--probe %.100s: '%.80s' is no length; expected sphere:RADIUS, such as sphere:2cm", text,
+        return err_usage(e, "--probe %.100s: '%.80s' is not a length; expected sphere:RADIUS, such as sphere:2cm", text,
                          list);
     double r = num_length_in(radius, num_unit_of("m"), num_unit_of("m"));
     if (!is_length(r))

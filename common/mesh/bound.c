@@ -54,7 +54,7 @@ static int nothing_fits(const model *m, const char *name, const obj *o, double s
                              second)
                    : err_set(e, NULL, 0, "the model carries no surface; expected a model from sinew bind");
     if (next_bound(m, &at, second, sizeof second))
-        return err_set(e, o->name, 0, "is none of the bound surfaces (%s, %s, ...); expected the OBJ that was bound",
+        return err_set(e, o->name, 0, "is not one of the bound surfaces (%s, %s, ...); expected the OBJ that was bound",
                        first, second);
     (void)name;
     return surface_of(m, first, &s, e) ? -1 : surface_is(&s, o, scale, e);

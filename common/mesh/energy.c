@@ -79,7 +79,8 @@ static int view_of(view *v, const model *m, const frame *f, err *e)
     *v = (view){.node = node->i32, .rest = rest->f64, .u = u->f64};
     v->is_lattice = model_meta_of(m, "lattice.spacing") != NULL;
     if (node->columns != 8)
-        return err_set(e, NULL, 0, "hourglass energy is of hexahedra, and these elements have %d nodes; expected 8",
+        return err_set(e, NULL, 0,
+                       "hourglass energy is for hexahedra only, and these elements have %d nodes; expected 8",
                        (int)node->columns);
     if (!model_meta_of(m, "hourglass.kappa"))
         return err_set(e, NULL, 0,

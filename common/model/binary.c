@@ -265,7 +265,7 @@ static int binary_begin(item_source *s, err *e)
         return item_cut(s, e);
     if (memcmp(head, magic, MAGIC))
         return err_set(e, in_name(s->s), 0,
-                       "is no sinew model, or one whose line ends were changed on the way; expected the magic of a "
+                       "is not a sinew model, or its line ends were changed in transfer; expected the magic of a "
                        "binary model");
     memcpy(&crc, head + MAGIC + 2, sizeof crc);
     if (crc != checksum_add(0, head, MAGIC + 2))

@@ -122,7 +122,8 @@ static int check_indices(const site *s, const model *m, const known *k)
         i++;
     int64_t row = i / a->columns;
     return err_set(s->e, s->where, row_line(s, row),
-                   "array %s, row %" PRId64 ": %" PRId64 " is no index into axis %s; expected %" PRId64 " to %" PRId64,
+                   "array %s, row %" PRId64 ": %" PRId64 " is not an index into axis %s; expected %" PRId64
+                   " to %" PRId64,
                    a->name, row, index_at(a, i), a->unit + 1, low, count - 1);
 }
 

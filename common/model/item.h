@@ -78,11 +78,11 @@ int item_cut(const item_source *s, err *e);
  * -1. */
 int64_t item_heading(const item_source *s, item *it, err *e);
 
-/* Whether the values of an array, n of them, are passed over without a check: where names alone are wanted, all but strings and short
- * arrays. */
+/* Whether the n values of an array are skipped without a check: if only names are wanted, those of all arrays but strings
+ * and short ones. */
 bool item_passes(const item_source *s, const item *it, int64_t n);
 
-/* Where names alone are wanted: -1 with e filled once so much of a text or of what gunzip gives was read that it takes time. */
+/* If only names are wanted: -1 with e filled once more of a text or gzip stream was read than takes about 0.1 s. */
 int item_hurries(const item_source *s, err *e);
 
 /* Makes every nan among n values the one that is written: quiet, positive, no payload. Returns whether all are

@@ -31,7 +31,7 @@ int source_open(source *s, const char *path, err *e);
  * same. */
 int source_open_part(source *s, const char *path, bool salvage, err *e);
 
-/* The body alone, of which names alone are wanted: see model_reader_names. Frames are not to be read. */
+/* Opens the body for its names only: see model_reader_names. No frames may be read. */
 int source_open_names(source *s, const char *path, err *e);
 
 /* Where not all was taken: fills e (status 1) with how much was and why, once the output is whole; or adds that to an e

@@ -117,7 +117,7 @@ model_reader *model_reader_open(in *s, err *e)
         return NULL;
     }
     if (first != TEXT_FIRST && first != BINARY_FIRST) {
-        err_set(e, in_name(s), 0, "is no sinew model; expected '%%sinew 1 text' or the magic of a binary one");
+        err_set(e, in_name(s), 0, "is not a sinew model; expected '%%sinew 1 text' or the magic of a binary one");
         return NULL;
     }
     model_reader *r = mem_array(1, sizeof *r, "reading a model", e);
@@ -170,7 +170,7 @@ static int finish(model_reader *r, const item *it, err *e)
     if (wrong)
         return item_error(&r->from, it, e, "its text %s", wrong);
     if (strlen(it->text) > MODEL_FAIL_MOST)
-        return item_error(&r->from, it, e, "its text is of %zu bytes; expected at most %d", strlen(it->text),
+        return item_error(&r->from, it, e, "its text has %zu bytes; expected at most %d", strlen(it->text),
                           MODEL_FAIL_MOST);
     err_set(e, NULL, 0, "%s", it->text);
     e->status = (int)it->number;

@@ -22,8 +22,8 @@ void model_reader_close(model_reader *r);
  * error. (Else it is its own.) */
 void model_reader_give_cut(model_reader *r);
 
-/* For those who want names alone, and soon: values of long arrays are not kept (their data is NULL) nor checked, and a long text or gzip
- * stream is an error. */
+/* For a caller that wants only names, and quickly: the values of long arrays are neither kept (their data is NULL) nor
+ * checked, and a long text or gzip stream is an error. */
 void model_reader_names(model_reader *r);
 
 /* The body, all of it, checked. A stream that ended with `fail` gives -1 with e filled: the status and text as they

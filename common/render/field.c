@@ -26,7 +26,9 @@ static const double *displacement(const frame *f, const char *name, err *e)
     if (u)
         return u->f64;
     if (!f)
-        err_set(e, NULL, 0, "%s is of results, and at rest there are none; expected a model from tled-run", name);
+        err_set(e, NULL, 0,
+                "%s cannot be shown at rest, because it needs a frame of results; expected a model from tled-run",
+                name);
     else
         err_set(e, NULL, 0, "frame %lld has no node.displacement, which %s takes; expected results of tled-run",
                 (long long)f->index, name);
@@ -210,7 +212,7 @@ static int own(const char *name)
 
 enum { NAME = 120 };
 
-/* The field's name, in our spelling where there is none in that typed. */
+/* The field's name: as typed if there is such a field, else in British spelling. */
 static const char *spelled(const model *m, const frame *f, const char *typed, char to[NAME])
 {
     int component;

@@ -154,9 +154,9 @@ static int check_clears(const work *w, err *e)
             continue;
         const bool spheres = !strcmp(s->clear[k], "rigid") || !strcmp(s->clear[k], "centres");
         return err_set(e, NULL, 0,
-                       "--clear %s: %s; expected surface, voxels, muscles, probe or the name of a surface or group, of "
-                       "what is drawn",
-                       s->clear[k], spheres ? "these are never seen through" : "nothing that is drawn has that name");
+                       "--clear %s: %s; expected surface, voxels, muscles, probe or the name of a surface or group "
+                       "that is drawn",
+                       s->clear[k], spheres ? "these are never transparent" : "nothing that is drawn has that name");
     }
     return 0;
 }
@@ -418,7 +418,7 @@ static int trace_panel(work *w, int i, err *e)
         return -1;
     int bad = trace(&w->showing[i].scene, &p->camera[i], im, p->threads, &o, &r, e);
     if (!bad && !r.covered)
-        bad = err_set(e, NULL, 0, "nothing is to be seen from there: the camera looks past the model");
+        bad = err_set(e, NULL, 0, "the picture is empty: the camera looks past the model");
     if (!bad)
         bad = trace_marks(w, i, im, e);
     if (im == &part)

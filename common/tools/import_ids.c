@@ -38,7 +38,7 @@ int import_ids_close(import_ids *s, const char *what, const char *place, err *e)
         s->id[i] = list[i].id;
         s->index[i] = list[i].index;
         if (i && list[i].id == list[i - 1].id)
-            bad = err_set(e, place, 0, "%s %d is given twice; expected a number of its own for each", what, list[i].id);
+            bad = err_set(e, place, 0, "%s %d is given twice; expected a different number for each", what, list[i].id);
     }
     free(list);
     return bad;

@@ -277,8 +277,9 @@ static int begin(inp_reader *r, char *line)
 {
     keyword k;
     if (r->pending_count)
-        return err_set(r->e, r->m->name, r->pending_line, "an element of %d numbers; expected its own and %d nodes'",
-                       r->pending_count, r->columns);
+        return err_set(r->e, r->m->name, r->pending_line,
+                       "an element with %d numbers; expected its own number and those of %d nodes", r->pending_count,
+                       r->columns);
     cut_keyword(line, &k);
     if (same(k.name, "NODE")) {
         if (parameter(&k, "SYSTEM") || parameter(&k, "INPUT"))
@@ -317,7 +318,7 @@ static int take_node(inp_reader *r, char *line)
         if (take_number(r, next_field(&line), "a node's number, x, y, z", &at[a]))
             return -1;
     if (r->m->node_id.count && id == r->m->node_id.id[r->m->node_id.count - 1])
-        return wrong(r, "a node's number a second time", "one of its own for each");
+        return wrong(r, "a node number for the second time", "a different number for each node");
     if (import_ids_add(&r->m->node_id, id, r->e) || import_add_node(r->m, at, r->e))
         return -1;
     return r->set >= 0 ? import_sets_range(&r->nodes, r->set, id, id, 1, r->e) : 0;
@@ -379,7 +380,7 @@ static int take_members(inp_reader *r, import_sets *sets, char *line)
         snprintf(text, sizeof text, "no set '%.50s'", field); /* as it is written: the next makes lower case of it */
         other = import_sets_find(sets, import_inp_name(field));
         if (other < 0)
-            return wrong(r, text, "a number, or a set that stands before");
+            return wrong(r, text, "a number, or a set that is defined before");
         if (import_sets_include(sets, r->set, other, r->e))
             return -1;
     }
@@ -412,7 +413,7 @@ static int take_held(inp_reader *r, char *line)
     snprintf(text, sizeof text, "no node set '%.50s'", who);
     if (*who >= '0' && *who <= '9' ? take_id(r, who, &h.node)
                                    : (h.set = import_sets_find(&r->nodes, import_inp_name(who))) < 0)
-        return h.set < 0 && h.node < 0 ? wrong(r, text, "a node or a set that stands before") : -1;
+        return h.set < 0 && h.node < 0 ? wrong(r, text, "a node, or a set that is defined before") : -1;
     if (!first)
         return wrong(r, "*BOUNDARY of no component", "NODE-OR-SET, FIRST, LAST");
     if (!same(first, "ENCASTRE") && !same(first, "PINNED")) {

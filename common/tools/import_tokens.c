@@ -100,7 +100,7 @@ int tokens_real(tokens *t, double *value, err *e)
         if (take_binary(t, 8, &bits, e))
             return -1;
         memcpy(value, &bits, sizeof bits);
-        return isfinite(*value) ? 0 : tokens_wrong(t, e, "a number that is none", "a finite number");
+        return isfinite(*value) ? 0 : tokens_wrong(t, e, "a number that is not finite", "a finite number");
     }
     if (next_word(t, &word, e))
         return -1;

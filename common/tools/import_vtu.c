@@ -82,9 +82,9 @@ static int take_array(reader *r, const xml_tag *tag, section where)
     copy_value(p.a.type, tag, "type", "");
     copy_value(p.a.format, tag, "format", "ascii");
     if (components && num_int(components, 1, 1000, &p.a.components))
-        return wrong(r, tag->begin, "NumberOfComponents that is none", "1 to 1000");
+        return wrong(r, tag->begin, "an invalid NumberOfComponents", "1 to 1000");
     if (offset && num_int(offset, 0, INT64_MAX, &p.a.offset))
-        return wrong(r, tag->begin, "an offset that is none", "a number");
+        return wrong(r, tag->begin, "an invalid offset", "a number");
     for (r->lined = r->lined ? r->lined : r->x.text; r->lined < tag->begin; r->lined++)
         r->lines += *r->lined == '\n';
     p.a.line = 1 + r->lines;

@@ -126,7 +126,7 @@ int xml_next(xml *x, xml_tag *tag, err *e)
             after = take_tag(open + 1, x->end, tag);
             tag->begin = open;
             if (!after)
-                return bad(x, open, "a tag that is none", e);
+                return bad(x, open, "a malformed tag", e);
             x->at = after;
             return 1;
         }

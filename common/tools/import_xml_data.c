@@ -283,7 +283,7 @@ char *xml_strings(const xml *x, const xml_style *style, const xml_array *a, size
             break;
         if (num_scan(p, a->end, &p, &code) || !(code >= 0 && code < 256)) {
             free(text);
-            wrong(x, a, "a character that is none", "codes from 0 to 255", e);
+            wrong(x, a, "an invalid character code", "codes from 0 to 255", e);
             return NULL;
         }
         text[count++] = (char)(unsigned char)code;

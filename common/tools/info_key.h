@@ -9,8 +9,8 @@
 
 enum { INFO_KEY = 512 };
 
-/* The key in our spelling, in `to`, where what it begins with is no array as typed and one in that; else the key itself. Names behind
- * that are the user's, and stay. */
+/* The key in British spelling, in `to`, if it begins with the name of an array only then; else the key itself. Only the
+ * array's name is changed: names behind it are the user's. */
 const char *info_key_spelled(const source *s, const char *key, char to[INFO_KEY]);
 
 /* Writes the value of the key, without a line end; seen: of keys before, in the same frame or others. Returns 0, or -1

@@ -43,7 +43,7 @@ enum { SAME = 0, DIFFERENT = 1, TROUBLE = 2, RULES = 64 };
 /* "ARRAY=NUMBER" or "NUMBER" (name "": every array of floats; those that are lengths, where it has a unit), or a name
  * of --only. */
 typedef struct rule {
-    char name[MODEL_NAME], british[MODEL_NAME]; /* in our spelling, where that is an array's; else "" */
+    char name[MODEL_NAME], british[MODEL_NAME]; /* in British spelling, if an array is named so; else "" */
     num_length value;                           /* unit 0: in the array's */
     bool seen;                                  /* an array of this name was met */
 } rule;

@@ -109,7 +109,7 @@ static int check_options(job *j, err *e)
     if (read_frame_option(j, e))
         return -1;
     if (j->which == FRAMES_REST && o->deformed)
-        return err_usage(e, "--deformed wants a frame; --frame %s has none", o->frame);
+        return err_usage(e, "--deformed needs a frame of results; --frame %s selects none", o->frame);
     if (j->which == FRAMES_ALL && o->format != VTU && o->format != MSH)
         return err_usage(e, "--frame all is for vtu and msh; sinew deform --frame all writes an OBJ a frame");
     return 0;
@@ -121,7 +121,7 @@ static int read_stem(job *j, err *e)
     const char *path = j->o->common.output;
     size_t n = path ? strlen(path) : 0;
     if (n < 5 || strcmp(path + n - 4, ".pvd") != 0 || path[n - 5] == '/')
-        return err_usage(e, "--frame all wants -o NAME.pvd; the frames go to NAME_0000.vtu and so on");
+        return err_usage(e, "--frame all needs -o NAME.pvd; the frames go to NAME_0000.vtu and so on");
     j->stem = mem_text(path, e);
     if (!j->stem)
         return -1;

@@ -115,7 +115,7 @@ static int check_range(const job *j, const frame *f, err *e)
         return 0;
     int bad = field_of(&of, &j->s.body, f, s->field, e);
     if (!bad && strcmp(of.si, "m") != 0)
-        bad = err_set(e, NULL, 0, "--range: %s is no length; expected numbers without a unit%s%s", s->field,
+        bad = err_set(e, NULL, 0, "--range: %s is not a length; expected numbers without a unit%s%s", s->field,
                       of.si[0] ? ", in " : "", of.si);
     field_free(&of);
     return bad;

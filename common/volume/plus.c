@@ -33,7 +33,7 @@ int plus_open(plus *p, in *source, const char *transform, err *e)
     if (first == -2)
         return -1;
     if (transform && split_name(transform, strlen(transform), p->from, p->to))
-        return err_usage(e, "'%.100s' is no transform; expected FROMToTO, such as ProbeToReference", transform);
+        return err_usage(e, "'%.100s' is not a transform; expected FROMToTO, such as ProbeToReference", transform);
     p->nrrd = false;
     return 0;
 }

@@ -61,7 +61,8 @@ static int take_pose(poses *p, poses_event *to, err *e)
                              k->count);
     for (int i = 0; i < 8; i++)
         if (num_double(k->word[i], &v[i]))
-            return keyfile_error(k, e, "'%.100s' is no finite number; expected time tx ty tz qx qy qz qw", k->word[i]);
+            return keyfile_error(k, e, "'%.100s' is not a finite number; expected time tx ty tz qx qy qz qw",
+                                 k->word[i]);
     for (int i = 4; i < 8; i++)
         square += v[i] * v[i];
     double length = sqrt(square);
@@ -156,7 +157,7 @@ static int next_frame(poses *p, poses_event *to, err *e)
                        "the width of the images is not known; expected DimSize before the frames");
     double middle = image ? (double)(p->frames.width - 1) / 2 : 0;
     if (take_axes(m, axis))
-        return err_set(e, place(p), to->line, "%sTo%s is no rotation; expected axes at right angles, right-handed",
+        return err_set(e, place(p), to->line, "%sTo%s is not a rotation; expected axes at right angles, right-handed",
                        p->frames.from, p->frames.to);
     for (int i = 0; i < 3; i++) {
         to->origin[i] = (m[4 * i] * middle + m[4 * i + 3]) / 1e3;

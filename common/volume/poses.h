@@ -36,7 +36,7 @@ typedef struct poses {
 int poses_open(poses *p, in *source, const char *transform, err *e);
 
 /* The next event. 1: there is one; 0: the end; -1: e filled, with the line: what is not a number or not finite, a quaternion
- * that is not of length 1, a matrix that is no rotation, a time before that of the pose before. Frames of a sequence that
+ * that is not of length 1, a matrix that is not a rotation, a time before that of the pose before. Frames of a sequence that
  * were not tracked are left out and counted in p->frames.skipped. */
 int poses_next(poses *p, poses_event *to, err *e);
 

@@ -167,7 +167,7 @@ static int next_word(bytes *b, char word[WORD], err *e)
             continue;
         if (length == WORD - 1 || c <= ' ' || c > '~')
             return err_set(e, in_name(b->s), 0,
-                           "data that is no text, or has no blanks; expected numbers between blanks");
+                           "data that is not text, or has no blanks; expected numbers between blanks");
         word[length++] = c;
     }
 }

@@ -120,7 +120,7 @@ is "$(values node.rigid "$T/again") $(values anchor.name "$T/again") $(values no
 is "$(values muscle.centre "$T/again") $(values element.fibre "$T/again")" "nan nan nan 0 0 0,0 0 0,0 0 0" \
     "a muscle that touches no bone"
 is "$(attach --rigid bone_b <"$T/bar" 2>&1 >"$T/x")" "attach: warning: muscle_a has no rigid node, so no contraction centre and no \
-fibres: it will not contract; --fibre field gives it fibres all the same" "is a warning that names it, and what helps"
+fibres: it will not contract; --fibre field gives it fibres without one" "is a warning that names it, and what helps"
 attach --text --rigid 'BONE*' --fibre axis <"$T/bar" >"$T/out" 2>"$T/stderr"
 is "$(values element.fibre "$T/out") $(cat "$T/stderr")" "1 0 0,1 0 0,0 0 0 " \
     "along the axis it has fibres all the same, and nothing is said"

@@ -40,6 +40,7 @@ voxelise f|face.obj
 voxelise -n 3 h|head.obj.gz
 msds-mesh --like |a.nrrd b.mhd sub
 us-slice |a.nrrd b.mhd sub
+us-slice --probe |curved: linear: phased:
 attach --fibre |axis centre field
 sinew de|deform
 sinew |--help --version attach bind deform diff export help import info msds-mesh msds-run render tled-run us-import us-segment us-slice us-surface voxelise

@@ -99,7 +99,7 @@ fails 2 "one operand" "missing operand; expected A B" sinew diff "$small"
 fails 2 "three operands" "extra operand" sinew diff "$small" "$small" "$small"
 fails 2 "standard input twice" "both operands are standard input" sinew diff - -
 fails 2 "no such file" "nonesuch: cannot open" sinew diff "$small" "$T/nonesuch"
-fails 2 "not a model" "Makefile: is no sinew model" sinew diff Makefile "$small"
+fails 2 "not a model" "Makefile: is not a sinew model" sinew diff Makefile "$small"
 fails 2 "nothing on standard input" "no model on stdin" sinew diff "$small" -
 sed '$d' "$small" >"$T/cut"
 fails 2 "a cut stream" "cut" sinew diff "$small" "$T/cut"

@@ -43,7 +43,7 @@ fails 1 "a wrong checksum in text is refused, with its line" "^sinew-info: stdin
     sh -c "sinew info <'$T/wrong'"
 fails 1 "nothing on stdin" "^bind: no model on stdin \\(0 bytes\\); if bash's builtin bind ran, write 'sinew bind'\$" \
     sh -c "sinew bind </dev/null >'$T/out'"
-fails 1 "something else on stdin" "^sinew-info: stdin: is no sinew model; expected '%sinew 1 text'" \
+fails 1 "something else on stdin" "^sinew-info: stdin: is not a sinew model; expected '%sinew 1 text'" \
     sh -c "echo v 0 0 0 | sinew info"
 fails 1 "text of a later major version" "^sinew-info: stdin:1: is a model of format version 2; expected 1" \
     sh -c "printf '%%sinew 2 text\nend\n' | sinew info"

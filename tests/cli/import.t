@@ -198,13 +198,13 @@ bad "second order" "19: elements of type 'C3D20R'; expected hexahedra" 's/type=C
 bad "no number" "7: 'x'; expected a node's number" 's/^   2,  10/   2,  x/'
 bad "no such node" "[0-9]*: no node has the number 77" 's/^1, 7,/1, 77,/'
 # Numbers that stand twice, where all else is sound: side by side, far apart, at another place, in another block.
-bad "a node twice" "12: a node.s number a second time; expected one of its own for each" "/^ *12,/p"
+bad "a node twice" "12: a node number for the second time; expected a different number for each" "/^ *12,/p"
 bad "a node once more, elsewhere" " node 12 is given twice" '/^ *14,/a12, 7, 8, 9'
 # shellcheck disable=SC2016 # sed's $
 bad "a node in a block of its own" " node 2 is given twice" '$a*NODE\n2, 1, 1, 1'
-bad "an element twice" " element 1 is given twice; expected a number of its own for each" '/^1, 7, 2/{N;p;}'
+bad "an element twice" " element 1 is given twice; expected a different number for each" '/^1, 7, 2/{N;p;}'
 bad "an element's number for another" " element 1 is given twice" 's/^20, 105/1, 105/'
-bad "an element cut short" "2[0-9]: an element of 6 numbers; expected its own and 8" '/^12, 13, 14$/d'
+bad "an element cut short" "2[0-9]: an element with 6 numbers; expected its own number and those of 8" '/^12, 13, 14$/d'
 bad "inside out" "[0-9]*: element 0 is inside out" 's/^1, 7, 2, 3, 4, 105,/1, 105, 12, 13, 14, 7,/;s/^12, 13, 14$/2, 3, 4/'
 bad "collapsed" "[0-9]*: element 0 has one node at two" 's/^1, 7, 2, 3, 4/1, 7, 2, 3, 3/'
 bad "flat" "20: element 0 has no inside" 's/^\( *1[0-9]*, .*\), 10$/\1, 0/'
@@ -268,7 +268,7 @@ badvtu "a point that is not there" "9: cell 1 has a point 8" 's/>0 1 0 1 2 3/>0 
 badvtu "too few numbers" "7: array Points: no number; expected 24" '6s/1 1 1$/1 1/'
 badvtu "offsets that fall" "10: cell 1 ends before" 's/>2 10</>2 1</'
 badvtu "another grid" "2: a VTK file of PolyData" 's/="UnstructuredGrid"/="PolyData"/'
-badvtu "no XML" "4: a tag that is none" 's/<Piece Num/<Piece = Num/'
+badvtu "no XML" "4: a malformed tag" 's/<Piece Num/<Piece = Num/'
 fails 2 "vtu: no such array" "--rigid: unknown array of points 'hold'; did you mean 'held'" sinew import --unit m --rigid hold "$T/ascii.vtu"
 head -c 700 "$T/small.vtu" >"$T/cut.vtu"
 fails 1 "vtu: cut" "cut.vtu" sinew import --unit m -o "$T/x" "$T/cut.vtu"

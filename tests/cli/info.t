@@ -157,7 +157,7 @@ fails 2 "--json with --get" "exclude each other" sinew info --json --get frames 
 fails 2 "two models" "extra operand" sinew info "$small" "$small"
 fails 1 "no such file" "nonesuch: cannot open" sinew info "$T/nonesuch"
 fails 1 "no model at all" "no model on stdin \\(0 bytes\\)" sinew info
-fails 1 "not a model" "is no sinew model" sinew info common/base/err.h
+fails 1 "not a model" "is not a sinew model" sinew info common/base/err.h
 
 sed '$d' "$small" >"$T/cut"
 fails 1 "a stream without its end" "cut" sinew info "$T/cut"

@@ -114,7 +114,7 @@ else
 fi
 printf 'tissue law=linear\n' >"$T/linear"
 voxelise -q --unit mm -s 10 --materials "$T/linear" "$T/ball.obj" 2>/dev/null | attach -q 2>/dev/null >"$T/m"
-fails 1 "tled-run has no such law" "volume 'skin' is of the law 'linear'; expected neo-hookean" sh -c "tled-run -n 1 <'$T/m' >'$T/x'"
+fails 1 "tled-run has no such law" "volume 'skin' has the law 'linear'; expected neo-hookean" sh -c "tled-run -n 1 <'$T/m' >'$T/x'"
 
 # ---- what is refused
 no() { # STATUS PATTERN OPTIONS...

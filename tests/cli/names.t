@@ -57,7 +57,7 @@ for canary in ../out/canary "$T/out/canary" link; do
         done
     done
     refused "NRRD, a list of files" "LIST" us-import -v list.nhdr
-    refused "a tracked sequence" "outside its folder|is no regular file|expected" us-import sweep.seq.mhd
+    refused "a tracked sequence" "outside its folder|is not a regular file|expected" us-import sweep.seq.mhd
     # ---- Abaqus input in several files.
     for line in "*INCLUDE, INPUT=$canary" "*NODE, INPUT=$canary"; do
         printf '%s\n' "$line" >named.inp

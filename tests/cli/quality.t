@@ -70,7 +70,7 @@ done
 fails 1 "of a run that does not say its coefficient" "quality.hourglass': hourglass energy is not known: the model has no metadata hourglass.kappa; it comes from tled-run" \
     sinew info --get quality.hourglass "$T/pushed"
 fails 1 "without frames" "quality.hourglass': the model has no frames" sinew info --get quality.hourglass "$T/rest"
-fails 1 "of tetrahedra" "of hexahedra, and these elements have 4 nodes" sinew info --get quality.hourglass tests/golden/v1/tet.text
+fails 1 "of tetrahedra" "for hexahedra only, and these elements have 4 nodes" sinew info --get quality.hourglass tests/golden/v1/tet.text
 for kappa in nan -1 inf '' '1 2' x; do
     sed "s/^meta hourglass.kappa.*/meta hourglass.kappa \"$kappa\"/" "$T/twisted" >"$T/bad"
     fails 1 "a coefficient of '$kappa'" 'hourglass.kappa' sinew info --get quality.hourglass "$T/bad"
@@ -231,7 +231,7 @@ is "$(red --show voxels "$T/sound")" 0 "where none is, nothing is"
 check "with --range too" test "$(red --show voxels --range 0.5,1 "$T/pushed")" -gt 300
 is "$(sinew render --colour quality.j.centre --show voxels --size 160x120 --format ppm "$T/pushed" | cksum)" \
     "$(sinew render --colour quality.j.centre --show voxels --size 160x120 --format ppm "$T/pushed" --range 0,1 | cksum)" "the scale begins at 0"
-fails 1 "at rest" "quality.j.corner is of results, and at rest there are none" sinew render --colour quality.j.corner --frame rest -o "$T/none.png" "$T/pushed"
+fails 1 "at rest" "quality.j.corner cannot be shown at rest, because it needs a frame of results" sinew render --colour quality.j.corner --frame rest -o "$T/none.png" "$T/pushed"
 fails 2 "a slip in a field" "did you mean 'quality.j.corner'" sinew render --colour quality.j.corners -o "$T/none.png" "$T/pushed"
 box skin 0 0 0 200 100 100 >"$T/skin.obj"
 {

@@ -127,10 +127,10 @@ r 2 "^sinew-render: --clear: unknown thing 'skin'.*muscle" --clear skin
 r 2 "^sinew-render: --clear: unknown thing 'prob'; did you mean 'probe'\? expected one of: surface, voxels, muscles, probe, muscle, " --clear prob
 r 1 '--clear voxels: nothing that is drawn' --clear voxels
 r 1 '--clear muscle: nothing that is drawn' --show voxels --clear muscle
-r 1 '--clear rigid: these are never seen through; expected surface, voxels' --show voxels,rigid --clear voxels,rigid
+r 1 '--clear rigid: these are never transparent; expected surface, voxels' --show voxels,rigid --clear voxels,rigid
 r 1 '--clear probe: nothing that is drawn' --show voxels --clear probe
 r 2 "unknown field 'displacment'; did you mean 'displacement'\?.*stress" --colour displacment
-r 1 'at rest there are none' --colour strain --frame rest
+r 1 'cannot be shown at rest' --colour strain --frame rest
 r 1 'frames 1 to|frames 0 to' --frame 99
 r 2 'index, last, all, rest or undeformed' --frame first
 r 2 "unknown panel 'rst'; did you mean 'rest'\?.*deformed" --sheet rst
@@ -138,7 +138,7 @@ r 2 'AXIS=POSITION' --cut w=0
 r 1 'to leave some' --show voxels --cut +x=-1
 r 2 'two numbers' --colour stress --range 1
 r 2 'must be the lower' --colour stress --range 2,1
-r 1 'no length.*Pa' --colour stress --range 1mm,2mm
+r 1 'not a length.*Pa' --colour stress --range 1mm,2mm
 r 2 'for --colour' --range 0,1
 r 2 'no transparency' --format ppm --transparent
 r 1 'as a font' --font /dev/null

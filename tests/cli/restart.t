@@ -288,48 +288,17 @@ head -c 3000 "$T/d/state" >"$c"
 head -c 3000 "$T/d/state" >"$c.1"
 fails 1 "both damaged is an end" 'state: the model is cut short.*; and .*state.1: the model is cut short' again -c all=0.8 -t 0.4
 check "both stay" cmp "$T/d/state" "$c"
-fails 1 "other options are refused" "state: is of a run with other options, '-t 0.4'; expected '-t 0.5'" again -c all=0.8 -t 0.5
+fails 1 "other options are refused" "state: was saved by a run with other options, '-t 0.4'; expected '-t 0.5'" again -c all=0.8 -t 0.5
 fails 1 "so are other frames" "--every differs" again -c all=0.8 -t 0.4 --every 0.003
 fails 1 "so is another precision" "'\[cpu double,'; expected '\[cpu single,'" again -c all=0.8 -t 0.4 --precision single
 killed_at 500000 -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --checkpoint "$T/old" --checkpoint-every 0.02
-sinew export -f model --text "$T/old" | sed '/^crc/d; s/, hourglass modulus at most 11 mu\]/]/' >"$T/cut" && mv "$T/cut" "$T/old"
-fails 1 "so is one of another hourglass modulus" 'old: is of a run whose hourglass modulus is lambda \+ 2 mu' \
-    run -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --restart "$T/old"
-sed 's/^\(meta checkpoint.options "\)[0-9.]* /\10.1.0 /' "$T/old" >"$T/cut" && mv "$T/cut" "$T/old"
+sinew export -f model --text "$T/old" | sed '/^crc/d; s/^\(meta checkpoint.options "\)[0-9.]* /\10.1.0 /' >"$T/cut" && mv "$T/cut" "$T/old"
 fails 1 "so is one of another version" 'old: was written by version 0\.1\.0, and this is version [0-9.]*; expected a checkpoint of this version' \
     run -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --restart "$T/old"
 rm -f "$T"/old*
-# without PART: what is saved in $T/old, as by a version that did not compare that part; with a row more where there is none.
-without() {
-    sinew export -f model --text "$T/old" | grep -v '^crc' | awk -v part="\"$1\"" -v more="$2" '
-        { line[NR] = $0 }
-        /^axis checkpoint.part / { axis = NR; n = $3 }
-        /^array checkpoint.part / { for (i = 1; i <= n; i++) { getline; line[NR] = $0; if ($0 == part) at = i }; first = NR - n }
-        /^array checkpoint.crc / { crc = NR }
-        END { line[axis] = "axis checkpoint.part " (more ? n + 1 : n - (at > 0))
-            for (i = 1; i <= NR; i++) {
-                if (!more && at && (i == first + at || i == crc + at)) continue
-                print line[i]
-                if (more && i == first + n) print part
-                if (more && i == crc + n) print 1
-            } }' >"$T/cut" && mv "$T/cut" "$T/old"
-}
-for more in '' 1; do
-    rm -f "$T"/old*
-    killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --checkpoint "$T/old" --checkpoint-every 0.02
-    rm -f "$T/old.1"
-    without "meta hourglass.kappa" "$more"
-    check "one with ${more:-no} word of the model's hourglass.kappa" run -d cpu -c all=0.8 -t 0.4 --every 0.002 --restart "$T/old" -o "$T/got"
-    check "is gone on from: --hourglass is compared" cmp "$T/want" "$T/got"
-done
 killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --checkpoint "$T/old" --checkpoint-every 0.02
-fails 1 "another --hourglass is not" "is of a run with other options, '--hourglass 0.0075'; expected '--hourglass 0.008'" \
+fails 1 "another --hourglass is not" "was saved by a run with other options, '--hourglass 0.0075'; expected '--hourglass 0.008'" \
     run -d cpu -c all=0.8 -t 0.4 --every 0.002 --hourglass 0.008 --restart "$T/old"
-rm -f "$T"/old*
-killed_at 500000 -d cpu -c all=0.8 -t 0.4001234 --every 0.002 --checkpoint "$T/old" --checkpoint-every 0.02
-without "--time to its end"
-fails 1 "one of a -t that was rounded up" 'old: is of an earlier version, which rounded -t up to a whole step; the run must begin anew' \
-    run -d cpu -c all=0.8 -t 0.4001234 --every 0.002 --restart "$T/old"
 rm -f "$T"/old*
 sed 's/30000/30001/' "$T/muscle.sinew" >"$T/other.sinew"
 model=$T/other.sinew

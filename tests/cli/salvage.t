@@ -115,7 +115,7 @@ size=$(wc -c <film.gz)
 { head -c "$((size - 60))" film.gz; head -c 60 /dev/zero; } >damaged.gz
 fails 1 "damaged gzip" "damaged.gz: salvaged [1-5] frames.*gzip data is damaged" rows --salvage damaged.gz
 first
-fails 1 "no model" "is no sinew model" sinew info --salvage skin.obj
+fails 1 "no model" "is not a sinew model" sinew info --salvage skin.obj
 
 # A run that is killed.
 mkfifo pipe2

@@ -83,7 +83,7 @@ for length in $(seq 900 20 1060); do
 done
 mkdir "$P/KOWAL.raw"
 sed "s,^encoding.*,&\ndata file: KOWAL.raw," "$P/good.nrrd" >"$P/KOWAL_bad.nrrd"
-hides "NRRD, data in a folder" "^us-import: the data file of file 1 of 1: is no regular file; expected one that '\.\.\.' names" us-import "$P/KOWAL_bad.nrrd"
+hides "NRRD, data in a folder" "^us-import: the data file of file 1 of 1: is not a regular file; expected one that '\.\.\.' names" us-import "$P/KOWAL_bad.nrrd"
 printf '%s\n' 'ObjectType = Image' 'NDims = 3' 'BinaryData = False' 'TransformMatrix = 1 0 0 0 1 0 0 0 1' 'Offset = 0 0 0' \
     'ElementSpacing = 1 1 1' 'DimSize = 1 1 1' 'ElementType = MET_UCHAR' 'ElementDataFile = LOCAL' 7 >"$P/good.mha"
 for key in ObjectType NDims BinaryData TransformMatrix Offset ElementSpacing DimSize ElementType; do

@@ -108,7 +108,7 @@ fails 2 "no such name" "unknown label 'inner vien'; did you mean 'inner vein'" u
 fails 1 "no voxels" "label '9' has no voxels" us-surface -l 9 "$T/right.nrrd"
 fails 1 "a level that nothing reaches" 'nothing is left' us-surface -i 1e6 -o "$T/none.obj" "$T/ball.nrrd"
 check "no output is left" test ! -e "$T/none.obj"
-fails 1 "labels of floats" 'no whole numbers' us-surface -l 1 "$T/ball.nrrd"
+fails 1 "labels of floats" 'not whole numbers' us-surface -l 1 "$T/ball.nrrd"
 fails 1 "cut" 'cut.nrrd' us-surface -i 100 "$(head -c 3000 "$T/ball.nrrd" >"$T/cut.nrrd" && echo "$T/cut.nrrd")"
 fails 1 "nothing" '0 bytes' us-surface -i 100
 

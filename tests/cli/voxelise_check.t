@@ -142,7 +142,7 @@ is "$(voxelise --check --unit mm -s 2 "$T/head.obj" 2>"$T/stderr")" \
   muscle_a      1         0      0    muscle_a" "without -v: a row for each, and a mark"
 is "$(voxelise --check --unit mm --allow-open "$T/open.obj" 2>"$T/stderr" | grep '!$\|! ')" "  skin        0         0      4  !  skin" \
     "an open volume is marked"
-said "a flat muscle" "warning: surface muscle_a is thinner than a voxel over [0-9.]+ % of its area"
+said "a flat muscle" "warning: 2 surfaces are thinner than a voxel over more than half of their area: muscle_a \([0-9.]+ %\), volume skin \([0-9.]+ %\); whether"
 look -s 2,2,0.25 "$T/head.obj"
 is "$(of 'surface muscle_a' 'thinner than a voxel')" "0 % of its area" "not with flat voxels"
 look -s 1e-3 "$T/head.obj"

@@ -71,9 +71,12 @@ check "-q says nothing of it" sh -c "voxelise -q --unit mm -s 1 '$T/head.obj' 2>
 vox "$T/others.obj"
 is "$(rows volume.name)" '"other" "muscle_out" "muscle_thin" "muscle_deep" "muscle_late" ' "others together are one volume"
 is "$(counts other muscle_deep)" "13 1 " "inside one of two is inside, inside both is outside"
-said "a muscle outside" "warning: muscle_out is ignored: none of its 1 voxels is in a volume of level 0"
+said "a muscle outside" "warning: muscle_out is ignored: all of it is outside the volumes of level 0 \(1 voxel\)$"
+said "which the table marks" "^  muscle_thin .* 0 +- +- +-  !$"
+is "$(attach --report <"$T/m" 2>&1 >"$T/attached" | grep -e primitives -e "rigid surface")" "attach: 0 rigid surfaces" \
+    "a table without rows has no headings"
 said "a muscle thinner than a voxel" "warning: muscle_thin has no voxel: no centre is inside it"
-said "a muscle that comes too late" "warning: muscle_late has no voxel: other volumes keep all 1 voxels"
+said "a muscle that comes too late" "warning: muscle_late has no voxel: other volumes take all of it \(1 voxel\)$"
 said "nothing rigid" "warning: nothing is rigid"
 said "those are marked" "^  muscle_out +1 .* 0 +1 +0 +0  !$"
 silent "and not said twice" "at most half"
@@ -128,7 +131,7 @@ is "$(rows volume.name)" '"flesh" "middle" "last" "core" ' "in order of level an
 is "$(rows volume.level)$(rows volume.priority)$(rows volume.material)$(rows volume.muscle)" \
     "0 1 1 2 0 3 7 0 0 1 0 0 0 0 1 0 " "level, priority, material, muscle"
 is "$(counts flesh middle last core)" "896 8 0 32 " "three levels: one climbs only from the level below"
-said "a volume that all others take" "warning: last has no voxel: other volumes keep all 32 voxels"
+said "a volume that all others take" "warning: last has no voxel: other volumes take all of it \(32 voxels\)$"
 
 # bad NAME PATTERN LINE...: a --volumes file that is refused.
 bad() {

@@ -390,12 +390,12 @@ static void test_others(void)
     refused(&r, NULL, "array element.fibre differs", "another array");
     model_find(&r.b.m, "element.fibre")->f32[7] -= 1e-6F;
     model_meta_set(&r.b.m, "extra", "1", &r.b.e);
-    refused(&r, NULL, "meta extra is there only now", "one more meta");
+    refused(&r, NULL, "meta extra is new", "one more meta");
     const likeness_run run = run_of(&r);
     checkpoint *c = checkpoint_begin(path, &run, &r.b.e);
     ok(!c && strstr(r.b.e.text, "file: exists already; expected --restart"), "a run that begins: %s", r.b.e.text);
     spill(path, (const unsigned char *)"%sinew 1 text\nend\n", 18);
-    refused(&r, NULL, "is no checkpoint", "another model");
+    refused(&r, NULL, "is not a checkpoint", "another model");
     end(&r, false);
     remove_all();
     make(&r, &tled_cpu_double, false);

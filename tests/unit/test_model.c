@@ -308,8 +308,9 @@ static void test_check(void)
     model_array *a = model_add(&m, "element.node", &e);
     ok(!checked(&m, "element.node", &e), "indices in range");
     a->i32[9] = 3;
-    ok(checked(&m, "element.node", &e) && says(&e, "place:12: array element.node, row 1: 3 is no index into axis node; "
-                                                   "expected 0 to 2"),
+    ok(checked(&m, "element.node", &e) &&
+           says(&e, "place:12: array element.node, row 1: 3 is not an index into axis node; "
+                    "expected 0 to 2"),
        "past the end, with its row's line");
     a->i32[9] = -1;
     ok(checked(&m, "element.node", &e) && says(&e, "expected 0 to 2"), "none where each must have one");

@@ -239,7 +239,7 @@ static void test_bad_arrays(void)
     bad(AXES "array x u8 1 node 1\n1\n2\narray x u8 1 node 1\n1\n2\nend\n", "stdin:7: a second array x");
     bad(AXES "array x i32 @node element 1\n-1\nend\n", "");
     bad(AXES "array x i32 @node element 1\n2\nend\n",
-        "stdin:5: array x, row 0: 2 is no index into axis node; expected -1 to 1");
+        "stdin:5: array x, row 0: 2 is not an index into axis node; expected -1 to 1");
     bad(AXES "array x i32 @later element 1\n2\naxis later 3\nend\n", "");
     bad(AXES "array x i32 @later element 1\n2\nend\n", "stdin:4: array x points to axis later");
     bad(AXES "array node.position f32 m node 3\n0 0 0\n0 0 0\nend\n",
@@ -266,7 +266,7 @@ static void test_bad_frames(void)
     bad(AXES "frame 0 0\n" MOVE "frame 1 0\narray x u8 1 node 1\n0\n0\nend\n",
         "stdin:9: array x is not as in the first");
     bad(AXES "frame 0 0\narray node.rigid u8 1 node 1\n0\n0\nend\n", "stdin:5: array node.rigid belongs to the model");
-    bad(AXES "frame 0 0\narray x i32 @node node 1\n0\n2\nend\n", "stdin:7: array x, row 1: 2 is no index");
+    bad(AXES "frame 0 0\narray x i32 @node node 1\n0\n2\nend\n", "stdin:7: array x, row 1: 2 is not an index");
     bad(AXES "frame 0 0\nmeta k \"\"\nend\n", "stdin:5: a part of the body after the first frame");
     bad(AXES "frame 0 0\nblock xtra 00000000 0\nend\n", "stdin:5: a part of the body after the first frame");
     bad(AXES "frame 0 0\n" MOVE, "cut short");
@@ -318,7 +318,7 @@ static void test_fail(void)
     size_t at = strlen(line);
     memset(line + at, 'a', MODEL_FAIL_MOST + 1);
     strcpy(line + at + MODEL_FAIL_MOST + 1, "\"\n");
-    ok(refused(line, strlen(line), &e) && !e.silent && says(&e, "its text is of 1000 bytes; expected at most 999"),
+    ok(refused(line, strlen(line), &e) && !e.silent && says(&e, "its text has 1000 bytes; expected at most 999"),
        "too long: %s", e.text);
     strcpy(line + at + MODEL_FAIL_MOST, "\"\n");
     ok(refused(line, strlen(line), &e) && e.status == 3 && e.silent && strlen(e.text) == MODEL_FAIL_MOST,

@@ -59,9 +59,9 @@ static void refuse(const char *text, const char *want)
 
 static void refused_lines(void)
 {
-    refuse("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n", "p:2: 'nan' is no finite number");
-    refuse("0 inf 0 0 0 0 0 1\n", "p:1: 'inf' is no finite number");
-    refuse("0 1e999 0 0 0 0 0 1\n", "p:1: '1e999' is no finite number");
+    refuse("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n", "p:2: 'nan' is not a finite number");
+    refuse("0 inf 0 0 0 0 0 1\n", "p:1: 'inf' is not a finite number");
+    refuse("0 1e999 0 0 0 0 0 1\n", "p:1: '1e999' is not a finite number");
     refuse("0 0 0 0 0 0 0 0\n", "p:1: a quaternion of length 0; expected 1, to within 0.01");
     refuse("0 0 0 0 0 0 0.2 1\n", "p:1: a quaternion of length 1.0198");
     refuse("0 0 0 0 1e300 1e300 0 1\n", "p:1: a quaternion of length inf");
@@ -143,9 +143,9 @@ static void refused_sequences(void)
            "p:4: 'ProbeToTrackerTransform'; expected 16 finite numbers");
     refuse(HEAD POSE "nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n" TIME TAIL, "expected 16 finite numbers");
     refuse(HEAD POSE "1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\n" TIME TAIL, "expected 0 0 0 1 as the last");
-    refuse(HEAD POSE "1 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1\n" TIME TAIL, "ProbeToTracker is no rotation");
-    refuse(HEAD POSE "-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n" TIME TAIL, "ProbeToTracker is no rotation");
-    refuse(HEAD POSE "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1\n" TIME TAIL, "ProbeToTracker is no rotation");
+    refuse(HEAD POSE "1 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1\n" TIME TAIL, "ProbeToTracker is not a rotation");
+    refuse(HEAD POSE "-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n" TIME TAIL, "ProbeToTracker is not a rotation");
+    refuse(HEAD POSE "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1\n" TIME TAIL, "ProbeToTracker is not a rotation");
     refuse(HEAD POSE UNIT "\n" TAIL, "p:4: frame 0 has no Timestamp");
     refuse(HEAD POSE UNIT "\n" POSE UNIT "\n" TIME TAIL,
            "p:5: 'ProbeToTrackerTransform'; expected each transform of a frame once");

@@ -35,6 +35,7 @@ static void test_rows(void)
     text_table *t = text_table_create(heads, &e);
     char *text = text_table_lines(t, &e);
     is(text, "        size\n  name    mm\n", "no rows: the headings alone");
+    ok(text_table_is_empty(t), "without rows it is empty");
     free(text);
     text_table_cell(t, "a");
     text_table_number(t, 1234.5, 2);
@@ -43,6 +44,7 @@ static void test_rows(void)
     text_table_number(t, NAN, 2);
     text_table_cell(t, "!");
     text_table_cell(t, "half a row");
+    ok(!text_table_is_empty(t), "with rows it is not");
     text = text_table_lines(t, &e);
     is(text, "             size\n  name         mm\n  a       1234.50\n  longer        -  !\n",
        "to the left, to the right, no spaces at the end");

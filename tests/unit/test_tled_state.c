@@ -176,7 +176,7 @@ static void test_refused(void)
     mixed.mixed = true;
     block_make(&mixed, &m);
     model_find(&m, "element.mix")->i32[1] = model_find(&m, "element.volume")->i32[1];
-    refused(&m, "element.mix of element 1 is its own volume; expected another, or -1");
+    refused(&m, "element.mix of element 1 repeats the volume of the element; expected another, or -1");
     block_make(&mixed, &m);
     model_remove(&m, "element.mixture");
     refused(&m, "element.mixture");

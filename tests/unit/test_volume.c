@@ -321,7 +321,7 @@ static void refused_nrrd(void)
     refuse(NRRD("encoding: ascii\n"), "1 2 3 4 5 6 7 8 9", 17, "data for more than 8 of");
     refuse(NRRD("encoding: ascii\n"), "1 2 3 4 5 6 7 256", 17, "voxel 7: '256'; expected a number of the type");
     refuse(NRRD("encoding: ascii\n"), "1 2 3 4 5 6 7 x", 15, "voxel 7: 'x'");
-    refuse(NRRD("encoding: ascii\n"), "1 2 \x01", 5, "data that is no text");
+    refuse(NRRD("encoding: ascii\n"), "1 2 \x01", 5, "data that is not text");
     refuse(NRRD("encoding: ascii\nbyte skip: -1\n"), "1", 1, "byte skip: -1 of data that are not raw");
     refuse(NRRD("byte skip: -1\n"), "0123", 4, "data for only 4 of");
     refuse(NRRD("byte skip: 9\n"), "01234567", 8, "fewer than the 9 bytes to skip");
