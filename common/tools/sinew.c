@@ -205,7 +205,7 @@ static int help(int argc, char **argv)
         fprintf(stderr, "sinew: help %s: extra operand '%s'; expected one tool\n", argv[2], argv[3]);
         return STATUS_USAGE;
     }
-    if (argc == 2)
+    if (argc == 2 || !strcmp(argv[2], "sinew") || !strcmp(argv[2], "help") || !strcmp(argv[2], "--help"))
         return answer(put_list);
     int found = find(argv[2]);
     char option[] = "--help";

@@ -57,6 +57,7 @@ fails 1 "a tool that is not there" "cannot run .*usr/bin/sinew-info: No such fil
 fails 2 "a tool that is none" "no tool 'inof'; did you mean 'info'\?" sinew inof
 fails 2 "no tool" "^usage: sinew TOOL" sinew
 is "$(sinew help)" "$(sinew --help)" "help: the list of tools"
+is "$(sinew help sinew)" "$(sinew --help)" "help sinew: the same"
 for tool in info tled-run voxelize sinew-diff; do
     is "$(sinew help $tool)" "$(sinew $tool --help)" "help $tool: the tool's help"
 done
