@@ -348,7 +348,7 @@ help:
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
-	'make html         the manual pages as HTML, into out/man' \
+	'make html         set-up, and the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make deb          set-up, and a Debian package of what make install installs, into out/' \
 	'make deb-check    that, installed, tried and removed in a bare system of its own (by mmdebstrap, from the network)' \
