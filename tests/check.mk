@@ -3,7 +3,7 @@
 # so `demo` and `check` run .ci/setup and only then call make again for the rest.
 #
 # ---- What runs where. tests/check has the lists of parts; these are their times on two processors of an AMD EPYC with little else to do, from
-# a clean clone and without a compiler cache. (With eight others at work on the same two, each takes six to ten times as long.)
+# a clean clone and without a compiler cache. (On a busy machine each takes several times as long.)
 #   make check      before every commit: the build by gcc, and by nvcc where it is, 66 s; clang-format 2 s, shellcheck 7 s, manual pages 2 s,
 #                   shape 1 s; all unit and command tests, CUDA's kernels on a card that the processor plays among them, 130 s
 #   .ci/run         that, and clang's build, cppcheck, clang-tidy, the unit tests with ASan and UBSan, 2 s of each fuzz target, and the browser:
