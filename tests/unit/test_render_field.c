@@ -169,6 +169,22 @@ static void test_colours(void)
     ok(!memcmp(end, c.colour[COLOURMAP_STEPS - 1], sizeof end), "beyond the end is the end");
 }
 
+/* Chroma gives way until a screen can show the colour; lightness and hue do not. */
+static void test_names_colours(void)
+{
+    const double lightness[3] = {.74, .60, .86};
+    double lab[3], off = 0, turned = 0;
+    for (int i = 0; i < 64; i++) {
+        float colour[3];
+        colourmap_name(i, colour);
+        colourmap_oklab(colour, lab);
+        double hue = (i * .6180339887498949 * 360 + 40) * acos(-1) / 180;
+        off = fmax(off, fabs(lab[0] - lightness[(i + i / 8) % 3]));
+        turned = fmax(turned, fabs(lab[1] * sin(hue) - lab[2] * cos(hue)));
+    }
+    ok(off < 1e-5 && turned < 1e-5, "64 names have the lightness and hue of each, to %.1e and %.1e", off, turned);
+}
+
 static void ticks(double low, double high, int most, int count, double first, double last, int places)
 {
     double t[LEGEND_TICKS];
@@ -202,6 +218,7 @@ int main(void)
     test_linear(8);
     test_linear(4);
     test_colours();
+    test_names_colours();
     ticks(0, 5.7, 6, 6, 0, 5, 0);
     ticks(0, .0057, 6, 6, 0, .005, 3);
     ticks(-1.5, 1.5, 4, 3, -1, 1, 0);
