@@ -198,6 +198,10 @@ static void geometry(void)
        "the distance of voxels goes before their size");
     static const char plane[] = "NRRD0001\ntype: uchar\ndimension: 2\nsizes: 4 2\nencoding: raw\nspacings: 2 3\n\n";
     ok(is_geometry(plane, (double[]){2, 0, 0, 0, 3, 0, 0, 0, 1, 0, 0, 0}), "an image in a plane, NRRD");
+    ok(is_geometry("NRRD0004\ntype: uchar\ndimension: 2\nsizes: 4 2\nencoding: raw\nspace: LPS\n"
+                   "space directions: (0,2,0) (0,0,3)\n\n",
+                   (double[]){0, 2, 0, 0, 0, 3, 1, 0, 0, 0, 0, 0}),
+       "an image in another plane has that plane's normal");
     ok(is_geometry("ObjectType = Image\nNDims = 2\nDimSize = 4 2\nElementType = MET_UCHAR\nElementSpacing = 2 3\n"
                    "TransformMatrix = 0 1 -1 0\nElementDataFile = LOCAL\n",
                    (double[]){0, 2, 0, -3, 0, 0, 0, 0, 1, 0, 0, 0}),
