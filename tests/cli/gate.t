@@ -10,10 +10,10 @@ cat >"$T/edits.c" <<'C'
 #define ONE (1 + 1)
 static double f(double *a, int n)
 {
-    double wide[8]; // n + 1
+    double wide[8][8], more[8] = {a[n]}; // n + 1
     const char *s = "a + b";
     for (int i = 0; i < n; i++)
-        a[i] = fmin(a[i], .5) * wide[2];
+        a[i] = fmin(a[i], .5) * wide[1][2];
     if (n > 3 && s)
         g(-a[0]);
     free(a);
@@ -34,11 +34,13 @@ cat >"$T/want" <<'END'
 7 0 -> 1
 7 < -> <=
 7 ++ -> --
-8 a[i] = fmin(a[i], .5) * wide[2]; -> ;
+8 a[i] = fmin(a[i], .5) * wide[1][2]; -> ;
 8 fmin -> fmax
 8 .5 -> (-0.5)
 8 .5 -> (1.5)
 8 * -> /
+8 1 -> 0
+8 1 -> 2
 8 2 -> 1
 8 2 -> 3
 9 (n > 3 && s) -> (!(n > 3 && s))

@@ -89,8 +89,10 @@ def mutations(text, lines):
             add(match.start(), match.end(), SWAPS[match.group()], kind)
     for match in NUMBER.finditer(code):
         line_start = code.rfind("\n", 0, match.start()) + 1
-        if re.match(r"\s*(?:\w+ )+\**\w+(?:\[\w+\])*\[$", code[line_start:match.start()]):
-            continue # the size of an array
+        before = code[line_start:match.start()]
+        if (DECLARATION.match(before.lstrip()) and before.count("(") == before.count(")")
+                and re.search(r"(?:\w |, )\**\w+(?:\[\w+\])*\[$", before)):
+            continue  # the size of an array
         for new in off_by_one(*match.groups(), code[match.start() - 1] == "-"):
             add(match.start(), match.end(), new, "constant")
     for match in re.finditer(r"\b(?:if|while) \(", code):

@@ -376,7 +376,7 @@ int main(void)
     b.fraction = -1;
     test_boxes(b, "by shares");
     b.fraction = 0;
-    b.fibre[0] = .6F, b.fibre[2] = .8F;
+    b.fibre[0] = .48F, b.fibre[1] = .6F, b.fibre[2] = .64F;
     test_boxes(b, "with muscle");
     test_patch();
     test_energy();
