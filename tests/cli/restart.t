@@ -164,6 +164,10 @@ for every in '' "--log-every 0.003 $place"; do
     check "to the same rows" cmp "$T/rows" "$T/got_rows"
     check "and bytes" cmp "$T/want" "$T/got"
 done
+killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --checkpoint "$c" --checkpoint-every 0.02
+rm -f "$T/log"
+check "a run without a log goes on with one" run -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" --restart "$c" -o "$T/got"
+is "$(awk 'NR == 1 { print $1, $2 } END { print $1 }' "$T/log" | tr '\n' ' ')" "time/s step 0.4 " "whose heading and last row are there"
 killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --log "$T/log" --checkpoint "$c" --checkpoint-every 0.02
 head -c 500 "$T/rows" >"$T/log"
 fails 1 "another log" 'log: has 500 bytes; expected the first [0-9]* of this run' \

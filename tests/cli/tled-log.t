@@ -33,6 +33,10 @@ logged "gravity, damped" gravity .01 "$T/block.sinew" -g 0,2,-9.81 -t .2
 logged "a force" forces .01 "$T/block.sinew" --script "$T/force" --damping 5 -t .1
 logged "a displacement" displaced .01 "$T/block.sinew" --script "$T/displace" --damping 20 -t .1
 logged "a muscle" muscles .01 "$T/muscle.sinew" -c all=0.5 -t .2
+printf '0 contract all 0\n.05 contract all 0\n.06 contract all 1\n' >"$T/late"
+logged "steps that are cut, and taken again" muscles .01 "$T/muscle.sinew" --script "$T/late" -t .2
+is "$(awk -F '\t' 'NR == 2 { first = $3 } NR > 2 && $3 < first { cut = 1 } NR > 2 && $1 <= before { print NR } { before = $1 } END { print cut + 0 }' "$T/log")" \
+    1 "the step was cut, and no row stands twice"
 logged "a muscle and gravity, in single precision" muscles .01 "$T/muscle.sinew" --precision single -c all=0.5 -g 0,0,-9.81 -t .2
 logged "a probe" probe .02 "$T/block.sinew" --probe sphere:2cm --poses "$T/press.tum" -t .2
 awk -v n=5 -f samples/ball.awk | sinew import -q --unit m -o "$T/ball.sinew" -
