@@ -12,6 +12,10 @@ int slice_writer_open(slice_writer *w, const char *path, err *e)
     *w = (slice_writer){0};
     if (path && strchr(path, '%'))
         return numbered_of(&w->names, path, "", e);
+    const char *end = path ? strrchr(path, '.') : NULL;
+    if (end && !strcmp(end, ".png"))
+        return err_usage(e, "-o '%s': PNG images are written to a file each; expected a name such as image_%%04d.png",
+                         path);
     w->stream = out_open(path, false, e);
     if (!w->stream)
         return -1;

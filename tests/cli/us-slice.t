@@ -365,6 +365,9 @@ fails 2 "a window upside down" 'LOW below HIGH' us-slice --rigid --poses "$T/zer
 fails 2 "a dynamic range of none" 'expected 1 to 200 dB' us-slice --rigid --poses "$T/zero.tum" --dynamic-range 0 "$T/noise.nrrd"
 fails 2 "polygons without a mesh" 'no tetrahedra to cut' us-slice --rigid --poses "$T/zero.tum" --cut "$T/x.obj" "$T/noise.nrrd"
 fails 2 "a body without poses" '--body without --poses' us-slice --body "$T/body" "$T/noise.nrrd"
+fails 2 "a PNG for all images" 'one.png.*expected a name such as image_%04d.png' \
+    us-slice --rigid --poses "$T/zero.tum" -o "$T/one.png" "$T/noise.nrrd"
+check "and none is made" [ ! -e "$T/one.png" ]
 fails 2 "two numbers in a name" 'expected one number' us-slice --rigid --poses "$T/zero.tum" -o "$T/%d_%d.png" "$T/noise.nrrd"
 fails 1 "no frames and no poses" 'the model has no frames' us-slice "$T/noise.nrrd" <"$T/mesh.sinew"
 fails 1 "nothing on stdin" 'no model on stdin' us-slice "$T/noise.nrrd"
