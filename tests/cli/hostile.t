@@ -76,7 +76,7 @@ little "binary: a block of 2^61 bytes" 'cut short' sinew info
 little "the same for a tool of frames" 'cut short' sinew deform tests/cli/cube.obj
 head -c 100 "$T/in" | gzip -c | gzip -c >"$T/twice"
 cp "$T/twice" "$T/in"
-little "a model gzipped twice" 'no sinew model' sinew info
+little "a model gzipped twice" 'not a sinew model' sinew info
 awk '/^array element.lattice/ { print; getline; print; getline; print "60000 30000 30000"; getline; if ($0 !~ /^crc/) print; next } { print }' \
     tests/cli/small.sinew >"$T/in"
 little "two elements far apart" 'spread over' sinew bind --unit mm tests/cli/cube.obj

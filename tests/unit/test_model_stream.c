@@ -191,7 +191,7 @@ static void test_writer(void)
     model_axis_add(&m, "node", 2, &e);
     model_array *a = model_add_as(&m, "x", MODEL_I32, "@node", "node", 1, &e);
     a->i32[1] = 2;
-    ok(model_write(w, &m, &e) && says(&e, "array x, row 1: 2 is no index") && !out_count(o),
+    ok(model_write(w, &m, &e) && says(&e, "array x, row 1: 2 is not an index") && !out_count(o),
        "a model that would not be read is not written");
     e = (err){0};
     a->i32[1] = 1;

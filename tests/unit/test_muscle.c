@@ -160,7 +160,7 @@ static void mixed(void)
     muscles_free(&list);
     model_find(&m, "element.mix")->i32[3] = 2;
     ok(muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) &&
-           strstr(e.text, "element.mix, row 3 is its own volume"),
+           strstr(e.text, "element.mix, row 3 repeats the volume of the element"),
        "%s", e.text);
     notes_free(&warnings);
     muscles_free(&list);
