@@ -67,7 +67,7 @@ for format in vtu msh; do
     sinew export -f $format --frame rest "$small" >"$T/a"
     check "export -f $format --frame undeformed" sh -c "sinew export -f $format --frame undeformed $small | cmp - \$T/a"
 done
-fails 2 "undeformed and --deformed" "--frame undeformed has none" sinew export -f vtu --deformed --frame undeformed "$small"
+fails 2 "undeformed and --deformed" "--frame undeformed selects none" sinew export -f vtu --deformed --frame undeformed "$small"
 for how in '--frame undeformed' '--sheet undeformed'; do
     # shellcheck disable=SC2086
     sinew render --size 320x240 $how -o "$T/a.png" "$small"
