@@ -8,7 +8,7 @@ gate=$ROOT/tests/gate
 cat >"$T/edits.c" <<'C'
 /* a < b */
 #define ONE (1 + 1)
-static double f(double *a, int n)
+static double f(double *a, int n, const double more[3])
 {
     double wide[8][8], more[8] = {a[n]}; // n + 1
     const char *s = "a + b";

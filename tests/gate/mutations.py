@@ -17,6 +17,7 @@ WORD = re.compile(r"\+\+|--|\b(?:fminf?|fmaxf?|true|false)\b")
 NUMBER = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?)([fFuUlL]*)(?![\w.])")
 # Without free() programs do the same; lost memory is what valgrind and sanitizers find.
 NO_STATEMENT = re.compile(r"(?:free|return|goto|case|default|if|else|for|while|do|switch|typedef|static|extern|struct|enum|union|const)\b")
+ARRAY = r"\w+(?:\[\w+\])*\["
 DECLARATION = re.compile(r"[A-Za-z_]\w*\s+\**[A-Za-z_]\w*|[A-Za-z_]\w*\s*\*+\s*[A-Za-z_]\w*\s*[=;,\[]")
 
 
@@ -89,9 +90,9 @@ def mutations(text, lines):
             add(match.start(), match.end(), SWAPS[match.group()], kind)
     for match in NUMBER.finditer(code):
         line_start = code.rfind("\n", 0, match.start()) + 1
-        before = code[line_start:match.start()]
-        if (DECLARATION.match(before.lstrip()) and before.count("(") == before.count(")")
-                and re.search(r"(?:\w |, )\**\w+(?:\[\w+\])*\[$", before)):
+        before = code[line_start:match.start()].lstrip()
+        if re.search(rf"\b(?!return|else|sizeof|case)[a-z]\w* \**{ARRAY}$", before) or (
+                DECLARATION.match(before) and before.count("(") == before.count(")") and re.search(rf", \**{ARRAY}$", before)):
             continue  # the size of an array
         for new in off_by_one(*match.groups(), code[match.start() - 1] == "-"):
             add(match.start(), match.end(), new, "constant")
