@@ -12,6 +12,11 @@ mkdir -p "$T/tree/common/base" "$T/tree/common/model" "$T/tree/voxelise" "$T/tre
     "$T/tree/slice" "$T/tree/man" "$T/tree/samples" "$T/tree/tests" "$T/tree/.ci" "$T/tree/common/tools"
 cd "$T/tree" || exit 1
 touch README.md Makefile
+# table ROW...: the folders, as CONTRIBUTING.md has them.
+table() {
+    printf '| `%s` | lives | not | %s |\n' "$@" >CONTRIBUTING.md
+}
+table common/base '' common/model base voxelise common attach common
 # found NAME CHECK PATTERN: the check complains, and of this.
 found() {
     BUILD=$T/tree/build "$ROOT/tests/shape" "$2" >"$T/said" 2>&1
@@ -33,8 +38,18 @@ echo '#include "attach/body.h"' >voxelise/across.c
 found "a tool that includes another" includes 'voxelise/across.c includes attach/body.h'
 rm voxelise/across.c
 echo '#include "model/model.h"' >common/base/up.c
-found "base that knows a model" includes 'common/base/up.c includes model/model.h'
+found "base that knows a model" includes 'common/base/up.c includes model/model.h; expected of others only: $'
 rm common/base/up.c
+echo '#include "model/model.h"' >voxelise/down.c
+is "$("$ROOT/tests/shape" includes)" "" "a tool includes what is common"
+mv voxelise/down.c msds/down.c
+found "a folder that the table does not have" includes 'msds/down.c is in no folder of the table'
+rm msds/down.c
+table common/base model common/model base voxelise common
+found "a table with a circle" includes 'a circle in the table of CONTRIBUTING.md: input contains a loop'
+table common/base '' common/model base voxelise common common/legs base
+found "a table with a folder that is not there" includes 'has common/legs, which is not there'
+table common/base '' common/model base voxelise common attach common
 # shellcheck disable=SC2016 # these are what is looked for
 for line in 'attach | bind | tled-run' '    bind < a > b' '$ bind face.obj' 'x=$(bind face.obj)' 'voxelise a && bind -q' 'attach |bind'; do
     printf '%s\n' "$line" >README.md
