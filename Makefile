@@ -37,9 +37,9 @@ run = @echo "  $(1)"; $(2)
 endif
 
 # Every .c of these folders is the library, but for what mains begin and end with, and say on standard error: that is linked beside it.
-MAIN_SRC := common/base/tool.c common/base/progress.c
+MAIN_SRC := common/cli/tool.c common/cli/progress.c
 MAIN_OBJ := $(MAIN_SRC:%.c=$(BUILD)/%.o)
-LIB_SRC := $(filter-out $(MAIN_SRC),$(wildcard common/base/*.c common/model/*.c common/mesh/*.c common/volume/*.c common/contact/*.c common/device/*.c common/render/*.c))
+LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c,$(wildcard common/base/*.c common/cli/*.c common/model/*.c common/mesh/*.c common/volume/*.c common/contact/*.c common/device/*.c common/render/*.c))
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -126,7 +126,7 @@ BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c
 TLED_SRC := $(filter-out $(CUDA_ONLY),$(wildcard tled/*.c))
 MESH_MODULES := $(wildcard msds/mesh_*.c)
 RUN_MODULES := $(filter-out $(CUDA_ONLY) msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
-SAMPLES_SRC := slice/samples.c slice/length.c
+SAMPLES_SRC := slice/samples.c
 IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c $(wildcard slice/dicom*.c) slice/dicom_file.cc
 SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
 SURFACE_SRC := $(SAMPLES_SRC) $(wildcard slice/contour*.c) slice/cubes.c
@@ -152,7 +152,7 @@ $(eval $(call tool,us-import,slice/us-import.c $(IMPORT_SRC),$$(DICOM)))
 $(eval $(call tool,us-segment,slice/us-segment.c $(SEGMENT_SRC)))
 $(eval $(call tool,us-surface,slice/us-surface.c $(SURFACE_SRC)))
 $(eval $(call tool,us-slice,slice/us-slice.c $(SLICE_SRC),$$(PICTURES)))
-$(eval $(call tool,sinew,common/tools/sinew.c))
+$(eval $(call tool,sinew,common/cli/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))
 $(eval $(call tool,sinew-export,common/tools/sinew-export.c $(EXPORT_MODULES)))

@@ -2,7 +2,7 @@
  * centres and fibres. W&M section 3, Algorithm 2.
  */
 #include "anchor.h"
-#include "base/tool.h"
+#include "cli/tool.h"
 #include "held_report.h"
 #include "mesh/surface.h"
 #include "model/finite.h"

@@ -4,7 +4,7 @@
 #ifndef SINEW_HELD_REPORT_H
 #define SINEW_HELD_REPORT_H
 
-#include "base/tool.h"
+#include "cli/tool.h"
 #include "muscle.h"
 #include "rigid.h"
 

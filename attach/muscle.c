@@ -1,7 +1,7 @@
 #include "muscle.h"
 
-#include "base/listing.h"
 #include "base/mem.h"
+#include "cli/listing.h"
 #include "fibre_field.h"
 #include "mesh/lattice.h"
 #include "muscle_body.h"

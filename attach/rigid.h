@@ -5,7 +5,7 @@
 #ifndef SINEW_RIGID_H
 #define SINEW_RIGID_H
 
-#include "base/opt.h"
+#include "cli/opt.h"
 #include "mesh/names.h"
 #include "model/model.h"
 

@@ -3,7 +3,7 @@
 .PHONY: deb deb-check
 ifneq ($(filter deb deb-check out/sinew_%.deb,$(MAKECMDGOALS)),)
 
-VERSION := $(shell sed -n 's/^.define SINEW_VERSION "\(.*\)"/\1/p' common/base/tool.h)
+VERSION := $(shell sed -n 's/^.define SINEW_VERSION "\(.*\)"/\1/p' common/cli/tool.h)
 DEB := out/sinew_$(VERSION)_$(shell dpkg --print-architecture).deb
 # dpkg-buildpackage writes beside the folder that it is called in, so that has to be a copy. It stays where the build fails.
 DEB_TREE = out/deb/sinew-$(VERSION)

@@ -2,7 +2,7 @@
  * and dampers or by linear finite elements. PST sections III and the appendix.
  */
 #include "base/mem.h"
-#include "base/progress.h"
+#include "cli/progress.h"
 #include "contact/probe_carry.h"
 #include "mesh/scale.h"
 #include "model/stage.h"

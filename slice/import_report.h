@@ -4,7 +4,7 @@
 #ifndef SINEW_IMPORT_REPORT_H
 #define SINEW_IMPORT_REPORT_H
 
-#include "base/tool.h"
+#include "cli/tool.h"
 #include "slice/dicom_image.h"
 #include "slice/import_files.h"
 #include "volume/volume.h"

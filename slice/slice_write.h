@@ -8,8 +8,8 @@
 #ifndef SINEW_SLICE_WRITE_H
 #define SINEW_SLICE_WRITE_H
 
-#include "base/numbered.h"
 #include "base/out.h"
+#include "cli/numbered.h"
 #include "slice/slice_view.h"
 
 typedef struct slice_writer {

@@ -1,11 +1,11 @@
 /* us-import: DICOM series and volumes, MetaImage, NRRD and tracked sweeps to a volume in NRRD, without what names anybody. */
 #include "base/mem.h"
-#include "base/tool.h"
+#include "cli/length.h"
+#include "cli/tool.h"
 #include "slice/crop.h"
 #include "slice/import_files.h"
 #include "slice/import_hide.h"
 #include "slice/import_report.h"
-#include "slice/length.h"
 #include "slice/series.h"
 #include "slice/sweep.h"
 #include "volume/nrrd.h"

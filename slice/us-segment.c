@@ -1,8 +1,8 @@
 /* us-segment: marks a part of a volume, by intensity and from seeds, as a named label in a label image. */
 #include "base/chars.h"
 #include "base/mem.h"
-#include "base/tool.h"
-#include "slice/length.h"
+#include "cli/length.h"
+#include "cli/tool.h"
 #include "slice/samples.h"
 #include "slice/segment_region.h"
 #include "volume/nrrd.h"

@@ -1,8 +1,8 @@
 /* us-slice: ultrasound images of a volume that a mesh deforms, a frame each, where the probe of the frame looks. PST section IV. */
 #include "base/mem.h"
 #include "base/path.h"
-#include "base/progress.h"
-#include "base/tool.h"
+#include "cli/progress.h"
+#include "cli/tool.h"
 #include "model/source.h"
 #include "slice/slice_cut.h"
 #include "slice/slice_grey.h"

@@ -1,11 +1,11 @@
 /* us-surface: closed surfaces of what a volume shows, by marching cubes: around labels, or where an intensity is reached. */
 #include "base/mem.h"
 #include "base/near.h"
-#include "base/tool.h"
+#include "cli/length.h"
+#include "cli/tool.h"
 #include "slice/contour.h"
 #include "slice/contour_level.h"
 #include "slice/contour_obj.h"
-#include "slice/length.h"
 #include "slice/samples.h"
 
 #include <inttypes.h>

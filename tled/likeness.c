@@ -3,7 +3,7 @@
 #include "base/chars.h"
 #include "base/checksum.h"
 #include "base/mem.h"
-#include "base/tool.h"
+#include "cli/tool.h"
 #include "model/binary.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 
 #include "base/in.h"
 #include "base/path.h"
-#include "base/progress.h"
+#include "cli/progress.h"
 #include "model/rest_place.h"
 
 #include <math.h>

@@ -6,8 +6,8 @@
 #define SINEW_LOG_H
 
 #include "base/growing.h"
-#include "base/opt.h"
 #include "base/out.h"
+#include "cli/opt.h"
 #include "model/model.h"
 #include "tled/account.h"
 

@@ -2,7 +2,7 @@
 #ifndef SINEW_TLED_OPTIONS_H
 #define SINEW_TLED_OPTIONS_H
 
-#include "base/opt.h"
+#include "cli/opt.h"
 
 struct options {
     opt_common common;

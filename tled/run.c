@@ -1,7 +1,7 @@
 #include "tled/run.h"
 
 #include "base/mem.h"
-#include "base/progress.h"
+#include "cli/progress.h"
 #include "tled/collider.h"
 #include "tled/step.h"
 

@@ -2,7 +2,7 @@
  * muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
  */
 #include "base/mem.h"
-#include "base/progress.h"
+#include "cli/progress.h"
 #include "contact/probe_carry.h"
 #include "mesh/scale.h"
 #include "model/materials.h"

@@ -4,10 +4,10 @@
 #ifndef SINEW_REPORT_H
 #define SINEW_REPORT_H
 
-#include "base/listing.h"
 #include "base/num.h"
 #include "base/out.h"
-#include "base/text_table.h"
+#include "cli/listing.h"
+#include "cli/text_table.h"
 #include "voxelise/check_surfaces.h"
 #include "voxelise/gaps.h"
 #include "voxelise/layers.h"

@@ -1,7 +1,7 @@
 #include "voxelise/summary.h"
 
-#include "base/listing.h"
 #include "base/mem.h"
+#include "cli/listing.h"
 #include "voxelise/report.h"
 
 #include <math.h>

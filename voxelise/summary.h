@@ -4,7 +4,7 @@
 #ifndef SINEW_SUMMARY_H
 #define SINEW_SUMMARY_H
 
-#include "base/text_table.h"
+#include "cli/text_table.h"
 #include "voxelise/grid.h"
 #include "voxelise/layers.h"
 #include "voxelise/volumes.h"

@@ -6,7 +6,7 @@
 #define SINEW_VOXELS_H
 
 #include "base/pool.h"
-#include "base/progress.h"
+#include "cli/progress.h"
 #include "voxelise/shares.h"
 
 typedef struct voxels {

@@ -1,7 +1,7 @@
 #include "model/source.h"
 
 #include "base/num.h"
-#include "base/tool.h"
+#include "cli/tool.h"
 
 #include <inttypes.h>
 #include <stdarg.h>

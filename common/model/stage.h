@@ -5,7 +5,7 @@
 #ifndef SINEW_STAGE_H
 #define SINEW_STAGE_H
 
-#include "base/tool.h"
+#include "cli/tool.h"
 #include "model/stream.h"
 
 typedef struct stage {

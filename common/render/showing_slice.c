@@ -1,5 +1,5 @@
 #include "base/mem.h"
-#include "base/numbered.h"
+#include "cli/numbered.h"
 #include "render/placed.h"
 #include "render/showing_parts.h"
 

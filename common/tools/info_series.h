@@ -4,7 +4,7 @@
 #ifndef SINEW_INFO_SERIES_H
 #define SINEW_INFO_SERIES_H
 
-#include "base/opt.h"
+#include "cli/opt.h"
 #include "model/source.h"
 #include "tools/info_quality.h"
 

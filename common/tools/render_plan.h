@@ -4,9 +4,9 @@
 #ifndef SINEW_RENDER_PLAN_H
 #define SINEW_RENDER_PLAN_H
 
-#include "base/frames.h"
-#include "base/numbered.h"
-#include "base/opt.h"
+#include "cli/frames.h"
+#include "cli/numbered.h"
+#include "cli/opt.h"
 #include "render/picture.h"
 
 enum { RENDER_PNG, RENDER_PPM };

@@ -1,9 +1,9 @@
 /* sinew-export: a model in the formats of other programs (VTU, Abaqus input, Gmsh, OBJ), or in either of its own. */
-#include "base/frames.h"
 #include "base/mem.h"
 #include "base/num.h"
 #include "base/outs.h"
-#include "base/tool.h"
+#include "cli/frames.h"
+#include "cli/tool.h"
 #include "model/finite.h"
 #include "model/source.h"
 #include "tools/export_inp.h"

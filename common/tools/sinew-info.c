@@ -1,6 +1,6 @@
 /* sinew-info: what a model holds, for people, as JSON, or one value at a time. */
 #include "base/num.h"
-#include "base/tool.h"
+#include "cli/tool.h"
 #include "mesh/element_place.h"
 #include "model/known.h"
 #include "model/source.h"

@@ -1,8 +1,8 @@
 /* sinew-render: pictures of a model, ray-traced. */
 #include "base/mem.h"
 #include "base/outs.h"
-#include "base/progress.h"
-#include "base/tool.h"
+#include "cli/progress.h"
+#include "cli/tool.h"
 #include "model/source.h"
 #include "render/png.h"
 #include "tools/render_plan.h"

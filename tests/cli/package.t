@@ -6,7 +6,7 @@
 have make || skip_all "no make"
 
 # ---- the version
-version=$(sed -n 's/^#define SINEW_VERSION "\(.*\)"/\1/p' common/base/tool.h)
+version=$(sed -n 's/^#define SINEW_VERSION "\(.*\)"/\1/p' common/cli/tool.h)
 check "there is a version: $version" expr "$version" : '[0-9]*\.[0-9]*\.[0-9]*$'
 is "$(sinew --version)" "sinew (Sinew) $version" "sinew --version"
 is "$(tled-run --version)" "tled-run (Sinew) $version" "tled-run --version"

@@ -3,7 +3,7 @@
  * it, and then it is what it says, or refuses it.
  */
 #include "base/num.h"
-#include "base/numbered.h"
+#include "cli/numbered.h"
 #include "slice/slice_view.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Any lines as the words of a command line, for a table with every kind of option: what was taken is in its range and makes provenance that
  * the format takes; or one usage error.
  */
-#include "base/opt.h"
+#include "cli/opt.h"
 #include "model/model.h"
 
 #include <math.h>

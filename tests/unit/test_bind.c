@@ -1,8 +1,8 @@
 // needs: bind/nearest.c bind/normals.c
 /* Binding: the nearest element against a search through all, ties, equation (1), linear fields inside and outside. */
-#include "base/numbered.h"
 #include "bind/nearest.h"
 #include "bind/normals.h"
+#include "cli/numbered.h"
 #include "mesh/bound.h"
 #include "mesh/weights.h"
 

@@ -1,5 +1,5 @@
 /* Command lines: every kind of value, what is refused, and what the texts say. */
-#include "base/opt.h"
+#include "cli/opt.h"
 
 #include "tap.h"
 

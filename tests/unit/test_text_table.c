@@ -1,7 +1,7 @@
 /* Reports as tables: columns stay aligned whatever the names, and lists of names in a sentence. */
 #include "base/chars.h"
-#include "base/listing.h"
-#include "base/text_table.h"
+#include "cli/listing.h"
+#include "cli/text_table.h"
 
 #include "tap.h"
 

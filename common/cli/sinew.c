@@ -3,7 +3,7 @@
  */
 #include "base/near.h"
 #include "base/spelling.h"
-#include "base/tool.h"
+#include "cli/tool.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -5,8 +5,8 @@
 #define SINEW_TOOL_H
 
 #include "base/err.h"
-#include "base/opt.h"
-#include "base/text_table.h"
+#include "cli/opt.h"
+#include "cli/text_table.h"
 
 /* A whole tool, from the command line to the exit status: work(argc, argv). Where ulimit -s leaves the process little
  * stack, it runs on a thread that has enough. A main is this alone. */

@@ -4,7 +4,7 @@
 #ifndef SINEW_LENGTH_H
 #define SINEW_LENGTH_H
 
-#include "base/opt.h"
+#include "cli/opt.h"
 
 /* The lengths of an option in mm; where only the last has a unit, it is all of theirs. -1 with e filled (status 2) where none has
  * one. option: its name, for the message. */

@@ -1,4 +1,4 @@
-#include "base/frames.h"
+#include "cli/frames.h"
 
 #include "base/num.h"
 

@@ -1,4 +1,4 @@
-#include "base/opt.h"
+#include "cli/opt.h"
 
 #include "base/near.h"
 #include "base/spelling.h"

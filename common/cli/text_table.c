@@ -1,4 +1,4 @@
-#include "base/text_table.h"
+#include "cli/text_table.h"
 
 #include "base/chars.h"
 #include "base/mem.h"

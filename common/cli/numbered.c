@@ -1,4 +1,4 @@
-#include "base/numbered.h"
+#include "cli/numbered.h"
 
 #include "base/mem.h"
 

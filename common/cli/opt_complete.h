@@ -4,7 +4,7 @@
 #ifndef SINEW_OPT_COMPLETE_H
 #define SINEW_OPT_COMPLETE_H
 
-#include "base/opt.h"
+#include "cli/opt.h"
 
 /* A function _sinew_complete_TOOL, with _ for -; the last line hands it to `complete`. */
 void opt_complete_bash(const opt_tool *tool, out *to);

@@ -1,5 +1,5 @@
 /* The help of a tool: how it is called, and its options by group, one a line, as long as it takes. */
-#include "base/opt.h"
+#include "cli/opt.h"
 
 #include <stdio.h>
 #include <string.h>

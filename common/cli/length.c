@@ -1,4 +1,4 @@
-#include "slice/length.h"
+#include "cli/length.h"
 
 int length_mm(const opt_lengths *l, const char *option, double *mm, err *e)
 {

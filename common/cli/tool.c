@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* sched_getaffinity */
-#include "base/tool.h"
+#include "cli/tool.h"
 
 #include "base/chars.h"
 #include "base/mem.h"

@@ -1,4 +1,4 @@
-#include "base/opt_complete.h"
+#include "cli/opt_complete.h"
 
 #include "base/spelling.h"
 

@@ -1,7 +1,7 @@
 /* What a table of options says of itself: the synopsis, provenance. */
 #include "base/mem.h"
-#include "base/opt.h"
-#include "base/opt_complete.h"
+#include "cli/opt.h"
+#include "cli/opt_complete.h"
 
 #include <ctype.h>
 #include <math.h>
