@@ -8,7 +8,7 @@
 #ifndef SINEW_CONFORMING_STEP_H
 #define SINEW_CONFORMING_STEP_H
 
-#include "mesh/element_any.h"
+#include "physics/element_any.h"
 #include "tled/conforming.h"
 #include "tled/step.h"
 

@@ -1,7 +1,7 @@
 /* The CPU back end's memory for a problem without a lattice; part of cpu_loops.h. Nodes keep the model's order; elements lie in groups of as many as the
  * pass has lanes, what fills the last being nothing: without volume or law, at the last element's nodes.
  */
-#include "mesh/element_any.h"
+#include "physics/element_any.h"
 
 enum { MESH_GROUPS = 32, MESH_NODES = 512 }; /* to a chunk; the latter a multiple of any number of lanes */
 

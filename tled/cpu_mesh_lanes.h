@@ -1,7 +1,7 @@
 /* The CPU back end's pass over a problem without a lattice; part of cpu_lanes.h. Elements go in groups of LANES, side by side, and leave each
  * corner's force in w->force; then nodes gather theirs in the elements' order: the same bytes for any number of lanes and threads.
  */
-#include "mesh/element_any.h"
+#include "physics/element_any.h"
 
 /* One component at the corners of a group. */
 static inline element_corners mesh_corners(const void *u, const int32_t *node)

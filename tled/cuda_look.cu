@@ -2,7 +2,7 @@
  * the state is in, in a fixed order. Blocks leave parts; some blocks settle the frequency and add up parts, one adds up what these have.
  */
 extern "C" {
-#include "tled/stability.h"
+#include "physics/stability.h"
 }
 #include "tled/cuda_sums.cuh"
 #include "tled/cuda_view.cuh"

@@ -10,7 +10,7 @@
  */
 #define ELEMENT_SINGLE
 extern "C" {
-#include "mesh/element.h"
+#include "physics/element.h"
 }
 #include "tled/cuda_cells.cuh"
 

@@ -4,7 +4,7 @@
 #ifndef SINEW_DEFORMED_H
 #define SINEW_DEFORMED_H
 
-#include "mesh/element.h"
+#include "physics/element.h"
 #include "tled/state.h"
 
 typedef struct deformed {

@@ -9,7 +9,7 @@
 #ifndef SINEW_NODE_H
 #define SINEW_NODE_H
 
-#include "mesh/element.h"
+#include "physics/element.h"
 
 /* dt, dt/2, 1 - alpha dt/2, 1 / (1 + alpha dt/2). */
 typedef struct node_factors {

@@ -3,8 +3,8 @@
 #include "base/mem.h"
 #include "mesh/lattice.h"
 #include "model/materials.h"
+#include "physics/stability.h"
 #include "tled/conforming_step.h"
-#include "tled/stability.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -12,7 +12,7 @@
 #ifndef SINEW_STEP_H
 #define SINEW_STEP_H
 
-#include "tled/stability.h"
+#include "physics/stability.h"
 #include "tled/state.h"
 
 /* The stable step at rest, s: the least of all elements. *volume (may be NULL) gets whose. */

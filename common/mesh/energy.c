@@ -1,9 +1,9 @@
 #include "mesh/energy.h"
 
-#include "mesh/element_any.h"
 #include "mesh/hexahedron.h"
 #include "mesh/lattice.h"
 #include "model/materials.h"
+#include "physics/element_any.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "mesh/gradient.h"
 
-#include "mesh/element.h"
 #include "mesh/lattice.h"
+#include "physics/element.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@ NVCC=${NVCC:-$(command -v nvcc || ls /usr/local/cuda/bin/nvcc 2>/dev/null)}
 [ -n "$NVCC" ] || skip_all "no nvcc here"
 
 cat >"$T/kernel.cu" <<'END'
-#include "mesh/element.h"
+#include "physics/element.h"
 
 __global__ void forces(const element_field *u, element_field *f, element_shape shape, element_law law, element_fibre fibre)
 {

@@ -4,7 +4,7 @@
 #ifndef SINEW_ELEMENT_CASES_H
 #define SINEW_ELEMENT_CASES_H
 
-#include "mesh/element.h"
+#include "physics/element.h"
 
 #include "tap.h"
 

@@ -3,8 +3,8 @@
  * Slits are refused. And in rows: the same, slits too.
  */
 // needs: tled/tiles.c tled/places.c tled/*.c
-#include "mesh/element.h"
 #include "mesh/lattice.h"
+#include "physics/element.h"
 #include "tled/cpu.h"
 #include "tled/rows.h"
 #include "tled/tiles.h"

@@ -4,7 +4,7 @@
 // needs: tests/bench/flops.cc
 #include "tests/bench/flops.h"
 
-#include "mesh/element.h"
+#include "physics/element.h"
 
 #include "tap.h"
 

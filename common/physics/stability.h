@@ -5,7 +5,7 @@
 #ifndef SINEW_STABILITY_H
 #define SINEW_STABILITY_H
 
-#include "mesh/element.h"
+#include "physics/element.h"
 
 #ifdef ELEMENT_SINGLE
 #error "stability.h is in double"

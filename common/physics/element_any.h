@@ -10,7 +10,7 @@
 #ifndef SINEW_ELEMENT_ANY_H
 #define SINEW_ELEMENT_ANY_H
 
-#include "mesh/element.h"
+#include "physics/element.h"
 
 enum { ELEMENT_MODES = 7, ELEMENT_TWISTS = 4, ELEMENT_ANY = 3 * (ELEMENT_MODES + ELEMENT_TWISTS) + 1 };
 
