@@ -1,8 +1,8 @@
 #include "anchor.h"
 
 #include "base/mem.h"
-#include "mesh/closest.h"
 #include "mesh/lattice.h"
+#include "surface/closest.h"
 
 #include <math.h>
 #include <stdlib.h>

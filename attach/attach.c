@@ -4,10 +4,10 @@
 #include "anchor.h"
 #include "cli/tool.h"
 #include "held_report.h"
-#include "mesh/surface.h"
 #include "model/finite.h"
 #include "model/stage.h"
 #include "muscle.h"
+#include "surface/surface.h"
 
 #include <stdio.h>
 #include <stdlib.h>

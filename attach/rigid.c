@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/near.h"
-#include "mesh/surface.h"
+#include "surface/surface.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,8 +6,8 @@
 #define SINEW_RIGID_H
 
 #include "cli/opt.h"
-#include "mesh/names.h"
 #include "model/model.h"
+#include "surface/names.h"
 
 typedef struct rigid_primitive {
     const double *position; /* vertices x 3 of its surface, m */

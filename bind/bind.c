@@ -6,11 +6,11 @@
 #include "bind/tetra.h"
 #include "mesh/hexahedron.h"
 #include "mesh/scale.h"
-#include "mesh/surface.h"
 #include "mesh/weights.h"
 #include "model/check.h"
 #include "model/known.h"
 #include "model/stage.h"
+#include "surface/surface.h"
 
 #include <math.h>
 #include <stdio.h>

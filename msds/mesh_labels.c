@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "base/num.h"
-#include "mesh/names.h"
 #include "model/materials.h"
+#include "surface/names.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "msds/skin.h"
 
 #include "base/mem.h"
-#include "mesh/triangulate.h"
+#include "surface/triangulate.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -16,7 +16,7 @@
 
 #include "base/pool.h"
 #include "contact/probe.h"
-#include "mesh/surface.h"
+#include "surface/surface.h"
 
 typedef struct skin_options {
     double stiffness; /* N/m: of an edge's spring */

@@ -3,7 +3,7 @@
 #include "base/near.h"
 #include "base/num.h"
 #include "mesh/lattice.h"
-#include "mesh/surface.h"
+#include "surface/surface.h"
 #include "tled/script.h"
 
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 #include "voxelise/check_surfaces.h"
 
 #include "base/mem.h"
-#include "mesh/triangulate.h"
+#include "surface/triangulate.h"
 #include "voxelise/closed.h"
 #include "voxelise/expansion.h"
 #include "voxelise/meet.h"

@@ -4,7 +4,7 @@
 #ifndef SINEW_CHECK_SURFACES_H
 #define SINEW_CHECK_SURFACES_H
 
-#include "mesh/obj.h"
+#include "surface/obj.h"
 
 typedef struct check_result {
     int64_t polygons, triangles, vertices; /* vertices at one place count once */

@@ -5,7 +5,7 @@
 #ifndef SINEW_CLOSED_H
 #define SINEW_CLOSED_H
 
-#include "mesh/obj.h"
+#include "surface/obj.h"
 
 /* The polygons of one volume. */
 typedef struct closed_polygons {

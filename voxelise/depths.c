@@ -1,7 +1,7 @@
 #include "voxelise/depths.h"
 
 #include "base/mem.h"
-#include "mesh/closest.h"
+#include "surface/closest.h"
 
 #include <math.h>
 #include <stdatomic.h>

@@ -2,8 +2,8 @@
 
 #include "base/keyfile.h"
 #include "base/mem.h"
-#include "mesh/triangulate.h"
 #include "model/materials.h"
+#include "surface/triangulate.h"
 #include "voxelise/depths.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "voxelise/meet.h"
 
 #include "base/mem.h"
-#include "mesh/candidates.h"
+#include "surface/candidates.h"
 #include "voxelise/expansion.h"
 
 #include <float.h>

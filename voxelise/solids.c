@@ -1,7 +1,7 @@
 #include "voxelise/solids.h"
 
 #include "base/mem.h"
-#include "mesh/triangulate.h"
+#include "surface/triangulate.h"
 #include "voxelise/closed.h"
 #include "voxelise/weld.h"
 

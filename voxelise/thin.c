@@ -1,7 +1,7 @@
 #include "voxelise/thin.h"
 
 #include "base/mem.h"
-#include "mesh/embree.h"
+#include "surface/embree.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "base/near.h"
-#include "mesh/names.h"
 #include "model/materials.h"
+#include "surface/names.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -5,8 +5,8 @@
 #define SINEW_VOLUMES_H
 
 #include "base/in.h"
-#include "mesh/obj.h"
 #include "model/model.h"
+#include "surface/obj.h"
 
 /* A surface: the polygons that have one name among their groups. Names that differ only in case are one. */
 typedef struct volumes_surface {

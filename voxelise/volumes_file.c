@@ -5,9 +5,9 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "mesh/names.h"
-#include "mesh/surface.h"
 #include "model/materials.h"
+#include "surface/names.h"
+#include "surface/surface.h"
 
 #include <stdio.h>
 #include <stdlib.h>

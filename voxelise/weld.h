@@ -3,7 +3,7 @@
 #ifndef SINEW_WELD_H
 #define SINEW_WELD_H
 
-#include "mesh/obj.h"
+#include "surface/obj.h"
 
 typedef struct weld {
     int32_t *of;      /* the OBJ's vertices: the number of each place, -1 = not used */

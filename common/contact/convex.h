@@ -7,7 +7,7 @@
 #define SINEW_CONVEX_H
 
 #include "contact/probe.h"
-#include "mesh/obj.h"
+#include "surface/obj.h"
 
 enum { CONVEX_FACES = 20000 /* at most: each node near the probe is asked of each plane */ };
 

@@ -4,7 +4,7 @@
 #ifndef SINEW_BOUND_H
 #define SINEW_BOUND_H
 
-#include "mesh/surface.h"
+#include "surface/surface.h"
 
 typedef struct bound {
     surface shape;

@@ -1,7 +1,7 @@
 #include "mesh/weights.h"
 
-#include "mesh/closest.h"
 #include "mesh/lattice.h"
+#include "surface/closest.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 #include "render/showing.h"
 
 #include "base/mem.h"
-#include "mesh/surface.h"
 #include "render/image.h"
 #include "render/showing_parts.h"
+#include "surface/surface.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "base/mem.h"
 #include "base/path.h"
-#include "mesh/obj.h"
 #include "render/showing_parts.h"
+#include "surface/obj.h"
 #include "volume/body.h"
 
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "mesh/bone.h"
-#include "mesh/triangulate.h"
 #include "model/check.h"
 #include "render/showing_parts.h"
+#include "surface/triangulate.h"
 
 #include <math.h>
 #include <stdio.h>

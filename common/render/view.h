@@ -4,9 +4,9 @@
 #ifndef SINEW_RENDER_VIEW_H
 #define SINEW_RENDER_VIEW_H
 
-#include "mesh/embree.h"
 #include "render/trace.h"
 #include "render/vec.h"
+#include "surface/embree.h"
 
 enum { VIEW_CELL = 4, VIEW_CLASSES = VIEW_CELL * VIEW_CELL, VIEW_NEAR = 4, VIEW_SUBPIXELS = 8, VIEW_LAYERS = 32 };
 

@@ -4,8 +4,8 @@
 #ifndef SINEW_EXPORT_SHAPE_H
 #define SINEW_EXPORT_SHAPE_H
 
-#include "mesh/surface.h"
 #include "model/model.h"
+#include "surface/surface.h"
 
 typedef struct export_shape {
     const model *m;

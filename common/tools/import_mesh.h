@@ -5,9 +5,9 @@
 #ifndef SINEW_IMPORT_MESH_H
 #define SINEW_IMPORT_MESH_H
 
-#include "mesh/names.h"
 #include "model/materials.h"
 #include "model/model.h"
+#include "surface/names.h"
 #include "tools/import_ids.h"
 
 /* A material as far as the file has it. */

@@ -4,7 +4,7 @@
 #ifndef SINEW_IMPORT_SETS_H
 #define SINEW_IMPORT_SETS_H
 
-#include "mesh/names.h"
+#include "surface/names.h"
 #include "tools/import_ids.h"
 
 typedef struct import_range {

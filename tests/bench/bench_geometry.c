@@ -5,8 +5,8 @@
 // needs: tests/bench/bench.c
 #include "base/checksum.h"
 #include "base/mem.h"
-#include "mesh/obj.h"
 #include "model/stream.h"
+#include "surface/obj.h"
 
 #include "bench.h"
 

@@ -2,8 +2,8 @@
 /* Any bytes as a --layers file, beside a plan of volumes: layers with names of their own, deeper and deeper, of materials that there are; or
  * one error with a text.
  */
-#include "mesh/obj.h"
 #include "model/materials.h"
+#include "surface/obj.h"
 #include "voxelise/layers.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* An OBJ of any bytes is read or refused; what was read is written again the same, and with every vertex moved it is
  * still an OBJ of as many vertices, whose polygons cut into triangles.
  */
-#include "mesh/obj.h"
-#include "mesh/triangulate.h"
+#include "surface/obj.h"
+#include "surface/triangulate.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // needs: voxelise/volumes.c voxelise/volumes_file.c
 /* The reader of --volumes files, over a small OBJ: whatever it takes must be a plan that holds together. */
-#include "mesh/obj.h"
 #include "model/materials.h"
+#include "surface/obj.h"
 #include "voxelise/volumes.h"
 
 #include <stdlib.h>

@@ -4,8 +4,8 @@
 // needs: attach/anchor.c attach/rigid.c
 #include "attach/anchor.h"
 #include "base/mem.h"
-#include "mesh/closest.h"
-#include "mesh/surface.h"
+#include "surface/closest.h"
+#include "surface/surface.h"
 
 #include "block.h"
 

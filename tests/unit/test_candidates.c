@@ -1,5 +1,5 @@
 /* Boxes that overlap: all pairs are found, each once, and none that is far apart. */
-#include "mesh/candidates.h"
+#include "surface/candidates.h"
 
 #include "tap.h"
 

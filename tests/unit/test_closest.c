@@ -1,7 +1,7 @@
 /* Closest points, judged by what makes a point the closest: p is in the triangle, and no corner lies farther toward q
  * than p does.
  */
-#include "mesh/closest.h"
+#include "surface/closest.h"
 
 #include "tap.h"
 

@@ -1,6 +1,6 @@
 /* Spheres along packets of rays: each ray meets the nearest there is, from outside and within, within its bounds, as a
  * search of all says; and a ray that is not asked for stays as it was. */
-#include "mesh/embree.h"
+#include "surface/embree.h"
 
 #include "tap.h"
 

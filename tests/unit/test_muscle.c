@@ -3,7 +3,7 @@
 // needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/fibre_field.c attach/laplace.c
 #include "attach/muscle.h"
 #include "attach/rigid.h"
-#include "mesh/surface.h"
+#include "surface/surface.h"
 
 #include "block.h"
 

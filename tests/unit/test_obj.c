@@ -1,5 +1,5 @@
 /* OBJ files: every form of index, groups, continuations; written again to the byte; nonsense refused with its line. */
-#include "mesh/obj.h"
+#include "surface/obj.h"
 
 #include "tap.h"
 

@@ -1,5 +1,5 @@
 /* Surfaces carried by a model, and their names. */
-#include "mesh/surface.h"
+#include "surface/surface.h"
 
 #include "tap.h"
 

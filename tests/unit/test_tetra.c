@@ -3,8 +3,8 @@
  */
 // needs: bind/tetra.c
 #include "bind/tetra.h"
-#include "mesh/closest.h"
 #include "mesh/weights.h"
+#include "surface/closest.h"
 
 #include "tap.h"
 

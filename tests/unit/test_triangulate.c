@@ -1,5 +1,5 @@
 /* Polygons cut into triangles: stars, combs, flat and crossed ones; large ones in no time. */
-#include "mesh/triangulate.h"
+#include "surface/triangulate.h"
 
 #include "tap.h"
 

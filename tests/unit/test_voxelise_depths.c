@@ -5,7 +5,7 @@
  */
 #include "tap.h"
 
-#include "mesh/closest.h"
+#include "surface/closest.h"
 #include "voxelise/depths.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
-#include "mesh/candidates.h"
+#include "surface/candidates.h"
 
 #include "base/mem.h"
-#include "mesh/embree.h"
+#include "surface/embree.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "mesh/corner_tree.h"
+#include "surface/corner_tree.h"
 
 #include "base/mem.h"
 

@@ -1,6 +1,6 @@
-#include "mesh/obj.h"
+#include "surface/obj.h"
 
-#include "mesh/obj_words.h"
+#include "surface/obj_words.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
 #ifndef SINEW_SURFACE_H
 #define SINEW_SURFACE_H
 
-#include "mesh/obj.h"
 #include "model/model.h"
+#include "surface/obj.h"
 
 enum { SURFACE_NAME_MOST = 200 }; /* bytes of a surface's name: its arrays' names are longer */
 

@@ -1,4 +1,4 @@
-#include "mesh/names.h"
+#include "surface/names.h"
 
 #include "base/mem.h"
 

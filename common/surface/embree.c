@@ -1,4 +1,4 @@
-#include "mesh/embree.h"
+#include "surface/embree.h"
 
 #include "base/mem.h"
 

@@ -1,4 +1,4 @@
-#include "mesh/surface.h"
+#include "surface/surface.h"
 
 #include "base/chars.h"
 #include "model/known.h"

@@ -1,4 +1,4 @@
-#include "mesh/obj_words.h"
+#include "surface/obj_words.h"
 
 #include "base/chars.h"
 

@@ -1,7 +1,7 @@
-#include "mesh/triangulate.h"
+#include "surface/triangulate.h"
 
 #include "base/mem.h"
-#include "mesh/corner_tree.h"
+#include "surface/corner_tree.h"
 
 #include <math.h>
 #include <stdlib.h>

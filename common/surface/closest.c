@@ -1,7 +1,7 @@
-#include "mesh/closest.h"
+#include "surface/closest.h"
 
 #include "base/mem.h"
-#include "mesh/triangulate.h"
+#include "surface/triangulate.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "mesh/names.h"
-#include "mesh/obj.h"
-#include "mesh/obj_words.h"
+#include "surface/names.h"
+#include "surface/obj.h"
+#include "surface/obj_words.h"
 
 #include <limits.h>
 #include <stdio.h>
