@@ -8,8 +8,8 @@
 #include "msds/cuda_grid.cuh"
 
 extern "C" {
-#include "contact/probe.h"
 #include "msds/problem.h"
+#include "probe/probe.h"
 }
 
 typedef struct tissue_contact {

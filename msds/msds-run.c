@@ -3,7 +3,6 @@
  */
 #include "base/mem.h"
 #include "cli/progress.h"
-#include "contact/probe_carry.h"
 #include "mesh/scale.h"
 #include "model/stage.h"
 #include "msds/compare.h"
@@ -12,6 +11,7 @@
 #include "msds/problem.h"
 #include "msds/run_options.h"
 #include "msds/skin_model.h"
+#include "probe/probe_carry.h"
 #include "volume/poses.h"
 
 #include <stdio.h>

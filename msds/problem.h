@@ -10,10 +10,10 @@
 #ifndef SINEW_PROBLEM_H
 #define SINEW_PROBLEM_H
 
-#include "contact/probe.h"
 #include "device/backend.h"
 #include "model/model.h"
 #include "msds/simplex.h"
+#include "probe/probe.h"
 
 typedef enum msds_method { MSDS_SPRINGS, MSDS_FEM, MSDS_EXACT } msds_method;
 

@@ -15,7 +15,7 @@
 #define SINEW_SKIN_H
 
 #include "base/pool.h"
-#include "contact/probe.h"
+#include "probe/probe.h"
 #include "surface/surface.h"
 
 typedef struct skin_options {

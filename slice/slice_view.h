@@ -7,7 +7,7 @@
 #ifndef SINEW_SLICE_VIEW_H
 #define SINEW_SLICE_VIEW_H
 
-#include "contact/probe.h"
+#include "probe/probe.h"
 #include "slice/slice_cutter.h"
 
 typedef enum slice_array { SLICE_LINEAR, SLICE_CURVED, SLICE_PHASED } slice_array;

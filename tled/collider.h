@@ -8,7 +8,7 @@
 #ifndef SINEW_COLLIDER_H
 #define SINEW_COLLIDER_H
 
-#include "contact/probe.h"
+#include "probe/probe.h"
 #include "tled/state.h"
 
 typedef struct collider {

@@ -3,10 +3,10 @@
  */
 #include "base/mem.h"
 #include "cli/progress.h"
-#include "contact/probe_carry.h"
 #include "mesh/scale.h"
 #include "model/materials.h"
 #include "model/stage.h"
+#include "probe/probe_carry.h"
 #include "tled/checkpoint.h"
 #include "tled/collider.h"
 #include "tled/folds.h"

@@ -1,7 +1,7 @@
 /* The probe where a frame has it: a mesh of the points that are farthest along directions all around; of a convex one
  * its own triangles. */
 #include "base/mem.h"
-#include "contact/probe_carry.h"
+#include "probe/probe_carry.h"
 #include "render/showing_parts.h"
 
 #include <math.h>

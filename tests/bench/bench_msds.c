@@ -8,9 +8,9 @@
 
 #include "base/mem.h"
 #include "bench.h"
-#include "contact/narrow.h"
 #include "msds/largest.h"
 #include "msds/msds_cpu.h"
+#include "probe/narrow.h"
 
 enum { SIZES = 4, METHODS = 4, FRAMES = 30, ITERATIONS = 20, TOUCHES = 20 };
 

@@ -1,5 +1,5 @@
 /* Any text as --probe: a probe that has a size, and a depth and a way out for every point; or one error with a text. */
-#include "contact/probe.h"
+#include "probe/probe.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #include "tap.h"
 
 #include "base/mem.h"
-#include "contact/convex.h"
-#include "contact/narrow.h"
+#include "probe/convex.h"
+#include "probe/narrow.h"
 
 #include <stdlib.h>
 #include <string.h>

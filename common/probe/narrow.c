@@ -1,4 +1,4 @@
-#include "contact/narrow.h"
+#include "probe/narrow.h"
 
 #include <ccd/ccd.h>
 

@@ -9,7 +9,7 @@
 #ifndef SINEW_NARROW_H
 #define SINEW_NARROW_H
 
-#include "contact/probe.h"
+#include "probe/probe.h"
 
 enum { NARROW_STARTS = 8 };
 

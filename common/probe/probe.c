@@ -1,4 +1,4 @@
-#include "contact/probe.h"
+#include "probe/probe.h"
 
 #include "base/num.h"
 #include "base/path.h"

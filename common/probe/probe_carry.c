@@ -1,4 +1,4 @@
-#include "contact/probe_carry.h"
+#include "probe/probe_carry.h"
 
 #include "base/chars.h"
 #include "base/mem.h"

@@ -6,7 +6,7 @@
 #ifndef SINEW_CONVEX_H
 #define SINEW_CONVEX_H
 
-#include "contact/probe.h"
+#include "probe/probe.h"
 #include "surface/obj.h"
 
 enum { CONVEX_FACES = 20000 /* at most: each node near the probe is asked of each plane */ };

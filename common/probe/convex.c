@@ -1,4 +1,4 @@
-#include "contact/convex.h"
+#include "probe/convex.h"
 
 #include "base/mem.h"
 

@@ -4,8 +4,8 @@
 #ifndef SINEW_PROBE_CARRY_H
 #define SINEW_PROBE_CARRY_H
 
-#include "contact/probe.h"
 #include "model/model.h"
+#include "probe/probe.h"
 
 /* Puts a probe that is loaded into the model, in place of one that it had; notes the user's arrays over that, which go
  * with it. */
