@@ -39,7 +39,7 @@ endif
 # Every .c of these folders is the library, but for what mains begin and end with, and say on standard error: that is linked beside it.
 MAIN_SRC := common/cli/tool.c common/cli/progress.c
 MAIN_OBJ := $(MAIN_SRC:%.c=$(BUILD)/%.o)
-LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c,$(wildcard common/base/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/device/*.c common/render/*.c))
+LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c,$(wildcard common/base/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/solve/*.c common/render/*.c))
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -78,7 +78,7 @@ $(BUILD)/tled/cuda_look.o: CUDA_FUSED = true
 $(BUILD)/tled/cuda_march.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/tled/cuda_march.o: CUDA_FUSED = true
 $(BUILD)/tled/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_90,code=compute_90
-CUDA_SRC := $(wildcard common/device/*.cu tled/*.cu msds/*.cu)
+CUDA_SRC := $(wildcard common/solve/*.cu tled/*.cu msds/*.cu)
 $(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
 LIB_CUDA := $(BUILD)/libsinew-cuda.a

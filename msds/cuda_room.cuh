@@ -8,7 +8,7 @@
 
 extern "C" {
 #include "base/mem.h"
-#include "device/card.h"
+#include "solve/card.h"
 }
 
 #define CARD_TRY(call) card_check(call, #call, -1, e)

@@ -1,7 +1,7 @@
 #include "msds/lanes.h"
 
 #include "base/mem.h"
-#include "device/vectors.h"
+#include "solve/vectors.h"
 
 #include <stdlib.h>
 

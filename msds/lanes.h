@@ -37,7 +37,7 @@ typedef struct lanes_matrix {
 } lanes_matrix;
 
 typedef struct lanes {
-    const char *name; /* as device/vectors.h has it */
+    const char *name; /* as solve/vectors.h has it */
     /* A step of springs for slices [from, to): next_u, next_v from u, v. */
     void (*step)(const lanes_springs *w, int64_t from, int64_t to);
     /* y = a p for slices [from, to); returns p . y. */
@@ -67,7 +67,7 @@ extern const lanes lanes_avx2, lanes_avx512;
 /* All that are built, the fastest first; ends with NULL. */
 extern const lanes *const lanes_all[];
 
-/* The first that this processor can do, or what SINEW_VECTORS names (device/vectors.h). NULL with e filled. */
+/* The first that this processor can do, or what SINEW_VECTORS names (solve/vectors.h). NULL with e filled. */
 const lanes *lanes_choose(err *e);
 
 int lanes_field_make(lanes_field *f, int64_t nodes, err *e);

@@ -4,7 +4,7 @@
 #ifndef SINEW_MSDS_CPU_H
 #define SINEW_MSDS_CPU_H
 
-#include "device/backend.h"
+#include "solve/backend.h"
 
 extern const backend msds_cpu;
 

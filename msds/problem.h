@@ -1,5 +1,5 @@
 /* What msds-run solves, as flat arrays: the problem, which no back end changes, made from a tetrahedral model; and the contract of
- * its back ends (device/backend.h): their create takes an msds_problem, their step an msds_plan, their look fills an msds_sight.
+ * its back ends (solve/backend.h): their create takes an msds_problem, their step an msds_plan, their look fills an msds_sight.
  * They keep and take no copies of a state.
  * One state serves every method and carries displacement and velocity from one to the next. The caller owns the problem; it borrows
  * the model's arrays, which must outlive it.
@@ -10,10 +10,10 @@
 #ifndef SINEW_PROBLEM_H
 #define SINEW_PROBLEM_H
 
-#include "device/backend.h"
 #include "model/model.h"
 #include "msds/simplex.h"
 #include "probe/probe.h"
+#include "solve/backend.h"
 
 typedef enum msds_method { MSDS_SPRINGS, MSDS_FEM, MSDS_EXACT } msds_method;
 

@@ -1,6 +1,6 @@
 #include "slice/slice_lanes.h"
 
-#include "device/vectors.h"
+#include "solve/vectors.h"
 
 const slice_lanes *slice_lanes_choose(err *e)
 {

@@ -2,7 +2,7 @@
 #ifndef SINEW_CPU_H
 #define SINEW_CPU_H
 
-#include "device/backend.h"
+#include "solve/backend.h"
 
 extern const backend tled_cpu_double, tled_cpu_single;
 

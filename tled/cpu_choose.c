@@ -1,6 +1,6 @@
 #include "tled/cpu_pass.h"
 
-#include "device/vectors.h"
+#include "solve/vectors.h"
 
 const cpu_pass *cpu_pass_choose(const cpu_pass *const *passes, err *e)
 {

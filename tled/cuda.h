@@ -3,7 +3,7 @@
 #ifndef SINEW_CUDA_H
 #define SINEW_CUDA_H
 
-#include "device/backend.h"
+#include "solve/backend.h"
 
 extern const backend tled_cuda_double, tled_cuda_single;
 

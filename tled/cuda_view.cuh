@@ -17,12 +17,12 @@
 
 extern "C" {
 #include "base/mem.h"
-#include "device/card.h"
+#include "solve/card.h"
 #include "tled/cuda.h"
 #include "tled/tiles.h"
 }
 
-#include "device/start.cuh"
+#include "solve/start.cuh"
 
 /* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one; HALO: the most
  * places around it for a thread; TOGETHER: blocks that a multiprocessor is to have registers for, in single precision. THREADS is a power of 2. */

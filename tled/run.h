@@ -12,7 +12,7 @@
 #ifndef SINEW_RUN_H
 #define SINEW_RUN_H
 
-#include "device/backend.h"
+#include "solve/backend.h"
 #include "tled/log.h"
 #include "tled/outbox.h"
 #include "tled/relax.h"

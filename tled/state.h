@@ -1,5 +1,5 @@
 /* What tled-run solves, as flat arrays: the problem, which no back end changes, made from a model; and the contract of its
- * back ends (device/backend.h): their create takes a tled_problem, their step a tled_plan. The caller owns the problem; it
+ * back ends (solve/backend.h): their create takes a tled_problem, their step a tled_plan. The caller owns the problem; it
  * borrows the model's arrays and the script, which must outlive it.
  *
  * Each node sums the forces of its elements in the order in which these stand in the lattice, x fastest, so that the sum
@@ -8,7 +8,7 @@
 #ifndef SINEW_STATE_H
 #define SINEW_STATE_H
 
-#include "device/backend.h"
+#include "solve/backend.h"
 #include "tled/script.h"
 
 /* What holds one component of a node: nothing, its place at the start, or curve number `hold` of the script. */

@@ -2,7 +2,7 @@ extern "C" {
 #include "tests/bench/card_roof.h"
 
 #include "base/mem.h"
-#include "device/card.h"
+#include "solve/card.h"
 }
 
 #include <cuda_runtime.h>

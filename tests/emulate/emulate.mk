@@ -2,7 +2,7 @@
 # $(BUILD)/emulate has tled's CUDA as g++ makes it: each access of theirs a call (-fsanitize=thread), which comes to shadow.cc.
 
 EMULATE_CXX ?= $(if $(filter x86_64,$(shell uname -m)),$(shell command -v g++))
-EMULATE_CU := tled/cuda_march tled/cuda_single tled/cuda_double tled/cuda_look common/device/card tests/emulate/wrong
+EMULATE_CU := tled/cuda_march tled/cuda_single tled/cuda_double tled/cuda_look common/solve/card tests/emulate/wrong
 EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) fibres shadow telling streams tled/march)) \
 	$(addprefix $(BUILD)/tled/,march_units.o march_near.o places.o tiles.o)
 EMULATE_FLAGS = -std=c++17 -g -Wall $(WERROR) -Itests/emulate $(CPPFLAGS) -MMD -MP

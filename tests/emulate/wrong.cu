@@ -2,7 +2,7 @@
  * that are wrong. */
 #include "tests/emulate/wrong.h"
 
-#include "device/start.cuh"
+#include "solve/start.cuh"
 #include "tled/cuda_ptx.cuh"
 
 #include <stdlib.h>

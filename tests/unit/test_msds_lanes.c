@@ -5,10 +5,10 @@
 #include "msds_block.h"
 
 #include "base/mem.h"
-#include "device/vectors.h"
 #include "msds/lanes.h"
 #include "msds/mixing.h"
 #include "msds/slices.h"
+#include "solve/vectors.h"
 
 #include "tap.h"
 

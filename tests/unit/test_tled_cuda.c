@@ -9,7 +9,7 @@
 #include "tled_card.h"
 
 #ifdef SINEW_CUDA
-#include "device/card.h"
+#include "solve/card.h"
 #endif
 
 static const block middle = {{40, 40, 24}, {.001, .001, .001}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 1, 0}, 0, false};

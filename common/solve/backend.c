@@ -1,4 +1,4 @@
-#include "device/backend.h"
+#include "solve/backend.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "device/vectors.h"
+#include "solve/vectors.h"
 
 #include <stdlib.h>
 #include <string.h>

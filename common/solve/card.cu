@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 extern "C" {
-#include "device/card.h"
+#include "solve/card.h"
 }
 
 enum { LEAST = 75 }; /* compute capability that builds have code for: 10 major + minor */
