@@ -1,7 +1,7 @@
 #include "slice/slice_write.h"
 
 #include "base/mem.h"
-#include "render/png.h"
+#include "picture/png.h"
 
 #include <math.h>
 #include <stdlib.h>

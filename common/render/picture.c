@@ -1,8 +1,8 @@
 #include "render/picture.h"
 
 #include "base/mem.h"
-#include "render/legend.h"
-#include "render/sheet.h"
+#include "picture/legend.h"
+#include "picture/sheet.h"
 
 #include <math.h>
 #include <stdio.h>

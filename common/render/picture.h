@@ -5,7 +5,7 @@
 #ifndef SINEW_PICTURE_H
 #define SINEW_PICTURE_H
 
-#include "render/font.h"
+#include "picture/font.h"
 #include "render/showing.h"
 #include "render/trace.h"
 

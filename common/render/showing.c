@@ -1,7 +1,7 @@
 #include "render/showing.h"
 
 #include "base/mem.h"
-#include "render/image.h"
+#include "picture/image.h"
 #include "render/showing_parts.h"
 #include "surface/surface.h"
 

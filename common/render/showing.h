@@ -6,7 +6,7 @@
 #define SINEW_SHOWING_H
 
 #include "model/model.h"
-#include "render/colourmap.h"
+#include "picture/colourmap.h"
 #include "render/field.h"
 #include "render/scene.h"
 

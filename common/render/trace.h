@@ -5,8 +5,8 @@
 #ifndef SINEW_RENDER_TRACE_H
 #define SINEW_RENDER_TRACE_H
 
+#include "picture/image.h"
 #include "render/camera.h"
-#include "render/image.h"
 #include "render/scene.h"
 
 typedef struct trace_options {

@@ -4,7 +4,7 @@
 #include "cli/progress.h"
 #include "cli/tool.h"
 #include "model/source.h"
-#include "render/png.h"
+#include "picture/png.h"
 #include "tools/render_plan.h"
 
 #include <stdio.h>

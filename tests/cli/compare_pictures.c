@@ -2,7 +2,7 @@
  * share of pixels that differ by more than 32 of them in some channel; exits 1 where the mean is above 1 or the share above a hundredth (a
  * processor may round an edge to the next pixel), or the sizes differ; 2 on trouble.
  */
-#include "render/png.h"
+#include "picture/png.h"
 
 #include <stdio.h>
 #include <stdlib.h>

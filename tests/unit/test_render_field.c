@@ -2,9 +2,9 @@
  * colours, round numbers, the layout of sheets. */
 #include "mesh/boundary.h"
 #include "mesh/gradient.h"
-#include "render/colourmap.h"
-#include "render/legend.h"
-#include "render/sheet.h"
+#include "picture/colourmap.h"
+#include "picture/legend.h"
+#include "picture/sheet.h"
 
 #include "tap.h"
 

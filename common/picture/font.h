@@ -4,7 +4,7 @@
 #ifndef SINEW_FONT_H
 #define SINEW_FONT_H
 
-#include "render/image.h"
+#include "picture/image.h"
 
 typedef struct font font;
 

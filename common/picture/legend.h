@@ -4,8 +4,8 @@
 #ifndef SINEW_LEGEND_H
 #define SINEW_LEGEND_H
 
-#include "render/colourmap.h"
-#include "render/font.h"
+#include "picture/colourmap.h"
+#include "picture/font.h"
 
 typedef struct legend_key {
     const char *words; /* borrowed */

@@ -1,4 +1,4 @@
-#include "render/legend.h"
+#include "picture/legend.h"
 
 #include "base/mem.h"
 

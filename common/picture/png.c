@@ -1,4 +1,4 @@
-#include "render/png.h"
+#include "picture/png.h"
 
 #include "base/mem.h"
 

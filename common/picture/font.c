@@ -1,4 +1,4 @@
-#include "render/font.h"
+#include "picture/font.h"
 
 #include "base/mem.h"
 

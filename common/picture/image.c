@@ -1,4 +1,4 @@
-#include "render/image.h"
+#include "picture/image.h"
 
 #include "base/mem.h"
 

@@ -1,4 +1,4 @@
-#include "render/colourmap.h"
+#include "picture/colourmap.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "render/sheet.h"
+#include "picture/sheet.h"
 
 /* The shorter side of the pictures with so many columns. */
 static int shorter(const sheet *s, int columns)
