@@ -132,8 +132,8 @@ SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
 SURFACE_SRC := $(SAMPLES_SRC) $(wildcard slice/contour*.c) slice/cubes.c
 SLICE_SRC := $(SAMPLES_SRC) $(wildcard slice/slice_*.c)
 INFO_MODULES := $(wildcard common/tools/info_*.c)
-EXPORT_MODULES := $(wildcard common/tools/export_*.c)
-IMPORT_MODULES := $(wildcard common/tools/import_*.c)
+EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
+IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
 RENDER_MODULES := $(wildcard common/tools/render_*.c)
 
 define tool
@@ -155,8 +155,8 @@ $(eval $(call tool,us-slice,slice/us-slice.c $(SLICE_SRC),$$(PICTURES)))
 $(eval $(call tool,sinew,common/cli/sinew.c))
 $(eval $(call tool,sinew-info,common/tools/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/tools/sinew-diff.c))
-$(eval $(call tool,sinew-export,common/tools/sinew-export.c $(EXPORT_MODULES)))
-$(eval $(call tool,sinew-import,common/tools/sinew-import.c $(IMPORT_MODULES)))
+$(eval $(call tool,sinew-export,common/exchange/sinew-export.c $(EXPORT_MODULES)))
+$(eval $(call tool,sinew-import,common/exchange/sinew-import.c $(IMPORT_MODULES)))
 $(eval $(call tool,sinew-render,common/tools/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))
 
 .PHONY: clean

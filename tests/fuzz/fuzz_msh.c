@@ -1,6 +1,6 @@
 /* See mesh_bytes.h. */
-// needs: common/tools/import_mesh.c common/tools/import_model.c common/tools/import_ids.c common/tools/import_msh.c common/tools/import_tokens.c
-#include "tools/import_msh.h"
+// needs: common/exchange/import_mesh.c common/exchange/import_model.c common/exchange/import_ids.c common/exchange/import_msh.c common/exchange/import_tokens.c
+#include "exchange/import_msh.h"
 
 #include "mesh_bytes.h"
 

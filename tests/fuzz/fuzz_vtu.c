@@ -1,6 +1,6 @@
 /* See mesh_bytes.h. */
-// needs: common/tools/import_mesh.c common/tools/import_model.c common/tools/import_ids.c common/tools/import_vtu.c common/tools/import_xml.c common/tools/import_xml_data.c
-#include "tools/import_vtu.h"
+// needs: common/exchange/import_mesh.c common/exchange/import_model.c common/exchange/import_ids.c common/exchange/import_vtu.c common/exchange/import_xml.c common/exchange/import_xml_data.c
+#include "exchange/import_vtu.h"
 
 #include "mesh_bytes.h"
 

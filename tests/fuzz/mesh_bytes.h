@@ -5,7 +5,7 @@
 #define SINEW_MESH_BYTES_H
 
 #include "base/in.h"
-#include "tools/import_mesh.h"
+#include "exchange/import_mesh.h"
 
 #include <stdlib.h>
 #include <string.h>

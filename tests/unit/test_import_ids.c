@@ -1,7 +1,7 @@
-// needs: common/tools/import_ids.c
+// needs: common/exchange/import_ids.c
 /* The numbers of a mesh's file, in any order and with gaps: each is found again, and one that stands twice is refused,
  * wherever. */
-#include "tools/import_ids.h"
+#include "exchange/import_ids.h"
 
 #include "tap.h"
 

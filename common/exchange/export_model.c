@@ -1,4 +1,4 @@
-#include "tools/export_model.h"
+#include "exchange/export_model.h"
 
 int export_model(source *from, const char *path, bool salvage, stage *to, const tool *t, err *e)
 {

@@ -1,4 +1,4 @@
-#include "tools/export_msh.h"
+#include "exchange/export_msh.h"
 
 #include "base/num.h"
 

@@ -4,8 +4,8 @@
 #ifndef SINEW_IMPORT_SETS_H
 #define SINEW_IMPORT_SETS_H
 
+#include "exchange/import_ids.h"
 #include "surface/names.h"
-#include "tools/import_ids.h"
 
 typedef struct import_range {
     int32_t first, last, step; /* first < 0: the set of index -1 - first */

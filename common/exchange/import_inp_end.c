@@ -1,6 +1,6 @@
 #include "base/mem.h"
 #include "base/near.h"
-#include "tools/import_inp_parts.h"
+#include "exchange/import_inp_parts.h"
 
 #include <stdlib.h>
 #include <string.h>

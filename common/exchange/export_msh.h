@@ -5,7 +5,7 @@
 #define SINEW_EXPORT_MSH_H
 
 #include "base/out.h"
-#include "tools/export_shape.h"
+#include "exchange/export_shape.h"
 
 /* The elements at rest. */
 void export_msh(const export_shape *x, out *to);

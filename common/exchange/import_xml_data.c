@@ -1,7 +1,7 @@
 /* The data of arrays, of import_xml.h. */
 #include "base/mem.h"
 #include "base/num.h"
-#include "tools/import_xml.h"
+#include "exchange/import_xml.h"
 
 #include <ctype.h>
 #include <math.h>

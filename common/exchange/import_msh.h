@@ -6,7 +6,7 @@
 #define SINEW_IMPORT_MSH_H
 
 #include "base/in.h"
-#include "tools/import_mesh.h"
+#include "exchange/import_mesh.h"
 
 /* Rigid nodes are those of groups that the wishes name and of a group named `rigid` (as sinew export writes it). -1 with e at file:line, or in binary
  * at the section. */

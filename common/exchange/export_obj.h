@@ -6,7 +6,7 @@
 
 #include "base/num.h"
 #include "base/out.h"
-#include "tools/export_shape.h"
+#include "exchange/export_shape.h"
 
 /* Writes the shape, moved where deformed, in `unit`. A surface keeps its groups and its vertices' order; of elements, the
  * faces that belong to one element only, outward, in a group for each volume, with the nodes that they use. */

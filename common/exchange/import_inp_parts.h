@@ -4,8 +4,8 @@
 #ifndef SINEW_IMPORT_INP_PARTS_H
 #define SINEW_IMPORT_INP_PARTS_H
 
-#include "tools/import_inp.h"
-#include "tools/import_sets.h"
+#include "exchange/import_inp.h"
+#include "exchange/import_sets.h"
 
 /* What the data lines after a keyword are. */
 typedef enum inp_block {

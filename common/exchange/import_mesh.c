@@ -1,4 +1,4 @@
-#include "tools/import_mesh.h"
+#include "exchange/import_mesh.h"
 
 #include "base/mem.h"
 

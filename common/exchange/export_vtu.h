@@ -5,7 +5,7 @@
 #define SINEW_EXPORT_VTU_H
 
 #include "base/out.h"
-#include "tools/export_shape.h"
+#include "exchange/export_shape.h"
 
 /* Writes the shape with all arrays of numbers over its points and cells, of the model and the frame; strings of tables
  * as field data. deformed: the points stand where the frame moved them. */

@@ -1,10 +1,10 @@
-#include "tools/import_msh.h"
+#include "exchange/import_msh.h"
 
 #include "base/chars.h"
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "tools/import_tokens.h"
+#include "exchange/import_tokens.h"
 
 #include <stdio.h>
 #include <stdlib.h>

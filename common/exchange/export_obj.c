@@ -1,4 +1,4 @@
-#include "tools/export_obj.h"
+#include "exchange/export_obj.h"
 
 #include "base/chars.h"
 #include "base/mem.h"

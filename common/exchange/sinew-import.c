@@ -1,11 +1,11 @@
 /* sinew-import: a mesh of another program (Abaqus input, Gmsh, VTU) as a model. */
 #include "base/mem.h"
 #include "base/num.h"
+#include "exchange/import_inp.h"
+#include "exchange/import_msh.h"
+#include "exchange/import_vtu.h"
 #include "mesh/extent.h"
 #include "model/stage.h"
-#include "tools/import_inp.h"
-#include "tools/import_msh.h"
-#include "tools/import_vtu.h"
 
 #include <math.h>
 #include <stdlib.h>

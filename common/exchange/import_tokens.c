@@ -1,4 +1,4 @@
-#include "tools/import_tokens.h"
+#include "exchange/import_tokens.h"
 
 #include "base/num.h"
 

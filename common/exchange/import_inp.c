@@ -1,9 +1,9 @@
-#include "tools/import_inp.h"
+#include "exchange/import_inp.h"
 
 #include "base/chars.h"
 #include "base/mem.h"
 #include "base/num.h"
-#include "tools/import_inp_parts.h"
+#include "exchange/import_inp_parts.h"
 
 #include <ctype.h>
 #include <stdio.h>

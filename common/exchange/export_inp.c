@@ -1,4 +1,4 @@
-#include "tools/export_inp.h"
+#include "exchange/export_inp.h"
 
 #include "base/mem.h"
 #include "base/num.h"

@@ -4,13 +4,13 @@
 #include "base/outs.h"
 #include "cli/frames.h"
 #include "cli/tool.h"
+#include "exchange/export_inp.h"
+#include "exchange/export_model.h"
+#include "exchange/export_msh.h"
+#include "exchange/export_obj.h"
+#include "exchange/export_vtu.h"
 #include "model/finite.h"
 #include "model/source.h"
-#include "tools/export_inp.h"
-#include "tools/export_model.h"
-#include "tools/export_msh.h"
-#include "tools/export_obj.h"
-#include "tools/export_vtu.h"
 
 #include <inttypes.h>
 #include <stdio.h>

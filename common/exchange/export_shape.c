@@ -1,4 +1,4 @@
-#include "tools/export_shape.h"
+#include "exchange/export_shape.h"
 
 #include "base/mem.h"
 #include "base/near.h"

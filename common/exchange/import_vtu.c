@@ -1,10 +1,10 @@
-#include "tools/import_vtu.h"
+#include "exchange/import_vtu.h"
 
 #include "base/chars.h"
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "tools/import_xml.h"
+#include "exchange/import_xml.h"
 
 #include <math.h>
 #include <stdio.h>

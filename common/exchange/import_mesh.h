@@ -5,10 +5,10 @@
 #ifndef SINEW_IMPORT_MESH_H
 #define SINEW_IMPORT_MESH_H
 
+#include "exchange/import_ids.h"
 #include "model/materials.h"
 #include "model/model.h"
 #include "surface/names.h"
-#include "tools/import_ids.h"
 
 /* A material as far as the file has it. */
 typedef struct import_material {

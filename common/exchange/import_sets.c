@@ -1,4 +1,4 @@
-#include "tools/import_sets.h"
+#include "exchange/import_sets.h"
 
 #include "base/mem.h"
 

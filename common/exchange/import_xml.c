@@ -1,4 +1,4 @@
-#include "tools/import_xml.h"
+#include "exchange/import_xml.h"
 
 #include <ctype.h>
 #include <stdio.h>

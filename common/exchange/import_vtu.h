@@ -5,7 +5,7 @@
 #define SINEW_IMPORT_VTU_H
 
 #include "base/in.h"
-#include "tools/import_mesh.h"
+#include "exchange/import_mesh.h"
 
 /* Volumes from the cell data `volume` (else `material`), with the names of the field data volume.name; fibres from `fibre`; rigid nodes where the point
  * data `rigid`, and what the wishes name, is not 0. -1 with e at file:line. */

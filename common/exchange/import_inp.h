@@ -6,7 +6,7 @@
 #define SINEW_IMPORT_INP_H
 
 #include "base/in.h"
-#include "tools/import_mesh.h"
+#include "exchange/import_mesh.h"
 
 /* Fills the mesh: volumes from sections (where there are none, from the ELSET of *ELEMENT), rigid nodes from *BOUNDARY and from the
  * sets that the wishes name. -1 with e at file:line. */

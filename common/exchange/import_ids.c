@@ -1,4 +1,4 @@
-#include "tools/import_ids.h"
+#include "exchange/import_ids.h"
 
 #include "base/mem.h"
 

@@ -1,7 +1,7 @@
 /* The last part of import_mesh.h: from a mesh as it came to a model. */
 #include "base/mem.h"
+#include "exchange/import_mesh.h"
 #include "mesh/lattice.h"
-#include "tools/import_mesh.h"
 
 #include <stdio.h>
 #include <stdlib.h>

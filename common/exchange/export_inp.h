@@ -5,7 +5,7 @@
 #define SINEW_EXPORT_INP_H
 
 #include "base/out.h"
-#include "tools/export_shape.h"
+#include "exchange/export_shape.h"
 
 typedef struct export_inp_options {
     const char *element; /* of hexahedra: "C3D8R" or "C3D8" */

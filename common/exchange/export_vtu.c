@@ -1,4 +1,4 @@
-#include "tools/export_vtu.h"
+#include "exchange/export_vtu.h"
 
 #include "base/mem.h"
 #include "base/num.h"
