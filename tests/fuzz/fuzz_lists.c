@@ -1,14 +1,14 @@
-// needs: attach/rigid.c msds/mesh_fix.c msds/mesh_tets.c msds/mesh_labels.c tled/script.c tled/script_read.c common/tools/info_key.c common/tools/info_quality.c common/tools/info_stats.c
+// needs: attach/rigid.c msds/mesh_fix.c msds/mesh_tets.c msds/mesh_labels.c tled/script.c tled/script_read.c common/inspect/info_key.c common/inspect/info_quality.c common/inspect/info_stats.c
 /* Any text as the lists of names that options take, over a small model: attach --rigid, msds-mesh --fix and --names, tled-run -c; and as a key of
  * sinew info --get. Each is taken or is one error with a text.
  */
 #include "attach/rigid.h"
+#include "inspect/info_key.h"
 #include "model/materials.h"
 #include "msds/mesh_fix.h"
 #include "msds/mesh_labels.h"
 #include "msds/mesh_tets.h"
 #include "tled/script.h"
-#include "tools/info_key.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "tools/info_names.h"
+#include "inspect/info_names.h"
 
 #include "base/chars.h"
 #include "base/mem.h"

@@ -1,8 +1,8 @@
-#include "tools/info_quality.h"
+#include "inspect/info_quality.h"
 
+#include "inspect/info_stats.h"
 #include "mesh/element_place.h"
 #include "mesh/energy.h"
-#include "tools/info_stats.h"
 
 #include <inttypes.h>
 #include <string.h>

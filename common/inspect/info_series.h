@@ -5,8 +5,8 @@
 #define SINEW_INFO_SERIES_H
 
 #include "cli/opt.h"
+#include "inspect/info_quality.h"
 #include "model/source.h"
-#include "tools/info_quality.h"
 
 typedef struct info_series {
     int values[64]; /* how many each key has in a frame */

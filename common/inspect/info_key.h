@@ -4,8 +4,8 @@
 #define SINEW_INFO_KEY_H
 
 #include "base/out.h"
+#include "inspect/info_quality.h"
 #include "model/source.h"
-#include "tools/info_quality.h"
 
 enum { INFO_KEY = 512 };
 

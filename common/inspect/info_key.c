@@ -1,14 +1,14 @@
-#include "tools/info_key.h"
+#include "inspect/info_key.h"
 
 #include "base/chars.h"
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
 #include "base/spelling.h"
+#include "inspect/info_names.h"
+#include "inspect/info_stats.h"
 #include "model/known.h"
 #include "model/rest_place.h"
-#include "tools/info_names.h"
-#include "tools/info_stats.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "tools/info_stats.h"
+#include "inspect/info_stats.h"
 
 #include "base/num.h"
 #include "model/source.h"

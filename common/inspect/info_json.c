@@ -1,10 +1,10 @@
-#include "tools/info_json.h"
+#include "inspect/info_json.h"
 
 #include "base/num.h"
+#include "inspect/info_key.h"
+#include "inspect/info_quality.h"
+#include "inspect/info_stats.h"
 #include "model/known.h"
-#include "tools/info_key.h"
-#include "tools/info_quality.h"
-#include "tools/info_stats.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,7 @@
-#include "tools/info_series.h"
+#include "inspect/info_series.h"
 
-#include "tools/info_key.h"
-#include "tools/info_stats.h"
+#include "inspect/info_key.h"
+#include "inspect/info_stats.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,15 +1,15 @@
 /* sinew-info: what a model holds, for people, as JSON, or one value at a time. */
 #include "base/num.h"
 #include "cli/tool.h"
+#include "inspect/info_json.h"
+#include "inspect/info_key.h"
+#include "inspect/info_names.h"
+#include "inspect/info_quality.h"
+#include "inspect/info_series.h"
+#include "inspect/info_stats.h"
 #include "mesh/element_place.h"
 #include "model/known.h"
 #include "model/source.h"
-#include "tools/info_json.h"
-#include "tools/info_key.h"
-#include "tools/info_names.h"
-#include "tools/info_quality.h"
-#include "tools/info_series.h"
-#include "tools/info_stats.h"
 
 #include <inttypes.h>
 #include <math.h>
