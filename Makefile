@@ -39,7 +39,7 @@ endif
 # Every .c of these folders is the library, but for what mains begin and end with, and say on standard error: that is linked beside it.
 MAIN_SRC := common/cli/tool.c common/cli/progress.c
 MAIN_OBJ := $(MAIN_SRC:%.c=$(BUILD)/%.o)
-LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c,$(wildcard common/base/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/solve/*.c common/picture/*.c common/render/*.c))
+LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/render/sinew-render.c common/render/render_%,$(wildcard common/base/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/solve/*.c common/picture/*.c common/render/*.c))
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -134,7 +134,7 @@ SLICE_SRC := $(SAMPLES_SRC) $(wildcard slice/slice_*.c)
 INFO_MODULES := $(wildcard common/inspect/info_*.c)
 EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
 IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
-RENDER_MODULES := $(wildcard common/tools/render_*.c)
+RENDER_MODULES := $(wildcard common/render/render_*.c)
 
 define tool
 $(BIN)/$(1): $(call objects,$(2)) $(MAIN_OBJ) $(4) $(LIB)
@@ -157,7 +157,7 @@ $(eval $(call tool,sinew-info,common/inspect/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/inspect/sinew-diff.c))
 $(eval $(call tool,sinew-export,common/exchange/sinew-export.c $(EXPORT_MODULES)))
 $(eval $(call tool,sinew-import,common/exchange/sinew-import.c $(IMPORT_MODULES)))
-$(eval $(call tool,sinew-render,common/tools/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))
+$(eval $(call tool,sinew-render,common/render/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))
 
 .PHONY: clean
 clean:

@@ -9,7 +9,7 @@ is "$(for tool in $tools sinew voxelize; do echo "$tool"; done | LC_ALL=C sort |
 
 # ---- Breaches, one a check, in a tree of their own.
 mkdir -p "$T/tree/common/base" "$T/tree/common/model" "$T/tree/voxelise" "$T/tree/attach" "$T/tree/bind" "$T/tree/tled" "$T/tree/msds" \
-    "$T/tree/slice" "$T/tree/man" "$T/tree/samples" "$T/tree/tests" "$T/tree/.ci" "$T/tree/common/tools"
+    "$T/tree/slice" "$T/tree/man" "$T/tree/samples" "$T/tree/tests" "$T/tree/.ci" "$T/tree/common/cli"
 cd "$T/tree" || exit 1
 touch README.md Makefile
 # table ROW...: the folders, as CONTRIBUTING.md has them.

@@ -1,4 +1,4 @@
-#include "tools/render_plan.h"
+#include "render/render_plan.h"
 
 #include "base/mem.h"
 #include "base/near.h"

@@ -5,7 +5,7 @@
 #include "cli/tool.h"
 #include "model/source.h"
 #include "picture/png.h"
-#include "tools/render_plan.h"
+#include "render/render_plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>
