@@ -71,14 +71,14 @@ CUDA_LINES = -lineinfo
 NVCC_FLAGS = -std=c++17 -O3 $(CUDA_LINES) -fmad=$(CUDA_FUSED) $(CUDA_ARCH) -Werror all-warnings \
 	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
-$(BUILD)/tled/cuda_single.o: NVCC_FLAGS += -ftz=true
+$(BUILD)/tled/cuda/cuda_single.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/msds/cuda_%.o: NVCC_FLAGS += -ftz=true
 # The results of these two files need not have the bytes of the processor, so they may fuse; the march is for cards from sm_90 on.
-$(BUILD)/tled/cuda_look.o: CUDA_FUSED = true
-$(BUILD)/tled/cuda_march.o: NVCC_FLAGS += -ftz=true
-$(BUILD)/tled/cuda_march.o: CUDA_FUSED = true
-$(BUILD)/tled/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_90,code=compute_90
-CUDA_SRC := $(wildcard common/solve/*.cu tled/*.cu msds/*.cu)
+$(BUILD)/tled/cuda/cuda_look.o: CUDA_FUSED = true
+$(BUILD)/tled/cuda/cuda_march.o: NVCC_FLAGS += -ftz=true
+$(BUILD)/tled/cuda/cuda_march.o: CUDA_FUSED = true
+$(BUILD)/tled/cuda/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_90,code=compute_90
+CUDA_SRC := $(wildcard common/solve/*.cu tled/cuda/*.cu msds/*.cu)
 $(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
 LIB_CUDA := $(BUILD)/libsinew-cuda.a
@@ -86,7 +86,7 @@ CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
 endif
 
 # What only cards use, in C, is in it too.
-CUDA_ONLY := tled/tiles.c tled/places.c tled/march.c tled/march_units.c tled/march_near.c msds/levels.c msds/parts.c
+CUDA_ONLY := $(wildcard tled/cuda/*.c) msds/levels.c msds/parts.c
 $(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
 	@rm -f $@
 	@ar rcs $@ $^
@@ -98,7 +98,7 @@ $(BUILD)/%.o: %.cu
 	@objcopy -w -N 'tmpxft_*' $@ # the name of a temporary file: the same source is to give the same bytes
 
 # Which of the two is built is known to few files, made again when that changes.
-KNOW_CUDA := $(addprefix $(BUILD)/,tled/backends.o tests/unit/test_tled_cuda.o msds/msds_backends.o tests/unit/test_msds_cuda.o)
+KNOW_CUDA := $(addprefix $(BUILD)/,tled/run/backends.o tests/unit/test_tled_cuda.o msds/msds_backends.o tests/unit/test_msds_cuda.o)
 $(BUILD)/cuda-$(CUDA):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/cuda-yes $(BUILD)/cuda-no
@@ -108,14 +108,14 @@ $(KNOW_CUDA): CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 
 # The CPU solvers' loops, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
 # (No psabi: vectors are passed between functions of one file only.)
-$(BUILD)/tled/cpu_pass_%.o $(BUILD)/slice/slice_lanes_%.o: VECTORS = -Wno-psabi
+$(BUILD)/tled/cpu/cpu_pass_%.o $(BUILD)/slice/slice_lanes_%.o: VECTORS = -Wno-psabi
 ifeq ($(shell uname -m),x86_64)
 $(BUILD)/msds/lanes_avx2.o: VECTORS = -mavx2
 $(BUILD)/slice/slice_lanes_avx2.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/slice/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 $(BUILD)/msds/lanes_avx512.o: VECTORS = -mavx512f -mavx512vl -mavx512dq -mavx512bw
-$(BUILD)/tled/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
-$(BUILD)/tled/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
+$(BUILD)/tled/cpu/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
+$(BUILD)/tled/cpu/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 endif
 
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
@@ -123,7 +123,7 @@ objects = $(patsubst %.cc,$(BUILD)/%.o,$(patsubst %.c,$(BUILD)/%.o,$(1)))
 VOXELISE_SRC := $(wildcard voxelise/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
-TLED_SRC := $(filter-out $(CUDA_ONLY),$(wildcard tled/*.c))
+TLED_SRC := $(wildcard tled/problem/*.c tled/cpu/*.c tled/run/*.c)
 MESH_MODULES := $(wildcard msds/mesh_*.c)
 RUN_MODULES := $(filter-out $(CUDA_ONLY) msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
 SAMPLES_SRC := slice/samples.c

@@ -12,14 +12,14 @@
  * fill. Beside them stands what the machine did at most in the same rounds: copying (on a card of more than its L2 cache holds or
  * within it, as the bytes of a step are) and multiply-adds, in two instructions, of the same precision.
  */
-// needs: tests/bench/roof.c tests/bench/flops.cc tled/*.c
+// needs: tests/bench/roof.c tests/bench/flops.cc  tled/*/*.c
 #include "../unit/tled_bench.h"
 
 #include "card_roof.h"
 #include "flops.h"
 #include "model/stream.h"
 #include "roof.h"
-#include "tled/cpu_pass.h"
+#include "tled/cpu/cpu_pass.h"
 
 #include <inttypes.h>
 

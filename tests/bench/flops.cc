@@ -160,7 +160,7 @@ guess operator-(float a, guess b)
 // What the headers include has been included above.
 #define double number
 #define float guess
-#include "tled/node.h"
+#include "tled/problem/node.h"
 #undef double
 #undef float
 

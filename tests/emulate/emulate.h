@@ -1,5 +1,5 @@
 /* A CUDA card that a processor plays, for tests where there is no card: the kernels' sources, unchanged, compiled by g++ with the two
- * headers here in place of CUDA's and of tled/cuda_ptx.cuh. A block's threads are fibres, one of which runs at a time until it has to
+ * headers here in place of CUDA's and of tled/cuda/cuda_ptx.cuh. A block's threads are fibres, one of which runs at a time until it has to
  * wait; which, is drawn by lot. It says nothing of speed, nor of what nvcc makes of the sources.
  *
  * Each access of a kernel to memory, and each copy that it does not wait for, is looked at for what a card lets pass. The first fault

@@ -2,9 +2,9 @@
 # $(BUILD)/emulate has tled's CUDA as g++ makes it: each access of theirs a call (-fsanitize=thread), which comes to shadow.cc.
 
 EMULATE_CXX ?= $(if $(filter x86_64,$(shell uname -m)),$(shell command -v g++))
-EMULATE_CU := tled/cuda_march tled/cuda_single tled/cuda_double tled/cuda_look common/solve/card tests/emulate/wrong
-EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) fibres shadow telling streams tled/march)) \
-	$(addprefix $(BUILD)/tled/,march_units.o march_near.o places.o tiles.o)
+EMULATE_CU := $(addprefix tled/cuda/,cuda_march cuda_single cuda_double cuda_look) common/solve/card tests/emulate/wrong
+EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) fibres shadow telling streams tled/cuda/march)) \
+	$(addprefix $(BUILD)/tled/cuda/,march_units.o march_near.o places.o tiles.o)
 EMULATE_FLAGS = -std=c++17 -g -Wall $(WERROR) -Itests/emulate $(CPPFLAGS) -MMD -MP
 EMULATE_CU_FLAGS = -O2 -mavx2 -mfma -fsanitize=thread,undefined -fno-sanitize-recover=undefined -fno-math-errno -Wno-sign-compare \
 	-Wno-unknown-pragmas -Wno-unused-function
@@ -13,16 +13,16 @@ $(BUILD)/emulate/%.o: %.cu
 	@mkdir -p $(@D)
 	$(call run,EMULATE $<,$(EMULATE_CXX) $(EMULATE_FLAGS) $(EMULATE_CU_FLAGS) -ffp-contract=$(EMULATE_CONTRACT) -x c++ -c -o $@ $<)
 EMULATE_CONTRACT = off
-$(BUILD)/emulate/tled/cuda_march.o $(BUILD)/emulate/tled/cuda_look.o: EMULATE_CONTRACT = fast
+$(BUILD)/emulate/tled/cuda/cuda_march.o $(BUILD)/emulate/tled/cuda/cuda_look.o: EMULATE_CONTRACT = fast
 # However small, a frame has its own memory on the card.
-$(BUILD)/emulate/tled/cuda_single.o $(BUILD)/emulate/tled/cuda_double.o: EMULATE_CU_FLAGS += -DFRAME_DIRECT=0
+$(BUILD)/emulate/tled/cuda/cuda_single.o $(BUILD)/emulate/tled/cuda/cuda_double.o: EMULATE_CU_FLAGS += -DFRAME_DIRECT=0
 
 $(BUILD)/emulate/%.o: tests/emulate/%.cc
 	@mkdir -p $(@D)
 	$(call run,EMULATE $<,$(EMULATE_CXX) $(EMULATE_FLAGS) -O3 -Wextra -c -o $@ $<)
 
 # Whatever its shape, a model marches here; and its units may be told to wait for too few.
-$(BUILD)/emulate/tled/march.o: tled/march.c
+$(BUILD)/emulate/tled/cuda/march.o: tled/cuda/march.c
 	@mkdir -p $(@D)
 	$(call run,CC $<,$(CC) $(ALL_CFLAGS) -DMARCH_SPARSE=1e9 -Dmarch_near_find=near_find_tried -c -o $@ $<)
 

@@ -4,7 +4,7 @@
  * looked at for what AddressSanitizer knows.)
  */
 #include "machine.h"
-#include "tled/cuda_ptx.cuh"
+#include "tled/cuda/cuda_ptx.cuh"
 
 #include <link.h>
 #include <sanitizer/asan_interface.h>

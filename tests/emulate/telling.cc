@@ -5,7 +5,7 @@
  * others of which it has heard; who hears it may rely on that, and so may threads of its block that meet it later.
  */
 #include "machine.h"
-#include "tled/cuda_ptx.cuh"
+#include "tled/cuda/cuda_ptx.cuh"
 
 /* ---- words without order */
 

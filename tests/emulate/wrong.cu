@@ -3,7 +3,7 @@
 #include "tests/emulate/wrong.h"
 
 #include "solve/start.cuh"
-#include "tled/cuda_ptx.cuh"
+#include "tled/cuda/cuda_ptx.cuh"
 
 #include <stdlib.h>
 

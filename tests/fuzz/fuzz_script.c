@@ -1,7 +1,7 @@
 /* Any bytes as a script for a small model: curves whose times are in order and whose values are finite, or one error with a
  * text. */
-// needs: tled/script.c tled/script_read.c
-#include "tled/script.h"
+// needs: tled/problem/script.c tled/problem/script_read.c
+#include "tled/problem/script.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,11 +2,11 @@
  * whole, and what goes on from there writes the same frames as a run that never stopped. Checkpoints that are damaged, and
  * those of other runs.
  */
-// needs: tled/*.c
+// needs: tled/*/*.c
 #include "tled_bench.h"
 
 #include "base/checksum.h"
-#include "tled/checkpoint.h"
+#include "tled/run/checkpoint.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,8 +1,8 @@
 /* Frames on their way out: in order, each fetched from its own slot; one is fetched while another is written; and what was sound before
  * something went wrong is written all the same.
  */
-// needs: tled/outbox.c
-#include "tled/outbox.h"
+// needs: tled/run/outbox.c
+#include "tled/run/outbox.h"
 
 #include "tap.h"
 

@@ -1,6 +1,6 @@
 /* Scripts of a run: curves and their values, targets and their nodes, the command line's curves, and nonsense. */
-// needs: tled/script.c tled/script_read.c
-#include "tled/script.h"
+// needs: tled/problem/script.c tled/problem/script_read.c
+#include "tled/problem/script.h"
 
 #include "tap.h"
 

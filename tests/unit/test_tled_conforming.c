@@ -1,10 +1,10 @@
 /* Hexahedra of any shape: boxes move as the lattice's solver moves them; distorted ones pass the patch test, are not strained by turns,
  * keep their energy, bring the same bytes with any number of threads and any vectors; and the stable step bounds the largest
  * frequency. */
-// needs: tled/*.c
-#include "tled/conforming_step.h"
-#include "tled/cpu_pass.h"
-#include "tled/watch.h"
+// needs: tled/*/*.c
+#include "tled/cpu/cpu_pass.h"
+#include "tled/problem/conforming_step.h"
+#include "tled/run/watch.h"
 
 #include "tap.h"
 #include "tled_block.h"

@@ -3,8 +3,8 @@
  * over 10,000 steps and at rest, the same looks, the same messages.
  * Without a card all is skipped.
  */
-// needs: tled/march.c tled/march_units.c tled/march_near.c tled/places.c tled/*.c
-#include "tled/march.h"
+// needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/places.c  tled/*/*.c
+#include "tled/cuda/march.h"
 
 #include "tled_card.h"
 

@@ -2,12 +2,12 @@
  * than its own lists, gives the internal forces of a pass over elements, to the last bit; and so when nodes stand in another order.
  * Slits are refused. And in rows: the same, slits too.
  */
-// needs: tled/tiles.c tled/places.c tled/*.c
+// needs: tled/cuda/tiles.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "physics/element.h"
-#include "tled/cpu.h"
-#include "tled/rows.h"
-#include "tled/tiles.h"
+#include "tled/cpu/cpu.h"
+#include "tled/cpu/rows.h"
+#include "tled/cuda/tiles.h"
 
 #include "tap.h"
 #include "tled_block.h"

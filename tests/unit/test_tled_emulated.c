@@ -1,13 +1,13 @@
 /* The CUDA back end's kernels on a card that the processor plays (tests/emulate): the march, its bricks, those that stay, and looks, each by
  * several lots; and that the card finds what is wrong, in kernels that are, and in ours where it leaves out what they say. */
-// needs: tled/*.c
+// needs: tled/*/*.c
 #include "tled_card.h"
 
 #ifdef SINEW_EMULATED
 #include "tests/emulate/emulate.h"
 #include "tests/emulate/wrong.h"
-#include "tled/cuda.h"
-#include "tled/march_near.h"
+#include "tled/cuda/cuda.h"
+#include "tled/cuda/march_near.h"
 
 /* Steps, of a lump on so many processors, in a test of what is left out. */
 enum { OMITTED_STEPS = 8, OMITTED_ON = 6, OMITTED_NODES = 18 * 10 * 7 };

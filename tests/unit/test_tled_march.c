@@ -3,10 +3,10 @@
  * one piece. With each of the six axes; and not where too few threads would have a cell. Which units wait for which, by trying all
  * pairs. And units: some for each block that there is room for at once where their layers are all alike, in the order of these.
  */
-// needs: tled/march.c tled/march_units.c tled/march_near.c tled/places.c tled/*.c
+// needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
-#include "tled/march_near.h"
-#include "tled/march_units.h"
+#include "tled/cuda/march_near.h"
+#include "tled/cuda/march_units.h"
 
 #include "tap.h"
 #include "tled_block.h"

@@ -1,7 +1,7 @@
 /* Runs to rest against CalculiX 2.20 (C3D8R): a cube that hangs from its top, with the sweep of the hourglass coefficient,
  * and a cantilever, both by their own weight.
  */
-// needs: tled/*.c
+// needs: tled/*/*.c
 #include "tled_bench.h"
 
 static const block cube = {{8, 8, 8}, {.0125, .0125, .0125}, 3000, .45, 1000, 0, 2, 0, 1, {0, 0, 0}, 0, false};

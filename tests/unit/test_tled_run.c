@@ -1,7 +1,7 @@
 /* The time loop: what is conserved without damping, the same bytes whatever the threads and wherever a run was cut in two,
  * muscles at full contraction, steps that are too large, and the ends of runs.
  */
-// needs: tled/*.c
+// needs: tled/*/*.c
 #include "tled_bench.h"
 
 #include <time.h>

@@ -1,8 +1,8 @@
 /* From a model to the solver's arrays: masses, corners, what is held, shares of forces, distances; and models that are no
  * lattice of boxes.
  */
-// needs: tled/state.c tled/conforming.c tled/conforming_step.c tled/script.c tled/script_read.c tled/step.c tled/support.c
-#include "tled/support.h"
+// needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/script.c tled/problem/script_read.c tled/problem/step.c tled/problem/support.c
+#include "tled/problem/support.h"
 
 #include "tap.h"
 #include "tled_block.h"

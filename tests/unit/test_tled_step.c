@@ -1,7 +1,7 @@
 /* The stable step: against its formulas at rest, the element's matrix against the derivative of its stress, its largest eigenvalue
  * against bounds of it, and the model's bound against the largest frequency of a block, found by power iteration. */
-// needs: tled/state.c tled/conforming.c tled/conforming_step.c tled/step.c tled/script.c tled/script_read.c
-#include "tled/step.h"
+// needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/step.c tled/problem/script.c tled/problem/script_read.c
+#include "tled/problem/step.h"
 
 #include "tap.h"
 #include "tled_block.h"

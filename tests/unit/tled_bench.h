@@ -4,11 +4,11 @@
 #ifndef SINEW_TLED_BENCH_H
 #define SINEW_TLED_BENCH_H
 
-#include "tled/cpu.h"
-#include "tled/relax.h"
-#include "tled/run.h"
-#include "tled/step.h"
-#include "tled/support.h"
+#include "tled/cpu/cpu.h"
+#include "tled/problem/step.h"
+#include "tled/problem/support.h"
+#include "tled/run/relax.h"
+#include "tled/run/run.h"
 
 #include "tap.h"
 #include "tled_block.h"

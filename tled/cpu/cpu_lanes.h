@@ -1,0 +1,240 @@
+/* The body of cpu_pass_*.c: see cpu_pass.h. All but the table that they name is static. */
+#include "base/flush.h"
+#include "tled/cpu/cpu_pass.h"
+#include "tled/problem/node.h"
+
+enum { LANES = ELEMENT_LANES };
+
+static inline real load(const void *array, int64_t at)
+{
+    real x;
+    memcpy(&x, (const real_one *)array + at, sizeof x);
+    return x;
+}
+
+static inline void store(void *array, int64_t at, real x)
+{
+    memcpy((real_one *)array + at, &x, sizeof x);
+}
+
+/* True in the first `count` lanes. */
+static inline real_mask first_lanes(int count)
+{
+#if ELEMENT_LANES == 16
+    const real_mask index = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+#elif ELEMENT_LANES == 8
+    const real_mask index = {0, 1, 2, 3, 4, 5, 6, 7};
+#elif ELEMENT_LANES == 4
+    const real_mask index = {0, 1, 2, 3};
+#else
+    const real_mask index = {0, 1};
+#endif
+    return index < count;
+}
+
+/* One lane on, with 0 in the first. */
+static inline real shifted(real x)
+{
+#if ELEMENT_LANES == 16
+    return __builtin_shufflevector(x, REAL_ZERO, 16, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14);
+#elif ELEMENT_LANES == 8
+    return __builtin_shufflevector(x, REAL_ZERO, 8, 0, 1, 2, 3, 4, 5, 6);
+#elif ELEMENT_LANES == 4
+    return __builtin_shufflevector(x, REAL_ZERO, 4, 0, 1, 2);
+#else
+    return __builtin_shufflevector(x, REAL_ZERO, 2, 0);
+#endif
+}
+
+static inline element_corners corners_at(const void *u, const rows_run *run)
+{
+    const int32_t *n = run->node;
+    element_corners c = {{load(u, n[0]), load(u, n[1]), load(u, n[2]), load(u, n[3]), load(u, n[4]), load(u, n[5]),
+                          load(u, n[6]), load(u, n[7])}};
+    return c;
+}
+
+/* A row of nodes gets what the run pulls with, where x is high first: that is the element before. */
+static inline void add_row(real_one *sum, const rows_run *run, int low, int high, const element_corners *f)
+{
+    const real_mask mask = first_lanes(run->count);
+    const real at_low = REAL_SELECT(mask, f->at[low], REAL_ZERO), at_high = REAL_SELECT(mask, f->at[high], REAL_ZERO);
+    if (!run->regular) { /* of one element */
+        sum[run->node[high]] += at_high[0];
+        sum[run->node[low]] += at_low[0];
+        return;
+    }
+    real_one *at = sum + run->node[low];
+    store(at, 0, (load(at, 0) + shifted(at_high)) + at_low);
+    if (run->count == LANES)
+        at[LANES] += at_high[LANES - 1];
+}
+
+static inline void add_forces(void *sum, const rows_run *run, const element_corners *f)
+{
+    if (run->mask & 8)
+        add_row(sum, run, 7, 6, f);
+    if (run->mask & 4)
+        add_row(sum, run, 4, 5, f);
+    if (run->mask & 2)
+        add_row(sum, run, 3, 2, f);
+    if (run->mask & 1)
+        add_row(sum, run, 0, 1, f);
+}
+
+static inline element_fibre fibre_of(const void *const along[3], const rows_run *run, real tension)
+{
+    element_fibre fibre = {{load(along[0], run->cell), load(along[1], run->cell), load(along[2], run->cell)}, tension};
+    return fibre;
+}
+
+static inline element_field moved_by(const cpu_work *w, const rows_run *run)
+{
+    element_field u = {corners_at(w->from[0], run), corners_at(w->from[1], run), corners_at(w->from[2], run)};
+    return u;
+}
+
+static inline void add_field(const cpu_work *w, const rows_run *run, const element_field *f)
+{
+    add_forces(w->sum[0], run, &f->x);
+    add_forces(w->sum[1], run, &f->y);
+    add_forces(w->sum[2], run, &f->z);
+}
+
+static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active)
+{
+    const cpu_kind *kind = &w->kind[run->volume];
+    const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* forces are linear in all below */
+    const element_law law = {share * (real_one)kind->mu, share * (real_one)kind->bulk,
+                             share * (real_one)kind->hourglass};
+    element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO};
+    if (active)
+        fibre = fibre_of(w->fibre, run, share * (real_one)kind->tension);
+    const element_field f = element_force(moved_by(w, run), shape, law, fibre, active);
+    add_field(w, run, &f);
+}
+
+/* Elements mixed of two volumes. */
+static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active, bool second)
+{
+    const cpu_kind *kind = &w->kind[run->volume], *mix = &w->kind[run->mix];
+    const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1, part = load(w->mixture, run->cell);
+    const real own = share * (1 - part), other = share * part;
+    const element_law law = {share * load(w->law[0], run->cell), share * load(w->law[1], run->cell),
+                             share * load(w->law[2], run->cell)};
+    element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO}, mixfibre = fibre;
+    if (active)
+        fibre = fibre_of(w->fibre, run, own * (real_one)kind->tension);
+    if (second)
+        mixfibre = fibre_of(w->mixfibre, run, other * (real_one)mix->tension);
+    const element_field f = element_force_of_two(moved_by(w, run), shape, law, fibre, active, mixfibre, second);
+    add_field(w, run, &f);
+}
+
+/* Apart from the loop, which is the faster without it. */
+static __attribute__((noinline)) void any_mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape)
+{
+    const bool active = w->fibre[0] && w->kind[run->volume].tension != 0;
+    const bool second = w->mixfibre[0] && w->kind[run->mix].tension != 0;
+    if (active && second)
+        mixed_forces(w, run, shape, true, true);
+    else if (active)
+        mixed_forces(w, run, shape, true, false);
+    else if (second)
+        mixed_forces(w, run, shape, false, true);
+    else
+        mixed_forces(w, run, shape, false, false);
+}
+
+/* One component of a node that the script displaces or pushes. */
+static void move_extra(const cpu_work *w, int64_t at, int64_t n, int a, node_factors k)
+{
+    const tled_problem *p = w->p;
+    const int32_t hold = p->hold[3 * n + a];
+    real_one *sum = (real_one *)w->sum[a] + at, *v = (real_one *)w->velocity[a] + at, *to = (real_one *)w->to[a] + at;
+    real_one u = ((const real_one *)w->from[a])[at], net = -*sum, acceleration = 0;
+    if (w->what & PASS_INTERNAL)
+        *to = *sum;
+    *sum = 0;
+    for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
+        net += (real_one)(p->force_share[i] * w->now[3 * (int64_t)p->force_curve[i] + a]);
+    if (hold == HOLD_FREE)
+        acceleration =
+            (p->gravity < 0 ? 0 : (real_one)w->now[3 * p->gravity + a]) + net * ((const real_one *)w->mass_inverse)[at];
+    if (hold == HOLD_FREE && w->what & PASS_FINISH)
+        *v = *v * k.keep + k.half * acceleration;
+    if (!(w->what & PASS_BEGIN))
+        return;
+    if (hold == HOLD_FREE) {
+        *v = (*v + k.half * acceleration) * k.slow;
+        u += k.dt * *v;
+    } else if (hold >= 0) {
+        real_one end = (real_one)w->next[3 * (int64_t)hold + a];
+        *v = (end - u) / k.dt;
+        u = end;
+    }
+    *to = u;
+}
+
+/* One component of a layer's nodes, but for its extras. */
+static inline void move_nodes(const cpu_work *w, const rows_layer *l, int a, node_factors k)
+{
+    const real_one gravity = w->p->gravity < 0 ? 0 : (real_one)w->now[3 * w->p->gravity + a];
+    const bool finish = w->what & PASS_FINISH, begin = w->what & PASS_BEGIN, internal = w->what & PASS_INTERNAL;
+    for (int32_t i = 0; i < l->nodes; i += LANES) {
+        const int64_t at = l->node + i;
+        real_bits flags = {0};
+        for (int lane = 0; lane < LANES; lane++)
+            flags[lane] = w->flags[at + lane];
+        const real_mask bits = REAL_CONVERT(flags, real_mask);
+        const real_mask mine = first_lanes(l->nodes - i) & ((bits & NODE_EXTRA) == 0);
+        const real_mask free = mine & ((bits & (NODE_FREE << a)) != 0);
+        const real sum = load(w->sum[a], at), old = load(w->velocity[a], at), u = load(w->from[a], at);
+        const real acceleration = gravity + -sum * load(w->mass_inverse, at);
+        real v = old, to = load(w->to[a], at);
+        if (finish)
+            v = REAL_SELECT(free, node_finish(v, acceleration, k), v);
+        if (begin) {
+            v = REAL_SELECT(free, node_begin(v, acceleration, k), v);
+            to = REAL_SELECT(free, u + k.dt * v, REAL_SELECT(mine, u, to));
+        }
+        if (internal)
+            to = REAL_SELECT(mine, sum, to);
+        store(w->velocity[a], at, v);
+        store(w->to[a], at, to);
+        store(w->sum[a], at, REAL_SELECT(mine, REAL_ZERO, sum));
+    }
+}
+
+static void slab_pass(const cpu_work *w, int32_t which)
+{
+#ifdef ELEMENT_SINGLE /* whose smallest normal number tissue far from all that moves soon comes to */
+    const unsigned before = flush_small();
+#endif
+    const rows *r = w->r;
+    const rows_slab *s = &r->slab[which];
+    const element_shape shape = element_box(w->p->side[0], w->p->side[1], w->p->side[2]);
+    const node_factors k = node_factors_of(w->dt, w->damping);
+    int32_t extra = s->extra;
+    for (const rows_layer *l = r->layer + s->layer; l < r->layer + s->layer + s->layers; l++) {
+        for (const rows_run *run = r->run + l->run; run < r->run + l->run + l->runs; run++)
+            if (run->mix >= 0)
+                any_mixed_forces(w, run, shape);
+            else if (w->fibre[0] && w->kind[run->volume].tension != 0)
+                run_forces(w, run, shape, true);
+            else
+                run_forces(w, run, shape, false);
+        for (; extra < s->extra + s->extras && r->extra[extra] < l->node + l->nodes; extra++)
+            for (int a = 0; a < 3; a++)
+                move_extra(w, r->extra[extra], r->extra_node[extra], a, k);
+        for (int a = 0; a < 3; a++)
+            move_nodes(w, l, a, k);
+    }
+#ifdef ELEMENT_SINGLE
+    flush_as(before);
+#endif
+}
+
+#include "tled/cpu/cpu_mesh_lanes.h"
+
+const cpu_pass CPU_PASS = {CPU_PASS_NAME, LANES, slab_pass, mesh_elements, mesh_nodes};

@@ -1,0 +1,388 @@
+/* The CPU back end: memory around cpu_pass.h, and the passes in their order. Compiled twice, by cpu_double.c and
+ * cpu_single.c, which choose the precision and name the table of functions. All that is here is static.
+ *
+ * Of `count` steps, the first pass begins one, each after it ends one and begins the next, the last ends one and leaves the
+ * internal forces where displacements go else. A pass is a loop over slabs, one a thread; no sum depends on how they
+ * are cut: the same bytes for any number of threads, and in any of the processor's instruction sets.
+ */
+#include "base/mem.h"
+#include "tled/cpu/cpu_pass.h"
+#include "tled/problem/collider.h"
+#include "tled/problem/conforming.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CONTACT_CHUNK = 4096 };
+
+#ifdef ELEMENT_SINGLE
+typedef float number;
+#else
+typedef double number;
+#endif
+
+typedef struct cpu_state {
+    const tled_problem *p;
+    pool *threads;
+    const cpu_pass *pass;
+    rows rows;
+    cpu_kind *kind;                          /* volumes */
+    number *displacement, *spare, *velocity; /* 3 x rows.nodes each, a component after the other */
+    number *sum;                             /* likewise: zeros between passes */
+    number *mass_inverse;                    /* rows.nodes */
+    uint8_t *flags;                          /* rows.nodes: NODE_* */
+    number *fibre, *fraction;                /* cells, with padding: 3 x and 1 x; or NULL */
+    number *mixfibre, *mixture, *law;        /* likewise; law: 3 x */
+    number *shape, *force;                   /* without a lattice: cpu_work's, as is: */
+    int32_t *group_node;
+    number *kept; /* displacement, then velocity; made when first wanted, as are: */
+    number *taken[TLED_TAKEN];
+    bool spare_is_internal;
+    double time;        /* where the state stands */
+    double *now, *next; /* the curves' values */
+    cpu_work work;
+} cpu_state;
+
+#include "tled/cpu/cpu_mesh.h"
+
+static void pass_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cpu_state *s = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        s->pass->slab(&s->work, (int32_t)i);
+}
+
+/* What the probe pushes with, into the sums that the pass adds to. */
+typedef struct cpu_contact {
+    const cpu_state *s;
+    probe_placed at;
+    double time;
+} cpu_contact;
+
+static void contact_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cpu_contact *c = context;
+    const cpu_state *s = c->s;
+    (void)chunk;
+    for (int64_t n = from; n < to; n++) {
+        double x[3], push[3];
+        for (int a = 0; a < 3; a++)
+            x[a] = s->p->position[3 * n + a] + (double)s->displacement[a * s->rows.nodes + s->rows.place[n]];
+        if (!collider_push(s->p->collider, &c->at, c->time, x, s->p->mass[n], push))
+            continue;
+        for (int a = 0; a < 3; a++)
+            s->sum[a * s->rows.nodes + s->rows.place[n]] = (number)-push[a];
+    }
+}
+
+/* One pass at the displacements of now, with the curves' values of now and of the step's end. */
+static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
+{
+    cpu_work *w = &s->work;
+    for (int32_t i = 0; i < s->p->volumes; i++)
+        s->kind[i].tension = (double)(number)tled_tension(s->p, i, s->now);
+    for (int a = 0; a < 3; a++) {
+        w->from[a] = s->displacement + a * s->rows.nodes;
+        w->to[a] = s->spare + a * s->rows.nodes;
+    }
+    w->now = s->now;
+    w->next = s->next;
+    w->dt = 1 / plan->rate;
+    w->damping = plan->damping;
+    w->what = what;
+    if (s->p->collider) {
+        cpu_contact contact = {s, collider_at(s->p->collider, time), time};
+        pool_run(s->threads, s->p->nodes, CONTACT_CHUNK, contact_work, &contact);
+    }
+    if (s->p->conforming)
+        mesh_pass(s);
+    else
+        pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
+    s->spare_is_internal = (what & PASS_INTERNAL) != 0;
+    if (what & PASS_BEGIN) {
+        number *swap = s->displacement;
+        s->displacement = s->spare;
+        s->spare = swap;
+    }
+}
+
+static int cpu_step(void *state, const void *plan, int64_t count, err *e)
+{
+    cpu_state *s = state;
+    const tled_plan *t = plan;
+    (void)e;
+    if (count < 1)
+        return 0;
+    tled_curves(s->p, tled_time(t, 0), s->now);
+    for (int64_t i = 0; i <= count; i++) {
+        if (i < count)
+            tled_curves(s->p, tled_time(t, i + 1), s->next);
+        run_pass(s, t, tled_time(t, i), (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL));
+        if (i < count) {
+            double *swap = s->now;
+            s->now = s->next;
+            s->next = swap;
+        }
+    }
+    s->time = tled_time(t, count);
+    return 0;
+}
+
+/* ---- in and out */
+
+static void put_out(const cpu_state *s, const number *from, double *to)
+{
+    for (int64_t n = 0; n < s->p->nodes; n++)
+        for (int a = 0; a < 3; a++)
+            to[3 * n + a] = from[a * s->rows.nodes + s->rows.place[n]];
+}
+
+static void put_in(const cpu_state *s, const double *from, number *to)
+{
+    for (int64_t n = 0; n < s->p->nodes; n++)
+        for (int a = 0; a < 3; a++)
+            to[a * s->rows.nodes + s->rows.place[n]] = (number)from[3 * n + a];
+}
+
+static int cpu_get(void *state, int what, double *to, err *e)
+{
+    cpu_state *s = state;
+    (void)e;
+    if (what == TLED_INTERNAL && !s->spare_is_internal) {
+        const tled_plan here = {.rate = 1};
+        tled_curves(s->p, s->time, s->now);
+        run_pass(s, &here, s->time, PASS_INTERNAL);
+    }
+    put_out(s, what == TLED_DISPLACEMENT ? s->displacement : what == TLED_VELOCITY ? s->velocity : s->spare, to);
+    return 0;
+}
+
+/* Displacement and velocity, one after the other. */
+static int copy_out(cpu_state *s, number **to, err *e)
+{
+    const size_t size = 3 * (size_t)s->rows.nodes;
+    if (!*to)
+        *to = mem_array(s->rows.nodes, 6 * sizeof **to, "the solver", e);
+    if (!*to)
+        return -1;
+    memcpy(*to, s->displacement, size * sizeof **to);
+    memcpy(*to + size, s->velocity, size * sizeof **to);
+    return 0;
+}
+
+static int cpu_keep(void *state, err *e)
+{
+    cpu_state *s = state;
+    return copy_out(s, &s->kept, e);
+}
+
+static int cpu_back(void *state, err *e)
+{
+    cpu_state *s = state;
+    const size_t size = 3 * (size_t)s->rows.nodes;
+    (void)e;
+    memcpy(s->displacement, s->kept, size * sizeof *s->kept);
+    memcpy(s->velocity, s->kept + size, size * sizeof *s->kept);
+    s->spare_is_internal = false;
+    return 0;
+}
+
+static int cpu_take(void *state, int slot, err *e)
+{
+    cpu_state *s = state;
+    return copy_out(s, &s->taken[slot], e);
+}
+
+static int cpu_taken(void *state, int slot, void *to, err *e)
+{
+    const cpu_state *s = state;
+    const tled_taken *out = to;
+    (void)e;
+    put_out(s, s->taken[slot], out->displacement);
+    put_out(s, s->taken[slot] + 3 * s->rows.nodes, out->velocity);
+    return 0;
+}
+
+static int64_t cpu_bytes(const void *state)
+{
+    const cpu_state *s = state;
+    const rows *r = &s->rows;
+    int64_t nodes = 13 + (s->kept ? 6 : 0), cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
+    cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 4 : 0);
+    for (int i = 0; i < TLED_TAKEN; i++)
+        nodes += s->taken[i] ? 6 : 0;
+    return r->nodes * (nodes * (int64_t)sizeof(number) + 1 + 4) + r->runs * (int64_t)sizeof *r->run +
+           r->cells * (cells * (int64_t)sizeof(number) + 4) + mesh_bytes(s);
+}
+
+/* ---- life */
+
+static void cpu_destroy(void *state)
+{
+    cpu_state *s = state;
+    if (!s)
+        return;
+    rows_free(&s->rows);
+    free(s->kind);
+    free(s->displacement);
+    free(s->spare);
+    free(s->velocity);
+    free(s->sum);
+    free(s->mass_inverse);
+    free(s->flags);
+    free(s->fibre);
+    free(s->fraction);
+    free(s->mixfibre);
+    free(s->mixture);
+    free(s->law);
+    free(s->shape);
+    free(s->force);
+    free(s->group_node);
+    free(s->kept);
+    for (int i = 0; i < TLED_TAKEN; i++)
+        free(s->taken[i]);
+    free(s->now);
+    free(s->next);
+    free(s);
+}
+
+/* Those arrays over cells that the problem has. */
+static bool allocate_cells(cpu_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    const int64_t cells = s->rows.cells + ROWS_PAD;
+    s->fibre = p->fibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
+    s->fraction = p->fraction ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
+    s->mixture = p->mix ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
+    s->law = p->mix ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
+    s->mixfibre = p->mixfibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
+    return (s->fibre || !p->fibre) && (s->fraction || !p->fraction) && ((s->mixture && s->law) || !p->mix) &&
+           (s->mixfibre || !p->mixfibre);
+}
+
+static int allocate(cpu_state *s, err *e)
+{
+    const int64_t nodes = s->rows.nodes, curves = s->p->script->curves;
+    s->kind = mem_array(s->p->volumes, sizeof *s->kind, "the solver", e);
+    s->displacement = mem_array(nodes, 3 * sizeof(number), "the solver", e);
+    s->spare = mem_array(nodes, 3 * sizeof(number), "the solver", e);
+    s->velocity = mem_array(nodes, 3 * sizeof(number), "the solver", e);
+    s->sum = mem_array(nodes, 3 * sizeof(number), "the solver", e);
+    s->mass_inverse = mem_array(nodes, sizeof(number), "the solver", e);
+    s->flags = mem_array(nodes, 1, "the solver", e);
+    s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
+    s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
+    bool cells_too = allocate_cells(s, e) && (!s->p->conforming || !mesh_allocate(s, e));
+    return s->kind && s->displacement && s->spare && s->velocity && s->sum && s->mass_inverse && s->flags &&
+                   cells_too && s->now && s->next
+               ? 0
+               : -1;
+}
+
+static void fill_nodes(cpu_state *s)
+{
+    const tled_problem *p = s->p;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        const int32_t at = s->rows.place[n];
+        s->mass_inverse[at] = (number)(1 / p->mass[n]);
+        for (int a = 0; a < 3; a++)
+            s->flags[at] |= (uint8_t)((p->hold[3 * n + a] == HOLD_FREE) * (NODE_FREE << a));
+    }
+    for (int32_t i = 0; i < s->rows.extras; i++)
+        s->flags[s->rows.extra[i]] |= NODE_EXTRA;
+    put_in(s, p->displacement, s->displacement);
+    put_in(s, p->velocity, s->velocity);
+}
+
+static void fill_cells(cpu_state *s)
+{
+    const tled_problem *p = s->p;
+    const int64_t cells = s->rows.cells + ROWS_PAD;
+    for (int64_t i = 0; i < s->rows.cells; i++) {
+        const int64_t element = s->rows.cell_element[i];
+        for (int a = 0; s->fibre && a < 3; a++)
+            s->fibre[a * cells + i] = (number)p->fibre[3 * element + a];
+        for (int a = 0; s->mixfibre && a < 3; a++)
+            s->mixfibre[a * cells + i] = (number)p->mixfibre[3 * element + a];
+        if (s->fraction)
+            s->fraction[i] = (number)p->fraction[element];
+        if (s->mixture) {
+            const tled_law law = tled_law_of(p, element);
+            s->mixture[i] = (number)tled_mixture(p, element);
+            s->law[i] = (number)law.mu;
+            s->law[cells + i] = (number)law.bulk;
+            s->law[2 * cells + i] = (number)law.hourglass;
+        }
+    }
+    for (int32_t i = 0; i < p->volumes; i++)
+        s->kind[i] = (cpu_kind){p->volume[i].mu, p->volume[i].bulk, p->volume[i].hourglass, 0};
+}
+
+static void make_work(cpu_state *s)
+{
+    cpu_work *w = &s->work;
+    w->r = &s->rows;
+    w->p = s->p;
+    w->kind = s->kind;
+    w->mass_inverse = s->mass_inverse;
+    w->flags = s->flags;
+    w->fraction = s->fraction;
+    w->mixture = s->mixture;
+    w->shape = s->shape;
+    w->group_node = s->group_node;
+    w->force = s->force;
+    for (int a = 0; a < 3; a++) {
+        w->velocity[a] = s->velocity + a * s->rows.nodes;
+        w->sum[a] = s->sum + a * s->rows.nodes;
+        w->fibre[a] = s->fibre ? s->fibre + a * (s->rows.cells + ROWS_PAD) : NULL;
+        w->law[a] = s->law ? s->law + a * (s->rows.cells + ROWS_PAD) : NULL;
+        w->mixfibre[a] = s->mixfibre ? s->mixfibre + a * (s->rows.cells + ROWS_PAD) : NULL;
+    }
+}
+
+static void *cpu_create(const void *problem, pool *threads, err *e)
+{
+    cpu_state *s = mem_array(1, sizeof *s, "the solver", e);
+    if (!s)
+        return NULL;
+    s->p = problem;
+    s->threads = threads;
+    s->pass = cpu_pass_choose(CPU_PASSES, e);
+    s->time = s->p->start;
+    if (!s->pass ||
+        (s->p->conforming ? mesh_rows(s, e) : rows_make(&s->rows, s->p, s->pass->lanes, pool_threads(threads), e)) ||
+        allocate(s, e)) {
+        cpu_destroy(s);
+        return NULL;
+    }
+    fill_nodes(s);
+    fill_cells(s);
+    if (s->p->conforming)
+        mesh_fill(s);
+    make_work(s);
+    return s;
+}
+
+static const char *cpu_unusable(void)
+{
+    return NULL;
+}
+
+static int64_t cpu_computed(const void *state)
+{
+    return ((const cpu_state *)state)->rows.cells;
+}
+
+const backend CPU_BACKEND = {.name = "cpu",
+                             .unusable = cpu_unusable,
+                             .create = cpu_create,
+                             .step = cpu_step,
+                             .get = cpu_get,
+                             .keep = cpu_keep,
+                             .back = cpu_back,
+                             .take = cpu_take,
+                             .taken = cpu_taken,
+                             .bytes = cpu_bytes,
+                             .destroy = cpu_destroy,
+                             .computed = cpu_computed};

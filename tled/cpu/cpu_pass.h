@@ -1,0 +1,69 @@
+/* The CPU back end's pass over a slab, compiled for each instruction set and precision by cpu_pass_*.c, which choose ELEMENT_LANES,
+ * ELEMENT_SINGLE and the function's name: layer by layer, runs of elements side by side, each corner's force added to its
+ * node; then the layer's nodes, whose sums are whole. As the runs are in the lattice's order, so is each node's sum. What the
+ * pass works on is cpu_work's: its owner is the back end (cpu_loops.h).
+ *
+ *     f_n = sum over elements at n of element_force(u),   a = g + (f_ext - f_n) / m,   then node.h.
+ */
+#ifndef SINEW_CPU_PASS_H
+#define SINEW_CPU_PASS_H
+
+#include "tled/cpu/rows.h"
+
+/* What an element without a lattice has, in a group's lanes: element_any, then mu, K and the hourglass stiffness. */
+enum { CPU_SHAPE = 37 };
+
+enum { NODE_FREE = 1, NODE_EXTRA = 8 }; /* flags of a node: NODE_FREE << a: nothing holds component a; an extra */
+
+typedef struct cpu_kind { /* what a volume's elements need */
+    double mu, bulk, hourglass;
+    double tension; /* now */
+} cpu_kind;
+
+/* Arrays over nodes are in the rows' order, one for each component, of float or double as the function called. */
+typedef struct cpu_work {
+    const rows *r;
+    const tled_problem *p;
+    const cpu_kind *kind;
+    const void *from[3]; /* displacements */
+    void *to[3];         /* the next ones, or internal forces */
+    void *velocity[3];
+    void *sum[3]; /* zeros, before and after */
+    const void *mass_inverse;
+    const uint8_t *flags;
+    const void *fibre[3];      /* cells, or NULL */
+    const void *fraction;      /* cells, or NULL */
+    const void *mixture;       /* cells, or NULL: none is mixed */
+    const void *law[3];        /* cells: mu, bulk, hourglass of those that are mixed; or NULL */
+    const void *mixfibre[3];   /* cells, or NULL */
+    const void *shape;         /* without a lattice: groups x CPU_SHAPE x lanes; or NULL */
+    const int32_t *group_node; /* groups x 8 x lanes */
+    void *force;               /* groups x 3 x 8 x lanes: what each corner is pulled with */
+    const double *now, *next;  /* the curves' values */
+    double dt, damping;
+    int what;
+} cpu_work;
+
+/* A pass in one instruction set and precision. lanes: elements side by side. */
+typedef struct cpu_pass {
+    const char *name;
+    int lanes;
+    void (*slab)(const cpu_work *w, int32_t slab);
+    /* Without a lattice: all groups of elements, then all nodes, from a multiple of lanes on. */
+    void (*elements)(const cpu_work *w, int64_t from, int64_t to);
+    void (*nodes)(const cpu_work *w, int64_t from, int64_t to);
+} cpu_pass;
+
+extern const cpu_pass cpu_pass_base_double, cpu_pass_base_single;
+#ifdef __x86_64__
+extern const cpu_pass cpu_pass_avx2_double, cpu_pass_avx2_single, cpu_pass_avx512_double, cpu_pass_avx512_single;
+#endif
+
+/* The passes of a precision, the fastest first; NULL-terminated. */
+extern const cpu_pass *const cpu_passes_double[], *const cpu_passes_single[];
+
+/* The first that this processor can do, or the one that the environment's SINEW_VECTORS names: plain, AVX2 or AVX-512. All give the same
+ * bytes. NULL with e filled where that is not to be had. */
+const cpu_pass *cpu_pass_choose(const cpu_pass *const *passes, err *e);
+
+#endif

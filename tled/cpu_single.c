@@ -1,6 +1,0 @@
-/* The CPU back end in float: what a GPU computes, at half the memory. */
-#include "tled/cpu.h"
-#define CPU_BACKEND tled_cpu_single
-#define ELEMENT_SINGLE
-#define CPU_PASSES cpu_passes_single
-#include "tled/cpu_loops.h"

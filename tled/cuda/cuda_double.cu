@@ -1,0 +1,3 @@
+/* The CUDA back end in double. */
+#define CUDA_BACKEND tled_cuda_double
+#include "tled/cuda/cuda_loops.cuh"

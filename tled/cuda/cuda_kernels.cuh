@@ -1,0 +1,303 @@
+/* The step of a tile, in `real`: the loops of the CUDA back end over element.h and node.h. One block of threads a tile: loads
+ * the displacements around it, computes its cells, sums them at its nodes, moves these on. Included by cuda_loops.cuh alone.
+ *
+ *     f_n = sum over elements at n of element_force(u),   a = g + (f_ext - f_n) / m,   then node.h.
+ */
+#ifndef SINEW_CUDA_KERNELS_CUH
+#define SINEW_CUDA_KERNELS_CUH
+
+extern "C" {
+#include "tled/problem/node.h"
+}
+#include "tled/cuda/cuda_ptx.cuh"
+#include "tled/cuda/cuda_view.cuh"
+
+typedef struct cuda_pass {
+    const real *from; /* displacements */
+    real *to;         /* the next ones, or internal forces */
+    real *velocity;
+    const double *now, *next;  /* the curves' values */
+    const real *law, *gravity; /* of the volumes; m/s2: where they are near */
+    element_shape shape;
+    node_factors factors;
+    int what;
+} cuda_pass;
+
+template <class G> static __device__ element_field cell_field(const real *u, int place)
+{
+    element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
+                        cuda_corners<G>(u + 2 * G::PLACES, place)};
+    return at;
+}
+
+static __device__ element_vector cell_along(const tile &t, int i, const float *fibre)
+{
+    const float *at = fibre + 3 * (int64_t)(t.direction + i);
+    element_vector along = {at[0], at[1], at[2]};
+    return along;
+}
+
+static __device__ real cell_tension(const cuda_kind &kind, const cuda_pass &p)
+{
+    return kind.contract < 0 ? 0 : (real)(kind.peak * p.now[3 * kind.contract]);
+}
+
+/* A cell mixed of two volumes. */
+template <class G>
+static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
+                                            const real *u, int place, const cuda_kind &kind, const cuda_mixed &mixed,
+                                            real share)
+{
+    const cuda_kind &mix = v.kind[mixed.mix];
+    const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
+    const element_law law = {share * (real)mixed.mu, share * (real)mixed.bulk, share * (real)mixed.hourglass};
+    element_fibre fibre = {{0, 0, 0}, 0}, second = fibre;
+    real tension = 0, tension_of_mix = 0;
+    if (i < t.fibred) {
+        tension = cell_tension(kind, p);
+        fibre.along = cell_along(t, i, v.fibre);
+        fibre.tension = own * tension;
+    }
+    if (i < t.fibred && v.mixfibre) {
+        tension_of_mix = cell_tension(mix, p);
+        second.along = cell_along(t, i, v.mixfibre);
+        second.tension = other * tension_of_mix;
+    }
+    return element_force_of_two(cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
+                                tension_of_mix != 0);
+}
+
+template <class G>
+static __device__ element_field plain_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
+                                            const real *u, int place, uint32_t volume, real share)
+{
+    const real *stiff = p.law + LAW_NUMBERS * volume;
+    element_law law = {share * stiff[0], share * stiff[1], share * stiff[2]};
+    element_fibre fibre = {{0, 0, 0}, 0};
+    if (i < t.fibred) {
+        const cuda_kind &kind = v.kind[volume];
+        fibre.along = cell_along(t, i, v.fibre);
+        fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
+    }
+    return element_force(cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
+}
+
+/* MIXED: there are cells mixed of two volumes; a kernel of its own, so that others do without. */
+template <class G, bool MIXED>
+static __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, uint32_t cell,
+                                  const real *u, real *force)
+{
+    const int place = cell & TILE_PLACE;
+    const uint32_t volume = cell >> TILE_VOLUME;
+    const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
+    const int32_t mixed = MIXED ? v.mixed[t.cell + i] : -1;
+    const element_field f = MIXED && mixed >= 0
+                                ? mixed_force<G>(v, p, t, i, u, place, v.kind[volume], v.mixture[mixed], share)
+                                : plain_force<G>(v, p, t, i, u, place, volume, share);
+#pragma unroll
+    for (int c = 0; c < 8; c++) {
+        force[c * G::CELLS + place] = f.x.at[c];
+        force[(8 + c) * G::CELLS + place] = f.y.at[c];
+        force[(16 + c) * G::CELLS + place] = f.z.at[c];
+    }
+}
+
+/* A thread's first cell, and each after it while the one before is computed. */
+static __device__ uint32_t cell_at(const cuda_view<real> &v, const tile &t, int i)
+{
+    return i < t.cells ? v.cell[t.cell + i] : 0;
+}
+
+template <class G, bool MIXED>
+static __device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p, const tile &t, uint32_t first,
+                                   const real *u, real *force)
+{
+    uint32_t cell = first;
+#pragma unroll 1
+    for (int i = threadIdx.x; i < t.cells; i += G::THREADS) {
+        const uint32_t next = cell_at(v, t, i + G::THREADS);
+        cell_force<G, MIXED>(v, p, t, i, cell, u, force);
+        cell = next;
+    }
+}
+
+/* Brings near what all of the threads ask for: *p gets where; room: NEAR_NUMBERS. */
+enum { NEAR_NUMBERS = 4 + LAW_NUMBERS * LAWS_NEAR };
+
+static __device__ void bring_gravity(const cuda_view<real> &v, const double *now, real *room)
+{
+    if (threadIdx.x < 3)
+        room[threadIdx.x] = v.gravity < 0 ? 0 : (real)now[3 * v.gravity + threadIdx.x];
+}
+
+static __device__ void bring_laws(const cuda_view<real> &v, cuda_pass *p, real *room)
+{
+    const bool near = v.volumes <= LAWS_NEAR;
+    p->gravity = room;
+    p->law = near ? room + 4 : v.law;
+    if (near && threadIdx.x < LAW_NUMBERS * v.volumes)
+        room[4 + threadIdx.x] = v.law[threadIdx.x];
+}
+
+/* The sum of the pulls at a node, elements in the lattice's order. */
+template <class G> static __device__ element_vector node_internal(uint32_t info, const real *force)
+{
+    constexpr int order[8] = {6, 7, 5, 4, 2, 3, 1, 0};
+    const int place = info & TILE_PLACE;
+    element_vector sum = {0, 0, 0};
+#pragma unroll
+    for (int i = 0; i < 8; i++) {
+        const int c = order[i];
+        if (info >> (TILE_CORNERS + c) & 1) {
+            const real *at = force + c * G::CELLS + place - cuda_corner<G>(c);
+            sum.x += at[0];
+            sum.y += at[8 * G::CELLS];
+            sum.z += at[16 * G::CELLS];
+        }
+    }
+    return sum;
+}
+
+/* One component of a node; hold: the curve that displaces it, or none. */
+static __device__ void move_node(const cuda_pass &p, int a, bool is_free, int32_t hold, real net, real mass_inverse,
+                                 real *velocity, real *u)
+{
+    real acceleration = is_free ? p.gravity[a] + net * mass_inverse : 0;
+    if (p.what & PASS_FINISH && is_free)
+        *velocity = node_finish(*velocity, acceleration, p.factors);
+    if (p.what & PASS_BEGIN) {
+        if (is_free) {
+            *velocity = node_begin(*velocity, acceleration, p.factors);
+            *u += p.factors.dt * *velocity;
+        } else if (hold >= 0) {
+            real to = (real)p.next[3 * hold + a];
+            *velocity = (to - *u) / p.factors.dt;
+            *u = to;
+        }
+    }
+}
+
+/* What a thread knows of its node. */
+typedef struct own_node {
+    uint32_t info;
+    real mass_inverse, velocity[3];
+} own_node;
+
+/* What pulls at a node (N), but for gravity, and what holds it. */
+typedef struct node_pull {
+    real net[3];
+    int32_t hold[3];
+} node_pull;
+
+static __device__ node_pull node_pulled(const cuda_view<real> &v, const cuda_pass &p, int32_t n, uint32_t info,
+                                        element_vector f)
+{
+    node_pull pull = {{-f.x, -f.y, -f.z}, {HOLD_STILL, HOLD_STILL, HOLD_STILL}};
+    if (info >> TILE_EXTRA & 1) {
+        const tile_extra *x = cuda_extra(v, n);
+        for (int a = 0; a < 3; a++)
+            pull.hold[a] = x->hold[a];
+        for (int32_t k = x->force; k < x->force + x->forces; k++)
+            for (int a = 0; a < 3; a++)
+                pull.net[a] += (real)(v.force_share[k] * p.now[3 * v.force_curve[k] + a]);
+    }
+    return pull;
+}
+
+/* A node's step for the elements' pull f: own->velocity and u (its three components) move on. */
+static __device__ void step_node(const cuda_view<real> &v, const cuda_pass &p, int32_t n, element_vector f,
+                                 own_node *own, real u[3])
+{
+    const node_pull pull = node_pulled(v, p, n, own->info, f);
+#pragma unroll
+    for (int a = 0; a < 3; a++)
+        move_node(p, a, own->info >> (TILE_FREE + a) & 1, pull.hold[a], pull.net[a], own->mass_inverse,
+                  &own->velocity[a], &u[a]);
+}
+
+static __device__ own_node node_at(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i)
+{
+    own_node own = {0, 0, {0, 0, 0}};
+    if (i < t.nodes) {
+        const int32_t n = t.node + i;
+        own.info = v.node_info[n];
+        own.mass_inverse = v.mass_inverse[n];
+        for (int a = 0; a < 3; a++)
+            own.velocity[a] = p.velocity[a * v.stride + n];
+    }
+    return own;
+}
+
+template <class G>
+static __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, own_node own,
+                                const real *grid, const real *force)
+{
+    const int32_t n = t.node + i;
+    const int place = own.info & TILE_PLACE;
+    element_vector f = node_internal<G>(own.info, force);
+    if (p.what & PASS_INTERNAL) {
+        p.to[n] = f.x, p.to[v.stride + n] = f.y, p.to[2 * v.stride + n] = f.z;
+        if (!(p.what & PASS_FINISH))
+            return;
+    }
+    real u[3] = {grid[place], grid[G::PLACES + place], grid[2 * G::PLACES + place]};
+    step_node(v, p, n, f, &own, u);
+    for (int a = 0; a < 3; a++) {
+        if (p.what & PASS_BEGIN)
+            p.to[a * v.stride + n] = u[a];
+        p.velocity[a * v.stride + n] = own.velocity[a];
+    }
+}
+
+/* Double precision takes more registers than so many blocks would leave it. */
+template <class G> static constexpr int together(void)
+{
+    return sizeof(real) == sizeof(float) ? G::TOGETHER : 1;
+}
+
+template <class G, bool MIXED>
+static __global__ void __launch_bounds__(G::THREADS, together<G>())
+    pass_kernel(cuda_view<real> v, const __grid_constant__ cuda_pass given)
+{
+    DYNAMIC_SHARED(double, memory);
+    real *u = (real *)memory, *near = u + 3 * G::PLACES, *force = near + NEAR_NUMBERS;
+    const tile t = v.tiles[blockIdx.x];
+    const uint32_t first = cell_at(v, t, threadIdx.x);
+    cuda_pass p = given;
+    bring_laws(v, &p, near);
+    bring_gravity(v, p.now, near);
+    cuda_load<G, true>(v, t, p.from, u);
+    __syncthreads();
+    cell_forces<G, MIXED>(v, p, t, first, u, force);
+    own_node own = node_at(v, p, t, threadIdx.x);
+    __syncthreads();
+    for (int i = threadIdx.x; i < t.nodes; i += G::THREADS) {
+        one_node<G>(v, p, t, i, own, u, force);
+        own = node_at(v, p, t, i + G::THREADS);
+    }
+}
+
+template <class G> static size_t pass_shared(void)
+{
+    return (3 * (size_t)G::PLACES + NEAR_NUMBERS + 24 * (size_t)G::CELLS) * sizeof(real);
+}
+
+/* Lets the kernels have so much shared memory; nonzero where the card has not so much. */
+template <class G> static cudaError_t pass_allow(void)
+{
+    const cudaError_t plain =
+        cudaFuncSetAttribute(pass_kernel<G, false>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)pass_shared<G>());
+    return plain != cudaSuccess
+               ? plain
+               : cudaFuncSetAttribute(pass_kernel<G, true>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                      (int)pass_shared<G>());
+}
+
+template <class G>
+static cudaError_t pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t stream)
+{
+    const card_blocks blocks = {tiles, G::THREADS, pass_shared<G>(), stream};
+    return v.mixed ? card_start(pass_kernel<G, true>, blocks, v, p) : card_start(pass_kernel<G, false>, blocks, v, p);
+}
+
+#endif

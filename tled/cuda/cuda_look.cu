@@ -1,0 +1,466 @@
+/* What the watch wants to know of a state, found where it is: watch.c's sums over elements and nodes, in double whatever
+ * the state is in, in a fixed order. Blocks leave parts; some blocks settle the frequency and add up parts, one adds up what these have.
+ */
+extern "C" {
+#include "physics/stability.h"
+}
+#include "tled/cuda/cuda_sums.cuh"
+#include "tled/cuda/cuda_view.cuh"
+
+/* Blocks of settle_kernel: what an H200 has room for. */
+#ifndef SOLVERS
+#define SOLVERS 132
+#endif
+
+enum {
+    LOOK_THREADS = 64, /* which go through a brick's cells: blocks that are small load and compute at different times */
+    NODES_AT_ONCE = 2, /* of a thread, on their way together */
+    SUM_THREADS = 256,
+    KEEP_THREADS = 256
+};
+
+/* A block of the look has a tile and as many of the nodes, in the order of memory, as any other. It leaves a part of the answer,
+ * with cells for elements, whose frequency no cell of the tile is past; and what is proven: that a cell reaches it, or else that at rest. */
+typedef struct look_parts {
+    tled_sums *block;     /* then, of SOLVERS blocks at most, what they found of some each */
+    double *proven;       /* blocks */
+    int64_t share;        /* nodes of a block */
+    element_vector slope; /* element_shape's: kernels then divide less */
+} look_parts;
+
+size_t cuda_look_bytes(int64_t tiles)
+{
+    return (size_t)tiles * (sizeof(tled_sums) + sizeof(double));
+}
+
+template <class S> static look_parts parts_of(const cuda_look<S> *l)
+{
+    const double *side = l->view.side;
+    tled_sums *block = (tled_sums *)l->parts;
+    return {block, (double *)(block + l->count), (l->view.nodes + l->count - 1) / l->count,
+            element_box(side[0], side[1], side[2]).slope};
+}
+
+/* ---- cells */
+
+/* What a thread's cell is made of, and how it is deformed. */
+typedef struct one_cell {
+    cuda_mixed own;
+    element_tensor h;
+    double hourglass; /* its energy */
+} one_cell;
+
+template <class G, class S>
+static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u, element_vector slope)
+{
+    const cuda_view<S> &v = l.view;
+    const uint32_t cell = v.cell[t.cell + i];
+    const int place = cell & TILE_PLACE;
+    const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
+    const int32_t mixed = v.mixed ? v.mixed[t.cell + i] : -1;
+    element_modes x = element_modes_of(cuda_corners<G>(u, place));
+    element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
+    element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
+    one_cell c;
+    c.own = {kind.mu, kind.bulk, kind.density, kind.hourglass, 0, -1};
+    if (mixed >= 0)
+        c.own = v.mixture[mixed];
+    c.h = element_gradient(x, y, z, slope);
+    c.hourglass = element_hourglass_energy(x, c.own.hourglass) + element_hourglass_energy(y, c.own.hourglass) +
+                  element_hourglass_energy(z, c.own.hourglass);
+    return c;
+}
+
+/* along: over cells that may contract, or NULL; share: of the tissue that is of this kind. */
+template <class S>
+static __device__ element_fibre look_fibre(const cuda_look<S> &l, const tile &t, int i, const float *along,
+                                           uint32_t kind, double share)
+{
+    element_fibre fibre = {{0, 0, 0}, 0};
+    const int32_t contract = i < t.fibred && along ? l.view.kind[kind].contract : -1;
+    if (contract < 0)
+        return fibre;
+    along += 3 * (int64_t)(t.direction + i);
+    fibre.along.x = along[0], fibre.along.y = along[1], fibre.along.z = along[2];
+    fibre.tension = share * (l.view.kind[kind].peak * l.now[3 * contract]);
+    return fibre;
+}
+
+/* Its muscles: of its own volume, and of the second. */
+template <class S>
+static __device__ void fibres_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c, element_fibre *two)
+{
+    const cuda_view<S> &v = l.view;
+    two[0] = look_fibre(l, t, i, v.fibre, v.cell[t.cell + i] >> TILE_VOLUME, 1 - c.own.share);
+    two[1] = look_fibre(l, t, i, c.own.mix < 0 ? NULL : v.mixfibre, (uint32_t)c.own.mix, c.own.share);
+}
+
+/* Its strain energy; not finite where the cell is broken. */
+template <class S> static __device__ double strain_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
+{
+    const cuda_view<S> &v = l.view;
+    const double energy = element_energy(c.h, c.own.mu, c.own.bulk);
+    if (!(1 + element_dilation(c.h) > 0) || !isfinite(energy) || !isfinite(c.hourglass))
+        return INFINITY;
+    return (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + c.hourglass);
+}
+
+/* The cells that a tile owns: of each cell and each of its nodes, one. */
+template <class G> struct own_cells {
+    enum { WARPS = G::THREADS / 32, ROUNDS = ((G::BX + 1) * (G::BY + 1) * (G::BZ + 1) + G::THREADS - 1) / G::THREADS };
+    int32_t cell[G::NODES];
+    int32_t count[ROUNDS * WARPS]; /* in each 32 cells */
+};
+
+/* Who of the threads beside this one has one of the tile's own, in each round; their counts go to *to. */
+template <class G>
+static __device__ void count_own(const uint32_t *cell, const tile &t, unsigned *who, own_cells<G> *to)
+{
+    constexpr int ROUNDS = own_cells<G>::ROUNDS, WARPS = own_cells<G>::WARPS;
+    uint32_t mine[ROUNDS];
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++) {
+        const int i = k * G::THREADS + (int)threadIdx.x;
+        mine[k] = i < t.cells ? cell[t.cell + i] : 0;
+    }
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++) {
+        who[k] = __ballot_sync(~0u, mine[k] >> TILE_OWN & 1);
+        if (threadIdx.x % 32 == 0)
+            to->count[k * WARPS + threadIdx.x / 32] = __popc(who[k]);
+    }
+}
+
+/* Lists them, in their order, when the counts are there. Returns how many there are. */
+template <class G> static __device__ int list_own(const unsigned *who, own_cells<G> *to)
+{
+    constexpr int ROUNDS = own_cells<G>::ROUNDS, WARPS = own_cells<G>::WARPS;
+    const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
+    int count = 0;
+#pragma unroll
+    for (int k = 0; k < ROUNDS; k++)
+        for (unsigned w = 0; w < WARPS; w++) {
+            if (w == warp && who[k] >> lane & 1)
+                to->cell[count + __popc(who[k] & ((1u << lane) - 1))] = (int)(k * G::THREADS + threadIdx.x);
+            count += to->count[k * WARPS + w];
+        }
+    return count;
+}
+
+/* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread nearly twice the
+ * registers. Returns what is proven. */
+template <class G, class S>
+static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
+                                       int count, element_vector slope, tled_sums *to)
+{
+    double proven = l.question.rest;
+#pragma unroll 1
+    for (int k = threadIdx.x; k < count; k += G::THREADS) {
+        const int i = own.cell[k];
+        const one_cell c = cell_of<G>(l, t, i, u, slope);
+        const double strain = strain_of(l, t, i, c);
+        if (!(strain < INFINITY)) {
+            to->broken = to->broken < 0 ? t.cell + i : to->broken;
+            continue;
+        }
+        to->strain += strain;
+        element_fibre fibre[2];
+        fibres_of(l, t, i, c, fibre);
+        const double unit = 8 / sqrt(c.own.density);
+        const element_vector d = {unit * slope.x, unit * slope.y, unit * slope.z};
+        const stability_range range = stability_range_scaled(c.own.mu, c.own.bulk, d, c.h, fibre[0], fibre[1]);
+        if (range.high <= l.question.rest)
+            continue;
+        const double bound = isnan(range.high) ? INFINITY : range.high;
+        proven = fmax(proven, range.low);
+        if (bound > to->frequency) {
+            to->frequency = bound;
+            to->frequency_element = t.cell + i;
+        }
+    }
+    return proven;
+}
+
+/* ---- matrices */
+
+/* What a tile's block knows of its highest frequency so far. */
+typedef struct highest {
+    double limit; /* no cell is past it */
+    int32_t cell; /* whose the limit is, or -1: that at rest */
+} highest;
+
+/* Some thread's matrix reaches past the limit: raises it by halving until it is the highest, or too high by `raise` at most. */
+template <int THREADS>
+static __device__ void raise_limit(const step_matrix *a, bool past, double raise, int32_t cell, highest *h,
+                                   double *scratch, int *least)
+{
+    double low = h->limit, high = block_most<THREADS>(past ? stability_bound(a) : 0, scratch);
+    const double gap = fmax(raise - 1, 1e-13);
+    high = fmax(high, low);
+    bool at_low = past;
+    for (int i = 0; i < 100 && high - low > gap * low; i++) {
+        double middle = low + (high - low) / 2;
+        bool mine = past && !stability_below(a, middle);
+        if (__syncthreads_or(mine)) {
+            low = middle;
+            at_low = mine;
+        } else {
+            high = middle;
+        }
+    }
+    int32_t which = block_least(at_low ? cell : NONE, least);
+    h->limit = high;
+    h->cell = which;
+}
+
+/* The frequency of a tile by its cells' matrices. */
+template <class G, class S>
+static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, element_vector slope, tled_sums *out, S *u,
+                                  double *scratch, int *least)
+{
+    highest h = {l.question.rest, -1};
+    __syncthreads();
+    cuda_load<G, false>(l.view, t, l.displacement, u);
+    __syncthreads();
+    for (int base = 0; base < t.cells; base += G::THREADS) {
+        const int i = base + (int)threadIdx.x;
+        bool past = i < t.cells && l.view.cell[t.cell + i] >> TILE_OWN & 1;
+        step_matrix a;
+        if (past) {
+            const one_cell c = cell_of<G>(l, t, i, u, slope);
+            element_fibre fibre[2];
+            fibres_of(l, t, i, c, fibre);
+            past = strain_of(l, t, i, c) < INFINITY;
+            stability_matrix(c.own.mu, c.own.bulk, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
+        }
+        past = past && !stability_below(&a, h.limit);
+        if (__syncthreads_or(past))
+            raise_limit<G::THREADS>(&a, past, l.question.raise, t.cell + i, &h, scratch, least);
+    }
+    if (threadIdx.x == 0) {
+        out->frequency = h.limit;
+        out->frequency_element = h.cell;
+    }
+}
+
+/* ---- nodes */
+
+/* A node's state, along the model's axes. */
+template <class S> struct look_node {
+    S u[3], speed[3], internal[3], mass_inverse;
+    uint32_t info;
+};
+
+template <class S> static __device__ look_node<S> node_at(const cuda_look<S> &l, int64_t n)
+{
+    look_node<S> x;
+    cuda_three<false>(l.view, l.displacement, n, x.u);
+    cuda_three<false>(l.view, l.velocity, n, x.speed);
+    cuda_three<false>(l.view, l.internal, n, x.internal);
+    x.mass_inverse = l.view.mass_inverse[n * l.view.mass_along];
+    x.info = l.view.node_info[n];
+    return x;
+}
+
+/* What acts on it from outside. */
+template <class S>
+static __device__ void forces_on(const cuda_look<S> &l, int32_t n, const look_node<S> &x, double mass, double *to)
+{
+    const cuda_view<S> &v = l.view;
+    for (int a = 0; a < 3; a++)
+        to[a] = v.gravity >= 0 ? mass * l.now[3 * v.gravity + a] : 0;
+    if (!(x.info >> TILE_EXTRA & 1))
+        return;
+    const tile_extra *extra = cuda_extra(v, n);
+    for (int32_t k = extra->force; k < extra->force + extra->forces; k++)
+        for (int a = 0; a < 3; a++)
+            to[a] += v.force_share[k] * l.now[3 * v.force_curve[k] + a];
+}
+
+template <class S>
+static __device__ void look_at_node(const cuda_look<S> &l, int32_t n, const look_node<S> &x, tled_sums *to)
+{
+    const double inverse = x.mass_inverse, mass = 1 / inverse;
+    double outside[3], square = 0;
+    forces_on(l, n, x, mass, outside);
+    for (int a = 0; a < 3; a++) {
+        const double u = x.u[a], speed = x.speed[a], drive = mass * speed * speed;
+        const double gap = outside[a] - x.internal[a];
+        to->kinetic += drive / 2;
+        square += u * u;
+        if (!(x.info >> (TILE_FREE + a) & 1))
+            continue;
+        to->acceleration += gap * gap * inverse;
+        to->speed += drive;
+        if (l.kept_displacement) {
+            const int64_t kept = a * l.view.stride + n;
+            const double du = u - l.kept_displacement[kept];
+            to->stiffness += du * (x.internal[a] - (double)l.kept_internal[kept]);
+            to->inertia += mass * du * du;
+        }
+    }
+    to->mass += mass;
+    to->moved += mass * square;
+    to->largest = fmax(to->largest, square);
+}
+
+/* A thread's of a block's share of the nodes. */
+template <int THREADS, class S>
+static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_sums *to)
+{
+    const int64_t all = l.view.nodes, first = blockIdx.x * share;
+    const int64_t end = first + share < all ? first + share : all;
+#pragma unroll 1
+    for (int64_t n = first + threadIdx.x; n < end; n += NODES_AT_ONCE * THREADS) {
+        look_node<S> x[NODES_AT_ONCE];
+#pragma unroll
+        for (int k = 0; k < NODES_AT_ONCE; k++)
+            if (n + k * THREADS < end)
+                x[k] = node_at(l, n + k * THREADS);
+#pragma unroll
+        for (int k = 0; k < NODES_AT_ONCE; k++)
+            if (n + k * THREADS < end)
+                look_at_node(l, (int32_t)(n + k * THREADS), x[k], to);
+    }
+}
+
+/* ---- kernels */
+
+/* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one block is beside
+ * what computes in others. */
+template <class G, class S>
+static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
+    look_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts out)
+{
+    constexpr int WARPS = G::THREADS / 32;
+    __shared__ S u[3 * G::PLACES];
+    __shared__ own_cells<G> own;
+    __shared__ tled_sums part[WARPS];
+    __shared__ double proven[WARPS];
+    const unsigned warp = threadIdx.x / 32;
+    const tile t = l.view.tiles[blockIdx.x];
+    unsigned who[own_cells<G>::ROUNDS];
+    count_own<G>(l.view.cell, t, who, &own);
+    cuda_load<G, false>(l.view, t, l.displacement, u);
+    tled_sums mine = nothing_seen(l.question.rest);
+    look_at_nodes<G::THREADS>(l, out.share, &mine);
+    sum_nodes(&mine, l.kept_displacement);
+    if (threadIdx.x % 32 == 0)
+        part[warp] = mine;
+    __syncthreads();
+    const int count = list_own<G>(who, &own);
+    __syncthreads();
+    mine = nothing_seen(l.question.rest);
+    const double most = warp_most(look_at_cells<G>(l, t, u, own, count, out.slope, &mine));
+    sum_cells(&mine);
+    if (threadIdx.x % 32 == 0) {
+        add_part(&part[warp], mine);
+        proven[warp] = most;
+    }
+    __syncthreads();
+    if (threadIdx.x)
+        return;
+    for (int i = 1; i < WARPS; i++) {
+        add_part(&part[0], part[i]);
+        proven[0] = fmax(proven[0], proven[i]);
+    }
+    out.block[blockIdx.x] = part[0];
+    out.proven[blockIdx.x] = proven[0];
+}
+
+/* The highest frequency that a cell of any tile is known to reach. */
+template <int THREADS>
+static __device__ double proven_of_all(const double *proven, int64_t tiles, double rest, double *scratch)
+{
+    double most = rest;
+#pragma unroll 8
+    for (int64_t i = threadIdx.x; i < tiles; i += THREADS)
+        most = fmax(most, proven[i]);
+    return block_most<THREADS>(most, scratch);
+}
+
+/* Goes through tiles, every gridDim.x-th, for those whose limit is past `raise` times what some tile is known to reach: others' limits
+ * may stay, for if one of them is the highest of all, it is too high by `raise` at most. Where no tile is known to pass the frequency
+ * at rest, it is for all that may. Then it adds up what their blocks left, where the first of these was. */
+template <class G, class S>
+static __global__ void __launch_bounds__(G::THREADS)
+    settle_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts parts)
+{
+    __shared__ S u[3 * G::PLACES];
+    __shared__ tled_sums scratch[G::THREADS / 32];
+    __shared__ double number[G::THREADS / 32];
+    __shared__ int least;
+    const int64_t stride = gridDim.x;
+    const double rest = l.question.rest, proven = proven_of_all<G::THREADS>(parts.proven, l.count, rest, number);
+    const double enough = proven > rest ? l.question.raise * proven : rest;
+    tled_sums mine = nothing_seen(rest);
+    for (int64_t base = blockIdx.x; base < l.count; base += G::THREADS * stride) {
+        const int64_t own = base + threadIdx.x * stride;
+        int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
+        for (int which; (which = block_least(next, &least)) != NONE;) {
+            const int64_t at = base + which * stride;
+            solve_tile<G>(l, l.view.tiles[at], parts.slope, &parts.block[at], u, number, &least);
+            next = next == which ? NONE : next;
+        }
+        if (own < l.count)
+            add_part(&mine, parts.block[own]);
+    }
+    sum_block<G::THREADS>(mine, l.kept_displacement, scratch, &parts.block[blockIdx.x]);
+}
+
+static __global__ void __launch_bounds__(SUM_THREADS)
+    sums_kernel(const tled_sums *part, int64_t count, double rest, tled_sums *out)
+{
+    __shared__ tled_sums scratch[SUM_THREADS / 32];
+    tled_sums mine = nothing_seen(rest);
+    for (int64_t i = threadIdx.x; i < count; i += SUM_THREADS)
+        add_part(&mine, part[i]);
+    sum_block<SUM_THREADS>(mine, true, scratch, out);
+}
+
+template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream)
+{
+    const look_parts parts = parts_of(l);
+    const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
+    cudaError_t e = with_brick(l->size, [&](auto g) {
+        typedef decltype(g) G;
+        typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
+        const cudaError_t bounds = card_start(look_kernel<W, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
+        return bounds == cudaSuccess ? card_start(settle_kernel<G, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
+                                     : bounds;
+    });
+    return e == cudaSuccess
+               ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, parts.block, solvers, l->question.rest, sums)
+               : e;
+}
+
+/* ---- what is kept */
+
+template <class S>
+static __global__ void __launch_bounds__(KEEP_THREADS)
+    keep_kernel(const __grid_constant__ cuda_view<S> v, const __grid_constant__ cuda_kept<S> kept)
+{
+    const int64_t n = (int64_t)blockIdx.x * KEEP_THREADS + threadIdx.x;
+    S x[CUDA_KEPT][3];
+    if (n >= v.nodes)
+        return;
+#pragma unroll
+    for (int i = 0; i < CUDA_KEPT; i++)
+        if (kept.from[i])
+            cuda_three<false>(v, kept.from[i], n, x[i]);
+#pragma unroll
+    for (int i = 0; i < CUDA_KEPT; i++)
+        for (int a = 0; a < 3 && kept.from[i]; a++)
+            kept.to[i][a * v.stride + n] = x[i][a];
+}
+
+template <class S> cudaError_t cuda_keep_start(const cuda_view<S> *v, const cuda_kept<S> *k, cudaStream_t stream)
+{
+    const int64_t blocks = (v->nodes + KEEP_THREADS - 1) / KEEP_THREADS;
+    return card_start(keep_kernel<S>, {blocks, KEEP_THREADS, 0, stream}, *v, *k);
+}
+
+template cudaError_t cuda_look_start<float>(const cuda_look<float> *, tled_sums *, cudaStream_t);
+template cudaError_t cuda_look_start<double>(const cuda_look<double> *, tled_sums *, cudaStream_t);
+template cudaError_t cuda_keep_start<float>(const cuda_view<float> *, const cuda_kept<float> *, cudaStream_t);
+template cudaError_t cuda_keep_start<double>(const cuda_view<double> *, const cuda_kept<double> *, cudaStream_t);

@@ -1,0 +1,548 @@
+/* The step in single precision by a march: see march.h. A thread keeps what the face between two elements has of modes (the mean, x, y
+ * and xy of each component, sums and differences over four corners) and of forces on them; so an element takes one new face, and a
+ * node the sums of one. Compiled with fused multiplications and additions: its bytes are not the processor's.
+ *
+ * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from four layers before
+ * they are wanted, velocities from two: both have the time of two layers of cells before a thread waits for them. Forces on
+ * neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells of the next one are computed: a
+ * warp says that it is done with a layer, and only after it has computed the next one does it wait until all have said so, so that
+ * those with fewer cells seldom keep others waiting.
+ */
+#define ELEMENT_SINGLE
+extern "C" {
+#include "physics/element.h"
+}
+#include "tled/cuda/cuda_cells.cuh"
+
+enum {
+    SIDE = MARCH_SIDE,
+    GRID = SIDE + 1,          /* nodes along a side */
+    NODE = 16,                /* bytes of 4 floats, of a node's displacement, velocity or force */
+    STAGES = MARCH_AHEAD + 1, /* layers of displacements in shared memory */
+    STAGE = GRID * GRID * NODE,
+    VELOCITIES = STAGES * STAGE, /* two layers; from here on grids have a row fewer */
+    FORCE = GRID * SIDE * NODE,
+    FORCES = VELOCITIES + 2 * FORCE, /* two times four of them: on corners (1, 0), (0, 1), (1, 1), (0, 0) */
+    FORCES_EACH = 4 * FORCE,
+    GRAVITY = FORCES + 2 * FORCES_EACH, /* its part of a velocity */
+    SAID = GRAVITY + NODE,              /* the barrier */
+    NEXT = SAID + 16,                   /* the unit that the block takes next, and in which pass: */
+    TURN = NEXT + 16,
+    RECORDS = TURN + 16, /* three layers of halves of special cells, one half after the other, for each thread */
+    RECORD = MARCH_THREADS * NODE,
+    SHARED = RECORDS + 3 * 2 * RECORD,
+    WARPS = MARCH_THREADS / 32,
+    EXTRA = 2 * SIDE + 1, /* words of places beyond the threads' */
+    TAKEN = 4,            /* layers before its last, a block takes its next unit */
+    TOGETHER = 2          /* blocks of a multiprocessor */
+};
+
+/* What goes from layer to layer. */
+typedef struct flow {
+    const uint32_t *word;      /* of the layer after the one that the loop is at, this thread's */
+    uint32_t after, far, more; /* words of layer c + 2, and c + MARCH_AHEAD, and there of the place beyond */
+    int32_t which, detail;     /* march's: which, of layer c + 3; detail, of layer c + 4 */
+    uint32_t last, now, then;  /* words of layers c - 1, c, c + 1 */
+    bool any, was;             /* this warp has cells in layers c, c - 1 */
+    int clean;                 /* buffers of forces in which this warp's are zero */
+    push below;
+} flow;
+
+/* A thread's place in the grid of a layer's nodes. */
+static __device__ __forceinline__ int place_of(int thread)
+{
+    const int warp = thread / 32, lane = thread % 32;
+    const int half = warp / 4, row = (warp + 2 * half) % 4; /* march.c's warp_of */
+    return (row * 4 + lane / 8) * GRID + half * 8 + lane % 8;
+}
+
+/* What a block is at: pass `pass` of a launch, of a unit. memory: where its shared memory stands. */
+typedef struct turn {
+    uint32_t pass;
+    int32_t kind; /* of the pass */
+    int32_t base, cells;
+    uint32_t memory;
+} turn;
+
+static __device__ __forceinline__ const float4 *node_of(const float4 *p, uint32_t word)
+{
+    return nth(p, word & MARCH_NODE);
+}
+
+static __device__ __forceinline__ const float4 *from_of(const cuda_march_pass &p, const turn &t)
+{
+    return p.state[t.pass % 2];
+}
+
+static __device__ __forceinline__ float4 *to_of(const cuda_march_pass &p, const turn &t)
+{
+    return p.state[1 - t.pass % 2];
+}
+
+/* What the pass does; STEP: it is one of those that end a step and begin the next. */
+template <bool STEP>
+static __device__ __forceinline__ const cuda_march_kind &kind_of(const cuda_march_pass &p, const turn &t)
+{
+    return p.kind[STEP ? (int)MARCH_STEP : t.kind];
+}
+
+/* The curves' values at the state that the pass reads. */
+static __device__ __forceinline__ const double *now_of(const cuda_march_pass &p, const turn &t)
+{
+    return p.now + (int64_t)t.pass * p.row;
+}
+
+/* The first threads have a place beyond the threads' as well. */
+static __device__ __forceinline__ bool has_extra(void)
+{
+    return threadIdx.x < EXTRA;
+}
+
+/* at: the thread's own place. */
+static __device__ __forceinline__ uint32_t extra_at(uint32_t at)
+{
+    const int t = (int)threadIdx.x, own = place_of(t), extra = t < GRID ? t * GRID + SIDE : SIDE * GRID + t - GRID;
+    return at + (uint32_t)((extra - own) * NODE);
+}
+
+static __device__ __forceinline__ void send_layer(const float4 *from, uint32_t at, uint32_t stage, uint32_t word,
+                                                  uint32_t extra)
+{
+    send(at + stage, node_of(from, word), word & MARCH_THERE);
+    if (has_extra())
+        send(extra_at(at) + stage, node_of(from, extra), extra & MARCH_THERE);
+}
+
+static __device__ __forceinline__ face face_at(uint32_t node)
+{
+    return face_between(shared_load(node), shared_load(node + NODE), shared_load(node + GRID * NODE),
+                        shared_load(node + GRID * NODE + NODE));
+}
+
+static_assert(offsetof(march_cell, muscle) == 16 && sizeof(march_cell) % 16 == 0, "read 16 bytes at a time");
+
+/* Which special cell is this thread's, by a layer's detail; 0: none. */
+static __device__ __forceinline__ int32_t which_of(const cuda_march &m, int32_t detail)
+{
+    return detail < 0 ? 0 : m.which[MARCH_THREADS * (int64_t)detail + threadIdx.x];
+}
+
+/* Where what this thread's special cell of layer c is made of stands. */
+static __device__ __forceinline__ uint32_t record_of(uint32_t memory, int c)
+{
+    return memory + RECORDS + (uint32_t)(c % 3) * 2 * RECORD + threadIdx.x * NODE;
+}
+
+/* The first halves of layer c's special cells are on their way. They are the thread's own: nobody else reads them. */
+static __device__ __forceinline__ void send_special(const cuda_march &m, uint32_t memory, int c, int32_t which)
+{
+    const float4 *cell = (const float4 *)(m.cell + which - 1);
+    const uint32_t to = record_of(memory, c);
+    if (!which)
+        return;
+    send(to, cell, true);
+    send(to + RECORD, cell + 1, true);
+}
+
+/* Adds those of a special cell's muscles. The gradient is found once more, so that other cells need not keep theirs; here, next: where
+ * the displacements of the cell's layers stand; layer: of all; few cells have a second muscle, which is looked for there. */
+static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const double *now, uint32_t record,
+                                                     int32_t layer, uint32_t here, uint32_t next, face *sum,
+                                                     push *below)
+{
+    const float4 first = shared_load(record + RECORD);
+    const int32_t curve = (int32_t)__float_as_uint(first.w);
+    if (curve < 0)
+        return;
+    const element_tensor h = gradient_of(m, face_at(here), face_at(next));
+    const float peak = shared_number(record + 12);
+    add_tension(m, h, {{first.x, first.y, first.z}, peak * (float)now[3 * (curve & ~MARCH_SECOND)]}, sum, below);
+    if (!(curve & MARCH_SECOND))
+        return;
+    const march_cell *cell = m.cell + which_of(m, m.detail[layer]) - 1;
+    const march_muscle &second = cell->muscle[1];
+    add_tension(m, h,
+                {{second.fibre[0], second.fibre[1], second.fibre[2]}, cell->second_peak * (float)now[3 * second.curve]},
+                sum, below);
+}
+
+/* As cell_forces, of any cell of layer c. */
+template <bool SPECIAL>
+static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, const turn &t, flow *f, int c,
+                                                 const face &low, const face &high, uint32_t here, uint32_t next,
+                                                 face *sum)
+{
+    const bool is = f->now & MARCH_CELL, special = SPECIAL && f->now & MARCH_SPECIAL;
+    const uint32_t record = record_of(t.memory, c);
+    float mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
+    if (special) {
+        const float4 law = shared_load(record);
+        mu = law.x, bulk = law.y, hourglass = law.z;
+    }
+    cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
+    if (special)
+        muscle_forces(m, now, record, t.base + c, here, next, sum, &f->below);
+}
+
+/* The forces on the corners of a face go to shared memory. */
+static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to)
+{
+    float own[3], x[3], y[3], xy[3];
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        const float low = sum.mean[a] - sum.y[a], high = sum.mean[a] + sum.y[a];
+        const float low_x = sum.x[a] - sum.xy[a], high_x = sum.x[a] + sum.xy[a];
+        own[a] = low - low_x;
+        x[a] = low + low_x;
+        y[a] = high - high_x;
+        xy[a] = high + high_x;
+    }
+    shared_store(to, x[0], x[1], x[2]);
+    shared_store(to + FORCE, y[0], y[1], y[2]);
+    shared_store(to + 2 * FORCE, xy[0], xy[1], xy[2]);
+    shared_store(to + 3 * FORCE, own[0], own[1], own[2]);
+}
+
+/* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces on it. It is worked on where it
+ * stands in shared memory, component by component: few nodes are such, and others are to keep their registers. */
+template <bool STEP>
+static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                                 uint32_t speed, uint32_t word, uint32_t node, uint32_t bits, int a,
+                                                 float pull)
+{
+    const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)(word & MARCH_NODE)) : NULL;
+    const double *now = now_of(p, t);
+    const cuda_march_kind &k = kind_of<STEP>(p, t);
+    const int axis = m.axis[a];
+    float u = shared_number(node + 4 * a), v = shared_number(speed + 4 * a), net = -pull;
+    for (int32_t i = 0; x && i < x->forces; i++)
+        net += (float)(m.v.force_share[x->force + i] * now[3 * m.v.force_curve[x->force + i] + axis]);
+    if (bits >> (MARCH_FREE + a) & 1) {
+        v = k.keep * v + shared_number(t.memory + GRAVITY + 4 * a) + k.push * shared_number(node + 12) * net;
+        u += k.dt * v;
+    } else if (k.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
+        const float to = (float)now[p.row + 3 * x->hold[axis] + axis];
+        v = (to - u) / k.dt;
+        u = to;
+    }
+    shared_number_store(node + 4 * a, u);
+    shared_number_store(speed + 4 * a, v);
+}
+
+/* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its forces, displacement and velocity
+ * stand. */
+template <bool STEP>
+static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                                 uint32_t word, uint32_t forces, uint32_t node, uint32_t speed)
+{
+    if (!(word & MARCH_OWN))
+        return;
+    const float4 own = shared_load(forces + 3 * FORCE), x = shared_load(forces - NODE);
+    const float4 y = shared_load(forces + FORCE - GRID * NODE);
+    const float4 xy = shared_load(forces + 2 * FORCE - (GRID + 1) * NODE);
+    float4 u = shared_load(node), v = shared_load(speed);
+    const float4 gravity = shared_load(t.memory + GRAVITY);
+    const float3 sum = {(own.x + x.x) + (y.x + xy.x), (own.y + x.y) + (y.y + xy.y), (own.z + x.z) + (y.z + xy.z)};
+    const uint32_t bits = __float_as_uint(v.w);
+    const cuda_march_kind &k = kind_of<STEP>(p, t);
+    if (!STEP && k.what & PASS_INTERNAL)
+        *(float4 *)node_of(to_of(p, t), word) = make_float4(sum.x, sum.y, sum.z, u.w);
+    if (bits == 7) {
+        const float push = k.push * u.w;
+        v.x = (k.keep * v.x + gravity.x) - push * sum.x;
+        v.y = (k.keep * v.y + gravity.y) - push * sum.y;
+        v.z = (k.keep * v.z + gravity.z) - push * sum.z;
+        u.x += k.dt * v.x;
+        u.y += k.dt * v.y;
+        u.z += k.dt * v.z;
+    } else if (bits) { /* of what is held and not displaced, all stays */
+#pragma unroll 1
+        for (int a = 0; a < 3; a++)
+            move_held<STEP>(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
+        u = shared_load(node);
+        v = shared_load(speed);
+    }
+    if (STEP || k.what & PASS_BEGIN)
+        *(float4 *)node_of(to_of(p, t), word) = u;
+    if (STEP || k.what & (PASS_BEGIN | PASS_FINISH))
+        *(float4 *)node_of(p.velocity, word) = v;
+}
+
+/* Says that this warp is done with a layer: its forces are there, and displacements of layers up to c + 3. */
+static __device__ __forceinline__ void say_done(const turn &t)
+{
+    __syncwarp();
+    if (threadIdx.x % 32 == 0)
+        barrier_arrive(t.memory + SAID);
+}
+
+/* Words of the layer after the next are on their way while a layer is worked on. */
+static __device__ __forceinline__ void fetch_words(flow *f)
+{
+    f->after = f->word[2 * MARCH_WORDS];
+    f->far = f->word[MARCH_AHEAD * MARCH_WORDS];
+    f->more = has_extra() ? f->word[MARCH_AHEAD * MARCH_WORDS + MARCH_THREADS] : 0;
+    f->word += MARCH_WORDS;
+}
+
+/* Special cells of layer c + 3 are sent for, into the place of those of layer c; what later ones are is on its way. */
+static __device__ __forceinline__ void go_on_special(const cuda_march &m, const turn &t, flow *f, int c)
+{
+    if (c + 3 < t.cells)
+        send_special(m, t.memory, c + 3, f->which);
+    f->which = which_of(m, f->detail);
+    f->detail = m.detail[t.base + c + 5];
+}
+
+static __device__ __forceinline__ void begin_special(const cuda_march &m, const turn &t, flow *f)
+{
+#pragma unroll
+    for (int k = 0; k < 3; k++)
+        if (k < t.cells)
+            send_special(m, t.memory, k, which_of(m, m.detail[t.base + k]));
+    f->which = which_of(m, m.detail[t.base + 3]);
+    f->detail = m.detail[t.base + 4];
+}
+
+/* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the
+ * displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. */
+template <bool SPECIAL, bool STEP, int ODD>
+static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, const turn &t, uint32_t at,
+                                             flow *f, int c, uint32_t next, uint32_t old, const face &low, face *high)
+{
+    const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
+    const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
+    const uint32_t after = f->after, far = f->far, more = f->more;
+    const bool any = f->any;
+    fetch_words(f);
+    f->any = __any_sync(~0u, f->then & MARCH_CELL);
+    face sum;
+    if (any || f->any)
+        *high = face_at(at + next);
+    if (any) {
+        forces_of<SPECIAL>(m, now_of(p, t), t, f, c, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE),
+                           at + next, &sum);
+    } else {
+        sum = f->was ? face_of(f->below, low) : face{}; /* else `low` may be anything */
+        f->below = push{};
+    }
+    arrived<1>(); /* displacements of c + 3, and velocities of c - 1: all but what was sent in the layer before */
+    if (c)
+        barrier_wait(t.memory + SAID, 1 - ODD);
+    if (any || f->was || f->clean < 2)
+        share_forces(sum, forces);
+    f->clean = any || f->was ? 0 : f->clean + 1;
+    if (c > 1)
+        move_node<STEP>(m, p, t, f->last, before, at + old, speed);
+    send(speed, node_of(p.velocity, f->then),
+         f->then & MARCH_OWN && c + 1 < t.cells); /* the last layer's are another's */
+    if (c + MARCH_AHEAD <= t.cells)
+        send_layer(from_of(p, t), at, old, far, more);
+    if (SPECIAL)
+        go_on_special(m, t, f, c);
+    sent();
+    say_done(t);
+    f->was = any;
+    f->last = f->now;
+    f->now = f->then;
+    f->then = after;
+}
+
+/* Thread 0's work. */
+static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p, const turn &t)
+{
+    const double *g = m.v.gravity < 0 ? NULL : now_of(p, t) + 3 * m.v.gravity;
+    for (int a = 0; a < 3; a++)
+        shared_number_store(t.memory + GRAVITY + 4 * a, g ? p.kind[t.kind].push * (float)g[m.axis[a]] : 0);
+    shared_number_store(t.memory + GRAVITY + 12, 0);
+}
+
+/* Waits until the units that have to do with this one have made the pass before: what they wrote may be read, and what they read
+ * written. Units are taken in turn, so that those of the first turn that is not done wait for none. */
+static __device__ __forceinline__ void wait_for_near(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                                     uint32_t unit)
+{
+    const int32_t *near = m.near + (int64_t)unit * m.nears;
+    for (int32_t i = (int32_t)threadIdx.x; i < m.nears; i += MARCH_THREADS)
+        while (near[i] >= 0 && (int32_t)(hear_done(&m.done[near[i]]) - (p.number + t.pass - 1)) < 0)
+            ;
+    __syncthreads();
+}
+
+/* The first layers of a unit are there. What the pass before wrote may be read from here on. */
+template <bool SPECIAL>
+static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                             uint32_t unit, uint32_t at, flow *f)
+{
+    uint32_t word[MARCH_AHEAD], extra[MARCH_AHEAD];
+    f->word = m.word + MARCH_WORDS * (int64_t)t.base + threadIdx.x;
+#pragma unroll
+    for (int k = 0; k < MARCH_AHEAD; k++) {
+        word[k] = f->word[k * MARCH_WORDS];
+        extra[k] = has_extra() ? f->word[k * MARCH_WORDS + MARCH_THREADS] : 0;
+    }
+    fetch_words(f);
+    f->now = word[0];
+    f->then = word[1];
+    wait_for_near(m, p, t, unit);
+#pragma unroll
+    for (int k = 0; k < MARCH_AHEAD; k++)
+        if (k <= t.cells)
+            send_layer(from_of(p, t), at, k * STAGE, word[k], extra[k]);
+    if (SPECIAL)
+        begin_special(m, t, f);
+    sent();
+    if (threadIdx.x == 0)
+        put_gravity(m, p, t);
+    arrived<0>();
+    __syncthreads();
+    f->any = __any_sync(~0u, f->now & MARCH_CELL);
+}
+
+static __device__ __forceinline__ uint32_t after(uint32_t stage)
+{
+    return stage == (STAGES - 1) * STAGE ? 0 : stage + STAGE;
+}
+
+/* Thread 0's work: says which unit the block takes next, and in which pass. What that is, is on its way. */
+static __device__ __forceinline__ void note_next(const cuda_march &m, const cuda_march_pass &p, uint32_t memory,
+                                                 uint32_t ticket)
+{
+    const uint32_t next = ticket - p.ticket, units = (uint32_t)m.units;
+    const bool is = next < units * (uint32_t)p.passes;
+    shared_number_store(memory + TURN, __uint_as_float(next));
+    send(memory + NEXT, (const float4 *)&m.unit[is ? next % units : 0], is);
+}
+
+/* Takes a ticket at the start of a layer, and looks at it a layer later, when it is there. ago: layers since. */
+static __device__ __forceinline__ void take_next(const cuda_march &m, const cuda_march_pass &p, const turn &t, int ago,
+                                                 uint32_t *ticket)
+{
+    if (ago == 0 && threadIdx.x == 0)
+        *ticket = take_ticket(m.ticket);
+    if (ago == 1 && threadIdx.x == 0)
+        note_next(m, p, t.memory, *ticket);
+}
+
+template <bool SPECIAL, bool STEP>
+static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p, const turn &t,
+                                                     uint32_t unit)
+{
+    const uint32_t at = t.memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
+    flow f = {};
+    begin<SPECIAL>(m, p, t, unit, at, &f);
+    face even = face_at(at), odd;
+    const int last = t.cells;
+    const int take = last > TAKEN ? last - TAKEN : 0;
+    uint32_t ticket = 0;
+    uint32_t next = STAGE, old = (STAGES - 1) * STAGE;
+#pragma unroll 1
+    for (int c = 0;;) {
+        take_next(m, p, t, c - take, &ticket);
+        layer<SPECIAL, STEP, 0>(m, p, t, at, &f, c, next, old, even, &odd);
+        next = after(next), old = after(old);
+        if (++c == last)
+            break;
+        take_next(m, p, t, c - take, &ticket);
+        layer<SPECIAL, STEP, 1>(m, p, t, at, &f, c, next, old, odd, &even);
+        next = after(next), old = after(old);
+        if (++c == last)
+            break;
+    }
+    arrived<0>();
+    barrier_wait(t.memory + SAID, (last - 1) % 2);
+    move_node<STEP>(m, p, t, f.last, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
+                    at + VELOCITIES + (uint32_t)(last - 1) % 2 * FORCE);
+    if (last % 2) { /* the next unit's first phase is even again */
+        say_done(t);
+        barrier_wait(t.memory + SAID, 1);
+    }
+}
+
+/* Thread 0's work: the first unit of a block, as its next. */
+static __device__ __forceinline__ void take_first(const cuda_march &m, const cuda_march_pass &p, const turn &t)
+{
+    barrier_make(t.memory + SAID, WARPS);
+    note_next(m, p, t.memory, take_ticket(m.ticket));
+    sent();
+    arrived<0>();
+}
+
+/* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor do passes that
+ * end a step and begin the next ask what they are. */
+static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
+    march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
+{
+    DYNAMIC_SHARED(float4, shared);
+    turn t = {.memory = shared_at(shared)};
+    if (threadIdx.x == 0)
+        take_first(m, p, t);
+    __syncthreads();
+    for (;;) {
+        const uint32_t units = (uint32_t)m.units, turn = __float_as_uint(shared_number(t.memory + TURN));
+        const uint32_t unit = turn % units;
+        const float4 next = shared_load(t.memory + NEXT);
+        t.pass = turn / units;
+        if (t.pass >= (uint32_t)p.passes)
+            break;
+        t.kind = t.pass == 0 ? MARCH_FIRST : p.ends && t.pass + 1 == (uint32_t)p.passes ? MARCH_LAST : MARCH_STEP;
+        t.base = (int32_t)__float_as_uint(next.x);
+        t.cells = (int32_t)__float_as_uint(next.y);
+        const bool special = __float_as_uint(next.z);
+        if (t.kind == MARCH_STEP && special)
+            march_unit_of<true, true>(m, p, t, unit);
+        else if (t.kind == MARCH_STEP)
+            march_unit_of<false, true>(m, p, t, unit);
+        else
+            march_unit_of<true, false>(m, p, t, unit);
+        __syncthreads();
+        if (threadIdx.x == 0)
+            tell_done(&m.done[unit], p.number + t.pass);
+    }
+}
+
+/* ---- from rows */
+
+enum { PACK_THREADS = 256 };
+
+static __global__ void unpack_kernel(const __grid_constant__ cuda_march m, const float *from, float4 *to)
+{
+    const int64_t n = (int64_t)blockIdx.x * PACK_THREADS + threadIdx.x;
+    if (n >= m.v.nodes)
+        return;
+    to[n] = make_float4(from[m.axis[0] * m.v.stride + n], from[m.axis[1] * m.v.stride + n],
+                        from[m.axis[2] * m.v.stride + n], to[n].w);
+}
+
+static int64_t pack_blocks(const cuda_march *m)
+{
+    return (m->v.nodes + PACK_THREADS - 1) / PACK_THREADS;
+}
+
+cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to, cudaStream_t stream)
+{
+    return card_start(unpack_kernel, {pack_blocks(m), PACK_THREADS, 0, stream}, *m, from, to);
+}
+
+/* ---- starting */
+
+cudaError_t cuda_march_slots(int64_t *slots)
+{
+    int device = 0, processors = 0, each = 0, major = 0;
+    *slots = 0;
+    cudaError_t e = cudaGetDevice(&device);
+    e = e == cudaSuccess ? cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) : e;
+    if (e != cudaSuccess || major < 9)
+        return e;
+    e = cudaFuncSetAttribute(march_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
+    e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
+    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel, MARCH_THREADS, SHARED)
+                         : e;
+    *slots = (int64_t)processors * each;
+    return e;
+}
+
+cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t blocks, cudaStream_t stream)
+{
+    return card_start(march_kernel, {blocks, MARCH_THREADS, SHARED, stream}, *m, *p);
+}

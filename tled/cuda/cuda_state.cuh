@@ -1,0 +1,277 @@
+/* What the CUDA back end has of a problem: cut into tiles that the card has a place for, and laid out in its memory. Included by
+ * cuda_frame.cuh alone.
+ */
+#ifndef SINEW_CUDA_STATE_CUH
+#define SINEW_CUDA_STATE_CUH
+
+#include "tled/cuda/cuda_resident.cuh"
+
+#include "tled/cuda/cuda_march.cuh" /* wants element.h before it */
+
+enum { TABLE_STEPS = 256, TABLES = 2, COPY_CHUNK = 4096, WIDENERS = 4 };
+
+/* Bytes: a frame that is copied sooner than it is worth its own memory on the card. */
+#ifndef FRAME_DIRECT
+#define FRAME_DIRECT (2 << 20)
+#endif
+
+typedef struct cuda_frame { /* results on their way to the host; made when first wanted */
+    real *host;             /* pinned: what `frame` has; without one, displacement, then velocity, as they stand */
+    cudaEvent_t arrived;
+    int64_t step; /* that it was taken at, for messages: the state's own goes on meanwhile */
+} cuda_frame;
+
+typedef struct cuda_state {
+    const tled_problem *p;
+    pool *threads;
+    struct tiles tiles;
+    cuda_size size; /* of its bricks */
+    cuda_view<real> view;
+    element_shape shape;
+    bool marches; /* by `march`, not by tiles: the state stands node by node, in its order */
+    struct march march;
+    cuda_march walk;            /* what its kernels see */
+    int64_t walkers;            /* blocks of it */
+    uint32_t walked, tickets;   /* passes of it, and units of all of them, and one more a block */
+    char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
+    int64_t bytes, used;        /* of memory */
+    real *displacement, *spare; /* each `numbers`, as is velocity; all else in rows: 3 x stride */
+    real *velocity;
+    int64_t numbers;         /* 3 x stride, or, where it marches, 4 x stride */
+    uint64_t *message;       /* between tiles that are resident */
+    uint32_t messages;       /* passes that they have sent them for */
+    real *kept_displacement; /* and velocity after it */
+    real *kept_internal;     /* made when first wanted */
+    real *frame;             /* to send (cuda_frame.cuh); likewise, unless that is: one of the two */
+    pool *wideners;          /* make doubles of it on the host, beside those of the run: made with it */
+    bool spare_is_internal, has_kept_internal;
+    bool resident;              /* all tiles have a place on the card at once */
+    bool frame_direct;          /* there is no room for `frame` */
+    double *table[TABLES];      /* on the card: TABLE_STEPS + 1 rows of the curves' values */
+    double *table_host[TABLES]; /* pinned */
+    cudaEvent_t table_free[TABLES], frame_free, frame_ready;
+    int64_t tables; /* filled so far */
+    void *look_parts;
+    tled_sums *sums, *sums_host;
+    real *staging; /* pinned: `numbers` */
+    cuda_frame taken[TLED_TAKEN];
+    int64_t step, kept_step; /* for messages */
+    double time, kept_time;  /* where the state stands */
+    cudaStream_t stream, sending;
+} cuda_state;
+
+/* What went wrong in steps before may come out of any call. Not for taken(), which another thread calls. */
+#define CUDA_TRY(call) card_check(call, #call, s->step, e)
+
+/* Room in the card's memory; with none yet, counts only. */
+static void *room(cuda_state *s, int64_t count, size_t size)
+{
+    void *at = s->memory ? s->memory + s->used : NULL;
+    s->used += (count * (int64_t)size + 255) / 256 * 256;
+    return at;
+}
+
+template <class T> static int put(cuda_state *s, const T **to, const T *from, int64_t count, err *e)
+{
+    T *at = (T *)room(s, count, sizeof(T));
+    *to = at;
+    return at ? CUDA_TRY(cudaMemcpy(at, from, (size_t)count * sizeof(T), cudaMemcpyHostToDevice)) : 0;
+}
+
+static int put_march(cuda_state *s, err *e)
+{
+    const march *m = &s->march;
+    cuda_march *w = &s->walk;
+    w->done = (uint32_t *)room(s, m->units + 1, sizeof *w->done);
+    w->ticket = w->done + m->units;
+    return put(s, &w->unit, m->unit, m->units, e) || put(s, &w->near, m->near, m->units * m->nears, e) ||
+                   put(s, &w->detail, m->detail, m->layers + MARCH_AHEAD, e) ||
+                   put(s, &w->which, m->which, m->details * MARCH_THREADS, e) || put(s, &w->cell, m->cell, m->cells, e)
+               ? -1
+               : 0;
+}
+
+/* What the card gets of the problem's numbers. */
+typedef struct cuda_numbers {
+    real *mass_inverse, *law;
+    cuda_kind *kind;
+    cuda_mixed *mixture;
+} cuda_numbers;
+
+/* Lays out what is in s->memory, and fills what does not change. Called twice: to count, and to do. */
+static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
+{
+    const tiles *t = &s->tiles;
+    const tled_problem *p = s->p;
+    cuda_view<real> *v = &s->view;
+    const int64_t rows = 3 * v->stride;
+    s->used = 0;
+    if (put(s, &v->tiles, t->tile, t->count, e) || put(s, &v->node_info, t->node_info, t->nodes, e) ||
+        (t->order && put(s, &v->order, t->order, t->nodes, e)) || put(s, &v->cell, t->cell, t->cells, e) ||
+        put(s, &v->halo_node, t->halo_node, t->halos, e) || put(s, &v->halo_place, t->halo_place, t->halos, e) ||
+        put(s, &v->fibre, t->fibre, 3 * t->directions, e) || (t->share && put(s, &v->share, t->share, t->cells, e)) ||
+        (t->mixed && put(s, &v->mixed, t->mixed, t->cells, e)) ||
+        (t->mixed && put(s, &v->mixture, numbers->mixture, p->laws, e)) ||
+        (t->mixfibre && put(s, &v->mixfibre, t->mixfibre, 3 * t->directions, e)) ||
+        put(s, &v->extra, t->extra, t->extras, e) ||
+        put(s, &v->force_curve, p->force_curve, p->force_start[p->nodes], e) ||
+        put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
+        (!s->marches && put(s, &v->mass_inverse, numbers->mass_inverse, t->nodes, e)) ||
+        (s->marches && put_march(s, e)) || put(s, &v->kind, numbers->kind, p->volumes, e) ||
+        put(s, &v->law, numbers->law, LAW_NUMBERS * p->volumes, e))
+        return -1;
+    s->displacement = (real *)room(s, s->numbers, sizeof(real));
+    s->spare = (real *)room(s, s->numbers, sizeof(real));
+    s->velocity = (real *)room(s, s->numbers, sizeof(real));
+    if (s->marches) {
+        v->mass_inverse = s->displacement + 3;
+        if (put(s, &s->walk.word, s->march.word, (s->march.layers + MARCH_AHEAD) * MARCH_WORDS, e)) /* for keep_near */
+            return -1;
+    }
+    s->kept_displacement = (real *)room(s, 2 * rows, sizeof(real));
+    if (s->resident)
+        s->message = (uint64_t *)room(s, MESSAGES * MESSAGE_WORDS * v->stride, sizeof *s->message);
+    for (int i = 0; i < TABLES; i++)
+        s->table[i] = (double *)room(s, (TABLE_STEPS + 1) * 3 * p->script->curves, sizeof(double));
+    s->look_parts = room(s, (int64_t)cuda_look_bytes(t->count), 1);
+    s->sums = (tled_sums *)room(s, 1, sizeof *s->sums);
+    return 0;
+}
+
+static int make_events(cuda_state *s, err *e)
+{
+    const size_t row = 3 * (size_t)(s->p->script->curves ? s->p->script->curves : 1) * sizeof(double);
+    if (CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
+        CUDA_TRY(cudaStreamCreateWithFlags(&s->sending, cudaStreamNonBlocking)) ||
+        CUDA_TRY(cudaEventCreateWithFlags(&s->frame_free, cudaEventDisableTiming)) ||
+        CUDA_TRY(cudaEventCreateWithFlags(&s->frame_ready, cudaEventDisableTiming)) ||
+        CUDA_TRY(cudaMallocHost((void **)&s->sums_host, sizeof *s->sums_host)) ||
+        CUDA_TRY(cudaMallocHost((void **)&s->staging, (size_t)s->numbers * sizeof(real))))
+        return -1;
+    for (int i = 0; i < TABLES; i++)
+        if (CUDA_TRY(cudaMallocHost((void **)&s->table_host[i], (TABLE_STEPS + 1) * row)) ||
+            CUDA_TRY(cudaEventCreateWithFlags(&s->table_free[i], cudaEventDisableTiming)))
+            return -1;
+    return 0;
+}
+
+static void put_mixtures(const tled_problem *p, cuda_mixed *to)
+{
+    for (int64_t i = 0; p->mixed && i < p->elements; i++)
+        if (p->mixed[i] >= 0) {
+            const tled_law law = tled_law_of(p, i);
+            to[p->mixed[i]] = {law.mu, law.bulk, law.density, law.hourglass, tled_mixture(p, i), p->mix[i]};
+        }
+}
+
+static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    n->mass_inverse = (real *)mem_array(p->nodes, sizeof *n->mass_inverse, "the solver", e);
+    n->law = (real *)mem_array(p->volumes, LAW_NUMBERS * sizeof *n->law, "the solver", e);
+    n->kind = (cuda_kind *)mem_array(p->volumes, sizeof *n->kind, "the solver", e);
+    n->mixture = (cuda_mixed *)mem_array(p->laws, sizeof *n->mixture, "the solver", e);
+    if (!n->mass_inverse || !n->law || !n->kind || !n->mixture)
+        return -1;
+    for (int64_t k = 0; k < p->nodes; k++)
+        n->mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
+    for (int32_t i = 0; i < p->volumes; i++) {
+        const tled_volume *v = &p->volume[i];
+        real *law = n->law + LAW_NUMBERS * i;
+        n->kind[i] = {v->mu, v->bulk, v->density, v->hourglass, v->peak, (int32_t)v->contract};
+        law[0] = (real)v->mu, law[1] = (real)v->bulk, law[2] = (real)v->hourglass;
+    }
+    put_mixtures(p, n->mixture);
+    return 0;
+}
+
+/* Takes the card's memory and puts the problem there. */
+static int put_problem(cuda_state *s, err *e)
+{
+    char what[80];
+    int result = -1;
+    cuda_numbers numbers = {0};
+    if (make_numbers(&numbers, s, e))
+        goto out;
+    lay_out(s, &numbers, e);
+    s->bytes = s->used;
+    snprintf(what, sizeof what, "the solver of %lld elements", (long long)s->p->elements);
+    s->memory = (char *)card_take(s->bytes, what, e);
+    if (s->memory && !lay_out(s, &numbers, e))
+        result = 0;
+out:
+    free(numbers.mass_inverse);
+    free(numbers.law);
+    free(numbers.kind);
+    free(numbers.mixture);
+    return result;
+}
+
+/* Cuts the problem in bricks of a size. -1: it cannot be cut so, or the card has too little shared memory for them. */
+static int cut_in(cuda_state *s, cuda_size size, err *e)
+{
+    s->size = size;
+    tiles_free(&s->tiles);
+    return with_brick(size, [&](auto g) {
+        typedef decltype(g) G;
+        static const int brick[3] = {G::BX, G::BY, G::BZ};
+        return CUDA_TRY(pass_allow<G>()) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
+    });
+}
+
+/* How many bricks of a size are resident at once, and how many nodes they have at most. */
+static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
+{
+    return with_brick(size, [&](auto g) {
+        typedef decltype(g) G;
+        const int64_t curves = s->p->script->curves;
+        const int64_t places = s->p->mix ? resident_places<G, true>(curves) : resident_places<G, false>(curves);
+        *nodes = places * G::NODES;
+        return places;
+    });
+}
+
+/* Whether what does not stay marches: in single precision, on a card that can, where the model is suited. */
+static int choose_march(cuda_state *s, err *e)
+{
+    int64_t slots = 0;
+    if (s->resident || sizeof(real) != sizeof(float))
+        return 0;
+    if (CUDA_TRY(cuda_march_slots(&slots)))
+        return -1;
+    if (!slots)
+        return 0;
+    if (march_make(&s->march, s->p, slots, e))
+        return -1;
+    s->marches =
+        s->march.units > 0 && s->march.units < UINT32_MAX / (TABLE_STEPS + 1); /* units of a launch are counted */
+    s->walkers = s->march.units < slots ? s->march.units : slots;
+    return s->marches ? tiles_reorder(&s->tiles, s->march.order, e) : 0;
+}
+
+/* The smallest bricks that are all resident: the more there are, the less each has to do. Else the largest that the card has shared
+ * memory for. So measured on an H200. */
+static int cut_tiles(cuda_state *s, err *e)
+{
+    for (int size = CUDA_SMALL; size < CUDA_SIZES; size++) {
+        int64_t nodes, places = places_of(s, (cuda_size)size, &nodes);
+        err here = {0};
+        if (size < CUDA_LARGE && s->p->nodes > nodes)
+            continue;
+        if (cut_in(s, (cuda_size)size, &here)) {
+            cudaGetLastError(); /* it has said so */
+            return cut_in(s, size == CUDA_SMALL ? CUDA_SMALL : (cuda_size)(size - 1), e);
+        }
+        s->resident = s->tiles.count <= places;
+        if (s->resident)
+            return 0;
+    }
+    return 0;
+}
+
+static int cut(cuda_state *s, err *e)
+{
+    return cut_tiles(s, e) || choose_march(s, e) ? -1 : 0;
+}
+
+#endif

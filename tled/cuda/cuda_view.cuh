@@ -1,0 +1,193 @@
+/* What the CUDA kernels of tled-run see, and the shape of their blocks; the headers of C that they share with the CPU. A view
+ * is passed to kernels by value and owns nothing. S is the type of the state's numbers: float or double.
+ *
+ * Arrays over nodes are in the tiles' order or, where it marches, in the march's, one component after another: component a of node n at
+ * a * stride + n. Those of the state alone, displacements, velocities and internal forces, may stand node by node: at offset[a] + n * along.
+ */
+#ifndef SINEW_CUDA_VIEW_CUH
+#define SINEW_CUDA_VIEW_CUH
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern "C" {
+#include "base/mem.h"
+#include "solve/card.h"
+#include "tled/cuda/cuda.h"
+#include "tled/cuda/tiles.h"
+}
+
+#include "solve/start.cuh"
+
+/* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one; HALO: the most
+ * places around it for a thread; TOGETHER: blocks that a multiprocessor is to have registers for, in single precision. THREADS is a power of 2. */
+template <int X, int Y, int Z, int T, int B> struct cuda_brick {
+    enum {
+        BX = X,
+        BY = Y,
+        BZ = Z,
+        GX = X + 2,
+        GY = Y + 2,
+        GZ = Z + 2,
+        NODES = X * Y * Z,
+        PLACES = GX * GY * GZ,
+        CELLS = X + GX * (Y + GY * Z) + 1,
+        THREADS = T,
+        TOGETHER = B,
+        OWN = (NODES + T - 1) / T,
+        HALO = (PLACES - NODES + T - 1) / T
+    };
+};
+/* The larger, the fewer elements are computed twice; the smaller, the more blocks there are for the whole card. */
+typedef enum cuda_size { CUDA_SMALL, CUDA_MIDDLE, CUDA_LARGE, CUDA_SIZES } cuda_size;
+
+/* Calls f with a brick of this size. */
+template <class F> static auto with_brick(cuda_size size, F f)
+{
+    return size == CUDA_LARGE    ? f(cuda_brick<8, 8, 4, 256, 4>())
+           : size == CUDA_MIDDLE ? f(cuda_brick<8, 4, 4, 128, 1>())
+                                 : f(cuda_brick<4, 4, 4, 128, 1>());
+}
+
+typedef struct cuda_kind { /* a volume */
+    double mu, bulk, density, hourglass, peak;
+    int32_t contract; /* its curve, or -1 */
+} cuda_kind;
+
+typedef struct cuda_mixed {                     /* a cell mixed of two volumes */
+    double mu, bulk, density, hourglass, share; /* share: of the second volume */
+    int32_t mix;                                /* the second volume */
+} cuda_mixed;
+
+enum { LAW_NUMBERS = 3, LAWS_NEAR = 16 /* volumes whose laws stand in shared memory */ };
+
+template <class S> struct cuda_view {
+    const tile *tiles;
+    const uint32_t *node_info, *cell;
+    const int32_t *halo_node;
+    const uint16_t *halo_place;
+    const float *fibre, *share; /* share: or NULL, as are: */
+    const float *mixfibre;
+    const int32_t *order; /* the tiles' */
+    const int32_t *mixed; /* cells: which of: */
+    const cuda_mixed *mixture;
+    const tile_extra *extra;
+    const int32_t *force_curve;
+    const double *force_share;
+    const S *mass_inverse;
+    const cuda_kind *kind;
+    const S *law; /* volumes x LAW_NUMBERS: mu, bulk, hourglass */
+    int64_t stride;
+    int64_t offset[3], along, mass_along;    /* mass_along: of mass_inverse */
+    int32_t nodes, extras, volumes, gravity; /* gravity: its curve, or -1 */
+    double side[3];
+};
+
+/* A node's three components along the model's axes: at one go where they stand node by node, as they may in single precision. ROWS: they
+ * stand so, whatever the view says. */
+template <bool ROWS, class S> static __device__ void cuda_three(const cuda_view<S> &v, const S *from, int64_t n, S *to)
+{
+    if constexpr (!ROWS && sizeof(S) == sizeof(float)) {
+        if (v.along == 4) {
+            const float4 x = ((const float4 *)from)[n];
+            for (int a = 0; a < 3; a++)
+                to[a] = v.offset[a] == 0 ? x.x : v.offset[a] == 1 ? x.y : x.z;
+            return;
+        }
+    }
+    for (int a = 0; a < 3; a++)
+        to[a] = from[ROWS ? a * v.stride + n : v.offset[a] + n * v.along];
+}
+
+/* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on its way
+ * at once: first where, then what. ROWS: also, the tiles' order is the nodes'. */
+template <class G, bool ROWS, class S>
+static __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
+{
+    constexpr int OWN = G::OWN, HALO = G::HALO;
+    int32_t node[OWN + HALO], place[OWN + HALO];
+    S value[3 * (OWN + HALO)] = {};
+#pragma unroll
+    for (int k = 0; k < OWN + HALO; k++) {
+        const int i = (int)threadIdx.x + (k < OWN ? k : k - OWN) * G::THREADS;
+        node[k] = -1;
+        if (k < OWN && i < t.nodes) {
+            node[k] = ROWS || !v.order ? t.node + i : v.order[t.node + i];
+            place[k] = v.node_info[node[k]] & TILE_PLACE;
+        }
+        if (k >= OWN && i < t.halos)
+            node[k] = v.halo_node[t.halo + i], place[k] = v.halo_place[t.halo + i];
+    }
+#pragma unroll
+    for (int k = 0; k < OWN + HALO; k++)
+        if (node[k] >= 0)
+            cuda_three<ROWS>(v, u, node[k], &value[3 * k]);
+#pragma unroll
+    for (int k = 0; k < OWN + HALO; k++)
+#pragma unroll
+        for (int a = 0; a < 3; a++)
+            if (node[k] >= 0)
+                to[a * G::PLACES + place[k]] = value[3 * k + a];
+}
+
+/* Where corner c of a cell lies, from its low corner; VTK order. */
+template <class G> static __device__ constexpr int cuda_corner(int c)
+{
+    return (c == 1 || c == 2 || c == 5 || c == 6) + G::GX * (c == 2 || c == 3 || c == 6 || c == 7) +
+           G::GX * G::GY * (c >= 4);
+}
+
+/* One component at a cell's corners. */
+template <class G, class S> static __device__ element_corners cuda_corners(const S *u, int place)
+{
+    const S *at = u + place;
+    element_corners c = {{at[cuda_corner<G>(0)], at[cuda_corner<G>(1)], at[cuda_corner<G>(2)], at[cuda_corner<G>(3)],
+                          at[cuda_corner<G>(4)], at[cuda_corner<G>(5)], at[cuda_corner<G>(6)], at[cuda_corner<G>(7)]}};
+    return c;
+}
+
+/* What the script does to a node whose TILE_EXTRA is set. */
+template <class S> static __device__ const tile_extra *cuda_extra(const cuda_view<S> &v, int32_t node)
+{
+    int32_t low = 0, high = v.extras - 1;
+    while (low < high) {
+        int32_t middle = (low + high) / 2;
+        if (v.extra[middle].node < node)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return &v.extra[low];
+}
+
+/* What look() answers, found on the device: cuda_look.cu. */
+template <class S> struct cuda_look {
+    cuda_view<S> view;
+    cuda_size size;                                                                  /* the bricks */
+    int64_t count;                                                                   /* tiles */
+    const S *displacement, *velocity, *internal, *kept_displacement, *kept_internal; /* the last two: or NULL */
+    const double *now;                                                               /* the curves' values */
+    tled_question question;
+    void *parts; /* cuda_look_bytes of them */
+};
+
+size_t cuda_look_bytes(int64_t tiles);
+
+/* Starts the work on the stream; *sums (on the device) gets the answer, with cells for elements. */
+template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream);
+
+/* Arrays over nodes that go into rows, as the state stands or stood when it was kept. */
+enum { CUDA_KEPT = 3 };
+template <class S> struct cuda_kept {
+    const S *from[CUDA_KEPT]; /* or NULL: not that one */
+    S *to[CUDA_KEPT];
+};
+
+template <class S> cudaError_t cuda_keep_start(const cuda_view<S> *v, const cuda_kept<S> *k, cudaStream_t stream);
+
+#endif

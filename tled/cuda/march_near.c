@@ -1,0 +1,112 @@
+#include "tled/cuda/march_near.h"
+
+#include "base/mem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Pairs of units: the first in the high half. */
+typedef struct pairs {
+    uint64_t *of;
+    int64_t count, capacity;
+} pairs;
+
+static int add_pair(pairs *p, int64_t one, int64_t other, err *e)
+{
+    if (MEM_ROOM(&p->of, &p->capacity, p->count + 1, "the march", e))
+        return -1;
+    p->of[p->count++] = (uint64_t)one << 32 | (uint64_t)other;
+    return 0;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const uint64_t *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/* Of a layer of a unit. */
+static const uint32_t *words_of(const march *m, const march_unit *u, int32_t layer)
+{
+    return m->word + MARCH_WORDS * ((int64_t)u->base + layer);
+}
+
+static void note_owners(const march *m, int32_t *owner)
+{
+    for (int64_t i = 0; i < m->units; i++) {
+        const march_unit *u = &m->unit[i];
+        for (const uint32_t *word = words_of(m, u, 1); word < words_of(m, u, u->cells); word++)
+            if (*word & MARCH_OWN)
+                owner[*word & MARCH_NODE] = (int32_t)i;
+    }
+}
+
+/* Each unit with those whose nodes it has, both ways round: what it reads they write, and may write again once it has read that. */
+static int pair_units(const march *m, const int32_t *owner, int32_t *last, pairs *p, err *e)
+{
+    for (int64_t i = 0; i < m->units; i++) {
+        const march_unit *u = &m->unit[i];
+        for (const uint32_t *word = words_of(m, u, 0); word < words_of(m, u, u->cells + 1); word++) {
+            if (!(*word & MARCH_THERE) || last[owner[*word & MARCH_NODE]] == (int32_t)i)
+                continue;
+            const int32_t other = owner[*word & MARCH_NODE];
+            last[other] = (int32_t)i;
+            if (add_pair(p, i, other, e) || add_pair(p, other, i, e))
+                return -1;
+        }
+    }
+    return 0;
+}
+
+/* Sorts them; each once. */
+static void sort_pairs(pairs *p)
+{
+    int64_t count = 0;
+    if (p->count)
+        qsort(p->of, (size_t)p->count, sizeof *p->of, ascending);
+    for (int64_t i = 0; i < p->count; i++)
+        if (!i || p->of[i] != p->of[i - 1])
+            p->of[count++] = p->of[i];
+    p->count = count;
+}
+
+static int list_pairs(march *m, const pairs *p, err *e)
+{
+    int64_t most = 0;
+    for (int64_t i = 0, row = 0; i < p->count; i++) {
+        row = i && p->of[i] >> 32 == p->of[i - 1] >> 32 ? row + 1 : 1;
+        most = row > most ? row : most;
+    }
+    m->nears = (most + 31) / 32 * 32;
+    m->near = mem_array(m->units, (size_t)m->nears * sizeof *m->near, "the march", e);
+    if (!m->near)
+        return -1;
+    memset(m->near, 0xff, (size_t)(m->units * m->nears) * sizeof *m->near);
+    for (int64_t i = 0, row = 0; i < p->count; i++) {
+        const int64_t unit = (int64_t)(p->of[i] >> 32);
+        row = i && unit == (int64_t)(p->of[i - 1] >> 32) ? row + 1 : 0;
+        m->near[unit * m->nears + row] = (int32_t)p->of[i];
+    }
+    return 0;
+}
+
+int march_near_find(march *m, int64_t nodes, err *e)
+{
+    pairs p = {0};
+    int32_t *owner = mem_array(nodes, sizeof *owner, "the march", e);
+    int32_t *last = mem_array(m->units, sizeof *last, "the march", e);
+    int result = -1;
+    if (!owner || !last)
+        goto out;
+    memset(last, 0xff, (size_t)m->units * sizeof *last);
+    note_owners(m, owner);
+    if (pair_units(m, owner, last, &p, e))
+        goto out;
+    sort_pairs(&p);
+    result = list_pairs(m, &p, e);
+out:
+    free(owner);
+    free(last);
+    free(p.of);
+    return result;
+}

@@ -1,0 +1,433 @@
+#include "tled/cuda/tiles.h"
+
+#include "base/mem.h"
+#include "tled/cuda/places.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What the tiles are made with. */
+typedef struct cutter {
+    tiles *t;
+    const tled_problem *p;
+    int32_t *part;             /* nodes: a node of the part that it belongs to; later, its tile */
+    int32_t *at;               /* nodes x 3: its place in the lattice, from its part's first node */
+    int32_t *order;            /* nodes: where it stands in the tiles' order */
+    int64_t *seat;             /* a table of tiles by part and brick: tile, or -1 */
+    int64_t seats;             /* a power of 2 */
+    int32_t *brick;            /* tiles x 4: part and brick */
+    int64_t capacity;          /* of brick */
+    int32_t here[TILE_PLACES]; /* in the tile being cut: the node there, or -1 */
+    bool taken[TILE_PLACES];   /* and whether a cell is */
+    err *e;
+} cutter;
+
+void tiles_free(tiles *t)
+{
+    free(t->tile);
+    free(t->node);
+    free(t->node_info);
+    free(t->order);
+    free(t->halo_node);
+    free(t->halo_place);
+    free(t->cell);
+    free(t->cell_element);
+    free(t->fibre);
+    free(t->share);
+    free(t->mixed);
+    free(t->mixfibre);
+    free(t->extra);
+    memset(t, 0, sizeof *t);
+}
+
+static int32_t floor_division(int32_t a, int32_t b)
+{
+    return a / b - (a % b < 0);
+}
+
+static uint64_t hash(const int32_t key[4])
+{
+    uint64_t h = 0;
+    for (int i = 0; i < 4; i++)
+        h = (h ^ (uint32_t)key[i]) * UINT64_C(0x9E3779B97F4A7C15), h ^= h >> 29;
+    return h;
+}
+
+static int grow_seats(cutter *c)
+{
+    int64_t seats = 2 * c->seats;
+    int64_t *seat = mem_array(seats, sizeof *seat, "the tiles", c->e);
+    if (!seat)
+        return -1;
+    for (int64_t i = 0; i < seats; i++)
+        seat[i] = -1;
+    for (int64_t t = 0; t < c->t->count; t++) {
+        uint64_t at = hash(c->brick + 4 * t);
+        while (seat[at & (uint64_t)(seats - 1)] >= 0)
+            at++;
+        seat[at & (uint64_t)(seats - 1)] = t;
+    }
+    free(c->seat);
+    c->seat = seat;
+    c->seats = seats;
+    return 0;
+}
+
+/* The tile of a brick; a new one is numbered as it comes. -1 with e filled. */
+static int64_t tile_of(cutter *c, const int32_t key[4])
+{
+    if (2 * c->t->count >= c->seats && grow_seats(c))
+        return -1;
+    uint64_t mask = (uint64_t)c->seats - 1, at = hash(key) & mask;
+    for (; c->seat[at] >= 0; at = (at + 1) & mask)
+        if (!memcmp(c->brick + 4 * c->seat[at], key, 4 * sizeof *key))
+            return c->seat[at];
+    if (mem_grow(&c->brick, &c->capacity, 4 * (c->t->count + 1), sizeof *c->brick, "the tiles", c->e))
+        return -1;
+    memcpy(c->brick + 4 * c->t->count, key, 4 * sizeof *key);
+    c->seat[at] = c->t->count;
+    return c->t->count++;
+}
+
+/* Gives each node its tile, in `part`. */
+static int find_tiles(cutter *c)
+{
+    c->seats = 512;
+    if (grow_seats(c))
+        return -1;
+    for (int64_t n = 0; n < c->p->nodes; n++) {
+        int32_t key[4] = {c->part[n]};
+        for (int a = 0; a < 3; a++)
+            key[1 + a] = floor_division(c->at[3 * n + a], c->t->brick[a]);
+        int64_t which = tile_of(c, key);
+        if (which < 0)
+            return -1;
+        c->part[n] = (int32_t)which;
+    }
+    return 0;
+}
+
+/* A place in the grid of a tile: of a node, or of the element whose low corner it is. */
+static int32_t place_in(const cutter *c, int64_t which, int64_t node)
+{
+    int32_t at[3];
+    for (int a = 0; a < 3; a++)
+        at[a] = c->at[3 * node + a] - c->brick[4 * which + 1 + a] * c->t->brick[a] + 1;
+    return at[0] + c->t->grid[0] * (at[1] + c->t->grid[1] * at[2]);
+}
+
+static uint32_t info_of(const cutter *c, int32_t n)
+{
+    const tled_problem *p = c->p;
+    uint32_t info = (uint32_t)place_in(c, c->part[n], n);
+    for (int i = 0; i < 8 && p->corner[8 * (int64_t)n + i] < 8 * p->elements; i++)
+        info |= 1u << (TILE_CORNERS + p->corner[8 * (int64_t)n + i] % 8);
+    bool extra = p->force_start[n + 1] > p->force_start[n];
+    for (int a = 0; a < 3; a++) {
+        int32_t hold = p->hold[3 * (int64_t)n + a];
+        info |= (uint32_t)(hold == HOLD_FREE) << (TILE_FREE + a);
+        extra |= hold >= 0;
+    }
+    return info | (uint32_t)extra << TILE_EXTRA;
+}
+
+/* By place; a stable sort, of at most as many as a brick has places. */
+static void sort_by_place(int32_t *item, uint32_t *key, int32_t count)
+{
+    for (int32_t i = 1; i < count; i++) {
+        int32_t one = item[i], at = i;
+        uint32_t its = key[i];
+        for (; at && key[at - 1] > its; at--) {
+            item[at] = item[at - 1];
+            key[at] = key[at - 1];
+        }
+        item[at] = one;
+        key[at] = its;
+    }
+}
+
+/* The nodes in order of tiles, in each by place. */
+static int order_nodes(cutter *c)
+{
+    tiles *t = c->t;
+    uint32_t key[TILE_PLACES];
+    t->nodes = c->p->nodes;
+    t->tile = mem_array(t->count + 1, sizeof *t->tile, "the tiles", c->e);
+    t->node = mem_array(t->nodes, sizeof *t->node, "the tiles", c->e);
+    t->node_info = mem_array(t->nodes, sizeof *t->node_info, "the tiles", c->e);
+    if (!t->tile || !t->node || !t->node_info)
+        return -1;
+    const int64_t most = (int64_t)t->brick[0] * t->brick[1] * t->brick[2];
+    for (int32_t n = 0; n < t->nodes; n++)
+        t->tile[c->part[n]].nodes++;
+    for (int64_t i = 0, first = 0; i < t->count; i++) {
+        tile *to = &t->tile[i];
+        to->node = (int32_t)first;
+        first += to->nodes;
+        if (to->nodes > most)
+            return places_none(c->e, c->p->corner[8 * (int64_t)c->brick[4 * i]] / 8);
+        to->nodes = 0;
+    }
+    for (int32_t n = 0; n < t->nodes; n++) {
+        tile *to = &t->tile[c->part[n]];
+        t->node[to->node + to->nodes++] = n;
+    }
+    for (int64_t i = 0; i < t->count; i++) {
+        int32_t *list = t->node + t->tile[i].node;
+        for (int32_t k = 0; k < t->tile[i].nodes; k++)
+            key[k] = (uint32_t)place_in(c, i, list[k]);
+        sort_by_place(list, key, t->tile[i].nodes);
+    }
+    for (int32_t k = 0; k < t->nodes; k++) {
+        t->node_info[k] = info_of(c, t->node[k]);
+        c->order[t->node[k]] = k;
+    }
+    return 0;
+}
+
+/* The tiles of an element's corners, each once. Returns how many. */
+static int tiles_at(const cutter *c, int64_t element, int32_t list[8])
+{
+    int count = 0;
+    for (int i = 0; i < 8; i++) {
+        int32_t which = c->part[c->p->element_node[8 * element + i]];
+        int at = 0;
+        while (at < count && list[at] != which)
+            at++;
+        if (at == count)
+            list[count++] = which;
+    }
+    return count;
+}
+
+static bool is_fibred(const cutter *c, int64_t element)
+{
+    const tled_problem *p = c->p;
+    if (p->fibre && p->volume[p->element_volume[element]].contract >= 0)
+        return true;
+    return p->mixfibre && p->mix[element] >= 0 && p->volume[p->mix[element]].contract >= 0;
+}
+
+/* Lists over cells, as many as are counted. */
+static int make_cell_lists(cutter *c)
+{
+    tiles *t = c->t;
+    const tled_problem *p = c->p;
+    t->cell = mem_array(t->cells, sizeof *t->cell, "the tiles", c->e);
+    t->cell_element = mem_array(t->cells, sizeof *t->cell_element, "the tiles", c->e);
+    t->fibre = mem_array(t->directions, 3 * sizeof *t->fibre, "the tiles", c->e);
+    t->share = p->fraction ? mem_array(t->cells, sizeof *t->share, "the tiles", c->e) : NULL;
+    t->mixed = p->mixed ? mem_array(t->cells, sizeof *t->mixed, "the tiles", c->e) : NULL;
+    t->mixfibre = p->mixfibre ? mem_array(t->directions, 3 * sizeof *t->mixfibre, "the tiles", c->e) : NULL;
+    return t->cell && t->cell_element && t->fibre && (t->share || !p->fraction) && (t->mixed || !p->mixed) &&
+                   (t->mixfibre || !p->mixfibre)
+               ? 0
+               : -1;
+}
+
+/* The cells of each tile, those with fibres first. */
+static int list_cells(cutter *c)
+{
+    tiles *t = c->t;
+    int32_t list[8];
+    for (int64_t i = 0; i < c->p->elements; i++)
+        for (int k = tiles_at(c, i, list); k--;) {
+            t->tile[list[k]].cells++;
+            t->tile[list[k]].fibred += is_fibred(c, i);
+        }
+    for (int64_t i = 0; i < t->count; i++) {
+        tile *to = &t->tile[i];
+        if (t->cells > INT32_MAX - TILE_PLACES)
+            return err_set(c->e, NULL, 0, "%lld elements are too many for this device", (long long)c->p->elements);
+        to->cell = (int32_t)t->cells;
+        to->direction = (int32_t)t->directions;
+        t->cells += to->cells;
+        t->directions += to->fibred;
+        to->cells = to->fibred = 0;
+    }
+    if (make_cell_lists(c))
+        return -1;
+    for (int fibred = 1; fibred >= 0; fibred--)
+        for (int64_t i = 0; i < c->p->elements; i++)
+            for (int k = is_fibred(c, i) == fibred ? tiles_at(c, i, list) : 0; k--;) {
+                tile *to = &t->tile[list[k]];
+                t->cell_element[to->cell + to->cells++] = (int32_t)i;
+                to->fibred += fibred;
+            }
+    return 0;
+}
+
+/* One cell's information; notes its corners in `here`. */
+static int put_cell(cutter *c, int64_t which, int64_t at)
+{
+    tiles *t = c->t;
+    int64_t element = t->cell_element[at];
+    const int32_t *corner = c->p->element_node + 8 * element;
+    int32_t place = place_in(c, which, corner[0]);
+    uint32_t own = c->part[corner[0]] == which;
+    if (c->taken[place])
+        return places_none(c->e, element);
+    c->taken[place] = true;
+    if (t->share)
+        t->share[at] = c->p->fraction[element];
+    if (t->mixed)
+        t->mixed[at] = c->p->mixed[element];
+    t->cell[at] = (uint32_t)place | own << TILE_OWN | (uint32_t)c->p->element_volume[element] << TILE_VOLUME;
+    for (int i = 0; i < 8; i++) {
+        int32_t *here = &c->here[place_in(c, which, corner[i])];
+        if (*here >= 0 && *here != corner[i])
+            return places_none(c->e, element);
+        *here = corner[i];
+    }
+    return 0;
+}
+
+/* Sorts a tile's cells and finds what stands around it. Counts its halo, or fills it too where there is room. */
+static int cut_tile(cutter *c, int64_t i)
+{
+    tiles *t = c->t;
+    tile *to = &t->tile[i];
+    const int32_t places = t->grid[0] * t->grid[1] * t->grid[2];
+    memset(c->here, 0xff, sizeof c->here);
+    memset(c->taken, 0, sizeof c->taken);
+    for (int32_t k = 0; k < to->cells; k++)
+        if (put_cell(c, i, to->cell + k))
+            return -1;
+    int32_t halos = 0;
+    for (int32_t at = 0; at < places; at++)
+        if (c->here[at] >= 0 && c->part[c->here[at]] != i) {
+            if (t->halo_node) {
+                t->halo_node[to->halo + halos] = c->order[c->here[at]];
+                t->halo_place[to->halo + halos] = (uint16_t)at;
+            }
+            halos++;
+        }
+    to->halos = halos;
+    return 0;
+}
+
+static void sort_cells(cutter *c, int64_t i)
+{
+    tiles *t = c->t;
+    tile *to = &t->tile[i];
+    uint32_t key[TILE_PLACES];
+    int32_t *list = t->cell_element + to->cell;
+    for (int part = 0; part < 2; part++) {
+        int32_t first = part ? to->fibred : 0, count = part ? to->cells - to->fibred : to->fibred;
+        for (int32_t k = 0; k < count; k++)
+            key[k] = (uint32_t)place_in(c, i, c->p->element_node[8 * (int64_t)list[first + k]]);
+        sort_by_place(list + first, key, count);
+    }
+    for (int32_t k = 0; k < 3 * to->fibred; k++) {
+        t->fibre[3 * (int64_t)to->direction + k] = c->p->fibre[3 * (int64_t)list[k / 3] + k % 3];
+        if (t->mixfibre)
+            t->mixfibre[3 * (int64_t)to->direction + k] = c->p->mixfibre[3 * (int64_t)list[k / 3] + k % 3];
+    }
+}
+
+static int cut_tiles(cutter *c)
+{
+    tiles *t = c->t;
+    for (int64_t i = 0; i < t->count; i++) {
+        if (t->tile[i].cells > TILE_PLACES)
+            return places_none(c->e, t->cell_element[t->tile[i].cell]);
+        sort_cells(c, i);
+        if (cut_tile(c, i))
+            return -1;
+    }
+    for (int64_t i = 0; i < t->count; t->halos += t->tile[i++].halos) {
+        if (t->halos > INT32_MAX - TILE_PLACES)
+            return err_set(c->e, NULL, 0, "%lld nodes are too many for this device", (long long)c->p->nodes);
+        t->tile[i].halo = (int32_t)t->halos;
+    }
+    t->halo_node = mem_array(t->halos, sizeof *t->halo_node, "the tiles", c->e);
+    t->halo_place = mem_array(t->halos, sizeof *t->halo_place, "the tiles", c->e);
+    if (!t->halo_node || !t->halo_place)
+        return -1;
+    for (int64_t i = 0; i < t->count; i++)
+        if (cut_tile(c, i))
+            return -1;
+    return 0;
+}
+
+static int list_extras(cutter *c)
+{
+    tiles *t = c->t;
+    for (int64_t k = 0; k < t->nodes; k++)
+        t->extras += t->node_info[k] >> TILE_EXTRA & 1;
+    t->extra = mem_array(t->extras, sizeof *t->extra, "the tiles", c->e);
+    if (!t->extra)
+        return -1;
+    tile_extra *to = t->extra;
+    for (int32_t k = 0; k < t->nodes; k++)
+        if (t->node_info[k] >> TILE_EXTRA & 1) {
+            int64_t n = t->node[k];
+            const int32_t *hold = c->p->hold + 3 * n;
+            int32_t first = c->p->force_start[n];
+            *to++ = (tile_extra){k, {hold[0], hold[1], hold[2]}, first, c->p->force_start[n + 1] - first};
+        }
+    return 0;
+}
+
+int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e)
+{
+    memset(t, 0, sizeof *t);
+    cutter c = {.t = t, .p = p, .e = e};
+    int result = -1;
+    for (int a = 0; a < 3; a++) {
+        t->brick[a] = brick[a];
+        t->grid[a] = brick[a] + 2;
+    }
+    if (p->volumes > TILE_VOLUMES)
+        return err_set(e, NULL, 0, "%d volumes are too many for this device; expected at most %d", p->volumes,
+                       TILE_VOLUMES);
+    c.part = mem_array(p->nodes, sizeof *c.part, "the tiles", e);
+    c.at = mem_array(p->nodes, 3 * sizeof *c.at, "the tiles", e);
+    c.order = mem_array(p->nodes, sizeof *c.order, "the tiles", e);
+    if (!c.part || !c.at || !c.order)
+        goto out;
+    if (places_find(p, c.part, c.at, e) || find_tiles(&c) || order_nodes(&c) || list_cells(&c) || cut_tiles(&c) ||
+        list_extras(&c))
+        goto out;
+    result = 0;
+out:
+    free(c.part);
+    free(c.at);
+    free(c.order);
+    free(c.seat);
+    free(c.brick);
+    return result;
+}
+
+static int by_node(const void *a, const void *b)
+{
+    const int32_t x = ((const tile_extra *)a)->node, y = ((const tile_extra *)b)->node;
+    return (x > y) - (x < y);
+}
+
+int tiles_reorder(tiles *t, const int32_t *order, err *e)
+{
+    int32_t *node = mem_array(t->nodes, sizeof *node, "the tiles", e);
+    uint32_t *info = mem_array(t->nodes, sizeof *info, "the tiles", e);
+    t->order = mem_array(t->nodes, sizeof *t->order, "the tiles", e);
+    if (!node || !info || !t->order) {
+        free(node);
+        free(info);
+        return -1;
+    }
+    for (int64_t k = 0; k < t->nodes; k++) {
+        const int32_t at = t->order[k] = order[t->node[k]];
+        node[at] = t->node[k];
+        info[at] = t->node_info[k];
+    }
+    for (int64_t i = 0; i < t->halos; i++)
+        t->halo_node[i] = t->order[t->halo_node[i]];
+    for (int64_t i = 0; i < t->extras; i++)
+        t->extra[i].node = t->order[t->extra[i].node];
+    qsort(t->extra, (size_t)t->extras, sizeof *t->extra, by_node);
+    free(t->node);
+    free(t->node_info);
+    t->node = node;
+    t->node_info = info;
+    return 0;
+}

@@ -1,3 +1,0 @@
-/* The CUDA back end in double. */
-#define CUDA_BACKEND tled_cuda_double
-#include "tled/cuda_loops.cuh"

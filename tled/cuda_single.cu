@@ -1,4 +1,0 @@
-/* The CUDA back end in float: half the memory, twice the speed or more. */
-#define CUDA_BACKEND tled_cuda_single
-#define ELEMENT_SINGLE
-#include "tled/cuda_loops.cuh"

@@ -1,0 +1,57 @@
+/* A probe that presses on a voxel model, moved by a file of poses: between two of them it goes in a straight line, before the first and
+ * after the last it stays. What it pushes a node with is a penalty of its own that goes by the node's mass,
+ *     f = m c depth,    c = repulsion times the square of the highest frequency at rest,
+ * so that the highest frequency with contact is known: that at rest and c together. The push joins the elements' forces
+ * in the sum that a node's step takes; so looks at the state have it too. A probe that begins inside the tissue comes up
+ * slowly. The creator owns it; once read it does not change.
+ */
+#ifndef SINEW_COLLIDER_H
+#define SINEW_COLLIDER_H
+
+#include "probe/probe.h"
+#include "tled/problem/state.h"
+
+typedef struct collider {
+    probe shape;
+    double *time; /* poses: s, not decreasing; owned, as is pose */
+    probe_pose *pose;
+    int64_t poses, pose_room, time_room;
+    double stiffness;    /* 1/s2: c */
+    double start, rises; /* s: from when, and how long it takes to come up; 0: it is there at once */
+} collider;
+
+/* Reads a shape (its OBJ, if it is one, times scale) and all poses; c is zeroed. -1 with e filled, c to be freed all the same. */
+int collider_read(collider *c, const char *shape, double scale, const char *poses_file, const char *transform, err *e);
+void collider_free(collider *c);
+
+/* Makes it part of the problem, which says how stiff it is. */
+void collider_join(collider *c, tled_problem *p, double repulsion);
+
+/* From the problem's start; ramp, s: how long it takes to come up if it is inside of the tissue then. Warns where it
+ * is, never comes near the tissue, or is of a size that these elements are not for. */
+void collider_begin(collider *c, const tled_problem *p, double ramp, notes *warnings);
+
+/* Where it is. */
+probe_pose collider_pose(const collider *c, double time);
+probe_placed collider_at(const collider *c, double time);
+
+/* The time of its last pose. */
+double collider_end(const collider *c);
+
+/* The push on a node of this mass at x, N. False: none. */
+bool collider_push(const collider *c, const probe_placed *at, double time, const double x[3], double mass,
+                   double push[3]);
+
+/* The force on the probe and its torque about its origin at these displacements (nodes x 3). Returns how many nodes push. */
+int64_t collider_sum(const tled_problem *p, double time, const double *displacement, double force[3], double torque[3]);
+
+/* Adds to a frame where the probe is, and what the tissue at these displacements pushes it with. -1 with e filled. */
+int collider_add(const tled_problem *p, frame *f, const model *m, const double *displacement, err *e);
+
+/* A stable step, s, of the elements, with contact. p->collider may be NULL. */
+double collider_step(const tled_problem *p, double step);
+
+/* When all that is planned has happened, s: the script's end and the last pose. */
+double collider_events_end(const tled_problem *p);
+
+#endif

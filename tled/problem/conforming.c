@@ -1,0 +1,183 @@
+#include "tled/problem/conforming.h"
+
+#include "base/mem.h"
+#include "mesh/hexahedron.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- small symmetric matrices, row by row */
+
+/* The largest eigenvalue, by Jacobi's turns; n at most 4. a is used up. */
+static double largest_eigenvalue(double *a, int n)
+{
+    double largest = 0;
+    for (int sweep = 0; sweep < 30; sweep++)
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++) {
+                if (a[p * n + q] == 0)
+                    continue;
+                double theta = (a[q * n + q] - a[p * n + p]) / (2 * a[p * n + q]);
+                double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+                double c = 1 / sqrt(t * t + 1), s = t * c;
+                for (int i = 0; i < n; i++) {
+                    double left = a[i * n + p], right = a[i * n + q];
+                    a[i * n + p] = c * left - s * right;
+                    a[i * n + q] = s * left + c * right;
+                }
+                for (int i = 0; i < n; i++) {
+                    double left = a[p * n + i], right = a[q * n + i];
+                    a[p * n + i] = c * left - s * right;
+                    a[q * n + i] = s * left + c * right;
+                }
+            }
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, a[i * n + i]);
+    return largest;
+}
+
+/* a = L L^T, L lower. False: it is not positive definite. */
+static bool factor(const double *a, int n, double *l)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double sum = a[i * n + j];
+            for (int k = 0; k < j && k < i; k++)
+                sum -= l[i * n + k] * l[j * n + k];
+            if (i == j && !(sum > 0))
+                return false;
+            l[i * n + j] = i == j ? sqrt(sum) : i > j ? sum / l[j * n + j] : 0;
+        }
+    return true;
+}
+
+/* x = L^-1 x, x of n. */
+static void solve(const double *l, int n, double *x)
+{
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < i; k++)
+            x[i] -= l[i * n + k] * x[k];
+        x[i] /= l[i * n + i];
+    }
+}
+
+/* ---- the shape of an element */
+
+typedef struct corners {
+    double at[8][3]; /* m, from the first */
+    double b[8][3];  /* B, 1/m */
+} corners;
+
+/* c^2, and the largest eigenvalue of the gammas' products. */
+static void find_couple(const corners *x, conforming_element *c)
+{
+    double gamma[4][8], grams[16], own[16], l[16] = {0}, mixed[3][4], product[9];
+    for (int g = 0; g < 4; g++)
+        for (int a = 0; a < 8; a++) {
+            gamma[g][a] = hexahedron_sign(3 + g, a);
+            for (int i = 0; i < 3; i++)
+                gamma[g][a] -= c->twist[g][i] * x->b[a][i];
+        }
+    for (int g = 0; g < 4; g++)
+        for (int h = 0; h < 4; h++) {
+            double sum = 0;
+            for (int a = 0; a < 8; a++)
+                sum += gamma[g][a] * gamma[h][a];
+            grams[4 * g + h] = own[4 * g + h] = sum;
+        }
+    c->gammas = largest_eigenvalue(own, 4);
+    c->couple = 1;
+    if (!factor(grams, 4, l))
+        return;
+    for (int g = 0; g < 4; g++) { /* L^-1 B gamma^T */
+        double column[3] = {0};
+        for (int a = 0; a < 8; a++)
+            for (int i = 0; i < 3; i++)
+                column[i] += x->b[a][i] * gamma[g][a];
+        solve(&c->root[0][0], 3, column);
+        for (int i = 0; i < 3; i++)
+            mixed[i][g] = column[i];
+    }
+    for (int i = 0; i < 3; i++)
+        solve(l, 4, mixed[i]);
+    for (int i = 0; i < 9; i++) {
+        product[i] = 0;
+        for (int g = 0; g < 4; g++)
+            product[i] += mixed[i / 3][g] * mixed[i % 3][g];
+    }
+    c->couple = fmin(1, largest_eigenvalue(product, 3));
+}
+
+/* False: it has no inside. */
+static bool shape_of(const tled_problem *p, int64_t element, conforming_element *c)
+{
+    corners x = {.b = {{0}}};
+    double products[9] = {0};
+    const double *first = p->position + 3 * (int64_t)p->element_node[8 * element];
+    for (int i = 0; i < 24; i++)
+        x.at[i / 3][i % 3] = p->position[3 * (int64_t)p->element_node[8 * element + i / 3] + i % 3] - first[i % 3];
+    c->volume = hexahedron_mean(&x.at[0][0], &x.b[0][0]);
+    hexahedron_modes(&x.at[0][0], &x.b[0][0], &c->slope[0][0], &c->twist[0][0]);
+    for (int i = 0; i < 9; i++)
+        for (int a = 0; a < 8; a++)
+            products[i] += x.b[a][i / 3] * x.b[a][i % 3];
+    c->squares = products[0] + products[4] + products[8];
+    if (!(c->volume > 0) || !isfinite(c->squares) || !factor(products, 3, &c->root[0][0]))
+        return false;
+    find_couple(&x, c);
+    return true;
+}
+
+int conforming_create(tled_problem *p, err *e)
+{
+    conforming *c = mem_array(1, sizeof *c, "the elements", e);
+    double volume = 0;
+    p->conforming = c;
+    if (!c || !(c->element = mem_array(p->elements, sizeof *c->element, "the elements", e)))
+        return -1;
+    if (p->mix)
+        return err_set(e, NULL, 0, "element.mix in a model without a lattice; expected elements of one volume each");
+    for (int64_t i = 0; i < p->elements; i++) {
+        if (!shape_of(p, i, &c->element[i]))
+            return err_set(
+                e, NULL, 0,
+                "element %lld has no inside, or is inside out; expected a hexahedron, its nodes in VTK's order",
+                (long long)i);
+        volume += c->element[i].volume;
+    }
+    for (int a = 0; a < 3; a++)
+        p->side[a] = cbrt(volume / (double)p->elements);
+    return 0;
+}
+
+void conforming_free(conforming *c)
+{
+    if (c)
+        free(c->element);
+    free(c);
+}
+
+/* ---- nodes */
+
+int conforming_corners(tled_problem *p, err *e)
+{
+    p->corner_start = mem_array(p->nodes + 2, sizeof *p->corner_start, "the nodes", e);
+    if (!p->corner_start)
+        return -1;
+    /* Counts two places on, so that filling moves each start to where it belongs. */
+    for (int64_t i = 0; i < 8 * p->elements; i++)
+        p->corner_start[p->element_node[i] + 2]++;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        if (!p->corner_start[n + 2])
+            return err_set(e, NULL, 0, "node %lld is in no element", (long long)n);
+        p->corner_start[n + 2] += p->corner_start[n + 1];
+    }
+    for (int64_t i = 0; i < 8 * p->elements; i++) {
+        const int64_t node = p->element_node[i];
+        p->corner[p->corner_start[node + 1]++] = (int32_t)i;
+        p->mass[node] +=
+            tled_law_of(p, i / 8).density * p->conforming->element[i / 8].volume / 8 * tled_fraction(p, i / 8);
+    }
+    return 0;
+}

@@ -1,0 +1,33 @@
+/* The part of a problem whose elements are hexahedra of any shape, not a lattice's boxes: what each of them is at rest, and its stable
+ * step. Derivatives are the element's mean ones and hourglass vectors Flanagan & Belytschko's (element_any.h); the hourglass stiffness is
+ * element_hourglass's formula with the element's own V and B; a corner has an eighth of the element's mass. The
+ * problem owns it.
+ */
+#ifndef SINEW_CONFORMING_H
+#define SINEW_CONFORMING_H
+
+#include "tled/problem/state.h"
+
+typedef struct conforming_element {
+    double slope[7][3], twist[4][3], volume; /* element_any's */
+    double squares;                          /* 1/m2: sum of B^2 over corners and axes */
+    double root[3][3];                       /* 1/m: L, lower */
+    double gammas;                           /* the largest eigenvalue of gamma gamma^T: 8 of a box */
+    double couple;                           /* c^2 */
+    double hourglass;                        /* N/m: k, once joined */
+} conforming_element;
+
+typedef struct conforming {
+    conforming_element *element; /* elements */
+    double square;               /* 1/s2: of the highest frequency at rest, once joined */
+    int64_t stiffest;            /* whose it is */
+} conforming;
+
+/* Makes p->conforming, and p->side, a cube's of the mean volume, once p's mesh is there. -1 with e filled where an element has no inside. */
+int conforming_create(tled_problem *p, err *e);
+void conforming_free(conforming *c);
+
+/* Once the volumes have their laws: p->corner_start, p->corner and p->mass (allocated). -1 with e filled. */
+int conforming_corners(tled_problem *p, err *e);
+
+#endif

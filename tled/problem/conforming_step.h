@@ -1,0 +1,29 @@
+/* The stable step of elements that are no lattice's, and their shapes for who looks at them (in double: see stability.h).
+ *
+ * The squares of an element's frequencies are no more than those of two matrices together: (8/rho) L^T A L, A = dP/dF and L L^T = B B^T
+ * (3 x 3), with what stretches it, and (k/m) gamma gamma^T with what twists it. With l1, l2 the largest of each and c the cosine of the least angle between B's rows and the
+ * gammas (0 of a box), the largest of their sum is at most that of l1 P1 + l2 P2, P1 and P2 projections at that angle:
+ *     (l1 + l2 + sqrt((l1 - l2)^2 + 4 c^2 l1 l2)) / 2. Owns nothing.
+ */
+#ifndef SINEW_CONFORMING_STEP_H
+#define SINEW_CONFORMING_STEP_H
+
+#include "physics/element_any.h"
+#include "tled/problem/conforming.h"
+#include "tled/problem/step.h"
+
+/* Once the volumes have their laws: the hourglass stiffnesses and the stable step. */
+void conforming_join(tled_problem *p);
+
+/* element_any of double numbers. */
+element_any conforming_shape(const conforming_element *c);
+
+/* The first of the two matrices above, for an element at H. */
+void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h, element_fibre fibre, step_matrix *a);
+
+/* What its largest eigenvalue may be, so that the square of the element's highest frequency is at most limit; and the other way round: what that is
+ * at most with an eigenvalue. */
+double conforming_room(const tled_problem *p, int64_t element, double limit);
+double conforming_square(const tled_problem *p, int64_t element, double eigenvalue);
+
+#endif

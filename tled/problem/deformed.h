@@ -1,0 +1,22 @@
+/* An element as displacements have it, for who looks at it: its gradient, its law and its energies, whatever shape it has. In
+ * double. Owns nothing.
+ */
+#ifndef SINEW_DEFORMED_H
+#define SINEW_DEFORMED_H
+
+#include "physics/element.h"
+#include "tled/problem/state.h"
+
+typedef struct deformed {
+    element_tensor h; /* grad u at the centre */
+    tled_law law;     /* with the element's own hourglass stiffness */
+    double rest;      /* m3: volume at rest */
+    double dilation;  /* J - 1 */
+    double energy;    /* J/m3, by volume at rest: of its strain, without what muscles do */
+    double hourglass; /* J */
+} deformed;
+
+/* box: of elements that are a lattice's. displacement: nodes x 3. */
+deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, const double *displacement);
+
+#endif

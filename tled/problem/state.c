@@ -1,0 +1,346 @@
+#include "tled/problem/state.h"
+
+#include "base/mem.h"
+#include "mesh/lattice.h"
+#include "model/materials.h"
+#include "physics/stability.h"
+#include "tled/problem/conforming_step.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void tled_problem_free(tled_problem *p)
+{
+    free(p->mixed);
+    free(p->law);
+    free(p->volume);
+    conforming_free(p->conforming);
+    free(p->corner);
+    free(p->corner_start);
+    free(p->mass);
+    free(p->hold);
+    free(p->force_start);
+    free(p->force_curve);
+    free(p->force_share);
+    free(p->displacement);
+    free(p->velocity);
+    memset(p, 0, sizeof *p);
+}
+
+/* What some elements are mixed of, if any is. */
+static int borrow_mixes(tled_problem *p, const model *m, err *e)
+{
+    const model_array *mix = model_find(m, "element.mix"), *mixfibre = model_find(m, "element.mixfibre");
+    const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
+    bool any = false;
+    if (!mix)
+        return 0;
+    if (!mixture || (mixfibre && !model_need(m, "element.fibre", e)))
+        return -1;
+    for (int64_t i = 0; i < mix->rows; i++)
+        any |= mix->i32[i] >= 0;
+    p->mix = any ? mix->i32 : NULL;
+    p->mixture = any ? mixture->f32 : NULL;
+    p->mixfibre = any && mixfibre ? mixfibre->f32 : NULL;
+    return 0;
+}
+
+static int borrow_mesh(tled_problem *p, const model *m, err *e)
+{
+    const model_array *node = model_need(m, "element.node", e), *position = model_need(m, "node.position", e);
+    const model_array *volume = model_need(m, "element.volume", e), *fibre = model_find(m, "element.fibre");
+    const model_array *fraction = model_find(m, "element.fraction");
+    if (!node || !position || !volume || !model_need(m, "volume.name", e) || !model_need(m, "volume.material", e))
+        return -1;
+    if (node->columns != 8)
+        return err_set(e, NULL, 0,
+                       "the model's elements have %d nodes; expected hexahedra, as voxelise makes them (msds-run "
+                       "moves tetrahedra)",
+                       node->columns);
+    if (node->rows < 1 || node->rows > INT32_MAX / 8 - 1)
+        return err_set(e, NULL, 0, "the model has %lld elements; expected 1 to %d", (long long)node->rows,
+                       INT32_MAX / 8 - 1);
+    p->nodes = position->rows;
+    p->elements = node->rows;
+    p->position = position->f64;
+    p->element_node = node->i32;
+    p->element_volume = volume->i32;
+    p->fibre = fibre ? fibre->f32 : NULL;
+    p->fraction = fraction ? fraction->f32 : NULL;
+    return borrow_mixes(p, m, e);
+}
+
+/* An element without mass has no step that is stable. */
+static int check_fractions(const tled_problem *p, err *e)
+{
+    for (int64_t i = 0; p->fraction && i < p->elements; i++)
+        if (!(p->fraction[i] > 0))
+            return err_set(e, NULL, 0, "element.fraction of element %lld is %g; expected above 0, and at most 1",
+                           (long long)i, (double)p->fraction[i]);
+    return 0;
+}
+
+static int check_mixes(const tled_problem *p, err *e)
+{
+    for (int64_t i = 0; p->mix && i < p->elements; i++)
+        if (p->mix[i] == p->element_volume[i])
+            return err_set(e, NULL, 0,
+                           "element.mix of element %lld repeats the volume of the element; expected another, or -1",
+                           (long long)i);
+    return 0;
+}
+
+/* Every element must be a box with the lattice's spacing for sides, its corners in VTK order. */
+static int check_boxes(const tled_problem *p, err *e)
+{
+    for (int64_t i = 0; i < p->elements * 8; i++) {
+        const double *first = p->position + 3 * (int64_t)p->element_node[i / 8 * 8];
+        const double *corner = p->position + 3 * (int64_t)p->element_node[i];
+        for (int a = 0; a < 3; a++) {
+            double gap = corner[a] - first[a] - p->side[a] * lattice_vtk[i % 8][a];
+            if (!(fabs(gap) <= 1e-6 * p->side[a]))
+                return err_set(e, NULL, 0,
+                               "element %lld is not a box of %g x %g x %g m; expected all to be the lattice's",
+                               (long long)(i / 8), p->side[0], p->side[1], p->side[2]);
+        }
+    }
+    return 0;
+}
+
+static int64_t find_curve(const script *s, script_verb verb, int32_t volume)
+{
+    for (int64_t i = 0; i < s->curves; i++)
+        if (s->curve[i].verb == verb && s->curve[i].volume == volume)
+            return i;
+    return -1;
+}
+
+/* Of the matrix of step.h, and of the hourglass modes. */
+static double square_at_rest(const tled_problem *p, const tled_volume *v)
+{
+    const element_tensor rest = {0};
+    const element_fibre none = {0};
+    const double share = p->side[0] * p->side[1] * p->side[2] / 8;
+    step_matrix a;
+    stability_matrix(v->mu, v->bulk, v->density, p->side, rest, none, none, &a);
+    return fmax(stability_largest(&a), 8 * v->hourglass / (v->density * share));
+}
+
+static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
+{
+    material law;
+    tled_volume *v = &p->volume[i];
+    if (materials_of(m, model_find(m, "volume.material")->i32[i], &law, e))
+        return -1;
+    v->name = model_find(m, "volume.name")->str[i];
+    if (law.law != MATERIAL_NEO_HOOKEAN)
+        return err_set(e, NULL, 0,
+                       "volume '%s' has the law '%s'; expected neo-hookean, here or by -m MATERIAL.law=", v->name,
+                       model_find(m, "material.law")->str[model_find(m, "volume.material")->i32[i]]);
+    v->mu = material_mu(&law);
+    v->bulk = material_bulk(&law);
+    v->density = law.density;
+    v->peak = law.peak;
+    v->hourglass = element_hourglass(p->kappa, v->mu, v->bulk, p->side[0], p->side[1], p->side[2]);
+    v->square = square_at_rest(p, v);
+    v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
+    if (v->contract >= 0 && !(v->peak > 0))
+        return err_set(e, NULL, 0,
+                       "volume '%s' is to contract, but its material '%s' has no peak stress; expected peak=PASCAL",
+                       v->name, model_find(m, "material.name")->str[model_find(m, "volume.material")->i32[i]]);
+    return 0;
+}
+
+static int make_volumes(tled_problem *p, const model *m, err *e)
+{
+    p->volumes = (int32_t)model_find(m, "volume.name")->rows;
+    p->volume = mem_array(p->volumes, sizeof *p->volume, "the volumes", e);
+    for (int32_t i = 0; p->volume && i < p->volumes; i++)
+        if (make_volume(p, m, i, e))
+            return -1;
+    for (int64_t i = 0; p->volume && i < p->elements; i++)
+        p->volume[p->element_volume[i]].elements++;
+    return p->volume ? 0 : -1;
+}
+
+static tled_law mix_laws(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]], *w = &p->volume[p->mix[element]];
+    const double s = tled_mixture(p, element);
+    tled_law law = {.mu = material_between(v->mu, w->mu, s),
+                    .bulk = material_between(v->bulk, w->bulk, s),
+                    .density = (1 - s) * v->density + s * w->density};
+    law.hourglass = element_hourglass(p->kappa, law.mu, law.bulk, p->side[0], p->side[1], p->side[2]);
+    return law;
+}
+
+/* The laws of what is mixed. */
+static int make_mixtures(tled_problem *p, err *e)
+{
+    if (!p->mix)
+        return 0;
+    p->mixed = mem_array(p->elements, sizeof *p->mixed, "the mixed elements", e);
+    for (int64_t i = 0; p->mixed && i < p->elements; i++)
+        p->mixed[i] = p->mix[i] < 0 ? -1 : (int32_t)p->laws++;
+    p->law = p->mixed ? mem_array(p->laws, sizeof *p->law, "the mixed elements", e) : NULL;
+    for (int64_t i = 0; p->law && i < p->elements; i++)
+        if (p->mixed[i] >= 0)
+            p->law[p->mixed[i]] = mix_laws(p, i);
+    return p->law ? 0 : -1;
+}
+
+/* Where among a node's elements, by their places in the lattice, the one is that has the node for this corner. */
+static int corner_rank(int32_t corner)
+{
+    const int32_t *offset = lattice_vtk[corner % 8];
+    return 7 - (offset[0] + 2 * offset[1] + 4 * offset[2]);
+}
+
+/* The corners of elements at each node, and its mass: rho V / 8 from each, of what is tissue. */
+static int make_corners(tled_problem *p, err *e)
+{
+    double share = p->side[0] * p->side[1] * p->side[2] / 8;
+    const int32_t none = (int32_t)p->elements * 8;
+    for (int64_t i = 0; i < p->nodes * 8; i++)
+        p->corner[i] = none;
+    for (int64_t i = 0; i < p->elements * 8; i++) {
+        int64_t n = p->element_node[i];
+        int32_t *list = p->corner + n * 8;
+        int at = 7;
+        if (list[at] != none)
+            return err_set(e, NULL, 0, "node %lld is in more than 8 elements", (long long)n);
+        for (; at && (list[at - 1] == none || corner_rank(list[at - 1]) > corner_rank((int32_t)i)); at--)
+            list[at] = list[at - 1];
+        list[at] = (int32_t)i;
+        p->mass[n] += tled_law_of(p, i / 8).density * share * tled_fraction(p, i / 8);
+    }
+    for (int64_t n = 0; n < p->nodes; n++)
+        if (p->corner[n * 8] == none)
+            return err_set(e, NULL, 0, "node %lld is in no element", (long long)n);
+    return 0;
+}
+
+/* Rigid nodes stay where they are, but for components that the script displaces. */
+static void make_holds(tled_problem *p, const model *m)
+{
+    const model_array *rigid = model_find(m, "node.rigid");
+    for (int64_t i = 0; i < p->nodes * 3; i++)
+        p->hold[i] = rigid && rigid->u8[i / 3] ? HOLD_STILL : HOLD_FREE;
+    for (int64_t c = 0; c < p->script->curves; c++) {
+        const script_curve *curve = &p->script->curve[c];
+        for (int32_t i = 0; curve->verb == SCRIPT_DISPLACE && i < curve->node_count; i++)
+            for (int a = 0; a < 3; a++)
+                if (curve->mask & 1u << a)
+                    p->hold[3 * (int64_t)p->script->node[curve->node_first + i] + a] = (int32_t)c;
+    }
+    for (int64_t n = 0; n < p->nodes; n++)
+        p->held += p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
+}
+
+/* Each force curve's equal shares, listed by node in the order of the curves. */
+static int make_forces(tled_problem *p, err *e)
+{
+    const script *s = p->script;
+    int64_t entries = 0;
+    for (int64_t c = 0; c < s->curves; c++)
+        entries += s->curve[c].verb == SCRIPT_FORCE ? s->curve[c].node_count : 0;
+    p->force_start = mem_array(p->nodes + 2, sizeof *p->force_start, "the forces", e);
+    p->force_curve = mem_array(entries, sizeof *p->force_curve, "the forces", e);
+    p->force_share = mem_array(entries, sizeof *p->force_share, "the forces", e);
+    if (!p->force_start || !p->force_curve || !p->force_share)
+        return -1;
+    if (entries > INT32_MAX)
+        return err_set(e, NULL, 0, "forces on %lld nodes; expected at most %d", (long long)entries, INT32_MAX);
+    /* Counts two places on, so that filling moves each start to where it belongs. */
+    for (int64_t i = 0, c = 0; c < s->curves; c++)
+        for (i = 0; s->curve[c].verb == SCRIPT_FORCE && i < s->curve[c].node_count; i++)
+            p->force_start[s->node[s->curve[c].node_first + i] + 2]++;
+    for (int64_t n = 0; n < p->nodes; n++)
+        p->force_start[n + 2] += p->force_start[n + 1];
+    for (int64_t i = 0, c = 0; c < s->curves; c++)
+        for (i = 0; s->curve[c].verb == SCRIPT_FORCE && i < s->curve[c].node_count; i++) {
+            int32_t at = p->force_start[s->node[s->curve[c].node_first + i] + 1]++;
+            p->force_curve[at] = (int32_t)c;
+            p->force_share[at] = 1. / s->curve[c].node_count;
+        }
+    return 0;
+}
+
+int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e)
+{
+    lattice l;
+    const bool boxes = model_meta_of(m, "lattice.spacing") || model_find(m, "element.lattice");
+    p->script = s;
+    p->kappa = kappa;
+    p->gravity = find_curve(s, SCRIPT_GRAVITY, -1);
+    if (borrow_mesh(p, m, e) || (boxes ? lattice_of(m, &l, e) : conforming_create(p, e)))
+        return -1;
+    if (boxes)
+        memcpy(p->side, l.spacing, sizeof p->side);
+    p->corner = mem_array(boxes ? p->nodes : p->elements, 8 * sizeof *p->corner, "the nodes", e);
+    p->mass = mem_array(p->nodes, sizeof *p->mass, "the nodes", e);
+    p->hold = mem_array(p->nodes, 3 * sizeof *p->hold, "the nodes", e);
+    p->displacement = mem_array(p->nodes, 3 * sizeof *p->displacement, "the nodes", e);
+    p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
+    if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
+        return -1;
+    if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || make_volumes(p, m, e) ||
+        make_mixtures(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || make_forces(p, e))
+        return -1;
+    if (!boxes)
+        conforming_join(p);
+    make_holds(p, m);
+    return 0;
+}
+
+int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
+{
+    const model_array *u = frame_find(f, "node.displacement"), *v = frame_find(f, "node.velocity");
+    if (!isfinite(f->time))
+        return err_set(e, NULL, 0, "frame %lld has no time, so the run cannot go on from it", (long long)f->index);
+    if (!u)
+        return err_set(e, NULL, 0, "frame %lld has no node.displacement, so the run cannot go on from it",
+                       (long long)f->index);
+    if (!v)
+        notes_add(warnings, "frame %lld has no node.velocity: the run begins with velocity 0", (long long)f->index);
+    memcpy(p->displacement, u->f64, (size_t)p->nodes * 3 * sizeof *p->displacement);
+    if (v)
+        memcpy(p->velocity, v->f64, (size_t)p->nodes * 3 * sizeof *p->velocity);
+    for (int64_t i = 0; i < 3 * p->nodes; i++)
+        if (p->hold[i] == HOLD_STILL)
+            p->velocity[i] = 0;
+    p->start = f->time;
+    return 0;
+}
+
+bool tled_bounds_hourglass(const tled_problem *p)
+{
+    for (int64_t i = 0; i < p->elements; i++) {
+        const tled_law law = tled_law_of(p, i);
+        if (element_hourglass_modulus(law.mu, law.bulk) < law.bulk + 4. / 3 * law.mu)
+            return true;
+    }
+    return false;
+}
+
+double tled_tension(const tled_problem *p, int32_t volume, const double *value)
+{
+    const tled_volume *v = &p->volume[volume];
+    return v->contract < 0 ? 0 : v->peak * value[3 * v->contract];
+}
+
+void tled_curves(const tled_problem *p, double time, double *value)
+{
+    for (int64_t i = 0; i < p->script->curves; i++)
+        script_value(p->script, &p->script->curve[i], time, value + 3 * i);
+}
+
+void tled_external(const tled_problem *p, const double *value, int64_t n, double *force)
+{
+    for (int a = 0; a < 3; a++) {
+        force[a] = p->gravity < 0 ? 0 : p->mass[n] * value[3 * p->gravity + a];
+        for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
+            force[a] += p->force_share[i] * value[3 * (int64_t)p->force_curve[i] + a];
+    }
+}

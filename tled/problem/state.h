@@ -1,0 +1,164 @@
+/* What tled-run solves, as flat arrays: the problem, which no back end changes, made from a model; and the contract of its
+ * back ends (solve/backend.h): their create takes a tled_problem, their step a tled_plan. The caller owns the problem; it
+ * borrows the model's arrays and the script, which must outlive it.
+ *
+ * Each node sums the forces of its elements in the order in which these stand in the lattice, x fastest, so that the sum
+ * is the same whoever computes it in whatever order, and however the model numbers its elements.
+ */
+#ifndef SINEW_STATE_H
+#define SINEW_STATE_H
+
+#include "solve/backend.h"
+#include "tled/problem/script.h"
+
+/* What holds one component of a node: nothing, its place at the start, or curve number `hold` of the script. */
+enum { HOLD_FREE = -1, HOLD_STILL = -2 };
+
+typedef struct tled_volume {
+    const char *name;               /* borrowed */
+    double mu, bulk, density, peak; /* Pa, Pa, kg/m3, Pa */
+    double hourglass;               /* N/m: k of each hourglass mode */
+    double square;                  /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
+    int64_t elements;               /* of it */
+    int64_t contract;               /* curve that sets its level, or -1 */
+} tled_volume;
+
+/* What an element is made of: a volume, or two. With s the share of the second, density is (1 - s) rho1 + s rho2, mu is
+ * mu1^(1-s) mu2^s and K likewise (material_between). */
+typedef struct tled_law {
+    double mu, bulk, density, hourglass; /* as a tled_volume's */
+} tled_law;
+
+typedef struct tled_problem {
+    int64_t nodes, elements;
+    int32_t volumes;
+    double side[3];                /* m: of every element; without a lattice, a cube's of the mean volume */
+    struct conforming *conforming; /* elements that are no lattice's (conforming.h), owned; NULL: boxes of `side` */
+    double kappa;                  /* hourglass coefficient */
+    const double *position;        /* nodes x 3, m */
+    const int32_t *element_node;   /* elements x 8, VTK order */
+    const int32_t *element_volume; /* elements */
+    const float *fibre;            /* elements x 3, or NULL */
+    const float *fraction; /* elements: the share that is tissue, by which mass and all forces go; NULL: all 1 */
+    const int32_t *mix;    /* elements: the second volume of those that are mixed, -1 in others; NULL: none is */
+    const float *mixture;  /* elements: its share of the tissue, 0 to 1; where mix is not NULL */
+    const float *mixfibre; /* elements x 3: its fibre; or NULL */
+    int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL where mix is. Owned, as is all below */
+    tled_law *law;         /* of the mixed elements, in their order */
+    int64_t laws;
+    tled_volume *volume; /* volumes */
+    int32_t *corner;     /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
+    int32_t *
+        corner_start; /* nodes + 1; or NULL. Without a lattice: node n's are corner[corner_start[n]] and on, in the elements' order */
+    double *mass;         /* nodes: kg */
+    int32_t *hold;        /* nodes x 3 */
+    int64_t held;         /* nodes with any component held */
+    int32_t *force_start; /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
+    int32_t *force_curve; /* entries: the curve whose value the node gets a share of */
+    double *force_share;  /* entries */
+    const script *script;
+    int64_t gravity;                 /* its curve, or -1 */
+    double start;                    /* s: the model's time at the start */
+    double *displacement;            /* nodes x 3, m: at the start */
+    double *velocity;                /* nodes x 3, m/s */
+    const struct collider *collider; /* what presses (collider.h), or NULL */
+} tled_problem;
+
+/* A run of steps: after step i of them (from 1) the time is origin + (first + i) / rate. A rate, since a whole number of
+ * steps a second then gives times that are exact. */
+typedef struct tled_plan {
+    double origin, rate; /* s, 1/s: dt = 1 / rate */
+    int64_t first;
+    double damping; /* 1/s: alpha of the force -alpha M v */
+} tled_plan;
+
+static inline double tled_time(const tled_plan *plan, int64_t i)
+{
+    return plan->origin + (double)(plan->first + i) / plan->rate;
+}
+
+/* What get() gives, nodes x 3 doubles each: m, m/s, and N: the sum of the elements' pulls at the displacement (where a step or
+ * create led to the state; not right after back). */
+enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL };
+
+/* What a pass over the model does, in any back end: ends a step, begins the next, writes the internal forces instead of displacements. */
+enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
+
+/* Slots for results that were taken. */
+enum { TLED_TAKEN = 24 };
+
+/* What taken() fills, nodes x 3 each: m, m/s. */
+typedef struct tled_taken {
+    double *displacement, *velocity;
+} tled_taken;
+
+/* What look() is asked. */
+typedef struct tled_question {
+    double time;      /* s: where the state stands */
+    double rest;      /* 1/s2: frequencies up to this one are not told */
+    double raise;     /* by what factor the frequency told may be too high: 1.01, or 1 for exactly */
+    bool differences; /* against what was kept */
+} tled_question;
+
+/* And its answer: sums over all, in a fixed order. */
+typedef struct tled_sums {
+    double kinetic, strain;                  /* J; strain with hourglass energy, without what muscles do */
+    double acceleration, speed, moved, mass; /* squares times masses, kg m2/s4, kg m2/s2, kg m2; and kg */
+    double stiffness, inertia; /* with du, df since what was kept: du df (J), m du du (kg m2), where free */
+    double largest;            /* m2: the square of the largest displacement */
+    double frequency;          /* 1/s2: the square of the highest of any element, if past question.rest */
+    int64_t frequency_element; /* whose it is, or -1 */
+    int64_t broken;            /* an element that is inverted (J <= 0) or not a number, or -1 */
+} tled_sums;
+
+/* Makes p (zeroed) of the model, at rest at time 0: all its elements must be its lattice's boxes, or it has no lattice. kappa: the hourglass
+ * coefficient. -1 with e filled and p to be freed all the same. */
+int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e);
+void tled_problem_free(tled_problem *p);
+
+/* Starts from a frame: its time, displacement and velocity (none: at rest, with a note). */
+int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e);
+
+/* The share of an element that is tissue. */
+static inline double tled_fraction(const tled_problem *p, int64_t element)
+{
+    return p->fraction ? (double)p->fraction[element] : 1;
+}
+
+/* The second volume of an element, or -1. */
+static inline int32_t tled_mix(const tled_problem *p, int64_t element)
+{
+    return p->mix ? p->mix[element] : -1;
+}
+
+/* Its share of the tissue; 0 where there is none. */
+static inline double tled_mixture(const tled_problem *p, int64_t element)
+{
+    return tled_mix(p, element) < 0 ? 0 : (double)p->mixture[element];
+}
+
+/* The law of an element: its volume's, or one between its two volumes'. */
+static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]];
+    const tled_law own = {v->mu, v->bulk, v->density, v->hourglass};
+    return p->mixed && p->mixed[element] >= 0 ? p->law[p->mixed[element]] : own;
+}
+
+/* Whether any element's hourglass modulus is 11 mu, being less than lambda + 2 mu: nu above .45. */
+bool tled_bounds_hourglass(const tled_problem *p);
+
+/* The active stress of a volume (Pa): level times peak; value: of all curves. */
+double tled_tension(const tled_problem *p, int32_t volume, const double *value);
+
+/* The sum of what acts on node n from outside (N, 3): gravity and forces; value: all curves' values, 3 a curve. */
+void tled_external(const tled_problem *p, const double *value, int64_t n, double *force);
+
+/* The values of all curves at a time, 3 a curve. */
+void tled_curves(const tled_problem *p, double time, double *value);
+
+/* The back ends of tled-run, NULL-terminated, by the precision of their numbers. */
+extern const backend *const tled_backends_double[];
+extern const backend *const tled_backends_single[];
+
+#endif

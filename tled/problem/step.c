@@ -1,0 +1,69 @@
+#include "tled/problem/step.h"
+
+#include "tled/problem/conforming_step.h"
+
+#include <math.h>
+
+void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
+                    element_fibre second, step_matrix *a)
+{
+    stability_matrix(law->mu, law->bulk, law->density, p->side, h, fibre, second, a);
+}
+
+stability_range step_range_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
+                              element_fibre second)
+{
+    return stability_range_of(law->mu, law->bulk, law->density, p->side, h, fibre, second);
+}
+
+bool step_below(const step_matrix *a, double limit)
+{
+    return stability_below(a, limit);
+}
+
+double step_largest(const step_matrix *a)
+{
+    return stability_largest(a);
+}
+
+/* No less than the square of the highest frequency of a mixed element: stiffness grows with mu and K alike, so it is at most
+ * that of a volume times the larger of what these are of the volume's. */
+static double square_by(const tled_law *law, const tled_volume *v)
+{
+    return v->square * fmax(law->mu / v->mu, law->bulk / v->bulk) * v->density / law->density;
+}
+
+/* The square of the highest frequency of an element at rest; of one that is mixed perhaps a little more. */
+static double square_at_rest(const tled_problem *p, int64_t element)
+{
+    const tled_volume *v = &p->volume[p->element_volume[element]];
+    if (tled_mix(p, element) < 0)
+        return v->square;
+    const tled_law law = tled_law_of(p, element);
+    return fmin(square_by(&law, v), square_by(&law, &p->volume[p->mix[element]]));
+}
+
+double step_at_rest(const tled_problem *p, int32_t *volume)
+{
+    double highest = 0;
+    if (p->conforming) {
+        if (volume)
+            *volume = p->element_volume[p->conforming->stiffest];
+        return 2 / sqrt(p->conforming->square);
+    }
+    for (int64_t i = 0; i < p->elements; i++) {
+        double square = square_at_rest(p, i);
+        if (square > highest && volume)
+            *volume = p->element_volume[i];
+        highest = fmax(highest, square);
+    }
+    return 2 / sqrt(highest);
+}
+
+double step_rate(double stable, int64_t *check)
+{
+    double parts, steps = fmax(1, ceil(.01 / (.5 * stable)));
+    parts = ceil(steps / STEP_UNSEEN);
+    *check = (int64_t)ceil(steps / parts);
+    return 100 * parts * (double)*check;
+}

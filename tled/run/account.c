@@ -1,0 +1,381 @@
+#include "tled/run/account.h"
+
+#include "base/mem.h"
+#include "tled/problem/collider.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK = STRAINED_CHUNK }; /* elements, or nodes */
+
+/* What is known of one moment. */
+typedef struct moment {
+    bool known;
+    double *displacement, *internal, *push; /* nodes x 3; push: NULL without a probe */
+    double *stretch;                        /* elements x 2: of either fibre; NULL without muscles */
+    double *curves;
+    double driven; /* J: kinetic energy where displacements are prescribed */
+    double first;  /* J: held at the first look */
+    account_sums sums;
+} moment;
+
+struct account_part { /* of one chunk: sums, largest values as squares */
+    account_sums sum;
+    double driven, mass;
+};
+
+struct account {
+    const tled_problem *p;
+    pool *threads;
+    moment now, before, kept;
+    double *velocity;
+    struct account_part *part;
+    strained_view view; /* of now */
+    probe_placed probe; /* of now */
+};
+
+/* The antiderivative of element_force_length from 0: what a muscle of unit stress does from one stretch to another. */
+static double force_length_sum(double l)
+{
+    const double low = fmin(fmax(l, .4), .6) - .4, middle = fmin(fmax(l, .6), 1.4),
+                 high = fmin(fmax(l, 1.4), 1.6) - 1.6;
+    const double off = middle - 1;
+    return 3 * low * low * low + (middle - .6) - 4. / 3 * (off * off * off + .064) + 3 * (high * high * high + .008);
+}
+
+static double stretch_of(const float *along, int64_t i, element_tensor h)
+{
+    const element_vector a = {along[3 * i], along[3 * i + 1], along[3 * i + 2]};
+    return element_length(element_fibre_now(h, a));
+}
+
+/* The work (J) of the muscle that the volume is, along one of an element's fibres, since the moment before. rest (m3): of the
+ * tissue that is its. */
+static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume, double rest)
+{
+    const tled_problem *p = a->p;
+    const double was = a->before.stretch[2 * i + fibre], is = a->now.stretch[2 * i + fibre];
+    const double tension = (tled_tension(p, volume, a->before.curves) + tled_tension(p, volume, a->now.curves)) / 2;
+    if (tension == 0)
+        return 0;
+    return -rest * tension * (force_length_sum(is) - force_length_sum(was));
+}
+
+static void look_at_muscles(account *a, int64_t i, const deformed *d, account_sums *sum)
+{
+    const tled_problem *p = a->p;
+    const float *const along[2] = {p->fibre, p->mixfibre};
+    const int32_t volume[2] = {p->element_volume[i], tled_mix(p, i)};
+    const double share[2] = {1 - tled_mixture(p, i), tled_mixture(p, i)};
+    for (int k = 0; k < 2; k++) {
+        if (!along[k] || volume[k] < 0 || p->volume[volume[k]].contract < 0)
+            continue;
+        a->now.stretch[2 * i + k] = stretch_of(along[k], i, d->h);
+        if (a->before.known)
+            sum->muscles += muscle_work(a, i, k, volume[k], tled_fraction(p, i) * share[k] * d->rest);
+    }
+}
+
+static void look_at_element(account *a, int64_t i, element_shape box, account_sums *sum)
+{
+    const deformed d = deformed_of(a->p, i, box, a->now.displacement);
+    strained_add(&sum->tissue, &a->view, i, &d);
+    if (a->now.stretch)
+        look_at_muscles(a, i, &d, sum);
+}
+
+static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    account *a = context;
+    account_sums sum = {.tissue = strained_none()};
+    const element_shape shape = element_box(a->p->side[0], a->p->side[1], a->p->side[2]);
+    for (int64_t i = from; i < to; i++)
+        look_at_element(a, i, shape, &sum);
+    a->part[chunk].sum = sum;
+}
+
+static void add_elements(account *a)
+{
+    account_sums *to = &a->now.sums;
+    for (int64_t c = 0; c < pool_chunks(a->p->elements, CHUNK); c++) {
+        strained_join(&to->tissue, &a->part[c].sum.tissue);
+        to->muscles += a->part[c].sum.muscles;
+    }
+}
+
+/* What acts on a node at a moment, N. */
+typedef struct node_load {
+    double gravity[3], forces[3];
+} node_load;
+
+static node_load load_of(const tled_problem *p, const double *curves, int64_t n)
+{
+    node_load load = {{0}, {0}};
+    tled_external(p, curves, n, load.forces);
+    for (int a = 0; a < 3 && p->gravity >= 0; a++) {
+        load.gravity[a] = p->mass[n] * curves[3 * p->gravity + a];
+        load.forces[a] -= load.gravity[a];
+    }
+    return load;
+}
+
+static void find_push(account *a, int64_t n)
+{
+    const tled_problem *p = a->p;
+    double x[3], *push = a->now.push + 3 * n;
+    for (int k = 0; k < 3; k++) {
+        x[k] = p->position[3 * n + k] + a->now.displacement[3 * n + k];
+        push[k] = 0;
+    }
+    if (!collider_push(p->collider, &a->probe, a->now.sums.time, x, p->mass[n], push))
+        memset(push, 0, 3 * sizeof *push);
+}
+
+/* What a component of a node did since the moment before. What displaces it works against the elements' pulls and for
+ * what else pushes it; the energy of its motion, and what damping takes of it, come in account_look. */
+static void work_of(const account *a, int64_t i, const node_load *was, const node_load *is, account_sums *sum)
+{
+    const int axis = (int)(i % 3);
+    const double way = a->now.displacement[i] - a->before.displacement[i];
+    const double gravity = (was->gravity[axis] + is->gravity[axis]) / 2 * way;
+    const double forces = (was->forces[axis] + is->forces[axis]) / 2 * way;
+    const double push = a->now.push ? (a->before.push[i] + a->now.push[i]) / 2 * way : 0;
+    sum->gravity += gravity;
+    sum->forces += forces;
+    if (a->p->hold[i] >= 0) /* internal forces are less by the push, which moves nothing that is held */
+        sum->held += (a->before.internal[i] + a->now.internal[i]) / 2 * way + push - gravity - forces;
+    else
+        sum->probe += push;
+}
+
+static void look_at_node(account *a, int64_t n, struct account_part *part)
+{
+    const tled_problem *p = a->p;
+    const double mass = p->mass[n];
+    const node_load is = load_of(p, a->now.curves, n);
+    const node_load was = a->before.known ? load_of(p, a->before.curves, n) : is;
+    double way = 0, speed = 0;
+    if (p->collider)
+        find_push(a, n);
+    for (int64_t i = 3 * n; i < 3 * n + 3; i++) {
+        const double gap = is.gravity[i % 3] + is.forces[i % 3] - a->now.internal[i];
+        const double square = a->velocity[i] * a->velocity[i];
+        part->sum.acceleration += p->hold[i] == HOLD_FREE ? gap * gap / mass : 0;
+        part->driven += p->hold[i] >= 0 ? mass * square / 2 : 0;
+        way += a->now.displacement[i] * a->now.displacement[i];
+        speed += square;
+        if (a->before.known)
+            work_of(a, i, &was, &is, &part->sum);
+    }
+    part->mass += mass;
+    part->sum.kinetic += mass * speed / 2;
+    part->sum.displacement = fmax(part->sum.displacement, way);
+    part->sum.speed = fmax(part->sum.speed, speed);
+}
+
+static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    account *a = context;
+    struct account_part part = {0};
+    for (int64_t n = from; n < to; n++)
+        look_at_node(a, n, &part);
+    a->part[chunk] = part;
+}
+
+/* Adds what the chunks found to what is known: energies are of now, work adds up. */
+static double add_nodes(account *a, double *mass)
+{
+    account_sums *to = &a->now.sums;
+    double driven = 0;
+    for (int64_t c = 0; c < pool_chunks(a->p->nodes, CHUNK); c++) {
+        const struct account_part *part = &a->part[c];
+        const account_sums *s = &part->sum;
+        to->kinetic += s->kinetic;
+        to->gravity += s->gravity;
+        to->forces += s->forces;
+        to->held += s->held;
+        to->probe += s->probe;
+        to->acceleration += s->acceleration;
+        to->displacement = fmax(to->displacement, s->displacement);
+        to->speed = fmax(to->speed, s->speed);
+        driven += part->driven;
+        *mass += part->mass;
+    }
+    return driven;
+}
+
+static account_past past_of(const moment *m)
+{
+    const account_sums *s = &m->sums;
+    return (account_past){m->first, s->gravity, s->forces, s->held, s->muscles, s->probe, s->damping};
+}
+
+static void set_past(moment *m, const account_past *past)
+{
+    account_sums *s = &m->sums;
+    m->first = past->first;
+    s->gravity = past->gravity;
+    s->forces = past->forces;
+    s->held = past->held;
+    s->muscles = past->muscles;
+    s->probe = past->probe;
+    s->damping = past->damping;
+}
+
+/* Work goes on from the moment before; the rest begins at nothing. */
+static void begin_sums(account *a, double time)
+{
+    const account_past past = a->before.known ? past_of(&a->before) : (account_past){0};
+    a->now.sums = (account_sums){.time = time, .tissue = strained_none()};
+    set_past(&a->now, &past);
+}
+
+/* Damping takes alpha m v^2: twice alpha times the kinetic energy. */
+static void close_sums(account *a, double damping, double mass)
+{
+    account_sums *s = &a->now.sums;
+    const moment *before = &a->before;
+    const double held = s->kinetic + s->tissue.strain + s->tissue.hourglass;
+    if (before->known) {
+        const double span = damping * (s->time - before->sums.time);
+        s->damping += span * (before->sums.kinetic + s->kinetic);
+        s->held += a->now.driven - before->driven + span * (before->driven + a->now.driven);
+    }
+    if (!before->known)
+        a->now.first = held;
+    s->balance = held - a->now.first - s->gravity - s->forces - s->held - s->muscles - s->probe + s->damping;
+    s->displacement = sqrt(s->displacement);
+    s->speed = sqrt(s->speed);
+    s->acceleration = sqrt(s->acceleration / mass);
+    a->now.known = true;
+}
+
+const account_sums *account_look(account *a, const backend *b, void *state, double time, double damping, err *e)
+{
+    const tled_problem *p = a->p;
+    const moment swap = a->before;
+    double mass = 0;
+    a->before = a->now;
+    a->now = swap;
+    if (b->get(state, TLED_DISPLACEMENT, a->now.displacement, e) || b->get(state, TLED_VELOCITY, a->velocity, e) ||
+        b->get(state, TLED_INTERNAL, a->now.internal, e))
+        return NULL;
+    begin_sums(a, time);
+    tled_curves(p, time, a->now.curves);
+    if (p->collider)
+        a->probe = collider_at(p->collider, time);
+    a->view = strained_view_of(p, a->now.displacement, a->before.sums.tissue.quality.element);
+    pool_run(a->threads, p->elements, CHUNK, element_work, a);
+    add_elements(a);
+    pool_run(a->threads, p->nodes, CHUNK, node_work, a);
+    a->now.driven = add_nodes(a, &mass);
+    close_sums(a, damping, mass);
+    return &a->now.sums;
+}
+
+const double *account_displacement(const account *a)
+{
+    return a->now.displacement;
+}
+
+/* Copies what `from` knows; each keeps its own arrays. */
+static void copy_moment(const tled_problem *p, const moment *from, moment *to)
+{
+    const size_t size = 3 * (size_t)p->nodes * sizeof(double);
+    const moment own = *to;
+    *to = *from;
+    to->displacement = own.displacement;
+    to->internal = own.internal;
+    to->push = own.push;
+    to->stretch = own.stretch;
+    to->curves = own.curves;
+    memcpy(to->displacement, from->displacement, size);
+    memcpy(to->internal, from->internal, size);
+    memcpy(to->curves, from->curves, 3 * (size_t)p->script->curves * sizeof(double));
+    if (to->push)
+        memcpy(to->push, from->push, size);
+    if (to->stretch)
+        memcpy(to->stretch, from->stretch, 2 * (size_t)p->elements * sizeof(double));
+}
+
+void account_keep(account *a)
+{
+    copy_moment(a->p, &a->now, &a->kept);
+}
+
+void account_back(account *a)
+{
+    copy_moment(a->p, &a->kept, &a->now);
+}
+
+account_past account_past_of(const account *a)
+{
+    return past_of(&a->now);
+}
+
+int account_go_on(account *a, const backend *b, void *state, double time, const account_past *past, err *e)
+{
+    if (!account_look(a, b, state, time, 0, e))
+        return -1;
+    set_past(&a->now, past);
+    account_keep(a);
+    return 0;
+}
+
+static bool has_muscles(const tled_problem *p)
+{
+    for (int32_t i = 0; i < p->volumes; i++)
+        if (p->volume[i].contract >= 0)
+            return true;
+    return false;
+}
+
+static int make_moment(const tled_problem *p, moment *m, err *e)
+{
+    m->displacement = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
+    m->internal = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
+    m->curves = mem_array(p->script->curves, 3 * sizeof(double), "the log", e);
+    m->push = p->collider ? mem_array(p->nodes, 3 * sizeof(double), "the log", e) : NULL;
+    m->stretch = has_muscles(p) ? mem_array(p->elements, 2 * sizeof(double), "the log", e) : NULL;
+    return e->status ? -1 : 0;
+}
+
+static void free_moment(moment *m)
+{
+    free(m->displacement);
+    free(m->internal);
+    free(m->curves);
+    free(m->push);
+    free(m->stretch);
+}
+
+account *account_create(const tled_problem *p, pool *threads, err *e)
+{
+    const int64_t most = p->elements > p->nodes ? p->elements : p->nodes;
+    account *a = mem_array(1, sizeof *a, "the log", e);
+    if (!a)
+        return NULL;
+    a->p = p;
+    a->threads = threads;
+    a->velocity = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
+    a->part = mem_array(pool_chunks(most, CHUNK), sizeof *a->part, "the log", e);
+    if (!a->velocity || !a->part || make_moment(p, &a->now, e) || make_moment(p, &a->before, e) ||
+        make_moment(p, &a->kept, e)) {
+        account_destroy(a);
+        return NULL;
+    }
+    return a;
+}
+
+void account_destroy(account *a)
+{
+    if (!a)
+        return;
+    free_moment(&a->now);
+    free_moment(&a->before);
+    free_moment(&a->kept);
+    free(a->velocity);
+    free(a->part);
+    free(a);
+}

@@ -1,0 +1,220 @@
+#include "tled/run/likeness.h"
+
+#include "base/chars.h"
+#include "base/checksum.h"
+#include "base/mem.h"
+#include "cli/tool.h"
+#include "model/binary.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void likeness_free(likeness *l)
+{
+    for (int64_t i = 0; i < l->parts; i++)
+        free(l->part[i].name);
+    free(l->part);
+    free(l->options);
+    *l = (likeness){0};
+}
+
+static int add(likeness *l, const char *kind, const char *name, uint32_t crc, err *e)
+{
+    char text[MODEL_NAME + 40];
+    snprintf(text, sizeof text, "%s%s%s", kind, *name ? " " : "", name);
+    if (MEM_ROOM(&l->part, &l->room, l->parts + 1, "checksums", e))
+        return -1;
+    l->part[l->parts] = (likeness_part){mem_text(text, e), crc};
+    if (!l->part[l->parts].name)
+        return -1;
+    l->parts++;
+    return 0;
+}
+
+/* Not compared: it is --hourglass of the run that wrote the frames, and this run's is. */
+static const char kappa_key[] = "hourglass.kappa";
+
+static int add_model(likeness *l, const model *m, err *e)
+{
+    for (int i = 0; i < m->metas; i++)
+        if (strcmp(m->meta[i].key, kappa_key) != 0 &&
+            add(l, "meta", m->meta[i].key, checksum_add(0, m->meta[i].value, strlen(m->meta[i].value)), e))
+            return -1;
+    for (int i = 0; i < m->arrays.count; i++) {
+        const item it = {.kind = ITEM_ARRAY, .array = m->arrays.v[i]};
+        if (add(l, "array", it.array.name, binary_crc(&it), e))
+            return -1;
+    }
+    return 0;
+}
+
+static int add_number(likeness *l, const char *name, double value, err *e)
+{
+    return add(l, name, "", checksum_add(0, &value, sizeof value), e);
+}
+
+static int add_numbers(likeness *l, const likeness_run *run, err *e)
+{
+    const run_setup *r = run->setup;
+    return (isfinite(r->end) && add_number(l, "--time to its end", r->end, e)) ||
+                   add_number(l, "--every", r->every, e) || add_number(l, "--dt", r->rate, e) ||
+                   add_number(l, "--damping", r->damping, e) || add_number(l, "--rest", r->rest, e) ||
+                   add_number(l, "--time", (double)r->steps, e) || add_number(l, "--hourglass", run->p->kappa, e) ||
+                   (run->p->collider && add_number(l, "--repulsion", run->p->collider->stiffness, e))
+               ? -1
+               : 0;
+}
+
+static uint32_t crc_script(const script *s)
+{
+    uint32_t crc = 0;
+    for (int64_t i = 0; i < s->curves; i++) {
+        const script_curve *c = &s->curve[i];
+        const int64_t what[] = {c->verb, c->volume, c->mask, c->key_count, c->node_count};
+        crc = checksum_add(crc, what, sizeof what);
+        crc = checksum_add(crc, s->time + c->key_first, (size_t)c->key_count * sizeof *s->time);
+        crc = checksum_add(crc, s->value + 3 * c->key_first, (size_t)c->key_count * 3 * sizeof *s->value);
+        crc = checksum_add(crc, s->node + c->node_first, (size_t)c->node_count * sizeof *s->node);
+    }
+    return crc;
+}
+
+static uint32_t crc_shape(const probe *p)
+{
+    const double size[] = {p->kind, p->radius, p->width, p->angle, p->thickness, p->edge};
+    uint32_t crc = checksum_add(0, size, sizeof size);
+    crc = checksum_add(crc, p->plane, (size_t)p->planes * 4 * sizeof *p->plane);
+    return checksum_add(crc, p->corner, (size_t)p->corners * 3 * sizeof *p->corner);
+}
+
+static uint32_t crc_poses(const collider *c)
+{
+    uint32_t crc = checksum_add(0, c->time, (size_t)c->poses * sizeof *c->time);
+    return checksum_add(crc, c->pose, (size_t)c->poses * sizeof *c->pose);
+}
+
+static uint32_t crc_start(const tled_problem *p, int64_t next_frame)
+{
+    const size_t size = 3 * (size_t)p->nodes * sizeof(double);
+    uint32_t crc = checksum_add(0, &next_frame, sizeof next_frame);
+    crc = checksum_add(crc, &p->start, sizeof p->start);
+    return checksum_add(checksum_add(crc, p->displacement, size), p->velocity, size);
+}
+
+int likeness_make(likeness *l, const likeness_run *run, err *e)
+{
+    const tled_problem *p = run->p;
+    const collider *c = p->collider;
+    const size_t size = sizeof SINEW_VERSION + strlen(run->options) + 1;
+    l->options = mem_array((int64_t)size, 1, "options", e);
+    if (!l->options)
+        return -1;
+    snprintf(l->options, size, "%s %s", SINEW_VERSION, run->options);
+    chars_mend(l->options);
+    return add_numbers(l, run, e) || add_model(l, run->m, e) || add(l, "script", "", crc_script(p->script), e) ||
+                   (c && (add(l, "probe", "", crc_shape(&c->shape), e) || add(l, "poses", "", crc_poses(c), e))) ||
+                   add(l, "start", "", crc_start(p, run->next_frame), e)
+               ? -1
+               : 0;
+}
+
+/* ---- in a model, and from one */
+
+static const char options_key[] = "checkpoint.options", part_name[] = "checkpoint.part", crc_name[] = "checkpoint.crc";
+
+int likeness_put(const likeness *l, model *to, err *e)
+{
+    if (model_meta_set(to, options_key, l->options, e) || model_axis_add(to, part_name, l->parts, e))
+        return -1;
+    model_array *name = model_add_as(to, part_name, MODEL_STR, "1", part_name, 1, e);
+    for (int64_t i = 0; name && i < l->parts; i++)
+        if (model_set_text(name, i, l->part[i].name, e))
+            return -1;
+    const model_array *sum = name ? model_add_as(to, crc_name, MODEL_I64, "1", part_name, 1, e) : NULL;
+    for (int64_t i = 0; sum && i < l->parts; i++)
+        sum->i64[i] = l->part[i].crc;
+    return sum ? 0 : -1;
+}
+
+/* Where an option begins, or what ran. */
+static bool begins(const char *word)
+{
+    return *word == '[' || (*word == '-' && (word[1] == '-' || (word[1] >= 'A' && word[1] <= 'z')));
+}
+
+/* The first option in which two texts differ: its place in each, and how long it is up to the word that does. */
+static void find_option(const char *text[2], int size[2])
+{
+    size_t at = 0, begin = 0;
+    for (; text[0][at] && text[0][at] == text[1][at]; at++)
+        if (begins(text[0] + at) && begins(text[1] + at) && at && text[0][at - 1] == ' ')
+            begin = at;
+    bool ends = strchr(" ", text[0][at]) && strchr(" ", text[1][at]); /* one has a word more */
+    for (int i = 0; i < 2; i++) {
+        size_t from = ends ? at + (text[i][at] == ' ') : begin, differs = ends ? from : at;
+        size[i] = (int)(differs - from + strcspn(text[i] + differs, " "));
+        text[i] += from;
+    }
+}
+
+static int compare_options(const char *there, const char *here, const char *place, err *e)
+{
+    const char *text[] = {there, here};
+    int size[2];
+    if (!strcmp(there, here))
+        return 0;
+    const int version = (int)strcspn(there, " "), ours = (int)strcspn(here, " ");
+    if (version != ours || strncmp(there, here, (size_t)ours) != 0)
+        return err_set(e, place, 0,
+                       "was written by version %.*s, and this is version %.*s; expected a checkpoint of this version: "
+                       "continue with that version, or begin the run anew",
+                       version, there, ours, here);
+    find_option(text, size);
+    return err_set(e, place, 0, "was saved by a run with other options, '%.*s'; expected '%.*s'", size[0], text[0],
+                   size[1], text[1]);
+}
+
+static bool has(char *const *name, int64_t names, const char *wanted)
+{
+    for (int64_t i = 0; i < names; i++)
+        if (!strcmp(name[i], wanted))
+            return true;
+    return false;
+}
+
+static const likeness_part *find_part(const likeness *l, const char *name)
+{
+    for (int64_t i = 0; i < l->parts; i++)
+        if (!strcmp(l->part[i].name, name))
+            return &l->part[i];
+    return NULL;
+}
+
+static int differ(const char *place, const char *name, const char *how, err *e)
+{
+    return err_set(e, place, 0,
+                   "belongs to another run: %s %s; expected the command that made it, with the same model and files",
+                   name, how);
+}
+
+int likeness_compare(const likeness *l, const model *from, const char *place, err *e)
+{
+    const char *there = model_meta_of(from, options_key);
+    const model_array *name = model_find(from, part_name), *sum = model_find(from, crc_name);
+    if (!there || !name || name->type != MODEL_STR || name->columns != 1 || !sum || sum->type != MODEL_I64 ||
+        sum->columns != 1 || sum->rows != name->rows)
+        return err_set(e, place, 0, "is not a checkpoint; expected one that tled-run wrote");
+    if (compare_options(there, l->options, place, e))
+        return -1;
+    for (int64_t i = 0; i < name->rows; i++) {
+        const likeness_part *here = find_part(l, name->str[i]);
+        if (!here || here->crc != sum->i64[i])
+            return differ(place, name->str[i], here ? "differs" : "is missing now", e);
+    }
+    for (int64_t i = 0; i < l->parts; i++)
+        if (!has(name->str, name->rows, l->part[i].name))
+            return differ(place, l->part[i].name, "is new", e);
+    return 0;
+}

@@ -1,0 +1,226 @@
+#include "tled/run/log.h"
+
+#include "base/in.h"
+#include "base/path.h"
+#include "cli/progress.h"
+#include "model/rest_place.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Quantity and unit; the last two go by the clock, and differ from run to run. Nodes' come after them, then what
+ * elements are like. */
+static const char heading[] =
+    "time/s\tstep\tdt/s\tstable/s\tkinetic/J\tstrain/J\thourglass/J\tgravity/J\tforces/J\tdisplaced/J\tmuscles/"
+    "J\tprobe/J\t"
+    "damping/J\tbalance/J\tdisplacement/m\tspeed/(m/s)\tresidual/(m/s2)\tremaining\tsteps/(1/s)\telements/(1/s)";
+
+static const char heading_end[] = "\tquality.j.centre\tquality.j.corner\tquality.folded\tquality.hourglass\n";
+
+static const char trace[] = "node.displacement.at.";
+
+static int place_of(const char *key, double *place, err *e)
+{
+    if (!strncmp(key, trace, sizeof trace - 1) && rest_place_of(key + sizeof trace - 1, place))
+        return 0;
+    return err_usage(e, "--tsv '%.80s': expected %sX,Y,Z, three lengths between commas (metres, or with a unit)", key,
+                     trace);
+}
+
+int log_check_key(const char *key, err *e)
+{
+    double place[3];
+    return place_of(key, place, e);
+}
+
+static void put_heading(const run_log *l, out *to)
+{
+    out_text(to, heading);
+    for (int i = 0; i < l->keys->count; i++)
+        for (int a = 0; a < 3; a++)
+            out_format(to, "\t%s.%c/m", l->keys->value[i], "xyz"[a]);
+    out_text(to, heading_end);
+}
+
+/* That the file to go on with begins with the heading of this run. What is shorter than what is to be kept is growing_open's to refuse,
+ * and what is not a regular file is written as it is. */
+static int check_heading(const run_log *l, const char *path, int64_t keep, err *e)
+{
+    size_t size;
+    char *line = NULL;
+    struct stat s;
+    const int there = path_look(path, &s, e);
+    if (there < 1 || !S_ISREG(s.st_mode) || s.st_size < (off_t)keep)
+        return there < 0 ? -1 : 0;
+    out *want = out_memory(e);
+    in *file = want ? in_open_plain(path, e) : NULL;
+    if (file && in_line(file, &line, NULL, e) > -2) {
+        put_heading(l, want);
+        const unsigned char *bytes = out_bytes(want, &size);
+        if (!out_failed(want, e) && (!line || strlen(line) + 1 != size || memcmp(line, bytes, size - 1) != 0))
+            err_set(e, path, 1,
+                    "is not the heading of this run's log; expected the file and the --tsv that it began with");
+    }
+    in_close(file);
+    out_discard(want);
+    return e->status ? -1 : 0;
+}
+
+int log_open(run_log *l, const char *path, const opt_list *keys, const model *m, const log_point *from, err *e)
+{
+    l->keys = keys;
+    for (int i = 0; i < keys->count; i++) {
+        double place[3];
+        if (place_of(keys->value[i], place, e))
+            return -1;
+        l->node[i] = rest_place_row(m, "node", place);
+    }
+    const int64_t keep = from ? from->length : 0;
+    if (keep && check_heading(l, path, keep, e))
+        return -1;
+    l->file = growing_open(path, keep, e);
+    return l->file ? 0 : -1;
+}
+
+/* Sends the rows, and begins anew. */
+static int empty_rows(run_log *l, bool send, err *e)
+{
+    size_t size;
+    const unsigned char *bytes = out_bytes(l->rows, &size);
+    int bad = out_failed(l->rows, e);
+    if (!bad && send && size)
+        bad = growing_put(l->file, bytes, size, e);
+    out_discard(l->rows);
+    l->rows = bad ? NULL : out_memory(e);
+    l->is_pending = false;
+    return l->rows ? 0 : -1;
+}
+
+int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
+{
+    l->p = p;
+    l->began = progress_clock();
+    l->account = account_create(p, threads, e);
+    l->rows = l->account ? out_memory(e) : NULL;
+    if (!l->rows)
+        return -1;
+    if (!growing_size(l->file))
+        put_heading(l, l->rows);
+    return empty_rows(l, true, e);
+}
+
+int log_store(run_log *l, err *e)
+{
+    return growing_store(l->file, e);
+}
+
+log_point log_point_of(const run_log *l)
+{
+    return (log_point){account_past_of(l->account), growing_size(l->file)};
+}
+
+int log_go_on(run_log *l, const backend *b, void *state, double time, const log_point *from, err *e)
+{
+    return account_go_on(l->account, b, state, time, &from->past, e);
+}
+
+/* nan, where there is nothing to tell, is what plots leave out. */
+static void put_number(out *to, double value)
+{
+    if (isfinite(value))
+        out_format(to, "\t%.9g", value);
+    else
+        out_text(to, "\tnan");
+}
+
+/* inf is a share too: of strain energy that is none. */
+static void put_share(out *to, double value)
+{
+    if (isinf(value))
+        out_text(to, "\tinf");
+    else
+        put_number(to, value);
+}
+
+static void put_row(run_log *l, const log_row *row, const account_sums *s)
+{
+    const double took = progress_clock() - l->began;
+    const double rate = took > 0 && row->taken > l->steps ? (double)(row->taken - l->steps) / took : NAN;
+    const double values[] = {row->dt,
+                             row->stable,
+                             s->kinetic,
+                             s->tissue.strain,
+                             s->tissue.hourglass,
+                             s->gravity,
+                             s->forces,
+                             s->held,
+                             s->muscles,
+                             s->probe,
+                             s->damping,
+                             s->balance,
+                             s->displacement,
+                             s->speed,
+                             s->acceleration,
+                             row->remaining,
+                             rate,
+                             rate * (double)l->p->elements};
+    out_format(l->rows, "%.9g\t%lld", row->time, (long long)row->step);
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+        put_number(l->rows, values[i]);
+    const double *moved = account_displacement(l->account);
+    for (int i = 0; i < 3 * l->keys->count; i++)
+        put_number(l->rows, moved[3 * l->node[i / 3] + i % 3]);
+    put_number(l->rows, s->tissue.quality.centre);
+    put_number(l->rows, s->tissue.quality.corner);
+    out_format(l->rows, "\t%lld", (long long)s->tissue.quality.folded);
+    put_share(l->rows, quality_hourglass(s->tissue.hourglass, s->tissue.strain, s->tissue.scale));
+    out_text(l->rows, "\n");
+    l->steps = row->taken;
+    l->began = progress_clock();
+}
+
+int log_look(run_log *l, const backend *b, void *state, const log_row *row, bool shown, err *e)
+{
+    const account_sums *s = account_look(l->account, b, state, row->time, row->damping, e);
+    if (!s)
+        return -1;
+    if (shown)
+        put_row(l, row, s);
+    l->last = *row;
+    l->unshown = shown ? NULL : s;
+    l->is_pending = true;
+    return out_failed(l->rows, e);
+}
+
+int log_keep(run_log *l, err *e)
+{
+    account_keep(l->account);
+    return empty_rows(l, true, e);
+}
+
+int log_back(run_log *l, err *e)
+{
+    if (!l->is_pending)
+        return 0;
+    account_back(l->account);
+    return empty_rows(l, false, e);
+}
+
+int log_end(run_log *l, err *e)
+{
+    if (l->unshown)
+        put_row(l, &l->last, l->unshown);
+    l->unshown = NULL;
+    return empty_rows(l, true, e);
+}
+
+int log_close(run_log *l, err *e)
+{
+    account_destroy(l->account);
+    out_discard(l->rows);
+    l->account = NULL;
+    l->rows = NULL;
+    growing *file = l->file;
+    l->file = NULL;
+    return growing_close(file, e);
+}

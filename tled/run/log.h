@@ -1,0 +1,75 @@
+/* The log of a run: tab-separated values, a row a look, for plots and for people who watch. Rows are held until the state that
+ * they are of is known to be sound; then they go to the file, whole and at once. The creator owns the log; the run that
+ * is given it calls the rest.
+ */
+#ifndef SINEW_LOG_H
+#define SINEW_LOG_H
+
+#include "base/growing.h"
+#include "base/out.h"
+#include "cli/opt.h"
+#include "model/model.h"
+#include "tled/run/account.h"
+
+/* What a row says besides what the account knows. */
+typedef struct log_row {
+    int64_t step;     /* of the run, cuts not counted */
+    int64_t taken;    /* and counted */
+    double time, dt;  /* s */
+    double stable;    /* s: at the last check */
+    double damping;   /* 1/s: on the way here */
+    double remaining; /* to rest, as a share, at the last check; not finite where that is not known */
+} log_row;
+
+typedef struct run_log {
+    double every; /* s, the creator's: a row at each multiple of it; 0: a row a check */
+    growing *file;
+    out *rows; /* not yet known to be sound */
+    account *account;
+    const opt_list *keys; /* node.displacement.at.X,Y,Z: three columns each, after the others */
+    int64_t node[64];     /* of each */
+    const tled_problem *p;
+    int64_t steps; /* of the last row, each part of a cut step for itself */
+    double began;  /* when the last row was, by the clock */
+    bool is_pending;
+    log_row last; /* of the last look, whose sums are borrowed from the account; NULL: it has its row */
+    const account_sums *unshown;
+} run_log;
+
+/* Of a run that is to be gone on with: what there was. */
+typedef struct log_point {
+    account_past past;
+    int64_t length; /* bytes of the file; 0: there was none */
+} log_point;
+
+/* Whether it is a key of a log: a usage error, where it is not. */
+int log_check_key(const char *key, err *e);
+
+/* Finds the keys' nodes; and makes the file; from: NULL, or what to go on from: the file's rows up to there stay, which must have the same columns. The keys are
+ * borrowed. -1 with e filled; log_close all the same. */
+int log_open(run_log *l, const char *path, const opt_list *keys, const model *m, const log_point *from, err *e);
+
+/* Writes the heading, but to what is gone on with, for this problem. -1 with e filled, as for all below. */
+int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e);
+
+/* Looks at the state: `shown`, a row is to be made of it. */
+int log_look(run_log *l, const backend *b, void *state, const log_row *row, bool shown, err *e);
+
+/* After log_keep: waits until its rows are stored, as what goes on from there needs them. */
+int log_store(run_log *l, err *e);
+
+/* After log_keep: to go on from there; and goes on, at that state, without a row of it. */
+log_point log_point_of(const run_log *l);
+int log_go_on(run_log *l, const backend *b, void *state, double time, const log_point *from, err *e);
+
+/* All since log_keep is sound: writes the rows, and keeps what is known. Or it is not: forgets them and goes back. */
+int log_keep(run_log *l, err *e);
+int log_back(run_log *l, err *e);
+
+/* The last look gets a row, if it has none. */
+int log_end(run_log *l, err *e);
+
+/* l may be zeroed or half open. */
+int log_close(run_log *l, err *e);
+
+#endif

@@ -1,0 +1,37 @@
+#include "tled/run/relax.h"
+
+#include <math.h>
+
+double relax_guess(const tled_problem *p, double reach)
+{
+    double speed = INFINITY;
+    for (int32_t i = 0; i < p->volumes; i++)
+        if (p->volume[i].elements)
+            speed = fmin(speed, sqrt(p->volume[i].mu / p->volume[i].density));
+    return acos(-1) / 2 * speed / reach;
+}
+
+relax relax_of(double guess, double stable)
+{
+    relax r = {.guess = guess, .frequency = guess, .lowest = guess, .low = .01 * guess, .high = 1 / stable};
+    return r;
+}
+
+void relax_update(relax *r, const watch_sight *s)
+{
+    if (r->looks && s->stiffness > 0 && s->inertia > 0)
+        r->frequency = fmin(fmax(sqrt(s->stiffness / s->inertia), r->low), r->high);
+    /* What was lowest fades: it grows e-fold in 4 of its radians, so that half a period leaves it where it was, to a factor. */
+    if (r->looks)
+        r->lowest = fmin(r->guess, fmin(r->frequency, r->lowest * exp(r->lowest * (s->time - r->time) / 4)));
+    r->time = s->time;
+    r->looks += r->looks < 2;
+}
+
+double relax_remaining(const relax *r, const watch_sight *s)
+{
+    double w = r->lowest;
+    if (s->acceleration == 0 && s->speed == 0)
+        return 0;
+    return r->looks < 2 ? INFINITY : hypot(s->acceleration / (w * w), s->speed / w);
+}

@@ -1,0 +1,33 @@
+/* How a run comes to rest: the frequency of what still moves, guessed from two states by Rayleigh's quotient; from that the
+ * mass damping that is soonest at rest (dynamic relaxation, Underwood 1983), and how far the tissue has still to go. Owns nothing.
+ */
+#ifndef SINEW_RELAX_H
+#define SINEW_RELAX_H
+
+#include "tled/run/watch.h"
+
+typedef struct relax {
+    double guess;     /* rad/s: the lowest frequency, before anything moves */
+    double low, high; /* rad/s: bounds of `frequency` */
+    double frequency; /* rad/s: of the last motion; the guess before there is any */
+    double lowest;    /* rad/s: of the guess and of any motion in about the last period */
+    double time;      /* s: of the state before */
+    int looks;        /* 0, 1, 2 or more states taken */
+} relax;
+
+/* A guess of the lowest frequency: that of a column of the slowest shear waves, w = (pi/2) c / L, c the least of
+ * sqrt(mu/rho), L the model's reach (support.h). Critical damping is 2 w. */
+double relax_guess(const tled_problem *p, double reach);
+
+/* stable: the stable step at rest (s). */
+relax relax_of(double guess, double stable);
+
+/* Takes a state that was looked at: w^2 = du . dK / (du . M du) over what is free, du the displacement since the last
+ * state, which the watch has kept, dK the change of the elements' pulls. */
+void relax_update(relax *r, const watch_sight *s);
+
+/* How far it has still to go (m, root mean square over the mass): |a| / w^2 and |v| / w in one root, as of an oscillator out of
+ * balance by a and moving at v; w the lowest frequency, since at a turning point the slowest does not show. Infinite until two states are known, unless nothing moves. */
+double relax_remaining(const relax *r, const watch_sight *s);
+
+#endif

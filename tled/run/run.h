@@ -1,0 +1,97 @@
+/* The time loop of tled-run, for any back end: steps in batches, between them looks at the state, cuts of the step,
+ * damping, frames, the end. What comes of it goes to the caller through two functions. The caller owns all that it passes.
+ *
+ * Steps are counted, and times are counts over a rate. Where the caller does not fix the step, it may be cut in halves while
+ * the tissue's stable step is small: the steps counted stay the same, each taken as 2, 4, ... That is decided only at
+ * checks, whose places depend on the count alone, from the state there. Where the state at the next check shows that it was too
+ * little, the run goes back to the check before and cuts once more. So what is written out does not change the result, and
+ * a run that goes on from a frame at a check takes the same steps as one that never stopped. Frames between two checks are
+ * taken on the way and written once the second is known to be sound, while the next steps are already under way. (Where they
+ * are too many to be held, those steps are taken again for them.)
+ */
+#ifndef SINEW_RUN_H
+#define SINEW_RUN_H
+
+#include "solve/backend.h"
+#include "tled/run/log.h"
+#include "tled/run/outbox.h"
+#include "tled/run/relax.h"
+
+/* Where a run stands at a check: with the state's displacement and velocity, all that decides how it goes on. */
+typedef struct run_point {
+    double origin;             /* s: tled_plan's */
+    int64_t first, from;       /* steps counted: by now; where the run began */
+    int cuts;                  /* each step is taken in 2^cuts */
+    double damping;            /* 1/s */
+    double remaining, closest; /* shares of the displacement: to rest, and the least so far */
+    int64_t closest_at;
+    double moved_most; /* m: watch_sight's */
+    relax relax;
+    int64_t taken;      /* steps, each part of a cut one for itself */
+    double most_strain; /* J: at a check, so far */
+    log_point log;
+} run_point;
+
+typedef struct run_setup {
+    const tled_problem *p;
+    const backend *device;
+    pool *threads;
+    double rate;            /* steps a second */
+    bool rate_fixed;        /* never cut the step: fail instead */
+    int64_t check;          /* steps between looks */
+    int64_t steps;          /* how many to take; with rest: at most */
+    double end;             /* s: where it lies within the last of them, that step is shorter and ends there */
+    double rest;            /* tolerance: end at rest; < 0: after `steps` */
+    double frequency;       /* rad/s: relax_guess */
+    double damping;         /* 1/s */
+    bool adapt;             /* find the damping on the way, from the end of the script on */
+    bool single;            /* numbers of single precision, which may come no closer to rest: then fail */
+    double every;           /* s: a frame at each multiple; 0: the last state only */
+    bool first;             /* and a frame of the state that the run begins from */
+    run_log *log;           /* opened, or NULL: a row a check, or at each multiple of its interval, and at the end */
+    const run_point *point; /* goes on from there, the state's time p->start; NULL: begins */
+    double save_every;      /* s: save at the first check at or past each multiple; 0: each minute of the clock */
+    void *context;
+    /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run, at a frame soon after. */
+    outbox_frame *frame;
+    /* After every check. remaining: see run_share; cut: parts that each step is taken in from now on. */
+    void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+                    double damping);
+    /* Steps are cut in more parts than they were in this run so far: from the check on that `sight` is of; or those to
+     * there, which it found not sound, were taken again. May be NULL. */
+    void (*cut)(void *context, const watch_sight *sight, int64_t parts);
+    /* Every state before `at` is written; this one (m, m/s), with at, is what a run can go on from. First at the start. -1
+     * with e filled ends the run. NULL: nothing is to be saved. */
+    int (*save)(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
+                err *e);
+} run_setup;
+
+typedef struct run_end {
+    int64_t steps; /* taken, cuts not counted */
+    int64_t taken; /* each part of a cut step for itself, and those taken again */
+    int64_t parts; /* the most that a step was cut in, since the restart if there was one */
+    bool rested;
+    double remaining;  /* with rest: at the last check */
+    watch_sight sight; /* of the last state */
+    /* However it ended: */
+    double most_strain; /* J: at a check */
+    int64_t bytes;      /* of the device's memory, in the end */
+} run_end;
+
+/* The least step count whose time is at or past t, to a millionth of a step, seen from the plan's origin. */
+int64_t run_steps_to(double t, double rate);
+
+/* Whether t lies between two steps, by more than that. */
+bool run_is_between(double t, double rate);
+
+/* Where the run that begins at p->start counts from: an origin of 0 where its start is a whole number of steps,
+ * so that it goes on as if it had never stopped. */
+tled_plan run_plan(double start, double rate);
+
+/* `way` (m) as a share of what the tissue has moved, or of 1/100 of the most that it had, for what is let go. */
+double run_share(const watch_sight *s, double way);
+
+/* Runs. -1 with e filled; status 3 where the simulation diverged: e names step, time, element and volume. */
+int run_go(const run_setup *r, run_end *end, err *e);
+
+#endif

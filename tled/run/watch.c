@@ -1,0 +1,287 @@
+#include "tled/run/watch.h"
+
+#include "tled/problem/collider.h"
+
+#include "base/mem.h"
+#include "mesh/element_place.h"
+#include "tled/problem/conforming_step.h"
+#include "tled/problem/deformed.h"
+#include "tled/problem/step.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK = 256 }; /* elements, or nodes */
+
+struct watch_part { /* of one chunk */
+    tled_sums sum;
+    bool inverted;
+};
+
+/* along: elements x 3, or NULL; share: of the tissue that is the volume's. */
+static element_fibre fibre_of(const watch *w, const float *along, int64_t i, int32_t volume, double share)
+{
+    element_fibre fibre = {0};
+    if (!along || volume < 0)
+        return fibre;
+    fibre.along = (element_vector){along[3 * i], along[3 * i + 1], along[3 * i + 2]};
+    fibre.tension = share * tled_tension(w->p, volume, w->curves);
+    return fibre;
+}
+
+static void take_frequency(struct watch_part *part, int64_t i, double square)
+{
+    part->sum.frequency = square;
+    part->sum.frequency_element = i;
+}
+
+static void look_at_conforming(const watch *w, int64_t i, element_tensor h, struct watch_part *part)
+{
+    const tled_problem *p = w->p;
+    step_matrix a;
+    conforming_matrix(p, i, h, fibre_of(w, p->fibre, i, p->element_volume[i], 1), &a);
+    if (!step_below(&a, conforming_room(p, i, part->sum.frequency)))
+        take_frequency(part, i, w->raise * conforming_square(p, i, step_largest(&a)));
+}
+
+/* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far. Where they are
+ * too wide, or leave open whether any reaches past the one at rest, the matrix tells, and the frequency is raised to 1 % above the
+ * element's: so few need more than one test. */
+static void look_at_step(const watch *w, const tled_law *law, int64_t i, element_tensor h, struct watch_part *part)
+{
+    const tled_problem *p = w->p;
+    const double s = tled_mixture(p, i);
+    const element_fibre own = fibre_of(w, p->fibre, i, p->element_volume[i], 1 - s);
+    const element_fibre other = fibre_of(w, p->mixfibre, i, tled_mix(p, i), s);
+    const stability_range range = step_range_of(p, law, h, own, other);
+    step_matrix a;
+    if (range.high <= part->sum.frequency)
+        return;
+    const bool past_rest = part->sum.frequency_element >= 0 || range.low > part->sum.frequency;
+    if (past_rest && range.high <= w->raise * range.low) {
+        take_frequency(part, i, range.high);
+        return;
+    }
+    step_matrix_of(p, law, h, own, other, &a);
+    if (!step_below(&a, part->sum.frequency))
+        take_frequency(part, i, w->raise * step_largest(&a));
+}
+
+static void look_at_element(const watch *w, int64_t i, element_shape box, struct watch_part *part)
+{
+    const deformed d = deformed_of(w->p, i, box, w->displacement);
+    const double volume = 1 + d.dilation;
+    if (!(volume > 0) || !isfinite(d.energy) || !isfinite(d.hourglass)) {
+        part->inverted = part->sum.broken < 0 ? volume <= 0 : part->inverted;
+        part->sum.broken = part->sum.broken < 0 ? i : part->sum.broken;
+        return;
+    }
+    part->sum.strain += tled_fraction(w->p, i) * (d.energy * d.rest + d.hourglass);
+    if (w->p->conforming)
+        look_at_conforming(w, i, d.h, part);
+    else
+        look_at_step(w, &d.law, i, d.h, part);
+}
+
+static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    watch *w = context;
+    struct watch_part part = {.sum = {.frequency = w->question.rest, .frequency_element = -1, .broken = -1}};
+    element_shape shape = element_box(w->p->side[0], w->p->side[1], w->p->side[2]);
+    for (int64_t i = from; i < to; i++)
+        look_at_element(w, i, shape, &part);
+    w->part[chunk] = part;
+}
+
+static void look_at_node(const watch *w, int64_t n, tled_sums *sum)
+{
+    double outside[3], square = 0, mass = w->p->mass[n];
+    tled_external(w->p, w->curves, n, outside);
+    for (int a = 0; a < 3; a++) {
+        int64_t i = 3 * n + a;
+        double gap = outside[a] - w->internal[i], drive = mass * w->velocity[i] * w->velocity[i];
+        bool is_free = w->p->hold[i] == HOLD_FREE;
+        sum->acceleration += is_free ? gap * gap / mass : 0;
+        sum->speed += is_free ? drive : 0;
+        sum->kinetic += drive / 2;
+        square += w->displacement[i] * w->displacement[i];
+        if (w->kept_internal && is_free) {
+            double du = w->displacement[i] - w->kept_displacement[i];
+            sum->stiffness += du * (w->internal[i] - w->kept_internal[i]);
+            sum->inertia += mass * du * du;
+        }
+    }
+    sum->mass += mass;
+    sum->moved += mass * square;
+    sum->largest = fmax(sum->largest, square);
+}
+
+static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    watch *w = context;
+    struct watch_part part = {0};
+    for (int64_t n = from; n < to; n++)
+        look_at_node(w, n, &part.sum);
+    w->part[chunk] = part;
+}
+
+static void sum_elements(watch *w, tled_sums *sum)
+{
+    int64_t chunks = pool_chunks(w->p->elements, CHUNK);
+    sum->frequency_element = sum->broken = -1;
+    for (int64_t c = 0; c < chunks; c++) {
+        const struct watch_part *part = &w->part[c];
+        sum->strain += part->sum.strain;
+        if (sum->broken < 0) {
+            sum->broken = part->sum.broken;
+            w->sight.inverted = part->inverted;
+        }
+        if (part->sum.frequency_element >= 0 && part->sum.frequency > sum->frequency) {
+            sum->frequency = part->sum.frequency;
+            sum->frequency_element = part->sum.frequency_element;
+        }
+    }
+}
+
+static void sum_nodes(const watch *w, tled_sums *sum)
+{
+    int64_t chunks = pool_chunks(w->p->nodes, CHUNK);
+    for (int64_t c = 0; c < chunks; c++) {
+        const tled_sums *part = &w->part[c].sum;
+        sum->kinetic += part->kinetic;
+        sum->acceleration += part->acceleration;
+        sum->speed += part->speed;
+        sum->moved += part->moved;
+        sum->mass += part->mass;
+        sum->stiffness += part->stiffness;
+        sum->inertia += part->inertia;
+        sum->largest = fmax(sum->largest, part->largest);
+    }
+}
+
+static int need(double **array, int64_t nodes, err *e)
+{
+    if (!*array)
+        *array = mem_array(nodes, 3 * sizeof **array, "the watch", e);
+    return *array ? 0 : -1;
+}
+
+/* On this machine's threads. */
+static int look_here(watch *w, const backend *b, void *state, tled_sums *sum, err *e)
+{
+    const tled_problem *p = w->p;
+    if (need(&w->displacement, p->nodes, e) || need(&w->velocity, p->nodes, e) || need(&w->internal, p->nodes, e) ||
+        b->get(state, TLED_DISPLACEMENT, w->displacement, e) || b->get(state, TLED_VELOCITY, w->velocity, e) ||
+        b->get(state, TLED_INTERNAL, w->internal, e))
+        return -1;
+    *sum = (tled_sums){0};
+    tled_curves(p, w->question.time, w->curves);
+    pool_run(w->threads, p->elements, CHUNK, element_work, w);
+    sum_elements(w, sum);
+    pool_run(w->threads, p->nodes, CHUNK, node_work, w);
+    sum_nodes(w, sum);
+    return 0;
+}
+
+static void take_sums(watch *w, const tled_sums *sum)
+{
+    watch_sight *s = &w->sight;
+    s->time = w->question.time;
+    s->kinetic = sum->kinetic;
+    s->strain = sum->strain;
+    s->acceleration = sqrt(sum->acceleration / sum->mass);
+    s->speed = sqrt(sum->speed / sum->mass);
+    s->moved = sqrt(sum->moved / sum->mass);
+    s->moved_most = fmax(s->moved_most, s->moved);
+    s->stiffness = sum->stiffness;
+    s->inertia = sum->inertia;
+    s->largest = sqrt(sum->largest);
+    s->broken = sum->broken;
+    s->stable_element = sum->frequency_element;
+    s->stable = sum->frequency_element < 0 ? w->rest_step : 2 / sqrt(sum->frequency);
+    s->stable = collider_step(w->p, s->stable);
+}
+
+int watch_look(watch *w, const backend *b, void *state, double time, err *e)
+{
+    tled_sums sum;
+    /* A rounding above the frequency at rest, so that no matrix at rest passes it. (Bounds may, of elements with unlike sides.) */
+    w->question = (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences};
+    if (b->look ? b->look(state, &w->question, &sum, e) : look_here(w, b, state, &sum, e))
+        return -1;
+    take_sums(w, &sum);
+    return 0;
+}
+
+int watch_tell(watch *w, const backend *b, void *state, err *e)
+{
+    tled_sums sum;
+    if (!b->look)
+        return 0;
+    if (look_here(w, b, state, &sum, e))
+        return -1;
+    take_sums(w, &sum);
+    return 0;
+}
+
+int watch_keep(watch *w, const backend *b, void *state, err *e)
+{
+    size_t size = 3 * (size_t)w->p->nodes * sizeof(double);
+    if (w->differences && !b->look) {
+        if (need(&w->kept_displacement, w->p->nodes, e) || need(&w->kept_internal, w->p->nodes, e))
+            return -1;
+        memcpy(w->kept_displacement, w->displacement, size);
+        memcpy(w->kept_internal, w->internal, size);
+    }
+    return b->keep(state, e);
+}
+
+void watch_words(const model *m, const watch_sight *s, char *to, size_t size)
+{
+    const int64_t element = s->broken >= 0 ? s->broken : s->stable_element;
+    char where[ELEMENT_PLACE];
+    if (element < 0) {
+        snprintf(to, size, "the stable step is %.4g ms", 1e3 * s->stable);
+        return;
+    }
+    element_place_text(m, element, where);
+    if (s->broken >= 0)
+        snprintf(to, size, "%s was inverted or not finite after longer steps", where);
+    else
+        snprintf(to, size, "%s has a stable step of %.4g ms", where, 1e3 * s->stable);
+}
+
+watch *watch_create(const tled_problem *p, pool *threads, err *e)
+{
+    int64_t most = p->elements > p->nodes ? p->elements : p->nodes;
+    watch *w = mem_array(1, sizeof *w, "the watch", e);
+    if (!w)
+        return NULL;
+    w->p = p;
+    w->threads = threads;
+    w->rest_step = step_at_rest(p, NULL);
+    w->raise = 1.01;
+    w->curves = mem_array(p->script->curves, 3 * sizeof *w->curves, "the watch", e);
+    w->part = mem_array(pool_chunks(most, CHUNK), sizeof *w->part, "the watch", e);
+    if (!w->curves || !w->part) {
+        watch_destroy(w);
+        return NULL;
+    }
+    return w;
+}
+
+void watch_destroy(watch *w)
+{
+    if (!w)
+        return;
+    free(w->displacement);
+    free(w->velocity);
+    free(w->internal);
+    free(w->kept_displacement);
+    free(w->kept_internal);
+    free(w->curves);
+    free(w->part);
+    free(w);
+}
