@@ -72,13 +72,13 @@ NVCC_FLAGS = -std=c++17 -O3 $(CUDA_LINES) -fmad=$(CUDA_FUSED) $(CUDA_ARCH) -Werr
 	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
 $(BUILD)/tled/cuda/cuda_single.o: NVCC_FLAGS += -ftz=true
-$(BUILD)/msds/cuda_%.o: NVCC_FLAGS += -ftz=true
+$(BUILD)/msds/cuda/cuda_%.o: NVCC_FLAGS += -ftz=true
 # The results of these two files need not have the bytes of the processor, so they may fuse; the march is for cards from sm_90 on.
 $(BUILD)/tled/cuda/cuda_look.o: CUDA_FUSED = true
 $(BUILD)/tled/cuda/cuda_march.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/tled/cuda/cuda_march.o: CUDA_FUSED = true
 $(BUILD)/tled/cuda/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_90,code=compute_90
-CUDA_SRC := $(wildcard common/solve/*.cu tled/cuda/*.cu msds/*.cu)
+CUDA_SRC := $(wildcard common/solve/*.cu tled/cuda/*.cu msds/cuda/*.cu)
 $(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
 LIB_CUDA := $(BUILD)/libsinew-cuda.a
@@ -86,7 +86,7 @@ CUDA_LIBS := -L$(CUDA_HOME)/lib64 -lcudart_static -ldl -lrt -lpthread
 endif
 
 # What only cards use, in C, is in it too.
-CUDA_ONLY := $(wildcard tled/cuda/*.c) msds/levels.c msds/parts.c
+CUDA_ONLY := $(wildcard tled/cuda/*.c msds/cuda/*.c)
 $(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)/%.o)
 	@rm -f $@
 	@ar rcs $@ $^
@@ -98,7 +98,7 @@ $(BUILD)/%.o: %.cu
 	@objcopy -w -N 'tmpxft_*' $@ # the name of a temporary file: the same source is to give the same bytes
 
 # Which of the two is built is known to few files, made again when that changes.
-KNOW_CUDA := $(addprefix $(BUILD)/,tled/run/backends.o tests/unit/test_tled_cuda.o msds/msds_backends.o tests/unit/test_msds_cuda.o)
+KNOW_CUDA := $(addprefix $(BUILD)/,tled/run/backends.o tests/unit/test_tled_cuda.o msds/run/msds_backends.o tests/unit/test_msds_cuda.o)
 $(BUILD)/cuda-$(CUDA):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/cuda-yes $(BUILD)/cuda-no
@@ -110,10 +110,10 @@ $(KNOW_CUDA): CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 # (No psabi: vectors are passed between functions of one file only.)
 $(BUILD)/tled/cpu/cpu_pass_%.o $(BUILD)/slice/slice_lanes_%.o: VECTORS = -Wno-psabi
 ifeq ($(shell uname -m),x86_64)
-$(BUILD)/msds/lanes_avx2.o: VECTORS = -mavx2
+$(BUILD)/msds/cpu/lanes_avx2.o: VECTORS = -mavx2
 $(BUILD)/slice/slice_lanes_avx2.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/slice/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
-$(BUILD)/msds/lanes_avx512.o: VECTORS = -mavx512f -mavx512vl -mavx512dq -mavx512bw
+$(BUILD)/msds/cpu/lanes_avx512.o: VECTORS = -mavx512f -mavx512vl -mavx512dq -mavx512bw
 $(BUILD)/tled/cpu/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/tled/cpu/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 endif
@@ -124,8 +124,8 @@ VOXELISE_SRC := $(wildcard voxelise/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
 TLED_SRC := $(wildcard tled/problem/*.c tled/cpu/*.c tled/run/*.c)
-MESH_MODULES := $(wildcard msds/mesh_*.c)
-RUN_MODULES := $(filter-out $(CUDA_ONLY) msds/msds-mesh.c msds/msds-run.c $(MESH_MODULES),$(wildcard msds/*.c))
+MSDS_MESH_SRC := $(wildcard msds/mesh/*.c)
+MSDS_RUN_SRC := $(wildcard msds/problem/*.c msds/cpu/*.c msds/run/*.c)
 SAMPLES_SRC := slice/samples.c
 IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c $(wildcard slice/dicom*.c) slice/dicom_file.cc
 SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
@@ -146,8 +146,8 @@ $(eval $(call tool,attach,$(ATTACH_SRC)))
 $(eval $(call tool,bind,bind/bind.c $(BIND_MODULES)))
 $(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
 $(eval $(call tool,tled-run,$(TLED_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
-$(eval $(call tool,msds-mesh,msds/msds-mesh.c $(MESH_MODULES)))
-$(eval $(call tool,msds-run,msds/msds-run.c $(RUN_MODULES),,$(LIB_CUDA),$(CUDA_LIBS)))
+$(eval $(call tool,msds-mesh,$(MSDS_MESH_SRC)))
+$(eval $(call tool,msds-run,$(MSDS_RUN_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
 $(eval $(call tool,us-import,slice/us-import.c $(IMPORT_SRC),$$(DICOM)))
 $(eval $(call tool,us-segment,slice/us-segment.c $(SEGMENT_SRC)))
 $(eval $(call tool,us-surface,slice/us-surface.c $(SURFACE_SRC)))

@@ -3,13 +3,13 @@
  * the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts again. At the largest, each
  * shape of probe too; and what one node costs, by closed form and by libccd. `bench_msds [THREADS [ROUNDS]]`.
  */
-// needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c
+// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c
 #include "../unit/msds_block.h"
 
 #include "base/mem.h"
 #include "bench.h"
-#include "msds/largest.h"
-#include "msds/msds_cpu.h"
+#include "msds/cpu/msds_cpu.h"
+#include "msds/problem/largest.h"
 #include "probe/narrow.h"
 
 enum { SIZES = 4, METHODS = 4, FRAMES = 30, ITERATIONS = 20, TOUCHES = 20 };

@@ -4,14 +4,14 @@
  * by springs and by 20 conjugate gradients, then the image), as Table II counts them. `bench_slice [THREADS [ROUNDS [PLOT.dat]]]`: PLOT.dat
  * gets R and ms, for tests/bench/regions.plot.
  */
-// needs: tests/bench/bench.c msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/msds_backends.c msds/largest.c slice/slice_cells.c slice/slice_mesh.c slice/slice_cutter.c slice/slice_paper.c slice/slice_lanes.c slice/slice_lanes_plain.c slice/slice_lanes_avx2.c slice/slice_lanes_avx512.c
+// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c slice/slice_cells.c slice/slice_mesh.c slice/slice_cutter.c slice/slice_paper.c slice/slice_lanes.c slice/slice_lanes_plain.c slice/slice_lanes_avx2.c slice/slice_lanes_avx512.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"
 
 #include "base/mem.h"
-#include "msds/largest.h"
-#include "msds/msds_cpu.h"
+#include "msds/cpu/msds_cpu.h"
+#include "msds/problem/largest.h"
 #include "slice/slice_cutter.h"
 
 enum { SIZES = 4, SIDE = 512, VOXELS = 256, IMAGES = 20, SWEEP = 10, FRAMES = 12, WAYS = 2 };

@@ -1,10 +1,10 @@
 /* Any line as msds-mesh's --names and any bytes after it as the image of --labels (NRRD, without its first line): every element has a
  * volume that there is, whose names differ; or one error with a text.
  */
-// needs: msds/mesh_labels.c msds/mesh_tets.c
+// needs: msds/mesh/mesh_labels.c msds/mesh/mesh_tets.c
 #include "model/materials.h"
-#include "msds/mesh_labels.h"
-#include "msds/mesh_tets.h"
+#include "msds/mesh/mesh_labels.h"
+#include "msds/mesh/mesh_tets.h"
 
 #include <stdlib.h>
 #include <string.h>

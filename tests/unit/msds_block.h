@@ -6,8 +6,8 @@
 
 #include "base/mem.h"
 #include "model/materials.h"
-#include "msds/mesh_tets.h"
-#include "msds/problem.h"
+#include "msds/mesh/mesh_tets.h"
+#include "msds/problem/problem.h"
 
 #include <stdio.h>
 #include <stdlib.h>

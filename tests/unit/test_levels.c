@@ -2,13 +2,13 @@
  * the energy of the one before (Galerkin), that the coarsest is inverted; on a lattice, on one that lies askew, on a mesh without
  * any order, with nodes held fast inside; and the same bytes for any number of threads.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/cg.c msds/levels.c msds/parts.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/cg.c msds/cuda/levels.c msds/cuda/parts.c
 #include "msds_block.h"
 
 #include "base/mem.h"
-#include "msds/cg.h"
-#include "msds/levels.h"
-#include "msds/parts.h"
+#include "msds/cpu/cg.h"
+#include "msds/cuda/levels.h"
+#include "msds/cuda/parts.h"
 
 #include "tap.h"
 

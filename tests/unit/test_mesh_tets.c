@@ -1,8 +1,8 @@
 /* Meshes of five tetrahedra a cell: counts, orientation, volume, and conformity, that every face inside is shared by exactly two
  * tetrahedra and every edge is counted once; over boxes, left-handed ones and voxel models.
  */
-// needs: msds/mesh_tets.c
-#include "msds/mesh_tets.h"
+// needs: msds/mesh/mesh_tets.c
+#include "msds/mesh/mesh_tets.h"
 
 #include "mesh/lattice.h"
 

@@ -1,13 +1,13 @@
 /* What msds-run's solvers stand on: slices of the graph of springs, the loops over them in each instruction set, an element's rotation,
  * and the mixing of solves.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/mixing.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/mixing.c
 #include "msds_block.h"
 
 #include "base/mem.h"
-#include "msds/lanes.h"
-#include "msds/mixing.h"
-#include "msds/slices.h"
+#include "msds/cpu/lanes.h"
+#include "msds/cpu/mixing.h"
+#include "msds/problem/slices.h"
 #include "solve/vectors.h"
 
 #include "tap.h"

@@ -1,13 +1,13 @@
 /* msds-run's solvers: Algorithm 1 on PST's figure 4, springs at rest under gravity and their momentum, the sharp bound of the step, the FEM's
  * patch test, the exact solver's contact, warping, and the same bytes for any number of threads.
  */
-// needs: msds/mesh_tets.c msds/problem.c msds/springs.c msds/slices.c msds/lanes.c msds/lanes_plain.c msds/lanes_avx2.c msds/lanes_avx512.c msds/contacts.c msds/stiffness.c msds/dissect.c msds/factor.c msds/exact.c msds/mixing.c msds/cg.c msds/msds_cpu.c msds/largest.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/problem/largest.c
 #include "msds_block.h"
 
 #include "base/mem.h"
-#include "msds/largest.h"
-#include "msds/msds_cpu.h"
-#include "msds/stiffness.h"
+#include "msds/cpu/msds_cpu.h"
+#include "msds/problem/largest.h"
+#include "msds/problem/stiffness.h"
 
 #include "tap.h"
 

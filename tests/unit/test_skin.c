@@ -1,11 +1,11 @@
 /* The skin: a sheet that a ball dents and that comes back to its place without oscillating; a uniform push against a solution in closed form;
  * normals; the same bytes for any count of threads; what is no skin. */
-// needs: msds/skin.c
+// needs: msds/run/skin.c
 #include "tap.h"
 
 #include "base/mem.h"
 #include "model/model.h"
-#include "msds/skin.h"
+#include "msds/run/skin.h"
 
 #include <stdio.h>
 #include <stdlib.h>

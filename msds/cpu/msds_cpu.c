@@ -1,0 +1,349 @@
+/* The state of a run, and which solver takes a frame: springs (lanes.h), conjugate gradients (cg.h), exactly (exact.h). All share
+ * the displacement, in single precision and the slices' order; exact frames keep their own in double while they follow each other.
+ */
+#include "msds/cpu/msds_cpu.h"
+
+#include "base/mem.h"
+#include "msds/cpu/cg.h"
+#include "msds/cpu/exact.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIELDS = 6, ROUNDS = 4 /* of an exact frame, each with the nodes that the last one pushed into the probe */ };
+
+/* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of its size. */
+static const double exact_tolerance = 1e-6, missed = 1e-6;
+
+typedef struct cpu_state {
+    const msds_problem *p;
+    pool *threads;
+    const lanes *loops;
+    slices order;
+    lanes_springs w;
+    float *stiffness, *damper, *rest; /* slots x LANES: of w */
+    float *inertia;                   /* nodes: 1 / kg, 0 where fixed */
+    float *inverse;                   /* nodes: dt / inertia; of w */
+    float *repulsion;                 /* nodes: of w */
+    contacts contacts;
+    stiffness k;
+    cg *cg; /* made when first wanted, as is exact */
+    exact *exact;
+    double *place; /* the model's nodes x 3, m: where exact frames stand */
+    msds_plan plan;
+    bool precise; /* place is the state; else w.u */
+    bool met;     /* as the sight's */
+    int solves;
+} cpu_state;
+
+static void spread(const cpu_state *s, const double *from, lanes_field *to)
+{
+    for (int64_t n = 0; n < s->p->nodes; n++)
+        for (int a = 0; a < 3; a++)
+            to->x[a][s->order.own_node[n]] = (float)from[3 * n + a];
+}
+
+static void collect(const cpu_state *s, const lanes_field *from, double *to)
+{
+    for (int64_t n = 0; n < s->p->nodes; n++)
+        for (int a = 0; a < 3; a++)
+            to[3 * n + a] = (double)from->x[a][s->order.own_node[n]];
+}
+
+static void fill_nodes(cpu_state *s)
+{
+    const msds_problem *p = s->p;
+    spread(s, p->position, &s->w.place);
+    spread(s, p->displacement, &s->w.u);
+    spread(s, p->velocity, &s->w.v);
+    for (int64_t n = 0; n < p->nodes; n++) {
+        int32_t own = s->order.own_node[n];
+        s->repulsion[own] = (float)p->repulsion[n];
+        s->inertia[own] = p->fixed[n] ? 0 : (float)(1 / (p->weight[n] * p->mass_factor));
+        for (int a = 0; a < 3; a++)
+            s->w.weight.x[a][own] = p->fixed[n] ? 0 : (float)(p->weight[n] * p->options.gravity[a]);
+    }
+}
+
+static int allocate(cpu_state *s, err *e)
+{
+    const slices *o = &s->order;
+    s->stiffness = mem_array(o->slots * LANES, sizeof *s->stiffness, "the solver", e);
+    s->damper = mem_array(o->slots * LANES, sizeof *s->damper, "the solver", e);
+    s->rest = mem_array(o->slots * LANES, sizeof *s->rest, "the solver", e);
+    s->inertia = mem_array(o->nodes, sizeof *s->inertia, "the solver", e);
+    s->inverse = mem_array(o->nodes, sizeof *s->inverse, "the solver", e);
+    s->repulsion = mem_array(o->nodes, sizeof *s->repulsion, "the solver", e);
+    s->place = mem_array(s->p->nodes, 3 * sizeof *s->place, "the solver", e);
+    lanes_field *fields[FIELDS] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
+    for (int i = 0; i < FIELDS; i++)
+        if (lanes_field_make(fields[i], o->nodes, e))
+            return -1;
+    if (contacts_make(&s->contacts, o, s->p->nodes, e))
+        return -1;
+    return s->stiffness && s->damper && s->rest && s->inertia && s->inverse && s->repulsion && s->place ? 0 : -1;
+}
+
+static void cpu_destroy(void *state)
+{
+    cpu_state *s = state;
+    if (!s)
+        return;
+    if (s->cg)
+        cg_free(s->cg);
+    if (s->exact)
+        exact_free(s->exact);
+    free(s->cg);
+    free(s->exact);
+    stiffness_free(&s->k);
+    contacts_free(&s->contacts);
+    lanes_field *fields[FIELDS] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
+    for (int i = 0; i < FIELDS; i++)
+        lanes_field_free(fields[i]);
+    free(s->stiffness);
+    free(s->damper);
+    free(s->rest);
+    free(s->inertia);
+    free(s->inverse);
+    free(s->repulsion);
+    free(s->place);
+    slices_free(&s->order);
+    free(s);
+}
+
+static void *cpu_create(const void *problem, pool *threads, err *e)
+{
+    cpu_state *s = mem_array(1, sizeof *s, "the solver", e);
+    if (!s)
+        return NULL;
+    s->p = problem;
+    s->threads = threads;
+    s->loops = lanes_choose(e);
+    if (!s->loops || slices_make(&s->order, s->p, e) || allocate(s, e)) {
+        cpu_destroy(s);
+        return NULL;
+    }
+    s->w.s = &s->order;
+    s->w.stiffness = s->stiffness;
+    s->w.damper = s->damper;
+    s->w.rest = s->rest;
+    s->w.inverse = s->inverse;
+    s->w.repulsion = s->repulsion;
+    s->w.damping = s->p->options.damping;
+    s->w.met = &s->met;
+    fill_nodes(s);
+    slices_springs(&s->order, s->p, s->stiffness, s->damper, s->rest);
+    memcpy(s->place, s->p->displacement, 3 * (size_t)s->p->nodes * sizeof *s->place);
+    s->precise = true;
+    return s;
+}
+
+static void place_probe(cpu_state *s, const msds_plan *plan)
+{
+    s->plan = *plan;
+    s->w.touched = plan->touched;
+    s->w.probe = &s->plan.probe;
+    s->w.reach = (float)(plan->probe.reach * (1 + 1e-6));
+    for (int a = 0; a < 3; a++)
+        s->w.centre[a] = (float)plan->probe.centre[a];
+}
+
+static void spring_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cpu_state *s = context;
+    (void)chunk;
+    s->loops->step(&s->w, from, to);
+}
+
+static void swap_fields(lanes_field *a, lanes_field *b)
+{
+    lanes_field spare = *a;
+    *a = *b;
+    *b = spare;
+}
+
+static void step_springs(cpu_state *s, int64_t count)
+{
+    s->w.dt = (float)s->plan.dt;
+    for (int64_t i = 0; i < s->order.nodes; i++)
+        s->inverse[i] = s->w.dt * s->inertia[i];
+    for (int64_t i = 0; i < count; i++) {
+        pool_run(s->threads, s->order.count, SLICES_CHUNK, spring_work, s);
+        swap_fields(&s->w.u, &s->w.next_u);
+        swap_fields(&s->w.v, &s->w.next_v);
+    }
+}
+
+/* How fast a contact's node leaves the probe: m/s. */
+static double leaving(const cpu_state *s, const contact *c)
+{
+    const int32_t own = s->order.own_node[c->node];
+    double speed = 0;
+    for (int a = 0; a < 3; a++)
+        speed += c->way[a] * (double)s->w.v.x[a][own];
+    return speed;
+}
+
+/* The contacts where springs stand now, and what the next step would push them with: spring and damper, that do not pull. */
+static void note_repulsion(cpu_state *s)
+{
+    s->contacts.count = 0;
+    if (s->plan.touched)
+        contacts_find(&s->contacts, s->loops, &s->w, s->p, NULL, s->threads, CONTACTS_PRESSED);
+    for (int64_t i = 0; i < s->contacts.count; i++) {
+        contact *c = &s->contacts.list[i];
+        const double pushed = s->p->repulsion[c->node] * (c->depth - s->p->options.damping * leaving(s, c));
+        c->force = c->depth > 0 ? fmax(0, pushed) : 0;
+    }
+}
+
+static int make_stiffness(cpu_state *s, err *e)
+{
+    return s->k.p ? 0 : stiffness_make(&s->k, s->p, s->threads, e);
+}
+
+static void find_contacts(cpu_state *s, const double *u, contacts_rule rule)
+{
+    s->contacts.count = 0;
+    if (s->plan.touched)
+        contacts_find(&s->contacts, s->loops, &s->w, s->p, u, s->threads, rule);
+}
+
+static int step_cg(cpu_state *s, int64_t count, err *e)
+{
+    double force[3];
+    if (!s->cg) {
+        s->cg = mem_array(1, sizeof *s->cg, "the solver", e);
+        if (!s->cg || make_stiffness(s, e) ||
+            cg_make(s->cg, s->p, &s->order, &s->k, &s->contacts, s->loops, s->threads, &s->w.u, &s->w.weight, e))
+            return -1;
+    }
+    int64_t pressed = contacts_held(&s->contacts, s->p);
+    find_contacts(s, NULL, CONTACTS_PRESSED);
+    if (contacts_sum(&s->contacts, force) < pressed && count > 1) { /* let go of: tissue may come after the probe */
+        cg_solve(s->cg, count / 2);
+        contacts_hold(&s->contacts, s->p);
+        find_contacts(s, NULL, CONTACTS_PRESSED);
+        count -= count / 2;
+    }
+    cg_solve(s->cg, count);
+    return 0;
+}
+
+static int step_exact(cpu_state *s, err *e)
+{
+    if (!s->exact) {
+        s->exact = mem_array(1, sizeof *s->exact, "the solver", e);
+        if (s->exact)
+            s->exact->watch = s->plan.watch;
+        if (!s->exact || make_stiffness(s, e) ||
+            exact_make(s->exact, s->p, &s->k, &s->contacts, s->loops, s->threads, e))
+            return -1;
+    }
+    if (!s->precise)
+        collect(s, &s->w.u, s->place);
+    s->solves = 0;
+    find_contacts(s, s->place, CONTACTS_NEAR);
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.shape.size : 1,
+                        e))
+            return -1;
+        s->solves += s->exact->solves;
+        spread(s, s->place, &s->w.u);
+        if (!s->plan.touched || turn == ROUNDS - 1 ||
+            !contacts_missed(&s->contacts, s->loops, &s->w, s->p, s->place, s->threads,
+                             missed * s->plan.probe.shape.size))
+            break;
+        find_contacts(s, s->place, CONTACTS_NEAR);
+    }
+    return 0;
+}
+
+static int cpu_step(void *state, const void *plan, int64_t count, err *e)
+{
+    cpu_state *s = state;
+    int result = 0;
+    place_probe(s, plan);
+    s->solves = 0;
+    if (s->plan.method == MSDS_SPRINGS) {
+        step_springs(s, count);
+        note_repulsion(s);
+    } else {
+        result = s->plan.method == MSDS_FEM ? step_cg(s, count, e) : step_exact(s, e);
+        memset(s->w.v.memory, 0, 3 * (size_t)(s->order.nodes + 2 * LANES) * sizeof *s->w.v.memory);
+    }
+    s->precise = s->plan.method == MSDS_EXACT;
+    contacts_hold(&s->contacts, s->p);
+    s->met = s->met || contacts_held(&s->contacts, s->p) > 0;
+    return result;
+}
+
+static int cpu_get(void *state, int what, double *to, err *e)
+{
+    const cpu_state *s = state;
+    (void)e;
+    if (what == MSDS_DISPLACEMENT && s->precise)
+        memcpy(to, s->place, 3 * (size_t)s->p->nodes * sizeof *to);
+    else
+        collect(s, what == MSDS_DISPLACEMENT ? &s->w.u : &s->w.v, to);
+    return 0;
+}
+
+static int cpu_look(void *state, const void *question, void *answer, err *e)
+{
+    cpu_state *s = state;
+    msds_sight *sight = answer;
+    double square = 0;
+    (void)question;
+    (void)e;
+    *sight = (msds_sight){.residual = NAN, .solves = s->solves, .finite = true, .met = s->met};
+    sight->contacts = contacts_sum(&s->contacts, sight->force);
+    if (s->plan.touched)
+        contacts_twist(&s->contacts, &s->w, s->p, s->precise ? s->place : NULL, sight->torque);
+    if (s->plan.method == MSDS_FEM && s->cg)
+        sight->residual = s->cg->residual;
+    if (s->plan.method == MSDS_EXACT && s->exact)
+        sight->residual = s->exact->residual;
+    for (int64_t own = 0; own < s->order.nodes; own++) {
+        double x = (double)s->w.u.x[0][own], y = (double)s->w.u.x[1][own], z = (double)s->w.u.x[2][own];
+        double here = x * x + y * y + z * z;
+        sight->finite = sight->finite && isfinite(here);
+        square = here > square ? here : square;
+    }
+    sight->largest = sqrt(square);
+    return 0;
+}
+
+static int64_t cpu_bytes(const void *state)
+{
+    const cpu_state *s = state;
+    int64_t bytes = s->order.slots * LANES * 20 + s->order.nodes * 90 + s->p->nodes * 24;
+    if (s->k.p)
+        bytes += s->p->elements * 136 + s->p->springs * 72 + s->p->nodes * 80;
+    if (s->cg)
+        bytes += s->order.slots * LANES * 36;
+    if (s->exact)
+        bytes += s->exact->factor.numbers * 4 + s->exact->room * 4;
+    return bytes;
+}
+
+static const char *cpu_unusable(void)
+{
+    return NULL;
+}
+
+void msds_cpu_touch(void *state, const void *plan)
+{
+    cpu_state *s = state;
+    place_probe(s, plan);
+    find_contacts(s, NULL, s->plan.method == MSDS_EXACT ? CONTACTS_NEAR : CONTACTS_PRESSED);
+}
+
+const backend msds_cpu = {.name = "cpu",
+                          .unusable = cpu_unusable,
+                          .create = cpu_create,
+                          .step = cpu_step,
+                          .get = cpu_get,
+                          .look = cpu_look,
+                          .bytes = cpu_bytes,
+                          .destroy = cpu_destroy};

@@ -1,0 +1,437 @@
+/* The CUDA back end of msds-run: memory, and which kernel takes a frame. All of a frame is one launch.
+ */
+#include "msds/cuda/cuda_exact.cuh"
+#include "msds/cuda/cuda_room.cuh"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern "C" {
+#include "msds/cpu/cg.h"
+#include "msds/cuda/msds_cuda.h"
+#include "msds/cuda/parts.h"
+}
+
+/* A node is looked for in the ball that holds the probe and so much more of its size: contacts.c's. */
+static const double near_by = .1;
+
+typedef struct cuda_state {
+    const msds_problem *p;
+    pool *threads;
+    slices order;
+    tissue t;
+    tissue_exact x;
+    char *memory, *fem, *exact; /* of the card */
+    double *planes;             /* of a convex probe: on the card, as those here */
+    double *planes_here;
+    int32_t planes_count;
+    int64_t bytes, fem_bytes, exact_bytes;
+    void *staging;           /* pinned: nodes x float4, or x 3 doubles */
+    tissue_outcome *outcome; /* pinned */
+    bool precise;            /* t.precise is the state; else t.u */
+    int64_t step;
+    cudaStream_t stream;
+} cuda_state;
+
+/* What went wrong in steps before may come out of any call. */
+#define CUDA_TRY(call) card_check(call, #call, s->step, e)
+
+/* ---- springs, and what every method needs */
+
+typedef struct host_nodes { /* what create fills and sends */
+    float4 *place, *weight, *u, *v, *spring;
+    double *position, *repulsion, *precise;
+    uint8_t *kind;
+    int32_t *start;
+    float *stiffness, *damper, *rest;
+} host_nodes;
+
+static void host_free(host_nodes *h)
+{
+    void *all[] = {h->place,   h->weight, h->u,     h->v,         h->spring, h->position, h->repulsion,
+                   h->precise, h->kind,   h->start, h->stiffness, h->damper, h->rest};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        free(all[i]);
+}
+
+static int host_make(const cuda_state *s, host_nodes *h, err *e)
+{
+    const int64_t nodes = s->order.nodes, slots = s->order.slots * LANES;
+    h->place = (float4 *)mem_array(nodes, sizeof *h->place, "the solver", e);
+    h->weight = (float4 *)mem_array(nodes, sizeof *h->weight, "the solver", e);
+    h->u = (float4 *)mem_array(nodes, sizeof *h->u, "the solver", e);
+    h->v = (float4 *)mem_array(nodes, sizeof *h->v, "the solver", e);
+    h->spring = (float4 *)mem_array(slots, sizeof *h->spring, "the solver", e);
+    h->position = (double *)mem_array(nodes, 3 * sizeof *h->position, "the solver", e);
+    h->repulsion = (double *)mem_array(nodes, sizeof *h->repulsion, "the solver", e);
+    h->precise = (double *)mem_array(nodes, 3 * sizeof *h->precise, "the solver", e);
+    h->kind = (uint8_t *)mem_array(nodes, sizeof *h->kind, "the solver", e);
+    h->start = (int32_t *)mem_array(s->order.count + 1, sizeof *h->start, "the solver", e);
+    h->stiffness = (float *)mem_array(slots, sizeof *h->stiffness, "the solver", e);
+    h->damper = (float *)mem_array(slots, sizeof *h->damper, "the solver", e);
+    h->rest = (float *)mem_array(slots, sizeof *h->rest, "the solver", e);
+    return h->place && h->weight && h->u && h->v && h->spring && h->position && h->repulsion && h->precise && h->kind &&
+                   h->start && h->stiffness && h->damper && h->rest
+               ? 0
+               : -1;
+}
+
+static float4 three(const double *x)
+{
+    return {(float)x[0], (float)x[1], (float)x[2], 0};
+}
+
+static void host_fill(const cuda_state *s, host_nodes *h)
+{
+    const msds_problem *p = s->p;
+    const double *g = p->options.gravity;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        const int32_t own = s->order.own_node[n];
+        const double weight[3] = {p->weight[n] * g[0], p->weight[n] * g[1], p->weight[n] * g[2]};
+        h->kind[own] = p->fixed[n] ? TISSUE_FIXED : TISSUE_FREE;
+        h->place[own] = three(p->position + 3 * n);
+        h->place[own].w = p->fixed[n] ? 0 : (float)(1 / (p->weight[n] * p->mass_factor));
+        if (!p->fixed[n])
+            h->weight[own] = three(weight);
+        h->weight[own].w = (float)p->repulsion[n];
+        h->repulsion[own] = p->repulsion[n];
+        h->u[own] = three(p->displacement + 3 * n);
+        h->v[own] = three(p->velocity + 3 * n);
+        memcpy(h->position + 3 * (int64_t)own, p->position + 3 * n, 3 * sizeof *h->position);
+        memcpy(h->precise + 3 * (int64_t)own, p->displacement + 3 * n, 3 * sizeof *h->precise);
+    }
+    for (int64_t i = 0; i <= s->order.count; i++)
+        h->start[i] = (int32_t)s->order.start[i];
+    slices_springs(&s->order, p, h->stiffness, h->damper, h->rest);
+    for (int64_t i = 0; i < s->order.slots * LANES; i++) {
+        h->spring[i] = {h->rest[i], h->stiffness[i], h->damper[i], 0};
+        memcpy(&h->spring[i].w, &s->order.neighbour[i], sizeof h->spring[i].w);
+    }
+}
+
+/* Lays out what is in s->memory, and fills what there is to fill. Called twice: to count, and to do. */
+static int lay_out(cuda_state *s, const host_nodes *h, err *e)
+{
+    tissue *t = &s->t;
+    const int64_t nodes = s->order.nodes, slots = s->order.slots * LANES;
+    int64_t used = 0;
+    if (put(s->memory, &used, &t->start, h->start, s->order.count + 1, e) ||
+        put(s->memory, &used, &t->neighbour, s->order.neighbour, slots, e) ||
+        put(s->memory, &used, &t->spring, h->spring, slots, e) || put(s->memory, &used, &t->kind, h->kind, nodes, e) ||
+        put(s->memory, &used, &t->place, h->place, nodes, e) ||
+        put(s->memory, &used, &t->weight, h->weight, nodes, e) ||
+        put(s->memory, &used, &t->position, h->position, 3 * nodes, e) ||
+        put(s->memory, &used, &t->repulsion, h->repulsion, nodes, e) || put(s->memory, &used, &t->u, h->u, nodes, e) ||
+        put(s->memory, &used, &t->v, h->v, nodes, e) || put(s->memory, &used, &t->precise, h->precise, 3 * nodes, e))
+        return -1;
+    t->next_u = room<float4>(s->memory, &used, nodes);
+    t->next_v = room<float4>(s->memory, &used, nodes);
+    t->contact = room<tissue_contact>(s->memory, &used, nodes);
+    t->listed = room<uint8_t>(s->memory, &used, nodes);
+    t->held = room<double>(s->memory, &used, nodes);
+    t->part = room<double>(s->memory, &used, (int64_t)PARTS * t->chunks);
+    t->outcome = room<tissue_outcome>(s->memory, &used, 1);
+    t->arrived = room<unsigned long long>(s->memory, &used, TISSUE_KERNELS);
+    s->bytes = used;
+    return 0;
+}
+
+static int put_problem(cuda_state *s, err *e)
+{
+    host_nodes h = {0};
+    char what[80];
+    int result = -1;
+    if (host_make(s, &h, e))
+        goto out;
+    host_fill(s, &h);
+    lay_out(s, &h, e);
+    snprintf(what, sizeof what, "the solver of %lld elements", (long long)s->p->elements);
+    s->memory = (char *)card_take(s->bytes, what, e);
+    if (s->memory && !CUDA_TRY(cudaMemset(s->memory, 0, (size_t)s->bytes)) && !lay_out(s, &h, e))
+        result = 0;
+out:
+    host_free(&h);
+    return result;
+}
+
+static int fill(cuda_state *s, err *e)
+{
+    if (slices_make(&s->order, s->p, e))
+        return -1;
+    s->t.nodes = (int32_t)s->order.nodes;
+    s->t.chunks = (int32_t)pool_chunks(s->order.count, SLICES_CHUNK);
+    s->t.slight = s->p->slight;
+    s->precise = true;
+    return put_problem(s, e) || CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
+                   CUDA_TRY(cudaMallocHost((void **)&s->outcome, sizeof *s->outcome)) ||
+                   CUDA_TRY(cudaMallocHost(&s->staging, (size_t)s->order.nodes * 3 * sizeof(double))) ||
+                   CUDA_TRY(cudaDeviceSynchronize())
+               ? -1
+               : 0;
+}
+
+static void cuda_destroy(void *state)
+{
+    cuda_state *s = (cuda_state *)state;
+    if (!s)
+        return;
+    if (s->stream)
+        cudaStreamSynchronize(s->stream);
+    cudaFreeHost(s->staging);
+    cudaFreeHost(s->outcome);
+    card_give(s->memory);
+    card_give(s->fem);
+    card_give(s->exact);
+    card_give(s->planes);
+    free(s->planes_here);
+    if (s->stream)
+        cudaStreamDestroy(s->stream);
+    slices_free(&s->order);
+    free(s);
+}
+
+static void *cuda_create(const void *problem, pool *threads, err *e)
+{
+    cuda_state *s = (cuda_state *)mem_array(1, sizeof *s, "the solver", e);
+    if (!s)
+        return NULL;
+    s->p = (const msds_problem *)problem;
+    s->threads = threads;
+    if (fill(s, e)) {
+        cuda_destroy(s);
+        return NULL;
+    }
+    return s;
+}
+
+/* ---- the FEM */
+
+static int lay_out_fem(cuda_state *s, const lanes_matrix *m, err *e)
+{
+    tissue *t = &s->t;
+    const int64_t nodes = s->order.nodes;
+    int64_t used = 0;
+    if (put(s->fem, &used, &t->diagonal, m->diagonal, s->order.count * 9 * LANES, e) ||
+        put(s->fem, &used, &t->block, m->block, s->order.slots * 9 * LANES, e))
+        return -1;
+    t->left = room<float4>(s->fem, &used, nodes);
+    t->pulled = room<float4>(s->fem, &used, nodes);
+    t->way[0] = room<float4>(s->fem, &used, nodes);
+    t->way[1] = room<float4>(s->fem, &used, nodes);
+    s->fem_bytes = used;
+    return 0;
+}
+
+/* The stiffness on the host, in the slices' order; diagonal and block are the caller's to free. */
+static int make_matrix(cuda_state *s, lanes_matrix *m, err *e)
+{
+    stiffness k = {0};
+    int result = -1;
+    m->s = &s->order;
+    m->diagonal = (float *)mem_array(s->order.count, 9 * LANES * sizeof(float), "the solver", e);
+    m->block = (float *)mem_array(s->order.slots, 9 * LANES * sizeof(float), "the solver", e);
+    if (m->diagonal && m->block && !stiffness_make(&k, s->p, s->threads, e)) {
+        cg_fill(m, s->p, &k, s->threads);
+        result = 0;
+    }
+    stiffness_free(&k);
+    return result;
+}
+
+static void matrix_free(lanes_matrix *m)
+{
+    free(m->diagonal);
+    free(m->block);
+}
+
+/* The stiffness on the card, and in m (zeroed) on the host, which is the caller's to free in every case. */
+static int put_stiffness(cuda_state *s, lanes_matrix *m, err *e)
+{
+    if (s->p->options.warp)
+        return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
+    if (make_matrix(s, m, e))
+        return -1;
+    if (s->fem)
+        return 0;
+    lay_out_fem(s, m, e);
+    s->fem = (char *)card_take(s->fem_bytes, "the stiffness", e);
+    return !s->fem || CUDA_TRY(cudaMemset(s->fem, 0, (size_t)s->fem_bytes)) || lay_out_fem(s, m, e) ||
+                   CUDA_TRY(cudaDeviceSynchronize())
+               ? -1
+               : 0;
+}
+
+static int make_fem(cuda_state *s, err *e)
+{
+    lanes_matrix m = {};
+    int result = s->fem ? 0 : put_stiffness(s, &m, e);
+    matrix_free(&m);
+    return result;
+}
+
+/* ---- exact frames */
+
+static int make_exact(cuda_state *s, err *e)
+{
+    lanes_matrix m = {};
+    int result = s->exact ? 0 : -1;
+    if (!s->exact && !parts_held(s->p, e) && !put_stiffness(s, &m, e))
+        result = tissue_exact_make(&s->x, &s->t, s->p, &s->order, &m, s->threads, &s->exact, &s->exact_bytes, e);
+    matrix_free(&m);
+    return result;
+}
+
+/* ---- frames */
+
+cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t, int processors), const tissue *t,
+                         const tissue_frame *f, void *more, cudaStream_t stream)
+{
+    int processors = 0, device = 0, fit = 0;
+    tissue view = *t;
+    tissue_frame frame = *f;
+    void *with[] = {&view, &frame, more};
+    view.arrived += which;
+    cudaError_t code = cudaGetDevice(&device);
+    if (code == cudaSuccess)
+        code = cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device);
+    const void *kernel = of(t, processors);
+    if (code == cudaSuccess)
+        code = cudaOccupancyMaxActiveBlocksPerMultiprocessor(&fit, kernel, GRID_THREADS, 0);
+    const int blocks = fit * processors < t->chunks ? fit * processors : t->chunks;
+    return code != cudaSuccess
+               ? code
+               : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0, stream);
+}
+
+/* A convex probe's planes go to the card where they are not those of the frame before: by the stream of the frames, which waits for no
+ * other. */
+static int put_planes(cuda_state *s, const probe *shape, err *e)
+{
+    const size_t bytes = 4 * (size_t)shape->planes * sizeof *s->planes;
+    if (shape->kind != PROBE_CONVEX ||
+        (s->planes_count == shape->planes && !memcmp(s->planes_here, shape->plane, bytes)))
+        return 0;
+    if (s->planes && CUDA_TRY(cudaStreamSynchronize(s->stream)))
+        return -1;
+    card_give(s->planes);
+    free(s->planes_here);
+    s->planes_count = 0;
+    s->planes_here = (double *)mem_array(shape->planes, 4 * sizeof *s->planes_here, "the probe", e);
+    s->planes = s->planes_here ? (double *)card_take((int64_t)bytes, "the probe", e) : NULL;
+    if (!s->planes || CUDA_TRY(cudaMemcpyAsync(s->planes, shape->plane, bytes, cudaMemcpyHostToDevice, s->stream)))
+        return -1;
+    memcpy(s->planes_here, shape->plane, bytes);
+    s->planes_count = shape->planes;
+    return 0;
+}
+
+static tissue_frame frame_of(const cuda_state *s, const msds_plan *plan, int64_t count)
+{
+    tissue_frame f = {};
+    f.probe = plan->probe;
+    f.probe.shape.plane = s->planes;
+    for (int a = 0; a < 3; a++)
+        f.centre[a] = (float)plan->probe.centre[a];
+    f.reach = (float)(plan->probe.reach * (1 + 1e-6));
+    f.wide = (float)(plan->probe.reach + 1.01 * near_by * plan->probe.shape.size);
+    f.dt = (float)plan->dt;
+    f.damping = s->p->options.damping;
+    f.count = (int32_t)count;
+    f.touched = plan->touched;
+    f.penalty = s->p->options.penalty;
+    return f;
+}
+
+static int step_springs(cuda_state *s, const tissue_frame *f, err *e)
+{
+    if (card_check(tissue_springs_start(&s->t, f, s->stream), "the start of a frame", s->step, e))
+        return -1;
+    if (f->count % 2) {
+        float4 *u = s->t.u, *v = s->t.v;
+        s->t.u = s->t.next_u, s->t.v = s->t.next_v;
+        s->t.next_u = u, s->t.next_v = v;
+    }
+    return 0;
+}
+
+static int step_fem(cuda_state *s, const tissue_frame *f, err *e)
+{
+    return make_fem(s, e) || card_check(tissue_fem_start(&s->t, f, s->stream), "the start of a frame", s->step, e) ? -1
+                                                                                                                   : 0;
+}
+
+static int step_exact(cuda_state *s, const tissue_frame *f, err *e)
+{
+    if (make_exact(s, e))
+        return -1;
+    if (!s->precise) /* exact frames go on from what the others left */
+        tissue_widen(&s->t, s->stream);
+    return card_check(tissue_exact_start(&s->t, f, &s->x, s->stream), "the start of a frame", s->step, e);
+}
+
+static int cuda_step(void *state, const void *plan, int64_t count, err *e)
+{
+    cuda_state *s = (cuda_state *)state;
+    const msds_plan *p = (const msds_plan *)plan;
+    if (p->touched && put_planes(s, &p->probe.shape, e))
+        return -1;
+    const tissue_frame f = frame_of(s, p, count);
+    int result = p->method == MSDS_SPRINGS ? step_springs(s, &f, e)
+                 : p->method == MSDS_FEM   ? step_fem(s, &f, e)
+                                           : step_exact(s, &f, e);
+    s->precise = p->method == MSDS_EXACT;
+    s->step++;
+    return result;
+}
+
+static int cuda_look(void *state, const void *question, void *answer, err *e)
+{
+    cuda_state *s = (cuda_state *)state;
+    (void)question;
+    if (CUDA_TRY(cudaMemcpyAsync(s->outcome, s->t.outcome, sizeof *s->outcome, cudaMemcpyDeviceToHost, s->stream)) ||
+        CUDA_TRY(cudaStreamSynchronize(s->stream)))
+        return -1;
+    *(msds_sight *)answer = s->outcome->sight;
+    if (s->outcome->failed)
+        return err_set(e, NULL, 0, "after %d solves the residual is still %.3g, or contact not settled; expected %.3g",
+                       s->outcome->sight.solves, s->outcome->sight.residual, exact_tolerance);
+    return 0;
+}
+
+static int fetch(cuda_state *s, const void *from, size_t bytes, err *e)
+{
+    return CUDA_TRY(cudaMemcpyAsync(s->staging, from, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
+                   CUDA_TRY(cudaStreamSynchronize(s->stream))
+               ? -1
+               : 0;
+}
+
+static int cuda_get(void *state, int what, double *to, err *e)
+{
+    cuda_state *s = (cuda_state *)state;
+    const size_t nodes = (size_t)s->order.nodes;
+    const bool precise = what == MSDS_DISPLACEMENT && s->precise;
+    const float4 *single = what == MSDS_DISPLACEMENT ? s->t.u : s->t.v;
+    if (precise ? fetch(s, s->t.precise, 3 * nodes * sizeof(double), e) : fetch(s, single, nodes * sizeof(float4), e))
+        return -1;
+    for (int64_t n = 0; n < s->p->nodes; n++) {
+        const int32_t own = s->order.own_node[n];
+        const float4 x = precise ? float4{} : ((const float4 *)s->staging)[own];
+        if (precise)
+            memcpy(to + 3 * n, (const double *)s->staging + 3 * (int64_t)own, 3 * sizeof *to);
+        else
+            to[3 * n] = (double)x.x, to[3 * n + 1] = (double)x.y, to[3 * n + 2] = (double)x.z;
+    }
+    return 0;
+}
+
+static int64_t cuda_bytes(const void *state)
+{
+    const cuda_state *s = (const cuda_state *)state;
+    return s->bytes + (s->fem ? s->fem_bytes : 0) + (s->exact ? s->exact_bytes : 0);
+}
+
+const backend msds_cuda = {"cuda", card_unusable, cuda_create, cuda_step, cuda_get,   NULL,
+                           NULL,   NULL,          NULL,        cuda_look, cuda_bytes, cuda_destroy};

@@ -1,0 +1,53 @@
+/* How a probe gets to a pose: what a frame of msds-run solves, move by move. A frame gets as many iterations as the time since the
+ * pose before asks for, --iterations a 60th of a second by default; and with springs, which live in time, the probe goes the way
+ * from one pose to the next in a few moves: so what is shown does not depend on how often poses come. A probe that is in the tissue at
+ * once, at the first pose or after none, is eased in along its own axis, from where it touches nothing: nodes deep inside would not know
+ * which way is out. The creator owns it.
+ */
+#ifndef SINEW_PRESS_H
+#define SINEW_PRESS_H
+
+#include "msds/problem/problem.h"
+
+enum {
+    PRESS_MOVES = 64,
+    PRESS_TOGETHER = 5 /* iterations of springs with the probe in one place, where moves are enough */
+};
+
+typedef struct press {
+    const msds_problem *p;
+    const probe *shape;
+    int64_t iterations;
+    double rate;      /* frames a second that --iterations are meant for; 0: of any frame */
+    double *u;        /* nodes x 3, m; owned: to look where nodes are */
+    bool any;         /* there was a pose */
+    probe_pose last;  /* then */
+    double time;      /* s */
+    int64_t due;      /* iterations since the beginning */
+    double begin;     /* s: of the first pose */
+    int64_t contacts; /* nodes pressed in the last frame; the caller keeps it */
+} press;
+
+typedef struct press_move {
+    probe_pose pose;
+    int64_t iterations;
+} press_move;
+
+typedef struct press_moves {
+    press_move list[PRESS_MOVES];
+    int count;
+    bool inside; /* it would have begun deep in the tissue, and is eased in */
+    double back; /* m: from how far back along its axis */
+} press_moves;
+
+int press_make(press *s, const msds_problem *p, const probe *shape, int64_t iterations, double rate, err *e);
+void press_free(press *s);
+
+/* Goes on from a pose of an earlier run. */
+void press_from(press *s, const probe_pose *pose, double time);
+
+/* The moves to a pose at a time, s; state is asked where the nodes are, if need be. -1 with e filled. */
+int press_to(press *s, const backend *device, void *state, const probe_pose *pose, double time, bool springs,
+             press_moves *moves, err *e);
+
+#endif

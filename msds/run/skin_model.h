@@ -1,0 +1,20 @@
+/* A skin in a model: its surface carried under its file's name, its displacement and normals in frames. Owns nothing but what skin_free
+ * frees.
+ */
+#ifndef SINEW_SKIN_MODEL_H
+#define SINEW_SKIN_MODEL_H
+
+#include "msds/run/skin.h"
+
+/* Carries the OBJ, its coordinates times scale, as the surface of its base name (or of one that says nothing, where
+ * that is to be), unless the model does so already; name gets that. */
+int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1],
+                     notes *warnings, err *e);
+
+/* Starts from a frame, whose displacement of it goes into u; at rest in speed. */
+int skin_model_start(skin *s, const frame *f, err *e);
+
+/* Adds "NAME/vertex.displacement" and "NAME/vertex.normal". */
+int skin_model_put(const skin *s, frame *f, const model *m, err *e);
+
+#endif
