@@ -108,11 +108,11 @@ $(KNOW_CUDA): CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 
 # The CPU solvers' loops, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
 # (No psabi: vectors are passed between functions of one file only.)
-$(BUILD)/tled/cpu/cpu_pass_%.o $(BUILD)/slice/slice_lanes_%.o: VECTORS = -Wno-psabi
+$(BUILD)/tled/cpu/cpu_pass_%.o $(BUILD)/slice/image/slice_lanes_%.o: VECTORS = -Wno-psabi
 ifeq ($(shell uname -m),x86_64)
 $(BUILD)/msds/cpu/lanes_avx2.o: VECTORS = -mavx2
-$(BUILD)/slice/slice_lanes_avx2.o: VECTORS = -Wno-psabi -mavx2
-$(BUILD)/slice/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
+$(BUILD)/slice/image/slice_lanes_avx2.o: VECTORS = -Wno-psabi -mavx2
+$(BUILD)/slice/image/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 $(BUILD)/msds/cpu/lanes_avx512.o: VECTORS = -mavx512f -mavx512vl -mavx512dq -mavx512bw
 $(BUILD)/tled/cpu/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
 $(BUILD)/tled/cpu/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
@@ -126,11 +126,10 @@ BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c
 TLED_SRC := $(wildcard tled/problem/*.c tled/cpu/*.c tled/run/*.c)
 MSDS_MESH_SRC := $(wildcard msds/mesh/*.c)
 MSDS_RUN_SRC := $(wildcard msds/problem/*.c msds/cpu/*.c msds/run/*.c)
-SAMPLES_SRC := slice/samples.c
-IMPORT_SRC := $(SAMPLES_SRC) $(wildcard slice/import_*.c) slice/crop.c slice/series.c slice/sweep.c $(wildcard slice/dicom*.c) slice/dicom_file.cc
-SEGMENT_SRC := $(SAMPLES_SRC) $(wildcard slice/segment_*.c)
-SURFACE_SRC := $(SAMPLES_SRC) $(wildcard slice/contour*.c) slice/cubes.c
-SLICE_SRC := $(SAMPLES_SRC) $(wildcard slice/slice_*.c)
+IMPORT_SRC := $(wildcard slice/import/*.c) slice/import/dicom_file.cc
+SEGMENT_SRC := slice/contour/us-segment.c $(wildcard slice/contour/segment_*.c)
+SURFACE_SRC := slice/contour/us-surface.c $(wildcard slice/contour/contour*.c) slice/contour/cubes.c
+SLICE_SRC := $(wildcard slice/image/*.c)
 INFO_MODULES := $(wildcard common/inspect/info_*.c)
 EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
 IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
@@ -148,10 +147,10 @@ $(eval $(call tool,sinew-deform,bind/sinew-deform.c $(BIND_MODULES)))
 $(eval $(call tool,tled-run,$(TLED_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
 $(eval $(call tool,msds-mesh,$(MSDS_MESH_SRC)))
 $(eval $(call tool,msds-run,$(MSDS_RUN_SRC),,$(LIB_CUDA),$(CUDA_LIBS)))
-$(eval $(call tool,us-import,slice/us-import.c $(IMPORT_SRC),$$(DICOM)))
-$(eval $(call tool,us-segment,slice/us-segment.c $(SEGMENT_SRC)))
-$(eval $(call tool,us-surface,slice/us-surface.c $(SURFACE_SRC)))
-$(eval $(call tool,us-slice,slice/us-slice.c $(SLICE_SRC),$$(PICTURES)))
+$(eval $(call tool,us-import,$(IMPORT_SRC),$$(DICOM)))
+$(eval $(call tool,us-segment,$(SEGMENT_SRC)))
+$(eval $(call tool,us-surface,$(SURFACE_SRC)))
+$(eval $(call tool,us-slice,$(SLICE_SRC),$$(PICTURES)))
 $(eval $(call tool,sinew,common/cli/sinew.c))
 $(eval $(call tool,sinew-info,common/inspect/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/inspect/sinew-diff.c))

@@ -4,7 +4,7 @@
  * by springs and by 20 conjugate gradients, then the image), as Table II counts them. `bench_slice [THREADS [ROUNDS [PLOT.dat]]]`: PLOT.dat
  * gets R and ms, for tests/bench/regions.plot.
  */
-// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c slice/slice_cells.c slice/slice_mesh.c slice/slice_cutter.c slice/slice_paper.c slice/slice_lanes.c slice/slice_lanes_plain.c slice/slice_lanes_avx2.c slice/slice_lanes_avx512.c
+// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c slice/image/slice_cells.c slice/image/slice_mesh.c slice/image/slice_cutter.c slice/image/slice_paper.c slice/image/slice_lanes.c slice/image/slice_lanes_plain.c slice/image/slice_lanes_avx2.c slice/image/slice_lanes_avx512.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"
@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "msds/cpu/msds_cpu.h"
 #include "msds/problem/largest.h"
-#include "slice/slice_cutter.h"
+#include "slice/image/slice_cutter.h"
 
 enum { SIZES = 4, SIDE = 512, VOXELS = 256, IMAGES = 20, SWEEP = 10, FRAMES = 12, WAYS = 2 };
 

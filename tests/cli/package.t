@@ -29,7 +29,7 @@ check "and they are there" test -s "$root$zsh/_tled-run"
 check "the package is what make install installs" grep -q "dh_auto_install -- " debian/rules
 check "under /usr" grep -q "^SETTINGS = .*PREFIX=/usr " debian/rules
 is "$(find debian -name '*.install' -o -name '*.manpages')" "" "no list beside that has to be kept"
-mains=$(grep -l '^int main(' attach/*.c bind/*.c common/*/*.c msds/*/*.c slice/*.c tled/*/*.c voxelise/*.c | sed 's|.*/||; s|\.c$||' | sort)
+mains=$(grep -l '^int main(' attach/*.c bind/*.c common/*/*.c msds/*/*.c slice/*/*.c tled/*/*.c voxelise/*.c | sed 's|.*/||; s|\.c$||' | sort)
 check "there are tools" test "$(echo "$mains" | wc -l)" -ge 17
 for tool in $mains; do
     check "$tool is installed" test -x "$root/usr/bin/$tool"

@@ -1,9 +1,9 @@
-// needs: slice/dicom_image.c slice/dicom_file.cc slice/dicom_pixels.c slice/dicom_colour.c slice/dicom_inflate.c slice/dicom_jpeg2000.c
-// needs: slice/dicom_elements.c slice/dicom_lengths.c slice/dicom_jpeg.c slice/series.c
+// needs: slice/import/dicom_image.c slice/import/dicom_file.cc slice/import/dicom_pixels.c slice/import/dicom_colour.c slice/import/dicom_inflate.c slice/import/dicom_jpeg2000.c
+// needs: slice/import/dicom_elements.c slice/import/dicom_lengths.c slice/import/dicom_jpeg.c slice/import/series.c
 /* A DICOM file of any bytes is read or refused; what was read makes a volume, or not, twice over too. What DCMTK keeps for the whole of
  * a program's life is its own.
  */
-#include "slice/series.h"
+#include "slice/import/series.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
-// needs: slice/slice_view.c
+// needs: slice/image/slice_view.c
 /* Any text as what people write on a command line: numbers, lengths, lists, a pattern of names, an array, a size of images. Each reader takes
  * it, and then it is what it says, or refuses it.
  */
 #include "base/num.h"
 #include "cli/numbered.h"
-#include "slice/slice_view.h"
+#include "slice/image/slice_view.h"
 
 #include <math.h>
 #include <stdlib.h>

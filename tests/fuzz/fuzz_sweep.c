@@ -1,7 +1,7 @@
-// needs: slice/sweep.c
+// needs: slice/import/sweep.c
 /* A sweep of any bytes is read or refused, and put together, or not, with images of a few pixels.
  */
-#include "slice/sweep.h"
+#include "slice/import/sweep.h"
 
 #include <math.h>
 #include <stdlib.h>

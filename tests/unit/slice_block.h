@@ -6,7 +6,7 @@
 
 #include "msds_block.h"
 
-#include "slice/slice_cutter.h"
+#include "slice/image/slice_cutter.h"
 
 #include <string.h>
 

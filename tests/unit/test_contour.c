@@ -1,8 +1,8 @@
-// needs: slice/cubes.c slice/contour.c slice/contour_shape.c
+// needs: slice/contour/cubes.c slice/contour/contour.c slice/contour/contour_shape.c
 /* Marching cubes over random samples and maps of labels: closed, with one ring about each vertex, facing outward, of the right
  * volume.
  */
-#include "slice/contour.h"
+#include "slice/contour/contour.h"
 
 #include "tap.h"
 

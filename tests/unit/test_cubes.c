@@ -1,8 +1,8 @@
-// needs: slice/cubes.c
+// needs: slice/contour/cubes.c
 /* The cases of marching cubes: each face is cut as that face alone says, every line on a face is a side of one triangle, every
  * line within the cube of two, and none of these lies on a face.
  */
-#include "slice/cubes.h"
+#include "slice/contour/cubes.h"
 
 #include "tap.h"
 

@@ -1,7 +1,7 @@
-// needs: slice/dicom_colour.c
+// needs: slice/import/dicom_colour.c
 /* Samples to greys: bits, signs, planes, shared colours, palettes of both widths.
  */
-#include "slice/dicom_colour.h"
+#include "slice/import/dicom_colour.h"
 
 #include "tap.h"
 

@@ -1,6 +1,6 @@
 /* Regions of a mask, also those whose walk has more to hold than it may, against a plain walk. */
-// needs: slice/segment_region.c
-#include "slice/segment_region.h"
+// needs: slice/contour/segment_region.c
+#include "slice/contour/segment_region.h"
 
 #include "tap.h"
 

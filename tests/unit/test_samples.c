@@ -1,8 +1,8 @@
-// needs: slice/samples.c slice/segment_region.c slice/crop.c
+// needs: common/volume/samples.c slice/contour/segment_region.c slice/import/crop.c
 /* Boxes of samples, labels, the Gaussian filter, regions and crops. */
-#include "slice/crop.h"
-#include "slice/samples.h"
-#include "slice/segment_region.h"
+#include "slice/contour/segment_region.h"
+#include "slice/import/crop.h"
+#include "volume/samples.h"
 
 #include "tap.h"
 

@@ -1,8 +1,8 @@
-// needs: slice/series.c slice/dicom_image.c slice/dicom_file.cc slice/dicom_pixels.c slice/dicom_jpeg.c slice/dicom_colour.c slice/dicom_inflate.c
-// needs: slice/dicom_jpeg2000.c slice/dicom_elements.c slice/dicom_lengths.c
+// needs: slice/import/series.c slice/import/dicom_image.c slice/import/dicom_file.cc slice/import/dicom_pixels.c slice/import/dicom_jpeg.c slice/import/dicom_colour.c slice/import/dicom_inflate.c
+// needs: slice/import/dicom_jpeg2000.c slice/import/dicom_elements.c slice/import/dicom_lengths.c
 /* Series put in order: oblique stacks in any order of files, and what is wrong with them; times, kinds of data; scaled samples.
  */
-#include "slice/series.h"
+#include "slice/import/series.h"
 
 #include "tap.h"
 

@@ -1,5 +1,5 @@
 /* us-slice's images against the definition, pixel by pixel; both methods, every instruction set, regions and threads. */
-// needs: msds/mesh/mesh_tets.c slice/slice_cells.c slice/slice_mesh.c slice/slice_cutter.c slice/slice_paper.c slice/slice_lanes.c slice/slice_lanes_plain.c slice/slice_lanes_avx2.c slice/slice_lanes_avx512.c
+// needs: msds/mesh/mesh_tets.c slice/image/slice_cells.c slice/image/slice_mesh.c slice/image/slice_cutter.c slice/image/slice_paper.c slice/image/slice_lanes.c slice/image/slice_lanes_plain.c slice/image/slice_lanes_avx2.c slice/image/slice_lanes_avx512.c
 #include "slice_block.h"
 
 #include "tap.h"

@@ -1,6 +1,6 @@
-// needs: slice/sweep.c
+// needs: slice/import/sweep.c
 /* Sweeps: planes cut from a known function, tilted and uneven, put together again. */
-#include "slice/sweep.h"
+#include "slice/import/sweep.h"
 
 #include "tap.h"
 
