@@ -120,7 +120,7 @@ endif
 
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
 objects = $(patsubst %.cc,$(BUILD)/%.o,$(patsubst %.c,$(BUILD)/%.o,$(1)))
-VOXELISE_SRC := $(wildcard voxelise/*.c)
+VOXELISE_SRC := $(wildcard voxelise/*.c voxelise/surfaces/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))
 TLED_SRC := $(wildcard tled/problem/*.c tled/cpu/*.c tled/run/*.c)

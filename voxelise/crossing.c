@@ -1,6 +1,6 @@
 #include "voxelise/crossing.h"
 
-#include "voxelise/expansion.h"
+#include "voxelise/surfaces/expansion.h"
 
 #include <float.h>
 #include <math.h>

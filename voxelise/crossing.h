@@ -10,7 +10,7 @@
 #ifndef SINEW_CROSSING_H
 #define SINEW_CROSSING_H
 
-#include "voxelise/grid.h"
+#include "voxelise/surfaces/grid.h"
 
 #include <stdbool.h>
 

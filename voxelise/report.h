@@ -8,9 +8,9 @@
 #include "base/out.h"
 #include "cli/listing.h"
 #include "cli/text_table.h"
-#include "voxelise/check_surfaces.h"
 #include "voxelise/gaps.h"
 #include "voxelise/layers.h"
+#include "voxelise/surfaces/check_surfaces.h"
 #include "voxelise/volumes.h"
 
 /* unit: the name of the OBJ's. */

@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "surface/triangulate.h"
-#include "voxelise/closed.h"
-#include "voxelise/weld.h"
+#include "voxelise/surfaces/closed.h"
+#include "voxelise/surfaces/weld.h"
 
 #include <stdio.h>
 #include <stdlib.h>

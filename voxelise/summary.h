@@ -5,8 +5,8 @@
 #define SINEW_SUMMARY_H
 
 #include "cli/text_table.h"
-#include "voxelise/grid.h"
 #include "voxelise/layers.h"
+#include "voxelise/surfaces/grid.h"
 #include "voxelise/volumes.h"
 #include "voxelise/voxels.h"
 

@@ -1,8 +1,8 @@
-// needs: voxelise/expansion.c
+// needs: voxelise/surfaces/expansion.c
 /* Expansions against 128-bit integers: sums, products and signs of numbers that doubles would round. */
 #include "tap.h"
 
-#include "voxelise/expansion.h"
+#include "voxelise/surfaces/expansion.h"
 
 #include <stdint.h>
 

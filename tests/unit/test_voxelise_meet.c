@@ -1,9 +1,9 @@
-// needs: voxelise/meet.c voxelise/expansion.c
+// needs: voxelise/surfaces/meet.c voxelise/surfaces/expansion.c
 /* Where triangles cross, against whole numbers: triangles whose corners are few places of a lattice, so that corners, edges and
  * planes fall together all the time; and boxes in lattices of squares that cross along their edges. */
 #include "tap.h"
 
-#include "voxelise/meet.h"
+#include "voxelise/surfaces/meet.h"
 
 #include <stdint.h>
 #include <string.h>

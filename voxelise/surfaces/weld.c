@@ -1,8 +1,8 @@
-#include "voxelise/weld.h"
+#include "voxelise/surfaces/weld.h"
 
 #include "base/mem.h"
-#include "voxelise/grid.h"
-#include "voxelise/hash.h"
+#include "voxelise/surfaces/grid.h"
+#include "voxelise/surfaces/hash.h"
 
 #include <math.h>
 #include <stdlib.h>

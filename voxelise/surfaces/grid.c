@@ -1,6 +1,6 @@
-#include "voxelise/grid.h"
+#include "voxelise/surfaces/grid.h"
 
-#include "voxelise/expansion.h"
+#include "voxelise/surfaces/expansion.h"
 
 #include <math.h>
 #include <stdbool.h>

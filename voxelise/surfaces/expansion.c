@@ -1,4 +1,4 @@
-#include "voxelise/expansion.h"
+#include "voxelise/surfaces/expansion.h"
 
 #include <float.h>
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "voxelise/thin.h"
+#include "voxelise/surfaces/thin.h"
 
 #include "base/mem.h"
 #include "surface/embree.h"

@@ -1,12 +1,12 @@
-#include "voxelise/check_surfaces.h"
+#include "voxelise/surfaces/check_surfaces.h"
 
 #include "base/mem.h"
 #include "surface/triangulate.h"
-#include "voxelise/closed.h"
-#include "voxelise/expansion.h"
-#include "voxelise/meet.h"
-#include "voxelise/thin.h"
-#include "voxelise/weld.h"
+#include "voxelise/surfaces/closed.h"
+#include "voxelise/surfaces/expansion.h"
+#include "voxelise/surfaces/meet.h"
+#include "voxelise/surfaces/thin.h"
+#include "voxelise/surfaces/weld.h"
 
 #include <float.h>
 #include <math.h>

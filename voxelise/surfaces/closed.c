@@ -1,7 +1,7 @@
-#include "voxelise/closed.h"
+#include "voxelise/surfaces/closed.h"
 
 #include "base/mem.h"
-#include "voxelise/hash.h"
+#include "voxelise/surfaces/hash.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
-#include "voxelise/meet.h"
+#include "voxelise/surfaces/meet.h"
 
 #include "base/mem.h"
 #include "surface/candidates.h"
-#include "voxelise/expansion.h"
+#include "voxelise/surfaces/expansion.h"
 
 #include <float.h>
 #include <math.h>
