@@ -14,6 +14,7 @@ cd "$T/tree" || exit 1
 touch README.md Makefile
 # table ROW...: the folders, as CONTRIBUTING.md has them.
 table() {
+    # shellcheck disable=SC2016 # Markdown
     printf '| `%s` | lives | not | %s |\n' "$@" >CONTRIBUTING.md
 }
 table common/base '' common/model base voxelise common attach common
@@ -34,6 +35,10 @@ awk 'BEGIN { print "int f(void)\n{"; for (i = 0; i < 51; i++) print "    ;"; pri
 found "a long function" sizes 'attach/long.c:2: a function of 51 lines'
 awk 'BEGIN { for (i = 0; i < 601; i++) print "" }' >attach/long.c
 found "a long file" sizes 'attach/long.c: 601 lines'
+rm attach/long.c
+for i in $(seq 41); do echo >"attach/many$i.c"; done
+found "a folder of many files" sizes 'attach: 41 files; expected at most 40'
+rm attach/many*.c
 echo '#include "attach/body.h"' >voxelise/across.c
 found "a tool that includes another" includes 'voxelise/across.c includes attach/body.h'
 rm voxelise/across.c
