@@ -139,6 +139,12 @@ check-soak: all unit
 check-run1e6: all
 	SINEW_BIN=$(BIN) tests/long/run1e6 5
 
+# Every output of this build's tools beside those of another build, for changes that change no results.
+.PHONY: same
+same: all
+	$(if $(WITH),,$(error expected WITH=FOLDER, a folder with the tools of another build))
+	tests/same $(BIN) $(WITH)
+
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
 .PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction compare-msds
 BENCHES = voxelise geometry tled msds msds_card images slice
@@ -333,6 +339,7 @@ help:
 	'make setup        installs by apt what make check needs (through sudo if not root), and names it' \
 	'make check-unit   the unit tests            make check-cli   the tests of the commands' \
 	'make check-tests  both, with the counts     make check-slow  slow tests, at their full length' \
+	'make same WITH=FOLDER   what the outputs of this build differ in from those of the tools in FOLDER' \
 	'make lint         clang-format, shellcheck, manual pages, shape; and cppcheck and clang-tidy, which take minutes' \
 	'make lint-NAME    one of them: cppcheck, tidy, format, shell, man, shape' \
 	'make clang        the tools and unit tests, built by clang' \
