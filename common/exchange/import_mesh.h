@@ -5,6 +5,7 @@
 #ifndef SINEW_IMPORT_MESH_H
 #define SINEW_IMPORT_MESH_H
 
+#include "base/in.h"
 #include "exchange/import_ids.h"
 #include "model/materials.h"
 #include "model/model.h"
@@ -57,6 +58,9 @@ typedef struct import_wishes {
     int rigids;
     bool own_materials; /* the model has its table of materials already: those of the file do not matter */
 } import_wishes;
+
+/* Reads a format: fills the mesh. -1 with e filled, at file:line where the format has lines. */
+typedef int import_reader(import_mesh *m, in *s, const import_wishes *wishes, notes *warnings, err *e);
 
 /* The kinds of cells that a file may have, whatever numbers it gives them. */
 typedef enum import_kind { IMPORT_HEX, IMPORT_TET, IMPORT_LOWER, IMPORT_REFUSED } import_kind;

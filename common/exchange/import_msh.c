@@ -513,11 +513,12 @@ static int finish(reader *r)
     return 0;
 }
 
-int import_msh(import_mesh *m, in *s, const import_wishes *wishes, err *e)
+int import_msh(import_mesh *m, in *s, const import_wishes *wishes, notes *warnings, err *e)
 {
     reader r = {.m = m, .w = wishes, .e = e, .t = {.s = s, .name = m->name}};
     char *line;
     int got = 0, bad = 0;
+    (void)warnings;
     while (!bad && !(got = tokens_line(&r.t, &line, e)))
         bad = read_section(&r, line);
     bad = bad < 0 || (!bad && got < -1) || finish(&r) ? -1 : 0;

@@ -10,6 +10,6 @@
 
 /* Rigid nodes are those of groups that the wishes name and of a group named `rigid` (as sinew export writes it). -1 with e at file:line, or in binary
  * at the section. */
-int import_msh(import_mesh *m, in *s, const import_wishes *wishes, err *e);
+int import_msh(import_mesh *m, in *s, const import_wishes *wishes, notes *warnings, err *e);
 
 #endif

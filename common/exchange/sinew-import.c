@@ -11,7 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { AUTO, INP, MSH, VTU };
+typedef struct format {
+    const char *begins; /* first bytes by which files of it are told apart */
+    import_reader *read;
+} format;
+
+/* In the order of the words of -f; AUTO: by the first byte of the file. */
+enum { AUTO, INP, MSH, VTU, FORMATS };
+static const format formats[FORMATS] = {
+    [INP] = {"*\n\r ", import_inp}, [MSH] = {"$", import_msh}, [VTU] = {"<", import_vtu}};
 
 struct options {
     opt_common common;
@@ -98,36 +106,30 @@ static int make_wishes(const struct options *o, const rigid_names *n, import_wis
 }
 
 /* By the first byte; what it is not, its reader says. */
-static int sniff(in *s, const char *name, err *e)
+static int recognise(in *s, const char *name, err *e)
 {
-    int first = in_peek(s, e);
+    const int first = in_peek(s, e);
+    const char *what = "a file that begins like none that is read";
     if (first == -2)
         return -1;
-    if (first == '<')
-        return VTU;
-    if (first == '$')
-        return MSH;
-    if (first == '*' || first == '\n' || first == '\r' || first == ' ')
-        return INP;
-    return err_set(e, name, 1, "%s; expected Abaqus input, Gmsh's MSH or VTK's VTU, or -f to say which",
-                   first < 0      ? "an empty file"
-                   : first == '#' ? "VTK's legacy format, or a comment"
-                                  : "a file that begins like none that is read");
+    for (int i = AUTO + 1; i < FORMATS; i++)
+        if (first > 0 && strchr(formats[i].begins, first))
+            return i;
+    if (first < 0)
+        what = "an empty file";
+    if (first == '#')
+        what = "VTK's legacy format, or a comment";
+    return err_set(e, name, 1, "%s; expected Abaqus input, Gmsh's MSH or VTK's VTU, or -f to say which", what);
 }
 
 static int read_mesh(import_mesh *mesh, const char *path, const struct options *o, const import_wishes *w,
                      notes *warnings, err *e)
 {
     in *s = in_open(path, e);
-    int format = s ? o->format : -1, result = -1;
-    if (format == AUTO)
-        format = sniff(s, mesh->name, e);
-    if (format == INP)
-        result = import_inp(mesh, s, w, warnings, e);
-    else if (format == MSH)
-        result = import_msh(mesh, s, w, e);
-    else if (format == VTU)
-        result = import_vtu(mesh, s, w, warnings, e);
+    int which = s ? o->format : -1;
+    if (which == AUTO)
+        which = recognise(s, mesh->name, e);
+    const int result = which < 0 ? -1 : formats[which].read(mesh, s, w, warnings, e);
     in_close(s);
     return result;
 }
