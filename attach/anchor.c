@@ -72,9 +72,10 @@ static void try_point(search *s, int32_t element, const double *centre, const do
         for (int a = 0; a < 3; a++)
             line[a] = s->shape.normal[a] / s->grid.spacing[a];
     take_along(s, element, line);
-    /* The other end: of the normal, since which way round the polygon was written says nothing; and where the primitive cuts
-     * a voxel that is less than half tissue, since then its centre lies in the bone: nothing of it should hang loose there. But
-     * what comes from a file of its own may lie within tissue: then it is another surface that cuts the voxel. */
+    /* The other end: of the normal, since which way round the polygon was written says nothing; and where
+     * the primitive cuts a voxel that is less than half tissue, since then its centre lies in the bone:
+     * nothing of it should hang loose there. But what comes from a file of its own may lie within tissue:
+     * then it is another surface that cuts the voxel. */
     bool in_bone = s->fraction && s->fraction[element] < 0.5F && !s->apart && most <= 0.5 + tolerance;
     if (most <= tolerance || in_bone) {
         for (int a = 0; a < 3; a++)
@@ -89,9 +90,9 @@ static void centre_of(const search *s, const int64_t *cell, double *centre)
         centre[a] = s->grid.origin[a] + s->grid.spacing[a] * ((double)cell[a] + 0.5);
 }
 
-/* Whether p, a part's point at distance d, is closest in its own right. In one convex piece the points at most a tie's width
- * t farther than the closest one's d are within sqrt(2 d t + t t) of that: of those so near to each other the closest
- * counts, or else a cut through a polygon would shift its closest point. */
+/* Whether p, a part's point at distance d, is closest in its own right. In one convex piece the points at most a tie's
+ * width t farther than the closest one's d are within sqrt(2 d t + t t) of that: of those so near to each other the
+ * closest counts, or else a cut through a polygon would shift its closest point. */
 static bool is_closest(const search *s, int64_t part, const double *centre, const double *p, double d)
 {
     double width2 = s->tie * (2 * d + s->tie) * (1 + 1e-6), q[3];
@@ -138,7 +139,8 @@ static void walk(search *s, const box *b)
                 try_voxel(s, (int64_t[3]){i, j, k});
 }
 
-/* Whether the primitive may be within reach of a cell centre in b: at most the half diagonal farther from b's middle. */
+/* Whether the primitive may be within reach of a cell centre in b: at most the half
+ * diagonal farther from b's middle. */
 static bool comes_near(const search *s, const box *b)
 {
     double middle[3], low[3], half = 0;

@@ -1,5 +1,5 @@
-/* Which nodes are rigid: W&M Algorithm 2. For each voxel near a rigid point, line or polygon, the line from the voxel's centre
- * through the primitive's closest point meets the voxel's boundary near some of its nodes; those become rigid.
+/* Which nodes are rigid: W&M Algorithm 2. For each voxel near a rigid point, line or polygon, the line from the voxel's
+ * centre through the primitive's closest point meets the voxel's boundary near some of its nodes; those become rigid.
  */
 #ifndef SINEW_ANCHOR_H
 #define SINEW_ANCHOR_H
@@ -16,9 +16,9 @@
  * polygon is written; a point, a line or a polygon without area there takes all 8 nodes. Where a concave polygon has
  * several closest points, each counts.
  *
- * With element.fraction, voxels may be elements whose centres lie in the bone. Where the closest point is in a voxel of which
- * less than half is enclosed, both ends of the line count: the nodes on the tissue's side, which are the surface to the
- * nearest layer of nodes, and those behind, which nothing else would hold. */
+ * With element.fraction, voxels may be elements whose centres lie in the bone. Where the closest point is in a voxel of
+ * which less than half is enclosed, both ends of the line count: the nodes on the tissue's side, which are the surface
+ * to the nearest layer of nodes, and those behind, which nothing else would hold. */
 int anchor_nodes(model *m, rigid *r, double strictness, notes *warnings, err *e);
 
 #endif

@@ -55,8 +55,8 @@ static int read_rigid_file(const char *path, bool nameless, const model *m, mode
     const char *unit_name = model_meta_of(m, "source.unit");
     num_unit unit = unit_name ? num_unit_of(unit_name) : 0, metre = num_unit_of("m");
     if (!unit)
-        return err_set(e, NULL, 0, "--rigid-file: the model's source.unit is %s%s; expected " NUM_UNITS,
-                       unit_name ? "" : "not given", unit_name ? unit_name : "");
+        return err_set(e, NULL, 0, "--rigid-file: the model's source.unit is %s; expected " NUM_UNITS,
+                       unit_name ? unit_name : "not given");
     obj o = {0};
     char name[MODEL_NAME];
     surface_name(nameless ? "surface_1" : path, name, sizeof name);

@@ -214,8 +214,8 @@ static void find_furthest(muscle_field *m)
     }
 }
 
-/* Attachments are numbered from the largest; where there is none, what is about the furthest node. Returns whether every
- * piece has one. */
+/* Attachments are numbered from the largest; where there is none, what is about the furthest
+ * node. Returns whether every piece has one. */
 static bool find_first(muscle_field *m)
 {
     bool all = true;
@@ -281,7 +281,8 @@ static int slice_at(const muscle_field *m, int64_t n)
     return at < 3 ? (int)at : -1;
 }
 
-/* The way on from the slices' middles, at the end of a parabola through them; where one is empty, from what there is. */
+/* The way on from the slices' middles, at the end of a parabola through them; where
+ * one is empty, from what there is. */
 static void find_out(piece *p)
 {
     double s[3], slope[3];
@@ -297,8 +298,8 @@ static void find_out(piece *p)
     make_unit(p->out, 0);
 }
 
-/* The far end of a piece: what lies furthest out, along the way that its last slices show. The potential alone would give a
- * side of it, since what flows round a bend is further from the outside. */
+/* The far end of a piece: what lies furthest out, along the way that its last slices show. The potential alone would
+ * give a side of it, since what flows round a bend is further from the outside. */
 static void find_far(muscle_field *m)
 {
     for (int64_t n = 0; n < m->nodes; n++)
@@ -391,8 +392,8 @@ static bool has_direction(const muscle_field *m, int64_t i)
     return d[0] != 0 || d[1] != 0 || d[2] != 0;
 }
 
-/* Means at nodes, then of those in each element, or (lacking) only in those that have none. Returns how many changed from
- * none to some. */
+/* Means at nodes, then of those in each element, or (lacking) only in those that have none.
+ * Returns how many changed from none to some. */
 static int64_t spread(muscle_field *m, bool lacking)
 {
     int64_t gained = 0;

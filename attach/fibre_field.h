@@ -1,6 +1,6 @@
 /* Fibres that follow a muscle wherever it bends: the gradient of a potential that is 0 at one of its ends and 1 at the
- * other, with no flow through its sides (as Rule & al. lay fibres in hearts). The creator owns it; what it is made of is
- * borrowed.
+ * other, with no flow through its sides (as Rule & al. lay fibres in hearts). The creator
+ * owns it; what it is made of is borrowed.
  */
 #ifndef SINEW_FIBRE_FIELD_H
 #define SINEW_FIBRE_FIELD_H
@@ -14,19 +14,19 @@ typedef struct field field;
 field *field_create(const body *b, pool *threads, const double *spacing, err *e);
 void field_free(field *f);
 
-/* Fills the fibres of a volume at its elements, toward its first end; 0 0 0 where there is no direction. Each connected piece
- * of the volume has ends of its own. of, count: the attachments that b->part numbers.
+/* Fills the fibres of a volume at its elements, toward its first end; 0 0 0 where there is no direction. Each connected
+ * piece of the volume has ends of its own. of, count: the attachments that b->part numbers.
  * - The first end: the piece's largest attachment; where it has none, see below.
- * - How far along the piece a place is: with a uniform source and the first end held at 0, the potential is that of a rod,
- *   u = source (L s - s^2 / 2): s / L = 1 - sqrt(1 - u / max u), L = sqrt(2 max u / source).
- * - The second end: the largest other attachment that is half way or further along and has a tenth of the first's nodes or
- *   more. Else the free end: of the last slices, each a twentieth of the way, or the piece's radius where that is more, the
- *   middles show the way out at the end of a parabola; what lies furthest out is the end, as deep as a voxel and a half or
- *   0.4 of the radius. (The highest potential alone would be a place on the outer side of a bend.)
+ * - How far along the piece a place is: with a uniform source and the first end held at 0, the potential is that of a
+ *   rod, u = source (L s - s^2 / 2): s / L = 1 - sqrt(1 - u / max u), L = sqrt(2 max u / source).
+ * - The second end: the largest other attachment that is half way or further along and has a tenth of the first's nodes
+ *   or more. Else the free end: of the last slices, each a twentieth of the way, or the piece's radius where that is
+ *   more, the middles show the way out at the end of a parabola; what lies furthest out is the end, as deep as a voxel
+ *   and a half or 0.4 of the radius. (The highest potential alone would be a place on the outer side of a bend.)
  * - A piece without an attachment: the free end found from the node furthest from the middle becomes the first, and the
  *   second is found from that.
- * Directions are means over the elements that meet at each node, then over each element's nodes: the sides of voxels are
- * steps. Where all of an element is held, its neighbours' direction is its own. */
+ * Directions are means over the elements that meet at each node, then over each element's nodes: the sides of voxels
+ * are steps. Where all of an element is held, its neighbours' direction is its own. */
 int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, err *e);
 
 #endif

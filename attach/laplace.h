@@ -1,6 +1,6 @@
-/* A potential in voxels: what flows from nodes that are held at one value to nodes held at another, or out of a uniform source,
- * through trilinear elements and through no other side of them. Conjugate gradients without a matrix; sums are taken in
- * chunks of a fixed size, so that any number of threads gives the same bytes. The creator owns it.
+/* A potential in voxels: what flows from nodes that are held at one value to nodes held at another, or out of a uniform
+ * source, through trilinear elements and through no other side of them. Conjugate gradients without a matrix; sums are
+ * taken in chunks of a fixed size, so that any number of threads gives the same bytes. The creator owns it.
  */
 #ifndef SINEW_LAPLACE_H
 #define SINEW_LAPLACE_H
@@ -9,14 +9,14 @@
 
 typedef struct laplace laplace;
 
-/* node: elements x 8, VTK order, of 0 to nodes - 1, each of an element; it must outlive what is made. spacing: the voxel's
- * sides, m. share: of each element, how well it conducts (NULL: 1). threads: borrowed. NULL with e filled. */
+/* node: elements x 8, VTK order, of 0 to nodes - 1, each of an element; it must outlive what is made. spacing: the
+ * voxel's sides, m. share: of each element, how well it conducts (NULL: 1). threads: borrowed. NULL with e filled. */
 laplace *laplace_create(pool *threads, const double *spacing, const int32_t *node, int64_t elements, int64_t nodes,
                         const float *share, err *e);
 void laplace_free(laplace *l);
 
-/* Solves -div grad u = source (1/m2) with u as it is at held nodes. Each connected part needs one of them. Begins from the u
- * that is there. -1 with e filled where it does not converge. */
+/* Solves -div grad u = source (1/m2) with u as it is at held nodes. Each connected part needs one of them. Begins from
+ * the u that is there. -1 with e filled where it does not converge. */
 int laplace_solve(laplace *l, const bool *held, double source, double *u, err *e);
 
 /* grad u in the middle of an element, 1/m. */

@@ -1,5 +1,5 @@
-/* What makes muscles contract: for each, its contraction centre, the mean place of its rigid nodes (W&M section 3), and in
- * each of its elements the direction of its fibres.
+/* What makes muscles contract: for each, its contraction centre, the mean place of its rigid nodes (W&M section 3), and
+ * in each of its elements the direction of its fibres.
  */
 #ifndef SINEW_MUSCLE_H
 #define SINEW_MUSCLE_H
@@ -35,10 +35,10 @@ typedef struct muscles {
 } muscles;
 
 /* Makes the axis muscle with muscle.volume and muscle.centre, the axis attachment with attachment.muscle and its other
- * arrays, and element.fibre (and element.mixfibre where there is element.mix), in place of those that are there, from node.rigid (and
- * node.anchor, element.fraction and element.mix, where there are any) and the volumes that are muscles. An element that lies at the contraction centre gets the axis.
- * Notes the muscles that can have no centre or no fibres. Spreads are weighted by its shares. threads: for
- * MUSCLE_FIELD. The caller frees the list, on failure too. */
+ * arrays, and element.fibre (and element.mixfibre where there is element.mix), in place of those that are there, from
+ * node.rigid (and node.anchor, element.fraction and element.mix, where there are any) and the volumes that are muscles.
+ * An element that lies at the contraction centre gets the axis. Notes the muscles that can have no centre or no fibres.
+ * Spreads are weighted by its shares. threads: for MUSCLE_FIELD. The caller frees the list, on failure too. */
 int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, notes *warnings, err *e);
 
 /* Whether it has an element that has a fibre, and one that has a free node. */

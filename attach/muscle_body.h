@@ -1,5 +1,5 @@
-/* What muscles are made from and into: a model's arrays, its elements sorted by volume, and marks on nodes. An element mixed of
- * two volumes is one of both. Borrows the arrays; muscle_make owns the rest.
+/* What muscles are made from and into: a model's arrays, its elements sorted by volume, and marks on nodes. An element
+ * mixed of two volumes is one of both. Borrows the arrays; muscle_make owns the rest.
  */
 #ifndef SINEW_MUSCLE_BODY_H
 #define SINEW_MUSCLE_BODY_H
@@ -75,7 +75,10 @@ static inline void body_join(int32_t *root, int32_t m, int32_t n)
 {
     m = body_root(root, m);
     n = body_root(root, n);
-    root[m > n ? m : n] = m > n ? n : m;
+    if (m > n)
+        root[m] = n;
+    else
+        root[n] = m;
 }
 
 #endif

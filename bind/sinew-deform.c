@@ -89,7 +89,8 @@ typedef struct mover {
 /* What the options ask for, checked before anything is read. */
 static int plan_of(plan *p, const struct options *o, const char *path, err *e)
 {
-    const char *which = o->frame ? o->frame : o->format == FORMAT_PC2 ? "all" : "last", *output = o->common.output;
+    const char *usual = o->format == FORMAT_PC2 ? "all" : "last", *output = o->common.output;
+    const char *which = o->frame ? o->frame : usual;
     p->asked = which;
     if (frames_asked(which, &p->frames, &p->index, e))
         return -1;

@@ -25,8 +25,8 @@ typedef struct work {
     atomic_bool failed;
 } work;
 
-/* One layer of corners: which of them elements have, and for each word of a row the nodes before it in the layer. So the
- * nodes of a run, whose corners follow one another, are known from its first. */
+/* One layer of corners: which of them elements have, and for each word of a row the nodes before it in the layer. So
+ * the nodes of a run, whose corners follow one another, are known from its first. */
 typedef struct corners {
     uint64_t *bits;
     int32_t *before;

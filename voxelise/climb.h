@@ -1,6 +1,6 @@
-/* W&M Algorithm 1 on one row of cells along x: a voxel climbs to a level only if it was taken at the one below; within a
- * level the first volume keeps it. 64 cells at a time. The caller owns a climb and a list of runs, one of each a
- * thread.
+/* W&M Algorithm 1 on one row of cells along x: a voxel climbs to a level only if it was taken at the
+ * one below; within a level the first volume keeps it. 64 cells at a time. The caller owns a climb
+ * and a list of runs, one of each a thread.
  */
 #ifndef SINEW_CLIMB_H
 #define SINEW_CLIMB_H

@@ -78,8 +78,9 @@ static int cross(const double *p, int np, const double *q, int nq, const double 
 }
 
 /* With w the differences from a to b and from a to the centre, along rows and columns: the bound. The fraction of the
- * edge at which it crosses is off by at most 3 error_row / (w_row - 2 error_row), the column then by that times w_column,
- * by 3 error_column, and by a few roundings, each less than half of an error: less than half of this in all. */
+ * edge at which it crosses is off by at most 3 error_row / (w_row - 2 error_row), the column then
+ * by that times w_column, by 3 error_column, and by a few roundings, each less than half of an
+ * error: less than half of this in all. */
 crossing_line crossing_line_of(const crossing_mesh *m, int32_t a, int32_t b)
 {
     const double *from = &m->cell[3 * (int64_t)a], *to = &m->cell[3 * (int64_t)b];
@@ -102,9 +103,9 @@ typedef struct line_row {
     int32_t row;
 } line_row;
 
-/* w_row c_column - w_column c_row, with w from a to b and c from a to the centre: its sign. Where that is 0 the centre has
- * moved by e^(1 + axis number) along each axis, so the derivative along the axis of the lower number decides,
- * then along the other; w_row is above 0. */
+/* w_row c_column - w_column c_row, with w from a to b and c from a to the centre: its sign. Where that is 0 the centre
+ * has moved by e^(1 + axis number) along each axis, so the derivative along the axis of the lower number decides, then
+ * along the other; w_row is above 0. */
 static bool past_line(const void *context, int32_t column)
 {
     const line_row *c = context;
@@ -128,9 +129,10 @@ int32_t crossing_line_exact(const crossing_line *l, int32_t row)
 
 /* ---- a plane */
 
-/* With n the normal and s the triangle's size, each component of n is off by at most d: with edges e and f from the first
- * corner, each off by 2.5 errors, their products by less than 5.5 (s error + error s). The crossing is n.w / n_ray from the
- * corner, w the way to the column, no longer than s: what that may be off by is less than half of this. */
+/* With n the normal and s the triangle's size, each component of n is off by at most d: with edges e
+ * and f from the first corner, each off by 2.5 errors, their products by less than 5.5 (s error + error
+ * s). The crossing is n.w / n_ray from the corner, w the way to the column, no longer than s: what that
+ * may be off by is less than half of this. */
 crossing_plane crossing_plane_of(const crossing_mesh *m, const int32_t *triangle)
 {
     const double *a = &m->cell[3 * (int64_t)triangle[0]], *b = &m->cell[3 * (int64_t)triangle[1]];

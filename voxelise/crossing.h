@@ -1,11 +1,11 @@
-/* Where rays along an axis, one through each column of voxel centres, cross triangles: decided exactly. A centre counts as
- * moved by (e, e^2, e^3), e -> 0+, so it is never on a face, and a ray never meets an edge or a vertex: whichever axis
- * the rays run along, the same centres come out inside a closed surface. Each place is first sought in doubles
- * with a proven bound on the error, and settled by expansions where that leaves it open. Everything is
- * borrowed; nothing is allocated.
+/* Where rays along an axis, one through each column of voxel centres, cross triangles: decided exactly. A centre
+ * counts as moved by (e, e^2, e^3), e -> 0+, so it is never on a face, and a ray never meets an edge or a vertex:
+ * whichever axis the rays run along, the same centres come out inside a closed surface. Each place is first
+ * sought in doubles with a proven bound on the error, and settled by expansions where that leaves it open.
+ * Everything is borrowed; nothing is allocated.
  *
- * Coordinates are counted in cells, so that the centre of cell i is at i. A triangle is cut into rows of cells across the
- * rays, a row into columns: a line says where an edge crosses a row, a plane where a triangle crosses a column.
+ * Coordinates are counted in cells, so that the centre of cell i is at i. A triangle is cut into rows of cells across
+ * the rays, a row into columns: a line says where an edge crosses a row, a plane where a triangle crosses a column.
  */
 #ifndef SINEW_CROSSING_H
 #define SINEW_CROSSING_H
@@ -25,8 +25,8 @@ typedef struct crossing_mesh {
     int ray, row, column; /* the axes that rays run along, that rows are counted along, and columns in a row */
 } crossing_mesh;
 
-/* A coordinate in cells, and the bound on its error: of such that reach as far as `local` from the corner of cell 0, and
- * `far` from the origin (in the grid's unit). */
+/* A coordinate in cells, and the bound on its error: of such that reach as far as `local` from the corner of cell 0,
+ * and `far` from the origin (in the grid's unit). */
 static inline double crossing_cells(const grid *g, int axis, double x)
 {
     return grid_local(g, axis, x) / g->spacing[axis] - 0.5;

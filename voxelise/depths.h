@@ -15,8 +15,8 @@ typedef struct depths_surface {
     int64_t triangles;
 } depths_surface;
 
-/* depth: ascending. step: of each voxel whose volume is below `volumes`: 1 + the first depth that its centre's distance from the
- * surface is less than, or 0; of others it stays. The same for any number of threads. */
+/* depth: ascending. step: of each voxel whose volume is below `volumes`: 1 + the first depth that its centre's distance
+ * from the surface is less than, or 0; of others it stays. The same for any number of threads. */
 int depths_find(uint8_t *step, const double *depth, int64_t depths, const voxels *x, const voxels_layers *layer,
                 int32_t volumes, const depths_surface *s, const grid *g, pool *threads, err *e);
 

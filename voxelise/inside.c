@@ -308,7 +308,8 @@ static void draw_rows(drawing *d, int32_t from, int32_t to, const crossing_line 
     }
 }
 
-/* The corners in order of their rows: the first to the last is an edge across all rows, which the middle one divides. */
+/* The corners in order of their rows: the first to the last is an edge across all
+ * rows, which the middle one divides. */
 static void draw_triangle(drawing *d, int64_t triangle)
 {
     const inside *test = d->test;

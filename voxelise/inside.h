@@ -1,8 +1,8 @@
-/* The inside test: which centres lie inside each volume (W&M section 3). A centre is inside where a ray to it from outside
- * crosses the volume's triangles an odd number of times. Rays run along one axis, through every column of centres; each
- * triangle is drawn, row by row, onto the columns that cross it, and turns over one bit a column, at the cell that
- * follows the crossing; then each bit is added to the one before it along the ray, so nothing is sorted and nothing
- * searched. This is done in slabs of a few layers of rows, with one bit a cell of each volume's box.
+/* The inside test: which centres lie inside each volume (W&M section 3). A centre is inside where a ray to it from
+ * outside crosses the volume's triangles an odd number of times. Rays run along one axis, through every column of
+ * centres; each triangle is drawn, row by row, onto the columns that cross it, and turns over one bit a column, at the
+ * cell that follows the crossing; then each bit is added to the one before it along the ray, so nothing is sorted and
+ * nothing searched. This is done in slabs of a few layers of rows, with one bit a cell of each volume's box.
  *
  * The caller owns an inside, which borrows grid and triangles, and one slab a thread. Any number of threads may look at
  * slabs at once.
@@ -45,8 +45,8 @@ typedef struct inside {
 int inside_create(inside *test, const grid *g, const inside_triangles *t, int ray, int multiple, pool *threads, err *e);
 void inside_free(inside *test);
 
-/* One volume in a slab: bit b of word w of a layer and a cell along the ray is the cell low of the grid + 64 (word + w) + b
- * along the bits' axis. */
+/* One volume in a slab: bit b of word w of a layer and a cell along the ray is the cell low of the grid +
+ * 64 (word + w) + b along the bits' axis. */
 typedef struct inside_part {
     int32_t volume;
     inside_box box; /* the volume's, cut to the slab; along the bits' axis to whole words */

@@ -181,8 +181,8 @@ static int32_t moved(const work *w, int32_t volume)
     return volume < w->lowest ? volume : volume + (int32_t)w->l->layers;
 }
 
-/* The second volumes, as the first: one of level 0 is the layer that the voxel's centre is in, and no second where that is
- * the first's too. x: of the runs that are cut. */
+/* The second volumes, as the first: one of level 0 is the layer that the voxel's centre is in, and no second where that
+ * is the first's too. x: of the runs that are cut. */
 static void move_mixes(const work *w, voxels *x)
 {
     for (int64_t r = 0, i = 0; x->mix && r < x->runs; r++)

@@ -1,6 +1,6 @@
-/* Layers from the skin inward (epidermis, dermis, hypodermis): voxels of level 0 whose centre is nearer to the surface than the
- * thickness of the layers so far become volumes of their own. The surface is what bounds level 0 and is not rigid by
- * name; voxels of higher levels (muscles) stay what they are. The caller owns a layers.
+/* Layers from the skin inward (epidermis, dermis, hypodermis): voxels of level 0 whose centre is nearer to the surface
+ * than the thickness of the layers so far become volumes of their own. The surface is what bounds level 0 and is not
+ * rigid by name; voxels of higher levels (muscles) stay what they are. The caller owns a layers.
  */
 #ifndef SINEW_LAYERS_H
 #define SINEW_LAYERS_H
@@ -20,13 +20,13 @@ typedef struct layers {
     int64_t layers, capacity;
 } layers;
 
-/* From a file of lines `NAME thickness=LENGTH material=MATERIAL`. A length without a suffix is in `unit`, the OBJ's; a layer
- * that names no material takes the one of its own name, else the first. No name may be a volume's. */
+/* From a file of lines `NAME thickness=LENGTH material=MATERIAL`. A length without a suffix is in `unit`, the OBJ's; a
+ * layer that names no material takes the one of its own name, else the first. No name may be a volume's. */
 int layers_read(layers *l, in *file, num_unit unit, const volumes *plan, const model *materials, err *e);
 void layers_free(layers *l);
 
-/* Gives voxels to the layers, and adds the layers to the plan: after level 0, with priorities that follow its own. g: the
- * lattice of voxels. */
+/* Gives voxels to the layers, and adds the layers to the plan: after level 0, with priorities that
+ * follow its own. g: the lattice of voxels. */
 int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const grid *g, pool *threads, err *e);
 
 /* Of a plan that has the layers: which of them a volume is, or -1. */

@@ -1,12 +1,12 @@
-/* Voxels by the share of each that is enclosed: N samples along each axis, at the centres of its N^3 parts, each in or out
- * and of one volume as a voxel's centre is (climb.h). What lies in a voxel is counted from runs of samples, at two sums a
- * run. The caller owns a shares, one a thread.
+/* Voxels by the share of each that is enclosed: N samples along each axis, at the centres of its N^3 parts, each in or
+ * out and of one volume as a voxel's centre is (climb.h). What lies in a voxel is counted from runs of samples, at two
+ * sums a run. The caller owns a shares, one a thread.
  *
  * A voxel is mixed of the two volumes that have the most of it: what a third has is theirs, as they share the voxel.
  *
- * The error of a share: where a plane cuts a voxel, each column of parts along the axis that it faces most is off by no more
- * than half a part, so the voxel by no more than 1 / (2 N). Over planes at random the root mean square is 0.066, 0.015,
- * 0.0039 and 0.0008 for N = 2, 4, 8 and 16.
+ * The error of a share: where a plane cuts a voxel, each column of parts along the axis that it faces most is off by no
+ * more than half a part, so the voxel by no more than 1 / (2 N). Over planes at random the root mean square is 0.066,
+ * 0.015, 0.0039 and 0.0008 for N = 2, 4, 8 and 16.
  */
 #ifndef SINEW_SHARES_H
 #define SINEW_SHARES_H
@@ -51,9 +51,9 @@ typedef struct shares_list {
     int64_t count, capacity;
 } shares_list;
 
-/* The voxels of row (j, k), from the samples counted since the last row: each belongs to the volume that has the most of
- * them, the first of two. list: grows by one for each voxel of the runs. kept: volumes, grow by their voxels: `kept` of those
- * that are theirs, `mixed` of those that they are the second in. */
+/* The voxels of row (j, k), from the samples counted since the last row: each belongs to the volume that has the most
+ * of them, the first of two. list: grows by one for each voxel of the runs. kept: volumes, grow by their voxels: `kept`
+ * of those that are theirs, `mixed` of those that they are the second in. */
 int shares_row(shares *s, int64_t j, int64_t k, climb_runs *to, shares_list *list, climb_count *kept, err *e);
 
 #endif

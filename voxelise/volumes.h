@@ -1,5 +1,5 @@
-/* The plan: which surfaces of an OBJ bound which volume, and each volume's level, priority and material (W&M section 3).
- * It is made from the surfaces' names or read from a file, and owned by whoever declares it.
+/* The plan: which surfaces of an OBJ bound which volume, and each volume's level, priority and material (W&M section
+ * 3). It is made from the surfaces' names or read from a file, and owned by whoever declares it.
  */
 #ifndef SINEW_VOLUMES_H
 #define SINEW_VOLUMES_H

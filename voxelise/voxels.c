@@ -9,8 +9,8 @@
 
 enum { PARTS = 50 }; /* between which progress is shown */
 
-/* What an element needs: its nodes, lattice place and volume (48 bytes), a little over one node (36 bytes), and room for
- * the writer. A row of cells: some runs. */
+/* Bytes for an element: its nodes, its place in the lattice and its volume (48), a little over one node (36), and the
+ * writer's share. Bytes for a row of cells: some runs. */
 static const double element_bytes = 120, row_bytes = 64;
 
 /* What one slab gives. */

@@ -2,12 +2,12 @@
 
 #include <zlib.h>
 
-/* By folding (Gopal et al., Fast CRC Computation for Generic Polynomials Using PCLMULQDQ, 2009): a message is a polynomial
- * over GF(2), its checksum the rest modulo P. 16 bytes d bits before the end of a stretch may be replaced by any that are
- * equal modulo P: their halves times x^(d+32) mod P and x^(d-32) mod P, added to those that stand there. Four such
- * sums side by side, 512 bits apart; then each onto the next, 128 apart. What is left, 16 bytes, goes through zlib, as does
- * what follows. Where the processor multiplies four pairs at once, sixteen sums come before, 2048 bits apart. Bits are reflected, as in
- * this checksum the first bit of a byte is its lowest. */
+/* By folding (Gopal et al., Fast CRC Computation for Generic Polynomials Using PCLMULQDQ, 2009): a message is a
+ * polynomial over GF(2), its checksum the rest modulo P. 16 bytes d bits before the end of a stretch may be replaced by
+ * any that are equal modulo P: their halves times x^(d+32) mod P and x^(d-32) mod P, added to those that stand there.
+ * Four such sums side by side, 512 bits apart; then each onto the next, 128 apart. What is left, 16 bytes, goes through
+ * zlib, as does what follows. Where the processor multiplies four pairs at once, sixteen sums come before, 2048 bits
+ * apart. Bits are reflected, as in this checksum the first bit of a byte is its lowest. */
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 

@@ -1,6 +1,6 @@
-/* Numbers that are too small to be normal, taken for zero in this thread's vectors: most processors compute with them a hundred
- * times slower, and what is at rest is soon full of them. As on a card. Does nothing where the processor has no such switch. Owns
- * nothing; whoever flushes sets back what was.
+/* Numbers that are too small to be normal, taken for zero in this thread's vectors: most processors compute with them a
+ * hundred times slower, and what is at rest is soon full of them. As on a card. Does nothing where the processor has no
+ * such switch. Owns nothing; whoever flushes sets back what was.
  */
 #ifndef SINEW_FLUSH_H
 #define SINEW_FLUSH_H

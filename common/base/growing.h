@@ -1,5 +1,6 @@
-/* A file that is read while it is written: a log. What is put goes to the file at once, in one piece, so that readers see
- * whole lines. Unlike out.h's it stands under its name from the start, and stays there whatever happens. The creator owns it.
+/* A file that is read while it is written: a log. What is put goes to the file at once, in one piece,
+ * so that readers see whole lines. Unlike out.h's it stands under its name from the start, and stays
+ * there whatever happens. The creator owns it.
  */
 #ifndef SINEW_GROWING_H
 #define SINEW_GROWING_H
@@ -10,8 +11,8 @@
 
 typedef struct growing growing;
 
-/* Makes the file, or cuts it to its first `keep` bytes, which must be there (0: empties it); a device or FIFO is written as it
- * is. "-" is refused. NULL with e filled. */
+/* Makes the file, or cuts it to its first `keep` bytes, which must be there (0: empties it); a device or FIFO is
+ * written as it is. "-" is refused. NULL with e filled. */
 growing *growing_open(const char *path, int64_t keep, err *e);
 
 /* Bytes of what is there, what was kept included. */

@@ -28,8 +28,8 @@ void in_close(in *s);
 
 const char *in_name(const in *s);
 
-/* Whether its bytes are gunzipped on the way. What is compressed once more inside is not for those who hold memory to their input's size:
- * one DEFLATE makes at most 1032 bytes of one, two a million. */
+/* Whether its bytes are gunzipped on the way. What is compressed once more inside is not for those who hold memory to
+ * their input's size: one DEFLATE makes at most 1032 bytes of one, two a million. */
 bool in_is_gzip(const in *s);
 
 /* Lines taken so far by in_line: the number of the line it gave last. */

@@ -9,8 +9,8 @@
 #include <stdint.h>
 #include <sys/stat.h>
 
-/* A file system gives the inode of a file that is gone to the next one. The time of birth, where it is known, tells them
- * apart. */
+/* A file system gives the inode of a file that is gone to the next one. The time of
+ * birth, where it is known, tells them apart. */
 typedef struct input {
     uint32_t major, minor;
     uint64_t inode;

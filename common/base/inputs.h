@@ -9,8 +9,8 @@
 
 #include <stdbool.h>
 
-/* Notes the file of a descriptor, or at a path, links followed, if it is a regular one. -1 with e filled where memory is
- * out. */
+/* Notes the file of a descriptor, or at a path, links followed, if it is a regular one.
+ * -1 with e filled where memory is out. */
 int inputs_note(int fd, err *e);
 int inputs_note_path(const char *path, err *e);
 

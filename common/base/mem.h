@@ -18,8 +18,8 @@ int mem_grow(void *array, int64_t *capacity, int64_t need, size_t size, const ch
 #define MEM_ROOM(array, capacity, need, what, e)                                                                       \
     ((need) > *(capacity) ? mem_grow(array, capacity, need, sizeof **(array), what, e) : 0)
 
-/* Says to the system that memory of this size, which nothing has touched yet, may come in large pages: most of the time that
- * it takes to touch much memory once goes into the pages' coming one at a time. mem_array and mem_grow say it. */
+/* Says to the system that memory of this size, which nothing has touched yet, may come in large pages: most of the time
+ * that it takes to touch much memory once goes into the pages' coming one at a time. mem_array and mem_grow say it. */
 void mem_large(void *p, size_t size);
 
 /* A copy of text, or NULL with e filled. */
@@ -29,8 +29,8 @@ char *mem_text(const char *text, err *e);
  * guess that is large where it cannot be known. */
 int64_t mem_available(void);
 
-/* What the control group at path (as "/a/b") and those that hold it leave, of those mounted at root; the guess where none
- * has a limit. Caches of files do not count as used. */
+/* What the control group at path (as "/a/b") and those that hold it leave, of those mounted at root; the guess where
+ * none has a limit. Caches of files do not count as used. */
 int64_t mem_group_left(const char *root, const char *path);
 
 #endif

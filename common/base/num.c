@@ -91,8 +91,8 @@ static int scan_slow(const char *text, const char *stop, double *value)
     return isfinite(*value) ? 0 : -1;
 }
 
-/* What most numbers are, digits about a point: 1 and the number, or 0 for scan_decimal to look closer: an exponent, many
- * digits, the text's end. Up to 15 digits are below 2^53, and no power of ten past 1e22 can come up. */
+/* What most numbers are, digits about a point: 1 and the number, or 0 for scan_decimal to look closer: an exponent,
+ * many digits, the text's end. Up to 15 digits are below 2^53, and no power of ten past 1e22 can come up. */
 static int scan_plain(const char *text, const char *end, const char **stop, double *value)
 {
     const char *p = text;
@@ -119,8 +119,8 @@ static int scan_plain(const char *text, const char *end, const char **stop, doub
     return 1;
 }
 
-/* digits / 10^places, rounded once, for digits that are not 0 and up to 19 places: the quotient of integers whose top bits
- * are set has 63 or 64 bits, ten or more past a double's, and the last of them stands for what is left over. */
+/* digits / 10^places, rounded once, for digits that are not 0 and up to 19 places: the quotient of integers whose top
+ * bits are set has 63 or 64 bits, ten or more past a double's, and the last of them stands for what is left over. */
 static double divide(uint64_t digits, int places)
 {
     static const uint64_t ten[] = {UINT64_C(1),

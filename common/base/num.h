@@ -38,8 +38,8 @@ const char *num_unit_name(num_unit unit);
 /* "4cm", "2.5mm", "0.1": the whole of text. Returns 0 or -1. */
 int num_length_of(const char *text, num_length *length);
 
-/* A length in the unit `to`; what has no suffix is taken to be in `unsuffixed`. One rounding; two between inches and mm,
- * cm or m. */
+/* A length in the unit `to`; what has no suffix is taken to be in `unsuffixed`. One
+ * rounding; two between inches and mm, cm or m. */
 double num_length_in(num_length length, num_unit unsuffixed, num_unit to);
 
 /* "500MB", "2GiB", "1.5 GB", "4096B": bytes, in units of 1000 or 1024; the whole of text, more than 0. Returns 0 or

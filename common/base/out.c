@@ -32,9 +32,10 @@ struct out {
     err failed;
 };
 
-/* A pipe of 64 KB has whoever writes much and whoever reads it wait for each other all the time. No wider than a piece: all pipes
- * of a user share what Linux allows (pipe-user-pages-soft, 64 MB unless set), and once that is used up each new one has 8 KB. (One of
- * what is small stays as it is: a reader that falls behind would see all that fits into it late.) */
+/* A pipe of 64 KB has whoever writes much and whoever reads it wait for each other all the time. No wider
+ * than a piece: all pipes of a user share what Linux allows (pipe-user-pages-soft, 64 MB unless set), and
+ * once that is used up each new one has 8 KB. (One of what is small stays as it is: a reader that falls
+ * behind would see all that fits into it late.) */
 static void widen_pipe(int fd)
 {
     int size = fcntl(fd, F_GETPIPE_SZ);

@@ -1,6 +1,6 @@
 /* A stream of bytes to write, checked to its end: standard output, or a file that appears whole under its
- * name when out_close() succeeds and not at all otherwise, unless all that fails is to store its name. Errors stick: write on, and
- * out_close() says. A closed pipe ends the process quietly by SIGPIPE.
+ * name when out_close() succeeds and not at all otherwise, unless all that fails is to store its name. Errors stick:
+ * write on, and out_close() says. A closed pipe ends the process quietly by SIGPIPE.
  */
 #ifndef SINEW_OUT_H
 #define SINEW_OUT_H
@@ -20,10 +20,12 @@ out *out_open(const char *path, bool gzip, err *e);
  * and it is in *to from then on, to be put in place or discarded (replace.h). */
 out *out_open_kept(const char *path, replace *to, err *e);
 
-/* When closed, it is stored in any case, also where the shell has opened it, and so is its name: before what it was made from goes. */
+/* When closed, it is stored in any case, also where the shell has opened it, and so is its
+ * name: before what it was made from goes. */
 void out_outlast(out *o);
 
-/* Writes to a descriptor from where it stands, as it is; it is out's from then on, but the caller's where this fails. */
+/* Writes to a descriptor from where it stands, as it is; it is out's from then on,
+ * but the caller's where this fails. */
 out *out_take(int fd, const char *name, err *e);
 
 /* Keeps what is written in memory (tests, CRCs, spools); out_bytes() shows it until out_discard(). */

@@ -21,8 +21,8 @@ typedef struct outs {
  * (out_discard) as any other out. NULL with e filled. */
 out *outs_open(outs *s, const char *path, err *e);
 
-/* Puts every file in its place, in the order in which they were opened, and waits until their names are stored. All must have been
- * closed. */
+/* Puts every file in its place, in the order in which they were opened, and waits until their names
+ * are stored. All must have been closed. */
 int outs_commit(outs *s, err *e);
 
 /* Removes the files that are not in their places. */

@@ -1,4 +1,5 @@
-/* Paths of files: the folder in one, what a link stands for, what lies beside a file. What is returned is the caller's to free.
+/* Paths of files: the folder in one, what a link stands for, what lies beside a file.
+ * What is returned is the caller's to free.
  */
 #ifndef SINEW_PATH_H
 #define SINEW_PATH_H

@@ -33,8 +33,8 @@ int replace_place(replace *r, const char *name, err *e);
  * on failure no file is left and the place is as it was, unless it is the name that could not be stored. */
 int replace_finish(replace *r, const char *name, err *e);
 
-/* Waits until what was written is stored: 0, or -1 with errno. Some of what can be written to cannot be synced; nothing is wrong
- * then. */
+/* Waits until what was written is stored: 0, or -1 with errno. Some of what can be written to
+ * cannot be synced; nothing is wrong then. */
 int replace_store(int fd);
 
 /* Waits until what stands under the names in the folder of a file is stored; path may be a link to the file. name: for

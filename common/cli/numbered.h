@@ -14,8 +14,8 @@ typedef struct numbered {
     bool zeros;
 } numbered;
 
-/* pattern (NULL: a usage error too): one conversion %d, %4d or %04d, and no other '%'. otherwise: what the tool offers in
- * place of files, as ", or --format pc2"; "": nothing. -1 with e filled (status 2). */
+/* pattern (NULL: a usage error too): one conversion %d, %4d or %04d, and no other '%'. otherwise: what the tool offers
+ * in place of files, as ", or --format pc2"; "": nothing. -1 with e filled (status 2). */
 int numbered_of(numbered *n, const char *pattern, const char *otherwise, err *e);
 
 /* Whether a name (or NULL) is such a pattern. */

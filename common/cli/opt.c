@@ -9,8 +9,8 @@
 
 enum { MODELS = 1 << 9, THREADED = 1 << 10, VOLUMES = 1 << 11 };
 
-/* The options that every tool has. MODELS: only those that write a model; THREADED: only those with threads; VOLUMES: those that
- * read volume images. */
+/* The options that every tool has. MODELS: only those that write a model; THREADED: only those with threads; VOLUMES:
+ * those that read volume images. */
 #define COMMON(field) offsetof(opt_common, field)
 static const opt common_options[] = {
     {OPT_COMMON, 'o', "output", "FILE", OPT_TEXT, COMMON(output), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,

@@ -66,9 +66,10 @@ typedef struct opt {
     opt_kind kind;
     size_t to;        /* offsetof(options, field) */
     double low, high; /* range, inclusive; both 0: any */
-    /* Names between '|'. For an OPT_TEXT or OPT_LIST: what completion offers. A word that ends in ':' or '=' is typed on
-     * after it. A word that begins with '@' is a key of `sinew info --get`: the names that a model on the command line has
-     * under it are offered, each followed by the key's last character if that is no letter or digit: "@muscle.name=". */
+    /* Names between '|'. For an OPT_TEXT or OPT_LIST: what completion offers. A word that ends in ':' or '='
+     * is typed on after it. A word that begins with '@' is a key of `sinew info --get`: the names that a
+     * model on the command line has under it are offered, each followed by the key's last character if that
+     * is no letter or digit: "@muscle.name=". */
     const char *choices;
     int flags;
     const char *help; /* a few words; units and defaults last, in brackets: [UNIT], [default X] or [UNIT; default X] */

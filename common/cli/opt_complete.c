@@ -116,8 +116,8 @@ static void put_bash_files(const char *arg, out *to)
     out_text(to, "))");
 }
 
-/* Offers names from the models among the words of the command, and behind `<`. The names are not trusted: none is evaluated
- * by the shell, and its special characters are quoted. */
+/* Offers names from the models among the words of the command, and behind `<`. The names are not trusted: none is
+ * evaluated by the shell, and its special characters are quoted. */
 static const char bash_names[] =
     "_sinew_names() {\n"
     "    local suffix=$2 element=${value##*,} list file name quoted tool=${sinew:-${COMP_WORDS[0]}} info\n"

@@ -77,7 +77,8 @@ static void put_pattern(const char *name, out *o)
         out_format(o, "|%s", american);
 }
 
-/* The tool's own completion does the rest: its table tells it, so that `sinew bind` has one though bash's bind has not. */
+/* The tool's own completion does the rest: its table tells it, so that `sinew bind`
+ * has one though bash's bind has not. */
 static void put_bash(out *o)
 {
     out_text(o, "_sinew_complete_sinew() {\n"

@@ -35,8 +35,8 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
  * are made of those: of numbered files, of checkpoints. */
 int tool_check_written(const tool *t, const char *option, const char *path, err *e);
 
-/* Prints e, unless it is empty or was printed already, with the help it asks for (e->help), and frees t. Returns the exit
- * status. Every message is one line in one write; control characters in it become '?'. */
+/* Prints e, unless it is empty or was printed already, with the help it asks for (e->help), and frees t. Returns the
+ * exit status. Every message is one line in one write; control characters in it become '?'. */
 int tool_end(tool *t, const err *e);
 
 /* Where standard input is a terminal: what is read from it ("a model") is not typed, so status 2 and ERR_SHOW_USAGE. */
@@ -48,13 +48,15 @@ void tool_say(const tool *t, const char *format, ...) SINEW_PRINTF(2, 3);
 /* The same, only with -v. */
 void tool_detail(const tool *t, const char *format, ...) SINEW_PRINTF(2, 3);
 
-/* "tool: title" and the table's lines, if it has rows, on stderr in one write, unless -q. -1 with e filled for want of memory. */
+/* "tool: title" and the table's lines, if it has rows, on stderr in one write, unless
+ * -q. -1 with e filled for want of memory. */
 int tool_table(const tool *t, const text_table *rows, err *e, const char *title, ...) SINEW_PRINTF(4, 5);
 
 /* "tool: warning: text" for each note; frees them. Not silenced by -q. */
 void tool_warn(const tool *t, notes *n);
 
-/* --threads, else SINEW_THREADS, else all processors that the process may run on. At least 1; -1 with e filled for a bad SINEW_THREADS. */
+/* --threads, else SINEW_THREADS, else all processors that the process may run on. At least 1; -1
+ * with e filled for a bad SINEW_THREADS. */
 int tool_threads(const tool *t, err *e);
 
 #endif

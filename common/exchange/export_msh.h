@@ -1,5 +1,6 @@
-/* Gmsh's MSH file, version 2.2 in ASCII, which Gmsh and whatever else reads MSH takes: nodes, elements, a physical group for each
- * volume, points in a group `rigid`, and each frame's displacement as $NodeData. SI units. The out is the caller's.
+/* Gmsh's MSH file, version 2.2 in ASCII, which Gmsh and whatever else reads MSH takes: nodes, elements,
+ * a physical group for each volume, points in a group `rigid`, and each frame's displacement as
+ * $NodeData. SI units. The out is the caller's.
  */
 #ifndef SINEW_EXPORT_MSH_H
 #define SINEW_EXPORT_MSH_H

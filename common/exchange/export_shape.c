@@ -57,8 +57,8 @@ int export_shape_of(export_shape *x, const model *m, const char *name, err *e)
     return name ? of_surface(x, name, e) : of_elements(x, e);
 }
 
-/* A vertex moves with its element, or with the bone that carries it, as in sinew deform. A surface that is not bound stays
- * where it is. */
+/* A vertex moves with its element, or with the bone that carries it, as in sinew deform. A
+ * surface that is not bound stays where it is. */
 static int move_surface(export_shape *x, const double *u, err *e)
 {
     bound b;

@@ -22,7 +22,8 @@ typedef struct export_shape {
 /* surface NULL: the elements. -1 with e filled where the model lacks what it takes. */
 int export_shape_of(export_shape *x, const model *m, const char *name, err *e);
 
-/* Moves the points by node.displacement of the frame (NULL: back to rest). A surface that is not bound stays at rest. */
+/* Moves the points by node.displacement of the frame (NULL: back to rest). A surface
+ * that is not bound stays at rest. */
 int export_shape_move(export_shape *x, const frame *f, err *e);
 
 void export_shape_free(export_shape *x);

@@ -1,6 +1,6 @@
 /* A mesh as another program's file has it, on its way to a model: what the readers of sinew-import fill, the checks
- * that all meshes go through, and the model that they become. Lengths are in the file's unit until then. The creator owns the mesh, zeroed to
- * begin with but for `name`; readers add to it and leave what they added also where they fail.
+ * that all meshes go through, and the model that they become. Lengths are in the file's unit until then. The creator
+ * owns the mesh, zeroed to begin with but for `name`; readers add to it and leave what they added also where they fail.
  */
 #ifndef SINEW_IMPORT_MESH_H
 #define SINEW_IMPORT_MESH_H

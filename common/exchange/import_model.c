@@ -200,7 +200,8 @@ static int make_materials(const import_mesh *mesh, const import_wishes *w, model
     return mesh->materials ? put_materials(mesh, w, m, warnings, e) : materials_default(m, e);
 }
 
-/* Of the model's table, in which names have a case though the file's have none: as it is written, or the first that differs by case alone. */
+/* Of the model's table, in which names have a case though the file's have none: as it is written, or
+ * the first that differs by case alone. */
 static int32_t find_material(const import_mesh *mesh, const model *m, const char *name)
 {
     const model_array *a = model_find(m, "material.name");
@@ -211,7 +212,8 @@ static int32_t find_material(const import_mesh *mesh, const model *m, const char
     return at;
 }
 
-/* A volume is of the material that the file says; else of the one asked for; else of one that is named as the volume is; else of the only one. */
+/* A volume is of the material that the file says; else of the one asked for; else of one that is named
+ * as the volume is; else of the only one. */
 static int32_t material_of(const import_mesh *mesh, const import_wishes *w, const model *m, const import_volume *v,
                            err *e)
 {

@@ -1,5 +1,5 @@
-/* Named sets of numbers, as ranges and as other sets: what they hold is found only once it is known which numbers there are, so that
- * no line of a file makes a set larger than itself. The creator owns them, zeroed to begin with.
+/* Named sets of numbers, as ranges and as other sets: what they hold is found only once it is known which numbers there
+ * are, so that no line of a file makes a set larger than itself. The creator owns them, zeroed to begin with.
  */
 #ifndef SINEW_IMPORT_SETS_H
 #define SINEW_IMPORT_SETS_H
@@ -34,8 +34,8 @@ int32_t import_sets_open(import_sets *s, const char *name, err *e);
 int import_sets_range(import_sets *s, int32_t at, int32_t first, int32_t last, int32_t step, err *e);
 int import_sets_include(import_sets *s, int32_t at, int32_t other, err *e);
 
-/* Calls `each` with the index of every one of `ids` (closed) that is in the set, some perhaps more than once, until it gives other than 0,
- * which is then returned. */
+/* Calls `each` with the index of every one of `ids` (closed) that is in the set, some perhaps more than once, until it
+ * gives other than 0, which is then returned. */
 typedef int import_sets_each(void *context, int32_t index);
 int import_sets_go(import_sets *s, int32_t at, const import_ids *ids, import_sets_each *each, void *context, err *e);
 

@@ -1,5 +1,6 @@
-/* Numbers one after the other, as text between blanks on any number of lines, or as little-endian binary: what Gmsh's two encodings are.
- * Lines and binary data may alternate. The creator owns the stream; what is here holds no memory of its own.
+/* Numbers one after the other, as text between blanks on any number of lines, or as little-endian
+ * binary: what Gmsh's two encodings are. Lines and binary data may alternate. The creator owns the
+ * stream; what is here holds no memory of its own.
  */
 #ifndef SINEW_IMPORT_TOKENS_H
 #define SINEW_IMPORT_TOKENS_H

@@ -1,5 +1,5 @@
-/* The XML of VTK's files, and their arrays' data. Texts point into the file's bytes, which are the caller's and are not changed; nothing here is
- * kept but what a function says is the caller's to free.
+/* The XML of VTK's files, and their arrays' data. Texts point into the file's bytes, which are the caller's and are not
+ * changed; nothing here is kept but what a function says is the caller's to free.
  */
 #ifndef SINEW_IMPORT_XML_H
 #define SINEW_IMPORT_XML_H

@@ -79,7 +79,8 @@ static int letter(unsigned char c)
     return found ? (int)(found - letters) : c == '=' ? 64 : -1;
 }
 
-/* The next four letters: how many bytes they were; 0: there are none. Padding may stand within, where an encoder began anew. */
+/* The next four letters: how many bytes they were; 0: there are none. Padding may
+ * stand within, where an encoder began anew. */
 static int next_group(bytes *b, unsigned char *to)
 {
     int value[4], n = 0;

@@ -208,7 +208,8 @@ static int put_all_data(job *j, out *to, err *e)
     return got;
 }
 
-/* Reads to the end of the stream, keeping the frame asked for in *kept (it is f's from then on). NULL in *chosen: rest. */
+/* Reads to the end of the stream, keeping the frame asked for in *kept (it is f's
+ * from then on). NULL in *chosen: rest. */
 static int choose_frame(job *j, frame *kept, const frame **chosen, err *e)
 {
     int got;

@@ -21,11 +21,12 @@ int info_key(const source *s, info_quality_seen *seen, const char *key, out *to,
  * filled: of anything else. Borrowed from the source. */
 const char *info_key_unit(const source *s, const char *key, err *e);
 
-/* The rows of a table: of its columns, arrays of the axis whose names begin with its name and a point; 0 where there are none, whatever the
- * axis counts. */
+/* The rows of a table: of its columns, arrays of the axis whose names begin with its name and a point; 0 where there
+ * are none, whatever the axis counts. */
 int64_t info_table_rows(const model *m, const char *axis);
 
-/* How many elements each volume has, by its row in the table; 0 where there are no elements. The caller frees it; NULL with e filled. */
+/* How many elements each volume has, by its row in the table; 0 where there are no elements.
+ * The caller frees it; NULL with e filled. */
 int64_t *info_volume_counts(const model *m, err *e);
 
 #endif

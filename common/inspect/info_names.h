@@ -1,5 +1,5 @@
-/* `sinew info --get` for lists of names: arrays of strings, and the names of muscles, surfaces, groups and arrays, which
- * have no array of their own. Keys are described in sinew-info(1).
+/* `sinew info --get` for lists of names: arrays of strings, and the names of muscles, surfaces, groups and arrays,
+ * which have no array of their own. Keys are described in sinew-info(1).
  */
 #ifndef SINEW_INFO_NAMES_H
 #define SINEW_INFO_NAMES_H

@@ -1,5 +1,5 @@
-/* `sinew info --tsv KEY`: one or several values of each frame of a stream as it comes, a row a frame, tab-separated. The
- * caller owns the struct; begin with a zeroed one.
+/* `sinew info --tsv KEY`: one or several values of each frame of a stream as it comes, a row a frame, tab-separated.
+ * The caller owns the struct; begin with a zeroed one.
  */
 #ifndef SINEW_INFO_SERIES_H
 #define SINEW_INFO_SERIES_H

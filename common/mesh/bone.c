@@ -61,8 +61,8 @@ static int32_t nearest_of(const anchors *a, int32_t anchor, const double *p, con
     return best;
 }
 
-/* A node in place of the anchor for each vertex that has one. Where only a part of a surface was voxelised, most vertices
- * may lie by an element of which their bone holds nothing. */
+/* A node in place of the anchor for each vertex that has one. Where only a part of a surface was voxelised, most
+ * vertices may lie by an element of which their bone holds nothing. */
 static int carry(bone *b, const bound *of, const anchors *a, err *e)
 {
     held all;

@@ -1,5 +1,6 @@
 /* A surface bound to the elements of a model, seen as one struct: how its vertices move where the nodes move, and what
- * values at the nodes are at its vertices. A view borrows from the model and is valid until an array is added or removed.
+ * values at the nodes are at its vertices. A view borrows from the model and is
+ * valid until an array is added or removed.
  */
 #ifndef SINEW_BOUND_H
 #define SINEW_BOUND_H
@@ -15,8 +16,8 @@ typedef struct bound {
     const double *rest;     /* nodes x 3, m */
 } bound;
 
-/* The view of the surface named so. 1: it is bound; 0: it is carried, but not bound, and b holds its shape only; -1: e is
- * filled. */
+/* The view of the surface named so. 1: it is bound; 0: it is carried, but not bound, and b
+ * holds its shape only; -1: e is filled. */
 int bound_of(bound *b, const model *m, const char *name, err *e);
 
 /* The bound surface that this OBJ is: the one named, else any whose vertices are the same. -1 with e saying what

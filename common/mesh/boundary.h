@@ -14,9 +14,8 @@ typedef struct boundary {
     int64_t capacity, element_capacity;
 } boundary;
 
-/* keep: elements, those of the set (NULL: all). beside (may be NULL): elements that are not of it, but cover the faces that
- * they share with it. -1 with e filled: no element.node, or neither 8 nor 4 columns, or no
- * memory. */
+/* keep: elements, those of the set (NULL: all). beside (may be NULL): elements that are not of it, but cover the faces
+ * that they share with it. -1 with e filled: no element.node, or neither 8 nor 4 columns, or no memory. */
 int boundary_of(boundary *b, const model *m, const bool *keep, const bool *beside, err *e);
 void boundary_free(boundary *b);
 

@@ -12,8 +12,8 @@ typedef struct energy {
     double scale;             /* J: the sum of mu V, beside which these may be rounding (quality_hourglass) */
 } energy;
 
-/* -1 with e filled: the elements are no hexahedra, it is not known by what coefficient their modes were held, or the model lacks what it
- * takes. */
+/* -1 with e filled: the elements are no hexahedra, it is not known by what coefficient their modes were
+ * held, or the model lacks what it takes. */
 int energy_of(energy *to, const model *m, const frame *f, err *e);
 
 #endif

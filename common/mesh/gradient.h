@@ -6,8 +6,8 @@
 
 #include <stdint.h>
 
-/* H = du/dX at the centre. node: the element's 8 or 4; rest, u: of all nodes, x 3, m. False, and all nan: the element has
- * no volume. */
+/* H = du/dX at the centre. node: the element's 8 or 4; rest, u: of all nodes, x 3, m. False,
+ * and all nan: the element has no volume. */
 int gradient_of(const int32_t *node, int corners, const double *rest, const double *u, double h[9]);
 
 /* Green-Lagrange's E = (H + H^T + H^T H) / 2. */

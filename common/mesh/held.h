@@ -1,5 +1,5 @@
-/* The nodes that anchors hold, each anchor's in a k-d tree of its own, to find the one nearest to a place. Positions are
- * borrowed for as long as it is used; the caller owns the trees.
+/* The nodes that anchors hold, each anchor's in a k-d tree of its own, to find the one nearest to a place. Positions
+ * are borrowed for as long as it is used; the caller owns the trees.
  */
 #ifndef SINEW_HELD_H
 #define SINEW_HELD_H

@@ -31,7 +31,8 @@ int lattice_save(const lattice *l, model *m, err *e)
     return model_meta_set_numbers(m, "lattice.spacing", l->spacing, 3, e);
 }
 
-/* A table of cells may be this large, or larger by so many cells for an element: a few elements far apart may not ask for any memory. */
+/* A table of cells may be this large, or larger by so many cells for an element: a few elements
+ * far apart may not ask for any memory. */
 enum { CELLS_FREE = 1 << 22, CELLS_EACH = 1000 };
 
 /* The box of cells that the elements take, and its count of cells. -1 where no memory could hold a table of it. */

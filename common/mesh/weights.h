@@ -1,6 +1,6 @@
-/* A place inside a hexahedron of a lattice, as three weights, and what follows from them: the shares of the eight nodes,
- * their gradients, the distance outside. Source: W&M section 3.3, equation (1). The same of tetrahedra, by barycentric
- * weights. Nothing here allocates.
+/* A place inside a hexahedron of a lattice, as three weights, and what follows from them: the shares of the eight
+ * nodes, their gradients, the distance outside. Source: W&M section 3.3, equation (1). The same of tetrahedra, by
+ * barycentric weights. Nothing here allocates.
  */
 #ifndef SINEW_WEIGHTS_H
 #define SINEW_WEIGHTS_H
@@ -22,11 +22,12 @@ void weights_of(const weights_box *box, const double *point, double *weight);
 void weights_shares(const double *weight, double *share);
 
 /* The displacement of a place in an element, m, by equation (1) in a hexahedron (columns 8, three weights; extrapolated
- * outside) and by barycentric weights in a tetrahedron (columns 4, four weights). node: the element's; u: of all nodes, x 3. */
+ * outside) and by barycentric weights in a tetrahedron (columns 4, four weights).
+ * node: the element's; u: of all nodes, x 3. */
 void weights_displacement(const int32_t *node, int32_t columns, const double *weight, const double *u, double *d);
 
-/* A tetrahedron: the four weights of a place, which sum to 1, and the gradients of its nodes' shares, 1/m (4 x 3). It must
- * have a volume. node: its 4; position: of all nodes at rest. */
+/* A tetrahedron: the four weights of a place, which sum to 1, and the gradients of its nodes' shares, 1/m (4 x 3). It
+ * must have a volume. node: its 4; position: of all nodes at rest. */
 void weights_tetrahedron(const int32_t *node, const double *position, const double *point, double *weight);
 void weights_tetrahedron_gradients(const int32_t *node, const double *position, double *gradient);
 

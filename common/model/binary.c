@@ -64,8 +64,8 @@ static int more_room(unsigned char **bytes, uint64_t *have, uint64_t size, size_
     return 0;
 }
 
-/* Exactly size bytes of the payload, in memory that grows as they come: a length is only a claim. `extra` bytes more are
- * allocated. canonical: the type whose nan are made so, and whose values the item then says to be finite or not, or
+/* Exactly size bytes of the payload, in memory that grows as they come: a length is only a claim. `extra` bytes more
+ * are allocated. canonical: the type whose nan are made so, and whose values the item then says to be finite or not, or
  * MODEL_TYPES. The caller frees it; NULL with e filled. */
 static void *take_grown(block *b, uint64_t size, size_t extra, model_type canonical, err *e)
 {

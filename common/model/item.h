@@ -1,6 +1,6 @@
 /* What a model stream is made of, one item at a time, and the table of functions that an encoding is. text.c and
- * binary.c turn bytes into items and items into bytes, and know no more; which item may stand where is stream.c's. An item
- * that was read owns what hangs on it; one that is written borrows it all.
+ * binary.c turn bytes into items and items into bytes, and know no more; which item may stand where is stream.c's. An
+ * item that was read owns what hangs on it; one that is written borrows it all.
  */
 #ifndef SINEW_ITEM_H
 #define SINEW_ITEM_H
@@ -74,12 +74,12 @@ int item_error(const item_source *s, const item *it, err *e, const char *format,
 /* The error of a stream that stops without `end` or `fail`. */
 int item_cut(const item_source *s, err *e);
 
-/* Checks the heading of an array just read (name, unit, axis, columns) and sets its rows. Returns its count of values, or
- * -1. */
+/* Checks the heading of an array just read (name, unit, axis, columns) and sets its
+ * rows. Returns its count of values, or -1. */
 int64_t item_heading(const item_source *s, item *it, err *e);
 
-/* Whether the n values of an array are skipped without a check: if only names are wanted, those of all arrays but strings
- * and short ones. */
+/* Whether the n values of an array are skipped without a check: if only names are wanted, those of
+ * all arrays but strings and short ones. */
 bool item_passes(const item_source *s, const item *it, int64_t n);
 
 /* If only names are wanted: -1 with e filled once more of a text or gzip stream was read than takes about 0.1 s. */

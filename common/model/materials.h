@@ -2,8 +2,8 @@
  * files of lines `NAME law=neo-hookean E=3000 nu=0.49 density=1000 peak=30000` and from assignments NAME.KEY=VALUE. All
  * values are checked against one table of keys. The model owns its arrays, as ever.
  *
- * For the tool that makes volumes: materials_default or materials_make where no file is given, materials_read where one is;
- * materials_find looks up what a volume names. Which material a volume has that names none is that tool's affair.
+ * For the tool that makes volumes: materials_default or materials_make where no file is given, materials_read where one
+ * is; materials_find looks up what a volume names. Which material a volume has that names none is that tool's affair.
  */
 #ifndef SINEW_MATERIALS_H
 #define SINEW_MATERIALS_H
@@ -13,8 +13,8 @@
 
 #include <math.h>
 
-/* Neo-Hookean: tled-run's. Linear: isotropic linear elasticity with Cauchy's small strain, msds-run's FEM (PST section III);
- * it is what the first becomes where strains are small, with the same E and nu. */
+/* Neo-Hookean: tled-run's. Linear: isotropic linear elasticity with Cauchy's small strain, msds-run's FEM (PST section
+ * III); it is what the first becomes where strains are small, with the same E and nu. */
 typedef enum material_law { MATERIAL_NEO_HOOKEAN, MATERIAL_LINEAR, MATERIAL_LAWS } material_law;
 
 /* X(key, default, where the model has none). E, nu and density: W&M section 4.2; peak is not in the paper. What is
@@ -34,12 +34,13 @@ typedef struct material {
 /* Neo-Hookean, and each key's default. */
 material materials_fallback(void);
 
-/* Makes the table: one material, `tissue`, of the defaults or of these values, which are checked. The axis must not be there yet. */
+/* Makes the table: one material, `tissue`, of the defaults or of these values, which are
+ * checked. The axis must not be there yet. */
 int materials_default(model *m, err *e);
 int materials_make(model *m, const material *of, err *e);
 
-/* Makes the table from a file, in its order; a key not given has the default, or that of `fallback` (NULL: the default). A name
- * given twice, a value out of range or an empty file is an error. */
+/* Makes the table from a file, in its order; a key not given has the default, or that of `fallback` (NULL: the
+ * default). A name given twice, a value out of range or an empty file is an error. */
 int materials_read(model *m, in *s, err *e);
 int materials_read_with(model *m, in *s, const material *fallback, err *e);
 
@@ -88,9 +89,9 @@ static inline double material_bulk(const material *a)
     return a->E / (3 * (1 - 2 * a->nu));
 }
 
-/* A modulus of what is mixed of two materials, s the share of b: a^(1-s) b^s. Two materials side by side have the sum of their
- * shares along their border, and the inverse of the sum of their shares' inverses across it; this lies between, whatever the
- * border's direction, and does to the inverses what it does to the moduli. */
+/* A modulus of what is mixed of two materials, s the share of b: a^(1-s) b^s. Two materials side by side have the sum
+ * of their shares along their border, and the inverse of the sum of their shares' inverses across it; this lies
+ * between, whatever the border's direction, and does to the inverses what it does to the moduli. */
 static inline double material_between(double a, double b, double s)
 {
     return a == b ? a : exp((1 - s) * log(a) + s * log(b));

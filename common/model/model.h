@@ -79,14 +79,15 @@ typedef struct frame {
 void model_free(model *m); /* and zeroes it; a zeroed model is an empty one */
 void frame_free(frame *f);
 
-/* Metadata. model_meta_of: NULL where there is none. Numbers: `count` doubles between spaces, as short as they read back. */
+/* Metadata. model_meta_of: NULL where there is none. Numbers: `count` doubles
+ * between spaces, as short as they read back. */
 const char *model_meta_of(const model *m, const char *key);
 int model_meta_set(model *m, const char *key, const char *value, err *e);
 int model_meta_numbers(const model *m, const char *key, double *value, int count, err *e);
 int model_meta_set_numbers(model *m, const char *key, const double *value, int count, err *e);
 
-/* Appends the line `TOOL VERSION OPTIONS` (no third field where options is ""). Options that are not UTF-8 (file names can
- * be anything) get '?' for the bytes that are not. */
+/* Appends the line `TOOL VERSION OPTIONS` (no third field where options is ""). Options that are not UTF-8 (file names
+ * can be anything) get '?' for the bytes that are not. */
 int model_prov_add(model *m, const char *tool, const char *version, const char *options, err *e);
 
 /* The axis's count, or -1 where there is none. */

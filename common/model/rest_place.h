@@ -7,8 +7,8 @@
 /* Three lengths between commas, in metres or each with its unit. False: they are not. */
 bool rest_place_of(const char *text, double *place);
 
-/* The row of the axis nearest to the place (m), the lower of two as near; an element stands at the mean of its nodes. -1: the axis has no
- * places. */
+/* The row of the axis nearest to the place (m), the lower of two as near; an element stands at the mean of its nodes.
+ * -1: the axis has no places. */
 int64_t rest_place_row(const model *m, const char *axis, const double *place);
 
 #endif

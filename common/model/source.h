@@ -41,8 +41,8 @@ void source_end(const source *s, err *e);
 /* The next frame, into s->frame. 1: a frame; 0: the end, and s->frame stays the last; -1: e filled. */
 int source_next(source *s, err *e);
 
-/* At the end, for `--frame N` of a frame that is not there, or any frame where there is none (asked NULL: the last): says
- * what there is. Always -1. */
+/* At the end, for `--frame N` of a frame that is not there, or any frame where there is none (asked NULL: the last):
+ * says what there is. Always -1. */
 int source_no_frame(const source *s, const char *asked, err *e);
 
 /* s may be zeroed or part open. */

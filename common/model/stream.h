@@ -30,16 +30,16 @@ void model_reader_names(model_reader *r);
  * came, e->silent set. */
 int model_read(model_reader *r, model *m, err *e);
 
-/* The next frame, into f (freed and filled again). m: the model that the frame is to fit; NULL: as the stream's own body
- * says. 1: a frame; 0: the end, nothing follows it; -1: e filled. */
+/* The next frame, into f (freed and filled again). m: the model that the frame is to fit; NULL: as the stream's own
+ * body says. 1: a frame; 0: the end, nothing follows it; -1: e filled. */
 int model_read_frame(model_reader *r, const model *m, frame *f, err *e);
 
 /* text: the text encoding. Nothing is written yet. NULL with e filled. */
 model_writer *model_writer_open(out *o, bool text, err *e);
 void model_writer_close(model_writer *w);
 
-/* Errors of writing stick in the out and show at out_close. What a reader would refuse is refused here, before a byte of it
- * is written. */
+/* Errors of writing stick in the out and show at out_close. What a reader would refuse is refused
+ * here, before a byte of it is written. */
 int model_write(model_writer *w, const model *m, err *e);
 int model_write_frame(model_writer *w, const frame *f, err *e);
 int model_write_end(model_writer *w, err *e);

@@ -1,5 +1,5 @@
-/* Words, strings and numbers of the text encoding, both ways. What is read is cut and unescaped in place, in the line that
- * holds it. Nothing here says where an error is: that is text.c's.
+/* Words, strings and numbers of the text encoding, both ways. What is read is cut and unescaped in place, in the line
+ * that holds it. Nothing here says where an error is: that is text.c's.
  */
 #ifndef SINEW_TEXT_VALUE_H
 #define SINEW_TEXT_VALUE_H
@@ -22,8 +22,8 @@ char *text_quoted(char **p);
 /* 0 to 15, or -1. */
 int text_hex(char c);
 
-/* Reads one value of the type at p into memory; returns where it ends, or NULL. A string is the caller's to free (NULL: out
- * of memory). */
+/* Reads one value of the type at p into memory; returns where it ends, or NULL. A string is the
+ * caller's to free (NULL: out of memory). */
 char *text_value(model_type type, char *p, void *to);
 
 /* "numbers of f64, nan or inf": what text_value wants. */

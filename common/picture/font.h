@@ -28,8 +28,8 @@ void font_draw(font *t, image *im, int x, int baseline, const char *words, const
 void font_draw_middle(font *t, image *im, int x, int low, int high, int baseline, const char *words,
                       const float colour[3]);
 
-/* Cuts words short to at most `most` pixels, with three dots where they were longer. to: at least as large as words and 4
- * bytes. */
+/* Cuts words short to at most `most` pixels, with three dots where they were longer. to:
+ * at least as large as words and 4 bytes. */
 void font_shorten(font *t, const char *words, int most, char *to);
 
 #endif

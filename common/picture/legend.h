@@ -15,8 +15,8 @@ typedef struct legend_key {
 
 enum { LEGEND_TICKS = 32 };
 
-/* Round numbers (1, 2 or 5 times a power of ten apart) within low to high, at most `most`. Returns how many. decimals: what
- * they take to be told apart. */
+/* Round numbers (1, 2 or 5 times a power of ten apart) within low to high, at most `most`. Returns how many. decimals:
+ * what they take to be told apart. */
 int legend_ticks(double low, double high, int most, double tick[LEGEND_TICKS], int *decimals);
 
 int legend_bar_height(int size);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Shares of the shape's size: how far a corner may stand out of a face, how narrow a face may be that has no say, how thin a body
- * may be; and by how much normals of one plane may differ. */
+/* Shares of the shape's size: how far a corner may stand out of a face, how narrow a face may be that has no say, how
+ * thin a body may be; and by how much normals of one plane may differ. */
 static const double tolerance = 1e-5, narrow = 1e-7, flat = 1e-4, same = 1e-6;
 
 typedef struct corner_place {

@@ -11,8 +11,8 @@
 
 enum { CONVEX_FACES = 20000 /* at most: each node near the probe is asked of each plane */ };
 
-/* Fills a convex probe from o, its coordinates times scale. -1 with e filled, p to be freed all the same, for points and lines, open
- * edges, edges of more than two faces, what is not convex, what is flat, too many faces. */
+/* Fills a convex probe from o, its coordinates times scale. -1 with e filled, p to be freed all the same, for points
+ * and lines, open edges, edges of more than two faces, what is not convex, what is flat, too many faces. */
 int convex_of(probe *p, const obj *o, double scale, err *e);
 
 #endif

@@ -1,10 +1,11 @@
-/* The same question as probe_at's, asked of libccd: how deep a small ball about a point is in a probe, and which way is out, by the
- * support functions of the shapes (GJK to see whether they meet, then EPA). This is the one user of libccd.
+/* The same question as probe_at's, asked of libccd: how deep a small ball about a point is in a probe, and which way is
+ * out, by the support functions of the shapes (GJK to see whether they meet, then EPA). This is the one user of libccd.
  *
- * Solvers do not ask it. All shapes have a closed form for points, convex polyhedra too: the plane that is farthest. On a point
- * inside it gives libccd's answer, without its tolerance, and in 40 ns, or 150 of 128 planes, where EPA takes microseconds to fractions of a
- * millisecond (`make bench-msds` prints both); and a processor and a card compute the same. So libccd is the reference that tests hold the
- * closed forms to, over random points and poses of every shape. Nothing is kept.
+ * Solvers do not ask it. All shapes have a closed form for points, convex polyhedra too: the plane that is
+ * farthest. On a point inside it gives libccd's answer, without its tolerance, and in 40 ns, or 150 of 128
+ * planes, where EPA takes microseconds to fractions of a millisecond (`make bench-msds` prints both); and a
+ * processor and a card compute the same. So libccd is the reference that tests hold the closed forms to, over
+ * random points and poses of every shape. Nothing is kept.
  */
 #ifndef SINEW_NARROW_H
 #define SINEW_NARROW_H
@@ -13,9 +14,9 @@
 
 enum { NARROW_STARTS = 8 };
 
-/* Whether a ball of radius `ball`, m, about x meets the probe; t gets by how much, and the way out: the deepest of what is found from so
- * many directions to start from, since EPA (libccd 2.1) ends too early from some, one in twenty on a sphere, and then always says
- * too little. */
+/* Whether a ball of radius `ball`, m, about x meets the probe; t gets by how much, and the way out: the deepest of what
+ * is found from so many directions to start from, since EPA (libccd 2.1) ends too early from some, one in twenty on a
+ * sphere, and then always says too little. */
 bool narrow_at(const probe_placed *p, const double x[3], double ball, int starts, probe_touch *t);
 
 #endif

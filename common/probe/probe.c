@@ -48,7 +48,8 @@ probe probe_curved(double radius, double angle, double thickness, double edge)
     p.disc = radius - edge;
     p.tip = edge / p.sine;
     p.side = fmax(0, sqrt(fmax(0, p.disc * p.disc - edge * edge)) - p.tip * p.cosine);
-    /* All of the sector is as near to the middle of its axis as the tip is, or to the foot of its corners where it is wider. */
+    /* All of the sector is as near to the middle of its axis as the tip is, or to the
+     * foot of its corners where it is wider. */
     double foot = p.cosine * radius, across = p.sine * radius;
     double middle = foot > across ? .5 * radius / p.cosine : foot;
     double flat = fmax(middle, fmax(radius - middle, hypot(across, foot - middle)));
@@ -63,7 +64,8 @@ static bool is_length(double x)
     return x >= least_length && x <= most_length;
 }
 
-/* Lengths, or numbers, between commas: `least` to `most` of them, metres; degrees stands for which of them is an angle, or -1. */
+/* Lengths, or numbers, between commas: `least` to `most` of them, metres; degrees stands
+ * for which of them is an angle, or -1. */
 static int numbers(const char *text, const char *list, int least, int most, int degrees, double *to, err *e)
 {
     num_length length[4];
@@ -147,7 +149,8 @@ int probe_of(probe *p, const char *text, err *e)
     return err_usage(e, "--probe %.100s; expected %s", text, expected);
 }
 
-/* The farthest point of a curved array less its edge, along a direction of its plane: of the arc, a corner or the tip. */
+/* The farthest point of a curved array less its edge, along a direction of its
+ * plane: of the arc, a corner or the tip. */
 static void far_in_sector(const probe *p, double x, double z, double to[2])
 {
     const double mirror = x < 0 ? -1 : 1, u = fabs(x), length = hypot(x, z);

@@ -5,7 +5,7 @@
  *
  * A probe's frame: origin at the middle of its face, +z into the tissue, +x along an image's columns.
  *     sphere   radius R: it touches the origin with the pole that points along +z; its centre is at -R along z.
- *     linear   a box, its face width W along x by thickness T along y, and max(W, T) tall; its edges and corners rounded.
+ *     linear a box, its face width W along x by thickness T along y, and max(W, T) tall; its edges and corners rounded.
  *     curved   a sector of a disc of radius R in the x-z plane that opens by an angle about +z, its tip at -R along z,
  *              extruded by thickness T along y; its edges and corners rounded.
  *     convex   a convex polyhedron of an OBJ file, in whose coordinates the frame is.
@@ -75,16 +75,16 @@ typedef struct probe_touch {
     double way[3]; /* unit: the way out */
 } probe_touch;
 
-/* Reads "sphere:2cm", "linear:4cm,1cm", "curved:6cm,60,14mm" (degrees; both with an edge as a last length; by default a quarter of
- * the thickness, less where that would not go in) or "convex:FILE.obj", whose file probe_load reads; metres without a suffix. -1 with
- * e filled where it is none of these (status 2), or no such body can be (status 1). */
+/* Reads "sphere:2cm", "linear:4cm,1cm", "curved:6cm,60,14mm" (degrees; both with an edge as a last length; by default a
+ * quarter of the thickness, less where that would not go in) or "convex:FILE.obj", whose file probe_load reads; metres
+ * without a suffix. -1 with e filled where it is none of these (status 2), or no such body can be (status 1). */
 int probe_of(probe *p, const char *text, err *e);
 
 /* Writes what probe_of reads, with all there is of it; of a file only its base name. */
 void probe_text(const probe *p, char *to, size_t size);
 
-/* Reads the file of a convex probe, its coordinates times scale (to metres); of the others there is nothing to do. -1 with e
- * filled for what is not a closed convex surface. */
+/* Reads the file of a convex probe, its coordinates times scale (to metres); of the others there is nothing to do. -1
+ * with e filled for what is not a closed convex surface. */
 int probe_load(probe *p, double scale, err *e);
 
 /* A probe is freed so, whether or not it was loaded. */
@@ -104,7 +104,8 @@ probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share)
 /* Whether it is thinner than cells of this side, m: nodes are so far apart that it may go in between them. */
 bool probe_is_thin(const probe *p, double side);
 
-/* Whether the probe's face is wider than what these points (x 3, m) span, both of its sides: it presses like a plate. */
+/* Whether the probe's face is wider than what these points (x 3, m) span, both of
+ * its sides: it presses like a plate. */
 bool probe_is_plate(const probe_placed *at, const double *position, int64_t nodes);
 
 /* v turned by a unit quaternion. */
@@ -135,8 +136,8 @@ PROBE_FUNCTION probe_placed probe_place(const probe *p, const probe_pose *at)
     return placed;
 }
 
-/* The signed distance to what is in front of (below 0) or behind a flat shape's outline, and in front of or behind its thickness, put
- * together and rounded by `edge`: `flat` with its unit way (x, z), and y with its half-thickness. */
+/* The signed distance to what is in front of (below 0) or behind a flat shape's outline, and in front of or behind its
+ * thickness, put together and rounded by `edge`: `flat` with its unit way (x, z), and y with its half-thickness. */
 PROBE_FUNCTION probe_touch probe_extruded(double flat, const double flat_way[2], double y, double half, double edge)
 {
     probe_touch t;
@@ -158,7 +159,8 @@ PROBE_FUNCTION probe_touch probe_extruded(double flat, const double flat_way[2],
     return t;
 }
 
-/* A rectangle in the x-z plane about (0, -half z): the signed distance and the way, of the probe's face where two are as near. */
+/* A rectangle in the x-z plane about (0, -half z): the signed distance and the way, of
+ * the probe's face where two are as near. */
 PROBE_FUNCTION double probe_rectangle(const probe *p, double x, double z, double way[2])
 {
     const double over[2] = {fabs(x) - p->half[0], fabs(z) - p->half[2]};
@@ -170,8 +172,8 @@ PROBE_FUNCTION double probe_rectangle(const probe *p, double x, double z, double
     return away > 0 ? away : over[side ? 0 : 1];
 }
 
-/* The wedge of a sector within its disc, whose centre is at 0, 0: the signed distance and the way. The sides meet in the tip, at
- * `tip` along z, and end in corners on the circle. */
+/* The wedge of a sector within its disc, whose centre is at 0, 0: the signed distance and the way. The sides meet in
+ * the tip, at `tip` along z, and end in corners on the circle. */
 PROBE_FUNCTION double probe_sector(const probe *p, double x, double z, double way[2])
 {
     const double mirror = x < 0 ? -1. : 1., radius = sqrt(x * x + z * z);

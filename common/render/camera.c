@@ -131,8 +131,8 @@ int camera_look(camera *c, const double eye[3], const double target[3], const do
 
 /* ---- fitting */
 
-/* How far a set of points reaches toward the four sides of a picture and along the view. For perspective, a side's plane
- * through the eye leans by k, and what counts is how far a point lies beyond the plane through the origin: the
+/* How far a set of points reaches toward the four sides of a picture and along the view. For perspective, a side's
+ * plane through the eye leans by k, and what counts is how far a point lies beyond the plane through the origin: the
  * greatest of (x + k z) and so on; from those of two opposite sides follow the eye's place and distance. */
 typedef struct extent {
     const camera *camera;

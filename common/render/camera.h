@@ -20,8 +20,8 @@ typedef struct camera {
 int camera_axis(const char *name, double axis[3], err *e);
 
 /* Turns the camera to a named view of a model whose up and front are as given (front: the way that it looks, so "front"
- * looks the other way; "left" is seen from the model's own left). Eye and half_height are for camera_fit_* to set. -1 with e filled: no such view
- * (a near miss is offered), or up and front along one line. */
+ * looks the other way; "left" is seen from the model's own left). Eye and half_height are for camera_fit_* to set. -1
+ * with e filled: no such view (a near miss is offered), or up and front along one line. */
 int camera_view(camera *c, const char *name, const double up[3], const double front[3], err *e);
 
 /* A camera at a place that looks at another; angle: the field of view from top to bottom, degrees, for

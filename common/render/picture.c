@@ -307,8 +307,8 @@ static int legend_room(const work *w)
     return tallest;
 }
 
-/* The number of columns depends on the room for legends, and that room on the width of a column and the size of letters.
- * So this begins with large letters and no room, and lets letters shrink and room grow until all fits. */
+/* The number of columns depends on the room for legends, and that room on the width of a column and the size of
+ * letters. So this begins with large letters and no room, and lets letters shrink and room grow until all fits. */
 static int lay_out(work *w, err *e)
 {
     const picture_spec *s = w->p->spec;

@@ -1,6 +1,6 @@
 /* A picture of a model: one panel or a sheet of several, each with its own things, frame and view, with captions and
- * legends. A picture owns what it keeps from one frame to the next (the font, threads and cameras are borrowed or kept), so
- * that the frames of a film are seen alike. The spec is the caller's.
+ * legends. A picture owns what it keeps from one frame to the next (the font, threads and cameras are borrowed or
+ * kept), so that the frames of a film are seen alike. The spec is the caller's.
  */
 #ifndef SINEW_PICTURE_H
 #define SINEW_PICTURE_H

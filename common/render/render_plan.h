@@ -1,5 +1,5 @@
-/* What the command line of sinew-render asks for, understood and checked before anything is read: the picture's spec, which
- * frames, and where to. The plan borrows from the options and owns its lists.
+/* What the command line of sinew-render asks for, understood and checked before anything is read: the picture's spec,
+ * which frames, and where to. The plan borrows from the options and owns its lists.
  */
 #ifndef SINEW_RENDER_PLAN_H
 #define SINEW_RENDER_PLAN_H

@@ -56,7 +56,8 @@ typedef struct showing {
     int seen;         /* of SHOWING_*: what there is of it; SHOWING_MUSCLES also where voxels show muscle */
 } showing;
 
-/* -1 with e filled: what is wanted is not there (with the names there are), there is nothing to be seen, or no memory. */
+/* -1 with e filled: what is wanted is not there (with the names there are), there is
+ * nothing to be seen, or no memory. */
 int showing_make(showing *b, const model *m, const showing_want *want, err *e);
 void showing_free(showing *b);
 

@@ -23,7 +23,8 @@ void showing_linear(const uint8_t srgb[3], float to[3]);
 /* Whether all names asked for are names of something. */
 int showing_check_names(const model *m, const showing_want *want, err *e);
 
-/* All surfaces (or those that names say), the elements, the spheres, the probe. at_nodes: the field at the nodes, or NULL. */
+/* All surfaces (or those that names say), the elements, the spheres, the probe.
+ * at_nodes: the field at the nodes, or NULL. */
 int showing_surfaces(showing *b, const model *m, const showing_want *want, const double *at_nodes, err *e);
 int showing_elements(showing *b, const model *m, const showing_want *want, err *e);
 int showing_spheres(showing *b, const model *m, const showing_want *want, err *e);

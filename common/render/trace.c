@@ -23,9 +23,9 @@ static double now(void)
 
 /* ---- trees */
 
-/* Where two meshes are in one plane rounding would choose between them anew at every pixel. So each is a little nearer the
- * eye than those before it: by a share of its distance, which moves nothing in the picture, or along parallel rays. The
- * share is above the rounding of distances and below what the rays of light are lifted by and pixels are wide. */
+/* Where two meshes are in one plane rounding would choose between them anew at every pixel. So each is a little nearer
+ * the eye than those before it: by a share of its distance, which moves nothing in the picture, or along parallel rays.
+ * The share is above the rounding of distances and below what the rays of light are lifted by and pixels are wide. */
 static double nearer_by(const scene *s, int64_t mesh)
 {
     return (double)mesh * fmin(1e-5, 2e-4 / (double)s->meshes);

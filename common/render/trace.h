@@ -28,8 +28,9 @@ typedef struct trace_report {
     int64_t covered; /* pixels in which anything is seen: 0 is an empty picture */
 } trace_report;
 
-/* Draws into im, which keeps its size and is overwritten whole. Of meshes in one plane the last is seen. report may be NULL. -1 with e filled: a scene that does not
- * check, a camera that is not finite, no memory. An empty scene is the background alone. */
+/* Draws into im, which keeps its size and is overwritten whole. Of meshes in one plane the last is seen.
+ * report may be NULL. -1 with e filled: a scene that does not check, a camera that is not finite, no memory.
+ * An empty scene is the background alone. */
 int trace(const scene *s, const camera *c, image *im, pool *p, const trace_options *o, trace_report *report, err *e);
 
 #endif

@@ -18,7 +18,8 @@ static float mirrored(unsigned i, unsigned base)
     return sum;
 }
 
-/* The second dimension of Sobol's sequence: with mirrored(i, 2), any 4^n points on from a multiple lie one in each cell. */
+/* The second dimension of Sobol's sequence: with mirrored(i, 2), any 4^n points on
+ * from a multiple lie one in each cell. */
 static float sobol(unsigned i)
 {
     unsigned sum = 0;

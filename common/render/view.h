@@ -1,5 +1,5 @@
-/* What every tile of a trace shares and none changes: the scene with its trees, the camera in floats, the lights and the
- * sample patterns. trace() owns it.
+/* What every tile of a trace shares and none changes: the scene with its trees, the camera in floats, the lights and
+ * the sample patterns. trace() owns it.
  */
 #ifndef SINEW_RENDER_VIEW_H
 #define SINEW_RENDER_VIEW_H

@@ -64,8 +64,8 @@ static bool foot_inside(const double *a, const double *b, const double *c, const
     return true;
 }
 
-/* The nearest of the three sides and the foot of the perpendicular: the sides alone are right for a triangle so thin that
- * its plane means nothing. */
+/* The nearest of the three sides and the foot of the perpendicular: the sides alone are right for a triangle so thin
+ * that its plane means nothing. */
 double closest_triangle(const double *a, const double *b, const double *c, const double *q, double *p)
 {
     double near[4][3], distance[4];

@@ -23,8 +23,8 @@ typedef struct closest_shape {
     int64_t point_capacity, triangle_capacity;
 } closest_shape;
 
-/* Takes the primitive of `count` corners: 1 = point, 2 = line, more = polygon. position: vertices x 3; vertex: its corners'
- * vertices. -1 with e filled on no memory. */
+/* Takes the primitive of `count` corners: 1 = point, 2 = line, more = polygon. position: vertices x 3; vertex: its
+ * corners' vertices. -1 with e filled on no memory. */
 int closest_shape_of(closest_shape *s, const double *position, const int32_t *vertex, int64_t count, err *e);
 void closest_shape_free(closest_shape *s);
 

@@ -133,7 +133,8 @@ int embree_add_faces(embree *b, int corners, int64_t vertices, const float *posi
 
 /* ---- spheres */
 
-/* Embree's own are met ray by ray, not packet by packet, which takes twice as long for the small ones that many nodes are. */
+/* Embree's own are met ray by ray, not packet by packet, which takes twice as long
+ * for the small ones that many nodes are. */
 
 /* The rows of a packet of any number of rays, as of an embree_packet. */
 enum { FROM = 0, START = 3, ALONG = 4, END = 8, NORMAL = 12, U = 15, V, ITEM, GEOMETRY, INSTANCE };
@@ -152,8 +153,8 @@ static lanes lanes_of(void *rays, const int *valid, size_t n)
         {from, from + n, from + 2 * n}, {along, along + n, along + 2 * n}, f + START * n, f + END * n, valid};
 }
 
-/* Where each of n rays meets the sphere, in multiples of along, and for which it is so: -1, else 0. The middle of what is
- * within the sphere comes first and half of it then: exact from afar too. */
+/* Where each of n rays meets the sphere, in multiples of along, and for which it is so: -1, else 0. The middle of what
+ * is within the sphere comes first and half of it then: exact from afar too. */
 static inline void meet(const lanes *l, size_t n, const float *sphere, float *restrict at, int *restrict met)
 {
     const float x = sphere[0], y = sphere[1], z = sphere[2], square = sphere[3] * sphere[3];

@@ -1,6 +1,6 @@
-/* A bounding volume hierarchy of boxes, faces or spheres: the one user of Embree, and the one file that knows which of its
- * versions this is. Faces and spheres are met by packets of rays; boxes only overlap, as candidates.c needs it.
- * The creator owns it. Once committed, any number of threads may ask at once.
+/* A bounding volume hierarchy of boxes, faces or spheres: the one user of Embree, and the one file that knows which of
+ * its versions this is. Faces and spheres are met by packets of rays; boxes only overlap, as candidates.c needs it. The
+ * creator owns it. Once committed, any number of threads may ask at once.
  */
 #ifndef SINEW_EMBREE_H
 #define SINEW_EMBREE_H

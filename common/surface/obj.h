@@ -51,9 +51,9 @@ int64_t obj_line_number(const obj *o, int64_t offset);
 
 /* Writes the text again with these positions (and normals; NULL: as they were). A vertex whose position equals the
  * one read keeps its line to the byte; otherwise its three numbers are written anew and what follows them on
- * the line (weight, colour) stays. A position gets 9 + ceil(log10(largest |coordinate| / extent)) significant digits, at
- * least 9 and at most 17, of the surface as it was read (its longest side): nine of its extent however far away it
- * lies. A normal gets 9. */
+ * the line (weight, colour) stays. A position gets 9 + ceil(log10(largest |coordinate| / extent)) significant
+ * digits, at least 9 and at most 17, of the surface as it was read (its longest side): nine of its extent
+ * however far away it lies. A normal gets 9. */
 void obj_write(const obj *o, const double *position, const double *normal, out *to);
 
 #endif

@@ -1,6 +1,6 @@
-/* The text of an OBJ as words on logical lines: a backslash before the line end joins a line to the next, and a word that
- * begins with '#' begins a comment, which joins nothing (its last byte may be a path's backslash). Borrows the text,
- * which ends with a NUL.
+/* The text of an OBJ as words on logical lines: a backslash before the line end joins a line to the next, and a
+ * word that begins with '#' begins a comment, which joins nothing (its last byte may be a path's backslash).
+ * Borrows the text, which ends with a NUL.
  */
 #ifndef SINEW_OBJ_WORDS_H
 #define SINEW_OBJ_WORDS_H

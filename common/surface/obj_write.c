@@ -93,8 +93,8 @@ static void write_joined(const char *from, const char *to, out *sink)
     out_write(sink, from, (size_t)(p - from));
 }
 
-/* How many digits give nine of the surface's extent: one more for each power of ten that the farthest coordinate is above
- * it. Of the vertices that something uses, if any is. */
+/* How many digits give nine of the surface's extent: one more for each power of ten that the farthest coordinate is
+ * above it. Of the vertices that something uses, if any is. */
 static int digits_of(const obj *o)
 {
     double extent = 0, farthest = 0, low[3], high[3];

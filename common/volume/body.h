@@ -1,11 +1,13 @@
-/* What lies where in a body: a file that people write, which places a volume image (and with it the model and the surfaces made from it) and
- * other surfaces, such as a skeleton and a skin, in one frame. PST figures 2 and 8. One thing a line:
+/* What lies where in a body: a file that people write, which places a volume image (and with it the
+ * model and the surfaces made from it) and other surfaces, such as a skeleton and a skin, in one
+ * frame. PST figures 2 and 8. One thing a line:
  *
  *     volume             move=10cm,0,1.2m turn=0,0,0.7071068,0.7071068
  *     surface skin.obj   unit=mm move=0,0,2mm
  *     surface vein.obj   unit=mm in=volume
  *
- * A place p in the part is at turn(p) + move in the body; in=volume: it is first where the volume is. A body owns its parts.
+ * A place p in the part is at turn(p) + move in the body; in=volume: it is first
+ * where the volume is. A body owns its parts.
  */
 #ifndef SINEW_BODY_H
 #define SINEW_BODY_H

@@ -1,5 +1,5 @@
-/* What the headers of NRRD and MetaImage have in common: lines of a key and a value, values that are words, numbers and sizes.
- * Texts are cut in place, in the stream's line. Errors say file:line.
+/* What the headers of NRRD and MetaImage have in common: lines of a key and a value, values that are words, numbers and
+ * sizes. Texts are cut in place, in the stream's line. Errors say file:line.
  */
 #ifndef SINEW_HEADER_H
 #define SINEW_HEADER_H

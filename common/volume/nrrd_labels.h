@@ -1,5 +1,5 @@
-/* Names of labels in NRRD's keys, as Slicer writes them for its segmentations: SegmentN_Name, SegmentN_LabelValue. A labels_in
- * owns what it has gathered until it is given to a volume.
+/* Names of labels in NRRD's keys, as Slicer writes them for its segmentations: SegmentN_Name, SegmentN_LabelValue. A
+ * labels_in owns what it has gathered until it is given to a volume.
  */
 #ifndef SINEW_NRRD_LABELS_H
 #define SINEW_NRRD_LABELS_H

@@ -414,8 +414,8 @@ static bool is_domain(const header *h, const axis *a)
     return false;
 }
 
-/* The axes of space, in order; returns how many, or -1. An axis of one that is none is passed over; a list of images in a plane
- * is the third. */
+/* The axes of space, in order; returns how many, or -1. An axis of one that is none is passed over; a
+ * list of images in a plane is the third. */
 static int find_axes(const header *h, const axis *of[3], err *e)
 {
     int count = 0;

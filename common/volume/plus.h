@@ -36,7 +36,8 @@ typedef struct plus {
 /* transform: "ProbeToReference", or NULL (see poses.h). */
 int plus_open(plus *p, in *source, const char *transform, err *e);
 
-/* The next tracked frame: its time, s, its line, and what takes `from` to `to`, 16 numbers in mm. 1, 0 at the end, -1. */
+/* The next tracked frame: its time, s, its line, and what takes `from` to `to`, 16
+ * numbers in mm. 1, 0 at the end, -1. */
 int plus_next(plus *p, double *time, int64_t *line, double m[16], err *e);
 
 #endif

@@ -1,7 +1,7 @@
-/* Where the probe is, frame by frame, from a stream that may be live: lines `time tx ty tz qx qy qz qw` (TUM's: s, m, a unit
- * quaternion, scalar last), `method fem` and `method msds` between them, comments; or the header of a PLUS sequence file
- * (MetaImage or NRRD), whose matrices are in mm. One line is read for each event, and no more. The stream stays the
- * caller's; nothing is allocated, and there is nothing to free.
+/* Where the probe is, frame by frame, from a stream that may be live: lines `time tx ty tz qx qy qz qw` (TUM's: s, m, a
+ * unit quaternion, scalar last), `method fem` and `method msds` between them, comments; or the header of a PLUS
+ * sequence file (MetaImage or NRRD), whose matrices are in mm. One line is read for each event, and no more. The stream
+ * stays the caller's; nothing is allocated, and there is nothing to free.
  */
 #ifndef SINEW_POSES_H
 #define SINEW_POSES_H
@@ -11,7 +11,8 @@
 
 typedef enum poses_kind { POSES_POSE, POSES_FEM, POSES_MSDS } poses_kind;
 
-/* How far from 1 the length of a quaternion may be, which is then made 1; and the cosine between a matrix's axes from 0. */
+/* How far from 1 the length of a quaternion may be, which is then made 1; and the
+ * cosine between a matrix's axes from 0. */
 #define POSES_LENGTH 0.01
 #define POSES_COSINE 0.001
 
@@ -30,14 +31,15 @@ typedef struct poses {
     double last; /* the time of the pose before; -inf: there was none */
 } poses;
 
-/* Looks at the first byte. transform: which of a sequence's, such as "ProbeToReference", composed from those that it has;
- * NULL: the first that it can give of ImageToReference, ProbeToReference, ImageToTracker, ProbeToTracker. An image's
- * frame (columns, rows, normal; pixels) becomes a probe's at the middle of its first row; any other is taken as it is. */
+/* Looks at the first byte. transform: which of a sequence's, such as "ProbeToReference", composed from those
+ * that it has; NULL: the first that it can give of ImageToReference, ProbeToReference, ImageToTracker,
+ * ProbeToTracker. An image's frame (columns, rows, normal; pixels) becomes a probe's at the middle of its
+ * first row; any other is taken as it is. */
 int poses_open(poses *p, in *source, const char *transform, err *e);
 
-/* The next event. 1: there is one; 0: the end; -1: e filled, with the line: what is not a number or not finite, a quaternion
- * that is not of length 1, a matrix that is not a rotation, a time before that of the pose before. Frames of a sequence that
- * were not tracked are left out and counted in p->frames.skipped. */
+/* The next event. 1: there is one; 0: the end; -1: e filled, with the line: what is not a number or not finite, a
+ * quaternion that is not of length 1, a matrix that is not a rotation, a time before that of the pose before. Frames of
+ * a sequence that were not tracked are left out and counted in p->frames.skipped. */
 int poses_next(poses *p, poses_event *to, err *e);
 
 /* The rotation as a matrix: row i, column j at 3 i + j. */

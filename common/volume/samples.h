@@ -28,11 +28,12 @@ void samples_take(const volume *v, const samples_box *b, float *to);
 /* 1 where a voxel has the value, else 0. */
 void samples_mark(const volume *v, const samples_box *b, int64_t value, float *to);
 
-/* Every value but 0 that there is, ascending; the caller frees *list. Returns how many, or -1 with e filled: voxels that are
- * no whole numbers, more than SAMPLES_LABELS values. */
+/* Every value but 0 that there is, ascending; the caller frees *list. Returns how many, or -1 with e filled: voxels
+ * that are no whole numbers, more than SAMPLES_LABELS values. */
 int64_t samples_labels(const volume *v, samples_label **list, err *e);
 
-/* Gaussian filter of samples, size[0] fastest; sigma in samples, 0: not along that axis. Beyond the ends it goes on as at the ends.
+/* Gaussian filter of samples, size[0] fastest; sigma in samples, 0: not along that axis.
+ * Beyond the ends it goes on as at the ends.
  */
 int samples_filter(float *value, const int64_t size[3], const double sigma[3], err *e);
 

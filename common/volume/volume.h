@@ -1,6 +1,6 @@
-/* A volume image in memory: voxels of one number each, and where they lie in the patient. Its geometry is as on disk, LPS
- * millimetres (x to the left, y to the back, z to the head), so that it is written as it was read; places that are asked
- * for or given are metres. A volume owns its voxels and labels; a zeroed one is empty.
+/* A volume image in memory: voxels of one number each, and where they lie in the patient. Its geometry is as on disk,
+ * LPS millimetres (x to the left, y to the back, z to the head), so that it is written as it was read; places that are
+ * asked for or given are metres. A volume owns its voxels and labels; a zeroed one is empty.
  */
 #ifndef SINEW_VOLUME_H
 #define SINEW_VOLUME_H

@@ -41,8 +41,8 @@ static __device__ inline probe_touch contact_at(const tissue *t, const tissue_fr
     return probe_at(&f->probe, x);
 }
 
-/* Lists a node, or not, with the force of the frame before. slack: over the probe's size, of those with a force and those
- * without; follows: a node with a force is listed wherever it is. */
+/* Lists a node, or not, with the force of the frame before. slack: over the probe's size, of those with a force and
+ * those without; follows: a node with a force is listed wherever it is. */
 static __device__ inline void contact_consider(const tissue *t, const tissue_frame *f, int32_t n, const double from[3],
                                                double held_slack, double slack, bool follows)
 {

@@ -1,5 +1,6 @@
-/* A cycle of multigrid on the card: smooths, goes through the coarser lattices, smooths again; symmetric, so that it can stand in for
- * the inverse in conjugate gradients. A phase ends with a barrier; sums in a row have one order. Everything is static.
+/* A cycle of multigrid on the card: smooths, goes through the coarser lattices, smooths again; symmetric,
+ * so that it can stand in for the inverse in conjugate gradients. A phase ends with a barrier; sums in a
+ * row have one order. Everything is static.
  */
 #ifndef SINEW_CUDA_CYCLE_CUH
 #define SINEW_CUDA_CYCLE_CUH
@@ -17,8 +18,8 @@ static __device__ inline void half_add(uint4 eight, __half ninth, float4 p, floa
     y->z += d.x * p.x + d.y * p.y + __half2float(ninth) * p.z;
 }
 
-/* left - matrix z at a node. The matrix is one of half precision, but what it does to a field without strain is exact: differences
- * to the neighbours, and the sum of the row. */
+/* left - matrix z at a node. The matrix is one of half precision, but what it does to a field without strain is exact:
+ * differences to the neighbours, and the sum of the row. */
 static __device__ inline float4 level_rest(const tissue_level *l, int32_t n, const float4 *z)
 {
     const int32_t slice = n / LANES, lane = n % LANES, last = l->start[slice + 1];

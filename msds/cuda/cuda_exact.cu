@@ -1,7 +1,8 @@
-/* Exact frames on the card: equilibrium to a tolerance, by conjugate gradients that cycles of multigrid precondition, all of a frame
- * in one launch. As the CPU's (exact.h), a node of contact is kept on its side of a plane: those that are on it (active) are
- * held there, and let go of where they would have to be pulled; those that pass it are taken in; until neither happens. The
- * displacement and what is left of the load are in double; a search for what to add to it is in single precision.
+/* Exact frames on the card: equilibrium to a tolerance, by conjugate gradients that cycles of multigrid
+ * precondition, all of a frame in one launch. As the CPU's (exact.h), a node of contact is kept on its side of a
+ * plane: those that are on it (active) are held there, and let go of where they would have to be pulled; those that
+ * pass it are taken in; until neither happens. The displacement and what is left of the load are in double; a search
+ * for what to add to it is in single precision.
  */
 #include "msds/cuda/cuda_cycle.cuh"
 
@@ -72,8 +73,9 @@ static __device__ void impose(const tissue *t, const tissue_frame *f, const tiss
     grid_barrier(t->arrived);
 }
 
-/* What the elements pull a node with. A field without strain is one without force: so differences to the neighbours stand for the
- * diagonal, and what single precision of the matrix leaves is a share of the strain, not of the displacement. */
+/* What the elements pull a node with. A field without strain is one without force: so differences to
+ * the neighbours stand for the diagonal, and what single precision of the matrix leaves is a share
+ * of the strain, not of the displacement. */
 static __device__ inline void pulled_precisely(const tissue *t, int32_t n, double y[3])
 {
     const int32_t slice = n / LANES, lane = n % LANES, last = t->start[slice + 1];

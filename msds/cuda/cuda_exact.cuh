@@ -1,4 +1,5 @@
-/* What the kernel of exact frames sees besides the tissue: the coarser lattices (levels.h) on the card. Passed by value; owns nothing.
+/* What the kernel of exact frames sees besides the tissue: the coarser lattices (levels.h) on
+ * the card. Passed by value; owns nothing.
  */
 #ifndef SINEW_CUDA_EXACT_CUH
 #define SINEW_CUDA_EXACT_CUH
@@ -11,8 +12,9 @@ extern "C" {
 #include "msds/cuda/levels.h"
 }
 
-/* Steps of Chebyshev's polynomial before and after a coarser lattice has its say: odd, see FINISHED. It damps eigenvalues from the
- * largest down to so small a share of it; by trials on lattices of 8,192 and 524,288 nodes at nu = .45. */
+/* Steps of Chebyshev's polynomial before and after a coarser lattice has its say: odd, see
+ * FINISHED. It damps eigenvalues from the largest down to so small a share of it; by trials on
+ * lattices of 8,192 and 524,288 nodes at nu = .45. */
 enum { SMOOTH = 3, FINISHED = 1 /* where the steps leave the result, of the two that they go between */ };
 static const double smooth_share = .1;
 
@@ -47,8 +49,8 @@ typedef struct tissue_exact {
     uint8_t *active; /* nodes: kept on their plane */
 } tissue_exact;
 
-/* Puts them on the card, from the stiffness on the host; what the mesh has already stays with t. *memory and *bytes get the piece of
- * the card's memory that they take, which is the caller's. -1 with e filled. */
+/* Puts them on the card, from the stiffness on the host; what the mesh has already stays with t. *memory and *bytes get
+ * the piece of the card's memory that they take, which is the caller's. -1 with e filled. */
 int tissue_exact_make(tissue_exact *x, const tissue *t, const msds_problem *p, const slices *s, const lanes_matrix *m,
                       pool *threads, char **memory, int64_t *bytes, err *e);
 

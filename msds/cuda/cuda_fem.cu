@@ -1,5 +1,5 @@
-/* Frames of the FEM by conjugate gradients on the card: cg.c's, sum for sum, all iterations of a frame in one launch. The
- * search's direction is made where it is multiplied, so an iteration takes two barriers.
+/* Frames of the FEM by conjugate gradients on the card: cg.c's, sum for sum, all iterations of a frame in one launch.
+ * The search's direction is made where it is multiplied, so an iteration takes two barriers.
  */
 #include "msds/cuda/cuda_contact.cuh"
 
@@ -191,8 +191,8 @@ static __device__ double total(const tissue *t, tissue_part which, grid_scratch 
     return grid_total(t->part + which * t->chunks, t->chunks, s);
 }
 
-/* cg_solve. What is summed after a barrier is summed by every block, in the same order; no part is filled again before another
- * barrier. */
+/* cg_solve. What is summed after a barrier is summed by every block, in the same order; no part
+ * is filled again before another barrier. */
 template <int AHEAD>
 static __device__ void solve(const tissue *t, const tissue_frame *f, int32_t iterations, grid_scratch *s)
 {

@@ -1,6 +1,6 @@
-/* What a kernel needs that runs a whole frame in one launch: a barrier for all its blocks, which are all on the card at once (a
- * cooperative launch), and sums in one fixed order, those of the CPU's loops (lanes.h, sums.h) where it has them. Everything
- * here is static and owns nothing.
+/* What a kernel needs that runs a whole frame in one launch: a barrier for all its blocks, which are all on the card at
+ * once (a cooperative launch), and sums in one fixed order, those of the CPU's loops (lanes.h, sums.h) where it has
+ * them. Everything here is static and owns nothing.
  */
 #ifndef SINEW_CUDA_GRID_CUH
 #define SINEW_CUDA_GRID_CUH
@@ -22,8 +22,8 @@ typedef struct grid_scratch {
     double warp[GRID_WARPS];
 } grid_scratch;
 
-/* Waits for all blocks: what they wrote before is there for all after. `arrived` counts on from launch to launch, all of
- * so many blocks. */
+/* Waits for all blocks: what they wrote before is there for all after. `arrived` counts on from
+ * launch to launch, all of so many blocks. */
 static __device__ inline void grid_barrier(unsigned long long *arrived)
 {
     __syncthreads();

@@ -1,5 +1,5 @@
-/* The coarser lattices on the card, as smoothing wants them. The matrices there are in half precision: they only lead the search
- * (cuda_exact.cu), and half the bytes are half the time.
+/* The coarser lattices on the card, as smoothing wants them. The matrices there are in half precision: they only lead
+ * the search (cuda_exact.cu), and half the bytes are half the time.
  */
 #include "msds/cuda/cuda_exact.cuh"
 #include "msds/cuda/cuda_room.cuh"
@@ -35,8 +35,8 @@ static int put_weights(char *memory, int64_t *used, tissue_weights *to, const le
                : 0;
 }
 
-/* A level's matrix as smoothing wants it: blocks in half precision, times `scale`; and what a row's blocks sum up to, which is
- * nothing on the mesh. */
+/* A level's matrix as smoothing wants it: blocks in half precision, times `scale`; and what a row's blocks sum up to,
+ * which is nothing on the mesh. */
 typedef struct host_level {
     uint4 *eight;
     __half *ninth;

@@ -305,8 +305,8 @@ cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t,
                : cudaLaunchCooperativeKernel(kernel, dim3((unsigned)blocks), dim3(GRID_THREADS), with, 0, stream);
 }
 
-/* A convex probe's planes go to the card where they are not those of the frame before: by the stream of the frames, which waits for no
- * other. */
+/* A convex probe's planes go to the card where they are not those of the frame before: by the stream of
+ * the frames, which waits for no other. */
 static int put_planes(cuda_state *s, const probe *shape, err *e)
 {
     const size_t bytes = 4 * (size_t)shape->planes * sizeof *s->planes;

@@ -54,8 +54,9 @@ static __device__ void push(const tissue *t, const tissue_frame *f, int32_t n, f
         t->outcome->sight.met = true;
 }
 
-/* AHEAD springs are loaded before the first of them is computed, each whole with its neighbour's number: what is computed has
- * branches (of division and root), past which no compiler moves loads, and a small mesh waits for nothing but loads. */
+/* AHEAD springs are loaded before the first of them is computed, each whole with its neighbour's
+ * number: what is computed has branches (of division and root), past which no compiler moves loads, and
+ * a small mesh waits for nothing but loads. */
 template <int AHEAD> static __device__ inline void move_node(const tissue *t, const tissue_frame *f, int32_t n)
 {
     const float4 x = t->place[n], u = t->u[n], v = t->v[n], weight = t->weight[n];

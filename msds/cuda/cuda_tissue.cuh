@@ -1,6 +1,6 @@
-/* What the kernels of msds-run see of a model on the card, what they are asked for a frame, and how it is started. Views are
- * passed by value and own nothing. Arrays over nodes are in the slices' order (slices.h); a number in each direction and a fourth
- * are a float4.
+/* What the kernels of msds-run see of a model on the card, what they are asked for a frame, and how it is started.
+ * Views are passed by value and own nothing. Arrays over nodes are in the slices' order (slices.h); a number in each
+ * direction and a fourth are a float4.
  */
 #ifndef SINEW_CUDA_TISSUE_CUH
 #define SINEW_CUDA_TISSUE_CUH
@@ -72,8 +72,8 @@ typedef struct tissue_frame {
     bool touched, penalty;
 } tissue_frame;
 
-/* Starts a frame on the stream, by the kernel that `of` names for a card of so many multiprocessors; more: its third argument, or
- * NULL. As many blocks as there are chunks, or as the card holds at once. */
+/* Starts a frame on the stream, by the kernel that `of` names for a card of so many multiprocessors; more: its third
+ * argument, or NULL. As many blocks as there are chunks, or as the card holds at once. */
 cudaError_t tissue_start(tissue_kernel which, const void *(*of)(const tissue *t, int processors), const tissue *t,
                          const tissue_frame *f, void *more, cudaStream_t stream);
 

@@ -16,7 +16,8 @@ enum {
 /* The largest eigenvalue is found so far from below. */
 static const double short_of = 1.1;
 
-/* What moves counts as so much stiffer where a matrix is inverted: a lattice's node at the rim of the mesh may have hardly any. */
+/* What moves counts as so much stiffer where a matrix is inverted: a lattice's node at
+ * the rim of the mesh may have hardly any. */
 static const double shift = 1e-5;
 
 /* ---- places */

@@ -1,8 +1,8 @@
-/* Coarser lattices over a mesh, for solvers that go through them (geometric multigrid): each has half the nodes a side, and the
- * stiffness that the finer one has between fields that are trilinear on it (Galerkin). The mesh itself may be of any tetrahedra: a
- * node takes part with its place among the eight nodes around it; where the mesh is a lattice of five tetrahedra a cell the coarser
- * ones fit it. Fixed nodes take no part, so labels that hold nodes fast are held on every lattice. The creator owns it; the matrix of
- * level 0 is the mesh's and borrowed.
+/* Coarser lattices over a mesh, for solvers that go through them (geometric multigrid): each has half the nodes a side,
+ * and the stiffness that the finer one has between fields that are trilinear on it (Galerkin). The mesh itself may be
+ * of any tetrahedra: a node takes part with its place among the eight nodes around it; where the mesh is a lattice of
+ * five tetrahedra a cell the coarser ones fit it. Fixed nodes take no part, so labels that hold nodes fast are held on
+ * every lattice. The creator owns it; the matrix of level 0 is the mesh's and borrowed.
  */
 #ifndef SINEW_LEVELS_H
 #define SINEW_LEVELS_H
@@ -11,8 +11,8 @@
 
 enum { LEVELS_MOST = 12, LEVELS_COARSEST = 100 /* nodes: so few are solved for directly */ };
 
-/* A sparse matrix of one number a pair of nodes; rows in slices of LANES, as slices.h has them. A lane without one: its first
- * column with weight 0. */
+/* A sparse matrix of one number a pair of nodes; rows in slices of LANES, as slices.h has them. A lane without one: its
+ * first column with weight 0. */
 typedef struct levels_weights {
     int64_t count, slots; /* slices */
     int32_t *start;       /* count + 1 */
@@ -37,8 +37,8 @@ typedef struct levels {
     int64_t order;   /* 3 x its nodes */
 } levels;
 
-/* Makes l (zeroed) of the stiffness of p's mesh, as cg_fill() gives it, which stays borrowed. -1 with e filled; to be freed in
- * every case. */
+/* Makes l (zeroed) of the stiffness of p's mesh, as cg_fill() gives it, which stays borrowed. -1
+ * with e filled; to be freed in every case. */
 int levels_make(levels *l, const msds_problem *p, const slices *s, const lanes_matrix *m, pool *threads, err *e);
 void levels_free(levels *l);
 

@@ -1,5 +1,5 @@
-/* The CUDA back end of msds-run, in single precision but for exact frames. A state belongs to who created it; what a method needs is
- * made when it is first asked for. Only where CUDA is built in.
+/* The CUDA back end of msds-run, in single precision but for exact frames. A state belongs to who created it; what a
+ * method needs is made when it is first asked for. Only where CUDA is built in.
  */
 #ifndef SINEW_MSDS_CUDA_H
 #define SINEW_MSDS_CUDA_H

@@ -1,5 +1,6 @@
-/* What elements are made of: a model's table of volumes, all of one, or by the labels of an image. Each element is of the label at
- * its centre; what has none (0, or outside the image) is of the volume `tissue`. The table of materials must be there.
+/* What elements are made of: a model's table of volumes, all of one, or by the labels of an image. Each
+ * element is of the label at its centre; what has none (0, or outside the image) is of the volume
+ * `tissue`. The table of materials must be there.
  */
 #ifndef SINEW_MESH_LABELS_H
 #define SINEW_MESH_LABELS_H
@@ -7,10 +8,10 @@
 #include "model/model.h"
 #include "volume/volume.h"
 
-/* Adds volume.* and element.volume. labels: NULL: all is tissue. A label is named as the image names it, else labelN; two labels of
- * one name are one volume. A volume is of the material of its name, else of the first. -1 with e filled: labels that are not whole
- * numbers, no memory. where: the image's name. What labels the image
- * or its names have, but no element, is noted. */
+/* Adds volume.* and element.volume. labels: NULL: all is tissue. A label is named as the image names it, else
+ * labelN; two labels of one name are one volume. A volume is of the material of its name, else of the first. -1 with
+ * e filled: labels that are not whole numbers, no memory. where: the image's name. What labels the image or its
+ * names have, but no element, is noted. */
 int mesh_label(model *m, const volume *labels, const char *where, notes *warnings, err *e);
 
 /* Names labels by "1=bone,2=vein". -1 with e filled (a usage error). */

@@ -1,6 +1,6 @@
-/* Tetrahedra on a lattice, five to a cell: one in the middle and one at each of four corners, mirrored from cell to cell
- * (alternating parity), so that neighbours cut the face they share along the same diagonal and the mesh is conforming.
- * PST section IV. Adds arrays to a model that the caller owns; keeps nothing.
+/* Tetrahedra on a lattice, five to a cell: one in the middle and one at each of four corners, mirrored from cell to
+ * cell (alternating parity), so that neighbours cut the face they share along the same diagonal and the mesh is
+ * conforming. PST section IV. Adds arrays to a model that the caller owns; keeps nothing.
  */
 #ifndef SINEW_MESH_TETS_H
 #define SINEW_MESH_TETS_H
@@ -17,13 +17,14 @@ typedef struct mesh_box {
     double edge[3][3];
 } mesh_box;
 
-/* Adds the axes node and element, node.position and element.node. The edges may be left-handed: the tetrahedra are not. -1 with e
- * filled: more nodes or elements than can be numbered, edges that span no volume, no memory. */
+/* Adds the axes node and element, node.position and element.node. The edges may be left-handed: the tetrahedra are not.
+ * -1 with e filled: more nodes or elements than can be numbered, edges that span no volume, no memory. */
 int mesh_box_add(model *m, const mesh_box *b, err *e);
 
-/* The hexahedra of a voxel model (element.node of 8 columns, element.lattice) become tetrahedra: five for each, in its order,
- * of its volume, fibre and fraction. Nodes stay. What else is over elements, or points to them, is dropped: surfaces have to be
- * bound again, of which notes are made. -1 with e filled, also where an element is inside out or flat. */
+/* The hexahedra of a voxel model (element.node of 8 columns, element.lattice) become tetrahedra: five for
+ * each, in its order, of its volume, fibre and fraction. Nodes stay. What else is over elements, or points
+ * to them, is dropped: surfaces have to be bound again, of which notes are made. -1 with e filled, also
+ * where an element is inside out or flat. */
 int mesh_split(model *m, notes *warnings, err *e);
 
 /* Six times the volume of a tetrahedron, m3: above 0 where its nodes are in order. position: of all nodes. */

@@ -1,7 +1,7 @@
-/* How long a step of PST's equations 3 to 5 may be. With gamma = c k for every spring, a mode of M^-1 K's eigenvalue l is stable
- * where dt^2 l + 2 c dt l < 4, since velocity first and position after make v' = v - dt (l u + c l v), u' = u + dt v'. The
- * largest eigenvalue is found by Lanczos, at rest; and with springs that are as stiff in every direction as along themselves, and
- * the probe at every node, which no configuration exceeds.
+/* How long a step of PST's equations 3 to 5 may be. With gamma = c k for every spring, a mode of M^-1 K's eigenvalue l
+ * is stable where dt^2 l + 2 c dt l < 4, since velocity first and position after make v' = v - dt (l u + c l v), u' = u
+ * + dt v'. The largest eigenvalue is found by Lanczos, at rest; and with springs that are as stiff in every direction
+ * as along themselves, and the probe at every node, which no configuration exceeds.
  */
 #ifndef SINEW_LARGEST_H
 #define SINEW_LARGEST_H

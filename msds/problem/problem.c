@@ -11,8 +11,8 @@
 /* Lattices of five tetrahedra a cell with springs of k a tetrahedron act as E = 8.615 k / h, h the cell's side. */
 static const double lattice_stiffness = 8.615;
 
-/* Rounding leaves strains of some 1e-16, so that tissue back at rest never comes to a share of what it still pulls with: a strain of
- * this size counts as load. */
+/* Rounding leaves strains of some 1e-16, so that tissue back at rest never comes to a share of what it still pulls
+ * with: a strain of this size counts as load. */
 static const double slight = 1e-8;
 
 /* A tetrahedron flatter than this share of its longest edge cubed has no shape to speak of. */

@@ -1,11 +1,10 @@
-/* What msds-run solves, as flat arrays: the problem, which no back end changes, made from a tetrahedral model; and the contract of
- * its back ends (solve/backend.h): their create takes an msds_problem, their step an msds_plan, their look fills an msds_sight.
- * They keep and take no copies of a state.
- * One state serves every method and carries displacement and velocity from one to the next. The caller owns the problem; it borrows
- * the model's arrays, which must outlive it.
+/* What msds-run solves, as flat arrays: the problem, which no back end changes, made from a tetrahedral model; and the
+ * contract of its back ends (solve/backend.h): their create takes an msds_problem, their step an msds_plan, their look
+ * fills an msds_sight. They keep and take no copies of a state. One state serves every method and carries displacement
+ * and velocity from one to the next. The caller owns the problem; it borrows the model's arrays, which must outlive it.
  *
- * The solvers are the mass-spring-damper system of PST's appendix, and their FEM: isotropic linear elasticity with Cauchy's
- * strain, quasi-static, by conjugate gradients from the frame before, or exactly.
+ * The solvers are the mass-spring-damper system of PST's appendix, and their FEM: isotropic linear elasticity with
+ * Cauchy's strain, quasi-static, by conjugate gradients from the frame before, or exactly.
  */
 #ifndef SINEW_PROBLEM_H
 #define SINEW_PROBLEM_H
@@ -82,16 +81,16 @@ typedef struct msds_sight {
     double force[3];  /* N: on the probe */
     double torque[3]; /* N m: on it, about its frame's origin */
     int64_t contacts; /* nodes that it presses */
-    double
-        residual; /* |external - internal forces| over |external| or |internal|, or what is slight, as is most; or nan */
-    double largest; /* m: the largest displacement */
-    int solves;     /* that an exact frame took */
+    double residual;  /* |external - internal forces| over |external| or |internal|, or
+                   * what is slight, as is most; or nan */
+    double largest;   /* m: the largest displacement */
+    int solves;       /* that an exact frame took */
     bool finite;
     bool met; /* the probe has pressed a node in some step since the state was made */
 } msds_sight;
 
-/* Makes p (zeroed) of the model at rest. -1 with e filled, and p to be freed all the same, for a model of other elements, an
- * element that is inverted or flat, and materials that are no such. */
+/* Makes p (zeroed) of the model at rest. -1 with e filled, and p to be freed all the same, for a model of other
+ * elements, an element that is inverted or flat, and materials that are no such. */
 int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, err *e);
 void msds_problem_free(msds_problem *p);
 

@@ -1,5 +1,5 @@
-/* The maths of one tetrahedron of linear shape functions (PST section III; Zienkiewicz and Taylor), for gcc and nvcc, in double:
- * gradients, stiffness, forces, and the rotation that warping takes out.
+/* The maths of one tetrahedron of linear shape functions (PST section III; Zienkiewicz and Taylor), for gcc and nvcc,
+ * in double: gradients, stiffness, forces, and the rotation that warping takes out.
  */
 #ifndef SINEW_SIMPLEX_H
 #define SINEW_SIMPLEX_H
@@ -110,9 +110,9 @@ SIMPLEX_FUNCTION int simplex_solve(double a[3][3], const double b[3], double x[3
     return 1;
 }
 
-/* One turn of the quaternion q (x y z w) toward the rotation of the polar decomposition of f. With B = f R^T, w the axis of B -
- * B^T: Newton's step solves (tr B - sym B) turn = w; where that is no way up, or a long one, it is that of Muller et al. 2016, w
- * over |tr B|. Returns an estimate of the angle that is left. */
+/* One turn of the quaternion q (x y z w) toward the rotation of the polar decomposition of f. With B = f R^T, w the
+ * axis of B - B^T: Newton's step solves (tr B - sym B) turn = w; where that is no way up, or a long one, it is that of
+ * Muller et al. 2016, w over |tr B|. Returns an estimate of the angle that is left. */
 SIMPLEX_FUNCTION double simplex_turn(double f[3][3], double r[3][3], double q[4])
 {
     double b[3][3], a[3][3], turn[3] = {2, 0, 0};
@@ -148,8 +148,8 @@ SIMPLEX_FUNCTION void simplex_matrix(const double q[4], double r[3][3])
     r[2][0] = 2 * (x * z - w * y), r[2][1] = 2 * (y * z + w * x), r[2][2] = 1 - 2 * (x * x + y * y);
 }
 
-/* The rotation of the polar decomposition of I + g, from the one before, q, which is so kept where an element is inverted;
- * its matrix in r. */
+/* The rotation of the polar decomposition of I + g, from the one before, q, which is so kept where an
+ * element is inverted; its matrix in r. */
 SIMPLEX_FUNCTION void simplex_rotation(double g[3][3], double q[4], double r[3][3])
 {
     double f[3][3];

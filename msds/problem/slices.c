@@ -40,8 +40,8 @@ static int list_incident(maker *m, err *e)
     return 0;
 }
 
-/* Whether a neighbour has fewer springs: in a lattice of five tetrahedra a cell, true of every other node, those where diagonals
- * meet, on the surface and at its corners too. */
+/* Whether a neighbour has fewer springs: in a lattice of five tetrahedra a cell, true of every other node, those where
+ * diagonals meet, on the surface and at its corners too. */
 static bool has_many(const maker *m, int64_t n)
 {
     for (int64_t i = m->start[n]; i < m->start[n + 1]; i++) {

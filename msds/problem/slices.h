@@ -1,7 +1,7 @@
-/* The graph of nodes and springs as eight nodes side by side: a slice is eight nodes in a row of the solver's own order, a slot one
- * neighbour of each. Where the neighbours of a slot stand in a row too, as in a lattice nearly all do, a slot says only where
- * the first stands. Nodes with many springs come before those with few, so that slices of a lattice waste no slots. The creator
- * owns it.
+/* The graph of nodes and springs as eight nodes side by side: a slice is eight nodes in a row of the solver's own
+ * order, a slot one neighbour of each. Where the neighbours of a slot stand in a row too, as in a lattice nearly all
+ * do, a slot says only where the first stands. Nodes with many springs come before those with few, so that slices of a
+ * lattice waste no slots. The creator owns it.
  */
 #ifndef SINEW_SLICES_H
 #define SINEW_SLICES_H
@@ -30,8 +30,8 @@ enum { SLICES_SCATTERED = INT32_MIN };
 int slices_make(slices *s, const msds_problem *p, err *e);
 void slices_free(slices *s);
 
-/* The springs' numbers in single precision, slots x LANES each. A length is that of the ends as float, so that rest is without
- * force. A lane without a spring: length 1, no stiffness. */
+/* The springs' numbers in single precision, slots x LANES each. A length is that of the ends as float, so that rest is
+ * without force. A lane without a spring: length 1, no stiffness. */
 void slices_springs(const slices *s, const msds_problem *p, float *stiffness, float *damper, float *rest);
 
 #endif

@@ -1,12 +1,13 @@
-/* PST's Algorithm 1: from tetrahedra to springs, one an edge, with the sums of stiffness and damping over the tetrahedra that
- * share it. The caller owns what is made.
+/* PST's Algorithm 1: from tetrahedra to springs, one an edge, with the sums of stiffness and damping over the
+ * tetrahedra that share it. The caller owns what is made.
  */
 #ifndef SINEW_SPRINGS_H
 #define SINEW_SPRINGS_H
 
 #include "msds/problem/problem.h"
 
-/* Fills p->springs and p->spring, ascending by nodes, with k = scale * young and gamma = damping * k for each tetrahedron. */
+/* Fills p->springs and p->spring, ascending by nodes, with k = scale * young and
+ * gamma = damping * k for each tetrahedron. */
 int springs_make(msds_problem *p, double scale, double damping, err *e);
 
 #endif

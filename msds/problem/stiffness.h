@@ -24,7 +24,8 @@ typedef struct stiffness {
 int stiffness_make(stiffness *k, const msds_problem *p, pool *threads, err *e);
 void stiffness_free(stiffness *k);
 
-/* Where warping is asked for: takes each element's rotation at u (nodes x 3) and, if `again`, makes the blocks again. */
+/* Where warping is asked for: takes each element's rotation at u (nodes x 3) and, if
+ * `again`, makes the blocks again. */
 void stiffness_warp(stiffness *k, const double *u, bool again);
 
 /* What the elements pull the nodes with at u: nodes x 3, N. */

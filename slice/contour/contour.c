@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Samples have a border of one on every side, which is outside; cubes and edges are known by the bordered sample of their
- * low corner. */
+/* Samples have a border of one on every side, which is outside; cubes and edges are known by
+ * the bordered sample of their low corner. */
 typedef struct march {
     const float *value;
     const int64_t *size;

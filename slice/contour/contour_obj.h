@@ -6,8 +6,8 @@
 #include "slice/contour/contour.h"
 #include "volume/samples.h"
 
-/* `before`: vertices that the file has already. Positions are those of a box of v. Triangles face outward whichever way the
- * volume's axes turn. */
+/* `before`: vertices that the file has already. Positions are those of a box of v. Triangles face outward
+ * whichever way the volume's axes turn. */
 void contour_write(const contour *c, const volume *v, const samples_box *box, const char *group, int64_t before,
                    out *to);
 

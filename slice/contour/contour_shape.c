@@ -28,8 +28,8 @@ double contour_volume(const contour *c)
     return volume_at(c, 0);
 }
 
-/* One step of every vertex towards (share > 0) or away from the mean of its neighbours. In a closed surface each edge is of
- * two triangles that run along it both ways, so that going round the triangles meets each neighbour once. */
+/* One step of every vertex towards (share > 0) or away from the mean of its neighbours. In a closed surface each edge
+ * is of two triangles that run along it both ways, so that going round the triangles meets each neighbour once. */
 static void step(const contour *c, const int32_t *neighbours, double *sum, double share, double *of)
 {
     for (int64_t i = 0; i < 3 * c->vertices; i++)

@@ -53,8 +53,9 @@ static sides cross(int face, unsigned inside)
     return s;
 }
 
-/* On each face, lines from where its sides enter the inside to where they leave it, the inside to their right as seen from
- * outside. Each edge that is crossed is entered on one of its two faces and left on the other, so the lines are loops. */
+/* On each face, lines from where its sides enter the inside to where they leave it, the inside to
+ * their right as seen from outside. Each edge that is crossed is entered on one of its two faces and
+ * left on the other, so the lines are loops. */
 static void link(unsigned inside, unsigned joined, int next[12])
 {
     int ambiguous = 0;
@@ -71,8 +72,8 @@ static void link(unsigned inside, unsigned joined, int next[12])
     }
 }
 
-/* Whether a triangle may have this side: a side of the loop, or a line that is not on a face of the cube, where the next
- * cube could have the same. */
+/* Whether a triangle may have this side: a side of the loop, or a line that is not on a face of the cube, where the
+ * next cube could have the same. */
 static bool may_cut(const int *loop, int count, int i, int j)
 {
     int apart = j - i;
@@ -96,8 +97,8 @@ static int distance(int e, int f)
 
 enum { NEVER = 1 << 20 };
 
-/* The triangulation of a loop whose cuts are allowed and shortest together: apex[i][j] is the third corner of the triangle
- * on i, j. Returns the cost, NEVER where there is none. */
+/* The triangulation of a loop whose cuts are allowed and shortest together: apex[i][j] is the third corner of the
+ * triangle on i, j. Returns the cost, NEVER where there is none. */
 static int plan(const int *loop, int count, int apex[12][12])
 {
     int cost[12][12] = {{0}};

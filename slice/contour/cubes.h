@@ -1,15 +1,15 @@
-/* The cases of marching cubes: for a cube's eight corners, inside or out, and for each of its faces that can be read in two
- * ways, whether its inside corners are joined across it: the triangles. What happens on a face depends on that face alone, so
- * two cubes always agree there, and the surface is closed. The table is made, not written down: see cubes.c. The caller
- * frees it.
+/* The cases of marching cubes: for a cube's eight corners, inside or out, and for each of its faces that can be
+ * read in two ways, whether its inside corners are joined across it: the triangles. What happens on a face
+ * depends on that face alone, so two cubes always agree there, and the surface is closed. The table is made, not
+ * written down: see cubes.c. The caller frees it.
  */
 #ifndef SINEW_CUBES_H
 #define SINEW_CUBES_H
 
 #include "base/err.h"
 
-/* Corner x + 2y + 4z. Edge 4a + b + 2c runs along axis a, b and c its places along the axes a + 1 and a + 2 (mod 3). Face
- * 2a + s lies at place s of axis a. Vertex CUBES_CENTRE of a triangle is the mean of the case's rim. */
+/* Corner x + 2y + 4z. Edge 4a + b + 2c runs along axis a, b and c its places along the axes a + 1 and a + 2 (mod 3).
+ * Face 2a + s lies at place s of axis a. Vertex CUBES_CENTRE of a triangle is the mean of the case's rim. */
 enum { CUBES_CENTRE = 12, CUBES_TRIANGLES = 12, CUBES_CASES = 656 };
 
 typedef struct cubes_case {

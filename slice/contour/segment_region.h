@@ -20,7 +20,8 @@ double region_bytes(double voxels);
 
 void region_free(region *r);
 
-/* Turns all voxels of value `from` that are joined to voxel `at` to `to`. How many, 0 where it has another value; -1. */
+/* Turns all voxels of value `from` that are joined to voxel `at` to `to`. How many,
+ * 0 where it has another value; -1. */
 int64_t region_flood(region *r, int64_t at, uint8_t from, uint8_t to, err *e);
 
 /* Keeps, of the voxels that are 1, those of the largest region (the first of equals); the others become 0. */

@@ -74,7 +74,8 @@ typedef struct job {
 
 /* ---- options */
 
-/* A name comes back from a header's line as it was given: blanks at its ends do not, and readers refuse what is not UTF-8. */
+/* A name comes back from a header's line as it was given: blanks at its ends do not,
+ * and readers refuse what is not UTF-8. */
 static bool is_name(const char *name)
 {
     size_t length = strlen(name);
@@ -333,7 +334,8 @@ static int open_labels(job *j, err *e)
     return volume_afford(&budget, l, NULL, e) || volume_make(l, e) ? -1 : 0;
 }
 
-/* A name is of one number, and a number of one name: else what is there would be called by the new name, or a name be of two. */
+/* A name is of one number, and a number of one name: else what is there would be called
+ * by the new name, or a name be of two. */
 static int check_value(const job *j, const volume_label *l, err *e)
 {
     bool named = !strcmp(l->name, j->o->name), numbered = l->value == j->o->value;

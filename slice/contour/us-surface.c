@@ -1,4 +1,5 @@
-/* us-surface: closed surfaces of what a volume shows, by marching cubes: around labels, or where an intensity is reached. */
+/* us-surface: closed surfaces of what a volume shows, by marching cubes: around
+ * labels, or where an intensity is reached. */
 #include "base/mem.h"
 #include "base/near.h"
 #include "cli/length.h"

@@ -63,8 +63,8 @@ static double area_of(const slice_piece *p)
     return sum;
 }
 
-/* Corners that fell together are one; fewer than three are no polygon. All go around the same way: to whom looks along columns x rows,
- * clockwise. */
+/* Corners that fell together are one; fewer than three are no polygon. All go around the same way: to whom
+ * looks along columns x rows, clockwise. */
 static int64_t put_face(const slice_piece *p, const int64_t *vertex, out *to)
 {
     int64_t list[4];

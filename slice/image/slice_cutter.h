@@ -1,7 +1,8 @@
-/* Images out of a volume that a mesh deforms, or that lies rigid: one slice after another with the same memory, over threads. PST
- * section IV, in its steps: the tetrahedra that meet the slice, a list of them for each of R regions (runs of rows), and the rows, each
- * filled from its region's list. A pixel is what the undeformed volume has at the place that its centre had, linearly between voxels;
- * it is black where no tetrahedron holds it and outside the volume. The cutter owns its memory and borrows the rest.
+/* Images out of a volume that a mesh deforms, or that lies rigid: one slice after another with the same memory, over
+ * threads. PST section IV, in its steps: the tetrahedra that meet the slice, a list of them for each of R regions (runs
+ * of rows), and the rows, each filled from its region's list. A pixel is what the undeformed volume has at the place
+ * that its centre had, linearly between voxels; it is black where no tetrahedron holds it and outside the volume. The
+ * cutter owns its memory and borrows the rest.
  */
 #ifndef SINEW_SLICE_CUTTER_H
 #define SINEW_SLICE_CUTTER_H
@@ -43,16 +44,16 @@ typedef struct slice_cutter slice_cutter;
 slice_cutter *slice_cutter_make(const slice_setup *s, err *e);
 void slice_cutter_free(slice_cutter *c);
 
-/* One image: rows x columns. displacement: nodes x 3, m, finite; NULL: at rest. owner (may be NULL): rows x columns, which tetrahedron
- * each pixel within the volume fell in, -1 for none. -1 with e filled on no memory. */
+/* One image: rows x columns. displacement: nodes x 3, m, finite; NULL: at rest. owner (may be NULL): rows x columns,
+ * which tetrahedron each pixel within the volume fell in, -1 for none. -1 with e filled on no memory. */
 int slice_cutter_image(slice_cutter *c, const slice_plane *at, const double *displacement, uint8_t *image,
                        int32_t *owner, err *e);
 
 /* Of the last image: the tetrahedra that may meet it, ascending. */
 int64_t slice_cutter_list(const slice_cutter *c, const int32_t **list);
 
-/* The pieces of the last image's list, whatever the method: how the plane cuts each tetrahedron that may meet the image. The caller frees
- * them; NULL with e filled. */
+/* The pieces of the last image's list, whatever the method: how the plane cuts each tetrahedron that may meet the
+ * image. The caller frees them; NULL with e filled. */
 slice_piece *slice_cutter_pieces(const slice_cutter *c, int64_t *count, err *e);
 
 /* What is done with each row of places as it is sampled, beside: offset is of the row's first pixel in the image. */

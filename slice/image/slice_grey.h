@@ -1,9 +1,11 @@
-/* What a scanner's knobs do to grey levels. A B-mode image holds the logarithm of the echo: level g stands for (g / 255 - 1) R dB, R the
- * range that it was recorded with. Gain and time-gain compensation add decibels; the image shows the D dB below the strongest:
+/* What a scanner's knobs do to grey levels. A B-mode image holds the logarithm of the echo: level g stands for
+ * (g / 255 - 1) R dB, R the range that it was recorded with. Gain and time-gain compensation add decibels; the
+ * image shows the D dB below the strongest:
  *
  *     g' = 255 (1 + ((g / 255 - 1) R + gain + tgc(range)) / D), rounded, within 0 and 255.
  *
- * Level 0 stands for all that is weaker, and stays 0. Owns a table of a number for each pixel; a zeroed one changes nothing.
+ * Level 0 stands for all that is weaker, and stays 0. Owns a table of a number for
+ * each pixel; a zeroed one changes nothing.
  */
 #ifndef SINEW_SLICE_GREY_H
 #define SINEW_SLICE_GREY_H

@@ -1,9 +1,10 @@
-/* The loops of us-slice that take the time, as a table of functions: the same source compiled for plain processors, AVX2 and AVX-512,
- * chosen at run time. Samples are taken in fixed point, and nothing else depends on the width of vectors: all give the same bytes. All
- * memory is the caller's.
+/* The loops of us-slice that take the time, as a table of functions: the same source compiled for plain processors,
+ * AVX2 and AVX-512, chosen at run time. Samples are taken in fixed point, and nothing else depends on the width of
+ * vectors: all give the same bytes. All memory is the caller's.
  *
- * An image lies in a plane, its columns along u and its rows along v, with pixel (c, r)'s centre at u = c, v = r. The plane cuts
- * a tetrahedron in a triangle or a quadrangle: a slice_piece. Within it the place in the undeformed volume is affine in u and v.
+ * An image lies in a plane, its columns along u and its rows along v, with pixel (c, r)'s centre at u = c,
+ * v = r. The plane cuts a tetrahedron in a triangle or a quadrangle: a slice_piece. Within it the place in
+ * the undeformed volume is affine in u and v.
  */
 #ifndef SINEW_SLICE_LANES_H
 #define SINEW_SLICE_LANES_H
@@ -75,17 +76,20 @@ typedef struct slice_lanes {
     /* Nodes [from, to) from their rest positions and displacements (nodes x 3, m; NULL: none). */
     void (*project)(const slice_projection *p, const double *rest, const double *displacement, int64_t from, int64_t to,
                     slice_node *at, uint8_t *code);
-    /* Which of the tetrahedra [from, to) may meet the image: their numbers to `list`; returns how many. from: a group's first. */
+    /* Which of the tetrahedra [from, to) may meet the image: their numbers to `list`;
+     * returns how many. from: a group's first. */
     int64_t (*meet)(const slice_tets *t, int64_t from, int64_t to, int32_t *list);
     /* The pieces of the tetrahedra in a list. */
     void (*cut)(const slice_tets *t, const slice_cells *c, const int32_t *list, int64_t count, int32_t rows,
                 slice_piece *to);
     /* Every place black, and nobody's. */
     void (*clear)(int32_t black, int64_t size, slice_places *to);
-    /* Columns [from, end) of a row, all in one piece, at an offset into the places; but for those outside the volume. */
+    /* Columns [from, end) of a row, all in one piece, at an offset into the places;
+     * but for those outside the volume. */
     void (*line)(const slice_fill *f, const slice_piece *p, int32_t row, int32_t from, int32_t end, int64_t offset,
                  slice_places *to);
-    /* Clears, then fills the places of rows [first, end), from the pieces in a list, of which the first that holds a pixel has it. */
+    /* Clears, then fills the places of rows [first, end), from the pieces in a list, of
+     * which the first that holds a pixel has it. */
     void (*fill)(const slice_fill *f, const int32_t *list, int64_t count, int32_t first, int32_t end, slice_places *to);
     /* Trilinear samples at `count` places. */
     void (*sample)(const slice_cells *c, const int32_t *x, const int32_t *y, const int32_t *z, int64_t count,
@@ -94,8 +98,8 @@ typedef struct slice_lanes {
 
 extern const slice_lanes slice_lanes_plain, slice_lanes_avx2, slice_lanes_avx512;
 
-/* The widest that the processor has, or the one that SINEW_VECTORS names: plain, AVX2, AVX-512. NULL with e filled where that is not
- * to be had. */
+/* The widest that the processor has, or the one that SINEW_VECTORS names: plain, AVX2, AVX-512. NULL with e filled
+ * where that is not to be had. */
 const slice_lanes *slice_lanes_choose(err *e);
 
 #endif

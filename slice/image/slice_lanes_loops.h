@@ -1,4 +1,5 @@
-/* The loops of slice_lanes.h, compiled by slice_lanes_plain.c, _avx2.c and _avx512.c, which name the table. Everything here is static.
+/* The loops of slice_lanes.h, compiled by slice_lanes_plain.c, _avx2.c and _avx512.c, which
+ * name the table. Everything here is static.
  */
 #include "slice/image/slice_lanes.h"
 
@@ -31,7 +32,8 @@ static void project(const slice_projection *p, const double *rest, const double 
     }
 }
 
-/* On which side of the image all nodes of a group are: it has four times fewer of them than its tetrahedra, few of which meet the image. */
+/* On which side of the image all nodes of a group are: it has four times fewer of them than its
+ * tetrahedra, few of which meet the image. */
 INLINE unsigned beside(const slice_tets *t, int64_t group)
 {
     unsigned sides = UINT8_MAX;
@@ -81,8 +83,8 @@ static const crossed crossings[16] = {
     {0},
 };
 
-/* Where the plane crosses an edge: the same bits whichever tetrahedron asks, since nodes are in ascending order; and exactly at a node
- * that lies in the plane. */
+/* Where the plane crosses an edge: the same bits whichever tetrahedron asks, since nodes are in ascending order; and
+ * exactly at a node that lies in the plane. */
 INLINE void cross(const slice_tets *t, int32_t a, int32_t b, double *u, double *v, double place[3])
 {
     const double *low = t->at[a].at, *high = t->at[b].at;
@@ -134,7 +136,8 @@ INLINE bool within(const slice_cells *c, double place[4][3], int corners)
     return inside;
 }
 
-/* An edge that two pieces share has the same ends in both, and so the same crossings with rows to the bit: no pixel falls between. */
+/* An edge that two pieces share has the same ends in both, and so the same crossings with
+ * rows to the bit: no pixel falls between. */
 INLINE void edge(slice_piece *p, int k)
 {
     int a = k, b = k + 1 < p->corners ? k + 1 : 0;
@@ -393,7 +396,8 @@ INLINE void widen(ds rows, double from, double to, ds x, ds *low, ds *high)
 #endif
 }
 
-/* Where rows from `first` on enter the piece and leave it; and, of a piece within the volume, the places of their first pixels. */
+/* Where rows from `first` on enter the piece and leave it; and, of a piece within the
+ * volume, the places of their first pixels. */
 INLINE void look(const slice_piece *p, int32_t first, int32_t columns, side *to)
 {
     static const double numbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};

@@ -1,7 +1,8 @@
-/* The samples of slice_lanes.h; a part of slice_lanes_loops.h, which includes it once INLINE is there. Everything here is static.
+/* The samples of slice_lanes.h; a part of slice_lanes_loops.h, which includes it once
+ * INLINE is there. Everything here is static.
  */
-/* ---- samples: linear along z, x and y, in 16 bits: 8 of grey and 7 below them, each product rounded to the nearest. Places past
- * the ends of the volume are brought to them, so that no number reads what is not there. */
+/* ---- samples: linear along z, x and y, in 16 bits: 8 of grey and 7 below them, each product rounded to the nearest.
+ * Places past the ends of the volume are brought to them, so that no number reads what is not there. */
 
 INLINE int16_t between(int16_t a, int16_t b, int32_t share)
 {

@@ -1,6 +1,6 @@
-/* A tetrahedral model as us-slice cuts it: its elements with their nodes in ascending order (so that a face is the same from both its
- * sides), the nodes of each SLICE_GROUP of them that follow each other, and where its nodes are at rest in the volume. Owns what it made;
- * the positions are the model's.
+/* A tetrahedral model as us-slice cuts it: its elements with their nodes in ascending order (so that a face is the same
+ * from both its sides), the nodes of each SLICE_GROUP of them that follow each other, and where its nodes are at rest
+ * in the volume. Owns what it made; the positions are the model's.
  */
 #ifndef SINEW_SLICE_MESH_H
 #define SINEW_SLICE_MESH_H

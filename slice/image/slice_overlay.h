@@ -1,5 +1,6 @@
-/* Labels over an image: for each pixel, the label of the voxel that holds its place in the undeformed volume, in a colour of its own, half
- * seen through. The label image may have a geometry of its own. Owns its table and what it has seen of the last image.
+/* Labels over an image: for each pixel, the label of the voxel that holds its place in the undeformed
+ * volume, in a colour of its own, half seen through. The label image may have a geometry of its own. Owns
+ * its table and what it has seen of the last image.
  */
 #ifndef SINEW_SLICE_OVERLAY_H
 #define SINEW_SLICE_OVERLAY_H

@@ -2,7 +2,8 @@
 
 #include <math.h>
 
-/* The barycentric coordinates as affine functions of the column and the row: by Cramer's rule. A flat one holds nothing. */
+/* The barycentric coordinates as affine functions of the column and the row: by
+ * Cramer's rule. A flat one holds nothing. */
 static void make_shares(double at[4][3], double share[4][3])
 {
     double e[3][3], n[3][3], six = 0;
@@ -114,8 +115,8 @@ typedef struct interval {
     const slice_paper_tet *p, *q;
 } interval;
 
-/* Samples an interval, or halves it: the halves that are left to do. Where both ends are outside the mesh, what is between them
- * need not be. */
+/* Samples an interval, or halves it: the halves that are left to do. Where both ends are outside the
+ * mesh, what is between them need not be. */
 static int divide(const search *s, interval i, interval half[2])
 {
     if (i.p == i.q && (i.p || i.a == i.z)) {
@@ -133,8 +134,8 @@ static int divide(const search *s, interval i, interval half[2])
     return 2;
 }
 
-/* The paper's recursion, with what is left to do on a stack: one interval for each time that a row of SLICE_SIDE_MOST can be halved, and
- * the two of the last. */
+/* The paper's recursion, with what is left to do on a stack: one interval for each time that a row of SLICE_SIDE_MOST
+ * can be halved, and the two of the last. */
 static void fill_row(const search *s, int32_t a, int32_t z)
 {
     interval stack[20] = {{a, z, find(s, a), find(s, z)}};

@@ -1,13 +1,14 @@
-/* PST section IV as printed: of the tetrahedra in a region's list, the one that holds a pixel is found by its barycentric coordinates;
- * an interval of a row whose two ends fall in one is sampled along a line, since a tetrahedron is convex; any other is halved.
- * Stateless: memory is the caller's.
+/* PST section IV as printed: of the tetrahedra in a region's list, the one that holds a pixel is found by its
+ * barycentric coordinates; an interval of a row whose two ends fall in one is sampled along a line, since a tetrahedron
+ * is convex; any other is halved. Stateless: memory is the caller's.
  */
 #ifndef SINEW_SLICE_PAPER_H
 #define SINEW_SLICE_PAPER_H
 
 #include "slice/image/slice_lanes.h"
 
-/* How far below 0 a barycentric coordinate may be: what is on a face is in both of its tetrahedra, whatever was rounded. */
+/* How far below 0 a barycentric coordinate may be: what is on a face is in both of
+ * its tetrahedra, whatever was rounded. */
 #define SLICE_PAPER_ON 1e-9
 
 typedef struct slice_paper_tet {

@@ -1,6 +1,6 @@
-/* What an image shows of the plane that a probe looks into: the face's width by the depth for a linear array; for a curved or phased one
- * the fan of its beams, black around it. Sampling the plane at each pixel is the scan conversion of a fan without its beams. A view owns
- * its rows; a zeroed one is empty.
+/* What an image shows of the plane that a probe looks into: the face's width by the depth for a linear array; for a
+ * curved or phased one the fan of its beams, black around it. Sampling the plane at each pixel is the scan conversion
+ * of a fan without its beams. A view owns its rows; a zeroed one is empty.
  *
  * The probe's frame is that of probe.h: the image lies in its x-z plane, columns along +x, rows along +z.
  */
@@ -29,8 +29,8 @@ typedef struct slice_view {
     slice_shown *shown; /* rows */
 } slice_view;
 
-/* Reads "linear:4cm,1cm", "curved:6cm,60,1cm" or "phased:90" (degrees). 1: a probe that makes no image (a sphere, a convex body), *p is as
- * it was; -1 with e filled (status 2) where it is none. */
+/* Reads "linear:4cm,1cm", "curved:6cm,60,1cm" or "phased:90" (degrees). 1: a probe that makes no image (a sphere, a
+ * convex body), *p is as it was; -1 with e filled (status 2) where it is none. */
 int slice_probe_of(slice_probe *p, const char *text, err *e);
 
 /* Whether two probes make the same image: to a thousandth of their lengths and angle. */

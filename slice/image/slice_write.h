@@ -17,8 +17,8 @@ typedef struct slice_writer {
     numbered names;
 } slice_writer;
 
-/* path: NULL or "-": standard output, which may be no terminal; a pattern such as f_%04d.png: files; else one file for all,
- * of PGM or PPM: a name that ends in .png is refused. */
+/* path: NULL or "-": standard output, which may be no terminal; a pattern such as f_%04d.png: files; else one file for
+ * all, of PGM or PPM: a name that ends in .png is refused. */
 int slice_writer_open(slice_writer *w, const char *path, err *e);
 
 /* One image of the view: rows x columns x channels (1 or 3). */

@@ -1,4 +1,4 @@
-/* us-slice: ultrasound images of a volume that a mesh deforms, a frame each, where the probe of the frame looks. PST section IV. */
+/* us-slice: for each frame, the ultrasound image that its probe sees of a deformed volume (PST section IV). */
 #include "base/mem.h"
 #include "base/path.h"
 #include "cli/progress.h"

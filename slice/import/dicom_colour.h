@@ -1,5 +1,6 @@
-/* Samples as DICOM stores them, to how bright each pixel is: greys of any bits, inverted or signed, palettes, and colours by
- * pixel, by plane, or with colours that two pixels share (PS3.3: C.7.6.3.1.2, C.7.6.3.1.5). The caller owns both arrays.
+/* Samples as DICOM stores them, to how bright each pixel is: greys of any bits, inverted or signed,
+ * palettes, and colours by pixel, by plane, or with colours that two pixels share (PS3.3: C.7.6.3.1.2,
+ * C.7.6.3.1.5). The caller owns both arrays.
  */
 #ifndef SINEW_DICOM_COLOUR_H
 #define SINEW_DICOM_COLOUR_H
@@ -45,7 +46,8 @@ int64_t dicom_samples_size(const dicom_samples *s);
 /* The bytes of a pixel when it is grey: 1, or 2 for greys of 2. */
 int dicom_samples_bytes(const dicom_samples *s);
 
-/* Sets a palette from its three tables of `words` 16-bit words each: an entry a word, or two. False: fewer than count. */
+/* Sets a palette from its three tables of `words` 16-bit words each: an entry a
+ * word, or two. False: fewer than count. */
 bool dicom_palette_set(dicom_palette *p, const uint16_t *const table[3], int64_t words);
 
 /* Brightness (ITU-R BT.601, as YBR_FULL has it), little-endian. */

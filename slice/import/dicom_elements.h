@@ -1,5 +1,5 @@
-/* The elements that DICOM files held, by tag: for reports. Names are the standard's; values are not kept. The caller owns the
- * list; begin with a zeroed one.
+/* The elements that DICOM files held, by tag: for reports. Names are the standard's; values are not kept. The caller
+ * owns the list; begin with a zeroed one.
  */
 #ifndef SINEW_DICOM_ELEMENTS_H
 #define SINEW_DICOM_ELEMENTS_H

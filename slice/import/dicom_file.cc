@@ -23,9 +23,10 @@ extern "C" {
 
 /* No exception may leave this file, and none is thrown in it but for want of memory. */
 
-/* DCMTK asks for as many bytes as an element claims to have, up to 4 GiB, before it looks whether they are there, and takes no limit; where
- * the data set begins, and how it is written, it guesses in more ways than can be checked before. So C++'s allocation is replaced, which the
- * language provides for: a thread's requests past its limit fail as if memory were at its end. */
+/* DCMTK asks for as many bytes as an element claims to have, up to 4 GiB, before it looks whether they are there,
+ * and takes no limit; where the data set begins, and how it is written, it guesses in more ways than can be
+ * checked before. So C++'s allocation is replaced, which the language provides for: a thread's requests past its
+ * limit fail as if memory were at its end. */
 namespace
 {
 thread_local size_t most_at_once = SIZE_MAX;
@@ -99,8 +100,8 @@ struct dicom_file {
     const char *name;
     size_t size;
     dicom_elements *seen;
-    int64_t
-        piece_at; /* the last that was asked for: finding one by its number takes as long as there are others before it */
+    int64_t piece_at; /* the last that was asked for: finding one by its number takes as
+                   * long as there are others before it */
     DcmObject *piece;
 };
 
@@ -109,8 +110,8 @@ namespace
 
 enum { FEW_ITEMS = 500, MOST_ITEMS = 100000 };
 
-/* Of a thread that reads many items: DCMTK goes down into items that lie in items by recursion, and takes less than 2 KB for
- * each. Only what is used of it becomes memory. */
+/* Of a thread that reads many items: DCMTK goes down into items that lie in items by recursion, and takes less than 2
+ * KB for each. Only what is used of it becomes memory. */
 const size_t STACK = size_t(256) << 20;
 
 DcmTagKey key_of(uint32_t tag)

@@ -1,6 +1,6 @@
-/* A DICOM file while it is read: its elements by tag, and its pixels. The one user of DCMTK, which is C++: dicom_file.cc.
- * (DCMTK rather than GDCM, which knows nothing of Enhanced US Volume's functional groups.) All that these return lasts while
- * dicom_file_take runs, and is not the caller's.
+/* A DICOM file while it is read: its elements by tag, and its pixels. The one user of DCMTK, which is C++:
+ * dicom_file.cc. (DCMTK rather than GDCM, which knows nothing of Enhanced US Volume's functional groups.) All that
+ * these return lasts while dicom_file_take runs, and is not the caller's.
  */
 #ifndef SINEW_DICOM_FILE_H
 #define SINEW_DICOM_FILE_H
@@ -18,11 +18,12 @@ typedef struct dicom_item dicom_item; /* of a sequence, or the data set */
 
 typedef enum dicom_packing { DICOM_PLAIN, DICOM_DCMTK, DICOM_JPEG2000 } dicom_packing;
 
-/* Reads a file that is in memory, and gives it to dicom_file_take, whose result this returns; or -1 with e filled. seen (may be
- * NULL) gets its elements, those of nested items too; and which of them are used. */
+/* Reads a file that is in memory, and gives it to dicom_file_take, whose result this returns; or -1 with e filled. seen
+ * (may be NULL) gets its elements, those of nested items too; and which of them are used. */
 int dicom_file_read(const unsigned char *bytes, size_t size, const char *name, dicom_elements *seen, void *to, err *e);
 
-/* What is done with the file while it is open: dicom_image.c. (By name: sanitizers cannot follow a pointer to it from C++.) */
+/* What is done with the file while it is open: dicom_image.c. (By name: sanitizers
+ * cannot follow a pointer to it from C++.) */
 int dicom_file_take(dicom_file *f, void *to, err *e);
 
 /* What DCMTK allocated once. */
@@ -59,8 +60,8 @@ bool dicom_file_is_jpeg(dicom_file *f);
 /* The bytes that they take, in the file, or unpacked; -1: there are none. */
 int64_t dicom_pixels_size(dicom_file *f);
 
-/* Decompresses those that DCMTK can, after which elements may say other things. most: the bytes that it may take for it, beside what the
- * file's size allows. False: it cannot. */
+/* Decompresses those that DCMTK can, after which elements may say other things. most: the bytes that it may take for
+ * it, beside what the file's size allows. False: it cannot. */
 bool dicom_pixels_unpack(dicom_file *f, int64_t most);
 
 /* Little-endian, of samples of 1 or 2 bytes; NULL where they cannot be had. */

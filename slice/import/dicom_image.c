@@ -78,7 +78,8 @@ static bool region_spacing(const reading *r, dicom_item *item, double mm[2])
     return fabs(ux - CENTIMETRES) < .5 && fabs(uy - CENTIMETRES) < .5 && mm[0] > 0 && mm[1] > 0;
 }
 
-/* An image may have traces beside it, whose regions are no cm. Where regions in cm differ, nothing tells which is meant. */
+/* An image may have traces beside it, whose regions are no cm. Where regions in cm
+ * differ, nothing tells which is meant. */
 static void set_regions_spacing(const reading *r)
 {
     double *to = r->d->spacing, mm[2];
@@ -273,8 +274,8 @@ static int read_geometry(const reading *r)
 
 /* ---- the image */
 
-/* Rows, columns and frames, against how many bytes there are: before memory is asked for, frame by frame. A compressed frame has
- * an item of its own, and flat images shrink a lot, but not without end. */
+/* Rows, columns and frames, against how many bytes there are: before memory is asked for, frame by frame. A compressed
+ * frame has an item of its own, and flat images shrink a lot, but not without end. */
 static int read_size(const reading *r)
 {
     const char *name = dicom_file_name(r->f);

@@ -1,4 +1,5 @@
-/* A DICOM file as a volume needs it: pixels and where they lie, and nothing that names anybody. The caller owns the struct.
+/* A DICOM file as a volume needs it: pixels and where they lie, and nothing that
+ * names anybody. The caller owns the struct.
  */
 #ifndef SINEW_DICOM_IMAGE_H
 #define SINEW_DICOM_IMAGE_H
@@ -38,8 +39,9 @@ typedef struct dicom_image {
 /* Whether these bytes begin as a DICOM file does: 132 of them are enough to know. */
 bool dicom_is(const void *bytes, size_t size);
 
-/* Reads a file that is in memory; name is for messages. seen (may be NULL) gets its elements, those of nested items too. 1: it is
- * a directory of other files (DICOMDIR), or holds no image, and d is empty; 0; -1 with e filled. d: zeroed. */
+/* Reads a file that is in memory; name is for messages. seen (may be NULL) gets its elements, those
+ * of nested items too. 1: it is a directory of other files (DICOMDIR), or holds no image, and d is
+ * empty; 0; -1 with e filled. d: zeroed. */
 int dicom_read(dicom_image *d, const void *bytes, size_t size, const char *name, dicom_elements *seen, err *e);
 
 void dicom_free(dicom_image *d);

@@ -14,8 +14,8 @@ static unsigned two(const unsigned char *p)
     return p[0] | (unsigned)p[1] << 8;
 }
 
-/* The end of the file's own head, which is always explicit and little-endian, and where in it the syntax is told; 0: no head
- * that says that the rest is deflated. */
+/* The end of the file's own head, which is always explicit and little-endian, and where in it the syntax is told; 0: no
+ * head that says that the rest is deflated. */
 static size_t end_of_head(const unsigned char *bytes, size_t size, size_t *syntax)
 {
     static const char deflated[] = "1.2.840.10008.1.2.1.99";

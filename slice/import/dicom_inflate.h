@@ -11,7 +11,8 @@
 /* Whether the elements of the file are deflated. */
 bool dicom_is_deflated(const unsigned char *bytes, size_t size);
 
-/* 1: it is such a file, and *plain (*plain_size bytes) is it in explicit little-endian; 0: it is not; -1 with e filled. */
+/* 1: it is such a file, and *plain (*plain_size bytes) is it in explicit
+ * little-endian; 0: it is not; -1 with e filled. */
 int dicom_inflate(const unsigned char *bytes, size_t size, unsigned char **plain, size_t *plain_size, const char *name,
                   err *e);
 

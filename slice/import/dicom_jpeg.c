@@ -29,7 +29,8 @@ static bool is_frame(unsigned char marker)
     return marker == SOF55 || (marker >= SOF0 && marker <= SOF15 && marker != DHT && marker != JPG && marker != DAC);
 }
 
-/* The marker at or after *at, which becomes what follows it; 0: there is none. As decoders do, steps over what is none. */
+/* The marker at or after *at, which becomes what follows it; 0: there is none. As
+ * decoders do, steps over what is none. */
 static unsigned char next_marker(const unsigned char *bytes, size_t size, size_t *at)
 {
     while (size - *at >= 2) {

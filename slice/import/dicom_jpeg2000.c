@@ -58,8 +58,8 @@ static uint64_t big(const unsigned char *p, int bytes)
     return n;
 }
 
-/* How large the image is, and how many tiles it says that it has, each of which takes 14 bytes at least (SOT, SOD) and 10 KB of
- * OpenJPEG's: looked at before OpenJPEG asks for these. (ISO/IEC 15444-1: A.5.1) */
+/* How large the image is, and how many tiles it says that it has, each of which takes 14 bytes at least (SOT, SOD) and
+ * 10 KB of OpenJPEG's: looked at before OpenJPEG asks for these. (ISO/IEC 15444-1: A.5.1) */
 static bool is_sane(const dicom_frame *f, const unsigned char *from, size_t size)
 {
     enum { SIZ = 4, TILE = 14 };

@@ -12,7 +12,8 @@ typedef struct dicom_frame {
     int samples, bytes; /* a pixel; a sample */
 } dicom_frame;
 
-/* Decodes a codestream (PS3.5: A.4.4) to samples by pixel, little-endian; one of another shape is an error. name: for messages. */
+/* Decodes a codestream (PS3.5: A.4.4) to samples by pixel, little-endian; one of another
+ * shape is an error. name: for messages. */
 int dicom_jpeg2000(const dicom_frame *f, const unsigned char *from, size_t size, unsigned char *to, const char *name,
                    err *e);
 

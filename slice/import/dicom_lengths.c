@@ -44,7 +44,8 @@ static bool read_head(const walk *w, bool implicit, bool big, head *h)
         return true;
     }
     memcpy(h->vr, w->bytes + w->at + 4, 2);
-    /* Of representations that it does not know, DCMTK takes those of two capitals as UN, others as if they were short. */
+    /* Of representations that it does not know, DCMTK takes those of two capitals as
+     * UN, others as if they were short. */
     bool known = h->vr[0] >= 'A' && h->vr[0] <= 'Z' && h->vr[1] >= 'A' && h->vr[1] <= 'Z';
     h->length = two(w, w->at + 6, big);
     if (!known || strstr(shorter, h->vr))

@@ -1,5 +1,5 @@
-/* A look through a DICOM file, before DCMTK gets it, for elements that claim to be longer than what is left of it: DCMTK asks for as
- * much memory as is claimed, up to 4 GiB, before it sees that it is not there. Nothing is kept.
+/* A look through a DICOM file, before DCMTK gets it, for elements that claim to be longer than what is left of it:
+ * DCMTK asks for as much memory as is claimed, up to 4 GiB, before it sees that it is not there. Nothing is kept.
  */
 #ifndef SINEW_DICOM_LENGTHS_H
 #define SINEW_DICOM_LENGTHS_H

@@ -1,5 +1,5 @@
-/* What us-import --report says: what the volume is, what was used and what was left out, by name and never by value. Everything but
- * the elements is plain numbers.
+/* What us-import --report says: what the volume is, what was used and what was left out, by name and never by value.
+ * Everything but the elements is plain numbers.
  */
 #ifndef SINEW_IMPORT_REPORT_H
 #define SINEW_IMPORT_REPORT_H

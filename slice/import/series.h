@@ -28,8 +28,8 @@ typedef struct series_wish {
     const volume_budget *budget; /* may be NULL */
 } series_wish;
 
-/* The volume, from the first slice along rows x columns to the last. Slices that are missing, lie at one place, unevenly or
- * askew, are an error that names them. v: zeroed. */
+/* The volume, from the first slice along rows x columns to the last. Slices that are missing, lie at one place,
+ * unevenly or askew, are an error that names them. v: zeroed. */
 int series_volume(volume *v, const series *s, const series_wish *wish, err *e);
 
 #endif

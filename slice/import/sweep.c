@@ -144,7 +144,8 @@ double sweep_voxel(const sweep *s, const volume *images, err *e)
     return side;
 }
 
-/* Axes along the columns and rows of the middle frame, and square to both: a sweep fills little of a box along other axes. */
+/* Axes along the columns and rows of the middle frame, and square to both: a sweep
+ * fills little of a box along other axes. */
 static int find_axes(const sweep *s, double axis[3][3], err *e)
 {
     const double *m = s->one[s->count / 2].m;
@@ -196,8 +197,8 @@ static int find_box(const sweep *s, const volume *images, double axis[3][3], dou
     return 0;
 }
 
-/* A volume may have this many voxels, or so many for each pixel: two images that a bad transform puts far apart may not ask for any
- * memory. */
+/* A volume may have this many voxels, or so many for each pixel: two images that a bad transform puts
+ * far apart may not ask for any memory. */
 static const double voxels_free = 1 << 24, voxels_each = 1000;
 
 static int refuse(double need, double memory, double side, err *e)
@@ -331,8 +332,8 @@ static int64_t settle(const splat *s)
     return filled;
 }
 
-/* Gaps of a line, of at most `widest` voxels without pixels between two that have them: what is linear between these, weighted by
- * one over the gap. */
+/* Gaps of a line, of at most `widest` voxels without pixels between two that have them: what is linear between these,
+ * weighted by one over the gap. */
 static void fill_line(const splat *s, int64_t first, int64_t count, int64_t apart, int64_t widest)
 {
     int64_t before = -1;

@@ -1,7 +1,7 @@
-/* A freehand sweep, which is tracked B-scans, put together to a volume: every pixel is added to the voxel that it falls in, or
- * to the eight around it; voxels that got none, between others that did, are filled. (Solberg et al., Freehand 3D
- * ultrasound reconstruction algorithms, Ultrasound Med Biol 33, 2007: pixel nearest neighbour, distribution and hole-filling
- * steps.) The caller owns the list.
+/* A freehand sweep, which is tracked B-scans, put together to a volume: every pixel is added to the voxel that it falls
+ * in, or to the eight around it; voxels that got none, between others that did, are filled. (Solberg et al., Freehand
+ * 3D ultrasound reconstruction algorithms, Ultrasound Med Biol 33, 2007: pixel nearest neighbour, distribution and
+ * hole-filling steps.) The caller owns the list.
  */
 #ifndef SINEW_SWEEP_H
 #define SINEW_SWEEP_H
@@ -32,21 +32,21 @@ typedef struct sweep_wish {
 /* Whether this header's text has tracked frames. */
 bool sweep_is(const char *header, size_t size);
 
-/* Where the images of a sequence lie. transform: "ImageToReference", or NULL: see poses.h. image_to_probe: 3 x 4 from pixels to
- * the probe's mm; needed, and taken, where the sequence knows the probe's place only; NULL: none. */
+/* Where the images of a sequence lie. transform: "ImageToReference", or NULL: see poses.h. image_to_probe: 3 x 4 from
+ * pixels to the probe's mm; needed, and taken, where the sequence knows the probe's place only; NULL: none. */
 int sweep_read(sweep *s, in *source, const char *transform, const double *image_to_probe, err *e);
 void sweep_free(sweep *s);
 
-/* Turns m to images as they are stored, of this size. PLUS' transforms are of images whose columns go to the probe's marked side
- * and whose rows go deeper (MF), whatever the file's UltrasoundImageOrientation. */
+/* Turns m to images as they are stored, of this size. PLUS' transforms are of images whose columns go to the probe's
+ * marked side and whose rows go deeper (MF), whatever the file's UltrasoundImageOrientation. */
 void sweep_unflip(sweep *s, const int64_t size[3]);
 
-/* The larger of the distance between pixels and half the median distance between the middles of one frame and the next, mm. */
+/* The larger of the distance between pixels and half the median distance between the
+ * middles of one frame and the next, mm. */
 double sweep_voxel(const sweep *s, const volume *images, err *e);
 
-/* The volume, in the frame that the sequence is tracked in; its axes are along the columns and rows of the middle frame; of the
- * type of the images. filled: voxels that
- * pixels and, after these, gaps gave a value. */
+/* The volume, in the frame that the sequence is tracked in; its axes are along the columns and rows of the middle
+ * frame; of the type of the images. filled: voxels that pixels and, after these, gaps gave a value. */
 int sweep_volume(volume *v, const sweep *s, const volume *images, const sweep_wish *wish, int64_t filled[2], err *e);
 
 #endif

@@ -1,4 +1,5 @@
-/* us-import: DICOM series and volumes, MetaImage, NRRD and tracked sweeps to a volume in NRRD, without what names anybody. */
+/* us-import: DICOM series and volumes, MetaImage, NRRD and tracked sweeps to a
+ * volume in NRRD, without what names anybody. */
 #include "base/mem.h"
 #include "cli/length.h"
 #include "cli/tool.h"

@@ -1,5 +1,5 @@
-/* What benchmarks share: times taken in rounds, a probe of the machine, commands run between pipes, and CSV. A benchmark that
- * cannot go on ends the program. The caller owns a bench and what bench_bytes point to.
+/* What benchmarks share: times taken in rounds, a probe of the machine, commands run between pipes, and CSV. A
+ * benchmark that cannot go on ends the program. The caller owns a bench and what bench_bytes point to.
  */
 #ifndef SINEW_BENCH_H
 #define SINEW_BENCH_H

@@ -1,6 +1,7 @@
-/* How fast the geometry is read, passed on and worked on: OBJ files, models through a pipe, attach and bind on the real face,
- * with a probe of the machine in the same run. Lines of CSV on stdout; the rounds are interleaved, so that what disturbs
- * the machine for a while disturbs all alike. `bench_geometry [BIN face.obj [ROUNDS]]`: the tools in BIN are run too, where the face is there.
+/* How fast the geometry is read, passed on and worked on: OBJ files, models through a pipe, attach and bind on the real
+ * face, with a probe of the machine in the same run. Lines of CSV on stdout; the rounds are interleaved, so that what
+ * disturbs the machine for a while disturbs all alike. `bench_geometry [BIN face.obj [ROUNDS]]`: the tools in BIN are
+ * run too, where the face is there.
  */
 // needs: tests/bench/bench.c
 #include "base/checksum.h"

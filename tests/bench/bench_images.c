@@ -1,7 +1,8 @@
 // needs: tests/bench/bench.c slice/contour/contour.c slice/contour/cubes.c slice/contour/contour_shape.c
-/* `make bench-images`: us-import of 153 DICOM slices, us-segment, and us-surface to 250,000 triangles and more, whole commands and the
- * step that the paper names, all on one thread, beside a probe of the machine: CSV. Usage: bench_images BIN FOLDER [SERIES]; what is
- * read stands in FOLDER meanwhile; SERIES is a folder of DICOM files to be read as well.
+/* `make bench-images`: us-import of 153 DICOM slices, us-segment, and us-surface to 250,000 triangles and
+ * more, whole commands and the step that the paper names, all on one thread, beside a probe of the
+ * machine: CSV. Usage: bench_images BIN FOLDER [SERIES]; what is read stands in FOLDER meanwhile; SERIES
+ * is a folder of DICOM files to be read as well.
  */
 #include "base/mem.h"
 #include "slice/contour/contour.h"

@@ -1,9 +1,13 @@
-/* `make bench-msds`: what a frame of msds-run's solvers takes at the four sizes of PST's Table I, whose figures stand beside, as do
- * OpenTissue's at the largest (one thread; as the project was given them, not measured here): CSV, with a probe of the machine in
- * the same run, the rounds of all interleaved. A sphere presses the block, deeper with each frame, and starts again. At the largest, each
- * shape of probe too; and what one node costs, by closed form and by libccd. `bench_msds [THREADS [ROUNDS]]`.
+/* `make bench-msds`: what a frame of msds-run's solvers takes at the four sizes of PST's Table I, whose figures stand
+ * beside, as do OpenTissue's at the largest (one thread; as the project was given them, not measured here): CSV, with a
+ * probe of the machine in the same run, the rounds of all interleaved. A sphere presses the block, deeper with each
+ * frame, and starts again. At the largest, each shape of probe too; and what one node costs, by closed form and by
+ * libccd. `bench_msds [THREADS [ROUNDS]]`.
  */
-// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c
+// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c
+// needs: msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c
+// needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
+// needs: msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c
 #include "../unit/msds_block.h"
 
 #include "base/mem.h"
@@ -29,7 +33,8 @@ static const paper papers[SIZES] = {{{20, 10, 10}, {10, 30, NAN, .1}},
 
 static const char *const names[METHODS] = {"msds", "fem 20 cg", "fem exact", "collision"};
 
-/* Shapes, against which nodes of the largest mesh are found, and single points asked of the closed forms and of libccd. */
+/* Shapes, against which nodes of the largest mesh are found, and single points asked
+ * of the closed forms and of libccd. */
 enum { SHAPES = 4, QUERIES = 2000 };
 
 typedef struct shape {

@@ -1,10 +1,16 @@
-/* `make bench-slice`: images of 512 x 512 pixels through a deformed mesh over a volume of 256^3, at the four sizes of PST's Tables I and II, whose
- * figures stand beside: both of us-slice's methods, on one thread and on all, beside bare samples of the same image (the volume rigid) and a
- * probe of the machine in the same run, rounds interleaved; then what R costs, swept as the paper did; then whole frames (msds-run's solver
- * by springs and by 20 conjugate gradients, then the image), as Table II counts them. `bench_slice [THREADS [ROUNDS [PLOT.dat]]]`: PLOT.dat
- * gets R and ms, for tests/bench/regions.plot.
+/* `make bench-slice`: images of 512 x 512 pixels through a deformed mesh over a volume of 256^3, at the four sizes
+ * of PST's Tables I and II, whose figures stand beside: both of us-slice's methods, on one thread and on all,
+ * beside bare samples of the same image (the volume rigid) and a probe of the machine in the same run, rounds
+ * interleaved; then what R costs, swept as the paper did; then whole frames (msds-run's solver by springs and by 20
+ * conjugate gradients, then the image), as Table II counts them. `bench_slice [THREADS [ROUNDS [PLOT.dat]]]`:
+ * PLOT.dat gets R and ms, for tests/bench/regions.plot.
  */
-// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c slice/image/slice_cells.c slice/image/slice_mesh.c slice/image/slice_cutter.c slice/image/slice_paper.c slice/image/slice_lanes.c slice/image/slice_lanes_plain.c slice/image/slice_lanes_avx2.c slice/image/slice_lanes_avx512.c
+// needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c
+// needs: msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c
+// needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
+// needs: msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c slice/image/slice_cells.c
+// needs: slice/image/slice_mesh.c slice/image/slice_cutter.c slice/image/slice_paper.c slice/image/slice_lanes.c
+// needs: slice/image/slice_lanes_plain.c slice/image/slice_lanes_avx2.c slice/image/slice_lanes_avx512.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"

@@ -1,16 +1,17 @@
-/* `make bench-tled`: what a step of tled-run's solver takes, on each back end and in each precision that this machine has, over
- * blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio): CSV. After a warm-up, the
- * median, the least and the most of some rounds. A `step` is the back end's own; a `run` is one as tled-run makes it, with its
- * looks, and with 60 frames a second of the model's time; times_real_time is the time simulated over the time taken. A run's steps
- * are known to be done when it looks, after each window of them: it is timed from a look after its first frames to its last, and
- * worst_window_us_a_step is of the slowest of all rounds.
+/* `make bench-tled`: what a step of tled-run's solver takes, on each back end and in each precision that this machine
+ * has, over blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio):
+ * CSV. After a warm-up, the median, the least and the most of some rounds. A `step` is the back end's own; a `run` is
+ * one as tled-run makes it, with its looks, and with 60 frames a second of the model's time; times_real_time is the
+ * time simulated over the time taken. A run's steps are known to be done when it looks, after each window of them: it
+ * is timed from a look after its first frames to its last, and worst_window_us_a_step is of the slowest of all rounds.
  *
- * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and written, 1/m,
- * and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, its share (4) where the model has them,
- * and its fibre (12) where its muscle contracts. flops_a_step is what flops.h counts, for each element and node once; `computed`
- * says how many elements for each one of the model are computed in fact, and lanes_filled how much of a processor's vectors they
- * fill. Beside them stands what the machine did at most in the same rounds: copying (on a card of more than its L2 cache holds or
- * within it, as the bytes of a step are) and multiply-adds, in two instructions, of the same precision.
+ * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and
+ * written, 1/m, and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, its share (4)
+ * where the model has them, and its fibre (12) where its muscle contracts. flops_a_step is what flops.h counts, for
+ * each element and node once; `computed` says how many elements for each one of the model are computed in fact, and
+ * lanes_filled how much of a processor's vectors they fill. Beside them stands what the machine did at most in the same
+ * rounds: copying (on a card of more than its L2 cache holds or within it, as the bytes of a step are) and
+ * multiply-adds, in two instructions, of the same precision.
  */
 // needs: tests/bench/roof.c tests/bench/flops.cc  tled/*/*.c
 #include "../unit/tled_bench.h"
@@ -241,8 +242,9 @@ static double time_run(bench *b, windows *w, int64_t steps)
     return w->clock - w->begun;
 }
 
-/* Runs with looks, and 60 frames a second of the model's time or none, that are counted and dropped. What is timed lies between two
- * looks of one run: its start takes longer than many steps, and a frame has its memory made, as many times as there may be under way. */
+/* Runs with looks, and 60 frames a second of the model's time or none, that are counted and dropped. What is timed
+ * lies between two looks of one run: its start takes longer than many steps, and a frame has its memory made, as
+ * many times as there may be under way. */
 static void measure_run(measured *w, bench *b, double every, const char *what, int64_t steps)
 {
     const int64_t check = b->setup.check, start = (int64_t)ceil(FRAMES_FIRST / 60. * b->setup.rate);

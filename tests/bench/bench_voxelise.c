@@ -1,8 +1,10 @@
-// needs: voxelise/build.c voxelise/surfaces/closed.c voxelise/crossing.c voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/inside.c
+// needs: voxelise/build.c voxelise/surfaces/closed.c voxelise/crossing.c voxelise/surfaces/expansion.c
+// needs: voxelise/surfaces/grid.c voxelise/inside.c
 // needs: voxelise/solids.c voxelise/surfaces/weld.c voxelise/volumes.c voxelise/voxels.c voxelise/climb.c
 // needs: voxelise/shares.c voxelise/layers.c voxelise/depths.c tests/bench/scan.c tests/bench/bench.c
-/* `make bench-voxelise`: how long voxelise takes on a closed scan, step by step, on one thread and on two, beside a probe of the
- * machine: CSV. Usage: bench_voxelise [TRIANGLES [FOLDER]]; the OBJ that is read stands in FOLDER (here) meanwhile.
+/* `make bench-voxelise`: how long voxelise takes on a closed scan, step by step, on one thread and on
+ * two, beside a probe of the machine: CSV. Usage: bench_voxelise [TRIANGLES [FOLDER]]; the OBJ that
+ * is read stands in FOLDER (here) meanwhile.
  */
 #include "base/mem.h"
 #include "model/materials.h"

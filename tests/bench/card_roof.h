@@ -1,6 +1,6 @@
-/* What a card can do at most, measured beside what is compared with it: copying in its memory and within its L2 cache, and
- * multiply-adds, in two instructions as the project computes (-fmad=false) and fused in one. Only where CUDA is built in. The caller
- * owns a card_roof.
+/* What a card can do at most, measured beside what is compared with it: copying in its memory and within its L2 cache,
+ * and multiply-adds, in two instructions as the project computes (-fmad=false) and fused in one. Only where CUDA is
+ * built in. The caller owns a card_roof.
  */
 #ifndef SINEW_CARD_ROOF_H
 #define SINEW_CARD_ROOF_H
@@ -11,8 +11,8 @@
 
 typedef struct card_roof card_roof;
 
-/* In bytes and operations a second; a byte that is copied counts twice: read, and written; a multiply-add is two operations, fused
- * or not. */
+/* In bytes and operations a second; a byte that is copied counts twice: read, and written; a
+ * multiply-add is two operations, fused or not. */
 typedef struct card_rates {
     double memory, cache; /* copies */
     double flops, fused;

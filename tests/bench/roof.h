@@ -1,5 +1,6 @@
-/* What the processor can do at most, measured beside what is compared with it: copying in memory, and multiply-adds in the very
- * instruction set that the solver chose, not fused, as the project computes. The caller owns a roof, which needs its threads.
+/* What the processor can do at most, measured beside what is compared with it: copying in memory, and
+ * multiply-adds in the very instruction set that the solver chose, not fused, as the project computes. The
+ * caller owns a roof, which needs its threads.
  */
 #ifndef SINEW_ROOF_H
 #define SINEW_ROOF_H

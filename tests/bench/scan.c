@@ -29,7 +29,8 @@ static double distance(const double *d)
     return r + 0.7 * sin(17 * d[0] + 3 * d[2]) * sin(13 * d[1]) + 0.3 * sin(41 * d[2] + 5 * d[0]);
 }
 
-/* Rings from pole to pole, of `round` vertices each; a place moves by less than a sixth of a step, so that no triangle turns over. */
+/* Rings from pole to pole, of `round` vertices each; a place moves by less than a sixth of a
+ * step, so that no triangle turns over. */
 static void put_vertex(scan *s, int64_t at, int64_t rings, int64_t round)
 {
     int64_t ring = at / round, turn = at % round;

@@ -1,7 +1,7 @@
-/* A closed surface such as a scanner gives, from equations: a head with a nose, ears, a neck and wrinkles, whose vertices
- * stand unevenly and are jittered along and across the surface, so that no two triangles are alike. Every vertex lies at
- * one distance from the middle in its own direction, and directions keep their order, so the surface never meets itself.
- * About 200 high, in the unit of whoever asks. The caller owns the arrays.
+/* A closed surface such as a scanner gives, from equations: a head with a nose, ears, a neck and wrinkles, whose
+ * vertices stand unevenly and are jittered along and across the surface, so that no two triangles are alike. Every
+ * vertex lies at one distance from the middle in its own direction, and directions keep their order, so the surface
+ * never meets itself. About 200 high, in the unit of whoever asks. The caller owns the arrays.
  */
 #ifndef SINEW_SCAN_H
 #define SINEW_SCAN_H

@@ -1,6 +1,7 @@
-/* compare_pictures A.png B.png: how far two pictures are from one another. Says the mean difference of all bytes, in 255ths, and the
- * share of pixels that differ by more than 32 of them in some channel; exits 1 where the mean is above 1 or the share above a hundredth (a
- * processor may round an edge to the next pixel), or the sizes differ; 2 on trouble.
+/* compare_pictures A.png B.png: how far two pictures are from one another. Says the mean difference of all
+ * bytes, in 255ths, and the share of pixels that differ by more than 32 of them in some channel; exits 1
+ * where the mean is above 1 or the share above a hundredth (a processor may round an edge to the next
+ * pixel), or the sizes differ; 2 on trouble.
  */
 #include "picture/png.h"
 

@@ -1,5 +1,5 @@
-/* list_voxels FILE [OUT [raw]]: what common/volume reads of a volume image, its sizes, spacing, origin and a checksum of its voxels, for
- * the tests; and writes it again as NRRD, gzip or raw.
+/* list_voxels FILE [OUT [raw]]: what common/volume reads of a volume image, its sizes, spacing, origin and a checksum
+ * of its voxels, for the tests; and writes it again as NRRD, gzip or raw.
  */
 #include "base/checksum.h"
 #include "volume/nrrd.h"

@@ -1,6 +1,7 @@
 /* Streams too large to store, for tests of what tools keep of them.
  *     stream frames N < MODEL    the model's body and its last frame N times, the displacements a little more each time
- *     stream large ROWS [AT] < MODEL    the model (binary) with an axis x-rows and an array x-large of as many u8, AT's one more than it would be
+ *     stream large ROWS [AT] < MODEL the model (binary) with an axis x-rows and an array x-large of
+ *     as many u8, AT's one more than it would be
  * Neither is ever held: frames are written one at a time, the large array a piece at a time.
  */
 #include "base/checksum.h"

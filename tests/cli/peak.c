@@ -1,5 +1,5 @@
-/* peak FILE COMMAND...: runs the command and writes the most memory that it had at once, in KiB, to FILE; exits with its status. Only its own
- * process is counted, not the others of a pipe.
+/* peak FILE COMMAND...: runs the command and writes the most memory that it had at once, in KiB, to FILE; exits with
+ * its status. Only its own process is counted, not the others of a pipe.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
-/* A reader that stops early, for the tests of what fails: `reader BYTES [ignored] COMMAND...` runs the command with a pipe of one page for its
- * standard output, reads so many bytes of it, closes it, and says how the command ended: "exit 1", "signal 13". With
- * `ignored`, the command finds SIGPIPE ignored. `reader blocks FILE` prints where each block of a binary model ends.
+/* A reader that stops early, for the tests of what fails: `reader BYTES [ignored] COMMAND...` runs the command
+ * with a pipe of one page for its standard output, reads so many bytes of it, closes it, and says how the command
+ * ended: "exit 1", "signal 13". With `ignored`, the command finds SIGPIPE ignored. `reader blocks FILE` prints
+ * where each block of a binary model ends.
  */
 #define _GNU_SOURCE /* F_SETPIPE_SZ */
 #include <errno.h>

@@ -25,7 +25,7 @@ found() {
     [ -s "$T/said" ] && diag_file "$T/said"
 }
 printf '#ifndef SINEW_A_H\n#define SINEW_A_H\n#endif\n' >common/base/a.h
-is "$("$ROOT/tests/shape" names sizes includes builtin 2>&1)" "" "a tree without a breach"
+is "$("$ROOT/tests/shape" names sizes widths conditionals includes builtin 2>&1)" "" "a tree without a breach"
 cp common/base/a.h voxelise/a.h
 found "two files of one name" names 'several files are called a\.h'
 mv voxelise/a.h voxelise/b.h
@@ -39,6 +39,14 @@ rm attach/long.c
 for i in $(seq 41); do echo >"attach/many$i.c"; done
 found "a folder of many files" sizes 'attach: 41 files; expected at most 40'
 rm attach/many*.c
+awk 'BEGIN { printf "/* "; for (i = 0; i < 115; i++) printf "x"; print " */\n/* right */" }' >bind/wide.c
+found "a wide line" widths 'bind/wide.c:1: 121 columns; expected at most 120'
+rm bind/wide.c
+printf '%s\n' 'int f(int a)' '{' '    /* a ? b : c ? d : e */' '    return a < 0 ? 0 : a > 9 ? 9 : a; // ?' '}' >bind/nested.c
+found "a nested conditional" conditionals 'bind/nested.c:4: .*; there are 1 in 5 lines'
+printf '%s\n' 'int f(int a)' '{' '    /* why ?' '     * a ? b : c ? d : e */' "    return a == '?' ? g(\"a?\") : 1; // ? ?" '}' >bind/nested.c
+is "$("$ROOT/tests/shape" conditionals)" "" "one conditional a line is let be"
+rm bind/nested.c
 echo '#include "attach/body.h"' >voxelise/across.c
 found "a tool that includes another" includes 'voxelise/across.c includes attach/body.h'
 rm voxelise/across.c

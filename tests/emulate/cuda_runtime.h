@@ -1,4 +1,5 @@
-/* What tests/emulate has for CUDA's header of this name: as much of CUDA C++ and of its runtime as the kernels here use.
+/* What tests/emulate has for CUDA's header of this name: as much of CUDA C++ and of
+ * its runtime as the kernels here use.
  */
 #ifndef SINEW_EMULATED_CUDA_RUNTIME_H
 #define SINEW_EMULATED_CUDA_RUNTIME_H
@@ -17,7 +18,8 @@
 #define __forceinline__ inline
 #define __grid_constant__
 #define __launch_bounds__(...)
-/* One for all blocks, of which one has it at a time. (Of the host's thread, so that it is known where all of it stands.) */
+/* One for all blocks, of which one has it at a time. (Of the host's thread, so that
+ * it is known where all of it stands.) */
 #define __shared__ static thread_local
 
 struct alignas(16) float4 {

@@ -181,7 +181,8 @@ static void begin(block *b, int32_t index, const cudaLaunchConfig_t *how)
     b->statics.clear();
 }
 
-/* The block whose turn it is, by lot; NULL: all threads wait. A block without a ready thread has none later: only its own wake them. */
+/* The block whose turn it is, by lot; NULL: all threads wait. A block without a ready thread
+ * has none later: only its own wake them. */
 static block *next_block()
 {
     std::vector<block *> &live = machine.live;
@@ -369,7 +370,8 @@ static void learn(const clocks &of)
         now->clock[i] = std::max(now->clock[i], of[i]);
 }
 
-/* Waits until `want` threads are here; orders: what they did before comes before what they do after. Whether any says so. */
+/* Waits until `want` threads are here; orders: what they did before comes before
+ * what they do after. Whether any says so. */
 static bool meet(meeting &m, int want, bool says, bool orders)
 {
     if (orders)
@@ -417,7 +419,8 @@ void __syncwarp()
         meet(now->home->warps[(size_t)now->thread / 32], warp_size(), false, true);
 }
 
-/* A warp's threads tell each other, which orders nothing: what all of them say. It stands until they have met once more. */
+/* A warp's threads tell each other, which orders nothing: what all of them say. It
+ * stands until they have met once more. */
 static const uint64_t *say(unsigned mask, uint64_t what, bool *any)
 {
     meeting &m = now->home->votes[(size_t)now->thread / 32];

@@ -1,8 +1,9 @@
-/* What runs on an emulated card, as its own files see it: blocks and their threads, and what each thread knows of the others.
+/* What runs on an emulated card, as its own files see it: blocks and their threads,
+ * and what each thread knows of the others.
  *
- * Time is told by clocks, one a thread (a vector clock: Lamport 1978, Mattern 1989). A thread's own counts on where it lets others know
- * what it did; where it waits for others, it takes over what they knew. What another did at a time past the one known here, is in no
- * order with what is done here: a race, whether or not the bytes show it.
+ * Time is told by clocks, one a thread (a vector clock: Lamport 1978, Mattern 1989). A thread's own counts on where it
+ * lets others know what it did; where it waits for others, it takes over what they knew. What another did at a time
+ * past the one known here, is in no order with what is done here: a race, whether or not the bytes show it.
  */
 #ifndef SINEW_MACHINE_H
 #define SINEW_MACHINE_H
@@ -30,8 +31,8 @@ struct readings {
     std::vector<std::pair<int32_t, moment>> others; /* other blocks' last */
 };
 
-/* What is known of 4 bytes of memory. `seen` is the block, of shared memory, or the launch, else, that the rest is of. There are many
- * of these: most are read by one thread, or by some that know of each other. */
+/* What is known of 4 bytes of memory. `seen` is the block, of shared memory, or the launch, else, that the rest is of.
+ * There are many of these: most are read by one thread, or by some that know of each other. */
 struct word {
     uint32_t seen = 0;
     uint32_t wrote = 0;               /* the launch, or the host's copy, that did so last; 0: none */
@@ -68,8 +69,8 @@ struct barrier {
     std::vector<fibre *> waiting;
 };
 
-/* That a thread of a block said in a launch that something is done: what its own block, and others of which it had heard, did by these
- * clocks. said, heard: when that was. */
+/* That a thread of a block said in a launch that something is done: what its own block, and others of which it had
+ * heard, did by these clocks. said, heard: when that was. */
 struct telling {
     int32_t block;
     uint32_t launch;
@@ -157,8 +158,8 @@ void open_memory(bool open);
 memory memory_of(size_t size);
 /* Whether the thread that runs knows of it. */
 bool known(moment m);
-/* The first of the words that bytes are of, all of them with what is of use by now; NULL where they are neither the block's nor the
- * card's. */
+/* The first of the words that bytes are of, all of them with what is of use by now; NULL where they
+ * are neither the block's nor the card's. */
 word *find(const void *at, size_t size, bool *shared);
 /* A thread reads or writes; atomic: as others may at once. */
 void touch(const void *at, size_t size, bool writes, bool atomic = false);

@@ -1,7 +1,7 @@
 /* An emulated card's memory: what each access is checked for, and copies that the thread does not wait for.
  *
- * Kernels are compiled with -fsanitize=thread, which puts a call before each access; the calls come here. (What runs on the host is
- * looked at for what AddressSanitizer knows.)
+ * Kernels are compiled with -fsanitize=thread, which puts a call before each access; the calls come here. (What runs on
+ * the host is looked at for what AddressSanitizer knows.)
  */
 #include "machine.h"
 #include "tled/cuda/cuda_ptx.cuh"
@@ -125,7 +125,8 @@ static readings *more_of(word *w)
     return w->more.get();
 }
 
-/* The block that read last is another than this one, of which its last read is kept; so is this one's, from here on as `read`. */
+/* The block that read last is another than this one, of which its last read is kept; so
+ * is this one's, from here on as `read`. */
 static void note_other(word *w)
 {
     auto &others = more_of(w)->others;
@@ -376,8 +377,8 @@ void shared_store(uint32_t at, float x, float y, float z)
     *(float4 *)touch_shared(at, sizeof(float4), true) = {x, y, z, __uint_as_float(lot(~0u))};
 }
 
-/* ---- copies: each is there as early or as late as may be, by lot. One of what changes meanwhile is none of the thread's business
- * before it is read. */
+/* ---- copies: each is there as early or as late as may be, by lot. One of what changes meanwhile is none of the
+ * thread's business before it is read. */
 
 /* What is the matter with copying from there, or NULL. */
 static const char *trouble_in_copying(const float4 *from)

@@ -1,5 +1,5 @@
-/* An emulated card's streams: what is started or copied in one is done when something waits for it, or before, by lot. One thread of the
- * host calls.
+/* An emulated card's streams: what is started or copied in one is done when something waits for it, or
+ * before, by lot. One thread of the host calls.
  */
 #include "machine.h"
 

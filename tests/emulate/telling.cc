@@ -1,8 +1,9 @@
 /* What an emulated card's blocks tell each other.
  *
- * Words of relaxed_store() say nothing of what their writers did: but that what these read has been read, which is roughly taken for
- * known once any word of any block was heard. tell_done() hands on the clocks of what its thread knows to be done, by its block and by
- * others of which it has heard; who hears it may rely on that, and so may threads of its block that meet it later.
+ * Words of relaxed_store() say nothing of what their writers did: but that what these read has been read, which is
+ * roughly taken for known once any word of any block was heard. tell_done() hands on the clocks of what its thread
+ * knows to be done, by its block and by others of which it has heard; who hears it may rely on that, and so may threads
+ * of its block that meet it later.
  */
 #include "machine.h"
 #include "tled/cuda/cuda_ptx.cuh"
@@ -72,8 +73,8 @@ void tell_done(uint32_t *to, uint32_t word)
     changed();
 }
 
-/* What is heard is added, if it is not known here, and what is earlier goes; but not the last of that: the new is known to this thread
- * alone. */
+/* What is heard is added, if it is not known here, and what is earlier goes; but not the last of that:
+ * the new is known to this thread alone. */
 static void hear(telling what)
 {
     std::vector<telling> &all = now->home->tellings;

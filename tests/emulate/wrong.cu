@@ -1,5 +1,5 @@
-/* See wrong.h. Blocks of 64 threads, with 64 numbers on the card and as many in shared memory; the right ones stand beside those
- * that are wrong. */
+/* See wrong.h. Blocks of 64 threads, with 64 numbers on the card and as many in shared memory; the right ones stand
+ * beside those that are wrong. */
 #include "tests/emulate/wrong.h"
 
 #include "solve/start.cuh"

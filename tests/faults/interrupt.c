@@ -1,6 +1,6 @@
-/* Interrupts: preloaded into a program (LD_PRELOAD), it lets read, write, fsync and their like return early, as they may when a signal
- * comes: with EINTR, or with fewer bytes than were asked for. Which, goes by the numbers that SINEW_FAULT_SEED begins. Where
- * SINEW_FAULT_COUNT names a file, it gets how many calls were interrupted.
+/* Interrupts: preloaded into a program (LD_PRELOAD), it lets read, write, fsync and their like return early, as they
+ * may when a signal comes: with EINTR, or with fewer bytes than were asked for. Which, goes by the numbers that
+ * SINEW_FAULT_SEED begins. Where SINEW_FAULT_COUNT names a file, it gets how many calls were interrupted.
  */
 // NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of the C library begin with __
 #include "next.h"

@@ -1,7 +1,8 @@
-/* Lets allocations fail: preloaded into a program (LD_PRELOAD), it counts them from the beginning of main on, and the one whose number
- * SINEW_FAULT_AT gives, from 1, gets nothing; with SINEW_FAULT_ON set, so do all after it. Where SINEW_FAULT_COUNT names a
- * file, it gets their number at the end. Where SINEW_FAULT_DEATH names one, that gets the program's and libraries' names that a program
- * which dies by SIGSEGV, SIGBUS or SIGABRT was in, the innermost first, a line a call. For the GNU C library, whose own names for these functions it uses.
+/* Lets allocations fail: preloaded into a program (LD_PRELOAD), it counts them from the beginning of main on, and the
+ * one whose number SINEW_FAULT_AT gives, from 1, gets nothing; with SINEW_FAULT_ON set, so do all after it. Where
+ * SINEW_FAULT_COUNT names a file, it gets their number at the end. Where SINEW_FAULT_DEATH names one, that gets the
+ * program's and libraries' names that a program which dies by SIGSEGV, SIGBUS or SIGABRT was in, the innermost first, a
+ * line a call. For the GNU C library, whose own names for these functions it uses.
  */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 /* Dl_info, RTLD_NEXT */

@@ -1,8 +1,9 @@
-/* The loss of power: preloaded into a program (LD_PRELOAD), it ends it at its n-th fsync, from 1, that SINEW_FAULT_AT gives, as by
- * kill -9, or after all is done, where n is one past the last. What write() gave a file since that was stored last is taken from it. A
- * name that was made, given to another file or removed since its folder was stored is as it was, but for those whose bits
- * SINEW_FAULT_KEPT has, in the order in which they were touched. Where SINEW_FAULT_COUNT names a file, that gets the number of syncs at
- * the end. Only the calls below are known, of all that the C library has.
+/* The loss of power: preloaded into a program (LD_PRELOAD), it ends it at its n-th fsync, from 1, that
+ * SINEW_FAULT_AT gives, as by kill -9, or after all is done, where n is one past the last. What write() gave a
+ * file since that was stored last is taken from it. A name that was made, given to another file or removed since
+ * its folder was stored is as it was, but for those whose bits SINEW_FAULT_KEPT has, in the order in which they
+ * were touched. Where SINEW_FAULT_COUNT names a file, that gets the number of syncs at the end. Only the calls
+ * below are known, of all that the C library has.
  */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 /* RTLD_NEXT */
@@ -64,7 +65,8 @@ static int really_rename(const char *from, const char *to)
     return next(from, to);
 }
 
-/* The file at fd, noted as it is now where it is new; NULL: it is no regular one. What is noted keeps its number: see close(). */
+/* The file at fd, noted as it is now where it is new; NULL: it is no regular one. What
+ * is noted keeps its number: see close(). */
 static known *find(int fd, struct stat *s)
 {
     if (fstat(fd, s) || !S_ISREG(s->st_mode))
@@ -78,8 +80,8 @@ static known *find(int fd, struct stat *s)
     return file + files++;
 }
 
-/* A name is about to change: what it is of gets another one, until that is stored. A device keeps its name whatever is done: what is lost
- * with the power is of disks, and links in /dev are for nobody to make. */
+/* A name is about to change: what it is of gets another one, until that is stored. A device keeps its name whatever is
+ * done: what is lost with the power is of disks, and links in /dev are for nobody to make. */
 static void touch(const char *path)
 {
     char beside[PATH_MAX];

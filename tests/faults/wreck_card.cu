@@ -1,6 +1,6 @@
-/* Wrecks a card in the middle of a run: preloaded into a program (LD_PRELOAD), it waits for the file that SINEW_FAULT_WHEN names,
- * then writes where there is no memory, as a kernel in the program's own context. From then on everything that the program
- * asks of the card fails, as after a fault of its own.
+/* Wrecks a card in the middle of a run: preloaded into a program (LD_PRELOAD), it waits for the file that
+ * SINEW_FAULT_WHEN names, then writes where there is no memory, as a kernel in the program's own context. From then on
+ * everything that the program asks of the card fails, as after a fault of its own.
  */
 #include <pthread.h>
 #include <stdlib.h>

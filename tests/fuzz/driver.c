@@ -1,5 +1,6 @@
-/* A fuzz target without libFuzzer: runs it once on each file named, or in a folder named, in the order of their names. So what was found
- * once is tried by `make check` with any compiler. Says nothing; a target that finds something aborts.
+/* A fuzz target without libFuzzer: runs it once on each file named, or in a folder named, in the
+ * order of their names. So what was found once is tried by `make check` with any compiler. Says
+ * nothing; a target that finds something aborts.
  */
 #include <dirent.h>
 #include <stdint.h>

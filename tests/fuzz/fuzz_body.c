@@ -1,5 +1,5 @@
-/* Any bytes as a body's file: places whose turns are of length 1 and which lead back where they came from, files without a folder; or one error
- * with a text. */
+/* Any bytes as a body's file: places whose turns are of length 1 and which lead back where they came from, files
+ * without a folder; or one error with a text. */
 #include "volume/body.h"
 
 #include <math.h>

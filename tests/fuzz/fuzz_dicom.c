@@ -1,7 +1,8 @@
-// needs: slice/import/dicom_image.c slice/import/dicom_file.cc slice/import/dicom_pixels.c slice/import/dicom_colour.c slice/import/dicom_inflate.c slice/import/dicom_jpeg2000.c
+// needs: slice/import/dicom_image.c slice/import/dicom_file.cc slice/import/dicom_pixels.c slice/import/dicom_colour.c
+// needs: slice/import/dicom_inflate.c slice/import/dicom_jpeg2000.c
 // needs: slice/import/dicom_elements.c slice/import/dicom_lengths.c slice/import/dicom_jpeg.c slice/import/series.c
-/* A DICOM file of any bytes is read or refused; what was read makes a volume, or not, twice over too. What DCMTK keeps for the whole of
- * a program's life is its own.
+/* A DICOM file of any bytes is read or refused; what was read makes a volume, or not, twice over too. What DCMTK keeps
+ * for the whole of a program's life is its own.
  */
 #include "slice/import/series.h"
 

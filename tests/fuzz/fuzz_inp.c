@@ -1,5 +1,6 @@
 /* See mesh_bytes.h. */
-// needs: common/exchange/import_mesh.c common/exchange/import_model.c common/exchange/import_ids.c common/exchange/import_inp.c common/exchange/import_inp_end.c common/exchange/import_sets.c
+// needs: common/exchange/import_mesh.c common/exchange/import_model.c common/exchange/import_ids.c
+// needs: common/exchange/import_inp.c common/exchange/import_inp_end.c common/exchange/import_sets.c
 #include "exchange/import_inp.h"
 
 #include "mesh_bytes.h"

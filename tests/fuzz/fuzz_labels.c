@@ -1,5 +1,5 @@
-/* Any line as msds-mesh's --names and any bytes after it as the image of --labels (NRRD, without its first line): every element has a
- * volume that there is, whose names differ; or one error with a text.
+/* Any line as msds-mesh's --names and any bytes after it as the image of --labels (NRRD, without its first line): every
+ * element has a volume that there is, whose names differ; or one error with a text.
  */
 // needs: msds/mesh/mesh_labels.c msds/mesh/mesh_tets.c
 #include "model/materials.h"

@@ -1,5 +1,5 @@
-/* Any bytes as a file of materials: a table whose rows are all valid, or one error with a text. What was read can be read
- * over itself as an override. */
+/* Any bytes as a file of materials: a table whose rows are all valid, or one error with a text. What was read can be
+ * read over itself as an override. */
 #include "model/materials.h"
 
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 /* See mesh_bytes.h. */
-// needs: common/exchange/import_mesh.c common/exchange/import_model.c common/exchange/import_ids.c common/exchange/import_msh.c common/exchange/import_tokens.c
+// needs: common/exchange/import_mesh.c common/exchange/import_model.c common/exchange/import_ids.c
+// needs: common/exchange/import_msh.c common/exchange/import_tokens.c
 #include "exchange/import_msh.h"
 
 #include "mesh_bytes.h"

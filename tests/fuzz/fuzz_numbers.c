@@ -1,6 +1,6 @@
 // needs: slice/image/slice_view.c
-/* Any text as what people write on a command line: numbers, lengths, lists, a pattern of names, an array, a size of images. Each reader takes
- * it, and then it is what it says, or refuses it.
+/* Any text as what people write on a command line: numbers, lengths, lists, a pattern of names, an array, a size of
+ * images. Each reader takes it, and then it is what it says, or refuses it.
  */
 #include "base/num.h"
 #include "cli/numbered.h"

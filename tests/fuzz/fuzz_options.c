@@ -1,5 +1,5 @@
-/* Any lines as the words of a command line, for a table with every kind of option: what was taken is in its range and makes provenance that
- * the format takes; or one usage error.
+/* Any lines as the words of a command line, for a table with every kind of option: what was taken is in its range and
+ * makes provenance that the format takes; or one usage error.
  */
 #include "cli/opt.h"
 #include "model/model.h"

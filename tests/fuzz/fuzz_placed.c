@@ -1,5 +1,5 @@
-/* Any bytes as an image that says where it lies: as many pixels as its sides say, or one error with a text; no more memory than there are
- * bytes. */
+/* Any bytes as an image that says where it lies: as many pixels as its sides say, or one error with a text; no more
+ * memory than there are bytes. */
 #include "render/placed.h"
 
 #include <math.h>

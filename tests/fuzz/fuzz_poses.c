@@ -1,4 +1,5 @@
-/* Any bytes as poses: each event is finite, its rotation is one and its time does not go back; or one error with a text. */
+/* Any bytes as poses: each event is finite, its rotation is one and its time does
+ * not go back; or one error with a text. */
 #include "volume/poses.h"
 
 #include <math.h>

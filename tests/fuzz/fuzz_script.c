@@ -1,5 +1,5 @@
-/* Any bytes as a script for a small model: curves whose times are in order and whose values are finite, or one error with a
- * text. */
+/* Any bytes as a script for a small model: curves whose times are in order and whose values
+ * are finite, or one error with a text. */
 // needs: tled/problem/script.c tled/problem/script_read.c
 #include "tled/problem/script.h"
 

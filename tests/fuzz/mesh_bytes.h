@@ -1,5 +1,5 @@
-/* For the fuzz targets of sinew import: any bytes as a mesh are a model whose arrays keep sinew-model(5)'s rules, of elements with an
- * inside, or one error with a text.
+/* For the fuzz targets of sinew import: any bytes as a mesh are a model whose arrays keep sinew-model(5)'s rules, of
+ * elements with an inside, or one error with a text.
  */
 #ifndef SINEW_MESH_BYTES_H
 #define SINEW_MESH_BYTES_H

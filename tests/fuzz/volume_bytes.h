@@ -1,5 +1,5 @@
-/* Any bytes as a volume image: one that is whole and has a place, and that is the same when it is written and read again; or one
- * error with a text. For the targets of both formats.
+/* Any bytes as a volume image: one that is whole and has a place, and that is the same when it is written and read
+ * again; or one error with a text. For the targets of both formats.
  */
 #ifndef SINEW_VOLUME_BYTES_H
 #define SINEW_VOLUME_BYTES_H

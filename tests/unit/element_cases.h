@@ -1,5 +1,5 @@
-/* What the element header must do in either precision: test_element.c and test_element_single.c include this once each, after
- * choosing `real`. Boxes here are anisotropic, so that no axis is taken for another.
+/* What the element header must do in either precision: test_element.c and test_element_single.c include this once each,
+ * after choosing `real`. Boxes here are anisotropic, so that no axis is taken for another.
  */
 #ifndef SINEW_ELEMENT_CASES_H
 #define SINEW_ELEMENT_CASES_H
@@ -142,8 +142,8 @@ static void test_rotation(double limit)
     }
 }
 
-/* The four patterns of signs that the stress does not see: f = 8 k c gamma / 8 for u = c gamma; their sum with an affine
- * field adds nothing to its stress, and an affine field has none of them. */
+/* The four patterns of signs that the stress does not see: f = 8 k c gamma / 8 for u = c gamma; their sum with an
+ * affine field adds nothing to its stress, and an affine field has none of them. */
 static void test_hourglass(double tolerance)
 {
     double f[3][3] = {{1.1, .05, -.02}, {.03, .9, .1}, {0, .07, 1.05}};

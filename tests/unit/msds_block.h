@@ -1,5 +1,5 @@
-/* A box of tetrahedra as a model in memory, one material, for tests of msds-run's solvers. Memory that is not to be had ends the test
- * program.
+/* A box of tetrahedra as a model in memory, one material, for tests of msds-run's solvers. Memory
+ * that is not to be had ends the test program.
  */
 #ifndef SINEW_MSDS_BLOCK_H
 #define SINEW_MSDS_BLOCK_H

@@ -1,5 +1,5 @@
-/* A block of tetrahedra, bent, over a volume of noise, for tests of us-slice: and the image of it pixel by pixel, from nothing but the
- * definition.
+/* A block of tetrahedra, bent, over a volume of noise, for tests of us-slice: and the image of it pixel
+ * by pixel, from nothing but the definition.
  */
 #ifndef SINEW_SLICE_BLOCK_H
 #define SINEW_SLICE_BLOCK_H

@@ -158,8 +158,8 @@ static void two_closest(void)
     }
 }
 
-/* Of a convex polygon there is one closest point, however it is cut: here 3e-5 from a diagonal, and the line to it 2e-5 past
- * the limit for two more nodes. To rounding the diagonal is as near. */
+/* Of a convex polygon there is one closest point, however it is cut: here 3e-5 from a diagonal, and the line to it 2e-5
+ * past the limit for two more nodes. To rounding the diagonal is as near. */
 static void beside_a_cut(void)
 {
     const double n[] = {0, .50002, 1}, length = sqrt(.50002 * .50002 + 1), d = .8;
@@ -178,8 +178,8 @@ static void beside_a_cut(void)
     }
 }
 
-/* Lines 1 to 10 to the letter over every voxel, for a flat convex polygon. The real face is symmetric: some of its places
- * lie just on a limit, so rounding is allowed for. */
+/* Lines 1 to 10 to the letter over every voxel, for a flat convex polygon. The real face is symmetric: some of its
+ * places lie just on a limit, so rounding is allowed for. */
 static void brute_force(const model *m, const double *position, int corners, double strictness, uint8_t *fixed)
 {
     err e = {0};
@@ -371,7 +371,8 @@ static void several(void)
     model_free(&m);
 }
 
-/* Where less than half of a voxel is tissue and a plane cuts it, its centre is in the bone: what is behind is held too. */
+/* Where less than half of a voxel is tissue and a plane cuts it, its centre is in
+ * the bone: what is behind is held too. */
 static void cut_voxels(void)
 {
     static const lattice unit = {{0, 0, 0}, {1, 1, 1}};

@@ -1,6 +1,6 @@
-/* A run that breaks off and goes on: a back end that fails at its n-th call of any kind, as a card may, leaves the last checkpoint
- * whole, and what goes on from there writes the same frames as a run that never stopped. Checkpoints that are damaged, and
- * those of other runs.
+/* A run that breaks off and goes on: a back end that fails at its n-th call of any kind, as a card may, leaves the last
+ * checkpoint whole, and what goes on from there writes the same frames as a run that never stopped. Checkpoints that
+ * are damaged, and those of other runs.
  */
 // needs: tled/*/*.c
 #include "tled_bench.h"

@@ -1,6 +1,6 @@
 // needs: slice/contour/cubes.c slice/contour/contour.c slice/contour/contour_shape.c
-/* Marching cubes over random samples and maps of labels: closed, with one ring about each vertex, facing outward, of the right
- * volume.
+/* Marching cubes over random samples and maps of labels: closed, with one ring about each
+ * vertex, facing outward, of the right volume.
  */
 #include "slice/contour/contour.h"
 

@@ -1,6 +1,6 @@
 // needs: slice/contour/cubes.c
-/* The cases of marching cubes: each face is cut as that face alone says, every line on a face is a side of one triangle, every
- * line within the cube of two, and none of these lies on a face.
+/* The cases of marching cubes: each face is cut as that face alone says, every line on a face is a side of one
+ * triangle, every line within the cube of two, and none of these lies on a face.
  */
 #include "slice/contour/cubes.h"
 
@@ -70,7 +70,8 @@ static bool case_is_good(const cubes_case *k, unsigned inside)
     return k->triangles <= CUBES_TRIANGLES;
 }
 
-/* A line on a face says by itself which of the ambiguous cases it is: it cuts off the corner that both its edges touch. */
+/* A line on a face says by itself which of the ambiguous cases it is: it cuts off
+ * the corner that both its edges touch. */
 static bool ambiguity_is_right(const cubes *t, unsigned inside, unsigned joined)
 {
     const cubes_case *k = cubes_of(t, inside, joined);

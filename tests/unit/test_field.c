@@ -1,5 +1,5 @@
-/* Fibres by a potential: in a straight bar exactly along it; in a bent tube made from equations, its own axis; with both ends,
- * one or none attached, whatever the number of threads.
+/* Fibres by a potential: in a straight bar exactly along it; in a bent tube made from equations, its own axis; with
+ * both ends, one or none attached, whatever the number of threads.
  */
 // needs: attach/muscle.c attach/attachment.c attach/fibre_field.c attach/laplace.c
 #include "attach/laplace.h"
@@ -48,7 +48,8 @@ static double place(const tube *t, const double *x, double *off)
     return atan2(q, p);
 }
 
-/* A box of voxels of side h round the tube; those in it are volume 1, a muscle. Bits of ends: which of its ends are rigid. */
+/* A box of voxels of side h round the tube; those in it are volume 1, a muscle. Bits
+ * of ends: which of its ends are rigid. */
 static void make_muscle(model *m, const tube *t, double h, int ends)
 {
     int32_t n = (int32_t)(2 * (t->radius + t->thickness) / h) + 2;
@@ -112,8 +113,8 @@ static void make(model *m, muscle_fibre kind, int threads)
     pool_destroy(p);
 }
 
-/* Against the tube's own tangent. The voxels' steps leave 18 degrees at single elements of its sides whatever the size; the
- * mean comes down with it. */
+/* Against the tube's own tangent. The voxels' steps leave 18 degrees at single elements of its sides whatever the size;
+ * the mean comes down with it. */
 static void bent(void)
 {
     tube t = make_tube(.04, .008, 1.2);
@@ -158,8 +159,8 @@ static void any_threads(void)
     free(one);
 }
 
-/* A bar along an axis of the lattice, of flat voxels: u is linear, and fibres are exact; toward the larger attachment. A
- * second piece, apart from it, runs across, with nothing held; a third is one voxel. */
+/* A bar along an axis of the lattice, of flat voxels: u is linear, and fibres are exact; toward the larger attachment.
+ * A second piece, apart from it, runs across, with nothing held; a third is one voxel. */
 static void straight(void)
 {
     static const lattice grid = {{0, 0, 0}, {.004, .002, .001}};

@@ -1,7 +1,8 @@
-/* The golden models of format version 1 (tests/golden/v1), damaged: cut at every byte, each of their bits flipped. In binary every
- * one is refused. In text every cut is refused, and from the heading of an array or unknown block to its crc line a flip
- * is refused or changes nothing (hexadecimal digits in upper case read the same). What stands outside, metadata, provenance, axes, the
- * lines of frames and of the end, has no checksum in text: a flip there may be read as another value, and must only do no harm.
+/* The golden models of format version 1 (tests/golden/v1), damaged: cut at every byte, each of their bits flipped. In
+ * binary every one is refused. In text every cut is refused, and from the heading of an array or unknown block to its
+ * crc line a flip is refused or changes nothing (hexadecimal digits in upper case read the same). What stands outside,
+ * metadata, provenance, axes, the lines of frames and of the end, has no checksum in text: a flip there may be read as
+ * another value, and must only do no harm.
  */
 #include "streams.h"
 #include "tap.h"

@@ -1,6 +1,6 @@
 /* Time grows with what is read, not with its square: eight times as much takes eight times as long, and not sixty-four.
- * Of a processor's time, and the least of several runs, few and many in turn: on a busy machine, where others' work takes the caches, there
- * are more rounds. */
+ * Of a processor's time, and the least of several runs, few and many in turn: on a busy machine, where others' work
+ * takes the caches, there are more rounds. */
 #include "streams.h"
 #include "surface/triangulate.h"
 #include "tap.h"

@@ -1,8 +1,10 @@
-/* The coarser lattices of a mesh: how many nodes they have, that what is linear on one is the same on the next, that each matrix has
- * the energy of the one before (Galerkin), that the coarsest is inverted; on a lattice, on one that lies askew, on a mesh without
- * any order, with nodes held fast inside; and the same bytes for any number of threads.
+/* The coarser lattices of a mesh: how many nodes they have, that what is linear on one is the same on the next, that
+ * each matrix has the energy of the one before (Galerkin), that the coarsest is inverted; on a lattice, on one that
+ * lies askew, on a mesh without any order, with nodes held fast inside; and the same bytes for any number of threads.
  */
-// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/cg.c msds/cuda/levels.c msds/cuda/parts.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c
+// needs: msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c
+// needs: msds/problem/stiffness.c msds/cpu/cg.c msds/cuda/levels.c msds/cuda/parts.c
 #include "msds_block.h"
 
 #include "base/mem.h"

@@ -128,8 +128,8 @@ static void incomplete_models(void)
     model_free(&m);
 }
 
-/* Between two materials: their own where the share is 0 or 1, within the bounds of side by side and across, and the same
- * whichever comes first. */
+/* Between two materials: their own where the share is 0 or 1, within the bounds of side by side and across, and the
+ * same whichever comes first. */
 static void mixtures(void)
 {
     const material a = {.law = MATERIAL_NEO_HOOKEAN, .E = 3000, .nu = .45, .density = 1000, .peak = 10};

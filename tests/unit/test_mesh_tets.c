@@ -1,5 +1,5 @@
-/* Meshes of five tetrahedra a cell: counts, orientation, volume, and conformity, that every face inside is shared by exactly two
- * tetrahedra and every edge is counted once; over boxes, left-handed ones and voxel models.
+/* Meshes of five tetrahedra a cell: counts, orientation, volume, and conformity, that every face inside is shared by
+ * exactly two tetrahedra and every edge is counted once; over boxes, left-handed ones and voxel models.
  */
 // needs: msds/mesh/mesh_tets.c
 #include "msds/mesh/mesh_tets.h"

@@ -1,9 +1,12 @@
-/* msds-run's CUDA back end against the CPU's: springs and conjugate gradients give the same numbers to the bit, exact frames come within
- * 1e-5 of the largest displacement; on lattices, on a mesh without any order, through changes of method, with contact of both
- * kinds; and a hundred repeats give the same bytes. Without a card all is skipped. `test_msds_cuda small` is short enough for
- * compute-sanitizer.
+/* msds-run's CUDA back end against the CPU's: springs and conjugate gradients give the same numbers to the bit, exact
+ * frames come within 1e-5 of the largest displacement; on lattices, on a mesh without any order, through changes of
+ * method, with contact of both kinds; and a hundred repeats give the same bytes. Without a card all is skipped.
+ * `test_msds_cuda small` is short enough for compute-sanitizer.
  */
-// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c
+// needs: msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c
+// needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
+// needs: msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c
 #include "msds_block.h"
 
 #include "base/mem.h"
@@ -135,7 +138,8 @@ static void press(pair *c, const tets *b, const probe *shape, msds_method method
     }
 }
 
-/* A torque's share is that of the force on the lever that a probe is: a ball's torque is nearly nothing, the difference of many. */
+/* A torque's share is that of the force on the lever that a probe is: a ball's torque is
+ * nearly nothing, the difference of many. */
 static bool close_enough(const pair *c)
 {
     return c->worst < 1e-5 * c->largest && c->force < 1e-5 * c->pressed && c->torque < 1e-5 * c->pressed * c->lever;

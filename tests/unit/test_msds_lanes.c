@@ -1,7 +1,8 @@
-/* What msds-run's solvers stand on: slices of the graph of springs, the loops over them in each instruction set, an element's rotation,
- * and the mixing of solves.
+/* What msds-run's solvers stand on: slices of the graph of springs, the loops over them in each instruction set, an
+ * element's rotation, and the mixing of solves.
  */
-// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/mixing.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c
+// needs: msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/mixing.c
 #include "msds_block.h"
 
 #include "base/mem.h"

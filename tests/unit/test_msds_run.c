@@ -1,7 +1,10 @@
-/* msds-run's solvers: Algorithm 1 on PST's figure 4, springs at rest under gravity and their momentum, the sharp bound of the step, the FEM's
- * patch test, the exact solver's contact, warping, and the same bytes for any number of threads.
+/* msds-run's solvers: Algorithm 1 on PST's figure 4, springs at rest under gravity and their momentum, the sharp bound
+ * of the step, the FEM's patch test, the exact solver's contact, warping, and the same bytes for any number of threads.
  */
-// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c msds/cpu/msds_cpu.c msds/problem/largest.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c
+// needs: msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c
+// needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
+// needs: msds/cpu/msds_cpu.c msds/problem/largest.c
 #include "msds_block.h"
 
 #include "base/mem.h"
@@ -98,8 +101,8 @@ static void test_counts(void)
     }
 }
 
-/* Gravity along a column of springs: at rest, the springs across each level carry what hangs below. The exact answer is a small
- * system of springs; here it is met as the balance of every node, and, for one tetrahedron, in closed form. */
+/* Gravity along a column of springs: at rest, the springs across each level carry what hangs below. The exact answer is
+ * a small system of springs; here it is met as the balance of every node, and, for one tetrahedron, in closed form. */
 static void test_hanging(void)
 {
     model m = {0};
@@ -281,7 +284,8 @@ static void test_bound(void)
     free_problem(&m, &p);
 }
 
-/* Nodes on the surface displaced linearly: so are those inside, by either solver, and the strain is that of the field. */
+/* Nodes on the surface displaced linearly: so are those inside, by either solver,
+ * and the strain is that of the field. */
 static void test_patch(void)
 {
     model m = {0};
@@ -345,8 +349,8 @@ static void test_contact(void)
     free_problem(&m, &p);
 }
 
-/* By a penalty, nodes stay in the probe as deep as their springs give; both solvers agree; and what is fixed holds what the probe
- * pushes. */
+/* By a penalty, nodes stay in the probe as deep as their springs give; both solvers agree; and what
+ * is fixed holds what the probe pushes. */
 static void test_penalty(void)
 {
     model m = {0};

@@ -1,5 +1,5 @@
-/* Frames on their way out: in order, each fetched from its own slot; one is fetched while another is written; and what was sound before
- * something went wrong is written all the same.
+/* Frames on their way out: in order, each fetched from its own slot; one is fetched while another is written; and what
+ * was sound before something went wrong is written all the same.
  */
 // needs: tled/run/outbox.c
 #include "tled/run/outbox.h"

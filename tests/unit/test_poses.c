@@ -1,5 +1,5 @@
-/* Poses: TUM lines, changes of method, what is refused and where; frames of PLUS sequences, composed, turned from an image's
- * frame to the probe's, left out where they were not tracked.
+/* Poses: TUM lines, changes of method, what is refused and where; frames of PLUS sequences, composed, turned from an
+ * image's frame to the probe's, left out where they were not tracked.
  */
 #include "volume/poses.h"
 

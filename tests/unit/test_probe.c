@@ -1,5 +1,5 @@
-/* Probes: their closed forms against libccd's GJK and EPA over random points and poses, and against what can be said without either; what
- * is no probe; OBJ files that are no convex body. */
+/* Probes: their closed forms against libccd's GJK and EPA over random points and poses, and against what can be said
+ * without either; what is no probe; OBJ files that are no convex body. */
 #include "tap.h"
 
 #include "base/mem.h"
@@ -106,7 +106,8 @@ static bool refuted(const probe_placed *p, const double x[3], double ball, const
     return narrow_at(p, moved, .999 * ball, NARROW_STARTS, &still);
 }
 
-/* Depths equal to libccd's, and so the ways where the depth is no tie: along the way given, as deep as the depth says. */
+/* Depths equal to libccd's, and so the ways where the depth is no tie: along the way
+ * given, as deep as the depth says. */
 static void test_narrow(const probe *p, const char *name)
 {
     double worst = 0, way = 0, coarse = 0, ball = .02 * p->reach;
@@ -150,8 +151,8 @@ static void test_narrow(const probe *p, const char *name)
        coarse);
 }
 
-/* Anywhere: the way is of length 1; as far along it as the depth says is the surface; the depth changes along it as the way does; and
- * nothing is nearer. */
+/* Anywhere: the way is of length 1; as far along it as the depth says is the surface; the depth changes along it as the
+ * way does; and nothing is nearer. */
 static void test_distance(const probe *p, const char *name)
 {
     double length = 0, surface = 0, slope = 0, nearer = 0;

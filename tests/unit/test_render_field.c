@@ -1,5 +1,5 @@
-/* What pictures are made of, but for the tracing: the outside of elements, strain and stress at their middles, the scale of
- * colours, round numbers, the layout of sheets. */
+/* What pictures are made of, but for the tracing: the outside of elements, strain and stress at their middles, the
+ * scale of colours, round numbers, the layout of sheets. */
 #include "mesh/boundary.h"
 #include "mesh/gradient.h"
 #include "picture/colourmap.h"

@@ -1,6 +1,8 @@
-// needs: slice/import/series.c slice/import/dicom_image.c slice/import/dicom_file.cc slice/import/dicom_pixels.c slice/import/dicom_jpeg.c slice/import/dicom_colour.c slice/import/dicom_inflate.c
+// needs: slice/import/series.c slice/import/dicom_image.c slice/import/dicom_file.cc slice/import/dicom_pixels.c
+// needs: slice/import/dicom_jpeg.c slice/import/dicom_colour.c slice/import/dicom_inflate.c
 // needs: slice/import/dicom_jpeg2000.c slice/import/dicom_elements.c slice/import/dicom_lengths.c
-/* Series put in order: oblique stacks in any order of files, and what is wrong with them; times, kinds of data; scaled samples.
+/* Series put in order: oblique stacks in any order of files, and what is wrong with
+ * them; times, kinds of data; scaled samples.
  */
 #include "slice/import/series.h"
 
@@ -16,8 +18,8 @@ enum { WIDE = 3, HIGH = 2 };
 static const double along_row[3] = {.6, 0, -.8}, along_column[3] = {0, 1, 0}, normal[3] = {.8, 0, .6};
 static const series_wish any = {{(double)NAN, (double)NAN, (double)NAN}, -1, -1, NULL, NULL};
 
-/* A file of `frames`, the first of which lies `at` mm along the normal, the others .5 mm each behind it. Pixels count up
- * from `value`. */
+/* A file of `frames`, the first of which lies `at` mm along the normal, the others .5 mm each
+ * behind it. Pixels count up from `value`. */
 static dicom_image image_at(double at, int frames, int value)
 {
     dicom_image d = {.series = "1.2", .columns = WIDE, .rows = HIGH, .frames = frames, .bytes = 1, .slope = 1};

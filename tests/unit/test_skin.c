@@ -1,5 +1,5 @@
-/* The skin: a sheet that a ball dents and that comes back to its place without oscillating; a uniform push against a solution in closed form;
- * normals; the same bytes for any count of threads; what is no skin. */
+/* The skin: a sheet that a ball dents and that comes back to its place without oscillating; a uniform push against a
+ * solution in closed form; normals; the same bytes for any count of threads; what is no skin. */
 // needs: msds/run/skin.c
 #include "tap.h"
 
@@ -72,7 +72,8 @@ static probe_placed press_at(const probe *p, double x, double y, double z)
     return probe_place(p, &pose);
 }
 
-/* Down by 3 cm, held, and gone: no vertex goes beyond its place, none comes closer and then leaves, and all come back. */
+/* Down by 3 cm, held, and gone: no vertex goes beyond its place, none comes closer
+ * and then leaves, and all come back. */
 static void test_recovers(const probe *p, double swell, double anchors, const char *name)
 {
     model m = {0};

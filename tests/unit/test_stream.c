@@ -227,7 +227,8 @@ static void groups(const char *folder)
     ok(mem_available() > 0, "some memory is free here");
 }
 
-/* A pipe is widened to a large piece, for those alone, and passes it on whole. Neither end waits, so that one left narrow fails. */
+/* A pipe is widened to a large piece, for those alone, and passes it on whole. Neither end
+ * waits, so that one left narrow fails. */
 static void widened(void)
 {
 #ifdef F_GETPIPE_SZ

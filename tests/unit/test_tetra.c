@@ -1,5 +1,5 @@
-/* Binding to tetrahedra: the element against a search through all, inside, on faces and outside; weights and linear fields; what
- * has no volume.
+/* Binding to tetrahedra: the element against a search through all, inside, on faces and outside;
+ * weights and linear fields; what has no volume.
  */
 // needs: bind/tetra.c
 #include "bind/tetra.h"
@@ -18,8 +18,8 @@ static double uniform(double low, double high)
     return low + (high - low) * rand() / (double)RAND_MAX;
 }
 
-/* A grid's cells in five tetrahedra each, of alternating parity, its nodes moved about; elements in shuffled order, some
- * inside out. Cells may be left out. */
+/* A grid's cells in five tetrahedra each, of alternating parity, its nodes moved about; elements in shuffled order,
+ * some inside out. Cells may be left out. */
 static model make(double size, double shift, bool holes)
 {
     static const int split[2][5][4] = {{{0, 1, 3, 4}, {1, 2, 3, 6}, {4, 5, 6, 1}, {4, 6, 7, 3}, {1, 3, 4, 6}},

@@ -1,6 +1,6 @@
-/* Hexahedra of any shape: boxes move as the lattice's solver moves them; distorted ones pass the patch test, are not strained by turns,
- * keep their energy, bring the same bytes with any number of threads and any vectors; and the stable step bounds the largest
- * frequency. */
+/* Hexahedra of any shape: boxes move as the lattice's solver moves them; distorted ones pass the patch test, are not
+ * strained by turns, keep their energy, bring the same bytes with any number of threads and any vectors; and the stable
+ * step bounds the largest frequency. */
 // needs: tled/*/*.c
 #include "tled/cpu/cpu_pass.h"
 #include "tled/problem/conforming_step.h"
@@ -41,7 +41,8 @@ static void forget_lattice(model *m)
     lookup_free(&m->meta_index);
 }
 
-/* by: of a side, how far nodes inside may move along each axis; outer ones stay on their planes where nothing is asked of them. */
+/* by: of a side, how far nodes inside may move along each axis; outer ones stay on their
+ * planes where nothing is asked of them. */
 static void distort(const block *b, model *m, double by)
 {
     double *x = model_find(m, "node.position")->f64;

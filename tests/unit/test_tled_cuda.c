@@ -1,7 +1,6 @@
 /* The CUDA back end against the CPU's: the same bytes in the same precision where the steps are the same (1e-5 of the
- * largest displacement off double where it marches), 1e-4 of the largest displacement between single precision there and double here
- * over 10,000 steps and at rest, the same looks, the same messages.
- * Without a card all is skipped.
+ * largest displacement off double where it marches), 1e-4 of the largest displacement between single precision there
+ * and double here over 10,000 steps and at rest, the same looks, the same messages. Without a card all is skipped.
  */
 // needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/places.c  tled/*/*.c
 #include "tled/cuda/march.h"
@@ -21,8 +20,8 @@ static bool same(const bench *a, const bench *b)
            !memcmp(a->displacement, b->displacement, (size_t)a->problem.nodes * 6 * sizeof *a->displacement);
 }
 
-/* In single precision numbers that are too small to be normal are taken for zero; which of those at the very edge are, a card
- * and a processor may decide differently. */
+/* In single precision numbers that are too small to be normal are taken for zero; which of those at the very edge are,
+ * a card and a processor may decide differently. */
 static bool same_but_the_smallest(const bench *a, const bench *b)
 {
     double most = 0;
@@ -80,7 +79,8 @@ static double computed(bench *b, const backend *cuda)
     return each;
 }
 
-/* Whether the card marches: it computes what a march of the same problem does, rounded down. each: what computed() says. */
+/* Whether the card marches: it computes what a march of the same problem does,
+ * rounded down. each: what computed() says. */
 static bool is_march(bench *b, double each)
 {
     const double elements = (double)b->problem.elements;
@@ -92,8 +92,8 @@ static bool is_march(bench *b, double each)
     return is;
 }
 
-/* Two runs of the same steps, made: the processor's in double precision, and one that marches: fused operations, and sums in another
- * order. */
+/* Two runs of the same steps, made: the processor's in double precision, and one that marches: fused
+ * operations, and sums in another order. */
 static void compare_marched(bench *here, bench *there, const char *name)
 {
     const double each = computed(there, there->setup.device);
@@ -269,7 +269,8 @@ static void test_diverged(const backend *cpu, const backend *cuda)
     bench_free(&there);
 }
 
-/* The card's memory: with frames, or in a run to rest and with frames, at most so many bytes an element in single precision. */
+/* The card's memory: with frames, or in a run to rest and with frames, at most so many
+ * bytes an element in single precision. */
 static void test_memory(const block *what, bool rests, const backend *cuda, double most)
 {
     bench b;

@@ -1,6 +1,6 @@
-/* A problem cut into tiles: every node owned once, every element owned once, and a pass over the tiles, each seeing no more
- * than its own lists, gives the internal forces of a pass over elements, to the last bit; and so when nodes stand in another order.
- * Slits are refused. And in rows: the same, slits too.
+/* A problem cut into tiles: every node owned once, every element owned once, and a pass over the tiles, each seeing no
+ * more than its own lists, gives the internal forces of a pass over elements, to the last bit; and so when nodes stand
+ * in another order. Slits are refused. And in rows: the same, slits too.
  */
 // needs: tled/cuda/tiles.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
@@ -182,7 +182,8 @@ static void test_pass(const tled_problem *p, const int brick[3], bool other)
     free(owned);
 }
 
-/* Each element is in the slabs that own nodes of it, each of its four rows of nodes once; nodes are each in one layer. */
+/* Each element is in the slabs that own nodes of it, each of its four rows of nodes
+ * once; nodes are each in one layer. */
 static void test_rows(const tled_problem *p, int lanes, int slabs)
 {
     rows r;

@@ -1,5 +1,6 @@
-/* The CUDA back end's kernels on a card that the processor plays (tests/emulate): the march, its bricks, those that stay, and looks, each by
- * several lots; and that the card finds what is wrong, in kernels that are, and in ours where it leaves out what they say. */
+/* The CUDA back end's kernels on a card that the processor plays (tests/emulate): the march, its bricks, those that
+ * stay, and looks, each by several lots; and that the card finds what is wrong, in kernels that are, and in ours where
+ * it leaves out what they say. */
 // needs: tled/*/*.c
 #include "tled_card.h"
 
@@ -16,7 +17,8 @@ enum { OMITTED_STEPS = 8, OMITTED_ON = 6, OMITTED_NODES = 18 * 10 * 7 };
 static const emulated_card marching = {.capability = 90, .processors = 2}, plain = {.capability = 80, .processors = 4},
                            staying = {.capability = 80, .processors = 132, .together = true};
 
-/* Of all pairs of units that wait for each other in a march that is made, the number of the one that is left out, if not -1. */
+/* Of all pairs of units that wait for each other in a march that is made, the number
+ * of the one that is left out, if not -1. */
 static int64_t near_left_out = -1;
 
 /* march_near_find to the march.c that is tried here: emulate.mk. */
@@ -64,8 +66,8 @@ typedef struct trial {
     bool rests;       /* it keeps what leaves the card no memory for frames */
 } trial;
 
-/* What a back end makes of it: displacements and velocities of a frame, and of one a step later; internal forces at the first,
- * displacements at the second. */
+/* What a back end makes of it: displacements and velocities of a frame, and of one a step later; internal forces at the
+ * first, displacements at the second. */
 enum { PARTS = 6 };
 typedef struct answer {
     bench b;
@@ -285,8 +287,8 @@ static int march_at_once(emulated_omission what, uint64_t seed, double *to, err 
     return gone;
 }
 
-/* Whether what is omitted is found out by some lot: a fault, or another answer than the right one. (Where blocks run one after another,
- * they need not wait.) */
+/* Whether what is omitted is found out by some lot: a fault, or another answer than the right one. (Where blocks run
+ * one after another, they need not wait.) */
 static void try_omission(emulated_omission what, const double *right, const char *name)
 {
     const size_t size = 3 * OMITTED_NODES * sizeof(double);

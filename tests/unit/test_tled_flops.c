@@ -1,5 +1,5 @@
-/* That tests/bench/flops.h counts what element.h and node.h do: its numbers give the very forces that doubles give, and the counts
- * are those of the formulas, added up here by hand.
+/* That tests/bench/flops.h counts what element.h and node.h do: its numbers give the very forces that doubles give, and
+ * the counts are those of the formulas, added up here by hand.
  */
 // needs: tests/bench/flops.cc
 #include "tests/bench/flops.h"
@@ -57,7 +57,8 @@ static void counts(void)
     ok(rest.multiply == times, "%d multiplications an element, by hand %d", (int)rest.multiply, times);
     ok(rest.divide == 0 && rest.root == 0, "no division, no root");
     ok(active.divide == 1 && active.root == 1, "a contraction: one division, one root");
-    /* F a0: 3 x 3 products and sums; its length: 3, 2; f(l), the operations of all three branches; t; t m (x) a0; added. */
+    /* F a0: 3 x 3 products and sums; its length: 3, 2; f(l), the operations of all
+     * three branches; t; t m (x) a0; added. */
     ok(active.add - rest.add == 9 + 2 + 4 + 9, "a contraction: %d more additions", (int)(active.add - rest.add));
     ok(active.multiply - rest.multiply == 9 + 3 + 6 + 1 + 3 + 9, "a contraction: %d more multiplications",
        (int)(active.multiply - rest.multiply));

@@ -1,7 +1,8 @@
-/* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners; what is said of
- * special cells is the problem's, and others are of the plain law. Nodes stand in one order, in which what is owned of a layer is
- * one piece. With each of the six axes; and not where too few threads would have a cell. Which units wait for which, by trying all
- * pairs. And units: some for each block that there is room for at once where their layers are all alike, in the order of these.
+/* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners;
+ * what is said of special cells is the problem's, and others are of the plain law. Nodes stand in one order, in which
+ * what is owned of a layer is one piece. With each of the six axes; and not where too few threads would have a cell.
+ * Which units wait for which, by trying all pairs. And units: some for each block that there is room for at once where
+ * their layers are all alike, in the order of these.
  */
 // needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
@@ -46,7 +47,8 @@ static int32_t node_of(const seen *s, uint32_t word)
     return s->node[word & MARCH_NODE];
 }
 
-/* Whether owned nodes stand as they come in layers, each in a row of its place; and all nodes are owned. Notes which stands where. */
+/* Whether owned nodes stand as they come in layers, each in a row of its place; and all
+ * nodes are owned. Notes which stands where. */
 static bool in_order(seen *s)
 {
     int32_t next = 0;
@@ -218,7 +220,8 @@ static bool has_times(const march *m, int64_t row, int32_t unit, int times)
     return times == 0;
 }
 
-/* Whether each unit waits for itself, and for those that have nodes which it moves or move what it has, once; *most: for how many. */
+/* Whether each unit waits for itself, and for those that have nodes which it moves or move
+ * what it has, once; *most: for how many. */
 static bool near_right(const march *m, int64_t nodes, int64_t *most)
 {
     uint8_t *has = calloc((size_t)(m->units * nodes), 2), *own = has + m->units * nodes;
@@ -289,8 +292,8 @@ static void test_thin(void)
     model_free(&m);
 }
 
-/* Three units of a node each, in the middle one of three layers; one of them has another's as well, in any of its layers, and that one
- * nothing of it: both wait all the same. */
+/* Three units of a node each, in the middle one of three layers; one of them has another's as well, in any of its
+ * layers, and that one nothing of it: both wait all the same. */
 static void test_one_way(void)
 {
     enum { UNITS = 3, LAYERS = 3 * UNITS };

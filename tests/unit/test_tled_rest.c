@@ -1,5 +1,5 @@
-/* Runs to rest against CalculiX 2.20 (C3D8R): a cube that hangs from its top, with the sweep of the hourglass coefficient,
- * and a cantilever, both by their own weight.
+/* Runs to rest against CalculiX 2.20 (C3D8R): a cube that hangs from its top, with the sweep of the hourglass
+ * coefficient, and a cantilever, both by their own weight.
  */
 // needs: tled/*/*.c
 #include "tled_bench.h"
@@ -22,7 +22,8 @@ static double sag(const block *what, double kappa, const backend *device, int32_
     return z;
 }
 
-/* Too much damping, and too little: what is left is what the tolerance says, however slowly or whichever way it moves. */
+/* Too much damping, and too little: what is left is what the tolerance says, however
+ * slowly or whichever way it moves. */
 static void test_damping(const block *what, double want)
 {
     static const double damping[] = {3, 300};

@@ -1,5 +1,5 @@
-/* The time loop: what is conserved without damping, the same bytes whatever the threads and wherever a run was cut in two,
- * muscles at full contraction, steps that are too large, and the ends of runs.
+/* The time loop: what is conserved without damping, the same bytes whatever the threads and wherever a run was cut in
+ * two, muscles at full contraction, steps that are too large, and the ends of runs.
  */
 // needs: tled/*/*.c
 #include "tled_bench.h"
@@ -396,7 +396,8 @@ static void count_checks(void *context, int64_t step, const watch_sight *sight, 
     ((bench *)context)->cuts++;
 }
 
-/* A frame that cannot be written ends the run soon, whether frames are taken on the way or steps are taken again for them. */
+/* A frame that cannot be written ends the run soon, whether frames are taken on the
+ * way or steps are taken again for them. */
 static void test_frame_fails(const backend *device, const char *name)
 {
     static const double every[] = {1e-9, .0007, .0123};
@@ -454,8 +455,8 @@ static void test_choice(void)
 }
 
 /* Half of each element is tissue: half the mass, and half of all forces. Under gravity and in contraction it moves as
- * if it were whole; what a force moves, it moves as twice the force does. And where the shares differ from element to element
- * the step at rest is what it was, and stable. */
+ * if it were whole; what a force moves, it moves as twice the force does. And where the shares differ from element to
+ * element the step at rest is what it was, and stable. */
 static void test_fraction(const backend *device, const char *name)
 {
     const double gravity[3] = {3, -2, -9.81};

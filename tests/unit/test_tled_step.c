@@ -1,6 +1,8 @@
-/* The stable step: against its formulas at rest, the element's matrix against the derivative of its stress, its largest eigenvalue
- * against bounds of it, and the model's bound against the largest frequency of a block, found by power iteration. */
-// needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/step.c tled/problem/script.c tled/problem/script_read.c
+/* The stable step: against its formulas at rest, the element's matrix against the derivative of its
+ * stress, its largest eigenvalue against bounds of it, and the model's bound against the largest frequency
+ * of a block, found by power iteration. */
+// needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/step.c
+// needs: tled/problem/script.c tled/problem/script_read.c
 #include "tled/problem/step.h"
 
 #include "tap.h"
@@ -98,8 +100,8 @@ static element_fibre fibre_by_chance(double tension)
     return fibre;
 }
 
-/* Bounds of the largest eigenvalue hold at gradients up to `strain`, with muscles of up to `tension`; in the median they are as
- * near each other as `near`. */
+/* Bounds of the largest eigenvalue hold at gradients up to `strain`, with muscles of up to `tension`; in the median
+ * they are as near each other as `near`. */
 static void test_range(double mu, double bulk, double strain, double tension, double near)
 {
     int wrong = 0, close = 0, count = 0;
@@ -151,7 +153,8 @@ static void pull(const tled_problem *p, const double *u, double *f)
     }
 }
 
-/* The largest eigenvalue of M^-1 K about the affine state (stretch - 1) x, by power iteration on differences of forces. */
+/* The largest eigenvalue of M^-1 K about the affine state (stretch - 1) x, by power
+ * iteration on differences of forces. */
 static double largest_frequency(const tled_problem *p, const double stretch[3])
 {
     int64_t count = 3 * p->nodes;

@@ -1,5 +1,5 @@
-/* Volume images: NRRD and MetaImage in all their encodings, orders and types, the geometry that they give, what is written and
- * read again, and what is refused, with its reason.
+/* Volume images: NRRD and MetaImage in all their encodings, orders and types, the geometry that they give, what is
+ * written and read again, and what is refused, with its reason.
  */
 #include "volume/metaimage.h"
 #include "volume/nrrd.h"

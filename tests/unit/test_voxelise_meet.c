@@ -1,6 +1,6 @@
 // needs: voxelise/surfaces/meet.c voxelise/surfaces/expansion.c
-/* Where triangles cross, against whole numbers: triangles whose corners are few places of a lattice, so that corners, edges and
- * planes fall together all the time; and boxes in lattices of squares that cross along their edges. */
+/* Where triangles cross, against whole numbers: triangles whose corners are few places of a lattice, so that corners,
+ * edges and planes fall together all the time; and boxes in lattices of squares that cross along their edges. */
 #include "tap.h"
 
 #include "voxelise/surfaces/meet.h"
@@ -65,8 +65,8 @@ static bool cut(const triangle *t, const int64_t *plane, int64_t offset, const i
     return found == 2 && less(*from, *to);
 }
 
-/* Whether insides meet along a line; in the same plane they do not. A corner on the plane is on its lower side here, which
- * makes an interval of a triangle that only touches with an edge: hence the look at both sides. */
+/* Whether insides meet along a line; in the same plane they do not. A corner on the plane is on its lower side here,
+ * which makes an interval of a triangle that only touches with an edge: hence the look at both sides. */
 static bool meets(const triangle *a, const triangle *b)
 {
     int64_t m[3], n[3], along[3];

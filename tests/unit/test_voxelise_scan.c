@@ -1,7 +1,9 @@
-// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/crossing.c voxelise/inside.c tests/bench/scan.c
-/* Scans of 25,000 triangles and, with SINEW_LONG, of up to 1.6 million in up to 512 cells a side, against an exact reference
- * of another making: coordinates are whole numbers, rays run along x, and each crossing is the sign of a whole number.
- * Vertices are kept to a fraction of a cell, so that thousands of them, of edges and of faces hold centres.
+// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/crossing.c voxelise/inside.c
+// needs: tests/bench/scan.c
+/* Scans of 25,000 triangles and, with SINEW_LONG, of up to 1.6 million in up to 512 cells a side, against
+ * an exact reference of another making: coordinates are whole numbers, rays run along x, and each
+ * crossing is the sign of a whole number. Vertices are kept to a fraction of a cell, so that thousands of
+ * them, of edges and of faces hold centres.
  */
 #include "tap.h"
 

@@ -1,5 +1,5 @@
-/* A block with a run around it, for tests of the solver: what the run wrote last is kept. Functions end the test program where
- * even the setting up fails.
+/* A block with a run around it, for tests of the solver: what the run wrote last is kept. Functions end the test
+ * program where even the setting up fails.
  */
 #ifndef SINEW_TLED_BENCH_H
 #define SINEW_TLED_BENCH_H

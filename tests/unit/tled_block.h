@@ -1,5 +1,5 @@
-/* A block of voxels as a model in memory, one volume of one material or two mixed, for tests of the solver. Memory that is not to be had
- * ends the test program.
+/* A block of voxels as a model in memory, one volume of one material or two mixed, for tests of the solver. Memory that
+ * is not to be had ends the test program.
  */
 #ifndef SINEW_TLED_BLOCK_H
 #define SINEW_TLED_BLOCK_H
@@ -17,8 +17,8 @@ typedef struct block {
     int fixed_axis, fixed_low, fixed_high; /* whether the nodes at its low and high end are rigid */
     float fibre[3];                        /* not 0: the volume is a muscle named muscle_m */
     float fraction; /* of every element; 0: the model has none. Below 0: they differ, from .05 to 1 */
-    bool
-        mixed; /* some elements are of a second volume, stiffer and denser, and some mixed of both, by different shares */
+    bool mixed;     /* some elements are of a second volume, stiffer and denser, and some
+                * mixed of both, by different shares */
 } block;
 
 static inline model_array *block_array(model *m, const char *name)

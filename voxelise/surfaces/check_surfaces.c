@@ -76,8 +76,8 @@ static const int32_t *corners(const work *w, int64_t polygon)
 
 /* ---- triangles */
 
-/* Whether three places are in a line: the exact cross product is 0. In doubles a component errs by less than 8 epsilon of its
- * two products. */
+/* Whether three places are in a line: the exact cross product is 0. In doubles a component errs by
+ * less than 8 epsilon of its two products. */
 static bool is_degenerate(const double *a, const double *b, const double *c)
 {
     for (int i = 0; i < 3; i++) {
@@ -311,8 +311,8 @@ static int64_t first_above(const work *w, int64_t shells, double y)
     return from;
 }
 
-/* Which shells are inside of an odd number of others, so that they bound hollows: rays from their points cross these oddly. A
- * triangle looks only at the points that are as high along y as it is. */
+/* Which shells are inside of an odd number of others, so that they bound hollows: rays from their points cross these
+ * oddly. A triangle looks only at the points that are as high along y as it is. */
 static void find_hollows(work *w, int64_t shells)
 {
     for (int64_t s = 0; s < shells; s++)

@@ -1,5 +1,5 @@
-/* What is wrong with a surface, and what it encloses: for voxelise --check. Everything is borrowed but the result, which is
- * plain numbers.
+/* What is wrong with a surface, and what it encloses: for voxelise --check. Everything is
+ * borrowed but the result, which is plain numbers.
  */
 #ifndef SINEW_CHECK_SURFACES_H
 #define SINEW_CHECK_SURFACES_H
@@ -19,8 +19,8 @@ typedef struct check_result {
     double low[3], high[3];
 } check_result;
 
-/* face: polygons of the OBJ. voxel (NULL: not asked): its sides. Lengths are in the OBJ's unit. threads: for Embree. -1 with
- * e filled on no memory, or where a coordinate is past what grid.h allows. */
+/* face: polygons of the OBJ. voxel (NULL: not asked): its sides. Lengths are in the OBJ's unit. threads: for Embree. -1
+ * with e filled on no memory, or where a coordinate is past what grid.h allows. */
 int check_surface(check_result *r, const obj *o, const int64_t *face, int64_t faces, const double *voxel, int threads,
                   err *e);
 

@@ -1,5 +1,5 @@
-/* Whether polygons close: every edge is used an even number of times, edges being pairs of welded vertices, so that soups
- * of polygons are as good as connected meshes. Polygons given more than once are found on the way. Everything is
+/* Whether polygons close: every edge is used an even number of times, edges being pairs of welded vertices, so that
+ * soups of polygons are as good as connected meshes. Polygons given more than once are found on the way. Everything is
  * borrowed but the result, which the caller frees.
  */
 #ifndef SINEW_CLOSED_H

@@ -1,7 +1,7 @@
-/* The lattice in the source file's own unit, where its centres are exact real numbers: the centre of cell i along an axis
- * is origin + offset + (2 i + 1) spacing / 2, summed without rounding. The offset is there so that a lattice placed
- * by the surfaces moves with them to the last bit; it is 0 where the user fixed a corner. A plain struct, owned by
- * whoever declares it.
+/* The lattice in the source file's own unit, where its centres are exact real numbers: the centre of cell i
+ * along an axis is origin + offset + (2 i + 1) spacing / 2, summed without rounding. The offset is there so that
+ * a lattice placed by the surfaces moves with them to the last bit; it is 0 where the user fixed a corner. A
+ * plain struct, owned by whoever declares it.
  *
  * Limits: cells' indices within GRID_INDEX; lengths 0 or of a magnitude from GRID_SMALLEST to GRID_LARGEST, so that
  * products of three of their parts neither overflow nor fall below the smallest double: then all signs in
@@ -26,14 +26,16 @@ typedef struct grid {
 /* The lattice that covers a box with ceil(extent / spacing - 1e-6) cells a side, at least one, centred on it. */
 int grid_cover(grid *g, const double *low, const double *high, const double *spacing, err *e);
 
-/* The lattice with a corner at origin; its cells are those whose centres could be inside the box: low <= centre < high. */
+/* The lattice with a corner at origin; its cells are those whose centres could be
+ * inside the box: low <= centre < high. */
 int grid_fix(grid *g, const double *low, const double *high, const double *spacing, const double *origin, err *e);
 
 /* Keeps the cells whose centres are in a box, its low sides included, its high sides not. */
 int grid_clip(grid *g, const double *low, const double *high, err *e);
 
-/* The same region in cells of which `parts` along each axis make one of these: their centres are samples of it. (A part's
- * side is rounded once, where parts is no power of 2; then a sample may be off by as much as that, times its number.) */
+/* The same region in cells of which `parts` along each axis make one of these: their centres are
+ * samples of it. (A part's side is rounded once, where parts is no power of 2; then a sample may be off
+ * by as much as that, times its number.) */
 int grid_divide(grid *g, const grid *whole, int parts, err *e);
 
 /* One cell more at either end: those that a surface may cut though none of their centres can be inside. */

@@ -50,8 +50,8 @@ static int exact_side(const double *a, const double *b, const double *c, const d
     return expansion_sign(count, total);
 }
 
-/* The side of the plane of a, b, c on which d is: the sign of (b - a) x (c - a) . (d - a). Six products of three differences,
- * each of a few roundings, are summed: 16 epsilon of their magnitudes bound the error. */
+/* The side of the plane of a, b, c on which d is: the sign of (b - a) x (c - a) . (d - a). Six products of three
+ * differences, each of a few roundings, are summed: 16 epsilon of their magnitudes bound the error. */
 static int side(const double *a, const double *b, const double *c, const double *d)
 {
     double u[3], v[3], w[3], value = 0, size = 0;
@@ -95,9 +95,9 @@ static void alone_first(corners of, const int *where, const double **to)
         to[i] = of[(first + i) % 3];
 }
 
-/* Both have corners on either side of the other's plane, so each cuts an interval out of the line in which these meet, whose
- * ends are on the two edges of the corner that is alone. The insides meet where the intervals overlap in more than a point:
- * each begins before the other ends, which two edges of four say (Guigue and Devillers, 2003). */
+/* Both have corners on either side of the other's plane, so each cuts an interval out of the line in which these meet,
+ * whose ends are on the two edges of the corner that is alone. The insides meet where the intervals overlap in more
+ * than a point: each begins before the other ends, which two edges of four say (Guigue and Devillers, 2003). */
 static bool cross_inside(corners one, const int *of_one, corners other, const int *of_other)
 {
     if (!on_both(of_one) || !on_both(of_other))
@@ -112,9 +112,9 @@ static bool cross_inside(corners one, const int *of_one, corners other, const in
     return side(p[0], p[1], q[0], q[1]) < 0 && side(p[0], p[2], q[2], q[0]) < 0;
 }
 
-/* Whether the edge from corner i of a triangle to the next lies in another's plane, its third corner does not, and the edge
- * runs through the other's inside: neither has the other on one side of it. Sides within the plane are those of planes
- * through the third corner. */
+/* Whether the edge from corner i of a triangle to the next lies in another's plane, its third corner does not, and the
+ * edge runs through the other's inside: neither has the other on one side of it. Sides within the plane are those of
+ * planes through the third corner. */
 static bool runs_within(corners t, const int *where, int i, corners other)
 {
     if (where[i] || where[(i + 1) % 3] || !where[(i + 2) % 3])

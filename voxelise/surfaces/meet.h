@@ -1,15 +1,15 @@
-/* Where a surface meets itself: pairs of its triangles whose insides meet along a line, and edges that run within a triangle
- * with a triangle on either side of it, decided exactly. What only touches (a common vertex or edge, a corner or an edge upon
- * a face, two faces in one plane) does not count, nor does a line along which both have an edge. Embree finds the pairs whose
- * boxes overlap. Nothing is kept.
+/* Where a surface meets itself: pairs of its triangles whose insides meet along a line, and edges that run within a
+ * triangle with a triangle on either side of it, decided exactly. What only touches (a common vertex or edge, a corner
+ * or an edge upon a face, two faces in one plane) does not count, nor does a line along which both have an edge. Embree
+ * finds the pairs whose boxes overlap. Nothing is kept.
  */
 #ifndef SINEW_MEET_H
 #define SINEW_MEET_H
 
 #include "base/err.h"
 
-/* vertex: triangles x 3; those at one place are one. Coordinates as grid.h wants them. threads: to look with. count: the
- * pairs, those of a triangle and one that leaves it by an edge within it too. -1 with e filled. */
+/* vertex: triangles x 3; those at one place are one. Coordinates as grid.h wants them. threads: to look with. count:
+ * the pairs, those of a triangle and one that leaves it by an edge within it too. -1 with e filled. */
 int meet_count(const double *position, const int32_t *vertex, int64_t triangles, int threads, int64_t *count, err *e);
 
 /* Whether the insides of two triangles meet along a line. */

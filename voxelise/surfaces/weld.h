@@ -12,8 +12,8 @@ typedef struct weld {
     double low[3], high[3]; /* the box of the places */
 } weld;
 
-/* Of the vertices that these faces use; a face may be there again. Coordinates too small for exact arithmetic (grid.h) are
- * taken as 0, those too large refused: -1 with e filled. */
+/* Of the vertices that these faces use; a face may be there again. Coordinates too small for exact arithmetic (grid.h)
+ * are taken as 0, those too large refused: -1 with e filled. */
 int weld_make(weld *w, const obj *o, const int64_t *face, int64_t faces, err *e);
 void weld_free(weld *w);
 
