@@ -17,7 +17,7 @@ OPT = -O3
 CFLAGS = $(OPT) -g
 CSTD = -std=c11 -D_XOPEN_SOURCE=700 -D_DEFAULT_SOURCE -ffp-contract=off -fno-math-errno -pthread
 CPPFLAGS = -Icommon -I. -isystem /usr/include/freetype2 $(foreach folder,$(lastword $(wildcard /usr/include/openjpeg-2.*)),-isystem $(folder))
-ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(VECTORS) $(CPPFLAGS) -MMD -MP
+ALL_CFLAGS = $(CSTD) $(WARN) $(WERROR) $(CFLAGS) $(VARIANT) $(CPPFLAGS) -MMD -MP
 LDLIBS = -lz -lm -pthread
 EMBREE = -lembree3
 # DCMTK is C++, and so is the one file that uses it.
@@ -106,20 +106,30 @@ $(BUILD)/cuda-$(CUDA):
 $(KNOW_CUDA): $(BUILD)/cuda-$(CUDA)
 $(KNOW_CUDA): CPPFLAGS += $(if $(LIB_CUDA),-DSINEW_CUDA)
 
-# The CPU solvers' loops, once for each instruction set; which one runs is chosen at run time, and all give the same bytes.
-# (No psabi: vectors are passed between functions of one file only.)
-$(BUILD)/tled/cpu/cpu_pass_%.o $(BUILD)/slice/image/slice_lanes_%.o: VECTORS = -Wno-psabi
-ifeq ($(shell uname -m),x86_64)
-$(BUILD)/msds/cpu/lanes_avx2.o: VECTORS = -mavx2
-$(BUILD)/slice/image/slice_lanes_avx2.o: VECTORS = -Wno-psabi -mavx2
-$(BUILD)/slice/image/slice_lanes_avx512.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
-$(BUILD)/msds/cpu/lanes_avx512.o: VECTORS = -mavx512f -mavx512vl -mavx512dq -mavx512bw
-$(BUILD)/tled/cpu/cpu_pass_avx2_%.o: VECTORS = -Wno-psabi -mavx2
-$(BUILD)/tled/cpu/cpu_pass_avx512_%.o: VECTORS = -Wno-psabi -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
-endif
+# Loops of the solvers that are compiled several times: SOURCE.c becomes SOURCE.A.o, SOURCE.B.o ..., where A and B are words, joined by -, that
+# each have flags. Which one runs is chosen at run time, and all instruction sets (common/solve/vectors.h) give the same bytes.
+SETS := plain $(if $(filter x86_64,$(shell uname -m)),avx2 avx512)
+PRECISIONS := double single
+flags_plain :=
+flags_avx2 := -mavx2 -DVECTORS=avx2
+flags_avx512 := -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512 -DVECTORS=avx512
+flags_double :=
+flags_single := -DELEMENT_SINGLE
+variants_tled/cpu/cpu_lanes.c := $(foreach set,$(SETS),$(PRECISIONS:%=$(set)-%))
+variants_msds/cpu/lanes_loops.c := $(SETS)
+variants_slice/image/slice_lanes_loops.c := $(SETS)
+
+# $(1): the source; $(2): the variant. (No psabi: vectors are passed between functions of one file only.)
+define variant
+$(BUILD)/$(basename $(1)).$(2).o: VARIANT = -Wno-psabi $(foreach word,$(subst -, ,$(2)),$(flags_$(word)))
+$(BUILD)/$(basename $(1)).$(2).o: $(1)
+	@mkdir -p $$(@D)
+	$$(call run,CC $$< ($(2)),$$(CC) $$(ALL_CFLAGS) -c -o $$@ $$<)
+endef
+$(foreach source,$(patsubst variants_%,%,$(filter variants_%,$(.VARIABLES))),$(foreach name,$(variants_$(source)),$(eval $(call variant,$(source),$(name)))))
 
 # A tool: its main is the file of its name; what else its folder holds belongs to it.
-objects = $(patsubst %.cc,$(BUILD)/%.o,$(patsubst %.c,$(BUILD)/%.o,$(1)))
+objects = $(foreach file,$(1),$(addprefix $(BUILD)/$(basename $(file)),$(or $(patsubst %,.%.o,$(variants_$(file))),.o)))
 VOXELISE_SRC := $(wildcard voxelise/*.c voxelise/surfaces/*.c)
 ATTACH_SRC := $(wildcard attach/*.c)
 BIND_MODULES := $(filter-out bind/bind.c bind/sinew-deform.c,$(wildcard bind/*.c))

@@ -3,27 +3,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool can(const char *name)
+static bool has(int set)
 {
-#ifdef __x86_64__
-    if (!strcmp(name, "AVX2"))
-        return __builtin_cpu_supports("avx2");
-    if (!strcmp(name, "AVX-512"))
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-               __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-#endif
-    return !strcmp(name, "plain");
+#define HAS(set, name, bytes, has) [VECTORS_##set] = (has),
+    const bool all[VECTORS_COUNT] = {VECTORS_SETS(HAS)};
+    return all[set];
 }
 
-bool vectors_are(const char *name)
+bool vectors_can(int set)
 {
+#define NAME(set, name, bytes, has) [VECTORS_##set] = (name),
+    static const char *const names[VECTORS_COUNT] = {VECTORS_SETS(NAME)};
     const char *wanted = getenv("SINEW_VECTORS");
-    return can(name) && (!wanted || !*wanted || !strcmp(wanted, name));
+    return has(set) && (!wanted || !*wanted || !strcmp(wanted, names[set]));
 }
 
-void vectors_none(err *e)
+int vectors_choose(err *e)
 {
+    for (int set = 0; set < VECTORS_COUNT; set++)
+        if (vectors_can(set))
+            return set;
     const char *wanted = getenv("SINEW_VECTORS");
     err_set(e, "SINEW_VECTORS", 0, "'%.100s' is not available here; expected plain, AVX2 or AVX-512",
             wanted ? wanted : "");
+    return -1;
 }

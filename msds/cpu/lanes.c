@@ -1,23 +1,16 @@
 #include "msds/cpu/lanes.h"
 
 #include "base/mem.h"
-#include "solve/vectors.h"
 
 #include <stdlib.h>
 
-const lanes *const lanes_all[] = {
-#if defined(__x86_64__)
-    &lanes_avx512, &lanes_avx2,
-#endif
-    &lanes_plain, NULL};
+#define LANES_TABLE(set, name, bytes, has) [VECTORS_##set] = &lanes_##set,
+const lanes *const lanes_all[VECTORS_COUNT] = {VECTORS_SETS(LANES_TABLE)};
 
 const lanes *lanes_choose(err *e)
 {
-    for (int i = 0; lanes_all[i]; i++)
-        if (vectors_are(lanes_all[i]->name))
-            return lanes_all[i];
-    vectors_none(e);
-    return NULL;
+    const int set = vectors_choose(e);
+    return set < 0 ? NULL : lanes_all[set];
 }
 
 int lanes_field_make(lanes_field *f, int64_t nodes, err *e)

@@ -1,11 +1,12 @@
 /* The loops that take the time, over eight nodes side by side (slices.h) and over dense columns, as a table of functions: the same
- * source compiled for plain x86-64 (or whatever the compiler's default is), AVX2 and AVX-512, chosen when a state is made. No
+ * source, lanes_loops.c, compiled for each set of solve/vectors.h, chosen when a state is made. No
  * multiply and add is fused in any, and no sum changes its order: all give the same bytes. All memory is the caller's.
  */
 #ifndef SINEW_LANES_H
 #define SINEW_LANES_H
 
 #include "msds/problem/slices.h"
+#include "solve/vectors.h"
 
 /* A value for each component of each of our nodes: three arrays, with LANES zeros before and after each. */
 typedef struct lanes_field {
@@ -59,13 +60,11 @@ typedef struct lanes {
     void (*backward)(double *x, const float *l, int64_t stride, int64_t rows, int64_t columns, const double *y);
 } lanes;
 
-extern const lanes lanes_plain;
-#if defined(__x86_64__)
-extern const lanes lanes_avx2, lanes_avx512;
-#endif
+#define LANES_DECLARE(set, name, bytes, has) extern const lanes lanes_##set;
+VECTORS_SETS(LANES_DECLARE)
 
-/* All that are built, the fastest first; ends with NULL. */
-extern const lanes *const lanes_all[];
+/* One for each set of solve/vectors.h. */
+extern const lanes *const lanes_all[VECTORS_COUNT];
 
 /* The first that this processor can do, or what SINEW_VECTORS names (solve/vectors.h). NULL with e filled. */
 const lanes *lanes_choose(err *e);

@@ -1,6 +1,6 @@
-/* The loops of us-slice that take the time, as a table of functions: the same source compiled for plain processors,
- * AVX2 and AVX-512, chosen at run time. Samples are taken in fixed point, and nothing else depends on the width of
- * vectors: all give the same bytes. All memory is the caller's.
+/* The loops of us-slice that take the time, as a table of functions: one source, slice_lanes_loops.c, compiled for
+ * each set of solve/vectors.h, chosen at run time. Samples are taken in fixed point, and nothing else depends on the
+ * width of vectors: all give the same bytes. All memory is the caller's.
  *
  * An image lies in a plane, its columns along u and its rows along v, with pixel (c, r)'s centre at u = c,
  * v = r. The plane cuts a tetrahedron in a triangle or a quadrangle: a slice_piece. Within it the place in
@@ -10,6 +10,7 @@
 #define SINEW_SLICE_LANES_H
 
 #include "slice/image/slice_cells.h"
+#include "solve/vectors.h"
 
 enum {
     SLICE_LANES = 16, /* rows of places are padded to a multiple of it */
@@ -96,7 +97,8 @@ typedef struct slice_lanes {
                    uint8_t *to);
 } slice_lanes;
 
-extern const slice_lanes slice_lanes_plain, slice_lanes_avx2, slice_lanes_avx512;
+#define SLICE_LANES_DECLARE(set, name, bytes, has) extern const slice_lanes slice_lanes_##set;
+VECTORS_SETS(SLICE_LANES_DECLARE)
 
 /* The widest that the processor has, or the one that SINEW_VECTORS names: plain, AVX2, AVX-512. NULL with e filled
  * where that is not to be had. */

@@ -1,4 +1,4 @@
-/* The samples of slice_lanes.h; a part of slice_lanes_loops.h, which includes it once
+/* The samples of slice_lanes.h; a part of slice_lanes_loops.c, which includes it once
  * INLINE is there. Everything here is static.
  */
 /* ---- samples: linear along z, x and y, in 16 bits: 8 of grey and 7 below them, each product rounded to the nearest.

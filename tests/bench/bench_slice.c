@@ -6,11 +6,11 @@
  * PLOT.dat gets R and ms, for tests/bench/regions.plot.
  */
 // needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c
-// needs: msds/cpu/lanes.c msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/contacts.c
+// needs: msds/cpu/lanes.c msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
 // needs: msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c slice/image/slice_cells.c
 // needs: slice/image/slice_mesh.c slice/image/slice_cutter.c slice/image/slice_paper.c slice/image/slice_lanes.c
-// needs: slice/image/slice_lanes_plain.c slice/image/slice_lanes_avx2.c slice/image/slice_lanes_avx512.c
+// needs: slice/image/slice_lanes_loops.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"

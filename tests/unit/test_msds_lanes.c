@@ -2,7 +2,7 @@
  * element's rotation, and the mixing of solves.
  */
 // needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c
-// needs: msds/cpu/lanes_plain.c msds/cpu/lanes_avx2.c msds/cpu/lanes_avx512.c msds/cpu/mixing.c
+// needs: msds/cpu/lanes_loops.c msds/cpu/mixing.c
 #include "msds_block.h"
 
 #include "base/mem.h"
@@ -151,8 +151,8 @@ static void test_lanes(void)
     make_problem(&b, &m, &p);
     tets_must(!slices_make(&s, &p, &e), &e);
     double *plain = run_lanes(&lanes_plain, &s, &count);
-    for (int i = 0; lanes_all[i] != &lanes_plain; i++) {
-        if (!vectors_are(lanes_all[i]->name)) {
+    for (int i = 0; i < VECTORS_plain; i++) {
+        if (!vectors_can(i)) {
             skip(1, "not on this processor");
             continue;
         }

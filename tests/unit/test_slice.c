@@ -1,8 +1,7 @@
 /* us-slice's images against the definition, pixel by pixel; both methods, every
  * instruction set, regions and threads. */
 // needs: msds/mesh/mesh_tets.c slice/image/slice_cells.c slice/image/slice_mesh.c slice/image/slice_cutter.c
-// needs: slice/image/slice_paper.c slice/image/slice_lanes.c slice/image/slice_lanes_plain.c
-// needs: slice/image/slice_lanes_avx2.c slice/image/slice_lanes_avx512.c
+// needs: slice/image/slice_paper.c slice/image/slice_lanes.c slice/image/slice_lanes_loops.c
 #include "slice_block.h"
 
 #include "tap.h"

@@ -1,24 +1,15 @@
 #include "tled/cpu/cpu_pass.h"
 
-#include "solve/vectors.h"
+#define CPU_PASS_DECLARE(set, name, bytes, has) extern const cpu_pass cpu_pass_double_##set, cpu_pass_single_##set;
+#define CPU_PASS_DOUBLE(set, name, bytes, has)  [VECTORS_##set] = &cpu_pass_double_##set,
+#define CPU_PASS_SINGLE(set, name, bytes, has)  [VECTORS_##set] = &cpu_pass_single_##set,
+
+VECTORS_SETS(CPU_PASS_DECLARE)
+const cpu_pass *const cpu_passes_double[VECTORS_COUNT] = {VECTORS_SETS(CPU_PASS_DOUBLE)};
+const cpu_pass *const cpu_passes_single[VECTORS_COUNT] = {VECTORS_SETS(CPU_PASS_SINGLE)};
 
 const cpu_pass *cpu_pass_choose(const cpu_pass *const *passes, err *e)
 {
-    for (int i = 0; passes[i]; i++)
-        if (vectors_are(passes[i]->name))
-            return passes[i];
-    vectors_none(e);
-    return NULL;
+    const int set = vectors_choose(e);
+    return set < 0 ? NULL : passes[set];
 }
-
-const cpu_pass *const cpu_passes_double[] = {
-#ifdef __x86_64__
-    &cpu_pass_avx512_double, &cpu_pass_avx2_double,
-#endif
-    &cpu_pass_base_double, NULL};
-
-const cpu_pass *const cpu_passes_single[] = {
-#ifdef __x86_64__
-    &cpu_pass_avx512_single, &cpu_pass_avx2_single,
-#endif
-    &cpu_pass_base_single, NULL};

@@ -1,13 +1,14 @@
-/* The CPU back end's pass over a slab, compiled for each instruction set and precision by cpu_pass_*.c, which choose ELEMENT_LANES,
- * ELEMENT_SINGLE and the function's name: layer by layer, runs of elements side by side, each corner's force added to its
- * node; then the layer's nodes, whose sums are whole. As the runs are in the lattice's order, so is each node's sum. What the
- * pass works on is cpu_work's: its owner is the back end (cpu_loops.h).
+/* The CPU back end's pass over a slab, compiled for each instruction set and precision of one source, cpu_lanes.c: layer
+ * by layer, runs of elements side by side, each corner's force added to its node; then the layer's nodes, whose sums
+ * are whole. As the runs are in the lattice's order, so is each node's sum. What the pass works on is cpu_work's: its
+ * owner is the back end (cpu_loops.h).
  *
  *     f_n = sum over elements at n of element_force(u),   a = g + (f_ext - f_n) / m,   then node.h.
  */
 #ifndef SINEW_CPU_PASS_H
 #define SINEW_CPU_PASS_H
 
+#include "solve/vectors.h"
 #include "tled/cpu/rows.h"
 
 /* What an element without a lattice has, in a group's lanes: element_any, then mu, K and the hourglass stiffness. */
@@ -54,13 +55,8 @@ typedef struct cpu_pass {
     void (*nodes)(const cpu_work *w, int64_t from, int64_t to);
 } cpu_pass;
 
-extern const cpu_pass cpu_pass_base_double, cpu_pass_base_single;
-#ifdef __x86_64__
-extern const cpu_pass cpu_pass_avx2_double, cpu_pass_avx2_single, cpu_pass_avx512_double, cpu_pass_avx512_single;
-#endif
-
-/* The passes of a precision, the fastest first; NULL-terminated. */
-extern const cpu_pass *const cpu_passes_double[], *const cpu_passes_single[];
+/* The passes of a precision, one for each set of solve/vectors.h. */
+extern const cpu_pass *const cpu_passes_double[VECTORS_COUNT], *const cpu_passes_single[VECTORS_COUNT];
 
 /* The first that this processor can do, or the one that the environment's SINEW_VECTORS names: plain, AVX2 or AVX-512. All give the same
  * bytes. NULL with e filled where that is not to be had. */

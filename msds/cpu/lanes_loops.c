@@ -1,5 +1,4 @@
-/* The loops of lanes.h, compiled by lanes_plain.c, lanes_avx2.c and lanes_avx512.c, which name the table. Everything here is static.
- */
+/* The loops of lanes.h: an object for each instruction set, by the Makefile. All but its table is static. */
 #include "base/flush.h"
 #include "msds/cpu/lanes.h"
 #include "msds/problem/spring.h"
@@ -10,11 +9,6 @@
 #endif
 
 typedef float real;
-
-/* Passing vectors that this build has no registers for is no matter: every function here is inlined. */
-#if !defined(__AVX__)
-#pragma GCC diagnostic ignored "-Wpsabi"
-#endif
 
 typedef float v8 __attribute__((vector_size(32), aligned(4), may_alias));
 typedef double d4 __attribute__((vector_size(32), aligned(8), may_alias));
@@ -425,12 +419,12 @@ static void backward(double *x, const float *l, int64_t stride, int64_t rows, in
     }
 }
 
-const lanes LANES_TABLE = {.name = LANES_NAME,
-                           .step = step,
-                           .multiply = multiply,
-                           .advance = advance,
-                           .turn = turn,
-                           .inside = inside,
-                           .update = update,
-                           .forward = forward,
-                           .backward = backward};
+const lanes VECTORS_OF(lanes_) = {.name = VECTORS_NAME,
+                                  .step = step,
+                                  .multiply = multiply,
+                                  .advance = advance,
+                                  .turn = turn,
+                                  .inside = inside,
+                                  .update = update,
+                                  .forward = forward,
+                                  .backward = backward};

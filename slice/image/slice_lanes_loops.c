@@ -1,6 +1,4 @@
-/* The loops of slice_lanes.h, compiled by slice_lanes_plain.c, _avx2.c and _avx512.c, which
- * name the table. Everything here is static.
- */
+/* The loops of slice_lanes.h: an object for each instruction set, by the Makefile. All but its table is static. */
 #include "slice/image/slice_lanes.h"
 
 #include <math.h>
@@ -493,11 +491,11 @@ static void fill(const slice_fill *f, const int32_t *list, int64_t count, int32_
 
 #include "slice/image/slice_lanes_sample.h"
 
-const slice_lanes SLICE_LANES_TABLE = {.name = SLICE_LANES_NAME,
-                                       .project = project,
-                                       .meet = meet,
-                                       .cut = cut,
-                                       .clear = clear,
-                                       .line = line,
-                                       .fill = fill,
-                                       .sample = sample};
+const slice_lanes VECTORS_OF(slice_lanes_) = {.name = VECTORS_NAME,
+                                              .project = project,
+                                              .meet = meet,
+                                              .cut = cut,
+                                              .clear = clear,
+                                              .line = line,
+                                              .fill = fill,
+                                              .sample = sample};

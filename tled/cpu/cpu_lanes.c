@@ -1,6 +1,16 @@
-/* The body of cpu_pass_*.c: see cpu_pass.h. All but the table that they name is static. */
+/* The passes of cpu_pass.h: an object for each instruction set and precision, by the Makefile. All but its table is
+ * static. */
 #include "base/flush.h"
+#include "solve/vectors.h"
 #include "tled/cpu/cpu_pass.h"
+
+#ifdef ELEMENT_SINGLE
+#define ELEMENT_LANES (VECTORS_BYTES / 4)
+#define CPU_PASS      VECTORS_OF(cpu_pass_single_)
+#else
+#define ELEMENT_LANES (VECTORS_BYTES / 8)
+#define CPU_PASS      VECTORS_OF(cpu_pass_double_)
+#endif
 #include "tled/problem/node.h"
 
 enum { LANES = ELEMENT_LANES };
@@ -237,4 +247,4 @@ static void slab_pass(const cpu_work *w, int32_t which)
 
 #include "tled/cpu/cpu_mesh_lanes.h"
 
-const cpu_pass CPU_PASS = {CPU_PASS_NAME, LANES, slab_pass, mesh_elements, mesh_nodes};
+const cpu_pass CPU_PASS = {VECTORS_NAME, LANES, slab_pass, mesh_elements, mesh_nodes};
