@@ -59,6 +59,15 @@ int err_option(err *e, const char *option, const char *format, ...)
     return -1;
 }
 
+int err_diverged(err *e, const char *place, int64_t line, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    fill(e, STATUS_DIVERGED, place, line, format, args);
+    va_end(args);
+    return -1;
+}
+
 int err_system(err *e, const char *place, int code, const char *what)
 {
     return err_set(e, place, 0, "%s: %s", what, strerror(code));

@@ -43,6 +43,9 @@ int err_usage(err *e, const char *format, ...) SINEW_PRINTF(2, 3);
  * --help would not tell. NULL: no option is named. */
 int err_option(err *e, const char *option, const char *format, ...) SINEW_PRINTF(3, 4);
 
+/* err_set with status 3: the simulation diverged. */
+int err_diverged(err *e, const char *place, int64_t line, const char *format, ...) SINEW_PRINTF(4, 5);
+
 /* err_set for a failed system call: appends strerror of the given errno value. */
 int err_system(err *e, const char *place, int code, const char *what);
 

@@ -353,10 +353,8 @@ static int64_t make_moves(session *s, void *state, const press_moves *moves, msd
 
 static int diverged(const session *s, const poses_event *at, err *e)
 {
-    err_set(e, in_name(s->source), at->line,
-            "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt", at->time);
-    e->status = STATUS_DIVERGED;
-    return -1;
+    return err_diverged(e, in_name(s->source), at->line,
+                        "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt", at->time);
 }
 
 static int solve_frame(session *s, const poses_event *at, err *e)

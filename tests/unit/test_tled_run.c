@@ -2,6 +2,7 @@
  * two, muscles at full contraction, steps that are too large, and the ends of runs.
  */
 // needs: tled/*/*.c
+#include "tled/run/timeline.h"
 #include "tled_bench.h"
 
 #include <time.h>
@@ -126,7 +127,7 @@ static void test_end(const backend *device, double tolerance, const char *name)
         bench_make(&b, &lump, gravity, 0, .0075, 2);
         for (int64_t k = 0; k < 3 * b.script.keys; k++) /* at once */
             b.script.value[k] = gravity[k % 3];
-        bench_steps(&b, run_steps_to(end[i], b.setup.rate), 0);
+        bench_steps(&b, timeline_steps_to(end[i], b.setup.rate), 0);
         b.setup.device = device;
         b.setup.end = end[i];
         const int gone = bench_go(&b);
@@ -151,7 +152,7 @@ static void test_end_cut(const backend *device, const char *name)
     for (int i = 0; i < 3; i++) {
         bench_make(&b[i], &muscle, NULL, 1, .0075, 1 + i % 2);
         b[i].setup.rate *= i == 2 ? 32 : 1;
-        bench_steps(&b[i], run_steps_to(.0671, b[i].setup.rate), b[i].setup.damping);
+        bench_steps(&b[i], timeline_steps_to(.0671, b[i].setup.rate), b[i].setup.damping);
         b[i].setup.device = device;
         b[i].setup.every = i == 1 ? .0007 : 0;
         b[i].setup.end = .0671;
@@ -419,14 +420,15 @@ static void test_frame_fails(const backend *device, const char *name)
 
 static void test_times(void)
 {
-    tled_plan p = run_plan(.3, 900);
+    tled_plan p = timeline_plan(.3, 900);
     ok(p.origin == 0 && p.first == 270, "0.3 s is step 270 of 900 a second");
-    p = run_plan(.3001, 900);
+    p = timeline_plan(.3001, 900);
     ok(p.origin == .3001 && p.first == 0, "0.3001 s is no step");
-    ok(run_steps_to(.5, 4400) == 2200 && run_steps_to(.04, 4400) == 176, "times are whole numbers of steps");
-    ok(run_steps_to(.0123, 900) == 12, "or the next step");
-    ok(!run_is_between(.5, 4400) && !run_is_between(.3, 900) && run_is_between(.0123, 900), "which are told apart");
-    ok(run_steps_to(1e9, 1e12) > INT64_C(1000000000000000), "what no run comes to is far");
+    ok(timeline_steps_to(.5, 4400) == 2200 && timeline_steps_to(.04, 4400) == 176, "times are whole numbers of steps");
+    ok(timeline_steps_to(.0123, 900) == 12, "or the next step");
+    ok(!timeline_is_between(.5, 4400) && !timeline_is_between(.3, 900) && timeline_is_between(.0123, 900),
+       "which are told apart");
+    ok(timeline_steps_to(1e9, 1e12) > INT64_C(1000000000000000), "what no run comes to is far");
 }
 
 static const char *no_device(void)

@@ -28,10 +28,17 @@ void relax_update(relax *r, const watch_sight *s)
     r->looks += r->looks < 2;
 }
 
-double relax_remaining(const relax *r, const watch_sight *s)
+/* m, root mean square over the mass. */
+static double way_left(const relax *r, const watch_sight *s)
 {
     double w = r->lowest;
     if (s->acceleration == 0 && s->speed == 0)
         return 0;
     return r->looks < 2 ? INFINITY : hypot(s->acceleration / (w * w), s->speed / w);
+}
+
+double relax_share(const relax *r, const watch_sight *s)
+{
+    const double way = way_left(r, s);
+    return way == 0 ? 0 : way / fmax(s->moved, .01 * s->moved_most);
 }

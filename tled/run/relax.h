@@ -26,8 +26,10 @@ relax relax_of(double guess, double stable);
  * state, which the watch has kept, dK the change of the elements' pulls. */
 void relax_update(relax *r, const watch_sight *s);
 
-/* How far it has still to go (m, root mean square over the mass): |a| / w^2 and |v| / w in one root, as of an oscillator out of
- * balance by a and moving at v; w the lowest frequency, since at a turning point the slowest does not show. Infinite until two states are known, unless nothing moves. */
-double relax_remaining(const relax *r, const watch_sight *s);
+/* How far the tissue has still to go, as a share of what it has moved, or of 1/100 of the most that it had, for what is let go.
+ * The way is |a| / w^2 and |v| / w in one root (m, root mean square over the mass), as of an oscillator out of balance by a and
+ * moving at v; w is the lowest frequency, since at a turning point the slowest does not show. Infinite until two states are
+ * known, unless nothing moves. */
+double relax_share(const relax *r, const watch_sight *s);
 
 #endif

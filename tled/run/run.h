@@ -54,7 +54,7 @@ typedef struct run_setup {
     void *context;
     /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run, at a frame soon after. */
     outbox_frame *frame;
-    /* After every check. remaining: see run_share; cut: parts that each step is taken in from now on. */
+    /* After every check. remaining: see relax_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
                     double damping);
     /* Steps are cut in more parts than they were in this run so far: from the check on that `sight` is of; or those to
@@ -77,19 +77,6 @@ typedef struct run_end {
     double most_strain; /* J: at a check */
     int64_t bytes;      /* of the device's memory, in the end */
 } run_end;
-
-/* The least step count whose time is at or past t, to a millionth of a step, seen from the plan's origin. */
-int64_t run_steps_to(double t, double rate);
-
-/* Whether t lies between two steps, by more than that. */
-bool run_is_between(double t, double rate);
-
-/* Where the run that begins at p->start counts from: an origin of 0 where its start is a whole number of steps,
- * so that it goes on as if it had never stopped. */
-tled_plan run_plan(double start, double rate);
-
-/* `way` (m) as a share of what the tissue has moved, or of 1/100 of the most that it had, for what is let go. */
-double run_share(const watch_sight *s, double way);
 
 /* Runs. -1 with e filled; status 3 where the simulation diverged: e names step, time, element and volume. */
 int run_go(const run_setup *r, run_end *end, err *e);

@@ -16,6 +16,7 @@
 #include "tled/run/options.h"
 #include "tled/run/relax.h"
 #include "tled/run/run.h"
+#include "tled/run/timeline.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -147,8 +148,8 @@ static int choose_end(session *s, const struct options *o, err *e)
         left = (double)o->steps / r->rate;
     if (!(first + left * r->rate < 1e15))
         return err_set(e, NULL, 0, "a run up to step %g; expected fewer than 1e15", first + left * r->rate);
-    r->steps = o->steps > 0 ? o->steps : run_steps_to(left, r->rate) + (r->rest >= 0 ? REST_STEPS : 0);
-    r->end = o->seconds >= 0 && run_is_between(left, r->rate) ? s->problem.start + left : -INFINITY;
+    r->steps = o->steps > 0 ? o->steps : timeline_steps_to(left, r->rate) + (r->rest >= 0 ? REST_STEPS : 0);
+    r->end = o->seconds >= 0 && timeline_is_between(left, r->rate) ? s->problem.start + left : -INFINITY;
     return 0;
 }
 
@@ -351,14 +352,15 @@ static void say_start(const session *s, const char *device, const struct options
 static void say_between(const session *s, const char *option, const char *what, double every)
 {
     const run_setup *r = &s->run;
-    const double rate = r->rate, start = s->problem.start, origin = run_plan(start, rate).origin;
+    const double rate = r->rate, start = s->problem.start, origin = timeline_plan(start, rate).origin;
     const double end = isfinite(r->end) ? r->end : start + (double)r->steps / rate, last = end - 1e-6 / rate - origin;
     if (every == 0)
         return;
     const double first = (floor(start / every) + 1) * every - origin;
     if (every * rate < 1)
         tool_say(s->t, "%s %g s is shorter than a step: one %s is written for each step", option, every, what);
-    else if ((first < last && run_is_between(first, rate)) || (first + every < last && run_is_between(every, rate)))
+    else if ((first < last && timeline_is_between(first, rate)) ||
+             (first + every < last && timeline_is_between(every, rate)))
         tool_say(s->t,
                  "multiples of %s %g s lie between steps: each %s is of the first step after one, up to %.3g ms late",
                  option, every, what, 1e3 / rate);

@@ -1,0 +1,73 @@
+/* What run.c, which decides at checks, and run_advance.c, which goes from one check to the next, share: the run itself, and what
+ * both do with its state. For these two alone.
+ */
+#ifndef SINEW_RUN_PARTS_H
+#define SINEW_RUN_PARTS_H
+
+#include "tled/run/run.h"
+
+enum { CUTS_MAX = 10 }; /* a step cut 2^10 times is no step */
+
+typedef struct run {
+    const run_setup *r;
+    void *state;
+    watch *watch;
+    relax relax;
+    outbox *out;
+    tled_plan plan;      /* plan.first: steps counted */
+    int64_t from;        /* the first of this run */
+    int64_t last;        /* where it ends at the latest */
+    bool is_last_short;  /* the step to there, which ends at r->end */
+    bool rested;         /* at the last check: the run is over */
+    int64_t saved_first; /* plan.first of the state that the device has saved: that at the last check */
+    /* Frames are numbered, and a snapshot of each is in the slot of its number modulo `slots`: `sent` of them are the outbox's,
+     * then come those not yet known to be sound. */
+    int slots;
+    double frame_time[TLED_TAKEN];
+    int64_t sent;
+    int unsure;
+    int64_t written; /* plan.first of the last frame that was taken of a state known to be sound; INT64_MIN: none yet */
+    int cuts;
+    int cuts_told;
+    double damping;
+    double dt, damped; /* s, 1/s: of the last steps */
+    int64_t taken;     /* steps, each part of a cut one for itself, and those that were taken again */
+    double closest;    /* to rest so far, as a share; and the step that it came so close in */
+    int64_t closest_at;
+    double remaining;
+    double most_strain;     /* J: at a check, so far */
+    double *checkpoint;     /* nodes x 6, to be filled: displacement, then velocity; NULL: there are no checkpoints */
+    double next_checkpoint; /* s: of the model's time, or of the clock */
+    err *e;
+} run;
+
+/* Where the state stands (s); and how long each part of a step is (s). */
+double run_now(const run *n);
+double run_part(const run *n);
+
+/* All below that return an int: -1 with n->e filled. */
+
+/* Looks at the state: n->watch->sight. */
+int run_monitor(run *n);
+
+/* Whether the steps of now can have led to what was monitored last: nothing is broken, and they are stable still. */
+bool run_is_sound(const run *n);
+
+/* Status 3, with where and when, of what was monitored last. Returns -1. */
+int run_diverged(run *n);
+
+/* Says so where steps are cut in more parts than they ever were, and why. */
+void run_tell_cut(run *n, const watch_sight *why);
+
+/* Goes from the last check, whose state is sound, to the next one, or to the end, with the frames and the rows of the log
+ * before it. That state is sound, or it has diverged. */
+int run_advance(run *n, int64_t to);
+
+/* Of a state that is sound, as all before it are: a frame; the log's part, with a row where one is due. */
+int run_write_frame(run *n);
+int run_log_sound(run *n);
+
+/* The first step past `after` with a frame. */
+int64_t run_next_frame(const run *n, int64_t after);
+
+#endif
