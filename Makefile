@@ -39,7 +39,7 @@ endif
 # Every .c of these folders is the library, but for what mains begin and end with, and say on standard error: that is linked beside it.
 MAIN_SRC := common/cli/tool.c common/cli/progress.c
 MAIN_OBJ := $(MAIN_SRC:%.c=$(BUILD)/%.o)
-LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/render/sinew-render.c common/render/render_%,$(wildcard common/base/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/solve/*.c common/picture/*.c common/render/*.c))
+LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/render/sinew-render.c common/render/render_%,$(wildcard common/base/*.c common/physics/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/solve/*.c common/picture/*.c common/render/*.c))
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -115,7 +115,10 @@ flags_avx2 := -mavx2 -DVECTORS=avx2
 flags_avx512 := -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512 -DVECTORS=avx512
 flags_double :=
 flags_single := -DELEMENT_SINGLE
-variants_tled/cpu/cpu_lanes.c := $(foreach set,$(SETS),$(PRECISIONS:%=$(set)-%))
+# The forms that steppers are compiled for, as NAME/name.
+FORMS := $(shell sed -n 's|^ *X.with, \([A-Z_]*\), \([a-z_]*\),.*|\1/\2|p' common/physics/forms.h)
+$(foreach form,$(FORMS),$(eval flags_$(notdir $(form)) := -DCPU_FORM=$(patsubst %/,%,$(dir $(form)))))
+variants_tled/cpu/cpu_lanes.c := $(foreach form,$(notdir $(FORMS)),$(foreach set,$(SETS),$(PRECISIONS:%=$(set)-%-$(form))))
 variants_msds/cpu/lanes_loops.c := $(SETS)
 variants_slice/image/slice_lanes_loops.c := $(SETS)
 

@@ -46,10 +46,11 @@ static element_any shape_of(const view *v, int64_t element, double *squares)
     return s;
 }
 
-static void add_element(const view *v, int64_t element, double mu, double bulk, double fraction, energy *to)
+static void add_element(const view *v, int64_t element, const material *of, double fraction, energy *to)
 {
     element_modes x = modes_of(v, element, 0), y = modes_of(v, element, 1), z = modes_of(v, element, 2);
     const double *side = v->side;
+    const double mu = material_mu(of), bulk = material_bulk(of), c[FORM_NUMBERS] = {mu, bulk};
     double volume = side[0] * side[1] * side[2], k, squares;
     element_tensor h;
     if (v->is_lattice) {
@@ -62,7 +63,7 @@ static void add_element(const view *v, int64_t element, double mu, double bulk, 
         k = v->kappa * element_hourglass_modulus(mu, bulk) * volume * squares / 8;
     }
     to->scale += fraction * volume * mu;
-    to->strain += fraction * volume * element_energy(h, mu, bulk);
+    to->strain += fraction * volume * form_energy(FORM_NEO_HOOKEAN, h, c);
     to->hourglass +=
         fraction * (element_hourglass_energy(x, k) + element_hourglass_energy(y, k) + element_hourglass_energy(z, k));
 }
@@ -108,7 +109,7 @@ int energy_of(energy *to, const model *m, const frame *f, err *e)
     const int64_t elements = model_count(m, "element");
     for (int64_t i = 0; i < elements; i++) {
         const material own = materials_of_element(&map, i);
-        add_element(&v, i, material_mu(&own), material_bulk(&own), fraction ? (double)fraction->f32[i] : 1, to);
+        add_element(&v, i, &own, fraction ? (double)fraction->f32[i] : 1, to);
     }
     free(law);
     return 0;

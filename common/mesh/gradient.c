@@ -80,10 +80,10 @@ double gradient_largest(const double t[9])
     return m + 2 * q * cos(acos(c) / 3);
 }
 
-double gradient_stress(const double h[9], double mu, double bulk)
+double gradient_stress(const double h[9], form f, const double *c)
 {
     element_tensor g = {h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]};
-    element_tensor p = element_stress(g, mu, bulk);
+    element_tensor p = form_stress(f, g, c);
     const double row[9] = {p.xx, p.xy, p.xz, p.yx, p.yy, p.yz, p.zx, p.zy, p.zz};
     double cauchy[9], volume = 1 + element_dilation(g);
     if (!(volume > 0))

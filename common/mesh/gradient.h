@@ -4,6 +4,8 @@
 #ifndef SINEW_GRADIENT_H
 #define SINEW_GRADIENT_H
 
+#include "physics/forms.h"
+
 #include <stdint.h>
 
 /* H = du/dX at the centre. node: the element's 8 or 4; rest, u: of all nodes, x 3, m. False,
@@ -18,9 +20,9 @@ void gradient_strain(const double h[9], double strain[9]);
 double gradient_largest(const double t[9]);
 double gradient_mises(const double t[9]);
 
-/* Von Mises' equivalent of the Cauchy stress P F^T / J of the law in element.h, without active stress; Pa. nan where J
- * is not above 0. */
-double gradient_stress(const double h[9], double mu, double bulk);
+/* Von Mises' equivalent of the Cauchy stress P F^T / J of a form with these coefficients, without active stress; Pa. nan
+ * where J is not above 0. */
+double gradient_stress(const double h[9], form f, const double *c);
 
 /* The same of linear elasticity: of the small strain (H + H^T) / 2, whose mean part drops out. */
 double gradient_stress_linear(const double h[9], double mu);

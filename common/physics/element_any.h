@@ -84,21 +84,21 @@ ELEMENT_FUNCTION element_corners element_any_gather(const element_any *s, elemen
 }
 
 /* As element_force of element.h. */
-ELEMENT_FUNCTION element_field element_any_force(element_field u, const element_any *s, element_law law,
+ELEMENT_FUNCTION element_field element_any_force(form f, element_field u, const element_any *s, element_law law,
                                                  element_fibre fibre, int is_active)
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_any_gradient(s, x, y, z);
-    element_tensor p = element_stress(h, law.mu, law.bulk);
+    element_tensor p = form_stress(f, h, law.c);
     if (is_active)
         p = element_sum(p, element_active(h, fibre));
     x = element_any_twisted(s, x, h.xx, h.xy, h.xz);
     y = element_any_twisted(s, y, h.yx, h.yy, h.yz);
     z = element_any_twisted(s, z, h.zx, h.zy, h.zz);
-    element_field f = {element_any_gather(s, x, p.xx, p.xy, p.xz, law.hourglass),
-                       element_any_gather(s, y, p.yx, p.yy, p.yz, law.hourglass),
-                       element_any_gather(s, z, p.zx, p.zy, p.zz, law.hourglass)};
-    return f;
+    element_field force = {element_any_gather(s, x, p.xx, p.xy, p.xz, law.hourglass),
+                           element_any_gather(s, y, p.yx, p.yy, p.yz, law.hourglass),
+                           element_any_gather(s, z, p.zx, p.zy, p.zz, law.hourglass)};
+    return force;
 }
 
 #endif

@@ -7,55 +7,13 @@
 
 #include "physics/element.h"
 
-#ifdef ELEMENT_SINGLE
+#ifndef REAL_IS_DOUBLE
 #error "stability.h is in double"
 #endif
 
 typedef struct step_matrix {
     double at[9][9]; /* symmetric; 1/s2; row 3 k + j: component k, axis j */
 } step_matrix;
-
-/* d^2 det F / dF dF: cof(F)' along dF, as a 9 x 9 matrix: eps_kln eps_jmo F_no. */
-ELEMENT_FUNCTION double stability_cofactor_slope(const double f[3][3], int k, int j, int l, int m)
-{
-    if (k == l || j == m)
-        return 0;
-    int n = 3 - k - l, o = 3 - j - m;
-    int sign_row = (l - k + 3) % 3 == 1 ? 1 : -1, sign_column = (m - j + 3) % 3 == 1 ? 1 : -1;
-    return sign_row * sign_column * f[n][o];
-}
-
-/* A = dP/dF of the neo-Hookean law. With G = cof F, J = det F, a = mu J^-2/3, I1 = F:F:
- *     P = a F + p G,   p = K (J - 1) - a I1 / (3 J),
- *     A = a I + (K + 5/9 a I1 / J^2) G (x) G - 2/3 (a/J) (F (x) G + G (x) F) + p dG/dF. */
-typedef struct stability_law {
-    double shear, bulk, mixed, pressure; /* of A's terms, in order; mixed is taken off */
-} stability_law;
-
-ELEMENT_FUNCTION stability_law stability_law_at(double mu, double k, element_tensor h)
-{
-    const double dilation = element_dilation(h), volume = 1 + dilation;
-    const double root = element_cube_root_inverse(volume), shear = mu * root * root, inverse = 1 / volume;
-    const double trace = 3 + 2 * (h.xx + h.yy + h.zz) +
-                         (h.xx * h.xx + h.xy * h.xy + h.xz * h.xz + h.yx * h.yx + h.yy * h.yy + h.yz * h.yz +
-                          h.zx * h.zx + h.zy * h.zy + h.zz * h.zz);
-    const stability_law law = {shear, k + 5. / 9 * shear * trace * inverse * inverse, 2. / 3 * shear * inverse,
-                               k * dilation - 1. / 3 * shear * trace * inverse};
-    return law;
-}
-
-ELEMENT_FUNCTION void stability_add_law(double mu, double k, element_tensor h, double a[9][9])
-{
-    const stability_law law = stability_law_at(mu, k, h);
-    element_tensor g = element_cofactor(h);
-    const double f[3][3] = {{1 + h.xx, h.xy, h.xz}, {h.yx, 1 + h.yy, h.yz}, {h.zx, h.zy, 1 + h.zz}};
-    const double fs[9] = {f[0][0], f[0][1], f[0][2], f[1][0], f[1][1], f[1][2], f[2][0], f[2][1], f[2][2]};
-    const double gs[9] = {g.xx, g.xy, g.xz, g.yx, g.yy, g.yz, g.zx, g.zy, g.zz};
-    for (int r = 0; r < 9; r++)
-        for (int c = 0; c <= r; c++)
-            a[r][c] = law.bulk * gs[r] * gs[c] - law.mixed * (fs[r] * gs[c] + gs[r] * fs[c]) +
-                      law.pressure * stability_cofactor_slope(f, r / 3, r % 3, c / 3, c % 3) + (r == c ? law.shear : 0);
-}
 
 /* Of the active stress: with m = F a0, l = |m| and t(l) = a s f(l)/l, P = t m (x) a0, so
  *     A = t I (x) a0 a0 + (t'/l) (m (x) a0) (x) (m (x) a0). */
@@ -86,17 +44,17 @@ ELEMENT_FUNCTION void stability_add_active(element_tensor h, element_fibre fibre
 }
 
 /* (4/rho) A_kjlm / (h_j h_m) of an element at H, with its fibre and that of a second volume in it; density: kg/m3; side: m. */
-ELEMENT_FUNCTION void stability_matrix(double mu, double k, double density, const double side[3], element_tensor h,
+ELEMENT_FUNCTION void stability_matrix(form f, const double *c, double density, const double side[3], element_tensor h,
                                        element_fibre fibre, element_fibre second, step_matrix *a)
 {
-    stability_add_law(mu, k, h, a->at);
+    form_tangent(f, h, c, a->at);
     if (fibre.tension != 0)
         stability_add_active(h, fibre, a->at);
     if (second.tension != 0)
         stability_add_active(h, second, a->at);
     for (int r = 0; r < 9; r++)
-        for (int c = 0; c <= r; c++)
-            a->at[c][r] = a->at[r][c] *= 4 / (density * side[r % 3] * side[c % 3]);
+        for (int s = 0; s <= r; s++)
+            a->at[s][r] = a->at[r][s] *= 4 / (density * side[r % 3] * side[s % 3]);
 }
 
 /* limit I - A = L D L^T: it is positive definite exactly where all of D is positive. */
@@ -153,49 +111,12 @@ typedef struct stability_range {
     double low, high;
 } stability_range;
 
-ELEMENT_FUNCTION double stability_dot(element_tensor a, element_tensor b)
-{
-    return (a.xx * b.xx + a.xy * b.xy + a.xz * b.xz) + (a.yx * b.yx + a.yy * b.yy + a.yz * b.yz) +
-           (a.zx * b.zx + a.zy * b.zy + a.zz * b.zz);
-}
-
 /* a D, D the diagonal d: what belongs to axis j is scaled by d_j. */
 ELEMENT_FUNCTION element_tensor stability_scaled(element_tensor a, element_vector d)
 {
     element_tensor b = {a.xx * d.x, a.xy * d.y, a.xz * d.z, a.yx * d.x, a.yy * d.y,
                         a.yz * d.z, a.zx * d.x, a.zy * d.y, a.zz * d.z};
     return b;
-}
-
-ELEMENT_FUNCTION void stability_add(element_tensor *a, double s, element_tensor b)
-{
-    a->xx += s * b.xx, a->xy += s * b.xy, a->xz += s * b.xz;
-    a->yx += s * b.yx, a->yy += s * b.yy, a->yz += s * b.yz;
-    a->zx += s * b.zx, a->zy += s * b.zy, a->zz += s * b.zz;
-}
-
-/* dG/dF along y, at F = I + H. */
-ELEMENT_FUNCTION element_tensor stability_cofactor_along(element_tensor h, element_tensor y)
-{
-    const double xx = 1 + h.xx, yy = 1 + h.yy, zz = 1 + h.zz;
-    element_tensor s = {
-        yy * y.zz + zz * y.yy - h.yz * y.zy - h.zy * y.yz,   h.yz * y.zx + h.zx * y.yz - h.yx * y.zz - zz * y.yx,
-        h.yx * y.zy + h.zy * y.yx - yy * y.zx - h.zx * y.yy, h.xz * y.zy + h.zy * y.xz - h.xy * y.zz - zz * y.xy,
-        xx * y.zz + zz * y.xx - h.xz * y.zx - h.zx * y.xz,   h.xy * y.zx + h.zx * y.xy - xx * y.zy - h.zy * y.xx,
-        h.xy * y.yz + h.yz * y.xy - h.xz * y.yy - yy * y.xz, h.xz * y.yx + h.yx * y.xz - xx * y.yz - h.yz * y.xx,
-        xx * y.yy + yy * y.xx - h.xy * y.yx - h.yx * y.xy};
-    return s;
-}
-
-/* No less than the largest singular value of F = I + H: of the largest sums of a row and of a column the geometric mean. */
-ELEMENT_FUNCTION double stability_stretch(element_tensor h)
-{
-    const double xx = fabs(1 + h.xx), yy = fabs(1 + h.yy), zz = fabs(1 + h.zz);
-    const double row =
-        fmax(fmax(xx + fabs(h.xy) + fabs(h.xz), yy + fabs(h.yx) + fabs(h.yz)), zz + fabs(h.zx) + fabs(h.zy));
-    const double column =
-        fmax(fmax(xx + fabs(h.yx) + fabs(h.zx), yy + fabs(h.xy) + fabs(h.zy)), zz + fabs(h.xz) + fabs(h.yz));
-    return sqrt(row * column);
 }
 
 /* Adds the active stress's part of A y to *to. Returns no less than what it does to any z of length 1: z:(A z). */
@@ -213,36 +134,30 @@ ELEMENT_FUNCTION double stability_muscle_along(element_tensor h, element_fibre f
     const element_tensor part = {w.x * a.x, w.x * a.y, w.x * a.z, w.y * a.x, w.y * a.y,
                                  w.y * a.z, w.z * a.x, w.z * a.y, w.z * a.z};
     const double length = element_length(a);
-    stability_add(to, 1, part);
+    tangent_add(to, 1, part);
     return (fmax(s.t, 0.) + fmax(s.slope, 0.) * l * l) * length * length;
 }
 
 /* Of stability_matrix, B = D A D with D_j = 2/(sqrt(rho) h_j), by the direction x = D G, which the bulk's term makes nearly that of
- * its largest eigenvalue. The Rayleigh quotient q of x is the lower bound. Across it, for z:x = 0, |z| = 1 and y = D z, is G:y = 0:
- * the terms of bulk and mixed vanish in z:(B z); and as y:(dG/dF y) = 2 F:cof y is at most 2 s |y|^2, s the largest stretch, the
- * others are at most
- *     m = max(D_j)^2 (a + 2 |p| s + the muscles').
+ * its largest eigenvalue. The Rayleigh quotient q of x is the lower bound. Across it, for z:x = 0, |z| = 1 and y = D z, is G:y = 0,
+ * where the form bounds y:(A y) / |y|^2 (form_along), so that z:(B z) is at most
+ *     m = max(D_j)^2 (that bound + the muscles').
  * So with r, the length of what B x/|x| has across x, the largest eigenvalue is at most that of the 2 x 2 matrix (q r, r m). Both
  * bounds leave room for rounding. Where F's cofactors all vanish they are no numbers. d: D's diagonal. */
-ELEMENT_FUNCTION stability_range stability_range_scaled(double mu, double k, element_vector d, element_tensor h,
+ELEMENT_FUNCTION stability_range stability_range_scaled(form f, const double *c, element_vector d, element_tensor h,
                                                         element_fibre fibre, element_fibre second)
 {
     const double slack = 1e-12;
-    const stability_law law = stability_law_at(mu, k, h);
     const element_tensor g = element_cofactor(h), x = stability_scaled(g, d), y = stability_scaled(x, d);
-    const element_tensor f = {1 + h.xx, h.xy, h.xz, h.yx, 1 + h.yy, h.yz, h.zx, h.zy, 1 + h.zz};
-    const double square = stability_dot(x, x), along = stability_dot(f, y), most = fmax(d.x, fmax(d.y, d.z));
+    const double square = tangent_dot(x, x), most = fmax(d.x, fmax(d.y, d.z));
     const double inverse = 1 / square;
     element_tensor z = {0, 0, 0, 0, 0, 0, 0, 0, 0};
-    stability_add(&z, law.shear, y);
-    stability_add(&z, law.bulk * square - law.mixed * along, g);
-    stability_add(&z, -law.mixed * square, f);
-    stability_add(&z, law.pressure, stability_cofactor_along(h, y));
+    const double bound = form_along(f, h, c, y, square, &z);
     const double muscles = stability_muscle_along(h, fibre, y, &z) + stability_muscle_along(h, second, y, &z);
-    const double across = most * most * (law.shear + 2 * fabs(law.pressure) * stability_stretch(h) + muscles);
-    const double quotient = stability_dot(y, z) * inverse; /* x:(z D) */
+    const double across = most * most * (bound + muscles);
+    const double quotient = tangent_dot(y, z) * inverse; /* x:(z D) */
     z = stability_scaled(z, d);
-    const double rest = fmax(stability_dot(z, z) * inverse - quotient * quotient, 0.) + slack * quotient * quotient;
+    const double rest = fmax(tangent_dot(z, z) * inverse - quotient * quotient, 0.) + slack * quotient * quotient;
     const double half = (quotient - across) / 2;
     const stability_range range = {quotient - slack * fabs(quotient),
                                    ((quotient + across) / 2 + sqrt(half * half + rest)) * (1 + slack)};
@@ -250,12 +165,12 @@ ELEMENT_FUNCTION stability_range stability_range_scaled(double mu, double k, ele
 }
 
 /* Of an element of these sides. */
-ELEMENT_FUNCTION stability_range stability_range_of(double mu, double k, double density, const double side[3],
+ELEMENT_FUNCTION stability_range stability_range_of(form f, const double *c, double density, const double side[3],
                                                     element_tensor h, element_fibre fibre, element_fibre second)
 {
     const double unit = 2 / sqrt(density);
     const element_vector d = {unit / side[0], unit / side[1], unit / side[2]};
-    return stability_range_scaled(mu, k, d, h, fibre, second);
+    return stability_range_scaled(f, c, d, h, fibre, second);
 }
 
 #endif

@@ -131,7 +131,7 @@ static double strained(int which, const double h[9], const material *law)
     if (which == STRESS && law->law == MATERIAL_LINEAR)
         return gradient_stress_linear(h, material_mu(law));
     if (which == STRESS)
-        return gradient_stress(h, material_mu(law), material_bulk(law));
+        return gradient_stress(h, FORM_NEO_HOOKEAN, (const double[FORM_NUMBERS]){material_mu(law), material_bulk(law)});
     gradient_strain(h, strain);
     return which == STRAIN ? 2. / 3 * gradient_mises(strain) : gradient_largest(strain);
 }

@@ -187,7 +187,8 @@ static void measure_steps(measured *w, bench *b)
     tled_plan plan = {.rate = b->setup.rate, .damping = b->setup.damping};
     roof r = {0};
     if (!w->device->look) {
-        const cpu_pass *pass = cpu_pass_choose(w->single ? cpu_passes_single : cpu_passes_double, &b->e);
+        const cpu_pass *pass =
+            cpu_pass_choose(w->single ? cpu_passes_single : cpu_passes_double, b->problem.form, &b->e);
         bench_must(!pass || roof_make(&r, b->setup.threads, pass->name, &b->e), &b->e);
         w->filled = lanes_filled(b, pass->lanes);
     }

@@ -1,5 +1,9 @@
 #include "tests/bench/flops.h"
 
+extern "C" {
+#include "physics/forms.h"
+}
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,6 +162,7 @@ guess operator-(float a, guess b)
 }
 
 // What the headers include has been included above.
+#define ELEMENT_FORCES_ALONE
 #define double number
 #define float guess
 #include "tled/problem/node.h"
@@ -173,11 +178,11 @@ flops flops_of_element(int is_active, const double u[24], double result[24])
     element_corners *const from[3] = {&at.x, &at.y, &at.z}, *const to[3] = {&force.x, &force.y, &force.z};
     const element_shape shape = {{unknown(.25 / .002), unknown(.25 / .003), unknown(.25 / .004)},
                                  {unknown(3e-6), unknown(2e-6), unknown(1.5e-6)}};
-    const element_law law = {unknown(1000), unknown(50000), unknown(.01)};
+    const element_law law = {{unknown(1000), unknown(50000)}, unknown(.01)};
     const element_fibre fibre = {{unknown(.6), unknown(0), unknown(.8)}, unknown(3000)};
     for (int i = 0; i < 24; i++)
         from[i / 8]->at[i % 8] = unknown(u[i]);
-    force = element_force(at, shape, law, fibre, is_active);
+    force = element_force(FORM_NEO_HOOKEAN, at, shape, law, fibre, is_active);
     for (int i = 0; i < 24; i++) {
         number sum = unknown(0);
         sum += to[i / 8]->at[i % 8];

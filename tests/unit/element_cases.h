@@ -28,7 +28,7 @@ static double box_volume(void)
 static element_law tissue(double kappa)
 {
     double mu = 3000 / 2.9, bulk = 10000;
-    element_law law = {R(mu), R(bulk), R(element_hourglass(kappa, mu, bulk, box_side[0], box_side[1], box_side[2]))};
+    element_law law = {{R(mu), R(bulk)}, R(element_hourglass(kappa, mu, bulk, box_side[0], box_side[1], box_side[2]))};
     return law;
 }
 
@@ -55,7 +55,7 @@ static element_field affine(double f[3][3], const double origin[3])
 static element_field force_of(element_field u, double kappa, double tension, const double along[3])
 {
     element_fibre fibre = {{R(along[0]), R(along[1]), R(along[2])}, R(tension)};
-    return element_force(u, box_shape(), tissue(kappa), fibre, tension != 0);
+    return element_force(FORM_NEO_HOOKEAN, u, box_shape(), tissue(kappa), fibre, tension != 0);
 }
 
 /* The stress from the forces alone: V P = sum over corners of f (x) X. */

@@ -18,11 +18,11 @@ static void displacements(double u[24])
 static void forces(const double u[24], int is_active, double f[24])
 {
     const element_shape shape = {{.25 / .002, .25 / .003, .25 / .004}, {3e-6, 2e-6, 1.5e-6}};
-    const element_law law = {1000, 50000, .01};
+    const element_law law = {{1000, 50000}, .01};
     const element_fibre fibre = {{.6, 0, .8}, 3000};
     element_field at;
     memcpy(&at, u, sizeof at);
-    const element_field force = element_force(at, shape, law, fibre, is_active);
+    const element_field force = element_force(FORM_NEO_HOOKEAN, at, shape, law, fibre, is_active);
     memcpy(f, &force, sizeof force);
 }
 

@@ -120,7 +120,7 @@ static bool is_plain(const seen *s, int32_t element)
 {
     const tled_problem *p = s->p;
     const tled_law law = tled_law_of(p, element);
-    const tled_volume *plain = &p->volume[s->m->plain];
+    const tled_law *plain = &p->volume[s->m->plain].law;
     const int32_t mix = tled_mix(p, element);
     return tled_fraction(p, element) == 1 && (float)law.mu == (float)plain->mu &&
            (float)law.bulk == (float)plain->bulk && (float)law.hourglass == (float)plain->hourglass &&

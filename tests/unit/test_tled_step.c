@@ -47,10 +47,12 @@ static void test_rest(void)
     near_(stable_of(b, .0075) / (2 / sqrt(4. / 1000 * bulk * squares)), 1, 1e-3, "nearly incompressible: K sum(1/h^2)");
 }
 
+static const double tissue[FORM_NUMBERS] = {1000, 9700}; /* mu, K */
+
 /* P at H, passive and active. */
 static void stress(const tled_law *v, element_tensor h, element_fibre fibre, element_fibre second, double p[9])
 {
-    element_tensor t = element_sum(element_stress(h, v->mu, v->bulk), element_active(h, fibre));
+    element_tensor t = element_sum(form_stress(FORM_NEO_HOOKEAN, h, v->c), element_active(h, fibre));
     t = element_sum(t, element_active(h, second));
     memcpy(p, &t, sizeof t);
 }
@@ -59,7 +61,7 @@ static void stress(const tled_law *v, element_tensor h, element_fibre fibre, ele
 static void test_matrix(element_tensor h, element_fibre fibre, element_fibre second)
 {
     tled_problem p = {.side = {.01, .0125, .02}};
-    tled_law v = {.mu = 1000, .bulk = 9000, .density = 1100};
+    tled_law v = {.c = {1000, 9000}, .density = 1100};
     step_matrix a;
     double worst = 0, scale = 0, shifted[9], high[9], low[9];
     step_matrix_of(&p, &v, h, fibre, second, &a);
@@ -104,6 +106,7 @@ static element_fibre fibre_by_chance(double tension)
  * they are as near each other as `near`. */
 static void test_range(double mu, double bulk, double strain, double tension, double near)
 {
+    const double c[FORM_NUMBERS] = {mu, bulk};
     int wrong = 0, close = 0, count = 0;
     while (count < 2000) {
         const double side[3] = {.01 + .005 * number(), .01 + .005 * number(), .01};
@@ -117,8 +120,8 @@ static void test_range(double mu, double bulk, double strain, double tension, do
         if (!(element_dilation(h) > -.9))
             continue;
         count++;
-        stability_matrix(mu, bulk, 1000, side, h, first, second, &a);
-        const stability_range range = stability_range_of(mu, bulk, 1000, side, h, first, second);
+        stability_matrix(FORM_NEO_HOOKEAN, c, 1000, side, h, first, second, &a);
+        const stability_range range = stability_range_of(FORM_NEO_HOOKEAN, c, 1000, side, h, first, second);
         const double largest = stability_largest(&a);
         wrong += !(range.low <= largest && largest <= range.high);
         close += range.high <= (1 + near) * range.low;
@@ -137,14 +140,14 @@ static void pull(const tled_problem *p, const double *u, double *f)
     for (int64_t i = 0; i < p->elements; i++) {
         const tled_law v = tled_law_of(p, i);
         const int32_t *n = p->element_node + 8 * i;
-        element_law law = {v.mu, v.bulk, v.hourglass};
+        element_law law = {{v.c[0], v.c[1]}, v.hourglass};
         element_field at, force;
         for (int c = 0; c < 8; c++) {
             at.x.at[c] = u[3 * n[c]];
             at.y.at[c] = u[3 * n[c] + 1];
             at.z.at[c] = u[3 * n[c] + 2];
         }
-        force = element_force(at, shape, law, none, false);
+        force = element_force(p->form, at, shape, law, none, false);
         for (int c = 0; c < 8; c++) {
             f[3 * n[c]] += force.x.at[c];
             f[3 * n[c] + 1] += force.y.at[c];
@@ -270,8 +273,8 @@ static void test_collapsed(void)
             continue;
         count++;
         const element_fibre first = fibre_by_chance(30000 * number()), second = fibre_by_chance(3000);
-        stability_matrix(1000, 9700, 1000, side, h, first, second, &a);
-        const stability_range range = stability_range_of(1000, 9700, 1000, side, h, first, second);
+        stability_matrix(FORM_NEO_HOOKEAN, tissue, 1000, side, h, first, second, &a);
+        const stability_range range = stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, h, first, second);
         const double largest = stability_largest(&a);
         wrong += !(range.low <= largest && largest <= range.high);
     }
@@ -284,11 +287,11 @@ static void test_no_range(void)
     static const double side[3] = {.01, .01, .01};
     const element_fibre none = {0}, lost = {{NAN, 0, 1}, 3000}, wild = {{0, 0, 1}, INFINITY};
     const element_tensor rest = {0}, point = {-1, 0, 0, 0, -1, 0, 0, 0, -1}, broken = {0, 0, 0, 0, 0, NAN, 0, 0, 0};
-    const stability_range range[] = {stability_range_of(1000, 9700, 1000, side, point, none, none),
-                                     stability_range_of(1000, 9700, 1000, side, broken, none, none),
-                                     stability_range_of(1000, 9700, 1000, side, rest, lost, none),
-                                     stability_range_of(1000, 9700, 1000, side, rest, none, wild),
-                                     stability_range_of(1000, 9700, 0, side, rest, none, none)};
+    const stability_range range[] = {stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, point, none, none),
+                                     stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, broken, none, none),
+                                     stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, rest, lost, none),
+                                     stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, rest, none, wild),
+                                     stability_range_of(FORM_NEO_HOOKEAN, tissue, 0, side, rest, none, none)};
     for (size_t i = 0; i < sizeof range / sizeof *range; i++)
         ok(!isfinite(range[i].high), "no bounds of what is not finite: %g to %g", range[i].low, range[i].high);
 }

@@ -1,19 +1,24 @@
-/* The passes of cpu_pass.h: an object for each instruction set and precision, by the Makefile. All but its table is
- * static. */
+/* The passes of cpu_pass.h: an object for each instruction set, precision and form, by the Makefile, which defines
+ * CPU_FORM. All but its table is static. */
 #include "base/flush.h"
 #include "solve/vectors.h"
 #include "tled/cpu/cpu_pass.h"
 
+#define CPU_PASTE(a, b, c) a##b##c
+#define CPU_JOIN(a, b, c)  CPU_PASTE(a, b, c)
+
 #ifdef ELEMENT_SINGLE
 #define ELEMENT_LANES (VECTORS_BYTES / 4)
-#define CPU_PASS      VECTORS_OF(cpu_pass_single_)
+#define CPU_PASS      VECTORS_OF(CPU_JOIN(cpu_pass_single_, CPU_FORM, _))
 #else
 #define ELEMENT_LANES (VECTORS_BYTES / 8)
-#define CPU_PASS      VECTORS_OF(cpu_pass_double_)
+#define CPU_PASS      VECTORS_OF(CPU_JOIN(cpu_pass_double_, CPU_FORM, _))
 #endif
 #include "tled/problem/node.h"
 
-enum { LANES = ELEMENT_LANES };
+#define THE_FORM CPU_JOIN(FORM_, CPU_FORM, )
+
+enum { LANES = ELEMENT_LANES, COEFFICIENTS = CPU_JOIN(FORM_, CPU_FORM, _NUMBERS) };
 
 static inline real load(const void *array, int64_t at)
 {
@@ -111,16 +116,33 @@ static inline void add_field(const cpu_work *w, const rows_run *run, const eleme
     add_forces(w->sum[2], run, &f->z);
 }
 
+/* A volume's law, of what is tissue. */
+static inline element_law law_of_kind(const cpu_kind *kind, real share)
+{
+    element_law law = {{REAL_ZERO}, share * (real_one)kind->law[COEFFICIENTS]};
+    for (int i = 0; i < COEFFICIENTS; i++)
+        law.c[i] = share * (real_one)kind->law[i];
+    return law;
+}
+
+/* Likewise that of cells that are mixed. */
+static inline element_law law_of_cells(const cpu_work *w, int64_t cell, real share)
+{
+    element_law law = {{REAL_ZERO}, share * load(w->law[COEFFICIENTS], cell)};
+    for (int i = 0; i < COEFFICIENTS; i++)
+        law.c[i] = share * load(w->law[i], cell);
+    return law;
+}
+
 static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active)
 {
     const cpu_kind *kind = &w->kind[run->volume];
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* forces are linear in all below */
-    const element_law law = {share * (real_one)kind->mu, share * (real_one)kind->bulk,
-                             share * (real_one)kind->hourglass};
+    const element_law law = law_of_kind(kind, share);
     element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO};
     if (active)
         fibre = fibre_of(w->fibre, run, share * (real_one)kind->tension);
-    const element_field f = element_force(moved_by(w, run), shape, law, fibre, active);
+    const element_field f = element_force(THE_FORM, moved_by(w, run), shape, law, fibre, active);
     add_field(w, run, &f);
 }
 
@@ -130,14 +152,14 @@ static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_
     const cpu_kind *kind = &w->kind[run->volume], *mix = &w->kind[run->mix];
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1, part = load(w->mixture, run->cell);
     const real own = share * (1 - part), other = share * part;
-    const element_law law = {share * load(w->law[0], run->cell), share * load(w->law[1], run->cell),
-                             share * load(w->law[2], run->cell)};
+    const element_law law = law_of_cells(w, run->cell, share);
     element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO}, mixfibre = fibre;
     if (active)
         fibre = fibre_of(w->fibre, run, own * (real_one)kind->tension);
     if (second)
         mixfibre = fibre_of(w->mixfibre, run, other * (real_one)mix->tension);
-    const element_field f = element_force_of_two(moved_by(w, run), shape, law, fibre, active, mixfibre, second);
+    const element_field f =
+        element_force_of_two(THE_FORM, moved_by(w, run), shape, law, fibre, active, mixfibre, second);
     add_field(w, run, &f);
 }
 

@@ -32,7 +32,7 @@ typedef struct cpu_state {
     number *mass_inverse;                    /* rows.nodes */
     uint8_t *flags;                          /* rows.nodes: NODE_* */
     number *fibre, *fraction;                /* cells, with padding: 3 x and 1 x; or NULL */
-    number *mixfibre, *mixture, *law;        /* likewise; law: 3 x */
+    number *mixfibre, *mixture, *law;        /* likewise; law: a law's numbers x */
     number *shape, *force;                   /* without a lattice: cpu_work's, as is: */
     int32_t *group_node;
     number *kept; /* displacement, then velocity; made when first wanted, as are: */
@@ -209,7 +209,7 @@ static int64_t cpu_bytes(const void *state)
     const cpu_state *s = state;
     const rows *r = &s->rows;
     int64_t nodes = 13 + (s->kept ? 6 : 0), cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
-    cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 4 : 0);
+    cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 1 + cpu_law_numbers(s->p->form) : 0);
     for (int i = 0; i < TLED_TAKEN; i++)
         nodes += s->taken[i] ? 6 : 0;
     return r->nodes * (nodes * (int64_t)sizeof(number) + 1 + 4) + r->runs * (int64_t)sizeof *r->run +
@@ -255,7 +255,7 @@ static bool allocate_cells(cpu_state *s, err *e)
     s->fibre = p->fibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
     s->fraction = p->fraction ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
     s->mixture = p->mix ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
-    s->law = p->mix ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
+    s->law = p->mix ? mem_array(cells, (size_t)cpu_law_numbers(p->form) * sizeof(number), "the solver", e) : NULL;
     s->mixfibre = p->mixfibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
     return (s->fibre || !p->fibre) && (s->fraction || !p->fraction) && ((s->mixture && s->law) || !p->mix) &&
            (s->mixfibre || !p->mixfibre);
@@ -310,13 +310,15 @@ static void fill_cells(cpu_state *s)
         if (s->mixture) {
             const tled_law law = tled_law_of(p, element);
             s->mixture[i] = (number)tled_mixture(p, element);
-            s->law[i] = (number)law.mu;
-            s->law[cells + i] = (number)law.bulk;
-            s->law[2 * cells + i] = (number)law.hourglass;
+            for (int k = 0; k < form_numbers(p->form); k++)
+                s->law[k * cells + i] = (number)law.c[k];
+            s->law[form_numbers(p->form) * cells + i] = (number)law.hourglass;
         }
     }
-    for (int32_t i = 0; i < p->volumes; i++)
-        s->kind[i] = (cpu_kind){p->volume[i].mu, p->volume[i].bulk, p->volume[i].hourglass, 0};
+    for (int32_t i = 0; i < p->volumes; i++) {
+        memcpy(s->kind[i].law, p->volume[i].law.c, sizeof p->volume[i].law.c);
+        s->kind[i].law[form_numbers(p->form)] = p->volume[i].law.hourglass;
+    }
 }
 
 static void make_work(cpu_state *s)
@@ -336,9 +338,10 @@ static void make_work(cpu_state *s)
         w->velocity[a] = s->velocity + a * s->rows.nodes;
         w->sum[a] = s->sum + a * s->rows.nodes;
         w->fibre[a] = s->fibre ? s->fibre + a * (s->rows.cells + ROWS_PAD) : NULL;
-        w->law[a] = s->law ? s->law + a * (s->rows.cells + ROWS_PAD) : NULL;
         w->mixfibre[a] = s->mixfibre ? s->mixfibre + a * (s->rows.cells + ROWS_PAD) : NULL;
     }
+    for (int k = 0; k < cpu_law_numbers(s->p->form); k++)
+        w->law[k] = s->law ? s->law + k * (s->rows.cells + ROWS_PAD) : NULL;
 }
 
 static void *cpu_create(const void *problem, pool *threads, err *e)
@@ -348,7 +351,7 @@ static void *cpu_create(const void *problem, pool *threads, err *e)
         return NULL;
     s->p = problem;
     s->threads = threads;
-    s->pass = cpu_pass_choose(CPU_PASSES, e);
+    s->pass = cpu_pass_choose(CPU_PASSES, s->p->form, e);
     s->time = s->p->start;
     if (!s->pass ||
         (s->p->conforming ? mesh_rows(s, e) : rows_make(&s->rows, s->p, s->pass->lanes, pool_threads(threads), e)) ||

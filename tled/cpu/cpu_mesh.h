@@ -34,10 +34,16 @@ static int mesh_rows(cpu_state *s, err *e)
     return 0;
 }
 
+/* Numbers that an element has of shape and law. */
+static int64_t mesh_numbers(const cpu_state *s)
+{
+    return CPU_SHAPE + cpu_law_numbers(s->p->form);
+}
+
 static int mesh_allocate(cpu_state *s, err *e)
 {
     const int64_t places = mesh_groups(s) * s->pass->lanes;
-    s->shape = mem_array(places, CPU_SHAPE * sizeof *s->shape, "the solver", e);
+    s->shape = mem_array(places, (size_t)mesh_numbers(s) * sizeof *s->shape, "the solver", e);
     s->force = mem_array(places, 24 * sizeof *s->force, "the solver", e);
     s->group_node = mem_array(places, 8 * sizeof *s->group_node, "the solver", e);
     return s->shape && s->force && s->group_node ? 0 : -1;
@@ -52,22 +58,22 @@ static void mesh_element(const cpu_state *s, int64_t i, double *own)
     memcpy(own, c->slope, sizeof c->slope);
     memcpy(own + 3 * ELEMENT_MODES, c->twist, sizeof c->twist);
     own[ELEMENT_ANY - 1] = c->volume;
-    own[ELEMENT_ANY] = share * law.mu;
-    own[ELEMENT_ANY + 1] = share * law.bulk;
-    own[ELEMENT_ANY + 2] = share * c->hourglass;
+    for (int k = 0; k < form_numbers(s->p->form); k++)
+        own[ELEMENT_ANY + k] = share * law.c[k];
+    own[mesh_numbers(s) - 1] = share * c->hourglass;
 }
 
 static void mesh_fill(cpu_state *s)
 {
     const tled_problem *p = s->p;
-    const int64_t lanes = s->pass->lanes, places = mesh_groups(s) * lanes;
+    const int64_t lanes = s->pass->lanes, places = mesh_groups(s) * lanes, numbers = mesh_numbers(s);
     for (int64_t i = 0; i < places; i++) {
         const int64_t element = i < p->elements ? i : p->elements - 1, group = i / lanes, lane = i % lanes;
-        double own[CPU_SHAPE] = {0};
+        double own[CPU_SHAPE + FORM_NUMBERS + 1] = {0};
         if (i < p->elements)
             mesh_element(s, i, own);
-        for (int k = 0; k < CPU_SHAPE; k++)
-            s->shape[(group * CPU_SHAPE + k) * lanes + lane] = (number)own[k];
+        for (int k = 0; k < numbers; k++)
+            s->shape[(group * numbers + k) * lanes + lane] = (number)own[k];
         for (int c = 0; c < 8; c++)
             s->group_node[(group * 8 + c) * lanes + lane] = p->element_node[8 * element + c];
     }
@@ -95,6 +101,6 @@ static void mesh_pass(cpu_state *s)
 
 static int64_t mesh_bytes(const cpu_state *s)
 {
-    const int64_t place = (CPU_SHAPE + 24) * (int64_t)sizeof(number) + 8 * (int64_t)sizeof *s->group_node;
+    const int64_t place = (mesh_numbers(s) + 24) * (int64_t)sizeof(number) + 8 * (int64_t)sizeof *s->group_node;
     return s->p->conforming ? mesh_groups(s) * s->pass->lanes * place : 0;
 }

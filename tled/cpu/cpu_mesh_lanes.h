@@ -31,6 +31,14 @@ static inline element_any mesh_shape(const real_one *at)
     return s;
 }
 
+static inline element_law mesh_law(const real_one *at)
+{
+    element_law law = {{REAL_ZERO}, load(at, COEFFICIENTS * LANES)};
+    for (int i = 0; i < COEFFICIENTS; i++)
+        law.c[i] = load(at, i * LANES);
+    return law;
+}
+
 /* What pulls along the fibres; *active: any of them does. */
 static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, bool *active)
 {
@@ -62,18 +70,17 @@ static void mesh_elements(const cpu_work *w, int64_t from, int64_t to)
     const unsigned before = flush_small();
 #endif
     for (int64_t group = from; group < to; group++) {
-        const real_one *own = (const real_one *)w->shape + group * CPU_SHAPE * LANES;
+        const real_one *own = (const real_one *)w->shape + group * (CPU_SHAPE + COEFFICIENTS + 1) * LANES;
         const int32_t *node = w->group_node + group * 8 * LANES;
         real_one *force = (real_one *)w->force + group * 24 * LANES;
         const element_any shape = mesh_shape(own);
-        const element_law law = {load(own, ELEMENT_ANY * LANES), load(own, (ELEMENT_ANY + 1) * LANES),
-                                 load(own, (ELEMENT_ANY + 2) * LANES)};
+        const element_law law = mesh_law(own + ELEMENT_ANY * LANES);
         const element_field u = {mesh_corners(w->from[0], node), mesh_corners(w->from[1], node),
                                  mesh_corners(w->from[2], node)};
         bool active;
         const element_fibre fibre = mesh_fibre(w, group, &active);
-        const element_field f =
-            active ? element_any_force(u, &shape, law, fibre, true) : element_any_force(u, &shape, law, fibre, false);
+        const element_field f = active ? element_any_force(THE_FORM, u, &shape, law, fibre, true)
+                                       : element_any_force(THE_FORM, u, &shape, law, fibre, false);
         mesh_store(force, &f.x);
         mesh_store(force + 8 * LANES, &f.y);
         mesh_store(force + 16 * LANES, &f.z);

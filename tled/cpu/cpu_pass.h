@@ -1,4 +1,4 @@
-/* The CPU back end's pass over a slab, compiled for each instruction set and precision of one source, cpu_lanes.c: layer
+/* The CPU back end's pass over a slab, compiled for each instruction set, precision and form of one source, cpu_lanes.c: layer
  * by layer, runs of elements side by side, each corner's force added to its node; then the layer's nodes, whose sums
  * are whole. As the runs are in the lattice's order, so is each node's sum. What the pass works on is cpu_work's: its
  * owner is the back end (cpu_loops.h).
@@ -11,13 +11,19 @@
 #include "solve/vectors.h"
 #include "tled/cpu/rows.h"
 
-/* What an element without a lattice has, in a group's lanes: element_any, then mu, K and the hourglass stiffness. */
-enum { CPU_SHAPE = 37 };
+/* What an element without a lattice has, in a group's lanes: element_any, then a law's numbers. */
+enum { CPU_SHAPE = 34 };
+
+/* A law's numbers, in this order: the form's coefficients, then the hourglass stiffness. */
+static inline int cpu_law_numbers(form f)
+{
+    return form_numbers(f) + 1;
+}
 
 enum { NODE_FREE = 1, NODE_EXTRA = 8 }; /* flags of a node: NODE_FREE << a: nothing holds component a; an extra */
 
 typedef struct cpu_kind { /* what a volume's elements need */
-    double mu, bulk, hourglass;
+    double law[FORM_NUMBERS + 1];
     double tension; /* now */
 } cpu_kind;
 
@@ -32,15 +38,15 @@ typedef struct cpu_work {
     void *sum[3]; /* zeros, before and after */
     const void *mass_inverse;
     const uint8_t *flags;
-    const void *fibre[3];      /* cells, or NULL */
-    const void *fraction;      /* cells, or NULL */
-    const void *mixture;       /* cells, or NULL: none is mixed */
-    const void *law[3];        /* cells: mu, bulk, hourglass of those that are mixed; or NULL */
-    const void *mixfibre[3];   /* cells, or NULL */
-    const void *shape;         /* without a lattice: groups x CPU_SHAPE x lanes; or NULL */
-    const int32_t *group_node; /* groups x 8 x lanes */
-    void *force;               /* groups x 3 x 8 x lanes: what each corner is pulled with */
-    const double *now, *next;  /* the curves' values */
+    const void *fibre[3];              /* cells, or NULL */
+    const void *fraction;              /* cells, or NULL */
+    const void *mixture;               /* cells, or NULL: none is mixed */
+    const void *law[FORM_NUMBERS + 1]; /* cells: those that are mixed; or NULL */
+    const void *mixfibre[3];           /* cells, or NULL */
+    const void *shape;                 /* without a lattice: groups x (CPU_SHAPE + a law's numbers) x lanes; or NULL */
+    const int32_t *group_node;         /* groups x 8 x lanes */
+    void *force;                       /* groups x 3 x 8 x lanes: what each corner is pulled with */
+    const double *now, *next;          /* the curves' values */
     double dt, damping;
     int what;
 } cpu_work;
@@ -55,11 +61,12 @@ typedef struct cpu_pass {
     void (*nodes)(const cpu_work *w, int64_t from, int64_t to);
 } cpu_pass;
 
-/* The passes of a precision, one for each set of solve/vectors.h. */
-extern const cpu_pass *const cpu_passes_double[VECTORS_COUNT], *const cpu_passes_single[VECTORS_COUNT];
+/* The passes of a precision, one for each set of solve/vectors.h and each form. */
+extern const cpu_pass *const cpu_passes_double[VECTORS_COUNT][FORM_STEPPED];
+extern const cpu_pass *const cpu_passes_single[VECTORS_COUNT][FORM_STEPPED];
 
-/* The first that this processor can do, or the one that the environment's SINEW_VECTORS names: plain, AVX2 or AVX-512. All give the same
+/* That of the form in the first set that this processor can do, or in the one that the environment's SINEW_VECTORS names: plain, AVX2 or AVX-512. All give the same
  * bytes. NULL with e filled where that is not to be had. */
-const cpu_pass *cpu_pass_choose(const cpu_pass *const *passes, err *e);
+const cpu_pass *cpu_pass_choose(const cpu_pass *const passes[][FORM_STEPPED], form f, err *e);
 
 #endif

@@ -41,7 +41,7 @@ static __device__ __forceinline__ float power(float x)
     return near_exp2(near_log2(x) * (-5.f / 3));
 }
 
-/* element_stress, in fewer operations. With s = mu J^-5/3, d = J - 1, e = tr(C - I), G = cof F - I, all of it first order in H:
+/* The neo-Hookean form, in fewer operations. With s = mu J^-5/3, d = J - 1, e = tr(C - I), G = cof F - I, all of it first order in H:
  *     P = (s (d - e/3) + K d) I + s J H + (K d - s (1 + e/3)) G.
  * No cell: mu and bulk are 0, and J is not looked at. */
 static __device__ __forceinline__ element_tensor stress(element_tensor h, float mu, float bulk, bool is)

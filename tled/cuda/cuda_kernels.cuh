@@ -42,15 +42,25 @@ static __device__ real cell_tension(const cuda_kind &kind, const cuda_pass &p)
     return kind.contract < 0 ? 0 : (real)(kind.peak * p.now[3 * kind.contract]);
 }
 
+/* A law's numbers, of what is tissue. */
+template <class L, class T> static __device__ element_law law_of(const T *c, T hourglass, real share)
+{
+    element_law law = {{0}, share * (real)hourglass};
+#pragma unroll
+    for (int i = 0; i < L::COEFFICIENTS; i++)
+        law.c[i] = share * (real)c[i];
+    return law;
+}
+
 /* A cell mixed of two volumes. */
-template <class G>
+template <class G, class L>
 static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
                                             const real *u, int place, const cuda_kind &kind, const cuda_mixed &mixed,
                                             real share)
 {
     const cuda_kind &mix = v.kind[mixed.mix];
     const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
-    const element_law law = {share * (real)mixed.mu, share * (real)mixed.bulk, share * (real)mixed.hourglass};
+    const element_law law = law_of<L>(mixed.c, mixed.hourglass, share);
     element_fibre fibre = {{0, 0, 0}, 0}, second = fibre;
     real tension = 0, tension_of_mix = 0;
     if (i < t.fibred) {
@@ -63,27 +73,27 @@ static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda
         second.along = cell_along(t, i, v.mixfibre);
         second.tension = other * tension_of_mix;
     }
-    return element_force_of_two(cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
+    return element_force_of_two(L::FORM, cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
                                 tension_of_mix != 0);
 }
 
-template <class G>
+template <class G, class L>
 static __device__ element_field plain_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
                                             const real *u, int place, uint32_t volume, real share)
 {
-    const real *stiff = p.law + LAW_NUMBERS * volume;
-    element_law law = {share * stiff[0], share * stiff[1], share * stiff[2]};
+    const real *stiff = p.law + L::LAW * volume;
+    const element_law law = law_of<L>(stiff, stiff[L::COEFFICIENTS], share);
     element_fibre fibre = {{0, 0, 0}, 0};
     if (i < t.fibred) {
         const cuda_kind &kind = v.kind[volume];
         fibre.along = cell_along(t, i, v.fibre);
         fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
     }
-    return element_force(cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
+    return element_force(L::FORM, cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
 }
 
 /* MIXED: there are cells mixed of two volumes; a kernel of its own, so that others do without. */
-template <class G, bool MIXED>
+template <class G, class L, bool MIXED>
 static __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, uint32_t cell,
                                   const real *u, real *force)
 {
@@ -92,8 +102,8 @@ static __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, 
     const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
     const int32_t mixed = MIXED ? v.mixed[t.cell + i] : -1;
     const element_field f = MIXED && mixed >= 0
-                                ? mixed_force<G>(v, p, t, i, u, place, v.kind[volume], v.mixture[mixed], share)
-                                : plain_force<G>(v, p, t, i, u, place, volume, share);
+                                ? mixed_force<G, L>(v, p, t, i, u, place, v.kind[volume], v.mixture[mixed], share)
+                                : plain_force<G, L>(v, p, t, i, u, place, volume, share);
 #pragma unroll
     for (int c = 0; c < 8; c++) {
         force[c * G::CELLS + place] = f.x.at[c];
@@ -108,7 +118,7 @@ static __device__ uint32_t cell_at(const cuda_view<real> &v, const tile &t, int 
     return i < t.cells ? v.cell[t.cell + i] : 0;
 }
 
-template <class G, bool MIXED>
+template <class G, class L, bool MIXED>
 static __device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p, const tile &t, uint32_t first,
                                    const real *u, real *force)
 {
@@ -116,26 +126,24 @@ static __device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p,
 #pragma unroll 1
     for (int i = threadIdx.x; i < t.cells; i += G::THREADS) {
         const uint32_t next = cell_at(v, t, i + G::THREADS);
-        cell_force<G, MIXED>(v, p, t, i, cell, u, force);
+        cell_force<G, L, MIXED>(v, p, t, i, cell, u, force);
         cell = next;
     }
 }
 
-/* Brings near what all of the threads ask for: *p gets where; room: NEAR_NUMBERS. */
-enum { NEAR_NUMBERS = 4 + LAW_NUMBERS * LAWS_NEAR };
-
+/* Brings near what all of the threads ask for: *p gets where; room: L::NEAR. */
 static __device__ void bring_gravity(const cuda_view<real> &v, const double *now, real *room)
 {
     if (threadIdx.x < 3)
         room[threadIdx.x] = v.gravity < 0 ? 0 : (real)now[3 * v.gravity + threadIdx.x];
 }
 
-static __device__ void bring_laws(const cuda_view<real> &v, cuda_pass *p, real *room)
+template <class L> static __device__ void bring_laws(const cuda_view<real> &v, cuda_pass *p, real *room)
 {
     const bool near = v.volumes <= LAWS_NEAR;
     p->gravity = room;
     p->law = near ? room + 4 : v.law;
-    if (near && threadIdx.x < LAW_NUMBERS * v.volumes)
+    if (near && threadIdx.x < L::LAW * v.volumes)
         room[4 + threadIdx.x] = v.law[threadIdx.x];
 }
 
@@ -255,20 +263,20 @@ template <class G> static constexpr int together(void)
     return sizeof(real) == sizeof(float) ? G::TOGETHER : 1;
 }
 
-template <class G, bool MIXED>
+template <class G, class L, bool MIXED>
 static __global__ void __launch_bounds__(G::THREADS, together<G>())
     pass_kernel(cuda_view<real> v, const __grid_constant__ cuda_pass given)
 {
     DYNAMIC_SHARED(double, memory);
-    real *u = (real *)memory, *near = u + 3 * G::PLACES, *force = near + NEAR_NUMBERS;
+    real *u = (real *)memory, *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
     const uint32_t first = cell_at(v, t, threadIdx.x);
     cuda_pass p = given;
-    bring_laws(v, &p, near);
+    bring_laws<L>(v, &p, near);
     bring_gravity(v, p.now, near);
     cuda_load<G, true>(v, t, p.from, u);
     __syncthreads();
-    cell_forces<G, MIXED>(v, p, t, first, u, force);
+    cell_forces<G, L, MIXED>(v, p, t, first, u, force);
     own_node own = node_at(v, p, t, threadIdx.x);
     __syncthreads();
     for (int i = threadIdx.x; i < t.nodes; i += G::THREADS) {
@@ -277,27 +285,28 @@ static __global__ void __launch_bounds__(G::THREADS, together<G>())
     }
 }
 
-template <class G> static size_t pass_shared(void)
+template <class G, class L> static size_t pass_shared(void)
 {
-    return (3 * (size_t)G::PLACES + NEAR_NUMBERS + 24 * (size_t)G::CELLS) * sizeof(real);
+    return (3 * (size_t)G::PLACES + L::NEAR + 24 * (size_t)G::CELLS) * sizeof(real);
 }
 
 /* Lets the kernels have so much shared memory; nonzero where the card has not so much. */
-template <class G> static cudaError_t pass_allow(void)
+template <class G, class L> static cudaError_t pass_allow(void)
 {
+    const int shared = (int)pass_shared<G, L>();
     const cudaError_t plain =
-        cudaFuncSetAttribute(pass_kernel<G, false>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)pass_shared<G>());
+        cudaFuncSetAttribute(pass_kernel<G, L, false>, cudaFuncAttributeMaxDynamicSharedMemorySize, shared);
     return plain != cudaSuccess
                ? plain
-               : cudaFuncSetAttribute(pass_kernel<G, true>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                      (int)pass_shared<G>());
+               : cudaFuncSetAttribute(pass_kernel<G, L, true>, cudaFuncAttributeMaxDynamicSharedMemorySize, shared);
 }
 
-template <class G>
+template <class G, class L>
 static cudaError_t pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t stream)
 {
-    const card_blocks blocks = {tiles, G::THREADS, pass_shared<G>(), stream};
-    return v.mixed ? card_start(pass_kernel<G, true>, blocks, v, p) : card_start(pass_kernel<G, false>, blocks, v, p);
+    const card_blocks blocks = {tiles, G::THREADS, pass_shared<G, L>(), stream};
+    return v.mixed ? card_start(pass_kernel<G, L, true>, blocks, v, p)
+                   : card_start(pass_kernel<G, L, false>, blocks, v, p);
 }
 
 #endif

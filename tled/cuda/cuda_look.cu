@@ -62,7 +62,9 @@ static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, 
     element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
     element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
     one_cell c;
-    c.own = {kind.mu, kind.bulk, kind.density, kind.hourglass, 0, -1};
+    memcpy(c.own.c, kind.c, sizeof c.own.c);
+    c.own.density = kind.density, c.own.hourglass = kind.hourglass;
+    c.own.share = 0, c.own.mix = -1;
     if (mixed >= 0)
         c.own = v.mixture[mixed];
     c.h = element_gradient(x, y, z, slope);
@@ -96,10 +98,11 @@ static __device__ void fibres_of(const cuda_look<S> &l, const tile &t, int i, co
 }
 
 /* Its strain energy; not finite where the cell is broken. */
-template <class S> static __device__ double strain_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
+template <class L, class S>
+static __device__ double strain_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
 {
     const cuda_view<S> &v = l.view;
-    const double energy = element_energy(c.h, c.own.mu, c.own.bulk);
+    const double energy = form_energy(L::FORM, c.h, c.own.c);
     if (!(1 + element_dilation(c.h) > 0) || !isfinite(energy) || !isfinite(c.hourglass))
         return INFINITY;
     return (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + c.hourglass);
@@ -149,7 +152,7 @@ template <class G> static __device__ int list_own(const unsigned *who, own_cells
 
 /* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread nearly twice the
  * registers. Returns what is proven. */
-template <class G, class S>
+template <class G, class L, class S>
 static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
                                        int count, element_vector slope, tled_sums *to)
 {
@@ -158,7 +161,7 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
         const one_cell c = cell_of<G>(l, t, i, u, slope);
-        const double strain = strain_of(l, t, i, c);
+        const double strain = strain_of<L>(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
             continue;
@@ -168,7 +171,7 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
         fibres_of(l, t, i, c, fibre);
         const double unit = 8 / sqrt(c.own.density);
         const element_vector d = {unit * slope.x, unit * slope.y, unit * slope.z};
-        const stability_range range = stability_range_scaled(c.own.mu, c.own.bulk, d, c.h, fibre[0], fibre[1]);
+        const stability_range range = stability_range_scaled(L::FORM, c.own.c, d, c.h, fibre[0], fibre[1]);
         if (range.high <= l.question.rest)
             continue;
         const double bound = isnan(range.high) ? INFINITY : range.high;
@@ -214,7 +217,7 @@ static __device__ void raise_limit(const step_matrix *a, bool past, double raise
 }
 
 /* The frequency of a tile by its cells' matrices. */
-template <class G, class S>
+template <class G, class L, class S>
 static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, element_vector slope, tled_sums *out, S *u,
                                   double *scratch, int *least)
 {
@@ -230,8 +233,8 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, element_
             const one_cell c = cell_of<G>(l, t, i, u, slope);
             element_fibre fibre[2];
             fibres_of(l, t, i, c, fibre);
-            past = strain_of(l, t, i, c) < INFINITY;
-            stability_matrix(c.own.mu, c.own.bulk, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
+            past = strain_of<L>(l, t, i, c) < INFINITY;
+            stability_matrix(L::FORM, c.own.c, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
         }
         past = past && !stability_below(&a, h.limit);
         if (__syncthreads_or(past))
@@ -328,7 +331,7 @@ static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_
 
 /* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one block is beside
  * what computes in others. */
-template <class G, class S>
+template <class G, class L, class S>
 static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     look_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts out)
 {
@@ -351,7 +354,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     const int count = list_own<G>(who, &own);
     __syncthreads();
     mine = nothing_seen(l.question.rest);
-    const double most = warp_most(look_at_cells<G>(l, t, u, own, count, out.slope, &mine));
+    const double most = warp_most(look_at_cells<G, L>(l, t, u, own, count, out.slope, &mine));
     sum_cells(&mine);
     if (threadIdx.x % 32 == 0) {
         add_part(&part[warp], mine);
@@ -382,7 +385,7 @@ static __device__ double proven_of_all(const double *proven, int64_t tiles, doub
 /* Goes through tiles, every gridDim.x-th, for those whose limit is past `raise` times what some tile is known to reach: others' limits
  * may stay, for if one of them is the highest of all, it is too high by `raise` at most. Where no tile is known to pass the frequency
  * at rest, it is for all that may. Then it adds up what their blocks left, where the first of these was. */
-template <class G, class S>
+template <class G, class L, class S>
 static __global__ void __launch_bounds__(G::THREADS)
     settle_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts parts)
 {
@@ -399,7 +402,7 @@ static __global__ void __launch_bounds__(G::THREADS)
         int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
         for (int which; (which = block_least(next, &least)) != NONE;) {
             const int64_t at = base + which * stride;
-            solve_tile<G>(l, l.view.tiles[at], parts.slope, &parts.block[at], u, number, &least);
+            solve_tile<G, L>(l, l.view.tiles[at], parts.slope, &parts.block[at], u, number, &least);
             next = next == which ? NONE : next;
         }
         if (own < l.count)
@@ -418,16 +421,20 @@ static __global__ void __launch_bounds__(SUM_THREADS)
     sum_block<SUM_THREADS>(mine, true, scratch, out);
 }
 
-template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream)
+template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, form f, tled_sums *sums, cudaStream_t stream)
 {
     const look_parts parts = parts_of(l);
     const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
     cudaError_t e = with_brick(l->size, [&](auto g) {
-        typedef decltype(g) G;
-        typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
-        const cudaError_t bounds = card_start(look_kernel<W, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
-        return bounds == cudaSuccess ? card_start(settle_kernel<G, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
-                                     : bounds;
+        return with_form(f, [&](auto form_) {
+            typedef decltype(g) G;
+            typedef decltype(form_) L;
+            typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
+            const cudaError_t bounds = card_start(look_kernel<W, L, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
+            return bounds == cudaSuccess
+                       ? card_start(settle_kernel<G, L, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
+                       : bounds;
+        });
     });
     return e == cudaSuccess
                ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, parts.block, solvers, l->question.rest, sums)
@@ -460,7 +467,7 @@ template <class S> cudaError_t cuda_keep_start(const cuda_view<S> *v, const cuda
     return card_start(keep_kernel<S>, {blocks, KEEP_THREADS, 0, stream}, *v, *k);
 }
 
-template cudaError_t cuda_look_start<float>(const cuda_look<float> *, tled_sums *, cudaStream_t);
-template cudaError_t cuda_look_start<double>(const cuda_look<double> *, tled_sums *, cudaStream_t);
+template cudaError_t cuda_look_start<float>(const cuda_look<float> *, form, tled_sums *, cudaStream_t);
+template cudaError_t cuda_look_start<double>(const cuda_look<double> *, form, tled_sums *, cudaStream_t);
 template cudaError_t cuda_keep_start<float>(const cuda_view<float> *, const cuda_kept<float> *, cudaStream_t);
 template cudaError_t cuda_keep_start<double>(const cuda_view<double> *, const cuda_kept<double> *, cudaStream_t);

@@ -11,8 +11,11 @@
 
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
-    const cudaError_t started =
-        with_brick(s->size, [&](auto g) { return pass_start<decltype(g)>(s->view, *p, s->tiles.count, s->stream); });
+    const cudaError_t started = with_brick(s->size, [&](auto g) {
+        return with_form(s->p->form, [&](auto l) {
+            return pass_start<decltype(g), decltype(l)>(s->view, *p, s->tiles.count, s->stream);
+        });
+    });
     return card_check(started, "the start of a pass", s->step, e);
 }
 
@@ -122,8 +125,12 @@ static int stay(cuda_state *s, const tled_plan *plan, const double *now, int64_t
                              ends};
     s->messages += (uint32_t)passes;
     const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return s->view.mixed ? resident_start<decltype(g), true>(s->view, r, s->tiles.count, s->stream)
-                             : resident_start<decltype(g), false>(s->view, r, s->tiles.count, s->stream);
+        return with_form(s->p->form, [&](auto l) {
+            typedef decltype(g) G;
+            typedef decltype(l) L;
+            return s->view.mixed ? resident_start<G, L, true>(s->view, r, s->tiles.count, s->stream)
+                                 : resident_start<G, L, false>(s->view, r, s->tiles.count, s->stream);
+        });
     });
     s->spare_is_internal = ends;
     if (card_check(started, "the start of passes", s->step, e))
@@ -282,7 +289,7 @@ static int cuda_look_at(void *state, const void *question, void *answer, err *e)
     cuda_look<real> l = {s->view,     s->size,  s->tiles.count, s->displacement,
                          s->velocity, s->spare, kept,           s->kept_internal,
                          rows,        *q,       s->look_parts};
-    if (card_check(cuda_look_start(&l, s->sums, s->stream), "the start of a look", s->step, e) ||
+    if (card_check(cuda_look_start(&l, s->p->form, s->sums, s->stream), "the start of a look", s->step, e) ||
         CUDA_TRY(cudaMemcpyAsync(s->sums_host, s->sums, sizeof *s->sums, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
@@ -368,7 +375,7 @@ static void begin_march(cuda_state *s)
     const tled_volume *plain = &p->volume[s->march.plain];
     const int *axis = s->march.axis;
     cuda_march *w = &s->walk;
-    const double law[3] = {plain->mu, plain->bulk, plain->hourglass};
+    const double law[3] = {plain->law.c[0], plain->law.c[1], plain->law.hourglass}; /* of the neo-Hookean form */
     w->nears = (int32_t)s->march.nears;
     w->units = (int32_t)s->march.units;
     static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");

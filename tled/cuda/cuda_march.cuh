@@ -28,7 +28,7 @@ typedef struct cuda_march {
     const uint32_t *word;
     const int32_t *detail, *which;
     const march_cell *cell;
-    float law[LAW_NUMBERS];  /* of plain cells */
+    float law[3];            /* of plain cells: mu, K, hourglass */
     float slope[3], area[3]; /* element_shape's, along the march's axes */
     int32_t axis[3];         /* of the model: which these are */
 } cuda_march;

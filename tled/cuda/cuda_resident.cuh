@@ -133,18 +133,18 @@ static __device__ void resident_node(const cuda_view<real> &v, const cuda_reside
     }
 }
 
-template <class G, bool MIXED>
+template <class G, class L, bool MIXED>
 static __global__ void __launch_bounds__(G::THREADS, together<G>())
     resident_kernel(cuda_view<real> v, const __grid_constant__ cuda_resident r)
 {
     DYNAMIC_SHARED(double, memory);
-    real *u = (real *)(memory + 6 * r.curves), *near = u + 3 * G::PLACES, *force = near + NEAR_NUMBERS;
+    real *u = (real *)(memory + 6 * r.curves), *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
     const uint32_t first = cell_at(v, t, threadIdx.x);
     const cuda_halo<G> halo = halo_of<G>(v, t);
     own_node own[G::OWN];
     cuda_pass p = r.pass;
-    bring_laws(v, &p, near);
+    bring_laws<L>(v, &p, near);
     p.now = memory, p.next = memory + 3 * r.curves;
     cuda_load<G, true>(v, t, p.from, u);
 #pragma unroll
@@ -160,7 +160,7 @@ static __global__ void __launch_bounds__(G::THREADS, together<G>())
             memory[i] = now[i];
         bring_gravity(v, now, near);
         __syncthreads();
-        cell_forces<G, MIXED>(v, p, t, first, u, force);
+        cell_forces<G, L, MIXED>(v, p, t, first, u, force);
         __syncthreads();
 #pragma unroll
         for (int i = 0; i < G::OWN; i++)
@@ -180,33 +180,34 @@ static __global__ void __launch_bounds__(G::THREADS, together<G>())
     }
 }
 
-template <class G> static size_t resident_shared(int64_t curves)
+template <class G, class L> static size_t resident_shared(int64_t curves)
 {
     return 6 * (size_t)curves * sizeof(double) +
-           (3 * (size_t)G::PLACES + NEAR_NUMBERS + 24 * (size_t)G::CELLS) * sizeof(real);
+           (3 * (size_t)G::PLACES + L::NEAR + 24 * (size_t)G::CELLS) * sizeof(real);
 }
 
 /* How many tiles have a place at once; 0: none, or the card starts no kernels that wait for each other. */
-template <class G, bool MIXED> static int64_t resident_places(int64_t curves)
+template <class G, class L, bool MIXED> static int64_t resident_places(int64_t curves)
 {
     int device = 0, processors = 0, together = 0, each = 0;
-    const size_t shared = resident_shared<G>(curves);
+    const size_t shared = resident_shared<G, L>(curves);
     const bool fits =
         curves <= RESIDENT_CURVES && cudaGetDevice(&device) == cudaSuccess &&
         cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) == cudaSuccess &&
         cudaDeviceGetAttribute(&together, cudaDevAttrCooperativeLaunch, device) == cudaSuccess && together &&
-        cudaFuncSetAttribute(resident_kernel<G, MIXED>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)shared) ==
+        cudaFuncSetAttribute(resident_kernel<G, L, MIXED>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)shared) ==
             cudaSuccess &&
-        cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, resident_kernel<G, MIXED>, G::THREADS, shared) ==
+        cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, resident_kernel<G, L, MIXED>, G::THREADS, shared) ==
             cudaSuccess;
     cudaGetLastError(); /* a card with too little shared memory has said so */
     return fits ? (int64_t)each * processors : 0;
 }
 
-template <class G, bool MIXED>
+template <class G, class L, bool MIXED>
 static cudaError_t resident_start(const cuda_view<real> &v, const cuda_resident &r, int64_t tiles, cudaStream_t s)
 {
-    return card_start(resident_kernel<G, MIXED>, {tiles, G::THREADS, resident_shared<G>(r.curves), s, true}, v, r);
+    return card_start(resident_kernel<G, L, MIXED>, {tiles, G::THREADS, resident_shared<G, L>(r.curves), s, true}, v,
+                      r);
 }
 
 #endif

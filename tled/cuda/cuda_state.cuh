@@ -118,7 +118,7 @@ static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
         put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
         (!s->marches && put(s, &v->mass_inverse, numbers->mass_inverse, t->nodes, e)) ||
         (s->marches && put_march(s, e)) || put(s, &v->kind, numbers->kind, p->volumes, e) ||
-        put(s, &v->law, numbers->law, LAW_NUMBERS * p->volumes, e))
+        put(s, &v->law, numbers->law, (form_numbers(p->form) + 1) * p->volumes, e))
         return -1;
     s->displacement = (real *)room(s, s->numbers, sizeof(real));
     s->spare = (real *)room(s, s->numbers, sizeof(real));
@@ -160,15 +160,20 @@ static void put_mixtures(const tled_problem *p, cuda_mixed *to)
     for (int64_t i = 0; p->mixed && i < p->elements; i++)
         if (p->mixed[i] >= 0) {
             const tled_law law = tled_law_of(p, i);
-            to[p->mixed[i]] = {law.mu, law.bulk, law.density, law.hourglass, tled_mixture(p, i), p->mix[i]};
+            cuda_mixed *m = &to[p->mixed[i]];
+            memcpy(m->c, law.c, sizeof m->c);
+            m->density = law.density, m->hourglass = law.hourglass;
+            m->share = tled_mixture(p, i), m->mix = p->mix[i];
         }
 }
 
 static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
+    const int coefficients = form_numbers(p->form);
+    const size_t numbers = (size_t)coefficients + 1;
     n->mass_inverse = (real *)mem_array(p->nodes, sizeof *n->mass_inverse, "the solver", e);
-    n->law = (real *)mem_array(p->volumes, LAW_NUMBERS * sizeof *n->law, "the solver", e);
+    n->law = (real *)mem_array(p->volumes, numbers * sizeof *n->law, "the solver", e);
     n->kind = (cuda_kind *)mem_array(p->volumes, sizeof *n->kind, "the solver", e);
     n->mixture = (cuda_mixed *)mem_array(p->laws, sizeof *n->mixture, "the solver", e);
     if (!n->mass_inverse || !n->law || !n->kind || !n->mixture)
@@ -177,9 +182,14 @@ static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
         n->mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
     for (int32_t i = 0; i < p->volumes; i++) {
         const tled_volume *v = &p->volume[i];
-        real *law = n->law + LAW_NUMBERS * i;
-        n->kind[i] = {v->mu, v->bulk, v->density, v->hourglass, v->peak, (int32_t)v->contract};
-        law[0] = (real)v->mu, law[1] = (real)v->bulk, law[2] = (real)v->hourglass;
+        real *law = n->law + numbers * (size_t)i;
+        cuda_kind *kind = &n->kind[i];
+        memcpy(kind->c, v->law.c, sizeof kind->c);
+        kind->density = v->law.density, kind->hourglass = v->law.hourglass;
+        kind->peak = v->peak, kind->contract = (int32_t)v->contract;
+        for (int k = 0; k < coefficients; k++)
+            law[k] = (real)v->law.c[k];
+        law[coefficients] = (real)v->law.hourglass;
     }
     put_mixtures(p, n->mixture);
     return 0;
@@ -215,7 +225,8 @@ static int cut_in(cuda_state *s, cuda_size size, err *e)
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
         static const int brick[3] = {G::BX, G::BY, G::BZ};
-        return CUDA_TRY(pass_allow<G>()) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
+        const cudaError_t allowed = with_form(s->p->form, [](auto l) { return pass_allow<G, decltype(l)>(); });
+        return CUDA_TRY(allowed) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
     });
 }
 
@@ -225,17 +236,20 @@ static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
         const int64_t curves = s->p->script->curves;
-        const int64_t places = s->p->mix ? resident_places<G, true>(curves) : resident_places<G, false>(curves);
+        const int64_t places = with_form(s->p->form, [&](auto l) {
+            typedef decltype(l) L;
+            return s->p->mix ? resident_places<G, L, true>(curves) : resident_places<G, L, false>(curves);
+        });
         *nodes = places * G::NODES;
         return places;
     });
 }
 
-/* Whether what does not stay marches: in single precision, on a card that can, where the model is suited. */
+/* Whether what does not stay marches: in single precision, in the neo-Hookean form, on a card that can, where the model is suited. */
 static int choose_march(cuda_state *s, err *e)
 {
     int64_t slots = 0;
-    if (s->resident || sizeof(real) != sizeof(float))
+    if (s->resident || sizeof(real) != sizeof(float) || s->p->form != FORM_NEO_HOOKEAN)
         return 0;
     if (CUDA_TRY(cuda_march_slots(&slots)))
         return -1;

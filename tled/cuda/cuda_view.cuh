@@ -54,17 +54,38 @@ template <class F> static auto with_brick(cuda_size size, F f)
                                  : f(cuda_brick<4, 4, 4, 128, 1>());
 }
 
+enum { LAWS_NEAR = 16 /* volumes whose laws stand in shared memory */ };
+
+/* A form that kernels are compiled for. A law's numbers are its coefficients, then the hourglass stiffness; NEAR: numbers that all threads
+ * of a block ask for, gravity and laws. */
+template <form F, int N> struct cuda_form {
+    static constexpr form FORM = F;
+    enum { COEFFICIENTS = N, LAW = N + 1, NEAR = 4 + LAW * LAWS_NEAR };
+};
+
+/* Calls f with a form as a type. */
+template <class F> static auto with_form(form which, F f)
+{
+#define FORM_ROW(NAME, name, coefficients, history, directions)                                                        \
+    case FORM_##NAME:                                                                                                  \
+        return f(cuda_form<FORM_##NAME, coefficients>());
+    switch (which) {
+        FORMS(FORM_ROW)
+    default:
+        return f(cuda_form<(form)0, FORM_NUMBERS>());
+    }
+#undef FORM_ROW
+}
+
 typedef struct cuda_kind { /* a volume */
-    double mu, bulk, density, hourglass, peak;
+    double c[FORM_NUMBERS], density, hourglass, peak;
     int32_t contract; /* its curve, or -1 */
 } cuda_kind;
 
-typedef struct cuda_mixed {                     /* a cell mixed of two volumes */
-    double mu, bulk, density, hourglass, share; /* share: of the second volume */
-    int32_t mix;                                /* the second volume */
+typedef struct cuda_mixed {                            /* a cell mixed of two volumes */
+    double c[FORM_NUMBERS], density, hourglass, share; /* share: of the second volume */
+    int32_t mix;                                       /* the second volume */
 } cuda_mixed;
-
-enum { LAW_NUMBERS = 3, LAWS_NEAR = 16 /* volumes whose laws stand in shared memory */ };
 
 template <class S> struct cuda_view {
     const tile *tiles;
@@ -81,7 +102,7 @@ template <class S> struct cuda_view {
     const double *force_share;
     const S *mass_inverse;
     const cuda_kind *kind;
-    const S *law; /* volumes x LAW_NUMBERS: mu, bulk, hourglass */
+    const S *law; /* volumes x a law's numbers */
     int64_t stride;
     int64_t offset[3], along, mass_along;    /* mass_along: of mass_inverse */
     int32_t nodes, extras, volumes, gravity; /* gravity: its curve, or -1 */
@@ -179,7 +200,7 @@ template <class S> struct cuda_look {
 size_t cuda_look_bytes(int64_t tiles);
 
 /* Starts the work on the stream; *sums (on the device) gets the answer, with cells for elements. */
-template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream);
+template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, form f, tled_sums *sums, cudaStream_t stream);
 
 /* Arrays over nodes that go into rows, as the state stands or stood when it was kept. */
 enum { CUDA_KEPT = 3 };

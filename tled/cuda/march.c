@@ -225,8 +225,8 @@ static march_cell cell_of(const cutter *c, int64_t element)
     const tled_problem *p = c->p;
     const tled_law law = tled_law_of(p, element);
     const double share = tled_fraction(p, element), other = tled_mixture(p, element);
-    march_cell cell = {.mu = (float)(share * law.mu),
-                       .bulk = (float)(share * law.bulk),
+    march_cell cell = {.mu = (float)(share * law.c[0]),
+                       .bulk = (float)(share * law.c[1]),
                        .hourglass = (float)(share * law.hourglass),
                        .muscle = {{.curve = -1}, {.curve = -1}}};
     add_muscle(c, &cell, p->fibre ? p->fibre + 3 * element : NULL, p->element_volume[element], share * (1 - other));
@@ -237,8 +237,8 @@ static march_cell cell_of(const cutter *c, int64_t element)
 
 static bool is_special(const cutter *c, const march_cell *cell)
 {
-    const tled_volume *plain = &c->p->volume[c->m->plain];
-    return cell->muscle[0].curve >= 0 || cell->mu != (float)plain->mu || cell->bulk != (float)plain->bulk ||
+    const tled_law *plain = &c->p->volume[c->m->plain].law;
+    return cell->muscle[0].curve >= 0 || cell->mu != (float)plain->c[0] || cell->bulk != (float)plain->c[1] ||
            cell->hourglass != (float)plain->hourglass;
 }
 

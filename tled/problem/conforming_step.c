@@ -19,7 +19,7 @@ void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h,
     const tled_law law = tled_law_of(p, element);
     double(*l)[3] = p->conforming->element[element].root;
     double half[9][9];
-    stability_add_law(law.mu, law.bulk, h, a->at);
+    form_tangent(p->form, h, law.c, a->at);
     if (fibre.tension != 0)
         stability_add_active(h, fibre, a->at);
     for (int r = 0; r < 9; r++)

@@ -29,7 +29,7 @@ deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, 
     d.h = gradient_of(p, element, box, &x, &y, &z, &d.law);
     d.rest = p->conforming ? p->conforming->element[element].volume : p->side[0] * p->side[1] * p->side[2];
     d.dilation = element_dilation(d.h);
-    d.energy = element_energy(d.h, d.law.mu, d.law.bulk);
+    d.energy = form_energy(p->form, d.h, d.law.c);
     d.hourglass = element_hourglass_energy(x, d.law.hourglass) + element_hourglass_energy(y, d.law.hourglass) +
                   element_hourglass_energy(z, d.law.hourglass);
     return d;

@@ -123,8 +123,8 @@ static double square_at_rest(const tled_problem *p, const tled_volume *v)
     const element_fibre none = {0};
     const double share = p->side[0] * p->side[1] * p->side[2] / 8;
     step_matrix a;
-    stability_matrix(v->mu, v->bulk, v->density, p->side, rest, none, none, &a);
-    return fmax(stability_largest(&a), 8 * v->hourglass / (v->density * share));
+    stability_matrix(p->form, v->law.c, v->law.density, p->side, rest, none, none, &a);
+    return fmax(stability_largest(&a), 8 * v->law.hourglass / (v->law.density * share));
 }
 
 static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
@@ -138,11 +138,11 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
         return err_set(e, NULL, 0,
                        "volume '%s' has the law '%s'; expected neo-hookean, here or by -m MATERIAL.law=", v->name,
                        model_find(m, "material.law")->str[model_find(m, "volume.material")->i32[i]]);
-    v->mu = material_mu(&law);
-    v->bulk = material_bulk(&law);
-    v->density = law.density;
+    v->law.mu = v->law.c[0] = material_mu(&law);
+    v->law.bulk = v->law.c[1] = material_bulk(&law);
+    v->law.density = law.density;
     v->peak = law.peak;
-    v->hourglass = element_hourglass(p->kappa, v->mu, v->bulk, p->side[0], p->side[1], p->side[2]);
+    v->law.hourglass = element_hourglass(p->kappa, v->law.mu, v->law.bulk, p->side[0], p->side[1], p->side[2]);
     v->square = square_at_rest(p, v);
     v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
     if (v->contract >= 0 && !(v->peak > 0))
@@ -166,11 +166,12 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
 
 static tled_law mix_laws(const tled_problem *p, int64_t element)
 {
-    const tled_volume *v = &p->volume[p->element_volume[element]], *w = &p->volume[p->mix[element]];
+    const tled_law *v = &p->volume[p->element_volume[element]].law, *w = &p->volume[p->mix[element]].law;
     const double s = tled_mixture(p, element);
     tled_law law = {.mu = material_between(v->mu, w->mu, s),
                     .bulk = material_between(v->bulk, w->bulk, s),
                     .density = (1 - s) * v->density + s * w->density};
+    form_between(p->form, law.mu, law.bulk, v->c, w->c, s, law.c);
     law.hourglass = element_hourglass(p->kappa, law.mu, law.bulk, p->side[0], p->side[1], p->side[2]);
     return law;
 }

@@ -8,30 +8,35 @@
 #ifndef SINEW_STATE_H
 #define SINEW_STATE_H
 
+#include "physics/forms.h"
 #include "solve/backend.h"
 #include "tled/problem/script.h"
 
 /* What holds one component of a node: nothing, its place at the start, or curve number `hold` of the script. */
 enum { HOLD_FREE = -1, HOLD_STILL = -2 };
 
-typedef struct tled_volume {
-    const char *name;               /* borrowed */
-    double mu, bulk, density, peak; /* Pa, Pa, kg/m3, Pa */
-    double hourglass;               /* N/m: k of each hourglass mode */
-    double square;                  /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
-    int64_t elements;               /* of it */
-    int64_t contract;               /* curve that sets its level, or -1 */
-} tled_volume;
-
 /* What an element is made of: a volume, or two. With s the share of the second, density is (1 - s) rho1 + s rho2, mu is
- * mu1^(1-s) mu2^s and K likewise (material_between). */
+ * mu1^(1-s) mu2^s and K likewise (material_between), and coefficients lie between (form_between). */
 typedef struct tled_law {
-    double mu, bulk, density, hourglass; /* as a tled_volume's */
+    double c[FORM_NUMBERS]; /* Pa: the coefficients of the problem's form */
+    double mu, bulk;        /* Pa: at rest */
+    double density;         /* kg/m3 */
+    double hourglass;       /* N/m: k of each hourglass mode */
 } tled_law;
+
+typedef struct tled_volume {
+    const char *name; /* borrowed */
+    tled_law law;
+    double peak;      /* Pa */
+    double square;    /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
+    int64_t elements; /* of it */
+    int64_t contract; /* curve that sets its level, or -1 */
+} tled_volume;
 
 typedef struct tled_problem {
     int64_t nodes, elements;
     int32_t volumes;
+    enum form form;                /* that all laws are expressed in */
     double side[3];                /* m: of every element; without a lattice, a cube's of the mean volume */
     struct conforming *conforming; /* elements that are no lattice's (conforming.h), owned; NULL: boxes of `side` */
     double kappa;                  /* hourglass coefficient */
@@ -140,9 +145,7 @@ static inline double tled_mixture(const tled_problem *p, int64_t element)
 /* The law of an element: its volume's, or one between its two volumes'. */
 static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
 {
-    const tled_volume *v = &p->volume[p->element_volume[element]];
-    const tled_law own = {v->mu, v->bulk, v->density, v->hourglass};
-    return p->mixed && p->mixed[element] >= 0 ? p->law[p->mixed[element]] : own;
+    return p->mixed && p->mixed[element] >= 0 ? p->law[p->mixed[element]] : p->volume[p->element_volume[element]].law;
 }
 
 /* Whether any element's hourglass modulus is 11 mu, being less than lambda + 2 mu: nu above .45. */

@@ -7,13 +7,13 @@
 void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
                     element_fibre second, step_matrix *a)
 {
-    stability_matrix(law->mu, law->bulk, law->density, p->side, h, fibre, second, a);
+    stability_matrix(p->form, law->c, law->density, p->side, h, fibre, second, a);
 }
 
 stability_range step_range_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
                               element_fibre second)
 {
-    return stability_range_of(law->mu, law->bulk, law->density, p->side, h, fibre, second);
+    return stability_range_of(p->form, law->c, law->density, p->side, h, fibre, second);
 }
 
 bool step_below(const step_matrix *a, double limit)
@@ -30,7 +30,7 @@ double step_largest(const step_matrix *a)
  * that of a volume times the larger of what these are of the volume's. */
 static double square_by(const tled_law *law, const tled_volume *v)
 {
-    return v->square * fmax(law->mu / v->mu, law->bulk / v->bulk) * v->density / law->density;
+    return v->square * fmax(law->mu / v->law.mu, law->bulk / v->law.bulk) * v->law.density / law->density;
 }
 
 /* The square of the highest frequency of an element at rest; of one that is mixed perhaps a little more. */

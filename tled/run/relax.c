@@ -7,7 +7,7 @@ double relax_guess(const tled_problem *p, double reach)
     double speed = INFINITY;
     for (int32_t i = 0; i < p->volumes; i++)
         if (p->volume[i].elements)
-            speed = fmin(speed, sqrt(p->volume[i].mu / p->volume[i].density));
+            speed = fmin(speed, sqrt(p->volume[i].law.mu / p->volume[i].law.density));
     return acos(-1) / 2 * speed / reach;
 }
 

@@ -1,0 +1,73 @@
+/* The maths of a form, chosen by its name: H = grad u and the form's coefficients give energy, stress and tangent. Steppers
+ * give a form that is a constant, so that nothing is chosen while they run; others may give a variable. Owns nothing.
+ */
+#ifndef SINEW_FORM_MATHS_H
+#define SINEW_FORM_MATHS_H
+
+#include "physics/form_mooney_rivlin.h"
+#include "physics/form_neo_hookean.h"
+#include "physics/forms.h"
+
+/* P (Pa), the first Piola-Kirchhoff stress. c: the form's coefficients, Pa. */
+ELEMENT_FUNCTION element_tensor form_stress(form f, element_tensor h, const real *c)
+{
+    const element_tensor none = {REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO,
+                                 REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO};
+#define FORM_CASE(NAME, name, coefficients, history, directions)                                                       \
+    case FORM_##NAME:                                                                                                  \
+        return form_##name##_stress(h, c);
+    switch (f) {
+        FORMS(FORM_CASE)
+    default:
+        return none;
+    }
+#undef FORM_CASE
+}
+
+/* W, by volume at rest (J/m3). */
+ELEMENT_FUNCTION real form_energy(form f, element_tensor h, const real *c)
+{
+#define FORM_CASE(NAME, name, coefficients, history, directions)                                                       \
+    case FORM_##NAME:                                                                                                  \
+        return form_##name##_energy(h, c);
+    switch (f) {
+        FORMS(FORM_CASE)
+    default:
+        return REAL_ZERO;
+    }
+#undef FORM_CASE
+}
+
+#ifdef REAL_IS_DOUBLE
+/* The lower triangle of A = dP/dF as a 9 x 9 matrix. */
+ELEMENT_FUNCTION void form_tangent(form f, element_tensor h, const double *c, double a[9][9])
+{
+#define FORM_CASE(NAME, name, coefficients, history, directions)                                                       \
+    case FORM_##NAME:                                                                                                  \
+        form_##name##_tangent(h, c, a);                                                                                \
+        break;
+    switch (f) {
+        FORMS(FORM_CASE)
+    default:
+        break;
+    }
+#undef FORM_CASE
+}
+
+/* Adds A y to *to; square: G:y, G = cof F. Returns no less than z:(A z) for any z of length 1 with G:z = 0. */
+ELEMENT_FUNCTION double form_along(form f, element_tensor h, const double *c, element_tensor y, double square,
+                                   element_tensor *to)
+{
+#define FORM_CASE(NAME, name, coefficients, history, directions)                                                       \
+    case FORM_##NAME:                                                                                                  \
+        return form_##name##_along(h, c, y, square, to);
+    switch (f) {
+        FORMS(FORM_CASE)
+    default:
+        return 0;
+    }
+#undef FORM_CASE
+}
+#endif
+
+#endif

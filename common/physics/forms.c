@@ -1,0 +1,46 @@
+#include "physics/form_maths.h"
+
+int form_numbers(form f)
+{
+#define FORM_ROW(NAME, name, coefficients, history, directions) (coefficients),
+    static const int numbers[FORM_COUNT] = {FORMS(FORM_ROW)[FORM_LINEAR] = 2};
+#undef FORM_ROW
+    return numbers[f];
+}
+
+static int express(form from, form target, const double *c, double *to)
+{
+#define FORM_ROW(NAME, name, coefficients, history, directions)                                                        \
+    case FORM_##NAME:                                                                                                  \
+        return form_##name##_express(from, c, to);
+    switch (target) {
+        FORMS(FORM_ROW)
+    default:
+        return 0;
+    }
+#undef FORM_ROW
+}
+
+int form_express(form from, form target, const double *c, double *to)
+{
+    memset(to, 0, FORM_NUMBERS * sizeof *to);
+    if (from != target)
+        return express(from, target, c, to);
+    memcpy(to, c, (size_t)form_numbers(from) * sizeof *to);
+    return 1;
+}
+
+void form_between(form f, double mu, double bulk, const double *a, const double *b, double share, double *to)
+{
+#define FORM_ROW(NAME, name, coefficients, history, directions)                                                        \
+    case FORM_##NAME:                                                                                                  \
+        form_##name##_between(mu, bulk, a, b, share, to);                                                              \
+        break;
+    memset(to, 0, FORM_NUMBERS * sizeof *to);
+    switch (f) {
+        FORMS(FORM_ROW)
+    default:
+        break;
+    }
+#undef FORM_ROW
+}

@@ -1,0 +1,263 @@
+/* What every form must do, whatever it is: stress is the slope of energy and tangent that of stress, turning changes
+ * nothing, nothing is pulled at rest; and the bounds of the stable step hold. Then figures of the Mooney-Rivlin form.
+ */
+#include "physics/stability.h"
+
+#include "tap.h"
+
+enum { TRIALS = 200 };
+
+/* Coefficients to try each form with. */
+static const double tried[FORM_STEPPED][FORM_NUMBERS] = {
+    [FORM_NEO_HOOKEAN] = {1000, 9700}, [FORM_MOONEY_RIVLIN] = {300, 200, 9700}};
+
+#define NAME_OF(NAME, name, coefficients, history, directions) #name,
+static const char *const names[] = {FORMS(NAME_OF)};
+
+/* Numbers from -1 to 1, the same in every run. */
+static double number(void)
+{
+    static uint32_t seed = 7;
+    seed = seed * 1664525 + 1013904223;
+    return (double)seed / 2147483648. - 1;
+}
+
+static element_tensor tensor_of(const double h[9])
+{
+    element_tensor t;
+    memcpy(&t, h, sizeof t);
+    return t;
+}
+
+/* H with entries up to `most`, and J from .7 to 1.4. */
+static element_tensor gradient_by_chance(double most)
+{
+    for (;;) {
+        double h[9];
+        for (int i = 0; i < 9; i++)
+            h[i] = most * number();
+        const double dilation = element_dilation(tensor_of(h));
+        if (dilation > -.3 && dilation < .4)
+            return tensor_of(h);
+    }
+}
+
+static element_tensor minus_one(element_tensor f)
+{
+    f.xx -= 1, f.yy -= 1, f.zz -= 1;
+    return f;
+}
+
+/* A rotation about an axis by chance. */
+static element_tensor turn_by_chance(void)
+{
+    const double q[4] = {number(), number(), number(), number()};
+    const double s = 2 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const element_tensor r = {
+        1 - s * (q[1] * q[1] + q[2] * q[2]), s * (q[0] * q[1] - q[2] * q[3]),     s * (q[0] * q[2] + q[1] * q[3]),
+        s * (q[0] * q[1] + q[2] * q[3]),     1 - s * (q[0] * q[0] + q[2] * q[2]), s * (q[1] * q[2] - q[0] * q[3]),
+        s * (q[0] * q[2] - q[1] * q[3]),     s * (q[1] * q[2] + q[0] * q[3]),     1 - s * (q[0] * q[0] + q[1] * q[1])};
+    return r;
+}
+
+static double largest_of(element_tensor t)
+{
+    double x[9], most = 0;
+    memcpy(x, &t, sizeof x);
+    for (int i = 0; i < 9; i++)
+        most = fmax(most, fabs(x[i]));
+    return most;
+}
+
+static double apart(element_tensor a, element_tensor b)
+{
+    tangent_add(&a, -1, b);
+    return largest_of(a);
+}
+
+/* The difference quotient of fourth order of the energy. */
+static element_tensor slope_of_energy(form f, element_tensor h, const double *c)
+{
+    const double step = 2e-3;
+    double at[9], slope[9];
+    memcpy(at, &h, sizeof at);
+    for (int i = 0; i < 9; i++) {
+        double w[4];
+        for (int k = 0; k < 4; k++) {
+            const double was = at[i];
+            at[i] += (k < 2 ? k - 2 : k - 1) * step;
+            w[k] = form_energy(f, tensor_of(at), c);
+            at[i] = was;
+        }
+        slope[i] = (w[0] - w[3] + 8 * (w[2] - w[1])) / (12 * step);
+    }
+    return tensor_of(slope);
+}
+
+static void test_stress(form f)
+{
+    const double *c = tried[f];
+    double off = 0, skew = 0, turned = 0;
+    for (int i = 0; i < TRIALS; i++) {
+        const element_tensor h = gradient_by_chance(.4), p = form_stress(f, h, c), moved = tangent_moved(h);
+        const element_tensor cauchy = tangent_product(p, tangent_transposed(moved));
+        const double energy = form_energy(f, h, c);
+        const element_tensor other = minus_one(tangent_product(turn_by_chance(), moved));
+        off = fmax(off, apart(p, slope_of_energy(f, h, c)) / largest_of(p));
+        skew = fmax(skew, apart(cauchy, tangent_transposed(cauchy)) / largest_of(cauchy));
+        turned = fmax(turned, fabs(form_energy(f, other, c) - energy) / energy);
+    }
+    ok(off < 1e-6, "%s: stress is the slope of energy, to %.1e", names[f], off);
+    ok(skew < 1e-12, "%s: P F^T is symmetric, to %.1e", names[f], skew);
+    ok(turned < 1e-11, "%s: turning changes no energy, to %.1e", names[f], turned);
+    const element_tensor rest = {0};
+    ok(largest_of(form_stress(f, rest, c)) == 0 && form_energy(f, rest, c) == 0, "%s: none at rest", names[f]);
+}
+
+static void test_tangent(form f)
+{
+    const double *c = tried[f], step = 1e-5;
+    double off = 0, along = 0;
+    for (int i = 0; i < TRIALS; i++) {
+        const element_tensor h = gradient_by_chance(.4), y = gradient_by_chance(1);
+        element_tensor product = {0};
+        double a[9][9], at[9], high[9], low[9], sides[9], scale = 0, worst = 0, gone[9];
+        form_tangent(f, h, c, a);
+        memcpy(at, &h, sizeof at);
+        memcpy(sides, &y, sizeof sides);
+        for (int s = 0; s < 9; s++) {
+            element_tensor p;
+            at[s] += step;
+            p = form_stress(f, tensor_of(at), c);
+            memcpy(high, &p, sizeof high);
+            at[s] -= 2 * step;
+            p = form_stress(f, tensor_of(at), c);
+            memcpy(low, &p, sizeof low);
+            at[s] += step;
+            for (int r = s; r < 9; r++) {
+                a[s][r] = a[r][s];
+                scale = fmax(scale, fabs(a[r][s]));
+                worst = fmax(worst, fabs(a[r][s] - (high[r] - low[r]) / (2 * step)));
+            }
+        }
+        off = fmax(off, worst / scale);
+        form_along(f, h, c, y, tangent_dot(element_cofactor(h), y), &product);
+        memcpy(gone, &product, sizeof gone);
+        for (int r = 0; r < 9; r++) {
+            for (int s = 0; s < 9; s++)
+                gone[r] -= a[r][s] * sides[s];
+            along = fmax(along, fabs(gone[r]) / scale);
+        }
+    }
+    ok(off < 1e-7, "%s: the tangent is the slope of stress, to %.1e", names[f], off);
+    ok(along < 1e-12, "%s: the tangent along a direction, to %.1e", names[f], along);
+}
+
+/* The bounds of the largest eigenvalue, with fibres by chance: they hold, and the matrix is seldom needed. */
+static void test_range(form f, const double *c, double strain)
+{
+    int wrong = 0, wide = 0;
+    for (int i = 0; i < 10 * TRIALS; i++) {
+        const double side[3] = {.01 + .005 * number(), .01 + .005 * number(), .01};
+        const element_tensor h = gradient_by_chance(strain);
+        element_fibre fibre = {{number(), number(), number()}, 2000 * number()};
+        const element_fibre none = {0};
+        const double length = element_length(fibre.along);
+        fibre.along.x /= length, fibre.along.y /= length, fibre.along.z /= length;
+        step_matrix a;
+        stability_matrix(f, c, 1000, side, h, fibre, none, &a);
+        const stability_range range = stability_range_of(f, c, 1000, side, h, fibre, none);
+        const double largest = stability_largest(&a);
+        wrong += !(range.low <= largest && largest <= range.high);
+        wide += !(range.high <= 1.05 * range.low);
+    }
+    ok(!wrong, "%s, H to %g: bounds of eigenvalues hold: %d do not", names[f], strain, wrong);
+    ok(wide < 4 * TRIALS, "%s, H to %g: all but %d of %d within 5 %%", names[f], strain, wide, 10 * TRIALS);
+}
+
+/* Mooney-Rivlin without c01 is neo-Hookean. */
+static void test_express(void)
+{
+    double c[FORM_NUMBERS], none[FORM_NUMBERS], worst = 0, energy = 0, slope = 0;
+    const double *own = tried[FORM_NEO_HOOKEAN];
+    ok(form_express(FORM_NEO_HOOKEAN, FORM_MOONEY_RIVLIN, own, c) && c[0] == 500 && c[1] == 0 && c[2] == 9700,
+       "neo-Hookean in the Mooney-Rivlin form");
+    ok(!form_express(FORM_MOONEY_RIVLIN, FORM_NEO_HOOKEAN, c, none) &&
+           !form_express(FORM_LINEAR, FORM_NEO_HOOKEAN, own, none),
+       "not the other way round, nor what is linear");
+    for (int i = 0; i < TRIALS; i++) {
+        const element_tensor h = gradient_by_chance(.4);
+        const element_tensor p = form_stress(FORM_NEO_HOOKEAN, h, own);
+        double a[9][9], b[9][9];
+        form_tangent(FORM_NEO_HOOKEAN, h, own, a);
+        form_tangent(FORM_MOONEY_RIVLIN, h, c, b);
+        for (int r = 0; r < 9; r++)
+            for (int s = 0; s <= r; s++)
+                slope = fmax(slope, fabs(a[r][s] - b[r][s]) / own[1]);
+        worst = fmax(worst, apart(p, form_stress(FORM_MOONEY_RIVLIN, h, c)) / largest_of(p));
+        energy = fmax(energy, fabs(form_energy(FORM_NEO_HOOKEAN, h, own) / form_energy(FORM_MOONEY_RIVLIN, h, c) - 1));
+    }
+    ok(worst < 1e-12 && energy < 1e-11 && slope < 1e-12, "the same stress, energy and tangent: %.1e, %.1e, %.1e", worst,
+       energy, slope);
+}
+
+static void test_between(void)
+{
+    const double a[FORM_NUMBERS] = {300, 200, 9700}, b[FORM_NUMBERS] = {2000, 0, 9700};
+    double c[FORM_NUMBERS];
+    form_between(FORM_MOONEY_RIVLIN, 2000, 9700, a, b, .5, c);
+    near_(c[0], 800, 1e-9, "between two: c10");
+    near_(c[1], 200, 1e-9, "between two: c01");
+    near_(c[2], 9700, 0, "between two: K");
+    form_between(FORM_NEO_HOOKEAN, 2000, 9700, a, b, .5, c);
+    ok(c[0] == 2000 && c[1] == 9700 && c[2] == 0, "neo-Hookean: the moduli between");
+}
+
+/* P_xx where the sides that are free, y and z or z alone, are not pulled. */
+static double pulled(double x, bool both, double *lateral)
+{
+    const double c[FORM_NUMBERS] = {2500, 500, 1e5};
+    double low = .5, high = 1.5;
+    element_tensor p = {0};
+    for (int i = 0; i < 200; i++) {
+        *lateral = (low + high) / 2;
+        const element_tensor h = {x - 1, 0, 0, 0, (both ? x : *lateral) - 1, 0, 0, 0, *lateral - 1};
+        p = form_stress(FORM_MOONEY_RIVLIN, h, c);
+        if (p.zz > 0)
+            high = *lateral;
+        else
+            low = *lateral;
+    }
+    return p.xx;
+}
+
+static void test_figures(void)
+{
+    const double c[FORM_NUMBERS] = {2500, 500, 1e5};
+    double lateral;
+    near_(pulled(1.2, false, &lateral) / 2882.59, 1, 1e-5, "c10 2500, c01 500, K 1e5: stretched by 1.2, Pa");
+    near_(lateral, .918060, 1e-6, "and its sides");
+    near_(pulled(.8, false, &lateral) / -4677.80, 1, 1e-5, "pressed to .8");
+    near_(pulled(1.15, true, &lateral) / 3855.32, 1, 1e-5, "stretched by 1.15 along two axes");
+    const element_tensor shear = {0, .4, 0, 0, 0, 0, 0, 0, 0}, p = form_stress(FORM_MOONEY_RIVLIN, shear, c);
+    const element_tensor cauchy = tangent_product(p, tangent_transposed(tangent_moved(shear)));
+    near_(cauchy.xy, 2400, 2400e-5, "sheared by .4");
+    near_(cauchy.xx - cauchy.yy, 960, 960e-5, "and the difference of its normal stresses");
+}
+
+int main(void)
+{
+    for (int f = 0; f < FORM_STEPPED; f++) {
+        test_stress((form)f);
+        test_tangent((form)f);
+        test_range((form)f, tried[f], .02);
+        test_range((form)f, tried[f], .3);
+    }
+    const double second[FORM_NUMBERS] = {0, 500, 9700};
+    test_range(FORM_MOONEY_RIVLIN, second, .02);
+    test_range(FORM_MOONEY_RIVLIN, second, .3);
+    test_express();
+    test_between();
+    test_figures();
+    return done_testing();
+}
