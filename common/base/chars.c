@@ -4,12 +4,22 @@
 #include <string.h>
 #include <strings.h>
 
+/* How many bytes follow the first of a character of several bytes; 0: none begins so. */
+static int utf8_more(unsigned char first)
+{
+    if (first < 0xc2 || first >= 0xf5)
+        return 0;
+    if (first < 0xe0)
+        return 1;
+    return first < 0xf0 ? 2 : 3;
+}
+
 /* The length of the well-formed UTF-8 character at p (not NUL), or 0. */
 static int utf8_length(const unsigned char *p)
 {
     if (p[0] < 0x80)
         return 1;
-    int more = p[0] >= 0xc2 && p[0] < 0xe0 ? 1 : p[0] >= 0xe0 && p[0] < 0xf0 ? 2 : p[0] >= 0xf0 && p[0] < 0xf5 ? 3 : 0;
+    int more = utf8_more(p[0]);
     for (int i = 1; i <= more; i++)
         if ((p[i] & 0xc0) != 0x80)
             return 0;
@@ -89,19 +99,20 @@ int chars_width(const char *text)
     return width;
 }
 
-static int digit(char c)
+int chars_hex(char c)
 {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    if (c >= 'a' && c <= 'f')
+        return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
 int chars_escaped(const char *p)
 {
-    if (p[0] != '\\' || p[1] != 'x' || digit(p[2]) < 0 || digit(p[3]) < 0)
+    if (p[0] != '\\' || p[1] != 'x' || chars_hex(p[2]) < 0 || chars_hex(p[3]) < 0)
         return -1;
-    return 16 * digit(p[2]) + digit(p[3]);
+    return 16 * chars_hex(p[2]) + chars_hex(p[3]);
 }
 
 enum { ESCAPED = 4 };

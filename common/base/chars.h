@@ -34,6 +34,9 @@ size_t chars_escape(const char *text, size_t n, char *to);
 /* The same of what somebody typed, to show it: what is written as \xHH already stays. */
 size_t chars_show(const char *text, size_t n, char *to);
 
+/* The value of a hexadecimal digit of either case, or -1. */
+int chars_hex(char c);
+
 /* The byte that the \xHH at p stands for, or -1 where there is none. */
 int chars_escaped(const char *p);
 

@@ -20,9 +20,10 @@ void mem_large(void *p, size_t size)
 
 void *mem_array(int64_t count, size_t size, const char *what, err *e)
 {
+    const size_t each = size ? size : 1;
     void *p = NULL;
-    if (count >= 0 && (uint64_t)count <= PTRDIFF_MAX / (size ? size : 1))
-        p = calloc(count ? (size_t)count : 1, size ? size : 1);
+    if (count >= 0 && (uint64_t)count <= PTRDIFF_MAX / each)
+        p = calloc(count ? (size_t)count : 1, each);
     if (p)
         mem_large(p, (size_t)count * size);
     else

@@ -80,7 +80,8 @@ void near_list(char *to, size_t size, const char *const *names, int count)
     to[0] = '\0';
     for (int i = 0; i < count; i++) {
         bool fits = at + sizeof comma + strlen(names[i]) + sizeof more <= size;
-        snprintf(to + at, size - at, "%s%s", at ? comma : "", fits ? names[i] : "...");
+        const char *next = fits ? names[i] : "...";
+        snprintf(to + at, size - at, "%s%s", at ? comma : "", next);
         if (!fits)
             return;
         at += strlen(to + at);
@@ -95,8 +96,10 @@ static void offer(char *to, size_t size, const char *name, const char *const *na
     suggest(meant, sizeof meant, name, names, count);
     if (!count)
         snprintf(to, size, "there are none here");
+    else if (*meant)
+        snprintf(to, size, "did you mean %s? expected one of: %s", meant, list);
     else
-        snprintf(to, size, "%s%s%sexpected one of: %s", *meant ? "did you mean " : "", meant, *meant ? "? " : "", list);
+        snprintf(to, size, "expected one of: %s", list);
 }
 
 enum { OFFER = 800, SHOWN_MOST = 200 };

@@ -248,8 +248,10 @@ static bool list_item(const char **p, char *item, size_t size)
     const char *comma = strchr(*p, ',');
     size_t n = comma ? (size_t)(comma - *p) : strlen(*p);
     bool fits = n < size;
-    memcpy(item, fits ? *p : "?", fits ? n : 1);
-    item[fits ? n : 1] = 0;
+    const char *from = fits ? *p : "?";
+    n = fits ? n : 1;
+    memcpy(item, from, n);
+    item[n] = 0;
     *p = comma ? comma + 1 : NULL;
     return true;
 }
@@ -263,12 +265,15 @@ int num_size_of(const char *text, int64_t *bytes)
     if (num_scan(text, end, &unit, &value))
         return -1;
     unit += strspn(unit, " ");
-    const char *prefix = *unit && *unit != ' ' ? strchr(size_prefixes, *unit) : NULL;
-    prefix = prefix ? prefix : *unit == 'K' ? size_prefixes + 1 : NULL;
-    const bool binary = prefix && unit[1] == 'i';
-    if (strcmp(unit + (prefix ? 1 : 0) + (binary ? 1 : 0), "B") != 0)
+    const char letter = *unit == 'K' ? 'k' : *unit;
+    const char *prefix = letter && letter != ' ' ? strchr(size_prefixes, letter) : NULL;
+    unit += prefix != NULL;
+    const bool binary = prefix && *unit == 'i';
+    unit += binary;
+    if (strcmp(unit, "B") != 0)
         return -1;
-    value *= prefix ? pow(binary ? 1024 : 1000, (double)(prefix - size_prefixes)) : 1;
+    if (prefix)
+        value *= pow(binary ? 1024 : 1000, (double)(prefix - size_prefixes));
     if (!(value >= 1 && value < 9e18))
         return -1;
     *bytes = (int64_t)value;
@@ -309,7 +314,8 @@ int num_text(double value, bool single, char *to)
     if (isnan(value))
         return snprintf(to, NUM_TEXT, "nan");
     int n = 0;
-    for (int digits = single ? 6 : 15; digits <= (single ? 9 : 17); digits++) {
+    const int most = single ? 9 : 17;
+    for (int digits = single ? 6 : 15; digits <= most; digits++) {
         n = snprintf(to, NUM_TEXT, "%.*g", digits, value);
         if (single ? strtof(to, NULL) == (float)value : strtod(to, NULL) == value)
             break;

@@ -7,6 +7,7 @@
 #include "base/err.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 enum { NUM_TEXT = 32 }; /* bytes that hold any number as text */
 
@@ -58,5 +59,20 @@ int num_list(const char *text, double *list, int most);
 /* The shortest text that reads back as the same double (single: as the same float), C locale; to holds at least
  * NUM_TEXT bytes. "nan" has no sign. Returns its length. */
 int num_text(double value, bool single, char *to);
+
+/* x, or the nearer of low and high where it lies outside of them. nan stays. low <= high. */
+static inline double num_clamp(double x, double low, double high)
+{
+    if (x < low)
+        return low;
+    return x > high ? high : x;
+}
+
+static inline int64_t num_clamp_int(int64_t x, int64_t low, int64_t high)
+{
+    if (x < low)
+        return low;
+    return x > high ? high : x;
+}
 
 #endif

@@ -58,7 +58,11 @@ char *path_target(const char *path, err *e)
     if (!at)
         return NULL;
     size_t n = strlen(at);
-    int code = !n || at[n - 1] == '/' ? EISDIR : lstat(at, &s) && errno != ENOENT ? errno : 0;
+    int code = 0;
+    if (!n || at[n - 1] == '/')
+        code = EISDIR;
+    else if (lstat(at, &s) && errno != ENOENT)
+        code = errno;
     if (!code)
         return at;
     err_system(e, path, code, "cannot create");
@@ -71,7 +75,7 @@ static bool stat_folder(const char *path, struct stat *s)
 {
     err ignored = {0};
     const size_t n = path_folder(path);
-    char *folder = path_join(n ? path : ".", n ? n : 1, "", &ignored);
+    char *folder = n ? path_join(path, n, "", &ignored) : path_join(".", 1, "", &ignored);
     bool found = folder && !stat(folder, s);
     free(folder);
     return found;
@@ -130,7 +134,9 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
     struct stat about;
     size_t n = path_folder(path);
     char *folder = path_join(path, n, n ? "" : ".", e);
-    char *file = folder ? path_join(path, name[0] == '/' ? 0 : n, name, e) : NULL;
+    if (name[0] == '/')
+        n = 0;
+    char *file = folder ? path_join(path, n, name, e) : NULL;
     if (file && (!realpath(folder, root) || !realpath(file, real)))
         err_system(e, file, errno, "cannot open");
     else if (file && !is_within(root, real))

@@ -93,7 +93,7 @@ static int open_nameless(const char *target)
 {
     err ignored = {0};
     size_t n = path_folder(target);
-    char *folder = path_join(n ? target : "./", n ? n : 2, "", &ignored);
+    char *folder = n ? path_join(target, n, "", &ignored) : path_join("./", 2, "", &ignored);
     const int fd = folder && !access("/proc/self/fd", X_OK) ? open_locked(folder, O_TMPFILE) : -1;
     free(folder);
     return fd;
@@ -131,7 +131,10 @@ static int store_names(const char *path)
     char real[PATH_MAX], folder[PATH_MAX];
     const char *at = realpath(path, real) ? real : path; /* /dev/stdout is, of a pipe, nothing */
     const size_t n = path_folder(at);
-    snprintf(folder, sizeof folder, "%.*s", n ? (int)n : 1, n ? at : ".");
+    if (n)
+        snprintf(folder, sizeof folder, "%.*s", (int)n, at);
+    else
+        snprintf(folder, sizeof folder, ".");
     const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (fd < 0)
         return errno == EACCES ? 0 : -1;

@@ -36,7 +36,8 @@ bool spelling_british(const char *typed, size_t n, char *to, size_t size)
     size_t used = 0;
     for (size_t at = 0; at < n;) {
         size_t length = letters(typed + at, n - at);
-        const char *british = length ? british_of(typed + at, length) : NULL, *put = british ? british : typed + at;
+        const char *british = length ? british_of(typed + at, length) : NULL;
+        const char *put = british ? british : typed + at;
         length = length ? length : 1;
         const size_t more = british ? strlen(british) : length;
         if (used + more >= size)

@@ -246,8 +246,11 @@ static void put_zsh_action(const opt *o, out *to)
     const bool parts = o->choices && strchr(o->choices, ':');
     if (parts) { /* a colon ends an action */
         out_text(to, "compadd -S \"\" - ");
-        for (const char *p = o->choices; *p; p++)
-            out_text(to, *p == '|' ? " " : *p == ':' ? "\\:" : (const char[]){*p, 0});
+        for (const char *p = o->choices; *p; p++) {
+            if (*p == ':')
+                out_text(to, "\\");
+            out_write(to, *p == '|' ? " " : p, 1);
+        }
     } else if (put_words(o, "", NULL)) {
         out_text(to, "(");
         put_words(o, " ", to);
@@ -281,7 +284,8 @@ static const char zsh_names[] =
 static void put_zsh_option(const opt *o, out *to)
 {
     const bool again = o->kind == OPT_LIST, both = o->letter && o->name;
-    const char *joined = o->arg ? "+" : "", *equals = o->arg ? "=" : "";
+    const char *joined = o->arg ? "+" : "";
+    const char *equals = o->arg ? "=" : "";
     out_text(to, again ? " \\\n    '*" : " \\\n    '");
     if (both && !again)
         out_format(to, "(-%c --%s)", o->letter, o->name);

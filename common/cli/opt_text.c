@@ -78,7 +78,10 @@ static void put_word(const char *text, out *to)
     }
     out_text(to, "'");
     for (const char *p = text; *p; p++)
-        out_write(to, *p == '\'' ? "'\\''" : p, *p == '\'' ? 4 : 1);
+        if (*p == '\'')
+            out_text(to, "'\\''");
+        else
+            out_write(to, p, 1);
     out_text(to, "'");
 }
 

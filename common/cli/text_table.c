@@ -2,6 +2,7 @@
 
 #include "base/chars.h"
 #include "base/mem.h"
+#include "base/num.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -78,7 +79,7 @@ int text_table_decimals(double largest, int digits)
     if (!(fabs(largest) > 0) || isinf(largest))
         return 0;
     const int before = 1 + (int)floor(log10(fabs(largest)));
-    return before > digits ? 0 : digits - before > 9 ? 9 : digits - before;
+    return (int)num_clamp_int(digits - before, 0, 9);
 }
 
 /* ---- lines */
@@ -87,10 +88,10 @@ int text_table_decimals(double largest, int digits)
 static void head_line(const char *head, int line, char *to, size_t size)
 {
     const char *text = head + 1, *second = strchr(text, '\n');
-    if (second && line == 0)
-        snprintf(to, size, "%.*s", (int)(second - text), text);
+    if (line > 0)
+        snprintf(to, size, "%s", second ? second + 1 : text);
     else
-        snprintf(to, size, "%s", line == 0 ? "" : second ? second + 1 : text);
+        snprintf(to, size, "%.*s", second ? (int)(second - text) : 0, text);
 }
 
 static int widest_of(const text_table *t, int column)
@@ -155,7 +156,8 @@ static void add_cell(const text_table *t, lines *to, int column, const char *tex
 {
     const int spaces = width - chars_width(text);
     const bool right = t->heads[column][0] == '>';
-    add_spaces(to, (column ? GAP : INDENT) + (right ? spaces : 0));
+    add_spaces(to, column ? GAP : INDENT);
+    add_spaces(to, right ? spaces : 0);
     add(to, text, (int64_t)strlen(text));
     add_spaces(to, right ? 0 : spaces);
 }

@@ -3,6 +3,7 @@
 
 #include "base/chars.h"
 #include "base/mem.h"
+#include "base/num.h"
 #include "base/path.h"
 #include "base/thread.h"
 
@@ -313,6 +314,5 @@ int tool_threads(const tool *t, err *e)
             return (int)threads;
         return err_set(e, NULL, 0, "SINEW_THREADS '%s': expected a whole number from 1 to 1024", text);
     }
-    int64_t all = processors();
-    return all < 1 ? 1 : all > 1024 ? 1024 : (int)all;
+    return (int)num_clamp_int(processors(), 1, 1024);
 }

@@ -24,7 +24,10 @@ static void put_rows(const double *value, int64_t rows, out *to)
 static void put_name(const char *name, out *to)
 {
     for (const char *p = name; *p; p++)
-        out_write(to, *p == '"' ? "'" : (unsigned char)*p < ' ' ? " " : p, 1);
+        if (*p == '"')
+            out_text(to, "'");
+        else
+            out_write(to, (unsigned char)*p < ' ' ? " " : p, 1);
 }
 
 static int64_t count_rigid(const model_array *rigid)

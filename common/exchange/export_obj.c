@@ -76,7 +76,8 @@ static void put_surface(const writer *w)
         }
         if (!corners)
             continue;
-        out_text(w->to, corners == 1 ? "p" : corners == 2 ? "l" : "f");
+        static const char *const kind[] = {"", "p", "l", "f"};
+        out_text(w->to, kind[corners < 3 ? corners : 3]);
         for (int64_t c = 0; c < corners; c++)
             out_format(w->to, " %" PRId64, (int64_t)vertex[c] + 1);
         out_text(w->to, "\n");

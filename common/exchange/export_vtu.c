@@ -254,11 +254,8 @@ static uint8_t cell_type(const export_shape *x, int64_t corners)
 {
     if (!x->is_surface)
         return corners == 8 ? VTK_HEXAHEDRON : VTK_TETRA;
-    return corners == 1   ? VTK_VERTEX
-           : corners == 2 ? VTK_LINE
-           : corners == 3 ? VTK_TRIANGLE
-           : corners == 4 ? VTK_QUAD
-                          : VTK_POLYGON;
+    static const uint8_t of_corners[] = {VTK_POLYGON, VTK_VERTEX, VTK_LINE, VTK_TRIANGLE, VTK_QUAD};
+    return corners <= 4 ? of_corners[corners] : VTK_POLYGON;
 }
 
 static int put_cells(writer *w, err *e)

@@ -153,7 +153,11 @@ static int begin_element(inp_reader *r, const keyword *k)
     r->now = INP_ELEMENTS;
     r->set = set_of(r, &r->elements, k, "ELSET");
     r->pending_count = 0;
-    r->columns = type && one_of(type, hexahedra) ? 8 : type && one_of(type, tetrahedra) ? 4 : -1;
+    r->columns = -1;
+    if (type && one_of(type, hexahedra))
+        r->columns = 8;
+    else if (type && one_of(type, tetrahedra))
+        r->columns = 4;
     for (int i = 0; type && r->columns < 0 && lower[i]; i++) {
         if (!strncasecmp(type, lower[i], strlen(lower[i]))) {
             notes_add(r->warnings, "%s:%lld: elements of type %.30s are not solids, and are left out", r->m->name,
@@ -176,7 +180,9 @@ static int begin_set(inp_reader *r, const keyword *k, bool of_nodes)
         return wrong(r, "*NSET of an ELSET's nodes", "nodes by number");
     r->set = set_of(r, of_nodes ? &r->nodes : &r->elements, k, key);
     r->generates = parameter(k, "GENERATE") != NULL;
-    return r->set >= 0 ? 0 : r->set < -1 ? -1 : wrong(r, "a set without a name", of_nodes ? "NSET=NAME" : "ELSET=NAME");
+    if (r->set == -1)
+        return wrong(r, "a set without a name", of_nodes ? "NSET=NAME" : "ELSET=NAME");
+    return r->set < 0 ? -1 : 0;
 }
 
 /* The field becomes the name that it is found by. */
@@ -216,7 +222,9 @@ static int begin_law(inp_reader *r, const keyword *k)
         return wrong(r, "*HYPERELASTIC of another law", "NEO HOOKE, with C10 and D1");
     if (!elastic && !density && parameter(k, "TEST DATA INPUT"))
         return wrong(r, "*HYPERELASTIC from test data", "C10 and D1");
-    r->now = density ? INP_DENSITY : elastic ? INP_ELASTIC : INP_HYPER;
+    r->now = elastic ? INP_ELASTIC : INP_HYPER;
+    if (density)
+        r->now = INP_DENSITY;
     return 0;
 }
 

@@ -428,7 +428,11 @@ static int read_format(reader *r)
         return -1;
     if (got || sscanf(line, "%lf %9d %9d", &version, &kind, &size) != 3)
         return wrong(r, "no version", "$MeshFormat VERSION 0 8");
-    r->version = version > 2.15 && version < 2.25 ? 2 : version > 4.05 && version < 4.15 ? 4 : 0;
+    r->version = 0;
+    if (version > 2.15 && version < 2.25)
+        r->version = 2;
+    else if (version > 4.05 && version < 4.15)
+        r->version = 4;
     if (!r->version)
         return wrong(r, "another version of MSH", "2.2 or 4.1");
     if (size != 8 || kind < 0 || kind > 1)
@@ -492,7 +496,11 @@ static int read_section(reader *r, const char *line)
     section_reader *reads = at < 5 ? sections[at].reads[r->version == 4] : NULL;
     if (!reads && r->t.binary && r->elements)
         return 1; /* where its binary ends only its readers know, and what is wanted has been read */
-    int bad = !reads ? skip_section(r, name) : reads(r) || end_section(r, name) ? -1 : 0;
+    int bad = 0;
+    if (!reads)
+        bad = skip_section(r, name);
+    else if (reads(r) || end_section(r, name))
+        bad = -1;
     *r->t.section = '\0';
     return bad;
 }

@@ -194,16 +194,22 @@ static int read_points(reader *r)
 
 enum { WEDGE = 13, PYRAMID = 14, VOXEL = 11, HEXAHEDRON = 12, TETRAHEDRON = 10 };
 
+static const char *cell_words(int type)
+{
+    if (type == WEDGE)
+        return "a wedge";
+    if (type == PYRAMID)
+        return "a pyramid";
+    if (type >= 21 && type <= 37)
+        return "of second order";
+    return type >= 60 ? "of higher order" : "none that is read";
+}
+
 static int refuse_cell(const reader *r, int64_t cell, int type)
 {
     const xml_array *a = array_of(r, CELLS, "types");
-    const char *what = type == WEDGE              ? "a wedge"
-                       : type == PYRAMID          ? "a pyramid"
-                       : type >= 21 && type <= 37 ? "of second order"
-                       : type >= 60               ? "of higher order"
-                                                  : "none that is read";
     return err_set(r->e, r->x.name, a->line, "cell %lld is %s (type %d); expected hexahedra (12) or tetrahedra (10)",
-                   (long long)cell, what, type);
+                   (long long)cell, cell_words(type), type);
 }
 
 /* Of fewer dimensions: vertices, lines, triangles, polygons, quadrangles, and those of second order. */
@@ -321,7 +327,8 @@ static int read_volumes(reader *r)
     if (!array_of(r, CELL_DATA, from))
         return 0;
     number = need(r, CELL_DATA, from, 1, r->cells);
-    int bad = number ? read_words(r, by_volume ? "volume.name" : "material.name", &words) : -1;
+    const char *key = by_volume ? "volume.name" : "material.name";
+    int bad = number ? read_words(r, key, &words) : -1;
     for (int64_t i = 0; !bad && i < r->m->elements; i++) {
         if (number[r->cell[i]] != before)
             volume = volume_of(r, number[r->cell[i]], &words);

@@ -76,7 +76,9 @@ static int letter(unsigned char c)
 {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const char *found = c ? strchr(letters, c) : NULL;
-    return found ? (int)(found - letters) : c == '=' ? 64 : -1;
+    if (found)
+        return (int)(found - letters);
+    return c == '=' ? 64 : -1;
 }
 
 /* The next four letters: how many bytes they were; 0: there are none. Padding may
@@ -92,11 +94,14 @@ static int next_group(bytes *b, unsigned char *to)
     }
     if (value[0] > 63 || value[1] > 63 || (value[2] > 63 && value[3] <= 63))
         return 0;
-    const int c = value[2] > 63 ? 0 : value[2], d = value[3] > 63 ? 0 : value[3];
+    const int c = value[2] > 63 ? 0 : value[2];
+    const int d = value[3] > 63 ? 0 : value[3];
     to[0] = (unsigned char)(value[0] << 2 | value[1] >> 4);
     to[1] = (unsigned char)((value[1] & 15) << 4 | c >> 2);
     to[2] = (unsigned char)((c & 3) << 6 | d);
-    return value[2] > 63 ? 1 : value[3] > 63 ? 2 : 3;
+    if (value[2] > 63)
+        return 1;
+    return value[3] > 63 ? 2 : 3;
 }
 
 /* Takes size bytes. -1: there are fewer. */

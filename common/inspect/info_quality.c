@@ -23,7 +23,9 @@ static int which(const char *key)
 const char *info_quality_unit(const char *key)
 {
     const int i = which(key);
-    return i == KEYS ? NULL : i == PLACE ? "m" : "";
+    if (i == KEYS)
+        return NULL;
+    return i == PLACE ? "m" : "";
 }
 
 /* .node NULL: there are no elements. */

@@ -81,10 +81,11 @@ void info_put_number(double value, model_type from, out *to)
 
 void info_put_end(const model_array *a, const info_stats *s, bool max, out *to)
 {
+    const model_type type = info_is_vector(a) ? MODEL_F64 : a->type;
     if (a->type == MODEL_I64 && s->count)
         out_format(to, "%" PRId64, max ? s->max_i64 : s->min_i64);
     else
-        info_put_number(max ? s->max : s->min, info_is_vector(a) ? MODEL_F64 : a->type, to);
+        info_put_number(max ? s->max : s->min, type, to);
 }
 
 void info_put_value(const model_array *a, int64_t at, out *to)

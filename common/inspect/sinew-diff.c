@@ -236,8 +236,9 @@ static void measure(finding *f, double a, double b)
     double off = fabs(a - b), size = fmax(fabs(a), fabs(b));
     if (a == b || (isnan(a) && isnan(b)))
         return;
+    const double share = isinf(off) ? INFINITY : off / size;
     f->abs = isnan(off) || isnan(f->abs) ? NAN : fmax(f->abs, off);
-    f->rel = isnan(off) || isnan(f->rel) ? NAN : fmax(f->rel, isinf(off) ? INFINITY : off / size);
+    f->rel = isnan(off) || isnan(f->rel) ? NAN : fmax(f->rel, share);
 }
 
 static finding compare_rows(const model_array *a, const model_array *b, double most_abs, double most_rel)
@@ -301,7 +302,8 @@ static int compare_array(diff *d, const model_array *a, const model_array *b, er
     if (tolerance(by_abs, one, &most_abs, e) || tolerance(by_rel, one, &most_rel, e))
         return -1;
     if (!a || !b) {
-        say_texts(d, "array", one->name, a ? "" : NULL, b ? "" : NULL);
+        const char *left = a ? "" : NULL;
+        say_texts(d, "array", one->name, left, b ? "" : NULL);
         return 0;
     }
     if (!alike(d, a, b))
@@ -444,7 +446,9 @@ out:
     source_close(&d.a);
     source_close(&d.b);
     int status = tool_end(&t, &e);
-    return status ? TROUBLE : d.different ? DIFFERENT : SAME;
+    if (status)
+        return TROUBLE;
+    return d.different ? DIFFERENT : SAME;
 }
 
 int main(int argc, char **argv)

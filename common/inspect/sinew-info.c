@@ -358,6 +358,13 @@ static int put_names(const source *s, const opt_list *keys, out *to, err *e)
     return 0;
 }
 
+static int put_asked(source *s, const struct options *o, out *text, out *to, err *e)
+{
+    if (o->names)
+        return put_names(s, &o->get, to, e);
+    return o->tsv.count ? put_series(s, &o->tsv, to, e) : put_whole(s, o, text, to, e);
+}
+
 static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
@@ -372,14 +379,12 @@ static int run_tool(int argc, char **argv)
         err_usage(&e, "--json, --get and --tsv exclude each other; expected one of them");
         goto out;
     }
-    if (o.names ? source_open_names(&s, t.operands ? argv[1] : NULL, &e)
-                : source_open_part(&s, t.operands ? argv[1] : NULL, o.salvage, &e))
+    const char *path = t.operands ? argv[1] : NULL;
+    if (o.names ? source_open_names(&s, path, &e) : source_open_part(&s, path, o.salvage, &e))
         goto out;
     text = out_memory(&e);
     to = text ? out_open(o.common.output, false, &e) : NULL;
-    if (!to || (o.names       ? put_names(&s, &o.get, to, &e)
-                : o.tsv.count ? put_series(&s, &o.tsv, to, &e)
-                              : put_whole(&s, &o, text, to, &e)))
+    if (!to || put_asked(&s, &o, text, to, &e))
         goto out;
 out:
     if (text)

@@ -19,7 +19,8 @@ void element_place(const model *m, int64_t element, double middle[3])
 void element_place_text(const model *m, int64_t element, char to[ELEMENT_PLACE])
 {
     const char *source = model_meta_of(m, "source.unit");
-    const num_unit metre = num_unit_of("m"), own = source ? num_unit_of(source) : 0, unit = own ? own : metre;
+    const num_unit metre = num_unit_of("m"), own = source ? num_unit_of(source) : 0;
+    const num_unit unit = own ? own : metre;
     const model_array *volume = model_find(m, "element.volume"), *name = model_find(m, "volume.name");
     char of[140] = "";
     double at[3];

@@ -24,7 +24,10 @@ static void invert(const double a[9], double to[9])
 static void slopes(int n, int corners, double slope[3])
 {
     for (int a = 0; a < 3; a++)
-        slope[a] = corners == 8 ? lattice_vtk[n][a] - .5 : n == 0 ? -1 : n == a + 1;
+        if (corners == 8)
+            slope[a] = lattice_vtk[n][a] - .5;
+        else
+            slope[a] = n == 0 ? -1 : n == a + 1;
 }
 
 int gradient_of(const int32_t *node, int corners, const double *rest, const double *u, double h[9])

@@ -22,7 +22,8 @@ static int64_t middle_of(const range *r)
 static range half(const range *r, bool upper)
 {
     int64_t middle = middle_of(r);
-    return (range){upper ? middle + 1 : r->first, upper ? r->last : middle, (r->axis + 1) % 3, r->d2};
+    const int axis = (r->axis + 1) % 3;
+    return upper ? (range){middle + 1, r->last, axis, r->d2} : (range){r->first, middle, axis, r->d2};
 }
 
 /* Moves nodes so that the middle one has none above it before, none below it after. (Hoare's selection: many nodes of a

@@ -30,7 +30,8 @@ static void slopes(const double *weight, double slope[8][3])
         for (int a = 0; a < 3; a++) {
             slope[c][a] = lattice_vtk[c][a] ? -1 : 1;
             for (int b = 0; b < 3; b++)
-                slope[c][a] *= b == a ? 1 : lattice_vtk[c][b] ? 1 - weight[b] : weight[b];
+                if (b != a)
+                    slope[c][a] *= lattice_vtk[c][b] ? 1 - weight[b] : weight[b];
         }
 }
 
@@ -144,7 +145,8 @@ static void add_point(const double *at, const double point[3], double *b, double
         for (int a = 0; a < 3; a++) {
             slope[c][a] = (lattice_vtk[c][a] ? 1. : -1.) / 8;
             for (int k = 0; k < 3; k++)
-                slope[c][a] *= k == a ? 1 : 1 + (lattice_vtk[c][k] ? 1 : -1) * point[k];
+                if (k != a)
+                    slope[c][a] *= 1 + (lattice_vtk[c][k] ? 1 : -1) * point[k];
             for (int i = 0; i < 3; i++)
                 j[i][a] += at[3 * c + i] * slope[c][a];
         }

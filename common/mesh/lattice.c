@@ -40,7 +40,8 @@ static int64_t cells_covered(lattice_map *map, const int32_t *ijk, int64_t eleme
 {
     int64_t cells = 1;
     for (int a = 0; a < 3; a++) {
-        int32_t low = elements ? INT32_MAX : 0, high = elements ? INT32_MIN : -1;
+        int32_t low = elements ? INT32_MAX : 0;
+        int32_t high = elements ? INT32_MIN : -1;
         for (int64_t n = 0; n < elements; n++) {
             int32_t at = ijk[3 * n + a];
             low = at < low ? at : low;

@@ -3,7 +3,8 @@
 num_unit scale_unit(const char *unit, const model *m, err *e)
 {
     const char *source = model_meta_of(m, "source.unit");
-    num_unit known = unit || source ? num_unit_of(unit ? unit : source) : 0;
+    const char *name = unit ? unit : source;
+    num_unit known = name ? num_unit_of(name) : 0;
     if (known)
         return known;
     if (!unit && source)

@@ -34,7 +34,9 @@ static int take_raw(item_source *s, void *to, size_t size, err *e)
 {
     int64_t got = in_read(s->s, to, size, e);
     s->stopped = got < 0 || (size_t)got < size;
-    return got < 0 ? -1 : s->stopped ? item_cut(s, e) : 0;
+    if (got < 0)
+        return -1;
+    return s->stopped ? item_cut(s, e) : 0;
 }
 
 /* Exactly size bytes of the payload. */

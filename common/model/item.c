@@ -29,12 +29,13 @@ const char *item_type(const item *it)
 
 void item_place(const item_source *s, const item *it, char *place, size_t size)
 {
-    const char *name = it->array.name ? it->array.name : it->key ? it->key : "";
+    const char *name = it->array.name ? it->array.name : it->key;
     if (s->how->lines)
         snprintf(place, size, "%s", in_name(s->s));
+    else if (name && check_name(name))
+        snprintf(place, size, "%s: block %" PRId64 " (%s %s)", in_name(s->s), it->at, item_type(it), name);
     else
-        snprintf(place, size, "%s: block %" PRId64 " (%s%s%s)", in_name(s->s), it->at, item_type(it),
-                 check_name(name) ? " " : "", check_name(name) ? name : "");
+        snprintf(place, size, "%s: block %" PRId64 " (%s)", in_name(s->s), it->at, item_type(it));
 }
 
 int item_error(const item_source *s, const item *it, err *e, const char *format, ...)
@@ -83,7 +84,9 @@ bool item_passes(const item_source *s, const item *it, int64_t n)
 int item_hurries(const item_source *s, err *e)
 {
     enum { TEXT = 1 << 26, GUNZIPPED = 1 << 25 }; /* bytes; about a tenth of a second */
-    const int64_t most = in_is_gzip(s->s) ? GUNZIPPED : s->how->lines ? TEXT : INT64_MAX;
+    int64_t most = s->how->lines ? TEXT : INT64_MAX;
+    if (in_is_gzip(s->s))
+        most = GUNZIPPED;
     return s->names && in_taken(s->s) > most
                ? err_set(e, in_name(s->s), 0, "is too large to be looked through for names")
                : 0;

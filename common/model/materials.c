@@ -240,7 +240,7 @@ int materials_override(model *m, in *s, err *e)
     lookup index = {0};
     const model_array *names = model_need(m, "material.name", e);
     uint8_t *seen = names ? mem_array(names->rows, 1, "materials", e) : NULL;
-    int32_t rows = !names ? 0 : names->rows < INT32_MAX ? (int32_t)names->rows : INT32_MAX;
+    int32_t rows = names ? (int32_t)num_clamp_int(names->rows, 0, INT32_MAX) : 0;
     if (!seen || lookup_add(&index, names->str, sizeof *names->str, rows, e)) {
         free(seen);
         return -1;
@@ -315,7 +315,7 @@ int32_t materials_find(const model *m, const char *name)
 int materials_unknown(const model *m, const char *name, const char *place, int64_t line, err *e)
 {
     const model_array *a = model_find(m, "material.name");
-    int count = !a ? 0 : a->rows < INT32_MAX ? (int)a->rows : INT32_MAX;
+    int count = a ? (int)num_clamp_int(a->rows, 0, INT32_MAX) : 0;
     return unknown(e, place, line, "material", name, a ? (const char *const *)a->str : NULL, count);
 }
 

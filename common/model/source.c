@@ -123,7 +123,8 @@ int source_next(source *s, err *e)
 
 int source_no_frame(const source *s, const char *asked, err *e)
 {
-    const char *option = asked ? "--frame " : "", *colon = asked ? ": " : "";
+    const char *option = asked ? "--frame " : "";
+    const char *colon = asked ? ": " : "";
     if (!s->frames)
         return err_set(e, source_name(s), 0, "%s%.40s%sthe model has no frames; expected results, from tled-run",
                        option, asked ? asked : "", colon);

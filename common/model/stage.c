@@ -87,7 +87,10 @@ static void close_failed(stage *s, const tool *t, const err *e)
         s->sink = NULL;
         return;
     }
-    snprintf(text, sizeof text, "%s%s%s", e->silent ? "" : t->table->name, e->silent ? "" : ": ", e->text);
+    if (e->silent)
+        snprintf(text, sizeof text, "%s", e->text);
+    else
+        snprintf(text, sizeof text, "%s: %s", t->table->name, e->text);
     model_write_fail(s->writer, e->status, text, &ignored);
     out_close(s->sink, &ignored);
     s->sink = NULL;

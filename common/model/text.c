@@ -36,7 +36,9 @@ static int next_line(item_source *s, char **line, err *e)
 static int need_line(item_source *s, char **line, err *e)
 {
     int got = next_line(s, line, e);
-    return got > 0 ? 0 : got < 0 ? -1 : item_cut(s, e);
+    if (got == 0)
+        return item_cut(s, e);
+    return got < 0 ? -1 : 0;
 }
 
 SINEW_PRINTF(3, 4) static int line_error(const item_source *s, err *e, const char *format, ...)
@@ -178,7 +180,7 @@ static int read_hex8(const char *text, uint32_t *value)
 {
     *value = 0;
     for (int i = 0; i < 8; i++) {
-        int digit = text_hex(text[i]);
+        int digit = chars_hex(text[i]);
         if (digit < 0)
             return -1;
         *value = *value << 4 | (uint32_t)digit;
@@ -205,9 +207,11 @@ static int read_crc(item_source *s, const item *it, err *e)
     want = it->passed ? crc : binary_crc(it);
     if (crc == want)
         return 0;
-    return line_error(
-        s, e, "crc %08" PRIx32 " does not fit %s %s; expected %08" PRIx32 ", or no crc line after an edit", crc,
-        it->kind == ITEM_ARRAY ? "array" : "block", it->kind == ITEM_ARRAY ? it->array.name : it->block.type, want);
+    const char *kind = it->kind == ITEM_ARRAY ? "array" : "block";
+    const char *name = it->kind == ITEM_ARRAY ? it->array.name : it->block.type;
+    return line_error(s, e,
+                      "crc %08" PRIx32 " does not fit %s %s; expected %08" PRIx32 ", or no crc line after an edit", crc,
+                      kind, name, want);
 }
 
 static int read_array(item_source *s, item *it, char *p, err *e)
@@ -238,7 +242,7 @@ static int read_hex_line(item_source *s, model_block *b, uint64_t *done, int64_t
     if (need_line(s, &p, e))
         return -1;
     for (p = text_blanks(p); !text_ended(p); p += 2) {
-        int high = text_hex(p[0]), low = high < 0 ? -1 : text_hex(p[1]);
+        int high = chars_hex(p[0]), low = high < 0 ? -1 : chars_hex(p[1]);
         if (low < 0 || *done == b->length)
             return line_error(s, e, "expected pairs of hexadecimal digits, %" PRIu64 " bytes in all", b->length);
         if (mem_grow(&b->payload, capacity, (int64_t)*done + 1, 1, "a block", e))

@@ -26,14 +26,6 @@ char *text_word(char **p)
     return from;
 }
 
-int text_hex(char c)
-{
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-}
-
 /* The character of an escape sequence that begins behind its backslash, or -1; *p steps past it. */
 static int escaped(char **p)
 {
@@ -42,9 +34,9 @@ static int escaped(char **p)
     const char *at = c ? strchr(from, c) : NULL;
     if (at)
         return to[at - from];
-    if (c != 'x' || text_hex((*p)[0]) < 0 || text_hex((*p)[1]) < 0)
+    if (c != 'x' || chars_hex((*p)[0]) < 0 || chars_hex((*p)[1]) < 0)
         return -1;
-    int value = text_hex((*p)[0]) * 16 + text_hex((*p)[1]);
+    int value = chars_hex((*p)[0]) * 16 + chars_hex((*p)[1]);
     *p += 2;
     return value > 0 && value < 0x80 ? value : -1;
 }
@@ -82,7 +74,10 @@ static char *special(char *p, double *value)
     p += *p == '-' || *p == '+';
     if (strncmp(p, "nan", 3) && strncmp(p, "inf", 3))
         return NULL;
-    *value = *p == 'n' ? NAN : minus ? -INFINITY : INFINITY;
+    if (*p == 'n')
+        *value = NAN;
+    else
+        *value = minus ? -INFINITY : INFINITY;
     return p + 3;
 }
 

@@ -19,9 +19,6 @@ char *text_word(char **p);
 /* A quoted string, unescaped; NULL where there is none. *p steps past it. */
 char *text_quoted(char **p);
 
-/* 0 to 15, or -1. */
-int text_hex(char c);
-
 /* Reads one value of the type at p into memory; returns where it ends, or NULL. A string is the
  * caller's to free (NULL: out of memory). */
 char *text_value(model_type type, char *p, void *to);

@@ -49,7 +49,9 @@ FINITE(float)
 
 bool values_finite(model_type type, const void *values, int64_t n)
 {
-    return type == MODEL_F64 ? finite_double(values, n) : type == MODEL_F32 ? finite_float(values, n) : true;
+    if (type == MODEL_F64)
+        return finite_double(values, n);
+    return type != MODEL_F32 || finite_float(values, n);
 }
 
 bool values_must_be_finite(const known *k)

@@ -49,11 +49,23 @@ int font_set(font *t, int size, err *e)
     return 0;
 }
 
+/* How many bytes follow the first of a character; -1: none begins so. */
+static int bytes_after(unsigned char first)
+{
+    if (first < 0x80)
+        return 0;
+    if ((first & 0xe0) == 0xc0)
+        return 1;
+    if ((first & 0xf0) == 0xe0)
+        return 2;
+    return (first & 0xf8) == 0xf0 ? 3 : -1;
+}
+
 /* The next character of UTF-8 at *at, which moves on; 0 at the end. */
 static FT_ULong next(const char **at)
 {
     const unsigned char *p = (const unsigned char *)*at;
-    int more = *p < 0x80 ? 0 : (*p & 0xe0) == 0xc0 ? 1 : (*p & 0xf0) == 0xe0 ? 2 : (*p & 0xf8) == 0xf0 ? 3 : -1;
+    int more = bytes_after(*p);
     FT_ULong code = more > 0 ? *p & (0x3fu >> more) : *p;
     if (!*p)
         return 0;

@@ -36,7 +36,8 @@ static void row_over(float *below, const float *above, int count)
 
 void image_over(image *im, const image *other, int x, int y)
 {
-    int left = x < 0 ? -x : 0, top = y < 0 ? -y : 0;
+    int left = x < 0 ? -x : 0;
+    int top = y < 0 ? -y : 0;
     int right = other->width < im->width - x ? other->width : im->width - x;
     int bottom = other->height < im->height - y ? other->height : im->height - y;
     if (left >= right)
@@ -82,7 +83,10 @@ static void make_codes(codes *t)
 
 static uint8_t encode(const codes *t, float x)
 {
-    x = x > 0 ? x < 1 ? x : 1 : 0;
+    if (!(x > 0))
+        x = 0;
+    else if (x > 1)
+        x = 1;
     int c = t->code[(int)(x * GUESSES)];
     while (x >= t->from[c + 1])
         c++;
@@ -104,11 +108,14 @@ static void convert_rows(void *context, int64_t chunk, int64_t from, int64_t to)
     uint8_t *out = &c->out[c->channels * from * c->im->width];
     for (int64_t k = (to - from) * c->im->width; k > 0; k--, p += 4, out += c->channels) {
         bool whole = c->channels == 3 || p[3] >= 1;
-        float scale = whole ? 1 : p[3] > 0 ? 1 / p[3] : 0;
+        const float share = p[3] > 0 ? p[3] : 0;
+        float scale = 1;
+        if (!whole)
+            scale = share > 0 ? 1 / share : 0;
         for (int i = 0; i < 3; i++)
             out[i] = encode(&c->table, scale * p[i]);
         if (c->channels == 4)
-            out[3] = whole ? 255 : p[3] > 0 ? (uint8_t)lrintf(255 * p[3]) : 0;
+            out[3] = whole ? 255 : (uint8_t)lrintf(255 * share);
     }
 }
 

@@ -157,8 +157,12 @@ static void far_in_sector(const probe *p, double x, double z, double to[2])
     const double corner[2] = {p->side * p->sine, p->side * p->cosine + p->tip};
     bool arc = u * corner[1] <= z * corner[0] && length > 0;
     bool tip = !arc && u * corner[0] + z * corner[1] < z * p->tip;
-    to[0] = arc ? p->disc * x / length : tip ? 0 : mirror * corner[0];
-    to[1] = arc ? p->disc * z / length : tip ? p->tip : corner[1];
+    to[0] = tip ? 0 : mirror * corner[0];
+    to[1] = tip ? p->tip : corner[1];
+    if (arc) {
+        to[0] = p->disc * x / length;
+        to[1] = p->disc * z / length;
+    }
     to[1] -= p->radius;
 }
 
@@ -248,8 +252,11 @@ bool probe_is_plate(const probe_placed *at, const double *position, int64_t node
             high[i] = fmax(high[i], along);
         }
     const probe *s = &at->shape;
-    double wide = s->kind == PROBE_LINEAR ? s->width : s->kind == PROBE_CURVED ? 2 * s->radius * s->sine : 2 * s->size;
-    double thick = s->kind == PROBE_LINEAR || s->kind == PROBE_CURVED ? s->thickness : 2 * s->size;
+    double wide = 2 * s->size, thick = 2 * s->size;
+    if (s->kind == PROBE_LINEAR || s->kind == PROBE_CURVED) {
+        wide = s->kind == PROBE_LINEAR ? s->width : 2 * s->radius * s->sine;
+        thick = s->thickness;
+    }
     return wide > high[0] - low[0] && thick > high[1] - low[1];
 }
 

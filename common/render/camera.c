@@ -32,7 +32,11 @@ static bool normalise(double *v)
 int camera_axis(const char *name, double axis[3], err *e)
 {
     const char *letter = name + (*name == '-' || *name == '+');
-    int i = *letter >= 'x' && *letter <= 'z' ? *letter - 'x' : *letter >= 'X' && *letter <= 'Z' ? *letter - 'X' : -1;
+    int i = -1;
+    if (*letter >= 'x' && *letter <= 'z')
+        i = *letter - 'x';
+    else if (*letter >= 'X' && *letter <= 'Z')
+        i = *letter - 'X';
     if (i < 0 || letter[1])
         return err_set(e, NULL, 0, "no such axis: %s; x, y or z with an optional sign is expected", name);
     axis[0] = axis[1] = axis[2] = 0;

@@ -112,7 +112,8 @@ static int of_array(field *to, const model_array *a, int component, const char *
 static int of_names(field *to, const model *m, bool of_material, err *e)
 {
     const model_array *volume = model_need(m, "element.volume", e);
-    const model_array *name = volume ? model_need(m, of_material ? "material.name" : "volume.name", e) : NULL;
+    const char *key = of_material ? "material.name" : "volume.name";
+    const model_array *name = volume ? model_need(m, key, e) : NULL;
     const model_array *of = name && of_material ? model_need(m, "volume.material", e) : volume;
     if (!name || !of || make(to, true, volume->rows, ours[of_material ? MATERIAL : VOLUME], "", e))
         return -1;
@@ -207,7 +208,7 @@ static int own(const char *name)
     int i = 0;
     while (i < OURS && strcmp(name, ours[i]) != 0)
         i++;
-    return i < OURS ? i : strncmp(name, "displacement.", 13) ? OURS : DISPLACEMENT;
+    return i == OURS && !strncmp(name, "displacement.", 13) ? DISPLACEMENT : i;
 }
 
 enum { NAME = 120 };

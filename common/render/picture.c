@@ -1,6 +1,7 @@
 #include "render/picture.h"
 
 #include "base/mem.h"
+#include "base/num.h"
 #include "picture/legend.h"
 #include "picture/sheet.h"
 
@@ -260,7 +261,7 @@ static bool has_bar(const work *w, int i)
 static int letters(const picture_spec *s, int panel_width)
 {
     int size = (int)fmin(fmin(s->width, s->height) / 36., panel_width / 22.);
-    return size < 11 ? 11 : size > 40 ? 40 : size;
+    return (int)num_clamp_int(size, 11, 40);
 }
 
 static bool same_keys(const work *w, int a, int b)
@@ -322,8 +323,12 @@ static int lay_out(work *w, err *e)
         sheet_make(&w->sheet, s->width, height, s->panels, head, foot);
         int size = letters(s, sheet_panel(&w->sheet, 0).width), room = legend_room(w);
         fits = size >= w->letters && room <= foot;
-        foot = size < w->letters ? 0 : room > foot ? room : foot;
-        w->letters = size < w->letters ? size : w->letters;
+        if (size < w->letters) {
+            foot = 0;
+            w->letters = size;
+        } else if (room > foot) {
+            foot = room;
+        }
     }
     sheet_cell c = sheet_picture(&w->sheet, 0);
     if (c.width < 16 || c.height < 16)

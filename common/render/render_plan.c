@@ -216,7 +216,7 @@ static int read_cut(picture_cut *c, const char *text, err *e)
     if (*at < 'x' || *at > 'z' || at[1] != '=' || num_length_of(at + 2, &length))
         return err_set(e, NULL, 0, "--cut '%s': expected AXIS=POSITION, as x=0, +y=2cm or -z=5mm", text);
     c->axis = *at - 'x';
-    c->side = *text == '+' ? 1 : *text == '-' ? -1 : 0;
+    c->side = (*text == '+') - (*text == '-');
     c->at = num_length_in(length, metre(), metre());
     return 0;
 }
@@ -311,7 +311,9 @@ static void read_colour(picture_spec *s, const render_options *o)
     bool deformed = false;
     for (int i = 0; i < s->panels; i++)
         deformed |= s->captions && !strncmp(s->panel[i].caption, panels[DEFORMED], strlen(panels[DEFORMED]));
-    s->field = o->colour ? o->colour : deformed ? "displacement" : NULL;
+    s->field = o->colour;
+    if (!s->field && deformed)
+        s->field = "displacement";
 }
 
 int render_plan_of(render_plan *p, const render_options *o, err *e)

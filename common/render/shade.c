@@ -9,8 +9,12 @@ static void weigh(int corners, float u, float v, float weight[4])
     bool far_half = corners == 4 && u + v > 1;
     weight[0] = far_half ? 0 : 1 - u - v;
     weight[1] = far_half ? 1 - v : u;
-    weight[2] = corners == 3 ? v : far_half ? u + v - 1 : 0;
-    weight[3] = corners == 3 ? 0 : far_half ? 1 - u : v;
+    weight[2] = far_half ? u + v - 1 : 0;
+    weight[3] = far_half ? 1 - u : v;
+    if (corners == 3) {
+        weight[2] = v;
+        weight[3] = 0;
+    }
 }
 
 static vec blend(const float *row, const uint32_t *corner, int corners, const float *weight)
@@ -60,7 +64,10 @@ static void project(const view *v, const scene_mesh *m, size_t face, float x, fl
     for (int i = 0; i < 4; i++) {
         float dx = p[0][i] - v->eye.x, dy = p[1][i] - v->eye.y, dz = p[2][i] - v->eye.z;
         float depth = dx * v->forward.x + dy * v->forward.y + dz * v->forward.z;
-        depth = v->orthographic ? 1 : depth > 1e-9f ? depth : 1e-9f;
+        if (v->orthographic)
+            depth = 1;
+        else if (!(depth > 1e-9f))
+            depth = 1e-9f;
         float scale = 1 / (v->pixel * depth);
         o->x[i] = left + scale * (dx * v->unit_right.x + dy * v->unit_right.y + dz * v->unit_right.z);
         o->y[i] = top - scale * (dx * v->unit_up.x + dy * v->unit_up.y + dz * v->unit_up.z);
@@ -95,7 +102,8 @@ static float fade(const outline *o, const float *length, int corners, float widt
         area += o->x[i] * o->y[next] - o->y[i] * o->x[next];
         longest = vec_most(longest, length[i]);
     }
-    float across = longest > 0 ? (corners == 4 ? .5f : 1) * fabsf(area) / sqrtf(longest) : 0;
+    const float share = corners == 4 ? .5f : 1;
+    float across = longest > 0 ? share * fabsf(area) / sqrtf(longest) : 0;
     return vec_least(vec_most((across / width - 1.5f) / 6, 0), 1);
 }
 

@@ -154,12 +154,10 @@ void showing_colour(showing *b, const field *f, const colourmap *map, double low
                 colourmap_name((int64_t)x, &colour[3 * n]);
             else if (f->folds && x <= 0)
                 showing_linear(showing_red, &colour[3 * n]);
+            else if (f->name)
+                colourmap_at(map, (double)NAN, &colour[3 * n]);
             else
-                colourmap_at(map,
-                             f->name      ? (double)NAN
-                             : high > low ? (x - low) / (high - low)
-                                          : 0 * x,
-                             &colour[3 * n]);
+                colourmap_at(map, high > low ? (x - low) / (high - low) : 0 * x, &colour[3 * n]);
         }
     }
 }

@@ -18,7 +18,12 @@ typedef struct muscles {
 static muscles muscles_of(const model *m)
 {
     const model_array *volume = model_find(m, "element.volume"), *is = model_find(m, "volume.muscle");
-    return (muscles){volume ? volume->i32 : NULL, is ? is->u8 : NULL};
+    muscles found = {0};
+    if (volume)
+        found.volume = volume->i32;
+    if (is)
+        found.is = is->u8;
+    return found;
 }
 
 static bool is_muscle(const muscles *x, int64_t element)

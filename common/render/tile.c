@@ -134,11 +134,11 @@ static void gather(const tile *t, const queue *q, bundle *b)
         const surface *on = &s->surface;
         vec from = vec_along(on->place, on->flat, t->view->offset + .02f * s->pixel);
         const vec part[3] = {from, on->flat, on->normal};
+        float(*const column[3])[EMBREE_RAYS] = {b->from, b->flat, b->normal};
         for (int k = 0; k < 3; k++) {
-            float(*to)[EMBREE_RAYS] = k == 0 ? b->from : k == 1 ? b->flat : b->normal;
-            to[0][i] = part[k].x;
-            to[1][i] = part[k].y;
-            to[2][i] = part[k].z;
+            column[k][0][i] = part[k].x;
+            column[k][1][i] = part[k].y;
+            column[k][2][i] = part[k].z;
         }
         sum = vec_add(sum, on->normal);
     }
@@ -357,7 +357,8 @@ static void refine(tile *t)
         float rgba[4] = {0, 0, 0, 0};
         for (int i = k * VIEW_SUBPIXELS; i < (k + 1) * VIEW_SUBPIXELS; i++) {
             const sight *s = met[i].geometry == EMBREE_NONE ? NULL : likest(t, t->refine[k], &met[i]);
-            compose(v, &met[i], &before[i], s ? s->ambient : 1, s ? s->lit : 1, 1.f / VIEW_SUBPIXELS, rgba);
+            const float ambient = s ? s->ambient : 1;
+            compose(v, &met[i], &before[i], ambient, s ? s->lit : 1, 1.f / VIEW_SUBPIXELS, rgba);
         }
         memcpy(pixel_of(t, t->refine[k]), rgba, sizeof rgba);
     }

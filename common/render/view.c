@@ -1,5 +1,7 @@
 #include "render/view.h"
 
+#include "base/num.h"
+
 #include <math.h>
 
 static vec vec_narrow(const double *p)
@@ -92,7 +94,7 @@ void view_set(view *v, const camera *c, const image *im, const double low[3], co
 
 static int clamp(double x, int most)
 {
-    return x < 0 ? 0 : x > most ? most : (int)x;
+    return (int)num_clamp(x, 0, most);
 }
 
 void view_window(const view *v, const camera *c, const double low[3], const double high[3], int window[4])

@@ -1,6 +1,7 @@
 #include "surface/candidates.h"
 
 #include "base/mem.h"
+#include "base/num.h"
 #include "surface/embree.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ typedef struct boxes {
 static float outward(double x, double slack, float toward)
 {
     x += (double)toward * (slack + fabs(x) * float_slack);
-    x = x > farthest ? farthest : x < -farthest ? -farthest : x;
+    x = num_clamp(x, -farthest, farthest);
     return nextafterf((float)x, toward * INFINITY);
 }
 

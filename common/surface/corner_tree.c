@@ -209,7 +209,9 @@ static node of_corner(const corner_tree *t, int32_t i)
     const corner *c = &t->corner[i];
     double area = fabs(corner_area(&t->corner[c->before], c, &t->corner[c->next]));
     bool any = area < INFINITY;
-    return (node){c->u, c->u, c->v, c->v, any ? area : INFINITY, any ? i : -1};
+    if (!any)
+        area = INFINITY;
+    return (node){c->u, c->u, c->v, c->v, area, any ? i : -1};
 }
 
 static int fill(corner_tree *t, int32_t count, err *e)
@@ -294,7 +296,12 @@ int32_t corner_tree_smallest(const corner_tree *t)
  * rounded too: every operation that it is made of keeps the order of what it is given. */
 static bool is_right(const corner *a, const corner *b, const node *n)
 {
-    const corner most = {.u = b->v - a->v >= 0 ? n->low_u : n->high_u, .v = b->u - a->u >= 0 ? n->high_v : n->low_v};
+    const bool up = b->v - a->v >= 0, on = b->u - a->u >= 0;
+    corner most = {.u = n->high_u, .v = n->low_v};
+    if (up)
+        most.u = n->low_u;
+    if (on)
+        most.v = n->high_v;
     return corner_area(a, b, &most) < 0;
 }
 

@@ -20,7 +20,9 @@ static inline int obj_continues(const char *p)
 {
     if (*p != '\\')
         return 0;
-    return p[1] == '\n' ? 2 : p[1] == '\r' && p[2] == '\n' ? 3 : 0;
+    if (p[1] == '\n')
+        return 2;
+    return p[1] == '\r' && p[2] == '\n' ? 3 : 0;
 }
 
 static inline bool obj_is_blank(char c)

@@ -177,7 +177,8 @@ static void begin(polygon *p, const double *position, const int32_t *vertex, uin
     choose_axes(position, vertex, count, &u, &v);
     for (int32_t i = 0; i < count; i++) {
         const double *at = &position[3 * (int64_t)vertex[i]];
-        p->corner[i] = (corner){at[u], at[v], i ? i - 1 : count - 1, i + 1 < count ? i + 1 : 0};
+        const int32_t before = i ? i - 1 : count - 1;
+        p->corner[i] = (corner){at[u], at[v], before, i + 1 < count ? i + 1 : 0};
     }
     p->left = count;
     corners_begin(&p->maybe, count, word);

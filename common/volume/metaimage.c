@@ -221,10 +221,9 @@ static int take_header(header *h, char *line, err *e)
     }
     if (h->axes && h->sized && h->typed)
         return 0;
+    const char *lacking = h->sized ? "ElementType" : "DimSize";
     return err_set(e, in_name(h->s), in_lines(h->s), "a header without %s; expected it before ElementDataFile",
-                   !h->axes   ? "NDims"
-                   : h->sized ? "ElementType"
-                              : "DimSize");
+                   h->axes ? lacking : "NDims");
 }
 
 /* The third direction of an image in a plane is that plane's normal. */

@@ -393,12 +393,13 @@ static int take_header(header *h, err *e)
     }
     if (h->axes && h->typed && h->sized && h->encoded)
         return 0;
+    const char *lacking = h->sized ? "encoding" : "sizes";
+    if (!h->axes)
+        lacking = "dimension";
+    else if (!h->typed)
+        lacking = "type";
     return err_set(e, in_name(h->s), in_lines(h->s),
-                   "a header without %s; expected type, dimension, sizes and encoding",
-                   !h->axes    ? "dimension"
-                   : !h->typed ? "type"
-                   : !h->sized ? "sizes"
-                               : "encoding");
+                   "a header without %s; expected type, dimension, sizes and encoding", lacking);
 }
 
 /* ---- what it means */
@@ -461,9 +462,10 @@ static int take_geometry(header *h, err *e)
     for (int a = 0; a < count; a++) {
         v->size[a] = of[a]->size;
         for (int i = 0; i < 3; i++)
-            v->axis[a][i] = h->directed ? of[a]->direction[i] * h->unit[i] * h->sign[i]
-                            : a == i    ? of[a]->spacing * h->sign[i]
-                                        : 0;
+            if (h->directed)
+                v->axis[a][i] = of[a]->direction[i] * h->unit[i] * h->sign[i];
+            else
+                v->axis[a][i] = a == i ? of[a]->spacing * h->sign[i] : 0;
     }
     if (count == 2 || (h->directed && !of[2]->directed))
         take_normal(v);

@@ -26,6 +26,7 @@ static void put_header(const volume *v, bool gzip, out *to)
 #define NRRD_NAME(name, of, nrrd, meta, low, high) nrrd,
     static const char *const type[] = {VOLUME_TYPES(NRRD_NAME)};
     const uint16_t one = 1;
+    const char *endian = *(const unsigned char *)&one ? "little" : "big";
     out_format(to, "NRRD0004\n# made by Sinew\ntype: %s\ndimension: 3\nspace: left-posterior-superior\n",
                type[v->type]);
     out_format(to, "sizes: %" PRId64 " %" PRId64 " %" PRId64 "\nspace directions:", v->size[0], v->size[1], v->size[2]);
@@ -33,8 +34,8 @@ static void put_header(const volume *v, bool gzip, out *to)
         out_text(to, " ");
         put_vector(v->axis[a], to);
     }
-    out_format(to, "\nkinds: domain domain domain\nendian: %s\nencoding: %s\nspace origin: ",
-               *(const unsigned char *)&one ? "little" : "big", gzip ? "gzip" : "raw");
+    out_format(to, "\nkinds: domain domain domain\nendian: %s\nencoding: %s\nspace origin: ", endian,
+               gzip ? "gzip" : "raw");
     put_vector(v->origin, to);
     out_text(to, "\n");
     labels_write(v, to);

@@ -285,7 +285,10 @@ static bool reach(reached *r, const plus_transform *t)
     double back[16];
     if ((from < 0) == (to < 0) || (from < 0 && !inverse(t->m, back)))
         return false;
-    product(to < 0 ? t->m : back, r->m[to < 0 ? from : to], r->m[r->count]);
+    if (to < 0)
+        product(t->m, r->m[from], r->m[r->count]);
+    else
+        product(back, r->m[to], r->m[r->count]);
     r->name[r->count++] = to < 0 ? t->to : t->from;
     return true;
 }
@@ -312,6 +315,8 @@ static bool compose(const plus_frame *f, const char *from, const char *to, bool 
 
 static int refuse(const plus *p, err *e)
 {
+    const char *from = p->from[0] ? p->from : "Image or Probe";
+    const char *to = p->to[0] ? p->to : "Reference or Tracker";
     char list[400] = "";
     size_t used = 0;
     for (int i = 0; i < p->frame.count && used < sizeof list; i++)
@@ -319,8 +324,7 @@ static int refuse(const plus *p, err *e)
                                  p->frame.transform[i].to);
     return err_set(e, in_name(p->source), p->frame.line,
                    "frame %" PRId64 " does not say where %s is in %s; expected transforms that do, among: '%s'",
-                   p->frame.number, p->from[0] ? p->from : "Image or Probe", p->to[0] ? p->to : "Reference or Tracker",
-                   list[0] ? list : "(none)");
+                   p->frame.number, from, to, list[0] ? list : "(none)");
 }
 
 /* What the first frame can give, for all. */

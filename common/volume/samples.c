@@ -1,6 +1,7 @@
 #include "volume/samples.h"
 
 #include "base/mem.h"
+#include "base/num.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -156,7 +157,7 @@ static void weigh(double sigma, int64_t reach, float *weight)
 /* Rows of a sheet, the first and last repeated beyond its ends. */
 static const float *row_of(const float *sheet, int64_t rows, int64_t wide, int64_t row)
 {
-    return sheet + (row < 0 ? 0 : row < rows ? row : rows - 1) * wide;
+    return sheet + num_clamp_int(row, 0, rows - 1) * wide;
 }
 
 /* Filters across `rows` rows of `wide` samples, which lie `apart` in value. sheet: a copy's room. */
@@ -180,10 +181,8 @@ static void filter_sheet(float *value, int64_t rows, int64_t wide, int64_t apart
 
 static void filter_row(float *row, int64_t count, const float *weight, int64_t reach, float *copy)
 {
-    for (int64_t i = 0; i < count + 2 * reach; i++) {
-        int64_t x = i - reach;
-        copy[i] = row[x < 0 ? 0 : x < count ? x : count - 1];
-    }
+    for (int64_t i = 0; i < count + 2 * reach; i++)
+        copy[i] = row[num_clamp_int(i - reach, 0, count - 1)];
     for (int64_t x = 0; x < count; x++)
         row[x] = weight[0] * copy[x + reach];
     for (int64_t i = 1; i <= reach; i++)
@@ -268,7 +267,7 @@ static void ring_free(ring *r)
 static float *ring_at(const ring *r, int64_t z)
 {
     const int64_t last = r->size[2] - 1;
-    z = z < 0 ? 0 : z > last ? last : z;
+    z = num_clamp_int(z, 0, last);
     return r->plane + z % r->count * r->size[0] * r->size[1];
 }
 

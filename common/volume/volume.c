@@ -61,7 +61,8 @@ int volume_load(volume *v, const char *path, const volume_budget *b, err *e)
     bool standard = !path || !strcmp(path, "-");
     *v = (volume){0};
     in *s = in_open(path, e);
-    int status = s ? volume_read(v, s, standard ? NULL : path, b, e) : -1;
+    const char *file = standard ? NULL : path;
+    int status = s ? volume_read(v, s, file, b, e) : -1;
     in_close(s);
     return status;
 }
@@ -78,8 +79,10 @@ int volume_afford(const volume_budget *b, const volume *v, const char *place, er
     char need[NUM_TEXT], most[NUM_TEXT];
     if (b && b->check && b->check(v, place, e))
         return -1;
-    const double peak = !b || !b->most ? 0 : b->peak ? b->peak(v, b->context) : volume_memory(v);
-    if (!b || !b->most || peak <= (double)b->most)
+    if (!b || !b->most)
+        return 0;
+    const double peak = b->peak ? b->peak(v, b->context) : volume_memory(v);
+    if (peak <= (double)b->most)
         return 0;
     return err_set(e, place, 0, "%lld x %lld x %lld voxels of %d byte%s take %s of memory here; --memory allows %s",
                    (long long)v->size[0], (long long)v->size[1], (long long)v->size[2], (int)volume_type_size(v->type),

@@ -297,7 +297,8 @@ static char *find_file(const char *name, const char *header, const char *path, e
 int voxels_in_read(volume *v, const voxels_in *x, in *s, const char *path, const volume_budget *b, err *e)
 {
     char *file = x->file ? find_file(x->file, in_name(s), path, e) : NULL;
-    in *own = file ? in_open_plain(file, e) : NULL, *from = x->file ? own : s;
+    in *own = file ? in_open_plain(file, e) : NULL;
+    in *from = x->file ? own : s;
     int status = -1;
     int64_t need = from ? bytes_needed(v, in_name(from), e) : -1;
     if (need >= 0 && !volume_afford(b, v, in_name(from), e) && !skip(x, from, e))
