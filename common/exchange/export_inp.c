@@ -139,8 +139,9 @@ static void put_materials(const writer *w)
 {
     for (int64_t i = 0; i < w->materials; i++) {
         const material *law = &w->laws[i];
-        bool linear = law->law == MATERIAL_LINEAR;
-        double constants[2] = {material_mu(law) / 2, 2 / material_bulk(law)}, moduli[2] = {law->E, law->nu};
+        bool linear = material_form(law) == FORM_LINEAR;
+        double constants[2] = {material_mu(law) / 2, 2 / material_bulk(law)};
+        double moduli[2] = {material_young(law), material_poisson(law)};
         out_format(w->to, "*MATERIAL, NAME=%s\n%s\n", w->law + i * NAME,
                    linear ? "*ELASTIC" : "*HYPERELASTIC, NEO HOOKE");
         put_numbers(linear ? moduli : constants, 2, w->to);
@@ -157,7 +158,7 @@ static void put_materials(const writer *w)
 static bool is_linear(const writer *w)
 {
     for (int64_t v = 0; v < w->volumes; v++)
-        if (w->count[v] && w->laws[w->material->i32[v]].law != MATERIAL_LINEAR)
+        if (w->count[v] && w->laws[w->material->i32[v]].law->form != FORM_LINEAR)
             return false;
     return true;
 }

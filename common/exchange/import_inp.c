@@ -454,21 +454,19 @@ static int take_law(inp_reader *r, char *line)
     if (take_number(r, next_field(&line), now == INP_DENSITY ? "a density" : "two constants", &first))
         return -1;
     if (now == INP_DENSITY) {
-        a->density = first;
+        a->of.density = first;
         return 0;
     }
     if (take_number(r, next_field(&line), now == INP_HYPER ? "C10, D1" : "E, nu", &second))
         return -1;
-    a->law = now == INP_HYPER ? MATERIAL_NEO_HOOKEAN : MATERIAL_LINEAR;
-    a->E = first;
-    a->nu = second;
-    if (now == INP_ELASTIC)
-        return 0;
-    if (!(first > 0) || !(second > 0))
+    const double c[FORM_NUMBERS] = {2 * first, 2 / second};
+    a->of.law = law_of_form(now == INP_HYPER ? FORM_NEO_HOOKEAN : FORM_LINEAR);
+    a->of.law->read_back(c, a->of.value);
+    if (now == INP_ELASTIC) {
+        a->of.value[LAW_E] = first;
+        a->of.value[LAW_nu] = second;
+    } else if (!(first > 0) || !(second > 0))
         return wrong(r, "C10 or D1 that is not above 0", "a material that can be compressed, D1 = 2/K");
-    const double mu = 2 * first, bulk = 2 / second;
-    a->E = 9 * bulk * mu / (3 * bulk + mu);
-    a->nu = (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu));
     return 0;
 }
 

@@ -58,7 +58,7 @@ int32_t import_add_material(import_mesh *m, const char *name, int64_t line, err 
         return at;
     if (MEM_ROOM(&m->material, &m->material_room, m->materials + 1, "materials", e))
         return -1;
-    m->material[m->materials] = (import_material){mem_text(name, e), NAN, NAN, NAN, MATERIAL_NEO_HOOKEAN, line, NULL};
+    m->material[m->materials] = (import_material){.name = mem_text(name, e), .of = {.density = NAN}, .line = line};
     return m->material[m->materials].name ? (int32_t)m->materials++ : -1;
 }
 

@@ -14,8 +14,7 @@
 /* A material as far as the file has it. */
 typedef struct import_material {
     char *name;
-    double E, nu, density; /* in the file's units; nan: not given */
-    material_law law;
+    material of; /* in the file's units; law NULL: not given, density nan: likewise */
     int64_t line;
     char *written; /* the name as the file writes it, for messages; NULL: as `name` is */
 } import_material;

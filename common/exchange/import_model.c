@@ -152,45 +152,50 @@ static int drop_nodes(import_mesh *m, notes *warnings, err *e)
 
 /* ---- materials and volumes */
 
+/* In SI. */
+static int convert_material(const import_mesh *mesh, const import_material *from, const import_wishes *w, material *to,
+                            notes *warnings, err *e)
+{
+    const material usual = materials_fallback();
+    if (!from->of.law)
+        return err_set(e, mesh->name, from->line,
+                       "material %.200s has no law; expected *ELASTIC or *HYPERELASTIC, NEO HOOKE", from->name);
+    if (isnan(from->of.density))
+        notes_add(warnings, "material %.200s has no density: taken as %g kg/m3", from->name, usual.density);
+    *to = from->of;
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        if (!strcmp(law_key_unit((law_key)k), "Pa"))
+            to->value[k] *= w->stress;
+    to->density = isnan(from->of.density) ? usual.density : from->of.density * w->density;
+    to->peak = usual.peak;
+    return 0;
+}
+
 /* Those of the file become the model's. */
 static int put_materials(const import_mesh *mesh, const import_wishes *w, model *m, notes *warnings, err *e)
 {
-    const char *const array_names[] = {"material.name", "material.law",     "material.E",
-                                       "material.nu",   "material.density", "material.peak"};
-    model_array *a[6];
-    const material usual = materials_fallback();
     if (!(w->stress > 0) || !(w->density > 0))
         return err_set(
             e, mesh->name, mesh->material[0].line,
             "the file does not say the units of its materials; expected --stress Pa|kPa|MPa|GPa and --density "
             "kg/m3|g/cm3|t/mm3, or --materials FILE, where --unit is not m");
-    if (model_axis_add(m, "material", mesh->materials, e))
-        return -1;
-    for (int i = 0; i < 6; i++)
-        if (!model_add(m, array_names[i], e))
-            return -1;
-    for (int i = 0; i < 6; i++)
-        a[i] = model_find(m, array_names[i]);
-    for (int64_t i = 0; i < mesh->materials; i++) {
-        const import_material *from = &mesh->material[i];
+    const char **name = mem_array(mesh->materials, sizeof *name, "materials", e);
+    material *of = name ? mem_array(mesh->materials, sizeof *of, "materials", e) : NULL;
+    int status = of ? 0 : -1;
+    for (int64_t i = 0; !status && i < mesh->materials; i++) {
+        name[i] = mesh->material[i].name;
+        status = convert_material(mesh, &mesh->material[i], w, &of[i], warnings, e);
+    }
+    status = status ? status : materials_put(m, name, of, mesh->materials, e);
+    free(of);
+    free(name);
+    for (int64_t i = 0; !status && i < mesh->materials; i++) {
         material check;
         err why = {0};
-        if (isnan(from->E))
-            return err_set(e, mesh->name, from->line,
-                           "material %.200s has no law; expected *ELASTIC or *HYPERELASTIC, NEO HOOKE", from->name);
-        if (isnan(from->density))
-            notes_add(warnings, "material %.200s has no density: taken as %g kg/m3", from->name, usual.density);
-        if (model_set_text(a[0], i, from->name, e) ||
-            model_set_text(a[1], i, from->law == MATERIAL_LINEAR ? "linear" : "neo-hookean", e))
-            return -1;
-        a[2]->f64[i] = from->E * w->stress;
-        a[3]->f64[i] = from->nu;
-        a[4]->f64[i] = isnan(from->density) ? usual.density : from->density * w->density;
-        a[5]->f64[i] = usual.peak;
         if (materials_of(m, i, &check, &why))
-            return err_set(e, mesh->name, from->line, "%.900s", why.text);
+            status = err_set(e, mesh->name, mesh->material[i].line, "%.900s", why.text);
     }
-    return 0;
+    return status;
 }
 
 static int make_materials(const import_mesh *mesh, const import_wishes *w, model *m, notes *warnings, err *e)

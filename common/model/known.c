@@ -1,5 +1,7 @@
 #include "model/known.h"
 
+#include "physics/law.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +9,12 @@
 #define ROW(name, type, unit, axis, few, most, flags, rule, low, high, maker, meaning)                                 \
     {name, type, unit, axis, few, most, flags, rule, low, high, maker, meaning},
 
-static const known rows[] = {KNOWN_ARRAYS(ROW)};
+/* material.KEY. A peak of nan: none of its muscles contracts. */
+#define KEY_ROW(key, unit, low, high, meaning)                                                                         \
+    ROW("material." #key, MODEL_F64, unit, "material", 1, 1, LAW_##key == LAW_peak ? KNOWN_NAN : 0, KNOWN_FROM, low,   \
+        high, "voxelise or msds-mesh", meaning)
+
+static const known rows[] = {KNOWN_ARRAYS(ROW, LAW_KEYS(KEY_ROW) LAW_COMMON_KEYS(KEY_ROW))};
 
 enum { ROWS = sizeof rows / sizeof *rows };
 

@@ -38,8 +38,9 @@ typedef struct known {
     const char *meaning; /* one line, for the manual */
 } known;
 
-/* X(name, type, unit, axis, columns_min, columns_max, flags, rule, low, high, maker, meaning) */
-#define KNOWN_ARRAYS(X)                                                                                                \
+/* X(name, type, unit, axis, columns_min, columns_max, flags, rule, low, high, maker, meaning). KEY_ARRAYS: where the
+ * arrays of the keys of materials are, one a key of physics/law.h. */
+#define KNOWN_ARRAYS(X, KEY_ARRAYS)                                                                                    \
     X("node.position", MODEL_F64, "m", "node", 3, 3, 0, KNOWN_FINITE, 0, 0, "voxelise or msds-mesh", "rest position")  \
     X("node.lattice", MODEL_I32, "1", "node", 3, 3, 0, KNOWN_ANY, 0, 0, "voxelise", "corner of the lattice: i, j, k")  \
     X("node.rigid", MODEL_U8, "1", "node", 1, 1, 0, KNOWN_FROM, 0, 1, "attach or msds-mesh", "1 = fixed")              \
@@ -73,14 +74,7 @@ typedef struct known {
     X("material.name", MODEL_STR, "1", "material", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh", "name")          \
     X("material.law", MODEL_STR, "1", "material", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh",                   \
       "law: neo-hookean or linear")                                                                                    \
-    X("material.E", MODEL_F64, "Pa", "material", 1, 1, 0, KNOWN_FROM, 1e-3, 1e12, "voxelise or msds-mesh",             \
-      "Young's modulus")                                                                                               \
-    X("material.nu", MODEL_F64, "1", "material", 1, 1, 0, KNOWN_FROM, -.99, .4999, "voxelise or msds-mesh",            \
-      "Poisson's ratio")                                                                                               \
-    X("material.density", MODEL_F64, "kg/m3", "material", 1, 1, 0, KNOWN_FROM, 1e-3, 1e6, "voxelise or msds-mesh",     \
-      "mass density at rest")                                                                                          \
-    X("material.peak", MODEL_F64, "Pa", "material", 1, 1, KNOWN_NAN, KNOWN_FROM, 0, 1e12, "voxelise or msds-mesh",     \
-      "peak active stress of its muscles")                                                                             \
+    KEY_ARRAYS                                                                                                         \
     X("muscle.volume", MODEL_I32, "@volume", "muscle", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                   \
       "volume of the muscle")                                                                                          \
     X("muscle.centre", MODEL_F64, "m", "muscle", 3, 3, KNOWN_NAN, KNOWN_FINITE, 0, 0, "attach",                        \

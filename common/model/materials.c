@@ -6,6 +6,7 @@
 #include "base/near.h"
 #include "base/num.h"
 #include "model/known.h"
+#include "model/material_edit.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -13,99 +14,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct key {
-    const char *name, *array;
-    double fallback, absent;
-} key;
-
-#define KEY_ROW(name, fallback, absent) {#name, "material." #name, fallback, absent},
-static const key keys[] = {MATERIAL_KEYS(KEY_ROW)};
-
-enum { KEYS = sizeof keys / sizeof *keys };
-
-#define KEY_NAME(name, fallback, absent) #name,
-static const char *const key_names[] = {"law", MATERIAL_KEYS(KEY_NAME)};
-
-static const char *const law_names[MATERIAL_LAWS] = {
-    [MATERIAL_NEO_HOOKEAN] = "neo-hookean", [MATERIAL_LINEAR] = "linear"};
-
-/* One line of a file, or one row of the table. */
+/* One row of a file. */
 typedef struct row {
     char *name;
-    uint64_t given; /* bits of key_names */
-    material_law law;
-    double value[KEYS];
+    material of;
 } row;
-
-#define VALUE_INDEX(name, fallback, absent) AT_##name,
-enum { MATERIAL_KEYS(VALUE_INDEX) };
 
 material materials_fallback(void)
 {
-#define VALUE_FALLBACK(name, fallback, absent) .name = (fallback),
-    return (material){.law = MATERIAL_NEO_HOOKEAN, MATERIAL_KEYS(VALUE_FALLBACK)};
+    material of = {.law = law_at(0), .density = 1000, .peak = 30000};
+    material_edit_clear(&of);
+    of.value[LAW_E] = 3000;
+    of.value[LAW_nu] = .49;
+    return of;
 }
 
-static row row_of(const material *of)
-{
-    row r = {.law = of->law};
-#define VALUE_PUT(name, fallback, absent) r.value[AT_##name] = of->name;
-    MATERIAL_KEYS(VALUE_PUT)
-    return r;
-}
-
-static int law_of(const char *name)
-{
-    for (int i = 0; i < MATERIAL_LAWS; i++)
-        if (!strcmp(law_names[i], name))
-            return i;
-    return -1;
-}
-
-/* Whether the table of known arrays allows it; words: what it expects. */
-static bool valid(const key *k, double value, char words[KNOWN_WORDS])
-{
-    const known *of = known_find(k->array);
-    known_words(of, words);
-    return value >= of->low && value <= of->high;
-}
-
-/* An unknown name in a file, or, with line 0, in the option `place`. */
-static int unknown(err *e, const char *place, int64_t line, const char *what, const char *name,
-                   const char *const *names, int count)
-{
-    return line ? near_unknown(e, place, line, what, name, names, count)
-                : near_option(e, place, what, name, names, count);
-}
-
-/* name: an index into key_names. place and line: as of unknown. */
-static int row_take(row *r, int name, const char *text, const char *place, int64_t line, err *e)
-{
-    if (name == 0) {
-        int law = law_of(text);
-        if (law < 0)
-            return unknown(e, place, line, "law", text, law_names, MATERIAL_LAWS);
-        r->law = (material_law)law;
-        return 0;
-    }
-    const key *k = &keys[name - 1];
-    double v;
-    char words[KNOWN_WORDS];
-    bool good = valid(k, num_double(text, &v) ? NAN : v, words);
-    if (!good && line)
-        return err_set(e, place, line, "'%s=%.100s' is not allowed; expected %s", k->name, text, words);
-    if (!good)
-        return err_option(e, place, "'%s=%.100s' is not allowed; expected %s", k->name, text, words);
-    r->value[name - 1] = v;
-    return 0;
-}
-
-static int row_parse(row *r, keyfile *k, err *e)
+static int row_parse(material_edit *r, keyfile *k, err *e)
 {
     for (int at = 1; at < k->count; at++) {
         char *text;
-        int name = keyfile_pair(k, at, key_names, KEYS + 1, &r->given, &text, e);
-        if (name < 0 || row_take(r, name, text, k->name, k->line, e))
+        int name = keyfile_pair(k, at, material_edit_names, MATERIAL_EDIT_NAMES, &r->given, &text, e);
+        if (name < 0 || material_edit_take(r, name, text, k->name, k->line, e))
             return -1;
     }
     return 0;
@@ -119,52 +48,96 @@ static int parse_name(const keyfile *k, err *e)
     return 0;
 }
 
-/* Writes what of the row is in `given` into the model's table. */
-static int row_store(model *m, int64_t at, const row *r, uint64_t given, err *e)
+/* ---- the table in a model */
+
+/* The array of a key, made where there is none: of a law's own keys, which are nan where a material has none. */
+static model_array *key_array(model *m, int key, err *e)
 {
-    if (given & 1) {
-        model_array *law = model_find(m, "material.law");
-        if (!law && !(law = model_add(m, "material.law", e)))
-            return -1;
-        if (model_set_text(law, at, law_names[r->law], e))
-            return -1;
-    }
-    for (int i = 0; i < KEYS; i++) {
-        if (!(given >> (i + 1) & 1))
+    model_array *a =
+        key < LAW_OWN_KEYS ? model_find(m, material_edit_arrays[key]) : model_need(m, material_edit_arrays[key], e);
+    if (a || key >= LAW_OWN_KEYS)
+        return a;
+    a = model_add(m, material_edit_arrays[key], e);
+    for (int64_t i = 0; a && i < a->rows; i++)
+        a->f64[i] = NAN;
+    return a;
+}
+
+/* Writes row `at`: its law and the values of its keys, and of the others those in `given`. */
+static int row_store(model *m, int64_t at, material of, uint64_t given, err *e)
+{
+    model_array *law = model_find(m, "material.law");
+    if (!law && !(law = model_add(m, "material.law", e)))
+        return -1;
+    if (given & 1 && model_set_text(law, at, of.law->name, e))
+        return -1;
+    for (int k = 0; k < LAW_ALL_KEYS; k++) {
+        const double value = *material_edit_value(&of, k);
+        if (k < LAW_OWN_KEYS ? isnan(value) && !model_find(m, material_edit_arrays[k]) : !(given >> (k + 1) & 1))
             continue;
-        model_array *a = model_need(m, keys[i].array, e);
+        model_array *a = key_array(m, k, e);
         if (!a)
             return -1;
-        a->f64[at] = r->value[i];
+        a->f64[at] = value;
     }
     return 0;
 }
 
-static int table_make(model *m, const row *rows, int64_t count, err *e)
+/* Removes the arrays of keys that no material has any more. */
+static void drop_unused(model *m)
 {
+    for (int k = 0; k < LAW_OWN_KEYS; k++) {
+        const model_array *a = model_find(m, material_edit_arrays[k]);
+        bool used = !a;
+        for (int64_t i = 0; !used && i < a->rows; i++)
+            used = !isnan(a->f64[i]);
+        if (!used)
+            model_remove(m, material_edit_arrays[k]);
+    }
+}
+
+int materials_put(model *m, const char *const *name, const material *of, int64_t count, err *e)
+{
+    unsigned used = 1U << LAW_density | 1U << LAW_peak;
+    for (int64_t i = 0; i < count; i++)
+        used |= material_edit_keys(&of[i]);
     if (model_axis_add(m, "material", count, e) || !model_add(m, "material.name", e) ||
         !model_add(m, "material.law", e))
         return -1;
-    for (int i = 0; i < KEYS; i++)
-        if (!model_add(m, keys[i].array, e))
+    for (int k = 0; k < LAW_ALL_KEYS; k++)
+        if (used >> k & 1 && !model_add(m, material_edit_arrays[k], e))
             return -1;
     for (int64_t i = 0; i < count; i++)
-        if (model_set_text(model_find(m, "material.name"), i, rows[i].name, e) ||
-            row_store(m, i, &rows[i], ~UINT64_C(0), e))
+        if (model_set_text(model_find(m, "material.name"), i, name[i], e) || row_store(m, i, of[i], ~UINT64_C(0), e))
             return -1;
     return 0;
+}
+
+static int put_rows(model *m, const row *rows, int64_t count, err *e)
+{
+    const char **name = mem_array(count, sizeof *name, "materials", e);
+    material *of = name ? mem_array(count, sizeof *of, "materials", e) : NULL;
+    for (int64_t i = 0; of && i < count; i++) {
+        name[i] = rows[i].name;
+        of[i] = rows[i].of;
+    }
+    int status = of ? materials_put(m, name, of, count, e) : -1;
+    free(of);
+    free(name);
+    return status;
 }
 
 int materials_make(model *m, const material *of, err *e)
 {
-    char name[] = "tissue";
-    row r = row_of(of);
+    const char *const name = "tissue";
+    material checked = *of;
     char words[KNOWN_WORDS];
-    for (int i = 0; i < KEYS; i++)
-        if (!valid(&keys[i], r.value[i], words))
-            return err_set(e, NULL, 0, "%s=%g is not allowed; expected %s", keys[i].name, r.value[i], words);
-    r.name = name;
-    return table_make(m, &r, 1, e);
+    for (int k = 0; k < LAW_ALL_KEYS; k++) {
+        const double value = *material_edit_value(&checked, k);
+        if (!(k < LAW_OWN_KEYS && isnan(value)) && !material_edit_valid(k, value, words))
+            return err_set(e, NULL, 0, "%s=%g is not allowed; expected %s", law_key_name((law_key)k), value, words);
+    }
+    return materials_put(m, &name, of, 1, e);
 }
 
 int materials_default(model *m, err *e)
@@ -198,11 +171,13 @@ int materials_read_with(model *m, in *s, const material *fallback, err *e)
         if (mem_grow(&rows, &capacity, (int64_t)count + 1, sizeof *rows, "materials", e))
             goto out;
         row *r = &rows[count];
-        *r = row_of(fallback ? fallback : &usual);
+        material_edit edit = {0};
+        *r = (row){.of = fallback ? *fallback : usual};
         if (!(r->name = mem_text(k.word[0], e)))
             goto out;
         count++;
-        if (lookup_add(&index, rows, sizeof *rows, count, e) || row_parse(r, &k, e))
+        if (lookup_add(&index, rows, sizeof *rows, count, e) || row_parse(&edit, &k, e) ||
+            material_edit_apply(&r->of, &edit, k.name, k.line, e))
             goto out;
     }
     if (more < 0)
@@ -210,7 +185,7 @@ int materials_read_with(model *m, in *s, const material *fallback, err *e)
     if (!count)
         err_set(e, in_name(s), 0, "no material in it; expected lines NAME law=neo-hookean E=3000 ...");
     else
-        status = table_make(m, rows, count, e);
+        status = put_rows(m, rows, count, e);
 out:
     for (int32_t i = 0; i < count; i++)
         free(rows[i].name);
@@ -219,10 +194,43 @@ out:
     return status;
 }
 
+/* A law that a model names and the table does not. */
+static int unknown_law(const char *name, err *e)
+{
+    const char *names[LAW_MOST];
+    const int count = law_names(names);
+    return near_unknown(e, "material.law", 0, "law", name, names, count);
+}
+
+/* Row `at` as it stands in the model, unchecked: what is missing is nan. */
+static int row_of(const model *m, int64_t at, material *to, err *e)
+{
+    const model_array *law = model_need(m, "material.law", e);
+    if (!law)
+        return -1;
+    if (!(to->law = law_find(law->str[at])))
+        return unknown_law(law->str[at], e);
+    for (int k = 0; k < LAW_ALL_KEYS; k++) {
+        const model_array *a = model_find(m, material_edit_arrays[k]);
+        *material_edit_value(to, k) = a ? a->f64[at] : NAN;
+    }
+    return 0;
+}
+
+static int change_row(model *m, int64_t at, const material_edit *edit, const char *place, int64_t line, err *e)
+{
+    material of;
+    if (row_of(m, at, &of, e) || material_edit_apply(&of, edit, place, line, e) || row_store(m, at, of, edit->given, e))
+        return -1;
+    if (edit->given & 1)
+        drop_unused(m);
+    return 0;
+}
+
 /* One line of an override. index: of names' strings; seen: 1 for the rows that had theirs. */
 static int override_line(model *m, keyfile *k, const lookup *index, const model_array *names, uint8_t *seen, err *e)
 {
-    row r = {0};
+    material_edit r = {0};
     if (parse_name(k, e))
         return -1;
     int32_t at = lookup_find(index, names->str, sizeof *names->str, k->word[0]);
@@ -230,7 +238,7 @@ static int override_line(model *m, keyfile *k, const lookup *index, const model_
         return materials_unknown(m, k->word[0], k->name, k->line, e);
     if (seen[at]++)
         return keyfile_error(k, e, "material '%.200s' is given twice; expected each name once", k->word[0]);
-    return row_parse(&r, k, e) || row_store(m, at, &r, r.given, e) ? -1 : 0;
+    return row_parse(&r, k, e) || (r.given && change_row(m, at, &r, k->name, k->line, e)) ? -1 : 0;
 }
 
 int materials_override(model *m, in *s, err *e)
@@ -272,34 +280,54 @@ static int assignment_cut(char *text, char **name, char **value)
     return 0;
 }
 
-static int assign(model *m, const char *which, const char *name, const char *text, err *e)
+/* "-m NAME", as messages name it. */
+enum { PLACE = 220 };
+static const char *place_of(const char *name, char to[PLACE])
 {
-    char place[220];
+    snprintf(to, PLACE, "-m %.200s", name);
+    return to;
+}
+
+/* edit: of all materials. */
+static int assign(const model *m, material_edit *edit, const char *which, const char *name, const char *text, err *e)
+{
+    char place[PLACE];
     int32_t at = materials_find(m, which);
     if (at < 0)
         return materials_unknown(m, which, "-m", 0, e);
-    snprintf(place, sizeof place, "-m %.200s", which);
-    for (int i = 0; i <= KEYS; i++) {
-        row r = {0};
-        if (!strcmp(key_names[i], name))
-            return row_take(&r, i, text, place, 0, e) ? -1 : row_store(m, at, &r, UINT64_C(1) << i, e);
-    }
-    return unknown(e, place, 0, "key", name, key_names, KEYS + 1);
+    place_of(which, place);
+    for (int i = 0; i < MATERIAL_EDIT_NAMES; i++)
+        if (!strcmp(material_edit_names[i], name)) {
+            edit[at].given |= UINT64_C(1) << i;
+            return material_edit_take(&edit[at], i, text, place, 0, e);
+        }
+    return material_edit_unknown(e, place, 0, "key", name, material_edit_names, MATERIAL_EDIT_NAMES);
 }
 
-int materials_set(model *m, const char *assignment, err *e)
+static int take_assignment(const model *m, material_edit *edit, const char *assignment, err *e)
 {
-    if (!model_need(m, "material.name", e))
-        return -1;
     char *text = mem_text(assignment, e), *name, *value;
     if (!text)
         return -1;
-    int status = -1;
-    if (assignment_cut(text, &name, &value))
-        err_option(e, "-m", "'%.200s'; expected MATERIAL.KEY=VALUE, such as tissue.E=3000", assignment);
-    else
-        status = assign(m, text, name, value, e);
+    int status = assignment_cut(text, &name, &value)
+                     ? err_option(e, "-m", "'%.200s'; expected MATERIAL.KEY=VALUE, such as tissue.E=3000", assignment)
+                     : assign(m, edit, text, name, value, e);
     free(text);
+    return status;
+}
+
+int materials_set(model *m, const char *const *assignment, int count, err *e)
+{
+    char place[PLACE];
+    const model_array *names = model_need(m, "material.name", e);
+    material_edit *edit = names ? mem_array(names->rows, sizeof *edit, "materials", e) : NULL;
+    int status = edit ? 0 : -1;
+    for (int i = 0; !status && i < count; i++)
+        status = take_assignment(m, edit, assignment[i], e);
+    for (int64_t i = 0; !status && i < model_count(m, "material"); i++)
+        if (edit[i].given)
+            status = change_row(m, i, &edit[i], place_of(model_find(m, "material.name")->str[i], place), 0, e);
+    free(edit);
     return status;
 }
 
@@ -316,51 +344,115 @@ int materials_unknown(const model *m, const char *name, const char *place, int64
 {
     const model_array *a = model_find(m, "material.name");
     int count = a ? (int)num_clamp_int(a->rows, 0, INT32_MAX) : 0;
-    return unknown(e, place, line, "material", name, a ? (const char *const *)a->str : NULL, count);
+    return material_edit_unknown(e, place, line, "material", name, a ? (const char *const *)a->str : NULL, count);
 }
 
-/* The value of key k of material i, or what the table says where there is none. */
-static int value_of(const model *m, int64_t i, const key *k, double *value, err *e)
+/* ---- what a model has, checked */
+
+static int row_wrong(const model *m, const model_array *a, int64_t i, int key, double value, const char *words, err *e)
 {
-    const model_array *a = isnan(k->absent) ? model_need(m, k->array, e) : model_find(m, k->array);
-    if (!a && isnan(k->absent))
+    return err_set(e, m->stream, a && m->stream ? model_line(a, i) : 0,
+                   "%s, row %" PRId64 ": %g is not allowed; expected %s", material_edit_arrays[key], i, value, words);
+}
+
+/* The value of a key of material i. absent: what it is where the model has none; nan: it must have one. */
+static int value_of(const model *m, int64_t i, int key, double absent, double *value, err *e)
+{
+    const model_array *a =
+        isnan(absent) ? model_need(m, material_edit_arrays[key], e) : model_find(m, material_edit_arrays[key]);
+    if (!a && isnan(absent))
         return -1;
     char words[KNOWN_WORDS];
-    *value = !a || isnan(a->f64[i]) ? k->absent : a->f64[i];
-    if (valid(k, *value, words))
-        return 0;
-    return err_set(e, m->stream, a && m->stream ? model_line(a, i) : 0,
-                   "%s, row %" PRId64 ": %g is not allowed; expected %s", k->array, i, *value, words);
+    *value = !a || isnan(a->f64[i]) ? absent : a->f64[i];
+    return material_edit_valid(key, *value, words) ? 0 : row_wrong(m, a, i, key, *value, words, e);
+}
+
+/* Of which key of a group the model has a value for material i: one alone. -1 with e filled. */
+static int key_of_group(const model *m, int64_t i, const law_row *of, int group, err *e)
+{
+    const int first = law_next_key(of->group[group], 0);
+    int found = -1;
+    for (int k = first; k >= 0; k = law_next_key(of->group[group], k + 1)) {
+        const model_array *a = model_find(m, material_edit_arrays[k]);
+        if (!a || isnan(a->f64[i]))
+            continue;
+        if (found >= 0)
+            return row_wrong(m, a, i, k, a->f64[i], "nan: there is one of the other key", e);
+        found = k;
+    }
+    return found < 0 ? first : found;
+}
+
+/* No value for a key that the law does not have. */
+static int check_foreign(const model *m, int64_t i, const law_row *of, err *e)
+{
+    char words[LAW_WORDS];
+    const unsigned own = law_keys(of);
+    for (int k = 0; k < LAW_OWN_KEYS; k++) {
+        const model_array *a = own >> k & 1 ? NULL : model_find(m, material_edit_arrays[k]);
+        if (a && !isnan(a->f64[i])) {
+            snprintf(words, sizeof words, "nan, as the law %s has no such key", of->name);
+            return row_wrong(m, a, i, k, a->f64[i], words, e);
+        }
+    }
+    return 0;
+}
+
+/* "E=3000 with nu=0.3". */
+static void values_words(const material *of, char *to, size_t size)
+{
+    to[0] = '\0';
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        if (!isnan(of->value[k])) {
+            const size_t at = strlen(to);
+            snprintf(to + at, size - at, "%s%s=%g", at ? " with " : "", law_key_name((law_key)k), of->value[k]);
+        }
 }
 
 int materials_of(const model *m, int64_t i, material *to, err *e)
 {
+    char words[200];
     const model_array *law = model_need(m, "material.law", e);
     if (!law)
         return -1;
-    int which = law_of(law->str[i]);
-    if (which < 0)
-        return near_unknown(e, "material.law", 0, "law", law->str[i], law_names, MATERIAL_LAWS);
-    to->law = (material_law)which;
-#define VALUE_TAKE(name, fallback, absent)                                                                             \
-    if (value_of(m, i, &keys[AT_##name], &to->name, e))                                                                \
+    if (!(to->law = law_find(law->str[i])))
+        return unknown_law(law->str[i], e);
+    material_edit_clear(to);
+    for (int g = 0; g < LAW_GROUPS && to->law->group[g]; g++) {
+        const int key = key_of_group(m, i, to->law, g, e);
+        if (key < 0 || value_of(m, i, key, NAN, &to->value[key], e))
+            return -1;
+    }
+    if (check_foreign(m, i, to->law, e) || value_of(m, i, LAW_density, NAN, &to->density, e) ||
+        value_of(m, i, LAW_peak, 0, &to->peak, e))
         return -1;
-    MATERIAL_KEYS(VALUE_TAKE)
-    if (!isfinite(material_bulk(to)) || !(material_mu(to) > 0))
-        return err_set(e, m->stream, 0, "material, row %" PRId64 ": E=%g with nu=%g is beyond what can be computed", i,
-                       to->E, to->nu);
-    return 0;
+    if (isfinite(material_bulk(to)) && material_mu(to) > 0)
+        return 0;
+    values_words(to, words, sizeof words);
+    return err_set(e, m->stream, 0, "material, row %" PRId64 ": %s is beyond what can be computed", i, words);
+}
+
+double material_young(const material *a)
+{
+    const double mu = material_mu(a), bulk = material_bulk(a);
+    return isnan(a->value[LAW_E]) ? 9 * bulk * mu / (3 * bulk + mu) : a->value[LAW_E];
+}
+
+double material_poisson(const material *a)
+{
+    const double mu = material_mu(a), bulk = material_bulk(a);
+    return isnan(a->value[LAW_nu]) ? (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu)) : a->value[LAW_nu];
 }
 
 material material_mixed(const material *a, const material *b, double s)
 {
     const double mu = material_between(material_mu(a), material_mu(b), s);
     const double bulk = material_between(material_bulk(a), material_bulk(b), s);
-    return (material){.law = a->law,
-                      .E = 9 * bulk * mu / (3 * bulk + mu),
-                      .nu = (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu)),
-                      .density = (1 - s) * a->density + s * b->density,
-                      .peak = (1 - s) * a->peak + s * b->peak};
+    const double c[FORM_NUMBERS] = {mu, bulk};
+    material mixed = {
+        .law = a->law, .density = (1 - s) * a->density + s * b->density, .peak = (1 - s) * a->peak + s * b->peak};
+    mixed.law->read_back(c, mixed.value);
+    return mixed;
 }
 
 material *materials_of_volumes(const model *m, err *e)

@@ -1,37 +1,30 @@
-/* The material table of a model: the arrays material.name, material.law and one a key (MATERIAL_KEYS), read from
- * files of lines `NAME law=neo-hookean E=3000 nu=0.49 density=1000 peak=30000` and from assignments NAME.KEY=VALUE. All
- * values are checked against one table of keys. The model owns its arrays, as ever.
+/* The material table of a model: the arrays material.name, material.law and one for each key (physics/law.h) that some
+ * material has, read from files of lines `NAME law=neo-hookean E=3000 nu=0.49 density=1000 peak=30000` and from
+ * assignments NAME.KEY=VALUE. All values are checked against the table of laws. The model owns its arrays, as ever.
  *
- * For the tool that makes volumes: materials_default or materials_make where no file is given, materials_read where one
- * is; materials_find looks up what a volume names. Which material a volume has that names none is that tool's affair.
+ * For the tool that makes volumes: materials_default or materials_make where no file is given, materials_read where
+ * one is; materials_find looks up what a volume names. Which material a volume has that names none is that tool's
+ * affair.
+ *
+ * For the tool that solves: materials_of_volumes or materials_of, and of each its form, its coefficients and its
+ * moduli at rest.
  */
 #ifndef SINEW_MATERIALS_H
 #define SINEW_MATERIALS_H
 
 #include "base/in.h"
 #include "model/model.h"
+#include "physics/law.h"
 
 #include <math.h>
 
-/* Neo-Hookean: tled-run's. Linear: isotropic linear elasticity with Cauchy's small strain, msds-run's FEM (PST section
- * III); it is what the first becomes where strains are small, with the same E and nu. */
-typedef enum material_law { MATERIAL_NEO_HOOKEAN, MATERIAL_LINEAR, MATERIAL_LAWS } material_law;
-
-/* X(key, default, where the model has none). E, nu and density: W&M section 4.2; peak is not in the paper. What is
- * allowed is in the table of known arrays, material.KEY: a nu below 0 (auxetic) is a material too; toward .5 the bulk
- * modulus grows without bound and the step shrinks to nothing. What lies outside is a slip of the pen. */
-#define MATERIAL_KEYS(X)                                                                                               \
-    X(E, 3000, NAN)                                                                                                    \
-    X(nu, 0.49, NAN)                                                                                                   \
-    X(density, 1000, NAN)                                                                                              \
-    X(peak, 30000, 0)
-
 typedef struct material {
-    material_law law;
-    double E, nu, density, peak; /* Pa, 1, kg/m3, Pa */
+    const law_row *law;
+    double value[LAW_OWN_KEYS]; /* of the law's keys: LAW_E and so on, in their units; nan where it has no such key */
+    double density, peak;       /* kg/m3, Pa */
 } material;
 
-/* Neo-Hookean, and each key's default. */
+/* Neo-Hookean, E 3000 Pa, nu 0.49, density 1000 kg/m3 (W&M section 4.2); peak 30000 Pa, which is not in the paper. */
 material materials_fallback(void);
 
 /* Makes the table: one material, `tissue`, of the defaults or of these values, which are
@@ -39,18 +32,22 @@ material materials_fallback(void);
 int materials_default(model *m, err *e);
 int materials_make(model *m, const material *of, err *e);
 
-/* Makes the table from a file, in its order; a key not given has the default, or that of `fallback` (NULL: the
- * default). A name given twice, a value out of range or an empty file is an error. */
+/* Makes the table: `count` materials of these names, unchecked. */
+int materials_put(model *m, const char *const *name, const material *of, int64_t count, err *e);
+
+/* Makes the table from a file, in its order; a key not given has the value of `fallback` (NULL: the default), if the
+ * material's law has the same keys. A name given twice, a value out of range or an empty file is an error. */
 int materials_read(model *m, in *s, err *e);
 int materials_read_with(model *m, in *s, const material *fallback, err *e);
 
-/* Changes an existing table from such a file: only the keys given change. An unknown name is an error: nothing
- * could be made of it. */
+/* Changes an existing table from such a file: only the keys given change. Where the law changes to one of other keys,
+ * the values of the old law's keys are dropped; a key drops the other of which a law takes one. An unknown name is an
+ * error: nothing could be made of it. */
 int materials_override(model *m, in *s, err *e);
 
-/* Changes one value, as -m asks: "NAME.KEY=VALUE" (KEY may be law). NAME may hold dots. What is wrong with it is an
- * error of the command line. */
-int materials_set(model *m, const char *assignment, err *e);
+/* The same, as -m asks: "NAME.KEY=VALUE" (KEY may be law), `count` of them, in any order; of one given twice the last
+ * counts. NAME may hold dots. What is wrong is an error of the command line, and changes nothing. */
+int materials_set(model *m, const char *const *assignment, int count, err *e);
 
 /* The index of the material named so, or -1. */
 int32_t materials_find(const model *m, const char *name);
@@ -59,14 +56,15 @@ int32_t materials_find(const model *m, const char *name);
  * Returns -1. */
 int materials_unknown(const model *m, const char *name, const char *place, int64_t line, err *e);
 
-/* Material i, checked: a model may have been edited by hand. A missing array or a nan is an error, but for peak (0). */
+/* Material i, checked: a model may have been edited by hand. A key of its law that has no value is an error, so is a
+ * value of a key that its law does not have. No peak is 0. */
 int materials_of(const model *m, int64_t i, material *to, err *e);
 
 /* Of every volume, checked; the caller frees them. NULL with e filled. */
 material *materials_of_volumes(const model *m, err *e);
 
-/* What elements are made of, looked up once: all borrowed from the model, which has element.volume, and of those of the
- * volumes. */
+/* What elements are made of, looked up once: all borrowed from the model, which has element.volume, and of those of
+ * the volumes. */
 typedef struct materials_map {
     const material *of_volume;
     const int32_t *volume, *mix; /* mix NULL: no element is mixed */
@@ -79,14 +77,28 @@ materials_map materials_map_of(const model *m, const material *of_volume);
  * of. */
 material materials_of_element(const materials_map *map, int64_t element);
 
-/* mu and K, in Pa. */
+/* mu and K at rest, in Pa. */
 static inline double material_mu(const material *a)
 {
-    return a->E / (2 * (1 + a->nu));
+    return a->law->moduli(a->value).mu;
 }
 static inline double material_bulk(const material *a)
 {
-    return a->E / (3 * (1 - 2 * a->nu));
+    return a->law->moduli(a->value).bulk;
+}
+
+/* E (Pa) and nu of small strains: as they were given, or those of mu and K. */
+double material_young(const material *a);
+double material_poisson(const material *a);
+
+/* The form that steppers take, and its coefficients, FORM_NUMBERS of which the form's are set. */
+static inline form material_form(const material *a)
+{
+    return a->law->form;
+}
+static inline void material_coefficients(const material *a, double *c)
+{
+    a->law->fill(a->value, c);
 }
 
 /* A modulus of what is mixed of two materials, s the share of b: a^(1-s) b^s. Two materials side by side have the sum

@@ -129,7 +129,7 @@ static int of_names(field *to, const model *m, bool of_material, err *e)
 static double strained(int which, const double h[9], const material *law)
 {
     double strain[9];
-    if (which == STRESS && law->law == MATERIAL_LINEAR)
+    if (which == STRESS && material_form(law) == FORM_LINEAR)
         return gradient_stress_linear(h, material_mu(law));
     if (which == STRESS)
         return gradient_stress(h, FORM_NEO_HOOKEAN, (const double[FORM_NUMBERS]){material_mu(law), material_bulk(law)});

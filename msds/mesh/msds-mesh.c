@@ -157,9 +157,9 @@ static int read_materials(const struct options *o, model *m, const material *usu
 static int make_materials(const struct options *o, model *m, err *e)
 {
     material usual = materials_fallback();
-    usual.law = MATERIAL_LINEAR;
-    usual.nu = isnan(o->poisson) ? .45 : o->poisson;
-    usual.E = isnan(o->young) ? usual.E : o->young;
+    usual.law = law_of_form(FORM_LINEAR);
+    usual.value[LAW_nu] = isnan(o->poisson) ? .45 : o->poisson;
+    usual.value[LAW_E] = isnan(o->young) ? usual.value[LAW_E] : o->young;
     usual.density = isnan(o->density) ? usual.density : o->density;
     return o->materials ? read_materials(o, m, &usual, e) : materials_make(m, &usual, e);
 }

@@ -75,13 +75,13 @@ static int make_shapes(msds_problem *p, const model *m, err *e)
     return 0;
 }
 
-/* The linear law's E and nu are those of small strains of any other. */
-static int take_material(msds_problem *p, int64_t t, const material *a)
+/* The linear law's E and nu are those of small strains of any other. share: of the element, that is enclosed. */
+static int take_material(msds_problem *p, int64_t t, const material *a, double share)
 {
-    p->young[t] = a->E;
-    simplex_material(a->E, a->nu, &p->element[t]);
+    p->young[t] = material_young(a) * share;
+    simplex_material(p->young[t], material_poisson(a), &p->element[t]);
     for (int c = 0; c < 4; c++)
-        p->weight[p->element_node[4 * t + c]] += a->density * p->element[t].volume / 4;
+        p->weight[p->element_node[4 * t + c]] += a->density * share * p->element[t].volume / 4;
     return 0;
 }
 
@@ -115,11 +115,7 @@ static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t vol
                        (double)s->fraction[t]);
     if (mix >= 0)
         own = material_mixed(&own, &list[mix], (double)s->mixture[t]);
-    if (s->fraction) {
-        own.E *= (double)s->fraction[t];
-        own.density *= (double)s->fraction[t];
-    }
-    return take_material(p, t, &own);
+    return take_material(p, t, &own, s->fraction ? (double)s->fraction[t] : 1);
 }
 
 static int make_materials(msds_problem *p, const model *m, err *e)

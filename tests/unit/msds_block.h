@@ -42,7 +42,8 @@ static inline void tets_tables(const tets *b, model *m)
 {
     err e = {0};
     material of = materials_fallback();
-    of.law = MATERIAL_LINEAR, of.E = b->young, of.nu = b->poisson, of.density = b->density;
+    of.law = law_of_form(FORM_LINEAR), of.value[LAW_E] = b->young, of.value[LAW_nu] = b->poisson,
+    of.density = b->density;
     tets_must(!materials_make(m, &of, &e) && !model_axis_add(m, "volume", 1, &e), &e);
     tets_array(m, "element.volume");
     tets_array(m, "volume.material");

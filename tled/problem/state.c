@@ -134,7 +134,7 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
     if (materials_of(m, model_find(m, "volume.material")->i32[i], &law, e))
         return -1;
     v->name = model_find(m, "volume.name")->str[i];
-    if (law.law != MATERIAL_NEO_HOOKEAN)
+    if (material_form(&law) != FORM_NEO_HOOKEAN)
         return err_set(e, NULL, 0,
                        "volume '%s' has the law '%s'; expected neo-hookean, here or by -m MATERIAL.law=", v->name,
                        model_find(m, "material.law")->str[model_find(m, "volume.material")->i32[i]]);

@@ -105,9 +105,7 @@ static int change_materials(session *s, const struct options *o, err *e)
     in *source = o->materials ? in_open(o->materials, e) : NULL;
     int result = o->materials && (!source || materials_override(&s->m, source, e)) ? -1 : 0;
     in_close(source);
-    for (int i = 0; !result && i < o->material.count; i++)
-        result = materials_set(&s->m, o->material.value[i], e);
-    return result;
+    return result ? result : materials_set(&s->m, o->material.value, o->material.count, e);
 }
 
 static int make_script(session *s, const struct options *o, err *e)

@@ -1,0 +1,135 @@
+#include "model/material_edit.h"
+
+#include "base/near.h"
+#include "base/num.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define KEY_NAME(key, unit, low, high, meaning)  #key,
+#define KEY_ARRAY(key, unit, low, high, meaning) "material." #key,
+const char *const material_edit_names[MATERIAL_EDIT_NAMES] = {"law", LAW_KEYS(KEY_NAME) LAW_COMMON_KEYS(KEY_NAME)};
+const char *const material_edit_arrays[LAW_ALL_KEYS] = {LAW_KEYS(KEY_ARRAY) LAW_COMMON_KEYS(KEY_ARRAY)};
+
+double *material_edit_value(material *of, int key)
+{
+    return key < LAW_OWN_KEYS ? &of->value[key] : key == LAW_density ? &of->density : &of->peak;
+}
+
+static void clear_keys(material *of, unsigned keys)
+{
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        if (keys >> k & 1)
+            of->value[k] = NAN;
+}
+
+void material_edit_clear(material *of)
+{
+    clear_keys(of, ~0U);
+}
+
+bool material_edit_valid(int key, double value, char words[KNOWN_WORDS])
+{
+    const known *of = known_find(material_edit_arrays[key]);
+    known_words(of, words);
+    return value >= of->low && value <= of->high;
+}
+
+int material_edit_unknown(err *e, const char *place, int64_t line, const char *what, const char *name,
+                          const char *const *names, int count)
+{
+    return line ? near_unknown(e, place, line, what, name, names, count)
+                : near_option(e, place, what, name, names, count);
+}
+
+static int unknown_law(err *e, const char *place, int64_t line, const char *name)
+{
+    const char *names[LAW_MOST];
+    const int count = law_names(names);
+    return material_edit_unknown(e, place, line, "law", name, names, count);
+}
+
+/* What is wrong with a row of a file, or, with line 0, in the option `place`; `words` are told as expected. */
+static int wrong(err *e, const char *place, int64_t line, const char *what, const char *words)
+{
+    return line ? err_set(e, place, line, "%s; expected %s", what, words)
+                : err_option(e, place, "%s; expected %s", what, words);
+}
+
+int material_edit_take(material_edit *r, int name, const char *text, const char *place, int64_t line, err *e)
+{
+    if (name == 0) {
+        r->of.law = law_find(text);
+        return r->of.law ? 0 : unknown_law(e, place, line, text);
+    }
+    double v;
+    char words[KNOWN_WORDS], what[200];
+    if (material_edit_valid(name - 1, num_double(text, &v) ? NAN : v, words)) {
+        *material_edit_value(&r->of, name - 1) = v;
+        return 0;
+    }
+    snprintf(what, sizeof what, "'%s=%.100s' is not allowed", material_edit_names[name], text);
+    return wrong(e, place, line, what, words);
+}
+
+/* ---- whether a law has all its keys, and no other's */
+
+/* "c10, c01, K or nu, density, peak". */
+static void all_words(const law_row *of, char to[LAW_WORDS])
+{
+    law_words(of, -1, to);
+    const size_t at = strlen(to);
+    snprintf(to + at, LAW_WORDS - at, ", density, peak");
+}
+
+static int check_keys(const law_row *of, unsigned has, const char *place, int64_t line, err *e)
+{
+    char words[LAW_WORDS], what[200];
+    const int foreign = law_next_key(has & ~law_keys(of), 0);
+    if (foreign >= 0) {
+        all_words(of, words);
+        snprintf(what, sizeof what, "'%s' is not a key of the law %s", law_key_name((law_key)foreign), of->name);
+        return wrong(e, place, line, what, words);
+    }
+    for (int g = 0; g < LAW_GROUPS && of->group[g]; g++) {
+        const int first = law_next_key(has & of->group[g], 0);
+        const int second = first < 0 ? -1 : law_next_key(has & of->group[g], first + 1);
+        law_words(of, g, words);
+        if (first < 0)
+            snprintf(what, sizeof what, "the law %s without %s", of->name, words);
+        else if (second >= 0)
+            snprintf(what, sizeof what, "the law %s with both %s and %s", of->name, law_key_name((law_key)first),
+                     law_key_name((law_key)second));
+        else
+            continue;
+        return wrong(e, place, line, what, words);
+    }
+    return 0;
+}
+
+unsigned material_edit_keys(const material *of)
+{
+    unsigned has = 0;
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        if (!isnan(of->value[k]))
+            has |= 1U << k;
+    return has;
+}
+
+int material_edit_apply(material *to, const material_edit *edit, const char *place, int64_t line, err *e)
+{
+    const unsigned given = (unsigned)(edit->given >> 1), own = given & ((1U << LAW_OWN_KEYS) - 1);
+    const law_row *law = edit->given & 1 ? edit->of.law : to->law;
+    material from = edit->of;
+    if (!law_keys_equal(law, to->law))
+        material_edit_clear(to);
+    to->law = law;
+    for (int g = 0; g < LAW_GROUPS; g++)
+        if (own & law->group[g])
+            clear_keys(to, law->group[g]);
+    for (int k = 0; k < LAW_ALL_KEYS; k++)
+        if (given >> k & 1)
+            *material_edit_value(to, k) = *material_edit_value(&from, k);
+    return check_keys(law, material_edit_keys(to) | own, place, line, e);
+}

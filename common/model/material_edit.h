@@ -1,0 +1,44 @@
+/* A change of one material, as a line of a file or assignments make it: which keys get which values. It is gathered
+ * first and applied after, so that the order of its keys does not matter. Owns nothing.
+ */
+#ifndef SINEW_MATERIAL_EDIT_H
+#define SINEW_MATERIAL_EDIT_H
+
+#include "model/known.h"
+#include "model/materials.h"
+
+enum { MATERIAL_EDIT_NAMES = LAW_ALL_KEYS + 1 };
+
+/* "law", and then the keys; and the arrays of the keys. */
+extern const char *const material_edit_names[MATERIAL_EDIT_NAMES];
+extern const char *const material_edit_arrays[LAW_ALL_KEYS];
+
+typedef struct material_edit {
+    uint64_t given; /* bits of material_edit_names */
+    material of;    /* what is given of it */
+} material_edit;
+
+/* Where a material has the value of a law_key. */
+double *material_edit_value(material *of, int key);
+
+/* All keys of laws become nan. */
+void material_edit_clear(material *of);
+
+/* Bits, 1 << LAW_E and so on, of the laws' keys that have a value. */
+unsigned material_edit_keys(const material *of);
+
+/* Whether the table of laws allows the value; words: what it expects. */
+bool material_edit_valid(int key, double value, char words[KNOWN_WORDS]);
+
+/* An unknown name in the file `place`, or, with line 0, in the option `place`. Returns -1. */
+int material_edit_unknown(err *e, const char *place, int64_t line, const char *what, const char *name,
+                          const char *const *names, int count);
+
+/* Takes the value of material_edit_names[name]; the caller sets the bit in `given`. */
+int material_edit_take(material_edit *edit, int name, const char *text, const char *place, int64_t line, err *e);
+
+/* Changes a material as the edit says, as materials_override describes. What is then wrong with its keys is told at
+ * place:line. */
+int material_edit_apply(material *to, const material_edit *edit, const char *place, int64_t line, err *e);
+
+#endif

@@ -1,0 +1,75 @@
+/* The laws of tissue: a table. A law has a name, keys, which a material gives values, and a form (forms.h), whose
+ * coefficients come of these values. Files of materials, assignments, models, messages and manuals take laws and keys
+ * from here. To add a law is to add its row, and a key that no other law has. Owns nothing; all is constant.
+ */
+#ifndef SINEW_LAW_H
+#define SINEW_LAW_H
+
+#include "physics/forms.h"
+
+#include <stdbool.h>
+
+/* X(key, unit, low, high, meaning). What lies outside of low to high, both included, is a slip of the pen; a nu below
+ * 0 (auxetic) is a material too, and toward .5 the bulk modulus grows without bound and the step shrinks to nothing. */
+#define LAW_KEYS(X)                                                                                                    \
+    X(E, "Pa", 1e-3, 1e12, "Young's modulus")                                                                          \
+    X(nu, "1", -.99, .4999, "Poisson's ratio")
+
+/* The same of what every material has, whatever its law. */
+#define LAW_COMMON_KEYS(X)                                                                                             \
+    X(density, "kg/m3", 1e-3, 1e6, "mass density at rest")                                                             \
+    X(peak, "Pa", 0, 1e12, "peak active stress of its muscles")
+
+#define LAW_KEY_INDEX(key, unit, low, high, meaning) LAW_##key,
+/* LAW_E and so on; those of laws first. */
+typedef enum law_key { LAW_KEYS(LAW_KEY_INDEX) LAW_COMMON_KEYS(LAW_KEY_INDEX) LAW_ALL_KEYS } law_key;
+enum { LAW_OWN_KEYS = LAW_density }; /* how many are of laws */
+#undef LAW_KEY_INDEX
+
+enum { LAW_GROUPS = 3 }; /* the most groups of keys of any law */
+
+/* At rest: the shear and the bulk modulus, Pa. */
+typedef struct law_moduli {
+    double mu, bulk;
+} law_moduli;
+
+typedef struct law_row {
+    const char *name;
+    form form;
+    unsigned group[LAW_GROUPS]; /* bits 1 << LAW_E and so on: of each group exactly one key must be given; then 0 */
+    law_moduli (*moduli)(const double *value);
+    void (*fill)(const double *value, double *c);      /* value: LAW_OWN_KEYS, nan where none; c: FORM_NUMBERS */
+    void (*read_back)(const double *c, double *value); /* the other way: one key of each group; the others become nan */
+    const char *meaning, *energy, *source;             /* for the manual, a line each */
+} law_row;
+
+/* Row i, or NULL past the last. Row 0 is the default. */
+const law_row *law_at(int i);
+
+/* NULL: there is none. */
+const law_row *law_find(const char *name);
+
+/* The first that has the form, or NULL. */
+const law_row *law_of_form(form f);
+
+/* Of all laws, in order; returns how many. */
+enum { LAW_MOST = 16 };
+int law_names(const char *to[LAW_MOST]);
+
+/* Bits of the keys that the law has. */
+unsigned law_keys(const law_row *of);
+
+/* The lowest key in such bits, from `from` on; -1: none. */
+int law_next_key(unsigned keys, int from);
+
+/* Whether two laws have the same groups of keys, so that values of one are values of the other. */
+bool law_keys_equal(const law_row *a, const law_row *b);
+
+const char *law_key_name(law_key key);
+const char *law_key_unit(law_key key);
+
+/* "c10, c01, K or nu": the keys of one group, or of all groups where group is -1. */
+enum { LAW_WORDS = 100 };
+void law_words(const law_row *of, int group, char to[LAW_WORDS]);
+
+#endif

@@ -1,0 +1,64 @@
+/* The table of laws: each row is whole, its coefficients come of its keys and give them back, and its moduli are
+ * theirs. */
+#include "physics/law.h"
+
+#include "tap.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Values for the first key of each group. */
+static void fill_first(const law_row *a, double *value)
+{
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        value[k] = NAN;
+    for (int g = 0; g < LAW_GROUPS && a->group[g]; g++) {
+        const int key = law_next_key(a->group[g], 0);
+        value[key] = key == LAW_nu ? .45 : 3000 + 100 * g;
+    }
+}
+
+static void whole(const law_row *a)
+{
+    double value[LAW_OWN_KEYS], back[LAW_OWN_KEYS], c[FORM_NUMBERS] = {0};
+    char words[LAW_WORDS];
+    ok(law_find(a->name) == a, "%s is found", a->name);
+    ok(a->meaning && a->energy && a->source && a->form < FORM_COUNT && law_of_form(a->form), "and has all columns");
+    law_words(a, -1, words);
+    ok(strlen(words) + sizeof ", density, peak" < sizeof words, "its keys fit a message: %s", words);
+    fill_first(a, value);
+    const law_moduli at = a->moduli(value);
+    a->fill(value, c);
+    a->read_back(c, back);
+    bool same = true;
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        same = same && (isnan(value[k]) ? isnan(back[k]) : fabs(back[k] - value[k]) <= 1e-12 * fabs(value[k]));
+    ok(same, "its coefficients give its keys back");
+    ok(at.mu > 0 && at.bulk > 0 && isfinite(at.bulk), "moduli %g and %g Pa", at.mu, at.bulk);
+}
+
+int main(void)
+{
+    const char *names[LAW_MOST];
+    int count = law_names(names);
+    ok(count > 1 && !law_at(count) && !law_at(-1), "%d laws", count);
+    for (int i = 0; i < count; i++) {
+        ok(!strcmp(names[i], law_at(i)->name), "names are in order");
+        whole(law_at(i));
+    }
+    ok(!law_find("hookean"), "another name is not found");
+    const law_row *a = law_at(0), *linear = law_find("linear");
+    ok(!strcmp(a->name, "neo-hookean") && a->form == FORM_NEO_HOOKEAN, "the default is neo-Hookean");
+    ok(law_keys_equal(a, linear) && linear->form == FORM_LINEAR, "linear has the same keys, and a form of its own");
+    const double value[LAW_OWN_KEYS] = {[LAW_E] = 3000, [LAW_nu] = .45};
+    double c[FORM_NUMBERS];
+    a->fill(value, c);
+    near_(c[0], 3000 / 2.9, 1e-9, "mu = E / (2 (1 + nu))");
+    near_(c[1], 10000, 1e-8, "K = E / (3 (1 - 2 nu))");
+    ok(!strcmp(law_key_name(LAW_density), "density") && !strcmp(law_key_unit(LAW_E), "Pa"),
+       "keys have names and units");
+    ok(law_next_key(law_keys(a), 0) == LAW_E && law_next_key(law_keys(a), LAW_E + 1) == LAW_nu &&
+           law_next_key(law_keys(a), LAW_nu + 1) < 0,
+       "its keys, one after the other");
+    return done_testing();
+}
