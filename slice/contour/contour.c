@@ -26,13 +26,19 @@ static int open_march(march *m, err *e)
 {
     m->wide = m->size[0] + 2;
     m->area = m->wide * (m->size[1] + 2);
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < 5; i++) {
         m->edge[i] = mem_array(m->area, sizeof *m->edge[i], "edges", e);
-    for (int i = 0; i < 2; i++)
+        if (!m->edge[i])
+            return -1;
+    }
+    for (int i = 0; i < 2; i++) {
         m->inside[i] = mem_array(m->area, 1, "a layer of samples", e);
+        if (!m->inside[i])
+            return -1;
+    }
     m->four = mem_array(m->wide + 8, 1, "a row of cubes", e);
-    m->code = mem_array(m->wide + 8, 1, "a row of cubes", e);
-    return e->status ? -1 : 0;
+    m->code = m->four ? mem_array(m->wide + 8, 1, "a row of cubes", e) : NULL;
+    return m->code ? 0 : -1;
 }
 
 static void close_march(march *m)

@@ -7,7 +7,8 @@
 
 enum { BINS = 1 << 16, TRIES = 20 };
 
-/* The value at or above which there are about as many samples as there should be. */
+/* The value at or above which there are about as many samples as there should be.
+ * 0 with e filled for want of memory. */
 static double first_guess(const float *value, int64_t count, double wanted, err *e)
 {
     int64_t *bin = mem_array(BINS + 1, sizeof *bin, "a histogram", e), above = 0;
@@ -42,13 +43,15 @@ int contour_make_of_volume(contour *c, const float *value, const int64_t size[3]
     int64_t count = size[0] * size[1] * size[2];
     bracket b = {0, 1, (double)count - volume, -volume};
     double level = first_guess(value, count, volume, e);
-    for (int tries = 0; !e->status; tries++) {
+    if (level == 0)
+        return -1;
+    for (int tries = 0;; tries++) {
         c->vertices = c->triangles = 0;
         if (contour_make(c, value, size, (float)level, table, e))
-            break;
+            return -1;
         double more = contour_volume(c) - volume;
         if (fabs(more) <= .005 * volume || (tries >= TRIES && c->triangles) || tries >= 2 * TRIES)
-            break;
+            return 0;
         if (more > 0) {
             b.low = level;
             b.more = more;
@@ -58,5 +61,4 @@ int contour_make_of_volume(contour *c, const float *value, const int64_t size[3]
         }
         level = next_level(&b, tries);
     }
-    return e->status ? -1 : 0;
 }

@@ -51,7 +51,8 @@ int contour_smooth(contour *c, int passes, err *e)
     int32_t *neighbours = mem_array(c->vertices, sizeof *neighbours, "neighbours", e);
     double *sum = mem_array(count, sizeof *sum, "smoothing", e),
            *outward = mem_array(count, sizeof *outward, "smoothing", e);
-    if (!e->status) {
+    const bool made = neighbours && sum && outward;
+    if (made) {
         for (int64_t t = 0; t < 3 * c->triangles; t++)
             neighbours[c->triangle[t]]++;
         for (int64_t i = 0; i < count; i++)
@@ -66,7 +67,7 @@ int contour_smooth(contour *c, int passes, err *e)
     free(neighbours);
     free(sum);
     free(outward);
-    return e->status ? -1 : 0;
+    return made ? 0 : -1;
 }
 
 /* A cubic in [-most, most], from its values at -most, -most/3, most/3 and most (Lagrange). */

@@ -159,23 +159,23 @@ static int write_surface(job *j, const char *group, const samples_box *inner, co
     if (check_memory(j, group, &box, e))
         return -1;
     float *value = mem_array(samples_count(&box), sizeof *value, "samples", e);
-    if (value) {
-        if (label)
-            samples_mark(&j->v, &box, label->value, value);
-        else
-            samples_take(&j->v, &box, value);
-        make_surface(j, &box, value, label, &c, e);
-    }
+    if (!value)
+        return -1;
+    if (label)
+        samples_mark(&j->v, &box, label->value, value);
+    else
+        samples_take(&j->v, &box, value);
+    int result = make_surface(j, &box, value, label, &c, e);
     free(value);
-    if (!e->status && !c.triangles)
-        err_set(e, NULL, 0, "%s: nothing is left of it; expected less smoothing", group);
-    if (!e->status) {
+    if (!result && !c.triangles)
+        result = err_set(e, NULL, 0, "%s: nothing is left of it; expected less smoothing", group);
+    if (!result) {
         contour_write(&c, &j->v, &box, group, j->vertices, j->to);
         j->vertices += c.vertices;
         say_surface(j, &c, group, label);
     }
     contour_free(&c);
-    return e->status ? -1 : 0;
+    return result;
 }
 
 /* The label of that name; -1: none. */
@@ -200,15 +200,20 @@ static char *group_of(const job *j, int64_t value, err *e)
     return group;
 }
 
-/* The group becomes the job's. Two surfaces of one group would be one. */
-static int take_group(job *j, char *group, err *e)
+/* Two surfaces of one group would be one. */
+static int check_group(const job *j, const char *group, err *e)
 {
     for (int64_t i = 0; i < j->groups; i++)
-        if (!strcmp(j->group[i], group)) {
-            err_set(e, NULL, 0, "a second surface in group '%s'; expected labels once, and names that differ", group);
-            break;
-        }
-    if (e->status || MEM_ROOM(&j->group, &j->group_room, j->groups + 1, "groups", e)) {
+        if (!strcmp(j->group[i], group))
+            return err_set(e, NULL, 0, "a second surface in group '%s'; expected labels once, and names that differ",
+                           group);
+    return 0;
+}
+
+/* The group becomes the job's. */
+static int take_group(job *j, char *group, err *e)
+{
+    if (check_group(j, group, e) || MEM_ROOM(&j->group, &j->group_room, j->groups + 1, "groups", e)) {
         free(group);
         return -1;
     }
@@ -248,34 +253,39 @@ static int write_named(job *j, const char *name, err *e)
 static int write_list(job *j, const char *given, err *e)
 {
     if (!strcmp(given, "all")) {
-        for (int64_t l = 0; l < j->labels && !e->status; l++)
-            write_label(j, &j->label[l], e);
-        return e->status ? -1 : 0;
+        int failed = 0;
+        for (int64_t l = 0; !failed && l < j->labels; l++)
+            failed = write_label(j, &j->label[l], e);
+        return failed;
     }
     if (find_name(&j->v, given) >= 0)
         return write_named(j, given, e);
     char *list = mem_text(given, e);
-    for (char *name = list, *comma; name && !e->status; name = comma) {
+    int failed = list ? 0 : -1;
+    for (char *name = list, *comma; name && !failed; name = comma) {
         comma = strchr(name, ',');
         if (comma)
             *comma++ = '\0';
         if (*name)
-            write_named(j, name, e);
+            failed = write_named(j, name, e);
         else
-            err_usage(e, "-l '%s': expected names or numbers of labels between commas, or all", given);
+            failed = err_usage(e, "-l '%s': expected names or numbers of labels between commas, or all", given);
     }
     free(list);
-    return e->status ? -1 : 0;
+    return failed;
 }
 
 static int write_labels(job *j, err *e)
 {
     j->labels = samples_labels(&j->v, &j->label, e);
-    if (j->labels < 1 || !j->label)
-        return e->status ? -1 : err_set(e, NULL, 0, "no label has voxels");
-    for (int i = 0; i < j->o->labels.count && !e->status; i++)
-        write_list(j, j->o->labels.value[i], e);
-    return e->status ? -1 : 0;
+    if (j->labels < 0)
+        return -1;
+    if (j->labels == 0)
+        return err_set(e, NULL, 0, "no label has voxels");
+    for (int i = 0; i < j->o->labels.count; i++)
+        if (write_list(j, j->o->labels.value[i], e))
+            return -1;
+    return 0;
 }
 
 static int write_level(job *j, err *e)

@@ -102,16 +102,16 @@ int slice_cut_write(const slice_cutter *c, const slice_plane *at, const model *m
     int64_t *vertex = NULL, pieces = 0;
     int32_t last = -2;
     slice_piece *piece = slice_cutter_pieces(c, &pieces, e);
+    const int failed = piece ? put_vertices(piece, pieces, at, to, &vertex, e) : -1;
     *count = 0;
-    if (piece && !put_vertices(piece, pieces, at, to, &vertex, e))
-        for (int64_t i = 0; i < pieces; i++) {
-            const int32_t group = volumes ? volumes->i32[piece[i].tet] : -1;
-            if (group != last)
-                put_group(m, group, to);
-            last = group;
-            *count += put_face(&piece[i], vertex + 4 * i, to);
-        }
+    for (int64_t i = 0; !failed && i < pieces; i++) {
+        const int32_t group = volumes ? volumes->i32[piece[i].tet] : -1;
+        if (group != last)
+            put_group(m, group, to);
+        last = group;
+        *count += put_face(&piece[i], vertex + 4 * i, to);
+    }
     free(vertex);
     free(piece);
-    return e->status ? -1 : 0;
+    return failed;
 }

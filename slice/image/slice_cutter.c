@@ -75,6 +75,19 @@ static int make_mesh(slice_cutter *c, err *e)
     return c->chunk ? 0 : -1;
 }
 
+/* A piece of memory for each thread, so that none waits. */
+static int make_scratches(slice_cutter *c, err *e)
+{
+    const int threads = pool_threads(c->s.threads);
+    c->scratch = mem_array(threads, sizeof *c->scratch, "rows of an image", e);
+    if (!c->scratch)
+        return -1;
+    for (; c->scratches < threads; c->scratches++)
+        if (make_scratch(c, &c->scratch[c->scratches], e))
+            return -1;
+    return 0;
+}
+
 slice_cutter *slice_cutter_make(const slice_setup *s, err *e)
 {
     slice_cutter *c = mem_array(1, sizeof *c, "an image", e);
@@ -84,21 +97,16 @@ slice_cutter *slice_cutter_make(const slice_setup *s, err *e)
     c->s.regions = s->regions < s->size.rows ? s->regions : s->size.rows;
     c->rows = (s->size.rows + c->s.regions - 1) / c->s.regions;
     c->start = mem_array(c->s.regions + 1, sizeof *c->start, "regions", e);
-    int threads = pool_threads(s->threads);
-    c->scratch = c->start ? mem_array(threads, sizeof *c->scratch, "rows of an image", e) : NULL;
-    while (c->scratch && c->scratches < threads && !make_scratch(c, &c->scratch[c->scratches], e))
-        c->scratches++;
-    if (!e->status && s->mesh)
-        make_mesh(c, e);
+    if (!c->start || make_scratches(c, e) || (s->mesh && make_mesh(c, e))) {
+        slice_cutter_free(c);
+        return NULL;
+    }
     c->fill = (slice_fill){.shown = s->shown, .all = true, .black = s->cells->black};
     for (int32_t r = 0; r < s->size.rows; r++)
         c->fill.all &= s->shown[r].from[0] == 0 && s->shown[r].to[0] == s->size.columns;
     for (int a = 0; a < 3; a++)
         c->fill.end[a] = (s->cells->size[a] + .5) * SLICE_ONE;
-    if (!e->status)
-        return c;
-    slice_cutter_free(c);
-    return NULL;
+    return c;
 }
 
 void slice_cutter_free(slice_cutter *c)

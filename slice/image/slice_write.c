@@ -21,9 +21,7 @@ int slice_writer_open(slice_writer *w, const char *path, err *e)
         return -1;
     if (!out_is_terminal(w->stream))
         return 0;
-    err_set(e, "stdout", 0, "is a terminal, and an image is not for reading; expected -o FILE or a pipe");
-    e->status = STATUS_USAGE;
-    return -1;
+    return err_option(e, "stdout", "is a terminal, and an image is not for reading; expected -o FILE or a pipe");
 }
 
 static void put_comment(const slice_plane *at, const slice_view *view, out *to)

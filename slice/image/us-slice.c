@@ -1,10 +1,10 @@
 /* us-slice: for each frame, the ultrasound image that its probe sees of a deformed volume (PST section IV). */
 #include "base/mem.h"
-#include "base/path.h"
 #include "cli/progress.h"
 #include "cli/tool.h"
 #include "model/source.h"
 #include "slice/image/slice_cut.h"
+#include "slice/image/slice_files.h"
 #include "slice/image/slice_grey.h"
 #include "slice/image/slice_overlay.h"
 #include "slice/image/slice_view.h"
@@ -188,9 +188,9 @@ static int read_volume(job *j, const char *path, err *e)
         w = (slice_window){j->o->window.value[0], j->o->window.value[1]};
     if (w.low != 0 || w.high != 255)
         tool_say(j->t, "black is %.6g, white %.6g", w.low, w.high);
-    slice_cells_make(&j->cells, &v, w, j->threads, e);
+    const int failed = slice_cells_make(&j->cells, &v, w, j->threads, e);
     volume_free(&v);
-    return e->status ? -1 : 0;
+    return failed;
 }
 
 /* The array that pressed, as the model says it. 1: it makes no image, or none is known, and *p is as it was; why says
@@ -284,22 +284,26 @@ static int make_overlay(job *j, err *e)
     const volume_budget budget = {.most = j->o->common.memory, .peak = peak_of_labels, .context = &j->cells};
     if (!j->o->labels)
         return 0;
-    if (!volume_load(&labels, j->o->labels, &budget, e))
-        slice_overlay_make(&j->overlay, &labels, &j->cells, j->view.size, e);
+    const int failed = volume_load(&labels, j->o->labels, &budget, e) ||
+                       slice_overlay_make(&j->overlay, &labels, &j->cells, j->view.size, e);
     volume_free(&labels);
-    return e->status ? -1 : 0;
+    return failed ? -1 : 0;
 }
 
 static int make_images(job *j, err *e)
 {
     const int64_t count = (int64_t)j->view.size.columns * j->view.size.rows;
     j->image = mem_array(count, 1, "an image", e);
-    j->colour = j->image && j->o->labels ? mem_array(3 * count, 1, "an image", e) : NULL;
-    if (!e->status && j->slices > 1) {
-        j->sum = mem_array(count, sizeof *j->sum, "an image", e);
-        j->one = j->sum ? mem_array(count, 1, "an image", e) : NULL;
-    }
-    return e->status ? -1 : 0;
+    if (!j->image)
+        return -1;
+    j->colour = j->o->labels ? mem_array(3 * count, 1, "an image", e) : NULL;
+    if (j->o->labels && !j->colour)
+        return -1;
+    if (j->slices < 2)
+        return 0;
+    j->sum = mem_array(count, sizeof *j->sum, "an image", e);
+    j->one = j->sum ? mem_array(count, 1, "an image", e) : NULL;
+    return j->one ? 0 : -1;
 }
 
 static int make_cutter(job *j, err *e)
@@ -326,12 +330,13 @@ static int read_body(job *j, err *e)
     if (!j->o->body)
         return 0;
     in *s = in_open(j->o->body, e);
-    if (s && !body_read(&b, s, e)) {
-        j->place = b.volume;
-        body_free(&b);
-    }
+    const int failed = s ? body_read(&b, s, e) : -1;
     in_close(s);
-    return e->status ? -1 : 0;
+    if (failed)
+        return -1;
+    j->place = b.volume;
+    body_free(&b);
+    return 0;
 }
 
 /* The poses last: a FIFO opens when its writer comes. */
@@ -365,8 +370,10 @@ static int draw(job *j, const double origin[3], const double turn[4], const doub
     *at = slice_view_plane(&j->view, origin, turn, 0);
     if (j->overlay.seen)
         slice_cutter_also(j->cutter, slice_overlay_take, &j->overlay);
-    if (slice_cutter_image(j->cutter, at, displacement, j->image, NULL, e) || n == 1)
-        return e->status ? -1 : 0;
+    if (slice_cutter_image(j->cutter, at, displacement, j->image, NULL, e))
+        return -1;
+    if (n == 1)
+        return 0;
     slice_cutter_also(j->cutter, NULL, NULL);
     memset(j->sum, 0, (size_t)count * sizeof *j->sum);
     for (int i = 0; i < n; i++) {
@@ -384,37 +391,12 @@ static int draw(job *j, const double origin[3], const double turn[4], const doub
     return 0;
 }
 
-/* The file of --cut for an image; the caller frees it. */
-static char *cut_name(const job *j, int64_t index, err *e)
-{
-    numbered names;
-    if (!strchr(j->o->cut, '%'))
-        return mem_text(j->o->cut, e);
-    return numbered_of(&names, j->o->cut, "", e) ? NULL : numbered_name(&names, index, e);
-}
-
-/* That the numbered files of an image are none that is read, nor each other. */
-static int check_files(const job *j, int64_t index, err *e)
-{
-    char *image = j->writer.stream ? NULL : numbered_name(&j->writer.names, index, e);
-    char *cut = !e->status && j->o->cut ? cut_name(j, index, e) : NULL;
-    if (!e->status && image)
-        tool_check_written(j->t, "-o", image, e);
-    if (!e->status && cut)
-        tool_check_written(j->t, "--cut", cut, e);
-    if (!e->status && image && cut && path_is_same(image, cut))
-        err_usage(e, "--cut '%.400s' would overwrite the file of -o '%.400s'; expected another file", cut, image);
-    free(image);
-    free(cut);
-    return e->status ? -1 : 0;
-}
-
 static int write_cut(job *j, const slice_plane *at, int64_t index, err *e)
 {
     int64_t count = 0;
     if (!j->o->cut)
         return 0;
-    char *name = cut_name(j, index, e);
+    char *name = slice_files_cut(j->o->cut, index, e);
     out *to = name ? out_open(name, false, e) : NULL;
     free(name);
     if (!to)
@@ -446,7 +428,7 @@ static int put_image(job *j, int64_t index, const double origin[3], const double
     const int64_t count = (int64_t)j->view.size.columns * j->view.size.rows;
     const double start = progress_clock();
     slice_plane at;
-    if (check_files(j, index, e) || draw(j, origin, turn, displacement, &at, e))
+    if (slice_files_check(j->t, &j->writer, j->o->cut, index, e) || draw(j, origin, turn, displacement, &at, e))
         return -1;
     for (int64_t i = 0; !j->lit && i < count; i++)
         j->lit = j->image[i] > 0;

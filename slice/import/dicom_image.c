@@ -223,11 +223,13 @@ static int make_frames(const reading *r, int64_t frames)
     d->time = mem_array(frames, sizeof *d->time, "frames", r->e);
     d->kind = mem_array(frames, sizeof *d->kind, "frames", r->e);
     d->scale = mem_array(frames, sizeof *d->scale, "frames", r->e);
-    for (int64_t i = 0; !r->e->status && i < 3 * frames; i++)
+    if (!d->position || !d->time || !d->kind || !d->scale)
+        return -1;
+    for (int64_t i = 0; i < 3 * frames; i++)
         d->position[i] = (double)NAN;
-    for (int64_t i = 0; !r->e->status && i < frames; i++)
+    for (int64_t i = 0; i < frames; i++)
         d->scale[i] = (dicom_scale){d->slope, d->intercept};
-    return r->e->status ? -1 : 0;
+    return 0;
 }
 
 /* A volume in time of which NumberOfFrames counts the times, and private elements the planes. */

@@ -50,8 +50,11 @@ static int inflate_rest(growing *to, const unsigned char *from, size_t size, con
     z_stream z = {0};
     if (inflateInit2(&z, -MAX_WBITS) != Z_OK)
         return err_memory(e, "decompressing");
-    int code = Z_OK;
-    while (code == Z_OK && !MEM_ROOM(&to->bytes, &to->capacity, to->size + PIECE, "a file", e)) {
+    int code = Z_OK, failed = 0;
+    while (code == Z_OK) {
+        failed = MEM_ROOM(&to->bytes, &to->capacity, to->size + PIECE, "a file", e);
+        if (failed)
+            break;
         uInt part = size < PIECE ? (uInt)size : PIECE;
         int64_t room = to->capacity - to->size < 1 << 30 ? to->capacity - to->size : 1 << 30;
         if (!z.avail_in) {
@@ -66,9 +69,9 @@ static int inflate_rest(growing *to, const unsigned char *from, size_t size, con
         to->size += room - z.avail_out;
     }
     inflateEnd(&z);
-    if (!e->status && code != Z_STREAM_END)
-        err_set(e, name, 0, "not whole, or damaged: deflated elements that do not end");
-    return e->status ? -1 : 0;
+    if (!failed && code != Z_STREAM_END)
+        return err_set(e, name, 0, "not whole, or damaged: deflated elements that do not end");
+    return failed;
 }
 
 int dicom_inflate(const unsigned char *bytes, size_t size, unsigned char **plain, size_t *plain_size, const char *name,

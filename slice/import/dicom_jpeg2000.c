@@ -109,31 +109,39 @@ static bool put(const opj_image_t *image, const dicom_frame *f, unsigned char *t
     return true;
 }
 
+static int decode(const dicom_frame *f, opj_codec_t *codec, opj_stream_t *stream, unsigned char *to, const char *name,
+                  err *e)
+{
+    opj_dparameters_t how;
+    opj_image_t *image = NULL;
+    int result = 0;
+    opj_set_default_decoder_parameters(&how);
+    if (!opj_setup_decoder(codec, &how) || !opj_decoder_set_strict_mode(codec, OPJ_TRUE) ||
+        !opj_read_header(stream, codec, &image))
+        result = err_set(e, name, 0, "damaged JPEG 2000; expected a codestream");
+    else if (!has_shape(image, f))
+        result = err_set(e, name, 0,
+                         "JPEG 2000 whose samples are not as large as the image's; expected %d bits each, at most",
+                         8 * f->bytes);
+    else if (!opj_decode(codec, stream, image) || !put(image, f, to))
+        result = err_set(e, name, 0, "damaged JPEG 2000; expected a whole codestream");
+    opj_image_destroy(image);
+    return result;
+}
+
 int dicom_jpeg2000(const dicom_frame *f, const unsigned char *from, size_t size, unsigned char *to, const char *name,
                    err *e)
 {
     source s = {from, size, 0};
-    opj_dparameters_t how;
     if (!is_sane(f, from, size))
         return err_set(e, name, 0,
                        "JPEG 2000 of another shape than the image; expected %lld x %lld pixels of %d samples",
                        (long long)f->columns, (long long)f->rows, f->samples);
     opj_stream_t *stream = open_source(&s);
     opj_codec_t *codec = opj_create_decompress(OPJ_CODEC_J2K);
-    opj_image_t *image = NULL;
-    opj_set_default_decoder_parameters(&how);
-    if (!stream || !codec)
-        err_memory(e, "decompressing JPEG 2000");
-    else if (!opj_setup_decoder(codec, &how) || !opj_decoder_set_strict_mode(codec, OPJ_TRUE) ||
-             !opj_read_header(stream, codec, &image))
-        err_set(e, name, 0, "damaged JPEG 2000; expected a codestream");
-    else if (!has_shape(image, f))
-        err_set(e, name, 0, "JPEG 2000 whose samples are not as large as the image's; expected %d bits each, at most",
-                8 * f->bytes);
-    else if (!opj_decode(codec, stream, image) || !put(image, f, to))
-        err_set(e, name, 0, "damaged JPEG 2000; expected a whole codestream");
-    opj_image_destroy(image);
+    const int result =
+        stream && codec ? decode(f, codec, stream, to, name, e) : err_memory(e, "decompressing JPEG 2000");
     opj_destroy_codec(codec);
     opj_stream_destroy(stream);
-    return e->status ? -1 : 0;
+    return result;
 }

@@ -102,8 +102,10 @@ int dicom_lengths_check(const unsigned char *bytes, size_t size, const char *nam
 {
     walk w = {.bytes = bytes, .size = size};
     head h;
-    if (size < HEAD || read_meta(&w, name, e))
-        return e->status ? -1 : 0;
+    if (size < HEAD)
+        return 0;
+    if (read_meta(&w, name, e))
+        return -1;
     while (read_head(&w, w.implicit, w.big, &h)) {
         if (h.length == UNDEFINED && !strcmp(h.vr, "UN")) /* what is in it is written in another way */
             return 0;

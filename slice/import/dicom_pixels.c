@@ -83,19 +83,21 @@ static unsigned char *join_frame(dicom_file *f, int64_t *at, int64_t *size, err 
 {
     unsigned char *joined = NULL;
     int64_t room = 0, pieces = dicom_pieces(f);
-    for (*size = 0; *at < pieces && !e->status; ++*at) {
+    int failed = 0;
+    for (*size = 0; *at < pieces && !failed; ++*at) {
         size_t length = 0;
         const unsigned char *piece = dicom_piece(f, *at, &length);
         if (!piece || !length || (*size && begins_frame(piece, length)))
             break;
-        if (!mem_grow(&joined, &room, *size + (int64_t)length, 1, "a frame", e) && joined)
+        failed = mem_grow(&joined, &room, *size + (int64_t)length, 1, "a frame", e);
+        if (!failed && joined)
             memcpy(joined + *size, piece, length);
         *size += (int64_t)length;
     }
-    if (!e->status && *size)
+    if (!failed && *size)
         return joined;
     free(joined);
-    if (!e->status)
+    if (!failed)
         refuse(f, e, "a frame without bytes, or fewer frames than are said", "a codestream of JPEG 2000 each");
     return NULL;
 }
@@ -106,14 +108,14 @@ static unsigned char *unpack_jpeg2000(dicom_samples *s, const dicom_image *d, di
     dicom_frame frame = {d->columns, d->rows, dicom_colour_samples(s->colour), s->bytes};
     int64_t size = s->plane * frame.samples * s->bytes, at = 0, length;
     unsigned char *to = mem_array(s->frames, (size_t)size, "pixels", e);
+    int failed = to ? 0 : -1;
     s->planar = false;
-    for (int64_t i = 0; i < s->frames && !e->status; i++) {
+    for (int64_t i = 0; i < s->frames && !failed; i++) {
         unsigned char *from = join_frame(f, &at, &length, e);
-        if (from)
-            dicom_jpeg2000(&frame, from, (size_t)length, to + i * size, dicom_file_name(f), e);
+        failed = from ? dicom_jpeg2000(&frame, from, (size_t)length, to + i * size, dicom_file_name(f), e) : -1;
         free(from);
     }
-    if (!e->status)
+    if (!failed)
         return to;
     free(to);
     return NULL;
@@ -152,16 +154,16 @@ static int unpack(dicom_samples *s, const dicom_image *d, dicom_file *f, err *e)
 static int take_greys(dicom_image *d, dicom_samples *s, const unsigned char *from, dicom_file *f, err *e)
 {
     dicom_palette *palette = s->colour == DICOM_PALETTE ? read_palette(f, s->negative, e) : NULL;
-    if (!e->status) {
-        d->bytes = dicom_samples_bytes(s);
-        d->negative = s->negative && s->colour <= DICOM_INVERTED;
-        d->pixels = mem_array(s->plane * s->frames, (size_t)d->bytes, "pixels", e);
-    }
+    if (s->colour == DICOM_PALETTE && !palette)
+        return -1;
     s->palette = palette;
-    if (!e->status)
+    d->bytes = dicom_samples_bytes(s);
+    d->negative = s->negative && s->colour <= DICOM_INVERTED;
+    d->pixels = mem_array(s->plane * s->frames, (size_t)d->bytes, "pixels", e);
+    if (d->pixels)
         dicom_samples_grey(s, from, d->pixels);
     free(palette);
-    return e->status ? -1 : 0;
+    return d->pixels ? 0 : -1;
 }
 
 /* Samples that are not compressed, or no longer. */

@@ -68,13 +68,14 @@ static int push_folder(pending *p, const found *folder, err *e)
     DIR *d = opendir(folder->path);
     if (!d)
         return err_system(e, place, errno, "cannot read the folder");
-    for (struct dirent *one = readdir(d); one && !e->status; one = readdir(d))
+    int failed = 0;
+    for (struct dirent *one = readdir(d); one && !failed; one = readdir(d))
         if (one->d_name[0] != '.')
-            push(p, join(folder->path, one->d_name, e), false, folder->depth + 1, folder->operand, e);
+            failed = push(p, join(folder->path, one->d_name, e), false, folder->depth + 1, folder->operand, e);
     closedir(d);
     if (p->count > first)
         qsort(p->one + first, (size_t)(p->count - first), sizeof *p->one, by_name);
-    return e->status ? -1 : 0;
+    return failed;
 }
 
 static int add(import_files *f, const found *one, err *e)
@@ -104,20 +105,21 @@ static int look_at(import_files *f, pending *p, const found *one, err *e)
 int import_find(import_files *f, char *const *operand, int count, err *e)
 {
     pending p = {0};
-    for (int i = count - 1; i >= 0 && !e->status; i--)
-        push(&p, mem_text(operand[i], e), true, 0, i, e);
-    while (p.count && !e->status) {
+    int failed = 0;
+    for (int i = count - 1; i >= 0 && !failed; i--)
+        failed = push(&p, mem_text(operand[i], e), true, 0, i, e);
+    while (p.count && !failed) {
         found one = p.one[--p.count];
         f->operand = one.operand;
-        look_at(f, &p, &one, e);
+        failed = look_at(f, &p, &one, e);
         free(one.path);
     }
     while (p.count)
         free(p.one[--p.count].path);
     free(p.one);
-    if (!e->status && !f->count)
-        err_set(e, NULL, 0, "no files; expected DICOM, NRRD or MetaImage");
-    return e->status ? -1 : 0;
+    if (!failed && !f->count)
+        return err_set(e, NULL, 0, "no files; expected DICOM, NRRD or MetaImage");
+    return failed;
 }
 
 void import_free(import_files *f)
@@ -129,17 +131,20 @@ void import_free(import_files *f)
     *f = (import_files){0};
 }
 
-import_kind import_kind_of(const import_files *f, err *e)
+int import_kind_of(const import_files *f, import_kind *kind, err *e)
 {
     char head[HEADER];
+    *kind = IMPORT_DICOM;
     if (f->count != 1 || !f->named[0])
-        return IMPORT_DICOM;
+        return 0;
     in *s = in_open(f->path[0], e);
     int64_t got = s ? in_read(s, head, sizeof head, e) : -1;
     in_close(s);
-    if (got < 0 || dicom_is(head, (size_t)got))
-        return IMPORT_DICOM;
-    return sweep_is(head, (size_t)got) ? IMPORT_SWEEP : IMPORT_VOLUME;
+    if (got < 0)
+        return -1;
+    if (!dicom_is(head, (size_t)got))
+        *kind = sweep_is(head, (size_t)got) ? IMPORT_SWEEP : IMPORT_VOLUME;
+    return 0;
 }
 
 int64_t import_read(import_files *f, int64_t i, char **bytes, err *e)

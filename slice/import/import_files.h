@@ -26,7 +26,7 @@ const char *import_base(const char *path);
 
 /* One file that is none of DICOM is a volume or a sweep; all else is DICOM. -1 with
  * e filled where it cannot be read. */
-import_kind import_kind_of(const import_files *f, err *e);
+int import_kind_of(const import_files *f, import_kind *kind, err *e);
 
 /* The bytes of file i, which the caller frees. Their count; 0: it is no DICOM, was in a folder, and is counted in
  * f->other; -1 with e filled. */

@@ -96,19 +96,20 @@ static int choose_files(stack *k, const series *s, err *e)
 {
     int64_t *number = mem_array(s->count, sizeof *number, "series", e), last = 0, wanted = k->wish->number;
     k->file = mem_array(s->count, sizeof(void *), "series", e);
-    if (number && k->file) {
+    int result = number && k->file ? 0 : -1;
+    if (!result) {
         for (int64_t i = 0; i < s->count; i++) {
             number[i] = number_of(s, i, number);
             last = number[i] > last ? number[i] : last;
         }
         if (wanted > last || (wanted < 0 && last > 1))
-            refuse_many(s, number, last, wanted, e);
+            result = refuse_many(s, number, last, wanted, e);
         for (int64_t i = 0; i < s->count; i++)
             if (number[i] == (wanted < 0 ? 1 : wanted))
                 k->file[k->files++] = &s->file[i];
     }
     free(number);
-    return e->status ? -1 : 0;
+    return result;
 }
 
 static bool near_enough(double a, double b, double tolerance)
@@ -444,10 +445,9 @@ static int fill(volume *v, const stack *k, err *e)
 int series_volume(volume *v, const series *s, const series_wish *wish, err *e)
 {
     stack k = {.wish = wish};
-    if (s->count < 1) {
-        err_set(e, NULL, 0, "no DICOM images; expected one or more");
-        goto out;
-    }
+    int result = -1;
+    if (s->count < 1)
+        return err_set(e, NULL, 0, "no DICOM images; expected one or more");
     if (choose_files(&k, s, e))
         goto out;
     k.first = &k.file[0]->image;
@@ -458,9 +458,9 @@ int series_volume(volume *v, const series *s, const series_wish *wish, err *e)
         goto out;
     set_geometry(v, &k);
     if (!volume_check(v, k.file[0]->name, 0, e))
-        fill(v, &k, e);
+        result = fill(v, &k, e);
 out:
     free(k.file);
     free(k.one);
-    return e->status ? -1 : 0;
+    return result;
 }

@@ -141,7 +141,7 @@ double sweep_voxel(const sweep *s, const volume *images, err *e)
         side = fmax(side, gap[(s->count - 1) / 2]);
     }
     free(gap);
-    return side;
+    return gap ? side : -1;
 }
 
 /* Axes along the columns and rows of the middle frame, and square to both: a sweep
@@ -391,12 +391,13 @@ int sweep_volume(volume *v, const sweep *s, const volume *images, const sweep_wi
 {
     double side = isnan(wish->voxel) ? sweep_voxel(s, images, e) : wish->voxel;
     splat to = {.v = v, .side = side};
-    if (e->status || set_geometry(v, s, images, side, wish->memory, e) || volume_make(v, e))
+    if (side < 0 || set_geometry(v, s, images, side, wish->memory, e) || volume_make(v, e))
         return -1;
     to.sum = mem_array(volume_count(v), sizeof *to.sum, "voxels", e);
     to.weight = mem_array(volume_count(v), sizeof *to.weight, "voxels", e);
     to.row = mem_array(images->size[0], sizeof *to.row, "a row of pixels", e);
-    if (!e->status) {
+    const bool made = to.sum && to.weight && to.row;
+    if (made) {
         for (int64_t i = 0; i < s->count; i++)
             add_image(&to, &s->one[i], images, wish->linear);
         filled[0] = settle(&to);
@@ -406,5 +407,5 @@ int sweep_volume(volume *v, const sweep *s, const volume *images, const sweep_wi
     free(to.sum);
     free(to.weight);
     free(to.row);
-    return e->status ? -1 : 0;
+    return made ? 0 : -1;
 }

@@ -42,7 +42,7 @@ void sweep_free(sweep *s);
 void sweep_unflip(sweep *s, const int64_t size[3]);
 
 /* The larger of the distance between pixels and half the median distance between the
- * middles of one frame and the next, mm. */
+ * middles of one frame and the next, mm. -1 with e filled for want of memory. */
 double sweep_voxel(const sweep *s, const volume *images, err *e);
 
 /* The volume, in the frame that the sequence is tracked in; its axes are along the columns and rows of the middle

@@ -205,25 +205,30 @@ static int read_volume(job *j, volume *to, err *e)
     return -1;
 }
 
+static int parse_calibration(const char *path, char *text, double m[16], err *e)
+{
+    int count = 0;
+    char *rest = NULL;
+    for (char *word = strtok_r(text, " \t\r\n,", &rest); word; word = strtok_r(NULL, " \t\r\n,", &rest)) {
+        if (count == 16 || num_double(word, &m[count]))
+            return err_set(e, path, 0, "'%.40s' at number %d; expected 16 numbers, row by row", word, count + 1);
+        count++;
+    }
+    if (count != 16 || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+        return err_set(e, path, 0, "not a transform; expected 16 numbers, row by row, the last 0 0 0 1");
+    return 0;
+}
+
 static int read_calibration(const char *path, double m[16], err *e)
 {
     in *s = in_open(path, e);
-    char *text = NULL, *rest = NULL;
-    int count = 0;
-    if (s && in_peek(s, e) != -2 && in_all(s, &text, e) >= 0) { /* without a byte order mark */
-        for (char *word = strtok_r(text, " \t\r\n,", &rest); word; word = strtok_r(NULL, " \t\r\n,", &rest)) {
-            if (count == 16 || num_double(word, &m[count])) {
-                err_set(e, path, 0, "'%.40s' at number %d; expected 16 numbers, row by row", word, count + 1);
-                break;
-            }
-            count++;
-        }
-        if (!e->status && (count != 16 || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1))
-            err_set(e, path, 0, "not a transform; expected 16 numbers, row by row, the last 0 0 0 1");
-    }
+    char *text = NULL;
+    int result = -1;
+    if (s && in_peek(s, e) != -2 && in_all(s, &text, e) >= 0) /* without a byte order mark */
+        result = parse_calibration(path, text, m, e);
     free(text);
     in_close(s);
-    return e->status ? -1 : 0;
+    return result;
 }
 
 /* Images cropped: pixel 0 0 of what is left lies further in. */
@@ -288,11 +293,12 @@ static int read_sweep(job *j, err *e)
     volume images = {0};
     sweep s = {0};
     snprintf(j->of, sizeof j->of, "the calibration");
-    if (!j->o->calibration || !read_calibration(j->o->calibration, calibration, e))
-        put_together(j, &images, &s, j->o->calibration ? calibration : NULL, e);
+    if (j->o->calibration && read_calibration(j->o->calibration, calibration, e))
+        return -1;
+    const int result = put_together(j, &images, &s, j->o->calibration ? calibration : NULL, e);
     volume_free(&images);
     sweep_free(&s);
-    return e->status ? -1 : 0;
+    return result;
 }
 
 /* ---- main */
@@ -315,8 +321,8 @@ static int check_options(const struct options *o, import_kind kind, err *e)
 static int read_all(job *j, struct options *o, err *e)
 {
     call_file(j, 0);
-    import_kind kind = import_kind_of(&j->files, e);
-    if (e->status || check_options(o, kind, e))
+    import_kind kind;
+    if (import_kind_of(&j->files, &kind, e) || check_options(o, kind, e))
         return -1;
     o->splat = o->splat < 0 ? 1 : o->splat;
     o->fill = o->fill < 0 ? 8 : o->fill;
