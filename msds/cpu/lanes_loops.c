@@ -1,7 +1,7 @@
 /* The loops of lanes.h: an object for each instruction set, by the Makefile. All but its table is static. */
-#include "base/flush.h"
 #include "msds/cpu/lanes.h"
 #include "msds/problem/spring.h"
+#include "solve/flush.h"
 
 #include <string.h>
 #if defined(__SSE2__)

@@ -1,6 +1,6 @@
 /* The passes of cpu_pass.h: an object for each instruction set, precision and form, by the Makefile, which defines
  * CPU_FORM. All but its table is static. */
-#include "base/flush.h"
+#include "solve/flush.h"
 #include "solve/vectors.h"
 #include "tled/cpu/cpu_pass.h"
 
