@@ -219,23 +219,6 @@ void probe_text(const probe *p, char *to, size_t size)
         snprintf(to, size, "convex:%.250s", p->file + path_folder(p->file));
 }
 
-probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share)
-{
-    probe_pose to;
-    double dot = 0, length = 0;
-    for (int i = 0; i < 4; i++)
-        dot += a->quaternion[i] * b->quaternion[i];
-    for (int i = 0; i < 4; i++) {
-        to.quaternion[i] = (1 - share) * (dot < 0 ? -a->quaternion[i] : a->quaternion[i]) + share * b->quaternion[i];
-        length += to.quaternion[i] * to.quaternion[i];
-    }
-    for (int i = 0; i < 4; i++)
-        to.quaternion[i] = length > 1e-12 ? to.quaternion[i] / sqrt(length) : b->quaternion[i];
-    for (int i = 0; i < 3; i++)
-        to.position[i] = (1 - share) * a->position[i] + share * b->position[i];
-    return to;
-}
-
 bool probe_is_thin(const probe *p, double side)
 {
     return 2 * p->size < .99 * side;

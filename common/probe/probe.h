@@ -17,6 +17,7 @@
 #define SINEW_PROBE_H
 
 #include "base/err.h"
+#include "base/pose.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -53,11 +54,6 @@ typedef struct probe {
     int32_t faces;           /* of a convex one */
     int32_t *face;           /* faces x 3: corners of triangles that cover it, turned out */
 } probe;
-
-typedef struct probe_pose {
-    double position[3];   /* m */
-    double quaternion[4]; /* unit; x y z w */
-} probe_pose;
 
 /* A probe at its pose, as the questions want it. */
 typedef struct probe_placed {
@@ -98,9 +94,6 @@ probe probe_curved(double radius, double angle, double thickness, double edge);
 /* The point of it that is farthest along d (any length), both in its own frame. */
 void probe_farthest(const probe *p, const double d[3], double to[3]);
 
-/* A share (0 to 1) of the way from pose a to pose b, turning the shorter way round. */
-probe_pose probe_between(const probe_pose *a, const probe_pose *b, double share);
-
 /* Whether it is thinner than cells of this side, m: nodes are so far apart that it may go in between them. */
 bool probe_is_thin(const probe *p, double side);
 
@@ -108,16 +101,7 @@ bool probe_is_thin(const probe *p, double side);
  * its sides: it presses like a plate. */
 bool probe_is_plate(const probe_placed *at, const double *position, int64_t nodes);
 
-/* v turned by a unit quaternion. */
-PROBE_FUNCTION void probe_turn(const double q[4], const double v[3], double to[3])
-{
-    double a[3] = {2 * (q[1] * v[2] - q[2] * v[1]), 2 * (q[2] * v[0] - q[0] * v[2]), 2 * (q[0] * v[1] - q[1] * v[0])};
-    to[0] = v[0] + q[3] * a[0] + (q[1] * a[2] - q[2] * a[1]);
-    to[1] = v[1] + q[3] * a[1] + (q[2] * a[0] - q[0] * a[2]);
-    to[2] = v[2] + q[3] * a[2] + (q[0] * a[1] - q[1] * a[0]);
-}
-
-PROBE_FUNCTION probe_placed probe_place(const probe *p, const probe_pose *at)
+PROBE_FUNCTION probe_placed probe_place(const probe *p, const pose *at)
 {
     probe_placed placed;
     placed.shape = *p;
@@ -125,7 +109,7 @@ PROBE_FUNCTION probe_placed probe_place(const probe *p, const probe_pose *at)
     for (int i = 0; i < 3; i++) {
         double unit[3] = {0, 0, 0};
         unit[i] = 1;
-        probe_turn(at->quaternion, unit, placed.axis[i]);
+        pose_turn(at->quaternion, unit, placed.axis[i]);
     }
     for (int a = 0; a < 3; a++) {
         placed.origin[a] = at->position[a];

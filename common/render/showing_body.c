@@ -37,8 +37,8 @@ static int make_mesh(scene_mesh *mesh, const obj *o, const body *all, const body
         double x[3], in_body[3];
         for (int a = 0; a < 3; a++)
             x[a] = part->scale * o->position[3 * v + a];
-        body_put(&part->place, x, in_body);
-        body_back(&all->volume, in_body, x);
+        pose_apply(&part->place, x, in_body);
+        pose_apply_inverse(&all->volume, in_body, x);
         for (int a = 0; a < 3; a++)
             mesh->position[3 * v + a] = (float)x[a];
     }

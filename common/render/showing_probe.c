@@ -28,17 +28,15 @@ static void place_of(const probe *p, int64_t v, double to[3])
         probe_farthest(p, d, to);
 }
 
-static int place(const probe *p, const double pose[7], scene_mesh *to, err *e)
+static int place(const probe *p, const double row[7], scene_mesh *to, err *e)
 {
-    probe_pose at;
-    memcpy(at.position, pose, sizeof at.position);
-    memcpy(at.quaternion, pose + 3, sizeof at.quaternion);
+    const pose at = pose_of_row(row);
     to->vertices = p->kind == PROBE_CONVEX ? p->corners : (int64_t)AROUND * (RINGS + 1);
     to->position = mem_array(to->vertices, 3 * sizeof *to->position, "the probe", e);
     for (int64_t v = 0; to->position && v < to->vertices; v++) {
         double own[3], world[3];
         place_of(p, v, own);
-        probe_turn(at.quaternion, own, world);
+        pose_turn(at.quaternion, own, world);
         for (int a = 0; a < 3; a++)
             to->position[3 * v + a] = (float)(world[a] + at.position[a]);
     }
@@ -90,13 +88,13 @@ static int join(const probe *p, scene_mesh *to, err *e)
     return to->corner ? 0 : -1;
 }
 
-static int add_probe(showing *b, const probe *p, const double pose[7], const showing_want *want, err *e)
+static int add_probe(showing *b, const probe *p, const double row[7], const showing_want *want, err *e)
 {
     const uint64_t cleared = showing_cleared(want, "probe");
     scene_mesh mesh = {.corners = 3, .transparency = cleared ? .75f : 0};
     mesh.label = mem_text("probe", e);
     showing_linear(grey, mesh.colour);
-    if (mesh.label && !place(p, pose, &mesh, e) && !join(p, &mesh, e) && !scene_smooth(&mesh, crease, e)) {
+    if (mesh.label && !place(p, row, &mesh, e) && !join(p, &mesh, e) && !scene_smooth(&mesh, crease, e)) {
         b->seen |= SHOWING_PROBE;
         b->cleared |= cleared;
         return showing_add(b, &mesh, NULL, e);
@@ -108,12 +106,12 @@ static int add_probe(showing *b, const probe *p, const double pose[7], const sho
 int showing_probe(showing *b, const model *m, const showing_want *want, err *e)
 {
     probe p = {0};
-    const model_array *pose = want->moved ? frame_find(want->moved, "probe.pose") : NULL;
+    const model_array *at = want->moved ? frame_find(want->moved, "probe.pose") : NULL;
     if (!(want->things & SHOWING_PROBE) || !want->moved)
         return 0;
     int there = probe_carried(&p, m, e), bad = -1;
-    if (there > 0 && pose && pose->rows > 0)
-        bad = add_probe(b, &p, pose->f64, want, e);
+    if (there > 0 && at && at->rows > 0)
+        bad = add_probe(b, &p, at->f64, want, e);
     else if (there >= 0)
         err_set(e, NULL, 0, "the model has no probe to show; expected one from msds-run or tled-run with --probe");
     probe_free(&p);

@@ -3,7 +3,7 @@
 #include "base/keyfile.h"
 #include "base/mem.h"
 #include "base/num.h"
-#include "volume/poses.h"
+#include "base/pose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,59 +14,10 @@ enum { PARTS_MOST = 1000 };
 enum { KEY_MOVE, KEY_TURN, KEY_UNIT, KEY_IN };
 static const char *const keys[] = {"move", "turn", "unit", "in"};
 
-body_place body_none(void)
-{
-    return (body_place){.turn = {0, 0, 0, 1}};
-}
-
-static void turned(const double turn[4], const double v[3], double to[3])
-{
-    double r[9];
-    poses_matrix(turn, r);
-    for (int a = 0; a < 3; a++)
-        to[a] = r[3 * a] * v[0] + r[3 * a + 1] * v[1] + r[3 * a + 2] * v[2];
-}
-
-void body_put(const body_place *p, const double from[3], double to[3])
-{
-    double x[3];
-    turned(p->turn, from, x);
-    for (int a = 0; a < 3; a++)
-        to[a] = x[a] + p->move[a];
-}
-
-void body_back(const body_place *p, const double from[3], double to[3])
-{
-    const double back[4] = {-p->turn[0], -p->turn[1], -p->turn[2], p->turn[3]};
-    double x[3];
-    for (int a = 0; a < 3; a++)
-        x[a] = from[a] - p->move[a];
-    turned(back, x, to);
-}
-
-static void product(const double p[4], const double q[4], double to[4])
-{
-    const double r[4] = {
-        p[3] * q[0] + q[3] * p[0] + p[1] * q[2] - p[2] * q[1], p[3] * q[1] + q[3] * p[1] + p[2] * q[0] - p[0] * q[2],
-        p[3] * q[2] + q[3] * p[2] + p[0] * q[1] - p[1] * q[0], p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]};
-    memcpy(to, r, sizeof r);
-}
-
-void body_turn(const body_place *p, const double from[4], double to[4])
-{
-    product(p->turn, from, to);
-}
-
-void body_turn_back(const body_place *p, const double from[4], double to[4])
-{
-    const double back[4] = {-p->turn[0], -p->turn[1], -p->turn[2], p->turn[3]};
-    product(back, from, to);
-}
-
 /* ---- the file */
 
 typedef struct line {
-    body_place place;
+    pose place;
     double scale; /* 0: not given */
     bool in_volume;
 } line;
@@ -83,24 +34,20 @@ static int take_move(const keyfile *k, const char *text, double to[3], err *e)
 
 static int take_turn(const keyfile *k, const char *text, double to[4], err *e)
 {
-    double q[4], square = 0;
-    int count = num_list(text, q, 4);
-    for (int i = 0; i < 4 && count == 4; i++)
-        square += q[i] * q[i];
-    if (count != 4 || !(fabs(sqrt(square) - 1) <= .01))
+    double q[4];
+    if (num_list(text, q, 4) != 4 || !pose_is_unit(pose_unit(q)))
         return keyfile_error(k, e, "turn=%.100s; expected a unit quaternion X,Y,Z,W, its length 1 to within 0.01",
                              text);
-    for (int i = 0; i < 4; i++)
-        to[i] = q[i] / sqrt(square);
+    memcpy(to, q, sizeof q);
     return 0;
 }
 
 static int take_key(const keyfile *k, int key, const char *value, bool surface, line *l, err *e)
 {
     if (key == KEY_MOVE)
-        return take_move(k, value, l->place.move, e);
+        return take_move(k, value, l->place.position, e);
     if (key == KEY_TURN)
-        return take_turn(k, value, l->place.turn, e);
+        return take_turn(k, value, l->place.quaternion, e);
     if (!surface)
         return keyfile_error(k, e, "%s= of the volume; expected move= or turn=", keys[key]);
     if (key == KEY_UNIT) {
@@ -119,7 +66,7 @@ static int take_key(const keyfile *k, int key, const char *value, bool surface, 
 static int take_keys(keyfile *k, int from, bool surface, line *l, err *e)
 {
     uint64_t seen = 0;
-    *l = (line){.place = body_none()};
+    *l = (line){.place = pose_none()};
     for (int i = from; i < k->count; i++) {
         char *value;
         int key = keyfile_pair(k, i, keys, sizeof keys / sizeof *keys, &seen, &value, e);
@@ -154,13 +101,9 @@ static int take_surface(body *b, keyfile *k, err *e)
 /* Parts in the volume go where it goes, once it is known. */
 static void place_parts(body *b)
 {
-    for (int i = 0; i < b->parts; i++) {
-        body_place *p = &b->part[i].place;
-        if (!b->part[i].in_volume)
-            continue;
-        body_put(&b->volume, p->move, p->move);
-        body_turn(&b->volume, p->turn, p->turn);
-    }
+    for (int i = 0; i < b->parts; i++)
+        if (b->part[i].in_volume)
+            b->part[i].place = pose_compose(&b->volume, &b->part[i].place);
 }
 
 int body_read(body *b, in *s, err *e)
@@ -168,7 +111,7 @@ int body_read(body *b, in *s, err *e)
     keyfile k;
     line l;
     bool placed = false;
-    *b = (body){.volume = body_none()};
+    *b = (body){.volume = pose_none()};
     keyfile_open(&k, s);
     while (keyfile_next(&k, e) > 0) {
         if (!strcmp(k.word[0], "surface")) {

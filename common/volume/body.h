@@ -13,21 +13,17 @@
 #define SINEW_BODY_H
 
 #include "base/in.h"
-
-typedef struct body_place {
-    double move[3]; /* m */
-    double turn[4]; /* unit quaternion x y z w */
-} body_place;
+#include "base/pose.h"
 
 typedef struct body_part {
-    char *file;       /* a name without a folder: beside the body's own file */
-    double scale;     /* to metres */
-    body_place place; /* in the body, the volume's taken in */
-    bool in_volume;   /* it goes where the volume goes; place says it already */
+    char *file;     /* a name without a folder: beside the body's own file */
+    double scale;   /* to metres */
+    pose place;     /* in the body, the volume's taken in */
+    bool in_volume; /* it goes where the volume goes; place says it already */
 } body_part;
 
 typedef struct body {
-    body_place volume; /* 0 and no turn where the file does not say */
+    pose volume; /* 0 and no turn where the file does not say */
     body_part *part;
     int parts;
     int64_t room; /* for parts */
@@ -36,16 +32,5 @@ typedef struct body {
 /* -1 with e filled: file and line. */
 int body_read(body *b, in *s, err *e);
 void body_free(body *b);
-
-/* The body's own frame. */
-body_place body_none(void);
-
-/* A place of a part in the body, and the way back. */
-void body_put(const body_place *p, const double from[3], double to[3]);
-void body_back(const body_place *p, const double from[3], double to[3]);
-
-/* A turn of a part's things as one in the body, and the way back; unit quaternions. */
-void body_turn(const body_place *p, const double from[4], double to[4]);
-void body_turn_back(const body_place *p, const double from[4], double to[4]);
 
 #endif

@@ -11,8 +11,8 @@
 #include "msds/run/press.h"
 #include "msds/run/run_options.h"
 #include "msds/run/skin_model.h"
+#include "probe/poses.h"
 #include "probe/probe_carry.h"
-#include "volume/poses.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -174,13 +174,11 @@ static int take_frames(session *s, err *e)
     }
     if (got < 0)
         goto out;
-    const model_array *pose = count ? frame_find(&last, "probe.pose") : NULL;
+    const model_array *last_pose = count ? frame_find(&last, "probe.pose") : NULL;
     if (count)
         s->next_frame = last.index + 1;
-    if (pose && pose->rows == 1 && s->o->probe) {
-        probe_pose from;
-        memcpy(from.position, pose->f64, sizeof from.position);
-        memcpy(from.quaternion, pose->f64 + 3, sizeof from.quaternion);
+    if (last_pose && last_pose->rows == 1 && s->o->probe) {
+        const pose from = pose_of_row(last_pose->f64);
         press_from(&s->press, &from, last.time);
     }
     result = count ? msds_problem_start(&s->problem, &last, e) : 0;
@@ -211,10 +209,9 @@ static int write_frame(session *s, const poses_event *at, const msds_sight *sigh
     model_array *v = frame_add(&f, &s->m, "node.velocity", e);
     if (!v || s->device->get(s->state, MSDS_VELOCITY, v->f64, e))
         goto out;
-    double pose[7];
-    memcpy(pose, at->origin, sizeof at->origin);
-    memcpy(pose + 3, at->turn, sizeof at->turn);
-    if (put_numbers(s, &f, "probe.pose", pose, 7, e) || put_numbers(s, &f, "probe.force", sight->force, 3, e) ||
+    double row[7];
+    pose_to_row(&at->at, row);
+    if (put_numbers(s, &f, "probe.pose", row, 7, e) || put_numbers(s, &f, "probe.force", sight->force, 3, e) ||
         put_numbers(s, &f, "probe.torque", sight->torque, 3, e))
         goto out;
     if (s->skin.vertices && skin_model_put(&s->skin, &f, &s->m, e))
@@ -314,10 +311,7 @@ static void say_end(const session *s)
 /* What the first pose shows of the probe, and where it enters tissue at once. */
 static void warn_of_pose(session *s, const poses_event *at, const press_moves *moves, bool first)
 {
-    probe_pose pose;
-    memcpy(pose.position, at->origin, sizeof pose.position);
-    memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
-    const probe_placed placed = probe_place(&s->probe, &pose);
+    const probe_placed placed = probe_place(&s->probe, &at->at);
     if (first && probe_is_plate(&placed, s->problem.position, s->problem.nodes))
         notes_add(&s->warnings, "the probe's face is larger than the tissue: it presses like a plate");
     if (first && probe_is_thin(&s->probe, s->problem.side))
@@ -341,7 +335,7 @@ static int64_t make_moves(session *s, void *state, const press_moves *moves, msd
 {
     int64_t count = 0;
     for (int i = 0; i < moves->count; i++) {
-        plan->probe = probe_place(&s->probe, &moves->list[i].pose);
+        plan->probe = probe_place(&s->probe, &moves->list[i].at);
         if (with_skin && s->skin.vertices)
             skin_step(&s->skin, plan->touched ? &plan->probe : NULL, moves->list[i].iterations);
         count = moves->list[i].iterations * (plan->method == MSDS_SPRINGS ? s->substeps : 1);
@@ -365,11 +359,8 @@ static int solve_frame(session *s, const poses_event *at, err *e)
                       .watch = s->progress.on ? &s->watch : NULL};
     msds_sight sight = {0};
     press_moves moves;
-    probe_pose pose;
     bool first = !s->press.any;
-    memcpy(pose.position, at->origin, sizeof pose.position);
-    memcpy(pose.quaternion, at->turn, sizeof pose.quaternion);
-    if (press_to(&s->press, s->device, s->state, &pose, at->time, s->method == MSDS_SPRINGS, &moves, e))
+    if (press_to(&s->press, s->device, s->state, &at->at, at->time, s->method == MSDS_SPRINGS, &moves, e))
         return -1;
     if (plan.touched)
         warn_of_pose(s, at, &moves, first);

@@ -22,18 +22,18 @@ void press_free(press *s)
     *s = (press){0};
 }
 
-void press_from(press *s, const probe_pose *pose, double time)
+void press_from(press *s, const pose *at, double time)
 {
     s->any = true;
-    s->last = *pose;
+    s->last = *at;
     s->time = s->begin = time;
     s->due = 0;
 }
 
 /* How deep the deepest free node is in the probe. */
-static double deepest(const press *s, const probe_pose *pose)
+static double deepest(const press *s, const pose *at)
 {
-    const probe_placed placed = probe_place(s->shape, pose);
+    const probe_placed placed = probe_place(s->shape, at);
     double most = -INFINITY;
     for (int64_t n = 0; n < s->p->nodes; n++) {
         double x[3], away = 0;
@@ -47,38 +47,38 @@ static double deepest(const press *s, const probe_pose *pose)
     return most;
 }
 
-static probe_pose drawn_back(const press *s, const probe_pose *pose, double by)
+static pose drawn_back(const press *s, const pose *at, double by)
 {
-    const probe_placed placed = probe_place(s->shape, pose);
-    probe_pose back = *pose;
+    const probe_placed placed = probe_place(s->shape, at);
+    pose back = *at;
     for (int a = 0; a < 3; a++)
         back.position[a] -= by * placed.into[a];
     return back;
 }
 
-static double step_between(const press *s, const probe_pose *pose)
+static double step_between(const press *s, const pose *at)
 {
     double square = 0;
     for (int a = 0; a < 3; a++)
-        square += (pose->position[a] - s->last.position[a]) * (pose->position[a] - s->last.position[a]);
+        square += (at->position[a] - s->last.position[a]) * (at->position[a] - s->last.position[a]);
     return sqrt(square);
 }
 
 /* From where it touches nothing; or from a hundred times its size, should that not be. */
-static void ease_in(const press *s, const probe_pose *pose, press_moves *m)
+static void ease_in(const press *s, const pose *at, press_moves *m)
 {
     const double stride = .5 * s->shape->size;
     double back = 0;
-    for (int i = 0; i < 200 && deepest(s, pose) > 0; i++) {
+    for (int i = 0; i < 200 && deepest(s, at) > 0; i++) {
         back += stride;
-        probe_pose out = drawn_back(s, pose, back);
+        pose out = drawn_back(s, at, back);
         if (deepest(s, &out) <= 0)
             break;
     }
     m->back = back;
     m->count = (int)fmin(PRESS_MOVES, fmax(1, ceil(back / (ease * s->shape->size))));
     for (int i = 0; i < m->count; i++)
-        m->list[i] = (press_move){drawn_back(s, pose, back * (m->count - 1 - i) / m->count), s->iterations};
+        m->list[i] = (press_move){drawn_back(s, at, back * (m->count - 1 - i) / m->count), s->iterations};
 }
 
 /* Iterations for the time since the last pose. Counted from the beginning, so that no rounding adds up. */
@@ -97,45 +97,45 @@ static int64_t iterations_to(press *s, double time)
     return count > 0 ? count : 1;
 }
 
-static void go_on(press *s, const probe_pose *pose, int64_t count, press_moves *m)
+static void go_on(press *s, const pose *at, int64_t count, press_moves *m)
 {
     int64_t parts = (count + PRESS_TOGETHER - 1) / PRESS_TOGETHER;
     m->count = (int)(parts < PRESS_MOVES ? parts : PRESS_MOVES);
     m->count = s->any ? m->count : 1;
     for (int i = 0; i < m->count; i++) {
         int64_t from = count * i / m->count, to = count * (i + 1) / m->count;
-        m->list[i] = (press_move){*pose, to - from};
+        m->list[i] = (press_move){*at, to - from};
         if (i + 1 < m->count)
-            m->list[i].pose = probe_between(&s->last, pose, (double)to / (double)count);
+            m->list[i].at = pose_between(&s->last, at, (double)to / (double)count);
     }
 }
 
-int press_to(press *s, const backend *device, void *state, const probe_pose *pose, double time, bool springs,
+int press_to(press *s, const backend *device, void *state, const pose *at, double time, bool springs,
              press_moves *moves, err *e)
 {
     const double size = s->shape->size;
     *moves = (press_moves){.count = 0};
-    bool look = size > 0 && (!s->any || (!s->contacts && step_between(s, pose) > inside_later * size));
+    bool look = size > 0 && (!s->any || (!s->contacts && step_between(s, at) > inside_later * size));
     if (look) {
         if (device->get(state, MSDS_DISPLACEMENT, s->u, e))
             return -1;
-        double depth = deepest(s, pose);
+        double depth = deepest(s, at);
         if (depth > (s->any ? inside_later : inside_first) * size) {
             moves->inside = true;
-            ease_in(s, pose, moves);
+            ease_in(s, at, moves);
         }
     }
     int64_t count = iterations_to(s, time);
     if (!moves->count && springs && size > 0)
-        go_on(s, pose, count, moves);
+        go_on(s, at, count, moves);
     if (!moves->count) {
         moves->count = 1;
-        moves->list[0] = (press_move){*pose, count};
+        moves->list[0] = (press_move){*at, count};
     }
     if (!s->any)
         s->begin = time;
     s->any = true;
-    s->last = *pose;
+    s->last = *at;
     s->time = time;
     return 0;
 }

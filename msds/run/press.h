@@ -21,7 +21,7 @@ typedef struct press {
     double rate;      /* frames a second that --iterations are meant for; 0: of any frame */
     double *u;        /* nodes x 3, m; owned: to look where nodes are */
     bool any;         /* there was a pose */
-    probe_pose last;  /* then */
+    pose last;        /* then */
     double time;      /* s */
     int64_t due;      /* iterations since the beginning */
     double begin;     /* s: of the first pose */
@@ -29,7 +29,7 @@ typedef struct press {
 } press;
 
 typedef struct press_move {
-    probe_pose pose;
+    pose at;
     int64_t iterations;
 } press_move;
 
@@ -44,10 +44,10 @@ int press_make(press *s, const msds_problem *p, const probe *shape, int64_t iter
 void press_free(press *s);
 
 /* Goes on from a pose of an earlier run. */
-void press_from(press *s, const probe_pose *pose, double time);
+void press_from(press *s, const pose *at, double time);
 
 /* The moves to a pose at a time, s; state is asked where the nodes are, if need be. -1 with e filled. */
-int press_to(press *s, const backend *device, void *state, const probe_pose *pose, double time, bool springs,
+int press_to(press *s, const backend *device, void *state, const pose *at, double time, bool springs,
              press_moves *moves, err *e);
 
 #endif

@@ -133,16 +133,16 @@ void slice_view_free(slice_view *v)
     *v = (slice_view){0};
 }
 
-slice_plane slice_view_plane(const slice_view *v, const double origin[3], const double turn[4], double off)
+slice_plane slice_view_plane(const slice_view *v, const pose *at, double off)
 {
     const double corner[3] = {v->corner[0], off, v->corner[1]};
     const double column[3] = {v->pixel[0], 0, 0}, row[3] = {0, 0, v->pixel[1]};
     slice_plane p = {0};
-    probe_turn(turn, corner, p.origin);
-    probe_turn(turn, column, p.column);
-    probe_turn(turn, row, p.row);
+    pose_turn(at->quaternion, corner, p.origin);
+    pose_turn(at->quaternion, column, p.column);
+    pose_turn(at->quaternion, row, p.row);
     for (int a = 0; a < 3; a++)
-        p.origin[a] += origin[a];
+        p.origin[a] += at->position[a];
     return p;
 }
 

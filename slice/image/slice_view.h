@@ -46,8 +46,8 @@ int slice_size_of(slice_size *s, const char *text, err *e);
 int slice_view_make(slice_view *v, const slice_probe *p, slice_size size, double depth, double width, err *e);
 void slice_view_free(slice_view *v);
 
-/* The plane, for a probe at this place (m) turned so (a unit quaternion), moved by `off` along its y (m). */
-slice_plane slice_view_plane(const slice_view *v, const double origin[3], const double turn[4], double off);
+/* The plane, for a probe at this pose, moved by `off` along its y (m). */
+slice_plane slice_view_plane(const slice_view *v, const pose *at, double off);
 
 /* How far a pixel is from the array's face, along its beam; m. */
 double slice_view_range(const slice_view *v, int32_t column, int32_t row);

@@ -3,6 +3,7 @@
 #include "cli/progress.h"
 #include "cli/tool.h"
 #include "model/source.h"
+#include "probe/poses.h"
 #include "slice/image/slice_cut.h"
 #include "slice/image/slice_files.h"
 #include "slice/image/slice_grey.h"
@@ -10,7 +11,6 @@
 #include "slice/image/slice_view.h"
 #include "slice/image/slice_write.h"
 #include "volume/body.h"
-#include "volume/poses.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -85,7 +85,7 @@ typedef struct job {
     in *pose_source;
     poses poses;
     bool more_poses;
-    body_place place; /* of the volume */
+    pose place; /* of the volume */
     slice_view view;
     slice_cutter *cutter;
     slice_grey grey;
@@ -326,7 +326,7 @@ static int make_cutter(job *j, err *e)
 static int read_body(job *j, err *e)
 {
     body b;
-    j->place = body_none();
+    j->place = pose_none();
     if (!j->o->body)
         return 0;
     in *s = in_open(j->o->body, e);
@@ -362,12 +362,11 @@ static int prepare(job *j, const char *path, err *e)
 /* ---- images */
 
 /* The mean of the slices; labels are those of the middle one. */
-static int draw(job *j, const double origin[3], const double turn[4], const double *displacement, slice_plane *at,
-                err *e)
+static int draw(job *j, const pose *posed, const double *displacement, slice_plane *at, err *e)
 {
     const int64_t count = (int64_t)j->view.size.columns * j->view.size.rows;
     const int n = j->slices;
-    *at = slice_view_plane(&j->view, origin, turn, 0);
+    *at = slice_view_plane(&j->view, posed, 0);
     if (j->overlay.seen)
         slice_cutter_also(j->cutter, slice_overlay_take, &j->overlay);
     if (slice_cutter_image(j->cutter, at, displacement, j->image, NULL, e))
@@ -378,7 +377,7 @@ static int draw(job *j, const double origin[3], const double turn[4], const doub
     memset(j->sum, 0, (size_t)count * sizeof *j->sum);
     for (int i = 0; i < n; i++) {
         const double off = j->thickness * ((i + .5) / n - .5);
-        const slice_plane beside = slice_view_plane(&j->view, origin, turn, off);
+        const slice_plane beside = slice_view_plane(&j->view, posed, off);
         const bool middle = 2 * i + 1 == n;
         if (!middle && slice_cutter_image(j->cutter, &beside, displacement, j->one, NULL, e))
             return -1;
@@ -413,22 +412,22 @@ static int write_cut(job *j, const slice_plane *at, int64_t index, err *e)
 /* Where the image is in the frame that the poses are in. */
 static slice_plane placed(const job *j, const slice_plane *at)
 {
-    const body_place turn = {.turn = {j->place.turn[0], j->place.turn[1], j->place.turn[2], j->place.turn[3]}};
+    pose turn = j->place;
     slice_plane p = {0};
-    body_put(&j->place, at->origin, p.origin);
-    body_put(&turn, at->column, p.column);
-    body_put(&turn, at->row, p.row);
+    memset(turn.position, 0, sizeof turn.position);
+    pose_apply(&j->place, at->origin, p.origin);
+    pose_apply(&turn, at->column, p.column);
+    pose_apply(&turn, at->row, p.row);
     return p;
 }
 
-/* origin, turn: of the probe, in the volume's frame. */
-static int put_image(job *j, int64_t index, const double origin[3], const double turn[4], const double *displacement,
-                     err *e)
+/* from: where the probe is, in the volume's frame. */
+static int put_image(job *j, int64_t index, const pose *from, const double *displacement, err *e)
 {
     const int64_t count = (int64_t)j->view.size.columns * j->view.size.rows;
     const double start = progress_clock();
     slice_plane at;
-    if (slice_files_check(j->t, &j->writer, j->o->cut, index, e) || draw(j, origin, turn, displacement, &at, e))
+    if (slice_files_check(j->t, &j->writer, j->o->cut, index, e) || draw(j, from, displacement, &at, e))
         return -1;
     for (int64_t i = 0; !j->lit && i < count; i++)
         j->lit = j->image[i] > 0;
@@ -463,7 +462,7 @@ static void say_poses(job *j)
 }
 
 /* The next pose, in the volume's frame. 1, 0 at the end, -1. */
-static int next_pose(job *j, double origin[3], double turn[4], err *e)
+static int next_pose(job *j, pose *to, err *e)
 {
     poses_event at;
     int got;
@@ -473,23 +472,20 @@ static int next_pose(job *j, double origin[3], double turn[4], err *e)
     if (got <= 0)
         return got;
     say_poses(j);
-    body_back(&j->place, at.origin, origin);
-    body_turn_back(&j->place, at.turn, turn);
+    *to = pose_relative(&j->place, &at.at);
     return 1;
 }
 
-static int frame_pose(job *j, double origin[3], double turn[4], err *e)
+static int frame_pose(job *j, pose *to, err *e)
 {
-    const model_array *pose = frame_find(&j->model.frame, "probe.pose");
-    if (!pose || pose->rows < 1)
+    const model_array *row = frame_find(&j->model.frame, "probe.pose");
+    if (!row || row->rows < 1)
         return err_set(e, source_name(&j->model), 0,
                        "frame %lld holds no probe.pose; expected frames of msds-run with --poses, or --poses here",
                        (long long)j->model.frame.index);
-    const double *q = pose->f64 + 3, length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     say_poses(j);
-    memcpy(origin, pose->f64, 3 * sizeof *origin);
-    for (int i = 0; i < 4; i++)
-        turn[i] = q[i] / length;
+    *to = pose_of_row(row->f64);
+    pose_unit(to->quaternion); /* the model's reader has seen that it is nearly one */
     return 0;
 }
 
@@ -510,15 +506,15 @@ static int slice_frames(job *j, err *e)
 {
     int got;
     while ((got = source_next(&j->model, e)) > 0) {
-        double origin[3], turn[4];
+        pose from;
         const double *u;
-        int pose = j->more_poses ? next_pose(j, origin, turn, e) : 1;
-        if (pose < 0 || (!j->more_poses && frame_pose(j, origin, turn, e)) || displacement_of(j, &u, e))
+        int posed = j->more_poses ? next_pose(j, &from, e) : 1;
+        if (posed < 0 || (!j->more_poses && frame_pose(j, &from, e)) || displacement_of(j, &u, e))
             return -1;
-        if (!pose)
+        if (!posed)
             return err_set(e, in_name(j->pose_source), 0,
                            "has %lld poses, fewer than there are frames; expected one each", (long long)j->images);
-        if (put_image(j, j->model.frame.index, origin, turn, u, e))
+        if (put_image(j, j->model.frame.index, &from, u, e))
             return -1;
     }
     if (!got && !j->model.frames && !j->more_poses)
@@ -529,13 +525,13 @@ static int slice_frames(job *j, err *e)
 /* A pose an image: of the volume as it lies, or as the last frame leaves it. */
 static int slice_poses(job *j, err *e)
 {
-    double origin[3], turn[4];
+    pose from;
     const double *u = NULL;
     int got;
     if (!j->o->rigid && displacement_of(j, &u, e))
         return -1;
-    while ((got = next_pose(j, origin, turn, e)) > 0)
-        if (put_image(j, j->images, origin, turn, u, e))
+    while ((got = next_pose(j, &from, e)) > 0)
+        if (put_image(j, j->images, &from, u, e))
             return -1;
     if (!got && !j->images)
         return err_set(e, in_name(j->pose_source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");

@@ -6,7 +6,7 @@
 #ifndef SINEW_SWEEP_H
 #define SINEW_SWEEP_H
 
-#include "volume/plus.h"
+#include "probe/plus.h"
 #include "volume/volume.h"
 
 typedef struct sweep_frame {

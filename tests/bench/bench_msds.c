@@ -99,10 +99,10 @@ static probe faceted(void)
 static void measure_shape(bench *b, const shape *s, void *state)
 {
     msds_plan plan = plan_of(METHODS - 1, FRAMES / 2);
-    probe_pose pose = {{.085, .04, .07}, {1, 0, 0, 0}};
+    pose at = {{.085, .04, .07}, {1, 0, 0, 0}};
     probe_touch t = {0, {0, 0, 0}};
     double sum = 0;
-    plan.probe = probe_place(&s->of, &pose);
+    plan.probe = probe_place(&s->of, &at);
     double start = bench_clock();
     for (int i = 0; i < TOUCHES; i++)
         msds_cpu_touch(state, &plan);

@@ -8,24 +8,23 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static void check_place(const body_place *p)
+static void check_place(const pose *p)
 {
-    const double x[3] = {.1, -.2, .3}, none[4] = {0, 0, 0, 1};
-    double there[3], back[3], turn[4], square = 0, far = 1;
+    const double x[3] = {.1, -.2, .3};
+    double there[3], back[3], square = 0, far = 1;
     for (int i = 0; i < 4; i++)
-        square += p->turn[i] * p->turn[i];
+        square += p->quaternion[i] * p->quaternion[i];
     for (int a = 0; a < 3; a++)
-        far = fmax(far, fabs(p->move[a]));
+        far = fmax(far, fabs(p->position[a]));
     if (!(fabs(square - 1) < 1e-9) || !isfinite(far))
         abort();
-    body_put(p, x, there);
-    body_back(p, there, back);
+    pose_apply(p, x, there);
+    pose_apply_inverse(p, there, back);
     for (int a = 0; a < 3; a++)
         if (far < 1e6 && !(fabs(back[a] - x[a]) < 1e-8))
             abort();
-    body_turn(p, none, turn);
-    body_turn_back(p, turn, turn);
-    if (!(fabs(turn[3] * turn[3] - 1) < 1e-9))
+    const pose none = pose_none(), same = pose_compose(p, &none), no_turn = pose_relative(p, &same);
+    if (!(fabs(no_turn.quaternion[3] * no_turn.quaternion[3] - 1) < 1e-9))
         abort();
 }
 

@@ -1,6 +1,6 @@
 /* Any bytes as poses: each event is finite, its rotation is one and its time does
  * not go back; or one error with a text. */
-#include "volume/poses.h"
+#include "probe/poses.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,13 +11,13 @@ static void check_pose(const poses_event *v, double last)
 {
     double square = 0, r[9];
     for (int i = 0; i < 4; i++)
-        square += v->turn[i] * v->turn[i];
+        square += v->at.quaternion[i] * v->at.quaternion[i];
     for (int i = 0; i < 3; i++)
-        if (!isfinite(v->origin[i]))
+        if (!isfinite(v->at.position[i]))
             abort();
     if (!(fabs(square - 1) < 1e-9) || !isfinite(v->time) || v->time < last)
         abort();
-    poses_matrix(v->turn, r);
+    pose_matrix(v->at.quaternion, r);
     for (int i = 0; i < 9; i++)
         if (!(fabs(r[i]) <= 1 + 1e-9))
             abort();

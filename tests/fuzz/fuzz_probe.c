@@ -9,7 +9,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void ask(const probe *p)
 {
-    const probe_pose at = {{.1, .2, .3}, {0, 0, 0, 1}};
+    const pose at = {{.1, .2, .3}, {0, 0, 0, 1}};
     const probe_placed placed = probe_place(p, &at);
     const double x[3] = {.1, .19, .31};
     probe_touch t = probe_at(&placed, x);

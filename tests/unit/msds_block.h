@@ -88,9 +88,9 @@ static inline msds_plan tets_plan(msds_method method)
 static inline void tets_press(msds_plan *plan, double radius, double x, double y, double z)
 {
     probe shape = probe_sphere(radius);
-    probe_pose pose = {{x, y, z}, {1, 0, 0, 0}};
+    pose at = {{x, y, z}, {1, 0, 0, 0}};
     plan->touched = true;
-    plan->probe = probe_place(&shape, &pose);
+    plan->probe = probe_place(&shape, &at);
 }
 
 /* What warped elements leave of gravity at u, over what they pull with: from each element, whatever the solver says. */

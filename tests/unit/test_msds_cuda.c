@@ -130,8 +130,8 @@ static void press(pair *c, const tets *b, const probe *shape, msds_method method
         double t = (double)i / (frames - 1), depth = .3 * b->size[2] * sin(3.3 * t);
         tets_press(&plan, .25 * b->size[0], (.45 + .1 * t) * b->size[0], .5 * b->size[1], b->size[2] - depth);
         if (shape) {
-            probe_pose pose = {{(.45 + .1 * t) * b->size[0], .5 * b->size[1], b->size[2] - depth}, {1, 0, 0, 0}};
-            plan.probe = probe_place(shape, &pose);
+            pose at = {{(.45 + .1 * t) * b->size[0], .5 * b->size[1], b->size[2] - depth}, {1, 0, 0, 0}};
+            plan.probe = probe_place(shape, &at);
         }
         c->lever = plan.probe.reach;
         frame_of(c, &plan, count);

@@ -107,9 +107,9 @@ static void lean(msds_plan *plan, double depth)
     const double tilt = .3;
     const probe shape = probe_sphere(.02);
     /* Turned about x by 180 degrees, so that +z goes down, and about y by the tilt. */
-    const probe_pose pose = {{.057, .024, .05 - depth}, {cos(tilt / 2), 0, -sin(tilt / 2), 0}};
+    const pose at = {{.057, .024, .05 - depth}, {cos(tilt / 2), 0, -sin(tilt / 2), 0}};
     plan->touched = true;
-    plan->probe = probe_place(&shape, &pose);
+    plan->probe = probe_place(&shape, &at);
 }
 
 /* Every contact's force goes through the ball's centre, which is R behind the origin along the probe's own z. */
@@ -191,13 +191,13 @@ static void beside_the_fixed(void)
 {
     static const tets wall = {{9, 8, 6}, {.08, .07, .05}, 3000, .4, 1000, 0, false};
     const probe shape = probe_sphere(.02);
-    const probe_pose pose = {{.004, .035, .046}, {1, 0, 0, 0}};
+    const pose at = {{.004, .035, .046}, {1, 0, 0, 0}};
     pressed s;
     double force[3] = {0};
     int64_t count = 0, fixed = 0;
     msds_plan plan = tets_plan(MSDS_SPRINGS);
     plan.touched = true;
-    plan.probe = probe_place(&shape, &pose);
+    plan.probe = probe_place(&shape, &at);
     press(&s, &wall, &plan, 200, 40);
     for (int64_t n = 0; n < s.p.nodes; n++) {
         double x[3];

@@ -1,7 +1,7 @@
 /* Poses: TUM lines, changes of method, what is refused and where; frames of PLUS sequences, composed, turned from an
  * image's frame to the probe's, left out where they were not tracked.
  */
-#include "volume/poses.h"
+#include "probe/poses.h"
 
 #include "tap.h"
 
@@ -40,9 +40,11 @@ static void lines(void)
     ok(n == 5, "five events, the last line without its end: %d %s", n, e.text);
     ok(v[0].kind == POSES_POSE && v[1].kind == POSES_MSDS && v[3].kind == POSES_FEM && v[4].kind == POSES_POSE,
        "poses, and changes of method between them");
-    ok(v[0].line == 3 && v[0].time == 0 && v[0].origin[2] == 3 && v[0].turn[3] == 1, "a pose, and its line");
-    near_(v[2].turn[0] * v[2].turn[0] + v[2].turn[3] * v[2].turn[3], 1, 1e-15, "a quaternion is made of length 1");
-    poses_matrix(v[2].turn, r);
+    ok(v[0].line == 3 && v[0].time == 0 && v[0].at.position[2] == 3 && v[0].at.quaternion[3] == 1,
+       "a pose, and its line");
+    near_(v[2].at.quaternion[0] * v[2].at.quaternion[0] + v[2].at.quaternion[3] * v[2].at.quaternion[3], 1, 1e-15,
+          "a quaternion is made of length 1");
+    pose_matrix(v[2].at.quaternion, r);
     near_(r[5], -1, 1e-12, "a quarter turn about x takes z to -y");
     near_(r[7], 1, 1e-12, "and y to z");
     ok(v[4].time == .5, "two poses may be of one time");
@@ -93,14 +95,14 @@ static void sequence(void)
     int n = read_all(text, v, 4, &e);
     ok(n == 2, "a sequence of two frames %s", e.text);
     ok(v[0].kind == POSES_POSE && v[0].time == 1.5 && v[1].time == 2, "their times");
-    near_(v[0].origin[0], .002, 1e-15, "the middle of the first row of pixels, in m");
-    near_(v[0].origin[1], 0, 0, "its first row");
-    poses_matrix(v[0].turn, r);
+    near_(v[0].at.position[0], .002, 1e-15, "the middle of the first row of pixels, in m");
+    near_(v[0].at.position[1], 0, 0, "its first row");
+    pose_matrix(v[0].at.quaternion, r);
     ok(fabs(r[0] - 1) < 1e-15 && fabs(r[5] - 1) < 1e-15 && fabs(r[7] + 1) < 1e-15,
        "+x along the columns, +z down the rows, +y against the normal");
-    near_(v[1].origin[0], .010, 1e-15, "the second: moved,");
-    near_(v[1].origin[1], .024, 1e-15, "and turned, with pixels of 2 mm");
-    poses_matrix(v[1].turn, r);
+    near_(v[1].at.position[0], .010, 1e-15, "the second: moved,");
+    near_(v[1].at.position[1], .024, 1e-15, "and turned, with pixels of 2 mm");
+    pose_matrix(v[1].at.quaternion, r);
     ok(fabs(r[3] - 1) < 1e-12 && fabs(r[2] + 1) < 1e-12, "its columns run along y, its depth along -x");
 }
 
@@ -120,12 +122,13 @@ static void composed(void)
     double r[9];
     int n = read_with(text, NULL, v, 4, &skipped, &e);
     ok(n == 2 && skipped == 1, "a frame that was not tracked is left out, and counted %s", e.text);
-    near_(v[0].origin[0], -.002, 1e-15, "probe to reference by way of the tracker: x");
-    near_(v[0].origin[1], -.004, 1e-15, "y");
-    near_(v[0].origin[2], -.003, 1e-15, "z");
-    poses_matrix(v[0].turn, r);
+    near_(v[0].at.position[0], -.002, 1e-15, "probe to reference by way of the tracker: x");
+    near_(v[0].at.position[1], -.004, 1e-15, "y");
+    near_(v[0].at.position[2], -.003, 1e-15, "z");
+    pose_matrix(v[0].at.quaternion, r);
     near_(r[1], 1, 1e-15, "and its rotation, turned back");
-    ok(read_with(text, "ProbeToTracker", v, 4, &skipped, &e) == 2 && v[0].origin[0] == .005, "another, by its name");
+    ok(read_with(text, "ProbeToTracker", v, 4, &skipped, &e) == 2 && v[0].at.position[0] == .005,
+       "another, by its name");
     ok(read_with(text, "ReferenceToProbe", v, 4, &skipped, &e) == 2, "or inverted");
     ok(read_with(text, "Probe", v, 4, NULL, &e) == -1 && e.status == STATUS_USAGE, "%s", e.text);
     e = (err){0};
@@ -166,7 +169,7 @@ static void nrrd(void)
     int n = read_all("NRRD0004\n# made\ntype: unsigned char\nsizes: 5 4 1\nkinds: domain domain list\n"
                      "Seq_Frame0000_ImageToReferenceTransform:=" UNIT "\nSeq_Frame0000_Timestamp:=7\n\n\001\002",
                      v, 4, &e);
-    ok(n == 1 && v[0].time == 7 && v[0].origin[0] == .002, "the same in a NRRD header %s", e.text);
+    ok(n == 1 && v[0].time == 7 && v[0].at.position[0] == .002, "the same in a NRRD header %s", e.text);
 }
 
 /* A line that has come is an event, whether or not the next one is on its way. */
@@ -213,7 +216,7 @@ static void real(void)
         for (; poses_next(&p, &v, &e) > 0; n++)
             last = v;
     ok(n == 21 && !e.status && p.frames.skipped == 0, "a sweep of 21 frames %s", e.text);
-    ok(last.time == 234.261100 && fabs(last.origin[0] - .258961) < 1e-12, "the last of them");
+    ok(last.time == 234.261100 && fabs(last.at.position[0] - .258961) < 1e-12, "the last of them");
     in_close(s);
 }
 

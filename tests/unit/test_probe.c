@@ -22,15 +22,15 @@ static double any(void)
     return (double)(seed >> 11) / 4503599627370496. - 1;
 }
 
-static probe_pose any_pose(void)
+static pose any_pose(void)
 {
-    probe_pose pose = {{any(), any(), any()}, {any(), any(), any(), any()}};
+    pose at = {{any(), any(), any()}, {any(), any(), any(), any()}};
     double length = 0;
     for (int a = 0; a < 4; a++)
-        length += pose.quaternion[a] * pose.quaternion[a];
+        length += at.quaternion[a] * at.quaternion[a];
     for (int a = 0; a < 4; a++)
-        pose.quaternion[a] /= sqrt(length);
-    return pose;
+        at.quaternion[a] /= sqrt(length);
+    return at;
 }
 
 static void any_near(const probe_placed *p, double x[3])
@@ -113,8 +113,8 @@ static void test_narrow(const probe *p, const char *name)
     double worst = 0, way = 0, coarse = 0, ball = .02 * p->reach;
     int deep = 0, edges = 0, met_wrong = 0, differ = 0, wrong = 0;
     for (int i = 0; i < POINTS; i++) {
-        probe_pose pose = any_pose();
-        probe_placed placed = probe_place(p, &pose);
+        pose at = any_pose();
+        probe_placed placed = probe_place(p, &at);
         double x[3];
         any_about(&placed, x);
         probe_touch ours = probe_at(&placed, x), theirs;
@@ -157,8 +157,8 @@ static void test_distance(const probe *p, const char *name)
 {
     double length = 0, surface = 0, slope = 0, nearer = 0;
     for (int i = 0; i < 20 * POINTS; i++) {
-        probe_pose pose = any_pose();
-        probe_placed placed = probe_place(p, &pose);
+        pose at = any_pose();
+        probe_placed placed = probe_place(p, &at);
         double x[3], y[3], z[3];
         any_near(&placed, x);
         probe_touch t = probe_at(&placed, x);
@@ -188,8 +188,8 @@ static void test_bounds(const probe *p, const char *name)
 {
     int out_of_ball = 0;
     double deepest = 0, rim = 0;
-    const probe_pose pose = {{0, 0, 0}, {0, 0, 0, 1}};
-    const probe_placed placed = probe_place(p, &pose);
+    const pose at = {{0, 0, 0}, {0, 0, 0, 1}};
+    const probe_placed placed = probe_place(p, &at);
     const double face[3] = {0, 0, 0};
     for (int i = 0; i < 50 * POINTS; i++) {
         double x[3], away = 0;

@@ -68,8 +68,8 @@ static void done(skin *s)
 
 static probe_placed press_at(const probe *p, double x, double y, double z)
 {
-    const probe_pose pose = {{x, y, z}, {1, 0, 0, 0}};
-    return probe_place(p, &pose);
+    const pose at = {{x, y, z}, {1, 0, 0, 0}};
+    return probe_place(p, &at);
 }
 
 /* Down by 3 cm, held, and gone: no vertex goes beyond its place, none comes closer

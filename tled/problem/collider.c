@@ -1,8 +1,8 @@
 #include "tled/problem/collider.h"
 
 #include "base/mem.h"
+#include "probe/poses.h"
 #include "tled/problem/step.h"
-#include "volume/poses.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,13 +17,12 @@ static int read_poses(collider *c, const char *path, const char *transform, err 
         if (at.kind != POSES_POSE)
             got = err_set(e, path, at.line,
                           "a line that changes the method; expected poses alone: methods are msds-run's");
-        if (got < 0 || MEM_ROOM(&c->pose, &c->pose_room, c->poses + 1, "poses", e) ||
+        if (got < 0 || MEM_ROOM(&c->list, &c->pose_room, c->poses + 1, "poses", e) ||
             MEM_ROOM(&c->time, &c->time_room, c->poses + 1, "poses", e)) {
             got = -1;
             break;
         }
-        memcpy(c->pose[c->poses].position, at.origin, sizeof at.origin);
-        memcpy(c->pose[c->poses].quaternion, at.turn, sizeof at.turn);
+        c->list[c->poses] = at.at;
         c->time[c->poses++] = at.time;
     }
     if (!got && !c->poses)
@@ -43,7 +42,7 @@ void collider_free(collider *c)
 {
     probe_free(&c->shape);
     free(c->time);
-    free(c->pose);
+    free(c->list);
     *c = (collider){.poses = 0};
 }
 
@@ -81,7 +80,7 @@ static bool is_away(const collider *c, const tled_problem *p)
     room += 2 * c->shape.reach; /* the ball's middle turns with the probe */
     for (int64_t i = 0; i < c->poses; i++) {
         const int64_t next = i + 1 < c->poses ? i + 1 : i;
-        const probe_placed from = probe_place(&c->shape, &c->pose[i]), to = probe_place(&c->shape, &c->pose[next]);
+        const probe_placed from = probe_place(&c->shape, &c->list[i]), to = probe_place(&c->shape, &c->list[next]);
         bool near = true;
         for (int a = 0; a < 3; a++)
             near = near && fmin(from.centre[a], to.centre[a]) < high[a] + room &&
@@ -110,7 +109,7 @@ void collider_begin(collider *c, const tled_problem *p, double ramp, notes *warn
         notes_add(warnings, "the probe's face is larger than the tissue: it presses like a plate");
 }
 
-probe_pose collider_pose(const collider *c, double time)
+pose collider_pose(const collider *c, double time)
 {
     int64_t low = 0, high = c->poses - 1;
     while (high - low > 1) {
@@ -122,12 +121,12 @@ probe_pose collider_pose(const collider *c, double time)
     }
     double span = c->time[high] - c->time[low];
     double share = span > 0 ? fmin(1, fmax(0, (time - c->time[low]) / span)) : time >= c->time[high];
-    return probe_between(&c->pose[low], &c->pose[high], share);
+    return pose_between(&c->list[low], &c->list[high], share);
 }
 
 probe_placed collider_at(const collider *c, double time)
 {
-    const probe_pose at = collider_pose(c, time);
+    const pose at = collider_pose(c, time);
     return probe_place(&c->shape, &at);
 }
 
@@ -180,7 +179,7 @@ int64_t collider_sum(const tled_problem *p, double time, const double *displacem
 int collider_add(const tled_problem *p, frame *f, const model *m, const double *displacement, err *e)
 {
     static const char *const names[] = {"probe.pose", "probe.force", "probe.torque"};
-    const probe_pose at = collider_pose(p->collider, f->time);
+    const pose at = collider_pose(p->collider, f->time);
     double *to[3];
     for (int i = 0; i < 3; i++) {
         model_array *a = frame_add(f, m, names[i], e);
@@ -188,8 +187,7 @@ int collider_add(const tled_problem *p, frame *f, const model *m, const double *
             return -1;
         to[i] = a->f64;
     }
-    memcpy(to[0], at.position, sizeof at.position);
-    memcpy(to[0] + 3, at.quaternion, sizeof at.quaternion);
+    pose_to_row(&at, to[0]);
     collider_sum(p, f->time, displacement, to[1], to[2]);
     return 0;
 }

@@ -14,7 +14,7 @@
 typedef struct collider {
     probe shape;
     double *time; /* poses: s, not decreasing; owned, as is pose */
-    probe_pose *pose;
+    pose *list;
     int64_t poses, pose_room, time_room;
     double stiffness;    /* 1/s2: c */
     double start, rises; /* s: from when, and how long it takes to come up; 0: it is there at once */
@@ -32,7 +32,7 @@ void collider_join(collider *c, tled_problem *p, double repulsion);
 void collider_begin(collider *c, const tled_problem *p, double ramp, notes *warnings);
 
 /* Where it is. */
-probe_pose collider_pose(const collider *c, double time);
+pose collider_pose(const collider *c, double time);
 probe_placed collider_at(const collider *c, double time);
 
 /* The time of its last pose. */

@@ -92,7 +92,7 @@ static uint32_t crc_shape(const probe *p)
 static uint32_t crc_poses(const collider *c)
 {
     uint32_t crc = checksum_add(0, c->time, (size_t)c->poses * sizeof *c->time);
-    return checksum_add(crc, c->pose, (size_t)c->poses * sizeof *c->pose);
+    return checksum_add(crc, c->list, (size_t)c->poses * sizeof *c->list);
 }
 
 static uint32_t crc_start(const tled_problem *p, int64_t next_frame)

@@ -1,4 +1,4 @@
-#include "volume/poses.h"
+#include "probe/poses.h"
 
 #include "base/near.h"
 #include "base/num.h"
@@ -55,7 +55,7 @@ static int take_method(const poses *p, poses_event *to, err *e)
 static int take_pose(poses *p, poses_event *to, err *e)
 {
     const keyfile *k = &p->lines;
-    double v[8], square = 0;
+    double v[8];
     if (k->count != 8)
         return keyfile_error(k, e, "%d words; expected time tx ty tz qx qy qz qw, method fem, or method msds",
                              k->count);
@@ -63,16 +63,13 @@ static int take_pose(poses *p, poses_event *to, err *e)
         if (num_double(k->word[i], &v[i]))
             return keyfile_error(k, e, "'%.100s' is not a finite number; expected time tx ty tz qx qy qz qw",
                                  k->word[i]);
-    for (int i = 4; i < 8; i++)
-        square += v[i] * v[i];
-    double length = sqrt(square);
-    if (!(fabs(length - 1) <= POSES_LENGTH))
-        return keyfile_error(k, e, "a quaternion of length %.6g; expected 1, to within %g", length, POSES_LENGTH);
+    const double length = pose_unit(v + 4);
+    if (!pose_is_unit(length))
+        return keyfile_error(k, e, "a quaternion of length %.6g; expected 1, to within %g", length, POSE_LENGTH);
     to->kind = POSES_POSE;
     to->time = v[0];
-    memcpy(to->origin, v + 1, sizeof to->origin);
-    for (int i = 0; i < 4; i++)
-        to->turn[i] = v[4 + i] / length;
+    memcpy(to->at.position, v + 1, sizeof to->at.position);
+    memcpy(to->at.quaternion, v + 4, sizeof to->at.quaternion);
     return check_time(p, to->time, k->line, e) ? -1 : 1;
 }
 
@@ -160,14 +157,14 @@ static int next_frame(poses *p, poses_event *to, err *e)
         return err_set(e, place(p), to->line, "%sTo%s is not a rotation; expected axes at right angles, right-handed",
                        p->frames.from, p->frames.to);
     for (int i = 0; i < 3; i++) {
-        to->origin[i] = (m[4 * i] * middle + m[4 * i + 3]) / 1e3;
-        if (!isfinite(to->origin[i]))
+        to->at.position[i] = (m[4 * i] * middle + m[4 * i + 3]) / 1e3;
+        if (!isfinite(to->at.position[i]))
             return err_set(e, place(p), to->line, "%sTo%s lies too far away; expected mm", p->frames.from,
                            p->frames.to);
     }
     if (image)
         turn_image(axis);
-    quaternion(axis, to->turn);
+    quaternion(axis, to->at.quaternion);
     to->kind = POSES_POSE;
     return check_time(p, to->time, to->line, e) ? -1 : 1;
 }
@@ -176,12 +173,4 @@ int poses_next(poses *p, poses_event *to, err *e)
 {
     *to = (poses_event){0};
     return p->sequence ? next_frame(p, to, e) : next_line(p, to, e);
-}
-
-void poses_matrix(const double turn[4], double r[9])
-{
-    double x = turn[0], y = turn[1], z = turn[2], w = turn[3];
-    r[0] = 1 - 2 * (y * y + z * z), r[1] = 2 * (x * y - z * w), r[2] = 2 * (x * z + y * w);
-    r[3] = 2 * (x * y + z * w), r[4] = 1 - 2 * (x * x + z * z), r[5] = 2 * (y * z - x * w);
-    r[6] = 2 * (x * z - y * w), r[7] = 2 * (y * z + x * w), r[8] = 1 - 2 * (x * x + y * y);
 }

@@ -1,4 +1,4 @@
-#include "volume/plus.h"
+#include "probe/plus.h"
 
 #include "base/chars.h"
 #include "base/num.h"

@@ -7,21 +7,19 @@
 #define SINEW_POSES_H
 
 #include "base/keyfile.h"
-#include "volume/plus.h"
+#include "base/pose.h"
+#include "probe/plus.h"
 
 typedef enum poses_kind { POSES_POSE, POSES_FEM, POSES_MSDS } poses_kind;
 
-/* How far from 1 the length of a quaternion may be, which is then made 1; and the
- * cosine between a matrix's axes from 0. */
-#define POSES_LENGTH 0.01
+/* How far from 0 the cosine between a matrix's axes may be. */
 #define POSES_COSINE 0.001
 
 typedef struct poses_event {
     poses_kind kind;
     int64_t line;
-    double time;      /* s; of a pose */
-    double origin[3]; /* m: the middle of the probe's face */
-    double turn[4];   /* qx qy qz qw, of length 1: +z into the tissue, +x along the image's columns */
+    double time; /* s; of a pose */
+    pose at;     /* of the middle of the probe's face; +z into the tissue, +x along the image's columns */
 } poses_event;
 
 typedef struct poses {
@@ -41,8 +39,5 @@ int poses_open(poses *p, in *source, const char *transform, err *e);
  * quaternion that is not of length 1, a matrix that is not a rotation, a time before that of the pose before. Frames of
  * a sequence that were not tracked are left out and counted in p->frames.skipped. */
 int poses_next(poses *p, poses_event *to, err *e);
-
-/* The rotation as a matrix: row i, column j at 3 i + j. */
-void poses_matrix(const double turn[4], double r[9]);
 
 #endif
