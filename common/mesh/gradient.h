@@ -20,8 +20,8 @@ void gradient_strain(const double h[9], double strain[9]);
 double gradient_largest(const double t[9]);
 double gradient_mises(const double t[9]);
 
-/* Von Mises' equivalent of the Cauchy stress P F^T / J of a form with these coefficients, without active stress; Pa. nan
- * where J is not above 0. */
+/* Von Mises' equivalent of the Cauchy stress P F^T / J of a form with these coefficients, without active stress; Pa.
+ * nan where J is not above 0. */
 double gradient_stress(const double h[9], form f, const double *c);
 
 /* The same of linear elasticity: of the small strain (H + H^T) / 2, whose mean part drops out. */
