@@ -10,6 +10,7 @@
 #ifndef SINEW_CROSSING_H
 #define SINEW_CROSSING_H
 
+#include "base/num.h"
 #include "voxelise/surfaces/grid.h"
 
 #include <stdbool.h>
@@ -53,7 +54,7 @@ static inline int32_t crossing_first(double x, double bound, int32_t low, int32_
     if (below != above)
         return CROSSING_OPEN;
     int64_t at = low - 1 + above;
-    return (int32_t)(at < low ? low : at > high ? high : at);
+    return (int32_t)num_clamp_int(at, low, high);
 }
 
 /* What `first` holds for a coordinate: x of the grid's unit, cell the same in cells. */

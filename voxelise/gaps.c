@@ -336,8 +336,10 @@ static int look(work *w, gaps *found, int64_t *capacity, int axis, const inside_
         pool_run(threads, w->test.slabs, 1, do_slab, w);
         status = join_slabs(w, &all, e);
     }
-    if (!status)
-        status = !w->of ? -1 : atomic_load(&w->failed) ? err_memory(e, "crossings") : 0;
+    if (!status && !w->of)
+        status = -1;
+    if (!status && atomic_load(&w->failed))
+        status = err_memory(e, "crossings");
     if (!status)
         status = keep(w, &all, found, capacity, e);
     free(all.v);

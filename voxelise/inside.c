@@ -212,7 +212,9 @@ int inside_create(inside *test, const grid *g, const inside_triangles *t, int ra
     if (t->triangles > UINT32_MAX)
         return err_set(e, NULL, 0, "%lld triangles; at most %u are possible", (long long)t->triangles, UINT32_MAX);
     double layer = (double)grid_cells(g, ray) * (double)grid_cells(g, column);
-    test->layers = layer * LAYERS <= SLAB_BITS ? LAYERS : layer <= SLAB_BITS ? (int64_t)(SLAB_BITS / layer) : 1;
+    test->layers = LAYERS;
+    if (layer * LAYERS > SLAB_BITS)
+        test->layers = layer <= SLAB_BITS ? (int64_t)(SLAB_BITS / layer) : 1;
     test->layers = (test->layers + multiple - 1) / multiple * multiple;
     test->slabs = pool_chunks(grid_cells(g, row), test->layers);
     if (test->slabs > SLABS_MOST)

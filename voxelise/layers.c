@@ -189,7 +189,10 @@ static void move_mixes(const work *w, voxels *x)
         for (int32_t at = x->run[r].from; at < x->run[r].to; at++, i++) {
             int32_t was = x->mix[i];
             bool in_layer = w->layer[i] && was >= 0 && was < w->lowest;
-            x->mix[i] = was < 0 ? -1 : in_layer ? w->lowest + w->layer[i] - 1 : moved(w, was);
+            if (in_layer)
+                x->mix[i] = w->lowest + w->layer[i] - 1;
+            else
+                x->mix[i] = was < 0 ? -1 : moved(w, was);
             if (x->mix[i] == x->run[r].volume)
                 x->mix[i] = -1;
             x->mixture[i] = x->mix[i] < 0 ? 0 : x->mixture[i];

@@ -91,9 +91,10 @@ void report_volume(out *o, const volumes_volume *v, const check_result *r, int64
 
 text_table *report_surfaces(bool sized, err *e)
 {
+    const char *const last = sized ? "<" : NULL;
     const char *const heads[] = {
-        "<surface",      ">polygons",     ">edges\nopen",           ">edges\n> 2",      ">edges\nturned",
-        ">poly.\nagain", ">pairs\ncross", sized ? ">thin\n%" : "<", sized ? "<" : NULL, NULL};
+        "<surface",      ">polygons",     ">edges\nopen",           ">edges\n> 2", ">edges\nturned",
+        ">poly.\nagain", ">pairs\ncross", sized ? ">thin\n%" : "<", last,          NULL};
     return text_table_create(heads, e);
 }
 
@@ -145,12 +146,13 @@ void report_warn(notes *n, listing *thin, const char *what, const char *name, co
 void report_thin(notes *n, listing *thin)
 {
     const bool one = thin->count == 1;
+    const char *verb = one ? " is" : "s are";
+    const char *whose = one ? "its" : "their";
     if (thin->count)
         notes_add(n,
                   "%lld surface%s thinner than a voxel over more than half of %s area: %s; whether %s voxels there is "
                   "chance, so use smaller or flatter voxels (-s)",
-                  (long long)thin->count, one ? " is" : "s are", one ? "its" : "their", listing_text(thin),
-                  one ? "it has" : "they have");
+                  (long long)thin->count, verb, whose, listing_text(thin), one ? "it has" : "they have");
 }
 
 /* ---- the size of all */

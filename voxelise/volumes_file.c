@@ -83,7 +83,8 @@ static int take_pattern(reader *r, const char *pattern, err *e)
     int32_t only = is_plain(pattern) ? find_lower(&r->surfaces, pattern, e) : -1;
     if (only < -1)
         return -1;
-    for (int32_t s = only < 0 ? 0 : only; s < (only < 0 ? r->v->surfaces : only + 1); s++) {
+    const int32_t end = only < 0 ? r->v->surfaces : only + 1;
+    for (int32_t s = only < 0 ? 0 : only; s < end; s++) {
         if (!surface_in_group(r->surface[s], pattern))
             continue;
         if (mem_grow(&r->link, &r->link_capacity, r->links + 1, sizeof *r->link, "volumes", e))

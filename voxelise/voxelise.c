@@ -270,13 +270,14 @@ static int find_voxels(job *j, err *e)
     shares_rule rule = {(int)j->o->fraction, isnan(j->o->least) ? 0 : j->o->least};
     if (by_shares && grid_divide(&j->samples, &j->g, rule.samples, e))
         return -1;
-    if (look_inside(j, by_shares ? &j->samples : &j->g, by_shares ? &rule : NULL, e))
+    if (by_shares ? look_inside(j, &j->samples, &rule, e) : look_inside(j, &j->g, NULL, e))
         return -1;
     if (j->x.elements)
         return 0;
-    return err_set(e, j->surface.name, 0, "no voxel has %s inside; expected smaller voxels%s (%g x %g x %g %s)",
-                   by_shares ? "enough of it" : "its centre", j->o->box.count ? ", or another --box" : "",
-                   j->g.spacing[0], j->g.spacing[1], j->g.spacing[2], num_unit_name(j->unit));
+    const char *what = by_shares ? "enough of it" : "its centre";
+    return err_set(e, j->surface.name, 0, "no voxel has %s inside; expected smaller voxels%s (%g x %g x %g %s)", what,
+                   j->o->box.count ? ", or another --box" : "", j->g.spacing[0], j->g.spacing[1], j->g.spacing[2],
+                   num_unit_name(j->unit));
 }
 
 /* Where a volume of level 0 is open, what is inside it is a guess. */
@@ -336,8 +337,8 @@ static int say_volumes(job *j, const model *m, err *e)
                        .boxed = j->o->box.count > 0,
                        .verbose = j->t->common->verbose};
     text_table *rows = summary_table(&s, e);
-    int rc =
-        rows ? tool_table(j->t, rows, e, "%d volume%s", (int)j->plan.volumes, j->plan.volumes == 1 ? "" : "s") : -1;
+    const char *plural = j->plan.volumes == 1 ? "" : "s";
+    int rc = rows ? tool_table(j->t, rows, e, "%d volume%s", (int)j->plan.volumes, plural) : -1;
     text_table_free(rows);
     return rc ? -1 : summary_warn(&s, &j->warnings, e);
 }

@@ -62,7 +62,9 @@ static __device__ inline void contact_consider(const tissue *t, const tissue_fra
 /* Notes the force of a node for the next frame. */
 static __device__ inline void contact_hold(const tissue *t, int32_t n)
 {
-    t->held[n] = !t->listed[n] ? 0 : t->contact[n].force > 0 ? t->contact[n].force : -1;
+    const real force = t->contact[n].force;
+    const real held = force > 0 ? force : -1;
+    t->held[n] = t->listed[n] ? held : 0;
 }
 
 /* The force and torque of a node on the probe. */

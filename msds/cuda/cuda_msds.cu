@@ -378,9 +378,11 @@ static int cuda_step(void *state, const void *plan, int64_t count, err *e)
     if (p->touched && put_planes(s, &p->probe.shape, e))
         return -1;
     const tissue_frame f = frame_of(s, p, count);
-    int result = p->method == MSDS_SPRINGS ? step_springs(s, &f, e)
-                 : p->method == MSDS_FEM   ? step_fem(s, &f, e)
-                                           : step_exact(s, &f, e);
+    int result;
+    if (p->method == MSDS_SPRINGS)
+        result = step_springs(s, &f, e);
+    else
+        result = p->method == MSDS_FEM ? step_fem(s, &f, e) : step_exact(s, &f, e);
     s->precise = p->method == MSDS_EXACT;
     s->step++;
     return result;
@@ -430,7 +432,12 @@ static int cuda_get(void *state, int what, double *to, err *e)
 static int64_t cuda_bytes(const void *state)
 {
     const cuda_state *s = (const cuda_state *)state;
-    return s->bytes + (s->fem ? s->fem_bytes : 0) + (s->exact ? s->exact_bytes : 0);
+    int64_t bytes = s->bytes;
+    if (s->fem)
+        bytes += s->fem_bytes;
+    if (s->exact)
+        bytes += s->exact_bytes;
+    return bytes;
 }
 
 const backend msds_cuda = {"cuda", card_unusable, cuda_create, cuda_step, cuda_get,   NULL,

@@ -25,7 +25,10 @@ int parts_held(const msds_problem *p, err *e)
         toward[n] = (int32_t)n;
     for (int64_t i = 0; i < p->springs && !result; i++) {
         int32_t a = first_of(toward, p->spring[i].node[0]), b = first_of(toward, p->spring[i].node[1]);
-        toward[a > b ? a : b] = a < b ? a : b;
+        if (a > b)
+            toward[a] = b;
+        else
+            toward[b] = a;
     }
     for (int64_t n = 0; n < p->nodes && !result; n++) {
         int32_t first = first_of(toward, (int32_t)n);

@@ -112,7 +112,10 @@ int mesh_fix(model *m, const char *list, const int32_t *nodes, err *e)
         int known = find_word(word);
         if (known < 0 && !fix_volume(m, word, rigid->u8))
             return unknown(m, word, e);
-        sides |= known >= 0 && known < SIDES ? 1U << known : known == SIDES ? ALL_ROUND : 0;
+        if (known >= 0 && known < SIDES)
+            sides |= 1U << known;
+        else if (known == SIDES)
+            sides |= ALL_ROUND;
     }
     return sides ? fix_sides(m, sides, nodes, rigid->u8, e) : 0;
 }

@@ -173,7 +173,10 @@ static void find_missed(missed *m, const found *f, const volume *labels)
 static void note_one(const volume *labels, int64_t value, const char *what, notes *warnings)
 {
     const char *name = volume_label_of(labels, value);
-    notes_add(warnings, "label %" PRId64 "%s%s%s %s", value, name ? " (" : "", name ? name : "", name ? ")" : "", what);
+    if (name)
+        notes_add(warnings, "label %" PRId64 " (%s) %s", value, name, what);
+    else
+        notes_add(warnings, "label %" PRId64 " %s", value, what);
 }
 
 /* What is too thin, or not where the mesh is; and names of no voxel. */

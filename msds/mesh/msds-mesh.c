@@ -73,13 +73,25 @@ static int parse_nodes(const char *text, int32_t nodes[3], err *e)
     return 0;
 }
 
+/* The first of the options that only a mesh made here can have; NULL: none is given. */
+static const char *mesh_option(const struct options *o)
+{
+    const struct {
+        bool given;
+        const char *name;
+    } options[] = {{o->size.count > 0, "--size"},    {o->origin.count > 0, "--origin"},
+                   {o->like != NULL, "--like"},      {o->labels != NULL, "--labels"},
+                   {!isnan(o->young), "--young"},    {!isnan(o->poisson), "--poisson"},
+                   {!isnan(o->density), "--density"}};
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++)
+        if (options[i].given)
+            return options[i].name;
+    return NULL;
+}
+
 static int check_model_options(const struct options *o, err *e)
 {
-    const char *given = o->size.count ? "--size" : o->origin.count ? "--origin" : o->like ? "--like" : NULL;
-    if (!given)
-        given = o->labels ? "--labels" : !isnan(o->young) ? "--young" : !isnan(o->poisson) ? "--poisson" : NULL;
-    if (!given && !isnan(o->density))
-        given = "--density";
+    const char *given = mesh_option(o);
     if (given)
         return err_usage(e, "%s is for a mesh of --nodes NXxNYxNZ; expected both", given);
     return 0;
@@ -149,7 +161,9 @@ static int make_box(const struct options *o, mesh_box *b, model *m, err *e)
 static int read_materials(const struct options *o, model *m, const material *usual, err *e)
 {
     in *source = in_open(o->materials, e);
-    int status = !source ? -1 : usual ? materials_read_with(m, source, usual, e) : materials_override(m, source, e);
+    int status = -1;
+    if (source)
+        status = usual ? materials_read_with(m, source, usual, e) : materials_override(m, source, e);
     in_close(source);
     return status;
 }
@@ -196,8 +210,8 @@ static int say_volumes(const tool *t, const model *m, notes *warnings, err *e)
         text_table_count(rows, count);
         text_table_cell(rows, "%s", called->str[of_volume->i32[v]]);
     }
-    const int rc =
-        rows ? tool_table(t, rows, e, "%lld volume%s", (long long)name->rows, name->rows == 1 ? "" : "s") : -1;
+    const char *plural = name->rows == 1 ? "" : "s";
+    const int rc = rows ? tool_table(t, rows, e, "%lld volume%s", (long long)name->rows, plural) : -1;
     text_table_free(rows);
     for (int64_t i = 0; i < called->rows; i++) {
         bool used = false;

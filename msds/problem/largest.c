@@ -68,8 +68,11 @@ static int below(const lanczos *z, int n, double x, double *last)
 static double largest_ritz(const lanczos *z, int n)
 {
     double low = 0, high = 0, last;
-    for (int i = 0; i < n; i++)
-        high = fmax(high, z->alpha[i] + (i ? z->beta[i - 1] : 0) + (i + 1 < n ? z->beta[i] : 0));
+    for (int i = 0; i < n; i++) {
+        const double before = i ? z->beta[i - 1] : 0;
+        const double after = i + 1 < n ? z->beta[i] : 0;
+        high = fmax(high, z->alpha[i] + before + after);
+    }
     for (int i = 0; i < 60; i++) {
         double middle = .5 * (low + high);
         if (below(z, n, middle, &last) < n)

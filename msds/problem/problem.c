@@ -97,7 +97,13 @@ static int find_shares(const model *m, shares *s, err *e)
     const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
     if (mix && !mixture)
         return -1;
-    *s = (shares){fraction ? fraction->f32 : NULL, mixture ? mixture->f32 : NULL, mix ? mix->i32 : NULL};
+    *s = (shares){0};
+    if (fraction)
+        s->fraction = fraction->f32;
+    if (mix) {
+        s->mixture = mixture->f32;
+        s->mix = mix->i32;
+    }
     return 0;
 }
 

@@ -29,7 +29,7 @@ static edge *all_edges(const msds_problem *p, err *e)
     for (int64_t t = 0; t < p->elements; t++)
         for (int i = 0; i < 6; i++) {
             int32_t a = p->element_node[4 * t + corner[i][0]], b = p->element_node[4 * t + corner[i][1]];
-            list[6 * t + i] = (edge){{a < b ? a : b, a < b ? b : a}, (int32_t)t};
+            list[6 * t + i] = a < b ? (edge){{a, b}, (int32_t)t} : (edge){{b, a}, (int32_t)t};
         }
     qsort(list, 6 * (size_t)p->elements, sizeof *list, ascending);
     return list;

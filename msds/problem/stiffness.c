@@ -10,7 +10,8 @@ enum { ELEMENT_CHUNK = 256, NODE_CHUNK = 512 };
 static int find_spring(const msds_problem *p, int32_t a, int32_t b)
 {
     int64_t low = 0, high = p->springs - 1;
-    int32_t first = a < b ? a : b, second = a < b ? b : a;
+    int32_t first = a < b ? a : b;
+    int32_t second = a < b ? b : a;
     while (low < high) {
         int64_t middle = (low + high) / 2;
         const int32_t *n = p->spring[middle].node;
@@ -81,8 +82,10 @@ static void fill(stiffness *k)
         }
         for (int i = 0; i < 6; i++) {
             int first = corner[i][0], second = corner[i][1];
-            bool as_is = n[first] < n[second];
-            simplex_block(&s, as_is ? first : second, as_is ? second : first, b);
+            if (n[first] < n[second])
+                simplex_block(&s, first, second, b);
+            else
+                simplex_block(&s, second, first, b);
             add_block(k->block + 9 * (int64_t)k->element_spring[6 * t + i], b);
         }
     }

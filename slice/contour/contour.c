@@ -1,6 +1,7 @@
 #include "slice/contour/contour.h"
 
 #include "base/mem.h"
+#include "base/num.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -114,9 +115,7 @@ static void cross_edge(const march *m, int axis, unsigned code)
     if (m->at[axis] > 0 && m->at[axis] < m->size[axis]) {
         double a = corner_value(m, from), b = corner_value(m, 7);
         share = a / (a - b);
-        share = share > CONTOUR_NEAREST    ? fmin(share, 1 - CONTOUR_NEAREST)
-                : share <= CONTOUR_NEAREST ? CONTOUR_NEAREST
-                                           : .5;
+        share = isnan(share) ? .5 : num_clamp(share, CONTOUR_NEAREST, 1 - CONTOUR_NEAREST);
     }
     position[axis] += share;
     outward[axis] = low_inside ? 1 : -1;

@@ -17,7 +17,7 @@ static int corner_place(int corner, int axis)
 
 static int edge_between(int p, int q)
 {
-    int axis = (p ^ q) == 1 ? 0 : (p ^ q) == 2 ? 1 : 2;
+    int axis = (p ^ q) >> 1; /* one bit differs: 1, 2 or 4 */
     return 4 * axis + corner_place(p, (axis + 1) % 3) + 2 * corner_place(p, (axis + 2) % 3);
 }
 
@@ -88,7 +88,8 @@ static int distance(int e, int f)
         int place[2];
         for (int k = 0; k < 2; k++) {
             int edge = k ? f : e, turn = (axis - edge / 4 + 3) % 3;
-            place[k] = turn == 0 ? 1 : turn == 1 ? 2 * (edge % 2) : 2 * (edge % 4 / 2);
+            const int of_turn[3] = {1, 2 * (edge % 2), 2 * (edge % 4 / 2)};
+            place[k] = of_turn[turn];
         }
         sum += (place[0] - place[1]) * (place[0] - place[1]);
     }

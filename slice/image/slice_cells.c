@@ -1,6 +1,7 @@
 #include "slice/image/slice_cells.h"
 
 #include "base/mem.h"
+#include "base/num.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -71,7 +72,7 @@ typedef struct laying {
 
 static int64_t within(int64_t at, int64_t size)
 {
-    return at < 0 ? 0 : at < size ? at : size - 1;
+    return num_clamp_int(at, 0, size - 1);
 }
 
 /* A brick from its nine rows of voxels, of which the first and the last go on past their ends. */

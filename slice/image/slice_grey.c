@@ -44,7 +44,8 @@ void slice_grey_apply(const slice_grey *g, uint8_t *image, int64_t at, int64_t c
         return;
     for (int64_t i = at; i < at + count; i++) {
         int32_t level = (image[i] * g->slope + g->offset[i]) >> 16;
-        level = level < 0 ? 0 : level > 255 ? 255 : level;
+        level = level < 0 ? 0 : level;
+        level = level > 255 ? 255 : level;
         image[i] = image[i] ? (uint8_t)level : 0;
     }
 }

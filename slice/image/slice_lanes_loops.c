@@ -101,12 +101,17 @@ INLINE void map(slice_piece *p, double place[4][3])
     const double bu = p->u[two] - p->u[from], bv = p->v[two] - p->v[from];
     const double area = au * bv - av * bu, a2 = au * au + av * av, b2 = bu * bu + bv * bv;
     const bool flat = !(fabs(area) > 1e-9 * (a2 + b2)), first = a2 > b2;
-    const double by = flat ? a2 + b2 > 0 ? 1 / (first ? a2 : b2) : 0 : 1 / area;
-    const double lu = first ? au : bu, lv = first ? av : bv;
+    const double lu = first ? au : bu;
+    const double lv = first ? av : bv;
+    const double l2 = first ? a2 : b2;
+    double by = 1 / area;
+    if (flat)
+        by = a2 + b2 > 0 ? 1 / l2 : 0;
     for (int i = 0; i < 3; i++) {
         const double a = place[one][i] - place[0][i], b = place[two][i] - place[from][i];
-        const double across = flat ? (first ? a : b) * lu * by : (a * bv - b * av) * by;
-        const double down = flat ? (first ? a : b) * lv * by : (b * au - a * bu) * by;
+        const double l = first ? a : b;
+        const double across = (flat ? l * lu : a * bv - b * av) * by;
+        const double down = (flat ? l * lv : b * au - a * bu) * by;
         p->across[i] = SLICE_ONE * across;
         p->down[i] = SLICE_ONE * down;
         p->place[i] = SLICE_ONE * (place[0][i] - across * p->u[0] - down * p->v[0]);
@@ -420,8 +425,10 @@ INLINE void fill_shown(const slice_fill *f, const slice_piece *p, int32_t row, i
                        int64_t offset, slice_places *to)
 {
     const slice_shown *s = &f->shown[row];
-    for (int k = 0; k < 2; k++)
-        line(f, p, row, from > s->from[k] ? from : s->from[k], end < s->to[k] ? end : s->to[k], offset, to);
+    for (int k = 0; k < 2; k++) {
+        const int32_t first = from > s->from[k] ? from : s->from[k];
+        line(f, p, row, first, end < s->to[k] ? end : s->to[k], offset, to);
+    }
 }
 
 /* A bit for each of the rows whose count is above one number and not above another. */
@@ -485,7 +492,8 @@ static void fill(const slice_fill *f, const int32_t *list, int64_t count, int32_
         const slice_piece *p = f->piece + list[i];
         if (i >= AHEAD)
             fetch(f->piece + list[i - AHEAD]);
-        fill_piece(f, p, p->first > first ? p->first : first, p->end < end ? p->end : end, first, to);
+        const int32_t from = p->first > first ? p->first : first;
+        fill_piece(f, p, from, p->end < end ? p->end : end, first, to);
     }
 }
 

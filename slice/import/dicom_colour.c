@@ -1,5 +1,7 @@
 #include "slice/import/dicom_colour.h"
 
+#include "base/num.h"
+
 #include <string.h>
 
 dicom_colour dicom_colour_of(const char *name)
@@ -62,7 +64,10 @@ bool dicom_palette_set(dicom_palette *p, const uint16_t *const table[3], int64_t
     for (int32_t i = 0; i < p->count; i++) {
         int of[3];
         for (int c = 0; c < 3; c++)
-            of[c] = narrow ? table[c][i / 2] >> 8 * (i % 2) & 255 : table[c][i] >> (wide ? 8 : 0);
+            if (narrow)
+                of[c] = table[c][i / 2] >> 8 * (i % 2) & 255;
+            else
+                of[c] = table[c][i] >> (wide ? 8 : 0);
         p->grey[i] = brightness(of[0], of[1], of[2]);
     }
     return true;
@@ -100,13 +105,14 @@ static void put_palette(const dicom_samples *s, const unsigned char *from, unsig
     const dicom_palette *p = s->palette;
     for (int64_t i = 0; i < s->plane * s->frames; i++) {
         int32_t at = sample_of(s, from + i * s->bytes) - p->first;
-        to[i] = p->grey[at < 0 ? 0 : at < p->count ? at : p->count - 1];
+        to[i] = p->grey[num_clamp_int(at, 0, p->count - 1)];
     }
 }
 
 static void put_colours(const dicom_samples *s, const unsigned char *from, unsigned char *to)
 {
-    int64_t across = s->planar ? 1 : 3, along = s->planar ? s->plane : 1;
+    int64_t across = s->planar ? 1 : 3;
+    int64_t along = s->planar ? s->plane : 1;
     for (int64_t f = 0; f < s->frames; f++, from += 3 * s->plane)
         for (int64_t i = 0; i < s->plane; i++) {
             const unsigned char *p = from + i * across;
@@ -119,7 +125,7 @@ static void put_shared(const dicom_samples *s, const unsigned char *from, unsign
     for (int64_t i = 0; i < s->plane * s->frames; i++) {
         int y = from[i / 2 * 4 + i % 2];
         if (s->colour == DICOM_YBR_PARTIAL_422)
-            y = y <= 16 ? 0 : y >= 235 ? 255 : ((y - 16) * 255 + 109) / 219;
+            y = (((int)num_clamp_int(y, 16, 235) - 16) * 255 + 109) / 219;
         to[i] = (unsigned char)y;
     }
 }

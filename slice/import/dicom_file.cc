@@ -33,7 +33,9 @@ thread_local size_t most_at_once = SIZE_MAX;
 
 void *allocate(size_t size) noexcept
 {
-    return size <= most_at_once ? std::malloc(size ? size : 1) : nullptr;
+    if (size > most_at_once)
+        return nullptr;
+    return std::malloc(size ? size : 1);
 }
 
 void *allocate_or_throw(size_t size)

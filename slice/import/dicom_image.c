@@ -321,7 +321,11 @@ int dicom_file_take(dicom_file *f, void *to, err *e)
         return -1;
     dicom_text(f, r.set, TAG_SERIES, d->series, sizeof d->series);
     dicom_text(f, r.set, TAG_BURNED_IN, burned, sizeof burned);
-    d->burned = !strcmp(burned, "YES") ? DICOM_BURNED : !strcmp(burned, "NO") ? DICOM_CLEAN : DICOM_NOT_SAID;
+    d->burned = DICOM_NOT_SAID;
+    if (!strcmp(burned, "YES"))
+        d->burned = DICOM_BURNED;
+    else if (!strcmp(burned, "NO"))
+        d->burned = DICOM_CLEAN;
     for (int i = 0; i < 3; i++)
         d->spacing[i] = (double)NAN;
     return read_geometry(&r) || dicom_pixels_read(d, f, e) ? -1 : 0;

@@ -24,7 +24,8 @@ static size_t end_of_head(const unsigned char *bytes, size_t size, size_t *synta
     while (at < size && size - at >= 12 && two(bytes + at) == META) {
         const unsigned char *p = bytes + at;
         bool wide = !memcmp(p + 4, "OB", 2) || !memcmp(p + 4, "UN", 2);
-        size_t head = wide ? 12 : 8, length = wide ? two(p + 8) | (size_t)two(p + 10) << 16 : two(p + 6);
+        size_t head = wide ? 12 : 8;
+        size_t length = wide ? two(p + 8) | (size_t)two(p + 10) << 16 : two(p + 6);
         if (length > size - at - head)
             return 0;
         if (two(p + 2) == SYNTAX && length >= sizeof deflated - 1 && !memcmp(p + head, deflated, sizeof deflated - 1))

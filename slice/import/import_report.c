@@ -26,9 +26,9 @@ static int print_elements(const dicom_elements *list, bool used, const tool *t, 
         text_table_cell(rows, "%s", one->name);
         count++;
     }
-    const int rc = rows ? tool_table(t, rows, e, "%" PRId64 " element%s %s", count, count == 1 ? "" : "s",
-                                     used ? "used" : "left out")
-                        : -1;
+    const char *plural = count == 1 ? "" : "s";
+    const char *what = used ? "used" : "left out";
+    const int rc = rows ? tool_table(t, rows, e, "%" PRId64 " element%s %s", count, plural, what) : -1;
     text_table_free(rows);
     return rc;
 }

@@ -79,8 +79,9 @@ static int refuse_many(const series *s, const int64_t *number, int64_t last, int
                 first = first < 0 ? i : first;
             }
         const dicom_image *d = &s->file[first].image;
+        const char *comma = n > 1 ? "," : "";
         snprintf(list + strlen(list), 120, "%s %" PRId64 ": %" PRId64 " file%s of %" PRId64 " x %" PRId64 " from %.40s",
-                 n > 1 ? "," : "", n, files, files == 1 ? "" : "s", d->columns, d->rows, s->file[first].name);
+                 comma, n, files, files == 1 ? "" : "s", d->columns, d->rows, s->file[first].name);
     }
     if (wanted < 0)
         return err_set(e, NULL, 0, "%" PRId64 " series:%s; expected --series N to choose one", last, list);
@@ -226,7 +227,8 @@ static int choose_kind(stack *k, err *e)
         if (i && !strcmp(kind, k->one[i - 1].kind))
             continue;
         kinds++;
-        snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", *kind ? kind : "(not said)");
+        const char *comma = used ? ", " : "";
+        snprintf(list + used, sizeof list - used, "%s%s", comma, *kind ? kind : "(not said)");
     }
     for (int64_t i = 0; i < k->count; i++)
         if (!wanted || !strcmp(k->one[i].kind, wanted))
@@ -420,10 +422,12 @@ static int fill(volume *v, const stack *k, err *e)
         dicom_scale scale = scale_of(&k->one[s]);
         scaled |= scale.slope != 1 || scale.intercept != 0;
     }
-    v->type = scaled          ? VOLUME_F32
-              : d->bytes == 1 ? (d->negative ? VOLUME_I8 : VOLUME_U8)
-              : d->negative   ? VOLUME_I16
-                              : VOLUME_U16;
+    if (scaled)
+        v->type = VOLUME_F32;
+    else if (d->bytes == 1)
+        v->type = d->negative ? VOLUME_I8 : VOLUME_U8;
+    else
+        v->type = d->negative ? VOLUME_I16 : VOLUME_U16;
     if (volume_afford(k->wish->budget, v, NULL, e) || volume_make(v, e))
         return -1;
     int64_t plane = v->size[0] * v->size[1];

@@ -186,7 +186,7 @@ static int find_box(const sweep *s, const volume *images, double axis[3][3], dou
                            "frame %" PRId64 " is tracked, and there are images of %" PRId64 "; expected one a frame",
                            f->image, images->size[2]);
         for (int c = 0; c < 4; c++) {
-            place(f, c % 2 ? (double)(images->size[0] - 1) : 0, c / 2 ? (double)(images->size[1] - 1) : 0, corner);
+            place(f, (double)(c % 2 * (images->size[0] - 1)), (double)(c / 2 * (images->size[1] - 1)), corner);
             for (int a = 0; a < 3; a++) {
                 double at = axis[a][0] * corner[0] + axis[a][1] * corner[1] + axis[a][2] * corner[2];
                 low[a] = fmin(low[a], at);
@@ -275,8 +275,10 @@ static void add_linear(const splat *s, const double at[3], float value)
     }
     for (int c = 0; c < 8; c++) {
         int64_t x = i[0] + (c & 1), y = i[1] + (c >> 1 & 1), z = i[2] + (c >> 2);
-        float share =
-            (c & 1 ? high[0] : 1 - high[0]) * (c & 2 ? high[1] : 1 - high[1]) * (c & 4 ? high[2] : 1 - high[2]);
+        float part[3];
+        for (int a = 0; a < 3; a++)
+            part[a] = c >> a & 1 ? high[a] : 1 - high[a];
+        float share = part[0] * part[1] * part[2];
         if (share <= 0 || x >= n[0] || y >= n[1] || z >= n[2])
             continue;
         int64_t index = (z * n[1] + y) * n[0] + x;

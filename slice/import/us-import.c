@@ -165,7 +165,9 @@ static int read_dicom(job *j, err *e)
         char *bytes = NULL;
         const char *name = call_file(j, i);
         int64_t size = import_read(&j->files, i, &bytes, e);
-        int code = size < 0 ? -1 : size ? read_dicom_file(j, name, bytes, size, e) : 0;
+        int code = size < 0 ? -1 : 0;
+        if (size > 0)
+            code = read_dicom_file(j, name, bytes, size, e);
         free(bytes);
         if (code)
             return -1;

@@ -152,7 +152,8 @@ static int list_uses(work *w, const bool *drop, err *e)
     for (int64_t i = 0; i < w->faces; i++)
         for (int64_t c = 0, n = corner_count(w, i); !drop[i] && c < n; c++) {
             int32_t a = w->place.of[corners(w, i)[c]], b = w->place.of[corners(w, i)[(c + 1) % n]];
-            uint64_t low = (uint64_t)(a < b ? a : b), high = (uint64_t)(a < b ? b : a);
+            uint64_t low = (uint64_t)(a < b ? a : b);
+            uint64_t high = (uint64_t)(a < b ? b : a);
             if (a != b)
                 w->use[w->uses++] = (use){low << 32 | high, (int32_t)i, a > b};
         }

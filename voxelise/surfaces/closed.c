@@ -218,8 +218,10 @@ static void fill_edges(const closed_polygons *p, int64_t polygon, table *t, bool
     int32_t a = p->weld[p->o->corner_vertex[start[1] - 1]];
     for (int64_t c = start[0]; c < start[1]; c++) {
         int32_t b = p->weld[p->o->corner_vertex[c]];
-        if (a != b)
-            put(t, a < b ? a : b, (uint32_t)(a < b ? b : a), polygon, store);
+        if (a < b)
+            put(t, a, (uint32_t)b, polygon, store);
+        else if (a > b)
+            put(t, b, (uint32_t)a, polygon, store);
         else
             t->dots++;
         a = b;
@@ -336,8 +338,7 @@ static void tell_open(void *context, const uint64_t *entry, int64_t count)
 {
     const edges *t = context;
     int64_t first = polygon_of(entry[0]);
-    bool even = count % 2 == 0;
-    if (!t->part ? even : cancels(part_of(t, first)) ? even : !is_open(t, entry, count))
+    if (t->part && !cancels(part_of(t, first)) ? !is_open(t, entry, count) : count % 2 == 0)
         return;
     if (!t->r->open++)
         edge_ends(&t->by_vertex, entry, t->r->first);

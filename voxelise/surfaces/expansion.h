@@ -49,7 +49,9 @@ void expansion_negate(int n, double *e);
 /* -1, 0 or 1. */
 static inline int expansion_sign(int n, const double *e)
 {
-    return n == 0 ? 0 : e[n - 1] > 0 ? 1 : -1;
+    if (n == 0)
+        return 0;
+    return e[n - 1] > 0 ? 1 : -1;
 }
 
 #endif

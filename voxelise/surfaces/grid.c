@@ -1,5 +1,6 @@
 #include "voxelise/surfaces/grid.h"
 
+#include "base/num.h"
 #include "voxelise/surfaces/expansion.h"
 
 #include <math.h>
@@ -113,7 +114,7 @@ static int first_kept(const grid *g, int axis, double x, int64_t *at, err *e)
         return 0;
     if (first_at(g, axis, x, at, e))
         return -1;
-    *at = *at < low ? low : *at > high ? high : *at;
+    *at = num_clamp_int(*at, low, high);
     return 0;
 }
 

@@ -90,7 +90,9 @@ static bool on_both(const int *where)
 static void alone_first(corners of, const int *where, const double **to)
 {
     int above = (where[0] > 0) + (where[1] > 0) + (where[2] > 0), lone = above == 1 ? 1 : -1;
-    int first = where[0] == lone ? 0 : where[1] == lone ? 1 : 2;
+    int first = 0;
+    while (first < 2 && where[first] != lone)
+        first++;
     for (int i = 0; i < 3; i++)
         to[i] = of[(first + i) % 3];
 }
@@ -171,7 +173,8 @@ static int compare_ends(const void *a, const void *b)
 static within edge_of(const int32_t *triangle, int i, int32_t other)
 {
     int32_t p = triangle[i], q = triangle[(i + 1) % 3];
-    return (within){p < q ? p : q, p < q ? q : p, triangle[(i + 2) % 3], other};
+    const int32_t third = triangle[(i + 2) % 3];
+    return p < q ? (within){p, q, third, other} : (within){q, p, third, other};
 }
 
 typedef struct edges {
