@@ -26,7 +26,8 @@ struct options {
 #define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
     {OPT_INPUT, 0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0, "name of the surface [default that of the file]"},
-    {OPT_INPUT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0, "unit of the OBJ [default the model's]"},
+    {OPT_INPUT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, 0,
+     "unit of the OBJ [default the model's]"},
     {0},
 };
 

@@ -56,7 +56,7 @@ static const opt_tool table = {
     .name = "voxelise",
     .usage = "[options] surface.obj > model\n[options] - < surface.obj > model",
     .purpose = "Converts closed surfaces to a finite element model of voxels (hexahedra).",
-    .note = "Lengths are in --unit, unless they have a suffix (um, mm, cm, m, in), e.g. 2mm.",
+    .note = "Lengths are in --unit, unless they have a suffix (" NUM_UNITS_LIST "), e.g. 2mm.",
     .example = "voxelise --unit mm -s 2.5 --fraction 4 --materials head.materials head.obj |\n"
                "      attach --fibre field | sinew bind > head.sinew",
     .operands = "surface.obj|-",

@@ -30,7 +30,11 @@ int num_double(const char *text, double *value);
 /* The whole of text as a decimal integer within [low, high]. Returns 0 or -1. */
 int num_int(const char *text, int64_t low, int64_t high, int64_t *value);
 
-#define NUM_UNITS "um, mm, cm, m or in" /* for messages */
+/* The names of units: for messages, for the arguments of options, and in a list. */
+#define NUM_UNITS_JOINED(comma, last) "um" comma "mm" comma "cm" comma "m" last "in"
+#define NUM_UNITS                     NUM_UNITS_JOINED(", ", " or ")
+#define NUM_UNITS_CHOICES             NUM_UNITS_JOINED("|", "|")
+#define NUM_UNITS_LIST                NUM_UNITS_JOINED(", ", ", ")
 
 /* um mm cm m in (any case), or 0 where it is none of these. */
 num_unit num_unit_of(const char *name);

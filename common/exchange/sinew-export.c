@@ -37,7 +37,7 @@ static const opt option_list[] = {
      "vtu, obj: move the points as the frame says"},
     {OPT_INPUT, 0, "surface", "NAME", OPT_TEXT, TO(surface), 0, 0, "@surface.name", 0,
      "vtu, obj: this surface, in place of elements"},
-    {OPT_RESULT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0,
+    {OPT_RESULT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, 0,
      "obj: unit of length [default the model's]"},
     {OPT_ACTION, 'g', "gravity", "X,Y,Z", OPT_NUMBERS, TO(gravity), 3, 3, NULL, 0, "inp: gravity [m/s2; default none]"},
     {OPT_RESULT, 0, "element", "C3D8R|C3D8", OPT_CHOICE, TO(element), 0, 0, "C3D8R|C3D8", 0,

@@ -32,7 +32,7 @@ struct options {
 static const opt option_list[] = {
     {OPT_INPUT, 'f', "format", "inp|msh|vtu", OPT_CHOICE, TO(format), 0, 0, "auto|inp|msh|vtu", 0,
      "format of the mesh [default recognised]"},
-    {OPT_INPUT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, OPT_REQUIRED,
+    {OPT_INPUT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, OPT_REQUIRED,
      "unit of lengths in the mesh; required"},
     {OPT_INPUT, 0, "rigid", "SET,...", OPT_LIST, TO(rigid), 0, 0, NULL, 0,
      "fix the nodes of these sets, groups or arrays"},

@@ -46,7 +46,7 @@ static const opt_tool table = {
     .usage = "--nodes NXxNYxNZ [options] > model\n[options] < voxels > model",
     .purpose = "Makes regular meshes of tetrahedra: over a box, over a volume image, or from\na model of voxels on "
                "standard input.",
-    .note = "Lengths are in m, unless they have a suffix (um, mm, cm, m, in), e.g. 5cm.",
+    .note = "Lengths are in m, unless they have a suffix (" NUM_UNITS_LIST "), e.g. 5cm.",
     .example = "msds-mesh --nodes 20x10x10 --size 8cm,4cm,4cm | sinew info",
     .operands = "",
     .writes_model = true,

@@ -39,7 +39,7 @@ static const opt option_list[] = {
      "stiffness of its anchors relative to its edges [default 0.01]"},
     {OPT_NUMERICS, 0, "skin-tension", "X", OPT_NUMBER, TO(skin_tension), 0, 1e3, NULL, OPT_OUTPUT,
      "stiffness across its edges relative to along them [default 0.5]"},
-    {OPT_INPUT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0,
+    {OPT_INPUT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, 0,
      "unit of OBJ files [default the model's]"},
     {OPT_RESULT, 0, "residual", NULL, OPT_FLAG, TO(residual), 0, 0, NULL, OPT_OUTPUT,
      "print the residual of each frame of fem"},
@@ -53,7 +53,7 @@ const opt_tool run_options_table = {
     .usage = "--poses FILE [options] < model > result",
     .purpose = "Presses an ultrasound probe on a model of tetrahedra, by springs and dampers or\nby linear finite "
                "elements, and adds a frame of results for each pose.",
-    .note = "Lengths are in m, unless they have a suffix (um, mm, cm, m, in), e.g. 5cm.",
+    .note = "Lengths are in m, unless they have a suffix (" NUM_UNITS_LIST "), e.g. 5cm.",
     .example = "msds-run --probe linear:4cm,1cm --poses press.tum < arm.sinew > out.sinew",
     .operands = "",
     .writes_model = true,

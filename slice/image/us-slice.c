@@ -65,7 +65,7 @@ static const opt_tool table = {
     .usage = "[options] volume < result > images\n--rigid --poses FILE [options] volume > images",
     .purpose = "Makes ultrasound images of a volume image as the results of a model deform it:\na stream of PGM or "
                "PPM, or files, also PNG.",
-    .note = "Lengths are in m, unless they have a suffix (um, mm, cm, m, in), e.g. 5cm.",
+    .note = "Lengths are in m, unless they have a suffix (" NUM_UNITS_LIST "), e.g. 5cm.",
     .example = "us-slice --depth 5cm -o image_%04d.png volume.nrrd < out.sinew",
     .operands = "volume",
     .operands_min = 1,

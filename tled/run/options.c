@@ -37,7 +37,7 @@ static const opt option_list[] = {
      "poses of the probe: TUM lines or PLUS sequence"},
     {OPT_ACTION, 0, "repulsion", "X", OPT_NUMBER, TO(repulsion), 1e-6, 1e3, NULL, OPT_OUTPUT,
      "contact stiffness relative to tissue [default 1]"},
-    {OPT_INPUT, 0, "unit", "um|mm|cm|m|in", OPT_TEXT, TO(unit), 0, 0, NULL, 0,
+    {OPT_INPUT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, 0,
      "unit of the probe's OBJ [default the model's]"},
     {OPT_RESULT, 0, "log", "FILE", OPT_TEXT, TO(log), 0, 0, NULL, OPT_OUTPUT | OPT_FILE | OPT_WRITES,
      "write energies, work, residual and steps (TSV)"},
@@ -60,7 +60,7 @@ const opt_tool options_table = {
     .purpose =
         "Simulates a soft-tissue model by total Lagrangian explicit dynamics, and adds\nframes of results to it.",
     .note = "Without -t, -n and --rest, the run ends when the tissue is at rest.\nLengths are in m, unless they have a "
-            "suffix (um, mm, cm, m, in), e.g. 5cm.",
+            "suffix (" NUM_UNITS_LIST "), e.g. 5cm.",
     .example = "tled-run -c zyg_left=0.4,zyg_right=0.4 -t 0.2 < head.sinew > smile.sinew",
     .operands = "",
     .writes_model = true,
