@@ -46,11 +46,20 @@ static element_any shape_of(const view *v, int64_t element, double *squares)
     return s;
 }
 
+/* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, of the same moduli. */
+static double material_energy(const material *of, element_tensor h)
+{
+    const form f = material_form(of);
+    double c[FORM_NUMBERS] = {0};
+    material_coefficients(of, c);
+    return form_energy(f == FORM_LINEAR ? FORM_NEO_HOOKEAN : f, h, c);
+}
+
 static void add_element(const view *v, int64_t element, const material *of, double fraction, energy *to)
 {
     element_modes x = modes_of(v, element, 0), y = modes_of(v, element, 1), z = modes_of(v, element, 2);
     const double *side = v->side;
-    const double mu = material_mu(of), bulk = material_bulk(of), c[FORM_NUMBERS] = {mu, bulk};
+    const double mu = material_mu(of), bulk = material_bulk(of);
     double volume = side[0] * side[1] * side[2], k, squares;
     element_tensor h;
     if (v->is_lattice) {
@@ -63,7 +72,7 @@ static void add_element(const view *v, int64_t element, const material *of, doub
         k = v->kappa * element_hourglass_modulus(mu, bulk) * volume * squares / 8;
     }
     to->scale += fraction * volume * mu;
-    to->strain += fraction * volume * form_energy(FORM_NEO_HOOKEAN, h, c);
+    to->strain += fraction * volume * material_energy(of, h);
     to->hourglass +=
         fraction * (element_hourglass_energy(x, k) + element_hourglass_energy(y, k) + element_hourglass_energy(z, k));
 }

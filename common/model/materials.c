@@ -448,9 +448,16 @@ material material_mixed(const material *a, const material *b, double s)
 {
     const double mu = material_between(material_mu(a), material_mu(b), s);
     const double bulk = material_between(material_bulk(a), material_bulk(b), s);
-    const double c[FORM_NUMBERS] = {mu, bulk};
-    material mixed = {
-        .law = a->law, .density = (1 - s) * a->density + s * b->density, .peak = (1 - s) * a->peak + s * b->peak};
+    double ca[FORM_NUMBERS] = {0}, cb[FORM_NUMBERS] = {0}, same_a[FORM_NUMBERS], same_b[FORM_NUMBERS], c[FORM_NUMBERS];
+    material_coefficients(a, ca);
+    material_coefficients(b, cb);
+    const form f = form_of_both(material_form(a), ca, material_form(b), cb, same_a, same_b);
+    if (f == FORM_COUNT)
+        return *a;
+    material mixed = {.law = f == material_form(a) ? a->law : law_of_form(f),
+                      .density = (1 - s) * a->density + s * b->density,
+                      .peak = (1 - s) * a->peak + s * b->peak};
+    form_between(f, mu, bulk, same_a, same_b, s, c);
     mixed.law->read_back(c, mixed.value);
     return mixed;
 }
@@ -482,7 +489,5 @@ material materials_of_element(const materials_map *map, int64_t element)
 {
     const material *own = &map->of_volume[map->volume[element]];
     const int32_t second = map->mix ? map->mix[element] : -1;
-    return second < 0 || map->of_volume[second].law != own->law
-               ? *own
-               : material_mixed(own, &map->of_volume[second], map->mixture[element]);
+    return second < 0 ? *own : material_mixed(own, &map->of_volume[second], map->mixture[element]);
 }

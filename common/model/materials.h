@@ -109,7 +109,8 @@ static inline double material_between(double a, double b, double s)
     return a == b ? a : exp((1 - s) * log(a) + s * log(b));
 }
 
-/* What is mixed of two materials of one law: mu and K as above, density and peak by shares. */
+/* What is mixed of two materials: mu and K as above, density and peak by shares, in the first form that expresses both
+ * laws (form_between). a, where none does. */
 material material_mixed(const material *a, const material *b, double s);
 
 #endif

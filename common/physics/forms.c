@@ -30,6 +30,14 @@ int form_express(form from, form target, const double *c, double *to)
     return 1;
 }
 
+form form_of_both(form a, const double *ca, form b, const double *cb, double *to_a, double *to_b)
+{
+    for (int f = 0; f < FORM_COUNT; f++)
+        if (form_express(a, (form)f, ca, to_a) && form_express(b, (form)f, cb, to_b))
+            return (form)f;
+    return FORM_COUNT;
+}
+
 void form_between(form f, double mu, double bulk, const double *a, const double *b, double share, double *to)
 {
 #define FORM_ROW(NAME, name, coefficients, history, directions)                                                        \
@@ -37,6 +45,7 @@ void form_between(form f, double mu, double bulk, const double *a, const double 
         form_##name##_between(mu, bulk, a, b, share, to);                                                              \
         break;
     memset(to, 0, FORM_NUMBERS * sizeof *to);
+    to[0] = mu, to[1] = bulk; /* FORM_LINEAR's */
     switch (f) {
         FORMS(FORM_ROW)
     default:

@@ -33,6 +33,9 @@ int form_numbers(form f);
  * form does not express it. */
 int form_express(form from, form target, const double *c, double *to);
 
+/* The first form that expresses both, with the coefficients of each; FORM_COUNT: none does. */
+form form_of_both(form a, const double *ca, form b, const double *cb, double *to_a, double *to_b);
+
 /* The coefficients of what lies between a and b, both of form f, with the moduli mu and bulk at rest (Pa). share: of b. */
 void form_between(form f, double mu, double bulk, const double *a, const double *b, double share, double *to);
 

@@ -128,11 +128,13 @@ static int of_names(field *to, const model *m, bool of_material, err *e)
 
 static double strained(int which, const double h[9], const material *law)
 {
-    double strain[9];
+    double strain[9], c[FORM_NUMBERS] = {0};
+    if (which == STRESS)
+        material_coefficients(law, c);
     if (which == STRESS && material_form(law) == FORM_LINEAR)
         return gradient_stress_linear(h, material_mu(law));
     if (which == STRESS)
-        return gradient_stress(h, FORM_NEO_HOOKEAN, (const double[FORM_NUMBERS]){material_mu(law), material_bulk(law)});
+        return gradient_stress(h, material_form(law), c);
     gradient_strain(h, strain);
     return which == STRAIN ? 2. / 3 * gradient_mises(strain) : gradient_largest(strain);
 }

@@ -33,12 +33,33 @@ static inline void add_script(bench *b)
                    "0.04 displace 0.169,-1,-1,1,0.001,1 -,0.002,-0.003\n");
 }
 
+/* Whether problems that are made are expressed in the Mooney-Rivlin form, of the same moduli: c01 has .4 of mu. */
+static bool in_second_form;
+
+static inline void express_law(tled_law *law)
+{
+    law->c[0] = .3 * law->mu;
+    law->c[1] = .2 * law->mu;
+    law->c[2] = law->bulk;
+}
+
+static inline void express_second(tled_problem *p)
+{
+    p->form = FORM_MOONEY_RIVLIN;
+    for (int32_t i = 0; i < p->volumes; i++)
+        express_law(&p->volume[i].law);
+    for (int64_t i = 0; i < p->laws; i++)
+        express_law(&p->law[i]);
+}
+
 /* So many steps of a fraction of the stable one, which is never cut, so that both take the same. */
 static inline void make(bench *b, const block *what, double level, bool scripted, const backend *device, int64_t steps)
 {
     bench_make(b, what, NULL, level, .0075, 2);
     if (scripted)
         add_script(b);
+    if (in_second_form)
+        express_second(&b->problem);
     bench_steps(b, steps, b->setup.damping);
     b->setup.device = device;
     b->setup.rate = 3 / step_at_rest(&b->problem, NULL);

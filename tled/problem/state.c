@@ -7,6 +7,7 @@
 #include "tled/problem/conforming_step.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -127,21 +128,72 @@ static double square_at_rest(const tled_problem *p, const tled_volume *v)
     return fmax(stability_largest(&a), 8 * v->law.hourglass / (v->law.density * share));
 }
 
-static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
+static const char *law_of_volume(const model *m, int64_t i)
 {
-    material law;
+    return model_find(m, "material.law")->str[model_find(m, "volume.material")->i32[i]];
+}
+
+/* The coefficients of a volume in a form; false: it does not express the volume's law. */
+static bool express(const material *of, form f, double c[FORM_NUMBERS])
+{
+    double own[FORM_NUMBERS] = {0};
+    material_coefficients(of, own);
+    return form_express(material_form(of), f, own, c);
+}
+
+/* How many volumes, from the first on, a form expresses. */
+static int32_t expressed(const material *of, int32_t volumes, form f)
+{
+    double c[FORM_NUMBERS];
+    int32_t i = 0;
+    while (i < volumes && express(&of[i], f, c))
+        i++;
+    return i;
+}
+
+/* "neo-hookean or mooney-rivlin": the laws of which steppers have the form. */
+static void words_of_laws(char *to, size_t size)
+{
+    to[0] = '\0';
+    for (int i = 0; law_at(i); i++)
+        if (law_at(i)->form < FORM_STEPPED) {
+            const size_t at = strlen(to);
+            snprintf(to + at, size - at, "%s%s", at ? " or " : "", law_at(i)->name);
+        }
+}
+
+/* The first form that expresses all volumes. of: of each volume. */
+static int choose_form(tled_problem *p, const model *m, const material *of, err *e)
+{
+    char words[200];
+    int32_t most = 0;
+    for (int f = 0; f < FORM_STEPPED; f++) {
+        const int32_t count = expressed(of, p->volumes, (form)f);
+        if (count > most || f == 0) {
+            most = count;
+            p->form = (form)f;
+        }
+    }
+    if (most == p->volumes)
+        return 0;
+    words_of_laws(words, sizeof words);
+    const char *name = model_find(m, "volume.name")->str[most];
+    if (material_form(&of[most]) >= FORM_STEPPED)
+        return err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected %s, here or by -m MATERIAL.law=", name,
+                       law_of_volume(m, most), words);
+    return err_set(e, NULL, 0, "volume '%s' has the law '%s', which no solver has together with '%s' of volume '%s'",
+                   name, law_of_volume(m, most), law_of_volume(m, 0), model_find(m, "volume.name")->str[0]);
+}
+
+static int make_volume(tled_problem *p, const model *m, int32_t i, const material *of, err *e)
+{
     tled_volume *v = &p->volume[i];
-    if (materials_of(m, model_find(m, "volume.material")->i32[i], &law, e))
-        return -1;
     v->name = model_find(m, "volume.name")->str[i];
-    if (material_form(&law) != FORM_NEO_HOOKEAN)
-        return err_set(e, NULL, 0,
-                       "volume '%s' has the law '%s'; expected neo-hookean, here or by -m MATERIAL.law=", v->name,
-                       model_find(m, "material.law")->str[model_find(m, "volume.material")->i32[i]]);
-    v->law.mu = v->law.c[0] = material_mu(&law);
-    v->law.bulk = v->law.c[1] = material_bulk(&law);
-    v->law.density = law.density;
-    v->peak = law.peak;
+    express(of, p->form, v->law.c);
+    v->law.mu = material_mu(of);
+    v->law.bulk = material_bulk(of);
+    v->law.density = of->density;
+    v->peak = of->peak;
     v->law.hourglass = element_hourglass(p->kappa, v->law.mu, v->law.bulk, p->side[0], p->side[1], p->side[2]);
     v->square = square_at_rest(p, v);
     v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
@@ -154,14 +206,21 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, err *e)
 
 static int make_volumes(tled_problem *p, const model *m, err *e)
 {
+    int status = -1;
     p->volumes = (int32_t)model_find(m, "volume.name")->rows;
     p->volume = mem_array(p->volumes, sizeof *p->volume, "the volumes", e);
-    for (int32_t i = 0; p->volume && i < p->volumes; i++)
-        if (make_volume(p, m, i, e))
-            return -1;
-    for (int64_t i = 0; p->volume && i < p->elements; i++)
+    material *of = p->volume ? materials_of_volumes(m, e) : NULL;
+    if (!of || choose_form(p, m, of, e))
+        goto out;
+    for (int32_t i = 0; i < p->volumes; i++)
+        if (make_volume(p, m, i, &of[i], e))
+            goto out;
+    for (int64_t i = 0; i < p->elements; i++)
         p->volume[p->element_volume[i]].elements++;
-    return p->volume ? 0 : -1;
+    status = 0;
+out:
+    free(of);
+    return status;
 }
 
 static tled_law mix_laws(const tled_problem *p, int64_t element)

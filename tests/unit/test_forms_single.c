@@ -1,0 +1,56 @@
+/* Forms in float keep small strains: their stress is that of doubles to a few digits of float, whatever the strain. */
+// needs: tests/unit/form_double.c
+#define ELEMENT_SINGLE
+#include "physics/form_maths.h"
+
+#include "form_double.h"
+
+#include "tap.h"
+
+static const double tried[FORM_STEPPED][FORM_NUMBERS] = {
+    [FORM_NEO_HOOKEAN] = {1000, 9700}, [FORM_MOONEY_RIVLIN] = {300, 200, 9700}};
+
+/* Numbers from -1 to 1, the same in every run. */
+static double number(void)
+{
+    static uint32_t seed = 3;
+    seed = seed * 1664525 + 1013904223;
+    return (double)seed / 2147483648. - 1;
+}
+
+/* How far stress is from that of doubles, as a share of its largest component, at H of entries up to `strain`. */
+static double off(form f, double strain)
+{
+    double h[9], wide[9], worst = 0, most = 0;
+    float small[9], narrow[9], c[FORM_NUMBERS];
+    element_tensor at, p;
+    for (int i = 0; i < 9; i++) {
+        small[i] = (float)(strain * number());
+        h[i] = small[i];
+    }
+    for (int i = 0; i < FORM_NUMBERS; i++)
+        c[i] = (float)tried[f][i];
+    memcpy(&at, small, sizeof at);
+    if (!(element_dilation(at) > -.5F))
+        return 0;
+    p = form_stress(f, at, c);
+    memcpy(narrow, &p, sizeof narrow);
+    form_double(f, h, tried[f], wide);
+    for (int i = 0; i < 9; i++) {
+        worst = fmax(worst, fabs((double)narrow[i] - wide[i]));
+        most = fmax(most, fabs(wide[i]));
+    }
+    return worst / most;
+}
+
+int main(void)
+{
+    for (int f = 0; f < FORM_STEPPED; f++)
+        for (double strain = 1e-6; strain < 2; strain *= 10) {
+            double worst = 0;
+            for (int i = 0; i < 200; i++)
+                worst = fmax(worst, off((form)f, strain));
+            ok(worst < 1e-5, "form %d in float at strains of %g: %.1e off", f, strain, worst);
+        }
+    return done_testing();
+}
