@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/num.h"
+#include "exchange/inp_law.h"
 #include "model/materials.h"
 
 #include <ctype.h>
@@ -134,19 +135,31 @@ static void put_sets(const writer *w)
     }
 }
 
-/* Neo-Hookean: W = C10 (J^-2/3 tr C - 3) + (J - 1)^2 / D1, DESIGN's law with C10 = mu / 2, D1 = 2 / K. */
+/* "*ELASTIC" or "*HYPERELASTIC, NEO HOOKE" or another, and its constants. */
+static void put_law(const writer *w, const material *of)
+{
+    const double moduli[] = {material_young(of), material_poisson(of)};
+    double c[FORM_NUMBERS], constants[INP_CONSTANTS];
+    material_coefficients(of, c);
+    if (material_form(of) == FORM_LINEAR) {
+        out_text(w->to, "*ELASTIC\n");
+        put_numbers(moduli, 2, w->to);
+    }
+    for (int i = 0; i < INP_LAWS; i++)
+        if (inp_laws[i].form == material_form(of)) {
+            inp_law_write(&inp_laws[i], c, constants);
+            out_format(w->to, "*HYPERELASTIC, %s\n", inp_laws[i].name);
+            put_numbers(constants, inp_laws[i].constants, w->to);
+        }
+}
+
 static void put_materials(const writer *w)
 {
     for (int64_t i = 0; i < w->materials; i++) {
-        const material *law = &w->laws[i];
-        bool linear = material_form(law) == FORM_LINEAR;
-        double constants[2] = {material_mu(law) / 2, 2 / material_bulk(law)};
-        double moduli[2] = {material_young(law), material_poisson(law)};
-        out_format(w->to, "*MATERIAL, NAME=%s\n%s\n", w->law + i * NAME,
-                   linear ? "*ELASTIC" : "*HYPERELASTIC, NEO HOOKE");
-        put_numbers(linear ? moduli : constants, 2, w->to);
+        out_format(w->to, "*MATERIAL, NAME=%s\n", w->law + i * NAME);
+        put_law(w, &w->laws[i]);
         out_text(w->to, "*DENSITY\n");
-        put_numbers(&law->density, 1, w->to);
+        put_numbers(&w->laws[i].density, 1, w->to);
     }
     for (int64_t v = 0; v < w->volumes; v++)
         if (w->count[v])

@@ -218,10 +218,14 @@ static int begin_law(inp_reader *r, const keyword *k)
         return 0;
     if (elastic && type && !same(type, "ISO") && !same(type, "ISOTROPIC"))
         return wrong(r, "*ELASTIC that is not isotropic", "E and nu");
-    if (!elastic && !density && !parameter(k, "NEO HOOKE"))
-        return wrong(r, "*HYPERELASTIC of another law", "NEO HOOKE, with C10 and D1");
+    r->hyper = NULL;
+    for (int i = 0; i < INP_LAWS; i++)
+        if (parameter(k, inp_laws[i].name))
+            r->hyper = &inp_laws[i];
+    if (!elastic && !density && !r->hyper)
+        return wrong(r, "*HYPERELASTIC of another law", "NEO HOOKE, with C10 and D1, or MOONEY-RIVLIN");
     if (!elastic && !density && parameter(k, "TEST DATA INPUT"))
-        return wrong(r, "*HYPERELASTIC from test data", "C10 and D1");
+        return wrong(r, "*HYPERELASTIC from test data", r->hyper->words);
     r->now = elastic ? INP_ELASTIC : INP_HYPER;
     if (density)
         r->now = INP_DENSITY;
@@ -443,31 +447,45 @@ static int take_held(inp_reader *r, char *line)
     return 0;
 }
 
+static int take_elastic(inp_reader *r, char *line, material *of)
+{
+    double young, poisson;
+    if (take_number(r, next_field(&line), "two constants", &young) ||
+        take_number(r, next_field(&line), "E, nu", &poisson))
+        return -1;
+    const double none[FORM_NUMBERS] = {NAN, NAN};
+    of->law = law_of_form(FORM_LINEAR);
+    of->law->read_back(none, of->value);
+    of->value[LAW_E] = young;
+    of->value[LAW_nu] = poisson;
+    return 0;
+}
+
+static int take_hyper(inp_reader *r, char *line, material *of)
+{
+    double constants[INP_CONSTANTS], c[FORM_NUMBERS] = {0};
+    const int last = r->hyper->constants - 1;
+    for (int i = 0; i <= last; i++)
+        if (take_number(r, next_field(&line), i ? r->hyper->words : "two constants", &constants[i]))
+            return -1;
+    if (!(constants[0] > 0) || !(constants[last] > 0))
+        return wrong(r, "C10 or D1 that is not above 0", "a material that can be compressed, D1 = 2/K");
+    inp_law_read(r->hyper, constants, c);
+    of->law = law_of_form(r->hyper->form);
+    of->law->read_back(c, of->value);
+    return 0;
+}
+
 static int take_law(inp_reader *r, char *line)
 {
-    import_material *a = &r->m->material[r->material];
-    double first, second;
-    inp_block now = r->now;
+    material *of = &r->m->material[r->material].of;
+    const inp_block now = r->now;
     if (!*trim(line))
         return 0;
     r->now = INP_NOTHING; /* further lines are for other temperatures */
-    if (take_number(r, next_field(&line), now == INP_DENSITY ? "a density" : "two constants", &first))
-        return -1;
-    if (now == INP_DENSITY) {
-        a->of.density = first;
-        return 0;
-    }
-    if (take_number(r, next_field(&line), now == INP_HYPER ? "C10, D1" : "E, nu", &second))
-        return -1;
-    const double c[FORM_NUMBERS] = {2 * first, 2 / second};
-    a->of.law = law_of_form(now == INP_HYPER ? FORM_NEO_HOOKEAN : FORM_LINEAR);
-    a->of.law->read_back(c, a->of.value);
-    if (now == INP_ELASTIC) {
-        a->of.value[LAW_E] = first;
-        a->of.value[LAW_nu] = second;
-    } else if (!(first > 0) || !(second > 0))
-        return wrong(r, "C10 or D1 that is not above 0", "a material that can be compressed, D1 = 2/K");
-    return 0;
+    if (now == INP_DENSITY)
+        return take_number(r, next_field(&line), "a density", &of->density);
+    return now == INP_HYPER ? take_hyper(r, line, of) : take_elastic(r, line, of);
 }
 
 static int take(inp_reader *r, char *line)

@@ -6,6 +6,7 @@
 
 #include "exchange/import_inp.h"
 #include "exchange/import_sets.h"
+#include "exchange/inp_law.h"
 
 /* What the data lines after a keyword are. */
 typedef enum inp_block {
@@ -47,10 +48,11 @@ typedef struct inp_reader {
     inp_block now;
     int32_t set; /* that nodes or elements, or numbers, go to; -1: none */
     bool generates;
-    int32_t columns;     /* of elements; 0: of fewer dimensions, passed over */
-    int32_t material;    /* of *MATERIAL, or -1 */
-    int parts;           /* *PART, *INSTANCE */
-    int32_t pending[32]; /* an element's numbers so far */
+    int32_t columns;      /* of elements; 0: of fewer dimensions, passed over */
+    int32_t material;     /* of *MATERIAL, or -1 */
+    const inp_law *hyper; /* of INP_HYPER */
+    int parts;            /* *PART, *INSTANCE */
+    int32_t pending[32];  /* an element's numbers so far */
     int pending_count;
     int64_t pending_line;
     char noted[16][64]; /* keywords that were noted */

@@ -159,7 +159,8 @@ static int convert_material(const import_mesh *mesh, const import_material *from
     const material usual = materials_fallback();
     if (!from->of.law)
         return err_set(e, mesh->name, from->line,
-                       "material %.200s has no law; expected *ELASTIC or *HYPERELASTIC, NEO HOOKE", from->name);
+                       "material %.200s has no law; expected *ELASTIC or *HYPERELASTIC, NEO HOOKE or MOONEY-RIVLIN",
+                       from->name);
     if (isnan(from->of.density))
         notes_add(warnings, "material %.200s has no density: taken as %g kg/m3", from->name, usual.density);
     *to = from->of;

@@ -9,10 +9,10 @@
 #define ROW(name, type, unit, axis, few, most, flags, rule, low, high, maker, meaning)                                 \
     {name, type, unit, axis, few, most, flags, rule, low, high, maker, meaning},
 
-/* material.KEY. A peak of nan: none of its muscles contracts. */
+/* material.KEY. nan: its law has no such key, or, of peak, none of its muscles contracts. */
 #define KEY_ROW(key, unit, low, high, meaning)                                                                         \
-    ROW("material." #key, MODEL_F64, unit, "material", 1, 1, LAW_##key == LAW_peak ? KNOWN_NAN : 0, KNOWN_FROM, low,   \
-        high, "voxelise or msds-mesh", meaning)
+    ROW("material." #key, MODEL_F64, unit, "material", 1, 1, LAW_##key == LAW_density ? 0 : KNOWN_NAN, KNOWN_FROM,     \
+        low, high, "voxelise or msds-mesh", meaning)
 
 static const known rows[] = {KNOWN_ARRAYS(ROW, LAW_KEYS(KEY_ROW) LAW_COMMON_KEYS(KEY_ROW))};
 

@@ -73,7 +73,7 @@ typedef struct known {
     X("volume.muscle", MODEL_U8, "1", "volume", 1, 1, 0, KNOWN_FROM, 0, 1, "voxelise or msds-mesh", "1 = a muscle")    \
     X("material.name", MODEL_STR, "1", "material", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh", "name")          \
     X("material.law", MODEL_STR, "1", "material", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh",                   \
-      "law: neo-hookean or linear")                                                                                    \
+      "its law, one of those in sinew-laws(7)")                                                                        \
     KEY_ARRAYS                                                                                                         \
     X("muscle.volume", MODEL_I32, "@volume", "muscle", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                   \
       "volume of the muscle")                                                                                          \

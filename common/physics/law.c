@@ -40,6 +40,29 @@ static void read_back_young(const double *c, double *value)
     value[LAW_nu] = (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu));
 }
 
+/* ---- keys c10, c01, and K or nu: mu = 2 (c10 + c01), K = 2 mu (1 + nu) / (3 (1 - 2 nu)) */
+
+static law_moduli moduli_of_mooney_rivlin(const double *value)
+{
+    const double mu = 2 * (value[LAW_c10] + value[LAW_c01]), nu = value[LAW_nu];
+    return (law_moduli){.mu = mu, .bulk = isnan(nu) ? value[LAW_K] : 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))};
+}
+
+static void fill_mooney_rivlin(const double *value, double *c)
+{
+    c[0] = value[LAW_c10];
+    c[1] = value[LAW_c01];
+    c[2] = moduli_of_mooney_rivlin(value).bulk;
+}
+
+static void read_back_mooney_rivlin(const double *c, double *value)
+{
+    clear(value);
+    value[LAW_c10] = c[0];
+    value[LAW_c01] = c[1];
+    value[LAW_K] = c[2];
+}
+
 /* ---- the table */
 
 static const law_row rows[] = {
@@ -52,6 +75,15 @@ static const law_row rows[] = {
      .meaning = "Rubber of two moduli, for large strains.",
      .energy = "mu/2 (I1bar - 3) + K/2 (J - 1)^2",
      .source = "Rivlin 1948"},
+    {.name = "mooney-rivlin",
+     .form = FORM_MOONEY_RIVLIN,
+     .group = {BIT(c10), BIT(c01), BIT(K) | BIT(nu)},
+     .moduli = moduli_of_mooney_rivlin,
+     .fill = fill_mooney_rivlin,
+     .read_back = read_back_mooney_rivlin,
+     .meaning = "Rubber with a second invariant, for large strains; c01 = 0, c10 = mu/2 is the neo-Hookean law.",
+     .energy = "c10 (I1bar - 3) + c01 (I2bar - 3) + K/2 (J - 1)^2",
+     .source = "Mooney 1940; Rivlin and Saunders 1951"},
     {.name = "linear",
      .form = FORM_LINEAR,
      .group = {BIT(E), BIT(nu)},

@@ -13,7 +13,10 @@
  * 0 (auxetic) is a material too, and toward .5 the bulk modulus grows without bound and the step shrinks to nothing. */
 #define LAW_KEYS(X)                                                                                                    \
     X(E, "Pa", 1e-3, 1e12, "Young's modulus")                                                                          \
-    X(nu, "1", -.99, .4999, "Poisson's ratio")
+    X(nu, "1", -.99, .4999, "Poisson's ratio")                                                                         \
+    X(c10, "Pa", 1e-3, 1e12, "coefficient of I1bar - 3")                                                               \
+    X(c01, "Pa", 0, 1e12, "coefficient of I2bar - 3")                                                                  \
+    X(K, "Pa", 1e-3, 1e12, "bulk modulus")
 
 /* The same of what every material has, whatever its law. */
 #define LAW_COMMON_KEYS(X)                                                                                             \

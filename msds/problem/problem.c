@@ -75,7 +75,8 @@ static int make_shapes(msds_problem *p, const model *m, err *e)
     return 0;
 }
 
-/* The linear law's E and nu are those of small strains of any other. share: of the element, that is enclosed. */
+/* The linear law's E and nu are those of small strains of the neo-Hookean, too. share: of the element, that is
+ * enclosed. */
 static int take_material(msds_problem *p, int64_t t, const material *a, double share)
 {
     p->young[t] = material_young(a) * share;
@@ -124,6 +125,18 @@ static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t vol
     return take_material(p, t, &own, s->fraction ? (double)s->fraction[t] : 1);
 }
 
+/* Of volume i: its law is said by E and nu. */
+static int read_material(const model *m, int64_t i, material *to, err *e)
+{
+    const model_array *name = model_find(m, "volume.name");
+    if (materials_of(m, model_find(m, "volume.material")->i32[i], to, e))
+        return -1;
+    return isnan(to->value[LAW_E])
+               ? err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected linear, or neo-hookean at small strains",
+                         name ? name->str[i] : "", to->law->name)
+               : 0;
+}
+
 static int make_materials(msds_problem *p, const model *m, err *e)
 {
     const model_array *of = model_need(m, "element.volume", e);
@@ -134,7 +147,7 @@ static int make_materials(msds_problem *p, const model *m, err *e)
     shares share;
     int result = list && p->young && p->weight ? find_shares(m, &share, e) : -1;
     for (int64_t i = 0; !result && i < table->rows; i++)
-        result = materials_of(m, table->i32[i], &list[i], e);
+        result = read_material(m, i, &list[i], e);
     for (int64_t t = 0; !result && t < p->elements; t++)
         result = take_element(p, &share, t, of->i32[t], list, m->stream, e);
     free(list);

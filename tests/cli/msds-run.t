@@ -187,7 +187,7 @@ fails 0 "a probe that never touches" 'warning: the probe touches nothing in any 
 fails 0 "and one that does" 'node' msds-run --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
 is "$(grep -c warning "$T/stderr")" 0 "has no such word"
 awk '/^array material.E/ { print; getline; print "nan"; next } { print }' "$T/text.sinew" >"$T/E.sinew"
-fails 1 "E = nan" 'array material.E, row 0: nan; expected 0.001 to 1e12 Pa' msds-run --poses "$T/first.tum" <"$T/E.sinew"
+fails 1 "E = nan" 'material.E, row 0: nan is not allowed; expected 0.001 to 1e12 Pa' msds-run --poses "$T/first.tum" <"$T/E.sinew"
 awk '/^array node.position/ { print; getline; print "0 nan 0"; next } { print }' "$T/text.sinew" >"$T/place.sinew"
 at=$(awk '/^array node.position/ { print NR + 1 }' "$T/place.sinew")
 fails 1 "a place that is nan" "stdin:$at: array node.position, row 0: 0 nan 0; expected finite numbers" msds-run --poses "$T/first.tum" <"$T/place.sinew"

@@ -7,13 +7,15 @@
 #include <math.h>
 #include <string.h>
 
-/* Values for the first key of each group. */
-static void fill_first(const law_row *a, double *value)
+/* Values for the last key of each group: of K or nu it is K. */
+static void fill_last(const law_row *a, double *value)
 {
     for (int k = 0; k < LAW_OWN_KEYS; k++)
         value[k] = NAN;
     for (int g = 0; g < LAW_GROUPS && a->group[g]; g++) {
-        const int key = law_next_key(a->group[g], 0);
+        int key = law_next_key(a->group[g], 0);
+        for (int next = key; next >= 0; next = law_next_key(a->group[g], next + 1))
+            key = next;
         value[key] = key == LAW_nu ? .45 : 3000 + 100 * g;
     }
 }
@@ -26,7 +28,7 @@ static void whole(const law_row *a)
     ok(a->meaning && a->energy && a->source && a->form < FORM_COUNT && law_of_form(a->form), "and has all columns");
     law_words(a, -1, words);
     ok(strlen(words) + sizeof ", density, peak" < sizeof words, "its keys fit a message: %s", words);
-    fill_first(a, value);
+    fill_last(a, value);
     const law_moduli at = a->moduli(value);
     a->fill(value, c);
     a->read_back(c, back);
@@ -35,6 +37,23 @@ static void whole(const law_row *a)
         same = same && (isnan(value[k]) ? isnan(back[k]) : fabs(back[k] - value[k]) <= 1e-12 * fabs(value[k]));
     ok(same, "its coefficients give its keys back");
     ok(at.mu > 0 && at.bulk > 0 && isfinite(at.bulk), "moduli %g and %g Pa", at.mu, at.bulk);
+}
+
+static void mooney_rivlin(void)
+{
+    const law_row *a = law_find("mooney-rivlin");
+    const double by_bulk[] = {NAN, NAN, 2500, 500, 1e5}, by_poisson[] = {NAN, .49, 2500, 500, NAN};
+    char words[LAW_WORDS];
+    double c[FORM_NUMBERS];
+    a->fill(by_bulk, c);
+    ok(c[0] == 2500 && c[1] == 500 && c[2] == 1e5 && a->moduli(by_bulk).mu == 6000,
+       "mooney-rivlin: mu = 2 (c10 + c01)");
+    a->fill(by_poisson, c);
+    near_(c[2], 2 * 6000 * 1.49 / (3 * .02), 1e-6, "K from nu");
+    law_words(a, -1, words);
+    ok(!strcmp(words, "c10, c01, nu or K"), "%s", words);
+    law_words(a, 2, words);
+    ok(!strcmp(words, "nu or K"), "%s", words);
 }
 
 int main(void)
@@ -55,6 +74,7 @@ int main(void)
     a->fill(value, c);
     near_(c[0], 3000 / 2.9, 1e-9, "mu = E / (2 (1 + nu))");
     near_(c[1], 10000, 1e-8, "K = E / (3 (1 - 2 nu))");
+    mooney_rivlin();
     ok(!strcmp(law_key_name(LAW_density), "density") && !strcmp(law_key_unit(LAW_E), "Pa"),
        "keys have names and units");
     ok(law_next_key(law_keys(a), 0) == LAW_E && law_next_key(law_keys(a), LAW_E + 1) == LAW_nu &&

@@ -160,8 +160,78 @@ static void mixtures(void)
     near_(material_bulk(&half), sqrt(material_bulk(&a) * material_bulk(&b)), 1e-8, "half and half: the geometric mean");
 }
 
+/* Material i: of mooney-rivlin, and its values, nan where none. */
+static bool is_mooney(const model *m, int64_t i, double c10, double c01, double bulk, double nu)
+{
+    err e = {0};
+    material a;
+    if (materials_of(m, i, &a, &e)) {
+        printf("# %s\n", e.text);
+        return false;
+    }
+    const double want[] = {[LAW_E] = NAN, [LAW_nu] = nu, [LAW_c10] = c10, [LAW_c01] = c01, [LAW_K] = bulk};
+    bool same = !strcmp(a.law->name, "mooney-rivlin");
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        same = same && (isnan(want[k]) ? isnan(a.value[k]) : a.value[k] == want[k]);
+    return same;
+}
+
+static void two_laws(void)
+{
+    model m = {0};
+    err e = {0};
+    material a;
+    ok(!read_text(materials_read, &m, "skin\nfat law=mooney-rivlin c10=2500 K=1e5 c01=500 density=900\n", &e), "%s",
+       e.text);
+    ok(is_mooney(&m, 1, 2500, 500, 1e5, NAN), "a file of two laws");
+    ok(!materials_of(&m, 0, &a, &e) && same(&a, 3000, .49, 1000, 30000), "the other has its own");
+    ok(isnan(model_find(&m, "material.c10")->f64[0]) && isnan(model_find(&m, "material.E")->f64[1]),
+       "nan where a law has no such key");
+    const char *const change[] = {"skin.K=2e4", "skin.c01=0", "skin.c10=400", "skin.law=mooney-rivlin", "fat.nu=.4"};
+    ok(!materials_set(&m, change, 5, &e), "another law, in any order: %s", e.text);
+    ok(is_mooney(&m, 0, 400, 0, 2e4, NAN), "has its keys, and none of the old law's");
+    ok(is_mooney(&m, 1, 2500, 500, NAN, .4), "nu drops K");
+    ok(!model_find(&m, "material.E"), "E is gone with the last that had it");
+    const char *const back[] = {"skin.law=linear", "skin.nu=.3", "skin.E=5"};
+    ok(!materials_set(&m, back, 3, &e) && !materials_of(&m, 0, &a, &e) && a.value[LAW_E] == 5 && a.peak == 30000,
+       "and back; density and peak stay: %s", e.text);
+    ok(isnan(model_find(&m, "material.E")->f64[1]), "nan in the other's row");
+    ok(!set(&m, "skin.law=neo-hookean", &e) && !materials_of(&m, 0, &a, &e) && same(&a, 5, .3, 1000, 30000),
+       "laws of the same keys keep their values: %s", e.text);
+    ok(!read_text(materials_override, &m, "skin law=mooney-rivlin c10=1 c01=1 nu=.1\n", &e) &&
+           is_mooney(&m, 0, 1, 1, NAN, .1),
+       "an override: %s", e.text);
+    ok(!set(&m, "skin.c01=2", &e) && is_mooney(&m, 0, 1, 2, NAN, .1), "one key: %s", e.text);
+    ok(!set(&m, "fat.K=7", &e) && is_mooney(&m, 1, 2500, 500, 7, NAN), "K drops nu: %s", e.text);
+    model_find(&m, "material.K")->f64[0] = 5;
+    ok(materials_of(&m, 0, &a, &e) == -1 && strstr(e.text, "material.K, row 0: 5 is not allowed"), "%s", e.text);
+    model_free(&m);
+}
+
+static void refuse_two_laws(void)
+{
+    refuse_file("fat law=mooney-rivlin c10=1 c01=-1 K=9", "m.txt:1: 'c01=-1' is not allowed; expected 0 to 1e12 Pa");
+    refuse_file("fat law=mooney-rivlin c10=1 c01=1 K=0", "m.txt:1: 'K=0' is not allowed; expected 0.001 to 1e12 Pa");
+    refuse_file("\nfat law=mooney-rivlin c10=1 c01=1 K=9 nu=.3",
+                "m.txt:2: the law mooney-rivlin with both nu and K; expected nu or K");
+    refuse_file("fat law=mooney-rivlin c10=1 c01=1",
+                "m.txt:1: the law mooney-rivlin without nu or K; expected nu or K");
+    refuse_file("fat c01=1 K=9 law=mooney-rivlin", "m.txt:1: the law mooney-rivlin without c10; expected c10");
+    refuse_file("fat law=mooney-rivlin c10=1 c01=1 K=9 E=3",
+                "m.txt:1: 'E' is not a key of the law mooney-rivlin; expected c10, c01, nu or K, density, peak");
+    refuse_file("fat c10=5", "m.txt:1: 'c10' is not a key of the law neo-hookean; expected E, nu, density, peak");
+    refuse_override("tissue law=mooney-rivlin c10=1 c01=1", "m.txt:1: the law mooney-rivlin without nu or K");
+    refuse_override("tissue K=1", "m.txt:1: 'K' is not a key of the law neo-hookean");
+    refuse_set("tissue.K=1", "-m tissue: 'K' is not a key of the law neo-hookean; expected E, nu, density, peak");
+    refuse_set("tissue.law=mooney-rivlin", "-m tissue: the law mooney-rivlin without c10; expected c10");
+    refuse_set("tissue.law=moony-rivlin", "did you mean 'mooney-rivlin'?");
+    refuse_set("tissue.c1=1", "unknown key 'c1'; did you mean 'c10'?");
+}
+
 int main(void)
 {
+    two_laws();
+    refuse_two_laws();
     defaults();
     mixtures();
     files();
@@ -178,7 +248,8 @@ int main(void)
     refuse_file("skin nu=-1", "m.txt:1: 'nu=-1'");
     refuse_file("skin density=0", "m.txt:1: 'density=0'");
     refuse_file("skin peak=-1", "m.txt:1: 'peak=-1'");
-    refuse_file("skin law=hookean", "m.txt:1: unknown law 'hookean'; expected one of: neo-hookean, linear");
+    refuse_file("skin law=hookean",
+                "m.txt:1: unknown law 'hookean'; expected one of: neo-hookean, mooney-rivlin, linear");
     refuse_file("skin law=neohookean", "did you mean 'neo-hookean'?");
     refuse_file("skin e=3", "m.txt:1: unknown key 'e'; did you mean 'E'?");
     refuse_file("skin E=3 E=3", "m.txt:1: 'E' is given twice");
