@@ -78,6 +78,15 @@ int err_memory(err *e, const char *what)
     return err_set(e, NULL, 0, "out of memory for %s; a smaller model or a larger machine is needed", what);
 }
 
+int err_join(err *e, const err *held)
+{
+    if (!held->status)
+        return 0;
+    if (!e->status)
+        *e = *held;
+    return -1;
+}
+
 void notes_add(notes *n, const char *format, ...)
 {
     char text[1000];

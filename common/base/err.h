@@ -52,6 +52,10 @@ int err_system(err *e, const char *place, int code, const char *what);
 /* Out of memory, naming what for. Returns -1. */
 int err_memory(err *e, const char *what);
 
+/* The error that something holds for itself (a stream, a thread), where it has one: e takes it, unless e is filled.
+ * Returns -1 where there is one, else 0. */
+int err_join(err *e, const err *held);
+
 /* Adds a warning. A note that cannot be stored for want of memory is lost. n may be NULL. */
 void notes_add(notes *n, const char *format, ...) SINEW_PRINTF(2, 3);
 void notes_free(notes *n);

@@ -100,6 +100,13 @@ static void out_free(out *o)
     free(o);
 }
 
+static int begin_gzip(out *o, err *e)
+{
+    o->packed = mem_array(CHUNK, 1, "an output stream", e);
+    o->gzip = o->packed && deflateInit2(&o->z, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK;
+    return o->gzip ? 0 : err_memory(e, "gzip");
+}
+
 /* fd stays the caller's where this fails. */
 static out *out_new(int fd, const char *name, bool gzip, err *e)
 {
@@ -110,13 +117,7 @@ static out *out_new(int fd, const char *name, bool gzip, err *e)
     o->name = mem_text(name, e);
     o->buffer = mem_array(CHUNK, 1, "an output stream", e);
     o->capacity = CHUNK;
-    if (o->name && o->buffer && gzip) {
-        o->packed = mem_array(CHUNK, 1, "an output stream", e);
-        o->gzip = o->packed && deflateInit2(&o->z, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK;
-        if (!o->gzip)
-            err_memory(e, "gzip");
-    }
-    if (e->status) {
+    if (!o->name || !o->buffer || (gzip && begin_gzip(o, e))) {
         out_free(o);
         return NULL;
     }
@@ -266,9 +267,7 @@ int out_sync(out *o, err *e)
 
 int out_failed(const out *o, err *e)
 {
-    if (o->failed.status && !e->status)
-        *e = o->failed;
-    return o->failed.status ? -1 : 0;
+    return err_join(e, &o->failed);
 }
 
 int out_patch(out *o, int64_t offset, const void *bytes, size_t size, err *e)
@@ -313,9 +312,7 @@ static int store_open(const out *o, err *e)
 int out_close(out *o, err *e)
 {
     empty(o, Z_FINISH);
-    int bad = o->failed.status ? -1 : 0;
-    if (bad && !e->status)
-        *e = o->failed;
+    int bad = err_join(e, &o->failed);
     if (!bad && o->kept) {
         bad = replace_settle(&o->file, o->name, e);
         *o->kept = (replace){0};

@@ -137,16 +137,17 @@ char *path_beside(const char *path, const char *name, const char *place, err *e)
     if (name[0] == '/')
         n = 0;
     char *file = folder ? path_join(path, n, name, e) : NULL;
+    int failed = file ? 0 : -1;
     if (file && (!realpath(folder, root) || !realpath(file, real)))
-        err_system(e, file, errno, "cannot open");
+        failed = err_system(e, file, errno, "cannot open");
     else if (file && !is_within(root, real))
-        err_set(e, place, 0, "names '%.200s', outside its folder; expected a file beside it", name);
+        failed = err_set(e, place, 0, "names '%.200s', outside its folder; expected a file beside it", name);
     else if (file && (stat(real, &about) || !S_ISREG(about.st_mode)))
-        err_set(e, file, 0, "is not a regular file; expected one that '%.200s' names", place);
+        failed = err_set(e, file, 0, "is not a regular file; expected one that '%.200s' names", place);
     else if (file)
-        inputs_note_path(real, e);
+        failed = inputs_note_path(real, e);
     free(folder);
-    if (!e->status)
+    if (!failed)
         return file;
     free(file);
     return NULL;

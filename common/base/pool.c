@@ -157,16 +157,16 @@ pool *pool_create(int threads, err *e)
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, &before);
-    while (p->worker && p->share && p->started < p->threads - 1) {
+    int failed = p->worker && p->share ? 0 : -1;
+    while (!failed && p->started < p->threads - 1) {
         int code = thread_start(&p->worker[p->started], worker_main, p);
-        if (code) {
-            err_system(e, NULL, code, "cannot start a thread");
-            break;
-        }
-        p->started++;
+        if (code)
+            failed = err_system(e, NULL, code, "cannot start a thread");
+        else
+            p->started++;
     }
     pthread_sigmask(SIG_SETMASK, &before, NULL);
-    if (e->status) {
+    if (failed) {
         pool_destroy(p);
         return NULL;
     }

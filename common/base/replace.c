@@ -76,8 +76,9 @@ static int take_name(replace *r, int (*make)(const void *context, const char *pa
         temporary_name(name);
         free(r->temporary);
         r->temporary = path_join(r->target, n, name, e);
+        errno = 0;
         made = r->temporary ? temporary_make(r->temporary, make, &r->fd, e) : -1;
-        code = e->status || made >= 0 ? 0 : errno;
+        code = r->temporary && made < 0 ? errno : 0;
     }
     if (made < 0) {
         free(r->temporary);

@@ -105,8 +105,10 @@ int temporary_make(const char *path, int (*make)(const void *context, const char
 {
     sigset_t before;
     char *copy = mem_text(path, e);
-    if (!copy)
+    if (!copy) {
+        errno = 0;
         return -1;
+    }
     hold(&before);
     int made = -1, code = 0;
     if (!mem_grow(&list.path, &list.capacity, list.count + 1, sizeof *list.path, "names of files", e)) {

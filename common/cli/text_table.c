@@ -127,11 +127,13 @@ typedef struct lines {
     char *text; /* owned */
     int64_t size, capacity;
     err *e;
+    bool failed; /* for want of memory: e is filled, and what is added from then on is dropped */
 } lines;
 
 static void add(lines *to, const char *text, int64_t size)
 {
-    if (to->e->status || MEM_ROOM(&to->text, &to->capacity, to->size + size + 1, "a report", to->e))
+    to->failed = to->failed || MEM_ROOM(&to->text, &to->capacity, to->size + size + 1, "a report", to->e);
+    if (to->failed)
         return;
     memcpy(to->text + to->size, text, (size_t)size);
     to->size += size;
@@ -191,18 +193,18 @@ static void add_row(const text_table *t, lines *to, char *const *cell, const int
 
 char *text_table_lines(const text_table *t, err *e)
 {
-    int *width = t->failed.status ? NULL : mem_array(t->columns, sizeof *width, "a report", e);
     lines to = {.e = e};
-    if (t->failed.status)
-        *e = e->status ? *e : t->failed;
-    if (width) {
-        find_widths(t, width);
-        add_heads(t, &to, width);
-        for (int64_t i = 0; i + t->columns <= t->cells; i += t->columns)
-            add_row(t, &to, &t->cell[i], width);
-    }
+    if (err_join(e, &t->failed))
+        return NULL;
+    int *width = mem_array(t->columns, sizeof *width, "a report", e);
+    if (!width)
+        return NULL;
+    find_widths(t, width);
+    add_heads(t, &to, width);
+    for (int64_t i = 0; i + t->columns <= t->cells; i += t->columns)
+        add_row(t, &to, &t->cell[i], width);
     free(width);
-    if (!e->status)
+    if (!to.failed)
         return to.text;
     free(to.text);
     return NULL;

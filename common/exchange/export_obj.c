@@ -187,9 +187,10 @@ static int put_boundary(const writer *w, err *e)
         put_used(w, list, count, number);
         put_sides(w, list, count, number);
     }
+    const bool made = number;
     free(list);
     free(number);
-    return e->status ? -1 : 0;
+    return made ? 0 : -1;
 }
 
 int export_obj(const export_shape *x, bool deformed, num_unit unit, out *to, err *e)

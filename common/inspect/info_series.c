@@ -49,17 +49,20 @@ static int put_heading(info_series *series, const source *s, const opt_list *key
     out *nothing = out_memory(e);
     if (!nothing)
         return -1;
+    int failed = 0;
     out_text(to, "frame\ttime/s");
-    for (int i = 0; i < keys->count && !e->status; i++) {
+    for (int i = 0; i < keys->count && !failed; i++) {
         char british[INFO_KEY];
         const char *key = info_key_spelled(s, keys->value[i], british), *unit = info_key_unit(s, key, e);
         series->values[i] = unit ? put_values(series, s, key, nothing, e) : -1;
         if (series->values[i] > 0)
             put_names(key, unit, series->values[i], to);
+        else
+            failed = -1;
     }
     out_text(to, "\n");
     out_discard(nothing);
-    return e->status ? -1 : 0;
+    return failed;
 }
 
 int info_series_row(info_series *series, const source *s, const opt_list *keys, out *to, err *e)

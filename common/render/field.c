@@ -276,19 +276,21 @@ double *field_at_nodes(const field *f, const model *m, err *e)
     int64_t nodes = model_count(m, "node");
     const model_array *node = f->of_elements ? model_need(m, "element.node", e) : NULL;
     double *value = mem_array(nodes, sizeof *value, "a field", e);
-    int32_t *count = value && node ? mem_array(nodes, sizeof *count, "a field", e) : NULL;
-    if (!f->of_elements && value)
-        memcpy(value, f->value, (size_t)nodes * sizeof *value);
-    if (count) {
-        add_elements(f, node, value, count);
-        for (int64_t n = 0; n < nodes; n++)
-            value[n] = count[n] ? value[n] / count[n] : (double)NAN;
-    }
-    free(count);
-    if (!e->status)
+    if (!value || !f->of_elements) {
+        if (value)
+            memcpy(value, f->value, (size_t)nodes * sizeof *value);
         return value;
-    free(value);
-    return NULL;
+    }
+    int32_t *count = node ? mem_array(nodes, sizeof *count, "a field", e) : NULL;
+    if (!count) {
+        free(value);
+        return NULL;
+    }
+    add_elements(f, node, value, count);
+    for (int64_t n = 0; n < nodes; n++)
+        value[n] = count[n] ? value[n] / count[n] : (double)NAN;
+    free(count);
+    return value;
 }
 
 const char *field_unit(const field *f, const model *m, double most, double *scale)

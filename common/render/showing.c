@@ -85,36 +85,42 @@ static int check_values(const showing *b, const field *f, err *e)
              : 0;
 }
 
+/* Surfaces, where they are wanted; a field of elements shows at their vertices as the mean of a node's elements. */
+static int show_surfaces(showing *b, const model *m, const showing_want *want, err *e)
+{
+    if (!(want->things & SHOWING_SURFACES) && !want->names)
+        return 0;
+    const bool has_field = want->field && !want->field->name;
+    double *at_nodes = has_field ? field_at_nodes(want->field, m, e) : NULL;
+    if (has_field && !at_nodes)
+        return -1;
+    const int result = showing_surfaces(b, m, want, at_nodes, e);
+    free(at_nodes);
+    return result;
+}
+
+static int check_seen(const showing *b, const showing_want *want, err *e)
+{
+    double low[3], high[3];
+    if (scene_bounds(&b->scene, low, high))
+        return 0;
+    return err_set(e, NULL, 0,
+                   want->cuts ? "nothing is left to be seen; expected --cut to leave some of it"
+                              : "the model is empty: there is nothing to be seen");
+}
+
 int showing_make(showing *b, const model *m, const showing_want *want, err *e)
 {
     *b = (showing){0};
     if (showing_check_names(m, want, e))
         return -1;
-    bool surfaces = want->things & SHOWING_SURFACES || want->names;
-    double *at_nodes = want->field && surfaces && !want->field->name ? field_at_nodes(want->field, m, e) : NULL;
-    double low[3], high[3];
-    if (!e->status && surfaces)
-        showing_surfaces(b, m, want, at_nodes, e);
-    if (!e->status)
-        showing_elements(b, m, want, e);
-    if (!e->status)
-        showing_spheres(b, m, want, e);
-    if (!e->status)
-        showing_probe(b, m, want, e);
-    if (!e->status)
-        showing_slice(b, want, e);
-    if (!e->status)
-        showing_body(b, want, e);
-    free(at_nodes);
-    if (!e->status && !scene_bounds(&b->scene, low, high))
-        err_set(e, NULL, 0,
-                want->cuts ? "nothing is left to be seen; expected --cut to leave some of it"
-                           : "the model is empty: there is nothing to be seen");
-    if (!e->status)
-        check_values(b, want->field, e);
-    if (e->status)
+    if (show_surfaces(b, m, want, e) || showing_elements(b, m, want, e) || showing_spheres(b, m, want, e) ||
+        showing_probe(b, m, want, e) || showing_slice(b, want, e) || showing_body(b, want, e) ||
+        check_seen(b, want, e) || check_values(b, want->field, e)) {
         showing_free(b);
-    return e->status ? -1 : 0;
+        return -1;
+    }
+    return 0;
 }
 
 void showing_free(showing *b)

@@ -30,7 +30,7 @@ static int make_mesh(scene_mesh *mesh, const obj *o, const body *all, const body
     mesh->label = mem_text(part->file, e);
     mesh->position = mem_array(3 * o->vertices, sizeof *mesh->position, "a surface", e);
     mesh->corner = mem_array(3 * mesh->faces, sizeof *mesh->corner, "a surface", e);
-    if (e->status)
+    if (!mesh->label || !mesh->position || !mesh->corner)
         return -1;
     triangles(o, mesh->corner);
     for (int64_t v = 0; v < o->vertices; v++) {
@@ -52,13 +52,14 @@ static int show_part(showing *b, const showing_want *want, const body *all, cons
     char *path = path_beside(want->body, part->file, want->body, e);
     in *s = path ? in_open(path, e) : NULL;
     free(path);
-    if (s && !obj_read(&o, s, e) && make_mesh(&mesh, &o, all, part, e))
+    int failed = !s || obj_read(&o, s, e) || make_mesh(&mesh, &o, all, part, e) ? -1 : 0;
+    if (failed)
         scene_mesh_free(&mesh);
-    else if (!e->status)
-        showing_add(b, &mesh, NULL, e);
+    else
+        failed = showing_add(b, &mesh, NULL, e);
     in_close(s);
     obj_free(&o);
-    return e->status ? -1 : 0;
+    return failed;
 }
 
 int showing_body(showing *b, const showing_want *want, err *e)
@@ -67,10 +68,10 @@ int showing_body(showing *b, const showing_want *want, err *e)
     if (!want->body)
         return 0;
     in *s = in_open(want->body, e);
-    if (s && !body_read(&all, s, e))
-        for (int i = 0; i < all.parts && !e->status; i++)
-            show_part(b, want, &all, &all.part[i], e);
+    int failed = s ? body_read(&all, s, e) : -1;
+    for (int i = 0; !failed && i < all.parts; i++)
+        failed = show_part(b, want, &all, &all.part[i], e);
     in_close(s);
     body_free(&all);
-    return e->status ? -1 : 0;
+    return failed;
 }

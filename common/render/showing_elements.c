@@ -129,6 +129,10 @@ static double *values(const field *f, const boundary *b, const int32_t *of_verte
     }
     if (value && !*colour)
         *colour = mem_array(3 * count, sizeof **colour, "values", e);
+    if (!*colour) {
+        free(value);
+        return NULL;
+    }
     for (int64_t n = 0; value && n < count; n++)
         value[n] = f->value[f->of_elements ? b->element[n] : of_vertex[n]];
     return value;
@@ -144,10 +148,13 @@ static int add_outside(showing *to, const model *m, const showing_want *w, int t
     mesh.transparency = cleared ? .85f : 0;
     int32_t *of_vertex = mesh.label ? number(b, model_count(m, "node"), &mesh, e) : NULL;
     int seen = thing;
-    if (of_vertex && !shape(m, w, b, of_vertex, &mesh, e) && !paint(m, b, &mesh, &seen, e) && w->field)
+    bool made = of_vertex && !shape(m, w, b, of_vertex, &mesh, e) && !paint(m, b, &mesh, &seen, e);
+    if (made && w->field) {
         value = values(w->field, b, of_vertex, &mesh, e);
+        made = value != NULL;
+    }
     free(of_vertex);
-    if (!e->status) {
+    if (made) {
         to->seen |= seen;
         to->cleared |= cleared;
         return showing_add(to, &mesh, value, e);
@@ -165,7 +172,8 @@ static int add_thing(showing *to, const model *m, const showing_want *w, int thi
     bool apart = keep && thing == SHOWING_VOXELS && w->things & SHOWING_MUSCLES;
     bool *muscle = apart ? choose(m, w, SHOWING_MUSCLES, node, rest->f64, e) : NULL;
     boundary b = {0};
-    int bad = e->status || boundary_of(&b, m, keep, muscle, e) ? -1 : 0;
+    const bool made = keep && (muscle || !apart);
+    int bad = made ? boundary_of(&b, m, keep, muscle, e) : -1;
     if (!bad && b.faces)
         bad = add_outside(to, m, w, thing, &b, e);
     free(keep);

@@ -29,7 +29,7 @@ static int make_mesh(scene_mesh *mesh, const placed *p, err *e)
     mesh->position = mem_array(3 * mesh->vertices, sizeof *mesh->position, "a slice", e);
     mesh->corner = mem_array(4 * pixels, sizeof *mesh->corner, "a slice", e);
     mesh->face_colour = mem_array(3 * pixels, sizeof *mesh->face_colour, "a slice", e);
-    if (e->status)
+    if (!mesh->label || !mesh->position || !mesh->corner || !mesh->face_colour)
         return -1;
     for (int64_t i = 0; i < mesh->vertices; i++) {
         const int64_t c = i % across, r = i / across;
@@ -64,11 +64,12 @@ int showing_slice(showing *b, const showing_want *want, err *e)
     char *file = slice_file(want, e);
     in *s = file ? in_open(file, e) : NULL;
     free(file);
-    if (s && !placed_read(&p, s, e) && make_mesh(&mesh, &p, e))
+    int failed = !s || placed_read(&p, s, e) || make_mesh(&mesh, &p, e) ? -1 : 0;
+    if (failed)
         scene_mesh_free(&mesh);
-    else if (!e->status)
-        showing_add(b, &mesh, NULL, e);
+    else
+        failed = showing_add(b, &mesh, NULL, e);
     in_close(s);
     placed_free(&p);
-    return e->status ? -1 : 0;
+    return failed;
 }

@@ -181,8 +181,10 @@ static double *values(const part *p, scene_mesh *to, err *e)
         to->face_colour = NULL;
         to->vertex_colour = mem_array(3 * count, sizeof *to->vertex_colour, "values", e);
     }
-    if (!value)
+    if (!value || (p->at_nodes && !to->vertex_colour)) {
+        free(value);
         return NULL;
+    }
     /* Vertices of no face here are not seen: they have no part in the scale. */
     for (int64_t n = 0; n < count; n++)
         value[n] = (double)NAN;
@@ -191,22 +193,35 @@ static double *values(const part *p, scene_mesh *to, err *e)
     return value;
 }
 
+/* The faces that are in it are placed, and get values where the field has some. */
+static int finish_part(const part *p, scene_mesh *mesh, double **value, err *e)
+{
+    if (place(p, mesh, e))
+        return -1;
+    if (p->field && (p->is_bound || (p->own && p->field->displaces))) {
+        *value = values(p, mesh, e);
+        if (!*value)
+            return -1;
+    }
+    return scene_smooth(mesh, crease, e);
+}
+
 static int add_part(showing *b, const part *p, int take, err *e)
 {
     scene_mesh mesh = {.corners = 3, .transparency = take == 2 ? .75f : 0};
     double *value = NULL;
     mesh.label = mem_text(p->b.shape.name, e);
-    if (mesh.label && !cut_faces(p, take, &mesh, e) && mesh.faces && !place(p, &mesh, e)) {
-        if (p->field && (p->is_bound || (p->own && p->field->displaces)))
-            value = values(p, &mesh, e);
-        if (!e->status && !scene_smooth(&mesh, crease, e)) {
-            b->seen |= SHOWING_SURFACES;
-            return showing_add(b, &mesh, value, e);
-        }
+    int failed = mesh.label ? cut_faces(p, take, &mesh, e) : -1;
+    const bool is_empty = !failed && !mesh.faces;
+    if (!failed && !is_empty)
+        failed = finish_part(p, &mesh, &value, e);
+    if (!failed && !is_empty) {
+        b->seen |= SHOWING_SURFACES;
+        return showing_add(b, &mesh, value, e);
     }
     free(value);
     scene_mesh_free(&mesh);
-    return e->status ? -1 : 0;
+    return failed;
 }
 
 /* A skin's own displacement in a frame, or NULL. */

@@ -87,20 +87,22 @@ static int open_sink(job *j, err *e)
     j->sink = out_open(j->o->common.output, false, e);
     if (!j->sink || !out_is_terminal(j->sink))
         return j->sink ? 0 : -1;
-    err_set(e, j->o->common.output ? j->o->common.output : "stdout", 0,
-            "is a terminal, and a picture is not for reading; expected -o FILE or a pipe");
-    e->status = STATUS_USAGE;
-    return -1;
+    return err_option(e, j->o->common.output ? j->o->common.output : "stdout",
+                      "is a terminal, and a picture is not for reading; expected -o FILE or a pipe");
 }
 
 static int open_picture(job *j, err *e)
 {
     const picture_spec *s = &j->plan.spec;
     int threads = tool_threads(j->t, e);
+    const bool has_text = s->captions || s->field || j->o->font;
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;
-    if (j->threads && (s->captions || s->field || j->o->font))
-        j->font = font_open(j->o->font, e);
-    if (e->status || picture_open(&j->picture, s, j->font, j->threads, e))
+    if (!j->threads)
+        return -1;
+    j->font = has_text ? font_open(j->o->font, e) : NULL;
+    if (has_text && !j->font)
+        return -1;
+    if (picture_open(&j->picture, s, j->font, j->threads, e))
         return -1;
     j->bytes = mem_array(4 * (int64_t)s->width * s->height, 1, "a picture", e);
     return j->bytes ? 0 : -1;
@@ -182,12 +184,14 @@ static int draw_frames(job *j, err *e)
         bool one = which == FRAMES_ONE && !found && j->s.frame.index == j->plan.index;
         first = j->s.frames == 1 ? j->s.frame.index : first;
         found |= one;
-        if ((one || which == FRAMES_ALL) && draw(j, &j->s.frame, e))
+        if ((one || which == FRAMES_ALL) && draw(j, &j->s.frame, e)) {
+            got = -1;
             break;
+        }
         progress_at(&bar, (double)j->s.frames);
     }
     progress_stop(&bar);
-    if (got || e->status)
+    if (got)
         return -1;
     if ((which == FRAMES_ONE && !found) ||
         (!j->s.frames && (which == FRAMES_ALL || (which == FRAMES_LAST && j->plan.frame_given))))

@@ -106,35 +106,40 @@ static void place_parts(body *b)
             b->part[i].place = pose_compose(&b->volume, &b->part[i].place);
 }
 
+/* A line of the file: a surface, or where the volume is, which is said once. */
+static int take_line(body *b, keyfile *k, bool *placed, err *e)
+{
+    line l;
+    if (!strcmp(k->word[0], "surface"))
+        return take_surface(b, k, e);
+    if (strcmp(k->word[0], "volume") != 0)
+        return keyfile_error(k, e, "'%.100s'; expected volume or surface", k->word[0]);
+    if (*placed)
+        return keyfile_error(k, e, "the volume is placed twice; expected once");
+    if (take_keys(k, 1, false, &l, e))
+        return -1;
+    b->volume = l.place;
+    *placed = true;
+    return 0;
+}
+
 int body_read(body *b, in *s, err *e)
 {
     keyfile k;
-    line l;
+    int got;
     bool placed = false;
     *b = (body){.volume = pose_none()};
     keyfile_open(&k, s);
-    while (keyfile_next(&k, e) > 0) {
-        if (!strcmp(k.word[0], "surface")) {
-            if (take_surface(b, &k, e))
-                break;
-        } else if (strcmp(k.word[0], "volume") != 0) {
-            keyfile_error(&k, e, "'%.100s'; expected volume or surface", k.word[0]);
+    while ((got = keyfile_next(&k, e)) > 0)
+        if (take_line(b, &k, &placed, e)) {
+            got = -1;
             break;
-        } else if (placed) {
-            keyfile_error(&k, e, "the volume is placed twice; expected once");
-            break;
-        } else {
-            if (take_keys(&k, 1, false, &l, e))
-                break;
-            b->volume = l.place;
-            placed = true;
         }
-    }
-    if (!e->status)
-        place_parts(b);
-    if (e->status)
+    if (got < 0)
         body_free(b);
-    return e->status ? -1 : 0;
+    else
+        place_parts(b);
+    return got;
 }
 
 void body_free(body *b)

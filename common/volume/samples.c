@@ -190,27 +190,32 @@ static void filter_row(float *row, int64_t count, const float *weight, int64_t r
             row[x] += weight[i] * (copy[x + reach - i] + copy[x + reach + i]);
 }
 
+static int filter_along(float *value, const int64_t size[3], int a, double sigma, err *e)
+{
+    const int64_t reach = samples_reach(sigma), plane = size[0] * size[1];
+    float *weight = mem_array(reach + 1, sizeof *weight, "a filter", e);
+    float *copy = mem_array(a ? size[0] * size[a] : size[0] + 2 * reach, sizeof *copy, "a filter", e);
+    const bool made = weight && copy;
+    if (made) {
+        weigh(sigma, reach, weight);
+        for (int64_t r = 0; a == 0 && r < size[1] * size[2]; r++)
+            filter_row(value + r * size[0], size[0], weight, reach, copy);
+        for (int64_t z = 0; a == 1 && z < size[2]; z++)
+            filter_sheet(value + z * plane, size[1], size[0], size[0], weight, reach, copy);
+        for (int64_t y = 0; a == 2 && y < size[1]; y++)
+            filter_sheet(value + y * size[0], size[2], size[0], plane, weight, reach, copy);
+    }
+    free(weight);
+    free(copy);
+    return made ? 0 : -1;
+}
+
 int samples_filter(float *value, const int64_t size[3], const double sigma[3], err *e)
 {
-    for (int a = 0; a < 3 && !e->status; a++) {
-        int64_t reach = samples_reach(sigma[a]), plane = size[0] * size[1];
-        if (!reach)
-            continue;
-        float *weight = mem_array(reach + 1, sizeof *weight, "a filter", e);
-        float *copy = mem_array(a ? size[0] * size[a] : size[0] + 2 * reach, sizeof *copy, "a filter", e);
-        if (weight && copy) {
-            weigh(sigma[a], reach, weight);
-            for (int64_t r = 0; a == 0 && r < size[1] * size[2]; r++)
-                filter_row(value + r * size[0], size[0], weight, reach, copy);
-            for (int64_t z = 0; a == 1 && z < size[2]; z++)
-                filter_sheet(value + z * plane, size[1], size[0], size[0], weight, reach, copy);
-            for (int64_t y = 0; a == 2 && y < size[1]; y++)
-                filter_sheet(value + y * size[0], size[2], size[0], plane, weight, reach, copy);
-        }
-        free(weight);
-        free(copy);
-    }
-    return e->status ? -1 : 0;
+    for (int a = 0; a < 3; a++)
+        if (samples_reach(sigma[a]) && filter_along(value, size, a, sigma[a], e))
+            return -1;
+    return 0;
 }
 
 /* ---- plane by plane */
@@ -239,15 +244,17 @@ static int ring_make(ring *r, const int64_t size[3], const double sigma[3], err 
 {
     const int64_t area = size[0] * size[1];
     *r = (ring){.size = size};
-    for (int a = 0; a < 3 && !e->status; a++) {
+    for (int a = 0; a < 3; a++) {
         r->reach[a] = samples_reach(sigma[a]);
-        r->weight[a] = r->reach[a] ? mem_array(r->reach[a] + 1, sizeof(float), "a filter", e) : NULL;
-        if (r->weight[a])
-            weigh(sigma[a], r->reach[a], r->weight[a]);
+        if (!r->reach[a])
+            continue;
+        r->weight[a] = mem_array(r->reach[a] + 1, sizeof(float), "a filter", e);
+        if (!r->weight[a])
+            return -1;
+        weigh(sigma[a], r->reach[a], r->weight[a]);
     }
     r->count = ring_planes(size, r->reach[2]);
-    if (!e->status)
-        r->plane = mem_array(r->count * area, sizeof(float), "planes of samples", e);
+    r->plane = mem_array(r->count * area, sizeof(float), "planes of samples", e);
     r->out = r->plane ? mem_array(area, sizeof(float), "a plane of samples", e) : NULL;
     r->sheet = r->out ? mem_array(area, sizeof(float), "a plane of samples", e) : NULL;
     r->row = r->sheet ? mem_array(size[0] + 2 * r->reach[0], sizeof(float), "a row of samples", e) : NULL;
@@ -301,7 +308,8 @@ int samples_filter_planes(const samples_planes *p, const int64_t size[3], const 
                           int64_t to, err *e)
 {
     ring r;
-    if (!ring_make(&r, size, sigma, e)) {
+    const int failed = ring_make(&r, size, sigma, e);
+    if (!failed) {
         int64_t next = from > r.reach[2] ? from - r.reach[2] : 0;
         for (int64_t z = from; z < to; z++) {
             for (; next < size[2] && next <= z + r.reach[2]; next++)
@@ -310,5 +318,5 @@ int samples_filter_planes(const samples_planes *p, const int64_t size[3], const 
         }
     }
     ring_free(&r);
-    return e->status ? -1 : 0;
+    return failed;
 }

@@ -331,14 +331,20 @@ static bool has_muscles(const tled_problem *p)
     return false;
 }
 
+static int make_numbers(int64_t rows, int columns, double **to, err *e)
+{
+    *to = mem_array(rows, columns * sizeof **to, "the log", e);
+    return *to ? 0 : -1;
+}
+
 static int make_moment(const tled_problem *p, moment *m, err *e)
 {
-    m->displacement = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
-    m->internal = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
-    m->curves = mem_array(p->script->curves, 3 * sizeof(double), "the log", e);
-    m->push = p->collider ? mem_array(p->nodes, 3 * sizeof(double), "the log", e) : NULL;
-    m->stretch = has_muscles(p) ? mem_array(p->elements, 2 * sizeof(double), "the log", e) : NULL;
-    return e->status ? -1 : 0;
+    if (make_numbers(p->nodes, 3, &m->displacement, e) || make_numbers(p->nodes, 3, &m->internal, e) ||
+        make_numbers(p->script->curves, 3, &m->curves, e))
+        return -1;
+    if (p->collider && make_numbers(p->nodes, 3, &m->push, e))
+        return -1;
+    return has_muscles(p) ? make_numbers(p->elements, 2, &m->stretch, e) : 0;
 }
 
 static void free_moment(moment *m)

@@ -42,28 +42,36 @@ static void put_heading(const run_log *l, out *to)
     out_text(to, heading_end);
 }
 
+/* line: the first of the file, NULL where there is none. */
+static int compare_heading(const run_log *l, const char *path, const char *line, err *e)
+{
+    size_t size;
+    out *want = out_memory(e);
+    if (!want)
+        return -1;
+    put_heading(l, want);
+    const unsigned char *bytes = out_bytes(want, &size);
+    int failed = out_failed(want, e);
+    if (!failed && (!line || strlen(line) + 1 != size || memcmp(line, bytes, size - 1) != 0))
+        failed = err_set(e, path, 1,
+                         "is not the heading of this run's log; expected the file and the --tsv that it began with");
+    out_discard(want);
+    return failed;
+}
+
 /* That the file to go on with begins with the heading of this run. What is shorter than what is to be kept is growing_open's to refuse,
  * and what is not a regular file is written as it is. */
 static int check_heading(const run_log *l, const char *path, int64_t keep, err *e)
 {
-    size_t size;
     char *line = NULL;
     struct stat s;
     const int there = path_look(path, &s, e);
     if (there < 1 || !S_ISREG(s.st_mode) || s.st_size < (off_t)keep)
         return there < 0 ? -1 : 0;
-    out *want = out_memory(e);
-    in *file = want ? in_open_plain(path, e) : NULL;
-    if (file && in_line(file, &line, NULL, e) > -2) {
-        put_heading(l, want);
-        const unsigned char *bytes = out_bytes(want, &size);
-        if (!out_failed(want, e) && (!line || strlen(line) + 1 != size || memcmp(line, bytes, size - 1) != 0))
-            err_set(e, path, 1,
-                    "is not the heading of this run's log; expected the file and the --tsv that it began with");
-    }
+    in *file = in_open_plain(path, e);
+    const int failed = !file || in_line(file, &line, NULL, e) == -2 || compare_heading(l, path, line, e) ? -1 : 0;
     in_close(file);
-    out_discard(want);
-    return e->status ? -1 : 0;
+    return failed;
 }
 
 int log_open(run_log *l, const char *path, const opt_list *keys, const model *m, const log_point *from, err *e)

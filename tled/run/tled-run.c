@@ -77,10 +77,9 @@ static int check_checkpoint(const tool *t, struct options *o, err *e)
         o->checkpoint = NULL;
     for (int i = 0; i < CHECKPOINT_FILES; i++) {
         char *file = checkpoint_file(path, i, e);
-        if (file)
-            tool_check_written(t, o->restart ? "--restart" : "--checkpoint", file, e);
+        const int failed = file ? tool_check_written(t, o->restart ? "--restart" : "--checkpoint", file, e) : -1;
         free(file);
-        if (e->status)
+        if (failed)
             return -1;
     }
     return 0;
