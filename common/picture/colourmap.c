@@ -18,17 +18,6 @@ static void from_oklab(const double lab[3], double rgb[3])
     rgb[2] = -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s;
 }
 
-void colourmap_oklab(const float colour[3], double lab[3])
-{
-    double r = colour[0], g = colour[1], b = colour[2];
-    double l = cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
-    double m = cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
-    double s = cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
-    lab[0] = 0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s;
-    lab[1] = 1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s;
-    lab[2] = 0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s;
-}
-
 /* A colour by lightness, chroma and hue (degrees); chroma gives way until a screen can show it. */
 static void by_hue(double lightness, double chroma, double hue, double lab[3])
 {

@@ -23,7 +23,4 @@ void colourmap_at(const colourmap *c, double t, float colour[3]);
  * that many differ. */
 void colourmap_name(int64_t i, float colour[3]);
 
-/* Oklab of a linear RGB colour (for tests). */
-void colourmap_oklab(const float colour[3], double lab[3]);
-
 #endif

@@ -70,23 +70,3 @@ int png_put_scaled(const uint8_t *pixel, int width, int height, int channels, co
     free(bytes);
     return 0;
 }
-
-uint8_t *png_get(const char *path, int *width, int *height, err *e)
-{
-    png_image image = {.version = PNG_IMAGE_VERSION};
-    if (!png_image_begin_read_from_file(&image, path)) {
-        failed(&image, path, "cannot be read as PNG", e);
-        return NULL;
-    }
-    image.format = PNG_FORMAT_RGBA;
-    uint8_t *pixel = mem_array(4 * (int64_t)image.width * image.height, 1, "a PNG", e);
-    if (pixel && !png_image_finish_read(&image, NULL, pixel, 0, NULL)) {
-        failed(&image, path, "cannot be read as PNG", e);
-        free(pixel);
-        return NULL;
-    }
-    png_image_free(&image);
-    *width = (int)image.width;
-    *height = (int)image.height;
-    return pixel;
-}

@@ -13,7 +13,4 @@ int png_put(const uint8_t *pixel, int width, int height, int channels, out *to, 
 /* The same, and says how many pixels a metre has along x and y (pHYs), where these are numbers that a PNG can hold. */
 int png_put_scaled(const uint8_t *pixel, int width, int height, int channels, const double each[2], out *to, err *e);
 
-/* Reads a PNG file into [*height][*width][4] bytes, which the caller frees. NULL with e filled. */
-uint8_t *png_get(const char *path, int *width, int *height, err *e);
-
 #endif

@@ -210,26 +210,6 @@ static void end_fit(extent *x, camera *c, int width, int height, double margin)
     place_eye(c, at[0], at[1], fmax(back, x->near_by + 1e-3 * fabs(back - x->near_by) + 1e-9));
 }
 
-int camera_fit_box(camera *c, const double low[3], const double high[3], int width, int height, double angle,
-                   double margin, err *e)
-{
-    extent x;
-    if (check_fit(width, height, angle, margin, e))
-        return -1;
-    for (int i = 0; i < 3; i++)
-        if (!(low[i] <= high[i]) || !isfinite(low[i]) || !isfinite(high[i]))
-            return err_set(e, NULL, 0, "nothing to be seen: a box from %g to %g", low[i], high[i]);
-    begin_fit(&x, c, width, height, angle, margin);
-    for (int k = 0; k < 8; k++) {
-        double p[3];
-        for (int i = 0; i < 3; i++)
-            p[i] = k >> i & 1 ? high[i] : low[i];
-        extend(&x, p, 0);
-    }
-    end_fit(&x, c, width, height, margin);
-    return 0;
-}
-
 static void extend_float(extent *x, const float *p, float radius)
 {
     const double q[3] = {(double)p[0], (double)p[1], (double)p[2]};

@@ -32,10 +32,7 @@ int camera_look(camera *c, const double eye[3], const double target[3], const do
 
 /* Moves a turned camera so that all of it is seen, as large as can be, in a picture of width by height pixels with at
  * least a share margin (0 to under .5) of the shorter side free on every side. angle: the field of view, degrees, from
- * top to bottom; 0: orthographic. A fit to a box suits a row of frames with one camera; a fit to a scene is closer.
- * -1 with e filled: nothing to see, sizes or angle that are none. */
-int camera_fit_box(camera *c, const double low[3], const double high[3], int width, int height, double angle,
-                   double margin, err *e);
+ * top to bottom; 0: orthographic. -1 with e filled: nothing to see, sizes or angle that are none. */
 int camera_fit_scene(camera *c, const scene *s, int width, int height, double angle, double margin, err *e);
 
 /* The place of a point in a picture, in pixels. False: not before the eye. */

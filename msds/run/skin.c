@@ -268,15 +268,3 @@ double skin_largest(const skin *s)
     }
     return sqrt(most);
 }
-
-int64_t skin_touched(const skin *s, const probe_placed *at)
-{
-    int64_t count = 0;
-    for (int64_t v = 0; v < s->vertices; v++) {
-        double x[3];
-        for (int a = 0; a < 3; a++)
-            x[a] = s->position[3 * v + a] + s->u[3 * v + a];
-        count += probe_at(at, x).depth > -1e-3 * at->shape.size;
-    }
-    return count;
-}

@@ -57,9 +57,7 @@ void skin_step(skin *s, const probe_placed *at, int64_t count);
 /* Unit normals of the vertices as they are now, the mean of their triangles' by area: vertices x 3; 0 where there are none. */
 void skin_normals(const skin *s, double *to);
 
-/* The largest displacement, m; not finite where it diverged. And how many vertices touch the probe, to
- * a thousandth of its size. */
+/* The largest displacement, m; not finite where it diverged. */
 double skin_largest(const skin *s);
-int64_t skin_touched(const skin *s, const probe_placed *at);
 
 #endif

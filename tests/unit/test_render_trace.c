@@ -426,7 +426,7 @@ static void test_cameras_refused(void)
     scene s = {0};
     err k = {0}, l = {0};
     ok(camera_fit_scene(&c, &s, 10, 10, 0, 0, &k) && strstr(k.text, "nothing to be seen"), "empty: %s", k.text);
-    ok(camera_fit_box(&c, up, (double[3]){1, 1, 2}, 0, 10, 0, 0, &l) && strstr(l.text, "0 x 10"), "size: %s", l.text);
+    ok(camera_fit_scene(&c, &s, 0, 10, 0, 0, &l) && strstr(l.text, "0 x 10"), "size: %s", l.text);
 }
 
 /* ---- scenes and pictures that are none */
