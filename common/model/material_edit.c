@@ -14,7 +14,9 @@ const char *const material_edit_arrays[LAW_ALL_KEYS] = {LAW_KEYS(KEY_ARRAY) LAW_
 
 double *material_edit_value(material *of, int key)
 {
-    return key < LAW_OWN_KEYS ? &of->value[key] : key == LAW_density ? &of->density : &of->peak;
+    if (key < LAW_OWN_KEYS)
+        return &of->value[key];
+    return key == LAW_density ? &of->density : &of->peak;
 }
 
 static void clear_keys(material *of, unsigned keys)

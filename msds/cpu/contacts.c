@@ -57,7 +57,9 @@ static void consider(contacts *c, const lanes_springs *w, const msds_problem *p,
     at.depth = t.depth;
     memcpy(at.way, t.way, sizeof at.way);
     at.force = fmax(0, c->held[at.node]);
-    double slack = rule == CONTACTS_NEAR ? near_by : at.force > 0 ? clinging : 0;
+    double slack = at.force > 0 ? clinging : 0;
+    if (rule == CONTACTS_NEAR)
+        slack = near_by;
     bool follows = rule == CONTACTS_NEAR && at.force > 0;
     if (!p->fixed[at.node] && (follows || at.depth > -slack * w->probe->shape.size))
         c->list[c->count++] = at;

@@ -104,7 +104,9 @@ static void divide(cutter *c, int64_t from, int64_t to, const cut *by, int64_t a
         for (int64_t i = from; i < to; i++) {
             int32_t node = c->spare[i];
             bool low = coordinate(c, node, by->axis) < by->at;
-            int where = low == by->low && touches(c, node, part, by->axis, by->at) ? 2 : low ? 0 : 1;
+            int where = low ? 0 : 1;
+            if (low == by->low && touches(c, node, part, by->axis, by->at))
+                where = 2;
             if (pass)
                 c->set[count[where]] = node;
             count[where]++;
@@ -112,7 +114,8 @@ static void divide(cutter *c, int64_t from, int64_t to, const cut *by, int64_t a
     }
     for (int side = 0; side < 3; side++) {
         int32_t name = ++c->parts;
-        for (int64_t i = side == 0 ? from : at[side - 1]; i < (side == 2 ? to : at[side]); i++)
+        const int64_t end = side == 2 ? to : at[side];
+        for (int64_t i = side == 0 ? from : at[side - 1]; i < end; i++)
             c->part[c->set[i]] = name;
     }
 }

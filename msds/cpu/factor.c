@@ -160,9 +160,11 @@ static void factor_work(void *context, int64_t chunk, int64_t from, int64_t to)
         bool sound = true;
         for (int c = 0; c < 2; c++)
             sound = sound && (f->of[number].child[c] < 0 || f->failed[f->of[number].child[c]] == -1);
-        f->failed[number] = sound                                     ? factor_front_of(f, number)
-                            : f->failed[f->of[number].child[0]] != -1 ? f->failed[f->of[number].child[0]]
-                                                                      : f->failed[f->of[number].child[1]];
+        const int64_t *child = f->of[number].child;
+        if (sound)
+            f->failed[number] = factor_front_of(f, number);
+        else
+            f->failed[number] = f->failed[f->failed[child[0]] != -1 ? child[0] : child[1]];
     }
 }
 

@@ -78,7 +78,9 @@ static int read_scale(const char *text, double *scale, err *e)
 
 static msds_method method_of(const session *s, bool fem)
 {
-    return !fem ? MSDS_SPRINGS : s->o->exact ? MSDS_EXACT : MSDS_FEM;
+    if (!fem)
+        return MSDS_SPRINGS;
+    return s->o->exact ? MSDS_EXACT : MSDS_FEM;
 }
 
 /* Scales inertia, or cuts the step, until the step of springs is stable in every configuration. */

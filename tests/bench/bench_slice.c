@@ -217,13 +217,12 @@ static void print_subject(subject *s, stage *on, const paper *from, int threads)
     const char *const frames[2] = {"frame: msds and image", "frame: fem 20 cg and image"};
     for (int row = 0; row < 2 * WAYS + 2; row++) {
         const int way = row % 2;
-        times *t = row < 2 ? &s->by_spans[way] : row < 4 ? &s->by_paper[way] : &s->frame[way];
+        times *const of_rows[3] = {&s->by_spans[way], &s->by_paper[way], &s->frame[way]};
+        const char *const names[3] = {"spans", "paper's steps", frames[way]};
+        const int kind = row < 4 ? row / 2 : 2;
+        times *t = of_rows[kind];
         printf("%dx%dx%d,%lld,%lld,%s,%d,", (int)from->nodes[0], (int)from->nodes[1], (int)from->nodes[2],
-               (long long)s->mesh.tets, (long long)s->cut,
-               row < 2   ? "spans"
-               : row < 4 ? "paper's steps"
-                         : frames[way],
-               row < 4 && !way ? 1 : threads);
+               (long long)s->mesh.tets, (long long)s->cut, names[kind], row < 4 && !way ? 1 : threads);
         print_times(t, row < 4 ? on->bare[way].took[0] : 0, row < 4 ? from->sampling : 1e3 / from->fps[way]);
     }
     printf("# Table II, %dx%dx%d: %.0f (%.0f) frames a second, the paper %g (%g)\n", (int)from->nodes[0],

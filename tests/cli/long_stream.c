@@ -146,7 +146,11 @@ int main(int argc, char **argv)
     if (argc < 3 || argc > 4 || num_int(argv[2], 1, INT64_MAX, &count) ||
         (argc == 4 && num_int(argv[3], 0, count - 1, &at)))
         return 2;
-    int bad = !strcmp(argv[1], "frames") ? frames(count, &e) : !strcmp(argv[1], "large") ? large(count, at) : 2;
+    int bad = 2;
+    if (!strcmp(argv[1], "frames"))
+        bad = frames(count, &e);
+    else if (!strcmp(argv[1], "large"))
+        bad = large(count, at);
     if (bad)
         fprintf(stderr, "stream: %s\n", *e.text ? e.text : "cannot write");
     return bad != 0;

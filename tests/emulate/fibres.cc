@@ -338,19 +338,23 @@ cudaError_t cudaGetDeviceCount(int *count)
 
 cudaError_t cudaDeviceGetAttribute(int *value, cudaDeviceAttr which, int)
 {
-    *value = which == cudaDevAttrComputeCapabilityMajor   ? card.capability / 10
-             : which == cudaDevAttrComputeCapabilityMinor ? card.capability % 10
-             : which == cudaDevAttrMultiProcessorCount    ? card.processors
-             : which == cudaDevAttrCooperativeLaunch      ? card.together
-                                                          : 0;
+    *value = 0;
+    if (which == cudaDevAttrComputeCapabilityMajor)
+        *value = card.capability / 10;
+    else if (which == cudaDevAttrComputeCapabilityMinor)
+        *value = card.capability % 10;
+    else if (which == cudaDevAttrMultiProcessorCount)
+        *value = card.processors;
+    else if (which == cudaDevAttrCooperativeLaunch)
+        *value = card.together;
     return cudaSuccess;
 }
 
 const char *cudaGetErrorString(cudaError_t error)
 {
-    return error == cudaErrorLaunchFailure      ? machine.text
-           : error == cudaErrorMemoryAllocation ? "out of memory"
-                                                : "the emulated card cannot";
+    if (error == cudaErrorLaunchFailure)
+        return machine.text;
+    return error == cudaErrorMemoryAllocation ? "out of memory" : "the emulated card cannot";
 }
 
 /* ---- where threads wait for each other */

@@ -242,7 +242,9 @@ word *find(const void *at, size_t size, bool *shared)
     *shared = own || within(at, size, b->dynamic.at, b->dynamic.size);
     if (own)
         take_statics();
-    memory *m = own ? &b->own : *shared ? &b->dynamic : piece_of(at, size);
+    memory *m = *shared ? &b->dynamic : piece_of(at, size);
+    if (own)
+        m = &b->own;
     if (!m)
         return NULL;
     word *w = &m->words[(size_t)((const char *)at - m->at) / 4];

@@ -118,8 +118,13 @@ static void turn(double f[3][3])
 {
     double angle = 37 * acos(-1) / 180, n = 1 / sqrt(3), c = cos(angle), s = sin(angle);
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            f[i][j] = (i == j ? c : 0) + (1 - c) * n * n + (i == j ? 0 : (j - i + 3) % 3 == 1 ? -s * n : s * n);
+        for (int j = 0; j < 3; j++) {
+            f[i][j] = (1 - c) * n * n;
+            if (i == j)
+                f[i][j] += c;
+            else
+                f[i][j] += (j - i + 3) % 3 == 1 ? -s * n : s * n;
+        }
 }
 
 static void test_rotation(double limit)
@@ -156,10 +161,8 @@ static void test_hourglass(double tolerance)
             for (int c = 0; c < 8; c++) {
                 const int *at = box_corner[c];
                 int s[3] = {2 * at[0] - 1, 2 * at[1] - 1, 2 * at[2] - 1};
-                gamma[c] = mode == 0   ? s[0] * s[1]
-                           : mode == 1 ? s[1] * s[2]
-                           : mode == 2 ? s[2] * s[0]
-                                       : s[0] * s[1] * s[2];
+                const int modes[4] = {s[0] * s[1], s[1] * s[2], s[2] * s[0], s[0] * s[1] * s[2]};
+                gamma[c] = modes[mode];
                 component[a]->at[c] = R(1e-4 * gamma[c]);
             }
             element_field force = force_of(u, .0075, 0, no_fibre);

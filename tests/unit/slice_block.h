@@ -6,6 +6,7 @@
 
 #include "msds_block.h"
 
+#include "base/num.h"
 #include "slice/image/slice_cutter.h"
 
 #include <string.h>
@@ -97,9 +98,9 @@ static inline double block_shares(const slice_block *b, int64_t tet, const doubl
 static inline double block_voxel(const slice_block *b, int64_t i, int64_t j, int64_t k)
 {
     const int64_t *n = b->v.size;
-    i = i < 0 ? 0 : i < n[0] ? i : n[0] - 1;
-    j = j < 0 ? 0 : j < n[1] ? j : n[1] - 1;
-    k = k < 0 ? 0 : k < n[2] ? k : n[2] - 1;
+    i = num_clamp_int(i, 0, n[0] - 1);
+    j = num_clamp_int(j, 0, n[1] - 1);
+    k = num_clamp_int(k, 0, n[2] - 1);
     return volume_value(&b->v, (k * n[1] + j) * n[0] + i);
 }
 

@@ -92,7 +92,8 @@ static void test_nearest(const double *spacing, double share, const char *name)
     if (nearest_build(&n, &m, &e))
         ok(false, "builds: %s", e.text);
     for (int i = 0; i < 6000; i++) {
-        double p[3], reach = i % 4 == 3 ? 1000 : i % 4 == 2 ? 12 : 1;
+        static const double reaches[4] = {1, 1, 12, 1000};
+        double p[3], reach = reaches[i % 4];
         for (int a = 0; a < 3; a++) {
             double q = low[a] + uniform(-reach, size[a] + reach);
             if (i % 3 == 0) /* a corner, or the middle of a side: a tie */

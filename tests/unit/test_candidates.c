@@ -71,7 +71,8 @@ int main(void)
     for (int i = 0; i < BOXES; i++)
         for (int a = 0; a < 3; a++) { /* many at the same places, many flat */
             box[i].low[a] = i % 2 ? floor(uniform(-10, 10)) : uniform(-10, 10);
-            box[i].high[a] = box[i].low[a] + (i % 3 == a ? 0 : i % 50 ? 1 : 12);
+            const double side = i % 50 ? 1 : 12;
+            box[i].high[a] = box[i].low[a] + (i % 3 == a ? 0 : side);
         }
     test_pairs(box);
     return done_testing();

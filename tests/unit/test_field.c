@@ -188,8 +188,10 @@ static void straight(void)
     double off[3] = {0};
     for (int32_t i = 0; i < 12 * 9 * 6; i++) {
         int32_t x = i % 12, y = i / 12 % 9;
-        if (volume[i])
-            off[x == 11 ? 1 : y == 5 ? 2 : 0] += fabs(1 - (x == 11 ? fabs((double)f[3 * i + 1]) : f[3 * i]));
+        if (volume[i] && x == 11)
+            off[1] += fabs(1 - fabs((double)f[3 * i + 1]));
+        else if (volume[i])
+            off[y == 5 ? 2 : 0] += fabs(1 - (double)f[3 * i]);
     }
     ok(off[0] < 1 && f[0] > .8, "the bar: along it, toward its larger end (off by %g in 36 elements)", off[0]);
     ok(off[1] < .2, "the other: along it (off by %g in 18)", off[1]);

@@ -223,7 +223,11 @@ static void strip_45(double *p, int i, int count)
 /* A comb along the diagonal, its back below. */
 static void comb(double *p, int i, int count)
 {
-    double x = i < count - 2 ? i : i == count - 2 ? count : -1, y = i < count - 2 ? i % 2 * 10 : -1;
+    double x = i == count - 2 ? count : -1, y = -1;
+    if (i < count - 2) {
+        x = i;
+        y = i % 2 * 10;
+    }
     p[0] = x - y, p[1] = x + y;
 }
 

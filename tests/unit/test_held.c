@@ -36,7 +36,7 @@ static void test_places(int cells, const char *what)
         x[i] = cells ? rand() % (cells + 1) : uniform(-1, 1);
     for (int n = 0; n < NODES; n++) {
         int r = rand() % 100; /* of anchor 3 a few nodes, of 4 none */
-        anchor[n] = r < 30 ? -1 : r < 60 ? 0 : r < 80 ? 1 : r < 99 ? 2 : 3;
+        anchor[n] = (r >= 30) + (r >= 60) + (r >= 80) + (r >= 99) - 1;
     }
     held h;
     err e = {0};

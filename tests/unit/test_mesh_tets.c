@@ -144,8 +144,8 @@ static int voxels(model *m, int side, unsigned seed, err *e)
         return -1;
     for (int i = 0; i < n * n * n; i++)
         for (int a = 0; a < 3; a++) {
-            int at = a == 0 ? i % n : a == 1 ? i / n % n : i / n / n;
-            model_find(m, "node.position")->f64[3 * i + a] = .5 * at;
+            const int at[3] = {i % n, i / n % n, i / n / n};
+            model_find(m, "node.position")->f64[3 * i + a] = .5 * at[a];
         }
     for (int64_t c = 0; c < count; c++) {
         for (int v = 0; v < 8; v++) {

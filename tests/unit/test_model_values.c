@@ -108,10 +108,14 @@ static void sums(void)
 static void range(const known *k)
 {
     char rows[200];
-    const double past = k->type == MODEL_F64   ? nextafter(k->high, INFINITY)
-                        : k->type == MODEL_F32 ? (double)nextafterf((float)k->high, INFINITY)
-                                               : k->high + 1;
-    const double less = k->type == MODEL_F64 ? nextafter(k->low, -INFINITY) : k->type == MODEL_F32 ? -1e-9 : k->low - 1;
+    double past = k->high + 1, less = k->low - 1;
+    if (k->type == MODEL_F64) {
+        past = nextafter(k->high, INFINITY);
+        less = nextafter(k->low, -INFINITY);
+    } else if (k->type == MODEL_F32) {
+        past = (double)nextafterf((float)k->high, INFINITY);
+        less = -1e-9;
+    }
     snprintf(rows, sizeof rows, "%.17g\n%.17g\n", k->low, k->high);
     judge(k, 1, rows, NULL);
     if (k->high < (double)INT32_MAX || k->type == MODEL_F64) {
@@ -135,7 +139,7 @@ static void nothing(const known *k)
         return;
     at = rows;
     for (int i = 0; i < k->columns_max; i++)
-        at += sprintf(at, "%s%s", i + 1 < k->columns_max ? "0" : "nan", i + 1 < k->columns_max ? " " : "\n");
+        at += sprintf(at, "%s", i + 1 < k->columns_max ? "0 " : "nan\n");
     judge(k, k->columns_max, rows, "row 0: 0 0 ");
 }
 

@@ -272,7 +272,8 @@ static void test_method(msds_method method, const backend *cuda, const char *nam
     char what[80];
     const tets *all[] = {&small, &odd, &paper, &large};
     setting g = {&odd, NULL, tets_options(), false};
-    for (int i = 0; i < (shortened ? 2 : method == MSDS_EXACT ? 3 : 4); i++) {
+    const int whole = method == MSDS_EXACT ? 3 : 4;
+    for (int i = 0; i < (shortened ? 2 : whole); i++) {
         g.block = all[i];
         snprintf(what, sizeof what, "%s, %dx%dx%d", name, all[i]->nodes[0], all[i]->nodes[1], all[i]->nodes[2]);
         test_same(&g, method, cuda, what);

@@ -101,7 +101,10 @@ static int salvage(const char *path, err *e)
             parts += !v;
         }
         source_end(&s, e);
-        count = !same ? -2 : parts && count == 1 ? PART : count;
+        if (!same)
+            count = -2;
+        else if (parts && count == 1)
+            count = PART;
     }
     source_close(&s);
     return count;
@@ -132,7 +135,9 @@ static void cuts(const char *path, const made *s, const char *name)
     for (size_t size = s->size - 1; size > 0; size--) {
         err e = {0};
         const int fine = truncate(path, (off_t)size), got = salvage(path, &e);
-        const char *want = expected(s, size) < 0 ? "cut short" : expected(s, size) ? ": salvaged " : "and no frame";
+        const char *want = expected(s, size) ? ": salvaged " : "and no frame";
+        if (expected(s, size) < 0)
+            want = "cut short";
         if (fine || got != expected(s, size) || e.status != STATUS_BAD || !strstr(e.text, want)) {
             printf("# %zu bytes: %d frames, expected %d: %s\n", size, got, expected(s, size), e.text);
             wrong++;
@@ -150,7 +155,7 @@ static void flips(const char *path, made *s)
         s->bytes[at] ^= 0x10;
         const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
         const bool put = write(fd, s->bytes, s->size) == (ssize_t)s->size && !close(fd);
-        const int got = salvage(path, &e), want = at < s->end[2] ? 2 : at < s->end[3] ? 3 : 4;
+        const int got = salvage(path, &e), want = 2 + (at >= s->end[2]) + (at >= s->end[3]);
         if (!put || got != want || e.status != STATUS_BAD || !strstr(e.text, "reading stopped at byte ")) {
             printf("# byte %zu: %d frames, expected %d: %s\n", at, got, want, e.text);
             wrong++;

@@ -209,7 +209,7 @@ static double linear(const uint8_t *voxel, const int64_t size[3], const int32_t 
             const int32_t cell = at[a] >> 16;
             const double share = (at[a] & 0xffff) / 65536.;
             int64_t i = cell - 1 + (c >> a & 1);
-            i = i < 0 ? 0 : i < size[a] ? i : size[a] - 1;
+            i = num_clamp_int(i, 0, size[a] - 1);
             weight *= c >> a & 1 ? share : 1 - share;
             index = index * size[a] + i;
         }
@@ -281,10 +281,14 @@ static void test_far(uint64_t layer, pool *threads)
     tets_must(!slice_cells_make(&c, &v, (slice_window){0, 255}, threads, &e), &e);
     for (int i = 0; i < PLACES; i++) /* rows along every axis, places anywhere, and black ones among them */
         for (int a = 0; a < 3; a++)
-            at[a][i] = i % 7 == 5 && i > 400 ? c.black
-                       : i / 100 % 4 == a    ? SLICE_ONE / 2 + i % 100 * (SIDE * SLICE_ONE / 100)
-                       : i > 800             ? (int32_t)(block_random(&seed) % (SIDE * SLICE_ONE)) + SLICE_ONE / 2
-                                             : (i / 100 + 1) * SLICE_ONE;
+            if (i % 7 == 5 && i > 400)
+                at[a][i] = c.black;
+            else if (i / 100 % 4 == a)
+                at[a][i] = SLICE_ONE / 2 + i % 100 * (SIDE * SLICE_ONE / 100);
+            else if (i > 800)
+                at[a][i] = (int32_t)(block_random(&seed) % (SIDE * SLICE_ONE)) + SLICE_ONE / 2;
+            else
+                at[a][i] = (i / 100 + 1) * SLICE_ONE;
     slice_lanes_plain.sample(&c, at[0], at[1], at[2], PLACES, expected);
     const size_t size = (size_t)layer * (LAYERS + 1) + 64;
     slice_cells far = c;

@@ -50,9 +50,10 @@ static model make(double size, double shift, bool holes)
     model_axis_add(&m, "element", elements, &e);
     double *position = model_add(&m, "node.position", &e)->f64;
     for (int n = 0; n < row * row * row; n++)
-        for (int a = 0; a < 3; a++)
-            position[3 * n + a] =
-                size * ((a ? a == 1 ? n / row % row : n / row / row : n % row) + uniform(-shift, shift));
+        for (int a = 0; a < 3; a++) {
+            const int cell[3] = {n % row, n / row % row, n / row / row};
+            position[3 * n + a] = size * (cell[a] + uniform(-shift, shift));
+        }
     int32_t *node = model_add_as(&m, "element.node", MODEL_I32, "@node", "element", 4, &e)->i32;
     for (int32_t i = elements - 1; i >= 0; i--) {
         int32_t j = rand() % (i + 1);

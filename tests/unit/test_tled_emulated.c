@@ -318,8 +318,8 @@ static void try_omission(emulated_omission what, const double *right, const char
     err e = {0};
     while (!found && lots < (none ? 3 : 12))
         found = march_at_once(what, ++lots, to, &e) || memcmp(to, right, size) != 0;
-    ok(found != none, "without %s: after %d lots, %s", name, (int)lots,
-       found ? *e.text ? e.text : "another answer" : "nothing");
+    const char *said = *e.text ? e.text : "another answer";
+    ok(found != none, "without %s: after %d lots, %s", name, (int)lots, found ? said : "nothing");
     free(to);
 }
 

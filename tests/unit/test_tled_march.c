@@ -109,10 +109,10 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
     s->wrong += mix >= 0 && !has_muscle(s, cell, &muscles, p->mixfibre ? p->mixfibre + 3 * (int64_t)element : NULL, mix,
                                         share * other);
     const int32_t first = cell->muscle[0].curve;
-    s->wrong += muscles != (first < 0              ? 0
-                            : first & MARCH_SECOND ? 2
-                                                   : 1) ||
-                (muscles < 2 && cell->muscle[1].curve >= 0);
+    int expected = 0;
+    if (first >= 0)
+        expected = first & MARCH_SECOND ? 2 : 1;
+    s->wrong += muscles != expected || (muscles < 2 && cell->muscle[1].curve >= 0);
 }
 
 /* Whether an element is all of the plain law, and nothing of it may contract. */

@@ -231,7 +231,9 @@ static void test_inverted(void)
         for (int a = 0; a < 3; a++) {
             bench b;
             bench_make(&b, &half, NULL, 0, .0075, 1);
-            strain(&b, a == 0 ? flat[i] : 1, a == 1 ? flat[i] : 1, a == 2 ? flat[i] : 1);
+            double by[3] = {1, 1, 1};
+            by[a] = flat[i];
+            strain(&b, by[0], by[1], by[2]);
             bench_steps(&b, 10, 0);
             const int gone = bench_go(&b);
             ok(gone && b.e.status == STATUS_DIVERGED && strstr(b.e.text, "element 0 (volume 'skin') is inverted"),

@@ -262,11 +262,12 @@ static void test_collapsed(void)
     while (count < 2000) {
         static const double side[3] = {.01, .0125, .02};
         const double thin = pow(10, -8 * fabs(number())), thinner = number() > 0 ? thin : 1;
+        const double of_row[3] = {1, thinner, thin};
         double f[9];
         element_tensor h;
         step_matrix a;
         for (int i = 0; i < 9; i++)
-            f[i] = number() * (i < 3 ? 1 : i < 6 ? thinner : thin);
+            f[i] = number() * of_row[i / 3];
         for (int i = 0; i < 3; i++) { /* rows that are nearly one row's multiples */
             f[3 + i] += thinner < 1 ? f[i] / 2 : 0;
             f[6 + i] += f[i] / 3 + f[3 + i] / 4;

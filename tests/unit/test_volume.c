@@ -57,7 +57,9 @@ static void fill(volume *v)
         switch (v->type) {
 #define FILL(name, of, nrrd, meta, low, high)                                                                          \
     case VOLUME_##name:                                                                                                \
-        ((of *)v->data)[i] = (low) < (high) ? i == 0 ? (of)(low) : i == 1 ? (of)(high) : (of)i : (of)(i / 3.);         \
+        ((of *)v->data)[i] = (of)((low) < (high) ? i : i / 3.);                                                        \
+        if ((low) < (high) && i < 2)                                                                                   \
+            ((of *)v->data)[i] = i == 0 ? (of)(low) : (of)(high);                                                      \
         break;
             VOLUME_TYPES(FILL)
         default:

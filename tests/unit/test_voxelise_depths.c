@@ -52,7 +52,7 @@ static void add_triangles(scene *s, const int *size)
     for (int64_t t = 0; t < s->s.triangles; t++) {
         double middle[3], length = rand() % 9 ? uniform(0, 3) : uniform(0, 100);
         for (int a = 0; a < 3; a++)
-            middle[a] = (uniform(-4, size[a] + 4) - (a == 0 ? 5 : a == 1 ? 7 : 9)) * s->g.spacing[a];
+            middle[a] = (uniform(-4, size[a] + 4) - (5 + 2 * a)) * s->g.spacing[a];
         for (int c = 0; c < 9; c++)
             s->corner[9 * t + c] = t && rand() % 20 == 0 ? s->corner[9 * t + c - 9]
                                                          : middle[c % 3] + uniform(-1, 1) * length * s->g.spacing[0];

@@ -99,7 +99,10 @@ static void add_fans(mesh *m, int64_t size)
     for (int f = 0; f < 6; f++) {
         int64_t p[3];
         for (int a = 0; a < 3; a++)
-            p[a] = a != across[f] ? draw(low[a], high[a]) : f == 0 || f == 2 || f == 4 ? low[a] : high[a];
+            if (a != across[f])
+                p[a] = draw(low[a], high[a]);
+            else
+                p[a] = f % 2 == 0 ? low[a] : high[a];
         int middle = add_vertex(m, p[0], p[1], p[2]);
         for (int i = 0; i < 4; i++)
             add_triangle(m, middle, v[quad[f][i]], v[quad[f][(i + 1) % 4]]);

@@ -77,18 +77,25 @@ static inline void block_second(const block *b, bool muscle, model *m)
 /* Which elements are of the second volume, and which are mixed; fibres by volume. */
 static inline void block_mix(const block *b, bool muscle, model *m)
 {
-    const float along[3] = {muscle ? .6F : 0, muscle ? -.64F : 0, muscle ? .48F : 0};
+    static const float none[3] = {0, 0, 0}, way[3] = {.6F, -.64F, .48F};
+    const float *along = muscle ? way : none;
     int32_t *volume = model_find(m, "element.volume")->i32, *mix = block_array(m, "element.mix")->i32;
     float *mixture = block_array(m, "element.mixture")->f32, *fibre = model_find(m, "element.fibre")->f32;
     float *mixfibre = block_array(m, "element.mixfibre")->f32;
     block_second(b, muscle, m);
     for (int64_t i = 0; i < model_count(m, "element"); i++) {
         volume[i] = i % 7 == 0 || i % 5 == 1;
-        mix[i] = i % 7 == 0 ? -1 : i % 5 == 1 ? 0 : i / 3 % 3 == 0 ? 1 : -1;
+        mix[i] = i / 3 % 3 == 0 ? 1 : -1;
+        if (i % 5 == 1)
+            mix[i] = 0;
+        if (i % 7 == 0)
+            mix[i] = -1;
         mixture[i] = mix[i] < 0 ? 0 : (float)(i * 3571 % 97) / 96;
         for (int a = 0; a < 3; a++) {
             fibre[3 * i + a] = volume[i] ? along[a] : b->fibre[a];
-            mixfibre[3 * i + a] = mix[i] < 0 ? 0 : mix[i] ? along[a] : b->fibre[a];
+            mixfibre[3 * i + a] = mix[i] ? along[a] : b->fibre[a];
+            if (mix[i] < 0)
+                mixfibre[3 * i + a] = 0;
         }
     }
 }
