@@ -181,6 +181,23 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
     return t->provenance ? 0 : -1;
 }
 
+int tool_provenance(tool *t, err *e, const char *format, ...)
+{
+    char more[LINE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(more, sizeof more, format, args);
+    va_end(args);
+    const size_t size = strlen(t->provenance) + strlen(more) + 2;
+    char *all = mem_array((int64_t)size, 1, "provenance", e);
+    if (!all)
+        return -1;
+    snprintf(all, size, "%s%s%s", t->provenance, *t->provenance ? " " : "", more);
+    free(t->provenance);
+    t->provenance = all;
+    return 0;
+}
+
 /* "tool: kind: text": one line in one write, so that those of the tools in a pipe do not mix. */
 static void print(const tool *t, const char *kind, const char *text)
 {

@@ -35,6 +35,9 @@ int tool_begin(tool *t, const opt_tool *table, int argc, char **argv, void *opti
  * are made of those: of numbered files, of checkpoints. */
 int tool_check_written(const tool *t, const char *option, const char *path, err *e);
 
+/* Adds to the options in the provenance what else decides the result, as it was found on the way. -1 with e filled. */
+int tool_provenance(tool *t, err *e, const char *format, ...) SINEW_PRINTF(3, 4);
+
 /* Prints e, unless it is empty or was printed already, with the help it asks for (e->help), and frees t. Returns the
  * exit status. Every message is one line in one write; control characters in it become '?'. */
 int tool_end(tool *t, const err *e);

@@ -39,8 +39,9 @@ int stage_write(stage *s, model *m, err *e)
     return model_write(s->writer, m, e);
 }
 
-/* Reads the frames that are left, and writes them where w is not NULL. Returns how many, or -1. */
-static int64_t pass_frames(stage *s, const model *m, model_writer *w, err *e)
+/* Reads the frames that are left, and writes them where w is not NULL; last, where it is not NULL, gets the last one.
+ * Returns how many, or -1. */
+static int64_t pass_frames(stage *s, const model *m, model_writer *w, frame *last, err *e)
 {
     frame f = {0};
     int64_t count = 0;
@@ -50,6 +51,11 @@ static int64_t pass_frames(stage *s, const model *m, model_writer *w, err *e)
         if (got > 0 && w && model_write_frame(w, &f, e))
             got = -1;
         count += got > 0;
+        if (got > 0 && last) {
+            const frame before = *last;
+            *last = f;
+            f = before;
+        }
     }
     frame_free(&f);
     return got < 0 ? -1 : count;
@@ -57,13 +63,18 @@ static int64_t pass_frames(stage *s, const model *m, model_writer *w, err *e)
 
 int stage_copy_frames(stage *s, const model *m, err *e)
 {
-    return pass_frames(s, m, s->writer, e) < 0 ? -1 : 0;
+    return pass_frames(s, m, s->writer, NULL, e) < 0 ? -1 : 0;
+}
+
+int64_t stage_last_frame(stage *s, const model *m, bool copied, frame *last, err *e)
+{
+    return pass_frames(s, m, copied ? s->writer : NULL, last, e);
 }
 
 int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e)
 {
     (void)m; /* it may have changed: what is dropped need only fit the model that came in */
-    int64_t count = pass_frames(s, NULL, NULL, e);
+    int64_t count = pass_frames(s, NULL, NULL, NULL, e);
     if (count > 0)
         notes_add(warnings, "%" PRId64 " frame%s dropped: the model that they belong to changes", count,
                   count == 1 ? " is" : "s are");
@@ -100,7 +111,7 @@ void stage_close(stage *s, const tool *t, err *e)
 {
     /* A model counts only once its end was seen: what is left in the pipe is read, and may yet say `fail`. */
     if (!e->status && s->reader)
-        pass_frames(s, NULL, NULL, e);
+        pass_frames(s, NULL, NULL, NULL, e);
     if (!e->status && s->writer)
         model_write_end(s->writer, e);
     if (!e->status && s->sink) {

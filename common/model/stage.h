@@ -29,6 +29,10 @@ int stage_write(stage *s, model *m, err *e);
 /* Copies the frames that are left in to out. */
 int stage_copy_frames(stage *s, const model *m, err *e);
 
+/* Reads the frames that are left, and copies them to out where `copied`. Returns how many, the last of which goes to
+ * *last, zeroed before and the caller's to free; or -1 with e filled. */
+int64_t stage_last_frame(stage *s, const model *m, bool copied, frame *last, err *e);
+
 /* Reads the frames that are left and drops them, noting how many. */
 int stage_drop_frames(stage *s, const model *m, notes *warnings, err *e);
 

@@ -135,61 +135,43 @@ static int make_problem(session *s, err *e)
 
 static int say_provenance(tool *t, const session *s, err *e)
 {
-    char ran[800], shape[300] = "";
+    char shape[300] = "";
     const struct options *o = s->o;
     if (o->probe) {
         char text[280];
         probe_text(&s->probe, text, sizeof text);
         snprintf(shape, sizeof shape, "--probe %s ", text);
     }
-    snprintf(ran, sizeof ran,
-             "%s%s--method %s --iterations %lld --rate %.9g --dt %.9g --mass %s --spring-scale %.9g --damping %.9g "
-             "--contact %s "
-             "--repulsion "
-             "%.9g [%s, inertia %.9g, %lld substeps]",
-             *t->provenance ? " " : "", shape, o->method ? "fem" : "msds", (long long)o->iterations, o->rate, o->dt,
-             o->mass ? "lumped" : "stable", s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed",
-             o->repulsion, s->device->name, s->problem.mass_factor, (long long)s->substeps);
-    size_t size = strlen(t->provenance) + strlen(ran) + 1;
-    char *all = mem_array((int64_t)size, 1, "provenance", e);
-    if (!all)
+    return tool_provenance(
+        t, e,
+        "%s--method %s --iterations %lld --rate %.9g --dt %.9g --mass %s --spring-scale %.9g --damping %.9g "
+        "--contact %s --repulsion %.9g [%s, inertia %.9g, %lld substeps]",
+        shape, o->method ? "fem" : "msds", (long long)o->iterations, o->rate, o->dt, o->mass ? "lumped" : "stable",
+        s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed", o->repulsion, s->device->name,
+        s->problem.mass_factor, (long long)s->substeps);
+}
+
+static int start_from(session *s, const frame *last, err *e)
+{
+    const model_array *last_pose = frame_find(last, "probe.pose");
+    s->next_frame = last->index + 1;
+    if (last_pose && last_pose->rows == 1 && s->o->probe) {
+        const pose from = pose_of_row(last_pose->f64);
+        press_from(&s->press, &from, last->time);
+    }
+    if (msds_problem_start(&s->problem, last, e))
         return -1;
-    snprintf(all, size, "%s%s", t->provenance, ran);
-    free(t->provenance);
-    t->provenance = all;
-    return 0;
+    return s->skin.vertices ? skin_model_start(&s->skin, last, e) : 0;
 }
 
 /* Passes on the frames that came, and starts from the last. */
 static int take_frames(session *s, err *e)
 {
-    frame f = {0}, last = {0};
-    int got, result = -1;
-    int64_t count = 0;
-    while ((got = model_read_frame(s->stage.reader, &s->m, &f, e)) > 0) {
-        frame swap = last;
-        last = f;
-        f = swap;
-        count++;
-        if (model_write_frame(s->stage.writer, &last, e))
-            goto out;
-    }
-    if (got < 0)
-        goto out;
-    const model_array *last_pose = count ? frame_find(&last, "probe.pose") : NULL;
-    if (count)
-        s->next_frame = last.index + 1;
-    if (last_pose && last_pose->rows == 1 && s->o->probe) {
-        const pose from = pose_of_row(last_pose->f64);
-        press_from(&s->press, &from, last.time);
-    }
-    result = count ? msds_problem_start(&s->problem, &last, e) : 0;
-    if (!result && count && s->skin.vertices)
-        result = skin_model_start(&s->skin, &last, e);
-out:
-    frame_free(&f);
+    frame last = {0};
+    const int64_t count = stage_last_frame(&s->stage, &s->m, true, &last, e);
+    const int failed = count > 0 ? start_from(s, &last, e) : 0;
     frame_free(&last);
-    return result;
+    return count < 0 ? -1 : failed;
 }
 
 /* An array of one row. An array added is to be filled before the next. */

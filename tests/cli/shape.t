@@ -25,7 +25,7 @@ found() {
     [ -s "$T/said" ] && diag_file "$T/said"
 }
 printf '#ifndef SINEW_A_H\n#define SINEW_A_H\n#endif\n' >common/base/a.h
-is "$("$ROOT/tests/shape" names sizes widths conditionals includes builtin 2>&1)" "" "a tree without a breach"
+is "$("$ROOT/tests/shape" names sizes widths conditionals errors includes builtin 2>&1)" "" "a tree without a breach"
 cp common/base/a.h voxelise/a.h
 found "two files of one name" names 'several files are called a\.h'
 mv voxelise/a.h voxelise/b.h
@@ -47,6 +47,11 @@ found "a nested conditional" conditionals 'bind/nested.c:4: .*; 1 of [0-9]+ line
 printf '%s\n' 'int f(int a)' '{' '    /* why ?' '     * a ? b : c ? d : e */' "    return a == '?' ? g(\"a?\") : 1; // ? ?" '}' >bind/nested.c
 is "$("$ROOT/tests/shape" conditionals)" "" "one conditional a line is let be"
 rm bind/nested.c
+printf '%s\n' 'int f(err *e)' '{' '    g(e);' '    return e->status ? -1 : 0;' '}' >bind/asks.c
+found "a function that asks e->status" errors 'bind/asks.c:4: asks e->status; expected what the call'
+printf '%s\n' 'int f(err *e)' '{' '    e->status = STATUS_USAGE;' '    return g(e);' '}' >bind/asks.c
+is "$("$ROOT/tests/shape" errors)" "" "what sets it, and what returns what a call did, is let be"
+rm bind/asks.c
 echo '#include "attach/body.h"' >voxelise/across.c
 found "a tool that includes another" includes 'voxelise/across.c includes attach/body.h'
 rm voxelise/across.c

@@ -144,11 +144,9 @@ static int wait_for(outbox *o, const int64_t *count, int64_t index, err *e)
     pthread_mutex_lock(&o->lock);
     while (*count <= index || (o->e.status && o->written < o->whole))
         pthread_cond_wait(&o->changed, &o->lock);
-    const bool broken = o->e.status != 0;
-    if (broken && !e->status)
-        *e = o->e;
+    const int broken = err_join(e, &o->e);
     pthread_mutex_unlock(&o->lock);
-    return broken ? -1 : 0;
+    return broken;
 }
 
 int outbox_wait_fetched(outbox *o, int64_t index, err *e)
@@ -171,9 +169,7 @@ int outbox_close(outbox *o, err *e)
     pthread_mutex_unlock(&o->lock);
     while (o->running)
         pthread_join(o->thread[--o->running], NULL);
-    const bool broken = o->e.status != 0;
-    if (broken && !e->status)
-        *e = o->e;
+    const int broken = err_join(e, &o->e);
     for (int i = 0; i < FRAMES; i++) {
         free(o->frame[i].displacement);
         free(o->frame[i].velocity);
@@ -181,5 +177,5 @@ int outbox_close(outbox *o, err *e)
     pthread_mutex_destroy(&o->lock);
     pthread_cond_destroy(&o->changed);
     free(o);
-    return broken ? -1 : 0;
+    return broken;
 }

@@ -160,7 +160,7 @@ static void choose_damping(session *s, const struct options *o)
 /* After the options that were given: how it ends, what ran, and every default that changes the result. */
 static int say_provenance(tool *t, const session *s, const struct options *o, err *e)
 {
-    char until[60], shape[300] = "", press[360] = "", ran[800];
+    char until[60], shape[300] = "", press[360] = "";
     const run_setup *r = &s->run;
     if (s->collider.poses) {
         probe_text(&s->collider.shape, shape, sizeof shape);
@@ -172,47 +172,26 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
         snprintf(until, sizeof until, "-n %lld", (long long)o->steps);
     else
         snprintf(until, sizeof until, "-t %.9g", o->seconds);
-    snprintf(ran, sizeof ran, "%s%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s%s]",
-             *t->provenance ? " " : "", press, until, o->ramp, o->hourglass, r->device->name,
-             o->precision ? "single" : "double", 1 / r->rate, r->rate_fixed ? "" : " or cut", r->damping,
-             r->adapt ? " adapted" : "", tled_bounds_hourglass(&s->problem) ? ", hourglass modulus at most 11 mu" : "");
-    size_t size = strlen(t->provenance) + strlen(ran) + 1;
-    char *all = mem_array((int64_t)size, 1, "provenance", e);
-    if (!all)
-        return -1;
-    snprintf(all, size, "%s%s", t->provenance, ran);
-    free(t->provenance);
-    t->provenance = all;
-    return 0;
+    return tool_provenance(t, e, "%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s%s]", press, until,
+                           o->ramp, o->hourglass, r->device->name, o->precision ? "single" : "double", 1 / r->rate,
+                           r->rate_fixed ? "" : " or cut", r->damping, r->adapt ? " adapted" : "",
+                           tled_bounds_hourglass(&s->problem) ? ", hourglass modulus at most 11 mu" : "");
 }
 
 /* Reads the frames that came, passes them on, and starts from the last. Frames of other materials are not passed on. */
 static int take_frames(session *s, bool changed, err *e)
 {
-    frame f = {0}, last = {0};
-    int got, result = -1;
-    int64_t count = 0;
-    while ((got = model_read_frame(s->stage.reader, &s->m, &f, e)) > 0) {
-        frame swap = last;
-        last = f;
-        f = swap;
-        if (!changed && model_write_frame(s->stage.writer, &last, e))
-            goto out;
-        count++;
-    }
-    if (got < 0)
-        goto out;
-    if (count && changed)
+    frame last = {0};
+    const int64_t count = stage_last_frame(&s->stage, &s->m, !changed, &last, e);
+    if (count > 0 && changed)
         notes_add(&s->warnings, "the materials changed: %lld frame%s dropped; going on from the last", (long long)count,
                   count == 1 ? "" : "s");
-    if (count)
+    if (count > 0)
         s->next_frame = last.index + 1;
-    s->started = count && !changed;
-    result = count ? tled_problem_start(&s->problem, &last, &s->warnings, e) : 0;
-out:
-    frame_free(&f);
+    s->started = count > 0 && !changed;
+    const int failed = count > 0 ? tled_problem_start(&s->problem, &last, &s->warnings, e) : 0;
     frame_free(&last);
-    return result;
+    return count < 0 ? -1 : failed;
 }
 
 /* Writes it first: who waits for it need not wait for what is to be said of it. */
