@@ -344,3 +344,11 @@ void out_discard(out *o)
         close(o->fd);
     out_free(o);
 }
+
+int out_end(out *o, int failed, err *e)
+{
+    if (o && !failed)
+        return out_close(o, e);
+    out_discard(o);
+    return -1;
+}

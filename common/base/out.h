@@ -61,4 +61,7 @@ int out_close(out *o, err *e);
 /* Gives up: removes what was written to a file. Frees o; o may be NULL. */
 void out_discard(out *o);
 
+/* Closes it, or gives up where what was to be written has failed; then, and where o is NULL, -1. */
+int out_end(out *o, int failed, err *e);
+
 #endif

@@ -64,6 +64,7 @@ int tool_run(int (*work)(int argc, char **argv), int argc, char **argv)
 static int answer(tool *t, err *e)
 {
     const opt_common *c = t->common;
+    int failed = 0;
     out *o = out_open(NULL, false, e);
     if (!o)
         return -1;
@@ -72,11 +73,9 @@ static int answer(tool *t, err *e)
         opt_help(t->table, o);
     else if (c->version)
         out_format(o, "%s (Sinew) %s\n", t->table->name, SINEW_VERSION);
-    else if (opt_table(t->table, c->table, o, e)) {
-        out_discard(o);
-        return -1;
-    }
-    return out_close(o, e);
+    else
+        failed = opt_table(t->table, c->table, o, e);
+    return out_end(o, failed, e);
 }
 
 /* A closed descriptor would become the next file's, and messages would go into the output. What is opened in its place

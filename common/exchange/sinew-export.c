@@ -142,13 +142,7 @@ static char *frame_file(const job *j, int64_t k, err *e)
 static int put_frame_file(job *j, const char *file, err *e)
 {
     out *to = tool_check_written(j->t, "-o", file, e) ? NULL : outs_open(&j->files, file, e);
-    if (!to)
-        return -1;
-    if (export_vtu(&j->x, j->o->deformed, to, e)) {
-        out_discard(to);
-        return -1;
-    }
-    return out_close(to, e);
+    return out_end(to, to && export_vtu(&j->x, j->o->deformed, to, e), e);
 }
 
 /* What could not be moved is not passed off as moved. */
@@ -308,13 +302,7 @@ static void put_file(job *j, const char *path, err *e)
         return;
     out *to = j->which == FRAMES_ALL && j->o->format == VTU ? outs_open(&j->files, c->output, e)
                                                             : out_open(c->output, c->gzip, e);
-    if (!to)
-        return;
-    if (work(j, to, e)) {
-        out_discard(to);
-        return;
-    }
-    if (!out_close(to, e))
+    if (!out_end(to, to && work(j, to, e), e))
         outs_commit(&j->files, e);
 }
 

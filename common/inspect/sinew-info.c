@@ -389,10 +389,7 @@ static int run_tool(int argc, char **argv)
 out:
     if (text)
         out_close(text, &e);
-    if (e.status)
-        out_discard(to);
-    else if (to)
-        out_close(to, &e);
+    out_end(to, e.status, &e);
     source_end(&s, &e);
     source_close(&s);
     return tool_end(&t, &e);

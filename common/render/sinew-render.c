@@ -154,11 +154,7 @@ static int draw(job *j, const frame *f, err *e)
     char *name = numbered_name(&j->plan.names, f->index, e);
     out *to = name && !tool_check_written(j->t, "-o", name, e) ? outs_open(&j->files, name, e) : NULL;
     free(name);
-    if (to && put(j, to, e)) {
-        out_discard(to);
-        return -1;
-    }
-    return to ? out_close(to, e) : -1;
+    return out_end(to, to && put(j, to, e), e);
 }
 
 static int no_frame(const job *j, int64_t first, err *e)

@@ -430,10 +430,7 @@ static int run_tool(int argc, char **argv)
     if (find(&j, &e) || put_label(&j, &e))
         goto out;
     out *to = out_open(o.common.output, false, &e);
-    if (to && nrrd_write(&j.labels, !o.raw, to, &e))
-        out_discard(to);
-    else if (to)
-        out_close(to, &e);
+    out_end(to, to && nrrd_write(&j.labels, !o.raw, to, &e), &e);
 out:
     free(j.r.mask);
     region_free(&j.r);

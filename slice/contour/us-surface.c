@@ -309,10 +309,7 @@ static int run_tool(int argc, char **argv)
     if (!j.to)
         goto out;
     out_text(j.to, "# us-surface " SINEW_VERSION ": mm, LPS\n");
-    if (isnan(o.iso) ? write_labels(&j, &e) : write_level(&j, &e))
-        out_discard(j.to);
-    else
-        out_close(j.to, &e);
+    out_end(j.to, isnan(o.iso) ? write_labels(&j, &e) : write_level(&j, &e), &e);
 out:
     tool_warn(&t, &j.warnings);
     free(j.table);

@@ -78,11 +78,7 @@ int slice_writer_put(slice_writer *w, int64_t index, const slice_plane *at, cons
         return -1;
     if (!png)
         put_pnm(at, view, pixel, channels, to);
-    else if (put_png(view, pixel, channels, to, e)) {
-        out_discard(to);
-        return -1;
-    }
-    return out_close(to, e);
+    return out_end(to, png && put_png(view, pixel, channels, to, e), e);
 }
 
 void slice_writer_close(slice_writer *w, err *e)

@@ -401,12 +401,10 @@ static int write_cut(job *j, const slice_plane *at, int64_t index, err *e)
     if (!to)
         return -1;
     out_text(to, "# us-slice " SINEW_VERSION ": where the slice cuts the tetrahedra; mm, LPS\n");
-    if (slice_cut_write(j->cutter, at, &j->model.body, to, &count, e)) {
-        out_discard(to);
-        return -1;
-    }
-    tool_detail(j->t, "image %lld: the slice cuts %lld tetrahedra", (long long)index, (long long)count);
-    return out_close(to, e);
+    const int bad = slice_cut_write(j->cutter, at, &j->model.body, to, &count, e);
+    if (!bad)
+        tool_detail(j->t, "image %lld: the slice cuts %lld tetrahedra", (long long)index, (long long)count);
+    return out_end(to, bad, e);
 }
 
 /* Where the image is in the frame that the poses are in. */

@@ -366,10 +366,7 @@ static int run_tool(int argc, char **argv)
         goto out;
     snprintf(j.of, sizeof j.of, "the output");
     out *to = out_open(o.common.output, false, &e);
-    if (to && nrrd_write(&j.v, !o.raw, to, &e))
-        out_discard(to);
-    else if (to)
-        out_close(to, &e);
+    out_end(to, to && nrrd_write(&j.v, !o.raw, to, &e), &e);
 out:
     if (!o.common.verbose)
         hide(&j, argv + 1, &e);
