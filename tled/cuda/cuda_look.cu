@@ -50,7 +50,7 @@ typedef struct one_cell {
     double hourglass; /* its energy */
 } one_cell;
 
-template <class G, class S>
+template <class G, class L, class S>
 static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u, element_vector slope)
 {
     const cuda_view<S> &v = l.view;
@@ -62,11 +62,15 @@ static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, 
     element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
     element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
     one_cell c;
-    memcpy(c.own.c, kind.c, sizeof c.own.c);
-    c.own.density = kind.density, c.own.hourglass = kind.hourglass;
-    c.own.share = 0, c.own.mix = -1;
-    if (mixed >= 0)
-        c.own = v.mixture[mixed];
+    c.own = {{0}, kind.density, kind.hourglass, 0, -1};
+    if (mixed >= 0) {
+        const cuda_mixed &m = v.mixture[mixed];
+        c.own = {{0}, m.density, m.hourglass, m.share, m.mix};
+    }
+    const double *from = mixed >= 0 ? v.mixture[mixed].c : kind.c;
+#pragma unroll
+    for (int k = 0; k < L::COEFFICIENTS; k++)
+        c.own.c[k] = from[k];
     c.h = element_gradient(x, y, z, slope);
     c.hourglass = element_hourglass_energy(x, c.own.hourglass) + element_hourglass_energy(y, c.own.hourglass) +
                   element_hourglass_energy(z, c.own.hourglass);
@@ -160,7 +164,7 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
 #pragma unroll 1
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
-        const one_cell c = cell_of<G>(l, t, i, u, slope);
+        const one_cell c = cell_of<G, L>(l, t, i, u, slope);
         const double strain = strain_of<L>(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
@@ -230,7 +234,7 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, element_
         bool past = i < t.cells && l.view.cell[t.cell + i] >> TILE_OWN & 1;
         step_matrix a;
         if (past) {
-            const one_cell c = cell_of<G>(l, t, i, u, slope);
+            const one_cell c = cell_of<G, L>(l, t, i, u, slope);
             element_fibre fibre[2];
             fibres_of(l, t, i, c, fibre);
             past = strain_of<L>(l, t, i, c) < INFINITY;

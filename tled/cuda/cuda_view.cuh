@@ -72,7 +72,7 @@ template <class F> static auto with_form(form which, F f)
     switch (which) {
         FORMS(FORM_ROW)
     default:
-        return f(cuda_form<(form)0, FORM_NUMBERS>());
+        return f(cuda_form<FORM_NEO_HOOKEAN, FORM_NEO_HOOKEAN_NUMBERS>());
     }
 #undef FORM_ROW
 }
