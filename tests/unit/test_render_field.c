@@ -104,6 +104,9 @@ static void test_gradient(void)
     double side = 0.92181984, h[9] = {.2, 0, 0, 0, side - 1, 0, 0, 0, side - 1};
     near_(gradient_stress(h, FORM_NEO_HOOKEAN, c), 502.2590 / (side * side), 1e-3,
           "uniaxial stretch: the Cauchy stress");
+    const double second[FORM_NUMBERS] = {2500, 500, 1e5}, narrow = .918060;
+    const double pulled[9] = {.2, 0, 0, 0, narrow - 1, 0, 0, 0, narrow - 1};
+    near_(gradient_stress(pulled, FORM_MOONEY_RIVLIN, second), 2882.59 / (narrow * narrow), .1, "Mooney-Rivlin");
     double shear[9] = {0, .2, 0, 0, 0, 0, 0, 0, 0};
     double wanted = sqrt(3 * (206.8966 * 206.8966) + 41.3793 * 41.3793);
     near_(gradient_stress(shear, FORM_NEO_HOOKEAN, c), wanted, 1e-3, "simple shear: von Mises' equivalent");
