@@ -345,37 +345,33 @@ static model_array *add(model_arrays *list, const model *m, const char *name, mo
     return at;
 }
 
-static model_array *add_known(model_arrays *list, const model *m, const char *name, int in_frame, const double *lent,
-                              err *e)
+static model_array *add_known(model_arrays *list, const model *m, const char *name, int in_frame, err *e)
 {
     char unit[MODEL_NAME], axis[MODEL_NAME];
     const known *k = known_find(name);
-    if (lent && k && k->type != MODEL_F64) {
-        err_set(e, NULL, 0, "array %s is of %s; expected f64 of what is lent", name, model_type_name(k->type));
-        return NULL;
-    }
     if (!k || (k->flags & KNOWN_FRAME) != in_frame) {
         err_set(e, NULL, 0, "array %s is not known %s", name, in_frame ? "in frames" : "in a model's body");
         return NULL;
     }
     known_expand(k->unit, name, unit, sizeof unit);
     known_expand(k->axis, name, axis, sizeof axis);
-    return add(list, m, name, k->type, unit, axis, k->columns_max, lent, e);
+    return add(list, m, name, k->type, unit, axis, k->columns_max, NULL, e);
 }
 
 model_array *model_add(model *m, const char *name, err *e)
 {
-    return add_known(&m->arrays, m, name, 0, NULL, e);
+    return add_known(&m->arrays, m, name, 0, e);
 }
 
 model_array *frame_add(frame *f, const model *m, const char *name, err *e)
 {
-    return add_known(&f->arrays, m, name, KNOWN_FRAME, NULL, e);
+    return add_known(&f->arrays, m, name, KNOWN_FRAME, e);
 }
 
-model_array *frame_lend(frame *f, const model *m, const char *name, const double *numbers, err *e)
+model_array *frame_lend(frame *f, const model *m, const char *name, const char *unit, const char *axis, int32_t columns,
+                        const double *numbers, err *e)
 {
-    return add_known(&f->arrays, m, name, KNOWN_FRAME, numbers, e);
+    return add(&f->arrays, m, name, MODEL_F64, unit, axis, columns, numbers, e);
 }
 
 model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,

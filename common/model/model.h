@@ -107,8 +107,10 @@ model_array *model_need(const model *m, const char *name, err *e);
 model_array *model_add(model *m, const char *name, err *e);
 /* The same for a frame of model m. */
 model_array *frame_add(frame *f, const model *m, const char *name, err *e);
-/* The same of an array of f64 whose numbers stand there already, and stay there unchanged as long as the frame is. */
-model_array *frame_lend(frame *f, const model *m, const char *name, const double *numbers, err *e);
+/* Adds an array of any name, of f64, whose numbers stand there already, and stay there unchanged as long as the frame
+ * is. */
+model_array *frame_lend(frame *f, const model *m, const char *name, const char *unit, const char *axis, int32_t columns,
+                        const double *numbers, err *e);
 /* Adds a zeroed array of any kind. */
 model_array *model_add_as(model *m, const char *name, model_type type, const char *unit, const char *axis,
                           int32_t columns, err *e);

@@ -210,10 +210,10 @@ static void measure_steps(measured *w, bench *b)
 }
 
 /* It is not copied: tled-run writes it from where it stands. */
-static int window_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
+static int window_frame(void *context, double time, const field_values *state, err *e)
 {
     const windows *w = context;
-    (void)time, (void)displacement, (void)velocity, (void)e;
+    (void)time, (void)state, (void)e;
     w->b->frames++;
     return 0;
 }

@@ -103,26 +103,21 @@ static int again(void *context, const frame *f, err *e)
     return put(context, f, e);
 }
 
-static int put_out(void *context, double time, const double *displacement, const double *velocity, err *e)
+static int put_out(void *context, double time, const field_values *state, err *e)
 {
     record *r = context;
-    const size_t size = 3 * (size_t)r->b.problem.nodes * sizeof(double);
     frame f = {.index = r->frames, .time = time};
-    model_array *u = frame_add(&f, &r->b.m, "node.displacement", e);
-    memcpy(u->f64, displacement, size);
-    model_array *v = frame_add(&f, &r->b.m, "node.velocity", e);
-    memcpy(v->f64, velocity, size);
-    int bad = put(r, &f, e) || (r->c && checkpoint_add(r->c, &f, e));
+    int bad = fields_lend(&r->b.problem.fields, FIELD_IN_FRAMES, state, &f, &r->b.m, e) || put(r, &f, e) ||
+              (r->c && checkpoint_add(r->c, &f, e));
     frame_free(&f);
     return bad ? -1 : 0;
 }
 
-static int save(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
-                err *e)
+static int save(void *context, const run_point *at, double time, const field_values *state, err *e)
 {
     record *r = context;
     r->saves++;
-    return checkpoint_save(r->c, at, time, displacement, velocity, e);
+    return checkpoint_save(r->c, at, time, state, e);
 }
 
 static void checked(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,

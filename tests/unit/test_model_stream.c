@@ -224,8 +224,8 @@ static void test_lent(void)
     model_axis_add(&m, "node", 2, &e);
     for (int lent = 0; lent < 2; lent++) {
         frame f = {.index = 3, .time = .5};
-        model_array *a =
-            lent ? frame_lend(&f, &m, "node.displacement", numbers, &e) : frame_add(&f, &m, "node.displacement", &e);
+        model_array *a = lent ? frame_lend(&f, &m, "node.displacement", "m", "node", 3, numbers, &e)
+                              : frame_add(&f, &m, "node.displacement", &e);
         if (a && !lent)
             memcpy(a->f64, numbers, sizeof numbers);
         model_writer *w = model_writer_open(o[lent], false, &e);

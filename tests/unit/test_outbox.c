@@ -1,7 +1,7 @@
 /* Frames on their way out: in order, each fetched from its own slot; one is fetched while another is written; and what
  * was sound before something went wrong is written all the same.
  */
-// needs: tled/run/outbox.c
+// needs: tled/*/*.c
 #include "tled/run/outbox.h"
 
 #include "tap.h"
@@ -26,18 +26,18 @@ typedef struct world {
 static int fetch(void *state, int slot, void *to, err *e)
 {
     world *w = state;
-    const tled_taken *t = to;
+    const field_values *t = to;
     pthread_mutex_lock(&w->lock);
     const int64_t number = w->slot[slot];
     for (int i = 0; i < 3 * NODES; i++)
-        t->displacement[i] = (double)number, t->velocity[i] = -(double)number;
+        t->of[TLED_DISPLACEMENT][i] = (double)number, t->of[TLED_VELOCITY][i] = -(double)number;
     w->fetched++;
     pthread_cond_broadcast(&w->changed);
     pthread_mutex_unlock(&w->lock);
     return number == w->bad_fetch ? err_set(e, NULL, 0, "no frame %lld", (long long)number) : 0;
 }
 
-static int put(void *context, double time, const double *displacement, const double *velocity, err *e)
+static int put(void *context, double time, const field_values *state, err *e)
 {
     world *w = context;
     pthread_mutex_lock(&w->lock);
@@ -54,7 +54,8 @@ static int put(void *context, double time, const double *displacement, const dou
         w->beside = !pthread_cond_timedwait(&w->changed, &w->lock, &end); /* in vain, where frames go one by one */
     w->whole = w->whole && time == (double)number;
     for (int i = 0; i < 3 * NODES; i++)
-        w->whole = w->whole && displacement[i] == (double)number && velocity[i] == -(double)number;
+        w->whole = w->whole && state->of[TLED_DISPLACEMENT][i] == (double)number &&
+                   state->of[TLED_VELOCITY][i] == -(double)number;
     w->written++;
     pthread_mutex_unlock(&w->lock);
     return number == w->bad_write ? err_set(e, NULL, 0, "no room for %lld", (long long)number) : 0;
@@ -63,7 +64,7 @@ static int put(void *context, double time, const double *displacement, const dou
 /* Sends frames as run.c does; how many were sent before something was known to be wrong. */
 static int64_t send_all(world *w, int64_t frames, err *e)
 {
-    const tled_problem p = {.nodes = NODES};
+    const tled_problem p = {.nodes = NODES, .fields = tled_fields(NODES, 0)};
     const backend device = {.taken = fetch};
     int64_t i = 0;
     outbox *o = outbox_create(&p, &device, w, put, w, e);

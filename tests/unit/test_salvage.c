@@ -37,8 +37,8 @@ static void put_frame(model_writer *w, const model *m, int k, err *e)
         u[i] = value_of(k, i, false);
         v[i] = value_of(k, i, true);
     }
-    frame_lend(&f, m, "node.displacement", u, e);
-    frame_lend(&f, m, "node.velocity", v, e);
+    frame_lend(&f, m, "node.displacement", "m", "node", 3, u, e);
+    frame_lend(&f, m, "node.velocity", "m/s", "node", 3, v, e);
     model_write_frame(w, &f, e);
     frame_free(&f);
 }

@@ -95,7 +95,7 @@ static void end(setting *s)
 static void pull(setting *s, const double *u, double *f)
 {
     err e = {0};
-    memcpy(s->p.displacement, u, 3 * (size_t)s->p.nodes * sizeof *u);
+    memcpy(s->p.at_start.of[TLED_DISPLACEMENT], u, 3 * (size_t)s->p.nodes * sizeof *u);
     s->device->destroy(s->state);
     s->state = s->device->create(&s->p, s->threads, &e);
     if (!s->state || s->device->get(s->state, TLED_INTERNAL, f, &e))
@@ -201,7 +201,7 @@ static void test_energy(void)
     double *u = numbers(&s), *v = numbers(&s), *f = numbers(&s), first = 0, worst = 0, kinetic = 0;
     for (int64_t i = 0; i < 3 * s.p.nodes; i++)
         v[i] = s.p.hold[i] == HOLD_FREE ? .2 * sin((double)(i * 37 % 101)) : 0;
-    memcpy(s.p.velocity, v, 3 * (size_t)s.p.nodes * sizeof *v);
+    memcpy(s.p.at_start.of[TLED_VELOCITY], v, 3 * (size_t)s.p.nodes * sizeof *v);
     pull(&s, u, f);
     const double dt = .05 * step_at_rest(&s.p, NULL);
     watch *w = watch_create(&s.p, s.threads, &e);

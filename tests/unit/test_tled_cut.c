@@ -216,7 +216,7 @@ static void test_rows(const tled_problem *p, int lanes, int slabs)
     free(seen);
 }
 
-/* What the CPU's back end finds, by rows, against the pass over elements. p->displacement is moved(). */
+/* What the CPU's back end finds, by rows, against the pass over elements. The displacement at the start is moved(). */
 static void test_cpu(const tled_problem *p, int threads, const char *name)
 {
     err e = {0};
@@ -270,7 +270,7 @@ static void test_block(const block *what, const char *name)
     for (int i = 1; i < 9; i++)
         test_rows(&p, i < 5 ? 4 : 16, i * i);
     for (int64_t i = 0; i < 3 * p.nodes; i++)
-        p.displacement[i] = moved(i / 3, (int)(i % 3));
+        p.at_start.of[TLED_DISPLACEMENT][i] = moved(i / 3, (int)(i % 3));
     for (int threads = 1; threads < 4; threads++)
         test_cpu(&p, threads, name);
     tled_problem_free(&p);
@@ -323,15 +323,14 @@ static void move_blocks(blocks *b)
 {
     tled_problem *p = &b->p;
     p->mass = calloc((size_t)p->nodes, sizeof *p->mass);
-    p->displacement = calloc((size_t)p->nodes * 3, sizeof *p->displacement);
-    p->velocity = calloc((size_t)p->nodes * 3, sizeof *p->velocity);
+    p->fields = tled_fields(p->nodes, p->elements);
     p->fibre = b->fibre = calloc((size_t)p->elements * 3, sizeof *b->fibre);
-    if (!p->mass || !p->displacement || !p->velocity || !b->fibre)
+    if (!p->mass || !b->fibre || fields_allocate(&p->fields, FIELDS_ALL, &p->at_start, "a test", &(err){0}))
         exit(1);
     for (int64_t i = 0; i < 3 * p->nodes; i++) {
         p->hold[i] = HOLD_FREE;
         p->mass[i / 3] = 1;
-        p->displacement[i] = moved(i / 3, (int)(i % 3));
+        p->at_start.of[TLED_DISPLACEMENT][i] = moved(i / 3, (int)(i % 3));
     }
 }
 
@@ -365,8 +364,7 @@ static void test_slit(bool joined)
     free(both.p.hold);
     free(both.p.force_start);
     free(both.p.mass);
-    free(both.p.displacement);
-    free(both.p.velocity);
+    fields_free(&both.p.at_start);
     tled_problem_free(&p);
     script_free(&s);
     model_free(&m);

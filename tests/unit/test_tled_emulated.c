@@ -51,8 +51,8 @@ static void bend(bench *b)
 {
     const tled_problem *p = &b->problem;
     for (int64_t i = 0; i < 3 * p->nodes; i++) {
-        p->displacement[i] = .07 * p->side[i % 3] * sin((double)(i * i % 1009));
-        p->velocity[i] = 30 * p->displacement[i];
+        p->at_start.of[TLED_DISPLACEMENT][i] = .07 * p->side[i % 3] * sin((double)(i * i % 1009));
+        p->at_start.of[TLED_VELOCITY][i] = 30 * p->at_start.of[TLED_DISPLACEMENT][i];
     }
     b->problem.start = .03;
 }
@@ -107,8 +107,8 @@ static void find(answer *a, const trial *t, const backend *device, int64_t steps
     tled_plan plan = {.origin = b->problem.start, .rate = b->setup.rate, .damping = b->setup.damping}, once = plan;
     a->count = 3 * b->problem.nodes;
     a->numbers = calloc(PARTS * (size_t)a->count, sizeof *a->numbers);
-    tled_taken first = {a->numbers, a->numbers + a->count},
-               second = {a->numbers + 4 * a->count, a->numbers + 5 * a->count};
+    field_values first = {{a->numbers, a->numbers + a->count}},
+                 second = {{a->numbers + 4 * a->count, a->numbers + 5 * a->count}};
     void *state = device->create(&b->problem, b->setup.threads, &b->e);
     a->gone = !a->numbers || !state || (t->rests && look_for_rest(device, state, &b->e)) ||
               device->keep(state, &b->e) || go_on(device, state, &once, 1, &b->e) || device->back(state, &b->e) ||

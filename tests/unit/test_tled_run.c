@@ -15,7 +15,7 @@ static void push(bench *b)
 {
     for (int64_t n = 0; n < b->problem.nodes; n++) {
         const double *x = b->problem.position + 3 * n;
-        double *v = b->problem.velocity + 3 * n;
+        double *v = b->problem.at_start.of[TLED_VELOCITY] + 3 * n;
         v[0] = .05 - 6 * x[1] + 2 * x[0];
         v[1] = 6 * x[0] + .1 * sin(80 * x[2]);
         v[2] = .02 - 3 * x[2] + 20 * x[0] * x[1];
@@ -50,9 +50,10 @@ static void test_conserved(const backend *device, const char *name)
     bench_steps(&b, 400, 0);
     b.setup.device = device;
     push(&b);
-    moments(&b, b.problem.displacement, b.problem.velocity, linear, angular);
+    moments(&b, b.problem.at_start.of[TLED_DISPLACEMENT], b.problem.at_start.of[TLED_VELOCITY], linear, angular);
     for (int64_t n = 0; n < 3 * b.problem.nodes; n++)
-        first += b.problem.mass[n / 3] / 2 * b.problem.velocity[n] * b.problem.velocity[n];
+        first += b.problem.mass[n / 3] / 2 * b.problem.at_start.of[TLED_VELOCITY][n] *
+                 b.problem.at_start.of[TLED_VELOCITY][n];
     for (int part = 0; part < 25 && !bench_go(&b); part++, bench_go_on(&b)) {
         moments(&b, b.displacement, b.velocity, l, a);
         for (int k = 0; k < 3; k++) {
@@ -191,7 +192,7 @@ static void strain(bench *b, double x, double y, double z)
 {
     const double by[3] = {x - 1, y - 1, z - 1};
     for (int64_t i = 0; i < 3 * b->problem.nodes; i++)
-        b->problem.displacement[i] = by[i % 3] * b->problem.position[i];
+        b->problem.at_start.of[TLED_DISPLACEMENT][i] = by[i % 3] * b->problem.position[i];
 }
 
 /* A step that is given is judged by the stable one of the state that it led to, and by nothing less or more. */
@@ -275,7 +276,7 @@ static void test_jump(const backend *device, const char *name)
         int gone = bench_go(to);
         if (i == 4) { /* in two parts, the second with the jump */
             b.setup.steps = 2 * b.setup.check;
-            memset(b.problem.displacement, 0, (size_t)b.problem.nodes * 3 * sizeof(double));
+            memset(b.problem.at_start.of[TLED_DISPLACEMENT], 0, (size_t)b.problem.nodes * 3 * sizeof(double));
             gone |= bench_go(&b);
             bench_go_on(&b);
             b.setup.steps = first.setup.steps - 2 * b.setup.check;
@@ -298,7 +299,7 @@ static void test_just_stable(void)
         bench b;
         bench_make(&b, &lump, NULL, 0, .0075, 1);
         bench_steps(&b, 200, 0);
-        b.problem.velocity[0] = 1e-12;
+        b.problem.at_start.of[TLED_VELOCITY][0] = 1e-12;
         b.setup.rate = 1 / (share[i] * step_at_rest(&b.problem, NULL));
         b.setup.rate_fixed = true;
         b.setup.check = 50;
@@ -318,7 +319,7 @@ static void test_place(bool fixed)
     b.setup.rate_fixed = fixed;
     b.setup.check = 50;
     int64_t node = block_node(&lump, 4, 3, 5);
-    b.problem.velocity[3 * node] = -1e6;
+    b.problem.at_start.of[TLED_VELOCITY][3 * node] = -1e6;
     int gone = bench_go(&b);
     snprintf(text, sizeof text, "element %lld ", (long long)b.problem.elements - 1);
     ok(gone && b.e.status == STATUS_DIVERGED && strstr(b.e.text, "at step 1, ") && strstr(b.e.text, text), "%s",
@@ -347,7 +348,7 @@ static void test_diverged(void)
     b.setup.device->destroy(state);
     watch_destroy(w);
     for (int64_t i = 0; i < b.problem.nodes; i++) /* inside out */
-        b.problem.displacement[3 * i] = -2.5 * b.problem.position[3 * i];
+        b.problem.at_start.of[TLED_DISPLACEMENT][3 * i] = -2.5 * b.problem.position[3 * i];
     gone = bench_go(&b);
     ok(gone && b.e.status == STATUS_DIVERGED && strstr(b.e.text, "element 0 (volume 'skin') is inverted"),
        "an inverted element: %s", b.e.text);
@@ -363,7 +364,7 @@ static void test_let_go(void)
     held.fixed_low = 1;
     bench_make(&b, &held, NULL, 0, .0075, 1);
     for (int64_t i = 0; i < b.problem.nodes; i++)
-        b.problem.displacement[3 * i] = .2 * b.problem.position[3 * i];
+        b.problem.at_start.of[TLED_DISPLACEMENT][3 * i] = .2 * b.problem.position[3 * i];
     gone = bench_go(&b);
     ok(!gone && b.end.rested && b.end.sight.largest < 1e-5, "let go, it comes to rest after %lld steps, %.2g mm off",
        (long long)b.end.steps, 1e3 * b.end.sight.largest);
@@ -373,7 +374,7 @@ static void test_let_go(void)
     ok(!gone && b.end.rested && b.end.steps == 0 && b.frames == 1, "what nothing moves is at rest at once");
     b.setup.rest = 1e-4;
     b.setup.steps = 10;
-    b.problem.displacement[3 * (b.problem.nodes - 1)] = .001;
+    b.problem.at_start.of[TLED_DISPLACEMENT][3 * (b.problem.nodes - 1)] = .001;
     gone = bench_go(&b);
     ok(gone && b.e.status == STATUS_BAD && strstr(b.e.text, "not at rest after 10 steps"), "%s", b.e.text);
     bench_free(&b);
@@ -382,14 +383,14 @@ static void test_let_go(void)
 enum { LAST_FRAME = 3 }; /* that no_room takes */
 
 /* Takes its time, so that the run has to wait; then there is no more room. */
-static int no_room(void *context, double time, const double *displacement, const double *velocity, err *e)
+static int no_room(void *context, double time, const field_values *state, err *e)
 {
     bench *b = context;
     struct timespec nap = {0, 2000000};
     nanosleep(&nap, NULL);
     if (b->frames == LAST_FRAME)
         return err_set(e, NULL, 0, "no room at %g s", time);
-    return bench_frame(context, time, displacement, velocity, e);
+    return bench_frame(context, time, state, e);
 }
 
 static void count_checks(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,

@@ -200,11 +200,12 @@ static void test_start(void)
     e = (err){0};
     frame_add(&f, &m, "node.displacement", &e)->f64[5] = .001;
     ok(!tled_problem_start(&p, &f, &warnings, &e) && warnings.count == 1, "a frame without velocity is warned of");
-    ok(p.start == .25 && p.displacement[5] == .001, "the start is the frame's");
+    ok(p.start == .25 && p.at_start.of[TLED_DISPLACEMENT][5] == .001, "the start is the frame's");
     model_array *v = frame_add(&f, &m, "node.velocity", &e);
     for (int i = 0; i < 6; i++)
         v->f64[i] = 1;
-    ok(!tled_problem_start(&p, &f, &warnings, &e) && warnings.count == 1 && p.velocity[5] == 1 && p.velocity[0] == 0,
+    ok(!tled_problem_start(&p, &f, &warnings, &e) && warnings.count == 1 && p.at_start.of[TLED_VELOCITY][5] == 1 &&
+           p.at_start.of[TLED_VELOCITY][0] == 0,
        "and its velocity, but for what is held still");
     notes_free(&warnings);
     frame_free(&f);

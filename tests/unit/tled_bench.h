@@ -37,12 +37,12 @@ typedef struct bench {
     int64_t frames, cuts;                  /* written; the most parts that a step was cut in */
 } bench;
 
-static inline int bench_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
+static inline int bench_frame(void *context, double time, const field_values *state, err *e)
 {
     bench *b = context;
     (void)e;
-    memcpy(b->displacement, displacement, (size_t)b->problem.nodes * 3 * sizeof *displacement);
-    memcpy(b->velocity, velocity, (size_t)b->problem.nodes * 3 * sizeof *velocity);
+    memcpy(b->displacement, state->of[TLED_DISPLACEMENT], (size_t)b->problem.nodes * 3 * sizeof *b->displacement);
+    memcpy(b->velocity, state->of[TLED_VELOCITY], (size_t)b->problem.nodes * 3 * sizeof *b->velocity);
     b->time = time;
     b->frames++;
     return 0;
@@ -114,8 +114,9 @@ static inline void bench_steps(bench *b, int64_t steps, double damping)
 /* Goes on from what was written last. */
 static inline void bench_go_on(bench *b)
 {
-    memcpy(b->problem.displacement, b->displacement, (size_t)b->problem.nodes * 3 * sizeof *b->displacement);
-    memcpy(b->problem.velocity, b->velocity, (size_t)b->problem.nodes * 3 * sizeof *b->velocity);
+    memcpy(b->problem.at_start.of[TLED_DISPLACEMENT], b->displacement,
+           (size_t)b->problem.nodes * 3 * sizeof *b->displacement);
+    memcpy(b->problem.at_start.of[TLED_VELOCITY], b->velocity, (size_t)b->problem.nodes * 3 * sizeof *b->velocity);
     b->problem.start = b->time;
 }
 

@@ -197,10 +197,10 @@ static int cpu_take(void *state, int slot, err *e)
 static int cpu_taken(void *state, int slot, void *to, err *e)
 {
     const cpu_state *s = state;
-    const tled_taken *out = to;
+    const field_values *out = to;
     (void)e;
-    put_out(s, s->taken[slot], out->displacement);
-    put_out(s, s->taken[slot] + 3 * s->rows.nodes, out->velocity);
+    put_out(s, s->taken[slot], out->of[TLED_DISPLACEMENT]);
+    put_out(s, s->taken[slot] + 3 * s->rows.nodes, out->of[TLED_VELOCITY]);
     return 0;
 }
 
@@ -291,8 +291,8 @@ static void fill_nodes(cpu_state *s)
     }
     for (int32_t i = 0; i < s->rows.extras; i++)
         s->flags[s->rows.extra[i]] |= NODE_EXTRA;
-    put_in(s, p->displacement, s->displacement);
-    put_in(s, p->velocity, s->velocity);
+    put_in(s, p->at_start.of[TLED_DISPLACEMENT], s->displacement);
+    put_in(s, p->at_start.of[TLED_VELOCITY], s->velocity);
 }
 
 static void fill_cells(cpu_state *s)

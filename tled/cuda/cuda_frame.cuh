@@ -148,7 +148,7 @@ static int cuda_take(void *state, int slot, err *e)
 
 typedef struct widening { /* of a frame that came */
     const real *displacement, *velocity;
-    const tled_taken *to;
+    const field_values *to;
 } widening;
 
 static void widen_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -156,18 +156,19 @@ static void widen_work(void *context, int64_t chunk, int64_t from, int64_t to)
     const widening *w = (const widening *)context;
     (void)chunk;
     for (int64_t i = from; i < to; i++)
-        w->to->displacement[i] = w->displacement[i];
+        w->to->of[TLED_DISPLACEMENT][i] = w->displacement[i];
     for (int64_t i = from; i < to; i++)
-        w->to->velocity[i] = w->velocity[i];
+        w->to->of[TLED_VELOCITY][i] = w->velocity[i];
 }
 
 static int cuda_taken(void *state, int slot, void *to, err *e)
 {
     cuda_state *s = (cuda_state *)state;
-    const tled_taken *out = (const tled_taken *)to;
+    const field_values *out = (const field_values *)to;
     const cuda_frame *f = &s->taken[slot];
     const int64_t numbers = 3 * s->tiles.nodes;
-    const permutation u = {s, f->host, out->displacement}, v = {s, f->host + s->numbers, out->velocity};
+    const permutation u = {s, f->host, out->of[TLED_DISPLACEMENT]},
+                      v = {s, f->host + s->numbers, out->of[TLED_VELOCITY]};
     widening w = {f->host, f->host + numbers, out};
     if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
         return -1;

@@ -410,7 +410,8 @@ static int fill(cuda_state *s, err *e)
         return -1;
     if (s->marches)
         begin_march(s);
-    if (make_events(s, e) || set(s, s->displacement, p->displacement, e) || set(s, s->velocity, p->velocity, e))
+    if (make_events(s, e) || set(s, s->displacement, p->at_start.of[TLED_DISPLACEMENT], e) ||
+        set(s, s->velocity, p->at_start.of[TLED_VELOCITY], e))
         return -1;
     if (s->resident &&
         CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))

@@ -60,7 +60,7 @@ static double begin_inside(collider *c, const tled_problem *p, double ramp)
     for (int64_t n = 0; n < p->nodes; n++) {
         double x[3];
         for (int a = 0; a < 3; a++)
-            x[a] = p->position[3 * n + a] + p->displacement[3 * n + a];
+            x[a] = p->position[3 * n + a] + p->at_start.of[TLED_DISPLACEMENT][3 * n + a];
         deepest = fmax(deepest, probe_at(&first, x).depth);
     }
     c->start = p->start;

@@ -11,6 +11,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const field state_field[] = {
+    [TLED_DISPLACEMENT] = {"node.displacement", "m", FIELD_NODE, 3, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS, NULL},
+    [TLED_VELOCITY] = {"node.velocity", "m/s", FIELD_NODE, 3, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS, "velocity 0"},
+};
+
+fields tled_fields(int64_t nodes, int64_t elements)
+{
+    return (fields){.field = state_field,
+                    .count = sizeof state_field / sizeof *state_field,
+                    .rows = {[FIELD_NODE] = nodes, [FIELD_ELEMENT] = elements}};
+}
+
 void tled_problem_free(tled_problem *p)
 {
     free(p->mixed);
@@ -24,8 +36,7 @@ void tled_problem_free(tled_problem *p)
     free(p->force_start);
     free(p->force_curve);
     free(p->force_share);
-    free(p->displacement);
-    free(p->velocity);
+    fields_free(&p->at_start);
     memset(p, 0, sizeof *p);
 }
 
@@ -341,9 +352,8 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
     p->corner = mem_array(boxes ? p->nodes : p->elements, 8 * sizeof *p->corner, "the nodes", e);
     p->mass = mem_array(p->nodes, sizeof *p->mass, "the nodes", e);
     p->hold = mem_array(p->nodes, 3 * sizeof *p->hold, "the nodes", e);
-    p->displacement = mem_array(p->nodes, 3 * sizeof *p->displacement, "the nodes", e);
-    p->velocity = mem_array(p->nodes, 3 * sizeof *p->velocity, "the nodes", e);
-    if (!p->corner || !p->mass || !p->hold || !p->displacement || !p->velocity)
+    p->fields = tled_fields(p->nodes, p->elements);
+    if (!p->corner || !p->mass || !p->hold || fields_allocate(&p->fields, FIELDS_ALL, &p->at_start, "the nodes", e))
         return -1;
     if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || make_volumes(p, m, e) ||
         make_mixtures(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || make_forces(p, e))
@@ -354,22 +364,31 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
     return 0;
 }
 
+static int start_field(tled_problem *p, int i, const frame *f, notes *warnings, err *e)
+{
+    const field *row = &p->fields.field[i];
+    const double *found = fields_find(&p->fields, i, f);
+    if (found)
+        memcpy(p->at_start.of[i], found, (size_t)fields_size(&p->fields, i) * sizeof *found);
+    else if (row->without)
+        notes_add(warnings, "frame %lld has no %s: the run begins with %s", (long long)f->index, row->name,
+                  row->without);
+    else
+        return err_set(e, NULL, 0, "frame %lld has no %s, so the run cannot go on from it", (long long)f->index,
+                       row->name);
+    return 0;
+}
+
 int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
 {
-    const model_array *u = frame_find(f, "node.displacement"), *v = frame_find(f, "node.velocity");
     if (!isfinite(f->time))
         return err_set(e, NULL, 0, "frame %lld has no time, so the run cannot go on from it", (long long)f->index);
-    if (!u)
-        return err_set(e, NULL, 0, "frame %lld has no node.displacement, so the run cannot go on from it",
-                       (long long)f->index);
-    if (!v)
-        notes_add(warnings, "frame %lld has no node.velocity: the run begins with velocity 0", (long long)f->index);
-    memcpy(p->displacement, u->f64, (size_t)p->nodes * 3 * sizeof *p->displacement);
-    if (v)
-        memcpy(p->velocity, v->f64, (size_t)p->nodes * 3 * sizeof *p->velocity);
+    for (int i = 0; i < p->fields.count; i++)
+        if (start_field(p, i, f, warnings, e))
+            return -1;
     for (int64_t i = 0; i < 3 * p->nodes; i++)
         if (p->hold[i] == HOLD_STILL)
-            p->velocity[i] = 0;
+            p->at_start.of[TLED_VELOCITY][i] = 0;
     p->start = f->time;
     return 0;
 }

@@ -10,6 +10,7 @@
 
 #include "physics/forms.h"
 #include "solve/backend.h"
+#include "solve/fields.h"
 #include "tled/problem/script.h"
 
 /* What holds one component of a node: nothing, its place at the start, or curve number `hold` of the script. */
@@ -64,8 +65,8 @@ typedef struct tled_problem {
     const script *script;
     int64_t gravity;                 /* its curve, or -1 */
     double start;                    /* s: the model's time at the start */
-    double *displacement;            /* nodes x 3, m: at the start */
-    double *velocity;                /* nodes x 3, m/s */
+    fields fields;                   /* what a state consists of */
+    field_values at_start;           /* and the one that the run begins from: m, m/s */
     const struct collider *collider; /* what presses (collider.h), or NULL */
 } tled_problem;
 
@@ -82,20 +83,16 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
     return plan->origin + (double)(plan->first + i) / plan->rate;
 }
 
-/* What get() gives, nodes x 3 doubles each: m, m/s, and N: the sum of the elements' pulls at the displacement (where a step or
- * create led to the state; not right after back). */
-enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL };
+/* What get() gives, as doubles: field i of the table, of which these are the first, nodes x 3: m, m/s; and internal
+ * forces, nodes x 3, N: the sum of the elements' pulls at the displacement (where a step or create led to the state; not
+ * right after back). */
+enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL = FIELDS_MOST };
 
 /* What a pass over the model does, in any back end: ends a step, begins the next, writes the internal forces instead of displacements. */
 enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
 
 /* Slots for results that were taken. */
 enum { TLED_TAKEN = 24 };
-
-/* What taken() fills, nodes x 3 each: m, m/s. */
-typedef struct tled_taken {
-    double *displacement, *velocity;
-} tled_taken;
 
 /* What look() is asked. */
 typedef struct tled_question {
@@ -121,7 +118,10 @@ typedef struct tled_sums {
 int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e);
 void tled_problem_free(tled_problem *p);
 
-/* Starts from a frame: its time, displacement and velocity (none: at rest, with a note). */
+/* What a state of a model of so many nodes and elements consists of. taken() fills what of it frames have. */
+fields tled_fields(int64_t nodes, int64_t elements);
+
+/* Starts from a frame: its time and its fields, with a note of those that it lacks and a run can begin without. */
 int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e);
 
 /* The share of an element that is tissue. */

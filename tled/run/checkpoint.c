@@ -19,8 +19,8 @@
 struct checkpoint {
     char *path, *before, *frames_path; /* FILE, FILE.1, FILE.frames; owned */
     likeness like;
-    model body; /* of FILE, but for where the run stands */
-    int64_t nodes;
+    model body;            /* of FILE, but for where the run stands */
+    fields fields;         /* of the state */
     int axes;              /* of the model */
     int lock;              /* a descriptor of FILE.frames, which holds the lock; -1: none */
     out *frames;           /* what is added goes here */
@@ -146,7 +146,7 @@ static checkpoint *create(const char *path, const likeness_run *run, err *e)
         return NULL;
     c->lock = -1;
     c->time = NAN;
-    c->nodes = run->p->nodes;
+    c->fields = run->p->fields;
     c->axes = run->m->axis_count;
     c->path = checkpoint_file(path, 0, e);
     c->before = checkpoint_file(path, 1, e);
@@ -290,13 +290,11 @@ static int write_state(const checkpoint *c, const frame *state, err *e)
     return -1;
 }
 
-int checkpoint_save(checkpoint *c, const run_point *at, double time, const double *displacement, const double *velocity,
-                    err *e)
+int checkpoint_save(checkpoint *c, const run_point *at, double time, const field_values *state, err *e)
 {
     struct stat s;
     frame f = {.index = at->first, .time = time};
-    bool whole = !out_sync(c->frames, e) && frame_lend(&f, &c->body, "node.displacement", displacement, e) &&
-                 frame_lend(&f, &c->body, "node.velocity", velocity, e);
+    bool whole = !out_sync(c->frames, e) && !fields_lend(&c->fields, FIELD_IN_CHECKPOINTS, state, &f, &c->body, e);
     if (whole && fstat(c->lock, &s))
         whole = !err_system(e, c->frames_path, errno, "cannot write");
     if (whole)
@@ -344,8 +342,7 @@ static int read_state(checkpoint *c, const char *path, bool *foreign, err *e)
     const model_array *number = find_row(&m, number_name, MODEL_F64, NUMBERS);
     number = number ? number : find_row(&m, number_name, MODEL_F64, NUMBERS_BEFORE);
     const model_array *count = find_row(&m, count_name, MODEL_I64, COUNTS);
-    const model_array *u = frame_find(&c->state, "node.displacement"), *v = frame_find(&c->state, "node.velocity");
-    if (!number || !count || !u || !v || u->rows != c->nodes) {
+    if (!number || !count || !fields_fit(&c->fields, FIELD_IN_CHECKPOINTS, &c->state)) {
         err_set(e, path, 0, "is not a checkpoint; expected one that tled-run wrote");
         goto out;
     }
@@ -472,9 +469,7 @@ fail:
 
 const run_point *checkpoint_take(const checkpoint *c, tled_problem *p)
 {
-    const size_t size = 3 * (size_t)c->nodes * sizeof(double);
-    memcpy(p->displacement, frame_find(&c->state, "node.displacement")->f64, size);
-    memcpy(p->velocity, frame_find(&c->state, "node.velocity")->f64, size);
+    fields_read(&c->fields, FIELD_IN_CHECKPOINTS, &c->state, &p->at_start);
     p->start = c->state.time;
     return &c->point;
 }

@@ -37,8 +37,7 @@ int checkpoint_replay(checkpoint *c, checkpoint_frame *take, void *context, err 
 int checkpoint_add(checkpoint *c, const frame *f, err *e);
 
 /* Saves the state, once all frames that were added are stored. -1 with e filled, and FILE as it was. */
-int checkpoint_save(checkpoint *c, const run_point *at, double time, const double *displacement, const double *velocity,
-                    err *e);
+int checkpoint_save(checkpoint *c, const run_point *at, double time, const field_values *state, err *e);
 
 /* How far the run can go back to, s; nan: nothing is saved. */
 double checkpoint_saved(const checkpoint *c);

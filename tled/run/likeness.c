@@ -97,10 +97,8 @@ static uint32_t crc_poses(const collider *c)
 
 static uint32_t crc_start(const tled_problem *p, int64_t next_frame)
 {
-    const size_t size = 3 * (size_t)p->nodes * sizeof(double);
-    uint32_t crc = checksum_add(0, &next_frame, sizeof next_frame);
-    crc = checksum_add(crc, &p->start, sizeof p->start);
-    return checksum_add(checksum_add(crc, p->displacement, size), p->velocity, size);
+    const uint32_t crc = checksum_add(0, &next_frame, sizeof next_frame);
+    return fields_crc(&p->fields, &p->at_start, checksum_add(crc, &p->start, sizeof p->start));
 }
 
 int likeness_make(likeness *l, const likeness_run *run, err *e)

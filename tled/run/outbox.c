@@ -22,8 +22,8 @@ struct outbox {
     void *state;
     outbox_frame *write;
     void *context;
-    tled_taken frame[FRAMES]; /* by number: what is being fetched, and what is being written */
-    int slot[RING];           /* what is sent */
+    field_values frame[FRAMES]; /* by number: what is being fetched, and what is being written */
+    int slot[RING];             /* what is sent */
     double time[RING];
     int64_t sent, fetched, written; /* how many so far */
     int64_t whole;                  /* so many can be written: those before the first that something was wrong with */
@@ -43,8 +43,7 @@ static int fetch(outbox *o, int64_t index, err *e)
 
 static int put(outbox *o, int64_t index, err *e)
 {
-    const tled_taken *what = &o->frame[index % FRAMES];
-    return o->write(o->context, o->time[index % RING], what->displacement, what->velocity, e);
+    return o->write(o->context, o->time[index % RING], &o->frame[index % FRAMES], e);
 }
 
 /* Does its work with the frames that are ready for it, until there are no more to come. After one that something was wrong with it only
@@ -92,14 +91,11 @@ static int start(outbox *o)
     return code;
 }
 
-static int make_frames(outbox *o, int64_t nodes, err *e)
+static int make_frames(outbox *o, const fields *f, err *e)
 {
-    for (int i = 0; i < FRAMES; i++) {
-        o->frame[i].displacement = mem_array(nodes, 3 * sizeof *o->frame[i].displacement, "the frames", e);
-        o->frame[i].velocity = mem_array(nodes, 3 * sizeof *o->frame[i].velocity, "the frames", e);
-        if (!o->frame[i].displacement || !o->frame[i].velocity)
+    for (int i = 0; i < FRAMES; i++)
+        if (fields_allocate(f, FIELD_IN_FRAMES, &o->frame[i], "the frames", e))
             return -1;
-    }
     return 0;
 }
 
@@ -118,7 +114,7 @@ outbox *outbox_create(const tled_problem *p, const backend *device, void *state,
     o->stage[1] = (stage){o, put, &o->fetched, &o->written};
     pthread_mutex_init(&o->lock, NULL);
     pthread_cond_init(&o->changed, NULL);
-    int code = make_frames(o, p->nodes, e) ? -1 : start(o);
+    int code = make_frames(o, &p->fields, e) ? -1 : start(o);
     if (!code)
         return o;
     if (code > 0)
@@ -170,10 +166,8 @@ int outbox_close(outbox *o, err *e)
     while (o->running)
         pthread_join(o->thread[--o->running], NULL);
     const int broken = err_join(e, &o->e);
-    for (int i = 0; i < FRAMES; i++) {
-        free(o->frame[i].displacement);
-        free(o->frame[i].velocity);
-    }
+    for (int i = 0; i < FRAMES; i++)
+        fields_free(&o->frame[i]);
     pthread_mutex_destroy(&o->lock);
     pthread_cond_destroy(&o->changed);
     free(o);

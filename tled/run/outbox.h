@@ -8,8 +8,8 @@
 
 typedef struct outbox outbox;
 
-/* A state to write out; -1 with e filled. */
-typedef int outbox_frame(void *context, double time, const double *displacement, const double *velocity, err *e);
+/* A state to write out: the fields that frames have; -1 with e filled. */
+typedef int outbox_frame(void *context, double time, const field_values *state, err *e);
 
 /* Frames are fetched from the state of a device. NULL with e filled. */
 outbox *outbox_create(const tled_problem *p, const backend *device, void *state, outbox_frame *write, void *context,

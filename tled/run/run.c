@@ -1,6 +1,5 @@
 #include "tled/run/run.h"
 
-#include "base/mem.h"
 #include "cli/progress.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/step.h"
@@ -122,7 +121,7 @@ static void go_on_from(run *n, const run_point *at)
 static bool is_checkpoint_due(run *n)
 {
     const double every = n->r->save_every > 0 ? n->r->save_every : CHECKPOINTS;
-    if (!n->checkpoint)
+    if (!n->r->save)
         return false;
     const double at = n->r->save_every > 0 ? run_now(n) : progress_clock();
     if (at < n->next_checkpoint)
@@ -136,15 +135,14 @@ static int write_checkpoint(run *n)
 {
     const run_setup *r = n->r;
     const run_point at = point_of(n);
-    double *velocity = n->checkpoint + 3 * r->p->nodes;
     if (n->sent && outbox_wait(n->out, n->sent - 1, n->e))
         return -1;
     if (r->log && log_store(r->log, n->e))
         return -1;
-    if (r->device->get(n->state, TLED_DISPLACEMENT, n->checkpoint, n->e) ||
-        r->device->get(n->state, TLED_VELOCITY, velocity, n->e))
-        return -1;
-    return r->save(r->context, &at, run_now(n), n->checkpoint, velocity, n->e);
+    for (int i = 0; i < r->p->fields.count; i++)
+        if (n->checkpoint.of[i] && r->device->get(n->state, i, n->checkpoint.of[i], n->e))
+            return -1;
+    return r->save(r->context, &at, run_now(n), &n->checkpoint, n->e);
 }
 
 /* ---- The loop */
@@ -254,11 +252,8 @@ static void find_last(run *n)
 static int make_state(run *n)
 {
     const run_setup *r = n->r;
-    if (r->save) {
-        n->checkpoint = mem_array(r->p->nodes, 6 * sizeof *n->checkpoint, "the state to save", n->e);
-        if (!n->checkpoint)
-            return -1;
-    }
+    if (r->save && fields_allocate(&r->p->fields, FIELD_IN_CHECKPOINTS, &n->checkpoint, "the state to save", n->e))
+        return -1;
     n->state = r->device->create(r->p, r->threads, n->e);
     if (!n->state)
         return -1;
@@ -313,6 +308,6 @@ int run_go(const run_setup *r, run_end *end, err *e)
     if (n.state)
         r->device->destroy(n.state);
     watch_destroy(n.watch);
-    free(n.checkpoint);
+    fields_free(&n.checkpoint);
     return result;
 }

@@ -17,7 +17,7 @@
 #include "tled/run/outbox.h"
 #include "tled/run/relax.h"
 
-/* Where a run stands at a check: with the state's displacement and velocity, all that decides how it goes on. */
+/* Where a run stands at a check: with the state's fields, all that decides how it goes on. */
 typedef struct run_point {
     double origin;             /* s: tled_plan's */
     int64_t first, from;       /* steps counted: by now; where the run began */
@@ -60,10 +60,9 @@ typedef struct run_setup {
     /* Steps are cut in more parts than they were in this run so far: from the check on that `sight` is of; or those to
      * there, which it found not sound, were taken again. May be NULL. */
     void (*cut)(void *context, const watch_sight *sight, int64_t parts);
-    /* Every state before `at` is written; this one (m, m/s), with at, is what a run can go on from. First at the start. -1
-     * with e filled ends the run. NULL: nothing is to be saved. */
-    int (*save)(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
-                err *e);
+    /* Every state before `at` is written; this one, of the fields that checkpoints have, is with `at` what a run can
+     * go on from. First at the start. -1 with e filled ends the run. NULL: nothing is to be saved. */
+    int (*save)(void *context, const run_point *at, double time, const field_values *state, err *e);
 } run_setup;
 
 typedef struct run_end {

@@ -35,9 +35,9 @@ typedef struct run {
     double closest;    /* to rest so far, as a share; and the step that it came so close in */
     int64_t closest_at;
     double remaining;
-    double most_strain;     /* J: at a check, so far */
-    double *checkpoint;     /* nodes x 6, to be filled: displacement, then velocity; NULL: there are no checkpoints */
-    double next_checkpoint; /* s: of the model's time, or of the clock */
+    double most_strain;      /* J: at a check, so far */
+    field_values checkpoint; /* what is saved; to be filled */
+    double next_checkpoint;  /* s: of the model's time, or of the clock */
     err *e;
 } run;
 

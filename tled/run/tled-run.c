@@ -205,13 +205,12 @@ static int put_frame(session *s, const frame *f, err *e)
     return 0;
 }
 
-static int write_frame(void *context, double time, const double *displacement, const double *velocity, err *e)
+static int write_frame(void *context, double time, const field_values *state, err *e)
 {
     session *s = context;
     frame f = {.index = s->next_frame++, .time = time};
-    bool whole = frame_lend(&f, &s->m, "node.displacement", displacement, e) &&
-                 frame_lend(&f, &s->m, "node.velocity", velocity, e) &&
-                 !(s->collider.poses && collider_add(&s->problem, &f, &s->m, displacement, e));
+    bool whole = !fields_lend(&s->problem.fields, FIELD_IN_FRAMES, state, &f, &s->m, e) &&
+                 !(s->collider.poses && collider_add(&s->problem, &f, &s->m, state->of[TLED_DISPLACEMENT], e));
     int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
     frame_free(&f);
     return result;
@@ -251,11 +250,10 @@ static void say_cut(void *context, const watch_sight *sight, int64_t parts)
     s->cut = parts;
 }
 
-static int save(void *context, const run_point *at, double time, const double *displacement, const double *velocity,
-                err *e)
+static int save(void *context, const run_point *at, double time, const field_values *state, err *e)
 {
     const session *s = context;
-    if (checkpoint_save(s->checkpoint, at, time, displacement, velocity, e))
+    if (checkpoint_save(s->checkpoint, at, time, state, e))
         return -1;
     tool_detail(s->t, "%.6g s: saved", time);
     return 0;
