@@ -430,13 +430,9 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     return s->threads ? folds_make(&s->folds, &s->problem, &s->m, s->run.device->look ? threads : 1, e) : -1;
 }
 
-static int simulate(session *s, const struct options *o, const char *device, err *e)
+/* What the run is asked for, and whom it calls. */
+static void set_run(session *s, const struct options *o)
 {
-    run_end end = {0};
-    if (take_frames(s, o->materials || o->material.count, e) || choose_end(s, o, e))
-        return -1;
-    if (s->collider.poses)
-        collider_begin(&s->collider, &s->problem, s->next_frame ? 0 : o->ramp, &s->warnings);
     s->run.p = &s->problem;
     s->run.threads = s->threads;
     s->run.every = o->every > 0 ? o->every : 0;
@@ -447,10 +443,33 @@ static int simulate(session *s, const struct options *o, const char *device, err
     s->run.cut = say_cut;
     s->cut = 1;
     s->log.every = fmax(o->log_every, 0);
-    if (begin_checkpoints(s, o, e) ||
-        (o->log && log_open(&s->log, o->log, &o->tsv, &s->m, s->run.point ? &s->run.point->log : NULL, e)))
+}
+
+static int open_log(session *s, const struct options *o, err *e)
+{
+    if (!o->log)
+        return 0;
+    s->run.log = &s->log;
+    return log_open(&s->log, o->log, &o->tsv, &s->m, s->run.point ? &s->run.point->log : NULL, e);
+}
+
+/* From the last frame that came, or from the checkpoint. */
+static int begin_run(session *s, const struct options *o, err *e)
+{
+    if (take_frames(s, o->materials || o->material.count, e) || choose_end(s, o, e))
         return -1;
-    s->run.log = o->log ? &s->log : NULL;
+    if (s->collider.poses)
+        collider_begin(&s->collider, &s->problem, s->next_frame ? 0 : o->ramp, &s->warnings);
+    set_run(s, o);
+    return begin_checkpoints(s, o, e) || open_log(s, o, e) ? -1 : 0;
+}
+
+/* Writes frames, and the log, as the run goes. */
+static int simulate(session *s, const struct options *o, const char *device, err *e)
+{
+    run_end end = {0};
+    if (begin_run(s, o, e))
+        return -1;
     tool_warn(s->t, &s->warnings);
     say_start(s, device, o);
     say_between(s, "--every", "frame", s->run.every);
@@ -464,6 +483,19 @@ static int simulate(session *s, const struct options *o, const char *device, err
     else
         say_end(s, &end);
     return result;
+}
+
+static int read_input(session *s, const tool *t, struct options *o, err *e)
+{
+    if (check_end(o, e) || check_checkpoint(t, o, e))
+        return -1;
+    return stage_open_output(&s->stage, t, e) || stage_read(&s->stage, &s->m, e) ? -1 : 0;
+}
+
+/* The body: all that comes before frames. */
+static int write_model(session *s, tool *t, const struct options *o, err *e)
+{
+    return say_provenance(t, s, o, e) || stage_write(&s->stage, &s->m, e) ? -1 : 0;
 }
 
 static int run_tool(int argc, char **argv)
@@ -484,9 +516,8 @@ static int run_tool(int argc, char **argv)
     char device[300] = "";
     if (tool_begin(&t, &options_table, argc, argv, &o, &e) || t.done)
         goto out;
-    if (check_end(&o, &e) || check_checkpoint(&t, &o, &e) || stage_open_output(&s.stage, &t, &e) ||
-        stage_read(&s.stage, &s.m, &e) || prepare(&s, &o, device, sizeof device, &e) ||
-        say_provenance(&t, &s, &o, &e) || stage_write(&s.stage, &s.m, &e) || simulate(&s, &o, device, &e))
+    if (read_input(&s, &t, &o, &e) || prepare(&s, &o, device, sizeof device, &e) || write_model(&s, &t, &o, &e) ||
+        simulate(&s, &o, device, &e))
         goto out;
 out:
     tool_warn(&t, &s.warnings);
