@@ -1,10 +1,10 @@
 /* The maths of one element: a box of eight corners, one integration point at its centre, in total Lagrangian form
- * (Miller, Joldes, Lance & Wittek 2007), with hourglass control in the same form (Joldes, Wittek & Miller 2008). Compiled by
- * gcc, clang and nvcc alike; in the numbers of strain.h and the forms of form_maths.h.
+ * (Miller, Joldes, Lance & Wittek 2007), with hourglass control in the same form (Joldes, Wittek & Miller 2008).
+ * Compiled by gcc, clang and nvcc alike; in the numbers of strain.h and the forms of form_maths.h.
  *
  * Corners are in VTK order. Over a box, a field u with values at the corners is a sum of eight modes: its mean, three
- * slopes (x, y, z) and four hourglass modes (xy, yz, zx, xyz), each a product of signs at the corners. The slopes give the
- * displacement gradient at the centre: the derivatives of the shape functions there are B_ai = +-1/(4 h_i). The
+ * slopes (x, y, z) and four hourglass modes (xy, yz, zx, xyz), each a product of signs at the corners. The slopes give
+ * the displacement gradient at the centre: the derivatives of the shape functions there are B_ai = +-1/(4 h_i). The
  * hourglass modes are Flanagan & Belytschko's gamma vectors, exact for a box.
  */
 #ifndef SINEW_ELEMENT_H

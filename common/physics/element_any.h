@@ -1,11 +1,11 @@
-/* The maths of one element that is any hexahedron, one integration point, hourglass control as in element.h, whose stress, modes
- * and conventions it takes. With B_ai the mean over the element of the derivative of corner a's shape function along axis i
- * (Flanagan & Belytschko 1981: the exact integral over V, so that a mesh of any shape passes the patch test), and s_m the signs
- * of mode m at the corners,
+/* The maths of one element that is any hexahedron, one integration point, hourglass control as in element.h, whose
+ * stress, modes and conventions it takes. With B_ai the mean over the element of the derivative of corner a's shape
+ * function along axis i (Flanagan & Belytschko 1981: the exact integral over V, so that a mesh of any shape passes the
+ * patch test), and s_m the signs of mode m at the corners,
  *     H_ki = sum_a u_ka B_ai = sum_m mode_m(u_k) slope_mi,   slope_mi = (1/8) sum_a s_ma B_ai,
  *     gamma_g = s_g - sum_i twist_gi B_i,                     twist_gi = sum_a s_ga x_ai,
- * g the four hourglass modes: gamma_g . u is mode_g(u) - sum_i twist_gi H_i, and nothing where u is linear in x. Of a box the slopes are
- * 1/(4h) on the diagonal and nothing else, the twists are 0: element.h's.
+ * g the four hourglass modes: gamma_g . u is mode_g(u) - sum_i twist_gi H_i, and nothing where u is linear in x. Of a
+ * box the slopes are 1/(4h) on the diagonal and nothing else, the twists are 0: element.h's.
  */
 #ifndef SINEW_ELEMENT_ANY_H
 #define SINEW_ELEMENT_ANY_H

@@ -1,5 +1,6 @@
-/* The maths of a form, chosen by its name: H = grad u and the form's coefficients give energy, stress and tangent. Steppers
- * give a form that is a constant, so that nothing is chosen while they run; others may give a variable. Owns nothing.
+/* The maths of a form, chosen by its name: H = grad u and the form's coefficients give energy, stress and tangent.
+ * Steppers give a form that is a constant, so that nothing is chosen while they run; others may give a variable. Owns
+ * nothing.
  */
 #ifndef SINEW_FORM_MATHS_H
 #define SINEW_FORM_MATHS_H

@@ -1,6 +1,6 @@
-/* The Mooney-Rivlin form, W = c10 (I1bar - 3) + c01 (I2bar - 3) + K/2 (J - 1)^2, I1bar = J^-2/3 I1 and I2bar = J^-4/3 I2 of
- * C = F^T F. Coefficients: c10, c01, K (Pa); c01 >= 0. At rest mu = 2 (c10 + c01). (Rivlin & Saunders 1951, with the
- * volumetric energy of the neo-Hookean form.) Owns nothing.
+/* The Mooney-Rivlin form, W = c10 (I1bar - 3) + c01 (I2bar - 3) + K/2 (J - 1)^2, where I1bar = J^-2/3 I1 and
+ * I2bar = J^-4/3 I2 are of C = F^T F. Coefficients: c10, c01, K (Pa); c01 >= 0. At rest mu = 2 (c10 + c01). (Rivlin &
+ * Saunders 1951, with the volumetric energy of the neo-Hookean form.) Owns nothing.
  */
 #ifndef SINEW_FORM_MOONEY_RIVLIN_H
 #define SINEW_FORM_MOONEY_RIVLIN_H
@@ -76,7 +76,8 @@ ELEMENT_FUNCTION form_mooney_rivlin_terms form_mooney_rivlin_terms_at(element_te
     return t;
 }
 
-/* What dN/dF takes off I1 I along y, but for its multiple of F: y C + F y^T F + F F^T y = (y F^T + F y^T) F + F (F^T y). */
+/* What dN/dF takes off I1 I along y, but for its multiple of F:
+ *     y C + F y^T F + F F^T y = (y F^T + F y^T) F + F (F^T y). */
 ELEMENT_FUNCTION element_tensor form_mooney_rivlin_less(element_tensor f, element_tensor y)
 {
     const element_tensor turned = tangent_transposed(f);
@@ -112,12 +113,12 @@ ELEMENT_FUNCTION void form_mooney_rivlin_tangent(element_tensor h, const double 
         }
 }
 
-/* *to: A y; square: G:y. Returns no less than y:(A y) of any y of length 1 with G:y = 0. There the terms that have G vanish.
- * Of the others, with s the largest stretch,
+/* *to: A y; square: G:y. Returns no less than y:(A y) of any y of length 1 with G:y = 0. There the terms that have G
+ * vanish. Of the others, with s the largest stretch,
  *     y:(dG/dF y) = 2 F:cof y <= 2 s,
  *     y:(dN/dF y) = 2 (F:y)^2 + I1 - |F y^T|^2 - |F^T y + y^T F|^2 / 2 <= 2 (F:y)^2 + min(I1, 2 s^2),
- * as |F y^T|^2 is at least the square of the least stretch, which leaves two of the three in I1; and as G:y = 0, F may be cut down to
- * what it has across G:
+ * as |F y^T|^2 is at least the square of the least stretch, which leaves two of the three in I1; and as G:y = 0, F may
+ * be cut down to what it has across G:
  *     (F:y)^2 <= |F|^2 - (F:G)^2 / |G|^2 = I1 - 9 J^2 / I2,
  * which is nothing at rest. So what is left is at most a + b (2 (I1 - 9 J^2 / I2) + min(I1, 2 s^2)) + 2 |p| s. */
 ELEMENT_FUNCTION double form_mooney_rivlin_along(element_tensor h, const double *c, element_tensor y, double square,

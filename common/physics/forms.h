@@ -1,12 +1,13 @@
-/* The forms of strain energy that steppers are compiled for. A form is a header, form_NAME.h, with its energy, stress and
- * tangent as functions of H = grad u and its coefficients; form_maths.h chooses among them, by a form that steppers know
- * when they are compiled. A law of tissue gives a form its coefficients. Owns nothing.
+/* The forms of strain energy that steppers are compiled for. A form is a header, form_NAME.h, with its energy, stress
+ * and tangent as functions of H = grad u and its coefficients; form_maths.h chooses among them, by a form that steppers
+ * know when they are compiled. A law of tissue gives a form its coefficients. Owns nothing.
  */
 #ifndef SINEW_FORMS_H
 #define SINEW_FORMS_H
 
-/* A row: X(with, NAME, name, coefficients, numbers of history an element, directions an element). A form stands before those
- * that can express it too: a model runs in the first that expresses all its laws. The Makefile reads the names here. */
+/* A row: X(with, NAME, name, coefficients, numbers of history an element, directions an element). A form stands before
+ * those that can express it too: a model runs in the first that expresses all its laws. The Makefile reads the names
+ * here. */
 #define FORMS_WITH(X, with)                                                                                            \
     X(with, NEO_HOOKEAN, neo_hookean, 2, 0, 0)                                                                         \
     X(with, MOONEY_RIVLIN, mooney_rivlin, 3, 0, 0)
@@ -14,12 +15,17 @@
 #define FORMS(X)                                                      FORMS_WITH(FORMS_ALONE, X)
 
 #define FORM_ROW(NAME, name, coefficients, history, directions) FORM_##NAME,
-/* FORM_STEPPED: how many steppers are compiled for. Linear elasticity, of coefficients mu and K, is msds-run's, which has
- * a matrix of it. */
+/* FORM_STEPPED: how many steppers are compiled for. Linear elasticity, of coefficients mu and K, is msds-run's, which
+ * has a matrix of it. */
 typedef enum form { FORMS(FORM_ROW) FORM_STEPPED, FORM_LINEAR = FORM_STEPPED, FORM_COUNT } form;
 #undef FORM_ROW
 
-enum { FORM_NUMBERS = 3 }; /* the most coefficients of any form */
+#define FORM_ROW(NAME, name, coefficients, history, directions) char name[coefficients];
+union form_most {
+    FORMS(FORM_ROW)
+};
+#undef FORM_ROW
+enum { FORM_NUMBERS = sizeof(union form_most) }; /* the most coefficients of any form */
 
 /* How many coefficients a form has, as constants: FORM_NEO_HOOKEAN_NUMBERS and so on. */
 #define FORM_ROW(NAME, name, coefficients, history, directions) FORM_##NAME##_NUMBERS = (coefficients),
@@ -29,14 +35,15 @@ enum { FORMS(FORM_ROW) };
 /* How many coefficients a form has. */
 int form_numbers(form f);
 
-/* The coefficients in form `target` of what c says in form `from`; both of FORM_NUMBERS, 0 where a form has fewer. False: that
- * form does not express it. */
+/* The coefficients in form `target` of what c says in form `from`; both of FORM_NUMBERS, 0 where a form has fewer.
+ * False: that form does not express it. */
 int form_express(form from, form target, const double *c, double *to);
 
 /* The first form that expresses both, with the coefficients of each; FORM_COUNT: none does. */
 form form_of_both(form a, const double *ca, form b, const double *cb, double *to_a, double *to_b);
 
-/* The coefficients of what lies between a and b, both of form f, with the moduli mu and bulk at rest (Pa). share: of b. */
+/* The coefficients of what lies between a and b, both of form f, with the moduli mu and bulk at rest (Pa). share: of b.
+ * */
 void form_between(form f, double mu, double bulk, const double *a, const double *b, double share, double *to);
 
 #endif

@@ -1,6 +1,6 @@
-/* The maths of the stable step (step.h says how it is found), for any back end: the 9 x 9 matrix of one element, whether its
- * eigenvalues are below a limit, and, without the matrix, between which bounds the largest of them lies. In double: `real` must
- * not be float. Owns nothing.
+/* The maths of the stable step (step.h says how it is found), for any back end: the 9 x 9 matrix of one element,
+ * whether its eigenvalues are below a limit, and, without the matrix, between which bounds the largest of them lies. In
+ * double: `real` must not be float. Owns nothing.
  */
 #ifndef SINEW_STABILITY_H
 #define SINEW_STABILITY_H
@@ -43,7 +43,8 @@ ELEMENT_FUNCTION void stability_add_active(element_tensor h, element_fibre fibre
                        s.slope * m[r / 3] * along[r % 3] * m[c / 3] * along[c % 3];
 }
 
-/* (4/rho) A_kjlm / (h_j h_m) of an element at H, with its fibre and that of a second volume in it; density: kg/m3; side: m. */
+/* (4/rho) A_kjlm / (h_j h_m) of an element at H, with its fibre and that of a second volume in it; density: kg/m3;
+ * side: m. */
 ELEMENT_FUNCTION void stability_matrix(form f, const double *c, double density, const double side[3], element_tensor h,
                                        element_fibre fibre, element_fibre second, step_matrix *a)
 {
@@ -106,7 +107,8 @@ ELEMENT_FUNCTION double stability_largest(const step_matrix *a)
 
 /* ---- bounds */
 
-/* Between which the largest eigenvalue of stability_matrix lies. Where bulk is well above shear, as in tissue, that is narrow. */
+/* Between which the largest eigenvalue of stability_matrix lies. Where bulk is well above shear, as in tissue, that is
+ * narrow. */
 typedef struct stability_range {
     double low, high;
 } stability_range;
@@ -138,12 +140,12 @@ ELEMENT_FUNCTION double stability_muscle_along(element_tensor h, element_fibre f
     return (fmax(s.t, 0.) + fmax(s.slope, 0.) * l * l) * length * length;
 }
 
-/* Of stability_matrix, B = D A D with D_j = 2/(sqrt(rho) h_j), by the direction x = D G, which the bulk's term makes nearly that of
- * its largest eigenvalue. The Rayleigh quotient q of x is the lower bound. Across it, for z:x = 0, |z| = 1 and y = D z, is G:y = 0,
- * where the form bounds y:(A y) / |y|^2 (form_along), so that z:(B z) is at most
+/* Of stability_matrix, B = D A D with D_j = 2/(sqrt(rho) h_j), by the direction x = D G, which the bulk's term makes
+ * nearly that of its largest eigenvalue. The Rayleigh quotient q of x is the lower bound. Across it, for z:x = 0, |z| =
+ * 1 and y = D z, is G:y = 0, where the form bounds y:(A y) / |y|^2 (form_along), so that z:(B z) is at most
  *     m = max(D_j)^2 (that bound + the muscles').
- * So with r, the length of what B x/|x| has across x, the largest eigenvalue is at most that of the 2 x 2 matrix (q r, r m). Both
- * bounds leave room for rounding. Where F's cofactors all vanish they are no numbers. d: D's diagonal. */
+ * So with r, the length of what B x/|x| has across x, the largest eigenvalue is at most that of the 2 x 2 matrix (q r,
+ * r m). Both bounds leave room for rounding. Where F's cofactors all vanish they are no numbers. d: D's diagonal. */
 ELEMENT_FUNCTION stability_range stability_range_scaled(form f, const double *c, element_vector d, element_tensor h,
                                                         element_fibre fibre, element_fibre second)
 {

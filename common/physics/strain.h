@@ -1,7 +1,8 @@
-/* Numbers, and tensors of one material point, from which element.h and the forms are made: `real` is double, or float where
- * ELEMENT_SINGLE is defined before; or, where ELEMENT_LANES is too, a vector of so many of them: as many elements side by
- * side (GNU C's vectors, which gcc and clang have). Compiled by gcc, clang and nvcc alike. No branches on data, no loops,
- * no arrays indexed by a variable, and every operation rounds by itself: the same bits in any lane. Owns nothing.
+/* Numbers, and tensors of one material point, from which element.h and the forms are made: `real` is double, or float
+ * where ELEMENT_SINGLE is defined before; or, where ELEMENT_LANES is too, a vector of so many of them: as many elements
+ * side by side (GNU C's vectors, which gcc and clang have). Compiled by gcc, clang and nvcc alike. No branches on data,
+ * no loops, no arrays indexed by a variable, and every operation rounds by itself: the same bits in any lane. Owns
+ * nothing.
  */
 #ifndef SINEW_STRAIN_H
 #define SINEW_STRAIN_H
@@ -131,7 +132,8 @@ typedef struct element_symmetric {
     real xx, yy, zz, xy, yz, zx;
 } element_symmetric;
 
-/* C - I = F^T F - I for F = I + H, twice Green's strain: no difference of nearly equal numbers, so float keeps small strains. */
+/* C - I = F^T F - I for F = I + H, twice Green's strain: no difference of nearly equal numbers, so float keeps small
+ * strains. */
 ELEMENT_FUNCTION element_symmetric element_green(element_tensor h)
 {
     element_symmetric e = {2 * h.xx + (h.xx * h.xx + h.yx * h.yx + h.zx * h.zx),

@@ -1,5 +1,5 @@
-/* What tangents A = dP/dF of the forms are made of, for the stable step: tensors as 9 x 9 matrices, row 3 k + j for component
- * k and axis j, and products of them. In double, and nothing where `real` is anything else. Owns nothing.
+/* What tangents A = dP/dF of the forms are made of, for the stable step: tensors as 9 x 9 matrices, row 3 k + j for
+ * component k and axis j, and products of them. In double, and nothing where `real` is anything else. Owns nothing.
  */
 #ifndef SINEW_TANGENT_H
 #define SINEW_TANGENT_H
@@ -44,7 +44,8 @@ ELEMENT_FUNCTION element_tensor tangent_cofactor_along(element_tensor h, element
     return s;
 }
 
-/* No less than the largest singular value of F = I + H: of the largest sums of a row and of a column the geometric mean. */
+/* No less than the largest singular value of F = I + H: of the largest sums of a row and of a column the geometric
+ * mean. */
 ELEMENT_FUNCTION double tangent_stretch(element_tensor h)
 {
     const double xx = fabs(1 + h.xx), yy = fabs(1 + h.yy), zz = fabs(1 + h.zz);

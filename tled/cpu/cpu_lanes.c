@@ -119,18 +119,20 @@ static inline void add_field(const cpu_work *w, const rows_run *run, const eleme
 /* A volume's law, of what is tissue. */
 static inline element_law law_of_kind(const cpu_kind *kind, real share)
 {
-    element_law law = {{REAL_ZERO}, share * (real_one)kind->law[COEFFICIENTS]};
+    element_law law = {{REAL_ZERO}, REAL_ZERO};
     for (int i = 0; i < COEFFICIENTS; i++)
         law.c[i] = share * (real_one)kind->law[i];
+    law.hourglass = share * (real_one)kind->law[COEFFICIENTS];
     return law;
 }
 
 /* Likewise that of cells that are mixed. */
 static inline element_law law_of_cells(const cpu_work *w, int64_t cell, real share)
 {
-    element_law law = {{REAL_ZERO}, share * load(w->law[COEFFICIENTS], cell)};
+    element_law law = {{REAL_ZERO}, REAL_ZERO};
     for (int i = 0; i < COEFFICIENTS; i++)
         law.c[i] = share * load(w->law[i], cell);
+    law.hourglass = share * load(w->law[COEFFICIENTS], cell);
     return law;
 }
 

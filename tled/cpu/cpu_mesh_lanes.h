@@ -33,9 +33,10 @@ static inline element_any mesh_shape(const real_one *at)
 
 static inline element_law mesh_law(const real_one *at)
 {
-    element_law law = {{REAL_ZERO}, load(at, COEFFICIENTS * LANES)};
+    element_law law = {{REAL_ZERO}, REAL_ZERO};
     for (int i = 0; i < COEFFICIENTS; i++)
         law.c[i] = load(at, i * LANES);
+    law.hourglass = load(at, COEFFICIENTS * LANES);
     return law;
 }
 
