@@ -144,14 +144,14 @@ static void make(record *r, const backend *device, bool rest)
         bench_steps(&r->b, 700, r->b.setup.damping);
 }
 
-static likeness_run run_of(const record *r)
+static fingerprint_run run_of(const record *r)
 {
-    return (likeness_run){"--some options [cpu]", &r->b.m, &r->b.setup, &r->b.problem, 0};
+    return (fingerprint_run){"--some options [cpu]", &r->b.m, &r->b.setup, &r->b.problem, 0};
 }
 
 static int begin(record *r)
 {
-    const likeness_run run = run_of(r);
+    const fingerprint_run run = run_of(r);
     r->b.setup.save = save;
     r->c = checkpoint_begin(path, &run, &r->b.e);
     return r->c ? bench_go(&r->b) : -1;
@@ -159,7 +159,7 @@ static int begin(record *r)
 
 static int resume(record *r, notes *warnings)
 {
-    const likeness_run run = run_of(r);
+    const fingerprint_run run = run_of(r);
     r->b.setup.save = save;
     r->c = checkpoint_resume(path, &run, warnings, &r->b.e);
     if (!r->c)
@@ -274,7 +274,7 @@ static void spill(const char *name, const unsigned char *bytes, size_t size)
 /* Whether the checkpoint at path is refused, with a word, for the one before it. */
 static bool falls_back(record *r, double want)
 {
-    const likeness_run run = run_of(r);
+    const fingerprint_run run = run_of(r);
     notes warnings = {0};
     err e = {0};
     checkpoint *c = checkpoint_resume(path, &run, &warnings, &e);
@@ -300,7 +300,7 @@ static void test_damage(void)
     end(&r, false);
     unsigned char *bytes = slurp(path, &size), *bytes_1 = slurp(before, &size_1), *frames = slurp(frames_path, &size_f);
     make(&r, &tled_cpu_double, false);
-    const likeness_run run = run_of(&r);
+    const fingerprint_run run = run_of(&r);
     ok(bytes && size && bytes_1 && size_1 == size && size_f, "a checkpoint of %zu bytes at %g s", size, last);
     unlink(path);
     checkpoint *c = checkpoint_resume(path, &run, NULL, &r.b.e);
@@ -352,7 +352,7 @@ static void test_damage(void)
 
 static void refused(const record *r, const char *options, const char *want, const char *name)
 {
-    likeness_run run = run_of(r);
+    fingerprint_run run = run_of(r);
     err e = {0};
     run.options = options ? options : run.options;
     checkpoint *c = checkpoint_resume(path, &run, NULL, &e);
@@ -386,7 +386,7 @@ static void test_others(void)
     model_find(&r.b.m, "element.fibre")->f32[7] -= 1e-6F;
     model_meta_set(&r.b.m, "extra", "1", &r.b.e);
     refused(&r, NULL, "meta extra is new", "one more meta");
-    const likeness_run run = run_of(&r);
+    const fingerprint_run run = run_of(&r);
     checkpoint *c = checkpoint_begin(path, &run, &r.b.e);
     ok(!c && strstr(r.b.e.text, "file: exists already; expected --restart"), "a run that begins: %s", r.b.e.text);
     spill(path, (const unsigned char *)"%sinew 1 text\nend\n", 18);
@@ -416,7 +416,7 @@ static void test_left_over(void)
     unlink(before);
     free(slurp(frames_path, &size));
     make(&r, &tled_cpu_double, false);
-    const likeness_run run = run_of(&r);
+    const fingerprint_run run = run_of(&r);
     r.c = checkpoint_begin(path, &run, &r.b.e);
     ok(size > 1000 && r.c, "%zu bytes of frames that a run left are begun anew %s", size, r.b.e.text);
     checkpoint_close(r.c);

@@ -18,7 +18,7 @@
 
 struct checkpoint {
     char *path, *before, *frames_path; /* FILE, FILE.1, FILE.frames; owned */
-    likeness like;
+    fingerprint of_run;
     model body;            /* of FILE, but for where the run stands */
     fields fields;         /* of the state */
     int axes;              /* of the model */
@@ -116,7 +116,7 @@ void checkpoint_close(checkpoint *c)
     out_discard(c->frames);
     if (c->lock >= 0)
         close(c->lock);
-    likeness_free(&c->like);
+    fingerprint_free(&c->of_run);
     model_free(&c->body);
     frame_free(&c->state);
     free(c->path);
@@ -125,13 +125,13 @@ void checkpoint_close(checkpoint *c)
     free(c);
 }
 
-static int make_body(checkpoint *c, const likeness_run *run, err *e)
+static int make_body(checkpoint *c, const fingerprint_run *run, err *e)
 {
     const model *m = run->m;
     for (int i = 0; i < m->axis_count; i++)
         if (model_axis_add(&c->body, m->axes[i].name, m->axes[i].count, e))
             return -1;
-    return likeness_make(&c->like, run, e) || likeness_put(&c->like, &c->body, e) ||
+    return fingerprint_make(&c->of_run, run, e) || fingerprint_put(&c->of_run, &c->body, e) ||
                    model_axis_add(&c->body, axis_name, 1, e) ||
                    !model_add_as(&c->body, number_name, MODEL_F64, "1", axis_name, NUMBERS, e) ||
                    !model_add_as(&c->body, count_name, MODEL_I64, "1", axis_name, COUNTS, e)
@@ -139,7 +139,7 @@ static int make_body(checkpoint *c, const likeness_run *run, err *e)
                : 0;
 }
 
-static checkpoint *create(const char *path, const likeness_run *run, err *e)
+static checkpoint *create(const char *path, const fingerprint_run *run, err *e)
 {
     checkpoint *c = mem_array(1, sizeof *c, "the checkpoint", e);
     if (!c)
@@ -233,7 +233,7 @@ static int start_adding(checkpoint *c, err *e)
     return c->frames ? 0 : -1;
 }
 
-checkpoint *checkpoint_begin(const char *path, const likeness_run *run, err *e)
+checkpoint *checkpoint_begin(const char *path, const fingerprint_run *run, err *e)
 {
     checkpoint *c = create(path, run, e);
     if (!c)
@@ -337,7 +337,7 @@ static int read_state(checkpoint *c, const char *path, bool *foreign, err *e)
         model_read_frame(r, &m, &none, e) < 0)
         goto out;
     *foreign = true;
-    if (likeness_compare(&c->like, &m, path, e))
+    if (fingerprint_compare(&c->of_run, &m, path, e))
         goto out;
     const model_array *number = find_row(&m, number_name, MODEL_F64, NUMBERS);
     number = number ? number : find_row(&m, number_name, MODEL_F64, NUMBERS_BEFORE);
@@ -443,7 +443,7 @@ static int choose_state(checkpoint *c, notes *warnings, err *e)
     return -1;
 }
 
-checkpoint *checkpoint_resume(const char *path, const likeness_run *run, notes *warnings, err *e)
+checkpoint *checkpoint_resume(const char *path, const fingerprint_run *run, notes *warnings, err *e)
 {
     struct stat s;
     checkpoint *c = create(path, run, e);

@@ -8,7 +8,7 @@
 #ifndef SINEW_CHECKPOINT_H
 #define SINEW_CHECKPOINT_H
 
-#include "tled/run/likeness.h"
+#include "tled/run/fingerprint.h"
 #include "tled/run/run.h"
 
 typedef struct checkpoint checkpoint;
@@ -22,10 +22,10 @@ enum { CHECKPOINT_FILES = 3 };
 char *checkpoint_file(const char *path, int i, err *e);
 
 /* Begins anew: none may be there. NULL with e filled. */
-checkpoint *checkpoint_begin(const char *path, const likeness_run *run, err *e);
+checkpoint *checkpoint_begin(const char *path, const fingerprint_run *run, err *e);
 
 /* Goes on from FILE or, where that is damaged, with a warning from FILE.1. Refuses those of another run. NULL with e filled. */
-checkpoint *checkpoint_resume(const char *path, const likeness_run *run, notes *warnings, err *e);
+checkpoint *checkpoint_resume(const char *path, const fingerprint_run *run, notes *warnings, err *e);
 
 /* Puts the state that it goes on from into the problem, which then starts there; returns where the run stood, as long as c. */
 const run_point *checkpoint_take(const checkpoint *c, tled_problem *p);

@@ -11,8 +11,8 @@
 #include "tled/problem/step.h"
 #include "tled/problem/support.h"
 #include "tled/run/checkpoint.h"
+#include "tled/run/fingerprint.h"
 #include "tled/run/folds.h"
-#include "tled/run/likeness.h"
 #include "tled/run/options.h"
 #include "tled/run/relax.h"
 #include "tled/run/run.h"
@@ -263,7 +263,7 @@ static int save(void *context, const run_point *at, double time, const field_val
  * go out again. */
 static int begin_checkpoints(session *s, const struct options *o, err *e)
 {
-    const likeness_run run = {s->t->provenance, &s->m, &s->run, &s->problem, s->next_frame};
+    const fingerprint_run run = {s->t->provenance, &s->m, &s->run, &s->problem, s->next_frame};
     if (!o->checkpoint && !o->restart)
         return 0;
     s->run.save = save;

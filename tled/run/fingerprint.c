@@ -1,4 +1,4 @@
-#include "tled/run/likeness.h"
+#include "tled/run/fingerprint.h"
 
 #include "base/chars.h"
 #include "base/checksum.h"
@@ -11,58 +11,58 @@
 #include <stdlib.h>
 #include <string.h>
 
-void likeness_free(likeness *l)
+void fingerprint_free(fingerprint *f)
 {
-    for (int64_t i = 0; i < l->parts; i++)
-        free(l->part[i].name);
-    free(l->part);
-    free(l->options);
-    *l = (likeness){0};
+    for (int64_t i = 0; i < f->parts; i++)
+        free(f->part[i].name);
+    free(f->part);
+    free(f->options);
+    *f = (fingerprint){0};
 }
 
-static int add(likeness *l, const char *kind, const char *name, uint32_t crc, err *e)
+static int add(fingerprint *f, const char *kind, const char *name, uint32_t crc, err *e)
 {
     char text[MODEL_NAME + 40];
     snprintf(text, sizeof text, "%s%s%s", kind, *name ? " " : "", name);
-    if (MEM_ROOM(&l->part, &l->room, l->parts + 1, "checksums", e))
+    if (MEM_ROOM(&f->part, &f->room, f->parts + 1, "checksums", e))
         return -1;
-    l->part[l->parts] = (likeness_part){mem_text(text, e), crc};
-    if (!l->part[l->parts].name)
+    f->part[f->parts] = (fingerprint_part){mem_text(text, e), crc};
+    if (!f->part[f->parts].name)
         return -1;
-    l->parts++;
+    f->parts++;
     return 0;
 }
 
 /* Not compared: it is --hourglass of the run that wrote the frames, and this run's is. */
 static const char kappa_key[] = "hourglass.kappa";
 
-static int add_model(likeness *l, const model *m, err *e)
+static int add_model(fingerprint *f, const model *m, err *e)
 {
     for (int i = 0; i < m->metas; i++)
         if (strcmp(m->meta[i].key, kappa_key) != 0 &&
-            add(l, "meta", m->meta[i].key, checksum_add(0, m->meta[i].value, strlen(m->meta[i].value)), e))
+            add(f, "meta", m->meta[i].key, checksum_add(0, m->meta[i].value, strlen(m->meta[i].value)), e))
             return -1;
     for (int i = 0; i < m->arrays.count; i++) {
         const item it = {.kind = ITEM_ARRAY, .array = m->arrays.v[i]};
-        if (add(l, "array", it.array.name, binary_crc(&it), e))
+        if (add(f, "array", it.array.name, binary_crc(&it), e))
             return -1;
     }
     return 0;
 }
 
-static int add_number(likeness *l, const char *name, double value, err *e)
+static int add_number(fingerprint *f, const char *name, double value, err *e)
 {
-    return add(l, name, "", checksum_add(0, &value, sizeof value), e);
+    return add(f, name, "", checksum_add(0, &value, sizeof value), e);
 }
 
-static int add_numbers(likeness *l, const likeness_run *run, err *e)
+static int add_numbers(fingerprint *f, const fingerprint_run *run, err *e)
 {
     const run_setup *r = run->setup;
-    return (isfinite(r->end) && add_number(l, "--time to its end", r->end, e)) ||
-                   add_number(l, "--every", r->every, e) || add_number(l, "--dt", r->rate, e) ||
-                   add_number(l, "--damping", r->damping, e) || add_number(l, "--rest", r->rest, e) ||
-                   add_number(l, "--time", (double)r->steps, e) || add_number(l, "--hourglass", run->p->kappa, e) ||
-                   (run->p->collider && add_number(l, "--repulsion", run->p->collider->stiffness, e))
+    return (isfinite(r->end) && add_number(f, "--time to its end", r->end, e)) ||
+                   add_number(f, "--every", r->every, e) || add_number(f, "--dt", r->rate, e) ||
+                   add_number(f, "--damping", r->damping, e) || add_number(f, "--rest", r->rest, e) ||
+                   add_number(f, "--time", (double)r->steps, e) || add_number(f, "--hourglass", run->p->kappa, e) ||
+                   (run->p->collider && add_number(f, "--repulsion", run->p->collider->stiffness, e))
                ? -1
                : 0;
 }
@@ -101,19 +101,19 @@ static uint32_t crc_start(const tled_problem *p, int64_t next_frame)
     return fields_crc(&p->fields, &p->at_start, checksum_add(crc, &p->start, sizeof p->start));
 }
 
-int likeness_make(likeness *l, const likeness_run *run, err *e)
+int fingerprint_make(fingerprint *f, const fingerprint_run *run, err *e)
 {
     const tled_problem *p = run->p;
     const collider *c = p->collider;
     const size_t size = sizeof SINEW_VERSION + strlen(run->options) + 1;
-    l->options = mem_array((int64_t)size, 1, "options", e);
-    if (!l->options)
+    f->options = mem_array((int64_t)size, 1, "options", e);
+    if (!f->options)
         return -1;
-    snprintf(l->options, size, "%s %s", SINEW_VERSION, run->options);
-    chars_mend(l->options);
-    return add_numbers(l, run, e) || add_model(l, run->m, e) || add(l, "script", "", crc_script(p->script), e) ||
-                   (c && (add(l, "probe", "", crc_shape(&c->shape), e) || add(l, "poses", "", crc_poses(c), e))) ||
-                   add(l, "start", "", crc_start(p, run->next_frame), e)
+    snprintf(f->options, size, "%s %s", SINEW_VERSION, run->options);
+    chars_mend(f->options);
+    return add_numbers(f, run, e) || add_model(f, run->m, e) || add(f, "script", "", crc_script(p->script), e) ||
+                   (c && (add(f, "probe", "", crc_shape(&c->shape), e) || add(f, "poses", "", crc_poses(c), e))) ||
+                   add(f, "start", "", crc_start(p, run->next_frame), e)
                ? -1
                : 0;
 }
@@ -122,17 +122,17 @@ int likeness_make(likeness *l, const likeness_run *run, err *e)
 
 static const char options_key[] = "checkpoint.options", part_name[] = "checkpoint.part", crc_name[] = "checkpoint.crc";
 
-int likeness_put(const likeness *l, model *to, err *e)
+int fingerprint_put(const fingerprint *f, model *to, err *e)
 {
-    if (model_meta_set(to, options_key, l->options, e) || model_axis_add(to, part_name, l->parts, e))
+    if (model_meta_set(to, options_key, f->options, e) || model_axis_add(to, part_name, f->parts, e))
         return -1;
     model_array *name = model_add_as(to, part_name, MODEL_STR, "1", part_name, 1, e);
-    for (int64_t i = 0; name && i < l->parts; i++)
-        if (model_set_text(name, i, l->part[i].name, e))
+    for (int64_t i = 0; name && i < f->parts; i++)
+        if (model_set_text(name, i, f->part[i].name, e))
             return -1;
     const model_array *sum = name ? model_add_as(to, crc_name, MODEL_I64, "1", part_name, 1, e) : NULL;
-    for (int64_t i = 0; sum && i < l->parts; i++)
-        sum->i64[i] = l->part[i].crc;
+    for (int64_t i = 0; sum && i < f->parts; i++)
+        sum->i64[i] = f->part[i].crc;
     return sum ? 0 : -1;
 }
 
@@ -182,11 +182,11 @@ static bool has(char *const *name, int64_t names, const char *wanted)
     return false;
 }
 
-static const likeness_part *find_part(const likeness *l, const char *name)
+static const fingerprint_part *find_part(const fingerprint *f, const char *name)
 {
-    for (int64_t i = 0; i < l->parts; i++)
-        if (!strcmp(l->part[i].name, name))
-            return &l->part[i];
+    for (int64_t i = 0; i < f->parts; i++)
+        if (!strcmp(f->part[i].name, name))
+            return &f->part[i];
     return NULL;
 }
 
@@ -197,22 +197,22 @@ static int differ(const char *place, const char *name, const char *how, err *e)
                    name, how);
 }
 
-int likeness_compare(const likeness *l, const model *from, const char *place, err *e)
+int fingerprint_compare(const fingerprint *f, const model *from, const char *place, err *e)
 {
     const char *there = model_meta_of(from, options_key);
     const model_array *name = model_find(from, part_name), *sum = model_find(from, crc_name);
     if (!there || !name || name->type != MODEL_STR || name->columns != 1 || !sum || sum->type != MODEL_I64 ||
         sum->columns != 1 || sum->rows != name->rows)
         return err_set(e, place, 0, "is not a checkpoint; expected one that tled-run wrote");
-    if (compare_options(there, l->options, place, e))
+    if (compare_options(there, f->options, place, e))
         return -1;
     for (int64_t i = 0; i < name->rows; i++) {
-        const likeness_part *here = find_part(l, name->str[i]);
+        const fingerprint_part *here = find_part(f, name->str[i]);
         if (!here || here->crc != sum->i64[i])
             return differ(place, name->str[i], here ? "differs" : "is missing now", e);
     }
-    for (int64_t i = 0; i < l->parts; i++)
-        if (!has(name->str, name->rows, l->part[i].name))
-            return differ(place, l->part[i].name, "is new", e);
+    for (int64_t i = 0; i < f->parts; i++)
+        if (!has(name->str, name->rows, f->part[i].name))
+            return differ(place, f->part[i].name, "is new", e);
     return 0;
 }
