@@ -222,8 +222,8 @@ static double still_to_go(const exact *x, const double *u, int64_t i)
     return c->depth - gone - (x->p->options.penalty ? c->force / x->p->repulsion[c->node] : 0);
 }
 
-/* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull, whichever is
- * more: now, or where the frame begins, which tells of tissue that the probe has just left. */
+/* Fills x->left: gravity, contact and minus the elements' pulls. Returns its norm over that of the load or the pull,
+ * whichever is more: now, or where the frame begins, which tells of tissue that the probe has just left. */
 static double find_left(exact *x, const double *u, bool begins)
 {
     const msds_problem *p = x->p;

@@ -77,7 +77,8 @@ INLINE bool any_below(v8 x, float limit)
     return any != 0;
 }
 
-/* The slots that a register takes: two where it has room for them. What waits for a root and a division then waits for two. */
+/* The slots that a register takes: two where it has room for them. What waits for a
+ * root and a division then waits for two. */
 #if defined(__AVX512F__)
 typedef float wide __attribute__((vector_size(64)));
 

@@ -8,7 +8,8 @@
 
 enum { CHUNK = 512, TURNS = 50 };
 
-/* Of what is stable; over what is critical. And a spring that has collapsed counts as this share of its length, at least. */
+/* Of what is stable; over what is critical. And a spring that has collapsed counts
+ * as this share of its length, at least. */
 static const double safe = .9, damped = 1.1, least = 1e-5;
 
 static int cut(skin *s, const surface *shape, err *e)
@@ -100,8 +101,8 @@ static int make_springs(skin *s, err *e)
     return result;
 }
 
-/* Inertia and the anchor's damping of a vertex whose springs sum to k: dt^2 L + 2 dt C < 4 M with L and C from above, row by
- * row; the damping goes by the inertia, so this is done in turns. */
+/* Inertia and the anchor's damping of a vertex whose springs sum to k: dt^2 L + 2 dt C < 4 M with L and C from above,
+ * row by row; the damping goes by the inertia, so this is done in turns. */
 static void settle(skin *s, int64_t v, double k)
 {
     const skin_options *o = &s->options;

@@ -1,7 +1,7 @@
-/* The CPU back end's pass over a slab, compiled for each instruction set, precision and form of one source, cpu_lanes.c: layer
- * by layer, runs of elements side by side, each corner's force added to its node; then the layer's nodes, whose sums
- * are whole. As the runs are in the lattice's order, so is each node's sum. What the pass works on is cpu_work's: its
- * owner is the back end (cpu_loops.h).
+/* The CPU back end's pass over a slab, compiled for each instruction set, precision and form of one source,
+ * cpu_lanes.c: layer by layer, runs of elements side by side, each corner's force added to its node; then the layer's
+ * nodes, whose sums are whole. As the runs are in the lattice's order, so is each node's sum. What the pass works on is
+ * cpu_work's: its owner is the back end (cpu_loops.h).
  *
  *     f_n = sum over elements at n of element_force(u),   a = g + (f_ext - f_n) / m,   then node.h.
  */
@@ -65,8 +65,8 @@ typedef struct cpu_pass {
 extern const cpu_pass *const cpu_passes_double[VECTORS_COUNT][FORM_STEPPED];
 extern const cpu_pass *const cpu_passes_single[VECTORS_COUNT][FORM_STEPPED];
 
-/* That of the form in the first set that this processor can do, or in the one that the environment's SINEW_VECTORS names: plain, AVX2 or AVX-512. All give the same
- * bytes. NULL with e filled where that is not to be had. */
+/* That of the form in the first set that this processor can do, or in the one that the environment's SINEW_VECTORS
+ * names: plain, AVX2 or AVX-512. All give the same bytes. NULL with e filled where that is not to be had. */
 const cpu_pass *cpu_pass_choose(const cpu_pass *const passes[][FORM_STEPPED], form f, err *e);
 
 #endif

@@ -1,10 +1,12 @@
-/* A problem in rows, for a back end that computes several elements side by side: nodes in the order of their places in the
- * lattice, x fastest; elements that follow each other along x in runs, whose corners then follow each other too. The problem is cut
- * into slabs of whole rows of nodes, one for a thread at a time: a slab computes every element at its nodes, those at its border as its
- * neighbour does too, so that no thread waits for another within a step and each node's sum is the same however it is cut.
+/* A problem in rows, for a back end that computes several elements side by side: nodes in the order of their places in
+ * the lattice, x fastest; elements that follow each other along x in runs, whose corners then follow each other too.
+ * The problem is cut into slabs of whole rows of nodes, one for a thread at a time: a slab computes every element at
+ * its nodes, those at its border as its neighbour does too, so that no thread waits for another within a step and each
+ * node's sum is the same however it is cut.
  *
- * A run is at most `lanes` elements of one volume, or mixed of the same two; its corners need not lie in a lattice, but for where they follow each other: any
- * model of boxes can be cut so. The creator owns the rows; they hold no pointer into the problem.
+ * A run is at most `lanes` elements of one volume, or mixed of the same two; its corners need not lie in a
+ * lattice, but for where they follow each other: any model of boxes can be cut so. The creator owns the
+ * rows; they hold no pointer into the problem.
  */
 #ifndef SINEW_ROWS_H
 #define SINEW_ROWS_H
@@ -21,9 +23,9 @@ typedef struct rows_run {
     int32_t volume;
     int32_t mix;   /* the second volume of all of them, or -1 */
     uint8_t count; /* elements */
-    uint8_t
-        mask; /* bit r: the row of nodes at corners 2r and 2r + 1 (r = 0 to 3: y, z low; y high; ...) is the slab's own */
-    bool regular; /* node[1] is node[0] + 1, and so on */
+    uint8_t mask;  /* bit r: the row of nodes at corners 2r and 2r + 1 (r = 0 to 3: y, z
+               * low; y high; ...) is the slab's own */
+    bool regular;  /* node[1] is node[0] + 1, and so on */
 } rows_run;
 
 /* A layer of a slab: after its runs, its nodes have their sums. */

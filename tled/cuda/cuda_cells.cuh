@@ -1,5 +1,6 @@
-/* The arithmetic of a march's cells: of faces' modes, in no fixed order, with operations fused. A cell has the face of its layer of
- * nodes, `low`, and that of the next, `high`. Included by cuda_march.cu alone; nothing here is told of blocks and threads.
+/* The arithmetic of a march's cells: of faces' modes, in no fixed order, with operations fused. A cell has
+ * the face of its layer of nodes, `low`, and that of the next, `high`. Included by cuda_march.cu alone;
+ * nothing here is told of blocks and threads.
  */
 #ifndef SINEW_CUDA_CELLS_CUH
 #define SINEW_CUDA_CELLS_CUH
@@ -41,7 +42,8 @@ static __device__ __forceinline__ float power(float x)
     return near_exp2(near_log2(x) * (-5.f / 3));
 }
 
-/* The neo-Hookean form, in fewer operations. With s = mu J^-5/3, d = J - 1, e = tr(C - I), G = cof F - I, all of it first order in H:
+/* The neo-Hookean form, in fewer operations. With s = mu J^-5/3, d = J - 1, e = tr(C - I), G
+ * = cof F - I, all of it first order in H:
  *     P = (s (d - e/3) + K d) I + s J H + (K d - s (1 + e/3)) G.
  * No cell: mu and bulk are 0, and J is not looked at. */
 static __device__ __forceinline__ element_tensor stress(element_tensor h, float mu, float bulk, bool is)

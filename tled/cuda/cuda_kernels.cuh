@@ -1,5 +1,6 @@
-/* The step of a tile, in `real`: the loops of the CUDA back end over element.h and node.h. One block of threads a tile: loads
- * the displacements around it, computes its cells, sums them at its nodes, moves these on. Included by cuda_loops.cuh alone.
+/* The step of a tile, in `real`: the loops of the CUDA back end over element.h and node.h. One block of
+ * threads a tile: loads the displacements around it, computes its cells, sums them at its nodes, moves
+ * these on. Included by cuda_loops.cuh alone.
  *
  *     f_n = sum over elements at n of element_force(u),   a = g + (f_ext - f_n) / m,   then node.h.
  */

@@ -1,5 +1,6 @@
-/* What the watch wants to know of a state, found where it is: watch.c's sums over elements and nodes, in double whatever
- * the state is in, in a fixed order. Blocks leave parts; some blocks settle the frequency and add up parts, one adds up what these have.
+/* What the watch wants to know of a state, found where it is: watch.c's sums over elements and nodes, in
+ * double whatever the state is in, in a fixed order. Blocks leave parts; some blocks settle the frequency and
+ * add up parts, one adds up what these have.
  */
 extern "C" {
 #include "physics/stability.h"
@@ -19,8 +20,9 @@ enum {
     KEEP_THREADS = 256
 };
 
-/* A block of the look has a tile and as many of the nodes, in the order of memory, as any other. It leaves a part of the answer,
- * with cells for elements, whose frequency no cell of the tile is past; and what is proven: that a cell reaches it, or else that at rest. */
+/* A block of the look has a tile and as many of the nodes, in the order of memory, as any other. It leaves a part of
+ * the answer, with cells for elements, whose frequency no cell of the tile is past; and what is proven: that a cell
+ * reaches it, or else that at rest. */
 typedef struct look_parts {
     tled_sums *block;     /* then, of SOLVERS blocks at most, what they found of some each */
     double *proven;       /* blocks */
@@ -154,8 +156,8 @@ template <class G> static __device__ int list_own(const unsigned *who, own_cells
     return count;
 }
 
-/* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread nearly twice the
- * registers. Returns what is proven. */
+/* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread
+ * nearly twice the registers. Returns what is proven. */
 template <class G, class L, class S>
 static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
                                        int count, element_vector slope, tled_sums *to)
@@ -196,7 +198,8 @@ typedef struct highest {
     int32_t cell; /* whose the limit is, or -1: that at rest */
 } highest;
 
-/* Some thread's matrix reaches past the limit: raises it by halving until it is the highest, or too high by `raise` at most. */
+/* Some thread's matrix reaches past the limit: raises it by halving until it is the
+ * highest, or too high by `raise` at most. */
 template <int THREADS>
 static __device__ void raise_limit(const step_matrix *a, bool past, double raise, int32_t cell, highest *h,
                                    double *scratch, int *least)
@@ -333,8 +336,8 @@ static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_
 
 /* ---- kernels */
 
-/* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one block is beside
- * what computes in others. */
+/* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one
+ * block is beside what computes in others. */
 template <class G, class L, class S>
 static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     look_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts out)
@@ -386,9 +389,10 @@ static __device__ double proven_of_all(const double *proven, int64_t tiles, doub
     return block_most<THREADS>(most, scratch);
 }
 
-/* Goes through tiles, every gridDim.x-th, for those whose limit is past `raise` times what some tile is known to reach: others' limits
- * may stay, for if one of them is the highest of all, it is too high by `raise` at most. Where no tile is known to pass the frequency
- * at rest, it is for all that may. Then it adds up what their blocks left, where the first of these was. */
+/* Goes through tiles, every gridDim.x-th, for those whose limit is past `raise` times what some tile is known to
+ * reach: others' limits may stay, for if one of them is the highest of all, it is too high by `raise` at most.
+ * Where no tile is known to pass the frequency at rest, it is for all that may. Then it adds up what their
+ * blocks left, where the first of these was. */
 template <class G, class L, class S>
 static __global__ void __launch_bounds__(G::THREADS)
     settle_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts parts)

@@ -1,12 +1,13 @@
-/* The step in single precision by a march: see march.h. A thread keeps what the face between two elements has of modes (the mean, x, y
- * and xy of each component, sums and differences over four corners) and of forces on them; so an element takes one new face, and a
- * node the sums of one. Compiled with fused multiplications and additions: its bytes are not the processor's.
+/* The step in single precision by a march: see march.h. A thread keeps what the face between two elements has of
+ * modes (the mean, x, y and xy of each component, sums and differences over four corners) and of forces on them;
+ * so an element takes one new face, and a node the sums of one. Compiled with fused multiplications and
+ * additions: its bytes are not the processor's.
  *
- * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from four layers before
- * they are wanted, velocities from two: both have the time of two layers of cells before a thread waits for them. Forces on
- * neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells of the next one are computed: a
- * warp says that it is done with a layer, and only after it has computed the next one does it wait until all have said so, so that
- * those with fewer cells seldom keep others waiting.
+ * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from four
+ * layers before they are wanted, velocities from two: both have the time of two layers of cells before a thread waits
+ * for them. Forces on neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells
+ * of the next one are computed: a warp says that it is done with a layer, and only after it has computed the next one
+ * does it wait until all have said so, so that those with fewer cells seldom keep others waiting.
  */
 #define ELEMENT_SINGLE
 extern "C" {
@@ -144,8 +145,9 @@ static __device__ __forceinline__ void send_special(const cuda_march &m, uint32_
     send(to + RECORD, cell + 1, true);
 }
 
-/* Adds those of a special cell's muscles. The gradient is found once more, so that other cells need not keep theirs; here, next: where
- * the displacements of the cell's layers stand; layer: of all; few cells have a second muscle, which is looked for there. */
+/* Adds those of a special cell's muscles. The gradient is found once more, so that other cells need not keep
+ * theirs; here, next: where the displacements of the cell's layers stand; layer: of all; few cells have a
+ * second muscle, which is looked for there. */
 static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const double *now, uint32_t record,
                                                      int32_t layer, uint32_t here, uint32_t next, face *sum,
                                                      push *below)
@@ -203,8 +205,9 @@ static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to
     shared_store(to + 3 * FORCE, own[0], own[1], own[2]);
 }
 
-/* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces on it. It is worked on where it
- * stands in shared memory, component by component: few nodes are such, and others are to keep their registers. */
+/* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces
+ * on it. It is worked on where it stands in shared memory, component by component: few nodes are such,
+ * and others are to keep their registers. */
 template <bool STEP>
 static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                  uint32_t speed, uint32_t word, uint32_t node, uint32_t bits, int a,
@@ -229,8 +232,8 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
     shared_number_store(speed + 4 * a, v);
 }
 
-/* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its forces, displacement and velocity
- * stand. */
+/* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its
+ * forces, displacement and velocity stand. */
 template <bool STEP>
 static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                  uint32_t word, uint32_t forces, uint32_t node, uint32_t speed)
@@ -357,8 +360,8 @@ static __device__ void put_gravity(const cuda_march &m, const cuda_march_pass &p
     shared_number_store(t.memory + GRAVITY + 12, 0);
 }
 
-/* Waits until the units that have to do with this one have made the pass before: what they wrote may be read, and what they read
- * written. Units are taken in turn, so that those of the first turn that is not done wait for none. */
+/* Waits until the units that have to do with this one have made the pass before: what they wrote may be read, and what
+ * they read written. Units are taken in turn, so that those of the first turn that is not done wait for none. */
 static __device__ __forceinline__ void wait_for_near(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                      uint32_t unit)
 {
@@ -468,8 +471,8 @@ static __device__ __forceinline__ void take_first(const cuda_march &m, const cud
     arrived<0>();
 }
 
-/* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor do passes that
- * end a step and begin the next ask what they are. */
+/* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor
+ * do passes that end a step and begin the next ask what they are. */
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {

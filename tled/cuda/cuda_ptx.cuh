@@ -1,6 +1,6 @@
-/* What a card does that CUDA C++ has no words for, or none that leave no choice to the compiler: all of tled-run's assembly is here,
- * and how its kernels come by shared memory whose size the launch says. Copies take compute capability 8.0; barriers, 9.0. No card is
- * needed where another header of this name is found first: tests/emulate.
+/* What a card does that CUDA C++ has no words for, or none that leave no choice to the compiler: all of tled-run's
+ * assembly is here, and how its kernels come by shared memory whose size the launch says. Copies take compute
+ * capability 8.0; barriers, 9.0. No card is needed where another header of this name is found first: tests/emulate.
  *
  * Shared memory is told by address: 32 bits, from shared_at().
  */

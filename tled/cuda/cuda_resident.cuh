@@ -1,12 +1,13 @@
-/* Many passes in one launch, where every tile has a place on the card at once: a tile keeps its nodes in shared memory from pass to
- * pass, and tells the tiles around it its new displacements by messages. So a step waits for its neighbours alone, and costs
- * one way through the card's L2 cache; a launch a step costs two, and the launch. The same arithmetic in the same order as passes
- * of a launch each (cuda_kernels.cuh): the same bytes. Included by cuda_state.cuh alone.
+/* Many passes in one launch, where every tile has a place on the card at once: a tile keeps its nodes in
+ * shared memory from pass to pass, and tells the tiles around it its new displacements by messages. So a step
+ * waits for its neighbours alone, and costs one way through the card's L2 cache; a launch a step costs two,
+ * and the launch. The same arithmetic in the same order as passes of a launch each (cuda_kernels.cuh): the
+ * same bytes. Included by cuda_state.cuh alone.
  *
- * A message is a word of 64 bits, half of it a number (half a number, in double precision), half of it the count of the pass, stored and
- * loaded as one: who sees the count sees the number, without a fence. There are two copies by turns: a tile writes over pass k
- * at k + 2, when it has had k + 1 from each neighbour, which then has read k. Neighbours are each other's: an element that touches
- * nodes of both tiles is computed in both.
+ * A message is a word of 64 bits, half of it a number (half a number, in double precision), half of it the count of the
+ * pass, stored and loaded as one: who sees the count sees the number, without a fence. There are two copies by turns: a
+ * tile writes over pass k at k + 2, when it has had k + 1 from each neighbour, which then has read k. Neighbours are
+ * each other's: an element that touches nodes of both tiles is computed in both.
  */
 #ifndef SINEW_CUDA_RESIDENT_CUH
 #define SINEW_CUDA_RESIDENT_CUH

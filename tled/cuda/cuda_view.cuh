@@ -1,8 +1,9 @@
-/* What the CUDA kernels of tled-run see, and the shape of their blocks; the headers of C that they share with the CPU. A view
- * is passed to kernels by value and owns nothing. S is the type of the state's numbers: float or double.
+/* What the CUDA kernels of tled-run see, and the shape of their blocks; the headers of C that they share with the CPU.
+ * A view is passed to kernels by value and owns nothing. S is the type of the state's numbers: float or double.
  *
- * Arrays over nodes are in the tiles' order or, where it marches, in the march's, one component after another: component a of node n at
- * a * stride + n. Those of the state alone, displacements, velocities and internal forces, may stand node by node: at offset[a] + n * along.
+ * Arrays over nodes are in the tiles' order or, where it marches, in the march's, one component after another:
+ * component a of node n at a * stride + n. Those of the state alone, displacements, velocities and internal forces, may
+ * stand node by node: at offset[a] + n * along.
  */
 #ifndef SINEW_CUDA_VIEW_CUH
 #define SINEW_CUDA_VIEW_CUH
@@ -24,8 +25,9 @@ extern "C" {
 
 #include "solve/start.cuh"
 
-/* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one; HALO: the most
- * places around it for a thread; TOGETHER: blocks that a multiprocessor is to have registers for, in single precision. THREADS is a power of 2. */
+/* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one;
+ * HALO: the most places around it for a thread; TOGETHER: blocks that a multiprocessor is to have registers for, in
+ * single precision. THREADS is a power of 2. */
 template <int X, int Y, int Z, int T, int B> struct cuda_brick {
     enum {
         BX = X,
@@ -56,8 +58,8 @@ template <class F> static auto with_brick(cuda_size size, F f)
 
 enum { LAWS_NEAR = 16 /* volumes whose laws stand in shared memory */ };
 
-/* A form that kernels are compiled for. A law's numbers are its coefficients, then the hourglass stiffness; NEAR: numbers that all threads
- * of a block ask for, gravity and laws. */
+/* A form that kernels are compiled for. A law's numbers are its coefficients, then the hourglass stiffness; NEAR:
+ * numbers that all threads of a block ask for, gravity and laws. */
 template <form F, int N> struct cuda_form {
     static constexpr form FORM = F;
     enum { COEFFICIENTS = N, LAW = N + 1, NEAR = 4 + LAW * LAWS_NEAR };
@@ -109,8 +111,8 @@ template <class S> struct cuda_view {
     double side[3];
 };
 
-/* A node's three components along the model's axes: at one go where they stand node by node, as they may in single precision. ROWS: they
- * stand so, whatever the view says. */
+/* A node's three components along the model's axes: at one go where they stand node by node, as they may in single
+ * precision. ROWS: they stand so, whatever the view says. */
 template <bool ROWS, class S> static __device__ void cuda_three(const cuda_view<S> &v, const S *from, int64_t n, S *to)
 {
     if constexpr (!ROWS && sizeof(S) == sizeof(float)) {
@@ -125,8 +127,8 @@ template <bool ROWS, class S> static __device__ void cuda_three(const cuda_view<
         to[a] = from[ROWS ? a * v.stride + n : v.offset[a] + n * v.along];
 }
 
-/* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on its way
- * at once: first where, then what. ROWS: also, the tiles' order is the nodes'. */
+/* Loads the displacements of all places of a tile's grid that nodes have; to: 3 x PLACES. All that a thread loads is on
+ * its way at once: first where, then what. ROWS: also, the tiles' order is the nodes'. */
 template <class G, bool ROWS, class S>
 static __device__ void cuda_load(const cuda_view<S> &v, const tile &t, const S *u, S *to)
 {

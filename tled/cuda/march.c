@@ -15,8 +15,8 @@ enum {
     PATCH_Y = 4
 };
 
-/* Threads for each element: with more, bricks are taken. On an H200 blocks of 1.20 and 1.21 and faces of 1.43 and 1.72 were faster so, the
- * last by a third. (Tests march all the same.) */
+/* Threads for each element: with more, bricks are taken. On an H200 blocks of 1.20 and 1.21 and faces of 1.43 and 1.72
+ * were faster so, the last by a third. (Tests march all the same.) */
 #ifndef MARCH_SPARSE
 #define MARCH_SPARSE 2.5
 #endif
@@ -104,8 +104,8 @@ static bool lay_out(cutter *c)
     return true;
 }
 
-/* Where along one side a place of the lattice stands: its column, and with `before` (nodes alone) the one before it, or the
- * one after it. Returns how many. */
+/* Where along one side a place of the lattice stands: its column, and with `before` (nodes alone) the one before it, or
+ * the one after it. Returns how many. */
 static int along(int32_t at, int32_t columns, bool before, int32_t column[2], int32_t place[2])
 {
     const int32_t rest = at % OWNED;
@@ -140,7 +140,8 @@ static int spots_of(const cutter *c, int32_t node, bool is_cell, spot to[4])
     return count;
 }
 
-/* A multiprocessor has four schedulers, and every fourth warp is one's: neighbours are of different ones, along rows and across. */
+/* A multiprocessor has four schedulers, and every fourth warp is one's: neighbours are of
+ * different ones, along rows and across. */
 static int warp_of(int32_t i, int32_t j)
 {
     const int half = i / PATCH_X;
@@ -260,7 +261,8 @@ static int mark_special(cutter *c)
     return 0;
 }
 
-/* Numbers the layers that have owned nodes, and the empty ones before and after each run of them; a list of the runs. */
+/* Numbers the layers that have owned nodes, and the empty ones before and after each
+ * run of them; a list of the runs. */
 static int number_layers(cutter *c, march_runs *runs)
 {
     spot at[4];

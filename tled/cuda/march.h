@@ -1,21 +1,21 @@
-/* A problem cut for a march through its lattice, as the CUDA back end takes it in single precision. The lattice is cut into columns
- * of 15 by 15 nodes, of which blocks of 16 by 16 threads go layer by layer along one axis: thread (i, j) computes the cell whose
- * low corner has place (i, j) in the column, and moves the node of that place. Places 1 to 15 are owned, 0 and 16 are of columns
- * beside this one.
+/* A problem cut for a march through its lattice, as the CUDA back end takes it in single precision. The lattice is cut
+ * into columns of 15 by 15 nodes, of which blocks of 16 by 16 threads go layer by layer along one axis: thread (i, j)
+ * computes the cell whose low corner has place (i, j) in the column, and moves the node of that place. Places 1 to 15
+ * are owned, 0 and 16 are of columns beside this one.
  *
- * What stands at the places of a layer is told by words: which node, whether it is owned, whether a cell has its low corner
- * there. A layer's words stand in the order of threads, each warp having 8 by 4 of them, so that warps without any cell in a layer,
- * as in a shell, have little to do: warps 0 to 3 those of places 0 to 7 along rows, one after another across, 6, 7, 4 and 5 the
- * others. Then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
+ * What stands at the places of a layer is told by words: which node, whether it is owned, whether a cell has its low
+ * corner there. A layer's words stand in the order of threads, each warp having 8 by 4 of them, so that warps without
+ * any cell in a layer, as in a shell, have little to do: warps 0 to 3 those of places 0 to 7 along rows, one after
+ * another across, 6, 7, 4 and 5 the others. Then come those of places (16, 0) to (16, 16) and (0, 16) to (15, 16).
  *
- * Nodes stand in an order of the march's own: by part and column, each in the one that owns it, then by layer, then row by row. So what
- * a column owns of a layer stands in one piece, whatever axes are taken.
+ * Nodes stand in an order of the march's own: by part and column, each in the one that owns it, then by layer, then row
+ * by row. So what a column owns of a layer stands in one piece, whatever axes are taken.
  *
- * The axes are those by which the fewest warps have cells, summed over layers; a unit is what a block takes at once: layers in a row.
- * Columns are cut into units of nearly equal cost, some for each block that the card runs at once: a layer takes a block 2, 4 more
- * where it has special cells, and 1 for each warp with cells. Blocks take units in turn, in the order of columns and layers, pass after
- * pass; a unit waits for those near it alone, in the pass before, which this order has long since left behind.
- * The creator owns the march; it holds no pointer into the problem.
+ * The axes are those by which the fewest warps have cells, summed over layers; a unit is what a block takes at once:
+ * layers in a row. Columns are cut into units of nearly equal cost, some for each block that the card runs at once: a
+ * layer takes a block 2, 4 more where it has special cells, and 1 for each warp with cells. Blocks take units in turn,
+ * in the order of columns and layers, pass after pass; a unit waits for those near it alone, in the pass before, which
+ * this order has long since left behind. The creator owns the march; it holds no pointer into the problem.
  */
 #ifndef SINEW_MARCH_H
 #define SINEW_MARCH_H
@@ -34,7 +34,8 @@ enum {
 };
 #define MARCH_CELL (UINT32_C(1) << 31) /* there is a cell */
 
-/* Layers of nodes base to base + cells, and of cells base to base + cells - 1, whose nodes all but the first and last are moved. */
+/* Layers of nodes base to base + cells, and of cells base to base + cells - 1, whose nodes
+ * all but the first and last are moved. */
 typedef struct march_unit {
     int32_t base, cells, special, unused; /* cells: 2 or more; special: it has special cells */
 } march_unit;
@@ -46,8 +47,8 @@ typedef struct march_muscle {
 } march_muscle;
 enum { MARCH_SECOND = 1 << 30 };
 
-/* A cell that is not plain: of another law, contracting, mixed, or not all tissue. What it has is multiplied by its share of tissue,
- * and a muscle's peak by the muscle's share of the cell. What most of them need comes first. */
+/* A cell that is not plain: of another law, contracting, mixed, or not all tissue. What it has is multiplied by its
+ * share of tissue, and a muscle's peak by the muscle's share of the cell. What most of them need comes first. */
 typedef struct march_cell {
     float mu, bulk, hourglass, peak; /* Pa; peak: of the first of: */
     march_muscle muscle[2];          /* of its volumes, those that may contract */
@@ -63,15 +64,15 @@ typedef struct march {
     int32_t *order;   /* nodes: where each stands */
     uint32_t *word;   /* (layers + MARCH_AHEAD) x MARCH_WORDS */
     march_unit *unit; /* units: none where the problem is not suited */
-    int32_t *
-        near; /* units x nears: the units that have nodes which this one moves, or move what it has, itself too; then -1 */
-    int32_t *detail; /* layers + MARCH_AHEAD: where its special cells stand in `which`, in layers; or -1 */
-    int32_t *which;  /* details x MARCH_THREADS: in cell, from 1 on; 0: none */
+    int32_t *near;    /* units x nears: the units that have nodes which this one moves, or
+               * move what it has, itself too; then -1 */
+    int32_t *detail;  /* layers + MARCH_AHEAD: where its special cells stand in `which`, in layers; or -1 */
+    int32_t *which;   /* details x MARCH_THREADS: in cell, from 1 on; 0: none */
     march_cell *cell;
 } march;
 
-/* slots: blocks that the card runs at once. A problem whose cells fill too few threads has no units, and no order. -1 with e
- * filled, and m to be freed all the same. */
+/* slots: blocks that the card runs at once. A problem whose cells fill too few threads has no units, and no order. -1
+ * with e filled, and m to be freed all the same. */
 int march_make(march *m, const tled_problem *p, int64_t slots, err *e);
 void march_free(march *m);
 

@@ -41,7 +41,8 @@ static void note_owners(const march *m, int32_t *owner)
     }
 }
 
-/* Each unit with those whose nodes it has, both ways round: what it reads they write, and may write again once it has read that. */
+/* Each unit with those whose nodes it has, both ways round: what it reads they write, and
+ * may write again once it has read that. */
 static int pair_units(const march *m, const int32_t *owner, int32_t *last, pairs *p, err *e)
 {
     for (int64_t i = 0; i < m->units; i++) {

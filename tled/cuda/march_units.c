@@ -9,8 +9,8 @@
 /* What a layer takes beside its warps with cells, and one with special cells more: it waits for what these are. */
 static const double layer_cost = 2, special_cost = 4;
 
-/* A block takes so many units a pass. With fewer, those that wait for longer ones near them hold up others in turn; each of more has
- * its start, and one more layer of cells. */
+/* A block takes so many units a pass. With fewer, those that wait for longer ones near them hold up others in turn;
+ * each of more has its start, and one more layer of cells. */
 static const double units_a_slot = 1.3;
 
 typedef struct pieces {

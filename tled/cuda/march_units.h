@@ -1,5 +1,5 @@
-/* Runs of layers of a march's columns, and how they are cut into units for a card: march.h says by what model. The creator owns the
- * runs; what march_runs_cut makes is its caller's.
+/* Runs of layers of a march's columns, and how they are cut into units for a card: march.h says by what model. The
+ * creator owns the runs; what march_runs_cut makes is its caller's.
  */
 #ifndef SINEW_MARCH_UNITS_H
 #define SINEW_MARCH_UNITS_H

@@ -1,14 +1,15 @@
-/* A problem cut into tiles, for a back end whose threads work in blocks with little memory of their own. A tile owns the
- * nodes in one brick of the lattice and computes every element that touches one of them (a cell), some of which its neighbours compute too; in
- * return a step is one pass in which no tile waits for another. Corners of its cells that others own are its halo.
+/* A problem cut into tiles, for a back end whose threads work in blocks with little memory of their own. A tile
+ * owns the nodes in one brick of the lattice and computes every element that touches one of them (a cell), some
+ * of which its neighbours compute too; in return a step is one pass in which no tile waits for another. Corners
+ * of its cells that others own are its halo.
  *
- * In a tile all stand in a grid of places, one more than the brick on each side: a node's place is i + gx (j + gy k), with
- * i, j, k from 1 where owned; a cell's place is that of its low corner. So a cell finds its corners, and a node its cells, by
- * adding constants. For that a place must mean one node: a model in which two nodes of one part have the same place (a slit) is refused.
+ * In a tile all stand in a grid of places, one more than the brick on each side: a node's place is i + gx (j + gy k),
+ * with i, j, k from 1 where owned; a cell's place is that of its low corner. So a cell finds its corners, and a node
+ * its cells, by adding constants. For that a place must mean one node: a model in which two nodes of one part have the
+ * same place (a slit) is refused.
  *
- * Arrays over nodes are in the tiles' order, tile by tile, or in one that tiles_reorder is given: then those that a tile owns
- * stand where `order` says.
- * The creator owns the tiles; they hold no pointer into the problem.
+ * Arrays over nodes are in the tiles' order, tile by tile, or in one that tiles_reorder is given: then those that a
+ * tile owns stand where `order` says. The creator owns the tiles; they hold no pointer into the problem.
  */
 #ifndef SINEW_TILES_H
 #define SINEW_TILES_H
@@ -60,7 +61,8 @@ typedef struct tiles {
     tile_extra *extra;     /* extras, by where their nodes stand */
 } tiles;
 
-/* brick: at most 8 each. -1 with e filled, and t to be freed all the same: no memory, or a model that cannot be cut so. */
+/* brick: at most 8 each. -1 with e filled, and t to be freed all the same: no
+ * memory, or a model that cannot be cut so. */
 int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e);
 void tiles_free(tiles *t);
 

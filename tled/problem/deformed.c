@@ -10,7 +10,8 @@ static element_modes modes_of(const tled_problem *p, int64_t element, const doub
     return element_modes_of(c);
 }
 
-/* H; the hourglass modes of an element that is no box lose what H has of them, its law gets its own stiffness against them. */
+/* H; the hourglass modes of an element that is no box lose what H has of them, its
+ * law gets its own stiffness against them. */
 static element_tensor gradient_of(const tled_problem *p, int64_t i, element_shape box, element_modes *x,
                                   element_modes *y, element_modes *z, tled_law *law)
 {

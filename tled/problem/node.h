@@ -1,10 +1,10 @@
-/* The maths of one component of a node's step, which every back end's loop over nodes does: central differences with mass
- * damping alpha (Miller et al. 2007), as kick, drift, kick. From u, v, a at t
+/* The maths of one component of a node's step, which every back end's loop over nodes does: central differences with
+ * mass damping alpha (Miller et al. 2007), as kick, drift, kick. From u, v, a at t
  *     v' = (v + dt/2 a) / (1 + alpha dt/2),  u += dt v',                (begin)
  * then with a at t + dt
  *     v = v' (1 - alpha dt/2) + dt/2 a.                                 (finish)
- * The state at the end of a step is u and v alone: a run goes on from them to the same bytes. The end of one step and the
- * beginning of the next are one loop over nodes. `real` is element.h's.
+ * The state at the end of a step is u and v alone: a run goes on from them to the same bytes. The end of one step and
+ * the beginning of the next are one loop over nodes. `real` is element.h's.
  */
 #ifndef SINEW_NODE_H
 #define SINEW_NODE_H

@@ -26,8 +26,8 @@ double step_largest(const step_matrix *a)
     return stability_largest(a);
 }
 
-/* No less than the square of the highest frequency of a mixed element: stiffness grows with mu and K alike, so it is at most
- * that of a volume times the larger of what these are of the volume's. */
+/* No less than the square of the highest frequency of a mixed element: stiffness grows with mu and K alike, so it is at
+ * most that of a volume times the larger of what these are of the volume's. */
 static double square_by(const tled_law *law, const tled_volume *v)
 {
     return v->square * fmax(law->mu / v->law.mu, law->bulk / v->law.bulk) * v->law.density / law->density;

@@ -186,8 +186,8 @@ static void begin_frames(out *to)
     binary_encoding.write(to, &(item){.kind = ITEM_META, .key = key, .text = text});
 }
 
-/* What stands under the name of FILE.frames, without a FILE, is what is left of a run that was killed as it began; anything else
- * is not ours to empty. */
+/* What stands under the name of FILE.frames, without a FILE, is what is left of a run that was killed as it began;
+ * anything else is not ours to empty. */
 static int check_frames(const checkpoint *c, err *e)
 {
     unsigned char found[256];

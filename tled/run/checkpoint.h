@@ -1,9 +1,11 @@
 /* What a run that was killed goes on from, in three files:
- *     FILE         the state at a check, small: a model (sinew-model(5)) with one frame, checksums and an end, that appears whole
+ *     FILE the state at a check, small: a model (sinew-model(5)) with one frame,
+ *     checksums and an end, that appears whole
  *     FILE.1       the one before it
  *     FILE.frames  the frames that were written by then and since, whole blocks of a model: only ever added to
- * so that what was written is never written again, but by a run that goes on, once, to its output. FILE says how far the
- * frames had come; what is past that is cut off. The run that has them locks FILE.frames. The creator owns a checkpoint.
+ * so that what was written is never written again, but by a run that goes on, once, to its output. FILE
+ * says how far the frames had come; what is past that is cut off. The run that has them locks
+ * FILE.frames. The creator owns a checkpoint.
  */
 #ifndef SINEW_CHECKPOINT_H
 #define SINEW_CHECKPOINT_H
@@ -24,10 +26,12 @@ char *checkpoint_file(const char *path, int i, err *e);
 /* Begins anew: none may be there. NULL with e filled. */
 checkpoint *checkpoint_begin(const char *path, const fingerprint_run *run, err *e);
 
-/* Goes on from FILE or, where that is damaged, with a warning from FILE.1. Refuses those of another run. NULL with e filled. */
+/* Goes on from FILE or, where that is damaged, with a warning from FILE.1. Refuses
+ * those of another run. NULL with e filled. */
 checkpoint *checkpoint_resume(const char *path, const fingerprint_run *run, notes *warnings, err *e);
 
-/* Puts the state that it goes on from into the problem, which then starts there; returns where the run stood, as long as c. */
+/* Puts the state that it goes on from into the problem, which then starts there;
+ * returns where the run stood, as long as c. */
 const run_point *checkpoint_take(const checkpoint *c, tled_problem *p);
 
 /* Gives every frame from before. To be called once, before anything is added or saved. -1 with e filled. */

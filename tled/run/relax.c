@@ -21,7 +21,8 @@ void relax_update(relax *r, const watch_sight *s)
 {
     if (r->looks && s->stiffness > 0 && s->inertia > 0)
         r->frequency = fmin(fmax(sqrt(s->stiffness / s->inertia), r->low), r->high);
-    /* What was lowest fades: it grows e-fold in 4 of its radians, so that half a period leaves it where it was, to a factor. */
+    /* What was lowest fades: it grows e-fold in 4 of its radians, so that half a
+     * period leaves it where it was, to a factor. */
     if (r->looks)
         r->lowest = fmin(r->guess, fmin(r->frequency, r->lowest * exp(r->lowest * (s->time - r->time) / 4)));
     r->time = s->time;

@@ -1,5 +1,6 @@
-/* How a run comes to rest: the frequency of what still moves, guessed from two states by Rayleigh's quotient; from that the
- * mass damping that is soonest at rest (dynamic relaxation, Underwood 1983), and how far the tissue has still to go. Owns nothing.
+/* How a run comes to rest: the frequency of what still moves, guessed from two states by Rayleigh's
+ * quotient; from that the mass damping that is soonest at rest (dynamic relaxation, Underwood 1983), and how
+ * far the tissue has still to go. Owns nothing.
  */
 #ifndef SINEW_RELAX_H
 #define SINEW_RELAX_H
@@ -26,10 +27,10 @@ relax relax_of(double guess, double stable);
  * state, which the watch has kept, dK the change of the elements' pulls. */
 void relax_update(relax *r, const watch_sight *s);
 
-/* How far the tissue has still to go, as a share of what it has moved, or of 1/100 of the most that it had, for what is let go.
- * The way is |a| / w^2 and |v| / w in one root (m, root mean square over the mass), as of an oscillator out of balance by a and
- * moving at v; w is the lowest frequency, since at a turning point the slowest does not show. Infinite until two states are
- * known, unless nothing moves. */
+/* How far the tissue has still to go, as a share of what it has moved, or of 1/100 of the most that it had, for what is
+ * let go. The way is |a| / w^2 and |v| / w in one root (m, root mean square over the mass), as of an oscillator out of
+ * balance by a and moving at v; w is the lowest frequency, since at a turning point the slowest does not show. Infinite
+ * until two states are known, unless nothing moves. */
 double relax_share(const relax *r, const watch_sight *s);
 
 #endif

@@ -21,7 +21,7 @@ strained_view strained_view_of(const tled_problem *p, const double *displacement
 
 /* Whether J at all corners of a box is above a limit, from what is known of it anyway: false where that does not tell.
  * With A = F in the middle and A + D at a corner, in Frobenius' norm,
- *     det(A + D) = det A + cof A : D + A : cof D + det D,   |cof X| <= |X|^2 / sqrt(3),   |det X| <= |X|^3 / (3 sqrt(3)).
+ *     det(A + D) = det A + cof A : D + A : cof D + det D, |cof X| <= |X|^2 / sqrt(3), |det X| <= |X|^3 / (3 sqrt(3)).
  * A column of D is the sum of three hourglass modes, with signs, times a slope, and a mode is in two columns, xyz in
  * three: |D|^2 <= 9 slope^2 Q, Q the sum of all squares, of which hourglass energy is k / 2. Where |D| is at most 1/4,
  * as |A| <= (1 + |A|^2) / 2,
