@@ -223,7 +223,7 @@ static int begin_law(inp_reader *r, const keyword *k)
         if (parameter(k, inp_laws[i].name))
             r->hyper = &inp_laws[i];
     if (!elastic && !density && !r->hyper)
-        return wrong(r, "*HYPERELASTIC of another law", "NEO HOOKE, with C10 and D1, or MOONEY-RIVLIN");
+        return wrong(r, "*HYPERELASTIC of another law", INP_LAW_NAMES);
     if (!elastic && !density && parameter(k, "TEST DATA INPUT"))
         return wrong(r, "*HYPERELASTIC from test data", r->hyper->words);
     r->now = elastic ? INP_ELASTIC : INP_HYPER;

@@ -1,5 +1,5 @@
 /* Abaqus's input file, as far as it is a mesh: *NODE, *ELEMENT (C3D8, C3D4 and their variants), *NSET, *ELSET, *SOLID
- * SECTION, *MATERIAL with *ELASTIC, *HYPERELASTIC, NEO HOOKE or MOONEY-RIVLIN, *DENSITY, *BOUNDARY. After the Abaqus
+ * SECTION, *MATERIAL with *ELASTIC, *HYPERELASTIC of a law of inp_law.h, *DENSITY, *BOUNDARY. After the Abaqus
  * Analysis User's Guide, "Input Syntax Rules", and CalculiX's manual. Sets are kept as ranges, so that a line that
  * generates many numbers takes no more room than its text.
  */

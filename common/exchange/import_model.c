@@ -1,6 +1,7 @@
 /* The last part of import_mesh.h: from a mesh as it came to a model. */
 #include "base/mem.h"
 #include "exchange/import_mesh.h"
+#include "exchange/inp_law.h"
 #include "mesh/lattice.h"
 
 #include <stdio.h>
@@ -159,8 +160,7 @@ static int convert_material(const import_mesh *mesh, const import_material *from
     const material usual = materials_fallback();
     if (!from->of.law)
         return err_set(e, mesh->name, from->line,
-                       "material %.200s has no law; expected *ELASTIC or *HYPERELASTIC, NEO HOOKE or MOONEY-RIVLIN",
-                       from->name);
+                       "material %.200s has no law; expected *ELASTIC or *HYPERELASTIC, " INP_LAW_NAMES, from->name);
     if (isnan(from->of.density))
         notes_add(warnings, "material %.200s has no density: taken as %g kg/m3", from->name, usual.density);
     *to = from->of;

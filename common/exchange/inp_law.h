@@ -19,6 +19,7 @@ typedef struct inp_law {
 static const inp_law inp_laws[] = {{"NEO HOOKE", FORM_NEO_HOOKEAN, 2, "C10, D1"},
                                    {"MOONEY-RIVLIN", FORM_MOONEY_RIVLIN, 3, "C10, C01, D1"}};
 enum { INP_LAWS = sizeof inp_laws / sizeof *inp_laws };
+#define INP_LAW_NAMES "NEO HOOKE or MOONEY-RIVLIN" /* for messages */
 
 /* From the coefficients of the form, Pa. */
 static inline void inp_law_write(const inp_law *of, const double *c, double *constants)

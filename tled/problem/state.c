@@ -162,7 +162,7 @@ static int32_t expressed(const material *of, int32_t volumes, form f)
     return i;
 }
 
-/* "neo-hookean or mooney-rivlin": the laws of which steppers have the form. */
+/* "NAME or NAME": the laws of which steppers have the form. */
 static void words_of_laws(char *to, size_t size)
 {
     to[0] = '\0';
