@@ -20,7 +20,7 @@ struct field {
 
 enum { END_NONE, END_FIRST, END_SECOND };
 
-/* What is known of a connected piece; the first of its nodes has it. */
+/* What is known of a connected component, stored at the first of its nodes. */
 typedef struct piece {
     int32_t first, second; /* attachments, -1 = none */
     double most;           /* the highest potential */
@@ -214,8 +214,8 @@ static void find_furthest(muscle_field *m)
     }
 }
 
-/* Attachments are numbered from the largest; where there is none, what is about the furthest
- * node. Returns whether every piece has one. */
+/* Sets the first end of each component: its largest attachment (attachments are numbered from the largest), or, where
+ * it has none, the nodes about the one furthest from its middle. Returns whether every component has one. */
 static bool find_first(muscle_field *m)
 {
     bool all = true;
@@ -237,7 +237,7 @@ static bool find_first(muscle_field *m)
     return all;
 }
 
-/* How far along each place is from the first end. */
+/* How far along the muscle each node is, from the first end. */
 static int find_way(muscle_field *m, err *e)
 {
     for (int64_t n = 0; n < m->nodes; n++) {
@@ -261,7 +261,7 @@ static double length_of(const piece *p)
     return sqrt(2 * p->most);
 }
 
-/* The radius, if it is a rod. */
+/* The radius of a rod of the same volume and length. */
 static double width_of(const piece *p)
 {
     return sqrt(p->volume / (M_PI * length_of(p)));
@@ -298,8 +298,8 @@ static void find_out(piece *p)
     make_unit(p->out, 0);
 }
 
-/* The far end of a piece: what lies furthest out, along the way that its last slices show. The potential alone would
- * give a side of it, since what flows round a bend is further from the outside. */
+/* The far end of a component: the nodes that lie furthest out, in the direction in which the middles of its last slices
+ * go on. The highest potential alone would be on the outer side of a bend. */
 static void find_far(muscle_field *m)
 {
     for (int64_t n = 0; n < m->nodes; n++)

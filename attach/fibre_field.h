@@ -1,6 +1,6 @@
-/* Fibres that follow a muscle wherever it bends: the gradient of a potential that is 0 at one of its ends and 1 at the
- * other, with no flow through its sides (as Rule & al. lay fibres in hearts). The creator
- * owns it; what it is made of is borrowed.
+/* Fibres that follow the bends of a muscle: the gradient of a Laplace potential that is 0 at one of its ends and 1 at
+ * the other, without flux through its sides (as rule-based methods lay fibres in hearts). The creator owns the field;
+ * what it is made of is borrowed.
  */
 #ifndef SINEW_FIBRE_FIELD_H
 #define SINEW_FIBRE_FIELD_H

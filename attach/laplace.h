@@ -1,6 +1,6 @@
-/* A potential in voxels: what flows from nodes that are held at one value to nodes held at another, or out of a uniform
- * source, through trilinear elements and through no other side of them. Conjugate gradients without a matrix; sums are
- * taken in chunks of a fixed size, so that any number of threads gives the same bytes. The creator owns it.
+/* A Laplace or Poisson potential on voxels, in trilinear finite elements: Dirichlet nodes have a given value, all other
+ * boundaries have no flux. Solved by conjugate gradients without an assembled matrix. Sums are taken over chunks of a
+ * fixed size, so that any number of threads gives the same bytes. The creator owns it.
  */
 #ifndef SINEW_LAPLACE_H
 #define SINEW_LAPLACE_H
@@ -15,8 +15,8 @@ laplace *laplace_create(pool *threads, const double *spacing, const int32_t *nod
                         const float *share, err *e);
 void laplace_free(laplace *l);
 
-/* Solves -div grad u = source (1/m2) with u as it is at held nodes. Each connected part needs one of them. Begins from
- * the u that is there. -1 with e filled where it does not converge. */
+/* Solves -div grad u = source (1/m2). u is read at Dirichlet nodes, of which each connected component needs one, and is
+ * the first guess at the others. -1 with e filled where it does not converge. */
 int laplace_solve(laplace *l, const bool *held, double source, double *u, err *e);
 
 /* grad u in the middle of an element, 1/m. */

@@ -1,8 +1,9 @@
-/* Voxels by the share of each that is enclosed: N samples along each axis, at the centres of its N^3 parts, each in or
- * out and of one volume as a voxel's centre is (climb.h). What lies in a voxel is counted from runs of samples, at two
- * sums a run. The caller owns a shares, one a thread.
+/* The volume fraction of each voxel: a voxel is divided into N^3 parts, and the centre of each is a sample, which is in
+ * or out, and in one volume, as a voxel's centre is (climb.h). Samples come in runs along x, and are counted at two
+ * additions a run. The caller owns a `shares`, one a thread.
  *
- * A voxel is mixed of the two volumes that have the most of it: what a third has is theirs, as they share the voxel.
+ * A voxel is mixed of the two volumes that have most of its samples; those of a third are divided between the two in
+ * proportion.
  *
  * The error of a share: where a plane cuts a voxel, each column of parts along the axis that it faces most is off by no
  * more than half a part, so the voxel by no more than 1 / (2 N). Over planes at random the root mean square is 0.066,

@@ -1,6 +1,6 @@
-/* A file that is read while it is written: a log. What is put goes to the file at once, in one piece,
- * so that readers see whole lines. Unlike out.h's it stands under its name from the start, and stays
- * there whatever happens. The creator owns it.
+/* A log file, which may be read while it is written. Each call writes its lines to the file at once and in one piece,
+ * so that readers see whole lines. Unlike a file of out.h, it has its name from the start, and is not removed after a
+ * failure. The creator owns it.
  */
 #ifndef SINEW_GROWING_H
 #define SINEW_GROWING_H

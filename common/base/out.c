@@ -32,10 +32,10 @@ struct out {
     err failed;
 };
 
-/* A pipe of 64 KB has whoever writes much and whoever reads it wait for each other all the time. No wider
- * than a piece: all pipes of a user share what Linux allows (pipe-user-pages-soft, 64 MB unless set), and
- * once that is used up each new one has 8 KB. (One of what is small stays as it is: a reader that falls
- * behind would see all that fits into it late.) */
+/* With the usual pipe of 64 KB, a tool that writes much and the tool that reads it wait for each other all the time.
+ * The pipe becomes as wide as one piece and no wider: all pipes of a user share a limit (pipe-user-pages-soft, 64 MB by
+ * default), and beyond it each new pipe has 8 KB. A pipe for small outputs stays as it is, as a slow reader would see
+ * everything in a wide one late. */
 static void widen_pipe(int fd)
 {
     int size = fcntl(fd, F_GETPIPE_SZ);

@@ -20,8 +20,8 @@ out *out_open(const char *path, bool gzip, err *e);
  * and it is in *to from then on, to be put in place or discarded (replace.h). */
 out *out_open_kept(const char *path, replace *to, err *e);
 
-/* When closed, it is stored in any case, also where the shell has opened it, and so is its
- * name: before what it was made from goes. */
+/* Makes out_close() wait until the file and its name are stored, also where the shell has opened the file: for a caller
+ * that removes what the output was made from. */
 void out_outlast(out *o);
 
 /* Writes to a descriptor from where it stands, as it is; it is out's from then on,

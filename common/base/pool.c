@@ -19,10 +19,10 @@ typedef struct pool_share {
     char apart[112];
 } pool_share;
 
-/* Every thread begins with the same part of a loop, so that what it works on stays in its cache from loop to
- * loop, and goes on with what others have left. Whoever has taken a chunk may read what the loop is, which does
- * not change before that chunk is done. So the caller waits for chunks, not for workers: one that wakes late
- * finds nothing to take, and keeps nobody. */
+/* Each thread has its own part of every loop, so that its data stays in its cache from loop to loop. When its part is
+ * done, it takes chunks from the parts of others (work stealing). The loop's description may be read by whoever has
+ * taken a chunk, and does not change before that chunk is done. So the caller waits for chunks and not for workers: a
+ * worker that wakes late finds no chunk, and delays nobody. */
 struct pool {
     int threads, started;
     pthread_t *worker;
@@ -115,8 +115,8 @@ static void *worker_main(void *argument)
     }
 }
 
-/* A worker counts itself asleep before it looks at the round for the last time: it
- * sees the new one, or is seen here. */
+/* A worker counts itself asleep before it reads the round for the last time. So either it sees the new round, or this
+ * thread sees that it sleeps, and wakes it. */
 static void next_round(pool *p)
 {
     atomic_fetch_add(&p->round, 1);

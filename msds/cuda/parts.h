@@ -1,13 +1,13 @@
-/* Whether all of a mesh is held: solvers that only come closer never find out that
- * there is nothing to come to. Owns nothing.
+/* Whether every connected component of a mesh is held. An iterative solver does not notice that a component that is not
+ * held has no equilibrium. Owns nothing.
  */
 #ifndef SINEW_PARTS_H
 #define SINEW_PARTS_H
 
 #include "msds/problem/problem.h"
 
-/* -1 with e filled where a part of the mesh, its nodes connected by springs, has nodes that are free and fewer than
- * three that are fixed: it can turn, or go away. */
+/* -1 with e filled where a connected component (of nodes joined by springs) has free nodes and fewer than three
+ * Dirichlet nodes: it can turn or move away. */
 int parts_held(const msds_problem *p, err *e);
 
 #endif

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* The barycentric coordinates as affine functions of the column and the row: by
- * Cramer's rule. A flat one holds nothing. */
+/* The barycentric coordinates of a tetrahedron as affine functions of column and row, by Cramer's rule. A flat
+ * tetrahedron contains no pixel. */
 static void make_shares(double at[4][3], double share[4][3])
 {
     double e[3][3], n[3][3], six = 0;
@@ -94,7 +94,7 @@ static bool holds(const slice_paper_tet *t, int32_t column, int32_t row)
     return true;
 }
 
-/* The first in the list that holds the pixel, or NULL. */
+/* The first tetrahedron in the list that contains the pixel, or NULL. */
 static const slice_paper_tet *find(const search *s, int32_t column)
 {
     for (int64_t i = 0; i < s->count; i++)
@@ -109,14 +109,14 @@ static void sample_line(const search *s, const slice_paper_tet *t, int32_t from,
         s->l->line(s->f, &t->piece, s->row, from, end, s->offset, s->to);
 }
 
-/* An interval of a row, its ends found to fall in p and q. */
+/* An interval of a row, whose ends are in the tetrahedra p and q. */
 typedef struct interval {
     int32_t a, z;
     const slice_paper_tet *p, *q;
 } interval;
 
-/* Samples an interval, or halves it: the halves that are left to do. Where both ends are outside the
- * mesh, what is between them need not be. */
+/* Samples an interval, or puts its halves on the stack. Where both ends are outside the mesh, pixels between them may
+ * still be inside. */
 static int divide(const search *s, interval i, interval half[2])
 {
     if (i.p == i.q && (i.p || i.a == i.z)) {
@@ -134,8 +134,8 @@ static int divide(const search *s, interval i, interval half[2])
     return 2;
 }
 
-/* The paper's recursion, with what is left to do on a stack: one interval for each time that a row of SLICE_SIDE_MOST
- * can be halved, and the two of the last. */
+/* The paper's recursion, with a stack of intervals: one for each time that a row of SLICE_SIDE_MOST pixels can be
+ * halved, and the two of the last time. */
 static void fill_row(const search *s, int32_t a, int32_t z)
 {
     interval stack[20] = {{a, z, find(s, a), find(s, z)}};

@@ -1,6 +1,6 @@
-/* What an image shows of the plane that a probe looks into: the face's width by the depth for a linear array; for a
- * curved or phased one the fan of its beams, black around it. Sampling the plane at each pixel is the scan conversion
- * of a fan without its beams. A view owns its rows; a zeroed one is empty.
+/* The part of the probe's image plane that an image shows: for a linear array a rectangle, the width of the face by the
+ * depth; for a curved or phased array the fan of its beams, with black around it. Each pixel samples the plane itself,
+ * so that no scan conversion of beams is needed. A view owns its rows; a zeroed one is empty.
  *
  * The probe's frame is that of probe.h: the image lies in its x-z plane, columns along +x, rows along +z.
  */
