@@ -98,7 +98,7 @@ $(BUILD)/%.o: %.cu
 	@objcopy -w -N 'tmpxft_*' $@ # the name of a temporary file: the same source is to give the same bytes
 
 # Which of the two is built is known to few files, made again when that changes.
-KNOW_CUDA := $(addprefix $(BUILD)/,tled/run/backends.o tests/unit/test_tled_cuda.o msds/run/msds_backends.o tests/unit/test_msds_cuda.o)
+KNOW_CUDA := $(addprefix $(BUILD)/,tled/run/executors.o tests/unit/test_tled_cuda.o msds/run/msds_executors.o tests/unit/test_msds_cuda.o)
 $(BUILD)/cuda-$(CUDA):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/cuda-yes $(BUILD)/cuda-no

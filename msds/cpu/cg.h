@@ -1,6 +1,6 @@
-/* The FEM as PST runs it: so many conjugate gradients a frame, from the frame before, in single precision. Contact by prescribed
- * displacement moves the nodes onto the probe first and then keeps the search out of the directions of contact; by penalty it
- * stiffens the nodes along them. The creator owns it.
+/* The FEM as PST runs it: so many conjugate gradients a frame, from the frame before, in single precision. Contact by
+ * prescribed displacement moves the nodes onto the probe first and then keeps the search out of the directions of
+ * contact; by penalty it stiffens the nodes along them. The creator owns it.
  */
 #ifndef SINEW_CG_H
 #define SINEW_CG_H

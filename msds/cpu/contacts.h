@@ -1,9 +1,10 @@
-/* The nodes that a probe presses, as the FEM wants them: each is kept on its side of the plane that touches the probe where the node
- * came out, and slides along it freely. The creator owns it; what it allocates it allocates at once.
+/* The nodes that a probe presses, as the FEM wants them: each is kept on its side of the plane that touches the probe
+ * where the node came out, and slides along it freely. The creator owns it; what it allocates it allocates at once.
  */
 #ifndef SINEW_CONTACTS_H
 #define SINEW_CONTACTS_H
 
+#include "base/pool.h"
 #include "msds/cpu/lanes.h"
 
 typedef struct contact {
@@ -23,15 +24,15 @@ typedef struct contacts {
     int64_t *amount; /* chunks: how many */
 } contacts;
 
-/* Which nodes: PRESSED, those inside the probe, or pressed by it in the frame before and no farther than a 50th of the probe's size;
- * NEAR, all within a tenth. */
+/* Which nodes: PRESSED, those inside the probe, or pressed by it in the frame before and no farther than a 50th of
+ * the probe's size; NEAR, all within a tenth. */
 typedef enum contacts_rule { CONTACTS_PRESSED, CONTACTS_NEAR } contacts_rule;
 
 int contacts_make(contacts *c, const slices *s, int64_t nodes, err *e);
 void contacts_free(contacts *c);
 
-/* Lists them, in the solver's order, with the forces of the frame before; w has the probe and the displacements, or u (the model's
- * nodes x 3) has these to more digits. */
+/* Lists them, in the solver's order, with the forces of the frame before; w has the probe and the displacements,
+ * or u (the model's nodes x 3) has these to more digits. */
 void contacts_find(contacts *c, const lanes *loops, lanes_springs *w, const msds_problem *p, const double *u,
                    pool *threads, contacts_rule rule);
 

@@ -1,7 +1,7 @@
-/* In what order to eliminate the free nodes: nested dissection by planes (George 1973). The nodes are cut in two by the plane of
- * the axis that leaves the fewest nodes between; the halves come first, each cut in turn, then what lies between. What comes of it
- * is a tree of fronts, each some nodes that are eliminated together (its columns) and the later nodes that this touches (its
- * rows). The creator owns it.
+/* In what order to eliminate the free nodes: nested dissection by planes (George 1973). The nodes are cut in two by
+ * the plane of the axis that leaves the fewest nodes between; the halves come first, each cut in turn, then what lies
+ * between. What comes of it is a tree of fronts, each some nodes that are eliminated together (its columns) and the
+ * later nodes that this touches (its rows). The creator owns it.
  */
 #ifndef SINEW_DISSECT_H
 #define SINEW_DISSECT_H

@@ -1,8 +1,9 @@
-/* The FEM solved to a tolerance each frame, with one factor of the stiffness matrix at rest. A probe's contact does not change that
- * factor: with N the directions of contact and S = N^T K^-1 N (the Schur complement, whose parts are products of path vectors,
- * factor.h), the forces f >= 0 that keep each node out of the probe solve a small complementarity problem; they come in between
- * the two halves of a solve. What rounding (the factor is float), an inexact S leaves over, the next solve takes out; where elements
- * turn, whose factor it is not, mixing.h makes the most of the solves. The creator owns it.
+/* The FEM solved to a tolerance each frame, with one factor of the stiffness matrix at rest. A probe's contact does
+ * not change that factor: with N the directions of contact and S = N^T K^-1 N (the Schur complement, whose parts are
+ * products of path vectors, factor.h), the forces f >= 0 that keep each node out of the probe solve a small
+ * complementarity problem; they come in between the two halves of a solve. What rounding (the factor is float), an
+ * inexact S leaves over, the next solve takes out; where elements turn, whose factor it is not, mixing.h makes the
+ * most of the solves. The creator owns it.
  */
 #ifndef SINEW_EXACT_H
 #define SINEW_EXACT_H

@@ -1,10 +1,10 @@
-/* A Cholesky factor of the FEM's stiffness matrix over its free nodes: multifrontal (Duff and Reid 1983), made in double, kept as
- * float, since what solves with it refines. Solving is in halves, so that contact can step in between: K^-1 = L^-T L^-1.
- * The tree of fronts is worked level by level; each front sums its children's shares in their order, so the result is the same for
- * any number of threads. The creator owns it.
+/* A Cholesky factor of the FEM's stiffness matrix over its free nodes: multifrontal (Duff and Reid 1983), made in
+ * double, kept as float, since what solves with it refines. Solving is in halves, so that contact can step in
+ * between: K^-1 = L^-T L^-1. The tree of fronts is worked level by level; each front sums its children's shares in
+ * their order, so the result is the same for any number of threads. The creator owns it.
  *
- * The path of a node is its own front and all above: where L^-1 of a load on that node is not zero. A path vector holds those
- * values, the root's first, so that two paths share the beginnings of their vectors.
+ * The path of a node is its own front and all above: where L^-1 of a load on that node is not zero. A path vector
+ * holds those values, the root's first, so that two paths share the beginnings of their vectors.
  */
 #ifndef SINEW_FACTOR_H
 #define SINEW_FACTOR_H
@@ -41,8 +41,8 @@ typedef struct factor {
     int32_t *failed; /* fronts: the model's node whose pivot was not above 0, or -1; -2: no memory */
 } factor;
 
-/* Orders, allocates and factors k's matrix. -1 with e filled, and to be freed all the same: where memory is short (said before
- * it is taken), or the matrix is not positive definite (a part that nothing holds). */
+/* Orders, allocates and factors k's matrix. -1 with e filled, and to be freed all the same: where memory is short
+ * (said before it is taken), or the matrix is not positive definite (a part that nothing holds). */
 int factor_make(factor *f, const msds_problem *p, const stiffness *k, const lanes *loops, pool *threads, err *e);
 void factor_free(factor *f);
 

@@ -1,6 +1,7 @@
-/* The loops that take the time, over eight nodes side by side (slices.h) and over dense columns, as a table of functions: the same
- * source, lanes_loops.c, compiled for each set of solve/vectors.h, chosen when a state is made. No
- * multiply and add is fused in any, and no sum changes its order: all give the same bytes. All memory is the caller's.
+/* The loops that take the time, over eight nodes side by side (slices.h) and over dense columns, as a table of
+ * functions: the same source, lanes_loops.c, compiled for each set of solve/vectors.h, chosen when a state is made.
+ * No multiply and add is fused in any, and no sum changes its order: all give the same bytes. All memory is the
+ * caller's.
  */
 #ifndef SINEW_LANES_H
 #define SINEW_LANES_H
@@ -50,8 +51,8 @@ typedef struct lanes {
     void (*turn)(lanes_field *p, const lanes_field *r, float beta, int64_t from, int64_t to);
     /* Nodes of slices [from, to) in the ball: their numbers to `list`; returns how many. */
     int64_t (*inside)(const lanes_springs *w, int64_t from, int64_t to, int32_t *list);
-    /* c (rows x columns, at most 4, `stride` apart) -= l (rows x count) times the transpose of top (columns x count), all of
-     * one stride. */
+    /* c (rows x columns, at most 4, `stride` apart) -= l (rows x count) times the transpose of top (columns x
+     * count), all of one stride. */
     void (*update)(double *c, int64_t stride, const double *l, const double *top, int64_t rows, int64_t columns,
                    int64_t count);
     /* y (rows) -= sum over columns of l (by columns, `stride` apart) times x (columns). */

@@ -1,6 +1,6 @@
-/* Anderson's mixing (1965): what an iteration x <- G(x) does next, from its last few steps, so that it comes to rest in fewer of
- * them than by steps alone. The next x is the combination of the last ones whose steps G(x) - x would cancel best, moved by what is
- * left of the step. The creator owns it; it takes no memory after it is made.
+/* Anderson's mixing (1965): what an iteration x <- G(x) does next, from its last few steps, so that it comes to rest
+ * in fewer of them than by steps alone. The next x is the combination of the last ones whose steps G(x) - x would
+ * cancel best, moved by what is left of the step. The creator owns it; it takes no memory after it is made.
  */
 #ifndef SINEW_MIXING_H
 #define SINEW_MIXING_H

@@ -1,5 +1,6 @@
-/* The state of a run, and which solver takes a frame: springs (lanes.h), conjugate gradients (cg.h), exactly (exact.h). All share
- * the displacement, in single precision and the slices' order; exact frames keep their own in double while they follow each other.
+/* The state of a run, and which solver takes a frame: springs (lanes.h), conjugate gradients (cg.h), exactly
+ * (exact.h). All share the displacement, in single precision and the slices' order; exact frames keep their own in
+ * double while they follow each other.
  */
 #include "msds/cpu/msds_cpu.h"
 
@@ -12,10 +13,13 @@
 
 enum { FIELDS = 6, ROUNDS = 4 /* of an exact frame, each with the nodes that the last one pushed into the probe */ };
 
-/* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of its size. */
+/* An exact frame is in equilibrium to this share of its load; a node may be missed in the probe by this share of
+ * its size. */
 static const double exact_tolerance = 1e-6, missed = 1e-6;
 
-typedef struct cpu_state {
+typedef struct msds_state cpu_state;
+
+struct msds_state {
     const msds_problem *p;
     pool *threads;
     const lanes *loops;
@@ -34,7 +38,7 @@ typedef struct cpu_state {
     bool precise; /* place is the state; else w.u */
     bool met;     /* as the sight's */
     int solves;
-} cpu_state;
+};
 
 static void spread(const cpu_state *s, const double *from, lanes_field *to)
 {
@@ -84,9 +88,8 @@ static int allocate(cpu_state *s, err *e)
     return s->stiffness && s->damper && s->rest && s->inertia && s->inverse && s->repulsion && s->place ? 0 : -1;
 }
 
-static void cpu_destroy(void *state)
+static void cpu_destroy(cpu_state *s)
 {
-    cpu_state *s = state;
     if (!s)
         return;
     if (s->cg)
@@ -111,7 +114,7 @@ static void cpu_destroy(void *state)
     free(s);
 }
 
-static void *cpu_create(const void *problem, pool *threads, err *e)
+static cpu_state *cpu_create(const msds_problem *problem, pool *threads, err *e)
 {
     cpu_state *s = mem_array(1, sizeof *s, "the solver", e);
     if (!s)
@@ -184,7 +187,8 @@ static double leaving(const cpu_state *s, const contact *c)
     return speed;
 }
 
-/* The contacts where springs stand now, and what the next step would push them with: spring and damper, that do not pull. */
+/* The contacts where springs stand now, and what the next step would push them with: spring and damper, that do
+ * not pull. */
 static void note_repulsion(cpu_state *s)
 {
     s->contacts.count = 0;
@@ -259,9 +263,8 @@ static int step_exact(cpu_state *s, err *e)
     return 0;
 }
 
-static int cpu_step(void *state, const void *plan, int64_t count, err *e)
+static int cpu_step(cpu_state *s, const msds_plan *plan, int64_t count, err *e)
 {
-    cpu_state *s = state;
     int result = 0;
     place_probe(s, plan);
     s->solves = 0;
@@ -278,9 +281,8 @@ static int cpu_step(void *state, const void *plan, int64_t count, err *e)
     return result;
 }
 
-static int cpu_get(void *state, int what, double *to, err *e)
+static int cpu_get(cpu_state *s, int what, double *to, err *e)
 {
-    const cpu_state *s = state;
     (void)e;
     if (what == MSDS_DISPLACEMENT && s->precise)
         memcpy(to, s->place, 3 * (size_t)s->p->nodes * sizeof *to);
@@ -289,12 +291,9 @@ static int cpu_get(void *state, int what, double *to, err *e)
     return 0;
 }
 
-static int cpu_look(void *state, const void *question, void *answer, err *e)
+static int cpu_monitor(cpu_state *s, msds_sight *sight, err *e)
 {
-    cpu_state *s = state;
-    msds_sight *sight = answer;
     double square = 0;
-    (void)question;
     (void)e;
     *sight = (msds_sight){.residual = NAN, .solves = s->solves, .finite = true, .met = s->met};
     sight->contacts = contacts_sum(&s->contacts, sight->force);
@@ -314,9 +313,8 @@ static int cpu_look(void *state, const void *question, void *answer, err *e)
     return 0;
 }
 
-static int64_t cpu_bytes(const void *state)
+static int64_t cpu_bytes(const cpu_state *s)
 {
-    const cpu_state *s = state;
     int64_t bytes = s->order.slots * LANES * 20 + s->order.nodes * 90 + s->p->nodes * 24;
     if (s->k.p)
         bytes += s->p->elements * 136 + s->p->springs * 72 + s->p->nodes * 80;
@@ -332,18 +330,16 @@ static const char *cpu_unusable(void)
     return NULL;
 }
 
-void msds_cpu_touch(void *state, const void *plan)
+void msds_cpu_touch(msds_state *s, const msds_plan *plan)
 {
-    cpu_state *s = state;
     place_probe(s, plan);
     find_contacts(s, NULL, s->plan.method == MSDS_EXACT ? CONTACTS_NEAR : CONTACTS_PRESSED);
 }
 
-const backend msds_cpu = {.name = "cpu",
-                          .unusable = cpu_unusable,
-                          .create = cpu_create,
-                          .step = cpu_step,
-                          .get = cpu_get,
-                          .look = cpu_look,
-                          .bytes = cpu_bytes,
-                          .destroy = cpu_destroy};
+const msds_executor msds_cpu = {.is = {.device = "cpu", .unusable = cpu_unusable},
+                                .create = cpu_create,
+                                .destroy = cpu_destroy,
+                                .step = cpu_step,
+                                .get = cpu_get,
+                                .monitor = cpu_monitor,
+                                .bytes = cpu_bytes};

@@ -1,5 +1,5 @@
-/* The sum of what the chunks of a loop leave (pool.h), in an order that a card can follow with a block of threads: sums of every
- * SUMS_WIDE-th, then pairs of neighbours, then pairs of those. Owns nothing.
+/* The sum of what the chunks of a loop leave (pool.h), in an order that a card can follow with a block of threads:
+ * sums of every SUMS_WIDE-th, then pairs of neighbours, then pairs of those. Owns nothing.
  */
 #ifndef SINEW_SUMS_H
 #define SINEW_SUMS_H

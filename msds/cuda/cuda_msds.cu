@@ -1,4 +1,4 @@
-/* The CUDA back end of msds-run: memory, and which kernel takes a frame. All of a frame is one launch.
+/* The CUDA executor of msds-run: memory, and which kernel takes a frame. All of a frame is one launch.
  */
 #include "msds/cuda/cuda_exact.cuh"
 #include "msds/cuda/cuda_room.cuh"
@@ -17,7 +17,9 @@ extern "C" {
 /* A node is looked for in the ball that holds the probe and so much more of its size: contacts.c's. */
 static const double near_by = .1;
 
-typedef struct cuda_state {
+typedef struct msds_state cuda_state;
+
+struct msds_state {
     const msds_problem *p;
     pool *threads;
     slices order;
@@ -33,7 +35,7 @@ typedef struct cuda_state {
     bool precise;            /* t.precise is the state; else t.u */
     int64_t step;
     cudaStream_t stream;
-} cuda_state;
+};
 
 /* What went wrong in steps before may come out of any call. */
 #define CUDA_TRY(call) card_check(call, #call, s->step, e)
@@ -172,9 +174,8 @@ static int fill(cuda_state *s, err *e)
                : 0;
 }
 
-static void cuda_destroy(void *state)
+static void cuda_destroy(cuda_state *s)
 {
-    cuda_state *s = (cuda_state *)state;
     if (!s)
         return;
     if (s->stream)
@@ -192,12 +193,12 @@ static void cuda_destroy(void *state)
     free(s);
 }
 
-static void *cuda_create(const void *problem, pool *threads, err *e)
+static cuda_state *cuda_create(const msds_problem *problem, pool *threads, err *e)
 {
     cuda_state *s = (cuda_state *)mem_array(1, sizeof *s, "the solver", e);
     if (!s)
         return NULL;
-    s->p = (const msds_problem *)problem;
+    s->p = problem;
     s->threads = threads;
     if (fill(s, e)) {
         cuda_destroy(s);
@@ -371,10 +372,8 @@ static int step_exact(cuda_state *s, const tissue_frame *f, err *e)
     return card_check(tissue_exact_start(&s->t, f, &s->x, s->stream), "the start of a frame", s->step, e);
 }
 
-static int cuda_step(void *state, const void *plan, int64_t count, err *e)
+static int cuda_step(cuda_state *s, const msds_plan *p, int64_t count, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
-    const msds_plan *p = (const msds_plan *)plan;
     if (p->touched && put_planes(s, &p->probe.shape, e))
         return -1;
     const tissue_frame f = frame_of(s, p, count);
@@ -388,14 +387,12 @@ static int cuda_step(void *state, const void *plan, int64_t count, err *e)
     return result;
 }
 
-static int cuda_look(void *state, const void *question, void *answer, err *e)
+static int cuda_monitor(cuda_state *s, msds_sight *sight, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
-    (void)question;
     if (CUDA_TRY(cudaMemcpyAsync(s->outcome, s->t.outcome, sizeof *s->outcome, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
-    *(msds_sight *)answer = s->outcome->sight;
+    *sight = s->outcome->sight;
     if (s->outcome->failed)
         return err_set(e, NULL, 0, "after %d solves the residual is still %.3g, or contact not settled; expected %.3g",
                        s->outcome->sight.solves, s->outcome->sight.residual, exact_tolerance);
@@ -410,9 +407,8 @@ static int fetch(cuda_state *s, const void *from, size_t bytes, err *e)
                : 0;
 }
 
-static int cuda_get(void *state, int what, double *to, err *e)
+static int cuda_get(cuda_state *s, int what, double *to, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
     const size_t nodes = (size_t)s->order.nodes;
     const bool precise = what == MSDS_DISPLACEMENT && s->precise;
     const float4 *single = what == MSDS_DISPLACEMENT ? s->t.u : s->t.v;
@@ -429,9 +425,8 @@ static int cuda_get(void *state, int what, double *to, err *e)
     return 0;
 }
 
-static int64_t cuda_bytes(const void *state)
+static int64_t cuda_bytes(const cuda_state *s)
 {
-    const cuda_state *s = (const cuda_state *)state;
     int64_t bytes = s->bytes;
     if (s->fem)
         bytes += s->fem_bytes;
@@ -440,5 +435,10 @@ static int64_t cuda_bytes(const void *state)
     return bytes;
 }
 
-const backend msds_cuda = {"cuda", card_unusable, cuda_create, cuda_step, cuda_get,   NULL,
-                           NULL,   NULL,          NULL,        cuda_look, cuda_bytes, cuda_destroy};
+const msds_executor msds_cuda = {.is = {.device = "cuda", .unusable = card_unusable},
+                                 .create = cuda_create,
+                                 .destroy = cuda_destroy,
+                                 .step = cuda_step,
+                                 .get = cuda_get,
+                                 .monitor = cuda_monitor,
+                                 .bytes = cuda_bytes};

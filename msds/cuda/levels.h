@@ -7,6 +7,7 @@
 #ifndef SINEW_LEVELS_H
 #define SINEW_LEVELS_H
 
+#include "base/pool.h"
 #include "msds/cpu/lanes.h"
 
 enum { LEVELS_MOST = 12, LEVELS_COARSEST = 100 /* nodes: so few are solved for directly */ };

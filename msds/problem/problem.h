@@ -1,7 +1,5 @@
-/* What msds-run solves, as flat arrays: the problem, which no back end changes, made from a tetrahedral model; and the
- * contract of its back ends (solve/backend.h): their create takes an msds_problem, their step an msds_plan, their look
- * fills an msds_sight. They keep and take no copies of a state. One state serves every method and carries displacement
- * and velocity from one to the next. The caller owns the problem; it borrows the model's arrays, which must outlive it.
+/* What msds-run solves, as flat arrays: the problem, which no executor changes, made from a tetrahedral model. The
+ * caller owns the problem; it borrows the model's arrays, which must outlive it. Who computes it: msds_executor.h.
  *
  * The solvers are the mass-spring-damper system of PST's appendix, and their FEM: isotropic linear elasticity with
  * Cauchy's strain, quasi-static, by conjugate gradients from the frame before, or exactly.
@@ -12,7 +10,6 @@
 #include "model/model.h"
 #include "msds/problem/simplex.h"
 #include "probe/probe.h"
-#include "solve/backend.h"
 
 typedef enum msds_method { MSDS_SPRINGS, MSDS_FEM, MSDS_EXACT } msds_method;
 
@@ -74,9 +71,6 @@ typedef struct msds_plan {
     const msds_watch *watch; /* NULL: nobody */
 } msds_plan;
 
-/* What get() gives, nodes x 3 doubles each: m, m/s. */
-enum { MSDS_DISPLACEMENT, MSDS_VELOCITY };
-
 typedef struct msds_sight {
     double force[3];  /* N: on the probe */
     double torque[3]; /* N m: on it, about its frame's origin */
@@ -96,8 +90,5 @@ void msds_problem_free(msds_problem *p);
 
 /* Starts from a frame: its displacement and velocity (none: at rest). */
 int msds_problem_start(msds_problem *p, const frame *f, err *e);
-
-/* The back ends of msds-run, NULL-terminated. */
-extern const backend *const msds_backends[];
 
 #endif

@@ -4,6 +4,7 @@
 #ifndef SINEW_STIFFNESS_H
 #define SINEW_STIFFNESS_H
 
+#include "base/pool.h"
 #include "msds/problem/problem.h"
 
 typedef struct stiffness {

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-compare *compare_make(const msds_problem *p, const backend *device, pool *threads, err *e)
+compare *compare_make(const msds_problem *p, const msds_executor *device, pool *threads, err *e)
 {
     compare *c = mem_array(1, sizeof *c, "the comparison", e);
     if (!c)
@@ -19,7 +19,7 @@ compare *compare_make(const msds_problem *p, const backend *device, pool *thread
     return NULL;
 }
 
-void compare_free(compare *c, const backend *device)
+void compare_free(compare *c, const msds_executor *device)
 {
     if (!c)
         return;
@@ -35,10 +35,11 @@ static double square_of(const double *a)
     return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
 }
 
-int compare_frame(compare *c, const backend *device, void *state, const msds_plan *plan, int64_t count, err *e)
+int compare_frame(compare *c, const msds_executor *device, msds_state *state, const msds_plan *plan, int64_t count,
+                  err *e)
 {
     double off = 0, size = 0, worst = 0, largest = 0;
-    if (device->step(c->state, plan, count, e) || device->look(c->state, NULL, &c->sight, e) ||
+    if (device->step(c->state, plan, count, e) || device->monitor(c->state, &c->sight, e) ||
         device->get(state, MSDS_DISPLACEMENT, c->ours, e) || device->get(c->state, MSDS_DISPLACEMENT, c->other, e))
         return -1;
     const double *fem = plan->method == MSDS_SPRINGS ? c->ours : c->other;

@@ -42,9 +42,9 @@ typedef struct session {
     int64_t substeps;
     double stable, sure; /* s: steps of springs that are stable at rest, and in any configuration */
     bool springs_told;
-    const backend *device;
+    const msds_executor *device;
     pool *threads;
-    void *state;
+    msds_state *state;
     compare *other; /* the other method, or NULL */
     in *source;
     poses poses;
@@ -147,7 +147,7 @@ static int say_provenance(tool *t, const session *s, err *e)
         "%s--method %s --iterations %lld --rate %.9g --dt %.9g --mass %s --spring-scale %.9g --damping %.9g "
         "--contact %s --repulsion %.9g [%s, inertia %.9g, %lld substeps]",
         shape, o->method ? "fem" : "msds", (long long)o->iterations, o->rate, o->dt, o->mass ? "lumped" : "stable",
-        s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed", o->repulsion, s->device->name,
+        s->problem.scale, o->damping, o->contact ? "penalty" : "prescribed", o->repulsion, s->device->is.device,
         s->problem.mass_factor, (long long)s->substeps);
 }
 
@@ -315,7 +315,8 @@ static void warn_of_pose(session *s, const poses_event *at, const press_moves *m
 
 /* All moves of a frame but the last; fills the plan with that, and returns its count of steps, or -1 with e filled. The skin, if there
  * is one to go with it, makes the last one too. */
-static int64_t make_moves(session *s, void *state, const press_moves *moves, msds_plan *plan, bool with_skin, err *e)
+static int64_t make_moves(session *s, msds_state *state, const press_moves *moves, msds_plan *plan, bool with_skin,
+                          err *e)
 {
     int64_t count = 0;
     for (int i = 0; i < moves->count; i++) {
@@ -349,7 +350,7 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     if (plan.touched)
         warn_of_pose(s, at, &moves, first);
     int64_t count = make_moves(s, s->state, &moves, &plan, true, e);
-    if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->look(s->state, NULL, &sight, e))
+    if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->monitor(s->state, &sight, e))
         return -1;
     const double dent = s->skin.vertices ? skin_largest(&s->skin) : 0;
     if (!sight.finite || !isfinite(dent))
@@ -459,7 +460,7 @@ static int prepare(session *s, err *e)
     if (take_probe(s, e) || carry_skin(s, e) || make_problem(s, e))
         return -1;
     const char *device_name = o->warp && !o->device ? "cpu" : names[o->device]; /* no card takes rotations out */
-    s->device = backend_choose(msds_backends, device_name, device, sizeof device, e);
+    s->device = msds_executor_choose(msds_executors, device_name, device, sizeof device, e);
     int threads = tool_threads(s->t, e);
     s->threads = s->device && threads > 0 ? pool_create(threads, e) : NULL;
     if (!s->threads)

@@ -110,7 +110,7 @@ static void go_on(press *s, const pose *at, int64_t count, press_moves *m)
     }
 }
 
-int press_to(press *s, const backend *device, void *state, const pose *at, double time, bool springs,
+int press_to(press *s, const msds_executor *device, msds_state *state, const pose *at, double time, bool springs,
              press_moves *moves, err *e)
 {
     const double size = s->shape->size;

@@ -1,13 +1,13 @@
-/* How a probe gets to a pose: what a frame of msds-run solves, move by move. A frame gets as many iterations as the time since the
- * pose before asks for, --iterations a 60th of a second by default; and with springs, which live in time, the probe goes the way
- * from one pose to the next in a few moves: so what is shown does not depend on how often poses come. A probe that is in the tissue at
- * once, at the first pose or after none, is eased in along its own axis, from where it touches nothing: nodes deep inside would not know
- * which way is out. The creator owns it.
+/* How a probe gets to a pose: what a frame of msds-run solves, move by move. A frame gets as many iterations as the
+ * time since the pose before asks for, --iterations a 60th of a second by default; and with springs, which live in
+ * time, the probe goes the way from one pose to the next in a few moves: so what is shown does not depend on how
+ * often poses come. A probe that is in the tissue at once, at the first pose or after none, is eased in along its own
+ * axis, from where it touches nothing: nodes deep inside would not know which way is out. The creator owns it.
  */
 #ifndef SINEW_PRESS_H
 #define SINEW_PRESS_H
 
-#include "msds/problem/problem.h"
+#include "msds/problem/msds_executor.h"
 
 enum {
     PRESS_MOVES = 64,
@@ -47,7 +47,7 @@ void press_free(press *s);
 void press_from(press *s, const pose *at, double time);
 
 /* The moves to a pose at a time, s; state is asked where the nodes are, if need be. -1 with e filled. */
-int press_to(press *s, const backend *device, void *state, const pose *at, double time, bool springs,
+int press_to(press *s, const msds_executor *device, msds_state *state, const pose *at, double time, bool springs,
              press_moves *moves, err *e);
 
 #endif

@@ -1,5 +1,5 @@
-/* A skin in a model: its surface carried under its file's name, its displacement and normals in frames. Owns nothing but what skin_free
- * frees.
+/* A skin in a model: its surface carried under its file's name, its displacement and normals in frames. Owns nothing
+ * but what skin_free frees.
  */
 #ifndef SINEW_SKIN_MODEL_H
 #define SINEW_SKIN_MODEL_H

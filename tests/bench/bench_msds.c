@@ -7,7 +7,7 @@
 // needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c
 // needs: msds/cpu/lanes.c msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c
+// needs: msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
 #include "../unit/msds_block.h"
 
 #include "base/mem.h"
@@ -45,7 +45,7 @@ typedef struct shape {
 typedef struct subject {
     model m;
     msds_problem p;
-    void *state[METHODS];
+    msds_state *state[METHODS];
     double took[METHODS][BENCH_ROUNDS * FRAMES];
     int count[METHODS];
     double factor; /* s: the exact method's first frame */
@@ -96,7 +96,7 @@ static probe faceted(void)
     return p;
 }
 
-static void measure_shape(bench *b, const shape *s, void *state)
+static void measure_shape(bench *b, const shape *s, msds_state *state)
 {
     msds_plan plan = plan_of(METHODS - 1, FRAMES / 2);
     pose at = {{.085, .04, .07}, {1, 0, 0, 0}};

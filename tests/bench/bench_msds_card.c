@@ -5,11 +5,12 @@
 // needs: tests/bench/bench.c msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c
 // needs: msds/cpu/lanes.c msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c
+// needs: msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
 #include "../unit/msds_block.h"
 
 #include "bench.h"
 #include "msds/problem/largest.h"
+#include "msds/problem/msds_executor.h"
 
 enum { SIZES = 5, METHODS = 3, FRAMES = 30, ITERATIONS = 20 };
 
@@ -28,10 +29,10 @@ static const char *const names[METHODS] = {"msds", "fem 20 cg", "fem exact"};
 
 typedef struct subject {
     const paper *from;
-    const backend *card;
+    const msds_executor *card;
     model m;
     msds_problem p;
-    void *state[METHODS];
+    msds_state *state[METHODS];
     double took[METHODS][BENCH_ROUNDS * FRAMES];
     int count[METHODS];
     double first;            /* s: the exact method's first frame, which makes the coarser lattices */
@@ -40,7 +41,7 @@ typedef struct subject {
     int64_t frames;
 } subject;
 
-static void make(subject *s, const paper *from, const backend *card, pool *threads)
+static void make(subject *s, const paper *from, const msds_executor *card, pool *threads)
 {
     err e = {0};
     tets b = {{from->nodes[0], from->nodes[1], from->nodes[2]}, {.16, .08, .08}, 1e4, .45, 1000, 2, false};
@@ -71,9 +72,8 @@ static void measure(subject *s, int method, int number)
     msds_sight sight = {0};
     const msds_plan plan = plan_of(method, number);
     double start = bench_clock();
-    bench_must(!s->card->step(s->state[method], &plan, ITERATIONS, &e) &&
-                   !s->card->look(s->state[method], NULL, &sight, &e),
-               &e);
+    bench_must(
+        !s->card->step(s->state[method], &plan, ITERATIONS, &e) && !s->card->monitor(s->state[method], &sight, &e), &e);
     double took = bench_clock() - start;
     if (method == MSDS_EXACT) {
         s->most = sight.solves > s->most ? sight.solves : s->most;
@@ -114,11 +114,11 @@ static void say(subject *s)
     model_free(&s->m);
 }
 
-static const backend *find_card(void)
+static const msds_executor *find_card(void)
 {
-    for (int i = 0; msds_backends[i]; i++)
-        if (!strcmp(msds_backends[i]->name, "cuda") && !msds_backends[i]->unusable())
-            return msds_backends[i];
+    for (int i = 0; msds_executors[i]; i++)
+        if (!strcmp(msds_executors[i]->is.device, "cuda") && !msds_executors[i]->is.unusable())
+            return msds_executors[i];
     return NULL;
 }
 
@@ -127,7 +127,7 @@ int main(int argc, char **argv)
     static subject subjects[SIZES];
     err e = {0};
     int rounds = argc > 1 ? atoi(argv[1]) : 3;
-    const backend *card = find_card();
+    const msds_executor *card = find_card();
     if (rounds < 1 || rounds > BENCH_ROUNDS) {
         fprintf(stderr, "usage: bench_msds_card [ROUNDS]\n");
         return 2;

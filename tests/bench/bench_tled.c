@@ -41,7 +41,7 @@ typedef struct options {
 
 typedef struct measured {
     const char *model;
-    const backend *device;
+    const tled_executor *device;
     const char *precision;
     bool single;
     double least;            /* s: a round takes at least so long */
@@ -83,10 +83,10 @@ static double say(measured *w, const bench *b, const char *what, int64_t steps)
 {
     const double nodes = (double)b->problem.nodes, elements = (double)b->problem.elements;
     const double middle = middle_of(w->took) / (double)steps, simulated = 1 / b->setup.rate;
-    printf("%s,%s,%d,%s,%s,%.0f,%.0f,%.4g,%" PRId64 ",%d,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,", w->model, w->device->name,
-           pool_threads(b->setup.threads), w->precision, what, elements, nodes, w->bytes / elements, steps, ROUNDS,
-           1e6 * middle, 1e6 * w->took[0] / (double)steps, 1e6 * w->took[ROUNDS - 1] / (double)steps,
-           1e9 * middle / elements, 1e6 * simulated, simulated / middle);
+    printf("%s,%s,%d,%s,%s,%.0f,%.0f,%.4g,%" PRId64 ",%d,%.4g,%.4g,%.4g,%.4g,%.4g,%.4g,", w->model,
+           w->device->is.device, pool_threads(b->setup.threads), w->precision, what, elements, nodes,
+           w->bytes / elements, steps, ROUNDS, 1e6 * middle, 1e6 * w->took[0] / (double)steps,
+           1e6 * w->took[ROUNDS - 1] / (double)steps, 1e9 * middle / elements, 1e6 * simulated, simulated / middle);
     return middle;
 }
 
@@ -117,7 +117,7 @@ static const char *copied_by(const measured *w, double bytes)
 {
     (void)w, (void)bytes;
 #ifdef SINEW_CUDA
-    if (w->device->look && bytes < (double)card_roof_cache(w->card))
+    if (w->device->monitor && bytes < (double)card_roof_cache(w->card))
         return "cache";
 #endif
     return "memory";
@@ -145,7 +145,7 @@ static void probe(measured *w, bench *b, const roof *r, int round)
 {
 #ifdef SINEW_CUDA
     card_rates card;
-    if (w->device->look) {
+    if (w->device->monitor) {
         bench_must(card_roof_take(w->card, w->single, &card, &b->e), &b->e);
         w->copy[round] = strcmp(copied_by(w, bytes_of(&b->problem, w->single)), "memory") ? card.cache : card.memory;
         w->flops[round] = card.flops;
@@ -159,14 +159,14 @@ static void probe(measured *w, bench *b, const roof *r, int round)
 }
 
 /* So many steps, and that they are done. */
-static double time_steps(bench *b, const backend *d, void *state, tled_plan *plan, int64_t steps)
+static double time_steps(bench *b, const tled_executor *d, tled_state *state, tled_plan *plan, int64_t steps)
 {
     tled_sums answer;
     tled_question question = {.time = tled_time(plan, steps), .rest = INFINITY, .raise = 1.01};
     double before = roof_clock();
     bench_must(d->step(state, plan, steps, &b->e), &b->e);
-    if (d->look)
-        bench_must(d->look(state, &question, &answer, &b->e), &b->e); /* waits */
+    if (d->monitor)
+        bench_must(d->monitor(state, &question, &answer, &b->e), &b->e); /* waits */
     plan->first += steps;
     return roof_clock() - before;
 }
@@ -186,13 +186,13 @@ static void measure_steps(measured *w, bench *b)
 {
     tled_plan plan = {.rate = b->setup.rate, .damping = b->setup.damping};
     roof r = {0};
-    if (!w->device->look) {
+    if (!w->device->monitor) {
         const cpu_pass *pass =
             cpu_pass_choose(w->single ? cpu_passes_single : cpu_passes_double, b->problem.form, &b->e);
         bench_must(!pass || roof_make(&r, b->setup.threads, pass->name, &b->e), &b->e);
         w->filled = lanes_filled(b, pass->lanes);
     }
-    void *state = w->device->create(&b->problem, b->setup.threads, &b->e);
+    tled_state *state = w->device->create(&b->problem, b->setup.threads, &b->e);
     bench_must(!state, &b->e);
     int64_t steps = 4;
     while (time_steps(b, w->device, state, &plan, steps) < w->least) /* warm-up */
@@ -201,7 +201,7 @@ static void measure_steps(measured *w, bench *b)
         w->took[i] = time_steps(b, w->device, state, &plan, steps);
         probe(w, b, &r, i);
     }
-    bench_must(w->device->take(state, 0, &b->e), &b->e); /* what a run has: one frame at least */
+    bench_must(w->device->snapshot(state, 0, &b->e), &b->e); /* what a run has: one frame at least */
     w->bytes = (double)w->device->bytes(state);
     w->computed = (double)w->device->computed(state) / (double)b->problem.elements;
     say_shares(w, b, steps);
@@ -265,7 +265,7 @@ static void measure_run(measured *w, bench *b, double every, const char *what, i
 /* One back end in one precision: on the CPU with one thread and with all; on a device runs too. */
 static void measure_device(measured *w, bench *b, const options *o)
 {
-    if (w->device->look) {
+    if (w->device->monitor) {
         measure_steps(w, b);
         int64_t steps = b->setup.check * (int64_t)ceil(3e8 / (double)b->problem.elements / 50 + 20);
         if (o->runs)
@@ -285,7 +285,7 @@ static void measure_device(measured *w, bench *b, const options *o)
 static void measure(const char *name, bench *b, const options *o)
 {
     for (int single = 0; single < 2; single++)
-        for (const backend *const *d = single ? tled_backends_single : tled_backends_double; *d; d++) {
+        for (const tled_executor *const *d = single ? tled_executors_single : tled_executors_double; *d; d++) {
             measured w = {.model = name,
                           .device = *d,
                           .precision = single ? "single" : "double",
@@ -293,7 +293,7 @@ static void measure(const char *name, bench *b, const options *o)
                           .least = o->least,
                           .filled = 1,
                           .card = o->card};
-            if (!(*d)->unusable() && !(o->device && strcmp((*d)->name, o->device)))
+            if (!(*d)->is.unusable() && !(o->device && strcmp((*d)->is.device, o->device)))
                 measure_device(&w, b, o);
         }
 }
@@ -359,7 +359,7 @@ static card_roof *find_card(const options *o)
     err e = {0};
     const char *why;
     card_rates rates;
-    if (!bench_cuda(tled_backends_single, &why) || (o->device && strcmp(o->device, "cuda") != 0))
+    if (!bench_cuda(tled_executors_single, &why) || (o->device && strcmp(o->device, "cuda") != 0))
         return NULL;
     card_roof *r = card_roof_create(&e);
     bench_must(!r, &e);

@@ -16,7 +16,7 @@ static const block muscle = {{6, 3, 3}, {.0025, .0025, .0025}, 3000, .45, 1000, 
 /* ---- a back end that fails */
 
 static struct {
-    const backend *whole;
+    const tled_executor *whole;
     int64_t calls, fatal; /* the call that fails, from 1, as do all after it; 0: none */
 } fault;
 
@@ -28,48 +28,48 @@ static int failing(err *e)
                : 0;
 }
 
-static int bad_step(void *state, const void *plan, int64_t count, err *e)
+static int bad_step(tled_state *state, const tled_plan *plan, int64_t count, err *e)
 {
     return failing(e) ? -1 : fault.whole->step(state, plan, count, e);
 }
 
-static int bad_get(void *state, int what, double *to, err *e)
+static int bad_get(tled_state *state, int what, double *to, err *e)
 {
     return failing(e) ? -1 : fault.whole->get(state, what, to, e);
 }
 
-static int bad_keep(void *state, err *e)
+static int bad_save(tled_state *state, err *e)
 {
-    return failing(e) ? -1 : fault.whole->keep(state, e);
+    return failing(e) ? -1 : fault.whole->save(state, e);
 }
 
-static int bad_back(void *state, err *e)
+static int bad_restore(tled_state *state, err *e)
 {
-    return failing(e) ? -1 : fault.whole->back(state, e);
+    return failing(e) ? -1 : fault.whole->restore(state, e);
 }
 
-static int bad_take(void *state, int slot, err *e)
+static int bad_snapshot(tled_state *state, int slot, err *e)
 {
-    return failing(e) ? -1 : fault.whole->take(state, slot, e);
+    return failing(e) ? -1 : fault.whole->snapshot(state, slot, e);
 }
 
-static int bad_look(void *state, const void *question, void *answer, err *e)
+static int bad_monitor(tled_state *state, const tled_question *question, tled_sums *answer, err *e)
 {
-    return failing(e) ? -1 : fault.whole->look(state, question, answer, e);
+    return failing(e) ? -1 : fault.whole->monitor(state, question, answer, e);
 }
 
-static backend breaking(const backend *device, int64_t fatal)
+static tled_executor breaking(const tled_executor *device, int64_t fatal)
 {
-    backend b = *device;
+    tled_executor b = *device;
     fault.whole = device;
     fault.calls = 0;
     fault.fatal = fatal;
     b.step = bad_step;
     b.get = bad_get;
-    b.keep = bad_keep;
-    b.back = bad_back;
-    b.take = bad_take;
-    b.look = device->look ? bad_look : NULL;
+    b.save = bad_save;
+    b.restore = bad_restore;
+    b.snapshot = bad_snapshot;
+    b.monitor = device->monitor ? bad_monitor : NULL;
     return b;
 }
 
@@ -127,7 +127,7 @@ static void checked(void *context, int64_t step, const watch_sight *sight, doubl
 }
 
 /* rest: to rest, with the damping adapted; else so many steps. */
-static void make(record *r, const backend *device, bool rest)
+static void make(record *r, const tled_executor *device, bool rest)
 {
     static const double gravity[3] = {1, -2, -9.81};
     memset(r, 0, sizeof *r);
@@ -198,7 +198,7 @@ static bool there(const char *name)
 /* ---- */
 
 /* The device fails at call 1, 2, 3, ...; then once more on the way on; then it does not. */
-static void test_fails(const backend *device, const char *name, bool rest)
+static void test_fails(const tled_executor *device, const char *name, bool rest)
 {
     record whole, r;
     int64_t n = 0, said = 0, broken = 0, went_on = 0, twice = 0;
@@ -206,7 +206,7 @@ static void test_fails(const backend *device, const char *name, bool rest)
     int gone = bench_go(&whole.b);
     ok(!gone && whole.frames > 4, "%s: a run of %lld frames, %lld steps %s", name, (long long)whole.frames,
        (long long)whole.b.end.steps, whole.b.e.text);
-    backend b = breaking(device, 0);
+    tled_executor b = breaking(device, 0);
     make(&r, &b, rest);
     gone = begin(&r);
     const int64_t calls = fault.calls, saves = r.saves;
@@ -293,7 +293,7 @@ static void test_damage(void)
     size_t size = 0, size_1 = 0, size_f = 0;
     int64_t flips = 0, cuts = 0, refused = 0, cut_refused = 0;
     const size_t each = getenv("SINEW_LONG") ? 1 : 11;
-    backend b = breaking(&tled_cpu_double, 60);
+    tled_executor b = breaking(&tled_cpu_double, 60);
     make(&r, &b, false);
     begin(&r);
     const double last = checkpoint_saved(r.c);
@@ -363,7 +363,7 @@ static void refused(const record *r, const char *options, const char *want, cons
 static void test_others(void)
 {
     record r;
-    backend b = breaking(&tled_cpu_double, 60);
+    tled_executor b = breaking(&tled_cpu_double, 60);
     make(&r, &b, false);
     begin(&r);
     end(&r, false);
@@ -408,7 +408,7 @@ static void test_left_over(void)
     static const unsigned char kept[] = "what someone keeps";
     record r;
     size_t size = 0;
-    backend b = breaking(&tled_cpu_double, 60);
+    tled_executor b = breaking(&tled_cpu_double, 60);
     make(&r, &b, false);
     begin(&r);
     end(&r, false);
@@ -446,7 +446,7 @@ int main(void)
     test_fails(&tled_cpu_double, "double, to rest", true);
     test_fails(&tled_cpu_single, "single", false);
     test_fails(&tled_cpu_single, "single, to rest", true);
-    const backend *cuda[] = {bench_cuda(tled_backends_double, &why), bench_cuda(tled_backends_single, &why)};
+    const tled_executor *cuda[] = {bench_cuda(tled_executors_double, &why), bench_cuda(tled_executors_single, &why)};
     for (int i = 0; i < 2; i++)
         if (cuda[i]) {
             test_fails(cuda[i], i ? "CUDA, single" : "CUDA, double", false);

@@ -6,7 +6,7 @@
 // needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/msds_cpu.c msds/run/msds_backends.c msds/problem/largest.c
+// needs: msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
 #include "msds_block.h"
 
 #include "base/mem.h"
@@ -21,8 +21,8 @@ typedef struct pair { /* the same model here and there */
     model m;
     msds_problem p;
     pool *threads;
-    const backend *device[2]; /* the CPU, the card */
-    void *state[2];
+    const msds_executor *device[2]; /* the CPU, the card */
+    msds_state *state[2];
     double *u[2], *v[2];
     msds_sight sight[2];
     double worst, force, torque; /* m, N, N m: the largest difference so far */
@@ -32,13 +32,13 @@ typedef struct pair { /* the same model here and there */
     double lever; /* m: the probe's size */
 } pair;
 
-static const backend *find_cuda(const char **why)
+static const msds_executor *find_cuda(const char **why)
 {
     *why = "built without CUDA";
-    for (int i = 0; msds_backends[i]; i++)
-        if (!strcmp(msds_backends[i]->name, "cuda")) {
-            *why = msds_backends[i]->unusable();
-            return *why ? NULL : msds_backends[i];
+    for (int i = 0; msds_executors[i]; i++)
+        if (!strcmp(msds_executors[i]->is.device, "cuda")) {
+            *why = msds_executors[i]->is.unusable();
+            return *why ? NULL : msds_executors[i];
         }
     return NULL;
 }
@@ -54,7 +54,7 @@ static void shake(const tets *b, model *m)
     }
 }
 
-static void make(pair *c, const tets *b, const msds_options *o, bool shaken, const backend *cuda)
+static void make(pair *c, const tets *b, const msds_options *o, bool shaken, const msds_executor *cuda)
 {
     err e = {0};
     largest l;
@@ -107,7 +107,7 @@ static void frame_of(pair *c, const msds_plan *plan, int64_t count)
     err e = {0};
     for (int i = 0; i < 2; i++)
         tets_must(!c->device[i]->step(c->state[i], plan, count, &e) &&
-                      !c->device[i]->look(c->state[i], NULL, &c->sight[i], &e) &&
+                      !c->device[i]->monitor(c->state[i], &c->sight[i], &e) &&
                       !c->device[i]->get(c->state[i], MSDS_DISPLACEMENT, c->u[i], &e) &&
                       !c->device[i]->get(c->state[i], MSDS_VELOCITY, c->v[i], &e),
                   &e);
@@ -152,7 +152,7 @@ typedef struct setting {
     bool shaken;
 } setting;
 
-static void test_same(const setting *g, msds_method method, const backend *cuda, const char *name)
+static void test_same(const setting *g, msds_method method, const msds_executor *cuda, const char *name)
 {
     pair c = {0};
     make(&c, g->block, &g->options, g->shaken, cuda);
@@ -170,7 +170,7 @@ static void test_same(const setting *g, msds_method method, const backend *cuda,
     drop(&c);
 }
 
-static void test_changes(const tets *b, const backend *cuda)
+static void test_changes(const tets *b, const msds_executor *cuda)
 {
     static const msds_method methods[] = {MSDS_SPRINGS, MSDS_FEM, MSDS_SPRINGS, MSDS_EXACT, MSDS_FEM, MSDS_EXACT};
     pair c = {0};
@@ -184,7 +184,7 @@ static void test_changes(const tets *b, const backend *cuda)
     drop(&c);
 }
 
-static void test_repeats(const tets *b, msds_method method, const backend *cuda, const char *name)
+static void test_repeats(const tets *b, msds_method method, const msds_executor *cuda, const char *name)
 {
     err e = {0};
     pair c = {0};
@@ -193,7 +193,7 @@ static void test_repeats(const tets *b, msds_method method, const backend *cuda,
     int different = 0;
     make(&c, b, &o, false, cuda);
     for (int repeat = 0; repeat <= repeats; repeat++) {
-        void *state = cuda->create(&c.p, c.threads, &e);
+        msds_state *state = cuda->create(&c.p, c.threads, &e);
         tets_must(state != NULL, &e);
         for (int i = 0; i < 4; i++) {
             msds_plan plan = tets_plan(method);
@@ -201,8 +201,7 @@ static void test_repeats(const tets *b, msds_method method, const backend *cuda,
             tets_must(!cuda->step(state, &plan, 20, &e), &e);
         }
         double *to = c.u[repeat > 0];
-        tets_must(!cuda->get(state, MSDS_DISPLACEMENT, to, &e) && !cuda->look(state, NULL, &c.sight[repeat > 0], &e),
-                  &e);
+        tets_must(!cuda->get(state, MSDS_DISPLACEMENT, to, &e) && !cuda->monitor(state, &c.sight[repeat > 0], &e), &e);
         different += repeat > 0 && (memcmp(c.u[0], c.u[1], 3 * (size_t)c.p.nodes * sizeof *to) != 0 ||
                                     memcmp(c.sight[0].force, c.sight[1].force, sizeof c.sight[0].force) != 0);
         cuda->destroy(state);
@@ -211,7 +210,7 @@ static void test_repeats(const tets *b, msds_method method, const backend *cuda,
     drop(&c);
 }
 
-static void test_refused(const backend *cuda)
+static void test_refused(const msds_executor *cuda)
 {
     static const tets b = {{4, 3, 3}, {.03, .02, .02}, 1e4, .3, 1000, 2, false};
     pair c = {0};
@@ -255,7 +254,7 @@ static probe prism(void)
     return p;
 }
 
-static void test_shapes(msds_method method, const backend *cuda, const char *name)
+static void test_shapes(msds_method method, const msds_executor *cuda, const char *name)
 {
     const probe shapes[] = {probe_linear(.03, .01, .0025), probe_curved(.03, 1.2, .014, .003), prism()};
     static const char *const names[] = {"linear", "curved", "convex"};
@@ -267,7 +266,7 @@ static void test_shapes(msds_method method, const backend *cuda, const char *nam
     }
 }
 
-static void test_method(msds_method method, const backend *cuda, const char *name)
+static void test_method(msds_method method, const msds_executor *cuda, const char *name)
 {
     char what[80];
     const tets *all[] = {&small, &odd, &paper, &large};
@@ -298,7 +297,7 @@ int main(int argc, char **argv)
 {
     shortened = argc > 1 && !strcmp(argv[1], "small");
     const char *why;
-    const backend *cuda = find_cuda(&why);
+    const msds_executor *cuda = find_cuda(&why);
     if (!cuda) {
         skip(1, why);
         return done_testing();

@@ -20,12 +20,12 @@ static double *run_frames(const msds_problem *p, const msds_plan *plan, int thre
 {
     err e = {0};
     pool *workers = pool_create(threads, &e);
-    void *state = workers ? msds_cpu.create(p, workers, &e) : NULL;
+    msds_state *state = workers ? msds_cpu.create(p, workers, &e) : NULL;
     double *u = mem_array(p->nodes, 3 * sizeof *u, "test", &e);
     tets_must(state && u, &e);
     for (int i = 0; i < count; i++)
         tets_must(!msds_cpu.step(state, plan, iterations, &e), &e);
-    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, u, &e) && !msds_cpu.look(state, NULL, sight, &e), &e);
+    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, u, &e) && !msds_cpu.monitor(state, sight, &e), &e);
     msds_cpu.destroy(state);
     pool_destroy(workers);
     return u;
@@ -196,7 +196,7 @@ static void test_momentum(void)
         size += p.weight[i / 3] * fabs(p.velocity[i]);
     }
     pool *workers = pool_create(2, &e);
-    void *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
+    msds_state *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
     double *v = mem_array(p.nodes, 3 * sizeof *v, "test", &e);
     msds_plan plan = tets_plan(MSDS_SPRINGS);
     tets_must(state && v, &e);
@@ -212,7 +212,7 @@ static void test_momentum(void)
 }
 
 /* The sum of what nodes carry, inertia times velocity. */
-static void sum_momentum(const msds_problem *p, void *state, double *v, double sum[3])
+static void sum_momentum(const msds_problem *p, msds_state *state, double *v, double sum[3])
 {
     err e = {0};
     tets_must(!msds_cpu.get(state, MSDS_VELOCITY, v, &e), &e);
@@ -233,13 +233,13 @@ static void test_push(void)
     double before[3], after[3];
     make_problem(&b, &o, &m, &p);
     pool *workers = pool_create(2, &e);
-    void *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
+    msds_state *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
     double *v = mem_array(p.nodes, 3 * sizeof *v, "test", &e);
     msds_plan plan = tets_plan(MSDS_SPRINGS);
     tets_press(&plan, .04, .055, .045, .09);
     tets_must(state && v, &e);
     for (int i = 0; i < 4; i++) {
-        tets_must(!msds_cpu.step(state, &plan, 3, &e) && !msds_cpu.look(state, NULL, &sight, &e), &e);
+        tets_must(!msds_cpu.step(state, &plan, 3, &e) && !msds_cpu.monitor(state, &sight, &e), &e);
         sum_momentum(&p, state, v, before);
         tets_must(!msds_cpu.step(state, &plan, 1, &e), &e);
         sum_momentum(&p, state, v, after);
@@ -515,7 +515,7 @@ static void test_bad(void)
     make_any(two_x, 5, two, 2, 5000, &m);
     tets_must(!msds_problem_make(&p, &m, &o, &e), &e);
     pool *workers = pool_create(1, &e);
-    void *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
+    msds_state *state = workers ? msds_cpu.create(&p, workers, &e) : NULL;
     msds_plan plan = tets_plan(MSDS_EXACT);
     ok(state && msds_cpu.step(state, &plan, 1, &e) && strstr(e.text, "nothing holds"), "%s", e.text);
     msds_cpu.destroy(state);

@@ -34,12 +34,12 @@ static void press(pressed *s, const tets *b, const msds_plan *plan, int frames, 
     tets_must(!msds_problem_make(&s->p, &s->m, &o, &e) && !largest_of(&s->p, &l, &e), &e);
     s->p.mass_factor = fmax(1, largest_factor(l.bound, o.damping, .01));
     pool *workers = pool_create(1, &e);
-    void *state = workers ? msds_cpu.create(&s->p, workers, &e) : NULL;
+    msds_state *state = workers ? msds_cpu.create(&s->p, workers, &e) : NULL;
     s->u = mem_array(s->p.nodes, 3 * sizeof *s->u, "test", &e);
     tets_must(state && s->u, &e);
     for (int i = 0; i < frames; i++)
         tets_must(!msds_cpu.step(state, plan, iterations, &e), &e);
-    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, s->u, &e) && !msds_cpu.look(state, NULL, &s->sight, &e), &e);
+    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, s->u, &e) && !msds_cpu.monitor(state, &s->sight, &e), &e);
     msds_cpu.destroy(state);
     pool_destroy(workers);
 }

@@ -13,7 +13,9 @@
 enum { NODES = 50, SLOTS = 3, NEVER = 1 << 20 };
 
 /* A device whose frame is the number in its slot, and what came of its frames. */
-typedef struct world {
+typedef struct tled_state world;
+
+struct tled_state {
     int64_t slot[SLOTS];
     int64_t bad_fetch, bad_write; /* frames that fail */
     int64_t fetched, written;
@@ -21,12 +23,10 @@ typedef struct world {
     bool beside; /* the first waits, while it is written, for the second to be fetched; false once that was in vain */
     pthread_mutex_t lock;
     pthread_cond_t changed;
-} world;
+};
 
-static int fetch(void *state, int slot, void *to, err *e)
+static int fetch(world *w, int slot, const field_values *t, err *e)
 {
-    world *w = state;
-    const field_values *t = to;
     pthread_mutex_lock(&w->lock);
     const int64_t number = w->slot[slot];
     for (int i = 0; i < 3 * NODES; i++)
@@ -65,7 +65,7 @@ static int put(void *context, double time, const field_values *state, err *e)
 static int64_t send_all(world *w, int64_t frames, err *e)
 {
     const tled_problem p = {.nodes = NODES, .fields = tled_fields(NODES, 0)};
-    const backend device = {.taken = fetch};
+    const tled_executor device = {.fetch = fetch};
     int64_t i = 0;
     outbox *o = outbox_create(&p, &device, w, put, w, e);
     ok(o, "an outbox");

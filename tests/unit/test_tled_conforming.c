@@ -20,8 +20,8 @@ typedef struct setting {
     script s;
     tled_problem p;
     pool *threads;
-    const backend *device;
-    void *state;
+    const tled_executor *device;
+    tled_state *state;
 } setting;
 
 static void die(const char *why)
@@ -75,8 +75,8 @@ static void begin(setting *s, block b, bool boxes, double by, double kappa, int 
     if (boxes == (s->p.conforming != NULL))
         die("a lattice is a lattice");
     s->threads = pool_create(threads, &e);
-    s->device = backend_choose(precision == BY_SINGLE ? tled_backends_single : tled_backends_double, "cpu",
-                               (char[300]){0}, 300, &e);
+    s->device = tled_executor_choose(precision == BY_SINGLE ? tled_executors_single : tled_executors_double, "cpu",
+                                     (char[300]){0}, 300, &e);
     s->state = s->threads && s->device ? s->device->create(&s->p, s->threads, &e) : NULL;
     if (!s->state)
         die(e.text);

@@ -54,8 +54,8 @@ static void add_pushes(bench *b)
     read_script(b, text);
 }
 
-static void test_bytes(const block *what, double level, bool scripted, int64_t steps, const backend *cpu,
-                       const backend *cuda, const char *name)
+static void test_bytes(const block *what, double level, bool scripted, int64_t steps, const tled_executor *cpu,
+                       const tled_executor *cuda, const char *name)
 {
     bench here, there;
     make(&here, what, level, scripted, cpu, steps);
@@ -70,9 +70,9 @@ static void test_bytes(const block *what, double level, bool scripted, int64_t s
 }
 
 /* Threads or cells that the card has for each element. */
-static double computed(bench *b, const backend *cuda)
+static double computed(bench *b, const tled_executor *cuda)
 {
-    void *state = cuda->create(&b->problem, b->setup.threads, &b->e);
+    tled_state *state = cuda->create(&b->problem, b->setup.threads, &b->e);
     bench_must(!state, &b->e);
     const double each = (double)cuda->computed(state) / (double)b->problem.elements;
     cuda->destroy(state);
@@ -106,7 +106,7 @@ static void compare_marched(bench *here, bench *there, const char *name)
     bench_free(there);
 }
 
-static void test_marched(const block *what, double level, bool scripted, int64_t steps, const backend *cuda,
+static void test_marched(const block *what, double level, bool scripted, int64_t steps, const tled_executor *cuda,
                          const char *name)
 {
     bench here, there;
@@ -116,7 +116,7 @@ static void test_marched(const block *what, double level, bool scripted, int64_t
 }
 
 /* Few elements, so that tools which watch every access of a card get through it. */
-static void test_marched_small(const block *what, int64_t steps, const backend *cuda, const char *name)
+static void test_marched_small(const block *what, int64_t steps, const tled_executor *cuda, const char *name)
 {
     bench here, there;
     make(&here, what, .5, false, &tled_cpu_double, steps);
@@ -126,7 +126,7 @@ static void test_marched_small(const block *what, int64_t steps, const backend *
     compare_marched(&here, &there, name);
 }
 
-static void test_all_marched(const backend *cuda)
+static void test_all_marched(const tled_executor *cuda)
 {
     bench b;
     make(&b, &large, .2, false, cuda, 0);
@@ -153,7 +153,7 @@ static void test_all_marched(const backend *cuda)
     test_marched(&cut, 0, true, 60, cuda, "mixed elements, a script");
 }
 
-static void test_all_bytes(const backend *cpu, const backend *cuda, const char *name)
+static void test_all_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
 {
     char what[80];
     snprintf(what, sizeof what, "%s, a script", name);
@@ -179,7 +179,7 @@ static void test_all_bytes(const backend *cpu, const backend *cuda, const char *
 }
 
 /* By default settings: the step may be cut, at times that differ by what single precision does to the stable step. */
-static void test_long(const backend *cuda, const char *name)
+static void test_long(const tled_executor *cuda, const char *name)
 {
     bench here, there;
     const double gravity[3] = {1, -2, -9.81};
@@ -195,14 +195,14 @@ static void test_long(const backend *cuda, const char *name)
     bench_free(&there);
 }
 
-static void test_rest(const backend *cuda, const char *name, double tolerance)
+static void test_rest(const tled_executor *cuda, const char *name, double tolerance)
 {
     bench here, there;
     const double gravity[3] = {0, 0, -9.81};
     bench_make(&here, &lump, gravity, 0, .0075, 2);
     bench_make(&there, &lump, gravity, 0, .0075, 2);
     there.setup.device = cuda;
-    there.setup.single = cuda == tled_backends_single[0];
+    there.setup.single = cuda == tled_executors_single[0];
     here.setup.rest = there.setup.rest = tolerance;
     int gone = bench_go(&here) | bench_go(&there);
     ok(!gone && there.end.rested && apart(&there, &here) < 2 * tolerance,
@@ -212,7 +212,7 @@ static void test_rest(const backend *cuda, const char *name, double tolerance)
     bench_free(&there);
 }
 
-static void test_repeats(const backend *cuda, const char *name)
+static void test_repeats(const tled_executor *cuda, const char *name)
 {
     bench first, b;
     int different = 0, gone = 0;
@@ -229,7 +229,7 @@ static void test_repeats(const backend *cuda, const char *name)
 }
 
 /* From one state, again and again. */
-static void test_again(const block *what, const backend *cuda, const char *name)
+static void test_again(const block *what, const tled_executor *cuda, const char *name)
 {
     bench b;
     int different = 0;
@@ -238,15 +238,15 @@ static void test_again(const block *what, const backend *cuda, const char *name)
     plan.rate = b.setup.rate;
     const size_t size = 3 * (size_t)b.problem.nodes * sizeof(double);
     double *first = malloc(size), *now = malloc(size);
-    void *state = cuda->create(&b.problem, b.setup.threads, &b.e);
-    bench_must(!state || !first || !now || cuda->step(state, &plan, 100, &b.e) || cuda->keep(state, &b.e), &b.e);
+    tled_state *state = cuda->create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || !first || !now || cuda->step(state, &plan, 100, &b.e) || cuda->save(state, &b.e), &b.e);
     plan.first = 100;
     for (int i = 0; i < 100; i++) {
         bench_must(cuda->step(state, &plan, 20, &b.e) || cuda->get(state, TLED_DISPLACEMENT, now, &b.e), &b.e);
         if (!i)
             memcpy(first, now, size);
         different += memcmp(first, now, size) != 0;
-        bench_must(cuda->back(state, &b.e), &b.e);
+        bench_must(cuda->restore(state, &b.e), &b.e);
     }
     ok(!different && first[0] == first[0], "%s: 100 repeats, the same bytes", name);
     cuda->destroy(state);
@@ -256,7 +256,7 @@ static void test_again(const block *what, const backend *cuda, const char *name)
 }
 
 /* Diverging here and there: the same step, time and element. */
-static void test_diverged(const backend *cpu, const backend *cuda)
+static void test_diverged(const tled_executor *cpu, const tled_executor *cuda)
 {
     bench here, there;
     make(&here, &muscle, 1, false, cpu, 100000);
@@ -271,16 +271,16 @@ static void test_diverged(const backend *cpu, const backend *cuda)
 
 /* The card's memory: with frames, or in a run to rest and with frames, at most so many
  * bytes an element in single precision. */
-static void test_memory(const block *what, bool rests, const backend *cuda, double most)
+static void test_memory(const block *what, bool rests, const tled_executor *cuda, double most)
 {
     bench b;
     tled_sums sums;
     tled_question question = {.rest = INFINITY, .raise = 1.01, .differences = rests};
     bench_make(&b, what, NULL, 0, .0075, 2);
-    void *state = cuda->create(&b.problem, b.setup.threads, &b.e);
-    bench_must(!state || cuda->look(state, &question, &sums, &b.e), &b.e);
+    tled_state *state = cuda->create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || cuda->monitor(state, &question, &sums, &b.e), &b.e);
     double each = (double)cuda->bytes(state) / (double)b.problem.elements;
-    bench_must(cuda->take(state, 0, &b.e), &b.e);
+    bench_must(cuda->snapshot(state, 0, &b.e), &b.e);
     double frames = (double)cuda->bytes(state) / (double)b.problem.elements;
     ok(each > 40 && frames >= each && frames <= most, "single%s: %lld elements, %.4g bytes each, %.4g with frames",
        rests ? ", to rest" : "", (long long)b.problem.elements, each, frames);
@@ -312,7 +312,8 @@ static void test_messages(bool have_card)
 int main(void)
 {
     const char *why;
-    const backend *twice = bench_cuda(tled_backends_double, &why), *once = bench_cuda(tled_backends_single, &why);
+    const tled_executor *twice = bench_cuda(tled_executors_double, &why),
+                        *once = bench_cuda(tled_executors_single, &why);
     test_messages(twice != NULL);
     if (!twice || !once) {
         skip(1, why);

@@ -222,7 +222,7 @@ static void test_cpu(const tled_problem *p, int threads, const char *name)
     err e = {0};
     pool *threads_of = pool_create(threads, &e);
     double *want = calloc((size_t)p->nodes * 3, sizeof *want), *got = calloc((size_t)p->nodes * 3, sizeof *got);
-    void *state = threads_of ? tled_cpu_double.create(p, threads_of, &e) : NULL;
+    tled_state *state = threads_of ? tled_cpu_double.create(p, threads_of, &e) : NULL;
     if (!want || !got || !state) {
         printf("Bail out! %s\n", e.text);
         exit(1);

@@ -77,7 +77,7 @@ typedef struct answer {
 } answer;
 
 /* Steps up to `last`: now some at once, whose middle passes a march makes in one launch, now one. */
-static int go_on(const backend *device, void *state, tled_plan *plan, int64_t last, err *e)
+static int go_on(const tled_executor *device, tled_state *state, tled_plan *plan, int64_t last, err *e)
 {
     for (int64_t count; plan->first < last; plan->first += count) {
         count = plan->first % 4 == 0 && plan->first + 3 <= last ? 3 : 1;
@@ -88,15 +88,15 @@ static int go_on(const backend *device, void *state, tled_plan *plan, int64_t la
 }
 
 /* As in a run to rest, where the back end looks itself. */
-static int look_for_rest(const backend *device, void *state, err *e)
+static int look_for_rest(const tled_executor *device, tled_state *state, err *e)
 {
     tled_sums sums;
     const tled_question question = {.rest = INFINITY, .raise = 1.01, .differences = true};
-    return device->look ? device->look(state, &question, &sums, e) : 0;
+    return device->monitor ? device->monitor(state, &question, &sums, e) : 0;
 }
 
 /* `steps` steps, after one that is taken back, and one more. */
-static void find(answer *a, const trial *t, const backend *device, int64_t steps)
+static void find(answer *a, const trial *t, const tled_executor *device, int64_t steps)
 {
     block what = t->what;
     if (t->cells[0])
@@ -109,13 +109,14 @@ static void find(answer *a, const trial *t, const backend *device, int64_t steps
     a->numbers = calloc(PARTS * (size_t)a->count, sizeof *a->numbers);
     field_values first = {{a->numbers, a->numbers + a->count}},
                  second = {{a->numbers + 4 * a->count, a->numbers + 5 * a->count}};
-    void *state = device->create(&b->problem, b->setup.threads, &b->e);
+    tled_state *state = device->create(&b->problem, b->setup.threads, &b->e);
     a->gone = !a->numbers || !state || (t->rests && look_for_rest(device, state, &b->e)) ||
-              device->keep(state, &b->e) || go_on(device, state, &once, 1, &b->e) || device->back(state, &b->e) ||
+              device->save(state, &b->e) || go_on(device, state, &once, 1, &b->e) || device->restore(state, &b->e) ||
               go_on(device, state, &plan, steps, &b->e) ||
-              device->get(state, TLED_INTERNAL, a->numbers + 2 * a->count, &b->e) || device->take(state, 0, &b->e) ||
-              go_on(device, state, &plan, steps + 1, &b->e) || device->take(state, 1, &b->e) ||
-              device->taken(state, 0, &first, &b->e) || device->taken(state, 1, &second, &b->e) ||
+              device->get(state, TLED_INTERNAL, a->numbers + 2 * a->count, &b->e) ||
+              device->snapshot(state, 0, &b->e) || go_on(device, state, &plan, steps + 1, &b->e) ||
+              device->snapshot(state, 1, &b->e) || device->fetch(state, 0, &first, &b->e) ||
+              device->fetch(state, 1, &second, &b->e) ||
               device->get(state, TLED_DISPLACEMENT, a->numbers + 3 * a->count, &b->e);
     device->destroy(state);
 }
@@ -147,8 +148,8 @@ static double off(const answer *a, const answer *b)
 }
 
 /* The CPU's answer, to within a share, or its very bytes; and the same bytes by other lots, and in other units. */
-static void try(const trial *t, const emulated_card *card, const backend *device, const backend *cpu, int64_t steps,
-                double tolerance)
+static void try(const trial *t, const emulated_card *card, const tled_executor *device, const tled_executor *cpu,
+                int64_t steps, double tolerance)
 {
     answer here, there, again;
     find(&here, t, cpu, steps);
@@ -263,8 +264,8 @@ static tled_sums look_by(uint64_t seed)
     put_in(&plain, seed, 4);
     make(&b, &lump, 0, true, &tled_cuda_single, 1);
     bend(&b);
-    void *state = tled_cuda_single.create(&b.problem, b.setup.threads, &b.e);
-    bench_must(!state || tled_cuda_single.keep(state, &b.e) || tled_cuda_single.look(state, &question, &sums, &b.e),
+    tled_state *state = tled_cuda_single.create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || tled_cuda_single.save(state, &b.e) || tled_cuda_single.monitor(state, &question, &sums, &b.e),
                &b.e);
     tled_cuda_single.destroy(state);
     bench_free(&b);
@@ -290,7 +291,7 @@ static void test_looks(int64_t steps)
 static int march_at_once(emulated_omission what, uint64_t seed, double *to, err *e)
 {
     const block mixed = mixed_of(lump);
-    const backend *device = &tled_cuda_single;
+    const tled_executor *device = &tled_cuda_single;
     emulated_card omits = marching;
     bench b;
     omits.omission = what;
@@ -298,7 +299,7 @@ static int march_at_once(emulated_omission what, uint64_t seed, double *to, err 
     make(&b, &mixed, 0, true, device, 1);
     bend(&b);
     const tled_plan plan = {.origin = b.problem.start, .rate = b.setup.rate, .damping = b.setup.damping};
-    void *state = device->create(&b.problem, b.setup.threads, e);
+    tled_state *state = device->create(&b.problem, b.setup.threads, e);
     const int gone =
         !state || device->step(state, &plan, OMITTED_STEPS, e) || device->get(state, TLED_DISPLACEMENT, to, e);
     device->destroy(state);
@@ -339,13 +340,13 @@ static void test_omissions(void)
 }
 
 /* Displacements after `steps` steps in one call, and two, from a bent state. */
-static void call_once(const block *what, const backend *device, int64_t steps, double *to)
+static void call_once(const block *what, const tled_executor *device, int64_t steps, double *to)
 {
     bench b;
     make(&b, what, 0, false, device, 1);
     bend(&b);
     tled_plan plan = {.origin = b.problem.start, .rate = b.setup.rate, .damping = b.setup.damping};
-    void *state = device->create(&b.problem, b.setup.threads, &b.e);
+    tled_state *state = device->create(&b.problem, b.setup.threads, &b.e);
     bench_must(!state || device->step(state, &plan, steps, &b.e), &b.e);
     plan.first += steps;
     bench_must(device->step(state, &plan, 2, &b.e) || device->get(state, TLED_DISPLACEMENT, to, &b.e), &b.e);

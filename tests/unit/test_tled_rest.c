@@ -9,7 +9,7 @@ static const block beam = {{32, 8, 8}, {.0025, .0025, .0025}, 30000, .45, 1000, 
 static const double down[3] = {0, 0, -9.81};
 
 /* The displacement along z of node (i, j, k) at rest. */
-static double sag(const block *what, double kappa, const backend *device, int32_t i, int32_t j, int32_t k)
+static double sag(const block *what, double kappa, const tled_executor *device, int32_t i, int32_t j, int32_t k)
 {
     bench b;
     bench_make(&b, what, down, 0, kappa, 2);
@@ -56,7 +56,7 @@ static void test_stuck(const block *what)
 
 int main(void)
 {
-    const backend *twice = &tled_cpu_double, *once = &tled_cpu_single;
+    const tled_executor *twice = &tled_cpu_double, *once = &tled_cpu_single;
     double z = sag(&cube, .0075, twice, 4, 4, 0);
     near_(z, -1.8191e-2, .005 * 1.8191e-2, "the cube's bottom centre: %.5g m, C3D8R to 0.5 %%", z);
     z = sag(&cube, .0075, once, 4, 4, 0);

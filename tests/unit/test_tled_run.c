@@ -42,7 +42,7 @@ static double norm(const double *x)
 }
 
 /* 10,000 steps without damping, in parts, so that the worst on the way is seen. */
-static void test_conserved(const backend *device, const char *name)
+static void test_conserved(const tled_executor *device, const char *name)
 {
     bench b;
     double linear[3], angular[3], l[3], a[3], first = 0, gap_l = 0, gap_a = 0, gap_e = 0;
@@ -78,7 +78,7 @@ static bool same(const bench *a, const bench *b)
 }
 
 /* A run of 300 steps, at once on one thread; on 2 and 3; in two parts. */
-static void test_same_bytes(const backend *device, const char *name)
+static void test_same_bytes(const tled_executor *device, const char *name)
 {
     int gone;
     const double gravity[3] = {1, -2, -9.81};
@@ -120,7 +120,7 @@ static void test_same_bytes(const backend *device, const char *name)
 
 /* An end between two steps: of a body that falls, u = -g t^2/2 and v = -g t there, which these steps have exactly,
  * whatever their length. In one step, or many; cut in parts too. */
-static void test_end(const backend *device, double tolerance, const char *name)
+static void test_end(const tled_executor *device, double tolerance, const char *name)
 {
     static const double end[] = {1e-7, .0003, .0123457, .02}, gravity[3] = {0, 0, -9.81};
     for (int i = 0; i < 4; i++) {
@@ -147,7 +147,7 @@ static void test_end(const backend *device, double tolerance, const char *name)
 
 /* The same where steps are cut on the way there, which ends on 1 and 2 threads at the same bytes; and is what many more
  * steps come to. */
-static void test_end_cut(const backend *device, const char *name)
+static void test_end_cut(const tled_executor *device, const char *name)
 {
     bench b[3];
     for (int i = 0; i < 3; i++) {
@@ -259,7 +259,7 @@ static void test_step_too_large(void)
 }
 
 /* A jump breaks the steps that the state before it allows: they are taken again, cut; whatever threads and frames. */
-static void test_jump(const backend *device, const char *name)
+static void test_jump(const tled_executor *device, const char *name)
 {
     bench first = {0}, b = {0};
     block fixed = muscle;
@@ -339,7 +339,7 @@ static void test_diverged(void)
     b.setup.rate_fixed = true;
     b.setup.check = 2000;
     watch *w = watch_create(&b.problem, b.setup.threads, &b.e);
-    void *state = b.setup.device->create(&b.problem, b.setup.threads, &b.e);
+    tled_state *state = b.setup.device->create(&b.problem, b.setup.threads, &b.e);
     tled_plan plan = {.rate = b.setup.rate};
     b.setup.device->step(state, &plan, 2000, &b.e);
     gone = watch_look(w, b.setup.device, state, 1, &b.e);
@@ -402,7 +402,7 @@ static void count_checks(void *context, int64_t step, const watch_sight *sight, 
 
 /* A frame that cannot be written ends the run soon, whether frames are taken on the
  * way or steps are taken again for them. */
-static void test_frame_fails(const backend *device, const char *name)
+static void test_frame_fails(const tled_executor *device, const char *name)
 {
     static const double every[] = {1e-9, .0007, .0123};
     static const char *const want[] = {"no room at 0.000909091 s", "no room at 0.00295455 s", "no room at 0.0493182 s"};
@@ -441,28 +441,29 @@ static const char *no_device(void)
 
 static void test_choice(void)
 {
-    static const backend broken = {.name = "cuda", .unusable = no_device};
-    const backend *both[] = {&broken, &tled_cpu_double, NULL}, *none[] = {&broken, NULL}, *without[] = {both[1], NULL};
+    static const tled_executor broken = {.is = {.device = "cuda", .unusable = no_device}};
+    const tled_executor *both[] = {&broken, &tled_cpu_double, NULL}, *none[] = {&broken, NULL},
+                        *without[] = {both[1], NULL};
     char says[100];
     err e = {0};
-    const backend *took = backend_choose(both, "auto", says, sizeof says, &e);
+    const tled_executor *took = tled_executor_choose(both, "auto", says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu (cuda: no device)"), "auto: %s", says);
-    took = backend_choose(both, "cpu", says, sizeof says, &e);
+    took = tled_executor_choose(both, "cpu", says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu"), "by name");
-    took = backend_choose(both, "cuda", says, sizeof says, &e);
+    took = tled_executor_choose(both, "cuda", says, sizeof says, &e);
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
     e = (err){0};
-    took = backend_choose(without, "cuda", says, sizeof says, &e);
+    took = tled_executor_choose(without, "cuda", says, sizeof says, &e);
     ok(!took && !strcmp(e.text, "this build has no CUDA back end; have: cpu"), "%s", e.text);
     e = (err){0};
-    took = backend_choose(none, "auto", says, sizeof says, &e);
+    took = tled_executor_choose(none, "auto", says, sizeof says, &e);
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
 }
 
 /* Half of each element is tissue: half the mass, and half of all forces. Under gravity and in contraction it moves as
  * if it were whole; what a force moves, it moves as twice the force does. And where the shares differ from element to
  * element the step at rest is what it was, and stable. */
-static void test_fraction(const backend *device, const char *name)
+static void test_fraction(const tled_executor *device, const char *name)
 {
     const double gravity[3] = {3, -2, -9.81};
     bench whole, half, mixed;
@@ -491,7 +492,7 @@ static void test_fraction(const backend *device, const char *name)
 }
 
 /* What holds for every back end, in one precision. */
-static void test_device(const backend *device, const char *name)
+static void test_device(const tled_executor *device, const char *name)
 {
     test_conserved(device, name);
     test_same_bytes(device, name);
@@ -523,7 +524,7 @@ int main(void)
     test_place(false);
     test_let_go();
     const char *why;
-    const backend *cuda[] = {bench_cuda(tled_backends_double, &why), bench_cuda(tled_backends_single, &why)};
+    const tled_executor *cuda[] = {bench_cuda(tled_executors_double, &why), bench_cuda(tled_executors_single, &why)};
     for (int i = 0; i < 2; i++)
         if (cuda[i])
             test_device(cuda[i], i ? "CUDA, single" : "CUDA, double");

@@ -16,11 +16,11 @@
 #include <string.h>
 
 /* The CUDA back end of a table, or NULL with the reason where there is none that can be used. */
-static inline const backend *bench_cuda(const backend *const *table, const char **why)
+static inline const tled_executor *bench_cuda(const tled_executor *const *table, const char **why)
 {
     for (*why = "built without CUDA"; *table; table++)
-        if (!strcmp((*table)->name, "cuda")) {
-            *why = (*table)->unusable();
+        if (!strcmp((*table)->is.device, "cuda")) {
+            *why = (*table)->is.unusable();
             return *why ? NULL : *table;
         }
     return NULL;
@@ -135,11 +135,11 @@ static inline void bench_free(bench *b)
 }
 
 /* The stable step that a device's look finds of a block at rest, as a share of that at rest. */
-static inline double bench_look_at_rest(const block *what, const backend *device)
+static inline double bench_look_at_rest(const block *what, const tled_executor *device)
 {
     bench b;
     bench_make(&b, what, NULL, 0, .0075, 1);
-    void *state = device->create(&b.problem, b.setup.threads, &b.e);
+    tled_state *state = device->create(&b.problem, b.setup.threads, &b.e);
     watch *w = watch_create(&b.problem, b.setup.threads, &b.e);
     bench_must(!state || !w || watch_look(w, device, state, 0, &b.e), &b.e);
     const double share = w->sight.stable / step_at_rest(&b.problem, NULL);

@@ -53,7 +53,8 @@ static inline void express_second(tled_problem *p)
 }
 
 /* So many steps of a fraction of the stable one, which is never cut, so that both take the same. */
-static inline void make(bench *b, const block *what, double level, bool scripted, const backend *device, int64_t steps)
+static inline void make(bench *b, const block *what, double level, bool scripted, const tled_executor *device,
+                        int64_t steps)
 {
     bench_make(b, what, NULL, level, .0075, 2);
     if (scripted)
@@ -74,16 +75,16 @@ static inline bool close_to(double a, double b, double tolerance)
 }
 
 /* The device's look, after so many steps and as many more, against that of the watch on what get() gives. */
-static inline void test_look(const block *what, bool scripted, int64_t steps, const backend *cuda, const char *name,
-                             double tolerance)
+static inline void test_look(const block *what, bool scripted, int64_t steps, const tled_executor *cuda,
+                             const char *name, double tolerance)
 {
     bench b;
-    backend blind = *cuda;
+    tled_executor blind = *cuda;
     tled_plan plan = {0};
-    blind.look = NULL;
+    blind.monitor = NULL;
     make(&b, what, scripted ? 0 : .8, scripted, cuda, steps);
     plan.rate = b.setup.rate;
-    void *state = cuda->create(&b.problem, b.setup.threads, &b.e);
+    tled_state *state = cuda->create(&b.problem, b.setup.threads, &b.e);
     watch *w = watch_create(&b.problem, b.setup.threads, &b.e), *v = watch_create(&b.problem, b.setup.threads, &b.e);
     bench_must(!state || !w || !v, &b.e);
     w->differences = v->differences = true;

@@ -1,9 +1,10 @@
-/* The CPU back end of tled-run, in its two precisions. Each is complete in itself; a state belongs to who created it. */
+/* The CPU executors of tled-run, in its two precisions. Each is complete in itself; a state belongs to who created
+ * it. */
 #ifndef SINEW_CPU_H
 #define SINEW_CPU_H
 
-#include "solve/backend.h"
+#include "tled/problem/tled_executor.h"
 
-extern const backend tled_cpu_double, tled_cpu_single;
+extern const tled_executor tled_cpu_double, tled_cpu_single;
 
 #endif

@@ -1,4 +1,4 @@
-/* The CPU back end: memory around cpu_pass.h, and the passes in their order. Compiled twice, by cpu_double.c and
+/* The CPU executor: memory around cpu_pass.h, and the passes in their order. Compiled twice, by cpu_double.c and
  * cpu_single.c, which choose the precision and name the table of functions. All that is here is static.
  *
  * Of `count` steps, the first pass begins one, each after it ends one and begins the next, the last ends one and leaves the
@@ -21,7 +21,9 @@ typedef float number;
 typedef double number;
 #endif
 
-typedef struct cpu_state {
+typedef struct tled_state cpu_state;
+
+struct tled_state {
     const tled_problem *p;
     pool *threads;
     const cpu_pass *pass;
@@ -35,13 +37,13 @@ typedef struct cpu_state {
     number *mixfibre, *mixture, *law;        /* likewise; law: a law's numbers x */
     number *shape, *force;                   /* without a lattice: cpu_work's, as is: */
     int32_t *group_node;
-    number *kept; /* displacement, then velocity; made when first wanted, as are: */
-    number *taken[TLED_TAKEN];
+    number *saved; /* displacement, then velocity; made when first wanted, as are: */
+    number *slot[TLED_SLOTS];
     bool spare_is_internal;
     double time;        /* where the state stands */
     double *now, *next; /* the curves' values */
     cpu_work work;
-} cpu_state;
+};
 
 #include "tled/cpu/cpu_mesh.h"
 
@@ -107,25 +109,23 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
     }
 }
 
-static int cpu_step(void *state, const void *plan, int64_t count, err *e)
+static int cpu_step(cpu_state *s, const tled_plan *plan, int64_t count, err *e)
 {
-    cpu_state *s = state;
-    const tled_plan *t = plan;
     (void)e;
     if (count < 1)
         return 0;
-    tled_curves(s->p, tled_time(t, 0), s->now);
+    tled_curves(s->p, tled_time(plan, 0), s->now);
     for (int64_t i = 0; i <= count; i++) {
         if (i < count)
-            tled_curves(s->p, tled_time(t, i + 1), s->next);
-        run_pass(s, t, tled_time(t, i), (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL));
+            tled_curves(s->p, tled_time(plan, i + 1), s->next);
+        run_pass(s, plan, tled_time(plan, i), (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL));
         if (i < count) {
             double *swap = s->now;
             s->now = s->next;
             s->next = swap;
         }
     }
-    s->time = tled_time(t, count);
+    s->time = tled_time(plan, count);
     return 0;
 }
 
@@ -145,9 +145,8 @@ static void put_in(const cpu_state *s, const double *from, number *to)
             to[a * s->rows.nodes + s->rows.place[n]] = (number)from[3 * n + a];
 }
 
-static int cpu_get(void *state, int what, double *to, err *e)
+static int cpu_get(cpu_state *s, int what, double *to, err *e)
 {
-    cpu_state *s = state;
     (void)e;
     if (what == TLED_INTERNAL && !s->spare_is_internal) {
         const tled_plan here = {.rate = 1};
@@ -171,56 +170,49 @@ static int copy_out(cpu_state *s, number **to, err *e)
     return 0;
 }
 
-static int cpu_keep(void *state, err *e)
+static int cpu_save(cpu_state *s, err *e)
 {
-    cpu_state *s = state;
-    return copy_out(s, &s->kept, e);
+    return copy_out(s, &s->saved, e);
 }
 
-static int cpu_back(void *state, err *e)
+static int cpu_restore(cpu_state *s, err *e)
 {
-    cpu_state *s = state;
     const size_t size = 3 * (size_t)s->rows.nodes;
     (void)e;
-    memcpy(s->displacement, s->kept, size * sizeof *s->kept);
-    memcpy(s->velocity, s->kept + size, size * sizeof *s->kept);
+    memcpy(s->displacement, s->saved, size * sizeof *s->saved);
+    memcpy(s->velocity, s->saved + size, size * sizeof *s->saved);
     s->spare_is_internal = false;
     return 0;
 }
 
-static int cpu_take(void *state, int slot, err *e)
+static int cpu_snapshot(cpu_state *s, int slot, err *e)
 {
-    cpu_state *s = state;
-    return copy_out(s, &s->taken[slot], e);
+    return copy_out(s, &s->slot[slot], e);
 }
 
-static int cpu_taken(void *state, int slot, void *to, err *e)
+static int cpu_fetch(cpu_state *s, int slot, const field_values *to, err *e)
 {
-    const cpu_state *s = state;
-    const field_values *out = to;
     (void)e;
-    put_out(s, s->taken[slot], out->of[TLED_DISPLACEMENT]);
-    put_out(s, s->taken[slot] + 3 * s->rows.nodes, out->of[TLED_VELOCITY]);
+    put_out(s, s->slot[slot], to->of[TLED_DISPLACEMENT]);
+    put_out(s, s->slot[slot] + 3 * s->rows.nodes, to->of[TLED_VELOCITY]);
     return 0;
 }
 
-static int64_t cpu_bytes(const void *state)
+static int64_t cpu_bytes(const cpu_state *s)
 {
-    const cpu_state *s = state;
     const rows *r = &s->rows;
-    int64_t nodes = 13 + (s->kept ? 6 : 0), cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
+    int64_t nodes = 13 + (s->saved ? 6 : 0), cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
     cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 1 + cpu_law_numbers(s->p->form) : 0);
-    for (int i = 0; i < TLED_TAKEN; i++)
-        nodes += s->taken[i] ? 6 : 0;
+    for (int i = 0; i < TLED_SLOTS; i++)
+        nodes += s->slot[i] ? 6 : 0;
     return r->nodes * (nodes * (int64_t)sizeof(number) + 1 + 4) + r->runs * (int64_t)sizeof *r->run +
            r->cells * (cells * (int64_t)sizeof(number) + 4) + mesh_bytes(s);
 }
 
 /* ---- life */
 
-static void cpu_destroy(void *state)
+static void cpu_destroy(cpu_state *s)
 {
-    cpu_state *s = state;
     if (!s)
         return;
     rows_free(&s->rows);
@@ -239,9 +231,9 @@ static void cpu_destroy(void *state)
     free(s->shape);
     free(s->force);
     free(s->group_node);
-    free(s->kept);
-    for (int i = 0; i < TLED_TAKEN; i++)
-        free(s->taken[i]);
+    free(s->saved);
+    for (int i = 0; i < TLED_SLOTS; i++)
+        free(s->slot[i]);
     free(s->now);
     free(s->next);
     free(s);
@@ -344,7 +336,7 @@ static void make_work(cpu_state *s)
         w->law[k] = s->law ? s->law + k * (s->rows.cells + ROWS_PAD) : NULL;
 }
 
-static void *cpu_create(const void *problem, pool *threads, err *e)
+static cpu_state *cpu_create(const tled_problem *problem, pool *threads, err *e)
 {
     cpu_state *s = mem_array(1, sizeof *s, "the solver", e);
     if (!s)
@@ -372,20 +364,19 @@ static const char *cpu_unusable(void)
     return NULL;
 }
 
-static int64_t cpu_computed(const void *state)
+static int64_t cpu_computed(const cpu_state *s)
 {
-    return ((const cpu_state *)state)->rows.cells;
+    return s->rows.cells;
 }
 
-const backend CPU_BACKEND = {.name = "cpu",
-                             .unusable = cpu_unusable,
-                             .create = cpu_create,
-                             .step = cpu_step,
-                             .get = cpu_get,
-                             .keep = cpu_keep,
-                             .back = cpu_back,
-                             .take = cpu_take,
-                             .taken = cpu_taken,
-                             .bytes = cpu_bytes,
-                             .destroy = cpu_destroy,
-                             .computed = cpu_computed};
+const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu", .unusable = cpu_unusable},
+                                    .create = cpu_create,
+                                    .destroy = cpu_destroy,
+                                    .step = cpu_step,
+                                    .get = cpu_get,
+                                    .save = cpu_save,
+                                    .restore = cpu_restore,
+                                    .snapshot = cpu_snapshot,
+                                    .fetch = cpu_fetch,
+                                    .bytes = cpu_bytes,
+                                    .computed = cpu_computed};

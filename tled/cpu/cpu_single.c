@@ -1,6 +1,6 @@
-/* The CPU back end in float: what a GPU computes, at half the memory. */
+/* The CPU executor in float: what a GPU computes, at half the memory. */
 #include "tled/cpu/cpu.h"
-#define CPU_BACKEND tled_cpu_single
+#define CPU_EXECUTOR tled_cpu_single
 #define ELEMENT_SINGLE
 #define CPU_PASSES cpu_passes_single
 #include "tled/cpu/cpu_loops.h"

@@ -1,3 +1,3 @@
-/* The CUDA back end in double. */
-#define CUDA_BACKEND tled_cuda_double
+/* The CUDA executor in double. */
+#define CUDA_EXECUTOR tled_cuda_double
 #include "tled/cuda/cuda_loops.cuh"

@@ -136,10 +136,9 @@ static int send_frame(cuda_state *s, const cuda_frame *f, err *e)
                : 0;
 }
 
-static int cuda_take(void *state, int slot, err *e)
+static int cuda_snapshot(cuda_state *s, int slot, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
-    cuda_frame *f = &s->taken[slot];
+    cuda_frame *f = &s->slot[slot];
     if (make_frame(s, f, e))
         return -1;
     f->step = s->step;
@@ -161,15 +160,12 @@ static void widen_work(void *context, int64_t chunk, int64_t from, int64_t to)
         w->to->of[TLED_VELOCITY][i] = w->velocity[i];
 }
 
-static int cuda_taken(void *state, int slot, void *to, err *e)
+static int cuda_fetch(cuda_state *s, int slot, const field_values *to, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
-    const field_values *out = (const field_values *)to;
-    const cuda_frame *f = &s->taken[slot];
+    const cuda_frame *f = &s->slot[slot];
     const int64_t numbers = 3 * s->tiles.nodes;
-    const permutation u = {s, f->host, out->of[TLED_DISPLACEMENT]},
-                      v = {s, f->host + s->numbers, out->of[TLED_VELOCITY]};
-    widening w = {f->host, f->host + numbers, out};
+    const permutation u = {s, f->host, to->of[TLED_DISPLACEMENT]}, v = {s, f->host + s->numbers, to->of[TLED_VELOCITY]};
+    widening w = {f->host, f->host + numbers, to};
     if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
         return -1;
     if (s->frame) {

@@ -1,4 +1,4 @@
-/* The CUDA back end: memory, and the passes in their order, around the kernels. Compiled twice, by cuda_double.cu and
+/* The CUDA executor: memory, and the passes in their order, around the kernels. Compiled twice, by cuda_double.cu and
  * cuda_single.cu, which choose `real` and name the table of functions. All that is here is static.
  *
  * Of `count` steps, the first pass begins one, each after it ends one and begins the next, the last ends one and leaves the
@@ -160,19 +160,17 @@ static int make_passes(cuda_state *s, const tled_plan *plan, const double *rows,
     return 0;
 }
 
-static int cuda_step(void *state, const void *plan, int64_t count, err *e)
+static int cuda_step(cuda_state *s, const tled_plan *plan, int64_t count, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
-    const tled_plan *t = (const tled_plan *)plan;
     const double *rows = NULL;
     for (int64_t first = 0; count > 0 && first <= count; first += TABLE_STEPS) {
         const int64_t passes = count + 1 - first < TABLE_STEPS ? count + 1 - first : TABLE_STEPS;
-        if (put_table(s, t, first, first + passes > count ? passes - 1 : passes, &rows, e) ||
-            make_passes(s, t, rows, first, passes, count, e))
+        if (put_table(s, plan, first, first + passes > count ? passes - 1 : passes, &rows, e) ||
+            make_passes(s, plan, rows, first, passes, count, e))
             return -1;
         s->step += passes - (first == 0);
     }
-    s->time = count > 0 ? tled_time(t, count) : s->time;
+    s->time = count > 0 ? tled_time(plan, count) : s->time;
     return 0;
 }
 
@@ -220,9 +218,8 @@ static int set(cuda_state *s, real *to, const double *from, err *e)
     return CUDA_TRY(cudaMemcpy(to, s->staging, (size_t)s->numbers * sizeof(real), cudaMemcpyHostToDevice));
 }
 
-static int cuda_get(void *state, int what, double *to, err *e)
+static int cuda_get(cuda_state *s, int what, double *to, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
     if (what == TLED_INTERNAL && find_internal(s, e))
         return -1;
     const real *from = what == TLED_DISPLACEMENT ? s->displacement : what == TLED_VELOCITY ? s->velocity : s->spare;
@@ -242,9 +239,8 @@ static int from_rows(cuda_state *s, real *to, const real *from, err *e)
                                                  s->stream));
 }
 
-static int cuda_keep(void *state, err *e)
+static int cuda_save(cuda_state *s, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
     if (s->kept_internal && find_internal(s, e))
         return -1;
     const cuda_kept<real> kept = {{s->displacement, s->velocity, s->kept_internal ? s->spare : NULL},
@@ -255,9 +251,8 @@ static int cuda_keep(void *state, err *e)
     return card_check(cuda_keep_start(&s->view, &kept, s->stream), "the start of a copy", s->step, e);
 }
 
-static int cuda_back(void *state, err *e)
+static int cuda_restore(cuda_state *s, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
     const int64_t n = 3 * s->view.stride;
     s->spare_is_internal = false;
     s->step = s->kept_step;
@@ -268,17 +263,14 @@ static int cuda_back(void *state, err *e)
                : 0;
 }
 
-static int64_t cuda_bytes(const void *state)
+static int64_t cuda_bytes(const cuda_state *s)
 {
-    const cuda_state *s = (const cuda_state *)state;
     const int64_t rows = 3 * s->view.stride * (int64_t)sizeof(real);
     return s->bytes + (s->kept_internal ? rows : 0) + (s->frame ? frame_bytes(s) : 0);
 }
 
-static int cuda_look_at(void *state, const void *question, void *answer, err *e)
+static int cuda_monitor(cuda_state *s, const tled_question *q, tled_sums *sums, err *e)
 {
-    cuda_state *s = (cuda_state *)state;
-    const tled_question *q = (const tled_question *)question;
     tled_plan here = {q->time, 1, 0, 0};
     const double *rows = NULL;
     if (q->differences && !s->kept_internal)
@@ -293,7 +285,6 @@ static int cuda_look_at(void *state, const void *question, void *answer, err *e)
         CUDA_TRY(cudaMemcpyAsync(s->sums_host, s->sums, sizeof *s->sums, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
-    tled_sums *sums = (tled_sums *)answer;
     *sums = *s->sums_host;
     if (sums->frequency_element >= 0)
         sums->frequency_element = s->tiles.cell_element[sums->frequency_element];
@@ -304,19 +295,18 @@ static int cuda_look_at(void *state, const void *question, void *answer, err *e)
 
 /* ---- life */
 
-static void cuda_destroy(void *state)
+static void cuda_destroy(cuda_state *s)
 {
-    cuda_state *s = (cuda_state *)state;
     if (!s)
         return;
     if (s->stream)
         cudaStreamSynchronize(s->stream);
     if (s->sending)
         cudaStreamSynchronize(s->sending);
-    for (int i = 0; i < TLED_TAKEN; i++) {
-        if (s->taken[i].arrived)
-            cudaEventDestroy(s->taken[i].arrived);
-        cudaFreeHost(s->taken[i].host);
+    for (int i = 0; i < TLED_SLOTS; i++) {
+        if (s->slot[i].arrived)
+            cudaEventDestroy(s->slot[i].arrived);
+        cudaFreeHost(s->slot[i].host);
     }
     for (int i = 0; i < TABLES; i++) {
         if (s->table_free[i])
@@ -424,12 +414,12 @@ static int fill(cuda_state *s, err *e)
     return CUDA_TRY(cudaDeviceSynchronize()) ? -1 : find_internal(s, e);
 }
 
-static void *cuda_create(const void *problem, pool *threads, err *e)
+static cuda_state *cuda_create(const tled_problem *problem, pool *threads, err *e)
 {
     cuda_state *s = (cuda_state *)mem_array(1, sizeof *s, "the solver", e);
     if (!s)
         return NULL;
-    s->p = (const tled_problem *)problem;
+    s->p = problem;
     s->threads = threads;
     if (fill(s, e)) {
         cuda_destroy(s);
@@ -438,11 +428,20 @@ static void *cuda_create(const void *problem, pool *threads, err *e)
     return s;
 }
 
-static int64_t cuda_computed(const void *state)
+static int64_t cuda_computed(const cuda_state *s)
 {
-    const cuda_state *s = (const cuda_state *)state;
     return s->marches ? (int64_t)(s->march.computed * (double)s->p->elements) : s->tiles.cells;
 }
 
-const backend CUDA_BACKEND = {"cuda",    card_unusable, cuda_create,  cuda_step,  cuda_get,     cuda_keep,    cuda_back,
-                              cuda_take, cuda_taken,    cuda_look_at, cuda_bytes, cuda_destroy, cuda_computed};
+const tled_executor CUDA_EXECUTOR = {.is = {.device = "cuda", .unusable = card_unusable},
+                                     .create = cuda_create,
+                                     .destroy = cuda_destroy,
+                                     .step = cuda_step,
+                                     .get = cuda_get,
+                                     .save = cuda_save,
+                                     .restore = cuda_restore,
+                                     .snapshot = cuda_snapshot,
+                                     .fetch = cuda_fetch,
+                                     .monitor = cuda_monitor,
+                                     .bytes = cuda_bytes,
+                                     .computed = cuda_computed};

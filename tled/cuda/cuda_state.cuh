@@ -21,7 +21,9 @@ typedef struct cuda_frame { /* results on their way to the host; made when first
     int64_t step; /* that it was taken at, for messages: the state's own goes on meanwhile */
 } cuda_frame;
 
-typedef struct cuda_state {
+typedef struct tled_state cuda_state;
+
+struct tled_state {
     const tled_problem *p;
     pool *threads;
     struct tiles tiles;
@@ -54,13 +56,13 @@ typedef struct cuda_state {
     void *look_parts;
     tled_sums *sums, *sums_host;
     real *staging; /* pinned: `numbers` */
-    cuda_frame taken[TLED_TAKEN];
+    cuda_frame slot[TLED_SLOTS];
     int64_t step, kept_step; /* for messages */
     double time, kept_time;  /* where the state stands */
     cudaStream_t stream, sending;
-} cuda_state;
+};
 
-/* What went wrong in steps before may come out of any call. Not for taken(), which another thread calls. */
+/* What went wrong in steps before may come out of any call. Not for fetch(), which another thread calls. */
 #define CUDA_TRY(call) card_check(call, #call, s->step, e)
 
 /* Room in the card's memory; with none yet, counts only. */

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 extern "C" {
-#include "tled/problem/state.h"
+#include "tled/problem/tled_executor.h"
 }
 
 enum { NONE = INT32_MAX }; /* of cells; the least of some is told */

@@ -20,7 +20,8 @@ typedef struct collider {
     double start, rises; /* s: from when, and how long it takes to come up; 0: it is there at once */
 } collider;
 
-/* Reads a shape (its OBJ, if it is one, times scale) and all poses; c is zeroed. -1 with e filled, c to be freed all the same. */
+/* Reads a shape (its OBJ, if it is one, times scale) and all poses; c is zeroed. -1 with e filled, c to be freed
+ * all the same. */
 int collider_read(collider *c, const char *shape, double scale, const char *poses_file, const char *transform, err *e);
 void collider_free(collider *c);
 
@@ -42,7 +43,8 @@ double collider_end(const collider *c);
 bool collider_push(const collider *c, const probe_placed *at, double time, const double x[3], double mass,
                    double push[3]);
 
-/* The force on the probe and its torque about its origin at these displacements (nodes x 3). Returns how many nodes push. */
+/* The force on the probe and its torque about its origin at these displacements (nodes x 3). Returns how many
+ * nodes push. */
 int64_t collider_sum(const tled_problem *p, double time, const double *displacement, double force[3], double torque[3]);
 
 /* Adds to a frame where the probe is, and what the tissue at these displacements pushes it with. -1 with e filled. */

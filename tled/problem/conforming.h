@@ -1,7 +1,7 @@
-/* The part of a problem whose elements are hexahedra of any shape, not a lattice's boxes: what each of them is at rest, and its stable
- * step. Derivatives are the element's mean ones and hourglass vectors Flanagan & Belytschko's (element_any.h); the hourglass stiffness is
- * element_hourglass's formula with the element's own V and B; a corner has an eighth of the element's mass. The
- * problem owns it.
+/* The part of a problem whose elements are hexahedra of any shape, not a lattice's boxes: what each of them is at
+ * rest, and its stable step. Derivatives are the element's mean ones and hourglass vectors Flanagan & Belytschko's
+ * (element_any.h); the hourglass stiffness is element_hourglass's formula with the element's own V and B; a corner
+ * has an eighth of the element's mass. The problem owns it.
  */
 #ifndef SINEW_CONFORMING_H
 #define SINEW_CONFORMING_H
@@ -23,7 +23,8 @@ typedef struct conforming {
     int64_t stiffest;            /* whose it is */
 } conforming;
 
-/* Makes p->conforming, and p->side, a cube's of the mean volume, once p's mesh is there. -1 with e filled where an element has no inside. */
+/* Makes p->conforming, and p->side, a cube's of the mean volume, once p's mesh is there. -1 with e filled where an
+ * element has no inside. */
 int conforming_create(tled_problem *p, err *e);
 void conforming_free(conforming *c);
 

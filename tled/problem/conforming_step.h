@@ -21,8 +21,8 @@ element_any conforming_shape(const conforming_element *c);
 /* The first of the two matrices above, for an element at H. */
 void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h, element_fibre fibre, step_matrix *a);
 
-/* What its largest eigenvalue may be, so that the square of the element's highest frequency is at most limit; and the other way round: what that is
- * at most with an eigenvalue. */
+/* What its largest eigenvalue may be, so that the square of the element's highest frequency is at most limit; and
+ * the other way round: what that is at most with an eigenvalue. */
 double conforming_room(const tled_problem *p, int64_t element, double limit);
 double conforming_square(const tled_problem *p, int64_t element, double eigenvalue);
 

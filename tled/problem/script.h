@@ -2,9 +2,9 @@
  * target, its keys a piecewise-linear function of the model's time; all lie in flat arrays that are ready to be
  * copied to a device, and evaluating them allocates nothing. The caller owns a script, zeroed to begin with.
  *
- * The value of a curve before its first key is 0; between keys it is linear; from the last key on it holds. Two keys at one
- * time make a jump, and at that time the later one counts. Times are the model's: a run that goes on from a frame
- * at 1 s begins at 1 s here too.
+ * The value of a curve before its first key is 0; between keys it is linear; from the last key on it holds. Two keys
+ * at one time make a jump, and at that time the later one counts. Times are the model's: a run that goes on from a
+ * frame at 1 s begins at 1 s here too.
  */
 #ifndef SINEW_SCRIPT_H
 #define SINEW_SCRIPT_H

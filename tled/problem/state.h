@@ -1,15 +1,13 @@
-/* What tled-run solves, as flat arrays: the problem, which no back end changes, made from a model; and the contract of its
- * back ends (solve/backend.h): their create takes a tled_problem, their step a tled_plan. The caller owns the problem; it
- * borrows the model's arrays and the script, which must outlive it.
+/* What tled-run solves, as flat arrays: the problem, which no executor changes, made from a model. The caller owns
+ * the problem; it borrows the model's arrays and the script, which must outlive it. Who computes it: tled_executor.h.
  *
- * Each node sums the forces of its elements in the order in which these stand in the lattice, x fastest, so that the sum
- * is the same whoever computes it in whatever order, and however the model numbers its elements.
+ * Each node sums the forces of its elements in the order in which these stand in the lattice, x fastest, so that the
+ * sum is the same whoever computes it in whatever order, and however the model numbers its elements.
  */
 #ifndef SINEW_STATE_H
 #define SINEW_STATE_H
 
 #include "physics/forms.h"
-#include "solve/backend.h"
 #include "solve/fields.h"
 #include "tled/problem/script.h"
 
@@ -70,8 +68,8 @@ typedef struct tled_problem {
     const struct collider *collider; /* what presses (collider.h), or NULL */
 } tled_problem;
 
-/* A run of steps: after step i of them (from 1) the time is origin + (first + i) / rate. A rate, since a whole number of
- * steps a second then gives times that are exact. */
+/* A run of steps: after step i of them (from 1) the time is origin + (first + i) / rate. A rate, since a whole
+ * number of steps a second then gives times that are exact. */
 typedef struct tled_plan {
     double origin, rate; /* s, 1/s: dt = 1 / rate */
     int64_t first;
@@ -85,33 +83,12 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
 
 /* What get() gives, as doubles: field i of the table, of which these are the first, nodes x 3: m, m/s; and internal
  * forces, nodes x 3, N: the sum of the elements' pulls at the displacement (where a step or create led to the state; not
- * right after back). */
+ * right after restore). */
 enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL = FIELDS_MOST };
 
-/* What a pass over the model does, in any back end: ends a step, begins the next, writes the internal forces instead of displacements. */
+/* What a pass over the model does, in any executor: ends a step, begins the next, writes the internal forces instead of
+ * displacements. */
 enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
-
-/* Slots for results that were taken. */
-enum { TLED_TAKEN = 24 };
-
-/* What look() is asked. */
-typedef struct tled_question {
-    double time;      /* s: where the state stands */
-    double rest;      /* 1/s2: frequencies up to this one are not told */
-    double raise;     /* by what factor the frequency told may be too high: 1.01, or 1 for exactly */
-    bool differences; /* against what was kept */
-} tled_question;
-
-/* And its answer: sums over all, in a fixed order. */
-typedef struct tled_sums {
-    double kinetic, strain;                  /* J; strain with hourglass energy, without what muscles do */
-    double acceleration, speed, moved, mass; /* squares times masses, kg m2/s4, kg m2/s2, kg m2; and kg */
-    double stiffness, inertia; /* with du, df since what was kept: du df (J), m du du (kg m2), where free */
-    double largest;            /* m2: the square of the largest displacement */
-    double frequency;          /* 1/s2: the square of the highest of any element, if past question.rest */
-    int64_t frequency_element; /* whose it is, or -1 */
-    int64_t broken;            /* an element that is inverted (J <= 0) or not a number, or -1 */
-} tled_sums;
 
 /* Makes p (zeroed) of the model, at rest at time 0: all its elements must be its lattice's boxes, or it has no lattice. kappa: the hourglass
  * coefficient. -1 with e filled and p to be freed all the same. */
@@ -159,9 +136,5 @@ void tled_external(const tled_problem *p, const double *value, int64_t n, double
 
 /* The values of all curves at a time, 3 a curve. */
 void tled_curves(const tled_problem *p, double time, double *value);
-
-/* The back ends of tled-run, NULL-terminated, by the precision of their numbers. */
-extern const backend *const tled_backends_double[];
-extern const backend *const tled_backends_single[];
 
 #endif

@@ -35,8 +35,9 @@ double step_largest(const step_matrix *a);
 /* Steps between two looks at most, and where the step is given. */
 enum { STEP_UNSEEN = 200, STEP_UNSEEN_GIVEN = 50 };
 
-/* The steps a second that are taken by default: at least twice what is just stable, and so many that a whole number
- * of them makes 1/100 s and so does a whole number of checks, at most STEP_UNSEEN steps apart. *check gets the steps between checks. */
+/* The steps a second that are taken by default: at least twice what is just stable, and so many that a whole
+ * number of them makes 1/100 s and so does a whole number of checks, at most STEP_UNSEEN steps apart. *check gets
+ * the steps between checks. */
 double step_rate(double stable, int64_t *check);
 
 #endif

@@ -251,7 +251,8 @@ static void close_sums(account *a, double damping, double mass)
     a->now.known = true;
 }
 
-const account_sums *account_look(account *a, const backend *b, void *state, double time, double damping, err *e)
+const account_sums *account_look(account *a, const tled_executor *b, tled_state *state, double time, double damping,
+                                 err *e)
 {
     const tled_problem *p = a->p;
     const moment swap = a->before;
@@ -314,7 +315,7 @@ account_past account_past_of(const account *a)
     return past_of(&a->now);
 }
 
-int account_go_on(account *a, const backend *b, void *state, double time, const account_past *past, err *e)
+int account_go_on(account *a, const tled_executor *b, tled_state *state, double time, const account_past *past, err *e)
 {
     if (!account_look(a, b, state, time, 0, e))
         return -1;

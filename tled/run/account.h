@@ -7,6 +7,7 @@
 #ifndef SINEW_ACCOUNT_H
 #define SINEW_ACCOUNT_H
 
+#include "tled/problem/tled_executor.h"
 #include "tled/run/strained.h"
 
 typedef struct account_sums {
@@ -33,7 +34,8 @@ void account_destroy(account *a);
 
 /* Looks at the state, which stands at `time`; damping (1/s): on the way to it. What it finds is borrowed until the next
  * look. NULL with e filled where the back end fails. */
-const account_sums *account_look(account *a, const backend *b, void *state, double time, double damping, err *e);
+const account_sums *account_look(account *a, const tled_executor *b, tled_state *state, double time, double damping,
+                                 err *e);
 
 /* Of the last look, nodes x 3, m; borrowed until the next. */
 const double *account_displacement(const account *a);
@@ -45,6 +47,6 @@ void account_back(account *a);
 /* For a run that is to be gone on with: what is known; and goes on from it, at the state that it was known at. -1 with e
  * filled. */
 account_past account_past_of(const account *a);
-int account_go_on(account *a, const backend *b, void *state, double time, const account_past *past, err *e);
+int account_go_on(account *a, const tled_executor *b, tled_state *state, double time, const account_past *past, err *e);
 
 #endif

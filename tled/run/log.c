@@ -127,7 +127,7 @@ log_point log_point_of(const run_log *l)
     return (log_point){account_past_of(l->account), growing_size(l->file)};
 }
 
-int log_go_on(run_log *l, const backend *b, void *state, double time, const log_point *from, err *e)
+int log_go_on(run_log *l, const tled_executor *b, tled_state *state, double time, const log_point *from, err *e)
 {
     return account_go_on(l->account, b, state, time, &from->past, e);
 }
@@ -187,7 +187,7 @@ static void put_row(run_log *l, const log_row *row, const account_sums *s)
     l->began = progress_clock();
 }
 
-int log_look(run_log *l, const backend *b, void *state, const log_row *row, bool shown, err *e)
+int log_look(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e)
 {
     const account_sums *s = account_look(l->account, b, state, row->time, row->damping, e);
     if (!s)

@@ -53,14 +53,14 @@ int log_open(run_log *l, const char *path, const opt_list *keys, const model *m,
 int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e);
 
 /* Looks at the state: `shown`, a row is to be made of it. */
-int log_look(run_log *l, const backend *b, void *state, const log_row *row, bool shown, err *e);
+int log_look(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e);
 
 /* After log_keep: waits until its rows are stored, as what goes on from there needs them. */
 int log_store(run_log *l, err *e);
 
 /* After log_keep: to go on from there; and goes on, at that state, without a row of it. */
 log_point log_point_of(const run_log *l);
-int log_go_on(run_log *l, const backend *b, void *state, double time, const log_point *from, err *e);
+int log_go_on(run_log *l, const tled_executor *b, tled_state *state, double time, const log_point *from, err *e);
 
 /* All since log_keep is sound: writes the rows, and keeps what is known. Or it is not: forgets them and goes back. */
 int log_keep(run_log *l, err *e);

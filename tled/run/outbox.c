@@ -7,7 +7,7 @@
 #include <signal.h>
 #include <stdlib.h>
 
-enum { FRAMES = 2, RING = TLED_TAKEN + FRAMES };
+enum { FRAMES = 2, RING = TLED_SLOTS + FRAMES };
 
 /* What one of the threads does. */
 typedef struct stage {
@@ -18,8 +18,8 @@ typedef struct stage {
 } stage;
 
 struct outbox {
-    const backend *device;
-    void *state;
+    const tled_executor *device;
+    tled_state *state;
     outbox_frame *write;
     void *context;
     field_values frame[FRAMES]; /* by number: what is being fetched, and what is being written */
@@ -38,7 +38,7 @@ struct outbox {
 
 static int fetch(outbox *o, int64_t index, err *e)
 {
-    return o->device->taken(o->state, o->slot[index % RING], &o->frame[index % FRAMES], e);
+    return o->device->fetch(o->state, o->slot[index % RING], &o->frame[index % FRAMES], e);
 }
 
 static int put(outbox *o, int64_t index, err *e)
@@ -99,8 +99,8 @@ static int make_frames(outbox *o, const fields *f, err *e)
     return 0;
 }
 
-outbox *outbox_create(const tled_problem *p, const backend *device, void *state, outbox_frame *write, void *context,
-                      err *e)
+outbox *outbox_create(const tled_problem *p, const tled_executor *device, tled_state *state, outbox_frame *write,
+                      void *context, err *e)
 {
     outbox *o = mem_array(1, sizeof *o, "the frames", e);
     if (!o)

@@ -4,7 +4,7 @@
 #ifndef SINEW_OUTBOX_H
 #define SINEW_OUTBOX_H
 
-#include "tled/problem/state.h"
+#include "tled/problem/tled_executor.h"
 
 typedef struct outbox outbox;
 
@@ -12,8 +12,8 @@ typedef struct outbox outbox;
 typedef int outbox_frame(void *context, double time, const field_values *state, err *e);
 
 /* Frames are fetched from the state of a device. NULL with e filled. */
-outbox *outbox_create(const tled_problem *p, const backend *device, void *state, outbox_frame *write, void *context,
-                      err *e);
+outbox *outbox_create(const tled_problem *p, const tled_executor *device, tled_state *state, outbox_frame *write,
+                      void *context, err *e);
 
 /* Sends what was taken into a slot. */
 void outbox_send(outbox *o, int slot, double time);

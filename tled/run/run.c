@@ -224,7 +224,7 @@ static int loop(run *n)
 static int choose_slots(const run_setup *r)
 {
     double between = r->every > 0 ? ceil((double)r->check / r->rate / r->every) : 0;
-    return between + 2 < TLED_TAKEN ? (int)between + 2 : TLED_TAKEN;
+    return between + 2 < TLED_SLOTS ? (int)between + 2 : TLED_SLOTS;
 }
 
 static int make_watch(run *n)

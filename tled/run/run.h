@@ -12,7 +12,7 @@
 #ifndef SINEW_RUN_H
 #define SINEW_RUN_H
 
-#include "solve/backend.h"
+#include "tled/problem/tled_executor.h"
 #include "tled/run/log.h"
 #include "tled/run/outbox.h"
 #include "tled/run/relax.h"
@@ -34,7 +34,7 @@ typedef struct run_point {
 
 typedef struct run_setup {
     const tled_problem *p;
-    const backend *device;
+    const tled_executor *device;
     pool *threads;
     double rate;            /* steps a second */
     bool rate_fixed;        /* never cut the step: fail instead */

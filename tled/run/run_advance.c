@@ -79,7 +79,7 @@ static int restore(run *n)
     n->plan.first = n->saved_first;
     if (n->r->log && log_back(n->r->log, n->e))
         return -1;
-    return n->r->device->back(n->state, n->e);
+    return n->r->device->restore(n->state, n->e);
 }
 
 /* Saves the state that was monitored last, to go back to. */
@@ -147,7 +147,7 @@ static int take_snapshot(run *n)
     if (index >= n->slots && outbox_wait_fetched(n->out, index - n->slots, n->e))
         return -1;
     n->frame_time[slot] = run_now(n);
-    return n->r->device->take(n->state, slot, n->e);
+    return n->r->device->snapshot(n->state, slot, n->e);
 }
 
 /* The snapshots are of sound states: hands them on. */

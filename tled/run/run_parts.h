@@ -10,7 +10,7 @@ enum { CUTS_MAX = 10 }; /* a step cut 2^10 times is no step */
 
 typedef struct run {
     const run_setup *r;
-    void *state;
+    tled_state *state;
     watch *watch;
     relax relax;
     outbox *out;
@@ -23,7 +23,7 @@ typedef struct run {
     /* Frames are numbered, and a snapshot of each is in the slot of its number modulo `slots`: `sent` of them are the outbox's,
      * then come those not yet known to be sound. */
     int slots;
-    double frame_time[TLED_TAKEN];
+    double frame_time[TLED_SLOTS];
     int64_t sent;
     int unsure;
     int64_t written; /* plan.first of the last frame that was taken of a state known to be sound; INT64_MIN: none yet */

@@ -5,6 +5,7 @@
 #ifndef SINEW_STRAINED_H
 #define SINEW_STRAINED_H
 
+#include "base/pool.h"
 #include "mesh/quality.h"
 #include "tled/problem/deformed.h"
 

@@ -173,7 +173,7 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
     else
         snprintf(until, sizeof until, "-t %.9g", o->seconds);
     return tool_provenance(t, e, "%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s%s]", press, until,
-                           o->ramp, o->hourglass, r->device->name, o->precision ? "single" : "double", 1 / r->rate,
+                           o->ramp, o->hourglass, r->device->is.device, o->precision ? "single" : "double", 1 / r->rate,
                            r->rate_fixed ? "" : " or cut", r->damping, r->adapt ? " adapted" : "",
                            tled_bounds_hourglass(&s->problem) ? ", hourglass modulus at most 11 mu" : "");
 }
@@ -363,7 +363,7 @@ static void say_end(session *s, const run_end *end)
     tool_say(s->t, "%s %.6g s, after %lld steps: kinetic energy %.3g J, largest displacement %.6g mm%s",
              end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic, 1e3 * w->largest, left);
     say_folds(s, end, true);
-    tool_detail(s->t, "%s: %.4g MB, %.4g bytes an element", s->run.device->name, 1e-6 * (double)end->bytes,
+    tool_detail(s->t, "%s: %.4g MB, %.4g bytes an element", s->run.device->is.device, 1e-6 * (double)end->bytes,
                 (double)end->bytes / (double)s->problem.elements);
 }
 
@@ -390,9 +390,9 @@ static int read_collider(session *s, const struct options *o, err *e)
 }
 
 /* The CPU alone has contact, and elements off a lattice: auto takes it. */
-static const backend *choose_device(session *s, const struct options *o, char *device, size_t size, err *e)
+static const tled_executor *choose_device(session *s, const struct options *o, char *device, size_t size, err *e)
 {
-    const backend *const *backends = o->precision ? tled_backends_single : tled_backends_double;
+    const tled_executor *const *table = o->precision ? tled_executors_single : tled_executors_double;
     static const char *const names[] = {"auto", "cuda", "cpu"};
     const char *lacks = s->problem.conforming ? "elements off a lattice"
                         : s->collider.poses   ? "contact with a probe"
@@ -401,7 +401,7 @@ static const backend *choose_device(session *s, const struct options *o, char *d
         err_set(e, NULL, 0, "the CUDA back end has no %s; expected -d cpu or auto", lacks);
         return NULL;
     }
-    const backend *taken = backend_choose(backends, lacks ? "cpu" : names[o->device], device, size, e);
+    const tled_executor *taken = tled_executor_choose(table, lacks ? "cpu" : names[o->device], device, size, e);
     if (taken && lacks && !strcmp(names[o->device], "auto"))
         snprintf(device, size, "cpu (the one with %s)", lacks);
     return taken;
@@ -427,7 +427,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     int threads = tool_threads(s->t, e);
     s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
     /* Where a device computes, processors are free for frames. */
-    return s->threads ? folds_make(&s->folds, &s->problem, &s->m, s->run.device->look ? threads : 1, e) : -1;
+    return s->threads ? folds_make(&s->folds, &s->problem, &s->m, s->run.device->monitor ? threads : 1, e) : -1;
 }
 
 /* What the run is asked for, and whom it calls. */

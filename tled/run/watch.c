@@ -169,7 +169,7 @@ static int need(double **array, int64_t nodes, err *e)
 }
 
 /* On this machine's threads. */
-static int look_here(watch *w, const backend *b, void *state, tled_sums *sum, err *e)
+static int look_here(watch *w, const tled_executor *b, tled_state *state, tled_sums *sum, err *e)
 {
     const tled_problem *p = w->p;
     if (need(&w->displacement, p->nodes, e) || need(&w->velocity, p->nodes, e) || need(&w->internal, p->nodes, e) ||
@@ -204,21 +204,21 @@ static void take_sums(watch *w, const tled_sums *sum)
     s->stable = collider_step(w->p, s->stable);
 }
 
-int watch_look(watch *w, const backend *b, void *state, double time, err *e)
+int watch_look(watch *w, const tled_executor *b, tled_state *state, double time, err *e)
 {
     tled_sums sum;
     /* A rounding above the frequency at rest, so that no matrix at rest passes it. (Bounds may, of elements with unlike sides.) */
     w->question = (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences};
-    if (b->look ? b->look(state, &w->question, &sum, e) : look_here(w, b, state, &sum, e))
+    if (b->monitor ? b->monitor(state, &w->question, &sum, e) : look_here(w, b, state, &sum, e))
         return -1;
     take_sums(w, &sum);
     return 0;
 }
 
-int watch_tell(watch *w, const backend *b, void *state, err *e)
+int watch_tell(watch *w, const tled_executor *b, tled_state *state, err *e)
 {
     tled_sums sum;
-    if (!b->look)
+    if (!b->monitor)
         return 0;
     if (look_here(w, b, state, &sum, e))
         return -1;
@@ -226,16 +226,16 @@ int watch_tell(watch *w, const backend *b, void *state, err *e)
     return 0;
 }
 
-int watch_keep(watch *w, const backend *b, void *state, err *e)
+int watch_keep(watch *w, const tled_executor *b, tled_state *state, err *e)
 {
     size_t size = 3 * (size_t)w->p->nodes * sizeof(double);
-    if (w->differences && !b->look) {
+    if (w->differences && !b->monitor) {
         if (need(&w->kept_displacement, w->p->nodes, e) || need(&w->kept_internal, w->p->nodes, e))
             return -1;
         memcpy(w->kept_displacement, w->displacement, size);
         memcpy(w->kept_internal, w->internal, size);
     }
-    return b->keep(state, e);
+    return b->save(state, e);
 }
 
 void watch_words(const model *m, const watch_sight *s, char *to, size_t size)

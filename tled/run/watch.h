@@ -6,7 +6,7 @@
 #ifndef SINEW_WATCH_H
 #define SINEW_WATCH_H
 
-#include "tled/problem/state.h"
+#include "tled/problem/tled_executor.h"
 
 typedef struct watch_sight {
     double time;            /* s */
@@ -44,13 +44,13 @@ void watch_destroy(watch *w);
 
 /* Looks once more at the state that was looked at last, on this machine's threads: the element that is broken or has the
  * least stable step is then told by the model's order, whatever the back end. -1 with e filled. */
-int watch_tell(watch *w, const backend *b, void *state, err *e);
+int watch_tell(watch *w, const tled_executor *b, tled_state *state, err *e);
 
 /* Keeps the state that was looked at last: the back end to go back to, the watch to tell differences. -1 with e filled. */
-int watch_keep(watch *w, const backend *b, void *state, err *e);
+int watch_keep(watch *w, const tled_executor *b, tled_state *state, err *e);
 
 /* Looks at the state, which stands at `time`: w->sight. -1 with e filled where the back end fails. */
-int watch_look(watch *w, const backend *b, void *state, double time, err *e);
+int watch_look(watch *w, const tled_executor *b, tled_state *state, double time, err *e);
 
 /* What keeps the stable step small, or broke, in words: an element, its volume and where it is at rest. */
 void watch_words(const model *m, const watch_sight *s, char *to, size_t size);

@@ -1,0 +1,42 @@
+/* The contract of msds-run's executors: one state serves every method and carries displacement and velocity from one
+ * to the next. A caller owns the state that create gives, until destroy; it borrows the problem and the threads. A
+ * state is used by one thread at a time.
+ *
+ * step may return before the device is done: what went wrong then comes out of a later call. get and monitor wait.
+ */
+#ifndef SINEW_MSDS_EXECUTOR_H
+#define SINEW_MSDS_EXECUTOR_H
+
+#include "base/pool.h"
+#include "msds/problem/problem.h"
+#include "solve/executor.h"
+
+/* What get() gives, nodes x 3 doubles each: m, m/s. */
+enum { MSDS_DISPLACEMENT, MSDS_VELOCITY };
+
+typedef struct msds_state msds_state; /* each executor's own */
+
+typedef struct msds_executor {
+    executor is;
+    /* Allocates all that the springs take; what another method needs is made when it is first asked for. NULL with
+     * e filled. */
+    msds_state *(*create)(const msds_problem *p, pool *threads, err *e);
+    void (*destroy)(msds_state *state); /* state may be NULL */
+    /* Takes `count` steps of springs, or iterations of conjugate gradients. -1 with e filled, as for all below. */
+    int (*step)(msds_state *state, const msds_plan *plan, int64_t count, err *e);
+    /* Copies one of the state's arrays out. */
+    int (*get)(msds_state *state, int what, double *to, err *e);
+    /* What the last step led to. */
+    int (*monitor)(msds_state *state, msds_sight *sight, err *e);
+    /* Bytes of the device's memory that the state has by now. */
+    int64_t (*bytes)(const msds_state *state);
+} msds_executor;
+
+/* The executors of this build, the preferred first; NULL-terminated. */
+extern const msds_executor *const msds_executors[];
+
+/* The executor of a table on a device: executor_choose. NULL with e filled. */
+const msds_executor *msds_executor_choose(const msds_executor *const *table, const char *device, char *says,
+                                          size_t size, err *e);
+
+#endif
