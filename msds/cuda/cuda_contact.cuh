@@ -62,8 +62,8 @@ static __device__ inline void contact_consider(const tissue *t, const tissue_fra
 /* Notes the force of a node for the next frame. */
 static __device__ inline void contact_hold(const tissue *t, int32_t n)
 {
-    const real force = t->contact[n].force;
-    const real held = force > 0 ? force : -1;
+    const double force = t->contact[n].force;
+    const double held = force > 0 ? force : -1;
     t->held[n] = t->listed[n] ? held : 0;
 }
 
