@@ -222,7 +222,7 @@ static int change_row(model *m, int64_t at, const material_edit *edit, const cha
     material of;
     if (row_of(m, at, &of, e) || material_edit_apply(&of, edit, place, line, e) || row_store(m, at, of, edit->given, e))
         return -1;
-    if (edit->given & 1)
+    if (edit->given & ((UINT64_C(2) << LAW_OWN_KEYS) - 1)) /* the law or a key of its own */
         drop_unused(m);
     return 0;
 }

@@ -43,7 +43,7 @@ for tool in $tools; do
         "$tool: the page's synopsis is what --table mdoc says"
 done
 check "sinew-model(5) and sinew(7)" test -s "$root/usr/share/man/man5/sinew-model.5" -a -s "$root/usr/share/man/man7/sinew.7"
-check "sinew-performance(7) and sinew-tled(7)" test -s "$root/usr/share/man/man7/sinew-performance.7" -a -s "$root/usr/share/man/man7/sinew-tled.7"
+check "sinew-laws(7), sinew-performance(7) and sinew-tled(7)" test -s "$root/usr/share/man/man7/sinew-laws.7" -a -s "$root/usr/share/man/man7/sinew-performance.7" -a -s "$root/usr/share/man/man7/sinew-tled.7"
 
 # The front command finds the others beside itself, not on PATH, called by any name that leads to it.
 ln -s "$root/usr/bin/sinew" "$T/link"

@@ -1,0 +1,102 @@
+#!/bin/sh
+# The laws of tissue and their keys: through files of materials, both encodings, import, export and -m; and what is refused.
+# shellcheck source=tests/cli/lib.sh
+. "$(dirname "$0")/lib.sh"
+
+awk -v x=20 -v y=20 -v z=20 -v held=top -f tests/cli/box.awk >"$T/box.obj"
+printf 'skin law=mooney-rivlin c10=2500 K=1e5 c01=500\nfat density=950\n' >"$T/materials"
+voxelise -q --unit mm -s 5 --materials "$T/materials" "$T/box.obj" | attach -q >"$T/two"
+
+# values MODEL: its arrays of materials, a line each.
+values() {
+    sinew export -f model --text "$1" | awk '/^array material\./ { name = $2; n = 2; line = name; next }
+        n-- > 0 { line = line " " $0; if (!n) print line } END { }' | sed 's/^material\.//'
+}
+cat >"$T/want" <<'END'
+name "skin" "fat"
+law "mooney-rivlin" "neo-hookean"
+E nan 3000
+nu nan 0.48999999999999999
+c10 2500 nan
+c01 500 nan
+K 100000 nan
+density 1000 950
+peak 30000 30000
+END
+values "$T/two" >"$T/got"
+check "a model of two laws has the keys of both, nan where a law has none" diff "$T/want" "$T/got"
+sinew export -f model --text -o "$T/text" "$T/two"
+sinew export -f model -o "$T/binary" "$T/text"
+check "text and binary are twins" sinew diff "$T/text" "$T/binary"
+values "$T/text" >"$T/got"
+check "and have the same values" diff "$T/want" "$T/got"
+printf 'skin law=mooney-rivlin c10=2500 c01=500 nu=0.45\n' >"$T/one"
+voxelise -q --unit mm -s 5 --materials "$T/one" "$T/box.obj" | attach -q >"$T/single"
+is "$(values "$T/single" | cut -d ' ' -f 1 | tr '\n' ' ')" "name law nu c10 c01 density peak " "a model of one law has no other law's keys"
+check "sinew info --json has a row of the law's keys" sh -c "sinew info --json '$T/two' | grep -q '\"law\": \"mooney-rivlin\", .*\"c10\": 2500, \"c01\": 500, \"K\": 100000'"
+is "$(sinew info --get material.c10.max "$T/two")" 2500 "and --get tells one"
+
+# ---- Abaqus's files.
+check "sinew export" sinew export -f inp -o "$T/two.inp" "$T/two"
+is "$(grep -A 1 MOONEY "$T/two.inp" | tr '\n' ' ')" "*HYPERELASTIC, MOONEY-RIVLIN 2500, 500, 2e-05 " "C10, C01 and D1 = 2/K"
+check "and back" sinew import -q --unit m -o "$T/back" "$T/two.inp"
+is "$(values "$T/back" | grep -E '^(law|c10|c01|K) ' | tr '\n' ' ')" 'law "mooney-rivlin" "neo-hookean" c10 2500 nan c01 500 nan K 99999.999999999985 nan ' \
+    "the same values, K to the rounding of 2/D1"
+sinew import -q --unit m --stress MPa --density kg/m3 -o "$T/back" "$T/two.inp"
+is "$(values "$T/back" | grep -E '^(c10|c01|K) ' | tr '\n' ' ')" 'c10 2500000000 nan c01 500000000 nan K 99999999999.999985 nan ' "in another unit of stress"
+sed 's/^2500, 500, 2e-05/2500, -500, 2e-05/' "$T/two.inp" >"$T/bad.inp"
+fails 1 "C01 below 0" 'bad.inp:[0-9]*: material.c01, row 0: -500 is not allowed; expected 0 to 1e12 Pa' sinew import --unit m -o "$T/no" "$T/bad.inp"
+sed 's/^2500, 500, 2e-05/2500, 500/' "$T/two.inp" >"$T/bad.inp"
+fails 1 "no D1" 'bad.inp:[0-9]*: .*expected C10, C01, D1' sinew import --unit m -o "$T/no" "$T/bad.inp"
+echo 'm_skin law=mooney-rivlin c10=1 c01=2 K=3' | sed 's/m_//' >"$T/table"
+echo 'fat' >>"$T/table"
+check "a table in place of the file's" sinew import -q --unit m --materials "$T/table" -o "$T/back" "$T/two.inp"
+is "$(values "$T/back" | grep '^c01 ')" 'c01 2 nan' "has its values"
+
+# ---- -m, in any order; the last of a key counts.
+changed() { # ARG...: the values after them
+    tled-run -q -n 1 "$@" <"$T/two" >"$T/out" && values "$T/out" | grep -E '^(law|E|nu|c10|c01|K|density) ' | tr '\n' ' '
+}
+is "$(changed -m skin.E=4000 -m skin.nu=.3 -m skin.law=neo-hookean)" 'law "neo-hookean" "neo-hookean" E 4000 3000 nu 0.29999999999999999 0.48999999999999999 density 1000 950 ' \
+    "to the default law, its name last"
+is "$(changed -m skin.nu=.45 -m skin.c10=7 -m skin.c10=8)" 'law "mooney-rivlin" "neo-hookean" E nan 3000 nu 0.45000000000000001 0.48999999999999999 c10 8 nan c01 500 nan density 1000 950 ' \
+    "nu in place of K"
+is "$(changed -m fat.law=mooney-rivlin -m fat.K=5e4 -m fat.c01=0 -m fat.c10=500)" 'law "mooney-rivlin" "mooney-rivlin" c10 2500 500 c01 500 0 K 100000 50000 density 1000 950 ' \
+    "to mooney-rivlin"
+printf 'fat law=mooney-rivlin K=5e4 c01=0 c10=500\n' >"$T/change"
+tled-run -q -n 1 --materials "$T/change" <"$T/two" >"$T/by-file"
+check "a file gives the same" sinew diff "$T/out" "$T/by-file"
+
+# ---- What is refused.
+no() { # NAME PATTERN ARG...
+    name=$1 pattern=$2
+    shift 2
+    fails 2 "-m: $name" "^tled-run: -m skin: $pattern" tled-run -n 1 "$@" <"$T/two"
+}
+no "c01 below 0" "'c01=-1' is not allowed; expected 0 to 1e12 Pa" -m skin.c01=-1
+no "no K" "'K=0' is not allowed; expected 0.001 to 1e12 Pa" -m skin.K=0
+no "both K and nu" "the law mooney-rivlin with both nu and K; expected nu or K" -m skin.K=1e4 -m skin.nu=.4
+no "another law's key" "'E' is not a key of the law mooney-rivlin; expected c10, c01, nu or K, density, peak" -m skin.E=1
+no "a law without its keys" "the law neo-hookean without E; expected E" -m skin.law=neo-hookean
+no "an unknown key" "unknown key 'c20'; did you mean 'c10'" -m skin.c20=1
+no "an unknown law" "unknown law 'mooney'; did you mean 'mooney-rivlin'" -m skin.law=mooney
+while IFS='|' read -r name line pattern; do
+    echo "$line" >"$T/bad"
+    fails 1 "file: $name" "bad:1: $pattern" voxelise -q --unit mm -s 5 --materials "$T/bad" -o "$T/no" "$T/box.obj"
+    fails 1 "and tled-run" "bad:1: $pattern" tled-run -n 1 --materials "$T/bad" -o "$T/no" <"$T/two"
+done <<'END'
+c01 below 0|skin law=mooney-rivlin c10=1 c01=-1 K=9|'c01=-1' is not allowed; expected 0 to 1e12 Pa
+K of 0|skin law=mooney-rivlin c10=1 c01=1 K=0|'K=0' is not allowed
+both|skin law=mooney-rivlin c10=1 c01=1 K=9 nu=.3|the law mooney-rivlin with both nu and K; expected nu or K
+another law's key|skin law=mooney-rivlin c10=1 c01=1 K=9 E=3|'E' is not a key of the law mooney-rivlin
+no key of the other law|fat law=mooney-rivlin c10=1 c01=1|the law mooney-rivlin without nu or K; expected nu or K
+no c10|fat law=mooney-rivlin c01=1 K=9|the law mooney-rivlin without c10; expected c10
+a key of no law that it has|fat c10=1|'c10' is not a key of the law neo-hookean; expected E, nu, density, peak
+END
+sed '/^array material.K/ { n; s/.*/nan/; }' "$T/text" | sed '/^crc\|^sum/d' >"$T/bad"
+fails 1 "a model without a value" "material.nu, row 0: nan is not allowed" tled-run -n 1 -o "$T/no" <"$T/bad"
+msds-mesh -q --materials "$T/one" --size 20mm,20mm,20mm --nodes 4x4x4 -o "$T/tets"
+awk 'BEGIN { print "0 0 0 0.1 0 0 0 1" }' >"$T/poses"
+fails 1 "msds-run has no such law" "volume '.*' has the law 'mooney-rivlin'; expected linear, or neo-hookean" \
+    msds-run --poses "$T/poses" -o "$T/no" <"$T/tets"
+done_testing

@@ -1,0 +1,155 @@
+/* The laws in sinew-laws(7) are those of physics/law.c, and the figures there are what the code of their forms gives.
+ * After a change of a law, put what `test_law_page print` prints between the two marked lines of the page. Run from
+ * the top of the checkout.
+ */
+#include "base/in.h"
+#include "base/out.h"
+#include "model/known.h"
+#include "physics/element.h"
+#include "physics/law.h"
+
+#include "tap.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char begin[] = ".\\\" laws\n", end[] = ".\\\" end laws\n";
+
+/* The values that the figures are for. */
+static const double example[LAW_OWN_KEYS] = {
+    [LAW_E] = 3000, [LAW_nu] = .45, [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = 1e5};
+
+/* Along the bar, and in *across beside it, with a lateral stretch. */
+static double stresses(const law_row *of, const double *c, law_moduli at, double stretch, double lateral,
+                       double *across)
+{
+    const element_tensor h = {.xx = stretch - 1, .yy = lateral - 1, .zz = lateral - 1};
+    if (of->form == FORM_LINEAR) {
+        const double trace = h.xx + 2 * h.yy, lambda = at.bulk - 2. / 3 * at.mu;
+        *across = lambda * trace + 2 * at.mu * h.yy;
+        return lambda * trace + 2 * at.mu * h.xx;
+    }
+    const element_tensor p = form_stress(of->form, h, c);
+    *across = p.yy;
+    return p.xx;
+}
+
+/* Force by area at rest of a bar with free sides, Pa: the lateral stretch is found by bisection. */
+static double pulled(const law_row *of, const double *value, double stretch)
+{
+    double c[FORM_NUMBERS] = {0}, low = .5, high = 2, across, stress = NAN;
+    of->fill(value, c);
+    for (int i = 0; i < 100; i++) {
+        const double lateral = (low + high) / 2;
+        stress = stresses(of, c, of->moduli(value), stretch, lateral, &across);
+        *(across < 0 ? &low : &high) = lateral;
+    }
+    return stress;
+}
+
+static int last_of(unsigned group)
+{
+    int key = law_next_key(group, 0);
+    for (int next = key; next >= 0; next = law_next_key(group, next + 1))
+        key = next;
+    return key;
+}
+
+static void print_key(out *o, int key)
+{
+    char name[64], words[KNOWN_WORDS];
+    snprintf(name, sizeof name, "material.%s", law_key_name((law_key)key));
+    const known *k = known_find(name);
+    known_words(k, words);
+    out_format(o, ".It Cm %s\n%c%s: %s.\n", law_key_name((law_key)key), k->meaning[0] - (k->meaning[0] >= 'a' ? 32 : 0),
+               k->meaning + 1, words);
+}
+
+/* "One of nu and K is given." */
+static void print_choices(out *o, const law_row *of)
+{
+    for (int g = 0; g < LAW_GROUPS; g++) {
+        const int first = law_next_key(of->group[g], 0), last = first < 0 ? first : last_of(of->group[g]);
+        if (first != last)
+            out_format(o, ".Pp\nOne of\n.Cm %s\nand\n.Cm %s\nmust be given, and not both.\n",
+                       law_key_name((law_key)first), law_key_name((law_key)last));
+    }
+}
+
+static void print_figures(out *o, const law_row *of)
+{
+    double value[LAW_OWN_KEYS];
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        value[k] = NAN;
+    out_text(o, ".Pp\nA bar with free sides has, with");
+    for (int g = 0; g < LAW_GROUPS && of->group[g]; g++) {
+        const int key = last_of(of->group[g]);
+        value[key] = example[key];
+        out_format(o, "%s %s %g", g ? "," : "", law_key_name((law_key)key), value[key]);
+    }
+    out_format(o, ",\na stress (force by area at rest) of %.2f Pa at 1.2 of its length and %.2f Pa at 0.8.\n",
+               pulled(of, value, 1.2), pulled(of, value, .8));
+}
+
+static void print_law(out *o, const law_row *of)
+{
+    out_format(o, ".Ss %s\n%s\n.Bd -literal -offset indent\nW = %s\n.Ed\n.Bl -tag -width 4n -compact\n", of->name,
+               of->meaning, of->energy);
+    for (int g = 0; g < LAW_GROUPS; g++)
+        for (int k = law_next_key(of->group[g], 0); k >= 0; k = law_next_key(of->group[g], k + 1))
+            print_key(o, k);
+    out_text(o, ".El\n");
+    print_choices(o, of);
+    print_figures(o, of);
+    out_format(o, ".Pp\nComputed by\n.Xr %s 1 .\nSource: %s.\n", of->form < FORM_STEPPED ? "tled-run" : "msds-run",
+               of->source);
+}
+
+static void print(out *o)
+{
+    out_text(o, begin);
+    for (int i = 0; law_at(i); i++)
+        print_law(o, law_at(i));
+    out_text(o, ".Ss Keys of every law\n.Bl -tag -width density -compact\n");
+    for (int k = LAW_OWN_KEYS; k < LAW_ALL_KEYS; k++)
+        print_key(o, k);
+    out_text(o, ".El\n");
+    out_text(o, end);
+}
+
+/* Whether the page holds the text; the first line that differs is told. */
+static bool page_has(const char *page, const char *text)
+{
+    const char *at = page ? strstr(page, begin) : NULL;
+    while (at && *text && *at == *text)
+        at++, text++;
+    if (at && *text)
+        printf("# the page has '%.*s', the table '%.*s'\n", (int)strcspn(at, "\n"), at, (int)strcspn(text, "\n"), text);
+    return at && !*text;
+}
+
+int main(int argc, char **argv)
+{
+    err e = {0};
+    char *page = NULL;
+    size_t size;
+    bool printing = argc > 1 && !strcmp(argv[1], "print");
+    out *o = printing ? out_open(NULL, false, &e) : out_memory(&e);
+    print(o);
+    if (printing)
+        return out_close(o, &e);
+    out_write(o, "", 1);
+    in *s = in_open("man/sinew-laws.7", &e);
+    ok(s && in_all(s, &page, &e) > 0, "the manual page is there %s", e.text);
+    ok(page_has(page, (const char *)out_bytes(o, &size)), "its laws are physics/law.c's");
+    const double neo[] = {[LAW_E] = 3000, [LAW_nu] = .45}, mooney[] = {NAN, NAN, 2500, 500, 1e5};
+    near_(pulled(law_find("neo-hookean"), neo, 1.2), 502.2590, 1e-4, "neo-hookean, 1.2");
+    near_(pulled(law_find("mooney-rivlin"), mooney, 1.2), 2882.59, 1e-2, "mooney-rivlin, 1.2");
+    near_(pulled(law_find("mooney-rivlin"), mooney, .8), -4677.80, 1e-2, "mooney-rivlin, 0.8");
+    near_(pulled(law_find("linear"), neo, 1.2), 600, 1e-9, "linear, 1.2: E / 5");
+    free(page);
+    in_close(s);
+    out_discard(o);
+    return done_testing();
+}
