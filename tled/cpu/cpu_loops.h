@@ -28,16 +28,17 @@ struct tled_state {
     pool *threads;
     const cpu_pass *pass;
     rows rows;
-    cpu_kind *kind;                          /* volumes */
-    number *displacement, *spare, *velocity; /* 3 x rows.nodes each, a component after the other */
-    number *sum;                             /* likewise: zeros between passes */
-    number *mass_inverse;                    /* rows.nodes */
-    uint8_t *flags;                          /* rows.nodes: NODE_* */
-    number *fibre, *fraction;                /* cells, with padding: 3 x and 1 x; or NULL */
-    number *mixfibre, *mixture, *law;        /* likewise; law: a law's numbers x */
-    number *shape, *force;                   /* without a lattice: cpu_work's, as is: */
+    cpu_kind *kind;                   /* volumes */
+    number *field[FIELDS_MOST];       /* of the problem's table: a column after the other (layout_of) */
+    number *spare;                    /* 3 x rows.nodes, as displacements are */
+    number *sum;                      /* likewise: zeros between passes */
+    number *mass_inverse;             /* rows.nodes */
+    uint8_t *flags;                   /* rows.nodes: NODE_* */
+    number *fibre, *fraction;         /* cells, with padding: 3 x and 1 x; or NULL */
+    number *mixfibre, *mixture, *law; /* likewise; law: a law's numbers x */
+    number *shape, *force;            /* without a lattice: cpu_work's, as is: */
     int32_t *group_node;
-    number *saved; /* displacement, then velocity; made when first wanted, as are: */
+    number *saved; /* all fields, one after the other; made when first wanted, as are, of the fields of frames: */
     number *slot[TLED_SLOTS];
     bool spare_is_internal;
     double time;        /* where the state stands */
@@ -70,7 +71,8 @@ static void contact_work(void *context, int64_t chunk, int64_t from, int64_t to)
     for (int64_t n = from; n < to; n++) {
         double x[3], push[3];
         for (int a = 0; a < 3; a++)
-            x[a] = s->p->position[3 * n + a] + (double)s->displacement[a * s->rows.nodes + s->rows.place[n]];
+            x[a] =
+                s->p->position[3 * n + a] + (double)s->field[TLED_DISPLACEMENT][a * s->rows.nodes + s->rows.place[n]];
         if (!collider_push(s->p->collider, &c->at, c->time, x, s->p->mass[n], push))
             continue;
         for (int a = 0; a < 3; a++)
@@ -85,7 +87,7 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
     for (int32_t i = 0; i < s->p->volumes; i++)
         s->kind[i].tension = (double)(number)tled_tension(s->p, i, s->now);
     for (int a = 0; a < 3; a++) {
-        w->from[a] = s->displacement + a * s->rows.nodes;
+        w->from[a] = s->field[TLED_DISPLACEMENT] + a * s->rows.nodes;
         w->to[a] = s->spare + a * s->rows.nodes;
     }
     w->now = s->now;
@@ -103,8 +105,8 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
         pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (what & PASS_BEGIN) {
-        number *swap = s->displacement;
-        s->displacement = s->spare;
+        number *swap = s->field[TLED_DISPLACEMENT];
+        s->field[TLED_DISPLACEMENT] = s->spare;
         s->spare = swap;
     }
 }
@@ -131,18 +133,50 @@ static int cpu_step(cpu_state *s, const tled_plan *plan, int64_t count, err *e)
 
 /* ---- in and out */
 
-static void put_out(const cpu_state *s, const number *from, double *to)
+/* How the numbers of a field lie: `stride` from a column to the next; number `at` of a column belongs to row `row` of
+ * the model, where an array that is NULL counts. */
+typedef struct cpu_layout {
+    int columns;
+    int64_t count, stride;
+    const int32_t *row, *at;
+} cpu_layout;
+
+static cpu_layout layout_of(const cpu_state *s, int i)
 {
-    for (int64_t n = 0; n < s->p->nodes; n++)
-        for (int a = 0; a < 3; a++)
-            to[3 * n + a] = from[a * s->rows.nodes + s->rows.place[n]];
+    const field *f = &s->p->fields.field[i];
+    const rows *r = &s->rows;
+    if (f->axis == FIELD_ELEMENT)
+        return (cpu_layout){f->columns, r->cells, r->cells + ROWS_PAD, r->cell_element, NULL};
+    return (cpu_layout){f->columns, s->p->nodes, r->nodes, NULL, r->place};
 }
 
-static void put_in(const cpu_state *s, const double *from, number *to)
+/* How many numbers the fields of some places take here. */
+static int64_t numbers_of(const cpu_state *s, int where)
 {
-    for (int64_t n = 0; n < s->p->nodes; n++)
-        for (int a = 0; a < 3; a++)
-            to[a * s->rows.nodes + s->rows.place[n]] = (number)from[3 * n + a];
+    int64_t numbers = 0;
+    for (int i = 0; i < s->p->fields.count; i++) {
+        const cpu_layout l = layout_of(s, i);
+        numbers += fields_is_in(&s->p->fields, i, where) ? l.columns * l.stride : 0;
+    }
+    return numbers;
+}
+
+static void put_out(cpu_layout l, const number *from, double *to)
+{
+    for (int64_t k = 0; k < l.count; k++) {
+        const int64_t row = l.row ? l.row[k] : k, at = l.at ? l.at[k] : k;
+        for (int a = 0; a < l.columns; a++)
+            to[l.columns * row + a] = from[a * l.stride + at];
+    }
+}
+
+static void put_in(cpu_layout l, const double *from, number *to)
+{
+    for (int64_t k = 0; k < l.count; k++) {
+        const int64_t row = l.row ? l.row[k] : k, at = l.at ? l.at[k] : k;
+        for (int a = 0; a < l.columns; a++)
+            to[a * l.stride + at] = (number)from[l.columns * row + a];
+    }
 }
 
 static int cpu_get(cpu_state *s, int what, double *to, err *e)
@@ -153,60 +187,76 @@ static int cpu_get(cpu_state *s, int what, double *to, err *e)
         tled_curves(s->p, s->time, s->now);
         run_pass(s, &here, s->time, PASS_INTERNAL);
     }
-    put_out(s, what == TLED_DISPLACEMENT ? s->displacement : what == TLED_VELOCITY ? s->velocity : s->spare, to);
+    if (what == TLED_INTERNAL)
+        put_out(layout_of(s, TLED_DISPLACEMENT), s->spare, to);
+    else
+        put_out(layout_of(s, what), s->field[what], to);
     return 0;
 }
 
-/* Displacement and velocity, one after the other. */
-static int copy_out(cpu_state *s, number **to, err *e)
+/* The fields of some places, one after the other. */
+static int copy_out(const cpu_state *s, int where, number **to, err *e)
 {
-    const size_t size = 3 * (size_t)s->rows.nodes;
     if (!*to)
-        *to = mem_array(s->rows.nodes, 6 * sizeof **to, "the solver", e);
-    if (!*to)
-        return -1;
-    memcpy(*to, s->displacement, size * sizeof **to);
-    memcpy(*to + size, s->velocity, size * sizeof **to);
-    return 0;
+        *to = mem_array(numbers_of(s, where), sizeof **to, "the solver", e);
+    number *at = *to;
+    for (int i = 0; at && i < s->p->fields.count; i++) {
+        const cpu_layout l = layout_of(s, i);
+        if (!fields_is_in(&s->p->fields, i, where))
+            continue;
+        memcpy(at, s->field[i], (size_t)(l.columns * l.stride) * sizeof *at);
+        at += l.columns * l.stride;
+    }
+    return *to ? 0 : -1;
 }
 
 static int cpu_save(cpu_state *s, err *e)
 {
-    return copy_out(s, &s->saved, e);
+    return copy_out(s, FIELDS_ALL, &s->saved, e);
 }
 
 static int cpu_restore(cpu_state *s, err *e)
 {
-    const size_t size = 3 * (size_t)s->rows.nodes;
+    const number *at = s->saved;
     (void)e;
-    memcpy(s->displacement, s->saved, size * sizeof *s->saved);
-    memcpy(s->velocity, s->saved + size, size * sizeof *s->saved);
+    for (int i = 0; i < s->p->fields.count; i++) {
+        const cpu_layout l = layout_of(s, i);
+        memcpy(s->field[i], at, (size_t)(l.columns * l.stride) * sizeof *at);
+        at += l.columns * l.stride;
+    }
     s->spare_is_internal = false;
     return 0;
 }
 
 static int cpu_snapshot(cpu_state *s, int slot, err *e)
 {
-    return copy_out(s, &s->slot[slot], e);
+    return copy_out(s, FIELD_IN_FRAMES, &s->slot[slot], e);
 }
 
 static int cpu_fetch(cpu_state *s, int slot, const field_values *to, err *e)
 {
+    const number *at = s->slot[slot];
     (void)e;
-    put_out(s, s->slot[slot], to->of[TLED_DISPLACEMENT]);
-    put_out(s, s->slot[slot] + 3 * s->rows.nodes, to->of[TLED_VELOCITY]);
+    for (int i = 0; i < s->p->fields.count; i++) {
+        const cpu_layout l = layout_of(s, i);
+        if (!fields_is_in(&s->p->fields, i, FIELD_IN_FRAMES))
+            continue;
+        put_out(l, at, to->of[i]);
+        at += l.columns * l.stride;
+    }
     return 0;
 }
 
 static int64_t cpu_bytes(const cpu_state *s)
 {
     const rows *r = &s->rows;
-    int64_t nodes = 13 + (s->saved ? 6 : 0), cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
+    int64_t numbers = numbers_of(s, FIELDS_ALL) * (s->saved ? 2 : 1),
+            cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
     cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 1 + cpu_law_numbers(s->p->form) : 0);
     for (int i = 0; i < TLED_SLOTS; i++)
-        nodes += s->slot[i] ? 6 : 0;
-    return r->nodes * (nodes * (int64_t)sizeof(number) + 1 + 4) + r->runs * (int64_t)sizeof *r->run +
-           r->cells * (cells * (int64_t)sizeof(number) + 4) + mesh_bytes(s);
+        numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
+    return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) +
+           r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + mesh_bytes(s);
 }
 
 /* ---- life */
@@ -217,9 +267,9 @@ static void cpu_destroy(cpu_state *s)
         return;
     rows_free(&s->rows);
     free(s->kind);
-    free(s->displacement);
+    for (int i = 0; i < FIELDS_MOST; i++)
+        free(s->field[i]);
     free(s->spare);
-    free(s->velocity);
     free(s->sum);
     free(s->mass_inverse);
     free(s->flags);
@@ -253,21 +303,30 @@ static bool allocate_cells(cpu_state *s, err *e)
            (s->mixfibre || !p->mixfibre);
 }
 
+static bool allocate_fields(cpu_state *s, err *e)
+{
+    for (int i = 0; i < s->p->fields.count; i++) {
+        const cpu_layout l = layout_of(s, i);
+        s->field[i] = mem_array(l.stride, (size_t)l.columns * sizeof *s->field[i], "the solver", e);
+        if (!s->field[i])
+            return false;
+    }
+    return true;
+}
+
 static int allocate(cpu_state *s, err *e)
 {
     const int64_t nodes = s->rows.nodes, curves = s->p->script->curves;
     s->kind = mem_array(s->p->volumes, sizeof *s->kind, "the solver", e);
-    s->displacement = mem_array(nodes, 3 * sizeof(number), "the solver", e);
     s->spare = mem_array(nodes, 3 * sizeof(number), "the solver", e);
-    s->velocity = mem_array(nodes, 3 * sizeof(number), "the solver", e);
     s->sum = mem_array(nodes, 3 * sizeof(number), "the solver", e);
     s->mass_inverse = mem_array(nodes, sizeof(number), "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
     s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
     s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
     bool cells_too = allocate_cells(s, e) && (!s->p->conforming || !mesh_allocate(s, e));
-    return s->kind && s->displacement && s->spare && s->velocity && s->sum && s->mass_inverse && s->flags &&
-                   cells_too && s->now && s->next
+    return s->kind && allocate_fields(s, e) && s->spare && s->sum && s->mass_inverse && s->flags && cells_too &&
+                   s->now && s->next
                ? 0
                : -1;
 }
@@ -283,8 +342,8 @@ static void fill_nodes(cpu_state *s)
     }
     for (int32_t i = 0; i < s->rows.extras; i++)
         s->flags[s->rows.extra[i]] |= NODE_EXTRA;
-    put_in(s, p->at_start.of[TLED_DISPLACEMENT], s->displacement);
-    put_in(s, p->at_start.of[TLED_VELOCITY], s->velocity);
+    for (int i = 0; i < p->fields.count; i++)
+        put_in(layout_of(s, i), p->at_start.of[i], s->field[i]);
 }
 
 static void fill_cells(cpu_state *s)
@@ -327,7 +386,7 @@ static void make_work(cpu_state *s)
     w->group_node = s->group_node;
     w->force = s->force;
     for (int a = 0; a < 3; a++) {
-        w->velocity[a] = s->velocity + a * s->rows.nodes;
+        w->velocity[a] = s->field[TLED_VELOCITY] + a * s->rows.nodes;
         w->sum[a] = s->sum + a * s->rows.nodes;
         w->fibre[a] = s->fibre ? s->fibre + a * (s->rows.cells + ROWS_PAD) : NULL;
         w->mixfibre[a] = s->mixfibre ? s->mixfibre + a * (s->rows.cells + ROWS_PAD) : NULL;
