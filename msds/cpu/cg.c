@@ -22,7 +22,7 @@ typedef struct filling {
 static void fill_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     filling *g = context;
-    const slices *s = g->m->s;
+    const sell *s = g->m->s;
     (void)chunk;
     for (int64_t own = from * LANES; own < to * LANES; own++) {
         const int64_t slice = own / LANES, node = s->model_node[own];
@@ -42,27 +42,27 @@ static void fill_work(void *context, int64_t chunk, int64_t from, int64_t to)
 void cg_fill(lanes_matrix *m, const msds_problem *p, const stiffness *k, pool *threads)
 {
     filling f = {m, p, k};
-    pool_run(threads, m->s->count, SLICES_CHUNK, fill_work, &f);
+    pool_run(threads, m->s->count, SELL_CHUNK, fill_work, &f);
 }
 
 static void run(cg *g, pool_work *work)
 {
-    pool_run(g->threads, g->s->count, SLICES_CHUNK, work, g);
+    pool_run(g->threads, g->s->count, SELL_CHUNK, work, g);
 }
 
 static double sum_of(const cg *g)
 {
-    return sums_of(g->sum, pool_chunks(g->s->count, SLICES_CHUNK));
+    return sums_of(g->sum, pool_chunks(g->s->count, SELL_CHUNK));
 }
 
-int cg_make(cg *g, const msds_problem *p, const slices *s, stiffness *k, contacts *c, const lanes *loops, pool *threads,
+int cg_make(cg *g, const msds_problem *p, const sell *s, stiffness *k, contacts *c, const lanes *loops, pool *threads,
             lanes_field *u, lanes_field *weight, err *e)
 {
     *g = (cg){.p = p, .s = s, .k = k, .c = c, .loops = loops, .threads = threads, .u = u, .weight = weight};
     g->matrix.s = s;
     g->matrix.diagonal = mem_array(s->count, 9 * LANES * sizeof(float), "the solver", e);
     g->matrix.block = mem_array(s->slots, 9 * LANES * sizeof(float), "the solver", e);
-    g->sum = mem_array(pool_chunks(s->count, SLICES_CHUNK), sizeof *g->sum, "the solver", e);
+    g->sum = mem_array(pool_chunks(s->count, SELL_CHUNK), sizeof *g->sum, "the solver", e);
     g->place = mem_array(p->nodes, 3 * sizeof *g->place, "the solver", e);
     g->force = mem_array(p->nodes, 3 * sizeof *g->force, "the solver", e);
     if (!g->matrix.diagonal || !g->matrix.block || !g->sum || !g->place || !g->force ||
@@ -96,7 +96,7 @@ static void pull_work(void *context, int64_t chunk, int64_t from, int64_t to)
 /* g->pulled: what the elements pull with at u, from the matrix or, where rotations are taken out, from the elements. */
 static void find_pulled(cg *g, bool again)
 {
-    const slices *s = g->s;
+    const sell *s = g->s;
     if (!g->k->turn) {
         run(g, pull_work);
         return;

@@ -11,7 +11,7 @@
 typedef struct cg {
     const msds_problem *p;
     const lanes *loops;
-    const slices *s;
+    const sell *s;
     pool *threads;
     stiffness *k;
     contacts *c;
@@ -25,11 +25,11 @@ typedef struct cg {
     double residual; /* what is left over the load or the pull, whichever is more */
 } cg;
 
-/* The stiffness as float, in the order of m's slices; rows of fixed nodes stay as they are: zero. */
+/* The stiffness as float, in the order of m's slices. Rows of Dirichlet nodes stay zero. */
 void cg_fill(lanes_matrix *m, const msds_problem *p, const stiffness *k, pool *threads);
 
 /* -1 with e filled, and to be freed all the same. */
-int cg_make(cg *g, const msds_problem *p, const slices *s, stiffness *k, contacts *c, const lanes *loops, pool *threads,
+int cg_make(cg *g, const msds_problem *p, const sell *s, stiffness *k, contacts *c, const lanes *loops, pool *threads,
             lanes_field *u, lanes_field *weight, err *e);
 void cg_free(cg *g);
 

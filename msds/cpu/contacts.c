@@ -13,12 +13,12 @@ typedef struct search {
     const lanes_springs *w;
 } search;
 
-int contacts_make(contacts *c, const slices *s, int64_t nodes, err *e)
+int contacts_make(contacts *c, const sell *s, int64_t nodes, err *e)
 {
     c->list = mem_array(nodes, sizeof *c->list, "contact", e);
     c->held = mem_array(nodes, sizeof *c->held, "contact", e);
     c->found = mem_array(s->nodes, sizeof *c->found, "contact", e);
-    c->amount = mem_array(pool_chunks(s->count, SLICES_CHUNK), sizeof *c->amount, "contact", e);
+    c->amount = mem_array(pool_chunks(s->count, SELL_CHUNK), sizeof *c->amount, "contact", e);
     return c->list && c->held && c->found && c->amount ? 0 : -1;
 }
 
@@ -71,7 +71,7 @@ static void look_for(contacts *c, const lanes *loops, lanes_springs *w, pool *th
     search s = {c, loops, w};
     float reach = w->reach;
     w->reach = (float)(w->probe->reach + 1.01 * near_by * w->probe->shape.size);
-    pool_run(threads, w->s->count, SLICES_CHUNK, search_work, &s);
+    pool_run(threads, w->s->count, SELL_CHUNK, search_work, &s);
     w->reach = reach;
 }
 
@@ -80,9 +80,9 @@ void contacts_find(contacts *c, const lanes *loops, lanes_springs *w, const msds
 {
     look_for(c, loops, w, threads);
     c->count = 0;
-    for (int64_t chunk = 0; chunk < pool_chunks(w->s->count, SLICES_CHUNK); chunk++)
+    for (int64_t chunk = 0; chunk < pool_chunks(w->s->count, SELL_CHUNK); chunk++)
         for (int64_t i = 0; i < c->amount[chunk]; i++)
-            consider(c, w, p, u, c->found[chunk * SLICES_CHUNK * LANES + i], rule);
+            consider(c, w, p, u, c->found[chunk * SELL_CHUNK * LANES + i], rule);
 }
 
 bool contacts_missed(contacts *c, const lanes *loops, lanes_springs *w, const msds_problem *p, const double *u,
@@ -92,9 +92,9 @@ bool contacts_missed(contacts *c, const lanes *loops, lanes_springs *w, const ms
     double x[3];
     contacts_hold(c, p);
     look_for(c, loops, w, threads);
-    for (int64_t chunk = 0; chunk < pool_chunks(w->s->count, SLICES_CHUNK); chunk++)
+    for (int64_t chunk = 0; chunk < pool_chunks(w->s->count, SELL_CHUNK); chunk++)
         for (int64_t i = 0; i < c->amount[chunk]; i++) {
-            int64_t node = w->s->model_node[c->found[chunk * SLICES_CHUNK * LANES + i]];
+            int64_t node = w->s->model_node[c->found[chunk * SELL_CHUNK * LANES + i]];
             for (int a = 0; a < 3; a++)
                 x[a] = p->position[3 * node + a] + u[3 * node + a];
             missed = missed || (!p->fixed[node] && c->held[node] == 0 && probe_at(w->probe, x).depth > depth);

@@ -28,7 +28,7 @@ typedef struct contacts {
  * the probe's size; NEAR, all within a tenth. */
 typedef enum contacts_rule { CONTACTS_PRESSED, CONTACTS_NEAR } contacts_rule;
 
-int contacts_make(contacts *c, const slices *s, int64_t nodes, err *e);
+int contacts_make(contacts *c, const sell *s, int64_t nodes, err *e);
 void contacts_free(contacts *c);
 
 /* Lists them, in the solver's order, with the forces of the frame before; w has the probe and the displacements,

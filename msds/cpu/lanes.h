@@ -1,4 +1,4 @@
-/* The loops that take the time, over eight nodes side by side (slices.h) and over dense columns, as a table of
+/* The loops that take the time, over eight nodes side by side (sell.h) and over dense columns, as a table of
  * functions: the same source, lanes_loops.c, compiled for each set of solve/vectors.h, chosen when a state is made.
  * No multiply and add is fused in any, and no sum changes its order: all give the same bytes. All memory is the
  * caller's.
@@ -6,7 +6,7 @@
 #ifndef SINEW_LANES_H
 #define SINEW_LANES_H
 
-#include "msds/problem/slices.h"
+#include "msds/problem/sell.h"
 #include "solve/vectors.h"
 
 /* A value for each component of each of our nodes: three arrays, with LANES zeros before and after each. */
@@ -16,7 +16,7 @@ typedef struct lanes_field {
 } lanes_field;
 
 typedef struct lanes_springs {
-    const slices *s;
+    const sell *s;
     const float *stiffness, *damper, *rest; /* slots x LANES */
     lanes_field place;                      /* m: at rest */
     lanes_field u, v, next_u, next_v;       /* m, m/s */
@@ -31,9 +31,9 @@ typedef struct lanes_springs {
     bool *met; /* set where the probe pushes a node that is free; by any thread, atomically */
 } lanes_springs;
 
-/* A sparse matrix of 3 x 3 blocks with the graph of the slices. Rows of what is fixed are zero. */
+/* A sparse matrix of 3 x 3 blocks, with the graph of the springs (sell.h). Rows of Dirichlet nodes are zero. */
 typedef struct lanes_matrix {
-    const slices *s;
+    const sell *s;
     float *diagonal; /* count x 9 x LANES */
     float *block;    /* slots x 9 x LANES */
 } lanes_matrix;

@@ -153,7 +153,7 @@ INLINE wide load_slots(const float *p, const int64_t slot[2])
     return both(load(p + slot[0] * LANES), load(p + slot[1] * LANES));
 }
 
-INLINE wide fetch_slots(const float *field, const slices *s, bool row, const int64_t slot[2])
+INLINE wide fetch_slots(const float *field, const sell *s, bool row, const int64_t slot[2])
 {
     v8 first = fetch(field, row, s->first[slot[0]], s->neighbour + slot[0] * LANES);
     return both(first, row ? load(field + s->first[slot[1]]) : first);
@@ -180,15 +180,15 @@ INLINE void pull(const lanes_springs *w, bool row, const int64_t slot[2], const 
         add_slots(&force[a], scale * d[a], slot[1] != slot[0]);
 }
 
-INLINE bool is_row(const slices *s, int64_t slot)
+INLINE bool is_row(const sell *s, int64_t slot)
 {
-    return s->first[slot] != SLICES_SCATTERED;
+    return s->first[slot] != SELL_SCATTERED;
 }
 
 /* What the springs of a slice pull its nodes with, slot after slot. */
 INLINE void pull_all(const lanes_springs *w, int64_t slice, const v8 x[3], const v8 u[3], const v8 v[3], v8 force[3])
 {
-    const slices *s = w->s;
+    const sell *s = w->s;
     const int64_t end = s->start[slice + 1];
     wide own_x[3], own_u[3], own_v[3];
     for (int a = 0; a < 3; a++) {
@@ -282,14 +282,14 @@ INLINE double sum_of(const double sum[LANES])
 static double multiply(const lanes_matrix *m, const lanes_field *p, lanes_field *y, int64_t from, int64_t to)
 {
     const unsigned before = flush_small();
-    const slices *s = m->s;
+    const sell *s = m->s;
     double sum[LANES] = {0};
     for (int64_t slice = from; slice < to; slice++) {
         const int64_t own = slice * LANES;
         v8 p0 = load(p->x[0] + own), p1 = load(p->x[1] + own), p2 = load(p->x[2] + own), t[3] = {{0}, {0}, {0}};
         block(m->diagonal + slice * 9 * LANES, p0, p1, p2, t);
         for (int64_t slot = s->start[slice]; slot < s->start[slice + 1]; slot++) {
-            if (s->first[slot] != SLICES_SCATTERED)
+            if (s->first[slot] != SELL_SCATTERED)
                 couple(m, true, slot, p, t);
             else
                 couple(m, false, slot, p, t);

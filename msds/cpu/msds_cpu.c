@@ -23,7 +23,7 @@ struct msds_state {
     const msds_problem *p;
     pool *threads;
     const lanes *loops;
-    slices order;
+    sell order;
     lanes_springs w;
     float *stiffness, *damper, *rest; /* slots x LANES: of w */
     float *inertia;                   /* nodes: 1 / kg, 0 where fixed */
@@ -71,7 +71,7 @@ static void fill_nodes(cpu_state *s)
 
 static int allocate(cpu_state *s, err *e)
 {
-    const slices *o = &s->order;
+    const sell *o = &s->order;
     s->stiffness = mem_array(o->slots * LANES, sizeof *s->stiffness, "the solver", e);
     s->damper = mem_array(o->slots * LANES, sizeof *s->damper, "the solver", e);
     s->rest = mem_array(o->slots * LANES, sizeof *s->rest, "the solver", e);
@@ -110,7 +110,7 @@ static void cpu_destroy(cpu_state *s)
     free(s->inverse);
     free(s->repulsion);
     free(s->place);
-    slices_free(&s->order);
+    sell_free(&s->order);
     free(s);
 }
 
@@ -122,7 +122,7 @@ static cpu_state *cpu_create(const msds_problem *problem, pool *threads, err *e)
     s->p = problem;
     s->threads = threads;
     s->loops = lanes_choose(e);
-    if (!s->loops || slices_make(&s->order, s->p, e) || allocate(s, e)) {
+    if (!s->loops || sell_make(&s->order, s->p, e) || allocate(s, e)) {
         cpu_destroy(s);
         return NULL;
     }
@@ -135,7 +135,7 @@ static cpu_state *cpu_create(const msds_problem *problem, pool *threads, err *e)
     s->w.damping = s->p->options.damping;
     s->w.met = &s->met;
     fill_nodes(s);
-    slices_springs(&s->order, s->p, s->stiffness, s->damper, s->rest);
+    sell_springs(&s->order, s->p, s->stiffness, s->damper, s->rest);
     memcpy(s->place, s->p->displacement, 3 * (size_t)s->p->nodes * sizeof *s->place);
     s->precise = true;
     return s;
@@ -171,7 +171,7 @@ static void step_springs(cpu_state *s, int64_t count)
     for (int64_t i = 0; i < s->order.nodes; i++)
         s->inverse[i] = s->w.dt * s->inertia[i];
     for (int64_t i = 0; i < count; i++) {
-        pool_run(s->threads, s->order.count, SLICES_CHUNK, spring_work, s);
+        pool_run(s->threads, s->order.count, SELL_CHUNK, spring_work, s);
         swap_fields(&s->w.u, &s->w.next_u);
         swap_fields(&s->w.v, &s->w.next_v);
     }

@@ -51,7 +51,7 @@ typedef struct tissue_exact {
 
 /* Puts them on the card, from the stiffness on the host; what the mesh has already stays with t. *memory and *bytes get
  * the piece of the card's memory that they take, which is the caller's. -1 with e filled. */
-int tissue_exact_make(tissue_exact *x, const tissue *t, const msds_problem *p, const slices *s, const lanes_matrix *m,
+int tissue_exact_make(tissue_exact *x, const tissue *t, const msds_problem *p, const sell *s, const lanes_matrix *m,
                       pool *threads, char **memory, int64_t *bytes, err *e);
 
 /* Makes the displacement of exact frames that of the others. */

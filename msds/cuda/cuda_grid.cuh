@@ -10,11 +10,11 @@
 
 extern "C" {
 #include "msds/cpu/sums.h"
-#include "msds/problem/slices.h"
+#include "msds/problem/sell.h"
 }
 
 /* A block takes a chunk of nodes at a time, the one that a thread of the CPU takes: a thread a node. */
-enum { GRID_THREADS = SLICES_CHUNK * LANES, GRID_WARPS = GRID_THREADS / 32 };
+enum { GRID_THREADS = SELL_CHUNK * LANES, GRID_WARPS = GRID_THREADS / 32 };
 static_assert((int)GRID_THREADS == (int)SUMS_WIDE, "a block sums as wide as sums.h does");
 
 typedef struct grid_scratch {
@@ -78,7 +78,7 @@ static __device__ inline void grid_lanes_sum(float x, double *to, grid_scratch *
     __syncthreads();
     if (threadIdx.x < 32) {
         double sum = 0;
-        for (int slice = 0; slice < SLICES_CHUNK && threadIdx.x < LANES; slice++)
+        for (int slice = 0; slice < SELL_CHUNK && threadIdx.x < LANES; slice++)
             sum += s->row[slice * LANES + threadIdx.x];
         sum = grid_pairs(sum, LANES);
         if (threadIdx.x == 0)

@@ -55,7 +55,7 @@ static void host_level_free(host_level *h)
 
 static void fill_halves(const level *from, host_level *h)
 {
-    const slices *g = &from->graph;
+    const sell *g = &from->graph;
     float most = 0;
     for (int64_t i = 0; i < g->count * 9 * LANES; i++)
         most = fmaxf(most, fabsf(from->matrix.diagonal[i]));
@@ -71,7 +71,7 @@ static void fill_halves(const level *from, host_level *h)
 
 static void fill_sums(const level *from, host_level *h)
 {
-    const slices *g = &from->graph;
+    const sell *g = &from->graph;
     for (int64_t slice = 0; slice < g->count; slice++)
         for (int64_t i = 0; i < 9 * LANES; i++) {
             double sum = (double)from->matrix.diagonal[slice * 9 * LANES + i];
@@ -83,7 +83,7 @@ static void fill_sums(const level *from, host_level *h)
 
 static int host_level_make(const level *from, bool mesh, host_level *h, err *e)
 {
-    const slices *g = &from->graph;
+    const sell *g = &from->graph;
     h->eight = (uint4 *)mem_array(g->slots * LANES, sizeof *h->eight, "the solver", e);
     h->ninth = (__half *)mem_array(g->slots * LANES, sizeof *h->ninth, "the solver", e);
     h->start = (int32_t *)mem_array(g->count + 1, sizeof *h->start, "the solver", e);
@@ -102,7 +102,7 @@ static int host_level_make(const level *from, bool mesh, host_level *h, err *e)
 static int put_graph(char *memory, int64_t *used, const tissue *t, tissue_level *v, const level *from,
                      const host_level *h, err *e)
 {
-    const slices *g = &from->graph;
+    const sell *g = &from->graph;
     if (!h->sums) {
         v->start = t->start, v->neighbour = t->neighbour, v->left = t->left, v->rest = t->pulled;
         return 0;
@@ -119,9 +119,9 @@ static int put_graph(char *memory, int64_t *used, const tissue *t, tissue_level 
 static int put_level(char *memory, int64_t *used, const tissue *t, tissue_level *v, const level *from,
                      const host_level *h, err *e)
 {
-    const slices *g = &from->graph;
+    const sell *g = &from->graph;
     v->nodes = (int32_t)g->nodes;
-    v->chunks = (int32_t)pool_chunks(g->count, SLICES_CHUNK);
+    v->chunks = (int32_t)pool_chunks(g->count, SELL_CHUNK);
     v->back = 1 / h->scale;
     choose_steps(v, from->largest);
     v->z[0] = room<float4>(memory, used, g->nodes);
@@ -159,7 +159,7 @@ typedef struct host_exact {
     host_level at[LEVELS_MOST];
 } host_exact;
 
-static int host_exact_make(host_exact *h, const msds_problem *p, const slices *s, const lanes_matrix *m, pool *threads,
+static int host_exact_make(host_exact *h, const msds_problem *p, const sell *s, const lanes_matrix *m, pool *threads,
                            err *e)
 {
     if (levels_make(&h->l, p, s, m, threads, e))
@@ -170,7 +170,7 @@ static int host_exact_make(host_exact *h, const msds_problem *p, const slices *s
     return 0;
 }
 
-int tissue_exact_make(tissue_exact *x, const tissue *t, const msds_problem *p, const slices *s, const lanes_matrix *m,
+int tissue_exact_make(tissue_exact *x, const tissue *t, const msds_problem *p, const sell *s, const lanes_matrix *m,
                       pool *threads, char **memory, int64_t *bytes, err *e)
 {
     host_exact *h = (host_exact *)mem_array(1, sizeof *h, "the solver", e);

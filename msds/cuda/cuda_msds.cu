@@ -22,7 +22,7 @@ typedef struct msds_state cuda_state;
 struct msds_state {
     const msds_problem *p;
     pool *threads;
-    slices order;
+    sell order;
     tissue t;
     tissue_exact x;
     char *memory, *fem, *exact; /* of the card */
@@ -106,7 +106,7 @@ static void host_fill(const cuda_state *s, host_nodes *h)
     }
     for (int64_t i = 0; i <= s->order.count; i++)
         h->start[i] = (int32_t)s->order.start[i];
-    slices_springs(&s->order, p, h->stiffness, h->damper, h->rest);
+    sell_springs(&s->order, p, h->stiffness, h->damper, h->rest);
     for (int64_t i = 0; i < s->order.slots * LANES; i++) {
         h->spring[i] = {h->rest[i], h->stiffness[i], h->damper[i], 0};
         memcpy(&h->spring[i].w, &s->order.neighbour[i], sizeof h->spring[i].w);
@@ -160,10 +160,10 @@ out:
 
 static int fill(cuda_state *s, err *e)
 {
-    if (slices_make(&s->order, s->p, e))
+    if (sell_make(&s->order, s->p, e))
         return -1;
     s->t.nodes = (int32_t)s->order.nodes;
-    s->t.chunks = (int32_t)pool_chunks(s->order.count, SLICES_CHUNK);
+    s->t.chunks = (int32_t)pool_chunks(s->order.count, SELL_CHUNK);
     s->t.slight = s->p->slight;
     s->precise = true;
     return put_problem(s, e) || CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
@@ -189,7 +189,7 @@ static void cuda_destroy(cuda_state *s)
     free(s->planes_here);
     if (s->stream)
         cudaStreamDestroy(s->stream);
-    slices_free(&s->order);
+    sell_free(&s->order);
     free(s);
 }
 
@@ -225,7 +225,7 @@ static int lay_out_fem(cuda_state *s, const lanes_matrix *m, err *e)
     return 0;
 }
 
-/* The stiffness on the host, in the slices' order; diagonal and block are the caller's to free. */
+/* The stiffness on the host, in the order of sell.h; diagonal and block are the caller's to free. */
 static int make_matrix(cuda_state *s, lanes_matrix *m, err *e)
 {
     stiffness k = {0};

@@ -1,5 +1,5 @@
 /* What the kernels of msds-run see of a model on the card, what they are asked for a frame, and how it is started.
- * Views are passed by value and own nothing. Arrays over nodes are in the slices' order (slices.h); a number in each
+ * Views are passed by value and own nothing. Arrays over nodes are in the slices' order (sell.h); a number in each
  * direction and a fourth are a float4.
  */
 #ifndef SINEW_CUDA_TISSUE_CUH

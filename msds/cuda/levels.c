@@ -258,7 +258,7 @@ static void add_column(const level *fine, row *r, float weight, const float *blo
 static void sum_row(const level *fine, row *r, int64_t coarse)
 {
     const levels_weights *down = &fine->down;
-    const slices *g = &fine->graph;
+    const sell *g = &fine->graph;
     memset(r->table, 0, sizeof r->table);
     r->count = 0;
     for (int64_t i = down->start[coarse / LANES]; i < down->start[coarse / LANES + 1]; i++) {
@@ -317,7 +317,7 @@ static void product_work(void *context, int64_t chunk, int64_t from, int64_t to)
 
 static int graph_room(level *l, const int32_t *entries, int64_t nodes, err *e)
 {
-    slices *s = &l->graph;
+    sell *s = &l->graph;
     s->count = (nodes + LANES - 1) / LANES;
     s->nodes = s->count * LANES;
     s->start = mem_array(s->count + 1, sizeof *s->start, "coarser lattices", e);
@@ -334,7 +334,7 @@ static int graph_room(level *l, const int32_t *entries, int64_t nodes, err *e)
         return -1;
     for (int64_t slice = 0; slice < s->count; slice++)
         for (int64_t at = s->start[slice] * LANES; at < s->start[slice + 1] * LANES; at++) {
-            s->first[at / LANES] = SLICES_SCATTERED;
+            s->first[at / LANES] = SELL_SCATTERED;
             s->neighbour[at] = (int32_t)(slice * LANES + at % LANES);
         }
     return 0;
@@ -443,7 +443,7 @@ static int find_largest(level *l, pool *threads, err *e)
     }
     for (int i = 0; i < POWERS; i++) {
         const double before = norm_of(&x, l->graph.nodes);
-        pool_run(threads, l->graph.count, SLICES_CHUNK, power_work, &w);
+        pool_run(threads, l->graph.count, SELL_CHUNK, power_work, &w);
         const double after = norm_of(&y, l->graph.nodes);
         l->largest = before > 0 ? after / before : 1;
         for (int64_t k = 0; k < 3 * l->graph.nodes && after > 0; k++)
@@ -472,7 +472,7 @@ static int make_smoother(level *l, pool *threads, err *e)
 /* The whole matrix of a level, row by row. */
 static void spread_matrix(const level *l, double *a, int64_t order)
 {
-    const slices *g = &l->graph;
+    const sell *g = &l->graph;
     for (int64_t n = 0; n < order / 3; n++)
         for (int64_t slot = g->start[n / LANES] - 1; slot < g->start[n / LANES + 1]; slot++) {
             const bool own = slot < g->start[n / LANES];
@@ -534,7 +534,7 @@ static int make_next(level *fine, level *coarse, pool *threads, err *e)
     return result;
 }
 
-int levels_make(levels *l, const msds_problem *p, const slices *s, const lanes_matrix *m, pool *threads, err *e)
+int levels_make(levels *l, const msds_problem *p, const sell *s, const lanes_matrix *m, pool *threads, err *e)
 {
     l->at[0].graph = *s;
     l->at[0].matrix = *m;
@@ -563,7 +563,7 @@ void levels_free(levels *l)
     for (int i = 0; i < l->count; i++) {
         level *at = &l->at[i];
         if (i > 0) {
-            slices_free(&at->graph);
+            sell_free(&at->graph);
             free(at->matrix.diagonal);
             free(at->matrix.block);
         }

@@ -12,17 +12,17 @@
 
 enum { LEVELS_MOST = 12, LEVELS_COARSEST = 100 /* nodes: so few are solved for directly */ };
 
-/* A sparse matrix of one number a pair of nodes; rows in slices of LANES, as slices.h has them. A lane without one: its
+/* A sparse matrix of one number a pair of nodes; rows in slices of LANES, as sell.h has them. A lane without one: its
  * first column with weight 0. */
 typedef struct levels_weights {
-    int64_t count, slots; /* slices */
+    int64_t count, slots; /* sell */
     int32_t *start;       /* count + 1 */
     int32_t *column;      /* slots x LANES */
     float *weight;
 } levels_weights;
 
 typedef struct level {
-    slices graph; /* of level 0: the mesh's, borrowed; else count, nodes, slots, start, first and neighbour alone */
+    sell graph; /* of level 0: the mesh's, borrowed; else count, nodes, slots, start, first and neighbour alone */
     lanes_matrix matrix;
     float *inverse;          /* count x 9 x LANES: of the diagonal's blocks, row by row; zero where nothing moves */
     double largest;          /* the largest eigenvalue of inverse times matrix, from above */
@@ -40,7 +40,7 @@ typedef struct levels {
 
 /* Makes l (zeroed) of the stiffness of p's mesh, as cg_fill() gives it, which stays borrowed. -1
  * with e filled; to be freed in every case. */
-int levels_make(levels *l, const msds_problem *p, const slices *s, const lanes_matrix *m, pool *threads, err *e);
+int levels_make(levels *l, const msds_problem *p, const sell *s, const lanes_matrix *m, pool *threads, err *e);
 void levels_free(levels *l);
 
 #endif

@@ -1,5 +1,5 @@
-/* msds-run: presses a probe on a tetrahedral model, pose by pose, and writes a frame for each as soon as it is solved: by springs
- * and dampers or by linear finite elements. PST sections III and the appendix.
+/* msds-run: presses a probe on a tetrahedral model, pose by pose, and writes a frame for each as soon as it is solved:
+ * by springs and dampers or by linear finite elements. PST sections III and the appendix.
  */
 #include "base/mem.h"
 #include "cli/progress.h"
@@ -313,8 +313,8 @@ static void warn_of_pose(session *s, const poses_event *at, const press_moves *m
     tool_warn(s->t, &s->warnings);
 }
 
-/* All moves of a frame but the last; fills the plan with that, and returns its count of steps, or -1 with e filled. The skin, if there
- * is one to go with it, makes the last one too. */
+/* All moves of a frame but the last; fills the plan with that, and returns its count of steps, or -1 with e filled. The
+ * skin, if there is one to go with it, makes the last one too. */
 static int64_t make_moves(session *s, msds_state *state, const press_moves *moves, msds_plan *plan, bool with_skin,
                           err *e)
 {

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Shares of the probe's size: deeper at the first pose is inside, deeper where nothing was touched before as well; how far it goes
- * in one move of easing in. And how many 60ths of a second, say, count between two poses. */
+/* Shares of the probe's size: deeper at the first pose is inside, deeper where nothing was touched before as well; how
+ * far it goes in one move of easing in. And how many 60ths of a second, say, count between two poses. */
 static const double inside_first = .01, inside_later = .25, ease = .25, frames_most = 10;
 
 int press_make(press *s, const msds_problem *p, const probe *shape, int64_t iterations, double rate, err *e)

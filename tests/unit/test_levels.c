@@ -2,7 +2,7 @@
  * each matrix has the energy of the one before (Galerkin), that the coarsest is inverted; on a lattice, on one that
  * lies askew, on a mesh without any order, with nodes held fast inside; and the same bytes for any number of threads.
  */
-// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/cg.c msds/cuda/levels.c msds/cuda/parts.c
 #include "msds_block.h"
@@ -17,7 +17,7 @@
 typedef struct subject {
     model m;
     msds_problem p;
-    slices s;
+    sell s;
     stiffness k;
     lanes_matrix matrix;
     levels l;
@@ -60,7 +60,7 @@ static void make(subject *s, const tets *b, void (*change)(model *), double shak
     for (int64_t n = 100; hold && n < model_count(&s->m, "node"); n += 37)
         model_find(&s->m, "node.rigid")->u8[n] = 1;
     s->threads = pool_create(threads, &e);
-    tets_must(s->threads && !msds_problem_make(&s->p, &s->m, &o, &e) && !slices_make(&s->s, &s->p, &e) &&
+    tets_must(s->threads && !msds_problem_make(&s->p, &s->m, &o, &e) && !sell_make(&s->s, &s->p, &e) &&
                   !stiffness_make(&s->k, &s->p, s->threads, &e),
               &e);
     s->matrix.s = &s->s;
@@ -77,7 +77,7 @@ static void drop(subject *s)
     free(s->matrix.diagonal);
     free(s->matrix.block);
     stiffness_free(&s->k);
-    slices_free(&s->s);
+    sell_free(&s->s);
     pool_destroy(s->threads);
     msds_problem_free(&s->p);
     model_free(&s->m);
@@ -86,7 +86,7 @@ static void drop(subject *s)
 /* y = A v on a level, to which it is added. */
 static void apply(const level *l, const double *v, double *y)
 {
-    const slices *g = &l->graph;
+    const sell *g = &l->graph;
     for (int64_t n = 0; n < g->nodes; n++)
         for (int64_t slot = g->start[n / LANES] - 1; slot < g->start[n / LANES + 1]; slot++) {
             const bool own = slot < g->start[n / LANES];

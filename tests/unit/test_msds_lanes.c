@@ -1,14 +1,14 @@
 /* What msds-run's solvers stand on: slices of the graph of springs, the loops over them in each instruction set, an
  * element's rotation, and the mixing of solves.
  */
-// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/slices.c msds/cpu/lanes.c
+// needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/mixing.c
 #include "msds_block.h"
 
 #include "base/mem.h"
 #include "msds/cpu/lanes.h"
 #include "msds/cpu/mixing.h"
-#include "msds/problem/slices.h"
+#include "msds/problem/sell.h"
 #include "solve/vectors.h"
 
 #include "tap.h"
@@ -32,12 +32,12 @@ static void test_slices(void)
 {
     model m = {0};
     msds_problem p = {0};
-    slices s = {0};
+    sell s = {0};
     err e = {0};
     tets b = {{9, 6, 5}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
     int64_t met = 0, wrong = 0, rows = 0;
     make_problem(&b, &m, &p);
-    tets_must(!slices_make(&s, &p, &e), &e);
+    tets_must(!sell_make(&s, &p, &e), &e);
     for (int64_t slice = 0; slice < s.count; slice++)
         for (int64_t slot = s.start[slice]; slot < s.start[slice + 1]; slot++)
             for (int64_t lane = 0; lane < LANES; lane++) {
@@ -47,13 +47,13 @@ static void test_slices(void)
                 int32_t a = s.model_node[slice * LANES + lane], c = s.model_node[other];
                 wrong += !((p.spring[i].node[0] == a && p.spring[i].node[1] == c) ||
                            (p.spring[i].node[1] == a && p.spring[i].node[0] == c));
-                wrong += s.first[slot] != SLICES_SCATTERED && s.first[slot] + lane != other;
-                rows += s.first[slot] != SLICES_SCATTERED;
+                wrong += s.first[slot] != SELL_SCATTERED && s.first[slot] + lane != other;
+                rows += s.first[slot] != SELL_SCATTERED;
                 met++;
             }
     ok(met == 2 * p.springs && !wrong, "each spring is met from both its ends");
     ok(rows > met * 7 / 10, "mostly in rows: %lld of %lld", (long long)rows, (long long)met);
-    slices_free(&s);
+    sell_free(&s);
     free_problem(&m, &p);
 }
 
@@ -100,7 +100,7 @@ static void test_mixing(void)
 enum { LANE_FIELDS = 6, DENSE = 29, DENSE_ROWS = 43, DENSE_STRIDE = 45 };
 
 /* What the loops of one build make of numbers with no pattern, all that they write together. */
-static double *run_lanes(const lanes *loops, const slices *s, int64_t *count)
+static double *run_lanes(const lanes *loops, const sell *s, int64_t *count)
 {
     err e = {0};
     lanes_field f[LANE_FIELDS] = {{{NULL}, NULL}};
@@ -144,12 +144,12 @@ static void test_lanes(void)
 {
     model m = {0};
     msds_problem p = {0};
-    slices s = {0};
+    sell s = {0};
     err e = {0};
     tets b = {{9, 6, 5}, {.1, .1, .1}, 3000, .45, 1000, 2, false};
     int64_t count;
     make_problem(&b, &m, &p);
-    tets_must(!slices_make(&s, &p, &e), &e);
+    tets_must(!sell_make(&s, &p, &e), &e);
     double *plain = run_lanes(&lanes_plain, &s, &count);
     for (int i = 0; i < VECTORS_plain; i++) {
         if (!vectors_can(i)) {
@@ -161,7 +161,7 @@ static void test_lanes(void)
         free(other);
     }
     free(plain);
-    slices_free(&s);
+    sell_free(&s);
     free_problem(&m, &p);
 }
 

@@ -1,6 +1,6 @@
-/* What leaves the card for the model's arrays: the state, which stands in the tiles' order or the march's, in single precision perhaps.
- * A frame is put into the model's order on the card, between two steps, and goes to the host in a stream of its own while the steps go
- * on. Included by cuda_loops.cuh alone.
+/* What leaves the card for the model's arrays: the state, which stands in the tiles' order or the march's, in single
+ * precision perhaps. A frame is put into the model's order on the card, between two steps, and goes to the host in a
+ * stream of its own while the steps go on. Included by cuda_loops.cuh alone.
  */
 #ifndef SINEW_CUDA_FRAME_CUH
 #define SINEW_CUDA_FRAME_CUH
@@ -31,13 +31,13 @@ static void permute(const cuda_state *s, const real *from, double *to)
     pool_run(s->threads, s->tiles.nodes, COPY_CHUNK, permute_work, &m);
 }
 
-/* ---- by the card. A frame: displacement, then velocity, 3 numbers a node in the model's order; after them, for the kernel, where each
- * node stands in the state. */
+/* ---- by the card. A frame: displacement, then velocity, 3 numbers a node in the model's order; after them, for the
+ * kernel, where each node stands in the state. */
 
 enum { FRAME_THREADS = 256, FRAME_EACH = 3 /* numbers, of displacement and of velocity: as many nodes as threads */ };
 
-/* A thread has one component of three nodes: what is written follows each other, and what a node has side by side is read
- * by threads side by side. */
+/* A thread has one component of three nodes: what is written follows each other, and what a node has side by side is
+ * read by threads side by side. */
 static __global__ void frame_kernel(const __grid_constant__ cuda_view<real> v, const int32_t *__restrict__ place,
                                     const real *__restrict__ u, const real *__restrict__ velocity,
                                     real *__restrict__ to)
@@ -65,7 +65,8 @@ static int32_t *frame_place(const cuda_state *s)
     return (int32_t *)(s->frame + 6 * s->tiles.nodes);
 }
 
-/* Puts on the card where each of the model's nodes stands; by way of `staging`, which only the stream writes from now on. */
+/* Puts on the card where each of the model's nodes stands; by way of `staging`,
+ * which only the stream writes from now on. */
 static int put_place(cuda_state *s, err *e)
 {
     int32_t *place = (int32_t *)s->staging;
@@ -88,8 +89,8 @@ static int make_way(cuda_state *s, err *e)
     return put_place(s, e);
 }
 
-/* Where the card has no room for it, a frame holds up the steps: better than a run that ends at its first frame, which may be
- * its last state. */
+/* Where the card has no room for it, a frame holds up the steps: better than a run that ends at its
+ * first frame, which may be its last state. */
 static int make_frame(cuda_state *s, cuda_frame *f, err *e)
 {
     const int64_t bytes = 6 * s->view.stride * (int64_t)sizeof(real);

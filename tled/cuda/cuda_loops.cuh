@@ -1,9 +1,9 @@
 /* The CUDA executor: memory, and the passes in their order, around the kernels. Compiled twice, by cuda_double.cu and
  * cuda_single.cu, which choose `real` and name the table of functions. All that is here is static.
  *
- * Of `count` steps, the first pass begins one, each after it ends one and begins the next, the last ends one and leaves the
- * internal forces where displacements go else. All of a step's data stays on the card; the curves' values of some steps at
- * a time go there.
+ * Of `count` steps, the first pass begins one, each after it ends one and begins the next, the last ends one and
+ * leaves the internal forces where displacements go else. All of a step's data stays on the card; the curves'
+ * values of some steps at a time go there.
  */
 #include "tled/cuda/cuda_frame.cuh"
 
@@ -334,9 +334,9 @@ static void cuda_destroy(cuda_state *s)
     free(s);
 }
 
-/* Velocities, which a pass reads and writes, and words, which stand after them, are what the cache is to keep while the rest goes
- * through it: three fifths of what it could; with more, models many times its size had too little left. Nothing is lost
- * where it cannot. The limit is the process's, and is left. */
+/* Velocities, which a pass reads and writes, and words, which stand after them, are what the cache is to keep while the
+ * rest goes through it: three fifths of what it could; with more, models many times its size had too little left.
+ * Nothing is lost where it cannot. The limit is the process's, and is left. */
 static int keep_near(cuda_state *s, err *e)
 {
     int device = 0, most = 0;

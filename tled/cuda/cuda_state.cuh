@@ -1,5 +1,5 @@
-/* What the CUDA back end has of a problem: cut into tiles that the card has a place for, and laid out in its memory. Included by
- * cuda_frame.cuh alone.
+/* What the CUDA back end has of a problem: cut into tiles that the card has a place for, and laid out in its memory.
+ * Included by cuda_frame.cuh alone.
  */
 #ifndef SINEW_CUDA_STATE_CUH
 #define SINEW_CUDA_STATE_CUH
@@ -247,7 +247,8 @@ static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
     });
 }
 
-/* Whether what does not stay marches: in single precision, in the neo-Hookean form, on a card that can, where the model is suited. */
+/* Whether what does not stay marches: in single precision, in the neo-Hookean form, on a
+ * card that can, where the model is suited. */
 static int choose_march(cuda_state *s, err *e)
 {
     int64_t slots = 0;
@@ -265,8 +266,8 @@ static int choose_march(cuda_state *s, err *e)
     return s->marches ? tiles_reorder(&s->tiles, s->march.order, e) : 0;
 }
 
-/* The smallest bricks that are all resident: the more there are, the less each has to do. Else the largest that the card has shared
- * memory for. So measured on an H200. */
+/* The smallest bricks that are all resident: the more there are, the less each has to do. Else the largest that the
+ * card has shared memory for. So measured on an H200. */
 static int cut_tiles(cuda_state *s, err *e)
 {
     for (int size = CUDA_SMALL; size < CUDA_SIZES; size++) {

@@ -1,5 +1,5 @@
-/* Sums, the largest and the least over warps and blocks, and a look's answers put together: in one order, whichever ends first. Included by
- * cuda_look.cu alone.
+/* Sums, the largest and the least over warps and blocks, and a look's answers put together: in one order, whichever
+ * ends first. Included by cuda_look.cu alone.
  */
 #ifndef SINEW_CUDA_SUMS_CUH
 #define SINEW_CUDA_SUMS_CUH

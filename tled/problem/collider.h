@@ -1,9 +1,10 @@
-/* A probe that presses on a voxel model, moved by a file of poses: between two of them it goes in a straight line, before the first and
- * after the last it stays. What it pushes a node with is a penalty of its own that goes by the node's mass,
+/* A probe that presses on a voxel model, moved by a file of poses: between two of them it goes in a
+ * straight line, before the first and after the last it stays. What it pushes a node with is a penalty
+ * of its own that goes by the node's mass,
  *     f = m c depth,    c = repulsion times the square of the highest frequency at rest,
  * so that the highest frequency with contact is known: that at rest and c together. The push joins the elements' forces
- * in the sum that a node's step takes; so looks at the state have it too. A probe that begins inside the tissue comes up
- * slowly. The creator owns it; once read it does not change.
+ * in the sum that a node's step takes; so looks at the state have it too. A probe that begins inside the tissue comes
+ * up slowly. The creator owns it; once read it does not change.
  */
 #ifndef SINEW_COLLIDER_H
 #define SINEW_COLLIDER_H

@@ -1,8 +1,10 @@
-/* The stable step of elements that are no lattice's, and their shapes for who looks at them (in double: see stability.h).
+/* The stable step of elements that are no lattice's, and their shapes for who looks
+ * at them (in double: see stability.h).
  *
- * The squares of an element's frequencies are no more than those of two matrices together: (8/rho) L^T A L, A = dP/dF and L L^T = B B^T
- * (3 x 3), with what stretches it, and (k/m) gamma gamma^T with what twists it. With l1, l2 the largest of each and c the cosine of the least angle between B's rows and the
- * gammas (0 of a box), the largest of their sum is at most that of l1 P1 + l2 P2, P1 and P2 projections at that angle:
+ * The squares of an element's frequencies are no more than those of two matrices together: (8/rho) L^T A L, A = dP/dF
+ * and L L^T = B B^T (3 x 3), with what stretches it, and (k/m) gamma gamma^T with what twists it. With l1, l2 the
+ * largest of each and c the cosine of the least angle between B's rows and the gammas (0 of a box), the largest of
+ * their sum is at most that of l1 P1 + l2 P2, P1 and P2 projections at that angle:
  *     (l1 + l2 + sqrt((l1 - l2)^2 + 4 c^2 l1 l2)) / 2. Owns nothing.
  */
 #ifndef SINEW_CONFORMING_STEP_H

@@ -50,16 +50,16 @@ typedef struct tled_problem {
     int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL where mix is. Owned, as is all below */
     tled_law *law;         /* of the mixed elements, in their order */
     int64_t laws;
-    tled_volume *volume; /* volumes */
-    int32_t *corner;     /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
-    int32_t *
-        corner_start; /* nodes + 1; or NULL. Without a lattice: node n's are corner[corner_start[n]] and on, in the elements' order */
-    double *mass;         /* nodes: kg */
-    int32_t *hold;        /* nodes x 3 */
-    int64_t held;         /* nodes with any component held */
-    int32_t *force_start; /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
-    int32_t *force_curve; /* entries: the curve whose value the node gets a share of */
-    double *force_share;  /* entries */
+    tled_volume *volume;   /* volumes */
+    int32_t *corner;       /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
+    int32_t *corner_start; /* nodes + 1; or NULL. Without a lattice: node n's are
+                       * corner[corner_start[n]] and on, in the elements' order */
+    double *mass;          /* nodes: kg */
+    int32_t *hold;         /* nodes x 3 */
+    int64_t held;          /* nodes with any component held */
+    int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
+    int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
+    double *force_share;   /* entries */
     const script *script;
     int64_t gravity;                 /* its curve, or -1 */
     double start;                    /* s: the model's time at the start */
@@ -82,16 +82,16 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
 }
 
 /* What get() gives, as doubles: field i of the table, of which these are the first, nodes x 3: m, m/s; and internal
- * forces, nodes x 3, N: the sum of the elements' pulls at the displacement (where a step or create led to the state; not
- * right after restore). */
+ * forces, nodes x 3, N: the sum of the elements' pulls at the displacement (where a step or create led
+ * to the state; not right after restore). */
 enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL = FIELDS_MOST };
 
 /* What a pass over the model does, in any executor: ends a step, begins the next, writes the internal forces instead of
  * displacements. */
 enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
 
-/* Makes p (zeroed) of the model, at rest at time 0: all its elements must be its lattice's boxes, or it has no lattice. kappa: the hourglass
- * coefficient. -1 with e filled and p to be freed all the same. */
+/* Makes p (zeroed) of the model, at rest at time 0: all its elements must be its lattice's boxes, or it has no lattice.
+ * kappa: the hourglass coefficient. -1 with e filled and p to be freed all the same. */
 int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e);
 void tled_problem_free(tled_problem *p);
 

@@ -50,8 +50,8 @@ static double stretch_of(const float *along, int64_t i, element_tensor h)
     return element_length(element_fibre_now(h, a));
 }
 
-/* The work (J) of the muscle that the volume is, along one of an element's fibres, since the moment before. rest (m3): of the
- * tissue that is its. */
+/* The work (J) of the muscle that the volume is, along one of an element's fibres, since the moment before.
+ * rest (m3): of the tissue that is its. */
 static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume, double rest)
 {
     const tled_problem *p = a->p;

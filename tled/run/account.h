@@ -1,8 +1,8 @@
-/* Where a run's energy comes from and goes: what the tissue holds, and the work done since the run began by gravity, forces,
- * prescribed displacements, muscles, a probe and damping. An account looks at a state from outside, in double on this
- * machine's threads, whatever the back end, and changes nothing of the run. Work between two looks goes by the mean of
- * the forces at both, times the way between them: so the nearer looks are to each other, the better the sums balance. Sums go
- * by chunks in a fixed order: the same bytes for any number of threads. The creator owns the account.
+/* Where a run's energy comes from and goes: what the tissue holds, and the work done since the run began by gravity,
+ * forces, prescribed displacements, muscles, a probe and damping. An account looks at a state from outside, in double
+ * on this machine's threads, whatever the back end, and changes nothing of the run. Work between two looks goes by the
+ * mean of the forces at both, times the way between them: so the nearer looks are to each other, the better the sums
+ * balance. Sums go by chunks in a fixed order: the same bytes for any number of threads. The creator owns the account.
  */
 #ifndef SINEW_ACCOUNT_H
 #define SINEW_ACCOUNT_H
@@ -44,8 +44,8 @@ const double *account_displacement(const account *a);
 void account_keep(account *a);
 void account_back(account *a);
 
-/* For a run that is to be gone on with: what is known; and goes on from it, at the state that it was known at. -1 with e
- * filled. */
+/* For a run that is to be gone on with: what is known; and goes on from it, at the state
+ * that it was known at. -1 with e filled. */
 account_past account_past_of(const account *a);
 int account_go_on(account *a, const tled_executor *b, tled_state *state, double time, const account_past *past, err *e);
 

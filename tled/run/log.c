@@ -59,8 +59,8 @@ static int compare_heading(const run_log *l, const char *path, const char *line,
     return failed;
 }
 
-/* That the file to go on with begins with the heading of this run. What is shorter than what is to be kept is growing_open's to refuse,
- * and what is not a regular file is written as it is. */
+/* That the file to go on with begins with the heading of this run. What is shorter than what is to be kept is
+ * growing_open's to refuse, and what is not a regular file is written as it is. */
 static int check_heading(const run_log *l, const char *path, int64_t keep, err *e)
 {
     char *line = NULL;

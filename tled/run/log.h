@@ -1,6 +1,6 @@
-/* The log of a run: tab-separated values, a row a look, for plots and for people who watch. Rows are held until the state that
- * they are of is known to be sound; then they go to the file, whole and at once. The creator owns the log; the run that
- * is given it calls the rest.
+/* The log of a run: tab-separated values, a row a look, for plots and for people who watch. Rows are held until the
+ * state that they are of is known to be sound; then they go to the file, whole and at once. The creator owns the log;
+ * the run that is given it calls the rest.
  */
 #ifndef SINEW_LOG_H
 #define SINEW_LOG_H
@@ -45,8 +45,8 @@ typedef struct log_point {
 /* Whether it is a key of a log: a usage error, where it is not. */
 int log_check_key(const char *key, err *e);
 
-/* Finds the keys' nodes; and makes the file; from: NULL, or what to go on from: the file's rows up to there stay, which must have the same columns. The keys are
- * borrowed. -1 with e filled; log_close all the same. */
+/* Finds the keys' nodes; and makes the file; from: NULL, or what to go on from: the file's rows up to there stay, which
+ * must have the same columns. The keys are borrowed. -1 with e filled; log_close all the same. */
 int log_open(run_log *l, const char *path, const opt_list *keys, const model *m, const log_point *from, err *e);
 
 /* Writes the heading, but to what is gone on with, for this problem. -1 with e filled, as for all below. */

@@ -46,8 +46,8 @@ static int put(outbox *o, int64_t index, err *e)
     return o->write(o->context, o->time[index % RING], &o->frame[index % FRAMES], e);
 }
 
-/* Does its work with the frames that are ready for it, until there are no more to come. After one that something was wrong with it only
- * counts. */
+/* Does its work with the frames that are ready for it, until there are no more to come. After one that
+ * something was wrong with it only counts. */
 static void *work(void *context)
 {
     const stage *s = context;
@@ -133,8 +133,8 @@ void outbox_send(outbox *o, int slot, double time)
     pthread_mutex_unlock(&o->lock);
 }
 
-/* Until *count is past index. -1 with e filled where something was wrong with a frame: the first such, so that those before it are
- * waited for. */
+/* Until *count is past index. -1 with e filled where something was wrong with a frame: the first such,
+ * so that those before it are waited for. */
 static int wait_for(outbox *o, const int64_t *count, int64_t index, err *e)
 {
     pthread_mutex_lock(&o->lock);

@@ -1,13 +1,14 @@
 /* The time loop of tled-run, for any back end: steps in batches, between them looks at the state, cuts of the step,
- * damping, frames, the end. What comes of it goes to the caller through two functions. The caller owns all that it passes.
+ * damping, frames, the end. What comes of it goes to the caller through two
+ * functions. The caller owns all that it passes.
  *
- * Steps are counted, and times are counts over a rate. Where the caller does not fix the step, it may be cut in halves while
- * the tissue's stable step is small: the steps counted stay the same, each taken as 2, 4, ... That is decided only at
- * checks, whose places depend on the count alone, from the state there. Where the state at the next check shows that it was too
- * little, the run goes back to the check before and cuts once more. So what is written out does not change the result, and
- * a run that goes on from a frame at a check takes the same steps as one that never stopped. Frames between two checks are
- * taken on the way and written once the second is known to be sound, while the next steps are already under way. (Where they
- * are too many to be held, those steps are taken again for them.)
+ * Steps are counted, and times are counts over a rate. Where the caller does not fix the step, it may be cut in halves
+ * while the tissue's stable step is small: the steps counted stay the same, each taken as 2, 4, ... That is decided
+ * only at checks, whose places depend on the count alone, from the state there. Where the state at the next check shows
+ * that it was too little, the run goes back to the check before and cuts once more. So what is written out does not
+ * change the result, and a run that goes on from a frame at a check takes the same steps as one that never stopped.
+ * Frames between two checks are taken on the way and written once the second is known to be sound, while the next steps
+ * are already under way. (Where they are too many to be held, those steps are taken again for them.)
  */
 #ifndef SINEW_RUN_H
 #define SINEW_RUN_H
@@ -52,7 +53,8 @@ typedef struct run_setup {
     const run_point *point; /* goes on from there, the state's time p->start; NULL: begins */
     double save_every;      /* s: save at the first check at or past each multiple; 0: each minute of the clock */
     void *context;
-    /* A state to write out, in time's order; called in a thread of its own. -1 with e filled ends the run, at a frame soon after. */
+    /* A state to write out, in time's order; called in a thread of its own. -1 with e
+     * filled ends the run, at a frame soon after. */
     outbox_frame *frame;
     /* After every check. remaining: see relax_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,

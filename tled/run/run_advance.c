@@ -219,8 +219,8 @@ static int try_step(run *n, bool *sound)
     return run_next_frame(n, n->plan.first - 1) == n->plan.first ? run_write_frame(n) : 0;
 }
 
-/* What lies before `to` is not sound: goes there again step by step, to say where and when it broke, and with the frames before
- * that. Returns -1. */
+/* What lies before `to` is not sound: goes there again step by step, to say where and when it broke, and with the
+ * frames before that. Returns -1. */
 static int find_break(run *n, int64_t to)
 {
     bool sound = true;
@@ -282,7 +282,8 @@ static int step_until_sound(run *n, int64_t to, bool framed)
     return n->r->log ? log_keep(n->r->log, n->e) : 0;
 }
 
-/* Steps once more from the last check to `to`, all of which is known to be sound, for frames that the slots do not suffice for. */
+/* Steps once more from the last check to `to`, all of which is known to be sound, for
+ * frames that the slots do not suffice for. */
 static int step_again(run *n, int64_t to)
 {
     if (restore(n))

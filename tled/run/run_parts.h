@@ -1,5 +1,5 @@
-/* What run.c, which decides at checks, and run_advance.c, which goes from one check to the next, share: the run itself, and what
- * both do with its state. For these two alone.
+/* What run.c, which decides at checks, and run_advance.c, which goes from one check to the next, share: the run itself,
+ * and what both do with its state. For these two alone.
  */
 #ifndef SINEW_RUN_PARTS_H
 #define SINEW_RUN_PARTS_H
@@ -20,8 +20,8 @@ typedef struct run {
     bool is_last_short;  /* the step to there, which ends at r->end */
     bool rested;         /* at the last check: the run is over */
     int64_t saved_first; /* plan.first of the state that the device has saved: that at the last check */
-    /* Frames are numbered, and a snapshot of each is in the slot of its number modulo `slots`: `sent` of them are the outbox's,
-     * then come those not yet known to be sound. */
+    /* Frames are numbered, and a snapshot of each is in the slot of its number modulo `slots`: `sent` of them are the
+     * outbox's, then come those not yet known to be sound. */
     int slots;
     double frame_time[TLED_SLOTS];
     int64_t sent;
@@ -59,8 +59,8 @@ int run_diverged(run *n);
 /* Says so where steps are cut in more parts than they ever were, and why. */
 void run_tell_cut(run *n, const watch_sight *why);
 
-/* Goes from the last check, whose state is sound, to the next one, or to the end, with the frames and the rows of the log
- * before it. That state is sound, or it has diverged. */
+/* Goes from the last check, whose state is sound, to the next one, or to the end, with the frames and the rows of the
+ * log before it. That state is sound, or it has diverged. */
 int run_advance(run *n, int64_t to);
 
 /* Of a state that is sound, as all before it are: a frame; the log's part, with a row where one is due. */

@@ -1,5 +1,5 @@
-/* tled-run: moves a voxel model by total Lagrangian explicit dynamics under gravity, forces, displacements and the contraction of its
- * muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
+/* tled-run: moves a voxel model by total Lagrangian explicit dynamics under gravity, forces, displacements and the
+ * contraction of its muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
  */
 #include "base/mem.h"
 #include "cli/progress.h"
@@ -259,8 +259,8 @@ static int save(void *context, const run_point *at, double time, const field_val
     return 0;
 }
 
-/* The last before the run: all that decides it stands. What went on is from then on the problem's start; frames from before
- * go out again. */
+/* The last before the run: all that decides it stands. What went on is from then on the problem's
+ * start; frames from before go out again. */
 static int begin_checkpoints(session *s, const struct options *o, err *e)
 {
     const fingerprint_run run = {s->t->provenance, &s->m, &s->run, &s->problem, s->next_frame};
@@ -277,7 +277,8 @@ static int begin_checkpoints(session *s, const struct options *o, err *e)
     return checkpoint_replay(s->checkpoint, replay_frame, s, e);
 }
 
-/* Ends the log and the output. Where there is a checkpoint, which then goes, both are stored first, also by a shell's `>`. */
+/* Ends the log and the output. Where there is a checkpoint, which then goes, both
+ * are stored first, also by a shell's `>`. */
 static void end_output(session *s, const tool *t, err *e)
 {
     if (s->checkpoint && s->log.file && !e->status)

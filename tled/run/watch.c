@@ -46,9 +46,9 @@ static void look_at_conforming(const watch *w, int64_t i, element_tensor h, stru
         take_frequency(part, i, w->raise * conforming_square(p, i, step_largest(&a)));
 }
 
-/* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far. Where they are
- * too wide, or leave open whether any reaches past the one at rest, the matrix tells, and the frequency is raised to 1 % above the
- * element's: so few need more than one test. */
+/* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far.
+ * Where they are too wide, or leave open whether any reaches past the one at rest, the matrix tells, and the frequency
+ * is raised to 1 % above the element's: so few need more than one test. */
 static void look_at_step(const watch *w, const tled_law *law, int64_t i, element_tensor h, struct watch_part *part)
 {
     const tled_problem *p = w->p;
@@ -207,7 +207,8 @@ static void take_sums(watch *w, const tled_sums *sum)
 int watch_look(watch *w, const tled_executor *b, tled_state *state, double time, err *e)
 {
     tled_sums sum;
-    /* A rounding above the frequency at rest, so that no matrix at rest passes it. (Bounds may, of elements with unlike sides.) */
+    /* A rounding above the frequency at rest, so that no matrix at rest passes it.
+     * (Bounds may, of elements with unlike sides.) */
     w->question = (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences};
     if (b->monitor ? b->monitor(state, &w->question, &sum, e) : look_here(w, b, state, &sum, e))
         return -1;

@@ -42,11 +42,12 @@ typedef struct watch {
 watch *watch_create(const tled_problem *p, pool *threads, err *e);
 void watch_destroy(watch *w);
 
-/* Looks once more at the state that was looked at last, on this machine's threads: the element that is broken or has the
- * least stable step is then told by the model's order, whatever the back end. -1 with e filled. */
+/* Looks once more at the state that was looked at last, on this machine's threads: the element that is broken or has
+ * the least stable step is then told by the model's order, whatever the back end. -1 with e filled. */
 int watch_tell(watch *w, const tled_executor *b, tled_state *state, err *e);
 
-/* Keeps the state that was looked at last: the back end to go back to, the watch to tell differences. -1 with e filled. */
+/* Keeps the state that was looked at last: the back end to go back to, the watch to
+ * tell differences. -1 with e filled. */
 int watch_keep(watch *w, const tled_executor *b, tled_state *state, err *e);
 
 /* Looks at the state, which stands at `time`: w->sight. -1 with e filled where the back end fails. */

@@ -1,4 +1,4 @@
-#include "msds/problem/slices.h"
+#include "msds/problem/sell.h"
 
 #include "base/mem.h"
 
@@ -14,7 +14,7 @@ typedef struct link { /* of one node of a slice */
 } link;
 
 typedef struct maker {
-    slices *s;
+    sell *s;
     const msds_problem *p;
     int64_t *start;    /* the model's nodes + 1: springs of each */
     int32_t *incident; /* springs twice */
@@ -53,10 +53,11 @@ static bool has_many(const maker *m, int64_t n)
     return false;
 }
 
-/* Those with many springs, in the model's order, then those with few: so slices of a lattice end where its rows do. */
+/* Nodes with many springs come first, in the model's order, then those with few. So a slice of a lattice never mixes
+ * rows of both lengths, but for one. */
 static int order_nodes(maker *m, err *e)
 {
-    slices *s = m->s;
+    sell *s = m->s;
     const msds_problem *p = m->p;
     s->count = (p->nodes + LANES - 1) / LANES;
     s->nodes = s->count * LANES;
@@ -86,7 +87,7 @@ static int by_offset(const void *a, const void *b)
 
 static int64_t list_links(maker *m, int64_t slice, err *e)
 {
-    const slices *s = m->s;
+    const sell *s = m->s;
     int64_t count = 0;
     for (int32_t lane = 0; lane < LANES; lane++) {
         int32_t own = (int32_t)(slice * LANES) + lane, n = s->model_node[own];
@@ -105,7 +106,7 @@ static int64_t list_links(maker *m, int64_t slice, err *e)
 /* A new slot of the slice, whose lanes have no neighbour yet. Returns its number, or -1. */
 static int64_t add_slot(maker *m, int64_t slice, int32_t first, err *e)
 {
-    slices *s = m->s;
+    sell *s = m->s;
     int64_t at = s->slots;
     int64_t *room = &m->slot_room_neighbour;
     if (MEM_ROOM(&s->first, &m->slot_room, at + 1, "the solver", e) ||
@@ -121,7 +122,7 @@ static int64_t add_slot(maker *m, int64_t slice, int32_t first, err *e)
     return at;
 }
 
-static void put(slices *s, int64_t slot, int64_t slice, const link *l)
+static void put(sell *s, int64_t slot, int64_t slice, const link *l)
 {
     s->neighbour[slot * LANES + l->lane] = (int32_t)(slice * LANES) + l->lane + l->offset;
     s->spring[slot * LANES + l->lane] = l->spring;
@@ -133,7 +134,7 @@ static int scatter(maker *m, int64_t slice, int64_t from, const link *l, err *e)
     int64_t slot = from;
     while (slot < m->s->slots && m->s->spring[slot * LANES + l->lane] >= 0)
         slot++;
-    if (slot == m->s->slots && add_slot(m, slice, SLICES_SCATTERED, e) < 0)
+    if (slot == m->s->slots && add_slot(m, slice, SELL_SCATTERED, e) < 0)
         return -1;
     put(m->s, slot, slice, l);
     return 0;
@@ -164,7 +165,7 @@ static int make_slice(maker *m, int64_t slice, err *e)
     return 0;
 }
 
-int slices_make(slices *s, const msds_problem *p, err *e)
+int sell_make(sell *s, const msds_problem *p, err *e)
 {
     maker m = {.s = s, .p = p};
     int result = -1;
@@ -196,7 +197,7 @@ static float length_of(const msds_problem *p, const int32_t node[2])
     return sqrtf(square);
 }
 
-void slices_springs(const slices *s, const msds_problem *p, float *stiffness, float *damper, float *rest)
+void sell_springs(const sell *s, const msds_problem *p, float *stiffness, float *damper, float *rest)
 {
     for (int64_t at = 0; at < s->slots * LANES; at++) {
         const msds_spring *spring = s->spring[at] < 0 ? NULL : &p->spring[s->spring[at]];
@@ -206,7 +207,7 @@ void slices_springs(const slices *s, const msds_problem *p, float *stiffness, fl
     }
 }
 
-void slices_free(slices *s)
+void sell_free(sell *s)
 {
     free(s->model_node);
     free(s->own_node);
@@ -214,5 +215,5 @@ void slices_free(slices *s)
     free(s->first);
     free(s->neighbour);
     free(s->spring);
-    *s = (slices){0};
+    *s = (sell){0};
 }
