@@ -1,9 +1,9 @@
 /* The CPU executor: memory around cpu_pass.h, and the passes in their order. Compiled twice, by cpu_double.c and
  * cpu_single.c, which choose the precision and name the table of functions. All that is here is static.
  *
- * Of `count` steps, the first pass begins one, each after it ends one and begins the next, the last ends one and leaves the
- * internal forces where displacements go else. A pass is a loop over slabs, one a thread; no sum depends on how they
- * are cut: the same bytes for any number of threads, and in any of the processor's instruction sets.
+ * Of `count` steps, the first pass begins one, each after it ends one and begins the next, the last ends one and leaves
+ * the internal forces where displacements go else. A pass is a loop over slabs, one a thread; no sum depends on how
+ * they are cut: the same bytes for any number of threads, and in any of the processor's instruction sets.
  */
 #include "base/mem.h"
 #include "tled/cpu/cpu_pass.h"
