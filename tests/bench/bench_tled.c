@@ -218,12 +218,12 @@ static int window_frame(void *context, double time, const field_values *state, e
     return 0;
 }
 
-static void window_end(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+static void window_end(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                        double damping)
 {
     windows *w = context;
     const double now = roof_clock();
-    bench_checked(w->b, step, sight, remaining, cut, damping);
+    bench_checked(w->b, step, reading, remaining, cut, damping);
     if (w->last >= w->from && step > w->last) {
         w->worst = fmax(w->worst, (now - w->clock) / (double)(step - w->last));
     } else if (step >= w->from) {

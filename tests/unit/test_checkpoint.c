@@ -120,10 +120,10 @@ static int save(void *context, const run_point *at, double time, const field_val
     return checkpoint_save(r->c, at, time, state, e);
 }
 
-static void checked(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+static void checked(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                     double damping)
 {
-    (void)context, (void)step, (void)sight, (void)remaining, (void)cut, (void)damping;
+    (void)context, (void)step, (void)reading, (void)remaining, (void)cut, (void)damping;
 }
 
 /* rest: to rest, with the damping adapted; else so many steps. */

@@ -4,7 +4,7 @@
 // needs: tled/*/*.c
 #include "tled/cpu/cpu_pass.h"
 #include "tled/problem/conforming_step.h"
-#include "tled/run/watch.h"
+#include "tled/run/monitor.h"
 
 #include "tap.h"
 #include "tled_block.h"
@@ -190,7 +190,7 @@ static void test_patch(void)
     end(&s);
 }
 
-/* Force is the energy's slope: by the watch's energy, hourglass part and all. */
+/* Force is the energy's slope: by the monitor's energy, hourglass part and all. */
 static void test_energy(void)
 {
     setting s;
@@ -204,14 +204,14 @@ static void test_energy(void)
     memcpy(s.p.at_start.of[TLED_VELOCITY], v, 3 * (size_t)s.p.nodes * sizeof *v);
     pull(&s, u, f);
     const double dt = .05 * step_at_rest(&s.p, NULL);
-    watch *w = watch_create(&s.p, s.threads, &e);
+    monitor *w = monitor_create(&s.p, s.threads, &e);
     tled_plan plan = {.rate = 1 / dt};
     for (int64_t i = 0; i <= 40; i++) {
-        if (watch_look(w, s.device, s.state, (double)i * 50 * dt, &e))
+        if (monitor_read(w, s.device, s.state, (double)i * 50 * dt, &e))
             die(e.text);
-        const double energy = w->sight.kinetic + w->sight.strain;
+        const double energy = w->reading.kinetic + w->reading.strain;
         first = i ? first : energy;
-        kinetic = fmax(kinetic, w->sight.strain);
+        kinetic = fmax(kinetic, w->reading.strain);
         worst = fmax(worst, fabs(energy - first));
         plan.first = i * 50;
         if (s.device->step(s.state, &plan, 50, &e))
@@ -219,7 +219,7 @@ static void test_energy(void)
     }
     ok(kinetic > .2 * first, "much of the motion becomes strain: %g of %g J", kinetic, first);
     near_(worst / first, 0, 2e-3, "energy is kept over 2000 steps");
-    watch_destroy(w);
+    monitor_destroy(w);
     free(u);
     free(v);
     free(f);

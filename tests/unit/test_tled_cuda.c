@@ -36,7 +36,7 @@ static double apart(const bench *a, const bench *b)
     double most = 0;
     for (int64_t i = 0; i < 3 * a->problem.nodes; i++)
         most = fmax(most, fabs(a->displacement[i] - b->displacement[i]));
-    return most / b->end.sight.largest;
+    return most / b->end.reading.largest;
 }
 
 /* As lump, of so many elements that a card marches in single precision; and boxes, so that its axes differ. */
@@ -61,8 +61,8 @@ static void test_bytes(const block *what, double level, bool scripted, int64_t s
     make(&here, what, level, scripted, cpu, steps);
     make(&there, what, level, scripted, cuda, steps);
     int gone = bench_go(&here) | bench_go(&there);
-    ok(!gone && here.end.sight.largest > 1e-6, "%s: %" PRId64 " steps, %" PRId64 " frames, %.2g mm %s", name, steps,
-       there.frames, 1e3 * here.end.sight.largest, there.e.text);
+    ok(!gone && here.end.reading.largest > 1e-6, "%s: %" PRId64 " steps, %" PRId64 " frames, %.2g mm %s", name, steps,
+       there.frames, 1e3 * here.end.reading.largest, there.e.text);
     ok(!gone && (cpu == &tled_cpu_double ? same(&here, &there) : same_but_the_smallest(&here, &there)),
        "%s: the same bytes as the CPU in the same precision", name);
     bench_free(&here);
@@ -98,9 +98,9 @@ static void compare_marched(bench *here, bench *there, const char *name)
 {
     const double each = computed(there, there->setup.device);
     int gone = bench_go(here) | bench_go(there);
-    ok(!gone && here->end.sight.largest > 1e-6 && here->frames == there->frames && apart(there, here) < 1e-5,
+    ok(!gone && here->end.reading.largest > 1e-6 && here->frames == there->frames && apart(there, here) < 1e-5,
        "%s, marched: after %" PRId64 " steps and %.2g mm, %.2g of the largest displacement off %s", name,
-       here->end.steps, 1e3 * here->end.sight.largest, apart(there, here), there->e.text);
+       here->end.steps, 1e3 * here->end.reading.largest, apart(there, here), there->e.text);
     ok(is_march(there, each), "%s: it marches, %.3g threads an element", name, each);
     bench_free(here);
     bench_free(there);

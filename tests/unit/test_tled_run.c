@@ -62,9 +62,9 @@ static void test_conserved(const tled_executor *device, const char *name)
         }
         gap_l = fmax(gap_l, norm(l) / norm(linear));
         gap_a = fmax(gap_a, norm(a) / norm(angular));
-        gap_e = fmax(gap_e, fabs(b.end.sight.kinetic + b.end.sight.strain - first) / first);
+        gap_e = fmax(gap_e, fabs(b.end.reading.kinetic + b.end.reading.strain - first) / first);
     }
-    ok(b.frames == 25 && b.end.sight.strain > .05 * first, "%s: 10,000 steps that deform: %s", name, b.e.text);
+    ok(b.frames == 25 && b.end.reading.strain > .05 * first, "%s: 10,000 steps that deform: %s", name, b.e.text);
     ok(gap_l < .01, "%s: momentum to 1 %% (%.2g)", name, gap_l);
     ok(gap_a < .01, "%s: angular momentum to 1 %% (%.2g)", name, gap_a);
     ok(gap_e < .01, "%s: energy to 1 %% (%.2g)", name, gap_e);
@@ -137,7 +137,7 @@ static void test_end(const tled_executor *device, double tolerance, const char *
             fallen = fmax(fallen, fabs(b.displacement[3 * n + 2] / (-9.81 / 2 * end[i] * end[i]) - 1));
             speed = fmax(speed, fabs(b.velocity[3 * n + 2] / (-9.81 * end[i]) - 1));
         }
-        ok(!gone && b.time == end[i] && b.end.sight.time == end[i], "%s: the run ends at %.17g s, in %lld steps %s",
+        ok(!gone && b.time == end[i] && b.end.reading.time == end[i], "%s: the run ends at %.17g s, in %lld steps %s",
            name, b.time, (long long)b.end.steps, b.e.text);
         ok(fallen < tolerance && speed < tolerance, "%s: it has fallen as far as it does, to %.2g, as fast, to %.2g",
            name, fallen, speed);
@@ -163,7 +163,7 @@ static void test_end_cut(const tled_executor *device, const char *name)
     }
     ok(same(&b[0], &b[1]), "%s: the same bytes on two threads, with frames", name);
     ok(b[0].end.parts == b[0].cuts && b[0].cuts > 1 && b[0].end.taken > b[0].end.steps, "%s: cut on the way", name);
-    near_(b[0].end.sight.largest / b[2].end.sight.largest, 1, 1e-4, "%s: as steps of 1/32 have it", name);
+    near_(b[0].end.reading.largest / b[2].end.reading.largest, 1, 1e-4, "%s: as steps of 1/32 have it", name);
     for (int i = 0; i < 3; i++)
         bench_free(&b[i]);
 }
@@ -176,10 +176,10 @@ static void test_contraction(const block *what, const char *name)
     bench_make(&b, what, NULL, 1, .0075, 2);
     bench_steps(&b, (int64_t)b.setup.rate, b.setup.damping);
     gone = bench_go(&b);
-    ok(!gone && b.end.sight.kinetic < 1e-6 * b.end.sight.strain,
-       "%s, full contraction for 1 s: kinetic %.2g J of %.2g J %s", name, b.end.sight.kinetic, b.end.sight.strain,
+    ok(!gone && b.end.reading.kinetic < 1e-6 * b.end.reading.strain,
+       "%s, full contraction for 1 s: kinetic %.2g J of %.2g J %s", name, b.end.reading.kinetic, b.end.reading.strain,
        b.e.text);
-    ok(b.end.sight.largest > .003, "%s has contracted: %.2g mm", name, 1e3 * b.end.sight.largest);
+    ok(b.end.reading.largest > .003, "%s has contracted: %.2g mm", name, 1e3 * b.end.reading.largest);
     bench_free(&b);
     bench_make(&b, what, NULL, 1, .0075, 2);
     gone = bench_go(&b);
@@ -287,7 +287,7 @@ static void test_jump(const tled_executor *device, const char *name)
         if (i)
             bench_free(&b);
     }
-    ok(first.end.sight.largest > .003, "%s: %.2g mm", name, 1e3 * first.end.sight.largest);
+    ok(first.end.reading.largest > .003, "%s: %.2g mm", name, 1e3 * first.end.reading.largest);
     bench_free(&first);
 }
 
@@ -304,7 +304,7 @@ static void test_just_stable(void)
         b.setup.rate_fixed = true;
         b.setup.check = 50;
         int gone = bench_go(&b);
-        ok(!gone && b.end.sight.largest < 1e-9, "a step of %g of the stable one %s", share[i], b.e.text);
+        ok(!gone && b.end.reading.largest < 1e-9, "a step of %g of the stable one %s", share[i], b.e.text);
         bench_free(&b);
     }
 }
@@ -327,7 +327,7 @@ static void test_place(bool fixed)
     bench_free(&b);
 }
 
-/* The watch is told to look too rarely to save it. */
+/* The monitor is told to look too rarely to save it. */
 static void test_diverged(void)
 {
     int gone;
@@ -338,15 +338,15 @@ static void test_diverged(void)
     b.setup.rate = .3 / step_at_rest(&b.problem, NULL);
     b.setup.rate_fixed = true;
     b.setup.check = 2000;
-    watch *w = watch_create(&b.problem, b.setup.threads, &b.e);
+    monitor *w = monitor_create(&b.problem, b.setup.threads, &b.e);
     tled_state *state = b.setup.device->create(&b.problem, b.setup.threads, &b.e);
     tled_plan plan = {.rate = b.setup.rate};
     b.setup.device->step(state, &plan, 2000, &b.e);
-    gone = watch_look(w, b.setup.device, state, 1, &b.e);
-    ok(!gone && w->sight.broken >= 0, "steps of 3.3 times the stable one break element %lld",
-       (long long)w->sight.broken);
+    gone = monitor_read(w, b.setup.device, state, 1, &b.e);
+    ok(!gone && w->reading.broken >= 0, "steps of 3.3 times the stable one break element %lld",
+       (long long)w->reading.broken);
     b.setup.device->destroy(state);
-    watch_destroy(w);
+    monitor_destroy(w);
     for (int64_t i = 0; i < b.problem.nodes; i++) /* inside out */
         b.problem.at_start.of[TLED_DISPLACEMENT][3 * i] = -2.5 * b.problem.position[3 * i];
     gone = bench_go(&b);
@@ -366,8 +366,8 @@ static void test_let_go(void)
     for (int64_t i = 0; i < b.problem.nodes; i++)
         b.problem.at_start.of[TLED_DISPLACEMENT][3 * i] = .2 * b.problem.position[3 * i];
     gone = bench_go(&b);
-    ok(!gone && b.end.rested && b.end.sight.largest < 1e-5, "let go, it comes to rest after %lld steps, %.2g mm off",
-       (long long)b.end.steps, 1e3 * b.end.sight.largest);
+    ok(!gone && b.end.rested && b.end.reading.largest < 1e-5, "let go, it comes to rest after %lld steps, %.2g mm off",
+       (long long)b.end.steps, 1e3 * b.end.reading.largest);
     bench_free(&b);
     bench_make(&b, &held, NULL, 0, .0075, 1);
     gone = bench_go(&b);
@@ -393,10 +393,10 @@ static int no_room(void *context, double time, const field_values *state, err *e
     return bench_frame(context, time, state, e);
 }
 
-static void count_checks(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+static void count_checks(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                          double damping)
 {
-    (void)step, (void)sight, (void)remaining, (void)cut, (void)damping;
+    (void)step, (void)reading, (void)remaining, (void)cut, (void)damping;
     ((bench *)context)->cuts++;
 }
 
@@ -482,11 +482,11 @@ static void test_fraction(const tled_executor *device, const char *name)
     }
     ok(!gone && same(&whole, &half), "%s: half of every element is tissue: it moves by its weight as it did whole",
        name);
-    near_(2 * half.end.sight.strain, whole.end.sight.strain, 1e-12 * whole.end.sight.strain, "%s: with half the energy",
-          name);
-    ok(!gone && mixed.end.sight.kinetic < 1e-3 * mixed.end.sight.strain && !same(&whole, &mixed),
+    near_(2 * half.end.reading.strain, whole.end.reading.strain, 1e-12 * whole.end.reading.strain,
+          "%s: with half the energy", name);
+    ok(!gone && mixed.end.reading.kinetic < 1e-3 * mixed.end.reading.strain && !same(&whole, &mixed),
        "%s: shares of .05 to 1 are stable by default settings: %.3g mm, whole %.3g %s", name,
-       1e3 * mixed.end.sight.largest, 1e3 * whole.end.sight.largest, mixed.e.text);
+       1e3 * mixed.end.reading.largest, 1e3 * whole.end.reading.largest, mixed.e.text);
     for (int i = 0; i < 3; i++)
         bench_free(all[i]);
 }

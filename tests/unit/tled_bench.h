@@ -48,11 +48,11 @@ static inline int bench_frame(void *context, double time, const field_values *st
     return 0;
 }
 
-static inline void bench_checked(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
-                                 double damping)
+static inline void bench_checked(void *context, int64_t step, const monitor_reading *reading, double remaining,
+                                 int64_t cut, double damping)
 {
     bench *b = context;
-    (void)step, (void)sight, (void)remaining, (void)damping;
+    (void)step, (void)reading, (void)remaining, (void)damping;
     b->cuts = cut > b->cuts ? cut : b->cuts;
 }
 
@@ -140,11 +140,11 @@ static inline double bench_look_at_rest(const block *what, const tled_executor *
     bench b;
     bench_make(&b, what, NULL, 0, .0075, 1);
     tled_state *state = device->create(&b.problem, b.setup.threads, &b.e);
-    watch *w = watch_create(&b.problem, b.setup.threads, &b.e);
-    bench_must(!state || !w || watch_look(w, device, state, 0, &b.e), &b.e);
-    const double share = w->sight.stable / step_at_rest(&b.problem, NULL);
+    monitor *w = monitor_create(&b.problem, b.setup.threads, &b.e);
+    bench_must(!state || !w || monitor_read(w, device, state, 0, &b.e), &b.e);
+    const double share = w->reading.stable / step_at_rest(&b.problem, NULL);
     device->destroy(state);
-    watch_destroy(w);
+    monitor_destroy(w);
     bench_free(&b);
     return share;
 }

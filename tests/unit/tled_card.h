@@ -74,7 +74,7 @@ static inline bool close_to(double a, double b, double tolerance)
     return fabs(a - b) <= tolerance * fmax(fabs(a), fabs(b));
 }
 
-/* The device's look, after so many steps and as many more, against that of the watch on what get() gives. */
+/* The device's look, after so many steps and as many more, against that of the monitor on what get() gives. */
 static inline void test_look(const block *what, bool scripted, int64_t steps, const tled_executor *cuda,
                              const char *name, double tolerance)
 {
@@ -85,17 +85,18 @@ static inline void test_look(const block *what, bool scripted, int64_t steps, co
     make(&b, what, scripted ? 0 : .8, scripted, cuda, steps);
     plan.rate = b.setup.rate;
     tled_state *state = cuda->create(&b.problem, b.setup.threads, &b.e);
-    watch *w = watch_create(&b.problem, b.setup.threads, &b.e), *v = watch_create(&b.problem, b.setup.threads, &b.e);
+    monitor *w = monitor_create(&b.problem, b.setup.threads, &b.e),
+            *v = monitor_create(&b.problem, b.setup.threads, &b.e);
     bench_must(!state || !w || !v, &b.e);
     w->differences = v->differences = true;
     for (int part = 0; part < 2; part++, plan.first += steps) {
         bench_must(cuda->step(state, &plan, steps, &b.e), &b.e);
-        bench_must(watch_look(w, cuda, state, tled_time(&plan, steps), &b.e), &b.e);
-        bench_must(watch_look(v, &blind, state, tled_time(&plan, steps), &b.e), &b.e);
+        bench_must(monitor_read(w, cuda, state, tled_time(&plan, steps), &b.e), &b.e);
+        bench_must(monitor_read(v, &blind, state, tled_time(&plan, steps), &b.e), &b.e);
         if (!part)
-            bench_must(watch_keep(v, &blind, state, &b.e) || watch_keep(w, cuda, state, &b.e), &b.e);
+            bench_must(monitor_save(v, &blind, state, &b.e) || monitor_save(w, cuda, state, &b.e), &b.e);
     }
-    const watch_sight *s = &w->sight, *t = &v->sight;
+    const monitor_reading *s = &w->reading, *t = &v->reading;
     ok(close_to(s->kinetic, t->kinetic, tolerance) && close_to(s->strain, t->strain, tolerance) &&
            close_to(s->acceleration, t->acceleration, tolerance) && close_to(s->speed, t->speed, tolerance) &&
            close_to(s->moved, t->moved, tolerance) && close_to(s->largest, t->largest, tolerance),
@@ -105,12 +106,12 @@ static inline void test_look(const block *what, bool scripted, int64_t steps, co
     ok(close_to(s->stable, t->stable, .011) && s->broken == t->broken, "%s: the stable step %.6g, %.6g ms", name,
        1e3 * s->stable, 1e3 * t->stable);
     w->raise = v->raise = 1;
-    bench_must(watch_look(w, cuda, state, tled_time(&plan, 0), &b.e), &b.e);
-    bench_must(watch_look(v, &blind, state, tled_time(&plan, 0), &b.e), &b.e);
+    bench_must(monitor_read(w, cuda, state, tled_time(&plan, 0), &b.e), &b.e);
+    bench_must(monitor_read(v, &blind, state, tled_time(&plan, 0), &b.e), &b.e);
     ok(close_to(s->stable, t->stable, 1e-12), "%s: exactly %.12g, %.12g ms", name, 1e3 * s->stable, 1e3 * t->stable);
     cuda->destroy(state);
-    watch_destroy(w);
-    watch_destroy(v);
+    monitor_destroy(w);
+    monitor_destroy(v);
     bench_free(&b);
 }
 

@@ -1,4 +1,4 @@
-/* What the watch wants to know of a state, found where it is: watch.c's sums over elements and nodes, in
+/* What the monitor wants to know of a state, found where it is: monitor.c's sums over elements and nodes, in
  * double whatever the state is in, in a fixed order. Blocks leave parts; some blocks settle the frequency and
  * add up parts, one adds up what these have.
  */

@@ -17,7 +17,7 @@ relax relax_of(double guess, double stable)
     return r;
 }
 
-void relax_update(relax *r, const watch_sight *s)
+void relax_update(relax *r, const monitor_reading *s)
 {
     if (r->looks && s->stiffness > 0 && s->inertia > 0)
         r->frequency = fmin(fmax(sqrt(s->stiffness / s->inertia), r->low), r->high);
@@ -30,7 +30,7 @@ void relax_update(relax *r, const watch_sight *s)
 }
 
 /* m, root mean square over the mass. */
-static double way_left(const relax *r, const watch_sight *s)
+static double way_left(const relax *r, const monitor_reading *s)
 {
     double w = r->lowest;
     if (s->acceleration == 0 && s->speed == 0)
@@ -38,7 +38,7 @@ static double way_left(const relax *r, const watch_sight *s)
     return r->looks < 2 ? INFINITY : hypot(s->acceleration / (w * w), s->speed / w);
 }
 
-double relax_share(const relax *r, const watch_sight *s)
+double relax_share(const relax *r, const monitor_reading *s)
 {
     const double way = way_left(r, s);
     return way == 0 ? 0 : way / fmax(s->moved, .01 * s->moved_most);

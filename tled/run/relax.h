@@ -5,7 +5,7 @@
 #ifndef SINEW_RELAX_H
 #define SINEW_RELAX_H
 
-#include "tled/run/watch.h"
+#include "tled/run/monitor.h"
 
 typedef struct relax {
     double guess;     /* rad/s: the lowest frequency, before anything moves */
@@ -24,13 +24,13 @@ double relax_guess(const tled_problem *p, double reach);
 relax relax_of(double guess, double stable);
 
 /* Takes a state that was looked at: w^2 = du . dK / (du . M du) over what is free, du the displacement since the last
- * state, which the watch has kept, dK the change of the elements' pulls. */
-void relax_update(relax *r, const watch_sight *s);
+ * state, which the monitor has kept, dK the change of the elements' pulls. */
+void relax_update(relax *r, const monitor_reading *s);
 
 /* How far the tissue has still to go, as a share of what it has moved, or of 1/100 of the most that it had, for what is
  * let go. The way is |a| / w^2 and |v| / w in one root (m, root mean square over the mass), as of an oscillator out of
  * balance by a and moving at v; w is the lowest frequency, since at a turning point the slowest does not show. Infinite
  * until two states are known, unless nothing moves. */
-double relax_share(const relax *r, const watch_sight *s);
+double relax_share(const relax *r, const monitor_reading *s);
 
 #endif

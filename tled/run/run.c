@@ -25,7 +25,7 @@ static int choose_step(run *n)
     if (n->r->rate_fixed)
         return 0;
     for (n->cuts = 0; n->cuts <= CUTS_MAX; n->cuts++)
-        if (margin * n->watch->sight.stable >= run_part(n))
+        if (margin * n->monitor->reading.stable >= run_part(n))
             return 0;
     n->cuts = CUTS_MAX;
     return run_diverged(n);
@@ -51,10 +51,10 @@ static bool is_stuck(const run *n)
 static int judge_rest(run *n)
 {
     const run_setup *r = n->r;
-    relax_update(&n->relax, &n->watch->sight);
+    relax_update(&n->relax, &n->monitor->reading);
     if (r->adapt)
         n->damping = 2 * n->relax.frequency;
-    n->remaining = relax_share(&n->relax, &n->watch->sight);
+    n->remaining = relax_share(&n->relax, &n->monitor->reading);
     n->rested = n->remaining <= r->rest;
     if (n->rested)
         return 0;
@@ -71,7 +71,7 @@ static int judge_rest(run *n)
 static int decide(run *n)
 {
     const run_setup *r = n->r;
-    const watch_sight *s = &n->watch->sight;
+    const monitor_reading *s = &n->monitor->reading;
     const bool settles = r->rest >= 0 && s->time >= collider_events_end(r->p);
     n->most_strain = fmax(n->most_strain, s->strain);
     if (choose_step(n))
@@ -94,7 +94,7 @@ static run_point point_of(const run *n)
                        .remaining = n->remaining,
                        .closest = n->closest,
                        .closest_at = n->closest_at,
-                       .moved_most = n->watch->sight.moved_most,
+                       .moved_most = n->monitor->reading.moved_most,
                        .relax = n->relax,
                        .taken = n->taken,
                        .most_strain = n->most_strain,
@@ -111,7 +111,7 @@ static void go_on_from(run *n, const run_point *at)
     n->remaining = at->remaining;
     n->closest = at->closest;
     n->closest_at = at->closest_at;
-    n->watch->sight.moved_most = at->moved_most;
+    n->monitor->reading.moved_most = at->moved_most;
     n->relax = at->relax;
     n->taken = at->taken;
     n->most_strain = at->most_strain;
@@ -160,7 +160,7 @@ static int begin(run *n)
 {
     if (run_monitor(n))
         return -1;
-    if (n->watch->sight.broken >= 0)
+    if (n->monitor->reading.broken >= 0)
         return run_diverged(n);
     if (!n->r->point && decide(n))
         return -1;
@@ -204,7 +204,7 @@ static int end_with_frame(run *n)
         return err_set(n->e, NULL, 0,
                        "not at rest after %lld steps, %.6g s: %.3g of the displacement is still to go; expected at "
                        "most %.3g, a larger --rest, or -t to end at a time",
-                       (long long)(n->plan.first - n->from), n->watch->sight.time, n->remaining, r->rest);
+                       (long long)(n->plan.first - n->from), n->monitor->reading.time, n->remaining, r->rest);
     return n->written == n->plan.first ? 0 : run_write_frame(n);
 }
 
@@ -230,12 +230,12 @@ static int choose_slots(const run_setup *r)
 static int make_watch(run *n)
 {
     const run_setup *r = n->r;
-    n->watch = watch_create(r->p, r->threads, n->e);
-    if (!n->watch)
+    n->monitor = monitor_create(r->p, r->threads, n->e);
+    if (!n->monitor)
         return -1;
     if (r->rate_fixed)
-        n->watch->raise = 1;
-    n->watch->differences = r->rest >= 0;
+        n->monitor->raise = 1;
+    n->monitor->differences = r->rest >= 0;
     return 0;
 }
 
@@ -267,7 +267,7 @@ static int prepare(run *n)
     n->slots = choose_slots(r);
     if (make_watch(n) || (r->log && log_begin(r->log, r->p, r->threads, n->e)))
         return -1;
-    n->relax = relax_of(r->frequency, n->watch->rest_step);
+    n->relax = relax_of(r->frequency, n->monitor->rest_step);
     if (r->point)
         go_on_from(n, r->point);
     find_last(n);
@@ -283,8 +283,8 @@ static run_end end_of(const run *n)
                    .rested = n->rested,
                    .remaining = n->remaining,
                    .most_strain = n->most_strain};
-    if (n->watch)
-        end.sight = n->watch->sight;
+    if (n->monitor)
+        end.reading = n->monitor->reading;
     if (n->state)
         end.bytes = n->r->device->bytes(n->state);
     return end;
@@ -307,7 +307,7 @@ int run_go(const run_setup *r, run_end *end, err *e)
         result = -1;
     if (n.state)
         r->device->destroy(n.state);
-    watch_destroy(n.watch);
+    monitor_destroy(n.monitor);
     fields_free(&n.checkpoint);
     return result;
 }

@@ -26,7 +26,7 @@ typedef struct run_point {
     double damping;            /* 1/s */
     double remaining, closest; /* shares of the displacement: to rest, and the least so far */
     int64_t closest_at;
-    double moved_most; /* m: watch_sight's */
+    double moved_most; /* m: monitor_reading's */
     relax relax;
     int64_t taken;      /* steps, each part of a cut one for itself */
     double most_strain; /* J: at a check, so far */
@@ -57,11 +57,11 @@ typedef struct run_setup {
      * filled ends the run, at a frame soon after. */
     outbox_frame *frame;
     /* After every check. remaining: see relax_share; cut: parts that each step is taken in from now on. */
-    void (*checked)(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+    void (*checked)(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                     double damping);
-    /* Steps are cut in more parts than they were in this run so far: from the check on that `sight` is of; or those to
+    /* Steps are cut in more parts than they were in this run so far: from the check on that `reading` is of; or those to
      * there, which it found not sound, were taken again. May be NULL. */
-    void (*cut)(void *context, const watch_sight *sight, int64_t parts);
+    void (*cut)(void *context, const monitor_reading *reading, int64_t parts);
     /* Every state before `at` is written; this one, of the fields that checkpoints have, is with `at` what a run can
      * go on from. First at the start. -1 with e filled ends the run. NULL: nothing is to be saved. */
     int (*save)(void *context, const run_point *at, double time, const field_values *state, err *e);
@@ -72,8 +72,8 @@ typedef struct run_end {
     int64_t taken; /* each part of a cut step for itself, and those taken again */
     int64_t parts; /* the most that a step was cut in, since the restart if there was one */
     bool rested;
-    double remaining;  /* with rest: at the last check */
-    watch_sight sight; /* of the last state */
+    double remaining;        /* with rest: at the last check */
+    monitor_reading reading; /* of the last state */
     /* However it ended: */
     double most_strain; /* J: at a check */
     int64_t bytes;      /* of the device's memory, in the end */

@@ -23,7 +23,7 @@ static int64_t parts_of(const run *n)
 
 static int monitor_at(run *n, double time)
 {
-    return watch_look(n->watch, n->r->device, n->state, time, n->e);
+    return monitor_read(n->monitor, n->r->device, n->state, time, n->e);
 }
 
 int run_monitor(run *n)
@@ -33,14 +33,14 @@ int run_monitor(run *n)
 
 bool run_is_sound(const run *n)
 {
-    const watch_sight *s = &n->watch->sight;
+    const monitor_reading *s = &n->monitor->reading;
     return s->broken < 0 && s->stable >= run_part(n) * (1 - 1e-12);
 }
 
 /* What is wrong with the element that the monitor names. */
 static void say_wrong(const run *n, char *to, size_t size)
 {
-    const watch_sight *s = &n->watch->sight;
+    const monitor_reading *s = &n->monitor->reading;
     if (s->broken >= 0)
         snprintf(to, size, "%s", s->inverted ? "is inverted" : "is no longer finite");
     else
@@ -52,8 +52,8 @@ int run_diverged(run *n)
 {
     char wrong[200];
     const tled_problem *p = n->r->p;
-    const watch_sight *s = &n->watch->sight;
-    if (watch_tell(n->watch, n->r->device, n->state, n->e))
+    const monitor_reading *s = &n->monitor->reading;
+    if (monitor_locate(n->monitor, n->r->device, n->state, n->e))
         return -1;
     int64_t element = s->broken >= 0 ? s->broken : s->stable_element;
     if (element < 0)
@@ -64,7 +64,7 @@ int run_diverged(run *n)
                         p->volume[p->element_volume[element]].name, wrong);
 }
 
-void run_tell_cut(run *n, const watch_sight *why)
+void run_tell_cut(run *n, const monitor_reading *why)
 {
     if (n->cuts <= n->cuts_told)
         return;
@@ -86,7 +86,7 @@ static int restore(run *n)
 static int save(run *n)
 {
     n->saved_first = n->plan.first;
-    return watch_keep(n->watch, n->r->device, n->state, n->e);
+    return monitor_save(n->monitor, n->r->device, n->state, n->e);
 }
 
 /* ---- Steps */
@@ -173,7 +173,7 @@ static int log_state(run *n, bool shown)
                          .taken = n->taken,
                          .time = run_now(n),
                          .dt = n->dt,
-                         .stable = n->watch->sight.stable,
+                         .stable = n->monitor->reading.stable,
                          .damping = n->damped,
                          .remaining = n->remaining};
     return log_look(n->r->log, n->r->device, n->state, &row, shown, n->e);
@@ -264,14 +264,14 @@ static int step_by(run *n, int64_t to, bool framed)
 static int step_until_sound(run *n, int64_t to, bool framed)
 {
     const int cuts = n->cuts;
-    watch_sight why = n->watch->sight;
+    monitor_reading why = n->monitor->reading;
     for (;; n->cuts++) {
         if (step_by(n, to, framed) || run_monitor(n))
             return -1;
         if (run_is_sound(n))
             break;
         n->unsure = 0;
-        why = n->cuts == cuts ? n->watch->sight : why;
+        why = n->cuts == cuts ? n->monitor->reading : why;
         if (n->r->rate_fixed || n->cuts == CUTS_MAX)
             return find_break(n, to);
         if (restore(n))

@@ -11,7 +11,7 @@ enum { CUTS_MAX = 10 }; /* a step cut 2^10 times is no step */
 typedef struct run {
     const run_setup *r;
     tled_state *state;
-    watch *watch;
+    monitor *monitor;
     relax relax;
     outbox *out;
     tled_plan plan;      /* plan.first: steps counted */
@@ -47,7 +47,7 @@ double run_part(const run *n);
 
 /* All below that return an int: -1 with n->e filled. */
 
-/* Looks at the state: n->watch->sight. */
+/* Looks at the state: n->monitor->reading. */
 int run_monitor(run *n);
 
 /* Whether the steps of now can have led to what was monitored last: nothing is broken, and they are stable still. */
@@ -57,7 +57,7 @@ bool run_is_sound(const run *n);
 int run_diverged(run *n);
 
 /* Says so where steps are cut in more parts than they ever were, and why. */
-void run_tell_cut(run *n, const watch_sight *why);
+void run_tell_cut(run *n, const monitor_reading *why);
 
 /* Goes from the last check, whose state is sound, to the next one, or to the end, with the frames and the rows of the
  * log before it. That state is sound, or it has diverged. */

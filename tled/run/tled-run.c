@@ -223,7 +223,7 @@ static int replay_frame(void *context, const frame *f, err *e)
     return put_frame(s, f, e);
 }
 
-static void checked(void *context, int64_t step, const watch_sight *sight, double remaining, int64_t cut,
+static void checked(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                     double damping)
 {
     session *s = context;
@@ -231,21 +231,21 @@ static void checked(void *context, int64_t step, const watch_sight *sight, doubl
     progress_at(&s->progress, (double)step);
     if (isfinite(remaining))
         snprintf(left, sizeof left, "%.3g of its displacement to go, ", remaining);
-    tool_detail(s->t, "%.6g s: %skinetic %.3g J, strain %.3g J, stable step %.4g ms, damping %.4g 1/s", sight->time,
-                left, sight->kinetic, sight->strain, 1e3 * sight->stable, damping);
+    tool_detail(s->t, "%.6g s: %skinetic %.3g J, strain %.3g J, stable step %.4g ms, damping %.4g 1/s", reading->time,
+                left, reading->kinetic, reading->strain, 1e3 * reading->stable, damping);
     if (cut != s->cut)
         tool_detail(s->t, "each step is cut into %lld from now on, because of element %lld", (long long)cut,
-                    (long long)sight->stable_element);
+                    (long long)reading->stable_element);
     s->cut = cut;
 }
 
-static void say_cut(void *context, const watch_sight *sight, int64_t parts)
+static void say_cut(void *context, const monitor_reading *reading, int64_t parts)
 {
     session *s = context;
     char why[400];
-    watch_words(&s->m, sight, why, sizeof why);
+    monitor_words(&s->m, reading, why, sizeof why);
     progress_clear(&s->progress);
-    tool_say(s->t, "at %.6g s each step is cut into %lld, of %.4g ms: %s", sight->time, (long long)parts,
+    tool_say(s->t, "at %.6g s each step is cut into %lld, of %.4g ms: %s", reading->time, (long long)parts,
              1e3 / (s->run.rate * (double)parts), why);
     s->cut = parts;
 }
@@ -354,7 +354,7 @@ static void say_folds(session *s, const run_end *end, bool ended)
 
 static void say_end(session *s, const run_end *end)
 {
-    const watch_sight *w = &end->sight;
+    const monitor_reading *w = &end->reading;
     char left[80] = "";
     if (end->parts > 1)
         tool_say(s->t, "steps were cut into up to %lld: %lld steps were taken in place of %lld", (long long)end->parts,

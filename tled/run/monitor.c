@@ -1,4 +1,4 @@
-#include "tled/run/watch.h"
+#include "tled/run/monitor.h"
 
 #include "tled/problem/collider.h"
 
@@ -15,13 +15,13 @@
 
 enum { CHUNK = 256 }; /* elements, or nodes */
 
-struct watch_part { /* of one chunk */
+struct monitor_part { /* of one chunk */
     tled_sums sum;
     bool inverted;
 };
 
 /* along: elements x 3, or NULL; share: of the tissue that is the volume's. */
-static element_fibre fibre_of(const watch *w, const float *along, int64_t i, int32_t volume, double share)
+static element_fibre fibre_of(const monitor *w, const float *along, int64_t i, int32_t volume, double share)
 {
     element_fibre fibre = {0};
     if (!along || volume < 0)
@@ -31,13 +31,13 @@ static element_fibre fibre_of(const watch *w, const float *along, int64_t i, int
     return fibre;
 }
 
-static void take_frequency(struct watch_part *part, int64_t i, double square)
+static void take_frequency(struct monitor_part *part, int64_t i, double square)
 {
     part->sum.frequency = square;
     part->sum.frequency_element = i;
 }
 
-static void look_at_conforming(const watch *w, int64_t i, element_tensor h, struct watch_part *part)
+static void add_conforming(const monitor *w, int64_t i, element_tensor h, struct monitor_part *part)
 {
     const tled_problem *p = w->p;
     step_matrix a;
@@ -49,7 +49,7 @@ static void look_at_conforming(const watch *w, int64_t i, element_tensor h, stru
 /* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far.
  * Where they are too wide, or leave open whether any reaches past the one at rest, the matrix tells, and the frequency
  * is raised to 1 % above the element's: so few need more than one test. */
-static void look_at_step(const watch *w, const tled_law *law, int64_t i, element_tensor h, struct watch_part *part)
+static void add_step(const monitor *w, const tled_law *law, int64_t i, element_tensor h, struct monitor_part *part)
 {
     const tled_problem *p = w->p;
     const double s = tled_mixture(p, i);
@@ -69,7 +69,7 @@ static void look_at_step(const watch *w, const tled_law *law, int64_t i, element
         take_frequency(part, i, w->raise * step_largest(&a));
 }
 
-static void look_at_element(const watch *w, int64_t i, element_shape box, struct watch_part *part)
+static void add_element(const monitor *w, int64_t i, element_shape box, struct monitor_part *part)
 {
     const deformed d = deformed_of(w->p, i, box, w->displacement);
     const double volume = 1 + d.dilation;
@@ -80,22 +80,22 @@ static void look_at_element(const watch *w, int64_t i, element_shape box, struct
     }
     part->sum.strain += tled_fraction(w->p, i) * (d.energy * d.rest + d.hourglass);
     if (w->p->conforming)
-        look_at_conforming(w, i, d.h, part);
+        add_conforming(w, i, d.h, part);
     else
-        look_at_step(w, &d.law, i, d.h, part);
+        add_step(w, &d.law, i, d.h, part);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    watch *w = context;
-    struct watch_part part = {.sum = {.frequency = w->question.rest, .frequency_element = -1, .broken = -1}};
+    monitor *w = context;
+    struct monitor_part part = {.sum = {.frequency = w->question.rest, .frequency_element = -1, .broken = -1}};
     element_shape shape = element_box(w->p->side[0], w->p->side[1], w->p->side[2]);
     for (int64_t i = from; i < to; i++)
-        look_at_element(w, i, shape, &part);
+        add_element(w, i, shape, &part);
     w->part[chunk] = part;
 }
 
-static void look_at_node(const watch *w, int64_t n, tled_sums *sum)
+static void add_node(const monitor *w, int64_t n, tled_sums *sum)
 {
     double outside[3], square = 0, mass = w->p->mass[n];
     tled_external(w->p, w->curves, n, outside);
@@ -107,9 +107,9 @@ static void look_at_node(const watch *w, int64_t n, tled_sums *sum)
         sum->speed += is_free ? drive : 0;
         sum->kinetic += drive / 2;
         square += w->displacement[i] * w->displacement[i];
-        if (w->kept_internal && is_free) {
-            double du = w->displacement[i] - w->kept_displacement[i];
-            sum->stiffness += du * (w->internal[i] - w->kept_internal[i]);
+        if (w->saved_internal && is_free) {
+            double du = w->displacement[i] - w->saved_displacement[i];
+            sum->stiffness += du * (w->internal[i] - w->saved_internal[i]);
             sum->inertia += mass * du * du;
         }
     }
@@ -120,23 +120,23 @@ static void look_at_node(const watch *w, int64_t n, tled_sums *sum)
 
 static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
-    watch *w = context;
-    struct watch_part part = {0};
+    monitor *w = context;
+    struct monitor_part part = {0};
     for (int64_t n = from; n < to; n++)
-        look_at_node(w, n, &part.sum);
+        add_node(w, n, &part.sum);
     w->part[chunk] = part;
 }
 
-static void sum_elements(watch *w, tled_sums *sum)
+static void sum_elements(monitor *w, tled_sums *sum)
 {
     int64_t chunks = pool_chunks(w->p->elements, CHUNK);
     sum->frequency_element = sum->broken = -1;
     for (int64_t c = 0; c < chunks; c++) {
-        const struct watch_part *part = &w->part[c];
+        const struct monitor_part *part = &w->part[c];
         sum->strain += part->sum.strain;
         if (sum->broken < 0) {
             sum->broken = part->sum.broken;
-            w->sight.inverted = part->inverted;
+            w->reading.inverted = part->inverted;
         }
         if (part->sum.frequency_element >= 0 && part->sum.frequency > sum->frequency) {
             sum->frequency = part->sum.frequency;
@@ -145,7 +145,7 @@ static void sum_elements(watch *w, tled_sums *sum)
     }
 }
 
-static void sum_nodes(const watch *w, tled_sums *sum)
+static void sum_nodes(const monitor *w, tled_sums *sum)
 {
     int64_t chunks = pool_chunks(w->p->nodes, CHUNK);
     for (int64_t c = 0; c < chunks; c++) {
@@ -164,12 +164,12 @@ static void sum_nodes(const watch *w, tled_sums *sum)
 static int need(double **array, int64_t nodes, err *e)
 {
     if (!*array)
-        *array = mem_array(nodes, 3 * sizeof **array, "the watch", e);
+        *array = mem_array(nodes, 3 * sizeof **array, "the monitor", e);
     return *array ? 0 : -1;
 }
 
 /* On this machine's threads. */
-static int look_here(watch *w, const tled_executor *b, tled_state *state, tled_sums *sum, err *e)
+static int read_here(monitor *w, const tled_executor *b, tled_state *state, tled_sums *sum, err *e)
 {
     const tled_problem *p = w->p;
     if (need(&w->displacement, p->nodes, e) || need(&w->velocity, p->nodes, e) || need(&w->internal, p->nodes, e) ||
@@ -185,9 +185,9 @@ static int look_here(watch *w, const tled_executor *b, tled_state *state, tled_s
     return 0;
 }
 
-static void take_sums(watch *w, const tled_sums *sum)
+static void take_sums(monitor *w, const tled_sums *sum)
 {
-    watch_sight *s = &w->sight;
+    monitor_reading *s = &w->reading;
     s->time = w->question.time;
     s->kinetic = sum->kinetic;
     s->strain = sum->strain;
@@ -204,42 +204,42 @@ static void take_sums(watch *w, const tled_sums *sum)
     s->stable = collider_step(w->p, s->stable);
 }
 
-int watch_look(watch *w, const tled_executor *b, tled_state *state, double time, err *e)
+int monitor_read(monitor *w, const tled_executor *b, tled_state *state, double time, err *e)
 {
     tled_sums sum;
     /* A rounding above the frequency at rest, so that no matrix at rest passes it.
      * (Bounds may, of elements with unlike sides.) */
     w->question = (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences};
-    if (b->monitor ? b->monitor(state, &w->question, &sum, e) : look_here(w, b, state, &sum, e))
+    if (b->monitor ? b->monitor(state, &w->question, &sum, e) : read_here(w, b, state, &sum, e))
         return -1;
     take_sums(w, &sum);
     return 0;
 }
 
-int watch_tell(watch *w, const tled_executor *b, tled_state *state, err *e)
+int monitor_locate(monitor *w, const tled_executor *b, tled_state *state, err *e)
 {
     tled_sums sum;
     if (!b->monitor)
         return 0;
-    if (look_here(w, b, state, &sum, e))
+    if (read_here(w, b, state, &sum, e))
         return -1;
     take_sums(w, &sum);
     return 0;
 }
 
-int watch_keep(watch *w, const tled_executor *b, tled_state *state, err *e)
+int monitor_save(monitor *w, const tled_executor *b, tled_state *state, err *e)
 {
     size_t size = 3 * (size_t)w->p->nodes * sizeof(double);
     if (w->differences && !b->monitor) {
-        if (need(&w->kept_displacement, w->p->nodes, e) || need(&w->kept_internal, w->p->nodes, e))
+        if (need(&w->saved_displacement, w->p->nodes, e) || need(&w->saved_internal, w->p->nodes, e))
             return -1;
-        memcpy(w->kept_displacement, w->displacement, size);
-        memcpy(w->kept_internal, w->internal, size);
+        memcpy(w->saved_displacement, w->displacement, size);
+        memcpy(w->saved_internal, w->internal, size);
     }
     return b->save(state, e);
 }
 
-void watch_words(const model *m, const watch_sight *s, char *to, size_t size)
+void monitor_words(const model *m, const monitor_reading *s, char *to, size_t size)
 {
     const int64_t element = s->broken >= 0 ? s->broken : s->stable_element;
     char where[ELEMENT_PLACE];
@@ -254,34 +254,34 @@ void watch_words(const model *m, const watch_sight *s, char *to, size_t size)
         snprintf(to, size, "%s has a stable step of %.4g ms", where, 1e3 * s->stable);
 }
 
-watch *watch_create(const tled_problem *p, pool *threads, err *e)
+monitor *monitor_create(const tled_problem *p, pool *threads, err *e)
 {
     int64_t most = p->elements > p->nodes ? p->elements : p->nodes;
-    watch *w = mem_array(1, sizeof *w, "the watch", e);
+    monitor *w = mem_array(1, sizeof *w, "the monitor", e);
     if (!w)
         return NULL;
     w->p = p;
     w->threads = threads;
     w->rest_step = step_at_rest(p, NULL);
     w->raise = 1.01;
-    w->curves = mem_array(p->script->curves, 3 * sizeof *w->curves, "the watch", e);
-    w->part = mem_array(pool_chunks(most, CHUNK), sizeof *w->part, "the watch", e);
+    w->curves = mem_array(p->script->curves, 3 * sizeof *w->curves, "the monitor", e);
+    w->part = mem_array(pool_chunks(most, CHUNK), sizeof *w->part, "the monitor", e);
     if (!w->curves || !w->part) {
-        watch_destroy(w);
+        monitor_destroy(w);
         return NULL;
     }
     return w;
 }
 
-void watch_destroy(watch *w)
+void monitor_destroy(monitor *w)
 {
     if (!w)
         return;
     free(w->displacement);
     free(w->velocity);
     free(w->internal);
-    free(w->kept_displacement);
-    free(w->kept_internal);
+    free(w->saved_displacement);
+    free(w->saved_internal);
     free(w->curves);
     free(w->part);
     free(w);
