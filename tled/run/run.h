@@ -59,8 +59,8 @@ typedef struct run_setup {
     /* After every check. remaining: see relax_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                     double damping);
-    /* Steps are cut in more parts than they were in this run so far: from the check on that `reading` is of; or those to
-     * there, which it found not sound, were taken again. May be NULL. */
+    /* Steps are cut in more parts than they were in this run so far: from the check on that `reading` is of; or those
+     * to there, which it found not sound, were taken again. May be NULL. */
     void (*cut)(void *context, const monitor_reading *reading, int64_t parts);
     /* Every state before `at` is written; this one, of the fields that checkpoints have, is with `at` what a run can
      * go on from. First at the start. -1 with e filled ends the run. NULL: nothing is to be saved. */
