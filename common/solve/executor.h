@@ -1,6 +1,6 @@
-/* The executors of a solver: the ways in which it can be computed, each on a device. Here is what the choice among
- * them needs; the functions of each solver's executors have that solver's types (tled/problem/tled_executor.h,
- * msds/problem/msds_executor.h), and begin with this part.
+/* The executors of a solver: the ways in which it can be computed, each on a device. Here is what the choice among them
+ * needs: what each can do, and what a problem needs. The functions of each solver's executors have that solver's types
+ * (tled/problem/tled_executor.h, msds/problem/msds_executor.h), and follow this part.
  */
 #ifndef SINEW_EXECUTOR_H
 #define SINEW_EXECUTOR_H
@@ -8,16 +8,46 @@
 #include "base/err.h"
 
 #include <stddef.h>
+#include <stdint.h>
+
+/* X(name, as messages say it): what not every executor can do. The first that is lacking is named. */
+#define EXECUTOR_FEATURES(X)                                                                                           \
+    X(MESHES, "elements off a lattice")                                                                                \
+    X(CONTACT, "contact with a probe")                                                                                 \
+    X(WARP, "elements that turn: --warp")
+
+enum executor_feature {
+#define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,
+    EXECUTOR_FEATURES(EXECUTOR_NUMBER)
+#undef EXECUTOR_NUMBER
+        EXECUTOR_FEATURE_COUNT
+};
+
+enum { /* as bits */
+#define EXECUTOR_BIT(name, words) EXECUTOR_##name = 1 << EXECUTOR_NUMBER_##name,
+       EXECUTOR_FEATURES(EXECUTOR_BIT)
+#undef EXECUTOR_BIT
+};
 
 typedef struct executor {
     const char *device; /* "cpu" or "cuda", as the user says it */
+    uint32_t features;  /* that it has: EXECUTOR_* */
+    uint32_t forms;     /* that it is compiled for: bit i for form i of the solver */
     /* Why it cannot be used on this machine, or NULL. Initialises the device: called only where it may be chosen. */
     const char *(*unusable)(void);
 } executor;
 
-/* The place in `table` (ends with NULL, the preferred first) of the executor on the device of this name, or for
- * "auto" of the first that can be used. says (of `size` bytes) gets which device was chosen, and which was not and
- * why. -1 with e filled where the device is not in the table, or cannot be used here. */
-int executor_choose(const executor *const *table, const char *device, char *says, size_t size, err *e);
+typedef struct executor_need {
+    uint32_t features;
+    int form;        /* of energy */
+    const char *law; /* which the form is called in messages; NULL: every executor has it */
+} executor_need;
+
+/* The place in `table` (ends with NULL, the preferred first) of the first executor on the device of this name that has
+ * what is needed, or for "auto" of the first on any that can be used. says (of `size` bytes) gets which device was
+ * chosen, and which was not and why. -1 with e filled: the device is not in the table, lacks what is needed, or cannot
+ * be used here. */
+int executor_choose(const executor *const *table, const char *device, const executor_need *need, char *says,
+                    size_t size, err *e);
 
 #endif

@@ -336,10 +336,11 @@ void msds_cpu_touch(msds_state *s, const msds_plan *plan)
     find_contacts(s, NULL, s->plan.method == MSDS_EXACT ? CONTACTS_NEAR : CONTACTS_PRESSED);
 }
 
-const msds_executor msds_cpu = {.is = {.device = "cpu", .unusable = cpu_unusable},
-                                .create = cpu_create,
-                                .destroy = cpu_destroy,
-                                .step = cpu_step,
-                                .get = cpu_get,
-                                .monitor = cpu_monitor,
-                                .bytes = cpu_bytes};
+const msds_executor msds_cpu = {
+    .is = {.device = "cpu", .features = EXECUTOR_CONTACT | EXECUTOR_WARP, .unusable = cpu_unusable},
+    .create = cpu_create,
+    .destroy = cpu_destroy,
+    .step = cpu_step,
+    .get = cpu_get,
+    .monitor = cpu_monitor,
+    .bytes = cpu_bytes};

@@ -435,10 +435,11 @@ static int64_t cuda_bytes(const cuda_state *s)
     return bytes;
 }
 
-const msds_executor msds_cuda = {.is = {.device = "cuda", .unusable = card_unusable},
-                                 .create = cuda_create,
-                                 .destroy = cuda_destroy,
-                                 .step = cuda_step,
-                                 .get = cuda_get,
-                                 .monitor = cuda_monitor,
-                                 .bytes = cuda_bytes};
+const msds_executor msds_cuda = {
+    .is = {.device = "cuda", .features = EXECUTOR_CONTACT, .forms = 0, .unusable = card_unusable},
+    .create = cuda_create,
+    .destroy = cuda_destroy,
+    .step = cuda_step,
+    .get = cuda_get,
+    .monitor = cuda_monitor,
+    .bytes = cuda_bytes};

@@ -36,7 +36,7 @@ typedef struct msds_executor {
 extern const msds_executor *const msds_executors[];
 
 /* The executor of a table on a device: executor_choose. NULL with e filled. */
-const msds_executor *msds_executor_choose(const msds_executor *const *table, const char *device, char *says,
-                                          size_t size, err *e);
+const msds_executor *msds_executor_choose(const msds_executor *const *table, const char *device,
+                                          const executor_need *need, char *says, size_t size, err *e);
 
 #endif

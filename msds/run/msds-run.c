@@ -459,8 +459,8 @@ static int prepare(session *s, err *e)
     char device[300];
     if (take_probe(s, e) || carry_skin(s, e) || make_problem(s, e))
         return -1;
-    const char *device_name = o->warp && !o->device ? "cpu" : names[o->device]; /* no card takes rotations out */
-    s->device = msds_executor_choose(msds_executors, device_name, device, sizeof device, e);
+    const executor_need need = {.features = o->warp && !o->device ? EXECUTOR_WARP : 0}; /* -d cuda: where FEM begins */
+    s->device = msds_executor_choose(msds_executors, names[o->device], &need, device, sizeof device, e);
     int threads = tool_threads(s->t, e);
     s->threads = s->device && threads > 0 ? pool_create(threads, e) : NULL;
     if (!s->threads)

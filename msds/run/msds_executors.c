@@ -16,12 +16,12 @@ const msds_executor *const msds_executors[] = {
 
 enum { EXECUTORS_MOST = 15 };
 
-const msds_executor *msds_executor_choose(const msds_executor *const *table, const char *device, char *says,
-                                          size_t size, err *e)
+const msds_executor *msds_executor_choose(const msds_executor *const *table, const char *device,
+                                          const executor_need *need, char *says, size_t size, err *e)
 {
     const executor *rows[EXECUTORS_MOST + 1] = {NULL};
     for (int i = 0; table[i] && i < EXECUTORS_MOST; i++)
         rows[i] = &table[i]->is;
-    const int chosen = executor_choose(rows, device, says, size, e);
+    const int chosen = executor_choose(rows, device, need, says, size, e);
     return chosen < 0 ? NULL : table[chosen];
 }

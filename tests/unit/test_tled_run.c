@@ -444,20 +444,33 @@ static void test_choice(void)
     static const tled_executor broken = {.is = {.device = "cuda", .unusable = no_device}};
     const tled_executor *both[] = {&broken, &tled_cpu_double, NULL}, *none[] = {&broken, NULL},
                         *without[] = {both[1], NULL};
+    static const executor_need none_needed = {0}, contact = {.features = EXECUTOR_CONTACT},
+                               unformed = {.form = FORM_MOONEY_RIVLIN, .law = "such form"};
     char says[100];
     err e = {0};
-    const tled_executor *took = tled_executor_choose(both, "auto", says, sizeof says, &e);
+    const tled_executor *took = tled_executor_choose(both, "auto", &none_needed, says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu (cuda: no device)"), "auto: %s", says);
-    took = tled_executor_choose(both, "cpu", says, sizeof says, &e);
+    took = tled_executor_choose(both, "cpu", &none_needed, says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu"), "by name");
-    took = tled_executor_choose(both, "cuda", says, sizeof says, &e);
+    took = tled_executor_choose(both, "cuda", &none_needed, says, sizeof says, &e);
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
     e = (err){0};
-    took = tled_executor_choose(without, "cuda", says, sizeof says, &e);
+    took = tled_executor_choose(without, "cuda", &none_needed, says, sizeof says, &e);
     ok(!took && !strcmp(e.text, "this build has no CUDA back end; have: cpu"), "%s", e.text);
     e = (err){0};
-    took = tled_executor_choose(none, "auto", says, sizeof says, &e);
+    took = tled_executor_choose(none, "auto", &none_needed, says, sizeof says, &e);
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
+    took = tled_executor_choose(both, "auto", &contact, says, sizeof says, &e);
+    ok(took == both[1] && !strcmp(says, "cpu (the one with contact with a probe)"), "auto, with contact: %s", says);
+    e = (err){0};
+    took = tled_executor_choose(both, "cuda", &contact, says, sizeof says, &e);
+    ok(!took && !strcmp(e.text, "the CUDA back end has no contact with a probe; expected -d cpu or auto"), "%s",
+       e.text);
+    e = (err){0};
+    took = tled_executor_choose(both, "cuda", &unformed, says, sizeof says, &e);
+    ok(!took && !strcmp(e.text, "the CUDA back end has no such form; expected -d cpu or auto"), "%s", e.text);
+    took = tled_executor_choose(both, "auto", &unformed, says, sizeof says, &e);
+    ok(took == both[1] && !strcmp(says, "cpu (cuda: no such form)"), "auto, by form: %s", says);
 }
 
 /* Half of each element is tissue: half the mass, and half of all forces. Under gravity and in contraction it moves as

@@ -428,7 +428,10 @@ static int64_t cpu_computed(const cpu_state *s)
     return s->rows.cells;
 }
 
-const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu", .unusable = cpu_unusable},
+const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
+                                           .features = EXECUTOR_MESHES | EXECUTOR_CONTACT,
+                                           .forms = (1U << FORM_STEPPED) - 1,
+                                           .unusable = cpu_unusable},
                                     .create = cpu_create,
                                     .destroy = cpu_destroy,
                                     .step = cpu_step,

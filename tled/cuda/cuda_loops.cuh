@@ -433,15 +433,16 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->marches ? (int64_t)(s->march.computed * (double)s->p->elements) : s->tiles.cells;
 }
 
-const tled_executor CUDA_EXECUTOR = {.is = {.device = "cuda", .unusable = card_unusable},
-                                     .create = cuda_create,
-                                     .destroy = cuda_destroy,
-                                     .step = cuda_step,
-                                     .get = cuda_get,
-                                     .save = cuda_save,
-                                     .restore = cuda_restore,
-                                     .snapshot = cuda_snapshot,
-                                     .fetch = cuda_fetch,
-                                     .monitor = cuda_monitor,
-                                     .bytes = cuda_bytes,
-                                     .computed = cuda_computed};
+const tled_executor CUDA_EXECUTOR = {
+    .is = {.device = "cuda", .features = 0, .forms = (1U << FORM_STEPPED) - 1, .unusable = card_unusable},
+    .create = cuda_create,
+    .destroy = cuda_destroy,
+    .step = cuda_step,
+    .get = cuda_get,
+    .save = cuda_save,
+    .restore = cuda_restore,
+    .snapshot = cuda_snapshot,
+    .fetch = cuda_fetch,
+    .monitor = cuda_monitor,
+    .bytes = cuda_bytes,
+    .computed = cuda_computed};

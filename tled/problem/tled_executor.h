@@ -64,8 +64,11 @@ typedef struct tled_executor {
 extern const tled_executor *const tled_executors_double[];
 extern const tled_executor *const tled_executors_single[];
 
+/* What a problem needs of its executor: of the elements, of contact, of the form. */
+executor_need tled_need(const tled_problem *p);
+
 /* The executor of a table on a device: executor_choose. NULL with e filled. */
-const tled_executor *tled_executor_choose(const tled_executor *const *table, const char *device, char *says,
-                                          size_t size, err *e);
+const tled_executor *tled_executor_choose(const tled_executor *const *table, const char *device,
+                                          const executor_need *need, char *says, size_t size, err *e);
 
 #endif

@@ -390,22 +390,12 @@ static int read_collider(session *s, const struct options *o, err *e)
     return probe_carry(&s->collider.shape, &s->m, &s->warnings, e);
 }
 
-/* The CPU alone has contact, and elements off a lattice: auto takes it. */
 static const tled_executor *choose_device(session *s, const struct options *o, char *device, size_t size, err *e)
 {
     const tled_executor *const *table = o->precision ? tled_executors_single : tled_executors_double;
     static const char *const names[] = {"auto", "cuda", "cpu"};
-    const char *lacks = s->problem.conforming ? "elements off a lattice"
-                        : s->collider.poses   ? "contact with a probe"
-                                              : NULL;
-    if (lacks && !strcmp(names[o->device], "cuda")) {
-        err_set(e, NULL, 0, "the CUDA back end has no %s; expected -d cpu or auto", lacks);
-        return NULL;
-    }
-    const tled_executor *taken = tled_executor_choose(table, lacks ? "cpu" : names[o->device], device, size, e);
-    if (taken && lacks && !strcmp(names[o->device], "auto"))
-        snprintf(device, size, "cpu (the one with %s)", lacks);
-    return taken;
+    const executor_need need = tled_need(&s->problem);
+    return tled_executor_choose(table, names[o->device], &need, device, size, e);
 }
 
 /* From the model that came to the problem and how it is to be run. */
