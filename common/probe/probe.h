@@ -107,8 +107,7 @@ PROBE_FUNCTION probe_placed probe_place(const probe *p, const pose *at)
     placed.shape = *p;
     placed.reach = p->reach;
     for (int i = 0; i < 3; i++) {
-        double unit[3] = {0, 0, 0};
-        unit[i] = 1;
+        const double unit[3] = {i == 0 ? 1. : 0., i == 1 ? 1. : 0., i == 2 ? 1. : 0.};
         pose_turn(at->quaternion, unit, placed.axis[i]);
     }
     for (int a = 0; a < 3; a++) {
@@ -127,8 +126,7 @@ PROBE_FUNCTION probe_touch probe_extruded(double flat, const double flat_way[2],
 {
     probe_touch t;
     const double over = fabs(y) - half, sign = y < 0 ? -1 : 1;
-    const double f = flat > 0 ? flat : 0;
-    const double o = over > 0 ? over : 0;
+    const double f = flat > 0 ? flat : 0, o = over > 0 ? over : 0;
     const double away = sqrt(f * f + o * o);
     if (away > 0) {
         t.depth = edge - away;
@@ -145,25 +143,17 @@ PROBE_FUNCTION probe_touch probe_extruded(double flat, const double flat_way[2],
     return t;
 }
 
-/* A rectangle in the x-z plane about (0, -half z): the signed distance and the way, of
- * the probe's face where two are as near. */
+/* A rectangle in the x-z plane about (0, -half z): the signed distance and the way, of the probe's face where two are as
+ * near. Conditional expressions, not branches: on a card they are selections. */
 PROBE_FUNCTION double probe_rectangle(const probe *p, double x, double z, double way[2])
 {
     const double over[2] = {fabs(x) - p->half[0], fabs(z) - p->half[2]};
-    const double sign_x = x < 0 ? -1. : 1.;
-    const double sign_z = z < 0 ? -1. : 1.;
-    const double a = over[0] > 0 ? over[0] : 0;
-    const double b = over[1] > 0 ? over[1] : 0;
-    const double away = sqrt(a * a + b * b);
-    if (away > 0) {
-        way[0] = sign_x * (a / away);
-        way[1] = sign_z * (b / away);
-        return away;
-    }
+    const double sign[2] = {x < 0 ? -1. : 1., z < 0 ? -1. : 1.};
+    const double a = over[0] > 0 ? over[0] : 0, b = over[1] > 0 ? over[1] : 0, away = sqrt(a * a + b * b);
     const int side = over[0] > over[1];
-    way[0] = side ? sign_x : 0;
-    way[1] = side ? 0 : sign_z;
-    return over[side ? 0 : 1];
+    way[0] = away > 0 ? sign[0] * (a / away) : side ? sign[0] : 0;
+    way[1] = away > 0 ? sign[1] * (b / away) : side ? 0 : sign[1];
+    return away > 0 ? away : over[side ? 0 : 1];
 }
 
 /* The wedge of a sector within its disc, whose centre is at 0, 0: the signed distance and the way. The sides meet in

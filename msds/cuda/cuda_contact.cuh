@@ -62,9 +62,7 @@ static __device__ inline void contact_consider(const tissue *t, const tissue_fra
 /* Notes the force of a node for the next frame. */
 static __device__ inline void contact_hold(const tissue *t, int32_t n)
 {
-    const double force = t->contact[n].force;
-    const double held = force > 0 ? force : -1;
-    t->held[n] = t->listed[n] ? held : 0;
+    t->held[n] = !t->listed[n] ? 0 : t->contact[n].force > 0 ? t->contact[n].force : -1;
 }
 
 /* The force and torque of a node on the probe. */
