@@ -143,8 +143,8 @@ PROBE_FUNCTION probe_touch probe_extruded(double flat, const double flat_way[2],
     return t;
 }
 
-/* A rectangle in the x-z plane about (0, -half z): the signed distance and the way, of the probe's face where two are as
- * near. Conditional expressions, not branches: on a card they are selections. */
+/* A rectangle in the x-z plane about (0, -half z): the signed distance and the way, of the probe's face where two are
+ * as near. Conditional expressions, not branches: on a card they are selections. */
 PROBE_FUNCTION double probe_rectangle(const probe *p, double x, double z, double way[2])
 {
     const double over[2] = {fabs(x) - p->half[0], fabs(z) - p->half[2]};
