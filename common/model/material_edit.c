@@ -85,6 +85,15 @@ static void all_words(const law_row *of, char to[LAW_WORDS])
     snprintf(to + at, LAW_WORDS - at, ", density, peak");
 }
 
+/* lacking: the keys of one group. */
+static int lacks(const law_row *of, const char *lacking, const char *place, int64_t line, err *e)
+{
+    char words[LAW_WORDS], what[200];
+    law_words(of, -1, words);
+    snprintf(what, sizeof what, "the law %s without %s", of->name, lacking);
+    return wrong(e, place, line, what, words);
+}
+
 static int check_keys(const law_row *of, unsigned has, const char *place, int64_t line, err *e)
 {
     char words[LAW_WORDS], what[200];
@@ -99,12 +108,11 @@ static int check_keys(const law_row *of, unsigned has, const char *place, int64_
         const int second = first < 0 ? -1 : law_next_key(has & of->group[g], first + 1);
         law_words(of, g, words);
         if (first < 0)
-            snprintf(what, sizeof what, "the law %s without %s", of->name, words);
-        else if (second >= 0)
-            snprintf(what, sizeof what, "the law %s with both %s and %s", of->name, law_key_name((law_key)first),
-                     law_key_name((law_key)second));
-        else
+            return lacks(of, words, place, line, e);
+        if (second < 0)
             continue;
+        snprintf(what, sizeof what, "the law %s with both %s and %s", of->name, law_key_name((law_key)first),
+                 law_key_name((law_key)second));
         return wrong(e, place, line, what, words);
     }
     return 0;

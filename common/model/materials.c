@@ -194,22 +194,28 @@ out:
     return status;
 }
 
-/* A law that a model names and the table does not. */
-static int unknown_law(const char *name, err *e)
+/* Where a model has the law of material i, for messages. 0: it has no lines. */
+static int64_t line_of(const model *m, const model_array *law, int64_t i)
+{
+    return m->stream ? model_line(law, i) : 0;
+}
+
+/* The law that a model names. NULL with e filled: the table has none. */
+static const law_row *law_of(const model *m, int64_t i, err *e)
 {
     const char *names[LAW_MOST];
-    const int count = law_names(names);
-    return near_unknown(e, "material.law", 0, "law", name, names, count);
+    const model_array *law = model_need(m, "material.law", e);
+    const law_row *found = law ? law_find(law->str[i]) : NULL;
+    if (law && !found)
+        near_unknown(e, m->stream, line_of(m, law, i), "law", law->str[i], names, law_names(names));
+    return found;
 }
 
 /* Row `at` as it stands in the model, unchecked: what is missing is nan. */
 static int row_of(const model *m, int64_t at, material *to, err *e)
 {
-    const model_array *law = model_need(m, "material.law", e);
-    if (!law)
+    if (!(to->law = law_of(m, at, e)))
         return -1;
-    if (!(to->law = law_find(law->str[at])))
-        return unknown_law(law->str[at], e);
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
         const model_array *a = model_find(m, material_edit_arrays[k]);
         *material_edit_value(to, k) = a ? a->f64[at] : NAN;
@@ -367,20 +373,41 @@ static int value_of(const model *m, int64_t i, int key, double absent, double *v
     return material_edit_valid(key, *value, words) ? 0 : row_wrong(m, a, i, key, *value, words, e);
 }
 
+/* Two values where the law has one key of two: `second`, of these, is told. */
+static int both_given(const model *m, int64_t i, int first, int second, err *e)
+{
+    char words[LAW_WORDS];
+    const model_array *a = model_find(m, material_edit_arrays[second]);
+    snprintf(words, sizeof words, "nan, as material.%s has a value", law_key_name((law_key)first));
+    return row_wrong(m, a, i, second, a->f64[i], words, e);
+}
+
+static int none_given(const model *m, int64_t i, const law_row *of, int group, err *e)
+{
+    char words[LAW_WORDS];
+    const model_array *law = model_find(m, "material.law");
+    law_words(of, group, words);
+    return err_set(e, m->stream, line_of(m, law, i),
+                   "material.law, row %" PRId64 ": %s without %s; expected one of them", i, of->name, words);
+}
+
 /* Of which key of a group the model has a value for material i: one alone. -1 with e filled. */
 static int key_of_group(const model *m, int64_t i, const law_row *of, int group, err *e)
 {
-    const int first = law_next_key(of->group[group], 0);
+    const unsigned keys = of->group[group];
+    const int first = law_next_key(keys, 0);
     int found = -1;
-    for (int k = first; k >= 0; k = law_next_key(of->group[group], k + 1)) {
+    if (law_next_key(keys, first + 1) < 0)
+        return first;
+    for (int k = first; k >= 0; k = law_next_key(keys, k + 1)) {
         const model_array *a = model_find(m, material_edit_arrays[k]);
         if (!a || isnan(a->f64[i]))
             continue;
         if (found >= 0)
-            return row_wrong(m, a, i, k, a->f64[i], "nan: there is one of the other key", e);
+            return both_given(m, i, found, k, e);
         found = k;
     }
-    return found < 0 ? first : found;
+    return found < 0 ? none_given(m, i, of, group, e) : found;
 }
 
 /* No value for a key that the law does not have. */
@@ -412,11 +439,8 @@ static void values_words(const material *of, char *to, size_t size)
 int materials_of(const model *m, int64_t i, material *to, err *e)
 {
     char words[200];
-    const model_array *law = model_need(m, "material.law", e);
-    if (!law)
+    if (!(to->law = law_of(m, i, e)))
         return -1;
-    if (!(to->law = law_find(law->str[i])))
-        return unknown_law(law->str[i], e);
     material_edit_clear(to);
     for (int g = 0; g < LAW_GROUPS && to->law->group[g]; g++) {
         const int key = key_of_group(m, i, to->law, g, e);

@@ -77,7 +77,7 @@ no "c01 below 0" "'c01=-1' is not allowed; expected 0 to 1e12 Pa" -m skin.c01=-1
 no "no K" "'K=0' is not allowed; expected 0.001 to 1e12 Pa" -m skin.K=0
 no "both K and nu" "the law mooney-rivlin with both nu and K; expected nu or K" -m skin.K=1e4 -m skin.nu=.4
 no "another law's key" "'E' is not a key of the law mooney-rivlin; expected c10, c01, nu or K, density, peak" -m skin.E=1
-no "a law without its keys" "the law neo-hookean without E; expected E" -m skin.law=neo-hookean
+no "a law without its keys" "the law neo-hookean without E; expected E, nu" -m skin.law=neo-hookean
 no "an unknown key" "unknown key 'c20'; did you mean 'c10'" -m skin.c20=1
 no "an unknown law" "unknown law 'mooney'; did you mean 'mooney-rivlin'" -m skin.law=mooney
 while IFS='|' read -r name line pattern; do
@@ -89,12 +89,20 @@ c01 below 0|skin law=mooney-rivlin c10=1 c01=-1 K=9|'c01=-1' is not allowed; exp
 K of 0|skin law=mooney-rivlin c10=1 c01=1 K=0|'K=0' is not allowed
 both|skin law=mooney-rivlin c10=1 c01=1 K=9 nu=.3|the law mooney-rivlin with both nu and K; expected nu or K
 another law's key|skin law=mooney-rivlin c10=1 c01=1 K=9 E=3|'E' is not a key of the law mooney-rivlin
-no key of the other law|fat law=mooney-rivlin c10=1 c01=1|the law mooney-rivlin without nu or K; expected nu or K
-no c10|fat law=mooney-rivlin c01=1 K=9|the law mooney-rivlin without c10; expected c10
+no key of the other law|fat law=mooney-rivlin c10=1 c01=1|the law mooney-rivlin without nu or K; expected c10, c01, nu or K
+no c10|fat law=mooney-rivlin c01=1 K=9|the law mooney-rivlin without c10; expected c10, c01, nu or K
 a key of no law that it has|fat c10=1|'c10' is not a key of the law neo-hookean; expected E, nu, density, peak
 END
-sed '/^array material.K/ { n; s/.*/nan/; }' "$T/text" | sed '/^crc\|^sum/d' >"$T/bad"
-fails 1 "a model without a value" "material.nu, row 0: nan is not allowed" tled-run -n 1 -o "$T/no" <"$T/bad"
+# by_hand NAME MESSAGE EDIT: such a change of a model's text.
+by_hand() {
+    sed "$3" "$T/text" | sed '/^crc\|^sum/d' >"$T/bad"
+    fails 1 "a model with $1" "stdin:[0-9]*: $2" tled-run -n 1 -o "$T/no" <"$T/bad"
+}
+by_hand "neither K nor nu" "material.law, row 0: mooney-rivlin without nu or K; expected one of them" '/^array material.K/ { n; s/.*/nan/; }'
+by_hand "both" "material.K, row 0: 100000 is not allowed; expected nan, as material.nu has a value" '/^array material.nu/ { n; s/.*/.3/; }'
+by_hand "no c10" "material.c10, row 0: nan is not allowed; expected 0.001 to 1e12 Pa" '/^array material.c10/ { n; s/.*/nan/; }'
+by_hand "another law's key" "material.E, row 0: 3 is not allowed; expected nan, as the law mooney-rivlin has no such key" '/^array material.E/ { n; s/.*/3/; }'
+by_hand "a law that is not there" "unknown law 'mooney'; did you mean 'mooney-rivlin'" 's/"mooney-rivlin"/"mooney"/'
 msds-mesh -q --materials "$T/one" --size 20mm,20mm,20mm --nodes 4x4x4 -o "$T/tets"
 awk 'BEGIN { print "0 0 0 0.1 0 0 0 1" }' >"$T/poses"
 fails 1 "msds-run has no such law" "volume '.*' has the law 'mooney-rivlin'; expected linear, or neo-hookean" \

@@ -215,15 +215,16 @@ static void refuse_two_laws(void)
     refuse_file("\nfat law=mooney-rivlin c10=1 c01=1 K=9 nu=.3",
                 "m.txt:2: the law mooney-rivlin with both nu and K; expected nu or K");
     refuse_file("fat law=mooney-rivlin c10=1 c01=1",
-                "m.txt:1: the law mooney-rivlin without nu or K; expected nu or K");
-    refuse_file("fat c01=1 K=9 law=mooney-rivlin", "m.txt:1: the law mooney-rivlin without c10; expected c10");
+                "m.txt:1: the law mooney-rivlin without nu or K; expected c10, c01, nu or K");
+    refuse_file("fat c01=1 K=9 law=mooney-rivlin",
+                "m.txt:1: the law mooney-rivlin without c10; expected c10, c01, nu or K");
     refuse_file("fat law=mooney-rivlin c10=1 c01=1 K=9 E=3",
                 "m.txt:1: 'E' is not a key of the law mooney-rivlin; expected c10, c01, nu or K, density, peak");
     refuse_file("fat c10=5", "m.txt:1: 'c10' is not a key of the law neo-hookean; expected E, nu, density, peak");
     refuse_override("tissue law=mooney-rivlin c10=1 c01=1", "m.txt:1: the law mooney-rivlin without nu or K");
     refuse_override("tissue K=1", "m.txt:1: 'K' is not a key of the law neo-hookean");
     refuse_set("tissue.K=1", "-m tissue: 'K' is not a key of the law neo-hookean; expected E, nu, density, peak");
-    refuse_set("tissue.law=mooney-rivlin", "-m tissue: the law mooney-rivlin without c10; expected c10");
+    refuse_set("tissue.law=mooney-rivlin", "-m tissue: the law mooney-rivlin without c10; expected c10, c01, nu or K");
     refuse_set("tissue.law=moony-rivlin", "did you mean 'mooney-rivlin'?");
     refuse_set("tissue.c1=1", "unknown key 'c1'; did you mean 'c10'?");
 }
