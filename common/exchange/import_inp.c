@@ -450,8 +450,7 @@ static int take_held(inp_reader *r, char *line)
 static int take_elastic(inp_reader *r, char *line, material *of)
 {
     double young, poisson;
-    if (take_number(r, next_field(&line), "two constants", &young) ||
-        take_number(r, next_field(&line), "E, nu", &poisson))
+    if (take_number(r, next_field(&line), "E, nu", &young) || take_number(r, next_field(&line), "E, nu", &poisson))
         return -1;
     const double none[FORM_NUMBERS] = {NAN, NAN};
     of->law = law_of_form(FORM_LINEAR);
@@ -466,7 +465,7 @@ static int take_hyper(inp_reader *r, char *line, material *of)
     double constants[INP_CONSTANTS], c[FORM_NUMBERS] = {0};
     const int last = r->hyper->constants - 1;
     for (int i = 0; i <= last; i++)
-        if (take_number(r, next_field(&line), i ? r->hyper->words : "two constants", &constants[i]))
+        if (take_number(r, next_field(&line), r->hyper->words, &constants[i]))
             return -1;
     if (!(constants[0] > 0) || !(constants[last] > 0))
         return wrong(r, "C10 or D1 that is not above 0", "a material that can be compressed, D1 = 2/K");
