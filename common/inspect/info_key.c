@@ -236,6 +236,8 @@ static void note_keys(const source *s, const char *key, notes *list)
     notes_add(list, "array.name");
     if (model_find(m, "muscle.volume"))
         notes_add(list, INFO_NAMES_MUSCLES);
+    if (model_find(m, "material.law"))
+        notes_add(list, INFO_NAMES_KEYS);
     for (int i = 0; i < INFO_QUALITY_KEYS; i++)
         notes_add(list, "%s", info_quality_keys[i]);
     for (int i = 0; i < m->axis_count; i++)

@@ -2,6 +2,7 @@
 
 #include "base/chars.h"
 #include "base/mem.h"
+#include "physics/law.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -45,6 +46,34 @@ static int put_muscles(const model *m, out *to, err *e)
         return 1;
     for (int64_t i = 0; i < volume->rows; i++)
         if (put_name(name->str[volume->i32[i]], to, e))
+            return -1;
+    return 0;
+}
+
+/* NAME.KEY, as -m of tled-run takes it: the law, its keys and those that every material has. */
+static int put_keys_of(const char *name, const char *law, out *to, err *e)
+{
+    const law_row *of = law_find(law);
+    if (put_text(name, to, e))
+        return -1;
+    out_text(to, ".law\n");
+    for (int k = 0; k < LAW_ALL_KEYS; k++) {
+        if (k < LAW_OWN_KEYS && !(of && law_keys(of) >> k & 1))
+            continue;
+        if (put_text(name, to, e))
+            return -1;
+        out_format(to, ".%s\n", law_key_name((law_key)k));
+    }
+    return 0;
+}
+
+static int put_keys(const model *m, out *to, err *e)
+{
+    const model_array *name = model_find(m, "material.name"), *law = model_find(m, "material.law");
+    if (!name || !law)
+        return 1;
+    for (int64_t i = 0; i < name->rows; i++)
+        if (put_keys_of(name->str[i], law->str[i], to, e))
             return -1;
     return 0;
 }
@@ -124,6 +153,8 @@ int info_names(const source *s, const char *key, out *to, err *e)
         return a->type == MODEL_STR ? put_strings(a, to, e) : 1;
     if (!strcmp(key, INFO_NAMES_MUSCLES))
         return put_muscles(&s->body, to, e);
+    if (!strcmp(key, INFO_NAMES_KEYS))
+        return put_keys(&s->body, to, e);
     if (!strcmp(key, "surface.name"))
         return put_surfaces(&s->body, to, e);
     if (!strcmp(key, "group.name"))

@@ -1,5 +1,5 @@
-/* `sinew info --get` for lists of names: arrays of strings, and the names of muscles, surfaces, groups and arrays,
- * which have no array of their own. Keys are described in sinew-info(1).
+/* `sinew info --get` for lists of names: arrays of strings, and the names of muscles, surfaces, groups, arrays and
+ * keys of materials, which have no array of their own. Keys are described in sinew-info(1).
  */
 #ifndef SINEW_INFO_NAMES_H
 #define SINEW_INFO_NAMES_H
@@ -9,6 +9,9 @@
 
 /* The key of the muscles' names, which are those of their volumes. */
 #define INFO_NAMES_MUSCLES "muscle.name"
+
+/* The key of the materials' keys: NAME.KEY. */
+#define INFO_NAMES_KEYS "material.key"
 
 /* Writes the names, one a line, with control characters and bytes that are not UTF-8 as \xHH (chars_show). 1: the key
  * names no list; -1: e filled. */

@@ -18,6 +18,8 @@ cp tests/cli/small.sinew "$T/here/small"
 # Names are a stranger's.
 # shellcheck disable=SC2016 # that is the name
 sed '/^crc/d; s/"muscle_a"/"muscle_$(touch pwned) `touch pwned`;x"/' tests/cli/small.sinew >"$T/here/rude"
+printf '%%sinew 1 text\naxis material 1\narray material.name str 1 material 1\n"tissue"\narray material.law str 1 material 1\n"mooney-rivlin"\nend\n' \
+    >"$T/here/rubber"
 gzip -c tests/cli/small.sinew >"$T/here/small.gz"
 head -c 300 tests/cli/small.sinew >"$T/here/cut"
 mkfifo "$T/here/pipe"
@@ -55,7 +57,9 @@ tled-run < small.gz --contract |muscle_a
 tled-run < small --contract=|muscle_a
 tled-run < small -c mu|muscle_a
 tled-run < small -c muscle_a=0.4,|muscle_a
-tled-run < small -m |Tissue tissue
+tled-run < small -m T|Tissue.E Tissue.density Tissue.law Tissue.nu Tissue.peak
+tled-run < small -m tissue.l|tissue.law
+tled-run < rubber -m |tissue.K tissue.c01 tissue.c10 tissue.density tissue.law tissue.nu tissue.peak
 tled-run < face.txt -c |
 tled-run < cut -c |
 tled-run < sub -c |
@@ -93,7 +97,7 @@ for shell in bash zsh; do
     # shellcheck disable=SC2016 # for the inner shell
     check "$shell: it answers" sh -c 'cd "$1" && shift && exec python3 "$@"' - "$T/here" "$harness" $shell "$folder" "$@"
     # bash says it with what is there, and with what follows a name
-    sed -E 's/\\//g; s/^--(format|contract)=//; s/^muscle_a=0.4,//; s/([a-zA-Z_x])[=.]( |$)/\1\2/g' "$T/stdout" >"$T/offered"
+    sed -E 's/\\//g; s/^--(format|contract)=//; s/^muscle_a=0.4,//; s/([a-zA-Z0-9_x])[=.]( |$)/\1\2/g' "$T/stdout" >"$T/offered"
     number=0
     while IFS='|' read -r line want; do
         number=$((number + 1))

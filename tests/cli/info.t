@@ -64,6 +64,11 @@ fails 1 "a slip in one" "no key 'muscle.nam'; did you mean 'muscle.name'" sinew 
 
 is "$(lines group.name "$small")" "skin|edge|lip|" "groups of surfaces, each once"
 
+is "$(lines material.key "$small")" "$(printf '%s|' tissue.law tissue.E tissue.nu tissue.density tissue.peak Tissue.law Tissue.E Tissue.nu Tissue.density Tissue.peak)" \
+    "what -m can set"
+is "$(sed 's/^"neo-hookean"$/"mooney-rivlin"/' "$small" | sed '/^crc/d' | sinew info --names --get material.key | sed 6q | tr '\n' '|')" \
+    "tissue.law|tissue.nu|tissue.c10|tissue.c01|tissue.K|tissue.density|" "of mooney-rivlin, its own keys"
+
 # For completion: names alone, without a look at long arrays.
 awk 'BEGIN { print "%sinew 1 text\naxis x-a 9000\narray x-a.b f64 1 x-a 2"; for (i = 0; i < 9000; i++) print i, "0.5"
     print "axis anchor 1\narray anchor.name str 1 anchor 1\n\"bone\"\nend" }' >"$T/long"

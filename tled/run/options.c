@@ -23,7 +23,7 @@ static const opt option_list[] = {
      "contractions, forces, displacements over time"},
     {OPT_INPUT, 0, "materials", "FILE", OPT_TEXT, TO(materials), 0, 0, NULL, OPT_FILE,
      "change materials as this file says"},
-    {OPT_INPUT, 'm', "material", "MATERIAL.KEY=VALUE", OPT_LIST, TO(material), 0, 0, "@material.name.", 0,
+    {OPT_INPUT, 'm', "material", "MATERIAL.KEY=VALUE", OPT_LIST, TO(material), 0, 0, "@material.key=", 0,
      "change one value, e.g. tissue.E=5000"},
     {OPT_NUMERICS, 0, "damping", "A", OPT_NUMBER, TO(damping), 0, 1e12, NULL, OPT_OUTPUT,
      "mass damping [1/s; default critical or adapted]"},
