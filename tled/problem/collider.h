@@ -3,8 +3,8 @@
  * of its own that goes by the node's mass,
  *     f = m c depth,    c = repulsion times the square of the highest frequency at rest,
  * so that the highest frequency with contact is known: that at rest and c together. The push joins the elements' forces
- * in the sum that a node's step takes; so looks at the state have it too. A probe that begins inside the tissue comes
- * up slowly. The creator owns it; once read it does not change.
+ * in the sum that a node's step takes; so the internal forces that a monitor reads have it too. A probe that begins
+ * inside the tissue comes up slowly. The creator owns it; once read it does not change.
  */
 #ifndef SINEW_COLLIDER_H
 #define SINEW_COLLIDER_H

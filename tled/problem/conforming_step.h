@@ -1,5 +1,5 @@
-/* The stable step of elements that are no lattice's, and their shapes for who looks
- * at them (in double: see stability.h).
+/* The stable step of elements that are not boxes of a lattice, and their shapes for monitors and reports (in double:
+ * see stability.h).
  *
  * The squares of an element's frequencies are no more than those of two matrices together: (8/rho) L^T A L, A = dP/dF
  * and L L^T = B B^T (3 x 3), with what stretches it, and (k/m) gamma gamma^T with what twists it. With l1, l2 the

@@ -1,5 +1,5 @@
-/* An element as displacements have it, for who looks at it: its gradient, its law and its energies, whatever shape it
- * has. In double. Owns nothing.
+/* An element at given displacements: its gradient, its law and its energies, whatever its shape. In double, for
+ * monitors and reports. Owns nothing.
  */
 #ifndef SINEW_DEFORMED_H
 #define SINEW_DEFORMED_H

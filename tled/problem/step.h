@@ -33,7 +33,7 @@ bool step_below(const step_matrix *a, double limit);
 /* Its largest eigenvalue to 1e-13, if that is positive; else 0. */
 double step_largest(const step_matrix *a);
 
-/* Steps between two looks at most, and where the step is given. */
+/* Steps between two checks: at most, and where the step is given. */
 enum { STEP_UNSEEN = 200, STEP_UNSEEN_GIVEN = 50 };
 
 /* The steps a second that are taken by default: at least twice what is just stable, and so many that a whole

@@ -16,7 +16,7 @@ typedef struct moment {
     double *stretch;                        /* elements x 2: of either fibre; NULL without muscles */
     double *curves;
     double driven; /* J: kinetic energy where displacements are prescribed */
-    double first;  /* J: held at the first look */
+    double first;  /* J: held at the first reading */
     account_sums sums;
 } moment;
 
@@ -28,7 +28,7 @@ struct account_part { /* of one chunk: sums, largest values as squares */
 struct account {
     const tled_problem *p;
     pool *threads;
-    moment now, before, kept;
+    moment now, before, saved;
     double *velocity;
     struct account_part *part;
     strained_view view; /* of now */
@@ -62,7 +62,7 @@ static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume
     return -rest * tension * (force_length_sum(is) - force_length_sum(was));
 }
 
-static void look_at_muscles(account *a, int64_t i, const deformed *d, account_sums *sum)
+static void add_muscles(account *a, int64_t i, const deformed *d, account_sums *sum)
 {
     const tled_problem *p = a->p;
     const float *const along[2] = {p->fibre, p->mixfibre};
@@ -77,12 +77,12 @@ static void look_at_muscles(account *a, int64_t i, const deformed *d, account_su
     }
 }
 
-static void look_at_element(account *a, int64_t i, element_shape box, account_sums *sum)
+static void add_element(account *a, int64_t i, element_shape box, account_sums *sum)
 {
     const deformed d = deformed_of(a->p, i, box, a->now.displacement);
     strained_add(&sum->tissue, &a->view, i, &d);
     if (a->now.stretch)
-        look_at_muscles(a, i, &d, sum);
+        add_muscles(a, i, &d, sum);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -91,11 +91,11 @@ static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
     account_sums sum = {.tissue = strained_none()};
     const element_shape shape = element_box(a->p->side[0], a->p->side[1], a->p->side[2]);
     for (int64_t i = from; i < to; i++)
-        look_at_element(a, i, shape, &sum);
+        add_element(a, i, shape, &sum);
     a->part[chunk].sum = sum;
 }
 
-static void add_elements(account *a)
+static void sum_elements(account *a)
 {
     account_sums *to = &a->now.sums;
     for (int64_t c = 0; c < pool_chunks(a->p->elements, CHUNK); c++) {
@@ -133,7 +133,7 @@ static void find_push(account *a, int64_t n)
 }
 
 /* What a component of a node did since the moment before. What displaces it works against the elements' pulls and for
- * what else pushes it; the energy of its motion, and what damping takes of it, come in account_look. */
+ * what else pushes it; the energy of its motion, and what damping takes of it, come in account_read. */
 static void work_of(const account *a, int64_t i, const node_load *was, const node_load *is, account_sums *sum)
 {
     const int axis = (int)(i % 3);
@@ -149,7 +149,7 @@ static void work_of(const account *a, int64_t i, const node_load *was, const nod
         sum->probe += push;
 }
 
-static void look_at_node(account *a, int64_t n, struct account_part *part)
+static void add_node(account *a, int64_t n, struct account_part *part)
 {
     const tled_problem *p = a->p;
     const double mass = p->mass[n];
@@ -179,12 +179,12 @@ static void node_work(void *context, int64_t chunk, int64_t from, int64_t to)
     account *a = context;
     struct account_part part = {0};
     for (int64_t n = from; n < to; n++)
-        look_at_node(a, n, &part);
+        add_node(a, n, &part);
     a->part[chunk] = part;
 }
 
 /* Adds what the chunks found to what is known: energies are of now, work adds up. */
-static double add_nodes(account *a, double *mass)
+static double sum_nodes(account *a, double *mass)
 {
     account_sums *to = &a->now.sums;
     double driven = 0;
@@ -251,7 +251,7 @@ static void close_sums(account *a, double damping, double mass)
     a->now.known = true;
 }
 
-const account_sums *account_look(account *a, const tled_executor *b, tled_state *state, double time, double damping,
+const account_sums *account_read(account *a, const tled_executor *b, tled_state *state, double time, double damping,
                                  err *e)
 {
     const tled_problem *p = a->p;
@@ -268,9 +268,9 @@ const account_sums *account_look(account *a, const tled_executor *b, tled_state 
         a->probe = collider_at(p->collider, time);
     a->view = strained_view_of(p, a->now.displacement, a->before.sums.tissue.quality.element);
     pool_run(a->threads, p->elements, CHUNK, element_work, a);
-    add_elements(a);
+    sum_elements(a);
     pool_run(a->threads, p->nodes, CHUNK, node_work, a);
-    a->now.driven = add_nodes(a, &mass);
+    a->now.driven = sum_nodes(a, &mass);
     close_sums(a, damping, mass);
     return &a->now.sums;
 }
@@ -280,7 +280,7 @@ const double *account_displacement(const account *a)
     return a->now.displacement;
 }
 
-/* Copies what `from` knows; each keeps its own arrays. */
+/* Copies what `from` knows; both have arrays of their own. */
 static void copy_moment(const tled_problem *p, const moment *from, moment *to)
 {
     const size_t size = 3 * (size_t)p->nodes * sizeof(double);
@@ -300,14 +300,14 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
         memcpy(to->stretch, from->stretch, 2 * (size_t)p->elements * sizeof(double));
 }
 
-void account_keep(account *a)
+void account_save(account *a)
 {
-    copy_moment(a->p, &a->now, &a->kept);
+    copy_moment(a->p, &a->now, &a->saved);
 }
 
-void account_back(account *a)
+void account_restore(account *a)
 {
-    copy_moment(a->p, &a->kept, &a->now);
+    copy_moment(a->p, &a->saved, &a->now);
 }
 
 account_past account_past_of(const account *a)
@@ -315,12 +315,12 @@ account_past account_past_of(const account *a)
     return past_of(&a->now);
 }
 
-int account_go_on(account *a, const tled_executor *b, tled_state *state, double time, const account_past *past, err *e)
+int account_resume(account *a, const tled_executor *b, tled_state *state, double time, const account_past *past, err *e)
 {
-    if (!account_look(a, b, state, time, 0, e))
+    if (!account_read(a, b, state, time, 0, e))
         return -1;
     set_past(&a->now, past);
-    account_keep(a);
+    account_save(a);
     return 0;
 }
 
@@ -368,7 +368,7 @@ account *account_create(const tled_problem *p, pool *threads, err *e)
     a->velocity = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
     a->part = mem_array(pool_chunks(most, CHUNK), sizeof *a->part, "the log", e);
     if (!a->velocity || !a->part || make_moment(p, &a->now, e) || make_moment(p, &a->before, e) ||
-        make_moment(p, &a->kept, e)) {
+        make_moment(p, &a->saved, e)) {
         account_destroy(a);
         return NULL;
     }
@@ -381,7 +381,7 @@ void account_destroy(account *a)
         return;
     free_moment(&a->now);
     free_moment(&a->before);
-    free_moment(&a->kept);
+    free_moment(&a->saved);
     free(a->velocity);
     free(a->part);
     free(a);

@@ -50,7 +50,7 @@ static void put_point(const checkpoint *c, const run_point *p, double *number, i
                                      r->guess,   r->low,     r->high,      r->frequency,  r->lowest,
                                      r->time,    a->first,   a->gravity,   a->forces,     a->held,
                                      a->muscles, a->probe,   a->damping,   p->most_strain};
-    const int64_t counts[COUNTS] = {p->first, p->from,   p->closest_at, p->cuts,  r->looks,
+    const int64_t counts[COUNTS] = {p->first, p->from,   p->closest_at, p->cuts,  r->states,
                                     c->count, c->length, c->arrays,     p->taken, p->log.length};
     memcpy(number, numbers, sizeof numbers);
     memcpy(count, counts, sizeof counts);

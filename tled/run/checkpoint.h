@@ -1,11 +1,11 @@
 /* What a run that was killed goes on from, in three files:
- *     FILE the state at a check, small: a model (sinew-model(5)) with one frame,
- *     checksums and an end, that appears whole
+ *     FILE         the state at a check, small: a model (sinew-model(5)) with one frame, checksums and an end, that
+ *                  appears whole
  *     FILE.1       the one before it
- *     FILE.frames  the frames that were written by then and since, whole blocks of a model: only ever added to
- * so that what was written is never written again, but by a run that goes on, once, to its output. FILE
- * says how far the frames had come; what is past that is cut off. The run that has them locks
- * FILE.frames. The creator owns a checkpoint.
+ *     FILE.frames  all frames written so far, as blocks of a model; frames are only added to it
+ * So a frame is stored once, and a run that goes on writes all of them to its output again. FILE says how many frames
+ * there were by then; those after them are cut off. A run locks FILE.frames as long as it has the checkpoint. The
+ * creator owns a checkpoint.
  */
 #ifndef SINEW_CHECKPOINT_H
 #define SINEW_CHECKPOINT_H

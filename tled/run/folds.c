@@ -23,7 +23,7 @@ void folds_free(folds *f)
     *f = (folds){0};
 }
 
-void folds_look(folds *f, double time, const double *displacement)
+void folds_add(folds *f, double time, const double *displacement)
 {
     const strained_view v = strained_view_of(f->p, displacement, f->last.quality.element);
     f->last = strained_of(&v, f->threads, f->part);

@@ -11,7 +11,7 @@
 typedef struct folds {
     const tled_problem *p;
     const model *m;
-    pool *threads; /* its own: frames are looked at while the run goes on */
+    pool *threads; /* its own: it reads frames while the run goes on */
     strained *part;
     strained last;          /* of the frame seen last */
     int64_t frames, folded; /* seen; with a folded element */
@@ -26,8 +26,8 @@ enum { FOLDS_TEXT = 500 };
 int folds_make(folds *f, const tled_problem *p, const model *m, int threads, err *e);
 void folds_free(folds *f);
 
-/* A frame, m: nodes x 3. Not in two threads at once. */
-void folds_look(folds *f, double time, const double *displacement);
+/* Adds a frame: displacement, nodes x 3, m. Not in two threads at once. */
+void folds_add(folds *f, double time, const double *displacement);
 
 /* The last frame in a line; where the run did not come to its end, also when that is. */
 void folds_text(const folds *f, bool ended, char text[FOLDS_TEXT]);

@@ -59,8 +59,8 @@ static int compare_heading(const run_log *l, const char *path, const char *line,
     return failed;
 }
 
-/* That the file to go on with begins with the heading of this run. What is shorter than what is to be kept is
- * growing_open's to refuse, and what is not a regular file is written as it is. */
+/* Whether the file that is continued begins with the heading of this run. A file shorter than `keep` is refused by
+ * growing_open; what is not a regular file has no heading to check. */
 static int check_heading(const run_log *l, const char *path, int64_t keep, err *e)
 {
     char *line = NULL;
@@ -127,9 +127,9 @@ log_point log_point_of(const run_log *l)
     return (log_point){account_past_of(l->account), growing_size(l->file)};
 }
 
-int log_go_on(run_log *l, const tled_executor *b, tled_state *state, double time, const log_point *from, err *e)
+int log_resume(run_log *l, const tled_executor *b, tled_state *state, double time, const log_point *from, err *e)
 {
-    return account_go_on(l->account, b, state, time, &from->past, e);
+    return account_resume(l->account, b, state, time, &from->past, e);
 }
 
 /* nan, where there is nothing to tell, is what plots leave out. */
@@ -187,9 +187,9 @@ static void put_row(run_log *l, const log_row *row, const account_sums *s)
     l->began = progress_clock();
 }
 
-int log_look(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e)
+int log_read(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e)
 {
-    const account_sums *s = account_look(l->account, b, state, row->time, row->damping, e);
+    const account_sums *s = account_read(l->account, b, state, row->time, row->damping, e);
     if (!s)
         return -1;
     if (shown)
@@ -200,17 +200,17 @@ int log_look(run_log *l, const tled_executor *b, tled_state *state, const log_ro
     return out_failed(l->rows, e);
 }
 
-int log_keep(run_log *l, err *e)
+int log_save(run_log *l, err *e)
 {
-    account_keep(l->account);
+    account_save(l->account);
     return empty_rows(l, true, e);
 }
 
-int log_back(run_log *l, err *e)
+int log_restore(run_log *l, err *e)
 {
     if (!l->is_pending)
         return 0;
-    account_back(l->account);
+    account_restore(l->account);
     return empty_rows(l, false, e);
 }
 

@@ -1,6 +1,6 @@
-/* The log of a run: tab-separated values, a row a look, for plots and for people who watch. Rows are held until the
- * state that they are of is known to be sound; then they go to the file, whole and at once. The creator owns the log;
- * the run that is given it calls the rest.
+/* The log of a run: tab-separated values, for plots and for people who follow the run. Rows are held in memory until
+ * the state that they are of is known to be sound; then they go to the file, whole and at once. The creator opens and
+ * closes the log; the run calls the rest.
  */
 #ifndef SINEW_LOG_H
 #define SINEW_LOG_H
@@ -32,11 +32,11 @@ typedef struct run_log {
     int64_t steps; /* of the last row, each part of a cut step for itself */
     double began;  /* when the last row was, by the clock */
     bool is_pending;
-    log_row last; /* of the last look, whose sums are borrowed from the account; NULL: it has its row */
-    const account_sums *unshown;
+    log_row last;                /* of the last reading */
+    const account_sums *unshown; /* its sums, borrowed from the account; NULL: it has its row */
 } run_log;
 
-/* Of a run that is to be gone on with: what there was. */
+/* Where the log of a run stands at a checkpoint. */
 typedef struct log_point {
     account_past past;
     int64_t length; /* bytes of the file; 0: there was none */
@@ -52,21 +52,22 @@ int log_open(run_log *l, const char *path, const opt_list *keys, const model *m,
 /* Writes the heading, but to what is gone on with, for this problem. -1 with e filled, as for all below. */
 int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e);
 
-/* Looks at the state: `shown`, a row is to be made of it. */
-int log_look(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e);
+/* Reads the state into the account; with a row where it is `shown`. */
+int log_read(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e);
 
-/* After log_keep: waits until its rows are stored, as what goes on from there needs them. */
+/* After log_save: waits until its rows are stored, which a checkpoint counts on. */
 int log_store(run_log *l, err *e);
 
-/* After log_keep: to go on from there; and goes on, at that state, without a row of it. */
+/* After log_save: for checkpoints, where the log stands; and goes on from there, at the same state, without a row. */
 log_point log_point_of(const run_log *l);
-int log_go_on(run_log *l, const tled_executor *b, tled_state *state, double time, const log_point *from, err *e);
+int log_resume(run_log *l, const tled_executor *b, tled_state *state, double time, const log_point *from, err *e);
 
-/* All since log_keep is sound: writes the rows, and keeps what is known. Or it is not: forgets them and goes back. */
-int log_keep(run_log *l, err *e);
-int log_back(run_log *l, err *e);
+/* All since the last log_save is sound: writes the rows, and saves the account. Or it is not: drops the rows, and goes
+ * back to the account that was saved. */
+int log_save(run_log *l, err *e);
+int log_restore(run_log *l, err *e);
 
-/* The last look gets a row, if it has none. */
+/* The last reading gets a row, if it has none. */
 int log_end(run_log *l, err *e);
 
 /* l may be zeroed or half open. */

@@ -19,14 +19,14 @@ relax relax_of(double guess, double stable)
 
 void relax_update(relax *r, const monitor_reading *s)
 {
-    if (r->looks && s->stiffness > 0 && s->inertia > 0)
+    if (r->states && s->stiffness > 0 && s->inertia > 0)
         r->frequency = fmin(fmax(sqrt(s->stiffness / s->inertia), r->low), r->high);
     /* What was lowest fades: it grows e-fold in 4 of its radians, so that half a
      * period leaves it where it was, to a factor. */
-    if (r->looks)
+    if (r->states)
         r->lowest = fmin(r->guess, fmin(r->frequency, r->lowest * exp(r->lowest * (s->time - r->time) / 4)));
     r->time = s->time;
-    r->looks += r->looks < 2;
+    r->states += r->states < 2;
 }
 
 /* m, root mean square over the mass. */
@@ -35,7 +35,7 @@ static double way_left(const relax *r, const monitor_reading *s)
     double w = r->lowest;
     if (s->acceleration == 0 && s->speed == 0)
         return 0;
-    return r->looks < 2 ? INFINITY : hypot(s->acceleration / (w * w), s->speed / w);
+    return r->states < 2 ? INFINITY : hypot(s->acceleration / (w * w), s->speed / w);
 }
 
 double relax_share(const relax *r, const monitor_reading *s)

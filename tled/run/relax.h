@@ -13,7 +13,7 @@ typedef struct relax {
     double frequency; /* rad/s: of the last motion; the guess before there is any */
     double lowest;    /* rad/s: of the guess and of any motion in about the last period */
     double time;      /* s: of the state before */
-    int looks;        /* 0, 1, 2 or more states taken */
+    int states;       /* how many states it was updated with; 2: or more */
 } relax;
 
 /* A guess of the lowest frequency: that of a column of the slowest shear waves, w = (pi/2) c / L, c the least of
@@ -23,8 +23,8 @@ double relax_guess(const tled_problem *p, double reach);
 /* stable: the stable step at rest (s). */
 relax relax_of(double guess, double stable);
 
-/* Takes a state that was looked at: w^2 = du . dK / (du . M du) over what is free, du the displacement since the last
- * state, which the monitor has kept, dK the change of the elements' pulls. */
+/* Takes a reading of the state: w^2 = du . df / (du . M du) over what is free, where du is the displacement, and df the
+ * change of the internal forces, since the state that the monitor saved. */
 void relax_update(relax *r, const monitor_reading *s);
 
 /* How far the tissue has still to go, as a share of what it has moved, or of 1/100 of the most that it had, for what is

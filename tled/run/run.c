@@ -151,7 +151,7 @@ static int begin_log(run *n)
 {
     const run_setup *r = n->r;
     if (r->log && r->point && r->point->log.length)
-        return log_go_on(r->log, r->device, n->state, run_now(n), &r->point->log, n->e);
+        return log_resume(r->log, r->device, n->state, run_now(n), &r->point->log, n->e);
     return run_log_sound(n);
 }
 
@@ -227,7 +227,7 @@ static int choose_slots(const run_setup *r)
     return between + 2 < TLED_SLOTS ? (int)between + 2 : TLED_SLOTS;
 }
 
-static int make_watch(run *n)
+static int make_monitor(run *n)
 {
     const run_setup *r = n->r;
     n->monitor = monitor_create(r->p, r->threads, n->e);
@@ -265,7 +265,7 @@ static int prepare(run *n)
 {
     const run_setup *r = n->r;
     n->slots = choose_slots(r);
-    if (make_watch(n) || (r->log && log_begin(r->log, r->p, r->threads, n->e)))
+    if (make_monitor(n) || (r->log && log_begin(r->log, r->p, r->threads, n->e)))
         return -1;
     n->relax = relax_of(r->frequency, n->monitor->rest_step);
     if (r->point)

@@ -1,6 +1,6 @@
-/* The time loop of tled-run, for any back end: steps in batches, between them looks at the state, cuts of the step,
- * damping, frames, the end. What comes of it goes to the caller through two
- * functions. The caller owns all that it passes.
+/* The time loop of tled-run, for any executor: steps from check to check, where the monitor reads the state and the run
+ * decides on the length of the steps, the damping and the end; frames, rows of the log and checkpoints on the way. The
+ * caller gets them through the functions of run_setup. It owns all that it passes.
  *
  * Steps are counted, and times are counts over a rate. Where the caller does not fix the step, it may be cut in halves
  * while the tissue's stable step is small: the steps counted stay the same, each taken as 2, 4, ... That is decided
@@ -39,7 +39,7 @@ typedef struct run_setup {
     pool *threads;
     double rate;            /* steps a second */
     bool rate_fixed;        /* never cut the step: fail instead */
-    int64_t check;          /* steps between looks */
+    int64_t check;          /* steps between checks */
     int64_t steps;          /* how many to take; with rest: at most */
     double end;             /* s: where it lies within the last of them, that step is shorter and ends there */
     double rest;            /* tolerance: end at rest; < 0: after `steps` */

@@ -77,7 +77,7 @@ void run_tell_cut(run *n, const monitor_reading *why)
 static int restore(run *n)
 {
     n->plan.first = n->saved_first;
-    if (n->r->log && log_back(n->r->log, n->e))
+    if (n->r->log && log_restore(n->r->log, n->e))
         return -1;
     return n->r->device->restore(n->state, n->e);
 }
@@ -176,7 +176,7 @@ static int log_state(run *n, bool shown)
                          .stable = n->monitor->reading.stable,
                          .damping = n->damped,
                          .remaining = n->remaining};
-    return log_look(n->r->log, n->r->device, n->state, &row, shown, n->e);
+    return log_read(n->r->log, n->r->device, n->state, &row, shown, n->e);
 }
 
 int run_log_sound(run *n)
@@ -185,7 +185,7 @@ int run_log_sound(run *n)
     if (!log)
         return 0;
     bool shown = log->every == 0 || next_row(n, n->plan.first - 1) == n->plan.first;
-    return log_state(n, shown) || log_keep(log, n->e) ? -1 : 0;
+    return log_state(n, shown) || log_save(log, n->e) ? -1 : 0;
 }
 
 /* ---- Where it diverged */
@@ -279,7 +279,7 @@ static int step_until_sound(run *n, int64_t to, bool framed)
     }
     send_snapshots(n);
     run_tell_cut(n, &why);
-    return n->r->log ? log_keep(n->r->log, n->e) : 0;
+    return n->r->log ? log_save(n->r->log, n->e) : 0;
 }
 
 /* Steps once more from the last check to `to`, all of which is known to be sound, for

@@ -47,7 +47,7 @@ double run_part(const run *n);
 
 /* All below that return an int: -1 with n->e filled. */
 
-/* Looks at the state: n->monitor->reading. */
+/* Reads the state into n->monitor->reading. */
 int run_monitor(run *n);
 
 /* Whether the steps of now can have led to what was monitored last: nothing is broken, and they are stable still. */

@@ -201,7 +201,7 @@ static int put_frame(session *s, const frame *f, err *e)
         return -1;
     const model_array *u = frame_find(f, "node.displacement");
     if (u && u->rows == s->problem.nodes)
-        folds_look(&s->folds, f->time, u->f64);
+        folds_add(&s->folds, f->time, u->f64);
     return 0;
 }
 
