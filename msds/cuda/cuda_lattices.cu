@@ -1,8 +1,13 @@
 /* The coarser lattices on the card, as smoothing wants them. The matrices there are in half precision: they only lead
  * the search (cuda_exact.cu), and half the bytes are half the time.
  */
+#include "solve/card_layout.cuh"
+
 #include "msds/cuda/cuda_exact.cuh"
-#include "msds/cuda/cuda_room.cuh"
+
+extern "C" {
+#include "base/mem.h"
+}
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,13 +31,11 @@ static void choose_steps(tissue_level *v, double largest)
     }
 }
 
-static int put_weights(char *memory, int64_t *used, tissue_weights *to, const levels_weights *from, err *e)
+static void list_weights(card_layout *a, tissue_weights *to, const levels_weights *from)
 {
-    return put(memory, used, &to->start, from->start, from->count + 1, e) ||
-                   put(memory, used, &to->column, from->column, from->slots * LANES, e) ||
-                   put(memory, used, &to->weight, from->weight, from->slots * LANES, e)
-               ? -1
-               : 0;
+    card_layout_copy(a, &to->start, from->start, from->count + 1);
+    card_layout_copy(a, &to->column, from->column, from->slots * LANES);
+    card_layout_copy(a, &to->weight, from->weight, from->slots * LANES);
 }
 
 /* A level's matrix as smoothing wants it: blocks in half precision, times `scale`; and what a row's blocks sum up to,
@@ -99,59 +102,49 @@ static int host_level_make(const level *from, bool mesh, host_level *h, err *e)
 }
 
 /* What the mesh has already stays where it is. */
-static int put_graph(char *memory, int64_t *used, const tissue *t, tissue_level *v, const level *from,
-                     const host_level *h, err *e)
+static void list_graph(card_layout *a, const tissue *t, tissue_level *v, const level *from, const host_level *h)
 {
     const sell *g = &from->graph;
     if (!h->sums) {
         v->start = t->start, v->neighbour = t->neighbour, v->left = t->left, v->rest = t->pulled;
-        return 0;
+        return;
     }
-    v->left = room<float4>(memory, used, g->nodes);
-    v->rest = room<float4>(memory, used, g->nodes);
-    return put(memory, used, &v->start, h->start, g->count + 1, e) ||
-                   put(memory, used, &v->neighbour, g->neighbour, g->slots * LANES, e) ||
-                   put(memory, used, &v->sums, h->sums, g->count * 9 * LANES, e)
-               ? -1
-               : 0;
+    card_layout_add(a, &v->left, g->nodes);
+    card_layout_add(a, &v->rest, g->nodes);
+    card_layout_copy(a, &v->start, h->start, g->count + 1);
+    card_layout_copy(a, &v->neighbour, g->neighbour, g->slots * LANES);
+    card_layout_copy(a, &v->sums, h->sums, g->count * 9 * LANES);
 }
 
-static int put_level(char *memory, int64_t *used, const tissue *t, tissue_level *v, const level *from,
-                     const host_level *h, err *e)
+static void list_level(card_layout *a, const tissue *t, tissue_level *v, const level *from, const host_level *h)
 {
     const sell *g = &from->graph;
     v->nodes = (int32_t)g->nodes;
     v->chunks = (int32_t)pool_chunks(g->count, SELL_CHUNK);
     v->back = 1 / h->scale;
     choose_steps(v, from->largest);
-    v->z[0] = room<float4>(memory, used, g->nodes);
-    v->z[1] = room<float4>(memory, used, g->nodes);
-    v->step = room<float4>(memory, used, g->nodes);
-    return put_graph(memory, used, t, v, from, h, e) || put(memory, used, &v->eight, h->eight, g->slots * LANES, e) ||
-                   put(memory, used, &v->ninth, h->ninth, g->slots * LANES, e) ||
-                   put(memory, used, &v->inverse, from->inverse, g->count * 9 * LANES, e) ||
-                   (from->up.start && (put_weights(memory, used, &v->up, &from->up, e) ||
-                                       put_weights(memory, used, &v->down, &from->down, e)))
-               ? -1
-               : 0;
+    card_layout_add(a, &v->z[0], g->nodes);
+    card_layout_add(a, &v->z[1], g->nodes);
+    card_layout_add(a, &v->step, g->nodes);
+    list_graph(a, t, v, from, h);
+    card_layout_copy(a, &v->eight, h->eight, g->slots * LANES);
+    card_layout_copy(a, &v->ninth, h->ninth, g->slots * LANES);
+    card_layout_copy(a, &v->inverse, from->inverse, g->count * 9 * LANES);
+    if (from->up.start) {
+        list_weights(a, &v->up, &from->up);
+        list_weights(a, &v->down, &from->down);
+    }
 }
 
-/* Lays out what is in memory, and fills what there is to fill; with no memory yet, counts only. */
-static int lay_out(char *memory, int64_t *bytes, const tissue *t, tissue_exact *x, const levels *l, const host_level *h,
-                   err *e)
+static void list_exact(card_layout *a, const tissue *t, tissue_exact *x, const levels *l, const host_level *h)
 {
-    int64_t used = 0;
     for (int i = 0; i < l->count; i++)
-        if (put_level(memory, &used, t, &x->at[i], &l->at[i], &h[i], e))
-            return -1;
+        list_level(a, t, &x->at[i], &l->at[i], &h[i]);
     x->count = l->count;
     x->order = (int32_t)l->order;
-    x->gone = room<float4>(memory, &used, t->nodes);
-    x->active = room<uint8_t>(memory, &used, t->nodes);
-    if (put(memory, &used, &x->coarsest, l->coarsest, l->order * l->order, e))
-        return -1;
-    *bytes = used;
-    return 0;
+    card_layout_add(a, &x->gone, t->nodes);
+    card_layout_add(a, &x->active, t->nodes);
+    card_layout_copy(a, &x->coarsest, l->coarsest, l->order * l->order);
 }
 
 typedef struct host_exact {
@@ -177,12 +170,12 @@ int tissue_exact_make(tissue_exact *x, const tissue *t, const msds_problem *p, c
     int result = -1;
     if (!h)
         return -1;
-    if (!host_exact_make(h, p, s, m, threads, e) && !lay_out(NULL, bytes, t, x, &h->l, h->at, e)) {
-        *memory = (char *)card_take(*bytes, "coarser lattices", e);
-        result = *memory && !CARD_TRY(cudaMemset(*memory, 0, (size_t)*bytes)) &&
-                         !lay_out(*memory, bytes, t, x, &h->l, h->at, e) && !CARD_TRY(cudaDeviceSynchronize())
-                     ? 0
-                     : -1;
+    if (!host_exact_make(h, p, s, m, threads, e)) {
+        card_layout layout = {0};
+        list_exact(&layout, t, x, &h->l, h->at);
+        *bytes = layout.bytes;
+        if (!card_layout_place(&layout, true, "coarser lattices", memory, e))
+            result = card_check(cudaDeviceSynchronize(), "cudaDeviceSynchronize()", -1, e);
     }
     for (int i = 0; i < h->l.count; i++)
         host_level_free(&h->at[i]);

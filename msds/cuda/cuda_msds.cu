@@ -1,7 +1,8 @@
 /* The CUDA executor of msds-run: memory, and which kernel takes a frame. All of a frame is one launch.
  */
+#include "solve/card_layout.cuh"
+
 #include "msds/cuda/cuda_exact.cuh"
-#include "msds/cuda/cuda_room.cuh"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +10,7 @@
 #include <string.h>
 
 extern "C" {
+#include "base/mem.h"
 #include "msds/cpu/cg.h"
 #include "msds/cuda/msds_cuda.h"
 #include "msds/cuda/parts.h"
@@ -113,46 +115,44 @@ static void host_fill(const cuda_state *s, host_nodes *h)
     }
 }
 
-/* Lays out what is in s->memory, and fills what there is to fill. Called twice: to count, and to do. */
-static int lay_out(cuda_state *s, const host_nodes *h, err *e)
+static void list_problem(cuda_state *s, const host_nodes *h, card_layout *l)
 {
     tissue *t = &s->t;
     const int64_t nodes = s->order.nodes, slots = s->order.slots * LANES;
-    int64_t used = 0;
-    if (put(s->memory, &used, &t->start, h->start, s->order.count + 1, e) ||
-        put(s->memory, &used, &t->neighbour, s->order.neighbour, slots, e) ||
-        put(s->memory, &used, &t->spring, h->spring, slots, e) || put(s->memory, &used, &t->kind, h->kind, nodes, e) ||
-        put(s->memory, &used, &t->place, h->place, nodes, e) ||
-        put(s->memory, &used, &t->weight, h->weight, nodes, e) ||
-        put(s->memory, &used, &t->position, h->position, 3 * nodes, e) ||
-        put(s->memory, &used, &t->repulsion, h->repulsion, nodes, e) || put(s->memory, &used, &t->u, h->u, nodes, e) ||
-        put(s->memory, &used, &t->v, h->v, nodes, e) || put(s->memory, &used, &t->precise, h->precise, 3 * nodes, e))
-        return -1;
-    t->next_u = room<float4>(s->memory, &used, nodes);
-    t->next_v = room<float4>(s->memory, &used, nodes);
-    t->contact = room<tissue_contact>(s->memory, &used, nodes);
-    t->listed = room<uint8_t>(s->memory, &used, nodes);
-    t->held = room<double>(s->memory, &used, nodes);
-    t->part = room<double>(s->memory, &used, (int64_t)PARTS * t->chunks);
-    t->outcome = room<tissue_outcome>(s->memory, &used, 1);
-    t->arrived = room<unsigned long long>(s->memory, &used, TISSUE_KERNELS);
-    s->bytes = used;
-    return 0;
+    card_layout_copy(l, &t->start, h->start, s->order.count + 1);
+    card_layout_copy(l, &t->neighbour, s->order.neighbour, slots);
+    card_layout_copy(l, &t->spring, h->spring, slots);
+    card_layout_copy(l, &t->kind, h->kind, nodes);
+    card_layout_copy(l, &t->place, h->place, nodes);
+    card_layout_copy(l, &t->weight, h->weight, nodes);
+    card_layout_copy(l, &t->position, h->position, 3 * nodes);
+    card_layout_copy(l, &t->repulsion, h->repulsion, nodes);
+    card_layout_copy(l, &t->u, h->u, nodes);
+    card_layout_copy(l, &t->v, h->v, nodes);
+    card_layout_copy(l, &t->precise, h->precise, 3 * nodes);
+    card_layout_add(l, &t->next_u, nodes);
+    card_layout_add(l, &t->next_v, nodes);
+    card_layout_add(l, &t->contact, nodes);
+    card_layout_add(l, &t->listed, nodes);
+    card_layout_add(l, &t->held, nodes);
+    card_layout_add(l, &t->part, (int64_t)PARTS * t->chunks);
+    card_layout_add(l, &t->outcome, 1);
+    card_layout_add(l, &t->arrived, TISSUE_KERNELS);
 }
 
 static int put_problem(cuda_state *s, err *e)
 {
     host_nodes h = {0};
+    card_layout layout = {0};
     char what[80];
     int result = -1;
     if (host_make(s, &h, e))
         goto out;
     host_fill(s, &h);
-    lay_out(s, &h, e);
+    list_problem(s, &h, &layout);
+    s->bytes = layout.bytes;
     snprintf(what, sizeof what, "the solver of %lld elements", (long long)s->p->elements);
-    s->memory = (char *)card_take(s->bytes, what, e);
-    if (s->memory && !CUDA_TRY(cudaMemset(s->memory, 0, (size_t)s->bytes)) && !lay_out(s, &h, e))
-        result = 0;
+    result = card_layout_place(&layout, true, what, &s->memory, e);
 out:
     host_free(&h);
     return result;
@@ -209,20 +209,16 @@ static cuda_state *cuda_create(const msds_problem *problem, pool *threads, err *
 
 /* ---- the FEM */
 
-static int lay_out_fem(cuda_state *s, const lanes_matrix *m, err *e)
+static void list_stiffness(cuda_state *s, const lanes_matrix *m, card_layout *l)
 {
     tissue *t = &s->t;
     const int64_t nodes = s->order.nodes;
-    int64_t used = 0;
-    if (put(s->fem, &used, &t->diagonal, m->diagonal, s->order.count * 9 * LANES, e) ||
-        put(s->fem, &used, &t->block, m->block, s->order.slots * 9 * LANES, e))
-        return -1;
-    t->left = room<float4>(s->fem, &used, nodes);
-    t->pulled = room<float4>(s->fem, &used, nodes);
-    t->way[0] = room<float4>(s->fem, &used, nodes);
-    t->way[1] = room<float4>(s->fem, &used, nodes);
-    s->fem_bytes = used;
-    return 0;
+    card_layout_copy(l, &t->diagonal, m->diagonal, s->order.count * 9 * LANES);
+    card_layout_copy(l, &t->block, m->block, s->order.slots * 9 * LANES);
+    card_layout_add(l, &t->left, nodes);
+    card_layout_add(l, &t->pulled, nodes);
+    card_layout_add(l, &t->way[0], nodes);
+    card_layout_add(l, &t->way[1], nodes);
 }
 
 /* The stiffness on the host, in the order of sell.h; diagonal and block are the caller's to free. */
@@ -250,18 +246,18 @@ static void matrix_free(lanes_matrix *m)
 /* The stiffness on the card, and in m (zeroed) on the host, which is the caller's to free in every case. */
 static int put_stiffness(cuda_state *s, lanes_matrix *m, err *e)
 {
+    card_layout layout = {0};
     if (s->p->options.warp)
         return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
     if (make_matrix(s, m, e))
         return -1;
     if (s->fem)
         return 0;
-    lay_out_fem(s, m, e);
-    s->fem = (char *)card_take(s->fem_bytes, "the stiffness", e);
-    return !s->fem || CUDA_TRY(cudaMemset(s->fem, 0, (size_t)s->fem_bytes)) || lay_out_fem(s, m, e) ||
-                   CUDA_TRY(cudaDeviceSynchronize())
-               ? -1
-               : 0;
+    list_stiffness(s, m, &layout);
+    s->fem_bytes = layout.bytes;
+    if (card_layout_place(&layout, true, "the stiffness", &s->fem, e))
+        return -1;
+    return CUDA_TRY(cudaDeviceSynchronize());
 }
 
 static int make_fem(cuda_state *s, err *e)

@@ -4,6 +4,7 @@
 #ifndef SINEW_CUDA_STATE_CUH
 #define SINEW_CUDA_STATE_CUH
 
+#include "solve/card_layout.cuh"
 #include "tled/cuda/cuda_resident.cuh"
 
 #include "tled/cuda/cuda_march.cuh" /* wants element.h before it */
@@ -36,7 +37,7 @@ struct tled_state {
     int64_t walkers;            /* blocks of it */
     uint32_t walked, tickets;   /* passes of it, and units of all of them, and one more a block */
     char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
-    int64_t bytes, used;        /* of memory */
+    int64_t bytes;              /* of memory */
     real *displacement, *spare; /* each `numbers`, as is velocity; all else in rows: 3 x stride */
     real *velocity;
     int64_t numbers;         /* 3 x stride, or, where it marches, 4 x stride */
@@ -53,7 +54,7 @@ struct tled_state {
     double *table_host[TABLES]; /* pinned */
     cudaEvent_t table_free[TABLES], frame_free, frame_ready;
     int64_t tables; /* filled so far */
-    void *look_parts;
+    char *look_parts;
     tled_sums *sums, *sums_host;
     real *staging; /* pinned: `numbers` */
     cuda_frame slot[TLED_SLOTS];
@@ -65,32 +66,16 @@ struct tled_state {
 /* What went wrong in steps before may come out of any call. Not for fetch(), which another thread calls. */
 #define CUDA_TRY(call) card_check(call, #call, s->step, e)
 
-/* Room in the card's memory; with none yet, counts only. */
-static void *room(cuda_state *s, int64_t count, size_t size)
-{
-    void *at = s->memory ? s->memory + s->used : NULL;
-    s->used += (count * (int64_t)size + 255) / 256 * 256;
-    return at;
-}
-
-template <class T> static int put(cuda_state *s, const T **to, const T *from, int64_t count, err *e)
-{
-    T *at = (T *)room(s, count, sizeof(T));
-    *to = at;
-    return at ? CUDA_TRY(cudaMemcpy(at, from, (size_t)count * sizeof(T), cudaMemcpyHostToDevice)) : 0;
-}
-
-static int put_march(cuda_state *s, err *e)
+static void list_march(cuda_state *s, card_layout *l)
 {
     const march *m = &s->march;
     cuda_march *w = &s->walk;
-    w->done = (uint32_t *)room(s, m->units + 1, sizeof *w->done);
-    w->ticket = w->done + m->units;
-    return put(s, &w->unit, m->unit, m->units, e) || put(s, &w->near, m->near, m->units * m->nears, e) ||
-                   put(s, &w->detail, m->detail, m->layers + MARCH_AHEAD, e) ||
-                   put(s, &w->which, m->which, m->details * MARCH_THREADS, e) || put(s, &w->cell, m->cell, m->cells, e)
-               ? -1
-               : 0;
+    card_layout_add(l, &w->done, m->units + 1);
+    card_layout_copy(l, &w->unit, m->unit, m->units);
+    card_layout_copy(l, &w->near, m->near, m->units * m->nears);
+    card_layout_copy(l, &w->detail, m->detail, m->layers + MARCH_AHEAD);
+    card_layout_copy(l, &w->which, m->which, m->details * MARCH_THREADS);
+    card_layout_copy(l, &w->cell, m->cell, m->cells);
 }
 
 /* What the card gets of the problem's numbers. */
@@ -100,44 +85,49 @@ typedef struct cuda_numbers {
     cuda_mixed *mixture;
 } cuda_numbers;
 
-/* Lays out what is in s->memory, and fills what does not change. Called twice: to count, and to do. */
-static int lay_out(cuda_state *s, const cuda_numbers *numbers, err *e)
+/* What does not change while the run goes on. */
+static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout *l)
 {
     const tiles *t = &s->tiles;
     const tled_problem *p = s->p;
     cuda_view<real> *v = &s->view;
-    const int64_t rows = 3 * v->stride;
-    s->used = 0;
-    if (put(s, &v->tiles, t->tile, t->count, e) || put(s, &v->node_info, t->node_info, t->nodes, e) ||
-        (t->order && put(s, &v->order, t->order, t->nodes, e)) || put(s, &v->cell, t->cell, t->cells, e) ||
-        put(s, &v->halo_node, t->halo_node, t->halos, e) || put(s, &v->halo_place, t->halo_place, t->halos, e) ||
-        put(s, &v->fibre, t->fibre, 3 * t->directions, e) || (t->share && put(s, &v->share, t->share, t->cells, e)) ||
-        (t->mixed && put(s, &v->mixed, t->mixed, t->cells, e)) ||
-        (t->mixed && put(s, &v->mixture, numbers->mixture, p->laws, e)) ||
-        (t->mixfibre && put(s, &v->mixfibre, t->mixfibre, 3 * t->directions, e)) ||
-        put(s, &v->extra, t->extra, t->extras, e) ||
-        put(s, &v->force_curve, p->force_curve, p->force_start[p->nodes], e) ||
-        put(s, &v->force_share, p->force_share, p->force_start[p->nodes], e) ||
-        (!s->marches && put(s, &v->mass_inverse, numbers->mass_inverse, t->nodes, e)) ||
-        (s->marches && put_march(s, e)) || put(s, &v->kind, numbers->kind, p->volumes, e) ||
-        put(s, &v->law, numbers->law, (form_numbers(p->form) + 1) * p->volumes, e))
-        return -1;
-    s->displacement = (real *)room(s, s->numbers, sizeof(real));
-    s->spare = (real *)room(s, s->numbers, sizeof(real));
-    s->velocity = (real *)room(s, s->numbers, sizeof(real));
-    if (s->marches) {
-        v->mass_inverse = s->displacement + 3;
-        if (put(s, &s->walk.word, s->march.word, (s->march.layers + MARCH_AHEAD) * MARCH_WORDS, e)) /* for keep_near */
-            return -1;
-    }
-    s->kept_displacement = (real *)room(s, 2 * rows, sizeof(real));
+    card_layout_copy(l, &v->tiles, t->tile, t->count);
+    card_layout_copy(l, &v->node_info, t->node_info, t->nodes);
+    card_layout_copy(l, &v->order, t->order, t->nodes);
+    card_layout_copy(l, &v->cell, t->cell, t->cells);
+    card_layout_copy(l, &v->halo_node, t->halo_node, t->halos);
+    card_layout_copy(l, &v->halo_place, t->halo_place, t->halos);
+    card_layout_copy(l, &v->fibre, t->fibre, 3 * t->directions);
+    card_layout_copy(l, &v->share, t->share, t->cells);
+    card_layout_copy(l, &v->mixed, t->mixed, t->cells);
+    card_layout_copy(l, &v->mixture, t->mixed ? numbers->mixture : NULL, p->laws);
+    card_layout_copy(l, &v->mixfibre, t->mixfibre, 3 * t->directions);
+    card_layout_copy(l, &v->extra, t->extra, t->extras);
+    card_layout_copy(l, &v->force_curve, p->force_curve, p->force_start[p->nodes]);
+    card_layout_copy(l, &v->force_share, p->force_share, p->force_start[p->nodes]);
+    card_layout_copy(l, &v->mass_inverse, s->marches ? NULL : numbers->mass_inverse, t->nodes);
+    if (s->marches)
+        list_march(s, l);
+    card_layout_copy(l, &v->kind, numbers->kind, p->volumes);
+    card_layout_copy(l, &v->law, numbers->law, (form_numbers(p->form) + 1) * p->volumes);
+}
+
+/* The state, and what a step or a look at it needs. A march's words stand after the velocities, for keep_near. */
+static void list_state(cuda_state *s, card_layout *l)
+{
+    const int64_t stride = s->view.stride;
+    card_layout_add(l, &s->displacement, s->numbers);
+    card_layout_add(l, &s->spare, s->numbers);
+    card_layout_add(l, &s->velocity, s->numbers);
+    if (s->marches)
+        card_layout_copy(l, &s->walk.word, s->march.word, (s->march.layers + MARCH_AHEAD) * MARCH_WORDS);
+    card_layout_add(l, &s->kept_displacement, 6 * stride);
     if (s->resident)
-        s->message = (uint64_t *)room(s, MESSAGES * MESSAGE_WORDS * v->stride, sizeof *s->message);
+        card_layout_add(l, &s->message, MESSAGES * MESSAGE_WORDS * stride);
     for (int i = 0; i < TABLES; i++)
-        s->table[i] = (double *)room(s, (TABLE_STEPS + 1) * 3 * p->script->curves, sizeof(double));
-    s->look_parts = room(s, (int64_t)cuda_look_bytes(t->count), 1);
-    s->sums = (tled_sums *)room(s, 1, sizeof *s->sums);
-    return 0;
+        card_layout_add(l, &s->table[i], (TABLE_STEPS + 1) * 3 * s->p->script->curves);
+    card_layout_add(l, &s->look_parts, (int64_t)cuda_look_bytes(s->tiles.count));
+    card_layout_add(l, &s->sums, 1);
 }
 
 static int make_events(cuda_state *s, err *e)
@@ -203,14 +193,18 @@ static int put_problem(cuda_state *s, err *e)
     char what[80];
     int result = -1;
     cuda_numbers numbers = {0};
+    card_layout layout = {0};
     if (make_numbers(&numbers, s, e))
         goto out;
-    lay_out(s, &numbers, e);
-    s->bytes = s->used;
+    list_problem(s, &numbers, &layout);
+    list_state(s, &layout);
+    s->bytes = layout.bytes;
     snprintf(what, sizeof what, "the solver of %lld elements", (long long)s->p->elements);
-    s->memory = (char *)card_take(s->bytes, what, e);
-    if (s->memory && !lay_out(s, &numbers, e))
-        result = 0;
+    result = card_layout_place(&layout, false, what, &s->memory, e);
+    if (s->marches) {
+        s->walk.ticket = s->walk.done + s->march.units;
+        s->view.mass_inverse = s->displacement + 3;
+    }
 out:
     free(numbers.mass_inverse);
     free(numbers.law);
