@@ -281,13 +281,10 @@ static int write_state(const checkpoint *c, const frame *state, err *e)
 {
     out *o = out_open(c->path, false, e);
     model_writer *w = o ? model_writer_open(o, false, e) : NULL;
-    int bad = !w || model_write(w, &c->body, e) || model_write_frame(w, state, e) || model_write_end(w, e) ||
-              out_sync(o, e) || (!c->stale && step_down(c, e));
+    const int failed = !w || model_write(w, &c->body, e) || model_write_frame(w, state, e) || model_write_end(w, e) ||
+                       out_sync(o, e) || (!c->stale && step_down(c, e));
     model_writer_close(w);
-    if (!bad)
-        return out_close(o, e);
-    out_discard(o);
-    return -1;
+    return out_end(o, failed, e);
 }
 
 int checkpoint_save(checkpoint *c, const run_point *at, double time, const field_values *state, err *e)

@@ -260,23 +260,32 @@ static int step_by(run *n, int64_t to, bool framed)
     }
 }
 
+/* Goes back to the last check, to step from there again with steps cut once more; diverges where they cannot be. */
+static int cut_once_more(run *n, int64_t to)
+{
+    n->unsure = 0;
+    if (n->r->rate_fixed || n->cuts == CUTS_MAX)
+        return find_break(n, to);
+    n->cuts++;
+    return restore(n);
+}
+
+/* Steps to `to`, and monitors the state there. */
+static int try_steps(run *n, int64_t to, bool framed)
+{
+    return step_by(n, to, framed) || run_monitor(n) ? -1 : 0;
+}
+
 /* Steps to `to`, and again from the last check with steps cut once more, until the state there is sound. */
 static int step_until_sound(run *n, int64_t to, bool framed)
 {
-    const int cuts = n->cuts;
-    monitor_reading why = n->monitor->reading;
-    for (;; n->cuts++) {
-        if (step_by(n, to, framed) || run_monitor(n))
+    const monitor_reading before = n->monitor->reading; /* why steps are cut already where a run is continued */
+    if (try_steps(n, to, framed))
+        return -1;
+    const monitor_reading why = run_is_sound(n) ? before : n->monitor->reading;
+    while (!run_is_sound(n))
+        if (cut_once_more(n, to) || try_steps(n, to, framed))
             return -1;
-        if (run_is_sound(n))
-            break;
-        n->unsure = 0;
-        why = n->cuts == cuts ? n->monitor->reading : why;
-        if (n->r->rate_fixed || n->cuts == CUTS_MAX)
-            return find_break(n, to);
-        if (restore(n))
-            return -1;
-    }
     send_snapshots(n);
     run_tell_cut(n, &why);
     return n->r->log ? log_save(n->r->log, n->e) : 0;
