@@ -5,11 +5,11 @@
 #include "bind/nearest.h"
 #include "bind/tetra.h"
 #include "mesh/hexahedron.h"
-#include "mesh/scale.h"
 #include "mesh/weights.h"
 #include "model/check.h"
 #include "model/known.h"
 #include "model/stage.h"
+#include "surface/scale.h"
 #include "surface/surface.h"
 
 #include <math.h>

@@ -10,8 +10,8 @@
 #include "cli/tool.h"
 #include "mesh/bone.h"
 #include "mesh/bound.h"
-#include "mesh/scale.h"
 #include "model/source.h"
+#include "surface/scale.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,8 +2,23 @@
 
 #include "base/chars.h"
 #include "base/mem.h"
+#include "surface/scale.h"
 
 #include <string.h>
+
+int probe_read(probe *p, const char *text, const char *unit, bool anonymous, const model *m, err *e)
+{
+    if (probe_of(p, text, e))
+        return -1;
+    if (p->kind != PROBE_CONVEX)
+        return 0;
+    const num_unit of_file = scale_unit(unit, m, e);
+    if (!of_file || probe_load(p, scale_of(of_file), e))
+        return -1;
+    if (anonymous)
+        p->file = "FILE.obj";
+    return 0;
+}
 
 static int carry_convex(const probe *p, model *m, err *e)
 {

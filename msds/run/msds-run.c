@@ -3,7 +3,6 @@
  */
 #include "base/mem.h"
 #include "cli/progress.h"
-#include "mesh/scale.h"
 #include "model/stage.h"
 #include "msds/problem/largest.h"
 #include "msds/problem/problem.h"
@@ -13,6 +12,7 @@
 #include "msds/run/skin_model.h"
 #include "probe/poses.h"
 #include "probe/probe_carry.h"
+#include "surface/scale.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -411,20 +411,10 @@ static int simulate(session *s, err *e)
     return got;
 }
 
-static int take_probe(session *s, err *e)
+static int read_probe(session *s, err *e)
 {
-    if (!s->o->probe)
-        return 0;
-    if (probe_of(&s->probe, s->o->probe, e))
-        return -1;
-    if (s->probe.kind != PROBE_CONVEX)
-        return 0;
-    num_unit unit = scale_unit(s->o->unit, &s->m, e);
-    if (!unit || probe_load(&s->probe, scale_of(unit), e))
-        return -1;
-    if (s->o->common.anonymous)
-        s->probe.file = "FILE.obj";
-    return 0;
+    const struct options *o = s->o;
+    return o->probe ? probe_read(&s->probe, o->probe, o->unit, o->common.anonymous, &s->m, e) : 0;
 }
 
 /* The skin's surface joins the body; its springs are made when there are threads. */
@@ -457,7 +447,7 @@ static int prepare(session *s, err *e)
     static const char *const names[] = {"auto", "cuda", "cpu"};
     const struct options *o = s->o;
     char device[300];
-    if (take_probe(s, e) || carry_skin(s, e) || make_problem(s, e))
+    if (read_probe(s, e) || carry_skin(s, e) || make_problem(s, e))
         return -1;
     const executor_need need = {.features = o->warp && !o->device ? EXECUTOR_WARP : 0}; /* -d cuda: where FEM begins */
     s->device = msds_executor_choose(msds_executors, names[o->device], &need, device, sizeof device, e);

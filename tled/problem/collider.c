@@ -7,35 +7,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int read_poses(collider *c, const char *path, const char *transform, err *e)
+static int add_pose(collider *c, const poses_event *at, err *e)
+{
+    if (MEM_ROOM(&c->list, &c->pose_room, c->poses + 1, "poses", e) ||
+        MEM_ROOM(&c->time, &c->time_room, c->poses + 1, "poses", e))
+        return -1;
+    c->list[c->poses] = at->at;
+    c->time[c->poses++] = at->time;
+    return 0;
+}
+
+int collider_read_poses(collider *c, const char *path, err *e)
 {
     in *source = in_open(path, e);
     poses list = {.sequence = false};
     poses_event at;
-    int got = source && !poses_open(&list, source, transform, e) ? 1 : -1;
+    int got = source && !poses_open(&list, source, NULL, e) ? 1 : -1;
     while (got > 0 && (got = poses_next(&list, &at, e)) > 0) {
         if (at.kind != POSES_POSE)
             got = err_set(e, path, at.line,
                           "a line that changes the method; expected poses alone: methods are msds-run's");
-        if (got < 0 || MEM_ROOM(&c->list, &c->pose_room, c->poses + 1, "poses", e) ||
-            MEM_ROOM(&c->time, &c->time_room, c->poses + 1, "poses", e)) {
+        if (got < 0 || add_pose(c, &at, e))
             got = -1;
-            break;
-        }
-        c->list[c->poses] = at.at;
-        c->time[c->poses++] = at.time;
     }
     if (!got && !c->poses)
         got = err_set(e, path, 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
     in_close(source);
     return got;
-}
-
-int collider_read(collider *c, const char *shape, double scale, const char *poses_file, const char *transform, err *e)
-{
-    return probe_of(&c->shape, shape, e) || probe_load(&c->shape, scale, e) || read_poses(c, poses_file, transform, e)
-               ? -1
-               : 0;
 }
 
 void collider_free(collider *c)

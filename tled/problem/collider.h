@@ -21,9 +21,9 @@ typedef struct collider {
     double start, rises; /* s: from when, and how long it takes to come up; 0: it is there at once */
 } collider;
 
-/* Reads a shape (its OBJ, if it is one, times scale) and all poses; c is zeroed. -1 with e filled, c to be freed
- * all the same. */
-int collider_read(collider *c, const char *shape, double scale, const char *poses_file, const char *transform, err *e);
+/* Reads all poses of a file; c->shape is the caller's to read (probe_read). -1 with e filled, c to be freed all the
+ * same. */
+int collider_read_poses(collider *c, const char *path, err *e);
 void collider_free(collider *c);
 
 /* Makes it part of the problem, which says how stiff it is. */

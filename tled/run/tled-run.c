@@ -3,7 +3,6 @@
  */
 #include "base/mem.h"
 #include "cli/progress.h"
-#include "mesh/scale.h"
 #include "model/materials.h"
 #include "model/stage.h"
 #include "probe/probe_carry.h"
@@ -371,23 +370,16 @@ static void say_end(session *s, const run_end *end)
 /* What presses, and where. Its stiffness is part of the stable step. */
 static int read_collider(session *s, const struct options *o, err *e)
 {
-    double scale = 1;
     if (!o->probe && !o->poses)
         return 0;
     if (!o->probe || !o->poses)
         return err_usage(e, "--%s without --%s; expected both", o->probe ? "probe" : "poses",
                          o->probe ? "poses" : "probe");
-    if (!strncmp(o->probe, "convex:", 7)) {
-        num_unit unit = scale_unit(o->unit, &s->m, e);
-        if (!unit)
-            return -1;
-        scale = scale_of(unit);
-    }
-    if (collider_read(&s->collider, o->probe, scale, o->poses, NULL, e) || model_axis_add(&s->m, "probe", 1, e))
-        return -1;
-    if (o->common.anonymous && s->collider.shape.file)
-        s->collider.shape.file = "FILE.obj";
-    return probe_carry(&s->collider.shape, &s->m, &s->warnings, e);
+    return probe_read(&s->collider.shape, o->probe, o->unit, o->common.anonymous, &s->m, e) ||
+                   collider_read_poses(&s->collider, o->poses, e) || model_axis_add(&s->m, "probe", 1, e) ||
+                   probe_carry(&s->collider.shape, &s->m, &s->warnings, e)
+               ? -1
+               : 0;
 }
 
 static const tled_executor *choose_device(session *s, const struct options *o, char *device, size_t size, err *e)

@@ -1,4 +1,4 @@
-#include "mesh/scale.h"
+#include "surface/scale.h"
 
 num_unit scale_unit(const char *unit, const model *m, err *e)
 {
