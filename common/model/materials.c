@@ -233,13 +233,13 @@ static int change_row(model *m, int64_t at, const material_edit *edit, const cha
     return 0;
 }
 
-/* One line of an override. index: of names' strings; seen: 1 for the rows that had theirs. */
-static int override_line(model *m, keyfile *k, const lookup *index, const model_array *names, uint8_t *seen, err *e)
+/* One line of an override. index: of names, the strings of material.name; seen: 1 for the rows that had theirs. */
+static int override_line(model *m, keyfile *k, const lookup *index, char *const *names, uint8_t *seen, err *e)
 {
     material_edit r = {0};
     if (parse_name(k, e))
         return -1;
-    int32_t at = lookup_find(index, names->str, sizeof *names->str, k->word[0]);
+    int32_t at = lookup_find(index, names, sizeof *names, k->word[0]);
     if (at < 0)
         return materials_unknown(m, k->word[0], k->name, k->line, e);
     if (seen[at]++)
@@ -252,10 +252,11 @@ int materials_override(model *m, in *s, err *e)
     keyfile k;
     int more = -1;
     lookup index = {0};
-    const model_array *names = model_need(m, "material.name", e);
-    uint8_t *seen = names ? mem_array(names->rows, 1, "materials", e) : NULL;
-    int32_t rows = names ? (int32_t)num_clamp_int(names->rows, 0, INT32_MAX) : 0;
-    if (!seen || lookup_add(&index, names->str, sizeof *names->str, rows, e)) {
+    const model_array *array = model_need(m, "material.name", e);
+    char *const *names = array ? array->str : NULL; /* stays where it is when a change of law adds arrays */
+    uint8_t *seen = array ? mem_array(array->rows, 1, "materials", e) : NULL;
+    int32_t rows = array ? (int32_t)num_clamp_int(array->rows, 0, INT32_MAX) : 0;
+    if (!seen || lookup_add(&index, names, sizeof *names, rows, e)) {
         free(seen);
         return -1;
     }

@@ -46,7 +46,7 @@ int materials_read_with(model *m, in *s, const material *fallback, err *e);
 int materials_override(model *m, in *s, err *e);
 
 /* The same, as -m asks: "NAME.KEY=VALUE" (KEY may be law), `count` of them, in any order; of one given twice the last
- * counts. NAME may hold dots. What is wrong is an error of the command line, and changes nothing. */
+ * counts. NAME may hold dots. What is wrong is an error of the command line; materials before it may be changed. */
 int materials_set(model *m, const char *const *assignment, int count, err *e);
 
 /* The index of the material named so, or -1. */

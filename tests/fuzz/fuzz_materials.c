@@ -1,5 +1,5 @@
 /* Any bytes as a file of materials: a table whose rows are all valid, or one error with a text. What was read can be
- * read over itself as an override. */
+ * read over itself as an override; and so can the default table, where the names fit. */
 #include "model/materials.h"
 
 #include <stdlib.h>
@@ -25,6 +25,19 @@ static void check_table(const model *m)
     }
 }
 
+static void change_default(const uint8_t *data, size_t size)
+{
+    model m = {0};
+    err e = {0};
+    if (materials_default(&m, &e))
+        abort();
+    if (!read_bytes(materials_override, &m, data, size, &e))
+        check_table(&m);
+    else if (!e.text[0])
+        abort();
+    model_free(&m);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     model m = {0};
@@ -39,5 +52,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check_table(&m);
     }
     model_free(&m);
+    change_default(data, size);
     return 0;
 }
