@@ -217,7 +217,7 @@ SANITIZE_GOAL = check-tests
 # Data races: what has threads, under ThreadSanitizer. (Embree, which is not built so, is seen from outside only.)
 .PHONY: tsan tsan-run
 TSAN = -O1 -g -fsanitize=thread -fno-omit-frame-pointer
-TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool outbox tled_step tled_run msds_run slice voxelise_voxels)
+TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool frame_writer tled_step tled_run msds_run slice voxelise_voxels)
 tsan:
 	TSAN_OPTIONS=exitcode=99 SINEW_SANITIZED=1 REPEATS=1 $(MAKE) $(JOBS) BUILD=$(BUILD)/tsan BIN=$(BUILD)/tsan/bin CFLAGS='$(TSAN)' CUDA=no tsan-run
 tsan-run: all $(TSAN_UNIT)

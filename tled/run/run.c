@@ -135,7 +135,7 @@ static int write_checkpoint(run *n)
 {
     const run_setup *r = n->r;
     const run_point at = point_of(n);
-    if (n->sent && outbox_wait(n->out, n->sent - 1, n->e))
+    if (n->sent && frame_writer_wait(n->writer, n->sent - 1, n->e))
         return -1;
     if (r->log && log_store(r->log, n->e))
         return -1;
@@ -257,8 +257,8 @@ static int make_state(run *n)
     n->state = r->device->create(r->p, r->threads, n->e);
     if (!n->state)
         return -1;
-    n->out = outbox_create(r->p, r->device, n->state, r->frame, r->context, n->e);
-    return n->out ? 0 : -1;
+    n->writer = frame_writer_create(r->p, r->device, n->state, r->frame, r->context, n->e);
+    return n->writer ? 0 : -1;
 }
 
 static int prepare(run *n)
@@ -303,7 +303,7 @@ int run_go(const run_setup *r, run_end *end, err *e)
     n.from = n.closest_at = n.plan.first;
     int result = prepare(&n) ? -1 : loop(&n);
     *end = end_of(&n);
-    if (outbox_close(n.out, e)) /* what is sound is written whatever happened then */
+    if (frame_writer_close(n.writer, e)) /* what is sound is written whatever happened then */
         result = -1;
     if (n.state)
         r->device->destroy(n.state);

@@ -14,8 +14,8 @@
 #define SINEW_RUN_H
 
 #include "tled/problem/tled_executor.h"
+#include "tled/run/frame_writer.h"
 #include "tled/run/log.h"
-#include "tled/run/outbox.h"
 #include "tled/run/relax.h"
 
 /* Where a run stands at a check: with the state's fields, all that decides how it goes on. */
@@ -55,7 +55,7 @@ typedef struct run_setup {
     void *context;
     /* A state to write out, in time's order; called in a thread of its own. -1 with e
      * filled ends the run, at a frame soon after. */
-    outbox_frame *frame;
+    frame_writer_write *frame;
     /* After every check. remaining: see relax_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                     double damping);

@@ -144,7 +144,7 @@ static int take_snapshot(run *n)
 {
     const int64_t index = n->sent + n->unsure++;
     const int slot = (int)(index % n->slots);
-    if (index >= n->slots && outbox_wait_fetched(n->out, index - n->slots, n->e))
+    if (index >= n->slots && frame_writer_wait_fetched(n->writer, index - n->slots, n->e))
         return -1;
     n->frame_time[slot] = run_now(n);
     return n->r->device->snapshot(n->state, slot, n->e);
@@ -154,7 +154,7 @@ static int take_snapshot(run *n)
 static void send_snapshots(run *n)
 {
     for (; n->unsure; n->unsure--, n->sent++)
-        outbox_send(n->out, (int)(n->sent % n->slots), n->frame_time[n->sent % n->slots]);
+        frame_writer_send(n->writer, (int)(n->sent % n->slots), n->frame_time[n->sent % n->slots]);
 }
 
 int run_write_frame(run *n)

@@ -13,15 +13,15 @@ typedef struct run {
     tled_state *state;
     monitor *monitor;
     relax relax;
-    outbox *out;
+    frame_writer *writer;
     tled_plan plan;      /* plan.first: steps counted */
     int64_t from;        /* the first of this run */
     int64_t last;        /* where it ends at the latest */
     bool is_last_short;  /* the step to there, which ends at r->end */
     bool rested;         /* at the last check: the run is over */
     int64_t saved_first; /* plan.first of the state that the device has saved: that at the last check */
-    /* Frames are numbered, and a snapshot of each is in the slot of its number modulo `slots`: `sent` of them are the
-     * outbox's, then come those not yet known to be sound. */
+    /* Frames are numbered, and a snapshot of each is in the slot of its number modulo `slots`: `sent` of them were
+     * sent to the writer, then come those not yet known to be sound. */
     int slots;
     double frame_time[TLED_SLOTS];
     int64_t sent;

@@ -1,8 +1,8 @@
-/* Frames on their way out: in order, each fetched from its own slot; one is fetched while another is written; and what
- * was sound before something went wrong is written all the same.
+/* The asynchronous writer: frames in order, each fetched from its own slot; one is fetched while another is written;
+ * and what was sound before something went wrong is written all the same.
  */
 // needs: tled/*/*.c
-#include "tled/run/outbox.h"
+#include "tled/run/frame_writer.h"
 
 #include "tap.h"
 
@@ -67,21 +67,21 @@ static int64_t send_all(world *w, int64_t frames, err *e)
     const tled_problem p = {.nodes = NODES, .fields = tled_fields(NODES, 0)};
     const tled_executor device = {.fetch = fetch};
     int64_t i = 0;
-    outbox *o = outbox_create(&p, &device, w, put, w, e);
-    ok(o, "an outbox");
+    frame_writer *o = frame_writer_create(&p, &device, w, put, w, e);
+    ok(o, "an frame_writer");
     for (; o && i < frames; i++) {
-        if (i >= SLOTS && outbox_wait_fetched(o, i - SLOTS, e))
+        if (i >= SLOTS && frame_writer_wait_fetched(o, i - SLOTS, e))
             break;
         pthread_mutex_lock(&w->lock);
         w->slot[i % SLOTS] = i;
         pthread_mutex_unlock(&w->lock);
-        outbox_send(o, (int)(i % SLOTS), (double)i);
-        if (i == frames / 2 && !e->status && outbox_wait(o, i, e))
+        frame_writer_send(o, (int)(i % SLOTS), (double)i);
+        if (i == frames / 2 && !e->status && frame_writer_wait(o, i, e))
             break;
         if (i == frames / 2)
             ok(w->written == i + 1, "what was waited for is written");
     }
-    outbox_close(o, e);
+    frame_writer_close(o, e);
     return i;
 }
 
