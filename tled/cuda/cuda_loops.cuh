@@ -6,18 +6,9 @@
  * values of some steps at a time go there.
  */
 #include "tled/cuda/cuda_frame.cuh"
+#include "tled/cuda/cuda_methods.cuh"
 
 /* ---- passes */
-
-static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
-{
-    const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_form(s->p->form, [&](auto l) {
-            return pass_start<decltype(g), decltype(l)>(s->view, *p, s->tiles.count, s->stream);
-        });
-    });
-    return card_check(started, "the start of a pass", s->step, e);
-}
 
 /* Puts the curves' values of steps `first` to first + count of a plan on the card; *rows gets where. */
 static int put_table(cuda_state *s, const tled_plan *plan, int64_t first, int64_t count, const double **rows, err *e)
@@ -38,135 +29,15 @@ static int put_table(cuda_state *s, const tled_plan *plan, int64_t first, int64_
                : 0;
 }
 
-static void swap_displacements(cuda_state *s)
-{
-    real *to = s->displacement;
-    s->displacement = s->spare;
-    s->spare = to;
-}
-
-/* One pass; now: the row of the curves' values where the state stands. */
-static int pass(cuda_state *s, const tled_plan *plan, const double *now, int what, err *e)
-{
-    cuda_pass p = {s->displacement,
-                   s->spare,
-                   s->velocity,
-                   now,
-                   now + 3 * s->p->script->curves,
-                   NULL,
-                   NULL,
-                   s->shape,
-                   node_factors_of(1 / plan->rate, plan->damping),
-                   what};
-    s->spare_is_internal = (what & PASS_INTERNAL) != 0;
-    if (begin_pass(s, &p, e))
-        return -1;
-    if (what & PASS_BEGIN)
-        swap_displacements(s);
-    return 0;
-}
-
-/* What a march does in a pass: v = (keep v + half a) slow where a step begins, and so on. */
-static cuda_march_kind kind_of(const tled_plan *plan, int what)
-{
-    const node_factors f = node_factors_of(1 / plan->rate, plan->damping);
-    const bool begins = what & PASS_BEGIN, ends = what & PASS_FINISH;
-    const real keep = (begins ? f.slow : 1) * (ends ? f.keep : 1);
-    const real push = begins && ends ? f.dt * f.slow : begins ? f.half * f.slow : ends ? f.half : 0;
-    return {(float)keep, (float)push, begins ? (float)f.dt : 0, what};
-}
-
-/* `passes` passes of a march in one launch. first: what the first does; ends: the last leaves the internal forces. */
-static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int64_t passes, int first, bool ends,
-                    err *e)
-{
-    const cuda_march_pass p = {
-        {(float4 *)s->displacement, (float4 *)s->spare},
-        (float4 *)s->velocity,
-        now,
-        {kind_of(plan, first), kind_of(plan, PASS_BEGIN | PASS_FINISH), kind_of(plan, PASS_FINISH | PASS_INTERNAL)},
-        3 * (int32_t)s->p->script->curves,
-        (int32_t)passes,
-        ends,
-        s->walked + 1,
-        s->tickets};
-    if (card_check(cuda_march_start(&s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
-        return -1;
-    s->walked += (uint32_t)passes;
-    s->tickets += (uint32_t)(passes * s->march.units + s->walkers);
-    s->spare_is_internal = ends;
-    if ((passes - ends) % 2)
-        swap_displacements(s);
-    return 0;
-}
-
-/* `passes` passes from pass `first` of count steps on, in one launch. */
-static int stay(cuda_state *s, const tled_plan *plan, const double *now, int64_t first, int64_t passes, int64_t count,
-                err *e)
-{
-    const bool ends = first + passes > count, moves = !ends || passes > 1;
-    const cuda_pass p = {s->displacement,
-                         moves ? s->spare : s->displacement,
-                         s->velocity,
-                         now,
-                         NULL,
-                         NULL,
-                         NULL,
-                         s->shape,
-                         node_factors_of(1 / plan->rate, plan->damping),
-                         0};
-    const cuda_resident r = {p,
-                             moves ? s->displacement : s->spare,
-                             s->message,
-                             s->messages + 1,
-                             (int32_t)passes,
-                             (int32_t)s->p->script->curves,
-                             first == 0,
-                             ends};
-    s->messages += (uint32_t)passes;
-    const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_form(s->p->form, [&](auto l) {
-            typedef decltype(g) G;
-            typedef decltype(l) L;
-            return s->view.mixed ? resident_start<G, L, true>(s->view, r, s->tiles.count, s->stream)
-                                 : resident_start<G, L, false>(s->view, r, s->tiles.count, s->stream);
-        });
-    });
-    s->spare_is_internal = ends;
-    if (card_check(started, "the start of passes", s->step, e))
-        return -1;
-    if (moves)
-        swap_displacements(s);
-    return 0;
-}
-
-/* What pass i of `count` steps does: all but the first end one, all but the last begin one. */
-static int what_of(int64_t i, int64_t count)
-{
-    return (i > 0 ? PASS_FINISH : 0) | (i < count ? PASS_BEGIN : PASS_INTERNAL);
-}
-
-/* Passes from pass `first` of `count` steps on. */
-static int make_passes(cuda_state *s, const tled_plan *plan, const double *rows, int64_t first, int64_t passes,
-                       int64_t count, err *e)
-{
-    if (s->resident)
-        return stay(s, plan, rows, first, passes, count, e);
-    if (s->marches)
-        return march_on(s, plan, rows, passes, what_of(first, count), first + passes > count, e);
-    for (int64_t i = first; i < first + passes; i++)
-        if (pass(s, plan, rows + (i - first) * 3 * s->p->script->curves, what_of(i, count), e))
-            return -1;
-    return 0;
-}
-
 static int cuda_step(cuda_state *s, const tled_plan *plan, int64_t count, err *e)
 {
     const double *rows = NULL;
     for (int64_t first = 0; count > 0 && first <= count; first += TABLE_STEPS) {
         const int64_t passes = count + 1 - first < TABLE_STEPS ? count + 1 - first : TABLE_STEPS;
-        if (put_table(s, plan, first, first + passes > count ? passes - 1 : passes, &rows, e) ||
-            make_passes(s, plan, rows, first, passes, count, e))
+        if (put_table(s, plan, first, first + passes > count ? passes - 1 : passes, &rows, e))
+            return -1;
+        const cuda_batch batch = {plan, rows, first, passes, count};
+        if (s->method->passes(s, &batch, e))
             return -1;
         s->step += passes - (first == 0);
     }
@@ -185,7 +56,7 @@ static int find_internal(cuda_state *s, err *e)
     here.origin = s->time;
     if (put_table(s, &here, 0, 0, &rows, e))
         return -1;
-    return s->marches ? march_on(s, &here, rows, 1, PASS_INTERNAL, true, e) : pass(s, &here, rows, PASS_INTERNAL, e);
+    return s->method->internal(s, &here, rows, e);
 }
 
 /* ---- in and out */
@@ -210,7 +81,7 @@ static int set(cuda_state *s, real *to, const double *from, err *e)
     for (int64_t k = 0; k < s->tiles.nodes; k++) {
         for (int a = 0; a < 3; a++)
             s->staging[v->offset[a] + k * v->along] = (real)from[3 * (int64_t)s->tiles.node[k] + a];
-        if (s->marches) {
+        if (v->along == 4) {
             const float number = fourth(s, to == s->displacement, k);
             memcpy(&s->staging[4 * k + 3], &number, sizeof number);
         }
@@ -231,14 +102,6 @@ static int cuda_get(cuda_state *s, int what, double *to, err *e)
     return 0;
 }
 
-/* What is kept, in rows, into the state again. */
-static int from_rows(cuda_state *s, real *to, const real *from, err *e)
-{
-    return s->marches ? CUDA_TRY(cuda_march_unpack(&s->walk, (const float *)from, (float4 *)to, s->stream))
-                      : CUDA_TRY(cudaMemcpyAsync(to, from, (size_t)s->numbers * sizeof(real), cudaMemcpyDeviceToDevice,
-                                                 s->stream));
-}
-
 static int cuda_save(cuda_state *s, err *e)
 {
     if (s->kept_internal && find_internal(s, e))
@@ -257,8 +120,8 @@ static int cuda_restore(cuda_state *s, err *e)
     s->spare_is_internal = false;
     s->step = s->kept_step;
     s->time = s->kept_time;
-    return from_rows(s, s->displacement, s->kept_displacement, e) ||
-                   from_rows(s, s->velocity, s->kept_displacement + n, e)
+    return s->method->from_rows(s, s->displacement, s->kept_displacement, e) ||
+                   s->method->from_rows(s, s->velocity, s->kept_displacement + n, e)
                ? -1
                : 0;
 }
@@ -327,88 +190,29 @@ static void cuda_destroy(cuda_state *s)
         cudaStreamDestroy(s->stream);
     if (s->sending)
         cudaStreamDestroy(s->sending);
-    if (s->marches)
-        cudaCtxResetPersistingL2Cache();
+    if (s->method && s->method->end)
+        s->method->end(s);
     tiles_free(&s->tiles);
     march_free(&s->march);
     free(s);
 }
 
-/* Velocities, which a pass reads and writes, and words, which stand after them, are what the cache is to keep while the
- * rest goes through it: three fifths of what it could; with more, models many times its size had too little left.
- * Nothing is lost where it cannot. The limit is the process's, and is left. */
-static int keep_near(cuda_state *s, err *e)
-{
-    int device = 0, most = 0;
-    if (CUDA_TRY(cudaGetDevice(&device)) ||
-        CUDA_TRY(cudaDeviceGetAttribute(&most, cudaDevAttrMaxPersistingL2CacheSize, device)))
-        return -1;
-    const char *end = (const char *)(s->walk.word + s->march.layers * MARCH_WORDS);
-    const size_t bytes = (size_t)(end - (const char *)s->velocity), room = (size_t)most / 5 * 3;
-    cudaStreamAttrValue value = {};
-    value.accessPolicyWindow.base_ptr = s->velocity;
-    value.accessPolicyWindow.num_bytes = bytes < room ? bytes : room;
-    value.accessPolicyWindow.hitRatio = 1;
-    value.accessPolicyWindow.hitProp = cudaAccessPropertyPersisting;
-    value.accessPolicyWindow.missProp = cudaAccessPropertyStreaming;
-    if (!most ||
-        cudaDeviceSetLimit(cudaLimitPersistingL2CacheSize, value.accessPolicyWindow.num_bytes) != cudaSuccess ||
-        cudaStreamSetAttribute(s->stream, cudaStreamAttributeAccessPolicyWindow, &value) != cudaSuccess)
-        cudaGetLastError(); /* it has said so */
-    return 0;
-}
-
-/* What a march's kernels see beside its lists. */
-static void begin_march(cuda_state *s)
-{
-    const tled_problem *p = s->p;
-    const tled_volume *plain = &p->volume[s->march.plain];
-    const int *axis = s->march.axis;
-    cuda_march *w = &s->walk;
-    const double law[3] = {plain->law.c[0], plain->law.c[1], plain->law.hourglass}; /* of the neo-Hookean form */
-    w->nears = (int32_t)s->march.nears;
-    w->units = (int32_t)s->march.units;
-    static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");
-    memcpy(&w->v, &s->view, sizeof w->v);
-    for (int a = 0; a < 3; a++) {
-        const double side = p->side[axis[a]];
-        w->axis[a] = axis[a];
-        w->law[a] = (float)law[a];
-        w->slope[a] = (float)(1 / (4 * side));
-        w->area[a] = (float)(p->side[0] * p->side[1] * p->side[2] / (4 * side));
-    }
-}
-
 static int fill(cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
-    if (cut(s, e))
+    if (cut_tiles(s, e) || choose_method(s, e))
         return -1;
     s->view.stride = (p->nodes + 31) / 32 * 32;
     s->view.nodes = (int32_t)p->nodes;
-    s->numbers = (s->marches ? 4 : 3) * s->view.stride;
-    s->view.along = s->view.mass_along = s->marches ? 4 : 1;
-    for (int a = 0; a < 3; a++)
-        s->view.offset[s->marches ? s->march.axis[a] : a] = s->marches ? a : a * s->view.stride;
+    s->method->arrange(s);
     s->view.volumes = p->volumes;
     s->view.extras = (int32_t)s->tiles.extras;
     s->view.gravity = (int32_t)p->gravity;
     memcpy(s->view.side, p->side, sizeof p->side);
     s->shape = element_box(p->side[0], p->side[1], p->side[2]);
     s->time = p->start;
-    if (put_problem(s, e))
-        return -1;
-    if (s->marches)
-        begin_march(s);
-    if (make_events(s, e) || set(s, s->displacement, p->at_start.of[TLED_DISPLACEMENT], e) ||
-        set(s, s->velocity, p->at_start.of[TLED_VELOCITY], e))
-        return -1;
-    if (s->resident &&
-        CUDA_TRY(cudaMemset(s->message, 0, MESSAGES * MESSAGE_WORDS * (size_t)s->view.stride * sizeof *s->message)))
-        return -1;
-    if (s->marches && CUDA_TRY(cudaMemset(s->walk.done, 0, ((size_t)s->march.units + 1) * sizeof *s->walk.done)))
-        return -1;
-    if (s->marches && keep_near(s, e))
+    if (put_problem(s, e) || make_events(s, e) || set(s, s->displacement, p->at_start.of[TLED_DISPLACEMENT], e) ||
+        set(s, s->velocity, p->at_start.of[TLED_VELOCITY], e) || s->method->begin(s, e))
         return -1;
     /* Streams that do not block wait for none of it by themselves. */
     return CUDA_TRY(cudaDeviceSynchronize()) ? -1 : find_internal(s, e);
@@ -430,11 +234,11 @@ static cuda_state *cuda_create(const tled_problem *problem, pool *threads, err *
 
 static int64_t cuda_computed(const cuda_state *s)
 {
-    return s->marches ? (int64_t)(s->march.computed * (double)s->p->elements) : s->tiles.cells;
+    return s->method->computed(s);
 }
 
 const tled_executor CUDA_EXECUTOR = {
-    .is = {.device = "cuda", .features = 0, .forms = (1U << FORM_STEPPED) - 1, .unusable = card_unusable},
+    .is = {.device = "cuda", .features = 0, .forms = TILES_FORMS, .unusable = card_unusable},
     .create = cuda_create,
     .destroy = cuda_destroy,
     .step = cuda_step,

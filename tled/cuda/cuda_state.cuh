@@ -1,5 +1,5 @@
 /* What the CUDA back end has of a problem: cut into tiles that the card has a place for, and laid out in its memory.
- * Included by cuda_frame.cuh alone.
+ * Included by cuda_frame.cuh and cuda_methods.cuh alone.
  */
 #ifndef SINEW_CUDA_STATE_CUH
 #define SINEW_CUDA_STATE_CUH
@@ -24,15 +24,53 @@ typedef struct cuda_frame { /* results on their way to the host; made when first
 
 typedef struct tled_state cuda_state;
 
+/* What the card gets of the problem's numbers. */
+typedef struct cuda_numbers {
+    real *mass_inverse, *law;
+    cuda_kind *kind;
+    cuda_mixed *mixture;
+} cuda_numbers;
+
+/* Passes that follow each other, of those of `count` steps: what_of says what each does. */
+typedef struct cuda_batch {
+    const tled_plan *plan;
+    const double *rows; /* on the card: the curves' values where the state stands, then after each step */
+    int64_t first, passes, count;
+} cuda_batch;
+
+/* A way in which the card takes steps: a row of the table in cuda_methods.cuh. Its functions are called once for a
+ * state, or for a batch of passes, and never within a step. They return -1 with e filled. */
+typedef struct cuda_method {
+    const char *name;
+    uint32_t forms; /* that it is compiled for: bit i for form i */
+    /* Whether it takes the problem, which is cut in tiles. */
+    int (*take)(cuda_state *s, bool *takes, err *e);
+    /* How the arrays of the state stand: s->numbers, and in the view. */
+    void (*arrange)(cuda_state *s);
+    /* Lists the arrays that it has of its own; they stand on the card behind the velocities. */
+    void (*list)(cuda_state *s, const cuda_numbers *numbers, card_layout *l);
+    /* Makes what it has of its own ready, once all is on the card. */
+    int (*begin)(cuda_state *s, err *e);
+    int (*passes)(cuda_state *s, const cuda_batch *b, err *e);
+    /* Finds the internal forces, into `spare`; now: the curves' values where the state stands, on the card. */
+    int (*internal)(cuda_state *s, const tled_plan *here, const double *now, err *e);
+    /* From what is kept, in rows, to an array of the state. */
+    int (*from_rows)(cuda_state *s, real *to, const real *from, err *e);
+    int64_t (*computed)(const cuda_state *s); /* tled_executor's */
+    /* Undoes what it set for the process; NULL: nothing. */
+    void (*end)(cuda_state *s);
+} cuda_method;
+
 struct tled_state {
     const tled_problem *p;
     pool *threads;
+    const cuda_method *method; /* chosen when the problem was cut */
     struct tiles tiles;
     cuda_size size; /* of its bricks */
+    int64_t places; /* how many of them the card has at once */
     cuda_view<real> view;
     element_shape shape;
-    bool marches; /* by `march`, not by tiles: the state stands node by node, in its order */
-    struct march march;
+    struct march march;         /* where the method is that: */
     cuda_march walk;            /* what its kernels see */
     int64_t walkers;            /* blocks of it */
     uint32_t walked, tickets;   /* passes of it, and units of all of them, and one more a block */
@@ -48,7 +86,6 @@ struct tled_state {
     real *frame;             /* to send (cuda_frame.cuh); likewise, unless that is: one of the two */
     pool *wideners;          /* make doubles of it on the host, beside those of the run: made with it */
     bool spare_is_internal, has_kept_internal;
-    bool resident;              /* all tiles have a place on the card at once */
     bool frame_direct;          /* there is no room for `frame` */
     double *table[TABLES];      /* on the card: TABLE_STEPS + 1 rows of the curves' values */
     double *table_host[TABLES]; /* pinned */
@@ -65,25 +102,6 @@ struct tled_state {
 
 /* What went wrong in steps before may come out of any call. Not for fetch(), which another thread calls. */
 #define CUDA_TRY(call) card_check(call, #call, s->step, e)
-
-static void list_march(cuda_state *s, card_layout *l)
-{
-    const march *m = &s->march;
-    cuda_march *w = &s->walk;
-    card_layout_add(l, &w->done, m->units + 1);
-    card_layout_copy(l, &w->unit, m->unit, m->units);
-    card_layout_copy(l, &w->near, m->near, m->units * m->nears);
-    card_layout_copy(l, &w->detail, m->detail, m->layers + MARCH_AHEAD);
-    card_layout_copy(l, &w->which, m->which, m->details * MARCH_THREADS);
-    card_layout_copy(l, &w->cell, m->cell, m->cells);
-}
-
-/* What the card gets of the problem's numbers. */
-typedef struct cuda_numbers {
-    real *mass_inverse, *law;
-    cuda_kind *kind;
-    cuda_mixed *mixture;
-} cuda_numbers;
 
 /* What does not change while the run goes on. */
 static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout *l)
@@ -105,25 +123,19 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
     card_layout_copy(l, &v->extra, t->extra, t->extras);
     card_layout_copy(l, &v->force_curve, p->force_curve, p->force_start[p->nodes]);
     card_layout_copy(l, &v->force_share, p->force_share, p->force_start[p->nodes]);
-    card_layout_copy(l, &v->mass_inverse, s->marches ? NULL : numbers->mass_inverse, t->nodes);
-    if (s->marches)
-        list_march(s, l);
     card_layout_copy(l, &v->kind, numbers->kind, p->volumes);
     card_layout_copy(l, &v->law, numbers->law, (form_numbers(p->form) + 1) * p->volumes);
 }
 
-/* The state, and what a step or a look at it needs. A march's words stand after the velocities, for keep_near. */
-static void list_state(cuda_state *s, card_layout *l)
+/* The state, and what a step or a look at it needs. */
+static void list_state(cuda_state *s, const cuda_numbers *numbers, card_layout *l)
 {
     const int64_t stride = s->view.stride;
     card_layout_add(l, &s->displacement, s->numbers);
     card_layout_add(l, &s->spare, s->numbers);
     card_layout_add(l, &s->velocity, s->numbers);
-    if (s->marches)
-        card_layout_copy(l, &s->walk.word, s->march.word, (s->march.layers + MARCH_AHEAD) * MARCH_WORDS);
+    s->method->list(s, numbers, l);
     card_layout_add(l, &s->kept_displacement, 6 * stride);
-    if (s->resident)
-        card_layout_add(l, &s->message, MESSAGES * MESSAGE_WORDS * stride);
     for (int i = 0; i < TABLES; i++)
         card_layout_add(l, &s->table[i], (TABLE_STEPS + 1) * 3 * s->p->script->curves);
     card_layout_add(l, &s->look_parts, (int64_t)cuda_look_bytes(s->tiles.count));
@@ -197,92 +209,16 @@ static int put_problem(cuda_state *s, err *e)
     if (make_numbers(&numbers, s, e))
         goto out;
     list_problem(s, &numbers, &layout);
-    list_state(s, &layout);
+    list_state(s, &numbers, &layout);
     s->bytes = layout.bytes;
     snprintf(what, sizeof what, "the solver of %lld elements", (long long)s->p->elements);
     result = card_layout_place(&layout, false, what, &s->memory, e);
-    if (s->marches) {
-        s->walk.ticket = s->walk.done + s->march.units;
-        s->view.mass_inverse = s->displacement + 3;
-    }
 out:
     free(numbers.mass_inverse);
     free(numbers.law);
     free(numbers.kind);
     free(numbers.mixture);
     return result;
-}
-
-/* Cuts the problem in bricks of a size. -1: it cannot be cut so, or the card has too little shared memory for them. */
-static int cut_in(cuda_state *s, cuda_size size, err *e)
-{
-    s->size = size;
-    tiles_free(&s->tiles);
-    return with_brick(size, [&](auto g) {
-        typedef decltype(g) G;
-        static const int brick[3] = {G::BX, G::BY, G::BZ};
-        const cudaError_t allowed = with_form(s->p->form, [](auto l) { return pass_allow<G, decltype(l)>(); });
-        return CUDA_TRY(allowed) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
-    });
-}
-
-/* How many bricks of a size are resident at once, and how many nodes they have at most. */
-static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
-{
-    return with_brick(size, [&](auto g) {
-        typedef decltype(g) G;
-        const int64_t curves = s->p->script->curves;
-        const int64_t places = with_form(s->p->form, [&](auto l) {
-            typedef decltype(l) L;
-            return s->p->mix ? resident_places<G, L, true>(curves) : resident_places<G, L, false>(curves);
-        });
-        *nodes = places * G::NODES;
-        return places;
-    });
-}
-
-/* Whether what does not stay marches: in single precision, in the neo-Hookean form, on a
- * card that can, where the model is suited. */
-static int choose_march(cuda_state *s, err *e)
-{
-    int64_t slots = 0;
-    if (s->resident || sizeof(real) != sizeof(float) || s->p->form != FORM_NEO_HOOKEAN)
-        return 0;
-    if (CUDA_TRY(cuda_march_slots(&slots)))
-        return -1;
-    if (!slots)
-        return 0;
-    if (march_make(&s->march, s->p, slots, e))
-        return -1;
-    s->marches =
-        s->march.units > 0 && s->march.units < UINT32_MAX / (TABLE_STEPS + 1); /* units of a launch are counted */
-    s->walkers = s->march.units < slots ? s->march.units : slots;
-    return s->marches ? tiles_reorder(&s->tiles, s->march.order, e) : 0;
-}
-
-/* The smallest bricks that are all resident: the more there are, the less each has to do. Else the largest that the
- * card has shared memory for. So measured on an H200. */
-static int cut_tiles(cuda_state *s, err *e)
-{
-    for (int size = CUDA_SMALL; size < CUDA_SIZES; size++) {
-        int64_t nodes, places = places_of(s, (cuda_size)size, &nodes);
-        err here = {0};
-        if (size < CUDA_LARGE && s->p->nodes > nodes)
-            continue;
-        if (cut_in(s, (cuda_size)size, &here)) {
-            cudaGetLastError(); /* it has said so */
-            return cut_in(s, size == CUDA_SMALL ? CUDA_SMALL : (cuda_size)(size - 1), e);
-        }
-        s->resident = s->tiles.count <= places;
-        if (s->resident)
-            return 0;
-    }
-    return 0;
-}
-
-static int cut(cuda_state *s, err *e)
-{
-    return cut_tiles(s, e) || choose_march(s, e) ? -1 : 0;
 }
 
 #endif
