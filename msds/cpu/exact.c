@@ -19,7 +19,7 @@ int exact_make(exact *x, const msds_problem *p, stiffness *k, contacts *c, const
     x->k = k;
     x->c = c;
     x->threads = threads;
-    x->factor.watch = x->watch;
+    x->factor.listener = x->listener;
     if (factor_make(&x->factor, p, k, loops, threads, e))
         return -1;
     x->left = mem_array(p->nodes, 3 * sizeof *x->left, "the solver", e);
@@ -61,9 +61,9 @@ void exact_free(exact *x)
 
 static void tell(const exact *x, const char *what, int64_t done, int64_t all)
 {
-    const msds_doing doing = {what, all ? (double)done / (double)all : 0, x->solves + 1, x->residual, x->c->count};
-    if (x->watch)
-        x->watch->at(x->watch->context, &doing);
+    const msds_progress now = {what, all ? (double)done / (double)all : 0, x->solves + 1, x->residual, x->c->count};
+    if (x->listener)
+        x->listener->at(x->listener->context, &now);
 }
 
 static float *path_at(const exact *x, int64_t i)

@@ -35,9 +35,9 @@ typedef struct exact {
     double load;   /* N2: the square of the load or the pull where the frame began */
     double residual;
     int solves;
-    const msds_watch *watch; /* set before exact_make; NULL: nobody */
-    mixing mixing;           /* where elements turn: of displacements, which lead, and contact forces */
-    double *state, *by;      /* nodes x 4: those, as mixing wants them */
+    const msds_listener *listener; /* set before exact_make; NULL: nobody */
+    mixing mixing;                 /* where elements turn: of displacements, which lead, and contact forces */
+    double *state, *by;            /* nodes x 4: those, as mixing wants them */
 } exact;
 
 /* Factors. -1 with e filled, and to be freed all the same. */

@@ -419,9 +419,9 @@ static double work_of(const factor *f, int64_t level)
 
 static void tell(const factor *f, double done, double all)
 {
-    const msds_doing doing = {.what = "factoring the stiffness matrix", .share = done / all, .residual = NAN};
-    if (f->watch)
-        f->watch->at(f->watch->context, &doing);
+    const msds_progress now = {.what = "factoring the stiffness matrix", .share = done / all, .residual = NAN};
+    if (f->listener)
+        f->listener->at(f->listener->context, &now);
 }
 
 int factor_again(factor *f, err *e)

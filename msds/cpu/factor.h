@@ -31,11 +31,11 @@ typedef struct factor {
     int64_t *level;   /* tree.fronts: the deepest first */
     int64_t *begin;   /* levels + 1: of each in `level` */
     int64_t levels;
-    int64_t at;              /* the level that is being worked on */
-    int64_t numbers;         /* in all panels */
-    int64_t path;            /* the longest path's values */
-    int64_t largest;         /* rows and columns of the largest front, as numbers */
-    const msds_watch *watch; /* set before factor_make; NULL: nobody */
+    int64_t at;                    /* the level that is being worked on */
+    int64_t numbers;               /* in all panels */
+    int64_t path;                  /* the longest path's values */
+    int64_t largest;               /* rows and columns of the largest front, as numbers */
+    const msds_listener *listener; /* set before factor_make; NULL: nobody */
     const double *load;
     double *result;
     int32_t *failed; /* fronts: the model's node whose pivot was not above 0, or -1; -2: no memory */

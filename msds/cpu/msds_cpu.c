@@ -36,7 +36,7 @@ struct msds_state {
     double *place; /* the model's nodes x 3, m: where exact frames stand */
     msds_plan plan;
     bool precise; /* place is the state; else w.u */
-    bool met;     /* as the sight's */
+    bool met;     /* as the reading's */
     int solves;
 };
 
@@ -239,7 +239,7 @@ static int step_exact(cpu_state *s, err *e)
     if (!s->exact) {
         s->exact = mem_array(1, sizeof *s->exact, "the solver", e);
         if (s->exact)
-            s->exact->watch = s->plan.watch;
+            s->exact->listener = s->plan.listener;
         if (!s->exact || make_stiffness(s, e) ||
             exact_make(s->exact, s->p, &s->k, &s->contacts, s->loops, s->threads, e))
             return -1;
@@ -291,25 +291,25 @@ static int cpu_get(cpu_state *s, int what, double *to, err *e)
     return 0;
 }
 
-static int cpu_monitor(cpu_state *s, msds_sight *sight, err *e)
+static int cpu_monitor(cpu_state *s, msds_reading *reading, err *e)
 {
     double square = 0;
     (void)e;
-    *sight = (msds_sight){.residual = NAN, .solves = s->solves, .finite = true, .met = s->met};
-    sight->contacts = contacts_sum(&s->contacts, sight->force);
+    *reading = (msds_reading){.residual = NAN, .solves = s->solves, .finite = true, .met = s->met};
+    reading->contacts = contacts_sum(&s->contacts, reading->force);
     if (s->plan.touched)
-        contacts_twist(&s->contacts, &s->w, s->p, s->precise ? s->place : NULL, sight->torque);
+        contacts_twist(&s->contacts, &s->w, s->p, s->precise ? s->place : NULL, reading->torque);
     if (s->plan.method == MSDS_FEM && s->cg)
-        sight->residual = s->cg->residual;
+        reading->residual = s->cg->residual;
     if (s->plan.method == MSDS_EXACT && s->exact)
-        sight->residual = s->exact->residual;
+        reading->residual = s->exact->residual;
     for (int64_t own = 0; own < s->order.nodes; own++) {
         double x = (double)s->w.u.x[0][own], y = (double)s->w.u.x[1][own], z = (double)s->w.u.x[2][own];
         double here = x * x + y * y + z * z;
-        sight->finite = sight->finite && isfinite(here);
+        reading->finite = reading->finite && isfinite(here);
         square = here > square ? here : square;
     }
-    sight->largest = sqrt(square);
+    reading->largest = sqrt(square);
     return 0;
 }
 

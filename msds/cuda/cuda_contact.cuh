@@ -114,19 +114,20 @@ static __device__ inline void sight_parts(const tissue *t, const tissue_frame *f
 /* By one block, after a barrier. */
 static __device__ inline void sight_sum(const tissue *t, double residual, int solves, grid_scratch *s)
 {
-    msds_sight sight;
+    msds_reading reading;
     for (int a = 0; a < 3; a++) {
-        sight.force[a] = grid_total(t->part + (PART_FORCE + a) * t->chunks, t->chunks, s);
-        sight.torque[a] = grid_total(t->part + (PART_TORQUE + a) * t->chunks, t->chunks, s);
+        reading.force[a] = grid_total(t->part + (PART_FORCE + a) * t->chunks, t->chunks, s);
+        reading.torque[a] = grid_total(t->part + (PART_TORQUE + a) * t->chunks, t->chunks, s);
     }
-    sight.contacts = (int64_t)grid_total(t->part + PART_PRESSED * t->chunks, t->chunks, s);
-    sight.largest = sqrt(grid_most(t->part + PART_LARGEST * t->chunks, t->chunks, s));
-    sight.finite = grid_total(t->part + PART_BROKEN * t->chunks, t->chunks, s) == 0;
-    sight.residual = residual;
-    sight.solves = solves;
-    sight.met = *(const volatile bool *)&t->outcome->sight.met || sight.contacts > 0; /* any block may have set it */
+    reading.contacts = (int64_t)grid_total(t->part + PART_PRESSED * t->chunks, t->chunks, s);
+    reading.largest = sqrt(grid_most(t->part + PART_LARGEST * t->chunks, t->chunks, s));
+    reading.finite = grid_total(t->part + PART_BROKEN * t->chunks, t->chunks, s) == 0;
+    reading.residual = residual;
+    reading.solves = solves;
+    reading.met =
+        *(const volatile bool *)&t->outcome->reading.met || reading.contacts > 0; /* any block may have set it */
     if (threadIdx.x == 0)
-        t->outcome->sight = sight;
+        t->outcome->reading = reading;
 }
 
 #endif

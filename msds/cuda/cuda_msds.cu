@@ -383,15 +383,15 @@ static int cuda_step(cuda_state *s, const msds_plan *p, int64_t count, err *e)
     return result;
 }
 
-static int cuda_monitor(cuda_state *s, msds_sight *sight, err *e)
+static int cuda_monitor(cuda_state *s, msds_reading *reading, err *e)
 {
     if (CUDA_TRY(cudaMemcpyAsync(s->outcome, s->t.outcome, sizeof *s->outcome, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
-    *sight = s->outcome->sight;
+    *reading = s->outcome->reading;
     if (s->outcome->failed)
         return err_set(e, NULL, 0, "after %d solves the residual is still %.3g, or contact not settled; expected %.3g",
-                       s->outcome->sight.solves, s->outcome->sight.residual, exact_tolerance);
+                       s->outcome->reading.solves, s->outcome->reading.residual, exact_tolerance);
     return 0;
 }
 

@@ -51,7 +51,7 @@ static __device__ void push(const tissue *t, const tissue_frame *f, int32_t n, f
     for (int a = 0; a < 3; a++)
         force[a] += (float)(pushed * at.way[a]);
     if (place.w > 0)
-        t->outcome->sight.met = true;
+        t->outcome->reading.met = true;
 }
 
 /* AHEAD springs are loaded before the first of them is computed, each whole with its neighbour's

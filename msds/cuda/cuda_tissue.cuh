@@ -37,7 +37,7 @@ typedef enum tissue_part {
 } tissue_part;
 
 typedef struct tissue_outcome { /* of a frame */
-    msds_sight sight;
+    msds_reading reading;
     bool failed; /* an exact one did not come to its tolerance: here, or in a frame before that nobody looked at */
 } tissue_outcome;
 

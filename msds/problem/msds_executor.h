@@ -27,7 +27,7 @@ typedef struct msds_executor {
     /* Copies one of the state's arrays out. */
     int (*get)(msds_state *state, int what, double *to, err *e);
     /* What the last step led to. */
-    int (*monitor)(msds_state *state, msds_sight *sight, err *e);
+    int (*monitor)(msds_state *state, msds_reading *reading, err *e);
     /* Bytes of the device's memory that the state has by now. */
     int64_t (*bytes)(const msds_state *state);
 } msds_executor;

@@ -47,41 +47,42 @@ typedef struct msds_problem {
     msds_options options;
 } msds_problem;
 
-/* What a step that takes long is at. */
-typedef struct msds_doing {
+/* How far a step that takes long has come. */
+typedef struct msds_progress {
     const char *what; /* "solving" */
     double share;     /* of that, 0 to 1 */
     int solve;        /* of the frame, from 1; 0: none yet */
     double residual;  /* after the solve before; nan: not known yet */
     int64_t contacts; /* nodes near the probe */
-} msds_doing;
+} msds_progress;
 
-/* Who is told of it, as it goes on, by the thread that steps. The card's exact frames are one launch, and tell
+/* Whom a step tells of it meanwhile, in the thread that steps. The exact frames of a card are one launch, and tell
  * nothing. */
-typedef struct msds_watch {
-    void (*at)(void *context, const msds_doing *doing);
+typedef struct msds_listener {
+    void (*at)(void *context, const msds_progress *now);
     void *context;
-} msds_watch;
+} msds_listener;
 
 typedef struct msds_plan {
     msds_method method;
     double dt; /* s: of one step of springs */
     bool touched;
-    probe_placed probe;      /* where touched */
-    const msds_watch *watch; /* NULL: nobody */
+    probe_placed probe;            /* where touched */
+    const msds_listener *listener; /* NULL: nobody */
 } msds_plan;
 
-typedef struct msds_sight {
+/* What the monitor reads of a state. */
+typedef struct msds_reading {
     double force[3];  /* N: on the probe */
     double torque[3]; /* N m: on it, about its frame's origin */
     int64_t contacts; /* nodes that it presses */
-    double residual;  /* |external - internal forces| over |external| or |internal|, or
-                   * what is slight, as is most; or nan */
+    double residual;  /* |external - internal forces| over the largest of |external|, |internal| and a force that is
+                       * slight for the tissue; or nan */
     double largest;   /* m: the largest displacement */
     int solves;       /* that an exact frame took */
     bool finite;
     bool met; /* the probe has pressed a node in some step since the state was made */
-} msds_sight;
+} msds_reading;
 
 /* Makes p (zeroed) of the model at rest. -1 with e filled, and p to be freed all the same, for a model of other
  * elements, an element that is inverted or flat, and materials that are no such. */

@@ -39,7 +39,7 @@ int compare_frame(compare *c, const msds_executor *device, msds_state *state, co
                   err *e)
 {
     double off = 0, size = 0, worst = 0, largest = 0;
-    if (device->step(c->state, plan, count, e) || device->monitor(c->state, &c->sight, e) ||
+    if (device->step(c->state, plan, count, e) || device->monitor(c->state, &c->reading, e) ||
         device->get(state, MSDS_DISPLACEMENT, c->ours, e) || device->get(c->state, MSDS_DISPLACEMENT, c->other, e))
         return -1;
     const double *fem = plan->method == MSDS_SPRINGS ? c->ours : c->other;

@@ -10,7 +10,7 @@ typedef struct compare {
     const msds_problem *p;
     msds_state *state;
     double *ours, *other; /* nodes x 3, m */
-    msds_sight sight;     /* of the other */
+    msds_reading reading; /* of the other */
     double mean,
         worst; /* of the last frame: root mean square over that of the FEM; the largest over the FEM's largest */
 } compare;

@@ -48,11 +48,11 @@ typedef struct session {
     compare *other; /* the other method, or NULL */
     in *source;
     poses poses;
-    msds_method method; /* now */
-    msds_sight sight;   /* of the last frame */
+    msds_method method;   /* now */
+    msds_reading reading; /* of the last frame */
     int64_t next_frame;
     progress progress;
-    msds_watch watch;
+    msds_listener listener;
     int64_t posed; /* poses taken */
     double time;   /* s: of the last */
     peak moved, pushed;
@@ -183,7 +183,7 @@ static int put_numbers(const session *s, frame *f, const char *name, const doubl
     return a ? 0 : -1;
 }
 
-static int write_frame(session *s, const poses_event *at, const msds_sight *sight, err *e)
+static int write_frame(session *s, const poses_event *at, const msds_reading *reading, err *e)
 {
     frame f = {.index = s->next_frame++, .time = at->time};
     int result = -1;
@@ -195,8 +195,8 @@ static int write_frame(session *s, const poses_event *at, const msds_sight *sigh
         goto out;
     double row[7];
     pose_to_row(&at->at, row);
-    if (put_numbers(s, &f, "probe.pose", row, 7, e) || put_numbers(s, &f, "probe.force", sight->force, 3, e) ||
-        put_numbers(s, &f, "probe.torque", sight->torque, 3, e))
+    if (put_numbers(s, &f, "probe.pose", row, 7, e) || put_numbers(s, &f, "probe.force", reading->force, 3, e) ||
+        put_numbers(s, &f, "probe.torque", reading->torque, 3, e))
         goto out;
     if (s->skin.vertices && skin_model_put(&s->skin, &f, &s->m, e))
         goto out;
@@ -208,21 +208,20 @@ out:
 }
 
 /* Shows which pose, and, where that takes long, what of it. */
-static void show_work(void *context, const msds_doing *doing)
+static void show_work(void *context, const msds_progress *now)
 {
     session *s = context;
     char text[300], left[40] = "", at[80] = "", share[20] = "";
     if (!progress_due(&s->progress))
         return;
-    if (doing && doing->share > 0)
-        snprintf(share, sizeof share, ", %.0f %%", 100 * doing->share);
-    if (doing && !isnan(doing->residual))
-        snprintf(left, sizeof left, ", residual %.2g", doing->residual);
-    if (doing && doing->solve)
-        snprintf(at, sizeof at, "solve %d%s, %lld nodes near the probe: ", doing->solve, left,
-                 (long long)doing->contacts);
-    snprintf(text, sizeof text, "pose %lld, %.6g s%s%s%s%s", (long long)s->posed, s->time, doing ? ": " : "", at,
-             doing ? doing->what : "", share);
+    if (now && now->share > 0)
+        snprintf(share, sizeof share, ", %.0f %%", 100 * now->share);
+    if (now && !isnan(now->residual))
+        snprintf(left, sizeof left, ", residual %.2g", now->residual);
+    if (now && now->solve)
+        snprintf(at, sizeof at, "solve %d%s, %lld nodes near the probe: ", now->solve, left, (long long)now->contacts);
+    snprintf(text, sizeof text, "pose %lld, %.6g s%s%s%s%s", (long long)s->posed, s->time, now ? ": " : "", at,
+             now ? now->what : "", share);
     progress_text(&s->progress, text);
 }
 
@@ -252,17 +251,17 @@ static void say_heading(const session *s)
 static void say_frame(const session *s, double time)
 {
     static const char *const names[] = {"msds", "fem", "fem-exact"};
-    const msds_sight *sight = &s->sight;
+    const msds_reading *reading = &s->reading;
     char left[40] = "-", solves[40] = "-", other[100] = "", row[300];
-    if (!isnan(sight->residual))
-        snprintf(left, sizeof left, "%.3g", sight->residual);
-    if (sight->solves)
-        snprintf(solves, sizeof solves, "%d", sight->solves);
+    if (!isnan(reading->residual))
+        snprintf(left, sizeof left, "%.3g", reading->residual);
+    if (reading->solves)
+        snprintf(solves, sizeof solves, "%d", reading->solves);
     if (s->other)
-        snprintf(other, sizeof other, "  %9.4g  %8.4g  %8.4g", size_of(s->other->sight.force), s->other->mean,
+        snprintf(other, sizeof other, "  %9.4g  %8.4g  %8.4g", size_of(s->other->reading.force), s->other->mean,
                  s->other->worst);
     snprintf(row, sizeof row, "%10.6g  %-10s  %7lld  %9.4g  %9s  %6s%s", time, names[s->method],
-             (long long)sight->contacts, size_of(sight->force), left, solves, other);
+             (long long)reading->contacts, size_of(reading->force), left, solves, other);
     if (s->posed == 1)
         say_heading(s);
     say_row(s, row);
@@ -271,11 +270,11 @@ static void say_frame(const session *s, double time)
 /* The largest values so far: the last pose may have left the tissue. */
 static void find_peaks(session *s)
 {
-    const double force = size_of(s->sight.force);
-    if (s->posed == 1 || s->sight.largest > s->moved.value)
-        s->moved = (peak){s->sight.largest, s->time, 0};
+    const double force = size_of(s->reading.force);
+    if (s->posed == 1 || s->reading.largest > s->moved.value)
+        s->moved = (peak){s->reading.largest, s->time, 0};
     if (force > s->pushed.value)
-        s->pushed = (peak){force, s->time, s->sight.contacts};
+        s->pushed = (peak){force, s->time, s->reading.contacts};
 }
 
 /* Of all poses. */
@@ -341,8 +340,8 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     msds_plan plan = {.method = s->method,
                       .dt = s->o->dt / (double)s->substeps,
                       .touched = s->o->probe != NULL,
-                      .watch = s->progress.on ? &s->watch : NULL};
-    msds_sight sight = {0};
+                      .listener = s->progress.on ? &s->listener : NULL};
+    msds_reading reading = {0};
     press_moves moves;
     bool first = !s->press.any;
     if (press_to(&s->press, s->device, s->state, &at->at, at->time, s->method == MSDS_SPRINGS, &moves, e))
@@ -350,15 +349,15 @@ static int solve_frame(session *s, const poses_event *at, err *e)
     if (plan.touched)
         warn_of_pose(s, at, &moves, first);
     int64_t count = make_moves(s, s->state, &moves, &plan, true, e);
-    if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->monitor(s->state, &sight, e))
+    if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->monitor(s->state, &reading, e))
         return -1;
     const double dent = s->skin.vertices ? skin_largest(&s->skin) : 0;
-    if (!sight.finite || !isfinite(dent))
+    if (!reading.finite || !isfinite(dent))
         return diverged(s, at, e);
     s->dented = s->dented || dent > 0;
-    s->sight = sight;
-    s->press.contacts = sight.contacts;
-    if (write_frame(s, at, &sight, e))
+    s->reading = reading;
+    s->press.contacts = reading.contacts;
+    if (write_frame(s, at, &reading, e))
         return -1;
     if (!s->other)
         return 0;
@@ -372,7 +371,7 @@ static int simulate(session *s, err *e)
     poses_event at;
     int got;
     progress_start(&s->progress, run_options_table.name, "poses", 0, s->o->common.quiet);
-    s->watch = (msds_watch){show_work, s};
+    s->listener = (msds_listener){show_work, s};
     while ((got = poses_next(&s->poses, &at, e)) > 0) {
         if (at.kind != POSES_POSE) {
             progress_clear(&s->progress);
@@ -390,7 +389,7 @@ static int simulate(session *s, err *e)
             return -1;
         say_frame(s, at.time);
         find_peaks(s);
-        s->pressed = s->pressed || s->sight.met;
+        s->pressed = s->pressed || s->reading.met;
     }
     if (!got && !s->posed)
         return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");

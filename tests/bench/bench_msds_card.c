@@ -69,17 +69,18 @@ static msds_plan plan_of(int method, int number)
 static void measure(subject *s, int method, int number)
 {
     err e = {0};
-    msds_sight sight = {0};
+    msds_reading reading = {0};
     const msds_plan plan = plan_of(method, number);
     double start = bench_clock();
-    bench_must(
-        !s->card->step(s->state[method], &plan, ITERATIONS, &e) && !s->card->monitor(s->state[method], &sight, &e), &e);
+    bench_must(!s->card->step(s->state[method], &plan, ITERATIONS, &e) &&
+                   !s->card->monitor(s->state[method], &reading, &e),
+               &e);
     double took = bench_clock() - start;
     if (method == MSDS_EXACT) {
-        s->most = sight.solves > s->most ? sight.solves : s->most;
-        s->solves += sight.solves;
+        s->most = reading.solves > s->most ? reading.solves : s->most;
+        s->solves += reading.solves;
         s->frames++;
-        s->residual = fmax(s->residual, sight.residual);
+        s->residual = fmax(s->residual, reading.residual);
     }
     if (method == MSDS_EXACT && s->first == 0)
         s->first = took;

@@ -24,7 +24,7 @@ typedef struct pair { /* the same model here and there */
     const msds_executor *device[2]; /* the CPU, the card */
     msds_state *state[2];
     double *u[2], *v[2];
-    msds_sight sight[2];
+    msds_reading reading[2];
     double worst, force, torque; /* m, N, N m: the largest difference so far */
     int64_t different;           /* numbers that are not the same */
     double largest;              /* m, N: the largest so far */
@@ -91,10 +91,10 @@ static void compare_wrench(pair *c)
 {
     double off = 0, size = 0, twist = 0, torque = 0;
     for (int a = 0; a < 3; a++) {
-        off += pow(c->sight[1].force[a] - c->sight[0].force[a], 2);
-        size += pow(c->sight[0].force[a], 2);
-        twist += pow(c->sight[1].torque[a] - c->sight[0].torque[a], 2);
-        torque += pow(c->sight[0].torque[a], 2);
+        off += pow(c->reading[1].force[a] - c->reading[0].force[a], 2);
+        size += pow(c->reading[0].force[a], 2);
+        twist += pow(c->reading[1].torque[a] - c->reading[0].torque[a], 2);
+        torque += pow(c->reading[0].torque[a], 2);
     }
     c->pressed = fmax(c->pressed, sqrt(size));
     c->force = fmax(c->force, sqrt(off));
@@ -107,7 +107,7 @@ static void frame_of(pair *c, const msds_plan *plan, int64_t count)
     err e = {0};
     for (int i = 0; i < 2; i++)
         tets_must(!c->device[i]->step(c->state[i], plan, count, &e) &&
-                      !c->device[i]->monitor(c->state[i], &c->sight[i], &e) &&
+                      !c->device[i]->monitor(c->state[i], &c->reading[i], &e) &&
                       !c->device[i]->get(c->state[i], MSDS_DISPLACEMENT, c->u[i], &e) &&
                       !c->device[i]->get(c->state[i], MSDS_VELOCITY, c->v[i], &e),
                   &e);
@@ -115,10 +115,10 @@ static void frame_of(pair *c, const msds_plan *plan, int64_t count)
         c->worst = fmax(c->worst, fabs(c->u[1][k] - c->u[0][k]));
         c->different += c->u[1][k] != c->u[0][k] || c->v[1][k] != c->v[0][k];
     }
-    c->largest = fmax(c->largest, c->sight[0].largest);
+    c->largest = fmax(c->largest, c->reading[0].largest);
     compare_wrench(c);
-    c->different += c->sight[1].met != c->sight[0].met;
-    if (!(fabs(c->sight[1].largest - c->sight[0].largest) <= 1e-5 * c->largest))
+    c->different += c->reading[1].met != c->reading[0].met;
+    if (!(fabs(c->reading[1].largest - c->reading[0].largest) <= 1e-5 * c->largest))
         c->different++;
 }
 
@@ -164,9 +164,9 @@ static void test_same(const setting *g, msds_method method, const msds_executor 
     if (method != MSDS_EXACT && !g->options.penalty)
         ok(!c.different, "%s: the same numbers as the CPU's (%lld differ)", name, (long long)c.different);
     if (method != MSDS_SPRINGS)
-        ok(fabs(c.sight[1].residual - c.sight[0].residual) <=
-               (method == MSDS_EXACT ? 1e-6 : 1e-4 * c.sight[0].residual),
-           "%s: leaves %.4g, %.4g", name, c.sight[0].residual, c.sight[1].residual);
+        ok(fabs(c.reading[1].residual - c.reading[0].residual) <=
+               (method == MSDS_EXACT ? 1e-6 : 1e-4 * c.reading[0].residual),
+           "%s: leaves %.4g, %.4g", name, c.reading[0].residual, c.reading[1].residual);
     drop(&c);
 }
 
@@ -201,12 +201,13 @@ static void test_repeats(const tets *b, msds_method method, const msds_executor 
             tets_must(!cuda->step(state, &plan, 20, &e), &e);
         }
         double *to = c.u[repeat > 0];
-        tets_must(!cuda->get(state, MSDS_DISPLACEMENT, to, &e) && !cuda->monitor(state, &c.sight[repeat > 0], &e), &e);
+        tets_must(!cuda->get(state, MSDS_DISPLACEMENT, to, &e) && !cuda->monitor(state, &c.reading[repeat > 0], &e),
+                  &e);
         different += repeat > 0 && (memcmp(c.u[0], c.u[1], 3 * (size_t)c.p.nodes * sizeof *to) != 0 ||
-                                    memcmp(c.sight[0].force, c.sight[1].force, sizeof c.sight[0].force) != 0);
+                                    memcmp(c.reading[0].force, c.reading[1].force, sizeof c.reading[0].force) != 0);
         cuda->destroy(state);
     }
-    ok(!different && c.sight[0].largest > 1e-3, "%s: %d repeats, the same bytes", name, repeats);
+    ok(!different && c.reading[0].largest > 1e-3, "%s: %d repeats, the same bytes", name, repeats);
     drop(&c);
 }
 

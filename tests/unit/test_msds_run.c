@@ -16,7 +16,7 @@
 
 /* Solves `count` frames by a method from a start; returns displacements, the caller's to free. */
 static double *run_frames(const msds_problem *p, const msds_plan *plan, int threads, int count, int64_t iterations,
-                          msds_sight *sight)
+                          msds_reading *reading)
 {
     err e = {0};
     pool *workers = pool_create(threads, &e);
@@ -25,7 +25,7 @@ static double *run_frames(const msds_problem *p, const msds_plan *plan, int thre
     tets_must(state && u, &e);
     for (int i = 0; i < count; i++)
         tets_must(!msds_cpu.step(state, plan, iterations, &e), &e);
-    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, u, &e) && !msds_cpu.monitor(state, sight, &e), &e);
+    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, u, &e) && !msds_cpu.monitor(state, reading, &e), &e);
     msds_cpu.destroy(state);
     pool_destroy(workers);
     return u;
@@ -107,7 +107,7 @@ static void test_hanging(void)
 {
     model m = {0};
     msds_problem p = {0};
-    msds_sight sight;
+    msds_reading reading;
     err e = {0};
     msds_options o = tets_options();
     static const double x[] = {1, 0, 0, -.5, .8660254037844386, 0, -.5, -.8660254037844386, 0, 0, 0, -1};
@@ -123,7 +123,7 @@ static void test_hanging(void)
     tets_must(!msds_problem_make(&p, &m, &o, &e) && !largest_of(&p, &l, &e), &e);
     p.mass_factor = largest_factor(l.bound, o.damping, .01);
     msds_plan plan = tets_plan(MSDS_SPRINGS);
-    double *u = run_frames(&p, &plan, 1, 200, 100, &sight);
+    double *u = run_frames(&p, &plan, 1, 200, 100, &reading);
     double k = 2000, weight = p.weight[3] * 10, down = 1; /* 3 k (L - L0) down / L = weight */
     for (int i = 0; i < 200; i++) {
         double length = sqrt(1 + down * down), f = 3 * k * (length - sqrt(2.)) * down / length - weight;
@@ -140,7 +140,7 @@ static void test_column(void)
 {
     model m = {0};
     msds_problem p = {0};
-    msds_sight sight;
+    msds_reading reading;
     err e = {0};
     msds_options o = tets_options();
     tets b = {{3, 3, 9}, {.02, .02, .08}, 20000, .3, 1000, 2, false};
@@ -148,7 +148,7 @@ static void test_column(void)
     double worst = 0, heaviest = 0;
     make_problem(&b, &o, &m, &p);
     msds_plan plan = tets_plan(MSDS_SPRINGS);
-    double *u = run_frames(&p, &plan, 2, 3000, 20, &sight), *f = mem_array(p.nodes, 3 * sizeof *f, "test", &e);
+    double *u = run_frames(&p, &plan, 2, 3000, 20, &reading), *f = mem_array(p.nodes, 3 * sizeof *f, "test", &e);
     tets_must(f != NULL, &e);
     for (int64_t i = 0; i < p.springs; i++) { /* in double, from the definition: equation 1 */
         const msds_spring *s = &p.spring[i];
@@ -226,7 +226,7 @@ static void test_push(void)
 {
     model m = {0};
     msds_problem p = {0};
-    msds_sight sight;
+    msds_reading reading;
     err e = {0};
     msds_options o = tets_options();
     tets b = {{6, 5, 4}, {.1, .1, .1}, 3000, .45, 1000, -1, false};
@@ -239,14 +239,14 @@ static void test_push(void)
     tets_press(&plan, .04, .055, .045, .09);
     tets_must(state && v, &e);
     for (int i = 0; i < 4; i++) {
-        tets_must(!msds_cpu.step(state, &plan, 3, &e) && !msds_cpu.monitor(state, &sight, &e), &e);
+        tets_must(!msds_cpu.step(state, &plan, 3, &e) && !msds_cpu.monitor(state, &reading, &e), &e);
         sum_momentum(&p, state, v, before);
         tets_must(!msds_cpu.step(state, &plan, 1, &e), &e);
         sum_momentum(&p, state, v, after);
         double off = 0, size = 0;
         for (int a = 0; a < 3; a++) {
-            off = fmax(off, fabs((after[a] - before[a]) / plan.dt + sight.force[a]));
-            size = fmax(size, fabs(sight.force[a]));
+            off = fmax(off, fabs((after[a] - before[a]) / plan.dt + reading.force[a]));
+            size = fmax(size, fabs(reading.force[a]));
         }
         ok(size > 0 && off < 1e-3 * size, "the force on the probe, %.4g N, is what the block gains, to %.2g", size,
            off / size);
@@ -275,11 +275,11 @@ static void test_bound(void)
         p.displacement[i] = p.fixed[i / 3] ? 0 : 1e-7 * sin(2.3 * (double)i);
     for (int above = 0; above < 2; above++) {
         msds_plan plan = tets_plan(MSDS_SPRINGS);
-        msds_sight sight;
+        msds_reading reading;
         plan.dt = stable * (above ? 1.01 : .995);
-        free(run_frames(&p, &plan, 1, 1, 2000, &sight));
-        ok(above ? !(sight.largest < 1e-4) : sight.largest < 3e-7, "a step of %s the stable one %s: %g m",
-           above ? "1.01" : ".995", above ? "grows" : "does not grow", sight.largest);
+        free(run_frames(&p, &plan, 1, 1, 2000, &reading));
+        ok(above ? !(reading.largest < 1e-4) : reading.largest < 3e-7, "a step of %s the stable one %s: %g m",
+           above ? "1.01" : ".995", above ? "grows" : "does not grow", reading.largest);
     }
     free_problem(&m, &p);
 }
@@ -299,8 +299,8 @@ static void test_patch(void)
             p.displacement[i] += slope[3 * (i % 3) + c] * p.position[i / 3 * 3 + c];
     for (int exact = 0; exact < 2; exact++) {
         msds_plan plan = tets_plan(exact ? MSDS_EXACT : MSDS_FEM);
-        msds_sight sight;
-        double *u = run_frames(&p, &plan, 2, exact ? 3 : 1, 200, &sight), worst = 0;
+        msds_reading reading;
+        double *u = run_frames(&p, &plan, 2, exact ? 3 : 1, 200, &reading), worst = 0;
         for (int64_t i = 0; i < 3 * p.nodes; i++) {
             double want = 0;
             for (int c = 0; c < 3; c++)
@@ -321,7 +321,7 @@ static void test_contact(void)
     msds_problem p = {0};
     msds_options o = tets_options();
     tets b = {{11, 11, 7}, {.1, .1, .06}, 3000, .45, 1000, 2, false};
-    msds_sight exact, cg, springs;
+    msds_reading exact, cg, springs;
     make_problem(&b, &o, &m, &p);
     msds_plan plan = tets_plan(MSDS_EXACT);
     tets_press(&plan, .02, .052, .047, .052);
@@ -359,7 +359,7 @@ static void test_penalty(void)
     err e = {0};
     msds_options o = tets_options();
     tets b = {{11, 11, 7}, {.1, .1, .06}, 3000, .45, 1000, 2, false};
-    msds_sight exact, cg;
+    msds_reading exact, cg;
     o.penalty = true;
     make_problem(&b, &o, &m, &p);
     msds_plan plan = tets_plan(MSDS_EXACT);
@@ -448,7 +448,7 @@ static void test_warped(void)
     msds_problem p = {0};
     msds_options o = tets_options();
     tets b = {{11, 4, 4}, {.1, .03, .03}, 20000, .4, 1000, 0, false};
-    msds_sight exact, cg;
+    msds_reading exact, cg;
     o.warp = true;
     o.gravity[2] = -9.81;
     make_problem(&b, &o, &m, &p);
@@ -480,10 +480,11 @@ static void test_threads(void)
     make_problem(&b, &o, &m, &p);
     for (int method = 0; method < 3; method++) {
         msds_plan plan = tets_plan((msds_method)method);
-        msds_sight sight;
+        msds_reading reading;
         tets_press(&plan, .02, .08, .04, .074);
-        double *one = run_frames(&p, &plan, 1, 3, 20, &sight), *two_threads = run_frames(&p, &plan, 2, 3, 20, &sight);
-        double *three = run_frames(&p, &plan, 3, 3, 20, &sight);
+        double *one = run_frames(&p, &plan, 1, 3, 20, &reading),
+               *two_threads = run_frames(&p, &plan, 2, 3, 20, &reading);
+        double *three = run_frames(&p, &plan, 3, 3, 20, &reading);
         size_t size = 3 * (size_t)p.nodes * sizeof *one;
         ok(!memcmp(one, two_threads, size) && !memcmp(one, three, size), "%s: the same bytes by 1, 2 and 3 threads",
            names[method]);

@@ -21,7 +21,7 @@ typedef struct pressed {
     model m;
     msds_problem p;
     double *u; /* nodes x 3, m */
-    msds_sight sight;
+    msds_reading reading;
 } pressed;
 
 static void press(pressed *s, const tets *b, const msds_plan *plan, int frames, int64_t iterations)
@@ -39,7 +39,7 @@ static void press(pressed *s, const tets *b, const msds_plan *plan, int frames, 
     tets_must(state && s->u, &e);
     for (int i = 0; i < frames; i++)
         tets_must(!msds_cpu.step(state, plan, iterations, &e), &e);
-    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, s->u, &e) && !msds_cpu.monitor(state, &s->sight, &e), &e);
+    tets_must(!msds_cpu.get(state, MSDS_DISPLACEMENT, s->u, &e) && !msds_cpu.monitor(state, &s->reading, &e), &e);
     msds_cpu.destroy(state);
     pool_destroy(workers);
 }
@@ -122,12 +122,12 @@ static void through_the_centre(void)
     press(&s, &block, &plan, 3, 40);
     for (int a = 0; a < 3; a++)
         arm[a] = -.02 * plan.probe.axis[2][a];
-    cross(arm, s.sight.force, want);
-    ok(s.sight.contacts > 3 && s.sight.force[2] > 1e-2 && length(want) > 1e-3 * length(s.sight.force),
-       "springs push a ball back: %.4g N, by %lld nodes", s.sight.force[2], (long long)s.sight.contacts);
-    ok(apart(s.sight.torque, want) < 1e-7 * length(want),
-       "with a torque of (%.4g, %.4g, %.4g) N m, as through its centre", s.sight.torque[0], s.sight.torque[1],
-       s.sight.torque[2]);
+    cross(arm, s.reading.force, want);
+    ok(s.reading.contacts > 3 && s.reading.force[2] > 1e-2 && length(want) > 1e-3 * length(s.reading.force),
+       "springs push a ball back: %.4g N, by %lld nodes", s.reading.force[2], (long long)s.reading.contacts);
+    ok(apart(s.reading.torque, want) < 1e-7 * length(want),
+       "with a torque of (%.4g, %.4g, %.4g) N m, as through its centre", s.reading.torque[0], s.reading.torque[1],
+       s.reading.torque[2]);
     let_go(&s);
 }
 
@@ -156,10 +156,10 @@ static void from_the_stresses(msds_method method, int64_t iterations, double tol
             torque[a] += twist[a];
     }
     const double size = length(force);
-    ok(size > .1 && length(torque) > .002 * size && apart(s.sight.force, force) < tolerance * size,
+    ok(size > .1 && length(torque) > .002 * size && apart(s.reading.force, force) < tolerance * size,
        "%s: a force of %.4g N, as the stresses say", names[method], size);
-    ok(apart(s.sight.torque, torque) < tolerance * .02 * size, "and a torque of (%.4g, %.4g, %.4g) N m",
-       s.sight.torque[0], s.sight.torque[1], s.sight.torque[2]);
+    ok(apart(s.reading.torque, torque) < tolerance * .02 * size, "and a torque of (%.4g, %.4g, %.4g) N m",
+       s.reading.torque[0], s.reading.torque[1], s.reading.torque[2]);
     free(f);
     let_go(&s);
 }
@@ -179,10 +179,10 @@ static void what_is_fixed(msds_method method)
         loose += hit && !s.p.fixed[n];
     }
     ok(inside > 2 && !loose, "%lld fixed nodes are in the probe, and none that is free", (long long)inside);
-    ok(!s.sight.contacts && !s.sight.met && length(s.sight.force) == 0 && length(s.sight.torque) == 0 &&
-           s.sight.largest == 0,
-       "%s: they press nothing: %lld contacts, %g N", names[method], (long long)s.sight.contacts,
-       length(s.sight.force));
+    ok(!s.reading.contacts && !s.reading.met && length(s.reading.force) == 0 && length(s.reading.torque) == 0 &&
+           s.reading.largest == 0,
+       "%s: they press nothing: %lld contacts, %g N", names[method], (long long)s.reading.contacts,
+       length(s.reading.force));
     let_go(&s);
 }
 
@@ -211,9 +211,9 @@ static void beside_the_fixed(void)
         for (int a = 0; a < 3; a++)
             force[a] -= s.p.repulsion[n] * t.depth * t.way[a];
     }
-    ok(fixed > 1 && count > 1 && s.sight.contacts == count,
+    ok(fixed > 1 && count > 1 && s.reading.contacts == count,
        "%lld fixed nodes in the probe, %lld free ones: these press", (long long)fixed, (long long)count);
-    ok(apart(s.sight.force, force) < 1e-3 * length(force), "with what their springs give: %.4g N", length(force));
+    ok(apart(s.reading.force, force) < 1e-3 * length(force), "with what their springs give: %.4g N", length(force));
     let_go(&s);
 }
 
