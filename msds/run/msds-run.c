@@ -183,8 +183,9 @@ static int put_numbers(const session *s, frame *f, const char *name, const doubl
     return a ? 0 : -1;
 }
 
-static int write_frame(session *s, const poses_event *at, const msds_reading *reading, err *e)
+static int write_frame(session *s, const poses_event *at, err *e)
 {
+    const msds_reading *reading = &s->reading;
     frame f = {.index = s->next_frame++, .time = at->time};
     int result = -1;
     model_array *u = frame_add(&f, &s->m, "node.displacement", e);
@@ -335,35 +336,83 @@ static int diverged(const session *s, const poses_event *at, err *e)
                         "diverged at %.6g s: displacements are no longer finite; expected a smaller --dt", at->time);
 }
 
+/* Moves the probe to its pose; the tissue and the skin follow. */
+static int solve_pose(session *s, const poses_event *at, const press_moves *moves, msds_plan *plan, err *e)
+{
+    msds_reading reading = {0};
+    const int64_t count = make_moves(s, s->state, moves, plan, true, e);
+    if (count < 0 || s->device->step(s->state, plan, count, e) || s->device->monitor(s->state, &reading, e))
+        return -1;
+    const double dent = s->skin.vertices ? skin_largest(&s->skin) : 0;
+    if (!reading.finite || !isfinite(dent))
+        return diverged(s, at, e);
+    s->dented = s->dented || dent > 0;
+    s->pressed = s->pressed || reading.met;
+    s->reading = reading;
+    s->press.contacts = reading.contacts;
+    return 0;
+}
+
+/* The same moves by the other method, whose tissue is compared. */
+static int solve_other(session *s, const press_moves *moves, msds_plan *plan, err *e)
+{
+    plan->method = method_of(s, s->method == MSDS_SPRINGS);
+    const int64_t count = make_moves(s, s->other->state, moves, plan, false, e);
+    return count < 0 ? -1 : compare_frame(s->other, s->device, s->state, plan, count, e);
+}
+
 static int solve_frame(session *s, const poses_event *at, err *e)
 {
     msds_plan plan = {.method = s->method,
                       .dt = s->o->dt / (double)s->substeps,
                       .touched = s->o->probe != NULL,
                       .listener = s->progress.on ? &s->listener : NULL};
-    msds_reading reading = {0};
     press_moves moves;
-    bool first = !s->press.any;
+    const bool first = !s->press.any;
     if (press_to(&s->press, s->device, s->state, &at->at, at->time, s->method == MSDS_SPRINGS, &moves, e))
         return -1;
     if (plan.touched)
         warn_of_pose(s, at, &moves, first);
-    int64_t count = make_moves(s, s->state, &moves, &plan, true, e);
-    if (count < 0 || s->device->step(s->state, &plan, count, e) || s->device->monitor(s->state, &reading, e))
+    if (solve_pose(s, at, &moves, &plan, e) || write_frame(s, at, e))
         return -1;
-    const double dent = s->skin.vertices ? skin_largest(&s->skin) : 0;
-    if (!reading.finite || !isfinite(dent))
-        return diverged(s, at, e);
-    s->dented = s->dented || dent > 0;
-    s->reading = reading;
-    s->press.contacts = reading.contacts;
-    if (write_frame(s, at, &reading, e))
+    return s->other ? solve_other(s, &moves, &plan, e) : 0;
+}
+
+/* A line that changes the method. */
+static void change_method(session *s, const poses_event *at)
+{
+    progress_clear(&s->progress);
+    s->method = method_of(s, at->kind == POSES_FEM);
+    if (s->method == MSDS_SPRINGS)
+        say_springs(s);
+    tool_detail(s->t, "line %lld: the method is %s from here on", (long long)at->line, s->method ? "fem" : "msds");
+}
+
+static int take_pose(session *s, const poses_event *at, err *e)
+{
+    s->posed++;
+    s->time = at->time;
+    show_work(s, NULL);
+    if (solve_frame(s, at, e))
         return -1;
-    if (!s->other)
-        return 0;
-    plan.method = method_of(s, s->method == MSDS_SPRINGS);
-    count = make_moves(s, s->other->state, &moves, &plan, false, e);
-    return count < 0 ? -1 : compare_frame(s->other, s->device, s->state, &plan, count, e);
+    say_frame(s, at->time);
+    find_peaks(s);
+    return 0;
+}
+
+static void warn_of_misses(session *s)
+{
+    if (s->o->probe && !s->pressed)
+        notes_add(
+            &s->warnings,
+            "the probe touches nothing in any frame (%lld in all); expected poses in metres, in the model's space, "
+            "and nodes closer together than the probe is wide",
+            (long long)s->posed);
+    if (s->pressed && s->skin.vertices && !s->dented)
+        notes_add(&s->warnings,
+                  "the probe presses the tissue, but touches the skin in no frame; expected %s in the place of the "
+                  "tissue; check --unit",
+                  s->skin_name);
 }
 
 static int simulate(session *s, err *e)
@@ -372,42 +421,19 @@ static int simulate(session *s, err *e)
     int got;
     progress_start(&s->progress, run_options_table.name, "poses", 0, s->o->common.quiet);
     s->listener = (msds_listener){show_work, s};
-    while ((got = poses_next(&s->poses, &at, e)) > 0) {
-        if (at.kind != POSES_POSE) {
-            progress_clear(&s->progress);
-            s->method = method_of(s, at.kind == POSES_FEM);
-            if (s->method == MSDS_SPRINGS)
-                say_springs(s);
-            tool_detail(s->t, "line %lld: the method is %s from here on", (long long)at.line,
-                        s->method ? "fem" : "msds");
-            continue;
-        }
-        s->posed++;
-        s->time = at.time;
-        show_work(s, NULL);
-        if (solve_frame(s, &at, e))
+    while ((got = poses_next(&s->poses, &at, e)) > 0)
+        if (at.kind != POSES_POSE)
+            change_method(s, &at);
+        else if (take_pose(s, &at, e))
             return -1;
-        say_frame(s, at.time);
-        find_peaks(s);
-        s->pressed = s->pressed || s->reading.met;
-    }
-    if (!got && !s->posed)
-        return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
-    if (!got && s->o->probe && !s->pressed)
-        notes_add(
-            &s->warnings,
-            "the probe touches nothing in any frame (%lld in all); expected poses in metres, in the model's space, "
-            "and nodes closer together than the probe is wide",
-            (long long)s->posed);
-    if (!got && s->pressed && s->skin.vertices && !s->dented)
-        notes_add(&s->warnings,
-                  "the probe presses the tissue, but touches the skin in no frame; expected %s in the place of the "
-                  "tissue; check --unit",
-                  s->skin_name);
     progress_clear(&s->progress);
-    if (!got)
-        say_end(s);
-    return got;
+    if (got < 0)
+        return -1;
+    if (!s->posed)
+        return err_set(e, in_name(s->source), 0, "no pose; expected lines `time tx ty tz qx qy qz qw`");
+    warn_of_misses(s);
+    say_end(s);
+    return 0;
 }
 
 static int read_probe(session *s, err *e)
