@@ -135,22 +135,45 @@ static void put_sets(const writer *w)
     }
 }
 
+/* The row of a form, or NULL. */
+static const inp_law *inp_law_of(form f)
+{
+    for (int i = 0; i < INP_LAWS; i++)
+        if (inp_laws[i].form == f)
+            return &inp_laws[i];
+    return NULL;
+}
+
+int export_inp_has_law(const law_row *law, const char *name, err *e)
+{
+    char words[INP_LAWS * 40] = "";
+    if (law->form == FORM_LINEAR || inp_law_of(law->form))
+        return 0;
+    for (int i = 0; i < INP_LAWS; i++) {
+        const size_t at = strlen(words);
+        snprintf(words + at, sizeof words - at, "%s%s", i == INP_LAWS - 1 ? " or " : ", ",
+                 law_of_form(inp_laws[i].form)->name);
+    }
+    return err_set(e, NULL, 0,
+                   "material '%.200s' has the law '%s', which Abaqus's files do not have here; expected %s%s", name,
+                   law->name, law_of_form(FORM_LINEAR)->name, words);
+}
+
 /* "*ELASTIC" or "*HYPERELASTIC, NEO HOOKE" or another, and its constants. */
 static void put_law(const writer *w, const material *of)
 {
     const double moduli[] = {material_young(of), material_poisson(of)};
+    const inp_law *law = inp_law_of(material_form(of));
     double c[FORM_NUMBERS], constants[INP_CONSTANTS];
-    material_coefficients(of, c);
-    if (material_form(of) == FORM_LINEAR) {
+    if (!law) { /* FORM_LINEAR: open_tables refuses others */
         out_text(w->to, "*ELASTIC\n");
         put_numbers(moduli, 2, w->to);
+        return;
     }
-    for (int i = 0; i < INP_LAWS; i++)
-        if (inp_laws[i].form == material_form(of)) {
-            inp_law_write(&inp_laws[i], c, constants);
-            out_format(w->to, "*HYPERELASTIC, %s\n", inp_laws[i].name);
-            put_numbers(constants, inp_laws[i].constants, w->to);
-        }
+    material_coefficients(of, c);
+    inp_law_write(law, c, constants);
+    out_format(w->to, "*HYPERELASTIC, %s\n", law->name);
+    put_numbers(constants, law->constants, w->to);
 }
 
 static void put_materials(const writer *w)
@@ -206,7 +229,7 @@ static int open_tables(writer *w, const model *m, err *e)
     if (!w->laws)
         return -1;
     for (int64_t i = 0; i < w->materials; i++)
-        if (materials_of(m, i, &w->laws[i], e))
+        if (materials_of(m, i, &w->laws[i], e) || export_inp_has_law(w->laws[i].law, law->str[i], e))
             return -1;
     for (int64_t i = 0; i < w->volume->rows; i++)
         w->count[w->volume->i32[i]]++;

@@ -6,6 +6,7 @@
 
 #include "base/out.h"
 #include "exchange/export_shape.h"
+#include "physics/law.h"
 
 typedef struct export_inp_options {
     const char *element; /* of hexahedra: "C3D8R" or "C3D8" */
@@ -13,9 +14,11 @@ typedef struct export_inp_options {
 } export_inp_options;
 
 /* Writes the rest model. -1 with e filled and nothing written where it lacks volumes or materials, or a value makes no
- * material. What is left
- * out (an empty volume) is noted. */
+ * material, or a law is not in such files (export_inp_has_law). What is left out (an empty volume) is noted. */
 int export_inp(const model *m, const export_inp_options *options, out *to, notes *warnings, err *e);
+
+/* -1 with e filled where the files have no such law. name: of the material. */
+int export_inp_has_law(const law_row *law, const char *name, err *e);
 
 /* The shortest text of at most 20 characters (the field of an input file) that is nearest to the value. text holds
  * 32 bytes. */

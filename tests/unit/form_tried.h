@@ -1,0 +1,28 @@
+/* Coefficients to try each form with: of a shear modulus and a bulk modulus at rest (Pa). A new form has its case here,
+ * from which the tests of forms, of the stable step and of steppers take them. Owns nothing.
+ */
+#ifndef SINEW_FORM_TRIED_H
+#define SINEW_FORM_TRIED_H
+
+#include "physics/forms.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+/* False, and all of c 0, where the form has no case. */
+static inline bool form_tried(form f, double mu, double bulk, double c[FORM_NUMBERS])
+{
+    memset(c, 0, FORM_NUMBERS * sizeof *c);
+    switch (f) {
+    case FORM_NEO_HOOKEAN:
+        c[0] = mu, c[1] = bulk;
+        return true;
+    case FORM_MOONEY_RIVLIN: /* mu = 2 (c10 + c01) */
+        c[0] = .3 * mu, c[1] = .2 * mu, c[2] = bulk;
+        return true;
+    default:
+        return false;
+    }
+}
+
+#endif
