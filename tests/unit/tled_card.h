@@ -2,6 +2,7 @@
 #ifndef SINEW_TLED_CARD_H
 #define SINEW_TLED_CARD_H
 
+#include "form_tried.h"
 #include "tled_bench.h"
 
 #include <inttypes.h>
@@ -33,23 +34,19 @@ static inline void add_script(bench *b)
                    "0.04 displace 0.169,-1,-1,1,0.001,1 -,0.002,-0.003\n");
 }
 
-/* Whether problems that are made are expressed in the Mooney-Rivlin form, of the same moduli: c01 has .4 of mu. */
-static bool in_second_form;
+/* The form that problems which are made are in; their moduli stay. */
+static form in_form = FORM_NEO_HOOKEAN;
 
-static inline void express_law(tled_law *law)
+static inline void put_in_form(tled_problem *p)
 {
-    law->c[0] = .3 * law->mu;
-    law->c[1] = .2 * law->mu;
-    law->c[2] = law->bulk;
-}
-
-static inline void express_second(tled_problem *p)
-{
-    p->form = FORM_MOONEY_RIVLIN;
+    bool has = true;
+    p->form = in_form;
     for (int32_t i = 0; i < p->volumes; i++)
-        express_law(&p->volume[i].law);
+        has = form_tried(in_form, p->volume[i].law.mu, p->volume[i].law.bulk, p->volume[i].law.c) && has;
     for (int64_t i = 0; i < p->laws; i++)
-        express_law(&p->law[i]);
+        has = form_tried(in_form, p->law[i].mu, p->law[i].bulk, p->law[i].c) && has;
+    if (!has)
+        ok(false, "form %d: form_tried.h has coefficients", (int)in_form);
 }
 
 /* So many steps of a fraction of the stable one, which is never cut, so that both take the same. */
@@ -59,8 +56,8 @@ static inline void make(bench *b, const block *what, double level, bool scripted
     bench_make(b, what, NULL, level, .0075, 2);
     if (scripted)
         add_script(b);
-    if (in_second_form)
-        express_second(&b->problem);
+    if (in_form != FORM_NEO_HOOKEAN) /* which they are in */
+        put_in_form(&b->problem);
     bench_steps(b, steps, b->setup.damping);
     b->setup.device = device;
     b->setup.rate = 3 / step_at_rest(&b->problem, NULL);
