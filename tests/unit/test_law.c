@@ -7,6 +7,17 @@
 #include <math.h>
 #include <string.h>
 
+/* A value from the key's range: 3000 and more where it is that wide, else nine tenths of the way up. No two groups have
+ * the same. */
+static double allowed(int key, int group)
+{
+#define RANGE(key, unit, low, high, meaning) {low, high},
+    static const double range[][2] = {LAW_KEYS(RANGE)};
+#undef RANGE
+    const double low = range[key][0], high = range[key][1];
+    return high > 1e4 ? fmax(low, 3000) + 100 * group : low + (.9 + .01 * group) * (high - low);
+}
+
 /* Values for the last key of each group: of K or nu it is K. */
 static void fill_last(const law_row *a, double *value)
 {
@@ -16,7 +27,7 @@ static void fill_last(const law_row *a, double *value)
         int key = law_next_key(a->group[g], 0);
         for (int next = key; next >= 0; next = law_next_key(a->group[g], next + 1))
             key = next;
-        value[key] = key == LAW_nu ? .45 : 3000 + 100 * g;
+        value[key] = allowed(key, g);
     }
 }
 
@@ -42,7 +53,8 @@ static void whole(const law_row *a)
 static void mooney_rivlin(void)
 {
     const law_row *a = law_find("mooney-rivlin");
-    const double by_bulk[] = {NAN, NAN, 2500, 500, 1e5}, by_poisson[] = {NAN, .49, 2500, 500, NAN};
+    const double by_bulk[] = {[LAW_nu] = NAN, [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = 1e5};
+    const double by_poisson[] = {[LAW_nu] = .49, [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = NAN};
     char words[LAW_WORDS];
     double c[FORM_NUMBERS];
     a->fill(by_bulk, c);

@@ -16,7 +16,7 @@
 
 static const char begin[] = ".\\\" laws\n", end[] = ".\\\" end laws\n";
 
-/* The values that the figures are for. */
+/* The values that the figures are for: of every key that is the last of its group in a law. 0: there is none. */
 static const double example[LAW_OWN_KEYS] = {
     [LAW_E] = 3000, [LAW_nu] = .45, [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = 1e5};
 
@@ -56,13 +56,21 @@ static int last_of(unsigned group)
     return key;
 }
 
+/* In small letters, and no symbol, such as c01. */
+static bool begins_with_word(const char *text)
+{
+    const size_t letters = strspn(text, "abcdefghijklmnopqrstuvwxyz");
+    return letters > 1 && (!text[letters] || strchr(" ,'", text[letters]));
+}
+
 static void print_key(out *o, int key)
 {
     char name[64], words[KNOWN_WORDS];
     snprintf(name, sizeof name, "material.%s", law_key_name((law_key)key));
     const known *k = known_find(name);
+    const bool word = begins_with_word(k->meaning);
     known_words(k, words);
-    out_format(o, ".It Cm %s\n%c%s: %s.\n", law_key_name((law_key)key), k->meaning[0] - (k->meaning[0] >= 'a' ? 32 : 0),
+    out_format(o, ".It Cm %s\n%c%s: %s.\n", law_key_name((law_key)key), k->meaning[0] - (word ? 'a' - 'A' : 0),
                k->meaning + 1, words);
 }
 
@@ -118,6 +126,20 @@ static void print(out *o)
     out_text(o, end);
 }
 
+/* Without them the page would have figures of values that nobody chose. */
+static void has_examples(const law_row *of)
+{
+    bool given = true;
+    for (int g = 0; g < LAW_GROUPS && of->group[g]; g++) {
+        const int key = last_of(of->group[g]);
+        if (example[key] == 0) {
+            printf("# example[] has no %s\n", law_key_name((law_key)key));
+            given = false;
+        }
+    }
+    ok(given, "%s: each of its keys has an example", of->name);
+}
+
 /* Whether the page holds the text; the first line that differs is told. */
 static bool page_has(const char *page, const char *text)
 {
@@ -143,7 +165,10 @@ int main(int argc, char **argv)
     in *s = in_open("man/sinew-laws.7", &e);
     ok(s && in_all(s, &page, &e) > 0, "the manual page is there %s", e.text);
     ok(page_has(page, (const char *)out_bytes(o, &size)), "its laws are physics/law.c's");
-    const double neo[] = {[LAW_E] = 3000, [LAW_nu] = .45}, mooney[] = {NAN, NAN, 2500, 500, 1e5};
+    const double neo[] = {[LAW_E] = 3000, [LAW_nu] = .45};
+    const double mooney[] = {[LAW_nu] = NAN, [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = 1e5};
+    for (int i = 0; law_at(i); i++)
+        has_examples(law_at(i));
     near_(pulled(law_find("neo-hookean"), neo, 1.2), 502.2590, 1e-4, "neo-hookean, 1.2");
     near_(pulled(law_find("mooney-rivlin"), mooney, 1.2), 2882.59, 1e-2, "mooney-rivlin, 1.2");
     near_(pulled(law_find("mooney-rivlin"), mooney, .8), -4677.80, 1e-2, "mooney-rivlin, 0.8");

@@ -153,6 +153,24 @@ static void test_all_marched(const tled_executor *cuda)
     test_marched(&cut, 0, true, 60, cuda, "mixed elements, a script");
 }
 
+/* Forms that no march has, on the card. */
+static void test_forms_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
+{
+    char what[80];
+    block mixed = muscle;
+    mixed.mixed = true;
+    for (int f = 0; f < FORM_STEPPED; f++) {
+        if (f == FORM_NEO_HOOKEAN)
+            continue;
+        in_form = (form)f;
+        snprintf(what, sizeof what, "%s, form %d, a script", name, f);
+        test_bytes(&lump, 0, true, 1000, cpu, cuda, what);
+        snprintf(what, sizeof what, "%s, form %d, mixed elements", name, f);
+        test_bytes(&mixed, .5, false, 1000, cpu, cuda, what);
+    }
+    in_form = FORM_NEO_HOOKEAN;
+}
+
 static void test_all_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
 {
     char what[80];
@@ -321,6 +339,8 @@ int main(void)
     }
     test_all_bytes(&tled_cpu_double, twice, "double");
     test_all_bytes(&tled_cpu_single, once, "single");
+    test_forms_bytes(&tled_cpu_double, twice, "double");
+    test_forms_bytes(&tled_cpu_single, once, "single");
     test_all_marched(once);
     test_long(twice, "double");
     test_long(once, "single");
