@@ -81,8 +81,10 @@ int material_edit_take(material_edit *r, int name, const char *text, const char 
 static void all_words(const law_row *of, char to[LAW_WORDS])
 {
     law_words(of, -1, to);
-    const size_t at = strlen(to);
-    snprintf(to + at, LAW_WORDS - at, ", density, peak");
+    for (int k = LAW_OWN_KEYS; k < LAW_ALL_KEYS; k++) {
+        const size_t at = strlen(to);
+        snprintf(to + at, LAW_WORDS - at, ", %s", law_key_name((law_key)k));
+    }
 }
 
 /* lacking: the keys of one group. */

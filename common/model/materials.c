@@ -151,46 +151,59 @@ int materials_read(model *m, in *s, err *e)
     return materials_read_with(m, s, NULL, e);
 }
 
+/* The rows of a file as far as they are read; owned. */
+typedef struct row_list {
+    row *row;
+    int32_t count;
+    int64_t capacity;
+    lookup index; /* of their names */
+} row_list;
+
+static void rows_free(row_list *of)
+{
+    for (int32_t i = 0; i < of->count; i++)
+        free(of->row[i].name);
+    free(of->row);
+    lookup_free(&of->index);
+}
+
+/* The line of `k`; what it does not give is of `usual`. */
+static int read_row(row_list *to, keyfile *k, const material *usual, err *e)
+{
+    material_edit edit = {0};
+    if (parse_name(k, e))
+        return -1;
+    if (lookup_find(&to->index, to->row, sizeof *to->row, k->word[0]) >= 0)
+        return keyfile_error(k, e, "material '%.200s' is given twice; expected each name once", k->word[0]);
+    if (mem_grow(&to->row, &to->capacity, (int64_t)to->count + 1, sizeof *to->row, "materials", e))
+        return -1;
+    row *r = &to->row[to->count];
+    *r = (row){.of = *usual, .name = mem_text(k->word[0], e)};
+    if (!r->name)
+        return -1;
+    to->count++;
+    return lookup_add(&to->index, to->row, sizeof *to->row, to->count, e) || row_parse(&edit, k, e)
+               ? -1
+               : material_edit_apply(&r->of, &edit, k->name, k->line, e);
+}
+
 int materials_read_with(model *m, in *s, const material *fallback, err *e)
 {
-    material usual = materials_fallback();
+    const material usual = fallback ? *fallback : materials_fallback();
     keyfile k;
-    row *rows = NULL;
-    lookup index = {0};
-    int32_t count = 0;
-    int64_t capacity = 0;
+    row_list rows = {0};
     int more, status = -1;
     keyfile_open(&k, s);
-    while ((more = keyfile_next(&k, e)) > 0) {
-        if (parse_name(&k, e))
-            goto out;
-        if (lookup_find(&index, rows, sizeof *rows, k.word[0]) >= 0) {
-            keyfile_error(&k, e, "material '%.200s' is given twice; expected each name once", k.word[0]);
-            goto out;
+    while ((more = keyfile_next(&k, e)) > 0)
+        if (read_row(&rows, &k, &usual, e)) {
+            more = -1;
+            break;
         }
-        if (mem_grow(&rows, &capacity, (int64_t)count + 1, sizeof *rows, "materials", e))
-            goto out;
-        row *r = &rows[count];
-        material_edit edit = {0};
-        *r = (row){.of = fallback ? *fallback : usual};
-        if (!(r->name = mem_text(k.word[0], e)))
-            goto out;
-        count++;
-        if (lookup_add(&index, rows, sizeof *rows, count, e) || row_parse(&edit, &k, e) ||
-            material_edit_apply(&r->of, &edit, k.name, k.line, e))
-            goto out;
-    }
-    if (more < 0)
-        goto out;
-    if (!count)
+    if (!more && !rows.count)
         err_set(e, in_name(s), 0, "no material in it; expected lines NAME law=neo-hookean E=3000 ...");
-    else
-        status = put_rows(m, rows, count, e);
-out:
-    for (int32_t i = 0; i < count; i++)
-        free(rows[i].name);
-    free(rows);
-    lookup_free(&index);
+    else if (!more)
+        status = put_rows(m, rows.row, rows.count, e);
+    rows_free(&rows);
     return status;
 }
 
