@@ -46,7 +46,8 @@ static element_any shape_of(const view *v, int64_t element, double *squares)
     return s;
 }
 
-/* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, of the same moduli. */
+/* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, which has the same coefficients, mu
+ * and K; every other form has its own energy. */
 static double material_energy(const material *of, element_tensor h)
 {
     const form f = material_form(of);

@@ -110,7 +110,7 @@ static inline double material_between(double a, double b, double s)
 }
 
 /* What is mixed of two materials: mu and K as above, density and peak by shares, in the first form that expresses both
- * laws (form_between). a, where none does. */
+ * laws (form_between). Its law is a's where that has the form, else the first of the form. a, where none does. */
 material material_mixed(const material *a, const material *b, double s);
 
 #endif

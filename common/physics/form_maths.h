@@ -55,7 +55,8 @@ ELEMENT_FUNCTION void form_tangent(form f, element_tensor h, const double *c, do
 #undef FORM_CASE
 }
 
-/* Adds A y to *to; square: G:y, G = cof F. Returns no less than z:(A z) for any z of length 1 with G:z = 0. */
+/* Adds A y to *to; square: G:y, G = cof F. Returns no less than z:(A z) of any z of length 1 with G:z = 0;
+ * this bound may count on the ranges of the keys (c01 >= 0). */
 ELEMENT_FUNCTION double form_along(form f, element_tensor h, const double *c, element_tensor y, double square,
                                    element_tensor *to)
 {

@@ -32,17 +32,17 @@ ELEMENT_FUNCTION element_tensor form_mooney_rivlin_stress(element_tensor h, cons
     return element_times(element_cofactor(h), s);
 }
 
-/* By volume at rest (J/m3). With d = J - 1, from r^3 = 1/J: r - 1 = -d r^3 / (1 + r + r^2), and so on to
- *     I1bar - 3 = 3 (r^2 - 1) + r^2 tr E,   I2bar - 3 = 3 (r^4 - 1) + r^4 (2 tr E + II),   II = (tr^2 E - E:E) / 2. */
+/* By volume at rest (J/m3). With r = J^-1/3:
+ *     I2bar - 3 = 3 (r^4 - 1) + r^4 (2 tr E + II),   II = (tr^2 E - E:E) / 2. */
 ELEMENT_FUNCTION real form_mooney_rivlin_energy(element_tensor h, const real *c)
 {
     element_symmetric e = element_green(h);
     real dilation = element_dilation(h);
     real root = element_cube_root_inverse(1 + dilation);
     real square = root * root, trace = e.xx + e.yy + e.zz;
-    real less = (root + 1) * (-dilation * (square * root) / (1 + root + square)); /* r^2 - 1 */
+    real less = element_square_less(dilation, root);
     real second = (e.xx * e.yy - e.xy * e.xy) + (e.yy * e.zz - e.yz * e.yz) + (e.zz * e.xx - e.zx * e.zx);
-    real first_bar = 3 * less + square * trace;
+    real first_bar = element_first_bar(dilation, root, trace);
     real second_bar = 3 * less * (square + 1) + square * square * (2 * trace + second);
     return c[0] * first_bar + c[1] * second_bar + c[2] / 2 * dilation * dilation;
 }
@@ -113,13 +113,13 @@ ELEMENT_FUNCTION void form_mooney_rivlin_tangent(element_tensor h, const double 
         }
 }
 
-/* *to: A y; square: G:y. Returns no less than y:(A y) of any y of length 1 with G:y = 0. There the terms that have G
- * vanish. Of the others, with s the largest stretch,
- *     y:(dG/dF y) = 2 F:cof y <= 2 s,
- *     y:(dN/dF y) = 2 (F:y)^2 + I1 - |F y^T|^2 - |F^T y + y^T F|^2 / 2 <= 2 (F:y)^2 + min(I1, 2 s^2),
- * as |F y^T|^2 is at least the square of the least stretch, which leaves two of the three in I1; and as G:y = 0, F may
+/* Adds A y to *to; square: G:y. Returns no less than z:(A z) of any z of length 1 with G:z = 0, as c01 >= 0. There the
+ * terms that have G vanish. Of the others, with s the largest stretch,
+ *     z:(dG/dF z) = 2 F:cof z <= 2 s,
+ *     z:(dN/dF z) = 2 (F:z)^2 + I1 - |F z^T|^2 - |F^T z + z^T F|^2 / 2 <= 2 (F:z)^2 + min(I1, 2 s^2),
+ * as |F z^T|^2 is at least the square of the least stretch, which leaves two of the three in I1; and as G:z = 0, F may
  * be cut down to what it has across G:
- *     (F:y)^2 <= |F|^2 - (F:G)^2 / |G|^2 = I1 - 9 J^2 / I2,
+ *     (F:z)^2 <= |F|^2 - (F:G)^2 / |G|^2 = I1 - 9 J^2 / I2,
  * which is nothing at rest. So what is left is at most a + b (2 (I1 - 9 J^2 / I2) + min(I1, 2 s^2)) + 2 |p| s. */
 ELEMENT_FUNCTION double form_mooney_rivlin_along(element_tensor h, const double *c, element_tensor y, double square,
                                                  element_tensor *to)

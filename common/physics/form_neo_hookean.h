@@ -69,8 +69,9 @@ ELEMENT_FUNCTION void form_neo_hookean_tangent(element_tensor h, const double *c
                       t.pressure * tangent_cofactor_slope(f, r / 3, r % 3, s / 3, s % 3) + (r == s ? t.shear : 0);
 }
 
-/* *to: A y; square: G:y. Returns no less than y:(A y) of any y of length 1 with G:y = 0: the terms of bulk and mixed
- * vanish there, and as y:(dG/dF y) = 2 F:cof y is at most 2 s |y|^2, s the largest stretch, what is left is at most
+/* Adds A y to *to; square: G:y. Returns no less than z:(A z) of any z of length 1 with G:z = 0: the terms of bulk and
+ * mixed vanish there, and as z:(dG/dF z) = 2 F:cof z is at most 2 s |z|^2, s the largest stretch, what is left is at
+ * most
  *     a + 2 |p| s. */
 ELEMENT_FUNCTION double form_neo_hookean_along(element_tensor h, const double *c, element_tensor y, double square,
                                                element_tensor *to)

@@ -5,9 +5,9 @@
 #ifndef SINEW_FORMS_H
 #define SINEW_FORMS_H
 
-/* A row: X(with, NAME, name, coefficients, numbers of history an element, directions an element). A form stands before
- * those that can express it too: a model runs in the first that expresses all its laws. The Makefile reads the names
- * here. */
+/* A row: X(with, NAME, name, coefficients, numbers of history an element, directions an element). First the forms
+ * that others can express: a model runs in the first form that expresses all its laws. Nothing else lists the forms:
+ * the Makefile, the steppers, the kernels and messages take them from here. */
 #define FORMS_WITH(X, with)                                                                                            \
     X(with, NEO_HOOKEAN, neo_hookean, 2, 0, 0)                                                                         \
     X(with, MOONEY_RIVLIN, mooney_rivlin, 3, 0, 0)
@@ -42,8 +42,8 @@ int form_express(form from, form target, const double *c, double *to);
 /* The first form that expresses both, with the coefficients of each; FORM_COUNT: none does. */
 form form_of_both(form a, const double *ca, form b, const double *cb, double *to_a, double *to_b);
 
-/* The coefficients of what lies between a and b, both of form f, with the moduli mu and bulk at rest (Pa). share: of b.
- * */
+/* The coefficients of what lies between a and b, both of form f, with the moduli mu and bulk at rest (Pa). share:
+ * of b. */
 void form_between(form f, double mu, double bulk, const double *a, const double *b, double share, double *to);
 
 #endif

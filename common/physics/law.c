@@ -11,6 +11,12 @@
 static const char *const key_names[] = {LAW_KEYS(KEY_NAME) LAW_COMMON_KEYS(KEY_NAME)};
 static const char *const key_units[] = {LAW_KEYS(KEY_UNIT) LAW_COMMON_KEYS(KEY_UNIT)};
 
+/* K of mu and Poisson's ratio at rest. */
+static double bulk_of(double mu, double nu)
+{
+    return 2 * mu * (1 + nu) / (3 * (1 - 2 * nu));
+}
+
 /* ---- keys E and nu: mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)) */
 
 static law_moduli moduli_of_young(const double *value)
@@ -45,7 +51,7 @@ static void read_back_young(const double *c, double *value)
 static law_moduli moduli_of_mooney_rivlin(const double *value)
 {
     const double mu = 2 * (value[LAW_c10] + value[LAW_c01]), nu = value[LAW_nu];
-    return (law_moduli){.mu = mu, .bulk = isnan(nu) ? value[LAW_K] : 2 * mu * (1 + nu) / (3 * (1 - 2 * nu))};
+    return (law_moduli){.mu = mu, .bulk = isnan(nu) ? value[LAW_K] : bulk_of(mu, nu)};
 }
 
 static void fill_mooney_rivlin(const double *value, double *c)
@@ -63,7 +69,7 @@ static void read_back_mooney_rivlin(const double *c, double *value)
     value[LAW_K] = c[2];
 }
 
-/* ---- the table */
+/* ---- the table. Of the laws of one form, the first is the one that files are read as which say the form alone. */
 
 static const law_row rows[] = {
     {.name = "neo-hookean",

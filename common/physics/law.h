@@ -9,8 +9,9 @@
 
 #include <stdbool.h>
 
-/* X(key, unit, low, high, meaning). What lies outside of low to high, both included, is a slip of the pen; a nu below
- * 0 (auxetic) is a material too, and toward .5 the bulk modulus grows without bound and the step shrinks to nothing. */
+/* X(key, unit, low, high, meaning). New keys go last: the order is that of arrays in a model and of messages.
+ * What lies outside of low to high, both included, is a slip of the pen; a nu below 0 (auxetic) is a material too, and
+ * toward .5 the bulk modulus grows without bound and the step shrinks to nothing. */
 #define LAW_KEYS(X)                                                                                                    \
     X(E, "Pa", 1e-3, 1e12, "Young's modulus")                                                                          \
     X(nu, "1", -.99, .4999, "Poisson's ratio")                                                                         \
@@ -36,13 +37,14 @@ typedef struct law_moduli {
     double mu, bulk;
 } law_moduli;
 
+/* read_back gives, of each group, the last key in the order of LAW_KEYS (K of nu or K), and makes the others nan. */
 typedef struct law_row {
     const char *name;
     form form;
     unsigned group[LAW_GROUPS]; /* bits 1 << LAW_E and so on: of each group exactly one key must be given; then 0 */
     law_moduli (*moduli)(const double *value);
     void (*fill)(const double *value, double *c);      /* value: LAW_OWN_KEYS, nan where none; c: FORM_NUMBERS */
-    void (*read_back)(const double *c, double *value); /* the other way: one key of each group; the others become nan */
+    void (*read_back)(const double *c, double *value); /* the other way */
     const char *meaning, *energy, *source;             /* for the manual, a line each */
 } law_row;
 
@@ -52,7 +54,8 @@ const law_row *law_at(int i);
 /* NULL: there is none. */
 const law_row *law_find(const char *name);
 
-/* The first that has the form, or NULL. */
+/* The first that has the form, or NULL: of the laws of one form, the one that files are read as which say the form
+ * alone (sinew import of INP), and that elements mixed of two laws have. */
 const law_row *law_of_form(form f);
 
 /* Of all laws, in order; returns how many. */
@@ -65,7 +68,8 @@ unsigned law_keys(const law_row *of);
 /* The lowest key in such bits, from `from` on; -1: none. */
 int law_next_key(unsigned keys, int from);
 
-/* Whether two laws have the same groups of keys, so that values of one are values of the other. */
+/* Whether two laws have the same groups of keys, so that values of one are values of the other: a key means the same in
+ * each law that has it. */
 bool law_keys_equal(const law_row *a, const law_row *b);
 
 const char *law_key_name(law_key key);

@@ -152,6 +152,20 @@ ELEMENT_FUNCTION real element_green_trace(element_tensor h)
            (h.xy * h.xy + h.yy * h.yy + h.zy * h.zy) + (h.xz * h.xz + h.yz * h.yz + h.zz * h.zz);
 }
 
+/* r^2 - 1 for r = J^-1/3 (root) and d = J - 1: as r^3 = 1/J, r - 1 = -d r^3 / (1 + r + r^2), no difference of nearly
+ * equal numbers. */
+ELEMENT_FUNCTION real element_square_less(real dilation, real root)
+{
+    real square = root * root;
+    return (root + 1) * (-dilation * (square * root) / (1 + root + square));
+}
+
+/* I1bar - 3 = 3 (r^2 - 1) + r^2 tr E, trace: tr E, E = C - I; float keeps small strains. */
+ELEMENT_FUNCTION real element_first_bar(real dilation, real root, real trace)
+{
+    return 3 * element_square_less(dilation, root) + root * root * trace;
+}
+
 /* g s, s symmetric. */
 ELEMENT_FUNCTION element_tensor element_times(element_tensor g, element_symmetric s)
 {

@@ -125,16 +125,22 @@ static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t vol
     return take_material(p, t, &own, s->fraction ? (double)s->fraction[t] : 1);
 }
 
-/* Of volume i: its law is said by E and nu. */
+/* Whether linear elasticity of the same moduli at rest stands for it at small strains. */
+static bool is_small_strain(form f)
+{
+    return f == FORM_LINEAR || f == FORM_NEO_HOOKEAN;
+}
+
+/* Of volume i. */
 static int read_material(const model *m, int64_t i, material *to, err *e)
 {
     const model_array *name = model_find(m, "volume.name");
     if (materials_of(m, model_find(m, "volume.material")->i32[i], to, e))
         return -1;
-    return isnan(to->value[LAW_E])
-               ? err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected linear, or neo-hookean at small strains",
-                         name ? name->str[i] : "", to->law->name)
-               : 0;
+    if (is_small_strain(material_form(to)))
+        return 0;
+    return err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected linear, or neo-hookean at small strains",
+                   name ? name->str[i] : "", to->law->name);
 }
 
 static int make_materials(msds_problem *p, const model *m, err *e)
