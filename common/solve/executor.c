@@ -27,19 +27,25 @@ static const char *words_of(uint32_t features)
     return NULL;
 }
 
-/* What an executor lacks of what is needed, in words, or NULL. */
+/* What an executor lacks of what is needed: a feature, in words, or else the law; NULL: nothing. */
 static const char *lack_of(const executor *x, const executor_need *need)
 {
     const char *feature = words_of(need->features & ~x->features);
     if (feature)
         return feature;
-    return need->law && !(x->forms >> need->form & 1) ? need->law : NULL;
+    return x->forms >> need->form & 1 ? NULL : need->law[need->form];
+}
+
+/* Whether, of what is needed, it lacks the law alone. */
+static bool lacks_law(const executor *x, const executor_need *need)
+{
+    return !(need->features & ~x->features);
 }
 
 /* What was chosen, and what it was chosen for where not all can do that. */
 static void say_chosen(const executor *x, const executor_need *need, const char *why, char *says, size_t size)
 {
-    const char *feature = words_of(need->features);
+    const char *feature = words_of(need->features & ~EXECUTOR_USUAL);
     if (feature)
         snprintf(says, size, "%s (the one with %s)", x->device, feature);
     else
@@ -55,7 +61,8 @@ static int first_usable(const executor *const *table, const executor_need *need,
             say_chosen(table[i], need, why, says, size);
             return i;
         }
-        append(why, sizeof why, " (%s: %s%s)", table[i]->device, lack ? "no " : "", lack ? lack : reason);
+        const char *no = lack && lacks_law(table[i], need) ? "no law " : "no ";
+        append(why, sizeof why, " (%s: %s%s)", table[i]->device, lack ? no : "", lack ? lack : reason);
     }
     return err_set(e, NULL, 0, "no back end can be used here%s", why);
 }
@@ -63,6 +70,22 @@ static int first_usable(const executor *const *table, const executor_need *need,
 static const char *title(const char *device)
 {
     return strcmp(device, "cuda") ? device : "CUDA";
+}
+
+/* Names what it lacks; a law with the volume that wants it, and with the laws that it has. */
+static int refuse(const executor *x, const executor_need *need, err *e)
+{
+    char who[200] = "", have[200] = "";
+    if (!lacks_law(x, need))
+        return err_set(e, NULL, 0, "the %s back end has no %s; expected -d cpu or auto", title(x->device),
+                       lack_of(x, need));
+    if (need->volume)
+        append(who, sizeof who, ", which volume '%s' has", need->volume);
+    for (int f = 0; f < EXECUTOR_FORMS; f++)
+        if (need->law[f] && x->forms >> f & 1)
+            append(have, sizeof have, "%s, or ", need->law[f]);
+    return err_set(e, NULL, 0, "the %s back end has no law %s%s; expected %s-d cpu or auto", title(x->device),
+                   need->law[need->form], who, have);
 }
 
 static int not_in_table(const executor *const *table, const char *device, err *e)
@@ -76,19 +99,19 @@ static int not_in_table(const executor *const *table, const char *device, err *e
 int executor_choose(const executor *const *table, const char *device, const executor_need *need, char *says,
                     size_t size, err *e)
 {
-    const char *lack = NULL;
+    const executor *lacking = NULL;
     if (!strcmp(device, "auto"))
         return first_usable(table, need, says, size, e);
     for (int i = 0; table[i]; i++) {
         if (strcmp(table[i]->device, device) != 0)
             continue;
-        lack = lack_of(table[i], need);
-        if (lack)
+        if (lack_of(table[i], need)) {
+            lacking = table[i];
             continue;
+        }
         const char *reason = table[i]->unusable();
         snprintf(says, size, "%s", device);
         return reason ? err_set(e, NULL, 0, "the %s back end cannot be used here: %s", device, reason) : i;
     }
-    return lack ? err_set(e, NULL, 0, "the %s back end has no %s; expected -d cpu or auto", title(device), lack)
-                : not_in_table(table, device, e);
+    return lacking ? refuse(lacking, need, e) : not_in_table(table, device, e);
 }

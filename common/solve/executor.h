@@ -14,7 +14,9 @@
 #define EXECUTOR_FEATURES(X)                                                                                           \
     X(MESHES, "elements off a lattice")                                                                                \
     X(CONTACT, "contact with a probe")                                                                                 \
-    X(WARP, "elements that turn: --warp")
+    X(WARP, "elements that turn: --warp")                                                                              \
+    X(HISTORY, "history of elements, which the law needs")                                                             \
+    X(MIXTURES, "elements mixed of two volumes")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,
@@ -29,6 +31,9 @@ enum { /* as bits */
 #undef EXECUTOR_BIT
 };
 
+/* What every executor of today has: a choice for the sake of these is none, and is not told. */
+enum { EXECUTOR_USUAL = EXECUTOR_MIXTURES };
+
 typedef struct executor {
     const char *device; /* "cpu" or "cuda", as the user says it */
     uint32_t features;  /* that it has: EXECUTOR_* */
@@ -37,10 +42,13 @@ typedef struct executor {
     const char *(*unusable)(void);
 } executor;
 
+enum { EXECUTOR_FORMS = 32 }; /* the most of any solver: a bit each */
+
 typedef struct executor_need {
     uint32_t features;
-    int form;        /* of energy */
-    const char *law; /* which the form is called in messages; NULL: every executor has it */
+    int form;                        /* of energy */
+    const char *law[EXECUTOR_FORMS]; /* of each form, as users say it; NULL: every executor has the form */
+    const char *volume;              /* which wants that law, for messages; or NULL */
 } executor_need;
 
 /* The place in `table` (ends with NULL, the preferred first) of the first executor on the device of this name that has

@@ -441,11 +441,16 @@ static const char *no_device(void)
 
 static void test_choice(void)
 {
-    static const tled_executor broken = {.is = {.device = "cuda", .unusable = no_device}};
+    static const tled_executor broken = {
+        .is = {.device = "cuda", .features = EXECUTOR_MIXTURES, .unusable = no_device}};
+    static const tled_executor first = {.is = {.device = "cuda", .forms = 1, .unusable = no_device}};
+    const tled_executor *formed_first[] = {&first, &tled_cpu_double, NULL};
     const tled_executor *both[] = {&broken, &tled_cpu_double, NULL}, *none[] = {&broken, NULL},
                         *without[] = {both[1], NULL};
     static const executor_need none_needed = {0}, contact = {.features = EXECUTOR_CONTACT},
-                               unformed = {.form = FORM_MOONEY_RIVLIN, .law = "such form"};
+                               remembers = {.features = EXECUTOR_HISTORY}, mixed = {.features = EXECUTOR_MIXTURES},
+                               formed = {.form = 1, .law = {"plain", "rubber"}, .volume = "skin"},
+                               unnamed = {.form = 1, .law = {"plain", "rubber"}};
     char says[100];
     err e = {0};
     const tled_executor *took = tled_executor_choose(both, "auto", &none_needed, says, sizeof says, &e);
@@ -467,10 +472,22 @@ static void test_choice(void)
     ok(!took && !strcmp(e.text, "the CUDA back end has no contact with a probe; expected -d cpu or auto"), "%s",
        e.text);
     e = (err){0};
-    took = tled_executor_choose(both, "cuda", &unformed, says, sizeof says, &e);
-    ok(!took && !strcmp(e.text, "the CUDA back end has no such form; expected -d cpu or auto"), "%s", e.text);
-    took = tled_executor_choose(both, "auto", &unformed, says, sizeof says, &e);
-    ok(took == both[1] && !strcmp(says, "cpu (cuda: no such form)"), "auto, by form: %s", says);
+    took = tled_executor_choose(both, "cuda", &unnamed, says, sizeof says, &e);
+    ok(!took && !strcmp(e.text, "the CUDA back end has no law rubber; expected -d cpu or auto"), "%s", e.text);
+    e = (err){0};
+    took = tled_executor_choose(formed_first, "cuda", &formed, says, sizeof says, &e);
+    ok(!took &&
+           !strcmp(e.text, "the CUDA back end has no law rubber, which volume 'skin' has; expected plain, or -d cpu "
+                           "or auto"),
+       "%s", e.text);
+    took = tled_executor_choose(both, "auto", &formed, says, sizeof says, &e);
+    ok(took == both[1] && !strcmp(says, "cpu (cuda: no law rubber)"), "auto, by form: %s", says);
+    took = tled_executor_choose(both, "auto", &mixed, says, sizeof says, &e);
+    ok(took == both[1] && !strcmp(says, "cpu (cuda: no device)"), "auto, with mixed elements, which all have: %s",
+       says);
+    e = (err){0};
+    took = tled_executor_choose(both, "cpu", &remembers, says, sizeof says, &e);
+    ok(!took && strstr(e.text, "no history of elements"), "nobody changes a history yet: %s", e.text);
 }
 
 /* Half of each element is tissue: half the mass, and half of all forces. Under gravity and in contraction it moves as

@@ -429,7 +429,7 @@ static int64_t cpu_computed(const cpu_state *s)
 }
 
 const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
-                                           .features = EXECUTOR_MESHES | EXECUTOR_CONTACT,
+                                           .features = EXECUTOR_MESHES | EXECUTOR_CONTACT | EXECUTOR_MIXTURES,
                                            .forms = (1U << FORM_STEPPED) - 1,
                                            .unusable = cpu_unusable},
                                     .create = cpu_create,

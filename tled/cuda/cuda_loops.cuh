@@ -238,7 +238,7 @@ static int64_t cuda_computed(const cuda_state *s)
 }
 
 const tled_executor CUDA_EXECUTOR = {
-    .is = {.device = "cuda", .features = 0, .forms = TILES_FORMS, .unusable = card_unusable},
+    .is = {.device = "cuda", .features = EXECUTOR_MIXTURES, .forms = TILES_FORMS, .unusable = card_unusable},
     .create = cuda_create,
     .destroy = cuda_destroy,
     .step = cuda_step,

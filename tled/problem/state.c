@@ -200,6 +200,7 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, const materia
 {
     tled_volume *v = &p->volume[i];
     v->name = model_find(m, "volume.name")->str[i];
+    v->row = of->law;
     express(of, p->form, v->law.c);
     v->law.mu = material_mu(of);
     v->law.bulk = material_bulk(of);

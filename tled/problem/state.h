@@ -26,10 +26,11 @@ typedef struct tled_law {
 typedef struct tled_volume {
     const char *name; /* borrowed */
     tled_law law;
-    double peak;      /* Pa */
-    double square;    /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
-    int64_t elements; /* of it */
-    int64_t contract; /* curve that sets its level, or -1 */
+    double peak;               /* Pa */
+    double square;             /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
+    int64_t elements;          /* of it */
+    int64_t contract;          /* curve that sets its level, or -1 */
+    const struct law_row *row; /* its material's law, in the table of laws */
 } tled_volume;
 
 typedef struct tled_problem {

@@ -64,7 +64,7 @@ typedef struct tled_executor {
 extern const tled_executor *const tled_executors_double[];
 extern const tled_executor *const tled_executors_single[];
 
-/* What a problem needs of its executor: of the elements, of contact, of the form. */
+/* What a problem needs of its executor: of the elements, of contact, of the form. Its names are the problem's. */
 executor_need tled_need(const tled_problem *p);
 
 /* The executor of a table on a device: executor_choose. NULL with e filled. */

@@ -1,4 +1,5 @@
 /* The tables of executors that this build has, the preferred first, and the choice among them. */
+#include "physics/law.h"
 #include "tled/cpu/cpu.h"
 #include "tled/problem/tled_executor.h"
 
@@ -22,13 +23,36 @@ const tled_executor *const tled_executors_single[] = {
     NULL,
 };
 
+/* The features that elements of a form need. */
+static uint32_t features_of(form f)
+{
+#define FORM_HISTORY(NAME, name, coefficients, history, directions) (history),
+    static const int numbers[FORM_COUNT] = {FORMS(FORM_HISTORY) 0};
+#undef FORM_HISTORY
+    return numbers[f] > 0 ? EXECUTOR_HISTORY : 0;
+}
+
+/* The first volume whose own law has the problem's form; NULL: it only expresses them all. */
+static const char *volume_that_wants(const tled_problem *p)
+{
+    for (int32_t i = 0; i < p->volumes; i++)
+        if (p->volume[i].row->form == p->form)
+            return p->volume[i].name;
+    return NULL;
+}
+
 executor_need tled_need(const tled_problem *p)
 {
-#define FORM_WORDS(NAME, name, coefficients, history, directions) "form of energy " #name,
-    static const char *const words[FORM_COUNT] = {FORMS(FORM_WORDS) "form of energy linear"};
-#undef FORM_WORDS
-    const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0, contact = p->collider ? EXECUTOR_CONTACT : 0;
-    return (executor_need){.features = meshes | contact, .form = p->form, .law = words[p->form]};
+    const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0, contact = p->collider ? EXECUTOR_CONTACT : 0,
+                   mixtures = p->mix ? EXECUTOR_MIXTURES : 0;
+    executor_need need = {.features = meshes | contact | mixtures | features_of(p->form),
+                          .form = p->form,
+                          .volume = volume_that_wants(p)};
+    for (int f = 0; f < FORM_COUNT; f++) {
+        const law_row *row = law_of_form((form)f);
+        need.law[f] = row ? row->name : "of that form";
+    }
+    return need;
 }
 
 enum { EXECUTORS_MOST = 15 };
