@@ -1,4 +1,4 @@
-/* A CUDA card, for the back ends of any solver: whether there is one, its memory in one piece, and its errors. Only
+/* A CUDA card, for the executors of any solver: whether there is one, its memory in one piece, and its errors. Only
  * what is built with CUDA has it; C++ includes it as extern "C", as every header here. Owns nothing.
  */
 #ifndef SINEW_CARD_H

@@ -289,46 +289,48 @@ static void cpu_destroy(cpu_state *s)
     free(s);
 }
 
+static int make_numbers(number **to, int64_t count, int columns, err *e)
+{
+    *to = mem_array(count, (size_t)columns * sizeof **to, "the solver", e);
+    return *to ? 0 : -1;
+}
+
 /* Those arrays over cells that the problem has. */
-static bool allocate_cells(cpu_state *s, err *e)
+static int allocate_cells(cpu_state *s, err *e)
 {
     const tled_problem *p = s->p;
     const int64_t cells = s->rows.cells + ROWS_PAD;
-    s->fibre = p->fibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
-    s->fraction = p->fraction ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
-    s->mixture = p->mix ? mem_array(cells, sizeof(number), "the solver", e) : NULL;
-    s->law = p->mix ? mem_array(cells, (size_t)cpu_law_numbers(p->form) * sizeof(number), "the solver", e) : NULL;
-    s->mixfibre = p->mixfibre ? mem_array(cells, 3 * sizeof(number), "the solver", e) : NULL;
-    return (s->fibre || !p->fibre) && (s->fraction || !p->fraction) && ((s->mixture && s->law) || !p->mix) &&
-           (s->mixfibre || !p->mixfibre);
+    return (p->fibre && make_numbers(&s->fibre, cells, 3, e)) ||
+                   (p->fraction && make_numbers(&s->fraction, cells, 1, e)) ||
+                   (p->mix && make_numbers(&s->mixture, cells, 1, e)) ||
+                   (p->mix && make_numbers(&s->law, cells, cpu_law_numbers(p->form), e)) ||
+                   (p->mixfibre && make_numbers(&s->mixfibre, cells, 3, e))
+               ? -1
+               : 0;
 }
 
-static bool allocate_fields(cpu_state *s, err *e)
+static int allocate_fields(cpu_state *s, err *e)
 {
     for (int i = 0; i < s->p->fields.count; i++) {
         const cpu_layout l = layout_of(s, i);
-        s->field[i] = mem_array(l.stride, (size_t)l.columns * sizeof *s->field[i], "the solver", e);
-        if (!s->field[i])
-            return false;
+        if (make_numbers(&s->field[i], l.stride, l.columns, e))
+            return -1;
     }
-    return true;
+    return 0;
 }
 
 static int allocate(cpu_state *s, err *e)
 {
     const int64_t nodes = s->rows.nodes, curves = s->p->script->curves;
+    if (allocate_fields(s, e) || make_numbers(&s->spare, nodes, 3, e) || make_numbers(&s->sum, nodes, 3, e) ||
+        make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e) ||
+        (s->p->conforming && mesh_allocate(s, e)))
+        return -1;
     s->kind = mem_array(s->p->volumes, sizeof *s->kind, "the solver", e);
-    s->spare = mem_array(nodes, 3 * sizeof(number), "the solver", e);
-    s->sum = mem_array(nodes, 3 * sizeof(number), "the solver", e);
-    s->mass_inverse = mem_array(nodes, sizeof(number), "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
     s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
     s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
-    bool cells_too = allocate_cells(s, e) && (!s->p->conforming || !mesh_allocate(s, e));
-    return s->kind && allocate_fields(s, e) && s->spare && s->sum && s->mass_inverse && s->flags && cells_too &&
-                   s->now && s->next
-               ? 0
-               : -1;
+    return s->kind && s->flags && s->now && s->next ? 0 : -1;
 }
 
 static void fill_nodes(cpu_state *s)

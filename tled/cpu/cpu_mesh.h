@@ -1,6 +1,6 @@
-/* The CPU back end's memory for a problem without a lattice; part of cpu_loops.h. Nodes keep the model's
- * order; elements lie in groups of as many as the pass has lanes, what fills the last being nothing: without
- * volume or law, at the last element's nodes.
+/* The CPU executor's memory for a problem without a lattice; part of cpu_loops.h. Nodes are in the model's order.
+ * Elements lie in groups of as many as the pass has lanes; the last group is filled with elements of no volume and no
+ * law, at the last element's nodes.
  */
 #include "physics/element_any.h"
 

@@ -1,4 +1,4 @@
-/* The CPU back end's pass over a problem without a lattice; part of cpu_lanes.c. Elements go in groups of LANES, side
+/* The CPU executor's pass over a problem without a lattice; part of cpu_lanes.c. Elements go in groups of LANES, side
  * by side, and leave each corner's force in w->force; then nodes gather theirs in the elements' order: the same bytes
  * for any number of lanes and threads.
  */

@@ -1,7 +1,7 @@
-/* The CPU back end's pass over a slab, compiled for each instruction set, precision and form of one source,
+/* The CPU executor's pass over a slab, compiled for each instruction set, precision and form of one source,
  * cpu_lanes.c: layer by layer, runs of elements side by side, each corner's force added to its node; then the layer's
  * nodes, whose sums are whole. As the runs are in the lattice's order, so is each node's sum. What the pass works on is
- * cpu_work's: its owner is the back end (cpu_loops.h).
+ * cpu_work's, which the executor owns (cpu_loops.h).
  *
  *     f_n = sum over elements at n of element_force(u),   a = g + (f_ext - f_n) / m,   then node.h.
  */

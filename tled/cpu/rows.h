@@ -1,4 +1,4 @@
-/* A problem in rows, for a back end that computes several elements side by side: nodes in the order of their places in
+/* A problem in rows, for an executor that computes several elements side by side: nodes in the order of their places in
  * the lattice, x fastest; elements that follow each other along x in runs, whose corners then follow each other too.
  * The problem is cut into slabs of whole rows of nodes, one for a thread at a time: a slab computes every element at
  * its nodes, those at its border as its neighbour does too, so that no thread waits for another within a step and each

@@ -1,4 +1,4 @@
-/* The maths of one component of a node's step, which every back end's loop over nodes does: central differences with
+/* The maths of one component of a node's step, which every executor's loop over nodes does: central differences with
  * mass damping alpha (Miller et al. 2007), as kick, drift, kick. From u, v, a at t
  *     v' = (v + dt/2 a) / (1 + alpha dt/2),  u += dt v',                (begin)
  * then with a at t + dt

@@ -47,7 +47,7 @@ static bool is_stuck(const run *n)
     return n->r->single && since > fmax(STUCK, 20 * period * n->r->rate);
 }
 
-/* Learns from the state how the tissue moves: that sets the damping, and tells whether the tissue is at rest. */
+/* Estimates from the reading how the tissue moves, which sets the damping, and whether it is at rest. */
 static int judge_rest(run *n)
 {
     const run_setup *r = n->r;
@@ -67,7 +67,7 @@ static int judge_rest(run *n)
                    n->closest, r->rest);
 }
 
-/* From the state at a check, which was monitored: the step, the damping, and whether the run is over. */
+/* Decides at a check, from the reading of its state: the step, the damping, and whether the run is over. */
 static int decide(run *n)
 {
     const run_setup *r = n->r;
@@ -101,7 +101,7 @@ static run_point point_of(const run *n)
                        .log = n->r->log ? log_point_of(n->r->log) : (log_point){.length = 0}};
 }
 
-static void go_on_from(run *n, const run_point *at)
+static void resume_from(run *n, const run_point *at)
 {
     n->plan.origin = at->origin;
     n->plan.first = at->first;
@@ -130,7 +130,7 @@ static bool is_checkpoint_due(run *n)
     return true;
 }
 
-/* Of the state that was monitored last, once every frame before it is written, and every row of the log stored. */
+/* Saves the state that was monitored last, once all frames before it are written and all rows of the log are stored. */
 static int write_checkpoint(run *n)
 {
     const run_setup *r = n->r;
@@ -155,7 +155,7 @@ static int begin_log(run *n)
     return run_log_sound(n);
 }
 
-/* What a run that goes on has decided at its checkpoint stands. */
+/* The first check. A run that goes on from a checkpoint has decided there. */
 static int begin(run *n)
 {
     if (run_monitor(n))
@@ -179,8 +179,8 @@ static int64_t next_check(const run *n)
     return at < n->last ? at : n->last;
 }
 
-/* From a check to the next one, or to the end, which need not be one. A checkpoint is of a check. */
-static int go_on(run *n)
+/* From a check to the next one, or to the end, which need not be a check. */
+static int step_to_next_check(run *n)
 {
     const int64_t to = next_check(n);
     if (is_checkpoint_due(n) && write_checkpoint(n))
@@ -213,7 +213,7 @@ static int loop(run *n)
     if (begin(n))
         return -1;
     while (!n->rested && n->plan.first < n->last)
-        if (go_on(n))
+        if (step_to_next_check(n))
             return -1;
     return end_with_frame(n);
 }
@@ -269,12 +269,12 @@ static int prepare(run *n)
         return -1;
     n->relax = relax_of(r->frequency, n->monitor->rest_step);
     if (r->point)
-        go_on_from(n, r->point);
+        resume_from(n, r->point);
     find_last(n);
     return make_state(n);
 }
 
-/* However it ended, and however little of it was made. */
+/* However the run ended, also where it was not prepared to its end. */
 static run_end end_of(const run *n)
 {
     run_end end = {.steps = n->plan.first - n->from,

@@ -5,10 +5,11 @@
  * Steps are counted, and times are counts over a rate. Where the caller does not fix the step, it may be cut in halves
  * while the tissue's stable step is small: the steps counted stay the same, each taken as 2, 4, ... That is decided
  * only at checks, whose places depend on the count alone, from the state there. Where the state at the next check shows
- * that it was too little, the run goes back to the check before and cuts once more. So what is written out does not
+ * that the steps were too long, the run restores the check before and cuts once more. So what is written does not
  * change the result, and a run that goes on from a frame at a check takes the same steps as one that never stopped.
- * Frames between two checks are taken on the way and written once the second is known to be sound, while the next steps
- * are already under way. (Where they are too many to be held, those steps are taken again for them.)
+ * Of frames between two checks snapshots are taken on the way; they are written once the second check is known to be
+ * sound, while the next steps are already under way. (Where the slots for snapshots do not suffice, those steps are
+ * taken again for the frames.)
  */
 #ifndef SINEW_RUN_H
 #define SINEW_RUN_H
@@ -50,11 +51,11 @@ typedef struct run_setup {
     double every;           /* s: a frame at each multiple; 0: the last state only */
     bool first;             /* and a frame of the state that the run begins from */
     run_log *log;           /* opened, or NULL: a row a check, or at each multiple of its interval, and at the end */
-    const run_point *point; /* goes on from there, the state's time p->start; NULL: begins */
+    const run_point *point; /* of a checkpoint, whose state is p's start: the run goes on from there; NULL: it begins */
     double save_every;      /* s: save at the first check at or past each multiple; 0: each minute of the clock */
     void *context;
-    /* A state to write out, in time's order; called in a thread of its own. -1 with e
-     * filled ends the run, at a frame soon after. */
+    /* Writes a state as a frame, in the order of time; called in a thread of the writer's. -1 with e filled ends the
+     * run, at a frame soon after. */
     frame_writer_write *frame;
     /* After every check. remaining: see relax_share; cut: parts that each step is taken in from now on. */
     void (*checked)(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,

@@ -50,20 +50,21 @@ double run_part(const run *n);
 /* Reads the state into n->monitor->reading. */
 int run_monitor(run *n);
 
-/* Whether the steps of now can have led to what was monitored last: nothing is broken, and they are stable still. */
+/* Whether the state that was monitored last is sound: no element is broken, and steps as long as now are stable there.
+ * */
 bool run_is_sound(const run *n);
 
-/* Status 3, with where and when, of what was monitored last. Returns -1. */
+/* Fills e with status 3, and the element and time of the last reading. Returns -1. */
 int run_diverged(run *n);
 
-/* Says so where steps are cut in more parts than they ever were, and why. */
+/* Tells the caller where steps are cut into more parts than ever before in this run, and the reading that is why. */
 void run_tell_cut(run *n, const monitor_reading *why);
 
 /* Goes from the last check, whose state is sound, to the next one, or to the end, with the frames and the rows of the
  * log before it. That state is sound, or it has diverged. */
 int run_advance(run *n, int64_t to);
 
-/* Of a state that is sound, as all before it are: a frame; the log's part, with a row where one is due. */
+/* Of a state that is sound, as all before it are: writes a frame; adds it to the log, with a row where one is due. */
 int run_write_frame(run *n);
 int run_log_sound(run *n);
 

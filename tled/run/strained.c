@@ -38,7 +38,8 @@ static bool is_above(const strained_view *v, const deformed *d, double limit)
     return gap > 0 && 16 * away <= stiffness && away * most * most < 3 * gap * gap * stiffness;
 }
 
-/* Elements that are no boxes are all looked at, and so are all where nothing holds hourglass modes. */
+/* The corners of elements that are no boxes are always computed, and so are those of all where no hourglass stiffness
+ * gives a bound. */
 static void add_quality(quality *to, const strained_view *v, int64_t element, const deformed *d)
 {
     const double limit = to->corner < v->limit ? to->corner : v->limit, centre = 1 + d->dilation;
@@ -49,7 +50,7 @@ static void add_quality(quality *to, const strained_view *v, int64_t element, co
     }
     quality_j j = quality_of(&v->mesh, element, v->displacement);
     if (!v->p->conforming)
-        j.centre = centre; /* the same bits, whether corners are looked at or not */
+        j.centre = centre; /* the same bits, whether corners are computed or not */
     quality_add(to, element, j);
 }
 

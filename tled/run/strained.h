@@ -1,5 +1,5 @@
 /* What the elements of a state hold, and which of them are folded: strain and hourglass energy, and J in their middles
- * and at their corners (mesh/quality.h), from the displacements of nodes, in double, whatever the back end. Sums go by
+ * and at their corners (mesh/quality.h), from the displacements of nodes, in double, whatever the executor. Sums go by
  * chunks in a fixed order: the same bytes for any number of threads. Owns nothing.
  */
 #ifndef SINEW_STRAINED_H
@@ -21,20 +21,20 @@ typedef struct strained {
 
 strained strained_none(void);
 
-/* Where corners are looked at: every element that may be worse than the one that was the worst before, or -1. What
- * comes of it does not depend on which that is, only how long it takes: most bounds are far above the J of one that is
- * still nearly the worst. */
+/* The displacements, and of which elements J has to be computed at the corners: those whose lower bound of J is not
+ * above the J of `worst`, an element, or -1. The result is the same whichever element that is. The worst of the state
+ * before is the best choice: it is nearly the worst still, and most bounds are far above its J. */
 typedef struct strained_view {
     const tled_problem *p;
     const double *displacement; /* nodes x 3, m */
     quality_mesh mesh;
-    double slope; /* 1/m: the largest of a box's */
+    double slope; /* 1/m: the largest of a box's derivatives */
     double limit; /* that element's J */
 } strained_view;
 
 strained_view strained_view_of(const tled_problem *p, const double *displacement, int64_t worst);
 
-/* Adds an element, which is deformed so; and what a later chunk found. */
+/* Adds an element with its deformation; and the sums of a later chunk. */
 void strained_add(strained *to, const strained_view *v, int64_t element, const deformed *d);
 void strained_join(strained *to, const strained *later);
 
