@@ -48,7 +48,7 @@ sinew info <"$T/out" >"$T/info"
 check "what ran is in provenance" grep -q '\[cuda,' "$T/info"
 fails 1 "a card takes no rotations out, and says so" 'warp is not done on a card; expected -d cpu' run -d cuda --method fem --warp
 run --method fem --warp >"$T/out" 2>"$T/err"
-check "-d auto knows" grep -q ' cpu$' "$T/err"
+check "-d auto knows" grep -q ' cpu (the one with elements that turn: --warp)$' "$T/err"
 
 # ---- Against the CPU.
 same() { # NAME TOLERANCE ARG...: over the largest displacement; 0: the same numbers
