@@ -9,10 +9,12 @@
 #include "inspect/info_stats.h"
 #include "mesh/element_place.h"
 #include "model/known.h"
+#include "model/material_edit.h"
 #include "model/source.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -174,8 +176,8 @@ static void add_number(text_table *t, const model *m, const char *array, int64_t
 static int put_volumes(const model *m, const int64_t *elements, out *to, err *e)
 {
     static const char *const heads[] = {"<volume", ">elements", ">level", ">priority", "<material", NULL};
-    const model_array *name = model_find(m, "volume.name"), *material = model_find(m, "volume.material");
-    const model_array *materials = model_find(m, "material.name");
+    const model_array *name = model_find(m, "volume.name"), *of = model_find(m, "volume.material");
+    const model_array *called = model_find(m, "material.name");
     if (!name || !name->rows)
         return 0;
     text_table *t = text_table_create(heads, e);
@@ -184,9 +186,39 @@ static int put_volumes(const model *m, const int64_t *elements, out *to, err *e)
         text_table_count(t, elements[i]);
         add_number(t, m, "volume.level", i);
         add_number(t, m, "volume.priority", i);
-        text_table_cell(t, "%s", material && materials ? materials->str[material->i32[i]] : "-");
+        text_table_cell(t, "%s", of && called ? called->str[of->i32[i]] : "-");
     }
     out_text(to, "volumes\n");
+    return put_table(t, to, e);
+}
+
+/* "E=3000 nu=0.49 density=1000", as a file of materials has it: what has a value in row i. */
+static void keys_of(const model *m, int64_t i, char *to, size_t size)
+{
+    to[0] = '\0';
+    for (int k = 0; k < LAW_ALL_KEYS; k++) {
+        const size_t at = strlen(to);
+        const model_array *a = model_find(m, material_edit_arrays[k]);
+        if (a && !isnan(a->f64[i]))
+            snprintf(to + at, size - at, "%s%s=%.7g", at ? " " : "", law_key_name((law_key)k), a->f64[i]);
+    }
+}
+
+static int put_materials(const model *m, out *to, err *e)
+{
+    static const char *const heads[] = {"<material", "<law", "<keys", NULL};
+    const model_array *name = model_find(m, "material.name"), *law = model_find(m, "material.law");
+    char keys[32 * LAW_ALL_KEYS];
+    if (!name || !name->rows)
+        return 0;
+    text_table *t = text_table_create(heads, e);
+    for (int64_t i = 0; t && i < name->rows; i++) {
+        keys_of(m, i, keys, sizeof keys);
+        text_table_cell(t, "%s", name->str[i]);
+        text_table_cell(t, "%s", law ? law->str[i] : "-");
+        text_table_cell(t, "%s", keys);
+    }
+    out_text(to, "materials\n");
     return put_table(t, to, e);
 }
 
@@ -275,7 +307,7 @@ static int put_summary(const source *s, const double *times, const int64_t *elem
         out_format(to, "%s%s %" PRIu64 " bytes\n", i ? "  " : "unknown blocks\n  ", m->blocks[i].type,
                    m->blocks[i].length);
     put_extent(m, to);
-    if (put_volumes(m, elements, to, e) || put_muscles(m, elements, to, e))
+    if (put_materials(m, to, e) || put_volumes(m, elements, to, e) || put_muscles(m, elements, to, e))
         return -1;
     return put_frames(s, times, meanings, to, e);
 }

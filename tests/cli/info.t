@@ -88,7 +88,8 @@ is "$(cat "$T/stdout")" "" "has none"
 check "the summary, by -o" sinew info -o "$T/summary" "$small"
 for line in "text encoding" "node.displacement .*norm 0 to 0.05" "^  skin  *1  *0  *0  tissue$" \
     "^  muscle_a  *1  *0.0*  *0.050*  *0.050*$" "frames  2, the last of index 10; times 0 to 0.5 s" \
-    "largest displacement 0.05 m, node 2 at 0.2 0 0" "x 0 to 0.2" "peak .*30000 to 30000, 1 nan"; do
+    "largest displacement 0.05 m, node 2 at 0.2 0 0" "x 0 to 0.2" "peak .*30000 to 30000, 1 nan" \
+    "^  tissue  *neo-hookean  *E=3000 nu=0.45 density=1000$" "^  Tissue  *neo-hookean  *E=6000 nu=0.49 density=1100 peak=30000$"; do
     check "the summary has: $line" grep -q "$line" "$T/summary"
 done
 check "-v says what arrays are" sh -c "sinew info -v $small | grep -q 'contraction centre, the mean of its rigid nodes'"

@@ -34,6 +34,7 @@ printf 'skin law=mooney-rivlin c10=2500 c01=500 nu=0.45\n' >"$T/one"
 voxelise -q --unit mm -s 5 --materials "$T/one" "$T/box.obj" | attach -q >"$T/single"
 is "$(values "$T/single" | cut -d ' ' -f 1 | tr '\n' ' ')" "name law nu c10 c01 density peak " "a model of one law has no other law's keys"
 check "sinew info --json has a row of the law's keys" sh -c "sinew info --json '$T/two' | grep -q '\"law\": \"mooney-rivlin\", .*\"c10\": 2500, \"c01\": 500, \"K\": 100000'"
+check "and the summary" sh -c "sinew info '$T/two' | grep -q '^  skin  *mooney-rivlin  *c10=2500 c01=500 K=100000 density=1000 peak=30000$'"
 is "$(sinew info --get material.c10.max "$T/two")" 2500 "and --get tells one"
 
 # ---- Abaqus's files.
