@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,36 +43,35 @@ static const char frames_key[] = "checkpoint.frames"; /* by which FILE.frames is
 
 static const char axis_name[] = "checkpoint", number_name[] = "checkpoint.number", count_name[] = "checkpoint.count";
 
+/* The places of a point's numbers, in the order of checkpoint.number. */
+#define AT(member) offsetof(run_point, member)
+static const size_t number_at[NUMBERS] = {
+    AT(origin),           AT(damping),        AT(remaining),        AT(closest),         AT(moved_most),
+    AT(relax.guess),      AT(relax.low),      AT(relax.high),       AT(relax.frequency), AT(relax.lowest),
+    AT(relax.time),       AT(log.past.first), AT(log.past.gravity), AT(log.past.forces), AT(log.past.held),
+    AT(log.past.muscles), AT(log.past.probe), AT(log.past.damping), AT(most_strain)};
+#undef AT
+
 static void put_point(const checkpoint *c, const run_point *p, double *number, int64_t *count)
 {
-    const relax *r = &p->relax;
-    const account_past *a = &p->log.past;
-    const double numbers[NUMBERS] = {p->origin,  p->damping, p->remaining, p->closest,    p->moved_most,
-                                     r->guess,   r->low,     r->high,      r->frequency,  r->lowest,
-                                     r->time,    a->first,   a->gravity,   a->forces,     a->held,
-                                     a->muscles, a->probe,   a->damping,   p->most_strain};
-    const int64_t counts[COUNTS] = {p->first, p->from,   p->closest_at, p->cuts,  r->states,
+    const int64_t counts[COUNTS] = {p->first, p->from,   p->closest_at, p->cuts,  p->relax.states,
                                     c->count, c->length, c->arrays,     p->taken, p->log.length};
-    memcpy(number, numbers, sizeof numbers);
+    for (int i = 0; i < NUMBERS; i++)
+        memcpy(number + i, (const char *)p + number_at[i], sizeof *number);
     memcpy(count, counts, sizeof counts);
 }
 
 static void take_point(checkpoint *c, const model_array *number, const int64_t *k)
 {
-    const double *n = number->f64;
-    c->point = (run_point){.origin = n[0],
-                           .first = k[0],
+    c->point = (run_point){.first = k[0],
                            .from = k[1],
-                           .cuts = (int)k[3],
-                           .damping = n[1],
-                           .remaining = n[2],
-                           .closest = n[3],
                            .closest_at = k[2],
-                           .moved_most = n[4],
-                           .relax = {n[5], n[6], n[7], n[8], n[9], n[10], (int)k[4]},
+                           .cuts = (int)k[3],
+                           .relax.states = (int)k[4],
                            .taken = k[8],
-                           .most_strain = number->columns == NUMBERS ? n[18] : 0,
-                           .log = {{n[11], n[12], n[13], n[14], n[15], n[16], n[17]}, k[9]}};
+                           .log.length = k[9]};
+    for (int i = 0; i < number->columns; i++)
+        memcpy((char *)&c->point + number_at[i], number->f64 + i, sizeof *number->f64);
     c->count = k[5];
     c->length = k[6];
     c->arrays = (int)k[7];
