@@ -50,7 +50,8 @@ int main(void)
 {
     for (int f = 0; f < FORM_STEPPED; f++) {
         double c[FORM_NUMBERS];
-        ok(form_tried((form)f, 1000, 9700, c), "form %d: form_tried.h has coefficients", f);
+        if (!ok(form_tried((form)f, 1000, 9700, c), "form %d: form_tried.h has coefficients", f))
+            continue;
         for (double strain = 1e-6; strain < 2; strain *= 10) {
             double worst = 0;
             for (int i = 0; i < 200; i++)
