@@ -14,7 +14,7 @@ ELEMENT_FUNCTION element_tensor form_stress(form f, element_tensor h, const real
 {
     const element_tensor none = {REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO,
                                  REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO};
-#define FORM_CASE(NAME, name, coefficients, history, directions)                                                       \
+#define FORM_CASE(NAME, name, coefficients, history)                                                                   \
     case FORM_##NAME:                                                                                                  \
         return form_##name##_stress(h, c);
     switch (f) {
@@ -28,7 +28,7 @@ ELEMENT_FUNCTION element_tensor form_stress(form f, element_tensor h, const real
 /* W, by volume at rest (J/m3). */
 ELEMENT_FUNCTION real form_energy(form f, element_tensor h, const real *c)
 {
-#define FORM_CASE(NAME, name, coefficients, history, directions)                                                       \
+#define FORM_CASE(NAME, name, coefficients, history)                                                                   \
     case FORM_##NAME:                                                                                                  \
         return form_##name##_energy(h, c);
     switch (f) {
@@ -43,7 +43,7 @@ ELEMENT_FUNCTION real form_energy(form f, element_tensor h, const real *c)
 /* The lower triangle of A = dP/dF as a 9 x 9 matrix. */
 ELEMENT_FUNCTION void form_tangent(form f, element_tensor h, const double *c, double a[9][9])
 {
-#define FORM_CASE(NAME, name, coefficients, history, directions)                                                       \
+#define FORM_CASE(NAME, name, coefficients, history)                                                                   \
     case FORM_##NAME:                                                                                                  \
         form_##name##_tangent(h, c, a);                                                                                \
         break;
@@ -60,7 +60,7 @@ ELEMENT_FUNCTION void form_tangent(form f, element_tensor h, const double *c, do
 ELEMENT_FUNCTION double form_along(form f, element_tensor h, const double *c, element_tensor y, double square,
                                    element_tensor *to)
 {
-#define FORM_CASE(NAME, name, coefficients, history, directions)                                                       \
+#define FORM_CASE(NAME, name, coefficients, history)                                                                   \
     case FORM_##NAME:                                                                                                  \
         return form_##name##_along(h, c, y, square, to);
     switch (f) {

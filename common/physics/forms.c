@@ -2,7 +2,7 @@
 
 int form_numbers(form f)
 {
-#define FORM_ROW(NAME, name, coefficients, history, directions) (coefficients),
+#define FORM_ROW(NAME, name, coefficients, history) (coefficients),
     static const int numbers[FORM_COUNT] = {FORMS(FORM_ROW)[FORM_LINEAR] = 2};
 #undef FORM_ROW
     return numbers[f];
@@ -10,7 +10,7 @@ int form_numbers(form f)
 
 static int express(form from, form target, const double *c, double *to)
 {
-#define FORM_ROW(NAME, name, coefficients, history, directions)                                                        \
+#define FORM_ROW(NAME, name, coefficients, history)                                                                    \
     case FORM_##NAME:                                                                                                  \
         return form_##name##_express(from, c, to);
     switch (target) {
@@ -40,7 +40,7 @@ form form_of_both(form a, const double *ca, form b, const double *cb, double *to
 
 void form_between(form f, double mu, double bulk, const double *a, const double *b, double share, double *to)
 {
-#define FORM_ROW(NAME, name, coefficients, history, directions)                                                        \
+#define FORM_ROW(NAME, name, coefficients, history)                                                                    \
     case FORM_##NAME:                                                                                                  \
         form_##name##_between(mu, bulk, a, b, share, to);                                                              \
         break;

@@ -5,22 +5,22 @@
 #ifndef SINEW_FORMS_H
 #define SINEW_FORMS_H
 
-/* A row: X(with, NAME, name, coefficients, numbers of history an element, directions an element). First the forms
- * that others can express: a model runs in the first form that expresses all its laws. Nothing else lists the forms:
- * the Makefile, the steppers, the kernels and messages take them from here. */
+/* A row: X(with, NAME, name, coefficients, numbers of history an element). First the forms that others can
+ * express: a model runs in the first form that expresses all its laws. Nothing else lists the forms: the Makefile, the
+ * steppers, the kernels and messages take them from here. */
 #define FORMS_WITH(X, with)                                                                                            \
-    X(with, NEO_HOOKEAN, neo_hookean, 2, 0, 0)                                                                         \
-    X(with, MOONEY_RIVLIN, mooney_rivlin, 3, 0, 0)
-#define FORMS_ALONE(X, NAME, name, coefficients, history, directions) X(NAME, name, coefficients, history, directions)
-#define FORMS(X)                                                      FORMS_WITH(FORMS_ALONE, X)
+    X(with, NEO_HOOKEAN, neo_hookean, 2, 0)                                                                            \
+    X(with, MOONEY_RIVLIN, mooney_rivlin, 3, 0)
+#define FORMS_ALONE(X, NAME, name, coefficients, history) X(NAME, name, coefficients, history)
+#define FORMS(X)                                          FORMS_WITH(FORMS_ALONE, X)
 
-#define FORM_ROW(NAME, name, coefficients, history, directions) FORM_##NAME,
+#define FORM_ROW(NAME, name, coefficients, history) FORM_##NAME,
 /* FORM_STEPPED: how many steppers are compiled for. Linear elasticity, of coefficients mu and K, is msds-run's, which
  * has a matrix of it. */
 typedef enum form { FORMS(FORM_ROW) FORM_STEPPED, FORM_LINEAR = FORM_STEPPED, FORM_COUNT } form;
 #undef FORM_ROW
 
-#define FORM_ROW(NAME, name, coefficients, history, directions) char name[coefficients];
+#define FORM_ROW(NAME, name, coefficients, history) char name[coefficients];
 union form_most {
     FORMS(FORM_ROW)
 };
@@ -28,7 +28,7 @@ union form_most {
 enum { FORM_NUMBERS = sizeof(union form_most) }; /* the most coefficients of any form */
 
 /* How many coefficients a form has, as constants: FORM_NEO_HOOKEAN_NUMBERS and so on. */
-#define FORM_ROW(NAME, name, coefficients, history, directions) FORM_##NAME##_NUMBERS = (coefficients),
+#define FORM_ROW(NAME, name, coefficients, history) FORM_##NAME##_NUMBERS = (coefficients),
 enum { FORMS(FORM_ROW) };
 #undef FORM_ROW
 

@@ -8,7 +8,7 @@
 
 enum { TRIALS = 200 };
 
-#define NAME_OF(NAME, name, coefficients, history, directions) #name,
+#define NAME_OF(NAME, name, coefficients, history) #name,
 static const char *const names[] = {FORMS(NAME_OF)};
 
 /* Numbers from -1 to 1, the same in every run. */

@@ -68,7 +68,7 @@ template <form F, int N> struct cuda_form {
 /* Calls f with a form that steppers know, as a type: tled_problem_make chooses no other. */
 template <class F> static auto with_form(form which, F f)
 {
-#define FORM_ROW(NAME, name, coefficients, history, directions)                                                        \
+#define FORM_ROW(NAME, name, coefficients, history)                                                                    \
     case FORM_##NAME:                                                                                                  \
         return f(cuda_form<FORM_##NAME, coefficients>());
     switch (which) {
