@@ -9,8 +9,8 @@
 
 /* ---- by the host */
 
-typedef struct permutation { /* of arrays as the state, to nodes x 3 in the model's order */
-    const cuda_state *s;
+typedef struct permutation { /* of a field as the state has it, to the model's order */
+    const field_layout *layout;
     const real *from;
     double *to;
 } permutation;
@@ -18,21 +18,30 @@ typedef struct permutation { /* of arrays as the state, to nodes x 3 in the mode
 static void permute_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const permutation *m = (const permutation *)context;
-    const cuda_view<real> *v = &m->s->view;
+    const field_layout *l = m->layout;
     (void)chunk;
     for (int64_t k = from; k < to; k++)
-        for (int a = 0; a < 3; a++)
-            m->to[3 * (int64_t)m->s->tiles.node[k] + a] = m->from[v->offset[a] + k * v->along];
+        for (int a = 0; a < l->columns && (!l->cell || l->cell[k] >> TILE_OWN & 1); a++)
+            m->to[l->columns * (int64_t)l->row[k] + a] = m->from[layout_at(l, a, k)];
 }
 
-static void permute(const cuda_state *s, const real *from, double *to)
+/* threads: or NULL. */
+static void permute(const field_layout *l, const real *from, double *to, pool *threads)
 {
-    permutation m = {s, from, to};
-    pool_run(s->threads, s->tiles.nodes, COPY_CHUNK, permute_work, &m);
+    permutation m = {l, from, to};
+    if (threads)
+        pool_run(threads, l->places, COPY_CHUNK, permute_work, &m);
+    else
+        permute_work(&m, 0, 0, l->places);
 }
 
-/* ---- by the card. A frame: displacement, then velocity, 3 numbers a node in the model's order; after them, for the
- * kernel, where each node stands in the state. */
+/* ---- by the card. A frame: the fields that steps move, 3 numbers a node in the model's order; then those others that
+ * frames have, as they stand; after them, for the kernel, where each node stands in the state. */
+
+static int copy_on_card(cuda_state *s, real *to, const real *from, int64_t numbers, err *e)
+{
+    return CUDA_TRY(cudaMemcpyAsync(to, from, (size_t)numbers * sizeof(real), cudaMemcpyDeviceToDevice, s->stream));
+}
 
 enum { FRAME_THREADS = 256, FRAME_EACH = 3 /* numbers, of displacement and of velocity: as many nodes as threads */ };
 
@@ -55,14 +64,30 @@ static __global__ void frame_kernel(const __grid_constant__ cuda_view<real> v, c
     }
 }
 
+/* How many numbers field i takes in a frame; in_order: that the card has put in order. */
+static int64_t sent_numbers(const cuda_state *s, int i, bool in_order)
+{
+    if (i >= CUDA_STEPPED && !fields_is_in(&s->p->fields, i, FIELD_IN_FRAMES))
+        return 0;
+    return in_order && i < CUDA_STEPPED ? 3 * s->tiles.nodes : layout_of(s, i).numbers;
+}
+
+static int64_t frame_numbers(const cuda_state *s, bool in_order)
+{
+    int64_t numbers = 0;
+    for (int i = 0; i < s->p->fields.count; i++)
+        numbers += sent_numbers(s, i, in_order);
+    return numbers;
+}
+
 static int64_t frame_bytes(const cuda_state *s)
 {
-    return s->tiles.nodes * (int64_t)(6 * sizeof(real) + sizeof(int32_t));
+    return frame_numbers(s, true) * (int64_t)sizeof(real) + s->tiles.nodes * (int64_t)sizeof(int32_t);
 }
 
 static int32_t *frame_place(const cuda_state *s)
 {
-    return (int32_t *)(s->frame + 6 * s->tiles.nodes);
+    return (int32_t *)(s->frame + frame_numbers(s, true));
 }
 
 /* Puts on the card where each of the model's nodes stands; by way of `staging`,
@@ -93,12 +118,12 @@ static int make_way(cuda_state *s, err *e)
  * first frame, which may be its last state. */
 static int make_frame(cuda_state *s, cuda_frame *f, err *e)
 {
-    const int64_t bytes = 6 * s->view.stride * (int64_t)sizeof(real);
-    if (bytes > FRAME_DIRECT && !s->kept_internal && !s->frame && !s->frame_direct && make_way(s, e))
+    const int64_t bytes = CUDA_STEPPED * 3 * s->view.stride * (int64_t)sizeof(real);
+    if (bytes > FRAME_DIRECT && !s->saved_internal && !s->frame && !s->frame_direct && make_way(s, e))
         return -1;
     if (f->host)
         return 0;
-    const int64_t numbers = s->frame ? 6 * s->tiles.nodes : 2 * s->numbers;
+    const int64_t numbers = frame_numbers(s, s->frame != NULL);
     return CUDA_TRY(cudaEventCreateWithFlags(&f->arrived, cudaEventDisableTiming)) ||
                    CUDA_TRY(cudaMallocHost((void **)&f->host, (size_t)numbers * sizeof(real)))
                ? -1
@@ -108,28 +133,44 @@ static int make_frame(cuda_state *s, cuda_frame *f, err *e)
 /* As it stands, between two steps. */
 static int send_directly(cuda_state *s, const cuda_frame *f, err *e)
 {
-    const size_t bytes = (size_t)s->numbers * sizeof(real);
-    return CUDA_TRY(cudaMemcpyAsync(f->host, s->displacement, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
-                   CUDA_TRY(
-                       cudaMemcpyAsync(f->host + s->numbers, s->velocity, bytes, cudaMemcpyDeviceToHost, s->stream)) ||
-                   CUDA_TRY(cudaEventRecord(f->arrived, s->stream))
-               ? -1
-               : 0;
+    real *at = f->host;
+    for (int i = 0; i < s->p->fields.count; i++) {
+        const int64_t numbers = sent_numbers(s, i, false);
+        if (numbers && CUDA_TRY(cudaMemcpyAsync(at, s->field[i], (size_t)numbers * sizeof(real), cudaMemcpyDeviceToHost,
+                                                s->stream)))
+            return -1;
+        at += numbers;
+    }
+    return CUDA_TRY(cudaEventRecord(f->arrived, s->stream));
+}
+
+/* Fills `frame` between two steps. */
+static int fill_frame(cuda_state *s, err *e)
+{
+    const card_blocks blocks = {(s->tiles.nodes + FRAME_THREADS - 1) / FRAME_THREADS, FRAME_THREADS, 0, s->stream};
+    real *at = s->frame + CUDA_STEPPED * 3 * s->tiles.nodes;
+    if (card_check(card_start(frame_kernel, blocks, s->view, frame_place(s), s->field[TLED_DISPLACEMENT],
+                              s->field[TLED_VELOCITY], s->frame),
+                   "the start of a frame", s->step, e))
+        return -1;
+    for (int i = CUDA_STEPPED; i < s->p->fields.count; i++) {
+        const int64_t numbers = sent_numbers(s, i, true);
+        if (numbers && copy_on_card(s, at, s->field[i], numbers, e))
+            return -1;
+        at += numbers;
+    }
+    return 0;
 }
 
 /* The steps wait where the frame before is not yet sent: far less time passes between two that anyone would see. */
 static int send_frame(cuda_state *s, const cuda_frame *f, err *e)
 {
-    const card_blocks blocks = {(s->tiles.nodes + FRAME_THREADS - 1) / FRAME_THREADS, FRAME_THREADS, 0, s->stream};
     if (!s->frame)
         return send_directly(s, f, e);
-    return CUDA_TRY(cudaStreamWaitEvent(s->stream, s->frame_free, 0)) ||
-                   card_check(card_start(frame_kernel, blocks, s->view, frame_place(s), s->displacement, s->velocity,
-                                         s->frame),
-                              "the start of a frame", s->step, e) ||
+    return CUDA_TRY(cudaStreamWaitEvent(s->stream, s->frame_free, 0)) || fill_frame(s, e) ||
                    CUDA_TRY(cudaEventRecord(s->frame_ready, s->stream)) ||
                    CUDA_TRY(cudaStreamWaitEvent(s->sending, s->frame_ready, 0)) ||
-                   CUDA_TRY(cudaMemcpyAsync(f->host, s->frame, 6 * (size_t)s->tiles.nodes * sizeof(real),
+                   CUDA_TRY(cudaMemcpyAsync(f->host, s->frame, (size_t)frame_numbers(s, true) * sizeof(real),
                                             cudaMemcpyDeviceToHost, s->sending)) ||
                    CUDA_TRY(cudaEventRecord(s->frame_free, s->sending)) ||
                    CUDA_TRY(cudaEventRecord(f->arrived, s->sending))
@@ -146,9 +187,9 @@ static int cuda_snapshot(cuda_state *s, int slot, err *e)
     return send_frame(s, f, e);
 }
 
-typedef struct widening { /* of a frame that came */
-    const real *displacement, *velocity;
-    const field_values *to;
+typedef struct widening { /* of a field that the card has put in order */
+    const real *from;
+    double *to;
 } widening;
 
 static void widen_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -156,28 +197,34 @@ static void widen_work(void *context, int64_t chunk, int64_t from, int64_t to)
     const widening *w = (const widening *)context;
     (void)chunk;
     for (int64_t i = from; i < to; i++)
-        w->to->of[TLED_DISPLACEMENT][i] = w->displacement[i];
-    for (int64_t i = from; i < to; i++)
-        w->to->of[TLED_VELOCITY][i] = w->velocity[i];
+        w->to[i] = w->from[i];
+}
+
+static void widen(const real *from, double *to, int64_t numbers, pool *threads)
+{
+    widening w = {from, to};
+    if (threads)
+        pool_run(threads, numbers, COPY_CHUNK, widen_work, &w);
+    else
+        widen_work(&w, 0, 0, numbers);
 }
 
 static int cuda_fetch(cuda_state *s, int slot, const field_values *to, err *e)
 {
     const cuda_frame *f = &s->slot[slot];
-    const int64_t numbers = 3 * s->tiles.nodes;
-    const permutation u = {s, f->host, to->of[TLED_DISPLACEMENT]}, v = {s, f->host + s->numbers, to->of[TLED_VELOCITY]};
-    widening w = {f->host, f->host + numbers, to};
+    const bool in_order = s->frame != NULL;
+    const real *at = f->host;
     if (card_check(cudaEventSynchronize(f->arrived), "the wait for a frame", f->step, e))
         return -1;
-    if (s->frame) {
-        if (s->wideners)
-            pool_run(s->wideners, numbers, COPY_CHUNK, widen_work, &w);
-        else
-            widen_work(&w, 0, 0, numbers);
-        return 0;
+    for (int i = 0; i < s->p->fields.count; i++) {
+        const field_layout l = layout_of(s, i);
+        const int64_t numbers = sent_numbers(s, i, in_order);
+        if (numbers && in_order && i < CUDA_STEPPED)
+            widen(at, to->of[i], numbers, s->wideners);
+        else if (numbers)
+            permute(&l, at, to->of[i], s->wideners);
+        at += numbers;
     }
-    permute_work((void *)&u, 0, 0, s->tiles.nodes);
-    permute_work((void *)&v, 0, 0, s->tiles.nodes);
     return 0;
 }
 

@@ -17,7 +17,7 @@ enum {
     LOOK_THREADS = 64, /* which go through a brick's cells: blocks that are small load and compute at different times */
     NODES_AT_ONCE = 2, /* of a thread, on their way together */
     SUM_THREADS = 256,
-    KEEP_THREADS = 256
+    SAVE_THREADS = 256
 };
 
 /* A block of the look has a tile and as many of the nodes, in the order of memory, as any other. It leaves a part of
@@ -302,10 +302,10 @@ static __device__ void look_at_node(const cuda_look<S> &l, int32_t n, const look
             continue;
         to->acceleration += gap * gap * inverse;
         to->speed += drive;
-        if (l.kept_displacement) {
-            const int64_t kept = a * l.view.stride + n;
-            const double du = u - l.kept_displacement[kept];
-            to->stiffness += du * (x.internal[a] - (double)l.kept_internal[kept]);
+        if (l.saved_displacement) {
+            const int64_t at = a * l.view.stride + n;
+            const double du = u - l.saved_displacement[at];
+            to->stiffness += du * (x.internal[a] - (double)l.saved_internal[at]);
             to->inertia += mass * du * du;
         }
     }
@@ -354,7 +354,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     cuda_load<G, false>(l.view, t, l.displacement, u);
     tled_sums mine = nothing_seen(l.question.rest);
     look_at_nodes<G::THREADS>(l, out.share, &mine);
-    sum_nodes(&mine, l.kept_displacement);
+    sum_nodes(&mine, l.saved_displacement);
     if (threadIdx.x % 32 == 0)
         part[warp] = mine;
     __syncthreads();
@@ -416,7 +416,7 @@ static __global__ void __launch_bounds__(G::THREADS)
         if (own < l.count)
             add_part(&mine, parts.block[own]);
     }
-    sum_block<G::THREADS>(mine, l.kept_displacement, scratch, &parts.block[blockIdx.x]);
+    sum_block<G::THREADS>(mine, l.saved_displacement, scratch, &parts.block[blockIdx.x]);
 }
 
 static __global__ void __launch_bounds__(SUM_THREADS)
@@ -449,33 +449,33 @@ template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, form f, tl
                : e;
 }
 
-/* ---- what is kept */
+/* ---- what is saved */
 
 template <class S>
-static __global__ void __launch_bounds__(KEEP_THREADS)
-    keep_kernel(const __grid_constant__ cuda_view<S> v, const __grid_constant__ cuda_kept<S> kept)
+static __global__ void __launch_bounds__(SAVE_THREADS)
+    save_kernel(const __grid_constant__ cuda_view<S> v, const __grid_constant__ cuda_saved<S> saved)
 {
-    const int64_t n = (int64_t)blockIdx.x * KEEP_THREADS + threadIdx.x;
-    S x[CUDA_KEPT][3];
+    const int64_t n = (int64_t)blockIdx.x * SAVE_THREADS + threadIdx.x;
+    S x[CUDA_SAVED][3];
     if (n >= v.nodes)
         return;
 #pragma unroll
-    for (int i = 0; i < CUDA_KEPT; i++)
-        if (kept.from[i])
-            cuda_three<false>(v, kept.from[i], n, x[i]);
+    for (int i = 0; i < CUDA_SAVED; i++)
+        if (saved.from[i])
+            cuda_three<false>(v, saved.from[i], n, x[i]);
 #pragma unroll
-    for (int i = 0; i < CUDA_KEPT; i++)
-        for (int a = 0; a < 3 && kept.from[i]; a++)
-            kept.to[i][a * v.stride + n] = x[i][a];
+    for (int i = 0; i < CUDA_SAVED; i++)
+        for (int a = 0; a < 3 && saved.from[i]; a++)
+            saved.to[i][a * v.stride + n] = x[i][a];
 }
 
-template <class S> cudaError_t cuda_keep_start(const cuda_view<S> *v, const cuda_kept<S> *k, cudaStream_t stream)
+template <class S> cudaError_t cuda_save_start(const cuda_view<S> *v, const cuda_saved<S> *saved, cudaStream_t stream)
 {
-    const int64_t blocks = (v->nodes + KEEP_THREADS - 1) / KEEP_THREADS;
-    return card_start(keep_kernel<S>, {blocks, KEEP_THREADS, 0, stream}, *v, *k);
+    const int64_t blocks = (v->nodes + SAVE_THREADS - 1) / SAVE_THREADS;
+    return card_start(save_kernel<S>, {blocks, SAVE_THREADS, 0, stream}, *v, *saved);
 }
 
 template cudaError_t cuda_look_start<float>(const cuda_look<float> *, form, tled_sums *, cudaStream_t);
 template cudaError_t cuda_look_start<double>(const cuda_look<double> *, form, tled_sums *, cudaStream_t);
-template cudaError_t cuda_keep_start<float>(const cuda_view<float> *, const cuda_kept<float> *, cudaStream_t);
-template cudaError_t cuda_keep_start<double>(const cuda_view<double> *, const cuda_kept<double> *, cudaStream_t);
+template cudaError_t cuda_save_start<float>(const cuda_view<float> *, const cuda_saved<float> *, cudaStream_t);
+template cudaError_t cuda_save_start<double>(const cuda_view<double> *, const cuda_saved<double> *, cudaStream_t);

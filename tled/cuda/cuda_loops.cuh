@@ -75,75 +75,113 @@ static float fourth(const cuda_state *s, bool is_displacement, int64_t k)
     return number;
 }
 
-static int set(cuda_state *s, real *to, const double *from, err *e)
+static int set(cuda_state *s, int i, const double *from, err *e)
 {
-    const cuda_view<real> *v = &s->view;
-    for (int64_t k = 0; k < s->tiles.nodes; k++) {
-        for (int a = 0; a < 3; a++)
-            s->staging[v->offset[a] + k * v->along] = (real)from[3 * (int64_t)s->tiles.node[k] + a];
-        if (v->along == 4) {
-            const float number = fourth(s, to == s->displacement, k);
-            memcpy(&s->staging[4 * k + 3], &number, sizeof number);
-        }
+    const field_layout l = layout_of(s, i);
+    for (int64_t k = 0; k < l.places; k++)
+        for (int a = 0; a < l.columns; a++)
+            s->staging[layout_at(&l, a, k)] = (real)from[l.columns * (int64_t)l.row[k] + a];
+    for (int64_t k = 0; i < CUDA_STEPPED && l.along == 4 && k < l.places; k++) {
+        const float number = fourth(s, i == TLED_DISPLACEMENT, k);
+        memcpy(&s->staging[4 * k + 3], &number, sizeof number);
     }
-    return CUDA_TRY(cudaMemcpy(to, s->staging, (size_t)s->numbers * sizeof(real), cudaMemcpyHostToDevice));
+    return CUDA_TRY(cudaMemcpy(s->field[i], s->staging, (size_t)l.numbers * sizeof(real), cudaMemcpyHostToDevice));
+}
+
+/* What a run begins with. */
+static int set_all(cuda_state *s, err *e)
+{
+    for (int i = 0; i < s->p->fields.count; i++)
+        if (set(s, i, s->p->at_start.of[i], e))
+            return -1;
+    return 0;
 }
 
 static int cuda_get(cuda_state *s, int what, double *to, err *e)
 {
     if (what == TLED_INTERNAL && find_internal(s, e))
         return -1;
-    const real *from = what == TLED_DISPLACEMENT ? s->displacement : what == TLED_VELOCITY ? s->velocity : s->spare;
+    const bool is_internal = what == TLED_INTERNAL;
+    const field_layout l = layout_of(s, is_internal ? TLED_DISPLACEMENT : what);
+    const real *from = is_internal ? s->spare : s->field[what];
     if (CUDA_TRY(
-            cudaMemcpyAsync(s->staging, from, (size_t)s->numbers * sizeof(real), cudaMemcpyDeviceToHost, s->stream)) ||
+            cudaMemcpyAsync(s->staging, from, (size_t)l.numbers * sizeof(real), cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;
-    permute(s, s->staging, to);
+    permute(&l, s->staging, to, s->threads);
     return 0;
+}
+
+/* Saves those that steps move by one kernel, in rows; the internal forces too, once the monitor has asked for
+ * differences. */
+static int save_stepped(cuda_state *s, err *e)
+{
+    cuda_saved<real> saved = {};
+    for (int i = 0; i < CUDA_STEPPED; i++)
+        saved.from[i] = s->field[i], saved.to[i] = s->saved + i * 3 * s->view.stride;
+    saved.from[CUDA_STEPPED] = s->saved_internal ? s->spare : NULL;
+    saved.to[CUDA_STEPPED] = s->saved_internal;
+    return card_check(cuda_save_start(&s->view, &saved, s->stream), "the start of a copy", s->step, e);
 }
 
 static int cuda_save(cuda_state *s, err *e)
 {
-    if (s->kept_internal && find_internal(s, e))
+    if (s->saved_internal && find_internal(s, e))
         return -1;
-    const cuda_kept<real> kept = {{s->displacement, s->velocity, s->kept_internal ? s->spare : NULL},
-                                  {s->kept_displacement, s->kept_displacement + 3 * s->view.stride, s->kept_internal}};
-    s->has_kept_internal = s->kept_internal != NULL;
-    s->kept_step = s->step;
-    s->kept_time = s->time;
-    return card_check(cuda_keep_start(&s->view, &kept, s->stream), "the start of a copy", s->step, e);
+    s->has_saved_internal = s->saved_internal != NULL;
+    s->saved_step = s->step;
+    s->saved_time = s->time;
+    real *at = s->saved + CUDA_STEPPED * 3 * s->view.stride;
+    for (int i = CUDA_STEPPED; i < s->p->fields.count; i++) {
+        if (copy_on_card(s, at, s->field[i], saved_numbers(s, i), e))
+            return -1;
+        at += saved_numbers(s, i);
+    }
+    return save_stepped(s, e);
 }
 
 static int cuda_restore(cuda_state *s, err *e)
 {
-    const int64_t n = 3 * s->view.stride;
+    const real *at = s->saved;
     s->spare_is_internal = false;
-    s->step = s->kept_step;
-    s->time = s->kept_time;
-    return s->method->from_rows(s, s->displacement, s->kept_displacement, e) ||
-                   s->method->from_rows(s, s->velocity, s->kept_displacement + n, e)
-               ? -1
-               : 0;
+    s->step = s->saved_step;
+    s->time = s->saved_time;
+    for (int i = 0; i < s->p->fields.count; i++) {
+        const int bad = i < CUDA_STEPPED ? s->method->from_rows(s, s->field[i], at, e)
+                                         : copy_on_card(s, s->field[i], at, saved_numbers(s, i), e);
+        if (bad)
+            return -1;
+        at += saved_numbers(s, i);
+    }
+    return 0;
 }
 
 static int64_t cuda_bytes(const cuda_state *s)
 {
     const int64_t rows = 3 * s->view.stride * (int64_t)sizeof(real);
-    return s->bytes + (s->kept_internal ? rows : 0) + (s->frame ? frame_bytes(s) : 0);
+    return s->bytes + (s->saved_internal ? rows : 0) + (s->frame ? frame_bytes(s) : 0);
 }
 
 static int cuda_monitor(cuda_state *s, const tled_question *q, tled_sums *sums, err *e)
 {
     tled_plan here = {q->time, 1, 0, 0};
     const double *rows = NULL;
-    if (q->differences && !s->kept_internal)
-        s->kept_internal = (real *)card_take(3 * s->view.stride * (int64_t)sizeof(real), "the look at forces", e);
-    if ((q->differences && !s->kept_internal) || find_internal(s, e) || put_table(s, &here, 0, 0, &rows, e))
+    if (q->differences && !s->saved_internal)
+        s->saved_internal = (real *)card_take(3 * s->view.stride * (int64_t)sizeof(real), "the look at forces", e);
+    if ((q->differences && !s->saved_internal) || find_internal(s, e) || put_table(s, &here, 0, 0, &rows, e))
         return -1;
-    const real *kept = q->differences && s->has_kept_internal ? s->kept_displacement : NULL;
-    cuda_look<real> l = {s->view,     s->size,  s->tiles.count, s->displacement,
-                         s->velocity, s->spare, kept,           s->kept_internal,
-                         rows,        *q,       s->look_parts};
+    const real *saved = q->differences && s->has_saved_internal ? s->saved : NULL; /* displacements */
+    cuda_look<real> l = {s->view,
+                         s->size,
+                         s->tiles.count,
+                         s->field[TLED_DISPLACEMENT],
+                         s->field[TLED_VELOCITY],
+                         s->spare,
+                         saved,
+                         s->saved_internal,
+                         rows,
+                         *q,
+                         s->look_parts};
     if (card_check(cuda_look_start(&l, s->p->form, s->sums, s->stream), "the start of a look", s->step, e) ||
         CUDA_TRY(cudaMemcpyAsync(s->sums_host, s->sums, sizeof *s->sums, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
@@ -179,7 +217,7 @@ static void cuda_destroy(cuda_state *s)
     cudaFreeHost(s->staging);
     cudaFreeHost(s->sums_host);
     card_give(s->memory);
-    card_give(s->kept_internal);
+    card_give(s->saved_internal);
     card_give(s->frame);
     pool_destroy(s->wideners);
     if (s->frame_free)
@@ -211,8 +249,7 @@ static int fill(cuda_state *s, err *e)
     memcpy(s->view.side, p->side, sizeof p->side);
     s->shape = element_box(p->side[0], p->side[1], p->side[2]);
     s->time = p->start;
-    if (put_problem(s, e) || make_events(s, e) || set(s, s->displacement, p->at_start.of[TLED_DISPLACEMENT], e) ||
-        set(s, s->velocity, p->at_start.of[TLED_VELOCITY], e) || s->method->begin(s, e))
+    if (put_problem(s, e) || make_events(s, e) || set_all(s, e) || s->method->begin(s, e))
         return -1;
     /* Streams that do not block wait for none of it by themselves. */
     return CUDA_TRY(cudaDeviceSynchronize()) ? -1 : find_internal(s, e);

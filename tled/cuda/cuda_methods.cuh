@@ -98,17 +98,17 @@ static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 
 static void swap_displacements(cuda_state *s)
 {
-    real *to = s->displacement;
-    s->displacement = s->spare;
+    real *to = s->field[TLED_DISPLACEMENT];
+    s->field[TLED_DISPLACEMENT] = s->spare;
     s->spare = to;
 }
 
 /* One pass; now: the row of the curves' values where the state stands. */
 static int pass(cuda_state *s, const tled_plan *plan, const double *now, int what, err *e)
 {
-    cuda_pass p = {s->displacement,
+    cuda_pass p = {s->field[TLED_DISPLACEMENT],
                    s->spare,
-                   s->velocity,
+                   s->field[TLED_VELOCITY],
                    now,
                    now + 3 * s->p->script->curves,
                    NULL,
@@ -178,9 +178,9 @@ static int resident_begin(cuda_state *s, err *e)
 static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
 {
     const bool ends = b->first + b->passes > b->count, moves = !ends || b->passes > 1;
-    const cuda_pass p = {s->displacement,
-                         moves ? s->spare : s->displacement,
-                         s->velocity,
+    const cuda_pass p = {s->field[TLED_DISPLACEMENT],
+                         moves ? s->spare : s->field[TLED_DISPLACEMENT],
+                         s->field[TLED_VELOCITY],
                          b->rows,
                          NULL,
                          NULL,
@@ -189,7 +189,7 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
                          node_factors_of(1 / b->plan->rate, b->plan->damping),
                          0};
     const cuda_resident r = {p,
-                             moves ? s->displacement : s->spare,
+                             moves ? s->field[TLED_DISPLACEMENT] : s->spare,
                              s->message,
                              s->messages + 1,
                              (int32_t)b->passes,
@@ -262,7 +262,7 @@ static void march_fill(cuda_state *s)
     const int *axis = s->march.axis;
     cuda_march *w = &s->walk;
     const double law[3] = {plain->law.c[0], plain->law.c[1], plain->law.hourglass}; /* of the neo-Hookean form */
-    s->view.mass_inverse = s->displacement + 3;
+    s->view.mass_inverse = s->field[TLED_DISPLACEMENT] + 3;
     w->ticket = w->done + s->march.units;
     w->nears = (int32_t)s->march.nears;
     w->units = (int32_t)s->march.units;
@@ -287,9 +287,9 @@ static int keep_near(cuda_state *s, err *e)
         CUDA_TRY(cudaDeviceGetAttribute(&most, cudaDevAttrMaxPersistingL2CacheSize, device)))
         return -1;
     const char *end = (const char *)(s->walk.word + s->march.layers * MARCH_WORDS);
-    const size_t bytes = (size_t)(end - (const char *)s->velocity), room = (size_t)most / 5 * 3;
+    const size_t bytes = (size_t)(end - (const char *)s->field[TLED_VELOCITY]), room = (size_t)most / 5 * 3;
     cudaStreamAttrValue value = {};
-    value.accessPolicyWindow.base_ptr = s->velocity;
+    value.accessPolicyWindow.base_ptr = s->field[TLED_VELOCITY];
     value.accessPolicyWindow.num_bytes = bytes < room ? bytes : room;
     value.accessPolicyWindow.hitRatio = 1;
     value.accessPolicyWindow.hitProp = cudaAccessPropertyPersisting;
@@ -324,8 +324,8 @@ static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int
                     err *e)
 {
     const cuda_march_pass p = {
-        {(float4 *)s->displacement, (float4 *)s->spare},
-        (float4 *)s->velocity,
+        {(float4 *)s->field[TLED_DISPLACEMENT], (float4 *)s->spare},
+        (float4 *)s->field[TLED_VELOCITY],
         now,
         {kind_of(plan, first), kind_of(plan, PASS_BEGIN | PASS_FINISH), kind_of(plan, PASS_FINISH | PASS_INTERNAL)},
         3 * (int32_t)s->p->script->curves,

@@ -17,7 +17,7 @@ enum { TABLE_STEPS = 256, TABLES = 2, COPY_CHUNK = 4096, WIDENERS = 4 };
 #endif
 
 typedef struct cuda_frame { /* results on their way to the host; made when first wanted */
-    real *host;             /* pinned: what `frame` has; without one, displacement, then velocity, as they stand */
+    real *host;             /* pinned: what `frame` has; without one, the fields of frames as they stand */
     cudaEvent_t arrived;
     int64_t step; /* that it was taken at, for messages: the state's own goes on meanwhile */
 } cuda_frame;
@@ -54,7 +54,7 @@ typedef struct cuda_method {
     int (*passes)(cuda_state *s, const cuda_batch *b, err *e);
     /* Finds the internal forces, into `spare`; now: the curves' values where the state stands, on the card. */
     int (*internal)(cuda_state *s, const tled_plan *here, const double *now, err *e);
-    /* From what is kept, in rows, to an array of the state. */
+    /* From what is saved, in rows, to an array of the state that steps move. */
     int (*from_rows)(cuda_state *s, real *to, const real *from, err *e);
     int64_t (*computed)(const cuda_state *s); /* tled_executor's */
     /* Undoes what it set for the process; NULL: nothing. */
@@ -70,22 +70,22 @@ struct tled_state {
     int64_t places; /* how many of them the card has at once */
     cuda_view<real> view;
     element_shape shape;
-    struct march march;         /* where the method is that: */
-    cuda_march walk;            /* what its kernels see */
-    int64_t walkers;            /* blocks of it */
-    uint32_t walked, tickets;   /* passes of it, and units of all of them, and one more a block */
-    char *memory;               /* of the card: all arrays below but for `frame` and `kept_internal` */
-    int64_t bytes;              /* of memory */
-    real *displacement, *spare; /* each `numbers`, as is velocity; all else in rows: 3 x stride */
-    real *velocity;
-    int64_t numbers;         /* 3 x stride, or, where it marches, 4 x stride */
-    uint64_t *message;       /* between tiles that are resident */
-    uint32_t messages;       /* passes that they have sent them for */
-    real *kept_displacement; /* and velocity after it */
-    real *kept_internal;     /* made when first wanted */
-    real *frame;             /* to send (cuda_frame.cuh); likewise, unless that is: one of the two */
-    pool *wideners;          /* make doubles of it on the host, beside those of the run: made with it */
-    bool spare_is_internal, has_kept_internal;
+    struct march march;       /* where the method is that: */
+    cuda_march walk;          /* what its kernels see */
+    int64_t walkers;          /* blocks of it */
+    uint32_t walked, tickets; /* passes of it, and units of all of them, and one more a block */
+    char *memory;             /* of the card: all arrays below but for `frame` and `saved_internal` */
+    int64_t bytes;            /* of memory */
+    real *field[FIELDS_MOST]; /* of the problem's table, as layout_of says */
+    real *spare;              /* as displacements are */
+    int64_t numbers;          /* of each of those that steps move: 3 x stride, or, where it marches, 4 x stride */
+    uint64_t *message;        /* between tiles that are resident */
+    uint32_t messages;        /* passes that they have sent them for */
+    real *saved;              /* all fields, one after the other, those that steps move in rows: 3 x stride */
+    real *saved_internal;     /* in rows; made when first wanted */
+    real *frame;              /* to send (cuda_frame.cuh); likewise, unless that is: one of the two */
+    pool *wideners;           /* make doubles of it on the host, beside those of the run: made with it */
+    bool spare_is_internal, has_saved_internal;
     bool frame_direct;          /* there is no room for `frame` */
     double *table[TABLES];      /* on the card: TABLE_STEPS + 1 rows of the curves' values */
     double *table_host[TABLES]; /* pinned */
@@ -93,15 +93,73 @@ struct tled_state {
     int64_t tables; /* filled so far */
     char *look_parts;
     tled_sums *sums, *sums_host;
-    real *staging; /* pinned: `numbers` */
+    real *staging; /* pinned: the largest field */
     cuda_frame slot[TLED_SLOTS];
-    int64_t step, kept_step; /* for messages */
-    double time, kept_time;  /* where the state stands */
+    int64_t step, saved_step; /* for messages */
+    double time, saved_time;  /* where the state stands */
     cudaStream_t stream, sending;
 };
 
 /* What went wrong in steps before may come out of any call. Not for fetch(), which another thread calls. */
 #define CUDA_TRY(call) card_check(call, #call, s->step, e)
+
+/* ---- fields */
+
+/* How the numbers of a field lie: place k of column a at offset[a] + k * along, where an offset that is NULL counts as
+ * a * stride. Place k belongs to row[k] of the model. The places of a field on elements are the tiles' cells: an element
+ * that several tiles compute has as many places, with the same numbers, and is read from the tile that owns it. */
+typedef struct field_layout {
+    int columns;
+    int64_t numbers, places, stride, along; /* numbers: with padding */
+    const int64_t *offset;
+    const int32_t *row;
+    const uint32_t *cell; /* places: TILE_OWN where they are read; NULL: all are */
+} field_layout;
+
+/* Those that the kernels know stand as their view says, all others column after column. */
+static field_layout layout_of(const cuda_state *s, int i)
+{
+    const field *f = &s->p->fields.field[i];
+    const tiles *t = &s->tiles;
+    const cuda_view<real> *v = &s->view;
+    const int64_t cells = (t->cells + 31) / 32 * 32;
+    if (i < CUDA_STEPPED)
+        return {f->columns, s->numbers, t->nodes, v->stride, v->along, v->offset, t->node, NULL};
+    if (f->axis == FIELD_ELEMENT)
+        return {f->columns, f->columns * cells, t->cells, cells, 1, NULL, t->cell_element, t->cell};
+    return {f->columns, f->columns * v->stride, t->nodes, v->stride, 1, NULL, t->node, NULL};
+}
+
+static int64_t layout_at(const field_layout *l, int a, int64_t k)
+{
+    return (l->offset ? l->offset[a] : a * l->stride) + k * l->along;
+}
+
+/* How many numbers a field takes where it is saved. */
+static int64_t saved_numbers(const cuda_state *s, int i)
+{
+    return i < CUDA_STEPPED ? 3 * s->view.stride : layout_of(s, i).numbers;
+}
+
+static int64_t saved_numbers_of_all(const cuda_state *s)
+{
+    int64_t numbers = 0;
+    for (int i = 0; i < s->p->fields.count; i++)
+        numbers += saved_numbers(s, i);
+    return numbers;
+}
+
+static int64_t largest_field(const cuda_state *s)
+{
+    int64_t most = s->numbers;
+    for (int i = 0; i < s->p->fields.count; i++) {
+        const int64_t numbers = layout_of(s, i).numbers;
+        most = numbers > most ? numbers : most;
+    }
+    return most;
+}
+
+/* ---- memory */
 
 /* What does not change while the run goes on. */
 static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout *l)
@@ -130,12 +188,13 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
 /* The state, and what a step or a look at it needs. */
 static void list_state(cuda_state *s, const cuda_numbers *numbers, card_layout *l)
 {
-    const int64_t stride = s->view.stride;
-    card_layout_add(l, &s->displacement, s->numbers);
+    card_layout_add(l, &s->field[TLED_DISPLACEMENT], s->numbers);
     card_layout_add(l, &s->spare, s->numbers);
-    card_layout_add(l, &s->velocity, s->numbers);
+    card_layout_add(l, &s->field[TLED_VELOCITY], s->numbers);
     s->method->list(s, numbers, l);
-    card_layout_add(l, &s->kept_displacement, 6 * stride);
+    card_layout_add(l, &s->saved, saved_numbers_of_all(s));
+    for (int i = CUDA_STEPPED; i < s->p->fields.count; i++)
+        card_layout_add(l, &s->field[i], layout_of(s, i).numbers);
     for (int i = 0; i < TABLES; i++)
         card_layout_add(l, &s->table[i], (TABLE_STEPS + 1) * 3 * s->p->script->curves);
     card_layout_add(l, &s->look_parts, (int64_t)cuda_look_bytes(s->tiles.count));
@@ -150,7 +209,7 @@ static int make_events(cuda_state *s, err *e)
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_free, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_ready, cudaEventDisableTiming)) ||
         CUDA_TRY(cudaMallocHost((void **)&s->sums_host, sizeof *s->sums_host)) ||
-        CUDA_TRY(cudaMallocHost((void **)&s->staging, (size_t)s->numbers * sizeof(real))))
+        CUDA_TRY(cudaMallocHost((void **)&s->staging, (size_t)largest_field(s) * sizeof(real))))
         return -1;
     for (int i = 0; i < TABLES; i++)
         if (CUDA_TRY(cudaMallocHost((void **)&s->table_host[i], (TABLE_STEPS + 1) * row)) ||

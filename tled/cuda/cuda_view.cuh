@@ -191,10 +191,10 @@ template <class S> static __device__ const tile_extra *cuda_extra(const cuda_vie
 /* What look() answers, found on the device: cuda_look.cu. */
 template <class S> struct cuda_look {
     cuda_view<S> view;
-    cuda_size size;                                                                  /* the bricks */
-    int64_t count;                                                                   /* tiles */
-    const S *displacement, *velocity, *internal, *kept_displacement, *kept_internal; /* the last two: or NULL */
-    const double *now;                                                               /* the curves' values */
+    cuda_size size;                                                                    /* the bricks */
+    int64_t count;                                                                     /* tiles */
+    const S *displacement, *velocity, *internal, *saved_displacement, *saved_internal; /* the last two: or NULL */
+    const double *now;                                                                 /* the curves' values */
     tled_question question;
     void *parts; /* cuda_look_bytes of them */
 };
@@ -204,13 +204,16 @@ size_t cuda_look_bytes(int64_t tiles);
 /* Starts the work on the stream; *sums (on the device) gets the answer, with cells for elements. */
 template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, form f, tled_sums *sums, cudaStream_t stream);
 
-/* Arrays over nodes that go into rows, as the state stands or stood when it was kept. */
-enum { CUDA_KEPT = 3 };
-template <class S> struct cuda_kept {
-    const S *from[CUDA_KEPT]; /* or NULL: not that one */
-    S *to[CUDA_KEPT];
+/* The first fields of the table, which the kernels know: nodes x 3, as the view says. */
+enum { CUDA_STEPPED = TLED_VELOCITY + 1 };
+
+/* Arrays over nodes that are copied into rows: these fields, then the internal forces. */
+enum { CUDA_SAVED = CUDA_STEPPED + 1 };
+template <class S> struct cuda_saved {
+    const S *from[CUDA_SAVED]; /* or NULL: not that one */
+    S *to[CUDA_SAVED];
 };
 
-template <class S> cudaError_t cuda_keep_start(const cuda_view<S> *v, const cuda_kept<S> *k, cudaStream_t stream);
+template <class S> cudaError_t cuda_save_start(const cuda_view<S> *v, const cuda_saved<S> *saved, cudaStream_t stream);
 
 #endif
