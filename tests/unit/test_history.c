@@ -9,30 +9,16 @@
 #define CPU_PASSES   cpu_passes_double
 #include "tled/cpu/cpu_loops.h"
 
-#include "tled_bench.h"
+#include "tled_history.h"
 
 #include "base/checksum.h"
 #include "tled/run/checkpoint.h"
 
 #include <unistd.h>
 
-enum { HISTORY = 2, COLUMNS = 6, STEPS = 700 };
+enum { STEPS = 700 };
 
 static const block muscle = {{6, 3, 3}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0, false};
-
-/* The problem's table and a row more, and what it begins with. */
-static void add_history(tled_problem *p, field row[HISTORY + 1], int where)
-{
-    err e = {0};
-    memcpy(row, p->fields.field, HISTORY * sizeof *row);
-    row[HISTORY] = (field){"element.history", "1", FIELD_ELEMENT, COLUMNS, where, "no history"};
-    p->fields.field = row;
-    p->fields.count = HISTORY + 1;
-    fields_free(&p->at_start);
-    bench_must(fields_allocate(&p->fields, FIELDS_ALL, &p->at_start, "a test", &e), &e);
-    for (int64_t i = 0; i < COLUMNS * p->elements; i++)
-        p->at_start.of[HISTORY][i] = (double)i;
-}
 
 /* As a law's would, each element's numbers change by themselves: here by the steps taken. */
 static int history_step(tled_state *s, const tled_plan *plan, int64_t count, err *e)
@@ -42,39 +28,6 @@ static int history_step(tled_state *s, const tled_plan *plan, int64_t count, err
         for (int64_t k = 0; k < s->rows.cells; k++)
             s->field[HISTORY][a * stride + k] += (double)(count * (a + 1));
     return cpu_step(s, plan, count, e);
-}
-
-static bool is_after(const double *history, int64_t elements, int64_t steps)
-{
-    for (int64_t i = 0; i < COLUMNS * elements; i++)
-        if (history[i] != (double)(i + steps * (i % COLUMNS + 1)))
-            return false;
-    return true;
-}
-
-static void test_executor(const tled_executor *device)
-{
-    bench b;
-    field row[HISTORY + 1];
-    field_values got;
-    bench_make(&b, &muscle, NULL, .7, .0075, 2);
-    tled_problem *p = &b.problem;
-    add_history(p, row, FIELD_IN_FRAMES);
-    fields_allocate(&p->fields, FIELDS_ALL, &got, "a test", &b.e);
-    const tled_plan plan = {.rate = b.setup.rate, .damping = b.setup.damping};
-    tled_state *state = device->create(p, b.setup.threads, &b.e);
-    bench_must(!state, &b.e);
-    device->step(state, &plan, 2, &b.e);
-    device->save(state, &b.e);
-    device->snapshot(state, 1, &b.e);
-    device->step(state, &plan, 3, &b.e);
-    ok(!device->get(state, HISTORY, got.of[HISTORY], &b.e) && is_after(got.of[HISTORY], p->elements, 5), "got");
-    ok(!device->fetch(state, 1, &got, &b.e) && is_after(got.of[HISTORY], p->elements, 2), "a snapshot is of its time");
-    device->restore(state, &b.e);
-    ok(!device->get(state, HISTORY, got.of[HISTORY], &b.e) && is_after(got.of[HISTORY], p->elements, 2), "restored");
-    device->destroy(state);
-    fields_free(&got);
-    bench_free(&b);
 }
 
 /* ---- a run that is broken off */
@@ -171,7 +124,7 @@ int main(void)
 {
     tled_executor device = history_cpu;
     device.step = history_step;
-    test_executor(&device);
+    test_history(&device, &muscle, false, "a history");
     test_run(&device);
     return done_testing();
 }

@@ -6,9 +6,11 @@
 
 #ifdef SINEW_EMULATED
 #include "tests/emulate/emulate.h"
+#include "tests/emulate/history.h"
 #include "tests/emulate/wrong.h"
 #include "tled/cuda/cuda.h"
 #include "tled/cuda/march_near.h"
+#include "tled_history.h"
 
 /* Steps, of a lump on so many processors, in a test of what is left out. */
 enum { OMITTED_STEPS = 8, OMITTED_ON = 6, OMITTED_NODES = 18 * 10 * 7 };
@@ -376,6 +378,41 @@ static void test_long_calls(void)
     }
 }
 
+/* A history of elements that several tiles compute, where it marches, in bricks and in bricks that stay: by frames that
+ * have their own memory on the card, and, once the monitor has asked for differences, by frames as the state stands. */
+static void test_histories(void)
+{
+    static const struct {
+        const char *name, *direct;
+        const emulated_card *card;
+        const block *what;
+    } all[] = {{"a history where it marches", "a history where it marches, to rest", &marching, &small},
+               {"a history in bricks", "a history in bricks, to rest", &plain, &muscle},
+               {"a history in bricks that stay", "a history in bricks that stay, to rest", &staying, &muscle}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        put_in(all[i].card, 5, all[i].card->processors);
+        test_history(&history_cuda, all[i].what, false, all[i].name);
+        test_history(&history_cuda, all[i].what, true, all[i].direct);
+    }
+}
+
+/* The executors on cards have no steps that change a history, and say so. */
+static void test_refusal(void)
+{
+    const tled_executor *table[] = {&tled_cuda_single, NULL}, *other[] = {&history_cuda, NULL};
+    char says[200];
+    bench b;
+    bench_make(&b, &muscle, NULL, 0, .0075, 1);
+    executor_need need = tled_need(&b.problem);
+    ok(!(need.features & EXECUTOR_HISTORY), "tissue without a history needs none");
+    need.features |= EXECUTOR_HISTORY;
+    ok(!tled_executor_choose(table, "cuda", &need, says, sizeof says, &b.e) &&
+           strstr(b.e.text, "no history of elements"),
+       "a history is refused: %s", b.e.text);
+    ok(tled_executor_choose(other, "cuda", &need, says, sizeof says, &b.e) == &history_cuda, "or chosen for: %s", says);
+    bench_free(&b);
+}
+
 int main(void)
 {
     const int64_t more = getenv("SINEW_LONG") ? 20 : 1;
@@ -393,6 +430,8 @@ int main(void)
         if (f != FORM_NEO_HOOKEAN)
             test_form((form)f, 2 * more);
     test_looks(2 * more);
+    test_histories();
+    test_refusal();
     return done_testing();
 }
 #else
