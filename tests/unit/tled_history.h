@@ -1,5 +1,5 @@
 /* A row more in the table of a state, a history of 6 numbers an element, and an executor whose steps change it: that it
- * is got, saved, restored and snapshotted. Whoever includes this gives the executor, whose step adds to number a of each
+ * is got, saved, restored and snapshotted. Who includes this gives the executor, whose step adds to number a of each
  * element a + 1 a step.
  */
 #ifndef SINEW_TLED_HISTORY_H

@@ -106,7 +106,7 @@ struct tled_state {
 /* ---- fields */
 
 /* How the numbers of a field lie: place k of column a at offset[a] + k * along, where an offset that is NULL counts as
- * a * stride. Place k belongs to row[k] of the model. The places of a field on elements are the tiles' cells: an element
+ * a * stride. Place k belongs to row[k] of the model. Places of a field on elements are the tiles' cells: an element
  * that several tiles compute has as many places, with the same numbers, and is read from the tile that owns it. */
 typedef struct field_layout {
     int columns;
