@@ -92,7 +92,8 @@ static int not_in_table(const executor *const *table, const char *device, err *e
 {
     char have[200] = "";
     for (int i = 0; table[i]; i++)
-        append(have, sizeof have, "%s%s", i ? ", " : "", table[i]->device);
+        if (!i || strcmp(table[i]->device, table[i - 1]->device) != 0)
+            append(have, sizeof have, "%s%s", i ? ", " : "", table[i]->device);
     return err_set(e, NULL, 0, "this build has no %s back end; have: %s", title(device), have);
 }
 

@@ -293,7 +293,8 @@ static void measure(const char *name, bench *b, const options *o)
                           .least = o->least,
                           .filled = 1,
                           .card = o->card};
-            if (!(*d)->is.unusable() && !(o->device && strcmp((*d)->is.device, o->device)))
+            const bool is_asked = !o->device || !strcmp((*d)->is.device, o->device);
+            if (is_asked && !((*d)->is.features & EXECUTOR_MESHES) && !(*d)->is.unusable()) /* blocks are of boxes */
                 measure_device(&w, b, o);
         }
 }

@@ -5,8 +5,9 @@
 // needs: tled/*/*.c
 #include "tled/cpu/cpu.h"
 
-#define CPU_EXECUTOR history_cpu
-#define CPU_PASSES   cpu_passes_double
+#define CPU_EXECUTOR           history_cpu
+#define CPU_EXECUTOR_OF_MESHES history_cpu_meshes
+#define CPU_PASSES             cpu_passes_double
 #include "tled/cpu/cpu_loops.h"
 
 #include "tled_history.h"

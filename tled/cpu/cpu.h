@@ -5,6 +5,7 @@
 
 #include "tled/problem/tled_executor.h"
 
-extern const tled_executor tled_cpu_double, tled_cpu_single;
+extern const tled_executor tled_cpu_double, tled_cpu_single;               /* of boxes of a lattice */
+extern const tled_executor tled_cpu_meshes_double, tled_cpu_meshes_single; /* of any hexahedra */
 
 #endif

@@ -1,5 +1,6 @@
-/* The CPU executor: memory around cpu_pass.h, and the passes in their order. Compiled twice, by cpu_double.c and
- * cpu_single.c, which choose the precision and name the table of functions. All that is here is static.
+/* The CPU executors, for boxes of a lattice in rows and for meshes of any hexahedra: memory around cpu_pass.h, and the
+ * passes in their order. Compiled twice, by cpu_double.c and cpu_single.c, which choose the precision and name the
+ * tables of functions. All else that is here is static.
  *
  * Of `count` steps, the first pass begins one, each after it ends one and begins the next, the last ends one and leaves
  * the internal forces where displacements go else. A pass is a loop over slabs, one a thread; no sum depends on how
@@ -23,9 +24,17 @@ typedef double number;
 
 typedef struct tled_state cpu_state;
 
+/* How one of the executors goes over elements and nodes. */
+typedef struct cpu_method {
+    /* Where nodes and elements lie, into s->rows, and what it has of its own. -1 with e filled. */
+    int (*make)(cpu_state *s, err *e);
+    void (*pass)(cpu_state *s);
+} cpu_method;
+
 struct tled_state {
     const tled_problem *p;
     pool *threads;
+    const cpu_method *method;
     const cpu_pass *pass;
     rows rows;
     cpu_kind *kind;                   /* volumes */
@@ -36,9 +45,10 @@ struct tled_state {
     uint8_t *flags;                   /* rows.nodes: NODE_* */
     number *fibre, *fraction;         /* cells, with padding: 3 x and 1 x; or NULL */
     number *mixfibre, *mixture, *law; /* likewise; law: a law's numbers x */
-    number *shape, *force;            /* without a lattice: cpu_work's, as is: */
+    number *shape, *force;            /* a mesh's: cpu_work's, as is: */
     int32_t *group_node;
-    number *saved; /* all fields, one after the other; made when first wanted, as are, of the fields of frames: */
+    int64_t mesh_bytes; /* of these */
+    number *saved;      /* all fields, one after the other; made when first wanted, as are, of the fields of frames: */
     number *slot[TLED_SLOTS];
     bool spare_is_internal;
     double time;        /* where the state stands */
@@ -48,12 +58,22 @@ struct tled_state {
 
 #include "tled/cpu/cpu_mesh.h"
 
+static int boxes_make(cpu_state *s, err *e)
+{
+    return rows_make(&s->rows, s->p, s->pass->lanes, pool_threads(s->threads), e);
+}
+
 static void pass_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const cpu_state *s = context;
     (void)chunk;
     for (int64_t i = from; i < to; i++)
         s->pass->slab(&s->work, (int32_t)i);
+}
+
+static void boxes_pass(cpu_state *s)
+{
+    pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
 }
 
 /* What the probe pushes with, into the sums that the pass adds to. */
@@ -99,10 +119,7 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
         cpu_contact contact = {s, collider_at(s->p->collider, time), time};
         pool_run(s->threads, s->p->nodes, CONTACT_CHUNK, contact_work, &contact);
     }
-    if (s->p->conforming)
-        mesh_pass(s);
-    else
-        pool_run(s->threads, s->rows.slabs, 1, pass_work, s);
+    s->method->pass(s);
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (what & PASS_BEGIN) {
         number *swap = s->field[TLED_DISPLACEMENT];
@@ -256,7 +273,7 @@ static int64_t cpu_bytes(const cpu_state *s)
     for (int i = 0; i < TLED_SLOTS; i++)
         numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
     return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) +
-           r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + mesh_bytes(s);
+           r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes;
 }
 
 /* ---- life */
@@ -323,8 +340,7 @@ static int allocate(cpu_state *s, err *e)
 {
     const int64_t nodes = s->rows.nodes, curves = s->p->script->curves;
     if (allocate_fields(s, e) || make_numbers(&s->spare, nodes, 3, e) || make_numbers(&s->sum, nodes, 3, e) ||
-        make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e) ||
-        (s->p->conforming && mesh_allocate(s, e)))
+        make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e))
         return -1;
     s->kind = mem_array(s->p->volumes, sizeof *s->kind, "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
@@ -397,27 +413,36 @@ static void make_work(cpu_state *s)
         w->law[k] = s->law ? s->law + k * (s->rows.cells + ROWS_PAD) : NULL;
 }
 
-static cpu_state *cpu_create(const tled_problem *problem, pool *threads, err *e)
+static cpu_state *create_by(const cpu_method *method, const tled_problem *problem, pool *threads, err *e)
 {
     cpu_state *s = mem_array(1, sizeof *s, "the solver", e);
     if (!s)
         return NULL;
     s->p = problem;
     s->threads = threads;
+    s->method = method;
     s->pass = cpu_pass_choose(CPU_PASSES, s->p->form, e);
     s->time = s->p->start;
-    if (!s->pass ||
-        (s->p->conforming ? mesh_rows(s, e) : rows_make(&s->rows, s->p, s->pass->lanes, pool_threads(threads), e)) ||
-        allocate(s, e)) {
+    if (!s->pass || method->make(s, e) || allocate(s, e)) {
         cpu_destroy(s);
         return NULL;
     }
     fill_nodes(s);
     fill_cells(s);
-    if (s->p->conforming)
-        mesh_fill(s);
     make_work(s);
     return s;
+}
+
+static cpu_state *boxes_create(const tled_problem *problem, pool *threads, err *e)
+{
+    static const cpu_method by_boxes = {boxes_make, boxes_pass};
+    return create_by(&by_boxes, problem, threads, e);
+}
+
+static cpu_state *mesh_create(const tled_problem *problem, pool *threads, err *e)
+{
+    static const cpu_method by_mesh = {mesh_make, mesh_pass};
+    return create_by(&by_mesh, problem, threads, e);
 }
 
 static const char *cpu_unusable(void)
@@ -430,17 +455,21 @@ static int64_t cpu_computed(const cpu_state *s)
     return s->rows.cells;
 }
 
+/* What both have. */
+#define CPU_FUNCTIONS                                                                                                  \
+    .destroy = cpu_destroy, .step = cpu_step, .get = cpu_get, .save = cpu_save, .restore = cpu_restore,                \
+    .snapshot = cpu_snapshot, .fetch = cpu_fetch, .bytes = cpu_bytes, .computed = cpu_computed
+
 const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
-                                           .features = EXECUTOR_MESHES | EXECUTOR_CONTACT | EXECUTOR_MIXTURES,
+                                           .features = EXECUTOR_CONTACT | EXECUTOR_MIXTURES,
                                            .forms = (1U << FORM_STEPPED) - 1,
                                            .unusable = cpu_unusable},
-                                    .create = cpu_create,
-                                    .destroy = cpu_destroy,
-                                    .step = cpu_step,
-                                    .get = cpu_get,
-                                    .save = cpu_save,
-                                    .restore = cpu_restore,
-                                    .snapshot = cpu_snapshot,
-                                    .fetch = cpu_fetch,
-                                    .bytes = cpu_bytes,
-                                    .computed = cpu_computed};
+                                    .create = boxes_create,
+                                    CPU_FUNCTIONS};
+
+const tled_executor CPU_EXECUTOR_OF_MESHES = {.is = {.device = "cpu",
+                                                     .features = EXECUTOR_MESHES | EXECUTOR_CONTACT | EXECUTOR_MIXTURES,
+                                                     .forms = (1U << FORM_STEPPED) - 1,
+                                                     .unusable = cpu_unusable},
+                                              .create = mesh_create,
+                                              CPU_FUNCTIONS};

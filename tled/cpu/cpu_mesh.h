@@ -1,6 +1,6 @@
-/* The CPU executor's memory for a problem without a lattice; part of cpu_loops.h. Nodes are in the model's order.
- * Elements lie in groups of as many as the pass has lanes; the last group is filled with elements of no volume and no
- * law, at the last element's nodes.
+/* The CPU executor for meshes without a lattice: its memory and its passes; part of cpu_loops.h. Nodes are in the
+ * model's order. Elements lie in groups of as many as the pass has lanes; the last group is filled with elements of no
+ * volume and no law, at the last element's nodes.
  */
 #include "physics/element_any.h"
 
@@ -44,6 +44,7 @@ static int64_t mesh_numbers(const cpu_state *s)
 static int mesh_allocate(cpu_state *s, err *e)
 {
     const int64_t places = mesh_groups(s) * s->pass->lanes;
+    s->mesh_bytes = places * ((mesh_numbers(s) + 24) * (int64_t)sizeof(number) + 8 * (int64_t)sizeof *s->group_node);
     s->shape = mem_array(places, (size_t)mesh_numbers(s) * sizeof *s->shape, "the solver", e);
     s->force = mem_array(places, 24 * sizeof *s->force, "the solver", e);
     s->group_node = mem_array(places, 8 * sizeof *s->group_node, "the solver", e);
@@ -80,6 +81,14 @@ static void mesh_fill(cpu_state *s)
     }
 }
 
+static int mesh_make(cpu_state *s, err *e)
+{
+    if (mesh_rows(s, e) || mesh_allocate(s, e))
+        return -1;
+    mesh_fill(s);
+    return 0;
+}
+
 static void mesh_element_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const cpu_state *s = context;
@@ -98,10 +107,4 @@ static void mesh_pass(cpu_state *s)
 {
     pool_run(s->threads, mesh_groups(s), MESH_GROUPS, mesh_element_work, s);
     pool_run(s->threads, s->p->nodes, MESH_NODES, mesh_node_work, s);
-}
-
-static int64_t mesh_bytes(const cpu_state *s)
-{
-    const int64_t place = (mesh_numbers(s) + 24) * (int64_t)sizeof(number) + 8 * (int64_t)sizeof *s->group_node;
-    return s->p->conforming ? mesh_groups(s) * s->pass->lanes * place : 0;
 }

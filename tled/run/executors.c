@@ -12,6 +12,7 @@ const tled_executor *const tled_executors_double[] = {
     &tled_cuda_double,
 #endif
     &tled_cpu_double,
+    &tled_cpu_meshes_double,
     NULL,
 };
 
@@ -20,6 +21,7 @@ const tled_executor *const tled_executors_single[] = {
     &tled_cuda_single,
 #endif
     &tled_cpu_single,
+    &tled_cpu_meshes_single,
     NULL,
 };
 
