@@ -20,6 +20,15 @@
 
 enum { LANES = ELEMENT_LANES, COEFFICIENTS = CPU_JOIN(FORM_, CPU_FORM, _NUMBERS) };
 
+typedef struct cpu_kind { /* a volume's numbers: cpu_kind_numbers */
+    double law[COEFFICIENTS + 1], tension;
+} cpu_kind;
+
+static inline const cpu_kind *kind_of(const cpu_work *w, int32_t volume)
+{
+    return (const cpu_kind *)w->kind + volume;
+}
+
 static inline real load(const void *array, int64_t at)
 {
     real x;
@@ -138,7 +147,7 @@ static inline element_law law_of_cells(const cpu_work *w, int64_t cell, real sha
 
 static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active)
 {
-    const cpu_kind *kind = &w->kind[run->volume];
+    const cpu_kind *kind = kind_of(w, run->volume);
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* forces are linear in all below */
     const element_law law = law_of_kind(kind, share);
     element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO};
@@ -151,7 +160,7 @@ static inline void run_forces(const cpu_work *w, const rows_run *run, element_sh
 /* Elements mixed of two volumes. */
 static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active, bool second)
 {
-    const cpu_kind *kind = &w->kind[run->volume], *mix = &w->kind[run->mix];
+    const cpu_kind *kind = kind_of(w, run->volume), *mix = kind_of(w, run->mix);
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1, part = load(w->mixture, run->cell);
     const real own = share * (1 - part), other = share * part;
     const element_law law = law_of_cells(w, run->cell, share);
@@ -168,8 +177,8 @@ static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_
 /* Apart from the loop, which is the faster without it. */
 static __attribute__((noinline)) void any_mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape)
 {
-    const bool active = w->fibre[0] && w->kind[run->volume].tension != 0;
-    const bool second = w->mixfibre[0] && w->kind[run->mix].tension != 0;
+    const bool active = w->fibre[0] && kind_of(w, run->volume)->tension != 0;
+    const bool second = w->mixfibre[0] && kind_of(w, run->mix)->tension != 0;
     if (active && second)
         mixed_forces(w, run, shape, true, true);
     else if (active)
@@ -254,7 +263,7 @@ static void slab_pass(const cpu_work *w, int32_t which)
         for (const rows_run *run = r->run + l->run; run < r->run + l->run + l->runs; run++)
             if (run->mix >= 0)
                 any_mixed_forces(w, run, shape);
-            else if (w->fibre[0] && w->kind[run->volume].tension != 0)
+            else if (w->fibre[0] && kind_of(w, run->volume)->tension != 0)
                 run_forces(w, run, shape, true);
             else
                 run_forces(w, run, shape, false);

@@ -37,7 +37,7 @@ struct tled_state {
     const cpu_method *method;
     const cpu_pass *pass;
     rows rows;
-    cpu_kind *kind;                   /* volumes */
+    double *kind;                     /* cpu_work's */
     number *field[FIELDS_MOST];       /* of the problem's table: a column after the other (layout_of) */
     number *spare;                    /* 3 x rows.nodes, as displacements are */
     number *sum;                      /* likewise: zeros between passes */
@@ -104,8 +104,9 @@ static void contact_work(void *context, int64_t chunk, int64_t from, int64_t to)
 static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
 {
     cpu_work *w = &s->work;
+    const int numbers = cpu_kind_numbers(s->p->form);
     for (int32_t i = 0; i < s->p->volumes; i++)
-        s->kind[i].tension = (double)(number)tled_tension(s->p, i, s->now);
+        s->kind[numbers * i + numbers - 1] = (double)(number)tled_tension(s->p, i, s->now);
     for (int a = 0; a < 3; a++) {
         w->from[a] = s->field[TLED_DISPLACEMENT] + a * s->rows.nodes;
         w->to[a] = s->spare + a * s->rows.nodes;
@@ -342,7 +343,7 @@ static int allocate(cpu_state *s, err *e)
     if (allocate_fields(s, e) || make_numbers(&s->spare, nodes, 3, e) || make_numbers(&s->sum, nodes, 3, e) ||
         make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e))
         return -1;
-    s->kind = mem_array(s->p->volumes, sizeof *s->kind, "the solver", e);
+    s->kind = mem_array(s->p->volumes, (size_t)cpu_kind_numbers(s->p->form) * sizeof *s->kind, "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
     s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
     s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
@@ -385,8 +386,9 @@ static void fill_cells(cpu_state *s)
         }
     }
     for (int32_t i = 0; i < p->volumes; i++) {
-        memcpy(s->kind[i].law, p->volume[i].law.c, sizeof p->volume[i].law.c);
-        s->kind[i].law[form_numbers(p->form)] = p->volume[i].law.hourglass;
+        double *kind = s->kind + cpu_kind_numbers(p->form) * i;
+        memcpy(kind, p->volume[i].law.c, (size_t)form_numbers(p->form) * sizeof *kind);
+        kind[form_numbers(p->form)] = p->volume[i].law.hourglass;
     }
 }
 

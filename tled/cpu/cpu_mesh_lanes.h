@@ -47,7 +47,7 @@ static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, bool *a
     *active = false;
     for (int lane = 0; w->fibre[0] && lane < LANES && group * LANES + lane < w->p->elements; lane++) {
         const int64_t i = group * LANES + lane;
-        const double tension = w->kind[w->p->element_volume[i]].tension;
+        const double tension = kind_of(w, w->p->element_volume[i])->tension;
         if (tension == 0)
             continue;
         *active = true;

@@ -20,18 +20,19 @@ static inline int cpu_law_numbers(form f)
     return form_numbers(f) + 1;
 }
 
-enum { NODE_FREE = 1, NODE_EXTRA = 8 }; /* flags of a node: NODE_FREE << a: nothing holds component a; an extra */
+/* A volume's numbers: those of its law, and its tension. As many as the form has, for steppers read them for each run. */
+static inline int cpu_kind_numbers(form f)
+{
+    return cpu_law_numbers(f) + 1;
+}
 
-typedef struct cpu_kind { /* what a volume's elements need */
-    double law[FORM_NUMBERS + 1];
-    double tension; /* now */
-} cpu_kind;
+enum { NODE_FREE = 1, NODE_EXTRA = 8 }; /* flags of a node: NODE_FREE << a: nothing holds component a; an extra */
 
 /* Arrays over nodes are in the rows' order, one for each component, of float or double as the function called. */
 typedef struct cpu_work {
     const rows *r;
     const tled_problem *p;
-    const cpu_kind *kind;
+    const double *kind;  /* volumes x cpu_kind_numbers: the law's numbers, then the tension of now */
     const void *from[3]; /* displacements */
     void *to[3];         /* the next ones, or internal forces */
     void *velocity[3];
