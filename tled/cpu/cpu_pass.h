@@ -20,7 +20,7 @@ static inline int cpu_law_numbers(form f)
     return form_numbers(f) + 1;
 }
 
-/* A volume's numbers: those of its law, and its tension. As many as the form has, for steppers read them for each run. */
+/* A volume's numbers: those of its law, and its tension. As many as the form has: steppers read them for each run. */
 static inline int cpu_kind_numbers(form f)
 {
     return cpu_law_numbers(f) + 1;
