@@ -11,8 +11,8 @@ check "there is a version: $version" expr "$version" : '[0-9]*\.[0-9]*\.[0-9]*$'
 is "$(sinew --version)" "sinew (Sinew) $version" "sinew --version"
 is "$(tled-run --version)" "tled-run (Sinew) $version" "tled-run --version"
 is "$(sed -n '1s/^sinew (\(.*\)) .*/\1/p' debian/changelog)" "$version" "debian/changelog begins with it"
-newest=$(sed -n '/^## /{p;q;}' CHANGELOG.md)
-is "${newest% - *}" "## [$version]" "CHANGELOG.md begins with it"
+newest=$(sed -n '/^## \[[0-9]/{p;q;}' CHANGELOG.md) # but for what is not released yet
+is "${newest% - *}" "## [$version]" "CHANGELOG.md has it as its newest"
 is "$(date -u -d "$(sed -n '/^ -- /{s/.*>  //p;q;}' debian/changelog)" +%Y-%m-%d)" "${newest#* - }" "and both have its date"
 is "$(grep -rnE '\b0\.[0-9]+\.[0-9]+\b' Makefile debian/rules debian/control debian/package.mk debian/copyright)" "" "no other file of the package has one"
 
