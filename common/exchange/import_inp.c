@@ -462,7 +462,7 @@ static int take_elastic(inp_reader *r, char *line, material *of)
 
 static int take_hyper(inp_reader *r, char *line, material *of)
 {
-    double constants[INP_CONSTANTS], c[FORM_NUMBERS] = {0};
+    double constants[INP_CONSTANTS] = {0}, c[FORM_NUMBERS] = {0};
     const int last = r->hyper->constants - 1;
     for (int i = 0; i <= last; i++)
         if (take_number(r, next_field(&line), r->hyper->words, &constants[i]))

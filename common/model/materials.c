@@ -53,11 +53,13 @@ static int parse_name(const keyfile *k, err *e)
 /* The array of a key, made where there is none: of a law's own keys, which are nan where a material has none. */
 static model_array *key_array(model *m, int key, err *e)
 {
-    model_array *a =
-        key < LAW_OWN_KEYS ? model_find(m, material_edit_arrays[key]) : model_need(m, material_edit_arrays[key], e);
-    if (a || key >= LAW_OWN_KEYS)
+    const char *name = material_edit_arrays[key];
+    if (key >= LAW_OWN_KEYS)
+        return model_need(m, name, e);
+    model_array *a = model_find(m, name);
+    if (a)
         return a;
-    a = model_add(m, material_edit_arrays[key], e);
+    a = model_add(m, name, e);
     for (int64_t i = 0; a && i < a->rows; i++)
         a->f64[i] = NAN;
     return a;

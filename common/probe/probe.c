@@ -235,7 +235,7 @@ bool probe_is_plate(const probe_placed *at, const double *position, int64_t node
             high[i] = fmax(high[i], along);
         }
     const probe *s = &at->shape;
-    double wide = 2 * s->size, thick = 2 * s->size;
+    double wide = 2 * s->size, thick = wide;
     if (s->kind == PROBE_LINEAR || s->kind == PROBE_CURVED) {
         wide = s->kind == PROBE_LINEAR ? s->width : 2 * s->radius * s->sine;
         thick = s->thickness;

@@ -222,10 +222,12 @@ typedef double ds __attribute__((vector_size(8 * SIDE), aligned(8), may_alias));
 typedef int64_t ls __attribute__((vector_size(8 * SIDE)));
 typedef int32_t is __attribute__((vector_size(4 * SIDE)));
 
+#ifndef __AVX512BW__ /* which has instructions for it */
 INLINE ds choose(ls which, ds yes, ds no)
 {
     return (ds)((which & (ls)yes) | (~which & (ls)no));
 }
+#endif
 
 INLINE ds all(double x)
 {

@@ -63,7 +63,7 @@ const tled_executor *tled_executor_choose(const tled_executor *const *table, con
                                           const executor_need *need, char *says, size_t size, err *e)
 {
     const executor *rows[EXECUTORS_MOST + 1] = {NULL};
-    for (int i = 0; table[i] && i < EXECUTORS_MOST; i++)
+    for (int i = 0; i < EXECUTORS_MOST && table[i]; i++)
         rows[i] = &table[i]->is;
     const int chosen = executor_choose(rows, device, need, says, size, e);
     return chosen < 0 ? NULL : table[chosen];
