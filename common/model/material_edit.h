@@ -35,7 +35,7 @@ int material_edit_unknown(err *e, const char *place, int64_t line, const char *w
                           const char *const *names, int count);
 
 /* Takes the value of material_edit_names[name]; the caller sets the bit in `given`. */
-int material_edit_take(material_edit *edit, int name, const char *text, const char *place, int64_t line, err *e);
+int material_edit_take(material_edit *r, int name, const char *text, const char *place, int64_t line, err *e);
 
 /* Changes a material as the edit says, as materials_override describes. What is then wrong with its keys is told at
  * place:line. */

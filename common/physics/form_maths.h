@@ -49,7 +49,9 @@ ELEMENT_FUNCTION void form_tangent(form f, element_tensor h, const double *c, do
         break;
     switch (f) {
         FORMS(FORM_CASE)
-    default:
+    default: /* of none: nothing */
+        for (int i = 0; i < 81; i++)
+            a[i / 9][i % 9] = 0;
         break;
     }
 #undef FORM_CASE

@@ -91,17 +91,21 @@ static int read_volume(job *j, const char *path, err *e)
     double sigma = 0;
     if (length_mm(&j->o->smooth, "--smooth", &sigma, e))
         return -1;
-    if (!(sigma >= 0))
-        return err_usage(e, "--smooth: expected 0 or more");
+    if (!(sigma >= 0)) {
+        err_usage(e, "--smooth: expected 0 or more");
+        return -1;
+    }
     if (!path && tool_need_stdin("a volume", e))
         return -1;
     if (volume_load(&j->v, path, &budget, e))
         return -1;
     for (int a = 0; a < 3; a++) {
         j->sigma[a] = sigma / volume_spacing(&j->v, a);
-        if (j->sigma[a] > (double)j->v.size[a])
-            return err_usage(e, "--smooth %gmm: wider than the volume, which is %gmm", sigma,
-                             volume_spacing(&j->v, a) * (double)j->v.size[a]);
+        if (j->sigma[a] > (double)j->v.size[a]) {
+            err_usage(e, "--smooth %gmm: wider than the volume, which is %gmm", sigma,
+                      volume_spacing(&j->v, a) * (double)j->v.size[a]);
+            return -1;
+        }
     }
     return 0;
 }

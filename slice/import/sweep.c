@@ -186,7 +186,8 @@ static int find_box(const sweep *s, const volume *images, double axis[3][3], dou
                            "frame %" PRId64 " is tracked, and there are images of %" PRId64 "; expected one a frame",
                            f->image, images->size[2]);
         for (int c = 0; c < 4; c++) {
-            place(f, (double)(c % 2 * (images->size[0] - 1)), (double)(c / 2 * (images->size[1] - 1)), corner);
+            const int64_t column = c % 2 * (images->size[0] - 1), row = c / 2 * (images->size[1] - 1);
+            place(f, (double)column, (double)row, corner);
             for (int a = 0; a < 3; a++) {
                 double at = axis[a][0] * corner[0] + axis[a][1] * corner[1] + axis[a][2] * corner[2];
                 low[a] = fmin(low[a], at);

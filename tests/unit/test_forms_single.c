@@ -52,7 +52,8 @@ int main(void)
         double c[FORM_NUMBERS];
         if (!ok(form_tried((form)f, 1000, 9700, c), "form %d: form_tried.h has coefficients", f))
             continue;
-        for (double strain = 1e-6; strain < 2; strain *= 10) {
+        for (int power = -6; power <= 0; power++) {
+            const double strain = pow(10, power);
             double worst = 0;
             for (int i = 0; i < 200; i++)
                 worst = larger(worst, off((form)f, c, strain));

@@ -57,9 +57,9 @@ static void fill(volume *v)
         switch (v->type) {
 #define FILL(name, of, nrrd, meta, low, high)                                                                          \
     case VOLUME_##name:                                                                                                \
-        ((of *)v->data)[i] = (of)((low) < (high) ? i : i / 3.);                                                        \
+        ((of *)v->data)[i] = (of)(i / ((low) < (high) ? 1. : 3.));                                                     \
         if ((low) < (high) && i < 2)                                                                                   \
-            ((of *)v->data)[i] = i == 0 ? (of)(low) : (of)(high);                                                      \
+            ((of *)v->data)[i] = ((const of[]){(of)(low), (of)(high)})[i];                                             \
         break;
             VOLUME_TYPES(FILL)
         default:

@@ -4,6 +4,9 @@
 #include "solve/vectors.h"
 #include "tled/cpu/cpu_pass.h"
 
+#ifndef CPU_FORM /* for tools that read a source by itself */
+#define CPU_FORM NEO_HOOKEAN
+#endif
 #define CPU_PASTE(a, b, c) a##b##c
 #define CPU_JOIN(a, b, c)  CPU_PASTE(a, b, c)
 
