@@ -39,7 +39,7 @@ static void test_memory(field_values *v, err *e)
     ok(!framed.of[0], "and none");
     ok(!fields_allocate(&three, FIELDS_ALL, v, "a test", e) && v->of[HISTORY] && v->of[HISTORY][SIZE - 1] == 0,
        "and for all");
-    const fields large = {row, 3, {NODES, INT64_MAX / 2}};
+    const fields large = {row, 3, {NODES, INT64_MAX / 16}};
     ok(fields_allocate(&large, FIELDS_ALL, &framed, "a test", e) && strstr(e->text, "a test"), "too much: %s", e->text);
     fields_free(&framed);
     *e = (err){0};
