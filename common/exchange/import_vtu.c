@@ -5,6 +5,7 @@
 #include "base/near.h"
 #include "base/num.h"
 #include "exchange/import_xml.h"
+#include "model/known.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -368,6 +369,27 @@ static int read_materials(reader *r)
     return bad;
 }
 
+/* A direction of any length becomes one of length 1. One that sinew-model(5) takes is kept, so that an export reads
+ * back to the last bit. 0 0 0 is none.
+ */
+static int take_fibre(const reader *r, const xml_array *a, int64_t cell, const double *v, float *to)
+{
+    const double most = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    if (!(isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2])))
+        return err_set(r->e, r->x.name, a->line, "cell %lld has fibre %g %g %g; expected a direction, or 0 0 0",
+                       (long long)cell, v[0], v[1], v[2]);
+    if (most == 0) {
+        to[0] = to[1] = to[2] = 0;
+        return 0;
+    }
+    const double x = v[0] / most, y = v[1] / most, z = v[2] / most, length = sqrt(x * x + y * y + z * z);
+    const bool kept = fabs(length * most - 1) < .999 * KNOWN_LENGTH; /* room for rounding to single precision */
+    to[0] = (float)(kept ? v[0] : x / length);
+    to[1] = (float)(kept ? v[1] : y / length);
+    to[2] = (float)(kept ? v[2] : z / length);
+    return 0;
+}
+
 static int read_fibres(reader *r)
 {
     const xml_array *a = array_of(r, CELL_DATA, "fibre");
@@ -375,10 +397,11 @@ static int read_fibres(reader *r)
         return 0;
     double *along = need(r, CELL_DATA, "fibre", 3, r->cells);
     r->m->fibre = along ? mem_array(r->m->elements, 3 * sizeof *r->m->fibre, "fibres", r->e) : NULL;
-    for (int64_t i = 0; r->m->fibre && i < 3 * r->m->elements; i++)
-        r->m->fibre[i] = (float)along[3 * r->cell[i / 3] + i % 3];
+    int bad = r->m->fibre ? 0 : -1;
+    for (int64_t i = 0; !bad && i < r->m->elements; i++)
+        bad = take_fibre(r, a, r->cell[i], &along[3 * r->cell[i]], &r->m->fibre[3 * i]);
     free(along);
-    return r->m->fibre ? 0 : -1;
+    return bad;
 }
 
 /* ---- rigid nodes */

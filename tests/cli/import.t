@@ -19,6 +19,23 @@ for format in inp vtu msh; do
     check "$format: the same nodes, elements, volumes and rigid nodes" sinew diff --only $mesh "$small" "$T/back"
 done
 check "vtu: and fibres" sh -c "sinew import --unit m $T/small.vtu | sinew diff --only element.fibre $small -"
+# Directions of any length, as other programs write them, become directions of length 1; sinew-model(5) takes no others.
+fibre() { # X Y Z: of the voxel
+    sed "s|</CellData>|<DataArray type=\"Float64\" Name=\"fibre\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 $*</DataArray>&|" \
+        tests/fuzz/seeds/vtu/ascii.vtu | sinew import -q --text --unit m -
+}
+of() {
+    fibre "$@" 2>"$T/stderr" | sed -n '/^array element.fibre/{n;p;}'
+}
+is "$(of 3 0 -4)" "0.600000024 0 -0.800000012" "vtu: a fibre of length 5"
+is "$(of 3e300 0 4e300)" "0.600000024 0 0.800000012" "vtu: a fibre whose square is too large for a double"
+is "$(of 3e-310 0 4e-310)" "0.600000024 0 0.800000012" "vtu: a fibre whose square is too small for a double"
+is "$(of 0.577 0.577 0.577)" "0.577000022 0.577000022 0.577000022" "vtu: a fibre of three digits is kept"
+is "$(of 0 0 0)" "0 0 0" "vtu: no fibre"
+nan=$(printf '\030\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\300\177\0\0\0\0\0\0\200\077' | base64)
+sed "s|</CellData>|<DataArray type=\"Float32\" Name=\"fibre\" NumberOfComponents=\"3\" format=\"binary\">$nan</DataArray>&|" \
+    tests/fuzz/seeds/vtu/ascii.vtu >"$T/nan.vtu"
+fails 1 "vtu: a fibre that is no direction" "14: cell 1 has fibre nan 0 1; expected a direction, or 0 0 0" sinew import --unit m "$T/nan.vtu"
 check "inp: and materials, to the last digits but one" sh -c \
     "sinew import --unit m $T/small.inp | sinew diff --rel 1e-14 --only material.E,material.nu,material.density,volume.material $small -"
 sinew import -q --unit m "$T/small.inp" | sinew export -f inp - 2>"$T/stderr" | sed '/^.MATERIAL/,$d' >"$T/got"
