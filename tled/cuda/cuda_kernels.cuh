@@ -46,10 +46,11 @@ static __device__ real cell_tension(const cuda_kind &kind, const cuda_pass &p)
 /* A law's numbers, of what is tissue. */
 template <class L, class T> static __device__ element_law law_of(const T *c, T hourglass, real share)
 {
-    element_law law = {{0}, share * (real)hourglass};
+    element_law law;
 #pragma unroll
     for (int i = 0; i < L::COEFFICIENTS; i++)
         law.c[i] = share * (real)c[i];
+    law.hourglass = share * (real)hourglass;
     return law;
 }
 
