@@ -179,22 +179,39 @@ static int64_t numbers_of(const cpu_state *s, int where)
     return numbers;
 }
 
-static void put_out(cpu_layout l, const number *from, double *to)
+/* `columns` are the layout's: a constant where the compiler is to unroll them. */
+static inline void put_rows_out(cpu_layout l, int columns, const number *from, double *to)
 {
     for (int64_t k = 0; k < l.count; k++) {
         const int64_t row = l.row ? l.row[k] : k, at = l.at ? l.at[k] : k;
-        for (int a = 0; a < l.columns; a++)
-            to[l.columns * row + a] = from[a * l.stride + at];
+        for (int a = 0; a < columns; a++)
+            to[columns * row + a] = from[a * l.stride + at];
     }
+}
+
+static inline void put_rows_in(cpu_layout l, int columns, const double *from, number *to)
+{
+    for (int64_t k = 0; k < l.count; k++) {
+        const int64_t row = l.row ? l.row[k] : k, at = l.at ? l.at[k] : k;
+        for (int a = 0; a < columns; a++)
+            to[a * l.stride + at] = (number)from[columns * row + a];
+    }
+}
+
+static void put_out(cpu_layout l, const number *from, double *to)
+{
+    if (l.columns == 3)
+        put_rows_out(l, 3, from, to);
+    else
+        put_rows_out(l, l.columns, from, to);
 }
 
 static void put_in(cpu_layout l, const double *from, number *to)
 {
-    for (int64_t k = 0; k < l.count; k++) {
-        const int64_t row = l.row ? l.row[k] : k, at = l.at ? l.at[k] : k;
-        for (int a = 0; a < l.columns; a++)
-            to[a * l.stride + at] = (number)from[l.columns * row + a];
-    }
+    if (l.columns == 3)
+        put_rows_in(l, 3, from, to);
+    else
+        put_rows_in(l, l.columns, from, to);
 }
 
 static int cpu_get(cpu_state *s, int what, double *to, err *e)
