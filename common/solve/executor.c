@@ -52,19 +52,21 @@ static void say_chosen(const executor *x, const executor_need *need, const char 
         snprintf(says, size, "%s%s", x->device, why);
 }
 
-static int first_usable(const executor *const *table, const executor_need *need, char *says, size_t size, err *e)
+static const executor *first_usable(const executor *const *table, const executor_need *need, char *says, size_t size,
+                                    err *e)
 {
     char why[300] = "";
     for (int i = 0; table[i]; i++) {
         const char *lack = lack_of(table[i], need), *reason = lack ? NULL : table[i]->unusable();
         if (!lack && !reason) {
             say_chosen(table[i], need, why, says, size);
-            return i;
+            return table[i];
         }
         const char *no = lack && lacks_law(table[i], need) ? "no law " : "no ";
         append(why, sizeof why, " (%s: %s%s)", table[i]->device, lack ? no : "", lack ? lack : reason);
     }
-    return err_set(e, NULL, 0, "no back end can be used here%s", why);
+    err_set(e, NULL, 0, "no back end can be used here%s", why);
+    return NULL;
 }
 
 static const char *title(const char *device)
@@ -73,32 +75,33 @@ static const char *title(const char *device)
 }
 
 /* Names what it lacks; a law with the volume that wants it, and with the laws that it has. */
-static int refuse(const executor *x, const executor_need *need, err *e)
+static void refuse(const executor *x, const executor_need *need, err *e)
 {
     char who[200] = "", have[200] = "";
-    if (!lacks_law(x, need))
-        return err_set(e, NULL, 0, "the %s back end has no %s; expected -d cpu or auto", title(x->device),
-                       lack_of(x, need));
+    if (!lacks_law(x, need)) {
+        err_set(e, NULL, 0, "the %s back end has no %s; expected -d cpu or auto", title(x->device), lack_of(x, need));
+        return;
+    }
     if (need->volume)
         append(who, sizeof who, ", which volume '%s' has", need->volume);
     for (int f = 0; f < EXECUTOR_FORMS; f++)
         if (need->law[f] && x->forms >> f & 1)
             append(have, sizeof have, "%s, or ", need->law[f]);
-    return err_set(e, NULL, 0, "the %s back end has no law %s%s; expected %s-d cpu or auto", title(x->device),
-                   need->law[need->form], who, have);
+    err_set(e, NULL, 0, "the %s back end has no law %s%s; expected %s-d cpu or auto", title(x->device),
+            need->law[need->form], who, have);
 }
 
-static int not_in_table(const executor *const *table, const char *device, err *e)
+static void not_in_table(const executor *const *table, const char *device, err *e)
 {
     char have[200] = "";
     for (int i = 0; table[i]; i++)
         if (!i || strcmp(table[i]->device, table[i - 1]->device) != 0)
             append(have, sizeof have, "%s%s", i ? ", " : "", table[i]->device);
-    return err_set(e, NULL, 0, "this build has no %s back end; have: %s", title(device), have);
+    err_set(e, NULL, 0, "this build has no %s back end; have: %s", title(device), have);
 }
 
-int executor_choose(const executor *const *table, const char *device, const executor_need *need, char *says,
-                    size_t size, err *e)
+const executor *executor_choose(const executor *const *table, const char *device, const executor_need *need, char *says,
+                                size_t size, err *e)
 {
     const executor *lacking = NULL;
     if (!strcmp(device, "auto"))
@@ -112,7 +115,14 @@ int executor_choose(const executor *const *table, const char *device, const exec
         }
         const char *reason = table[i]->unusable();
         snprintf(says, size, "%s", device);
-        return reason ? err_set(e, NULL, 0, "the %s back end cannot be used here: %s", device, reason) : i;
+        if (!reason)
+            return table[i];
+        err_set(e, NULL, 0, "the %s back end cannot be used here: %s", device, reason);
+        return NULL;
     }
-    return lacking ? refuse(lacking, need, e) : not_in_table(table, device, e);
+    if (lacking)
+        refuse(lacking, need, e);
+    else
+        not_in_table(table, device, e);
+    return NULL;
 }

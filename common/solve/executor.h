@@ -51,11 +51,11 @@ typedef struct executor_need {
     const char *volume;              /* which wants that law, for messages; or NULL */
 } executor_need;
 
-/* The place in `table` (ends with NULL, the preferred first) of the first executor on the device of this name that has
- * what is needed, or for "auto" of the first on any that can be used. says (of `size` bytes) gets which device was
- * chosen, and which was not and why. -1 with e filled: the device is not in the table, lacks what is needed, or cannot
- * be used here. */
-int executor_choose(const executor *const *table, const char *device, const executor_need *need, char *says,
-                    size_t size, err *e);
+/* The first executor of `table` (ends with NULL, the preferred first) on the device of this name that has what is
+ * needed; for "auto" the first on any device that can be used. says (of `size` bytes) gets which device was chosen, and
+ * which was not and why. NULL with e filled: the device is not in the table, lacks what is needed, or cannot be used
+ * here. */
+const executor *executor_choose(const executor *const *table, const char *device, const executor_need *need, char *says,
+                                size_t size, err *e);
 
 #endif

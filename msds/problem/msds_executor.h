@@ -32,11 +32,13 @@ typedef struct msds_executor {
     int64_t (*bytes)(const msds_state *state);
 } msds_executor;
 
-/* The executors of this build, the preferred first; NULL-terminated. */
-extern const msds_executor *const msds_executors[];
+/* The executor that `is` is the first member of, as in the tables below; NULL for NULL. */
+static inline const msds_executor *msds_executor_of(const executor *is)
+{
+    return (const msds_executor *)is;
+}
 
-/* The executor of a table on a device: executor_choose. NULL with e filled. */
-const msds_executor *msds_executor_choose(const msds_executor *const *table, const char *device,
-                                          const executor_need *need, char *says, size_t size, err *e);
+/* The executors of this build, the preferred first; NULL-terminated. */
+extern const executor *const msds_executors[];
 
 #endif

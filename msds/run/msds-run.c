@@ -475,7 +475,7 @@ static int prepare(session *s, err *e)
     if (read_probe(s, e) || carry_skin(s, e) || make_problem(s, e))
         return -1;
     const executor_need need = {.features = o->warp && !o->device ? EXECUTOR_WARP : 0}; /* -d cuda: where FEM begins */
-    s->device = msds_executor_choose(msds_executors, names[o->device], &need, device, sizeof device, e);
+    s->device = msds_executor_of(executor_choose(msds_executors, names[o->device], &need, device, sizeof device, e));
     int threads = tool_threads(s->t, e);
     s->threads = s->device && threads > 0 ? pool_create(threads, e) : NULL;
     if (!s->threads)

@@ -118,8 +118,8 @@ static void say(subject *s)
 static const msds_executor *find_card(void)
 {
     for (int i = 0; msds_executors[i]; i++)
-        if (!strcmp(msds_executors[i]->is.device, "cuda") && !msds_executors[i]->is.unusable())
-            return msds_executors[i];
+        if (!strcmp(msds_executors[i]->device, "cuda") && !msds_executors[i]->unusable())
+            return msds_executor_of(msds_executors[i]);
     return NULL;
 }
 

@@ -285,16 +285,16 @@ static void measure_device(measured *w, bench *b, const options *o)
 static void measure(const char *name, bench *b, const options *o)
 {
     for (int single = 0; single < 2; single++)
-        for (const tled_executor *const *d = single ? tled_executors_single : tled_executors_double; *d; d++) {
+        for (const executor *const *d = single ? tled_executors_single : tled_executors_double; *d; d++) {
             measured w = {.model = name,
-                          .device = *d,
+                          .device = tled_executor_of(*d),
                           .precision = single ? "single" : "double",
                           .single = single,
                           .least = o->least,
                           .filled = 1,
                           .card = o->card};
-            const bool is_asked = !o->device || !strcmp((*d)->is.device, o->device);
-            if (is_asked && !((*d)->is.features & EXECUTOR_MESHES) && !(*d)->is.unusable()) /* blocks are of boxes */
+            const bool is_asked = !o->device || !strcmp((*d)->device, o->device);
+            if (is_asked && !((*d)->features & EXECUTOR_MESHES) && !(*d)->unusable()) /* blocks are of boxes */
                 measure_device(&w, b, o);
         }
 }

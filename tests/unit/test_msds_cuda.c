@@ -36,9 +36,9 @@ static const msds_executor *find_cuda(const char **why)
 {
     *why = "built without CUDA";
     for (int i = 0; msds_executors[i]; i++)
-        if (!strcmp(msds_executors[i]->is.device, "cuda")) {
-            *why = msds_executors[i]->is.unusable();
-            return *why ? NULL : msds_executors[i];
+        if (!strcmp(msds_executors[i]->device, "cuda")) {
+            *why = msds_executors[i]->unusable();
+            return *why ? NULL : msds_executor_of(msds_executors[i]);
         }
     return NULL;
 }

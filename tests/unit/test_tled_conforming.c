@@ -76,8 +76,8 @@ static void begin(setting *s, block b, bool boxes, double by, double kappa, int 
         die("a lattice is a lattice");
     s->threads = pool_create(threads, &e);
     const executor_need need = tled_need(&s->p);
-    s->device = tled_executor_choose(precision == BY_SINGLE ? tled_executors_single : tled_executors_double, "cpu",
-                                     &need, (char[300]){0}, 300, &e);
+    s->device = tled_executor_of(executor_choose(precision == BY_SINGLE ? tled_executors_single : tled_executors_double,
+                                                 "cpu", &need, (char[300]){0}, 300, &e));
     s->state = s->threads && s->device ? s->device->create(&s->p, s->threads, &e) : NULL;
     if (!s->state)
         die(e.text);

@@ -220,7 +220,7 @@ static void test_rest(const tled_executor *cuda, const char *name, double tolera
     bench_make(&here, &lump, gravity, 0, .0075, 2);
     bench_make(&there, &lump, gravity, 0, .0075, 2);
     there.setup.device = cuda;
-    there.setup.single = cuda == tled_executors_single[0];
+    there.setup.single = &cuda->is == tled_executors_single[0];
     here.setup.rest = there.setup.rest = tolerance;
     int gone = bench_go(&here) | bench_go(&there);
     ok(!gone && there.end.rested && apart(&there, &here) < 2 * tolerance,

@@ -399,17 +399,16 @@ static void test_histories(void)
 /* The executors on cards have no steps that change a history, and say so. */
 static void test_refusal(void)
 {
-    const tled_executor *table[] = {&tled_cuda_single, NULL}, *other[] = {&history_cuda, NULL};
+    const executor *table[] = {&tled_cuda_single.is, NULL}, *other[] = {&history_cuda.is, NULL};
     char says[200];
     bench b;
     bench_make(&b, &muscle, NULL, 0, .0075, 1);
     executor_need need = tled_need(&b.problem);
     ok(!(need.features & EXECUTOR_HISTORY), "tissue without a history needs none");
     need.features |= EXECUTOR_HISTORY;
-    ok(!tled_executor_choose(table, "cuda", &need, says, sizeof says, &b.e) &&
-           strstr(b.e.text, "no history of elements"),
+    ok(!executor_choose(table, "cuda", &need, says, sizeof says, &b.e) && strstr(b.e.text, "no history of elements"),
        "a history is refused: %s", b.e.text);
-    ok(tled_executor_choose(other, "cuda", &need, says, sizeof says, &b.e) == &history_cuda, "or chosen for: %s", says);
+    ok(executor_choose(other, "cuda", &need, says, sizeof says, &b.e) == &history_cuda.is, "or chosen for: %s", says);
     bench_free(&b);
 }
 

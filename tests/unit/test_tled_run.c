@@ -441,53 +441,58 @@ static const char *no_device(void)
 
 static void test_choice(void)
 {
-    static const tled_executor broken = {
-        .is = {.device = "cuda", .features = EXECUTOR_MIXTURES, .unusable = no_device}};
-    static const tled_executor first = {.is = {.device = "cuda", .forms = 1, .unusable = no_device}};
-    const tled_executor *formed_first[] = {&first, &tled_cpu_double, NULL};
-    const tled_executor *both[] = {&broken, &tled_cpu_double, NULL}, *none[] = {&broken, NULL},
-                        *without[] = {both[1], NULL};
+    static const executor broken = {.device = "cuda", .features = EXECUTOR_MIXTURES, .unusable = no_device};
+    static const executor first = {.device = "cuda", .forms = 1, .unusable = no_device};
+    const executor *formed_first[] = {&first, &tled_cpu_double.is, NULL};
+    const executor *both[] = {&broken, &tled_cpu_double.is, NULL}, *none[] = {&broken, NULL},
+                   *without[] = {both[1], NULL};
     static const executor_need none_needed = {0}, contact = {.features = EXECUTOR_CONTACT},
                                remembers = {.features = EXECUTOR_HISTORY}, mixed = {.features = EXECUTOR_MIXTURES},
                                formed = {.form = 1, .law = {"plain", "rubber"}, .volume = "skin"},
                                unnamed = {.form = 1, .law = {"plain", "rubber"}};
     char says[100];
     err e = {0};
-    const tled_executor *took = tled_executor_choose(both, "auto", &none_needed, says, sizeof says, &e);
+    const executor *took = executor_choose(both, "auto", &none_needed, says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu (cuda: no device)"), "auto: %s", says);
-    took = tled_executor_choose(both, "cpu", &none_needed, says, sizeof says, &e);
+    took = executor_choose(both, "cpu", &none_needed, says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu"), "by name");
-    took = tled_executor_choose(both, "cuda", &none_needed, says, sizeof says, &e);
+    took = executor_choose(both, "cuda", &none_needed, says, sizeof says, &e);
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
     e = (err){0};
-    took = tled_executor_choose(without, "cuda", &none_needed, says, sizeof says, &e);
+    took = executor_choose(without, "cuda", &none_needed, says, sizeof says, &e);
     ok(!took && !strcmp(e.text, "this build has no CUDA back end; have: cpu"), "%s", e.text);
     e = (err){0};
-    took = tled_executor_choose(none, "auto", &none_needed, says, sizeof says, &e);
+    took = executor_choose(none, "auto", &none_needed, says, sizeof says, &e);
     ok(!took && strstr(e.text, "no device"), "%s", e.text);
-    took = tled_executor_choose(both, "auto", &contact, says, sizeof says, &e);
+    took = executor_choose(both, "auto", &contact, says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu (the one with contact with a probe)"), "auto, with contact: %s", says);
     e = (err){0};
-    took = tled_executor_choose(both, "cuda", &contact, says, sizeof says, &e);
+    took = executor_choose(both, "cuda", &contact, says, sizeof says, &e);
     ok(!took && !strcmp(e.text, "the CUDA back end has no contact with a probe; expected -d cpu or auto"), "%s",
        e.text);
     e = (err){0};
-    took = tled_executor_choose(both, "cuda", &unnamed, says, sizeof says, &e);
+    took = executor_choose(both, "cuda", &unnamed, says, sizeof says, &e);
     ok(!took && !strcmp(e.text, "the CUDA back end has no law rubber; expected -d cpu or auto"), "%s", e.text);
     e = (err){0};
-    took = tled_executor_choose(formed_first, "cuda", &formed, says, sizeof says, &e);
+    took = executor_choose(formed_first, "cuda", &formed, says, sizeof says, &e);
     ok(!took &&
            !strcmp(e.text, "the CUDA back end has no law rubber, which volume 'skin' has; expected plain, or -d cpu "
                            "or auto"),
        "%s", e.text);
-    took = tled_executor_choose(both, "auto", &formed, says, sizeof says, &e);
+    took = executor_choose(both, "auto", &formed, says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu (cuda: no law rubber)"), "auto, by form: %s", says);
-    took = tled_executor_choose(both, "auto", &mixed, says, sizeof says, &e);
+    took = executor_choose(both, "auto", &mixed, says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu (cuda: no device)"), "auto, with mixed elements, which all have: %s",
        says);
     e = (err){0};
-    took = tled_executor_choose(both, "cpu", &remembers, says, sizeof says, &e);
+    took = executor_choose(both, "cpu", &remembers, says, sizeof says, &e);
     ok(!took && strstr(e.text, "no history of elements"), "nobody changes a history yet: %s", e.text);
+    const executor *many[40];
+    for (int i = 0; i < 38; i++)
+        many[i] = &broken;
+    many[38] = both[1], many[39] = NULL;
+    took = executor_choose(many, "cpu", &none_needed, says, sizeof says, &e);
+    ok(took == both[1] && !strcmp(says, "cpu"), "a table may be long");
 }
 
 /* Half of each element is tissue: half the mass, and half of all forces. Under gravity and in contraction it moves as

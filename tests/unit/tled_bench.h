@@ -16,12 +16,12 @@
 #include <string.h>
 
 /* The CUDA back end of a table, or NULL with the reason where there is none that can be used. */
-static inline const tled_executor *bench_cuda(const tled_executor *const *table, const char **why)
+static inline const tled_executor *bench_cuda(const executor *const *table, const char **why)
 {
     for (*why = "built without CUDA"; *table; table++)
-        if (!strcmp((*table)->is.device, "cuda")) {
-            *why = (*table)->is.unusable();
-            return *why ? NULL : *table;
+        if (!strcmp((*table)->device, "cuda")) {
+            *why = (*table)->unusable();
+            return *why ? NULL : tled_executor_of(*table);
         }
     return NULL;
 }

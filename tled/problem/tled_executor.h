@@ -60,15 +60,17 @@ typedef struct tled_executor {
     int64_t (*computed)(const tled_state *state);
 } tled_executor;
 
+/* The executor that `is` is the first member of, as in the tables below; NULL for NULL. */
+static inline const tled_executor *tled_executor_of(const executor *is)
+{
+    return (const tled_executor *)is;
+}
+
 /* The executors of this build by the precision of their numbers, the preferred first; NULL-terminated. */
-extern const tled_executor *const tled_executors_double[];
-extern const tled_executor *const tled_executors_single[];
+extern const executor *const tled_executors_double[];
+extern const executor *const tled_executors_single[];
 
 /* What a problem needs of its executor: of the elements, of contact, of the form. Its names are the problem's. */
 executor_need tled_need(const tled_problem *p);
-
-/* The executor of a table on a device: executor_choose. NULL with e filled. */
-const tled_executor *tled_executor_choose(const tled_executor *const *table, const char *device,
-                                          const executor_need *need, char *says, size_t size, err *e);
 
 #endif

@@ -1,4 +1,4 @@
-/* The tables of executors that this build has, the preferred first, and the choice among them. */
+/* The tables of executors that this build has, the preferred first, and what a problem needs of one. */
 #include "physics/law.h"
 #include "tled/cpu/cpu.h"
 #include "tled/problem/tled_executor.h"
@@ -7,21 +7,21 @@
 #include "tled/cuda/cuda.h"
 #endif
 
-const tled_executor *const tled_executors_double[] = {
+const executor *const tled_executors_double[] = {
 #ifdef SINEW_CUDA
-    &tled_cuda_double,
+    &tled_cuda_double.is,
 #endif
-    &tled_cpu_double,
-    &tled_cpu_meshes_double,
+    &tled_cpu_double.is,
+    &tled_cpu_meshes_double.is,
     NULL,
 };
 
-const tled_executor *const tled_executors_single[] = {
+const executor *const tled_executors_single[] = {
 #ifdef SINEW_CUDA
-    &tled_cuda_single,
+    &tled_cuda_single.is,
 #endif
-    &tled_cpu_single,
-    &tled_cpu_meshes_single,
+    &tled_cpu_single.is,
+    &tled_cpu_meshes_single.is,
     NULL,
 };
 
@@ -55,16 +55,4 @@ executor_need tled_need(const tled_problem *p)
         need.law[f] = row ? row->name : "of that form";
     }
     return need;
-}
-
-enum { EXECUTORS_MOST = 15 };
-
-const tled_executor *tled_executor_choose(const tled_executor *const *table, const char *device,
-                                          const executor_need *need, char *says, size_t size, err *e)
-{
-    const executor *rows[EXECUTORS_MOST + 1] = {NULL};
-    for (int i = 0; i < EXECUTORS_MOST && table[i]; i++)
-        rows[i] = &table[i]->is;
-    const int chosen = executor_choose(rows, device, need, says, size, e);
-    return chosen < 0 ? NULL : table[chosen];
 }

@@ -384,10 +384,10 @@ static int read_collider(session *s, const struct options *o, err *e)
 
 static const tled_executor *choose_device(session *s, const struct options *o, char *device, size_t size, err *e)
 {
-    const tled_executor *const *table = o->precision ? tled_executors_single : tled_executors_double;
+    const executor *const *table = o->precision ? tled_executors_single : tled_executors_double;
     static const char *const names[] = {"auto", "cuda", "cpu"};
     const executor_need need = tled_need(&s->problem);
-    return tled_executor_choose(table, names[o->device], &need, device, size, e);
+    return tled_executor_of(executor_choose(table, names[o->device], &need, device, size, e));
 }
 
 /* From the model that came to the problem and how it is to be run. */
