@@ -2,17 +2,13 @@
  * After a change of a law, put what `test_law_page print` prints between the two marked lines of the page. Run from
  * the top of the checkout.
  */
-#include "base/in.h"
-#include "base/out.h"
 #include "model/known.h"
 #include "physics/element.h"
 #include "physics/law.h"
 
-#include "tap.h"
+#include "page_table.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char begin[] = ".\\\" laws\n", end[] = ".\\\" end laws\n";
 
@@ -140,31 +136,11 @@ static void has_examples(const law_row *of)
     ok(given, "%s: each of its keys has an example", of->name);
 }
 
-/* Whether the page holds the text; the first line that differs is told. */
-static bool page_has(const char *page, const char *text)
-{
-    const char *at = page ? strstr(page, begin) : NULL;
-    while (at && *text && *at == *text)
-        at++, text++;
-    if (at && *text)
-        printf("# the page has '%.*s', the table '%.*s'\n", (int)strcspn(at, "\n"), at, (int)strcspn(text, "\n"), text);
-    return at && !*text;
-}
-
 int main(int argc, char **argv)
 {
-    err e = {0};
-    char *page = NULL;
-    size_t size;
-    bool printing = argc > 1 && !strcmp(argv[1], "print");
-    out *o = printing ? out_open(NULL, false, &e) : out_memory(&e);
-    print(o);
-    if (printing)
-        return out_close(o, &e);
-    out_write(o, "", 1);
-    in *s = in_open("man/sinew-laws.7", &e);
-    ok(s && in_all(s, &page, &e) > 0, "the manual page is there %s", e.text);
-    ok(page_has(page, (const char *)out_bytes(o, &size)), "its laws are physics/law.c's");
+    if (argc > 1 && !strcmp(argv[1], "print"))
+        return page_print(print);
+    page_test("man/sinew-laws.7", begin, print, "its laws are physics/law.c's");
     const double neo[] = {[LAW_E] = 3000, [LAW_nu] = .45};
     const double mooney[] = {[LAW_nu] = NAN, [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = 1e5};
     for (int i = 0; law_at(i); i++)
@@ -173,8 +149,5 @@ int main(int argc, char **argv)
     near_(pulled(law_find("mooney-rivlin"), mooney, 1.2), 2882.59, 1e-2, "mooney-rivlin, 1.2");
     near_(pulled(law_find("mooney-rivlin"), mooney, .8), -4677.80, 1e-2, "mooney-rivlin, 0.8");
     near_(pulled(law_find("linear"), neo, 1.2), 600, 1e-9, "linear, 1.2: E / 5");
-    free(page);
-    in_close(s);
-    out_discard(o);
     return done_testing();
 }
