@@ -378,8 +378,7 @@ enum {
 
 /* The preferred first. What is left takes the last. */
 static const cuda_method cuda_methods[] = {
-    {.name = "resident tiles",
-     .forms = TILES_FORMS,
+    {.forms = TILES_FORMS,
      .take = resident_take,
      .arrange = rows_arrange,
      .list = resident_list,
@@ -389,8 +388,7 @@ static const cuda_method cuda_methods[] = {
      .from_rows = rows_from_rows,
      .computed = tiles_computed,
      .end = NULL},
-    {.name = "march",
-     .forms = MARCH_FORMS,
+    {.forms = MARCH_FORMS,
      .take = march_take,
      .arrange = march_arrange,
      .list = march_list,
@@ -400,8 +398,7 @@ static const cuda_method cuda_methods[] = {
      .from_rows = march_from_rows,
      .computed = march_computed,
      .end = march_end},
-    {.name = "tiles",
-     .forms = TILES_FORMS,
+    {.forms = TILES_FORMS,
      .take = tiles_take,
      .arrange = rows_arrange,
      .list = tiles_list,

@@ -41,7 +41,6 @@ typedef struct cuda_batch {
 /* A way in which the card takes steps: a row of the table in cuda_methods.cuh. Its functions are called once for a
  * state, or for a batch of passes, and never within a step. They return -1 with e filled. */
 typedef struct cuda_method {
-    const char *name;
     uint32_t forms; /* that it is compiled for: bit i for form i */
     /* Whether it takes the problem, which is cut in tiles. */
     int (*take)(cuda_state *s, bool *takes, err *e);
