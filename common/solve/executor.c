@@ -27,13 +27,22 @@ static const char *words_of(uint32_t features)
     return NULL;
 }
 
+/* The law of the form that is needed. A form that no law has was chosen because it expresses all of them. */
+static const char *law_needed(const executor_need *need)
+{
+    for (int f = 0; f < EXECUTOR_FORMS; f++)
+        if (need->form >> f & 1 && need->law[f])
+            return need->law[f];
+    return "that expresses all laws of the model";
+}
+
 /* What an executor lacks of what is needed: a feature, in words, or else the law; NULL: nothing. */
 static const char *lack_of(const executor *x, const executor_need *need)
 {
     const char *feature = words_of(need->features & ~x->features);
     if (feature)
         return feature;
-    return x->forms >> need->form & 1 ? NULL : need->law[need->form];
+    return need->form & ~x->forms ? law_needed(need) : NULL;
 }
 
 /* Whether, of what is needed, it lacks the law alone. */
@@ -88,7 +97,7 @@ static void refuse(const executor *x, const executor_need *need, err *e)
         if (need->law[f] && x->forms >> f & 1)
             append(have, sizeof have, "%s, or ", need->law[f]);
     err_set(e, NULL, 0, "the %s back end has no law %s%s; expected %s-d cpu or auto", title(x->device),
-            need->law[need->form], who, have);
+            law_needed(need), who, have);
 }
 
 static void not_in_table(const executor *const *table, const char *device, err *e)

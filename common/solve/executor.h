@@ -46,8 +46,8 @@ enum { EXECUTOR_FORMS = 32 }; /* the most of any solver: a bit each */
 
 typedef struct executor_need {
     uint32_t features;
-    int form;                        /* of energy */
-    const char *law[EXECUTOR_FORMS]; /* of each form, as users say it; NULL: every executor has the form */
+    uint32_t form;                   /* of energy, as its bit in executor.forms; 0: any executor will do */
+    const char *law[EXECUTOR_FORMS]; /* of each form, as users say it; NULL: no law has that form */
     const char *volume;              /* which wants that law, for messages; or NULL */
 } executor_need;
 

@@ -448,8 +448,9 @@ static void test_choice(void)
                    *without[] = {both[1], NULL};
     static const executor_need none_needed = {0}, contact = {.features = EXECUTOR_CONTACT},
                                remembers = {.features = EXECUTOR_HISTORY}, mixed = {.features = EXECUTOR_MIXTURES},
-                               formed = {.form = 1, .law = {"plain", "rubber"}, .volume = "skin"},
-                               unnamed = {.form = 1, .law = {"plain", "rubber"}};
+                               formed = {.form = 1 << 1, .law = {"plain", "rubber"}, .volume = "skin"},
+                               unnamed = {.form = 1 << 1, .law = {"plain", "rubber"}},
+                               lawless = {.form = 1 << 1, .law = {"plain"}};
     char says[100];
     err e = {0};
     const executor *took = executor_choose(both, "auto", &none_needed, says, sizeof says, &e);
@@ -478,6 +479,13 @@ static void test_choice(void)
     ok(!took &&
            !strcmp(e.text, "the CUDA back end has no law rubber, which volume 'skin' has; expected plain, or -d cpu "
                            "or auto"),
+       "%s", e.text);
+    e = (err){0};
+    took = executor_choose(formed_first, "cuda", &lawless, says, sizeof says, &e);
+    ok(!took &&
+           !strcmp(
+               e.text,
+               "the CUDA back end has no law that expresses all laws of the model; expected plain, or -d cpu or auto"),
        "%s", e.text);
     took = executor_choose(both, "auto", &formed, says, sizeof says, &e);
     ok(took == both[1] && !strcmp(says, "cpu (cuda: no law rubber)"), "auto, by form: %s", says);

@@ -48,11 +48,11 @@ executor_need tled_need(const tled_problem *p)
     const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0, contact = p->collider ? EXECUTOR_CONTACT : 0,
                    mixtures = p->mix ? EXECUTOR_MIXTURES : 0;
     executor_need need = {.features = meshes | contact | mixtures | features_of(p->form),
-                          .form = p->form,
+                          .form = UINT32_C(1) << p->form,
                           .volume = volume_that_wants(p)};
     for (int f = 0; f < FORM_COUNT; f++) {
         const law_row *row = law_of_form((form)f);
-        need.law[f] = row ? row->name : "of that form";
+        need.law[f] = row ? row->name : NULL;
     }
     return need;
 }
