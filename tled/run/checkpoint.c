@@ -45,17 +45,32 @@ static const char axis_name[] = "checkpoint", number_name[] = "checkpoint.number
 
 /* The places of a point's numbers, in the order of checkpoint.number. */
 #define AT(member) offsetof(run_point, member)
-static const size_t number_at[NUMBERS] = {
-    AT(origin),           AT(damping),        AT(remaining),        AT(closest),         AT(moved_most),
-    AT(relax.guess),      AT(relax.low),      AT(relax.high),       AT(relax.frequency), AT(relax.lowest),
-    AT(relax.time),       AT(log.past.first), AT(log.past.gravity), AT(log.past.forces), AT(log.past.held),
-    AT(log.past.muscles), AT(log.past.probe), AT(log.past.damping), AT(most_strain)};
+static const size_t number_at[NUMBERS] = {AT(origin),
+                                          AT(course.damping),
+                                          AT(course.remaining),
+                                          AT(course.closest),
+                                          AT(moved_most),
+                                          AT(course.relax.guess),
+                                          AT(course.relax.low),
+                                          AT(course.relax.high),
+                                          AT(course.relax.frequency),
+                                          AT(course.relax.lowest),
+                                          AT(course.relax.time),
+                                          AT(log.past.first),
+                                          AT(log.past.gravity),
+                                          AT(log.past.forces),
+                                          AT(log.past.held),
+                                          AT(log.past.muscles),
+                                          AT(log.past.probe),
+                                          AT(log.past.damping),
+                                          AT(course.most_strain)};
 #undef AT
 
 static void put_point(const checkpoint *c, const run_point *p, double *number, int64_t *count)
 {
-    const int64_t counts[COUNTS] = {p->first, p->from,   p->closest_at, p->cuts,  p->relax.states,
-                                    c->count, c->length, c->arrays,     p->taken, p->log.length};
+    const int64_t counts[COUNTS] = {
+        p->first,  p->course.from, p->course.closest_at, p->course.cuts, p->course.relax.states, c->count,
+        c->length, c->arrays,      p->course.taken,      p->log.length};
     for (int i = 0; i < NUMBERS; i++)
         memcpy(number + i, (const char *)p + number_at[i], sizeof *number);
     memcpy(count, counts, sizeof counts);
@@ -64,11 +79,11 @@ static void put_point(const checkpoint *c, const run_point *p, double *number, i
 static void take_point(checkpoint *c, const model_array *number, const int64_t *k)
 {
     c->point = (run_point){.first = k[0],
-                           .from = k[1],
-                           .closest_at = k[2],
-                           .cuts = (int)k[3],
-                           .relax.states = (int)k[4],
-                           .taken = k[8],
+                           .course.from = k[1],
+                           .course.closest_at = k[2],
+                           .course.cuts = (int)k[3],
+                           .course.relax.states = (int)k[4],
+                           .course.taken = k[8],
                            .log.length = k[9]};
     for (int i = 0; i < number->columns; i++)
         memcpy((char *)&c->point + number_at[i], number->f64 + i, sizeof *number->f64);

@@ -24,26 +24,26 @@ static int choose_step(run *n)
 {
     if (n->r->rate_fixed)
         return 0;
-    for (n->cuts = 0; n->cuts <= CUTS_MAX; n->cuts++)
+    for (n->course.cuts = 0; n->course.cuts <= CUTS_MAX; n->course.cuts++)
         if (margin * n->monitor->reading.stable >= run_part(n))
             return 0;
-    n->cuts = CUTS_MAX;
+    n->course.cuts = CUTS_MAX;
     return run_diverged(n);
 }
 
 static void note_closest(run *n)
 {
-    if (n->closest == INFINITY || n->remaining < .9 * n->closest) {
-        n->closest = n->remaining;
-        n->closest_at = n->plan.first;
+    if (n->course.closest == INFINITY || n->course.remaining < .9 * n->course.closest) {
+        n->course.closest = n->course.remaining;
+        n->course.closest_at = n->plan.first;
     }
 }
 
 /* Whether single precision comes no closer to rest: for so many steps, and so many periods, it has not. */
 static bool is_stuck(const run *n)
 {
-    const double period = 2 * acos(-1) / n->relax.lowest;
-    const double since = (double)(n->plan.first - n->closest_at);
+    const double period = 2 * acos(-1) / n->course.relax.lowest;
+    const double since = (double)(n->plan.first - n->course.closest_at);
     return n->r->single && since > fmax(STUCK, 20 * period * n->r->rate);
 }
 
@@ -51,11 +51,11 @@ static bool is_stuck(const run *n)
 static int judge_rest(run *n)
 {
     const run_setup *r = n->r;
-    relax_update(&n->relax, &n->monitor->reading);
+    relax_update(&n->course.relax, &n->monitor->reading);
     if (r->adapt)
-        n->damping = 2 * n->relax.frequency;
-    n->remaining = relax_share(&n->relax, &n->monitor->reading);
-    n->rested = n->remaining <= r->rest;
+        n->course.damping = 2 * n->course.relax.frequency;
+    n->course.remaining = relax_share(&n->course.relax, &n->monitor->reading);
+    n->rested = n->course.remaining <= r->rest;
     if (n->rested)
         return 0;
     note_closest(n);
@@ -64,7 +64,7 @@ static int judge_rest(run *n)
     return err_set(n->e, NULL, 0,
                    "not at rest: single precision leaves %.3g of the displacement to go; expected at most %.3g, a "
                    "larger --rest, or --precision double",
-                   n->closest, r->rest);
+                   n->course.closest, r->rest);
 }
 
 /* Decides at a check, from the reading of its state: the step, the damping, and whether the run is over. */
@@ -73,12 +73,13 @@ static int decide(run *n)
     const run_setup *r = n->r;
     const monitor_reading *s = &n->monitor->reading;
     const bool settles = r->rest >= 0 && s->time >= collider_events_end(r->p);
-    n->most_strain = fmax(n->most_strain, s->strain);
+    n->course.most_strain = fmax(n->course.most_strain, s->strain);
     if (choose_step(n))
         return -1;
     run_tell_cut(n, s);
     const int result = settles ? judge_rest(n) : 0;
-    r->checked(r->context, n->plan.first - n->from, s, n->remaining, INT64_C(1) << n->cuts, n->damping);
+    r->checked(r->context, n->plan.first - n->course.from, s, n->course.remaining, INT64_C(1) << n->course.cuts,
+               n->course.damping);
     return result;
 }
 
@@ -88,16 +89,8 @@ static run_point point_of(const run *n)
 {
     return (run_point){.origin = n->plan.origin,
                        .first = n->plan.first,
-                       .from = n->from,
-                       .cuts = n->cuts,
-                       .damping = n->damping,
-                       .remaining = n->remaining,
-                       .closest = n->closest,
-                       .closest_at = n->closest_at,
                        .moved_most = n->monitor->reading.moved_most,
-                       .relax = n->relax,
-                       .taken = n->taken,
-                       .most_strain = n->most_strain,
+                       .course = n->course,
                        .log = n->r->log ? log_point_of(n->r->log) : (log_point){.length = 0}};
 }
 
@@ -105,16 +98,8 @@ static void resume_from(run *n, const run_point *at)
 {
     n->plan.origin = at->origin;
     n->plan.first = at->first;
-    n->from = at->from;
-    n->cuts = at->cuts;
-    n->damping = at->damping;
-    n->remaining = at->remaining;
-    n->closest = at->closest;
-    n->closest_at = at->closest_at;
     n->monitor->reading.moved_most = at->moved_most;
-    n->relax = at->relax;
-    n->taken = at->taken;
-    n->most_strain = at->most_strain;
+    n->course = at->course;
 }
 
 /* Whether it is time for a checkpoint; if so, also notes when the next one is. */
@@ -204,7 +189,8 @@ static int end_with_frame(run *n)
         return err_set(n->e, NULL, 0,
                        "not at rest after %lld steps, %.6g s: %.3g of the displacement is still to go; expected at "
                        "most %.3g, a larger --rest, or -t to end at a time",
-                       (long long)(n->plan.first - n->from), n->monitor->reading.time, n->remaining, r->rest);
+                       (long long)(n->plan.first - n->course.from), n->monitor->reading.time, n->course.remaining,
+                       r->rest);
     return n->written == n->plan.first ? 0 : run_write_frame(n);
 }
 
@@ -243,7 +229,7 @@ static int make_monitor(run *n)
 static void find_last(run *n)
 {
     const run_setup *r = n->r;
-    n->last = n->from + r->steps;
+    n->last = n->course.from + r->steps;
     const double begins = tled_time(&n->plan, n->last - 1 - n->plan.first);
     n->is_last_short = r->steps > 0 && r->end > begins && r->end < tled_time(&n->plan, n->last - n->plan.first) &&
                        timeline_is_between(r->end - begins, r->rate);
@@ -267,7 +253,7 @@ static int prepare(run *n)
     n->slots = choose_slots(r);
     if (make_monitor(n) || (r->log && log_begin(r->log, r->p, r->threads, n->e)))
         return -1;
-    n->relax = relax_of(r->frequency, n->monitor->rest_step);
+    n->course.relax = relax_of(r->frequency, n->monitor->rest_step);
     if (r->point)
         resume_from(n, r->point);
     find_last(n);
@@ -277,12 +263,12 @@ static int prepare(run *n)
 /* However the run ended, also where it was not prepared to its end. */
 static run_end end_of(const run *n)
 {
-    run_end end = {.steps = n->plan.first - n->from,
-                   .taken = n->taken,
+    run_end end = {.steps = n->plan.first - n->course.from,
+                   .taken = n->course.taken,
                    .parts = INT64_C(1) << n->cuts_told,
                    .rested = n->rested,
-                   .remaining = n->remaining,
-                   .most_strain = n->most_strain};
+                   .remaining = n->course.remaining,
+                   .most_strain = n->course.most_strain};
     if (n->monitor)
         end.reading = n->monitor->reading;
     if (n->state)
@@ -295,12 +281,10 @@ int run_go(const run_setup *r, run_end *end, err *e)
     run n = {.r = r,
              .plan = timeline_plan(r->p->start, r->rate),
              .written = INT64_MIN,
-             .damping = r->damping,
-             .closest = INFINITY,
-             .remaining = INFINITY,
+             .course = {.damping = r->damping, .closest = INFINITY, .remaining = INFINITY},
              .next_checkpoint = -INFINITY,
              .e = e};
-    n.from = n.closest_at = n.plan.first;
+    n.course.from = n.course.closest_at = n.plan.first;
     int result = prepare(&n) ? -1 : loop(&n);
     *end = end_of(&n);
     if (frame_writer_close(n.writer, e)) /* what is sound is written whatever happened then */

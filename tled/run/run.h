@@ -19,18 +19,24 @@
 #include "tled/run/log.h"
 #include "tled/run/relax.h"
 
-/* Where a run stands at a check: with the state's fields, all that decides how it goes on. */
-typedef struct run_point {
-    double origin;             /* s: tled_plan's */
-    int64_t first, from;       /* steps counted: by now; where the run began */
+/* What a run has counted and decided so far, which a run that goes on takes over as it is. */
+typedef struct run_course {
+    int64_t from;              /* the step that the run began at */
+    int64_t taken;             /* steps, each part of a cut one for itself, and those that were taken again */
     int cuts;                  /* each step is taken in 2^cuts */
     double damping;            /* 1/s */
     double remaining, closest; /* shares of the displacement: to rest, and the least so far */
-    int64_t closest_at;
-    double moved_most; /* m: monitor_reading's */
+    int64_t closest_at;        /* the step that came so close */
+    double most_strain;        /* J: at a check, so far */
     relax relax;
-    int64_t taken;      /* steps, each part of a cut one for itself */
-    double most_strain; /* J: at a check, so far */
+} run_course;
+
+/* Where a run stands at a check: with the state's fields, all that decides how it goes on. */
+typedef struct run_point {
+    double origin;     /* s: tled_plan's */
+    int64_t first;     /* tled_plan's: steps counted by now */
+    double moved_most; /* m: monitor_reading's */
+    run_course course;
     log_point log;
 } run_point;
 

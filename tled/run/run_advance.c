@@ -11,12 +11,12 @@ double run_now(const run *n)
 
 double run_part(const run *n)
 {
-    return ldexp(1 / n->r->rate, -n->cuts);
+    return ldexp(1 / n->r->rate, -n->course.cuts);
 }
 
 static int64_t parts_of(const run *n)
 {
-    return INT64_C(1) << n->cuts;
+    return INT64_C(1) << n->course.cuts;
 }
 
 /* ---- What a state is like */
@@ -60,15 +60,15 @@ int run_diverged(run *n)
         element = 0;
     say_wrong(n, wrong, sizeof wrong);
     return err_diverged(n->e, NULL, 0, "diverged at step %lld, %.6g s: element %lld (volume '%s') %s",
-                        (long long)(n->plan.first - n->from), s->time, (long long)element,
+                        (long long)(n->plan.first - n->course.from), s->time, (long long)element,
                         p->volume[p->element_volume[element]].name, wrong);
 }
 
 void run_tell_cut(run *n, const monitor_reading *why)
 {
-    if (n->cuts <= n->cuts_told)
+    if (n->course.cuts <= n->cuts_told)
         return;
-    n->cuts_told = n->cuts;
+    n->cuts_told = n->course.cuts;
     if (n->r->cut)
         n->r->cut(n->r->context, why, parts_of(n));
 }
@@ -96,10 +96,10 @@ static int save(run *n)
 static tled_plan cut_plan(const run *n, int64_t first)
 {
     const int64_t parts = parts_of(n);
-    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, first * parts, n->damping};
+    tled_plan cut = {n->plan.origin, n->plan.rate * (double)parts, first * parts, n->course.damping};
     if (n->is_last_short && first == n->last - 1) {
         const double begins = tled_time(&n->plan, first - n->plan.first);
-        cut = (tled_plan){n->r->end, (double)parts / (n->r->end - begins), -parts, n->damping};
+        cut = (tled_plan){n->r->end, (double)parts / (n->r->end - begins), -parts, n->course.damping};
     }
     return cut;
 }
@@ -107,13 +107,13 @@ static tled_plan cut_plan(const run *n, int64_t first)
 /* Steps of one length. */
 static int step_evenly(run *n, int64_t to)
 {
-    const int64_t count = (to - n->plan.first) << n->cuts;
+    const int64_t count = (to - n->plan.first) << n->course.cuts;
     const tled_plan cut = cut_plan(n, n->plan.first);
     if (n->r->device->step(n->state, &cut, count, n->e))
         return -1;
     n->dt = 1 / cut.rate;
-    n->damped = n->damping;
-    n->taken += count;
+    n->damped = n->course.damping;
+    n->course.taken += count;
     n->plan.first = to;
     return 0;
 }
@@ -169,13 +169,13 @@ int run_write_frame(run *n)
 /* Accounts for the state in the log; `shown`, by a row. */
 static int log_state(run *n, bool shown)
 {
-    const log_row row = {.step = n->plan.first - n->from,
-                         .taken = n->taken,
+    const log_row row = {.step = n->plan.first - n->course.from,
+                         .taken = n->course.taken,
                          .time = run_now(n),
                          .dt = n->dt,
                          .stable = n->monitor->reading.stable,
                          .damping = n->damped,
-                         .remaining = n->remaining};
+                         .remaining = n->course.remaining};
     return log_read(n->r->log, n->r->device, n->state, &row, shown, n->e);
 }
 
@@ -264,9 +264,9 @@ static int step_by(run *n, int64_t to, bool framed)
 static int cut_once_more(run *n, int64_t to)
 {
     n->unsure = 0;
-    if (n->r->rate_fixed || n->cuts == CUTS_MAX)
+    if (n->r->rate_fixed || n->course.cuts == CUTS_MAX)
         return find_break(n, to);
-    n->cuts++;
+    n->course.cuts++;
     return restore(n);
 }
 

@@ -12,10 +12,9 @@ typedef struct run {
     const run_setup *r;
     tled_state *state;
     monitor *monitor;
-    relax relax;
+    run_course course;
     frame_writer *writer;
     tled_plan plan;      /* plan.first: steps counted */
-    int64_t from;        /* the first of this run */
     int64_t last;        /* where it ends at the latest */
     bool is_last_short;  /* the step to there, which ends at r->end */
     bool rested;         /* at the last check: the run is over */
@@ -27,15 +26,8 @@ typedef struct run {
     int64_t sent;
     int unsure;
     int64_t written; /* plan.first of the last frame that was taken of a state known to be sound; INT64_MIN: none yet */
-    int cuts;
     int cuts_told;
-    double damping;
-    double dt, damped; /* s, 1/s: of the last steps */
-    int64_t taken;     /* steps, each part of a cut one for itself, and those that were taken again */
-    double closest;    /* to rest so far, as a share; and the step that it came so close in */
-    int64_t closest_at;
-    double remaining;
-    double most_strain;      /* J: at a check, so far */
+    double dt, damped;       /* s, 1/s: of the last steps */
     field_values checkpoint; /* what is saved; to be filled */
     double next_checkpoint;  /* s: of the model's time, or of the clock */
     err *e;

@@ -314,7 +314,7 @@ static void say_start(const session *s, const char *device, const struct options
         tool_say(s->t, "the run begins after the ramp of %g s: -c and -g act in full from the first step", o->ramp);
     if (r->point)
         tool_say(s->t, "the run goes on from %.6g s, after %lld steps", p->start,
-                 (long long)(r->point->first - r->point->from));
+                 (long long)(r->point->first - r->point->course.from));
     else if (r->rest >= 0)
         tool_say(s->t, "from %.6g s to rest, tolerance %g", p->start, r->rest);
     else
