@@ -1,4 +1,4 @@
-/* The maths of the stable step (step.h says how it is found), for any back end: the 9 x 9 matrix of one element,
+/* The maths of the stable step (step.h says how it is found), for every executor: the 9 x 9 matrix of one element,
  * whether its eigenvalues are below a limit, and, without the matrix, between which bounds the largest of them lies. In
  * double: `real` must not be float. Owns nothing.
  */

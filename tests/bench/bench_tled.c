@@ -1,6 +1,6 @@
-/* `make bench-tled`: what a step of tled-run's solver takes, on each back end and in each precision that this machine
+/* `make bench-tled`: what a step of tled-run's solver takes, on each executor and in each precision that this machine
  * has, over blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio):
- * CSV. After a warm-up, the median, the least and the most of some rounds. A `step` is the back end's own; a `run` is
+ * CSV. After a warm-up, the median, the least and the most of some rounds. A `step` is the executor's own; a `run` is
  * one as tled-run makes it, with its looks, and with 60 frames a second of the model's time; times_real_time is the
  * time simulated over the time taken. A run's steps are known to be done when it looks, after each window of them: it
  * is timed from a look after its first frames to its last, and worst_window_us_a_step is of the slowest of all rounds.
@@ -262,7 +262,7 @@ static void measure_run(measured *w, bench *b, double every, const char *what, i
     b->setup = setup;
 }
 
-/* One back end in one precision: on the CPU with one thread and with all; on a device runs too. */
+/* One executor: on the CPU with one thread and with all; on a card runs too. */
 static void measure_device(measured *w, bench *b, const options *o)
 {
     if (w->device->monitor) {

@@ -1,6 +1,6 @@
-/* A run that breaks off and goes on: a back end that fails at its n-th call of any kind, as a card may, leaves the last
- * checkpoint whole, and what goes on from there writes the same frames as a run that never stopped. Checkpoints that
- * are damaged, and those of other runs.
+/* A run that breaks off and goes on: an executor that fails at its n-th call of any kind, as a card may, leaves the
+ * last checkpoint whole, and what goes on from there writes the same frames as a run that never stopped. Checkpoints
+ * that are damaged, and those of other runs.
  */
 // needs: tled/*/*.c
 #include "tled_bench.h"
@@ -13,7 +13,7 @@
 
 static const block muscle = {{6, 3, 3}, {.0025, .0025, .0025}, 3000, .45, 1000, 30000, 2, 1, 0, {1, 0, 0}, 0, false};
 
-/* ---- a back end that fails */
+/* ---- an executor that fails */
 
 static struct {
     const tled_executor *whole;
@@ -368,7 +368,7 @@ static void test_others(void)
     begin(&r);
     end(&r, false);
     make(&r, &tled_cpu_double, false);
-    refused(&r, "--some options [cuda]", "other options, '[cpu]'; expected '[cuda]'", "another back end");
+    refused(&r, "--some options [cuda]", "other options, '[cpu]'; expected '[cuda]'", "another executor");
     refused(&r, "--other options [cpu]", "'--some'; expected '--other'", "another option");
     refused(&r, "--some values [cpu]", "'--some options'; expected '--some values'", "another value");
     refused(&r, "--some options [cpu] -x", "other options, ''; expected '-x'", "one more");

@@ -1,4 +1,4 @@
-/* msds-run's CUDA back end against the CPU's: springs and conjugate gradients give the same numbers to the bit, exact
+/* msds-run's CUDA executor against the CPU's: springs and conjugate gradients give the same numbers to the bit, exact
  * frames come within 1e-5 of the largest displacement; on lattices, on a mesh without any order, through changes of
  * method, with contact of both kinds; and a hundred repeats give the same bytes. Without a card all is skipped.
  * `test_msds_cuda small` is short enough for compute-sanitizer.

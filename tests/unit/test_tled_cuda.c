@@ -1,4 +1,4 @@
-/* The CUDA back end against the CPU's: the same bytes in the same precision where the steps are the same (1e-5 of the
+/* The CUDA executors against the CPU's: the same bytes in the same precision where the steps are the same (1e-5 of the
  * largest displacement off double where it marches), 1e-4 of the largest displacement between single precision there
  * and double here over 10,000 steps and at rest, the same looks, the same messages. Without a card all is skipped.
  */

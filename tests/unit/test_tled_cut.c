@@ -216,7 +216,7 @@ static void test_rows(const tled_problem *p, int lanes, int slabs)
     free(seen);
 }
 
-/* What the CPU's back end finds, by rows, against the pass over elements. The displacement at the start is moved(). */
+/* What the CPU's executor finds, by rows, against the pass over elements. The displacement at the start is moved(). */
 static void test_cpu(const tled_problem *p, int threads, const char *name)
 {
     err e = {0};

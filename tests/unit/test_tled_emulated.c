@@ -1,4 +1,4 @@
-/* The CUDA back end's kernels on a card that the processor plays (tests/emulate): the march, its bricks, those that
+/* The CUDA executors' kernels on a card that the processor plays (tests/emulate): the march, its bricks, those that
  * stay, and looks, each by several lots; and that the card finds what is wrong, in kernels that are, and in ours where
  * it leaves out what they say. */
 // needs: tled/*/*.c
@@ -68,8 +68,8 @@ typedef struct trial {
     bool rests;       /* it keeps what leaves the card no memory for frames */
 } trial;
 
-/* What a back end makes of it: displacements and velocities of a frame, and of one a step later; internal forces at the
- * first, displacements at the second. */
+/* What an executor makes of it: displacements and velocities of a frame, and of one a step later; internal forces at
+ * the first, displacements at the second. */
 enum { PARTS = 6 };
 typedef struct answer {
     bench b;
@@ -89,7 +89,7 @@ static int go_on(const tled_executor *device, tled_state *state, tled_plan *plan
     return 0;
 }
 
-/* As in a run to rest, where the back end looks itself. */
+/* As in a run to rest, where the executor itself computes what the monitor asks. */
 static int look_for_rest(const tled_executor *device, tled_state *state, err *e)
 {
     tled_sums sums;

@@ -534,7 +534,7 @@ static void test_fraction(const tled_executor *device, const char *name)
         bench_free(all[i]);
 }
 
-/* What holds for every back end, in one precision. */
+/* What holds for every executor. */
 static void test_device(const tled_executor *device, const char *name)
 {
     test_conserved(device, name);

@@ -15,7 +15,7 @@
 
 #include <string.h>
 
-/* The CUDA back end of a table, or NULL with the reason where there is none that can be used. */
+/* The CUDA executor of a table, or NULL with the reason where there is none that can be used. */
 static inline const tled_executor *bench_cuda(const executor *const *table, const char **why)
 {
     for (*why = "built without CUDA"; *table; table++)

@@ -1,4 +1,4 @@
-/* What tests of the CUDA back end have in common, whoever plays the card: models, a script, and the look. */
+/* What tests of the CUDA executors have in common, whoever plays the card: models, a script, and the look. */
 #ifndef SINEW_TLED_CARD_H
 #define SINEW_TLED_CARD_H
 

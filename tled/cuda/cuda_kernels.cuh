@@ -1,4 +1,4 @@
-/* The step of a tile, in `real`: the loops of the CUDA back end over element.h and node.h. One block of
+/* The step of a tile, in `real`: the loops of the CUDA executors over element.h and node.h. One block of
  * threads a tile: loads the displacements around it, computes its cells, sums them at its nodes, moves
  * these on. Included by cuda_loops.cuh alone.
  *

@@ -1,4 +1,4 @@
-/* What the march takes of the CUDA back end in single precision: cuda_march.cu. Its state stands node by node, in the
+/* What the march takes of the CUDA executor in single precision: cuda_march.cu. Its state stands node by node, in the
  * march's order: 4 floats each, of which the first three are components along the march's axes: rows, across, march.
  * The fourth of a displacement, and of an internal force, is 1/m; that of a velocity is what move_node needs to know:
  * MARCH_FREE, MARCH_EXTRA, as bits. The view's pointers and these are the card's, borrowed.

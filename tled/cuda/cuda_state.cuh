@@ -1,4 +1,4 @@
-/* What the CUDA back end has of a problem: cut into tiles that the card has a place for, and laid out in its memory.
+/* What a CUDA executor has of a problem: cut into tiles that the card has a place for, and laid out in its memory.
  * Included by cuda_frame.cuh and cuda_methods.cuh alone.
  */
 #ifndef SINEW_CUDA_STATE_CUH

@@ -1,4 +1,4 @@
-/* A problem cut for a march through its lattice, as the CUDA back end takes it in single precision. The lattice is cut
+/* A problem cut for a march through its lattice, as the CUDA executor takes it in single precision. The lattice is cut
  * into columns of 15 by 15 nodes, of which blocks of 16 by 16 threads go layer by layer along one axis: thread (i, j)
  * computes the cell whose low corner has place (i, j) in the column, and moves the node of that place. Places 1 to 15
  * are owned, 0 and 16 are of columns beside this one.

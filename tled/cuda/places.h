@@ -1,4 +1,4 @@
-/* Where the nodes of a problem stand in its lattice, part by part: what a card's back end cuts by. A part
+/* Where the nodes of a problem stand in its lattice, part by part: what executors on a card cut by. A part
  * hangs together by elements; two parts may lie across each other, so that a place means a node only
  * within one. Fills arrays that the caller owns.
  */

@@ -1,4 +1,4 @@
-/* A problem cut into tiles, for a back end whose threads work in blocks with little memory of their own. A tile
+/* A problem cut into tiles, for an executor whose threads work in blocks with little memory of their own. A tile
  * owns the nodes in one brick of the lattice and computes every element that touches one of them (a cell), some
  * of which its neighbours compute too; in return a step is one pass in which no tile waits for another. Corners
  * of its cells that others own are its halo.
