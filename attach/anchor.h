@@ -1,5 +1,6 @@
-/* Which nodes are rigid: W&M Algorithm 2. For each voxel near a rigid point, line or polygon, the line from the voxel's
- * centre through the primitive's closest point meets the voxel's boundary near some of its nodes; those become rigid.
+/* Finds the nodes that are rigid, by W&M Algorithm 2. For each voxel near a rigid point, line or polygon, the line from
+ * the voxel's centre through the primitive's closest point meets the voxel's boundary near some of its nodes; those
+ * become rigid.
  */
 #ifndef SINEW_ANCHOR_H
 #define SINEW_ANCHOR_H

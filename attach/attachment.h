@@ -1,5 +1,5 @@
-/* Where muscles are fixed: the connected parts of a muscle's rigid nodes, those of one element of it being connected.
- * The caller owns the list; begin with a zeroed one.
+/* The attachments of muscles: the connected components of a muscle's rigid nodes, where the rigid nodes of one element
+ * are connected. The caller owns the list; begin with a zeroed one.
  */
 #ifndef SINEW_ATTACHMENT_H
 #define SINEW_ATTACHMENT_H

@@ -1,5 +1,5 @@
-/* What attach --report prints: a table of the rigid surfaces, the faces that hold no node, and a table of the muscles
- * with their attachments. Nothing is kept.
+/* Prints the report of attach --report: a table of the rigid surfaces, the faces that hold no node, and a table of the
+ * muscles with their attachments. Keeps nothing.
  */
 #ifndef SINEW_HELD_REPORT_H
 #define SINEW_HELD_REPORT_H

@@ -1,5 +1,5 @@
-/* What makes muscles contract: for each, its contraction centre, the mean place of its rigid nodes (W&M section 3), and
- * in each of its elements the direction of its fibres.
+/* Adds to a model what its muscles contract by: the contraction centre of each muscle, which is the mean position of
+ * its rigid nodes (W&M section 3), and the direction of the fibres in each of its elements.
  */
 #ifndef SINEW_MUSCLE_H
 #define SINEW_MUSCLE_H

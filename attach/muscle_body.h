@@ -1,5 +1,5 @@
-/* What muscles are made from and into: a model's arrays, its elements sorted by volume, and marks on nodes. An element
- * mixed of two volumes is one of both. Borrows the arrays; muscle_make owns the rest.
+/* The data that muscles are computed from: a model's arrays, its elements sorted by volume, and marks on its nodes. An
+ * element mixed of two volumes belongs to both. A body borrows the model's arrays; muscle_make owns the rest.
  */
 #ifndef SINEW_MUSCLE_BODY_H
 #define SINEW_MUSCLE_BODY_H

@@ -1,6 +1,6 @@
-/* What of a model is rigid: the surfaces, by the names of their groups, and the points, lines and polygons that they
- * are made of. A rigid owns its list; the positions and corners in it are borrowed from the models that it was
- * collected from, which must outlive it.
+/* The rigid surfaces of a model, which are known by the names of their groups, and the points, lines and polygons that
+ * they consist of. A rigid owns its list; it borrows positions and corners from the models that it was collected from,
+ * which must outlive it.
  */
 #ifndef SINEW_RIGID_H
 #define SINEW_RIGID_H

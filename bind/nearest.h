@@ -1,6 +1,6 @@
-/* The element whose centre is nearest to a point. Blocks of 2 x 2 x 2 cells of the lattice, blocks of such blocks, and
- * so on up to one that holds all, know whether any element is in them: a search goes down only into those that may hold
- * a nearer centre than the one found. Owns its tables; searches may run in several threads.
+/* Finds the element whose centre is nearest to a point. Blocks of 2 x 2 x 2 cells of the lattice, blocks of such
+ * blocks, and so on up to one that holds all, know whether any element is in them: a search goes down only into those
+ * that may hold a nearer centre than the one found. Owns its tables; searches may run in several threads.
  */
 #ifndef SINEW_NEAREST_H
 #define SINEW_NEAREST_H

@@ -1,4 +1,4 @@
-/* The vn lines of an OBJ under deformation: a normal is carried by F^-T at each corner that uses it.
+/* Moves the normals of an OBJ (its vn lines) with a deformation: at each corner that uses a normal, by F^-T.
  */
 #ifndef SINEW_NORMALS_H
 #define SINEW_NORMALS_H

@@ -1,5 +1,5 @@
-/* The element that a point is in, or the nearest one, of tetrahedra or of hexahedra that are no lattice's: a tree of
- * boxes over them. Owns its tables, borrows the model's; searches may run in several threads.
+/* Finds the element that a point is in, or the nearest one, among tetrahedra or among hexahedra off a lattice, by a
+ * tree of boxes over them. Owns its tables, borrows the model's; searches may run in several threads.
  */
 #ifndef SINEW_TETRA_H
 #define SINEW_TETRA_H

@@ -1,8 +1,8 @@
-/* Where rays along an axis, one through each column of voxel centres, cross triangles: decided exactly. A centre
- * counts as moved by (e, e^2, e^3), e -> 0+, so it is never on a face, and a ray never meets an edge or a vertex:
- * whichever axis the rays run along, the same centres come out inside a closed surface. Each place is first
- * sought in doubles with a proven bound on the error, and settled by expansions where that leaves it open.
- * Everything is borrowed; nothing is allocated.
+/* Finds exactly where rays along an axis, one through each column of voxel centres, cross triangles. A centre counts as
+ * moved by (e, e^2, e^3), e -> 0+, so it is never on a face, and a ray never meets an edge or a vertex: whichever axis
+ * the rays run along, the same centres come out inside a closed surface. Each place is first sought in doubles with a
+ * proven bound on the error, and settled by expansions where that leaves it open. Everything is borrowed; nothing is
+ * allocated.
  *
  * Coordinates are counted in cells, so that the centre of cell i is at i. A triangle is cut into rows of cells across
  * the rays, a row into columns: a line says where an edge crosses a row, a plane where a triangle crosses a column.

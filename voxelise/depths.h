@@ -1,6 +1,6 @@
-/* How deep voxels lie below a surface, in steps: which of some depths each centre is above. The lattice is halved along
- * each axis again and again; of a box only the triangles go on that may be nearest to some centre in it, and it is done
- * where all its centres are between the same two depths, whatever they are exactly. Everything is borrowed.
+/* Finds how deep voxels lie below a surface, in steps: which of some depths each centre is above. The lattice is halved
+ * along each axis again and again. A box hands on only the triangles that may be nearest to some centre in it, and is
+ * done when all its centres are between the same two depths, whatever they are exactly. Everything is borrowed.
  */
 #ifndef SINEW_DEPTHS_H
 #define SINEW_DEPTHS_H

@@ -1,8 +1,8 @@
-/* Gaps between surfaces that elements fill: along the lines through the centres of voxels, along each axis, the places
- * where a line leaves the lowest level by a surface and enters it again by one that faces it, and every voxel in
- * between is an element. What lies on either side then moves as one. What is narrower than a twentieth of a voxel is
- * surfaces that touch. Bone within tissue, whose nodes are fixed anyway, is no gap; nor is what lies inside of a
- * surface twice, nor the end of a gap that is open but for that. The caller owns a gaps.
+/* Finds gaps between surfaces that elements fill: along each axis, on the lines through the centres of voxels, the
+ * places where a line leaves the lowest level by a surface and enters it again by one that faces it, while every voxel
+ * in between is an element. What lies on either side then moves as one. Where a gap is narrower than a twentieth of a
+ * voxel, the surfaces count as touching. Bone within tissue, whose nodes are fixed anyway, is no gap; nor is what lies
+ * inside of a surface twice, nor the end of a gap that is open but for that. The caller owns a gaps.
  */
 #ifndef SINEW_GAPS_H
 #define SINEW_GAPS_H

@@ -1,5 +1,5 @@
-/* What voxelise --check prints about surfaces and volumes: a row each in tables, and with -v one property a line. Also
- * what every run prints about sizes and gaps. Nothing is kept.
+/* The report of voxelise --check on surfaces and volumes: a row each in tables, and with -v one property a line; and
+ * what every run says about sizes and gaps. Keeps nothing.
  */
 #ifndef SINEW_REPORT_H
 #define SINEW_REPORT_H

@@ -1,5 +1,5 @@
-/* What any run of voxelise says of its volumes: a table of what each has and has lost, and warnings about those that
- * have nothing, or a muscle that has lost half of its voxels. Nothing is kept.
+/* Makes what every run of voxelise says of its volumes: a table of what each has and has lost, and warnings about
+ * volumes that have nothing and muscles that have lost half of their voxels. Keeps nothing.
  */
 #ifndef SINEW_SUMMARY_H
 #define SINEW_SUMMARY_H

@@ -1,6 +1,6 @@
-/* Which voxels become elements, and of which volume: slab after slab of the inside test, row after row of Algorithm 1
- * (climb.h), by their centres or by the share that is enclosed (shares.h). The result is runs of voxels along x, in the
- * order of the elements (k, j, i; i fastest), the same for any number of threads; the caller owns it.
+/* Finds the voxels that become elements, and the volume of each: slab after slab of the inside test, row after row of
+ * Algorithm 1 (climb.h), by their centres or by the share that is enclosed (shares.h). The result is runs of voxels
+ * along x, in the order of the elements (k, j, i; i fastest), the same for any number of threads; the caller owns it.
  */
 #ifndef SINEW_VOXELS_H
 #define SINEW_VOXELS_H

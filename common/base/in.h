@@ -1,6 +1,6 @@
-/* A stream of bytes to read: a file, standard input ("-") or memory, gunzipped where it is gzip. The
- * stream keeps its name and its count of lines for messages. It never seeks, and its memory grows only with the
- * longest line asked for, which has a limit.
+/* A stream of bytes to read from a file, standard input ("-") or memory; what is compressed by gzip is decompressed on
+ * the way. The stream keeps its name and its count of lines for messages. It never seeks, and its memory grows only
+ * with the longest line asked for, which has a limit.
  */
 #ifndef SINEW_IN_H
 #define SINEW_IN_H
@@ -28,8 +28,8 @@ void in_close(in *s);
 
 const char *in_name(const in *s);
 
-/* Whether its bytes are gunzipped on the way. What is compressed once more inside is not for those who hold memory to
- * their input's size: one DEFLATE makes at most 1032 bytes of one, two a million. */
+/* Whether the stream is decompressed from gzip. Callers whose memory is to grow only with the size of their input
+ * refuse data that are compressed once more inside: DEFLATE makes at most 1032 bytes of one, but twice a million. */
 bool in_is_gzip(const in *s);
 
 /* Lines taken so far by in_line: the number of the line it gave last. */

@@ -1,8 +1,8 @@
 /* Finds which of many things has a name, in a time that does not depend on how many there are, nor on who chose their
  * names: an index beside an array of structs, each of which begins with a pointer to its name. The things stay the
  * caller's, in the caller's order; the index holds their places, by a hash whose key is drawn at random for each index:
- * nothing may depend on the order of the slots. Begin with a zeroed one, and say of every thing that is added that it
- * is there. The creator owns it.
+ * nothing may depend on the order of the slots. Begin with a zeroed one, and call lookup_add after things were added.
+ * The creator owns it.
  */
 #ifndef SINEW_LOOKUP_H
 #define SINEW_LOOKUP_H

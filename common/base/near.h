@@ -1,4 +1,4 @@
-/* Names that are not known: the nearest of those that are, and the message that says so. Nothing is kept.
+/* Finds the known name that is nearest to an unknown one, and words the message that says so. Keeps nothing.
  */
 #ifndef SINEW_NEAR_H
 #define SINEW_NEAR_H

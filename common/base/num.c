@@ -91,8 +91,9 @@ static int scan_slow(const char *text, const char *stop, double *value)
     return isfinite(*value) ? 0 : -1;
 }
 
-/* What most numbers are, digits about a point: 1 and the number, or 0 for scan_decimal to look closer: an exponent,
- * many digits, the text's end. Up to 15 digits are below 2^53, and no power of ten past 1e22 can come up. */
+/* Reads a number of up to 15 digits about a point, as most are. Returns 1 with the number; or 0 where scan_decimal has
+ * to look closer: an exponent, more digits, or the text's end nearby. 15 digits are below 2^53, and no power of ten
+ * past 1e22 can come up. */
 static int scan_plain(const char *text, const char *end, const char **stop, double *value)
 {
     const char *p = text;

@@ -1,6 +1,6 @@
-/* A stream of bytes to write, checked to its end: standard output, or a file that appears whole under its
- * name when out_close() succeeds and not at all otherwise, unless all that fails is to store its name. Errors stick:
- * write on, and out_close() says. A closed pipe ends the process quietly by SIGPIPE.
+/* A stream of bytes to write to standard output, or to a file that appears whole under its name when out_close()
+ * succeeds; where it fails there is no file, unless only the storing of its name failed. Errors stick: write on, and
+ * out_close() reports them. A closed pipe ends the process quietly by SIGPIPE.
  */
 #ifndef SINEW_OUT_H
 #define SINEW_OUT_H

@@ -1,7 +1,7 @@
 /* Files of one run that appear together: each is written beside its place, and all are put there once it is known that
- * the run went well, so that a run that fails leaves the files of an earlier one as they were. Each keeps a descriptor,
- * as long as there are enough of them: what has no name is gone with the process. The caller owns the struct; begin
- * with a zeroed one.
+ * the run went well, so that a run that fails leaves the files of an earlier one as they were. Each keeps a descriptor
+ * as long as there are enough, since a file without a name is gone when the process is. The caller owns the struct;
+ * begin with a zeroed one.
  */
 #ifndef SINEW_OUTS_H
 #define SINEW_OUTS_H

@@ -1,6 +1,7 @@
-/* A file that is written beside its place, without a name where the file system can (O_TMPFILE), else under one of its
- * own, and put there once it is whole. Until then the place is as it was. A process that is killed leaves nothing, but
- * where the file had a name (kill -9): see temporary.h. The caller owns the struct; begin with a zeroed one.
+/* A file that is written beside its place and put there once it is whole; until then the place is as it was. The file
+ * has no name while it is written where the file system can do that (O_TMPFILE), else one of its own. A process that is
+ * killed leaves nothing behind, except a file that had a name (kill -9): see temporary.h. The caller owns the struct;
+ * begin with a zeroed one.
  */
 #ifndef SINEW_REPLACE_H
 #define SINEW_REPLACE_H

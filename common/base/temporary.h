@@ -1,7 +1,7 @@
-/* Files that are not yet in their places: their names, and that none is left. A process that is told to end by a signal
- * removes them first. What a process left that was killed (kill -9) is removed by the next one that makes such a file
- * in that folder. The list is the process's one, since a signal has no other way to find it: the exception to "no
- * writable globals".
+/* The names of files that are not yet in their places, so that none of these files is left behind. A process that is
+ * told to end by a signal removes them first. What a killed process left (kill -9) is removed by the next process that
+ * makes such a file in that folder. The list is the process's one, since a signal has no other way to find it: the
+ * exception to "no writable globals".
  */
 #ifndef SINEW_TEMPORARY_H
 #define SINEW_TEMPORARY_H

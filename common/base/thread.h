@@ -1,5 +1,5 @@
-/* Threads whose stack is of one size, whatever ulimit -s says: by default a thread's is as large as that limit, and
- * what computes, or a library that it calls, may need more.
+/* Starts threads whose stack has one size, whatever ulimit -s says: by default a thread's stack is as large as that
+ * limit, and computations, or a library that they call, may need more.
  */
 #ifndef SINEW_THREAD_H
 #define SINEW_THREAD_H

@@ -1,4 +1,4 @@
-/* Which frames of a model --frame asks for: one syntax for all tools that have it. Owns nothing.
+/* Reads which frames of a model the option --frame names, by one syntax for all tools that have it. Owns nothing.
  */
 #ifndef SINEW_FRAMES_H
 #define SINEW_FRAMES_H

@@ -1,4 +1,5 @@
-/* A file a frame: names from a pattern such as f_%04d.obj. Nothing is kept; the pattern is the caller's.
+/* Makes the names of numbered files, one for each frame, from a pattern such as f_%04d.obj. Keeps nothing; the pattern
+ * is the caller's.
  */
 #ifndef SINEW_NUMBERED_H
 #define SINEW_NUMBERED_H

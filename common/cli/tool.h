@@ -1,5 +1,5 @@
-/* What every main begins and ends with: the command line, and messages on stderr. The only file that prints
- * messages. A main is tool_run() of what reads: tool_begin, work, tool_end.
+/* The beginning and the end of every main: the command line, and messages on stderr. No other file prints messages. A
+ * main calls tool_run() with a function that begins with tool_begin, works, and ends with tool_end.
  */
 #ifndef SINEW_TOOL_H
 #define SINEW_TOOL_H

@@ -1,5 +1,6 @@
-/* The model as it is, in either encoding: nothing is added to its provenance, and what is read back is the same; but
- * where frames are salvaged, which it says. */
+/* Writes a model as it is, in either encoding. Nothing is added to its provenance and what is read back is the same,
+ * unless frames are salvaged: then the provenance says so.
+ */
 #ifndef SINEW_EXPORT_MODEL_H
 #define SINEW_EXPORT_MODEL_H
 

@@ -1,5 +1,5 @@
-/* The numbers that a mesh's file gives its nodes or elements, and which of ours each is: files may leave numbers out
- * and keep any order. The creator owns the list, zeroed to begin with.
+/* The numbers that a mesh's file gives its nodes or elements, and the index that each has in our mesh: files may leave
+ * numbers out and keep any order. The creator owns the list, zeroed to begin with.
  */
 #ifndef SINEW_IMPORT_IDS_H
 #define SINEW_IMPORT_IDS_H

@@ -1,5 +1,5 @@
-/* What the two halves of the reader of Abaqus input share: import_inp.c reads lines,
- * import_inp_end.c makes of them what they mean together.
+/* The types that the two halves of the reader of Abaqus input share: import_inp.c reads the lines, and import_inp_end.c
+ * resolves what refers to other lines, once all are read.
  */
 #ifndef SINEW_IMPORT_INP_PARTS_H
 #define SINEW_IMPORT_INP_PARTS_H

@@ -1,4 +1,4 @@
-/* What can be said of an array in a few numbers, and how its values are written for people. Nothing is kept.
+/* Statistics of an array, and its values as text for people. Keeps nothing.
  */
 #ifndef SINEW_INFO_STATS_H
 #define SINEW_INFO_STATS_H

@@ -1,6 +1,6 @@
-/* What the elements of a model hold in a frame of tled-run: strain energy, and that of the modes that hourglass control
- * holds, as the solver has them (element.h, element_any.h). The coefficient of hourglass control is the model's
- * metadata hourglass.kappa. Owns nothing.
+/* The energies of a model's elements in a frame of tled-run: strain energy, and the energy of the modes that hourglass
+ * control resists, as the solver computes them (element.h, element_any.h). The coefficient of hourglass control is the
+ * model's metadata hourglass.kappa. Owns nothing.
  */
 #ifndef SINEW_ENERGY_H
 #define SINEW_ENERGY_H

@@ -1,4 +1,4 @@
-/* How large a body is: what is no body's size is in another unit. Nothing is kept.
+/* Warns of a body that is larger or smaller than any body is, since its file is then in another unit. Keeps nothing.
  */
 #ifndef SINEW_EXTENT_H
 #define SINEW_EXTENT_H

@@ -1,5 +1,6 @@
-/* How an element is strained at its centre, from the displacements of its nodes: hexahedra of any shape and tetrahedra.
- * Tensors are 3 x 3, row i column j at 3 i + j. Nothing here allocates.
+/* The displacement gradient at an element's centre, from the displacements of its nodes, and the strain and stress
+ * there: for hexahedra of any shape and for tetrahedra. Tensors are 3 x 3, row i column j at 3 i + j. Nothing here
+ * allocates.
  */
 #ifndef SINEW_GRADIENT_H
 #define SINEW_GRADIENT_H

@@ -1,5 +1,5 @@
-/* Whether finite elements can be calculated with: that their numbers are finite is seen to where a model is read
- * (values.h).
+/* Refuses elements that cannot be calculated with because they enclose nothing. That all numbers are finite is checked
+ * where a model is read (values.h).
  */
 #ifndef SINEW_FINITE_H
 #define SINEW_FINITE_H

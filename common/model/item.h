@@ -1,6 +1,6 @@
-/* What a model stream is made of, one item at a time, and the table of functions that an encoding is. text.c and
- * binary.c turn bytes into items and items into bytes, and know no more; which item may stand where is stream.c's. An
- * item that was read owns what hangs on it; one that is written borrows it all.
+/* The items that a model stream consists of, and the table of functions that an encoding is. text.c and binary.c turn
+ * bytes into items and items into bytes, and know no more; stream.c knows which item may stand where. An item that was
+ * read owns what hangs on it; one that is written borrows it all.
  */
 #ifndef SINEW_ITEM_H
 #define SINEW_ITEM_H

@@ -1,5 +1,5 @@
-/* A model that is only looked at: read from a file or standard input by tools that write no model. It owns
- * the body and the last frame read, so one frame is in memory at a time (two while the next is read).
+/* A model for tools that read one and write none, from a file or standard input. A source owns the body and the last
+ * frame read, so one frame is in memory at a time (two while the next is read).
  */
 #ifndef SINEW_SOURCE_H
 #define SINEW_SOURCE_H

@@ -1,5 +1,5 @@
-/* What tangents A = dP/dF of the forms are made of, for the stable step: tensors as 9 x 9 matrices, row 3 k + j for
- * component k and axis j, and products of them. In double, and nothing where `real` is anything else. Owns nothing.
+/* Tensors as 9 x 9 matrices, row 3 k + j for component k and axis j, and products of them, of which the forms make
+ * their tangents A = dP/dF for the stable step. In double, and nothing where `real` is anything else. Owns nothing.
  */
 #ifndef SINEW_TANGENT_H
 #define SINEW_TANGENT_H

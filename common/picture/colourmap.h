@@ -1,7 +1,7 @@
-/* A perceptually uniform scale of colours, dark violet over green to yellow: equal steps of a value are equal steps in
- * Oklab (B. Ottosson, A perceptual color space for image processing, 2020), and lightness grows throughout, so that it
- * reads in grey and to the colour-blind. And distinct colours for names. The table
- * is computed; its owner is the caller.
+/* A perceptually uniform scale of colours, dark violet over green to yellow, and distinct colours for names. Equal
+ * steps of a value are equal steps in Oklab (B. Ottosson, A perceptual color space for image processing, 2020), and
+ * lightness grows throughout, so that the scale reads in grey and to the colour-blind. The table is computed; its owner
+ * is the caller.
  */
 #ifndef SINEW_RENDER_COLOURMAP_H
 #define SINEW_RENDER_COLOURMAP_H

@@ -1,5 +1,5 @@
-/* What colours mean, below a picture: a bar of the scale with numbers and a unit, or a colour for each name. Nothing is
- * kept; the font's size is set by the caller, and all measures are in pixels.
+/* Draws the legend below a picture, which says what its colours mean: a bar of the scale with numbers and a unit, or a
+ * colour for each name. Keeps nothing; the font's size is set by the caller, and all measures are in pixels.
  */
 #ifndef SINEW_LEGEND_H
 #define SINEW_LEGEND_H

@@ -1,5 +1,5 @@
-/* How panels lie on a sheet: columns and rows, each panel with room for a caption above its picture and for a legend
- * below it. Measures are in pixels. It owns nothing.
+/* The layout of panels on a sheet: columns and rows, each panel with room for a caption above its picture and for a
+ * legend below it. Measures are in pixels. It owns nothing.
  */
 #ifndef SINEW_SHEET_H
 #define SINEW_SHEET_H

@@ -1,7 +1,8 @@
-/* A convex probe from an OBJ: its corners, triangles between them, and the planes of its faces, after a look at whether
- * it is closed and convex, which is what probe_at takes for granted. Faces may be polygons, of either orientation;
- * vertices at one place are one; faces in one plane give one plane. A plane is moved out to the corner that is
- * farthest, within a tolerance of 1e-5 of the shape's size: OBJ files have few digits. The probe owns what is made.
+/* Makes a convex probe of an OBJ: its corners, triangles between them, and the planes of its faces. First it checks
+ * that the surface is closed and convex, which probe_at takes for granted. Faces may be polygons, of either
+ * orientation; vertices at one place are one; faces in one plane give one plane. A plane is moved out to the corner
+ * that is farthest, within a tolerance of 1e-5 of the shape's size: OBJ files have few digits. The probe owns what is
+ * made.
  */
 #ifndef SINEW_CONVEX_H
 #define SINEW_CONVEX_H

@@ -1,5 +1,5 @@
-/* The same question as probe_at's, asked of libccd: how deep a small ball about a point is in a probe, and which way is
- * out, by the support functions of the shapes (GJK to see whether they meet, then EPA). This is the one user of libccd.
+/* Asks libccd what probe_at answers: how deep a small ball about a point is in a probe, and which way is out, by the
+ * support functions of the shapes (GJK to see whether they meet, then EPA). This is the one user of libccd.
  *
  * Solvers do not ask it. All shapes have a closed form for points, convex polyhedra too: the plane that is
  * farthest. On a point inside it gives libccd's answer, without its tolerance, and in 40 ns, or 150 of 128

@@ -1,5 +1,5 @@
-/* Where a picture is seen from: an eye, three axes and a perspective or orthographic projection. Directions are unit
- * vectors in the model's frame. Pixel (0, 0) is the upper left; its centre is at (0.5, 0.5). It owns nothing.
+/* A camera: an eye, three axes and a perspective or orthographic projection. Directions are unit vectors in the model's
+ * frame. Pixel (0, 0) is the upper left; its centre is at (0.5, 0.5). It owns nothing.
  */
 #ifndef SINEW_RENDER_CAMERA_H
 #define SINEW_RENDER_CAMERA_H

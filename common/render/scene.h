@@ -1,6 +1,7 @@
-/* What is to be seen: meshes of triangles or quadrilaterals and sets of spheres, with linear RGB colours (0 to 1). A
- * scene owns its arrays, which are made with mem.h (or malloc) and handed over; scene_free frees them. Zeroed members
- * mean: no label, black, opaque, flat, no edges. Faces are seen from both sides, so their winding does not matter.
+/* A scene, as trace() draws it: meshes of triangles or quadrilaterals and sets of spheres, with linear RGB colours (0
+ * to 1). A scene owns its arrays, which are made with mem.h (or malloc) and handed over; scene_free frees them. Zeroed
+ * members mean: no label, black, opaque, flat, no edges. Faces are seen from both sides, so their winding does not
+ * matter.
  */
 #ifndef SINEW_RENDER_SCENE_H
 #define SINEW_RENDER_SCENE_H

@@ -1,4 +1,4 @@
-/* What a ray has met: a place on a face or sphere with what is needed to shade it. Nothing is owned.
+/* The place where a ray has met a face or sphere, with what is needed to shade it. Owns nothing.
  */
 #ifndef SINEW_SHADE_H
 #define SINEW_SHADE_H

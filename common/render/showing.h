@@ -1,4 +1,4 @@
-/* From a model to what is seen of it: carried and bound surfaces, the outside of elements, rigid nodes and contraction
+/* Makes the scene that shows a model: carried and bound surfaces, the outside of elements, rigid nodes and contraction
  * centres, at rest or as a frame moves them, in the colours of what they are or of a field. The caller owns a showing;
  * model, frame and field are borrowed while it is made.
  */

@@ -1,4 +1,4 @@
-/* What every tile of a trace shares and none changes: the scene with its trees, the camera in floats, the lights and
+/* The constants of a trace, which all its tiles share: the scene with its trees, the camera in floats, the lights and
  * the sample patterns. trace() owns it.
  */
 #ifndef SINEW_RENDER_VIEW_H

@@ -1,8 +1,8 @@
-/* What a state consists of, as one table: a row for each of its arrays, in the order in which they are written. All
- * that copies a state goes over its solver's table: saving and restoring, snapshots, checkpoints, fingerprints, frames,
- * and a start from a frame. So an array more is a row more. Outside of an executor the numbers of every field are
- * doubles, row by row as a model has them; an executor lays them out as it likes. A solver owns its table, which is
- * constant; the caller owns field_values.
+/* The table of the arrays that a state consists of: a row for each, in the order in which they are written. All that
+ * copies a state goes over its solver's table: saving and restoring, snapshots, checkpoints, fingerprints, frames, and
+ * a start from a frame. So a new array is a new row. Outside of an executor the numbers of every field are doubles, row
+ * by row as a model has them; an executor lays them out as it likes. A solver owns its table, which is constant; the
+ * caller owns field_values.
  */
 #ifndef SINEW_FIELDS_H
 #define SINEW_FIELDS_H

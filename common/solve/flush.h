@@ -1,6 +1,6 @@
-/* Numbers that are too small to be normal, taken for zero in this thread's vectors: most processors compute with them a
- * hundred times slower, and what is at rest is soon full of them. As on a card. Does nothing where the processor has no
- * such switch. Owns nothing; whoever flushes sets back what was.
+/* Makes this thread's vector operations take denormal numbers for zero, as a card does: most processors compute with
+ * them a hundred times slower, and a body at rest is soon full of them. Does nothing where the processor has no such
+ * switch. Owns nothing; the caller sets back what was.
  */
 #ifndef SINEW_FLUSH_H
 #define SINEW_FLUSH_H

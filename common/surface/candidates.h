@@ -1,7 +1,7 @@
-/* Which of many boxes may overlap: a bounding volume hierarchy (surface/embree.h). Embree works in floats, so the
- * caller gives boxes in a frame of its own choosing, shifted and scaled so that they keep within `reach` of the origin;
- * the boxes are then made larger by more than any rounding, so that two may be given that do not overlap, but never two
- * missed that do. What truly meets is the caller's to decide. The creator owns it.
+/* Finds, among many boxes, those that may overlap, by a bounding volume hierarchy (surface/embree.h). Embree works in
+ * floats, so the caller gives boxes in a frame of its own choosing, shifted and scaled so that they keep within `reach`
+ * of the origin. The boxes are then made larger by more than any rounding: a pair that does not overlap may be given,
+ * but none that does is missed. The caller decides what truly meets. The creator owns it.
  */
 #ifndef SINEW_CANDIDATES_H
 #define SINEW_CANDIDATES_H

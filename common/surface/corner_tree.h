@@ -1,6 +1,6 @@
-/* The corners that are left of a large polygon, in the plane that it is looked at in: whether one of them lies in a
- * triangle, and whose own triangle is the smallest, in a time that grows as the logarithm of their number. A binary
- * tree over the corners in Z-order of their ranks along u and v, so that neighbours in the plane are mostly neighbours
+/* Finds, among the corners that are left of a large polygon in its plane, whether one lies in a triangle, and which
+ * corner's own triangle is the smallest, in a time that grows as the logarithm of their number. The tree is binary,
+ * over the corners in Z-order of their ranks along u and v, so that neighbours in the plane are mostly neighbours
  * there, however their distances differ; a node knows the box of its corners, and a strip that lies as they do. The
  * creator owns it.
  */

@@ -1,4 +1,4 @@
-/* What a coordinate of an OBJ is worth in metres, the same for all tools that take one. Owns nothing.
+/* The unit of an OBJ's coordinates and its length in metres, by one rule for all tools that take a unit. Owns nothing.
  */
 #ifndef SINEW_SCALE_H
 #define SINEW_SCALE_H

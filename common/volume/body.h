@@ -1,6 +1,6 @@
-/* What lies where in a body: a file that people write, which places a volume image (and with it the
- * model and the surfaces made from it) and other surfaces, such as a skeleton and a skin, in one
- * frame. PST figures 2 and 8. One thing a line:
+/* The places of what lies in a body: a file that people write gives a volume image (and with it the model and the
+ * surfaces made from it) and other surfaces, such as a skeleton and a skin, their places in one frame. PST figures 2
+ * and 8. One thing a line:
  *
  *     volume             move=10cm,0,1.2m turn=0,0,0.7071068,0.7071068
  *     surface skin.obj   unit=mm move=0,0,2mm

@@ -1,5 +1,5 @@
-/* What is wrong with a surface, and what it encloses: for voxelise --check. Everything is
- * borrowed but the result, which is plain numbers.
+/* Finds what is wrong with a surface, and what it encloses, for voxelise --check. Everything is borrowed but the
+ * result, which is plain numbers.
  */
 #ifndef SINEW_CHECK_SURFACES_H
 #define SINEW_CHECK_SURFACES_H

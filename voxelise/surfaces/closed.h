@@ -1,6 +1,6 @@
-/* Whether polygons close: every edge is used an even number of times, edges being pairs of welded vertices, so that
- * soups of polygons are as good as connected meshes. Polygons given more than once are found on the way. Everything is
- * borrowed but the result, which the caller frees.
+/* Tests whether polygons form closed surfaces: every edge must be used an even number of times. Edges are pairs of
+ * welded vertices, so that soups of polygons are as good as connected meshes. Polygons given more than once are found
+ * on the way. Everything is borrowed but the result, which the caller frees.
  */
 #ifndef SINEW_CLOSED_H
 #define SINEW_CLOSED_H

@@ -1,7 +1,7 @@
-/* Where a surface meets itself: pairs of its triangles whose insides meet along a line, and edges that run within a
- * triangle with a triangle on either side of it, decided exactly. What only touches (a common vertex or edge, a corner
- * or an edge upon a face, two faces in one plane) does not count, nor does a line along which both have an edge. Embree
- * finds the pairs whose boxes overlap. Nothing is kept.
+/* Finds exactly where a surface meets itself: pairs of its triangles whose insides meet along a line, and edges that
+ * run within a triangle with a triangle on either side of it. What only touches (a common vertex or edge, a corner or
+ * an edge upon a face, two faces in one plane) does not count, nor does a line along which both have an edge. Embree
+ * finds the pairs whose boxes overlap. Keeps nothing.
  */
 #ifndef SINEW_MEET_H
 #define SINEW_MEET_H

@@ -1,5 +1,5 @@
-/* Where a closed surface is thinner than a voxel: from the middle of each triangle a ray runs in, to the next one that
- * it meets (Embree, in single precision: this is for a warning). Nothing is kept.
+/* Finds where a closed surface is thinner than a voxel: from the middle of each triangle a ray runs in, to the next one
+ * that it meets (Embree, in single precision: this is for a warning). Keeps nothing.
  */
 #ifndef SINEW_THIN_H
 #define SINEW_THIN_H

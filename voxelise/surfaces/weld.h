@@ -1,4 +1,5 @@
-/* Vertices at one place made one, so that soups of polygons are as good as connected meshes. The caller owns a weld.
+/* Welds the vertices that are at one place, so that soups of polygons are as good as connected meshes. The caller owns
+ * a weld.
  */
 #ifndef SINEW_WELD_H
 #define SINEW_WELD_H
