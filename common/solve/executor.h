@@ -14,6 +14,7 @@
 #define EXECUTOR_FEATURES(X)                                                                                           \
     X(MESHES, "elements off a lattice")                                                                                \
     X(CONTACT, "contact with a probe")                                                                                 \
+    X(FOLLOWERS, "pressure on a surface")                                                                              \
     X(WARP, "elements that turn: --warp")                                                                              \
     X(HISTORY, "history of elements, which the law needs")                                                             \
     X(MIXTURES, "elements mixed of two volumes")

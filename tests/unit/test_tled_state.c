@@ -2,6 +2,7 @@
  * and models that are no lattice of boxes.
  */
 // needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/script.c
+// needs: tled/problem/script_surface.c tled/problem/loads.c tled/problem/followers.c
 // needs: tled/problem/script_read.c tled/problem/step.c tled/problem/support.c
 #include "tled/problem/support.h"
 

@@ -10,11 +10,12 @@
 #include "tled/cpu/cpu_pass.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/conforming.h"
+#include "tled/problem/followers.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { CONTACT_CHUNK = 4096 };
+enum { CONTACT_CHUNK = 4096, FOLLOWERS_CHUNK = 512 };
 
 #ifdef ELEMENT_SINGLE
 typedef float number;
@@ -53,6 +54,7 @@ struct tled_state {
     bool spare_is_internal;
     double time;        /* where the state stands */
     double *now, *next; /* the curves' values */
+    followers_work followers;
     cpu_work work;
 };
 
@@ -100,6 +102,36 @@ static void contact_work(void *context, int64_t chunk, int64_t from, int64_t to)
     }
 }
 
+static void followers_in(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cpu_state *s = context;
+    const followers_work *w = &s->followers;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++)
+        for (int a = 0; a < 3; a++)
+            w->moved[3 * i + a] = (double)s->field[TLED_DISPLACEMENT][a * s->rows.nodes + s->rows.place[w->f->node[i]]];
+}
+
+static void followers_out(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const cpu_state *s = context;
+    (void)chunk;
+    for (int64_t i = from; i < to; i++) {
+        double push[3];
+        followers_pull(&s->followers, i, push);
+        for (int a = 0; a < 3; a++)
+            s->sum[a * s->rows.nodes + s->rows.place[s->followers.f->node[i]]] -= (number)push[a];
+    }
+}
+
+/* What pressures push with, beside contact. */
+static void press_followers(cpu_state *s)
+{
+    pool_run(s->threads, s->p->followers->nodes, FOLLOWERS_CHUNK, followers_in, s);
+    followers_press(&s->followers, s->threads, s->now);
+    pool_run(s->threads, s->p->followers->nodes, FOLLOWERS_CHUNK, followers_out, s);
+}
+
 /* One pass at the displacements of now, with the curves' values of now and of the step's end. */
 static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
 {
@@ -120,6 +152,8 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
         cpu_contact contact = {s, collider_at(s->p->collider, time), time};
         pool_run(s->threads, s->p->nodes, CONTACT_CHUNK, contact_work, &contact);
     }
+    if (s->p->followers)
+        press_followers(s);
     s->method->pass(s);
     s->spare_is_internal = (what & PASS_INTERNAL) != 0;
     if (what & PASS_BEGIN) {
@@ -291,7 +325,8 @@ static int64_t cpu_bytes(const cpu_state *s)
     for (int i = 0; i < TLED_SLOTS; i++)
         numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
     return numbers * (int64_t)sizeof(number) + r->nodes * (7 * (int64_t)sizeof(number) + 1 + 4) +
-           r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes;
+           r->runs * (int64_t)sizeof *r->run + r->cells * (cells * (int64_t)sizeof(number) + 4) + s->mesh_bytes +
+           followers_bytes(s->p->followers);
 }
 
 /* ---- life */
@@ -321,6 +356,7 @@ static void cpu_destroy(cpu_state *s)
         free(s->slot[i]);
     free(s->now);
     free(s->next);
+    followers_room_free(&s->followers);
     free(s);
 }
 
@@ -364,7 +400,7 @@ static int allocate(cpu_state *s, err *e)
     s->flags = mem_array(nodes, 1, "the solver", e);
     s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
     s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
-    return s->kind && s->flags && s->now && s->next ? 0 : -1;
+    return s->kind && s->flags && s->now && s->next ? followers_room(&s->followers, s->p->followers, e) : -1;
 }
 
 static void fill_nodes(cpu_state *s)
@@ -480,15 +516,16 @@ static int64_t cpu_computed(const cpu_state *s)
     .snapshot = cpu_snapshot, .fetch = cpu_fetch, .bytes = cpu_bytes, .computed = cpu_computed
 
 const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
-                                           .features = EXECUTOR_CONTACT | EXECUTOR_MIXTURES,
+                                           .features = EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES,
                                            .forms = (1U << FORM_STEPPED) - 1,
                                            .unusable = cpu_unusable},
                                     .create = boxes_create,
                                     CPU_FUNCTIONS};
 
-const tled_executor CPU_EXECUTOR_OF_MESHES = {.is = {.device = "cpu",
-                                                     .features = EXECUTOR_MESHES | EXECUTOR_CONTACT | EXECUTOR_MIXTURES,
-                                                     .forms = (1U << FORM_STEPPED) - 1,
-                                                     .unusable = cpu_unusable},
-                                              .create = mesh_create,
-                                              CPU_FUNCTIONS};
+const tled_executor CPU_EXECUTOR_OF_MESHES = {
+    .is = {.device = "cpu",
+           .features = EXECUTOR_MESHES | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES,
+           .forms = (1U << FORM_STEPPED) - 1,
+           .unusable = cpu_unusable},
+    .create = mesh_create,
+    CPU_FUNCTIONS};

@@ -14,12 +14,15 @@
 
 void script_free(script *s)
 {
-    for (int64_t i = 0; i < s->curves; i++)
+    for (int64_t i = 0; i < s->curves; i++) {
         free(s->curve[i].target);
+        free(s->curve[i].surface);
+    }
     free(s->curve);
     free(s->time);
     free(s->value);
     free(s->node);
+    free(s->corner);
     free(s->file);
     *s = (script){0};
 }
@@ -63,6 +66,21 @@ static bool by_box(const script_curve *c)
     return strchr(c->target, ',') != NULL;
 }
 
+const char *script_region(const script_curve *c)
+{
+    const char *colon = strchr(c->target, ':');
+    return colon ? colon + 1 : NULL;
+}
+
+/* Of one surface; boxes are known to be the same. */
+static bool same_region(const script_curve *a, const script_curve *b)
+{
+    const char *of_a = script_region(a), *of_b = script_region(b);
+    if (strcmp(a->surface, b->surface) != 0 || !of_a != !of_b)
+        return false;
+    return !of_a || (by_box(a) && by_box(b)) || !strcasecmp(of_a, of_b);
+}
+
 static bool same_target(const script_curve *a, const script_curve *b)
 {
     if (a->verb != b->verb || a->volume != b->volume)
@@ -70,6 +88,8 @@ static bool same_target(const script_curve *a, const script_curve *b)
     for (int i = 0; i < 6; i++)
         if (a->box[i] != b->box[i])
             return false;
+    if (a->surface)
+        return same_region(a, b);
     return a->verb != SCRIPT_DISPLACE || (by_box(a) && by_box(b)) || !strcasecmp(a->target, b->target);
 }
 
@@ -88,9 +108,11 @@ int64_t script_add(script *s, const script_curve *c, err *e)
     script_curve *added = &s->curve[s->curves];
     *added = *c;
     added->node_first = (int32_t)s->nodes;
-    if (!(added->target = mem_text(c->target, e)))
-        return -1;
-    return s->curves++;
+    added->triangle_first = (int32_t)s->triangles;
+    added->target = mem_text(c->target, e);
+    added->surface = c->surface ? mem_text(c->surface, e) : NULL;
+    s->curves++;
+    return added->target && (!c->surface || added->surface) ? s->curves - 1 : -1;
 }
 
 int script_reserve(script *s, int64_t more, err *e)

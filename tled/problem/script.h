@@ -9,14 +9,16 @@
 #ifndef SINEW_SCRIPT_H
 #define SINEW_SCRIPT_H
 
-#include "base/in.h"
+#include "base/keyfile.h"
 #include "model/model.h"
 
 typedef enum script_verb {
     SCRIPT_CONTRACT, /* value[0]: the level, 0 to 1, of muscle `volume` */
     SCRIPT_GRAVITY,  /* value: m/s2, on every node by its mass; at most one curve */
     SCRIPT_FORCE,    /* value: N in all, an equal share for each of its nodes */
-    SCRIPT_DISPLACE  /* value: m from rest, for the components in `mask`, of each of its nodes */
+    SCRIPT_DISPLACE, /* value: m from rest, for the components in `mask`, of each of its nodes */
+    SCRIPT_PRESSURE, /* value[0]: Pa, against the outward normals of its triangles as they are deformed */
+    SCRIPT_TRACTION  /* value: Pa, by the area of its triangles at rest */
 } script_verb;
 
 typedef struct script_curve {
@@ -24,21 +26,25 @@ typedef struct script_curve {
     int32_t volume;                 /* contract: index of the volume; else -1 */
     uint32_t mask;                  /* displace: bit a set: component a is prescribed, from the start of the run on */
     int32_t key_first, key_count;   /* in script.time and script.value; at least 1 key, times never decreasing */
-    int32_t node_first, node_count; /* in script.node, ascending; 0 for contract and gravity */
-    double end;                     /* time of its last key, s */
-    int64_t line;                   /* its first line in the script; 0: from the command line */
-    double box[6];                  /* force: x y z radius; displace by box: low and high corner; m */
-    char *target;                   /* as written, owned: for messages and to tell surfaces apart */
+    int32_t node_first, node_count; /* in script.node, ascending: force, displace */
+    int32_t triangle_first, triangle_count; /* in script.corner: pressure, traction */
+    double end;                             /* time of its last key, s */
+    int64_t line;                           /* its first line in the script; 0: from the command line */
+    double box[6];                          /* force: x y z radius; by a box: low and high corner; m */
+    char *target;                           /* as written, owned: for messages and to tell surfaces apart */
+    char *surface;  /* pressure, traction: the bound surface's name in the model, owned; else NULL */
+    bool is_region; /* of the surface: not the whole of it */
 } script_curve;
 
 typedef struct script {
     script_curve *curve;
-    double *time;  /* keys: s */
-    double *value; /* keys x 3 */
-    int32_t *node; /* a component of a node is displaced by one curve at most */
-    char *file;    /* the name of the file read, owned; NULL: none was */
-    int64_t curves, keys, nodes;
-    int64_t curve_capacity, time_capacity, value_capacity, node_capacity;
+    double *time;    /* keys: s */
+    double *value;   /* keys x 3 */
+    int32_t *node;   /* a component of a node is displaced by one curve at most */
+    int32_t *corner; /* triangles x 3: vertices of the curve's surface, counter-clockwise from outside */
+    char *file;      /* the name of the file read, owned; NULL: none was */
+    int64_t curves, keys, nodes, triangles;
+    int64_t curve_capacity, time_capacity, value_capacity, node_capacity, corner_capacity;
 } script;
 
 void script_free(script *s);
@@ -69,16 +75,27 @@ double script_end(const script *s);
  * line 0: place is an option of the command line. */
 int32_t script_muscle(const model *m, const char *name, const char *place, int64_t line, err *e);
 
-/* What script.c and script_read.c share. */
+/* What script.c, script_read.c and script_surface.c share. */
 
 /* The curve of the same verb and target, or -1. */
 int64_t script_find(const script *s, const script_curve *like);
 
-/* Appends a copy of c, which has no keys or nodes, with its own copy of the target. Returns its index or -1. */
+/* Appends a copy of c, which has no keys, nodes or triangles, with its own copies of the texts. Returns its index or
+ * -1. */
 int64_t script_add(script *s, const script_curve *c, err *e);
 
 /* Makes room for `more` keys. */
 int script_reserve(script *s, int64_t more, err *e);
+
+/* The region of a surface in SURFACE[:REGION], or NULL. */
+const char *script_region(const script_curve *c);
+
+/* The bound surface that c->target names, SURFACE[:REGION], into `name` (MODEL_NAME bytes). Sets c->surface to it. */
+int script_take_surface(script_curve *c, const model *m, const keyfile *k, char *name, err *e);
+
+/* Appends to s->corner the triangles of the curve added last: of the region or, which must be closed for a pressure,
+ * the whole. */
+int script_take_triangles(script *s, const model *m, const keyfile *k, err *e);
 
 /* A level: a number from 0 to 1. Returns 0 or -1. */
 int script_level(const char *text, double *level);

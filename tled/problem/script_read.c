@@ -1,4 +1,3 @@
-#include "base/keyfile.h"
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
@@ -112,16 +111,16 @@ static int nodes_of_surface(reader *r, const script_curve *c, err *e)
 
 /* Lines of a file */
 
-/* Words `at` as numbers in metres, with suffixes or without; exactly count. */
-static int take_lengths(reader *r, int at, int count, double *value, const char *expected, err *e)
+/* Numbers in metres, with suffixes or without; exactly count. */
+static int take_lengths(reader *r, const char *text, int count, double *value, const char *expected, err *e)
 {
     num_length list[6];
     num_unit metre = num_unit_of("m");
-    int n = num_lengths_of(r->k.word[at], list, count);
+    int n = num_lengths_of(text, list, count);
     for (int i = 0; i < n; i++)
         if (!isfinite(value[i] = num_length_in(list[i], metre, metre)))
             n = -1;
-    return n == count ? 0 : keyfile_error(&r->k, e, "'%.200s'; expected %s", r->k.word[at], expected);
+    return n == count ? 0 : keyfile_error(&r->k, e, "'%.200s'; expected %s", text, expected);
 }
 
 static int take_numbers(reader *r, int at, double *value, const char *expected, err *e)
@@ -219,8 +218,8 @@ static int line_force(reader *r, double time, err *e)
 {
     double value[3];
     script_curve c = {.verb = SCRIPT_FORCE, .volume = -1, .line = r->k.line, .target = r->k.word[2]};
-    if (take_lengths(r, 2, 3, c.box, "X,Y,Z: a point, in metres or with suffixes", e) ||
-        take_lengths(r, 3, 1, c.box + 3, "a radius, in metres or with a suffix", e) ||
+    if (take_lengths(r, r->k.word[2], 3, c.box, "X,Y,Z: a point, in metres or with suffixes", e) ||
+        take_lengths(r, r->k.word[3], 1, c.box + 3, "a radius, in metres or with a suffix", e) ||
         take_numbers(r, 4, value, "FX,FY,FZ in N", e))
         return -1;
     if (c.box[3] <= 0)
@@ -232,14 +231,14 @@ static int line_force(reader *r, double time, err *e)
     return key_add(r, at, time, value, e);
 }
 
-static int take_box(reader *r, double *box, err *e)
+static int take_box(reader *r, const char *text, double *box, err *e)
 {
-    if (take_lengths(r, 2, 6, box, "X0,Y0,Z0,X1,Y1,Z1: a box, in metres or with suffixes", e))
+    if (take_lengths(r, text, 6, box, "X0,Y0,Z0,X1,Y1,Z1: a box, in metres or with suffixes", e))
         return -1;
     for (int a = 0; a < 3; a++)
         if (box[a] > box[a + 3])
-            return keyfile_error(&r->k, e, "box %.200s is empty: %g > %g; expected the low corner first", r->k.word[2],
-                                 box[a], box[a + 3]);
+            return keyfile_error(&r->k, e, "box %.200s is empty: %g > %g; expected the low corner first", text, box[a],
+                                 box[a + 3]);
     return 0;
 }
 
@@ -248,7 +247,7 @@ static int line_displace(reader *r, double time, err *e)
     double value[3];
     script_curve c = {.verb = SCRIPT_DISPLACE, .volume = -1, .line = r->k.line, .target = r->k.word[2]};
     bool box = strchr(c.target, ',') != NULL, fresh;
-    if ((box && take_box(r, c.box, e)) || take_displacement(r, 3, value, &c.mask, e))
+    if ((box && take_box(r, c.target, c.box, e)) || take_displacement(r, 3, value, &c.mask, e))
         return -1;
     int64_t at = curve_of(r, &c, &fresh, e);
     if (at < 0 || (fresh && (box ? nodes_in_box : nodes_of_surface)(r, &c, e)))
@@ -261,6 +260,37 @@ static int line_displace(reader *r, double time, err *e)
     return key_add(r, at, time, value, e);
 }
 
+/* On a bound surface or a region of it. */
+static int add_to_surface(reader *r, script_verb verb, double time, const double *value, err *e)
+{
+    char name[MODEL_NAME];
+    script_curve c = {.verb = verb, .volume = -1, .line = r->k.line, .target = r->k.word[2]};
+    const char *region = script_region(&c);
+    if (script_take_surface(&c, r->m, &r->k, name, e) ||
+        (region && strchr(region, ',') && take_box(r, region, c.box, e)))
+        return -1;
+    c.is_region = region != NULL;
+    bool fresh;
+    int64_t at = curve_of(r, &c, &fresh, e);
+    if (at < 0 || (fresh && script_take_triangles(r->s, r->m, &r->k, e)))
+        return -1;
+    return key_add(r, at, time, value, e);
+}
+
+static int line_pressure(reader *r, double time, err *e)
+{
+    double value[3] = {0};
+    if (num_double(r->k.word[3], &value[0]) || !isfinite(value[0]))
+        return keyfile_error(&r->k, e, "pressure '%.200s'; expected a number in Pa", r->k.word[3]);
+    return add_to_surface(r, SCRIPT_PRESSURE, time, value, e);
+}
+
+static int line_traction(reader *r, double time, err *e)
+{
+    double value[3];
+    return take_numbers(r, 3, value, "X,Y,Z in Pa", e) ? -1 : add_to_surface(r, SCRIPT_TRACTION, time, value, e);
+}
+
 static const struct verb {
     int words;
     int (*take)(reader *r, double time, err *e);
@@ -270,12 +300,13 @@ static const struct verb {
     [SCRIPT_GRAVITY] = {3, line_gravity, "TIME gravity X,Y,Z"},
     [SCRIPT_FORCE] = {5, line_force, "TIME force X,Y,Z RADIUS FX,FY,FZ"},
     [SCRIPT_DISPLACE] = {4, line_displace, "TIME displace SURFACE|X0,Y0,Z0,X1,Y1,Z1 UX,UY,UZ"},
+    [SCRIPT_PRESSURE] = {4, line_pressure, "TIME pressure SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1] PA"},
+    [SCRIPT_TRACTION] = {4, line_traction, "TIME traction SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1] X,Y,Z"},
 };
 
-static const char *const verb_names[] = {[SCRIPT_CONTRACT] = "contract",
-                                         [SCRIPT_GRAVITY] = "gravity",
-                                         [SCRIPT_FORCE] = "force",
-                                         [SCRIPT_DISPLACE] = "displace"};
+static const char *const verb_names[] = {
+    [SCRIPT_CONTRACT] = "contract", [SCRIPT_GRAVITY] = "gravity",   [SCRIPT_FORCE] = "force",
+    [SCRIPT_DISPLACE] = "displace", [SCRIPT_PRESSURE] = "pressure", [SCRIPT_TRACTION] = "traction"};
 
 enum { VERBS = sizeof verbs / sizeof *verbs };
 

@@ -5,6 +5,8 @@
 #include "model/materials.h"
 #include "physics/stability.h"
 #include "tled/problem/conforming_step.h"
+#include "tled/problem/followers.h"
+#include "tled/problem/loads.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,6 +38,7 @@ void tled_problem_free(tled_problem *p)
     free(p->force_start);
     free(p->force_curve);
     free(p->force_share);
+    followers_free(p->followers);
     fields_free(&p->at_start);
     memset(p, 0, sizeof *p);
 }
@@ -310,35 +313,6 @@ static void make_holds(tled_problem *p, const model *m)
         p->held += p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
 }
 
-/* Each force curve's equal shares, listed by node in the order of the curves. */
-static int make_forces(tled_problem *p, err *e)
-{
-    const script *s = p->script;
-    int64_t entries = 0;
-    for (int64_t c = 0; c < s->curves; c++)
-        entries += s->curve[c].verb == SCRIPT_FORCE ? s->curve[c].node_count : 0;
-    p->force_start = mem_array(p->nodes + 2, sizeof *p->force_start, "the forces", e);
-    p->force_curve = mem_array(entries, sizeof *p->force_curve, "the forces", e);
-    p->force_share = mem_array(entries, sizeof *p->force_share, "the forces", e);
-    if (!p->force_start || !p->force_curve || !p->force_share)
-        return -1;
-    if (entries > INT32_MAX)
-        return err_set(e, NULL, 0, "forces on %lld nodes; expected at most %d", (long long)entries, INT32_MAX);
-    /* Counts two places on, so that filling moves each start to where it belongs. */
-    for (int64_t i = 0, c = 0; c < s->curves; c++)
-        for (i = 0; s->curve[c].verb == SCRIPT_FORCE && i < s->curve[c].node_count; i++)
-            p->force_start[s->node[s->curve[c].node_first + i] + 2]++;
-    for (int64_t n = 0; n < p->nodes; n++)
-        p->force_start[n + 2] += p->force_start[n + 1];
-    for (int64_t i = 0, c = 0; c < s->curves; c++)
-        for (i = 0; s->curve[c].verb == SCRIPT_FORCE && i < s->curve[c].node_count; i++) {
-            int32_t at = p->force_start[s->node[s->curve[c].node_first + i] + 1]++;
-            p->force_curve[at] = (int32_t)c;
-            p->force_share[at] = 1. / s->curve[c].node_count;
-        }
-    return 0;
-}
-
 int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e)
 {
     lattice l;
@@ -357,7 +331,8 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, double k
     if (!p->corner || !p->mass || !p->hold || fields_allocate(&p->fields, FIELDS_ALL, &p->at_start, "the nodes", e))
         return -1;
     if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || make_volumes(p, m, e) ||
-        make_mixtures(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || make_forces(p, e))
+        make_mixtures(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || loads_make(p, m, e) ||
+        followers_make(p, m, e))
         return -1;
     if (!boxes)
         conforming_join(p);

@@ -60,13 +60,14 @@ typedef struct tled_problem {
     int64_t held;          /* nodes with any component held */
     int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
     int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
-    double *force_share;   /* entries */
+    double *force_share;   /* entries: 1 for a force, m2 for a traction, in all */
     const script *script;
     int64_t gravity;                 /* its curve, or -1 */
     double start;                    /* s: the model's time at the start */
     fields fields;                   /* what a state consists of */
     field_values at_start;           /* and the one that the run begins from: m, m/s */
     const struct collider *collider; /* what presses (collider.h), or NULL */
+    struct followers *followers;     /* the script's pressures (followers.h), owned; NULL: none */
 } tled_problem;
 
 /* A run of steps: after step i of them (from 1) the time is origin + (first + i) / rate. A rate, since a whole
@@ -83,8 +84,8 @@ static inline double tled_time(const tled_plan *plan, int64_t i)
 }
 
 /* What get() gives, as doubles: field i of the table, of which these are the first, nodes x 3: m, m/s; and internal
- * forces, nodes x 3, N: the sum of the elements' pulls at the displacement (where a step or create led
- * to the state; not right after restore). */
+ * forces, nodes x 3, N: the sum of the elements' pulls at the displacement, less what a probe and pressures push with
+ * (where a step or create led to the state; not right after restore). */
 enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL = FIELDS_MOST };
 
 /* What a pass over the model does, in any executor: ends a step, begins the next, writes the internal forces instead of
@@ -132,7 +133,8 @@ bool tled_bounds_hourglass(const tled_problem *p);
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);
 
-/* The sum of what acts on node n from outside (N, 3): gravity and forces; value: all curves' values, 3 a curve. */
+/* The sum of what acts on node n from outside (N, 3): gravity, forces and tractions; value: all curves' values, 3 a
+ * curve. */
 void tled_external(const tled_problem *p, const double *value, int64_t n, double *force);
 
 /* The values of all curves at a time, 3 a curve. */

@@ -1,6 +1,7 @@
 #include "tled/problem/support.h"
 
 #include "base/mem.h"
+#include "tled/problem/followers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -49,7 +50,7 @@ static double diagonal(const tled_problem *p)
 
 static bool is_pushed(const tled_problem *p, int64_t node)
 {
-    return p->gravity >= 0 || p->force_start[node + 1] > p->force_start[node];
+    return p->gravity >= 0 || p->force_start[node + 1] > p->force_start[node] || followers_push(p->followers, node);
 }
 
 /* What the search from held nodes did not reach, part by part. */
@@ -184,7 +185,7 @@ int support_check(const support *of, const tled_problem *p, bool to_rest, bool p
         return check_loose(of, p, to_rest, warnings, e);
     snprintf(what, sizeof what, "the part of element %lld (volume '%.100s') along %c, where gravity pulls it",
              (long long)of->falling, p->volume[p->element_volume[of->falling]].name, "xyz"[of->falls_along]);
-    if (to_rest && !pressed && !p->force_start[p->nodes])
+    if (to_rest && !pressed && !p->force_start[p->nodes] && !p->followers)
         return err_set(e, NULL, 0,
                        "nothing holds %s, so that it never comes to rest; expected nodes that are held in that "
                        "component, or -t or -n to end",

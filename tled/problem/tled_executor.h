@@ -70,7 +70,8 @@ static inline const tled_executor *tled_executor_of(const executor *is)
 extern const executor *const tled_executors_double[];
 extern const executor *const tled_executors_single[];
 
-/* What a problem needs of its executor: of the elements, of contact, of the form. Its names are the problem's. */
+/* What a problem needs of its executor: of the elements, of contact and pressures, of the form. Its names are the
+ * problem's. */
 executor_need tled_need(const tled_problem *p);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "tled/problem/collider.h"
+#include "tled/problem/followers.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,6 +14,7 @@ enum { CHUNK = STRAINED_CHUNK }; /* elements, or nodes */
 typedef struct moment {
     bool known;
     double *displacement, *internal, *push; /* nodes x 3; push: NULL without a probe */
+    double *pressed;                        /* likewise, N: by pressures; NULL without */
     double *stretch;                        /* elements x 2: of either fibre; NULL without muscles */
     double *curves;
     double driven; /* J: kinetic energy where displacements are prescribed */
@@ -33,6 +35,7 @@ struct account {
     struct account_part *part;
     strained_view view; /* of now */
     probe_placed probe; /* of now */
+    followers_work followers;
 };
 
 /* The antiderivative of element_force_length from 0: what a muscle of unit stress does from one stretch to another. */
@@ -141,12 +144,23 @@ static void work_of(const account *a, int64_t i, const node_load *was, const nod
     const double gravity = (was->gravity[axis] + is->gravity[axis]) / 2 * way;
     const double forces = (was->forces[axis] + is->forces[axis]) / 2 * way;
     const double push = a->now.push ? (a->before.push[i] + a->now.push[i]) / 2 * way : 0;
+    const double pressed = a->now.pressed ? (a->before.pressed[i] + a->now.pressed[i]) / 2 * way : 0;
     sum->gravity += gravity;
-    sum->forces += forces;
-    if (a->p->hold[i] >= 0) /* internal forces are less by the push, which moves nothing that is held */
+    sum->forces += forces + pressed;
+    if (a->p->hold[i] >= 0) /* internal forces are less by what is in them: push, and what pressures do */
         sum->held += (a->before.internal[i] + a->now.internal[i]) / 2 * way + push - gravity - forces;
     else
         sum->probe += push;
+}
+
+/* Where displacements are those of now. */
+static void find_pressed(account *a)
+{
+    const followers *f = a->p->followers;
+    followers_move(&a->followers, a->now.displacement);
+    followers_press(&a->followers, a->threads, a->now.curves);
+    for (int64_t i = 0; i < f->nodes; i++)
+        followers_pull(&a->followers, i, a->now.pressed + 3 * (int64_t)f->node[i]);
 }
 
 static void add_node(account *a, int64_t n, struct account_part *part)
@@ -266,6 +280,8 @@ const account_sums *account_read(account *a, const tled_executor *b, tled_state 
     tled_curves(p, time, a->now.curves);
     if (p->collider)
         a->probe = collider_at(p->collider, time);
+    if (p->followers)
+        find_pressed(a);
     a->view = strained_view_of(p, a->now.displacement, a->before.sums.tissue.quality.element);
     pool_run(a->threads, p->elements, CHUNK, element_work, a);
     sum_elements(a);
@@ -289,6 +305,7 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
     to->displacement = own.displacement;
     to->internal = own.internal;
     to->push = own.push;
+    to->pressed = own.pressed;
     to->stretch = own.stretch;
     to->curves = own.curves;
     memcpy(to->displacement, from->displacement, size);
@@ -296,6 +313,8 @@ static void copy_moment(const tled_problem *p, const moment *from, moment *to)
     memcpy(to->curves, from->curves, 3 * (size_t)p->script->curves * sizeof(double));
     if (to->push)
         memcpy(to->push, from->push, size);
+    if (to->pressed)
+        memcpy(to->pressed, from->pressed, size);
     if (to->stretch)
         memcpy(to->stretch, from->stretch, 2 * (size_t)p->elements * sizeof(double));
 }
@@ -345,6 +364,8 @@ static int make_moment(const tled_problem *p, moment *m, err *e)
         return -1;
     if (p->collider && make_numbers(p->nodes, 3, &m->push, e))
         return -1;
+    if (p->followers && make_numbers(p->nodes, 3, &m->pressed, e))
+        return -1;
     return has_muscles(p) ? make_numbers(p->elements, 2, &m->stretch, e) : 0;
 }
 
@@ -354,6 +375,7 @@ static void free_moment(moment *m)
     free(m->internal);
     free(m->curves);
     free(m->push);
+    free(m->pressed);
     free(m->stretch);
 }
 
@@ -368,7 +390,7 @@ account *account_create(const tled_problem *p, pool *threads, err *e)
     a->velocity = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
     a->part = mem_array(pool_chunks(most, CHUNK), sizeof *a->part, "the log", e);
     if (!a->velocity || !a->part || make_moment(p, &a->now, e) || make_moment(p, &a->before, e) ||
-        make_moment(p, &a->saved, e)) {
+        make_moment(p, &a->saved, e) || followers_room(&a->followers, p->followers, e)) {
         account_destroy(a);
         return NULL;
     }
@@ -382,6 +404,7 @@ void account_destroy(account *a)
     free_moment(&a->now);
     free_moment(&a->before);
     free_moment(&a->saved);
+    followers_room_free(&a->followers);
     free(a->velocity);
     free(a->part);
     free(a);

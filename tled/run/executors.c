@@ -46,8 +46,8 @@ static const char *volume_that_wants(const tled_problem *p)
 executor_need tled_need(const tled_problem *p)
 {
     const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0, contact = p->collider ? EXECUTOR_CONTACT : 0,
-                   mixtures = p->mix ? EXECUTOR_MIXTURES : 0;
-    executor_need need = {.features = meshes | contact | mixtures | features_of(p->form),
+                   followers = p->followers ? EXECUTOR_FOLLOWERS : 0, mixtures = p->mix ? EXECUTOR_MIXTURES : 0;
+    executor_need need = {.features = meshes | contact | followers | mixtures | features_of(p->form),
                           .form = UINT32_C(1) << p->form,
                           .volume = volume_that_wants(p)};
     for (int f = 0; f < FORM_COUNT; f++) {

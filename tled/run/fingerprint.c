@@ -76,7 +76,13 @@ static uint32_t crc_script(const script *s)
         crc = checksum_add(crc, what, sizeof what);
         crc = checksum_add(crc, s->time + c->key_first, (size_t)c->key_count * sizeof *s->time);
         crc = checksum_add(crc, s->value + 3 * c->key_first, (size_t)c->key_count * 3 * sizeof *s->value);
-        crc = checksum_add(crc, s->node + c->node_first, (size_t)c->node_count * sizeof *s->node);
+        if (c->node_count)
+            crc = checksum_add(crc, s->node + c->node_first, (size_t)c->node_count * sizeof *s->node);
+        if (c->triangle_count)
+            crc = checksum_add(crc, s->corner + 3 * (int64_t)c->triangle_first,
+                               3 * (size_t)c->triangle_count * sizeof *s->corner);
+        if (c->surface)
+            crc = checksum_add(crc, c->surface, strlen(c->surface));
     }
     return crc;
 }

@@ -178,6 +178,10 @@ static int read_here(monitor *w, const tled_executor *b, tled_state *state, tled
         return -1;
     *sum = (tled_sums){0};
     tled_curves(p, w->question.time, w->curves);
+    if (p->followers) {
+        followers_move(&w->followers, w->displacement);
+        w->load_square = followers_square(&w->followers, w->threads, w->curves);
+    }
     pool_run(w->threads, p->elements, CHUNK, element_work, w);
     sum_elements(w, sum);
     pool_run(w->threads, p->nodes, CHUNK, node_work, w);
@@ -201,7 +205,7 @@ static void take_sums(monitor *w, const tled_sums *sum)
     s->broken = sum->broken;
     s->stable_element = sum->frequency_element;
     s->stable = sum->frequency_element < 0 ? w->rest_step : 2 / sqrt(sum->frequency);
-    s->stable = collider_step(w->p, s->stable);
+    s->stable = followers_step(w->load_square, collider_step(w->p, s->stable));
 }
 
 int monitor_read(monitor *w, const tled_executor *b, tled_state *state, double time, err *e)
@@ -266,7 +270,7 @@ monitor *monitor_create(const tled_problem *p, pool *threads, err *e)
     w->raise = 1.01;
     w->curves = mem_array(p->script->curves, 3 * sizeof *w->curves, "the monitor", e);
     w->part = mem_array(pool_chunks(most, CHUNK), sizeof *w->part, "the monitor", e);
-    if (!w->curves || !w->part) {
+    if (!w->curves || !w->part || followers_room(&w->followers, p->followers, e)) {
         monitor_destroy(w);
         return NULL;
     }
@@ -284,5 +288,6 @@ void monitor_destroy(monitor *w)
     free(w->saved_internal);
     free(w->curves);
     free(w->part);
+    followers_room_free(&w->followers);
     free(w);
 }

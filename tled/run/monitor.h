@@ -6,6 +6,7 @@
 #ifndef SINEW_MONITOR_H
 #define SINEW_MONITOR_H
 
+#include "tled/problem/followers.h"
 #include "tled/problem/tled_executor.h"
 
 typedef struct monitor_reading {
@@ -34,7 +35,9 @@ typedef struct monitor {
     double *saved_displacement, *saved_internal; /* nodes x 3: what monitor_save saved; likewise */
     double *curves;                              /* values at its time */
     struct monitor_part *part;                   /* chunks */
-    tled_question question;                      /* of the last reading */
+    followers_work followers;
+    double load_square;     /* 1/s2: what pressures raise the square of the frequency by */
+    tled_question question; /* of the last reading */
     monitor_reading reading;
 } monitor;
 

@@ -7,6 +7,7 @@
 #include "model/stage.h"
 #include "probe/probe_carry.h"
 #include "tled/problem/collider.h"
+#include "tled/problem/followers.h"
 #include "tled/problem/step.h"
 #include "tled/problem/support.h"
 #include "tled/run/checkpoint.h"
@@ -122,7 +123,8 @@ static int make_script(session *s, const struct options *o, err *e)
 static int choose_rate(session *s, const struct options *o, err *e)
 {
     int32_t stiffest = 0;
-    s->stable = collider_step(&s->problem, step_at_rest(&s->problem, &stiffest));
+    s->stable = followers_step(followers_square_at_rest(&s->problem),
+                               collider_step(&s->problem, step_at_rest(&s->problem, &stiffest)));
     s->run.rate_fixed = o->dt > 0;
     s->run.rate = o->dt > 0 ? 1 / o->dt : step_rate(s->stable, &s->run.check);
     if (o->dt > 0)

@@ -1,0 +1,368 @@
+#include "tled/problem/followers.h"
+
+#include "base/mem.h"
+#include "mesh/bound.h"
+#include "tled/problem/triangle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK = 512 };
+
+void followers_free(followers *f)
+{
+    if (!f)
+        return;
+    free(f->rest);
+    free(f->share);
+    free(f->share_node);
+    free(f->vertex_curve);
+    free(f->corner);
+    free(f->around_start);
+    free(f->around);
+    free(f->node);
+    free(f->is_pushed);
+    free(f->pull_start);
+    free(f->pull);
+    free(f->bound);
+    free(f->most);
+    free(f);
+}
+
+/* ---- the vertices, triangles and nodes of all curves */
+
+static bool is_pressure(const script_curve *c)
+{
+    return c->verb == SCRIPT_PRESSURE;
+}
+
+/* Places of a curve's vertices among all: in the order in which its triangles have them first. */
+typedef struct numbering {
+    int32_t *place; /* vertices of the largest surface: or -1 */
+    int64_t room;
+} numbering;
+
+static int32_t place_of(followers *f, numbering *n, const bound *b, int32_t vertex, int32_t curve)
+{
+    int32_t *place = &n->place[vertex];
+    if (*place >= 0)
+        return *place;
+    *place = (int32_t)f->vertices++;
+    memcpy(f->rest + 3 * (int64_t)*place, b->shape.position + 3 * (int64_t)vertex, 3 * sizeof *f->rest);
+    memcpy(f->share_node + 8 * (int64_t)*place, b->node + 8 * (int64_t)b->element[vertex], 8 * sizeof *f->share_node);
+    bound_shares(b, vertex, f->share + 8 * (int64_t)*place);
+    f->vertex_curve[*place] = curve;
+    return *place;
+}
+
+static int add_curve(followers *f, const script *s, int32_t curve, const model *m, err *e)
+{
+    const script_curve *c = &s->curve[curve];
+    bound b;
+    if (bound_of(&b, m, c->surface, e) < 0)
+        return -1;
+    numbering n = {mem_array(b.shape.vertices, sizeof *n.place, "the pressure", e), b.shape.vertices};
+    if (!n.place)
+        return -1;
+    memset(n.place, -1, (size_t)n.room * sizeof *n.place);
+    for (int64_t i = 0; i < 3 * (int64_t)c->triangle_count; i++)
+        f->corner[3 * f->triangles + i] = place_of(f, &n, &b, s->corner[3 * (int64_t)c->triangle_first + i], curve);
+    f->triangles += c->triangle_count;
+    free(n.place);
+    return 0;
+}
+
+/* Room for each corner of a triangle to be a vertex. */
+static int allocate(followers *f, int64_t triangles, const tled_problem *p, err *e)
+{
+    static const char what[] = "the pressure";
+    const int64_t most = 3 * triangles, nodes = p->nodes;
+    f->rest = mem_array(most, 3 * sizeof *f->rest, what, e);
+    f->share = mem_array(most, 8 * sizeof *f->share, what, e);
+    f->share_node = mem_array(most, 8 * sizeof *f->share_node, what, e);
+    f->vertex_curve = mem_array(most, sizeof *f->vertex_curve, what, e);
+    f->corner = mem_array(most, sizeof *f->corner, what, e);
+    f->around_start = mem_array(most + 2, sizeof *f->around_start, what, e);
+    f->around = mem_array(most, sizeof *f->around, what, e);
+    f->node = mem_array(nodes, sizeof *f->node, what, e);
+    f->is_pushed = mem_array(nodes, sizeof *f->is_pushed, what, e);
+    f->pull_start = mem_array(nodes + 2, sizeof *f->pull_start, what, e);
+    f->pull = mem_array(8 * most, sizeof *f->pull, what, e);
+    f->bound = mem_array(8 * most, sizeof *f->bound, what, e);
+    f->most = mem_array(p->script->curves, 3 * sizeof *f->most, what, e);
+    return f->rest && f->share && f->share_node && f->vertex_curve && f->corner && f->around_start && f->around &&
+                   f->node && f->is_pushed && f->pull_start && f->pull && f->bound && f->most
+               ? 0
+               : -1;
+}
+
+/* Lists by what item[i] is, ascending, the i with it. start: things + 2, zeroed; its first things + 1 count. */
+static void list_by(const int32_t *item, int64_t items, int64_t things, int32_t *start, int32_t *list)
+{
+    for (int64_t i = 0; i < items; i++)
+        start[item[i] + 2]++;
+    for (int64_t n = 0; n < things; n++)
+        start[n + 2] += start[n + 1];
+    for (int64_t i = 0; i < items; i++)
+        list[start[item[i] + 1]++] = (int32_t)i;
+}
+
+static void find_most(followers *f, const script *s)
+{
+    for (int64_t i = 0; i < s->curves; i++)
+        for (int32_t k = 0; is_pressure(&s->curve[i]) && k < s->curve[i].key_count; k++)
+            f->most[3 * i] = fmax(f->most[3 * i], fabs(s->value[3 * ((int64_t)s->curve[i].key_first + k)]));
+}
+
+/* From nodes of the model to places among those with a share. */
+static int number_nodes(followers *f, const tled_problem *p, err *e)
+{
+    int32_t *place = mem_array(p->nodes, sizeof *place, "the pressure", e);
+    if (!place)
+        return -1;
+    for (int64_t i = 0; i < 8 * f->vertices; i++)
+        place[f->share_node[i]] = 1;
+    for (int64_t n = 0; n < p->nodes; n++)
+        if (place[n]) {
+            place[n] = (int32_t)f->nodes;
+            f->node[f->nodes++] = (int32_t)n;
+        }
+    for (int64_t i = 0; i < 8 * f->vertices; i++) {
+        f->share_node[i] = place[f->share_node[i]];
+        f->is_pushed[f->share_node[i]] |= p->script->curve[f->vertex_curve[i / 8]].is_region;
+    }
+    free(place);
+    return 0;
+}
+
+bool followers_push(const followers *f, int64_t node)
+{
+    int64_t low = 0, high = f ? f->nodes : 0;
+    while (low < high) {
+        const int64_t middle = low + (high - low) / 2;
+        if (f->node[middle] == node)
+            return f->is_pushed[middle];
+        if (f->node[middle] < node)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return false;
+}
+
+/* ---- bounds of the load stiffness */
+
+static double length_between(const double *a, const double *b)
+{
+    const double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    return triangle_length(way);
+}
+
+/* The shares that nodes have in a triangle's vertices: a node once. */
+typedef struct sharing {
+    int count;
+    int32_t node[24];
+    int64_t first[24];   /* of its shares, the first: an index of `share` */
+    double share[24][3]; /* in each vertex */
+} sharing;
+
+static sharing sharing_of(const followers *f, const int32_t *corner)
+{
+    sharing s = {0};
+    for (int i = 0; i < 24; i++) {
+        const int64_t at = 8 * (int64_t)corner[i / 8] + i % 8;
+        int k = 0;
+        while (k < s.count && s.node[k] != f->share_node[at])
+            k++;
+        if (k == s.count) {
+            s.node[k] = f->share_node[at];
+            s.first[k] = at;
+            s.count++;
+        }
+        s.share[k][i / 8] += f->share[at];
+    }
+    return s;
+}
+
+/* Adds a triangle's part to its nodes' rows and columns, halved. */
+static void add_bound(followers *f, const tled_problem *p, const int32_t *corner)
+{
+    const sharing s = sharing_of(f, corner);
+    const double *a = f->rest + 3 * (int64_t)corner[0];
+    const double ab = length_between(a, f->rest + 3 * (int64_t)corner[1]);
+    const double ac = length_between(a, f->rest + 3 * (int64_t)corner[2]);
+    double change[24], changes = 0, shares = 0;
+    for (int k = 0; k < s.count; k++) {
+        const double *w = s.share[k];
+        change[k] = ac * fabs(w[1] - w[0]) + ab * fabs(w[2] - w[0]);
+        changes += change[k];
+        shares += fabs(w[0]) + fabs(w[1]) + fabs(w[2]);
+    }
+    for (int k = 0; k < s.count; k++) {
+        const double *w = s.share[k];
+        const double row = (fabs(w[0]) + fabs(w[1]) + fabs(w[2])) * changes, column = shares * change[k];
+        f->bound[s.first[k]] += (row + column) / 12 / p->mass[f->node[s.node[k]]];
+    }
+}
+
+/* The largest sum of a node's bounds at these pressures, by curve. */
+static double largest_bound(const followers *f, const double *pressure)
+{
+    double largest = 0;
+    for (int64_t n = 0; n < f->nodes; n++) {
+        double sum = 0;
+        for (int32_t i = f->pull_start[n]; i < f->pull_start[n + 1]; i++)
+            sum += f->bound[f->pull[i]] * fabs(pressure[3 * (int64_t)f->vertex_curve[f->pull[i] / 8]]);
+        largest = fmax(largest, sum);
+    }
+    return largest;
+}
+
+/* How many times as long as at rest an edge is, of those that a pressure acts on; at least 1. */
+static double longest_stretch(const followers_work *w)
+{
+    const followers *f = w->f;
+    double stretch = 1;
+    for (int64_t i = 0; i < 3 * f->triangles; i++) {
+        const int64_t from = f->corner[i], to = f->corner[i % 3 == 2 ? i - 2 : i + 1];
+        const double rest = length_between(f->rest + 3 * from, f->rest + 3 * to);
+        if (rest > 0 && w->value[3 * (int64_t)f->vertex_curve[from]] != 0)
+            stretch = fmax(stretch, length_between(w->at + 3 * from, w->at + 3 * to) / rest);
+    }
+    return stretch;
+}
+
+double followers_square_at_rest(const tled_problem *p)
+{
+    return p->followers ? largest_bound(p->followers, p->followers->most) : 0;
+}
+
+double followers_step(double square, double step)
+{
+    return square > 0 ? 2 / sqrt(4 / (step * step) + square) : step;
+}
+
+/* ---- making */
+
+static int make(followers *f, const tled_problem *p, const model *m, err *e)
+{
+    const script *s = p->script;
+    for (int64_t i = 0; i < s->curves; i++)
+        if (is_pressure(&s->curve[i]) && add_curve(f, s, (int32_t)i, m, e))
+            return -1;
+    if (number_nodes(f, p, e))
+        return -1;
+    find_most(f, s);
+    list_by(f->corner, 3 * f->triangles, f->vertices, f->around_start, f->around);
+    for (int64_t i = 0; i < 3 * f->triangles; i++)
+        f->around[i] /= 3;
+    list_by(f->share_node, 8 * f->vertices, f->nodes, f->pull_start, f->pull);
+    for (int64_t t = 0; t < f->triangles; t++)
+        add_bound(f, p, f->corner + 3 * t);
+    return 0;
+}
+
+int followers_make(tled_problem *p, const model *m, err *e)
+{
+    int64_t triangles = 0;
+    for (int64_t i = 0; i < p->script->curves; i++)
+        triangles += is_pressure(&p->script->curve[i]) ? p->script->curve[i].triangle_count : 0;
+    if (!triangles)
+        return 0;
+    if (triangles > INT32_MAX / 24)
+        return err_set(e, NULL, 0, "pressure on %lld triangles; expected at most %d", (long long)triangles,
+                       INT32_MAX / 24);
+    p->followers = mem_array(1, sizeof *p->followers, "the pressure", e);
+    return p->followers && !allocate(p->followers, triangles, p, e) ? make(p->followers, p, m, e) : -1;
+}
+
+/* ---- forces */
+
+int followers_room(followers_work *w, const followers *f, err *e)
+{
+    *w = (followers_work){.f = f};
+    if (!f)
+        return 0;
+    w->moved = mem_array(f->nodes, 3 * sizeof *w->moved, "the pressure", e);
+    w->at = mem_array(f->vertices, 3 * sizeof *w->at, "the pressure", e);
+    w->force = mem_array(f->vertices, 3 * sizeof *w->force, "the pressure", e);
+    return w->moved && w->at && w->force ? 0 : -1;
+}
+
+void followers_room_free(followers_work *w)
+{
+    free(w->moved);
+    free(w->at);
+    free(w->force);
+    *w = (followers_work){.f = NULL};
+}
+
+int64_t followers_bytes(const followers *f)
+{
+    return f ? (int64_t)sizeof(double) * (3 * f->nodes + 6 * f->vertices) : 0;
+}
+
+void followers_move(followers_work *w, const double *displacement)
+{
+    for (int64_t n = 0; n < w->f->nodes; n++)
+        memcpy(w->moved + 3 * n, displacement + 3 * (int64_t)w->f->node[n], 3 * sizeof *w->moved);
+}
+
+static void place_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const followers_work *w = context;
+    const followers *f = w->f;
+    (void)chunk;
+    for (int64_t v = from; v < to; v++)
+        for (int a = 0; a < 3; a++) {
+            double moved = 0;
+            for (int k = 0; k < 8; k++)
+                moved += f->share[8 * v + k] * w->moved[3 * (int64_t)f->share_node[8 * v + k] + a];
+            w->at[3 * v + a] = f->rest[3 * v + a] + moved;
+        }
+}
+
+static void force_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const followers_work *w = context;
+    const followers *f = w->f;
+    (void)chunk;
+    for (int64_t v = from; v < to; v++) {
+        double sum[3] = {0}, normal[3];
+        for (int32_t i = f->around_start[v]; i < f->around_start[v + 1]; i++) {
+            const int32_t *corner = f->corner + 3 * (int64_t)f->around[i];
+            triangle_normal(w->at + 3 * (int64_t)corner[0], w->at + 3 * (int64_t)corner[1],
+                            w->at + 3 * (int64_t)corner[2], normal);
+            for (int a = 0; a < 3; a++)
+                sum[a] += normal[a];
+        }
+        for (int a = 0; a < 3; a++)
+            w->force[3 * v + a] = -w->value[3 * (int64_t)f->vertex_curve[v]] / 6 * sum[a];
+    }
+}
+
+void followers_press(followers_work *w, pool *threads, const double *value)
+{
+    w->value = value;
+    pool_run(threads, w->f->vertices, CHUNK, place_work, w);
+    pool_run(threads, w->f->vertices, CHUNK, force_work, w);
+}
+
+void followers_pull(const followers_work *w, int64_t i, double force[3])
+{
+    const followers *f = w->f;
+    memset(force, 0, 3 * sizeof *force);
+    for (int32_t k = f->pull_start[i]; k < f->pull_start[i + 1]; k++)
+        for (int a = 0; a < 3; a++)
+            force[a] += f->share[f->pull[k]] * w->force[3 * (int64_t)(f->pull[k] / 8) + a];
+}
+
+double followers_square(followers_work *w, pool *threads, const double *value)
+{
+    if (!w->f)
+        return 0;
+    w->value = value;
+    pool_run(threads, w->f->vertices, CHUNK, place_work, w);
+    return longest_stretch(w) * largest_bound(w->f, value);
+}

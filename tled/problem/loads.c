@@ -1,0 +1,105 @@
+#include "tled/problem/loads.h"
+
+#include "base/mem.h"
+#include "mesh/bound.h"
+#include "tled/problem/triangle.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct load {
+    int32_t node, curve;
+    double share;
+} load;
+
+typedef struct loads {
+    load *list; /* by curve */
+    int64_t count, room;
+} loads;
+
+static int add_load(loads *l, int64_t node, int64_t curve, double share, err *e)
+{
+    if (l->count >= INT32_MAX)
+        return err_set(e, NULL, 0, "forces on more than %d nodes in all", INT32_MAX);
+    if (MEM_ROOM(&l->list, &l->room, l->count + 1, "the forces", e))
+        return -1;
+    l->list[l->count++] = (load){(int32_t)node, (int32_t)curve, share};
+    return 0;
+}
+
+static int add_force(loads *l, const script *s, int64_t curve, err *e)
+{
+    const script_curve *c = &s->curve[curve];
+    for (int32_t i = 0; i < c->node_count; i++)
+        if (add_load(l, s->node[c->node_first + i], curve, 1. / c->node_count, e))
+            return -1;
+    return 0;
+}
+
+/* Adds a third of a triangle's area at rest to the nodes of each vertex. area: nodes, m2. */
+static void add_area(const bound *b, const int32_t *corner, double *area)
+{
+    double twice[3], share[8];
+    triangle_normal(b->shape.position + 3 * (int64_t)corner[0], b->shape.position + 3 * (int64_t)corner[1],
+                    b->shape.position + 3 * (int64_t)corner[2], twice);
+    const double third = triangle_length(twice) / 6;
+    for (int i = 0; i < 3; i++) {
+        const int32_t *node = b->node + 8 * (int64_t)b->element[corner[i]];
+        bound_shares(b, corner[i], share);
+        for (int k = 0; k < 8; k++)
+            area[node[k]] += third * share[k];
+    }
+}
+
+static int add_traction(loads *l, const tled_problem *p, const model *m, int64_t curve, err *e)
+{
+    const script_curve *c = &p->script->curve[curve];
+    bound b;
+    double *area = mem_array(p->nodes, sizeof *area, "the forces", e);
+    int status = area && bound_of(&b, m, c->surface, e) >= 0 ? 0 : -1;
+    for (int32_t i = 0; i < c->triangle_count && !status; i++)
+        add_area(&b, p->script->corner + 3 * (int64_t)(c->triangle_first + i), area);
+    for (int64_t n = 0; n < p->nodes && !status; n++)
+        if (area[n] != 0)
+            status = add_load(l, n, curve, area[n], e);
+    free(area);
+    return status;
+}
+
+/* Each curve's shares, listed by node in the order of the curves. */
+static int sort_loads(tled_problem *p, const loads *l, err *e)
+{
+    p->force_start = mem_array(p->nodes + 2, sizeof *p->force_start, "the forces", e);
+    p->force_curve = mem_array(l->count, sizeof *p->force_curve, "the forces", e);
+    p->force_share = mem_array(l->count, sizeof *p->force_share, "the forces", e);
+    if (!p->force_start || !p->force_curve || !p->force_share)
+        return -1;
+    /* Counts two places on, so that filling moves each start to where it belongs. */
+    for (int64_t i = 0; i < l->count; i++)
+        p->force_start[l->list[i].node + 2]++;
+    for (int64_t n = 0; n < p->nodes; n++)
+        p->force_start[n + 2] += p->force_start[n + 1];
+    for (int64_t i = 0; i < l->count; i++) {
+        const int32_t at = p->force_start[l->list[i].node + 1]++;
+        p->force_curve[at] = l->list[i].curve;
+        p->force_share[at] = l->list[i].share;
+    }
+    return 0;
+}
+
+int loads_make(tled_problem *p, const model *m, err *e)
+{
+    const script *s = p->script;
+    loads l = {.count = 0};
+    int status = 0;
+    for (int64_t c = 0; c < s->curves && !status; c++) {
+        if (s->curve[c].verb == SCRIPT_FORCE)
+            status = add_force(&l, s, c, e);
+        if (s->curve[c].verb == SCRIPT_TRACTION)
+            status = add_traction(&l, p, m, c, e);
+    }
+    if (!status)
+        status = sort_loads(p, &l, e);
+    free(l.list);
+    return status;
+}
