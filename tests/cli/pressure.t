@@ -164,6 +164,14 @@ fails 1 "no pressure on CUDA" 'the CUDA back end has no pressure on a surface; e
 check "auto" tled-run -d auto --script "$T/script" -n 1 -o /dev/null <"$T/bound"
 is "$(grep -c 'cpu (the one with pressure on a surface' "$T/stderr")" 1 "takes the processor, and says why"
 
+# Triangles that are larger than elements: their load is at few nodes.
+shell 4 4 4 0.005 1 >"$T/coarse.obj"
+sinew bind -q --unit mm "$T/coarse.obj" <"$T/bound" >"$T/two"
+printf '0 traction coarse:x1 1,0,0\n0 traction shell 1,0,0\n' >"$T/script"
+check "large triangles" tled-run -q -d cpu --script "$T/script" -n 1 -o /dev/null <"$T/two"
+is "$(grep -c "script:1: triangles of 'coarse' are up to 20 mm wide, elements 5 mm: the load acts at their corners alone" "$T/stderr") \
+$(grep -c "triangles of" "$T/stderr")" "1 1" "are warned of, and they alone"
+
 # A run continues only with the script that it began with.
 printf '0 pressure shell:z1 1\n' >"$T/one"
 (ulimit -f 160 && tled-run -q -d cpu --script "$T/one" -t 0.2 --every 0.01 --checkpoint "$T/state" -o "$T/cut" <"$T/bound" 2>"$T/said")

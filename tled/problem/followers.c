@@ -15,17 +15,19 @@ void followers_free(followers *f)
     if (!f)
         return;
     free(f->rest);
-    free(f->share);
-    free(f->share_node);
     free(f->vertex_curve);
+    free(f->share_start);
+    free(f->share_node);
+    free(f->share);
     free(f->corner);
     free(f->around_start);
     free(f->around);
     free(f->node);
     free(f->is_pushed);
     free(f->pull_start);
-    free(f->pull);
-    free(f->bound);
+    free(f->pull_vertex);
+    free(f->pull_share);
+    free(f->pull_bound);
     free(f->most);
     free(f);
 }
@@ -43,6 +45,19 @@ typedef struct numbering {
     int64_t room;
 } numbering;
 
+/* Of the vertex added last: of its element's nodes, of the model's number yet. */
+static void add_shares(followers *f, const bound *b, int32_t vertex)
+{
+    const int32_t *node = b->node + 8 * (int64_t)b->element[vertex];
+    double share[8];
+    bound_shares(b, vertex, share);
+    for (int k = 0; k < 8; k++)
+        if (share[k] != 0) {
+            f->share_node[f->shares] = node[k];
+            f->share[f->shares++] = share[k];
+        }
+}
+
 static int32_t place_of(followers *f, numbering *n, const bound *b, int32_t vertex, int32_t curve)
 {
     int32_t *place = &n->place[vertex];
@@ -50,9 +65,9 @@ static int32_t place_of(followers *f, numbering *n, const bound *b, int32_t vert
         return *place;
     *place = (int32_t)f->vertices++;
     memcpy(f->rest + 3 * (int64_t)*place, b->shape.position + 3 * (int64_t)vertex, 3 * sizeof *f->rest);
-    memcpy(f->share_node + 8 * (int64_t)*place, b->node + 8 * (int64_t)b->element[vertex], 8 * sizeof *f->share_node);
-    bound_shares(b, vertex, f->share + 8 * (int64_t)*place);
     f->vertex_curve[*place] = curve;
+    add_shares(f, b, vertex);
+    f->share_start[*place + 1] = (int32_t)f->shares;
     return *place;
 }
 
@@ -79,22 +94,30 @@ static int allocate(followers *f, int64_t triangles, const tled_problem *p, err 
     static const char what[] = "the pressure";
     const int64_t most = 3 * triangles, nodes = p->nodes;
     f->rest = mem_array(most, 3 * sizeof *f->rest, what, e);
-    f->share = mem_array(most, 8 * sizeof *f->share, what, e);
-    f->share_node = mem_array(most, 8 * sizeof *f->share_node, what, e);
     f->vertex_curve = mem_array(most, sizeof *f->vertex_curve, what, e);
+    f->share_start = mem_array(most + 1, sizeof *f->share_start, what, e);
+    f->share_node = mem_array(8 * most, sizeof *f->share_node, what, e);
+    f->share = mem_array(8 * most, sizeof *f->share, what, e);
     f->corner = mem_array(most, sizeof *f->corner, what, e);
     f->around_start = mem_array(most + 2, sizeof *f->around_start, what, e);
     f->around = mem_array(most, sizeof *f->around, what, e);
     f->node = mem_array(nodes, sizeof *f->node, what, e);
     f->is_pushed = mem_array(nodes, sizeof *f->is_pushed, what, e);
-    f->pull_start = mem_array(nodes + 2, sizeof *f->pull_start, what, e);
-    f->pull = mem_array(8 * most, sizeof *f->pull, what, e);
-    f->bound = mem_array(8 * most, sizeof *f->bound, what, e);
     f->most = mem_array(p->script->curves, 3 * sizeof *f->most, what, e);
-    return f->rest && f->share && f->share_node && f->vertex_curve && f->corner && f->around_start && f->around &&
-                   f->node && f->is_pushed && f->pull_start && f->pull && f->bound && f->most
+    return f->rest && f->vertex_curve && f->share_start && f->share_node && f->share && f->corner && f->around_start &&
+                   f->around && f->node && f->is_pushed && f->most
                ? 0
                : -1;
+}
+
+static int allocate_pulls(followers *f, err *e)
+{
+    static const char what[] = "the pressure";
+    f->pull_start = mem_array(f->nodes + 2, sizeof *f->pull_start, what, e);
+    f->pull_vertex = mem_array(f->shares, sizeof *f->pull_vertex, what, e);
+    f->pull_share = mem_array(f->shares, sizeof *f->pull_share, what, e);
+    f->pull_bound = mem_array(f->shares, sizeof *f->pull_bound, what, e);
+    return f->pull_start && f->pull_vertex && f->pull_share && f->pull_bound ? 0 : -1;
 }
 
 /* Lists by what item[i] is, ascending, the i with it. start: things + 2, zeroed; its first things + 1 count. */
@@ -121,19 +144,24 @@ static int number_nodes(followers *f, const tled_problem *p, err *e)
     int32_t *place = mem_array(p->nodes, sizeof *place, "the pressure", e);
     if (!place)
         return -1;
-    for (int64_t i = 0; i < 8 * f->vertices; i++)
+    for (int64_t i = 0; i < f->shares; i++)
         place[f->share_node[i]] = 1;
     for (int64_t n = 0; n < p->nodes; n++)
         if (place[n]) {
             place[n] = (int32_t)f->nodes;
             f->node[f->nodes++] = (int32_t)n;
         }
-    for (int64_t i = 0; i < 8 * f->vertices; i++) {
+    for (int64_t i = 0; i < f->shares; i++)
         f->share_node[i] = place[f->share_node[i]];
-        f->is_pushed[f->share_node[i]] |= p->script->curve[f->vertex_curve[i / 8]].is_region;
-    }
     free(place);
     return 0;
+}
+
+static void mark_pushed(followers *f, const script *s)
+{
+    for (int64_t v = 0; v < f->vertices; v++)
+        for (int32_t i = f->share_start[v]; i < f->share_start[v + 1]; i++)
+            f->is_pushed[f->share_node[i]] |= s->curve[f->vertex_curve[v]].is_region;
 }
 
 bool followers_push(const followers *f, int64_t node)
@@ -153,45 +181,43 @@ bool followers_push(const followers *f, int64_t node)
 
 /* ---- bounds of the load stiffness */
 
-static double length_between(const double *a, const double *b)
-{
-    const double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    return triangle_length(way);
-}
-
 /* The shares that nodes have in a triangle's vertices: a node once. */
 typedef struct sharing {
     int count;
     int32_t node[24];
-    int64_t first[24];   /* of its shares, the first: an index of `share` */
+    int64_t first[24];   /* of its shares, the first */
     double share[24][3]; /* in each vertex */
 } sharing;
+
+static void add_sharing(sharing *s, const followers *f, int64_t at, int corner)
+{
+    int k = 0;
+    while (k < s->count && s->node[k] != f->share_node[at])
+        k++;
+    if (k == s->count) {
+        s->node[k] = f->share_node[at];
+        s->first[k] = at;
+        s->count++;
+    }
+    s->share[k][corner] += f->share[at];
+}
 
 static sharing sharing_of(const followers *f, const int32_t *corner)
 {
     sharing s = {0};
-    for (int i = 0; i < 24; i++) {
-        const int64_t at = 8 * (int64_t)corner[i / 8] + i % 8;
-        int k = 0;
-        while (k < s.count && s.node[k] != f->share_node[at])
-            k++;
-        if (k == s.count) {
-            s.node[k] = f->share_node[at];
-            s.first[k] = at;
-            s.count++;
-        }
-        s.share[k][i / 8] += f->share[at];
-    }
+    for (int c = 0; c < 3; c++)
+        for (int32_t i = f->share_start[corner[c]]; i < f->share_start[corner[c] + 1]; i++)
+            add_sharing(&s, f, i, c);
     return s;
 }
 
-/* Adds a triangle's part to its nodes' rows and columns, halved. */
-static void add_bound(followers *f, const tled_problem *p, const int32_t *corner)
+/* Adds a triangle's part to its nodes' rows and columns, halved. limit: shares. */
+static void add_bound(const followers *f, const tled_problem *p, const int32_t *corner, double *limit)
 {
     const sharing s = sharing_of(f, corner);
     const double *a = f->rest + 3 * (int64_t)corner[0];
-    const double ab = length_between(a, f->rest + 3 * (int64_t)corner[1]);
-    const double ac = length_between(a, f->rest + 3 * (int64_t)corner[2]);
+    const double ab = triangle_distance(a, f->rest + 3 * (int64_t)corner[1]);
+    const double ac = triangle_distance(a, f->rest + 3 * (int64_t)corner[2]);
     double change[24], changes = 0, shares = 0;
     for (int k = 0; k < s.count; k++) {
         const double *w = s.share[k];
@@ -202,7 +228,7 @@ static void add_bound(followers *f, const tled_problem *p, const int32_t *corner
     for (int k = 0; k < s.count; k++) {
         const double *w = s.share[k];
         const double row = (fabs(w[0]) + fabs(w[1]) + fabs(w[2])) * changes, column = shares * change[k];
-        f->bound[s.first[k]] += (row + column) / 12 / p->mass[f->node[s.node[k]]];
+        limit[s.first[k]] += (row + column) / 12 / p->mass[f->node[s.node[k]]];
     }
 }
 
@@ -213,7 +239,7 @@ static double largest_bound(const followers *f, const double *pressure)
     for (int64_t n = 0; n < f->nodes; n++) {
         double sum = 0;
         for (int32_t i = f->pull_start[n]; i < f->pull_start[n + 1]; i++)
-            sum += f->bound[f->pull[i]] * fabs(pressure[3 * (int64_t)f->vertex_curve[f->pull[i] / 8]]);
+            sum += f->pull_bound[i] * fabs(pressure[3 * (int64_t)f->vertex_curve[f->pull_vertex[i]]]);
         largest = fmax(largest, sum);
     }
     return largest;
@@ -226,9 +252,9 @@ static double longest_stretch(const followers_work *w)
     double stretch = 1;
     for (int64_t i = 0; i < 3 * f->triangles; i++) {
         const int64_t from = f->corner[i], to = f->corner[i % 3 == 2 ? i - 2 : i + 1];
-        const double rest = length_between(f->rest + 3 * from, f->rest + 3 * to);
+        const double rest = triangle_distance(f->rest + 3 * from, f->rest + 3 * to);
         if (rest > 0 && w->value[3 * (int64_t)f->vertex_curve[from]] != 0)
-            stretch = fmax(stretch, length_between(w->at + 3 * from, w->at + 3 * to) / rest);
+            stretch = fmax(stretch, triangle_distance(w->at + 3 * from, w->at + 3 * to) / rest);
     }
     return stretch;
 }
@@ -245,6 +271,43 @@ double followers_step(double square, double step)
 
 /* ---- making */
 
+static void fill_pulls(followers *f, const int32_t *pull, const double *limit)
+{
+    for (int64_t i = 0; i < f->shares; i++) {
+        f->pull_share[i] = f->share[pull[i]];
+        f->pull_bound[i] = limit[pull[i]];
+    }
+}
+
+static void find_vertices(followers *f, const int32_t *pull, int32_t *vertex)
+{
+    for (int64_t v = 0; v < f->vertices; v++)
+        for (int32_t i = f->share_start[v]; i < f->share_start[v + 1]; i++)
+            vertex[i] = (int32_t)v;
+    for (int64_t i = 0; i < f->shares; i++)
+        f->pull_vertex[i] = vertex[pull[i]];
+}
+
+/* The shares once more, by node. */
+static int make_pulls(followers *f, const tled_problem *p, err *e)
+{
+    int32_t *pull = mem_array(f->shares, sizeof *pull, "the pressure", e);
+    int32_t *vertex = mem_array(f->shares, sizeof *vertex, "the pressure", e);
+    double *limit = mem_array(f->shares, sizeof *limit, "the pressure", e);
+    const int status = pull && vertex && limit && !allocate_pulls(f, e) ? 0 : -1;
+    if (!status) {
+        list_by(f->share_node, f->shares, f->nodes, f->pull_start, pull);
+        for (int64_t t = 0; t < f->triangles; t++)
+            add_bound(f, p, f->corner + 3 * t, limit);
+        find_vertices(f, pull, vertex);
+        fill_pulls(f, pull, limit);
+    }
+    free(pull);
+    free(vertex);
+    free(limit);
+    return status;
+}
+
 static int make(followers *f, const tled_problem *p, const model *m, err *e)
 {
     const script *s = p->script;
@@ -253,14 +316,12 @@ static int make(followers *f, const tled_problem *p, const model *m, err *e)
             return -1;
     if (number_nodes(f, p, e))
         return -1;
+    mark_pushed(f, s);
     find_most(f, s);
     list_by(f->corner, 3 * f->triangles, f->vertices, f->around_start, f->around);
     for (int64_t i = 0; i < 3 * f->triangles; i++)
         f->around[i] /= 3;
-    list_by(f->share_node, 8 * f->vertices, f->nodes, f->pull_start, f->pull);
-    for (int64_t t = 0; t < f->triangles; t++)
-        add_bound(f, p, f->corner + 3 * t);
-    return 0;
+    return make_pulls(f, p, e);
 }
 
 int followers_make(tled_problem *p, const model *m, err *e)
@@ -314,13 +375,14 @@ static void place_work(void *context, int64_t chunk, int64_t from, int64_t to)
     const followers_work *w = context;
     const followers *f = w->f;
     (void)chunk;
-    for (int64_t v = from; v < to; v++)
-        for (int a = 0; a < 3; a++) {
-            double moved = 0;
-            for (int k = 0; k < 8; k++)
-                moved += f->share[8 * v + k] * w->moved[3 * (int64_t)f->share_node[8 * v + k] + a];
-            w->at[3 * v + a] = f->rest[3 * v + a] + moved;
-        }
+    for (int64_t v = from; v < to; v++) {
+        double moved[3] = {0};
+        for (int32_t i = f->share_start[v]; i < f->share_start[v + 1]; i++)
+            for (int a = 0; a < 3; a++)
+                moved[a] += f->share[i] * w->moved[3 * (int64_t)f->share_node[i] + a];
+        for (int a = 0; a < 3; a++)
+            w->at[3 * v + a] = f->rest[3 * v + a] + moved[a];
+    }
 }
 
 static void force_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -352,10 +414,11 @@ void followers_press(followers_work *w, pool *threads, const double *value)
 void followers_pull(const followers_work *w, int64_t i, double force[3])
 {
     const followers *f = w->f;
-    memset(force, 0, 3 * sizeof *force);
+    double sum[3] = {0};
     for (int32_t k = f->pull_start[i]; k < f->pull_start[i + 1]; k++)
         for (int a = 0; a < 3; a++)
-            force[a] += f->share[f->pull[k]] * w->force[3 * (int64_t)(f->pull[k] / 8) + a];
+            sum[a] += f->pull_share[k] * w->force[3 * (int64_t)f->pull_vertex[k] + a];
+    memcpy(force, sum, sizeof sum);
 }
 
 double followers_square(followers_work *w, pool *threads, const double *value)

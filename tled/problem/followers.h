@@ -22,16 +22,20 @@
 
 typedef struct followers {
     int64_t vertices, triangles, nodes; /* of all curves, one curve after the other; nodes: those with a share */
+    int64_t shares;                     /* that nodes have in vertices, but for 0 */
     double *rest;                       /* vertices x 3, m; owned, as is all below */
-    double *share;                      /* vertices x 8: of its element's nodes */
-    int32_t *share_node;                /* vertices x 8: of these nodes, places in `node` */
     int32_t *vertex_curve;              /* vertices: the script's curve */
+    int32_t *share_start;               /* vertices + 1: those of vertex v are share_start[v] and on */
+    int32_t *share_node;                /* shares: a place in `node` */
+    double *share;                      /* shares */
     int32_t *corner;                    /* triangles x 3: vertices */
     int32_t *around_start, *around;     /* vertices + 1; 3 x triangles: the triangles at each vertex, ascending */
     int32_t *node;                      /* nodes: of the model, ascending */
     uint8_t *is_pushed;                 /* nodes: by more than whole surfaces, which are in balance */
-    int32_t *pull_start, *pull;         /* nodes + 1; 8 x vertices: the shares of each node, ascending */
-    double *bound;                      /* vertices x 8: 1/(s2 Pa): that share's part of its node's sums */
+    int32_t *pull_start;                /* nodes + 1: the same shares by node, then by vertex: pull_start[n] and on */
+    int32_t *pull_vertex;               /* shares */
+    double *pull_share;                 /* shares */
+    double *pull_bound;                 /* shares: 1/(s2 Pa): that share's part of its node's sums */
     double *most;                       /* the script's curves x 3, Pa: the largest pressure, then what is not read */
 } followers;
 

@@ -4,6 +4,8 @@
 #include "mesh/bound.h"
 #include "tled/problem/triangle.h"
 
+#include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,4 +104,34 @@ int loads_make(tled_problem *p, const model *m, err *e)
         status = sort_loads(p, &l, e);
     free(l.list);
     return status;
+}
+
+static double longest_edge(const surface *from, const int32_t *corner, int64_t triangles)
+{
+    double longest = 0;
+    for (int64_t i = 0; i < 3 * triangles; i++) {
+        const double *a = from->position + 3 * (int64_t)corner[i];
+        const double *b = from->position + 3 * (int64_t)corner[i % 3 == 2 ? i - 2 : i + 1];
+        longest = fmax(longest, triangle_distance(a, b));
+    }
+    return longest;
+}
+
+void loads_check(const tled_problem *p, const model *m, notes *warnings)
+{
+    const script *s = p->script;
+    const double side = fmax(p->side[0], fmax(p->side[1], p->side[2]));
+    for (int64_t i = 0; i < s->curves; i++) {
+        const script_curve *c = &s->curve[i];
+        surface from;
+        err none = {0};
+        if (!c->surface || surface_of(m, c->surface, &from, &none))
+            continue;
+        const double edge = longest_edge(&from, s->corner + 3 * (int64_t)c->triangle_first, c->triangle_count);
+        if (edge > 2 * side)
+            notes_add(warnings,
+                      "%s:%" PRId64 ": triangles of '%.100s' are up to %.3g mm wide, elements %.3g mm: the load acts "
+                      "at their corners alone; expected a finer surface",
+                      s->file, c->line, c->surface, 1e3 * edge, 1e3 * side);
+    }
 }

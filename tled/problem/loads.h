@@ -10,4 +10,7 @@
 /* Makes force_start, force_curve and force_share: by node, then in the order of the curves. -1 with e filled. */
 int loads_make(tled_problem *p, const model *m, err *e);
 
+/* Warns of surfaces under tractions and pressures whose triangles are too large: loads act at vertices alone. */
+void loads_check(const tled_problem *p, const model *m, notes *warnings);
+
 #endif

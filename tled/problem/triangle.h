@@ -1,4 +1,4 @@
-/* A triangle's normal, as long as twice its area: (b - a) x (c - a). Nothing is kept.
+/* A triangle's normal, as long as twice its area: (b - a) x (c - a); lengths. Nothing is kept.
  */
 #ifndef SINEW_TRIANGLE_H
 #define SINEW_TRIANGLE_H
@@ -16,6 +16,12 @@ static inline void triangle_normal(const double *a, const double *b, const doubl
 static inline double triangle_length(const double v[3])
 {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static inline double triangle_distance(const double *a, const double *b)
+{
+    const double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    return triangle_length(way);
 }
 
 #endif

@@ -8,6 +8,7 @@
 #include "probe/probe_carry.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/followers.h"
+#include "tled/problem/loads.h"
 #include "tled/problem/step.h"
 #include "tled/problem/support.h"
 #include "tled/run/checkpoint.h"
@@ -402,6 +403,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
         support_of(&s->problem, &s->support, e) ||
         support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;
+    loads_check(&s->problem, &s->m, &s->warnings);
     if (s->collider.poses)
         collider_join(&s->collider, &s->problem, o->repulsion);
     if (choose_rate(s, o, e))
