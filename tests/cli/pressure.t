@@ -141,6 +141,23 @@ run bound "$confined$ramp" -t 0.05
 tled-run -q -d cpu --text --script "$T/script" -t 0.05 <"$T/out" 2>"$T/stderr" | awk '/^frame 1/ { on = 1 } on' | sed -n '/^array node.disp/,$p' >"$T/parts"
 check "in two parts: the same bytes" cmp "$T/whole" "$T/parts"
 
+# Energies balance where the pressed nodes are moved too, and with a probe.
+cat >"$T/moved" <<'END'
+0 displace -1,-1,-1,1,1,0 0,0,0
+0.1 displace -1,-1,-1,1,1,0 1mm,-0.5mm,2mm
+0 pressure shell 0
+0.1 pressure shell 300
+0 pressure shell:z1 0
+0.05 pressure shell:z1 -200
+0 traction shell:x1 0,10,0
+END
+printf '0 .01 .01 .024 1 0 0 0\n.1 .01 .01 .020 1 0 0 0\n' >"$T/poses"
+tled-run -q -d cpu --script "$T/moved" -t 0.15 --log "$T/log" --log-every 0.00025 -m tissue.E=3000 -m tissue.nu=0.45 \
+    --probe sphere:8mm --poses "$T/poses" <"$T/bound" >"$T/out" 2>"$T/stderr"
+awk -F '\t' 'END { print $9, $12, $14 }' "$T/log" >"$T/work"
+is "$(awk '{ print ($1 > 1e-4 && $2 * $2 > 1e-14 && $3 < 1e-4 * $1 && $3 > -1e-4 * $1) }' "$T/work")" 1 \
+    "energies balance: work of pressures, of the probe, and what is left over: $(cat "$T/work") J"
+
 # The stable step: less where a pressure is large, and a step that is too long is refused.
 step() { # SCRIPT: the stable step at rest, ms
     printf '%s' "$1" >"$T/script"
