@@ -232,36 +232,53 @@ static void add_bound(const followers *f, const tled_problem *p, const int32_t *
     }
 }
 
-/* The largest sum of a node's bounds at these pressures, by curve. */
-static double largest_bound(const followers *f, const double *pressure)
+/* The largest sum of a node's bounds at what presses each vertex: `by_vertex`, or where that is NULL, by its curve. Both
+ * x 3, Pa, of which the first counts. */
+static double largest_bound(const followers *f, const double *by_vertex, const double *by_curve)
 {
     double largest = 0;
     for (int64_t n = 0; n < f->nodes; n++) {
         double sum = 0;
-        for (int32_t i = f->pull_start[n]; i < f->pull_start[n + 1]; i++)
-            sum += f->pull_bound[i] * fabs(pressure[3 * (int64_t)f->vertex_curve[f->pull_vertex[i]]]);
+        for (int32_t i = f->pull_start[n]; i < f->pull_start[n + 1]; i++) {
+            const int64_t v = f->pull_vertex[i];
+            sum += f->pull_bound[i] * (by_vertex ? by_vertex[3 * v] : by_curve[3 * (int64_t)f->vertex_curve[v]]);
+        }
         largest = fmax(largest, sum);
     }
     return largest;
 }
 
-/* How many times as long as at rest an edge is, of those that a pressure acts on; at least 1. */
-static double longest_stretch(const followers_work *w)
+/* How many times as long as at rest an edge of a triangle is. */
+static double stretch_of(const followers_work *w, const int32_t *corner)
 {
-    const followers *f = w->f;
-    double stretch = 1;
-    for (int64_t i = 0; i < 3 * f->triangles; i++) {
-        const int64_t from = f->corner[i], to = f->corner[i % 3 == 2 ? i - 2 : i + 1];
-        const double rest = triangle_distance(f->rest + 3 * from, f->rest + 3 * to);
-        if (rest > 0 && w->value[3 * (int64_t)f->vertex_curve[from]] != 0)
-            stretch = fmax(stretch, triangle_distance(w->at + 3 * from, w->at + 3 * to) / rest);
+    double stretch = 0;
+    for (int i = 0; i < 3; i++) {
+        const int64_t from = 3 * (int64_t)corner[i], to = 3 * (int64_t)corner[(i + 1) % 3];
+        const double rest = triangle_distance(w->f->rest + from, w->f->rest + to);
+        if (rest > 0)
+            stretch = fmax(stretch, triangle_distance(w->at + from, w->at + to) / rest);
     }
     return stretch;
 }
 
+/* In place of forces, the pressure at a vertex times the largest stretch about it: a share's part of a bound is of
+ * triangles there. */
+static void grow_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const followers_work *w = context;
+    const followers *f = w->f;
+    (void)chunk;
+    for (int64_t v = from; v < to; v++) {
+        double stretch = 0;
+        for (int32_t i = f->around_start[v]; i < f->around_start[v + 1]; i++)
+            stretch = fmax(stretch, stretch_of(w, f->corner + 3 * (int64_t)f->around[i]));
+        w->force[3 * v] = stretch * fabs(w->value[3 * (int64_t)f->vertex_curve[v]]);
+    }
+}
+
 double followers_square_at_rest(const tled_problem *p)
 {
-    return p->followers ? largest_bound(p->followers, p->followers->most) : 0;
+    return p->followers ? largest_bound(p->followers, NULL, p->followers->most) : 0;
 }
 
 double followers_step(double square, double step)
@@ -427,5 +444,6 @@ double followers_square(followers_work *w, pool *threads, const double *value)
         return 0;
     w->value = value;
     pool_run(threads, w->f->vertices, CHUNK, place_work, w);
-    return longest_stretch(w) * largest_bound(w->f, value);
+    pool_run(threads, w->f->vertices, CHUNK, grow_work, w);
+    return largest_bound(w->f, w->force, NULL);
 }

@@ -67,7 +67,8 @@ void followers_press(followers_work *w, pool *threads, const double *value);
 void followers_pull(const followers_work *w, int64_t i, double force[3]);
 
 /* 1/s2: by how much the load stiffness raises the square of the highest frequency: at the largest pressures of the
- * script, at rest; and where w->moved has the vertices, at the curves' values. f may be NULL: 0. */
+ * script, at rest; and where w->moved has the vertices, at the curves' values, which leaves no forces in w. Without
+ * followers, 0. */
 double followers_square_at_rest(const tled_problem *p);
 double followers_square(followers_work *w, pool *threads, const double *value);
 
