@@ -62,6 +62,18 @@ for model in bound bound_mesh; do
 done
 is "$(sed -n 1p "$T/stderr" | grep -c 'nothing holds the model')" 1 "a closed surface's pressure is in balance: held or not, it comes to rest"
 
+# The same of squares that nobody has cut, each corner of which gets a quarter, and on one side of triangles.
+shell 4 4 4 0.005 4 quads=1 >"$T/squares.obj"
+sinew bind -q --unit mm "$T/squares.obj" <"$T/bound" >"$T/two"
+run two '0 pressure squares 0
+0.1 pressure squares 500
+' --rest 1e-7
+near "$(column 1 "$(at 0,0,0)")" "$want" 1e-6 "of squares: J = .95"
+near "$(column 3 "$(at 0.02,0.02,0.02)")" "-$want" 1e-6 "and so at the corner across"
+run two "$symmetry"'0 traction squares:x1 502.2590,0,0
+' --rest 1e-7
+near "$(column 1 "$(at 0.02,0.02,0.02)")" 0.004 1e-5 "and a traction on them pulls it to 1.2"
+
 # Columns and bars.
 confined='0 displace -1,-1,-1,0,1,1 0,-,-
 0 displace 0.02,-1,-1,1,1,1 0,-,-

@@ -20,6 +20,7 @@ void followers_free(followers *f)
     free(f->share_node);
     free(f->share);
     free(f->corner);
+    free(f->part);
     free(f->around_start);
     free(f->around);
     free(f->node);
@@ -83,6 +84,7 @@ static int add_curve(followers *f, const script *s, int32_t curve, const model *
     memset(n.place, -1, (size_t)n.room * sizeof *n.place);
     for (int64_t i = 0; i < 3 * (int64_t)c->triangle_count; i++)
         f->corner[3 * f->triangles + i] = place_of(f, &n, &b, s->corner[3 * (int64_t)c->triangle_first + i], curve);
+    memcpy(f->part + f->triangles, s->part + c->triangle_first, (size_t)c->triangle_count * sizeof *f->part);
     f->triangles += c->triangle_count;
     free(n.place);
     return 0;
@@ -98,14 +100,15 @@ static int allocate(followers *f, int64_t triangles, const tled_problem *p, err 
     f->share_start = mem_array(most + 1, sizeof *f->share_start, what, e);
     f->share_node = mem_array(8 * most, sizeof *f->share_node, what, e);
     f->share = mem_array(8 * most, sizeof *f->share, what, e);
+    f->part = mem_array(triangles, sizeof *f->part, what, e);
     f->corner = mem_array(most, sizeof *f->corner, what, e);
     f->around_start = mem_array(most + 2, sizeof *f->around_start, what, e);
     f->around = mem_array(most, sizeof *f->around, what, e);
     f->node = mem_array(nodes, sizeof *f->node, what, e);
     f->is_pushed = mem_array(nodes, sizeof *f->is_pushed, what, e);
     f->most = mem_array(p->script->curves, 3 * sizeof *f->most, what, e);
-    return f->rest && f->vertex_curve && f->share_start && f->share_node && f->share && f->corner && f->around_start &&
-                   f->around && f->node && f->is_pushed && f->most
+    return f->rest && f->vertex_curve && f->share_start && f->share_node && f->share && f->corner && f->part &&
+                   f->around_start && f->around && f->node && f->is_pushed && f->most
                ? 0
                : -1;
 }
@@ -212,8 +215,9 @@ static sharing sharing_of(const followers *f, const int32_t *corner)
 }
 
 /* Adds a triangle's part to its nodes' rows and columns, halved. limit: shares. */
-static void add_bound(const followers *f, const tled_problem *p, const int32_t *corner, double *limit)
+static void add_bound(const followers *f, const tled_problem *p, int64_t triangle, double *limit)
 {
+    const int32_t *corner = f->corner + 3 * triangle;
     const sharing s = sharing_of(f, corner);
     const double *a = f->rest + 3 * (int64_t)corner[0];
     const double ab = triangle_distance(a, f->rest + 3 * (int64_t)corner[1]);
@@ -228,12 +232,12 @@ static void add_bound(const followers *f, const tled_problem *p, const int32_t *
     for (int k = 0; k < s.count; k++) {
         const double *w = s.share[k];
         const double row = (fabs(w[0]) + fabs(w[1]) + fabs(w[2])) * changes, column = shares * change[k];
-        limit[s.first[k]] += (row + column) / 12 / p->mass[f->node[s.node[k]]];
+        limit[s.first[k]] += f->part[triangle] * (row + column) / 12 / p->mass[f->node[s.node[k]]];
     }
 }
 
-/* The largest sum of a node's bounds at what presses each vertex: `by_vertex`, or where that is NULL, by its curve. Both
- * x 3, Pa, of which the first counts. */
+/* The largest sum of a node's bounds at what presses each vertex: `by_vertex`, or where that is NULL, by its curve.
+ * Both x 3, Pa, of which the first counts. */
 static double largest_bound(const followers *f, const double *by_vertex, const double *by_curve)
 {
     double largest = 0;
@@ -315,7 +319,7 @@ static int make_pulls(followers *f, const tled_problem *p, err *e)
     if (!status) {
         list_by(f->share_node, f->shares, f->nodes, f->pull_start, pull);
         for (int64_t t = 0; t < f->triangles; t++)
-            add_bound(f, p, f->corner + 3 * t, limit);
+            add_bound(f, p, t, limit);
         find_vertices(f, pull, vertex);
         fill_pulls(f, pull, limit);
     }
@@ -414,7 +418,7 @@ static void force_work(void *context, int64_t chunk, int64_t from, int64_t to)
             triangle_normal(w->at + 3 * (int64_t)corner[0], w->at + 3 * (int64_t)corner[1],
                             w->at + 3 * (int64_t)corner[2], normal);
             for (int a = 0; a < 3; a++)
-                sum[a] += normal[a];
+                sum[a] += f->part[f->around[i]] * normal[a];
         }
         for (int a = 0; a < 3; a++)
             w->force[3 * v + a] = -w->value[3 * (int64_t)f->vertex_curve[v]] / 6 * sum[a];

@@ -29,6 +29,7 @@ typedef struct followers {
     int32_t *share_node;                /* shares: a place in `node` */
     double *share;                      /* shares */
     int32_t *corner;                    /* triangles x 3: vertices */
+    double *part;                       /* triangles: of each, which counts (script.h) */
     int32_t *around_start, *around;     /* vertices + 1; 3 x triangles: the triangles at each vertex, ascending */
     int32_t *node;                      /* nodes: of the model, ascending */
     uint8_t *is_pushed;                 /* nodes: by more than whole surfaces, which are in balance */

@@ -39,12 +39,12 @@ static int add_force(loads *l, const script *s, int64_t curve, err *e)
 }
 
 /* Adds a third of a triangle's area at rest to the nodes of each vertex. area: nodes, m2. */
-static void add_area(const bound *b, const int32_t *corner, double *area)
+static void add_area(const bound *b, const int32_t *corner, double part, double *area)
 {
     double twice[3], share[8];
     triangle_normal(b->shape.position + 3 * (int64_t)corner[0], b->shape.position + 3 * (int64_t)corner[1],
                     b->shape.position + 3 * (int64_t)corner[2], twice);
-    const double third = triangle_length(twice) / 6;
+    const double third = part * triangle_length(twice) / 6;
     for (int i = 0; i < 3; i++) {
         const int32_t *node = b->node + 8 * (int64_t)b->element[corner[i]];
         bound_shares(b, corner[i], share);
@@ -60,7 +60,8 @@ static int add_traction(loads *l, const tled_problem *p, const model *m, int64_t
     double *area = mem_array(p->nodes, sizeof *area, "the forces", e);
     int status = area && bound_of(&b, m, c->surface, e) >= 0 ? 0 : -1;
     for (int32_t i = 0; i < c->triangle_count && !status; i++)
-        add_area(&b, p->script->corner + 3 * (int64_t)(c->triangle_first + i), area);
+        add_area(&b, p->script->corner + 3 * (int64_t)(c->triangle_first + i), p->script->part[c->triangle_first + i],
+                 area);
     for (int64_t n = 0; n < p->nodes && !status; n++)
         if (area[n] != 0)
             status = add_load(l, n, curve, area[n], e);

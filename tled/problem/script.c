@@ -23,6 +23,7 @@ void script_free(script *s)
     free(s->value);
     free(s->node);
     free(s->corner);
+    free(s->part);
     free(s->file);
     *s = (script){0};
 }

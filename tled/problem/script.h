@@ -42,9 +42,10 @@ typedef struct script {
     double *value;   /* keys x 3 */
     int32_t *node;   /* a component of a node is displaced by one curve at most */
     int32_t *corner; /* triangles x 3: vertices of the curve's surface, counter-clockwise from outside */
+    double *part;    /* triangles: .5 for those of a convex quadrilateral, which is cut both ways; else 1 */
     char *file;      /* the name of the file read, owned; NULL: none was */
     int64_t curves, keys, nodes, triangles;
-    int64_t curve_capacity, time_capacity, value_capacity, node_capacity, corner_capacity;
+    int64_t curve_capacity, time_capacity, value_capacity, node_capacity, corner_capacity, part_capacity;
 } script;
 
 void script_free(script *s);

@@ -3,6 +3,7 @@
 #include "mesh/bound.h"
 #include "surface/triangulate.h"
 #include "tled/problem/script.h"
+#include "tled/problem/triangle.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -92,17 +93,46 @@ static bool is_in_box(const picker *p, const int32_t *vertex, const int32_t *tri
     return true;
 }
 
-static int add_triangle(script *s, const int32_t *vertex, const int32_t *triangle, err *e)
+static int add_triangle(script *s, const int32_t *vertex, const int32_t *triangle, double part, err *e)
 {
     if (s->triangles >= INT32_MAX / 8)
         return err_set(e, NULL, 0, "the script's targets have more than %d triangles in all", INT32_MAX / 8);
-    if (mem_grow(&s->corner, &s->corner_capacity, s->triangles + 1, 3 * sizeof *s->corner, "the script's triangles", e))
+    if (mem_grow(&s->corner, &s->corner_capacity, s->triangles + 1, 3 * sizeof *s->corner, "the script's triangles",
+                 e) ||
+        mem_grow(&s->part, &s->part_capacity, s->triangles + 1, sizeof *s->part, "the script's triangles", e))
         return -1;
+    s->part[s->triangles] = part;
     for (int i = 0; i < 3; i++)
         s->corner[3 * s->triangles + i] = vertex[triangle[i]];
     s->triangles++;
     s->curve[s->curves - 1].triangle_count++;
     return 0;
+}
+
+static int add_triangles(picker *p, const int32_t *vertex, const int32_t *cut, int64_t count, double part, err *e)
+{
+    for (int64_t t = 0; t < count; t++)
+        if (is_in_box(p, vertex, cut + 3 * t) && add_triangle(p->s, vertex, cut + 3 * t, part, e))
+            return -1;
+    return 0;
+}
+
+/* A quadrilateral cut by one diagonal and by the other. */
+static const int32_t both_ways[12] = {0, 1, 2, 0, 2, 3, 0, 1, 3, 1, 2, 3};
+
+/* Whether its corners all turn one way. */
+static bool is_convex(const surface *from, const int32_t *vertex)
+{
+    double first[3], other[3];
+    bool convex = true;
+    for (int i = 0; i < 4; i++) {
+        const int32_t *corner = both_ways + 3 * i;
+        triangle_normal(from->position + 3 * (int64_t)vertex[corner[0]],
+                        from->position + 3 * (int64_t)vertex[corner[1]],
+                        from->position + 3 * (int64_t)vertex[corner[2]], i ? other : first);
+        convex &= !i || first[0] * other[0] + first[1] * other[1] + first[2] * other[2] > 0;
+    }
+    return convex;
 }
 
 static int add_face(picker *p, int64_t face, err *e)
@@ -112,14 +142,13 @@ static int add_face(picker *p, int64_t face, err *e)
     const int32_t *vertex = from->vertex + from->start[face];
     if (count < 3 || (p->group && !surface_in_group(from->group_name[from->group[face]], p->group)))
         return 0;
+    if (count == 4 && is_convex(from, vertex))
+        return add_triangles(p, vertex, both_ways, 4, .5, e);
     if (3 * count > p->room && mem_grow(&p->cut, &p->room, 3 * count, sizeof *p->cut, "a polygon", e))
         return -1;
     if (triangulate(from->position, vertex, count, p->cut, e))
         return -1;
-    for (int64_t t = 0; t < count - 2; t++)
-        if (is_in_box(p, vertex, p->cut + 3 * t) && add_triangle(p->s, vertex, p->cut + 3 * t, e))
-            return -1;
-    return 0;
+    return add_triangles(p, vertex, p->cut, count - 2, 1, e);
 }
 
 /* Coordinates are products and sums with roundings. */
@@ -149,7 +178,7 @@ static int no_triangle(const picker *p, const keyfile *k, err *e)
 
 typedef struct edge {
     int32_t low, high; /* the first of the vertices at each place */
-    int32_t sense;     /* 1: from low to high */
+    int32_t sense;     /* 2: from low to high, 1 in a triangle that counts by half; -2, -1: back */
 } edge;
 
 typedef struct place {
@@ -195,15 +224,16 @@ static int weld_vertices(const surface *s, int32_t *weld, err *e)
     return 0;
 }
 
-static int64_t list_edges(const int32_t *corner, int64_t triangles, const int32_t *weld, edge *list)
+static int64_t list_edges(const int32_t *corner, const double *part, int64_t triangles, const int32_t *weld, edge *list)
 {
     int64_t count = 0;
     for (int64_t i = 0; i < 3 * triangles; i++) {
+        const int32_t sense = (int32_t)(2 * part[i / 3]);
         const int32_t from = weld[corner[i]], to = weld[corner[i % 3 == 2 ? i - 2 : i + 1]];
         if (from < to)
-            list[count++] = (edge){from, to, 1};
+            list[count++] = (edge){from, to, sense};
         else if (from > to)
-            list[count++] = (edge){to, from, -1};
+            list[count++] = (edge){to, from, -sense};
     }
     return count;
 }
@@ -222,13 +252,13 @@ static int64_t count_open(const edge *list, int64_t count)
 }
 
 /* How many edges of these triangles are open, or -1 with e filled. */
-static int64_t find_open(const surface *s, const int32_t *corner, int64_t triangles, err *e)
+static int64_t find_open(const surface *s, const int32_t *corner, const double *part, int64_t triangles, err *e)
 {
     int64_t open = -1;
     int32_t *weld = mem_array(s->vertices, sizeof *weld, "the vertices", e);
     edge *list = weld ? mem_array(3 * triangles, sizeof *list, "the edges", e) : NULL;
     if (list && !weld_vertices(s, weld, e)) {
-        const int64_t count = list_edges(corner, triangles, weld, list);
+        const int64_t count = list_edges(corner, part, triangles, weld, list);
         qsort(list, (size_t)count, sizeof *list, compare_edges);
         open = count_open(list, count);
     }
@@ -239,7 +269,8 @@ static int64_t find_open(const surface *s, const int32_t *corner, int64_t triang
 
 static int check_closed(const script *s, const script_curve *c, const surface *from, const keyfile *k, err *e)
 {
-    const int64_t open = find_open(from, s->corner + 3 * (int64_t)c->triangle_first, c->triangle_count, e);
+    const int64_t open =
+        find_open(from, s->corner + 3 * (int64_t)c->triangle_first, s->part + c->triangle_first, c->triangle_count, e);
     if (open > 0)
         return keyfile_error(k, e,
                              "surface '%.200s' is not closed: %" PRId64 " open edge%s; expected each edge between two "
