@@ -1,4 +1,4 @@
-# A block of nx x ny x nz elements of side h (m) as a model in text, without voxelise: corner at the origin.
+# A block of nx x ny x nz elements of side h (m), or of sides hx, hy, hz, as a model in text, without voxelise: corner at the origin.
 #   held    low: nodes at x = 0 are rigid, of surface skull_left; top: those of the highest z, of skull_top; else none
 #   muscle  1: it is one volume muscle_all, fibres along x; else skin
 #   E nu    of its material, tissue (default 3000, 0.45)
@@ -9,14 +9,17 @@ function column(name, type, unit, value) {
 BEGIN {
     if (E == "") E = 3000
     if (nu == "") nu = 0.45
+    if (hx == "") hx = h
+    if (hy == "") hy = h
+    if (hz == "") hz = h
     nodes = (nx + 1) * (ny + 1) * (nz + 1)
     elements = nx * ny * nz
     print "%sinew 1 text\nmeta source.unit \"m\"\nmeta lattice.origin \"0 0 0\""
-    printf "meta lattice.spacing \"%.17g %.17g %.17g\"\n", h, h, h
+    printf "meta lattice.spacing \"%.17g %.17g %.17g\"\n", hx, hy, hz
     print "axis node " nodes "\naxis element " elements "\naxis volume 1\naxis material 1\naxis anchor 2"
     print "array node.position f64 m node 3"
     for (k = 0; k <= nz; k++) for (j = 0; j <= ny; j++) for (i = 0; i <= nx; i++) {
-        printf "%.17g %.17g %.17g\n", i * h, j * h, k * h
+        printf "%.17g %.17g %.17g\n", i * hx, j * hy, k * hz
         hold[n++] = held == "low" && i == 0 ? 0 : held == "top" && k == nz ? 1 : -1
     }
     print "array node.rigid u8 1 node 1"
