@@ -146,7 +146,7 @@ same: all
 	tests/same $(BIN) $(WITH)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction compare-msds
+.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction bench-accuracy compare-msds
 BENCHES = voxelise geometry tled msds msds_card images slice
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
@@ -199,6 +199,11 @@ compare-msds: all
 # No time, but how fast models converge, by centres and by shares; it takes many minutes, and is no part of bench.
 bench-fraction: all
 	@tests/bench/fraction $(BIN) $(BENCH_FACE)
+# Error against wall time beside CalculiX: ten minutes on two quiet processors, and so no part of bench; a table and a figure in out.
+bench-accuracy: all
+	@mkdir -p out
+	@tests/bench/accuracy $(BIN) $(shell nproc) | tee out/accuracy.csv
+	@awk -f tests/bench/accuracy_svg.awk out/accuracy.csv >out/accuracy.svg
 
 include tests/gate/gate.mk
 
@@ -355,6 +360,7 @@ help:
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
+	'make bench-accuracy  error against wall time, beside CalculiX; out/accuracy.csv and out/accuracy.svg' \
 	'make html         set-up, and the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make deb          set-up, and a Debian package of what make install installs, into out/' \

@@ -27,9 +27,29 @@ BEGIN {
         line = ++element
         for (d = 0; d < 2; d++) line = line ", " vertex(side, i, j, k + d) ", " vertex(side, i + 1, j, k + d) ", " vertex(side, i + 1, j + 1, k + d) ", " vertex(side, i, j + 1, k + d)
         elements = elements line "\n"
+        if (k == 0) quads = quads vertex(side, i, j, 0) " " vertex(side, i, j + 1, 0) " " vertex(side, i + 1, j + 1, 0) " " vertex(side, i + 1, j, 0) " "
+    }
+    if (obj) { # four triangles an element, about its middle, so that its corners bear alike
+        n = split(quads, word, " ")
+        for (c = 1; c <= count; c++) if (c in inner) { printf "v %.15g %.15g %.15g\n", x[c], y[c], z[c]; number[c] = ++vertices }
+        for (q = 0; q < n; q += 4) {
+            mx = my = mz = 0
+            for (i = 1; i <= 4; i++) { c = word[q + i]; mx += x[c] / 4; my += y[c] / 4; mz += z[c] / 4 }
+            printf "v %.15g %.15g %.15g\n", mx, my, mz
+        }
+        print "g inner"
+        for (q = 0; q < n; q += 4) {
+            middle = vertices + q / 4 + 1
+            for (i = 1; i <= 4; i++) print "f", number[word[q + i]], number[word[q + i % 4 + 1]], middle
+        }
+        exit
     }
     if (script) {
         print "0 displace 0,0,0,0," b "," b " 0,-,-\n0 displace 0,0,0," b ",0," b " -,0,-\n0 displace 0,0,0," b "," b ",0 -,-,0"
+        if (pressure) {
+            printf "0 pressure inner:inner 0\n%g pressure inner:inner %.9g\n%g pressure inner:inner %.9g\n", ramp, pressure, late, pressure
+            exit
+        }
         for (c = 1; c <= count; c++) if (c in inner) { key_of(0, c, 0); key_of(ramp, c, stretch - 1); key_of(late, c, stretch - 1) }
         exit
     }
