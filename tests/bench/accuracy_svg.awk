@@ -40,7 +40,7 @@ BEGIN {
 }
 END {
     width = panels * (wide + gap) + 20
-    height = top + high + 60 + 18 * int((lines + 2) / 3)
+    height = top + high + 60 + 18 * int((lines + panels - 1) / panels)
     printf "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"12\">\n", width, height
     printf "<title>Error against wall time: %d problems, %d programs</title>\n<rect width=\"%d\" height=\"%d\" fill=\"white\"/>\n", panels, lines, width, height
     for (p = 1; p <= panels; p++) {
@@ -59,8 +59,8 @@ END {
         }
     }
     for (s = 1; s <= lines; s++) {
-        left = gap + ((s - 1) % 3) * (wide + gap)
-        y = top + high + 58 + 18 * int((s - 1) / 3)
+        left = gap + ((s - 1) % panels) * (wide + gap)
+        y = top + high + 58 + 18 * int((s - 1) / panels)
         printf "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n", left, y - 4, colours[s]
         text(left + 10, y, label[s], "")
     }
