@@ -20,7 +20,7 @@ CLANG_FORMAT ?= clang-format
 SECONDS ?= 5
 # Tests that do much more where SINEW_LONG is set: make check-all runs those of SLOW so, which take at most a few minutes each then, and
 # make soak those of SOAK, which take longer.
-SLOW = tests/cli/voxelise_exact.t $(UNIT_TEST)voxelise_scan $(UNIT_TEST)voxelise_inside $(UNIT_TEST)checkpoint \
+SLOW = tests/cli/voxelise_exact.t tests/cli/element.t $(UNIT_TEST)voxelise_scan $(UNIT_TEST)voxelise_inside $(UNIT_TEST)checkpoint \
 	$(addprefix tests/cli/,calculix.t conforming.t killed.t msds-long.t readme.t)
 SOAK = $(UNIT_TEST)tled_emulated $(addprefix tests/cli/,calls.t faults.t memory.t restart.t streams.t threads.t)
 UNIT_TEST = $(BUILD)/tests/unit/test_

@@ -2,6 +2,7 @@
 
 #include "mesh/hexahedron.h"
 #include "mesh/lattice.h"
+#include "model/hourglass_text.h"
 #include "model/materials.h"
 #include "physics/element_any.h"
 
@@ -15,7 +16,8 @@ typedef struct view {
     const double *rest, *u;
     bool is_lattice; /* all are boxes of `side` */
     double side[3];
-    double kappa;
+    hourglass_control control;
+    bool is_old; /* of a release whose stiffness was kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8 */
 } view;
 
 static element_modes modes_of(const view *v, int64_t element, int axis)
@@ -27,15 +29,16 @@ static element_modes modes_of(const view *v, int64_t element, int axis)
 }
 
 /* Of an element that is no box: its shape, and sum(B^2), 1/m2. */
-static element_any shape_of(const view *v, int64_t element, double *squares)
+static element_any shape_of(const view *v, int64_t element, const material *of, double *squares)
 {
     element_any s;
-    double at[24], b[24], slope[21], twist[12];
+    double at[24], b[24], slope[21], twist[12], basis[9];
     for (int i = 0; i < 24; i++)
         at[i] = v->rest[3 * (int64_t)v->node[8 * element + i / 3] + i % 3] -
                 v->rest[3 * (int64_t)v->node[8 * element] + i % 3];
     s.volume = hexahedron_mean(at, b);
     hexahedron_modes(at, b, slope, twist);
+    hexahedron_basis(at, basis);
     for (int m = 0; m < ELEMENT_MODES; m++)
         s.slope[m] = (element_vector){slope[3 * m], slope[3 * m + 1], slope[3 * m + 2]};
     for (int g = 0; g < ELEMENT_TWISTS; g++)
@@ -43,6 +46,9 @@ static element_any shape_of(const view *v, int64_t element, double *squares)
     *squares = 0;
     for (int i = 0; i < 24; i++)
         *squares += b[i] * b[i];
+    s.held.basis =
+        (element_tensor){basis[0], basis[1], basis[2], basis[3], basis[4], basis[5], basis[6], basis[7], basis[8]};
+    hourglass_forms(material_mu(of), material_bulk(of), s.volume, basis, s.held.hold);
     return s;
 }
 
@@ -56,26 +62,66 @@ static double material_energy(const material *of, element_tensor h)
     return form_energy(f == FORM_LINEAR ? FORM_NEO_HOOKEAN : f, h, c);
 }
 
+/* The numbers by which modes are held. */
+static void hold_of(const view *v, double mu, double bulk, double volume, double squares, double to[HOURGLASS_NUMBERS])
+{
+    const double wave = bulk + 4. / 3 * mu;
+    memset(to, 0, HOURGLASS_NUMBERS * sizeof *to);
+    if (v->control.kind == HOURGLASS_PHYSICAL)
+        hourglass_moduli(mu, bulk, to);
+    else
+        to[HOURGLASS_K] = hourglass_stiffness(v->control.kappa, mu, volume, squares);
+    if (v->is_old && wave < 11 * mu)
+        to[HOURGLASS_K] *= wave / (11 * mu);
+}
+
 static void add_element(const view *v, int64_t element, const material *of, double fraction, energy *to)
 {
     element_modes x = modes_of(v, element, 0), y = modes_of(v, element, 1), z = modes_of(v, element, 2);
     const double *side = v->side;
     const double mu = material_mu(of), bulk = material_bulk(of);
-    double volume = side[0] * side[1] * side[2], k, squares;
+    double volume = side[0] * side[1] * side[2], hold[HOURGLASS_NUMBERS], squares;
     element_tensor h;
+    hourglass_force force;
+    hourglass_modes m;
     if (v->is_lattice) {
-        h = element_gradient(x, y, z, element_box(side[0], side[1], side[2]).slope);
-        k = element_hourglass(v->kappa, mu, bulk, side[0], side[1], side[2]);
+        const element_shape box = element_box(side[0], side[1], side[2]);
+        hold_of(v, mu, bulk, volume, hourglass_squares(side), hold);
+        h = element_gradient(x, y, z, box.slope);
+        m = element_hourglass_modes(x, y, z);
+        force = hourglass_of(v->control.kind, m, h, box, hold);
     } else {
-        const element_any any = shape_of(v, element, &squares);
-        h = element_any_twist(&any, &x, &y, &z);
+        const element_any any = shape_of(v, element, of, &squares);
         volume = any.volume;
-        k = v->kappa * element_hourglass_modulus(mu, bulk) * volume * squares / 8;
+        hold_of(v, mu, bulk, volume, squares, hold);
+        h = element_any_twist(&any, &x, &y, &z);
+        m = element_hourglass_modes(x, y, z);
+        force = element_any_hourglass(v->control.kind, m, h, &any, hold);
     }
     to->scale += fraction * volume * mu;
     to->strain += fraction * volume * material_energy(of, h);
-    to->hourglass +=
-        fraction * (element_hourglass_energy(x, k) + element_hourglass_energy(y, k) + element_hourglass_energy(z, k));
+    to->hourglass += fraction * hourglass_dot(&force.f, &m) / 2;
+}
+
+/* How the run that wrote the frames held hourglass modes: hourglass.control, or hourglass.kappa of older releases. */
+static int control_of(view *v, const model *m, err *e)
+{
+    const char *control = model_meta_of(m, "hourglass.control");
+    if (control && hourglass_read(control, &v->control))
+        return err_set(e, NULL, 0, "hourglass.control holds '%.60s'; expected physical or isotropic:KAPPA", control);
+    if (control)
+        return 0;
+    if (!model_meta_of(m, "hourglass.kappa"))
+        return err_set(e, NULL, 0,
+                       "hourglass energy is not known: the model has no metadata hourglass.control; it comes from "
+                       "tled-run");
+    v->is_old = true;
+    v->control.kind = HOURGLASS_ISOTROPIC;
+    if (model_meta_numbers(m, "hourglass.kappa", &v->control.kappa, 1, e))
+        return -1;
+    if (!(v->control.kappa >= 0 && isfinite(v->control.kappa)))
+        return err_set(e, NULL, 0, "hourglass.kappa holds %g; expected a finite number, at least 0", v->control.kappa);
+    return 0;
 }
 
 static int view_of(view *v, const model *m, const frame *f, err *e)
@@ -93,14 +139,8 @@ static int view_of(view *v, const model *m, const frame *f, err *e)
         return err_set(e, NULL, 0,
                        "hourglass energy is for hexahedra only, and these elements have %d nodes; expected 8",
                        (int)node->columns);
-    if (!model_meta_of(m, "hourglass.kappa"))
-        return err_set(e, NULL, 0,
-                       "hourglass energy is not known: the model has no metadata hourglass.kappa; it comes from "
-                       "tled-run");
-    if (model_meta_numbers(m, "hourglass.kappa", &v->kappa, 1, e) || (v->is_lattice && lattice_of(m, &l, e)))
+    if (control_of(v, m, e) || (v->is_lattice && lattice_of(m, &l, e)))
         return -1;
-    if (!(v->kappa >= 0 && isfinite(v->kappa)))
-        return err_set(e, NULL, 0, "hourglass.kappa holds %g; expected a finite number, at least 0", v->kappa);
     memcpy(v->side, l.spacing, sizeof v->side);
     return 0;
 }

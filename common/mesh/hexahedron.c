@@ -204,3 +204,13 @@ void hexahedron_modes(const double *at, const double *b, double *slope, double *
                 twist[3 * (m - 3) + i] = turn;
         }
 }
+
+void hexahedron_basis(const double *at, double basis[9])
+{
+    for (int i = 0; i < 9; i++) {
+        double sum = 0;
+        for (int c = 0; c < 8; c++)
+            sum += hexahedron_sign(i % 3, c) * at[3 * c + i / 3];
+        basis[i] = sum / 8;
+    }
+}

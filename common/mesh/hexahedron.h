@@ -28,6 +28,9 @@ double hexahedron_mean(const double *at, double *b);
 /* The sign of a mode (x, y, z, xy, yz, zx, xyz) at a corner. */
 double hexahedron_sign(int mode, int corner);
 
+/* dX/dxi at the centre, m: a row a component, a column an axis, xi from -1 to 1. */
+void hexahedron_basis(const double *at, double basis[9]);
+
 /* What element_any.h takes of them: the slopes of the modes (7 x 3, 1/m) and the twists of the last four (4 x 3, m). */
 void hexahedron_modes(const double *at, const double *b, double *slope, double *twist);
 

@@ -11,6 +11,7 @@
 #define SINEW_ELEMENT_H
 
 #include "physics/form_maths.h"
+#include "physics/hourglass.h"
 
 /* One component of a vector field at the eight corners, and all three. */
 typedef struct element_corners {
@@ -25,14 +26,9 @@ typedef struct element_modes {
     real x, y, z, xy, yz, zx, xyz;
 } element_modes;
 
-/* The box: 1/(4 h) (1/m) and V/(4 h) (m2) along each axis. */
-typedef struct element_shape {
-    element_vector slope, area;
-} element_shape;
-
-/* The coefficients of a form (Pa); k (N/m) of every hourglass mode. */
+/* The coefficients of a form (Pa); what holds the hourglass modes, by its kind (hourglass.h). */
 typedef struct element_law {
-    real c[FORM_NUMBERS], hourglass;
+    real c[FORM_NUMBERS], hourglass[HOURGLASS_NUMBERS];
 } element_law;
 
 /* Unit direction at rest, and the active stress a s (Pa): level times peak. */
@@ -40,30 +36,6 @@ typedef struct element_fibre {
     element_vector along;
     real tension;
 } element_fibre;
-
-ELEMENT_FUNCTION element_shape element_box(double hx, double hy, double hz)
-{
-    element_shape s = {{real_of(1 / (4 * hx)), real_of(1 / (4 * hy)), real_of(1 / (4 * hz))},
-                       {real_of(hy * hz / 4), real_of(hz * hx / 4), real_of(hx * hy / 4)}};
-    return s;
-}
-
-/* min(lambda + 2 mu, 11 mu), lambda + 2 mu = K + 4/3 mu (Pa): the modulus that hourglass modes are held by. With lambda
- * + 2 mu alone they grow stiff with K, and an element locks in bending toward nu = .5, as bending is what these modes
- * are. The two are the same at nu = .45, where rounding is not to decide: up to there it is lambda + 2 mu to the last
- * bit. */
-ELEMENT_FUNCTION double element_hourglass_modulus(double mu, double bulk)
-{
-    double wave = bulk + 4. / 3 * mu, most = 11 * mu;
-    return wave > most * (1 + 1e-12) ? most : wave;
-}
-
-/* k = kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8, the sum over all corners and axes: sum(B^2) = sum(1/h^2) / 2. */
-ELEMENT_FUNCTION double element_hourglass(double kappa, double mu, double bulk, double hx, double hy, double hz)
-{
-    double squares = (1 / (hx * hx) + 1 / (hy * hy) + 1 / (hz * hz)) / 2;
-    return kappa * element_hourglass_modulus(mu, bulk) * hx * hy * hz * squares / 8;
-}
 
 /* The modes of one component: sums and differences along x, then y, then z. */
 ELEMENT_FUNCTION element_modes element_modes_of(element_corners u)
@@ -138,17 +110,24 @@ ELEMENT_FUNCTION element_tensor element_active(element_tensor h, element_fibre f
     return p;
 }
 
-/* One component of f_a = V P B_a + k sum_g gamma_g (gamma_g . u); px, py, pz: its row of P. */
-ELEMENT_FUNCTION element_corners element_gather(element_modes u, real px, real py, real pz, element_vector area, real k)
+ELEMENT_FUNCTION hourglass_modes element_hourglass_modes(element_modes x, element_modes y, element_modes z)
 {
-    element_modes f = {px * area.x, py * area.y, pz * area.z, k * u.xy, k * u.yz, k * u.zx, k * u.xyz};
+    hourglass_modes m = {{x.xy, y.xy, z.xy}, {x.yz, y.yz, z.yz}, {x.zx, y.zx, z.zx}, {x.xyz, y.xyz, z.xyz}};
+    return m;
+}
+
+/* One component of f_a = V P B_a + sum_g gamma_g f_g; px, py, pz: its row of P; the others: of its hourglass forces. */
+ELEMENT_FUNCTION element_corners element_gather(real px, real py, real pz, element_vector area, real xy, real yz,
+                                                real zx, real xyz)
+{
+    element_modes f = {px * area.x, py * area.y, pz * area.z, xy, yz, zx, xyz};
     return element_corners_of(f);
 }
 
 /* As element_force, with a second fibre. */
-ELEMENT_FUNCTION element_field element_force_of_two(form f, element_field u, element_shape shape, element_law law,
-                                                    element_fibre fibre, int is_active, element_fibre second,
-                                                    int is_second_active)
+ELEMENT_FUNCTION element_field element_force_of_two(form f, hourglass_kind kind, element_field u, element_shape shape,
+                                                    element_law law, element_fibre fibre, int is_active,
+                                                    element_fibre second, int is_second_active)
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_gradient(x, y, z, shape.slope);
@@ -157,24 +136,22 @@ ELEMENT_FUNCTION element_field element_force_of_two(form f, element_field u, ele
         p = element_sum(p, element_active(h, fibre));
     if (is_second_active)
         p = element_sum(p, element_active(h, second));
-    element_field force = {element_gather(x, p.xx, p.xy, p.xz, shape.area, law.hourglass),
-                           element_gather(y, p.yx, p.yy, p.yz, shape.area, law.hourglass),
-                           element_gather(z, p.zx, p.zy, p.zz, shape.area, law.hourglass)};
+    const hourglass_force held = hourglass_of(kind, element_hourglass_modes(x, y, z), h, shape, law.hourglass);
+    const hourglass_modes *m = &held.f;
+    if (kind == HOURGLASS_PHYSICAL)
+        p = element_sum(p, held.p);
+    element_field force = {element_gather(p.xx, p.xy, p.xz, shape.area, m->xy.x, m->yz.x, m->zx.x, m->xyz.x),
+                           element_gather(p.yx, p.yy, p.yz, shape.area, m->xy.y, m->yz.y, m->zx.y, m->xyz.y),
+                           element_gather(p.zx, p.zy, p.zz, shape.area, m->xy.z, m->yz.z, m->zx.z, m->xyz.z)};
     return force;
 }
 
 /* The internal forces at the corners (N): what the element pulls with, for displacements u (m). is_active false: the
  * fibre is not looked at. */
-ELEMENT_FUNCTION element_field element_force(form f, element_field u, element_shape shape, element_law law,
-                                             element_fibre fibre, int is_active)
+ELEMENT_FUNCTION element_field element_force(form f, hourglass_kind kind, element_field u, element_shape shape,
+                                             element_law law, element_fibre fibre, int is_active)
 {
-    return element_force_of_two(f, u, shape, law, fibre, is_active, fibre, 0);
-}
-
-/* Energy of one component's hourglass modes (J). */
-ELEMENT_FUNCTION real element_hourglass_energy(element_modes u, real k)
-{
-    return k / 2 * (u.xy * u.xy + u.yz * u.yz + u.zx * u.zx + u.xyz * u.xyz);
+    return element_force_of_two(f, kind, u, shape, law, fibre, is_active, fibre, 0);
 }
 
 #endif

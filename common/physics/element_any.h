@@ -18,6 +18,7 @@ enum { ELEMENT_MODES = 7, ELEMENT_TWISTS = 4, ELEMENT_ANY = 3 * (ELEMENT_MODES +
 typedef struct element_any {
     element_vector slope[ELEMENT_MODES], twist[ELEMENT_TWISTS];
     real volume;
+    hourglass_any held; /* of physical hourglass control */
 } element_any;
 
 ELEMENT_FUNCTION element_vector element_any_row(const element_any *s, element_modes u)
@@ -67,12 +68,11 @@ ELEMENT_FUNCTION element_tensor element_any_twist(const element_any *s, element_
     return h;
 }
 
-/* One component of f_a = V P B_a + k sum_g gamma_g (gamma_g . u), from its modes q (twisted) and its row of P. */
-ELEMENT_FUNCTION element_corners element_any_gather(const element_any *s, element_modes q, real px, real py, real pz,
-                                                    real k)
+/* One component of f_a = V P B_a + sum_g gamma_g f_g, from its row of P and its hourglass forces. */
+ELEMENT_FUNCTION element_corners element_any_gather(const element_any *s, real px, real py, real pz, real xy, real yz,
+                                                    real zx, real xyz)
 {
     const element_vector *slope = s->slope, *twist = s->twist;
-    const real xy = k * q.xy, yz = k * q.yz, zx = k * q.zx, xyz = k * q.xyz;
     const real x = s->volume * px - (twist[0].x * xy + twist[1].x * yz + twist[2].x * zx + twist[3].x * xyz);
     const real y = s->volume * py - (twist[0].y * xy + twist[1].y * yz + twist[2].y * zx + twist[3].y * xyz);
     const real z = s->volume * pz - (twist[0].z * xy + twist[1].z * yz + twist[2].z * zx + twist[3].z * xyz);
@@ -83,21 +83,31 @@ ELEMENT_FUNCTION element_corners element_any_gather(const element_any *s, elemen
     return element_corners_of(f);
 }
 
+/* Of the modes, twisted, at H, by the kind. */
+ELEMENT_FUNCTION hourglass_force element_any_hourglass(hourglass_kind kind, hourglass_modes m, element_tensor h,
+                                                       const element_any *s, const real *law)
+{
+    if (kind == HOURGLASS_ISOTROPIC)
+        return hourglass_isotropic(m, law[HOURGLASS_K]);
+    return hourglass_physical_any(m, h, &s->held, s->volume);
+}
+
 /* As element_force of element.h. */
-ELEMENT_FUNCTION element_field element_any_force(form f, element_field u, const element_any *s, element_law law,
-                                                 element_fibre fibre, int is_active)
+ELEMENT_FUNCTION element_field element_any_force(form f, hourglass_kind kind, element_field u, const element_any *s,
+                                                 element_law law, element_fibre fibre, int is_active)
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
-    element_tensor h = element_any_gradient(s, x, y, z);
+    element_tensor h = element_any_twist(s, &x, &y, &z);
     element_tensor p = form_stress(f, h, law.c);
     if (is_active)
         p = element_sum(p, element_active(h, fibre));
-    x = element_any_twisted(s, x, h.xx, h.xy, h.xz);
-    y = element_any_twisted(s, y, h.yx, h.yy, h.yz);
-    z = element_any_twisted(s, z, h.zx, h.zy, h.zz);
-    element_field force = {element_any_gather(s, x, p.xx, p.xy, p.xz, law.hourglass),
-                           element_any_gather(s, y, p.yx, p.yy, p.yz, law.hourglass),
-                           element_any_gather(s, z, p.zx, p.zy, p.zz, law.hourglass)};
+    const hourglass_force held = element_any_hourglass(kind, element_hourglass_modes(x, y, z), h, s, law.hourglass);
+    const hourglass_modes *m = &held.f;
+    if (kind == HOURGLASS_PHYSICAL)
+        p = element_sum(p, held.p);
+    element_field force = {element_any_gather(s, p.xx, p.xy, p.xz, m->xy.x, m->yz.x, m->zx.x, m->xyz.x),
+                           element_any_gather(s, p.yx, p.yy, p.yz, m->xy.y, m->yz.y, m->zx.y, m->xyz.y),
+                           element_any_gather(s, p.zx, p.zy, p.zz, m->xy.z, m->yz.z, m->zx.z, m->xyz.z)};
     return force;
 }
 

@@ -81,9 +81,9 @@ ELEMENT_FUNCTION form_mooney_rivlin_terms form_mooney_rivlin_terms_at(element_te
 ELEMENT_FUNCTION element_tensor form_mooney_rivlin_less(element_tensor f, element_tensor y)
 {
     const element_tensor turned = tangent_transposed(f);
-    const element_tensor both = tangent_product(y, turned), across = tangent_transposed(both);
+    const element_tensor both = element_product(y, turned), across = tangent_transposed(both);
     const element_tensor sum = element_sum(both, across);
-    return element_sum(tangent_product(sum, f), tangent_product(f, tangent_product(turned, y)));
+    return element_sum(element_product(sum, f), element_product(f, element_product(turned, y)));
 }
 
 /* The lower triangle of A. */
@@ -91,10 +91,10 @@ ELEMENT_FUNCTION void form_mooney_rivlin_tangent(element_tensor h, const double 
 {
     const form_mooney_rivlin_terms t = form_mooney_rivlin_terms_at(h, c);
     const element_tensor g = element_cofactor(h), moved = tangent_moved(h), turned = tangent_transposed(moved);
-    const element_tensor right = tangent_product(turned, moved), left = tangent_product(moved, turned);
+    const element_tensor right = element_product(turned, moved), left = element_product(moved, turned);
     element_tensor n = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     tangent_add(&n, t.first_invariant, moved);
-    tangent_add(&n, -1, tangent_product(moved, right));
+    tangent_add(&n, -1, element_product(moved, right));
     const double f[3][3] = {
         {moved.xx, moved.xy, moved.xz}, {moved.yx, moved.yy, moved.yz}, {moved.zx, moved.zy, moved.zz}};
     const double cs[3][3] = {
@@ -129,7 +129,7 @@ ELEMENT_FUNCTION double form_mooney_rivlin_along(element_tensor h, const double 
     const double along = tangent_dot(f, y), stretch = tangent_stretch(h), volume = 1 + element_dilation(h);
     element_tensor n = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     tangent_add(&n, t.first_invariant, f);
-    tangent_add(&n, -1, tangent_product(f, tangent_product(tangent_transposed(f), f)));
+    tangent_add(&n, -1, element_product(f, element_product(tangent_transposed(f), f)));
     tangent_add(to, t.shear + t.second * t.first_invariant, y);
     tangent_add(to, -t.second, form_mooney_rivlin_less(f, y));
     tangent_add(to, t.bulk * square - t.mixed * along - t.mixed_second * tangent_dot(n, y), g);

@@ -166,6 +166,68 @@ ELEMENT_FUNCTION stability_range stability_range_scaled(form f, const double *c,
     return range;
 }
 
+/* ---- hourglass modes
+ *
+ * Their energy W = q:D q / 2, q = F^-1 m, moves with F as well as with m: dq = F^-1 (dm - dF q), so along (dm, dF)
+ *     d2W = dq:D dq - 2 sum over g of f_g.(dF dq_g),   |f| <= |F^-1| |D| |q|,   |dq| <= |F^-1| (|dm| + |dF| |q|),
+ *     d2W <= |D| |F^-1|^2 (|dm|^2 + 4 |q| |dm| |dF| + 3 |q|^2 |dF|^2).
+ * Over the mass of mode g, and of the slopes m of dF = m/(4 h), with l the largest 1/(4 h), b = l |q|, w the square of
+ * the highest frequency at rest, and 4 b x y <= 2 b (x^2 + y^2), the modes and F then have as squares at most
+ *     own = w |F^-1|^2 (1 + 2 b)   and   more = w |F^-1|^2 (2 b + 3 b^2) besides the law's,
+ * and as they share no displacement, the element has the larger of own and (law's + more). */
+typedef struct stability_twists {
+    double own, more;
+} stability_twists;
+
+/* No less than the largest singular value of a, as tangent_stretch. */
+ELEMENT_FUNCTION double stability_norm(element_tensor a)
+{
+    const double row = fmax(fmax(fabs(a.xx) + fabs(a.xy) + fabs(a.xz), fabs(a.yx) + fabs(a.yy) + fabs(a.yz)),
+                            fabs(a.zx) + fabs(a.zy) + fabs(a.zz));
+    const double column = fmax(fmax(fabs(a.xx) + fabs(a.yx) + fabs(a.zx), fabs(a.xy) + fabs(a.yy) + fabs(a.zy)),
+                               fabs(a.xz) + fabs(a.yz) + fabs(a.zz));
+    return sqrt(row * column);
+}
+
+/* At H, of modes m with G^T m of such a length, G = cof F. square: at rest; slope: 1/m, the largest 1/(4 h). */
+ELEMENT_FUNCTION stability_twists stability_twists_by(hourglass_kind kind, double square, double slope,
+                                                      element_tensor h, double length)
+{
+    const double inverse = 1 / (1 + element_dilation(h)), norm = stability_norm(element_cofactor(h)) * inverse;
+    const double b = slope * length * fabs(inverse), now = square * norm * norm;
+    stability_twists t = {now * (1 + 2 * b), now * (2 * b + 3 * b * b)};
+    if (kind == HOURGLASS_ISOTROPIC)
+        t = (stability_twists){square, 0};
+    return t;
+}
+
+ELEMENT_FUNCTION stability_twists stability_twists_of(hourglass_kind kind, double square, double slope,
+                                                      element_tensor h, const hourglass_modes *m)
+{
+    const hourglass_modes w = hourglass_all_by_columns(element_cofactor(h), *m);
+    return stability_twists_by(kind, square, slope, h, sqrt(hourglass_dot(&w, &w)));
+}
+
+/* The square of the element's highest frequency, from the largest eigenvalue of stability_matrix. */
+ELEMENT_FUNCTION double stability_square(stability_twists t, double eigenvalue)
+{
+    const double law = eigenvalue + t.more; /* no number stays none, which fmax would lose */
+    return t.own > law ? t.own : law;
+}
+
+/* What that eigenvalue may be, so that the square is at most limit; no eigenvalue is below what it gives where the
+ * modes alone are past it. */
+ELEMENT_FUNCTION double stability_room(stability_twists t, double limit)
+{
+    return limit > t.own ? limit - t.more : 0;
+}
+
+ELEMENT_FUNCTION stability_range stability_range_with(stability_range r, stability_twists t)
+{
+    const stability_range range = {r.low, stability_square(t, r.high)};
+    return range;
+}
+
 /* Of an element of these sides. */
 ELEMENT_FUNCTION stability_range stability_range_of(form f, const double *c, double density, const double side[3],
                                                     element_tensor h, element_fibre fibre, element_fibre second)

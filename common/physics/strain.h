@@ -176,4 +176,15 @@ ELEMENT_FUNCTION element_tensor element_times(element_tensor g, element_symmetri
                         g.zx * s.zx + g.zy * s.yz + g.zz * s.zz};
     return p;
 }
+
+ELEMENT_FUNCTION element_tensor element_product(element_tensor a, element_tensor b)
+{
+    const element_tensor c = {a.xx * b.xx + a.xy * b.yx + a.xz * b.zx, a.xx * b.xy + a.xy * b.yy + a.xz * b.zy,
+                              a.xx * b.xz + a.xy * b.yz + a.xz * b.zz, a.yx * b.xx + a.yy * b.yx + a.yz * b.zx,
+                              a.yx * b.xy + a.yy * b.yy + a.yz * b.zy, a.yx * b.xz + a.yy * b.yz + a.yz * b.zz,
+                              a.zx * b.xx + a.zy * b.yx + a.zz * b.zx, a.zx * b.xy + a.zy * b.yy + a.zz * b.zy,
+                              a.zx * b.xz + a.zy * b.yz + a.zz * b.zz};
+    return c;
+}
+
 #endif

@@ -109,8 +109,8 @@ static double flops_of(const tled_problem *p)
 {
     const double zero[24] = {0}, active = active_of(p);
     return (double)p->nodes * (double)flops_sum(flops_of_node()) +
-           ((double)p->elements - active) * (double)flops_sum(flops_of_element(0, zero, NULL)) +
-           active * (double)flops_sum(flops_of_element(1, zero, NULL));
+           ((double)p->elements - active) * (double)flops_sum(flops_of_element(p->control.kind, 0, zero, NULL)) +
+           active * (double)flops_sum(flops_of_element(p->control.kind, 1, zero, NULL));
 }
 
 static const char *copied_by(const measured *w, double bytes)
@@ -306,7 +306,7 @@ static void measure_block(int32_t x, int32_t y, int32_t z, const options *o)
     const double gravity[3] = {0, 0, -.5}; /* so little that no step is cut */
     block what = {{x, y, z}, {.0025, .0025, .0025}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 0, 0}, 0, false};
     snprintf(name, sizeof name, "block %d x %d x %d", x, y, z);
-    bench_make(&b, &what, gravity, 0, .0075, o->threads);
+    bench_make(&b, &what, gravity, 0, PHYSICAL, o->threads);
     measure(name, &b, o);
     bench_free(&b);
 }
@@ -338,7 +338,7 @@ static void measure_file(const char *path, const options *o)
         if (muscle->u8[i])
             snprintf(contract, sizeof contract, "%s=.05", names->str[i]);
     bench_must(*contract && script_add_contract(&b.script, &b.m, contract, .1, &b.e), &b.e);
-    bench_must(tled_problem_make(&b.problem, &b.m, &b.script, .0075, &b.e), &b.e);
+    bench_must(tled_problem_make(&b.problem, &b.m, &b.script, PHYSICAL, &b.e), &b.e);
     bench_finish(&b, o->threads);
     measure(name, &b, o);
     bench_free(&b);

@@ -2,6 +2,7 @@
 
 extern "C" {
 #include "physics/forms.h"
+#include "physics/hourglass_numbers.h"
 }
 
 #include <math.h>
@@ -171,18 +172,19 @@ guess operator-(float a, guess b)
 
 } // namespace
 
-flops flops_of_element(int is_active, const double u[24], double result[24])
+flops flops_of_element(hourglass_kind kind, int is_active, const double u[24], double result[24])
 {
     begin();
     element_field at, force;
     element_corners *const from[3] = {&at.x, &at.y, &at.z}, *const to[3] = {&force.x, &force.y, &force.z};
     const element_shape shape = {{unknown(.25 / .002), unknown(.25 / .003), unknown(.25 / .004)},
-                                 {unknown(3e-6), unknown(2e-6), unknown(1.5e-6)}};
-    const element_law law = {{unknown(1000), unknown(50000)}, unknown(.01)};
+                                 {unknown(3e-6), unknown(2e-6), unknown(1.5e-6)},
+                                 unknown(1 / 2.4e-8)};
+    const element_law law = {{unknown(1000), unknown(50000)}, {unknown(.01), unknown(.02), unknown(.03), unknown(.04)}};
     const element_fibre fibre = {{unknown(.6), unknown(0), unknown(.8)}, unknown(3000)};
     for (int i = 0; i < 24; i++)
         from[i / 8]->at[i % 8] = unknown(u[i]);
-    force = element_force(FORM_NEO_HOOKEAN, at, shape, law, fibre, is_active);
+    force = element_force(FORM_NEO_HOOKEAN, kind, at, shape, law, fibre, is_active);
     for (int i = 0; i < 24; i++) {
         number sum = unknown(0);
         sum += to[i / 8]->at[i % 8];

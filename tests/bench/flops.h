@@ -6,6 +6,8 @@
 #ifndef SINEW_FLOPS_H
 #define SINEW_FLOPS_H
 
+#include "physics/hourglass_numbers.h"
+
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -19,7 +21,7 @@ typedef struct flops {
 /* Of one element whose fibres are all at rest, or one of which contracts: its forces at the corners, and these
  * added to what its nodes have. result, or NULL: gets the forces (x, y, z: 8 each) for displacements u likewise,
  * computed with the numbers that count. */
-flops flops_of_element(int is_active, const double u[24], double result[24]);
+flops flops_of_element(hourglass_kind kind, int is_active, const double u[24], double result[24]);
 
 /* Of one node that nothing holds: a pass that ends a step and begins the next. */
 flops flops_of_node(void);

@@ -301,8 +301,13 @@ fails 1 "so is one of another version" 'old: was written by version 0\.1\.0, and
     run -d cpu -c all=0.8 -m tissue.nu=0.49 -t 0.4 --every 0.002 --restart "$T/old"
 rm -f "$T"/old*
 killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --checkpoint "$T/old" --checkpoint-every 0.02
-fails 1 "another --hourglass is not" "was saved by a run with other options, '--hourglass 0.0075'; expected '--hourglass 0.008'" \
+fails 1 "another --hourglass is not" "was saved by a run with other options, '--hourglass physical'; expected '--hourglass isotropic:0.008'" \
     run -d cpu -c all=0.8 -t 0.4 --every 0.002 --hourglass 0.008 --restart "$T/old"
+rm -f "$T"/old*
+killed_at 500000 -d cpu -c all=0.8 -t 0.4 --every 0.002 --hourglass 0.0075 --checkpoint "$T/old" --checkpoint-every 0.02
+check "the same by its other name goes on" run -d cpu -c all=0.8 -t 0.4 --every 0.002 --hourglass isotropic --restart "$T/old" -o "$T/got"
+run -d cpu -c all=0.8 -t 0.4 --every 0.002 --hourglass isotropic:0.0075 >"$T/whole"
+check "to the same bytes" cmp "$T/whole" "$T/got"
 rm -f "$T"/old*
 sed 's/30000/30001/' "$T/muscle.sinew" >"$T/other.sinew"
 model=$T/other.sinew

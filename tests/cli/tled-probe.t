@@ -108,7 +108,7 @@ fails 1 "a step too long with contact" 'above the stable step' tled-run --probe 
 awk -v nx=6 -v ny=6 -v nz=3 -v h=0.005 -v held=low -f tests/cli/block.awk >"$T/lean.sinew"
 echo '0 .02 .015 .012 .98877107793604228 0 -.14943813247359922 0' >"$T/lean.tum"
 tled-run -q -d cpu --text --probe sphere:1cm --poses "$T/lean.tum" -t .15 <"$T/lean.sinew" 2>/dev/null |
-    awk '/^array / { what = $2; next } what == "probe.force" { x = $1; z = $3 } what == "probe.torque" { print .01 * (cos(.3) * x - sin(.3) * z), $2 } { what = "" }' >"$T/lean"
+    awk '/^array / { what = $2; next } what == "probe.force" { x = $1; z = $3 } what == "probe.torque" { printf "%.12g %s\n", .01 * (cos(.3) * x - sin(.3) * z), $2 } { what = "" }' >"$T/lean"
 read -r want got <"$T/lean"
 near "$got" "$want" 1e-6 "the torque of a ball is its force's, through its centre: $got N m"
 

@@ -27,8 +27,13 @@ static double box_volume(void)
 /* E = 3000 Pa, nu = .45. */
 static element_law tissue(double kappa)
 {
-    double mu = 3000 / 2.9, bulk = 10000;
-    element_law law = {{R(mu), R(bulk)}, R(element_hourglass(kappa, mu, bulk, box_side[0], box_side[1], box_side[2]))};
+    const hourglass_control control = {HOURGLASS_ISOTROPIC, kappa};
+    const double mu = 3000 / 2.9, bulk = 10000;
+    double numbers[HOURGLASS_NUMBERS];
+    element_law law = {.c = {R(mu), R(bulk)}};
+    hourglass_numbers(control, mu, bulk, box_side, numbers);
+    for (int i = 0; i < HOURGLASS_NUMBERS; i++)
+        law.hourglass[i] = R(numbers[i]);
     return law;
 }
 
@@ -55,7 +60,7 @@ static element_field affine(double f[3][3], const double origin[3])
 static element_field force_of(element_field u, double kappa, double tension, const double along[3])
 {
     element_fibre fibre = {{R(along[0]), R(along[1]), R(along[2])}, R(tension)};
-    return element_force(FORM_NEO_HOOKEAN, u, box_shape(), tissue(kappa), fibre, tension != 0);
+    return element_force(FORM_NEO_HOOKEAN, HOURGLASS_ISOTROPIC, u, box_shape(), tissue(kappa), fibre, tension != 0);
 }
 
 /* The stress from the forces alone: V P = sum over corners of f (x) X. */
@@ -152,7 +157,7 @@ static void test_rotation(double limit)
 static void test_hourglass(double tolerance)
 {
     double f[3][3] = {{1.1, .05, -.02}, {.03, .9, .1}, {0, .07, 1.05}};
-    double k = (double)tissue(.0075).hourglass;
+    double k = (double)tissue(.0075).hourglass[HOURGLASS_K];
     for (int mode = 0; mode < 4; mode++)
         for (int a = 0; a < 3; a++) {
             element_field u = {0};

@@ -126,8 +126,8 @@ static void make(stand *t, const char *text, int threads)
     block_make(&brick, &t->m);
     carry(&t->m, &b);
     in *source = in_memory(text, strlen(text), "script", &e);
-    ok(!script_read(&t->s, source, &t->m, &e) && !tled_problem_make(&t->p, &t->m, &t->s, .0075, &e) && t->p.followers &&
-           !followers_room(&t->w, t->p.followers, &e),
+    ok(!script_read(&t->s, source, &t->m, &e) && !tled_problem_make(&t->p, &t->m, &t->s, PHYSICAL, &e) &&
+           t->p.followers && !followers_room(&t->w, t->p.followers, &e),
        "pressures: %s", e.text);
     in_close(source);
     t->u = room(3 * t->p.nodes);

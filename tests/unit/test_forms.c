@@ -102,9 +102,9 @@ static void test_stress(form f, const double *c)
     double off = 0, skew = 0, turned = 0;
     for (int i = 0; i < TRIALS; i++) {
         const element_tensor h = gradient_by_chance(.4), p = form_stress(f, h, c), moved = tangent_moved(h);
-        const element_tensor cauchy = tangent_product(p, tangent_transposed(moved));
+        const element_tensor cauchy = element_product(p, tangent_transposed(moved));
         const double energy = form_energy(f, h, c);
-        const element_tensor other = minus_one(tangent_product(turn_by_chance(), moved));
+        const element_tensor other = minus_one(element_product(turn_by_chance(), moved));
         off = larger(off, apart(p, slope_of_energy(f, h, c)) / largest_of(p));
         skew = larger(skew, apart(cauchy, tangent_transposed(cauchy)) / largest_of(cauchy));
         turned = larger(turned, fabs(form_energy(f, other, c) - energy) / energy);
@@ -243,7 +243,7 @@ static void test_figures(void)
     near_(pulled(.8, false, &lateral) / -4677.80, 1, 1e-5, "pressed to .8");
     near_(pulled(1.15, true, &lateral) / 3855.32, 1, 1e-5, "stretched by 1.15 along two axes");
     const element_tensor shear = {0, .4, 0, 0, 0, 0, 0, 0, 0}, p = form_stress(FORM_MOONEY_RIVLIN, shear, c);
-    const element_tensor cauchy = tangent_product(p, tangent_transposed(tangent_moved(shear)));
+    const element_tensor cauchy = element_product(p, tangent_transposed(tangent_moved(shear)));
     near_(cauchy.xy, 2400, 2400e-5, "sheared by .4");
     near_(cauchy.xx - cauchy.yy, 960, 960e-5, "and the difference of its normal stresses");
 }

@@ -76,7 +76,7 @@ static int save(void *context, const run_point *at, double time, const field_val
 static void make(record *r, const tled_executor *device)
 {
     memset(r, 0, sizeof *r);
-    bench_make(&r->b, &muscle, NULL, .2, .0075, 2);
+    bench_make(&r->b, &muscle, NULL, .2, PHYSICAL, 2);
     add_history(&r->b.problem, r->row, FIELD_IN_FRAMES | FIELD_IN_CHECKPOINTS);
     bench_steps(&r->b, STEPS, r->b.setup.damping);
     r->b.setup.device = device;

@@ -56,7 +56,7 @@ static void distort(const block *b, model *m, double by)
                 }
 }
 
-static void begin(setting *s, block b, bool boxes, double by, double kappa, int threads, int precision)
+static void begin(setting *s, block b, bool boxes, double by, hourglass_control control, int threads, int precision)
 {
     err e = {0};
     *s = (setting){.state = NULL};
@@ -70,7 +70,7 @@ static void begin(setting *s, block b, bool boxes, double by, double kappa, int 
             die(e.text);
     }
     const double gravity[3] = {1, 2, -9.81};
-    if (script_add_gravity(&s->s, gravity, 0, &e) || tled_problem_make(&s->p, &s->m, &s->s, kappa, &e))
+    if (script_add_gravity(&s->s, gravity, 0, &e) || tled_problem_make(&s->p, &s->m, &s->s, control, &e))
         die(e.text);
     if (boxes == (s->p.conforming != NULL))
         die("a lattice is a lattice");
@@ -132,8 +132,8 @@ static double furthest(const double *u, const double *v, int64_t count)
 static void test_boxes(block b, const char *name)
 {
     setting grid, mesh;
-    begin(&grid, b, true, 0, .0075, 1, BY_DOUBLE);
-    begin(&mesh, b, false, 0, .0075, 2, BY_DOUBLE);
+    begin(&grid, b, true, 0, PHYSICAL, 1, BY_DOUBLE);
+    begin(&mesh, b, false, 0, PHYSICAL, 2, BY_DOUBLE);
     near_(step_at_rest(&mesh.p, NULL) / step_at_rest(&grid.p, NULL), 1, 1e-9, "%s: the lattice's stable step", name);
     const double dt = .5 * step_at_rest(&grid.p, NULL);
     double *u = moved(&grid, 200, dt), *v = moved(&mesh, 200, dt);
@@ -174,7 +174,7 @@ static void test_patch(void)
     const double angle = 1.1, turn[3][3] = {{cos(angle) - 1, -sin(angle), 0}, {sin(angle), cos(angle) - 1, 0}, {0}};
     setting s;
     double inside, any, turned;
-    begin(&s, soft, false, .3, .0075, 1, BY_DOUBLE);
+    begin(&s, soft, false, .3, PHYSICAL, 1, BY_DOUBLE);
     double *u = numbers(&s), *f = numbers(&s);
     ok(s.p.conforming->element[30].couple > 1e-4, "a distorted element: its stretches and twists are not apart");
     stretch(&s, h, u);
@@ -192,12 +192,12 @@ static void test_patch(void)
 }
 
 /* Force is the energy's slope: by the monitor's energy, hourglass part and all. */
-static void test_energy(void)
+static void test_energy(hourglass_control control)
 {
     setting s;
     err e = {0};
     block b = soft;
-    begin(&s, b, false, .3, .5, 1, BY_DOUBLE);
+    begin(&s, b, false, .3, control, 1, BY_DOUBLE);
     s.p.gravity = -1;
     double *u = numbers(&s), *v = numbers(&s), *f = numbers(&s), first = 0, worst = 0, kinetic = 0;
     for (int64_t i = 0; i < 3 * s.p.nodes; i++)
@@ -246,7 +246,7 @@ static void test_bytes(int precision, const char *name)
             skip(1, "a vector unit that is not here");
             continue;
         }
-        begin(&s, b, false, .25, .0075, 1 + i, precision);
+        begin(&s, b, false, .25, PHYSICAL, 1 + i, precision);
         double *u = moved(&s, 60, .4 * step_at_rest(&s.p, NULL));
         if (first)
             ok(!memcmp(first, u, 3 * (size_t)s.p.nodes * sizeof *u), "%s: the same bytes by %d threads in %s", name,
@@ -266,8 +266,8 @@ static void test_bytes(int precision, const char *name)
 static void test_single(void)
 {
     setting s, d;
-    begin(&s, soft, false, .3, .0075, 2, BY_SINGLE);
-    begin(&d, soft, false, .3, .0075, 2, BY_DOUBLE);
+    begin(&s, soft, false, .3, PHYSICAL, 2, BY_SINGLE);
+    begin(&d, soft, false, .3, PHYSICAL, 2, BY_DOUBLE);
     const double dt = .5 * step_at_rest(&d.p, NULL);
     double *u = moved(&s, 200, dt), *v = moved(&d, 200, dt);
     near_(furthest(u, v, 3 * d.p.nodes) / furthest(v, NULL, 3 * d.p.nodes), 0, 1e-4, "single comes near to double");
@@ -298,15 +298,15 @@ static double largest(setting *s)
     return square;
 }
 
-static void test_step(double by, double kappa)
+static void test_step(double by, hourglass_control control)
 {
     setting s;
     block b = soft;
-    begin(&s, b, false, by, kappa, 1, BY_DOUBLE);
+    begin(&s, b, false, by, control, 1, BY_DOUBLE);
     s.p.gravity = -1;
     const double step = step_at_rest(&s.p, NULL), true_step = 2 / sqrt(largest(&s));
     ok(step <= true_step * (1 + 1e-6) && step > .6 * true_step,
-       "by %g, kappa %g: the stable step %.4g ms is below %.4g", by, kappa, 1e3 * step, 1e3 * true_step);
+       "by %g, kappa %g: the stable step %.4g ms is below %.4g", by, control.kappa, 1e3 * step, 1e3 * true_step);
     end(&s);
 }
 
@@ -317,12 +317,13 @@ static void test_element_bound(void)
     block b = soft;
     b.cells[0] = b.cells[1] = b.cells[2] = 1;
     b.fixed_low = b.fixed_high = 0;
-    begin(&s, b, false, 0, .0075, 1, BY_DOUBLE);
+    begin(&s, b, false, 0, PHYSICAL, 1, BY_DOUBLE);
     s.p.gravity = -1;
     near_(step_at_rest(&s.p, NULL) / (2 / sqrt(largest(&s))), 1, 1e-3, "one box: its step exactly");
     end(&s);
-    for (int kappa = 0; kappa < 2; kappa++) {
-        begin(&s, b, false, 0, kappa ? 2 : .0075, 1, BY_DOUBLE);
+    for (int stiff = 0; stiff < 2; stiff++) {
+        const hourglass_control control = stiff ? ISOTROPIC(2) : PHYSICAL;
+        begin(&s, b, false, 0, control, 1, BY_DOUBLE);
         double *x = model_find(&s.m, "node.position")->f64;
         for (int i = 0; i < 24; i++)
             x[i] += .003 * sin(7. * i + 1);
@@ -330,7 +331,7 @@ static void test_element_bound(void)
         script none = {0};
         tled_problem p = {0};
         err e = {0};
-        if (tled_problem_make(&p, &copy, &none, kappa ? 2 : .0075, &e))
+        if (tled_problem_make(&p, &copy, &none, control, &e))
             die(e.text);
         s.device->destroy(s.state);
         tled_problem_free(&s.p);
@@ -338,8 +339,8 @@ static void test_element_bound(void)
         s.state = s.device->create(&s.p, s.threads, &e);
         const double step = step_at_rest(&s.p, NULL), true_step = 2 / sqrt(largest(&s));
         ok(step <= true_step * (1 + 1e-6) && step > .8 * true_step,
-           "one distorted element, kappa %g: step %.5g ms, its largest frequency's %.5g ms", kappa ? 2 : .0075,
-           1e3 * step, 1e3 * true_step);
+           "one distorted element, kappa %g: step %.5g ms, its largest frequency's %.5g ms", control.kappa, 1e3 * step,
+           1e3 * true_step);
         s.p.script = &s.s;
         end(&s);
     }
@@ -360,14 +361,15 @@ static void test_refused(void)
         node[8 * 7 + c] = node[8 * 7 + 4 + c];
         node[8 * 7 + 4 + c] = swap;
     }
-    ok(tled_problem_make(&p, &m, &s, .0075, &e) && strstr(e.text, "element 7 has no inside"), "inside out: %s", e.text);
+    ok(tled_problem_make(&p, &m, &s, PHYSICAL, &e) && strstr(e.text, "element 7 has no inside"), "inside out: %s",
+       e.text);
     tled_problem_free(&p);
     model_free(&m);
     b.mixed = true;
     e = (err){0};
     block_make(&b, &m);
     forget_lattice(&m);
-    ok(tled_problem_make(&p, &m, &s, .0075, &e) && strstr(e.text, "element.mix"), "mixed: %s", e.text);
+    ok(tled_problem_make(&p, &m, &s, PHYSICAL, &e) && strstr(e.text, "element.mix"), "mixed: %s", e.text);
     tled_problem_free(&p);
     model_free(&m);
 }
@@ -382,13 +384,15 @@ int main(void)
     b.fibre[0] = .48F, b.fibre[1] = .6F, b.fibre[2] = .64F;
     test_boxes(b, "with muscle");
     test_patch();
-    test_energy();
+    test_energy(PHYSICAL);
+    test_energy(ISOTROPIC(.5));
     test_bytes(BY_DOUBLE, "double");
     test_bytes(BY_SINGLE, "single");
     test_single();
-    test_step(0, .0075);
-    test_step(.3, .0075);
-    test_step(.3, 1);
+    test_step(0, PHYSICAL);
+    test_step(.3, PHYSICAL);
+    test_step(.3, ISOTROPIC(.0075));
+    test_step(.3, ISOTROPIC(1));
     test_element_bound();
     test_refused();
     return done_testing();

@@ -141,6 +141,9 @@ static void test_all_marched(const tled_executor *cuda)
     few.fraction = -1;
     few.mixed = true;
     test_marched_small(&few, 300, cuda, "a few elements, cut and mixed");
+    in_control = ISOTROPIC(.0075);
+    test_marched_small(&few, 300, cuda, "isotropic control, a few elements, cut and mixed");
+    in_control = PHYSICAL;
     test_marched(&large, .2, false, 60, cuda, "a muscle");
     test_marched(&marched, 0, true, 60, cuda, "a script");
     block cut = large;
@@ -169,6 +172,18 @@ static void test_forms_bytes(const tled_executor *cpu, const tled_executor *cuda
         test_bytes(&mixed, .5, false, 1000, cpu, cuda, what);
     }
     in_form = FORM_NEO_HOOKEAN;
+}
+
+/* Isotropic control: the CPU's bytes, and a look. */
+static void test_isotropic(const tled_executor *twice, const tled_executor *once)
+{
+    block mixed = muscle;
+    mixed.mixed = true;
+    in_control = ISOTROPIC(.0075);
+    test_bytes(&lump, 0, true, 1000, &tled_cpu_double, twice, "double, isotropic, a script");
+    test_bytes(&mixed, .5, false, 1000, &tled_cpu_single, once, "single, isotropic, mixed elements");
+    test_look(&lump, true, 300, twice, "double, isotropic", 1e-10);
+    in_control = PHYSICAL;
 }
 
 static void test_all_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
@@ -201,8 +216,8 @@ static void test_long(const tled_executor *cuda, const char *name)
 {
     bench here, there;
     const double gravity[3] = {1, -2, -9.81};
-    bench_make(&here, &muscle, gravity, .6, .0075, 2);
-    bench_make(&there, &muscle, gravity, .6, .0075, 2);
+    bench_make(&here, &muscle, gravity, .6, PHYSICAL, 2);
+    bench_make(&there, &muscle, gravity, .6, PHYSICAL, 2);
     bench_steps(&here, 10000, here.setup.damping);
     bench_steps(&there, 10000, here.setup.damping);
     there.setup.device = cuda;
@@ -217,8 +232,8 @@ static void test_rest(const tled_executor *cuda, const char *name, double tolera
 {
     bench here, there;
     const double gravity[3] = {0, 0, -9.81};
-    bench_make(&here, &lump, gravity, 0, .0075, 2);
-    bench_make(&there, &lump, gravity, 0, .0075, 2);
+    bench_make(&here, &lump, gravity, 0, PHYSICAL, 2);
+    bench_make(&there, &lump, gravity, 0, PHYSICAL, 2);
     there.setup.device = cuda;
     there.setup.single = &cuda->is == tled_executors_single[0];
     here.setup.rest = there.setup.rest = tolerance;
@@ -294,7 +309,7 @@ static void test_memory(const block *what, bool rests, const tled_executor *cuda
     bench b;
     tled_sums sums;
     tled_question question = {.rest = INFINITY, .raise = 1.01, .differences = rests};
-    bench_make(&b, what, NULL, 0, .0075, 2);
+    bench_make(&b, what, NULL, 0, PHYSICAL, 2);
     tled_state *state = cuda->create(&b.problem, b.setup.threads, &b.e);
     bench_must(!state || cuda->monitor(state, &question, &sums, &b.e), &b.e);
     double each = (double)cuda->bytes(state) / (double)b.problem.elements;
@@ -342,6 +357,7 @@ int main(void)
     test_forms_bytes(&tled_cpu_double, twice, "double");
     test_forms_bytes(&tled_cpu_single, once, "single");
     test_all_marched(once);
+    test_isotropic(twice, once);
     test_long(twice, "double");
     test_long(once, "single");
     test_rest(twice, "double", 1e-5);

@@ -30,14 +30,16 @@ static void force_of(const tled_problem *p, int64_t element, double u[8][3], dou
     const double share = tled_fraction(p, element), s = tled_mixture(p, element);
     const double own = share * (1 - s), other = share * s;
     const tled_law of = tled_law_of(p, element);
-    element_law law = {{share * of.c[0], share * of.c[1]}, share * of.hourglass};
+    element_law law = {.c = {share * of.c[0], share * of.c[1]}};
+    for (int i = 0; i < HOURGLASS_NUMBERS; i++)
+        law.hourglass[i] = share * of.hourglass[i];
     const float *d = p->fibre + 3 * element, *c2 = p->mixfibre ? p->mixfibre + 3 * element : d;
     element_fibre fibre = {{d[0], d[1], d[2]}, own * (.3 * v->peak)},
                   second = {{c2[0], c2[1], c2[2]}, other * (.3 * w->peak)};
     for (int c = 0; c < 8; c++)
         at.x.at[c] = u[c][0], at.y.at[c] = u[c][1], at.z.at[c] = u[c][2];
-    g = element_force_of_two(p->form, at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre, 1, second,
-                             w != v);
+    g = element_force_of_two(p->form, p->control.kind, at, element_box(p->side[0], p->side[1], p->side[2]), law, fibre,
+                             1, second, w != v);
     for (int c = 0; c < 8; c++)
         f[c][0] = g.x.at[c], f[c][1] = g.y.at[c], f[c][2] = g.z.at[c];
 }
@@ -239,7 +241,7 @@ static void test_cpu(const tled_problem *p, int threads, const char *name)
 static void make(model *m, script *s, tled_problem *p)
 {
     err e = {0};
-    if (tled_problem_make(p, m, s, .0075, &e)) {
+    if (tled_problem_make(p, m, s, PHYSICAL, &e)) {
         printf("Bail out! %s\n", e.text);
         exit(1);
     }

@@ -258,6 +258,21 @@ static void test_form(form f, int64_t steps)
     in_form = FORM_NEO_HOOKEAN;
 }
 
+static void test_isotropic(int64_t steps)
+{
+    const trial marches = {"isotropic control, a script", lump, 0, true, {0}, false};
+    const trial mixed = {"isotropic control, mixed elements", mixed_of(small), .5, false, {0}, false};
+    const trial bricks = {"isotropic control in bricks", mixed_of(muscle), .5, false, {0}, false};
+    in_control = ISOTROPIC(.0075);
+    try(&marches, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    try(&mixed, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    try(&bricks, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    try(&bricks, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
+    put_in(&plain, 4, 4);
+    test_look(&lump, true, steps, &tled_cuda_single, "a look under isotropic control", 1e-6);
+    in_control = PHYSICAL;
+}
+
 /* A look at a bent block, in bricks, by one lot. */
 static tled_sums look_by(uint64_t seed)
 {
@@ -402,7 +417,7 @@ static void test_refusal(void)
     const executor *table[] = {&tled_cuda_single.is, NULL}, *other[] = {&history_cuda.is, NULL};
     char says[200];
     bench b;
-    bench_make(&b, &muscle, NULL, 0, .0075, 1);
+    bench_make(&b, &muscle, NULL, 0, PHYSICAL, 1);
     executor_need need = tled_need(&b.problem);
     ok(!(need.features & EXECUTOR_HISTORY), "tissue without a history needs none");
     need.features |= EXECUTOR_HISTORY;
@@ -428,6 +443,7 @@ int main(void)
     for (int f = 0; f < FORM_STEPPED; f++)
         if (f != FORM_NEO_HOOKEAN)
             test_form((form)f, 2 * more);
+    test_isotropic(3 * more);
     test_looks(2 * more);
     test_histories();
     test_refusal();

@@ -103,7 +103,7 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
     int muscles = 0;
     s->special++;
     s->wrong += cell->mu != (float)(share * law.mu) || cell->bulk != (float)(share * law.bulk) ||
-                cell->hourglass != (float)(share * law.hourglass);
+                cell->hourglass != (float)(share * law.hourglass[HOURGLASS_K]);
     s->wrong += !has_muscle(s, cell, &muscles, p->fibre ? p->fibre + 3 * (int64_t)element : NULL,
                             p->element_volume[element], share * (1 - other));
     s->wrong += mix >= 0 && !has_muscle(s, cell, &muscles, p->mixfibre ? p->mixfibre + 3 * (int64_t)element : NULL, mix,
@@ -123,7 +123,8 @@ static bool is_plain(const seen *s, int32_t element)
     const tled_law *plain = &p->volume[s->m->plain].law;
     const int32_t mix = tled_mix(p, element);
     return tled_fraction(p, element) == 1 && (float)law.mu == (float)plain->mu &&
-           (float)law.bulk == (float)plain->bulk && (float)law.hourglass == (float)plain->hourglass &&
+           (float)law.bulk == (float)plain->bulk &&
+           (float)law.hourglass[HOURGLASS_K] == (float)plain->hourglass[HOURGLASS_K] &&
            !(p->fibre && p->volume[p->element_volume[element]].contract >= 0) &&
            !(p->mixfibre && mix >= 0 && p->volume[mix].contract >= 0);
 }
@@ -253,7 +254,7 @@ static void test_cut(const block *what, const int axis[3], const char *contract,
     block_make(what, &m);
     if (contract && script_add_contract(&played, &m, contract, .1, &e))
         printf("Bail out! %s\n", e.text);
-    if (tled_problem_make(&p, &m, &played, .0075, &e))
+    if (tled_problem_make(&p, &m, &played, PHYSICAL, &e))
         printf("Bail out! %s\n", e.text);
     int32_t *list = calloc((size_t)p.nodes * 4, sizeof *list);
     const int failed = march_make(&cut, &p, slots, &e);
@@ -284,7 +285,7 @@ static void test_thin(void)
     march cut;
     err e = {0};
     block_make(&thin, &m);
-    const int failed = tled_problem_make(&p, &m, &played, .0075, &e) || march_make(&cut, &p, 396, &e);
+    const int failed = tled_problem_make(&p, &m, &played, PHYSICAL, &e) || march_make(&cut, &p, 396, &e);
     ok(!failed && cut.units == 0 && !cut.order, "a row of elements is none for a march: %.3g threads an element %s",
        cut.computed, e.text);
     march_free(&cut);

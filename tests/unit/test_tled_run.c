@@ -46,7 +46,7 @@ static void test_conserved(const tled_executor *device, const char *name)
 {
     bench b;
     double linear[3], angular[3], l[3], a[3], first = 0, gap_l = 0, gap_a = 0, gap_e = 0;
-    bench_make(&b, &lump, NULL, 0, .0075, 1);
+    bench_make(&b, &lump, NULL, 0, PHYSICAL, 1);
     bench_steps(&b, 400, 0);
     b.setup.device = device;
     push(&b);
@@ -83,21 +83,21 @@ static void test_same_bytes(const tled_executor *device, const char *name)
     int gone;
     const double gravity[3] = {1, -2, -9.81};
     bench whole, other;
-    bench_make(&whole, &muscle, gravity, .5, .0075, 1);
+    bench_make(&whole, &muscle, gravity, .5, PHYSICAL, 1);
     whole.setup.device = device;
     bench_steps(&whole, 300, whole.setup.damping);
     gone = bench_go(&whole);
     ok(!gone, "%s: 300 steps: %s", name, whole.e.text);
     ok(whole.cuts > 1, "%s: with the step cut on the way", name);
     for (int threads = 2; threads <= 3; threads++) {
-        bench_make(&other, &muscle, gravity, .5, .0075, threads);
+        bench_make(&other, &muscle, gravity, .5, PHYSICAL, threads);
         other.setup.device = device;
         bench_steps(&other, 300, other.setup.damping);
         gone = bench_go(&other);
         ok(!gone && same(&whole, &other), "%s: the same bytes on %d threads", name, threads);
         bench_free(&other);
     }
-    bench_make(&other, &muscle, gravity, .5, .0075, 2);
+    bench_make(&other, &muscle, gravity, .5, PHYSICAL, 2);
     other.setup.device = device;
     other.setup.every = .0123;
     bench_steps(&other, 300, other.setup.damping);
@@ -105,7 +105,7 @@ static void test_same_bytes(const tled_executor *device, const char *name)
     ok(!gone && same(&whole, &other) && other.frames == 6, "%s: whatever frames are written (%lld)", name,
        (long long)other.frames);
     bench_free(&other);
-    bench_make(&other, &muscle, gravity, .5, .0075, 2);
+    bench_make(&other, &muscle, gravity, .5, PHYSICAL, 2);
     other.setup.device = device;
     bench_steps(&other, 4 * other.setup.check, other.setup.damping);
     gone = bench_go(&other);
@@ -125,7 +125,7 @@ static void test_end(const tled_executor *device, double tolerance, const char *
     static const double end[] = {1e-7, .0003, .0123457, .02}, gravity[3] = {0, 0, -9.81};
     for (int i = 0; i < 4; i++) {
         bench b;
-        bench_make(&b, &lump, gravity, 0, .0075, 2);
+        bench_make(&b, &lump, gravity, 0, PHYSICAL, 2);
         for (int64_t k = 0; k < 3 * b.script.keys; k++) /* at once */
             b.script.value[k] = gravity[k % 3];
         bench_steps(&b, timeline_steps_to(end[i], b.setup.rate), 0);
@@ -151,7 +151,7 @@ static void test_end_cut(const tled_executor *device, const char *name)
 {
     bench b[3];
     for (int i = 0; i < 3; i++) {
-        bench_make(&b[i], &muscle, NULL, 1, .0075, 1 + i % 2);
+        bench_make(&b[i], &muscle, NULL, 1, PHYSICAL, 1 + i % 2);
         b[i].setup.rate *= i == 2 ? 32 : 1;
         bench_steps(&b[i], timeline_steps_to(.0671, b[i].setup.rate), b[i].setup.damping);
         b[i].setup.device = device;
@@ -173,7 +173,7 @@ static void test_contraction(const block *what, const char *name)
 {
     int gone;
     bench b;
-    bench_make(&b, what, NULL, 1, .0075, 2);
+    bench_make(&b, what, NULL, 1, PHYSICAL, 2);
     bench_steps(&b, (int64_t)b.setup.rate, b.setup.damping);
     gone = bench_go(&b);
     ok(!gone && b.end.reading.kinetic < 1e-6 * b.end.reading.strain,
@@ -181,7 +181,7 @@ static void test_contraction(const block *what, const char *name)
        b.e.text);
     ok(b.end.reading.largest > .003, "%s has contracted: %.2g mm", name, 1e3 * b.end.reading.largest);
     bench_free(&b);
-    bench_make(&b, what, NULL, 1, .0075, 2);
+    bench_make(&b, what, NULL, 1, PHYSICAL, 2);
     gone = bench_go(&b);
     ok(!gone && b.end.rested, "%s comes to rest after %lld steps %s", name, (long long)b.end.steps, b.e.text);
     bench_free(&b);
@@ -207,7 +207,7 @@ static void test_judged(void)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         bench b;
         step_matrix a;
-        bench_make(&b, &lump, NULL, 0, .0075, 1);
+        bench_make(&b, &lump, NULL, 0, PHYSICAL, 1);
         strain(&b, 1.3, 1.2, 1.1);
         const tled_law law = tled_law_of(&b.problem, 0);
         step_matrix_of(&b.problem, &law, h, none, none, &a);
@@ -231,7 +231,7 @@ static void test_inverted(void)
     for (size_t i = 0; i < sizeof flat / sizeof *flat; i++)
         for (int a = 0; a < 3; a++) {
             bench b;
-            bench_make(&b, &half, NULL, 0, .0075, 1);
+            bench_make(&b, &half, NULL, 0, PHYSICAL, 1);
             double by[3] = {1, 1, 1};
             by[a] = flat[i];
             strain(&b, by[0], by[1], by[2]);
@@ -247,7 +247,7 @@ static void test_step_too_large(void)
 {
     int gone;
     bench b;
-    bench_make(&b, &muscle, NULL, 1, .0075, 1);
+    bench_make(&b, &muscle, NULL, 1, PHYSICAL, 1);
     bench_steps(&b, 100000, b.setup.damping);
     b.setup.rate = 1.5 / step_at_rest(&b.problem, NULL);
     b.setup.rate_fixed = true;
@@ -267,7 +267,7 @@ static void test_jump(const tled_executor *device, const char *name)
     for (int i = 0; i < 5; i++) {
         static const double every[] = {0, .0123, .0007, .01, 0};
         bench *to = i ? &b : &first;
-        bench_make(to, &fixed, NULL, 1, .0075, 1 + i % 3);
+        bench_make(to, &fixed, NULL, 1, PHYSICAL, 1 + i % 3);
         for (int64_t k = 0; k < to->script.keys; k++)
             to->script.time[k] = k ? .0101 : .01005; /* between two checks */
         to->setup.device = device;
@@ -297,7 +297,7 @@ static void test_just_stable(void)
     static const double share[] = {.99, .996, .9999, 1};
     for (int i = 0; i < 4; i++) {
         bench b;
-        bench_make(&b, &lump, NULL, 0, .0075, 1);
+        bench_make(&b, &lump, NULL, 0, PHYSICAL, 1);
         bench_steps(&b, 200, 0);
         b.problem.at_start.of[TLED_VELOCITY][0] = 1e-12;
         b.setup.rate = 1 / (share[i] * step_at_rest(&b.problem, NULL));
@@ -314,7 +314,7 @@ static void test_place(bool fixed)
 {
     bench b;
     char text[60];
-    bench_make(&b, &lump, NULL, 0, .0075, 1);
+    bench_make(&b, &lump, NULL, 0, PHYSICAL, 1);
     bench_steps(&b, 1000, 10);
     b.setup.rate_fixed = fixed;
     b.setup.check = 50;
@@ -332,7 +332,7 @@ static void test_diverged(void)
 {
     int gone;
     bench b;
-    bench_make(&b, &lump, NULL, 0, .0075, 1);
+    bench_make(&b, &lump, NULL, 0, PHYSICAL, 1);
     bench_steps(&b, 2000, 0);
     push(&b);
     b.setup.rate = .3 / step_at_rest(&b.problem, NULL);
@@ -362,14 +362,14 @@ static void test_let_go(void)
     block held = lump;
     bench b;
     held.fixed_low = 1;
-    bench_make(&b, &held, NULL, 0, .0075, 1);
+    bench_make(&b, &held, NULL, 0, PHYSICAL, 1);
     for (int64_t i = 0; i < b.problem.nodes; i++)
         b.problem.at_start.of[TLED_DISPLACEMENT][3 * i] = .2 * b.problem.position[3 * i];
     gone = bench_go(&b);
     ok(!gone && b.end.rested && b.end.reading.largest < 1e-5, "let go, it comes to rest after %lld steps, %.2g mm off",
        (long long)b.end.steps, 1e3 * b.end.reading.largest);
     bench_free(&b);
-    bench_make(&b, &held, NULL, 0, .0075, 1);
+    bench_make(&b, &held, NULL, 0, PHYSICAL, 1);
     gone = bench_go(&b);
     ok(!gone && b.end.rested && b.end.steps == 0 && b.frames == 1, "what nothing moves is at rest at once");
     b.setup.rest = 1e-4;
@@ -408,7 +408,7 @@ static void test_frame_fails(const tled_executor *device, const char *name)
     static const char *const want[] = {"no room at 0.000909091 s", "no room at 0.00295455 s", "no room at 0.0493182 s"};
     for (int i = 0; i < 3; i++) {
         bench b;
-        bench_make(&b, &muscle, NULL, .1, .0075, 1);
+        bench_make(&b, &muscle, NULL, .1, PHYSICAL, 1);
         bench_steps(&b, 1000000, b.setup.damping);
         b.setup.device = device;
         b.setup.every = every[i];
@@ -511,11 +511,11 @@ static void test_fraction(const tled_executor *device, const char *name)
     const double gravity[3] = {3, -2, -9.81};
     bench whole, half, mixed;
     block with = muscle;
-    bench_make(&whole, &muscle, gravity, .4, .0075, 2);
+    bench_make(&whole, &muscle, gravity, .4, PHYSICAL, 2);
     with.fraction = .5F;
-    bench_make(&half, &with, gravity, .4, .0075, 2);
+    bench_make(&half, &with, gravity, .4, PHYSICAL, 2);
     with.fraction = -1;
-    bench_make(&mixed, &with, gravity, .4, .0075, 2);
+    bench_make(&mixed, &with, gravity, .4, PHYSICAL, 2);
     bench *all[] = {&whole, &half, &mixed};
     int gone = 0;
     for (int i = 0; i < 3; i++) {

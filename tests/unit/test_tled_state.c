@@ -34,7 +34,7 @@ static void test_arrays(void)
                 "0 force 0.02,0.04,0.09 0.011 1,2,3\n"
                 "0 force 0.02,0.04,0.09 0.001 0.5,0,0\n"
                 "0 displace -1,-1,-1,1,1,0.001 -,0.001,-\n");
-    ok(!tled_problem_make(&p, &m, &s, .0075, &e), "the problem: %s", e.text);
+    ok(!tled_problem_make(&p, &m, &s, PHYSICAL, &e), "the problem: %s", e.text);
     for (int64_t n = 0; n < p.nodes; n++)
         mass += p.mass[n];
     near_(mass, 1000 * .02 * .04 * .09, 1e-12, "the nodes weigh what the block does");
@@ -87,7 +87,7 @@ static void test_loose(bool weight)
     block_make(&free_brick, &m);
     if (weight)
         script_add_gravity(&s, down, .1, &e);
-    ok(!tled_problem_make(&p, &m, &s, .0075, &e) && !support_of(&p, &parts, &e), "a brick: %s", e.text);
+    ok(!tled_problem_make(&p, &m, &s, PHYSICAL, &e) && !support_of(&p, &parts, &e), "a brick: %s", e.text);
     ok(parts.loose == 1 && parts.first == 0 && parts.in_them == 12 && parts.pushed == weight,
        "hangs on nothing, and is %s", weight ? "pushed" : "not pushed");
     near_(parts.reach, sqrt(.02 * .02 + .04 * .04 + .09 * .09), 1e-15, "its diagonal counts for the reach");
@@ -107,7 +107,7 @@ static void reaches(const char *text, double want, const char *name)
     err e = {0};
     block_make(&slice, &m);
     read_script(&s, &m, text);
-    ok(!tled_problem_make(&p, &m, &s, .0075, &e) && !support_of(&p, &held, &e), "a slice: %s", e.text);
+    ok(!tled_problem_make(&p, &m, &s, PHYSICAL, &e) && !support_of(&p, &held, &e), "a slice: %s", e.text);
     near_(held.reach, want, 1e-15, "%s", name);
     ok(!held.loose && held.falling < 0, "and nothing is loose");
     tled_problem_free(&p);
@@ -140,7 +140,7 @@ static void refused(model *m, const char *want)
     script s = {0};
     tled_problem p = {0};
     err e = {0};
-    int result = tled_problem_make(&p, m, &s, .0075, &e);
+    int result = tled_problem_make(&p, m, &s, PHYSICAL, &e);
     ok(result && e.status == STATUS_BAD && strstr(e.text, want), "refused: %s", e.text);
     tled_problem_free(&p);
     model_free(m);
@@ -196,7 +196,7 @@ static void test_start(void)
     notes warnings = {0};
     err e = {0};
     block_make(&brick, &m);
-    tled_problem_make(&p, &m, &s, .0075, &e);
+    tled_problem_make(&p, &m, &s, PHYSICAL, &e);
     ok(tled_problem_start(&p, &f, &warnings, &e) && strstr(e.text, "frame 4 has no node.displacement"), "%s", e.text);
     e = (err){0};
     frame_add(&f, &m, "node.displacement", &e)->f64[5] = .001;

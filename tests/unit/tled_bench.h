@@ -87,8 +87,8 @@ static inline void bench_finish(bench *b, int threads)
 }
 
 /* gravity and level: 0 for none; both come up over .1 s. Ends at rest until the caller says otherwise. */
-static inline void bench_make(bench *b, const block *what, const double gravity[3], double level, double kappa,
-                              int threads)
+static inline void bench_make(bench *b, const block *what, const double gravity[3], double level,
+                              hourglass_control control, int threads)
 {
     char contract[80];
     memset(b, 0, sizeof *b);
@@ -98,7 +98,7 @@ static inline void bench_make(bench *b, const block *what, const double gravity[
         bench_must(script_add_gravity(&b->script, gravity, .1, &b->e), &b->e);
     if (level > 0)
         bench_must(script_add_contract(&b->script, &b->m, contract, .1, &b->e), &b->e);
-    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, kappa, &b->e), &b->e);
+    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, control, &b->e), &b->e);
     bench_finish(b, threads);
 }
 
@@ -138,7 +138,7 @@ static inline void bench_free(bench *b)
 static inline double bench_look_at_rest(const block *what, const tled_executor *device)
 {
     bench b;
-    bench_make(&b, what, NULL, 0, .0075, 1);
+    bench_make(&b, what, NULL, 0, PHYSICAL, 1);
     tled_state *state = device->create(&b.problem, b.setup.threads, &b.e);
     monitor *w = monitor_create(&b.problem, b.setup.threads, &b.e);
     bench_must(!state || !w || monitor_read(w, device, state, 0, &b.e), &b.e);

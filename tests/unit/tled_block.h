@@ -4,8 +4,12 @@
 #ifndef SINEW_TLED_BLOCK_H
 #define SINEW_TLED_BLOCK_H
 
+#define PHYSICAL         ((hourglass_control){HOURGLASS_PHYSICAL, 0})
+#define ISOTROPIC(kappa) ((hourglass_control){HOURGLASS_ISOTROPIC, kappa})
+
 #include "mesh/lattice.h"
 #include "model/model.h"
+#include "physics/hourglass_numbers.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -13,13 +13,16 @@ static const block muscle = {{11, 6, 5}, {.0025, .0025, .0025}, 3000, .45, 1000,
 /* Of two columns whose threads nearly all have an element, and of layers that end. */
 static const block small = {{29, 14, 9}, {.001, .001, .001}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
 
+/* What holds the hourglass modes of problems that are made. */
+static hourglass_control in_control = {HOURGLASS_PHYSICAL, 0};
+
 static inline void read_script(bench *b, const char *text)
 {
     in *source = in_memory(text, strlen(text), "script", &b->e);
     bench_must(!source || script_read(&b->script, source, &b->m, &b->e), &b->e);
     in_close(source);
     tled_problem_free(&b->problem);
-    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, .0075, &b->e), &b->e);
+    bench_must(tled_problem_make(&b->problem, &b->m, &b->script, in_control, &b->e), &b->e);
 }
 
 /* All that a script can do, on a block of several bricks that hangs from a side. */
@@ -53,7 +56,7 @@ static inline void put_in_form(tled_problem *p)
 static inline void make(bench *b, const block *what, double level, bool scripted, const tled_executor *device,
                         int64_t steps)
 {
-    bench_make(b, what, NULL, level, .0075, 2);
+    bench_make(b, what, NULL, level, in_control, 2);
     if (scripted)
         add_script(b);
     if (in_form != FORM_NEO_HOOKEAN) /* which they are in */

@@ -39,7 +39,7 @@ static inline void test_history(const tled_executor *device, const block *what, 
     tled_sums sums;
     field row[HISTORY + 1];
     field_values got;
-    bench_make(&b, what, NULL, .7, .0075, 2);
+    bench_make(&b, what, NULL, .7, PHYSICAL, 2);
     tled_problem *p = &b.problem;
     add_history(p, row, FIELD_IN_FRAMES);
     fields_allocate(&p->fields, FIELDS_ALL, &got, "a test", &b.e);

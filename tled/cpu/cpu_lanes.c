@@ -24,7 +24,7 @@
 enum { LANES = ELEMENT_LANES, COEFFICIENTS = CPU_JOIN(FORM_, CPU_FORM, _NUMBERS) };
 
 typedef struct cpu_kind { /* a volume's numbers: cpu_kind_numbers */
-    double law[COEFFICIENTS + 1], tension;
+    double law[COEFFICIENTS + HOURGLASS_NUMBERS], tension;
 } cpu_kind;
 
 static inline const cpu_kind *kind_of(const cpu_work *w, int32_t volume)
@@ -131,24 +131,27 @@ static inline void add_field(const cpu_work *w, const rows_run *run, const eleme
 /* A volume's law, of what is tissue. */
 static inline element_law law_of_kind(const cpu_kind *kind, real share)
 {
-    element_law law = {{REAL_ZERO}, REAL_ZERO};
+    element_law law = {{REAL_ZERO}, {REAL_ZERO}};
     for (int i = 0; i < COEFFICIENTS; i++)
         law.c[i] = share * (real_one)kind->law[i];
-    law.hourglass = share * (real_one)kind->law[COEFFICIENTS];
+    for (int i = 0; i < HOURGLASS_NUMBERS; i++)
+        law.hourglass[i] = share * (real_one)kind->law[COEFFICIENTS + i];
     return law;
 }
 
 /* Likewise that of cells that are mixed. */
 static inline element_law law_of_cells(const cpu_work *w, int64_t cell, real share)
 {
-    element_law law = {{REAL_ZERO}, REAL_ZERO};
+    element_law law = {{REAL_ZERO}, {REAL_ZERO}};
     for (int i = 0; i < COEFFICIENTS; i++)
         law.c[i] = share * load(w->law[i], cell);
-    law.hourglass = share * load(w->law[COEFFICIENTS], cell);
+    for (int i = 0; i < HOURGLASS_NUMBERS; i++)
+        law.hourglass[i] = share * load(w->law[COEFFICIENTS + i], cell);
     return law;
 }
 
-static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active)
+static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control,
+                              bool active)
 {
     const cpu_kind *kind = kind_of(w, run->volume);
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* forces are linear in all below */
@@ -156,12 +159,13 @@ static inline void run_forces(const cpu_work *w, const rows_run *run, element_sh
     element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO};
     if (active)
         fibre = fibre_of(w->fibre, run, share * (real_one)kind->tension);
-    const element_field f = element_force(THE_FORM, moved_by(w, run), shape, law, fibre, active);
+    const element_field f = element_force(THE_FORM, control, moved_by(w, run), shape, law, fibre, active);
     add_field(w, run, &f);
 }
 
 /* Elements mixed of two volumes. */
-static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape, bool active, bool second)
+static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control,
+                                bool active, bool second)
 {
     const cpu_kind *kind = kind_of(w, run->volume), *mix = kind_of(w, run->mix);
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1, part = load(w->mixture, run->cell);
@@ -173,23 +177,32 @@ static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_
     if (second)
         mixfibre = fibre_of(w->mixfibre, run, other * (real_one)mix->tension);
     const element_field f =
-        element_force_of_two(THE_FORM, moved_by(w, run), shape, law, fibre, active, mixfibre, second);
+        element_force_of_two(THE_FORM, control, moved_by(w, run), shape, law, fibre, active, mixfibre, second);
     add_field(w, run, &f);
+}
+
+static inline void any_mixed_forces_of(const cpu_work *w, const rows_run *run, element_shape shape,
+                                       hourglass_kind control)
+{
+    const bool active = w->fibre[0] && kind_of(w, run->volume)->tension != 0;
+    const bool second = w->mixfibre[0] && kind_of(w, run->mix)->tension != 0;
+    if (active && second)
+        mixed_forces(w, run, shape, control, true, true);
+    else if (active)
+        mixed_forces(w, run, shape, control, true, false);
+    else if (second)
+        mixed_forces(w, run, shape, control, false, true);
+    else
+        mixed_forces(w, run, shape, control, false, false);
 }
 
 /* Apart from the loop, which is the faster without it. */
 static __attribute__((noinline)) void any_mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape)
 {
-    const bool active = w->fibre[0] && kind_of(w, run->volume)->tension != 0;
-    const bool second = w->mixfibre[0] && kind_of(w, run->mix)->tension != 0;
-    if (active && second)
-        mixed_forces(w, run, shape, true, true);
-    else if (active)
-        mixed_forces(w, run, shape, true, false);
-    else if (second)
-        mixed_forces(w, run, shape, false, true);
+    if (w->p->control.kind == HOURGLASS_PHYSICAL)
+        any_mixed_forces_of(w, run, shape, HOURGLASS_PHYSICAL);
     else
-        mixed_forces(w, run, shape, false, false);
+        any_mixed_forces_of(w, run, shape, HOURGLASS_ISOTROPIC);
 }
 
 /* One component of a node that the script displaces or pushes. */
@@ -252,6 +265,18 @@ static inline void move_nodes(const cpu_work *w, const rows_layer *l, int a, nod
     }
 }
 
+/* The forces of a layer's elements; control: a constant. */
+static inline void layer_forces(const cpu_work *w, const rows_layer *l, element_shape shape, hourglass_kind control)
+{
+    for (const rows_run *run = w->r->run + l->run; run < w->r->run + l->run + l->runs; run++)
+        if (run->mix >= 0)
+            any_mixed_forces(w, run, shape);
+        else if (w->fibre[0] && kind_of(w, run->volume)->tension != 0)
+            run_forces(w, run, shape, control, true);
+        else
+            run_forces(w, run, shape, control, false);
+}
+
 static void slab_pass(const cpu_work *w, int32_t which)
 {
 #ifdef ELEMENT_SINGLE /* whose smallest normal number tissue far from all that moves soon comes to */
@@ -263,13 +288,10 @@ static void slab_pass(const cpu_work *w, int32_t which)
     const node_factors k = node_factors_of(w->dt, w->damping);
     int32_t extra = s->extra;
     for (const rows_layer *l = r->layer + s->layer; l < r->layer + s->layer + s->layers; l++) {
-        for (const rows_run *run = r->run + l->run; run < r->run + l->run + l->runs; run++)
-            if (run->mix >= 0)
-                any_mixed_forces(w, run, shape);
-            else if (w->fibre[0] && kind_of(w, run->volume)->tension != 0)
-                run_forces(w, run, shape, true);
-            else
-                run_forces(w, run, shape, false);
+        if (w->p->control.kind == HOURGLASS_PHYSICAL)
+            layer_forces(w, l, shape, HOURGLASS_PHYSICAL);
+        else
+            layer_forces(w, l, shape, HOURGLASS_ISOTROPIC);
         for (; extra < s->extra + s->extras && r->extra[extra] < l->node + l->nodes; extra++)
             for (int a = 0; a < 3; a++)
                 move_extra(w, r->extra[extra], r->extra_node[extra], a, k);

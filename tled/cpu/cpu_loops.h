@@ -435,13 +435,14 @@ static void fill_cells(cpu_state *s)
             s->mixture[i] = (number)tled_mixture(p, element);
             for (int k = 0; k < form_numbers(p->form); k++)
                 s->law[k * cells + i] = (number)law.c[k];
-            s->law[form_numbers(p->form) * cells + i] = (number)law.hourglass;
+            for (int k = 0; k < HOURGLASS_NUMBERS; k++)
+                s->law[(form_numbers(p->form) + k) * cells + i] = (number)law.hourglass[k];
         }
     }
     for (int32_t i = 0; i < p->volumes; i++) {
         double *kind = s->kind + cpu_kind_numbers(p->form) * i;
         memcpy(kind, p->volume[i].law.c, (size_t)form_numbers(p->form) * sizeof *kind);
-        kind[form_numbers(p->form)] = p->volume[i].law.hourglass;
+        memcpy(kind + form_numbers(p->form), p->volume[i].law.hourglass, sizeof p->volume[i].law.hourglass);
     }
 }
 

@@ -60,9 +60,13 @@ static void mesh_element(const cpu_state *s, int64_t i, double *own)
     memcpy(own, c->slope, sizeof c->slope);
     memcpy(own + 3 * ELEMENT_MODES, c->twist, sizeof c->twist);
     own[ELEMENT_ANY - 1] = c->volume;
+    memcpy(own + ELEMENT_ANY, c->basis, sizeof c->basis);
+    for (int k = 0; k < HOURGLASS_FORM; k++)
+        own[ELEMENT_ANY + 9 + k] = share * c->hold[k];
     for (int k = 0; k < form_numbers(s->p->form); k++)
-        own[ELEMENT_ANY + k] = share * law.c[k];
-    own[mesh_numbers(s) - 1] = share * c->hourglass;
+        own[CPU_SHAPE + k] = share * law.c[k];
+    for (int k = 0; k < HOURGLASS_NUMBERS; k++)
+        own[CPU_SHAPE + form_numbers(s->p->form) + k] = share * c->hourglass[k];
 }
 
 static void mesh_fill(cpu_state *s)
@@ -71,7 +75,7 @@ static void mesh_fill(cpu_state *s)
     const int64_t lanes = s->pass->lanes, places = mesh_groups(s) * lanes, numbers = mesh_numbers(s);
     for (int64_t i = 0; i < places; i++) {
         const int64_t element = i < p->elements ? i : p->elements - 1, group = i / lanes, lane = i % lanes;
-        double own[CPU_SHAPE + FORM_NUMBERS + 1] = {0};
+        double own[CPU_SHAPE + FORM_NUMBERS + HOURGLASS_NUMBERS] = {0};
         if (i < p->elements)
             mesh_element(s, i, own);
         for (int k = 0; k < numbers; k++)

@@ -20,7 +20,22 @@ static inline element_vector mesh_vector(const real_one *at, int first)
     return v;
 }
 
-static inline element_any mesh_shape(const real_one *at)
+/* Nothing, where control is not physical. */
+static inline hourglass_any mesh_held(const real_one *at, hourglass_kind control)
+{
+    const bool is = control == HOURGLASS_PHYSICAL;
+    hourglass_any held;
+    real basis[9];
+    for (int i = 0; i < 9; i++)
+        basis[i] = is ? load(at, (ELEMENT_ANY + i) * LANES) : REAL_ZERO;
+    held.basis =
+        (element_tensor){basis[0], basis[1], basis[2], basis[3], basis[4], basis[5], basis[6], basis[7], basis[8]};
+    for (int i = 0; i < HOURGLASS_FORM; i++)
+        held.hold[i] = is ? load(at, (ELEMENT_ANY + 9 + i) * LANES) : REAL_ZERO;
+    return held;
+}
+
+static inline element_any mesh_shape(const real_one *at, hourglass_kind control)
 {
     element_any s;
     for (int m = 0; m < ELEMENT_MODES; m++)
@@ -28,15 +43,16 @@ static inline element_any mesh_shape(const real_one *at)
     for (int g = 0; g < ELEMENT_TWISTS; g++)
         s.twist[g] = mesh_vector(at, 3 * (ELEMENT_MODES + g));
     s.volume = load(at, 3 * (ELEMENT_MODES + ELEMENT_TWISTS) * LANES);
+    s.held = mesh_held(at, control);
     return s;
 }
 
 static inline element_law mesh_law(const real_one *at)
 {
-    element_law law = {{REAL_ZERO}, REAL_ZERO};
+    element_law law = {{REAL_ZERO}, {REAL_ZERO}};
     for (int i = 0; i < COEFFICIENTS; i++)
         law.c[i] = load(at, i * LANES);
-    law.hourglass = load(at, COEFFICIENTS * LANES);
+    law.hourglass[HOURGLASS_K] = load(at, (COEFFICIENTS + HOURGLASS_K) * LANES);
     return law;
 }
 
@@ -65,27 +81,37 @@ static inline void mesh_store(real_one *to, const element_corners *f)
         store(to, i * LANES, f->at[i]);
 }
 
+/* The forces of groups; control: a constant. */
+static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t to, hourglass_kind control)
+{
+    for (int64_t group = from; group < to; group++) {
+        const real_one *own =
+            (const real_one *)w->shape + group * (CPU_SHAPE + COEFFICIENTS + HOURGLASS_NUMBERS) * LANES;
+        const int32_t *node = w->group_node + group * 8 * LANES;
+        real_one *force = (real_one *)w->force + group * 24 * LANES;
+        const element_any shape = mesh_shape(own, control);
+        const element_law law = mesh_law(own + CPU_SHAPE * LANES);
+        const element_field u = {mesh_corners(w->from[0], node), mesh_corners(w->from[1], node),
+                                 mesh_corners(w->from[2], node)};
+        bool active;
+        const element_fibre fibre = mesh_fibre(w, group, &active);
+        const element_field f = active ? element_any_force(THE_FORM, control, u, &shape, law, fibre, true)
+                                       : element_any_force(THE_FORM, control, u, &shape, law, fibre, false);
+        mesh_store(force, &f.x);
+        mesh_store(force + 8 * LANES, &f.y);
+        mesh_store(force + 16 * LANES, &f.z);
+    }
+}
+
 static void mesh_elements(const cpu_work *w, int64_t from, int64_t to)
 {
 #ifdef ELEMENT_SINGLE
     const unsigned before = flush_small();
 #endif
-    for (int64_t group = from; group < to; group++) {
-        const real_one *own = (const real_one *)w->shape + group * (CPU_SHAPE + COEFFICIENTS + 1) * LANES;
-        const int32_t *node = w->group_node + group * 8 * LANES;
-        real_one *force = (real_one *)w->force + group * 24 * LANES;
-        const element_any shape = mesh_shape(own);
-        const element_law law = mesh_law(own + ELEMENT_ANY * LANES);
-        const element_field u = {mesh_corners(w->from[0], node), mesh_corners(w->from[1], node),
-                                 mesh_corners(w->from[2], node)};
-        bool active;
-        const element_fibre fibre = mesh_fibre(w, group, &active);
-        const element_field f = active ? element_any_force(THE_FORM, u, &shape, law, fibre, true)
-                                       : element_any_force(THE_FORM, u, &shape, law, fibre, false);
-        mesh_store(force, &f.x);
-        mesh_store(force + 8 * LANES, &f.y);
-        mesh_store(force + 16 * LANES, &f.z);
-    }
+    if (w->p->control.kind == HOURGLASS_PHYSICAL)
+        mesh_groups_forces(w, from, to, HOURGLASS_PHYSICAL);
+    else
+        mesh_groups_forces(w, from, to, HOURGLASS_ISOTROPIC);
 #ifdef ELEMENT_SINGLE
     flush_as(before);
 #endif

@@ -12,12 +12,12 @@
 #include "tled/cpu/rows.h"
 
 /* What an element without a lattice has, in a group's lanes: element_any, then a law's numbers. */
-enum { CPU_SHAPE = 34 };
+enum { CPU_SHAPE = 34 + 9 + HOURGLASS_FORM };
 
-/* A law's numbers, in this order: the form's coefficients, then the hourglass stiffness. */
+/* A law's numbers, in this order: the form's coefficients, then what holds the hourglass modes. */
 static inline int cpu_law_numbers(form f)
 {
-    return form_numbers(f) + 1;
+    return form_numbers(f) + HOURGLASS_NUMBERS;
 }
 
 /* A volume's numbers: those of its law, and its tension. As many as the form has: steppers read them for each run. */
@@ -39,15 +39,15 @@ typedef struct cpu_work {
     void *sum[3]; /* zeros, before and after */
     const void *mass_inverse;
     const uint8_t *flags;
-    const void *fibre[3];              /* cells, or NULL */
-    const void *fraction;              /* cells, or NULL */
-    const void *mixture;               /* cells, or NULL: none is mixed */
-    const void *law[FORM_NUMBERS + 1]; /* cells: those that are mixed; or NULL */
-    const void *mixfibre[3];           /* cells, or NULL */
-    const void *shape;                 /* without a lattice: groups x (CPU_SHAPE + a law's numbers) x lanes; or NULL */
-    const int32_t *group_node;         /* groups x 8 x lanes */
-    void *force;                       /* groups x 3 x 8 x lanes: what each corner is pulled with */
-    const double *now, *next;          /* the curves' values */
+    const void *fibre[3];                              /* cells, or NULL */
+    const void *fraction;                              /* cells, or NULL */
+    const void *mixture;                               /* cells, or NULL: none is mixed */
+    const void *law[FORM_NUMBERS + HOURGLASS_NUMBERS]; /* cells: those that are mixed; or NULL */
+    const void *mixfibre[3];                           /* cells, or NULL */
+    const void *shape;         /* without a lattice: groups x (CPU_SHAPE + a law's numbers) x lanes; or NULL */
+    const int32_t *group_node; /* groups x 8 x lanes */
+    void *force;               /* groups x 3 x 8 x lanes: what each corner is pulled with */
+    const double *now, *next;  /* the curves' values */
     double dt, damping;
     int what;
 } cpu_work;

@@ -14,10 +14,13 @@ typedef struct face {
     float mean[3], x[3], y[3], xy[3];
 } face;
 
-/* Forces of the cell below on a face; on its xy: those are twice `hourglass` times the face's. */
-typedef struct push {
+/* Forces of the cell below on a face; isotropic: on its xy, those are twice `hourglass` times the face's. */
+template <march_control K> struct push {
+    float mean[3], x[3], y[3], xy[3];
+};
+template <> struct push<MARCH_ISOTROPIC> {
     float mean[3], x[3], y[3], hourglass;
-} push;
+};
 
 /* Of displacements at corners (0, 0), (1, 0), (0, 1), (1, 1). */
 static __device__ __forceinline__ face face_between(float4 a, float4 b, float4 c, float4 d)
@@ -82,7 +85,8 @@ static __device__ __forceinline__ element_tensor gradient_of(const cuda_march &m
 
 /* The forces of a cell: `sum` gets those on its lower face, with `below`, which becomes those on its upper face. */
 static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu, float bulk, float hourglass, bool is,
-                                                   const face &low, const face &high, face *sum, push *below)
+                                                   const face &low, const face &high, face *sum,
+                                                   push<MARCH_ISOTROPIC> *below)
 {
     const element_tensor s = stress(gradient_of(m, low, high), mu, bulk, is);
     const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
@@ -102,9 +106,198 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu
     below->hourglass = hourglass;
 }
 
+/* ---- physical control
+ *
+ * With c = 4 h and L = diag(1/c), F' = F L^-1 = diag(c) + H' has as H' the sums and differences over corners, which so
+ * need no slopes, and the forces on these, V P L, no areas. With G' = cof F' and V' = 64 V = c_x c_y c_z,
+ *     V P L = all V L + own V H' L^2 + g (G' - V' L)/64,   J - 1 = (det F' - V')/V',
+ * all, own and g being those of `stress`. The strains of a mode, 1/(4 h_i) times q_i, are e = F'^-1 m. With s = dW/de
+ * the forces on the mode are f = F'^-T s, and V P L has -f (x) e. The three shears share one sum: with a, b, c the
+ * strains yz.x, zx.y, xy.z and l = 1/c,
+ *     s_a = mu V/3 ((l_y^2 + l_z^2 - l_x^2)/l_x^2 a + (a + b + c)). */
+
+/* F' and, first order in H', what of it is measured from rest. */
+typedef struct stretch {
+    float h[3][3];  /* H': row a, column: of the modes x, y, z */
+    float g[3][3];  /* cof F'; on the diagonal, less that at rest */
+    float dilation; /* det F' - V' */
+    float third;    /* (tr C - 3)/3 */
+} stretch;
+
+/* Of a box, by axis. */
+template <march_control K> static __device__ __forceinline__ float of_side(const float side[3], int i)
+{
+    return side[K == MARCH_PHYSICAL_CUBES ? 0 : i];
+}
+
+template <march_control K>
+static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, const face &low, const face &high)
+{
+    stretch s;
+    float f[3], part[3];
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        s.h[a][0] = low.x[a] + high.x[a];
+        s.h[a][1] = low.y[a] + high.y[a];
+        s.h[a][2] = high.mean[a] - low.mean[a];
+    }
+#pragma unroll
+    for (int i = 0; i < 3; i++)
+        f[i] = of_side<K>(m.width, i) + s.h[i][i];
+#pragma unroll
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        s.g[i][i] = s.h[j][j] * f[k] + (of_side<K>(m.width, j) * s.h[k][k] - s.h[j][k] * s.h[k][j]);
+        s.g[i][j] = s.h[j][k] * s.h[k][i] - s.h[j][i] * f[k];
+        s.g[i][k] = s.h[j][i] * s.h[k][j] - s.h[k][i] * f[j];
+        part[i] = of_side<K>(m.width, i) * s.h[i][i] + s.h[i][i] * f[i] + s.h[j][i] * s.h[j][i] + s.h[k][i] * s.h[k][i];
+    }
+    s.dilation = f[0] * s.g[0][0] + m.face[0] * s.h[0][0] + s.h[0][1] * s.g[0][1] + s.h[0][2] * s.g[0][2];
+    if constexpr (K == MARCH_PHYSICAL_CUBES)
+        s.third = m.thirds[0] * (part[0] + part[1] + part[2]);
+    else
+        s.third = m.thirds[0] * part[0] + m.thirds[1] * part[1] + m.thirds[2] * part[2];
+    return s;
+}
+
+/* V P L, by `stress`' formula; no cell: 0. */
+template <march_control K>
+static __device__ __forceinline__ void push_of(const cuda_march &m, const stretch &s, float mu, float bulk, bool is,
+                                               float p[3][3])
+{
+    const float dilation = s.dilation * m.density;
+    const float j = 1 + dilation, scale = is ? mu * power(j) : 0, pressure = is ? bulk * dilation : 0;
+    const float all = pressure + scale * (dilation - s.third), own = scale * j;
+    const float g = (pressure - (scale + scale * s.third)) * (1.f / 64);
+#pragma unroll
+    for (int i = 0; i < 3; i++) {
+        const float column = own * of_side<K>(m.squares, i);
+#pragma unroll
+        for (int a = 0; a < 3; a++)
+            p[a][i] = column * s.h[a][i] + g * s.g[a][i];
+        p[i][i] += all * of_side<K>(m.area, i);
+    }
+}
+
+/* F'^-T; no cell: nothing. */
+template <march_control K>
+static __device__ __forceinline__ void inverse_of(const cuda_march &m, const stretch &s, bool is, float to[3][3])
+{
+    const float inverse = is ? near_inverse(m.volume + s.dilation) : 0;
+#pragma unroll
+    for (int i = 0; i < 3; i++)
+#pragma unroll
+        for (int a = 0; a < 3; a++)
+            to[a][i] = a == i ? s.g[i][i] * inverse + of_side<K>(m.face, i) * inverse : s.g[a][i] * inverse;
+}
+
+/* Strains of a mode. */
+static __device__ __forceinline__ void strains_of(const float inverse[3][3], const float mode[3], float to[3])
+{
+#pragma unroll
+    for (int i = 0; i < 3; i++)
+        to[i] = inverse[0][i] * mode[0] + inverse[1][i] * mode[1] + inverse[2][i] * mode[2];
+}
+
+/* Forces on a mode from its stresses; p gets what it has of them. */
+static __device__ __forceinline__ void mode_forces(const float inverse[3][3], const float stress[3],
+                                                   const float strain[3], float to[3], float p[3][3])
+{
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        to[a] = inverse[a][0] * stress[0] + inverse[a][1] * stress[1] + inverse[a][2] * stress[2];
+#pragma unroll
+        for (int i = 0; i < 3; i++)
+            p[a][i] -= to[a] * strain[i];
+    }
+}
+
+/* Forces on the modes of a cell: of its faces' xy, whose sum and difference are its modes xy and xyz, of yz and zx. */
+typedef struct mode_force {
+    float low[3], high[3], yz[3], zx[3];
+} mode_force;
+
+static __device__ __forceinline__ void hold_modes(const march_hold &k, const float inverse[3][3], const face &low,
+                                                  const face &high, mode_force *f, float p[3][3])
+{
+    float yz[3], zx[3], e_low[3], e_high[3], e_yz[3], e_zx[3], xy[3], s_low[3], s_high[3], s_yz[3], s_zx[3];
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        yz[a] = high.y[a] - low.y[a];
+        zx[a] = high.x[a] - low.x[a];
+    }
+    strains_of(inverse, low.xy, e_low);
+    strains_of(inverse, high.xy, e_high);
+    strains_of(inverse, yz, e_yz);
+    strains_of(inverse, zx, e_zx);
+#pragma unroll
+    for (int i = 0; i < 3; i++)
+        xy[i] = e_low[i] + e_high[i];
+    const float twist = k.torsion * (e_yz[0] + e_zx[1] + xy[2]);
+    const float s_xy[3] = {k.bending * xy[0] + k.coupling * e_yz[2], k.bending * xy[1] + k.coupling * e_zx[2],
+                           k.own[2] * xy[2] + twist};
+    s_yz[0] = k.own[0] * e_yz[0] + twist;
+    s_yz[1] = k.bending * e_yz[1] + k.coupling * e_zx[0];
+    s_yz[2] = k.bending * e_yz[2] + k.coupling * xy[0];
+    s_zx[0] = k.bending * e_zx[0] + k.coupling * e_yz[1];
+    s_zx[1] = k.own[1] * e_zx[1] + twist;
+    s_zx[2] = k.bending * e_zx[2] + k.coupling * xy[1];
+#pragma unroll
+    for (int i = 0; i < 3; i++) {
+        const float gap = e_high[i] - e_low[i];
+        s_low[i] = s_xy[i] - k.corner * gap;
+        s_high[i] = s_xy[i] + k.corner * gap;
+    }
+    mode_forces(inverse, s_low, e_low, f->low, p);
+    mode_forces(inverse, s_high, e_high, f->high, p);
+    mode_forces(inverse, s_yz, e_yz, f->yz, p);
+    mode_forces(inverse, s_zx, e_zx, f->zx, p);
+}
+
+/* As cell_forces of isotropic control. */
+template <march_control K>
+static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu, float bulk, const march_hold &k,
+                                                   bool is, const face &low, const face &high, face *sum,
+                                                   push<K> *below)
+{
+    float p[3][3], inverse[3][3];
+    mode_force f;
+    const stretch s = stretch_of<K>(m, low, high);
+    push_of<K>(m, s, mu, bulk, is, p);
+    inverse_of<K>(m, s, is, inverse);
+    hold_modes(k, inverse, low, high, &f, p);
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        sum->mean[a] = below->mean[a] - p[a][2];
+        sum->x[a] = below->x[a] + (p[a][0] - f.zx[a]);
+        sum->y[a] = below->y[a] + (p[a][1] - f.yz[a]);
+        sum->xy[a] = below->xy[a] + f.low[a];
+        below->mean[a] = p[a][2];
+        below->x[a] = p[a][0] + f.zx[a];
+        below->y[a] = p[a][1] + f.yz[a];
+        below->xy[a] = f.high[a];
+    }
+}
+
+/* By hourglass_numbers' formulas. */
+static __device__ __forceinline__ march_hold hold_of(const cuda_march &m, float mu, float bulk)
+{
+    const float least = 1e-30f, torsion = m.volume * (1.f / 192) * mu, twice = 2 * torsion;
+    march_hold k;
+    k.coupling = twice * (bulk - 2.f / 3 * mu) * near_inverse(fmaxf(bulk + 4.f / 3 * mu, least));
+    k.bending = k.coupling + twice;
+    k.torsion = torsion;
+    k.corner = 3 * torsion * bulk * near_inverse(fmaxf(3 * bulk + mu, least));
+#pragma unroll
+    for (int a = 0; a < 3; a++)
+        k.own[a] = m.own[a] * torsion;
+    return k;
+}
+
 /* Adds those of a muscle; h: the cell's gradient, tension: Pa. */
+template <march_control K>
 static __device__ __forceinline__ void add_tension(const cuda_march &m, element_tensor h, element_fibre fibre,
-                                                   face *sum, push *below)
+                                                   face *sum, push<K> *below)
 {
     const element_tensor s = element_active(h, fibre);
     const float px[3] = {s.xx, s.yx, s.zx}, py[3] = {s.xy, s.yy, s.zy}, pz[3] = {s.xz, s.yz, s.zz};
@@ -120,7 +313,7 @@ static __device__ __forceinline__ void add_tension(const cuda_march &m, element_
 }
 
 /* What a cell below leaves on a face, where there is none above it. */
-static __device__ __forceinline__ face face_of(const push &below, const face &low)
+template <march_control K> static __device__ __forceinline__ face face_of(const push<K> &below, const face &low)
 {
     face f;
 #pragma unroll
@@ -128,7 +321,10 @@ static __device__ __forceinline__ face face_of(const push &below, const face &lo
         f.mean[a] = below.mean[a];
         f.x[a] = below.x[a];
         f.y[a] = below.y[a];
-        f.xy[a] = 2 * below.hourglass * low.xy[a];
+        if constexpr (K == MARCH_ISOTROPIC)
+            f.xy[a] = 2 * below.hourglass * low.xy[a];
+        else
+            f.xy[a] = below.xy[a];
     }
     return f;
 }

@@ -44,13 +44,15 @@ static __device__ real cell_tension(const cuda_kind &kind, const cuda_pass &p)
 }
 
 /* A law's numbers, of what is tissue. */
-template <class L, class T> static __device__ element_law law_of(const T *c, T hourglass, real share)
+template <class L, class T> static __device__ element_law law_of(const T *c, const T *hourglass, real share)
 {
     element_law law;
 #pragma unroll
     for (int i = 0; i < L::COEFFICIENTS; i++)
         law.c[i] = share * (real)c[i];
-    law.hourglass = share * (real)hourglass;
+#pragma unroll
+    for (int i = 0; i < L::HELD; i++)
+        law.hourglass[i] = share * (real)hourglass[i];
     return law;
 }
 
@@ -75,7 +77,7 @@ static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda
         second.along = cell_along(t, i, v.mixfibre);
         second.tension = other * tension_of_mix;
     }
-    return element_force_of_two(L::FORM, cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
+    return element_force_of_two(L::FORM, L::CONTROL, cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
                                 tension_of_mix != 0);
 }
 
@@ -84,14 +86,14 @@ static __device__ element_field plain_force(const cuda_view<real> &v, const cuda
                                             const real *u, int place, uint32_t volume, real share)
 {
     const real *stiff = p.law + L::LAW * volume;
-    const element_law law = law_of<L>(stiff, stiff[L::COEFFICIENTS], share);
+    const element_law law = law_of<L>(stiff, stiff + L::COEFFICIENTS, share);
     element_fibre fibre = {{0, 0, 0}, 0};
     if (i < t.fibred) {
         const cuda_kind &kind = v.kind[volume];
         fibre.along = cell_along(t, i, v.fibre);
         fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
     }
-    return element_force(L::FORM, cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
+    return element_force(L::FORM, L::CONTROL, cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
 }
 
 /* MIXED: there are cells mixed of two volumes; a kernel of its own, so that others do without. */
@@ -142,6 +144,7 @@ static __device__ void bring_gravity(const cuda_view<real> &v, const double *now
 
 template <class L> static __device__ void bring_laws(const cuda_view<real> &v, cuda_pass *p, real *room)
 {
+    static_assert(L::LAW * LAWS_NEAR <= 128, "a thread brings one number"); /* no brick has fewer threads */
     const bool near = v.volumes <= LAWS_NEAR;
     p->gravity = room;
     p->law = near ? room + 4 : v.law;
@@ -265,8 +268,14 @@ template <class G> static constexpr int together(void)
     return sizeof(real) == sizeof(float) ? G::TOGETHER : 1;
 }
 
+/* But 16 warps of it are to be on a multiprocessor: of physical control, a few more registers would halve them. */
+template <class G> static constexpr int passes_together(void)
+{
+    return sizeof(real) == sizeof(float) ? G::TOGETHER : 512 / G::THREADS;
+}
+
 template <class G, class L, bool MIXED>
-static __global__ void __launch_bounds__(G::THREADS, together<G>())
+static __global__ void __launch_bounds__(G::THREADS, passes_together<G>())
     pass_kernel(cuda_view<real> v, const __grid_constant__ cuda_pass given)
 {
     DYNAMIC_SHARED(double, memory);

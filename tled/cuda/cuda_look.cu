@@ -24,10 +24,11 @@ enum {
  * the answer, with cells for elements, whose frequency no cell of the tile is past; and what is proven: that a cell
  * reaches it, or else that at rest. */
 typedef struct look_parts {
-    tled_sums *block;     /* then, of SOLVERS blocks at most, what they found of some each */
-    double *proven;       /* blocks */
-    int64_t share;        /* nodes of a block */
-    element_vector slope; /* element_shape's: kernels then divide less */
+    tled_sums *block;    /* then, of SOLVERS blocks at most, what they found of some each */
+    double *proven;      /* blocks */
+    int64_t share;       /* nodes of a block */
+    element_shape shape; /* kernels then divide less */
+    double slope;        /* its largest */
 } look_parts;
 
 size_t cuda_look_bytes(int64_t tiles)
@@ -39,8 +40,9 @@ template <class S> static look_parts parts_of(const cuda_look<S> *l)
 {
     const double *side = l->view.side;
     tled_sums *block = (tled_sums *)l->parts;
-    return {block, (double *)(block + l->count), (l->view.nodes + l->count - 1) / l->count,
-            element_box(side[0], side[1], side[2]).slope};
+    const element_shape shape = element_box(side[0], side[1], side[2]);
+    return {block, (double *)(block + l->count), (l->view.nodes + l->count - 1) / l->count, shape,
+            fmax(shape.slope.x, fmax(shape.slope.y, shape.slope.z))};
 }
 
 /* ---- cells */
@@ -50,10 +52,27 @@ typedef struct one_cell {
     cuda_mixed own;
     element_tensor h;
     double hourglass; /* its energy */
+    double twist;     /* the length that stability_twists_by takes */
 } one_cell;
 
+/* What its hourglass modes have of energy, as hourglass_of would have it, with fewer operations. */
+template <class L>
+static __device__ void hold_cell(hourglass_modes m, const element_shape &shape, const double *held, one_cell *c)
+{
+    if constexpr (L::CONTROL == HOURGLASS_ISOTROPIC) {
+        c->hourglass = held[HOURGLASS_K] * hourglass_dot(&m, &m) / 2;
+        c->twist = 0;
+        return;
+    }
+    const double inverse = 1 / (1 + element_dilation(c->h));
+    const hourglass_modes w = hourglass_all_by_columns(element_cofactor(c->h), m);
+    const hourglass_modes t = hourglass_box(&w, shape, held, inverse * inverse);
+    c->hourglass = hourglass_dot(&t, &w) / 2;
+    c->twist = sqrt(hourglass_dot(&w, &w));
+}
+
 template <class G, class L, class S>
-static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u, element_vector slope)
+static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u, const element_shape &shape)
 {
     const cuda_view<S> &v = l.view;
     const uint32_t cell = v.cell[t.cell + i];
@@ -64,18 +83,18 @@ static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, 
     element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
     element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
     one_cell c;
-    c.own = {{0}, kind.density, kind.hourglass, 0, -1};
+    c.own = {{0}, kind.density, {0}, kind.twists, 0, -1};
     if (mixed >= 0) {
         const cuda_mixed &m = v.mixture[mixed];
-        c.own = {{0}, m.density, m.hourglass, m.share, m.mix};
+        c.own = {{0}, m.density, {0}, m.twists, m.share, m.mix};
     }
     const double *from = mixed >= 0 ? v.mixture[mixed].c : kind.c;
+    const double *held = mixed >= 0 ? v.mixture[mixed].hourglass : kind.hourglass;
 #pragma unroll
     for (int k = 0; k < L::COEFFICIENTS; k++)
         c.own.c[k] = from[k];
-    c.h = element_gradient(x, y, z, slope);
-    c.hourglass = element_hourglass_energy(x, c.own.hourglass) + element_hourglass_energy(y, c.own.hourglass) +
-                  element_hourglass_energy(z, c.own.hourglass);
+    c.h = element_gradient(x, y, z, shape.slope);
+    hold_cell<L>(element_hourglass_modes(x, y, z), shape, held, &c);
     return c;
 }
 
@@ -156,17 +175,22 @@ template <class G> static __device__ int list_own(const unsigned *who, own_cells
     return count;
 }
 
+template <class L> static __device__ stability_twists twists_of(const one_cell &c, const look_parts &parts)
+{
+    return stability_twists_by(L::CONTROL, c.own.twists, parts.slope, c.h, c.twist);
+}
+
 /* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread
  * nearly twice the registers. Returns what is proven. */
 template <class G, class L, class S>
 static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
-                                       int count, element_vector slope, tled_sums *to)
+                                       int count, const look_parts &parts, tled_sums *to)
 {
     double proven = l.question.rest;
 #pragma unroll 1
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
-        const one_cell c = cell_of<G, L>(l, t, i, u, slope);
+        const one_cell c = cell_of<G, L>(l, t, i, u, parts.shape);
         const double strain = strain_of<L>(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
@@ -176,8 +200,9 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
         element_fibre fibre[2];
         fibres_of(l, t, i, c, fibre);
         const double unit = 8 / sqrt(c.own.density);
-        const element_vector d = {unit * slope.x, unit * slope.y, unit * slope.z};
-        const stability_range range = stability_range_scaled(L::FORM, c.own.c, d, c.h, fibre[0], fibre[1]);
+        const element_vector slope = parts.shape.slope, d = {unit * slope.x, unit * slope.y, unit * slope.z};
+        const stability_range range = stability_range_with(
+            stability_range_scaled(L::FORM, c.own.c, d, c.h, fibre[0], fibre[1]), twists_of<L>(c, parts));
         if (range.high <= l.question.rest)
             continue;
         const double bound = isnan(range.high) ? INFINITY : range.high;
@@ -201,16 +226,16 @@ typedef struct highest {
 /* Some thread's matrix reaches past the limit: raises it by halving until it is the
  * highest, or too high by `raise` at most. */
 template <int THREADS>
-static __device__ void raise_limit(const step_matrix *a, bool past, double raise, int32_t cell, highest *h,
-                                   double *scratch, int *least)
+static __device__ void raise_limit(const step_matrix *a, stability_twists twists, bool past, double raise, int32_t cell,
+                                   highest *h, double *scratch, int *least)
 {
-    double low = h->limit, high = block_most<THREADS>(past ? stability_bound(a) : 0, scratch);
+    double low = h->limit, high = block_most<THREADS>(past ? stability_square(twists, stability_bound(a)) : 0, scratch);
     const double gap = fmax(raise - 1, 1e-13);
     high = fmax(high, low);
     bool at_low = past;
     for (int i = 0; i < 100 && high - low > gap * low; i++) {
         double middle = low + (high - low) / 2;
-        bool mine = past && !stability_below(a, middle);
+        bool mine = past && !stability_below(a, stability_room(twists, middle));
         if (__syncthreads_or(mine)) {
             low = middle;
             at_low = mine;
@@ -225,7 +250,7 @@ static __device__ void raise_limit(const step_matrix *a, bool past, double raise
 
 /* The frequency of a tile by its cells' matrices. */
 template <class G, class L, class S>
-static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, element_vector slope, tled_sums *out, S *u,
+static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const look_parts &parts, tled_sums *out, S *u,
                                   double *scratch, int *least)
 {
     highest h = {l.question.rest, -1};
@@ -236,16 +261,18 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, element_
         const int i = base + (int)threadIdx.x;
         bool past = i < t.cells && l.view.cell[t.cell + i] >> TILE_OWN & 1;
         step_matrix a;
+        stability_twists twists = {0, 0};
         if (past) {
-            const one_cell c = cell_of<G, L>(l, t, i, u, slope);
+            const one_cell c = cell_of<G, L>(l, t, i, u, parts.shape);
             element_fibre fibre[2];
             fibres_of(l, t, i, c, fibre);
+            twists = twists_of<L>(c, parts);
             past = strain_of<L>(l, t, i, c) < INFINITY;
             stability_matrix(L::FORM, c.own.c, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
         }
-        past = past && !stability_below(&a, h.limit);
+        past = past && !stability_below(&a, stability_room(twists, h.limit));
         if (__syncthreads_or(past))
-            raise_limit<G::THREADS>(&a, past, l.question.raise, t.cell + i, &h, scratch, least);
+            raise_limit<G::THREADS>(&a, twists, past, l.question.raise, t.cell + i, &h, scratch, least);
     }
     if (threadIdx.x == 0) {
         out->frequency = h.limit;
@@ -361,7 +388,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     const int count = list_own<G>(who, &own);
     __syncthreads();
     mine = nothing_seen(l.question.rest);
-    const double most = warp_most(look_at_cells<G, L>(l, t, u, own, count, out.slope, &mine));
+    const double most = warp_most(look_at_cells<G, L>(l, t, u, own, count, out, &mine));
     sum_cells(&mine);
     if (threadIdx.x % 32 == 0) {
         add_part(&part[warp], mine);
@@ -410,7 +437,7 @@ static __global__ void __launch_bounds__(G::THREADS)
         int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
         for (int which; (which = block_least(next, &least)) != NONE;) {
             const int64_t at = base + which * stride;
-            solve_tile<G, L>(l, l.view.tiles[at], parts.slope, &parts.block[at], u, number, &least);
+            solve_tile<G, L>(l, l.view.tiles[at], parts, &parts.block[at], u, number, &least);
             next = next == which ? NONE : next;
         }
         if (own < l.count)
@@ -429,12 +456,13 @@ static __global__ void __launch_bounds__(SUM_THREADS)
     sum_block<SUM_THREADS>(mine, true, scratch, out);
 }
 
-template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, form f, tled_sums *sums, cudaStream_t stream)
+template <class S>
+cudaError_t cuda_look_start(const cuda_look<S> *l, form f, hourglass_kind kind, tled_sums *sums, cudaStream_t stream)
 {
     const look_parts parts = parts_of(l);
     const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
     cudaError_t e = with_brick(l->size, [&](auto g) {
-        return with_form(f, [&](auto form_) {
+        return with_stepper(f, kind, [&](auto form_) {
             typedef decltype(g) G;
             typedef decltype(form_) L;
             typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
@@ -475,7 +503,8 @@ template <class S> cudaError_t cuda_save_start(const cuda_view<S> *v, const cuda
     return card_start(save_kernel<S>, {blocks, SAVE_THREADS, 0, stream}, *v, *saved);
 }
 
-template cudaError_t cuda_look_start<float>(const cuda_look<float> *, form, tled_sums *, cudaStream_t);
-template cudaError_t cuda_look_start<double>(const cuda_look<double> *, form, tled_sums *, cudaStream_t);
+template cudaError_t cuda_look_start<float>(const cuda_look<float> *, form, hourglass_kind, tled_sums *, cudaStream_t);
+template cudaError_t cuda_look_start<double>(const cuda_look<double> *, form, hourglass_kind, tled_sums *,
+                                             cudaStream_t);
 template cudaError_t cuda_save_start<float>(const cuda_view<float> *, const cuda_saved<float> *, cudaStream_t);
 template cudaError_t cuda_save_start<double>(const cuda_view<double> *, const cuda_saved<double> *, cudaStream_t);

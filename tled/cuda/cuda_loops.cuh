@@ -182,7 +182,8 @@ static int cuda_monitor(cuda_state *s, const tled_question *q, tled_sums *sums, 
                          rows,
                          *q,
                          s->look_parts};
-    if (card_check(cuda_look_start(&l, s->p->form, s->sums, s->stream), "the start of a look", s->step, e) ||
+    if (card_check(cuda_look_start(&l, s->p->form, s->p->control.kind, s->sums, s->stream), "the start of a look",
+                   s->step, e) ||
         CUDA_TRY(cudaMemcpyAsync(s->sums_host, s->sums, sizeof *s->sums, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;

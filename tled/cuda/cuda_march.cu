@@ -38,16 +38,24 @@ enum {
     TOGETHER = 2          /* blocks of a multiprocessor */
 };
 
+/* Of flow.cells, in layer c. */
+enum {
+    CELLS_NEXT = 1,
+    CELLS_NOW = 2,
+    CELLS_BEFORE = 4,
+    CELLS_SHARED = 0x1e, /* else both buffers of forces have zeros of this warp's already */
+    CELLS_FIRST = 4      /* before the first layer: so that the first two share */
+};
+
 /* What goes from layer to layer. */
-typedef struct flow {
+template <march_control K> struct flow {
     const uint32_t *word;      /* of the layer after the one that the loop is at, this thread's */
     uint32_t after, far, more; /* words of layer c + 2, and c + MARCH_AHEAD, and there of the place beyond */
     int32_t which, detail;     /* march's: which, of layer c + 3; detail, of layer c + 4 */
     uint32_t last, now, then;  /* words of layers c - 1, c, c + 1 */
-    bool any, was;             /* this warp has cells in layers c, c - 1 */
-    int clean;                 /* buffers of forces in which this warp's are zero */
-    push below;
-} flow;
+    uint32_t cells;            /* bit i: this warp has cells in layer c + 1 - i */
+    push<K> below;
+};
 
 /* A thread's place in the grid of a layer's nodes. */
 static __device__ __forceinline__ int place_of(int thread)
@@ -148,9 +156,10 @@ static __device__ __forceinline__ void send_special(const cuda_march &m, uint32_
 /* Adds those of a special cell's muscles. The gradient is found once more, so that other cells need not keep
  * theirs; here, next: where the displacements of the cell's layers stand; layer: of all; few cells have a
  * second muscle, which is looked for there. */
+template <march_control K>
 static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const double *now, uint32_t record,
                                                      int32_t layer, uint32_t here, uint32_t next, face *sum,
-                                                     push *below)
+                                                     push<K> *below)
 {
     const float4 first = shared_load(record + RECORD);
     const int32_t curve = (int32_t)__float_as_uint(first.w);
@@ -169,19 +178,23 @@ static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const 
 }
 
 /* As cell_forces, of any cell of layer c. */
-template <bool SPECIAL>
-static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, const turn &t, flow *f, int c,
-                                                 const face &low, const face &high, uint32_t here, uint32_t next,
+template <march_control K, bool SPECIAL>
+static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, const turn &t, flow<K> *f,
+                                                 int c, const face &low, const face &high, uint32_t here, uint32_t next,
                                                  face *sum)
 {
     const bool is = f->now & MARCH_CELL, special = SPECIAL && f->now & MARCH_SPECIAL;
     const uint32_t record = record_of(t.memory, c);
-    float mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
+    const bool zero = K == MARCH_ISOTROPIC && !is;
+    float mu = zero ? 0 : m.law[0], bulk = zero ? 0 : m.law[1], hourglass = zero ? 0 : m.law[2];
     if (special) {
         const float4 law = shared_load(record);
         mu = law.x, bulk = law.y, hourglass = law.z;
     }
-    cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
+    if constexpr (K == MARCH_ISOTROPIC)
+        cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
+    else
+        cell_forces<K>(m, mu, bulk, SPECIAL ? hold_of(m, mu, bulk) : m.held, is, low, high, sum, &f->below);
     if (special)
         muscle_forces(m, now, record, t.base + c, here, next, sum, &f->below);
 }
@@ -280,7 +293,7 @@ static __device__ __forceinline__ void say_done(const turn &t)
 }
 
 /* Words of the layer after the next are on their way while a layer is worked on. */
-static __device__ __forceinline__ void fetch_words(flow *f)
+template <march_control K> static __device__ __forceinline__ void fetch_words(flow<K> *f)
 {
     f->after = f->word[2 * MARCH_WORDS];
     f->far = f->word[MARCH_AHEAD * MARCH_WORDS];
@@ -289,7 +302,8 @@ static __device__ __forceinline__ void fetch_words(flow *f)
 }
 
 /* Special cells of layer c + 3 are sent for, into the place of those of layer c; what later ones are is on its way. */
-static __device__ __forceinline__ void go_on_special(const cuda_march &m, const turn &t, flow *f, int c)
+template <march_control K>
+static __device__ __forceinline__ void go_on_special(const cuda_march &m, const turn &t, flow<K> *f, int c)
 {
     if (c + 3 < t.cells)
         send_special(m, t.memory, c + 3, f->which);
@@ -297,7 +311,8 @@ static __device__ __forceinline__ void go_on_special(const cuda_march &m, const 
     f->detail = m.detail[t.base + c + 5];
 }
 
-static __device__ __forceinline__ void begin_special(const cuda_march &m, const turn &t, flow *f)
+template <march_control K>
+static __device__ __forceinline__ void begin_special(const cuda_march &m, const turn &t, flow<K> *f)
 {
 #pragma unroll
     for (int k = 0; k < 3; k++)
@@ -309,32 +324,31 @@ static __device__ __forceinline__ void begin_special(const cuda_march &m, const 
 
 /* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the
  * displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. */
-template <bool SPECIAL, bool STEP, int ODD>
+template <march_control K, bool SPECIAL, bool STEP, int ODD>
 static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, const turn &t, uint32_t at,
-                                             flow *f, int c, uint32_t next, uint32_t old, const face &low, face *high)
+                                             flow<K> *f, int c, uint32_t next, uint32_t old, const face &low,
+                                             face *high)
 {
     const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
     const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
     const uint32_t after = f->after, far = f->far, more = f->more;
-    const bool any = f->any;
     fetch_words(f);
-    f->any = __any_sync(~0u, f->then & MARCH_CELL);
+    f->cells = f->cells << 1 | (__any_sync(~0u, f->then & MARCH_CELL) ? CELLS_NEXT : 0);
     face sum;
-    if (any || f->any)
+    if (f->cells & (CELLS_NOW | CELLS_NEXT))
         *high = face_at(at + next);
-    if (any) {
-        forces_of<SPECIAL>(m, now_of(p, t), t, f, c, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE),
-                           at + next, &sum);
+    if (f->cells & CELLS_NOW) {
+        forces_of<K, SPECIAL>(m, now_of(p, t), t, f, c, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE),
+                              at + next, &sum);
     } else {
-        sum = f->was ? face_of(f->below, low) : face{}; /* else `low` may be anything */
-        f->below = push{};
+        sum = f->cells & CELLS_BEFORE ? face_of(f->below, low) : face{}; /* else `low` may be anything */
+        f->below = {};
     }
     arrived<1>(); /* displacements of c + 3, and velocities of c - 1: all but what was sent in the layer before */
     if (c)
         barrier_wait(t.memory + SAID, 1 - ODD);
-    if (any || f->was || f->clean < 2)
+    if (f->cells & CELLS_SHARED)
         share_forces(sum, forces);
-    f->clean = any || f->was ? 0 : f->clean + 1;
     if (c > 1)
         move_node<STEP>(m, p, t, f->last, before, at + old, speed);
     send(speed, node_of(p.velocity, f->then),
@@ -345,7 +359,6 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
         go_on_special(m, t, f, c);
     sent();
     say_done(t);
-    f->was = any;
     f->last = f->now;
     f->now = f->then;
     f->then = after;
@@ -373,9 +386,9 @@ static __device__ __forceinline__ void wait_for_near(const cuda_march &m, const 
 }
 
 /* The first layers of a unit are there. What the pass before wrote may be read from here on. */
-template <bool SPECIAL>
+template <march_control K, bool SPECIAL>
 static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_march_pass &p, const turn &t,
-                                             uint32_t unit, uint32_t at, flow *f)
+                                             uint32_t unit, uint32_t at, flow<K> *f)
 {
     uint32_t word[MARCH_AHEAD], extra[MARCH_AHEAD];
     f->word = m.word + MARCH_WORDS * (int64_t)t.base + threadIdx.x;
@@ -399,7 +412,7 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
         put_gravity(m, p, t);
     arrived<0>();
     __syncthreads();
-    f->any = __any_sync(~0u, f->now & MARCH_CELL);
+    f->cells = CELLS_FIRST | (__any_sync(~0u, f->now & MARCH_CELL) ? CELLS_NEXT : 0);
 }
 
 static __device__ __forceinline__ uint32_t after(uint32_t stage)
@@ -421,19 +434,21 @@ static __device__ __forceinline__ void note_next(const cuda_march &m, const cuda
 static __device__ __forceinline__ void take_next(const cuda_march &m, const cuda_march_pass &p, const turn &t, int ago,
                                                  uint32_t *ticket)
 {
+    if ((unsigned)ago > 1)
+        return;
     if (ago == 0 && threadIdx.x == 0)
         *ticket = take_ticket(m.ticket);
     if (ago == 1 && threadIdx.x == 0)
         note_next(m, p, t.memory, *ticket);
 }
 
-template <bool SPECIAL, bool STEP>
+template <march_control K, bool SPECIAL, bool STEP>
 static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                      uint32_t unit)
 {
     const uint32_t at = t.memory + (uint32_t)place_of((int)threadIdx.x) * NODE;
-    flow f = {};
-    begin<SPECIAL>(m, p, t, unit, at, &f);
+    flow<K> f = {};
+    begin<K, SPECIAL>(m, p, t, unit, at, &f);
     face even = face_at(at), odd;
     const int last = t.cells;
     const int take = last > TAKEN ? last - TAKEN : 0;
@@ -442,12 +457,12 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
 #pragma unroll 1
     for (int c = 0;;) {
         take_next(m, p, t, c - take, &ticket);
-        layer<SPECIAL, STEP, 0>(m, p, t, at, &f, c, next, old, even, &odd);
+        layer<K, SPECIAL, STEP, 0>(m, p, t, at, &f, c, next, old, even, &odd);
         next = after(next), old = after(old);
         if (++c == last)
             break;
         take_next(m, p, t, c - take, &ticket);
-        layer<SPECIAL, STEP, 1>(m, p, t, at, &f, c, next, old, odd, &even);
+        layer<K, SPECIAL, STEP, 1>(m, p, t, at, &f, c, next, old, odd, &even);
         next = after(next), old = after(old);
         if (++c == last)
             break;
@@ -473,6 +488,7 @@ static __device__ __forceinline__ void take_first(const cuda_march &m, const cud
 
 /* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor
  * do passes that end a step and begin the next ask what they are. */
+template <march_control K>
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {
@@ -493,11 +509,11 @@ static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
         t.cells = (int32_t)__float_as_uint(next.y);
         const bool special = __float_as_uint(next.z);
         if (t.kind == MARCH_STEP && special)
-            march_unit_of<true, true>(m, p, t, unit);
+            march_unit_of<K, true, true>(m, p, t, unit);
         else if (t.kind == MARCH_STEP)
-            march_unit_of<false, true>(m, p, t, unit);
+            march_unit_of<K, false, true>(m, p, t, unit);
         else
-            march_unit_of<true, false>(m, p, t, unit);
+            march_unit_of<K, true, false>(m, p, t, unit);
         __syncthreads();
         if (threadIdx.x == 0)
             tell_done(&m.done[unit], p.number + t.pass);
@@ -529,7 +545,7 @@ cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to
 
 /* ---- starting */
 
-cudaError_t cuda_march_slots(int64_t *slots)
+template <march_control K> static cudaError_t slots_of(int64_t *slots)
 {
     int device = 0, processors = 0, each = 0, major = 0;
     *slots = 0;
@@ -537,15 +553,36 @@ cudaError_t cuda_march_slots(int64_t *slots)
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) : e;
     if (e != cudaSuccess || major < 9)
         return e;
-    e = cudaFuncSetAttribute(march_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
+    e = cudaFuncSetAttribute(march_kernel<K>, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
-    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel, MARCH_THREADS, SHARED)
+    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel<K>, MARCH_THREADS, SHARED)
                          : e;
     *slots = (int64_t)processors * each;
     return e;
 }
 
-cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t blocks, cudaStream_t stream)
+cudaError_t cuda_march_slots(march_control control, int64_t *slots)
 {
-    return card_start(march_kernel, {blocks, MARCH_THREADS, SHARED, stream}, *m, *p);
+    switch (control) {
+    case MARCH_ISOTROPIC:
+        return slots_of<MARCH_ISOTROPIC>(slots);
+    case MARCH_PHYSICAL:
+        return slots_of<MARCH_PHYSICAL>(slots);
+    default:
+        return slots_of<MARCH_PHYSICAL_CUBES>(slots);
+    }
+}
+
+cudaError_t cuda_march_start(march_control control, const cuda_march *m, const cuda_march_pass *p, int64_t blocks,
+                             cudaStream_t stream)
+{
+    const card_blocks how = {blocks, MARCH_THREADS, SHARED, stream};
+    switch (control) {
+    case MARCH_ISOTROPIC:
+        return card_start(march_kernel<MARCH_ISOTROPIC>, how, *m, *p);
+    case MARCH_PHYSICAL:
+        return card_start(march_kernel<MARCH_PHYSICAL>, how, *m, *p);
+    default:
+        return card_start(march_kernel<MARCH_PHYSICAL_CUBES>, how, *m, *p);
+    }
 }

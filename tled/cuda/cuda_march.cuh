@@ -17,6 +17,11 @@ enum {
     MARCH_EXTRA = 3 /* displaced by the script, or forces act on it */
 };
 
+/* What holds a cell's modes: hourglass_numbers times V, and what of torsion is a strain's own, but for the sum. */
+typedef struct march_hold {
+    float bending, coupling, torsion, corner, own[3];
+} march_hold;
+
 typedef struct cuda_march {
     cuda_view<float> v;
     const march_unit *unit;
@@ -28,10 +33,24 @@ typedef struct cuda_march {
     const uint32_t *word;
     const int32_t *detail, *which;
     const march_cell *cell;
-    float law[3];            /* of plain cells: mu, K, hourglass */
+    float law[3];            /* of plain cells: mu, K; isotropic: hourglass */
+    march_hold held;         /* physical: of plain cells */
     float slope[3], area[3]; /* element_shape's, along the march's axes */
-    int32_t axis[3];         /* of the model: which these are */
+    /* Along these, with c = 4 h: c, V'/c, 1/(3 c^2), V/c^2, (c_i^2/c_j^2 + c_i^2/c_k^2) - 1; V' = 64 V, and 1/V'. */
+    float width[3], face[3], thirds[3], squares[3], own[3], volume, density;
+    int32_t axis[3]; /* of the model: which these are */
 } cuda_march;
+
+/* What the kernel is compiled for: isotropic or physical control, and whether all sides are alike, which saves some
+ * operations. */
+typedef enum march_control { MARCH_ISOTROPIC, MARCH_PHYSICAL, MARCH_PHYSICAL_CUBES } march_control;
+
+static inline march_control march_control_of(hourglass_kind kind, const double side[3])
+{
+    if (kind == HOURGLASS_ISOTROPIC)
+        return MARCH_ISOTROPIC;
+    return side[0] == side[1] && side[1] == side[2] ? MARCH_PHYSICAL_CUBES : MARCH_PHYSICAL;
+}
 
 /* What a pass does: v = keep v + push a, with what a step begins and ends; u += dt v. */
 typedef struct cuda_march_kind {
@@ -53,10 +72,11 @@ typedef struct cuda_march_pass {
 } cuda_march_pass;
 
 /* Blocks that the card runs at once; 0: it cannot run any, being of before compute capability 9.0. */
-cudaError_t cuda_march_slots(int64_t *slots);
+cudaError_t cuda_march_slots(march_control control, int64_t *slots);
 
 /* By so many blocks, no more than the card runs at once; each takes one ticket more than there are units in all. */
-cudaError_t cuda_march_start(const cuda_march *m, const cuda_march_pass *p, int64_t blocks, cudaStream_t stream);
+cudaError_t cuda_march_start(march_control control, const cuda_march *m, const cuda_march_pass *p, int64_t blocks,
+                             cudaStream_t stream);
 
 /* From 3 rows of `stride` in the model's order of components into the march's; leaves the fourth. */
 cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to, cudaStream_t stream);

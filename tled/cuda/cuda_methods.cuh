@@ -17,7 +17,8 @@ static int cut_in(cuda_state *s, cuda_size size, err *e)
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
         static const int brick[3] = {G::BX, G::BY, G::BZ};
-        const cudaError_t allowed = with_form(s->p->form, [](auto l) { return pass_allow<G, decltype(l)>(); });
+        const cudaError_t allowed =
+            with_stepper(s->p->form, s->p->control.kind, [](auto l) { return pass_allow<G, decltype(l)>(); });
         return CUDA_TRY(allowed) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
     });
 }
@@ -28,7 +29,7 @@ static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
         const int64_t curves = s->p->script->curves;
-        const int64_t places = with_form(s->p->form, [&](auto l) {
+        const int64_t places = with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
             typedef decltype(l) L;
             return s->p->mix ? resident_places<G, L, true>(curves) : resident_places<G, L, false>(curves);
         });
@@ -89,7 +90,7 @@ static int tiles_begin(cuda_state *s, err *e)
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
     const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_form(s->p->form, [&](auto l) {
+        return with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
             return pass_start<decltype(g), decltype(l)>(s->view, *p, s->tiles.count, s->stream);
         });
     });
@@ -198,7 +199,7 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
                              ends};
     s->messages += (uint32_t)b->passes;
     const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_form(s->p->form, [&](auto l) {
+        return with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
             typedef decltype(g) G;
             typedef decltype(l) L;
             return s->view.mixed ? resident_start<G, L, true>(s->view, r, s->tiles.count, s->stream)
@@ -219,7 +220,7 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
 static int march_take(cuda_state *s, bool *takes, err *e)
 {
     int64_t slots = 0;
-    if (CUDA_TRY(cuda_march_slots(&slots)))
+    if (CUDA_TRY(cuda_march_slots(march_control_of(s->p->control.kind, s->p->side), &slots)))
         return -1;
     if (!slots)
         return 0;
@@ -254,6 +255,20 @@ static void march_list(cuda_state *s, const cuda_numbers *numbers, card_layout *
     card_layout_copy(l, &w->cell, m->cell, m->cells);
 }
 
+/* Of plain cells, under physical control. */
+static void hold_plain(cuda_state *s)
+{
+    const tled_problem *p = s->p;
+    const double *held = p->volume[s->march.plain].law.hourglass, volume = p->side[0] * p->side[1] * p->side[2];
+    march_hold *to = &s->walk.held;
+    to->bending = (float)(volume * held[HOURGLASS_BENDING]);
+    to->coupling = (float)(volume * held[HOURGLASS_COUPLING]);
+    to->torsion = (float)(volume * held[HOURGLASS_TORSION]);
+    to->corner = (float)(volume * held[HOURGLASS_CORNER]);
+    for (int a = 0; a < 3; a++)
+        to->own[a] = s->walk.own[a] * to->torsion;
+}
+
 /* What a march's kernels see beside its lists. */
 static void march_fill(cuda_state *s)
 {
@@ -261,7 +276,8 @@ static void march_fill(cuda_state *s)
     const tled_volume *plain = &p->volume[s->march.plain];
     const int *axis = s->march.axis;
     cuda_march *w = &s->walk;
-    const double law[3] = {plain->law.c[0], plain->law.c[1], plain->law.hourglass}; /* of the neo-Hookean form */
+    const double law[3] = {plain->law.c[0], plain->law.c[1], plain->law.hourglass[HOURGLASS_K]}; /* neo-Hookean form */
+    const double volume = p->side[0] * p->side[1] * p->side[2];
     s->view.mass_inverse = s->field[TLED_DISPLACEMENT] + 3;
     w->ticket = w->done + s->march.units;
     w->nears = (int32_t)s->march.nears;
@@ -269,12 +285,21 @@ static void march_fill(cuda_state *s)
     static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");
     memcpy(&w->v, &s->view, sizeof w->v);
     for (int a = 0; a < 3; a++) {
-        const double side = p->side[axis[a]];
+        const double side = p->side[axis[a]], width = 4 * side;
+        const double beside = 4 * p->side[axis[(a + 1) % 3]], across = 4 * p->side[axis[(a + 2) % 3]];
         w->axis[a] = axis[a];
         w->law[a] = (float)law[a];
         w->slope[a] = (float)(1 / (4 * side));
-        w->area[a] = (float)(p->side[0] * p->side[1] * p->side[2] / (4 * side));
+        w->area[a] = (float)(volume / (4 * side));
+        w->width[a] = (float)width;
+        w->face[a] = (float)(beside * across);
+        w->thirds[a] = (float)(1 / (3 * width * width));
+        w->squares[a] = (float)(volume / (width * width));
+        w->own[a] = (float)(width * width * (1 / (beside * beside) + 1 / (across * across)) - 1);
     }
+    w->volume = (float)(64 * volume);
+    w->density = (float)(1 / (64 * volume));
+    hold_plain(s);
 }
 
 /* Velocities, which a pass reads and writes, and words, which stand after them, are what the cache is to keep while the
@@ -333,7 +358,8 @@ static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int
         ends,
         s->walked + 1,
         s->tickets};
-    if (card_check(cuda_march_start(&s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
+    const march_control control = march_control_of(s->p->control.kind, s->p->side);
+    if (card_check(cuda_march_start(control, &s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
         return -1;
     s->walked += (uint32_t)passes;
     s->tickets += (uint32_t)(passes * s->march.units + s->walkers);

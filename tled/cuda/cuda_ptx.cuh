@@ -132,12 +132,10 @@ static __device__ __forceinline__ uint32_t hear_done(const uint32_t *from)
 
 /* ---- arithmetic */
 
-/* p + n, in one instruction. */
+/* p + n, of less than 2^32 bytes from p: so the address takes fewer instructions. */
 static __device__ __forceinline__ const float4 *nth(const float4 *p, uint32_t n)
 {
-    uint64_t at;
-    asm("mad.wide.u32 %0, %1, 16, %2;" : "=l"(at) : "r"(n), "l"(p));
-    return (const float4 *)at;
+    return (const float4 *)((const char *)p + n * 16u);
 }
 
 /* To some 1e-7 of 1, and of the answer. */
@@ -145,6 +143,13 @@ static __device__ __forceinline__ float near_log2(float x)
 {
     float y;
     asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+    return y;
+}
+
+static __device__ __forceinline__ float near_inverse(float x)
+{
+    float y;
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
     return y;
 }
 

@@ -160,6 +160,12 @@ static int64_t largest_field(const cuda_state *s)
 
 /* ---- memory */
 
+/* Of a law, as kernels read it (cuda_form). */
+static int law_numbers(const tled_problem *p)
+{
+    return form_numbers(p->form) + cuda_held(p->control.kind);
+}
+
 /* What does not change while the run goes on. */
 static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout *l)
 {
@@ -181,7 +187,7 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
     card_layout_copy(l, &v->force_curve, p->force_curve, p->force_start[p->nodes]);
     card_layout_copy(l, &v->force_share, p->force_share, p->force_start[p->nodes]);
     card_layout_copy(l, &v->kind, numbers->kind, p->volumes);
-    card_layout_copy(l, &v->law, numbers->law, (form_numbers(p->form) + 1) * p->volumes);
+    card_layout_copy(l, &v->law, numbers->law, law_numbers(p) * p->volumes);
 }
 
 /* The state, and what a step or a look at it needs. */
@@ -224,7 +230,8 @@ static void put_mixtures(const tled_problem *p, cuda_mixed *to)
             const tled_law law = tled_law_of(p, i);
             cuda_mixed *m = &to[p->mixed[i]];
             memcpy(m->c, law.c, sizeof m->c);
-            m->density = law.density, m->hourglass = law.hourglass;
+            m->density = law.density, m->twists = law.twists;
+            memcpy(m->hourglass, law.hourglass, sizeof m->hourglass);
             m->share = tled_mixture(p, i), m->mix = p->mix[i];
         }
 }
@@ -232,10 +239,9 @@ static void put_mixtures(const tled_problem *p, cuda_mixed *to)
 static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
-    const int coefficients = form_numbers(p->form);
-    const size_t numbers = (size_t)coefficients + 1;
+    const int coefficients = form_numbers(p->form), numbers = law_numbers(p);
     n->mass_inverse = (real *)mem_array(p->nodes, sizeof *n->mass_inverse, "the solver", e);
-    n->law = (real *)mem_array(p->volumes, numbers * sizeof *n->law, "the solver", e);
+    n->law = (real *)mem_array(p->volumes, (size_t)numbers * sizeof *n->law, "the solver", e);
     n->kind = (cuda_kind *)mem_array(p->volumes, sizeof *n->kind, "the solver", e);
     n->mixture = (cuda_mixed *)mem_array(p->laws, sizeof *n->mixture, "the solver", e);
     if (!n->mass_inverse || !n->law || !n->kind || !n->mixture)
@@ -244,14 +250,16 @@ static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
         n->mass_inverse[k] = (real)(1 / p->mass[s->tiles.node[k]]);
     for (int32_t i = 0; i < p->volumes; i++) {
         const tled_volume *v = &p->volume[i];
-        real *law = n->law + numbers * (size_t)i;
+        real *law = n->law + (int64_t)numbers * i;
         cuda_kind *kind = &n->kind[i];
         memcpy(kind->c, v->law.c, sizeof kind->c);
-        kind->density = v->law.density, kind->hourglass = v->law.hourglass;
+        memcpy(kind->hourglass, v->law.hourglass, sizeof kind->hourglass);
+        kind->density = v->law.density, kind->twists = v->law.twists;
         kind->peak = v->peak, kind->contract = (int32_t)v->contract;
         for (int k = 0; k < coefficients; k++)
             law[k] = (real)v->law.c[k];
-        law[coefficients] = (real)v->law.hourglass;
+        for (int k = coefficients; k < numbers; k++)
+            law[k] = (real)v->law.hourglass[k - coefficients];
     }
     put_mixtures(p, n->mixture);
     return 0;

@@ -58,19 +58,26 @@ template <class F> static auto with_brick(cuda_size size, F f)
 
 enum { LAWS_NEAR = 16 /* volumes whose laws stand in shared memory */ };
 
-/* A form that kernels are compiled for. A law's numbers are its coefficients, then the hourglass stiffness; NEAR:
- * numbers that all threads of a block ask for, gravity and laws. */
-template <form F, int N> struct cuda_form {
+/* What of a law holds hourglass modes. */
+static constexpr int cuda_held(hourglass_kind kind)
+{
+    return kind == HOURGLASS_ISOTROPIC ? 1 : (int)HOURGLASS_NUMBERS;
+}
+
+/* A form and a kind of hourglass control that kernels are compiled for. A law's numbers are its coefficients, then
+ * those that hold hourglass modes; NEAR: numbers that all threads of a block ask for, gravity and laws. */
+template <form F, int N, hourglass_kind K> struct cuda_form {
     static constexpr form FORM = F;
-    enum { COEFFICIENTS = N, LAW = N + 1, NEAR = 4 + LAW * LAWS_NEAR };
+    static constexpr hourglass_kind CONTROL = K;
+    enum { COEFFICIENTS = N, HELD = cuda_held(K), LAW = N + HELD, NEAR = 4 + LAW * LAWS_NEAR };
 };
 
-/* Calls f with a form that steppers know, as a type: tled_problem_make chooses no other. */
-template <class F> static auto with_form(form which, F f)
+/* Calls f with a form that steppers know, and the kind, as a type: tled_problem_make chooses no other. */
+template <hourglass_kind K, class F> static auto with_form(form which, F f)
 {
 #define FORM_ROW(NAME, name, coefficients, history)                                                                    \
     case FORM_##NAME:                                                                                                  \
-        return f(cuda_form<FORM_##NAME, coefficients>());
+        return f(cuda_form<FORM_##NAME, coefficients, K>());
     switch (which) {
         FORMS(FORM_ROW)
     default:
@@ -79,14 +86,20 @@ template <class F> static auto with_form(form which, F f)
 #undef FORM_ROW
 }
 
+template <class F> static auto with_stepper(form which, hourglass_kind kind, F f)
+{
+    return kind == HOURGLASS_ISOTROPIC ? with_form<HOURGLASS_ISOTROPIC>(which, f)
+                                       : with_form<HOURGLASS_PHYSICAL>(which, f);
+}
+
 typedef struct cuda_kind { /* a volume */
-    double c[FORM_NUMBERS], density, hourglass, peak;
+    double c[FORM_NUMBERS], density, hourglass[HOURGLASS_NUMBERS], twists, peak;
     int32_t contract; /* its curve, or -1 */
 } cuda_kind;
 
-typedef struct cuda_mixed {                            /* a cell mixed of two volumes */
-    double c[FORM_NUMBERS], density, hourglass, share; /* share: of the second volume */
-    int32_t mix;                                       /* the second volume */
+typedef struct cuda_mixed {                                                       /* a cell mixed of two volumes */
+    double c[FORM_NUMBERS], density, hourglass[HOURGLASS_NUMBERS], twists, share; /* share: of the second volume */
+    int32_t mix;                                                                  /* the second volume */
 } cuda_mixed;
 
 template <class S> struct cuda_view {
@@ -202,7 +215,8 @@ template <class S> struct cuda_look {
 size_t cuda_look_bytes(int64_t tiles);
 
 /* Starts the work on the stream; *sums (on the device) gets the answer, with cells for elements. */
-template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, form f, tled_sums *sums, cudaStream_t stream);
+template <class S>
+cudaError_t cuda_look_start(const cuda_look<S> *l, form f, hourglass_kind kind, tled_sums *sums, cudaStream_t stream);
 
 /* The first fields of the table, which the kernels know: nodes x 3, as the view says. */
 enum { CUDA_STEPPED = TLED_VELOCITY + 1 };

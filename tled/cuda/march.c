@@ -228,7 +228,7 @@ static march_cell cell_of(const cutter *c, int64_t element)
     const double share = tled_fraction(p, element), other = tled_mixture(p, element);
     march_cell cell = {.mu = (float)(share * law.c[0]),
                        .bulk = (float)(share * law.c[1]),
-                       .hourglass = (float)(share * law.hourglass),
+                       .hourglass = (float)(share * law.hourglass[HOURGLASS_K]),
                        .muscle = {{.curve = -1}, {.curve = -1}}};
     add_muscle(c, &cell, p->fibre ? p->fibre + 3 * element : NULL, p->element_volume[element], share * (1 - other));
     if (tled_mix(p, element) >= 0)
@@ -240,7 +240,7 @@ static bool is_special(const cutter *c, const march_cell *cell)
 {
     const tled_law *plain = &c->p->volume[c->m->plain].law;
     return cell->muscle[0].curve >= 0 || cell->mu != (float)plain->c[0] || cell->bulk != (float)plain->c[1] ||
-           cell->hourglass != (float)plain->hourglass;
+           cell->hourglass != (float)plain->hourglass[HOURGLASS_K];
 }
 
 static int mark_special(cutter *c)

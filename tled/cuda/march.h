@@ -50,7 +50,7 @@ enum { MARCH_SECOND = 1 << 30 };
 /* A cell that is not plain: of another law, contracting, mixed, or not all tissue. What it has is multiplied by its
  * share of tissue, and a muscle's peak by the muscle's share of the cell. What most of them need comes first. */
 typedef struct march_cell {
-    float mu, bulk, hourglass, peak; /* Pa; peak: of the first of: */
+    float mu, bulk, hourglass, peak; /* Pa; hourglass: isotropic control's, others need none; peak: of the first of: */
     march_muscle muscle[2];          /* of its volumes, those that may contract */
     float second_peak, unused[3];
 } march_cell;

@@ -123,6 +123,7 @@ static bool shape_of(const tled_problem *p, int64_t element, conforming_element 
         for (int a = 0; a < 8; a++)
             products[i] += x.b[a][i / 3] * x.b[a][i % 3];
     c->squares = products[0] + products[4] + products[8];
+    hexahedron_basis(&x.at[0][0], c->basis);
     if (!(c->volume > 0) || !isfinite(c->squares) || !factor(products, 3, &c->root[0][0]))
         return false;
     find_couple(&x, c);

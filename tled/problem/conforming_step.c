@@ -1,6 +1,7 @@
 #include "tled/problem/conforming_step.h"
 
 #include <math.h>
+#include <string.h>
 
 element_any conforming_shape(const conforming_element *c)
 {
@@ -9,6 +10,9 @@ element_any conforming_shape(const conforming_element *c)
         s.slope[m] = (element_vector){c->slope[m][0], c->slope[m][1], c->slope[m][2]};
     for (int g = 0; g < ELEMENT_TWISTS; g++)
         s.twist[g] = (element_vector){c->twist[g][0], c->twist[g][1], c->twist[g][2]};
+    s.held.basis = (element_tensor){c->basis[0], c->basis[1], c->basis[2], c->basis[3], c->basis[4],
+                                    c->basis[5], c->basis[6], c->basis[7], c->basis[8]};
+    memcpy(s.held.hold, c->hold, sizeof s.held.hold);
     return s;
 }
 
@@ -40,24 +44,35 @@ void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h,
         }
 }
 
-/* l2 of the header. */
-static double twists(const tled_problem *p, int64_t element)
+stability_twists conforming_twists(const tled_problem *p, int64_t element, element_tensor h, const hourglass_modes *m)
 {
     const conforming_element *c = &p->conforming->element[element];
-    return c->gammas * c->hourglass / (tled_law_of(p, element).density * c->volume / 8);
+    const double square = c->gammas * c->stiffest / (tled_law_of(p, element).density * c->volume / 8);
+    return stability_twists_of(p->control.kind, square, sqrt(c->squares / c->gammas), h, m);
 }
 
-double conforming_room(const tled_problem *p, int64_t element, double limit)
+double conforming_room(const tled_problem *p, int64_t element, stability_twists t, double limit)
 {
-    const double couple = p->conforming->element[element].couple, twist = twists(p, element);
-    return limit > twist ? limit * (limit - twist) / (limit - twist * (1 - couple)) : 0;
+    const double couple = p->conforming->element[element].couple;
+    return limit > t.own ? limit * (limit - t.own) / (limit - t.own * (1 - couple)) - t.more : 0;
 }
 
-double conforming_square(const tled_problem *p, int64_t element, double eigenvalue)
+double conforming_square(const tled_problem *p, int64_t element, stability_twists t, double eigenvalue)
 {
-    const double couple = p->conforming->element[element].couple, twist = twists(p, element);
-    const double apart = eigenvalue - twist;
-    return (eigenvalue + twist + sqrt(apart * apart + 4 * couple * eigenvalue * twist)) / 2;
+    const double couple = p->conforming->element[element].couple, law = eigenvalue + t.more, apart = law - t.own;
+    return (law + t.own + sqrt(apart * apart + 4 * couple * law * t.own)) / 2;
+}
+
+/* What holds the modes of an element. */
+static void hold_modes(const tled_problem *p, const tled_law *law, conforming_element *c)
+{
+    if (p->control.kind == HOURGLASS_ISOTROPIC) {
+        c->hourglass[HOURGLASS_K] = hourglass_stiffness(p->control.kappa, law->mu, c->volume, c->squares);
+        c->stiffest = c->hourglass[HOURGLASS_K];
+        return;
+    }
+    hourglass_forms(law->mu, law->bulk, c->volume, c->basis, c->hold);
+    c->stiffest = hourglass_forms_stiffest(c->hold, c->basis);
 }
 
 void conforming_join(tled_problem *p)
@@ -65,15 +80,16 @@ void conforming_join(tled_problem *p)
     conforming *c = p->conforming;
     const element_tensor rest = {0};
     const element_fibre none = {0};
+    const hourglass_modes still = {.xy = {0}};
     step_matrix a;
     for (int64_t i = 0; i < p->elements; i++) {
         const tled_law law = tled_law_of(p, i);
-        conforming_element *own = &c->element[i];
-        own->hourglass = p->kappa * element_hourglass_modulus(law.mu, law.bulk) * own->volume * own->squares / 8;
+        hold_modes(p, &law, &c->element[i]);
+        const stability_twists t = conforming_twists(p, i, rest, &still);
         conforming_matrix(p, i, rest, none, &a);
-        if (i && step_below(&a, conforming_room(p, i, c->square)))
+        if (i && step_below(&a, conforming_room(p, i, t, c->square)))
             continue;
-        double square = conforming_square(p, i, step_largest(&a));
+        double square = conforming_square(p, i, t, step_largest(&a));
         if (square > c->square) {
             c->square = square;
             c->stiffest = i;

@@ -2,9 +2,10 @@
  * see stability.h).
  *
  * The squares of an element's frequencies are no more than those of two matrices together: (8/rho) L^T A L, A = dP/dF
- * and L L^T = B B^T (3 x 3), with what stretches it, and (k/m) gamma gamma^T with what twists it. With l1, l2 the
- * largest of each and c the cosine of the least angle between B's rows and the gammas (0 of a box), the largest of
- * their sum is at most that of l1 P1 + l2 P2, P1 and P2 projections at that angle:
+ * and L L^T = B B^T (3 x 3), with what stretches it, and of gamma gamma^T with what twists it, to which stability.h's
+ * bounds of hourglass modes add. With l1, l2 the largest of each and c the cosine of the least angle between B's rows
+ * and the gammas (0 of a box), the largest of their sum is at most that of l1 P1 + l2 P2, P1 and P2 projections at
+ * that angle:
  *     (l1 + l2 + sqrt((l1 - l2)^2 + 4 c^2 l1 l2)) / 2. Owns nothing.
  */
 #ifndef SINEW_CONFORMING_STEP_H
@@ -23,9 +24,12 @@ element_any conforming_shape(const conforming_element *c);
 /* The first of the two matrices above, for an element at H. */
 void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h, element_fibre fibre, step_matrix *a);
 
+/* What its hourglass modes m (twisted) have, at H. */
+stability_twists conforming_twists(const tled_problem *p, int64_t element, element_tensor h, const hourglass_modes *m);
+
 /* What its largest eigenvalue may be, so that the square of the element's highest frequency is at most limit; and
  * the other way round: what that is at most with an eigenvalue. */
-double conforming_room(const tled_problem *p, int64_t element, double limit);
-double conforming_square(const tled_problem *p, int64_t element, double eigenvalue);
+double conforming_room(const tled_problem *p, int64_t element, stability_twists t, double limit);
+double conforming_square(const tled_problem *p, int64_t element, stability_twists t, double eigenvalue);
 
 #endif

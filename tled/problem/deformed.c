@@ -10,28 +10,27 @@ static element_modes modes_of(const tled_problem *p, int64_t element, const doub
     return element_modes_of(c);
 }
 
-/* H; the hourglass modes of an element that is no box lose what H has of them, its
- * law gets its own stiffness against them. */
-static element_tensor gradient_of(const tled_problem *p, int64_t i, element_shape box, element_modes *x,
-                                  element_modes *y, element_modes *z, tled_law *law)
-{
-    if (!p->conforming)
-        return element_gradient(*x, *y, *z, box.slope);
-    const element_any any = conforming_shape(&p->conforming->element[i]);
-    law->hourglass = p->conforming->element[i].hourglass;
-    return element_any_twist(&any, x, y, z);
-}
-
 deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, const double *displacement)
 {
     deformed d = {.law = tled_law_of(p, element)};
     element_modes x = modes_of(p, element, displacement, 0), y = modes_of(p, element, displacement, 1);
     element_modes z = modes_of(p, element, displacement, 2);
-    d.h = gradient_of(p, element, box, &x, &y, &z, &d.law);
-    d.rest = p->conforming ? p->conforming->element[element].volume : p->side[0] * p->side[1] * p->side[2];
+    hourglass_force f;
+    if (p->conforming) {
+        const conforming_element *c = &p->conforming->element[element];
+        const element_any any = conforming_shape(c);
+        d.h = element_any_twist(&any, &x, &y, &z);
+        d.modes = element_hourglass_modes(x, y, z);
+        f = element_any_hourglass(p->control.kind, d.modes, d.h, &any, c->hourglass);
+        d.rest = any.volume;
+    } else {
+        d.h = element_gradient(x, y, z, box.slope);
+        d.modes = element_hourglass_modes(x, y, z);
+        f = hourglass_of(p->control.kind, d.modes, d.h, box, d.law.hourglass);
+        d.rest = p->side[0] * p->side[1] * p->side[2];
+    }
+    d.hourglass = hourglass_dot(&f.f, &d.modes) / 2; /* f.m = s.q: the energy is quadratic in q */
     d.dilation = element_dilation(d.h);
     d.energy = form_energy(p->form, d.h, d.law.c);
-    d.hourglass = element_hourglass_energy(x, d.law.hourglass) + element_hourglass_energy(y, d.law.hourglass) +
-                  element_hourglass_energy(z, d.law.hourglass);
     return d;
 }

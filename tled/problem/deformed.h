@@ -9,11 +9,12 @@
 
 typedef struct deformed {
     element_tensor h; /* grad u at the centre */
-    tled_law law;     /* with the element's own hourglass stiffness */
+    tled_law law;
     double rest;      /* m3: volume at rest */
     double dilation;  /* J - 1 */
     double energy;    /* J/m3, by volume at rest: of its strain, without what muscles do */
     double hourglass; /* J */
+    hourglass_modes modes;
 } deformed;
 
 /* box: of elements that are a lattice's. displacement: nodes x 3. */

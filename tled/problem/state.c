@@ -136,10 +136,9 @@ static double square_at_rest(const tled_problem *p, const tled_volume *v)
 {
     const element_tensor rest = {0};
     const element_fibre none = {0};
-    const double share = p->side[0] * p->side[1] * p->side[2] / 8;
     step_matrix a;
     stability_matrix(p->form, v->law.c, v->law.density, p->side, rest, none, none, &a);
-    return fmax(stability_largest(&a), 8 * v->law.hourglass / (v->law.density * share));
+    return fmax(stability_largest(&a), v->law.twists);
 }
 
 static const char *law_of_volume(const model *m, int64_t i)
@@ -199,6 +198,16 @@ static int choose_form(tled_problem *p, const model *m, const material *of, err 
                    name, law_of_volume(m, most), law_of_volume(m, 0), model_find(m, "volume.name")->str[0]);
 }
 
+/* What holds the hourglass modes of a box of that law. A corner has an eighth of the mass, and the squares of a mode's
+ * signs are 8: so their frequencies are those of 64/(rho V) times the stiffness by modes. */
+static void hold_modes(const tled_problem *p, tled_law *law)
+{
+    const double *side = p->side;
+    hourglass_numbers(p->control, law->mu, law->bulk, side, law->hourglass);
+    law->twists =
+        64 * hourglass_stiffest(p->control.kind, law->hourglass, side) / (law->density * side[0] * side[1] * side[2]);
+}
+
 static int make_volume(tled_problem *p, const model *m, int32_t i, const material *of, err *e)
 {
     tled_volume *v = &p->volume[i];
@@ -209,7 +218,7 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, const materia
     v->law.bulk = material_bulk(of);
     v->law.density = of->density;
     v->peak = of->peak;
-    v->law.hourglass = element_hourglass(p->kappa, v->law.mu, v->law.bulk, p->side[0], p->side[1], p->side[2]);
+    hold_modes(p, &v->law);
     v->square = square_at_rest(p, v);
     v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
     if (v->contract >= 0 && !(v->peak > 0))
@@ -246,7 +255,7 @@ static tled_law mix_laws(const tled_problem *p, int64_t element)
                     .bulk = material_between(v->bulk, w->bulk, s),
                     .density = (1 - s) * v->density + s * w->density};
     form_between(p->form, law.mu, law.bulk, v->c, w->c, s, law.c);
-    law.hourglass = element_hourglass(p->kappa, law.mu, law.bulk, p->side[0], p->side[1], p->side[2]);
+    hold_modes(p, &law);
     return law;
 }
 
@@ -313,12 +322,12 @@ static void make_holds(tled_problem *p, const model *m)
         p->held += p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
 }
 
-int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e)
+int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglass_control control, err *e)
 {
     lattice l;
     const bool boxes = model_meta_of(m, "lattice.spacing") || model_find(m, "element.lattice");
     p->script = s;
-    p->kappa = kappa;
+    p->control = control;
     p->gravity = find_curve(s, SCRIPT_GRAVITY, -1);
     if (borrow_mesh(p, m, e) || (boxes ? lattice_of(m, &l, e) : conforming_create(p, e)))
         return -1;
@@ -367,16 +376,6 @@ int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
             p->at_start.of[TLED_VELOCITY][i] = 0;
     p->start = f->time;
     return 0;
-}
-
-bool tled_bounds_hourglass(const tled_problem *p)
-{
-    for (int64_t i = 0; i < p->elements; i++) {
-        const tled_law law = tled_law_of(p, i);
-        if (element_hourglass_modulus(law.mu, law.bulk) < law.bulk + 4. / 3 * law.mu)
-            return true;
-    }
-    return false;
 }
 
 double tled_tension(const tled_problem *p, int32_t volume, const double *value)

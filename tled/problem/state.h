@@ -8,6 +8,7 @@
 #define SINEW_STATE_H
 
 #include "physics/forms.h"
+#include "physics/hourglass_numbers.h"
 #include "solve/fields.h"
 #include "tled/problem/script.h"
 
@@ -20,7 +21,8 @@ typedef struct tled_law {
     double c[FORM_NUMBERS]; /* Pa: the coefficients of the problem's form */
     double mu, bulk;        /* Pa: at rest */
     double density;         /* kg/m3 */
-    double hourglass;       /* N/m: k of each hourglass mode */
+    double hourglass[HOURGLASS_NUMBERS];
+    double twists; /* 1/s2: no less than the square of the highest frequency of its hourglass modes at rest */
 } tled_law;
 
 typedef struct tled_volume {
@@ -39,7 +41,7 @@ typedef struct tled_problem {
     enum form form;                /* that all laws are expressed in */
     double side[3];                /* m: of every element; without a lattice, a cube's of the mean volume */
     struct conforming *conforming; /* elements that are no lattice's (conforming.h), owned; NULL: boxes of `side` */
-    double kappa;                  /* hourglass coefficient */
+    hourglass_control control;
     const double *position;        /* nodes x 3, m */
     const int32_t *element_node;   /* elements x 8, VTK order */
     const int32_t *element_volume; /* elements */
@@ -93,8 +95,8 @@ enum { TLED_DISPLACEMENT, TLED_VELOCITY, TLED_INTERNAL = FIELDS_MOST };
 enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
 
 /* Makes p (zeroed) of the model, at rest at time 0: all its elements must be its lattice's boxes, or it has no lattice.
- * kappa: the hourglass coefficient. -1 with e filled and p to be freed all the same. */
-int tled_problem_make(tled_problem *p, const model *m, const script *s, double kappa, err *e);
+ * control: of hourglass modes. -1 with e filled and p to be freed all the same. */
+int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglass_control control, err *e);
 void tled_problem_free(tled_problem *p);
 
 /* What a state of a model of so many nodes and elements consists of. taken() fills what of it frames have. */
@@ -126,9 +128,6 @@ static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
 {
     return p->mixed && p->mixed[element] >= 0 ? p->law[p->mixed[element]] : p->volume[p->element_volume[element]].law;
 }
-
-/* Whether any element's hourglass modulus is 11 mu, being less than lambda + 2 mu: nu above .45. */
-bool tled_bounds_hourglass(const tled_problem *p);
 
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);

@@ -4,9 +4,9 @@
  * For one element: its forces V P_kj B_aj are linear in H, and sum_a B_ai B_aj = delta_ij / (2 h_i^2), so with
  * m = rho V / 8 at each corner the squares of its frequencies are those of the 9 x 9 matrix
  *     (4/rho) A_kjlm / (h_j h_m),   A = dP/dF,
- * and, apart from them, of the hourglass modes: 8 k / m. At rest A is the elasticity C: the largest
- * eigenvalue of a cube is 12 K / (rho h^2), so dt = h / sqrt(3 K / rho). Deformed, A has the
- * geometric stiffness and the active stress in it.
+ * and, apart from them, of the hourglass modes (stability.h bounds what these add). At rest A is the elasticity C: the
+ * largest eigenvalue of a cube is 12 K / (rho h^2), so dt = h / sqrt(3 K / rho). Deformed, A has the geometric
+ * stiffness and the active stress in it.
  *
  * Of an element mixed of two volumes what is found at rest is a bound from theirs, exact where both have the same nu.
  */

@@ -5,6 +5,7 @@
 #include "base/mem.h"
 #include "cli/tool.h"
 #include "model/binary.h"
+#include "model/hourglass_text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,13 +34,16 @@ static int add(fingerprint *f, const char *kind, const char *name, uint32_t crc,
     return 0;
 }
 
-/* Not compared: it is --hourglass of the run that wrote the frames, and this run's is. */
-static const char kappa_key[] = "hourglass.kappa";
+/* Not compared: they are --hourglass of the run that wrote the frames, and this run's is. */
+static bool is_control(const char *key)
+{
+    return !strcmp(key, "hourglass.control") || !strcmp(key, "hourglass.kappa");
+}
 
 static int add_model(fingerprint *f, const model *m, err *e)
 {
     for (int i = 0; i < m->metas; i++)
-        if (strcmp(m->meta[i].key, kappa_key) != 0 &&
+        if (!is_control(m->meta[i].key) &&
             add(f, "meta", m->meta[i].key, checksum_add(0, m->meta[i].value, strlen(m->meta[i].value)), e))
             return -1;
     for (int i = 0; i < m->arrays.count; i++) {
@@ -55,13 +59,20 @@ static int add_number(fingerprint *f, const char *name, double value, err *e)
     return add(f, name, "", checksum_add(0, &value, sizeof value), e);
 }
 
+static int add_control(fingerprint *f, hourglass_control control, err *e)
+{
+    char text[HOURGLASS_TEXT];
+    hourglass_text(control, text);
+    return add(f, "--hourglass", "", checksum_add(0, text, strlen(text)), e);
+}
+
 static int add_numbers(fingerprint *f, const fingerprint_run *run, err *e)
 {
     const run_setup *r = run->setup;
     return (isfinite(r->end) && add_number(f, "--time to its end", r->end, e)) ||
                    add_number(f, "--every", r->every, e) || add_number(f, "--dt", r->rate, e) ||
                    add_number(f, "--damping", r->damping, e) || add_number(f, "--rest", r->rest, e) ||
-                   add_number(f, "--time", (double)r->steps, e) || add_number(f, "--hourglass", run->p->kappa, e) ||
+                   add_number(f, "--time", (double)r->steps, e) || add_control(f, run->p->control, e) ||
                    (run->p->collider && add_number(f, "--repulsion", run->p->collider->stiffness, e))
                ? -1
                : 0;

@@ -61,16 +61,20 @@ void folds_text(const folds *f, bool ended, char text[FOLDS_TEXT])
              number_text(100 * share(&f->last), part));
 }
 
-static const double usual_kappa = .0075; /* of --hourglass, where it is not given */
-
 enum { REMEDY_TEXT = 160 };
+
+/* Whether hourglass energy is none of the tissue's, but of a stiffness that only keeps modes small. */
+static bool is_artificial(const folds *f)
+{
+    return f->p->control.kind == HOURGLASS_ISOTROPIC;
+}
 
 /* What was seen to help, on faces: shares of voxels and a stiffer muscle; smaller voxels do not, where a muscle's end
  * pulls at a few elements; a larger --hourglass does, but not where it holds too much already. */
 static const char *remedy(const folds *f, const strained *s, char text[REMEDY_TEXT])
 {
     const bool whole = !f->p->conforming && !model_find(f->m, "element.fraction");
-    const bool bends = share(s) > QUALITY_HOURGLASS;
+    const bool bends = !is_artificial(f) || share(s) > QUALITY_HOURGLASS;
     snprintf(text, REMEDY_TEXT, "expected %sa stiffer material, %sless load or contraction there%s",
              whole ? "voxelise --fraction 4, " : "", bends ? "or " : "", bends ? "" : ", or a larger --hourglass");
     return text;
@@ -118,7 +122,6 @@ static void warn_of_frames(const folds *f, notes *warnings)
         where, q->worst, remedy(f, &f->worst, help));
 }
 
-/* A smaller --hourglass would fold more. */
 static void warn_of_hourglass(const folds *f, bool ended, notes *warnings)
 {
     char where[ELEMENT_PLACE], when[60], part[NUM_TEXT];
@@ -127,10 +130,9 @@ static void warn_of_hourglass(const folds *f, bool ended, notes *warnings)
     say_when(f, ended, when);
     notes_add(warnings,
               "hourglass energy is %s %% of strain energy %s, expected at most %g %%: elements are too coarse "
-              "for how they bend; %s holds the most of it, %.3g %%; expected %s%s",
+              "for how they bend; %s holds the most of it, %.3g %%; expected %s",
               number_text(100 * share(s), part), when, 100 * QUALITY_HOURGLASS, where, 100 * s->most / s->hourglass,
-              f->p->conforming ? "a finer mesh" : "smaller voxels",
-              f->p->kappa > usual_kappa && !f->folded ? ", or a smaller --hourglass" : "");
+              f->p->conforming ? "a finer mesh" : "smaller voxels");
 }
 
 void folds_warn(const folds *f, bool ended, double most_strain, notes *warnings)
@@ -140,6 +142,7 @@ void folds_warn(const folds *f, bool ended, double most_strain, notes *warnings)
         warn_of_folds(f, ended, warnings);
     else if (f->folded)
         warn_of_frames(f, warnings);
-    if (s->twisted >= 0 && share(s) > QUALITY_HOURGLASS && s->hourglass > QUALITY_HOURGLASS * .01 * most_strain)
+    if (is_artificial(f) && s->twisted >= 0 && share(s) > QUALITY_HOURGLASS &&
+        s->hourglass > QUALITY_HOURGLASS * .01 * most_strain)
         warn_of_hourglass(f, ended, warnings);
 }

@@ -37,25 +37,28 @@ static void take_frequency(struct monitor_part *part, int64_t i, double square)
     part->sum.frequency_element = i;
 }
 
-static void add_conforming(const monitor *w, int64_t i, element_tensor h, struct monitor_part *part)
+static void add_conforming(const monitor *w, int64_t i, const deformed *d, struct monitor_part *part)
 {
     const tled_problem *p = w->p;
+    const stability_twists t = conforming_twists(p, i, d->h, &d->modes);
     step_matrix a;
-    conforming_matrix(p, i, h, fibre_of(w, p->fibre, i, p->element_volume[i], 1), &a);
-    if (!step_below(&a, conforming_room(p, i, part->sum.frequency)))
-        take_frequency(part, i, w->raise * conforming_square(p, i, step_largest(&a)));
+    conforming_matrix(p, i, d->h, fibre_of(w, p->fibre, i, p->element_volume[i], 1), &a);
+    if (!step_below(&a, conforming_room(p, i, t, part->sum.frequency)))
+        take_frequency(part, i, w->raise * conforming_square(p, i, t, step_largest(&a)));
 }
 
 /* Bounds tell enough of most elements: that they do not reach past the largest frequency of their chunk, or how far.
  * Where they are too wide, or leave open whether any reaches past the one at rest, the matrix tells, and the frequency
  * is raised to 1 % above the element's: so few need more than one test. */
-static void add_step(const monitor *w, const tled_law *law, int64_t i, element_tensor h, struct monitor_part *part)
+static void add_step(const monitor *w, int64_t i, const deformed *d, element_shape box, struct monitor_part *part)
 {
     const tled_problem *p = w->p;
+    const double slope = fmax(box.slope.x, fmax(box.slope.y, box.slope.z));
+    const stability_twists t = stability_twists_of(p->control.kind, d->law.twists, slope, d->h, &d->modes);
     const double s = tled_mixture(p, i);
     const element_fibre own = fibre_of(w, p->fibre, i, p->element_volume[i], 1 - s);
     const element_fibre other = fibre_of(w, p->mixfibre, i, tled_mix(p, i), s);
-    const stability_range range = step_range_of(p, law, h, own, other);
+    const stability_range range = stability_range_with(step_range_of(p, &d->law, d->h, own, other), t);
     step_matrix a;
     if (range.high <= part->sum.frequency)
         return;
@@ -64,9 +67,9 @@ static void add_step(const monitor *w, const tled_law *law, int64_t i, element_t
         take_frequency(part, i, range.high);
         return;
     }
-    step_matrix_of(p, law, h, own, other, &a);
-    if (!step_below(&a, part->sum.frequency))
-        take_frequency(part, i, w->raise * step_largest(&a));
+    step_matrix_of(p, &d->law, d->h, own, other, &a);
+    if (!step_below(&a, stability_room(t, part->sum.frequency)))
+        take_frequency(part, i, w->raise * stability_square(t, step_largest(&a)));
 }
 
 static void add_element(const monitor *w, int64_t i, element_shape box, struct monitor_part *part)
@@ -80,9 +83,9 @@ static void add_element(const monitor *w, int64_t i, element_shape box, struct m
     }
     part->sum.strain += tled_fraction(w->p, i) * (d.energy * d.rest + d.hourglass);
     if (w->p->conforming)
-        add_conforming(w, i, d.h, part);
+        add_conforming(w, i, &d, part);
     else
-        add_step(w, &d.law, i, d.h, part);
+        add_step(w, i, &d, box, part);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)

@@ -7,11 +7,11 @@
 struct options {
     opt_common common;
     int device, precision;
-    double dt, seconds, rest, ramp, damping, hourglass, every, log_every; /* below 0: not given */
-    int64_t steps;                                                        /* 0: not given */
+    double dt, seconds, rest, ramp, damping, every, log_every; /* below 0: not given */
+    int64_t steps;                                             /* 0: not given */
     opt_numbers gravity;
     opt_list contract, material, tsv;
-    const char *script, *materials, *probe, *poses, *unit, *log;
+    const char *script, *materials, *probe, *poses, *unit, *log, *hourglass;
     double repulsion;
     const char *checkpoint, *restart;
     double checkpoint_every;

@@ -23,7 +23,7 @@ strained_view strained_view_of(const tled_problem *p, const double *displacement
  * With A = F in the middle and A + D at a corner, in Frobenius' norm,
  *     det(A + D) = det A + cof A : D + A : cof D + det D, |cof X| <= |X|^2 / sqrt(3), |det X| <= |X|^3 / (3 sqrt(3)).
  * A column of D is the sum of three hourglass modes, with signs, times a slope, and a mode is in two columns, xyz in
- * three: |D|^2 <= 9 slope^2 Q, Q the sum of all squares, of which hourglass energy is k / 2. Where |D| is at most 1/4,
+ * three: |D|^2 <= 9 slope^2 Q, Q the sum of all squares. Where |D| is at most 1/4,
  * as |A| <= (1 + |A|^2) / 2,
  *     det(A + D) >= det A - |D| (|A|^2 + (1 + |A|^2) / 8 + 1/48) / sqrt(3). */
 static bool is_above(const strained_view *v, const deformed *d, double limit)
@@ -33,13 +33,11 @@ static bool is_above(const strained_view *v, const deformed *d, double limit)
     const double square = 3 + 2 * (h.xx + h.yy + h.zz) + (h.xx * h.xx + h.xy * h.xy + h.xz * h.xz) +
                           (h.yx * h.yx + h.yy * h.yy + h.yz * h.yz) + (h.zx * h.zx + h.zy * h.zy + h.zz * h.zz);
     const double most = square + (1 + square) / 8 + 1. / 48;
-    const double away = 18 * v->slope * v->slope * d->hourglass,
-                 stiffness = d->law.hourglass; /* |D|^2: away over that */
-    return gap > 0 && 16 * away <= stiffness && away * most * most < 3 * gap * gap * stiffness;
+    const double away = 9 * v->slope * v->slope * hourglass_dot(&d->modes, &d->modes); /* |D|^2 */
+    return gap > 0 && 16 * away <= 1 && away * most * most < 3 * gap * gap;
 }
 
-/* The corners of elements that are no boxes are always computed, and so are those of all where no hourglass stiffness
- * gives a bound. */
+/* The corners of elements that are no boxes are always computed. */
 static void add_quality(quality *to, const strained_view *v, int64_t element, const deformed *d)
 {
     const double limit = to->corner < v->limit ? to->corner : v->limit, centre = 1 + d->dilation;

@@ -3,6 +3,7 @@
  */
 #include "base/mem.h"
 #include "cli/progress.h"
+#include "model/hourglass_text.h"
 #include "model/materials.h"
 #include "model/stage.h"
 #include "probe/probe_carry.h"
@@ -86,14 +87,22 @@ static int check_checkpoint(const tool *t, struct options *o, err *e)
     return 0;
 }
 
+static int read_control(const struct options *o, hourglass_control *to, err *e)
+{
+    if (!hourglass_read(o->hourglass ? o->hourglass : "physical", to))
+        return 0;
+    return err_usage(e, "--hourglass '%s': expected physical or isotropic[:KAPPA], KAPPA from 0 to 1000", o->hourglass);
+}
+
 static int check_end(const struct options *o, err *e)
 {
+    hourglass_control control;
     if (o->checkpoint_every > 0 && !o->checkpoint && !o->restart)
         return err_usage(e, "--checkpoint-every without --checkpoint or --restart; expected one of them");
     int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
     if (ends > 1)
         return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
-    if (check_log(o, e))
+    if (check_log(o, e) || read_control(o, &control, e))
         return -1;
     if (o->damping == 0 && (!ends || o->rest >= 0))
         return err_usage(e, "without damping nothing comes to rest; expected -t or -n to end, or a --damping above 0");
@@ -164,6 +173,8 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
 {
     char until[60], shape[300] = "", press[360] = "";
     const run_setup *r = &s->run;
+    char control[HOURGLASS_TEXT];
+    hourglass_text(s->problem.control, control);
     if (s->collider.poses) {
         probe_text(&s->collider.shape, shape, sizeof shape);
         snprintf(press, sizeof press, "--probe %s --repulsion %.9g ", shape, o->repulsion);
@@ -174,10 +185,9 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
         snprintf(until, sizeof until, "-n %lld", (long long)o->steps);
     else
         snprintf(until, sizeof until, "-t %.9g", o->seconds);
-    return tool_provenance(t, e, "%s%s --ramp %.9g --hourglass %.9g [%s %s, dt %.9g%s, damping %.9g%s%s]", press, until,
-                           o->ramp, o->hourglass, r->device->is.device, o->precision ? "single" : "double", 1 / r->rate,
-                           r->rate_fixed ? "" : " or cut", r->damping, r->adapt ? " adapted" : "",
-                           tled_bounds_hourglass(&s->problem) ? ", hourglass modulus at most 11 mu" : "");
+    return tool_provenance(t, e, "%s%s --ramp %.9g --hourglass %s [%s %s, dt %.9g%s, damping %.9g%s]", press, until,
+                           o->ramp, control, r->device->is.device, o->precision ? "single" : "double", 1 / r->rate,
+                           r->rate_fixed ? "" : " or cut", r->damping, r->adapt ? " adapted" : "");
 }
 
 /* Reads the frames that came, passes them on, and starts from the last. Frames of other materials are not passed on. */
@@ -393,13 +403,21 @@ static const tled_executor *choose_device(session *s, const struct options *o, c
     return tled_executor_of(executor_choose(table, names[o->device], &need, device, size, e));
 }
 
+/* In the model, for whoever asks for hourglass energy later. */
+static int say_control(model *m, hourglass_control control, err *e)
+{
+    char text[HOURGLASS_TEXT];
+    hourglass_text(control, text);
+    return model_meta_set(m, "hourglass.control", text, e);
+}
+
 /* From the model that came to the problem and how it is to be run. */
 static int prepare(session *s, const struct options *o, char *device, size_t size, err *e)
 {
+    hourglass_control control;
     s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps ? rest_tolerance : -1;
-    if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
-        tled_problem_make(&s->problem, &s->m, &s->script, o->hourglass, e) ||
-        model_meta_set_numbers(&s->m, "hourglass.kappa", &o->hourglass, 1, e) ||
+    if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) || read_control(o, &control, e) ||
+        tled_problem_make(&s->problem, &s->m, &s->script, control, e) || say_control(&s->m, control, e) ||
         support_of(&s->problem, &s->support, e) ||
         support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;
@@ -492,7 +510,6 @@ static int run_tool(int argc, char **argv)
                         .rest = -1,
                         .ramp = .1,
                         .damping = -1,
-                        .hourglass = .0075,
                         .every = -1,
                         .log_every = -1,
                         .repulsion = 1,

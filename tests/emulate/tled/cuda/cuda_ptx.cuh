@@ -40,6 +40,10 @@ static inline float near_log2(float x)
 {
     return log2f(x);
 }
+static inline float near_inverse(float x)
+{
+    return 1 / x;
+}
 static inline float near_exp2(float x)
 {
     return exp2f(x);
