@@ -86,20 +86,34 @@ static tried make(double x, double y, double z, double by)
     return t;
 }
 
+static element_field field_of(const double u[24])
+{
+    element_field at = {.x = {{0}}};
+    for (int c = 0; c < 8; c++) {
+        at.x.at[c] = u[3 * c];
+        at.y.at[c] = u[3 * c + 1];
+        at.z.at[c] = u[3 * c + 2];
+    }
+    return at;
+}
+
 /* By the code under test. any: as a hexahedron of any shape. */
+static element_field field_of_forces(const tried *t, bool any, const double u[24])
+{
+    const element_fibre none = {{0, 0, 0}, 0};
+    if (any)
+        return element_any_force(FORM_NEO_HOOKEAN, HOURGLASS_PHYSICAL, field_of(u), &t->any, t->law, none, false);
+    return element_force(FORM_NEO_HOOKEAN, HOURGLASS_PHYSICAL, field_of(u), t->box, t->law, none, false);
+}
+
 static void forces(const tried *t, bool any, const double u[24], double f[24])
 {
-    element_field at, force;
-    const element_fibre none = {{0, 0, 0}, 0};
-    double *const from[3] = {at.x.at, at.y.at, at.z.at}, *const to[3] = {force.x.at, force.y.at, force.z.at};
-    for (int i = 0; i < 24; i++)
-        from[i % 3][i / 3] = u[i];
-    if (any)
-        force = element_any_force(FORM_NEO_HOOKEAN, HOURGLASS_PHYSICAL, at, &t->any, t->law, none, false);
-    else
-        force = element_force(FORM_NEO_HOOKEAN, HOURGLASS_PHYSICAL, at, t->box, t->law, none, false);
-    for (int i = 0; i < 24; i++)
-        f[i] = to[i % 3][i / 3];
+    const element_field force = field_of_forces(t, any, u);
+    for (int c = 0; c < 8; c++) {
+        f[3 * c] = force.x.at[c];
+        f[3 * c + 1] = force.y.at[c];
+        f[3 * c + 2] = force.z.at[c];
+    }
 }
 
 /* ---- the energy, anew */
@@ -287,7 +301,7 @@ static void test_text(void)
 /* The largest eigenvalue of M^-1 K at u, by power iteration on differences of forces. */
 static double largest(const tried *t, const double u[24])
 {
-    double way[24], moved[24], low[24], high[24], value = 0;
+    double way[24], moved[24], low[24] = {0}, high[24] = {0}, value = 0;
     for (int i = 0; i < 24; i++)
         way[i] = sin(3. * i * i + 1);
     for (int round = 0; round < 400; round++) {
@@ -314,12 +328,9 @@ static double largest(const tried *t, const double u[24])
 /* Of a box at u, by the code under test. */
 static double bound(const double side[3], const tried *t, const double u[24], double *j)
 {
-    element_field at;
+    const element_field at = field_of(u);
     const element_fibre none = {{0, 0, 0}, 0};
     step_matrix a;
-    double *const from[3] = {at.x.at, at.y.at, at.z.at};
-    for (int i = 0; i < 24; i++)
-        from[i % 3][i / 3] = u[i];
     const element_modes x = element_modes_of(at.x), y = element_modes_of(at.y), z = element_modes_of(at.z);
     const element_tensor h = element_gradient(x, y, z, t->box.slope);
     const hourglass_modes m = element_hourglass_modes(x, y, z);

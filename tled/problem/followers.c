@@ -236,16 +236,16 @@ static void add_bound(const followers *f, const tled_problem *p, int64_t triangl
     }
 }
 
-/* The largest sum of a node's bounds at what presses each vertex: `by_vertex`, or where that is NULL, by its curve.
- * Both x 3, Pa, of which the first counts. */
-static double largest_bound(const followers *f, const double *by_vertex, const double *by_curve)
+/* The largest sum of a node's bounds at what presses each vertex, by its curve or (by_vertex) by itself. pressure: x 3,
+ * Pa, of which the first counts. */
+static double largest_bound(const followers *f, const double *pressure, bool by_vertex)
 {
     double largest = 0;
     for (int64_t n = 0; n < f->nodes; n++) {
         double sum = 0;
         for (int32_t i = f->pull_start[n]; i < f->pull_start[n + 1]; i++) {
             const int64_t v = f->pull_vertex[i];
-            sum += f->pull_bound[i] * (by_vertex ? by_vertex[3 * v] : by_curve[3 * (int64_t)f->vertex_curve[v]]);
+            sum += f->pull_bound[i] * pressure[3 * (by_vertex ? v : (int64_t)f->vertex_curve[v])];
         }
         largest = fmax(largest, sum);
     }
@@ -282,7 +282,7 @@ static void grow_work(void *context, int64_t chunk, int64_t from, int64_t to)
 
 double followers_square_at_rest(const tled_problem *p)
 {
-    return p->followers ? largest_bound(p->followers, NULL, p->followers->most) : 0;
+    return p->followers ? largest_bound(p->followers, p->followers->most, false) : 0;
 }
 
 double followers_step(double square, double step)
@@ -449,5 +449,5 @@ double followers_square(followers_work *w, pool *threads, const double *value)
     w->value = value;
     pool_run(threads, w->f->vertices, CHUNK, place_work, w);
     pool_run(threads, w->f->vertices, CHUNK, grow_work, w);
-    return largest_bound(w->f, w->force, NULL);
+    return largest_bound(w->f, w->force, true);
 }

@@ -123,7 +123,7 @@ static const int32_t both_ways[12] = {0, 1, 2, 0, 2, 3, 0, 1, 3, 1, 2, 3};
 /* Whether its corners all turn one way. */
 static bool is_convex(const surface *from, const int32_t *vertex)
 {
-    double first[3], other[3];
+    double first[3] = {0}, other[3] = {0};
     bool convex = true;
     for (int i = 0; i < 4; i++) {
         const int32_t *corner = both_ways + 3 * i;
