@@ -28,7 +28,7 @@ void in_close(in *s);
 
 const char *in_name(const in *s);
 
-/* Whether the stream is decompressed from gzip. Callers whose memory is to grow only with the size of their input
+/* Tells whether the stream is decompressed from gzip. Callers whose memory is to grow only with the size of their input
  * refuse data that are compressed once more inside: DEFLATE makes at most 1032 bytes of one, but twice a million. */
 bool in_is_gzip(const in *s);
 

@@ -31,25 +31,18 @@ static element_modes modes_of(const view *v, int64_t element, int axis)
 /* Of an element that is no box: its shape, and sum(B^2), 1/m2. */
 static element_any shape_of(const view *v, int64_t element, const material *of, double *squares)
 {
-    element_any s;
-    double at[24], b[24], slope[21], twist[12], basis[9];
+    double at[24], b[24], slope[21], twist[12], basis[9], hold[HOURGLASS_FORM];
     for (int i = 0; i < 24; i++)
         at[i] = v->rest[3 * (int64_t)v->node[8 * element + i / 3] + i % 3] -
                 v->rest[3 * (int64_t)v->node[8 * element] + i % 3];
-    s.volume = hexahedron_mean(at, b);
+    const double volume = hexahedron_mean(at, b);
     hexahedron_modes(at, b, slope, twist);
     hexahedron_basis(at, basis);
-    for (int m = 0; m < ELEMENT_MODES; m++)
-        s.slope[m] = (element_vector){slope[3 * m], slope[3 * m + 1], slope[3 * m + 2]};
-    for (int g = 0; g < ELEMENT_TWISTS; g++)
-        s.twist[g] = (element_vector){twist[3 * g], twist[3 * g + 1], twist[3 * g + 2]};
     *squares = 0;
     for (int i = 0; i < 24; i++)
         *squares += b[i] * b[i];
-    s.held.basis =
-        (element_tensor){basis[0], basis[1], basis[2], basis[3], basis[4], basis[5], basis[6], basis[7], basis[8]};
-    hourglass_forms(material_mu(of), material_bulk(of), s.volume, basis, s.held.hold);
-    return s;
+    hourglass_forms(material_mu(of), material_bulk(of), volume, basis, hold);
+    return element_any_of(slope, twist, volume, basis, hold);
 }
 
 /* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, which has the same coefficients, mu

@@ -21,6 +21,31 @@ typedef struct element_any {
     hourglass_any held; /* of physical hourglass control */
 } element_any;
 
+#ifdef REAL_IS_DOUBLE
+/* From a mesh's numbers (mesh/hexahedron.h): slope, 7 x 3; twist, 4 x 3; basis, 3 x 3; hold: what physical hourglass
+ * control holds it with, HOURGLASS_FORM. */
+ELEMENT_FUNCTION element_any element_any_of(const double *slope, const double *twist, double volume,
+                                            const double *basis, const double *hold)
+{
+    element_any s;
+    s.volume = volume;
+    for (int m = 0; m < ELEMENT_MODES; m++, slope += 3) {
+        const element_vector v = {slope[0], slope[1], slope[2]};
+        s.slope[m] = v;
+    }
+    for (int g = 0; g < ELEMENT_TWISTS; g++, twist += 3) {
+        const element_vector v = {twist[0], twist[1], twist[2]};
+        s.twist[g] = v;
+    }
+    const element_tensor columns = {basis[0], basis[1], basis[2], basis[3], basis[4],
+                                    basis[5], basis[6], basis[7], basis[8]};
+    s.held.basis = columns;
+    for (int i = 0; i < HOURGLASS_FORM; i++)
+        s.held.hold[i] = hold[i];
+    return s;
+}
+#endif
+
 ELEMENT_FUNCTION element_vector element_any_row(const element_any *s, element_modes u)
 {
     element_vector h = {u.x * s->slope[0].x + u.y * s->slope[1].x + u.z * s->slope[2].x + u.xy * s->slope[3].x +

@@ -36,7 +36,7 @@ static const char *law_needed(const executor_need *need)
     return "that expresses all laws of the model";
 }
 
-/* What an executor lacks of what is needed: a feature, in words, or else the law; NULL: nothing. */
+/* Returns the words for the first needed feature that the executor lacks, or else the law's; NULL: it lacks nothing. */
 static const char *lack_of(const executor *x, const executor_need *need)
 {
     const char *feature = words_of(need->features & ~x->features);

@@ -32,7 +32,7 @@ enum { /* as bits */
 #undef EXECUTOR_BIT
 };
 
-/* What every executor of today has: a choice for the sake of these is none, and is not told. */
+/* All executors have these features, so messages about the choice do not name them. */
 enum { EXECUTOR_USUAL = EXECUTOR_MIXTURES };
 
 typedef struct executor {

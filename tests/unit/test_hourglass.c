@@ -52,16 +52,11 @@ static double dot(const double a[3], const double b[3])
 
 static void take_any(tried *t)
 {
-    double slope[21], twist[12], basis[9];
+    double slope[21], twist[12], basis[9], hold[HOURGLASS_FORM];
     hexahedron_modes(t->at, t->b, slope, twist);
     hexahedron_basis(t->at, basis);
-    for (int m = 0; m < ELEMENT_MODES; m++)
-        t->any.slope[m] = (element_vector){slope[3 * m], slope[3 * m + 1], slope[3 * m + 2]};
-    for (int g = 0; g < ELEMENT_TWISTS; g++)
-        t->any.twist[g] = (element_vector){twist[3 * g], twist[3 * g + 1], twist[3 * g + 2]};
-    t->any.volume = t->volume;
-    memcpy(&t->any.held.basis, basis, sizeof basis);
-    hourglass_forms(mu, bulk, t->volume, basis, t->any.held.hold);
+    hourglass_forms(mu, bulk, t->volume, basis, hold);
+    t->any = element_any_of(slope, twist, t->volume, basis, hold);
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 3; i++)
             t->axis[c][i] = basis[3 * i + c];

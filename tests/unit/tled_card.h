@@ -13,7 +13,7 @@ static const block muscle = {{11, 6, 5}, {.0025, .0025, .0025}, 3000, .45, 1000,
 /* Of two columns whose threads nearly all have an element, and of layers that end. */
 static const block small = {{29, 14, 9}, {.001, .001, .001}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
 
-/* What holds the hourglass modes of problems that are made. */
+/* The hourglass control that a new problem gets. */
 static hourglass_control in_control = {HOURGLASS_PHYSICAL, 0};
 
 static inline void read_script(bench *b, const char *text)

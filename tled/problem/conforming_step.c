@@ -1,19 +1,10 @@
 #include "tled/problem/conforming_step.h"
 
 #include <math.h>
-#include <string.h>
 
 element_any conforming_shape(const conforming_element *c)
 {
-    element_any s = {.volume = c->volume};
-    for (int m = 0; m < ELEMENT_MODES; m++)
-        s.slope[m] = (element_vector){c->slope[m][0], c->slope[m][1], c->slope[m][2]};
-    for (int g = 0; g < ELEMENT_TWISTS; g++)
-        s.twist[g] = (element_vector){c->twist[g][0], c->twist[g][1], c->twist[g][2]};
-    s.held.basis = (element_tensor){c->basis[0], c->basis[1], c->basis[2], c->basis[3], c->basis[4],
-                                    c->basis[5], c->basis[6], c->basis[7], c->basis[8]};
-    memcpy(s.held.hold, c->hold, sizeof s.held.hold);
-    return s;
+    return element_any_of(&c->slope[0][0], &c->twist[0][0], c->volume, c->basis, c->hold);
 }
 
 /* ---- the stable step */
