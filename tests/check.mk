@@ -8,8 +8,8 @@
 #                   shape 1 s; all unit and command tests, CUDA's kernels on a card that the processor plays among them, 130 s
 #   .ci/run         that, and clang's build, cppcheck, clang-tidy, the unit tests with ASan and UBSan, 2 s of each fuzz target, and the browser:
 #                   about 10 minutes more; at most 15
-#   make check-all  that, with all tests sanitized and 10 s of each fuzz target, and tsan, valgrind and the slow tests: half an hour
-#   make soak       300 s of each fuzz target, tests that take many minutes with SINEW_LONG, tests/long/run1e6: hours
+#   make check-all  that, with all tests sanitized and 10 s of each fuzz target, and tsan, valgrind, 20 s of each live run and the slow tests: 40 minutes
+#   make soak       300 s of each fuzz target, tests that take many minutes with SINEW_LONG, ten minutes of each live run, tests/long/run1e6: hours
 # What a test lacks (a program, data, a card) it names, and is skipped. .ci/setup check installs what is small, so that a visitor's results are
 # compared with CalculiX, pydicom and DCMTK; VTK, Gmsh, gnuplot, ffmpeg, clang, cppcheck, valgrind and chromium come with .ci/setup check-all.
 
@@ -61,7 +61,7 @@ $(BUILD)/tests/faults/wreck_card.so: tests/faults/wreck_card.cu
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Xcompiler -fPIC -shared -o $@ $<)
 
-.PHONY: setup demo check check-all check-ci soak unit check-unit check-cli check-tests check-slow check-soak check-run1e6
+.PHONY: setup demo check check-all check-ci soak unit check-unit check-cli check-tests check-slow check-soak check-live check-run1e6
 setup:
 	.ci/setup check
 
@@ -136,6 +136,12 @@ check-slow: all unit
 check-soak: all unit
 	$(ENVIRONMENT) SINEW_LONG=1 REPEATS=100 $(PROVE) $(SOAK)
 
+# Live runs, each of so many seconds, and so many short ones that are recorded and replayed.
+LIVE_SECONDS ?= 20
+LIVE_SESSIONS ?= 4
+check-live: all
+	$(ENVIRONMENT) prove $(if $(V),-v) --exec python3 tests/long/live.py :: $(BIN) $(LIVE_SECONDS) $(LIVE_SESSIONS)
+
 check-run1e6: all
 	SINEW_BIN=$(BIN) tests/long/run1e6 5
 
@@ -184,27 +190,9 @@ bench-msds: $(BUILD)/tests/bench/bench_msds
 # Images of us-slice at the sizes of PST's Tables I and II, beside their figures; out/regions.png where there is gnuplot.
 bench-slice: all $(BUILD)/tests/bench/bench_slice
 	@mkdir -p out
-	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat
+	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat >out/slice.csv && cat out/slice.csv
 	@! command -v gnuplot >/dev/null || gnuplot -e "data='out/regions.dat'; picture='out/regions.png'" tests/bench/regions.plot
-	@! command -v python3 >/dev/null || python3 tests/bench/live.py $(BIN) $(shell nproc)
-# The same on a card, where there is one, and with half a million nodes.
-bench-msds_card: $(BUILD)/tests/bench/bench_msds_card
-	@$(BUILD)/tests/bench/bench_msds_card
-# DICOM to volumes, labels and surfaces.
-bench-images: all $(BUILD)/tests/bench/bench_images
-	@$(BUILD)/tests/bench/bench_images $(BIN) $(BUILD) $(BENCH_HEAD)
-# No time, but how far springs are from the FEM at those sizes.
-compare-msds: all
-	@tests/bench/msds_compare $(BIN)
-# No time, but how fast models converge, by centres and by shares; it takes many minutes, and is no part of bench.
-bench-fraction: all
-	@tests/bench/fraction $(BIN) $(BENCH_FACE)
-# Error against wall time beside CalculiX: ten minutes on two quiet processors, and so no part of bench; a table and a figure in out.
-bench-accuracy: all
-	@mkdir -p out
-	@tests/bench/accuracy $(BIN) $(shell nproc) | tee out/accuracy.csv
-	@awk -f tests/bench/accuracy_svg.awk out/accuracy.csv >out/accuracy.svg
-
+	@! command -v python3 >/dev/null || python3 tests/bench/live.py $(BIN) $(shell nproc) out/slice.csv
 include tests/gate/gate.mk
 
 # ---- other builds, each in its own folder
@@ -222,13 +210,13 @@ SANITIZE_GOAL = check-tests
 # Data races: what has threads, under ThreadSanitizer. (Embree, which is not built so, is seen from outside only.)
 .PHONY: tsan tsan-run
 TSAN = -O1 -g -fsanitize=thread -fno-omit-frame-pointer
-TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool frame_writer tled_step tled_run msds_run slice voxelise_voxels)
+TSAN_UNIT = $(patsubst %,$(BUILD)/tests/unit/test_%,pool lines frame_writer tled_step tled_run msds_run slice voxelise_voxels)
 tsan:
 	TSAN_OPTIONS=exitcode=99 SINEW_SANITIZED=1 REPEATS=1 $(MAKE) $(JOBS) BUILD=$(BUILD)/tsan BIN=$(BUILD)/tsan/bin CFLAGS='$(TSAN)' CUDA=no tsan-run
 tsan-run: all $(TSAN_UNIT)
-	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t
+	$(ENVIRONMENT) prove $(if $(V),-v) $(TSAN_UNIT) tests/cli/threads.t tests/cli/live-slice.t
 
-# Every tool under valgrind's memcheck; and the HTML pages that samples/paper and man/html make, in a browser.
+# Every tool under valgrind's memcheck; and in a browser, the HTML pages that samples/paper and man/html make, and the console's page.
 .PHONY: check-valgrind valgrind browser
 check-valgrind:
 	.ci/setup valgrind
@@ -270,7 +258,7 @@ $(BUILD)/tidy/%.ok: %.c .clang-tidy tests/.clang-tidy $(HEADERS)
 	@touch $@
 
 lint-format:
-	@$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS) $(call found,*.cc) $(CUDA_FILES)
+	@$(CLANG_FORMAT) --dry-run -Werror $(SOURCES) $(HEADERS) $(call found,*.cc) $(CUDA_FILES) $(call found,*.js)
 
 lint-shell: $(SCRIPTS:%=$(BUILD)/shellcheck/%.ok)
 $(BUILD)/shellcheck/%.ok: % $(filter %.sh,$(SCRIPTS))
@@ -305,14 +293,18 @@ ZSHDIR = $(DESTDIR)$(ZSH_COMPLETIONS)
 # `bind` has none in bash: bash-completion has a file of that name, for the shell's builtin.
 COMPLETIONS = $(filter-out bind,$(TOOLS))
 PAGES = $(wildcard man/*.[157])
+# The console's page, as it lies.
+PAGEDIR = $(DESTDIR)$(PREFIX)/share/sinew/console
+PAGE_FILES = $(wildcard common/console/page/*.*)
 SAMPLES = $(filter-out samples/demo samples/arm samples/scan samples/paper samples/paper.d,$(wildcard samples/*))
 
 install: all
-	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
+	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(PAGEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
 	$(INSTALL) -m 755 $(TOOLS:%=$(BIN)/%) $(BINDIR)
 	ln -sf voxelise $(BINDIR)/voxelize
 	for section in 1 5 7; do $(INSTALL) -m 644 man/*.$$section $(MANDIR)/man$$section || exit 1; done
 	$(INSTALL) -m 644 $(SAMPLES) $(SAMPLEDIR)
+	$(if $(PAGE_FILES),$(INSTALL) -m 644 $(PAGE_FILES) $(PAGEDIR))
 	for tool in $(COMPLETIONS); do $(BIN)/$$tool --table bash >$(COMPLETIONDIR)/$$tool || exit 1; done
 	for tool in $(TOOLS); do $(BIN)/$$tool --table zsh >$(ZSHDIR)/_$$tool || exit 1; done
 	ln -sf voxelise.1 $(MANDIR)/man1/voxelize.1
@@ -323,8 +315,8 @@ uninstall:
 	rm -f $(TOOLS:%=$(BINDIR)/%) $(COMPLETIONS:%=$(COMPLETIONDIR)/%) $(TOOLS:%=$(ZSHDIR)/_%) \
 	    $(BINDIR)/voxelize $(MANDIR)/man1/voxelize.1 $(COMPLETIONDIR)/voxelize \
 	    $(foreach page,$(PAGES),$(MANDIR)/man$(subst .,,$(suffix $(page)))/$(notdir $(page)))
-	rm -rf $(SAMPLEDIR)
-	rmdir $(dir $(SAMPLEDIR)) 2>/dev/null || :
+	rm -rf $(SAMPLEDIR) $(PAGEDIR)
+	rmdir $(dir $(SAMPLEDIR)) $(dir $(PAGEDIR)) 2>/dev/null || :
 
 .PHONY: help
 help:
@@ -337,13 +329,14 @@ help:
 	'make picture      the pictures in README.md, anew: replaces samples/*.png' \
 	'' \
 	'make check        set-up, the build, all tests, and small lints: run it before each commit; 4 minutes on two processors' \
-	'make check-all    that, and clang, sanitizers, fuzzers, clang-tidy, cppcheck, valgrind, a browser, slow tests; half an hour' \
-	'make soak         the long runs: fuzzing, a fault at every call, a hundred repeats, a million steps; hours' \
+	'make check-all    that, and clang, sanitizers, fuzzers, clang-tidy, cppcheck, valgrind, a browser, slow tests; 40 minutes' \
+	'make soak         the long runs: fuzzing, a fault at every call, a hundred repeats, live runs, a million steps; hours' \
 	'make check-ci     what continuous integration runs (.ci/run): check, and a fixed list of the parts of check-all' \
 	'' \
 	'make setup        installs by apt what make check needs (through sudo if not root), and names it' \
 	'make check-unit   the unit tests            make check-cli   the tests of the commands' \
 	'make check-tests  both, with the counts     make check-slow  slow tests, at their full length' \
+	'make check-live   live runs of LIVE_SECONDS=$(LIVE_SECONDS) each, and LIVE_SESSIONS=$(LIVE_SESSIONS) that are recorded and replayed' \
 	'make same WITH=FOLDER   what the outputs of this build differ in from those of the tools in FOLDER' \
 	'make lint         clang-format, shellcheck, manual pages, shape; and cppcheck and clang-tidy, which take minutes' \
 	'make lint-NAME    one of them: cppcheck, tidy, format, shell, man, shape' \
@@ -354,13 +347,14 @@ help:
 	'make check-valgrind  set-up, and every tool under valgrind, on small inputs' \
 	'make coverage     the lines and branches that make check reaches, by folder; those never reached in $(BUILD)/coverage/branches.txt' \
 	'make mutate       changes the code of FOLDER=all at N=$(N) places, one at a time, and names the changes that no test notices' \
-	'make browser      the HTML pages of make paper and make html, in headless chromium' \
+	'make browser      the HTML pages of make paper and make html, and the console, in headless chromium' \
 	'' \
 	'make bench        how long things take, beside a probe of the machine; into out/bench.csv' \
 	'make bench-voxelise, -geometry, -tled, -table1, -msds, -slice, -images   its parts (TRIANGLES=100000: of the scan)' \
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make bench-accuracy  error against wall time, beside CalculiX; out/accuracy.csv and out/accuracy.svg' \
+	'make   from a pose of the page of sinew console to its image, in headless chromium' \
 	'make html         set-up, and the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make deb          set-up, and a Debian package of what make install installs, into out/' \

@@ -1,4 +1,5 @@
 /* voxelise: closed surfaces become hexahedral elements, one a voxel (W&M section 3, Algorithm 1). */
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/num.h"
 #include "base/pool.h"
@@ -367,7 +368,7 @@ static int say_plan(job *j, const model *m, err *e)
 /* With -v: how long each step took. */
 static double say_time(const job *j, const char *what, double since)
 {
-    double now = progress_clock();
+    double now = clock_now();
     tool_detail(j->t, "%s: %.1f ms", what, 1e3 * (now - since));
     return now;
 }
@@ -518,7 +519,7 @@ static int check(job *j, err *e)
 static int prepare(job *j, model *m, err *e)
 {
     double side[3];
-    double clock = progress_clock();
+    double clock = clock_now();
     if (read_surface(j, e))
         return -1;
     if (!j->unit)
@@ -538,7 +539,7 @@ static int prepare(job *j, model *m, err *e)
 
 static int work(job *j, model *m, err *e)
 {
-    double clock = progress_clock();
+    double clock = clock_now();
     if (make_grid(j, e) || find_voxels(j, e))
         return -1;
     clock = say_time(j, "finding what is inside", clock);

@@ -21,6 +21,7 @@ static int fill(err *e, int status, const char *place, int64_t line, const char 
     if (e->status)
         return -1;
     e->status = status;
+    e->form = format;
     size_t at = place ? put_place(e->text, sizeof e->text, place) : 0;
     e->place = (int)at;
     if (place && line > 0)
@@ -37,6 +38,15 @@ int err_set(err *e, const char *place, int64_t line, const char *format, ...)
     va_start(args, format);
     fill(e, STATUS_BAD, place, line, format, args);
     va_end(args);
+    return -1;
+}
+
+int err_set_as(err *e, const char *form, const char *place, int64_t line, const char *text)
+{
+    const bool fresh = !e->status;
+    err_set(e, place, line, "%s", text);
+    if (fresh)
+        e->form = form;
     return -1;
 }
 

@@ -14,11 +14,12 @@ enum { STATUS_OK = 0, STATUS_BAD = 1, STATUS_USAGE = 2, STATUS_DIVERGED = 3 };
 enum { ERR_TRY_HELP = 1, ERR_SHOW_USAGE };
 
 typedef struct err {
-    int status;      /* the exit status it asks for; 0: no error */
-    bool silent;     /* the tool before us in the pipe has said it already */
-    int help;        /* what is said after the text: one of the ERR_ below */
-    int place;       /* bytes of text that are the place's name */
-    char text[1000]; /* "place:line: what is wrong; what was expected" */
+    int status;       /* the exit status it asks for; 0: no error */
+    bool silent;      /* the tool before us in the pipe has said it already */
+    int help;         /* what is said after the text: one of the ERR_ below */
+    int place;        /* bytes of text that are the place's name */
+    const char *form; /* the format of the text, borrowed: errors of one kind have the same; NULL: no error */
+    char text[1000];  /* "place:line: what is wrong; what was expected" */
 } err;
 
 typedef struct notes {
@@ -42,6 +43,9 @@ int err_usage(err *e, const char *format, ...) SINEW_PRINTF(2, 3);
 /* The same for the value of one option: "option: what is wrong", where only the input shows that it is wrong, so that
  * --help would not tell. NULL: no option is named. */
 int err_option(err *e, const char *option, const char *format, ...) SINEW_PRINTF(3, 4);
+
+/* err_set of a text that is made by `form`, for a function that words errors for others. */
+int err_set_as(err *e, const char *form, const char *place, int64_t line, const char *text);
 
 /* err_set with status 3: the simulation diverged. */
 int err_diverged(err *e, const char *place, int64_t line, const char *format, ...) SINEW_PRINTF(4, 5);

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -15,7 +16,8 @@ enum { CHUNK = 1 << 18, MUCH = 1 << 15, MARK = 3 }; /* bytes */
 
 struct in {
     char *name;
-    int fd; /* -1: memory */
+    int fd;      /* -1: memory */
+    int watched; /* see in_watch; -1: none */
     const unsigned char *memory;
     size_t memory_left;
     bool gzip, member_ended, ended;
@@ -29,6 +31,15 @@ struct in {
     int64_t taken; /* bytes */
 };
 
+static int wait_for_bytes(const in *s, err *e)
+{
+    struct pollfd list[2] = {{.fd = s->fd, .events = POLLIN}, {.fd = s->watched, .events = POLLIN}};
+    while (poll(list, 2, -1) < 0)
+        if (errno != EINTR && errno != EAGAIN)
+            return err_system(e, s->name, errno, "cannot wait");
+    return list[1].revents ? err_set(e, s->name, 0, "reading was told to end") : 0;
+}
+
 /* Bytes as they come from the file or memory. Returns how many, 0 at the end, -1 on failure. */
 static int64_t fetch(in *s, unsigned char *to, size_t size, err *e)
 {
@@ -41,6 +52,8 @@ static int64_t fetch(in *s, unsigned char *to, size_t size, err *e)
         return (int64_t)n;
     }
     for (;;) {
+        if (s->watched >= 0 && wait_for_bytes(s, e))
+            return -1;
         ssize_t n = read(s->fd, to, size);
         if (n >= 0)
             return n;
@@ -159,6 +172,7 @@ static in *in_new(int fd, const char *name, const void *memory, size_t size, boo
     if (!s)
         return NULL;
     s->fd = fd;
+    s->watched = -1;
     s->memory = memory;
     s->memory_left = size;
     s->name = mem_text(name, e);
@@ -199,6 +213,11 @@ in *in_open_plain(const char *path, err *e)
     return open_file(path, true, e);
 }
 
+in *in_take(int fd, const char *name, err *e)
+{
+    return in_new(fd, name, NULL, 0, false, e);
+}
+
 in *in_memory(const void *bytes, size_t size, const char *name, err *e)
 {
     return in_new(-1, name, bytes, size, false, e);
@@ -211,6 +230,11 @@ void in_close(in *s)
     if (s->fd > STDIN_FILENO)
         close(s->fd);
     in_free(s);
+}
+
+void in_watch(in *s, int descriptor)
+{
+    s->watched = descriptor;
 }
 
 const char *in_name(const in *s)
@@ -239,6 +263,16 @@ static int64_t fetch_past(in *s, void *bytes, size_t size, err *e)
 {
     int64_t n = fetch(s, bytes, size < CHUNK ? size : CHUNK, e);
     s->ended = !n;
+    return n;
+}
+
+size_t in_rest(in *s, void *bytes, size_t size)
+{
+    const size_t left = s->filled - s->at, n = left < size ? left : size;
+    if (n)
+        memcpy(bytes, s->buffer + s->at, n);
+    s->at += n;
+    s->taken += (int64_t)n;
     return n;
 }
 

@@ -21,6 +21,9 @@ in *in_open(const char *path, err *e);
  * checkpoint is replaced. */
 in *in_open_plain(const char *path, err *e);
 
+/* Reads from a descriptor, such as a pipe's; it is the stream's from then on, but the caller's where this fails. */
+in *in_take(int fd, const char *name, err *e);
+
 /* Reads from bytes that stay the caller's (for tests and fuzzers). */
 in *in_memory(const void *bytes, size_t size, const char *name, err *e);
 
@@ -40,6 +43,14 @@ int64_t in_taken(const in *s);
 
 /* Reads up to size bytes; less only at the end. -1 with e filled where reading or gunzipping fails. */
 int64_t in_read(in *s, void *bytes, size_t size, err *e);
+
+/* Takes up to size bytes of those that were read ahead, and reads nothing: for who reads the descriptor on. The stream
+ * must not be gzip. */
+size_t in_rest(in *s, void *bytes, size_t size);
+
+/* From here on, who waits for bytes of the stream does so only until the descriptor can be read or is hung up: reading
+ * then fails. For a thread that reads while another may tell it to end. */
+void in_watch(in *s, int descriptor);
 
 /* Looks at the next byte without taking it: 0 to 255, -1 at the end, -2 with e filled on failure. A UTF-8 byte order
  * mark that the stream begins with is stepped over, as by in_line; in_read and in_all, before either of these, give

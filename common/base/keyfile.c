@@ -19,7 +19,7 @@ int keyfile_error(const keyfile *k, err *e, const char *format, ...)
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    return err_set(e, k->name, k->line, "%s", text);
+    return err_set_as(e, format, k->name, k->line, text);
 }
 
 static int check_characters(const keyfile *k, const char *text, err *e)
@@ -69,6 +69,16 @@ static int check_words(const keyfile *k, err *e)
     return 0;
 }
 
+int keyfile_take(keyfile *k, char *text, int64_t length, int64_t line, err *e)
+{
+    k->line = line;
+    if (length > KEYFILE_LINE)
+        return keyfile_error(k, e, "a line of %lld bytes; expected at most %d", (long long)length, KEYFILE_LINE);
+    if (check_characters(k, text, e) || split(k, text, e) || check_words(k, e))
+        return -1;
+    return k->count ? 1 : 0;
+}
+
 int keyfile_next(keyfile *k, err *e)
 {
     for (;;) {
@@ -76,13 +86,9 @@ int keyfile_next(keyfile *k, err *e)
         int64_t length = in_line(k->source, &text, NULL, e);
         if (length < 0)
             return length == -1 ? 0 : -1;
-        k->line = in_lines(k->source);
-        if (length > KEYFILE_LINE)
-            return keyfile_error(k, e, "a line of %lld bytes; expected at most %d", (long long)length, KEYFILE_LINE);
-        if (check_characters(k, text, e) || split(k, text, e) || check_words(k, e))
-            return -1;
-        if (k->count)
-            return 1;
+        const int got = keyfile_take(k, text, length, in_lines(k->source), e);
+        if (got)
+            return got;
     }
 }
 

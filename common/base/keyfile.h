@@ -10,7 +10,7 @@
 enum { KEYFILE_WORDS = 64, KEYFILE_LINE = 65536 }; /* the most words and bytes that a line may have */
 
 typedef struct keyfile {
-    in *source;       /* borrowed */
+    in *source;       /* borrowed; NULL where lines are given to keyfile_take alone */
     const char *name; /* the source's, for messages */
     int64_t line;     /* the number of the line whose words these are */
     int count;
@@ -22,6 +22,10 @@ void keyfile_open(keyfile *k, in *source);
 /* Reads on to the next line that has words. 1: there is one; 0: the end; -1: e filled (too many words, control
  * characters, what is not text). */
 int keyfile_next(keyfile *k, err *e);
+
+/* Takes a line that the caller has, NUL-terminated and of `length` bytes, which is cut into words in place. 1: it has
+ * words; 0: none; -1: e filled, as above. */
+int keyfile_take(keyfile *k, char *text, int64_t length, int64_t line, err *e);
 
 /* Takes word `at` as key=value: returns the key's index among `keys` (fewer than 64) and its value, never empty.
  * -1 with e filled where it is not key=value, the key is unknown (the keys are listed, the nearest offered) or has its

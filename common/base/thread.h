@@ -9,4 +9,7 @@
 /* pthread_create() with a stack of 8 MiB. Returns 0, or an errno value. */
 int thread_start(pthread_t *thread, void *(*work)(void *), void *context);
 
+/* Lets other threads go first where processors are few: this one, and those that it starts from here on. */
+void thread_yield_to_others(void);
+
 #endif

@@ -1,7 +1,7 @@
 #include "cli/opt.h"
 
 #include "base/near.h"
-#include "base/spelling.h"
+#include "cli/spelling.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -298,6 +298,12 @@ static int take_long(scan *s, const char *word, err *e)
     if (equals && o->kind == OPT_FLAG)
         return err_usage(e, "--%s takes no value", o->name);
     return take(s, o, equals ? equals + 1 : NULL, e);
+}
+
+int opt_set(const opt_tool *tool, const char *name, const char *text, void *options, err *e)
+{
+    const opt *o = find_name(tool, name, strlen(name), e);
+    return o ? set_value(o, text, options, e) : -1;
 }
 
 /* "-qv", "-s2.5", "-s 2.5" */

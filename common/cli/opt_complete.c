@@ -1,6 +1,6 @@
 #include "cli/opt_complete.h"
 
-#include "base/spelling.h"
+#include "cli/spelling.h"
 
 #include <ctype.h>
 #include <stdio.h>

@@ -1,31 +1,25 @@
 #include "cli/progress.h"
 
-#include <stdio.h>
-#include <time.h>
-#include <unistd.h>
+#include "base/clock.h"
 
-double progress_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+#include <stdio.h>
+#include <unistd.h>
 
 void progress_start(progress *p, const char *tool, const char *what, double total, bool quiet)
 {
     *p = (progress){.tool = tool, .what = what, .total = total, .on = !quiet && isatty(STDERR_FILENO)};
     if (p->on)
-        p->started = p->shown = progress_clock();
+        p->started = p->shown = clock_now();
 }
 
 bool progress_due(const progress *p)
 {
-    return p->on && progress_clock() - p->shown >= .1;
+    return p->on && clock_now() - p->shown >= .1;
 }
 
 void progress_text(progress *p, const char *text)
 {
-    p->shown = progress_clock();
+    p->shown = clock_now();
     fprintf(stderr, "\r%s: %s \033[K", p->tool, text);
 }
 
@@ -34,7 +28,7 @@ void progress_at(progress *p, double done)
     char text[200];
     if (!progress_due(p))
         return;
-    double rate = done / (progress_clock() - p->started);
+    double rate = done / (clock_now() - p->started);
     if (p->total > 0 && rate > 0)
         snprintf(text, sizeof text, "%3.0f %% of %.0f %s, %.4g/s, %.0f s left", 100 * done / p->total, p->total,
                  p->what, rate, (p->total - done) / rate);

@@ -24,7 +24,4 @@ void progress_clear(const progress *p);
 /* Clears it for good. */
 void progress_stop(progress *p);
 
-/* Seconds of a clock that only goes forward. */
-double progress_clock(void);
-
 #endif

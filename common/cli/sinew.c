@@ -2,7 +2,7 @@
  * generic names (info, diff) stay off the PATH and `sinew bind` is never the shell's builtin.
  */
 #include "base/near.h"
-#include "base/spelling.h"
+#include "cli/spelling.h"
 #include "cli/tool.h"
 
 #include <errno.h>

@@ -4,7 +4,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "base/spelling.h"
+#include "cli/spelling.h"
 #include "inspect/info_names.h"
 #include "inspect/info_stats.h"
 #include "model/known.h"

@@ -1,6 +1,6 @@
 /* sinew-diff: where two models differ. Streaming: two bodies and one frame of each are in memory at a time. */
 #include "base/num.h"
-#include "base/spelling.h"
+#include "cli/spelling.h"
 #include "cli/tool.h"
 #include "model/known.h"
 #include "model/source.h"

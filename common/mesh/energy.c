@@ -29,9 +29,9 @@ static element_modes modes_of(const view *v, int64_t element, int axis)
 }
 
 /* Of an element that is no box: its shape, and sum(B^2), 1/m2. */
-static element_any shape_of(const view *v, int64_t element, const material *of, double *squares)
+static element_any shape_of(const view *v, int64_t element, double *squares)
 {
-    double at[24], b[24], slope[21], twist[12], basis[9], hold[HOURGLASS_FORM];
+    double at[24], b[24], slope[21], twist[12], basis[9];
     for (int i = 0; i < 24; i++)
         at[i] = v->rest[3 * (int64_t)v->node[8 * element + i / 3] + i % 3] -
                 v->rest[3 * (int64_t)v->node[8 * element] + i % 3];
@@ -41,8 +41,7 @@ static element_any shape_of(const view *v, int64_t element, const material *of, 
     *squares = 0;
     for (int i = 0; i < 24; i++)
         *squares += b[i] * b[i];
-    hourglass_forms(material_mu(of), material_bulk(of), volume, basis, hold);
-    return element_any_of(slope, twist, volume, basis, hold);
+    return element_any_of(slope, twist, volume, basis);
 }
 
 /* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, which has the same coefficients, mu
@@ -84,7 +83,7 @@ static void add_element(const view *v, int64_t element, const material *of, doub
         m = element_hourglass_modes(x, y, z);
         force = hourglass_of(v->control.kind, m, h, box, hold);
     } else {
-        const element_any any = shape_of(v, element, of, &squares);
+        const element_any any = shape_of(v, element, &squares);
         volume = any.volume;
         hold_of(v, mu, bulk, volume, squares, hold);
         h = element_any_twist(&any, &x, &y, &z);

@@ -22,8 +22,10 @@ int hourglass_read(const char *text, hourglass_control *to)
 
 void hourglass_text(hourglass_control control, char text[HOURGLASS_TEXT])
 {
+    char kappa[NUM_TEXT];
+    num_text(control.kappa, false, kappa);
     if (control.kind == HOURGLASS_PHYSICAL)
         snprintf(text, HOURGLASS_TEXT, "physical");
     else
-        snprintf(text, HOURGLASS_TEXT, "isotropic:%.9g", control.kappa);
+        snprintf(text, HOURGLASS_TEXT, "isotropic:%s", kappa);
 }

@@ -29,6 +29,8 @@ int stage_read(stage *s, model *m, err *e)
         return -1;
     s->source = in_open(NULL, e);
     s->reader = s->source ? model_reader_open(s->source, e) : NULL;
+    if (s->reader && s->lines_follow)
+        model_reader_let_follow(s->reader);
     return s->reader ? model_read(s->reader, m, e) : -1;
 }
 

@@ -12,6 +12,7 @@ typedef struct stage {
     const tool *t;
     in *source;
     model_reader *reader;
+    bool lines_follow; /* the model on stdin, for the caller to take (live/lines.h); set before stage_read */
     out *sink;
     model_writer *writer;
 } stage;

@@ -34,7 +34,8 @@ struct model_reader {
     item_source from;
     item next; /* read, not yet taken, where `waiting` */
     bool waiting, ended;
-    bool gives_cut;  /* see model_reader_give_cut */
+    bool gives_cut; /* see model_reader_give_cut */
+    bool lets_follow;
     err cut;         /* of the next frame: the stream was cut behind the one that was given */
     int64_t *places; /* where the body's arrays stood: lines or blocks */
     int64_t place_capacity;
@@ -153,10 +154,15 @@ void model_reader_names(model_reader *r)
     r->from.names = true;
 }
 
+void model_reader_let_follow(model_reader *r)
+{
+    r->lets_follow = true;
+}
+
 /* The stream said `end` or `fail`: nothing may follow. */
 static int finish(model_reader *r, const item *it, err *e)
 {
-    int more = in_peek(r->from.s, e);
+    int more = r->lets_follow ? -1 : in_peek(r->from.s, e);
     if (more == -2)
         return -1;
     if (more != -1)

@@ -26,6 +26,10 @@ void model_reader_give_cut(model_reader *r);
  * checked, and a long text or gzip stream is an error. */
 void model_reader_names(model_reader *r);
 
+/* For a stream that goes on with what is no model: what follows the model's end is left to the caller, and not waited
+ * for. (Else it is an error.) */
+void model_reader_let_follow(model_reader *r);
+
 /* The body, all of it, checked. A stream that ended with `fail` gives -1 with e filled: the status and text as they
  * came, e->silent set. */
 int model_read(model_reader *r, model *m, err *e);

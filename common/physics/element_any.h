@@ -18,14 +18,13 @@ enum { ELEMENT_MODES = 7, ELEMENT_TWISTS = 4, ELEMENT_ANY = 3 * (ELEMENT_MODES +
 typedef struct element_any {
     element_vector slope[ELEMENT_MODES], twist[ELEMENT_TWISTS];
     real volume;
-    hourglass_any held; /* of physical hourglass control */
+    element_tensor basis; /* dX/dxi at the centre (m), a column an axis: of physical hourglass control */
 } element_any;
 
 #ifdef REAL_IS_DOUBLE
-/* From a mesh's numbers (mesh/hexahedron.h): slope, 7 x 3; twist, 4 x 3; basis, 3 x 3; hold: what physical hourglass
- * control holds it with, HOURGLASS_FORM. */
+/* From a mesh's numbers (mesh/hexahedron.h): slope, 7 x 3; twist, 4 x 3; basis, 3 x 3. */
 ELEMENT_FUNCTION element_any element_any_of(const double *slope, const double *twist, double volume,
-                                            const double *basis, const double *hold)
+                                            const double *basis)
 {
     element_any s;
     s.volume = volume;
@@ -39,9 +38,7 @@ ELEMENT_FUNCTION element_any element_any_of(const double *slope, const double *t
     }
     const element_tensor columns = {basis[0], basis[1], basis[2], basis[3], basis[4],
                                     basis[5], basis[6], basis[7], basis[8]};
-    s.held.basis = columns;
-    for (int i = 0; i < HOURGLASS_FORM; i++)
-        s.held.hold[i] = hold[i];
+    s.basis = columns;
     return s;
 }
 #endif
@@ -114,7 +111,7 @@ ELEMENT_FUNCTION hourglass_force element_any_hourglass(hourglass_kind kind, hour
 {
     if (kind == HOURGLASS_ISOTROPIC)
         return hourglass_isotropic(m, law[HOURGLASS_K]);
-    return hourglass_physical_any(m, h, &s->held, s->volume);
+    return hourglass_physical_any(m, h, s->basis, s->volume, law);
 }
 
 /* As element_force of element.h. */

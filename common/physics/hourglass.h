@@ -159,43 +159,53 @@ ELEMENT_FUNCTION hourglass_force hourglass_physical(hourglass_modes m, element_t
  *     e_ii = r_ij^i/8,   e_kk = r_jk^k/8,   2 e_ik = (r_ij^k + r_jk^i)/8,
  * and the plane-stress energy of these in the plane's metric is a quadratic form; that of xyz likewise by the sides'
  * lengths. Of a box it is the above. */
-/* basis: J. hold: of the planes whose strains are linear along x, y, z the forms in e_ii, e_kk, 2 e_ik for (i, k) =
- * (y, z), (z, x), (x, y), rows of the lower triangle, times V/3/64; then of xyz. */
-typedef struct hourglass_any {
-    element_tensor basis;
-    real hold[HOURGLASS_FORM];
-} hourglass_any;
-
-/* The stresses of a plane from its strains; at: its six numbers. */
-ELEMENT_FUNCTION element_vector hourglass_plane(const real *at, real ii, real kk, real ik, real by)
+/* The stresses of the plane of two vectors, of products ii, kk and ik, from its strains e_ii, e_kk and 2 e_ik: with A
+ * the inverse (p r, r q) of the matrix of products, of lambda tr(A e)^2 / 2 + mu tr((A e)^2). lambda: that of plane
+ * stress; twice: 2 mu. */
+ELEMENT_FUNCTION element_vector hourglass_plane(real ii, real kk, real ik, element_vector strain, real lambda,
+                                                real twice)
 {
-    element_vector s = {by * (at[0] * ii + at[1] * kk + at[3] * ik), by * (at[1] * ii + at[2] * kk + at[4] * ik),
-                        by * (at[3] * ii + at[4] * kk + at[5] * ik)};
+    const real inverse = 1 / (ii * kk - ik * ik), p = kk * inverse, q = ii * inverse, r = -(ik * inverse);
+    const real half = R(.5) * strain.z;
+    const real a = p * strain.x + r * half, b = p * half + r * strain.y, c = r * strain.x + q * half,
+               d = r * half + q * strain.y; /* A e */
+    const real mean = lambda * (a + d);
+    element_vector s = {mean * p + twice * (a * p + b * r), mean * q + twice * (c * r + d * q),
+                        mean * r + twice * (a * r + b * q)};
     return s;
 }
 
 /* As hourglass_box, of w = J r. */
-ELEMENT_FUNCTION hourglass_modes hourglass_hexahedron(const hourglass_modes *w, const real *hold, real by)
+ELEMENT_FUNCTION hourglass_modes hourglass_hexahedron(const hourglass_modes *w, element_tensor j, const real *law,
+                                                      real by)
 {
-    const real *corner = hold + 3 * HOURGLASS_PLANE;
-    const element_vector x = hourglass_plane(hold, w->xy.y, w->zx.z, w->xy.z + w->zx.y, by);
-    const element_vector y = hourglass_plane(hold + HOURGLASS_PLANE, w->yz.z, w->xy.x, w->yz.x + w->xy.z, by);
-    const element_vector z = hourglass_plane(hold + 2 * HOURGLASS_PLANE, w->zx.x, w->yz.y, w->zx.y + w->yz.x, by);
+    const real lambda = by * law[HOURGLASS_COUPLING], twice = 2 * by * law[HOURGLASS_TORSION];
+    const real corner = by * law[HOURGLASS_CORNER];
+    const real xx = j.xx * j.xx + j.yx * j.yx + j.zx * j.zx, yy = j.xy * j.xy + j.yy * j.yy + j.zy * j.zy;
+    const real zz = j.xz * j.xz + j.yz * j.yz + j.zz * j.zz, xy = j.xx * j.xy + j.yx * j.yy + j.zx * j.zy;
+    const real yz = j.xy * j.xz + j.yy * j.yz + j.zy * j.zz, zx = j.xz * j.xx + j.yz * j.yx + j.zz * j.zx;
+    const element_vector along_x = {w->xy.y, w->zx.z, w->xy.z + w->zx.y};
+    const element_vector along_y = {w->yz.z, w->xy.x, w->yz.x + w->xy.z};
+    const element_vector along_z = {w->zx.x, w->yz.y, w->zx.y + w->yz.x};
+    const element_vector x = hourglass_plane(yy, zz, yz, along_x, lambda, twice);
+    const element_vector y = hourglass_plane(zz, xx, zx, along_y, lambda, twice);
+    const element_vector z = hourglass_plane(xx, yy, xy, along_z, lambda, twice);
     hourglass_modes t = {{y.y, x.x, x.z + y.z},
                          {z.z + y.z, z.y, y.x},
                          {z.x, x.z + z.z, x.y},
-                         {by * (corner[0] * w->xyz.x), by * (corner[1] * w->xyz.y), by * (corner[2] * w->xyz.z)}};
+                         {corner * w->xyz.x / (xx * xx), corner * w->xyz.y / (yy * yy), corner * w->xyz.z / (zz * zz)}};
     return t;
 }
 
-/* With B = G J and w = B^T m: r = w/J, f = B dW/dw / J^2; as q = G^T m / J, P has -(1/(V J)) (f (x) m) G. */
-ELEMENT_FUNCTION hourglass_force hourglass_physical_any(hourglass_modes m, element_tensor h, const hourglass_any *s,
-                                                        real volume)
+/* basis: J. With B = G J and w = B^T m: r = w/J, f = B dW/dw / J^2; as q = G^T m / J, P has -(1/(V J)) (f (x) m) G. */
+ELEMENT_FUNCTION hourglass_force hourglass_physical_any(hourglass_modes m, element_tensor h, element_tensor basis,
+                                                        real volume, const real *law)
 {
-    const element_tensor g = element_cofactor(h), b = element_product(g, s->basis);
+    const element_tensor g = element_cofactor(h), b = element_product(g, basis);
     const real inverse = 1 / (1 + element_dilation(h));
     const hourglass_modes w = hourglass_all_by_columns(b, m);
-    const hourglass_modes t = hourglass_hexahedron(&w, s->hold, inverse * inverse);
+    const hourglass_modes t =
+        hourglass_hexahedron(&w, basis, law, R(.015625) * volume * (inverse * inverse)); /* V/64 */
     const hourglass_modes f = hourglass_all_by_rows(b, t);
     hourglass_force force = {f, element_product(hourglass_products(&f, &m, -inverse / volume), g)};
     return force;

@@ -2,66 +2,79 @@
 
 #include "physics/hourglass.h"
 
+#include <stdbool.h>
 #include <string.h>
 
-/* The form of plane stress in the plane of two basis vectors, in strains e_ii, e_kk, 2 e_ik along them: with p, q, r
- * the inverse of their products, lambda tr^2 + 2 mu tr((A e)^2), A = (p r, r q), and lambda = nu E/(1 - nu^2). */
-static void plane_form(const double i[3], const double k[3], double mu, double bulk, double by, double *to)
-{
-    const double ii = i[0] * i[0] + i[1] * i[1] + i[2] * i[2], kk = k[0] * k[0] + k[1] * k[1] + k[2] * k[2];
-    const double ik = i[0] * k[0] + i[1] * k[1] + i[2] * k[2], area = ii * kk - ik * ik;
-    const double p = kk / area, q = ii / area, r = -ik / area, lambda = hourglass_plate_coupling(mu, bulk);
-    to[0] = by * (lambda + 2 * mu) * p * p;
-    to[1] = by * (lambda * p * q + 2 * mu * r * r);
-    to[2] = by * (lambda + 2 * mu) * q * q;
-    to[3] = by * (lambda + 2 * mu) * p * r;
-    to[4] = by * (lambda + 2 * mu) * q * r;
-    to[5] = by * (lambda * r * r + mu * (r * r + p * q));
-}
+enum { MODES = 12 }; /* by their components */
 
-void hourglass_forms(double mu, double bulk, double volume, const double basis[9], double to[HOURGLASS_FORM])
+/* R m, or R^T m. */
+static void by_root(const double root[16], bool transposed, const double m[MODES], double to[MODES])
 {
-    double g[3][3]; /* g[c]: column c */
-    for (int i = 0; i < 9; i++)
-        g[i % 3][i / 3] = basis[i];
-    for (int a = 0; a < 3; a++) {
-        const double square = g[a][0] * g[a][0] + g[a][1] * g[a][1] + g[a][2] * g[a][2];
-        plane_form(g[(a + 1) % 3], g[(a + 2) % 3], mu, bulk, volume / 3 / 64, to + HOURGLASS_PLANE * a);
-        to[3 * HOURGLASS_PLANE + a] = volume / 9 / 64 * hourglass_young(mu, bulk) / (square * square);
+    for (int i = 0; i < MODES; i++) {
+        to[i] = 0;
+        for (int g = 0; g < 4; g++)
+            to[i] += root[transposed ? 4 * g + i / 3 : 4 * (i / 3) + g] * m[3 * g + i % 3];
     }
 }
 
-/* The columns' lengths; returns the largest sum of a row of their cosines. */
-static double lengths_of(const double basis[9], double length[3])
+/* R^T D R, a column at a time. */
+static void stiffness(const double law[HOURGLASS_NUMBERS], double volume, const double basis[9], const double root[16],
+                      double to[MODES][MODES])
+{
+    const element_tensor j = {basis[0], basis[1], basis[2], basis[3], basis[4], basis[5], basis[6], basis[7], basis[8]};
+    for (int i = 0; i < MODES; i++) {
+        double one[MODES] = {0}, m[MODES];
+        hourglass_modes q;
+        one[i] = 1;
+        by_root(root, false, one, m);
+        memcpy(&q, m, sizeof q);
+        const hourglass_modes w = hourglass_all_by_columns(j, q), t = hourglass_hexahedron(&w, j, law, volume / 64);
+        const hourglass_modes f = hourglass_all_by_rows(j, t);
+        memcpy(m, &f, sizeof m);
+        by_root(root, true, m, to[i]);
+    }
+}
+
+/* The largest sum of a row. */
+static double row_norm(double a[MODES][MODES])
 {
     double most = 0;
-    for (int a = 0; a < 3; a++)
-        length[a] = sqrt(basis[a] * basis[a] + basis[3 + a] * basis[3 + a] + basis[6 + a] * basis[6 + a]);
-    for (int a = 0; a < 3; a++) {
+    for (int r = 0; r < MODES; r++) {
         double sum = 0;
-        for (int b = 0; b < 3; b++)
-            sum += fabs(basis[a] * basis[b] + basis[3 + a] * basis[3 + b] + basis[6 + a] * basis[6 + b]) /
-                   (length[a] * length[b]);
+        for (int c = 0; c < MODES; c++)
+            sum += fabs(a[r][c]);
         most = fmax(most, sum);
     }
     return most;
 }
 
-/* With r = J^T q = S C q, S the columns' lengths, C their directions: |S D S| |C C^T|, both by sums of rows. */
-double hourglass_forms_stiffest(const double hold[HOURGLASS_FORM], const double basis[9])
+/* (a/by)^2. */
+static void square(double a[MODES][MODES], double by)
 {
-    double length[3], most = 0;
-    const double cosines = lengths_of(basis, length);
-    for (int i = 0; i < 12; i++) {
-        hourglass_modes unit;
-        double one[12] = {0}, column[12], sum = 0;
-        one[i] = 1;
-        memcpy(&unit, one, sizeof unit);
-        const hourglass_modes t = hourglass_hexahedron(&unit, hold, 1);
-        memcpy(column, &t, sizeof column);
-        for (int k = 0; k < 12; k++)
-            sum += fabs(column[k]) * length[k % 3] * length[i % 3];
-        most = fmax(most, sum);
+    double b[MODES][MODES] = {{0}};
+    for (int i = 0; i < MODES * MODES; i++)
+        a[i / MODES][i % MODES] /= by;
+    for (int r = 0; r < MODES; r++)
+        for (int k = 0; k < MODES; k++)
+            for (int c = 0; c < MODES; c++)
+                b[r][c] += a[r][k] * a[k][c];
+    memcpy(a, b, sizeof b);
+}
+
+/* The largest eigenvalue l of a symmetric matrix A of n rows has l^p <= |A^p| <= sqrt(n) l^p, | | the largest sum of a
+ * row: with p = 64 the root of this norm is at most 12^(1/128) = 1.0196 times l. Each square is of A by its norm, which
+ * leaves room for rounding: l is at least .28 then. */
+double hourglass_any_stiffest(const double law[HOURGLASS_NUMBERS], double volume, const double basis[9],
+                              const double root[16])
+{
+    double a[MODES][MODES], power = 1;
+    stiffness(law, volume, basis, root, a);
+    double norm = row_norm(a), most = norm;
+    for (int i = 0; i < 6 && norm > 0; i++) {
+        square(a, norm);
+        norm = row_norm(a);
+        power /= 2;
+        most *= pow(norm, power);
     }
-    return most * cosines;
+    return most * (1 + 1e-12);
 }

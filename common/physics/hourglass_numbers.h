@@ -94,15 +94,12 @@ static inline double hourglass_stiffest(hourglass_kind kind, const double to[HOU
     return volume * most;
 }
 
-/* ---- of hexahedra of any shape (hourglass_any) */
+/* ---- of hexahedra of any shape */
 
-enum { HOURGLASS_PLANE = 6, HOURGLASS_FORM = 3 * HOURGLASS_PLANE + 3 };
-
-/* What physical control holds such an element with, N/m3. volume: m3; basis: dX/dxi at its centre, m, a column an
- * axis. */
-void hourglass_forms(double mu, double bulk, double volume, const double basis[9], double to[HOURGLASS_FORM]);
-
-/* No less than the largest eigenvalue of d2W/dq dq, N/m; exact for a cube. */
-double hourglass_forms_stiffest(const double hold[HOURGLASS_FORM], const double basis[9]);
+/* No less than the largest eigenvalue of R^T D R, N/m, and at most 2 % more; of a box it is that. D: d2W/dq dq, of
+ * physical control's four numbers; basis: dX/dxi at the centre, m, a column an axis; root: R, 4 x 4, a row a mode,
+ * lower. */
+double hourglass_any_stiffest(const double law[HOURGLASS_NUMBERS], double volume, const double basis[9],
+                              const double root[16]);
 
 #endif

@@ -1,6 +1,5 @@
 #include "probe/poses.h"
 
-#include "base/near.h"
 #include "base/num.h"
 
 #include <ctype.h>
@@ -38,26 +37,11 @@ static int check_time(poses *p, double time, int64_t line, err *e)
 
 /* ---- TUM */
 
-static int take_method(const poses *p, poses_event *to, err *e)
+int poses_take(const keyfile *k, poses_event *to, err *e)
 {
-    static const char *const name[] = {"fem", "msds"};
-    const keyfile *k = &p->lines;
-    if (k->count != 2)
-        return keyfile_error(k, e, "%d words after method; expected method fem, or method msds", k->count - 1);
-    for (int i = 0; i < 2; i++)
-        if (!strcmp(k->word[1], name[i])) {
-            to->kind = i ? POSES_MSDS : POSES_FEM;
-            return 1;
-        }
-    return near_unknown(e, k->name, k->line, "method", k->word[1], name, 2);
-}
-
-static int take_pose(poses *p, poses_event *to, err *e)
-{
-    const keyfile *k = &p->lines;
     double v[8];
     if (k->count != 8)
-        return keyfile_error(k, e, "%d words; expected time tx ty tz qx qy qz qw, method fem, or method msds",
+        return keyfile_error(k, e, "%d words; expected time tx ty tz qx qy qz qw, method NAME, or set KEY VALUE",
                              k->count);
     for (int i = 0; i < 8; i++)
         if (num_double(k->word[i], &v[i]))
@@ -66,11 +50,15 @@ static int take_pose(poses *p, poses_event *to, err *e)
     const double length = pose_unit(v + 4);
     if (!pose_is_unit(length))
         return keyfile_error(k, e, "a quaternion of length %.6g; expected 1, to within %g", length, POSE_LENGTH);
-    to->kind = POSES_POSE;
-    to->time = v[0];
+    *to = (poses_event){.kind = POSES_POSE, .line = k->line, .time = v[0]};
     memcpy(to->at.position, v + 1, sizeof to->at.position);
     memcpy(to->at.quaternion, v + 4, sizeof to->at.quaternion);
-    return check_time(p, to->time, k->line, e) ? -1 : 1;
+    return 0;
+}
+
+static bool is_control(const keyfile *k)
+{
+    return !strcmp(k->word[0], "method") || !strcmp(k->word[0], "set");
 }
 
 static int next_line(poses *p, poses_event *to, err *e)
@@ -78,8 +66,11 @@ static int next_line(poses *p, poses_event *to, err *e)
     int more = keyfile_next(&p->lines, e);
     if (more <= 0)
         return more;
-    to->line = p->lines.line;
-    return strcmp(p->lines.word[0], "method") ? take_pose(p, to, e) : take_method(p, to, e);
+    if (is_control(&p->lines)) {
+        *to = (poses_event){.kind = POSES_CONTROL, .line = p->lines.line};
+        return 1;
+    }
+    return poses_take(&p->lines, to, e) || check_time(p, to->time, to->line, e) ? -1 : 1;
 }
 
 /* ---- sequences */

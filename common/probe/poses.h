@@ -1,7 +1,7 @@
-/* Where the probe is, frame by frame, from a stream that may be live: lines `time tx ty tz qx qy qz qw` (TUM's: s, m, a
- * unit quaternion, scalar last), `method fem` and `method msds` between them, comments; or the header of a PLUS
- * sequence file (MetaImage or NRRD), whose matrices are in mm. One line is read for each event, and no more. The stream
- * stays the caller's; nothing is allocated, and there is nothing to free.
+/* Where the probe is, frame by frame, from a stream: lines `time tx ty tz qx qy qz qw` (TUM's: s, m, a unit quaternion,
+ * scalar last), controls between them (`method NAME`, `set KEY VALUE`), comments; or the header of a PLUS sequence file
+ * (MetaImage or NRRD), whose matrices are in mm. One line is read for each event, and no more. The stream stays the
+ * caller's; nothing is allocated, and there is nothing to free. Lines that come live: live/lines.h.
  */
 #ifndef SINEW_POSES_H
 #define SINEW_POSES_H
@@ -10,7 +10,7 @@
 #include "base/pose.h"
 #include "probe/plus.h"
 
-typedef enum poses_kind { POSES_POSE, POSES_FEM, POSES_MSDS } poses_kind;
+typedef enum poses_kind { POSES_POSE, POSES_CONTROL } poses_kind;
 
 /* How far from 0 the cosine between a matrix's axes may be. */
 #define POSES_COSINE 0.001
@@ -29,15 +29,19 @@ typedef struct poses {
     double last; /* the time of the pose before; -inf: there was none */
 } poses;
 
+/* Takes the words of k as a pose. -1 with e filled: see poses_next; the order of times is not looked at. */
+int poses_take(const keyfile *k, poses_event *to, err *e);
+
 /* Looks at the first byte. transform: which of a sequence's, such as "ProbeToReference", composed from those
  * that it has; NULL: the first that it can give of ImageToReference, ProbeToReference, ImageToTracker,
  * ProbeToTracker. An image's frame (columns, rows, normal; pixels) becomes a probe's at the middle of its
  * first row; any other is taken as it is. */
 int poses_open(poses *p, in *source, const char *transform, err *e);
 
-/* The next event. 1: there is one; 0: the end; -1: e filled, with the line: what is not a number or not finite, a
- * quaternion that is not of length 1, a matrix that is not a rotation, a time before that of the pose before. Frames of
- * a sequence that were not tracked are left out and counted in p->frames.skipped. */
+/* The next event; of a control, its words are those of p->lines, and what they mean is the caller's to know. 1: there
+ * is one; 0: the end; -1: e filled, with the line: what is not a number or not finite, a quaternion that is not of
+ * length 1, a matrix that is not a rotation, a time before that of the pose before. Frames of a sequence that were not
+ * tracked are left out and counted in p->frames.skipped. */
 int poses_next(poses *p, poses_event *to, err *e);
 
 #endif

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "base/spelling.h"
+#include "cli/spelling.h"
 #include "mesh/gradient.h"
 #include "mesh/quality.h"
 #include "model/materials.h"

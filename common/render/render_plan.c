@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "base/near.h"
-#include "base/spelling.h"
+#include "cli/spelling.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -94,6 +94,8 @@ static int64_t eliminate(const factor *f, double *a, int64_t size, int64_t colum
 {
     for (int64_t from = 0; from < columns; from += PANEL) {
         int64_t to = from + PANEL < columns ? from + PANEL : columns;
+        if (f->stop && atomic_load(f->stop))
+            return from;
         int64_t bad = eliminate_panel(a, size, from, to);
         if (bad >= 0)
             return bad;

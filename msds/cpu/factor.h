@@ -13,6 +13,8 @@
 #include "msds/cpu/lanes.h"
 #include "msds/problem/stiffness.h"
 
+#include <stdatomic.h>
+
 typedef struct factor_front {
     float *panel;     /* (rows + columns) x columns, by columns */
     double *value;    /* rows + columns: of the solve under way */
@@ -38,6 +40,8 @@ typedef struct factor {
     const msds_listener *listener; /* set before factor_make; NULL: nobody */
     const double *load;
     double *result;
+    const atomic_bool
+        *stop;       /* set by another thread: to end early, as if it had failed; set before factor_make; NULL */
     int32_t *failed; /* fronts: the model's node whose pivot was not above 0, or -1; -2: no memory */
 } factor;
 

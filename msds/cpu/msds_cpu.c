@@ -7,6 +7,7 @@
 #include "base/mem.h"
 #include "msds/cpu/cg.h"
 #include "msds/cpu/exact.h"
+#include "msds/cpu/exact_making.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +20,15 @@ static const double exact_tolerance = 1e-6, missed = 1e-6;
 
 typedef struct msds_state cpu_state;
 
+/* What finite elements take; each is made when it is first wanted. The stiffness of warped elements changes with their
+ * turns, so each solver has its own. */
+typedef struct fem {
+    stiffness k, exact_k;
+    cg *cg;
+    exact *exact;
+    exact_making *making; /* of exact, by a thread */
+} fem;
+
 struct msds_state {
     const msds_problem *p;
     pool *threads;
@@ -30,9 +40,7 @@ struct msds_state {
     float *inverse;                   /* nodes: dt / inertia; of w */
     float *repulsion;                 /* nodes: of w */
     contacts contacts;
-    stiffness k;
-    cg *cg; /* made when first wanted, as is exact */
-    exact *exact;
+    fem fem[2];    /* of linear elements, and of warped ones */
     double *place; /* the model's nodes x 3, m: where exact frames stand */
     msds_plan plan;
     bool precise; /* place is the state; else w.u */
@@ -54,12 +62,12 @@ static void collect(const cpu_state *s, const lanes_field *from, double *to)
             to[3 * n + a] = (double)from->x[a][s->order.own_node[n]];
 }
 
-static void fill_nodes(cpu_state *s)
+static int cpu_change(cpu_state *s, err *e)
 {
     const msds_problem *p = s->p;
-    spread(s, p->position, &s->w.place);
-    spread(s, p->displacement, &s->w.u);
-    spread(s, p->velocity, &s->w.v);
+    (void)e;
+    s->w.damping = p->options.damping;
+    sell_springs(&s->order, p, s->stiffness, s->damper, s->rest);
     for (int64_t n = 0; n < p->nodes; n++) {
         int32_t own = s->order.own_node[n];
         s->repulsion[own] = (float)p->repulsion[n];
@@ -67,6 +75,7 @@ static void fill_nodes(cpu_state *s)
         for (int a = 0; a < 3; a++)
             s->w.weight.x[a][own] = p->fixed[n] ? 0 : (float)(p->weight[n] * p->options.gravity[a]);
     }
+    return 0;
 }
 
 static int allocate(cpu_state *s, err *e)
@@ -88,17 +97,33 @@ static int allocate(cpu_state *s, err *e)
     return s->stiffness && s->damper && s->rest && s->inertia && s->inverse && s->repulsion && s->place ? 0 : -1;
 }
 
+/* But for what is being made, which does not depend on the state. */
+static void fem_clear(fem *f)
+{
+    if (f->cg)
+        cg_free(f->cg);
+    if (f->exact)
+        exact_free(f->exact);
+    free(f->cg);
+    free(f->exact);
+    stiffness_free(&f->k);
+    stiffness_free(&f->exact_k);
+    *f = (fem){.making = f->making};
+}
+
+static void fem_free(fem *f)
+{
+    exact_making_free(f->making);
+    f->making = NULL;
+    fem_clear(f);
+}
+
 static void cpu_destroy(cpu_state *s)
 {
     if (!s)
         return;
-    if (s->cg)
-        cg_free(s->cg);
-    if (s->exact)
-        exact_free(s->exact);
-    free(s->cg);
-    free(s->exact);
-    stiffness_free(&s->k);
+    for (int warped = 0; warped < 2; warped++)
+        fem_free(&s->fem[warped]);
     contacts_free(&s->contacts);
     lanes_field *fields[FIELDS] = {&s->w.place, &s->w.u, &s->w.v, &s->w.next_u, &s->w.next_v, &s->w.weight};
     for (int i = 0; i < FIELDS; i++)
@@ -132,10 +157,11 @@ static cpu_state *cpu_create(const msds_problem *problem, pool *threads, err *e)
     s->w.rest = s->rest;
     s->w.inverse = s->inverse;
     s->w.repulsion = s->repulsion;
-    s->w.damping = s->p->options.damping;
     s->w.met = &s->met;
-    fill_nodes(s);
-    sell_springs(&s->order, s->p, s->stiffness, s->damper, s->rest);
+    cpu_change(s, e);
+    spread(s, s->p->position, &s->w.place);
+    spread(s, s->p->displacement, &s->w.u);
+    spread(s, s->p->velocity, &s->w.v);
     memcpy(s->place, s->p->displacement, 3 * (size_t)s->p->nodes * sizeof *s->place);
     s->precise = true;
     return s;
@@ -201,9 +227,52 @@ static void note_repulsion(cpu_state *s)
     }
 }
 
-static int make_stiffness(cpu_state *s, err *e)
+/* Of the plan that is being computed. */
+static fem *fem_of(cpu_state *s)
 {
-    return s->k.p ? 0 : stiffness_make(&s->k, s->p, s->threads, e);
+    return &s->fem[s->plan.warp];
+}
+
+static int make_cg(cpu_state *s, bool warped, err *e)
+{
+    fem *f = &s->fem[warped];
+    cg *made = mem_array(1, sizeof *made, "the solver", e);
+    f->cg = made;
+    return made && !stiffness_make(&f->k, s->p, warped, s->threads, e)
+               ? cg_make(made, s->p, &s->order, &f->k, &s->contacts, s->loops, s->threads, &s->w.u, &s->w.weight, e)
+               : -1;
+}
+
+/* 1: it is made; 0: not yet; -1. */
+static int take_made(cpu_state *s, fem *f, bool wait, err *e)
+{
+    const int done = exact_making_look(f->making, wait, e);
+    if (done > 0)
+        f->exact = mem_array(1, sizeof *f->exact, "the solver", e);
+    if (done > 0 && f->exact) {
+        exact_making_take(f->making, &f->exact_k, f->exact, s->threads);
+        f->making = NULL;
+        return 1;
+    }
+    if (!done)
+        return 0;
+    exact_making_free(f->making);
+    f->making = NULL;
+    return -1;
+}
+
+static int make_exact(cpu_state *s, err *e)
+{
+    fem *f = fem_of(s);
+    if (f->making)
+        return take_made(s, f, true, e) > 0 ? 0 : -1;
+    f->exact = mem_array(1, sizeof *f->exact, "the solver", e);
+    if (!f->exact)
+        return -1;
+    f->exact->listener = s->plan.listener;
+    return stiffness_make(&f->exact_k, s->p, s->plan.warp, s->threads, e)
+               ? -1
+               : exact_make(f->exact, s->p, &f->exact_k, &s->contacts, s->loops, s->threads, e);
 }
 
 static void find_contacts(cpu_state *s, const double *u, contacts_rule rule)
@@ -216,43 +285,35 @@ static void find_contacts(cpu_state *s, const double *u, contacts_rule rule)
 static int step_cg(cpu_state *s, int64_t count, err *e)
 {
     double force[3];
-    if (!s->cg) {
-        s->cg = mem_array(1, sizeof *s->cg, "the solver", e);
-        if (!s->cg || make_stiffness(s, e) ||
-            cg_make(s->cg, s->p, &s->order, &s->k, &s->contacts, s->loops, s->threads, &s->w.u, &s->w.weight, e))
-            return -1;
-    }
+    if (!fem_of(s)->cg && make_cg(s, s->plan.warp, e))
+        return -1;
+    cg *solver = fem_of(s)->cg;
     int64_t pressed = contacts_held(&s->contacts, s->p);
     find_contacts(s, NULL, CONTACTS_PRESSED);
     if (contacts_sum(&s->contacts, force) < pressed && count > 1) { /* let go of: tissue may come after the probe */
-        cg_solve(s->cg, count / 2);
+        cg_solve(solver, count / 2);
         contacts_hold(&s->contacts, s->p);
         find_contacts(s, NULL, CONTACTS_PRESSED);
         count -= count / 2;
     }
-    cg_solve(s->cg, count);
+    cg_solve(solver, count);
     return 0;
 }
 
 static int step_exact(cpu_state *s, err *e)
 {
-    if (!s->exact) {
-        s->exact = mem_array(1, sizeof *s->exact, "the solver", e);
-        if (s->exact)
-            s->exact->listener = s->plan.listener;
-        if (!s->exact || make_stiffness(s, e) ||
-            exact_make(s->exact, s->p, &s->k, &s->contacts, s->loops, s->threads, e))
-            return -1;
-    }
+    if (!fem_of(s)->exact && make_exact(s, e))
+        return -1;
+    exact *solver = fem_of(s)->exact;
     if (!s->precise)
         collect(s, &s->w.u, s->place);
     s->solves = 0;
     find_contacts(s, s->place, CONTACTS_NEAR);
     for (int turn = 0; turn < ROUNDS; turn++) {
-        if (exact_solve(s->exact, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.shape.size : 1,
+        if (exact_solve(solver, s->place, turn == 0, exact_tolerance, s->plan.touched ? s->plan.probe.shape.size : 1,
                         e))
             return -1;
-        s->solves += s->exact->solves;
+        s->solves += solver->solves;
         spread(s, s->place, &s->w.u);
         if (!s->plan.touched || turn == ROUNDS - 1 ||
             !contacts_missed(&s->contacts, s->loops, &s->w, s->p, s->place, s->threads,
@@ -261,6 +322,11 @@ static int step_exact(cpu_state *s, err *e)
         find_contacts(s, s->place, CONTACTS_NEAR);
     }
     return 0;
+}
+
+static void clear_field(const cpu_state *s, lanes_field *f)
+{
+    memset(f->memory, 0, 3 * (size_t)(s->order.nodes + 2 * LANES) * sizeof *f->memory);
 }
 
 static int cpu_step(cpu_state *s, const msds_plan *plan, int64_t count, err *e)
@@ -273,12 +339,41 @@ static int cpu_step(cpu_state *s, const msds_plan *plan, int64_t count, err *e)
         note_repulsion(s);
     } else {
         result = s->plan.method == MSDS_FEM ? step_cg(s, count, e) : step_exact(s, e);
-        memset(s->w.v.memory, 0, 3 * (size_t)(s->order.nodes + 2 * LANES) * sizeof *s->w.v.memory);
+        clear_field(s, &s->w.v);
     }
     s->precise = s->plan.method == MSDS_EXACT;
     contacts_hold(&s->contacts, s->p);
     s->met = s->met || contacts_held(&s->contacts, s->p) > 0;
     return result;
+}
+
+/* Turns of elements begin with those of the frame before, so what has them is made again. */
+static int cpu_reset(cpu_state *s, err *e)
+{
+    (void)e;
+    clear_field(s, &s->w.u);
+    clear_field(s, &s->w.v);
+    memset(s->place, 0, 3 * (size_t)s->p->nodes * sizeof *s->place);
+    memset(s->contacts.held, 0, (size_t)s->p->nodes * sizeof *s->contacts.held);
+    s->contacts.count = 0;
+    s->precise = true;
+    s->solves = 0;
+    fem_clear(&s->fem[true]);
+    return 0;
+}
+
+/* Conjugate gradients are what goes on meanwhile, so these are made at once. */
+static int cpu_ready(cpu_state *s, const msds_plan *plan, err *e)
+{
+    fem *f = &s->fem[plan->warp];
+    const int threads = pool_threads(s->threads) / 2;
+    if (plan->method != MSDS_EXACT || f->exact)
+        return 1;
+    if (!f->making)
+        f->making = exact_making_start(s->p, plan->warp, &s->contacts, s->loops, threads > 1 ? threads : 1, e);
+    if (!f->making || (!f->cg && make_cg(s, plan->warp, e)))
+        return -1;
+    return take_made(s, f, false, e);
 }
 
 static int cpu_get(cpu_state *s, int what, double *to, err *e)
@@ -299,10 +394,11 @@ static int cpu_monitor(cpu_state *s, msds_reading *reading, err *e)
     reading->contacts = contacts_sum(&s->contacts, reading->force);
     if (s->plan.touched)
         contacts_twist(&s->contacts, &s->w, s->p, s->precise ? s->place : NULL, reading->torque);
-    if (s->plan.method == MSDS_FEM && s->cg)
-        reading->residual = s->cg->residual;
-    if (s->plan.method == MSDS_EXACT && s->exact)
-        reading->residual = s->exact->residual;
+    const fem *f = fem_of(s);
+    if (s->plan.method == MSDS_FEM && f->cg)
+        reading->residual = f->cg->residual;
+    if (s->plan.method == MSDS_EXACT && f->exact)
+        reading->residual = f->exact->residual;
     for (int64_t own = 0; own < s->order.nodes; own++) {
         double x = (double)s->w.u.x[0][own], y = (double)s->w.u.x[1][own], z = (double)s->w.u.x[2][own];
         double here = x * x + y * y + z * z;
@@ -316,12 +412,13 @@ static int cpu_monitor(cpu_state *s, msds_reading *reading, err *e)
 static int64_t cpu_bytes(const cpu_state *s)
 {
     int64_t bytes = s->order.slots * LANES * 20 + s->order.nodes * 90 + s->p->nodes * 24;
-    if (s->k.p)
-        bytes += s->p->elements * 136 + s->p->springs * 72 + s->p->nodes * 80;
-    if (s->cg)
-        bytes += s->order.slots * LANES * 36;
-    if (s->exact)
-        bytes += s->exact->factor.numbers * 4 + s->exact->room * 4;
+    for (const fem *f = s->fem; f < s->fem + 2; f++) {
+        const int64_t matrix = s->p->elements * 136 + s->p->springs * 72 + s->p->nodes * 80;
+        if (f->cg)
+            bytes += matrix + s->order.slots * LANES * 36;
+        if (f->exact)
+            bytes += matrix + f->exact->factor.numbers * 4 + f->exact->room * 4;
+    }
     return bytes;
 }
 
@@ -341,6 +438,9 @@ const msds_executor msds_cpu = {
     .create = cpu_create,
     .destroy = cpu_destroy,
     .step = cpu_step,
+    .ready = cpu_ready,
+    .change = cpu_change,
+    .reset = cpu_reset,
     .get = cpu_get,
     .monitor = cpu_monitor,
     .bytes = cpu_bytes};

@@ -229,7 +229,7 @@ static int make_matrix(cuda_state *s, lanes_matrix *m, err *e)
     m->s = &s->order;
     m->diagonal = (float *)mem_array(s->order.count, 9 * LANES * sizeof(float), "the solver", e);
     m->block = (float *)mem_array(s->order.slots, 9 * LANES * sizeof(float), "the solver", e);
-    if (m->diagonal && m->block && !stiffness_make(&k, s->p, s->threads, e)) {
+    if (m->diagonal && m->block && !stiffness_make(&k, s->p, false, s->threads, e)) {
         cg_fill(m, s->p, &k, s->threads);
         result = 0;
     }
@@ -247,8 +247,6 @@ static void matrix_free(lanes_matrix *m)
 static int put_stiffness(cuda_state *s, lanes_matrix *m, err *e)
 {
     card_layout layout = {0};
-    if (s->p->options.warp)
-        return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
     if (make_matrix(s, m, e))
         return -1;
     if (s->fem)
@@ -370,6 +368,8 @@ static int step_exact(cuda_state *s, const tissue_frame *f, err *e)
 
 static int cuda_step(cuda_state *s, const msds_plan *p, int64_t count, err *e)
 {
+    if (p->warp && p->method != MSDS_SPRINGS)
+        return err_set(e, NULL, 0, "--warp is not done on a card; expected -d cpu");
     if (p->touched && put_planes(s, &p->probe.shape, e))
         return -1;
     const tissue_frame f = frame_of(s, p, count);
@@ -381,6 +381,57 @@ static int cuda_step(cuda_state *s, const msds_plan *p, int64_t count, err *e)
     s->precise = p->method == MSDS_EXACT;
     s->step++;
     return result;
+}
+
+/* Over an array of the card that kernels only read; no kernel runs. */
+template <typename T> static int send(cuda_state *s, const T *to, const T *from, int64_t count, err *e)
+{
+    return CUDA_TRY(cudaMemcpy(const_cast<T *>(to), from, (size_t)count * sizeof(T), cudaMemcpyHostToDevice));
+}
+
+static int cuda_change(cuda_state *s, err *e)
+{
+    const int64_t nodes = s->order.nodes;
+    host_nodes h = {};
+    int result = -1;
+    if (!host_make(s, &h, e) && !CUDA_TRY(cudaStreamSynchronize(s->stream))) {
+        host_fill(s, &h);
+        result = send(s, s->t.spring, h.spring, s->order.slots * LANES, e) || send(s, s->t.place, h.place, nodes, e) ||
+                         send(s, s->t.weight, h.weight, nodes, e) || send(s, s->t.repulsion, h.repulsion, nodes, e)
+                     ? -1
+                     : 0;
+    }
+    host_free(&h);
+    return result;
+}
+
+static int clear(cuda_state *s, void *what, size_t bytes, err *e)
+{
+    return what ? CUDA_TRY(cudaMemsetAsync(what, 0, bytes, s->stream)) : 0;
+}
+
+static int cuda_reset(cuda_state *s, err *e)
+{
+    const tissue *t = &s->t;
+    const size_t nodes = (size_t)s->order.nodes;
+    float4 *const fields[] = {t->u, t->v, t->next_u, t->next_v, t->left, t->pulled, t->way[0], t->way[1]};
+    for (float4 *field : fields)
+        if (clear(s, field, nodes * sizeof *field, e))
+            return -1;
+    s->precise = true;
+    return clear(s, t->precise, 3 * nodes * sizeof *t->precise, e) || clear(s, t->held, nodes * sizeof *t->held, e) ||
+                   clear(s, t->listed, nodes, e) || clear(s, t->outcome, sizeof *t->outcome, e)
+               ? -1
+               : 0;
+}
+
+/* The lattices of a mesh are made in milliseconds, so nobody waits for long. */
+static int cuda_ready(cuda_state *s, const msds_plan *plan, err *e)
+{
+    (void)s;
+    (void)plan;
+    (void)e;
+    return 1;
 }
 
 static int cuda_monitor(cuda_state *s, msds_reading *reading, err *e)
@@ -436,6 +487,9 @@ const msds_executor msds_cuda = {
     .create = cuda_create,
     .destroy = cuda_destroy,
     .step = cuda_step,
+    .ready = cuda_ready,
+    .change = cuda_change,
+    .reset = cuda_reset,
     .get = cuda_get,
     .monitor = cuda_monitor,
     .bytes = cuda_bytes};

@@ -24,6 +24,14 @@ typedef struct msds_executor {
     void (*destroy)(msds_state *state); /* state may be NULL */
     /* Takes `count` steps of springs, or iterations of conjugate gradients. -1 with e filled, as for all below. */
     int (*step)(msds_state *state, const msds_plan *plan, int64_t count, err *e);
+    /* Whether the plan's method can begin at once: 1; 0: not yet, what it needs is being made by threads that let
+     * others go first; -1 with e filled where that failed. Who does not ask waits in step. */
+    int (*ready)(msds_state *state, const msds_plan *plan, err *e);
+    /* Takes over what the problem's options are now, of which the caller has changed some (problem.h), and its factor
+     * of inertia. Displacements and velocities stay. */
+    int (*change)(msds_state *state, err *e);
+    /* Back to rest: no displacement, no velocity, nothing pressed, whatever they were, finite or not. */
+    int (*reset)(msds_state *state, err *e);
     /* Copies one of the state's arrays out. */
     int (*get)(msds_state *state, int what, double *to, err *e);
     /* What the last step led to. */

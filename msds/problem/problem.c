@@ -176,12 +176,19 @@ static int make_nodes(msds_problem *p, const model *m, err *e)
     return 0;
 }
 
+/* Adds to zeros. */
+static void fill_repulsion(msds_problem *p)
+{
+    for (int64_t i = 0; i < p->springs; i++)
+        for (int c = 0; c < 2; c++)
+            p->repulsion[p->spring[i].node[c]] += p->options.repulsion * p->spring[i].stiffness;
+}
+
 static int make_repulsion(msds_problem *p, err *e)
 {
     p->repulsion = mem_array(p->nodes, sizeof *p->repulsion, "nodes", e);
-    for (int64_t i = 0; p->repulsion && i < p->springs; i++)
-        for (int c = 0; c < 2; c++)
-            p->repulsion[p->spring[i].node[c]] += p->options.repulsion * p->spring[i].stiffness;
+    if (p->repulsion)
+        fill_repulsion(p);
     return p->repulsion ? 0 : -1;
 }
 
@@ -198,6 +205,11 @@ static double slight_load(const msds_problem *p)
     return sum;
 }
 
+static double scale_of_springs(const msds_problem *p)
+{
+    return p->options.scale > 0 ? p->options.scale : p->side / lattice_stiffness;
+}
+
 int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, err *e)
 {
     p->options = *o;
@@ -205,8 +217,17 @@ int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, er
     if (check_arrays(p, m, e) || make_shapes(p, m, e) || make_materials(p, m, e) || make_nodes(p, m, e))
         return -1;
     p->slight = slight_load(p);
-    p->scale = o->scale > 0 ? o->scale : p->side / lattice_stiffness;
+    p->scale = scale_of_springs(p);
     return springs_make(p, p->scale, o->damping, e) || make_repulsion(p, e) ? -1 : 0;
+}
+
+void msds_problem_change(msds_problem *p, const msds_options *o)
+{
+    p->options = *o;
+    p->scale = scale_of_springs(p);
+    springs_change(p, p->scale, o->damping);
+    memset(p->repulsion, 0, (size_t)p->nodes * sizeof *p->repulsion);
+    fill_repulsion(p);
 }
 
 int msds_problem_start(msds_problem *p, const frame *f, err *e)

@@ -25,7 +25,6 @@ typedef struct msds_options {
     double gravity[3]; /* m/s2 */
     double repulsion;  /* contact stiffness of a node over that of its springs together */
     bool penalty;      /* the FEM's contact is a penalty of that stiffness; else the displacement is prescribed */
-    bool warp;         /* the FEM takes each element's rotation out */
 } msds_options;
 
 typedef struct msds_problem {
@@ -65,6 +64,7 @@ typedef struct msds_listener {
 
 typedef struct msds_plan {
     msds_method method;
+    bool warp; /* the FEM takes each element's rotation out */
     double dt; /* s: of one step of springs */
     bool touched;
     probe_placed probe;            /* where touched */
@@ -88,6 +88,9 @@ typedef struct msds_reading {
  * elements, an element that is inverted or flat, and materials that are no such. */
 int msds_problem_make(msds_problem *p, const model *m, const msds_options *o, err *e);
 void msds_problem_free(msds_problem *p);
+
+/* Takes other options. The springs stay where they are, so that others may read their nodes meanwhile. */
+void msds_problem_change(msds_problem *p, const msds_options *o);
 
 /* Starts from a frame: its displacement and velocity (none: at rest). */
 int msds_problem_start(msds_problem *p, const frame *f, err *e);

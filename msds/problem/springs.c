@@ -60,3 +60,34 @@ int springs_make(msds_problem *p, double scale, double damping, err *e)
     p->springs = count;
     return made ? 0 : -1;
 }
+
+int springs_find(const msds_problem *p, int32_t a, int32_t b)
+{
+    int64_t low = 0, high = p->springs - 1;
+    int32_t first = a < b ? a : b;
+    int32_t second = a < b ? b : a;
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        const int32_t *n = p->spring[middle].node;
+        if (n[0] < first || (n[0] == first && n[1] < second))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return (int)low;
+}
+
+void springs_change(msds_problem *p, double scale, double damping)
+{
+    static const int corner[6][2] = SIMPLEX_EDGES;
+    for (int64_t i = 0; i < p->springs; i++)
+        p->spring[i].stiffness = p->spring[i].damper = 0;
+    for (int64_t t = 0; t < p->elements; t++) /* each edge's elements ascend, as in springs_make: sums have one order */
+        for (int i = 0; i < 6; i++) {
+            const int32_t *n = p->element_node + 4 * t;
+            msds_spring *s = &p->spring[springs_find(p, n[corner[i][0]], n[corner[i][1]])];
+            const double k = scale * p->young[t];
+            s->stiffness += k;
+            s->damper += damping * k;
+        }
+}

@@ -10,4 +10,11 @@
  * gamma = damping * k for each tetrahedron. */
 int springs_make(msds_problem *p, double scale, double damping, err *e);
 
+/* Fills the springs that there are, in their places, with the stiffness and damping of other constants: what
+ * springs_make would give. */
+void springs_change(msds_problem *p, double scale, double damping);
+
+/* The spring of an edge between two nodes, in any order. */
+int springs_find(const msds_problem *p, int32_t a, int32_t b);
+
 #endif

@@ -1,27 +1,12 @@
 #include "msds/problem/stiffness.h"
 
 #include "base/mem.h"
+#include "msds/problem/springs.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { ELEMENT_CHUNK = 256, NODE_CHUNK = 512 };
-
-static int find_spring(const msds_problem *p, int32_t a, int32_t b)
-{
-    int64_t low = 0, high = p->springs - 1;
-    int32_t first = a < b ? a : b;
-    int32_t second = a < b ? b : a;
-    while (low < high) {
-        int64_t middle = (low + high) / 2;
-        const int32_t *n = p->spring[middle].node;
-        if (n[0] < first || (n[0] == first && n[1] < second))
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return (int)low;
-}
 
 static void link_edges(stiffness *k)
 {
@@ -30,7 +15,7 @@ static void link_edges(stiffness *k)
     for (int64_t t = 0; t < p->elements; t++)
         for (int i = 0; i < 6; i++)
             k->element_spring[6 * t + i] =
-                find_spring(p, p->element_node[4 * t + corner[i][0]], p->element_node[4 * t + corner[i][1]]);
+                springs_find(p, p->element_node[4 * t + corner[i][0]], p->element_node[4 * t + corner[i][1]]);
 }
 
 static void link_corners(stiffness *k)
@@ -158,7 +143,7 @@ void stiffness_force(stiffness *k, const double *u, double *force)
     pool_run(k->threads, k->p->nodes, NODE_CHUNK, gather_work, k);
 }
 
-int stiffness_make(stiffness *k, const msds_problem *p, pool *threads, err *e)
+int stiffness_make(stiffness *k, const msds_problem *p, bool warped, pool *threads, err *e)
 {
     k->p = p;
     k->threads = threads;
@@ -168,10 +153,9 @@ int stiffness_make(stiffness *k, const msds_problem *p, pool *threads, err *e)
     k->start = mem_array(p->nodes + 2, sizeof *k->start, "the stiffness", e);
     k->corner = mem_array(p->elements, 4 * sizeof *k->corner, "the stiffness", e);
     k->force = mem_array(p->elements, 12 * sizeof *k->force, "the stiffness", e);
-    if (p->options.warp)
+    if (warped)
         k->turn = mem_array(p->elements, 4 * sizeof *k->turn, "the stiffness", e);
-    if (!k->diagonal || !k->block || !k->element_spring || !k->start || !k->corner || !k->force ||
-        (p->options.warp && !k->turn))
+    if (!k->diagonal || !k->block || !k->element_spring || !k->start || !k->corner || !k->force || (warped && !k->turn))
         return -1;
     for (int64_t t = 0; t < p->elements && k->turn; t++)
         k->turn[4 * t + 3] = 1;

@@ -21,8 +21,9 @@ typedef struct stiffness {
     double *sum;
 } stiffness;
 
-/* Allocates, and fills the blocks, at rest. -1 with e filled; to be freed in every case. */
-int stiffness_make(stiffness *k, const msds_problem *p, pool *threads, err *e);
+/* Allocates, and fills the blocks, at rest; warped: its elements' rotations are taken out. -1 with e filled; to be
+ * freed in every case. */
+int stiffness_make(stiffness *k, const msds_problem *p, bool warped, pool *threads, err *e);
 void stiffness_free(stiffness *k);
 
 /* Where warping is asked for: takes each element's rotation at u (nodes x 3) and, if

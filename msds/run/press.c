@@ -1,6 +1,7 @@
 #include "msds/run/press.h"
 
 #include "base/mem.h"
+#include "base/num.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,12 +23,34 @@ void press_free(press *s)
     *s = (press){0};
 }
 
+void press_pace(press *s, int64_t iterations, double rate)
+{
+    s->iterations = iterations;
+    s->rate = rate;
+    s->begin = s->time;
+    s->due = 0;
+}
+
 void press_from(press *s, const pose *at, double time)
 {
-    s->any = true;
+    s->any = s->timed = true;
     s->last = *at;
     s->time = s->begin = time;
     s->due = 0;
+}
+
+void press_reset(press *s)
+{
+    s->any = false;
+    s->contacts = 0;
+}
+
+int64_t press_sum(const press_moves *moves)
+{
+    int64_t sum = 0;
+    for (int i = 0; i < moves->count; i++)
+        sum += moves->list[i].iterations;
+    return sum;
 }
 
 /* How deep the deepest free node is in the probe. */
@@ -85,7 +108,7 @@ static void ease_in(const press *s, const pose *at, press_moves *m)
 static int64_t iterations_to(press *s, double time)
 {
     const double each = (double)s->iterations * s->rate, most = frames_most * (double)s->iterations;
-    if (!s->any || !(time > s->time) || !(s->rate > 0))
+    if (!s->timed || !(time > s->time) || !(s->rate > 0))
         return s->iterations;
     if ((time - s->time) * each > most || (time - s->begin) * each > 1e15) { /* a pause: begin again */
         s->begin = time;
@@ -95,6 +118,39 @@ static int64_t iterations_to(press *s, double time)
     int64_t due = (int64_t)floor((time - s->begin) * each + .5), count = due - s->due;
     s->due = due;
     return count > 0 ? count : 1;
+}
+
+/* The same live: --iterations at most, of which a late frame leaves as many to the next. */
+static int64_t iterations_live(press *s, double time)
+{
+    const double each = (double)s->iterations * s->rate;
+    if (!s->timed || !(time > s->time) || !(s->rate > 0))
+        return s->iterations;
+    const int64_t due = (int64_t)floor((time - s->begin) * each + .5);
+    const int64_t count = num_clamp_int(due - s->due, 1, s->iterations), most_left = s->iterations;
+    s->due = due - num_clamp_int(due - s->due - count, 0, most_left);
+    return count;
+}
+
+static int64_t iterations_of(press *s, const press_frame *f)
+{
+    if (f->iterations >= 0)
+        return f->iterations;
+    return s->live ? iterations_live(s, f->time) : iterations_to(s, f->time);
+}
+
+static void pass(press *s, double time)
+{
+    if (!s->timed)
+        s->begin = time;
+    s->timed = true;
+    s->time = time;
+}
+
+void press_wait(press *s, const press_frame *f, press_moves *moves)
+{
+    *moves = (press_moves){.count = 1, .list = {{f->at, iterations_of(s, f)}}};
+    pass(s, f->time);
 }
 
 static void go_on(press *s, const pose *at, int64_t count, press_moves *m)
@@ -110,9 +166,9 @@ static void go_on(press *s, const pose *at, int64_t count, press_moves *m)
     }
 }
 
-int press_to(press *s, const msds_executor *device, msds_state *state, const pose *at, double time, bool springs,
-             press_moves *moves, err *e)
+int press_to(press *s, const msds_executor *device, msds_state *state, const press_frame *f, press_moves *moves, err *e)
 {
+    const pose *at = &f->at;
     const double size = s->shape->size;
     *moves = (press_moves){.count = 0};
     bool look = size > 0 && (!s->any || (!s->contacts && step_between(s, at) > inside_later * size));
@@ -125,17 +181,15 @@ int press_to(press *s, const msds_executor *device, msds_state *state, const pos
             ease_in(s, at, moves);
         }
     }
-    int64_t count = iterations_to(s, time);
-    if (!moves->count && springs && size > 0)
+    int64_t count = iterations_of(s, f);
+    if (!moves->count && f->springs && size > 0)
         go_on(s, at, count, moves);
     if (!moves->count) {
         moves->count = 1;
         moves->list[0] = (press_move){*at, count};
     }
-    if (!s->any)
-        s->begin = time;
+    pass(s, f->time);
     s->any = true;
     s->last = *at;
-    s->time = time;
     return 0;
 }

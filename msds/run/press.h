@@ -20,7 +20,9 @@ typedef struct press {
     int64_t iterations;
     double rate;      /* frames a second that --iterations are meant for; 0: of any frame */
     double *u;        /* nodes x 3, m; owned: to look where nodes are */
+    bool live;        /* a frame takes --iterations at most, and what it leaves is done by the next, or not at all */
     bool any;         /* there was a pose */
+    bool timed;       /* there was a frame */
     pose last;        /* then */
     double time;      /* s */
     int64_t due;      /* iterations since the beginning */
@@ -43,11 +45,31 @@ typedef struct press_moves {
 int press_make(press *s, const msds_problem *p, const probe *shape, int64_t iterations, double rate, err *e);
 void press_free(press *s);
 
+/* Other iterations, from the next frame on. */
+void press_pace(press *s, int64_t iterations, double rate);
+
 /* Goes on from a pose of an earlier run. */
 void press_from(press *s, const pose *at, double time);
 
-/* The moves to a pose at a time, s; state is asked where the nodes are, if need be. -1 with e filled. */
-int press_to(press *s, const msds_executor *device, msds_state *state, const pose *at, double time, bool springs,
-             press_moves *moves, err *e);
+/* The frame that a probe is moved in. */
+typedef struct press_frame {
+    double time; /* s */
+    pose at;
+    bool springs;
+    int64_t iterations; /* of the frame, as an earlier run had them; -1: as its time asks for */
+} press_frame;
+
+/* The moves to a pose; state is asked where the nodes are, if need be. -1 with e filled. */
+int press_to(press *s, const msds_executor *device, msds_state *state, const press_frame *f, press_moves *moves,
+             err *e);
+
+/* The one move of a frame without a pose. */
+void press_wait(press *s, const press_frame *f, press_moves *moves);
+
+/* As if there had been no pose: the tissue is at rest again. */
+void press_reset(press *s);
+
+/* Iterations of all moves. */
+int64_t press_sum(const press_moves *moves);
 
 #endif

@@ -7,7 +7,8 @@
 struct options {
     opt_common common;
     int device, method, mass, contact;
-    bool exact, warp, residual, compare;
+    bool exact, warp, residual, compare, live, force;
+    const char *body, *control, *record, *replay;
     const char *probe, *unit, *poses, *transform, *scale;
     int64_t iterations;
     double dt, damping, repulsion, rate, skin_stiffness, skin_anchors, skin_tension;

@@ -120,12 +120,8 @@ static void settle(skin *s, int64_t v, double k)
 
 int skin_make(skin *s, const surface *shape, const skin_options *o, pool *threads, err *e)
 {
-    *s = (skin){.shape = *shape,
-                .options = *o,
-                .threads = threads,
-                .position = shape->position,
-                .vertices = shape->vertices,
-                .oscillates = INFINITY};
+    *s = (skin){
+        .shape = *shape, .options = *o, .threads = threads, .position = shape->position, .vertices = shape->vertices};
     if (cut(s, shape, e) || make_springs(s, e))
         return -1;
     double **fields[] = {&s->u, &s->v, &s->next_u, &s->next_v};
@@ -136,9 +132,22 @@ int skin_make(skin *s, const surface *shape, const skin_options *o, pool *thread
     for (size_t i = 0; i < 3; i++)
         if (!(*values[i] = mem_array(s->vertices, sizeof(double), "the skin", e)))
             return -1;
+    skin_change(s, o);
+    return 0;
+}
+
+void skin_change(skin *s, const skin_options *o)
+{
+    s->options = *o;
+    s->oscillates = INFINITY;
     for (int64_t v = 0; v < s->vertices; v++)
         settle(s, v, o->stiffness * (double)(s->start[v + 1] - s->start[v]));
-    return 0;
+}
+
+void skin_reset(skin *s)
+{
+    memset(s->u, 0, 3 * (size_t)s->vertices * sizeof *s->u);
+    memset(s->v, 0, 3 * (size_t)s->vertices * sizeof *s->v);
 }
 
 void skin_free(skin *s)

@@ -53,6 +53,12 @@ typedef struct skin {
 int skin_make(skin *s, const surface *shape, const skin_options *o, pool *threads, err *e);
 void skin_free(skin *s);
 
+/* Takes other options; the skin stays as it is. */
+void skin_change(skin *s, const skin_options *o);
+
+/* Back to rest. */
+void skin_reset(skin *s);
+
 /* Steps on, with the probe where it is (NULL: none). The same bytes for any count of threads. */
 void skin_step(skin *s, const probe_placed *at, int64_t count);
 

@@ -1,10 +1,13 @@
-"""live.py BIN [THREADS]: the chain as it is used live: a pose goes into a FIFO, msds-run solves, us-slice draws, and the clock is stopped when
+"""live.py BIN [THREADS [CSV]]: the chain as it is used live: a pose goes into a FIFO, msds-run solves, us-slice draws, and the clock is stopped when
 the last byte of the image has come out of the pipe. 20 x 10 x 10 nodes, 512 x 512 pixels, 256^3 voxels of noise. Prints CSV: latency from pose
-to image, and images a second when the next pose goes in as soon as an image is out, and when three are always under way."""
+to image, and images a second when the next pose goes in as soon as an image is out, and when three are always under way. Then the same by --live, 60
+poses a second, at 32 x 16 x 16 nodes: latency in ms, and in multiply-adds of one processor, as the probe in the CSV of bench_slice took them."""
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 bin, threads = os.path.abspath(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "2"
@@ -51,6 +54,59 @@ def run(method, folder, mesh, volume, under_way):
                                              1e3 * took[len(took) * 95 // 100], (poses - 21) / seconds))
 
 
+def live_pose(i):
+    return "%.9f %.9f .04 %.9f 0 0 0 1\n" % (i / 60, .08 + 1e-6 * i, .0001 * min(i % 100, 100 - i % 100))
+
+
+def shown(stream, sent, took):
+    """Reads images; of each that is the first of a pose, how long that took: the x of its first pixel tells which pose it is."""
+    last = -1
+    while stream.readline():
+        place = stream.readline().split()
+        stream.readline(), stream.readline()
+        if len(stream.read(512 * 512)) != 512 * 512:
+            return
+        came, i = time.monotonic(), round((float(place[2]) - .16 / 1024) / 1e-6)
+        if last < i < len(sent):
+            took.append(came - sent[i])
+            last = i
+
+
+def run_live(method, folder, mesh, volume):
+    fifo = os.path.join(folder, "live-" + method)
+    os.mkfifo(fifo)
+    solver = subprocess.Popen([bin + "/msds-run", "-q", "--live", "--method", method, "--probe", "linear:4cm,1cm", "--poses", fifo, "--threads", threads],
+                              stdin=open(mesh, "rb"), stdout=subprocess.PIPE)
+    slicer = subprocess.Popen([bin + "/us-slice", "-q", "--live", "--size", "512x512", "--depth", "8cm", "--width", "16cm", "--threads", threads,
+                               volume], stdin=solver.stdout, stdout=subprocess.PIPE)
+    solver.stdout.close()
+    sent, took = [], []
+    reader = threading.Thread(target=shown, args=(slicer.stdout, sent, took))
+    reader.start()
+    with open(fifo, "w", buffering=1) as to:
+        due = time.monotonic()
+        for i in range(poses):
+            sent.append(time.monotonic())
+            to.write(live_pose(i))
+            due += 1 / 60
+            time.sleep(max(0, due - time.monotonic()))
+    solver.send_signal(signal.SIGINT)
+    reader.join(60)
+    if slicer.wait() or solver.wait():
+        sys.exit("live.py: a tool failed")
+    took = sorted(took[20:])
+    middle = took[len(took) // 2]
+    print("%s,%s,%d,%d,%.3f,%.3f,%.3f,%s" % (method, threads, poses, len(took) + 20, 1e3 * took[0], 1e3 * middle, 1e3 * took[len(took) * 95 // 100],
+                                             "%.3g" % (middle * rate) if rate else ""))
+
+
+def probe_rate(path):
+    """Multiply-adds a second, of one processor."""
+    with open(path) as file:
+        return next((float(line.rsplit(",", 1)[1]) for line in file if line.startswith('"probe: multiply-add",')), 0)
+
+
+rate = probe_rate(sys.argv[3]) if len(sys.argv) > 3 else 0
 with tempfile.TemporaryDirectory() as folder:
     volume, mesh = os.path.join(folder, "noise.nrrd"), os.path.join(folder, "mesh.sinew")
     with open(volume, "wb") as to:
@@ -61,3 +117,7 @@ with tempfile.TemporaryDirectory() as folder:
     for method in "msds", "fem":
         for under_way in 1, ahead:
             run(method, folder, mesh, volume, under_way)
+    subprocess.run([bin + "/msds-mesh", "-q", "--nodes", "32x16x16", "--size", "16cm,8cm,8cm", "--fix", "zmax", "-o", mesh], check=True)
+    print("live,threads,poses,shown,least_ms,median_ms,p95_ms,median_multiply_adds")
+    for method in "msds", "fem", "exact":
+        run_live(method, folder, mesh, volume)

@@ -5,8 +5,8 @@
 have mandoc || skip_all "no mandoc"
 check "the pages are made" man/html "$T/man"
 cd "$T/man" || exit 1
-is "$(ls)" "$({ for page in "$ROOT"/man/*.[157]; do echo "$(basename "$page").html"; done; printf 'index.html\nman.css\n'; } | LC_ALL=C sort)" \
-    "a page each, an index, one style"
+is "$(ls)" "$({ for page in "$ROOT"/man/*.[157]; do echo "$(basename "$page").html"; done; printf 'index.html\nman.css\n'; (cd "$ROOT/man" && ls -- *.svg); } | LC_ALL=C sort)" \
+    "a page each, an index, one style, and the figures"
 grep -o 'href="[^"]*"' -- *.html | sed 's/:href="/ /; s/"$//' | sort -u >"$T/links"
 check "there are links: $(wc -l <"$T/links" | tr -d ' ')" test "$(wc -l <"$T/links")" -gt 500
 while read -r page link; do

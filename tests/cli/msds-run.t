@@ -12,6 +12,8 @@ press() {
     awk -v n="$1" 'BEGIN { for (i = 0; i < n; i++) printf "%g .04 .04 %.4f 1 0 0 0\n", i / 60, .06 - .0005 * i }'
 }
 press 10 >"$T/press.tum"
+head -n 4 "$T/press.tum" >"$T/four.tum"
+sed -n 5p "$T/press.tum" >"$T/fifth.tum"
 
 check "springs" msds-run --probe sphere:2cm --poses "$T/press.tum" -o "$T/msds.sinew" <"$T/block.sinew"
 is "$(grep -c 'stable step' "$T/stderr")" 1 "says the stable step"
@@ -76,6 +78,25 @@ msds-run -q --method fem --exact --probe sphere:2cm --poses "$T/first.tum" <"$T/
     msds-run -q --method fem --exact --probe sphere:2cm --poses "$T/last.tum" >"$T/parts.sinew"
 check "in two parts: the same" sinew diff --rel 1e-4 --abs 1e-8 --only node.displacement "$T/exact.sinew" "$T/parts.sinew"
 
+# Five methods by their names, or by options that add to fem; and by names in the stream.
+frames() {
+    sed -n '/^frame /,$p' "$1"
+}
+for method in 'exact:fem --exact' 'warp:fem --warp' 'exact-warp:fem --exact --warp' 'exact-warp:exact --warp' 'exact-warp:warp --exact'; do
+    msds-run -q --text --method "${method%%:*}" --probe sphere:2cm --poses "$T/four.tum" <"$T/block.sinew" >"$T/named.sinew"
+    # shellcheck disable=SC2086
+    msds-run -q --text --method ${method#*:} --probe sphere:2cm --poses "$T/four.tum" <"$T/block.sinew" >"$T/flags.sinew"
+    { echo "method ${method%%:*}"; cat "$T/four.tum"; } >"$T/line.tum"
+    msds-run -q --text --probe sphere:2cm --poses "$T/line.tum" <"$T/block.sinew" >"$T/line.sinew"
+    is "$(frames "$T/flags.sinew" | cksum) $(frames "$T/line.sinew" | cksum)" "$(frames "$T/named.sinew" | cksum) $(frames "$T/named.sinew" | cksum)" "${method%%:*} is ${method#*:}"
+done
+is "$(frames "$T/named.sinew" | grep -c '^frame ')" 4 "of four frames each"
+{ cat "$T/four.tum"; echo 'method warp'; cat "$T/fifth.tum"; echo 'method exact-warp'; cat "$T/fifth.tum"; echo 'method fem'; cat "$T/fifth.tum"; echo 'method exact'; cat "$T/fifth.tum"; } >"$T/all.tum"
+check "all methods in one run" msds-run -v --probe sphere:2cm --poses "$T/all.tum" -o "$T/all.sinew" <"$T/block.sinew"
+is "$(awk '/time\/s/ { on = 1; next } on && NF == 7 { printf "%s ", $3 }' "$T/stderr")" "msds msds msds msds warp exact-warp fem fem-exact " "each frame by its own"
+echo 'method wrap' >"$T/wrap.tum"
+fails 1 "a method that is none" "wrap.tum:1: unknown method 'wrap'; did you mean 'warp'\?" msds-run --poses "$T/wrap.tum" <"$T/block.sinew"
+
 check "compares" msds-run --compare --exact --spring-scale auto --probe sphere:2cm --poses "$T/press.tum" -o /dev/null <"$T/block.sinew"
 is "$(awk '/time\/s/ { on = NF; next } on && NF == on { rows++ } END { print on, rows + 0 }' "$T/stderr")" "10 10" "a difference a frame"
 is "$(grep -Ec '^msds-run: 10 poses, to [0-9.]+ s: largest displacement [0-9.]+ mm, at [0-9.]+ s; largest force on the probe [0-9.]+ N, from [0-9]+ nodes, at [0-9.]+ s$' "$T/stderr")" 1 "and the end"
@@ -91,8 +112,6 @@ by_hand=$(paste "$T/msds.rows" "$T/fem.rows" | awk '{ for (i = 1; i <= 3; i++) {
 near "$(awk '$3 == "msds" { rms = $9 } END { print rms }' "$T/stderr")" "$by_hand" 1e-3 "which is that of both by hand, $by_hand"
 
 # What is carried: the first frame after a change is that of a run which begins with the frames before.
-head -n 4 "$T/press.tum" >"$T/four.tum"
-sed -n 5p "$T/press.tum" >"$T/fifth.tum"
 for change in 'msds:fem' 'fem:msds'; do
     { cat "$T/four.tum"; echo "method ${change#*:}"; cat "$T/fifth.tum"; } >"$T/change.tum"
     msds-run -q --iterations 5 --method "${change%:*}" --probe sphere:2cm --poses "$T/change.tum" <"$T/block.sinew" >"$T/change.sinew"

@@ -87,6 +87,15 @@ near "$(column 3 "$(at 0.01,0.01,0.02)")" -0.002 1e-5 "confined, its top pressed
 run bound "$confined"'0 pressure SHELL:0,0,20mm,2cm,2cm,2cm 1156.1882
 ' --rest 1e-7
 near "$(column 3 "$(at 0.01,0.01,0.02)")" -0.002 1e-5 "and by a box about it"
+# slab X0 X1 Z0 Z1 [COUNT]: a box as OBJ, 0 to 2 along y, the first COUNT of its sides.
+slab() {
+    printf 'v %s\n' "$1 0 $3" "$2 0 $3" "$2 2 $3" "$1 2 $3" "$1 0 $4" "$2 0 $4" "$2 2 $4" "$1 2 $4"
+    printf 'f %s\n' '4 3 2 1' '5 6 7 8' '1 2 6 5' '2 3 7 6' '3 4 8 7' '4 1 5 8' | head -n "${5:-6}"
+}
+slab 0 2 1.9 2 | gzip >"$T/top.obj.gz"
+run bound "$confined""0 pressure shell:$T/top.obj.gz 1156.1882
+" --rest 1e-7 --unit cm
+near "$(column 3 "$(at 0.01,0.01,0.02)")" -0.002 1e-5 "and by what lies inside of an OBJ, or on it"
 run bound "$symmetry"'0 traction shell:x1 502.2590,0,0
 ' --rest 1e-7
 near "$(column 1 "$(at 0.02,0.02,0.02)")" 0.004 1e-5 "a traction of 502.2590 Pa, by the area at rest, pulls it to 1.2"
@@ -230,7 +239,7 @@ refuse() { # PATTERN SCRIPT [MODEL]
     [ ! -e "$T/left" ] || not_ok "no output is left by it"
     [ "$(wc -l <"$T/stderr")" -eq 1 ] || not_ok "one message"
 }
-refuse 'bad.txt:1: 3 words; expected TIME pressure SURFACE\[:GROUP|:X0,Y0,Z0,X1,Y1,Z1\] PA' '0 pressure shell\n'
+refuse 'bad.txt:1: 3 words; expected TIME pressure SURFACE\[:GROUP|:X0,Y0,Z0,X1,Y1,Z1|:FILE.obj\] PA' '0 pressure shell\n'
 refuse "bad.txt:2: pressure '1kPa'; expected a number in Pa" '# a\n0 pressure shell 1kPa\n'
 refuse "bad.txt:1: pressure 'inf'; expected a number in Pa" '0 pressure shell inf\n'
 refuse "bad.txt:1: '5'; expected X,Y,Z in Pa" '0 traction shell 5\n'
@@ -240,7 +249,18 @@ refuse "bad.txt:1: unknown group of polygons ''; expected one of: x0" '0 pressur
 refuse "bad.txt:1: no triangle of 'shell' lies in the box 1,1,1,2,2,2; expected X0,Y0,Z0,X1,Y1,Z1 around some" '0 traction shell:1,1,1,2,2,2 0,0,5\n'
 refuse "bad.txt:1: '1,1,1'; expected X0,Y0,Z0,X1,Y1,Z1: a box" '0 pressure shell:1,1,1 5\n'
 refuse 'bad.txt:1: box 2,0,0,1,1,1 is empty: 2 > 1; expected the low corner first' '0 pressure shell:2,0,0,1,1,1 5\n'
-refuse "bad.txt:1: surface 'open' is not closed: 16 open edges; expected each edge between two triangles" '0 pressure open 5\n'
+refuse "bad.txt:1: surface 'open' is not closed: 16 open edges, the first at [0-9.]*mm,[0-9.]*mm,20mm; expected each edge between two triangles" '0 pressure open 5\n'
+slab 0 20 19 20 5 >"$T/hole.obj"
+slab 50 60 19 20 >"$T/far.obj"
+slab 0 20 19 20 0 >"$T/bare.obj"
+echo 'f 1 2 3' >"$T/broken.obj"
+refuse 'bad.txt:1: .*none.obj: cannot open: No such file' "0 pressure shell:$T/none.obj 5\\n"
+refuse 'bad.txt:1: .*broken.obj:1: vertex 1, but the file has 0' "0 pressure shell:$T/broken.obj 5\\n"
+refuse 'bad.txt:1: .*bare.obj has no polygons; expected a closed surface' "0 pressure shell:$T/bare.obj 5\\n"
+refuse 'bad.txt:1: .*hole.obj is not closed: 4 open edges, the first at [0-9.]*mm,[0-9.]*mm,[0-9.]*mm; expected each edge between two triangles' "0 traction shell:$T/hole.obj 0,0,5\\n"
+refuse "bad.txt:1: no triangle of 'shell' lies inside of .*far.obj; expected a closed surface around some" "0 pressure shell:$T/far.obj 5\\n"
+printf '0 pressure shell:%s 5\n' "$T/far.obj" >"$T/bad.txt"
+fails 2 "a unit that is none" "^tled-run: --unit 'pc': expected um, mm, cm, m or in" tled-run -q --unit pc --script "$T/bad.txt" -n 1 <"$T/both"
 refuse 'bad.txt:2: time 0 s comes after 1 s for the same target' '1 pressure shell:Z1 5\n0 pressure SHELL:z1 6\n'
 voxelise -q --unit mm -s 5 --origin 0,0,0 "$T/shell.obj" >"$T/unbound" 2>"$T/said"
 refuse "bad.txt:1: surface 'shell' is not bound; expected one that sinew bind put into the model" '0 pressure shell 5\n' unbound

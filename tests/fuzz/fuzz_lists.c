@@ -1,5 +1,6 @@
 // needs: attach/rigid.c msds/mesh/mesh_fix.c msds/mesh/mesh_tets.c msds/mesh/mesh_labels.c tled/problem/script.c
 // needs: tled/problem/script_surface.c
+// needs: tled/problem/script_nodes.c
 // needs: tled/problem/script_read.c common/inspect/info_key.c common/inspect/info_quality.c common/inspect/info_stats.c
 /* Any text as the lists of names that options take, over a small model: attach --rigid, msds-mesh --fix and --names,
  * tled-run -c; and as a key of sinew info --get. Each is taken or is one error with a text.

@@ -1,6 +1,6 @@
 /* Any bytes as a script for a small model: curves whose times are in order and whose values
  * are finite, or one error with a text. */
-// needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_surface.c
+// needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
 #include "tled/problem/script.h"
 
 #include <math.h>
@@ -77,6 +77,32 @@ static void check_curve(const script *s, const script_curve *c)
     }
 }
 
+/* Each line as one that comes live. */
+static void take_live(const uint8_t *data, size_t size, const model *m)
+{
+    keyfile k;
+    script s = {0};
+    err e = {0};
+    char word[] = "now";
+    in *source = in_memory(data, size, "fuzz", &e);
+    keyfile_open(&k, source);
+    for (int i = 1; keyfile_next(&k, &e) > 0; i++) {
+        const script_now now = {i, i + 1, NULL};
+        const script before = s;
+        err wrong = {0};
+        bool anew = false;
+        if (!script_is_now(&k))
+            k.word[0] = word;
+        if (!script_take_now(&s, m, &k, &now, &anew, &wrong))
+            for (int64_t c = 0; c < s.curves; c++)
+                check_curve(&s, &s.curve[c]);
+        else if (!wrong.text[0] || s.curves != before.curves || s.nodes != before.nodes || s.keys < before.keys)
+            abort();
+    }
+    in_close(source);
+    script_free(&s);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     model m;
@@ -95,6 +121,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     in_close(source);
     script_free(&s);
+    take_live(data, size, &m);
     model_free(&m);
     return 0;
 }

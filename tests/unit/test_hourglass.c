@@ -52,11 +52,10 @@ static double dot(const double a[3], const double b[3])
 
 static void take_any(tried *t)
 {
-    double slope[21], twist[12], basis[9], hold[HOURGLASS_FORM];
+    double slope[21], twist[12], basis[9];
     hexahedron_modes(t->at, t->b, slope, twist);
     hexahedron_basis(t->at, basis);
-    hourglass_forms(mu, bulk, t->volume, basis, hold);
-    t->any = element_any_of(slope, twist, t->volume, basis, hold);
+    t->any = element_any_of(slope, twist, t->volume, basis);
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < 3; i++)
             t->axis[c][i] = basis[3 * i + c];
@@ -275,14 +274,14 @@ static void test_moduli(void)
 
 static void test_text(void)
 {
-    static const char *const good[] = {"physical", "isotropic", "isotropic:0.03", "0.03", "0"};
-    static const char *const back[] = {"physical", "isotropic:0.0075", "isotropic:0.03", "isotropic:0.03",
-                                       "isotropic:0"};
+    static const char *const good[] = {"physical", "isotropic", "isotropic:0.03", "0.03", "0", "0.012345678901234567"};
+    static const char *const back[] = {"physical",       "isotropic:0.0075", "isotropic:0.03",
+                                       "isotropic:0.03", "isotropic:0",      "isotropic:0.012345678901234567"};
     static const char *const bad[] = {"",   "physic", "physical:1", "isotropic:",  "isotropic:x",
                                       "-1", "nan",    "1001",       "isotropic 1", "0.03x"};
     hourglass_control control;
     char text[HOURGLASS_TEXT];
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++) {
         const bool read = !hourglass_read(good[i], &control);
         hourglass_text(control, text);
         ok(read && !strcmp(text, back[i]), "'%s' is %s", good[i], text);
@@ -359,6 +358,63 @@ static void test_bound(double x, double y, double z, double by)
        least, most);
 }
 
+/* n of modes by components, as R^T D R makes it. */
+static void stiffen(const tried *t, const double root[16], double n[12])
+{
+    double m[12] = {0}, f[12];
+    hourglass_modes modes;
+    for (int i = 0; i < 12; i++)
+        for (int g = 0; g <= i / 3; g++)
+            m[i] += root[4 * (i / 3) + g] * n[3 * g + i % 3];
+    memcpy(&modes, m, sizeof modes);
+    const hourglass_modes w = hourglass_all_by_columns(t->any.basis, modes);
+    const hourglass_modes s = hourglass_hexahedron(&w, t->any.basis, t->law.hourglass, t->volume / 64);
+    modes = hourglass_all_by_rows(t->any.basis, s);
+    memcpy(f, &modes, sizeof f);
+    for (int i = 0; i < 12; i++) {
+        n[i] = 0;
+        for (int g = i / 3; g < 4; g++)
+            n[i] += root[4 * g + i / 3] * f[3 * g + i % 3];
+    }
+}
+
+/* The largest eigenvalue, from below, by power iteration. */
+static double largest_of_modes(const tried *t, const double root[16])
+{
+    double n[12], size = 0;
+    for (int i = 0; i < 12; i++)
+        n[i] = sin(3. * i * i + 1);
+    for (int round = 0; round < 3000; round++) {
+        size = 0;
+        for (int i = 0; i < 12; i++)
+            size += n[i] * n[i];
+        size = sqrt(size);
+        for (int i = 0; i < 12; i++)
+            n[i] /= size;
+        stiffen(t, root, n);
+    }
+    return size;
+}
+
+/* by: how far corners are moved by chance, of a side; and how far R is from 1 by chance. */
+static void test_stiffest(double x, double y, double z, double by)
+{
+    double low = INFINITY, high = 0;
+    for (int round = 0; round < 40; round++) {
+        tried t = make(x, y, z, by);
+        double root[16] = {0}, basis[9];
+        for (int i = 0; i < 16; i++)
+            root[i] = i / 4 > i % 4 ? by * chance() : i % 5 ? 0 : 1;
+        hexahedron_basis(t.at, basis);
+        const double share =
+            hourglass_any_stiffest(t.law.hourglass, t.volume, basis, root) / largest_of_modes(&t, root);
+        low = fmin(low, share);
+        high = fmax(high, share);
+    }
+    ok(low >= 1 && high <= 1.0197, "%g x %g x %g, corners moved by %g: the stiffest mode's bound is %.6f to %.6f of it",
+       x, y, z, by, low, high);
+}
+
 int main(void)
 {
     test_derivative("a cube", make(.01, .01, .01, 0), .01);
@@ -375,5 +431,9 @@ int main(void)
     test_bound(.01, .01, .01, .2);
     test_bound(.01, .0125, .02, .1);
     test_bound(.01, .01, .002, .05);
+    test_stiffest(.01, .01, .01, 0);
+    test_stiffest(.01, .0125, .02, .1);
+    test_stiffest(.01, .0125, .02, .3);
+    test_stiffest(.01, .01, .001, .3);
     return done_testing();
 }

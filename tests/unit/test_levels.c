@@ -61,7 +61,7 @@ static void make(subject *s, const tets *b, void (*change)(model *), double shak
         model_find(&s->m, "node.rigid")->u8[n] = 1;
     s->threads = pool_create(threads, &e);
     tets_must(s->threads && !msds_problem_make(&s->p, &s->m, &o, &e) && !sell_make(&s->s, &s->p, &e) &&
-                  !stiffness_make(&s->k, &s->p, s->threads, &e),
+                  !stiffness_make(&s->k, &s->p, false, s->threads, &e),
               &e);
     s->matrix.s = &s->s;
     s->matrix.diagonal = mem_array(s->s.count, 9 * LANES * sizeof(float), "test", &e);

@@ -6,7 +6,7 @@
 // needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
+// needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/run/msds_executors.c msds/problem/largest.c
 #include "msds_block.h"
 
 #include "base/mem.h"
@@ -218,13 +218,13 @@ static void test_refused(const msds_executor *cuda)
     err e = {0};
     msds_options o = tets_options();
     msds_plan plan = tets_plan(MSDS_FEM);
-    o.warp = true;
+    plan.warp = true;
     make(&c, &b, &o, false, cuda);
     ok(cuda->step(c.state[1], &plan, 1, &e) && strstr(e.text, "expected -d cpu"), "warping is refused: %s", e.text);
     drop(&c);
     c = (pair){0};
     e = (err){0};
-    o.warp = false;
+    plan.warp = false;
     plan.method = MSDS_EXACT;
     make(&c, &b, &o, false, cuda);
     memset(c.p.fixed, 0, (size_t)c.p.nodes);

@@ -4,7 +4,7 @@
 // needs: msds/mesh/mesh_tets.c msds/problem/problem.c msds/problem/springs.c msds/problem/sell.c msds/cpu/lanes.c
 // needs: msds/cpu/lanes_loops.c msds/cpu/contacts.c
 // needs: msds/problem/stiffness.c msds/cpu/dissect.c msds/cpu/factor.c msds/cpu/exact.c msds/cpu/mixing.c msds/cpu/cg.c
-// needs: msds/cpu/msds_cpu.c msds/problem/largest.c
+// needs: msds/cpu/exact_making.c msds/cpu/msds_cpu.c msds/problem/largest.c
 #include "msds_block.h"
 
 #include "base/mem.h"
@@ -379,7 +379,7 @@ static void test_penalty(void)
         off = fmax(off, fabs(u[i] - w[i]));
     ok(off < 2e-3 * exact.largest, "400 conjugate gradients agree to %.2g of the largest", off / exact.largest);
     pool *workers = pool_create(1, &e);
-    tets_must(workers && f && !stiffness_make(&k, &p, workers, &e), &e);
+    tets_must(workers && f && !stiffness_make(&k, &p, false, workers, &e), &e);
     stiffness_force(&k, u, f);
     for (int64_t i = 0; i < 3 * p.nodes; i++)
         held[i % 3] += p.fixed[i / 3] ? f[i] : 0;
@@ -449,10 +449,10 @@ static void test_warped(void)
     msds_options o = tets_options();
     tets b = {{11, 4, 4}, {.1, .03, .03}, 20000, .4, 1000, 0, false};
     msds_reading exact, cg;
-    o.warp = true;
     o.gravity[2] = -9.81;
     make_problem(&b, &o, &m, &p);
     msds_plan plan = tets_plan(MSDS_EXACT);
+    plan.warp = true;
     double *first = run_frames(&p, &plan, 2, 1, 20, &exact), left = tets_left(&p, first);
     ok(exact.residual < 1e-6 && left < 1e-6, "warped, the first frame: residual %.2g, by its elements %.2g",
        exact.residual, left);

@@ -189,9 +189,21 @@ static void texts(void)
     out_discard(to);
 }
 
+/* One option at a time, as lines of a live run set them. */
+static void one(void)
+{
+    struct options o = {.cells = -1};
+    err e = {0};
+    ok(!opt_set(&table, "cells", "7", &o, &e) && o.cells == 7, "an option is set by its name: %s", e.text);
+    ok(opt_set(&table, "cells", "x", &o, &e) && strstr(e.text, "--cells 'x': expected a whole number"), "%s", e.text);
+    e = (err){0};
+    ok(opt_set(&table, "none", "1", &o, &e) && strstr(e.text, "no option --none"), "%s", e.text);
+}
+
 int main(void)
 {
     values();
+    one();
     refused();
     texts();
     return done_testing();

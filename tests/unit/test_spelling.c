@@ -1,5 +1,5 @@
 /* American words of what is typed, made British. */
-#include "base/spelling.h"
+#include "cli/spelling.h"
 
 #include "tap.h"
 

@@ -346,6 +346,129 @@ static void test_element_bound(void)
     }
 }
 
+/* ---- the bound of one element against the largest eigenvalue of M^-1 K, deformed too */
+
+static double chance(void)
+{
+    static uint32_t seed = 11;
+    seed = seed * 1664525 + 1013904223;
+    return 2 * (double)(seed >> 8) / (1 << 24) - 1;
+}
+
+static element_field field_of(const tled_problem *p, const double u[24])
+{
+    element_field at;
+    for (int c = 0; c < 8; c++) {
+        const double *corner = u + 3 * p->element_node[c];
+        at.x.at[c] = corner[0];
+        at.y.at[c] = corner[1];
+        at.z.at[c] = corner[2];
+    }
+    return at;
+}
+
+static void forces_of(const tled_problem *p, const double u[24], double f[24])
+{
+    const conforming_hold hold = conforming_hold_of(p, 0);
+    const element_any shape = conforming_shape(p, 0, &hold);
+    const tled_law from = tled_law_of(p, 0);
+    const element_fibre none = {0};
+    element_law law = {.c = {from.c[0], from.c[1]}};
+    for (int i = 0; i < HOURGLASS_NUMBERS; i++)
+        law.hourglass[i] = hold.law[i];
+    const element_field g = element_any_force(p->form, p->control.kind, field_of(p, u), &shape, law, none, false);
+    for (int c = 0; c < 8; c++) {
+        double *corner = f + 3 * p->element_node[c];
+        corner[0] = g.x.at[c];
+        corner[1] = g.y.at[c];
+        corner[2] = g.z.at[c];
+    }
+}
+
+/* At u, by power iteration on differences of forces. */
+static double largest_of_element(const tled_problem *p, const double u[24])
+{
+    double way[24], moved[24], low[24] = {0}, high[24] = {0}, value = 0;
+    for (int i = 0; i < 24; i++)
+        way[i] = sin(3. * i * i + 1);
+    for (int round = 0; round < 300; round++) {
+        double size = 0, square = 0, own = 0;
+        for (int i = 0; i < 24; i++)
+            size = fmax(size, fabs(way[i]));
+        for (int side = -1; side <= 1; side += 2) {
+            for (int i = 0; i < 24; i++)
+                moved[i] = u[i] + side * 1e-8 * way[i] / size;
+            forces_of(p, moved, side < 0 ? low : high);
+        }
+        for (int i = 0; i < 24; i++) {
+            const double next = (high[i] - low[i]) / (2e-8 * p->mass[i / 3]);
+            square += next * way[i] / size;
+            own += way[i] / size * (way[i] / size);
+            way[i] = next;
+        }
+        value = square / own;
+    }
+    return value;
+}
+
+static double bound_of_element(const tled_problem *p, const double u[24], double *j)
+{
+    const conforming_hold hold = conforming_hold_of(p, 0);
+    const element_any shape = conforming_shape(p, 0, &hold);
+    const element_fibre none = {0};
+    const element_field at = field_of(p, u);
+    element_modes x = element_modes_of(at.x), y = element_modes_of(at.y), z = element_modes_of(at.z);
+    const element_tensor h = element_any_twist(&shape, &x, &y, &z);
+    const hourglass_modes m = element_hourglass_modes(x, y, z);
+    step_matrix a;
+    conforming_matrix(p, 0, h, none, &a);
+    *j = 1 + element_dilation(h);
+    return conforming_square(p, 0, conforming_twists(p, 0, h, &m), step_largest(&a));
+}
+
+/* One element, its corners moved by a share `by` of a side; false: it has no inside. */
+static bool make_element(model *m, tled_problem *p, double nu, double by, hourglass_control control)
+{
+    static const script none = {0};
+    block b = soft;
+    err e = {0};
+    b.poisson = nu;
+    b.cells[0] = b.cells[1] = b.cells[2] = 1;
+    b.fixed_low = b.fixed_high = 0;
+    block_make(&b, m);
+    forget_lattice(m);
+    double *x = model_find(m, "node.position")->f64;
+    for (int i = 0; i < 24; i++)
+        x[i] += by * b.side[i % 3] * chance();
+    return !tled_problem_make(p, m, &none, control, &e);
+}
+
+static void test_random_bounds(double nu, double by, double moved, double least, hourglass_control control)
+{
+    double low = INFINITY, high = 0, sum = 0, u[24], j;
+    int count = 0;
+    for (int round = 0; round < 40; round++) {
+        model m = {0};
+        tled_problem p = {0};
+        const bool made = make_element(&m, &p, nu, by, control);
+        for (int i = 0; i < 24; i++)
+            u[i] = moved * soft.side[i % 3] * chance();
+        if (made) {
+            const double bound = bound_of_element(&p, u, &j);
+            const double share = j > .3 ? bound / largest_of_element(&p, u) : NAN;
+            low = fmin(low, share);
+            high = fmax(high, share);
+            sum += j > .3 ? share : 0;
+            count += j > .3;
+        }
+        tled_problem_free(&p);
+        model_free(&m);
+    }
+    ok(count > 20 && low >= 1 - 1e-5 && sum / count < least,
+       "nu %g, corners moved by %g, then by %g: the bound is %.4f to %.4f of w^2, %.4f in the mean of %d", nu, by,
+       moved, low, high, sum / count, count);
+}
+
 static void test_refused(void)
 {
     model m = {0};
@@ -394,6 +517,14 @@ int main(void)
     test_step(.3, ISOTROPIC(.0075));
     test_step(.3, ISOTROPIC(1));
     test_element_bound();
+    test_random_bounds(.3, 0, 0, 1.0001, PHYSICAL);
+    test_random_bounds(.3, .2, 0, 1.015, PHYSICAL);
+    test_random_bounds(.3, .3, 0, 1.03, PHYSICAL);
+    test_random_bounds(.45, .3, 0, 1.01, PHYSICAL);
+    test_random_bounds(.3, .2, .05, 1.08, PHYSICAL);
+    test_random_bounds(.3, .2, .15, 1.35, PHYSICAL);
+    test_random_bounds(.45, .2, .15, 1.12, PHYSICAL);
+    test_random_bounds(.3, .2, .05, 1.02, ISOTROPIC(.5));
     test_refused();
     return done_testing();
 }

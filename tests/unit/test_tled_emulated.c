@@ -2,7 +2,7 @@
  * stay, and looks, each by several lots; and that the card finds what is wrong, in kernels that are, and in ours where
  * it leaves out what they say. */
 // needs: tled/*/*.c
-#include "tled_card.h"
+#include "tled_live_trial.h"
 
 #ifdef SINEW_EMULATED
 #include "tests/emulate/emulate.h"
@@ -258,6 +258,45 @@ static void test_form(form f, int64_t steps)
     in_form = FORM_NEO_HOOKEAN;
 }
 
+/* The emulated card is one thread's: frames, which have others, are left out. */
+static int no_snapshot(tled_state *state, int slot, err *e)
+{
+    (void)state, (void)slot, (void)e;
+    return 0;
+}
+
+static int no_fetch(tled_state *state, int slot, const field_values *to, err *e)
+{
+    (void)state, (void)slot, (void)to, (void)e;
+    return 0;
+}
+
+/* Lines that come live, beside a processor: new targets taken over in place, or by a state that is made again. */
+static void test_live(const emulated_card *card, bool again, const char *name)
+{
+    live_trial here, there;
+    tled_executor alone = tled_cuda_single;
+    alone.snapshot = no_snapshot;
+    alone.fetch = no_fetch;
+    if (again)
+        alone.reload = NULL;
+    double most = 0, off = 0;
+    put_in(card, 5, 4);
+    trial_begin(&here, &trial_block, false, trial_lines, 1);
+    trial_begin(&there, &trial_block, false, trial_lines, 1);
+    here.b.setup.device = &tled_cpu_single;
+    there.b.setup.device = &alone;
+    ok(!trial_go(&here) && !trial_go(&there), "%s, live: goes on to its end %s", name, there.b.e.text);
+    for (int64_t i = 0; i < 3 * here.b.problem.nodes; i++) {
+        most = fmax(most, fabs(here.seen[i]));
+        off = fmax(off, fabs(here.seen[i] - there.seen[i]));
+    }
+    ok(most > 1e-3 && off < 1e-4 * most && there.b.frames == here.b.frames, "%s, live: as on a processor, to %.1e",
+       name, off / most);
+    trial_free(&here);
+    trial_free(&there);
+}
+
 static void test_isotropic(int64_t steps)
 {
     const trial marches = {"isotropic control, a script", lump, 0, true, {0}, false};
@@ -443,6 +482,11 @@ int main(void)
     for (int f = 0; f < FORM_STEPPED; f++)
         if (f != FORM_NEO_HOOKEAN)
             test_form((form)f, 2 * more);
+    test_live(&marching, false, "a march");
+    test_live(&marching, true, "a march, made again");
+    test_live(&plain, false, "bricks");
+    test_live(&staying, false, "resident bricks");
+    test_live(&staying, true, "resident bricks, made again");
     test_isotropic(3 * more);
     test_looks(2 * more);
     test_histories();

@@ -3,7 +3,7 @@
  */
 // needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/script.c
 // needs: tled/problem/script_surface.c tled/problem/loads.c tled/problem/followers.c
-// needs: tled/problem/script_read.c tled/problem/step.c tled/problem/support.c
+// needs: tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/step.c tled/problem/support.c
 #include "tled/problem/support.h"
 
 #include "tap.h"
@@ -54,16 +54,17 @@ static void test_arrays(void)
        "as is another");
     ok(p.held == 3 * 4 + 6, "%lld nodes are held", (long long)p.held);
     double value[12];
+    const double at_rest[3] = {0};
     tled_curves(&p, 0, value);
     for (int64_t n = 0; n < p.nodes; n++) {
-        tled_external(&p, value, n, force);
+        tled_external(&p, value, at_rest, n, force);
         for (int a = 0; a < 3; a++)
             total[a] += force[a];
     }
     near_(total[0], 1.5, 1e-12, "forces in all, x");
     near_(total[1], 2, 1e-12, "y");
     near_(total[2], 3 - 10 * mass, 1e-12, "z, with the weight");
-    tled_external(&p, value, block_node(&brick, 2, 2, 3), force);
+    tled_external(&p, value, at_rest, block_node(&brick, 2, 2, 3), force);
     near_(force[0], .5 + .5, 1e-12, "two forces on one node");
     support parts;
     ok(!support_of(&p, &parts, &e) && parts.loose == 0 && !parts.pushed, "all hangs on what is held");

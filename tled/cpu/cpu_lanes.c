@@ -3,6 +3,7 @@
 #include "solve/flush.h"
 #include "solve/vectors.h"
 #include "tled/cpu/cpu_pass.h"
+#include "tled/problem/loads.h"
 
 #ifndef CPU_FORM /* for tools that read a source by itself */
 #define CPU_FORM NEO_HOOKEAN
@@ -216,7 +217,7 @@ static void move_extra(const cpu_work *w, int64_t at, int64_t n, int a, node_fac
         *to = *sum;
     *sum = 0;
     for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
-        net += (real_one)(p->force_share[i] * w->now[3 * (int64_t)p->force_curve[i] + a]);
+        net += (real_one)loads_entry(p, i, w->now, a, (double)u);
     if (hold == HOLD_FREE)
         acceleration =
             (p->gravity < 0 ? 0 : (real_one)w->now[3 * p->gravity + a]) + net * ((const real_one *)w->mass_inverse)[at];

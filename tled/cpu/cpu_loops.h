@@ -82,7 +82,7 @@ static void boxes_pass(cpu_state *s)
 typedef struct cpu_contact {
     const cpu_state *s;
     probe_placed at;
-    double time;
+    double up;
 } cpu_contact;
 
 static void contact_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -95,7 +95,7 @@ static void contact_work(void *context, int64_t chunk, int64_t from, int64_t to)
         for (int a = 0; a < 3; a++)
             x[a] =
                 s->p->position[3 * n + a] + (double)s->field[TLED_DISPLACEMENT][a * s->rows.nodes + s->rows.place[n]];
-        if (!collider_push(s->p->collider, &c->at, c->time, x, s->p->mass[n], push))
+        if (!collider_push(s->p->collider, &c->at, c->up, x, s->p->mass[n], push))
             continue;
         for (int a = 0; a < 3; a++)
             s->sum[a * s->rows.nodes + s->rows.place[n]] = (number)-push[a];
@@ -148,8 +148,8 @@ static void run_pass(cpu_state *s, const tled_plan *plan, double time, int what)
     w->dt = 1 / plan->rate;
     w->damping = plan->damping;
     w->what = what;
-    if (s->p->collider) {
-        cpu_contact contact = {s, collider_at(s->p->collider, time), time};
+    if (s->p->collider && !s->p->collider->is_away) {
+        cpu_contact contact = {s, collider_at(s->p->collider, time), collider_up(s->p->collider, time)};
         pool_run(s->threads, s->p->nodes, CONTACT_CHUNK, contact_work, &contact);
     }
     if (s->p->followers)
@@ -390,30 +390,43 @@ static int allocate_fields(cpu_state *s, err *e)
     return 0;
 }
 
+/* What of the script has room of its own. */
+static int allocate_script(cpu_state *s, err *e)
+{
+    const int64_t curves = s->p->script->curves;
+    s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
+    s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
+    return s->now && s->next ? followers_room(&s->followers, s->p->followers, e) : -1;
+}
+
 static int allocate(cpu_state *s, err *e)
 {
-    const int64_t nodes = s->rows.nodes, curves = s->p->script->curves;
+    const int64_t nodes = s->rows.nodes;
     if (allocate_fields(s, e) || make_numbers(&s->spare, nodes, 3, e) || make_numbers(&s->sum, nodes, 3, e) ||
         make_numbers(&s->mass_inverse, nodes, 1, e) || allocate_cells(s, e))
         return -1;
     s->kind = mem_array(s->p->volumes, (size_t)cpu_kind_numbers(s->p->form) * sizeof *s->kind, "the solver", e);
     s->flags = mem_array(nodes, 1, "the solver", e);
-    s->now = mem_array(curves, 3 * sizeof *s->now, "the solver", e);
-    s->next = mem_array(curves, 3 * sizeof *s->next, "the solver", e);
-    return s->kind && s->flags && s->now && s->next ? followers_room(&s->followers, s->p->followers, e) : -1;
+    return s->kind && s->flags ? allocate_script(s, e) : -1;
+}
+
+static void fill_flags(cpu_state *s)
+{
+    const tled_problem *p = s->p;
+    memset(s->flags, 0, (size_t)s->rows.nodes);
+    for (int64_t n = 0; n < p->nodes; n++)
+        for (int a = 0; a < 3; a++)
+            s->flags[s->rows.place[n]] |= (uint8_t)((p->hold[3 * n + a] == HOLD_FREE) * (NODE_FREE << a));
+    for (int32_t i = 0; i < s->rows.extras; i++)
+        s->flags[s->rows.extra[i]] |= NODE_EXTRA;
 }
 
 static void fill_nodes(cpu_state *s)
 {
     const tled_problem *p = s->p;
-    for (int64_t n = 0; n < p->nodes; n++) {
-        const int32_t at = s->rows.place[n];
-        s->mass_inverse[at] = (number)(1 / p->mass[n]);
-        for (int a = 0; a < 3; a++)
-            s->flags[at] |= (uint8_t)((p->hold[3 * n + a] == HOLD_FREE) * (NODE_FREE << a));
-    }
-    for (int32_t i = 0; i < s->rows.extras; i++)
-        s->flags[s->rows.extra[i]] |= NODE_EXTRA;
+    for (int64_t n = 0; n < p->nodes; n++)
+        s->mass_inverse[s->rows.place[n]] = (number)(1 / p->mass[n]);
+    fill_flags(s);
     for (int i = 0; i < p->fields.count; i++)
         put_in(layout_of(s, i), p->at_start.of[i], s->field[i]);
 }
@@ -469,6 +482,18 @@ static void make_work(cpu_state *s)
         w->law[k] = s->law ? s->law + k * (s->rows.cells + ROWS_PAD) : NULL;
 }
 
+static int cpu_reload(cpu_state *s, err *e)
+{
+    free(s->now);
+    free(s->next);
+    followers_room_free(&s->followers);
+    s->spare_is_internal = false;
+    if (allocate_script(s, e) || rows_list_extras(&s->rows, s->p, e))
+        return -1;
+    fill_flags(s);
+    return 0;
+}
+
 static cpu_state *create_by(const cpu_method *method, const tled_problem *problem, pool *threads, err *e)
 {
     cpu_state *s = mem_array(1, sizeof *s, "the solver", e);
@@ -514,7 +539,7 @@ static int64_t cpu_computed(const cpu_state *s)
 /* What both have. */
 #define CPU_FUNCTIONS                                                                                                  \
     .destroy = cpu_destroy, .step = cpu_step, .get = cpu_get, .save = cpu_save, .restore = cpu_restore,                \
-    .snapshot = cpu_snapshot, .fetch = cpu_fetch, .bytes = cpu_bytes, .computed = cpu_computed
+    .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes, .computed = cpu_computed
 
 const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
                                            .features = EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES,

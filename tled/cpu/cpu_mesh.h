@@ -17,28 +17,21 @@ static int mesh_rows(cpu_state *s, err *e)
     const tled_problem *p = s->p;
     rows *r = &s->rows;
     *r = (rows){.lanes = s->pass->lanes, .cells = (int32_t)p->elements, .nodes = p->nodes + ROWS_PAD};
-    for (int64_t n = 0; n < p->nodes; n++)
-        r->extras += rows_is_extra(p, n);
     r->place = mem_array(p->nodes, sizeof *r->place, "the solver", e);
     r->cell_element = mem_array(p->elements, sizeof *r->cell_element, "the solver", e);
-    r->extra = mem_array(r->extras, sizeof *r->extra, "the solver", e);
-    r->extra_node = mem_array(r->extras, sizeof *r->extra_node, "the solver", e);
-    if (!r->place || !r->cell_element || !r->extra || !r->extra_node)
+    if (!r->place || !r->cell_element)
         return -1;
     for (int64_t i = 0; i < p->elements; i++)
         r->cell_element[i] = (int32_t)i;
-    for (int64_t n = 0, at = 0; n < p->nodes; n++) {
+    for (int64_t n = 0; n < p->nodes; n++)
         r->place[n] = (int32_t)n;
-        if (rows_is_extra(p, n))
-            r->extra[at] = r->extra_node[at] = (int32_t)n, at++;
-    }
-    return 0;
+    return rows_list_extras(r, p, e);
 }
 
 /* Numbers that an element has of shape and law. */
 static int64_t mesh_numbers(const cpu_state *s)
 {
-    return CPU_SHAPE + cpu_law_numbers(s->p->form);
+    return cpu_mesh_numbers(s->p->form, s->p->control.kind);
 }
 
 static int mesh_allocate(cpu_state *s, err *e)
@@ -51,22 +44,27 @@ static int mesh_allocate(cpu_state *s, err *e)
     return s->shape && s->force && s->group_node ? 0 : -1;
 }
 
-/* What element i has of shape and law, in the order of element_any. */
+/* What element i has of shape and law. */
 static void mesh_element(const cpu_state *s, int64_t i, double *own)
 {
     const conforming_element *c = &s->p->conforming->element[i];
     const tled_law law = tled_law_of(s->p, i);
+    const conforming_hold hold = conforming_hold_of(s->p, i);
     const double share = tled_fraction(s->p, i);
     memcpy(own, c->slope, sizeof c->slope);
     memcpy(own + 3 * ELEMENT_MODES, c->twist, sizeof c->twist);
-    own[ELEMENT_ANY - 1] = c->volume;
-    memcpy(own + ELEMENT_ANY, c->basis, sizeof c->basis);
-    for (int k = 0; k < HOURGLASS_FORM; k++)
-        own[ELEMENT_ANY + 9 + k] = share * c->hold[k];
+    own[CPU_SHAPE - 1] = c->volume;
+    own += CPU_SHAPE;
+    if (s->p->control.kind == HOURGLASS_PHYSICAL) {
+        memcpy(own, hold.basis, sizeof hold.basis);
+        for (int k = 0; k < HOURGLASS_NUMBERS; k++)
+            own[9 + k] = share * hold.law[k];
+    } else {
+        own[0] = share * hold.law[HOURGLASS_K];
+    }
+    own += cpu_hold_numbers(s->p->control.kind);
     for (int k = 0; k < form_numbers(s->p->form); k++)
-        own[CPU_SHAPE + k] = share * law.c[k];
-    for (int k = 0; k < HOURGLASS_NUMBERS; k++)
-        own[CPU_SHAPE + form_numbers(s->p->form) + k] = share * c->hourglass[k];
+        own[k] = share * law.c[k];
 }
 
 static void mesh_fill(cpu_state *s)
@@ -75,7 +73,7 @@ static void mesh_fill(cpu_state *s)
     const int64_t lanes = s->pass->lanes, places = mesh_groups(s) * lanes, numbers = mesh_numbers(s);
     for (int64_t i = 0; i < places; i++) {
         const int64_t element = i < p->elements ? i : p->elements - 1, group = i / lanes, lane = i % lanes;
-        double own[CPU_SHAPE + FORM_NUMBERS + HOURGLASS_NUMBERS] = {0};
+        double own[CPU_SHAPE + 9 + HOURGLASS_NUMBERS + FORM_NUMBERS] = {0};
         if (i < p->elements)
             mesh_element(s, i, own);
         for (int k = 0; k < numbers; k++)

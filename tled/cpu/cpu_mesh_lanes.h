@@ -21,18 +21,13 @@ static inline element_vector mesh_vector(const real_one *at, int first)
 }
 
 /* Nothing, where control is not physical. */
-static inline hourglass_any mesh_held(const real_one *at, hourglass_kind control)
+static inline element_tensor mesh_basis(const real_one *at, hourglass_kind control)
 {
-    const bool is = control == HOURGLASS_PHYSICAL;
-    hourglass_any held;
     real basis[9];
     for (int i = 0; i < 9; i++)
-        basis[i] = is ? load(at, (ELEMENT_ANY + i) * LANES) : REAL_ZERO;
-    held.basis =
-        (element_tensor){basis[0], basis[1], basis[2], basis[3], basis[4], basis[5], basis[6], basis[7], basis[8]};
-    for (int i = 0; i < HOURGLASS_FORM; i++)
-        held.hold[i] = is ? load(at, (ELEMENT_ANY + 9 + i) * LANES) : REAL_ZERO;
-    return held;
+        basis[i] = control == HOURGLASS_PHYSICAL ? load(at, (CPU_SHAPE + i) * LANES) : REAL_ZERO;
+    element_tensor j = {basis[0], basis[1], basis[2], basis[3], basis[4], basis[5], basis[6], basis[7], basis[8]};
+    return j;
 }
 
 static inline element_any mesh_shape(const real_one *at, hourglass_kind control)
@@ -43,16 +38,19 @@ static inline element_any mesh_shape(const real_one *at, hourglass_kind control)
     for (int g = 0; g < ELEMENT_TWISTS; g++)
         s.twist[g] = mesh_vector(at, 3 * (ELEMENT_MODES + g));
     s.volume = load(at, 3 * (ELEMENT_MODES + ELEMENT_TWISTS) * LANES);
-    s.held = mesh_held(at, control);
+    s.basis = mesh_basis(at, control);
     return s;
 }
 
-static inline element_law mesh_law(const real_one *at)
+static inline element_law mesh_law(const real_one *at, hourglass_kind control)
 {
     element_law law = {{REAL_ZERO}, {REAL_ZERO}};
     for (int i = 0; i < COEFFICIENTS; i++)
-        law.c[i] = load(at, i * LANES);
-    law.hourglass[HOURGLASS_K] = load(at, (COEFFICIENTS + HOURGLASS_K) * LANES);
+        law.c[i] = load(at, (CPU_SHAPE + cpu_hold_numbers(control) + i) * LANES);
+    if (control == HOURGLASS_ISOTROPIC)
+        law.hourglass[HOURGLASS_K] = load(at, CPU_SHAPE * LANES);
+    for (int i = 0; control == HOURGLASS_PHYSICAL && i < HOURGLASS_NUMBERS; i++)
+        law.hourglass[i] = load(at, (CPU_SHAPE + 9 + i) * LANES);
     return law;
 }
 
@@ -85,12 +83,11 @@ static inline void mesh_store(real_one *to, const element_corners *f)
 static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t to, hourglass_kind control)
 {
     for (int64_t group = from; group < to; group++) {
-        const real_one *own =
-            (const real_one *)w->shape + group * (CPU_SHAPE + COEFFICIENTS + HOURGLASS_NUMBERS) * LANES;
+        const real_one *own = (const real_one *)w->shape + group * cpu_mesh_numbers(THE_FORM, control) * LANES;
         const int32_t *node = w->group_node + group * 8 * LANES;
         real_one *force = (real_one *)w->force + group * 24 * LANES;
         const element_any shape = mesh_shape(own, control);
-        const element_law law = mesh_law(own + CPU_SHAPE * LANES);
+        const element_law law = mesh_law(own, control);
         const element_field u = {mesh_corners(w->from[0], node), mesh_corners(w->from[1], node),
                                  mesh_corners(w->from[2], node)};
         bool active;

@@ -11,8 +11,19 @@
 #include "solve/vectors.h"
 #include "tled/cpu/rows.h"
 
-/* What an element without a lattice has, in a group's lanes: element_any, then a law's numbers. */
-enum { CPU_SHAPE = 34 + 9 + HOURGLASS_FORM };
+/* What an element without a lattice has, in a group's lanes: slopes, twists and volume (element_any.h); what holds its
+ * modes, basis and moduli or k, by the control; the form's coefficients. */
+enum { CPU_SHAPE = 34 };
+
+static inline int cpu_hold_numbers(hourglass_kind control)
+{
+    return control == HOURGLASS_PHYSICAL ? 9 + HOURGLASS_NUMBERS : 1;
+}
+
+static inline int cpu_mesh_numbers(form f, hourglass_kind control)
+{
+    return CPU_SHAPE + cpu_hold_numbers(control) + form_numbers(f);
+}
 
 /* A law's numbers, in this order: the form's coefficients, then what holds the hourglass modes. */
 static inline int cpu_law_numbers(form f)
@@ -44,7 +55,7 @@ typedef struct cpu_work {
     const void *mixture;                               /* cells, or NULL: none is mixed */
     const void *law[FORM_NUMBERS + HOURGLASS_NUMBERS]; /* cells: those that are mixed; or NULL */
     const void *mixfibre[3];                           /* cells, or NULL */
-    const void *shape;         /* without a lattice: groups x (CPU_SHAPE + a law's numbers) x lanes; or NULL */
+    const void *shape;         /* without a lattice: groups x cpu_mesh_numbers x lanes; or NULL */
     const int32_t *group_node; /* groups x 8 x lanes */
     void *force;               /* groups x 3 x 8 x lanes: what each corner is pulled with */
     const double *now, *next;  /* the curves' values */

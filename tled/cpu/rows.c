@@ -215,26 +215,67 @@ bool rows_is_extra(const tled_problem *p, int64_t n)
     return p->force_start[n + 1] > p->force_start[n] || hold[0] >= 0 || hold[1] >= 0 || hold[2] >= 0;
 }
 
-static int list_extras(builder *b)
+static int by_row(const void *a, const void *b)
 {
-    rows *r = b->r;
-    for (int64_t n = 0; n < b->p->nodes; n++)
-        r->extras += rows_is_extra(b->p, n);
-    r->extra = mem_array(r->extras, sizeof *r->extra, "the rows", b->e);
-    r->extra_node = mem_array(r->extras, sizeof *r->extra_node, "the rows", b->e);
-    if (!r->extra || !r->extra_node)
-        return -1;
-    int32_t at = 0;
-    for (int64_t i = 0; i < b->p->nodes; i++) {
-        int32_t n = b->node[i].index;
-        rows_slab *s = &r->slab[b->slab_of[n]];
-        if (!rows_is_extra(b->p, n))
-            continue;
-        s->extra = s->extras++ ? s->extra : at;
-        r->extra[at] = r->place[n];
-        r->extra_node[at++] = n;
+    const int32_t *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+/* Where a slab's nodes begin. */
+static int32_t begins_at(const rows *r, const rows_slab *s)
+{
+    for (int32_t i = s->layer; i < s->layer + s->layers; i++)
+        if (r->layer[i].nodes)
+            return r->layer[i].node;
+    return INT32_MAX;
+}
+
+static void deal_extras(rows *r)
+{
+    int32_t slab = 0;
+    for (int32_t i = 0; i < r->slabs; i++)
+        r->slab[i].extra = r->slab[i].extras = 0;
+    for (int32_t i = 0; r->slabs && i < r->extras; i++) { /* a mesh has none */
+        while (slab + 1 < r->slabs && begins_at(r, &r->slab[slab + 1]) <= r->extra[i])
+            slab++;
+        rows_slab *s = &r->slab[slab];
+        s->extra = s->extras++ ? s->extra : i;
     }
-    return 0;
+}
+
+/* Sorted as pairs of a place and a node. */
+static void sort_extras(rows *r, const tled_problem *p, int32_t *pair)
+{
+    int64_t at = 0;
+    for (int64_t n = 0; n < p->nodes; n++)
+        if (rows_is_extra(p, n)) {
+            pair[2 * at] = r->place[n];
+            pair[2 * at++ + 1] = (int32_t)n;
+        }
+    qsort(pair, (size_t)at, 2 * sizeof *pair, by_row);
+    for (int64_t i = 0; i < at; i++) {
+        r->extra[i] = pair[2 * i];
+        r->extra_node[i] = pair[2 * i + 1];
+    }
+}
+
+int rows_list_extras(rows *r, const tled_problem *p, err *e)
+{
+    r->extras = 0;
+    for (int64_t n = 0; n < p->nodes; n++)
+        r->extras += rows_is_extra(p, n);
+    free(r->extra);
+    free(r->extra_node);
+    r->extra = mem_array(r->extras, sizeof *r->extra, "the rows", e);
+    r->extra_node = mem_array(r->extras, sizeof *r->extra_node, "the rows", e);
+    int32_t *pair = mem_array(r->extras, 2 * sizeof *pair, "the rows", e);
+    const bool whole = r->extra && r->extra_node && pair;
+    if (whole) {
+        sort_extras(r, p, pair);
+        deal_extras(r);
+    }
+    free(pair);
+    return whole ? 0 : -1;
 }
 
 int rows_make(rows *r, const tled_problem *p, int lanes, int slabs, err *e)
@@ -246,7 +287,7 @@ int rows_make(rows *r, const tled_problem *p, int lanes, int slabs, err *e)
     int64_t node = 0, element = 0;
     for (int32_t i = 0; !result && i < r->slabs; i++)
         result = cut_slab(&b, i, &node, &element);
-    result = result || list_extras(&b) ? -1 : 0;
+    result = result || rows_list_extras(r, p, e) ? -1 : 0;
     free(b.node);
     free(b.element);
     free(b.slab_of);

@@ -55,6 +55,9 @@ typedef struct rows {
 /* Whether the script displaces or pushes a node. */
 bool rows_is_extra(const tled_problem *p, int64_t node);
 
+/* Lists the extras again, once places and slabs are known. -1 with e filled. */
+int rows_list_extras(rows *r, const tled_problem *p, err *e);
+
 /* slabs: as many as that, or fewer. -1 with e filled and r to be freed all the same. */
 int rows_make(rows *r, const tled_problem *p, int lanes, int slabs, err *e);
 void rows_free(rows *r);

@@ -130,11 +130,34 @@ template <march_control K> static __device__ __forceinline__ float of_side(const
     return side[K == MARCH_PHYSICAL_CUBES ? 0 : i];
 }
 
+/* Adds c^2 (C - 1) on the diagonal, along one axis; f: F' there. */
+template <march_control K>
+static __device__ __forceinline__ float add_square(const cuda_march &m, const float h[3][3], const float f[3], int i,
+                                                   float sum)
+{
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    sum += of_side<K>(m.width, i) * h[i][i];
+    sum += h[i][i] * f[i];
+    sum += h[j][i] * h[j][i];
+    return sum + h[k][i] * h[k][i];
+}
+
+/* (tr C - 3)/3, of a cube in one sum. */
+template <march_control K>
+static __device__ __forceinline__ float third_of(const cuda_march &m, const float h[3][3], const float f[3])
+{
+    if constexpr (K == MARCH_PHYSICAL_CUBES)
+        return m.thirds[0] * add_square<K>(m, h, f, 2, add_square<K>(m, h, f, 1, add_square<K>(m, h, f, 0, 0)));
+    else
+        return m.thirds[0] * add_square<K>(m, h, f, 0, 0) + m.thirds[1] * add_square<K>(m, h, f, 1, 0) +
+               m.thirds[2] * add_square<K>(m, h, f, 2, 0);
+}
+
 template <march_control K>
 static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, const face &low, const face &high)
 {
     stretch s;
-    float f[3], part[3];
+    float f[3];
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         s.h[a][0] = low.x[a] + high.x[a];
@@ -150,32 +173,27 @@ static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, const 
         s.g[i][i] = s.h[j][j] * f[k] + (of_side<K>(m.width, j) * s.h[k][k] - s.h[j][k] * s.h[k][j]);
         s.g[i][j] = s.h[j][k] * s.h[k][i] - s.h[j][i] * f[k];
         s.g[i][k] = s.h[j][i] * s.h[k][j] - s.h[k][i] * f[j];
-        part[i] = of_side<K>(m.width, i) * s.h[i][i] + s.h[i][i] * f[i] + s.h[j][i] * s.h[j][i] + s.h[k][i] * s.h[k][i];
     }
     s.dilation = f[0] * s.g[0][0] + m.face[0] * s.h[0][0] + s.h[0][1] * s.g[0][1] + s.h[0][2] * s.g[0][2];
-    if constexpr (K == MARCH_PHYSICAL_CUBES)
-        s.third = m.thirds[0] * (part[0] + part[1] + part[2]);
-    else
-        s.third = m.thirds[0] * part[0] + m.thirds[1] * part[1] + m.thirds[2] * part[2];
+    s.third = third_of<K>(m, s.h, f);
     return s;
 }
 
-/* V P L, by `stress`' formula; no cell: 0. */
+/* V P L, by `stress`' formula; mu and bulk times MARCH_LAW; no cell: 0. */
 template <march_control K>
 static __device__ __forceinline__ void push_of(const cuda_march &m, const stretch &s, float mu, float bulk, bool is,
                                                float p[3][3])
 {
     const float dilation = s.dilation * m.density;
     const float j = 1 + dilation, scale = is ? mu * power(j) : 0, pressure = is ? bulk * dilation : 0;
-    const float all = pressure + scale * (dilation - s.third), own = scale * j;
-    const float g = (pressure - (scale + scale * s.third)) * (1.f / 64);
+    const float all = pressure + scale * (dilation - s.third), own = scale * j, g = pressure - scale * (1 + s.third);
 #pragma unroll
     for (int i = 0; i < 3; i++) {
         const float column = own * of_side<K>(m.squares, i);
 #pragma unroll
         for (int a = 0; a < 3; a++)
             p[a][i] = column * s.h[a][i] + g * s.g[a][i];
-        p[i][i] += all * of_side<K>(m.area, i);
+        p[i][i] += all * of_side<K>(m.face, i);
     }
 }
 
@@ -279,10 +297,10 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu
     }
 }
 
-/* By hourglass_numbers' formulas. */
+/* By hourglass_numbers' formulas; mu and bulk times MARCH_LAW. */
 static __device__ __forceinline__ march_hold hold_of(const cuda_march &m, float mu, float bulk)
 {
-    const float least = 1e-30f, torsion = m.volume * (1.f / 192) * mu, twice = 2 * torsion;
+    const float least = 1e-30f, torsion = m.volume * (1.f / 3) * mu, twice = 2 * torsion;
     march_hold k;
     k.coupling = twice * (bulk - 2.f / 3 * mu) * near_inverse(fmaxf(bulk + 4.f / 3 * mu, least));
     k.bending = k.coupling + twice;

@@ -203,7 +203,7 @@ typedef struct node_pull {
 } node_pull;
 
 static __device__ node_pull node_pulled(const cuda_view<real> &v, const cuda_pass &p, int32_t n, uint32_t info,
-                                        element_vector f)
+                                        element_vector f, const real u[3])
 {
     node_pull pull = {{-f.x, -f.y, -f.z}, {HOLD_STILL, HOLD_STILL, HOLD_STILL}};
     if (info >> TILE_EXTRA & 1) {
@@ -212,7 +212,7 @@ static __device__ node_pull node_pulled(const cuda_view<real> &v, const cuda_pas
             pull.hold[a] = x->hold[a];
         for (int32_t k = x->force; k < x->force + x->forces; k++)
             for (int a = 0; a < 3; a++)
-                pull.net[a] += (real)(v.force_share[k] * p.now[3 * v.force_curve[k] + a]);
+                pull.net[a] += (real)cuda_force(v, k, p.now, a, (double)u[a]);
     }
     return pull;
 }
@@ -221,7 +221,7 @@ static __device__ node_pull node_pulled(const cuda_view<real> &v, const cuda_pas
 static __device__ void step_node(const cuda_view<real> &v, const cuda_pass &p, int32_t n, element_vector f,
                                  own_node *own, real u[3])
 {
-    const node_pull pull = node_pulled(v, p, n, own->info, f);
+    const node_pull pull = node_pulled(v, p, n, own->info, f, u);
 #pragma unroll
     for (int a = 0; a < 3; a++)
         move_node(p, a, own->info >> (TILE_FREE + a) & 1, pull.hold[a], pull.net[a], own->mass_inverse,

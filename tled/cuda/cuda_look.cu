@@ -311,7 +311,7 @@ static __device__ void forces_on(const cuda_look<S> &l, int32_t n, const look_no
     const tile_extra *extra = cuda_extra(v, n);
     for (int32_t k = extra->force; k < extra->force + extra->forces; k++)
         for (int a = 0; a < 3; a++)
-            to[a] += v.force_share[k] * l.now[3 * v.force_curve[k] + a];
+            to[a] += cuda_force(v, k, l.now, a, (double)x.u[a]);
 }
 
 template <class S>

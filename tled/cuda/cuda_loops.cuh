@@ -236,17 +236,25 @@ static void cuda_destroy(cuda_state *s)
     free(s);
 }
 
+/* As much as the problem has, and may get. */
+static void choose_room(cuda_state *s)
+{
+    const tled_problem *p = s->p;
+    s->extras = s->tiles.extras + p->spare_nodes;
+    s->forces = p->force_start[p->nodes] + 2 * (int64_t)p->spare_nodes;
+}
+
 static int fill(cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
+    s->curves = p->script->curves + p->spare_curves;
     if (cut_tiles(s, e) || choose_method(s, e))
         return -1;
     s->view.stride = (p->nodes + 31) / 32 * 32;
     s->view.nodes = (int32_t)p->nodes;
     s->method->arrange(s);
     s->view.volumes = p->volumes;
-    s->view.extras = (int32_t)s->tiles.extras;
-    s->view.gravity = (int32_t)p->gravity;
+    choose_room(s);
     memcpy(s->view.side, p->side, sizeof p->side);
     s->shape = element_box(p->side[0], p->side[1], p->side[2]);
     s->time = p->start;
@@ -270,6 +278,33 @@ static cuda_state *cuda_create(const tled_problem *problem, pool *threads, err *
     return s;
 }
 
+/* Where nodes stand one by one, what their steps need to know stands beside their velocities. */
+static int put_flags(cuda_state *s, err *e)
+{
+    if (s->view.along != 4)
+        return 0;
+    memcpy(&s->walk.v, &s->view, sizeof s->walk.v);
+    double *velocity = (double *)mem_array(s->p->nodes, 3 * sizeof *velocity, "the solver", e);
+    const int failed = velocity ? cuda_get(s, TLED_VELOCITY, velocity, e) || set(s, TLED_VELOCITY, velocity, e) : 1;
+    free(velocity);
+    return failed ? -1 : 0;
+}
+
+/* Curves that contract muscles stay where they are: lines of that kind change values alone. */
+static int cuda_reload(cuda_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    if (CUDA_TRY(cudaDeviceSynchronize()) || tiles_reload(&s->tiles, p, e))
+        return -1;
+    if (p->script->curves > s->curves || s->tiles.extras > s->extras || p->force_start[p->nodes] > s->forces)
+        return 1;
+    s->spare_is_internal = false;
+    const int64_t infos = s->tiles.nodes * (int64_t)sizeof *s->tiles.node_info;
+    if (put_script(s, e) || put_array(s, s->view.node_info, s->tiles.node_info, infos, e) || put_flags(s, e))
+        return -1;
+    return CUDA_TRY(cudaDeviceSynchronize());
+}
+
 static int64_t cuda_computed(const cuda_state *s)
 {
     return s->method->computed(s);
@@ -283,6 +318,7 @@ const tled_executor CUDA_EXECUTOR = {
     .get = cuda_get,
     .save = cuda_save,
     .restore = cuda_restore,
+    .reload = cuda_reload,
     .snapshot = cuda_snapshot,
     .fetch = cuda_fetch,
     .monitor = cuda_monitor,

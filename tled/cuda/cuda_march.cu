@@ -14,38 +14,14 @@ extern "C" {
 #include "physics/element.h"
 }
 #include "tled/cuda/cuda_cells.cuh"
+#include "tled/cuda/cuda_march_room.cuh"
 
 enum {
-    SIDE = MARCH_SIDE,
-    GRID = SIDE + 1,          /* nodes along a side */
-    NODE = 16,                /* bytes of 4 floats, of a node's displacement, velocity or force */
-    STAGES = MARCH_AHEAD + 1, /* layers of displacements in shared memory */
-    STAGE = GRID * GRID * NODE,
-    VELOCITIES = STAGES * STAGE, /* two layers; from here on grids have a row fewer */
-    FORCE = GRID * SIDE * NODE,
-    FORCES = VELOCITIES + 2 * FORCE, /* two times four of them: on corners (1, 0), (0, 1), (1, 1), (0, 0) */
-    FORCES_EACH = 4 * FORCE,
-    GRAVITY = FORCES + 2 * FORCES_EACH, /* its part of a velocity */
-    SAID = GRAVITY + NODE,              /* the barrier */
-    NEXT = SAID + 16,                   /* the unit that the block takes next, and in which pass: */
-    TURN = NEXT + 16,
-    RECORDS = TURN + 16, /* three layers of halves of special cells, one half after the other, for each thread */
-    RECORD = MARCH_THREADS * NODE,
-    SHARED = RECORDS + 3 * 2 * RECORD,
-    WARPS = MARCH_THREADS / 32,
-    EXTRA = 2 * SIDE + 1, /* words of places beyond the threads' */
-    TAKEN = 4,            /* layers before its last, a block takes its next unit */
-    TOGETHER = 2          /* blocks of a multiprocessor */
+    TAKEN = 4,    /* layers before its last, a block takes its next unit */
+    TOGETHER = 2, /* blocks of a multiprocessor */
+    ZEROS = 3     /* layers after its last with cells, a warp has left zeros in both buffers of forces */
 };
-
-/* Of flow.cells, in layer c. */
-enum {
-    CELLS_NEXT = 1,
-    CELLS_NOW = 2,
-    CELLS_BEFORE = 4,
-    CELLS_SHARED = 0x1e, /* else both buffers of forces have zeros of this warp's already */
-    CELLS_FIRST = 4      /* before the first layer: so that the first two share */
-};
+static_assert((int)TAKEN < (int)MARCH_AHEAD, "in the layers that send for no displacements");
 
 /* What goes from layer to layer. */
 template <march_control K> struct flow {
@@ -53,17 +29,10 @@ template <march_control K> struct flow {
     uint32_t after, far, more; /* words of layer c + 2, and c + MARCH_AHEAD, and there of the place beyond */
     int32_t which, detail;     /* march's: which, of layer c + 3; detail, of layer c + 4 */
     uint32_t last, now, then;  /* words of layers c - 1, c, c + 1 */
-    uint32_t cells;            /* bit i: this warp has cells in layer c + 1 - i */
+    int32_t empty;             /* layers since this warp's last with cells */
+    uint32_t ticket;           /* thread 0's, of the unit that the block takes next */
     push<K> below;
 };
-
-/* A thread's place in the grid of a layer's nodes. */
-static __device__ __forceinline__ int place_of(int thread)
-{
-    const int warp = thread / 32, lane = thread % 32;
-    const int half = warp / 4, row = (warp + 2 * half) % 4; /* march.c's warp_of */
-    return (row * 4 + lane / 8) * GRID + half * 8 + lane % 8;
-}
 
 /* What a block is at: pass `pass` of a launch, of a unit. memory: where its shared memory stands. */
 typedef struct turn {
@@ -114,12 +83,17 @@ static __device__ __forceinline__ uint32_t extra_at(uint32_t at)
     return at + (uint32_t)((extra - own) * NODE);
 }
 
+static __device__ __forceinline__ void send_extra(const float4 *from, uint32_t at, uint32_t stage, uint32_t extra)
+{
+    if (has_extra())
+        send(extra_at(at) + stage, node_of(from, extra), extra & MARCH_THERE);
+}
+
 static __device__ __forceinline__ void send_layer(const float4 *from, uint32_t at, uint32_t stage, uint32_t word,
                                                   uint32_t extra)
 {
     send(at + stage, node_of(from, word), word & MARCH_THERE);
-    if (has_extra())
-        send(extra_at(at) + stage, node_of(from, extra), extra & MARCH_THERE);
+    send_extra(from, at, stage, extra);
 }
 
 static __device__ __forceinline__ face face_at(uint32_t node)
@@ -190,6 +164,8 @@ static __device__ __forceinline__ void forces_of(const cuda_march &m, const doub
     if (special) {
         const float4 law = shared_load(record);
         mu = law.x, bulk = law.y, hourglass = law.z;
+        if (K != MARCH_ISOTROPIC)
+            mu *= MARCH_LAW, bulk *= MARCH_LAW;
     }
     if constexpr (K == MARCH_ISOTROPIC)
         cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
@@ -231,8 +207,8 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
     const cuda_march_kind &k = kind_of<STEP>(p, t);
     const int axis = m.axis[a];
     float u = shared_number(node + 4 * a), v = shared_number(speed + 4 * a), net = -pull;
-    for (int32_t i = 0; x && i < x->forces; i++)
-        net += (float)(m.v.force_share[x->force + i] * now[3 * m.v.force_curve[x->force + i] + axis]);
+    for (int32_t i = x ? x->forces : 0; i-- > 0;) /* downwards, of unknown length: else it is unrolled */
+        net += (float)cuda_force(m.v, x->force + unknown(i), now, axis, (double)u);
     if (bits >> (MARCH_FREE + a) & 1) {
         v = k.keep * v + shared_number(t.memory + GRAVITY + 4 * a) + k.push * shared_number(node + 12) * net;
         u += k.dt * v;
@@ -243,6 +219,18 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
     }
     shared_number_store(node + 4 * a, u);
     shared_number_store(speed + 4 * a, v);
+}
+
+/* What a pass leaves of a node. */
+template <bool STEP>
+static __device__ __forceinline__ void put_node(const cuda_march_pass &p, const turn &t, uint32_t word, float4 u,
+                                                float4 v)
+{
+    const cuda_march_kind &k = kind_of<STEP>(p, t);
+    if (STEP || k.what & PASS_BEGIN)
+        *(float4 *)node_of(to_of(p, t), word) = u;
+    if (STEP || k.what & (PASS_BEGIN | PASS_FINISH))
+        *(float4 *)node_of(p.velocity, word) = v;
 }
 
 /* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its
@@ -263,7 +251,12 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
     const cuda_march_kind &k = kind_of<STEP>(p, t);
     if (!STEP && k.what & PASS_INTERNAL)
         *(float4 *)node_of(to_of(p, t), word) = make_float4(sum.x, sum.y, sum.z, u.w);
-    if (bits == 7) {
+    if (bits != 7) {
+#pragma unroll 1
+        for (int a = 0; bits && a < 3; a++) /* of what is held and not displaced, all stays */
+            move_held<STEP>(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
+        put_node<STEP>(p, t, word, shared_load(node), shared_load(speed));
+    } else {
         const float push = k.push * u.w;
         v.x = (k.keep * v.x + gravity.x) - push * sum.x;
         v.y = (k.keep * v.y + gravity.y) - push * sum.y;
@@ -271,17 +264,8 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
         u.x += k.dt * v.x;
         u.y += k.dt * v.y;
         u.z += k.dt * v.z;
-    } else if (bits) { /* of what is held and not displaced, all stays */
-#pragma unroll 1
-        for (int a = 0; a < 3; a++)
-            move_held<STEP>(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
-        u = shared_load(node);
-        v = shared_load(speed);
+        put_node<STEP>(p, t, word, u, v);
     }
-    if (STEP || k.what & PASS_BEGIN)
-        *(float4 *)node_of(to_of(p, t), word) = u;
-    if (STEP || k.what & (PASS_BEGIN | PASS_FINISH))
-        *(float4 *)node_of(p.velocity, word) = v;
 }
 
 /* Says that this warp is done with a layer: its forces are there, and displacements of layers up to c + 3. */
@@ -322,39 +306,76 @@ static __device__ __forceinline__ void begin_special(const cuda_march &m, const 
     f->detail = m.detail[t.base + 4];
 }
 
-/* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. next: where the
- * displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. */
+/* Thread 0's work: says which unit the block takes next, and in which pass. What that is, is on its way. */
+static __device__ __forceinline__ void note_next(const cuda_march &m, const cuda_march_pass &p, uint32_t memory,
+                                                 uint32_t ticket)
+{
+    const uint32_t next = ticket - p.ticket, units = (uint32_t)m.units;
+    const bool is = next < units * (uint32_t)p.passes;
+    shared_number_store(memory + TURN, __uint_as_float(next));
+    send(memory + NEXT, (const float4 *)&m.unit[is ? next % units : 0], is);
+}
+
+/* Takes a ticket in one of the last layers, and looks at it a layer later, when it is there. left: layers. */
+template <march_control K>
+static __device__ __forceinline__ void take_next(const cuda_march &m, const cuda_march_pass &p, const turn &t, int left,
+                                                 flow<K> *f)
+{
+    const int ago = (t.cells < TAKEN ? t.cells : TAKEN) - left;
+    if (ago == 0 && threadIdx.x == 0)
+        f->ticket = take_ticket(m.ticket);
+    if (ago == 1 && threadIdx.x == 0)
+        note_next(m, p, t.memory, f->ticket);
+}
+
+/* All warps are done with the layer before. What was sent is there but for what was sent in that: displacements up to
+ * layer c + 3, and velocities of c - 1. */
+template <int ODD> static __device__ __forceinline__ void wait_before(const turn &t)
+{
+    arrived<1>();
+    barrier_wait(t.memory + SAID, 1 - ODD);
+}
+
+/* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. left: layers from c on.
+ * next: where the displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. Who has no
+ * cells finds the face of those that the next layer has. */
 template <march_control K, bool SPECIAL, bool STEP, int ODD>
 static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, const turn &t, uint32_t at,
-                                             flow<K> *f, int c, uint32_t next, uint32_t old, const face &low,
+                                             flow<K> *f, int left, uint32_t next, uint32_t old, const face &low,
                                              face *high)
 {
     const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
     const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
+    const uint32_t here = at + (next ? next - STAGE : (STAGES - 1) * STAGE);
     const uint32_t after = f->after, far = f->far, more = f->more;
+    const int c = t.cells - left;
     fetch_words(f);
-    f->cells = f->cells << 1 | (__any_sync(~0u, f->then & MARCH_CELL) ? CELLS_NEXT : 0);
-    face sum;
-    if (f->cells & (CELLS_NOW | CELLS_NEXT))
+    if (left < MARCH_AHEAD)
+        take_next(m, p, t, left, f);
+    if (__any_sync(~0u, f->now & MARCH_CELL)) {
+        face sum;
         *high = face_at(at + next);
-    if (f->cells & CELLS_NOW) {
-        forces_of<K, SPECIAL>(m, now_of(p, t), t, f, c, low, *high, at + (next ? next - STAGE : (STAGES - 1) * STAGE),
-                              at + next, &sum);
-    } else {
-        sum = f->cells & CELLS_BEFORE ? face_of(f->below, low) : face{}; /* else `low` may be anything */
-        f->below = {};
-    }
-    arrived<1>(); /* displacements of c + 3, and velocities of c - 1: all but what was sent in the layer before */
-    if (c)
-        barrier_wait(t.memory + SAID, 1 - ODD);
-    if (f->cells & CELLS_SHARED)
+        forces_of<K, SPECIAL>(m, now_of(p, t), t, f, c, low, *high, here, at + next, &sum);
+        f->empty = 0;
+        wait_before<ODD>(t);
         share_forces(sum, forces);
-    if (c > 1)
-        move_node<STEP>(m, p, t, f->last, before, at + old, speed);
-    send(speed, node_of(p.velocity, f->then),
-         f->then & MARCH_OWN && c + 1 < t.cells); /* the last layer's are another's */
-    if (c + MARCH_AHEAD <= t.cells)
-        send_layer(from_of(p, t), at, old, far, more);
+    } else {
+        if (__any_sync(~0u, f->then & MARCH_CELL))
+            *high = face_at(at + next);
+        wait_before<ODD>(t);
+        if (f->empty < ZEROS)
+            share_forces(f->empty ? face{} : face_of(f->below, low), forces);
+        f->below = {};
+        f->empty++;
+    }
+    move_node<STEP>(m, p, t, f->last, before, at + old, speed);
+    if (left >= MARCH_AHEAD) {
+        send_both(speed, node_of(p.velocity, f->then), f->then & MARCH_OWN, at + old, node_of(from_of(p, t), far),
+                  far & MARCH_THERE);
+        send_extra(from_of(p, t), at, old, more);
+    } else {
+        send(speed, node_of(p.velocity, f->then), left > 1 ? f->then & MARCH_OWN : 0);
+    }
     if (SPECIAL)
         go_on_special(m, t, f, c);
     sent();
@@ -398,7 +419,7 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
         extra[k] = has_extra() ? f->word[k * MARCH_WORDS + MARCH_THREADS] : 0;
     }
     fetch_words(f);
-    f->now = word[0];
+    f->now = word[0] & ~MARCH_OWN; /* the first layer's nodes are another unit's */
     f->then = word[1];
     wait_for_near(m, p, t, unit);
 #pragma unroll
@@ -412,34 +433,12 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
         put_gravity(m, p, t);
     arrived<0>();
     __syncthreads();
-    f->cells = CELLS_FIRST | (__any_sync(~0u, f->now & MARCH_CELL) ? CELLS_NEXT : 0);
+    f->empty = 1; /* so that the first two layers leave zeros */
 }
 
 static __device__ __forceinline__ uint32_t after(uint32_t stage)
 {
     return stage == (STAGES - 1) * STAGE ? 0 : stage + STAGE;
-}
-
-/* Thread 0's work: says which unit the block takes next, and in which pass. What that is, is on its way. */
-static __device__ __forceinline__ void note_next(const cuda_march &m, const cuda_march_pass &p, uint32_t memory,
-                                                 uint32_t ticket)
-{
-    const uint32_t next = ticket - p.ticket, units = (uint32_t)m.units;
-    const bool is = next < units * (uint32_t)p.passes;
-    shared_number_store(memory + TURN, __uint_as_float(next));
-    send(memory + NEXT, (const float4 *)&m.unit[is ? next % units : 0], is);
-}
-
-/* Takes a ticket at the start of a layer, and looks at it a layer later, when it is there. ago: layers since. */
-static __device__ __forceinline__ void take_next(const cuda_march &m, const cuda_march_pass &p, const turn &t, int ago,
-                                                 uint32_t *ticket)
-{
-    if ((unsigned)ago > 1)
-        return;
-    if (ago == 0 && threadIdx.x == 0)
-        *ticket = take_ticket(m.ticket);
-    if (ago == 1 && threadIdx.x == 0)
-        note_next(m, p, t.memory, *ticket);
 }
 
 template <march_control K, bool SPECIAL, bool STEP>
@@ -451,20 +450,16 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
     begin<K, SPECIAL>(m, p, t, unit, at, &f);
     face even = face_at(at), odd;
     const int last = t.cells;
-    const int take = last > TAKEN ? last - TAKEN : 0;
-    uint32_t ticket = 0;
     uint32_t next = STAGE, old = (STAGES - 1) * STAGE;
 #pragma unroll 1
-    for (int c = 0;;) {
-        take_next(m, p, t, c - take, &ticket);
-        layer<K, SPECIAL, STEP, 0>(m, p, t, at, &f, c, next, old, even, &odd);
+    for (int left = last;;) {
+        layer<K, SPECIAL, STEP, 0>(m, p, t, at, &f, left, next, old, even, &odd);
         next = after(next), old = after(old);
-        if (++c == last)
+        if (--left == 0)
             break;
-        take_next(m, p, t, c - take, &ticket);
-        layer<K, SPECIAL, STEP, 1>(m, p, t, at, &f, c, next, old, odd, &even);
+        layer<K, SPECIAL, STEP, 1>(m, p, t, at, &f, left, next, old, odd, &even);
         next = after(next), old = after(old);
-        if (++c == last)
+        if (--left == 0)
             break;
     }
     arrived<0>();

@@ -28,7 +28,7 @@ static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
 {
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
-        const int64_t curves = s->p->script->curves;
+        const int64_t curves = s->curves;
         const int64_t places = with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
             typedef decltype(l) L;
             return s->p->mix ? resident_places<G, L, true>(curves) : resident_places<G, L, false>(curves);
@@ -276,7 +276,8 @@ static void march_fill(cuda_state *s)
     const tled_volume *plain = &p->volume[s->march.plain];
     const int *axis = s->march.axis;
     cuda_march *w = &s->walk;
-    const double law[3] = {plain->law.c[0], plain->law.c[1], plain->law.hourglass[HOURGLASS_K]}; /* neo-Hookean form */
+    const double by = p->control.kind == HOURGLASS_PHYSICAL ? MARCH_LAW : 1; /* neo-Hookean form: mu, K */
+    const double law[3] = {by * plain->law.c[0], by * plain->law.c[1], plain->law.hourglass[HOURGLASS_K]};
     const double volume = p->side[0] * p->side[1] * p->side[2];
     s->view.mass_inverse = s->field[TLED_DISPLACEMENT] + 3;
     w->ticket = w->done + s->march.units;
@@ -294,7 +295,7 @@ static void march_fill(cuda_state *s)
         w->width[a] = (float)width;
         w->face[a] = (float)(beside * across);
         w->thirds[a] = (float)(1 / (3 * width * width));
-        w->squares[a] = (float)(volume / (width * width));
+        w->squares[a] = (float)(64 * volume / (width * width));
         w->own[a] = (float)(width * width * (1 / (beside * beside) + 1 / (across * across)) - 1);
     }
     w->volume = (float)(64 * volume);

@@ -52,10 +52,25 @@ static __device__ __forceinline__ void shared_store(uint32_t at, float x, float 
 
 /* ---- copies that the thread does not wait for */
 
-/* On its way to shared memory; with is false: zeros. */
-static __device__ __forceinline__ void send(uint32_t to, const float4 *from, bool is)
+/* On its way to shared memory; if is: 0, zeros. */
+static __device__ __forceinline__ void send(uint32_t to, const float4 *from, uint32_t is)
 {
-    asm volatile("cp.async.cg.shared.global [%0], [%1], 16, %2;" ::"r"(to), "l"(from), "r"(is ? 16 : 0) : "memory");
+    asm volatile("{ .reg .pred none; setp.eq.u32 none, %2, 0;"
+                 " cp.async.cg.shared.global [%0], [%1], 16, none; }" ::"r"(to),
+                 "l"(from), "r"(is)
+                 : "memory");
+}
+
+/* Two of them. They follow each other, as ptxas places three instructions of no effect before each copy that follows
+ * anything else. */
+static __device__ __forceinline__ void send_both(uint32_t to, const float4 *from, uint32_t is, uint32_t other_to,
+                                                 const float4 *other, uint32_t is_other)
+{
+    asm volatile("{ .reg .pred none, no_other; setp.eq.u32 none, %2, 0; setp.eq.u32 no_other, %5, 0;"
+                 " cp.async.cg.shared.global [%0], [%1], 16, none;"
+                 " cp.async.cg.shared.global [%3], [%4], 16, no_other; }" ::"r"(to),
+                 "l"(from), "r"(is), "r"(other_to), "l"(other), "r"(is_other)
+                 : "memory");
 }
 
 /* What was sent since the last call is a group. */
@@ -136,6 +151,13 @@ static __device__ __forceinline__ uint32_t hear_done(const uint32_t *from)
 static __device__ __forceinline__ const float4 *nth(const float4 *p, uint32_t n)
 {
     return (const float4 *)((const char *)p + n * 16u);
+}
+
+/* n, of which the compiler knows nothing: a loop from there on is not unrolled. */
+static __device__ __forceinline__ int32_t unknown(int32_t n)
+{
+    asm volatile("" : "+r"(n));
+    return n;
 }
 
 /* To some 1e-7 of 1, and of the answer. */

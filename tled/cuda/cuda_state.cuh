@@ -75,6 +75,8 @@ struct tled_state {
     uint32_t walked, tickets; /* passes of it, and units of all of them, and one more a block */
     char *memory;             /* of the card: all arrays below but for `frame` and `saved_internal` */
     int64_t bytes;            /* of memory */
+    int64_t curves;           /* that there is room for, as for these, with those of the problem to begin with: */
+    int64_t extras, forces;
     real *field[FIELDS_MOST]; /* of the problem's table, as layout_of says */
     real *spare;              /* as displacements are */
     int64_t numbers;          /* of each of those that steps move: 3 x stride, or, where it marches, 4 x stride */
@@ -183,9 +185,10 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
     card_layout_copy(l, &v->mixed, t->mixed, t->cells);
     card_layout_copy(l, &v->mixture, t->mixed ? numbers->mixture : NULL, p->laws);
     card_layout_copy(l, &v->mixfibre, t->mixfibre, 3 * t->directions);
-    card_layout_copy(l, &v->extra, t->extra, t->extras);
-    card_layout_copy(l, &v->force_curve, p->force_curve, p->force_start[p->nodes]);
-    card_layout_copy(l, &v->force_share, p->force_share, p->force_start[p->nodes]);
+    card_layout_add(l, &v->extra, s->extras);
+    card_layout_add(l, &v->force_curve, s->forces);
+    card_layout_add(l, &v->force_spring, s->forces);
+    card_layout_add(l, &v->force_share, s->forces);
     card_layout_copy(l, &v->kind, numbers->kind, p->volumes);
     card_layout_copy(l, &v->law, numbers->law, law_numbers(p) * p->volumes);
 }
@@ -201,14 +204,14 @@ static void list_state(cuda_state *s, const cuda_numbers *numbers, card_layout *
     for (int i = CUDA_STEPPED; i < s->p->fields.count; i++)
         card_layout_add(l, &s->field[i], layout_of(s, i).numbers);
     for (int i = 0; i < TABLES; i++)
-        card_layout_add(l, &s->table[i], (TABLE_STEPS + 1) * 3 * s->p->script->curves);
+        card_layout_add(l, &s->table[i], (TABLE_STEPS + 1) * 3 * s->curves);
     card_layout_add(l, &s->look_parts, (int64_t)cuda_look_bytes(s->tiles.count));
     card_layout_add(l, &s->sums, 1);
 }
 
 static int make_events(cuda_state *s, err *e)
 {
-    const size_t row = 3 * (size_t)(s->p->script->curves ? s->p->script->curves : 1) * sizeof(double);
+    const size_t row = 3 * (size_t)(s->curves ? s->curves : 1) * sizeof(double);
     if (CUDA_TRY(cudaStreamCreateWithFlags(&s->stream, cudaStreamNonBlocking)) ||
         CUDA_TRY(cudaStreamCreateWithFlags(&s->sending, cudaStreamNonBlocking)) ||
         CUDA_TRY(cudaEventCreateWithFlags(&s->frame_free, cudaEventDisableTiming)) ||
@@ -265,6 +268,27 @@ static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
     return 0;
 }
 
+static int put_array(cuda_state *s, const void *to, const void *from, int64_t bytes, err *e)
+{
+    return bytes ? CUDA_TRY(cudaMemcpy((void *)(uintptr_t)to, from, (size_t)bytes, cudaMemcpyHostToDevice)) : 0;
+}
+
+/* What the script does to nodes. */
+static int put_script(cuda_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    const cuda_view<real> *v = &s->view;
+    const int64_t forces = p->force_start[p->nodes];
+    s->view.extras = (int32_t)s->tiles.extras;
+    s->view.gravity = (int32_t)p->gravity;
+    return put_array(s, v->extra, s->tiles.extra, s->tiles.extras * (int64_t)sizeof *v->extra, e) ||
+                   put_array(s, v->force_curve, p->force_curve, forces * (int64_t)sizeof *v->force_curve, e) ||
+                   put_array(s, v->force_spring, p->force_spring, forces * (int64_t)sizeof *v->force_spring, e) ||
+                   put_array(s, v->force_share, p->force_share, forces * (int64_t)sizeof *v->force_share, e)
+               ? -1
+               : 0;
+}
+
 /* Takes the card's memory and puts the problem there. */
 static int put_problem(cuda_state *s, err *e)
 {
@@ -278,7 +302,7 @@ static int put_problem(cuda_state *s, err *e)
     list_state(s, &numbers, &layout);
     s->bytes = layout.bytes;
     snprintf(what, sizeof what, "the solver of %lld elements", (long long)s->p->elements);
-    result = card_layout_place(&layout, false, what, &s->memory, e);
+    result = card_layout_place(&layout, false, what, &s->memory, e) || put_script(s, e) ? -1 : 0;
 out:
     free(numbers.mass_inverse);
     free(numbers.law);

@@ -113,7 +113,7 @@ template <class S> struct cuda_view {
     const int32_t *mixed; /* cells: which of: */
     const cuda_mixed *mixture;
     const tile_extra *extra;
-    const int32_t *force_curve;
+    const int32_t *force_curve, *force_spring;
     const double *force_share;
     const S *mass_inverse;
     const cuda_kind *kind;
@@ -199,6 +199,15 @@ template <class S> static __device__ const tile_extra *cuda_extra(const cuda_vie
             high = middle;
     }
     return &v.extra[low];
+}
+
+/* What entry k of the table of forces adds to component a (N) of the force on its node, displaced by u: loads.h. */
+template <class S>
+static __device__ double cuda_force(const cuda_view<S> &v, int32_t k, const double *now, int a, double u)
+{
+    const int32_t spring = v.force_spring[k];
+    const double less = spring < 0 ? 0 : now[3 * spring + a] * u;
+    return v.force_share[k] * (now[3 * v.force_curve[k] + a] - less);
 }
 
 /* What look() answers, found on the device: cuda_look.cu. */

@@ -116,12 +116,10 @@ static int32_t place_in(const cutter *c, int64_t which, int64_t node)
     return at[0] + c->t->grid[0] * (at[1] + c->t->grid[1] * at[2]);
 }
 
-static uint32_t info_of(const cutter *c, int32_t n)
+/* What the script does to a node, as bits. */
+static uint32_t script_info(const tled_problem *p, int32_t n)
 {
-    const tled_problem *p = c->p;
-    uint32_t info = (uint32_t)place_in(c, c->part[n], n);
-    for (int i = 0; i < 8 && p->corner[8 * (int64_t)n + i] < 8 * p->elements; i++)
-        info |= 1u << (TILE_CORNERS + p->corner[8 * (int64_t)n + i] % 8);
+    uint32_t info = 0;
     bool extra = p->force_start[n + 1] > p->force_start[n];
     for (int a = 0; a < 3; a++) {
         int32_t hold = p->hold[3 * (int64_t)n + a];
@@ -129,6 +127,15 @@ static uint32_t info_of(const cutter *c, int32_t n)
         extra |= hold >= 0;
     }
     return info | (uint32_t)extra << TILE_EXTRA;
+}
+
+static uint32_t info_of(const cutter *c, int32_t n)
+{
+    const tled_problem *p = c->p;
+    uint32_t info = (uint32_t)place_in(c, c->part[n], n);
+    for (int i = 0; i < 8 && p->corner[8 * (int64_t)n + i] < 8 * p->elements; i++)
+        info |= 1u << (TILE_CORNERS + p->corner[8 * (int64_t)n + i] % 8);
+    return info | script_info(p, n);
 }
 
 /* By place; a stable sort, of at most as many as a brick has places. */
@@ -350,23 +357,32 @@ static int cut_tiles(cutter *c)
     return 0;
 }
 
-static int list_extras(cutter *c)
+static int list_extras(tiles *t, const tled_problem *p, err *e)
 {
-    tiles *t = c->t;
+    t->extras = 0;
     for (int64_t k = 0; k < t->nodes; k++)
         t->extras += t->node_info[k] >> TILE_EXTRA & 1;
-    t->extra = mem_array(t->extras, sizeof *t->extra, "the tiles", c->e);
+    t->extra = mem_array(t->extras, sizeof *t->extra, "the tiles", e);
     if (!t->extra)
         return -1;
     tile_extra *to = t->extra;
     for (int32_t k = 0; k < t->nodes; k++)
         if (t->node_info[k] >> TILE_EXTRA & 1) {
             int64_t n = t->node[k];
-            const int32_t *hold = c->p->hold + 3 * n;
-            int32_t first = c->p->force_start[n];
-            *to++ = (tile_extra){k, {hold[0], hold[1], hold[2]}, first, c->p->force_start[n + 1] - first};
+            const int32_t *hold = p->hold + 3 * n;
+            int32_t first = p->force_start[n];
+            *to++ = (tile_extra){k, {hold[0], hold[1], hold[2]}, first, p->force_start[n + 1] - first};
         }
     return 0;
+}
+
+int tiles_reload(tiles *t, const tled_problem *p, err *e)
+{
+    const uint32_t kept = (1u << TILE_FREE) - 1;
+    for (int64_t k = 0; k < t->nodes; k++)
+        t->node_info[k] = (t->node_info[k] & kept) | script_info(p, t->node[k]);
+    free(t->extra);
+    return list_extras(t, p, e);
 }
 
 int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e)
@@ -387,7 +403,7 @@ int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e)
     if (!c.part || !c.at || !c.order)
         goto out;
     if (places_find(p, c.part, c.at, e) || find_tiles(&c) || order_nodes(&c) || list_cells(&c) || cut_tiles(&c) ||
-        list_extras(&c))
+        list_extras(t, p, e))
         goto out;
     result = 0;
 out:

@@ -17,7 +17,7 @@ static int add_pose(collider *c, const poses_event *at, err *e)
     return 0;
 }
 
-int collider_read_poses(collider *c, const char *path, err *e)
+int collider_read_poses(collider *c, const char *path, const pose *place, err *e)
 {
     in *source = in_open(path, e);
     poses list = {.sequence = false};
@@ -27,6 +27,8 @@ int collider_read_poses(collider *c, const char *path, err *e)
         if (at.kind != POSES_POSE)
             got = err_set(e, path, at.line,
                           "a line that changes the method; expected poses alone: methods are msds-run's");
+        if (place)
+            at.at = pose_relative(place, &at.at);
         if (got < 0 || add_pose(c, &at, e))
             got = -1;
     }
@@ -128,13 +130,48 @@ probe_placed collider_at(const collider *c, double time)
     return probe_place(&c->shape, &at);
 }
 
+collider_moment collider_moment_at(const collider *c, double time)
+{
+    return (collider_moment){collider_pose(c, time), collider_up(c, time)};
+}
+
+int collider_begin_live(collider *c, err *e)
+{
+    enum { FROM_TO = 2 };
+    if (MEM_ROOM(&c->list, &c->pose_room, FROM_TO, "poses", e) ||
+        MEM_ROOM(&c->time, &c->time_room, FROM_TO, "poses", e))
+        return -1;
+    c->poses = FROM_TO;
+    c->is_away = true;
+    return 0;
+}
+
+void collider_move(collider *c, double from, double until, const pose *to)
+{
+    c->list[0] = c->is_away ? *to : c->list[1];
+    c->list[1] = *to;
+    c->time[0] = from;
+    c->time[1] = until;
+    c->is_away = false;
+}
+
+void collider_rise(collider *c, double from, double ramp)
+{
+    c->start = from;
+    c->rises = ramp;
+}
+
 double collider_end(const collider *c)
 {
     return c->time[c->poses - 1];
 }
 
-bool collider_push(const collider *c, const probe_placed *at, double time, const double x[3], double mass,
-                   double push[3])
+double collider_up(const collider *c, double time)
+{
+    return c->rises > 0 ? fmin(1, (time - c->start) / c->rises) : 1;
+}
+
+bool collider_push(const collider *c, const probe_placed *at, double up, const double x[3], double mass, double push[3])
 {
     double away = 0;
     for (int a = 0; a < 3; a++)
@@ -144,15 +181,15 @@ bool collider_push(const collider *c, const probe_placed *at, double time, const
     const probe_touch t = probe_at(at, x);
     if (!(t.depth > 0))
         return false;
-    const double up = c->rises > 0 ? fmin(1, (time - c->start) / c->rises) : 1;
     for (int a = 0; a < 3; a++)
         push[a] = up * mass * c->stiffness * t.depth * t.way[a];
     return true;
 }
 
-int64_t collider_sum(const tled_problem *p, double time, const double *displacement, double force[3], double torque[3])
+int64_t collider_sum(const tled_problem *p, const collider_moment *now, const double *displacement, double force[3],
+                     double torque[3])
 {
-    const probe_placed at = collider_at(p->collider, time);
+    const probe_placed at = probe_place(&p->collider->shape, &now->at);
     int64_t count = 0;
     memset(force, 0, 3 * sizeof *force);
     memset(torque, 0, 3 * sizeof *torque);
@@ -162,7 +199,7 @@ int64_t collider_sum(const tled_problem *p, double time, const double *displacem
         for (int a = 0; a < 3; a++)
             x[a] = p->position[3 * n + a] + displacement[3 * n + a];
         bool is_free = hold[0] == HOLD_FREE || hold[1] == HOLD_FREE || hold[2] == HOLD_FREE;
-        if (!is_free || !collider_push(p->collider, &at, time, x, p->mass[n], push))
+        if (!is_free || !collider_push(p->collider, &at, now->up, x, p->mass[n], push))
             continue;
         for (int a = 0; a < 3; a++) {
             push[a] = hold[a] == HOLD_FREE ? -push[a] : 0;
@@ -174,10 +211,10 @@ int64_t collider_sum(const tled_problem *p, double time, const double *displacem
     return count;
 }
 
-int collider_add(const tled_problem *p, frame *f, const model *m, const double *displacement, err *e)
+int collider_add(const tled_problem *p, const collider_moment *now, frame *f, const model *m,
+                 const double *displacement, err *e)
 {
     static const char *const names[] = {"probe.pose", "probe.force", "probe.torque"};
-    const pose at = collider_pose(p->collider, f->time);
     double *to[3];
     for (int i = 0; i < 3; i++) {
         model_array *a = frame_add(f, m, names[i], e);
@@ -185,8 +222,8 @@ int collider_add(const tled_problem *p, frame *f, const model *m, const double *
             return -1;
         to[i] = a->f64;
     }
-    pose_to_row(&at, to[0]);
-    collider_sum(p, f->time, displacement, to[1], to[2]);
+    pose_to_row(&now->at, to[0]);
+    collider_sum(p, now, displacement, to[1], to[2]);
     return 0;
 }
 

@@ -9,14 +9,14 @@
 
 /* ---- small symmetric matrices, row by row */
 
-/* The largest eigenvalue, by Jacobi's turns; n at most 4. a is used up. */
+/* The largest eigenvalue, to rounding, by Jacobi's turns; n at most 4. a is left with all of them on its diagonal. */
 static double largest_eigenvalue(double *a, int n)
 {
     double largest = 0;
     for (int sweep = 0; sweep < 30; sweep++)
         for (int p = 0; p < n; p++)
             for (int q = p + 1; q < n; q++) {
-                if (a[p * n + q] == 0)
+                if (fabs(a[p * n + q]) <= 1e-15 * (a[p * n + p] + a[q * n + q]))
                     continue;
                 double theta = (a[q * n + q] - a[p * n + p]) / (2 * a[p * n + q]);
                 double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
@@ -69,32 +69,52 @@ typedef struct corners {
     double b[8][3];  /* B, 1/m */
 } corners;
 
-/* c^2, and the largest eigenvalue of the gammas' products. */
-static void find_couple(const corners *x, conforming_element *c)
+/* gamma gamma^T, gamma_g = s_g - twist_g . B and B = the sum over modes of s slope, s.s = 8 and no two s alike. */
+static void products_of(const conforming_element *c, double product[16])
 {
-    double gamma[4][8], grams[16], own[16], l[16] = {0}, mixed[3][4], product[9];
-    for (int g = 0; g < 4; g++)
-        for (int a = 0; a < 8; a++) {
-            gamma[g][a] = hexahedron_sign(3 + g, a);
-            for (int i = 0; i < 3; i++)
-                gamma[g][a] -= c->twist[g][i] * x->b[a][i];
-        }
     for (int g = 0; g < 4; g++)
         for (int h = 0; h < 4; h++) {
-            double sum = 0;
-            for (int a = 0; a < 8; a++)
-                sum += gamma[g][a] * gamma[h][a];
-            grams[4 * g + h] = own[4 * g + h] = sum;
+            double sum = g == h;
+            for (int i = 0; i < 3; i++)
+                sum -= c->twist[g][i] * c->slope[3 + h][i] + c->twist[h][i] * c->slope[3 + g][i];
+            for (int m = 0; m < 7; m++) {
+                double left = 0, right = 0;
+                for (int i = 0; i < 3; i++) {
+                    left += c->twist[g][i] * c->slope[m][i];
+                    right += c->twist[h][i] * c->slope[m][i];
+                }
+                sum += left * right;
+            }
+            product[4 * g + h] = 8 * sum;
         }
-    c->gammas = largest_eigenvalue(own, 4);
+}
+
+void conforming_root(const conforming_element *c, double root[16])
+{
+    double product[16];
+    products_of(c, product);
+    if (c->least < c->gammas && factor(product, 4, root))
+        return;
+    for (int i = 0; i < 16; i++)
+        root[i] = i % 5 ? 0 : sqrt(c->gammas);
+}
+
+/* c^2. */
+static void find_couple(conforming_element *c)
+{
+    double grams[16], l[16] = {0}, mixed[3][4], product[9];
     c->couple = 1;
+    products_of(c, grams);
     if (!factor(grams, 4, l))
         return;
-    for (int g = 0; g < 4; g++) { /* L^-1 B gamma^T */
-        double column[3] = {0};
-        for (int a = 0; a < 8; a++)
-            for (int i = 0; i < 3; i++)
-                column[i] += x->b[a][i] * gamma[g][a];
+    for (int g = 0; g < 4; g++) { /* L^-1 B gamma^T, B gamma_g = 8 slope_g - B B^T twist_g */
+        double column[3];
+        for (int i = 0; i < 3; i++) {
+            column[i] = 8 * c->slope[3 + g][i];
+            for (int m = 0; m < 7; m++)
+                for (int k = 0; k < 3; k++)
+                    column[i] -= 8 * c->slope[m][i] * c->slope[m][k] * c->twist[g][k];
+        }
         solve(&c->root[0][0], 3, column);
         for (int i = 0; i < 3; i++)
             mixed[i][g] = column[i];
@@ -107,6 +127,18 @@ static void find_couple(const corners *x, conforming_element *c)
             product[i] += mixed[i / 3][g] * mixed[i % 3][g];
     }
     c->couple = fmin(1, largest_eigenvalue(product, 3));
+}
+
+/* The eigenvalues of R R^T, and l; products: B B^T, used up. */
+static void find_slope(double products[9], conforming_element *c)
+{
+    double gammas[16], least = INFINITY;
+    products_of(c, gammas);
+    c->gammas = largest_eigenvalue(gammas, 4);
+    for (int g = 0; g < 4; g++)
+        least = fmin(least, gammas[5 * g]);
+    c->least = least > 1e-3 * c->gammas ? least : c->gammas;
+    c->steepest = sqrt(largest_eigenvalue(products, 3) / c->least);
 }
 
 /* False: it has no inside. */
@@ -123,10 +155,10 @@ static bool shape_of(const tled_problem *p, int64_t element, conforming_element 
         for (int a = 0; a < 8; a++)
             products[i] += x.b[a][i / 3] * x.b[a][i % 3];
     c->squares = products[0] + products[4] + products[8];
-    hexahedron_basis(&x.at[0][0], c->basis);
     if (!(c->volume > 0) || !isfinite(c->squares) || !factor(products, 3, &c->root[0][0]))
         return false;
-    find_couple(&x, c);
+    find_slope(products, c);
+    find_couple(c);
     return true;
 }
 
@@ -157,6 +189,23 @@ void conforming_free(conforming *c)
     if (c)
         free(c->element);
     free(c);
+}
+
+conforming_hold conforming_hold_of(const tled_problem *p, int64_t element)
+{
+    const conforming_element *c = &p->conforming->element[element];
+    const tled_law law = tled_law_of(p, element);
+    const int32_t *node = p->element_node + 8 * element;
+    conforming_hold hold = {.law = {0}};
+    double at[24];
+    if (p->control.kind == HOURGLASS_PHYSICAL)
+        hourglass_moduli(law.mu, law.bulk, hold.law);
+    else
+        hold.law[HOURGLASS_K] = hourglass_stiffness(p->control.kappa, law.mu, c->volume, c->squares);
+    for (int i = 0; i < 24; i++)
+        at[i] = p->position[3 * (int64_t)node[i / 3] + i % 3] - p->position[3 * (int64_t)node[0] + i % 3];
+    hexahedron_basis(at, hold.basis);
+    return hold;
 }
 
 /* ---- nodes */

@@ -11,13 +11,11 @@
 typedef struct conforming_element {
     double slope[7][3], twist[4][3], volume; /* element_any's */
     double squares;                          /* 1/m2: sum of B^2 over corners and axes */
-    double basis[9];                         /* m: dX/dxi at the centre, a row a component */
     double root[3][3];                       /* 1/m: L, lower */
-    double gammas;                           /* the largest eigenvalue of gamma gamma^T: 8 of a box */
+    double gammas, least;                    /* eigenvalues of R R^T, the largest and the smallest: 8 of a box */
+    double steepest;                         /* 1/m: l of conforming_step.h; the largest 1/(4 h) of a box */
     double couple;                           /* c^2 */
-    double hourglass[HOURGLASS_NUMBERS];     /* once joined, by its kind, as are: */
-    double hold[HOURGLASS_FORM];             /* hourglass_any's */
-    double stiffest;                         /* N/m: the largest eigenvalue of its modes' stiffness at rest */
+    double stiffest;                         /* N/m, once joined: no less than the largest eigenvalue of R^T D R */
 } conforming_element;
 
 typedef struct conforming {
@@ -31,7 +29,19 @@ typedef struct conforming {
 int conforming_create(tled_problem *p, err *e);
 void conforming_free(conforming *c);
 
+/* R of an element, 4 x 4, a row a mode, lower: R R^T is gamma gamma^T, or, where that has nearly no inverse, its
+ * largest eigenvalue times 1, which is no less. */
+void conforming_root(const conforming_element *c, double root[16]);
+
 /* Once the volumes have their laws: p->corner_start, p->corner and p->mass (allocated). -1 with e filled. */
 int conforming_corners(tled_problem *p, err *e);
+
+/* What holds the modes of an element, made anew at each call: its basis (m: dX/dxi at its centre, a row a component),
+ * and what its law has by the control. */
+typedef struct conforming_hold {
+    double basis[9], law[HOURGLASS_NUMBERS];
+} conforming_hold;
+
+conforming_hold conforming_hold_of(const tled_problem *p, int64_t element);
 
 #endif

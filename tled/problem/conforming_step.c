@@ -2,9 +2,10 @@
 
 #include <math.h>
 
-element_any conforming_shape(const conforming_element *c)
+element_any conforming_shape(const tled_problem *p, int64_t element, const conforming_hold *hold)
 {
-    return element_any_of(&c->slope[0][0], &c->twist[0][0], c->volume, c->basis, c->hold);
+    const conforming_element *c = &p->conforming->element[element];
+    return element_any_of(&c->slope[0][0], &c->twist[0][0], c->volume, hold->basis);
 }
 
 /* ---- the stable step */
@@ -38,8 +39,8 @@ void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h,
 stability_twists conforming_twists(const tled_problem *p, int64_t element, element_tensor h, const hourglass_modes *m)
 {
     const conforming_element *c = &p->conforming->element[element];
-    const double square = c->gammas * c->stiffest / (tled_law_of(p, element).density * c->volume / 8);
-    return stability_twists_of(p->control.kind, square, sqrt(c->squares / c->gammas), h, m);
+    const double square = c->stiffest / (tled_law_of(p, element).density * c->volume / 8);
+    return stability_twists_of(p->control.kind, square, c->steepest, h, m);
 }
 
 double conforming_room(const tled_problem *p, int64_t element, stability_twists t, double limit)
@@ -54,16 +55,15 @@ double conforming_square(const tled_problem *p, int64_t element, stability_twist
     return (law + t.own + sqrt(apart * apart + 4 * couple * law * t.own)) / 2;
 }
 
-/* What holds the modes of an element. */
-static void hold_modes(const tled_problem *p, const tled_law *law, conforming_element *c)
+static double stiffest_of(const tled_problem *p, int64_t element)
 {
-    if (p->control.kind == HOURGLASS_ISOTROPIC) {
-        c->hourglass[HOURGLASS_K] = hourglass_stiffness(p->control.kappa, law->mu, c->volume, c->squares);
-        c->stiffest = c->hourglass[HOURGLASS_K];
-        return;
-    }
-    hourglass_forms(law->mu, law->bulk, c->volume, c->basis, c->hold);
-    c->stiffest = hourglass_forms_stiffest(c->hold, c->basis);
+    const conforming_element *c = &p->conforming->element[element];
+    const conforming_hold hold = conforming_hold_of(p, element);
+    double root[16];
+    if (p->control.kind == HOURGLASS_ISOTROPIC)
+        return c->gammas * hold.law[HOURGLASS_K];
+    conforming_root(c, root);
+    return hourglass_any_stiffest(hold.law, c->volume, hold.basis, root);
 }
 
 void conforming_join(tled_problem *p)
@@ -74,8 +74,7 @@ void conforming_join(tled_problem *p)
     const hourglass_modes still = {.xy = {0}};
     step_matrix a;
     for (int64_t i = 0; i < p->elements; i++) {
-        const tled_law law = tled_law_of(p, i);
-        hold_modes(p, &law, &c->element[i]);
+        c->element[i].stiffest = stiffest_of(p, i);
         const stability_twists t = conforming_twists(p, i, rest, &still);
         conforming_matrix(p, i, rest, none, &a);
         if (i && step_below(&a, conforming_room(p, i, t, c->square)))

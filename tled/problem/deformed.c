@@ -17,11 +17,11 @@ deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, 
     element_modes z = modes_of(p, element, displacement, 2);
     hourglass_force f;
     if (p->conforming) {
-        const conforming_element *c = &p->conforming->element[element];
-        const element_any any = conforming_shape(c);
+        const conforming_hold hold = conforming_hold_of(p, element);
+        const element_any any = conforming_shape(p, element, &hold);
         d.h = element_any_twist(&any, &x, &y, &z);
         d.modes = element_hourglass_modes(x, y, z);
-        f = element_any_hourglass(p->control.kind, d.modes, d.h, &any, c->hourglass);
+        f = element_any_hourglass(p->control.kind, d.modes, d.h, &any, hold.law);
         d.rest = any.volume;
     } else {
         d.h = element_gradient(x, y, z, box.slope);

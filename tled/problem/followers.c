@@ -369,7 +369,8 @@ int followers_room(followers_work *w, const followers *f, err *e)
     w->moved = mem_array(f->nodes, 3 * sizeof *w->moved, "the pressure", e);
     w->at = mem_array(f->vertices, 3 * sizeof *w->at, "the pressure", e);
     w->force = mem_array(f->vertices, 3 * sizeof *w->force, "the pressure", e);
-    return w->moved && w->at && w->force ? 0 : -1;
+    w->normal = mem_array(f->triangles, 3 * sizeof *w->normal, "the pressure", e);
+    return w->moved && w->at && w->force && w->normal ? 0 : -1;
 }
 
 void followers_room_free(followers_work *w)
@@ -377,12 +378,13 @@ void followers_room_free(followers_work *w)
     free(w->moved);
     free(w->at);
     free(w->force);
+    free(w->normal);
     *w = (followers_work){.f = NULL};
 }
 
 int64_t followers_bytes(const followers *f)
 {
-    return f ? (int64_t)sizeof(double) * (3 * f->nodes + 6 * f->vertices) : 0;
+    return f ? (int64_t)sizeof(double) * (3 * f->nodes + 6 * f->vertices + 3 * f->triangles) : 0;
 }
 
 void followers_move(followers_work *w, const double *displacement)
@@ -406,20 +408,30 @@ static void place_work(void *context, int64_t chunk, int64_t from, int64_t to)
     }
 }
 
+static void normal_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const followers_work *w = context;
+    (void)chunk;
+    for (int64_t t = from; t < to; t++) {
+        const int32_t *corner = w->f->corner + 3 * t;
+        double *normal = w->normal + 3 * t;
+        triangle_normal(w->at + 3 * (int64_t)corner[0], w->at + 3 * (int64_t)corner[1], w->at + 3 * (int64_t)corner[2],
+                        normal);
+        for (int a = 0; a < 3; a++)
+            normal[a] *= w->f->part[t];
+    }
+}
+
 static void force_work(void *context, int64_t chunk, int64_t from, int64_t to)
 {
     const followers_work *w = context;
     const followers *f = w->f;
     (void)chunk;
     for (int64_t v = from; v < to; v++) {
-        double sum[3] = {0}, normal[3];
-        for (int32_t i = f->around_start[v]; i < f->around_start[v + 1]; i++) {
-            const int32_t *corner = f->corner + 3 * (int64_t)f->around[i];
-            triangle_normal(w->at + 3 * (int64_t)corner[0], w->at + 3 * (int64_t)corner[1],
-                            w->at + 3 * (int64_t)corner[2], normal);
+        double sum[3] = {0};
+        for (int32_t i = f->around_start[v]; i < f->around_start[v + 1]; i++)
             for (int a = 0; a < 3; a++)
-                sum[a] += f->part[f->around[i]] * normal[a];
-        }
+                sum[a] += w->normal[3 * (int64_t)f->around[i] + a];
         for (int a = 0; a < 3; a++)
             w->force[3 * v + a] = -w->value[3 * (int64_t)f->vertex_curve[v]] / 6 * sum[a];
     }
@@ -429,6 +441,7 @@ void followers_press(followers_work *w, pool *threads, const double *value)
 {
     w->value = value;
     pool_run(threads, w->f->vertices, CHUNK, place_work, w);
+    pool_run(threads, w->f->triangles, CHUNK, normal_work, w);
     pool_run(threads, w->f->vertices, CHUNK, force_work, w);
 }
 

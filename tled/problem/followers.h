@@ -53,6 +53,7 @@ typedef struct followers_work {
     const double *value; /* borrowed: the curves' values */
     double *moved;       /* nodes x 3, m: displacements, the caller's to fill */
     double *at, *force;  /* vertices x 3: m, N */
+    double *normal;      /* triangles x 3, m2: twice the area, of that part of it that counts */
 } followers_work;
 
 /* w, zeroed, for the followers f, which may be NULL. -1 with e filled and w to be freed all the same. */

@@ -10,7 +10,7 @@
 #include <string.h>
 
 typedef struct load {
-    int32_t node, curve;
+    int32_t node, curve, spring;
     double share;
 } load;
 
@@ -19,21 +19,22 @@ typedef struct loads {
     int64_t count, room;
 } loads;
 
-static int add_load(loads *l, int64_t node, int64_t curve, double share, err *e)
+static int add_load(loads *l, int64_t node, int64_t curve, int64_t spring, double share, err *e)
 {
     if (l->count >= INT32_MAX)
         return err_set(e, NULL, 0, "forces on more than %d nodes in all", INT32_MAX);
     if (MEM_ROOM(&l->list, &l->room, l->count + 1, "the forces", e))
         return -1;
-    l->list[l->count++] = (load){(int32_t)node, (int32_t)curve, share};
+    l->list[l->count++] = (load){(int32_t)node, (int32_t)curve, (int32_t)spring, share};
     return 0;
 }
 
-static int add_force(loads *l, const script *s, int64_t curve, err *e)
+/* An equal share for each node. spring: the curve of a spring's factor, or -1. */
+static int add_force(loads *l, const script *s, int64_t curve, int64_t spring, double whole, err *e)
 {
     const script_curve *c = &s->curve[curve];
     for (int32_t i = 0; i < c->node_count; i++)
-        if (add_load(l, s->node[c->node_first + i], curve, 1. / c->node_count, e))
+        if (add_load(l, s->node[c->node_first + i], curve, spring, whole / c->node_count, e))
             return -1;
     return 0;
 }
@@ -64,7 +65,7 @@ static int add_traction(loads *l, const tled_problem *p, const model *m, int64_t
                  area);
     for (int64_t n = 0; n < p->nodes && !status; n++)
         if (area[n] != 0)
-            status = add_load(l, n, curve, area[n], e);
+            status = add_load(l, n, curve, -1, area[n], e);
     free(area);
     return status;
 }
@@ -74,8 +75,9 @@ static int sort_loads(tled_problem *p, const loads *l, err *e)
 {
     p->force_start = mem_array(p->nodes + 2, sizeof *p->force_start, "the forces", e);
     p->force_curve = mem_array(l->count, sizeof *p->force_curve, "the forces", e);
+    p->force_spring = mem_array(l->count, sizeof *p->force_spring, "the forces", e);
     p->force_share = mem_array(l->count, sizeof *p->force_share, "the forces", e);
-    if (!p->force_start || !p->force_curve || !p->force_share)
+    if (!p->force_start || !p->force_curve || !p->force_spring || !p->force_share)
         return -1;
     /* Counts two places on, so that filling moves each start to where it belongs. */
     for (int64_t i = 0; i < l->count; i++)
@@ -85,6 +87,7 @@ static int sort_loads(tled_problem *p, const loads *l, err *e)
     for (int64_t i = 0; i < l->count; i++) {
         const int32_t at = p->force_start[l->list[i].node + 1]++;
         p->force_curve[at] = l->list[i].curve;
+        p->force_spring[at] = l->list[i].spring;
         p->force_share[at] = l->list[i].share;
     }
     return 0;
@@ -97,7 +100,9 @@ int loads_make(tled_problem *p, const model *m, err *e)
     int status = 0;
     for (int64_t c = 0; c < s->curves && !status; c++) {
         if (s->curve[c].verb == SCRIPT_FORCE)
-            status = add_force(&l, s, c, e);
+            status = add_force(&l, s, c, -1, 1, e);
+        if (s->curve[c].verb == SCRIPT_PULL)
+            status = add_force(&l, s, c, c + 1, s->curve[c].stiffness, e);
         if (s->curve[c].verb == SCRIPT_TRACTION)
             status = add_traction(&l, p, m, c, e);
     }
@@ -105,6 +110,29 @@ int loads_make(tled_problem *p, const model *m, err *e)
         status = sort_loads(p, &l, e);
     free(l.list);
     return status;
+}
+
+static bool has_springs(const script *s)
+{
+    for (int64_t i = 0; i < s->curves; i++)
+        if (s->curve[i].verb == SCRIPT_PULL)
+            return true;
+    return false;
+}
+
+double loads_square(const tled_problem *p, const double *value)
+{
+    double most = 0;
+    if (!has_springs(p->script))
+        return 0;
+    for (int64_t n = 0; n < p->nodes; n++) {
+        double sum = 0;
+        for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
+            if (p->force_spring[i] >= 0)
+                sum += p->force_share[i] * (value ? value[3 * (int64_t)p->force_spring[i]] : 1);
+        most = fmax(most, sum / p->mass[n]);
+    }
+    return most;
 }
 
 static double longest_edge(const surface *from, const int32_t *corner, int64_t triangles)

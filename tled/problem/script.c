@@ -73,19 +73,38 @@ const char *script_region(const script_curve *c)
     return colon ? colon + 1 : NULL;
 }
 
+bool script_is_file(const char *region)
+{
+    static const char *const ends[] = {".obj", ".obj.gz"};
+    const size_t size = strlen(region);
+    for (int i = 0; i < 2; i++)
+        if (size >= strlen(ends[i]) && !strcasecmp(region + size - strlen(ends[i]), ends[i]))
+            return true;
+    return false;
+}
+
+bool script_is_box(const char *region)
+{
+    return strchr(region, ',') && !script_is_file(region);
+}
+
 /* Of one surface; boxes are known to be the same. */
 static bool same_region(const script_curve *a, const script_curve *b)
 {
     const char *of_a = script_region(a), *of_b = script_region(b);
     if (strcmp(a->surface, b->surface) != 0 || !of_a != !of_b)
         return false;
-    return !of_a || (by_box(a) && by_box(b)) || !strcasecmp(of_a, of_b);
+    if (!of_a || (script_is_box(of_a) && script_is_box(of_b)))
+        return true;
+    return script_is_file(of_a) ? !strcmp(of_a, of_b) : !strcasecmp(of_a, of_b);
 }
 
 static bool same_target(const script_curve *a, const script_curve *b)
 {
     if (a->verb != b->verb || a->volume != b->volume)
         return false;
+    if (a->verb == SCRIPT_PULL)
+        return !strcmp(a->target, b->target);
     for (int i = 0; i < 6; i++)
         if (a->box[i] != b->box[i])
             return false;
@@ -125,6 +144,121 @@ int script_reserve(script *s, int64_t more, err *e)
                    mem_grow(&s->value, &s->value_capacity, need, 3 * sizeof *s->value, "the script's keys", e)
                ? -1
                : 0;
+}
+
+/* Of a tick: what computes times in another way, to the last digits, is at its beginning all the same. */
+static const double early = 1e-6;
+
+int script_hold(script *s, int64_t curve, const script_now *now, const double *was, const double *value, err *e)
+{
+    if (!s->curve[curve].own && script_reserve(s, 2, e))
+        return -1;
+    script_curve *c = &s->curve[curve];
+    if (!c->own) {
+        c->own = (int32_t)s->keys + 1;
+        s->keys += 2;
+    }
+    c->key_first = c->own - 1;
+    c->key_count = 2;
+    c->end = now->until;
+    s->time[c->key_first] = now->from - early * (now->until - now->from);
+    s->time[c->own] = now->until;
+    memcpy(s->value + 3 * (int64_t)c->key_first, was, 3 * sizeof *was);
+    memcpy(s->value + 3 * (int64_t)c->own, value, 3 * sizeof *value);
+    return 0;
+}
+
+/* Takes `count` of `all` things out of an array, from `first` on. */
+static void cut(void *array, size_t size, int64_t first, int64_t count, int64_t all)
+{
+    if (!count)
+        return;
+    char *to = (char *)array + (size_t)first * size;
+    memmove(to, to + (size_t)count * size, (size_t)(all - first - count) * size);
+}
+
+static void cut_keys(script *s, const script_curve *c)
+{
+    const int32_t first = c->own - 1;
+    if (!c->own)
+        return;
+    cut(s->time, sizeof *s->time, first, 2, s->keys);
+    cut(s->value, 3 * sizeof *s->value, first, 2, s->keys);
+    s->keys -= 2;
+    for (int64_t i = 0; i < s->curves; i++) {
+        s->curve[i].key_first -= s->curve[i].key_first > first ? 2 : 0;
+        s->curve[i].own -= s->curve[i].own > c->own ? 2 : 0;
+    }
+}
+
+void script_drop(script *s, int64_t curve)
+{
+    const script_curve c = s->curve[curve];
+    cut_keys(s, &c);
+    cut(s->node, sizeof *s->node, c.node_first, c.node_count, s->nodes);
+    cut(s->corner, 3 * sizeof *s->corner, c.triangle_first, c.triangle_count, s->triangles);
+    cut(s->part, sizeof *s->part, c.triangle_first, c.triangle_count, s->triangles);
+    s->nodes -= c.node_count;
+    s->triangles -= c.triangle_count;
+    cut(s->curve, sizeof *s->curve, curve, 1, s->curves);
+    s->curves--;
+    for (int64_t i = curve; i < s->curves; i++) {
+        s->curve[i].node_first -= c.node_count;
+        s->curve[i].triangle_first -= c.triangle_count;
+    }
+    free(c.target);
+    free(c.surface);
+}
+
+int64_t script_release_all(script *s, const script_now *now)
+{
+    static const double none[3] = {0};
+    int64_t count = 0;
+    for (int64_t i = 0; i < s->curves; i++) {
+        const script_verb verb = s->curve[i].verb;
+        double here[3];
+        script_value(s, &s->curve[i], now->from, here);
+        err full = {0}; /* of keys that are not its own yet: then it stays */
+        if (verb == SCRIPT_DISPLACE && s->curve[i].own)
+            script_hold(s, i, now, here, here, &full);
+        if ((verb != SCRIPT_PULL && verb != SCRIPT_SPRING) || script_hold(s, i, now, none, none, &full))
+            continue;
+        count += verb == SCRIPT_PULL && !s->curve[i].is_released;
+        s->curve[i].is_released = true;
+    }
+    return count;
+}
+
+void script_forget_all(script *s, const script_now *now)
+{
+    static const double none[3] = {0};
+    for (int64_t i = 0; i < s->curves; i++)
+        if (s->curve[i].own)
+            script_hold(s, i, now, none, none, &(err){0}); /* it has room of its own: nothing can fail */
+}
+
+static int add_still(script *s, const script_curve *c, err *e)
+{
+    static const script_now now = {0, 0, NULL};
+    static const double none[3] = {0};
+    if (script_find(s, c) >= 0)
+        return 0;
+    const int64_t at = script_add(s, c, e);
+    return at < 0 || script_hold(s, at, &now, none, none, e) ? -1 : 0;
+}
+
+int script_add_idle(script *s, const model *m, err *e)
+{
+    const model_array *name = model_find(m, "volume.name"), *muscle = model_find(m, "volume.muscle");
+    const model_array *material = model_find(m, "volume.material"), *peak = model_find(m, "material.peak");
+    char gravity[] = "gravity";
+    if (add_still(s, &(script_curve){.verb = SCRIPT_GRAVITY, .volume = -1, .target = gravity}, e))
+        return -1;
+    for (int64_t i = 0; name && muscle && material && peak && i < name->rows; i++)
+        if (muscle->u8[i] && peak->f64[material->i32[i]] > 0 &&
+            add_still(s, &(script_curve){.verb = SCRIPT_CONTRACT, .volume = (int32_t)i, .target = name->str[i]}, e))
+            return -1;
+    return 0;
 }
 
 /* Adds a curve from 0 at time 0 to value at `ramp`; for the command line. */

@@ -18,7 +18,9 @@ typedef enum script_verb {
     SCRIPT_FORCE,    /* value: N in all, an equal share for each of its nodes */
     SCRIPT_DISPLACE, /* value: m from rest, for the components in `mask`, of each of its nodes */
     SCRIPT_PRESSURE, /* value[0]: Pa, against the outward normals of its triangles as they are deformed */
-    SCRIPT_TRACTION  /* value: Pa, by the area of its triangles at rest */
+    SCRIPT_TRACTION, /* value: Pa, by the area of its triangles at rest */
+    SCRIPT_PULL,     /* value: m, s (T - X): a spring from its nodes, in all at X, to T; s: the value of: */
+    SCRIPT_SPRING    /* value: s thrice, 1 while the pull that is the curve before it pulls, else 0 */
 } script_verb;
 
 typedef struct script_curve {
@@ -26,24 +28,29 @@ typedef struct script_curve {
     int32_t volume;                 /* contract: index of the volume; else -1 */
     uint32_t mask;                  /* displace: bit a set: component a is prescribed, from the start of the run on */
     int32_t key_first, key_count;   /* in script.time and script.value; at least 1 key, times never decreasing */
-    int32_t node_first, node_count; /* in script.node, ascending: force, displace */
+    int32_t node_first, node_count; /* in script.node, ascending: force, displace, pull */
     int32_t triangle_first, triangle_count; /* in script.corner: pressure, traction */
     double end;                             /* time of its last key, s */
     int64_t line;                           /* its first line in the script; 0: from the command line */
-    double box[6];                          /* force: x y z radius; by a box: low and high corner; m */
-    char *target;                           /* as written, owned: for messages and to tell surfaces apart */
+    double box[6];                          /* force, pull: x y z radius; by a box: low and high corner; m */
+    double stiffness;                       /* pull: N/m */
+    bool is_released;                       /* pull: since its last key */
+    bool is_live;                           /* of a line that came live */
+    int32_t own;    /* live: its two keys in `time` and `value`, the first of them + 1; 0: it has none yet */
+    char *target;   /* as written, owned: for messages and to tell surfaces apart */
     char *surface;  /* pressure, traction: the bound surface's name in the model, owned; else NULL */
     bool is_region; /* of the surface: not the whole of it */
 } script_curve;
 
 typedef struct script {
     script_curve *curve;
-    double *time;    /* keys: s */
-    double *value;   /* keys x 3 */
-    int32_t *node;   /* a component of a node is displaced by one curve at most */
-    int32_t *corner; /* triangles x 3: vertices of the curve's surface, counter-clockwise from outside */
-    double *part;    /* triangles: .5 for those of a convex quadrilateral, which is cut both ways; else 1 */
-    char *file;      /* the name of the file read, owned; NULL: none was */
+    double *time;     /* keys: s */
+    double *value;    /* keys x 3 */
+    int32_t *node;    /* a component of a node is displaced by one curve at most */
+    int32_t *corner;  /* triangles x 3: vertices of the curve's surface, counter-clockwise from outside */
+    double *part;     /* triangles: .5 for those of a convex quadrilateral, which is cut both ways; else 1 */
+    char *file;       /* the name of the file read, owned; NULL: none was */
+    const char *unit; /* of the OBJ files of its regions, borrowed; NULL: the model's source.unit */
     int64_t curves, keys, nodes, triangles;
     int64_t curve_capacity, time_capacity, value_capacity, node_capacity, corner_capacity, part_capacity;
 } script;
@@ -66,6 +73,31 @@ int script_add_gravity(script *s, const double *g, double ramp, err *e);
  * none can, -1 with e filled: nothing would come of any. */
 int script_check_muscles(const script *s, const model *m, notes *warnings, err *e);
 
+/* Live: from when a line holds, and until when what it displaces, and a target that pulls, go there in a straight line;
+ * where the tissue is now. */
+typedef struct script_now {
+    double from, until;         /* s */
+    const double *displacement; /* nodes x 3, m; NULL: at rest */
+} script_now;
+
+/* Whether a line is one of scripts that come live: now VERB ..., pull ..., release ID. */
+bool script_is_now(const keyfile *k);
+
+/* Takes such a line: its value holds from now on, whatever the script said of the target from now on. *anew: set where
+ * curves came or went (tled_problem_reload); those that live lines made and that do nothing any more go then. -1 with e
+ * filled: the script is as it was. */
+int script_take_now(script *s, const model *m, const keyfile *k, const script_now *now, bool *anew, err *e);
+
+/* Adds curves of value 0 for gravity, and each muscle that can contract, where the script has none: lines that come
+ * live then change values alone. -1 with e filled. */
+int script_add_idle(script *s, const model *m, err *e);
+
+/* Ends all pulls now, and stops what live lines displace where they have it now. Returns how many pulls there were. */
+int64_t script_release_all(script *s, const script_now *now);
+
+/* Sets to 0 all that live lines have set. */
+void script_forget_all(script *s, const script_now *now);
+
 /* The curve at a time: 3 values (contract: the first counts). */
 void script_value(const script *s, const script_curve *c, double time, double *value);
 
@@ -76,7 +108,7 @@ double script_end(const script *s);
  * line 0: place is an option of the command line. */
 int32_t script_muscle(const model *m, const char *name, const char *place, int64_t line, err *e);
 
-/* What script.c, script_read.c and script_surface.c share. */
+/* What script.c, script_nodes.c, script_read.c and script_surface.c share. */
 
 /* The curve of the same verb and target, or -1. */
 int64_t script_find(const script *s, const script_curve *like);
@@ -88,15 +120,33 @@ int64_t script_add(script *s, const script_curve *c, err *e);
 /* Makes room for `more` keys. */
 int script_reserve(script *s, int64_t more, err *e);
 
-/* The region of a surface in SURFACE[:REGION], or NULL. */
+/* The region of a surface in SURFACE[:REGION], or NULL; whether it is a box, X0,Y0,Z0,X1,Y1,Z1, or an OBJ file. */
 const char *script_region(const script_curve *c);
+bool script_is_box(const char *region);
+bool script_is_file(const char *region);
 
 /* The bound surface that c->target names, SURFACE[:REGION], into `name` (MODEL_NAME bytes). Sets c->surface to it. */
 int script_take_surface(script_curve *c, const model *m, const keyfile *k, char *name, err *e);
 
-/* Appends to s->corner the triangles of the curve added last: of the region or, which must be closed for a pressure,
- * the whole. */
+/* Appends to s->corner the triangles of the curve added last: of the region, whose OBJ file is read, or, which must be
+ * closed for a pressure, the whole. */
 int script_take_triangles(script *s, const model *m, const keyfile *k, err *e);
+
+/* Appends nodes to s->node as those of the curve added last: those in a ball; in a box; that a rigid surface holds, as
+ * c says. near (m): how far past its sides a node may be along each axis (script_near). -1 with e filled: there are
+ * none. */
+int script_nodes_in_ball(script *s, const model *m, const keyfile *k, const double near[3], const script_curve *c,
+                         err *e);
+int script_nodes_in_box(script *s, const model *m, const keyfile *k, const double near[3], const script_curve *c,
+                        err *e);
+int script_nodes_of_surface(script *s, const model *m, const keyfile *k, const script_curve *c, err *e);
+void script_near(const model *m, double near[3]);
+
+/* Of a curve, from now on: from `was` to `value` (3), in the time that `now` says. -1 with e filled. */
+int script_hold(script *s, int64_t curve, const script_now *now, const double *was, const double *value, err *e);
+
+/* Takes a curve out, whose keys are its own or none. */
+void script_drop(script *s, int64_t curve);
 
 /* A level: a number from 0 to 1. Returns 0 or -1. */
 int script_level(const char *text, double *level);

@@ -1,8 +1,6 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "mesh/lattice.h"
-#include "surface/surface.h"
 #include "tled/problem/script.h"
 
 #include <inttypes.h>
@@ -22,92 +20,11 @@ typedef struct reader {
     keyfile k;
     entry *entries;
     int64_t count, capacity;
-    int64_t first;  /* curves before these came from the command line */
-    double near[3]; /* m: how far past a box a node may be that counts as on its face, along each axis */
+    int64_t first;         /* curves before these came from the command line */
+    const script_now *now; /* of a line that comes live; NULL: of a file */
+    int64_t gone;          /* live: the curve that the line replaces, or -1 */
+    double near[3];        /* m: how far past a box a node may be that counts as on its face, along each axis */
 } reader;
-
-/* Nodes of a target: appended to s->node as those of the curve added last. */
-
-static int node_add(script *s, int64_t node, err *e)
-{
-    if (s->nodes >= INT32_MAX)
-        return err_set(e, NULL, 0, "the script's targets have more than %d nodes in all", INT32_MAX);
-    if (mem_grow(&s->node, &s->node_capacity, s->nodes + 1, sizeof *s->node, "the script's nodes", e))
-        return -1;
-    s->node[s->nodes++] = (int32_t)node;
-    s->curve[s->curves - 1].node_count++;
-    return 0;
-}
-
-static int nodes_in_ball(reader *r, const script_curve *c, err *e)
-{
-    const model_array *position = model_need(r->m, "node.position", e);
-    if (!position)
-        return -1;
-    double nearest = INFINITY, *p = position->f64;
-    int64_t found = 0;
-    for (int64_t i = 0; i < position->rows; i++, p += 3) {
-        double away = hypot(hypot(p[0] - c->box[0], p[1] - c->box[1]), p[2] - c->box[2]);
-        nearest = away < nearest ? away : nearest;
-        if (away > c->box[3] + fmax(r->near[0], fmax(r->near[1], r->near[2])))
-            continue;
-        if (node_add(r->s, i, e))
-            return -1;
-        found++;
-    }
-    if (!found)
-        return keyfile_error(&r->k, e, "no node lies within %g m of %g,%g,%g; the nearest is %g m away", c->box[3],
-                             c->box[0], c->box[1], c->box[2], nearest);
-    return 0;
-}
-
-static int nodes_in_box(reader *r, const script_curve *c, err *e)
-{
-    const model_array *position = model_need(r->m, "node.position", e);
-    int64_t found = 0;
-    for (int64_t i = 0; position && i < position->rows; i++) {
-        const double *p = position->f64 + 3 * i, *low = c->box, *high = c->box + 3;
-        bool outside = false;
-        for (int a = 0; a < 3; a++)
-            outside |= p[a] < low[a] - r->near[a] || p[a] > high[a] + r->near[a];
-        if (outside)
-            continue;
-        if (node_add(r->s, i, e))
-            return -1;
-        found++;
-    }
-    if (position && !found)
-        return keyfile_error(&r->k, e,
-                             "no node lies in the box %s; expected X0,Y0,Z0,X1,Y1,Z1 around some, in metres "
-                             "or with suffixes",
-                             c->target);
-    return position ? 0 : -1;
-}
-
-static int nodes_of_surface(reader *r, const script_curve *c, err *e)
-{
-    const model_array *anchor = model_need(r->m, "node.anchor", e), *names = model_need(r->m, "anchor.name", e);
-    if (!anchor || !names)
-        return -1;
-    bool known = false;
-    for (int64_t i = 0; i < names->rows; i++)
-        known = known || surface_in_group(names->str[i], c->target);
-    if (!known)
-        return near_unknown(e, r->k.name, r->k.line, "rigid surface", c->target, (const char *const *)names->str,
-                            names->rows < INT32_MAX ? (int)names->rows : INT32_MAX);
-    int64_t found = 0;
-    for (int64_t i = 0; i < anchor->rows; i++) {
-        int32_t a = anchor->i32[i];
-        if (a < 0 || !surface_in_group(names->str[a], c->target))
-            continue;
-        if (node_add(r->s, i, e))
-            return -1;
-        found++;
-    }
-    return found
-               ? 0
-               : keyfile_error(&r->k, e, "no node is held by '%.200s'; expected a surface that holds some", c->target);
-}
 
 /* Lines of a file */
 
@@ -170,8 +87,33 @@ static int64_t curve_of(reader *r, const script_curve *c, bool *fresh, err *e)
     return at < 0 ? script_add(r->s, c, e) : at;
 }
 
+/* What a target is displaced by now, the components that a new one leaves free too. */
+static void displaced_now(const reader *r, int64_t at, double was[3])
+{
+    const script_curve *c = &r->s->curve[at];
+    if (c->key_count) {
+        script_value(r->s, c, r->now->from, was);
+        return;
+    }
+    for (int a = 0; a < 3; a++) {
+        was[a] = 0;
+        for (int32_t i = 0; r->now->displacement && i < c->node_count; i++)
+            was[a] += r->now->displacement[3 * (int64_t)r->s->node[c->node_first + i] + a] / c->node_count;
+    }
+}
+
+static int hold_now(const reader *r, int64_t at, const double *value, err *e)
+{
+    double was[3] = {value[0], value[1], value[2]};
+    if (r->s->curve[at].verb == SCRIPT_DISPLACE)
+        displaced_now(r, at, was);
+    return script_hold(r->s, at, r->now, was, value, e);
+}
+
 static int key_add(reader *r, int64_t at, double time, const double *value, err *e)
 {
+    if (r->now)
+        return hold_now(r, at, value, e);
     script_curve *c = &r->s->curve[at];
     if (c->key_count && time < c->end)
         return keyfile_error(&r->k, e, "time %g s comes after %g s for the same target; expected times in order", time,
@@ -199,6 +141,9 @@ static int line_contract(reader *r, double time, err *e)
         return keyfile_error(k, e, "level '%.200s'; expected a number from 0 to 1", k->word[3]);
     bool fresh;
     int64_t at = curve_of(r, &c, &fresh, e);
+    if (at >= 0 && fresh && r->now) /* script_add_idle made one for each that can */
+        return keyfile_error(k, e, "'%.200s' has a material without a peak stress; expected a muscle with one",
+                             c.target);
     return at < 0 ? -1 : key_add(r, at, time, value, e);
 }
 
@@ -226,7 +171,7 @@ static int line_force(reader *r, double time, err *e)
         return keyfile_error(&r->k, e, "radius '%.200s'; expected more than 0", r->k.word[3]);
     bool fresh;
     int64_t at = curve_of(r, &c, &fresh, e);
-    if (at < 0 || (fresh && nodes_in_ball(r, &c, e)))
+    if (at < 0 || (fresh && script_nodes_in_ball(r->s, r->m, &r->k, r->near, &c, e)))
         return -1;
     return key_add(r, at, time, value, e);
 }
@@ -242,6 +187,12 @@ static int take_box(reader *r, const char *text, double *box, err *e)
     return 0;
 }
 
+static int take_nodes(const reader *r, const script_curve *c, bool box, err *e)
+{
+    return box ? script_nodes_in_box(r->s, r->m, &r->k, r->near, c, e)
+               : script_nodes_of_surface(r->s, r->m, &r->k, c, e);
+}
+
 static int line_displace(reader *r, double time, err *e)
 {
     double value[3];
@@ -250,7 +201,7 @@ static int line_displace(reader *r, double time, err *e)
     if ((box && take_box(r, c.target, c.box, e)) || take_displacement(r, 3, value, &c.mask, e))
         return -1;
     int64_t at = curve_of(r, &c, &fresh, e);
-    if (at < 0 || (fresh && (box ? nodes_in_box : nodes_of_surface)(r, &c, e)))
+    if (at < 0 || (fresh && take_nodes(r, &c, box, e)))
         return -1;
     if (r->s->curve[at].mask != c.mask)
         return keyfile_error(&r->k, e,
@@ -267,7 +218,7 @@ static int add_to_surface(reader *r, script_verb verb, double time, const double
     script_curve c = {.verb = verb, .volume = -1, .line = r->k.line, .target = r->k.word[2]};
     const char *region = script_region(&c);
     if (script_take_surface(&c, r->m, &r->k, name, e) ||
-        (region && strchr(region, ',') && take_box(r, region, c.box, e)))
+        (region && script_is_box(region) && take_box(r, region, c.box, e)))
         return -1;
     c.is_region = region != NULL;
     bool fresh;
@@ -291,24 +242,143 @@ static int line_traction(reader *r, double time, err *e)
     return take_numbers(r, 3, value, "X,Y,Z in Pa", e) ? -1 : add_to_surface(r, SCRIPT_TRACTION, time, value, e);
 }
 
+/* Keys of a pull and of its spring, which is the curve after it. */
+static int keys_add(reader *r, int64_t at, double time, double spring, const double *place, err *e)
+{
+    const double *from = r->s->curve[at].box, factor[3] = {spring, spring, spring};
+    double value[3];
+    for (int a = 0; a < 3; a++)
+        value[a] = spring * (place[a] - from[a]);
+    return key_add(r, at, time, value, e) || key_add(r, at + 1, time, factor, e) ? -1 : 0;
+}
+
+/* The same live: the target goes there in a straight line from where it is, if it pulls. */
+static int pull_now(const reader *r, int64_t at, const double *place, err *e)
+{
+    static const double factor[3] = {1, 1, 1};
+    double was[3], spring[3] = {0}, value[3];
+    if (r->s->curve[at].key_count) {
+        script_value(r->s, &r->s->curve[at], r->now->from, was);
+        script_value(r->s, &r->s->curve[at + 1], r->now->from, spring);
+    }
+    for (int a = 0; a < 3; a++)
+        value[a] = place[a] - r->s->curve[at].box[a];
+    return script_hold(r->s, at, r->now, spring[0] > 0 ? was : value, value, e) ||
+                   script_hold(r->s, at + 1, r->now, factor, factor, e)
+               ? -1
+               : 0;
+}
+
+static int64_t add_pull(reader *r, const script_curve *c, err *e)
+{
+    script_curve spring = *c;
+    const int64_t at = script_add(r->s, c, e);
+    if (at < 0 || script_nodes_in_ball(r->s, r->m, &r->k, r->near, c, e))
+        return -1;
+    spring.verb = SCRIPT_SPRING;
+    return script_add(r->s, &spring, e) < 0 ? -1 : at;
+}
+
+static bool is_same_spring(const script_curve *a, const script_curve *b)
+{
+    return !memcmp(a->box, b->box, sizeof a->box) && a->stiffness == b->stiffness;
+}
+
+static int take_pull(reader *r, script_curve *c, double *to, err *e)
+{
+    const keyfile *k = &r->k;
+    if (take_lengths(r, k->word[3], 3, c->box, "X,Y,Z: a point, in metres or with suffixes", e) ||
+        take_lengths(r, k->word[4], 1, c->box + 3, "a radius, in metres or with a suffix", e) ||
+        take_lengths(r, k->word[5], 3, to, "TX,TY,TZ: a point, in metres or with suffixes", e))
+        return -1;
+    if (c->box[3] <= 0)
+        return keyfile_error(k, e, "radius '%.200s'; expected more than 0", k->word[4]);
+    if (num_double(k->word[6], &c->stiffness) || !isfinite(c->stiffness) || c->stiffness <= 0)
+        return keyfile_error(k, e, "stiffness '%.200s'; expected a number above 0, in N/m", k->word[6]);
+    return 0;
+}
+
+static int line_pull(reader *r, double time, err *e)
+{
+    double to[3] = {0};
+    script_curve c = {.verb = SCRIPT_PULL, .volume = -1, .line = r->k.line, .target = r->k.word[2]};
+    if (take_pull(r, &c, to, e))
+        return -1;
+    int64_t at = script_find(r->s, &c);
+    const bool differs = at >= 0 && !is_same_spring(&r->s->curve[at], &c);
+    if (differs && r->now && r->s->curve[at].is_live) {
+        r->gone = at;
+        at = -1;
+    } else if (differs)
+        return keyfile_error(&r->k, e,
+                             "'%.200s' pulls at another place, or with another stiffness, since line %" PRId64
+                             "; expected the same, or another ID",
+                             c.target, r->s->curve[at].line);
+    if (at < 0 && (at = add_pull(r, &c, e)) < 0)
+        return -1;
+    if (!r->now && r->s->curve[at].is_released && keys_add(r, at, time, 0, to, e))
+        return -1;
+    r->s->curve[at].is_released = false;
+    return r->now ? pull_now(r, at, to, e) : keys_add(r, at, time, 1, to, e);
+}
+
+/* The end of a pull's spring, as said last. */
+static const double *last_value(const reader *r, int64_t curve)
+{
+    int64_t i = r->count - 1;
+    while (r->entries[i].curve != curve)
+        i--;
+    return r->entries[i].value;
+}
+
+static int line_release(reader *r, double time, err *e)
+{
+    const keyfile *k = &r->k;
+    const script_curve c = {.verb = SCRIPT_PULL, .volume = -1, .target = k->word[2]};
+    const int64_t at = script_find(r->s, &c);
+    double to[3];
+    if (at < 0 || r->s->curve[at].is_released)
+        return keyfile_error(k, e, "nothing is pulled as '%.200s'; expected the ID of a pull before", k->word[2]);
+    r->s->curve[at].is_released = true;
+    if (r->now)
+        return keys_add(r, at, time, 0, r->s->curve[at].box, e);
+    for (int a = 0; a < 3; a++)
+        to[a] = r->s->curve[at].box[a] + last_value(r, at)[a];
+    return keys_add(r, at, time, 1, to, e) || keys_add(r, at, time, 0, to, e) ? -1 : 0;
+}
+
 static const struct verb {
     int words;
     int (*take)(reader *r, double time, err *e);
     const char *expected;
 } verbs[] = {
-    [SCRIPT_CONTRACT] = {4, line_contract, "TIME contract MUSCLE LEVEL"},
-    [SCRIPT_GRAVITY] = {3, line_gravity, "TIME gravity X,Y,Z"},
-    [SCRIPT_FORCE] = {5, line_force, "TIME force X,Y,Z RADIUS FX,FY,FZ"},
-    [SCRIPT_DISPLACE] = {4, line_displace, "TIME displace SURFACE|X0,Y0,Z0,X1,Y1,Z1 UX,UY,UZ"},
-    [SCRIPT_PRESSURE] = {4, line_pressure, "TIME pressure SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1] PA"},
-    [SCRIPT_TRACTION] = {4, line_traction, "TIME traction SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1] X,Y,Z"},
+    {4, line_contract, "contract MUSCLE LEVEL"},
+    {3, line_gravity, "gravity X,Y,Z"},
+    {5, line_force, "force X,Y,Z RADIUS FX,FY,FZ"},
+    {4, line_displace, "displace SURFACE|X0,Y0,Z0,X1,Y1,Z1 UX,UY,UZ"},
+    {4, line_pressure, "pressure SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1|:FILE.obj] PA"},
+    {4, line_traction, "traction SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1|:FILE.obj] X,Y,Z"},
+    {7, line_pull, "pull ID X,Y,Z RADIUS TX,TY,TZ NEWTONS_PER_METRE"},
+    {3, line_release, "release ID"},
 };
 
-static const char *const verb_names[] = {
-    [SCRIPT_CONTRACT] = "contract", [SCRIPT_GRAVITY] = "gravity",   [SCRIPT_FORCE] = "force",
-    [SCRIPT_DISPLACE] = "displace", [SCRIPT_PRESSURE] = "pressure", [SCRIPT_TRACTION] = "traction"};
+static const char *const verb_names[] = {"contract", "gravity",  "force", "displace",
+                                         "pressure", "traction", "pull",  "release"};
 
 enum { VERBS = sizeof verbs / sizeof *verbs };
+
+/* The verb that a line's second word is, or -1 with e filled; `when`: the word that is to be before it. */
+static int verb_of(const keyfile *k, const char *when, err *e)
+{
+    int v = 0;
+    while (v < VERBS && strcmp(verb_names[v], k->word[1]))
+        v++;
+    if (v == VERBS)
+        return near_unknown(e, k->name, k->line, "verb", k->word[1], verb_names, VERBS);
+    if (k->count != verbs[v].words)
+        return keyfile_error(k, e, "%d words; expected %s%s", k->count, when, verbs[v].expected);
+    return v;
+}
 
 static int take_line(reader *r, err *e)
 {
@@ -318,15 +388,9 @@ static int take_line(reader *r, err *e)
         return keyfile_error(k, e, "'%.200s' is not a time; expected TIME VERB ..., TIME in seconds from 0",
                              k->word[0]);
     if (k->count == 1)
-        return keyfile_error(k, e, "a time alone; expected TIME VERB ..., such as %s", verbs[0].expected);
-    int v = 0;
-    while (v < VERBS && strcmp(verb_names[v], k->word[1]))
-        v++;
-    if (v == VERBS)
-        return near_unknown(e, k->name, k->line, "verb", k->word[1], verb_names, VERBS);
-    if (k->count != verbs[v].words)
-        return keyfile_error(k, e, "%d words; expected %s", k->count, verbs[v].expected);
-    return verbs[v].take(r, time, e);
+        return keyfile_error(k, e, "a time alone; expected TIME VERB ..., such as TIME %s", verbs[0].expected);
+    const int v = verb_of(k, "TIME ", e);
+    return v < 0 ? -1 : verbs[v].take(r, time, e);
 }
 
 /* Brings the keys of each curve together, in the order of the curves. */
@@ -376,16 +440,6 @@ static int refuse_conflicts(reader *r, err *e)
     return status;
 }
 
-/* Sides of voxels are seldom whole in binary: 3 x 1.1 mm is more than 3.3 mm by a rounding. */
-static void take_near(reader *r)
-{
-    lattice l;
-    err none = {0};
-    bool known = model_meta_of(r->m, "lattice.spacing") && !lattice_of(r->m, &l, &none);
-    for (int a = 0; a < 3; a++)
-        r->near[a] = known ? 1e-9 * l.spacing[a] : 0;
-}
-
 int script_read(script *s, in *source, const model *m, err *e)
 {
     reader r = {.s = s, .m = m, .first = s->curves};
@@ -393,7 +447,7 @@ int script_read(script *s, in *source, const model *m, err *e)
     if (!s->file && !(s->file = mem_text(in_name(source), e)))
         return -1;
     keyfile_open(&r.k, source);
-    take_near(&r);
+    script_near(m, r.near);
     while ((more = keyfile_next(&r.k, e)) > 0)
         if (take_line(&r, e))
             goto out;
@@ -406,4 +460,102 @@ int script_read(script *s, in *source, const model *m, err *e)
 out:
     free(r.entries);
     return status;
+}
+
+/* ---- Live */
+
+enum { LIVE_CURVES = 1000 }; /* the most that there may be */
+
+/* A line that begins with its verb, as one that begins with the word now, which is the caller's. */
+static keyfile with_now(const keyfile *k, char *now)
+{
+    keyfile with = *k;
+    if (!strcmp(k->word[0], now) || k->count == KEYFILE_WORDS)
+        return with;
+    memmove(with.word + 1, k->word, (size_t)k->count * sizeof *k->word);
+    with.word[0] = now;
+    with.count++;
+    return with;
+}
+
+bool script_is_now(const keyfile *k)
+{
+    const char *word = k->word[0];
+    return !strcmp(word, "now") || !strcmp(word, "pull") || !strcmp(word, "release");
+}
+
+/* Takes back what was added past the counts of before. */
+static void take_back(script *s, const script *before)
+{
+    for (int64_t i = before->curves; i < s->curves; i++) {
+        free(s->curve[i].target);
+        free(s->curve[i].surface);
+    }
+    s->curves = before->curves;
+    s->keys = before->keys;
+    s->nodes = before->nodes;
+    s->triangles = before->triangles;
+}
+
+/* Whether a curve that a live line made does nothing any more. */
+static bool is_over(const script *s, const script_curve *c)
+{
+    if (!c->is_live)
+        return false;
+    if (c->verb == SCRIPT_PULL)
+        return c->is_released;
+    if (c->verb != SCRIPT_FORCE && c->verb != SCRIPT_TRACTION && c->verb != SCRIPT_PRESSURE)
+        return false;
+    const double *last = s->value + 3 * (int64_t)c->own;
+    return last[0] == 0 && last[1] == 0 && last[2] == 0;
+}
+
+static void drop_with_spring(script *s, int64_t curve)
+{
+    if (s->curve[curve].verb == SCRIPT_PULL)
+        script_drop(s, curve + 1);
+    script_drop(s, curve);
+}
+
+/* All curves before `added` that are over, and the one that the line replaced. */
+static void drop_old(script *s, int64_t added, int64_t replaced)
+{
+    for (int64_t i = added - 1; i >= 0; i--)
+        if (i == replaced || is_over(s, &s->curve[i]))
+            drop_with_spring(s, i);
+}
+
+static int take_verb(reader *r, err *e)
+{
+    const int64_t before = r->s->curves;
+    const keyfile *k = &r->k;
+    if (k->count < 2)
+        return keyfile_error(k, e, "'now' alone; expected now VERB ..., such as now %s", verbs[0].expected);
+    const int v = verb_of(k, "now ", e);
+    if (v < 0 || verbs[v].take(r, r->now->from, e))
+        return -1;
+    if (r->s->curves == before)
+        return 0;
+    if (r->s->curves > LIVE_CURVES)
+        return keyfile_error(k, e, "more than %d targets; expected pulls to be released, or forces of 0", LIVE_CURVES);
+    return r->s->curve[before].verb == SCRIPT_DISPLACE ? refuse_conflicts(r, e) : 0;
+}
+
+int script_take_now(script *s, const model *m, const keyfile *k, const script_now *now, bool *anew, err *e)
+{
+    char word[] = "now";
+    reader r = {.s = s, .m = m, .k = with_now(k, word), .now = now, .gone = -1};
+    const script before = *s;
+    script_near(m, r.near);
+    if (take_verb(&r, e)) {
+        take_back(s, &before);
+        return -1;
+    }
+    if (s->curves == before.curves)
+        return 0;
+    *anew = true;
+    for (int64_t i = before.curves; i < s->curves; i++)
+        s->curve[i].is_live = true;
+    drop_old(s, before.curves, r.gone);
+    return 0;
 }

@@ -1,12 +1,16 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "mesh/bound.h"
+#include "surface/coincident.h"
+#include "surface/scale.h"
 #include "surface/triangulate.h"
+#include "surface/winding.h"
 #include "tled/problem/script.h"
 #include "tled/problem/triangle.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -77,20 +81,14 @@ typedef struct picker {
     const script_curve *c;
     surface from;
     const char *group; /* that faces must be of; NULL: any */
-    const double *box; /* that triangles must be in; NULL: anywhere */
-    double near;       /* m: how far outside of it a vertex may be */
+    uint8_t *in;       /* vertices: whether in the region of space that triangles must be in; NULL: anywhere */
     int32_t *cut;      /* corners of the face's triangles */
     int64_t room;
 } picker;
 
-static bool is_in_box(const picker *p, const int32_t *vertex, const int32_t *triangle)
+static bool is_in(const picker *p, const int32_t *vertex, const int32_t *triangle)
 {
-    for (int i = 0; p->box && i < 9; i++) {
-        const double x = p->from.position[3 * (int64_t)vertex[triangle[i / 3]] + i % 3];
-        if (x < p->box[i % 3] - p->near || x > p->box[3 + i % 3] + p->near)
-            return false;
-    }
-    return true;
+    return !p->in || (p->in[vertex[triangle[0]]] && p->in[vertex[triangle[1]]] && p->in[vertex[triangle[2]]]);
 }
 
 static int add_triangle(script *s, const int32_t *vertex, const int32_t *triangle, double part, err *e)
@@ -112,7 +110,7 @@ static int add_triangle(script *s, const int32_t *vertex, const int32_t *triangl
 static int add_triangles(picker *p, const int32_t *vertex, const int32_t *cut, int64_t count, double part, err *e)
 {
     for (int64_t t = 0; t < count; t++)
-        if (is_in_box(p, vertex, cut + 3 * t) && add_triangle(p->s, vertex, cut + 3 * t, part, e))
+        if (is_in(p, vertex, cut + 3 * t) && add_triangle(p->s, vertex, cut + 3 * t, part, e))
             return -1;
     return 0;
 }
@@ -151,23 +149,19 @@ static int add_face(picker *p, int64_t face, err *e)
     return add_triangles(p, vertex, p->cut, count - 2, 1, e);
 }
 
-/* Coordinates are products and sums with roundings. */
-static double rounding_of(const surface *s)
-{
-    double largest = 0;
-    for (int64_t i = 0; i < 3 * s->vertices; i++)
-        largest = fmax(largest, fabs(s->position[i]));
-    return 1e-12 * largest;
-}
-
 static int no_triangle(const picker *p, const keyfile *k, err *e)
 {
-    const char *name = p->c->surface;
-    if (p->box)
+    const char *name = p->c->surface, *region = script_region(p->c);
+    if (p->in && script_is_file(region))
+        return keyfile_error(k, e,
+                             "no triangle of '%.100s' lies inside of %.200s; expected a closed surface around some, in "
+                             "the model's place and unit, or --unit",
+                             name, region);
+    if (p->in)
         return keyfile_error(k, e,
                              "no triangle of '%.100s' lies in the box %.200s; expected X0,Y0,Z0,X1,Y1,Z1 around some, "
                              "in metres or with suffixes",
-                             name, script_region(p->c));
+                             name, region);
     if (p->group)
         return near_unknown(e, k->name, k->line, "group of polygons", p->group, (const char *const *)p->from.group_name,
                             p->from.groups < INT32_MAX ? (int)p->from.groups : INT32_MAX);
@@ -177,23 +171,9 @@ static int no_triangle(const picker *p, const keyfile *k, err *e)
 /* Whether it is closed: each edge goes one way round as often as the other. Vertices at one place count as one. */
 
 typedef struct edge {
-    int32_t low, high; /* the first of the vertices at each place */
+    int32_t low, high; /* numbers of places */
     int32_t sense;     /* 2: from low to high, 1 in a triangle that counts by half; -2, -1: back */
 } edge;
-
-typedef struct place {
-    double x[3];
-    int32_t vertex;
-} place;
-
-static int compare_places(const void *left, const void *right)
-{
-    const place *a = left, *b = right;
-    for (int i = 0; i < 3; i++)
-        if (a->x[i] != b->x[i])
-            return a->x[i] < b->x[i] ? -1 : 1;
-    return (a->vertex > b->vertex) - (a->vertex < b->vertex);
-}
 
 static int compare_edges(const void *left, const void *right)
 {
@@ -203,33 +183,13 @@ static int compare_edges(const void *left, const void *right)
     return (a->high > b->high) - (a->high < b->high);
 }
 
-/* weld: of each vertex, the first at its place. */
-static int weld_vertices(const surface *s, int32_t *weld, err *e)
-{
-    place *list = mem_array(s->vertices, sizeof *list, "the vertices", e);
-    if (!list)
-        return -1;
-    for (int64_t i = 0; i < s->vertices; i++) {
-        memcpy(list[i].x, s->position + 3 * i, sizeof list[i].x);
-        list[i].vertex = (int32_t)i;
-    }
-    qsort(list, (size_t)s->vertices, sizeof *list, compare_places);
-    for (int64_t i = 0, first = 0; i < s->vertices; i++) {
-        for (int a = 0; a < 3; a++)
-            if (list[i].x[a] != list[first].x[a])
-                first = i;
-        weld[list[i].vertex] = list[first].vertex;
-    }
-    free(list);
-    return 0;
-}
-
-static int64_t list_edges(const int32_t *corner, const double *part, int64_t triangles, const int32_t *weld, edge *list)
+static int64_t list_edges(const int32_t *corner, const double *part, int64_t triangles, const int32_t *place,
+                          edge *list)
 {
     int64_t count = 0;
     for (int64_t i = 0; i < 3 * triangles; i++) {
         const int32_t sense = (int32_t)(2 * part[i / 3]);
-        const int32_t from = weld[corner[i]], to = weld[corner[i % 3 == 2 ? i - 2 : i + 1]];
+        const int32_t from = place[corner[i]], to = place[corner[i % 3 == 2 ? i - 2 : i + 1]];
         if (from < to)
             list[count++] = (edge){from, to, sense};
         else if (from > to)
@@ -238,62 +198,217 @@ static int64_t list_edges(const int32_t *corner, const double *part, int64_t tri
     return count;
 }
 
-static int64_t count_open(const edge *list, int64_t count)
+/* How many edges are open, and the first of them. */
+static int64_t count_open(const edge *list, int64_t count, edge *first)
 {
     int64_t open = 0, sum = 0;
     for (int64_t i = 0; i < count; i++) {
         sum += list[i].sense;
-        if (i + 1 == count || compare_edges(&list[i], &list[i + 1]) != 0) {
-            open += sum != 0;
-            sum = 0;
-        }
+        if (i + 1 < count && compare_edges(&list[i], &list[i + 1]) == 0)
+            continue;
+        if (sum && !open++)
+            *first = list[i];
+        sum = 0;
     }
     return open;
 }
 
-/* How many edges of these triangles are open, or -1 with e filled. */
-static int64_t find_open(const surface *s, const int32_t *corner, const double *part, int64_t triangles, err *e)
+/* A vertex at that place. */
+static const double *vertex_at(const surface *s, const int32_t *place, int32_t number)
 {
-    int64_t open = -1;
-    int32_t *weld = mem_array(s->vertices, sizeof *weld, "the vertices", e);
-    edge *list = weld ? mem_array(3 * triangles, sizeof *list, "the edges", e) : NULL;
-    if (list && !weld_vertices(s, weld, e)) {
-        const int64_t count = list_edges(corner, part, triangles, weld, list);
+    int64_t v = 0;
+    while (place[v] != number)
+        v++;
+    return s->position + 3 * v;
+}
+
+enum { OPEN_TEXT = 140 };
+
+/* Says how many edges of these triangles are open, and where the first one is; nothing where none is. */
+static int find_open(const surface *s, const int32_t *corner, const double *part, int64_t triangles,
+                     char text[OPEN_TEXT], err *e)
+{
+    int status = -1;
+    edge first = {0, 0, 0};
+    int32_t *place = mem_array(s->vertices, sizeof *place, "the vertices", e);
+    edge *list = place ? mem_array(3 * triangles, sizeof *list, "the edges", e) : NULL;
+    *text = '\0';
+    if (list && coincident_places(s->position, s->vertices, place, e) >= 0) {
+        const int64_t count = list_edges(corner, part, triangles, place, list);
         qsort(list, (size_t)count, sizeof *list, compare_edges);
-        open = count_open(list, count);
+        const int64_t open = count_open(list, count, &first);
+        const double *a = vertex_at(s, place, first.low), *b = vertex_at(s, place, first.high);
+        if (open)
+            snprintf(text, OPEN_TEXT, "%" PRId64 " open edge%s at %.4gmm,%.4gmm,%.4gmm", open,
+                     open == 1 ? "" : "s, the first", 500 * (a[0] + b[0]), 500 * (a[1] + b[1]), 500 * (a[2] + b[2]));
+        status = 0;
     }
-    free(weld);
+    free(place);
     free(list);
-    return open;
+    return status;
 }
 
 static int check_closed(const script *s, const script_curve *c, const surface *from, const keyfile *k, err *e)
 {
-    const int64_t open =
-        find_open(from, s->corner + 3 * (int64_t)c->triangle_first, s->part + c->triangle_first, c->triangle_count, e);
-    if (open > 0)
+    char open[OPEN_TEXT];
+    if (find_open(from, s->corner + 3 * (int64_t)c->triangle_first, s->part + c->triangle_first, c->triangle_count,
+                  open, e))
+        return -1;
+    if (*open)
         return keyfile_error(k, e,
-                             "surface '%.200s' is not closed: %" PRId64 " open edge%s; expected each edge between two "
-                             "triangles that face the same way, or a region: SURFACE:GROUP or "
-                             "SURFACE:X0,Y0,Z0,X1,Y1,Z1",
-                             c->surface, open, open == 1 ? "" : "s");
-    return open < 0 ? -1 : 0;
+                             "surface '%.200s' is not closed: %s; expected each edge between two triangles that face "
+                             "the same way, or a region: SURFACE:GROUP, SURFACE:X0,Y0,Z0,X1,Y1,Z1 or SURFACE:FILE.obj",
+                             c->surface, open);
+    return 0;
+}
+
+/* Regions of space */
+
+/* Coordinates are products and sums with roundings. */
+static double rounding_of(const surface *s)
+{
+    double largest = 0;
+    for (int64_t i = 0; i < 3 * s->vertices; i++)
+        largest = fmax(largest, fabs(s->position[i]));
+    return 1e-12 * largest;
+}
+
+static void mark_box(picker *p)
+{
+    const double near = rounding_of(&p->from), *low = p->c->box, *high = p->c->box + 3;
+    for (int64_t v = 0; v < p->from.vertices; v++) {
+        const double *x = p->from.position + 3 * v;
+        p->in[v] = true;
+        for (int a = 0; a < 3; a++)
+            p->in[v] &= x[a] >= low[a] - near && x[a] <= high[a] + near;
+    }
+}
+
+/* The triangles of an OBJ. */
+typedef struct solid {
+    obj file;
+    surface shape;   /* its vertices, in metres */
+    double *metres;  /* vertices x 3 */
+    int32_t *corner; /* triangles x 3: vertices */
+    double *part;    /* triangles: 1 */
+    int64_t triangles, room;
+} solid;
+
+static void solid_free(solid *b)
+{
+    obj_free(&b->file);
+    free(b->metres);
+    free(b->corner);
+    free(b->part);
+}
+
+static int cut_face(solid *b, int64_t face, err *e)
+{
+    const int64_t first = b->file.face_start[face], count = b->file.face_start[face + 1] - first;
+    const int32_t *vertex = b->file.corner_vertex + first;
+    if (count < 3)
+        return 0;
+    if (mem_grow(&b->corner, &b->room, b->triangles + count - 2, 3 * sizeof *b->corner, "a region", e))
+        return -1;
+    int32_t *cut = b->corner + 3 * b->triangles;
+    if (triangulate(b->metres, vertex, count, cut, e))
+        return -1;
+    for (int64_t i = 0; i < 3 * (count - 2); i++)
+        cut[i] = vertex[cut[i]];
+    b->triangles += count - 2;
+    return 0;
+}
+
+static int solid_cut(solid *b, double scale, err *e)
+{
+    int status = 0;
+    b->metres = mem_array(b->file.vertices, 3 * sizeof *b->metres, "a region", e);
+    if (!b->metres)
+        return -1;
+    for (int64_t i = 0; i < 3 * b->file.vertices; i++)
+        b->metres[i] = surface_metres(b->file.position[i], scale);
+    b->shape = (surface){.position = b->metres, .vertices = b->file.vertices};
+    for (int64_t f = 0; f < b->file.faces && !status; f++)
+        status = cut_face(b, f, e);
+    if (status || !(b->part = mem_array(b->triangles, sizeof *b->part, "a region", e)))
+        return -1;
+    for (int64_t t = 0; t < b->triangles; t++)
+        b->part[t] = 1;
+    return 0;
+}
+
+static int solid_read(solid *b, const char *file, double scale, err *e)
+{
+    in *source = in_open(file, e);
+    const int status = source && !obj_read(&b->file, source, e) ? solid_cut(b, scale, e) : -1;
+    in_close(source);
+    return status;
+}
+
+static int solid_check(const solid *b, const char *file, const keyfile *k, err *e)
+{
+    char open[OPEN_TEXT];
+    if (!b->triangles)
+        return keyfile_error(k, e, "%.200s has no polygons; expected a closed surface", file);
+    if (find_open(&b->shape, b->corner, b->part, b->triangles, open, e))
+        return -1;
+    if (*open)
+        return keyfile_error(k, e,
+                             "%.200s is not closed: %s; expected each edge between two triangles that face the same "
+                             "way",
+                             file, open);
+    return 0;
+}
+
+static int mark_inside(picker *p, const model *m, const keyfile *k, err *e)
+{
+    const char *file = script_region(p->c);
+    solid b = {.triangles = 0};
+    err found = {0};
+    const num_unit unit = scale_unit(p->s->unit, m, e);
+    if (!unit)
+        return -1;
+    int status = solid_read(&b, file, scale_of(unit), &found);
+    if (status)
+        keyfile_error(k, e, "%.400s", found.text);
+    else
+        status = solid_check(&b, file, k, e);
+    if (!status) {
+        const winding body = winding_of(b.metres, b.corner, b.triangles);
+        for (int64_t v = 0; v < p->from.vertices; v++)
+            p->in[v] = winding_holds(&body, p->from.position + 3 * v);
+    }
+    solid_free(&b);
+    return status;
+}
+
+static int mark_region(picker *p, const model *m, const keyfile *k, err *e)
+{
+    const char *region = script_region(p->c);
+    const bool by_box = region && script_is_box(region), by_file = region && script_is_file(region);
+    if (!by_box && !by_file) {
+        p->group = region;
+        return 0;
+    }
+    if (!(p->in = mem_array(p->from.vertices, sizeof *p->in, "the vertices", e)))
+        return -1;
+    if (by_file)
+        return mark_inside(p, m, k, e);
+    mark_box(p);
+    return 0;
 }
 
 int script_take_triangles(script *s, const model *m, const keyfile *k, err *e)
 {
     const script_curve *c = &s->curve[s->curves - 1];
-    const char *region = script_region(c);
-    const bool by_box = region && strchr(region, ',');
-    picker p = {.s = s, .c = c, .group = by_box ? NULL : region, .box = by_box ? c->box : NULL};
-    int status = surface_of(m, c->surface, &p.from, e);
-    if (!status)
-        p.near = rounding_of(&p.from);
+    picker p = {.s = s, .c = c};
+    int status = surface_of(m, c->surface, &p.from, e) || mark_region(&p, m, k, e) ? -1 : 0;
     for (int64_t i = 0; i < p.from.faces && !status; i++)
         status = add_face(&p, i, e);
     free(p.cut);
     if (!status && !c->triangle_count)
         status = no_triangle(&p, k, e);
+    free(p.in);
     if (!status && c->verb == SCRIPT_PRESSURE && !c->is_region)
         status = check_closed(s, c, &p.from, k, e);
     return status;

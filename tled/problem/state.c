@@ -25,6 +25,18 @@ fields tled_fields(int64_t nodes, int64_t elements)
                     .rows = {[FIELD_NODE] = nodes, [FIELD_ELEMENT] = elements}};
 }
 
+static void forget_loads(tled_problem *p)
+{
+    free(p->force_start);
+    free(p->force_curve);
+    free(p->force_spring);
+    free(p->force_share);
+    followers_free(p->followers);
+    p->force_start = p->force_curve = p->force_spring = NULL;
+    p->force_share = NULL;
+    p->followers = NULL;
+}
+
 void tled_problem_free(tled_problem *p)
 {
     free(p->mixed);
@@ -35,10 +47,7 @@ void tled_problem_free(tled_problem *p)
     free(p->corner_start);
     free(p->mass);
     free(p->hold);
-    free(p->force_start);
-    free(p->force_curve);
-    free(p->force_share);
-    followers_free(p->followers);
+    forget_loads(p);
     fields_free(&p->at_start);
     memset(p, 0, sizeof *p);
 }
@@ -318,6 +327,7 @@ static void make_holds(tled_problem *p, const model *m)
                 if (curve->mask & 1u << a)
                     p->hold[3 * (int64_t)p->script->node[curve->node_first + i] + a] = (int32_t)c;
     }
+    p->held = 0;
     for (int64_t n = 0; n < p->nodes; n++)
         p->held += p->hold[3 * n] != HOLD_FREE || p->hold[3 * n + 1] != HOLD_FREE || p->hold[3 * n + 2] != HOLD_FREE;
 }
@@ -347,6 +357,16 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
         conforming_join(p);
     make_holds(p, m);
     return 0;
+}
+
+int tled_problem_reload(tled_problem *p, const model *m, err *e)
+{
+    p->gravity = find_curve(p->script, SCRIPT_GRAVITY, -1);
+    for (int32_t i = 0; i < p->volumes; i++)
+        p->volume[i].contract = find_curve(p->script, SCRIPT_CONTRACT, i);
+    make_holds(p, m);
+    forget_loads(p);
+    return loads_make(p, m, e) || followers_make(p, m, e) ? -1 : 0;
 }
 
 static int start_field(tled_problem *p, int i, const frame *f, notes *warnings, err *e)
@@ -390,11 +410,11 @@ void tled_curves(const tled_problem *p, double time, double *value)
         script_value(p->script, &p->script->curve[i], time, value + 3 * i);
 }
 
-void tled_external(const tled_problem *p, const double *value, int64_t n, double *force)
+void tled_external(const tled_problem *p, const double *value, const double *u, int64_t n, double *force)
 {
     for (int a = 0; a < 3; a++) {
         force[a] = p->gravity < 0 ? 0 : p->mass[n] * value[3 * p->gravity + a];
         for (int32_t i = p->force_start[n]; i < p->force_start[n + 1]; i++)
-            force[a] += p->force_share[i] * value[3 * (int64_t)p->force_curve[i] + a];
+            force[a] += loads_entry(p, i, value, a, u[a]);
     }
 }

@@ -62,14 +62,16 @@ typedef struct tled_problem {
     int64_t held;          /* nodes with any component held */
     int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
     int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
-    double *force_share;   /* entries: 1 for a force, m2 for a traction, in all */
+    int32_t *force_spring; /* entries: the curve of a spring's factor, or -1 (loads.h) */
+    double *force_share;   /* entries: 1 for a force, m2 for a traction, in all; N/m for a spring */
     const script *script;
-    int64_t gravity;                 /* its curve, or -1 */
-    double start;                    /* s: the model's time at the start */
-    fields fields;                   /* what a state consists of */
-    field_values at_start;           /* and the one that the run begins from: m, m/s */
-    const struct collider *collider; /* what presses (collider.h), or NULL */
-    struct followers *followers;     /* the script's pressures (followers.h), owned; NULL: none */
+    int64_t gravity;                   /* its curve, or -1 */
+    double start;                      /* s: the model's time at the start */
+    int32_t spare_curves, spare_nodes; /* live: room that an executor may keep for what lines add; 0: none */
+    fields fields;                     /* what a state consists of */
+    field_values at_start;             /* and the one that the run begins from: m, m/s */
+    const struct collider *collider;   /* what presses (collider.h), or NULL */
+    struct followers *followers;       /* the script's pressures (followers.h), owned; NULL: none */
 } tled_problem;
 
 /* A run of steps: after step i of them (from 1) the time is origin + (first + i) / rate. A rate, since a whole
@@ -98,6 +100,11 @@ enum { PASS_FINISH = 1, PASS_BEGIN = 2, PASS_INTERNAL = 4 };
  * control: of hourglass modes. -1 with e filled and p to be freed all the same. */
 int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglass_control control, err *e);
 void tled_problem_free(tled_problem *p);
+
+/* Takes over curves that came to the script or left it: what forces, holds and contracts, but not the elements. States
+ * of the problem have to take that over too (tled_executor's reload), and what else has a curve's values. -1 with e
+ * filled. */
+int tled_problem_reload(tled_problem *p, const model *m, err *e);
 
 /* What a state of a model of so many nodes and elements consists of. taken() fills what of it frames have. */
 fields tled_fields(int64_t nodes, int64_t elements);
@@ -132,9 +139,9 @@ static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);
 
-/* The sum of what acts on node n from outside (N, 3): gravity, forces and tractions; value: all curves' values, 3 a
- * curve. */
-void tled_external(const tled_problem *p, const double *value, int64_t n, double *force);
+/* The sum of what acts on node n from outside (N, 3): gravity, forces, tractions and springs. value: all curves'
+ * values, 3 a curve; u: its displacement (3, m). */
+void tled_external(const tled_problem *p, const double *value, const double *u, int64_t n, double *force);
 
 /* The values of all curves at a time, 3 a curve. */
 void tled_curves(const tled_problem *p, double time, double *value);

@@ -48,6 +48,9 @@ typedef struct tled_executor {
     /* Saves a copy of the state in place of the one before; and restores it. */
     int (*save)(tled_state *state, err *e);
     int (*restore)(tled_state *state, err *e);
+    /* Takes over what tled_problem_reload changed. 0; 1: it has no room for it, so the state has to be made again, as
+     * it has where this is NULL. */
+    int (*reload)(tled_state *state, err *e);
     /* Copies the results as they are now into a slot, to be fetched later. */
     int (*snapshot)(tled_state *state, int slot, err *e);
     /* Fetches the fields of a snapshot, in any thread, while the state goes on. */

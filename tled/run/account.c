@@ -112,12 +112,12 @@ typedef struct node_load {
     double gravity[3], forces[3];
 } node_load;
 
-static node_load load_of(const tled_problem *p, const double *curves, int64_t n)
+static node_load load_of(const tled_problem *p, const moment *m, int64_t n)
 {
     node_load load = {{0}, {0}};
-    tled_external(p, curves, n, load.forces);
+    tled_external(p, m->curves, m->displacement + 3 * n, n, load.forces);
     for (int a = 0; a < 3 && p->gravity >= 0; a++) {
-        load.gravity[a] = p->mass[n] * curves[3 * p->gravity + a];
+        load.gravity[a] = p->mass[n] * m->curves[3 * p->gravity + a];
         load.forces[a] -= load.gravity[a];
     }
     return load;
@@ -131,7 +131,7 @@ static void find_push(account *a, int64_t n)
         x[k] = p->position[3 * n + k] + a->now.displacement[3 * n + k];
         push[k] = 0;
     }
-    if (!collider_push(p->collider, &a->probe, a->now.sums.time, x, p->mass[n], push))
+    if (!collider_push(p->collider, &a->probe, collider_up(p->collider, a->now.sums.time), x, p->mass[n], push))
         memset(push, 0, 3 * sizeof *push);
 }
 
@@ -167,8 +167,8 @@ static void add_node(account *a, int64_t n, struct account_part *part)
 {
     const tled_problem *p = a->p;
     const double mass = p->mass[n];
-    const node_load is = load_of(p, a->now.curves, n);
-    const node_load was = a->before.known ? load_of(p, a->before.curves, n) : is;
+    const node_load is = load_of(p, &a->now, n);
+    const node_load was = a->before.known ? load_of(p, &a->before, n) : is;
     double way = 0, speed = 0;
     if (p->collider)
         find_push(a, n);

@@ -92,6 +92,8 @@ static uint32_t crc_script(const script *s)
         if (c->triangle_count)
             crc = checksum_add(crc, s->corner + 3 * (int64_t)c->triangle_first,
                                3 * (size_t)c->triangle_count * sizeof *s->corner);
+        if (c->verb == SCRIPT_PULL)
+            crc = checksum_add(crc, &c->stiffness, sizeof c->stiffness);
         if (c->surface)
             crc = checksum_add(crc, c->surface, strlen(c->surface));
     }

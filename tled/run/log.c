@@ -1,8 +1,8 @@
 #include "tled/run/log.h"
 
+#include "base/clock.h"
 #include "base/in.h"
 #include "base/path.h"
-#include "cli/progress.h"
 #include "model/rest_place.h"
 
 #include <math.h>
@@ -107,7 +107,7 @@ static int empty_rows(run_log *l, bool send, err *e)
 int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
 {
     l->p = p;
-    l->began = progress_clock();
+    l->began = clock_now();
     l->account = account_create(p, threads, e);
     l->rows = l->account ? out_memory(e) : NULL;
     if (!l->rows)
@@ -152,7 +152,7 @@ static void put_share(out *to, double value)
 
 static void put_row(run_log *l, const log_row *row, const account_sums *s)
 {
-    const double took = progress_clock() - l->began;
+    const double took = clock_now() - l->began;
     const double rate = took > 0 && row->taken > l->steps ? (double)(row->taken - l->steps) / took : NAN;
     const double values[] = {row->dt,
                              row->stable,
@@ -184,7 +184,7 @@ static void put_row(run_log *l, const log_row *row, const account_sums *s)
     put_share(l->rows, quality_hourglass(s->tissue.hourglass, s->tissue.strain, s->tissue.scale));
     out_text(l->rows, "\n");
     l->steps = row->taken;
-    l->began = progress_clock();
+    l->began = clock_now();
 }
 
 int log_read(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e)

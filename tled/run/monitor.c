@@ -6,6 +6,7 @@
 #include "mesh/element_place.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/deformed.h"
+#include "tled/problem/loads.h"
 #include "tled/problem/step.h"
 
 #include <math.h>
@@ -101,7 +102,7 @@ static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
 static void add_node(const monitor *w, int64_t n, tled_sums *sum)
 {
     double outside[3], square = 0, mass = w->p->mass[n];
-    tled_external(w->p, w->curves, n, outside);
+    tled_external(w->p, w->curves, w->displacement + 3 * n, n, outside);
     for (int a = 0; a < 3; a++) {
         int64_t i = 3 * n + a;
         double gap = outside[a] - w->internal[i], drive = mass * w->velocity[i] * w->velocity[i];
@@ -208,7 +209,7 @@ static void take_sums(monitor *w, const tled_sums *sum)
     s->broken = sum->broken;
     s->stable_element = sum->frequency_element;
     s->stable = sum->frequency_element < 0 ? w->rest_step : 2 / sqrt(sum->frequency);
-    s->stable = followers_step(w->load_square, collider_step(w->p, s->stable));
+    s->stable = followers_step(w->load_square + w->spring_square, collider_step(w->p, s->stable));
 }
 
 int monitor_read(monitor *w, const tled_executor *b, tled_state *state, double time, err *e)
@@ -219,6 +220,8 @@ int monitor_read(monitor *w, const tled_executor *b, tled_state *state, double t
     w->question = (tled_question){time, 4 / (w->rest_step * w->rest_step) * (1 + 1e-9), w->raise, w->differences};
     if (b->monitor ? b->monitor(state, &w->question, &sum, e) : read_here(w, b, state, &sum, e))
         return -1;
+    tled_curves(w->p, time, w->curves);
+    w->spring_square = loads_square(w->p, w->curves);
     take_sums(w, &sum);
     return 0;
 }
@@ -261,6 +264,21 @@ void monitor_words(const model *m, const monitor_reading *s, char *to, size_t si
         snprintf(to, size, "%s has a stable step of %.4g ms", where, 1e3 * s->stable);
 }
 
+/* What of the script has room of its own. */
+static int allocate_script(monitor *w, err *e)
+{
+    w->curves = mem_array(w->p->script->curves, 3 * sizeof *w->curves, "the monitor", e);
+    return w->curves ? followers_room(&w->followers, w->p->followers, e) : -1;
+}
+
+int monitor_reload(monitor *w, err *e)
+{
+    free(w->curves);
+    followers_room_free(&w->followers);
+    w->load_square = 0;
+    return allocate_script(w, e);
+}
+
 monitor *monitor_create(const tled_problem *p, pool *threads, err *e)
 {
     int64_t most = p->elements > p->nodes ? p->elements : p->nodes;
@@ -271,9 +289,8 @@ monitor *monitor_create(const tled_problem *p, pool *threads, err *e)
     w->threads = threads;
     w->rest_step = step_at_rest(p, NULL);
     w->raise = 1.01;
-    w->curves = mem_array(p->script->curves, 3 * sizeof *w->curves, "the monitor", e);
     w->part = mem_array(pool_chunks(most, CHUNK), sizeof *w->part, "the monitor", e);
-    if (!w->curves || !w->part || followers_room(&w->followers, p->followers, e)) {
+    if (!w->part || allocate_script(w, e)) {
         monitor_destroy(w);
         return NULL;
     }

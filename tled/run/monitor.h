@@ -37,12 +37,16 @@ typedef struct monitor {
     struct monitor_part *part;                   /* chunks */
     followers_work followers;
     double load_square;     /* 1/s2: what pressures raise the square of the frequency by */
+    double spring_square;   /* 1/s2: and springs */
     tled_question question; /* of the last reading */
     monitor_reading reading;
 } monitor;
 
 monitor *monitor_create(const tled_problem *p, pool *threads, err *e);
 void monitor_destroy(monitor *w);
+
+/* Takes over what tled_problem_reload changed. -1 with e filled. */
+int monitor_reload(monitor *w, err *e);
 
 /* Reads the same state once more, on this machine's threads: the element that is broken or has the least stable step is
  * then the first in the model's order, whatever the executor. -1 with e filled. */

@@ -3,6 +3,7 @@
 #define SINEW_TLED_OPTIONS_H
 
 #include "cli/opt.h"
+#include "physics/hourglass_numbers.h"
 
 struct options {
     opt_common common;
@@ -15,6 +16,10 @@ struct options {
     double repulsion;
     const char *checkpoint, *restart;
     double checkpoint_every;
+    bool live, force;
+    double rate; /* below 0: not given */
+    const char *lines, *record, *replay, *body;
+    hourglass_control control; /* what hourglass says, once checked */
 };
 
 extern const opt_tool options_table;

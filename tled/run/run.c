@@ -1,6 +1,6 @@
 #include "tled/run/run.h"
 
-#include "cli/progress.h"
+#include "base/clock.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/step.h"
 #include "tled/run/run_parts.h"
@@ -14,18 +14,17 @@ enum {
     STUCK = 5000      /* steps, at least, without coming closer to rest */
 };
 
-/* A step is safe up to this share of the stable one: it changes a little between two checks. */
-static const double margin = .8;
-
 /* ---- What is decided at a check */
 
 /* Chooses how often a step is cut: from the state alone, so that it is the same whatever went before. */
 static int choose_step(run *n)
 {
-    if (n->r->rate_fixed)
+    if (n->live)
+        run_choose_parts(n);
+    if (n->r->rate_fixed || n->live)
         return 0;
     for (n->course.cuts = 0; n->course.cuts <= CUTS_MAX; n->course.cuts++)
-        if (margin * n->monitor->reading.stable >= run_part(n))
+        if (RUN_MARGIN * n->monitor->reading.stable >= run_part(n))
             return 0;
     n->course.cuts = CUTS_MAX;
     return run_diverged(n);
@@ -108,7 +107,7 @@ static bool is_checkpoint_due(run *n)
     const double every = n->r->save_every > 0 ? n->r->save_every : CHECKPOINTS;
     if (!n->r->save)
         return false;
-    const double at = n->r->save_every > 0 ? run_now(n) : progress_clock();
+    const double at = n->r->save_every > 0 ? run_now(n) : clock_now();
     if (at < n->next_checkpoint)
         return false;
     n->next_checkpoint = (floor(at / every) + 1) * every;
@@ -141,7 +140,7 @@ static int begin_log(run *n)
 }
 
 /* The first check. A run that goes on from a checkpoint has decided there. */
-static int begin(run *n)
+int run_begin(run *n)
 {
     if (run_monitor(n))
         return -1;
@@ -196,7 +195,7 @@ static int end_with_frame(run *n)
 
 static int loop(run *n)
 {
-    if (begin(n))
+    if (run_begin(n))
         return -1;
     while (!n->rested && n->plan.first < n->last)
         if (step_to_next_check(n))
@@ -276,16 +275,17 @@ static run_end end_of(const run *n)
     return end;
 }
 
-int run_go(const run_setup *r, run_end *end, err *e)
+int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end *end, err *e)
 {
     run n = {.r = r,
+             .live = live,
              .plan = timeline_plan(r->p->start, r->rate),
              .written = INT64_MIN,
              .course = {.damping = r->damping, .closest = INFINITY, .remaining = INFINITY},
              .next_checkpoint = -INFINITY,
              .e = e};
     n.course.from = n.course.closest_at = n.plan.first;
-    int result = prepare(&n) ? -1 : loop(&n);
+    int result = prepare(&n) ? -1 : by(&n);
     *end = end_of(&n);
     if (frame_writer_close(n.writer, e)) /* what is sound is written whatever happened then */
         result = -1;
@@ -293,5 +293,11 @@ int run_go(const run_setup *r, run_end *end, err *e)
         r->device->destroy(n.state);
     monitor_destroy(n.monitor);
     fields_free(&n.checkpoint);
+    fields_free(&n.began);
     return result;
+}
+
+int run_go(const run_setup *r, run_end *end, err *e)
+{
+    return run_by(r, NULL, loop, end, e);
 }

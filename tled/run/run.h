@@ -40,6 +40,35 @@ typedef struct run_point {
     log_point log;
 } run_point;
 
+/* Where a live run stands before a tick. */
+typedef struct run_tick {
+    double from, until; /* s: of the tick */
+    /* Copies the displacements at `from`, nodes x 3, m. -1 with e filled. */
+    int (*displacement)(void *run, double *to, err *e);
+    void *run;
+} run_tick;
+
+/* What a live run (run_live_go) asks of its caller, with the setup's context. All in the thread that runs. */
+typedef struct run_live {
+    tled_problem *p; /* the setup's, to be changed */
+    const model *m;  /* that it was made of */
+    int64_t tick;    /* steps from frame to frame, each from check to check, in as many parts as its state needs */
+    int64_t parts;   /* and never in fewer than these */
+    /* Waits until a tick is due and takes what came, for its time. *anew: curves of the script came or went. 1; 0: the
+     * run is over; -1 with e filled. */
+    int (*take)(void *context, const run_tick *at, bool *anew, err *e);
+    /* The state at the end of the tick is sound and goes out as a frame next. taken: parts of steps, also those that
+     * were taken again; restored: how often it went back to a sound state within the tick. -1 with e filled. */
+    int (*put)(void *context, double time, int64_t taken, int restored, err *e);
+    /* The tissue broke, as `reading` has it: at `time` it goes on from a sound state at rest, that of
+     * the last check or (anew) that it began from; what may have broken it
+     * is the caller's to end. */
+    void (*broke)(void *context, double time, double until, bool anew, const monitor_reading *reading);
+} run_live;
+
+/* A safe step is at most this share of the stable one: it changes a little between two checks. */
+#define RUN_MARGIN .8
+
 typedef struct run_setup {
     const tled_problem *p;
     const tled_executor *device;
@@ -85,6 +114,12 @@ typedef struct run_end {
     double most_strain; /* J: at a check */
     int64_t bytes;      /* of the device's memory, in the end */
 } run_end;
+
+/* Runs live, by ticks of the wall's clock, until the caller ends it or the last step is taken: a frame a tick, sent as
+ * soon as its state is known to be sound; no log, no checkpoints. Where the tissue breaks, it goes back to the last
+ * check, at rest; where it breaks again before the next one, to what it began from, at rest; and again, -1 with e
+ * filled, status 3. */
+int run_live_go(const run_setup *r, const run_live *live, run_end *end, err *e);
 
 /* Runs. -1 with e filled; status 3 where the simulation diverged: e names step, time, element and volume. */
 int run_go(const run_setup *r, run_end *end, err *e);

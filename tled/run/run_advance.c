@@ -11,12 +11,12 @@ double run_now(const run *n)
 
 double run_part(const run *n)
 {
-    return ldexp(1 / n->r->rate, -n->course.cuts);
+    return n->live ? 1 / (n->r->rate * (double)n->parts) : ldexp(1 / n->r->rate, -n->course.cuts);
 }
 
 static int64_t parts_of(const run *n)
 {
-    return INT64_C(1) << n->course.cuts;
+    return n->live ? n->parts : INT64_C(1) << n->course.cuts;
 }
 
 /* ---- What a state is like */
@@ -73,8 +73,7 @@ void run_tell_cut(run *n, const monitor_reading *why)
         n->r->cut(n->r->context, why, parts_of(n));
 }
 
-/* Goes back to the state of the last check. */
-static int restore(run *n)
+int run_restore(run *n)
 {
     n->plan.first = n->saved_first;
     if (n->r->log && log_restore(n->r->log, n->e))
@@ -82,8 +81,7 @@ static int restore(run *n)
     return n->r->device->restore(n->state, n->e);
 }
 
-/* Saves the state that was monitored last, to go back to. */
-static int save(run *n)
+int run_save(run *n)
 {
     n->saved_first = n->plan.first;
     return monitor_save(n->monitor, n->r->device, n->state, n->e);
@@ -107,7 +105,7 @@ static tled_plan cut_plan(const run *n, int64_t first)
 /* Steps of one length. */
 static int step_evenly(run *n, int64_t to)
 {
-    const int64_t count = (to - n->plan.first) << n->course.cuts;
+    const int64_t count = (to - n->plan.first) * parts_of(n);
     const tled_plan cut = cut_plan(n, n->plan.first);
     if (n->r->device->step(n->state, &cut, count, n->e))
         return -1;
@@ -195,7 +193,7 @@ static int find_part(run *n)
 {
     tled_plan cut = cut_plan(n, n->saved_first);
     bool sound = true;
-    if (restore(n))
+    if (run_restore(n))
         return -1;
     n->plan.first++;
     for (int64_t i = 0; sound && i < parts_of(n); i++, cut.first++) {
@@ -214,7 +212,7 @@ static int try_step(run *n, bool *sound)
     *sound = run_is_sound(n);
     if (!*sound)
         return 0;
-    if (run_log_sound(n) || save(n))
+    if (run_log_sound(n) || run_save(n))
         return -1;
     return run_next_frame(n, n->plan.first - 1) == n->plan.first ? run_write_frame(n) : 0;
 }
@@ -224,7 +222,7 @@ static int try_step(run *n, bool *sound)
 static int find_break(run *n, int64_t to)
 {
     bool sound = true;
-    if (restore(n))
+    if (run_restore(n))
         return -1;
     while (sound && n->plan.first < to)
         if (try_step(n, &sound))
@@ -267,13 +265,18 @@ static int cut_once_more(run *n, int64_t to)
     if (n->r->rate_fixed || n->course.cuts == CUTS_MAX)
         return find_break(n, to);
     n->course.cuts++;
-    return restore(n);
+    return run_restore(n);
 }
 
 /* Steps to `to`, and monitors the state there. */
 static int try_steps(run *n, int64_t to, bool framed)
 {
     return step_by(n, to, framed) || run_monitor(n) ? -1 : 0;
+}
+
+int run_try(run *n, int64_t to)
+{
+    return try_steps(n, to, false);
 }
 
 /* Steps to `to`, and again from the last check with steps cut once more, until the state there is sound. */
@@ -295,7 +298,7 @@ static int step_until_sound(run *n, int64_t to, bool framed)
  * frames that the slots do not suffice for. */
 static int step_again(run *n, int64_t to)
 {
-    if (restore(n))
+    if (run_restore(n))
         return -1;
     for (int64_t at = run_next_frame(n, n->plan.first); at < to; at = run_next_frame(n, at))
         if (step_to(n, at) || run_write_frame(n))
@@ -306,7 +309,7 @@ static int step_again(run *n, int64_t to)
 int run_advance(run *n, int64_t to)
 {
     const bool framed = has_slots(n, to);
-    if (save(n) || step_until_sound(n, to, framed))
+    if (run_save(n) || step_until_sound(n, to, framed))
         return -1;
     return framed ? 0 : step_again(n, to);
 }

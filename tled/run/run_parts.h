@@ -10,6 +10,11 @@ enum { CUTS_MAX = 10 }; /* a step cut 2^10 times is no step */
 
 typedef struct run {
     const run_setup *r;
+    const run_live *live; /* or NULL */
+    int64_t parts;        /* live: that each step is taken in */
+    int went_back;        /* live: since the last sound check: to the one before, then to the beginning */
+    field_values began;   /* live: the state that it began from; at rest when it is gone back to */
+    int restored;         /* live: in this tick */
     tled_state *state;
     monitor *monitor;
     run_course course;
@@ -32,6 +37,10 @@ typedef struct run {
     double next_checkpoint;  /* s: of the model's time, or of the clock */
     err *e;
 } run;
+
+/* Of run.c: the first check, with its frame; a run from its beginning to its end, by a loop of its own. */
+int run_begin(run *n);
+int run_by(const run_setup *r, const run_live *live, int (*by)(run *n), run_end *end, err *e);
 
 /* Where the state stands (s); and how long each part of a step is (s). */
 double run_now(const run *n);
@@ -59,6 +68,16 @@ int run_advance(run *n, int64_t to);
 /* Of a state that is sound, as all before it are: writes a frame; adds it to the log, with a row where one is due. */
 int run_write_frame(run *n);
 int run_log_sound(run *n);
+
+/* Saves the state that was monitored last, to go back to; and goes back. */
+int run_save(run *n);
+int run_restore(run *n);
+
+/* Live: as few parts as a step may safely be taken in, from the state that was monitored last. */
+void run_choose_parts(run *n);
+
+/* Takes steps to `to`, as they are cut now, and reads the state there. */
+int run_try(run *n, int64_t to);
 
 /* The first step past `after` with a frame. */
 int64_t run_next_frame(const run *n, int64_t after);

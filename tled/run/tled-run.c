@@ -1,55 +1,27 @@
 /* tled-run: moves a voxel model by total Lagrangian explicit dynamics under gravity, forces, displacements and the
  * contraction of its muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
  */
-#include "base/mem.h"
-#include "cli/progress.h"
+#include "live/stop.h"
 #include "model/hourglass_text.h"
 #include "model/materials.h"
-#include "model/stage.h"
 #include "probe/probe_carry.h"
-#include "tled/problem/collider.h"
-#include "tled/problem/followers.h"
 #include "tled/problem/loads.h"
 #include "tled/problem/step.h"
-#include "tled/problem/support.h"
-#include "tled/run/checkpoint.h"
 #include "tled/run/fingerprint.h"
-#include "tled/run/folds.h"
-#include "tled/run/options.h"
-#include "tled/run/relax.h"
-#include "tled/run/run.h"
 #include "tled/run/timeline.h"
+#include "tled/run/tled_live.h"
+#include "tled/run/tled_words.h"
+#include "volume/body.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { REST_STEPS = 200000 }; /* after the script's end, before a run to rest gives up */
+enum { REST_STEPS = 200000 };                               /* after the script's end, before a run to rest gives up */
+static const int64_t LIVE_STEPS = INT64_C(900000000000000); /* longer than anyone waits */
 
 static const double rest_tolerance = 1e-4;
-
-/* What the functions called by the time loop share with main. */
-typedef struct session {
-    const tool *t;
-    stage stage;
-    model m;
-    script script;
-    tled_problem problem;
-    support support;
-    collider collider;
-    pool *threads;
-    run_setup run;
-    run_log log;
-    progress progress;
-    checkpoint *checkpoint; /* NULL: none */
-    int64_t next_frame;     /* its index */
-    bool started;           /* the state that the run begins from has been written: as a frame that came */
-    int64_t cut;            /* parts of a step, as said last */
-    double stable;          /* s: at rest */
-    folds folds;            /* of the frames written */
-    notes warnings;
-} session;
 
 static int check_log(const struct options *o, err *e)
 {
@@ -87,24 +59,25 @@ static int check_checkpoint(const tool *t, struct options *o, err *e)
     return 0;
 }
 
-static int read_control(const struct options *o, hourglass_control *to, err *e)
+static int read_control(struct options *o, err *e)
 {
-    if (!hourglass_read(o->hourglass ? o->hourglass : "physical", to))
+    if (!hourglass_read(o->hourglass ? o->hourglass : "physical", &o->control))
         return 0;
     return err_usage(e, "--hourglass '%s': expected physical or isotropic[:KAPPA], KAPPA from 0 to 1000", o->hourglass);
 }
 
 static int check_end(const struct options *o, err *e)
 {
-    hourglass_control control;
     if (o->checkpoint_every > 0 && !o->checkpoint && !o->restart)
         return err_usage(e, "--checkpoint-every without --checkpoint or --restart; expected one of them");
     int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
     if (ends > 1)
         return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
-    if (check_log(o, e) || read_control(o, &control, e))
+    if (check_log(o, e))
         return -1;
-    if (o->damping == 0 && (!ends || o->rest >= 0))
+    if (live_check(o, e))
+        return -1;
+    if (o->damping == 0 && !o->live && !o->replay && (!ends || o->rest >= 0))
         return err_usage(e, "without damping nothing comes to rest; expected -t or -n to end, or a --damping above 0");
     return 0;
 }
@@ -120,6 +93,7 @@ static int change_materials(session *s, const struct options *o, err *e)
 static int make_script(session *s, const struct options *o, err *e)
 {
     in *source = o->script ? in_open(o->script, e) : NULL;
+    s->script.unit = o->unit;
     int result = o->script && (!source || script_read(&s->script, source, &s->m, e)) ? -1 : 0;
     in_close(source);
     for (int i = 0; !result && i < o->contract.count; i++)
@@ -133,15 +107,17 @@ static int make_script(session *s, const struct options *o, err *e)
 static int choose_rate(session *s, const struct options *o, err *e)
 {
     int32_t stiffest = 0;
-    s->stable = followers_step(followers_square_at_rest(&s->problem),
+    s->stable = followers_step(followers_square_at_rest(&s->problem) + loads_square(&s->problem, NULL),
                                collider_step(&s->problem, step_at_rest(&s->problem, &stiffest)));
+    if (o->dt > s->stable)
+        return err_set(e, NULL, 0, "--dt %g is above the stable step; expected at most %.6g s (volume '%s')", o->dt,
+                       s->stable * (1 - 1e-5), s->problem.volume[stiffest].name); /* rounded down */
+    if (s->live)
+        return live_prepare(s, o, e);
     s->run.rate_fixed = o->dt > 0;
     s->run.rate = o->dt > 0 ? 1 / o->dt : step_rate(s->stable, &s->run.check);
     if (o->dt > 0)
         s->run.check = STEP_UNSEEN_GIVEN;
-    if (o->dt > s->stable)
-        return err_set(e, NULL, 0, "--dt %g is above the stable step; expected at most %.6g s (volume '%s')", o->dt,
-                       s->stable * (1 - 1e-5), s->problem.volume[stiffest].name); /* rounded down */
     return 0;
 }
 
@@ -149,6 +125,11 @@ static int choose_rate(session *s, const struct options *o, err *e)
 static int choose_end(session *s, const struct options *o, err *e)
 {
     run_setup *r = &s->run;
+    if (s->live && o->seconds < 0 && !o->steps) {
+        r->steps = LIVE_STEPS;
+        r->end = -INFINITY;
+        return 0;
+    }
     double left = o->seconds, first = fabs(s->problem.start) * r->rate;
     if (r->rest >= 0)
         left = fmax(0, collider_events_end(&s->problem) - s->problem.start);
@@ -157,7 +138,7 @@ static int choose_end(session *s, const struct options *o, err *e)
     if (!(first + left * r->rate < 1e15))
         return err_set(e, NULL, 0, "a run up to step %g; expected fewer than 1e15", first + left * r->rate);
     r->steps = o->steps > 0 ? o->steps : timeline_steps_to(left, r->rate) + (r->rest >= 0 ? REST_STEPS : 0);
-    r->end = o->seconds >= 0 && timeline_is_between(left, r->rate) ? s->problem.start + left : -INFINITY;
+    r->end = !s->live && o->seconds >= 0 && timeline_is_between(left, r->rate) ? s->problem.start + left : -INFINITY;
     return 0;
 }
 
@@ -171,7 +152,7 @@ static void choose_damping(session *s, const struct options *o)
 /* After the options that were given: how it ends, what ran, and every default that changes the result. */
 static int say_provenance(tool *t, const session *s, const struct options *o, err *e)
 {
-    char until[60], shape[300] = "", press[360] = "";
+    char until[80], shape[300] = "", press[360] = "";
     const run_setup *r = &s->run;
     char control[HOURGLASS_TEXT];
     hourglass_text(s->problem.control, control);
@@ -179,7 +160,9 @@ static int say_provenance(tool *t, const session *s, const struct options *o, er
         probe_text(&s->collider.shape, shape, sizeof shape);
         snprintf(press, sizeof press, "--probe %s --repulsion %.9g ", shape, o->repulsion);
     }
-    if (r->rest >= 0)
+    if (s->live)
+        snprintf(until, sizeof until, "--live");
+    else if (r->rest >= 0)
         snprintf(until, sizeof until, "--rest %.9g", r->rest);
     else if (o->steps > 0)
         snprintf(until, sizeof until, "-n %lld", (long long)o->steps);
@@ -217,14 +200,29 @@ static int put_frame(session *s, const frame *f, err *e)
     return 0;
 }
 
+/* Where the probe is, and what pushes it; live, not before its first pose. */
+static int add_probe(const session *s, frame *f, const double *displacement, err *e)
+{
+    if (!s->collider.poses)
+        return 0;
+    if (!s->live) {
+        const collider_moment now = collider_moment_at(&s->collider, f->time);
+        return collider_add(&s->problem, &now, f, &s->m, displacement, e);
+    }
+    const collider_moment *now = live_moment(s->live);
+    return now ? collider_add(&s->problem, now, f, &s->m, displacement, e) : 0;
+}
+
 static int write_frame(void *context, double time, const field_values *state, err *e)
 {
     session *s = context;
     frame f = {.index = s->next_frame++, .time = time};
     bool whole = !fields_lend(&s->problem.fields, FIELD_IN_FRAMES, state, &f, &s->m, e) &&
-                 !(s->collider.poses && collider_add(&s->problem, &f, &s->m, state->of[TLED_DISPLACEMENT], e));
+                 !add_probe(s, &f, state->of[TLED_DISPLACEMENT], e);
     int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
     frame_free(&f);
+    if (s->live)
+        live_written(s->live);
     return result;
 }
 
@@ -311,73 +309,31 @@ static void end_checkpoints(session *s, err *e)
     checkpoint_close(s->checkpoint);
 }
 
-static void say_start(const session *s, const char *device, const struct options *o)
+/* Where the model lies in what poses are of. */
+static int read_place(const struct options *o, pose *to, err *e)
 {
-    const tled_problem *p = &s->problem;
-    const run_setup *r = &s->run;
-    char sides[100];
-    snprintf(sides, sizeof sides, "%g x %g x %g mm", 1e3 * p->side[0], 1e3 * p->side[1], 1e3 * p->side[2]);
-    if (p->conforming)
-        snprintf(sides, sizeof sides, "any shape, %.4g mm in the mean", 1e3 * p->side[0]);
-    tool_say(s->t, "%lld elements of %s, %lld nodes, %lld held; %s, %s precision", (long long)p->elements, sides,
-             (long long)p->nodes, (long long)p->held, device, o->precision ? "single" : "double");
-    tool_say(s->t, "stable step %.6g ms, dt %.6g ms, damping %.4g 1/s%s", 1e3 * s->stable, 1e3 / r->rate, r->damping,
-             r->adapt ? ", then adapted" : "");
-    if (!r->point && p->start > 0 && p->start >= o->ramp && (o->contract.count || o->gravity.count))
-        tool_say(s->t, "the run begins after the ramp of %g s: -c and -g act in full from the first step", o->ramp);
-    if (r->point)
-        tool_say(s->t, "the run goes on from %.6g s, after %lld steps", p->start,
-                 (long long)(r->point->first - r->point->course.from));
-    else if (r->rest >= 0)
-        tool_say(s->t, "from %.6g s to rest, tolerance %g", p->start, r->rest);
-    else
-        tool_say(s->t, "from %.6g s, %lld step%s%s", p->start, (long long)r->steps, r->steps == 1 ? "" : "s",
-                 isfinite(r->end) ? ", the last one shorter" : "");
+    body b;
+    *to = pose_none();
+    if (!o->body)
+        return 0;
+    in *source = in_open(o->body, e);
+    const int failed = source ? body_read(&b, source, e) : -1;
+    in_close(source);
+    if (failed)
+        return -1;
+    *to = b.volume;
+    body_free(&b);
+    return 0;
 }
 
-/* Where multiples of an option's interval lie between two steps, other than the last's end, which is met. */
-static void say_between(const session *s, const char *option, const char *what, double every)
+static int read_poses(session *s, const struct options *o, err *e)
 {
-    const run_setup *r = &s->run;
-    const double rate = r->rate, start = s->problem.start, origin = timeline_plan(start, rate).origin;
-    const double end = isfinite(r->end) ? r->end : start + (double)r->steps / rate, last = end - 1e-6 / rate - origin;
-    if (every == 0)
-        return;
-    const double first = (floor(start / every) + 1) * every - origin;
-    if (every * rate < 1)
-        tool_say(s->t, "%s %g s is shorter than a step: one %s is written for each step", option, every, what);
-    else if ((first < last && timeline_is_between(first, rate)) ||
-             (first + every < last && timeline_is_between(every, rate)))
-        tool_say(s->t,
-                 "multiples of %s %g s lie between steps: each %s is of the first step after one, up to %.3g ms late",
-                 option, every, what, 1e3 / rate);
-}
-
-/* Of the frames that were written, whether the run came to its end or not. */
-static void say_folds(session *s, const run_end *end, bool ended)
-{
-    char folded[FOLDS_TEXT];
-    if (!s->folds.frames || out_failed(s->stage.sink, &(err){0}))
-        return;
-    folds_text(&s->folds, ended, folded);
-    tool_say(s->t, "%s", folded);
-    folds_warn(&s->folds, ended, end->most_strain, &s->warnings);
-}
-
-static void say_end(session *s, const run_end *end)
-{
-    const monitor_reading *w = &end->reading;
-    char left[80] = "";
-    if (end->parts > 1)
-        tool_say(s->t, "steps were cut into up to %lld: %lld steps were taken in place of %lld", (long long)end->parts,
-                 (long long)end->taken, (long long)end->steps);
-    if (end->rested)
-        snprintf(left, sizeof left, ", %.3g of its displacement to go", end->remaining);
-    tool_say(s->t, "%s %.6g s, after %lld steps: kinetic energy %.3g J, largest displacement %.6g mm%s",
-             end->rested ? "at rest at" : "at", w->time, (long long)end->steps, w->kinetic, 1e3 * w->largest, left);
-    say_folds(s, end, true);
-    tool_detail(s->t, "%s: %.4g MB, %.4g bytes an element", s->run.device->is.device, 1e-6 * (double)end->bytes,
-                (double)end->bytes / (double)s->problem.elements);
+    pose place;
+    if (read_place(o, &place, e))
+        return -1;
+    if (s->live)
+        return live_collider(s, &place, e);
+    return collider_read_poses(&s->collider, o->poses, o->body ? &place : NULL, e);
 }
 
 /* What presses, and where. Its stiffness is part of the stable step. */
@@ -385,12 +341,11 @@ static int read_collider(session *s, const struct options *o, err *e)
 {
     if (!o->probe && !o->poses)
         return 0;
-    if (!o->probe || !o->poses)
+    if (!o->probe || (!o->poses && !o->lines && !o->replay))
         return err_usage(e, "--%s without --%s; expected both", o->probe ? "probe" : "poses",
                          o->probe ? "poses" : "probe");
-    return probe_read(&s->collider.shape, o->probe, o->unit, o->common.anonymous, &s->m, e) ||
-                   collider_read_poses(&s->collider, o->poses, e) || model_axis_add(&s->m, "probe", 1, e) ||
-                   probe_carry(&s->collider.shape, &s->m, &s->warnings, e)
+    return probe_read(&s->collider.shape, o->probe, o->unit, o->common.anonymous, &s->m, e) || read_poses(s, o, e) ||
+                   model_axis_add(&s->m, "probe", 1, e) || probe_carry(&s->collider.shape, &s->m, &s->warnings, e)
                ? -1
                : 0;
 }
@@ -414,10 +369,9 @@ static int say_control(model *m, hourglass_control control, err *e)
 /* From the model that came to the problem and how it is to be run. */
 static int prepare(session *s, const struct options *o, char *device, size_t size, err *e)
 {
-    hourglass_control control;
-    s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps ? rest_tolerance : -1;
-    if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) || read_control(o, &control, e) ||
-        tled_problem_make(&s->problem, &s->m, &s->script, control, e) || say_control(&s->m, control, e) ||
+    s->run.rest = o->rest >= 0 ? o->rest : o->seconds < 0 && !o->steps && !s->live ? rest_tolerance : -1;
+    if (change_materials(s, o, e) || read_collider(s, o, e) || make_script(s, o, e) ||
+        tled_problem_make(&s->problem, &s->m, &s->script, o->control, e) || say_control(&s->m, o->control, e) ||
         support_of(&s->problem, &s->support, e) ||
         support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;
@@ -441,7 +395,7 @@ static void set_run(session *s, const struct options *o)
     s->run.p = &s->problem;
     s->run.threads = s->threads;
     s->run.every = o->every > 0 ? o->every : 0;
-    s->run.first = s->run.every > 0 && !s->started;
+    s->run.first = (s->run.every > 0 || s->live) && !s->started;
     s->run.context = s;
     s->run.frame = write_frame;
     s->run.checked = checked;
@@ -463,9 +417,11 @@ static int begin_run(session *s, const struct options *o, err *e)
 {
     if (take_frames(s, o->materials || o->material.count, e) || choose_end(s, o, e))
         return -1;
-    if (s->collider.poses)
+    if (s->collider.poses && !s->live)
         collider_begin(&s->collider, &s->problem, s->next_frame ? 0 : o->ramp, &s->warnings);
     set_run(s, o);
+    if (s->live)
+        return live_open(s, o, e);
     return begin_checkpoints(s, o, e) || open_log(s, o, e) ? -1 : 0;
 }
 
@@ -476,24 +432,29 @@ static int simulate(session *s, const struct options *o, const char *device, err
     if (begin_run(s, o, e))
         return -1;
     tool_warn(s->t, &s->warnings);
-    say_start(s, device, o);
-    say_between(s, "--every", "frame", s->run.every);
-    say_between(s, "--log-every", "row", s->log.every);
+    words_start(s, device, o);
+    words_between(s, "--every", "frame", s->run.every);
+    words_between(s, "--log-every", "row", s->log.every);
     progress_start(&s->progress, "tled-run", "steps", s->run.rest < 0 ? (double)s->run.steps : 0,
                    o->common.quiet || o->common.verbose);
-    int result = run_go(&s->run, &end, e);
+    int result = s->live ? live_go(s, &end, e) : run_go(&s->run, &end, e);
     progress_stop(&s->progress);
+    if (s->live)
+        live_end(s);
     if (result)
-        say_folds(s, &end, false);
+        words_folds(s, &end, false);
     else
-        say_end(s, &end);
+        words_end(s, &end);
     return result;
 }
 
 static int read_input(session *s, const tool *t, struct options *o, err *e)
 {
-    if (check_end(o, e) || check_checkpoint(t, o, e))
+    if (check_end(o, e) || read_control(o, e) || check_checkpoint(t, o, e) || live_create(s, o, e))
         return -1;
+    if (s->live)
+        stop_catch();
+    s->stage.lines_follow = o->live && ((o->lines && !strcmp(o->lines, "-")) || (o->poses && !strcmp(o->poses, "-")));
     return stage_open_output(&s->stage, t, e) || stage_read(&s->stage, &s->m, e) ? -1 : 0;
 }
 
@@ -513,6 +474,7 @@ static int run_tool(int argc, char **argv)
                         .every = -1,
                         .log_every = -1,
                         .repulsion = 1,
+                        .rate = -1,
                         .checkpoint_every = -1};
     err e = {0};
     tool t = {0};
@@ -528,6 +490,7 @@ out:
     if (!t.done)
         end_output(&s, &t, &e);
     end_checkpoints(&s, &e);
+    live_destroy(s.live);
     pool_destroy(s.threads);
     folds_free(&s.folds);
     tled_problem_free(&s.problem);

@@ -1,7 +1,7 @@
 #include "voxelise/surfaces/closed.h"
 
 #include "base/mem.h"
-#include "voxelise/surfaces/hash.h"
+#include "surface/hash.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 #include "voxelise/surfaces/weld.h"
 
 #include "base/mem.h"
+#include "surface/coincident.h"
 #include "voxelise/surfaces/grid.h"
-#include "voxelise/surfaces/hash.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -32,35 +32,35 @@ static int64_t mark_used(weld *w, const obj *o, const int64_t *face, int64_t fac
     return used;
 }
 
-static uint64_t hash_position(const double *p)
+/* The positions of the vertices that are used, in their order, into w->position. */
+static int take_positions(weld *w, const obj *o, err *e)
 {
-    uint64_t h = 0, bits;
-    for (int a = 0; a < 3; a++) {
-        memcpy(&bits, &p[a], sizeof bits);
-        h = hash_next(h, bits);
-    }
-    return h;
+    int status = 0;
+    for (int64_t i = 0, used = 0; !status && i < o->vertices; i++)
+        if (w->of[i])
+            status = take_position(o, i, &w->position[3 * used++], e);
+    return status;
 }
 
-static bool same_place(const double *a, const double *b)
+/* Keeps the first position at each place, and numbers the vertices by places. place: of those used. */
+static void keep_places(weld *w, const obj *o, const int32_t *place)
 {
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
-/* The number of a place, new or not. table: numbers + 1; 0: free. */
-static int32_t place_at(weld *w, int32_t *table, int64_t size, const double *p)
-{
-    int64_t at = (int64_t)(hash_position(p) & (uint64_t)(size - 1));
-    for (; table[at]; at = (at + 1) & (size - 1))
-        if (same_place(&w->position[3 * ((int64_t)table[at] - 1)], p))
-            return table[at] - 1;
-    memcpy(&w->position[3 * w->places], p, 3 * sizeof *p);
-    table[at] = (int32_t)++w->places;
-    for (int a = 0; a < 3; a++) {
-        w->low[a] = fmin(w->low[a], p[a]);
-        w->high[a] = fmax(w->high[a], p[a]);
+    w->places = 0;
+    for (int64_t i = 0, used = 0; i < o->vertices; i++) {
+        if (!w->of[i]) {
+            w->of[i] = -1;
+            continue;
+        }
+        const double *p = &w->position[3 * used];
+        w->of[i] = place[used++];
+        if (w->of[i] < w->places)
+            continue;
+        for (int a = 0; a < 3; a++) {
+            w->low[a] = fmin(w->low[a], p[a]);
+            w->high[a] = fmax(w->high[a], p[a]);
+        }
+        memmove(&w->position[3 * w->places++], p, 3 * sizeof *p);
     }
-    return (int32_t)w->places - 1;
 }
 
 int weld_make(weld *w, const obj *o, const int64_t *face, int64_t faces, err *e)
@@ -69,24 +69,18 @@ int weld_make(weld *w, const obj *o, const int64_t *face, int64_t faces, err *e)
     w->of = mem_array(o->vertices, sizeof *w->of, "vertices", e);
     if (!w->of)
         return -1;
-    int64_t used = mark_used(w, o, face, faces), size = hash_size(used);
-    int32_t *table = mem_array(size, sizeof *table, "vertices", e);
+    const int64_t used = mark_used(w, o, face, faces);
+    int32_t *place = mem_array(used, sizeof *place, "vertices", e);
     w->position = mem_array(3 * used, sizeof *w->position, "vertices", e);
-    int status = table && w->position ? 0 : -1;
-    for (int64_t i = 0; !status && i < o->vertices; i++) {
-        double p[3] = {0};
-        bool is_used = w->of[i] != 0;
-        w->of[i] = -1;
-        if (!is_used)
-            continue;
-        status = take_position(o, i, p, e);
-        if (!status)
-            w->of[i] = place_at(w, table, size, p);
-    }
-    free(table);
-    if (status)
+    const int failed =
+        !place || !w->position || take_positions(w, o, e) || coincident_places(w->position, used, place, e) < 0 ? -1
+                                                                                                                : 0;
+    if (failed)
         weld_free(w);
-    return status;
+    else
+        keep_places(w, o, place);
+    free(place);
+    return failed;
 }
 
 void weld_free(weld *w)

@@ -14,6 +14,12 @@ void shared_number_store(uint32_t at, float x);
 void shared_store(uint32_t at, float x, float y, float z);
 
 void send(uint32_t to, const float4 *from, bool is);
+static inline void send_both(uint32_t to, const float4 *from, bool is, uint32_t other_to, const float4 *other,
+                             bool is_other)
+{
+    send(to, from, is);
+    send(other_to, other, is_other);
+}
 void sent();
 void emulated_arrived(int but_for);
 template <int N> static inline void arrived()
@@ -35,6 +41,10 @@ uint32_t hear_done(const uint32_t *from);
 static inline const float4 *nth(const float4 *p, uint32_t n)
 {
     return p + n;
+}
+static inline int32_t unknown(int32_t n)
+{
+    return n;
 }
 static inline float near_log2(float x)
 {

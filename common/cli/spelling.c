@@ -1,4 +1,4 @@
-#include "base/spelling.h"
+#include "cli/spelling.h"
 
 #include <ctype.h>
 #include <string.h>

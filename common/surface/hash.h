@@ -1,4 +1,4 @@
-/* Hashing for this tool's open-addressed tables: sizes are powers of two, at least twice what they will hold. */
+/* Hashing for open-addressed tables of numbers: sizes are powers of two, at least twice what they will hold. */
 #ifndef SINEW_HASH_H
 #define SINEW_HASH_H
 

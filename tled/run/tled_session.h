@@ -1,0 +1,39 @@
+/* What the parts of tled-run share: the model, the problem made of it, the run and how it is going. main's, who frees
+ * what is in it.
+ */
+#ifndef SINEW_TLED_SESSION_H
+#define SINEW_TLED_SESSION_H
+
+#include "cli/progress.h"
+#include "model/stage.h"
+#include "tled/problem/collider.h"
+#include "tled/problem/followers.h"
+#include "tled/problem/support.h"
+#include "tled/run/checkpoint.h"
+#include "tled/run/folds.h"
+#include "tled/run/relax.h"
+#include "tled/run/run.h"
+
+typedef struct session {
+    const tool *t;
+    stage stage;
+    model m;
+    script script;
+    tled_problem problem;
+    support support;
+    collider collider;
+    pool *threads;
+    run_setup run;
+    run_log log;
+    progress progress;
+    checkpoint *checkpoint; /* NULL: none */
+    int64_t next_frame;     /* its index */
+    bool started;           /* the state that the run begins from has been written: as a frame that came */
+    int64_t cut;            /* parts of a step, as said last */
+    double stable;          /* s: at rest */
+    folds folds;            /* of the frames written */
+    struct live *live;      /* NULL: not a live run, nor a replay; owned */
+    notes warnings;
+} session;
+
+#endif

@@ -1,0 +1,20 @@
+/* What tled-run says on standard error of a run: as it begins, and once it is over. Owns nothing.
+ */
+#ifndef SINEW_TLED_WORDS_H
+#define SINEW_TLED_WORDS_H
+
+#include "tled/run/options.h"
+#include "tled/run/tled_session.h"
+
+/* device: what computes, in words. */
+void words_start(const session *s, const char *device, const struct options *o);
+
+/* Where multiples of an option's interval lie between two steps, other than the last's end, which is met. */
+void words_between(const session *s, const char *option, const char *what, double every);
+
+/* Of the frames that were written, whether the run came to its end or not. */
+void words_folds(session *s, const run_end *end, bool ended);
+
+void words_end(session *s, const run_end *end);
+
+#endif
