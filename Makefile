@@ -25,9 +25,10 @@ CXX = $(if $(findstring clang,$(CC)),$(subst clang,clang++,$(CC)),c++)
 DICOM = -ldcmjpeg -ldcmjpls -ldcmimgle -ldcmdata -loflog -lofstd -lstdc++ -lopenjp2
 PICTURES = -lpng -lfreetype
 COLLIDE = -lccd
+WEB = -lcivetweb -lturbojpeg
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
-	sinew sinew-deform sinew-info sinew-diff sinew-export sinew-import sinew-render
+	sinew sinew-deform sinew-info sinew-diff sinew-export sinew-import sinew-render sinew-console
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -147,6 +148,7 @@ INFO_MODULES := $(wildcard common/inspect/info_*.c)
 EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
 IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
 RENDER_MODULES := $(wildcard common/render/render_*.c)
+CONSOLE_SRC := $(wildcard common/console/*.c)
 
 define tool
 $(BIN)/$(1): $(call objects,$(2)) $(MAIN_OBJ) $(4) $(LIB)
@@ -170,6 +172,7 @@ $(eval $(call tool,sinew-diff,common/inspect/sinew-diff.c))
 $(eval $(call tool,sinew-export,common/exchange/sinew-export.c $(EXPORT_MODULES)))
 $(eval $(call tool,sinew-import,common/exchange/sinew-import.c $(IMPORT_MODULES)))
 $(eval $(call tool,sinew-render,common/render/sinew-render.c $(RENDER_MODULES),$$(EMBREE) $$(PICTURES)))
+$(eval $(call tool,sinew-console,$(CONSOLE_SRC),$$(WEB) $$(PICTURES)))
 
 .PHONY: clean
 clean:

@@ -42,7 +42,7 @@ needs = $(call objects,$(patsubst tled/*/*.c,$(filter-out tled/run/tled-run.c,$(
 # $(1): the program; $(2): flags; $(3), $(4): its source, where that has another name, and an object more.
 define test_program
 $(BUILD)/$(1): $(BUILD)/$(or $(3),$(1)).o $(4) $(call needs,$(or $(3),$(1)).c) $(MAIN_OBJ) $(LIB_CUDA) $(LIB)
-	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
+	$$(call run,LD $$@,$$(CC) $$(CSTD) $$(CFLAGS) $$(LDFLAGS) $(2) -o $$@ $$^ $$(AS_NEEDED) $$(EMBREE) $$(PICTURES) $$(WEB) $$(COLLIDE) $$(DICOM) $$(CUDA_LIBS) $$(LDLIBS))
 endef
 TEST_TOOLS := compare_pictures list_voxels peak long_stream reader
 COMPARE := $(TEST_TOOLS:%=$(BUILD)/tests/cli/%) $(REPLAY)
@@ -84,6 +84,15 @@ paper: all $(addprefix $(BUILD)/tests/bench/bench_,tled msds msds_card slice)
 .PHONY: scan
 scan: all
 	SINEW_BIN=$(BIN) samples/scan out/scan
+
+# A probe and a face to be moved by hand, on a page in a browser: cases from equations, and sinew console on them. THREE: the folder of
+# another copy of three.js.
+.PHONY: console
+console:
+	$(if $(THREE),.ci/setup demo,.ci/setup console)
+	$(MAKE) $(JOBS) all
+	SINEW_BIN=$(BIN) samples/console out/console
+	$(BIN)/sinew console $(if $(THREE),--three $(THREE)) out/console
 
 # The pictures in README.md: small, since they are kept in the repository; make demo and make scan leave larger ones.
 .PHONY: picture
@@ -152,7 +161,7 @@ same: all
 	tests/same $(BIN) $(WITH)
 
 # ---- benchmarks: CSV, on standard output and in out/bench.csv, a table each; tests/bench keeps one of each machine
-.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction bench-accuracy compare-msds
+.PHONY: bench bench-tled bench-table1 bench-voxelise bench-geometry bench-msds bench-msds_card bench-images bench-slice bench-fraction bench-accuracy bench-console compare-msds
 BENCHES = voxelise geometry tled msds msds_card images slice
 BENCH_HEAD = $(wildcard $(or $(SINEW_SHARED),../shared)/data/ultrasound/fetal-head)
 BENCH_FACE = $(wildcard $(or $(SINEW_SHARED),../shared)/data/face/face_zyg.obj)
@@ -193,6 +202,28 @@ bench-slice: all $(BUILD)/tests/bench/bench_slice
 	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat >out/slice.csv && cat out/slice.csv
 	@! command -v gnuplot >/dev/null || gnuplot -e "data='out/regions.dat'; picture='out/regions.png'" tests/bench/regions.plot
 	@! command -v python3 >/dev/null || python3 tests/bench/live.py $(BIN) $(shell nproc) out/slice.csv
+# From a pose that the console's page sends to the image that it shows, in headless chromium.
+bench-console: all
+	@SINEW_BIN=$(BIN) /usr/bin/python3 tests/browser/bench_console.py
+# The same on a card, where there is one, and with half a million nodes.
+bench-msds_card: $(BUILD)/tests/bench/bench_msds_card
+	@$(BUILD)/tests/bench/bench_msds_card
+# DICOM to volumes, labels and surfaces.
+bench-images: all $(BUILD)/tests/bench/bench_images
+	@$(BUILD)/tests/bench/bench_images $(BIN) $(BUILD) $(BENCH_HEAD)
+# No time, but how far springs are from the FEM at those sizes.
+compare-msds: all
+	@tests/bench/msds_compare $(BIN)
+# No time, but how fast models converge, by centres and by shares; it takes many minutes, and is no part of bench.
+bench-fraction: all
+	@tests/bench/fraction $(BIN) $(BENCH_FACE)
+# Error against wall time beside CalculiX: ten minutes on two quiet processors, and so no part of bench; a table and a figure in out.
+bench-accuracy: all
+	@mkdir -p out
+	@{ tests/bench/accuracy $(BIN) $(shell nproc) || echo '# failed'; } | tee out/accuracy.csv
+	@! grep -q '^# failed' out/accuracy.csv
+	@awk -f tests/bench/accuracy_svg.awk out/accuracy.csv >out/accuracy.svg
+
 include tests/gate/gate.mk
 
 # ---- other builds, each in its own folder
@@ -224,7 +255,7 @@ check-valgrind:
 valgrind: all
 	$(ENVIRONMENT) prove $(if $(V),-v) tests/cli/valgrind.sh
 browser: all
-	$(ENVIRONMENT) prove $(if $(V),-v) tests/cli/browser.sh
+	$(ENVIRONMENT) prove $(if $(V),-v) tests/cli/browser.sh tests/browser/console_page.sh tests/browser/console_live.sh
 
 FUZZ_FLAGS = -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 fuzz:
@@ -296,7 +327,7 @@ PAGES = $(wildcard man/*.[157])
 # The console's page, as it lies.
 PAGEDIR = $(DESTDIR)$(PREFIX)/share/sinew/console
 PAGE_FILES = $(wildcard common/console/page/*.*)
-SAMPLES = $(filter-out samples/demo samples/arm samples/scan samples/paper samples/paper.d,$(wildcard samples/*))
+SAMPLES = $(filter-out samples/demo samples/arm samples/scan samples/console samples/paper samples/paper.d,$(wildcard samples/*))
 
 install: all
 	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(PAGEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
@@ -325,6 +356,7 @@ help:
 	'make demo         set-up, build, and the head sample through the whole pipeline, into out/' \
 	'make arm          an arm under a probe, by springs and by finite elements, into out/arm' \
 	'make scan         from an ultrasound volume to images of it under a probe, into out/scan' \
+	'make console      a page in a browser on an arm and a patient under a probe, and a head, live; cases in out/console' \
 	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
 	'make picture      the pictures in README.md, anew: replaces samples/*.png' \
 	'' \
@@ -354,7 +386,7 @@ help:
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make bench-accuracy  error against wall time, beside CalculiX; out/accuracy.csv and out/accuracy.svg' \
-	'make   from a pose of the page of sinew console to its image, in headless chromium' \
+	'make bench-console   from a pose of the page of sinew console to its image, in headless chromium' \
 	'make html         set-up, and the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make deb          set-up, and a Debian package of what make install installs, into out/' \

@@ -38,6 +38,7 @@ static const struct {
     {RESULTS, "export", "sinew-export", "VTU, Abaqus .inp, Gmsh .msh, OBJ"},
     {MODELS, "import", "sinew-import", "a mesh from Abaqus .inp, Gmsh .msh, VTU"},
     {RESULTS, "render", "sinew-render", "pictures"},
+    {SIMULATION, "console", "sinew-console", "a page in a browser on models that move live"},
 };
 
 enum { TOOLS = sizeof tools / sizeof *tools };

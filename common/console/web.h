@@ -1,0 +1,47 @@
+/* The console's server: the page's files by HTTP, and WebSockets at /live, each with a mailbox and a thread that sends
+ * from it, so that a client that does not read stalls nobody. What is not asked for by our own page, at our own
+ * address, is refused: see address.h. web.c is the only user of civetweb. The caller owns a web.
+ */
+#ifndef SINEW_WEB_H
+#define SINEW_WEB_H
+
+#include "console/address.h"
+#include "console/mailbox.h"
+
+enum { WEB_CLIENTS = 8, WEB_PATH = 4096 };
+
+typedef struct web web;
+
+/* What is borrowed must last as long as the web. The functions are called by its threads. */
+typedef struct web_plan {
+    address at;
+    const char *token; /* NULL: none is asked for */
+    const char *page;  /* the folder of index.html */
+    const char *three; /* the folder served as /three/ */
+    void *context;
+    void (*said)(void *context, int client, const char *text, size_t size);
+    /* The path of the file that a request below /case/ or /save/ gets (uri: without the first slash). -1: there is
+     * none. */
+    int (*file)(void *context, const char *uri, char path[WEB_PATH]);
+} web_plan;
+
+/* Listens. at->port gets the port, where any was asked for. NULL with e filled. */
+web *web_open(const web_plan *plan, err *e);
+
+/* Ends all connections, and the threads. w may be NULL. */
+void web_close(web *w);
+
+/* The port that it listens on. */
+int web_port(const web *w);
+
+/* Puts a mail into the box of client `to`, or into everyone's (-1), and takes over the caller's use of it. m may be
+ * NULL: nothing is put. Who comes later gets the last of each slot that went to everyone, but for texts. */
+void web_send(web *w, int to, mail_slot slot, mail *m);
+
+/* What waits in a slot of everyone's is not to be sent any more, nor to who comes later. */
+void web_drop(web *w, mail_slot slot);
+
+/* How many clients there are. */
+int web_clients(web *w);
+
+#endif

@@ -1,0 +1,114 @@
+// What a page draws of a block of tetrahedra: its outside, closed, the right way out; and where it is in a frame.
+// needs: common/console/geometry.c common/console/json.c common/console/mailbox.c msds/mesh/mesh_tets.c
+#include "console/geometry.h"
+#include "msds_block.h"
+#include "tap.h"
+
+#include <string.h>
+
+static uint32_t word_at(const mail *m, size_t at)
+{
+    uint32_t word;
+    memcpy(&word, m->bytes + at, sizeof word);
+    return word;
+}
+
+static float number_at(const mail *m, size_t at)
+{
+    float number;
+    memcpy(&number, m->bytes + at, sizeof number);
+    return number;
+}
+
+/* The only mesh of a geometry: where its positions and triangles begin. */
+typedef struct mesh_at {
+    size_t position, triangle;
+    uint32_t vertices, triangles;
+} mesh_at;
+
+static mesh_at find_mesh(const mail *m)
+{
+    const size_t length = word_at(m, 4), padded = (length + 3) / 4 * 4;
+    char header[600] = "";
+    mesh_at at = {.position = 8 + padded};
+    snprintf(header, sizeof header, "%.*s", (int)length, (const char *)m->bytes + 8);
+    const char *counts = strstr(header, "\"vertices\":");
+    if (counts && sscanf(counts, "\"vertices\":%u,\"triangles\":%u", &at.vertices, &at.triangles) != 2)
+        at.vertices = 0;
+    at.triangle = at.position + 12 * (size_t)at.vertices;
+    ok(strstr(header, "\"name\":\"skin\",\"kind\":\"skin\"") && strstr(header, "\"moves\":true"),
+       "its outside is skin");
+    ok(strstr(header, "\"up\":[0,0,1]") != NULL, "up is away from what is fixed");
+    ok(m->size == at.triangle + 12 * (size_t)at.triangles, "the message has the size that its header says");
+    return at;
+}
+
+/* By the divergence theorem: below 0 where triangles are turned inside. */
+static double volume_of(const mail *m, const mesh_at *at)
+{
+    double volume = 0;
+    for (uint32_t t = 0; t < at->triangles; t++) {
+        double x[3][3];
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++)
+                x[c][a] = (double)number_at(m, at->position + 12 * (size_t)word_at(m, at->triangle + 12 * t + 4 * c) +
+                                                   4 * (size_t)a);
+        for (int a = 0; a < 3; a++)
+            volume += x[0][a] * (x[1][(a + 1) % 3] * x[2][(a + 2) % 3] - x[1][(a + 2) % 3] * x[2][(a + 1) % 3]) / 6;
+    }
+    return volume;
+}
+
+/* u = 0 at x = 0, and .01 m up at x = .1 m. */
+static void try_positions(geometry *g, const model *m, const mail *scene, const mesh_at *at)
+{
+    const int64_t nodes = model_count(m, "node");
+    const double *rest = model_find(m, "node.position")->f64;
+    err e = {0};
+    double *u = mem_array(3 * nodes, sizeof *u, "displacements", &e), off = 0, wrong = 0;
+    for (int64_t n = 0; n < nodes; n++)
+        u[3 * n + 2] = .1 * rest[3 * n];
+    mail *is = geometry_positions(g, 7, u, &e);
+    const size_t values = 12 + 32 + (6 * (size_t)at->vertices + 3) / 4 * 4;
+    ok(word_at(is, 0) == 3 && word_at(is, 4) == 7 && word_at(is, 8) == 1, "positions of frame 7, of one mesh");
+    ok(word_at(is, 12) == 0 && word_at(is, 16) == at->vertices, "of all its vertices");
+    ok(is->size == values + 12 + (at->vertices + 3) / 4 * 4, "the message has its size");
+    near_((double)number_at(is, values + 4), .01, 1e-7, "the scale's end is the largest displacement");
+    for (uint32_t i = 0; i < 3 * at->vertices; i++) {
+        int16_t share;
+        memcpy(&share, is->bytes + 44 + 2 * (size_t)i, 2);
+        const double low = (double)number_at(is, 20 + 4 * (i % 3)), high = (double)number_at(is, 32 + 4 * (i % 3));
+        const double place = (low + high) / 2 + (high - low) / 2 * share / 32767;
+        const size_t vertex = at->position + 12 * (size_t)(i / 3);
+        const double x = (double)number_at(scene, vertex),
+                     want = (double)number_at(scene, at->position + 4 * (size_t)i);
+        off = fmax(off, fabs(place - want - (i % 3 == 2 ? .1 * x : 0)));
+        if (i % 3 == 0)
+            wrong = fmax(wrong, fabs(is->bytes[values + 12 + i / 3] / 255. - x / .1));
+    }
+    near_(off, 0, .11 / 65534 + 1e-8, "places are within half a step of 16 bits");
+    near_(wrong, 0, .5 / 255 + 1e-5, "values within half a step of 8");
+    mail_done(is);
+    free(u);
+}
+
+int main(void)
+{
+    const tets block = {{5, 4, 3}, {.1, .06, .04}, 1e4, .3, 1000, 2, false};
+    model m = {0};
+    err e = {0};
+    tets_make(&block, &m);
+    geometry *g = geometry_make(&m, false, &e);
+    if (!ok(g != NULL, "a scene of a block %s", e.text))
+        return done_testing();
+    mail *scene = geometry_mail(g, &e);
+    const mesh_at at = find_mesh(scene);
+    ok(at.triangles == 2 * 2 * (4 * 3 + 3 * 2 + 4 * 2), "two triangles a side of a cell: %u", at.triangles);
+    ok(at.vertices == at.triangles / 2 + 2, "its surface is a sphere's: %u vertices", at.vertices);
+    near_(volume_of(scene, &at), .1 * .06 * .04, 1e-9, "it encloses the block, turned outward");
+    try_positions(g, &m, scene, &at);
+    mail_done(scene);
+    geometry_free(g);
+    model_free(&m);
+    return done_testing();
+}
