@@ -137,6 +137,12 @@ def until(condition, seconds=WAIT):
     return False
 
 
+def still(page):
+    """Whether five images in a row have the same pixels."""
+    version, index = page.get("[sinew.imageView.version, sinew.image.index]")
+    return page.until(f"sinew.image.index > {index + 5}") and page.get("sinew.imageView.version") == version
+
+
 def numbers(line):
     return [float(word) for word in line.split()[1:]]
 
@@ -201,7 +207,7 @@ def stand(server, page):
 
 def probe(t, server, page):
     t.check("the probe stands where the frames say, 5 mm above the skin", stand(server, page), page.get("sinew.probe.held"))
-    before, image = server.count("pose"), page.get("sinew.image.origin")
+    before, image, version = server.count("pose"), page.get("sinew.image.origin"), page.get("sinew.imageView.version")
     page.pointer(page.on_probe(), [(12, 3)] * 5)
     t.check("dragged, it sends poses", until(lambda: server.count("pose") > before))
     pose = numbers(server.last("pose"))
@@ -213,12 +219,8 @@ def probe(t, server, page):
     away = (pose[0] ** 2 + (pose[2] + .06) ** 2) ** .5
     t.near("its face looks along the normal", face[0] * pose[0] / away + face[2] * (pose[2] + .06) / away, -1, 2e-3)
     t.near("and is as high above the skin as before", away - .06, .005, 2e-4)
-    version = page.get("sinew.imageView.version")
     t.check("the image follows", page.until(f"Math.abs(sinew.image.origin[0] - {image[0]}) > 0.001"))
-    time.sleep(.5)
-    still = page.get("[sinew.imageView.version, sinew.image.index]")
-    t.check("with other pixels, until it is still", still[0] > version and page.until(f"sinew.image.index > {still[1] + 5}") and
-            page.get("sinew.imageView.version") == still[0], version, still)
+    t.check("with other pixels, until it is still", until(lambda: page.get("sinew.imageView.version") > version and still(page)), version)
     t.check("the page did not turn the view", page.get("sinew.view.orbit.enabled"))
     at = page.on_probe()
     page.wheel(at, -100)
@@ -265,7 +267,7 @@ def forces(t, server, page):
     t.check("in newtons, and drawn", shown[0].endswith(" N") and page.get("document.getElementById('force-chart').width") > 100)
     t.check("the skin is tinted where it touches", page.until("[...sinew.view.items.values()][0].material.uniforms.probe_kind.value === 2"))
     vein = "[...sinew.view.items.values()][1]"
-    t.check("the vein gives way", page.get(f"{vein}.largestMoved()") > 2e-4)
+    t.check("the vein gives way", page.until(f"{vein}.largestMoved() > 2e-4"))
     Select(page.find("#shape")).select_by_value("sphere:2cm")
     t.check("another shape is a line", until(lambda: server.last("set probe") == "set probe sphere:2cm"))
     t.check("and is drawn", page.until("sinew.view.shape && sinew.view.shape.kind === 'sphere' && sinew.view.shape.radius === 0.02"))
@@ -303,8 +305,7 @@ def shown(t, server, page):
     opaque = page.find("#patient").screenshot_as_base64
     page.click("#show-skin")
     t.is_("the skin is hidden", page.get("sinew.view.named('skin').solid.visible"), False)
-    time.sleep(.3)
-    t.check("which is seen", page.find("#patient").screenshot_as_base64 != opaque)
+    t.check("which is seen", until(lambda: page.find("#patient").screenshot_as_base64 != opaque))
     page.click("#show-skin")
     page.slide(".shown input[type=range]", 3, Keys.ARROW_RIGHT)
     t.near("or more solid", page.get("sinew.view.named('skin').opacity"), .55, 1e-9)
@@ -372,7 +373,7 @@ def busy(t, server, page):
     before = page.driver.execute_script("const before = sinew.frame.index; sinew.frames.length = 0;"
                                         "const end = performance.now() + 2000; while (performance.now() < end); return before;")
     index = server.index
-    t.check("a page that was busy shows the newest frame", page.until(f"sinew.frame.index >= {index}", 5))
+    t.check("a page that was busy shows the newest frame", page.until(f"sinew.frame.index >= {index}"))
     shown_, last = page.get("[sinew.frames.length, sinew.frame.index]")
     t.check("and leaves out what came meanwhile", last - before - shown_ > 10, shown_, before, last)
 
@@ -388,7 +389,7 @@ def trouble(t, server, page):
     t.check("and all goes on", page.until(f"sinew.frame.index > {frame} && sinew.image.index > {frame}"))
     page.driver.execute_script("document.getElementById('dismiss').click()")
     server.stop_listening()
-    t.check("a server that went away is told of", page.until("!sinew.connected") and page.find("#connection").is_displayed())
+    t.check("a server that went away is told of", page.until("!sinew.connected") and until(page.find("#connection").is_displayed))
     server.listen()
     t.check("and found again", page.until("sinew.connected") and page.until("!document.body.classList.contains('offline')"))
 
@@ -432,14 +433,14 @@ def pulls(t, server, page):
     t.check("the tissue follows", page.until("sinew.face.pointOf([...sinew.face.pulls.values()][0]).x > " + str(point[0] + .001)))
     force = page.get("[...sinew.face.pulls.values()].map((p) => [p.label.textContent, p.force])[0]")
     t.near("the force is told", float(force[0].split()[0]), force[1], .06)
-    t.check("and its line is drawn", page.get("[...sinew.face.pulls.values()][0].rod.scale.y") > .001)
+    t.check("and its line is drawn", page.until("[...sinew.face.pulls.values()][0].rod.scale.y > 0.001"))
     page.open()
     t.check("after a reload it is still there", page.until("sinew.face.pulls.has('pull1')"))
     page.click(".pull button")
     t.check("until it is released", until(lambda: server.count("release pull1") == 1) and page.until("sinew.face.pulls.size === 0"))
     page.click("#look-front")
     page.pointer(page.get("sinew.view.project(" + item + ".placeNow(12 + 18 * 48 + 24))"), [(10, 0)] * 3)
-    t.check("a pull that is not held ends with the hand", until(lambda: server.count("release") == 2) and page.get("sinew.face.pulls.size") == 0)
+    t.check("a pull that is not held ends with the hand", until(lambda: server.count("release") == 2) and page.until("sinew.face.pulls.size === 0"))
     page.click("#drag-turns")
     camera, count = page.get("sinew.view.camera.position.x"), server.count("pull")
     page.pointer(nose, [(15, 0)] * 4)

@@ -215,8 +215,9 @@ slice() {
 fails 1 "a record that exists" 'i.rec: exists; expected the name of a new file, or --force' slice --record i.rec
 check "is written over with --force" slice --record i.rec --force
 is "$(tail -n 1 i.rec)" end "whole"
+rm -f said
 # shellcheck disable=SC2086
-(cat press.tum && sleep .5) | {
+(cat press.tum && until_seen 1 said 'its record ends') | {
     ulimit -f 4
     timeout 10 us-slice --live --rigid --poses - --rate 200 $VIEW --record full.rec v.nrrd 2>said
     echo $? >status

@@ -30,30 +30,54 @@ live() { # [ARG...]: on the model; $T/out, $T/stderr
     tled-run --text --live --record "$T/record" "$@" <"$T/model" >"$T/out" 2>"$T/said"
 }
 
-# Through a FIFO: stalls, what is wrong, a writer that leaves and one that comes.
-mkfifo "$T/fifo"
-(
-    exec 3>"$T/fifo"
-    printf 'now gravity 0,0,-5\n' >&3
-    sleep .3
-    printf 'now gravity nan,0,0\nnow gravity 1,2\n\001\002\nnow fly 1\nnow\n0 gravity 0,0,1\nset dt 1\nnow contract m 1\n' >&3
-    printf 'now force 1,1,1 1mm 0,0,1\npull p 10mm,10mm,20mm 6mm 10mm,10mm,25mm x\nrelease nobody\n' >&3
-    printf 'now traction nothing 1,1,1\nnow displace none 1,1,1\nnow displace 0,0,0,1,1,1 -,-,-\n' >&3
-    exec 3>&-
-    sleep .1
-    printf 'pull p 10mm,10mm,20mm 6mm 10mm,10mm,25mm 5\npull p 10mm,10mm,20mm 6mm 12mm,10mm,26mm 5\n' >"$T/fifo"
-    sleep .1
-    printf 'pull p 10mm,10mm,20mm 4mm 12mm,10mm,26mm 5\nnow force 0,0,20mm 6mm .01,0,0\nnow pull q 0,0,20mm 6mm 0,1mm,2cm 2\n' >"$T/fifo"
-    sleep .1
-    printf 'release p\nnow release q\nnow force 0,0,20mm 6mm 0,0,0\nnow displace 0,0,0,1,1,0 0,1mm,-\n' >"$T/fifo"
-    sleep .1
-    printf 'now displace 0,0,0,1,1,0 0,2mm,-\nnow gravity 0,0,0\nnow pull r 0,0,20mm 6mm 0,1mm,2cm 2\n' >"$T/fifo"
-) &
-live --control "$T/fifo" -t 1.5
+# until_line PATTERN FILE: until the file has such a line; as long as the run goes on.
+until_line() {
+    tries=0
+    while ! grep -q "$1" "$2" 2>/dev/null && [ "$tries" -lt 3000 ] && kill -0 "$run" 2>/dev/null; do
+        sleep 0.02
+        tries=$((tries + 1))
+    done
+}
+# more N: until there are N frames more than now.
+more() {
+    until_line "^frame $(($(lines '^frame') + $1)) " "$T/record"
+}
+
+live -t 1.5
 is $? 0 "a live run of a second and a half"
-wait
 is "$(frames "$T/out")" 91 "60 frames a second, and the first"
 is "$(lines '^frame')" 90 "as many in the record"
+
+# Through a FIFO: stalls, what is wrong, a writer that leaves and one that comes.
+mkfifo "$T/fifo"
+rm -f "$T/record"
+tled-run --text --live --record "$T/record" --control "$T/fifo" <"$T/model" >"$T/out" 2>"$T/said" &
+run=$!
+exec 3>"$T/fifo"
+printf 'now gravity 0,0,-5\n' >&3
+until_line '^now gravity 0,0,-5' "$T/record"
+more 10
+printf 'now gravity nan,0,0\nnow gravity 1,2\n\001\002\nnow fly 1\nnow\n0 gravity 0,0,1\nset dt 1\nnow contract m 1\n' >&3
+printf 'now force 1,1,1 1mm 0,0,1\npull p 10mm,10mm,20mm 6mm 10mm,10mm,25mm x\nrelease nobody\n' >&3
+printf 'now traction nothing 1,1,1\nnow displace none 1,1,1\nnow displace 0,0,0,1,1,1 -,-,-\n' >&3
+exec 3>&-
+# What each writer leaves, and with it that it went away, is taken before the next one comes.
+while read -r last lines_; do
+    more 10
+    # shellcheck disable=SC2059 # a format
+    printf "$lines_" >"$T/fifo"
+    until_line "$last" "$T/record"
+done <<'END'
+^pull.*,0.026 pull p 10mm,10mm,20mm 6mm 10mm,10mm,25mm 5\npull p 10mm,10mm,20mm 6mm 12mm,10mm,26mm 5\n
+^now.pull.q pull p 10mm,10mm,20mm 4mm 12mm,10mm,26mm 5\nnow force 0,0,20mm 6mm .01,0,0\nnow pull q 0,0,20mm 6mm 0,1mm,2cm 2\n
+^now.displace release p\nnow release q\nnow force 0,0,20mm 6mm 0,0,0\nnow displace 0,0,0,1,1,0 0,1mm,-\n
+^now.pull.r now displace 0,0,0,1,1,0 0,2mm,-\nnow gravity 0,0,0\nnow pull r 0,0,20mm 6mm 0,1mm,2cm 2\n
+END
+more 20
+kill -INT "$run"
+wait "$run"
+is $? 0 "controls through a FIFO, to SIGINT"
+is "$(frames "$T/out")" "$(($(lines '^frame') + 1))" "each frame is in the record"
 is "$(tail -n 1 "$T/record")" end "which is whole"
 is "$(lines '^now\|^pull\|^release')" 13 "with the lines that were taken"
 check "what is wrong is counted" grep -q ' 13 controls; 14 lines skipped; writers went away: 5' "$T/said"
@@ -81,7 +105,8 @@ fails 1 "a line of a record that is wrong" "odd:[0-9]*: '0,0'; expected X,Y,Z" \
 
 # From standard input after the model, whose end ends the run.
 rm -f "$T/record"
-{ cat "$T/model"; printf 'now gravity 0,0,-3\n'; sleep .2; printf 'now gravity 0,0,-4\n'; } |
+run=$$ # which goes on
+{ cat "$T/model"; printf 'now gravity 0,0,-3\n'; until_line '^now' "$T/record"; more 10; printf 'now gravity 0,0,-4\n'; } |
     tled-run --text -q --live --control - --record "$T/record" >"$T/out"
 is $? 0 "controls after the model"
 is "$(lines '^now')" 2 "both are taken"
@@ -102,13 +127,14 @@ run=$!
     exec 3>"$T/fifo"
     for z in 40 38 nan 36; do
         for i in 1 2 3 4 5 6 7 8; do printf '%s 0.01 0.01 %se-3 1 0 0 0\n' "$i" "$z"; done >&3
-        sleep .1
+        more 6
         printf '9 0 0 0 0 0 0 0\n0 1 2\n' >&3
         exec 3>&-
         exec 3>"$T/fifo"
     done
     printf '20 0.01 0.01 0.035 1 0 0 0\n' >&3
-    sleep .3
+    until_line 'pose=0.01,0.01,0.025' "$T/record"
+    more 3
 )
 kill -INT "$run"
 wait "$run"
@@ -121,7 +147,7 @@ replays "a probe" --probe sphere:1cm
 rm -f "$T/record"
 tled-run --text -q --live --record "$T/record" -o "$T/out" <"$T/model" &
 run=$!
-sleep .4
+until_line '^frame 20 ' "$T/record"
 kill -TERM "$run"
 wait "$run"
 is $? 0 "SIGTERM is a normal end"
@@ -137,7 +163,7 @@ is "$(lines '^frame')" 6 "a tenth of a second"
 rm -f "$T/record"
 tled-run --text -q --live --record "$T/record" <"$T/model" >/dev/null &
 run=$!
-sleep .4
+until_line '^frame 20 ' "$T/record"
 kill -KILL "$run"
 wait "$run" 2>/dev/null
 check "killed: no end" sh -c "! grep -q '^end' '$T/record'"
@@ -160,8 +186,16 @@ is "$(frames "$T/out")" "$(($(lines '^frame') + 1))" "to its last frame"
 # Tissue that breaks: back to the last sound state, and on.
 printf 'now displace 0,0,20mm,1,1,20mm 0,0,-3cm\npull p 10mm,10mm,10mm 6mm 10mm,10mm,30cm 1000\n' |
     cat "$T/model" - >"$T/both"
-{ cat "$T/both"; sleep .5; printf 'now displace 0,0,20mm,1,1,20mm 0,0,-2mm\n'; sleep .3; } |
-    tled-run --text --live --control - --record "$T/record" --force >"$T/out" 2>"$T/said"
+run=$$
+rm -f "$T/record"
+{
+    cat "$T/both"
+    until_line 'path=cpu-restored' "$T/record"
+    printf 'now displace 0,0,20mm,1,1,20mm 0,0,-2mm\n'
+    until_line '^now displace 0,0,20mm,1,1,20mm 0,0,-2mm' "$T/record"
+    more 10
+} |
+    tled-run --text --live --control - --record "$T/record" >"$T/out" 2>"$T/said"
 status=$?
 check "tissue that breaks is told" grep -q 'the tissue broke: .*; it goes on from its last sound state, at rest' "$T/said"
 is "$status" 0 "and the run goes on"
