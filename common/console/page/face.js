@@ -31,6 +31,7 @@ export class Face {
         this.sliders = new Map();
         this.senders = new Map();
         this.pulls = new Map();
+        this.released = new Set();  // of which the server's state has not told yet
         this.next = 1;
         this.colouring = "own";
         this.listen(view.canvas);
@@ -229,14 +230,16 @@ export class Face {
         this.list();
     }
 
-    sendPull({id, rest, radius, target, stiffness}) {
-        if (!this.pulls.has(id)) return;  // it was released meanwhile
+    sendPull(pull) {
+        const {id, rest, radius, target, stiffness} = pull;
+        if (this.pulls.get(id) !== pull) return;  // it was released meanwhile
         const words = (v) => v.toArray().map(exactly).join(",");
         this.send(`pull ${id} ${words(rest)} ${exactly(radius)} ${words(target)} ${exactly(stiffness)}`);
     }
 
     release(id) {
         this.send(`release ${id}`);
+        this.released.add(id);
         this.remove(id);
     }
 
@@ -301,10 +304,12 @@ export class Face {
     // What the server has: another page's pulls come, and those that were released go. What a hand holds stays.
     setPulls(theirs) {
         const names = new Set(theirs.map((pull) => pull.id));
+        for (const id of this.released)
+            if (!names.has(id)) this.released.delete(id);
         for (const id of [...this.pulls.keys()])
             if (!names.has(id) && !this.isHeld(id) && this.pulls.get(id).told) this.remove(id);
         for (const each of theirs) {
-            const mine = this.pulls.get(each.id) || this.adopt(each);
+            const mine = this.pulls.get(each.id) || (!this.released.has(each.id) && this.adopt(each));
             if (!mine) continue;
             mine.told = true;
             if (!this.isHeld(each.id)) mine.target.fromArray(each.target);
