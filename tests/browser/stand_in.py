@@ -29,19 +29,19 @@ class Jpeg:
     """Grey pixels as JPEG, by libturbojpeg."""
 
     def __init__(self):
-        self.library = ctypes.CDLL(ctypes.util.find_library("turbojpeg"))
-        self.library.tjInitCompress.restype = ctypes.c_void_p
-        self.handle = ctypes.c_void_p(self.library.tjInitCompress())
+        self.jpeg = ctypes.CDLL(ctypes.util.find_library("turbojpeg"))
+        self.jpeg.tjInitCompress.restype = ctypes.c_void_p
+        self.handle = ctypes.c_void_p(self.jpeg.tjInitCompress())
         self.lock = threading.Lock()
 
     def pack(self, pixels, columns, rows):
         grey_pixels, grey_samples = 6, 3
         to, size = ctypes.POINTER(ctypes.c_ubyte)(), ctypes.c_ulong(0)
         with self.lock:
-            self.library.tjCompress2(self.handle, bytes(pixels), columns, 0, rows, grey_pixels, ctypes.byref(to),
+            self.jpeg.tjCompress2(self.handle, bytes(pixels), columns, 0, rows, grey_pixels, ctypes.byref(to),
                                      ctypes.byref(size), grey_samples, 85, 0)
             packed = ctypes.string_at(to, size.value)
-            self.library.tjFree(to)
+            self.jpeg.tjFree(to)
         return packed
 
 

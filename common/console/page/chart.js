@@ -1,18 +1,17 @@
 // A strip chart: the last seconds of one number, drawn from the right.
 
 import {niceStep} from "./image.js";
-import {figures} from "./widgets.js";
+import {Drawing, figures} from "./widgets.js";
 
 const SPAN = 10;  // s
 const INK = "#8b979f";
 const LINE = "#7cc4e0";
 
-export class Chart {
+export class Chart extends Drawing {
     constructor(canvas, unit) {
-        this.canvas = canvas;
+        super(canvas);
         this.unit = unit;
         this.points = [];  // [s, value]
-        new ResizeObserver(() => this.draw()).observe(canvas);
     }
 
     // Times that go back begin a new strip.
@@ -29,23 +28,7 @@ export class Chart {
         this.draw();
     }
 
-    draw() {
-        if (this.asked) return;
-        this.asked = true;
-        requestAnimationFrame(() => {
-            this.asked = false;
-            this.paint();
-        });
-    }
-
-    paint() {
-        const ratio = window.devicePixelRatio || 1;
-        const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-        if (!width || !height) return;
-        this.canvas.width = width * ratio;
-        this.canvas.height = height * ratio;
-        const to = this.canvas.getContext("2d");
-        to.scale(ratio, ratio);
+    paint(to, width, height) {
         const em = parseFloat(getComputedStyle(this.canvas).fontSize);
         const most = Math.max(...this.points.map(([, value]) => value), 1e-3);
         const step = niceStep(most / 2);

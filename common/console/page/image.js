@@ -2,7 +2,7 @@
 // a line for it.
 
 import {metres} from "./shapes.js";
-import {byId, element, exactly, figures, paced, Slider} from "./widgets.js";
+import {byId, Drawing, element, exactly, figures, paced, Slider} from "./widgets.js";
 
 const TGC = 6;
 const HOLD = 600;  // ms: as of sliders
@@ -55,10 +55,10 @@ export function niceStep(least) {
 // Its size and where it stands, as a text.
 const placeOf = (image) => [image.columns, image.rows, ...image.origin, ...image.column, ...image.row].join();
 
-export class Image {
+export class Image extends Drawing {
     // set(key, value): a line to us-slice; shown(image, bitmap): its pixels are there; null: as before.
     constructor(set, shown) {
-        this.canvas = byId("image");
+        super(byId("image"), byId("image-room"));
         this.bitmap = null;
         this.version = 0;  // how many there were
         this.sets = {};
@@ -68,7 +68,6 @@ export class Image {
         this.texts = {};
         this.knobs = {};
         this.build();
-        new ResizeObserver(() => this.draw()).observe(this.canvas.parentElement);
     }
 
     // ---- knobs
@@ -192,24 +191,7 @@ export class Image {
         return [Math.hypot(...image.column), Math.hypot(...image.row)];
     }
 
-    draw() {
-        if (this.asked) return;
-        this.asked = true;
-        requestAnimationFrame(() => {
-            this.asked = false;
-            this.paint();
-        });
-    }
-
-    paint() {
-        const room = this.canvas.parentElement;
-        const ratio = window.devicePixelRatio || 1;
-        const [width, height] = [room.clientWidth, room.clientHeight];
-        if (!width || !height) return;
-        this.canvas.width = Math.round(width * ratio);
-        this.canvas.height = Math.round(height * ratio);
-        const to = this.canvas.getContext("2d");
-        to.scale(ratio, ratio);
+    paint(to, width, height) {
         to.fillStyle = "#000";
         to.fillRect(0, 0, width, height);
         this.layout = this.now ? this.layoutIn(width, height) : null;

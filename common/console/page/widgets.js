@@ -72,6 +72,37 @@ export class Slider {
     }
 }
 
+// A canvas as large as its room, painted when draw() has been called or the room's size has changed, once for each
+// picture of the screen at most. Who extends it has paint(to, width, height), which draws with `to` in CSS pixels.
+export class Drawing {
+    constructor(canvas, room = canvas) {
+        this.canvas = canvas;
+        this.room = room;
+        new ResizeObserver(() => this.draw()).observe(room);
+    }
+
+    draw() {
+        if (this.asked) return;
+        this.asked = true;
+        requestAnimationFrame(() => {
+            this.asked = false;
+            this.fit();
+        });
+    }
+
+    // A size that is set clears the canvas.
+    fit() {
+        const ratio = window.devicePixelRatio || 1;
+        const [width, height] = [this.room.clientWidth, this.room.clientHeight];
+        if (!width || !height) return;
+        this.canvas.width = Math.round(width * ratio);
+        this.canvas.height = Math.round(height * ratio);
+        const to = this.canvas.getContext("2d");
+        to.scale(ratio, ratio);
+        this.paint(to, width, height);
+    }
+}
+
 // At most one call in `each` ms, of which the last always comes.
 export function paced(each, call) {
     let last = -Infinity;
