@@ -12,7 +12,6 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 /* ---- where a tool lies */
@@ -235,10 +234,9 @@ void child_ask(const child *c)
 
 void child_end(child *c, double seconds)
 {
-    const struct timespec rest = {.tv_nsec = 5000000};
     const double until = clock_now() + seconds;
     while (!child_has_ended(c) && clock_now() < until)
-        nanosleep(&rest, NULL);
+        clock_sleep(.005);
     if (c->pid) {
         kill(c->pid, SIGKILL);
         while (waitpid(c->pid, &c->status, 0) < 0 && errno == EINTR)

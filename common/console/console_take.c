@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 static void answer(console *c, int client, const char *level, const char *text)
@@ -161,7 +160,6 @@ static int take_pause(console *c, bool on, err *e)
 /* Lets the tools go on until a frame was shown. */
 static int take_step(console *c, err *e)
 {
-    const struct timespec rest = {.tv_nsec = 2000000};
     if (need_case(c, e))
         return -1;
     if (!c->paused)
@@ -170,7 +168,7 @@ static int take_step(console *c, err *e)
     const double until = clock_now() + 2;
     pause_tools(c, false);
     while (atomic_load(&c->frames) == before && clock_now() < until)
-        nanosleep(&rest, NULL);
+        clock_sleep(.002);
     pause_tools(c, true);
     return 0;
 }

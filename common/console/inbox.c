@@ -1,10 +1,10 @@
 #include "console/inbox.h"
 
+#include "base/clock.h"
 #include "base/mem.h"
 
 #include <pthread.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { MOST = 64 };
 
@@ -81,11 +81,8 @@ void inbox_wake(inbox *b)
 
 bool inbox_take(inbox *b, double seconds, int *client, message *m)
 {
-    struct timespec until;
+    const struct timespec until = clock_timespec(clock_now() + seconds);
     int code = 0;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    const int64_t end = until.tv_sec * INT64_C(1000000000) + until.tv_nsec + (int64_t)(1e9 * seconds);
-    until = (struct timespec){.tv_sec = (time_t)(end / 1000000000), .tv_nsec = (long)(end % 1000000000)};
     pthread_mutex_lock(&b->lock);
     while (!b->count && !b->woken && !b->ended && !code)
         code = pthread_cond_timedwait(&b->changed, &b->lock, &until);

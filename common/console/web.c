@@ -1,5 +1,6 @@
 #include "console/web.h"
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/thread.h"
 
@@ -12,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <time.h>
 #include <unistd.h>
 
 /* A place for a client. It is taken from the upgrade on until its connection has ended. */
@@ -316,10 +316,9 @@ static int try_to_listen(const address *a, err *e)
 /* While it stops, civetweb's thread that listens sleeps for up to two seconds, unless somebody comes. */
 static void *come(void *context)
 {
-    const struct timespec rest = {.tv_nsec = 20000000};
     const web *w = context;
     place to;
-    nanosleep(&rest, NULL);
+    clock_sleep(.02);
     const int s = place_of(&w->plan.at, atomic_load(&w->port), &to) ? -1 : socket(to.at.any.sa_family, SOCK_STREAM, 0);
     if (s >= 0) {
         (void)!connect(s, &to.at.any, to.size); /* where it fails, the end takes longer */
@@ -404,14 +403,13 @@ web *web_open(const web_plan *plan, err *e)
 /* Without this wait, mg_stop would wait for each of them, up to two seconds. */
 static void say_goodbye(web *w)
 {
-    const struct timespec rest = {.tv_nsec = 5000000};
     pthread_mutex_lock(&w->lock);
     for (int i = 0; i < WEB_CLIENTS; i++)
         if (w->clients[i].ready)
             mailbox_end(&w->clients[i].box);
     pthread_mutex_unlock(&w->lock);
     for (int i = 0; i < 60 && web_clients(w); i++)
-        nanosleep(&rest, NULL);
+        clock_sleep(.005);
 }
 
 void web_close(web *w)

@@ -18,7 +18,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
-#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -373,6 +372,17 @@ failed:
     return NULL;
 }
 
+lines *lines_open_named(const char *poses_path, const char *control_path, in *before, err *e)
+{
+    const char *path[2];
+    int count = 0;
+    if (poses_path)
+        path[count++] = poses_path;
+    if (control_path && !(poses_path && !strcmp(poses_path, control_path)))
+        path[count++] = control_path;
+    return lines_open(path, count, before, e);
+}
+
 void lines_close(lines *l)
 {
     if (!l)
@@ -406,12 +416,6 @@ void lines_close(lines *l)
 
 /* ---- Taking */
 
-static struct timespec instant(double seconds)
-{
-    const double whole = floor(seconds);
-    return (struct timespec){.tv_sec = (time_t)whole, .tv_nsec = (long)((seconds - whole) * 1e9)};
-}
-
 void lines_wait(lines *l, double until)
 {
     enum { LOOK = 50 }; /* ms: how soon a signal is seen */
@@ -420,7 +424,7 @@ void lines_wait(lines *l, double until)
         const double now = clock_now(), soon = now + 1e-3 * LOOK;
         if (l->has_pose || l->count || l->woken || !l->running || l->over || stop_came() || now >= until)
             break;
-        const struct timespec to = instant(soon < until ? soon : until);
+        const struct timespec to = clock_timespec(soon < until ? soon : until);
         pthread_cond_timedwait(&l->came, &l->lock, &to);
     }
     l->woken = false;

@@ -36,6 +36,10 @@ typedef struct lines_counts {
 /* Opens the sources at `path` (count of them, at most LINES_SOURCES; "-": standard input, of which `before`, which may
  * be NULL, has read a part) and starts to read. A FIFO need not have a writer yet. NULL with e filled. */
 lines *lines_open(const char *const *path, int count, in *before, err *e);
+
+/* The same for a source of poses and one of controls. Each may be NULL; one that is named for both is read once. */
+lines *lines_open_named(const char *poses_path, const char *control_path, in *before, err *e);
+
 void lines_close(lines *l);
 
 /* Waits until there is something to take, all sources have ended, or it is `until` (s, by clock_now); also ends

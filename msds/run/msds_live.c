@@ -10,7 +10,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 enum { FAILED_MOST = 60 };
 
@@ -82,11 +81,7 @@ static bool has_begun(const live *l)
 
 static void sleep_until(double when)
 {
-    const double left = when - clock_now();
-    if (left > 0) {
-        const struct timespec time = {.tv_nsec = (long)(1e9 * fmin(left, .999))};
-        nanosleep(&time, NULL);
-    }
+    clock_sleep(fmin(when - clock_now(), 1));
 }
 
 /* Until something has come, or a tick is due; but not before twice the rate allows. */
@@ -187,18 +182,6 @@ static int go_on(live *l, err *e)
 
 /* ---- Beginning and end */
 
-static lines *open_lines(const session *s, err *e)
-{
-    const struct options *o = s->o;
-    const char *path[2];
-    int count = 0;
-    if (o->poses)
-        path[count++] = o->poses;
-    if (o->control && !(o->poses && !strcmp(o->poses, o->control)))
-        path[count++] = o->control;
-    return lines_open(path, count, s->stage.source, e);
-}
-
 static void say_end(live *l)
 {
     session *s = l->s;
@@ -232,7 +215,7 @@ int msds_live_run(session *s, err *e)
     s->source = s->o->poses ? s->o->poses : s->o->control;
     if (s->o->record && !(l.record = msds_record_create(s, e)))
         return -1;
-    l.lines = open_lines(s, e);
+    l.lines = lines_open_named(s->o->poses, s->o->control, s->stage.source, e);
     if (l.lines) {
         begin(&l);
         failed = go_on(&l, e);

@@ -7,9 +7,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 struct slice_feed {
@@ -130,8 +128,7 @@ bool slice_feed_ended(slice_feed *f)
 
 void slice_feed_finish(slice_feed *f, double seconds)
 {
-    const double until = clock_now() + seconds, whole = floor(until);
-    const struct timespec to = {.tv_sec = (time_t)whole, .tv_nsec = (long)((until - whole) * 1e9)};
+    const struct timespec to = clock_timespec(clock_now() + seconds);
     pthread_mutex_lock(&f->lock);
     while (!f->ended && !pthread_cond_timedwait(&f->end, &f->lock, &to))
         ;

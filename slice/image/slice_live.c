@@ -13,7 +13,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 enum { RATE = 60 }; /* Hz */
 
@@ -83,20 +82,6 @@ static void make_parts(const slice_session *s, parts *p)
 
 /* ---- Beginning and ending */
 
-/* A source for poses and one for controls; one that is named for both is read once. */
-static int open_lines(live *l, err *e)
-{
-    const slice_options *o = &l->s->o;
-    const char *list[2];
-    int count = 0;
-    if (o->poses)
-        list[count++] = o->poses;
-    if (o->control && !(o->poses && !strcmp(o->poses, o->control)))
-        list[count++] = o->control;
-    l->lines = lines_open(list, count, NULL, e);
-    return l->lines ? 0 : -1;
-}
-
 static int open_record(live *l, err *e)
 {
     const slice_options *o = &l->s->o;
@@ -122,7 +107,8 @@ static void say_poses(const slice_session *s)
 
 static int begin(live *l, err *e)
 {
-    if (open_lines(l, e) || open_record(l, e))
+    l->lines = lines_open_named(l->s->o.poses, l->s->o.control, NULL, e);
+    if (!l->lines || open_record(l, e))
         return -1;
     if (!l->s->o.rigid) {
         l->feed = slice_feed_open(&l->s->model, l->lines, e);
@@ -259,10 +245,7 @@ static int show(live *l, err *e)
 static void wait_for_more(const live *l)
 {
     lines_wait(l->lines, l->clock.due);
-    const double early = l->last + .5 * l->clock.each - clock_now();
-    const struct timespec rest = {.tv_nsec = (long)(1e9 * fmin(early, .999))};
-    if (early > 0)
-        nanosleep(&rest, NULL);
+    clock_sleep(fmin(l->last + .5 * l->clock.each - clock_now(), 1));
 }
 
 /* Whether what came by now is the last. A signal that ends a whole pipe also ends the stream, soon. */

@@ -1,6 +1,8 @@
 // Tools that the console runs: they are found, fed, heard and ended, and none outlives it.
 // needs: common/console/child.c
+#include "base/clock.h"
 #include "console/child.h"
+
 #include "tap.h"
 
 #include <fcntl.h>
@@ -8,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 static char said[4000];
@@ -42,13 +43,6 @@ static void read_all(int fd, char *to, size_t size)
     while (n + 1 < size && (got = read(fd, to + n, size - 1 - n)) > 0)
         n += (size_t)got;
     to[n] = '\0';
-}
-
-static void rest(double seconds)
-{
-    const struct timespec time = {.tv_sec = (time_t)seconds,
-                                  .tv_nsec = (long)(1e9 * (seconds - (double)(time_t)seconds))};
-    nanosleep(&time, NULL);
 }
 
 /* Whether a process is there, and has not ended. */
@@ -155,7 +149,7 @@ static void try_orphan(void)
     kill(console, SIGKILL);
     waitpid(console, NULL, 0);
     for (int i = 0; i < 100 && is_alive(pid); i++)
-        rest(.05);
+        clock_sleep(.05);
     ok(!is_alive(pid), "ends with it, though that was killed");
     close(fd[0]);
     close(fd[1]);

@@ -162,7 +162,7 @@ static void refused(const char *folder)
     ok(!lines_open(list, 1, NULL, &e) && strstr(e.text, "No such file"), "%s", e.text);
 }
 
-/* A FIFO by two names: each source would get a part of its lines. */
+/* A FIFO by two names: each source would get a part of its lines. Named the same for both, it is one source. */
 static void twice(const char *folder)
 {
     char path[300], again[310];
@@ -172,6 +172,16 @@ static void twice(const char *folder)
     ok(!mkfifo(path, 0600), "a FIFO");
     const char *const list[] = {path, again};
     ok(!lines_open(list, 2, NULL, &e) && strstr(e.text, "the same pipe"), "%s", e.text);
+    e = (err){0};
+    ok(!lines_open_named(path, again, NULL, &e) && strstr(e.text, "the same pipe"), "of poses and controls: %s",
+       e.text);
+    e = (err){0};
+    lines *l = lines_open_named(path, path, NULL, &e);
+    ok(l != NULL, "one that is named for both is read once%s", e.text);
+    lines_close(l);
+    l = lines_open_named(NULL, path, NULL, &e);
+    ok(l && !lines_ended(l), "controls without poses%s", e.text);
+    lines_close(l);
     unlink(path);
 }
 
@@ -287,7 +297,7 @@ static void joined(void)
     err e = {0};
     char text[LINES_TEXT];
     pthread_t thread;
-    lines *l = lines_open(NULL, 0, NULL, &e);
+    lines *l = lines_open_named(NULL, NULL, NULL, &e);
     ok(l && lines_ended(l), "without sources, all have ended");
     if (!l)
         return;

@@ -45,8 +45,21 @@ static void lags(void)
     ok(strstr(text, "of real time; lag of 100 poses: median 1.0"), "%s", text);
 }
 
+static void sleeps(void)
+{
+    const struct timespec t = clock_timespec(3.25), most = clock_timespec(nextafter(5, 0));
+    ok(t.tv_sec == 3 && t.tv_nsec == 250000000, "seconds and a fraction");
+    ok(most.tv_sec == 4 && most.tv_nsec == 999999999, "the fraction stays below a second");
+    const double before = clock_now();
+    clock_sleep(-1e300);
+    clock_sleep(0);
+    clock_sleep(.01);
+    ok(clock_now() - before >= .0099, "a sleep is not shorter than asked, and none below 0 fails");
+}
+
 int main(void)
 {
+    sleeps();
     ticks();
     lags();
     return done_testing();

@@ -14,7 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { RING = TLED_SLOTS + 16, TOLD = 5 }; /* frames on their way at most, and more; breaks that are told one by one */
 
@@ -238,8 +237,7 @@ static bool wait_until_due(live *l)
             return false;
         if (left <= 0 && has_begun(l))
             return true;
-        const struct timespec some = {0, (long)(1e9 * num_clamp(left, soon, look))};
-        nanosleep(&some, NULL);
+        clock_sleep(num_clamp(left, soon, look));
     }
 }
 
@@ -346,18 +344,6 @@ void live_written(live *l)
 
 /* ---- The run */
 
-static int open_lines(live *l, const struct options *o, err *e)
-{
-    const char *path[LINES_SOURCES];
-    int count = 0;
-    if (o->poses)
-        path[count++] = o->poses;
-    if (o->lines)
-        path[count++] = o->lines;
-    l->lines = count ? lines_open(path, count, l->s->stage.source, e) : NULL;
-    return count && !l->lines ? -1 : 0;
-}
-
 int live_open(session *s, const struct options *o, err *e)
 {
     live *l = s->live;
@@ -366,7 +352,10 @@ int live_open(session *s, const struct options *o, err *e)
     l->next = (record_frame){.index = s->next_frame + s->run.first, .of = -1};
     if (record_begin(s, l->rate, o->record, o->force, o->replay, &l->record, &l->replay, e))
         return -1;
-    return o->live ? open_lines(l, o, e) : 0;
+    if (!o->live || (!o->poses && !o->lines))
+        return 0;
+    l->lines = lines_open_named(o->poses, o->lines, s->stage.source, e);
+    return l->lines ? 0 : -1;
 }
 
 int live_go(session *s, run_end *end, err *e)
