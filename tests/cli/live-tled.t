@@ -68,7 +68,7 @@ while read -r last lines_; do
     printf "$lines_" >"$T/fifo"
     until_line "$last" "$T/record"
 done <<'END'
-^pull.*,0.026 pull p 10mm,10mm,20mm 6mm 10mm,10mm,25mm 5\npull p 10mm,10mm,20mm 6mm 12mm,10mm,26mm 5\n
+^pull.*,26mm pull p 10mm,10mm,20mm 6mm 10mm,10mm,25mm 5\npull p 10mm,10mm,20mm 6mm 12mm,10mm,26mm 5\n
 ^now.pull.q pull p 10mm,10mm,20mm 4mm 12mm,10mm,26mm 5\nnow force 0,0,20mm 6mm .01,0,0\nnow pull q 0,0,20mm 6mm 0,1mm,2cm 2\n
 ^now.displace release p\nnow release q\nnow force 0,0,20mm 6mm 0,0,0\nnow displace 0,0,0,1,1,0 0,1mm,-\n
 ^now.pull.r now displace 0,0,0,1,1,0 0,2mm,-\nnow gravity 0,0,0\nnow pull r 0,0,20mm 6mm 0,1mm,2cm 2\n
