@@ -38,6 +38,7 @@ struct live {
     lines *lines;    /* NULL: no source, or a replay */
     record *record;  /* NULL: none */
     replay *replay;  /* NULL: it is live */
+    bool cut;        /* the record ended without its `end` */
     lines_pose pose; /* that came last */
     bool has_pose;   /* it has not been taken */
     record_frame next;
@@ -251,6 +252,7 @@ static int take_record(live *l, const run_tick *at, bool *anew, err *e)
     while ((got = replay_next(l->replay, &kind, &k, &f, e)) > 0 && kind == REPLAY_CONTROL)
         if (take_control(l, &k, at, anew, e))
             return -1;
+    l->cut = !got && !replay_is_whole(l->replay);
     if (got <= 0)
         return got;
     if (f.time != at->until)
@@ -378,8 +380,10 @@ void live_end(session *s)
     char text[LIVE_CLOCK_TEXT], counts[LINES_TEXT];
     record_close(l->record, &s->warnings);
     l->record = NULL;
-    if (l->replay && !replay_is_whole(l->replay))
+    if (l->cut)
         notes_add(&s->warnings, "the record was cut short: it is replayed up to its last whole frame");
+    else if (l->replay && !replay_is_whole(l->replay) && stop_came())
+        notes_add(&s->warnings, "a signal ended the replay before the end of its record");
     live_clock_text(&l->clock, text);
     tool_say(s->t, "%s: %s", l->replay ? "replayed" : "live", text);
     if (l->broken)
