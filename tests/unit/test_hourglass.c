@@ -7,6 +7,7 @@
 #include "physics/element_any.h"
 #include "physics/stability.h"
 
+#include "corners.h"
 #include "form_tried.h"
 #include "tap.h"
 
@@ -16,15 +17,6 @@
 typedef double complex number;
 
 static const double mu = 3000 / 2.9, bulk = 10000, density = 1000;
-static const int corner_of[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-
-static double chance(void)
-{
-    static unsigned seed = 11;
-    seed = seed * 1664525 + 1013904223;
-    return 2 * (double)(seed >> 8) / (1 << 24) - 1;
-}
 
 /* ---- an element: its corners at rest, and what the code under test has of it */
 

@@ -5,21 +5,12 @@
 #include "mesh/hexahedron.h"
 #include "physics/element_any.h"
 
+#include "corners.h"
 #include "tap.h"
 
 #include <string.h>
 
 enum { MODES = 12, FIELDS = 7, ALL = 3 * FIELDS };
-
-static const int corner_of[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-
-static double chance(void)
-{
-    static unsigned seed = 11;
-    seed = seed * 1664525 + 1013904223;
-    return 2 * (double)(seed >> 8) / (1 << 24) - 1;
-}
 
 /* a^-1, with its determinant. */
 static double invert(double a[3][3], double to[3][3])
