@@ -41,7 +41,9 @@ int child_find(const char *tool, char path[CHILD_PATH], err *e);
 /* Starts it. -1 with e filled; plan->in is closed in any case. */
 int child_start(child *c, const child_plan *plan, err *e);
 
-/* Writes a line to its pipe: at once, or not at all. -1 with e filled, once, where it does not read. */
+/* Writes a line to the tool's pipe, without waiting. Where the pipe is full, as the tool does not read, the line is
+ * lost: -1 with e filled for the first such line, 0 for those after it, until one is written again. To a tool that has
+ * ended nothing is written: 0. -1 with e filled for a line that is longer than a pipe takes whole. */
 int child_tell(child *c, const char *line, err *e);
 
 /* Whether it has ended; then c->status is how. */

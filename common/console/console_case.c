@@ -309,7 +309,7 @@ static void tell_end(console *c, int which, child *is)
     child_end(is, 0); /* and all that it said is heard */
     child_how(is, how, sizeof how);
     pthread_mutex_lock(&c->shared.lock);
-    /* What it said last is why, where it chose to end. */
+    /* A tool that exits with a failure has said why in its last line; one that a signal killed has not. */
     const bool failed = WIFEXITED(is->status) && !is_well(is);
     snprintf(text, sizeof text, "%s %s%s%s", is->plan.tool, how, failed ? ": " : "",
              failed ? c->shared.said[which] : "");

@@ -51,7 +51,7 @@ typedef struct mailbox {
 int mailbox_open(mailbox *b, err *e);
 void mailbox_close(mailbox *b); /* no thread may wait in it any more */
 
-/* Nothing is put or taken any more: who waits returns. */
+/* From now on nothing is put into the box or taken from it; mailbox_take returns NULL, also where it waits. */
 void mailbox_end(mailbox *b);
 
 void mailbox_put(mailbox *b, mail_slot slot, mail *m);

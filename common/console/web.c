@@ -123,7 +123,7 @@ static int on_request(struct mg_connection *c, void *context)
 
 /* ---- clients */
 
-/* Whether it was sent whole. m is done with. */
+/* Sends a mail, and gives up its use of it (mail_done). True: it was sent whole. */
 static bool send_one(client *c, mail *m)
 {
     const int opcode = m->text ? MG_WEBSOCKET_OPCODE_TEXT : MG_WEBSOCKET_OPCODE_BINARY;

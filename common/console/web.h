@@ -35,10 +35,11 @@ void web_close(web *w);
 int web_port(const web *w);
 
 /* Puts a mail into the box of client `to`, or into everyone's (-1), and takes over the caller's use of it. m may be
- * NULL: nothing is put. Who comes later gets the last of each slot that went to everyone, but for texts. */
+ * NULL: nothing is put. A client that connects later gets of each slot the last mail that went to everyone, but no
+ * texts. */
 void web_send(web *w, int to, mail_slot slot, mail *m);
 
-/* What waits in a slot of everyone's is not to be sent any more, nor to who comes later. */
+/* Takes what waits in this slot out of every client's box, and sends it to no client that connects later. */
 void web_drop(web *w, mail_slot slot);
 
 /* How many clients there are. */

@@ -249,7 +249,7 @@ static bool read_more(source *s)
     return s->waits && !open_again(s);
 }
 
-/* What the reader of the model has read ahead. */
+/* Lines that the reader of the model, before them on standard input, has read already. */
 static void take_rest(source *s)
 {
     size_t n;
