@@ -5,20 +5,67 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 
 /* Told apart by people of any colour vision (Okabe & Ito 2008), without the black. */
 static const uint8_t colours[][3] = {{213, 94, 0},  {86, 180, 233},  {0, 158, 115}, {240, 228, 66},
                                      {0, 114, 178}, {204, 121, 167}, {230, 159, 0}};
 
-enum { COLOURS = sizeof colours / sizeof *colours };
+enum { COLOURS = sizeof colours / sizeof *colours, ARTERY = 0, VEIN = 1, BONE = 3 };
+
+/* What a reader of images expects: arteries are red, veins blue, as the surfaces of the console are. */
+static const struct {
+    const char *word;
+    uint8_t colour;
+} known[] = {{"artery", ARTERY}, {"vein", VEIN}, {"bone", BONE}};
+
+static bool has(const char *name, const char *word)
+{
+    const size_t n = strlen(word);
+    while (*name && strncasecmp(name, word, n) != 0)
+        name++;
+    return *name;
+}
+
+/* The first label with a known word in its name has that word's colour; the others have those that are left, in their
+ * order, and when none is left, all of them again. to: count. */
+static void choose_colours(const volume *labels, const samples_label *list, int64_t count, uint8_t *to)
+{
+    enum { NONE = 255 };
+    bool taken[COLOURS] = {false};
+    memset(to, NONE, (size_t)count);
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        for (int64_t i = 0; i < count && !taken[known[k].colour]; i++) {
+            const char *name = volume_label_of(labels, list[i].value);
+            if (to[i] == NONE && name && has(name, known[k].word)) {
+                to[i] = known[k].colour;
+                taken[to[i]] = true;
+            }
+        }
+    int next = 0;
+    for (int64_t i = 0; i < count; i++) {
+        while (next < COLOURS && taken[next])
+            next++;
+        if (to[i] == NONE)
+            to[i] = (uint8_t)next++;
+        if (next == COLOURS) {
+            memset(taken, 0, sizeof taken);
+            next = 0;
+        }
+    }
+}
 
 /* Colours in the place of labels, in the memory of the label image. */
 static int take_voxels(slice_overlay *o, volume *labels, err *e)
 {
     samples_label *list = NULL;
     const int64_t count = samples_labels(labels, &list, e), voxels = volume_count(labels);
-    uint8_t *to = labels->data;
-    for (int64_t i = 0; count >= 0 && i < voxels; i++) {
+    uint8_t *to = labels->data, *colour = mem_array(count > 0 ? count : 0, 1, "colours of labels", e);
+    const bool failed = count < 0 || !colour;
+    if (!failed)
+        choose_colours(labels, list, count, colour);
+    for (int64_t i = 0; !failed && i < voxels; i++) {
         const int64_t value = (int64_t)volume_value(labels, i);
         int64_t low = 0, high = count; /* list[low - 1] < value <= list[high] */
         while (value && low < high) {
@@ -28,10 +75,11 @@ static int take_voxels(slice_overlay *o, volume *labels, err *e)
             else
                 high = middle;
         }
-        to[i] = (uint8_t)(value ? 1 + low % COLOURS : 0);
+        to[i] = (uint8_t)(value ? 1 + colour[low] : 0);
     }
     free(list);
-    if (count < 0)
+    free(colour);
+    if (failed)
         return -1;
     uint8_t *less = realloc(to, (size_t)voxels);
     o->voxel = less ? less : to;

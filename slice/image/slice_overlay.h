@@ -15,8 +15,8 @@ typedef struct slice_overlay {
     uint8_t *seen; /* rows x columns: of the last image */
 } slice_overlay;
 
-/* Takes a volume of whole numbers, whose 0 is no label, and its voxels' memory. Colours follow the order of the
- * labels. */
+/* Takes a volume of whole numbers, whose 0 is no label, and its voxels' memory. An artery, a vein and bone have colours
+ * of their own, by the names of labels; those of the others follow their order. */
 int slice_overlay_make(slice_overlay *o, volume *labels, const slice_cells *c, slice_size size, err *e);
 void slice_overlay_free(slice_overlay *o);
 

@@ -191,6 +191,26 @@ paste -d ' ' "$T/want" "$T/over" | awk '{ half = (NR - 1) % 12 >= 6
     if (half) bad += $2 != int(($1 + 213 + 1) / 2) || $3 != int(($1 + 94 + 1) / 2) || $4 != int(($1 + 1) / 2)
     else bad += $2 != $1 || $3 != $1 || $4 != $1 } END { print bad + 0, NR }' >"$T/bad"
 is "$(cat "$T/bad")" "0 96" "half seen through, where there are any"
+# tints NAME...: the colours of labels 1, 2, ... with these names, over the grey level 1.
+volume 1 >"$T/one.nrrd"
+tints() {
+    volume 'i + 1' >"$T/plain.nrrd"
+    {
+        sed '/^$/,$d' "$T/plain.nrrd"
+        n=0
+        for name in "$@"; do
+            printf 'Segment%d_Name:=%s\nSegment%d_LabelValue:=%d\n' $n "$name" $n $((n + 1))
+            n=$((n + 1))
+        done
+        sed -n '/^$/,$p' "$T/plain.nrrd"
+    } >"$T/named.nrrd"
+    us-slice -q --rigid --poses "$T/native.tum" --size 12x8 --width 12mm --depth 8mm --labels "$T/named.nrrd" -o "$T/named.ppm" "$T/one.nrrd"
+    tail -c 288 "$T/named.ppm" | od -An -v -tu1 -w3 | head -n $# |
+        sed 's/^ *107 *48 *1$/red/; s/^ *44 *91 *117$/sky/; s/^ *1 *80 *58$/green/; s/^ *121 *115 *34$/yellow/; s/^ *1 *58 *90$/blue/' | tr '\n' ' '
+}
+is "$(tints a b c d e)" "red sky green yellow blue " "labels have colours in their order"
+is "$(tints vein artery bone)" "sky red yellow " "but for vein, artery and bone, which have their own"
+is "$(tints Gel 'Left Vein' 'right vein' 'Brachial artery')" "green sky yellow red " "by what is in their names; the others have what is left"
 
 # Polygons: at rest they cover the cut through the block, 12 x 8 mm, without a gap.
 us-slice -q --poses "$T/native.tum" --size 12x8 --width 12mm --depth 8mm --cut "$T/cut.obj" "$T/noise.nrrd" <"$T/mesh.sinew" >/dev/null
