@@ -1,6 +1,6 @@
 /* `make bench-tled`: what a step of tled-run's solver takes, on each executor and in each precision that this machine
  * has, over blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio):
- * CSV. After a warm-up, the median, the least and the most of some rounds. A `step` is the executor's own; a `run` is
+ * CSV. With `both`, each is measured by isotropic hourglass control too, right before physical. After a warm-up, the median, the least and the most of some rounds. A `step` is the executor's own; a `run` is
  * one as tled-run makes it, with its looks, and with 60 frames a second of the model's time; times_real_time is the
  * time simulated over the time taken. A run's steps are known to be done when it looks, after each window of them: it
  * is timed from a look after its first frames to its last, and worst_window_us_a_step is of the slowest of all rounds.
@@ -36,6 +36,7 @@ typedef struct options {
     bool runs;          /* as well as steps */
     double least;       /* s: a round takes at least so long */
     double poisson;     /* of all tissue of models that are read; 0: as it is */
+    bool both;          /* by isotropic hourglass control too */
     card_roof *card;    /* or NULL */
 } options;
 
@@ -299,14 +300,20 @@ static void measure(const char *name, bench *b, const options *o)
         }
 }
 
-static void measure_block(int32_t x, int32_t y, int32_t z, const options *o)
+/* What rows call the control, behind the model's name. */
+static const char *said_of(hourglass_control control)
 {
-    char name[60];
+    return control.kind == HOURGLASS_ISOTROPIC ? " isotropic" : "";
+}
+
+static void measure_block(int32_t x, int32_t y, int32_t z, hourglass_control control, const options *o)
+{
+    char name[80];
     bench b;
     const double gravity[3] = {0, 0, -.5}; /* so little that no step is cut */
     block what = {{x, y, z}, {.0025, .0025, .0025}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 0, 0}, 0, false};
-    snprintf(name, sizeof name, "block %d x %d x %d", x, y, z);
-    bench_make(&b, &what, gravity, 0, PHYSICAL, o->threads);
+    snprintf(name, sizeof name, "block %d x %d x %d%s", x, y, z, said_of(control));
+    bench_make(&b, &what, gravity, 0, control, o->threads);
     measure(name, &b, o);
     bench_free(&b);
 }
@@ -319,7 +326,7 @@ static void set_poisson(model *m, double poisson)
 }
 
 /* A model from a file; its first muscle contracts. */
-static void measure_file(const char *path, const options *o)
+static void measure_file(const char *path, hourglass_control control, const options *o)
 {
     bench b = {0};
     char name[200];
@@ -332,13 +339,16 @@ static void measure_file(const char *path, const options *o)
     in_close(source);
     if (o->poisson > 0)
         set_poisson(&b.m, o->poisson);
-    snprintf(name, sizeof name, o->poisson > 0 ? "%s nu=%g" : "%s", file, o->poisson);
+    if (o->poisson > 0)
+        snprintf(name, sizeof name, "%s nu=%g%s", file, o->poisson, said_of(control));
+    else
+        snprintf(name, sizeof name, "%s%s", file, said_of(control));
     const model_array *muscle = model_find(&b.m, "volume.muscle"), *names = model_find(&b.m, "volume.name");
     for (int64_t i = 0; muscle && i < muscle->rows && !*contract; i++)
         if (muscle->u8[i])
             snprintf(contract, sizeof contract, "%s=.05", names->str[i]);
     bench_must(*contract && script_add_contract(&b.script, &b.m, contract, .1, &b.e), &b.e);
-    bench_must(tled_problem_make(&b.problem, &b.m, &b.script, PHYSICAL, &b.e), &b.e);
+    bench_must(tled_problem_make(&b.problem, &b.m, &b.script, control, &b.e), &b.e);
     bench_finish(&b, o->threads);
     measure(name, &b, o);
     bench_free(&b);
@@ -383,24 +393,28 @@ static card_roof *find_card(const options *o)
 
 int main(int argc, char **argv)
 {
+    static const hourglass_control controls[] = {{HOURGLASS_ISOTROPIC, .0075}, {HOURGLASS_PHYSICAL, 0}};
     static const int32_t blocks[][3] = {{16, 17, 8}, {29, 47, 9}, {46, 47, 46}, {100, 100, 100}, {159, 159, 159}};
     if (argc < 6 || atoi(argv[1]) < 1 || atoi(argv[2]) > 5) {
-        fprintf(stderr, "usage: bench_tled THREADS BLOCKS all|cpu|cuda steps|runs SECONDS [nu=NU|MODEL...]\n");
+        fprintf(stderr, "usage: bench_tled THREADS BLOCKS all|cpu|cuda steps|runs SECONDS [both] [nu=NU|MODEL...]\n");
         return 2;
     }
     options o = {.threads = atoi(argv[1]),
                  .device = strcmp(argv[3], "all") ? argv[3] : NULL,
                  .runs = !strcmp(argv[4], "runs"),
-                 .least = atof(argv[5])};
+                 .least = atof(argv[5]),
+                 .both = argc > 6 && !strcmp(argv[6], "both")};
     puts(header);
     o.card = find_card(&o);
     for (int i = 0; i < atoi(argv[2]); i++)
-        measure_block(blocks[i][0], blocks[i][1], blocks[i][2], &o);
-    for (int i = 6; i < argc; i++)
+        for (int c = !o.both; c < 2; c++)
+            measure_block(blocks[i][0], blocks[i][1], blocks[i][2], controls[c], &o);
+    for (int i = 6 + o.both; i < argc; i++)
         if (!strncmp(argv[i], "nu=", 3))
             o.poisson = atof(argv[i] + 3);
         else
-            measure_file(argv[i], &o);
+            for (int c = !o.both; c < 2; c++)
+                measure_file(argv[i], controls[c], &o);
 #ifdef SINEW_CUDA
     card_roof_destroy(o.card);
 #endif
