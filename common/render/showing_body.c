@@ -21,8 +21,8 @@ static int64_t triangles(const obj *o, uint32_t *to)
     return count;
 }
 
-/* In the volume's frame, which is the model's. */
-static int make_mesh(scene_mesh *mesh, const obj *o, const body *all, const body_part *part, err *e)
+/* In the volume's frame, which is the model's: the OBJ's positions become so too. */
+static int make_mesh(scene_mesh *mesh, obj *o, const body *all, const body_part *part, err *e)
 {
     static const float colour[3] = {.55F, .42F, .35F};
     *mesh = (scene_mesh){.corners = 3, .vertices = o->vertices, .faces = triangles(o, NULL)};
@@ -33,15 +33,9 @@ static int make_mesh(scene_mesh *mesh, const obj *o, const body *all, const body
     if (!mesh->label || !mesh->position || !mesh->corner)
         return -1;
     triangles(o, mesh->corner);
-    for (int64_t v = 0; v < o->vertices; v++) {
-        double x[3], in_body[3];
-        for (int a = 0; a < 3; a++)
-            x[a] = part->scale * o->position[3 * v + a];
-        pose_apply(&part->place, x, in_body);
-        pose_apply_inverse(&all->volume, in_body, x);
-        for (int a = 0; a < 3; a++)
-            mesh->position[3 * v + a] = (float)x[a];
-    }
+    body_place(all, part, o->position, o->vertices);
+    for (int64_t i = 0; i < 3 * o->vertices; i++)
+        mesh->position[i] = (float)o->position[i];
     return scene_smooth(mesh, 40, e);
 }
 

@@ -3,6 +3,7 @@
 #include "base/keyfile.h"
 #include "base/mem.h"
 #include "base/num.h"
+#include "base/path.h"
 #include "base/pose.h"
 
 #include <math.h>
@@ -140,6 +141,26 @@ int body_read(body *b, in *s, err *e)
     else
         place_parts(b);
     return got;
+}
+
+const body_part *body_find(const body *b, const char *path)
+{
+    const char *name = path + path_folder(path);
+    for (int i = 0; i < b->parts; i++)
+        if (!strcmp(b->part[i].file, name))
+            return &b->part[i];
+    return NULL;
+}
+
+void body_place(const body *b, const body_part *part, double *position, int64_t points)
+{
+    for (int64_t i = 0; i < points; i++) {
+        double *x = position + 3 * i, in_body[3];
+        for (int a = 0; a < 3; a++)
+            x[a] *= part->scale;
+        pose_apply(&part->place, x, in_body);
+        pose_apply_inverse(&b->volume, in_body, x);
+    }
 }
 
 void body_free(body *b)

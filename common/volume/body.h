@@ -33,4 +33,10 @@ typedef struct body {
 int body_read(body *b, in *s, err *e);
 void body_free(body *b);
 
+/* The part whose file has the name of this path's; NULL: there is none. */
+const body_part *body_find(const body *b, const char *path);
+
+/* Takes points of a part's file (x 3, in its unit) to where they are in the frame of the volume and of its model, m. */
+void body_place(const body *b, const body_part *part, double *position, int64_t points);
+
 #endif

@@ -155,15 +155,17 @@ static int read_probe(session *s, err *e)
     return o->probe ? probe_read(&s->probe, o->probe, o->unit, o->common.anonymous, &s->m, e) : 0;
 }
 
-/* The skin's surface joins the body; its springs are made when there are threads. */
+/* The skin's surface joins the model, where --body has it, if it does; its springs are made when there are threads. */
 static int carry_skin(session *s, err *e)
 {
     if (!s->o->skin)
         return 0;
-    num_unit unit = scale_unit(s->o->unit, &s->m, e);
-    return unit ? skin_model_carry(&s->m, s->o->skin, s->o->common.anonymous, scale_of(unit), s->skin_name,
-                                   &s->warnings, e)
-                : -1;
+    skin_source from = {.path = s->o->skin, .around = &s->around, .part = body_find(&s->around, s->o->skin)};
+    num_unit unit = from.part ? 0 : scale_unit(s->o->unit, &s->m, e);
+    if (!unit && !from.part)
+        return -1;
+    from.scale = unit ? scale_of(unit) : 1;
+    return skin_model_carry(&s->m, &from, s->o->common.anonymous, s->skin_name, &s->warnings, e);
 }
 
 static skin_options skin_options_of(const struct options *o)
@@ -201,23 +203,17 @@ static int choose_device(session *s, err *e)
 
 static int read_body(session *s, err *e)
 {
-    body b;
-    s->place = pose_none();
     if (!s->o->body)
         return 0;
     in *source = in_open(s->o->body, e);
-    const int failed = source ? body_read(&b, source, e) : -1;
+    const int failed = source ? body_read(&s->around, source, e) : -1;
     in_close(source);
-    if (failed)
-        return -1;
-    s->place = b.volume;
-    body_free(&b);
-    return 0;
+    return failed;
 }
 
 pose session_place(const session *s, const pose *at)
 {
-    return s->o->body ? pose_relative(&s->place, at) : *at;
+    return s->o->body ? pose_relative(&s->around.volume, at) : *at;
 }
 
 int session_prepare(session *s, err *e)
@@ -288,6 +284,7 @@ void session_free(session *s)
         free(s->text[i]);
     press_free(&s->press);
     skin_free(&s->skin);
+    body_free(&s->around);
     msds_problem_free(&s->problem);
     probe_free(&s->probe);
     model_free(&s->m);

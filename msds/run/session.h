@@ -56,7 +56,7 @@ typedef struct session {
     method_word last_fem; /* the last but springs: what springs are compared with */
     press_moves moves;    /* of the last frame, and its plan */
     msds_plan plan;
-    pose place;           /* of the body that poses are relative to */
+    body around;          /* of --body, that poses are relative to; empty where there is none */
     msds_reading reading; /* of the last frame */
     int64_t next_frame;
     progress progress;

@@ -3,20 +3,23 @@
 #include <stdio.h>
 #include <string.h>
 
-int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1],
+int skin_model_carry(model *m, const skin_source *from, bool nameless, char name[SURFACE_NAME_MOST + 1],
                      notes *warnings, err *e)
 {
     obj o = {0};
     surface there;
-    in *source = in_open(path, e);
+    const double scale = from->scale;
+    in *source = in_open(from->path, e);
     int result = source ? obj_read(&o, source, e) : -1;
     in_close(source);
     if (!result)
         obj_notes(&o, warnings);
+    if (!result && from->part)
+        body_place(from->around, from->part, o.position, o.vertices);
     if (!result && nameless)
         surface_nameless(m, &o, scale, name, SURFACE_NAME_MOST + 1);
     else
-        surface_name(path, name, SURFACE_NAME_MOST + 1);
+        surface_name(from->path, name, SURFACE_NAME_MOST + 1);
     if (!result && surface_there(m, name))
         result = surface_of(m, name, &there, e) || surface_is(&there, &o, scale, e) ? -1 : 0;
     else if (!result)

@@ -5,10 +5,19 @@
 #define SINEW_SKIN_MODEL_H
 
 #include "msds/run/skin.h"
+#include "volume/body.h"
 
-/* Carries the OBJ, its coordinates times scale, as the surface of its base name (or of one that says nothing, where
- * that is to be), unless the model does so already; name gets that. */
-int skin_model_carry(model *m, const char *path, bool nameless, double scale, char name[SURFACE_NAME_MOST + 1],
+/* An OBJ: its coordinates times scale are in the model's axes, or where a body has them as this part (else NULL). */
+typedef struct skin_source {
+    const char *path;
+    double scale; /* to metres; 1 where a part has it */
+    const body *around;
+    const body_part *part;
+} skin_source;
+
+/* Carries the OBJ as the surface of its base name (or of one that says nothing, where that is to be), unless the model
+ * does so already; name gets that. */
+int skin_model_carry(model *m, const skin_source *from, bool nameless, char name[SURFACE_NAME_MOST + 1],
                      notes *warnings, err *e);
 
 /* Starts from a frame, whose displacement of it goes into u; at rest in speed. */

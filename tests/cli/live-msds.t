@@ -226,6 +226,15 @@ pose 0 .056 >"$T/one.tum"
 msds-run -q --text --body "$T/body" --probe sphere:2cm --poses "$T/one.tum" <"$T/block.sinew" >"$T/again"
 is "$(awk '/^array probe.pose/ { getline; print $1 }' "$T/again")" 0.029999999999999999 "poses of a file in a body"
 
+# A skin that the body places: where it is without a body, seen from the model; and its poses are the model's.
+printf 'volume move=1cm,0,0 turn=0,0,0.70710678118654752,0.70710678118654752\nsurface skin.obj unit=cm in=volume\n' >"$T/body"
+echo '0 -.03 .04 .058 0.70710678118654752 0.70710678118654752 0 0' >"$T/one.tum"
+msds-run -q --text --skin "$T/skin.obj" --body "$T/body" --probe sphere:2cm --poses "$T/one.tum" <"$T/block.sinew" >"$T/placed"
+pose 0 .058 >"$T/one.tum"
+msds-run -q --text --skin "$T/skin.obj" --unit cm --probe sphere:2cm --poses "$T/one.tum" <"$T/block.sinew" >"$T/plain"
+check "a skin lies where the body has it" sinew diff -q --abs 1e-6 "$T/plain" "$T/placed"
+check "and is dented there" test "$(sinew info --get skin/vertex.displacement.max "$T/placed" | awk '{ print ($1 > 1e-4) }')" = 1
+
 # Records that no run made.
 bad() {
     sed "$2" "$T/kept" >"$T/bad"
