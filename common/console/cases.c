@@ -46,6 +46,9 @@ static void free_case(console_case *one)
     free(one->volume);
     free(one->labels);
     free(one->picture);
+    free(one->body);
+    free(one->skin);
+    free(one->bones);
 }
 
 /* A name that no case has: this, or with the next number. */
@@ -135,6 +138,27 @@ static const char *pick(const listing_of *l, const char *const *endings, const c
     return first;
 }
 
+/* What a case has under names of their own. */
+static int take_named(console_case *one, const char *folder, const listing_of *l, err *e)
+{
+    const struct {
+        const char *name;
+        char **to;
+    } files[] = {{"picture.png", &one->picture},
+                 {"body.txt", &one->body},
+                 {"skin.obj", &one->skin},
+                 {"skeleton.obj", &one->bones}};
+    for (int i = 0; i < l->count; i++)
+        for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+            if (strcmp(l->list[i]->d_name, files[k].name) != 0)
+                continue;
+            *files[k].to = join(folder, files[k].name, e);
+            if (!*files[k].to)
+                return -1;
+        }
+    return 0;
+}
+
 /* Fills one with what the folder has. 1: it is a case; 0: it is none; -1: e filled. */
 static int look_into(console_case *one, const char *folder, const listing_of *l, err *e)
 {
@@ -146,10 +170,7 @@ static int look_into(console_case *one, const char *folder, const listing_of *l,
     one->model = join(folder, model, e);
     one->volume = volume ? join(folder, volume, e) : NULL;
     one->labels = labels ? join(folder, labels, e) : NULL;
-    for (int i = 0; i < l->count; i++)
-        if (!strcmp(l->list[i]->d_name, "picture.png"))
-            one->picture = join(folder, "picture.png", e);
-    if (one->model && (one->volume || !volume) && (one->labels || !labels))
+    if (one->model && (one->volume || !volume) && (one->labels || !labels) && !take_named(one, folder, l, e))
         return 1;
     free_case(one);
     return -1;

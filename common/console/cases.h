@@ -12,6 +12,9 @@ typedef struct console_case {
     char *volume;  /* path; NULL: none */
     char *labels;  /* path; NULL: none */
     char *picture; /* path; NULL: none */
+    char *body;    /* path of body.txt; NULL: none */
+    char *skin;    /* path of skin.obj, pressed as springs of its own; NULL: none */
+    char *bones;   /* path of skeleton.obj; NULL: none */
 } console_case;
 
 typedef struct cases {

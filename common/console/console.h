@@ -6,8 +6,10 @@
 #define SINEW_CONSOLE_H
 
 #include "cli/tool.h"
+#include "console/around.h"
 #include "console/cases.h"
 #include "console/child.h"
+#include "console/colouring.h"
 #include "console/dials.h"
 #include "console/feed.h"
 #include "console/geometry.h"
@@ -54,14 +56,17 @@ typedef struct console {
     char why[CONSOLE_LINE]; /* why no case is open, or why a tool is not alive; "": no reason */
     char method[CONSOLE_WORD];
     dials dials, knobs; /* of the tool that computes, and of us-slice */
-    source body;        /* the model, without its frames */
+    source body;        /* the model, without its frames; with the surfaces around it */
+    around around;
     geometry *scene;
     child compute, slice;
     bool has_compute, has_slice; /* were started */
     bool told[2];                /* that they ended */
     feed *feed;
     images *images;
-    double *level; /* muscles: as asked for last */
+    double *level;     /* muscles: as asked for last */
+    double *value;     /* nodes: what colours tell of; console_show's own */
+    atomic_int colour; /* a colouring */
     struct {
         char id[CONSOLE_WORD], line[CONSOLE_LINE];
     } pulls[CONSOLE_PULLS];
@@ -109,7 +114,7 @@ void console_send_state(console *c);
 /* ---- console_show.c: for other threads too */
 
 void console_said(void *context, const char *name, const char *line);
-void console_show(void *context, const model *body, const frame *f);
+void console_show(void *context, const model *m, const frame *f);
 bool console_wants_image(void *context);
 void console_show_image(void *context, mail *m);
 double console_time(void *context);

@@ -67,9 +67,12 @@ static int read_body(console *c, const console_case *is, err *e)
                        "after it on the command line",
                        is->model);
     c->level = mem_array(muscle ? muscle->rows : 0, sizeof *c->level, "muscles", e);
-    if (!c->level)
+    c->value = mem_array(model_count(m, "node"), sizeof *c->value, "colours", e);
+    if (!c->level || !c->value)
         return -1;
-    c->scene = geometry_make(m, c->face, e);
+    if (!c->face && around_read(&c->around, is, &c->body.body, e))
+        return -1;
+    c->scene = geometry_make(m, c->face, c->around.skin, e);
     return c->scene ? 0 : -1;
 }
 
@@ -84,7 +87,7 @@ const char *console_muscle(const console *c, int64_t i)
 static pose first_pose(const geometry *g)
 {
     enum { OFF = 1 }; /* mm */
-    const double *box = geometry_box(g), *up = geometry_up(g);
+    const double *box = geometry_tissue(g), *up = geometry_up(g);
     pose at = pose_none();
     for (int a = 0; a < 3; a++) {
         const double middle = (box[a] + box[3 + a]) / 2, half = (box[3 + a] - box[a]) / 2;
@@ -140,6 +143,9 @@ static void command_of_compute(const console *c, bool replay, command *to)
         add_option(to, "--poses", CHILD_CONTROL);
     add_option(to, "--probe", dials_value(&c->dials, "probe"));
     add_option(to, "--spring-scale", dials_value(&c->dials, "spring-scale"));
+    add_option(to, "--skin", c->around.skin_path);
+    if (c->around.skin_path)
+        add_option(to, c->around.body_path ? "--body" : "--unit", c->around.body_path ? c->around.body_path : "mm");
 }
 
 static void command_of_slice(const console *c, const console_case *is, bool replay, command *to)
@@ -230,6 +236,7 @@ static void begin_case(console *c, int index, bool replay)
     c->began = clock_now();
     c->has_compute = c->has_slice = false;
     snprintf(c->method, sizeof c->method, "msds");
+    atomic_store(&c->colour, COLOURING_OWN);
     console_begin_showing(c);
 }
 
@@ -239,7 +246,7 @@ static int open_case(console *c, int index, bool replay, err *e)
     begin_case(c, index, replay);
     if (read_body(c, is, e))
         return -1;
-    c->dials = c->face ? dials_of_tled() : dials_of_msds();
+    c->dials = c->face ? dials_of_tled() : dials_of_msds(c->around.skin_path != NULL);
     c->knobs = dials_of_slice(is->labels != NULL);
     if (c->recording && !replay)
         name_records(c);
@@ -288,10 +295,13 @@ void console_close(console *c)
     drop_all(c);
     geometry_free(c->scene);
     c->scene = NULL;
+    around_free(&c->around);
     source_close(&c->body);
     c->body = (source){0};
     free(c->level);
     c->level = NULL;
+    free(c->value);
+    c->value = NULL;
     c->open = -1;
     c->replaying = false;
 }

@@ -177,18 +177,18 @@ static mail *frame_mail(console *c, const frame *f)
     return json_mail(o, &none);
 }
 
-static int write_model(const model *body, const frame *f, const char *path, err *e)
+static int write_model(const model *m, const frame *f, const char *path, err *e)
 {
     out *o = out_open(path, false, e);
     if (!o)
         return -1;
     model_writer *w = model_writer_open(o, false, e);
-    const int failed = !w || model_write(w, body, e) || model_write_frame(w, f, e) || model_write_end(w, e);
+    const int failed = !w || model_write(w, m, e) || model_write_frame(w, f, e) || model_write_end(w, e);
     model_writer_close(w);
     return out_end(o, failed, e);
 }
 
-static void save_model(console *c, const model *body, const frame *f)
+static void save_model(console *c, const model *m, const frame *f)
 {
     char path[CONSOLE_FILE];
     err e = {0};
@@ -198,7 +198,7 @@ static void save_model(console *c, const model *body, const frame *f)
     pthread_mutex_unlock(&c->shared.lock);
     if (!*path)
         return;
-    if (write_model(body, f, path, &e))
+    if (write_model(m, f, path, &e))
         web_send(c->web, -1, MAIL_SAID, json_said("error", NULL, e.text));
     else
         web_send(c->web, -1, MAIL_SAID, json_saved(strrchr(path, '/') + 1));
@@ -216,16 +216,28 @@ static bool is_wanted(console *c, double *since)
     return true;
 }
 
-void console_show(void *context, const model *body, const frame *f)
+static void show_positions(console *c, const frame *f, const double *u)
+{
+    err e = {0};
+    char name[SURFACE_NAME_MOST + 30];
+    geometry_frame is = {.index = f->index, .u = u};
+    snprintf(name, sizeof name, "%s/vertex.displacement", c->around.skin);
+    const model_array *skin = *c->around.skin ? frame_find(f, name) : NULL;
+    if (skin && skin->type == MODEL_F64 && skin->rows == geometry_skin(c->scene))
+        is.skin = skin->f64;
+    colouring_fill((colouring)atomic_load(&c->colour), &c->body.body, f, c->value, &is);
+    web_send(c->web, -1, MAIL_POSITIONS, geometry_positions(c->scene, &is, &e));
+}
+
+void console_show(void *context, const model *m, const frame *f)
 {
     console *c = context;
-    err e = {0};
     const model_array *u = frame_find(f, "node.displacement");
     set_time(c, f->time);
-    save_model(c, body, f);
+    save_model(c, m, f);
     web_send(c->web, -1, MAIL_FRAME, frame_mail(c, f));
     if (u && u->type == MODEL_F64 && u->rows == model_count(&c->body.body, "node") && is_wanted(c, &c->drawn))
-        web_send(c->web, -1, MAIL_POSITIONS, geometry_positions(c->scene, f->index, u->f64, &e));
+        show_positions(c, f, u->f64);
     atomic_fetch_add(&c->frames, 1);
 }
 

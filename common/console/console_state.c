@@ -203,6 +203,9 @@ void console_send_state(console *c)
     put_bool("recording", c->recording, o);
     put_bool("replaying", c->replaying, o);
     put_text("device", *device ? device : NULL, o);
+    put_text("colour", colouring_name((colouring)atomic_load(&c->colour)), o);
+    out_text(o, ",");
+    colouring_put(o);
     put_children(c, o);
     put_text("why", *c->why ? c->why : NULL, o);
     out_text(o, "}");

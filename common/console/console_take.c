@@ -47,7 +47,8 @@ int console_pose(console *c, const pose *at, err *e)
 {
     char line[300];
     double row[7];
-    pose_to_row(at, row);
+    const pose told = around_pose(&c->around, at);
+    pose_to_row(&told, row);
     snprintf(line, sizeof line, "%.6f %.17g %.17g %.17g %.17g %.17g %.17g %.17g", clock_now() - c->began, row[0],
              row[1], row[2], row[3], row[4], row[5], row[6]);
     note_pose(c, at);
@@ -136,6 +137,17 @@ static int take_image(console *c, const char *line, err *e)
         return -1;
     dials_note(&c->knobs, line);
     return child_tell(&c->slice, line, e);
+}
+
+static int take_colour(console *c, const char *name, err *e)
+{
+    const int is = colouring_find(name);
+    if (need_case(c, e))
+        return -1;
+    if (is < 0)
+        return err_set(e, NULL, 0, "colour '%.60s'; expected own, displacement, speed or quality", name);
+    atomic_store(&c->colour, is);
+    return 0;
 }
 
 /* ---- time */
@@ -304,6 +316,8 @@ static int take(console *c, int client, const message *m, err *e)
         return take_line(c, m->line, e);
     case MESSAGE_IMAGE:
         return take_image(c, m->line, e);
+    case MESSAGE_COLOUR:
+        return take_colour(c, m->line, e);
     case MESSAGE_PAUSE:
         return take_pause(c, m->on, e);
     case MESSAGE_STEP:

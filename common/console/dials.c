@@ -19,6 +19,9 @@ static const dial msds[] = {
     {"repulsion", "", "1", "contact stiffness over that of a node's springs", 0, 100, NULL},
     {"contact", "", "prescribed", "contact in finite elements", 0, 0, "prescribed|penalty"},
     {"gravity", "m/s2", "0,0,0", "gravity", 0, 0, NULL},
+    {"skin-stiffness", "N/m", "100", "stiffness of the edges of a skin of its own", 1e-9, 1e9, NULL},
+    {"skin-anchors", "", "0.01", "stiffness of a vertex's anchor over that of its springs", 1e-6, 1e6, NULL},
+    {"skin-tension", "", "0.5", "stiffness of an edge across itself over that along it", 0, 1e3, NULL},
     {0},
 };
 
@@ -30,12 +33,12 @@ static const dial slice[] = {
     {"width", "m", "0", "width of the image; 0: the array's", 0, 1, NULL},
     {"thickness", "m", "0", "thickness of the beam; 0: one slice", 0, .1, NULL},
     {"freeze", "", "off", "the image stays as it is", 0, 0, "on|off"},
-    {"labels", "", "on", "labels are tinted", 0, 0, "on|off"}, /* the last: not where there are none */
+    {"labels", "", "on", "labels are tinted", 0, 0, "on|off"},
     {0},
 };
 
-/* It has verbs for all that changes. */
-static const dial tled[] = {{0}};
+/* The rest are muscles and pulls, which are verbs of their own. */
+static const dial tled[] = {{"gravity", "m/s2", "0,0,0", "gravity", 0, 0, NULL}, {0}};
 
 static dials begin(const dial *table)
 {
@@ -45,16 +48,27 @@ static dials begin(const dial *table)
     return d;
 }
 
-dials dials_of_msds(void)
+/* What has no value is not offered. */
+static void drop(dials *d, const char *beginning)
 {
-    return begin(msds);
+    for (int i = 0; i < DIALS_MOST && d->table[i].key; i++)
+        if (!strncmp(d->table[i].key, beginning, strlen(beginning)))
+            d->value[i][0] = '\0';
+}
+
+dials dials_of_msds(bool skin)
+{
+    dials d = begin(msds);
+    if (!skin)
+        drop(&d, "skin-");
+    return d;
 }
 
 dials dials_of_slice(bool labels)
 {
     dials d = begin(slice);
     if (!labels)
-        d.value[sizeof slice / sizeof *slice - 2][0] = '\0';
+        drop(&d, "labels");
     return d;
 }
 
@@ -73,7 +87,7 @@ static int find(const dials *d, const char *key, size_t n)
 
 void dials_note(dials *d, const char *line)
 {
-    if (strncmp(line, "set ", 4) != 0)
+    if (strncmp(line, "set ", 4) != 0 && strncmp(line, "now ", 4) != 0)
         return;
     const char *key = line + 4;
     const size_t n = strcspn(key, " ");

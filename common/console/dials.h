@@ -19,12 +19,12 @@ typedef struct dials {
     char value[DIALS_MOST][DIALS_VALUE];
 } dials;
 
-/* With the values that a tool begins with. */
-dials dials_of_msds(void);
+/* With the values that a tool begins with. skin, labels: whether there is one of its own; whether there are any. */
+dials dials_of_msds(bool skin);
 dials dials_of_slice(bool labels);
 dials dials_of_tled(void);
 
-/* Notes the line `set KEY VALUE`; another, or an unknown key, is let be. */
+/* Notes the line `set KEY VALUE` or `now KEY VALUE`; another, or an unknown key, is let be. */
 void dials_note(dials *d, const char *line);
 
 /* The value of a key, or NULL. */

@@ -33,10 +33,11 @@ struct geometry {
     bound *surfaces;
     int surface_count;
     bool *bound; /* surfaces: whether it is */
+    int skin;    /* the surface that moves by itself; -1: none */
     part *parts;
     int count;
     bool face;
-    double box[6], up[3];
+    double box[6], tissue[6], up[3];
 };
 
 /* ---- names */
@@ -59,16 +60,18 @@ static const struct {
     {"artery", "label", "#c8473f"},  {"vessel", "label", "#a0538a"},  {"nerve", "label", "#d6c04a"},
 };
 
-static void look_of(part *p)
+/* of: the name of its surface, which counts where its own says nothing. */
+static void look_of(part *p, const char *of)
 {
+    const size_t count = sizeof looks / sizeof *looks;
     static const char *const others[] = {"#5aa28c", "#b0803c", "#7f7fc0", "#8fa544", "#a06a8a", "#5f9ab5"};
     const char *colour = others[strlen(p->name) % (sizeof others / sizeof *others)];
     p->kind = "label";
-    for (size_t i = 0; i < sizeof looks / sizeof *looks; i++) {
-        if (!has(p->name, looks[i].word))
+    for (size_t i = 0; i < 2 * count; i++) {
+        if (!has(i < count ? p->name : of, looks[i % count].word))
             continue;
-        p->kind = looks[i].kind;
-        colour = looks[i].colour;
+        p->kind = looks[i % count].kind;
+        colour = looks[i % count].colour;
         break;
     }
     snprintf(p->colour, COLOUR, "%s", colour);
@@ -82,7 +85,7 @@ static part *add_part(geometry *g, const char *name, int of, bool moves)
     snprintf(p->name, sizeof p->name, "%s", name);
     p->surface = of;
     p->moves = moves;
-    look_of(p);
+    look_of(p, of < 0 ? name : g->surfaces[of].shape.name);
     return p;
 }
 
@@ -158,7 +161,7 @@ static int add_surface(geometry *g, int i, err *e)
         const char *name = s->groups && !one ? s->group_name[group] : s->name;
         if (s->groups == 1 && strcmp(s->group_name[0], "default") != 0)
             name = s->group_name[0];
-        part *p = add_part(g, name, i, g->bound[i]);
+        part *p = add_part(g, name, i, g->bound[i] || i == g->skin);
         if (fill_group(p, s, one ? -1 : group, e))
             return -1;
     }
@@ -186,7 +189,7 @@ static int add_outside(geometry *g, bool has_skin, err *e)
 
 /* ---- the whole */
 
-static int open_surfaces(geometry *g, err *e)
+static int open_surfaces(geometry *g, const char *skin, err *e)
 {
     char name[MODEL_NAME];
     int at = 0, count = 0;
@@ -202,23 +205,37 @@ static int open_surfaces(geometry *g, err *e)
         const int is = bound_of(&g->surfaces[g->surface_count], g->m, name, e);
         if (is < 0)
             return -1;
+        if (!strcmp(name, skin))
+            g->skin = g->surface_count;
         g->bound[g->surface_count++] = is > 0;
     }
     return 0;
 }
 
-static void find_box(geometry *g)
+static void begin_box(double box[6])
 {
     for (int a = 0; a < 3; a++) {
-        g->box[a] = DBL_MAX;
-        g->box[3 + a] = -DBL_MAX;
+        box[a] = DBL_MAX;
+        box[3 + a] = -DBL_MAX;
     }
+}
+
+/* The i-th coordinate of points that are x 3. */
+static void grow_box(double box[6], int64_t i, double x)
+{
+    box[i % 3] = fmin(box[i % 3], x);
+    box[3 + i % 3] = fmax(box[3 + i % 3], x);
+}
+
+static void find_boxes(geometry *g)
+{
+    begin_box(g->box);
+    begin_box(g->tissue);
     for (int i = 0; i < g->count; i++)
-        for (int64_t v = 0; v < 3 * g->parts[i].vertices; v++) {
-            const double x = (double)g->parts[i].rest[v];
-            g->box[v % 3] = fmin(g->box[v % 3], x);
-            g->box[3 + v % 3] = fmax(g->box[3 + v % 3], x);
-        }
+        for (int64_t v = 0; v < 3 * g->parts[i].vertices; v++)
+            grow_box(g->box, v, (double)g->parts[i].rest[v]);
+    for (int64_t i = 0; i < 3 * model_count(g->m, "node"); i++)
+        grow_box(g->tissue, i, g->node[i]);
 }
 
 /* A face is upright along y. What a probe presses is held at its far side: up is the axis along which the held nodes
@@ -246,11 +263,11 @@ static void find_up(geometry *g)
     g->up[axis] = all[axis] < held[axis] / count ? -1 : 1;
 }
 
-static int fill(geometry *g, err *e)
+static int fill(geometry *g, const char *skin, err *e)
 {
     bool has_skin = false;
     const model_array *node = model_need(g->m, "node.position", e);
-    if (!node || open_surfaces(g, e))
+    if (!node || open_surfaces(g, skin, e))
         return -1;
     g->node = node->f64;
     for (int i = 0; i < g->surface_count; i++)
@@ -260,19 +277,20 @@ static int fill(geometry *g, err *e)
         has_skin |= !strcmp(g->parts[i].kind, "skin");
     if (add_outside(g, has_skin, e))
         return -1;
-    find_box(g);
+    find_boxes(g);
     find_up(g);
     return 0;
 }
 
-geometry *geometry_make(const model *m, bool face, err *e)
+geometry *geometry_make(const model *m, bool face, const char *skin, err *e)
 {
     geometry *g = mem_array(1, sizeof *g, "a scene", e);
     if (!g)
         return NULL;
     g->m = m;
     g->face = face;
-    if (!fill(g, e))
+    g->skin = -1;
+    if (!fill(g, skin, e))
         return g;
     geometry_free(g);
     return NULL;
@@ -301,6 +319,16 @@ const double *geometry_box(const geometry *g)
 const double *geometry_up(const geometry *g)
 {
     return g->up;
+}
+
+const double *geometry_tissue(const geometry *g)
+{
+    return g->tissue;
+}
+
+int64_t geometry_skin(const geometry *g)
+{
+    return g->skin < 0 ? 0 : g->surfaces[g->skin].shape.vertices;
 }
 
 /* ---- messages */
@@ -369,15 +397,17 @@ mail *geometry_mail(const geometry *g, err *e)
 }
 
 /* The displacements of a part's vertices: d x 3, m; and their lengths' largest. */
-static double displace(const geometry *g, const part *p, const double *u, float *d)
+static double displace(const geometry *g, const part *p, const geometry_frame *f, float *d)
 {
     double largest = 0;
     for (int64_t i = 0; i < p->vertices; i++) {
-        double x[3];
+        double x[3] = {0};
         if (p->surface < 0)
-            memcpy(x, u + 3 * (int64_t)p->from[i], sizeof x);
-        else
-            bound_displacement(&g->surfaces[p->surface], p->from[i], u, x);
+            memcpy(x, f->u + 3 * (int64_t)p->from[i], sizeof x);
+        else if (p->surface != g->skin)
+            bound_displacement(&g->surfaces[p->surface], p->from[i], f->u, x);
+        else if (f->skin)
+            memcpy(x, f->skin + 3 * (int64_t)p->from[i], sizeof x);
         for (int a = 0; a < 3; a++)
             d[3 * i + a] = (float)x[a];
         largest = fmax(largest, sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
@@ -409,11 +439,28 @@ static void put_places(const part *p, const float *d, const float box[6], unsign
     }
 }
 
-static void put_values(const part *p, const float *d, float high, unsigned char *at)
+/* The value of a part's vertex: of its node, or by its shares of nodes'; of a displacement its length. */
+static double value_of(const geometry *g, const part *p, const geometry_frame *f, const float *d, int64_t i)
 {
-    for (int64_t i = 0; i < p->vertices && high > 0; i++) {
-        const float *x = d + 3 * i;
-        at[i] = (unsigned char)lrintf(255 * sqrtf(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / high);
+    double share[8], sum = 0;
+    if (!f->value)
+        return sqrt((double)(d[3 * i] * d[3 * i] + d[3 * i + 1] * d[3 * i + 1] + d[3 * i + 2] * d[3 * i + 2]));
+    if (p->surface < 0)
+        return f->value[p->from[i]];
+    if (p->surface == g->skin)
+        return f->low;
+    const bound *b = &g->surfaces[p->surface];
+    const int corners = bound_shares(b, p->from[i], share);
+    for (int k = 0; k < corners; k++)
+        sum += share[k] * f->value[b->node[(int64_t)corners * b->element[p->from[i]] + k]];
+    return sum;
+}
+
+static void put_values(const geometry *g, const part *p, const geometry_frame *f, const float *d, unsigned char *at)
+{
+    for (int64_t i = 0; i < p->vertices && f->high > f->low; i++) {
+        const double share = (value_of(g, p, f, d, i) - f->low) / (f->high - f->low);
+        at[i] = (unsigned char)lrint(255 * fmin(fmax(share, 0), 1));
     }
 }
 
@@ -423,10 +470,10 @@ static size_t part_size(int64_t vertices)
     return 32 + padded(6 * (size_t)vertices) + 12 + padded((size_t)vertices);
 }
 
-static unsigned char *put_part(const geometry *g, int id, const float *d, float high, unsigned char *at)
+static unsigned char *put_part(const geometry *g, int id, const geometry_frame *f, const float *d, unsigned char *at)
 {
     const part *p = &g->parts[id];
-    const float low = 0;
+    const float low = (float)f->low, high = (float)f->high;
     float box[6];
     find_part_box(p, d, box);
     at = put_u32(put_u32(at, id), p->vertices);
@@ -435,15 +482,16 @@ static unsigned char *put_part(const geometry *g, int id, const float *d, float 
     at += padded(6 * (size_t)p->vertices);
     at = put(put(at, &low, sizeof low), &high, sizeof high);
     at = put_u32(at, p->vertices);
-    put_values(p, d, high, at);
+    put_values(g, p, f, d, at);
     return at + padded((size_t)p->vertices);
 }
 
-mail *geometry_positions(const geometry *g, int64_t index, const double *u, err *e)
+mail *geometry_positions(const geometry *g, const geometry_frame *is, err *e)
 {
     size_t size = 12;
     int64_t vertices = 0, moving = 0;
-    double high = 0;
+    geometry_frame f = *is;
+    double largest = 0;
     for (int i = 0; i < g->count; i++) {
         vertices += g->parts[i].vertices;
         if (g->parts[i].moves && ++moving)
@@ -457,12 +505,14 @@ mail *geometry_positions(const geometry *g, int64_t index, const double *u, err 
     }
     for (int i = 0; i < g->count; each += 3 * g->parts[i++].vertices)
         if (g->parts[i].moves)
-            high = fmax(high, displace(g, &g->parts[i], u, each));
-    unsigned char *at = put_u32(put_u32(put_u32(m->bytes, KIND_POSITIONS), index), moving);
+            largest = fmax(largest, displace(g, &g->parts[i], &f, each));
+    f.high = f.value ? f.high : largest;
+    f.low = f.value ? f.low : 0;
+    unsigned char *at = put_u32(put_u32(put_u32(m->bytes, KIND_POSITIONS), f.index), moving);
     each = d;
     for (int i = 0; i < g->count; each += 3 * g->parts[i++].vertices)
         if (g->parts[i].moves)
-            at = put_part(g, i, each, (float)high, at);
+            at = put_part(g, i, &f, each, at);
     free(d);
     return m;
 }

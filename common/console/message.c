@@ -56,6 +56,14 @@ static int take_line(const verb *v, const keyfile *k, message *to, err *e)
     return 0;
 }
 
+static int take_word(const verb *v, const keyfile *k, message *to, err *e)
+{
+    (void)v;
+    (void)e;
+    join(k, 1, to->line);
+    return 0;
+}
+
 /* `image KEY VALUE` is us-slice's `set KEY VALUE`: a word that is shorter. */
 static int take_image(const verb *v, const keyfile *k, message *to, err *e)
 {
@@ -95,6 +103,7 @@ static const verb verbs[] = {
     {"image", MESSAGE_IMAGE, 2, 2, "image KEY VALUE", take_image},
     {"now", MESSAGE_TOOL, 1, MANY, "now VERB ...", take_line},
     {"pull", MESSAGE_TOOL, 5, 5, "pull ID X,Y,Z RADIUS TX,TY,TZ K", take_line},
+    {"colour", MESSAGE_COLOUR, 1, 1, "colour NAME", take_word},
     {"release", MESSAGE_TOOL, 1, 1, "release ID", take_line},
     {"pause", MESSAGE_PAUSE, 1, 1, "pause on, or pause off", take_switch},
     {"step", MESSAGE_STEP, 0, 0, "step", take_none},

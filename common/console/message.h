@@ -17,6 +17,7 @@ typedef enum message_kind {
     MESSAGE_POSE,   /* of the probe: `at` */
     MESSAGE_TOOL,   /* `line` is for the tool that computes: method, set, now, pull, release */
     MESSAGE_IMAGE,  /* `line` is for us-slice: set KEY VALUE */
+    MESSAGE_COLOUR, /* what surfaces are coloured by: `line` */
     MESSAGE_PAUSE,  /* `on` */
     MESSAGE_STEP,   /* one frame while it is paused */
     MESSAGE_RESET,  /* the case from its beginning */

@@ -140,6 +140,17 @@ def face(t, page):
     t.check("and follows", page.until("((p) => p && sinew.face.pointOf(p).distanceTo(p.rest) > 2e-4)([...sinew.face.pulls.values()][0])", LONG))
     page.click(".pull button")
     t.check("until it is released", page.until("sinew.state.pulls.length === 0 && sinew.face.pulls.size === 0", LONG))
+    Select(page.find("#colouring")).select_by_value("quality")
+    t.check("colours tell of the elements' quality", page.until("sinew.state.colour === 'quality' && sinew.view.touchable().range && "
+                                                                 "sinew.view.touchable().range[1] >= 1", LONG), page.get("sinew.view.touchable().range"))
+    t.check("by a legend", page.until("document.getElementById('legend-name').textContent === 'quality, J'"))
+    page.type("#gy", "-9.81")
+    t.check("gravity is the state's", page.until("sinew.state.tool.settings.gravity.value === '0,-9.81,0'", LONG), page.get("sinew.state.tool"))
+    page.open()
+    t.check("a reload keeps colours, gravity and levels", page.until(
+        "document.getElementById('colouring').value === 'quality' && document.getElementById('gy').value === '-9.81' && sinew.state.kind === 'face'"
+        " && sinew.view.items.size > 0 && sinew.frame !== null", LONG))
+    page.click("#gravity-none")
     page.click("#pause")
     t.check("it stands still when paused", page.until("sinew.state.paused", LONG))
     time.sleep(.5)

@@ -385,7 +385,7 @@ class Server:
 
     def state(self):
         cases = [{"name": name, "picture": None} for name in self.cases]
-        state = {"type": "state", "cases": cases, "case": self.name, "kind": self.model.kind if self.model else None, "paused": self.paused,
+        state = {"type": "state", "colour": self.colour or "own", "cases": cases, "case": self.name, "kind": self.model.kind if self.model else None, "paused": self.paused,
                  "recording": self.recording, "children": self.children, "why": None}
         return json.dumps({**state, **(self.model.state() if self.model else {})})
 

@@ -31,6 +31,16 @@ fails 1 "a folder that has no three.js" "there is no build/three.module.js; expe
 fails 1 "records in a file" "cannot (make|write)" console --record "$T/file/x" tests/cli/small.sinew
 fails 1 "what is no model" "no model on" console "$T/file"
 
+# tell FILE: lines "ok NAME" and "not ok NAME: ..." as tests.
+tell() {
+    while read -r verdict name; do
+        case $verdict in
+        ok) ok "$name" ;;
+        *) not_ok "${name#ok }" ;;
+        esac
+    done <"$1"
+}
+
 # ---- Two cases from equations.
 (
     cd samples || exit 1
@@ -51,10 +61,12 @@ check "cases from equations" env NODES=12x5x9 SPACING=8 samples/console "$T/case
 timeout 400 python3 tests/cli/console_talk.py "$T/muscle.sinew" "$T/case" "$SINEW_BIN" "$T" "$T/page" "$T/cases" >"$T/talk" 2>"$T/talk.err"
 is "$?" 0 "it is talked to, to the end"
 [ ! -s "$T/talk.err" ] || diag_file "$T/talk.err"
-while read -r verdict name; do
-    case $verdict in
-    ok) ok "$name" ;;
-    *) not_ok "${name#ok }" ;;
-    esac
-done <"$T/talk"
+tell "$T/talk"
+
+# ---- What is recorded gives the same frames on a command line: a face, tissue, and a patient with a body.
+timeout 300 python3 tests/cli/console_replay.py "$SINEW_BIN" "$T/replays" "$T/page" "$T/muscle.sinew" "$T/case" "$T/cases/patient" \
+    >"$T/talk" 2>"$T/talk.err"
+is "$?" 0 "records are replayed, to the end"
+[ ! -s "$T/talk.err" ] || diag_file "$T/talk.err"
+tell "$T/talk"
 done_testing

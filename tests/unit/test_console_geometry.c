@@ -68,7 +68,7 @@ static void try_positions(geometry *g, const model *m, const mail *scene, const 
     double *u = mem_array(3 * nodes, sizeof *u, "displacements", &e), off = 0, wrong = 0;
     for (int64_t n = 0; n < nodes; n++)
         u[3 * n + 2] = .1 * rest[3 * n];
-    mail *is = geometry_positions(g, 7, u, &e);
+    mail *is = geometry_positions(g, &(geometry_frame){.index = 7, .u = u}, &e);
     const size_t values = 12 + 32 + (6 * (size_t)at->vertices + 3) / 4 * 4;
     ok(word_at(is, 0) == 3 && word_at(is, 4) == 7 && word_at(is, 8) == 1, "positions of frame 7, of one mesh");
     ok(word_at(is, 12) == 0 && word_at(is, 16) == at->vertices, "of all its vertices");
@@ -98,7 +98,7 @@ int main(void)
     model m = {0};
     err e = {0};
     tets_make(&block, &m);
-    geometry *g = geometry_make(&m, false, &e);
+    geometry *g = geometry_make(&m, false, "", &e);
     if (!ok(g != NULL, "a scene of a block %s", e.text))
         return done_testing();
     mail *scene = geometry_mail(g, &e);

@@ -353,13 +353,20 @@ export class Face {
         const names = ["own", "displacement", ...offered.filter((name) => name !== "displacement")];
         renew(byId("colouring"), names.join(),
             () => names.map((name) => element("option", {value: name}, name === "own" ? "its own colour" : name)));
-        byId("colouring").value = names.includes(this.colouring) ? this.colouring : "own";
         this.units = state.units || {};
+        if (state.colour && state.colour !== this.toldColour) this.setColouring(state.colour);
+        this.toldColour = state.colour;
+        byId("colouring").value = names.includes(this.colouring) ? this.colouring : "own";
     }
 
+    // For all pages: the server's state has it.
     colourBy(name) {
+        this.send(`colour ${name}`);
+        this.setColouring(name);
+    }
+
+    setColouring(name) {
         this.colouring = name;
-        if (name !== "own" && name !== "displacement") this.send(`colour ${name}`);
         this.most = 0;
         this.recolour();
     }

@@ -214,7 +214,8 @@ export class Forces {
         const size = Math.hypot(...frame.force);
         byId("force").textContent = `${figures(size)} N`;
         byId("force-parts").textContent = together(frame.force);
-        const torque = (frame.torque || []).map((x) => 1000 * x);
+        // mN m, to a thousandth: less is rounding.
+        const torque = (frame.torque || []).map((x) => Math.round(1e6 * x) / 1e3);
         byId("torque").textContent = frame.torque ? `${figures(Math.hypot(...torque))} mN m` : "–";
         byId("torque-parts").textContent = together(torque);
         byId("contacts").textContent = Number.isFinite(frame.contacts) ? `${frame.contacts} nodes touch` : "";

@@ -1,0 +1,25 @@
+/* The body around a case's tissue, PST figure 2: surfaces that lie beside its model, a skin that is springs of its own
+ * and a skeleton that is rigid, where body.txt has them (volume/body.h), else in millimetres in the model's axes.
+ */
+#ifndef SINEW_AROUND_H
+#define SINEW_AROUND_H
+
+#include "console/cases.h"
+#include "surface/surface.h"
+#include "volume/body.h"
+
+typedef struct around {
+    body places;                       /* owned; its volume is where the model is in the body */
+    char skin[SURFACE_NAME_MOST + 1];  /* the surface's name in models; "": the case has no skin of its own */
+    const char *skin_path, *body_path; /* the case's; NULL: none */
+} around;
+
+/* Reads what the case has, and adds each surface to the model m, in its axes. -1 with e filled; a is to be freed all
+ * the same. */
+int around_read(around *a, const console_case *is, model *m, err *e);
+void around_free(around *a);
+
+/* A pose in the model's axes as the tool that presses the skin is told it: in the body, where that has a place. */
+pose around_pose(const around *a, const pose *at);
+
+#endif
