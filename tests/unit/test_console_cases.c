@@ -58,12 +58,16 @@ static void try_folders(void)
     make("all/arm of a friend/labels.nrrd");
     make("all/arm of a friend/scan.mha");
     make("all/arm of a friend/picture.png");
+    make("all/arm of a friend/body.txt");
+    make("all/arm of a friend/skin.obj");
     make("all/face.sinew");
     make("all/notes.txt");
     ok(!add(&c, "all", NULL, NULL, &e) && c.count == 2, "a folder of cases: %d of them%s", c.count, e.text);
     const int arm = cases_find(&c, "arm of a friend"), face = cases_find(&c, "face");
     ok(arm >= 0 && ends(c.list[arm].model, "/mesh.sinew") && ends(c.list[arm].volume, "/scan.mha"), "the arm");
     ok(arm >= 0 && ends(c.list[arm].labels, "/labels.nrrd") && ends(c.list[arm].picture, "/picture.png"), "all of it");
+    ok(arm >= 0 && ends(c.list[arm].body, "/body.txt") && ends(c.list[arm].skin, "/skin.obj") && !c.list[arm].bones,
+       "and the body around it");
     ok(face >= 0 && !c.list[face].volume && !c.list[face].picture, "the face");
     ok(!add(&c, "all/arm of a friend", NULL, NULL, &e) && c.count == 3, "a folder that is a case");
     ok(cases_find(&c, "arm of a friend-2") == 2, "has a name of its own");
@@ -122,6 +126,8 @@ int main(void)
                                        "all/arm of a friend/labels.nrrd",
                                        "all/arm of a friend/scan.mha",
                                        "all/arm of a friend/picture.png",
+                                       "all/arm of a friend/body.txt",
+                                       "all/arm of a friend/skin.obj",
                                        "all/face.sinew",
                                        "all/notes.txt",
                                        "a.sinew",

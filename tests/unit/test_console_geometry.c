@@ -1,6 +1,6 @@
 // What a page draws of a block of tetrahedra: its outside, closed, the right way out; and where it is in a frame.
-// needs: common/console/geometry.c common/console/json.c common/console/mailbox.c msds/mesh/mesh_tets.c
-#include "console/geometry.h"
+// needs: common/console/colouring.c common/console/geometry.c common/console/json.c common/console/mailbox.c msds/mesh/mesh_tets.c
+#include "console/colouring.h"
 #include "msds_block.h"
 #include "tap.h"
 
@@ -92,6 +92,37 @@ static void try_positions(geometry *g, const model *m, const mail *scene, const 
     free(u);
 }
 
+/* A block that is .8 of its length along x; and speeds of up to .3 m/s. */
+static void try_colours(const model *m)
+{
+    const int64_t nodes = model_count(m, "node");
+    const double *rest = model_find(m, "node.position")->f64;
+    err e = {0};
+    frame f = {0};
+    double *u = mem_array(3 * nodes, sizeof *u, "displacements", &e), off = 0;
+    double *value = mem_array(nodes, sizeof *value, "values", &e);
+    model_array *v = frame_add(&f, m, "node.velocity", &e);
+    geometry_frame plain = {.u = u}, quality = {.u = u}, speed = {.u = u};
+    for (int64_t n = 0; n < nodes; n++)
+        u[3 * n] = -.2 * rest[3 * n];
+    for (int64_t n = 0; v && n < nodes; n++)
+        v->f64[3 * n + 1] = -3 * rest[3 * n];
+    colouring_fill(COLOURING_DISPLACEMENT, m, &f, value, &plain);
+    ok(!plain.value, "displacements need no values");
+    colouring_fill(COLOURING_QUALITY, m, &f, value, &quality);
+    for (int64_t n = 0; quality.value && n < nodes; n++)
+        off = fmax(off, fabs(value[n] - .8));
+    ok(quality.value == value && off < 1e-12, "the quality is J at each node, to %g", off);
+    ok(quality.low > .69 && quality.low < .8 + 1e-12 && quality.high >= .8, "within round ends");
+    colouring_fill(COLOURING_SPEED, m, &f, value, &speed);
+    near_(speed.value ? value[nodes - 1] : 0, 3 * rest[3 * (nodes - 1)], 1e-12, "the speed is a velocity's length");
+    near_(speed.high, .5, 1e-12, "up to 1, 2 or 5 times a power of ten");
+    ok(colouring_find("blue") < 0 && colouring_find("quality") == COLOURING_QUALITY, "by name");
+    frame_free(&f);
+    free(u);
+    free(value);
+}
+
 int main(void)
 {
     const tets block = {{5, 4, 3}, {.1, .06, .04}, 1e4, .3, 1000, 2, false};
@@ -107,6 +138,7 @@ int main(void)
     ok(at.vertices == at.triangles / 2 + 2, "its surface is a sphere's: %u vertices", at.vertices);
     near_(volume_of(scene, &at), .1 * .06 * .04, 1e-9, "it encloses the block, turned outward");
     try_positions(g, &m, scene, &at);
+    try_colours(&m);
     mail_done(scene);
     geometry_free(g);
     model_free(&m);

@@ -77,6 +77,7 @@ int main(void)
     takes("now contract zyg_left 0.4", MESSAGE_TOOL, "now contract zyg_left 0.4");
     takes("pull hand 0,0,0.1 0.01 0,0,0.2 50", MESSAGE_TOOL, "pull hand 0,0,0.1 0.01 0,0,0.2 50");
     takes("release hand # let go", MESSAGE_TOOL, "release hand");
+    takes("colour quality", MESSAGE_COLOUR, "quality");
     takes("open arm of a friend", MESSAGE_OPEN, "arm of a friend");
     takes("open #1", MESSAGE_OPEN, "#1");
     takes("save image", MESSAGE_SAVE, "image");
