@@ -202,7 +202,7 @@ bench-slice: all $(BUILD)/tests/bench/bench_slice
 	@$(BUILD)/tests/bench/bench_slice $(shell nproc) 5 out/regions.dat >out/slice.csv && cat out/slice.csv
 	@! command -v gnuplot >/dev/null || gnuplot -e "data='out/regions.dat'; picture='out/regions.png'" tests/bench/regions.plot
 	@! command -v python3 >/dev/null || python3 tests/bench/live.py $(BIN) $(shell nproc) out/slice.csv
-# From a pose that the console's page sends to the image that it shows, in headless chromium.
+# What the console's page shows a second, in headless chromium: the delay from a pose to its image; PST's Table II; W&M's Table 1.
 bench-console: all
 	@SINEW_BIN=$(BIN) /usr/bin/python3 tests/browser/bench_console.py
 # The same on a card, where there is one, and with half a million nodes.
@@ -386,7 +386,7 @@ help:
 	'make compare-msds    how far springs are from finite elements' \
 	'make bench-fraction  how fast models converge, by centres and by shares' \
 	'make bench-accuracy  error against wall time, beside CalculiX; out/accuracy.csv and out/accuracy.svg' \
-	'make bench-console   from a pose of the page of sinew console to its image, in headless chromium' \
+	'make bench-console   what the page of sinew console shows a second, in headless chromium' \
 	'make html         set-up, and the manual pages as HTML, into out/man' \
 	'make install      into PREFIX=$(PREFIX) (DESTDIR is heeded); make uninstall takes it away' \
 	'make deb          set-up, and a Debian package of what make install installs, into out/' \

@@ -86,6 +86,17 @@ measured() {
     "$bench/$program" "$@" || exit 1
 }
 
+# in_console PART...: what tests/browser/bench_console.py measures in a browser; false where there is none, which the page then says, or where
+# nothing else is measured either, which it says already.
+in_console() {
+    [ -d "$bench" ] || return 1
+    if ! command -v chromium >/dev/null || ! command -v chromedriver >/dev/null || ! /usr/bin/python3 -c 'import selenium' 2>/dev/null; then
+        missing "What sinew console shows a second is not here: there is no chromium on this machine that selenium drives."
+        return 1
+    fi
+    SECONDS=4 /usr/bin/python3 tests/browser/bench_console.py "$@" || exit 1
+}
+
 has_card='' no_card=''
 
 # card: whether a CUDA card works; $no_card says why not.

@@ -1,5 +1,5 @@
 # W&M's Table 1 in its own shape, a column a model: facts of the models (tabs: name, nodes, elements, mm, contraction, stable and taken
-# step in ms, mm moved), then the CSV of bench_tled.
+# step in ms, mm moved), then the CSV of bench_tled, then that of bench_console.py, in a file `display`.
 
 BEGIN {
     models = split("sphere muscle block face", name, " ")
@@ -15,6 +15,13 @@ FILENAME ~ /facts$/ {
     facts++
     for (i = 2; i <= 8; i++)
         fact[facts, i] = $i
+    next
+}
+
+FILENAME ~ /display$/ {
+    real[$1] = $3
+    shown[$1] = $5
+    displays += FNR == 2
     next
 }
 
@@ -52,6 +59,14 @@ function ours(head, field,    i)
     print ""
 }
 
+function by_name(head, of,    i)
+{
+    printf "%s", head
+    for (i = 1; i <= models; i++)
+        printf "\t%.3g", of[name[i]]
+    print ""
+}
+
 END {
     print "detail\tsphere\tmuscle\tblock\tface"
     line("nodes, paper", printed_nodes)
@@ -79,6 +94,10 @@ END {
         print ""
     }
     line("frames a second, paper", printed_fps)
+    if (displays) {
+        by_name("frames a second, drawn in sinew console", shown)
+        by_name("seconds of the model in a second of that", real)
+    }
     if (!count)
         exit
     printf "steps that a frame held at most, of the paper's own figures"

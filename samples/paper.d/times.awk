@@ -1,5 +1,5 @@
 # PST's Tables I and II and figure 9 of what bench_msds and bench_slice write, commas between: -v part=times, bars, rates or words. With
-# rates, lines `MESH,SPRINGS,FEM` are the frames a second that were drawn.
+# rates, lines `MESH,SPRINGS,FEM` are the frames a second that were drawn, and those of bench_console.py what the console showed.
 
 BEGIN {
     OFS = "\t"
@@ -23,6 +23,13 @@ $1 ~ /^[0-9]+x/ && NF == 12 { nodes[$1] = $2; tetrahedra[$1] = $3; ms[$5, $1] = 
 
 # bench_slice: mesh,tetrahedra,in_the_image,what,threads,images,best,median
 $1 ~ /^[0-9]+x/ && NF == 11 { slices = 1; image[$4, $5 == 1 ? 1 : "all", $1] = $8; frame[$4, $1] = 1000 / $8 }
+
+# bench_console.py: mesh,surfaces,method,triangles,frames,images,drawn a second: what is shown is as often as the rarer of both.
+$1 ~ /^[0-9]+x/ && NF == 7 {
+    consoles++
+    triangles = $4 > triangles ? $4 : triangles
+    shown[$2, $3, $1] = $2 == "with" && $7 < $6 ? $7 : $6
+}
 
 function printed(head, of,    i, line)
 {
@@ -63,6 +70,8 @@ function value(kind, i,    m)
         return slices ? sprintf("%.0f (%.0f)", frame["frame: msds and image", m], frame["frame: fem 20 cg and image", m]) : "-"
     if (kind == "drawn")
         return drawn[m]
+    if (kind == "without" || kind == "with")
+        return sprintf("%.3g (%.3g)", shown[kind, "msds", m], shown[kind, "fem", m])
     return sprintf(ms[kind, m] < 1000 ? "%.3g" : "%.0f", ms[kind, m])
 }
 
@@ -121,8 +130,12 @@ function rates(    i, without, with)
     }
     printed("without visualisation, paper", without)
     ours("without visualisation", "rate")
+    if (consoles)
+        ours("images in sinew console, without surfaces", "without")
     printed("with visualisation, paper", with)
     ours("with visualisation, by rays on the processor", "drawn")
+    if (consoles)
+        ours("in sinew console, with " triangles " triangles", "with")
 }
 
 function bars(    i)

@@ -86,6 +86,17 @@ is "$(rows_of times | grep -A 1 '^FEM 15')" 'FEM 15 30 50 75
 times as fast 2 2 2 2' "Table I: times as fast"
 is "$(rows_of times | sed -n '/^volume sampling, spans/,+1p' | tail -n 1)" "times as fast 7 8 10 11.5" "and of the images"
 is "$(rows_of rates | sed -n 3p)" "without visualisation 250 (125) 250 (125) 250 (125) 250 (125)" "Table II: a frame is what both take"
+for size in 20x10x10 24x12x12 28x14x14 32x16x16; do
+    printf '%s\n' "$size,without,msds,0,60,40,20" "$size,without,fem,0,60,30,20" "$size,with,msds,243224,60,40,8" "$size,with,fem,243224,60,7,9"
+done >"$T/shown"
+is "$(awk -F, -v part=rates -f samples/paper.d/times.awk "$T/images" "$T/shown" | tr '\t' ' ' | sed -n '4p; $p')" \
+    "images in sinew console, without surfaces 40 (30) 40 (30) 40 (30) 40 (30)
+in sinew console, with 243224 triangles 8 (7) 8 (7) 8 (7) 8 (7)" "and in the console, the rarer of images and drawings"
+printf 'ball\t9\t9\t9\t-\t9\t9\t9\n' >"$T/facts"
+printf 'model,vertices,real_time,frames_a_second,drawn_a_second\nsphere,9,0.9,60,31\nface,9,0.1,7,6\n' >"$T/display"
+is "$(awk -F '\t' -f samples/paper.d/table1.awk "$T/facts" FS=, "$T/display" | tr '\t' ' ' | sed -n '/^frames a second, drawn/,$p')" \
+    "frames a second, drawn in sinew console 31 0 0 6
+seconds of the model in a second of that 0.9 0 0 0.1" "Table 1 with display"
 check "half of their times grow as theirs do" sh -c "echo '$(rows_of words)' |
     grep -q 'power 0.98 for .* and 1.14 for .* here as 0.98 and 1.14. .* here it is 3.00 and 3.75 times.$'"
 
