@@ -53,9 +53,12 @@ static int add_surface(const around *a, const body_part *part, const char *path,
     return failed;
 }
 
-static int add_part(const around *a, const body_part *part, const char *beside, model *m, err *e)
+/* body.txt names files beside it; without it the case knows their paths. */
+static int add_part(const around *a, const body_part *part, const console_case *is, model *m, err *e)
 {
-    char *path = path_beside(beside, part->file, beside, e);
+    const bool is_skin = !is->body && is->skin && body_find(&a->places, is->skin) == part;
+    char *path =
+        is->body ? path_beside(is->body, part->file, is->body, e) : mem_text(is_skin ? is->skin : is->bones, e);
     const int failed = path ? add_surface(a, part, path, m, e) : -1;
     free(path);
     return failed;
@@ -63,12 +66,11 @@ static int add_part(const around *a, const body_part *part, const char *beside, 
 
 int around_read(around *a, const console_case *is, model *m, err *e)
 {
-    const char *beside = is->body ? is->body : is->model;
     *a = (around){.body_path = is->body};
     if (read_places(&a->places, is, e))
         return -1;
     for (int i = 0; i < a->places.parts; i++)
-        if (add_part(a, &a->places.part[i], beside, m, e))
+        if (add_part(a, &a->places.part[i], is, m, e))
             return -1;
     if (is->skin && body_find(&a->places, is->skin)) {
         a->skin_path = is->skin;

@@ -1,5 +1,6 @@
 // What a page draws of a block of tetrahedra: its outside, closed, the right way out; and where it is in a frame.
-// needs: common/console/colouring.c common/console/geometry.c common/console/json.c common/console/mailbox.c msds/mesh/mesh_tets.c
+// needs: common/console/colouring.c common/console/geometry.c common/console/json.c common/console/mailbox.c
+// needs: msds/mesh/mesh_tets.c
 #include "console/colouring.h"
 #include "msds_block.h"
 #include "tap.h"
