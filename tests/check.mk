@@ -102,6 +102,8 @@ picture: demo scan
 	cp out/scan/picture_0.png samples/vein_open.png
 	cp out/scan/picture_45.png samples/vein_closed.png
 	rm out/scan/picture_*.png
+	SINEW_BIN=$(BIN) samples/console out/console
+	SINEW_BIN=$(BIN) /usr/bin/python3 tests/browser/console_pictures.py out/console samples
 
 CHECK = BUILD=$(BUILD) JOBS='$(JOBS)' tests/check
 check:
