@@ -38,6 +38,6 @@ typedef struct geometry_frame {
 } geometry_frame;
 
 /* Where the meshes are in a frame. NULL with e filled. */
-mail *geometry_positions(const geometry *g, const geometry_frame *f, err *e);
+mail *geometry_positions(const geometry *g, const geometry_frame *is, err *e);
 
 #endif
