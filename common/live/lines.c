@@ -102,7 +102,7 @@ static void put_pose(source *s, const poses_event *at)
     l->counts.poses++;
     l->counts.stale += l->has_pose;
     l->has_pose = true;
-    l->pose = (lines_pose){at->time, at->at, clock_now()};
+    l->pose = (lines_pose){at->time, at->at, clock_now(), s->name, s->line};
 }
 
 static int take_pose(source *s, const keyfile *k, err *e)
@@ -498,13 +498,31 @@ bool lines_take(lines *l, keyfile *k)
     return keyfile_take(k, c.text, (int64_t)strlen(c.text), c.line, &none) > 0; /* as it did in the thread */
 }
 
-void lines_skip(lines *l, err *e)
+/* One of `count` was wrong. */
+static void take_back(lines *l, int64_t *count, err *e)
 {
     pthread_mutex_lock(&l->lock);
-    l->counts.controls--;
+    --*count;
     skip(l, e);
     pthread_mutex_unlock(&l->lock);
     *e = (err){0};
+}
+
+void lines_skip(lines *l, err *e)
+{
+    take_back(l, &l->counts.controls, e);
+}
+
+void lines_skip_pose(lines *l, err *e)
+{
+    take_back(l, &l->counts.poses, e);
+}
+
+void lines_drop_pose(lines *l)
+{
+    pthread_mutex_lock(&l->lock);
+    l->counts.stale++;
+    pthread_mutex_unlock(&l->lock);
 }
 
 void lines_tell(lines *l, notes *warnings)

@@ -22,7 +22,9 @@ typedef struct lines lines;
 typedef struct lines_pose {
     double time; /* s: as its line says */
     pose at;
-    double came; /* s, by clock_now: when it was read */
+    double came;      /* s, by clock_now: when it was read */
+    const char *name; /* where its line stood: the source's name, which is the object's, and the line */
+    int64_t line;
 } lines_pose;
 
 typedef struct lines_counts {
@@ -61,6 +63,10 @@ bool lines_take(lines *l, keyfile *k);
 
 /* Counts a control that the caller could not take, for the reason in e; clears e. */
 void lines_skip(lines *l, err *e);
+
+/* The same of a pose that was taken; and one that the caller gave up for a newer one is stale. */
+void lines_skip_pose(lines *l, err *e);
+void lines_drop_pose(lines *l);
 
 /* Warnings of the kinds of errors that are new since the last call. */
 void lines_tell(lines *l, notes *warnings);

@@ -65,12 +65,22 @@ SINEW_PRINTF(2, 3) static void put(record *r, const char *format, ...)
     va_end(args);
 }
 
-/* A word; numbers of a pose and the like are words too. */
-static void put_word(record *r, const char *before, const char *text)
+/* A text of any length, as it is. */
+static void put_text(record *r, const char *text)
+{
+    const int64_t size = (int64_t)strlen(text);
+    if (r->wrong.status || mem_grow(&r->text, &r->capacity, r->filled + size, 1, "the record", &r->wrong))
+        return;
+    memcpy(r->text + r->filled, text, (size_t)size);
+    r->filled += size;
+}
+
+/* A text as one word. */
+static void put_word(record *r, const char *text)
 {
     const int64_t at = r->filled;
-    put(r, "%s%.1000s", before, text);
-    for (int64_t i = at + (int64_t)strlen(before); i < r->filled; i++)
+    put_text(r, text);
+    for (int64_t i = at; i < r->filled; i++)
         if ((unsigned char)r->text[i] <= ' ' || r->text[i] == '#')
             r->text[i] = '_';
 }
@@ -158,8 +168,8 @@ record *record_create(const char *path, bool force, const char *tool, const reco
     }
     put(r, "%s %d %s\n", format_name, VERSION, tool);
     for (int i = 0; i < count; i++) {
-        put(r, "of %s", of[i].key);
-        put_word(r, " ", of[i].value);
+        put(r, "of %s ", of[i].key);
+        put_word(r, of[i].value);
         put(r, "\n");
     }
     send(r);
@@ -171,10 +181,12 @@ record *record_create(const char *path, bool force, const char *tool, const reco
 
 void record_control(record *r, const keyfile *k)
 {
-    for (int i = 0; r && i < k->count; i++)
-        put_word(r, i ? " " : "", k->word[i]);
+    for (int i = 0; r && i < k->count; i++) {
+        put_text(r, i ? " " : "");
+        put_text(r, k->word[i]); /* which a reader would cut in the same places */
+    }
     if (r)
-        put(r, "\n");
+        put_text(r, "\n");
 }
 
 void record_setting(record *r, const char *format, ...)
@@ -212,8 +224,10 @@ void record_add(record *r, const record_frame *f, notes *warnings)
         put(r, " steps=%" PRId64, f->steps);
     if (f->of >= 0)
         put(r, " of=%" PRId64, f->of);
-    if (f->path[0])
-        put_word(r, " path=", f->path);
+    if (f->path[0]) {
+        put(r, " path=");
+        put_word(r, f->path);
+    }
     put(r, "\n");
     send(r);
     tell(r, warnings);

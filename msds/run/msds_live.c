@@ -26,7 +26,6 @@ typedef struct live {
     lines_pose pose; /* the newest */
     int64_t rests;   /* how often the tissue was put back to rest */
     int failed;      /* frames in a row that could not be solved, though they did not diverge */
-    bool refused;    /* a pose, which is told */
 } live;
 
 /* ---- Input */
@@ -61,10 +60,10 @@ static bool take_pose(live *l)
     if (!lines_take_pose(l->lines, &newest))
         return false;
     if (!l->has_pose && !l->s->o->poses) {
-        if (!l->refused)
-            notes_add(&l->s->warnings, "a pose came with the controls, when frames had begun without one; it is not "
-                                       "used, nor are others; expected --poses");
-        l->refused = true;
+        err e = {0};
+        err_set(&e, newest.name, newest.line,
+                "a pose among the controls, when frames have begun without one; expected --poses");
+        lines_skip_pose(l->lines, &e);
         return false;
     }
     l->pose = newest;

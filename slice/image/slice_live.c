@@ -164,15 +164,30 @@ static void take_controls(live *l)
     }
 }
 
+/* The newest pose that came. False: none waits. */
+static bool take_newest(live *l)
+{
+    err e = {0};
+    lines_pose newest;
+    if (!lines_take_pose(l->lines, &newest))
+        return l->has_next;
+    if (!l->s->o.poses) {
+        err_set(&e, newest.name, newest.line,
+                "a pose among the controls, but images are from the poses of the frames; expected --poses");
+        lines_skip_pose(l->lines, &e);
+        return false;
+    }
+    if (l->has_next)
+        lines_drop_pose(l->lines);
+    l->next = newest;
+    l->has_next = true;
+    return true;
+}
+
 /* The newest pose; it waits where the image stays. */
 static void take_pose(live *l)
 {
-    lines_pose newest;
-    if (lines_take_pose(l->lines, &newest)) {
-        l->next = newest;
-        l->has_next = true;
-    }
-    if (!l->has_next || l->s->frozen || !l->s->o.poses)
+    if (!take_newest(l) || l->s->frozen)
         return;
     l->from = pose_relative(&l->s->place, &l->next.at);
     l->has_pose = l->is_new = true;

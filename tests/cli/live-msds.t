@@ -128,7 +128,8 @@ same "a session" --probe sphere:2cm
 same "a session, without its options"
 same "a session, with others" --probe sphere:1cm --method exact --dt .02 --gravity 1,2,3 --iterations 3
 
-is "$(sinew info --get probe.shape "$T/again")" "$(sinew info --get probe.shape "$T/live")" "the model of a replay has the probe that the run began with"
+is "$(sinew info --get meta.probe.shape "$T/again") $(sinew info --get meta.probe.shape "$T/live")" "sphere:0.02m sphere:0.02m" \
+    "the model of a replay has the probe that the run began with"
 
 # A record that exists.
 fails 1 "a record is not written over" 'kept.*--force' msds-run --live --record "$T/kept" --poses "$T/poses" <"$T/block.sinew"
@@ -169,6 +170,7 @@ rm -f "$T/record"
 (
     cat "$T/block.sinew"
     echo 'set gravity 0,0,-5'
+    pose 0 .06
     until_line '^frame 5 ' "$T/record"
     echo 'set gravity 0,0,-1e300'
     until_line 'path=rest' "$T/record"
@@ -177,6 +179,7 @@ rm -f "$T/record"
     until_line "^frame $(($(frames "$T/record") + 3)) " "$T/record"
 ) | msds-run --live --text --record "$T/record" --control - >"$T/live" 2>"$T/said"
 is "$?" 0 "without poses frames begin at once"
+check "a pose without --poses is told" grep -q 'stdin:2: a pose among the controls, when frames have begun without one; expected --poses; the line is skipped' "$T/said"
 is "$(sed -n 's/^frame.*path=//p' "$T/record" | uniq | tr '\n' ' ')" "msds rest msds " "tissue that diverges is put back to rest, and goes on"
 is "$(grep -c 'warning: .*no longer finite.*put back to rest, and the run goes on' "$T/said") $(grep -c 'was put back to rest [0-9]* times' "$T/said")" "1 1" "which is told once, and counted"
 same "rest"

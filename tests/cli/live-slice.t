@@ -177,13 +177,15 @@ fails 1 "a stream without a frame that is named" 'ends before frame [0-9]*, whic
     timeout 10 us-slice --live $VIEW v.nrrd <mesh.sinew >out 2>said
     is "$? $(grep -c 'live: 0 frames' said)" "0 1" "a stream without frames has no images"
 }
-# A signal, with a stream that does not end.
+# A signal, with a stream that does not end; and a pose among controls, where poses are those of the frames.
 # shellcheck disable=SC2086
-us-slice -q --live --record s.rec $VIEW -o s.pgm v.nrrd <stream >out 2>said &
+us-slice -q --live --control control --record s.rec $VIEW -o s.pgm v.nrrd <stream >out 2>said &
 run=$!
 exec 5<>stream
 head -n "$line" result.sinew >&5
 until_seen 1 s.rec ' of=7'
+echo '0 .0055 .004 0 0 0 0 1' >control
+check "a pose that is not used is told" until_seen 1 said 'control:1: a pose among the controls, .*; expected --poses; the line is skipped'
 kill -TERM "$run"
 ends "SIGTERM ends a run whose stream does not" "$run"
 exec 5>&-

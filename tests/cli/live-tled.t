@@ -146,6 +146,26 @@ is "$(sinew info --get probe.pose <"$T/out" | cut -d ' ' -f 1-3)" "0.01 0.01 0.0
 check "and in the record" grep -q 'pose=0.01,0.01,0.025' "$T/record"
 replays "a probe" --probe sphere:1cm
 
+fails 1 "another ramp of its force" 'made with ramp 0.1, but this run has 0.2' \
+    sh -c "tled-run --text -q --replay '$T/record' --probe sphere:1cm --ramp .2 <'$T/model'"
+
+# A pose where there is no probe, and names that differ in what a record might write alike.
+rm -f "$T/record"
+run=$$
+{
+    cat "$T/model"
+    printf '0 0.01 0.01 0.03 0 0 0 1\npull a#b 10mm,10mm,20mm 6mm 10mm,10mm,25mm 5\npull a_b 10mm,10mm,20mm 6mm 10mm,10mm,15mm 5\n'
+    until_line '^pull a_b' "$T/record"
+    more 5
+    printf 'release a#b # no more\n'
+    until_line '^release' "$T/record"
+    more 5
+} | tled-run --text --live --control - --record "$T/record" >"$T/out" 2>"$T/said"
+is $? 0 "names with a # in them"
+check "a pose without a probe is told" grep -q 'stdin:1: a pose, but there is no probe; expected --probe and --poses; the line is skipped' "$T/said"
+check "and counted" grep -q ': 0 poses, 0 of them stale and dropped; 3 controls; 1 lines skipped' "$T/said"
+replays "names with a # in them"
+
 # ^C ends the stream well; a second run may not write over the record.
 rm -f "$T/record"
 tled-run --text -q --live --record "$T/record" -o "$T/out" <"$T/model" &

@@ -42,6 +42,9 @@ static void newest(lines *l, int fd)
     ok(!lines_take_pose(l, &at), "once");
     ok(c.poses == 3 && c.stale == 2, "two are stale");
     ok(clock_now() - at.came < WAIT && at.came <= clock_now(), "when it came");
+    ok(strstr(at.name, "fifo") && at.line == 3, "and where it stood");
+    lines_drop_pose(l);
+    ok(lines_count(l).stale == 3, "given up for a newer one it is stale too");
 }
 
 static void garbage(lines *l, int fd)
@@ -97,6 +100,25 @@ static void controls(lines *l, int fd)
     ok(lines_count(l).controls == 2, "and not counted as taken");
 }
 
+/* A pose that the caller has no use for. */
+static void unused(lines *l, int fd)
+{
+    lines_pose at;
+    err e = {0};
+    notes told = {0};
+    const lines_counts before = lines_count(l);
+    say(fd, "3.5 1 0 0 0 0 0 1\n");
+    wait_for(l, before.poses + before.skipped + before.writers + 1);
+    ok(lines_take_pose(l, &at), "a pose");
+    err_set(&e, at.name, at.line, "no use for it");
+    lines_skip_pose(l, &e);
+    const lines_counts c = lines_count(l);
+    ok(!e.status && c.poses == before.poses && c.skipped == before.skipped + 1, "is counted as skipped");
+    lines_tell(l, &told);
+    ok(told.count && strstr(told.line[told.count - 1], "no use for it; the line is skipped"), "and told");
+    notes_free(&told);
+}
+
 /* A line of more bytes than any has, then a writer that leaves in the midst of one. */
 static void cut(lines *l, int *fd, const char *path)
 {
@@ -143,6 +165,7 @@ static void fifo(const char *folder)
     garbage(l, fd);
     anew(l, fd);
     controls(l, fd);
+    unused(l, fd);
     cut(l, &fd, path);
     lines_close(l);
     close(fd);

@@ -14,6 +14,8 @@
 #include <unistd.h>
 
 static const record_of of[] = {{"model", "0x1234"}, {"probe", "linear:4cm 1cm"}};
+enum { LONG = 5000 };
+
 static const pose where = {{.1, 1. / 3, -2e-17}, {.5, -.5, .5, .5}};
 
 static int words(keyfile *k, char *text)
@@ -21,6 +23,15 @@ static int words(keyfile *k, char *text)
     err e = {0};
     *k = (keyfile){.name = "t"};
     return keyfile_take(k, text, (int64_t)strlen(text), 1, &e);
+}
+
+/* A line with a word of 5000 bytes, and one with a # inside, which begins no comment. */
+static char *make_long(void)
+{
+    static char text[LONG + 20];
+    memset(text, 'x', LONG);
+    strcpy(text + LONG, " a#b a_b");
+    return text;
 }
 
 static void write_one(const char *path)
@@ -31,9 +42,12 @@ static void write_one(const char *path)
     char text[] = "set  repulsion   2 # more";
     record *r = record_create(path, false, "toy", of, 2, &e);
     ok(r != NULL, "created: %s", e.text);
+    keyfile long_line;
+    words(&long_line, make_long());
     words(&k, text);
     record_control(r, &k);
     record_setting(r, "set rate %g", 60.);
+    record_control(r, &long_line);
     record_add(r,
                &(record_frame){
                    .index = 3, .time = 1. / 3, .has_pose = true, .at = where, .steps = 20, .of = -1, .path = "fem"},
@@ -56,6 +70,9 @@ static void read_one(const char *path)
     ok(replay_next(r, &kind, &k, &f, &e) == 1 && kind == REPLAY_CONTROL && k.count == 3 && !strcmp(k.word[2], "2"),
        "a control");
     ok(replay_next(r, &kind, &k, &f, &e) == 1 && kind == REPLAY_CONTROL && !strcmp(k.word[1], "rate"), "a setting");
+    ok(replay_next(r, &kind, &k, &f, &e) == 1 && k.count == 3 && strlen(k.word[0]) == LONG &&
+           !strcmp(k.word[1], "a#b") && !strcmp(k.word[2], "a_b"),
+       "words as they came");
     ok(replay_next(r, &kind, &k, &f, &e) == 1 && kind == REPLAY_FRAME, "a frame: %s", e.text);
     ok(f.index == 3 && f.time == 1. / 3 && f.steps == 20 && f.of == -1 && !strcmp(f.path, "fem"), "its numbers");
     ok(f.has_pose && !memcmp(&f.at, &where, sizeof where), "its pose, to the last bit");
@@ -99,7 +116,7 @@ static int frames_of(const char *path, const char *bytes, size_t size)
 /* Cut at any byte, it has the frames whose lines are whole. */
 static void cut_anywhere(const char *path)
 {
-    char bytes[2000];
+    char bytes[LONG + 2000];
     FILE *from = fopen(path, "r");
     const size_t size = fread(bytes, 1, sizeof bytes, from);
     fclose(from);

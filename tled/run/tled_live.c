@@ -136,6 +136,11 @@ int64_t live_parts(const live *l)
     return l ? l->run.parts : 1;
 }
 
+double live_ramp(const live *l)
+{
+    return l->ramp;
+}
+
 /* A step from check to check, as many as a tick needs; in so many parts at least as are stable at rest, or as --dt asks
  * for. */
 static void choose_steps(session *s, const struct options *o)
@@ -193,9 +198,19 @@ static void take_pose(live *l, const run_tick *at, const pose *to)
 /* The newest pose, where one came since the last that was taken here. */
 static bool take_newest(live *l)
 {
-    const bool is = lines_take_pose(l->lines, &l->pose) || l->has_pose;
+    const bool is = lines_take_pose(l->lines, &l->pose);
+    if (is && l->has_pose)
+        lines_drop_pose(l->lines);
+    const bool any = is || l->has_pose;
     l->has_pose = false;
-    return is;
+    return any;
+}
+
+static void skip_pose(live *l)
+{
+    err e = {0};
+    err_set(&e, l->pose.name, l->pose.line, "a pose, but there is no probe; expected --probe and --poses");
+    lines_skip_pose(l->lines, &e);
 }
 
 static void take_lines(live *l, const run_tick *at, bool *anew)
@@ -207,11 +222,13 @@ static void take_lines(live *l, const run_tick *at, bool *anew)
             lines_skip(l->lines, &wrong);
         else
             record_control(l->record, &k);
-    if (take_newest(l) && l->s->collider.poses) {
-        const lines_pose p = l->pose;
-        const pose to = pose_relative(&l->body, &p.at);
+    const bool posed = take_newest(l);
+    if (posed && l->s->collider.poses) {
+        const pose to = pose_relative(&l->body, &l->pose.at);
         take_pose(l, at, &to);
-        l->came = p.came;
+        l->came = l->pose.came;
+    } else if (posed) {
+        skip_pose(l);
     }
     lines_tell(l->lines, &l->s->warnings);
     tool_warn(l->s->t, &l->s->warnings);

@@ -19,6 +19,9 @@ void live_destroy(live *l);
 /* The parts that a step is taken in, at rest; l may be NULL: 1. */
 int64_t live_parts(const live *l);
 
+/* s: during which the force of contact rises, where the probe comes in or the tissue broke. */
+double live_ramp(const live *l);
+
 /* Before the problem is there: what the probe's motion needs; poses come relative to `place`. -1 with e filled. */
 int live_collider(session *s, const pose *place, err *e);
 

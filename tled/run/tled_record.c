@@ -61,8 +61,11 @@ static void add_run(list *l, const session *s, double rate)
     add_number(l, "steps-a-second", s->run.rate * (double)live_parts(s->live));
     add_number(l, "damping", s->run.damping);
     add(l, "hourglass", "%s", control);
-    if (s->collider.poses)
+    add(l, "unit", "%s", s->script.unit ? s->script.unit : "source.unit");
+    if (s->collider.poses) {
         add_number(l, "contact", s->collider.stiffness);
+        add_number(l, "ramp", live_ramp(s->live));
+    }
 }
 
 int record_begin(const session *s, double rate, const char *path, bool force, const char *replayed, record **to,
