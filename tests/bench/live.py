@@ -1,8 +1,12 @@
 """live.py BIN [THREADS [CSV]]: the chain as it is used live: a pose goes into a FIFO, msds-run solves, us-slice draws, and the clock is stopped when
 the last byte of the image has come out of the pipe. 20 x 10 x 10 nodes, 512 x 512 pixels, 256^3 voxels of noise. Prints CSV: latency from pose
 to image, and images a second when the next pose goes in as soon as an image is out, and when three are always under way. Then the same by --live, 60
-poses a second, at 32 x 16 x 16 nodes: latency in ms, and in multiply-adds of one processor, as the probe in the CSV of bench_slice took them."""
+poses a second, at 32 x 16 x 16 nodes: latency in ms, and in multiply-adds of one processor, as the probe in the CSV of bench_slice took them.
+Then the face at 2.5 mm (the real one where its data are; FACE=FILE: another model) by tled-run --live for 10 s, in single precision and with nu .45,
+while its muscles contract and let go, and on a card at 1.25 mm where there is one: simulated time to real time. FACE_ONLY=cpu or cuda: only that."""
 import os
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -10,6 +14,7 @@ import tempfile
 import threading
 import time
 
+root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 bin, threads = os.path.abspath(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "2"
 poses, ahead = 300, 3
 
@@ -100,6 +105,58 @@ def run_live(method, folder, mesh, volume):
                                              "%.3g" % (middle * rate) if rate else ""))
 
 
+def make_face(folder, side):
+    """As tests/long/live.py makes it."""
+    shared = os.environ.get("SINEW_SHARED", os.path.join(root, "..", "shared"))
+    face, obj, made = os.path.join(shared, "data", "face", "face_zyg.obj"), os.path.join(folder, "face.obj"), os.path.join(folder, "face.sinew")
+    if os.environ.get("FACE"):
+        return os.environ["FACE"]
+    if os.path.exists(face):
+        shutil.copy(face, obj)
+    else:
+        with open(obj, "wb") as to:
+            subprocess.run(["awk", "-f", "samples/shape.awk", "-f", "samples/head.awk"], cwd=root, stdout=to, check=True)
+    subprocess.run("%s/voxelise -q --unit mm -s %s %s | %s/attach -q -o %s" % (bin, side, obj, bin, made), shell=True, check=True)
+    return made
+
+
+def names_in(model, key):
+    return subprocess.run([bin + "/sinew-info", "--get", key, model], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
+
+
+def run_face(folder, side, device):
+    model, fifo = make_face(folder, side), os.path.join(folder, "face-" + device)
+    muscles, seconds = names_in(model, "muscle.name"), 10
+    command = [bin + "/tled-run", "-d", device, "--precision", "single", "--threads", threads, "--live", "-t", str(seconds), "--control", fifo]
+    for material in names_in(model, "material.name"):
+        command += ["-m", material + ".nu=0.45"]
+    os.mkfifo(fifo)
+    solver = subprocess.Popen(command, stdin=open(model, "rb"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    with open(fifo, "w", buffering=1) as to:
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+        try:
+            for i in range(4 * seconds):
+                for muscle in muscles:
+                    to.write("now contract %s %g\n" % (muscle, .2 * (i % 4 == 0)))
+                time.sleep(.25)
+            said = solver.communicate(timeout=300)[1]
+        except BrokenPipeError:
+            said = solver.communicate(timeout=300)[1]
+    elements, ratio = re.search(r"(\d+) elements", said), re.search(r"(\d+) frames in ([\d.]+) s, (\S+) of real time", said)
+    if solver.returncode or not elements or not ratio:
+        sys.exit("live.py: a face: status %s\n%s" % (solver.returncode, said))
+    print("%s,%s,%s,%s,%s,%s,%s" % ((device, threads, side, elements.group(1)) + ratio.groups()))
+
+
+def run_faces(folder):
+    print("face,threads,side_mm,elements,frames,seconds,of_real_time", flush=True)
+    only = os.environ.get("FACE_ONLY")
+    if only != "cuda":
+        run_face(folder, "2.5", "cpu")
+    if only == "cuda" or (not only and os.path.exists("/proc/driver/nvidia/version")):
+        run_face(folder, "1.25", "cuda")
+
+
 def probe_rate(path):
     """Multiply-adds a second, of one processor."""
     with open(path) as file:
@@ -107,6 +164,10 @@ def probe_rate(path):
 
 
 rate = probe_rate(sys.argv[3]) if len(sys.argv) > 3 else 0
+if os.environ.get("FACE_ONLY"):
+    with tempfile.TemporaryDirectory() as folder:
+        run_faces(folder)
+    sys.exit(0)
 with tempfile.TemporaryDirectory() as folder:
     volume, mesh = os.path.join(folder, "noise.nrrd"), os.path.join(folder, "mesh.sinew")
     with open(volume, "wb") as to:
@@ -121,3 +182,4 @@ with tempfile.TemporaryDirectory() as folder:
     print("live,threads,poses,shown,least_ms,median_ms,p95_ms,median_multiply_adds")
     for method in "msds", "fem", "exact":
         run_live(method, folder, mesh, volume)
+    run_faces(folder)

@@ -39,7 +39,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     lines_pose at;
     keyfile k;
-    int64_t poses = 0, controls = 0, ends = 1;
+    int64_t taken = 0, controls = 0, ends = 1;
     if (size > MOST)
         return 0;
     for (size_t i = 0; i < size; i++)
@@ -52,11 +52,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             must(k.count > 0 && k.line >= 1 && k.line <= ends);
             controls++;
         }
-        poses += lines_take_pose(l, &at);
+        taken += lines_take_pose(l, &at);
         must(clock_now() < until);
     }
     const lines_counts c = lines_count(l);
-    must(c.controls == controls && c.poses == poses + c.stale && !c.writers);
+    must(c.controls == controls && c.poses == taken + c.stale && !c.writers);
     must(c.poses + c.controls + c.skipped <= ends);
     lines_close(l);
     return 0;
