@@ -1,5 +1,5 @@
-/* Any bytes from a live source: each line is a pose, a control or skipped, once; all of them can be taken, and the source
- * ends.
+/* Any bytes from a live source: each line is a pose, a control or skipped, once; all of them can be taken, and the
+ * source ends.
  */
 #include "base/clock.h"
 #include "live/lines.h"
