@@ -7,6 +7,7 @@
 #include "model/finite.h"
 #include "model/stage.h"
 #include "muscle.h"
+#include "part.h"
 #include "surface/surface.h"
 
 #include <stdio.h>
@@ -15,7 +16,7 @@
 
 struct options {
     opt_common common;
-    opt_list rigid;
+    opt_list rigid, part;
     const char *rigid_file;
     double strictness;
     int fibre;
@@ -28,6 +29,8 @@ static const opt option_list[] = {
      "rigid surfaces [default skull*,bone*,rigid*]"},
     {OPT_INPUT, 0, "rigid-file", "FILE.obj", OPT_TEXT, TO(rigid_file), 0, 0, NULL, OPT_FILE,
      "further rigid surfaces, in the model's unit"},
+    {OPT_INPUT, 0, "part", "NAME=WHAT", OPT_LIST, TO(part), 0, 0, NULL, OPT_NAMED,
+     "bone that moves by itself: jaw=skull_jaw,... or jaw=FILE.obj, a closed surface around it"},
     {OPT_ACTION, 0, "strictness", "S", OPT_NUMBER, TO(strictness), 0, 0, NULL, 0,
      "fix nodes this near to a surface, up to 1 [voxel sides; default 0.75]"},
     {OPT_ACTION, 0, "fibre", "centre|axis|field", OPT_CHOICE, TO(fibre), 0, 0, "centre|axis|field", 0,
@@ -102,7 +105,7 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
         return -1;
     threads = pool_create(o->fibre == MUSCLE_FIELD ? count : 1, e);
     if (!threads || collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||
-        muscle_make(m, (muscle_fibre)o->fibre, threads, &list, warnings, e))
+        part_make(m, &o->part, warnings, e) || muscle_make(m, (muscle_fibre)o->fibre, threads, &list, warnings, e))
         goto out;
     check_held(&r, warnings);
     rc = o->report && (held_report_surfaces(t, &r, e) || held_report_muscles(t, &list, &r, e)) ? -1 : 0;

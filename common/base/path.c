@@ -8,10 +8,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 enum { LINKS = 40 }; /* the most to follow */
+
+bool path_is_obj(const char *path)
+{
+    static const char *const ends[] = {".obj", ".obj.gz"};
+    const size_t size = strlen(path);
+    for (int i = 0; i < 2; i++)
+        if (size >= strlen(ends[i]) && !strcasecmp(path + size - strlen(ends[i]), ends[i]))
+            return true;
+    return false;
+}
 
 size_t path_folder(const char *path)
 {

@@ -28,6 +28,9 @@ char *path_target(const char *path, err *e);
  * nothing is, -1 with e filled where the system does not say. */
 int path_look(const char *path, struct stat *s, err *e);
 
+/* Tells whether a name is one of an OBJ file: it ends in .obj or .obj.gz, in any case. */
+bool path_is_obj(const char *path);
+
 /* Tells whether two paths lead to one regular file, through any links, or would once it is there. */
 bool path_is_same(const char *a, const char *b);
 

@@ -117,3 +117,26 @@ pose pose_between(const pose *a, const pose *b, double share)
         to.position[i] = (1 - share) * a->position[i] + share * b->position[i];
     return to;
 }
+
+pose pose_slerp(const pose *a, const pose *b, double share)
+{
+    pose to;
+    double dot = 0, length = 0;
+    for (int i = 0; i < 4; i++)
+        dot += a->quaternion[i] * b->quaternion[i];
+    const double sign = dot < 0 ? -1 : 1;
+    for (int i = 0; i < 4; i++) {
+        const double gap = b->quaternion[i] - sign * a->quaternion[i];
+        length += gap * gap;
+    }
+    /* By the chord, which keeps its digits where the angle is small. */
+    const double half = asin(fmin(sqrt(length) / 2, 1)), sine = sin(2 * half);
+    const double from = sine > 1e-9 ? sin(2 * half * (1 - share)) / sine : 1 - share;
+    const double on = sine > 1e-9 ? sin(2 * half * share) / sine : share;
+    for (int i = 0; i < 4; i++)
+        to.quaternion[i] = from * sign * a->quaternion[i] + on * b->quaternion[i];
+    pose_unit(to.quaternion);
+    for (int i = 0; i < 3; i++)
+        to.position[i] = (1 - share) * a->position[i] + share * b->position[i];
+    return to;
+}

@@ -44,6 +44,9 @@ pose pose_relative(const pose *frame, const pose *at);
 /* A share (0 to 1) of the way from a to b, turning the shorter way round. */
 pose pose_between(const pose *a, const pose *b, double share);
 
+/* The same at a constant angular velocity (slerp), however far apart they are. */
+pose pose_slerp(const pose *a, const pose *b, double share);
+
 /* v turned by a unit quaternion. Without a matrix, so in the last digit it is not what pose_apply gives. */
 POSE_FUNCTION void pose_turn(const double q[4], const double v[3], double to[3])
 {

@@ -1,5 +1,6 @@
 /* What a table of options says of itself: the synopsis, provenance. */
 #include "base/mem.h"
+#include "base/path.h"
 #include "cli/opt.h"
 #include "cli/opt_complete.h"
 
@@ -94,6 +95,21 @@ static void put_text(bool file, const char *text, const void *options, out *to)
     put_word(text, to);
 }
 
+/* The same of NAME=FILE. */
+static void put_named(const char *text, const void *options, out *to)
+{
+    char word[1024];
+    const opt_common *common = options;
+    const char *equals = strchr(text, '=');
+    if (!equals || !path_is_obj(equals + 1)) {
+        put_word(text, to);
+        return;
+    }
+    snprintf(word, sizeof word, "%.*s%s", (int)(equals + 1 - text), text,
+             common->anonymous ? "FILE" : base_name(equals + 1));
+    put_word(word, to);
+}
+
 static void put_number(const char *before, double value, out *to)
 {
     char text[NUM_TEXT];
@@ -145,7 +161,10 @@ static void put_value(const opt *o, const void *options, out *to)
     if (o->kind == OPT_LIST) {
         for (int i = 0; i < list->count; i++) {
             put_name(o, to);
-            put_text(o->flags & OPT_FILE, list->value[i], options, to);
+            if (o->flags & OPT_NAMED)
+                put_named(list->value[i], options, to);
+            else
+                put_text(o->flags & OPT_FILE, list->value[i], options, to);
         }
         return;
     }

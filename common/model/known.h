@@ -47,6 +47,10 @@ typedef struct known {
     X("node.anchor", MODEL_I32, "@anchor", "node", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                                 \
       "rigid surface that holds the node, -1 = none")                                                                  \
     X("anchor.name", MODEL_STR, "1", "anchor", 1, 1, 0, KNOWN_ANY, 0, 0, "attach", "name of a rigid surface")          \
+    X("node.body", MODEL_I32, "@body", "node", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                                     \
+      "rigid body that the rigid node moves with, -1 = none")                                                          \
+    X("body.name", MODEL_STR, "1", "body", 1, 1, 0, KNOWN_ANY, 0, 0, "attach", "name of a rigid body")                 \
+    X("body.centre", MODEL_F64, "m", "body", 3, 3, 0, KNOWN_FINITE, 0, 0, "attach", "the mean of its nodes at rest")   \
     X("element.node", MODEL_I32, "@node", "element", 4, 8, KNOWN_EVERY, KNOWN_ANY, 0, 0, "voxelise or msds-mesh",      \
       "nodes in VTK order: 8 (hexahedron) or 4 (tetrahedron, its volume above 0)")                                     \
     X("element.lattice", MODEL_I32, "1", "element", 3, 3, 0, KNOWN_ANY, 0, 0, "voxelise",                              \
@@ -115,6 +119,12 @@ typedef struct known {
       "force of the tissue on it")                                                                                     \
     X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run or tled-run",        \
       "torque of the tissue on it, about the origin of its frame")                                                     \
+    X("body.pose", MODEL_F64, "1", "body", 7, 7, KNOWN_FRAME, KNOWN_POSE, 0, 0, "tled-run",                            \
+      "how it has moved from rest: where its rest's origin is now, m, and its turn, a unit quaternion x y z w")        \
+    X("body.force", MODEL_F64, "N", "body", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                         \
+      "force of the tissue on it")                                                                                     \
+    X("body.torque", MODEL_F64, "N.m", "body", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                      \
+      "torque of the tissue on it, about the mean of its nodes as they are now")                                       \
     X("*/vertex.displacement", MODEL_F64, "m", "*/vertex", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run",          \
       "of a skin: displacement from rest")                                                                             \
     X("*/vertex.normal", MODEL_F64, "1", "*/vertex", 3, 3, KNOWN_FRAME, KNOWN_DIRECTION, 0, 0, "msds-run",             \

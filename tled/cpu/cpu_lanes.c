@@ -229,7 +229,7 @@ static void move_extra(const cpu_work *w, int64_t at, int64_t n, int a, node_fac
         *v = (*v + k.half * acceleration) * k.slow;
         u += k.dt * *v;
     } else if (hold >= 0) {
-        real_one end = (real_one)w->next[3 * (int64_t)hold + a];
+        real_one end = (real_one)moves_to(w->next, hold, a, p->position + 3 * n);
         *v = (end - u) / k.dt;
         u = end;
     }

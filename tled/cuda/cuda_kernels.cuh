@@ -171,19 +171,25 @@ template <class G> static __device__ element_vector node_internal(uint32_t info,
     return sum;
 }
 
-/* One component of a node; hold: the curve that displaces it, or none. */
-static __device__ void move_node(const cuda_pass &p, int a, bool is_free, int32_t hold, real net, real mass_inverse,
+/* What pulls at a node (N), but for gravity, and what else the script does to it, or NULL. */
+typedef struct node_pull {
+    real net[3];
+    const tile_extra *extra;
+} node_pull;
+
+/* One component of a node. */
+static __device__ void move_node(const cuda_pass &p, int a, bool is_free, const node_pull &pull, real mass_inverse,
                                  real *velocity, real *u)
 {
-    real acceleration = is_free ? p.gravity[a] + net * mass_inverse : 0;
+    real acceleration = is_free ? p.gravity[a] + pull.net[a] * mass_inverse : 0;
     if (p.what & PASS_FINISH && is_free)
         *velocity = node_finish(*velocity, acceleration, p.factors);
     if (p.what & PASS_BEGIN) {
         if (is_free) {
             *velocity = node_begin(*velocity, acceleration, p.factors);
             *u += p.factors.dt * *velocity;
-        } else if (hold >= 0) {
-            real to = (real)p.next[3 * hold + a];
+        } else if (pull.extra && pull.extra->hold[a] >= 0) {
+            real to = (real)moves_to(p.next, pull.extra->hold[a], a, pull.extra->rest);
             *velocity = (to - *u) / p.factors.dt;
             *u = to;
         }
@@ -196,20 +202,12 @@ typedef struct own_node {
     real mass_inverse, velocity[3];
 } own_node;
 
-/* What pulls at a node (N), but for gravity, and what holds it. */
-typedef struct node_pull {
-    real net[3];
-    int32_t hold[3];
-} node_pull;
-
 static __device__ node_pull node_pulled(const cuda_view<real> &v, const cuda_pass &p, int32_t n, uint32_t info,
                                         element_vector f, const real u[3])
 {
-    node_pull pull = {{-f.x, -f.y, -f.z}, {HOLD_STILL, HOLD_STILL, HOLD_STILL}};
+    node_pull pull = {{-f.x, -f.y, -f.z}, NULL};
     if (info >> TILE_EXTRA & 1) {
-        const tile_extra *x = cuda_extra(v, n);
-        for (int a = 0; a < 3; a++)
-            pull.hold[a] = x->hold[a];
+        const tile_extra *x = pull.extra = cuda_extra(v, n);
         for (int32_t k = x->force; k < x->force + x->forces; k++)
             for (int a = 0; a < 3; a++)
                 pull.net[a] += (real)cuda_force(v, k, p.now, a, (double)u[a]);
@@ -224,8 +222,7 @@ static __device__ void step_node(const cuda_view<real> &v, const cuda_pass &p, i
     const node_pull pull = node_pulled(v, p, n, own->info, f, u);
 #pragma unroll
     for (int a = 0; a < 3; a++)
-        move_node(p, a, own->info >> (TILE_FREE + a) & 1, pull.hold[a], pull.net[a], own->mass_inverse,
-                  &own->velocity[a], &u[a]);
+        move_node(p, a, own->info >> (TILE_FREE + a) & 1, pull, own->mass_inverse, &own->velocity[a], &u[a]);
 }
 
 static __device__ own_node node_at(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i)

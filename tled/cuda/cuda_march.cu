@@ -213,7 +213,7 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
         v = k.keep * v + shared_number(t.memory + GRAVITY + 4 * a) + k.push * shared_number(node + 12) * net;
         u += k.dt * v;
     } else if (k.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
-        const float to = (float)now[p.row + 3 * x->hold[axis] + axis];
+        const float to = (float)moves_to(now + p.row, x->hold[axis], axis, x->rest);
         v = (to - u) / k.dt;
         u = to;
     }

@@ -371,7 +371,11 @@ static int list_extras(tiles *t, const tled_problem *p, err *e)
             int64_t n = t->node[k];
             const int32_t *hold = p->hold + 3 * n;
             int32_t first = p->force_start[n];
-            *to++ = (tile_extra){k, {hold[0], hold[1], hold[2]}, first, p->force_start[n + 1] - first};
+            *to++ = (tile_extra){.node = k,
+                                 .hold = {hold[0], hold[1], hold[2]},
+                                 .force = first,
+                                 .forces = p->force_start[n + 1] - first,
+                                 .rest = {p->position[3 * n], p->position[3 * n + 1], p->position[3 * n + 2]}};
         }
     return 0;
 }

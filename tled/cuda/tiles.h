@@ -40,6 +40,7 @@ typedef struct tile_extra {
     int32_t node; /* where it stands */
     int32_t hold[3];
     int32_t force, forces; /* in force_curve, force_share of the problem */
+    double rest[3];        /* m: its place, for moves.h */
 } tile_extra;
 
 typedef struct tiles {

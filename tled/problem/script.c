@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
+#include "base/path.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -28,10 +29,10 @@ void script_free(script *s)
     *s = (script){0};
 }
 
-void script_value(const script *s, const script_curve *c, double time, double *value)
+int32_t script_keys(const script *s, const script_curve *c, double time)
 {
-    const double *times = s->time + c->key_first, *values = s->value + 3 * (int64_t)c->key_first;
-    int32_t low = 0, high = c->key_count; /* how many keys are not after `time` */
+    const double *times = s->time + c->key_first;
+    int32_t low = 0, high = c->key_count;
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
         if (times[middle] <= time)
@@ -39,6 +40,13 @@ void script_value(const script *s, const script_curve *c, double time, double *v
         else
             high = middle;
     }
+    return low;
+}
+
+void script_value(const script *s, const script_curve *c, double time, double *value)
+{
+    const double *times = s->time + c->key_first, *values = s->value + 3 * (int64_t)c->key_first;
+    const int32_t low = script_keys(s, c, time);
     for (int a = 0; a < 3; a++) {
         if (low == 0) {
             value[a] = 0;
@@ -49,6 +57,16 @@ void script_value(const script *s, const script_curve *c, double time, double *v
             double share = (time - times[low - 1]) / (times[low] - times[low - 1]);
             value[a] = from * (1 - share) + to * share;
         }
+    }
+}
+
+void script_values(const script *s, double time, double *value)
+{
+    for (int64_t i = 0; i < s->curves; i++) {
+        if (s->curve[i].verb == SCRIPT_MOVE)
+            script_move_values(s, &s->curve[i], time, value + 3 * i);
+        else if (s->curve[i].verb != SCRIPT_TURN)
+            script_value(s, &s->curve[i], time, value + 3 * i);
     }
 }
 
@@ -75,12 +93,7 @@ const char *script_region(const script_curve *c)
 
 bool script_is_file(const char *region)
 {
-    static const char *const ends[] = {".obj", ".obj.gz"};
-    const size_t size = strlen(region);
-    for (int i = 0; i < 2; i++)
-        if (size >= strlen(ends[i]) && !strcasecmp(region + size - strlen(ends[i]), ends[i]))
-            return true;
-    return false;
+    return path_is_obj(region);
 }
 
 bool script_is_box(const char *region)
@@ -103,7 +116,7 @@ static bool same_target(const script_curve *a, const script_curve *b)
 {
     if (a->verb != b->verb || a->volume != b->volume)
         return false;
-    if (a->verb == SCRIPT_PULL)
+    if (a->verb == SCRIPT_PULL || a->verb == SCRIPT_MOVE)
         return !strcmp(a->target, b->target);
     for (int i = 0; i < 6; i++)
         if (a->box[i] != b->box[i])
@@ -217,6 +230,10 @@ int64_t script_release_all(script *s, const script_now *now)
     for (int64_t i = 0; i < s->curves; i++) {
         const script_verb verb = s->curve[i].verb;
         double here[3];
+        if (verb == SCRIPT_MOVE && s->curve[i].own)
+            script_move_stop(s, i, now, false);
+        if (verb == SCRIPT_MOVE || verb == SCRIPT_TURN)
+            continue;
         script_value(s, &s->curve[i], now->from, here);
         err full = {0}; /* of keys that are not its own yet: then it stays */
         if (verb == SCRIPT_DISPLACE && s->curve[i].own)
@@ -232,9 +249,13 @@ int64_t script_release_all(script *s, const script_now *now)
 void script_forget_all(script *s, const script_now *now)
 {
     static const double none[3] = {0};
-    for (int64_t i = 0; i < s->curves; i++)
-        if (s->curve[i].own)
+    for (int64_t i = 0; i < s->curves; i++) {
+        const script_verb verb = s->curve[i].verb;
+        if (s->curve[i].own && verb == SCRIPT_MOVE)
+            script_move_stop(s, i, now, true);
+        else if (s->curve[i].own && verb != SCRIPT_TURN)
             script_hold(s, i, now, none, none, &(err){0}); /* it has room of its own: nothing can fail */
+    }
 }
 
 static int add_still(script *s, const script_curve *c, err *e)

@@ -10,6 +10,7 @@
 #define SINEW_SCRIPT_H
 
 #include "base/keyfile.h"
+#include "base/pose.h"
 #include "model/model.h"
 
 typedef enum script_verb {
@@ -20,15 +21,17 @@ typedef enum script_verb {
     SCRIPT_PRESSURE, /* value[0]: Pa, against the outward normals of its triangles as they are deformed */
     SCRIPT_TRACTION, /* value: Pa, by the area of its triangles at rest */
     SCRIPT_PULL,     /* value: m, s (T - X): a spring from its nodes, in all at X, to T; s: the value of: */
-    SCRIPT_SPRING    /* value: s thrice, 1 while the pull that is the curve before it pulls, else 0 */
+    SCRIPT_SPRING,   /* value: s thrice, 1 while the pull that is the curve before it pulls, else 0 */
+    SCRIPT_MOVE, /* value: m, b of u = b + A X, what each of its nodes is displaced by; and the three curves after: */
+    SCRIPT_TURN  /* value: a column of A */
 } script_verb;
 
 typedef struct script_curve {
     script_verb verb;
-    int32_t volume;                 /* contract: index of the volume; else -1 */
-    uint32_t mask;                  /* displace: bit a set: component a is prescribed, from the start of the run on */
+    int32_t volume; /* contract: index of the volume; else -1 */
+    uint32_t mask;  /* displace, move: bit a set: component a is prescribed, from the start of the run on */
     int32_t key_first, key_count;   /* in script.time and script.value; at least 1 key, times never decreasing */
-    int32_t node_first, node_count; /* in script.node, ascending: force, displace, pull */
+    int32_t node_first, node_count; /* in script.node, ascending: force, displace, pull, move */
     int32_t triangle_first, triangle_count; /* in script.corner: pressure, traction */
     double end;                             /* time of its last key, s */
     int64_t line;                           /* its first line in the script; 0: from the command line */
@@ -98,8 +101,15 @@ int64_t script_release_all(script *s, const script_now *now);
 /* Sets to 0 all that live lines have set. */
 void script_forget_all(script *s, const script_now *now);
 
-/* The curve at a time: 3 values (contract: the first counts). */
+/* The curve at a time: 3 values (contract: the first counts). Not of a move, nor of its turn. */
 void script_value(const script *s, const script_curve *c, double time, double *value);
+
+/* All curves at a time, 3 values a curve. */
+void script_values(const script *s, double time, double *value);
+
+/* Adds moves of bodies from a file of lines BODY time tx ty tz qx qy qz qw, poses in the frame in which the model lies
+ * at `place`. -1 with e filled. */
+int script_read_poses(script *s, in *source, const model *m, const pose *place, err *e);
 
 /* The time of the last key of all (s): from there on nothing changes. 0 where there are no curves. */
 double script_end(const script *s);
@@ -108,7 +118,7 @@ double script_end(const script *s);
  * line 0: place is an option of the command line. */
 int32_t script_muscle(const model *m, const char *name, const char *place, int64_t line, err *e);
 
-/* What script.c, script_nodes.c, script_read.c and script_surface.c share. */
+/* What script.c, script_move.c, script_nodes.c, script_read.c and script_surface.c share. */
 
 /* The curve of the same verb and target, or -1. */
 int64_t script_find(const script *s, const script_curve *like);
@@ -140,10 +150,20 @@ int script_nodes_in_ball(script *s, const model *m, const keyfile *k, const doub
 int script_nodes_in_box(script *s, const model *m, const keyfile *k, const double near[3], const script_curve *c,
                         err *e);
 int script_nodes_of_surface(script *s, const model *m, const keyfile *k, const script_curve *c, err *e);
+int script_nodes_of_body(script *s, const model *m, const keyfile *k, int32_t body, err *e);
 void script_near(const model *m, double near[3]);
 
 /* Of a curve, from now on: from `was` to `value` (3), in the time that `now` says. -1 with e filled. */
 int script_hold(script *s, int64_t curve, const script_now *now, const double *was, const double *value, err *e);
+
+/* How many of its keys are not after a time. */
+int32_t script_keys(const script *s, const script_curve *c, double time);
+
+/* A move at a time: the 12 values of its four curves. */
+void script_move_values(const script *s, const script_curve *c, double time, double *value);
+
+/* Of a move, from now on: where it is now, or where it was at rest, still. */
+void script_move_stop(script *s, int64_t curve, const script_now *now, bool at_rest);
 
 /* Takes a curve out, whose keys are its own or none. */
 void script_drop(script *s, int64_t curve);

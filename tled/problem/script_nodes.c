@@ -89,6 +89,23 @@ int script_nodes_of_surface(script *s, const model *m, const keyfile *k, const s
                  : keyfile_error(k, e, "no node is held by '%.200s'; expected a surface that holds some", c->target);
 }
 
+int script_nodes_of_body(script *s, const model *m, const keyfile *k, int32_t body, err *e)
+{
+    const model_array *of = model_need(m, "node.body", e);
+    int64_t found = 0;
+    for (int64_t i = 0; of && i < of->rows; i++) {
+        if (of->i32[i] != body)
+            continue;
+        if (node_add(s, i, e))
+            return -1;
+        found++;
+    }
+    if (of && !found)
+        return keyfile_error(k, e, "body '%.200s' has no node; expected one that holds some",
+                             model_find(m, "body.name")->str[body]);
+    return of ? 0 : -1;
+}
+
 /* Sides of voxels are seldom whole in binary: 3 x 1.1 mm is more than 3.3 mm by a rounding. */
 void script_near(const model *m, double near[3])
 {

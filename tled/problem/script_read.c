@@ -1,35 +1,19 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
-#include "tled/problem/script.h"
+#include "tled/problem/script_reader.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* One line of a file, until the keys of each curve are brought together. */
-typedef struct entry {
-    int64_t curve;
-    double time, value[3];
-} entry;
-
-typedef struct reader {
-    script *s;
-    const model *m;
-    keyfile k;
-    entry *entries;
-    int64_t count, capacity;
-    int64_t first;         /* curves before these came from the command line */
-    const script_now *now; /* of a line that comes live; NULL: of a file */
-    int64_t gone;          /* live: the curve that the line replaces, or -1 */
-    double near[3];        /* m: how far past a box a node may be that counts as on its face, along each axis */
-} reader;
+typedef script_reader reader;
+typedef script_entry entry;
 
 /* Lines of a file */
 
-/* Numbers in metres, with suffixes or without; exactly count. */
-static int take_lengths(reader *r, const char *text, int count, double *value, const char *expected, err *e)
+int script_reader_lengths(const reader *r, const char *text, int count, double *value, const char *expected, err *e)
 {
     num_length list[6];
     num_unit metre = num_unit_of("m");
@@ -77,8 +61,7 @@ static int take_displacement(reader *r, int at, double *value, uint32_t *mask, e
     return 0;
 }
 
-/* The curve for this line: the one that an earlier line began, or a new one (*fresh). -1 with e filled. */
-static int64_t curve_of(reader *r, const script_curve *c, bool *fresh, err *e)
+int64_t script_reader_curve(reader *r, const script_curve *c, bool *fresh, err *e)
 {
     int64_t at = script_find(r->s, c);
     *fresh = at < 0;
@@ -110,7 +93,7 @@ static int hold_now(const reader *r, int64_t at, const double *value, err *e)
     return script_hold(r->s, at, r->now, was, value, e);
 }
 
-static int key_add(reader *r, int64_t at, double time, const double *value, err *e)
+int script_reader_key(reader *r, int64_t at, double time, const double *value, err *e)
 {
     if (r->now)
         return hold_now(r, at, value, e);
@@ -140,11 +123,11 @@ static int line_contract(reader *r, double time, err *e)
     if (script_level(k->word[3], &value[0]))
         return keyfile_error(k, e, "level '%.200s'; expected a number from 0 to 1", k->word[3]);
     bool fresh;
-    int64_t at = curve_of(r, &c, &fresh, e);
+    int64_t at = script_reader_curve(r, &c, &fresh, e);
     if (at >= 0 && fresh && r->now) /* script_add_idle made one for each that can */
         return keyfile_error(k, e, "'%.200s' has a material without a peak stress; expected a muscle with one",
                              c.target);
-    return at < 0 ? -1 : key_add(r, at, time, value, e);
+    return at < 0 ? -1 : script_reader_key(r, at, time, value, e);
 }
 
 static int line_gravity(reader *r, double time, err *e)
@@ -155,30 +138,30 @@ static int line_gravity(reader *r, double time, err *e)
     if (take_numbers(r, 2, value, "X,Y,Z in m/s2", e))
         return -1;
     bool fresh;
-    int64_t at = curve_of(r, &c, &fresh, e);
-    return at < 0 ? -1 : key_add(r, at, time, value, e);
+    int64_t at = script_reader_curve(r, &c, &fresh, e);
+    return at < 0 ? -1 : script_reader_key(r, at, time, value, e);
 }
 
 static int line_force(reader *r, double time, err *e)
 {
     double value[3];
     script_curve c = {.verb = SCRIPT_FORCE, .volume = -1, .line = r->k.line, .target = r->k.word[2]};
-    if (take_lengths(r, r->k.word[2], 3, c.box, "X,Y,Z: a point, in metres or with suffixes", e) ||
-        take_lengths(r, r->k.word[3], 1, c.box + 3, "a radius, in metres or with a suffix", e) ||
+    if (script_reader_lengths(r, r->k.word[2], 3, c.box, "X,Y,Z: a point, in metres or with suffixes", e) ||
+        script_reader_lengths(r, r->k.word[3], 1, c.box + 3, "a radius, in metres or with a suffix", e) ||
         take_numbers(r, 4, value, "FX,FY,FZ in N", e))
         return -1;
     if (c.box[3] <= 0)
         return keyfile_error(&r->k, e, "radius '%.200s'; expected more than 0", r->k.word[3]);
     bool fresh;
-    int64_t at = curve_of(r, &c, &fresh, e);
+    int64_t at = script_reader_curve(r, &c, &fresh, e);
     if (at < 0 || (fresh && script_nodes_in_ball(r->s, r->m, &r->k, r->near, &c, e)))
         return -1;
-    return key_add(r, at, time, value, e);
+    return script_reader_key(r, at, time, value, e);
 }
 
 static int take_box(reader *r, const char *text, double *box, err *e)
 {
-    if (take_lengths(r, text, 6, box, "X0,Y0,Z0,X1,Y1,Z1: a box, in metres or with suffixes", e))
+    if (script_reader_lengths(r, text, 6, box, "X0,Y0,Z0,X1,Y1,Z1: a box, in metres or with suffixes", e))
         return -1;
     for (int a = 0; a < 3; a++)
         if (box[a] > box[a + 3])
@@ -200,7 +183,7 @@ static int line_displace(reader *r, double time, err *e)
     bool box = strchr(c.target, ',') != NULL, fresh;
     if ((box && take_box(r, c.target, c.box, e)) || take_displacement(r, 3, value, &c.mask, e))
         return -1;
-    int64_t at = curve_of(r, &c, &fresh, e);
+    int64_t at = script_reader_curve(r, &c, &fresh, e);
     if (at < 0 || (fresh && take_nodes(r, &c, box, e)))
         return -1;
     if (r->s->curve[at].mask != c.mask)
@@ -208,7 +191,7 @@ static int line_displace(reader *r, double time, err *e)
                              "'%.200s' frees other components than line %" PRId64
                              " does; expected the same in all lines of a target",
                              r->k.word[3], r->s->curve[at].line);
-    return key_add(r, at, time, value, e);
+    return script_reader_key(r, at, time, value, e);
 }
 
 /* On a bound surface or a region of it. */
@@ -222,10 +205,10 @@ static int add_to_surface(reader *r, script_verb verb, double time, const double
         return -1;
     c.is_region = region != NULL;
     bool fresh;
-    int64_t at = curve_of(r, &c, &fresh, e);
+    int64_t at = script_reader_curve(r, &c, &fresh, e);
     if (at < 0 || (fresh && script_take_triangles(r->s, r->m, &r->k, e)))
         return -1;
-    return key_add(r, at, time, value, e);
+    return script_reader_key(r, at, time, value, e);
 }
 
 static int line_pressure(reader *r, double time, err *e)
@@ -249,7 +232,7 @@ static int keys_add(reader *r, int64_t at, double time, double spring, const dou
     double value[3];
     for (int a = 0; a < 3; a++)
         value[a] = spring * (place[a] - from[a]);
-    return key_add(r, at, time, value, e) || key_add(r, at + 1, time, factor, e) ? -1 : 0;
+    return script_reader_key(r, at, time, value, e) || script_reader_key(r, at + 1, time, factor, e) ? -1 : 0;
 }
 
 /* The same live: the target goes there in a straight line from where it is, if it pulls. */
@@ -287,9 +270,9 @@ static bool is_same_spring(const script_curve *a, const script_curve *b)
 static int take_pull(reader *r, script_curve *c, double *to, err *e)
 {
     const keyfile *k = &r->k;
-    if (take_lengths(r, k->word[3], 3, c->box, "X,Y,Z: a point, in metres or with suffixes", e) ||
-        take_lengths(r, k->word[4], 1, c->box + 3, "a radius, in metres or with a suffix", e) ||
-        take_lengths(r, k->word[5], 3, to, "TX,TY,TZ: a point, in metres or with suffixes", e))
+    if (script_reader_lengths(r, k->word[3], 3, c->box, "X,Y,Z: a point, in metres or with suffixes", e) ||
+        script_reader_lengths(r, k->word[4], 1, c->box + 3, "a radius, in metres or with a suffix", e) ||
+        script_reader_lengths(r, k->word[5], 3, to, "TX,TY,TZ: a point, in metres or with suffixes", e))
         return -1;
     if (c->box[3] <= 0)
         return keyfile_error(k, e, "radius '%.200s'; expected more than 0", k->word[4]);
@@ -348,22 +331,23 @@ static int line_release(reader *r, double time, err *e)
 }
 
 static const struct verb {
-    int words;
+    int words, more; /* more: how many may follow, all or none */
     int (*take)(reader *r, double time, err *e);
     const char *expected;
 } verbs[] = {
-    {4, line_contract, "contract MUSCLE LEVEL"},
-    {3, line_gravity, "gravity X,Y,Z"},
-    {5, line_force, "force X,Y,Z RADIUS FX,FY,FZ"},
-    {4, line_displace, "displace SURFACE|X0,Y0,Z0,X1,Y1,Z1 UX,UY,UZ"},
-    {4, line_pressure, "pressure SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1|:FILE.obj] PA"},
-    {4, line_traction, "traction SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1|:FILE.obj] X,Y,Z"},
-    {7, line_pull, "pull ID X,Y,Z RADIUS TX,TY,TZ NEWTONS_PER_METRE"},
-    {3, line_release, "release ID"},
+    {4, 0, line_contract, "contract MUSCLE LEVEL"},
+    {3, 0, line_gravity, "gravity X,Y,Z"},
+    {5, 0, line_force, "force X,Y,Z RADIUS FX,FY,FZ"},
+    {4, 0, line_displace, "displace SURFACE|X0,Y0,Z0,X1,Y1,Z1 UX,UY,UZ"},
+    {4, 0, line_pressure, "pressure SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1|:FILE.obj] PA"},
+    {4, 0, line_traction, "traction SURFACE[:GROUP|:X0,Y0,Z0,X1,Y1,Z1|:FILE.obj] X,Y,Z"},
+    {7, 0, line_pull, "pull ID X,Y,Z RADIUS TX,TY,TZ NEWTONS_PER_METRE"},
+    {3, 0, line_release, "release ID"},
+    {5, 2, script_line_move, "move BODY X,Y,Z QX,QY,QZ,QW [about X,Y,Z]"},
 };
 
-static const char *const verb_names[] = {"contract", "gravity",  "force", "displace",
-                                         "pressure", "traction", "pull",  "release"};
+static const char *const verb_names[] = {"contract", "gravity", "force",   "displace", "pressure",
+                                         "traction", "pull",    "release", "move"};
 
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
@@ -375,7 +359,7 @@ static int verb_of(const keyfile *k, const char *when, err *e)
         v++;
     if (v == VERBS)
         return near_unknown(e, k->name, k->line, "verb", k->word[1], verb_names, VERBS);
-    if (k->count != verbs[v].words)
+    if (k->count != verbs[v].words && (!verbs[v].more || k->count != verbs[v].words + verbs[v].more))
         return keyfile_error(k, e, "%d words; expected %s%s", k->count, when, verbs[v].expected);
     return v;
 }
@@ -423,7 +407,8 @@ static int refuse_conflicts(reader *r, err *e)
     int status = owner ? 0 : -1;
     for (int64_t i = 0; i < s->curves && !status; i++) {
         const script_curve *c = &s->curve[i];
-        for (int64_t j = 0; c->verb == SCRIPT_DISPLACE && j < c->node_count && !status; j++)
+        const bool prescribes = c->verb == SCRIPT_DISPLACE || c->verb == SCRIPT_MOVE;
+        for (int64_t j = 0; prescribes && j < c->node_count && !status; j++)
             for (int a = 0; a < 3 && !status; a++) {
                 int32_t node = s->node[c->node_first + j], *to = &owner[3 * (int64_t)node + a];
                 if (!(c->mask >> a & 1))
@@ -440,24 +425,37 @@ static int refuse_conflicts(reader *r, err *e)
     return status;
 }
 
+/* All lines of a file. nothing: the message where it has none. */
+static int read_lines(reader *r, in *source, int (*take)(reader *r, err *e), const char *nothing, err *e)
+{
+    int more;
+    keyfile_open(&r->k, source);
+    while ((more = keyfile_next(&r->k, e)) > 0)
+        if (take(r, e))
+            return -1;
+    if (more < 0)
+        return -1;
+    if (!r->count)
+        return err_set(e, in_name(source), 0, "nothing in it; expected lines %s", nothing);
+    return gather_keys(r, e) || refuse_conflicts(r, e) ? -1 : 0;
+}
+
 int script_read(script *s, in *source, const model *m, err *e)
 {
     reader r = {.s = s, .m = m, .first = s->curves};
-    int more, status = -1;
     if (!s->file && !(s->file = mem_text(in_name(source), e)))
         return -1;
-    keyfile_open(&r.k, source);
     script_near(m, r.near);
-    while ((more = keyfile_next(&r.k, e)) > 0)
-        if (take_line(&r, e))
-            goto out;
-    if (more < 0)
-        goto out;
-    if (!r.count)
-        err_set(e, in_name(source), 0, "nothing in it; expected lines TIME VERB ..., such as 0 gravity 0,0,-9.81");
-    else
-        status = gather_keys(&r, e) || refuse_conflicts(&r, e) ? -1 : 0;
-out:
+    const int status = read_lines(&r, source, take_line, "TIME VERB ..., such as 0 gravity 0,0,-9.81", e);
+    free(r.entries);
+    return status;
+}
+
+int script_read_poses(script *s, in *source, const model *m, const pose *place, err *e)
+{
+    reader r = {.s = s, .m = m, .first = s->curves, .place = place};
+    const int status =
+        read_lines(&r, source, script_line_pose, "BODY time tx ty tz qx qy qz qw, such as jaw 0 0 0 0 0 0 0 1", e);
     free(r.entries);
     return status;
 }
@@ -538,7 +536,8 @@ static int take_verb(reader *r, err *e)
         return 0;
     if (r->s->curves > LIVE_CURVES)
         return keyfile_error(k, e, "more than %d targets; expected pulls to be released, or forces of 0", LIVE_CURVES);
-    return r->s->curve[before].verb == SCRIPT_DISPLACE ? refuse_conflicts(r, e) : 0;
+    const script_verb verb = r->s->curve[before].verb;
+    return verb == SCRIPT_DISPLACE || verb == SCRIPT_MOVE ? refuse_conflicts(r, e) : 0;
 }
 
 int script_take_now(script *s, const model *m, const keyfile *k, const script_now *now, bool *anew, err *e)

@@ -1,16 +1,14 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "mesh/bound.h"
-#include "surface/coincident.h"
 #include "surface/scale.h"
+#include "surface/solid.h"
 #include "surface/triangulate.h"
 #include "surface/winding.h"
 #include "tled/problem/script.h"
 #include "tled/problem/triangle.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -168,91 +166,11 @@ static int no_triangle(const picker *p, const keyfile *k, err *e)
     return keyfile_error(k, e, "surface '%.200s' has no triangle; expected some", name);
 }
 
-/* Whether it is closed: each edge goes one way round as often as the other. Vertices at one place count as one. */
-
-typedef struct edge {
-    int32_t low, high; /* numbers of places */
-    int32_t sense;     /* 2: from low to high, 1 in a triangle that counts by half; -2, -1: back */
-} edge;
-
-static int compare_edges(const void *left, const void *right)
-{
-    const edge *a = left, *b = right;
-    if (a->low != b->low)
-        return a->low < b->low ? -1 : 1;
-    return (a->high > b->high) - (a->high < b->high);
-}
-
-static int64_t list_edges(const int32_t *corner, const double *part, int64_t triangles, const int32_t *place,
-                          edge *list)
-{
-    int64_t count = 0;
-    for (int64_t i = 0; i < 3 * triangles; i++) {
-        const int32_t sense = (int32_t)(2 * part[i / 3]);
-        const int32_t from = place[corner[i]], to = place[corner[i % 3 == 2 ? i - 2 : i + 1]];
-        if (from < to)
-            list[count++] = (edge){from, to, sense};
-        else if (from > to)
-            list[count++] = (edge){to, from, -sense};
-    }
-    return count;
-}
-
-/* How many edges are open, and the first of them. */
-static int64_t count_open(const edge *list, int64_t count, edge *first)
-{
-    int64_t open = 0, sum = 0;
-    for (int64_t i = 0; i < count; i++) {
-        sum += list[i].sense;
-        if (i + 1 < count && compare_edges(&list[i], &list[i + 1]) == 0)
-            continue;
-        if (sum && !open++)
-            *first = list[i];
-        sum = 0;
-    }
-    return open;
-}
-
-/* A vertex at that place. */
-static const double *vertex_at(const surface *s, const int32_t *place, int32_t number)
-{
-    int64_t v = 0;
-    while (place[v] != number)
-        v++;
-    return s->position + 3 * v;
-}
-
-enum { OPEN_TEXT = 140 };
-
-/* Says how many edges of these triangles are open, and where the first one is; nothing where none is. */
-static int find_open(const surface *s, const int32_t *corner, const double *part, int64_t triangles,
-                     char text[OPEN_TEXT], err *e)
-{
-    int status = -1;
-    edge first = {0, 0, 0};
-    int32_t *place = mem_array(s->vertices, sizeof *place, "the vertices", e);
-    edge *list = place ? mem_array(3 * triangles, sizeof *list, "the edges", e) : NULL;
-    *text = '\0';
-    if (list && coincident_places(s->position, s->vertices, place, e) >= 0) {
-        const int64_t count = list_edges(corner, part, triangles, place, list);
-        qsort(list, (size_t)count, sizeof *list, compare_edges);
-        const int64_t open = count_open(list, count, &first);
-        const double *a = vertex_at(s, place, first.low), *b = vertex_at(s, place, first.high);
-        if (open)
-            snprintf(text, OPEN_TEXT, "%" PRId64 " open edge%s at %.4gmm,%.4gmm,%.4gmm", open,
-                     open == 1 ? "" : "s, the first", 500 * (a[0] + b[0]), 500 * (a[1] + b[1]), 500 * (a[2] + b[2]));
-        status = 0;
-    }
-    free(place);
-    free(list);
-    return status;
-}
-
 static int check_closed(const script *s, const script_curve *c, const surface *from, const keyfile *k, err *e)
 {
-    char open[OPEN_TEXT];
-    if (find_open(from, s->corner + 3 * (int64_t)c->triangle_first, s->part + c->triangle_first, c->triangle_count,
-                  open, e))
+    char open[SOLID_OPEN];
+    if (solid_open(from, s->corner + 3 * (int64_t)c->triangle_first, s->part + c->triangle_first, c->triangle_count,
+                   open, e))
         return -1;
     if (*open)
         return keyfile_error(k, e,
@@ -284,82 +202,6 @@ static void mark_box(picker *p)
     }
 }
 
-/* The triangles of an OBJ. */
-typedef struct solid {
-    obj file;
-    surface shape;   /* its vertices, in metres */
-    double *metres;  /* vertices x 3 */
-    int32_t *corner; /* triangles x 3: vertices */
-    double *part;    /* triangles: 1 */
-    int64_t triangles, room;
-} solid;
-
-static void solid_free(solid *b)
-{
-    obj_free(&b->file);
-    free(b->metres);
-    free(b->corner);
-    free(b->part);
-}
-
-static int cut_face(solid *b, int64_t face, err *e)
-{
-    const int64_t first = b->file.face_start[face], count = b->file.face_start[face + 1] - first;
-    const int32_t *vertex = b->file.corner_vertex + first;
-    if (count < 3)
-        return 0;
-    if (mem_grow(&b->corner, &b->room, b->triangles + count - 2, 3 * sizeof *b->corner, "a region", e))
-        return -1;
-    int32_t *cut = b->corner + 3 * b->triangles;
-    if (triangulate(b->metres, vertex, count, cut, e))
-        return -1;
-    for (int64_t i = 0; i < 3 * (count - 2); i++)
-        cut[i] = vertex[cut[i]];
-    b->triangles += count - 2;
-    return 0;
-}
-
-static int solid_cut(solid *b, double scale, err *e)
-{
-    int status = 0;
-    b->metres = mem_array(b->file.vertices, 3 * sizeof *b->metres, "a region", e);
-    if (!b->metres)
-        return -1;
-    for (int64_t i = 0; i < 3 * b->file.vertices; i++)
-        b->metres[i] = surface_metres(b->file.position[i], scale);
-    b->shape = (surface){.position = b->metres, .vertices = b->file.vertices};
-    for (int64_t f = 0; f < b->file.faces && !status; f++)
-        status = cut_face(b, f, e);
-    if (status || !(b->part = mem_array(b->triangles, sizeof *b->part, "a region", e)))
-        return -1;
-    for (int64_t t = 0; t < b->triangles; t++)
-        b->part[t] = 1;
-    return 0;
-}
-
-static int solid_read(solid *b, const char *file, double scale, err *e)
-{
-    in *source = in_open(file, e);
-    const int status = source && !obj_read(&b->file, source, e) ? solid_cut(b, scale, e) : -1;
-    in_close(source);
-    return status;
-}
-
-static int solid_check(const solid *b, const char *file, const keyfile *k, err *e)
-{
-    char open[OPEN_TEXT];
-    if (!b->triangles)
-        return keyfile_error(k, e, "%.200s has no polygons; expected a closed surface", file);
-    if (find_open(&b->shape, b->corner, b->part, b->triangles, open, e))
-        return -1;
-    if (*open)
-        return keyfile_error(k, e,
-                             "%.200s is not closed: %s; expected each edge between two triangles that face the same "
-                             "way",
-                             file, open);
-    return 0;
-}
-
 static int mark_inside(picker *p, const model *m, const keyfile *k, err *e)
 {
     const char *file = script_region(p->c);
@@ -368,11 +210,9 @@ static int mark_inside(picker *p, const model *m, const keyfile *k, err *e)
     const num_unit unit = scale_unit(p->s->unit, m, e);
     if (!unit)
         return -1;
-    int status = solid_read(&b, file, scale_of(unit), &found);
+    const int status = solid_read(&b, file, scale_of(unit), &found);
     if (status)
-        keyfile_error(k, e, "%.400s", found.text);
-    else
-        status = solid_check(&b, file, k, e);
+        keyfile_error(k, e, "%.500s", found.text);
     if (!status) {
         const winding body = winding_of(b.metres, b.corner, b.triangles);
         for (int64_t v = 0; v < p->from.vertices; v++)

@@ -4,6 +4,7 @@
 #include "mesh/lattice.h"
 #include "model/materials.h"
 #include "physics/stability.h"
+#include "tled/problem/bodies.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/loads.h"
@@ -47,6 +48,7 @@ void tled_problem_free(tled_problem *p)
     free(p->corner_start);
     free(p->mass);
     free(p->hold);
+    bodies_free(p->bodies);
     forget_loads(p);
     fields_free(&p->at_start);
     memset(p, 0, sizeof *p);
@@ -322,10 +324,12 @@ static void make_holds(tled_problem *p, const model *m)
         p->hold[i] = rigid && rigid->u8[i / 3] ? HOLD_STILL : HOLD_FREE;
     for (int64_t c = 0; c < p->script->curves; c++) {
         const script_curve *curve = &p->script->curve[c];
-        for (int32_t i = 0; curve->verb == SCRIPT_DISPLACE && i < curve->node_count; i++)
+        const bool prescribes = curve->verb == SCRIPT_DISPLACE || curve->verb == SCRIPT_MOVE;
+        const int32_t hold = (int32_t)c | (curve->verb == SCRIPT_MOVE ? MOVES_BODY : 0);
+        for (int32_t i = 0; prescribes && i < curve->node_count; i++)
             for (int a = 0; a < 3; a++)
                 if (curve->mask & 1u << a)
-                    p->hold[3 * (int64_t)p->script->node[curve->node_first + i] + a] = (int32_t)c;
+                    p->hold[3 * (int64_t)p->script->node[curve->node_first + i] + a] = hold;
     }
     p->held = 0;
     for (int64_t n = 0; n < p->nodes; n++)
@@ -351,7 +355,7 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
         return -1;
     if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || make_volumes(p, m, e) ||
         make_mixtures(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || loads_make(p, m, e) ||
-        followers_make(p, m, e))
+        followers_make(p, m, e) || bodies_make(p, m, e))
         return -1;
     if (!boxes)
         conforming_join(p);
@@ -406,8 +410,7 @@ double tled_tension(const tled_problem *p, int32_t volume, const double *value)
 
 void tled_curves(const tled_problem *p, double time, double *value)
 {
-    for (int64_t i = 0; i < p->script->curves; i++)
-        script_value(p->script, &p->script->curve[i], time, value + 3 * i);
+    script_values(p->script, time, value);
 }
 
 void tled_external(const tled_problem *p, const double *value, const double *u, int64_t n, double *force)

@@ -10,9 +10,10 @@
 #include "physics/forms.h"
 #include "physics/hourglass_numbers.h"
 #include "solve/fields.h"
+#include "tled/problem/moves.h"
 #include "tled/problem/script.h"
 
-/* What holds one component of a node: nothing, its place at the start, or curve number `hold` of the script. */
+/* What holds one component of a node: nothing, its place at the start, or a curve of the script (moves.h). */
 enum { HOLD_FREE = -1, HOLD_STILL = -2 };
 
 /* What an element is made of: a volume, or two. With s the share of the second, density is (1 - s) rho1 + s rho2, mu is
@@ -58,7 +59,7 @@ typedef struct tled_problem {
     int32_t *corner_start; /* nodes + 1; or NULL. Without a lattice: node n's are
                        * corner[corner_start[n]] and on, in the elements' order */
     double *mass;          /* nodes: kg */
-    int32_t *hold;         /* nodes x 3 */
+    int32_t *hold;         /* nodes x 3: HOLD_*, or as moves.h says */
     int64_t held;          /* nodes with any component held */
     int32_t *force_start;  /* nodes + 1: entries of node n are force_start[n] to force_start[n + 1] - 1 */
     int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
@@ -71,6 +72,7 @@ typedef struct tled_problem {
     fields fields;                     /* what a state consists of */
     field_values at_start;             /* and the one that the run begins from: m, m/s */
     const struct collider *collider;   /* what presses (collider.h), or NULL */
+    struct bodies *bodies;             /* the model's rigid bodies (bodies.h), owned; NULL: none */
     struct followers *followers;       /* the script's pressures (followers.h), owned; NULL: none */
 } tled_problem;
 

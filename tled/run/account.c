@@ -296,6 +296,11 @@ const double *account_displacement(const account *a)
     return a->now.displacement;
 }
 
+const double *account_curves(const account *a)
+{
+    return a->now.curves;
+}
+
 /* Copies what `from` knows; both have arrays of their own. */
 static void copy_moment(const tled_problem *p, const moment *from, moment *to)
 {

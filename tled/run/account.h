@@ -37,8 +37,9 @@ void account_destroy(account *a);
 const account_sums *account_read(account *a, const tled_executor *b, tled_state *state, double time, double damping,
                                  err *e);
 
-/* Of the last reading, nodes x 3, m; borrowed until the next. */
+/* Of the last reading, nodes x 3, m, and the curves' values; borrowed until the next. */
 const double *account_displacement(const account *a);
+const double *account_curves(const account *a);
 
 /* Saves the account of now, in memory; and goes back to the one that was saved. */
 void account_save(account *a);

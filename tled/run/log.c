@@ -2,10 +2,13 @@
 
 #include "base/clock.h"
 #include "base/in.h"
+#include "base/mem.h"
 #include "base/path.h"
 #include "model/rest_place.h"
+#include "tled/problem/bodies.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Quantity and unit; the last two go by the clock, and differ from run to run. Nodes' come after them, then what
@@ -33,12 +36,30 @@ int log_check_key(const char *key, err *e)
     return place_of(key, place, e);
 }
 
+/* The name of a body as a part of a column's. */
+static void put_name(const char *name, out *to)
+{
+    for (const char *c = name; *c; c++)
+        out_write(to, (unsigned char)*c <= ' ' ? "_" : c, 1);
+}
+
+static void put_bodies_heading(const model *m, out *to)
+{
+    const model_array *name = model_find(m, "node.body") ? model_find(m, "body.name") : NULL;
+    for (int64_t i = 0; name && i < 6 * name->rows; i++) {
+        out_text(to, i / 3 % 2 ? "\tbody.torque." : "\tbody.force.");
+        put_name(name->str[i / 6], to);
+        out_format(to, ".%c/%s", "xyz"[i % 3], i / 3 % 2 ? "(N m)" : "N");
+    }
+}
+
 static void put_heading(const run_log *l, out *to)
 {
     out_text(to, heading);
     for (int i = 0; i < l->keys->count; i++)
         for (int a = 0; a < 3; a++)
             out_format(to, "\t%s.%c/m", l->keys->value[i], "xyz"[a]);
+    put_bodies_heading(l->m, to);
     out_text(to, heading_end);
 }
 
@@ -77,6 +98,7 @@ static int check_heading(const run_log *l, const char *path, int64_t keep, err *
 int log_open(run_log *l, const char *path, const opt_list *keys, const model *m, const log_point *from, err *e)
 {
     l->keys = keys;
+    l->m = m;
     for (int i = 0; i < keys->count; i++) {
         double place[3];
         if (place_of(keys->value[i], place, e))
@@ -107,6 +129,7 @@ static int empty_rows(run_log *l, bool send, err *e)
 int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
 {
     l->p = p;
+    l->threads = threads;
     l->began = clock_now();
     l->account = account_create(p, threads, e);
     l->rows = l->account ? out_memory(e) : NULL;
@@ -150,7 +173,23 @@ static void put_share(out *to, double value)
         put_number(to, value);
 }
 
-static void put_row(run_log *l, const log_row *row, const account_sums *s)
+/* What the tissue pulls the bodies with. */
+static int put_bodies(const run_log *l, err *e)
+{
+    const int32_t count = bodies_count(l->p);
+    if (!count)
+        return 0;
+    body_load *load = mem_array(count, sizeof *load, "the log", e);
+    const int failed =
+        load ? bodies_loads(l->p, l->threads, account_curves(l->account), account_displacement(l->account), load, e)
+             : -1;
+    for (int64_t i = 0; !failed && i < 6 * count; i++)
+        put_number(l->rows, i / 3 % 2 ? load[i / 6].torque[i % 3] : load[i / 6].force[i % 3]);
+    free(load);
+    return failed;
+}
+
+static int put_row(run_log *l, const log_row *row, const account_sums *s, err *e)
 {
     const double took = clock_now() - l->began;
     const double rate = took > 0 && row->taken > l->steps ? (double)(row->taken - l->steps) / took : NAN;
@@ -178,6 +217,8 @@ static void put_row(run_log *l, const log_row *row, const account_sums *s)
     const double *moved = account_displacement(l->account);
     for (int i = 0; i < 3 * l->keys->count; i++)
         put_number(l->rows, moved[3 * l->node[i / 3] + i % 3]);
+    if (put_bodies(l, e))
+        return -1;
     put_number(l->rows, s->tissue.quality.centre);
     put_number(l->rows, s->tissue.quality.corner);
     out_format(l->rows, "\t%lld", (long long)s->tissue.quality.folded);
@@ -185,6 +226,7 @@ static void put_row(run_log *l, const log_row *row, const account_sums *s)
     out_text(l->rows, "\n");
     l->steps = row->taken;
     l->began = clock_now();
+    return 0;
 }
 
 int log_read(run_log *l, const tled_executor *b, tled_state *state, const log_row *row, bool shown, err *e)
@@ -192,8 +234,8 @@ int log_read(run_log *l, const tled_executor *b, tled_state *state, const log_ro
     const account_sums *s = account_read(l->account, b, state, row->time, row->damping, e);
     if (!s)
         return -1;
-    if (shown)
-        put_row(l, row, s);
+    if (shown && put_row(l, row, s, e))
+        return -1;
     l->last = *row;
     l->unshown = shown ? NULL : s;
     l->is_pending = true;
@@ -216,8 +258,8 @@ int log_restore(run_log *l, err *e)
 
 int log_end(run_log *l, err *e)
 {
-    if (l->unshown)
-        put_row(l, &l->last, l->unshown);
+    if (l->unshown && put_row(l, &l->last, l->unshown, e))
+        return -1;
     l->unshown = NULL;
     return empty_rows(l, true, e);
 }

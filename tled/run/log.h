@@ -29,8 +29,10 @@ typedef struct run_log {
     const opt_list *keys; /* node.displacement.at.X,Y,Z: three columns each, after the others */
     int64_t node[64];     /* of each */
     const tled_problem *p;
-    int64_t steps; /* of the last row, each part of a cut step for itself */
-    double began;  /* when the last row was, by the clock */
+    const model *m; /* that it was made of: its bodies' names */
+    pool *threads;  /* the run's */
+    int64_t steps;  /* of the last row, each part of a cut step for itself */
+    double began;   /* when the last row was, by the clock */
     bool is_pending;
     log_row last;                /* of the last reading */
     const account_sums *unshown; /* its sums, borrowed from the account; NULL: it has its row */

@@ -18,7 +18,7 @@ struct options {
     double checkpoint_every;
     bool live, force;
     double rate; /* below 0: not given */
-    const char *lines, *record, *replay, *body;
+    const char *lines, *record, *replay, *body, *rigid_poses;
     hourglass_control control; /* what hourglass says, once checked */
 };
 

@@ -1,10 +1,12 @@
 /* tled-run: moves a voxel model by total Lagrangian explicit dynamics under gravity, forces, displacements and the
  * contraction of its muscles, and writes frames. Miller et al. 2007; W&M section 4.2.
  */
+#include "base/mem.h"
 #include "live/stop.h"
 #include "model/hourglass_text.h"
 #include "model/materials.h"
 #include "probe/probe_carry.h"
+#include "tled/problem/bodies.h"
 #include "tled/problem/loads.h"
 #include "tled/problem/step.h"
 #include "tled/run/fingerprint.h"
@@ -90,12 +92,44 @@ static int change_materials(session *s, const struct options *o, err *e)
     return result ? result : materials_set(&s->m, o->material.value, o->material.count, e);
 }
 
+/* Where the model lies in what poses are of. */
+static int read_place(const struct options *o, pose *to, err *e)
+{
+    body b;
+    *to = pose_none();
+    if (!o->body)
+        return 0;
+    in *source = in_open(o->body, e);
+    const int failed = source ? body_read(&b, source, e) : -1;
+    in_close(source);
+    if (failed)
+        return -1;
+    *to = b.volume;
+    body_free(&b);
+    return 0;
+}
+
+static int read_rigid_poses(session *s, const struct options *o, err *e)
+{
+    pose place;
+    if (!o->rigid_poses)
+        return 0;
+    if (read_place(o, &place, e))
+        return -1;
+    in *source = in_open(o->rigid_poses, e);
+    const int failed = source ? script_read_poses(&s->script, source, &s->m, &place, e) : -1;
+    in_close(source);
+    return failed;
+}
+
 static int make_script(session *s, const struct options *o, err *e)
 {
     in *source = o->script ? in_open(o->script, e) : NULL;
     s->script.unit = o->unit;
     int result = o->script && (!source || script_read(&s->script, source, &s->m, e)) ? -1 : 0;
     in_close(source);
+    if (!result)
+        result = read_rigid_poses(s, o, e);
     for (int i = 0; !result && i < o->contract.count; i++)
         result = script_add_contract(&s->script, &s->m, o->contract.value[i], o->ramp, e);
     if (!result && o->gravity.count)
@@ -213,12 +247,30 @@ static int add_probe(const session *s, frame *f, const double *displacement, err
     return now ? collider_add(&s->problem, now, f, &s->m, displacement, e) : 0;
 }
 
+/* Where the bodies are, and what the tissue pulls them with. */
+static int add_bodies(session *s, frame *f, const double *displacement, err *e)
+{
+    const tled_problem *p = &s->problem;
+    if (!bodies_count(p))
+        return 0;
+    if (s->live)
+        return bodies_add(p, s->folds.threads, live_values(s->live), displacement, f, &s->m, e);
+    double *value = mem_array(p->script->curves, 3 * sizeof *value, "the bodies", e);
+    if (!value)
+        return -1;
+    tled_curves(p, f->time, value);
+    const int failed = bodies_add(p, s->folds.threads, value, displacement, f, &s->m, e);
+    free(value);
+    return failed;
+}
+
 static int write_frame(void *context, double time, const field_values *state, err *e)
 {
     session *s = context;
     frame f = {.index = s->next_frame++, .time = time};
     bool whole = !fields_lend(&s->problem.fields, FIELD_IN_FRAMES, state, &f, &s->m, e) &&
-                 !add_probe(s, &f, state->of[TLED_DISPLACEMENT], e);
+                 !add_probe(s, &f, state->of[TLED_DISPLACEMENT], e) &&
+                 !add_bodies(s, &f, state->of[TLED_DISPLACEMENT], e);
     int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
     frame_free(&f);
     if (s->live)
@@ -307,23 +359,6 @@ static void end_checkpoints(session *s, err *e)
     else if (s->checkpoint && !e->status)
         checkpoint_remove(s->checkpoint, e);
     checkpoint_close(s->checkpoint);
-}
-
-/* Where the model lies in what poses are of. */
-static int read_place(const struct options *o, pose *to, err *e)
-{
-    body b;
-    *to = pose_none();
-    if (!o->body)
-        return 0;
-    in *source = in_open(o->body, e);
-    const int failed = source ? body_read(&b, source, e) : -1;
-    in_close(source);
-    if (failed)
-        return -1;
-    *to = b.volume;
-    body_free(&b);
-    return 0;
 }
 
 static int read_poses(session *s, const struct options *o, err *e)

@@ -6,6 +6,7 @@
 #include "live/lines.h"
 #include "live/live_clock.h"
 #include "live/stop.h"
+#include "tled/problem/bodies.h"
 #include "tled/problem/step.h"
 #include "tled/run/tled_record.h"
 
@@ -25,7 +26,9 @@ static const double usual_rate = 60; /* frames a second */
 typedef struct shown {
     bool placed; /* a pose came by then */
     collider_moment at;
-    double came; /* s, by clock_now: of a pose that is new in it; 0: none is */
+    double came;   /* s, by clock_now: of a pose that is new in it; 0: none is */
+    double *value; /* the curves' values, where there are bodies; owned */
+    int64_t room;
 } shown;
 
 struct live {
@@ -67,8 +70,8 @@ static int check_sources(const struct options *o, err *e)
         return err_usage(e, "--record without --live, whose run it records; expected both");
     if (o->force && !o->record)
         return err_usage(e, "--force without --record, which it lets write over a file; expected both");
-    if (o->body && !o->poses)
-        return err_usage(e, "--body without --poses, whose frame it is; expected both");
+    if (o->body && !o->poses && !o->rigid_poses)
+        return err_usage(e, "--body without --poses or --rigid-poses, whose frame it is; expected both");
     if (o->live && o->poses && o->lines && !strcmp(o->poses, o->lines))
         return err_usage(e,
                          "--poses and --control are both '%s'; expected one of them: either may have poses and "
@@ -122,6 +125,8 @@ void live_destroy(live *l)
     record_close(l->record, NULL);
     replay_close(l->replay);
     free(l->displacement);
+    for (int i = 0; i < RING; i++)
+        free(l->shown[i].value);
     free(l);
 }
 
@@ -177,7 +182,7 @@ static int take_control(live *l, const keyfile *k, const run_tick *at, bool *ane
         return keyfile_error(k, e, "'%.100s'; expected now VERB ..., pull ID ..., release ID, or a pose", k->word[0]);
     if (!strcmp(verb, "pressure") && !(device->features & EXECUTOR_FOLLOWERS))
         return keyfile_error(k, e, "device %s has no pressure on a surface; expected --device cpu", device->device);
-    if (!strcmp(verb, "displace")) {
+    if (!strcmp(verb, "displace") || !strcmp(verb, "move")) {
         if (at->displacement(at->run, l->displacement, e))
             return -1;
         now.displacement = l->displacement;
@@ -298,13 +303,21 @@ static int take(void *context, const run_tick *at, bool *anew, err *e)
 /* ---- Frames */
 
 /* What is known of the next frame, for whoever writes it. */
-static void show(live *l, double time, double came)
+static int show(live *l, double time, double came, err *e)
 {
     const collider *c = &l->s->collider;
+    const tled_problem *p = &l->s->problem;
     shown *to = &l->shown[l->put++ % RING];
-    *to = (shown){.placed = c->poses && !c->is_away, .came = came};
+    to->placed = c->poses && !c->is_away;
+    to->came = came;
     if (to->placed)
         to->at = collider_moment_at(c, time);
+    if (!bodies_count(p))
+        return 0;
+    if (MEM_ROOM(&to->value, &to->room, 3 * p->script->curves, "the live run", e))
+        return -1;
+    tled_curves(p, time, to->value);
+    return 0;
 }
 
 static int put(void *context, double time, int64_t taken, int restored, err *e)
@@ -322,7 +335,8 @@ static int put(void *context, double time, int64_t taken, int restored, err *e)
     record_add(l->record, &l->next, &s->warnings);
     tool_warn(s->t, &s->warnings);
     l->next.index++;
-    show(l, time, l->came);
+    if (show(l, time, l->came, e))
+        return -1;
     live_clock_tick(&l->clock, 1 / l->rate);
     return 0;
 }
@@ -352,6 +366,11 @@ const collider_moment *live_moment(const live *l)
 {
     const shown *of = &l->shown[l->written % RING];
     return of->placed ? &of->at : NULL;
+}
+
+const double *live_values(const live *l)
+{
+    return l->shown[l->written % RING].value;
 }
 
 void live_written(live *l)
@@ -385,8 +404,8 @@ int live_go(session *s, run_end *end, err *e)
     l->run.take = take;
     l->run.put = put;
     l->run.broke = broke;
-    if (s->run.first)
-        show(l, s->problem.start, 0);
+    if (s->run.first && show(l, s->problem.start, 0, e))
+        return -1;
     live_clock_begin(&l->clock, l->rate);
     return run_live_go(&s->run, &l->run, end, e);
 }

@@ -34,9 +34,10 @@ int live_open(session *s, const struct options *o, err *e);
 /* Runs, as run_go. */
 int live_go(session *s, run_end *end, err *e);
 
-/* Of the frame that is being written: where the probe is, or NULL before it is anywhere; and that it has been written.
- * In the frames' thread. */
+/* Of the frame that is being written: where the probe is, or NULL before it is anywhere; where there are bodies, the
+ * curves' values; and that it has been written. In the frames' thread. */
 const collider_moment *live_moment(const live *l);
+const double *live_values(const live *l);
 void live_written(live *l);
 
 /* Ends the record, and says how it went. */

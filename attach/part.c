@@ -1,0 +1,269 @@
+#include "part.h"
+
+#include "base/mem.h"
+#include "base/near.h"
+#include "base/path.h"
+#include "mesh/lattice.h"
+#include "surface/closest.h"
+#include "surface/scale.h"
+#include "surface/solid.h"
+#include "surface/winding.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME_MOST = 100 }; /* bytes */
+
+/* What a node has to do with the parts seen so far. */
+typedef struct claim {
+    int32_t body; /* -1: none */
+    bool is_sure; /* by its surface, or inside of a file's */
+    double away;  /* m: from the nearest file's surface, where it is not */
+} claim;
+
+typedef struct maker {
+    model *m;
+    const double *position;
+    const uint8_t *rigid;
+    const int32_t *anchor;
+    const model_array *anchors; /* their names */
+    int64_t nodes;
+    double reach; /* m */
+    char name[64][NAME_MOST + 1];
+    int32_t bodies;
+    claim *of; /* nodes */
+} maker;
+
+/* ---- names */
+
+static int no_part(const char *text, err *e)
+{
+    return err_usage(e,
+                     "--part '%.200s': expected NAME=SURFACE,... or NAME=FILE.obj, such as jaw=skull_jaw; a name has "
+                     "no blank and no comma",
+                     text);
+}
+
+static int take_name(maker *k, const char *text, const char **what, err *e)
+{
+    const char *equals = strchr(text, '=');
+    const size_t n = equals ? (size_t)(equals - text) : 0;
+    if (!n || n > NAME_MOST || !equals[1] || strcspn(text, " \t,/") < n)
+        return no_part(text, e);
+    memcpy(k->name[k->bodies], text, n);
+    k->name[k->bodies][n] = '\0';
+    for (int32_t i = 0; i < k->bodies; i++)
+        if (!strcmp(k->name[i], k->name[k->bodies]))
+            return err_usage(e, "--part '%.200s': '%s' is named twice; expected all of it in one: NAME=SURFACE,...",
+                             text, k->name[i]);
+    *what = equals + 1;
+    k->bodies++;
+    return 0;
+}
+
+/* ---- nodes */
+
+/* Both bodies have this node, and others. */
+static int refuse_shared(const maker *k, int32_t body, int64_t node, int64_t count, err *e)
+{
+    const double *x = k->position + 3 * node;
+    return err_option(e, "--part",
+                      "'%s' and '%s' share %" PRId64 " rigid node%s, the first at %.4gmm,%.4gmm,%.4gmm; expected parts "
+                      "that lie apart",
+                      k->name[k->of[node].body], k->name[body], count, count == 1 ? "" : "s", 1e3 * x[0], 1e3 * x[1],
+                      1e3 * x[2]);
+}
+
+/* The nodes that are `mine` become the body's. */
+static int claim_sure(maker *k, int32_t body, const uint8_t *mine, err *e)
+{
+    int64_t shared = 0, first = -1;
+    for (int64_t n = 0; n < k->nodes; n++) {
+        if (!mine[n])
+            continue;
+        if (k->of[n].is_sure) {
+            first = shared++ ? first : n;
+            continue;
+        }
+        k->of[n] = (claim){.body = body, .is_sure = true};
+    }
+    return shared ? refuse_shared(k, body, first, shared, e) : 0;
+}
+
+static bool names_surface(const char *list, const char *name)
+{
+    char pattern[MODEL_NAME];
+    for (const char *p = list; *p;) {
+        const size_t n = strcspn(p, ",");
+        snprintf(pattern, sizeof pattern, "%.*s", (int)(n < sizeof pattern ? n : 0), p);
+        if (*pattern && surface_in_group(name, pattern))
+            return true;
+        p += n + (p[n] == ',');
+    }
+    return false;
+}
+
+static int by_surfaces(maker *k, const char *list, uint8_t *mine, err *e)
+{
+    bool any = false;
+    for (int64_t i = 0; i < k->anchors->rows; i++)
+        any |= names_surface(list, k->anchors->str[i]);
+    if (!any)
+        return near_option(e, "--part", "rigid surface", list, (const char *const *)k->anchors->str,
+                           k->anchors->rows < INT32_MAX ? (int)k->anchors->rows : INT32_MAX);
+    for (int64_t n = 0; n < k->nodes; n++)
+        mine[n] = k->rigid[n] && k->anchor[n] >= 0 && names_surface(list, k->anchors->str[k->anchor[n]]);
+    return claim_sure(k, k->bodies - 1, mine, e);
+}
+
+/* The distance from a solid's surface where that is at most `most`; else more. */
+static double distance(const solid *b, const double *x, double most)
+{
+    double nearest = INFINITY, p[3];
+    for (int64_t t = 0; t < b->triangles; t++) {
+        const double *at[3];
+        bool is_far = false;
+        for (int i = 0; i < 3; i++)
+            at[i] = b->metres + 3 * (int64_t)b->corner[3 * t + i];
+        for (int a = 0; a < 3; a++)
+            is_far |= fmin(at[0][a], fmin(at[1][a], at[2][a])) > x[a] + most ||
+                      fmax(at[0][a], fmax(at[1][a], at[2][a])) < x[a] - most;
+        if (!is_far)
+            nearest = fmin(nearest, closest_triangle(at[0], at[1], at[2], x, p));
+    }
+    return sqrt(nearest);
+}
+
+/* Nodes that are inside of no part may still be this one's. */
+static void claim_near(maker *k, const solid *b, const winding *box)
+{
+    for (int64_t n = 0; n < k->nodes; n++) {
+        const double *x = k->position + 3 * n;
+        bool is_far = !k->rigid[n] || k->of[n].is_sure;
+        for (int a = 0; a < 3; a++)
+            is_far |= x[a] < box->low[a] - k->reach || x[a] > box->high[a] + k->reach;
+        const double away = is_far ? INFINITY : distance(b, x, k->reach);
+        if (away <= k->reach && (k->of[n].body < 0 || away < k->of[n].away))
+            k->of[n] = (claim){.body = k->bodies - 1, .away = away};
+    }
+}
+
+static int by_file(maker *k, const char *file, uint8_t *mine, err *e)
+{
+    solid b = {.triangles = 0};
+    err found = {0};
+    const num_unit unit = scale_unit(NULL, k->m, e);
+    if (!unit)
+        return -1;
+    int failed = solid_read(&b, file, scale_of(unit), &found);
+    if (failed) {
+        err_option(e, "--part", "%.600s", found.text);
+    } else {
+        const winding inside = winding_of(b.metres, b.corner, b.triangles);
+        for (int64_t n = 0; n < k->nodes; n++)
+            mine[n] = k->rigid[n] && winding_holds(&inside, k->position + 3 * n);
+        failed = claim_sure(k, k->bodies - 1, mine, e);
+        if (!failed)
+            claim_near(k, &b, &inside);
+    }
+    solid_free(&b);
+    return failed ? -1 : 0;
+}
+
+static int take_part(maker *k, const char *text, uint8_t *mine, err *e)
+{
+    const char *what = text;
+    if (take_name(k, text, &what, e))
+        return -1;
+    memset(mine, 0, (size_t)k->nodes);
+    return path_is_obj(what) ? by_file(k, what, mine, e) : by_surfaces(k, what, mine, e);
+}
+
+/* ---- arrays */
+
+/* The mean of each body's nodes, and whether each has any. */
+static int find_centres(const maker *k, double *centre, err *e)
+{
+    int64_t count[64] = {0};
+    for (int64_t n = 0; n < k->nodes; n++) {
+        const int32_t b = k->of[n].body;
+        if (b < 0)
+            continue;
+        count[b]++;
+        for (int a = 0; a < 3; a++)
+            centre[3 * b + a] += k->position[3 * n + a];
+    }
+    for (int32_t b = 0; b < k->bodies; b++) {
+        if (!count[b])
+            return err_option(e, "--part",
+                              "'%s' has no rigid node; expected bone of it that holds tissue, in the model's place and "
+                              "unit (attach --report says what is held)",
+                              k->name[b]);
+        for (int a = 0; a < 3; a++)
+            centre[3 * b + a] /= (double)count[b];
+    }
+    return 0;
+}
+
+static int add_arrays(const maker *k, err *e)
+{
+    model *m = k->m;
+    if (model_axis_add(m, "body", k->bodies, e))
+        return -1;
+    model_array *name = model_add(m, "body.name", e);
+    for (int32_t b = 0; name && b < k->bodies; b++)
+        if (model_set_text(name, b, k->name[b], e))
+            return -1;
+    model_array *centre = name ? model_add(m, "body.centre", e) : NULL;
+    if (!centre || find_centres(k, centre->f64, e))
+        return -1;
+    model_array *body = model_add(m, "node.body", e);
+    for (int64_t n = 0; body && n < k->nodes; n++)
+        body->i32[n] = k->of[n].body;
+    return body ? 0 : -1;
+}
+
+static int find_nodes(maker *k, err *e)
+{
+    lattice l;
+    const model_array *position = model_need(k->m, "node.position", e), *rigid = model_need(k->m, "node.rigid", e);
+    const model_array *anchor = model_need(k->m, "node.anchor", e);
+    k->anchors = model_need(k->m, "anchor.name", e);
+    if (!position || !rigid || !anchor || !k->anchors || lattice_of(k->m, &l, e))
+        return -1;
+    k->position = position->f64;
+    k->rigid = rigid->u8;
+    k->anchor = anchor->i32;
+    k->nodes = position->rows;
+    k->reach =
+        sqrt(l.spacing[0] * l.spacing[0] + l.spacing[1] * l.spacing[1] + l.spacing[2] * l.spacing[2]) / 2 * (1 + 1e-9);
+    k->of = mem_array(k->nodes, sizeof *k->of, "the nodes", e);
+    for (int64_t n = 0; k->of && n < k->nodes; n++)
+        k->of[n].body = -1;
+    return k->of ? 0 : -1;
+}
+
+int part_make(model *m, const opt_list *parts, notes *warnings, err *e)
+{
+    model_axis_drop(m, "body", warnings);
+    if (!parts->count)
+        return 0;
+    maker *k = mem_array(1, sizeof *k, "the parts", e);
+    if (!k)
+        return -1;
+    k->m = m;
+    int failed = find_nodes(k, e);
+    uint8_t *mine = failed ? NULL : mem_array(k->nodes, 1, "the nodes", e);
+    failed = !mine;
+    for (int i = 0; i < parts->count && !failed; i++)
+        failed = take_part(k, parts->value[i], mine, e);
+    if (!failed)
+        failed = add_arrays(k, e);
+    free(mine);
+    free(k->of);
+    free(k);
+    return failed ? -1 : 0;
+}

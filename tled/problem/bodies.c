@@ -1,0 +1,271 @@
+#include "tled/problem/bodies.h"
+
+#include "base/mem.h"
+#include "physics/element.h"
+#include "tled/problem/conforming_step.h"
+#include "tled/problem/followers.h"
+#include "tled/problem/pose_fit.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK = 512 }; /* elements */
+
+/* ---- which nodes and elements */
+
+static int list_nodes(bodies *b, int64_t nodes, err *e)
+{
+    b->start = mem_array((int64_t)b->count + 1, sizeof *b->start, "the bodies", e);
+    b->node = b->start ? mem_array(nodes, sizeof *b->node, "the bodies", e) : NULL;
+    if (!b->node)
+        return -1;
+    int64_t count = 0;
+    for (int32_t i = 0; i < b->count; i++) {
+        b->start[i] = count;
+        for (int64_t n = 0; n < nodes; n++)
+            if (b->of[n] == i)
+                b->node[count++] = (int32_t)n;
+    }
+    b->start[b->count] = count;
+    return 0;
+}
+
+static bool touches(const tled_problem *p, const bodies *b, int64_t element)
+{
+    for (int i = 0; i < 8; i++)
+        if (b->of[p->element_node[8 * element + i]] >= 0)
+            return true;
+    return false;
+}
+
+static int list_elements(const tled_problem *p, bodies *b, err *e)
+{
+    b->element = mem_array(p->elements, sizeof *b->element, "the bodies", e);
+    for (int64_t i = 0; b->element && i < p->elements; i++)
+        if (touches(p, b, i))
+            b->element[b->elements++] = (int32_t)i;
+    return b->element ? 0 : -1;
+}
+
+int bodies_make(tled_problem *p, const model *m, err *e)
+{
+    const model_array *of = model_find(m, "node.body"), *name = model_find(m, "body.name");
+    if (!of || !name || !name->rows)
+        return 0;
+    p->bodies = mem_array(1, sizeof *p->bodies, "the bodies", e);
+    if (!p->bodies)
+        return -1;
+    p->bodies->count = (int32_t)name->rows;
+    p->bodies->of = of->i32;
+    return list_nodes(p->bodies, p->nodes, e) || list_elements(p, p->bodies, e) ? -1 : 0;
+}
+
+void bodies_free(bodies *b)
+{
+    if (!b)
+        return;
+    free(b->start);
+    free(b->node);
+    free(b->element);
+    free(b);
+}
+
+/* ---- forces of an element */
+
+static element_fibre fibre_at(const float *along, int64_t element, double tension)
+{
+    element_fibre f = {{0, 0, 0}, 0};
+    if (along && tension != 0)
+        f = (element_fibre){{along[3 * element], along[3 * element + 1], along[3 * element + 2]}, tension};
+    return f;
+}
+
+static element_field field_at(const tled_problem *p, int64_t element, const double *displacement)
+{
+    element_field u;
+    for (int i = 0; i < 8; i++) {
+        const double *at = displacement + 3 * (int64_t)p->element_node[8 * element + i];
+        u.x.at[i] = at[0];
+        u.y.at[i] = at[1];
+        u.z.at[i] = at[2];
+    }
+    return u;
+}
+
+static element_law law_at(const tled_law *of, const double *hourglass, double share)
+{
+    element_law law = {{0}, {0}};
+    for (int i = 0; i < FORM_NUMBERS; i++)
+        law.c[i] = share * of->c[i];
+    for (int i = 0; i < HOURGLASS_NUMBERS; i++)
+        law.hourglass[i] = share * hourglass[i];
+    return law;
+}
+
+/* What an element pulls its corners with. */
+static element_field pull_of(const tled_problem *p, int64_t element, const double *value, const double *displacement)
+{
+    const double share = tled_fraction(p, element), mixture = tled_mixture(p, element);
+    const int32_t mix = tled_mix(p, element);
+    const tled_law of = tled_law_of(p, element);
+    const element_field u = field_at(p, element, displacement);
+    const element_fibre own =
+        fibre_at(p->fibre, element, share * (1 - mixture) * tled_tension(p, p->element_volume[element], value));
+    if (p->conforming) {
+        const conforming_hold hold = conforming_hold_of(p, element);
+        const element_any shape = conforming_shape(p, element, &hold);
+        return element_any_force(p->form, p->control.kind, u, &shape, law_at(&of, hold.law, share), own,
+                                 own.tension != 0);
+    }
+    const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
+    const element_fibre other =
+        fibre_at(mix >= 0 ? p->mixfibre : NULL, element, mix >= 0 ? share * mixture * tled_tension(p, mix, value) : 0);
+    return element_force_of_two(p->form, p->control.kind, u, box, law_at(&of, of.hourglass, share), own,
+                                own.tension != 0, other, other.tension != 0);
+}
+
+/* ---- sums */
+
+typedef struct summing {
+    const tled_problem *p;
+    const double *value, *displacement;
+    double *middle;  /* bodies x 3, m: the mean of the nodes */
+    body_load *part; /* chunks x bodies */
+} summing;
+
+static void place_of(const summing *s, int64_t node, double x[3])
+{
+    for (int a = 0; a < 3; a++)
+        x[a] = s->p->position[3 * node + a] + s->displacement[3 * node + a];
+}
+
+/* Adds a force at a node to its body's load. */
+static void add_at(const summing *s, int64_t node, const double force[3], body_load *list)
+{
+    const int32_t body = s->p->bodies->of[node];
+    body_load *to = &list[body];
+    double x[3], d[3];
+    place_of(s, node, x);
+    for (int a = 0; a < 3; a++)
+        d[a] = x[a] - s->middle[3 * body + a];
+    for (int a = 0; a < 3; a++) {
+        to->force[a] += force[a];
+        to->torque[a] += d[(a + 1) % 3] * force[(a + 2) % 3] - d[(a + 2) % 3] * force[(a + 1) % 3];
+    }
+}
+
+static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    const summing *s = context;
+    const tled_problem *p = s->p;
+    body_load *list = s->part + chunk * p->bodies->count;
+    for (int64_t i = from; i < to; i++) {
+        const int64_t element = p->bodies->element[i];
+        const element_field f = pull_of(p, element, s->value, s->displacement);
+        for (int c = 0; c < 8; c++) {
+            const int64_t node = p->element_node[8 * element + c];
+            const double force[3] = {-f.x.at[c], -f.y.at[c], -f.z.at[c]};
+            if (p->bodies->of[node] >= 0)
+                add_at(s, node, force, list);
+        }
+    }
+}
+
+static void find_middles(const summing *s)
+{
+    const bodies *b = s->p->bodies;
+    for (int32_t i = 0; i < b->count; i++)
+        for (int64_t k = b->start[i]; k < b->start[i + 1]; k++) {
+            double x[3];
+            place_of(s, b->node[k], x);
+            for (int a = 0; a < 3; a++)
+                s->middle[3 * i + a] += x[a] / (double)(b->start[i + 1] - b->start[i]);
+        }
+}
+
+static void add_external(const summing *s, body_load *to)
+{
+    const bodies *b = s->p->bodies;
+    for (int64_t k = 0; k < b->start[b->count]; k++) {
+        double force[3];
+        tled_external(s->p, s->value, s->displacement + 3 * (int64_t)b->node[k], b->node[k], force);
+        add_at(s, b->node[k], force, to);
+    }
+}
+
+static int add_pressures(const summing *s, pool *threads, body_load *to, err *e)
+{
+    followers_work w;
+    const followers *f = s->p->followers;
+    const int failed = followers_room(&w, f, e);
+    if (!failed && f) {
+        followers_move(&w, s->displacement);
+        followers_press(&w, threads, s->value);
+        for (int64_t i = 0; i < f->nodes; i++) {
+            double push[3];
+            followers_pull(&w, i, push);
+            if (s->p->bodies->of[f->node[i]] >= 0)
+                add_at(s, f->node[i], push, to);
+        }
+    }
+    followers_room_free(&w);
+    return failed;
+}
+
+static void add_parts(const summing *s, int64_t chunks, body_load *to)
+{
+    const int32_t count = s->p->bodies->count;
+    for (int64_t i = 0; i < chunks * count; i++)
+        for (int a = 0; a < 3; a++) {
+            to[i % count].force[a] += s->part[i].force[a];
+            to[i % count].torque[a] += s->part[i].torque[a];
+        }
+}
+
+int bodies_loads(const tled_problem *p, pool *threads, const double *value, const double *displacement, body_load *to,
+                 err *e)
+{
+    const bodies *b = p->bodies;
+    const int64_t chunks = pool_chunks(b->elements, CHUNK);
+    summing s = {.p = p, .value = value, .displacement = displacement};
+    int failed = -1;
+    memset(to, 0, (size_t)b->count * sizeof *to);
+    s.middle = mem_array(b->count, 3 * sizeof *s.middle, "the bodies", e);
+    s.part = s.middle ? mem_array(chunks * b->count, sizeof *s.part, "the bodies", e) : NULL;
+    if (s.part) {
+        find_middles(&s);
+        pool_run(threads, b->elements, CHUNK, element_work, &s);
+        add_parts(&s, chunks, to);
+        add_external(&s, to);
+        failed = add_pressures(&s, threads, to, e);
+    }
+    free(s.middle);
+    free(s.part);
+    return failed;
+}
+
+int bodies_add(const tled_problem *p, pool *threads, const double *value, const double *displacement, frame *f,
+               const model *m, err *e)
+{
+    static const char *const names[] = {"body.pose", "body.force", "body.torque"};
+    const bodies *b = p->bodies;
+    double *to[3];
+    if (!b)
+        return 0;
+    for (int i = 0; i < 3; i++) {
+        model_array *a = frame_add(f, m, names[i], e);
+        if (!a)
+            return -1;
+        to[i] = a->f64;
+    }
+    body_load *load = mem_array(b->count, sizeof *load, "the bodies", e);
+    const int failed = load ? bodies_loads(p, threads, value, displacement, load, e) : -1;
+    for (int32_t i = 0; !failed && i < b->count; i++) {
+        const pose at = pose_fit(p->position, displacement, b->node + b->start[i], b->start[i + 1] - b->start[i]);
+        pose_to_row(&at, to[0] + 7 * (int64_t)i);
+        memcpy(to[1] + 3 * (int64_t)i, load[i].force, sizeof load[i].force);
+        memcpy(to[2] + 3 * (int64_t)i, load[i].torque, sizeof load[i].torque);
+    }
+    free(load);
+    return failed;
+}
