@@ -70,11 +70,11 @@ static int take_name(maker *k, const char *text, const char **what, err *e)
 static int refuse_shared(const maker *k, int32_t body, int64_t node, int64_t count, err *e)
 {
     const double *x = k->position + 3 * node;
-    return err_option(e, "--part",
-                      "'%s' and '%s' share %" PRId64 " rigid node%s, the first at %.4gmm,%.4gmm,%.4gmm; expected parts "
-                      "that lie apart",
-                      k->name[k->of[node].body], k->name[body], count, count == 1 ? "" : "s", 1e3 * x[0], 1e3 * x[1],
-                      1e3 * x[2]);
+    return err_set(
+        e, NULL, 0,
+        "--part: '%s' and '%s' share %" PRId64 " rigid node%s, the first at %.4gmm,%.4gmm,%.4gmm; expected parts "
+        "that lie apart",
+        k->name[k->of[node].body], k->name[body], count, count == 1 ? "" : "s", 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);
 }
 
 /* The nodes that are `mine` become the body's. */
@@ -160,7 +160,7 @@ static int by_file(maker *k, const char *file, uint8_t *mine, err *e)
         return -1;
     int failed = solid_read(&b, file, scale_of(unit), &found);
     if (failed) {
-        err_option(e, "--part", "%.600s", found.text);
+        err_set(e, NULL, 0, "--part: %.600s", found.text);
     } else {
         const winding inside = winding_of(b.metres, b.corner, b.triangles);
         for (int64_t n = 0; n < k->nodes; n++)
@@ -198,10 +198,11 @@ static int find_centres(const maker *k, double *centre, err *e)
     }
     for (int32_t b = 0; b < k->bodies; b++) {
         if (!count[b])
-            return err_option(e, "--part",
-                              "'%s' has no rigid node; expected bone of it that holds tissue, in the model's place and "
-                              "unit (attach --report says what is held)",
-                              k->name[b]);
+            return err_set(
+                e, NULL, 0,
+                "--part: '%s' has no rigid node; expected bone of it that holds tissue, in the model's place and "
+                "unit (attach --report says what is held)",
+                k->name[b]);
         for (int a = 0; a < 3; a++)
             centre[3 * b + a] /= (double)count[b];
     }

@@ -115,7 +115,7 @@ int showing_make(showing *b, const model *m, const showing_want *want, err *e)
     if (showing_check_names(m, want, e))
         return -1;
     if (show_surfaces(b, m, want, e) || showing_elements(b, m, want, e) || showing_spheres(b, m, want, e) ||
-        showing_probe(b, m, want, e) || showing_slice(b, want, e) || showing_body(b, want, e) ||
+        showing_probe(b, m, want, e) || showing_slice(b, want, e) || showing_body(b, m, want, e) ||
         check_seen(b, want, e) || check_values(b, want->field, e)) {
         showing_free(b);
         return -1;

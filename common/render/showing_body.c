@@ -1,5 +1,6 @@
 #include "base/mem.h"
 #include "base/path.h"
+#include "mesh/rigid_body.h"
 #include "render/showing_parts.h"
 #include "surface/obj.h"
 #include "volume/body.h"
@@ -21,8 +22,9 @@ static int64_t triangles(const obj *o, uint32_t *to)
     return count;
 }
 
-/* In the volume's frame, which is the model's: the OBJ's positions become so too. */
-static int make_mesh(scene_mesh *mesh, obj *o, const body *all, const body_part *part, err *e)
+/* In the volume's frame, which is the model's: the OBJ's positions become so too; moved: how the rigid body that it goes
+ * with has moved. */
+static int make_mesh(scene_mesh *mesh, obj *o, const body *all, const body_part *part, const pose *moved, err *e)
 {
     static const float colour[3] = {.55F, .42F, .35F};
     *mesh = (scene_mesh){.corners = 3, .vertices = o->vertices, .faces = triangles(o, NULL)};
@@ -34,19 +36,26 @@ static int make_mesh(scene_mesh *mesh, obj *o, const body *all, const body_part 
         return -1;
     triangles(o, mesh->corner);
     body_place(all, part, o->position, o->vertices);
+    for (int64_t v = 0; part->rigid && v < o->vertices; v++)
+        pose_apply(moved, o->position + 3 * v, o->position + 3 * v);
     for (int64_t i = 0; i < 3 * o->vertices; i++)
         mesh->position[i] = (float)o->position[i];
     return scene_smooth(mesh, 40, e);
 }
 
-static int show_part(showing *b, const showing_want *want, const body *all, const body_part *part, err *e)
+static int show_part(showing *b, const model *m, const showing_want *want, const body *all, const body_part *part,
+                     err *e)
 {
     scene_mesh mesh = {0};
     obj o = {0};
+    const int32_t rigid = part->rigid ? rigid_body_find(m, part->rigid, want->body, part->line, e) : 0;
+    if (rigid < 0)
+        return -1;
+    const pose moved = rigid_body_pose(part->rigid ? want->moved : NULL, rigid);
     char *path = path_beside(want->body, part->file, want->body, e);
     in *s = path ? in_open(path, e) : NULL;
     free(path);
-    int failed = !s || obj_read(&o, s, e) || make_mesh(&mesh, &o, all, part, e) ? -1 : 0;
+    int failed = !s || obj_read(&o, s, e) || make_mesh(&mesh, &o, all, part, &moved, e) ? -1 : 0;
     if (failed)
         scene_mesh_free(&mesh);
     else
@@ -56,7 +65,7 @@ static int show_part(showing *b, const showing_want *want, const body *all, cons
     return failed;
 }
 
-int showing_body(showing *b, const showing_want *want, err *e)
+int showing_body(showing *b, const model *m, const showing_want *want, err *e)
 {
     body all = {0};
     if (!want->body)
@@ -64,7 +73,7 @@ int showing_body(showing *b, const showing_want *want, err *e)
     in *s = in_open(want->body, e);
     int failed = s ? body_read(&all, s, e) : -1;
     for (int i = 0; !failed && i < all.parts; i++)
-        failed = show_part(b, want, &all, &all.part[i], e);
+        failed = show_part(b, m, want, &all, &all.part[i], e);
     in_close(s);
     body_free(&all);
     return failed;

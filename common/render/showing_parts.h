@@ -33,7 +33,7 @@ int showing_probe(showing *b, const model *m, const showing_want *want, err *e);
 /* The image of the want, where it lies. */
 int showing_slice(showing *b, const showing_want *want, err *e);
 
-/* The surfaces of the want's body, as they lie to the volume. */
-int showing_body(showing *b, const showing_want *want, err *e);
+/* The surfaces of the want's body, as they lie to the volume; those of a rigid body of the model where that is. */
+int showing_body(showing *b, const model *m, const showing_want *want, err *e);
 
 #endif

@@ -21,6 +21,7 @@ typedef struct line {
     pose place;
     double scale; /* 0: not given */
     bool in_volume;
+    const char *rigid; /* borrowed from the line; or NULL */
 } line;
 
 static int take_move(const keyfile *k, const char *text, double to[3], err *e)
@@ -58,9 +59,8 @@ static int take_key(const keyfile *k, int key, const char *value, bool surface, 
         l->scale = num_length_in((num_length){1, unit}, unit, num_unit_of("m"));
         return 0;
     }
-    if (strcmp(value, "volume") && strcmp(value, "body"))
-        return keyfile_error(k, e, "in=%.100s; expected in=body or in=volume", value);
-    l->in_volume = !strcmp(value, "volume");
+    l->in_volume = strcmp(value, "body") != 0;
+    l->rigid = l->in_volume && strcmp(value, "volume") != 0 ? value : NULL;
     return 0;
 }
 
@@ -90,13 +90,16 @@ static int take_surface(body *b, keyfile *k, err *e)
         return -1;
     if (!(l.scale > 0))
         return keyfile_error(k, e, "'%.200s' without unit=; expected " NUM_UNITS, k->word[1]);
-    char *file = mem_text(k->word[1], e);
-    if (!file || MEM_ROOM(&b->part, &b->room, b->parts + 1, "the parts of a body", e)) {
-        free(file);
+    if (MEM_ROOM(&b->part, &b->room, b->parts + 1, "the parts of a body", e))
         return -1;
-    }
-    b->part[b->parts++] = (body_part){file, l.scale, l.place, l.in_volume};
-    return 0;
+    body_part *part = &b->part[b->parts++];
+    *part = (body_part){.file = mem_text(k->word[1], e),
+                        .scale = l.scale,
+                        .place = l.place,
+                        .in_volume = l.in_volume,
+                        .rigid = l.rigid ? mem_text(l.rigid, e) : NULL,
+                        .line = k->line};
+    return part->file && (part->rigid || !l.rigid) ? 0 : -1;
 }
 
 /* Parts in the volume go where it goes, once it is known. */
@@ -165,8 +168,10 @@ void body_place(const body *b, const body_part *part, double *position, int64_t 
 
 void body_free(body *b)
 {
-    for (int i = 0; i < b->parts; i++)
+    for (int i = 0; i < b->parts; i++) {
         free(b->part[i].file);
+        free(b->part[i].rigid);
+    }
     free(b->part);
     *b = (body){0};
 }

@@ -5,9 +5,10 @@
  *     volume             move=10cm,0,1.2m turn=0,0,0.7071068,0.7071068
  *     surface skin.obj   unit=mm move=0,0,2mm
  *     surface vein.obj   unit=mm in=volume
+ *     surface teeth.obj  unit=mm in=jaw
  *
- * A place p in the part is at turn(p) + move in the body; in=volume: it is first
- * where the volume is. A body owns its parts.
+ * A place p in the part is at turn(p) + move in the body; in=volume: it is first where the volume is; in= another name:
+ * as in the volume, but it moves with that rigid body of the model. A body owns its parts.
  */
 #ifndef SINEW_BODY_H
 #define SINEW_BODY_H
@@ -20,6 +21,8 @@ typedef struct body_part {
     double scale;   /* to metres */
     pose place;     /* in the body, the volume's taken in */
     bool in_volume; /* it goes where the volume goes; place says it already */
+    char *rigid;    /* the name of the model's rigid body that it moves with, or NULL; then it is in the volume */
+    int64_t line;   /* of the file */
 } body_part;
 
 typedef struct body {

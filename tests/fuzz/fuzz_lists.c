@@ -2,6 +2,7 @@
 // needs: tled/problem/script_surface.c
 // needs: tled/problem/script_nodes.c
 // needs: tled/problem/script_read.c common/inspect/info_key.c common/inspect/info_quality.c common/inspect/info_stats.c
+// needs: tled/problem/script_move.c tled/problem/pose_fit.c
 /* Any text as the lists of names that options take, over a small model: attach --rigid, msds-mesh --fix and --names,
  * tled-run -c; and as a key of sinew info --get. Each is taken or is one error with a text.
  */

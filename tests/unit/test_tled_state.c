@@ -4,6 +4,7 @@
 // needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/script.c
 // needs: tled/problem/script_surface.c tled/problem/loads.c tled/problem/followers.c
 // needs: tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/step.c tled/problem/support.c
+// needs: tled/problem/script_move.c tled/problem/pose_fit.c tled/problem/bodies.c
 #include "tled/problem/support.h"
 
 #include "tap.h"

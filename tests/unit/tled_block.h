@@ -150,4 +150,22 @@ static inline void block_make(const block *b, model *m)
     }
 }
 
+/* A rigid body of the nodes in a box at rest (low corner, high corner; m), rigid or not. */
+static inline void block_add_body(model *m, const char *name, const double box[6])
+{
+    err e = {0};
+    if (model_axis_add(m, "body", 1, &e))
+        exit(1);
+    model_set_text(block_array(m, "body.name"), 0, name, &e);
+    const model_array *position = model_find(m, "node.position");
+    int32_t *of = block_array(m, "node.body")->i32;
+    for (int64_t n = 0; n < position->rows; n++) {
+        const double *x = position->f64 + 3 * n;
+        bool is_in = true;
+        for (int a = 0; a < 3; a++)
+            is_in = is_in && x[a] >= box[a] - 1e-9 && x[a] <= box[3 + a] + 1e-9;
+        of[n] = is_in ? 0 : -1;
+    }
+}
+
 #endif

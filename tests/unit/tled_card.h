@@ -28,6 +28,7 @@ static inline void read_script(bench *b, const char *text)
 /* All that a script can do, on a block of several bricks that hangs from a side. */
 static inline void add_script(bench *b)
 {
+    block_add_body(&b->m, "base", (const double[]){0, 0, 0, 0, 1, 1});
     read_script(b, "0 gravity 0,0,0\n"
                    "0.02 gravity 0,1,-9.81\n"
                    "0 force 0.17,0.072,0.075 0.03 0,0,0\n"
@@ -38,7 +39,9 @@ static inline void add_script(bench *b)
                    "0.02 pull q 0.17,0.072,0.075 0.03 0.17,0.08,0.07 10\n"
                    "0.025 release q\n"
                    "0 displace 0.169,-1,-1,1,0.001,1 -,0,0\n"
-                   "0.04 displace 0.169,-1,-1,1,0.001,1 -,0.002,-0.003\n");
+                   "0.04 displace 0.169,-1,-1,1,0.001,1 -,0.002,-0.003\n"
+                   "0 move base 0,0,0 0,0,0,1 about 0,3cm,4cm\n"
+                   "0.05 move base 1mm,0,-2mm 0.06,0.03,-0.02,0.997547 about 0,3cm,4cm\n");
 }
 
 /* The form that problems which are made are in; their moduli stay. */

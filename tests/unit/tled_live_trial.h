@@ -24,8 +24,10 @@ static const trial_event trial_lines[] = {{1, "now gravity 0,0,-4"},
                                           {10, "now displace 0,0,0,1,1,0 2mm,-,-"},
                                           {11, "pull p 40mm,36mm,45mm 9mm 48mm,36mm,50mm 6"},
                                           {12, "pull q 0,0,45mm 13mm 0,0,50mm 6"},
+                                          {13, "now move rod 0,0,1mm 0,0.03,0,0.99955 about 0,0,2cm"},
                                           {14, "release p"},
                                           {15, "now displace 0,0,45mm,12mm,13mm,45mm -,-,2mm"},
+                                          {16, "now move rod 0,1mm,1mm 0,0.05,0.02,0.99855"},
                                           {16, "now force 20mm,12mm,45mm 13mm 0,0,0"},
                                           {17, "now pull r 0,36mm,45mm 13mm 0,36mm,50mm 6"},
                                           {20, "now release r"},
@@ -93,6 +95,7 @@ static inline void trial_begin(live_trial *t, const block *what, bool mesh, cons
     bench *b = &t->b;
     memset(t, 0, sizeof *t);
     block_make(what, &b->m);
+    block_add_body(&b->m, "rod", (const double[]){0, 0, .009, 0, 0, .036});
     if (mesh)
         trial_forget_lattice(&b->m);
     bench_must(script_add_idle(&b->script, &b->m, &b->e) ||

@@ -1,6 +1,5 @@
-#include "base/chars.h"
-#include "base/near.h"
 #include "base/num.h"
+#include "mesh/rigid_body.h"
 #include "probe/poses.h"
 #include "tled/problem/pose_fit.h"
 #include "tled/problem/script_reader.h"
@@ -157,18 +156,6 @@ static int add_key(script_reader *r, int64_t at, double time, const move *m, err
 
 /* ---- lines */
 
-static int find_body(const model *m, const keyfile *k, const char *word, err *e)
-{
-    const model_array *names = model_find(m, "body.name");
-    if (!names || !model_find(m, "node.body"))
-        return keyfile_error(k, e, "'%.200s': the model has no rigid bodies; expected some from attach --part", word);
-    for (int64_t i = 0; i < names->rows; i++)
-        if (chars_mean(word, names->str[i]))
-            return (int)i;
-    return near_unknown(e, k->name, k->line, "body", word, (const char *const *)names->str,
-                        names->rows < INT32_MAX ? (int)names->rows : INT32_MAX);
-}
-
 /* The four curves of a body, whose nodes they have. */
 static int64_t add_curves(script_reader *r, const script_curve *c, int32_t body, err *e)
 {
@@ -200,7 +187,7 @@ static int check_about(const script_reader *r, int64_t at, const move *m, err *e
 static int take_move(script_reader *r, const char *word, double time, const move *m, err *e)
 {
     bool fresh;
-    const int body = find_body(r->m, &r->k, word, e);
+    const int32_t body = rigid_body_find(r->m, word, r->k.name, r->k.line, e);
     if (body < 0)
         return -1;
     char *name = model_find(r->m, "body.name")->str[body];
