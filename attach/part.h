@@ -13,8 +13,8 @@
  *
  * A rigid node belongs to a part of surfaces if the first surface that holds it is one of them; and to a part of a file
  * if it lies inside of it, or, where it lies inside of none, at most half a voxel's diagonal away from it: rigid nodes
- * are the layer nearest to the bone's surface. Of several files so near the nearest counts, of equals the first. -1 with e
- * filled where a part is wrong, holds no node, or shares one with another. */
+ * are the layer nearest to the bone's surface. Of several files so near the nearest counts, of equals the first. -1
+ * with e filled where a part is wrong, holds no node, or shares one with another. */
 int part_make(model *m, const opt_list *parts, notes *warnings, err *e);
 
 #endif

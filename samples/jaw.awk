@@ -3,7 +3,8 @@
 # belongs to the jaw if its middle lies in the polygon `jaw`; it is in the gap if that lies within `gap` of the polygon's sides (as
 # between the teeth, where tissue slides on bone), or in the polygon `free` (as the neck, where there is no bone).
 #
-#     awk -v forward=3 -v up=2 -v jaw="200,-47 25,-42 ..." -v gap=10 -f jaw.awk head.obj >jaw.obj
+#     awk -f jaw.awk head.obj >jaw.obj          the head of head.awk
+#     awk -v forward=2 -v up=3 -v jaw="300,-83 30,-78 ..." -v free="" -v gap=11 -f jaw.awk face.obj >jaw.obj
 
 function read_polygon(text, name,    list, i, n, point)
 {
@@ -53,6 +54,13 @@ function part_of(u, w)
 }
 
 BEGIN {
+    if (!forward) {
+        forward = 3
+        up = 2
+        gap = 9
+        jaw = "300,-47 30,-44 16,-25 4,-12 -8,-12 -14,-30 -10,-55 10,-75 30,-300 300,-300"
+        free = "-14,-30 -10,-55 10,-75 30,-300 -300,-300 -300,-50 -30,-50 -24,-30"
+    }
     read_polygon(jaw, "jaw")
     read_polygon(free, "free")
 }

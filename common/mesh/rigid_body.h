@@ -6,7 +6,7 @@
 #include "base/pose.h"
 #include "model/model.h"
 
-/* The number of the body of that name; -1 with e filled, at place:line: there is none, with the names that there are. */
+/* The number of the body of that name; -1 with e filled, at place:line: there is none of it. */
 int32_t rigid_body_find(const model *m, const char *name, const char *place, int64_t line, err *e);
 
 /* How the body has moved from rest, as the frame's body.pose says. At rest where f is NULL or does not say. */

@@ -147,7 +147,7 @@ is "$(get node.displacement.row.3 "$T/two-runs")" "$(get node.displacement.row.3
 printf '0 move lid 0,0,0 0,0,0,1\n40 move lid 0,0,1mm 0.6,0,0,0.8\n' >"$T/script"
 tled-run -q -d cpu --script "$T/script" -t 40 --every 1 <"$T/lid" >"$T/want"
 tled-run -q -d cpu --script "$T/script" -t 40 --every 1 --checkpoint "$T/state" --checkpoint-every 0.05 -o "$T/got" <"$T/lid" &
-for i in 1 2 3 4 5 6 7 8 9 10; do
+for _ in 1 2 3 4 5 6 7 8 9 10; do
     [ -s "$T/state.frames" ] && break
     sleep 0.05
 done

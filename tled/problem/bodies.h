@@ -1,5 +1,5 @@
-/* The rigid bodies of a problem, as the model's node.body says: which nodes and elements each has, how it has moved, and
- * what the tissue pulls it with. The force on a body is the sum over its nodes of
+/* The rigid bodies of a problem, as the model's node.body says: which nodes and elements each has, how it has moved,
+ * and what the tissue pulls it with. The force on a body is the sum over its nodes of
  *     m g + f_ext - f_int,
  * f_int being the elements' pulls and f_ext the script's loads: at rest it is what holds the body up, the other way
  * round. The inertia of its own nodes is left out, and so is what a probe pushes these with (probe.force has none of
