@@ -34,7 +34,7 @@ static void make_surface(model *m, err *e)
     model_set_text(model_find(m, "lip/group.name"), 1, "lower red", e);
 }
 
-/* 8 nodes, 1 m apart, the lower 4 held by "skull"; an element of them; one muscle, "muscle_zyg". */
+/* 8 nodes, 1 m apart, the lower 4 held by "skull", the others of the body "jaw"; an element of them; one muscle, "muscle_zyg". */
 static void make_model(model *m, err *e)
 {
     *m = (model){0};
@@ -51,6 +51,10 @@ static void make_model(model *m, err *e)
         node[i] = i % 4 < 2 ? i : i ^ 1;
     make_surface(m, e);
     model_set_text(model_add(m, "anchor.name", e), 0, "skull", e);
+    model_axis_add(m, "body", 1, e);
+    model_set_text(model_add(m, "body.name", e), 0, "jaw", e);
+    for (int i = 0, *body = model_add(m, "node.body", e)->i32; i < 8; i++)
+        body[i] = i < 4 ? -1 : 0;
     model_set_text(model_add(m, "volume.name", e), 0, "muscle_zyg", e);
     model_add(m, "volume.muscle", e)->u8[0] = 1;
 }
@@ -104,6 +108,30 @@ static void take_live(const uint8_t *data, size_t size, const model *m)
     script_free(&s);
 }
 
+/* As a file of poses. */
+static void take_poses(const uint8_t *data, size_t size, const model *m)
+{
+    const pose place = {{0, 0, 1}, {0, .6, 0, .8}};
+    script s = {0};
+    err e = {0};
+    in *source = in_memory(data, size, "fuzz", &e);
+    const int status = script_read_poses(&s, source, m, &place, &e);
+    if (status && !e.text[0])
+        abort();
+    for (int64_t i = 0; !status && i < s.curves; i++)
+        check_curve(&s, &s.curve[i]);
+    in_close(source);
+    script_free(&s);
+}
+
+static void try_values(const script *s)
+{
+    double *value = malloc((size_t)(3 * s->curves + 1) * sizeof *value);
+    for (int64_t i = 0; value && i < s->keys; i++)
+        script_values(s, s->time[i], value);
+    free(value);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     model m;
@@ -119,9 +147,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     } else {
         for (int64_t i = 0; i < s.curves; i++)
             check_curve(&s, &s.curve[i]);
+        try_values(&s);
     }
     in_close(source);
     script_free(&s);
+    take_poses(data, size, &m);
     take_live(data, size, &m);
     model_free(&m);
     return 0;
