@@ -97,6 +97,10 @@ p=$(get body.pose.lid "$T/out")
 near "$(sum 1 "$p")" .001 1e-9 "and its place"
 is "$(sinew info --get body.pose.unit --get body.force.unit --get body.torque.unit <"$T/out" | tr '\n' ' ')" "1 N N.m " "units"
 
+cp "$T/out" "$T/binary"
+run "$turn" --rest 1e-9 --text
+check "text and binary frames are twins" sinew diff "$T/binary" "$T/out"
+
 # Half way between two keys
 run "$turn" -t 0.05 --every 0.025
 half=$(get node.displacement.at.0,2cm,2cm "$T/out")
