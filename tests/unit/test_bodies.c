@@ -174,9 +174,9 @@ static void test_poses(const model *m)
     ok(!read_text(&one, m, "0 move jaw 1mm,0,0 0,0,0,1\n2 move jaw 0,2mm,0 0.6,0,0,0.8\n", false, NULL, &e) &&
            !read_text(&other, m, "jaw 0 0.001 0 0 0 0 0 1\njaw 2 0 0.002 0 0.6 0 0 0.8 # open\n", true, &none, &e),
        "a script, and a file of poses: %s", e.text);
-    for (double time = 0; time < 3; time += .25) {
-        moved(&one, m, time, 7, u);
-        moved(&other, m, time, 7, v);
+    for (int i = 0; i < 12; i++) {
+        moved(&one, m, .25 * i, 7, u);
+        moved(&other, m, .25 * i, 7, v);
         worst = fmax(worst, memcmp(u, v, sizeof u) ? 1 : 0);
     }
     ok(worst == 0, "say the same");
