@@ -3,11 +3,10 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/path.h"
+#include "columns.h"
 #include "mesh/lattice.h"
-#include "surface/closest.h"
 #include "surface/scale.h"
 #include "surface/solid.h"
-#include "surface/winding.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -119,36 +118,31 @@ static int by_surfaces(maker *k, const char *list, uint8_t *mine, err *e)
     return claim_sure(k, k->bodies - 1, mine, e);
 }
 
-/* The distance from a solid's surface where that is at most `most`; else more. */
-static double distance(const solid *b, const double *x, double most)
-{
-    double nearest = INFINITY, p[3];
-    for (int64_t t = 0; t < b->triangles; t++) {
-        const double *at[3];
-        bool is_far = false;
-        for (int i = 0; i < 3; i++)
-            at[i] = b->metres + 3 * (int64_t)b->corner[3 * t + i];
-        for (int a = 0; a < 3; a++)
-            is_far |= fmin(at[0][a], fmin(at[1][a], at[2][a])) > x[a] + most ||
-                      fmax(at[0][a], fmax(at[1][a], at[2][a])) < x[a] - most;
-        if (!is_far)
-            nearest = fmin(nearest, closest_triangle(at[0], at[1], at[2], x, p));
-    }
-    return sqrt(nearest);
-}
-
 /* Nodes that are inside of no part may still be this one's. */
-static void claim_near(maker *k, const solid *b, const winding *box)
+static void claim_near(maker *k, const columns *of)
 {
     for (int64_t n = 0; n < k->nodes; n++) {
-        const double *x = k->position + 3 * n;
-        bool is_far = !k->rigid[n] || k->of[n].is_sure;
-        for (int a = 0; a < 3; a++)
-            is_far |= x[a] < box->low[a] - k->reach || x[a] > box->high[a] + k->reach;
-        const double away = is_far ? INFINITY : distance(b, x, k->reach);
+        if (!k->rigid[n] || k->of[n].is_sure)
+            continue;
+        const double away = columns_away(of, k->position + 3 * n);
         if (away <= k->reach && (k->of[n].body < 0 || away < k->of[n].away))
             k->of[n] = (claim){.body = k->bodies - 1, .away = away};
     }
+}
+
+/* The nodes inside of a solid, and near it. */
+static int claim_solid(maker *k, const solid *b, uint8_t *mine, err *e)
+{
+    columns of;
+    int failed = columns_make(&of, b, k->reach, e);
+    for (int64_t n = 0; !failed && n < k->nodes; n++)
+        mine[n] = k->rigid[n] && columns_hold(&of, k->position + 3 * n);
+    if (!failed)
+        failed = claim_sure(k, k->bodies - 1, mine, e);
+    if (!failed)
+        claim_near(k, &of);
+    columns_free(&of);
+    return failed;
 }
 
 static int by_file(maker *k, const char *file, uint8_t *mine, err *e)
@@ -159,16 +153,10 @@ static int by_file(maker *k, const char *file, uint8_t *mine, err *e)
     if (!unit)
         return -1;
     int failed = solid_read(&b, file, scale_of(unit), &found);
-    if (failed) {
+    if (failed)
         err_set(e, NULL, 0, "--part: %.600s", found.text);
-    } else {
-        const winding inside = winding_of(b.metres, b.corner, b.triangles);
-        for (int64_t n = 0; n < k->nodes; n++)
-            mine[n] = k->rigid[n] && winding_holds(&inside, k->position + 3 * n);
-        failed = claim_sure(k, k->bodies - 1, mine, e);
-        if (!failed)
-            claim_near(k, &b, &inside);
-    }
+    else
+        failed = claim_solid(k, &b, mine, e);
     solid_free(&b);
     return failed ? -1 : 0;
 }

@@ -34,7 +34,8 @@ static void make_surface(model *m, err *e)
     model_set_text(model_find(m, "lip/group.name"), 1, "lower red", e);
 }
 
-/* 8 nodes, 1 m apart, the lower 4 held by "skull", the others of the body "jaw"; an element of them; one muscle, "muscle_zyg". */
+/* 8 nodes, 1 m apart, the lower 4 held by "skull", the others of the body "jaw"; an element of them; one muscle,
+ * "muscle_zyg". */
 static void make_model(model *m, err *e)
 {
     *m = (model){0};
