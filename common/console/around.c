@@ -19,7 +19,7 @@ static int place_plainly(body *b, const console_case *is, err *e)
             free(file);
             return -1;
         }
-        b->part[b->parts++] = (body_part){file, 1e-3, pose_none(), false};
+        b->part[b->parts++] = (body_part){.file = file, .scale = 1e-3, .place = pose_none()};
     }
     return 0;
 }
