@@ -3,12 +3,11 @@
 #include "mesh/bound.h"
 #include "surface/scale.h"
 #include "surface/solid.h"
+#include "surface/surface_region.h"
 #include "surface/triangulate.h"
-#include "surface/winding.h"
 #include "tled/problem/script.h"
 #include "tled/problem/triangle.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -182,44 +181,16 @@ static int check_closed(const script *s, const script_curve *c, const surface *f
 
 /* Regions of space */
 
-/* Coordinates are products and sums with roundings. */
-static double rounding_of(const surface *s)
-{
-    double largest = 0;
-    for (int64_t i = 0; i < 3 * s->vertices; i++)
-        largest = fmax(largest, fabs(s->position[i]));
-    return 1e-12 * largest;
-}
-
-static void mark_box(picker *p)
-{
-    const double near = rounding_of(&p->from), *low = p->c->box, *high = p->c->box + 3;
-    for (int64_t v = 0; v < p->from.vertices; v++) {
-        const double *x = p->from.position + 3 * v;
-        p->in[v] = true;
-        for (int a = 0; a < 3; a++)
-            p->in[v] &= x[a] >= low[a] - near && x[a] <= high[a] + near;
-    }
-}
-
 static int mark_inside(picker *p, const model *m, const keyfile *k, err *e)
 {
-    const char *file = script_region(p->c);
-    solid b = {.triangles = 0};
     err found = {0};
     const num_unit unit = scale_unit(p->s->unit, m, e);
     if (!unit)
         return -1;
-    const int status = solid_read(&b, file, scale_of(unit), &found);
-    if (status)
-        keyfile_error(k, e, "%.500s", found.text);
-    if (!status) {
-        const winding body = winding_of(b.metres, b.corner, b.triangles);
-        for (int64_t v = 0; v < p->from.vertices; v++)
-            p->in[v] = winding_holds(&body, p->from.position + 3 * v);
-    }
-    solid_free(&b);
-    return status;
+    if (surface_region_in_file(script_region(p->c), scale_of(unit), p->from.position, p->from.vertices, 1, NULL, p->in,
+                               &found))
+        return keyfile_error(k, e, "%.500s", found.text);
+    return 0;
 }
 
 static int mark_region(picker *p, const model *m, const keyfile *k, err *e)
@@ -234,7 +205,7 @@ static int mark_region(picker *p, const model *m, const keyfile *k, err *e)
         return -1;
     if (by_file)
         return mark_inside(p, m, k, e);
-    mark_box(p);
+    surface_region_in_box(p->from.position, p->from.vertices, p->c->box, p->in);
     return 0;
 }
 
