@@ -64,9 +64,9 @@ static bool foot_inside(const double *a, const double *b, const double *c, const
     return true;
 }
 
-/* The nearest of the three sides and the foot of the perpendicular: the sides alone are right for a triangle so thin
- * that its plane means nothing. */
-double closest_triangle(const double *a, const double *b, const double *c, const double *q, double *p)
+/* The nearest of the three sides, 0 to 2, and the foot of the perpendicular, 3: the sides alone are right for a
+ * triangle so thin that its plane means nothing. */
+static int nearest_of_four(const double *a, const double *b, const double *c, const double *q, double *p, double *d2)
 {
     double near[4][3], distance[4];
     distance[0] = closest_segment(a, b, q, near[0]);
@@ -78,7 +78,28 @@ double closest_triangle(const double *a, const double *b, const double *c, const
         if (distance[i] < distance[best])
             best = i;
     memcpy(p, near[best], sizeof near[best]);
-    return distance[best];
+    *d2 = distance[best];
+    return best;
+}
+
+double closest_triangle(const double *a, const double *b, const double *c, const double *q, double *p)
+{
+    double d2;
+    nearest_of_four(a, b, c, q, p, &d2);
+    return d2;
+}
+
+double closest_triangle_on(const double *a, const double *b, const double *c, const double *q, double *p,
+                           closest_feature *feature)
+{
+    static const closest_feature features[4] = {CLOSEST_AB, CLOSEST_BC, CLOSEST_CA, CLOSEST_INSIDE};
+    const double *const corner[3] = {a, b, c};
+    double d2;
+    *feature = features[nearest_of_four(a, b, c, q, p, &d2)];
+    for (int i = 0; i < 3; i++)
+        if (p[0] == corner[i][0] && p[1] == corner[i][1] && p[2] == corner[i][2])
+            *feature = (closest_feature)(CLOSEST_A + i);
+    return d2;
 }
 
 /* Newell: the sum of the cross products of neighbouring corners, seen from the first. Less than rounding makes of

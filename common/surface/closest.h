@@ -13,6 +13,21 @@ double closest_segment(const double *a, const double *b, const double *q, double
 /* The same for triangle abc, which may have no area. */
 double closest_triangle(const double *a, const double *b, const double *c, const double *q, double *p);
 
+/* What of a triangle abc a point of it lies on. */
+typedef enum closest_feature {
+    CLOSEST_A,
+    CLOSEST_B,
+    CLOSEST_C,
+    CLOSEST_AB,
+    CLOSEST_BC,
+    CLOSEST_CA,
+    CLOSEST_INSIDE
+} closest_feature;
+
+/* closest_triangle() that says also what p lies on. */
+double closest_triangle_on(const double *a, const double *b, const double *c, const double *q, double *p,
+                           closest_feature *feature);
+
 typedef struct closest_shape {
     int corners;            /* of one part: 1 point, 2 segment, 3 triangle */
     int64_t parts;          /* 1, or a polygon's triangles */
