@@ -35,6 +35,7 @@ static const struct {
     {RESULTS, "deform", "sinew-deform", "an OBJ as the model's results move it"},
     {RESULTS, "info", "sinew-info", "what a model contains"},
     {RESULTS, "diff", "sinew-diff", "where two models differ"},
+    {RESULTS, "distance", "sinew-distance", "how far two surfaces are apart, by region"},
     {RESULTS, "export", "sinew-export", "VTU, Abaqus .inp, Gmsh .msh, OBJ"},
     {MODELS, "import", "sinew-import", "a mesh from Abaqus .inp, Gmsh .msh, VTU"},
     {RESULTS, "render", "sinew-render", "pictures"},

@@ -49,6 +49,12 @@ cp run.sinew a.sinew
 cp run.sinew b.sinew
 quoted sinew-diff sinew diff --abs node.rigid=1 a.sinew b.sinew
 quoted sinew-diff sinew diff --only node.displacment a.sinew b.sinew
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n' >scan.obj
+printf 'v 0 0 1\nv 9 0 1\nv 9 9 1\nv 0 9 1\nf 1 2 3 4\n' >predicted.obj
+quoted sinew-distance sinew distance --unit mm predicted.obj scan.obj
+quoted sinew-distance sinew distance --unit mm --region a=0,0,0,1,1,1 predicted.obj scan.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 2 0\nf 1 2 3\nf 1 4 3\nf 4 3 5\n' >scan.obj
+quoted sinew-distance sinew distance --unit mm predicted.obj scan.obj
 quoted sinew-export sinew export -f vtu --frame 3 run.sinew
 quoted sinew-export sinew export -f vtu --surface face --deformed unbound.sinew
 sinew export -f vtu -o liver.vtu run.sinew
@@ -64,7 +70,7 @@ quoted sinew-render sinew render --colour displacement unbound.sinew
 quoted sinew-render sinew render --show voxels --clear skin run.sinew
 quoted sinew-render sinew render --font none.ttf --sheet rest,deformed run.sinew
 
-for page in sinew sinew-deform sinew-diff sinew-export sinew-import sinew-info sinew-render; do
+for page in sinew sinew-deform sinew-diff sinew-distance sinew-export sinew-import sinew-info sinew-render; do
     quotes "$page" | sed "s/^/$page: /"
 done | sort >"$T/quotes"
 is "$(sort -u "$T/seen" | comm -13 - "$T/quotes")" "" "every quote was printed"

@@ -64,6 +64,7 @@ each_command() {
     "$tap_each" "info --json" "$T/in/frames.text.gz" sinew info --json
     "$tap_each" "info --get" "$T/in/frames.sinew" sinew info --get node.displacement.max
     "$tap_each" "diff" /dev/null sinew diff "$T/in/frames.sinew" "$T/in/frames.text.gz"
+    "$tap_each" "distance" /dev/null sinew distance --unit mm --both --threads 2 --region "all=$T/in/head.obj" "$T/in/skin.obj" "$T/in/skin.obj.gz"
     for format in vtu inp obj; do
         "$tap_each" "export -f $format" "$T/in/frames.sinew" sinew export -f "$format"
     done

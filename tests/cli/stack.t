@@ -53,6 +53,7 @@ cp "$T/tled-run" "$T/in"
 same deform sinew deform -q "$T/box.obj"
 same info sinew info
 same diff sinew diff "$T/tled-run" "$T/tled-run"
+same distance sinew distance --unit mm --both "$T/box.obj" "$T/box.obj"
 same export sinew export -f inp
 same render sinew render --size 180x120 --sheet rest,voxels,deformed
 same render-body sinew render --size 180x120 --show voxels,muscles,rigid --clear voxels --colour strain

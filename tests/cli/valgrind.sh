@@ -67,6 +67,7 @@ cp "$T/tled-run-double" "$T/in"
 clean 0 sinew-deform sinew-deform -q "$T/box.obj"
 clean 0 sinew-info sinew-info --json
 clean 1 sinew-diff sinew-diff "$T/tled-run-double" "$T/tled-run-single"
+clean 0 sinew-distance sinew-distance -q --unit mm --both --points "$T/points" --region "all=$T/box.obj" "$T/box.obj" "$T/cube.obj"
 for format in vtu inp msh obj 'model --text'; do
     # shellcheck disable=SC2086 # words
     clean 0 "sinew-export-${format%% *}" sinew-export -f $format
