@@ -84,6 +84,15 @@ check "the good one is done" test -s "$T/c/ball.moved.obj"
 is "$(find "$T/c" -name 'open*')" "" "the bad one left no file"
 is "$messages" 1 "one message for it"
 
+# An osteotomy: the upper jaw moves the lip above it forward, the chin moves back; nothing moves further than bone does.
+check "an osteotomy" samples "$T/o" osteotomy OSTEOTOMY_SIDE=8 OSTEOTOMY_COARSE=10
+# shellcheck disable=SC2016 # awk's
+check "the upper lip goes forward, up to 3 mm, the chin back, up to 2.3 mm" \
+    awk '/^From B/ { exit } $1 == "upper_lip" { lip = $8 > 1 && $8 < 3.3 && $9 < -1 } $1 == "chin" { chin = $8 > 1 && $8 < 2.5 && $9 > 1 } END { exit !(lip && chin) }' \
+    "$T/o/osteotomy.moved.txt"
+# shellcheck disable=SC2016 # likewise
+check "and the prediction of larger voxels is not far" awk '/lip|nose|chin|cheeks/ { near += $4 < 1 } END { exit near != 5 }' "$T/o/osteotomy.voxels.txt"
+
 # A case: DICOM files to a volume, labels, surfaces and a mesh, and a probe that presses it. Volumes are known from the equations.
 check "a case of a patient" samples "$T/d" case
 C=$T/d/case
