@@ -16,6 +16,7 @@ typedef struct rectangle {
 
 typedef struct work {
     const voxels *x;
+    const slits *slit;
     const voxels_layers *layer;
     const lattice *l;
     rectangle of;
@@ -127,6 +128,8 @@ static int count_nodes(work *w, pool *threads, err *e)
     pool_run(threads, layers, CHUNK, count_layers, w);
     if (atomic_load(&w->failed))
         return err_memory(e, "a layer of nodes");
+    for (int64_t i = 0; i < w->slit->points; i++)
+        w->first[w->slit->point[i].place[2] - w->layer->low + 1] += w->slit->point[i].nodes - 1;
     for (int64_t i = 0; i < layers; i++)
         w->first[i + 1] += w->first[i];
     if (w->first[layers] <= INT32_MAX)
@@ -204,6 +207,29 @@ static void fill_layers(void *context, int64_t chunk, int64_t from, int64_t to)
     free_corners(&c[1]);
 }
 
+/* The further nodes of points that slits part: the last of their layer. */
+static void put_parted(const work *w)
+{
+    const slits *s = w->slit;
+    for (int64_t i = s->points - 1, next = 0, layer = -1; i >= 0; i--) {
+        const slits_point *p = &s->point[i];
+        if (p->place[2] - w->layer->low != layer) {
+            layer = p->place[2] - w->layer->low;
+            next = w->first[layer + 1];
+        }
+        next -= p->nodes - 1;
+        for (int64_t n = next; n < next + p->nodes - 1; n++) {
+            memcpy(&w->place[3 * n], p->place, sizeof p->place);
+            lattice_corner(w->l, p->place, &w->position[3 * n]);
+        }
+        for (int64_t c = p->from; c < p->to; c++) {
+            const slits_corner *at = &s->corner[c];
+            if (at->node)
+                w->node[8 * at->element + at->corner] = (int32_t)(next + at->node - 1);
+        }
+    }
+}
+
 /* An array of the model by its name, which is there. */
 static model_array *added(const model *m, const char *name)
 {
@@ -252,10 +278,10 @@ static int add_shares(model *m, const voxels *x, err *e)
     return 0;
 }
 
-int build_elements(model *m, const voxels *x, const lattice *l, pool *threads, err *e)
+int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, pool *threads, err *e)
 {
     voxels_layers layer;
-    work w = {.x = x, .layer = &layer, .l = l, .of = find_rectangle(x)};
+    work w = {.x = x, .slit = s, .layer = &layer, .l = l, .of = find_rectangle(x)};
     int status = -1;
     if (voxels_find_layers(x, &layer, e))
         return -1;
@@ -263,6 +289,7 @@ int build_elements(model *m, const voxels *x, const lattice *l, pool *threads, e
     if (!w.first || count_nodes(&w, threads, e) || add_arrays(&w, m, w.first[layer.count + 1], x->elements, e))
         goto out;
     pool_run(threads, layer.count, CHUNK, fill_layers, &w);
+    put_parted(&w);
     if (atomic_load(&w.failed))
         err_memory(e, "a layer of nodes");
     else

@@ -1,17 +1,19 @@
 /* Elements from runs of voxels: the arrays of a model. Elements come in the order of the runs; nodes, the corners that
  * elements have, in k, j, i order (i fastest), numbered from one bit a corner of two layers, so that no grid is ever
- * stored whole. The model owns what is added, which is the same for any number of threads.
+ * stored whole. The further nodes of points that slits part follow those of their layer, in the same order; so rows of
+ * nodes stay rows. The model owns what is added, which is the same for any number of threads.
  */
 #ifndef SINEW_BUILD_H
 #define SINEW_BUILD_H
 
 #include "mesh/lattice.h"
+#include "voxelise/slits.h"
 #include "voxelise/volumes.h"
 #include "voxelise/voxels.h"
 
 /* Adds axes node and element, node.position, node.lattice, element.node, element.lattice and element.volume; by shares
  * element.fraction too, and element.mix and element.mixture where some element has a second volume. */
-int build_elements(model *m, const voxels *x, const lattice *l, pool *threads, err *e);
+int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, pool *threads, err *e);
 
 /* Adds axis volume and its arrays; volumes have their numbers of the plan. */
 int build_volumes(model *m, const volumes *plan, err *e);

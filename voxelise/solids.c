@@ -15,6 +15,7 @@ typedef struct work {
     const volumes *plan;
     solids *s;
     num_unit unit;
+    bool sheets;
     weld place;       /* the vertices of s */
     int64_t *start;   /* volumes + 1: the first of a volume's polygons */
     int64_t *face;    /* polygons, volume after volume */
@@ -164,9 +165,11 @@ static int build_volume(work *w, int32_t volume, bool allow_open, notes *warning
     w->s->open[volume] = r.open;
     find_open(w, &r, w->s->open_at[volume]);
     int status = report(w, volume, &r, allow_open, warnings, e);
-    for (int64_t i = 0; !status && i < p.polygons; i++)
-        if (!r.drop[i])
+    for (int64_t i = 0; !status && i < p.polygons; i++) {
+        const int times = w->sheets && r.sheet[i] ? 2 : !r.drop[i];
+        for (int n = 0; n < times && !status; n++)
             status = add_polygon(w, volume, volumes_is_rigid(w->plan->surface[p.surface[i]].name), p.face[i], e);
+    }
     closed_free(&r);
     return status;
 }
@@ -181,10 +184,11 @@ static void take_places(work *w)
     w->place.position = NULL;
 }
 
-int solids_build(solids *s, const obj *o, const volumes *plan, num_unit unit, bool allow_open, notes *warnings, err *e)
+int solids_build(solids *s, const obj *o, const volumes *plan, num_unit unit, bool sheets, bool allow_open,
+                 notes *warnings, err *e)
 {
     *s = (solids){0};
-    work w = {.o = o, .plan = plan, .s = s, .unit = unit};
+    work w = {.o = o, .plan = plan, .s = s, .unit = unit, .sheets = sheets};
     s->open = mem_array(plan->volumes, sizeof *s->open, "volumes", e);
     s->open_at = s->open ? mem_array(plan->volumes, sizeof *s->open_at, "volumes", e) : NULL;
     int status =

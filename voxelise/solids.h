@@ -19,9 +19,11 @@ typedef struct solids {
     double (*open_at)[3];   /* volumes: the middle of the first of them */
 } solids;
 
-/* unit: of the source file, for messages. -1 with e filled where a volume is open (with allow_open that is a note).
+/* unit: of the source file, for messages. sheets: polygons that cancel in pairs, as where two solids touch, are kept as
+ * two sheets at one place, which enclose nothing; else they are left out. -1 with e filled where a volume is open (with allow_open that is a note).
  * Coordinates too small for exact arithmetic (grid.h) are taken as 0, those too large refused. */
-int solids_build(solids *s, const obj *o, const volumes *plan, num_unit unit, bool allow_open, notes *warnings, err *e);
+int solids_build(solids *s, const obj *o, const volumes *plan, num_unit unit, bool sheets, bool allow_open,
+                 notes *warnings, err *e);
 
 void solids_free(solids *s);
 

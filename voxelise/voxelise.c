@@ -11,6 +11,7 @@
 #include "voxelise/gaps.h"
 #include "voxelise/layers.h"
 #include "voxelise/report.h"
+#include "voxelise/slits.h"
 #include "voxelise/solids.h"
 #include "voxelise/summary.h"
 
@@ -24,8 +25,12 @@ struct options {
     opt_lengths size, origin, box;
     int64_t cells, fraction;
     double least;
+    int slits; /* a slits_choice */
     bool allow_open, check;
 };
+
+/* --slits, as its choices are in order; what is not given follows --fraction and --layers. */
+enum slits_choice { SLITS_NOT_GIVEN = -1, SLITS_ON, SLITS_OFF };
 
 #define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
@@ -49,6 +54,8 @@ static const opt option_list[] = {
      "make elements of voxels that are partly enclosed, with their share from N^3 samples"},
     {OPT_ACTION, 0, "least", "SHARE", OPT_NUMBER, TO(least), 0, 1, NULL, 0,
      "smallest share that makes an element [default any]"},
+    {OPT_ACTION, 0, "slits", "on|off", OPT_CHOICE, TO(slits), 0, 0, "on|off", 0,
+     "part what a surface lies between [default on with --fraction or --layers]"},
     {OPT_INPUT, 0, "allow-open", NULL, OPT_FLAG, TO(allow_open), 0, 0, NULL, 0, "accept open surfaces, with a warning"},
     {OPT_RESULT, 0, "check", NULL, OPT_FLAG, TO(check), 0, 0, NULL, 0, "write a report on the surfaces, and no model"},
     {0}};
@@ -80,14 +87,18 @@ typedef struct job {
     solids solid;
     grid g, samples;
     inside test;
+    cuts cut;
     voxels x;
+    slits slit;
     pool *threads;
     notes warnings;
 } job;
 
 static void job_free(job *j)
 {
+    slits_free(&j->slit);
     voxels_free(&j->x);
+    cuts_free(&j->cut);
     inside_free(&j->test);
     solids_free(&j->solid);
     layers_free(&j->layer);
@@ -136,9 +147,9 @@ static int check_options(job *j, err *e)
         return err_usage(e, "-s and -n both give the voxel size; expected one of them");
     if (o->size.count == 2 || !all_positive(&o->size))
         return err_usage(e, "-s: expected one length, or three between commas, above 0");
-    if (o->check && (o->fraction > 0 || !isnan(o->least) || o->origin.count || o->box.count))
+    if (o->check && (o->fraction > 0 || !isnan(o->least) || o->slits >= 0 || o->origin.count || o->box.count))
         return err_usage(e, "--check looks at surfaces and makes no voxels; expected it without --fraction, --least, "
-                            "--origin and --box");
+                            "--slits, --origin and --box");
     if (!isnan(o->least) && o->fraction < 0)
         return err_usage(e, "--least is for --fraction N; expected both, or neither");
     if (!box_is_upright(j))
@@ -245,12 +256,44 @@ static int make_grid(job *j, err *e)
     return j->o->box.count ? grid_clip(&j->g, box, box + 3, e) : 0;
 }
 
-/* What is inside, by centres or by samples; samples: the lattice of the one or the other. */
-static int look_inside(job *j, const grid *samples, const shares_rule *rule, err *e)
+/* The triangles of the first volumes: all of them, or those of level 0. */
+static inside_triangles triangles_of(const job *j, bool lowest)
 {
     const solids *s = &j->solid;
     inside_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
-    if (inside_create(&j->test, samples, &t, CLIMB_RAY, rule ? rule->samples : 1, j->threads, e))
+    while (lowest && t.triangles && j->plan.volume[s->volume[t.triangles - 1]].level > 0)
+        t.triangles--;
+    return t;
+}
+
+/* Where a volume of level 0 is open, what is inside it is a guess. */
+static bool is_open(const job *j)
+{
+    for (int32_t v = 0; v < j->plan.volumes; v++)
+        if (j->solid.open[v] && j->plan.volume[v].level == 0)
+            return true;
+    return false;
+}
+
+/* Whether slits are opened: of closed surfaces. */
+static bool wants_slits(const struct options *o)
+{
+    return o->slits == SLITS_NOT_GIVEN ? o->fraction > 0 || o->layers : o->slits == SLITS_ON;
+}
+
+static bool opens_slits(const job *j)
+{
+    return wants_slits(j->o) && !is_open(j);
+}
+
+/* What is inside, by centres or by samples; samples: the lattice of the one or the other. */
+static int look_inside(job *j, const grid *samples, const shares_rule *rule, err *e)
+{
+    const inside_triangles t = triangles_of(j, false), lowest = triangles_of(j, true);
+    const int each = rule ? rule->samples : 1;
+    if (opens_slits(j) && cuts_find(&j->cut, &lowest, samples, each, j->threads, e))
+        return -1;
+    if (inside_create(&j->test, samples, &t, CLIMB_RAY, each, j->threads, e))
         return -1;
     int32_t *level = mem_array(j->plan.volumes, sizeof *level, "volumes", e);
     if (!level)
@@ -259,7 +302,8 @@ static int look_inside(job *j, const grid *samples, const shares_rule *rule, err
         level[v] = j->plan.volume[v].level;
     progress shown;
     progress_start(&shown, table.name, "slabs", (double)j->test.slabs, j->t->common->quiet);
-    int status = voxels_find(&j->x, &j->test, level, j->plan.volumes, rule, j->threads, &shown, e);
+    const cuts *cut = opens_slits(j) ? &j->cut : NULL;
+    int status = voxels_find(&j->x, &j->test, level, j->plan.volumes, rule, cut, j->threads, &shown, e);
     progress_stop(&shown);
     free(level);
     return status;
@@ -281,13 +325,20 @@ static int find_voxels(job *j, err *e)
                    num_unit_name(j->unit));
 }
 
-/* Where a volume of level 0 is open, what is inside it is a guess. */
+static int open_slits(job *j, err *e)
+{
+    const inside_triangles lowest = triangles_of(j, true);
+    const bool by_shares = j->o->fraction > 0;
+    return slits_find(&j->slit, &j->x, &j->cut, &lowest, by_shares ? &j->samples : &j->g,
+                      by_shares ? (int)j->o->fraction : 1, j->plan.volumes, e);
+}
+
+/* Where slits stay as they are: what elements fill. */
 static int find_gaps(job *j, err *e)
 {
     gaps found;
-    for (int32_t v = 0; v < j->plan.volumes; v++)
-        if (j->solid.open[v] && j->plan.volume[v].level == 0)
-            return 0;
+    if (is_open(j))
+        return 0;
     if (gaps_find(&found, &j->solid, &j->plan, &j->x, &j->g, j->threads, e))
         return -1;
     const double least = isnan(j->o->least) ? 0 : j->o->least;
@@ -311,7 +362,7 @@ static int make_model(const job *j, model *m, err *e)
     }
     surface_name(j->o->common.anonymous ? "surface_1" : j->path, name, sizeof name);
     if (model_meta_set(m, "source.unit", num_unit_name(j->unit), e) || lattice_save(&l, m, e) ||
-        build_elements(m, &j->x, &l, j->threads, e) || build_volumes(m, &j->plan, e))
+        build_elements(m, &j->x, &j->slit, &l, j->threads, e) || build_volumes(m, &j->plan, e))
         return -1;
     return surface_add(m, name, &j->surface, in_metres(j, 1), e);
 }
@@ -360,6 +411,9 @@ static int say_plan(job *j, const model *m, err *e)
                  (long long)j->x.elements);
     tool_say(j->t, "%lld elements, %lld nodes", (long long)model_count(m, "element"),
              (long long)model_count(m, "node"));
+    if (j->slit.nodes)
+        tool_say(j->t, "slits are open: %lld nodes more, and %lld elements more of voxels that are in parts",
+                 (long long)j->slit.nodes, (long long)j->slit.elements);
     if (!j->plan.rigid)
         notes_add(&j->warnings, "nothing is rigid: no surface begins skull, bone or rigid");
     return 0;
@@ -531,7 +585,8 @@ static int prepare(job *j, model *m, err *e)
     j->threads = threads > 0 ? pool_create(threads, e) : NULL;
     bool allow_open = j->o->allow_open || j->o->check;
     if (!j->threads || read_materials(j, m, e) || make_plan(j, m, e) ||
-        solids_build(&j->solid, &j->surface, &j->plan, j->unit, allow_open, &j->warnings, e))
+        solids_build(&j->solid, &j->surface, &j->plan, j->unit, wants_slits(j->o) && !j->o->check, allow_open,
+                     &j->warnings, e))
         return -1;
     say_time(j, "checking surfaces", clock);
     return 0;
@@ -543,9 +598,10 @@ static int work(job *j, model *m, err *e)
     if (make_grid(j, e) || find_voxels(j, e))
         return -1;
     clock = say_time(j, "finding what is inside", clock);
-    if (find_gaps(j, e))
+    const bool opens = opens_slits(j);
+    if (opens ? open_slits(j, e) : find_gaps(j, e))
         return -1;
-    clock = say_time(j, "finding gaps", clock);
+    clock = say_time(j, opens ? "opening slits" : "finding gaps", clock);
     if (j->layer.layers) {
         if (layers_apply(&j->layer, &j->x, &j->plan, &j->surface, &j->g, j->threads, e))
             return -1;
@@ -559,7 +615,7 @@ static int work(job *j, model *m, err *e)
 
 static int run_tool(int argc, char **argv)
 {
-    struct options o = {.cells = -1, .fraction = -1, .least = NAN};
+    struct options o = {.cells = -1, .fraction = -1, .least = NAN, .slits = SLITS_NOT_GIVEN};
     err e = {0};
     tool t = {0};
     stage s = {0};

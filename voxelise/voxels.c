@@ -17,6 +17,7 @@ static const double element_bytes = 120, row_bytes = 64;
 typedef struct chunk {
     climb_runs to;
     shares_list share;
+    parts_list part;
 } chunk;
 
 typedef struct counter {
@@ -28,6 +29,7 @@ typedef struct work {
     const int32_t *level;
     int32_t volumes;
     const shares_rule *rule;
+    const cuts *cut;  /* NULL: parts are not looked for */
     int64_t first;    /* slab of this part */
     chunk *chunk;     /* slabs; NULL: elements are only counted */
     counter *counter; /* volumes */
@@ -39,6 +41,7 @@ typedef struct scratch {
     inside_slab slab;
     climb climb;
     shares shares;
+    parts parts;
     climb_runs samples;      /* runs of one row of them */
     climb_count *kept;       /* volumes: their voxels by shares */
     int64_t low[2], high[2]; /* of its parts, along y and z */
@@ -100,7 +103,7 @@ static int by_centres(scratch *s, climb_runs *to, err *e)
 }
 
 /* The samples of one row of voxels. */
-static int add_samples(scratch *s, int64_t j, int64_t k, err *e)
+static int add_samples(scratch *s, const work *w, int64_t j, int64_t k, err *e)
 {
     int samples = s->shares.rule.samples;
     for (int64_t z = k * samples; z < (k + 1) * samples; z++)
@@ -111,7 +114,8 @@ static int add_samples(scratch *s, int64_t j, int64_t k, err *e)
             if (climb_row(&s->climb, &s->slab, y, z, &s->samples, e))
                 return -1;
             for (int64_t r = 0; r < s->samples.runs; r++)
-                if (shares_add(&s->shares, &s->samples.run[r], e))
+                if (shares_add(&s->shares, &s->samples.run[r], e) ||
+                    (w->cut && parts_add(&s->parts, &s->samples.run[r], e)))
                     return -1;
         }
     return 0;
@@ -122,6 +126,15 @@ static int64_t floor_of(int64_t a, int64_t b)
     return a >= 0 ? a / b : -((b - 1 - a) / b);
 }
 
+/* The voxels of one row, from its samples. */
+static int add_row(scratch *s, const work *w, int64_t j, int64_t k, chunk *to, err *e)
+{
+    const int64_t first = to->to.runs, element = to->share.count;
+    if (add_samples(s, w, j, k, e) || shares_row(&s->shares, j, k, &to->to, &to->share, s->kept, e))
+        return -1;
+    return w->cut ? parts_row(&s->parts, to->to.run + first, to->to.runs - first, element, &to->part, e) : 0;
+}
+
 /* Slabs hold whole layers of voxels. */
 static int by_shares(scratch *s, const work *w, chunk *to, err *e)
 {
@@ -130,7 +143,7 @@ static int by_shares(scratch *s, const work *w, chunk *to, err *e)
         return 0;
     for (int64_t k = floor_of(s->low[1], samples); k * samples < s->high[1]; k++)
         for (int64_t j = floor_of(s->low[0], samples); j * samples < s->high[0]; j++)
-            if (add_samples(s, j, k, e) || shares_row(&s->shares, j, k, &to->to, &to->share, s->kept, e))
+            if (add_row(s, w, j, k, to, e))
                 return -1;
     return 0;
 }
@@ -142,7 +155,8 @@ static int look(scratch *s, work *w, int64_t number, err *e)
     find_extent(s);
     if (!w->rule || !w->chunk)
         return by_centres(s, w->chunk ? &w->chunk[number].to : NULL, e);
-    if (shares_create(&s->shares, w->test->mesh.g, w->rule, w->volumes, e))
+    if (shares_create(&s->shares, w->test->mesh.g, w->rule, w->volumes, e) ||
+        (w->cut && parts_create(&s->parts, w->test->mesh.g, w->rule->samples, w->cut, e)))
         return -1;
     s->kept = mem_array(w->volumes, sizeof *s->kept, "volumes", e);
     if (!s->kept || by_shares(s, w, &w->chunk[number], e))
@@ -168,6 +182,7 @@ static void do_slab(void *context, int64_t chunk_number, int64_t from, int64_t t
         inside_slab_free(&s.slab);
         climb_free(&s.climb);
         shares_free(&s.shares);
+        parts_free(&s.parts);
         free(s.samples.run);
         free(s.kept);
     }
@@ -294,10 +309,13 @@ static int join_chunks(voxels *x, const work *w, err *e)
         if (c->to.runs)
             memcpy(x->run + at, c->to.run, (size_t)c->to.runs * sizeof *x->run);
         put_shares(x, voxel, &c->share);
+        if (parts_list_join(&x->part, &c->part, voxel, e))
+            return -1;
         at += c->to.runs;
         voxel += c->share.count;
         free(c->to.run);
         free(c->share.voxel);
+        parts_list_free(&c->part);
         c->to.run = NULL;
         c->share.voxel = NULL;
     }
@@ -312,10 +330,10 @@ static void take_counts(voxels *x, const work *w)
 }
 
 int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t volumes, const shares_rule *rule,
-                pool *threads, progress *shown, err *e)
+                const cuts *cut, pool *threads, progress *shown, err *e)
 {
     *x = (voxels){0};
-    work w = {.test = test, .level = level, .volumes = volumes, .rule = rule};
+    work w = {.test = test, .level = level, .volumes = volumes, .rule = rule, .cut = rule ? cut : NULL};
     int status = -1;
     if (check_memory(&w, threads, e))
         return -1;
@@ -339,6 +357,7 @@ out:
     for (int64_t i = 0; w.chunk && i < test->slabs; i++) {
         free(w.chunk[i].to.run);
         free(w.chunk[i].share.voxel);
+        parts_list_free(&w.chunk[i].part);
     }
     free(w.chunk);
     free(w.counter);
@@ -354,6 +373,7 @@ void voxels_free(voxels *x)
     free(x->fraction);
     free(x->mix);
     free(x->mixture);
+    parts_list_free(&x->part);
     *x = (voxels){0};
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/pool.h"
 #include "cli/progress.h"
+#include "voxelise/parts.h"
 #include "voxelise/shares.h"
 
 typedef struct voxels {
@@ -16,13 +17,15 @@ typedef struct voxels {
     float *fraction;    /* elements, by shares; otherwise NULL */
     int32_t *mix;       /* elements: the second volume, -1 = none; NULL where no element has one */
     float *mixture;     /* elements: its share of what is enclosed; likewise */
+    parts_list part;    /* by shares, where slits are looked for */
 } voxels;
 
 /* test: with rays along CLIMB_RAY; by shares, of the lattice of samples. level: of each volume; volumes are in order of
- * level, then of priority. rule: NULL for centres. Refuses, before any of it is allocated, what would not fit in
- * memory. progress (may be NULL) counts slabs and has been started. */
+ * level, then of priority. rule: NULL for centres. cut (NULL: none are looked for): the slits between samples; then the
+ * parts of voxels are found too. Refuses, before any of it is allocated, what would not fit in memory. progress (may be
+ * NULL) counts slabs and has been started. */
 int voxels_find(voxels *x, const inside *test, const int32_t *level, int32_t volumes, const shares_rule *rule,
-                pool *threads, progress *shown, err *e);
+                const cuts *cut, pool *threads, progress *shown, err *e);
 
 void voxels_free(voxels *x);
 

@@ -1,5 +1,5 @@
 // needs: voxelise/build.c voxelise/surfaces/closed.c voxelise/crossing.c voxelise/surfaces/expansion.c
-// needs: voxelise/surfaces/grid.c voxelise/inside.c
+// needs: voxelise/surfaces/grid.c voxelise/inside.c voxelise/parts.c voxelise/cuts.c
 // needs: voxelise/solids.c voxelise/surfaces/weld.c voxelise/volumes.c voxelise/voxels.c voxelise/climb.c
 // needs: voxelise/shares.c voxelise/layers.c voxelise/depths.c tests/bench/scan.c tests/bench/bench.c
 /* `make bench-voxelise`: how long voxelise takes on a closed scan, step by step, on one thread and on
@@ -89,7 +89,7 @@ static int check_surfaces(subject *s, err *e)
     volumes_free(&s->plan);
     double start = bench_clock();
     int status = volumes_by_name(&s->plan, &s->surface, &s->materials, e) ||
-                         solids_build(&s->solid, &s->surface, &s->plan, num_unit_of("mm"), false, NULL, e)
+                         solids_build(&s->solid, &s->surface, &s->plan, num_unit_of("mm"), false, false, NULL, e)
                      ? -1
                      : 0;
     bench_take(&s->all, "checking surfaces", (double)s->solid.triangles, "triangle", bench_clock() - start);
@@ -105,7 +105,7 @@ static int find_inside(subject *s, const grid *g, int cells, pool *threads, voxe
     double start = bench_clock();
     if (inside_create(&test, g, &t, CLIMB_RAY, 1, threads, e))
         return -1;
-    int status = voxels_find(x, &test, &level, 1, NULL, threads, NULL, e);
+    int status = voxels_find(x, &test, &level, 1, NULL, NULL, threads, NULL, e);
     bench_take(&s->all, name_of(s, "inside mask", cells, pool_threads(threads)), grid_count(g), "cell",
                bench_clock() - start);
     inside_free(&test);
@@ -117,7 +117,7 @@ static int build_model(subject *s, const voxels *x, int cells, pool *threads, er
     lattice l = {{0, 0, 0}, {1, 1, 1}};
     model m = {0};
     double start = bench_clock();
-    int status = model_axis_add(&m, "volume", 2, e) || build_elements(&m, x, &l, threads, e) ? -1 : 0;
+    int status = model_axis_add(&m, "volume", 2, e) || build_elements(&m, x, &(slits){0}, &l, threads, e) ? -1 : 0;
     bench_take(&s->all, name_of(s, "building the model", cells, pool_threads(threads)), (double)x->elements, "element",
                bench_clock() - start);
     model_free(&m);

@@ -1,5 +1,5 @@
 // needs: voxelise/depths.c voxelise/voxels.c voxelise/climb.c voxelise/shares.c voxelise/inside.c voxelise/crossing.c
-// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c
+// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/parts.c voxelise/cuts.c
 /* How deep voxels lie below a surface: triangles of all sizes at random, and voxels too, each centre measured from each
  * triangle. Small lattices and long ones, flat voxels, depths from less than a voxel to more than the lattice.
  */

@@ -1,5 +1,5 @@
 // needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/crossing.c voxelise/inside.c voxelise/voxels.c
-// needs: voxelise/climb.c voxelise/shares.c voxelise/build.c
+// needs: voxelise/climb.c voxelise/shares.c voxelise/build.c voxelise/parts.c voxelise/cuts.c
 /* Algorithm 1 as it is printed, voxel by voxel over boxes at random, against columns and runs; and the nodes of the
  * elements against a plain table of all corners.
  */
@@ -94,7 +94,7 @@ static bool find_on(const scene *s, const grid *g, const shares_rule *rule, int 
     pool *p = pool_create(threads, &e);
     bool good = p && !inside_create(&test, g, &t, CLIMB_RAY, rule ? rule->samples : 1, p, &e);
     if (good) {
-        good = !voxels_find(x, &test, s->level, BOXES, rule, p, NULL, &e);
+        good = !voxels_find(x, &test, s->level, BOXES, rule, NULL, p, NULL, &e);
         inside_free(&test);
     }
     pool_destroy(p);
@@ -191,7 +191,7 @@ static bool builds(const voxels *x)
     lattice l = {{10, 10, 10}, {0.5, 0.5, 0.5}};
     pool *threads = pool_create(2, &e);
     bool good = threads && model_axis_add(&m, "volume", BOXES, &e) == 0 &&
-                build_elements(&m, x, &l, threads, &e) == 0 && good_nodes(&m);
+                build_elements(&m, x, &(slits){0}, &l, threads, &e) == 0 && good_nodes(&m);
     model_free(&m);
     if (threads)
         pool_destroy(threads);

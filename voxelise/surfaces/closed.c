@@ -317,6 +317,7 @@ static void cancel(const edges *t)
         part_of(t, i)->left += !r->drop[i];
     for (int64_t i = 0; i < t->p->polygons; i++) {
         bool pairs = cancels(part_of(t, i)), repeat = like[i] != i;
+        r->sheet[i] = r->drop[i] && pairs && !repeat;
         r->drop[i] = r->drop[i] && (pairs || repeat);
         r->cancelled += repeat && pairs;
         r->once += repeat && !pairs;
@@ -382,7 +383,8 @@ int closed_check(const closed_polygons *p, closed_result *r, err *e)
         return err_set(e, p->o->name, 0, "%lld polygons; at most %u are possible", (long long)p->polygons, UINT32_MAX);
     edges t = {.p = p, .r = r};
     r->drop = mem_array(p->polygons, sizeof *r->drop, "polygons", e);
-    r->open_of = r->drop ? mem_array(p->surfaces, sizeof *r->open_of, "surfaces", e) : NULL;
+    r->sheet = r->drop ? mem_array(p->polygons, sizeof *r->sheet, "polygons", e) : NULL;
+    r->open_of = r->sheet ? mem_array(p->surfaces, sizeof *r->open_of, "surfaces", e) : NULL;
     int status = r->open_of ? check_edges(&t, e) : -1;
     if (status)
         closed_free(r);
@@ -392,6 +394,7 @@ int closed_check(const closed_polygons *p, closed_result *r, err *e)
 void closed_free(closed_result *r)
 {
     free(r->drop);
+    free(r->sheet);
     free(r->open_of);
     *r = (closed_result){0};
 }

@@ -18,7 +18,8 @@ typedef struct closed_polygons {
 } closed_polygons;
 
 typedef struct closed_result {
-    bool *drop;        /* polygons: to be left out; owned */
+    bool *drop;  /* polygons: to be left out; owned */
+    bool *sheet; /* polygons: the first of those that cancel, all of which are dropped: two sides meet there; owned */
     int64_t *open_of;  /* surfaces: open edges of each; owned */
     int32_t first[2];  /* of an open surface: the first open edge, from one of the welded vertices to the other */
     int64_t open;      /* edges used an odd number of times, by polygons not dropped */

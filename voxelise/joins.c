@@ -1,0 +1,169 @@
+#include "voxelise/joins.h"
+
+#include "base/mem.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+int joins_create(joins *j, const voxels *x, const cuts *cut, const inside_triangles *t, const grid *g, int samples,
+                 err *e)
+{
+    *j = (joins){.x = x, .cut = cut, .samples = samples};
+    if (voxels_find_layers(x, &j->layer, e))
+        return -1;
+    j->first = mem_array(x->runs + 1, sizeof *j->first, "runs of voxels", e);
+    for (int64_t r = 0; j->first && r < x->runs; r++)
+        j->first[r + 1] = j->first[r] + x->run[r].to - x->run[r].from;
+    j->sight = j->first ? sight_create(t, g, samples, e) : NULL;
+    if (j->sight)
+        return 0;
+    joins_free(j);
+    return -1;
+}
+
+void joins_free(joins *j)
+{
+    voxels_layers_free(&j->layer);
+    free(j->first);
+    sight_destroy(j->sight);
+    *j = (joins){0};
+}
+
+int64_t joins_element(const joins *j, const int32_t *cell)
+{
+    const int64_t layer = cell[2] - j->layer.low;
+    if (layer < 0 || layer >= j->layer.count)
+        return -1;
+    int64_t low = j->layer.run[layer], high = j->layer.run[layer + 1];
+    while (low < high) {
+        const int64_t middle = low + (high - low) / 2;
+        const climb_run *r = &j->x->run[middle];
+        if (r->j < cell[1] || (r->j == cell[1] && r->to <= cell[0]))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const climb_run *r = &j->x->run[low];
+    if (low == j->layer.run[layer + 1] || r->j != cell[1] || r->from > cell[0])
+        return -1;
+    return j->first[low] + cell[0] - r->from;
+}
+
+/* ---- samples */
+
+static bool has_sample(const joins *j, const joins_part *p, const int32_t *at)
+{
+    const int64_t n = j->samples;
+    if (!p->cell)
+        return true;
+    return j->x->part.bits[p->cell->bits + (p->part * n + at[2]) * n + at[1]] >> at[0] & 1;
+}
+
+static double distance2(const int32_t *a, const double *b)
+{
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+/* The sample of a part that is nearest to a place, in samples from the voxel's first; the first of several. */
+static void nearest_sample(const joins *j, const joins_part *p, const double *place, int32_t *to)
+{
+    const int32_t n = j->samples;
+    double least = INFINITY;
+    int32_t at[3];
+    for (at[2] = 0; at[2] < n; at[2]++)
+        for (at[1] = 0; at[1] < n; at[1]++)
+            for (at[0] = 0; at[0] < n; at[0]++)
+                if (has_sample(j, p, at) && distance2(at, place) < least) {
+                    least = distance2(at, place);
+                    to[0] = at[0], to[1] = at[1], to[2] = at[2];
+                }
+}
+
+/* The nearest sample of `other` to one of `one`. */
+static void nearest_to(const joins *j, const joins_part *one, const int32_t *from, const joins_part *other, int32_t *to)
+{
+    double place[3];
+    for (int a = 0; a < 3; a++)
+        place[a] = from[a] + (double)(one->at[a] - other->at[a]) * j->samples;
+    nearest_sample(j, other, place, to);
+}
+
+/* Whether two near samples of two parts see each other: those that are found by going from what both voxels share to
+ * one part, from there to the other, and back. */
+static bool see_each_other(const joins *j, const joins_part *one, const joins_part *other)
+{
+    double middle[3];
+    int32_t from[3] = {0}, to[3] = {0};
+    int64_t a[3], b[3];
+    for (int i = 0; i < 3; i++)
+        middle[i] = ((other->at[i] - one->at[i] + 1) * (double)j->samples - 1) / 2;
+    nearest_sample(j, one, middle, from);
+    nearest_to(j, one, from, other, to);
+    nearest_to(j, other, to, one, from);
+    for (int i = 0; i < 3; i++) {
+        a[i] = (int64_t)one->at[i] * j->samples + from[i];
+        b[i] = (int64_t)other->at[i] * j->samples + to[i];
+    }
+    return !sight_blocked(j->sight, a, b);
+}
+
+/* ---- faces */
+
+/* The cuts through the face on the high side of a voxel along an axis: the first, and how many. */
+static int64_t face_cuts(const joins *j, const int32_t *cell, int axis, int64_t *from)
+{
+    const cuts *c = j->cut;
+    int64_t i = cuts_from(c, cell);
+    while (i < c->count && !cuts_order(c->cut[i].cell, cell) && c->cut[i].axis < axis)
+        i++;
+    *from = i;
+    while (i < c->count && !cuts_order(c->cut[i].cell, cell) && c->cut[i].axis == axis)
+        i++;
+    return i - *from;
+}
+
+static bool is_cut(const joins *j, int64_t from, int64_t count, const int32_t *at)
+{
+    const int32_t n = j->samples, sample = (at[2] * n + at[1]) * n + at[0];
+    for (int64_t i = from; i < from + count; i++)
+        if (j->cut->cut[i].sample == sample)
+            return true;
+    return false;
+}
+
+/* Across the face between two voxels, the second after the first along the axis. */
+static bool joined_by_face(const joins *j, const joins_part *one, const joins_part *other, int axis)
+{
+    const int32_t n = j->samples;
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    int64_t from;
+    const int64_t count = face_cuts(j, one->at, axis, &from);
+    bool opposite = false;
+    if (!count && !one->cell && !other->cell)
+        return true;
+    for (int32_t r = 0; r < n * n; r++) {
+        int32_t a[3], b[3];
+        a[u] = b[u] = r % n, a[v] = b[v] = r / n;
+        a[axis] = n - 1, b[axis] = 0;
+        if (!has_sample(j, one, a) || !has_sample(j, other, b))
+            continue;
+        if (!is_cut(j, from, count, a))
+            return true;
+        opposite = true;
+    }
+    return !opposite && see_each_other(j, one, other);
+}
+
+bool joins_are_joined(const joins *j, const joins_part *one, const joins_part *other)
+{
+    int axis = -1, apart = 0;
+    for (int a = 0; a < 3; a++)
+        if (one->at[a] != other->at[a]) {
+            axis = a;
+            apart++;
+        }
+    if (apart != 1)
+        return see_each_other(j, one, other);
+    return one->at[axis] < other->at[axis] ? joined_by_face(j, one, other, axis) : joined_by_face(j, other, one, axis);
+}
