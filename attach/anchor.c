@@ -105,11 +105,11 @@ static bool is_closest(const search *s, int64_t part, const double *centre, cons
     return true;
 }
 
-/* Lines 3 to 10: one voxel and one primitive. */
+/* Lines 3 to 10: one voxel and one primitive; each element of a voxel that a slit parts. */
 static void try_voxel(search *s, const int64_t *cell)
 {
-    int32_t element = lattice_element(&s->map, cell[0], cell[1], cell[2]);
-    if (element < 0)
+    const int32_t first = lattice_element(&s->map, cell[0], cell[1], cell[2]);
+    if (first < 0)
         return;
     double centre[3], p[3];
     centre_of(s, cell, centre);
@@ -118,7 +118,9 @@ static void try_voxel(search *s, const int64_t *cell)
         return;
     for (int64_t part = 0; part < s->shape.parts; part++) {
         double d = closest_part(&s->shape, part, centre, p);
-        if (d <= nearest + s->tie && is_closest(s, part, centre, p, d))
+        if (d > nearest + s->tie || !is_closest(s, part, centre, p, d))
+            continue;
+        for (int32_t element = first; element >= 0; element = lattice_next(&s->map, element))
             try_point(s, element, centre, p);
     }
 }

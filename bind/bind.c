@@ -3,6 +3,7 @@
 #include "base/num.h"
 #include "base/pool.h"
 #include "bind/nearest.h"
+#include "bind/side.h"
 #include "bind/tetra.h"
 #include "mesh/hexahedron.h"
 #include "mesh/weights.h"
@@ -48,6 +49,7 @@ static const opt_tool table = {
 /* What the surfaces are bound to. */
 typedef struct target {
     nearest voxels;   /* or */
+    side sides;       /* of slits between voxels */
     tetra tetrahedra; /* or hexahedra without a lattice */
     bool by_lattice;
     pool *threads;
@@ -62,6 +64,7 @@ typedef struct binding {
     const double *position; /* vertices x 3, m */
     int32_t *element;       /* vertices */
     double *weight;         /* vertices x 3 (voxels) or 4 */
+    const double *normal;   /* vertices x 3: of a surface that bounds slits; or NULL */
 } binding;
 
 static int check_model(const model *m, err *e)
@@ -83,12 +86,15 @@ static int target_open(target *to, const model *m, int threads, notes *warnings,
     if (to->tetrahedra.flat)
         notes_add(warnings, "%lld of the %s have no volume, and nothing is bound to them",
                   (long long)to->tetrahedra.flat, to->corners == 4 ? "tetrahedra" : "hexahedra");
+    if (to->by_lattice && side_create(&to->sides, m, &to->voxels, threads, e))
+        return -1;
     to->threads = pool_create(threads, e);
     return to->threads ? 0 : -1;
 }
 
 static void target_close(target *to)
 {
+    side_free(&to->sides);
     nearest_free(&to->voxels);
     tetra_free(&to->tetrahedra);
     if (to->threads)
@@ -98,7 +104,8 @@ static void target_close(target *to)
 static void bind_to_voxel(const binding *b, int64_t v)
 {
     const double *point = &b->position[3 * v];
-    b->element[v] = nearest_element(&b->to->voxels, point);
+    const double *normal = b->normal ? &b->normal[3 * v] : NULL;
+    b->element[v] = side_element(&b->to->sides, point, normal, nearest_element(&b->to->voxels, point));
     weights_box box = weights_box_of(&b->to->node[8 * (int64_t)b->element[v]], b->to->position);
     weights_of(&box, point, &b->weight[3 * v]);
 }
@@ -140,10 +147,10 @@ typedef struct outside {
 static double length_of(const target *to, int32_t element)
 {
     double longest = 0;
-    const double *side = to->voxels.grid.spacing;
+    const double *spacing = to->voxels.grid.spacing;
     const int32_t *node = &to->node[to->corners * (int64_t)element];
     if (to->by_lattice)
-        return fmax(fmax(side[0], side[1]), side[2]);
+        return fmax(fmax(spacing[0], spacing[1]), spacing[2]);
     for (int i = 0; i < to->corners; i++)
         for (int j = 0; j < i; j++) {
             double square = 0;
@@ -219,8 +226,13 @@ static int bind_surface(const tool *t, target *to, model *m, const char *name, n
         return -1;
     to->node = model_find(m, "element.node")->i32;
     to->position = model_find(m, "node.position")->f64;
-    binding b = {to, s.position, model_find(m, element)->i32, model_find(m, weight)->f64};
+    double *normal = to->sides.beside ? side_normals(&to->sides, &s, m, e) : NULL;
+    if (to->sides.beside && !normal)
+        return -1;
+    binding b = {to, s.position, model_find(m, element)->i32, model_find(m, weight)->f64, normal};
     pool_run(to->threads, s.vertices, 1024, bind_some, &b);
+    free(normal);
+    b.normal = NULL;
     if (warn_of_far(&b, &s, unit, warnings, e))
         return -1;
     tool_detail(t, "surface %s: %lld vertices bound", name, (long long)s.vertices);

@@ -278,6 +278,14 @@ static int add_shares(model *m, const voxels *x, err *e)
     return 0;
 }
 
+static int add_inside(model *m, const slits *s, err *e)
+{
+    model_array *a = s->inside ? model_add(m, "element.inside", e) : NULL;
+    if (a)
+        memcpy(a->f32, s->inside, (size_t)(3 * a->rows) * sizeof *s->inside);
+    return s->inside && !a ? -1 : 0;
+}
+
 int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, pool *threads, err *e)
 {
     voxels_layers layer;
@@ -293,7 +301,7 @@ int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, 
     if (atomic_load(&w.failed))
         err_memory(e, "a layer of nodes");
     else
-        status = x->fraction ? add_shares(m, x, e) : 0;
+        status = (x->fraction && add_shares(m, x, e)) || add_inside(m, s, e) ? -1 : 0;
 out:
     free(w.first);
     voxels_layers_free(&layer);

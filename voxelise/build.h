@@ -12,7 +12,8 @@
 #include "voxelise/voxels.h"
 
 /* Adds axes node and element, node.position, node.lattice, element.node, element.lattice and element.volume; by shares
- * element.fraction too, and element.mix and element.mixture where some element has a second volume. */
+ * element.fraction too, and element.mix and element.mixture where some element has a second volume, and
+ * element.inside where slits are open. */
 int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, pool *threads, err *e);
 
 /* Adds axis volume and its arrays; volumes have their numbers of the plan. */

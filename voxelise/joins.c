@@ -80,6 +80,30 @@ static void nearest_sample(const joins *j, const joins_part *p, const double *pl
                 }
 }
 
+double joins_distance2(const joins *j, const joins_part *p, const double *place)
+{
+    int32_t at[3] = {0};
+    nearest_sample(j, p, place, at);
+    return distance2(at, place);
+}
+
+void joins_middle(const joins *j, const joins_part *p, int32_t *to)
+{
+    const int32_t n = j->samples;
+    double sum[3] = {0}, count = 0;
+    int32_t at[3];
+    for (at[2] = 0; at[2] < n; at[2]++)
+        for (at[1] = 0; at[1] < n; at[1]++)
+            for (at[0] = 0; at[0] < n; at[0]++)
+                if (has_sample(j, p, at)) {
+                    sum[0] += at[0], sum[1] += at[1], sum[2] += at[2];
+                    count++;
+                }
+    for (int a = 0; a < 3; a++)
+        sum[a] /= count;
+    nearest_sample(j, p, sum, to);
+}
+
 /* The nearest sample of `other` to one of `one`. */
 static void nearest_to(const joins *j, const joins_part *one, const int32_t *from, const joins_part *other, int32_t *to)
 {

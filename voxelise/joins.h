@@ -34,6 +34,12 @@ typedef struct joins_part {
 /* The element in a voxel, or -1. */
 int64_t joins_element(const joins *j, const int32_t *cell);
 
+/* The squared distance from the nearest sample of a part to a place in its voxel, both in samples from its first. */
+double joins_distance2(const joins *j, const joins_part *p, const double *place);
+
+/* The sample of a part that is nearest to the middle of all of them. */
+void joins_middle(const joins *j, const joins_part *p, int32_t *to);
+
 /* Whether parts of two voxels that share a face, an edge or a corner, or of one voxel, hang together. */
 bool joins_are_joined(const joins *j, const joins_part *one, const joins_part *other);
 

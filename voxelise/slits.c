@@ -5,6 +5,7 @@
 #include "voxelise/contacts.h"
 #include "voxelise/split.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,6 +15,8 @@ typedef struct item {
     int64_t number; /* of the part among those of voxels of several; -1: its voxel has one */
     int8_t corner;  /* of its element */
     int32_t group;  /* the lowest item that it hangs together with */
+    int32_t next;   /* the group that it goes to */
+    bool left;      /* it leaves its group */
 } item;
 
 typedef struct work {
@@ -22,6 +25,7 @@ typedef struct work {
     split parts;
     bool *alone;    /* parts: at no point does it hang together with another voxel */
     int32_t *group; /* parts x 8: which of a corner's nodes it has */
+    bool separate;  /* elements of one voxel share no node */
     item *item;     /* at one point */
     int64_t items, capacity;
 } work;
@@ -41,7 +45,9 @@ static int add_items(work *w, const int32_t *cell, int corner, err *e)
         w->item[w->items++] = (item){{{cell[0], cell[1], cell[2]}, element, p, n},
                                      count > 1 ? split_number(&w->parts, p) + n : -1,
                                      (int8_t)corner,
-                                     0};
+                                     0,
+                                     0,
+                                     false};
     return 0;
 }
 
@@ -114,11 +120,82 @@ static void unite_items(work *w)
             }
 }
 
+/* ---- the end of a slit, where parts of one voxel are still joined by what lies before it */
+
+static bool same_element(const work *w, const item *a, const item *b)
+{
+    return !apart(a, b) && (a->number == b->number || split_are_one(&w->parts, a->number, b->number));
+}
+
+/* How near an item's element comes to the point. */
+static double distance2(const work *w, const item *of)
+{
+    double least = INFINITY, place[3];
+    for (int a = 0; a < 3; a++)
+        place[a] = lattice_vtk[of->corner][a] * (double)w->j.samples - .5;
+    for (int64_t i = 0; i < w->items; i++)
+        if (same_element(w, &w->item[i], of))
+            least = fmin(least, joins_distance2(&w->j, &w->item[i].part, place));
+    return least;
+}
+
+/* Whether another element of the same voxel and group comes nearer to the point. */
+static bool gives_way(const work *w, const item *a)
+{
+    for (int64_t i = 0; a->number >= 0 && i < w->items; i++) {
+        const item *b = &w->item[i];
+        if (apart(a, b) || b->group != a->group || same_element(w, a, b))
+            continue;
+        const double own = distance2(w, a), other = distance2(w, b);
+        if (other < own || (other == own && b->number < a->number))
+            return true;
+    }
+    return false;
+}
+
+/* The items that are marked leave their groups, and are groups of their own. */
+static void leave(work *w)
+{
+    for (int64_t i = 0; i < w->items; i++) {
+        item *a = &w->item[i];
+        int64_t lowest = 0;
+        while (w->item[lowest].left != a->left || w->item[lowest].group != a->group)
+            lowest++;
+        a->next = (int32_t)(a->left ? i : lowest);
+    }
+    for (int64_t i = 0; i < w->items; i++)
+        w->item[i].group = w->item[i].next;
+    for (int far = 0; far <= 3; far++)
+        for (int64_t i = 0; i < w->items; i++)
+            for (int64_t k = i + 1; k < w->items; k++) {
+                const item *a = &w->item[i], *b = &w->item[k];
+                if (a->left && b->left && a->group != b->group && apart(a, b) == far && hang_together(w, a, b, far))
+                    unite(w, i, k);
+            }
+}
+
+/* Of elements of one voxel, only the nearest keeps a node that they would share, so that no node is in two of them, nor
+ * in more than eight elements: the tip is held by the nodes on either side of the slit. */
+static void separate(work *w)
+{
+    for (bool any = true; any;) {
+        any = false;
+        for (int64_t i = 0; i < w->items; i++) {
+            w->item[i].left = gives_way(w, &w->item[i]);
+            any = any || w->item[i].left;
+        }
+        if (any)
+            leave(w);
+    }
+}
+
 static int look_at(work *w, const int32_t *place, err *e)
 {
     if (take_items(w, place, e))
         return -1;
     unite_items(w);
+    if (w->separate)
+        separate(w);
     return 0;
 }
 
@@ -188,6 +265,19 @@ static void unite_same(work *w)
     }
 }
 
+static int find_alone(work *w, err *e)
+{
+    for (int64_t i = 0; i < w->parts.parts; i++)
+        w->alone[i] = true;
+    for (int64_t i = 0; i < w->at.count; i++) {
+        if (look_at(w, w->at.point[i], e))
+            return -1;
+        take_alone(w);
+    }
+    unite_alone(w);
+    return 0;
+}
+
 static int join_parts(work *w, err *e)
 {
     const int64_t count = w->parts.parts;
@@ -196,21 +286,16 @@ static int join_parts(work *w, err *e)
     if (!w->group)
         return -1;
     unite_seen(w);
-    for (int64_t i = 0; i < count; i++)
-        w->alone[i] = true;
-    for (int64_t i = 0; i < w->at.count; i++) {
-        if (look_at(w, w->at.point[i], e))
-            return -1;
-        take_alone(w);
-    }
-    unite_alone(w);
+    if (find_alone(w, e))
+        return -1;
     for (int64_t i = 0; i < w->at.count; i++) {
         if (look_at(w, w->at.point[i], e))
             return -1;
         take_groups(w);
     }
     unite_same(w);
-    return 0;
+    w->separate = true;
+    return find_alone(w, e);
 }
 
 /* ---- nodes */
@@ -254,6 +339,35 @@ static int add_points(slits *s, work *w, err *e)
     return 0;
 }
 
+/* ---- a place that is inside */
+
+static void put_inside(const work *w, const joins_part *p, float *to)
+{
+    int32_t at[3] = {0};
+    joins_middle(&w->j, p, at);
+    for (int a = 0; a < 3; a++)
+        to[a] = (float)((at[a] + .5) / w->j.samples);
+}
+
+/* Of each element the sample nearest to the middle of those of its first part. */
+static int find_inside(slits *s, const work *w, err *e)
+{
+    const parts_list *l = &w->j.x->part;
+    const int64_t elements = w->j.x->elements + w->parts.before[l->cells];
+    s->inside = mem_array(3 * elements, sizeof *s->inside, "slits", e);
+    for (int64_t i = 0; s->inside && i < 3 * elements; i++)
+        s->inside[i] = .5F;
+    for (int64_t c = 0; s->inside && c < l->cells; c++) {
+        const parts_cell *p = &l->cell[c];
+        const int64_t number = p->parts > 1 ? split_number(&w->parts, p) : -1;
+        for (int32_t n = p->parts - 1; n >= 0; n--) {
+            const joins_part part = {{p->cell[0], p->cell[1], p->cell[2]}, p->element, p, n};
+            put_inside(w, &part, &s->inside[3 * split_element(&w->parts, p->element, number < 0 ? -1 : number + n)]);
+        }
+    }
+    return s->inside ? 0 : -1;
+}
+
 int slits_find(slits *s, voxels *x, const cuts *cut, const inside_triangles *t, const grid *g, int samples,
                int32_t volumes, err *e)
 {
@@ -265,7 +379,8 @@ int slits_find(slits *s, voxels *x, const cuts *cut, const inside_triangles *t, 
         split_create(&w.parts, &x->part, e) || join_parts(&w, e))
         goto out;
     split_number_elements(&w.parts);
-    if (add_points(s, &w, e) || split_voxels(&w.parts, x, samples, volumes, e))
+    if (add_points(s, &w, e) || (s->nodes && samples > 1 && find_inside(s, &w, e)) ||
+        split_voxels(&w.parts, x, samples, volumes, e))
         goto out;
     s->elements = x->elements - before;
     status = 0;
@@ -286,5 +401,6 @@ void slits_free(slits *s)
 {
     free(s->point);
     free(s->corner);
+    free(s->inside);
     *s = (slits){0};
 }

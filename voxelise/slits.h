@@ -27,6 +27,7 @@ typedef struct slits {
     int64_t points, corners, point_capacity, corner_capacity;
     int64_t nodes;    /* more than without slits */
     int64_t elements; /* likewise */
+    float *inside;    /* elements x 3, by shares: a place in each that is inside, in sides of a voxel; NULL: no slits */
 } slits;
 
 /* Finds the points, and splits voxels in x, whose lists of parts are freed. t: the triangles of level 0. g: the lattice

@@ -16,6 +16,7 @@
 #include "voxelise/summary.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -352,6 +353,28 @@ static double in_metres(const job *j, double length)
     return num_length_in((num_length){length, j->unit}, j->unit, num_unit_of("m"));
 }
 
+/* The surfaces that slits lie between, for bind: those of level 0. */
+static int say_slits(const job *j, const char *name, model *m, err *e)
+{
+    const volumes *v = &j->plan;
+    bool *bounds = mem_array(v->surfaces, sizeof *bounds, "surfaces", e);
+    size_t size = 1;
+    for (int64_t i = 0; bounds && i < v->members; i++)
+        bounds[v->member[i].surface] |= v->volume[v->member[i].volume].level == 0;
+    for (int32_t s = 0; bounds && s < v->surfaces; s++)
+        size += strlen(v->surface[s].name) + 1;
+    char *names = bounds ? mem_array((int64_t)size, 1, "surfaces", e) : NULL;
+    char *end = names;
+    for (int32_t s = 0; names && s < v->surfaces; s++)
+        if (bounds[s])
+            end += snprintf(end, size - (size_t)(end - names), "%s%s", end == names ? "" : " ", v->surface[s].name);
+    const int status =
+        !names || model_meta_set(m, "slits.surface", name, e) || model_meta_set(m, "slits.groups", names, e) ? -1 : 0;
+    free(bounds);
+    free(names);
+    return status;
+}
+
 static int make_model(const job *j, model *m, err *e)
 {
     lattice l;
@@ -362,7 +385,8 @@ static int make_model(const job *j, model *m, err *e)
     }
     surface_name(j->o->common.anonymous ? "surface_1" : j->path, name, sizeof name);
     if (model_meta_set(m, "source.unit", num_unit_name(j->unit), e) || lattice_save(&l, m, e) ||
-        build_elements(m, &j->x, &j->slit, &l, j->threads, e) || build_volumes(m, &j->plan, e))
+        build_elements(m, &j->x, &j->slit, &l, j->threads, e) || build_volumes(m, &j->plan, e) ||
+        (j->slit.nodes && say_slits(j, name, m, e)))
         return -1;
     return surface_add(m, name, &j->surface, in_metres(j, 1), e);
 }

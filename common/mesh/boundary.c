@@ -48,18 +48,41 @@ static int add(boundary *b, const elements *x, int64_t element, int side, err *e
 
 /* ---- in a lattice the neighbours are known */
 
+/* Whether two elements that are beside each other have all nodes of the face between them: not across a slit. */
+static bool share_face(const elements *x, int64_t element, int side, int64_t beside)
+{
+    for (int i = 0; i < 4; i++) {
+        const int corner = hexahedron[side][i];
+        int opposite = 0;
+        while (lattice_vtk[opposite][side / 2] == lattice_vtk[corner][side / 2] ||
+               lattice_vtk[opposite][(side / 2 + 1) % 3] != lattice_vtk[corner][(side / 2 + 1) % 3] ||
+               lattice_vtk[opposite][(side / 2 + 2) % 3] != lattice_vtk[corner][(side / 2 + 2) % 3])
+            opposite++;
+        if (x->node[8 * element + corner] != x->node[8 * beside + opposite])
+            return false;
+    }
+    return true;
+}
+
+/* Whether one of the elements in the cell on that side covers the element's face. */
+static bool is_covered(const elements *x, const lattice_map *map, const int32_t *cell, int64_t element, int side)
+{
+    int64_t at[3] = {cell[3 * element], cell[3 * element + 1], cell[3 * element + 2]};
+    at[side / 2] += side % 2 ? 1 : -1;
+    for (int32_t n = lattice_element(map, at[0], at[1], at[2]); n >= 0; n = lattice_next(map, n))
+        if (counts(x, n) && share_face(x, element, side, n))
+            return true;
+    return false;
+}
+
 static int of_lattice(boundary *b, const elements *x, const model *m, const int32_t *cell, err *e)
 {
     lattice_map map = {0};
     int bad = lattice_map_build(&map, m, e);
     for (int64_t n = 0; n < x->count && !bad; n++)
-        for (int side = 0; side < 6 && kept(x, n) && !bad; side++) {
-            int64_t at[3] = {cell[3 * n], cell[3 * n + 1], cell[3 * n + 2]};
-            at[side / 2] += side % 2 ? 1 : -1;
-            int32_t beside = lattice_element(&map, at[0], at[1], at[2]);
-            if (beside < 0 || !counts(x, beside))
+        for (int side = 0; side < 6 && kept(x, n) && !bad; side++)
+            if (!is_covered(x, &map, cell, n, side))
                 bad = add(b, x, n, side, e);
-        }
     lattice_map_free(&map);
     return bad;
 }

@@ -57,18 +57,32 @@ static int64_t cells_covered(lattice_map *map, const int32_t *ijk, int64_t eleme
     return cells;
 }
 
-/* Enters each element into its cell. */
+/* Puts an element before another one of its cell. */
+static int chain(lattice_map *map, int32_t element, int32_t before, int64_t elements, err *e)
+{
+    if (!map->next) {
+        map->next = mem_array(elements, sizeof *map->next, "the cells of the lattice", e);
+        if (!map->next)
+            return -1;
+        for (int64_t n = 0; n < elements; n++)
+            map->next[n] = -1;
+    }
+    map->next[element] = before;
+    return 0;
+}
+
+/* Enters each element into its cell: from the highest, so that the lowest of a cell is its first. */
 static int fill(lattice_map *map, const int32_t *ijk, int64_t elements, err *e)
 {
-    for (int64_t n = 0; n < elements; n++) {
+    for (int64_t n = elements - 1; n >= 0; n--) {
         int64_t at[3];
         for (int a = 0; a < 3; a++)
             at[a] = (int64_t)ijk[3 * n + a] - map->low[a];
         int32_t *cell = &map->element[(at[2] * map->size[1] + at[1]) * map->size[0] + at[0]];
-        if (*cell >= 0)
-            return err_set(e, NULL, 0, "element.lattice: elements %d and %lld are in the same cell %d %d %d", *cell,
-                           (long long)n, ijk[3 * n], ijk[3 * n + 1], ijk[3 * n + 2]);
+        const int32_t last = *cell;
         *cell = (int32_t)n;
+        if (last >= 0 && chain(map, (int32_t)n, last, elements, e))
+            return -1;
     }
     return 0;
 }
@@ -104,5 +118,6 @@ int lattice_map_build(lattice_map *map, const model *m, err *e)
 void lattice_map_free(lattice_map *map)
 {
     free(map->element);
+    free(map->next);
     *map = (lattice_map){0};
 }

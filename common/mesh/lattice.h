@@ -33,14 +33,21 @@ extern const int32_t lattice_vtk[8][3];
 
 typedef struct lattice_map {
     int32_t low[3], size[3]; /* cells covered: low to low + size - 1 */
-    int32_t *element;        /* size[2] x size[1] x size[0], i fastest; -1: none */
+    int32_t *element;        /* size[2] x size[1] x size[0], i fastest: the lowest in a cell; -1: none */
+    int32_t *next;           /* elements: the next higher one in the same cell, or -1; NULL: no cell has several */
 } lattice_map;
 
-/* Builds the lookup from element.lattice. -1 with e filled where two elements share a cell, or on no memory. */
+/* Builds the lookup from element.lattice. -1 with e filled on no memory, and on cells too far apart. */
 int lattice_map_build(lattice_map *map, const model *m, err *e);
 void lattice_map_free(lattice_map *map);
 
-/* The element in a cell, or -1. */
+/* The next element in the cell of an element, or -1: where a slit parts a cell. */
+static inline int32_t lattice_next(const lattice_map *map, int32_t element)
+{
+    return map->next ? map->next[element] : -1;
+}
+
+/* The lowest element in a cell, or -1. */
 static inline int32_t lattice_element(const lattice_map *map, int64_t i, int64_t j, int64_t k)
 {
     i -= map->low[0], j -= map->low[1], k -= map->low[2];

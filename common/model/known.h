@@ -63,6 +63,8 @@ typedef struct known {
       "second volume that it is mixed of, -1 = none")                                                                  \
     X("element.mixture", MODEL_F32, "1", "element", 1, 1, 0, KNOWN_FROM, 0, 1, "voxelise",                             \
       "share of what is enclosed that is of element.mix; the rest is of element.volume")                               \
+    X("element.inside", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_FROM, 0, 1, "voxelise",                              \
+      "a place in it that the surfaces enclose, in shares of its sides; without the array its centre")                 \
     X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "attach",                            \
       "unit direction of contraction; 0 0 0 where there is none")                                                      \
     X("element.mixfibre", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "attach",                         \
