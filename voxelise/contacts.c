@@ -46,7 +46,7 @@ static int add_cut_faces(contacts *c, const joins *j, err *e)
 
 /* ---- voxels that are not all inside */
 
-static int add_face(contacts *c, const joins *j, const joins_part *one, int axis, int side, err *e)
+static int add_face(contacts *c, joins *j, const joins_part *one, int axis, int side, err *e)
 {
     joins_part other = {.at = {one->at[0], one->at[1], one->at[2]}};
     other.at[axis] += side ? 1 : -1;
@@ -59,7 +59,7 @@ static int add_face(contacts *c, const joins *j, const joins_part *one, int axis
     return add_corners(c, side ? one->at : other.at, axis, e);
 }
 
-static int add_parts(contacts *c, const joins *j, err *e)
+static int add_parts(contacts *c, joins *j, err *e)
 {
     for (int64_t i = 0; i < j->x->part.cells; i++) {
         const parts_cell *p = &j->x->part.cell[i];
@@ -177,7 +177,7 @@ static int by_place(const void *a, const void *b)
     return cuts_order(a, b);
 }
 
-int contacts_find(contacts *c, const joins *j, err *e)
+int contacts_find(contacts *c, joins *j, err *e)
 {
     *c = (contacts){0};
     if (add_cut_faces(c, j, e) || add_parts(c, j, e) || add_touching(c, j, e)) {

@@ -11,7 +11,7 @@ typedef struct contacts {
     int64_t count, capacity;
 } contacts;
 
-int contacts_find(contacts *c, const joins *j, err *e);
+int contacts_find(contacts *c, joins *j, err *e);
 void contacts_free(contacts *c);
 
 #endif

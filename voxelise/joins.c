@@ -1,6 +1,7 @@
 #include "voxelise/joins.h"
 
 #include "base/mem.h"
+#include "surface/hash.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,6 +27,7 @@ void joins_free(joins *j)
     voxels_layers_free(&j->layer);
     free(j->first);
     sight_destroy(j->sight);
+    free(j->table);
     *j = (joins){0};
 }
 
@@ -163,7 +165,6 @@ static bool joined_by_face(const joins *j, const joins_part *one, const joins_pa
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     int64_t from;
     const int64_t count = face_cuts(j, one->at, axis, &from);
-    bool opposite = false;
     if (!count && !one->cell && !other->cell)
         return true;
     for (int32_t r = 0; r < n * n; r++) {
@@ -174,12 +175,11 @@ static bool joined_by_face(const joins *j, const joins_part *one, const joins_pa
             continue;
         if (!is_cut(j, from, count, a))
             return true;
-        opposite = true;
     }
-    return !opposite && see_each_other(j, one, other);
+    return see_each_other(j, one, other);
 }
 
-bool joins_are_joined(const joins *j, const joins_part *one, const joins_part *other)
+static bool look(const joins *j, const joins_part *one, const joins_part *other)
 {
     int axis = -1, apart = 0;
     for (int a = 0; a < 3; a++)
@@ -190,4 +190,62 @@ bool joins_are_joined(const joins *j, const joins_part *one, const joins_part *o
     if (apart != 1)
         return see_each_other(j, one, other);
     return one->at[axis] < other->at[axis] ? joined_by_face(j, one, other, axis) : joined_by_face(j, other, one, axis);
+}
+
+/* ---- what has been looked at */
+
+static uint64_t hash_of(const joins_known *k)
+{
+    uint64_t h = hash_next(0, (uint64_t)k->one);
+    h = hash_next(h, (uint64_t)k->other);
+    return hash_next(h, (uint64_t)k->part << 32 | (uint64_t)k->other_part);
+}
+
+/* Where a pair is in the table, or may be put. */
+static joins_known *slot_of(joins_known *table, int64_t size, const joins_known *k)
+{
+    uint64_t at = hash_of(k) & (uint64_t)(size - 1);
+    while (table[at].one && (table[at].one != k->one || table[at].other != k->other || table[at].part != k->part ||
+                             table[at].other_part != k->other_part))
+        at = (at + 1) & (uint64_t)(size - 1);
+    return &table[at];
+}
+
+/* Makes the table so large that at most half of it is filled. Where there is no memory it stays, and less is known. */
+static bool make_room(joins *j)
+{
+    enum { LEAST = 1024 };
+    err ignored = {0};
+    const int64_t size = j->size ? 2 * j->size : LEAST;
+    if (2 * (j->known + 1) <= j->size)
+        return true;
+    joins_known *table = mem_array(size, sizeof *table, "slits", &ignored);
+    if (!table)
+        return false;
+    for (int64_t i = 0; i < j->size; i++)
+        if (j->table[i].one)
+            *slot_of(table, size, &j->table[i]) = j->table[i];
+    free(j->table);
+    j->table = table;
+    j->size = size;
+    return true;
+}
+
+/* Each pair is asked for at several points. */
+bool joins_are_joined(joins *j, const joins_part *one, const joins_part *other)
+{
+    if (one->element > other->element || (one->element == other->element && one->part > other->part)) {
+        const joins_part *swap = one;
+        one = other, other = swap;
+    }
+    joins_known k = {one->element + 1, other->element + 1, one->part, other->part, false};
+    if (!make_room(j))
+        return look(j, one, other);
+    joins_known *slot = slot_of(j->table, j->size, &k);
+    if (!slot->one) {
+        k.joined = look(j, one, other);
+        *slot = k;
+        j->known++;
+    }
+    return slot->joined;
 }

@@ -9,13 +9,22 @@
 #include "voxelise/sight.h"
 #include "voxelise/voxels.h"
 
+/* Whether two parts hang together, the part of the lower element first. */
+typedef struct joins_known {
+    int64_t one, other; /* elements + 1; 0: an empty place */
+    int32_t part, other_part;
+    bool joined;
+} joins_known;
+
 typedef struct joins {
     const voxels *x;
     voxels_layers layer; /* owned */
     int64_t *first;      /* runs: the first element of each; owned */
     const cuts *cut;
-    int samples;  /* N; 1: by centres */
-    sight *sight; /* owned */
+    int samples;        /* N; 1: by centres */
+    sight *sight;       /* owned */
+    joins_known *table; /* of so many places, a power of 2; owned */
+    int64_t size, known;
 } joins;
 
 /* t: the triangles of level 0. g: the lattice of samples. */
@@ -41,6 +50,6 @@ double joins_distance2(const joins *j, const joins_part *p, const double *place)
 void joins_middle(const joins *j, const joins_part *p, int32_t *to);
 
 /* Whether parts of two voxels that share a face, an edge or a corner, or of one voxel, hang together. */
-bool joins_are_joined(const joins *j, const joins_part *one, const joins_part *other);
+bool joins_are_joined(joins *j, const joins_part *one, const joins_part *other);
 
 #endif

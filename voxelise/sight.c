@@ -213,6 +213,17 @@ static void meet(line *l, int64_t triangle)
     l->volume[l->count++] = l->s->t.volume[triangle];
 }
 
+/* Not fmin and fmax, which are calls. */
+static double lower(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double higher(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* Whether a line from `begin` to `end` of it, as shares, comes into a box. */
 static bool comes_into(const line *l, const span *b, double begin, double end)
 {
@@ -225,8 +236,11 @@ static bool comes_into(const line *l, const span *b, double begin, double end)
                 return false;
             continue;
         }
-        first = fmax(first, fmin(low / step, high / step));
-        last = fmin(last, fmax(low / step, high / step));
+        const double one = low / step, other = high / step;
+        first = higher(first, lower(one, other));
+        last = lower(last, higher(one, other));
+        if (first > last)
+            return false;
     }
     return first <= last;
 }
@@ -250,17 +264,17 @@ static void meet_all(line *l, double begin, double end)
     }
 }
 
-static line line_of(const sight *s, const int64_t *from, const int64_t *to)
+static line line_of(const sight *s, const double *from, const double *to)
 {
     line l = {.s = s};
     for (int a = 0; a < 3; a++)
-        if (llabs(to[a] - from[a]) > llabs(to[l.axis] - from[l.axis]))
+        if (fabs(to[a] - from[a]) > fabs(to[l.axis] - from[l.axis]))
             l.axis = a;
     l.u = (l.axis + 1) % 3, l.v = (l.axis + 2) % 3;
-    l.length = (double)(to[l.axis] - from[l.axis]);
+    l.length = to[l.axis] - from[l.axis];
     for (int a = 0; a < 3; a++) {
-        l.from[a] = (double)from[a] + .5 + moved[a];
-        l.step[a] = (double)(to[a] - from[a]) / l.length;
+        l.from[a] = from[a] + .5 + moved[a];
+        l.step[a] = (to[a] - from[a]) / l.length;
     }
     return l;
 }
@@ -303,15 +317,51 @@ static bool leaves_all(line *l)
     return false;
 }
 
-bool sight_blocked(const sight *s, const int64_t *from, const int64_t *to)
+/* How often a line meets a surface. */
+static int count_met(line *l)
+{
+    int met = 0;
+    if (l->length == 0)
+        return 0;
+    meet_all(l, 0, 1);
+    for (int i = 0; i < l->count; i++)
+        met += l->at[i] > 0 && l->at[i] < 1;
+    return met;
+}
+
+/* Whether a line meets nothing. */
+static bool is_clear(const sight *s, const double *from, const double *to)
 {
     line l = line_of(s, from, to);
-    int met = 0;
-    if (l.length == 0)
-        return false;
-    meet_all(&l, 0, 1);
-    for (int i = 0; i < l.count; i++)
-        met += l.at[i] > 0 && l.at[i] < 1;
+    return !count_met(&l);
+}
+
+/* Whether there is a way by a third place: between the middle and a corner of the box that the two ends span, which is
+ * half as wide as it is long where they do not differ. */
+static bool has_way(const sight *s, const double *from, const double *to)
+{
+    enum { STEPS = 2 };
+    double longest = 0;
+    for (int a = 0; a < 3; a++)
+        longest = fmax(longest, fabs(to[a] - from[a]));
+    for (int corner = 0; corner < 8; corner++)
+        for (int step = 1; step <= STEPS; step++) {
+            double by[3];
+            for (int a = 0; a < 3; a++) {
+                const double half = from[a] != to[a] ? (to[a] - from[a]) / 2 : longest / 4;
+                by[a] = (from[a] + to[a]) / 2 + (corner >> a & 1 ? half : -half) * step / STEPS;
+            }
+            if (is_clear(s, from, by) && is_clear(s, by, to))
+                return true;
+        }
+    return false;
+}
+
+bool sight_blocked(const sight *s, const int64_t *from, const int64_t *to)
+{
+    const double a[3] = {(double)from[0], (double)from[1], (double)from[2]};
+    const double b[3] = {(double)to[0], (double)to[1], (double)to[2]};
+    line l = line_of(s, a, b);
     /* Once: a place that lies on a surface but for rounding. */
-    return met > 1 && (s->volumes < 2 || leaves_all(&l));
+    return count_met(&l) > 1 && (s->volumes < 2 || leaves_all(&l)) && !has_way(s, a, b);
 }

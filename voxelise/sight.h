@@ -16,7 +16,8 @@ typedef struct sight sight;
 sight *sight_create(const inside_triangles *t, const grid *g, int samples, err *e);
 void sight_destroy(sight *s);
 
-/* Whether the line from one sample to another, both inside of level 0, leaves it. */
+/* Whether the line from one sample to another, both inside of level 0, leaves it, and so does each of some lines by way
+ * of a third place: about a corner of bone, tissue is one piece. */
 bool sight_blocked(const sight *s, const int64_t *from, const int64_t *to);
 
 #endif

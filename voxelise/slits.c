@@ -101,7 +101,7 @@ static bool is_between(const work *w, const item *a, const item *b)
     return false;
 }
 
-static bool hang_together(const work *w, const item *a, const item *b, int far)
+static bool hang_together(work *w, const item *a, const item *b, int far)
 {
     if (!far)
         return split_are_one(&w->parts, a->number, b->number);

@@ -30,7 +30,7 @@ typedef enum opt_kind {
     OPT_NUMBER,  /* double within low..high; the caller's default NAN means: not given */
     OPT_LENGTHS, /* opt_lengths: 1 to `high` lengths between commas, each with its suffix or none */
     OPT_NUMBERS, /* opt_numbers: `low` to `high` numbers between commas */
-    OPT_CHOICE,  /* int: the index in `choices` (names between '|') */
+    OPT_CHOICE,  /* int: the index in `choices` (names between '|'); below 0, of the caller's: not given */
     OPT_LIST     /* opt_list: may be given again; each value is split at its commas by whoever reads it */
 } opt_kind;
 

@@ -156,7 +156,8 @@ static void put_value(const opt *o, const void *options, out *to)
     if ((o->kind == OPT_FLAG && !*(const bool *)at) || (o->kind == OPT_TEXT && !*(const char *const *)at) ||
         (o->kind == OPT_LENGTHS && !((const opt_lengths *)at)->count) ||
         (o->kind == OPT_NUMBERS && !((const opt_numbers *)at)->count) ||
-        (o->kind == OPT_NUMBER && isnan(*(const double *)at)) || (o->kind == OPT_INT && *(const int64_t *)at < 0))
+        (o->kind == OPT_NUMBER && isnan(*(const double *)at)) || (o->kind == OPT_INT && *(const int64_t *)at < 0) ||
+        (o->kind == OPT_CHOICE && *(const int *)at < 0))
         return;
     if (o->kind == OPT_LIST) {
         for (int i = 0; i < list->count; i++) {

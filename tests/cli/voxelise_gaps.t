@@ -9,7 +9,7 @@ export SINEW_THREADS=2
 
 # vox ARGS...: the elements, and what is said of gaps and layers: "COUNT PLACE WIDTH VOXEL", or "none".
 vox() {
-    voxelise --unit mm -o "$T/m" "$@" 2>"$T/said" || diag_file "$T/said"
+    voxelise --unit mm --slits off -o "$T/m" "$@" 2>"$T/said" || diag_file "$T/said"
     sed -n 's/^voxelise: \([0-9]*\) elements, .*/\1:/p' "$T/said" | tr '\n' ' '
     said=$(sed -n 's/^voxelise: warning: elements fill gaps between surfaces in \([0-9]*\) places\{0,1\} .* as at \([^ ]*\), where the gap is \([^ ]*\) mm wide along \(.\): .* voxels of at most \(.*\) mm separate them in half.*/\1 \2 \3 \4 \5/p' "$T/said")
     echo "${said:-none}"
@@ -123,7 +123,7 @@ done
 # filled PLATES TIMES: gaps between so many plates, so often; a processor's seconds in all.
 filled() {
     (for _ in $(seq "$2"); do
-        SINEW_THREADS=1 voxelise -q --unit mm -s 1 --fraction 2 -o "$T/m" "$T/plates$1.obj" 2>"$T/said" || exit
+        SINEW_THREADS=1 voxelise -q --unit mm -s 1 --fraction 2 --slits off -o "$T/m" "$T/plates$1.obj" 2>"$T/said" || exit
     done && times) | tail -n 1 | sed 's/m/ /; s/s .*//' | awk '{ print 60 * $1 + $2 }'
 }
 for plates in 2000 16000; do
