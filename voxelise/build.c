@@ -3,6 +3,7 @@
 #include "base/mem.h"
 
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -327,4 +328,24 @@ int build_volumes(model *m, const volumes *plan, err *e)
         added(m, "volume.muscle")->u8[v] = a->muscle;
     }
     return 0;
+}
+
+int build_slits(model *m, const volumes *v, const char *name, err *e)
+{
+    bool *bounds = mem_array(v->surfaces, sizeof *bounds, "surfaces", e);
+    size_t size = 1;
+    for (int64_t i = 0; bounds && i < v->members; i++)
+        bounds[v->member[i].surface] |= v->volume[v->member[i].volume].level == 0;
+    for (int32_t s = 0; bounds && s < v->surfaces; s++)
+        size += strlen(v->surface[s].name) + 1;
+    char *names = bounds ? mem_array((int64_t)size, 1, "surfaces", e) : NULL;
+    char *end = names;
+    for (int32_t s = 0; names && s < v->surfaces; s++)
+        if (bounds[s])
+            end += snprintf(end, size - (size_t)(end - names), "%s%s", end == names ? "" : " ", v->surface[s].name);
+    const int status =
+        !names || model_meta_set(m, "slits.surface", name, e) || model_meta_set(m, "slits.groups", names, e) ? -1 : 0;
+    free(bounds);
+    free(names);
+    return status;
 }

@@ -19,4 +19,8 @@ int build_elements(model *m, const voxels *x, const slits *s, const lattice *l, 
 /* Adds axis volume and its arrays; volumes have their numbers of the plan. */
 int build_volumes(model *m, const volumes *plan, err *e);
 
+/* Adds metadata for bind: the surface that slits lie between, by its name in the model, and those of its names that
+ * bound level 0. */
+int build_slits(model *m, const volumes *v, const char *name, err *e);
+
 #endif

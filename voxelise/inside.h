@@ -11,7 +11,7 @@
 #define SINEW_INSIDE_H
 
 #include "base/pool.h"
-#include "voxelise/crossing.h"
+#include "voxelise/surfaces/crossing.h"
 
 /* Triangles of closed volumes, in the grid's unit: all borrowed. */
 typedef struct inside_triangles {

@@ -36,7 +36,7 @@ void joins_free(joins *j);
 typedef struct joins_part {
     int32_t at[3]; /* the voxel */
     int64_t element;
-    const parts_cell *cell; /* NULL: all samples are inside, and of one part */
+    const pieces_cell *cell; /* NULL: all samples are inside, and of one part */
     int32_t part;
 } joins_part;
 

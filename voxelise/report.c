@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void line(out *o, const char *what)
@@ -134,6 +135,14 @@ void report_volume_row(text_table *t, const volumes_volume *v, int64_t open)
     text_table_cell(t, "%s", v->surfaces);
 }
 
+int report_table(out *to, const text_table *rows, err *e)
+{
+    char *lines = text_table_lines(rows, e);
+    out_text(to, lines ? lines : "");
+    free(lines);
+    return lines ? 0 : -1;
+}
+
 void report_warn(notes *n, listing *thin, const char *what, const char *name, const check_result *r)
 {
     if (r->met)
@@ -163,6 +172,19 @@ void report_sides(const obj *o, double side[3])
     obj_box(o, low, high);
     for (int a = 0; a < 3; a++)
         side[a] = high[a] - low[a];
+}
+
+/* The extents that the polygons would have in m if the OBJ were in mm, and if it were in m; what else it may be in is
+ * for the user to know. */
+int report_ask_for_unit(const obj *o, err *e)
+{
+    double d[3];
+    report_sides(o, d);
+    return err_usage(
+        e,
+        "%s: an OBJ does not say its unit: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "
+        "%.4g m; expected --unit mm|cm|m|in|um",
+        o->name, d[0] / 1e3, d[1] / 1e3, d[2] / 1e3, d[0], d[1], d[2]);
 }
 
 /* ---- gaps that elements fill */

@@ -28,6 +28,9 @@ void report_surface_row(text_table *t, const char *name, const check_result *r, 
 text_table *report_volumes(err *e);
 void report_volume_row(text_table *t, const volumes_volume *v, int64_t open);
 
+/* Writes a table. -1 with e filled on no memory. */
+int report_table(out *to, const text_table *rows, err *e);
+
 /* Warns where it crosses itself, and adds it to those that are thin. what: "surface" or "volume". */
 void report_warn(notes *n, listing *thin, const char *what, const char *name, const check_result *r);
 
@@ -36,6 +39,9 @@ void report_thin(notes *n, listing *thin);
 
 /* The sides of the box about all, in the OBJ's unit. */
 void report_sides(const obj *o, double side[3]);
+
+/* The error of a run without --unit. Returns -1. */
+int report_ask_for_unit(const obj *o, err *e);
 
 /* Notes gaps that elements fill. least: of a voxel, the share from which on it is an element; NAN: by centres. */
 void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_unit unit);

@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
-#include "voxelise/contacts.h"
 #include "voxelise/split.h"
+#include "voxelise/touching.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ typedef struct item {
 
 typedef struct work {
     joins j;
-    contacts at;
+    touching at;
     split parts;
     bool *alone;    /* parts: at no point does it hang together with another voxel */
     int32_t *group; /* parts x 8: which of a corner's nodes it has */
@@ -35,7 +35,7 @@ typedef struct work {
 static int add_items(work *w, const int32_t *cell, int corner, err *e)
 {
     const int64_t element = joins_element(&w->j, cell);
-    const parts_cell *p = element < 0 ? NULL : parts_of(&w->j.x->part, element);
+    const pieces_cell *p = element < 0 ? NULL : pieces_of(&w->j.x->part, element);
     const int32_t count = p ? p->parts : 1;
     if (element < 0)
         return 0;
@@ -219,9 +219,9 @@ static void take_groups(work *w)
 /* Parts of a voxel that see each other are one: a sheet thinner than the samples are apart is in pieces otherwise. */
 static void unite_seen(work *w)
 {
-    const parts_list *l = &w->j.x->part;
+    const pieces_list *l = &w->j.x->part;
     for (int64_t c = 0; c < l->cells; c++) {
-        const parts_cell *p = &l->cell[c];
+        const pieces_cell *p = &l->cell[c];
         const int64_t number = p->parts > 1 ? split_number(&w->parts, p) : 0;
         for (int32_t n = 0; n < p->parts; n++)
             for (int32_t o = n + 1; o < p->parts; o++) {
@@ -236,9 +236,9 @@ static void unite_seen(work *w)
 /* A part that hangs together with no other voxel stays with the largest of its own. */
 static void unite_alone(work *w)
 {
-    const parts_list *l = &w->j.x->part;
+    const pieces_list *l = &w->j.x->part;
     for (int64_t c = 0; c < l->cells; c++) {
-        const parts_cell *p = &l->cell[c];
+        const pieces_cell *p = &l->cell[c];
         const int64_t number = p->parts > 1 ? split_number(&w->parts, p) : 0;
         const int64_t largest = p->parts > 1 ? split_largest(&w->parts, p) : 0;
         for (int32_t n = 0; n < p->parts && p->parts > 1; n++) {
@@ -254,9 +254,9 @@ static void unite_alone(work *w)
 /* Parts of the same nodes are one element. */
 static void unite_same(work *w)
 {
-    const parts_list *l = &w->j.x->part;
+    const pieces_list *l = &w->j.x->part;
     for (int64_t c = 0; c < l->cells; c++) {
-        const parts_cell *p = &l->cell[c];
+        const pieces_cell *p = &l->cell[c];
         const int64_t number = p->parts > 1 ? split_number(&w->parts, p) : 0;
         for (int32_t n = 0; n < p->parts; n++)
             for (int32_t o = n + 1; o < p->parts; o++)
@@ -352,13 +352,13 @@ static void put_inside(const work *w, const joins_part *p, float *to)
 /* Of each element the sample nearest to the middle of those of its first part. */
 static int find_inside(slits *s, const work *w, err *e)
 {
-    const parts_list *l = &w->j.x->part;
+    const pieces_list *l = &w->j.x->part;
     const int64_t elements = w->j.x->elements + w->parts.before[l->cells];
     s->inside = mem_array(3 * elements, sizeof *s->inside, "slits", e);
     for (int64_t i = 0; s->inside && i < 3 * elements; i++)
         s->inside[i] = .5F;
     for (int64_t c = 0; s->inside && c < l->cells; c++) {
-        const parts_cell *p = &l->cell[c];
+        const pieces_cell *p = &l->cell[c];
         const int64_t number = p->parts > 1 ? split_number(&w->parts, p) : -1;
         for (int32_t n = p->parts - 1; n >= 0; n--) {
             const joins_part part = {{p->cell[0], p->cell[1], p->cell[2]}, p->element, p, n};
@@ -375,7 +375,7 @@ int slits_find(slits *s, voxels *x, const cuts *cut, const inside_triangles *t, 
     work w = {0};
     int status = -1;
     const int64_t before = x->elements;
-    if (joins_create(&w.j, x, cut, t, g, samples, e) || contacts_find(&w.at, &w.j, e) ||
+    if (joins_create(&w.j, x, cut, t, g, samples, e) || touching_find(&w.at, &w.j, e) ||
         split_create(&w.parts, &x->part, e) || join_parts(&w, e))
         goto out;
     split_number_elements(&w.parts);
@@ -386,9 +386,9 @@ int slits_find(slits *s, voxels *x, const cuts *cut, const inside_triangles *t, 
     status = 0;
 out:
     joins_free(&w.j);
-    contacts_free(&w.at);
+    touching_free(&w.at);
     split_free(&w.parts);
-    parts_list_free(&x->part);
+    pieces_list_free(&x->part);
     free(w.alone);
     free(w.group);
     free(w.item);

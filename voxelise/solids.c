@@ -213,3 +213,19 @@ void solids_free(solids *s)
     free(s->open_at);
     *s = (solids){0};
 }
+
+inside_triangles solids_triangles(const solids *s, const volumes *plan, bool lowest)
+{
+    inside_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
+    while (lowest && t.triangles && plan->volume[s->volume[t.triangles - 1]].level > 0)
+        t.triangles--;
+    return t;
+}
+
+bool solids_are_open(const solids *s, const volumes *plan)
+{
+    for (int32_t v = 0; v < plan->volumes; v++)
+        if (s->open[v] && plan->volume[v].level == 0)
+            return true;
+    return false;
+}

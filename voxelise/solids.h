@@ -5,6 +5,7 @@
 #define SINEW_SOLIDS_H
 
 #include "base/num.h"
+#include "voxelise/inside.h"
 #include "voxelise/volumes.h"
 
 typedef struct solids {
@@ -20,11 +21,18 @@ typedef struct solids {
 } solids;
 
 /* unit: of the source file, for messages. sheets: polygons that cancel in pairs, as where two solids touch, are kept as
- * two sheets at one place, which enclose nothing; else they are left out. -1 with e filled where a volume is open (with allow_open that is a note).
- * Coordinates too small for exact arithmetic (grid.h) are taken as 0, those too large refused. */
+ * two sheets at one place, which enclose nothing; else they are left out. -1 with e filled where a volume is open (with
+ * allow_open that is a note). Coordinates too small for exact arithmetic (grid.h) are taken as 0, those too large
+ * refused. */
 int solids_build(solids *s, const obj *o, const volumes *plan, num_unit unit, bool sheets, bool allow_open,
                  notes *warnings, err *e);
 
 void solids_free(solids *s);
+
+/* The triangles of all volumes, or of those of level 0: borrowed. */
+inside_triangles solids_triangles(const solids *s, const volumes *plan, bool lowest);
+
+/* Whether a volume of level 0 is open: then what is inside of it is a guess. */
+bool solids_are_open(const solids *s, const volumes *plan);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-int split_create(split *s, const parts_list *of, err *e)
+int split_create(split *s, const pieces_list *of, err *e)
 {
     *s = (split){.of = of};
     s->first = mem_array(of->cells + 1, sizeof *s->first, "parts of voxels", e);
@@ -39,7 +39,7 @@ void split_free(split *s)
     *s = (split){0};
 }
 
-int64_t split_number(const split *s, const parts_cell *of)
+int64_t split_number(const split *s, const pieces_cell *of)
 {
     return s->first[of - s->of->cell];
 }
@@ -57,7 +57,7 @@ void split_unite(split *s, int64_t one, int64_t other)
             s->lowest[i] = low;
 }
 
-int64_t split_largest(const split *s, const parts_cell *of)
+int64_t split_largest(const split *s, const pieces_cell *of)
 {
     const int64_t first = split_number(s, of);
     int64_t best = first, most = -1;
@@ -110,10 +110,10 @@ typedef struct counted {
 
 static int64_t samples_of(const split *s, int64_t cell, int32_t order, int32_t volume)
 {
-    const parts_cell *p = &s->of->cell[cell];
+    const pieces_cell *p = &s->of->cell[cell];
     int64_t sum = 0;
     for (int64_t i = p->share; i < p->share + p->shares; i++) {
-        const parts_share *one = &s->of->share[i];
+        const pieces_share *one = &s->of->share[i];
         const bool mine = order < 0 || s->order[s->first[cell] + one->part] == order;
         sum += mine && (volume < 0 || one->volume == volume) ? one->samples : 0;
     }
@@ -123,7 +123,7 @@ static int64_t samples_of(const split *s, int64_t cell, int32_t order, int32_t v
 /* As shares.c has it for whole voxels. */
 static counted count_element(const split *s, int64_t cell, int32_t order)
 {
-    const parts_cell *p = &s->of->cell[cell];
+    const pieces_cell *p = &s->of->cell[cell];
     counted c = {.all = samples_of(s, cell, order, -1), .volume = -1, .mix = -1};
     for (int second = 0; second < 2; second++)
         for (int64_t i = p->share; i < p->share + p->shares; i++) {

@@ -7,7 +7,7 @@
 #include "voxelise/voxels.h"
 
 typedef struct split {
-    const parts_list *of;
+    const pieces_list *of;
     int64_t *first;  /* cells of the list + 1: the number of the first part, counted in voxels of several parts only */
     int64_t parts;   /* of those */
     int64_t *lowest; /* parts: the lowest that is one with each */
@@ -16,18 +16,18 @@ typedef struct split {
     int64_t *before; /* cells + 1: elements that the voxels before it have got more */
 } split;
 
-int split_create(split *s, const parts_list *of, err *e);
+int split_create(split *s, const pieces_list *of, err *e);
 void split_free(split *s);
 
 /* The number of the first part of a voxel that has several. */
-int64_t split_number(const split *s, const parts_cell *of);
+int64_t split_number(const split *s, const pieces_cell *of);
 
 /* Whether two parts of one voxel are one by now, and makes them one. */
 bool split_are_one(const split *s, int64_t one, int64_t other);
 void split_unite(split *s, int64_t one, int64_t other);
 
 /* The part of a voxel that has the most samples together with those that are one with it; the first of several. */
-int64_t split_largest(const split *s, const parts_cell *of);
+int64_t split_largest(const split *s, const pieces_cell *of);
 
 /* Numbers the elements, when all that is one has been made one. */
 void split_number_elements(split *s);

@@ -112,6 +112,14 @@ text_table *summary_table(const summary *s, err *e)
     return t;
 }
 
+double summary_enclosed(const voxels *x)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < x->elements; i++)
+        sum += (double)x->fraction[i];
+    return sum;
+}
+
 /* ---- warnings */
 
 /* Lengths that differ by less than this share are equal. */

@@ -26,6 +26,9 @@ typedef struct summary {
 /* A row a volume, in the model's order. The caller frees it. NULL with e filled. */
 text_table *summary_table(const summary *s, err *e);
 
+/* By shares: how many voxels the surfaces enclose. */
+double summary_enclosed(const voxels *x);
+
 /* Warns of volumes without voxels, of layers that are too thin, and of muscles that
  * keep at most half of their voxels. */
 int summary_warn(const summary *s, notes *warnings, err *e);

@@ -172,19 +172,6 @@ static int read_surface(job *j, err *e)
     return status;
 }
 
-/* The extents that the polygons would have in m if the OBJ were in mm, and if it were in m; what else it may be in is
- * for the user to know. */
-static int ask_for_unit(const obj *o, err *e)
-{
-    double d[3];
-    report_sides(o, d);
-    return err_usage(
-        e,
-        "%s: an OBJ does not say its unit: with --unit mm it is %.4g x %.4g x %.4g m, with --unit m %.4g x %.4g x "
-        "%.4g m; expected --unit mm|cm|m|in|um",
-        o->name, d[0] / 1e3, d[1] / 1e3, d[2] / 1e3, d[0], d[1], d[2]);
-}
-
 static int read_materials(const job *j, model *m, err *e)
 {
     if (!j->o->materials)
@@ -257,25 +244,6 @@ static int make_grid(job *j, err *e)
     return j->o->box.count ? grid_clip(&j->g, box, box + 3, e) : 0;
 }
 
-/* The triangles of the first volumes: all of them, or those of level 0. */
-static inside_triangles triangles_of(const job *j, bool lowest)
-{
-    const solids *s = &j->solid;
-    inside_triangles t = {s->position, s->vertices, s->vertex, s->volume, s->triangles};
-    while (lowest && t.triangles && j->plan.volume[s->volume[t.triangles - 1]].level > 0)
-        t.triangles--;
-    return t;
-}
-
-/* Where a volume of level 0 is open, what is inside it is a guess. */
-static bool is_open(const job *j)
-{
-    for (int32_t v = 0; v < j->plan.volumes; v++)
-        if (j->solid.open[v] && j->plan.volume[v].level == 0)
-            return true;
-    return false;
-}
-
 /* Whether slits are opened: of closed surfaces. */
 static bool wants_slits(const struct options *o)
 {
@@ -284,13 +252,14 @@ static bool wants_slits(const struct options *o)
 
 static bool opens_slits(const job *j)
 {
-    return wants_slits(j->o) && !is_open(j);
+    return wants_slits(j->o) && !solids_are_open(&j->solid, &j->plan);
 }
 
 /* What is inside, by centres or by samples; samples: the lattice of the one or the other. */
 static int look_inside(job *j, const grid *samples, const shares_rule *rule, err *e)
 {
-    const inside_triangles t = triangles_of(j, false), lowest = triangles_of(j, true);
+    const inside_triangles t = solids_triangles(&j->solid, &j->plan, false);
+    const inside_triangles lowest = solids_triangles(&j->solid, &j->plan, true);
     const int each = rule ? rule->samples : 1;
     if (opens_slits(j) && cuts_find(&j->cut, &lowest, samples, each, j->threads, e))
         return -1;
@@ -328,7 +297,7 @@ static int find_voxels(job *j, err *e)
 
 static int open_slits(job *j, err *e)
 {
-    const inside_triangles lowest = triangles_of(j, true);
+    const inside_triangles lowest = solids_triangles(&j->solid, &j->plan, true);
     const bool by_shares = j->o->fraction > 0;
     return slits_find(&j->slit, &j->x, &j->cut, &lowest, by_shares ? &j->samples : &j->g,
                       by_shares ? (int)j->o->fraction : 1, j->plan.volumes, e);
@@ -338,7 +307,7 @@ static int open_slits(job *j, err *e)
 static int find_gaps(job *j, err *e)
 {
     gaps found;
-    if (is_open(j))
+    if (solids_are_open(&j->solid, &j->plan))
         return 0;
     if (gaps_find(&found, &j->solid, &j->plan, &j->x, &j->g, j->threads, e))
         return -1;
@@ -353,28 +322,6 @@ static double in_metres(const job *j, double length)
     return num_length_in((num_length){length, j->unit}, j->unit, num_unit_of("m"));
 }
 
-/* The surfaces that slits lie between, for bind: those of level 0. */
-static int say_slits(const job *j, const char *name, model *m, err *e)
-{
-    const volumes *v = &j->plan;
-    bool *bounds = mem_array(v->surfaces, sizeof *bounds, "surfaces", e);
-    size_t size = 1;
-    for (int64_t i = 0; bounds && i < v->members; i++)
-        bounds[v->member[i].surface] |= v->volume[v->member[i].volume].level == 0;
-    for (int32_t s = 0; bounds && s < v->surfaces; s++)
-        size += strlen(v->surface[s].name) + 1;
-    char *names = bounds ? mem_array((int64_t)size, 1, "surfaces", e) : NULL;
-    char *end = names;
-    for (int32_t s = 0; names && s < v->surfaces; s++)
-        if (bounds[s])
-            end += snprintf(end, size - (size_t)(end - names), "%s%s", end == names ? "" : " ", v->surface[s].name);
-    const int status =
-        !names || model_meta_set(m, "slits.surface", name, e) || model_meta_set(m, "slits.groups", names, e) ? -1 : 0;
-    free(bounds);
-    free(names);
-    return status;
-}
-
 static int make_model(const job *j, model *m, err *e)
 {
     lattice l;
@@ -386,20 +333,12 @@ static int make_model(const job *j, model *m, err *e)
     surface_name(j->o->common.anonymous ? "surface_1" : j->path, name, sizeof name);
     if (model_meta_set(m, "source.unit", num_unit_name(j->unit), e) || lattice_save(&l, m, e) ||
         build_elements(m, &j->x, &j->slit, &l, j->threads, e) || build_volumes(m, &j->plan, e) ||
-        (j->slit.nodes && say_slits(j, name, m, e)))
+        (j->slit.nodes && build_slits(m, &j->plan, name, e)))
         return -1;
     return surface_add(m, name, &j->surface, in_metres(j, 1), e);
 }
 
 /* ---- say */
-
-static double enclosed(const job *j)
-{
-    double sum = 0;
-    for (int64_t i = 0; i < j->x.elements; i++)
-        sum += (double)j->x.fraction[i];
-    return sum;
-}
 
 static int say_volumes(job *j, const model *m, err *e)
 {
@@ -431,7 +370,7 @@ static int say_plan(job *j, const model *m, err *e)
     if (say_volumes(j, m, e))
         return -1;
     if (j->x.fraction)
-        tool_say(j->t, "the surfaces enclose the volume of %.9g voxels, in %lld elements", enclosed(j),
+        tool_say(j->t, "the surfaces enclose the volume of %.9g voxels, in %lld elements", summary_enclosed(&j->x),
                  (long long)j->x.elements);
     tool_say(j->t, "%lld elements, %lld nodes", (long long)model_count(m, "element"),
              (long long)model_count(m, "node"));
@@ -525,24 +464,16 @@ static int check_volumes(const checking *c, err *e)
     return 0;
 }
 
-static int put_table(out *to, const text_table *rows, err *e)
-{
-    char *lines = text_table_lines(rows, e);
-    out_text(to, lines ? lines : "");
-    free(lines);
-    return lines ? 0 : -1;
-}
-
 /* What was found: the tables, and with -v all of each surface and volume. */
 static int put_report(const checking *c, err *e)
 {
     const tool *t = c->j->t;
     size_t size;
     out *to = out_open(t->common->output, t->common->gzip, e);
-    int status = to ? put_table(to, c->surfaces, e) : -1;
+    int status = to ? report_table(to, c->surfaces, e) : -1;
     if (!status) {
         out_text(to, "\n");
-        status = put_table(to, c->volumes, e);
+        status = report_table(to, c->volumes, e);
     }
     if (status) {
         out_discard(to);
@@ -601,7 +532,7 @@ static int prepare(job *j, model *m, err *e)
     if (read_surface(j, e))
         return -1;
     if (!j->unit)
-        return ask_for_unit(&j->surface, e);
+        return report_ask_for_unit(&j->surface, e);
     report_sides(&j->surface, side);
     extent_note(&j->warnings, j->surface.name, side, j->unit);
     clock = say_time(j, "reading", clock);
@@ -622,10 +553,9 @@ static int work(job *j, model *m, err *e)
     if (make_grid(j, e) || find_voxels(j, e))
         return -1;
     clock = say_time(j, "finding what is inside", clock);
-    const bool opens = opens_slits(j);
-    if (opens ? open_slits(j, e) : find_gaps(j, e))
+    if (opens_slits(j) ? open_slits(j, e) : find_gaps(j, e))
         return -1;
-    clock = say_time(j, opens ? "opening slits" : "finding gaps", clock);
+    clock = say_time(j, opens_slits(j) ? "opening slits" : "finding gaps", clock);
     if (j->layer.layers) {
         if (layers_apply(&j->layer, &j->x, &j->plan, &j->surface, &j->g, j->threads, e))
             return -1;

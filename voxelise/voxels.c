@@ -17,7 +17,7 @@ static const double element_bytes = 120, row_bytes = 64;
 typedef struct chunk {
     climb_runs to;
     shares_list share;
-    parts_list part;
+    pieces_list part;
 } chunk;
 
 typedef struct counter {
@@ -41,7 +41,7 @@ typedef struct scratch {
     inside_slab slab;
     climb climb;
     shares shares;
-    parts parts;
+    pieces pieces;
     climb_runs samples;      /* runs of one row of them */
     climb_count *kept;       /* volumes: their voxels by shares */
     int64_t low[2], high[2]; /* of its parts, along y and z */
@@ -115,7 +115,7 @@ static int add_samples(scratch *s, const work *w, int64_t j, int64_t k, err *e)
                 return -1;
             for (int64_t r = 0; r < s->samples.runs; r++)
                 if (shares_add(&s->shares, &s->samples.run[r], e) ||
-                    (w->cut && parts_add(&s->parts, &s->samples.run[r], e)))
+                    (w->cut && pieces_add(&s->pieces, &s->samples.run[r], e)))
                     return -1;
         }
     return 0;
@@ -132,7 +132,7 @@ static int add_row(scratch *s, const work *w, int64_t j, int64_t k, chunk *to, e
     const int64_t first = to->to.runs, element = to->share.count;
     if (add_samples(s, w, j, k, e) || shares_row(&s->shares, j, k, &to->to, &to->share, s->kept, e))
         return -1;
-    return w->cut ? parts_row(&s->parts, to->to.run + first, to->to.runs - first, element, &to->part, e) : 0;
+    return w->cut ? pieces_row(&s->pieces, to->to.run + first, to->to.runs - first, element, &to->part, e) : 0;
 }
 
 /* Slabs hold whole layers of voxels. */
@@ -156,7 +156,7 @@ static int look(scratch *s, work *w, int64_t number, err *e)
     if (!w->rule || !w->chunk)
         return by_centres(s, w->chunk ? &w->chunk[number].to : NULL, e);
     if (shares_create(&s->shares, w->test->mesh.g, w->rule, w->volumes, e) ||
-        (w->cut && parts_create(&s->parts, w->test->mesh.g, w->rule->samples, w->cut, e)))
+        (w->cut && pieces_create(&s->pieces, w->test->mesh.g, w->rule->samples, w->cut, e)))
         return -1;
     s->kept = mem_array(w->volumes, sizeof *s->kept, "volumes", e);
     if (!s->kept || by_shares(s, w, &w->chunk[number], e))
@@ -182,7 +182,7 @@ static void do_slab(void *context, int64_t chunk_number, int64_t from, int64_t t
         inside_slab_free(&s.slab);
         climb_free(&s.climb);
         shares_free(&s.shares);
-        parts_free(&s.parts);
+        pieces_free(&s.pieces);
         free(s.samples.run);
         free(s.kept);
     }
@@ -309,13 +309,13 @@ static int join_chunks(voxels *x, const work *w, err *e)
         if (c->to.runs)
             memcpy(x->run + at, c->to.run, (size_t)c->to.runs * sizeof *x->run);
         put_shares(x, voxel, &c->share);
-        if (parts_list_join(&x->part, &c->part, voxel, e))
+        if (pieces_list_join(&x->part, &c->part, voxel, e))
             return -1;
         at += c->to.runs;
         voxel += c->share.count;
         free(c->to.run);
         free(c->share.voxel);
-        parts_list_free(&c->part);
+        pieces_list_free(&c->part);
         c->to.run = NULL;
         c->share.voxel = NULL;
     }
@@ -357,7 +357,7 @@ out:
     for (int64_t i = 0; w.chunk && i < test->slabs; i++) {
         free(w.chunk[i].to.run);
         free(w.chunk[i].share.voxel);
-        parts_list_free(&w.chunk[i].part);
+        pieces_list_free(&w.chunk[i].part);
     }
     free(w.chunk);
     free(w.counter);
@@ -373,7 +373,7 @@ void voxels_free(voxels *x)
     free(x->fraction);
     free(x->mix);
     free(x->mixture);
-    parts_list_free(&x->part);
+    pieces_list_free(&x->part);
     *x = (voxels){0};
 }
 

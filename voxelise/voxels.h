@@ -7,7 +7,7 @@
 
 #include "base/pool.h"
 #include "cli/progress.h"
-#include "voxelise/parts.h"
+#include "voxelise/pieces.h"
 #include "voxelise/shares.h"
 
 typedef struct voxels {
@@ -17,7 +17,7 @@ typedef struct voxels {
     float *fraction;    /* elements, by shares; otherwise NULL */
     int32_t *mix;       /* elements: the second volume, -1 = none; NULL where no element has one */
     float *mixture;     /* elements: its share of what is enclosed; likewise */
-    parts_list part;    /* by shares, where slits are looked for */
+    pieces_list part;   /* by shares, where slits are looked for */
 } voxels;
 
 /* test: with rays along CLIMB_RAY; by shares, of the lattice of samples. level: of each volume; volumes are in order of

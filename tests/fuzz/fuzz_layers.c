@@ -1,6 +1,6 @@
 // needs: voxelise/volumes.c voxelise/volumes_file.c voxelise/layers.c voxelise/depths.c voxelise/voxels.c
-// needs: voxelise/climb.c voxelise/surfaces/grid.c voxelise/crossing.c voxelise/inside.c voxelise/surfaces/expansion.c
-// needs: voxelise/surfaces/meet.c voxelise/shares.c voxelise/parts.c voxelise/cuts.c
+// needs: voxelise/climb.c voxelise/surfaces/grid.c voxelise/surfaces/crossing.c voxelise/inside.c
+// needs: voxelise/surfaces/expansion.c voxelise/surfaces/meet.c voxelise/shares.c voxelise/pieces.c voxelise/cuts.c
 /* Any bytes as a --layers file, beside a plan of volumes: layers with names of their own, deeper and deeper, of
  * materials that there are; or one error with a text.
  */

@@ -1,5 +1,6 @@
-// needs: voxelise/depths.c voxelise/voxels.c voxelise/climb.c voxelise/shares.c voxelise/inside.c voxelise/crossing.c
-// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/parts.c voxelise/cuts.c
+// needs: voxelise/depths.c voxelise/voxels.c voxelise/climb.c voxelise/shares.c voxelise/inside.c
+// needs: voxelise/surfaces/crossing.c voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/pieces.c
+// needs: voxelise/cuts.c
 /* How deep voxels lie below a surface: triangles of all sizes at random, and voxels too, each centre measured from each
  * triangle. Small lattices and long ones, flat voxels, depths from less than a voxel to more than the lattice.
  */

@@ -1,4 +1,4 @@
-// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/crossing.c voxelise/inside.c
+// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/surfaces/crossing.c voxelise/inside.c
 /* The inside test against an exact reference of another making: whole numbers, the centre moved by a real e = 2^-14,
  * and a ray in a skew direction that no edge of these meshes can meet; signs of 4 x 4 determinants only. Meshes whose
  * faces, edges, diagonals and vertices lie on centres; every axis; translated; scaled to awkward units.

@@ -1,4 +1,4 @@
-// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/crossing.c voxelise/inside.c
+// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/surfaces/crossing.c voxelise/inside.c
 // needs: tests/bench/scan.c
 /* Scans of 25,000 triangles and, with SINEW_LONG, of up to 1.6 million in up to 512 cells a side, against
  * an exact reference of another making: coordinates are whole numbers, rays run along x, and each

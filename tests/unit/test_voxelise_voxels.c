@@ -1,5 +1,5 @@
-// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/crossing.c voxelise/inside.c voxelise/voxels.c
-// needs: voxelise/climb.c voxelise/shares.c voxelise/build.c voxelise/parts.c voxelise/cuts.c
+// needs: voxelise/surfaces/expansion.c voxelise/surfaces/grid.c voxelise/surfaces/crossing.c voxelise/inside.c
+// needs: voxelise/voxels.c voxelise/climb.c voxelise/shares.c voxelise/build.c voxelise/pieces.c voxelise/cuts.c
 /* Algorithm 1 as it is printed, voxel by voxel over boxes at random, against columns and runs; and the nodes of the
  * elements against a plain table of all corners.
  */

@@ -1,4 +1,4 @@
-#include "voxelise/contacts.h"
+#include "voxelise/touching.h"
 
 #include "base/mem.h"
 
@@ -7,7 +7,7 @@
 
 enum { WORD = 64 };
 
-static int add(contacts *c, const int32_t *cell, int i, int j, int k, err *e)
+static int add(touching *c, const int32_t *cell, int i, int j, int k, err *e)
 {
     if (mem_grow(&c->point, &c->capacity, c->count + 1, sizeof *c->point, "slits", e))
         return -1;
@@ -17,7 +17,7 @@ static int add(contacts *c, const int32_t *cell, int i, int j, int k, err *e)
 }
 
 /* The corners of a voxel; axis >= 0: of its face on the high side along it. */
-static int add_corners(contacts *c, const int32_t *cell, int axis, err *e)
+static int add_corners(touching *c, const int32_t *cell, int axis, err *e)
 {
     for (int n = 0; n < 8; n++)
         if ((axis < 0 || n >> axis & 1) && add(c, cell, n & 1, n >> 1 & 1, n >> 2, e))
@@ -27,7 +27,7 @@ static int add_corners(contacts *c, const int32_t *cell, int axis, err *e)
 
 /* ---- faces with cuts between voxels */
 
-static int add_cut_faces(contacts *c, const joins *j, err *e)
+static int add_cut_faces(touching *c, const joins *j, err *e)
 {
     const int n = j->samples;
     const cuts_cut *done = NULL;
@@ -46,23 +46,23 @@ static int add_cut_faces(contacts *c, const joins *j, err *e)
 
 /* ---- voxels that are not all inside */
 
-static int add_face(contacts *c, joins *j, const joins_part *one, int axis, int side, err *e)
+static int add_face(touching *c, joins *j, const joins_part *one, int axis, int side, err *e)
 {
     joins_part other = {.at = {one->at[0], one->at[1], one->at[2]}};
     other.at[axis] += side ? 1 : -1;
     other.element = joins_element(j, other.at);
     if (other.element < 0)
         return 0;
-    other.cell = parts_of(&j->x->part, other.element);
+    other.cell = pieces_of(&j->x->part, other.element);
     if ((other.cell && other.cell->parts > 1) || joins_are_joined(j, one, &other))
         return 0;
     return add_corners(c, side ? one->at : other.at, axis, e);
 }
 
-static int add_parts(contacts *c, joins *j, err *e)
+static int add_parts(touching *c, joins *j, err *e)
 {
     for (int64_t i = 0; i < j->x->part.cells; i++) {
-        const parts_cell *p = &j->x->part.cell[i];
+        const pieces_cell *p = &j->x->part.cell[i];
         joins_part one = {{p->cell[0], p->cell[1], p->cell[2]}, p->element, p, 0};
         if (p->parts > 1 && add_corners(c, p->cell, -1, e))
             return -1;
@@ -125,7 +125,7 @@ static bool touches(unsigned cells)
 }
 
 /* The points of one word of a row of points: row r of voxels follows them. */
-static int add_word(contacts *c, const plane *p, uint64_t *const *layer, int64_t row, int64_t word, int64_t k,
+static int add_word(touching *c, const plane *p, uint64_t *const *layer, int64_t row, int64_t word, int64_t k,
                     const bool *apart, err *e)
 {
     uint64_t cell[8], any = 0, all = ~(uint64_t)0;
@@ -148,7 +148,7 @@ static int add_word(contacts *c, const plane *p, uint64_t *const *layer, int64_t
     return 0;
 }
 
-static int add_touching(contacts *c, const joins *j, err *e)
+static int add_touching(touching *c, const joins *j, err *e)
 {
     const plane p = find_plane(j->x);
     bool apart[256];
@@ -177,11 +177,11 @@ static int by_place(const void *a, const void *b)
     return cuts_order(a, b);
 }
 
-int contacts_find(contacts *c, joins *j, err *e)
+int touching_find(touching *c, joins *j, err *e)
 {
-    *c = (contacts){0};
+    *c = (touching){0};
     if (add_cut_faces(c, j, e) || add_parts(c, j, e) || add_touching(c, j, e)) {
-        contacts_free(c);
+        touching_free(c);
         return -1;
     }
     int64_t kept = 0;
@@ -194,8 +194,8 @@ int contacts_find(contacts *c, joins *j, err *e)
     return 0;
 }
 
-void contacts_free(contacts *c)
+void touching_free(touching *c)
 {
     free(c->point);
-    *c = (contacts){0};
+    *c = (touching){0};
 }

@@ -1,4 +1,4 @@
-#include "voxelise/crossing.h"
+#include "voxelise/surfaces/crossing.h"
 
 #include "voxelise/surfaces/expansion.h"
 

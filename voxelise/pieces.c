@@ -1,4 +1,4 @@
-#include "voxelise/parts.h"
+#include "voxelise/pieces.h"
 
 #include "base/mem.h"
 
@@ -9,15 +9,15 @@ enum { WORD = 64 };
 
 /* ---- lists */
 
-void parts_list_free(parts_list *l)
+void pieces_list_free(pieces_list *l)
 {
     free(l->cell);
     free(l->bits);
     free(l->share);
-    *l = (parts_list){0};
+    *l = (pieces_list){0};
 }
 
-static int make_room(parts_list *l, int64_t cells, int64_t rows, int64_t shares, err *e)
+static int make_room(pieces_list *l, int64_t cells, int64_t rows, int64_t shares, err *e)
 {
     return mem_grow(&l->cell, &l->cell_capacity, l->cells + cells, sizeof *l->cell, "parts of voxels", e) ||
                    mem_grow(&l->bits, &l->bits_capacity, l->rows + rows, sizeof *l->bits, "parts of voxels", e) ||
@@ -26,14 +26,14 @@ static int make_room(parts_list *l, int64_t cells, int64_t rows, int64_t shares,
                : 0;
 }
 
-int parts_list_join(parts_list *to, const parts_list *from, int64_t element, err *e)
+int pieces_list_join(pieces_list *to, const pieces_list *from, int64_t element, err *e)
 {
     if (!from->cells)
         return 0;
     if (make_room(to, from->cells, from->rows, from->shares, e))
         return -1;
     for (int64_t i = 0; i < from->cells; i++) {
-        parts_cell *c = &to->cell[to->cells + i];
+        pieces_cell *c = &to->cell[to->cells + i];
         *c = from->cell[i];
         c->element += element;
         c->bits += to->rows;
@@ -46,7 +46,7 @@ int parts_list_join(parts_list *to, const parts_list *from, int64_t element, err
     return 0;
 }
 
-const parts_cell *parts_of(const parts_list *l, int64_t element)
+const pieces_cell *pieces_of(const pieces_list *l, int64_t element)
 {
     int64_t low = 0, high = l->cells;
     while (low < high) {
@@ -61,14 +61,14 @@ const parts_cell *parts_of(const parts_list *l, int64_t element)
 
 /* ---- samples */
 
-static int64_t rows_of(const parts *p)
+static int64_t rows_of(const pieces *p)
 {
     return (int64_t)p->samples * p->samples;
 }
 
-int parts_create(parts *p, const grid *g, int samples, const cuts *cut, err *e)
+int pieces_create(pieces *p, const grid *g, int samples, const cuts *cut, err *e)
 {
-    *p = (parts){.samples = samples, .cut = cut, .low = g->low[0] / samples};
+    *p = (pieces){.samples = samples, .cut = cut, .low = g->low[0] / samples};
     p->words = pool_chunks(grid_cells(g, 0), WORD) + 1; /* one more, so that bits across two words can be read */
     p->row = mem_array(rows_of(p) * p->words, sizeof *p->row, "a row", e);
     p->in = mem_array(rows_of(p), sizeof *p->in, "a row", e);
@@ -77,11 +77,11 @@ int parts_create(parts *p, const grid *g, int samples, const cuts *cut, err *e)
         p->closed[a] = mem_array(rows_of(p), sizeof *p->closed[a], "a row", e);
     if (p->row && p->in && p->part && p->closed[0] && p->closed[1] && p->closed[2])
         return 0;
-    parts_free(p);
+    pieces_free(p);
     return -1;
 }
 
-void parts_free(parts *p)
+void pieces_free(pieces *p)
 {
     free(p->row);
     free(p->runs.run);
@@ -89,7 +89,7 @@ void parts_free(parts *p)
     free(p->part);
     for (int a = 0; a < 3; a++)
         free(p->closed[a]);
-    *p = (parts){0};
+    *p = (pieces){0};
 }
 
 static int64_t within(int64_t at, int samples)
@@ -98,12 +98,12 @@ static int64_t within(int64_t at, int samples)
 }
 
 /* The row of a voxel that a run of samples is in. */
-static int64_t row_of(const parts *p, const climb_run *run)
+static int64_t row_of(const pieces *p, const climb_run *run)
 {
     return within(run->k, p->samples) * p->samples + within(run->j, p->samples);
 }
 
-int parts_add(parts *p, const climb_run *run, err *e)
+int pieces_add(pieces *p, const climb_run *run, err *e)
 {
     uint64_t *row = p->row + row_of(p, run) * p->words;
     for (int64_t i = run->from - p->low * p->samples, to = run->to - p->low * p->samples; i < to;) {
@@ -115,7 +115,7 @@ int parts_add(parts *p, const climb_run *run, err *e)
 }
 
 /* A voxel's samples; whether all are inside. */
-static bool take_samples(const parts *p, int32_t cell)
+static bool take_samples(const pieces *p, int32_t cell)
 {
     const int64_t at = (cell - p->low) * p->samples, bit = at % WORD;
     const uint64_t all = ((uint64_t)1 << p->samples) - 1;
@@ -130,7 +130,7 @@ static bool take_samples(const parts *p, int32_t cell)
 }
 
 /* Takes the cuts between samples of a voxel from those that begin at index i; whether there is one. */
-static bool take_cuts(const parts *p, const int32_t *cell, int64_t i)
+static bool take_cuts(const pieces *p, const int32_t *cell, int64_t i)
 {
     const int n = p->samples;
     bool any = false;
@@ -148,7 +148,7 @@ static bool take_cuts(const parts *p, const int32_t *cell, int64_t i)
 /* ---- parts */
 
 /* Widens one row of a part along x, and by what its neighbours along y and z hand on. */
-static bool widen_row(const parts *p, int64_t r)
+static bool widen_row(const pieces *p, int64_t r)
 {
     const int n = p->samples;
     const int64_t y = r % n, z = r / n;
@@ -171,7 +171,7 @@ static bool widen_row(const parts *p, int64_t r)
 }
 
 /* The part of the lowest sample that is in none yet: p->part; it leaves p->in. Whether there was one. */
-static bool take_part(const parts *p, uint16_t *left)
+static bool take_part(const pieces *p, uint16_t *left)
 {
     const int64_t rows = rows_of(p);
     int64_t first = 0;
@@ -194,7 +194,7 @@ static bool take_part(const parts *p, uint16_t *left)
 }
 
 /* How many samples of a run, in the voxel, are of a part. */
-static int32_t samples_in(const parts *p, const climb_run *run, int32_t cell, const uint16_t *part)
+static int32_t samples_in(const pieces *p, const climb_run *run, int32_t cell, const uint16_t *part)
 {
     const int64_t low = (int64_t)cell * p->samples;
     const int64_t from = run->from > low ? run->from - low : 0;
@@ -205,7 +205,7 @@ static int32_t samples_in(const parts *p, const climb_run *run, int32_t cell, co
     return __builtin_popcount(part[row_of(p, run)] & mask);
 }
 
-static int add_share(parts_list *to, parts_cell *c, const parts_share *one, err *e)
+static int add_share(pieces_list *to, pieces_cell *c, const pieces_share *one, err *e)
 {
     for (int64_t i = c->share; i < c->share + c->shares; i++)
         if (to->share[i].part == one->part && to->share[i].volume == one->volume) {
@@ -220,22 +220,22 @@ static int add_share(parts_list *to, parts_cell *c, const parts_share *one, err 
 }
 
 /* Of a voxel of several parts: what each has of each volume. */
-static int count_volumes(const parts *p, parts_list *to, parts_cell *c, err *e)
+static int count_volumes(const pieces *p, pieces_list *to, pieces_cell *c, err *e)
 {
     for (int32_t n = 0; n < c->parts; n++)
         for (int64_t r = 0; r < p->runs.runs; r++) {
             const climb_run *run = &p->runs.run[r];
             const int32_t samples = samples_in(p, run, c->cell[0], &to->bits[c->bits + n * rows_of(p)]);
-            if (samples && add_share(to, c, &(parts_share){n, run->volume, samples}, e))
+            if (samples && add_share(to, c, &(pieces_share){n, run->volume, samples}, e))
                 return -1;
         }
     return 0;
 }
 
-static int add_cell(const parts *p, const int32_t *cell, int64_t element, parts_list *to, err *e)
+static int add_cell(const pieces *p, const int32_t *cell, int64_t element, pieces_list *to, err *e)
 {
     const int64_t rows = rows_of(p);
-    parts_cell c = {{cell[0], cell[1], cell[2]}, 0, element, to->rows, to->shares, 0};
+    pieces_cell c = {{cell[0], cell[1], cell[2]}, 0, element, to->rows, to->shares, 0};
     uint16_t left[256];
     memcpy(left, p->in, (size_t)rows * sizeof *left);
     while (take_part(p, left)) {
@@ -251,7 +251,7 @@ static int add_cell(const parts *p, const int32_t *cell, int64_t element, parts_
     return 0;
 }
 
-int parts_row(parts *p, const climb_run *run, int64_t runs, int64_t element, parts_list *to, err *e)
+int pieces_row(pieces *p, const climb_run *run, int64_t runs, int64_t element, pieces_list *to, err *e)
 {
     int status = 0;
     int64_t cut = runs ? cuts_from(p->cut, (int32_t[3]){run->from, run->j, run->k}) : 0;

@@ -1,43 +1,43 @@
 /* The parts of a voxel by its samples: samples that are inside and next to each other along an axis are of one part,
  * unless a slit cuts them apart (cuts.h). Voxels that are all inside and uncut are not kept: they are one part. The
- * caller owns a parts, one a thread, and a list.
+ * caller owns a pieces, one a thread, and a list.
  */
-#ifndef SINEW_PARTS_H
-#define SINEW_PARTS_H
+#ifndef SINEW_PIECES_H
+#define SINEW_PIECES_H
 
 #include "voxelise/climb.h"
 #include "voxelise/cuts.h"
 
 /* So many samples of a part are in a volume. */
-typedef struct parts_share {
+typedef struct pieces_share {
     int32_t part, volume, samples;
-} parts_share;
+} pieces_share;
 
-typedef struct parts_cell {
+typedef struct pieces_cell {
     int32_t cell[3];
     int32_t parts;         /* from their lowest samples on */
     int64_t element;       /* of one voxel each */
     int64_t bits;          /* the first row of the first part */
     int64_t share, shares; /* of voxels of several parts: by part, then by volume */
-} parts_cell;
+} pieces_cell;
 
 /* In the order of the elements. */
-typedef struct parts_list {
-    parts_cell *cell;
+typedef struct pieces_list {
+    pieces_cell *cell;
     uint16_t *bits; /* parts x N (z) x N (y): a bit for each x */
-    parts_share *share;
+    pieces_share *share;
     int64_t cells, rows, shares, cell_capacity, bits_capacity, share_capacity;
-} parts_list;
+} pieces_list;
 
-void parts_list_free(parts_list *l);
+void pieces_list_free(pieces_list *l);
 
 /* Adds a list, whose elements are numbered from `element` on. */
-int parts_list_join(parts_list *to, const parts_list *from, int64_t element, err *e);
+int pieces_list_join(pieces_list *to, const pieces_list *from, int64_t element, err *e);
 
 /* The voxel of an element, or NULL: all of it is inside, and one part. */
-const parts_cell *parts_of(const parts_list *l, int64_t element);
+const pieces_cell *pieces_of(const pieces_list *l, int64_t element);
 
-typedef struct parts {
+typedef struct pieces {
     int samples;     /* N */
     const cuts *cut; /* borrowed */
     int64_t low;     /* voxel along x */
@@ -46,16 +46,16 @@ typedef struct parts {
     climb_runs runs; /* of samples */
     uint16_t *in, *part;
     uint16_t *closed[3]; /* N x N each: samples that are cut from the next along an axis */
-} parts;
+} pieces;
 
 /* g: the lattice of samples. */
-int parts_create(parts *p, const grid *g, int samples, const cuts *cut, err *e);
-void parts_free(parts *p);
+int pieces_create(pieces *p, const grid *g, int samples, const cuts *cut, err *e);
+void pieces_free(pieces *p);
 
 /* Takes a run of samples of the row of voxels at hand. */
-int parts_add(parts *p, const climb_run *run, err *e);
+int pieces_add(pieces *p, const climb_run *run, err *e);
 
 /* The voxels of a row, whose runs are given, from the samples taken since the last row. element: the first one's. */
-int parts_row(parts *p, const climb_run *run, int64_t runs, int64_t element, parts_list *to, err *e);
+int pieces_row(pieces *p, const climb_run *run, int64_t runs, int64_t element, pieces_list *to, err *e);
 
 #endif
