@@ -52,7 +52,7 @@ static int add(boundary *b, const elements *x, int64_t element, int side, err *e
 static bool share_face(const elements *x, int64_t element, int side, int64_t beside)
 {
     for (int i = 0; i < 4; i++) {
-        const int corner = hexahedron[side][i];
+        const int corner = (uint8_t)hexahedron[side][i];
         int opposite = 0;
         while (lattice_vtk[opposite][side / 2] == lattice_vtk[corner][side / 2] ||
                lattice_vtk[opposite][(side / 2 + 1) % 3] != lattice_vtk[corner][(side / 2 + 1) % 3] ||
