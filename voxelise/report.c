@@ -231,7 +231,7 @@ void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_u
     notes_add(n,
               "elements fill gaps between surfaces in %lld place%s of a voxel's width, %.4g %s^2, as at "
               "%.6g%s,%.6g%s,%.6g%s, where the gap is %.3g %s wide along %c: both sides move as one there; voxels of "
-              "at most %s separate them in half of these places%s",
+              "at most %s separate them in half of these places%s, and --slits on parts them",
               (long long)found->count, found->count == 1 ? "" : "s", gaps_area(found, g), name, at[0], name, at[1],
               name, at[2], name, middle->width * g->spacing[middle->axis], name, 'x' + middle->axis, voxel,
               isnan(least) ? "" : ", and so may a larger --least");
