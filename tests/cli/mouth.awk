@@ -1,5 +1,6 @@
-# Of a model of the real face in text (voxels of h): slices of elements across x, within -v half=MM of the middle, in which upper and
-# lower lip are not joined by faces in front of the teeth: open, of all, and the middles of those that are shut.
+# Of a model of the real face in text: slices of elements across x, within -v half=MM of the middle, in which upper and lower lip are not
+# joined by faces where y is above 61 mm, in front of the teeth (behind, the corners of the mouth are closed): how many are open, of how
+# many, and the middles of those that are shut.
 function root(i) { while (up[i] != i) i = up[i] = up[up[i]]; return i }
 function face(e, list,    q, n, i, j, t) {
     split(list, n, " ")
@@ -17,7 +18,7 @@ END {
     for (e in cell) {
         split(cell[e], c)
         x = o[1] + (c[1] + .5) * h; y = o[2] + (c[2] + .5) * h; z = o[3] + (c[3] + .5) * h
-        if (x < -half || x > half || y < 60 || z < -95 || z > -70) continue
+        if (x < -half || x > half || y < 61 || z < -95 || z > -70) continue
         up[e] = e; slice[c[1]] = 1
         split(node[e], q)
         face(e, q[1] " " q[2] " " q[6] " " q[5]); face(e, q[4] " " q[3] " " q[7] " " q[8])

@@ -115,12 +115,13 @@ mouth() {
         awk -v half=20 -f tests/cli/mouth.awk
 }
 if [ -z "$DATA" ]; then
-    skip 6 "no shared data"
+    skip 7 "no shared data"
 else
     is "$(mouth -s 2.5)" "6 16 -18.75 -8.75 16.25 8.75 -11.25 18.75 11.25 -16.25 -13.75 13.75" "the mouth by the paper's rule"
     is "$(mouth -s 2.5 --slits on)" "16 16" "slits open: all slices, by centres"
     is "$(mouth -s 2.5 --fraction 8)" "16 16" "and by shares"
     is "$(mouth -s 1.25 --slits on)" "32 32" "in voxels of half the size"
+    is "$(mouth -s 1.25 --fraction 8)" "32 32" "by shares too"
     for how in "--slits on" "--fraction 8"; do
         # shellcheck disable=SC2086 # words
         voxelise -q --text --unit mm --origin -125,-125,-125 -s 2.5 $how "$DATA/face/face_zyg.obj" 2>"$T/said" | sinew bind -q --text |
