@@ -219,7 +219,7 @@ for array in element.lattice element.node element.volume node.position volume.mu
     fails 1 "no $array" "${array%%.*}\.${array#*.}" attach -o "$T/no" <"$T/without"
 done
 sed 's/^2 0 0$/1 0 0/' "$T/bar" >"$T/twice"
-check "two elements in one cell, as where a slit parts it" sh -c 'attach -q -o "$T/two" <"$T/twice"'
+check "two elements in one cell, as where a slit parts it" attach -q -o "$T/two" <"$T/twice"
 sed 's/^2 0 0$/2000000000 2000000000 2000000000/' "$T/bar" >"$T/wide"
 fails 1 "a lattice wider than memory" 'memory' attach -o "$T/no" <"$T/wide"
 sed '/lattice.spacing/s/0.01 0.01"/0 0.01"/' "$T/bar" >"$T/flat"
