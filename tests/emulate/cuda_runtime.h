@@ -22,6 +22,10 @@
  * it is known where all of it stands.) */
 #define __shared__ static thread_local
 
+struct alignas(16) uint4 {
+    uint32_t x, y, z, w;
+};
+
 struct alignas(16) float4 {
     float x, y, z, w;
 };
@@ -81,6 +85,10 @@ uint64_t emulated_exchange(unsigned mask, uint64_t bits, int with);
 static inline double __shfl_xor_sync(unsigned mask, double x, int with)
 {
     return emulated_bits<double>(emulated_exchange(mask, emulated_bits<uint64_t>(x), with));
+}
+static inline float __shfl_xor_sync(unsigned mask, float x, int with)
+{
+    return emulated_bits<float>((uint32_t)emulated_exchange(mask, emulated_bits<uint32_t>(x), with));
 }
 static inline int __shfl_xor_sync(unsigned mask, int x, int with)
 {

@@ -2,7 +2,8 @@
  * largest displacement off double where it marches), 1e-4 of the largest displacement between single precision there
  * and double here over 10,000 steps and at rest, the same looks, the same messages. Without a card all is skipped.
  */
-// needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/places.c  tled/*/*.c
+// needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_sheets.c
+// needs: tled/cuda/march_tips.c tled/cuda/places.c  tled/*/*.c
 #include "tled/cuda/march.h"
 
 #include "tled_card.h"
@@ -13,6 +14,15 @@
 
 static const block middle = {{40, 40, 24}, {.001, .001, .001}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 1, 0}, 0, false};
 static const block large = {{80, 80, 64}, {.001, .001, .001}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 1, 0}, 0, false};
+
+/* Slits of these: a half one, one across it, and in the large one, one through cells. */
+static const slit middle_slits = {
+    "slits", {{0, 17, {0, 0}, {25, 24}, false, false}, {2, 11, {5, 10}, {30, 30}, false, false}}, false};
+static const slit large_slits = {"slits",
+                                 {{0, 37, {0, 0}, {45, 64}, false, false},
+                                  {2, 31, {5, 10}, {60, 70}, false, false},
+                                  {1, 20, {0, 50}, {30, 70}, true, true}},
+                                 false};
 
 static bool same(const bench *a, const bench *b)
 {
@@ -126,6 +136,23 @@ static void test_marched_small(const block *what, int64_t steps, const tled_exec
     compare_marched(&here, &there, name);
 }
 
+/* Slits where it marches, with and without special cells. */
+static void test_slits_marched(const tled_executor *cuda)
+{
+    block cut = large;
+    cut.fraction = -1;
+    cut.mixed = true;
+    in_slit = &large_slits;
+    test_marched(&large, .2, false, 60, cuda, "slits, a muscle");
+    test_marched(&marched, 0, true, 60, cuda, "slits, a script");
+    test_marched(&cut, .5, false, 60, cuda, "slits, elements mixed of two muscles");
+    in_control = ISOTROPIC(.0075);
+    test_marched(&cut, .5, false, 60, cuda, "slits, isotropic control");
+    in_control = PHYSICAL;
+    test_look(&large, false, 60, cuda, "slits, single, many bricks", 1e-6);
+    in_slit = NULL;
+}
+
 static void test_all_marched(const tled_executor *cuda)
 {
     bench b;
@@ -154,6 +181,7 @@ static void test_all_marched(const tled_executor *cuda)
     cut = marched;
     cut.mixed = true;
     test_marched(&cut, 0, true, 60, cuda, "mixed elements, a script");
+    test_slits_marched(cuda);
 }
 
 /* Forms that no march has, on the card. */
@@ -172,6 +200,29 @@ static void test_forms_bytes(const tled_executor *cpu, const tled_executor *cuda
         test_bytes(&mixed, .5, false, 1000, cpu, cuda, what);
     }
     in_form = FORM_NEO_HOOKEAN;
+}
+
+/* Slits: the CPU's bytes in bricks, small and many. */
+static void test_slits_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
+{
+    char what[120];
+    for (int i = 0; i < SLITS; i++) {
+        block cut = lump;
+        cut.cells[1] = slits[i].thin ? 1 : cut.cells[1];
+        cut.fraction = i % 2 ? -1 : 0;
+        cut.mixed = i % 2;
+        in_slit = &slits[i];
+        snprintf(what, sizeof what, "%s, %s", name, slits[i].name);
+        test_bytes(&cut, 0, !slits[i].thin, 1000, cpu, cuda, what);
+    }
+    in_slit = &middle_slits;
+    snprintf(what, sizeof what, "%s, slits, more bricks", name);
+    test_bytes(&middle, .2, false, 60, cpu, cuda, what);
+    in_slit = &large_slits;
+    snprintf(what, sizeof what, "%s, slits, many bricks", name);
+    if (cpu == &tled_cpu_double)
+        test_bytes(&large, .2, false, 20, cpu, cuda, what);
+    in_slit = NULL;
 }
 
 /* Isotropic control: the CPU's bytes, and a look. */
@@ -356,6 +407,8 @@ int main(void)
     test_all_bytes(&tled_cpu_single, once, "single");
     test_forms_bytes(&tled_cpu_double, twice, "double");
     test_forms_bytes(&tled_cpu_single, once, "single");
+    test_slits_bytes(&tled_cpu_double, twice, "double");
+    test_slits_bytes(&tled_cpu_single, once, "single");
     test_all_marched(once);
     test_isotropic(twice, once);
     test_long(twice, "double");
@@ -376,6 +429,9 @@ int main(void)
     cut.mixed = true;
     test_look(&cut, false, 300, twice, "double, mixed elements", 1e-10);
     test_look(&cut, false, 300, once, "single, mixed elements", 1e-6);
+    in_slit = &middle_slits;
+    test_look(&middle, false, 300, twice, "slits, double, more bricks", 1e-10);
+    in_slit = NULL;
     test_look(&middle, false, 300, twice, "double, more bricks", 1e-10);
     test_look(&middle, false, 300, once, "single, more bricks", 1e-6);
     test_look(&large, false, 300, once, "single, many bricks", 1e-6);

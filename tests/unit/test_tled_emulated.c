@@ -238,6 +238,42 @@ static void test_bricks(int64_t steps)
     try(&rests, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
 }
 
+/* Slits, wherever they are: where it marches, in bricks and in bricks that stay; and looks. */
+static void test_slits(int64_t steps)
+{
+    for (int i = 0; i < SLITS; i++) {
+        char name[3][80];
+        static const char *const way[3] = {"marched", "in bricks", "in bricks that stay"};
+        block what = i % 2 ? mixed_of(lump) : lump;
+        what.cells[1] = slits[i].thin ? 1 : what.cells[1];
+        for (int k = 0; k < 3; k++)
+            snprintf(name[k], sizeof name[k], "%s, %s", slits[i].name, way[k]);
+        const trial walk = {name[0], what, 0, !slits[i].thin, {0}, false};
+        trial bricks = walk, stay = walk;
+        bricks.name = name[1], stay.name = name[2];
+        in_slit = &slits[i];
+        try(&walk, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+        try(&bricks, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+        try(&stay, &staying, &tled_cuda_single, &tled_cpu_single, steps, 0);
+        if (i == 5) {
+            try(&bricks, &plain, &tled_cuda_double, &tled_cpu_double, steps, 0);
+            try(&stay, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
+            put_in(&plain, 4, 4);
+            test_look(&lump, true, steps, &tled_cuda_single, "a look at slits in bricks", 1e-6);
+            put_in(&marching, 3, 2);
+            test_look(&lump, true, steps, &tled_cuda_single, "a look at slits where it marches", 1e-6);
+        }
+    }
+    in_control = ISOTROPIC(.0075);
+    in_slit = &slits[3];
+    const trial walk = {"crossing slits, isotropic control", mixed_of(small), .5, false, {0}, false};
+    try(&walk, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    in_control = PHYSICAL;
+    const trial muscles = {"crossing slits in muscles", mixed_of(small), .5, false, {0}, false};
+    try(&muscles, &marching, &tled_cuda_single, &tled_cpu_double, steps, 1e-5);
+    in_slit = NULL;
+}
+
 /* A form that no march has: in bricks, to the CPU's bytes, on a card that marches too. */
 static void test_form(form f, int64_t steps)
 {
@@ -479,6 +515,7 @@ int main(void)
     test_thin(3 * more);
     test_long_calls();
     test_bricks(3 * more);
+    test_slits(more);
     for (int f = 0; f < FORM_STEPPED; f++)
         if (f != FORM_NEO_HOOKEAN)
             test_form((form)f, 2 * more);

@@ -1,10 +1,11 @@
 /* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners;
  * what is said of special cells is the problem's, and others are of the plain law. Nodes stand in one order, in which
- * what is owned of a layer is one piece. With each of the six axes; and not where too few threads would have a cell.
- * Which units wait for which, by trying all pairs. And units: some for each block that there is room for at once where
- * their layers are all alike, in the order of these.
+ * what is owned of a layer is one piece. So with slits, whose tips have units of their own. With each of the six axes;
+ * and not where too few threads would have a cell. Which units wait for which, by trying all pairs. And units: some for
+ * each block that there is room for at once where their layers are all alike, in the order of these.
  */
-// needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/places.c  tled/*/*.c
+// needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_sheets.c
+// needs: tled/cuda/march_tips.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "tled/cuda/march_near.h"
 #include "tled/cuda/march_units.h"
@@ -64,7 +65,7 @@ static bool in_order(seen *s)
                 s->wrong += word & MARCH_OWN && (int32_t)(word & MARCH_NODE) != next;
                 next += (word & MARCH_OWN) != 0;
             }
-    return !s->wrong && next == s->p->nodes;
+    return !s->wrong && next == s->m->tip_first && next + s->m->tips == s->p->nodes;
 }
 
 static int corner_of(const march *m, const int way[3])
@@ -153,8 +154,35 @@ static void see_cell(seen *s, const march_unit *u, int c, int i, int j)
     }
 }
 
+/* Tips of a unit: each has all of its elements, in the problem's order, with their corners. */
+static void see_tips(seen *s, const march_unit *u)
+{
+    for (int32_t k = u->base; k < u->base + u->tips; k++) {
+        const int32_t node = s->node[s->m->tip_first + k];
+        s->moved[node]++;
+        for (int i = 0; i < 8; i++) {
+            const march_tip *tip = &s->m->tip[8 * (int64_t)k + i];
+            const int32_t corner = s->p->corner[8 * (int64_t)node + i];
+            if (tip->corner < 0)
+                continue;
+            s->elements[node]++;
+            s->wrong += corner >= 8 * s->p->elements || s->node[tip->node[tip->corner]] != node;
+            s->wrong += !tip->special && !is_plain(s, corner / 8);
+            for (int c = 0; c < 8; c++) {
+                const int way[3] = {c & 1, c >> 1 & 1, c >> 2};
+                s->wrong +=
+                    s->node[tip->node[c]] != s->p->element_node[8 * (int64_t)(corner / 8) + corner_of(s->m, way)];
+            }
+        }
+    }
+}
+
 static void see_unit(seen *s, const march_unit *u)
 {
+    if (u->tips) {
+        see_tips(s, u);
+        return;
+    }
     for (int c = 0; c < u->cells; c++)
         for (int j = 0; j < MARCH_SIDE; j++)
             for (int i = 0; i < MARCH_SIDE; i++) {
@@ -187,8 +215,15 @@ static bool all_seen(seen *s)
 /* has[unit x nodes + node]: whether one of the unit's words has it; own: whether it moves it. */
 static void see_nodes(const march *m, int64_t nodes, uint8_t *has, uint8_t *own)
 {
-    for (int64_t i = 0; i < m->units; i++)
-        for (int c = 0; c <= m->unit[i].cells; c++)
+    for (int64_t i = 0; i < m->units; i++) {
+        const march_unit *u = &m->unit[i];
+        for (int32_t k = u->base; k < u->base + u->tips; k++) {
+            own[i * nodes + m->tip_first + k] = 1;
+            for (const march_tip *tip = m->tip + 8 * (int64_t)k; tip < m->tip + 8 * (int64_t)(k + 1); tip++)
+                for (int c = 0; tip->corner >= 0 && c < 8; c++)
+                    has[i * nodes + tip->node[c]] = 1;
+        }
+        for (int c = 0; !u->tips && c <= u->cells; c++)
             for (int k = 0; k < MARCH_WORDS; k++) {
                 const uint32_t word = m->word[(m->unit[i].base + c) * (int64_t)MARCH_WORDS + k];
                 const int64_t at = i * nodes + (int64_t)(word & MARCH_NODE);
@@ -197,6 +232,7 @@ static void see_nodes(const march *m, int64_t nodes, uint8_t *has, uint8_t *own)
                 if (word & MARCH_OWN && c > 0 && c < m->unit[i].cells)
                     own[at] = 1;
             }
+    }
 }
 
 static bool share_nodes(const uint8_t *has, const uint8_t *own, int64_t nodes)
@@ -265,6 +301,9 @@ static void test_cut(const block *what, const int axis[3], const char *contract,
        name, "xyz"[cut.axis[0]], "xyz"[cut.axis[1]], (long long)cut.units, cut.computed);
     ok((contract || what->mixed || what->fraction < 0) == (s.special > 0), "%s: %lld special cells are the problem's",
        name, (long long)s.special);
+    const slit_piece *piece = in_slit ? &in_slit->piece[0] : NULL;
+    const bool ends = piece && piece->high[0] < what->cells[(piece->axis + 1) % 3]; /* within the block */
+    ok(ends == (cut.tips > 0), "%s: %lld tips", name, (long long)cut.tips);
     int64_t most = 0;
     const bool is_near = cut.units > 1 && near_right(&cut, p.nodes, &most);
     ok(is_near, "%s: units wait for those near them, at most %lld", name, (long long)most);
@@ -363,6 +402,31 @@ static void test_special_units(void)
     march_runs_free(&runs);
 }
 
+/* A slit across each axis, half through and all through, and several. */
+static void test_slits(const block *plain, const block *special)
+{
+    static const int axis[3] = {2, 0, 1}, of_halves[3] = {2, 1, 0}; /* two parts of a slit all through across x */
+    const slit several = {"several",
+                          {{0, 9, {0, 0}, {20, 30}, false, false},
+                           {2, 17, {3, 4}, {25, 20}, false, false},
+                           {1, 12, {2, 5}, {33, 29}, false, false},
+                           {1, 25, {10, 8}, {30, 22}, true, true}},
+                          false};
+    char name[80];
+    for (int a = 0; a < 6; a++) {
+        const int32_t *cells = plain->cells, next = cells[(a + 1) % 3], last = cells[(a + 2) % 3];
+        const slit one = {
+            "one", {{a % 3, cells[a % 3] / 2, {0, 0}, {a < 3 ? next / 2 : next, last}, false, false}}, false};
+        in_slit = &one;
+        snprintf(name, sizeof name, "a slit across %c, %s through", 'x' + a % 3, a < 3 ? "half" : "all");
+        test_cut(plain, a == 3 ? of_halves : axis, NULL, 7, name);
+    }
+    in_slit = &several;
+    test_cut(plain, axis, NULL, 20, "several slits");
+    test_cut(special, axis, "m=.5,n=.3", 20, "several slits, cut and mixed elements that contract");
+    in_slit = NULL;
+}
+
 int main(void)
 {
     const block tall = {{33, 31, 40}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
@@ -385,6 +449,7 @@ int main(void)
     test_cut(&mixed, axes[0], NULL, 3, "mixed elements");
     test_cut(&mixed, axes[0], "n=.5", 20, "mixed elements, one volume of which contracts");
     test_cut(&both, axes[0], "m=.5,n=.3", 20, "cut and mixed elements that contract");
+    test_slits(&tall, &both);
     test_thin();
     test_one_way();
     test_units();

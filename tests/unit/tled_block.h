@@ -11,6 +11,8 @@
 #include "model/model.h"
 #include "physics/hourglass_numbers.h"
 
+#include "tled_slit.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -39,6 +41,21 @@ static inline model_array *block_array(model *m, const char *name)
 static inline int64_t block_node(const block *b, int32_t i, int32_t j, int32_t k)
 {
     return ((int64_t)k * (b->cells[1] + 1) + j) * (b->cells[0] + 1) + i;
+}
+
+/* Nodes and elements of a block with slits. */
+static inline void block_mesh_slit(const block *b, const lattice *l, const slit_mesh *from, model *m)
+{
+    double *position = block_array(m, "node.position")->f64;
+    uint8_t *rigid = block_array(m, "node.rigid")->u8;
+    const int32_t gx = b->cells[0] + 1, gy = b->cells[1] + 1;
+    for (int64_t n = 0; n < from->nodes; n++) {
+        const int32_t k = from->place[n], at[3] = {k % gx, k / gx % gy, k / gx / gy};
+        lattice_corner(l, at, position + 3 * n);
+        rigid[n] =
+            (b->fixed_low && at[b->fixed_axis] == 0) || (b->fixed_high && at[b->fixed_axis] == b->cells[b->fixed_axis]);
+    }
+    memcpy(block_array(m, "element.node")->i32, from->node, 8 * (size_t)from->elements * sizeof *from->node);
 }
 
 static inline void block_mesh(const block *b, const lattice *l, model *m)
@@ -130,19 +147,29 @@ static inline void block_tables(const block *b, model *m)
         block_mix(b, muscle, m);
 }
 
-/* Makes the model; the caller frees it. */
+/* Makes the model, with the slits that are asked for; the caller frees it. */
 static inline void block_make(const block *b, model *m)
 {
     err e = {0};
     lattice l = {{0, 0, 0}, {b->side[0], b->side[1], b->side[2]}};
     int64_t nodes = (int64_t)(b->cells[0] + 1) * (b->cells[1] + 1) * (b->cells[2] + 1);
     int64_t elements = (int64_t)b->cells[0] * b->cells[1] * b->cells[2];
+    slit_mesh mesh = {0};
+    if (in_slit) {
+        slit_make(&mesh, in_slit, b->cells);
+        nodes = mesh.nodes;
+        elements = mesh.elements;
+    }
     model_axis_add(m, "node", nodes, &e);
     model_axis_add(m, "element", elements, &e);
     model_axis_add(m, "volume", 1 + b->mixed, &e);
     model_axis_add(m, "material", 1 + b->mixed, &e);
     lattice_save(&l, m, &e);
-    block_mesh(b, &l, m);
+    if (in_slit)
+        block_mesh_slit(b, &l, &mesh, m);
+    else
+        block_mesh(b, &l, m);
+    slit_free(&mesh);
     block_tables(b, m);
     if (e.status) {
         printf("Bail out! %s\n", e.text);

@@ -24,10 +24,11 @@ typedef struct cuda_pass {
     int what;
 } cuda_pass;
 
-template <class G> static __device__ element_field cell_field(const real *u, int place)
+/* where: the cell's place, or its row. */
+template <class G, class W> static __device__ element_field cell_field(const real *u, const W &where)
 {
-    element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
-                        cuda_corners<G>(u + 2 * G::PLACES, place)};
+    element_field at = {cuda_corners<G>(u, where), cuda_corners<G>(u + G::PLACES, where),
+                        cuda_corners<G>(u + 2 * G::PLACES, where)};
     return at;
 }
 
@@ -57,10 +58,10 @@ template <class L, class T> static __device__ element_law law_of(const T *c, con
 }
 
 /* A cell mixed of two volumes. */
-template <class G, class L>
+template <class G, class L, class W>
 static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
-                                            const real *u, int place, const cuda_kind &kind, const cuda_mixed &mixed,
-                                            real share)
+                                            const real *u, const W &where, const cuda_kind &kind,
+                                            const cuda_mixed &mixed, real share)
 {
     const cuda_kind &mix = v.kind[mixed.mix];
     const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
@@ -77,13 +78,13 @@ static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda
         second.along = cell_along(t, i, v.mixfibre);
         second.tension = other * tension_of_mix;
     }
-    return element_force_of_two(L::FORM, L::CONTROL, cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
+    return element_force_of_two(L::FORM, L::CONTROL, cell_field<G>(u, where), p.shape, law, fibre, tension != 0, second,
                                 tension_of_mix != 0);
 }
 
-template <class G, class L>
+template <class G, class L, class W>
 static __device__ element_field plain_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
-                                            const real *u, int place, uint32_t volume, real share)
+                                            const real *u, const W &where, uint32_t volume, real share)
 {
     const real *stiff = p.law + L::LAW * volume;
     const element_law law = law_of<L>(stiff, stiff + L::COEFFICIENTS, share);
@@ -93,21 +94,20 @@ static __device__ element_field plain_force(const cuda_view<real> &v, const cuda
         fibre.along = cell_along(t, i, v.fibre);
         fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
     }
-    return element_force(L::FORM, L::CONTROL, cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
+    return element_force(L::FORM, L::CONTROL, cell_field<G>(u, where), p.shape, law, fibre, fibre.tension != 0);
 }
 
-/* MIXED: there are cells mixed of two volumes; a kernel of its own, so that others do without. */
-template <class G, class L, bool MIXED>
+template <class G, class L, class T, class W>
 static __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, uint32_t cell,
-                                  const real *u, real *force)
+                                  const W &where, const real *u, real *force)
 {
     const int place = cell & TILE_PLACE;
     const uint32_t volume = cell >> TILE_VOLUME;
     const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
-    const int32_t mixed = MIXED ? v.mixed[t.cell + i] : -1;
-    const element_field f = MIXED && mixed >= 0
-                                ? mixed_force<G, L>(v, p, t, i, u, place, v.kind[volume], v.mixture[mixed], share)
-                                : plain_force<G, L>(v, p, t, i, u, place, volume, share);
+    const int32_t mixed = T::MIXED ? v.mixed[t.cell + i] : -1;
+    const element_field f = T::MIXED && mixed >= 0
+                                ? mixed_force<G, L>(v, p, t, i, u, where, v.kind[volume], v.mixture[mixed], share)
+                                : plain_force<G, L>(v, p, t, i, u, where, volume, share);
 #pragma unroll
     for (int c = 0; c < 8; c++) {
         force[c * G::CELLS + place] = f.x.at[c];
@@ -116,21 +116,47 @@ static __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, 
     }
 }
 
+/* A cell, and its row where tiles may be listed. */
+template <bool LISTED> struct cell_told {
+    uint32_t cell;
+};
+template <> struct cell_told<true> {
+    uint32_t cell;
+    uint4 row;
+};
+
 /* A thread's first cell, and each after it while the one before is computed. */
-static __device__ uint32_t cell_at(const cuda_view<real> &v, const tile &t, int i)
+template <bool LISTED>
+static __device__ cell_told<LISTED> cell_at(const cuda_view<real> &v, const tile &t, const cuda_lists<LISTED> &lists,
+                                            int i)
 {
-    return i < t.cells ? v.cell[t.cell + i] : 0;
+    cell_told<LISTED> c;
+    c.cell = i < t.cells ? v.cell[t.cell + i] : 0;
+    if constexpr (LISTED)
+        c.row = cuda_listed(v, t, lists, i);
+    return c;
 }
 
-template <class G, class L, bool MIXED>
-static __device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p, const tile &t, uint32_t first,
-                                   const real *u, real *force)
+template <class G> static __device__ int cell_where(const cell_told<false> &c, const cuda_lists<false> &)
 {
-    uint32_t cell = first;
+    return c.cell & TILE_PLACE;
+}
+
+template <class G> static __device__ uint4 cell_where(const cell_told<true> &c, const cuda_lists<true> &lists)
+{
+    return lists.corner < 0 ? cuda_row<G>(c.cell & TILE_PLACE) : c.row;
+}
+
+template <class G, class L, class T>
+static __device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p, const tile &t,
+                                   const cuda_lists<T::LISTED> &lists, const cell_told<T::LISTED> &first, const real *u,
+                                   real *force)
+{
+    cell_told<T::LISTED> cell = first;
 #pragma unroll 1
     for (int i = threadIdx.x; i < t.cells; i += G::THREADS) {
-        const uint32_t next = cell_at(v, t, i + G::THREADS);
-        cell_force<G, L, MIXED>(v, p, t, i, cell, u, force);
+        const cell_told<T::LISTED> next = cell_at(v, t, lists, i + G::THREADS);
+        cell_force<G, L, T>(v, p, t, i, cell.cell, cell_where<G>(cell, lists), u, force);
         cell = next;
     }
 }
@@ -163,6 +189,51 @@ template <class G> static __device__ element_vector node_internal(uint32_t info,
         const int c = order[i];
         if (info >> (TILE_CORNERS + c) & 1) {
             const real *at = force + c * G::CELLS + place - cuda_corner<G>(c);
+            sum.x += at[0];
+            sum.y += at[8 * G::CELLS];
+            sum.z += at[16 * G::CELLS];
+        }
+    }
+    return sum;
+}
+
+/* A node's row, where tiles may be listed. */
+template <bool LISTED> struct node_told {
+};
+template <> struct node_told<true> {
+    uint4 row;
+};
+
+template <bool LISTED>
+static __device__ node_told<LISTED> node_row(const cuda_view<real> &v, const tile &t, const cuda_lists<LISTED> &lists,
+                                             int i)
+{
+    if constexpr (LISTED)
+        return {lists.pull >= 0 && i < t.nodes ? v.pull[lists.pull + i] : uint4{0, 0, 0, 0}};
+    else
+        return {};
+}
+
+template <class G>
+static __device__ element_vector node_sum(uint32_t info, const node_told<false> &, const cuda_lists<false> &,
+                                          const real *force)
+{
+    return node_internal<G>(info, force);
+}
+
+/* Of a listed tile, in the order of the row. */
+template <class G>
+static __device__ element_vector node_sum(uint32_t info, const node_told<true> &told, const cuda_lists<true> &lists,
+                                          const real *force)
+{
+    element_vector sum = {0, 0, 0};
+    if (lists.pull < 0)
+        return node_internal<G>(info, force);
+#pragma unroll
+    for (int i = 0; i < 8; i++) {
+        const uint32_t entry = cuda_entry(told.row, i);
+        if (entry != TILE_NO_PULL) {
+            const real *at = force + (entry >> TILE_PULL) * G::CELLS + (entry & TILE_PLACE);
             sum.x += at[0];
             sum.y += at[8 * G::CELLS];
             sum.z += at[16 * G::CELLS];
@@ -238,13 +309,13 @@ static __device__ own_node node_at(const cuda_view<real> &v, const cuda_pass &p,
     return own;
 }
 
+/* f: the elements' pull. */
 template <class G>
 static __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, own_node own,
-                                const real *grid, const real *force)
+                                element_vector f, const real *grid)
 {
     const int32_t n = t.node + i;
     const int place = own.info & TILE_PLACE;
-    element_vector f = node_internal<G>(own.info, force);
     if (p.what & PASS_INTERNAL) {
         p.to[n] = f.x, p.to[v.stride + n] = f.y, p.to[2 * v.stride + n] = f.z;
         if (!(p.what & PASS_FINISH))
@@ -271,25 +342,28 @@ template <class G> static constexpr int passes_together(void)
     return sizeof(real) == sizeof(float) ? G::TOGETHER : 512 / G::THREADS;
 }
 
-template <class G, class L, bool MIXED>
+template <class G, class L, class T>
 static __global__ void __launch_bounds__(G::THREADS, passes_together<G>())
     pass_kernel(cuda_view<real> v, const __grid_constant__ cuda_pass given)
 {
     DYNAMIC_SHARED(double, memory);
     real *u = (real *)memory, *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
-    const uint32_t first = cell_at(v, t, threadIdx.x);
+    const cuda_lists<T::LISTED> lists = cuda_lists_of<T::LISTED>(v, blockIdx.x);
+    const cell_told<T::LISTED> first = cell_at(v, t, lists, threadIdx.x);
     cuda_pass p = given;
     bring_laws<L>(v, &p, near);
     bring_gravity(v, p.now, near);
     cuda_load<G, true>(v, t, p.from, u);
     __syncthreads();
-    cell_forces<G, L, MIXED>(v, p, t, first, u, force);
+    cell_forces<G, L, T>(v, p, t, lists, first, u, force);
     own_node own = node_at(v, p, t, threadIdx.x);
+    node_told<T::LISTED> told = node_row(v, t, lists, threadIdx.x);
     __syncthreads();
     for (int i = threadIdx.x; i < t.nodes; i += G::THREADS) {
-        one_node<G>(v, p, t, i, own, u, force);
+        one_node<G>(v, p, t, i, own, node_sum<G>(own.info, told, lists, force), u);
         own = node_at(v, p, t, i + G::THREADS);
+        told = node_row(v, t, lists, i + G::THREADS);
     }
 }
 
@@ -302,19 +376,21 @@ template <class G, class L> static size_t pass_shared(void)
 template <class G, class L> static cudaError_t pass_allow(void)
 {
     const int shared = (int)pass_shared<G, L>();
-    const cudaError_t plain =
-        cudaFuncSetAttribute(pass_kernel<G, L, false>, cudaFuncAttributeMaxDynamicSharedMemorySize, shared);
-    return plain != cudaSuccess
-               ? plain
-               : cudaFuncSetAttribute(pass_kernel<G, L, true>, cudaFuncAttributeMaxDynamicSharedMemorySize, shared);
+    cudaError_t e = cudaSuccess;
+    for (int kind = 0; e == cudaSuccess && kind < 4; kind++)
+        e = with_tiles(kind & 1, kind & 2, [&](auto t) {
+            return cudaFuncSetAttribute(pass_kernel<G, L, decltype(t)>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                        shared);
+        });
+    return e;
 }
 
 template <class G, class L>
 static cudaError_t pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t stream)
 {
     const card_blocks blocks = {tiles, G::THREADS, pass_shared<G, L>(), stream};
-    return v.mixed ? card_start(pass_kernel<G, L, true>, blocks, v, p)
-                   : card_start(pass_kernel<G, L, false>, blocks, v, p);
+    return with_tiles(v.mixed, v.list,
+                      [&](auto t) { return card_start(pass_kernel<G, L, decltype(t)>, blocks, v, p); });
 }
 
 #endif

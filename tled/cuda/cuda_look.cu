@@ -71,17 +71,32 @@ static __device__ void hold_cell(hourglass_modes m, const element_shape &shape, 
     c->twist = sqrt(hourglass_dot(&w, &w));
 }
 
-template <class G, class L, class S>
-static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u, const element_shape &shape)
+/* Where its corners stand: its place, or its row. */
+template <class G, class S>
+static __device__ int where_of(const cuda_view<S> &, const tile &, const cuda_lists<false> &, int, uint32_t cell)
+{
+    return cell & TILE_PLACE;
+}
+
+template <class G, class S>
+static __device__ uint4 where_of(const cuda_view<S> &v, const tile &t, const cuda_lists<true> &lists, int i,
+                                 uint32_t cell)
+{
+    return lists.corner < 0 ? cuda_row<G>(cell & TILE_PLACE) : cuda_listed(v, t, lists, i);
+}
+
+template <class G, class L, bool LISTED, class S>
+static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, const cuda_lists<LISTED> &lists, int i,
+                                   const S *u, const element_shape &shape)
 {
     const cuda_view<S> &v = l.view;
     const uint32_t cell = v.cell[t.cell + i];
-    const int place = cell & TILE_PLACE;
+    const auto where = where_of<G>(v, t, lists, i, cell);
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
     const int32_t mixed = v.mixed ? v.mixed[t.cell + i] : -1;
-    element_modes x = element_modes_of(cuda_corners<G>(u, place));
-    element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
-    element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
+    element_modes x = element_modes_of(cuda_corners<G>(u, where));
+    element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, where));
+    element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, where));
     one_cell c;
     c.own = {{0}, kind.density, {0}, kind.twists, 0, -1};
     if (mixed >= 0) {
@@ -182,15 +197,16 @@ template <class L> static __device__ stability_twists twists_of(const one_cell &
 
 /* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread
  * nearly twice the registers. Returns what is proven. */
-template <class G, class L, class S>
-static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
-                                       int count, const look_parts &parts, tled_sums *to)
+template <class G, class L, bool LISTED, class S>
+static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const cuda_lists<LISTED> &lists,
+                                       const S *u, const own_cells<G> &own, int count, const look_parts &parts,
+                                       tled_sums *to)
 {
     double proven = l.question.rest;
 #pragma unroll 1
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
-        const one_cell c = cell_of<G, L>(l, t, i, u, parts.shape);
+        const one_cell c = cell_of<G, L>(l, t, lists, i, u, parts.shape);
         const double strain = strain_of<L>(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
@@ -249,9 +265,9 @@ static __device__ void raise_limit(const step_matrix *a, stability_twists twists
 }
 
 /* The frequency of a tile by its cells' matrices. */
-template <class G, class L, class S>
-static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const look_parts &parts, tled_sums *out, S *u,
-                                  double *scratch, int *least)
+template <class G, class L, bool LISTED, class S>
+static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const cuda_lists<LISTED> &lists,
+                                  const look_parts &parts, tled_sums *out, S *u, double *scratch, int *least)
 {
     highest h = {l.question.rest, -1};
     __syncthreads();
@@ -263,7 +279,7 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const lo
         step_matrix a;
         stability_twists twists = {0, 0};
         if (past) {
-            const one_cell c = cell_of<G, L>(l, t, i, u, parts.shape);
+            const one_cell c = cell_of<G, L>(l, t, lists, i, u, parts.shape);
             element_fibre fibre[2];
             fibres_of(l, t, i, c, fibre);
             twists = twists_of<L>(c, parts);
@@ -365,7 +381,7 @@ static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_
 
 /* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one
  * block is beside what computes in others. */
-template <class G, class L, class S>
+template <class G, class L, bool LISTED, class S>
 static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     look_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts out)
 {
@@ -376,6 +392,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     __shared__ double proven[WARPS];
     const unsigned warp = threadIdx.x / 32;
     const tile t = l.view.tiles[blockIdx.x];
+    const cuda_lists<LISTED> lists = cuda_lists_of<LISTED>(l.view, blockIdx.x);
     unsigned who[own_cells<G>::ROUNDS];
     count_own<G>(l.view.cell, t, who, &own);
     cuda_load<G, false>(l.view, t, l.displacement, u);
@@ -388,7 +405,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     const int count = list_own<G>(who, &own);
     __syncthreads();
     mine = nothing_seen(l.question.rest);
-    const double most = warp_most(look_at_cells<G, L>(l, t, u, own, count, out, &mine));
+    const double most = warp_most(look_at_cells<G, L>(l, t, lists, u, own, count, out, &mine));
     sum_cells(&mine);
     if (threadIdx.x % 32 == 0) {
         add_part(&part[warp], mine);
@@ -420,7 +437,7 @@ static __device__ double proven_of_all(const double *proven, int64_t tiles, doub
  * reach: others' limits may stay, for if one of them is the highest of all, it is too high by `raise` at most.
  * Where no tile is known to pass the frequency at rest, it is for all that may. Then it adds up what their
  * blocks left, where the first of these was. */
-template <class G, class L, class S>
+template <class G, class L, bool LISTED, class S>
 static __global__ void __launch_bounds__(G::THREADS)
     settle_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts parts)
 {
@@ -437,7 +454,8 @@ static __global__ void __launch_bounds__(G::THREADS)
         int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
         for (int which; (which = block_least(next, &least)) != NONE;) {
             const int64_t at = base + which * stride;
-            solve_tile<G, L>(l, l.view.tiles[at], parts, &parts.block[at], u, number, &least);
+            solve_tile<G, L>(l, l.view.tiles[at], cuda_lists_of<LISTED>(l.view, at), parts, &parts.block[at], u, number,
+                             &least);
             next = next == which ? NONE : next;
         }
         if (own < l.count)
@@ -466,10 +484,14 @@ cudaError_t cuda_look_start(const cuda_look<S> *l, form f, hourglass_kind kind, 
             typedef decltype(g) G;
             typedef decltype(form_) L;
             typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
-            const cudaError_t bounds = card_start(look_kernel<W, L, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
-            return bounds == cudaSuccess
-                       ? card_start(settle_kernel<G, L, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
-                       : bounds;
+            return with_tiles(false, l->view.list, [&](auto t) {
+                constexpr bool LISTED = decltype(t)::LISTED;
+                const cudaError_t bounds =
+                    card_start(look_kernel<W, L, LISTED, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
+                return bounds == cudaSuccess
+                           ? card_start(settle_kernel<G, L, LISTED, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
+                           : bounds;
+            });
         });
     });
     return e == cudaSuccess

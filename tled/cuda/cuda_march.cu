@@ -16,6 +16,8 @@ extern "C" {
 #include "tled/cuda/cuda_cells.cuh"
 #include "tled/cuda/cuda_march_room.cuh"
 
+#include <limits.h>
+
 enum {
     TAKEN = 4,    /* layers before its last, a block takes its next unit */
     TOGETHER = 2, /* blocks of a multiprocessor */
@@ -472,6 +474,8 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
     }
 }
 
+#include "tled/cuda/cuda_march_tips.cuh"
+
 /* Thread 0's work: the first unit of a block, as its next. */
 static __device__ __forceinline__ void take_first(const cuda_march &m, const cuda_march_pass &p, const turn &t)
 {
@@ -483,7 +487,7 @@ static __device__ __forceinline__ void take_first(const cuda_march &m, const cud
 
 /* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor
  * do passes that end a step and begin the next ask what they are. */
-template <march_control K>
+template <march_control K, bool TIPS>
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {
@@ -503,7 +507,9 @@ static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
         t.base = (int32_t)__float_as_uint(next.x);
         t.cells = (int32_t)__float_as_uint(next.y);
         const bool special = __float_as_uint(next.z);
-        if (t.kind == MARCH_STEP && special)
+        if (TIPS && t.cells == 0)
+            move_tips<K>(m, p, t, unit, (int)__float_as_uint(next.w));
+        else if (t.kind == MARCH_STEP && special)
             march_unit_of<K, true, true>(m, p, t, unit);
         else if (t.kind == MARCH_STEP)
             march_unit_of<K, false, true>(m, p, t, unit);
@@ -540,44 +546,50 @@ cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to
 
 /* ---- starting */
 
-template <march_control K> static cudaError_t slots_of(int64_t *slots)
+/* Calls f with the kernel. */
+template <bool TIPS, class F> static cudaError_t with_tips(march_control control, F f)
 {
-    int device = 0, processors = 0, each = 0, major = 0;
-    *slots = 0;
-    cudaError_t e = cudaGetDevice(&device);
-    e = e == cudaSuccess ? cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) : e;
-    if (e != cudaSuccess || major < 9)
-        return e;
-    e = cudaFuncSetAttribute(march_kernel<K>, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
-    e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
-    e = e == cudaSuccess ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, march_kernel<K>, MARCH_THREADS, SHARED)
-                         : e;
-    *slots = (int64_t)processors * each;
-    return e;
+    switch (control) {
+    case MARCH_ISOTROPIC:
+        return f(march_kernel<MARCH_ISOTROPIC, TIPS>);
+    case MARCH_PHYSICAL:
+        return f(march_kernel<MARCH_PHYSICAL, TIPS>);
+    default:
+        return f(march_kernel<MARCH_PHYSICAL_CUBES, TIPS>);
+    }
+}
+
+template <class F> static cudaError_t with_march(march_control control, bool tips, F f)
+{
+    return tips ? with_tips<true>(control, f) : with_tips<false>(control, f);
 }
 
 cudaError_t cuda_march_slots(march_control control, int64_t *slots)
 {
-    switch (control) {
-    case MARCH_ISOTROPIC:
-        return slots_of<MARCH_ISOTROPIC>(slots);
-    case MARCH_PHYSICAL:
-        return slots_of<MARCH_PHYSICAL>(slots);
-    default:
-        return slots_of<MARCH_PHYSICAL_CUBES>(slots);
-    }
+    int device = 0, processors = 0, major = 0, least = INT_MAX;
+    *slots = 0;
+    cudaError_t e = cudaGetDevice(&device);
+    e = e == cudaSuccess ? cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device) : e;
+    e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
+    if (e != cudaSuccess || major < 9)
+        return e;
+    for (int tips = 0; e == cudaSuccess && tips < 2; tips++) /* whether there are is not known yet */
+        e = with_march(control, tips, [&](auto kernel) {
+            int each = 0;
+            cudaError_t bad = cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
+            bad = bad == cudaSuccess
+                      ? cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, kernel, MARCH_THREADS, SHARED)
+                      : bad;
+            least = each < least ? each : least;
+            return bad;
+        });
+    *slots = (int64_t)processors * least;
+    return e;
 }
 
 cudaError_t cuda_march_start(march_control control, const cuda_march *m, const cuda_march_pass *p, int64_t blocks,
                              cudaStream_t stream)
 {
     const card_blocks how = {blocks, MARCH_THREADS, SHARED, stream};
-    switch (control) {
-    case MARCH_ISOTROPIC:
-        return card_start(march_kernel<MARCH_ISOTROPIC>, how, *m, *p);
-    case MARCH_PHYSICAL:
-        return card_start(march_kernel<MARCH_PHYSICAL>, how, *m, *p);
-    default:
-        return card_start(march_kernel<MARCH_PHYSICAL_CUBES>, how, *m, *p);
-    }
+    return with_march(control, m->tip != NULL, [&](auto kernel) { return card_start(kernel, how, *m, *p); });
 }

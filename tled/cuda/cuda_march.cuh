@@ -41,11 +41,13 @@ typedef struct cuda_march {
     float slope[3], area[3]; /* element_shape's, along the march's axes */
     /* Along these, with c = 4 h: c, V'/c, 1/(3 c^2), V'/c^2, (c_i^2/c_j^2 + c_i^2/c_k^2) - 1; V' = 64 V, and 1/V'. */
     float width[3], face[3], thirds[3], squares[3], own[3], volume, density;
-    int32_t axis[3]; /* of the model: which these are */
+    int32_t axis[3];      /* of the model: which these are */
+    const march_tip *tip; /* march's; NULL: there are none */
+    int32_t tip_first;
 } cuda_march;
 
 /* What the kernel is compiled for: isotropic or physical control, and whether all sides are alike, which saves some
- * operations. */
+ * operations; and, beside that, whether there are tips. */
 typedef enum march_control { MARCH_ISOTROPIC, MARCH_PHYSICAL, MARCH_PHYSICAL_CUBES } march_control;
 
 static inline march_control march_control_of(hourglass_kind kind, const double side[3])

@@ -23,7 +23,8 @@ static int cut_in(cuda_state *s, cuda_size size, err *e)
     });
 }
 
-/* How many bricks of a size are resident at once, and how many nodes they have at most. */
+/* How many bricks of a size are resident at once, by the kernel that the tiles so far take, and how many nodes they
+ * have at most. */
 static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
 {
     return with_brick(size, [&](auto g) {
@@ -31,7 +32,8 @@ static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
         const int64_t curves = s->curves;
         const int64_t places = with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
             typedef decltype(l) L;
-            return s->p->mix ? resident_places<G, L, true>(curves) : resident_places<G, L, false>(curves);
+            return with_tiles(s->p->mix, s->tiles.list,
+                              [&](auto t) { return resident_places<G, L, decltype(t)>(curves); });
         });
         *nodes = places * G::NODES;
         return places;
@@ -53,6 +55,8 @@ static int cut_tiles(cuda_state *s, err *e)
             s->places = 0;
             return cut_in(s, size == CUDA_SMALL ? CUDA_SMALL : (cuda_size)(size - 1), e);
         }
+        if (s->tiles.list) /* whose kernel may take more registers */
+            s->places = places_of(s, (cuda_size)size, &nodes);
         if (s->tiles.count <= s->places)
             return 0;
     }
@@ -202,8 +206,9 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
         return with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
             typedef decltype(g) G;
             typedef decltype(l) L;
-            return s->view.mixed ? resident_start<G, L, true>(s->view, r, s->tiles.count, s->stream)
-                                 : resident_start<G, L, false>(s->view, r, s->tiles.count, s->stream);
+            return with_tiles(s->view.mixed, s->view.list, [&](auto t) {
+                return resident_start<G, L, decltype(t)>(s->view, r, s->tiles.count, s->stream);
+            });
         });
     });
     s->spare_is_internal = ends;
@@ -253,6 +258,7 @@ static void march_list(cuda_state *s, const cuda_numbers *numbers, card_layout *
     card_layout_copy(l, &w->detail, m->detail, m->layers + MARCH_AHEAD);
     card_layout_copy(l, &w->which, m->which, m->details * MARCH_THREADS);
     card_layout_copy(l, &w->cell, m->cell, m->cells);
+    card_layout_copy(l, &w->tip, m->tip, 8 * m->tips);
 }
 
 /* Of plain cells, under physical control. */
@@ -283,6 +289,7 @@ static void march_fill(cuda_state *s)
     w->ticket = w->done + s->march.units;
     w->nears = (int32_t)s->march.nears;
     w->units = (int32_t)s->march.units;
+    w->tip_first = s->march.tip_first;
     static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");
     memcpy(&w->v, &s->view, sizeof w->v);
     for (int a = 0; a < 3; a++) {

@@ -111,15 +111,14 @@ static __device__ void hear(const cuda_halo<G> &h, const uint64_t *message, int6
         }
 }
 
-/* One node of the tile in a pass; velocity: of the tile's nodes. */
+/* One node of the tile in a pass; f: the elements' pull. */
 template <class G>
 static __device__ void resident_node(const cuda_view<real> &v, const cuda_resident &r, const cuda_pass &p,
-                                     const tile &t, int i, const real *force, real *grid, own_node *own,
+                                     const tile &t, int i, element_vector f, real *grid, own_node *own,
                                      uint64_t *message, uint32_t count)
 {
     const int32_t n = t.node + i;
     const int place = own->info & TILE_PLACE;
-    const element_vector f = node_internal<G>(own->info, force);
     real u[3] = {grid[place], grid[G::PLACES + place], grid[2 * G::PLACES + place]};
     if (p.what & PASS_INTERNAL) {
         r.internal[n] = f.x;
@@ -134,14 +133,15 @@ static __device__ void resident_node(const cuda_view<real> &v, const cuda_reside
     }
 }
 
-template <class G, class L, bool MIXED>
+template <class G, class L, class T>
 static __global__ void __launch_bounds__(G::THREADS, together<G>())
     resident_kernel(cuda_view<real> v, const __grid_constant__ cuda_resident r)
 {
     DYNAMIC_SHARED(double, memory);
     real *u = (real *)(memory + 6 * r.curves), *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
-    const uint32_t first = cell_at(v, t, threadIdx.x);
+    const cuda_lists<T::LISTED> lists = cuda_lists_of<T::LISTED>(v, blockIdx.x);
+    cell_told<T::LISTED> first = cell_at(v, t, lists, threadIdx.x);
     const cuda_halo<G> halo = halo_of<G>(v, t);
     own_node own[G::OWN];
     cuda_pass p = r.pass;
@@ -160,13 +160,20 @@ static __global__ void __launch_bounds__(G::THREADS, together<G>())
         for (int i = threadIdx.x; i < (last ? 3 : 6) * r.curves; i += G::THREADS)
             memory[i] = now[i];
         bring_gravity(v, now, near);
+        if constexpr (T::LISTED) /* rows are in the L1 cache: in registers, they would leave room for fewer blocks */
+            first.row = cuda_listed(v, t, lists, (int)threadIdx.x);
         __syncthreads();
-        cell_forces<G, L, MIXED>(v, p, t, first, u, force);
+        cell_forces<G, L, T>(v, p, t, lists, first, u, force);
+        node_told<T::LISTED> told[G::OWN];
+#pragma unroll
+        for (int i = 0; i < G::OWN; i++)
+            told[i] = node_row(v, t, lists, (int)threadIdx.x + i * G::THREADS);
         __syncthreads();
 #pragma unroll
         for (int i = 0; i < G::OWN; i++)
             if ((int)threadIdx.x + i * G::THREADS < t.nodes)
-                resident_node<G>(v, r, p, t, (int)threadIdx.x + i * G::THREADS, force, u, &own[i], message, count);
+                resident_node<G>(v, r, p, t, (int)threadIdx.x + i * G::THREADS,
+                                 node_sum<G>(own[i].info, told[i], lists, force), u, &own[i], message, count);
         if (k < r.passes - 1)
             hear<G>(halo, message, v.stride, count, u);
         __syncthreads(); /* the curves' values change next */
@@ -188,7 +195,7 @@ template <class G, class L> static size_t resident_shared(int64_t curves)
 }
 
 /* How many tiles have a place at once; 0: none, or the card starts no kernels that wait for each other. */
-template <class G, class L, bool MIXED> static int64_t resident_places(int64_t curves)
+template <class G, class L, class T> static int64_t resident_places(int64_t curves)
 {
     int device = 0, processors = 0, together = 0, each = 0;
     const size_t shared = resident_shared<G, L>(curves);
@@ -196,19 +203,18 @@ template <class G, class L, bool MIXED> static int64_t resident_places(int64_t c
         curves <= RESIDENT_CURVES && cudaGetDevice(&device) == cudaSuccess &&
         cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) == cudaSuccess &&
         cudaDeviceGetAttribute(&together, cudaDevAttrCooperativeLaunch, device) == cudaSuccess && together &&
-        cudaFuncSetAttribute(resident_kernel<G, L, MIXED>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)shared) ==
+        cudaFuncSetAttribute(resident_kernel<G, L, T>, cudaFuncAttributeMaxDynamicSharedMemorySize, (int)shared) ==
             cudaSuccess &&
-        cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, resident_kernel<G, L, MIXED>, G::THREADS, shared) ==
+        cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, resident_kernel<G, L, T>, G::THREADS, shared) ==
             cudaSuccess;
     cudaGetLastError(); /* a card with too little shared memory has said so */
     return fits ? (int64_t)each * processors : 0;
 }
 
-template <class G, class L, bool MIXED>
+template <class G, class L, class T>
 static cudaError_t resident_start(const cuda_view<real> &v, const cuda_resident &r, int64_t tiles, cudaStream_t s)
 {
-    return card_start(resident_kernel<G, L, MIXED>, {tiles, G::THREADS, resident_shared<G, L>(r.curves), s, true}, v,
-                      r);
+    return card_start(resident_kernel<G, L, T>, {tiles, G::THREADS, resident_shared<G, L>(r.curves), s, true}, v, r);
 }
 
 #endif

@@ -1,7 +1,10 @@
 #include "tled/cuda/march.h"
 
 #include "base/mem.h"
+#include "mesh/lattice.h"
 #include "tled/cuda/march_near.h"
+#include "tled/cuda/march_sheets.h"
+#include "tled/cuda/march_tips.h"
 #include "tled/cuda/march_units.h"
 #include "tled/cuda/places.h"
 
@@ -12,7 +15,8 @@
 enum {
     OWNED = MARCH_SIDE - 1,
     PATCH_X = 8, /* of a warp */
-    PATCH_Y = 4
+    PATCH_Y = 4,
+    SPOTS = 72 /* the most of a node: one, and of each of its elements one for each of its corners */
 };
 
 /* Threads for each element: with more, bricks are taken. On an H200 blocks of 1.20 and 1.21 and faces of 1.43 and 1.72
@@ -21,7 +25,7 @@ enum {
 #define MARCH_SPARSE 2.5
 #endif
 
-/* The box around a part, in columns and layers. */
+/* The box around a part, or a sheet of one, in columns and layers. */
 typedef struct box {
     int32_t low[3], high[3]; /* along the model's axes */
     int32_t columns[2];      /* along rows, across */
@@ -37,6 +41,11 @@ typedef struct cutter {
     uint8_t *warps;       /* of the layer's warps, those with cells */
     bool *special;        /* the layer has special cells */
     int32_t *slot;        /* its number, or -1; before: 0 where a node is owned */
+    int32_t *sheet;       /* nodes: march_sheets_find's; NULL: there is one, and part is of all. Else there are: */
+    int32_t *which;       /* elements: its special cell, from 1 on, or 0 */
+    bool *inner;          /* nodes: all corners of its elements are in its sheet */
+    int margin;           /* layers around a box: of nodes that its cells have, and it does not */
+    bool shared;          /* two nodes or cells have one place */
     err *e;
 } cutter;
 
@@ -55,7 +64,19 @@ void march_free(march *m)
     free(m->detail);
     free(m->which);
     free(m->cell);
+    free(m->tip);
     memset(m, 0, sizeof *m);
+}
+
+/* Takes a node into its box, of which it may be the first. */
+static void grow_box(const cutter *c, int32_t n, bool is_first)
+{
+    box *b = &c->boxes[c->part[n]];
+    for (int a = 0; a < 3; a++) {
+        const int32_t at = c->at[3 * (int64_t)n + a];
+        b->low[a] = is_first || at < b->low[a] ? at : b->low[a];
+        b->high[a] = is_first || at > b->high[a] ? at : b->high[a];
+    }
 }
 
 static int find_boxes(cutter *c)
@@ -70,19 +91,14 @@ static int find_boxes(cutter *c)
     for (int32_t n = 0; n < p->nodes; n++) { /* the lowest of a part comes first */
         const bool is_first = c->part[n] == n;
         c->part[n] = is_first ? (int32_t)c->parts++ : c->part[c->part[n]];
-        box *b = &c->boxes[c->part[n]];
-        for (int a = 0; a < 3; a++) {
-            const int32_t at = c->at[3 * (int64_t)n + a];
-            b->low[a] = is_first || at < b->low[a] ? at : b->low[a];
-            b->high[a] = is_first || at > b->high[a] ? at : b->high[a];
-        }
+        grow_box(c, n, is_first);
     }
     return 0;
 }
 
 static int64_t depth(const cutter *c, const box *b)
 {
-    return (int64_t)b->high[c->m->axis[2]] - b->low[c->m->axis[2]] + 1;
+    return (int64_t)b->high[c->m->axis[2]] - b->low[c->m->axis[2]] + 1 + 2 * (int64_t)c->margin;
 }
 
 /* Lays out the layers of all boxes for the axes of now; false where they are out of all proportion to the nodes. */
@@ -122,8 +138,8 @@ static int along(int32_t at, int32_t columns, bool before, int32_t column[2], in
     return count;
 }
 
-/* Everywhere that a node stands, or a cell by its low corner; where it is owned comes first. Returns how many. */
-static int spots_of(const cutter *c, int32_t node, bool is_cell, spot to[4])
+/* Where a node of a box stands, or a cell by its low corner; where it is owned comes first. Returns how many. */
+static int spots_of(const cutter *c, int32_t node, bool is_cell, spot *to)
 {
     const box *b = &c->boxes[c->part[node]];
     const int *axis = c->m->axis;
@@ -132,12 +148,84 @@ static int spots_of(const cutter *c, int32_t node, bool is_cell, spot to[4])
     int many[2], count = 0;
     for (int a = 0; a < 2; a++)
         many[a] = along(at[axis[a]] - b->low[axis[a]], b->columns[a], !is_cell, column[a], place[a]);
-    const int64_t layer = b->first + at[axis[2]] - b->low[axis[2]];
+    const int64_t layer = b->first + at[axis[2]] - b->low[axis[2]] + c->margin;
     for (int y = 0; y < many[1]; y++)
         for (int x = 0; x < many[0]; x++)
             to[count++] = (spot){layer + depth(c, b) * (column[0][x] + (int64_t)b->columns[0] * column[1][y]),
                                  place[0][x], place[1][y]};
     return count;
+}
+
+/* Where a node that a sheet takes is owned. */
+static spot own_spot(const cutter *c, int32_t node)
+{
+    const box *b = &c->boxes[c->part[node]];
+    const int *axis = c->m->axis;
+    int32_t way[3];
+    for (int a = 0; a < 3; a++)
+        way[a] = c->at[3 * (int64_t)node + axis[a]] - b->low[axis[a]];
+    const int64_t column = way[0] / OWNED + (int64_t)b->columns[0] * (way[1] / OWNED);
+    return (spot){b->first + depth(c, b) * column + way[2] + c->margin, way[0] % OWNED + 1, way[1] % OWNED + 1};
+}
+
+/* A step of the lattice from a spot on, or back. */
+static spot beside(const cutter *c, spot from, const int32_t way[3], int by)
+{
+    const int *axis = c->m->axis;
+    return (spot){from.layer + by * way[axis[2]], from.i + by * way[axis[0]], from.j + by * way[axis[1]]};
+}
+
+/* Adds one to a list, if it is not there: *count. */
+static void add_spot(spot *to, int *count, spot s)
+{
+    for (int i = 0; i < *count; i++)
+        if (to[i].layer == s.layer && to[i].i == s.i && to[i].j == s.j)
+            return;
+    to[(*count)++] = s;
+}
+
+/* Whether all corners of an element are in the sheet of a node. */
+static bool is_in_sheet(const cutter *c, int64_t element, int32_t node)
+{
+    for (int k = 0; k < 8; k++)
+        if (c->sheet[c->p->element_node[8 * element + k]] != c->sheet[node])
+            return false;
+    return c->sheet[node] != MARCH_TIP;
+}
+
+/* Where a cell stands by its low corner. Of sheets: in each column that owns one of its corners. Returns how many. */
+static int cell_spots(const cutter *c, int64_t element, spot *to)
+{
+    const int32_t *corner = c->p->element_node + 8 * element;
+    int count = 0;
+    if (!c->sheet || is_in_sheet(c, element, corner[0]))
+        return spots_of(c, corner[0], true, to);
+    for (int k = 0; k < 8; k++)
+        if (c->sheet[corner[k]] != MARCH_TIP)
+            add_spot(to, &count, beside(c, own_spot(c, corner[k]), lattice_vtk[k], -1));
+    return count;
+}
+
+/* Where a node stands; where it is owned comes first. Of sheets: wherever a cell of it does. Returns how many. */
+static int node_spots(const cutter *c, int32_t node, spot *to)
+{
+    spot cell[8];
+    int count = 0;
+    if (!c->sheet || c->inner[node])
+        return spots_of(c, node, false, to);
+    if (c->sheet[node] != MARCH_TIP)
+        to[count++] = own_spot(c, node);
+    for (int i = 0; i < 8; i++) {
+        const int32_t corner = c->p->corner[8 * (int64_t)node + i];
+        for (int k = corner < 8 * c->p->elements ? cell_spots(c, corner / 8, cell) : 0; k--;)
+            add_spot(to, &count, beside(c, cell[k], lattice_vtk[corner % 8], 1));
+    }
+    return count;
+}
+
+static bool is_tip(const cutter *c, int32_t node)
+{
+    return c->sheet && c->sheet[node] == MARCH_TIP;
 }
 
 /* A multiprocessor has four schedulers, and every fourth warp is one's: neighbours are of
@@ -161,11 +249,11 @@ static int word_of(int32_t i, int32_t j)
 /* Notes which warps have cells in each layer. Returns how many in all. */
 static int64_t mark_warps(cutter *c)
 {
-    spot at[4];
+    spot at[SPOTS];
     int64_t sum = 0;
     memset(c->warps, 0, (size_t)c->cells);
     for (int64_t i = 0; i < c->p->elements; i++)
-        for (int k = spots_of(c, c->p->element_node[8 * i], true, at); k--;)
+        for (int k = cell_spots(c, i, at); k--;)
             c->warps[at[k].layer] |= (uint8_t)(1u << warp_of(at[k].i, at[k].j));
     for (int64_t i = 0; i < c->cells; i++)
         sum += march_warps(c->warps[i]);
@@ -246,7 +334,7 @@ static bool is_special(const cutter *c, const march_cell *cell)
 static int mark_special(cutter *c)
 {
     const tled_problem *p = c->p;
-    spot at[4];
+    spot at[SPOTS];
     for (int32_t i = 1; i < p->volumes; i++)
         if (p->volume[i].elements > p->volume[c->m->plain].elements)
             c->m->plain = i;
@@ -255,7 +343,7 @@ static int mark_special(cutter *c)
         return -1;
     for (int64_t i = 0; i < p->elements; i++) {
         const march_cell cell = cell_of(c, i);
-        for (int k = is_special(c, &cell) ? spots_of(c, p->element_node[8 * i], true, at) : 0; k--;)
+        for (int k = is_special(c, &cell) ? cell_spots(c, i, at) : 0; k--;)
             c->special[at[k].layer] = true;
     }
     return 0;
@@ -265,14 +353,15 @@ static int mark_special(cutter *c)
  * run of them; a list of the runs. */
 static int number_layers(cutter *c, march_runs *runs)
 {
-    spot at[4];
+    spot at[SPOTS];
     c->slot = mem_array(c->cells, sizeof *c->slot, "the march", c->e);
     if (!c->slot)
         return -1;
     memset(c->slot, 0xff, (size_t)c->cells * sizeof *c->slot);
     for (int32_t n = 0; n < c->p->nodes; n++) {
-        spots_of(c, n, false, at);
-        c->slot[at[0].layer] = 0;
+        const int many = node_spots(c, n, at);
+        for (int k = 0; k < (c->sheet && !c->inner[n] ? many : 1); k++)
+            c->slot[at[k].layer] = 0;
     }
     for (int64_t i = 0, part = 0; i < c->cells;) { /* a run ends with its column */
         while (part + 1 < c->parts && c->boxes[part + 1].first <= i)
@@ -295,21 +384,28 @@ static int number_layers(cutter *c, march_runs *runs)
     return 0;
 }
 
+/* Puts bits into a word that has none of them yet. */
+static void put_word(cutter *c, const spot *at, uint32_t bits)
+{
+    uint32_t *word = &c->m->word[MARCH_WORDS * (int64_t)c->slot[at->layer] + word_of(at->i, at->j)];
+    c->shared |= (*word & bits & (MARCH_THERE | MARCH_CELL)) != 0;
+    *word |= bits;
+}
+
 static int put_words(cutter *c)
 {
     march *m = c->m;
-    spot at[4];
+    spot at[SPOTS];
     m->word = mem_array(m->layers + MARCH_AHEAD, MARCH_WORDS * sizeof *m->word, "the march", c->e);
     if (!m->word)
         return -1;
     for (int32_t n = 0; n < c->p->nodes; n++)
-        for (int k = spots_of(c, n, false, at); k--;)
+        for (int k = node_spots(c, n, at); k--;)
             if (c->slot[at[k].layer] >= 0)
-                m->word[MARCH_WORDS * (int64_t)c->slot[at[k].layer] + word_of(at[k].i, at[k].j)] =
-                    (uint32_t)n | MARCH_THERE | (k ? 0 : MARCH_OWN);
+                put_word(c, &at[k], (uint32_t)n | MARCH_THERE | (k || is_tip(c, n) ? 0 : MARCH_OWN));
     for (int64_t i = 0; i < c->p->elements; i++)
-        for (int k = spots_of(c, c->p->element_node[8 * i], true, at); k--;)
-            m->word[MARCH_WORDS * (int64_t)c->slot[at[k].layer] + word_of(at[k].i, at[k].j)] |= MARCH_CELL;
+        for (int k = cell_spots(c, i, at); k--;)
+            put_word(c, &at[k], MARCH_CELL);
     return 0;
 }
 
@@ -326,6 +422,11 @@ static int order_nodes(cutter *c)
             for (int32_t i = 1; i <= OWNED; i++)
                 if (layer[word_of(i, j)] & MARCH_OWN)
                     m->order[layer[word_of(i, j)] & MARCH_NODE] = count++;
+    m->tip_first = count;
+    m->tips = c->p->nodes - count;
+    for (int32_t n = 0; n < c->p->nodes; n++)
+        if (is_tip(c, n))
+            m->order[n] = count++;
     for (uint32_t *word = m->word; word < m->word + MARCH_WORDS * m->layers; word++)
         if (*word & MARCH_THERE)
             *word = (*word & ~(uint32_t)MARCH_NODE) | (uint32_t)m->order[*word & MARCH_NODE];
@@ -336,7 +437,7 @@ static int order_nodes(cutter *c)
 static void list_special(cutter *c)
 {
     march *m = c->m;
-    spot at[4];
+    spot at[SPOTS];
     m->cells = 0;
     for (int64_t i = 0; i < c->p->elements; i++) {
         const march_cell cell = cell_of(c, i);
@@ -345,7 +446,9 @@ static void list_special(cutter *c)
         const int64_t number = m->cells++;
         if (m->cell)
             m->cell[number] = cell;
-        for (int k = spots_of(c, c->p->element_node[8 * i], true, at); k--;) {
+        if (c->which)
+            c->which[i] = (int32_t)number + 1;
+        for (int k = cell_spots(c, i, at); k--;) {
             const int64_t layer = c->slot[at[k].layer];
             const int word = word_of(at[k].i, at[k].j);
             if (m->detail[layer] < 0)
@@ -382,11 +485,96 @@ static void mark_units(march *m)
             m->unit[i].special |= m->detail[m->unit[i].base + k] >= 0;
 }
 
+/* Notes which nodes have all that their elements touch in their own sheet. */
+static void find_inner(cutter *c)
+{
+    const tled_problem *p = c->p;
+    for (int32_t n = 0; n < p->nodes; n++) {
+        c->inner[n] = c->sheet[n] != MARCH_TIP;
+        for (int i = 0; i < 8 && p->corner[8 * (int64_t)n + i] < 8 * p->elements; i++)
+            c->inner[n] &= is_in_sheet(c, p->corner[8 * (int64_t)n + i] / 8, n);
+    }
+}
+
+/* Cuts the parts, where some of their nodes share places, into sheets: a box for each that has nodes. */
+static int part_sheets(cutter *c)
+{
+    const tled_problem *p = c->p;
+    c->sheet = mem_array(p->nodes, sizeof *c->sheet, "the march", c->e);
+    c->inner = mem_array(p->nodes, sizeof *c->inner, "the march", c->e);
+    c->which = mem_array(p->elements, sizeof *c->which, "the march", c->e);
+    const int32_t sheets = c->sheet && c->which && c->inner ? march_sheets_find(p, c->part, c->at, c->sheet, c->e) : -1;
+    if (sheets < 0)
+        return -1;
+    int32_t *number = mem_array(c->parts * sheets, sizeof *number, "the march", c->e); /* of its box, from 1 on */
+    free(c->boxes);
+    c->boxes = mem_array(c->parts * sheets, sizeof *c->boxes, "the march", c->e);
+    c->parts = 0;
+    c->margin = 1;
+    for (int32_t n = 0; number && c->boxes && n < p->nodes; n++) {
+        if (is_tip(c, n))
+            continue;
+        int32_t *its = &number[(int64_t)c->part[n] * sheets + c->sheet[n]];
+        const bool is_first = !*its;
+        *its = is_first ? (int32_t)++c->parts : *its;
+        c->part[n] = *its - 1;
+        grow_box(c, n, is_first);
+    }
+    const int result = number && c->boxes ? 0 : -1;
+    free(number);
+    find_inner(c);
+    return result;
+}
+
+/* Lays out the layers, and what stands in them. */
+static int cut_layers(cutter *c, march_runs *runs)
+{
+    march_runs_free(runs);
+    free(c->special), free(c->slot), free(c->m->word);
+    c->special = NULL, c->slot = NULL, c->m->word = NULL;
+    c->m->layers = 0;
+    c->shared = false;
+    return mark_special(c) || number_layers(c, runs) || put_words(c) ? -1 : 0;
+}
+
+/* As cut_layers, by sheets. *suited: they have room, and fill enough threads. */
+static int cut_sheets(cutter *c, march_runs *runs, bool *suited)
+{
+    *suited = false;
+    if (part_sheets(c))
+        return -1;
+    if (!lay_out(c))
+        return 0;
+    if (make_layers(c))
+        return -1;
+    c->m->computed = 32. * (double)mark_warps(c) / (double)c->p->elements;
+    *suited = c->m->computed > 0 && c->m->computed <= MARCH_SPARSE;
+    if (!*suited)
+        return 0;
+    if (cut_layers(c, runs))
+        return -1;
+    return c->shared ? err_set(c->e, NULL, 0, "two nodes of one sheet share a place of the lattice") : 0;
+}
+
+/* What is left to be made of layers. */
+static int finish(cutter *c, const march_runs *runs, int64_t slots)
+{
+    march *m = c->m;
+    if (order_nodes(c) || put_special(c) || march_runs_cut(runs, slots, &m->unit, &m->units, c->e) ||
+        march_tips_list(m, c->p, c->sheet, c->which, c->e) || march_tips_place(m, c->p->nodes, c->e) ||
+        march_near_find(m, c->p->nodes, c->e))
+        return -1;
+    m->computed += 8. * (double)m->tips / (double)c->p->elements;
+    mark_units(m);
+    return 0;
+}
+
 int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
 {
     memset(m, 0, sizeof *m);
     cutter c = {.m = m, .p = p, .e = e};
     march_runs runs = {0};
+    bool suited;
     int result = -1;
     if (p->nodes > MARCH_NODE)
         return 0;
@@ -394,15 +582,10 @@ int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
     c.at = mem_array(p->nodes, 3 * sizeof *c.at, "the march", e);
     if (!c.part || !c.at || places_find(p, c.part, c.at, e) || find_boxes(&c) || choose_axes(&c))
         goto out;
-    result = 0;
-    if (m->computed == 0 || m->computed > MARCH_SPARSE)
+    suited = m->computed > 0 && m->computed <= MARCH_SPARSE;
+    if (suited && (cut_layers(&c, &runs) || (c.shared && cut_sheets(&c, &runs, &suited))))
         goto out;
-    result = mark_special(&c) || number_layers(&c, &runs) || put_words(&c) || order_nodes(&c) || put_special(&c) ||
-                     march_runs_cut(&runs, slots, &m->unit, &m->units, e) || march_near_find(m, p->nodes, e)
-                 ? -1
-                 : 0;
-    if (!result)
-        mark_units(m);
+    result = suited ? finish(&c, &runs, slots) : 0;
 out:
     free(c.part);
     free(c.at);
@@ -410,6 +593,7 @@ out:
     free(c.warps);
     free(c.special);
     free(c.slot);
+    free(c.sheet), free(c.which), free(c.inner);
     march_runs_free(&runs);
     return result;
 }

@@ -16,6 +16,11 @@
  * layer takes a block 2, 4 more where it has special cells, and 1 for each warp with cells. Blocks take units in turn,
  * in the order of columns and layers, pass after pass; a unit waits for those near it alone, in the pass before, which
  * this order has long since left behind. The creator owns the march; it holds no pointer into the problem.
+ *
+ * A problem with slits is cut into sheets (march_sheets.h), each with columns of its own: a column has the cells that
+ * touch nodes which it owns, and their corners, whoever owns these. Nodes that no sheet takes, tips, stand after all
+ * others in the order; up to MARCH_TIPS of them are a unit, beside one that owns nodes next to them, in which eight
+ * threads each compute the elements of one: a row of eight march_tip.
  */
 #ifndef SINEW_MARCH_H
 #define SINEW_MARCH_H
@@ -26,6 +31,7 @@ enum {
     MARCH_SIDE = 16,            /* cells along a column's side: one more than owned nodes */
     MARCH_THREADS = 256,        /* cells of a layer */
     MARCH_WORDS = 296,          /* of a layer: 256 and 33, and 7 of no use */
+    MARCH_TIPS = 32,            /* the most of a unit */
     MARCH_AHEAD = 5,            /* layers that copies are ahead, and words: so many of nothing follow the last */
     MARCH_NODE = (1 << 28) - 1, /* of a word: where its node stands */
     MARCH_SPECIAL = 1 << 28,    /* its cell is not of the plain law: see `which` */
@@ -35,9 +41,9 @@ enum {
 #define MARCH_CELL (UINT32_C(1) << 31) /* there is a cell */
 
 /* Layers of nodes base to base + cells, and of cells base to base + cells - 1, whose nodes
- * all but the first and last are moved. */
+ * all but the first and last are moved; or tips from base on. */
 typedef struct march_unit {
-    int32_t base, cells, special, unused; /* cells: 2 or more; special: it has special cells */
+    int32_t base, cells, special, tips; /* cells: 2 or more, or 0 where there are tips; special: it has special cells */
 } march_unit;
 
 /* A muscle of a cell, or none: curve is -1. */
@@ -55,6 +61,13 @@ typedef struct march_cell {
     float second_peak, unused[3];
 } march_cell;
 
+/* An element of a tip. */
+typedef struct march_tip {
+    int32_t node[8]; /* where its corners stand: of the lower face, then of the upper; along rows first */
+    int32_t corner;  /* which of them is the tip; -1: the tip has no such element, nor one after it */
+    int32_t special; /* in cell, from 1 on; 0: it is plain */
+} march_tip;
+
 typedef struct march {
     int axis[3];   /* the model's axes along the rows of columns, across them, and along the march */
     int32_t plain; /* the volume of plain cells */
@@ -69,6 +82,9 @@ typedef struct march {
     int32_t *detail;  /* layers + MARCH_AHEAD: where its special cells stand in `which`, in layers; or -1 */
     int32_t *which;   /* details x MARCH_THREADS: in cell, from 1 on; 0: none */
     march_cell *cell;
+    int64_t tips;
+    int32_t tip_first; /* where the first of them stands */
+    march_tip *tip;    /* tips x 8; NULL: there are none */
 } march;
 
 /* slots: blocks that the card runs at once. A problem whose cells fill too few threads has no units, and no order. -1

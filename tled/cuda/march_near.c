@@ -31,14 +31,37 @@ static const uint32_t *words_of(const march *m, const march_unit *u, int32_t lay
     return m->word + MARCH_WORDS * ((int64_t)u->base + layer);
 }
 
-static void note_owners(const march *m, int32_t *owner)
+void march_owners(const march *m, int32_t *owner)
 {
     for (int64_t i = 0; i < m->units; i++) {
         const march_unit *u = &m->unit[i];
+        for (int32_t k = 0; k < u->tips; k++)
+            owner[m->tip_first + u->base + k] = (int32_t)i;
+        if (u->tips)
+            continue;
         for (const uint32_t *word = words_of(m, u, 1); word < words_of(m, u, u->cells); word++)
             if (*word & MARCH_OWN)
                 owner[*word & MARCH_NODE] = (int32_t)i;
     }
+}
+
+/* A unit with who owns a node that it has, both ways round. */
+static int pair_with(int64_t unit, int32_t other, int32_t *last, pairs *p, err *e)
+{
+    if (last[other] == (int32_t)unit)
+        return 0;
+    last[other] = (int32_t)unit;
+    return add_pair(p, unit, other, e) || add_pair(p, other, unit, e) ? -1 : 0;
+}
+
+static int pair_tips(const march *m, int64_t unit, const int32_t *owner, int32_t *last, pairs *p, err *e)
+{
+    const march_unit *u = &m->unit[unit];
+    for (const march_tip *tip = m->tip + 8 * (int64_t)u->base; tip < m->tip + 8 * ((int64_t)u->base + u->tips); tip++)
+        for (int c = 0; tip->corner >= 0 && c < 8; c++)
+            if (pair_with(unit, owner[tip->node[c]], last, p, e))
+                return -1;
+    return 0;
 }
 
 /* Each unit with those whose nodes it has, both ways round: what it reads they write, and
@@ -47,14 +70,14 @@ static int pair_units(const march *m, const int32_t *owner, int32_t *last, pairs
 {
     for (int64_t i = 0; i < m->units; i++) {
         const march_unit *u = &m->unit[i];
-        for (const uint32_t *word = words_of(m, u, 0); word < words_of(m, u, u->cells + 1); word++) {
-            if (!(*word & MARCH_THERE) || last[owner[*word & MARCH_NODE]] == (int32_t)i)
-                continue;
-            const int32_t other = owner[*word & MARCH_NODE];
-            last[other] = (int32_t)i;
-            if (add_pair(p, i, other, e) || add_pair(p, other, i, e))
+        if (u->tips) {
+            if (pair_tips(m, i, owner, last, p, e))
                 return -1;
+            continue;
         }
+        for (const uint32_t *word = words_of(m, u, 0); word < words_of(m, u, u->cells + 1); word++)
+            if (*word & MARCH_THERE && pair_with(i, owner[*word & MARCH_NODE], last, p, e))
+                return -1;
     }
     return 0;
 }
@@ -100,7 +123,7 @@ int march_near_find(march *m, int64_t nodes, err *e)
     if (!owner || !last)
         goto out;
     memset(last, 0xff, (size_t)m->units * sizeof *last);
-    note_owners(m, owner);
+    march_owners(m, owner);
     if (pair_units(m, owner, last, &p, e))
         goto out;
     sort_pairs(&p);

@@ -1,8 +1,11 @@
 #include "tled/cuda/places.h"
 
+#include "base/mem.h"
 #include "mesh/lattice.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static int32_t root(int32_t *part, int32_t n)
 {
@@ -24,14 +27,6 @@ static void find_parts(const tled_problem *p, int32_t *part)
         part[n] = root(part, n);
 }
 
-int places_none(err *e, int64_t element)
-{
-    return err_set(e, NULL, 0,
-                   "element %lld: two nodes share a place in the lattice, or it is off it; expected elements "
-                   "of one part to share their nodes, or -d cpu",
-                   (long long)element);
-}
-
 int places_find(const tled_problem *p, int32_t *part, int32_t *at, err *e)
 {
     find_parts(p, part);
@@ -44,6 +39,36 @@ int places_find(const tled_problem *p, int32_t *part, int32_t *at, err *e)
         for (int a = 0; a < 3; a++)
             if (at[3 * (int64_t)p->element_node[i] + a] !=
                 at[3 * (int64_t)p->element_node[i / 8 * 8] + a] + lattice_vtk[i % 8][a])
-                return places_none(e, i / 8);
+                return err_set(e, NULL, 0, "element %lld is off the lattice; expected a box of it, or -d cpu",
+                               (long long)(i / 8));
+    return 0;
+}
+
+static uint64_t hash(int32_t group, const int32_t at[3])
+{
+    uint64_t h = (uint32_t)group;
+    for (int a = 0; a < 3; a++)
+        h = (h ^ (uint32_t)at[a]) * UINT64_C(0x9E3779B97F4A7C15), h ^= h >> 29;
+    return h;
+}
+
+int places_shared(int64_t nodes, const int32_t *group, const int32_t *at, int32_t *first, err *e)
+{
+    uint64_t seats = 512;
+    while (seats < 2 * (uint64_t)nodes)
+        seats *= 2;
+    int32_t *seat = mem_array((int64_t)seats, sizeof *seat, "places of nodes", e); /* a node, and 1; 0: free */
+    if (!seat)
+        return -1;
+    for (int32_t n = 0; n < nodes; n++) {
+        uint64_t to = hash(group[n], at + 3 * (int64_t)n) & (seats - 1);
+        int32_t there;
+        for (; (there = seat[to] - 1) >= 0; to = (to + 1) & (seats - 1))
+            if (group[there] == group[n] && !memcmp(at + 3 * (int64_t)there, at + 3 * (int64_t)n, 3 * sizeof *at))
+                break;
+        first[n] = there < 0 ? n : there;
+        seat[to] = first[n] + 1;
+    }
+    free(seat);
     return 0;
 }

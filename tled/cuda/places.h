@@ -1,6 +1,6 @@
 /* Where the nodes of a problem stand in its lattice, part by part: what executors on a card cut by. A part
- * hangs together by elements; two parts may lie across each other, so that a place means a node only
- * within one. Fills arrays that the caller owns.
+ * hangs together by elements; two parts may lie across each other, and within a part several nodes share a place where
+ * there is a slit. Fills arrays that the caller owns.
  */
 #ifndef SINEW_PLACES_H
 #define SINEW_PLACES_H
@@ -11,7 +11,8 @@
  * corners are not those of a box of the lattice. */
 int places_find(const tled_problem *p, int32_t *part, int32_t *at, err *e);
 
-/* That an element has no place of its own in the lattice. Returns -1. */
-int places_none(err *e, int64_t element);
+/* Which nodes share a place: first: nodes: the lowest at its place among those of the same group (a number of nodes:
+ * part, or one that tells parts apart). Takes memory for a table beside. -1 with e filled. */
+int places_shared(int64_t nodes, const int32_t *group, const int32_t *at, int32_t *first, err *e);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "tled/cuda/places.h"
+#include "tled/cuda/tile_split.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,13 +19,18 @@ typedef struct cutter {
     int32_t *brick;            /* tiles x 4: part and brick */
     int64_t capacity;          /* of brick */
     int32_t here[TILE_PLACES]; /* in the tile being cut: the node there, or -1 */
-    bool taken[TILE_PLACES];   /* and whether a cell is */
+    tile_split split;          /* where nodes share places */
+    int32_t *place;            /* there, of the listed tile being cut: nodes: its place, or -1 */
+    int32_t *cell;             /* elements: likewise */
     err *e;
 } cutter;
 
 void tiles_free(tiles *t)
 {
     free(t->tile);
+    free(t->list);
+    free(t->corner);
+    free(t->pull);
     free(t->node);
     free(t->node_info);
     free(t->order);
@@ -129,10 +135,10 @@ static uint32_t script_info(const tled_problem *p, int32_t n)
     return info | (uint32_t)extra << TILE_EXTRA;
 }
 
-static uint32_t info_of(const cutter *c, int32_t n)
+static uint32_t info_of(const cutter *c, int32_t n, int32_t place)
 {
     const tled_problem *p = c->p;
-    uint32_t info = (uint32_t)place_in(c, c->part[n], n);
+    uint32_t info = (uint32_t)place;
     for (int i = 0; i < 8 && p->corner[8 * (int64_t)n + i] < 8 * p->elements; i++)
         info |= 1u << (TILE_CORNERS + p->corner[8 * (int64_t)n + i] % 8);
     return info | script_info(p, n);
@@ -153,41 +159,109 @@ static void sort_by_place(int32_t *item, uint32_t *key, int32_t count)
     }
 }
 
-/* The nodes in order of tiles, in each by place. */
-static int order_nodes(cutter *c)
+/* The nodes of each tile, as they come. */
+static int list_nodes(cutter *c)
 {
     tiles *t = c->t;
-    uint32_t key[TILE_PLACES];
-    t->nodes = c->p->nodes;
+    free(t->tile);
     t->tile = mem_array(t->count + 1, sizeof *t->tile, "the tiles", c->e);
-    t->node = mem_array(t->nodes, sizeof *t->node, "the tiles", c->e);
-    t->node_info = mem_array(t->nodes, sizeof *t->node_info, "the tiles", c->e);
-    if (!t->tile || !t->node || !t->node_info)
+    if (!t->tile)
         return -1;
-    const int64_t most = (int64_t)t->brick[0] * t->brick[1] * t->brick[2];
     for (int32_t n = 0; n < t->nodes; n++)
         t->tile[c->part[n]].nodes++;
     for (int64_t i = 0, first = 0; i < t->count; i++) {
         tile *to = &t->tile[i];
         to->node = (int32_t)first;
         first += to->nodes;
-        if (to->nodes > most)
-            return places_none(c->e, c->p->corner[8 * (int64_t)c->brick[4 * i]] / 8);
         to->nodes = 0;
     }
     for (int32_t n = 0; n < t->nodes; n++) {
         tile *to = &t->tile[c->part[n]];
         t->node[to->node + to->nodes++] = n;
     }
-    for (int64_t i = 0; i < t->count; i++) {
-        int32_t *list = t->node + t->tile[i].node;
-        for (int32_t k = 0; k < t->tile[i].nodes; k++)
-            key[k] = (uint32_t)place_in(c, i, list[k]);
-        sort_by_place(list, key, t->tile[i].nodes);
+    return 0;
+}
+
+/* Sorts those of a tile by place. Returns whether no two share one, nor a cell. */
+static bool sort_nodes(cutter *c, int64_t i)
+{
+    const tled_problem *p = c->p;
+    const tile *own = &c->t->tile[i];
+    int32_t *list = c->t->node + own->node;
+    uint32_t key[TILE_PLACES];
+    bool alone = true;
+    if (own->nodes > TILE_PLACES)
+        return false;
+    for (int32_t k = 0; k < own->nodes; k++)
+        key[k] = (uint32_t)place_in(c, i, list[k]);
+    sort_by_place(list, key, own->nodes);
+    for (int32_t k = 0; k < own->nodes; k++) {
+        const int32_t *corner = p->corner + 8 * (int64_t)list[k];
+        uint32_t corners = 0;
+        alone &= !k || key[k] != key[k - 1];
+        for (int m = 0; m < 8 && corner[m] < 8 * p->elements; m++) {
+            alone &= !(corners >> corner[m] % 8 & 1);
+            corners |= 1u << corner[m] % 8;
+        }
     }
+    return alone;
+}
+
+/* Splits the tiles in which some share places: c->part becomes the new ones. */
+static int split_tiles(cutter *c)
+{
+    tiles *t = c->t;
+    int32_t *first = mem_array(t->nodes, sizeof *first, "the tiles", c->e);
+    int result = -1;
+    if (!first || places_shared(t->nodes, c->part, c->at, first, c->e) ||
+        tile_split_make(&c->split, c->p, t, first, c->part, c->e))
+        goto out;
+    int32_t *brick = mem_array(c->split.count, 4 * sizeof *brick, "the tiles", c->e);
+    t->list = mem_array(c->split.count, sizeof *t->list, "the tiles", c->e);
+    c->place = mem_array(t->nodes, sizeof *c->place, "the tiles", c->e);
+    c->cell = mem_array(c->p->elements, sizeof *c->cell, "the tiles", c->e);
+    if (!brick || !t->list || !c->place || !c->cell) {
+        free(brick);
+        goto out;
+    }
+    for (int64_t i = 0; i < c->split.count; i++)
+        memcpy(brick + 4 * i, c->brick + 4 * (int64_t)c->split.tile[i].brick, 4 * sizeof *brick);
+    memset(c->place, 0xff, (size_t)t->nodes * sizeof *c->place);
+    memset(c->cell, 0xff, (size_t)c->p->elements * sizeof *c->cell);
+    free(c->brick);
+    c->brick = brick;
+    t->count = c->split.count;
+    result = list_nodes(c);
+    for (int64_t i = 0; !result && i < t->count; i++)
+        sort_nodes(c, i);
+out:
+    free(first);
+    return result;
+}
+
+static bool is_listed(const cutter *c, int64_t which)
+{
+    return c->t->list && c->split.tile[which].listed;
+}
+
+/* The nodes in order of tiles, in each by place. */
+static int order_nodes(cutter *c)
+{
+    tiles *t = c->t;
+    bool alone = true;
+    t->nodes = c->p->nodes;
+    t->node = mem_array(t->nodes, sizeof *t->node, "the tiles", c->e);
+    t->node_info = mem_array(t->nodes, sizeof *t->node_info, "the tiles", c->e);
+    if (!t->node || !t->node_info || list_nodes(c))
+        return -1;
+    for (int64_t i = 0; i < t->count; i++)
+        alone &= sort_nodes(c, i);
+    if (!alone && split_tiles(c))
+        return -1;
     for (int32_t k = 0; k < t->nodes; k++) {
-        t->node_info[k] = info_of(c, t->node[k]);
-        c->order[t->node[k]] = k;
+        const int32_t n = t->node[k], which = c->part[n];
+        t->node_info[k] = info_of(c, n, is_listed(c, which) ? k - t->tile[which].node : place_in(c, which, n));
+        c->order[n] = k;
     }
     return 0;
 }
@@ -264,53 +338,122 @@ static int list_cells(cutter *c)
     return 0;
 }
 
-/* One cell's information; notes its corners in `here`. */
-static int put_cell(cutter *c, int64_t which, int64_t at)
+/* One cell's information, but for its place. */
+static void put_cell(cutter *c, int64_t which, int64_t at, int32_t place)
 {
     tiles *t = c->t;
-    int64_t element = t->cell_element[at];
-    const int32_t *corner = c->p->element_node + 8 * element;
-    int32_t place = place_in(c, which, corner[0]);
-    uint32_t own = c->part[corner[0]] == which;
-    if (c->taken[place])
-        return places_none(c->e, element);
-    c->taken[place] = true;
+    const int64_t element = t->cell_element[at];
+    const uint32_t own = c->part[c->p->element_node[8 * element]] == which;
     if (t->share)
         t->share[at] = c->p->fraction[element];
     if (t->mixed)
         t->mixed[at] = c->p->mixed[element];
     t->cell[at] = (uint32_t)place | own << TILE_OWN | (uint32_t)c->p->element_volume[element] << TILE_VOLUME;
-    for (int i = 0; i < 8; i++) {
-        int32_t *here = &c->here[place_in(c, which, corner[i])];
-        if (*here >= 0 && *here != corner[i])
-            return places_none(c->e, element);
-        *here = corner[i];
-    }
-    return 0;
 }
 
-/* Sorts a tile's cells and finds what stands around it. Counts its halo, or fills it too where there is room. */
-static int cut_tile(cutter *c, int64_t i)
+/* One more of a tile's halo; written where there is room. */
+static void put_halo(cutter *c, tile *to, int32_t node, int32_t place)
+{
+    tiles *t = c->t;
+    if (t->halo_node) {
+        t->halo_node[to->halo + to->halos] = c->order[node];
+        t->halo_place[to->halo + to->halos] = (uint16_t)place;
+    }
+    to->halos++;
+}
+
+/* Finds what stands around a tile. Counts its halo, or fills it too where there is room. */
+static void cut_grid(cutter *c, int64_t i)
 {
     tiles *t = c->t;
     tile *to = &t->tile[i];
     const int32_t places = t->grid[0] * t->grid[1] * t->grid[2];
     memset(c->here, 0xff, sizeof c->here);
-    memset(c->taken, 0, sizeof c->taken);
-    for (int32_t k = 0; k < to->cells; k++)
-        if (put_cell(c, i, to->cell + k))
-            return -1;
-    int32_t halos = 0;
+    for (int32_t k = 0; k < to->cells; k++) {
+        const int32_t *corner = c->p->element_node + 8 * (int64_t)t->cell_element[to->cell + k];
+        put_cell(c, i, to->cell + k, place_in(c, i, corner[0]));
+        for (int m = 0; m < 8; m++)
+            c->here[place_in(c, i, corner[m])] = corner[m];
+    }
     for (int32_t at = 0; at < places; at++)
-        if (c->here[at] >= 0 && c->part[c->here[at]] != i) {
-            if (t->halo_node) {
-                t->halo_node[to->halo + halos] = c->order[c->here[at]];
-                t->halo_place[to->halo + halos] = (uint16_t)at;
-            }
-            halos++;
+        if (c->here[at] >= 0 && c->part[c->here[at]] != i)
+            put_halo(c, to, c->here[at], at);
+}
+
+/* Forgets the places of a listed tile. */
+static void leave_list(cutter *c, const tile *to)
+{
+    for (int32_t k = 0; k < to->cells; k++) {
+        const int32_t element = c->t->cell_element[to->cell + k];
+        c->cell[element] = -1;
+        for (int m = 0; m < 8; m++)
+            c->place[c->p->element_node[8 * (int64_t)element + m]] = -1;
+    }
+}
+
+/* The rows of its nodes, once its cells have places. */
+static void put_pulls(const cutter *c, const tile *to, uint16_t *row)
+{
+    for (int32_t k = 0; k < to->nodes; k++, row += 8)
+        for (int m = 0; m < 8; m++) {
+            const int32_t corner = c->p->corner[8 * (int64_t)c->t->node[to->node + k] + m];
+            row[m] = TILE_NO_PULL;
+            if (corner < 8 * c->p->elements)
+                row[m] = (uint16_t)(corner % 8 << TILE_PULL | c->cell[corner / 8]);
         }
-    to->halos = halos;
-    return 0;
+}
+
+/* As cut_grid, of a listed tile: places as they come. */
+static void cut_list(cutter *c, int64_t i)
+{
+    tiles *t = c->t;
+    tile *to = &t->tile[i];
+    uint16_t *row = t->corner ? t->corner + 8 * (int64_t)t->list[i].corner : NULL;
+    for (int32_t k = 0; k < to->nodes; k++)
+        c->place[t->node[to->node + k]] = k;
+    for (int32_t k = 0; k < to->cells; k++) {
+        const int32_t element = t->cell_element[to->cell + k], *corner = c->p->element_node + 8 * (int64_t)element;
+        put_cell(c, i, to->cell + k, k);
+        c->cell[element] = k;
+        for (int m = 0; m < 8; m++) {
+            int32_t *place = &c->place[corner[m]];
+            if (*place < 0) {
+                *place = to->nodes + to->halos;
+                put_halo(c, to, corner[m], *place);
+            }
+            if (row)
+                row[8 * k + m] = (uint16_t)*place;
+        }
+    }
+    if (row)
+        put_pulls(c, to, t->pull + 8 * (int64_t)t->list[i].pull);
+    leave_list(c, to);
+}
+
+static void cut_tile(cutter *c, int64_t i)
+{
+    c->t->tile[i].halos = 0;
+    if (is_listed(c, i))
+        cut_list(c, i);
+    else
+        cut_grid(c, i);
+}
+
+/* Where the lists of listed tiles begin. */
+static int list_lists(cutter *c)
+{
+    tiles *t = c->t;
+    for (int64_t i = 0; i < t->count; i++) {
+        t->list[i] = (tile_list){-1, -1};
+        if (!is_listed(c, i))
+            continue;
+        t->list[i] = (tile_list){(int32_t)t->listed_cells, (int32_t)t->listed_nodes};
+        t->listed_cells += t->tile[i].cells;
+        t->listed_nodes += t->tile[i].nodes;
+    }
+    t->corner = mem_array(t->listed_cells, 8 * sizeof *t->corner, "the tiles", c->e);
+    t->pull = mem_array(t->listed_nodes, 8 * sizeof *t->pull, "the tiles", c->e);
+    return t->corner && t->pull ? 0 : -1;
 }
 
 static void sort_cells(cutter *c, int64_t i)
@@ -336,11 +479,8 @@ static int cut_tiles(cutter *c)
 {
     tiles *t = c->t;
     for (int64_t i = 0; i < t->count; i++) {
-        if (t->tile[i].cells > TILE_PLACES)
-            return places_none(c->e, t->cell_element[t->tile[i].cell]);
         sort_cells(c, i);
-        if (cut_tile(c, i))
-            return -1;
+        cut_tile(c, i);
     }
     for (int64_t i = 0; i < t->count; t->halos += t->tile[i++].halos) {
         if (t->halos > INT32_MAX - TILE_PLACES)
@@ -349,11 +489,10 @@ static int cut_tiles(cutter *c)
     }
     t->halo_node = mem_array(t->halos, sizeof *t->halo_node, "the tiles", c->e);
     t->halo_place = mem_array(t->halos, sizeof *t->halo_place, "the tiles", c->e);
-    if (!t->halo_node || !t->halo_place)
+    if (!t->halo_node || !t->halo_place || (t->list && list_lists(c)))
         return -1;
     for (int64_t i = 0; i < t->count; i++)
-        if (cut_tile(c, i))
-            return -1;
+        cut_tile(c, i);
     return 0;
 }
 
@@ -416,6 +555,9 @@ out:
     free(c.order);
     free(c.seat);
     free(c.brick);
+    free(c.place);
+    free(c.cell);
+    tile_split_free(&c.split);
     return result;
 }
 

@@ -5,8 +5,20 @@
  *
  * In a tile all stand in a grid of places, one more than the brick on each side: a node's place is i + gx (j + gy k),
  * with i, j, k from 1 where owned; a cell's place is that of its low corner. So a cell finds its corners, and a node
- * its cells, by adding constants. For that a place must mean one node: a model in which two nodes of one part have the
- * same place (a slit) is refused.
+ * its cells, by adding constants. For that a place must mean one node, and one cell.
+ *
+ * Where a slit comes to a brick, two nodes of one part may have the same place, or two elements the same cell. Such a
+ * brick is cut into listed tiles, as many as its nodes take: nodes and cells stand one after the other, whatever their
+ * places in the lattice, and lists say which belong to which. At the tip of a slit, seen along its edge:
+ *
+ *      d --- e --- f        place:   0 .. nodes - 1    owned nodes, by place in the brick
+ *      |  A  |  B  |                 nodes ..          halo nodes, as cells come to them
+ *      a === t --- g        cell:    0 .. cells - 1    cells, as `cell` has them
+ *      b === t --- g        corner:  A: a t e d ...    places of a cell's corners, in VTK's order
+ *      |  C  |  D  |        pull:    t: D1 C2 B0 A3    a node's cells and which of their corners it is,
+ *      h --- i --- k                                   in the order of its sum: the lattice's
+ *
+ * No list is longer than it is in a tile of a whole brick: so kernels need no more room.
  *
  * Arrays over nodes are in the tiles' order, tile by tile, or in one that tiles_reorder is given: then those that a
  * tile owns stand where `order` says. The creator owns the tiles; they hold no pointer into the problem.
@@ -32,8 +44,16 @@ enum {
     TILE_OWN = 11,          /* of a cell: its low corner is owned here: of all tiles this is so in one */
     TILE_VOLUME = 12,       /* of a cell: its volume, from this bit on */
     TILE_VOLUMES = 1 << 20, /* as many volumes as that can tell */
-    TILE_PLACES = 1000      /* the most that there may be: (8 + 2)^3 */
+    TILE_PLACES = 1000,     /* the most that there may be: (8 + 2)^3 */
+    TILE_PULL = 11,         /* of an entry of `pull`: which corner, from this bit on; below, the cell's place */
+    TILE_NO_PULL = 0xffff   /* there is none, nor one after it */
 };
+
+/* Where a listed tile's lists begin, in rows of 8; another tile's are -1. */
+typedef struct tile_list {
+    int32_t corner; /* of `corner`: a row for each of its cells */
+    int32_t pull;   /* of `pull`: a row for each node that it owns, in the tiles' order */
+} tile_list;
 
 /* What the script does to a node, apart from gravity. */
 typedef struct tile_extra {
@@ -47,7 +67,11 @@ typedef struct tiles {
     int brick[3], grid[3];       /* owned places, all places, along x, y, z */
     int64_t count, halos, cells; /* sums over all */
     int64_t nodes, directions, extras;
+    int64_t listed_cells, listed_nodes; /* of listed tiles */
     tile *tile;
+    tile_list *list;       /* count; NULL: no tile is listed, nor are there: */
+    uint16_t *corner;      /* listed_cells x 8: the place of each corner */
+    uint16_t *pull;        /* listed_nodes x 8: TILE_PULL */
     int32_t *node;         /* nodes: which of the model's it is */
     uint32_t *node_info;   /* nodes: TILE_* */
     int32_t *order;        /* nodes, in the tiles' order: where each stands; NULL: there */
@@ -62,8 +86,8 @@ typedef struct tiles {
     tile_extra *extra;     /* extras, by where their nodes stand */
 } tiles;
 
-/* brick: at most 8 each. -1 with e filled, and t to be freed all the same: no
- * memory, or a model that cannot be cut so. */
+/* brick: at most 8 each. -1 with e filled, and t to be freed all the same: no memory, or elements that are not boxes of
+ * the lattice. */
 int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e);
 void tiles_free(tiles *t);
 

@@ -1,0 +1,138 @@
+#include "tled/cuda/march_sheets.h"
+
+#include "base/mem.h"
+#include "tled/cuda/places.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TOUCHED = 8 * 9 /* of a node: elements and their corners */, NOBODY = -1 };
+
+typedef struct sheets {
+    const tled_problem *p;
+    int32_t *first;         /* nodes: the first at its place */
+    int32_t *nodes, *cells; /* by that: how many nodes there are, and elements with their low corner */
+    int32_t *node, *cell;   /* and which of them the sheet that is being filled has, or NOBODY */
+    int32_t *near;          /* nodes that have to do with a place that is shared */
+    int64_t count;          /* of those that no sheet has yet */
+} sheets;
+
+/* Entry i of a node's elements, or -1 after its last. */
+static int32_t corner_of(const tled_problem *p, int32_t node, int i)
+{
+    const int32_t corner = i < 8 ? p->corner[8 * (int64_t)node + i] : -1;
+    return corner < 8 * p->elements ? corner : -1;
+}
+
+static int allocate(sheets *s, err *e)
+{
+    const int64_t nodes = s->p->nodes;
+    int32_t **of[] = {&s->first, &s->nodes, &s->cells, &s->node, &s->cell, &s->near};
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++)
+        if (!(*of[i] = mem_array(nodes, sizeof **of[i], "the march", e)))
+            return -1;
+    return 0;
+}
+
+static void free_all(sheets *s)
+{
+    free(s->first);
+    free(s->nodes);
+    free(s->cells);
+    free(s->node);
+    free(s->cell);
+    free(s->near);
+}
+
+static bool is_near(const sheets *s, int32_t node)
+{
+    for (int i = 0; corner_of(s->p, node, i) >= 0; i++) {
+        const int32_t *corner = s->p->element_node + corner_of(s->p, node, i) / 8 * 8;
+        if (s->cells[s->first[corner[0]]] > 1)
+            return true;
+        for (int c = 0; c < 8; c++)
+            if (s->nodes[s->first[corner[c]]] > 1)
+                return true;
+    }
+    return false;
+}
+
+static int list_near(sheets *s, const int32_t *group, const int32_t *at, int32_t *sheet, err *e)
+{
+    const tled_problem *p = s->p;
+    if (places_shared(p->nodes, group, at, s->first, e))
+        return -1;
+    for (int32_t n = 0; n < p->nodes; n++)
+        s->nodes[s->first[n]]++;
+    for (int64_t i = 0; i < p->elements; i++)
+        s->cells[s->first[p->element_node[8 * i]]]++;
+    for (int32_t n = 0; n < p->nodes; n++) {
+        sheet[n] = 0;
+        if (is_near(s, n))
+            s->near[s->count++] = n;
+    }
+    return 0;
+}
+
+/* What a node has taken, to be given back where it cannot have all. */
+typedef struct taken {
+    int32_t *of[TOUCHED];
+    int count;
+} taken;
+
+static bool take(int32_t *place, int32_t who, taken *t)
+{
+    if (*place == NOBODY) {
+        *place = who;
+        t->of[t->count++] = place;
+    }
+    return *place == who;
+}
+
+/* Whether the sheet has room for a node, with all that its elements touch; takes it. */
+static bool take_node(sheets *s, int32_t node)
+{
+    taken t = {.count = 0};
+    bool takes = true;
+    for (int i = 0; takes && corner_of(s->p, node, i) >= 0; i++) {
+        const int32_t element = corner_of(s->p, node, i) / 8, *corner = s->p->element_node + 8 * (int64_t)element;
+        takes = take(&s->cell[s->first[corner[0]]], element, &t);
+        for (int c = 0; takes && c < 8; c++)
+            takes = take(&s->node[s->first[corner[c]]], corner[c], &t);
+    }
+    while (!takes && t.count)
+        *t.of[--t.count] = NOBODY;
+    return takes;
+}
+
+/* Gives a sheet the nodes that it has room for, in their order. Returns how many. */
+static int64_t fill_sheet(sheets *s, int32_t number, int32_t *sheet)
+{
+    int64_t left = 0;
+    memset(s->node, 0xff, (size_t)s->p->nodes * sizeof *s->node);
+    memset(s->cell, 0xff, (size_t)s->p->nodes * sizeof *s->cell);
+    for (int64_t i = 0; i < s->count; i++) {
+        const int32_t node = s->near[i];
+        sheet[node] = number;
+        if (!take_node(s, node))
+            s->near[left++] = node;
+    }
+    const int64_t gone = s->count - left;
+    s->count = left;
+    return gone;
+}
+
+int32_t march_sheets_find(const tled_problem *p, const int32_t *group, const int32_t *at, int32_t *sheet, err *e)
+{
+    sheets s = {.p = p};
+    int32_t count = -1;
+    if (!allocate(&s, e) && !list_near(&s, group, at, sheet, e)) {
+        for (count = 0; fill_sheet(&s, count, sheet);)
+            count++;
+        for (int64_t i = 0; i < s.count; i++) /* an empty sheet has no room for them */
+            sheet[s.near[i]] = MARCH_TIP;
+        count += count == 0;
+    }
+    free_all(&s);
+    return count;
+}
