@@ -1,9 +1,11 @@
 /* `make bench-tled`: what a step of tled-run's solver takes, on each executor and in each precision that this machine
  * has, over blocks of growing size and over the models whose files are named (after nu=NU: with that Poisson ratio):
- * CSV. With `both`, each is measured by isotropic hourglass control too, right before physical. After a warm-up, the median, the least and the most of some rounds. A `step` is the executor's own; a `run` is
- * one as tled-run makes it, with its looks, and with 60 frames a second of the model's time; times_real_time is the
- * time simulated over the time taken. A run's steps are known to be done when it looks, after each window of them: it
- * is timed from a look after its first frames to its last, and worst_window_us_a_step is of the slowest of all rounds.
+ * CSV. `both`: each by isotropic hourglass control too, right before physical. `slits`: each block again with a slit
+ * half through its middle, across each axis. After a warm-up, the median, the least and the most of some rounds. A
+ * `step` is the executor's own; a `run` is one as tled-run makes it, with its looks, and with 60 frames a second of the
+ * model's time; times_real_time is the time simulated over the time taken. A run's steps are known to be done when it
+ * looks, after each window of them: it is timed from a look after its first frames to its last, and
+ * worst_window_us_a_step is of the slowest of all rounds.
  *
  * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and
  * written, 1/m, and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, its share (4)
@@ -306,14 +308,25 @@ static const char *said_of(hourglass_control control)
     return control.kind == HOURGLASS_ISOTROPIC ? " isotropic" : "";
 }
 
-static void measure_block(int32_t x, int32_t y, int32_t z, hourglass_control control, const options *o)
+/* slit: its axis: half through the block's middle; -1: none. */
+static void measure_block(const int32_t cells[3], int slit_axis, hourglass_control control, const options *o)
 {
+    const int32_t first = cells[(slit_axis + 4) % 3], second = cells[(slit_axis + 5) % 3];
+    const slit half = {
+        "half",
+        {{slit_axis, slit_axis < 0 ? 0 : cells[slit_axis] / 2, {0, 0}, {first / 2, second}, false, false}},
+        false};
     char name[80];
     bench b;
     const double gravity[3] = {0, 0, -.5}; /* so little that no step is cut */
-    block what = {{x, y, z}, {.0025, .0025, .0025}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 0, 0}, 0, false};
-    snprintf(name, sizeof name, "block %d x %d x %d%s", x, y, z, said_of(control));
+    const block what = {
+        {cells[0], cells[1], cells[2]}, {.0025, .0025, .0025}, 3000, .49, 1000, 30000, 2, 1, 0, {0, 0, 0}, 0, false};
+    snprintf(name, sizeof name, "block %d x %d x %d%s%.*s%s", cells[0], cells[1], cells[2],
+             slit_axis < 0 ? "" : " slit across ", slit_axis >= 0, &"xyz"[slit_axis < 0 ? 0 : slit_axis],
+             said_of(control));
+    in_slit = slit_axis < 0 ? NULL : &half;
     bench_make(&b, &what, gravity, 0, control, o->threads);
+    in_slit = NULL;
     measure(name, &b, o);
     bench_free(&b);
 }
@@ -396,21 +409,29 @@ int main(int argc, char **argv)
     static const hourglass_control controls[] = {{HOURGLASS_ISOTROPIC, .0075}, {HOURGLASS_PHYSICAL, 0}};
     static const int32_t blocks[][3] = {{16, 17, 8}, {29, 47, 9}, {46, 47, 46}, {100, 100, 100}, {159, 159, 159}};
     if (argc < 6 || atoi(argv[1]) < 1 || atoi(argv[2]) > 5) {
-        fprintf(stderr, "usage: bench_tled THREADS BLOCKS all|cpu|cuda steps|runs SECONDS [both] [nu=NU|MODEL...]\n");
+        fprintf(stderr, "usage: bench_tled THREADS BLOCKS all|cpu|cuda steps|runs SECONDS "
+                        "[both|slits|nu=NU|MODEL...]\n");
         return 2;
     }
+    bool slits_too = false;
     options o = {.threads = atoi(argv[1]),
                  .device = strcmp(argv[3], "all") ? argv[3] : NULL,
                  .runs = !strcmp(argv[4], "runs"),
-                 .least = atof(argv[5]),
-                 .both = argc > 6 && !strcmp(argv[6], "both")};
+                 .least = atof(argv[5])};
     puts(header);
     o.card = find_card(&o);
+    for (int i = 6; i < argc; i++) {
+        o.both |= !strcmp(argv[i], "both");
+        slits_too |= !strcmp(argv[i], "slits");
+    }
     for (int i = 0; i < atoi(argv[2]); i++)
         for (int c = !o.both; c < 2; c++)
-            measure_block(blocks[i][0], blocks[i][1], blocks[i][2], controls[c], &o);
-    for (int i = 6 + o.both; i < argc; i++)
-        if (!strncmp(argv[i], "nu=", 3))
+            for (int axis = -1; axis < (slits_too ? 3 : 0); axis++)
+                measure_block(blocks[i], axis, controls[c], &o);
+    for (int i = 6; i < argc; i++)
+        if (!strcmp(argv[i], "both") || !strcmp(argv[i], "slits"))
+            continue;
+        else if (!strncmp(argv[i], "nu=", 3))
             o.poisson = atof(argv[i] + 3);
         else
             for (int c = !o.both; c < 2; c++)
