@@ -22,8 +22,8 @@ static int64_t triangles(const obj *o, uint32_t *to)
     return count;
 }
 
-/* In the volume's frame, which is the model's: the OBJ's positions become so too; moved: how the rigid body that it goes
- * with has moved. */
+/* In the volume's frame, which is the model's: the OBJ's positions become so too; moved: how its rigid body
+ * has moved. */
 static int make_mesh(scene_mesh *mesh, obj *o, const body *all, const body_part *part, const pose *moved, err *e)
 {
     static const float colour[3] = {.55F, .42F, .35F};

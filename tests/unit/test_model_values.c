@@ -104,6 +104,14 @@ static void sums(void)
     of("s/face.start", "0\n3\n3\n", "row 2: 3; expected");
 }
 
+/* Two rows that have the same number in each column. */
+static void put_rows(const known *k, double first, double second, char *to)
+{
+    for (int row = 0; row < 2; row++)
+        for (int i = 0; i < k->columns_max; i++)
+            to += sprintf(to, "%.17g%s", row ? second : first, i + 1 < k->columns_max ? " " : "\n");
+}
+
 /* The ends of a range are in it, and what comes next is not. */
 static void range(const known *k)
 {
@@ -116,16 +124,16 @@ static void range(const known *k)
         past = (double)nextafterf((float)k->high, INFINITY);
         less = -1e-9;
     }
-    snprintf(rows, sizeof rows, "%.17g\n%.17g\n", k->low, k->high);
-    judge(k, 1, rows, NULL);
+    put_rows(k, k->low, k->high, rows);
+    judge(k, k->columns_max, rows, NULL);
     if (k->high < (double)INT32_MAX || k->type == MODEL_F64) {
-        snprintf(rows, sizeof rows, "%.17g\n%.17g\n", k->low, past);
-        judge(k, 1, rows, "row 1: ");
+        put_rows(k, k->low, past, rows);
+        judge(k, k->columns_max, rows, "row 1: ");
     }
     if (k->type == MODEL_U8)
         return;
-    snprintf(rows, sizeof rows, "%.17g\n%.17g\n", less, k->high);
-    judge(k, 1, rows, "row 0: ");
+    put_rows(k, less, k->high, rows);
+    judge(k, k->columns_max, rows, "row 0: ");
 }
 
 /* A row that is nan in one column, and one that is in all. */
