@@ -121,6 +121,7 @@ typedef struct stretch {
     float h[3][3];  /* H': row a, column: of the modes x, y, z */
     float g[3][3];  /* cof F'; on the diagonal, less that at rest */
     float dilation; /* det F' - V' */
+    float j;        /* J */
     float third;    /* (tr C - 3)/3 */
 } stretch;
 
@@ -130,34 +131,36 @@ template <march_control K> static __device__ __forceinline__ float of_side(const
     return side[K == MARCH_PHYSICAL_CUBES ? 0 : i];
 }
 
-/* Adds c^2 (C - 1) on the diagonal, along one axis; f: F' there. */
-template <march_control K>
-static __device__ __forceinline__ float add_square(const cuda_march &m, const float h[3][3], const float f[3], int i,
-                                                   float sum)
+/* Adds c^2 (C - 1) on the diagonal, along one axis; wide: c H' there; f: F' there. */
+static __device__ __forceinline__ float add_square(const float h[3][3], float wide, float f, int i, float sum)
 {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    sum += of_side<K>(m.width, i) * h[i][i];
-    sum += h[i][i] * f[i];
+    sum += wide;
+    sum += h[i][i] * f;
     sum += h[j][i] * h[j][i];
     return sum + h[k][i] * h[k][i];
 }
 
-/* (tr C - 3)/3, of a cube in one sum. */
+/* (tr C - 3)/3, of a cube in one sum; wide: of a cube, c H' on the diagonal, which cof F' has too. */
 template <march_control K>
-static __device__ __forceinline__ float third_of(const cuda_march &m, const float h[3][3], const float f[3])
+static __device__ __forceinline__ float third_of(const cuda_march &m, const float h[3][3], const float wide[3],
+                                                 const float f[3])
 {
-    if constexpr (K == MARCH_PHYSICAL_CUBES)
-        return m.thirds[0] * add_square<K>(m, h, f, 2, add_square<K>(m, h, f, 1, add_square<K>(m, h, f, 0, 0)));
-    else
-        return m.thirds[0] * add_square<K>(m, h, f, 0, 0) + m.thirds[1] * add_square<K>(m, h, f, 1, 0) +
-               m.thirds[2] * add_square<K>(m, h, f, 2, 0);
+    float all = 0;
+#pragma unroll
+    for (int i = 0; i < 3; i++)
+        if constexpr (K == MARCH_PHYSICAL_CUBES)
+            all = add_square(h, wide[i], f[i], i, all);
+        else
+            all += m.thirds[i] * add_square(h, m.width[i] * h[i][i], f[i], i, 0);
+    return K == MARCH_PHYSICAL_CUBES ? m.thirds[0] * all : all;
 }
 
 template <march_control K>
 static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, const face &low, const face &high)
 {
     stretch s;
-    float f[3];
+    float f[3], wide[3];
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         s.h[a][0] = low.x[a] + high.x[a];
@@ -165,28 +168,32 @@ static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, const 
         s.h[a][2] = high.mean[a] - low.mean[a];
     }
 #pragma unroll
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         f[i] = of_side<K>(m.width, i) + s.h[i][i];
+        wide[i] = of_side<K>(m.width, (i + 2) % 3) * s.h[i][i];
+    }
 #pragma unroll
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
-        s.g[i][i] = s.h[j][j] * f[k] + (of_side<K>(m.width, j) * s.h[k][k] - s.h[j][k] * s.h[k][j]);
+        s.g[i][i] = fmaf(s.h[j][j], f[k], fmaf(-s.h[j][k], s.h[k][j], wide[k]));
         s.g[i][j] = s.h[j][k] * s.h[k][i] - s.h[j][i] * f[k];
         s.g[i][k] = s.h[j][i] * s.h[k][j] - s.h[k][i] * f[j];
     }
     s.dilation = f[0] * s.g[0][0] + m.face[0] * s.h[0][0] + s.h[0][1] * s.g[0][1] + s.h[0][2] * s.g[0][2];
-    s.third = third_of<K>(m, s.h, f);
+    s.j = 1 + s.dilation * m.density;
+    s.third = third_of<K>(m, s.h, wide, f);
     return s;
 }
 
-/* V P L, by `stress`' formula; mu and bulk times MARCH_LAW; no cell: 0. */
+/* V P L, by `stress`' formula, with mu J^-5/3 = 2^(log2 mu - 5/3 log2 J); no cell: 0. */
 template <march_control K>
-static __device__ __forceinline__ void push_of(const cuda_march &m, const stretch &s, float mu, float bulk, bool is,
+static __device__ __forceinline__ void push_of(const cuda_march &m, const march_hold &k, const stretch &s, bool is,
                                                float p[3][3])
 {
-    const float dilation = s.dilation * m.density;
-    const float j = 1 + dilation, scale = is ? mu * power(j) : 0, pressure = is ? bulk * dilation : 0;
-    const float all = pressure + scale * (dilation - s.third), own = scale * j, g = pressure - scale * (1 + s.third);
+    const float scale = is ? near_exp2(k.log_mu + near_log2(s.j) * (-5.f / 3)) : 0;
+    const float pressure = is ? k.press * s.dilation : 0;
+    const float all = pressure + scale * (s.dilation * m.density - s.third), own = scale * s.j;
+    const float g = pressure - scale * (1 + s.third);
 #pragma unroll
     for (int i = 0; i < 3; i++) {
         const float column = own * of_side<K>(m.squares, i);
@@ -201,7 +208,7 @@ static __device__ __forceinline__ void push_of(const cuda_march &m, const stretc
 template <march_control K>
 static __device__ __forceinline__ void inverse_of(const cuda_march &m, const stretch &s, bool is, float to[3][3])
 {
-    const float inverse = is ? near_inverse(m.volume + s.dilation) : 0;
+    const float inverse = is ? m.density * near_inverse(s.j) : 0;
 #pragma unroll
     for (int i = 0; i < 3; i++)
 #pragma unroll
@@ -235,6 +242,13 @@ typedef struct mode_force {
     float low[3], high[3], yz[3], zx[3];
 } mode_force;
 
+/* k.own; of a cube it is 1 times the torsion. */
+template <march_control K> static __device__ __forceinline__ float own_of(const march_hold &k, int i)
+{
+    return K == MARCH_PHYSICAL_CUBES ? k.torsion : k.own[i];
+}
+
+template <march_control K>
 static __device__ __forceinline__ void hold_modes(const march_hold &k, const float inverse[3][3], const face &low,
                                                   const face &high, mode_force *f, float p[3][3])
 {
@@ -253,12 +267,12 @@ static __device__ __forceinline__ void hold_modes(const march_hold &k, const flo
         xy[i] = e_low[i] + e_high[i];
     const float twist = k.torsion * (e_yz[0] + e_zx[1] + xy[2]);
     const float s_xy[3] = {k.bending * xy[0] + k.coupling * e_yz[2], k.bending * xy[1] + k.coupling * e_zx[2],
-                           k.own[2] * xy[2] + twist};
-    s_yz[0] = k.own[0] * e_yz[0] + twist;
+                           own_of<K>(k, 2) * xy[2] + twist};
+    s_yz[0] = own_of<K>(k, 0) * e_yz[0] + twist;
     s_yz[1] = k.bending * e_yz[1] + k.coupling * e_zx[0];
     s_yz[2] = k.bending * e_yz[2] + k.coupling * xy[0];
     s_zx[0] = k.bending * e_zx[0] + k.coupling * e_yz[1];
-    s_zx[1] = k.own[1] * e_zx[1] + twist;
+    s_zx[1] = own_of<K>(k, 1) * e_zx[1] + twist;
     s_zx[2] = k.bending * e_zx[2] + k.coupling * xy[1];
 #pragma unroll
     for (int i = 0; i < 3; i++) {
@@ -274,16 +288,15 @@ static __device__ __forceinline__ void hold_modes(const march_hold &k, const flo
 
 /* As cell_forces of isotropic control. */
 template <march_control K>
-static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu, float bulk, const march_hold &k,
-                                                   bool is, const face &low, const face &high, face *sum,
-                                                   push<K> *below)
+static __device__ __forceinline__ void cell_forces(const cuda_march &m, const march_hold &k, bool is, const face &low,
+                                                   const face &high, face *sum, push<K> *below)
 {
     float p[3][3], inverse[3][3];
     mode_force f;
     const stretch s = stretch_of<K>(m, low, high);
-    push_of<K>(m, s, mu, bulk, is, p);
+    push_of<K>(m, k, s, is, p);
     inverse_of<K>(m, s, is, inverse);
-    hold_modes(k, inverse, low, high, &f, p);
+    hold_modes<K>(k, inverse, low, high, &f, p);
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         sum->mean[a] = below->mean[a] - p[a][2];
@@ -297,11 +310,13 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu
     }
 }
 
-/* By hourglass_numbers' formulas; mu and bulk times MARCH_LAW. */
+/* Of a law, by hourglass_numbers' formulas. */
 static __device__ __forceinline__ march_hold hold_of(const cuda_march &m, float mu, float bulk)
 {
-    const float least = 1e-30f, torsion = m.volume * (1.f / 3) * mu, twice = 2 * torsion;
+    const float least = 1e-30f, torsion = m.volume * (MARCH_LAW / 3) * mu, twice = 2 * torsion;
     march_hold k;
+    k.log_mu = near_log2(MARCH_LAW * mu);
+    k.press = MARCH_LAW * m.density * bulk;
     k.coupling = twice * (bulk - 2.f / 3 * mu) * near_inverse(fmaxf(bulk + 4.f / 3 * mu, least));
     k.bending = k.coupling + twice;
     k.torsion = torsion;

@@ -161,18 +161,21 @@ static __device__ __forceinline__ void forces_of(const cuda_march &m, const doub
 {
     const bool is = f->now & MARCH_CELL, special = SPECIAL && f->now & MARCH_SPECIAL;
     const uint32_t record = record_of(t.memory, c);
-    const bool zero = K == MARCH_ISOTROPIC && !is;
-    float mu = zero ? 0 : m.law[0], bulk = zero ? 0 : m.law[1], hourglass = zero ? 0 : m.law[2];
-    if (special) {
-        const float4 law = shared_load(record);
-        mu = law.x, bulk = law.y, hourglass = law.z;
-        if (K != MARCH_ISOTROPIC)
-            mu *= MARCH_LAW, bulk *= MARCH_LAW;
-    }
-    if constexpr (K == MARCH_ISOTROPIC)
+    if constexpr (K == MARCH_ISOTROPIC) {
+        float mu = is ? m.law[0] : 0, bulk = is ? m.law[1] : 0, hourglass = is ? m.law[2] : 0;
+        if (special) {
+            const float4 law = shared_load(record);
+            mu = law.x, bulk = law.y, hourglass = law.z;
+        }
         cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
-    else
-        cell_forces<K>(m, mu, bulk, SPECIAL ? hold_of(m, mu, bulk) : m.held, is, low, high, sum, &f->below);
+    } else {
+        march_hold k = m.held;
+        if (special) {
+            const float4 law = shared_load(record);
+            k = hold_of(m, law.x, law.y);
+        }
+        cell_forces<K>(m, k, is, low, high, sum, &f->below);
+    }
     if (special)
         muscle_forces(m, now, record, t.base + c, here, next, sum, &f->below);
 }
@@ -334,8 +337,8 @@ static __device__ __forceinline__ void take_next(const cuda_march &m, const cuda
  * layer c + 3, and velocities of c - 1. */
 template <int ODD> static __device__ __forceinline__ void wait_before(const turn &t)
 {
+    barrier_wait(t.memory + SAID, 1 - ODD); /* first: a wait for copies alone is placed before the arithmetic */
     arrived<1>();
-    barrier_wait(t.memory + SAID, 1 - ODD);
 }
 
 /* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. left: layers from c on.

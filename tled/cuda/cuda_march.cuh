@@ -20,8 +20,10 @@ enum {
 /* V/V', by which the march's numbers of a law are multiplied under physical control. */
 #define MARCH_LAW (1.f / 64)
 
-/* What holds a cell's modes: hourglass_numbers times V, and what of torsion is a strain's own, but for the sum. */
+/* What holds a cell under physical control: log2 of mu and K/V', both times MARCH_LAW; of its modes hourglass_numbers
+ * times V, and what of torsion is a strain's own, but for the sum. */
 typedef struct march_hold {
+    float log_mu, press;
     float bending, coupling, torsion, corner, own[3];
 } march_hold;
 
@@ -36,7 +38,7 @@ typedef struct cuda_march {
     const uint32_t *word;
     const int32_t *detail, *which;
     const march_cell *cell;
-    float law[3];            /* of plain cells: mu, K, times MARCH_LAW if physical; isotropic: hourglass */
+    float law[3];            /* isotropic: of plain cells mu, K, hourglass */
     march_hold held;         /* physical: of plain cells */
     float slope[3], area[3]; /* element_shape's, along the march's axes */
     /* Along these, with c = 4 h: c, V'/c, 1/(3 c^2), V'/c^2, (c_i^2/c_j^2 + c_i^2/c_k^2) - 1; V' = 64 V, and 1/V'. */

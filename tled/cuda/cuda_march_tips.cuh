@@ -53,18 +53,21 @@ static __device__ __forceinline__ float3 tip_pull(const cuda_march &m, const dou
                                                   uint32_t at)
 {
     const face low = tip_face(at, 0), high = tip_face(at, 4);
-    float mu = m.law[0], bulk = m.law[1], hourglass = m.law[2];
     push<K> below = {};
     face sum;
-    if (of.special) {
-        const march_cell &cell = m.cell[of.special - 1];
-        const float by = K == MARCH_ISOTROPIC ? 1 : MARCH_LAW;
-        mu = by * cell.mu, bulk = by * cell.bulk, hourglass = cell.hourglass;
-    }
-    if constexpr (K == MARCH_ISOTROPIC)
+    if constexpr (K == MARCH_ISOTROPIC) {
+        float mu = m.law[0], bulk = m.law[1], hourglass = m.law[2];
+        if (of.special) {
+            const march_cell &cell = m.cell[of.special - 1];
+            mu = cell.mu, bulk = cell.bulk, hourglass = cell.hourglass;
+        }
         cell_forces(m, mu, bulk, hourglass, true, low, high, &sum, &below);
-    else
-        cell_forces<K>(m, mu, bulk, hold_of(m, mu, bulk), true, low, high, &sum, &below);
+    } else {
+        march_hold k = m.held;
+        if (of.special)
+            k = hold_of(m, m.cell[of.special - 1].mu, m.cell[of.special - 1].bulk);
+        cell_forces<K>(m, k, true, low, high, &sum, &below);
+    }
     if (of.special)
         tip_muscles(m, now, m.cell[of.special - 1], low, high, &sum, &below);
     return tip_share(of.corner < 4 ? sum : face_of(below, high), of.corner);

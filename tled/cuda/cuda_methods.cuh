@@ -265,8 +265,11 @@ static void march_list(cuda_state *s, const cuda_numbers *numbers, card_layout *
 static void hold_plain(cuda_state *s)
 {
     const tled_problem *p = s->p;
-    const double *held = p->volume[s->march.plain].law.hourglass, volume = p->side[0] * p->side[1] * p->side[2];
+    const tled_volume *plain = &p->volume[s->march.plain];
+    const double *held = plain->law.hourglass, volume = p->side[0] * p->side[1] * p->side[2];
     march_hold *to = &s->walk.held;
+    to->log_mu = (float)log2(MARCH_LAW * plain->law.c[0]); /* neo-Hookean form: mu, K */
+    to->press = (float)(MARCH_LAW * plain->law.c[1] / (64 * volume));
     to->bending = (float)(volume * held[HOURGLASS_BENDING]);
     to->coupling = (float)(volume * held[HOURGLASS_COUPLING]);
     to->torsion = (float)(volume * held[HOURGLASS_TORSION]);
@@ -282,8 +285,7 @@ static void march_fill(cuda_state *s)
     const tled_volume *plain = &p->volume[s->march.plain];
     const int *axis = s->march.axis;
     cuda_march *w = &s->walk;
-    const double by = p->control.kind == HOURGLASS_PHYSICAL ? MARCH_LAW : 1; /* neo-Hookean form: mu, K */
-    const double law[3] = {by * plain->law.c[0], by * plain->law.c[1], plain->law.hourglass[HOURGLASS_K]};
+    const double law[3] = {plain->law.c[0], plain->law.c[1], plain->law.hourglass[HOURGLASS_K]};
     const double volume = p->side[0] * p->side[1] * p->side[2];
     s->view.mass_inverse = s->field[TLED_DISPLACEMENT] + 3;
     w->ticket = w->done + s->march.units;
