@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/path.h"
+#include "mesh/rigid_body.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -75,6 +76,22 @@ int around_read(around *a, const console_case *is, model *m, err *e)
     if (is->skin && body_find(&a->places, is->skin)) {
         a->skin_path = is->skin;
         surface_name(is->skin, a->skin, sizeof a->skin);
+    }
+    return 0;
+}
+
+int around_attach(const around *a, const model *m, geometry *scene, err *e)
+{
+    for (int i = 0; i < a->places.parts; i++) {
+        const body_part *part = &a->places.part[i];
+        char name[SURFACE_NAME_MOST + 1];
+        if (!part->rigid)
+            continue;
+        const int32_t rigid = rigid_body_find(m, part->rigid, a->body_path, part->line, e);
+        if (rigid < 0)
+            return -1;
+        surface_name(part->file, name, sizeof name);
+        geometry_attach(scene, name, rigid);
     }
     return 0;
 }

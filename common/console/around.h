@@ -5,6 +5,7 @@
 #define SINEW_AROUND_H
 
 #include "console/cases.h"
+#include "console/geometry.h"
 #include "surface/surface.h"
 #include "volume/body.h"
 
@@ -17,6 +18,10 @@ typedef struct around {
 /* Reads what the case has, and adds each surface to the model m, in its axes. -1 with e filled; a is to be freed all
  * the same. */
 int around_read(around *a, const console_case *is, model *m, err *e);
+
+/* Lets the scene's surfaces move with the rigid bodies of its model m that body.txt names. -1 with e filled, at the
+ * file's line: the model has no such body. */
+int around_attach(const around *a, const model *m, geometry *scene, err *e);
 void around_free(around *a);
 
 /* A pose in the model's axes as the tool that presses the skin is told it: in the body, where that has a place. */

@@ -70,10 +70,10 @@ static int read_body(console *c, const console_case *is, err *e)
     c->value = mem_array(model_count(m, "node"), sizeof *c->value, "colours", e);
     if (!c->level || !c->value)
         return -1;
-    if (!c->face && around_read(&c->around, is, &c->body.body, e))
+    if ((!c->face || is->body) && around_read(&c->around, is, &c->body.body, e))
         return -1;
-    c->scene = geometry_make(m, c->face, c->around.skin, e);
-    return c->scene ? 0 : -1;
+    c->scene = geometry_make(m, c->face, c->face ? "" : c->around.skin, e);
+    return c->scene ? around_attach(&c->around, m, c->scene, e) : -1;
 }
 
 const char *console_muscle(const console *c, int64_t i)

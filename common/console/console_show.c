@@ -220,7 +220,7 @@ static void show_positions(console *c, const frame *f, const double *u)
 {
     err e = {0};
     char name[SURFACE_NAME_MOST + 30];
-    geometry_frame is = {.index = f->index, .u = u};
+    geometry_frame is = {.index = f->index, .rigid = f, .u = u};
     snprintf(name, sizeof name, "%s/vertex.displacement", c->around.skin);
     const model_array *skin = *c->around.skin ? frame_find(f, name) : NULL;
     if (skin && skin->type == MODEL_F64 && skin->rows == geometry_skin(c->scene))

@@ -4,6 +4,7 @@
 #include "console/json.h"
 #include "mesh/bound.h"
 #include "mesh/boundary.h"
+#include "mesh/rigid_body.h"
 #include "surface/triangulate.h"
 
 #include <float.h>
@@ -24,6 +25,7 @@ typedef struct part {
     uint32_t *triangle; /* triangles x 3 */
     int32_t *from;      /* vertices: the surface's, or nodes */
     int surface;        /* -1: they are nodes */
+    int32_t rigid;      /* the rigid body that it moves with; -1: none */
     bool moves;
 } part;
 
@@ -31,6 +33,7 @@ struct geometry {
     const model *m;
     const double *node; /* x 3, m: at rest */
     bound *surfaces;
+    char (*surface_name)[MODEL_NAME]; /* surfaces: what the views borrow */
     int surface_count;
     bool *bound; /* surfaces: whether it is */
     int skin;    /* the surface that moves by itself; -1: none */
@@ -84,6 +87,7 @@ static part *add_part(geometry *g, const char *name, int of, bool moves)
     part *p = &g->parts[g->count++];
     snprintf(p->name, sizeof p->name, "%s", name);
     p->surface = of;
+    p->rigid = -1;
     p->moves = moves;
     look_of(p, of < 0 ? name : g->surfaces[of].shape.name);
     return p;
@@ -191,18 +195,20 @@ static int add_outside(geometry *g, bool has_skin, err *e)
 
 static int open_surfaces(geometry *g, const char *skin, err *e)
 {
-    char name[MODEL_NAME];
+    char name[MODEL_NAME] = "";
     int at = 0, count = 0;
     while (model_surface(g->m, &at, name, sizeof name))
         count++;
     g->surfaces = mem_array(count, sizeof *g->surfaces, "surfaces", e);
+    g->surface_name = mem_array(count, sizeof *g->surface_name, "surfaces", e);
     g->bound = mem_array(count, sizeof *g->bound, "surfaces", e);
     g->parts = mem_array(PARTS_MOST + count + 1, sizeof *g->parts, "surfaces", e);
-    if (!g->surfaces || !g->bound || !g->parts)
+    if (!g->surfaces || !g->surface_name || !g->bound || !g->parts)
         return -1;
     at = 0;
     while (model_surface(g->m, &at, name, sizeof name)) {
-        const int is = bound_of(&g->surfaces[g->surface_count], g->m, name, e);
+        char *kept = memcpy(g->surface_name[g->surface_count], name, sizeof name);
+        const int is = bound_of(&g->surfaces[g->surface_count], g->m, kept, e);
         if (is < 0)
             return -1;
         if (!strcmp(name, skin))
@@ -307,8 +313,20 @@ void geometry_free(geometry *g)
     }
     free(g->parts);
     free(g->surfaces);
+    free(g->surface_name);
     free(g->bound);
     free(g);
+}
+
+void geometry_attach(geometry *g, const char *name, int32_t body)
+{
+    for (int i = 0; i < g->count; i++) {
+        part *p = &g->parts[i];
+        if (p->surface < 0 || p->moves || strcmp(g->surfaces[p->surface].shape.name, name) != 0)
+            continue;
+        p->rigid = body;
+        p->moves = true;
+    }
 }
 
 const double *geometry_box(const geometry *g)
@@ -396,13 +414,25 @@ mail *geometry_mail(const geometry *g, err *e)
     return m;
 }
 
+/* What a rigid motion displaces a place by, m. */
+static void displace_rigidly(const pose *moved, const float *rest, double to[3])
+{
+    const double x[3] = {(double)rest[0], (double)rest[1], (double)rest[2]};
+    pose_apply(moved, x, to);
+    for (int a = 0; a < 3; a++)
+        to[a] -= x[a];
+}
+
 /* The displacements of a part's vertices: d x 3, m; and their lengths' largest. */
 static double displace(const geometry *g, const part *p, const geometry_frame *f, float *d)
 {
+    const pose moved = rigid_body_pose(p->rigid < 0 ? NULL : f->rigid, p->rigid);
     double largest = 0;
     for (int64_t i = 0; i < p->vertices; i++) {
         double x[3] = {0};
-        if (p->surface < 0)
+        if (p->rigid >= 0)
+            displace_rigidly(&moved, p->rest + 3 * i, x);
+        else if (p->surface < 0)
             memcpy(x, f->u + 3 * (int64_t)p->from[i], sizeof x);
         else if (p->surface != g->skin)
             bound_displacement(&g->surfaces[p->surface], p->from[i], f->u, x);
@@ -447,7 +477,7 @@ static double value_of(const geometry *g, const part *p, const geometry_frame *f
         return sqrt((double)(d[3 * i] * d[3 * i] + d[3 * i + 1] * d[3 * i + 1] + d[3 * i + 2] * d[3 * i + 2]));
     if (p->surface < 0)
         return f->value[p->from[i]];
-    if (p->surface == g->skin)
+    if (p->rigid >= 0 || p->surface == g->skin)
         return f->low;
     const bound *b = &g->surfaces[p->surface];
     const int corners = bound_shares(b, p->from[i], share);

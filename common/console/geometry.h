@@ -15,6 +15,10 @@ typedef struct geometry geometry;
 geometry *geometry_make(const model *m, bool face, const char *skin, err *e);
 void geometry_free(geometry *g);
 
+/* The surface named so moves with this rigid body of the model (mesh/rigid_body.h), unless it is bound or moves by
+ * itself. */
+void geometry_attach(geometry *g, const char *name, int32_t body);
+
 /* low x y z, high x y z, m: of the model at rest; and the unit vector that points up from it. */
 const double *geometry_box(const geometry *g);
 const double *geometry_up(const geometry *g);
@@ -31,6 +35,7 @@ mail *geometry_mail(const geometry *g, err *e);
 /* What a frame has, borrowed. */
 typedef struct geometry_frame {
     int64_t index;
+    const frame *rigid;  /* whose body.pose moves what moves with rigid bodies; NULL: they are at rest */
     const double *u;     /* nodes x 3, m: displacements */
     const double *skin;  /* vertices x 3, m: displacements of the skin that moves by itself; NULL: at rest */
     const double *value; /* nodes: what colours tell of, `low` to `high`; NULL: the lengths of displacements */

@@ -1,11 +1,14 @@
 // What a page draws of a block of tetrahedra: its outside, closed, the right way out; and where it is in a frame.
-// needs: common/console/colouring.c common/console/geometry.c common/console/json.c common/console/mailbox.c
-// needs: msds/mesh/mesh_tets.c
+// needs: common/console/around.c common/console/colouring.c common/console/geometry.c common/console/json.c
+// needs: common/console/mailbox.c msds/mesh/mesh_tets.c
+#include "console/around.h"
 #include "console/colouring.h"
 #include "msds_block.h"
 #include "tap.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static uint32_t word_at(const mail *m, size_t at)
 {
@@ -124,6 +127,84 @@ static void try_colours(const model *m)
     free(value);
 }
 
+static void write_text(const char *path, const char *text)
+{
+    FILE *f = fopen(path, "w");
+    ok(f && fputs(text, f) >= 0 && !fclose(f), "%s", path);
+}
+
+/* A scene of what is around the model, where the body.txt is found to fit it. */
+static geometry *make_around(around *a, const char *file, model *m, bool face, err *e)
+{
+    char path[60];
+    snprintf(path, sizeof path, "%s", file);
+    const console_case is = {.body = path};
+    *e = (err){0};
+    geometry *g = around_read(a, &is, m, e) ? NULL : geometry_make(m, face, "", e);
+    a->body_path = file;
+    if (!g || !around_attach(a, m, g, e))
+        return g;
+    geometry_free(g);
+    return NULL;
+}
+
+/* The tooth is the first mesh: it lies at z = 40 mm, and 5 mm above that where its body went up so far. */
+static void try_tooth(const geometry *g, const model *m)
+{
+    err e = {0};
+    frame f = {.index = 3};
+    memcpy(frame_add(&f, m, "body.pose", &e)->f64, (double[]){0, 0, .005, 0, 0, 0, 1}, 7 * sizeof(double));
+    mail *scene = geometry_mail(g, &e);
+    ok(strstr((const char *)scene->bytes + 8, "\"name\":\"tooth\"") != NULL, "it has its name");
+    near_((double)number_at(scene, 8 + (word_at(scene, 4) + 3) / 4 * 4 + 8), .04, 1e-7, "and lies where body.txt says");
+    const int64_t nodes = model_count(m, "node");
+    double *u = mem_array(3 * nodes, sizeof *u, "displacements", &e);
+    double *value = mem_array(nodes, sizeof *value, "values", &e);
+    mail *is = geometry_positions(g, &(geometry_frame){.index = 3, .rigid = &f, .u = u}, &e);
+    ok(word_at(is, 8) == 2 && word_at(is, 16) == 4, "two meshes move, the first of four vertices");
+    near_((double)number_at(is, 20 + 8), .045, 1e-7, "which went 5 mm up");
+    mail_done(is);
+    is = geometry_positions(g, &(geometry_frame){.u = u, .value = value, .high = 1}, &e);
+    near_((double)number_at(is, 20 + 8), .04, 1e-7, "and not without a pose; colours of tissue leave it out");
+    mail_done(is);
+    mail_done(scene);
+    free(u);
+    free(value);
+    frame_free(&f);
+}
+
+/* A tooth that goes with a rigid body, in a body in which the model lies 1 m along x. */
+static void try_rigid(model *m)
+{
+    char folder[] = "/tmp/sinew-around-XXXXXX", tooth[60], file[60];
+    err e = {0};
+    around a = {0};
+    ok(mkdtemp(folder) != NULL, "a folder");
+    snprintf(tooth, sizeof tooth, "%s/tooth.obj", folder);
+    snprintf(file, sizeof file, "%s/body.txt", folder);
+    write_text(tooth, "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nf 1 2 3 4\n");
+    write_text(file, "volume move=1,0,0\nsurface tooth.obj unit=mm in=jaw move=0,0,4cm\n");
+    ok(!make_around(&a, file, m, true, &e) && strstr(e.text, "body.txt:2: 'jaw': the model has no rigid bodies"), "%s",
+       e.text);
+    around_free(&a);
+    model_axis_add(m, "body", 1, &e);
+    model_set_text(model_add(m, "body.name", &e), 0, "jam", &e);
+    model_add(m, "node.body", &e);
+    ok(!make_around(&a, file, m, true, &e) && strstr(e.text, "body.txt:2: ") && strstr(e.text, "jam"), "%s", e.text);
+    around_free(&a);
+    model_set_text(model_find(m, "body.name"), 0, "jaw", &e);
+    for (int face = 0; face < 2; face++) {
+        geometry *g = make_around(&a, file, m, face, &e);
+        if (ok(g != NULL, "a scene with a tooth %s", e.text))
+            try_tooth(g, m);
+        geometry_free(g);
+        around_free(&a);
+    }
+    unlink(tooth);
+    unlink(file);
+    ok(!rmdir(folder), "nothing else was made");
+}
+
 int main(void)
 {
     const tets block = {{5, 4, 3}, {.1, .06, .04}, 1e4, .3, 1000, 2, false};
@@ -142,6 +223,7 @@ int main(void)
     try_colours(&m);
     mail_done(scene);
     geometry_free(g);
+    try_rigid(&m);
     model_free(&m);
     return done_testing();
 }
