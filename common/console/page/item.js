@@ -48,10 +48,14 @@ export class Item {
         this.opacity = opacity;
         this.uniforms.opacity.value = opacity;
         this.material.transparent = opacity < 1;
-        const size = Math.hypot(...boxHalf(this.box));
-        this.first.renderOrder = 100 * size;
-        this.solid.renderOrder = opacity < 1 ? 100 * size + 1e-6 : 0;
+        this.first.renderOrder = 100 * this.size();
+        this.solid.renderOrder = opacity < 1 ? 100 * this.size() + 1e-6 : 0;
         this.setVisible(this.visible);
+    }
+
+    // Half its diagonal, m.
+    size() {
+        return Math.hypot(...boxHalf(this.box));
     }
 
     // kind: of the probe's shape, 0 where nothing touches it; size: as shapeUniforms() has it.

@@ -115,10 +115,35 @@ export function probeGroup(shape, given) {
     return group;
 }
 
-// What the skin's shader needs to know where a probe touches: see distance_to_probe in view.js.
+// What the skin's shader needs to know where a probe touches: see distance_to_probe in shaders.js.
 export function shapeUniforms(shape) {
     if (!shape) return {kind: 0, size: [0, 0, 0, 0]};
     if (shape.kind === "sphere") return {kind: 1, size: [shape.radius, 0, 0, 0]};
     if (shape.kind === "linear") return {kind: 2, size: [shape.width, shape.thickness, shape.edge, 0]};
     return {kind: 3, size: [shape.radius, shape.thickness, shape.edge, shape.angle / 2]};
+}
+
+function sector(x, y, radius, angle) {
+    const aside = Math.abs(x);
+    const [sideX, sideY] = [Math.sin(angle), Math.cos(angle)];
+    const along = Math.min(Math.max(aside * sideX + y * sideY, 0), radius);
+    const beside = Math.hypot(aside - along * sideX, y - along * sideY);
+    return Math.max(Math.hypot(aside, y) - radius, beside * Math.sign(sideY * aside - sideX * y));
+}
+
+// distance_to_probe of shaders.js, m: of a place in the probe's frame; kind and size as shapeUniforms() has them.
+export function distanceToProbe(kind, size, x, y, z) {
+    if (kind === 1) return Math.hypot(x, y, z + size[0]) - size[0];
+    if (kind === 2) {
+        const [wide, flat, edge] = size;
+        const tall = Math.max(wide, flat);
+        const q = [[x, wide], [y, flat], [z + 0.5 * tall, tall]].map(([at, long]) => Math.abs(at) - 0.5 * long + edge);
+        return Math.hypot(...q.map((far) => Math.max(far, 0))) + Math.min(Math.max(...q), 0) - edge;
+    }
+    if (kind === 3) {
+        const [radius, flat, edge, angle] = size;
+        const q = [sector(x, z + radius, radius, angle) + edge, Math.abs(y) - 0.5 * flat + edge];
+        return Math.min(Math.max(...q), 0) + Math.hypot(...q.map((far) => Math.max(far, 0))) - edge;
+    }
+    return 1;
 }

@@ -7,6 +7,7 @@ import {OrbitControls} from "/three/examples/jsm/controls/OrbitControls.js";
 import {scaleBytes} from "./colours.js";
 import {Item} from "./item.js";
 import {boxHalf, boxMiddle} from "./protocol.js";
+import {Raster} from "./raster.js";
 import {imageFragment, imageVertex} from "./shaders.js";
 import {parseShape, probeGroup, shapeUniforms} from "./shapes.js";
 
@@ -21,25 +22,25 @@ const COARSE = 40;
 const STILL = 700;
 const LEAST_FINE = 0.6;
 
-// Whether there is no graphics card: smooth edges would cost four times as much then.
+// Whether there is no graphics card: then raster.js draws. `?draw=webgl` and `?draw=processor` in the page's address
+// choose, to compare them. Throws where the browser has no WebGL 2.
 function drawsByProcessor() {
+    const asked = new URLSearchParams(location.search).get("draw");
     const context = document.createElement("canvas").getContext("webgl2");
-    const names = context && context.getExtension("WEBGL_debug_renderer_info");
+    if (!context) throw new Error("this browser has no WebGL 2, which the view of the patient needs");
+    const names = context.getExtension("WEBGL_debug_renderer_info");
     const name = names ? context.getParameter(names.UNMASKED_RENDERER_WEBGL) : "";
-    const lose = context && context.getExtension("WEBGL_lose_context");
+    const lose = context.getExtension("WEBGL_lose_context");
     if (lose) lose.loseContext();
-    return /swiftshader|llvmpipe|software/i.test(name);
+    return asked ? asked === "processor" : /swiftshader|llvmpipe|software/i.test(name);
 }
 
 export class View {
     // Throws where the browser has no WebGL 2.
     constructor(canvas) {
         this.canvas = canvas;
-        const context =
-            canvas.getContext("webgl2", {antialias: !drawsByProcessor(), powerPreference: "high-performance"});
-        if (!context) throw new Error("this browser has no WebGL 2, which the view of the patient needs");
-        this.renderer = new THREE.WebGLRenderer({canvas, context});
-        this.renderer.setClearColor(CLEAR);
+        if (drawsByProcessor()) this.raster = new Raster(canvas);
+        else this.openRenderer();
         this.scene = new THREE.Scene();
         this.camera = new THREE.PerspectiveCamera(35, 1, 0.001, 10);
         this.items = new Map();  // by the server's number
@@ -61,6 +62,13 @@ export class View {
         this.told = {};
         new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
         this.resize();
+    }
+
+    openRenderer() {
+        const context = this.canvas.getContext("webgl2", {antialias: true, powerPreference: "high-performance"});
+        if (!context) throw new Error("this browser has no WebGL 2, which the view of the patient needs");
+        this.renderer = new THREE.WebGLRenderer({canvas: this.canvas, context});
+        this.renderer.setClearColor(CLEAR);
     }
 
     // After all other listeners of the canvas, which may keep an event from it.
@@ -107,12 +115,21 @@ export class View {
         if (!width || !height) return;
         if (size.join() !== this.drawnSize) {
             this.drawnSize = size.join();
-            this.renderer.setPixelRatio(size[2]);
-            this.renderer.setSize(width, height, false);
+            this.setSize(...size);
         }
-        this.renderer.render(this.scene, this.camera);
+        if (this.raster) this.raster.render(this);
+        else this.renderer.render(this.scene, this.camera);
         this.frames++;
         for (const tell of this.drawn) tell();
+    }
+
+    setSize(width, height, ratio) {
+        if (this.raster) {
+            this.raster.setSize(Math.round(width * ratio), Math.round(height * ratio));
+            return;
+        }
+        this.renderer.setPixelRatio(ratio);
+        this.renderer.setSize(width, height, false);
     }
 
     // Takes what a drawing cost, ms.
