@@ -77,6 +77,7 @@ typedef struct console {
     console_shared shared;
     atomic_llong frames;             /* that were shown */
     double drawn, imaged;            /* s, by clock_now: positions and an image; each its thread's own */
+    double making;                   /* s: what positions take, smoothed; its thread's own */
     atomic_uint_least64_t time_bits; /* of the newest frame's time */
 } console;
 
@@ -116,6 +117,7 @@ void console_send_state(console *c);
 void console_said(void *context, const char *name, const char *line);
 void console_show(void *context, const model *m, const frame *f);
 bool console_wants_image(void *context);
+bool console_wants_raw(void *context);
 void console_show_image(void *context, mail *m);
 double console_time(void *context);
 void console_failed(void *context, const char *name, const err *e);

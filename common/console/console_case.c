@@ -179,7 +179,8 @@ static int start_slice(console *c, bool replay, int *to, err *e)
     }
     *to = fd[1];
     c->has_slice = true;
-    const images_plan plan = {c->slice.out,       "us-slice",    c, console_time, console_wants_image,
+    const images_plan plan = {c->slice.out,       "us-slice",          c,
+                              console_time,       console_wants_image, console_wants_raw,
                               console_show_image, console_failed};
     c->slice.out = -1;
     c->images = images_open(&plan, e);

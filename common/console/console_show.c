@@ -218,15 +218,21 @@ static bool is_wanted(console *c, double *since)
 
 static void show_positions(console *c, const frame *f, const double *u)
 {
+    static const double dear = .001, longest = .1; /* s: what may be made in vain, and a wait for a page that is busy */
     err e = {0};
     char name[SURFACE_NAME_MOST + 30];
+    if (c->making > dear)
+        web_wait(c->web, MAIL_POSITIONS, longest);
+    const double began = clock_now();
     geometry_frame is = {.index = f->index, .rigid = f, .u = u};
     snprintf(name, sizeof name, "%s/vertex.displacement", c->around.skin);
     const model_array *skin = *c->around.skin ? frame_find(f, name) : NULL;
     if (skin && skin->type == MODEL_F64 && skin->rows == geometry_skin(c->scene))
         is.skin = skin->f64;
     colouring_fill((colouring)atomic_load(&c->colour), &c->body.body, f, c->value, &is);
-    web_send(c->web, -1, MAIL_POSITIONS, geometry_positions(c->scene, &is, &e));
+    mail *made = geometry_positions(c->scene, &is, &e);
+    c->making += .2 * (clock_now() - began - c->making);
+    web_send(c->web, -1, MAIL_POSITIONS, made);
 }
 
 void console_show(void *context, const model *m, const frame *f)
@@ -245,6 +251,12 @@ bool console_wants_image(void *context)
 {
     console *c = context;
     return is_wanted(c, &c->imaged);
+}
+
+bool console_wants_raw(void *context)
+{
+    console *c = context;
+    return web_all_raw(c->web);
 }
 
 void console_show_image(void *context, mail *m)

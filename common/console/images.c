@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { KIND_IMAGE = 1, HEADER = 96 }; /* bytes before the JPEG */
+enum { KIND_IMAGE = 1, KIND_PIXELS = 4, HEADER = 96 }; /* bytes before the JPEG, or the pixels */
 
 struct images {
     images_plan plan;
@@ -23,22 +23,31 @@ struct images {
     pnm newest;
 };
 
-/* u32 kind, index, columns, rows; f64 time, plane x 9; JPEG. */
-static mail *make_mail(images *i, err *e)
+/* u32 kind, index, columns, rows; f64 time, plane x 9; then bytes. */
+static mail *make_mail(images *i, int kind, const unsigned char *bytes, size_t size, err *e)
 {
     const pnm *p = &i->next;
-    const uint32_t head[4] = {KIND_IMAGE, i->count, (uint32_t)p->columns, (uint32_t)p->rows};
+    const uint32_t head[4] = {(uint32_t)kind, i->count, (uint32_t)p->columns, (uint32_t)p->rows};
     const double time = i->plan.time(i->plan.context);
-    if (jpeg_make(&i->compressor, p->pixel, p->columns, p->rows, p->channels, e))
-        return NULL;
-    mail *m = mail_make(false, HEADER + i->compressor.size, e);
+    mail *m = mail_make(false, HEADER + size, e);
     if (!m)
         return NULL;
     memcpy(m->bytes, head, sizeof head);
     memcpy(m->bytes + 16, &time, sizeof time);
     memcpy(m->bytes + 24, p->plane, sizeof p->plane);
-    memcpy(m->bytes + HEADER, i->compressor.bytes, i->compressor.size);
+    memcpy(m->bytes + HEADER, bytes, size);
     return m;
+}
+
+/* The JPEG, or grey or RGB as they came. */
+static mail *mail_of_image(images *i, err *e)
+{
+    const pnm *p = &i->next;
+    if (i->plan.raw(i->plan.context))
+        return make_mail(i, KIND_PIXELS, p->pixel, (size_t)p->columns * (size_t)p->rows * (size_t)p->channels, e);
+    if (jpeg_make(&i->compressor, p->pixel, p->columns, p->rows, p->channels, e))
+        return NULL;
+    return make_mail(i, KIND_IMAGE, i->compressor.bytes, i->compressor.size, e);
 }
 
 static void keep(images *i)
@@ -55,7 +64,7 @@ static int show_all(images *i, in *s, err *e)
     int got;
     while ((got = pnm_next(s, &i->next, e)) > 0) {
         const bool wanted = i->plan.wants(i->plan.context);
-        mail *m = wanted ? make_mail(i, e) : NULL;
+        mail *m = wanted ? mail_of_image(i, e) : NULL;
         if (wanted && !m)
             return -1;
         i->count++;

@@ -1,5 +1,5 @@
-/* The images that us-slice streams: each becomes a message with its place in space and a JPEG; the newest is kept as
- * it came, to be saved. A thread reads them. The caller owns it.
+/* The images that us-slice streams: each becomes a message with its place in space and its pixels, as a JPEG or as they
+ * came; the newest is kept as it came, to be saved. A thread reads them. The caller owns it.
  */
 #ifndef SINEW_IMAGES_H
 #define SINEW_IMAGES_H
@@ -14,6 +14,7 @@ typedef struct images_plan {
     void *context;
     double (*time)(void *context);        /* s: of the newest frame */
     bool (*wants)(void *context);         /* whether the next image is to be shown */
+    bool (*raw)(void *context);           /* and its pixels as they came */
     void (*show)(void *context, mail *m); /* which is show's from then on */
     void (*failed)(void *context, const char *tool, const err *e);
 } images_plan;

@@ -95,6 +95,23 @@ void mailbox_drop(mailbox *b, mail_slot slot)
     pthread_mutex_unlock(&b->lock);
 }
 
+void mailbox_got(mailbox *b, mail_slot slot)
+{
+    pthread_mutex_lock(&b->lock);
+    b->paced[slot] = true;
+    b->held[slot] = false;
+    pthread_cond_signal(&b->some);
+    pthread_mutex_unlock(&b->lock);
+}
+
+bool mailbox_is_free(mailbox *b, mail_slot slot)
+{
+    pthread_mutex_lock(&b->lock);
+    const bool is = !b->held[slot] && !b->newest[slot];
+    pthread_mutex_unlock(&b->lock);
+    return is;
+}
+
 static mail *next_text(mailbox *b)
 {
     mail *m = b->texts[b->first];
@@ -105,8 +122,11 @@ static mail *next_text(mailbox *b)
 
 static mail *empty(mailbox *b, int slot)
 {
-    mail *m = b->newest[slot];
-    b->newest[slot] = NULL;
+    mail *m = b->held[slot] ? NULL : b->newest[slot];
+    if (m) {
+        b->newest[slot] = NULL;
+        b->held[slot] = b->paced[slot];
+    }
     return m;
 }
 

@@ -1,6 +1,8 @@
 /* What waits to be sent to one client: texts in their order, and of each other kind the newest alone, so that a client
- * that reads slowly, or not at all, costs little memory and stalls nobody. A mail is shared by all boxes that it lies
- * in, and freed with the last. Any thread may put; one takes.
+ * that reads slowly, or not at all, costs little memory and stalls nobody. A client may say what it is done with: from
+ * then on the next of that slot is sent only when it is done with the one before, so that what it gets is the newest
+ * when it can use it. A mail is shared by all boxes that it lies in, and freed with the last. Any thread may put; one
+ * takes.
  */
 #ifndef SINEW_MAILBOX_H
 #define SINEW_MAILBOX_H
@@ -44,6 +46,8 @@ typedef struct mailbox {
     int first, count;
     mail *newest[MAIL_SLOTS]; /* of MAIL_SAID: none */
     int turn;                 /* which of the others is asked first */
+    bool paced[MAIL_SLOTS];   /* the client says when it is done with one */
+    bool held[MAIL_SLOTS];    /* and has not yet said so of the one that was taken last */
     bool closed;
 } mailbox;
 
@@ -58,6 +62,12 @@ void mailbox_put(mailbox *b, mail_slot slot, mail *m);
 
 /* What waits in a slot is not to be sent any more. */
 void mailbox_drop(mailbox *b, mail_slot slot);
+
+/* The client is done with the last mail of a slot. */
+void mailbox_got(mailbox *b, mail_slot slot);
+
+/* Whether what is put into the slot now would be taken next, before anything newer. */
+bool mailbox_is_free(mailbox *b, mail_slot slot);
 
 /* Waits for a mail, which is then the caller's to mail_done(). NULL: the box was ended. */
 mail *mailbox_take(mailbox *b);

@@ -18,6 +18,7 @@
 /* A place for a client. It is taken from the upgrade on until its connection has ended. */
 typedef struct client {
     bool taken, ready;
+    bool raw;         /* it said "pixels raw" */
     atomic_bool lost; /* sending failed: what it says next ends it */
     struct mg_connection *connection;
     pthread_t sender;
@@ -31,6 +32,7 @@ struct web {
     pthread_mutex_t lock; /* of the places, but for the boxes' insides, and of what follows */
     client clients[WEB_CLIENTS];
     mail *last[MAIL_SLOTS]; /* that was sent to all */
+    pthread_cond_t got;     /* a client came, went or got something: for web_wait */
 };
 
 static const char headers[] = "X-Content-Type-Options: nosniff\r\n"
@@ -201,6 +203,27 @@ static void on_ready(struct mg_connection *c, void *context)
     pthread_mutex_unlock(&w->lock);
 }
 
+/* What a client says of how it is sent to. True where it was that. */
+static bool take_pace(web *w, client *one, const char *text, size_t size)
+{
+    static const struct {
+        const char *text;
+        mail_slot slot; /* it is done with the last of this; MAIL_SAID: it takes raw pixels */
+    } known[] = {{"got image", MAIL_IMAGE}, {"got positions", MAIL_POSITIONS}, {"pixels raw", MAIL_SAID}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        if (size != strlen(known[i].text) || memcmp(text, known[i].text, size) != 0)
+            continue;
+        if (known[i].slot != MAIL_SAID)
+            mailbox_got(&one->box, known[i].slot);
+        pthread_mutex_lock(&w->lock);
+        one->raw |= known[i].slot == MAIL_SAID;
+        pthread_cond_broadcast(&w->got);
+        pthread_mutex_unlock(&w->lock);
+        return true;
+    }
+    return false;
+}
+
 /* Messages are whole texts: one in parts, or of bytes, ends the connection, as a client does that closes it. */
 static int on_data(struct mg_connection *c, int bits, char *data, size_t size, void *context)
 {
@@ -212,7 +235,8 @@ static int on_data(struct mg_connection *c, int bits, char *data, size_t size, v
         return !atomic_load(&one->lost);
     if (atomic_load(&one->lost) || opcode != MG_WEBSOCKET_OPCODE_TEXT || !(bits & WHOLE))
         return 0;
-    w->plan.said(w->plan.context, (int)(one - w->clients), data, size);
+    if (!take_pace(w, one, data, size))
+        w->plan.said(w->plan.context, (int)(one - w->clients), data, size);
     return 1;
 }
 
@@ -225,6 +249,7 @@ static void on_close(const struct mg_connection *c, void *context)
     pthread_mutex_lock(&w->lock);
     const bool ready = one->ready;
     one->ready = false;
+    pthread_cond_broadcast(&w->got);
     pthread_mutex_unlock(&w->lock);
     mailbox_end(&one->box);
     if (ready)
@@ -250,6 +275,28 @@ void web_send(web *w, int to, mail_slot slot, mail *m)
     mail_done(m);
 }
 
+/* Under the lock. */
+static bool is_awaited(web *w, mail_slot slot)
+{
+    int clients = 0;
+    for (int i = 0; i < WEB_CLIENTS; i++) {
+        clients += w->clients[i].ready;
+        if (w->clients[i].ready && mailbox_is_free(&w->clients[i].box, slot))
+            return true;
+    }
+    return !clients;
+}
+
+void web_wait(web *w, mail_slot slot, double seconds)
+{
+    const struct timespec until = clock_timespec(clock_now() + seconds);
+    int code = 0;
+    pthread_mutex_lock(&w->lock);
+    while (!is_awaited(w, slot) && !code)
+        code = pthread_cond_timedwait(&w->got, &w->lock, &until);
+    pthread_mutex_unlock(&w->lock);
+}
+
 void web_drop(web *w, mail_slot slot)
 {
     pthread_mutex_lock(&w->lock);
@@ -269,6 +316,19 @@ int web_clients(web *w)
         count += w->clients[i].ready;
     pthread_mutex_unlock(&w->lock);
     return count;
+}
+
+bool web_all_raw(web *w)
+{
+    int count = 0;
+    bool all = true;
+    pthread_mutex_lock(&w->lock);
+    for (int i = 0; i < WEB_CLIENTS; i++) {
+        count += w->clients[i].ready;
+        all &= !w->clients[i].ready || w->clients[i].raw;
+    }
+    pthread_mutex_unlock(&w->lock);
+    return count && all;
 }
 
 /* ---- beginning and ending */
@@ -389,7 +449,12 @@ web *web_open(const web_plan *plan, err *e)
     if (!w)
         return NULL;
     w->plan = *plan;
+    pthread_condattr_t clock;
     pthread_mutex_init(&w->lock, NULL);
+    pthread_condattr_init(&clock);
+    pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
+    pthread_cond_init(&w->got, &clock);
+    pthread_condattr_destroy(&clock);
     struct mg_server_port port = {0};
     if (!start(w, e)) {
         if (mg_get_server_ports(w->server, 1, &port) == 1)
@@ -422,6 +487,7 @@ void web_close(web *w)
     mg_exit_library();
     for (int i = 0; i < MAIL_SLOTS; i++)
         mail_done(w->last[i]);
+    pthread_cond_destroy(&w->got);
     pthread_mutex_destroy(&w->lock);
     free(w);
 }

@@ -1,6 +1,8 @@
 /* The console's server: the page's files by HTTP, and WebSockets at /live, each with a mailbox and a thread that sends
- * from it, so that a client that does not read stalls nobody. What is not asked for by our own page, at our own
- * address, is refused: see address.h. web.c is the only user of civetweb. The caller owns a web.
+ * from it, so that a client that does not read stalls nobody. A client that says "got image" or "got positions" gets
+ * the next of these only when it has said so again: see mailbox.h; one that says "pixels raw" can take images that are
+ * not compressed. What is not asked for by our own page, at our own address, is refused: see address.h. web.c is the
+ * only user of civetweb. The caller owns a web.
  */
 #ifndef SINEW_WEB_H
 #define SINEW_WEB_H
@@ -39,10 +41,17 @@ int web_port(const web *w);
  * texts. */
 void web_send(web *w, int to, mail_slot slot, mail *m);
 
+/* Waits until a client would get what is put into this slot now, at most so many seconds; not at all where there are no
+ * clients. */
+void web_wait(web *w, mail_slot slot, double seconds);
+
 /* Takes what waits in this slot out of every client's box, and sends it to no client that connects later. */
 void web_drop(web *w, mail_slot slot);
 
 /* How many clients there are. */
 int web_clients(web *w);
+
+/* Whether there are clients, and all of them said "pixels raw". */
+bool web_all_raw(web *w);
 
 #endif

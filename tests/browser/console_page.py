@@ -174,7 +174,7 @@ def scanner(t, server, page):
     t.near("whose width is the array's", across, .04, 1e-9)
     t.near("and whose height is the depth", down, .05, 1e-9)
     t.check("its pixels are grey, not black", page.get("""((c) => {
-        c.drawImage(sinew.imageView.bitmap, 0, 0);
+        c.drawImage(sinew.imageView.pixels, 0, 0);
         return [...c.getImageData(0, 0, 160, 200).data].filter((x, i) => i % 4 < 3 && x > 40).length;
     })(Object.assign(document.createElement('canvas'), {width: 160, height: 200}).getContext('2d'))""") > 5000)
     t.near("it stands in space where its message says", page.get("sinew.view.image.material.uniforms.along.value.length()"), .04, 1e-9)
@@ -503,6 +503,53 @@ def without_webgl(t, server):
         page.driver.quit()
 
 
+def drawn(page):
+    """Half as large a picture of the view, as bytes of its colours."""
+    return page.get("""(() => {
+        const to = document.createElement('canvas').getContext('2d');
+        [to.canvas.width, to.canvas.height] = [264, 370];
+        sinew.view.draw(1);
+        to.drawImage(sinew.view.canvas, 0, 0, 264, 370);
+        return [...to.getImageData(0, 0, 264, 370).data].filter((_, i) => i % 4 < 3);
+    })()""")
+
+
+def processor(t, server, page):
+    """Both ways of drawing show the same: raster.js, and three.js with WebGL."""
+    for kind in "arm", "face":
+        server.open(kind)
+        pictures = []
+        for way in "processor", "webgl":
+            page.driver.get(f"http://127.0.0.1:{server.port}/?draw={way}")
+            page.until("sinew.view.items.size > 1 && sinew.frame")
+            if kind == "arm":
+                page.until("sinew.image !== null && sinew.probe.known")
+                page.driver.execute_script("sinew.probe.change('depth', 5)")
+                page.until("sinew.probe.arrived")
+            else:
+                server.model.levels.update(zyg_left=.8, zyg_right=.8)
+                page.driver.execute_script("sinew.face.colourBy('displacement'); document.getElementById('look-front').click()")
+                page.until("[...sinew.view.items.values()].some((item) => item.largestMoved() > 1e-3)")
+            server.paused = True
+            page.until("!sinew.view.asked")
+            time.sleep(.3)
+            t.is_(f"{kind}: {way} draws", page.get("Boolean(sinew.view.raster)"), way == "processor")
+            pictures.append(drawn(page))
+            server.paused = False
+        apart = sorted(abs(a - b) for a, b in zip(*pictures))
+        t.check(f"{kind}: both draw something", len(set(pictures[0])) > 50 and len(set(pictures[1])) > 50)
+        t.check(f"{kind}: and the same", sum(apart) / len(apart) < 2.5 and apart[len(apart) * 97 // 100] < 16,
+                sum(apart) / len(apart), [apart[len(apart) * part // 100] for part in (50, 90, 95, 97, 99)])
+
+
+def compressed(t, server, page):
+    server.open("arm")
+    page.driver.get(f"http://127.0.0.1:{server.port}/?pixels=jpeg")
+    t.check("images that are compressed are shown too", page.until("sinew.image !== null && sinew.imageView.version > 0 && sinew.imageView.raw === null"))
+    page.open()
+    t.check("by default they are not", page.until("sinew.image !== null && sinew.imageView.version > 0 && sinew.imageView.raw !== null"))
+
+
 def shots(server, page, folder):
     """Pictures of all views, at three sizes."""
     os.makedirs(folder, exist_ok=True)
@@ -556,7 +603,7 @@ def main():
         if os.environ.get("SHOTS"):
             shots(server, page, os.environ["SHOTS"])
         else:
-            for part in (cases, scanner, probe, probe_by_keys, forces, method, shown, session, reload, two, busy, trouble, face, pulls, colours, looks):
+            for part in (cases, scanner, probe, probe_by_keys, forces, method, shown, session, reload, two, busy, trouble, face, pulls, colours, processor, compressed, looks):
                 began = time.time()
                 part(t, server, page)
                 print(f"# {part.__name__}: {time.time() - began:.1f} s", flush=True)

@@ -271,6 +271,7 @@ class Head:
 class Client:
     def __init__(self, connection):
         self.connection, self.lock = connection, threading.Lock()
+        self.raw = False  # it takes images that are not compressed
 
     def send(self, payload):
         kind = 1 if isinstance(payload, str) else 2
@@ -372,7 +373,10 @@ class Server:
                 self.send_frame([client])
         try:
             for line in iter(lambda: client.receive(reader), None):
-                self.take(line)
+                if line == "pixels raw":
+                    client.raw = True
+                elif not line.startswith("got "):
+                    self.take(line)
         except (OSError, IndexError, struct.error):
             pass
         with self.lock:
@@ -404,14 +408,16 @@ class Server:
         frame = {"type": "frame", "index": self.index, "time": self.index / 60, "lag": 3.2, "ratio": 1.0, **self.model.frame()}
         moving = [mesh for mesh in self.model.meshes if mesh.moves]
         positions = struct.pack("<III", 3, self.index, len(moving)) + b"".join(mesh.positions(self.values) for mesh in moving)
-        payloads = [json.dumps(frame), positions]
-        if self.model.kind == "ultrasound":
-            size = (self.model.COLUMNS, self.model.ROWS)
-            head_ = struct.pack("<IIIId9d", 1, self.index, *size, self.index / 60, *self.model.plane())
-            payloads.append(head_ + self.jpeg.pack(self.model.pixels(), *size))
         for client in to:
-            for payload in payloads:
-                client.send(payload)
+            client.send(json.dumps(frame))
+            client.send(positions)
+            if self.model.kind == "ultrasound":
+                client.send(self.image(client.raw))
+
+    def image(self, raw):
+        size, pixels = (self.model.COLUMNS, self.model.ROWS), self.model.pixels()
+        head_ = struct.pack("<IIIId9d", 4 if raw else 1, self.index, *size, self.index / 60, *self.model.plane())
+        return head_ + (pixels if raw else self.jpeg.pack(pixels, *size))
 
     def tick(self):
         while self.running:

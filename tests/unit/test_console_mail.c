@@ -75,6 +75,26 @@ static bool took(mailbox *b, const char *want)
     return same;
 }
 
+static void try_pace(void)
+{
+    mailbox b;
+    err e = {0};
+    mailbox_open(&b, &e);
+    put(&b, MAIL_IMAGE, "1");
+    ok(!mailbox_is_free(&b, MAIL_IMAGE) && took(&b, "1") && mailbox_is_free(&b, MAIL_IMAGE),
+       "who says nothing gets all");
+    mailbox_got(&b, MAIL_IMAGE);
+    put(&b, MAIL_IMAGE, "2");
+    ok(took(&b, "2") && !mailbox_is_free(&b, MAIL_IMAGE), "who says what it is done with is busy with one");
+    put(&b, MAIL_IMAGE, "3");
+    put(&b, MAIL_POSITIONS, "p");
+    put(&b, MAIL_IMAGE, "4");
+    ok(took(&b, "p"), "meanwhile gets others");
+    mailbox_got(&b, MAIL_IMAGE);
+    ok(took(&b, "4"), "and then the newest");
+    mailbox_close(&b);
+}
+
 static void try_box(void)
 {
     mailbox b;
@@ -125,5 +145,6 @@ int main(void)
     try_hosts();
     try_token();
     try_box();
+    try_pace();
     return done_testing();
 }

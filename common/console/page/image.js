@@ -1,6 +1,7 @@
 // The ultrasound image: to scale, with rulers, and the knobs of a scanner. Settings are us-slice's, and each change is
 // a line for it.
 
+import {isEqual} from "./protocol.js";
 import {metres} from "./shapes.js";
 import {byId, Drawing, element, exactly, figures, paced, Slider} from "./widgets.js";
 
@@ -56,11 +57,11 @@ export function niceStep(least) {
 const placeOf = (image) => [image.columns, image.rows, ...image.origin, ...image.column, ...image.row].join();
 
 export class Image extends Drawing {
-    // set(key, value): a line to us-slice; shown(image, bitmap): its pixels are there; null: as before.
+    // set(key, value): a line to us-slice; shown(image, pixels): a canvas has its pixels; null: they are as before.
     constructor(set, shown) {
         super(byId("image"), byId("image-room"));
-        this.bitmap = null;
-        this.version = 0;  // how many there were
+        this.pixels = element("canvas");  // as the image has them
+        this.version = 0;                 // how many there were
         this.sets = {};
         this.setAny = (key, value) => (this.sets[key] = this.sets[key] || paced(40, (v) => set(key, v)))(value);
         this.shown = shown;
@@ -166,19 +167,43 @@ export class Image extends Drawing {
 
     // ---- pixels
 
-    // bitmap: null where the pixels are those of the image before.
-    take(image, bitmap) {
-        const isSame = !bitmap && this.now && placeOf(this.now) === placeOf(image);
-        const before = this.bitmap;
-        if (bitmap) {
-            this.bitmap = bitmap;
-            this.version++;
-        }
-        if (!this.bitmap) return;
+    // given: an ImageBitmap, or bytes, grey or RGB; null where the pixels are those of the image before.
+    take(image, pixels) {
+        const given = pixels && this.raw && isEqual(pixels, this.raw) ? null : pixels;
+        const isSame = !given && this.now && placeOf(this.now) === placeOf(image);
+        if (given) this.put(image, given);
+        if (!this.version) return;
         this.now = image;
-        this.shown(image, isSame ? null : this.bitmap);
-        if (bitmap && before) before.close();
         if (!isSame) this.draw();
+        this.shown(image, isSame ? null : this.pixels);
+    }
+
+    put({columns, rows}, given) {
+        this.version++;
+        if (this.pixels.width !== columns || this.pixels.height !== rows)
+            Object.assign(this.pixels, {width: columns, height: rows});
+        // In memory, where it is read again, by the view too.
+        const to = this.pixels.getContext("2d", {alpha: false, willReadFrequently: true});
+        this.raw = given instanceof Uint8Array ? given : null;
+        if (this.raw) {
+            to.putImageData(this.opaque(given, columns, rows), 0, 0);
+            return;
+        }
+        to.drawImage(given, 0, 0);
+        given.close();
+    }
+
+    // As RGBA, in memory that the next image has too.
+    opaque(bytes, columns, rows) {
+        if (!this.data || this.data.width !== columns || this.data.height !== rows)
+            this.data = new ImageData(columns, rows);
+        const words = new Uint32Array(this.data.data.buffer);
+        if (bytes.length === words.length)
+            for (let i = 0; i < words.length; i++) words[i] = 0xff000000 | (0x10101 * bytes[i]);
+        else
+            for (let i = 0, j = 0; i < words.length; i++, j += 3)
+                words[i] = 0xff000000 | (bytes[j + 2] << 16) | (bytes[j + 1] << 8) | bytes[j];
+        return this.data;
     }
 
     clear() {
@@ -197,7 +222,7 @@ export class Image extends Drawing {
         this.layout = this.now ? this.layoutIn(width, height) : null;
         if (!this.layout) return;
         const {left, top, wide, high} = this.layout;
-        to.drawImage(this.bitmap, left, top, wide, high);
+        to.drawImage(this.pixels, left, top, wide, high);
         // Beside the depths that they are of, unless the image is too low for that.
         this.gains.style.top = `${top}px`;
         this.gains.style.height = `${Math.max(high, 20 * this.layout.em)}px`;

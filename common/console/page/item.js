@@ -3,7 +3,7 @@
 
 import * as THREE from "/three/build/three.module.js";
 
-import {boxHalf, boxMiddle, boxOf, placeOf, quantised, SCALE} from "./protocol.js";
+import {boxHalf, boxMiddle, boxOf, isEqual, placeOf, quantised, SCALE} from "./protocol.js";
 import {surfaceFragment, surfaceVertex} from "./shaders.js";
 
 const PRESSED = {
@@ -129,12 +129,6 @@ export class Item {
         }
         return Math.sqrt(most);
     }
-}
-
-function isEqual(a, b) {
-    for (let i = 0; i < a.length; i++)
-        if (a[i] !== b[i]) return false;
-    return true;
 }
 
 function makeGeometry(mesh, box) {

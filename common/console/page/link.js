@@ -1,22 +1,26 @@
 // The connection, in a worker: it reads all that comes at once, however busy the page is with drawing, and keeps of
-// frames, images and positions the newest alone. The page asks for the next when it is done with one, so that what it
-// shows is never older than one drawing. Images are decoded here, one after the other.
+// frames, images and positions the newest alone. The page asks for the next when it is done with one, and the server
+// sends the next image and positions only then, so that nobody works for what is never shown. Images are decoded here;
+// a browser of this machine gets them as they are, because decoding one takes far longer than sending it.
 //
-// From the page: {address} to begin, {send} a line, {done} with what it was given.
-// To the page: {open: true or false}, {problem} in words, {data} a message; of an image {header, bitmap}: the message's
-// first bytes and its pixels, null where they are those of the image before.
+// From the page: {address, raw} to begin, {send} a line, {done} with what it was given, {drawn} the positions that
+// came. To the page: {open: true or false}, {problem} in words, {data} a message; of a JPEG {header, pixels}: the
+// message's first bytes and an ImageBitmap, null where the pixels are those of the image before.
 
-const AGAIN = [500, 1000, 2000, 5000];                      // ms, between attempts to connect
-const KINDS = ["frame", "image", "geometry", "positions"];  // binary ones by their numbers
+const AGAIN = [500, 1000, 2000, 5000];                               // ms, between attempts to connect
+const KINDS = ["frame", "image", "geometry", "positions", "image"];  // binary ones by their numbers
+const PIXELS = 4;
 
 let address = null;
+let raw = false;  // whether images come as they are
 let socket = null;
 let tries = 0;
 let asked = true;   // whether the page waits for a message
+let drawn = true;   // whether it has drawn the positions that it got
 const HEADER = 96;  // bytes of an image before its JPEG
 let image = null;   // waits to be decoded
 let decoding = false;
-let shown = new Uint8Array();  // the JPEG that was decoded last
+let shown = new Uint8Array();  // what was decoded last
 
 const texts = [];  // all of these count, in their order
 const newest = new Map();
@@ -26,6 +30,7 @@ function connect() {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
         tries = 0;
+        if (raw) socket.send("pixels raw");
         postMessage({open: true});
     };
     socket.onmessage = ({data}) => receive(data);
@@ -39,14 +44,16 @@ function receive(data) {
     const isText = typeof data === "string";
     const kind = isText ? kindOfText(data) : KINDS[new DataView(data).getUint32(0, true)];
     // Positions of before are of another geometry.
-    if (kind === "geometry") newest.delete("positions");
-    if (kind === "image") takeImage(data);
-    else if (kind === "frame" || kind === "positions") newest.set(kind, data);
+    if (kind === "geometry" && newest.delete("positions")) say("got positions");
+    if (kind === "image" && isJpeg(data)) takeImage(data);
+    else if (kind === "frame" || kind === "positions" || kind === "image") newest.set(kind, data);
     else texts.push(data);
     give();
 }
 
 const kindOfText = (data) => (/^\s*\{\s*"type"\s*:\s*"frame"/.test(data) ? "frame" : "text");
+
+const isJpeg = (data) => new DataView(data).getUint32(0, true) !== PIXELS;
 
 function takeImage(data) {
     image = data;
@@ -56,12 +63,12 @@ function takeImage(data) {
 async function decodeNext() {
     decoding = true;
     const header = image.slice(0, HEADER);
-    const jpeg = new Uint8Array(image, HEADER);
+    const bytes = new Uint8Array(image, HEADER);
     image = null;
     try {
-        const isNew = jpeg.length !== shown.length || jpeg.some((byte, i) => byte !== shown[i]);
-        keepImage(header, isNew ? await createImageBitmap(new Blob([jpeg], {type: "image/jpeg"})) : null);
-        shown = jpeg;
+        if (isSame(bytes, shown)) keepImage(header, null);
+        else keepImage(header, await createImageBitmap(new Blob([bytes], {type: "image/jpeg"})));
+        shown = bytes;
     } catch (error) {
         postMessage({problem: `an image that this browser cannot read: ${error.message}`});
     }
@@ -70,43 +77,61 @@ async function decodeNext() {
     if (image) decodeNext();
 }
 
+function isSame(a, b) {
+    if (a.length !== b.length) return false;
+    for (let i = 0; i < a.length; i++)
+        if (a[i] !== b[i]) return false;
+    return true;
+}
+
 // Of an image that the page has not taken, the pixels count where the next has none of its own.
-function keepImage(header, bitmap) {
+function keepImage(header, pixels) {
     const before = newest.get("image");
-    if (before && before.bitmap && bitmap) before.bitmap.close();
-    newest.set("image", {header, bitmap: bitmap || (before ? before.bitmap : null)});
+    if (before && before.pixels && before.pixels.close && pixels) before.pixels.close();
+    newest.set("image", {header, pixels: pixels || (before ? before.pixels : null)});
+}
+
+function say(line) {
+    if (socket && socket.readyState === WebSocket.OPEN) socket.send(line);
 }
 
 // The oldest of what counts, else what has waited longest.
 function give() {
     if (!asked) return;
-    const next = texts.length ? texts.shift() : takeOne();
+    const [kind, next] = texts.length ? ["text", texts.shift()] : takeOne();
     if (next === undefined) return;
     asked = false;
     postMessage({data: next}, transfers(next));
+    if (kind === "positions") drawn = false;
+    if (kind === "image" || kind === "positions") say(`got ${kind}`);
 }
 
 // What the page gets without a copy.
 function transfers(next) {
     if (typeof next === "string") return [];
     if (!next.header) return [next];
-    return next.bitmap ? [next.header, next.bitmap] : [next.header];
+    return next.pixels ? [next.header, next.pixels] : [next.header];
 }
 
 function takeOne() {
     for (const [kind, data] of newest) {
+        if (kind === "positions" && !drawn) continue;
         newest.delete(kind);
-        return data;
+        return [kind, data];
     }
-    return undefined;
+    return [];
 }
 
 onmessage = ({data}) => {
     if (data.address) {
         address = data.address;
+        raw = data.raw;
         connect();
     } else if (data.send !== undefined) {
-        if (socket && socket.readyState === WebSocket.OPEN) socket.send(data.send);
+        say(data.send);
+    } else if (data.drawn) {
+        drawn = true;
+        give();
     } else {
         asked = true;
         give();

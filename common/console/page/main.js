@@ -22,7 +22,7 @@ const sinew = {
     positions: 0,  // messages of them
     poses: [],     // {at: ms, pose}: as they were sent
     frames: [],    // {at: ms, index, pose}: as they came
-    images: [],    // {at: ms, index, face: m}: when their pixels were there
+    images: [],    // {at: ms, index, face: m}: when they were drawn
     sent: [],      // lines
     said: [],
     problem: null,
@@ -43,15 +43,22 @@ function send(line) {
     link.postMessage({send: line});
 }
 
+// On this machine images need not be compressed, unless `?pixels=jpeg` says so, as behind a tunnel.
+function takesRaw(words) {
+    return ["127.0.0.1", "localhost", "[::1]"].includes(location.hostname) && words.get("pixels") !== "jpeg";
+}
+
 function connect() {
-    const token = new URLSearchParams(location.search).get("token");
+    const words = new URLSearchParams(location.search);
+    const token = words.get("token");
     const way = location.protocol === "https:" ? "wss:" : "ws:";
     link.onmessage = ({data}) => {
         if (data.open !== undefined) connected(data.open);
         else if (data.problem) problem(data.problem);
         else takeNext(data.data);
     };
-    link.postMessage({address: `${way}//${location.host}/live${token ? `?token=${encodeURIComponent(token)}` : ""}`});
+    const address = `${way}//${location.host}/live${token ? `?token=${encodeURIComponent(token)}` : ""}`;
+    link.postMessage({address, raw: takesRaw(words)});
 }
 
 function takeNext(data) {
@@ -68,7 +75,7 @@ function connected(is) {
 function receive(data) {
     try {
         if (typeof data === "string") takeText(JSON.parse(data));
-        else if (data.header) image.take(decode(data.header), data.bitmap);
+        else if (data.header) image.take(decode(data.header), data.pixels);
         else takeBinary(decode(data));
     } catch (error) {
         problem(`a message that this page cannot read: ${error.message}`);
@@ -83,7 +90,8 @@ function takeText(message) {
 }
 
 function takeBinary(message) {
-    if (message.kind === "geometry") takeGeometry(message);
+    if (message.kind === "image") image.take(message, message.pixels);
+    else if (message.kind === "geometry") takeGeometry(message);
     else takePositions(message);
 }
 
@@ -201,9 +209,13 @@ function takeGeometry(geometry) {
 
 function takePositions(message) {
     sinew.positions++;
-    if (!view) return;
-    view.setPositions(message);
-    face.moved();
+    if (view) {
+        view.setPositions(message);
+        face.moved();
+    }
+    // The next is of use when these were drawn.
+    if (view && view.asked) view.after(() => link.postMessage({drawn: true}));
+    else link.postMessage({drawn: true});
 }
 
 function takeFrame(frame) {
@@ -226,12 +238,14 @@ function faceOf({origin, column, row, columns}) {
     return origin.map((x, i) => x + column[i] * (columns - 1) / 2 - row[i] / 2);
 }
 
-function imageShown(now, bitmap) {
+function imageShown(now, pixels) {
     sinew.image = now;
-    keep(sinew.images, {at: performance.now(), index: now.index, face: faceOf(now)});
-    if (!view || !bitmap) return;
+    const shown = {at: null, index: now.index, face: faceOf(now)};
+    keep(sinew.images, shown);
+    image.after(() => (shown.at = performance.now()));
+    if (!view || !pixels) return;
     const shape = sinew.state && sinew.state.probe;
-    view.setImage(now, bitmap, image.fan(typeof shape === "string" ? shape : (shape || {}).shape));
+    view.setImage(now, pixels, image.fan(typeof shape === "string" ? shape : (shape || {}).shape));
 }
 
 function takeSaid(message) {

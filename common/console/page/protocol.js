@@ -15,13 +15,19 @@
 // {"type": "said", level, tool, text} with each line that a tool says; {"type": "saved", name, url} when a file is
 // there. What is not known is null. Lengths are in metres, times in seconds but for lag (ms).
 
+// The page says "got image" and "got positions" when it is ready for the next, and "pixels raw" where it takes images
+// that are not compressed.
+
 const IMAGE = 1;
 const GEOMETRY = 2;
 const POSITIONS = 3;
+const PIXELS = 4;  // an image whose pixels are grey or RGB
 
 const padded = (size) => (size + 3) & ~3;
 
-// Of an image only the first 96 bytes are asked for: link.js decodes the JPEG behind them.
+const HEADER = 96;
+
+// Behind the header is a JPEG, of which link.js makes pixels.
 function decodeImage(buffer, view) {
     const plane = [];
     for (let i = 0; i < 9; i++) plane.push(view.getFloat64(24 + 8 * i, true));
@@ -35,6 +41,15 @@ function decodeImage(buffer, view) {
         column: plane.slice(3, 6),  // the step to the next column
         row: plane.slice(6, 9),
     };
+}
+
+function decodePixels(buffer, view) {
+    const image = decodeImage(buffer, view);
+    const pixels = new Uint8Array(buffer, HEADER);
+    if (pixels.length !== image.columns * image.rows && pixels.length !== 3 * image.columns * image.rows)
+        throw new Error(
+            `an image of ${pixels.length} bytes; expected ${image.columns} x ${image.rows}, or three times that`);
+    return {...image, pixels};
 }
 
 function decodeGeometry(buffer, view) {
@@ -73,6 +88,7 @@ function decodePositions(buffer, view) {
 
 const decoders = {
     [IMAGE]: decodeImage,
+    [PIXELS]: decodePixels,
     [GEOMETRY]: decodeGeometry,
     [POSITIONS]: decodePositions
 };
@@ -81,12 +97,19 @@ const decoders = {
 export function decode(buffer) {
     const view = new DataView(buffer);
     const decoder = decoders[view.getUint32(0, true)];
-    if (!decoder) throw new Error(`a message of kind ${view.getUint32(0, true)}; expected 1 to 3`);
+    if (!decoder) throw new Error(`a message of kind ${view.getUint32(0, true)}; expected 1 to 4`);
     return decoder(buffer, view);
 }
 
 // Positions as fractions of a box: -32767 is its lower corner, 32767 its upper one.
 export const SCALE = 32767;
+
+export function isEqual(a, b) {
+    if (a.length !== b.length) return false;
+    for (let i = 0; i < a.length; i++)
+        if (a[i] !== b[i]) return false;
+    return true;
+}
 
 export function boxMiddle(box) {
     return [0, 1, 2].map((i) => (box[i] + box[i + 3]) / 2);

@@ -12,7 +12,7 @@ import {distanceToProbe} from "./shapes.js";
 
 const CLEAR = 0xff1b1815;  // view.js's colour of nothing
 const KEY = [0.35, 0.6, 0.7].map((x) => x / Math.hypot(0.35, 0.6, 0.7));
-const TINT = [242, 168, 59];   // of contact
+const TINT = [242, 168, 59];    // of contact
 const NEAR = [0.0004, 0.0012];  // m: within the first it is full, beyond the second it is none
 const CORNER = 6;               // numbers of a corner: x, y on the screen, depth, and its place
 
@@ -188,15 +188,14 @@ export class Raster {
         const begin = (a, b, c) => {
             this.shine(a, b, c);
             if (values || (near && near.meets(a, b, c))) return null;
-            return word(
-                light.flat * own[0] + light.shine, light.flat * own[1] + light.shine, light.flat * own[2] + light.shine);
+            return word(light.flat * own[0] + light.shine, light.flat * own[1] + light.shine,
+                light.flat * own[2] + light.shine);
         };
         const base = [0, 0, 0];
         const each = (a, b, c, u, v, x, y, depth) => {
             this.baseOf(base, own, values, a, b, c, u, v);
             if (near) near.tint(base, x, y, depth);
-            return word(
-                light.flat * base[0] + light.shine, light.flat * base[1] + light.shine,
+            return word(light.flat * base[0] + light.shine, light.flat * base[1] + light.shine,
                 light.flat * base[2] + light.shine);
         };
         this.fill(to, triangles.length, triangles, begin, each);
@@ -212,8 +211,7 @@ export class Raster {
         const made = new Uint8ClampedArray(count);
         for (let i = 0; i < count; i++) {
             let square = 0;
-            for (let j = 0; j < 3; j++)
-                square += (middle[j] + half[j] * now[3 * i + j] - positions[3 * i + j]) ** 2;
+            for (let j = 0; j < 3; j++) square += (middle[j] + half[j] * now[3 * i + j] - positions[3 * i + j]) ** 2;
             made[i] = (255 * (Math.sqrt(square) - low)) / Math.max(high - low, 1e-9);
         }
         return made;
@@ -233,9 +231,8 @@ export class Raster {
     contactOf({probe_kind, probe_size, to_probe}) {
         const m = to_probe.value.clone().multiply(this.fromEye).elements;
         const size = probe_size.value.toArray();
-        const distance = (x, y, z) => distanceToProbe(
-            probe_kind.value, size, m[0] * x + m[4] * y + m[8] * z + m[12], m[1] * x + m[5] * y + m[9] * z + m[13],
-            m[2] * x + m[6] * y + m[10] * z + m[14]);
+        const distance = (x, y, z) => distanceToProbe(probe_kind.value, size, m[0] * x + m[4] * y + m[8] * z + m[12],
+            m[1] * x + m[5] * y + m[9] * z + m[13], m[2] * x + m[6] * y + m[10] * z + m[14]);
         const k = this.corners;
         const apart = (a, b) => Math.hypot(k[a + 3] - k[b + 3], k[a + 4] - k[b + 4], k[a + 5] - k[b + 5]);
         return {
@@ -284,11 +281,11 @@ export class Raster {
 
     image({material: {uniforms}}, to) {
         const [corner, along, down] = ["corner", "along", "down"].map((name) => uniforms[name].value);
-        const bitmap = uniforms.pixels.value.image;
+        const texture = uniforms.pixels.value;
         const places = [0, 1, 2, 3].flatMap(
             (i) => corner.clone().addScaledVector(along, i & 1).addScaledVector(down, i >> 1).toArray());
         this.project(places, 4, this.toEye.elements);
-        const {pixels, columns, rows} = this.sample(bitmap);
+        const {pixels, columns, rows} = this.sample(texture);
         const [wide, high] = uniforms.size.value.toArray();
         const [tipX, tipY, radius, angle] = uniforms.fan.value.toArray();
         const eye = corner.clone().applyMatrix4(this.toEye);
@@ -298,7 +295,8 @@ export class Raster {
             const right = x.x * (place[0] - eye.x) + x.y * (place[1] - eye.y) + x.z * (place[2] - eye.z);
             const below = y.x * (place[0] - eye.x) + y.y * (place[1] - eye.y) + y.z * (place[2] - eye.z);
             const [fromX, fromY] = [right - tipX, below - tipY];
-            if (angle > 0 && (Math.abs(Math.atan2(fromX, fromY)) > angle || Math.hypot(fromX, fromY) < radius)) return 0;
+            if (angle > 0 && (Math.abs(Math.atan2(fromX, fromY)) > angle || Math.hypot(fromX, fromY) < radius))
+                return 0;
             const column = Math.min(Math.max(Math.floor((right / wide) * columns), 0), columns - 1);
             const row = Math.min(Math.max(Math.floor((below / high) * rows), 0), rows - 1);
             return pixels[row * columns + column];
@@ -306,21 +304,23 @@ export class Raster {
         this.fill(to, 6, [0, 1, 2, 2, 1, 3], () => null, each);
     }
 
-    // The pixels of a bitmap, about as many as it covers on the screen, so that none is left out.
-    sample(bitmap) {
+    // The pixels of a texture, about as many as it covers on the screen, so that none is left out.
+    sample(texture) {
+        const {image, version} = texture;
         const k = this.corners;
         const long = (a, b) => Math.hypot(k[CORNER * a] - k[CORNER * b], k[CORNER * a + 1] - k[CORNER * b + 1]);
         const fits = (most, pixels) => Math.max(Math.min(Math.ceil(pixels), most), 1);
-        const columns = fits(bitmap.width, Math.max(long(0, 1), long(2, 3)));
-        const rows = fits(bitmap.height, Math.max(long(0, 2), long(1, 3)));
+        const columns = fits(image.width, Math.max(long(0, 1), long(2, 3)));
+        const rows = fits(image.height, Math.max(long(0, 2), long(1, 3)));
         const {canvas} = this.sampled;
-        if (this.sampled.of === bitmap && canvas.width === columns && canvas.height === rows) return this.sampled;
+        const isSame = this.sampled.of === texture && this.sampled.version === version;
+        if (isSame && canvas.width === columns && canvas.height === rows) return this.sampled;
         if (canvas.width !== columns || canvas.height !== rows) [canvas.width, canvas.height] = [columns, rows];
         const to = canvas.getContext("2d", {alpha: false, willReadFrequently: true});
         to.imageSmoothingQuality = "medium";
-        to.drawImage(bitmap, 0, 0, columns, rows);
+        to.drawImage(image, 0, 0, columns, rows);
         const pixels = new Uint32Array(to.getImageData(0, 0, columns, rows).data.buffer);
-        this.sampled = {canvas, of: bitmap, pixels, columns, rows};
+        this.sampled = {canvas, of: texture, version, pixels, columns, rows};
         return this.sampled;
     }
 }

@@ -21,6 +21,9 @@ const MOST_REST = 250;
 const COARSE = 40;
 const STILL = 700;
 const LEAST_FINE = 0.6;
+// The same of drawings by the processor, which the tools and the image need too.
+const BY_PROCESSOR = 0.3;
+const SMOOTH = 1e6;  // pixels
 
 // Whether there is no graphics card: then raster.js draws. `?draw=webgl` and `?draw=processor` in the page's address
 // choose, to compare them. Throws where the browser has no WebGL 2.
@@ -43,6 +46,7 @@ export class View {
         else this.openRenderer();
         this.scene = new THREE.Scene();
         this.camera = new THREE.PerspectiveCamera(35, 1, 0.001, 10);
+        [this.slow, this.coarse] = [SLOW, COARSE].map((ms) => (this.raster ? BY_PROCESSOR * ms : ms));
         this.items = new Map();  // by the server's number
         this.shape = null;
         this.probe = null;
@@ -59,6 +63,7 @@ export class View {
         this.up = [0, 0, 1];
         this.seen = this.box;  // what the camera takes in
         this.drawn = [];       // called after each drawing
+        this.waiting = [];     // called after the next one
         this.told = {};
         new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
         this.resize();
@@ -95,15 +100,26 @@ export class View {
         if (this.asked) return;
         this.asked = true;
         clearTimeout(this.still);
-        const wait = this.cost > SLOW ? this.rested - performance.now() : 0;
-        if (wait > 1) setTimeout(() => requestAnimationFrame(() => this.render()), wait);
-        else requestAnimationFrame(() => this.render());
+        const wait = this.cost > this.slow ? this.rested - performance.now() : 0;
+        if (wait > 1) setTimeout(() => this.begin(), wait);
+        else this.begin();
+    }
+
+    // What draws by the processor begins when the browser has shown all else, so that no image waits for it.
+    begin() {
+        requestAnimationFrame(() => (this.raster ? setTimeout(() => this.render()) : this.render()));
+    }
+
+    // Calls after the drawing that is asked for.
+    after(call) {
+        this.waiting.push(call);
     }
 
     render() {
         const began = performance.now();
         this.asked = false;
         this.draw(this.fineness);
+        for (const call of this.waiting.splice(0)) call();
         // A task of its own comes after the browser has drawn.
         setTimeout(() => this.rate(performance.now() - began));
     }
@@ -136,16 +152,24 @@ export class View {
     rate(cost) {
         this.cost = 0.7 * this.cost + 0.3 * cost;
         this.rested = performance.now() + Math.min(cost, MOST_REST);
-        if (this.cost > COARSE && this.fineness > LEAST_FINE) this.setFineness(this.fineness * 0.8);
-        else if (this.cost < COARSE / 4 && this.fineness < 1) this.setFineness(Math.min(this.fineness / 0.8, 1));
+        if (this.cost > this.coarse && this.fineness > LEAST_FINE) this.setFineness(this.fineness * 0.8);
+        else if (this.cost < this.coarse / 4 && this.fineness < 1) this.setFineness(Math.min(this.fineness / 0.8, 1));
         clearTimeout(this.still);
-        if (this.fineness < 1 && !this.asked) this.still = setTimeout(() => this.draw(1), STILL);
+        if (this.fineness < this.finest() && !this.asked)
+            this.still = setTimeout(() => this.draw(this.finest()), STILL);
+    }
+
+    // When nothing moves. The processor then draws four pixels for each of a screen that is not too large: their mean
+    // has smooth edges, as a graphics card makes them.
+    finest() {
+        const pixels = this.canvas.clientWidth * this.canvas.clientHeight * (window.devicePixelRatio || 1) ** 2;
+        return this.raster && pixels < SMOOTH ? 2 : 1;
     }
 
     // Of the next drawings; what they cost is to be learnt anew.
     setFineness(fineness) {
         this.fineness = fineness;
-        this.cost = COARSE / 2;
+        this.cost = this.coarse / 2;
     }
 
     resize() {
@@ -326,8 +350,8 @@ export class View {
         return {mesh, material, wanted: true};
     }
 
-    // image: as decoded; bitmap: its pixels, until the next; fan: {radius, angle} of a curved or phased array, or null.
-    setImage(image, bitmap, fan) {
+    // image: as decoded; canvas: its pixels; fan: {radius, angle} of a curved or phased array, or null.
+    setImage(image, canvas, fan) {
         const uniforms = this.image.material.uniforms;
         const [column, row] = [image.column, image.row].map((step) => new THREE.Vector3().fromArray(step));
         const corner =
@@ -336,22 +360,22 @@ export class View {
         uniforms.along.value.copy(column).multiplyScalar(image.columns);
         uniforms.down.value.copy(row).multiplyScalar(image.rows);
         uniforms.size.value.set(column.length() * image.columns, row.length() * image.rows);
-        this.setTexture(bitmap);
+        this.setTexture(canvas);
         this.setFan(fan, uniforms.size.value);
         this.image.mesh.visible = this.image.wanted;
         this.request();
     }
 
-    setTexture(bitmap) {
+    setTexture(canvas) {
         const {pixels} = this.image.material.uniforms;
         const old = pixels.value;
-        if (!old || old.image.width !== bitmap.width || old.image.height !== bitmap.height) {
+        if (!old || this.textureSize !== [canvas.width, canvas.height].join()) {
             if (old) old.dispose();
-            pixels.value = new THREE.Texture(bitmap);
+            pixels.value = new THREE.Texture(canvas);
             pixels.value.flipY = false;
             pixels.value.minFilter = THREE.LinearMipmapLinearFilter;
         }
-        pixels.value.image = bitmap;
+        this.textureSize = [canvas.width, canvas.height].join();
         pixels.value.needsUpdate = true;
     }
 

@@ -78,6 +78,7 @@ export class Drawing {
     constructor(canvas, room = canvas) {
         this.canvas = canvas;
         this.room = room;
+        this.waiting = [];
         new ResizeObserver(() => this.draw()).observe(room);
     }
 
@@ -87,7 +88,14 @@ export class Drawing {
         requestAnimationFrame(() => {
             this.asked = false;
             this.fit();
+            for (const call of this.waiting.splice(0)) setTimeout(call);
         });
+    }
+
+    // Calls once the browser has put on the screen what is asked for; at once where nothing is.
+    after(call) {
+        if (this.asked) this.waiting.push(call);
+        else call();
     }
 
     // A size that is set clears the canvas.
