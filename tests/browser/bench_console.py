@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""bench_console.py [PART...]: speeds of sinew console with its page in headless Chromium, as CSV. Chromium draws by the processor, on the processors that
-the tools use too. The parts, all unless some are named:
+"""bench_console.py [PART...]: speeds of sinew console with its page in headless Chromium, as CSV. The page draws by the processor, on the processors
+that the tools use too. All times are the page's own; nothing is asked of it while it is measured. The parts, all unless some are named:
 
-    lag         from a pose that the page sends until it has the pixels of its image: 60 poses a second, springs and finite elements, 32x16x16 nodes
+    lag         from a pose that the page sends until its image is on the screen: 60 poses a second, springs and finite elements, 32x16x16 nodes
     vertices    how often a skin of 26,082 vertices that moves is drawn
     pst         PST's Table II: four meshes, springs and finite elements, without and with surfaces of 243,224 triangles that move with the mesh
     wm [NAME=MODEL...]    W&M's Table 1 with display: models that move; without names our own sphere, muscle, block and head
 
-Images have 512 pixels a row, of 256^3 voxels of noise. SECONDS=10 is how long each is measured."""
+Images have 512 pixels a row, of 256^3 voxels of noise. Drawn is what shows new positions. SECONDS=10 is how long each is measured; WORDS=?draw=webgl
+is put behind the page's address."""
 import os
 import subprocess
 import sys
@@ -23,6 +24,7 @@ from console_live import LONG, Console, open_case  # noqa: E402, needs the path
 from console_page import Page  # noqa: E402
 
 SECONDS = float(os.environ.get("SECONDS", 10))
+WORDS = os.environ.get("WORDS", "")
 MESHES = ("20x10x10", "24x12x12", "28x14x14", "32x16x16")
 PRESS = """
     let i = 0;
@@ -97,7 +99,7 @@ def lags(sent, came, field):
     """ms from each pose to the first that shows it, sorted."""
     when, took = {key(each["pose"]): each["at"] for each in sent}, {}
     for each in came:
-        place = key(each[field]) if each[field] else None
+        place = key(each[field]) if each[field] and each["at"] is not None else None
         if place in when and place not in took:
             took[place] = each["at"] - when[place]
     return sorted(took.values())
@@ -107,12 +109,13 @@ class Measured:
     """What the page did in SECONDS of a script that goes on."""
 
     def __init__(self, page, script, *arguments):
-        page.driver.execute_script("sinew.poses.length = sinew.frames.length = sinew.images.length = 0; window.drawn = sinew.view.frames;"
+        page.driver.execute_script("sinew.poses.length = sinew.frames.length = sinew.images.length = 0;"
+                                   "window.drawn = sinew.view.frames; window.moved = sinew.positions;"
                                    "window.shown = sinew.imageView.version;" + script, *arguments)
         began = time.time()
         time.sleep(SECONDS)
-        drawn, images, self.ratio, frames = page.get(
-            "[sinew.view.frames - window.drawn, sinew.imageView.version - window.shown, sinew.frame.ratio, sinew.frames.length]")
+        drawn, images, self.ratio, frames = page.get("[Math.min(sinew.view.frames - window.drawn, sinew.positions - window.moved), "
+                                                     "sinew.imageView.version - window.shown, sinew.frame.ratio, sinew.frames.length]")
         took = time.time() - began
         self.drawn, self.images, self.frames = drawn / took, images / took, frames / took
         page.driver.execute_script("clearInterval(window.timer)")
@@ -201,7 +204,7 @@ def measure(part, models):
         console = Console(*cases_of(part, folder, models))
         page = Page(console)
         try:
-            page.open()
+            page.open(WORDS)
             {"lag": measure_lag, "vertices": measure_vertices, "pst": measure_pst, "wm": measure_wm}[part](page, list(models))
         finally:
             page.driver.quit()

@@ -45,8 +45,8 @@ class Page:
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                     {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
 
-    def open(self):
-        self.driver.get(f"http://127.0.0.1:{self.server.port}/")
+    def open(self, words=""):
+        self.driver.get(f"http://127.0.0.1:{self.server.port}/{words}")
         return self.until("sinew.connected && sinew.state !== null")
 
     def get(self, expression):
@@ -520,7 +520,7 @@ def processor(t, server, page):
         server.open(kind)
         pictures = []
         for way in "processor", "webgl":
-            page.driver.get(f"http://127.0.0.1:{server.port}/?draw={way}")
+            page.open(f"?draw={way}")
             page.until("sinew.view.items.size > 1 && sinew.frame")
             if kind == "arm":
                 page.until("sinew.image !== null && sinew.probe.known")
@@ -544,7 +544,7 @@ def processor(t, server, page):
 
 def compressed(t, server, page):
     server.open("arm")
-    page.driver.get(f"http://127.0.0.1:{server.port}/?pixels=jpeg")
+    page.open("?pixels=jpeg")
     t.check("images that are compressed are shown too", page.until("sinew.image !== null && sinew.imageView.version > 0 && sinew.imageView.raw === null"))
     page.open()
     t.check("by default they are not", page.until("sinew.image !== null && sinew.imageView.version > 0 && sinew.imageView.raw !== null"))

@@ -272,6 +272,19 @@ def try_ultrasound():
     index, columns, rows, _, plane, jpeg = decode_image(page.binary[1])
     ok(columns == 512 and rows > 0 and jpeg[:2] == b"\xff\xd8" and jpeg[-2:] == b"\xff\xd9", "an image is a JPEG", (columns, rows))
     ok(abs(sum(x * x for x in plane[3:6]) ** 0.5 - 0.04 / columns) < 1e-9, "whose place is told", plane)
+    page.send("pixels raw")
+    ok(page.until(lambda p: 4 in p.binary, LONG), "or its pixels where the page wants them", page.counts)
+    _, columns, rows, _, _, pixels = decode_image(page.binary[4])
+    ok(len(pixels) in (columns * rows, 3 * columns * rows), "a byte each, or three", (columns, rows, len(pixels)))
+    page.send("got image")
+    images = page.counts[4]
+    page.until(frames(page.counts["frame"] + 20), LONG)
+    # One may have been on its way; the next was not waited for.
+    ok(images <= page.counts[4] <= images + 3, "a page that says what it is done with gets no more images", (images, page.counts[4]))
+    ok(not page.heard("expected", 0.01), "which are no lines for a tool", page.said)
+    images = page.counts[4]
+    page.send("got image")
+    ok(page.until(lambda p: p.counts[4] > images, LONG), "until it says so again", page.counts)
     pose = page.state["probe"]["pose"]
     for i in range(20):
         pose[1] += 0.0004

@@ -131,6 +131,7 @@ export class View {
         if (!width || !height) return;
         if (size.join() !== this.drawnSize) {
             this.drawnSize = size.join();
+            this.pixels = width * height * (window.devicePixelRatio || 1) ** 2;  // of the screen
             this.setSize(...size);
         }
         if (this.raster) this.raster.render(this);
@@ -162,8 +163,7 @@ export class View {
     // When nothing moves. The processor then draws four pixels for each of a screen that is not too large: their mean
     // has smooth edges, as a graphics card makes them.
     finest() {
-        const pixels = this.canvas.clientWidth * this.canvas.clientHeight * (window.devicePixelRatio || 1) ** 2;
-        return this.raster && pixels < SMOOTH ? 2 : 1;
+        return this.raster && this.pixels < SMOOTH ? 2 : 1;
     }
 
     // Of the next drawings; what they cost is to be learnt anew.

@@ -98,15 +98,17 @@ export class Drawing {
         else call();
     }
 
-    // A size that is set clears the canvas.
+    // A size that is set takes new memory.
     fit() {
         const ratio = window.devicePixelRatio || 1;
         const [width, height] = [this.room.clientWidth, this.room.clientHeight];
         if (!width || !height) return;
-        this.canvas.width = Math.round(width * ratio);
-        this.canvas.height = Math.round(height * ratio);
+        const [columns, rows] = [Math.round(width * ratio), Math.round(height * ratio)];
+        if (this.canvas.width !== columns || this.canvas.height !== rows)
+            [this.canvas.width, this.canvas.height] = [columns, rows];
         const to = this.canvas.getContext("2d");
-        to.scale(ratio, ratio);
+        to.setTransform(ratio, 0, 0, ratio, 0, 0);
+        to.clearRect(0, 0, width, height);
         this.paint(to, width, height);
     }
 }
