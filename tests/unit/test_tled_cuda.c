@@ -208,12 +208,13 @@ static void test_slits_bytes(const tled_executor *cpu, const tled_executor *cuda
     char what[120];
     for (int i = 0; i < SLITS; i++) {
         block cut = lump;
-        cut.cells[1] = slits[i].thin ? 1 : cut.cells[1];
         cut.fraction = i % 2 ? -1 : 0;
         cut.mixed = i % 2;
+        if (slits[i].thin) /* what the script names is not there: a muscle moves it */
+            cut.cells[1] = 1, cut.fibre[0] = 1;
         in_slit = &slits[i];
         snprintf(what, sizeof what, "%s, %s", name, slits[i].name);
-        test_bytes(&cut, 0, !slits[i].thin, 1000, cpu, cuda, what);
+        test_bytes(&cut, slits[i].thin ? .5 : 0, !slits[i].thin, 1000, cpu, cuda, what);
     }
     in_slit = &middle_slits;
     snprintf(what, sizeof what, "%s, slits, more bricks", name);
