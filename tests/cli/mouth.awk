@@ -1,6 +1,8 @@
 # Of a model of the real face in text: slices of elements across x, within -v half=MM of the middle, in which upper and lower lip are not
-# joined by faces where y is above 61 mm, in front of the teeth (behind, the corners of the mouth are closed): how many are open, of how
-# many, and the middles of those that are shut.
+# joined by faces where y is above 61 mm, in front of the teeth: how many are open, of how many, and the middles of those that are shut.
+# Why 61: the mouth's corner closes at x = +-19.91 where y is 60.2, at 19.98 where it is 60.4, and past 20 from 60.5 on. Of the voxel of
+# 1.25 mm about x = +-19.4, y = 60.6, z = -81.9 this is the last .1 mm. With --fraction 8 the slit ends there, so that this voxel joins the
+# lips, though it is open for the most of it; with --fraction 4 and by centres it is parted.
 function root(i) { while (up[i] != i) i = up[i] = up[up[i]]; return i }
 function face(e, list,    q, n, i, j, t) {
     split(list, n, " ")
