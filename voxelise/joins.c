@@ -55,10 +55,10 @@ int64_t joins_element(const joins *j, const int32_t *cell)
 
 static bool has_sample(const joins *j, const joins_part *p, const int32_t *at)
 {
-    const int64_t n = j->samples;
+    const int64_t n = j->samples, bit = (at[2] * n + at[1]) * n + at[0];
     if (!p->cell)
         return true;
-    return j->x->part.bits[p->cell->bits + (p->part * n + at[2]) * n + at[1]] >> at[0] & 1;
+    return j->x->part.bits[p->cell->bits + p->part * pieces_words(j->samples) + bit / 64] >> (bit % 64) & 1;
 }
 
 static double distance2(const int32_t *a, const double *b)
@@ -158,8 +158,8 @@ static bool is_cut(const joins *j, int64_t from, int64_t count, const int32_t *a
     return false;
 }
 
-/* Across the face between two voxels, the second after the first along the axis. */
-static bool joined_by_face(const joins *j, const joins_part *one, const joins_part *other, int axis)
+/* Whether samples next to each other join two voxels, the second after the first along the axis. */
+static bool joined_by_samples(const joins *j, const joins_part *one, const joins_part *other, int axis)
 {
     const int32_t n = j->samples;
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -176,10 +176,11 @@ static bool joined_by_face(const joins *j, const joins_part *one, const joins_pa
         if (!is_cut(j, from, count, a))
             return true;
     }
-    return see_each_other(j, one, other);
+    return false;
 }
 
-static bool look(const joins *j, const joins_part *one, const joins_part *other)
+/* Whether voxels share a face, and samples on either side of it join them: most do. */
+static bool joined_by_face(const joins *j, const joins_part *one, const joins_part *other)
 {
     int axis = -1, apart = 0;
     for (int a = 0; a < 3; a++)
@@ -188,8 +189,9 @@ static bool look(const joins *j, const joins_part *one, const joins_part *other)
             apart++;
         }
     if (apart != 1)
-        return see_each_other(j, one, other);
-    return one->at[axis] < other->at[axis] ? joined_by_face(j, one, other, axis) : joined_by_face(j, other, one, axis);
+        return false;
+    return one->at[axis] < other->at[axis] ? joined_by_samples(j, one, other, axis)
+                                           : joined_by_samples(j, other, one, axis);
 }
 
 /* ---- what has been looked at */
@@ -231,19 +233,21 @@ static bool make_room(joins *j)
     return true;
 }
 
-/* Each pair is asked for at several points. */
+/* Each pair is asked for at several points. Only what has to be seen is kept: the rest is found as quickly. */
 bool joins_are_joined(joins *j, const joins_part *one, const joins_part *other)
 {
     if (one->element > other->element || (one->element == other->element && one->part > other->part)) {
         const joins_part *swap = one;
         one = other, other = swap;
     }
+    if (joined_by_face(j, one, other))
+        return true;
     joins_known k = {one->element + 1, other->element + 1, one->part, other->part, false};
     if (!make_room(j))
-        return look(j, one, other);
+        return see_each_other(j, one, other);
     joins_known *slot = slot_of(j->table, j->size, &k);
     if (!slot->one) {
-        k.joined = look(j, one, other);
+        k.joined = see_each_other(j, one, other);
         *slot = k;
         j->known++;
     }

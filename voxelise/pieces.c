@@ -17,10 +17,24 @@ void pieces_list_free(pieces_list *l)
     *l = (pieces_list){0};
 }
 
-static int make_room(pieces_list *l, int64_t cells, int64_t rows, int64_t shares, err *e)
+double pieces_bytes(int samples)
+{
+    return 2 * (double)(sizeof(pieces_cell) + (size_t)pieces_words(samples) * sizeof(uint64_t));
+}
+
+int pieces_list_reserve(pieces_list *l, int64_t cells, int64_t words, int64_t shares, err *e)
+{
+    *l = (pieces_list){.cell_capacity = cells, .bits_capacity = words, .share_capacity = shares};
+    l->cell = mem_array(cells, sizeof *l->cell, "parts of voxels", e);
+    l->bits = l->cell ? mem_array(words, sizeof *l->bits, "parts of voxels", e) : NULL;
+    l->share = l->bits ? mem_array(shares, sizeof *l->share, "parts of voxels", e) : NULL;
+    return l->share ? 0 : -1;
+}
+
+static int make_room(pieces_list *l, int64_t cells, int64_t words, int64_t shares, err *e)
 {
     return mem_grow(&l->cell, &l->cell_capacity, l->cells + cells, sizeof *l->cell, "parts of voxels", e) ||
-                   mem_grow(&l->bits, &l->bits_capacity, l->rows + rows, sizeof *l->bits, "parts of voxels", e) ||
+                   mem_grow(&l->bits, &l->bits_capacity, l->words + words, sizeof *l->bits, "parts of voxels", e) ||
                    mem_grow(&l->share, &l->share_capacity, l->shares + shares, sizeof *l->share, "parts of voxels", e)
                ? -1
                : 0;
@@ -30,19 +44,20 @@ int pieces_list_join(pieces_list *to, const pieces_list *from, int64_t element, 
 {
     if (!from->cells)
         return 0;
-    if (make_room(to, from->cells, from->rows, from->shares, e))
+    if (make_room(to, from->cells, from->words, from->shares, e))
         return -1;
     for (int64_t i = 0; i < from->cells; i++) {
         pieces_cell *c = &to->cell[to->cells + i];
         *c = from->cell[i];
         c->element += element;
-        c->bits += to->rows;
-        c->share += to->shares;
+        c->bits += to->words;
     }
-    memcpy(to->bits + to->rows, from->bits, (size_t)from->rows * sizeof *to->bits);
-    if (from->shares)
-        memcpy(to->share + to->shares, from->share, (size_t)from->shares * sizeof *to->share);
-    to->cells += from->cells, to->rows += from->rows, to->shares += from->shares;
+    memcpy(to->bits + to->words, from->bits, (size_t)from->words * sizeof *to->bits);
+    for (int64_t i = 0; i < from->shares; i++) {
+        to->share[to->shares + i] = from->share[i];
+        to->share[to->shares + i].cell += (int32_t)to->cells;
+    }
+    to->cells += from->cells, to->words += from->words, to->shares += from->shares;
     return 0;
 }
 
@@ -57,6 +72,23 @@ const pieces_cell *pieces_of(const pieces_list *l, int64_t element)
             high = middle;
     }
     return low < l->cells && l->cell[low].element == element ? &l->cell[low] : NULL;
+}
+
+const pieces_share *pieces_shares(const pieces_list *l, const pieces_cell *of, int64_t *count)
+{
+    const int64_t cell = of - l->cell;
+    int64_t low = 0, high = l->shares;
+    while (low < high) {
+        const int64_t middle = low + (high - low) / 2;
+        if (l->share[middle].cell < cell)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *count = 0;
+    while (low + *count < l->shares && l->share[low + *count].cell == cell)
+        ++*count;
+    return l->share + low;
 }
 
 /* ---- samples */
@@ -194,20 +226,22 @@ static bool take_part(const pieces *p, uint16_t *left)
 }
 
 /* How many samples of a run, in the voxel, are of a part. */
-static int32_t samples_in(const pieces *p, const climb_run *run, int32_t cell, const uint16_t *part)
+static int32_t samples_in(const pieces *p, const climb_run *run, int32_t cell, const uint64_t *part)
 {
     const int64_t low = (int64_t)cell * p->samples;
     const int64_t from = run->from > low ? run->from - low : 0;
     const int64_t to = run->to < low + p->samples ? run->to - low : p->samples;
-    if (from >= to)
-        return 0;
-    const unsigned mask = (1u << to) - (1u << from);
-    return __builtin_popcount(part[row_of(p, run)] & mask);
+    const int64_t row = row_of(p, run) * p->samples;
+    int32_t count = 0;
+    for (int64_t i = row + from; i < row + to; i++)
+        count += part[i / WORD] >> (i % WORD) & 1;
+    return count;
 }
 
-static int add_share(pieces_list *to, pieces_cell *c, const pieces_share *one, err *e)
+/* first: of the voxel's shares. */
+static int add_share(pieces_list *to, int64_t first, const pieces_share *one, err *e)
 {
-    for (int64_t i = c->share; i < c->share + c->shares; i++)
+    for (int64_t i = first; i < to->shares; i++)
         if (to->share[i].part == one->part && to->share[i].volume == one->volume) {
             to->share[i].samples += one->samples;
             return 0;
@@ -215,37 +249,53 @@ static int add_share(pieces_list *to, pieces_cell *c, const pieces_share *one, e
     if (make_room(to, 0, 0, 1, e))
         return -1;
     to->share[to->shares++] = *one;
-    c->shares++;
     return 0;
 }
 
 /* Of a voxel of several parts: what each has of each volume. */
-static int count_volumes(const pieces *p, pieces_list *to, pieces_cell *c, err *e)
+static int count_volumes(const pieces *p, pieces_list *to, const pieces_cell *c, err *e)
 {
+    const int64_t first = to->shares, words = pieces_words(p->samples);
     for (int32_t n = 0; n < c->parts; n++)
         for (int64_t r = 0; r < p->runs.runs; r++) {
             const climb_run *run = &p->runs.run[r];
-            const int32_t samples = samples_in(p, run, c->cell[0], &to->bits[c->bits + n * rows_of(p)]);
-            if (samples && add_share(to, c, &(pieces_share){n, run->volume, samples}, e))
+            const int32_t samples = samples_in(p, run, c->cell[0], &to->bits[c->bits + n * words]);
+            if (samples && add_share(to, first, &(pieces_share){(int32_t)to->cells, n, run->volume, samples}, e))
                 return -1;
         }
+    return 0;
+}
+
+/* The samples of the part at hand. */
+static int add_bits(const pieces *p, pieces_list *to, err *e)
+{
+    const int64_t words = pieces_words(p->samples);
+    if (make_room(to, 0, words, 0, e))
+        return -1;
+    uint64_t *bits = to->bits + to->words;
+    memset(bits, 0, (size_t)words * sizeof *bits);
+    for (int64_t r = 0; r < rows_of(p); r++) {
+        const int64_t at = r * p->samples, bit = at % WORD;
+        bits[at / WORD] |= (uint64_t)p->part[r] << bit;
+        if (bit > WORD - p->samples) /* the rest is in the next word */
+            bits[at / WORD + 1] |= (uint64_t)p->part[r] >> (WORD - bit);
+    }
+    to->words += words;
     return 0;
 }
 
 static int add_cell(const pieces *p, const int32_t *cell, int64_t element, pieces_list *to, err *e)
 {
     const int64_t rows = rows_of(p);
-    pieces_cell c = {{cell[0], cell[1], cell[2]}, 0, element, to->rows, to->shares, 0};
+    pieces_cell c = {{cell[0], cell[1], cell[2]}, 0, element, to->words};
     uint16_t left[256];
     memcpy(left, p->in, (size_t)rows * sizeof *left);
     while (take_part(p, left)) {
-        if (make_room(to, 1, rows, 0, e))
+        if (add_bits(p, to, e))
             return -1;
-        memcpy(to->bits + to->rows, p->part, (size_t)rows * sizeof *to->bits);
-        to->rows += rows;
         c.parts++;
     }
-    if (c.parts > 1 && count_volumes(p, to, &c, e))
+    if (make_room(to, 1, 0, 0, e) || (c.parts > 1 && count_volumes(p, to, &c, e)))
         return -1;
     to->cell[to->cells++] = c;
     return 0;

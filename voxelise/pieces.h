@@ -10,32 +10,46 @@
 
 /* So many samples of a part are in a volume. */
 typedef struct pieces_share {
-    int32_t part, volume, samples;
+    int32_t cell, part, volume, samples; /* cell: in its list */
 } pieces_share;
 
 typedef struct pieces_cell {
     int32_t cell[3];
-    int32_t parts;         /* from their lowest samples on */
-    int64_t element;       /* of one voxel each */
-    int64_t bits;          /* the first row of the first part */
-    int64_t share, shares; /* of voxels of several parts: by part, then by volume */
+    int32_t parts;   /* from their lowest samples on */
+    int64_t element; /* of one voxel each */
+    int64_t bits;    /* the first word of the first part */
 } pieces_cell;
 
 /* In the order of the elements. */
 typedef struct pieces_list {
     pieces_cell *cell;
-    uint16_t *bits; /* parts x N (z) x N (y): a bit for each x */
-    pieces_share *share;
-    int64_t cells, rows, shares, cell_capacity, bits_capacity, share_capacity;
+    uint64_t *bits;      /* parts x pieces_words: a bit for each sample, (z N + y) N + x */
+    pieces_share *share; /* of voxels of several parts: by cell, part and volume */
+    int64_t cells, words, shares, cell_capacity, bits_capacity, share_capacity;
 } pieces_list;
 
+/* Words of the bits of a part. */
+static inline int64_t pieces_words(int samples)
+{
+    return ((int64_t)samples * samples * samples + 63) / 64;
+}
+
+/* Bytes for a voxel, in a list and once more in what it is joined to. */
+double pieces_bytes(int samples);
+
 void pieces_list_free(pieces_list *l);
+
+/* Makes an empty list with room for so much. */
+int pieces_list_reserve(pieces_list *l, int64_t cells, int64_t words, int64_t shares, err *e);
 
 /* Adds a list, whose elements are numbered from `element` on. */
 int pieces_list_join(pieces_list *to, const pieces_list *from, int64_t element, err *e);
 
 /* The voxel of an element, or NULL: all of it is inside, and one part. */
 const pieces_cell *pieces_of(const pieces_list *l, int64_t element);
+
+/* The shares of a voxel of several parts: the first, and how many (0: it has one part). */
+const pieces_share *pieces_shares(const pieces_list *l, const pieces_cell *of, int64_t *count);
 
 typedef struct pieces {
     int samples;     /* N */

@@ -60,11 +60,12 @@ void split_unite(split *s, int64_t one, int64_t other)
 int64_t split_largest(const split *s, const pieces_cell *of)
 {
     const int64_t first = split_number(s, of);
-    int64_t best = first, most = -1;
+    int64_t best = first, most = -1, count;
+    const pieces_share *share = pieces_shares(s->of, of, &count);
     for (int64_t n = first; n < first + of->parts; n++) {
         int64_t samples = 0;
-        for (int64_t i = of->share; i < of->share + of->shares; i++)
-            samples += s->lowest[first + s->of->share[i].part] == n ? s->of->share[i].samples : 0;
+        for (int64_t i = 0; i < count; i++)
+            samples += s->lowest[first + share[i].part] == n ? share[i].samples : 0;
         if (samples > most)
             best = n, most = samples;
     }
@@ -110,10 +111,10 @@ typedef struct counted {
 
 static int64_t samples_of(const split *s, int64_t cell, int32_t order, int32_t volume)
 {
-    const pieces_cell *p = &s->of->cell[cell];
-    int64_t sum = 0;
-    for (int64_t i = p->share; i < p->share + p->shares; i++) {
-        const pieces_share *one = &s->of->share[i];
+    int64_t sum = 0, count;
+    const pieces_share *share = pieces_shares(s->of, &s->of->cell[cell], &count);
+    for (int64_t i = 0; i < count; i++) {
+        const pieces_share *one = &share[i];
         const bool mine = order < 0 || s->order[s->first[cell] + one->part] == order;
         sum += mine && (volume < 0 || one->volume == volume) ? one->samples : 0;
     }
@@ -123,11 +124,12 @@ static int64_t samples_of(const split *s, int64_t cell, int32_t order, int32_t v
 /* As shares.c has it for whole voxels. */
 static counted count_element(const split *s, int64_t cell, int32_t order)
 {
-    const pieces_cell *p = &s->of->cell[cell];
+    int64_t count;
+    const pieces_share *share = pieces_shares(s->of, &s->of->cell[cell], &count);
     counted c = {.all = samples_of(s, cell, order, -1), .volume = -1, .mix = -1};
     for (int second = 0; second < 2; second++)
-        for (int64_t i = p->share; i < p->share + p->shares; i++) {
-            const int32_t volume = s->of->share[i].volume, best = second ? c.mix : c.volume;
+        for (int64_t i = 0; i < count; i++) {
+            const int32_t volume = share[i].volume, best = second ? c.mix : c.volume;
             const int64_t samples = samples_of(s, cell, order, volume), most = second ? c.second : c.first;
             if ((second && volume == c.volume) || samples == 0 || samples < most || (samples == most && volume >= best))
                 continue;

@@ -49,11 +49,11 @@ typedef struct scratch {
 
 /* ---- memory */
 
-int voxels_check_memory(const grid *g, double elements, double slabs, double available, err *e)
+int voxels_check_memory(const grid *g, double elements, double more, double available, err *e)
 {
     double layer = (double)(grid_cells(g, 0) + 1) * (double)(grid_cells(g, 1) + 1);
     double bytes = element_bytes * elements + row_bytes * (double)grid_cells(g, 1) * (double)grid_cells(g, 2) +
-                   2 * 4 * layer + slabs;
+                   2 * 4 * layer + more;
     if (bytes <= available && elements <= INT32_MAX)
         return 0;
     const char *say =
@@ -253,17 +253,45 @@ static double slab_bytes(const work *w, const pool *threads)
     return pool_threads(threads) * inside_slab_bytes(w->test);
 }
 
+/* How many voxels the surfaces go through: a plane goes through a box with each of its three shadows on the box's sides
+ * (the width of a cube across a plane). Where surfaces lie close, voxels are counted twice. */
+static double crossed_voxels(const work *w)
+{
+    const grid *g = w->test->mesh.g; /* of samples */
+    const inside_triangles *t = &w->test->t;
+    double crossed = 0;
+    for (int64_t i = 0; i < t->triangles; i++) {
+        const double *p[3];
+        for (int n = 0; n < 3; n++)
+            p[n] = &t->position[3 * (int64_t)t->vertex[3 * i + n]];
+        for (int a = 0; a < 3; a++) {
+            const int u = (a + 1) % 3, v = (a + 2) % 3;
+            const double shadow = (p[1][u] - p[0][u]) * (p[2][v] - p[0][v]) - (p[1][v] - p[0][v]) * (p[2][u] - p[0][u]);
+            crossed += fabs(shadow) / (2 * g->spacing[u] * g->spacing[v]);
+        }
+    }
+    return crossed / pow(w->rule->samples, 2);
+}
+
+/* What the parts of `elements` voxels take at most, with a number for each in two tables (split.h). */
+static double part_bytes(const work *w, double elements)
+{
+    return w->cut ? fmin(elements, crossed_voxels(w)) * (pieces_bytes(w->rule->samples) + 2 * sizeof(int64_t)) : 0;
+}
+
 static int check_memory(const work *w, pool *threads, err *e)
 {
     double available = (double)mem_available(), elements = 0;
     err whole = {0};
     grid g = voxel_cells(w);
-    if (voxels_check_memory(&g, grid_count(&g), slab_bytes(w, threads), available, &whole) == 0)
+    double more = slab_bytes(w, threads) + part_bytes(w, grid_count(&g));
+    if (voxels_check_memory(&g, grid_count(&g), more, available, &whole) == 0)
         return 0;
     if (estimate(w->test, w->level, w->volumes, threads, &elements, e))
         return -1;
     elements *= grid_count(&g) / grid_count(w->test->mesh.g);
-    return voxels_check_memory(&g, elements, slab_bytes(w, threads), available, e);
+    more = slab_bytes(w, threads) + part_bytes(w, elements);
+    return voxels_check_memory(&g, elements, more, available, e);
 }
 
 static int make_lists(voxels *x, const work *w, err *e)
@@ -280,6 +308,17 @@ static int make_lists(voxels *x, const work *w, err *e)
     x->mix = mem_array(x->elements, sizeof *x->mix, "shares of voxels", e);
     x->mixture = mem_array(x->elements, sizeof *x->mixture, "shares of voxels", e);
     return x->mix && x->mixture ? 0 : -1;
+}
+
+/* The list of parts, as large as those of all chunks. */
+static int reserve_parts(voxels *x, const work *w, err *e)
+{
+    int64_t cells = 0, words = 0, share = 0;
+    for (int64_t i = 0; i < w->test->slabs; i++) {
+        const pieces_list *l = &w->chunk[i].part;
+        cells += l->cells, words += l->words, share += l->shares;
+    }
+    return cells ? pieces_list_reserve(&x->part, cells, words, share, e) : 0;
 }
 
 static void put_shares(voxels *x, int64_t voxel, const shares_list *list)
@@ -302,7 +341,7 @@ static int join_chunks(voxels *x, const work *w, err *e)
         for (int64_t r = 0; r < w->chunk[i].to.runs; r++)
             x->elements += w->chunk[i].to.run[r].to - w->chunk[i].to.run[r].from;
     }
-    if (make_lists(x, w, e))
+    if (make_lists(x, w, e) || reserve_parts(x, w, e))
         return -1;
     for (int64_t i = 0; i < w->test->slabs; i++) {
         chunk *c = &w->chunk[i];

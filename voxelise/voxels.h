@@ -38,8 +38,8 @@ typedef struct voxels_layers {
 int voxels_find_layers(const voxels *x, voxels_layers *l, err *e);
 void voxels_layers_free(voxels_layers *l);
 
-/* Refuses what would take more memory than there is: `elements` of them, on the lattice g, and slabs of so many bytes.
- * available: bytes. */
-int voxels_check_memory(const grid *g, double elements, double slabs, double available, err *e);
+/* Refuses what would take more memory than there is: `elements` of them, on the lattice g, and so many bytes `more`, of
+ * slabs and of the parts of voxels. available: bytes. */
+int voxels_check_memory(const grid *g, double elements, double more, double available, err *e);
 
 #endif
