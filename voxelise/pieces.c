@@ -277,7 +277,7 @@ static int add_bits(const pieces *p, pieces_list *to, err *e)
     for (int64_t r = 0; r < rows_of(p); r++) {
         const int64_t at = r * p->samples, bit = at % WORD;
         bits[at / WORD] |= (uint64_t)p->part[r] << bit;
-        if (bit > WORD - p->samples) /* the rest is in the next word */
+        if (bit && bit > WORD - p->samples) /* the rest is in the next word */
             bits[at / WORD + 1] |= (uint64_t)p->part[r] >> (WORD - bit);
     }
     to->words += words;

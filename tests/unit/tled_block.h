@@ -165,7 +165,7 @@ static inline void block_make(const block *b, model *m)
     model_axis_add(m, "volume", 1 + b->mixed, &e);
     model_axis_add(m, "material", 1 + b->mixed, &e);
     lattice_save(&l, m, &e);
-    if (in_slit)
+    if (mesh.node)
         block_mesh_slit(b, &l, &mesh, m);
     else
         block_mesh(b, &l, m);

@@ -59,7 +59,7 @@ typedef struct slit_mesh {
 
 static inline void *slit_memory(size_t count, size_t size)
 {
-    void *p = calloc(count, size);
+    void *p = calloc(count ? count : 1, size);
     if (!p) {
         printf("Bail out! no memory\n");
         exit(1);
