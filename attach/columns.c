@@ -10,7 +10,7 @@ enum { COLUMNS_MOST = 512 }; /* along an axis */
 
 static const double *corner_of(const columns *c, int64_t triangle, int i)
 {
-    return c->of->metres + 3 * (int64_t)c->of->corner[3 * triangle + i];
+    return c->of->position + 3 * (int64_t)c->of->corner[3 * triangle + i];
 }
 
 static int64_t column_at(const columns *c, int axis, double x)
@@ -46,9 +46,9 @@ static void sort_triangles(columns *c)
     }
 }
 
-int columns_make(columns *c, const solid *of, double side, err *e)
+int columns_make(columns *c, const trimesh *of, double side, err *e)
 {
-    *c = (columns){.of = of, .whole = winding_of(of->metres, of->corner, of->triangles), .side = side};
+    *c = (columns){.of = of, .whole = winding_of(of->position, of->corner, of->triangles), .side = side};
     for (int a = 0; a < 2; a++) {
         c->low[a] = c->whole.low[a];
         c->side = fmax(c->side, (c->whole.high[a] - c->low[a]) / COLUMNS_MOST);

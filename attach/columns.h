@@ -4,11 +4,11 @@
 #ifndef SINEW_COLUMNS_H
 #define SINEW_COLUMNS_H
 
-#include "surface/solid.h"
+#include "surface/trimesh.h"
 #include "surface/winding.h"
 
 typedef struct columns {
-    const solid *of;
+    const trimesh *of;
     winding whole; /* asked where a ray passes an edge, to rounding */
     double low[2], side;
     int64_t count[2];
@@ -18,7 +18,7 @@ typedef struct columns {
 
 /* side (m): of a column, at least; also the most that columns_away tells. -1 with e filled, c to be freed all the
  * same. */
-int columns_make(columns *c, const solid *of, double side, err *e);
+int columns_make(columns *c, const trimesh *of, double side, err *e);
 void columns_free(columns *c);
 
 /* Whether the point lies inside or, to rounding, on the surface. */

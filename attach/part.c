@@ -131,7 +131,7 @@ static void claim_near(maker *k, const columns *of)
 }
 
 /* The nodes inside of a solid, and near it. */
-static int claim_solid(maker *k, const solid *b, uint8_t *mine, err *e)
+static int claim_solid(maker *k, const trimesh *b, uint8_t *mine, err *e)
 {
     columns of;
     int failed = columns_make(&of, b, k->reach, e);
@@ -147,7 +147,7 @@ static int claim_solid(maker *k, const solid *b, uint8_t *mine, err *e)
 
 static int by_file(maker *k, const char *file, uint8_t *mine, err *e)
 {
-    solid b = {.triangles = 0};
+    trimesh b = {0};
     err found = {0};
     const num_unit unit = scale_unit(NULL, k->m, e);
     if (!unit)
@@ -157,7 +157,7 @@ static int by_file(maker *k, const char *file, uint8_t *mine, err *e)
         err_set(e, NULL, 0, "--part: %.600s", found.text);
     else
         failed = claim_solid(k, &b, mine, e);
-    solid_free(&b);
+    trimesh_free(&b);
     return failed ? -1 : 0;
 }
 

@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "surface/coincident.h"
-#include "surface/triangulate.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -28,7 +27,7 @@ static int64_t list_edges(const int32_t *corner, const double *part, int64_t tri
 {
     int64_t count = 0;
     for (int64_t i = 0; i < 3 * triangles; i++) {
-        const int32_t sense = (int32_t)(2 * part[i / 3]);
+        const int32_t sense = part ? (int32_t)(2 * part[i / 3]) : 2;
         const int32_t from = place[corner[i]], to = place[corner[i % 3 == 2 ? i - 2 : i + 1]];
         if (from < to)
             list[count++] = (edge){from, to, sense};
@@ -86,58 +85,14 @@ int solid_open(const surface *s, const int32_t *corner, const double *part, int6
     return status;
 }
 
-/* Triangles of an OBJ */
-
-void solid_free(solid *b)
-{
-    obj_free(&b->file);
-    free(b->metres);
-    free(b->corner);
-    free(b->part);
-}
-
-static int cut_face(solid *b, int64_t face, err *e)
-{
-    const int64_t first = b->file.face_start[face], count = b->file.face_start[face + 1] - first;
-    const int32_t *vertex = b->file.corner_vertex + first;
-    if (count < 3)
-        return 0;
-    if (mem_grow(&b->corner, &b->room, b->triangles + count - 2, 3 * sizeof *b->corner, "a region", e))
-        return -1;
-    int32_t *cut = b->corner + 3 * b->triangles;
-    if (triangulate(b->metres, vertex, count, cut, e))
-        return -1;
-    for (int64_t i = 0; i < 3 * (count - 2); i++)
-        cut[i] = vertex[cut[i]];
-    b->triangles += count - 2;
-    return 0;
-}
-
-static int solid_cut(solid *b, double scale, err *e)
-{
-    int status = 0;
-    b->metres = mem_array(b->file.vertices, 3 * sizeof *b->metres, "a region", e);
-    if (!b->metres)
-        return -1;
-    for (int64_t i = 0; i < 3 * b->file.vertices; i++)
-        b->metres[i] = surface_metres(b->file.position[i], scale);
-    b->shape = (surface){.position = b->metres, .vertices = b->file.vertices};
-    for (int64_t f = 0; f < b->file.faces && !status; f++)
-        status = cut_face(b, f, e);
-    if (status || !(b->part = mem_array(b->triangles, sizeof *b->part, "a region", e)))
-        return -1;
-    for (int64_t t = 0; t < b->triangles; t++)
-        b->part[t] = 1;
-    return 0;
-}
-
 /* Whether it is a region of space. */
-static int check(const solid *b, const char *file, err *e)
+static int check(const trimesh *t, const char *file, err *e)
 {
+    const surface shape = {.position = t->position, .vertices = t->vertices};
     char open[SOLID_OPEN];
-    if (!b->triangles)
+    if (!t->triangles)
         return err_set(e, NULL, 0, "%.200s has no polygons; expected a closed surface", file);
-    if (solid_open(&b->shape, b->corner, b->part, b->triangles, open, e))
+    if (solid_open(&shape, t->corner, NULL, t->triangles, open, e))
         return -1;
     if (*open)
         return err_set(e, NULL, 0,
@@ -146,10 +101,12 @@ static int check(const solid *b, const char *file, err *e)
     return 0;
 }
 
-int solid_read(solid *b, const char *file, double scale, err *e)
+int solid_read(trimesh *t, const char *file, double scale, err *e)
 {
+    obj o = {0};
     in *source = in_open(file, e);
-    const int failed = !source || obj_read(&b->file, source, e) || solid_cut(b, scale, e) || check(b, file, e);
+    const int failed = !source || obj_read(&o, source, e) || trimesh_of(t, &o, scale, e) || check(t, file, e);
     in_close(source);
+    obj_free(&o);
     return failed ? -1 : 0;
 }

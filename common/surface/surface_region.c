@@ -54,16 +54,16 @@ enum { VERTICES = 256 }; /* in a chunk */
 int surface_region_in_file(const char *file, double scale, const double *position, int64_t vertices, double metre,
                            pool *threads, uint8_t *inside, err *e)
 {
-    solid b = {.triangles = 0};
+    trimesh b = {0};
     const int status = solid_read(&b, file, scale, e);
     if (!status) {
-        marker m = {winding_of(b.metres, b.corner, b.triangles), position, metre, NULL};
+        marker m = {winding_of(b.position, b.corner, b.triangles), position, metre, NULL};
         m.inside = inside;
         if (threads)
             pool_run(threads, vertices, VERTICES, mark, &m);
         else
             mark(&m, 0, 0, vertices);
     }
-    solid_free(&b);
+    trimesh_free(&b);
     return status;
 }

@@ -5,6 +5,7 @@
 #include "base/near.h"
 #include "base/num.h"
 #include "base/path.h"
+#include "surface/surface_region.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -91,25 +92,15 @@ const char *script_region(const script_curve *c)
     return colon ? colon + 1 : NULL;
 }
 
-bool script_is_file(const char *region)
-{
-    return path_is_obj(region);
-}
-
-bool script_is_box(const char *region)
-{
-    return strchr(region, ',') && !script_is_file(region);
-}
-
 /* Of one surface; boxes are known to be the same. */
 static bool same_region(const script_curve *a, const script_curve *b)
 {
     const char *of_a = script_region(a), *of_b = script_region(b);
     if (strcmp(a->surface, b->surface) != 0 || !of_a != !of_b)
         return false;
-    if (!of_a || (script_is_box(of_a) && script_is_box(of_b)))
+    if (!of_a || (surface_region_is_box(of_a) && surface_region_is_box(of_b)))
         return true;
-    return script_is_file(of_a) ? !strcmp(of_a, of_b) : !strcasecmp(of_a, of_b);
+    return path_is_obj(of_a) ? !strcmp(of_a, of_b) : !strcasecmp(of_a, of_b);
 }
 
 static bool same_target(const script_curve *a, const script_curve *b)

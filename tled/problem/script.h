@@ -130,10 +130,8 @@ int64_t script_add(script *s, const script_curve *c, err *e);
 /* Makes room for `more` keys. */
 int script_reserve(script *s, int64_t more, err *e);
 
-/* The region of a surface in SURFACE[:REGION], or NULL; whether it is a box, X0,Y0,Z0,X1,Y1,Z1, or an OBJ file. */
+/* The region of a surface in SURFACE[:REGION], or NULL: surface_region.h says of what kind it is. */
 const char *script_region(const script_curve *c);
-bool script_is_box(const char *region);
-bool script_is_file(const char *region);
 
 /* The bound surface that c->target names, SURFACE[:REGION], into `name` (MODEL_NAME bytes). Sets c->surface to it. */
 int script_take_surface(script_curve *c, const model *m, const keyfile *k, char *name, err *e);

@@ -1,6 +1,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
+#include "surface/surface_region.h"
 #include "tled/problem/script_reader.h"
 
 #include <inttypes.h>
@@ -201,7 +202,7 @@ static int add_to_surface(reader *r, script_verb verb, double time, const double
     script_curve c = {.verb = verb, .volume = -1, .line = r->k.line, .target = r->k.word[2]};
     const char *region = script_region(&c);
     if (script_take_surface(&c, r->m, &r->k, name, e) ||
-        (region && script_is_box(region) && take_box(r, region, c.box, e)))
+        (region && surface_region_is_box(region) && take_box(r, region, c.box, e)))
         return -1;
     c.is_region = region != NULL;
     bool fresh;

@@ -1,5 +1,6 @@
 #include "base/mem.h"
 #include "base/near.h"
+#include "base/path.h"
 #include "mesh/bound.h"
 #include "surface/scale.h"
 #include "surface/solid.h"
@@ -149,7 +150,7 @@ static int add_face(picker *p, int64_t face, err *e)
 static int no_triangle(const picker *p, const keyfile *k, err *e)
 {
     const char *name = p->c->surface, *region = script_region(p->c);
-    if (p->in && script_is_file(region))
+    if (p->in && path_is_obj(region))
         return keyfile_error(k, e,
                              "no triangle of '%.100s' lies inside of %.200s; expected a closed surface around some, in "
                              "the model's place and unit, or --unit",
@@ -196,7 +197,7 @@ static int mark_inside(picker *p, const model *m, const keyfile *k, err *e)
 static int mark_region(picker *p, const model *m, const keyfile *k, err *e)
 {
     const char *region = script_region(p->c);
-    const bool by_box = region && script_is_box(region), by_file = region && script_is_file(region);
+    const bool by_box = region && surface_region_is_box(region), by_file = region && path_is_obj(region);
     if (!by_box && !by_file) {
         p->group = region;
         return 0;
