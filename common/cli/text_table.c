@@ -209,3 +209,12 @@ char *text_table_lines(const text_table *t, err *e)
     free(to.text);
     return NULL;
 }
+
+int text_table_put(text_table *t, out *to, err *e)
+{
+    char *text = t ? text_table_lines(t, e) : NULL;
+    text_table_free(t);
+    out_text(to, text ? text : "");
+    free(text);
+    return text ? 0 : -1;
+}

@@ -5,6 +5,7 @@
 #define SINEW_TEXT_TABLE_H
 
 #include "base/err.h"
+#include "base/out.h"
 
 typedef struct text_table text_table;
 
@@ -29,5 +30,8 @@ int text_table_decimals(double largest, int digits);
 /* The table's lines, which begin with two spaces. It fits 80 columns where all but the first column leave that 24 or
  * more; a longer name in the first column has a line of its own. The caller frees the text. NULL with e filled. */
 char *text_table_lines(const text_table *t, err *e);
+
+/* Writes them, and frees the table, which may be NULL with e filled. -1 with e filled. */
+int text_table_put(text_table *t, out *to, err *e);
 
 #endif

@@ -40,15 +40,6 @@ static double hausdorff(const distance_report *r, int64_t row)
 
 /* ---- For people */
 
-static int put_table(text_table *t, out *to, err *e)
-{
-    char *lines = t ? text_table_lines(t, e) : NULL;
-    text_table_free(t);
-    out_text(to, lines ? lines : "");
-    free(lines);
-    return lines ? 0 : -1;
-}
-
 static int put_rows(const distance_rows *rows, const char *title, out *to, err *e)
 {
     const char *const heads[] = {"<region", ">vertices", ">at\nborder", ">mean",         ">rms",
@@ -68,7 +59,7 @@ static int put_rows(const distance_rows *rows, const char *title, out *to, err *
             text_table_number(t, figure[k], decimals);
     }
     out_format(to, "%s, mm:\n", title);
-    return put_table(t, to, e);
+    return text_table_put(t, to, e);
 }
 
 static int put_hausdorff(const distance_report *r, out *to, err *e)
@@ -84,7 +75,7 @@ static int put_hausdorff(const distance_report *r, out *to, err *e)
             text_table_number(t, hausdorff(r, i), text_table_decimals(largest, 5));
         }
     out_text(to, "Symmetric Hausdorff distance, mm:\n");
-    return put_table(t, to, e);
+    return text_table_put(t, to, e);
 }
 
 int distance_print_tables(const distance_report *r, out *to, err *e)

@@ -67,16 +67,6 @@ static void put_end(const model_array *a, const info_stats *s, bool max, out *to
         info_put_end(a, s, max, to);
 }
 
-/* The lines of a table, which it frees. */
-static int put_table(text_table *t, out *to, err *e)
-{
-    char *lines = t ? text_table_lines(t, e) : NULL;
-    text_table_free(t);
-    out_text(to, lines ? lines : "");
-    free(lines);
-    return lines ? 0 : -1;
-}
-
 /* Adds a cell of the text that is in a memory's out, and empties it. */
 static void take_cell(text_table *t, out *text)
 {
@@ -123,7 +113,7 @@ static int put_arrays(const model_arrays *list, bool meanings, out *to, err *e)
         if (meanings)
             text_table_cell(t, "%s", k ? k->meaning : "not one of Sinew's: passed on as it is");
     }
-    return put_table(t, to, e);
+    return text_table_put(t, to, e);
 }
 
 static void put_line(const char *title, const char *key, const char *value, out *to)
@@ -189,7 +179,7 @@ static int put_volumes(const model *m, const int64_t *elements, out *to, err *e)
         text_table_cell(t, "%s", of && called ? called->str[of->i32[i]] : "-");
     }
     out_text(to, "volumes\n");
-    return put_table(t, to, e);
+    return text_table_put(t, to, e);
 }
 
 /* "E=3000 nu=0.49 density=1000", as a file of materials has it: what has a value in row i. */
@@ -219,7 +209,7 @@ static int put_materials(const model *m, out *to, err *e)
         text_table_cell(t, "%s", keys);
     }
     out_text(to, "materials\n");
-    return put_table(t, to, e);
+    return text_table_put(t, to, e);
 }
 
 static int put_muscles(const model *m, const int64_t *elements, out *to, err *e)
@@ -238,7 +228,7 @@ static int put_muscles(const model *m, const int64_t *elements, out *to, err *e)
             text_table_number(t, centre ? centre->f64[3 * i + a] : NAN, decimals);
     }
     out_text(to, "muscles\n");
-    return put_table(t, to, e);
+    return text_table_put(t, to, e);
 }
 
 /* Where the nodes went furthest in the last frame. */
