@@ -6,7 +6,6 @@ Then the face at 2.5 mm (the real one where its data are; FACE=FILE: another mod
 while its muscles contract and let go, and on a card at 1.25 mm where there is one: simulated time to real time. FACE_ONLY=cpu or cuda: only that."""
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -15,6 +14,9 @@ import threading
 import time
 
 root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.append(os.path.join(root, "tests", "long"))
+from face_model import make_face, names_in
+
 bin, threads = os.path.abspath(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "2"
 poses, ahead = 300, 3
 
@@ -105,30 +107,11 @@ def run_live(method, folder, mesh, volume):
                                              "%.3g" % (middle * rate) if rate else ""))
 
 
-def make_face(folder, side):
-    """As tests/long/live.py makes it."""
-    shared = os.environ.get("SINEW_SHARED", os.path.join(root, "..", "shared"))
-    face, obj, made = os.path.join(shared, "data", "face", "face_zyg.obj"), os.path.join(folder, "face.obj"), os.path.join(folder, "face.sinew")
-    if os.environ.get("FACE"):
-        return os.environ["FACE"]
-    if os.path.exists(face):
-        shutil.copy(face, obj)
-    else:
-        with open(obj, "wb") as to:
-            subprocess.run(["awk", "-f", "samples/shape.awk", "-f", "samples/head.awk"], cwd=root, stdout=to, check=True)
-    subprocess.run("%s/voxelise -q --unit mm -s %s %s | %s/attach -q -o %s" % (bin, side, obj, bin, made), shell=True, check=True)
-    return made
-
-
-def names_in(model, key):
-    return subprocess.run([bin + "/sinew-info", "--get", key, model], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
-
-
 def run_face(folder, side, device):
-    model, fifo = make_face(folder, side), os.path.join(folder, "face-" + device)
-    muscles, seconds = names_in(model, "muscle.name"), 10
+    model, fifo = make_face(bin, root, folder, side), os.path.join(folder, "face-" + device)
+    muscles, seconds = names_in(bin, model, "muscle.name"), 10
     command = [bin + "/tled-run", "-d", device, "--precision", "single", "--threads", threads, "--live", "-t", str(seconds), "--control", fifo]
-    for material in names_in(model, "material.name"):
+    for material in names_in(bin, model, "material.name"):
         command += ["-m", material + ".nu=0.45"]
     os.mkfifo(fifo)
     solver = subprocess.Popen(command, stdin=open(model, "rb"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)

@@ -8,7 +8,6 @@ import hashlib
 import os
 import random
 import re
-import shutil
 import signal
 import statistics
 import subprocess
@@ -18,6 +17,7 @@ import threading
 import time
 
 sys.dont_write_bytecode = True  # beside the sources
+from face_model import make_face, names_in
 from timely import RATE, Metronome, counted, diag, ok, timely
 
 bin, seconds, sessions = os.path.abspath(sys.argv[1]), float(sys.argv[2]), int(sys.argv[3])
@@ -250,10 +250,6 @@ def make_block(folder):
     return volume, mesh
 
 
-def names_in(model, key):
-    return subprocess.run([bin + "/sinew-info", "--get", key, model], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
-
-
 def nodes_in(model):
     """The places of its nodes at rest, m."""
     text = subprocess.run([bin + "/attach", "-q", "--text"], stdin=open(model, "rb"), stdout=subprocess.PIPE, text=True, check=True).stdout
@@ -262,21 +258,10 @@ def nodes_in(model):
     return [tuple(float(number) for number in next(lines).split()) for _ in range(count)]
 
 
-def make_face(folder):
-    """A model that was given; or the real face where its data are there; else the head of samples."""
-    if os.environ.get("FACE"):
-        made = os.environ["FACE"]
-        return made, names_in(made, "muscle.name"), names_in(made, "material.name"), nodes_in(made)
-    shared = os.environ.get("SINEW_SHARED", os.path.join(root, "..", "shared"))
-    face, obj = os.path.join(shared, "data", "face", "face_zyg.obj"), os.path.join(folder, "face.obj")
-    side, made = os.environ.get("SIDE", "2.5"), os.path.join(folder, "face.sinew")
-    if os.path.exists(face):
-        shutil.copy(face, obj)
-    else:
-        with open(obj, "wb") as to:
-            subprocess.run(["awk", "-f", "samples/shape.awk", "-f", "samples/head.awk"], cwd=root, stdout=to, check=True)
-    subprocess.run("%s/voxelise -q --unit mm -s %s %s | %s/attach -q -o %s" % (bin, side, obj, bin, made), shell=True, check=True)
-    return made, names_in(made, "muscle.name"), names_in(made, "material.name"), nodes_in(made)
+def find_face(folder):
+    """The path of a model, its muscles and materials, and the places of its nodes."""
+    made = make_face(bin, root, folder, os.environ.get("SIDE", "2.5"))
+    return made, names_in(bin, made, "muscle.name"), names_in(bin, made, "material.name"), nodes_in(made)
 
 
 class Press:
@@ -561,9 +546,9 @@ def main():
             if method in ON_CARD and method + "-card" in only:
                 long_press(scratch, mesh, volume, method, 150 + i, "cuda")
         if not only or "face" in only:
-            long_face(scratch, *make_face(scratch), seconds, 200)
+            long_face(scratch, *find_face(scratch), seconds, 200)
         if "face-card" in only:
-            long_face(scratch, *make_face(scratch), seconds, 250, "cuda")
+            long_face(scratch, *find_face(scratch), seconds, 250, "cuda")
         if not only or "sessions" in only:
             for seed in range(first, first + sessions):
                 short_press(scratch, mesh, volume, seed)
