@@ -16,7 +16,7 @@
 
 enum { NAME_MOST = 100 }; /* bytes */
 
-/* What a node has to do with the parts seen so far. */
+/* Says which of the parts seen so far has a node. */
 typedef struct claim {
     int32_t body; /* -1: none */
     bool is_sure; /* by its surface, or inside of a file's */

@@ -18,7 +18,7 @@ static const char surface_key[] = "slits.surface", groups_key[] = "slits.groups"
 
 /* ---- the surfaces of level 0 */
 
-/* Whether one of the names in the metadata is among a group's. */
+/* Tells whether a group has one of the names in the metadata. */
 static bool bounds(const char *names, const char *group)
 {
     char name[256];

@@ -138,7 +138,7 @@ static const char *pick(const listing_of *l, const char *const *endings, const c
     return first;
 }
 
-/* What a case has under names of their own. */
+/* Takes the files that have fixed names in the folder of a case. */
 static int take_named(console_case *one, const char *folder, const listing_of *l, err *e)
 {
     const struct {

@@ -48,7 +48,7 @@ static dials begin(const dial *table)
     return d;
 }
 
-/* What has no value is not offered. */
+/* A parameter without a value is not offered. */
 static void drop(dials *d, const char *beginning)
 {
     for (int i = 0; i < DIALS_MOST && d->table[i].key; i++)

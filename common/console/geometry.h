@@ -32,7 +32,7 @@ int64_t geometry_skin(const geometry *g);
 /* The meshes at rest. NULL with e filled. */
 mail *geometry_mail(const geometry *g, err *e);
 
-/* What a frame has, borrowed. */
+/* Holds what is drawn of a frame. Its arrays are borrowed. */
 typedef struct geometry_frame {
     int64_t index;
     const frame *rigid;  /* whose body.pose moves what moves with rigid bodies; NULL: they are at rest */
