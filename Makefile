@@ -71,6 +71,14 @@ CUDA_FUSED = false
 CUDA_LINES = -lineinfo
 NVCC_FLAGS = -std=c++17 -O3 $(CUDA_LINES) -fmad=$(CUDA_FUSED) $(CUDA_ARCH) -Werror all-warnings \
 	-Xcompiler -fno-threadsafe-statics,-fno-exceptions,-fno-rtti,-ffp-contract=off,-fno-math-errno,-pthread,-Wall
+# CUDA_QUICK=yes: what is only to be seen to compile, as where no card is, in a fifth of the time; it would run slowly.
+CUDA_QUICK ?= no
+MARCH_ARCH = -gencode arch=compute_90,code=compute_90
+ifeq ($(CUDA_QUICK),yes)
+CUDA_ARCH = -gencode arch=compute_90,code=sm_90
+MARCH_ARCH =
+NVCC_FLAGS += $(if $(shell $(NVCC) --help 2>/dev/null | grep -e -Ofc),-Ofc max)
+endif
 # As on the CPU: numbers of single precision that are too small to be normal are zero.
 $(BUILD)/tled/cuda/cuda_single.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/msds/cuda/cuda_%.o: NVCC_FLAGS += -ftz=true
@@ -78,7 +86,7 @@ $(BUILD)/msds/cuda/cuda_%.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/tled/cuda/cuda_look.o: CUDA_FUSED = true
 $(BUILD)/tled/cuda/cuda_march.o: NVCC_FLAGS += -ftz=true
 $(BUILD)/tled/cuda/cuda_march.o: CUDA_FUSED = true
-$(BUILD)/tled/cuda/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 -gencode arch=compute_90,code=compute_90
+$(BUILD)/tled/cuda/cuda_march.o: CUDA_ARCH = -gencode arch=compute_90,code=sm_90 $(MARCH_ARCH)
 CUDA_SRC := $(wildcard common/solve/*.cu tled/cuda/*.cu msds/cuda/*.cu)
 $(if $(filter-out yes no,$(CUDA)),$(error CUDA is '$(CUDA)'; expected yes or no))
 ifeq ($(CUDA),yes)
@@ -92,11 +100,16 @@ $(BUILD)/libsinew-cuda.a: $(CUDA_SRC:%.cu=$(BUILD)/%.o) $(CUDA_ONLY:%.c=$(BUILD)
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(BUILD)/%.o: %.cu
+$(BUILD)/%.o: %.cu $(BUILD)/quick-$(CUDA_QUICK)
 	$(if $(NVCC),,$(error there is no nvcc for CUDA=yes; expected NVCC with its path, or CUDA=no))
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Icommon -I. -MMD -MP -MF $(@:.o=.d) -c -o $@ $<)
 	@objcopy -w -N 'tmpxft_*' $@ # the name of a temporary file: the same source is to give the same bytes
+
+$(BUILD)/quick-$(CUDA_QUICK):
+	@mkdir -p $(@D)
+	@rm -f $(BUILD)/quick-*
+	@touch $@
 
 # Which of the two is built is known to few files, made again when that changes.
 KNOW_CUDA := $(addprefix $(BUILD)/,tled/run/executors.o tests/unit/test_tled_cuda.o msds/run/msds_executors.o tests/unit/test_msds_cuda.o)
