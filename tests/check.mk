@@ -116,7 +116,7 @@ check-all:
 
 # For .ci/run, which has done the set-up.
 check-ci:
-	MAKE='$(MAKE)' $(CHECK) ci
+	CUDA_QUICK=yes MAKE='$(MAKE)' $(CHECK) ci
 
 soak:
 	.ci/setup check-all
@@ -230,14 +230,15 @@ include tests/gate/gate.mk
 
 # ---- other builds, each in its own folder
 .PHONY: clang sanitize fuzz fuzz-run
+# (CUDA's kernels, and their card that a processor plays, are compiled by nvcc and g++ whoever compiles the rest: once is enough.)
 clang:
-	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/clang BIN=$(BUILD)/clang/bin all unit
+	$(MAKE) $(JOBS) CC=$(CLANG) BUILD=$(BUILD)/clang BIN=$(BUILD)/clang/bin CUDA=no EMULATE_CXX= all unit
 
 # A sanitizer's complaint is exit status 99, which no test expects. An allocation that is too large is refused, as it is without.
 SANITIZE = -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 sanitize:
 	ASAN_OPTIONS=exitcode=99:allocator_may_return_null=1 UBSAN_OPTIONS=exitcode=99:print_stacktrace=1 SINEW_SANITIZED=1 \
-	    $(MAKE) $(JOBS) BUILD=$(BUILD)/sanitize BIN=$(BUILD)/sanitize/bin CFLAGS='$(SANITIZE)' CUDA=no $(SANITIZE_GOAL)
+	    $(MAKE) $(JOBS) BUILD=$(BUILD)/sanitize BIN=$(BUILD)/sanitize/bin CFLAGS='$(SANITIZE)' CUDA=no EMULATE_CXX= $(SANITIZE_GOAL)
 SANITIZE_GOAL = check-tests
 
 # Data races: what has threads, under ThreadSanitizer. (Embree, which is not built so, is seen from outside only.)
@@ -267,27 +268,36 @@ fuzz-run: $(FUZZ)
 	$(PROVE) --exec 'tests/fuzz/run $(SECONDS)' $(FUZZ)
 
 # ---- lints
-.PHONY: lint lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
+.PHONY: lint lint-cppcheck lint-tidy lint-tidy-quick lint-format lint-shell lint-man lint-shape
 FOLDERS = $(filter-out $(BUILD)/ $(BIN)/ out/,$(wildcard */))
 # None found: something is wrong, and a lint of nothing would pass.
 found = $(or $(sort $(shell find $(FOLDERS) -name '$(1)')),$(error no $(1) in $(FOLDERS)))
-SOURCES = $(call found,*.c)
-HEADERS = $(call found,*.h)
+SOURCES := $(call found,*.c)
+HEADERS := $(call found,*.h)
 CUDA_FILES = $(call found,*.cu) $(call found,*.cuh)
 # Each file that begins as a script does, and those that scripts read.
 SCRIPTS := $(or $(sort $(shell grep -rlIE '^\#!/(usr/)?bin/(env )?(ba)?sh' .ci man samples tests) $(wildcard tests/cli/*.sh) $(filter-out %.awk %.gnuplot %.css,$(wildcard samples/paper.d/*))),$(error no scripts))
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
 
-lint-cppcheck:
-	@cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
-	    --suppress=missingIncludeSystem -j2 $(CPPFLAGS) $(SOURCES)
-
 # One stamp a file, so that only what changed is read again, and in parallel.
-TIDY = $(SOURCES:%.c=$(BUILD)/tidy/%.ok)
-lint-tidy: $(TIDY)
+lint-cppcheck: $(SOURCES:%.c=$(BUILD)/cppcheck/%.ok)
+$(BUILD)/cppcheck/%.ok: %.c $(HEADERS)
+	@mkdir -p $(@D)
+	$(call run,CPPCHECK $<,cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
+	    --suppress=missingIncludeSystem $(CPPFLAGS) $<)
+	@touch $@
+
+# lint-tidy-quick: all but clang's analyzer, which takes three quarters of the time.
+lint-tidy: $(SOURCES:%.c=$(BUILD)/tidy/%.ok)
+lint-tidy-quick: $(SOURCES:%.c=$(BUILD)/tidy-quick/%.ok)
+tidy = $(call run,TIDY $<,$(CLANG_TIDY) --quiet $(1) $< -- $(CSTD) $(CPPFLAGS) 2>$(@:.ok=.err) || { cat $(@:.ok=.err) >&2; exit 1; })
 $(BUILD)/tidy/%.ok: %.c .clang-tidy tests/.clang-tidy $(HEADERS)
 	@mkdir -p $(@D)
-	$(call run,TIDY $<,$(CLANG_TIDY) --quiet $< -- $(CSTD) $(CPPFLAGS) 2>$(@:.ok=.err) || { cat $(@:.ok=.err) >&2; exit 1; })
+	$(call tidy)
+	@touch $@
+$(BUILD)/tidy-quick/%.ok: %.c .clang-tidy tests/.clang-tidy $(HEADERS)
+	@mkdir -p $(@D)
+	$(call tidy,'--checks=-clang-analyzer-*')
 	@touch $@
 
 lint-format:
@@ -373,7 +383,7 @@ help:
 	'make check-live   live runs of LIVE_SECONDS=$(LIVE_SECONDS) each, and LIVE_SESSIONS=$(LIVE_SESSIONS) that are recorded and replayed' \
 	'make same WITH=FOLDER   what the outputs of this build differ in from those of the tools in FOLDER' \
 	'make lint         clang-format, shellcheck, manual pages, shape; and cppcheck and clang-tidy, which take minutes' \
-	'make lint-NAME    one of them: cppcheck, tidy, format, shell, man, shape' \
+	'make lint-NAME    one of them: cppcheck, tidy (tidy-quick: without the analyzer), format, shell, man, shape' \
 	'make clang        the tools and unit tests, built by clang' \
 	'make sanitize     the tests under ASan and UBSan' \
 	'make tsan         the tests of threads under ThreadSanitizer' \

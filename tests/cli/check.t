@@ -41,8 +41,9 @@ for list in ci all; do
     sort "$SAYS/asked" | comm -23 "$T/check" - >"$T/left"
     is "$(cat "$T/stdout" "$T/left" | sed 's/[0-9]* passed/n passed/')" "0 n passed, 0 failed, 0 skipped" "$list: has every part of check, and passes"
 done
+# (What is quick in ci is whole in all.)
 counts ci >"$T/stdout"
-sort "$SAYS/asked" >"$T/ci"
+sed 's/-quick$//' "$SAYS/asked" | sort >"$T/ci"
 counts all >"$T/stdout"
 sort "$SAYS/asked" | comm -23 "$T/ci" - >"$T/left"
 is "$(cat "$T/left")" "" "all: has every part of ci"
