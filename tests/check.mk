@@ -280,11 +280,11 @@ SCRIPTS := $(or $(sort $(shell grep -rlIE '^\#!/(usr/)?bin/(env )?(ba)?sh' .ci m
 lint: lint-cppcheck lint-tidy lint-format lint-shell lint-man lint-shape
 
 # One stamp a file, so that only what changed is read again, and in parallel.
+CPPCHECK = cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 --suppress=missingIncludeSystem
 lint-cppcheck: $(SOURCES:%.c=$(BUILD)/cppcheck/%.ok)
 $(BUILD)/cppcheck/%.ok: %.c $(HEADERS)
 	@mkdir -p $(@D)
-	$(call run,CPPCHECK $<,cppcheck --quiet --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
-	    --suppress=missingIncludeSystem $(CPPFLAGS) $<)
+	$(call run,CPPCHECK $<,$(CPPCHECK) $(CPPFLAGS) $<)
 	@touch $@
 
 # lint-tidy-quick: all but clang's analyzer, which takes three quarters of the time.

@@ -126,6 +126,7 @@ static int of_names(field *to, const model *m, bool of_material, err *e)
 
 /* ---- strain and stress */
 
+/* law: of stress alone. */
 static double strained(int which, const double h[9], const material *law)
 {
     double strain[9], c[FORM_NUMBERS] = {0};
@@ -158,7 +159,7 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
         double h[9];
         gradient_of(&node->i32[n * node->columns], node->columns, rest->f64, u, h);
         material own = law ? materials_of_element(&map, n) : (material){0};
-        to->value[n] = strained(which, h, law ? &own : NULL);
+        to->value[n] = strained(which, h, &own);
     }
     free(law);
     return 0;
