@@ -234,7 +234,7 @@ static int32_t samples_in(const pieces *p, const climb_run *run, int32_t cell, c
     const int64_t row = row_of(p, run) * p->samples;
     int32_t count = 0;
     for (int64_t i = row + from; i < row + to; i++)
-        count += part[i / WORD] >> (i % WORD) & 1;
+        count += (int32_t)(part[i / WORD] >> (i % WORD) & 1);
     return count;
 }
 
