@@ -3,10 +3,10 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/path.h"
-#include "columns.h"
 #include "mesh/lattice.h"
 #include "surface/scale.h"
 #include "surface/solid.h"
+#include "surface/triangle_tree.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -119,12 +119,15 @@ static int by_surfaces(maker *k, const char *list, uint8_t *mine, err *e)
 }
 
 /* Nodes that are inside of no part may still be this one's. */
-static void claim_near(maker *k, const columns *of)
+static void claim_near(maker *k, const triangle_tree *of)
 {
+    int64_t guess = -1;
     for (int64_t n = 0; n < k->nodes; n++) {
         if (!k->rigid[n] || k->of[n].is_sure)
             continue;
-        const double away = columns_away(of, k->position + 3 * n);
+        const triangle_hit hit = triangle_tree_nearest(of, k->position + 3 * n, guess);
+        const double away = sqrt(hit.distance2);
+        guess = hit.triangle;
         if (away <= k->reach && (k->of[n].body < 0 || away < k->of[n].away))
             k->of[n] = (claim){.body = k->bodies - 1, .away = away};
     }
@@ -133,15 +136,15 @@ static void claim_near(maker *k, const columns *of)
 /* The nodes inside of a solid, and near it. */
 static int claim_solid(maker *k, const trimesh *b, uint8_t *mine, err *e)
 {
-    columns of;
-    int failed = columns_make(&of, b, k->reach, e);
-    for (int64_t n = 0; !failed && n < k->nodes; n++)
-        mine[n] = k->rigid[n] && columns_hold(&of, k->position + 3 * n);
+    triangle_tree *of = triangle_tree_create(b->position, b->corner, b->triangles, e);
+    int failed = of ? 0 : -1;
+    for (int64_t n = 0; of && n < k->nodes; n++)
+        mine[n] = k->rigid[n] && triangle_tree_holds(of, k->position + 3 * n);
     if (!failed)
         failed = claim_sure(k, k->bodies - 1, mine, e);
     if (!failed)
-        claim_near(k, &of);
-    columns_free(&of);
+        claim_near(k, of);
+    triangle_tree_destroy(of);
     return failed;
 }
 

@@ -1,7 +1,7 @@
 #include "voxelise/sight.h"
 
 #include "base/mem.h"
-
+#include "surface/edge_side.h"
 #include "voxelise/cuts.h"
 
 #include <math.h>
@@ -164,29 +164,6 @@ typedef struct line {
     int count;
 } line;
 
-static int sign_of(double x)
-{
-    return (x > 0) - (x < 0);
-}
-
-/* The sign of a d - b c, exactly: where the rounded products are equal, what they were rounded by decides. */
-static int cross_sign(double a, double b, double c, double d)
-{
-    const double p = a * d, q = b * c;
-    if (p != q)
-        return p > q ? 1 : -1;
-    return sign_of(fma(a, d, -p) - fma(b, c, -q));
-}
-
-/* The side of the edge from p to q, seen along the line, that the line is on. */
-static int side_of(const double *p, const double *q)
-{
-    const int sign = cross_sign(p[0], p[1], q[0], q[1]);
-    if (sign)
-        return sign;
-    return p[1] != q[1] ? sign_of(p[1] - q[1]) : sign_of(q[0] - p[0]);
-}
-
 /* Where the line, without end either way, meets a triangle. */
 static void meet(line *l, int64_t triangle)
 {
@@ -199,8 +176,8 @@ static void meet(line *l, int64_t triangle)
         at[i][1] = w[l->v] - w[l->axis] * l->step[l->v];
         at[i][2] = w[l->axis];
     }
-    const int side = side_of(at[0], at[1]);
-    if (!side || side_of(at[1], at[2]) != side || side_of(at[2], at[0]) != side || l->count == MOST)
+    const int side = edge_side(at[0], at[1]);
+    if (!side || edge_side(at[1], at[2]) != side || edge_side(at[2], at[0]) != side || l->count == MOST)
         return;
     double sum = 0, along = 0;
     for (int i = 0; i < 3; i++) {

@@ -1,5 +1,5 @@
 /* Closed surfaces of triangles as regions of space: an OBJ file that must be one, and whether triangles are. Whether a
- * point lies inside is winding.h's to say. Owns nothing.
+ * point lies inside is triangle_tree.h's to say. Owns nothing.
  */
 #ifndef SINEW_SOLID_H
 #define SINEW_SOLID_H

@@ -2,7 +2,7 @@
 
 #include "base/path.h"
 #include "surface/solid.h"
-#include "surface/winding.h"
+#include "surface/triangle_tree.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,7 +33,7 @@ void surface_region_in_box(const double *position, int64_t vertices, const doubl
 }
 
 typedef struct marker {
-    winding body;
+    const triangle_tree *body;
     const double *position;
     double metre;
     uint8_t *inside;
@@ -45,7 +45,7 @@ static void mark(void *context, int64_t chunk, int64_t from, int64_t to)
     (void)chunk;
     for (int64_t v = from; v < to; v++) {
         const double *x = m->position + 3 * v;
-        m->inside[v] = winding_holds(&m->body, (double[3]){x[0] * m->metre, x[1] * m->metre, x[2] * m->metre});
+        m->inside[v] = triangle_tree_holds(m->body, (double[3]){x[0] * m->metre, x[1] * m->metre, x[2] * m->metre});
     }
 }
 
@@ -55,15 +55,16 @@ int surface_region_in_file(const char *file, double scale, const double *positio
                            pool *threads, uint8_t *inside, err *e)
 {
     trimesh b = {0};
-    const int status = solid_read(&b, file, scale, e);
-    if (!status) {
-        marker m = {winding_of(b.position, b.corner, b.triangles), position, metre, NULL};
-        m.inside = inside;
-        if (threads)
-            pool_run(threads, vertices, VERTICES, mark, &m);
-        else
-            mark(&m, 0, 0, vertices);
-    }
+    triangle_tree *body =
+        solid_read(&b, file, scale, e) ? NULL : triangle_tree_create(b.position, b.corner, b.triangles, e);
     trimesh_free(&b);
-    return status;
+    if (!body)
+        return -1;
+    marker m = {body, position, metre, inside};
+    if (threads)
+        pool_run(threads, vertices, VERTICES, mark, &m);
+    else
+        mark(&m, 0, 0, vertices);
+    triangle_tree_destroy(body);
+    return 0;
 }

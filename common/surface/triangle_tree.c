@@ -1,14 +1,18 @@
 #include "surface/triangle_tree.h"
 
 #include "base/mem.h"
+#include "surface/edge_side.h"
+#include "surface/winding.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    LEAF = 4,    /* triangles of a leaf, at most */
-    WAITING = 64 /* nodes: of two halves one waits, and there are fewer than 2^30 triangles */
+    LEAF = 4,     /* triangles of a leaf, at most */
+    WAITING = 64, /* nodes: of two halves one waits, and there are fewer than MOST triangles */
+    MOST = 1 << 30
 };
 
 /* A box about some triangles, in their order in the tree: two halves, which are neighbours, or a leaf. */
@@ -25,7 +29,8 @@ struct triangle_tree {
     int32_t *place; /* triangles: the tree's number of the caller's */
     node *nodes;
     int32_t node_count;
-    double near; /* how far past its box a triangle's computed point may lie for rounding */
+    double near;   /* how far past its box a triangle's computed point may lie for rounding */
+    winding whole; /* of point */
 };
 
 /* As fmin and fmax are where no number is nan, without a call. */
@@ -138,11 +143,16 @@ static void build(triangle_tree *t, builder *b)
         t->place[t->order[i]] = (int32_t)i;
         memcpy(t->point + 9 * i, b->corner + 9 * (int64_t)t->order[i], 9 * sizeof *t->point);
     }
+    t->whole = winding_of(t->point, NULL, t->triangles);
 }
 
 triangle_tree *triangle_tree_create(const double *position, const int32_t *corner, int64_t triangles, err *e)
 {
     static const char what[] = "the tree of triangles";
+    if (triangles >= MOST) {
+        err_set(e, NULL, 0, "%" PRId64 " triangles of a surface; expected fewer than %d", triangles, MOST);
+        return NULL;
+    }
     triangle_tree *t = mem_array(1, sizeof *t, what, e);
     double *copy = t ? mem_array(triangles, 9 * sizeof *copy, what, e) : NULL;
     double *middle = copy ? mem_array(triangles, sizeof *middle, what, e) : NULL;
@@ -235,4 +245,79 @@ triangle_hit triangle_tree_nearest(const triangle_tree *t, const double q[3], in
         list[count++] = swapped ? other : one;
     }
     return best;
+}
+
+/* ---- Inside */
+
+/* What a ray from a point upward crosses. */
+typedef struct ray {
+    const triangle_tree *t;
+    const double *from;
+    int crossed;  /* how often, the sense counted */
+    bool is_on;   /* the point lies on the surface */
+    bool is_open; /* rounding does not let tell whether it lies below a triangle */
+} ray;
+
+/* Six times the volume of the origin and a triangle, and a bound on its error (Shewchuk 1997, orient3d). */
+static double volume_of(double at[3][3], double *error)
+{
+    const double *a = at[0], *b = at[1], *c = at[2];
+    const double bc = b[0] * c[1], cb = b[1] * c[0], ca = c[0] * a[1], ac = c[1] * a[0], ab = a[0] * b[1],
+                 ba = a[1] * b[0];
+    *error = 1e-15 * ((fabs(bc) + fabs(cb)) * fabs(a[2]) + (fabs(ca) + fabs(ac)) * fabs(b[2]) +
+                      (fabs(ab) + fabs(ba)) * fabs(c[2]));
+    return a[2] * (bc - cb) + b[2] * (ca - ac) + c[2] * (ab - ba);
+}
+
+/* Corners are rounded once, and alike in each triangle that has them: what is crossed stays closed. */
+static void cross(ray *r, int64_t place)
+{
+    const double *p = r->t->point + 9 * place, *const corner[3] = {p, p + 3, p + 6};
+    double at[3][3], error;
+    if (winding_meets(&r->t->whole, corner, r->from)) {
+        r->is_on = true;
+        return;
+    }
+    for (int i = 0; i < 3; i++)
+        for (int a = 0; a < 3; a++)
+            at[i][a] = corner[i][a] - r->from[a];
+    const int side = edge_side(at[0], at[1]);
+    if (!side || edge_side(at[1], at[2]) != side || edge_side(at[2], at[0]) != side)
+        return;
+    const double volume = side * volume_of(at, &error);
+    if (!(fabs(volume) > error))
+        r->is_open = true;
+    else if (volume > 0)
+        r->crossed += side;
+}
+
+/* Whether the ray comes into a box, or begins on it. */
+static bool comes_into(const ray *r, const node *n)
+{
+    const double near = r->t->whole.near, *q = r->from;
+    for (int a = 0; a < 3; a++)
+        if (q[a] > n->high[a] + near || (a < 2 && q[a] < n->low[a] - near))
+            return false;
+    return true;
+}
+
+bool triangle_tree_holds(const triangle_tree *t, const double q[3])
+{
+    ray r = {.t = t, .from = q};
+    int32_t list[WAITING] = {0};
+    for (int a = 0; a < 3; a++)
+        if (!(q[a] >= t->whole.low[a] && q[a] <= t->whole.high[a]))
+            return false;
+    for (int count = 1; count && !r.is_on;) {
+        const node *n = &t->nodes[list[--count]];
+        if (!comes_into(&r, n))
+            continue;
+        for (int32_t i = 0; !n->half && i < n->count; i++)
+            cross(&r, n->first + i);
+        if (n->half) {
+            list[count++] = n->half;
+            list[count++] = n->half + 1;
+        }
+    }
+    return r.is_on || (r.is_open ? winding_holds(&t->whole, q) : r.crossed != 0);
 }

@@ -4,6 +4,11 @@
 
 #include <math.h>
 
+static const double *corner_of(const winding *s, int64_t i)
+{
+    return s->position + 3 * (s->corner ? (int64_t)s->corner[i] : i);
+}
+
 winding winding_of(const double *position, const int32_t *corner, int64_t triangles)
 {
     winding s = {.position = position, .corner = corner, .triangles = triangles};
@@ -12,7 +17,7 @@ winding winding_of(const double *position, const int32_t *corner, int64_t triang
         s.low[a] = INFINITY;
         s.high[a] = -INFINITY;
         for (int64_t i = 0; i < 3 * triangles; i++) {
-            const double x = position[3 * (int64_t)corner[i] + a];
+            const double x = corner_of(&s, i)[a];
             s.low[a] = fmin(s.low[a], x);
             s.high[a] = fmax(s.high[a], x);
             largest = fmax(largest, fabs(x));
@@ -40,8 +45,8 @@ static double half_angle(const double *a, const double *b, const double *c)
     return atan2(dot(a, n), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
 }
 
-/* Whether the triangle comes as near as rounding. Few boxes of triangles hold the point. */
-static bool is_on(const winding *s, const double *const *at, const double *point)
+/* Few boxes of triangles hold the point. */
+bool winding_meets(const winding *s, const double *const at[3], const double point[3])
 {
     double nearest[3];
     for (int a = 0; a < 3; a++)
@@ -61,11 +66,11 @@ bool winding_holds(const winding *s, const double point[3])
     for (int64_t t = 0; t < s->triangles; t++) {
         const double *at[3];
         for (int i = 0; i < 3; i++) {
-            at[i] = s->position + 3 * (int64_t)s->corner[3 * t + i];
+            at[i] = corner_of(s, 3 * t + i);
             for (int a = 0; a < 3; a++)
                 corner[i][a] = at[i][a] - point[a];
         }
-        if (is_on(s, at, point))
+        if (winding_meets(s, at, point))
             return true;
         sum += half_angle(corner[0], corner[1], corner[2]);
     }

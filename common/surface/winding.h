@@ -11,7 +11,7 @@
 
 typedef struct winding {
     const double *position; /* vertices x 3, m */
-    const int32_t *corner;  /* triangles x 3: vertices; all triangles turn the same way */
+    const int32_t *corner;  /* triangles x 3: vertices; all triangles turn the same way. NULL: 0, 1, 2, 3, ... */
     int64_t triangles;
     double near;            /* m: how far outside a point may be for rounding */
     double low[3], high[3]; /* m: the box about it, wider by that */
@@ -19,7 +19,11 @@ typedef struct winding {
 
 winding winding_of(const double *position, const int32_t *corner, int64_t triangles);
 
-/* Time is that of a look at each triangle if the point lies in the box, and else nothing. */
+/* Time is that of a look at each triangle if the point lies in the box, and else nothing: triangle_tree_holds() says
+ * the same in less. */
 bool winding_holds(const winding *s, const double point[3]);
+
+/* Whether the point lies on the triangle of these corners, to rounding. */
+bool winding_meets(const winding *s, const double *const corner[3], const double point[3]);
 
 #endif

@@ -2,6 +2,7 @@
  * Of a processor's time, and the least of several runs, few and many in turn: on a busy machine, where others' work
  * takes the caches, there are more rounds. */
 #include "streams.h"
+#include "surface/triangle_tree.h"
 #include "surface/triangulate.h"
 #include "tap.h"
 
@@ -285,9 +286,67 @@ static void test_polygons(void)
     }
 }
 
+/* Two plates of so many triangles in all, which close a region but for its rim; half as many points between them, in
+ * line with their edges. Returns how many lie between. */
+
+enum { ACROSS = 50 };
+
+static int64_t plates(int count, double *position, int32_t *corner, triangle_tree **made, err *e)
+{
+    const int long_ = count / 4 / ACROSS, side = (ACROSS + 1) * (long_ + 1);
+    int64_t triangles = 0;
+    for (int v = 0; v < 2 * side; v++) {
+        position[3 * v] = v % side % (ACROSS + 1);
+        position[3 * v + 1] = v % side / (ACROSS + 1);
+        position[3 * v + 2] = v / side * 2 - 1;
+    }
+    for (int v = 0; v < 2 * side; v++) {
+        const int i = v % side % (ACROSS + 1), right = v < side ? ACROSS + 1 : 1, up = v < side ? 1 : ACROSS + 1;
+        if (i == ACROSS || v % side / (ACROSS + 1) == long_)
+            continue;
+        const int32_t both[6] = {v, v + right, v + right + up, v, v + right + up, v + up};
+        memcpy(corner + 3 * triangles, both, sizeof both);
+        triangles += 2;
+    }
+    *made = triangle_tree_create(position, corner, triangles, e);
+    return side;
+}
+
+static double hold_once(const void *one, int count, err *e)
+{
+    double *position = malloc(12 * (size_t)count * sizeof *position);
+    int32_t *corner = malloc(6 * (size_t)count * sizeof *corner);
+    triangle_tree *tree = NULL;
+    (void)one;
+    clock_t from = clock();
+    const int64_t points = plates(count, position, corner, &tree, e);
+    int64_t held = 0;
+    for (int64_t i = 0; tree && i < points; i++) {
+        const double *x = position + 3 * i, between[3] = {x[0], x[1], -.25};
+        held += triangle_tree_holds(tree, between);
+    }
+    double took = (double)(clock() - from);
+    if (tree && held < points * 4 / 5)
+        err_set(e, NULL, 0, "%lld of %lld points lie between", (long long)held, (long long)points);
+    triangle_tree_destroy(tree);
+    free(position);
+    free(corner);
+    return took;
+}
+
+static void test_insides(void)
+{
+    err e = {0};
+    const least t = least_of(hold_once, NULL, &e);
+    ok(!e.status && t.many < most * t.few,
+       "%d triangles and as many points take %.3g times as long as %d: which points are inside? %s", MANY,
+       t.many / t.few, FEW, e.text);
+}
+
 int main(void)
 {
     test_names();
     test_polygons();
+    test_insides();
     return done_testing();
 }

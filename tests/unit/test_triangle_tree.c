@@ -1,5 +1,6 @@
 /* Nearest points by the tree, to the bit those of a look at every triangle, in soups, on lattices with many ties, from
- * any guess; and the sides and borders that pseudonormals tell, on solids whose inside is known. */
+ * any guess; the sides and borders that pseudonormals tell, on solids whose inside is known; and what lies inside, as
+ * winding numbers say it. */
 #include "surface/pseudonormal.h"
 #include "surface/trimesh.h"
 #include "surface/winding.h"
@@ -175,6 +176,71 @@ static void borders(void)
     shape_free(&s);
 }
 
+/* Of a lattice's points: how many the tree and the winding number do not agree on, and how many are inside. */
+static int differ(const shape *s, int n, double h, int *inside)
+{
+    const winding solid = winding_of(s->mesh.position, s->mesh.corner, s->mesh.triangles);
+    int wrong = 0;
+    *inside = 0;
+    for (int i = 0; i < (2 * n + 1) * (2 * n + 1) * (2 * n + 1); i++) {
+        const int side = 2 * n + 1;
+        const double q[3] = {h * (i % side - n), h * (i / side % side - n), h * (i / side / side - n)};
+        const bool holds = winding_holds(&solid, q);
+        *inside += holds;
+        wrong += triangle_tree_holds(s->tree, q) != holds;
+    }
+    return wrong;
+}
+
+static void try_inside(const char *name, const char *text, int n, double h)
+{
+    shape s;
+    int inside;
+    shape_of(&s, text);
+    const int wrong = differ(&s, n, h, &inside);
+    ok(!wrong && inside,
+       "%s: %d of a lattice's points, of which it holds %d, are on another side than by winding numbers", name, wrong,
+       inside);
+    shape_free(&s);
+}
+
+/* A box that is cut into n x n x n cells: its faces, turned about z. inward: they face
+ * inward. */
+static void write_box(out *o, int n, double half, double turn, bool inward, int64_t *vertices)
+{
+    for (int face = 0; face < 6; face++)
+        for (int i = 0; i < n * n; i++) {
+            static const int at[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+            for (int c = 0; c < 4; c++) {
+                double x[3];
+                x[face / 2] = face % 2 ? half : -half;
+                x[(face / 2 + 1) % 3] = half * (2. * (i % n + at[c][0]) / n - 1);
+                x[(face / 2 + 2) % 3] = half * (2. * (i / n + at[c][1]) / n - 1);
+                out_format(o, "v %.17g %.17g %.17g\n", x[0] * cos(turn) - x[1] * sin(turn),
+                           x[0] * sin(turn) + x[1] * cos(turn), x[2]);
+            }
+            const long long v = *vertices, back = (face % 2 == 0) != inward;
+            out_format(o, "f %lld %lld %lld %lld\n", v + 1, v + (back ? 4 : 2), v + 3, v + (back ? 2 : 4));
+            *vertices += 4;
+        }
+}
+
+static void try_box(const char *name, double turn, bool hollow, int n, double h)
+{
+    err e = {0};
+    int64_t vertices = 0;
+    size_t length;
+    out *o = out_memory(&e);
+    write_box(o, 6, .6, turn, false, &vertices);
+    if (hollow)
+        write_box(o, 3, .3, turn, true, &vertices);
+    const unsigned char *bytes = out_bytes(o, &length);
+    char *text = strndup((const char *)bytes, length);
+    try_inside(name, text, n, h);
+    free(text);
+    out_discard(o);
+}
+
 int main(void)
 {
     soup("one triangle", 1, 0, .5, 0);
@@ -186,5 +252,12 @@ int main(void)
     soup("all at few places", 2000, 1, .3, 0);
     sides();
     borders();
+    try_inside("a wedge", wedge, 12, .05);
+    try_inside("a wedge with a seam", seam, 12, .05);
+    try_inside("a star", star, 10, .1);
+    try_box("a box in line with the lattice", 0, false, 8, .1);
+    try_box("with a hollow", 0, true, 8, .1);
+    try_box("turned by 45 degrees", acos(-1) / 4, true, 8, .1 * sqrt(.5));
+    try_box("turned by 30 degrees", acos(-1) / 6, true, 8, .1);
     return done_testing();
 }
