@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""console_live.py CASE FACE FOLDER: sinew console and its tools, with the page in a real headless Chromium. CASE: a folder of ultrasound; FACE: a
-model with a muscle; FOLDER: an empty one, for records. TAP; asserts on what the page knows and what records say, never on times."""
+"""console_live.py CASE FACE JAW FOLDER: sinew console and its tools, with the page in a real headless Chromium. CASE: a folder of ultrasound; FACE: a
+model with a muscle; JAW: a folder of tests/cli/jaw_case.sh; FOLDER: an empty one, for records. TAP; asserts on what the page knows and what records say, never on times."""
 import os
 import signal
 import socket
@@ -110,6 +110,11 @@ def deaths(t, console, page):
     t.check("and starts again by reset", page.until("document.getElementById('children').hidden && sinew.state.children.every((c) => c.alive)", LONG))
 
 
+def is_whole(path):
+    with open(path) as f:
+        return f.read().endswith("\nend\n")
+
+
 def record(t, page, case, folder):
     """What was shown is what the record gives on a command line."""
     page.until("sinew.frame !== null && sinew.probe.known && sinew.image !== null", LONG)
@@ -118,10 +123,11 @@ def record(t, page, case, folder):
     shown = page.get("[sinew.frame.index, sinew.frame.force, document.getElementById('force').textContent]")
     open_case(page, "face")  # which closes the record
     records = sorted((n for n in os.listdir(folder) if n.startswith("case-") and n.endswith(".msds.record")), key=lambda n: int(n.split(".")[0].split("-")[1]))
+    t.check("the record becomes whole", until(lambda: is_whole(f"{folder}/{records[-1]}"), LONG), records)
     done = subprocess.run(f"msds-run -q --replay '{folder}/{records[-1]}' <'{case}/mesh.sinew' | sinew info --tsv probe.force",
                           shell=True, capture_output=True, text=True)
     rows = [line.split("\t") for line in done.stdout.splitlines()[1:]]
-    replayed = next(([float(x) for x in row[2:]] for row in rows if row[0] == str(shown[0])), None)
+    replayed = next(([float(x) for x in row[2:]] for row in rows if row[0] == str(shown[0])), (shown[0], rows[-1:], done.stderr))
     t.is_("the force that was shown is the record's, to the bit", shown[1], replayed)
     t.near("in its text to two decimals", float(shown[2].split()[0]), sum(x * x for x in shown[1]) ** .5, .006)
 
@@ -161,9 +167,22 @@ def face(t, page):
     t.check("and on", page.until(f"!sinew.state.paused && sinew.frame.index > {index + 5}", LONG))
 
 
+def jaw(t, page):
+    """Teeth that body.txt puts on the jaw: the page's vertices, m, and its picture."""
+    t.check("a face with a jaw opens", open_case(page, "jaw"))
+    at = """((item) => item && Array.from({length: 4}, (_, i) => item.placeNow(i).toArray()).flat())(sinew.view.named('teeth'))"""
+    rest = page.get(at)
+    t.check("its teeth are drawn", rest and abs(rest[2] - .02) < 1e-6, rest)
+    near = lambda y, z: f"({at}).every((x, i) => Math.abs(x - [{','.join(map(str, rest))}][i] - [0, {y}, {z}][i % 3]) < 1e-6)"
+    page.driver.execute_script("sinew.send('now move jaw 0,1mm,4mm 0,0,0,1')")
+    t.check("and go where the jaw goes", page.until(near(.001, .004), LONG), page.get(at), rest)
+    page.driver.execute_script("sinew.send('reset')")
+    t.check("reset has them at rest", page.until(f"sinew.view.named('teeth') && {near(0, 0)}", LONG), page.get(at), rest)
+
+
 def main():
-    case, model, folder = sys.argv[1:]
-    console = Console("--record", folder, case, model)
+    case, model, with_jaw, folder = sys.argv[1:]
+    console = Console("--record", folder, case, model, with_jaw)
     page = None
     t = Tap()
     try:
@@ -178,6 +197,7 @@ def main():
         deaths(t, console, page)
         record(t, page, case, folder)
         face(t, page)
+        jaw(t, page)
         t.is_("no message was unreadable", page.get("sinew.problem"), None)
         tools = [console.child(name) for name in ("msds-run", "us-slice", "tled-run")]
         t.is_("^C ends the console", console.end(), 0)

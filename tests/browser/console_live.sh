@@ -16,6 +16,7 @@ have chromedriver || skip_all "no chromedriver"
     voxelise -q --unit mm -s 4 --volumes muscle.volumes --materials muscle.materials "$T/muscle.obj" |
         attach -q --fibre axis | sinew bind >"$T/face.sinew"
 ) >"$T/made" 2>&1 || diag_file "$T/made"
-mkdir "$T/records"
-HOME=$T PYTHONDONTWRITEBYTECODE=1 "$python" "$ROOT/tests/browser/console_live.py" "$T/case" "$T/face.sinew" "$T/records"
+mkdir "$T/records" "$T/jaw"
+sh tests/cli/jaw_case.sh "$T/jaw" >"$T/made" 2>&1 || diag_file "$T/made"
+HOME=$T PYTHONDONTWRITEBYTECODE=1 "$python" "$ROOT/tests/browser/console_live.py" "$T/case" "$T/face.sinew" "$T/jaw" "$T/records"
 exit $?

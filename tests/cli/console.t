@@ -56,9 +56,18 @@ cp "$SINEW_BIN/sinew-console" "$T/bin"
 fails 1 "a tool that is not there" "tled-run: there is no such tool beside sinew-console, nor on PATH" \
     env PATH=/usr/bin:/bin timeout 60 "$T/bin/sinew-console" --page "$T/page" "$T/muscle.sinew"
 
+# ---- A face with a body around it: a cube of 20 mm that the jaw holds at its top, and teeth on the jaw.
+mkdir "$T/face"
+sh tests/cli/jaw_case.sh "$T/face" || not_ok "a face with a jaw"
+sed 's/in=jaw/in=jam/' "$T/face/body.txt" >"$T/wrong.txt"
+mkdir "$T/wrong"
+cp "$T/face/mesh.sinew" "$T/face/teeth.obj" "$T/wrong"
+mv "$T/wrong.txt" "$T/wrong/body.txt"
+fails 1 "teeth on a body that is not there" "body.txt:2: unknown body 'jam'; did you mean 'jaw'" console "$T/wrong"
+
 # ---- The conversation.
 check "cases from equations" env NODES=12x5x9 SPACING=8 samples/console "$T/cases"
-timeout 400 python3 tests/cli/console_talk.py "$T/muscle.sinew" "$T/case" "$SINEW_BIN" "$T" "$T/page" "$T/cases" >"$T/talk" 2>"$T/talk.err"
+timeout 400 python3 tests/cli/console_talk.py "$T/muscle.sinew" "$T/case" "$SINEW_BIN" "$T" "$T/page" "$T/cases" "$T/face" >"$T/talk" 2>"$T/talk.err"
 is "$?" 0 "it is talked to, to the end"
 [ ! -s "$T/talk.err" ] || diag_file "$T/talk.err"
 tell "$T/talk"

@@ -1,5 +1,6 @@
-"""console_talk.py FACE CASE BIN FOLDER PAGE CASES: talks to sinew console as a page does, and prints "ok NAME" or "not ok NAME: ..." a line.
-FACE: a model with a muscle; CASE: a case folder; FOLDER: for records; CASES: what samples/console makes. Asserts on states and bytes; times are only limits for what hangs."""
+"""console_talk.py FACE CASE BIN FOLDER PAGE CASES JAW: talks to sinew console as a page does, and prints "ok NAME" or "not ok NAME: ..." a line.
+FACE: a model with a muscle; CASE: a case folder; FOLDER: for records; CASES: what samples/console makes; JAW: what jaw_case.sh
+makes. Asserts on states and bytes; times are only limits for what hangs."""
 
 import atexit
 import os
@@ -10,7 +11,7 @@ import time
 
 from console_client import Page, decode_geometry, decode_image, decode_positions, request, upgrade
 
-face, case, bin_folder, work, page_folder, cases = sys.argv[1:7]
+face, case, bin_folder, work, page_folder, cases, jaw = sys.argv[1:8]
 LONG = 60
 
 
@@ -373,6 +374,43 @@ def try_cases():
     page.close()
 
 
+def try_jaw():
+    """A surface of body.txt goes with the rigid body that it is in, as frames have it."""
+    console = Console(jaw)
+    page = Page(console.port)
+    ok(page.until(lambda p: p.state and 2 in p.binary and 3 in p.binary, LONG), "jaw: a face with a body around it opens", page.counts)
+    header, meshes = decode_geometry(page.binary[2])
+    teeth = next((m for m in header["meshes"] if m["name"] == "teeth"), None)
+    if not ok(teeth and teeth["moves"] and teeth["vertices"] == 4, "jaw: its teeth are drawn, and move", header):
+        return
+    rest = [0.005, 0.005, 0.02, 0.015, 0.005, 0.02, 0.015, 0.015, 0.02, 0.005, 0.015, 0.02]
+    off = lambda p, to: max(abs(a - b) for a, b in zip(decode_positions(p.binary[3])[1][teeth["id"]][0], to))
+    ok(max(abs(a - b) for a, b in zip(meshes[teeth["id"]][0], rest)) < 1e-7 and off(page, rest) < 1e-6, "jaw: where body.txt has them, at rest", rest)
+    page.send("now move jaw 0,0,4mm 0,0,0,1")
+    up = [x + 0.004 * (i % 3 == 2) for i, x in enumerate(rest)]
+    ok(page.until(lambda p: off(p, up) < 1e-6, LONG), "jaw: they go where the jaw goes", decode_positions(page.binary[3]))
+    # By a right angle about z, through the corner at 5 mm, 5 mm: x, y -> -y, x.
+    page.send("now move jaw 0,0,4mm 0,0,0.70710678118654757,0.70710678118654757 about 5mm,5mm,20mm")
+    turned = [[0.005 - (up[i + 1] - 0.005), 0.005 + (up[i] - 0.005), up[i + 2]] for i in range(0, 12, 3)]
+    turned = [x for place in turned for x in place]
+    ok(page.until(lambda p: off(p, turned) < 1e-6, LONG), "jaw: and turn with it", (decode_positions(page.binary[3]), turned))
+    page.send("now move jam 0,0,0 0,0,0,1")
+    ok(page.heard("unknown body 'jam'", LONG), "jaw: a body that is not there is told of", page.said)
+    page.send("save model")
+    ok(page.until(lambda p: p.saved, LONG), "jaw: it is saved")
+    with open(os.path.join(work, "jaw.sinew"), "wb") as f:
+        f.write(request(console.port, page.saved[0]["url"])[2])
+    info = subprocess.run([os.path.join(bin_folder, "sinew-info"), os.path.join(work, "jaw.sinew"), "--get", "body.pose.jaw"], capture_output=True, text=True)
+    pose = [float(x) for x in info.stdout.split()]
+    # A place x goes to turn(x) + move: move = c + t - turn(c), with c = (5, 5, 20) mm.
+    want = [0.01, 0, 0.004, 0, 0, 0.5**0.5, 0.5**0.5]
+    ok(len(pose) == 7 and max(abs(a - b) for a, b in zip(pose, want)) < 1e-6, "jaw: and the model has the jaw there", info.stdout + info.stderr)
+    page.send("reset")
+    ok(page.until(lambda p: alive(p) and off(p, rest) < 1e-6, LONG), "jaw: reset has them at rest", decode_positions(page.binary[3]))
+    ok(console.end(page=page) == 0, "jaw: it ends")
+    page.close()
+
+
 def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     console = Console(face)
@@ -391,6 +429,7 @@ def main():
     try_token()
     try_ultrasound()
     try_cases()
+    try_jaw()
 
 
 main()
