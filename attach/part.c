@@ -92,29 +92,31 @@ static int claim_sure(maker *k, int32_t body, const uint8_t *mine, err *e)
     return shared ? refuse_shared(k, body, first, shared, e) : 0;
 }
 
-static bool names_surface(const char *list, const char *name)
+/* Marks the nodes of the surfaces that a name stands for; it is an error where there is none. */
+static int mark_surfaces(const maker *k, const char *name, uint8_t *mine, err *e)
 {
-    char pattern[MODEL_NAME];
-    for (const char *p = list; *p;) {
-        const size_t n = strcspn(p, ",");
-        snprintf(pattern, sizeof pattern, "%.*s", (int)(n < sizeof pattern ? n : 0), p);
-        if (*pattern && surface_in_group(name, pattern))
-            return true;
-        p += n + (p[n] == ',');
-    }
-    return false;
+    const model_array *all = k->anchors;
+    bool any = false;
+    for (int64_t i = 0; i < all->rows; i++)
+        any |= surface_in_group(all->str[i], name);
+    if (!any)
+        return near_option(e, "--part", "rigid surface", name, (const char *const *)all->str,
+                           all->rows < INT32_MAX ? (int)all->rows : INT32_MAX);
+    for (int64_t n = 0; n < k->nodes; n++)
+        mine[n] |= k->rigid[n] && k->anchor[n] >= 0 && surface_in_group(all->str[k->anchor[n]], name);
+    return 0;
 }
 
 static int by_surfaces(maker *k, const char *list, uint8_t *mine, err *e)
 {
-    bool any = false;
-    for (int64_t i = 0; i < k->anchors->rows; i++)
-        any |= names_surface(list, k->anchors->str[i]);
-    if (!any)
-        return near_option(e, "--part", "rigid surface", list, (const char *const *)k->anchors->str,
-                           k->anchors->rows < INT32_MAX ? (int)k->anchors->rows : INT32_MAX);
-    for (int64_t n = 0; n < k->nodes; n++)
-        mine[n] = k->rigid[n] && k->anchor[n] >= 0 && names_surface(list, k->anchors->str[k->anchor[n]]);
+    char name[MODEL_NAME];
+    for (const char *p = list; *p;) {
+        const size_t n = strcspn(p, ",");
+        snprintf(name, sizeof name, "%.*s", (int)(n < sizeof name ? n : sizeof name - 1), p);
+        if (mark_surfaces(k, name, mine, e))
+            return -1;
+        p += n + (p[n] == ',');
+    }
     return claim_sure(k, k->bodies - 1, mine, e);
 }
 

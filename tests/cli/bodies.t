@@ -64,6 +64,8 @@ refuse_part "no node" 1 "'jaw' has no rigid node; expected bone of it that holds
 refuse_part "shared nodes" 1 "'a' and 'b' share 20 rigid nodes, the first at 5mm,0mm,20mm; expected parts that lie apart" 'a=skull_t*' b=skull_top
 refuse_part "shared by a file" 1 "'a' and 'b' share 20 rigid nodes" a=skull_top "b=$T/upper.obj"
 refuse_part "an unknown surface" 2 "unknown rigid surface 'skull_tip'; did you mean 'skull_top'" jaw=skull_tip
+refuse_part "one of two" 2 "unknown rigid surface 'skull_lid'; did you mean 'skull_low'" jaw=skull_top,skull_lid
+refuse_part "no name between commas" 2 "unknown rigid surface ''" jaw=skull_top,,skull_low
 refuse_part "no name" 2 "expected NAME=SURFACE,... or NAME=FILE.obj, such as jaw=skull_jaw" =skull_top
 refuse_part "no surface" 2 "expected NAME=SURFACE" jaw=
 refuse_part "a blank" 2 "expected NAME=SURFACE" 'my jaw=skull_top'
