@@ -259,3 +259,17 @@ void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, cons
     notes_add(n, "layer %s is %.4g %s thick, less than a voxel of %.4g %s: %s; voxels of at most %.4g %s resolve it",
               which, thickness, name, side, name, what, thickness, name);
 }
+
+static const char *plural_of(int64_t count)
+{
+    return count == 1 ? "" : "s";
+}
+
+void report_slits(const tool *t, const slits *s)
+{
+    if (s->elements)
+        tool_say(t, "slits are open: %lld more node%s, and %lld more element%s, of voxels in several parts",
+                 (long long)s->nodes, plural_of(s->nodes), (long long)s->elements, plural_of(s->elements));
+    else if (s->nodes)
+        tool_say(t, "slits are open: %lld more node%s", (long long)s->nodes, plural_of(s->nodes));
+}

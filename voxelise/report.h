@@ -8,8 +8,10 @@
 #include "base/out.h"
 #include "cli/listing.h"
 #include "cli/text_table.h"
+#include "cli/tool.h"
 #include "voxelise/gaps.h"
 #include "voxelise/layers.h"
+#include "voxelise/slits.h"
 #include "voxelise/surfaces/check_surfaces.h"
 #include "voxelise/volumes.h"
 
@@ -49,5 +51,8 @@ void report_gaps(notes *n, const gaps *found, const grid *g, double least, num_u
 /* Notes a layer that is thinner than a voxel: the volume of that number. */
 void report_layer(notes *n, const layers *l, int64_t layer, int32_t volume, const voxels *x, const grid *g,
                   num_unit unit);
+
+/* Says how many nodes and elements slits have added; nothing where they have added none. */
+void report_slits(const tool *t, const slits *s);
 
 #endif

@@ -374,9 +374,9 @@ static int say_plan(job *j, const model *m, err *e)
                  (long long)j->x.elements);
     tool_say(j->t, "%lld elements, %lld nodes", (long long)model_count(m, "element"),
              (long long)model_count(m, "node"));
-    if (j->slit.nodes)
-        tool_say(j->t, "slits are open: %lld nodes more, and %lld elements more of voxels that are in parts",
-                 (long long)j->slit.nodes, (long long)j->slit.elements);
+    report_slits(j->t, &j->slit);
+    if (j->o->slits == SLITS_ON && !opens_slits(j))
+        notes_add(&j->warnings, "slits are not looked for (--slits on), as a volume of level 0 is open");
     if (!j->plan.rigid)
         notes_add(&j->warnings, "nothing is rigid: no surface begins skull, bone or rigid");
     return 0;

@@ -122,7 +122,7 @@ typedef struct known {
     X("probe.torque", MODEL_F64, "N.m", "probe", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run or tled-run",        \
       "torque of the tissue on it, about the origin of its frame")                                                     \
     X("body.pose", MODEL_F64, "1", "body", 7, 7, KNOWN_FRAME, KNOWN_POSE, 0, 0, "tled-run",                            \
-      "how it has moved from rest: where its rest's origin is now, m, and its turn, a unit quaternion x y z w")        \
+      "its motion from rest: where the origin has moved to, m, and its turn, a unit quaternion x y z w")               \
     X("body.force", MODEL_F64, "N", "body", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                         \
       "force of the tissue on it")                                                                                     \
     X("body.torque", MODEL_F64, "N.m", "body", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                      \

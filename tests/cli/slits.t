@@ -36,6 +36,11 @@ is "$(vox -s 2 --slits on "$T/halves.obj") $(pull | cut -d ' ' -f 1,2)" "8000 97
 is "$(vox -s 2 --fraction 8 "$T/halves.obj") $(pull | cut -d ' ' -f 1,2)" "8000 9702 4851 4851" "by shares too, by default"
 is "$(vox -s 2 --fraction 8 --origin 1,0,0 "$T/halves.obj") $(pull | cut -d ' ' -f 1,2)" "8800 10584 5292 5292" "and where voxels are cut in two"
 is "$(sinew info --get volume.count.skin "$T/m")" 8800 "which are two elements each"
+voxelise --unit mm -s 2 --fraction 8 --origin 1,0,0 "$T/halves.obj" 2>&1 >"$T/m" | grep slits >"$T/said"
+is "$(cat "$T/said")" "voxelise: slits are open: 882 more nodes, and 400 more elements, of voxels in several parts" "a message says so"
+box skin 0 0 0 20 20 20 | sed '$d' >"$T/open.obj"
+voxelise -q --unit mm -s 2 --allow-open --slits on "$T/open.obj" 2>&1 >"$T/m" | grep slits >"$T/said"
+is "$(cat "$T/said")" "voxelise: warning: slits are not looked for (--slits on), as a volume of level 0 is open" "not of an open volume"
 halves 0.2
 is "$(vox -s 2 --slits on "$T/halves.obj") $(pull | cut -d ' ' -f 1,2)" "8000 9702 4851 4851" "apart by a tenth of a voxel, by centres"
 is "$(vox -s 2 --fraction 8 "$T/halves.obj") $(pull | cut -d ' ' -f 1,2)" "8000 9702 4851 4851" "by shares"
