@@ -36,8 +36,10 @@ FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
 REPLAY := $(FUZZ_SRC:tests/fuzz/fuzz_%.c=$(BUILD)/tests/fuzz/replay_%)
 # Embree and the rest only for those that turn out to use them. (A variable: the comma.)
 AS_NEEDED = -Wl,--as-needed
+# SOURCE|NEEDED, of all such lines: read at once, since a shell for each program takes seconds each time that make begins.
+NEEDED := $(shell awk '/^\/\/ needs:/ { for (i = 3; i <= NF; i++) print FILENAME "|" $$i }' $(wildcard tests/*/*.c))
 # tled/*/*.c: all but the main and what only cards use.
-needs = $(call objects,$(patsubst tled/*/*.c,$(filter-out tled/run/tled-run.c,$(TLED_SRC)),$(shell sed -n 's|^// needs: *||p' $(1))))
+needs = $(call objects,$(patsubst tled/*/*.c,$(filter-out tled/run/tled-run.c,$(TLED_SRC)),$(patsubst $(1)|%,%,$(filter $(1)|%,$(NEEDED)))))
 
 # $(1): the program; $(2): flags; $(3), $(4): its source, where that has another name, and an object more.
 define test_program
