@@ -9,14 +9,15 @@ is "$(ls)" "$({ for page in "$ROOT"/man/*.[157]; do echo "$(basename "$page").ht
     "a page each, an index, one style, and the figures"
 grep -o 'href="[^"]*"' -- *.html | sed 's/:href="/ /; s/"$//' | sort -u >"$T/links"
 check "there are links: $(wc -l <"$T/links" | tr -d ' ')" test "$(wc -l <"$T/links")" -gt 500
-while read -r page link; do
-    case $link in
-    https://manpages.debian.org/bookworm/*.[1-8] | http://* | https://doi.org/*) ;;
-    '#'*) grep -Fq "id=\"${link#?}\"" "$page" || echo "$page: $link" ;;
-    *'#'*) grep -Fq "id=\"${link#*#}\"" "${link%%#*}" || echo "$page: $link" ;;
-    *) [ -s "$link" ] || echo "$page: $link" ;;
-    esac
-done <"$T/links" >"$T/dead"
+# Where a link may lead: files, and places in them.
+{
+    find . -type f -size +0 | sed 's|^\./||'
+    grep -o 'id="[^"]*"' -- *.html | sed 's/:id="/#/; s/"$//'
+} >"$T/places"
+awk 'NR == FNR { is[$0]; next }
+    $2 ~ /^(https:\/\/manpages\.debian\.org\/bookworm\/.*\.[1-8]$|http:\/\/|https:\/\/doi\.org\/)/ { next }
+    { to = $2 ~ /^#/ ? $1 $2 : $2 }
+    !(to in is) { print $1 ": " $2 }' "$T/places" "$T/links" >"$T/dead"
 is "$(cat "$T/dead")" "" "no link is dead"
 is "$(sed -n 's|.* https://manpages.debian.org/bookworm/||p' "$T/links" | sort -u | while read -r page; do [ -e "$ROOT/man/$page" ] && echo "$page"; done)" "" \
     "none to Debian's pages for one of ours"

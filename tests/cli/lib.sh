@@ -22,6 +22,13 @@ trap 'rm -rf "$T"' EXIT
 trap 'exit 1' HUP INT TERM
 exec </dev/null
 
+# What stands first on PATH may be a wrapper that takes longer to begin than a small test takes in all.
+if [ -x /usr/bin/python3 ]; then
+    python3() {
+        /usr/bin/python3 "$@"
+    }
+fi
+
 tap_count=0
 tap_failed=0
 

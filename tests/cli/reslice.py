@@ -5,7 +5,9 @@ import gzip
 import re
 import sys
 
-import vtk
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+from vtkmodules.vtkIOImage import vtkImageImport
+from vtkmodules.vtkImagingCore import vtkImageReslice
 
 
 def cross(a, b):
@@ -41,7 +43,7 @@ def read_pgm(path):
 
 
 def as_image(voxels, size):
-    importer = vtk.vtkImageImport()
+    importer = vtkImageImport()
     text = array.array("d", voxels).tobytes()
     importer.CopyImportVoidPointer(text, len(text))
     importer.SetDataScalarTypeToDouble()
@@ -62,12 +64,12 @@ def to_voxels(v):
 
 u, v = to_voxels(column), to_voxels(row)
 start = to_voxels([a - b for a, b in zip(corner, origin)])
-matrix = vtk.vtkMatrix4x4()
+matrix = vtkMatrix4x4()
 for j, axis in enumerate((u, v, cross(u, v), start)):
     for i in range(3):
         matrix.SetElement(i, j, axis[i])
 source = as_image(voxels, size)
-reslice = vtk.vtkImageReslice()
+reslice = vtkImageReslice()
 reslice.SetInputConnection(source.GetOutputPort())
 reslice.SetResliceAxes(matrix)
 reslice.SetOutputDimensionality(2)
