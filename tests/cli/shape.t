@@ -121,18 +121,28 @@ for tool in $tools; do
 done
 
 # ---- -V takes a few milliseconds of a processor, not of a clock, which others' work makes run on; no card is looked at. Others' work also takes the
-# processor's caches away, so of three tries the least counts.
-# version_takes TOOL: in milliseconds, of ten: times tells hundredths of a second.
-version_takes() {
-    (for _ in 1 2 3 4 5 6 7 8 9 10; do "$1" -V || exit; done >"$T/version" && times) | tail -n 1 |
+# processor's caches away, and there are machines where any program takes long to begin: at most 20 ms, or ten times what a shell takes that does
+# nothing, then and there; and one of three tries is enough.
+# ten_take COMMAND...: in milliseconds, of ten: times tells hundredths of a second.
+ten_take() {
+    (for _ in 1 2 3 4 5 6 7 8 9 10; do "$@" || exit; done >"$T/version" && times) | tail -n 1 |
         tr 'ms' '  ' | awk '{ print 100 * ($2 + $4) }'
 }
+# at_once TOOL: $took and $limit have what the last try took, and might.
+at_once() {
+    for _ in 1 2 3; do
+        took=$(ten_take "$1" -V)
+        limit=$(awk -v shell="$(ten_take sh -c :)" 'BEGIN { print (10 * shell > 20 ? 10 * shell : 20) }')
+        awk -v took="$took" -v limit="$limit" 'BEGIN { exit !(took != "" && took < limit) }' && return
+    done
+}
 for tool in $tools sinew; do
-    took=$(for _ in 1 2 3; do version_takes "$tool"; done | sort -n | head -n 1)
     if [ "${SINEW_SANITIZED:-}" ]; then
         skip 1 "sanitizers take their time"
+    elif at_once "$tool"; then
+        ok "$tool -V takes $took ms"
     else
-        check "$tool -V takes $took ms" awk -v took="$took" 'BEGIN { exit !(took != "" && took < 20) }'
+        not_ok "$tool -V takes $took ms; expected less than $limit"
     fi
 done
 
