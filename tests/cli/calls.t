@@ -134,7 +134,7 @@ single() {
     shift 2
     case $name in
     diff) bad=2 ;; # as diff(1) has it
-    attach | info | us-import) ;;
+    'attach --fibre field, text' | info | us-import) ;;
     *) [ "$SINEW_LONG" ] || return 0 ;;
     esac
     "$@" -o "$T/wants/out" <"$input" 2>/dev/null

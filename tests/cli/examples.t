@@ -1,6 +1,7 @@
 #!/bin/sh
 # The EXAMPLES of every page of section 1, run as they stand there, coarser and shorter: page by page in a folder of its own, which has
-# samples and the files that other pages' examples make. At the end of this file: which are not run, and why.
+# samples and the files that other pages' examples make. At the end of this file: which are not run, and why. Of a page the first two, and with
+# SINEW_LONG all.
 . "$(dirname "$0")/lib.sh"
 
 # ---- The examples: a file each, as a reader sees them. Where commands stand behind a $, other lines are what they print.
@@ -63,7 +64,9 @@ for example in "$T"/examples/*; do
         cp -R "$T/all" "$T/here"
     fi
     cd "$T/here" || exit 1
-    if grep -q 'ffmpeg' "$T/commands" && ! have ffmpeg; then
+    if [ ! "$SINEW_LONG" ] && [ "${name##*.}" != 01 ] && [ "${name##*.}" != 02 ]; then
+        continue
+    elif grep -q 'ffmpeg' "$T/commands" && ! have ffmpeg; then
         skip 1 "$name: no ffmpeg"
     elif grep -q '^gmsh' "$T/commands" && ! have gmsh; then
         skip 1 "$name: no gmsh"

@@ -1,7 +1,8 @@
 # shellcheck shell=sh
-# One small command of every tool, for the tests of what fails: `make_inputs` once, then `each_command FUNCTION` calls
+# Small commands of every tool, for the tests of what fails: `make_inputs` once, then `each_command FUNCTION` calls
 #     FUNCTION NAME INPUT COMMAND...
-# for each, INPUT what it reads on standard input. All write to standard output, and take -o FILE.
+# for each, INPUT what it reads on standard input. All write to standard output, and take -o FILE. One of every tool, and of
+# tled-run's output as it is and gzipped; with SINEW_LONG more of most.
 
 # box NAMES X0 Y0 Z0 X1 Y1 Z1, as OBJ.
 . "$ROOT/tests/cli/boxes.sh"
@@ -41,33 +42,35 @@ make_inputs() {
 
 each_command() {
     tap_each=$1
+    tap_more=$1
+    [ "$SINEW_LONG" ] || tap_more=:
     "$tap_each" "voxelise" /dev/null voxelise --unit mm -s 4 --volumes "$T/in/volumes" --materials "$T/in/materials" "$T/in/head.obj"
-    "$tap_each" "voxelise of gzipped, shares" /dev/null voxelise --unit mm -s 5 --fraction 3 "$T/in/skin.obj.gz"
-    "$tap_each" "voxelise --check" /dev/null voxelise --unit mm -s 4 --check "$T/in/head.obj"
-    "$tap_each" "attach" "$T/in/voxels.sinew" attach
+    "$tap_more" "voxelise of gzipped, shares" /dev/null voxelise --unit mm -s 5 --fraction 3 "$T/in/skin.obj.gz"
+    "$tap_more" "voxelise --check" /dev/null voxelise --unit mm -s 4 --check "$T/in/head.obj"
+    "$tap_more" "attach" "$T/in/voxels.sinew" attach
     "$tap_each" "attach --fibre field, text" "$T/in/voxels.sinew" attach --fibre field --report --text
     "$tap_each" "bind" "$T/in/attached.sinew" sinew bind "$T/in/skin.obj"
     "$tap_each" "deform" "$T/in/frames.sinew" sinew deform "$T/in/skin.obj"
     "$tap_each" "tled-run" "$T/in/bound.sinew" tled-run -d cpu --threads 2 -c a=0.5 -t 0.02 --every 0.005
     "$tap_each" "tled-run, a script, gzip" "$T/in/bound.sinew" tled-run -d cpu --threads 2 --script "$T/in/script" -t 0.02 -z
-    "$tap_each" "tled-run, a probe, single" "$T/in/attached.sinew" tled-run -d cpu --threads 2 --precision single --probe sphere:3mm --poses "$T/in/poses" -t 0.02 --text
-    "$tap_each" "tled-run going on" "$T/in/frames.text.gz" tled-run -d cpu --threads 2 -c a=0.5 -t 0.01
+    "$tap_more" "tled-run, a probe, single" "$T/in/attached.sinew" tled-run -d cpu --threads 2 --precision single --probe sphere:3mm --poses "$T/in/poses" -t 0.02 --text
+    "$tap_more" "tled-run going on" "$T/in/frames.text.gz" tled-run -d cpu --threads 2 -c a=0.5 -t 0.01
     "$tap_each" "msds-mesh" /dev/null msds-mesh --nodes 6x5x4 --like "$T/in/volume.nrrd"
-    "$tap_each" "msds-run" "$T/in/mesh.sinew" msds-run -d cpu --threads 2 --probe sphere:5mm --poses "$T/in/press"
+    "$tap_more" "msds-run" "$T/in/mesh.sinew" msds-run -d cpu --threads 2 --probe sphere:5mm --poses "$T/in/press"
     "$tap_each" "msds-run, FEM" "$T/in/mesh.sinew" msds-run -d cpu --threads 2 --method fem --probe curved:3cm,60,5mm --poses "$T/in/press"
-    "$tap_each" "msds-run, FEM exactly, a skin" "$T/in/mesh.sinew" msds-run -d cpu --threads 2 --method fem --exact --skin "$T/in/bone.obj" --unit mm --probe "convex:$T/in/skin.obj" --poses "$T/in/press"
+    "$tap_more" "msds-run, FEM exactly, a skin" "$T/in/mesh.sinew" msds-run -d cpu --threads 2 --method fem --exact --skin "$T/in/bone.obj" --unit mm --probe "convex:$T/in/skin.obj" --poses "$T/in/press"
     "$tap_each" "us-segment" /dev/null us-segment -n bone --low 150 --largest --smooth 1mm "$T/in/volume.nrrd"
     "$tap_each" "us-surface" /dev/null us-surface -l all --smooth 1mm --taubin 3 "$T/in/labels.nrrd"
-    "$tap_each" "us-slice" /dev/null us-slice --rigid --size 24x24 --poses "$T/in/press" "$T/in/volume.nrrd"
+    "$tap_more" "us-slice" /dev/null us-slice --rigid --size 24x24 --poses "$T/in/press" "$T/in/volume.nrrd"
     "$tap_each" "us-slice through a mesh" "$T/in/pressed.sinew" us-slice --size 24x24 --depth 2cm "$T/in/volume.nrrd"
     "$tap_each" "info" "$T/in/frames.sinew" sinew info
-    "$tap_each" "info --json" "$T/in/frames.text.gz" sinew info --json
-    "$tap_each" "info --get" "$T/in/frames.sinew" sinew info --get node.displacement.max
+    "$tap_more" "info --json" "$T/in/frames.text.gz" sinew info --json
+    "$tap_more" "info --get" "$T/in/frames.sinew" sinew info --get node.displacement.max
     "$tap_each" "diff" /dev/null sinew diff "$T/in/frames.sinew" "$T/in/frames.text.gz"
     "$tap_each" "distance" /dev/null sinew distance --unit mm --both --threads 2 --region "all=$T/in/head.obj" "$T/in/skin.obj" "$T/in/skin.obj.gz"
-    for format in vtu inp obj; do
-        "$tap_each" "export -f $format" "$T/in/frames.sinew" sinew export -f "$format"
-    done
+    "$tap_each" "export -f vtu" "$T/in/frames.sinew" sinew export -f vtu
+    "$tap_more" "export -f inp" "$T/in/frames.sinew" sinew export -f inp
+    "$tap_more" "export -f obj" "$T/in/frames.sinew" sinew export -f obj
     "$tap_each" "import" /dev/null sinew import --unit m "$T/in/mesh.inp"
     "$tap_each" "render" "$T/in/frames.sinew" sinew render --size 64x48
     "$tap_each" "us-import" /dev/null us-import "$T/in/patient"

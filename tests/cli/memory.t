@@ -15,7 +15,7 @@ make_inputs || {
     not_ok "inputs for every tool"
     done_testing
 }
-tries=24
+tries=6
 [ -z "$SINEW_LONG" ] || tries=1500
 echo old >"$T/old"
 

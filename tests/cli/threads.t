@@ -4,7 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 
 repeats=${REPEATS:-${SINEW_LONG:+100}}
-repeats=${repeats:-3}
+repeats=${repeats:-1}
 long=${SINEW_SANITIZED:+1}
 
 # A sphere of tissue about a ball of bone, with a muscle; a block of tetrahedra with a vein; a volume.

@@ -1,17 +1,21 @@
 #!/bin/sh
 # Headers that lie, of DICOM, MetaImage and NRRD: one line with the reason, exit 1, no output, and little memory; data in files
-# elsewhere, names that a shell would take for commands, names with blanks.
+# elsewhere, names that a shell would take for commands, names with blanks. The other tools have us-import's readers: they are given every fourth
+# header, and with SINEW_LONG all.
 . "$(dirname "$0")/lib.sh"
 
 # As much as may be mapped, but where a sanitizer maps terabytes.
 # shellcheck disable=SC3045 # where a shell has no ulimit -v, nothing is limited
 [ "${SINEW_SANITIZED:-}" ] || ulimit -v 1000000 2>/dev/null
 
+headers=0
 # bad NAME PATTERN FILE: each tool that reads volumes refuses it.
 bad() {
     bad_name=$1 bad_pattern=$2 bad_file=$3
     fails 1 "$bad_name" "$bad_pattern" us-import -v -o "$T/none.nrrd" "$bad_file"
     is "$(wc -l <"$T/stderr" | tr -d ' ')" 1 "$bad_name: one line"
+    headers=$((headers + 1))
+    [ "$SINEW_LONG" ] || [ $((headers % 4)) -eq 1 ] || return 0
     fails 1 "$bad_name: us-segment" "$bad_pattern" us-segment -n a --low 1 -o "$T/none.nrrd" "$bad_file"
     fails 1 "$bad_name: us-surface" "$bad_pattern" us-surface -i 1 -o "$T/none.nrrd" "$bad_file"
 }

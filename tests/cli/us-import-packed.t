@@ -1,14 +1,19 @@
 #!/bin/sh
 # us-import: pixels as other people's tools compress them (DCMTK's, and OpenJPEG's), without loss and with; and what nobody here
-# decompresses.
+# decompresses. Three slices a series, which are compressed one by one; with SINEW_LONG six.
 . "$(dirname "$0")/lib.sh"
 have python3 || skip_all "no python3 to write DICOM files with"
 have dcmcjpeg || skip_all "no DCMTK tools to compress with (dcmtk)"
 
+slices=${SINEW_LONG:+6}
+slices=${slices:-3}
+
 # make KIND KEY=VALUE...: files in $T/in; their voxels in $T/expected.
 make_files() {
     rm -rf "$T/in" "$T/packed"
-    python3 tests/cli/dicom.py "$T/in" "$@" && mv "$T/in/expected" "$T/expected" && mkdir "$T/packed"
+    kind=$1
+    shift
+    python3 tests/cli/dicom.py "$T/in" "$kind" slices="$slices" "$@" && mv "$T/in/expected" "$T/expected" && mkdir "$T/packed"
 }
 
 # differs: the largest difference of a voxel in $T/out.nrrd from what is expected; "size" where there are not as many.

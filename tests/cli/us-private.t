@@ -1,6 +1,6 @@
 #!/bin/sh
 # Names of files and folders are often patients': us-import's messages have none, and nothing that a file holds, without -v; and
-# --anonymous-names leaves them out of models.
+# --anonymous-names leaves them out of models. With SINEW_LONG more lengths of paths.
 . "$(dirname "$0")/lib.sh"
 have python3 || skip_all "no python3 to write DICOM files with"
 
@@ -72,11 +72,12 @@ hides "NRRD, a data file that is empty" "^us-import: the data file of file 1 of 
 rm "$P/KOWAL.raw"
 sed "s,^encoding.*,&\ndata file: ../KOWAL.raw," "$P/good.nrrd" >"$P/KOWAL_bad.nrrd"
 hides "NRRD, data in ../KOWAL.raw" "^us-import: (the data file of )?file 1 of 1: .*(No such file|outside its folder|expected)" us-import "$P/KOWAL_bad.nrrd"
+step=${SINEW_LONG:+20}
 # Folders so long that a path and what is wrong are more than one message holds.
 long=$P/$(printf 'x%.0s' $(seq 200))
 long=$long/$(basename "$long")/$(basename "$long")/$(basename "$long")
 mkdir -p "$long"
-for length in $(seq 900 20 1060); do
+for length in $(seq 900 "${step:-80}" 1060); do
     file=$long/$(printf 'k%.0s' $(seq $((length - ${#long} - 1))))
     sed "s/^type: .*/type: Jane Kowal of Cracow O'Kowal/" "$P/good.nrrd" >"$file"
     hides "NRRD, a path of $length characters" "^us-import: file 1 of 1:2: type: '\.\.\.'; expected unsigned char" us-import "$file"

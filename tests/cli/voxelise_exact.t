@@ -3,5 +3,5 @@
 . "$(dirname "$0")/lib.sh"
 
 python3 -c 'import math; math.nextafter' 2>/dev/null || skip_all "no python3 with math.nextafter"
-python3 tests/cli/voxelise_exact.py "$T" "$([ -n "$SINEW_LONG" ] && echo 400 || echo 12)" 1
+python3 tests/cli/voxelise_exact.py "$T" "$([ -n "$SINEW_LONG" ] && echo 400 || echo 6)" 1
 echo 1..5
