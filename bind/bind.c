@@ -22,13 +22,18 @@ struct options {
     opt_common common;
     const char *name;
     const char *unit;
+    int motion;
 };
+
+enum { MOTION_BLENDED, MOTION_ELEMENT }; /* below 0: not given */
 
 #define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
     {OPT_INPUT, 0, "name", "NAME", OPT_TEXT, TO(name), 0, 0, NULL, 0, "name of the surface [default that of the file]"},
     {OPT_INPUT, 0, "unit", NUM_UNITS_CHOICES, OPT_TEXT, TO(unit), 0, 0, NULL, 0,
      "unit of the OBJ [default the model's]"},
+    {OPT_ACTION, 0, "motion", "blended|element", OPT_CHOICE, TO(motion), 0, 0, "blended|element", 0,
+     "in voxels: vertices move with the elements around theirs too, or with theirs alone [default blended]"},
     {0},
 };
 
@@ -52,6 +57,7 @@ typedef struct target {
     side sides;       /* of slits between voxels */
     tetra tetrahedra; /* or hexahedra without a lattice */
     bool by_lattice;
+    bool blended; /* how vertices will move: mesh/motion.h */
     pool *threads;
     const int32_t *node; /* elements x corners */
     int corners;
@@ -77,10 +83,11 @@ static int check_model(const model *m, err *e)
     return 0;
 }
 
-static int target_open(target *to, const model *m, int threads, notes *warnings, err *e)
+static int target_open(target *to, const model *m, const struct options *o, int threads, notes *warnings, err *e)
 {
     to->corners = model_find(m, "element.node")->columns;
     to->by_lattice = to->corners == 8 && (model_meta_of(m, "lattice.spacing") || model_find(m, "element.lattice"));
+    to->blended = to->by_lattice && o->motion != MOTION_ELEMENT;
     if (to->by_lattice ? nearest_build(&to->voxels, m, e) : tetra_build(&to->tetrahedra, m, e))
         return -1;
     if (to->tetrahedra.flat)
@@ -211,7 +218,22 @@ static int check_finite(const surface *s, err *e)
     return 0;
 }
 
-/* Adds S/vertex.element and S/vertex.weight, or makes them anew. */
+/* Adds S/vertex.blended, or takes it away. */
+static int bind_motion(const target *to, model *m, const char *name, err *e)
+{
+    char blended[MODEL_NAME];
+    snprintf(blended, sizeof blended, "%s/vertex.blended", name);
+    if (!to->blended) {
+        model_remove(m, blended);
+        return 0;
+    }
+    model_array *a = model_add(m, blended, e);
+    if (a && a->rows)
+        memset(a->u8, 1, (size_t)a->rows);
+    return a ? 0 : -1;
+}
+
+/* Adds S/vertex.element, S/vertex.weight and S/vertex.blended, or makes them anew. */
 static int bind_surface(const tool *t, target *to, model *m, const char *name, num_unit unit, notes *warnings, err *e)
 {
     char element[MODEL_NAME], weight[MODEL_NAME], axis[MODEL_NAME];
@@ -222,7 +244,7 @@ static int bind_surface(const tool *t, target *to, model *m, const char *name, n
     if (model_find(m, element))
         tool_say(t, "surface %s was bound already; the new binding replaces the old one", name);
     if (!model_add(m, element, e) || !model_add_as(m, weight, MODEL_F64, "1", axis, to->corners == 8 ? 3 : 4, e) ||
-        surface_of(m, name, &s, e) || check_finite(&s, e))
+        bind_motion(to, m, name, e) || surface_of(m, name, &s, e) || check_finite(&s, e))
         return -1;
     to->node = model_find(m, "element.node")->i32;
     to->position = model_find(m, "node.position")->f64;
@@ -347,7 +369,7 @@ static int check_options(const struct options *o, int count, char *const *path, 
 
 static int run_tool(int argc, char **argv)
 {
-    struct options o = {0};
+    struct options o = {.motion = -1};
     err e = {0};
     tool t = {0};
     stage s = {0};
@@ -361,7 +383,7 @@ static int run_tool(int argc, char **argv)
     if (stage_open_output(&s, &t, &e) || check_options(&o, t.operands, argv + 1, &e) ||
         (threads = tool_threads(&t, &e)) < 0)
         goto out;
-    if (stage_read(&s, &m, &e) || check_model(&m, &e) || target_open(&to, &m, threads, &warnings, &e))
+    if (stage_read(&s, &m, &e) || check_model(&m, &e) || target_open(&to, &m, &o, threads, &warnings, &e))
         goto out;
     if (t.operands ? bind_files(&t, &to, &m, argv + 1, &o, &warnings, &e)
                    : bind_carried(&t, &to, &m, &o, &warnings, &e))

@@ -22,11 +22,11 @@ static void carry(const double *f, const double *n, double *to)
     }
 }
 
-static void add_corner(const bound *b, int64_t vertex, const double *u, bool held, const double *n, double *sum)
+static void add_corner(const motion *m, const bone *carried, int64_t vertex, bool held, const double *n, double *sum)
 {
     double f[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, to[3];
     if (!held)
-        bound_gradient(b, vertex, u, f);
+        bone_gradient(carried, m, vertex, f);
     carry(f, n, to);
     double l = length(to);
     for (int i = 0; l > 0 && i < 3; i++)
@@ -45,13 +45,13 @@ static void settle(const double *was, double *sum)
         memcpy(sum, was, 3 * sizeof *was);
 }
 
-void normals_deform(const obj *o, const bound *b, const double *u, const bool *held, double *normal)
+void normals_deform(const obj *o, const motion *m, const bone *carried, const bool *held, double *normal)
 {
     memset(normal, 0, 3 * (size_t)o->normals * sizeof *normal);
     for (int64_t c = 0; c < o->corners; c++) {
         int64_t n = o->corner_normal[c], v = o->corner_vertex[c];
         if (n >= 0)
-            add_corner(b, v, u, held && held[v], &o->normal[3 * n], &normal[3 * n]);
+            add_corner(m, carried, v, held && held[v], &o->normal[3 * n], &normal[3 * n]);
     }
     for (int64_t n = 0; n < o->normals; n++)
         settle(&o->normal[3 * n], &normal[3 * n]);

@@ -3,11 +3,11 @@
 #ifndef SINEW_NORMALS_H
 #define SINEW_NORMALS_H
 
-#include "mesh/bound.h"
+#include "mesh/bone.h"
 
 /* Fills normal (o->normals x 3): the mean over the corners that use it of n' = F^-T n / |F^-T n|, made a unit vector;
  * as it was read where it turned by less than 1e-9, or no corner uses it. held (may be NULL): vertices at which nothing
  * turns. */
-void normals_deform(const obj *o, const bound *b, const double *u, const bool *held, double *normal);
+void normals_deform(const obj *o, const motion *m, const bone *carried, const bool *held, double *normal);
 
 #endif

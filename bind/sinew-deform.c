@@ -76,13 +76,12 @@ typedef struct plan {
 typedef struct mover {
     obj file;
     bound b;
+    motion moves;
     bone bone;
     double scale;          /* metres in the OBJ's unit */
     bool *held;            /* vertices: too far outside to be moved */
-    bool *straight;        /* vertices: held, or carried by bone; their normals do not turn */
     double *position;      /* vertices x 3, in the OBJ's unit */
     double *normal;        /* normals x 3 */
-    const double *u;       /* nodes x 3, m: of the frame at hand */
     char skin[MODEL_NAME]; /* the surface's name, where frames move it themselves; else "" */
     pool *threads;
 } mover;
@@ -128,13 +127,11 @@ static int hold(mover *w, const tool *t, double within, err *e)
     int64_t held = 0;
     double furthest = 0;
     w->held = mem_array(w->file.vertices, sizeof *w->held, "vertices", e);
-    w->straight = w->held ? mem_array(w->file.vertices, sizeof *w->straight, "vertices", e) : NULL;
-    if (!w->straight)
+    if (!w->held)
         return -1;
     for (int64_t v = 0; v < w->file.vertices; v++) {
         double d = w->bone.node[v] < 0 ? bound_outside(&w->b, v) : 0;
         w->held[v] = d > within;
-        w->straight[v] = w->held[v] || w->bone.node[v] >= 0;
         held += w->held[v];
         furthest = fmax(furthest, d);
     }
@@ -183,8 +180,9 @@ static int mover_open(mover *w, const tool *t, const model *m, const char *path,
     w->scale = scale_of(unit);
     if (as_skin(w, m, name, e))
         return -1;
-    if (!*w->skin && (bound_find(&w->b, m, name, &w->file, w->scale, e) || bone_find(&w->bone, &w->b, m, e) ||
-                      hold(w, t, within, e)))
+    if (!*w->skin &&
+        (bound_find(&w->b, m, name, &w->file, w->scale, e) || bone_find(&w->bone, &w->b, m, e) ||
+         motion_open(&w->moves, &w->b, model_count(m, "node"), model_count(m, "element"), e) || hold(w, t, within, e)))
         return -1;
     w->position = mem_array(3 * w->file.vertices, sizeof *w->position, "positions", e);
     w->normal = w->position ? mem_array(3 * w->file.normals, sizeof *w->normal, "normals", e) : NULL;
@@ -196,8 +194,8 @@ static void mover_close(mover *w)
 {
     obj_free(&w->file);
     bone_free(&w->bone);
+    motion_free(&w->moves);
     free(w->held);
-    free(w->straight);
     free(w->position);
     free(w->normal);
     if (w->threads)
@@ -212,7 +210,7 @@ static void move_some(void *context, int64_t chunk, int64_t from, int64_t to)
     for (int64_t v = from; v < to; v++) {
         double d[3] = {0};
         if (!w->held[v])
-            bone_displacement(&w->bone, &w->b, v, w->u, d);
+            bone_displacement(&w->bone, &w->moves, v, d);
         for (int a = 0; a < 3; a++)
             w->position[3 * v + a] = w->file.position[3 * v + a] + d[a] / w->scale;
     }
@@ -264,13 +262,14 @@ static int move(mover *w, const frame *f, err *e)
     if (!u)
         return err_set(e, NULL, 0, "frame %lld has no node.displacement; expected results of tled-run",
                        (long long)f->index);
-    w->u = u->f64;
+    motion_set(&w->moves, u->f64, w->threads);
+    bone_set(&w->bone, f);
     pool_run(w->threads, w->file.vertices, 1024, move_some, w);
     for (int64_t i = 0; i < 3 * w->file.vertices; i++)
         if (!isfinite(w->position[i]))
             return err_set(e, NULL, 0, "frame %lld moves vertex %lld (element %d) to a place that is not finite",
                            (long long)f->index, (long long)(i / 3), w->b.element[i / 3]);
-    normals_deform(&w->file, &w->b, w->u, w->straight, w->normal);
+    normals_deform(&w->file, &w->moves, &w->bone, w->held, w->normal);
     return 0;
 }
 

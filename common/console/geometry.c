@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "console/json.h"
-#include "mesh/bound.h"
 #include "mesh/boundary.h"
+#include "mesh/motion.h"
 #include "mesh/rigid_body.h"
 #include "surface/triangulate.h"
 
@@ -35,8 +35,9 @@ struct geometry {
     bound *surfaces;
     char (*surface_name)[MODEL_NAME]; /* surfaces: what the views borrow */
     int surface_count;
-    bool *bound; /* surfaces: whether it is */
-    int skin;    /* the surface that moves by itself; -1: none */
+    bool *bound;   /* surfaces: whether it is */
+    motion *moves; /* surfaces: of those that are bound and drawn, by the frame at hand */
+    int skin;      /* the surface that moves by itself; -1: none */
     part *parts;
     int count;
     bool face;
@@ -202,8 +203,9 @@ static int open_surfaces(geometry *g, const char *skin, err *e)
     g->surfaces = mem_array(count, sizeof *g->surfaces, "surfaces", e);
     g->surface_name = mem_array(count, sizeof *g->surface_name, "surfaces", e);
     g->bound = mem_array(count, sizeof *g->bound, "surfaces", e);
+    g->moves = mem_array(count, sizeof *g->moves, "surfaces", e);
     g->parts = mem_array(PARTS_MOST + count + 1, sizeof *g->parts, "surfaces", e);
-    if (!g->surfaces || !g->surface_name || !g->bound || !g->parts)
+    if (!g->surfaces || !g->surface_name || !g->bound || !g->moves || !g->parts)
         return -1;
     at = 0;
     while (model_surface(g->m, &at, name, sizeof name)) {
@@ -213,6 +215,9 @@ static int open_surfaces(geometry *g, const char *skin, err *e)
             return -1;
         if (!strcmp(name, skin))
             g->skin = g->surface_count;
+        if (is && motion_open(&g->moves[g->surface_count], &g->surfaces[g->surface_count], model_count(g->m, "node"),
+                              model_count(g->m, "element"), e))
+            return -1;
         g->bound[g->surface_count++] = is > 0;
     }
     return 0;
@@ -311,6 +316,9 @@ void geometry_free(geometry *g)
         free(g->parts[i].triangle);
         free(g->parts[i].from);
     }
+    for (int i = 0; i < g->surface_count && g->moves; i++)
+        motion_free(&g->moves[i]);
+    free(g->moves);
     free(g->parts);
     free(g->surfaces);
     free(g->surface_name);
@@ -435,7 +443,7 @@ static double displace(const geometry *g, const part *p, const geometry_frame *f
         else if (p->surface < 0)
             memcpy(x, f->u + 3 * (int64_t)p->from[i], sizeof x);
         else if (p->surface != g->skin)
-            bound_displacement(&g->surfaces[p->surface], p->from[i], f->u, x);
+            motion_displacement(&g->moves[p->surface], p->from[i], x);
         else if (f->skin)
             memcpy(x, f->skin + 3 * (int64_t)p->from[i], sizeof x);
         for (int a = 0; a < 3; a++)
@@ -533,6 +541,9 @@ mail *geometry_positions(const geometry *g, const geometry_frame *is, err *e)
         mail_done(m);
         return NULL;
     }
+    for (int i = 0; i < g->surface_count; i++)
+        if (g->bound[i] && i != g->skin)
+            motion_set(&g->moves[i], f.u, NULL);
     for (int i = 0; i < g->count; each += 3 * g->parts[i++].vertices)
         if (g->parts[i].moves)
             largest = fmax(largest, displace(g, &g->parts[i], &f, each));

@@ -63,17 +63,22 @@ static int move_surface(export_shape *x, const double *u, err *e)
 {
     bound b;
     bone carried = {0};
+    motion moves = {0};
     int is_bound = bound_of(&b, x->m, x->s.name, e);
     if (is_bound <= 0)
         return is_bound;
-    if (bone_find(&carried, &b, x->m, e)) {
+    if (bone_find(&carried, &b, x->m, e) ||
+        motion_open(&moves, &b, model_count(x->m, "node"), model_count(x->m, "element"), e)) {
         bone_free(&carried);
         return -1;
     }
+    motion_set(&moves, u, NULL);
+    bone_set(&carried, x->f);
     x->displacement = mem_array(3 * x->points, sizeof *x->displacement, "displacements", e);
     for (int64_t v = 0; v < x->points && x->displacement; v++)
-        bone_displacement(&carried, &b, v, u, &x->displacement[3 * v]);
+        bone_displacement(&carried, &moves, v, &x->displacement[3 * v]);
     bone_free(&carried);
+    motion_free(&moves);
     return x->displacement ? 0 : -1;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "mesh/held.h"
+#include "mesh/rigid_body.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -92,20 +93,58 @@ int bone_find(bone *b, const bound *of, const model *m, err *e)
         b->node[v] = -1;
     if (!name || !anchor)
         return 0;
+    const model_array *body = model_find(m, "node.body");
+    b->body = body ? body->i32 : NULL;
+    b->bodies = body ? model_count(m, "body") : 0;
+    b->moved = mem_array(b->bodies, sizeof *b->moved, "rigid bodies", e);
+    if (!b->moved)
+        return -1;
     anchors a = {name, anchor->i32, anchor->rows, of->rest};
     return mark(b, &of->shape, &a, e) || carry(b, of, &a, e) ? -1 : 0;
 }
 
-void bone_displacement(const bone *b, const bound *of, int64_t vertex, const double *u, double *d)
+void bone_set(bone *b, const frame *f)
 {
-    if (b->node[vertex] >= 0)
-        memcpy(d, &u[3 * (int64_t)b->node[vertex]], 3 * sizeof *d);
+    b->is_known = b->body && frame_find(f, "body.pose");
+    for (int64_t i = 0; i < b->bodies && b->is_known; i++)
+        b->moved[i] = rigid_body_pose(f, (int32_t)i);
+}
+
+static int32_t body_of(const bone *b, int64_t vertex)
+{
+    return b->node[vertex] >= 0 && b->is_known ? b->body[b->node[vertex]] : -1;
+}
+
+void bone_displacement(const bone *b, const motion *of, int64_t vertex, double *d)
+{
+    const int32_t node = b->node[vertex], body = body_of(b, vertex);
+    const double *rest = of->of->shape.position + 3 * vertex;
+    if (body >= 0) {
+        pose_apply(&b->moved[body], rest, d);
+        for (int a = 0; a < 3; a++)
+            d[a] -= rest[a];
+    } else if (node >= 0)
+        memcpy(d, &of->u[3 * (int64_t)node], 3 * sizeof *d);
     else
-        bound_displacement(of, vertex, u, d);
+        motion_displacement(of, vertex, d);
+}
+
+void bone_gradient(const bone *b, const motion *of, int64_t vertex, double *f)
+{
+    const int32_t body = body_of(b, vertex);
+    if (b->node[vertex] < 0) {
+        motion_gradient(of, vertex, f);
+        return;
+    }
+    for (int i = 0; i < 9; i++)
+        f[i] = i % 4 == 0;
+    if (body >= 0)
+        pose_matrix(b->moved[body].quaternion, f);
 }
 
 void bone_free(bone *b)
 {
     free(b->node);
+    free(b->moved);
     *b = (bone){0};
 }

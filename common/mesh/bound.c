@@ -24,6 +24,11 @@ int bound_of(bound *b, const model *m, const char *name, err *e)
     if ((node->columns != 8 || weight->columns != 3) && (node->columns != 4 || weight->columns != 4))
         return err_set(e, NULL, 0,
                        "%s/vertex.weight does not fit element.node: 3 weights in hexahedra, 4 in tetrahedra", name);
+    const model_array *blended = surface_part(m, name, "vertex.blended");
+    if (blended && node->columns != 8)
+        return err_set(e, NULL, 0, "%s/vertex.blended: the elements are tetrahedra; expected the voxels of a lattice",
+                       name);
+    b->blended = blended ? blended->u8 : NULL;
     b->element = surface_part(m, name, "vertex.element")->i32;
     b->weight = weight->f64;
     b->node = node->i32;

@@ -11,6 +11,7 @@ typedef struct bound {
     surface shape;
     const int32_t *element; /* vertices */
     const double *weight;   /* vertices x 3 (hexahedra) or 4 (tetrahedra) */
+    const uint8_t *blended; /* vertices: whether they move by motion.h; NULL: none does */
     const int32_t *node;    /* elements x corners */
     int corners;            /* of an element: 8 or 4 */
     const double *rest;     /* nodes x 3, m */
@@ -27,7 +28,8 @@ int bound_find(bound *b, const model *m, const char *name, const obj *o, double 
 /* The shares that the element's nodes have in a vertex: they sum to 1. Returns how many: b->corners. */
 int bound_shares(const bound *b, int64_t vertex, double share[8]);
 
-/* Below, u is the displacement of the nodes (x 3, m). */
+/* Below, u is the displacement of the nodes (x 3, m), and a vertex moves with its own element alone: motion.h has how
+ * it moves where it is blended. */
 
 /* The displacement of a vertex, m: trilinear (linear in a tetrahedron), extrapolated outside. */
 void bound_displacement(const bound *b, int64_t vertex, const double *u, double *d);

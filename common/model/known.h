@@ -103,6 +103,8 @@ typedef struct known {
       "element it is bound to")                                                                                        \
     X("*/vertex.weight", MODEL_F64, "1", "*/vertex", 3, 4, 0, KNOWN_WEIGHTS, 0, 0, "bind",                             \
       "3 weights in a hexahedron (W&M eq. 1) or 4 in a tetrahedron")                                                   \
+    X("*/vertex.blended", MODEL_U8, "1", "*/vertex", 1, 1, 0, KNOWN_FROM, 0, 1, "bind",                                \
+      "1 = it moves blended, as MOTION in bind(1) says; without the array none does")                                  \
     X("*/face.start", MODEL_I64, "@*/corner", "*/face", 1, 1, KNOWN_EVERY, KNOWN_STARTS, 0, 0, "voxelise or bind",     \
       "its first corner; it ends where the next begins")                                                               \
     X("*/face.vertex", MODEL_I32, "@*/vertex", "*/corner", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "voxelise or bind",     \

@@ -36,6 +36,8 @@ typedef struct part {
     bound b;
     bool is_bound;
     bone bone;         /* who carries its vertices; filled where it moves */
+    motion moves;      /* by u */
+    motion shown;      /* by the field, where that displaces */
     const double *u;   /* displacement of the nodes, or NULL */
     const double *own; /* of its own vertices, which a skin has, or NULL */
     const double *at_nodes;
@@ -131,7 +133,7 @@ static int place(const part *p, scene_mesh *to, err *e)
         if (p->own)
             memcpy(d, p->own + 3 * v, sizeof d);
         else if (p->u && p->is_bound)
-            bone_displacement(&p->bone, &p->b, v, p->u, d);
+            bone_displacement(&p->bone, &p->moves, v, d);
         for (int a = 0; a < 3; a++)
             to->position[3 * v + a] = (float)(s->position[3 * v + a] + d[a]);
     }
@@ -145,7 +147,7 @@ static double value_of_vector(const part *p, int64_t v)
     if (p->field->displaces && p->own)
         memcpy(at, p->own + 3 * v, sizeof at);
     else if (p->field->displaces && p->bone.node)
-        bone_displacement(&p->bone, &p->b, v, p->field->vector, at);
+        bone_displacement(&p->bone, &p->shown, v, at);
     else
         bound_displacement(&p->b, v, p->field->vector, at);
     return field_of_vector(p->field, at);
@@ -233,6 +235,22 @@ static const double *own_displacement(const frame *f, const char *name)
     return u ? u->f64 : NULL;
 }
 
+/* Who carries the vertices, and how the others move. */
+static int find_motion(part *p, const model *m, const frame *moved, err *e)
+{
+    const int64_t nodes = model_count(m, "node"), elements = model_count(m, "element");
+    if (bone_find(&p->bone, &p->b, m, e) || motion_open(&p->moves, &p->b, nodes, elements, e))
+        return -1;
+    motion_set(&p->moves, p->u, NULL);
+    bone_set(&p->bone, moved);
+    if (!p->field || !p->field->displaces || !p->field->vector)
+        return 0;
+    if (motion_open(&p->shown, &p->b, nodes, elements, e))
+        return -1;
+    motion_set(&p->shown, p->field->vector, NULL);
+    return 0;
+}
+
 /* 1: some of it is seen; 0: none; -1: e is filled. */
 static int add_surface(showing *b, const model *m, const showing_want *w, const double *at_nodes, const char *name,
                        err *e)
@@ -243,13 +261,15 @@ static int add_surface(showing *b, const model *m, const showing_want *w, const 
     p.is_bound = is_bound > 0;
     p.u = u ? u->f64 : NULL;
     p.own = own_displacement(w->moved, name);
-    if (seen > 0 && p.u && p.is_bound && bone_find(&p.bone, &p.b, m, e))
+    if (seen > 0 && p.u && p.is_bound && find_motion(&p, m, w->moved, e))
         seen = -1;
     b->cleared |= p.cleared;
     for (int take = 1; take <= 2 && seen > 0; take++)
         if (seen & take && add_part(b, &p, take, e))
             seen = -1;
     bone_free(&p.bone);
+    motion_free(&p.moves);
+    motion_free(&p.shown);
     free(p.take);
     free(p.group_colour);
     return seen < 0 ? -1 : seen > 0;

@@ -184,7 +184,7 @@ static bool is_weight(const model_array *a, const void *context)
 {
     const known *k = known_find(a->name);
     (void)context;
-    return k && !strcmp(k->name, "*/vertex.weight");
+    return k && (!strcmp(k->name, "*/vertex.weight") || !strcmp(k->name, "*/vertex.blended"));
 }
 
 int mesh_split(model *m, notes *warnings, err *e)

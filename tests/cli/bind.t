@@ -33,11 +33,20 @@ sinew bind --text --threads 1 "$T/dots.obj" <"$T/model" >"$T/1"
 sinew bind --text --threads 5 "$T/dots.obj" <"$T/model" >"$T/2"
 check "the same bytes for any number of threads" cmp "$T/1" "$T/2"
 
+# How vertices will move.
+is "$(array "$T/bound" dots/vertex.blended)" "1 1 1 1 1 1 " "vertices move blended"
+check "--motion element" sinew bind -q --text --motion element -o "$T/x" <"$T/bound"
+is "$(grep -c vertex.blended "$T/x"):$(array "$T/x" dots/vertex.weight)" "0:$(array "$T/bound" dots/vertex.weight)" \
+    "takes it away again, and leaves the weights"
+check "and back" sinew bind -q --text -o "$T/y" <"$T/x"
+is "$(array "$T/y" dots/vertex.blended)" "1 1 1 1 1 1 " "blended again"
+fails 2 "another motion" "expected blended|element" sinew bind --motion rigid <"$T/bound"
+
 # Names that begin x- are the user's, in the model and for files.
 sed 's/^end$/axis x-my\/vertex 1\narray x-my\/vertex.position f32 K x-my\/vertex 1\n7\nend/' "$T/model" >"$T/mine"
 cp "$T/dots.obj" "$T/x-wing.obj"
 check "a user's array may be called as it likes" sinew bind --text -o "$T/both" "$T/x-wing.obj" <"$T/mine"
-is "$(array "$T/both" x-my/vertex.position):$(grep -c '^array x_wing/' "$T/both")" "7 :7" \
+is "$(array "$T/both" x-my/vertex.position):$(grep -c '^array x_wing/' "$T/both")" "7 :8" \
     "it passes through, and no surface is called so"
 
 # Which surface.
@@ -129,6 +138,11 @@ is "$(array "$T/bound" in/vertex.weight | tr ' ' '\n' | awk '{ printf "%.10g ", 
 is "$(cut -d';' -f1 "$T/stderr")" \
     "bind: warning: surface in: 1 of 6 vertices lie further than an element outside the elements, the furthest 34.64 mm" \
     "who is far"
+is "$(grep -c vertex.blended "$T/bound")" 0 "whose vertices move with their own element"
+sed 's/^array in\/vertex.weight/array in\/vertex.blended u8 1 in\/vertex 1\n0\n0\n0\n0\n0\n0\n&/; /^crc/d' "$T/bound" | sed '/^frame/,$d' >"$T/bad"
+grep -q '^end' "$T/bad" || echo end >>"$T/bad"
+fails 1 "as nothing is blended there" 'in/vertex.blended: the elements are tetrahedra; expected the voxels' \
+    sinew deform --frame rest -o "$T/none" "$T/in.obj" <"$T/bad"
 sed 's/^0 1 2 3$/0 1 2 2/' "$T/tet" >"$T/flat"
 check "one without a volume" sinew bind --text "$T/in.obj" -o "$T/bound" <"$T/flat"
 is "$(array "$T/bound" in/vertex.element)$(grep -c '1 of the tetrahedra have no volume' "$T/stderr")" "1 1 1 1 1 1 1" \

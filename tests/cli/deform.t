@@ -211,4 +211,31 @@ fails 2 "a numbered name of one frame" "-o '.*x_%04d.obj': a number in the name 
 fails 2 "a numbered name of a point cache" "is for --frame all and OBJ" \
     sinew deform --format pc2 -o "$T/x_%d.pc2" "$T/skin.obj" <"$T/bound"
 
+# Blended, or by the element alone: two voxels side by side, of which the nodes at the far end go up by 10 mm, and 4 vertices, one of them outside.
+awk -v nx=2 -v ny=1 -v nz=1 -v h=0.01 -v frames=1 -f tests/cli/lattice.awk | awk '/^array node.position/ { rest = 1; n = 0; print; next }
+    /^array node.displacement/ { moved = 1; i = 0; print; next } /^[a-z]/ { rest = moved = 0 } rest { x[n++] = $1 }
+    moved { print 0, 0, (x[i++] > .015 ? .01 : 0); next } { print }' >"$T/end"
+printf 'v 2 5 5\nv 10 5 5\nv 18 5 5\nv 22 5 5\np 1 2 3 4\n' >"$T/four.obj"
+sinew bind -q --motion element "$T/four.obj" <"$T/end" | sinew deform -q "$T/four.obj" >"$T/got"
+is "$(awk '$1 == "v" { printf "%.9g ", $4 - 5 }' "$T/got")" "0 0 8 12 " "by the element alone, trilinear"
+# Maps at x = 0, 10, 20 mm: (0, slope 0), (2.5 + .5 * 0 = 2.5, slope .5), (10, slope 1); the last has y = 20 mm.
+sinew bind -q "$T/four.obj" <"$T/end" | sinew deform -q "$T/four.obj" >"$T/got"
+is "$(awk '$1 == "v" { printf "%.9g ", $4 - 5 }' "$T/got")" "-0.3 2.5 7.7 12 " "blended: the maps of nodes"
+
+# The real face, whose nodes move by up to .5 mm, each as it happens: the skin has fewer and lower ridges when it is blended.
+if [ -z "$DATA" ]; then
+    skip 2 "no shared data"
+else
+    F=$DATA/face/face_zyg.obj
+    voxelise -q --unit mm -s 2.5 --fraction 4 "$F" | sinew bind -q --text >"$T/face" 2>/dev/null
+    awk '/^axis node / { n = $3 } /^end/ { print "frame 1 0.01\narray node.displacement f64 m node 3"
+        for (i = 0; i < 3 * n; i++) { r = (r * 16807 + 12345) % 2147483647; printf "%.9f%s", 1e-3 * (r / 2147483647 - .5), i % 3 < 2 ? " " : "\n" }
+        print } !/^end/' "$T/face" >"$T/rough"
+    sinew deform -q "$F" <"$T/rough" >"$T/blended.obj"
+    sinew bind -q --motion element <"$T/rough" 2>/dev/null | sinew deform -q "$F" >"$T/element.obj"
+    python3 tests/cli/dihedral.py "$F" "$T/element.obj" >"$T/one"
+    python3 tests/cli/dihedral.py "$F" "$T/blended.obj" >"$T/two"
+    is "$(awk '{ print ($1 == 11775 || $1 > 11000), ($2 > 300) }' "$T/one")" "1 1" "rough nodes make ridges by the element alone"
+    is "$(paste -d ' ' "$T/one" "$T/two" | awk '{ print ($6 < $2 / 5), ($7 <= $3 / 5) }')" "1 1" "and a fifth of them at most blended"
+fi
 done_testing

@@ -3,7 +3,7 @@
 #include "bind/nearest.h"
 #include "bind/normals.h"
 #include "cli/numbered.h"
-#include "mesh/bound.h"
+#include "mesh/motion.h"
 #include "mesh/weights.h"
 
 #include "tap.h"
@@ -235,18 +235,23 @@ static void test_normals(void)
         u[3 * i + 1] = -rest[3 * i + 2] - rest[3 * i + 1];
         u[3 * i + 2] = rest[3 * i + 1] - rest[3 * i + 2];
     }
-    normals_deform(&o, &b, u, NULL, normal);
+    bone none = {.node = (int32_t[3]){-1, -1, -1}};
+    motion moves;
+    motion_open(&moves, &b, 8, 1, &e);
+    motion_set(&moves, u, NULL);
+    normals_deform(&o, &moves, &none, NULL, normal);
     near_(hypot(normal[0], normal[2]) + fabs(normal[1] + 1), 0, 1e-12, "turned: z to -y, made a unit vector");
     double k = sqrt(1 / 4. + 1); /* F^-T (1, 1, 0) = (1/2, 0, 1) */
     near_(fabs(normal[3] - .5 / k) + fabs(normal[4]) + fabs(normal[5] - 1 / k), 0, 1e-12, "stretched: by F^-T");
     ok(normal[6] == 0 && normal[7] == 3 && normal[8] == 0, "used by no corner: as it was");
     ok(normal[9] == 0 && normal[10] == 0 && normal[11] == 0, "no direction: as it was");
-    normals_deform(&o, &b, u, held, normal);
+    normals_deform(&o, &moves, &none, held, normal);
     ok(!memcmp(normal, o.normal, sizeof normal), "vertices held: as they were");
     for (int i = 0; i < 24; i++)
         u[i] = .1 / 3;
-    normals_deform(&o, &b, u, NULL, normal);
+    normals_deform(&o, &moves, &none, NULL, normal);
     ok(!memcmp(normal, o.normal, sizeof normal), "a shift: as they were, to the bit");
+    motion_free(&moves);
     in_close(s);
     obj_free(&o);
     model_free(&m);
