@@ -1,7 +1,8 @@
 /* The vertices that bone carries: those of a face on a rigid surface (one that attach wrote to anchor.name). Such a
  * vertex moves with a node that its surface holds, not between the eight nodes of an element, some of which are free:
- * so that bone does not bend with the tissue. Where the node moves with a rigid body, and the frame says how that has
- * moved, the vertex moves with the body as well, so that it turns about the same place. This is ours; W&M bind every vertex alike. The caller owns a bone.
+ * so that bone does not bend with the tissue. Where the node belongs to a rigid body, and the frame says how that has
+ * moved, the vertex moves with the body, as it turns about the same place. This is ours; W&M bind every vertex alike.
+ * The caller owns a bone.
  */
 #ifndef SINEW_BONE_H
 #define SINEW_BONE_H
@@ -26,7 +27,7 @@ void bone_free(bone *b);
 /* Takes from a frame how the bodies have moved. Before, vertices move with nodes alone. */
 void bone_set(bone *b, const frame *f);
 
-/* The displacement of a vertex, m: that of the body or the node that carries it, else the one of its surface's motion. */
+/* The displacement of a vertex, m: that of the body or node that carries it, else that of its surface's motion. */
 void bone_displacement(const bone *b, const motion *of, int64_t vertex, double *d);
 
 /* The deformation gradient at a vertex (row i, column j at 3 i + j): a body's turn, I where a node carries it, else

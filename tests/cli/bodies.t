@@ -100,6 +100,21 @@ near "$(sum 1 "$p")" .001 1e-9 "and its place"
 is "$(sinew info --get body.pose.unit --get body.force.unit --get body.torque.unit <"$T/out" | tr '\n' ' ')" "1 N N.m " "units"
 
 cp "$T/out" "$T/binary"
+
+# A surface of the body, whose vertices are at no node
+printf 'v 7 6 20\nv 13 6.5 20\nv 9 12 20\nvn 0 0 1\ng skull_top\nf 1//1 2//1 3//1\n' >"$T/plate.obj"
+sinew bind -q "$T/plate.obj" <"$T/binary" >"$T/plate"
+sinew deform -q "$T/plate.obj" <"$T/plate" >"$T/got"
+sinew export -q -f obj --deformed --surface plate -o "$T/exported" "$T/plate"
+awk '$1 == "v" { a = atan2(0, -1) / 6; n++
+    off = off || ($2 - x[n]) ^ 2 + ($3 - 10 - y[n] * cos(a)) ^ 2 + ($4 - 22 - y[n] * sin(a)) ^ 2 > 1e-14 }
+    $1 == "vn" { off = off || ($3 + sin(a)) ^ 2 + ($4 - cos(a)) ^ 2 > 1e-14 }
+    BEGIN { x[1] = 8; y[1] = -4; x[2] = 14; y[2] = -3.5; x[3] = 10; y[3] = 2; a = atan2(0, -1) / 6 }
+    END { print n, off }' "$T/got" >"$T/off"
+grep '^v ' "$T/got" >"$T/moved"
+grep '^v ' "$T/exported" | paste -d ' ' "$T/moved" - | awk '{ print ($2 - $6) ^ 2 + ($3 - $7) ^ 2 + ($4 - $8) ^ 2 < 1e-14 }' | tr -d '\n' >"$T/same"
+is "$(cat "$T/same")" 111 "sinew export has the same"
+is "$(cat "$T/off")" "3 0" "its vertices and its normal turn with it, to 1e-7 mm"
 run "$turn" --rest 1e-9 --text
 check "text and binary frames are twins" sinew diff "$T/binary" "$T/out"
 
