@@ -314,7 +314,6 @@ static void test_bent(void)
     static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\nf 1//1 2//2 3//3\n";
     const int32_t size[3] = {24, 6, 4};
     const double radius = .06, middle = grid.origin[2] + 2 * grid.spacing[2];
-    block *k = calloc(1, sizeof *k);
     err e = {0};
     obj o;
     in *s = in_memory(text, sizeof text - 1, "n.obj", &e);
@@ -322,6 +321,7 @@ static void test_bent(void)
         ok(false, "reads: %s", e.text);
         return;
     }
+    block *k = calloc(1, sizeof *k);
     make(k, size, 0, NULL);
     add(k, 4.3, 2.2, 4.2);
     add(k, 12.7, 3.1, 3.6);
