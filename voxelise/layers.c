@@ -5,6 +5,7 @@
 #include "model/materials.h"
 #include "surface/triangulate.h"
 #include "voxelise/depths.h"
+#include "voxelise/surfaces/outward.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -309,4 +310,89 @@ int64_t layers_at(const layers *l, const volumes *plan, int32_t volume)
 double layers_thickness(const layers *l, int64_t layer)
 {
     return l->layer[layer].thickness;
+}
+
+/* ---- normals */
+
+enum { CHUNK = 1024 }; /* elements */
+
+typedef struct normals {
+    const outward *skin;
+    const bool *is_layer; /* volumes */
+    const grid *g;
+    const int32_t *lattice, *volume, *mix; /* elements; mix may be NULL */
+    float *normal;                         /* elements x 3 */
+    int64_t *sense;                        /* chunks: elements that the skin is turned away from, less the others */
+} normals;
+
+static bool in_layer(const normals *w, int64_t element)
+{
+    return w->is_layer[w->volume[element]] || (w->mix && w->mix[element] >= 0 && w->is_layer[w->mix[element]]);
+}
+
+static void find_normals(void *context, int64_t chunk, int64_t from, int64_t to)
+{
+    normals *w = context;
+    int64_t guess = -1;
+    for (int64_t i = from; i < to; i++) {
+        double centre[3], normal[3], away = 0;
+        if (!in_layer(w, i))
+            continue;
+        for (int a = 0; a < 3; a++)
+            centre[a] = grid_centre(w->g, a, w->lattice[3 * i + a]);
+        const triangle_hit hit = outward_at(w->skin, centre, guess, normal);
+        guess = hit.triangle;
+        for (int a = 0; a < 3; a++) {
+            away += normal[a] * (hit.point[a] - centre[a]);
+            w->normal[3 * i + a] = (float)normal[a];
+        }
+        w->sense[chunk] += (away > 0) - (away < 0);
+    }
+}
+
+/* Most centres are inside: where most normals point to them, the skin is turned inward. */
+static void turn_outward(const normals *w, int64_t elements)
+{
+    int64_t sum = 0;
+    for (int64_t c = 0; c < pool_chunks(elements, CHUNK); c++)
+        sum += w->sense[c];
+    for (int64_t i = 0; sum < 0 && i < 3 * elements; i++)
+        w->normal[i] = w->normal[i] != 0 ? -w->normal[i] : 0;
+}
+
+static int add_normals(const skin *s, const bool *is_layer, const grid *g, model *m, pool *threads, err *e)
+{
+    model_array *to = model_add(m, "element.normal", e);
+    const model_array *mix = model_find(m, "element.mix");
+    if (!to || !s->triangles)
+        return to ? 0 : -1;
+    normals w = {.is_layer = is_layer,
+                 .g = g,
+                 .lattice = model_find(m, "element.lattice")->i32,
+                 .volume = model_find(m, "element.volume")->i32,
+                 .mix = mix ? mix->i32 : NULL,
+                 .normal = to->f32};
+    outward *made = outward_create(s->corner, s->triangles, e);
+    w.skin = made;
+    w.sense = made ? mem_array(pool_chunks(to->rows, CHUNK), sizeof *w.sense, "normals", e) : NULL;
+    const int status = w.sense ? 0 : -1;
+    if (!status) {
+        pool_run(threads, to->rows, CHUNK, find_normals, &w);
+        turn_outward(&w, to->rows);
+    }
+    outward_free(made);
+    free(w.sense);
+    return status;
+}
+
+int layers_normals(const layers *l, const volumes *plan, const obj *o, const grid *g, model *m, pool *threads, err *e)
+{
+    skin s = {0};
+    bool *is_layer = mem_array(plan->volumes, sizeof *is_layer, "volumes", e);
+    for (int32_t v = 0; is_layer && v < plan->volumes; v++)
+        is_layer[v] = layers_at(l, plan, v) >= 0;
+    const int status = is_layer && !make_skin(&s, plan, o, g, e) ? add_normals(&s, is_layer, g, m, threads, e) : -1;
+    free_skin(&s);
+    free(is_layer);
+    return status;
 }

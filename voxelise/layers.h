@@ -29,6 +29,11 @@ void layers_free(layers *l);
  * follow its own. g: the lattice of voxels. */
 int layers_apply(const layers *l, voxels *x, volumes *plan, const obj *o, const grid *g, pool *threads, err *e);
 
+/* Adds element.normal to the model that was built of such voxels: of the elements of the layers, also where these are
+ * only the second volume. plan: with the layers. Outward is away from most of these elements, whichever way the skin's
+ * polygons are turned. */
+int layers_normals(const layers *l, const volumes *plan, const obj *o, const grid *g, model *m, pool *threads, err *e);
+
 /* Of a plan that has the layers: which of them a volume is, or -1. */
 int64_t layers_at(const layers *l, const volumes *plan, int32_t volume);
 

@@ -333,7 +333,8 @@ static int make_model(const job *j, model *m, err *e)
     surface_name(j->o->common.anonymous ? "surface_1" : j->path, name, sizeof name);
     if (model_meta_set(m, "source.unit", num_unit_name(j->unit), e) || lattice_save(&l, m, e) ||
         build_elements(m, &j->x, &j->slit, &l, j->threads, e) || build_volumes(m, &j->plan, e) ||
-        (j->slit.nodes && build_slits(m, &j->plan, name, e)))
+        (j->slit.nodes && build_slits(m, &j->plan, name, e)) ||
+        (j->layer.layers && layers_normals(&j->layer, &j->plan, &j->surface, &j->g, m, j->threads, e)))
         return -1;
     return surface_add(m, name, &j->surface, in_metres(j, 1), e);
 }
@@ -561,10 +562,9 @@ static int work(job *j, model *m, err *e)
             return -1;
         clock = say_time(j, "finding layers", clock);
     }
-    if (make_model(j, m, e))
-        return -1;
+    const int status = make_model(j, m, e);
     say_time(j, "building the model", clock);
-    return say_plan(j, m, e);
+    return status ? -1 : say_plan(j, m, e);
 }
 
 static int run_tool(int argc, char **argv)

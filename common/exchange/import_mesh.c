@@ -97,6 +97,7 @@ void import_free(import_mesh *m)
     free(m->volume);
     free(m->line);
     free(m->fibre);
+    free(m->normal);
     free(m->volumes);
     free(m->material);
     free(m->rigid);

@@ -36,7 +36,7 @@ typedef struct import_mesh {
     int64_t volume_room;
     int64_t *line; /* elements: where it stands in the file; 0: it has no lines */
     int64_t line_room;
-    float *fibre; /* elements x 3, or NULL */
+    float *fibre, *normal; /* elements x 3, or NULL */
     import_volume *volumes;
     int64_t volume_count, volumes_room;
     bool any_case; /* the file's names have no case: they came in lower case */

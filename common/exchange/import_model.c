@@ -276,6 +276,15 @@ static int name_the_rest(import_mesh *mesh, const import_wishes *w, err *e)
     return 0;
 }
 
+/* An array of directions over the elements, where the mesh has any. */
+static int put_directions(model *m, const char *name, const float *along, err *e)
+{
+    model_array *to = along ? model_add(m, name, e) : NULL;
+    if (to)
+        memcpy(to->f32, along, 3 * (size_t)to->rows * sizeof *along);
+    return along && !to ? -1 : 0;
+}
+
 static int put_mesh(const import_mesh *mesh, const import_wishes *w, model *m, err *e)
 {
     if (model_axis_add(m, "node", mesh->nodes, e) || model_axis_add(m, "element", mesh->elements, e))
@@ -300,10 +309,9 @@ static int put_mesh(const import_mesh *mesh, const import_wishes *w, model *m, e
     if (!volume)
         return -1;
     memcpy(volume->i32, mesh->volume, (size_t)mesh->elements * sizeof *mesh->volume);
-    model_array *fibre = mesh->fibre ? model_add(m, "element.fibre", e) : NULL;
-    if (fibre)
-        memcpy(fibre->f32, mesh->fibre, 3 * (size_t)mesh->elements * sizeof *mesh->fibre);
-    return mesh->fibre && !fibre ? -1 : 0;
+    return put_directions(m, "element.fibre", mesh->fibre, e) || put_directions(m, "element.normal", mesh->normal, e)
+               ? -1
+               : 0;
 }
 
 int import_build(import_mesh *mesh, const import_wishes *w, model *m, notes *warnings, err *e)

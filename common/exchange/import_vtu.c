@@ -372,12 +372,12 @@ static int read_materials(reader *r)
 /* A direction of any length becomes one of length 1. One that sinew-model(5) takes is kept, so that an export reads
  * back to the last bit. 0 0 0 is none.
  */
-static int take_fibre(const reader *r, const xml_array *a, int64_t cell, const double *v, float *to)
+static int take_direction(const reader *r, const xml_array *a, int64_t cell, const double *v, float *to)
 {
     const double most = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
     if (!(isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2])))
-        return err_set(r->e, r->x.name, a->line, "cell %lld has fibre %g %g %g; expected a direction, or 0 0 0",
-                       (long long)cell, v[0], v[1], v[2]);
+        return err_set(r->e, r->x.name, a->line, "cell %lld has %s %g %g %g; expected a direction, or 0 0 0",
+                       (long long)cell, a->name, v[0], v[1], v[2]);
     if (most == 0) {
         to[0] = to[1] = to[2] = 0;
         return 0;
@@ -390,16 +390,17 @@ static int take_fibre(const reader *r, const xml_array *a, int64_t cell, const d
     return 0;
 }
 
-static int read_fibres(reader *r)
+/* The directions of a name, in *to, which is the mesh's; it stays NULL where there are none. */
+static int read_directions(reader *r, const char *name, float **to)
 {
-    const xml_array *a = array_of(r, CELL_DATA, "fibre");
+    const xml_array *a = array_of(r, CELL_DATA, name);
     if (!a || a->components != 3)
         return 0;
-    double *along = need(r, CELL_DATA, "fibre", 3, r->cells);
-    r->m->fibre = along ? mem_array(r->m->elements, 3 * sizeof *r->m->fibre, "fibres", r->e) : NULL;
-    int bad = r->m->fibre ? 0 : -1;
+    double *along = need(r, CELL_DATA, name, 3, r->cells);
+    *to = along ? mem_array(r->m->elements, 3 * sizeof **to, "directions", r->e) : NULL;
+    int bad = *to ? 0 : -1;
     for (int64_t i = 0; !bad && i < r->m->elements; i++)
-        bad = take_fibre(r, a, r->cell[i], &along[3 * r->cell[i]], &r->m->fibre[3 * i]);
+        bad = take_direction(r, a, r->cell[i], &along[3 * r->cell[i]], *to + 3 * i);
     free(along);
     return bad;
 }
@@ -439,7 +440,9 @@ static int read_all(reader *r)
         return -1;
     if (r->points < 0)
         return err_set(r->e, r->x.name, 0, "no piece; expected one with points and cells");
-    return read_points(r) || read_cells(r) || read_volumes(r) || read_materials(r) || read_fibres(r) || read_rigid(r)
+    return read_points(r) || read_cells(r) || read_volumes(r) || read_materials(r) ||
+                   read_directions(r, "fibre", &r->m->fibre) || read_directions(r, "normal", &r->m->normal) ||
+                   read_rigid(r)
                ? -1
                : 0;
 }

@@ -9,7 +9,8 @@
 #include "exchange/import_mesh.h"
 
 /* Volumes from the cell data `volume` (else `material`), with the names of the field data volume.name; fibres from
- * `fibre`; rigid nodes where the point data `rigid`, and what the wishes name, is not 0. -1 with e at file:line. */
+ * `fibre`, normals of the skin from `normal`; rigid nodes where the point data `rigid`, and what the wishes name,
+ * is not 0. -1 with e at file:line. */
 int import_vtu(import_mesh *m, in *s, const import_wishes *wishes, notes *warnings, err *e);
 
 #endif

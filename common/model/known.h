@@ -66,9 +66,11 @@ typedef struct known {
     X("element.inside", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_FROM, 0, 1, "voxelise",                              \
       "a place in it that the surfaces enclose, in shares of its sides; without the array its centre")                 \
     X("element.fibre", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "attach",                            \
-      "unit direction of contraction; 0 0 0 where there is none")                                                      \
+      "unit direction of its fibres, along which a muscle contracts; 0 0 0 where there is none")                       \
     X("element.mixfibre", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "attach",                         \
       "the same of element.mix")                                                                                       \
+    X("element.normal", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "voxelise",                         \
+      "unit outward normal of the skin next to it; 0 0 0 where there is none")                                         \
     X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh", "name")              \
     X("volume.level", MODEL_I32, "1", "volume", 1, 1, 0, KNOWN_FROM, 0, INT32_MAX, "voxelise or msds-mesh",            \
       "level, 0 the lowest")                                                                                           \
@@ -85,6 +87,8 @@ typedef struct known {
       "volume of the muscle")                                                                                          \
     X("muscle.centre", MODEL_F64, "m", "muscle", 3, 3, KNOWN_NAN, KNOWN_FINITE, 0, 0, "attach",                        \
       "contraction centre, the mean of its rigid nodes; nan where it has none")                                        \
+    X("muscle.fibre", MODEL_STR, "1", "muscle", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                                    \
+      "rule that its fibres follow, one of those in attach(1)")                                                        \
     X("attachment.muscle", MODEL_I32, "@muscle", "attachment", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",           \
       "muscle that is fixed there: a connected part of its rigid nodes; the largest first")                            \
     X("attachment.anchor", MODEL_I32, "@anchor", "attachment", 1, 1, 0, KNOWN_ANY, 0, 0, "attach",                     \

@@ -1,7 +1,7 @@
 // needs: voxelise/build.c voxelise/surfaces/closed.c voxelise/surfaces/crossing.c voxelise/surfaces/expansion.c
 // needs: voxelise/surfaces/grid.c voxelise/inside.c voxelise/pieces.c voxelise/cuts.c voxelise/solids.c
 // needs: voxelise/surfaces/weld.c voxelise/volumes.c voxelise/voxels.c voxelise/climb.c voxelise/shares.c
-// needs: voxelise/layers.c voxelise/depths.c tests/bench/scan.c tests/bench/bench.c
+// needs: voxelise/layers.c voxelise/surfaces/outward.c voxelise/depths.c tests/bench/scan.c tests/bench/bench.c
 /* `make bench-voxelise`: how long voxelise takes on a closed scan, step by step, on one thread and on
  * two, beside a probe of the machine: CSV. Usage: bench_voxelise [TRIANGLES [FOLDER]]; the OBJ that
  * is read stands in FOLDER (here) meanwhile.

@@ -19,6 +19,14 @@ for format in inp vtu msh; do
     check "$format: the same nodes, elements, volumes and rigid nodes" sinew diff --only $mesh "$small" "$T/back"
 done
 check "vtu: and fibres" sh -c "sinew import --unit m $T/small.vtu | sinew diff --only element.fibre $small -"
+{ # with normals of the skin, those of the fibres
+    awk '/^[a-z]/ && on { on = 0 } /^frame/ && !done { printf "array element.normal f32 1 element 3\n%s", rows; done = 1 }
+        on { rows = rows $0 "\n" } $2 == "element.fibre" { on = 1 } !/^crc/ { print }' "$small"
+} >"$T/normals"
+sinew export -f vtu -o "$T/normals.vtu" "$T/normals"
+check "vtu: and normals" sh -c "sinew import --unit m $T/normals.vtu | sinew diff --only element.normal,element.fibre $T/normals -"
+is "$(sinew export -f model "$T/normals" | sinew export -f model --text | sinew info --get element.normal.rows)" \
+    "$(sinew info --get element.fibre.rows "$small")" "a binary model has them too"
 # Directions of any length, as other programs write them, become directions of length 1; sinew-model(5) takes no others.
 fibre() { # X Y Z: of the voxel
     sed "s|</CellData>|<DataArray type=\"Float64\" Name=\"fibre\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 $*</DataArray>&|" \

@@ -27,6 +27,8 @@ is "$(rows volume.name)$(rows volume.level)$(rows volume.priority)$(rows volume.
     '"skin" "epidermis" "dermis" 0 0 0 0 1 2 0 2 1 ' "their volumes; a material of their name, or the one given"
 check "what is said of one" grep -q "^  dermis  *0  soft  *448  *0  *0  *100$" "$T/said"
 cp "$T/m" "$T/one"
+is "$(rows element.normal | tr ' ' '\n' | paste -d, - - - | awk -F , '{ n[$1 * $1 + $2 * $2 + $3 * $3 > 0]++
+    if ($1 * $1 + $2 * $2 + $3 * $3 == 1) axis++ } END { print n[0], n[1], axis }')" "64 936 936" "and their normals, those of its faces"
 vox -s 1 --threads 1 --layers "$T/layers" --materials "$T/materials" "$T/box.obj"
 check "the same bytes on one thread" cmp "$T/m" "$T/one"
 awk '$1 == "v" { print "v", $2 + 1e6, $3 - 2e6, $4; next } { print }' "$T/box.obj" >"$T/far.obj"
@@ -49,6 +51,12 @@ is "$(counts skin epidermis dermis)" "32 244 224 " "a --box is no skin"
 vox -s 1 --layers "$T/layers" --materials "$T/materials" "$T/head.obj"
 is "$(counts skin epidermis dermis muscle_a muscle_b)" "0 480 445 8 3 " "a skull and muscles"
 is "$(rows volume.level)" "0 0 0 1 1 " "muscles come after the layers"
+awk '$1 == "f" { for (i = NF; i > 1; i--) printf "%s%s", i == NF ? "f " : " ", $i; print ""; next } { print }' "$T/box.obj" >"$T/inward.obj"
+vox -s 1 --layers "$T/layers" --materials "$T/materials" "$T/inward.obj"
+rows element.normal >"$T/turned"
+vox -s 1 --layers "$T/layers" --materials "$T/materials" "$T/box.obj"
+rows element.normal | cmp -s - "$T/turned"
+is $? 0 "normals are outward, whichever way polygons are turned"
 
 # By the distance from a sphere.
 awk -v r=100 -v n=96 -f tests/cli/sphere.awk >"$T/ball.obj"
