@@ -3,6 +3,8 @@
  */
 #include "anchor.h"
 #include "cli/tool.h"
+#include "fibre_lines.h"
+#include "fibre_rule.h"
 #include "held_report.h"
 #include "model/finite.h"
 #include "model/stage.h"
@@ -16,10 +18,9 @@
 
 struct options {
     opt_common common;
-    opt_list rigid, part;
-    const char *rigid_file;
+    opt_list rigid, part, fibre, lines_in;
+    const char *rigid_file, *lines;
     double strictness;
-    int fibre;
     bool report;
 };
 
@@ -33,8 +34,12 @@ static const opt option_list[] = {
      "bone that moves by itself: jaw=skull_jaw,... or jaw=FILE.obj, a closed surface around it"},
     {OPT_ACTION, 0, "strictness", "S", OPT_NUMBER, TO(strictness), 0, 0, NULL, 0,
      "fix nodes this near to a surface, up to 1 [voxel sides; default 0.75]"},
-    {OPT_ACTION, 0, "fibre", "centre|axis|field", OPT_CHOICE, TO(fibre), 0, 0, "centre|axis|field", 0,
-     "toward the contraction centre, along the muscle's axis, or from end to end [default centre]"},
+    {OPT_ACTION, 0, "fibre", "[MUSCLES=]RULE", OPT_LIST, TO(fibre), 0, 0, MUSCLE_RULE_NAMES "|@muscle.name=", 0,
+     "how fibres run: " MUSCLE_RULE_NAMES " [default auto]"},
+    {OPT_ACTION, 0, "fibre-lines", "FILE.obj", OPT_TEXT, TO(lines), 0, 0, NULL, OPT_FILE,
+     "lines on the skin, as Langer's, that fibres of its layers follow"},
+    {OPT_ACTION, 0, "fibre-lines-in", "VOLUME,...", OPT_LIST, TO(lines_in), 0, 0, "@volume.name", 0,
+     "the volumes that follow them [default the layers of the skin]"},
     {OPT_RESULT, 0, "report", NULL, OPT_FLAG, TO(report), 0, 0, NULL, OPT_OUTPUT,
      "print what each surface and muscle got"},
     {0},
@@ -94,6 +99,14 @@ static void check_held(const rigid *r, notes *warnings)
             notes_add(warnings, "%s holds no node: all of it is too far from the voxels", r->surface[i].name);
 }
 
+/* With -v, a line for each muscle. */
+static void say_rules(const tool *t, const muscles *list)
+{
+    for (int64_t i = 0; i < list->count; i++)
+        tool_detail(t, "%s: fibres by the rule '%s': %s", list->of[i].name, fibre_rules[list->of[i].rule].name,
+                    fibre_rules[list->of[i].rule].what);
+}
+
 static int work(const struct options *o, const tool *t, model *m, notes *warnings, err *e)
 {
     rigid r = {0};
@@ -103,11 +116,13 @@ static int work(const struct options *o, const tool *t, model *m, notes *warning
     int rc = -1, count = tool_threads(t, e);
     if (count < 0 || finite_elements(m, NULL, e))
         return -1;
-    threads = pool_create(o->fibre == MUSCLE_FIELD ? count : 1, e);
+    threads = pool_create(count, e);
     if (!threads || collect(o, m, &file, &r, warnings, e) || anchor_nodes(m, &r, o->strictness, warnings, e) ||
-        part_make(m, &o->part, warnings, e) || muscle_make(m, (muscle_fibre)o->fibre, threads, &list, warnings, e))
+        part_make(m, &o->part, warnings, e) || muscle_make(m, &o->fibre, threads, &list, warnings, e) ||
+        (o->lines && fibre_lines_apply(m, o->lines, &o->lines_in, threads, e)))
         goto out;
     check_held(&r, warnings);
+    say_rules(t, &list);
     rc = o->report && (held_report_surfaces(t, &r, e) || held_report_muscles(t, &list, &r, e)) ? -1 : 0;
 out:
     muscles_free(&list);
@@ -123,7 +138,11 @@ static int check_options(const struct options *o, err *e)
         return err_usage(e, "--strictness %g: expected a number above 0, at most 1", o->strictness);
     if (o->rigid_file && !strcmp(o->rigid_file, "-"))
         return err_usage(e, "--rigid-file -: standard input is the model's; expected the name of a file");
-    return 0;
+    if (o->lines && !strcmp(o->lines, "-"))
+        return err_usage(e, "--fibre-lines -: standard input is the model's; expected the name of a file");
+    if (o->lines_in.count && !o->lines)
+        return err_usage(e, "--fibre-lines-in needs --fibre-lines FILE.obj, which has the lines");
+    return fibre_rules_check(&o->fibre, e);
 }
 
 static int run_tool(int argc, char **argv)

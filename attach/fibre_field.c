@@ -37,6 +37,7 @@ typedef struct piece {
 typedef struct muscle_field {
     const field *f;
     int32_t volume;
+    const double *axis;     /* along which a piece without an attachment begins; NULL: where it is furthest out */
     const int64_t *element; /* its elements in the body */
     int64_t elements, nodes, capacity;
     int32_t *corner; /* elements x 8: local nodes */
@@ -107,7 +108,7 @@ static void find_pieces(muscle_field *m)
         body_join(m->root, m->corner[i], m->corner[i - i % 8]);
     for (int64_t n = 0; n < m->nodes; n++) {
         m->root[n] = body_root(m->root, (int32_t)n);
-        m->of[n] = (piece){.first = -1, .second = -1, .high = -1};
+        m->of[n] = (piece){.first = -1, .second = -1, .high = -INFINITY};
     }
     for (int64_t i = 0; i < m->elements; i++)
         m->of[m->root[m->corner[8 * i]]].volume +=
@@ -193,7 +194,7 @@ static double apart(const muscle_field *m, int64_t n, const double *place)
     return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
 }
 
-/* The node of each piece that is furthest from its middle. */
+/* The node of each piece that is furthest along the axis, or else from its middle. */
 static void find_furthest(muscle_field *m)
 {
     for (int64_t n = 0; n < m->nodes; n++) {
@@ -207,15 +208,16 @@ static void find_furthest(muscle_field *m)
             m->of[n].out[a] /= (double)m->of[n].nodes;
     for (int64_t n = 0; n < m->nodes; n++) {
         piece *p = piece_of(m, n);
-        if (apart(m, n, p->out) > p->high) {
-            p->high = apart(m, n, p->out);
+        const double far = m->axis ? toward(m, n, m->axis) : apart(m, n, p->out);
+        if (far > p->high) {
+            p->high = far;
             p->furthest = n;
         }
     }
 }
 
 /* Sets the first end of each component: its largest attachment (attachments are numbered from the largest), or, where
- * it has none, the nodes about the one furthest from its middle. Returns whether every component has one. */
+ * it has none, the nodes about the one that is furthest out. Returns whether every component has one. */
 static bool find_first(muscle_field *m)
 {
     bool all = true;
@@ -415,11 +417,12 @@ static int64_t spread(muscle_field *m, bool lacking)
     return gained;
 }
 
-int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, err *e)
+int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, const double *axis, err *e)
 {
     const body *b = f->b;
     muscle_field m = {.f = f,
                       .volume = volume,
+                      .axis = axis,
                       .element = &b->element[b->start[volume]],
                       .elements = b->start[volume + 1] - b->start[volume]};
     int rc = -1;

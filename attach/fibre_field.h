@@ -23,10 +23,10 @@ void field_free(field *f);
  *   or more. Else the free end: of the last slices, each a twentieth of the way, or the piece's radius where that is
  *   more, the middles show the way out at the end of a parabola; what lies furthest out is the end, as deep as a voxel
  *   and a half or 0.4 of the radius. (The highest potential alone would be a place on the outer side of a bend.)
- * - A piece without an attachment: the free end found from the node furthest from the middle becomes the first, and the
- *   second is found from that.
+ * - A piece without an attachment: the free end found from the node furthest from the middle, or furthest along the
+ *   axis (unit, or NULL), becomes the first, and the second is found from that.
  * Directions are means over the elements that meet at each node, then over each element's nodes: the sides of voxels
  * are steps. Where all of an element is held, its neighbours' direction is its own. */
-int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, err *e);
+int field_fibres(field *f, int32_t volume, const attachment *of, int64_t count, const double *axis, err *e);
 
 #endif

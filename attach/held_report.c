@@ -1,5 +1,7 @@
 #include "held_report.h"
 
+#include "fibre_rule.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -71,18 +73,18 @@ int held_report_surfaces(const tool *t, const rigid *r, err *e)
 /* ---- muscles */
 
 /* The rule that gave the fibres, and how many elements have another rule or no fibre. */
-static void add_rule(text_table *rows, const muscle *m, muscle_fibre kind)
+static void add_rule(text_table *rows, const muscle *m)
 {
-    static const char *const name[] = {[MUSCLE_CENTRE] = "centre", [MUSCLE_AXIS] = "axis", [MUSCLE_FIELD] = "field"};
+    const char *const name = fibre_rules[m->rule].name, *const axis = fibre_rules[MUSCLE_AXIS].name;
     const int64_t by_rule = m->elements - m->without - m->by_axis;
     if (m->without == m->elements)
         text_table_cell(rows, "none");
     else if (m->without)
-        text_table_cell(rows, "%s, %lld none", name[by_rule ? kind : MUSCLE_AXIS], (long long)m->without);
+        text_table_cell(rows, "%s, %lld none", by_rule ? name : axis, (long long)m->without);
     else if (by_rule && m->by_axis)
-        text_table_cell(rows, "%s, %lld axis", name[kind], (long long)m->by_axis);
+        text_table_cell(rows, "%s, %lld axis", name, (long long)m->by_axis);
     else
-        text_table_cell(rows, "%s", name[by_rule ? kind : MUSCLE_AXIS]);
+        text_table_cell(rows, "%s", by_rule ? name : axis);
 }
 
 static void add_centre(text_table *rows, const double *centre, int decimals)
@@ -133,7 +135,7 @@ int held_report_muscles(const tool *t, const muscles *list, const rigid *r, err 
         const muscle *m = &list->of[i];
         text_table_cell(rows, "%s", m->name);
         text_table_count(rows, m->elements);
-        add_rule(rows, m, list->kind);
+        add_rule(rows, m);
         text_table_count(rows, m->rigid_nodes);
         add_centre(rows, m->centre, decimals);
         text_table_cell(rows, "%s", muscle_contracts(m) ? "" : "!");

@@ -2,9 +2,11 @@
 
 #include "base/mem.h"
 #include "cli/listing.h"
-#include "fibre_field.h"
+#include "fibre_rule.h"
 #include "mesh/lattice.h"
 #include "muscle_body.h"
+#include "muscle_surface.h"
+#include "principal.h"
 
 #include <float.h>
 #include <math.h>
@@ -77,43 +79,14 @@ static void covariance(const body *b, const muscle *m, double c[3][3])
     }
 }
 
-/* One Jacobi rotation: makes c[p][q] zero, and turns the columns of v along. */
-static void rotate(double c[3][3], double v[3][3], int p, int q)
-{
-    if (c[p][q] == 0)
-        return;
-    double theta = (c[q][q] - c[p][p]) / (2 * c[p][q]);
-    double t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1));
-    double cosine = 1 / sqrt(t * t + 1), sine = t * cosine;
-    for (int k = 0; k < 3; k++) {
-        double cp = c[k][p], cq = c[k][q], vp = v[k][p], vq = v[k][q];
-        c[k][p] = cosine * cp - sine * cq;
-        c[k][q] = sine * cp + cosine * cq;
-        v[k][p] = cosine * vp - sine * vq;
-        v[k][q] = sine * vp + cosine * vq;
-    }
-    for (int k = 0; k < 3; k++) {
-        double cp = c[p][k], cq = c[q][k];
-        c[p][k] = cosine * cp - sine * cq;
-        c[q][k] = sine * cp + cosine * cq;
-    }
-}
-
 /* The axis along which the elements' centres spread most: the eigenvector of the largest eigenvalue of their
  * covariance. Where two axes are equally long there is none: 0 0 0. Returns the spread along it (m). */
 static double longest_axis(const body *b, const muscle *m, double *axis)
 {
-    double c[3][3] = {{0}}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double c[3][3] = {{0}}, v[3][3];
     covariance(b, m, c);
-    for (int sweep = 0; sweep < 20; sweep++) { /* converges in 4 or 5 */
-        rotate(c, v, 0, 1);
-        rotate(c, v, 0, 2);
-        rotate(c, v, 1, 2);
-    }
-    int first = 0;
-    for (int a = 1; a < 3; a++)
-        if (c[a][a] > c[first][first])
-            first = a;
+    principal_axes(c, v);
+    const int first = principal_largest(c);
     double next = fmax(c[(first + 1) % 3][(first + 1) % 3], c[(first + 2) % 3][(first + 2) % 3]);
     bool longest = c[first][first] - next > 1e-6 * c[first][first];
     for (int a = 0; a < 3; a++)
@@ -142,8 +115,9 @@ static void find_axis(const body *b, muscle *m)
 typedef enum rule { BY_RULE, BY_AXIS, BY_NONE } rule;
 
 /* Sets the fibre of one element. */
-static rule set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t element)
+static rule set_fibre(const body *b, const muscle *m, int64_t element)
 {
+    const muscle_fibre kind = m->rule;
     double line[3], length = 0, centre[3];
     body_centre(b, element, centre);
     for (int a = 0; a < 3; a++) {
@@ -154,7 +128,7 @@ static rule set_fibre(const body *b, const muscle *m, muscle_fibre kind, int64_t
     if (kind == MUSCLE_CENTRE && !m->rigid_nodes)
         return BY_NONE;
     float *fibre = body_fibre(b, element, m->volume);
-    if (kind == MUSCLE_FIELD && (fibre[0] != 0 || fibre[1] != 0 || fibre[2] != 0))
+    if (fibre_rules[kind].fill && (fibre[0] != 0 || fibre[1] != 0 || fibre[2] != 0))
         return BY_RULE;
     bool along_axis = kind != MUSCLE_CENTRE || length <= 1e-9 * element_size(b, element);
     for (int a = 0; a < 3; a++)
@@ -175,21 +149,21 @@ static bool can_move(const body *b, int64_t element)
 /* What of a muscle will not contract, and why. */
 typedef enum lack { NOTHING, NO_ELEMENT, NO_FREE_NODE, NO_RIGID_NODE, NO_AXIS, LACKS } lack;
 
-static lack lack_of(const muscle *m, muscle_fibre kind)
+static lack lack_of(const muscle *m)
 {
     if (!m->elements)
         return NO_ELEMENT;
     if (m->still == m->elements)
         return NO_FREE_NODE;
-    if (!m->rigid_nodes && kind == MUSCLE_CENTRE)
+    if (!m->rigid_nodes && m->rule == MUSCLE_CENTRE)
         return NO_RIGID_NODE;
     return m->without ? NO_AXIS : NOTHING;
 }
 
 /* One muscle: its own sentence. */
-static void warn_of_one(const muscle *m, muscle_fibre kind, notes *warnings)
+static void warn_of_one(const muscle *m, notes *warnings)
 {
-    switch (lack_of(m, kind)) {
+    switch (lack_of(m)) {
     case NO_ELEMENT:
         notes_add(warnings, "%s has no elements: it will not contract; voxelise says why", m->name);
         break;
@@ -210,7 +184,7 @@ static void warn_of_one(const muscle *m, muscle_fibre kind, notes *warnings)
                   "%s has no axis that is the longest: %lld of its %lld elements have no fibre and will not contract; "
                   "%s",
                   m->name, (long long)m->without, (long long)m->elements,
-                  kind == MUSCLE_FIELD ? "smaller voxels give it a shape" : "--fibre field needs no axis");
+                  fibre_rules[m->rule].fill ? "smaller voxels give it a shape" : "--fibre field needs no axis");
         break;
     default:
         break;
@@ -232,7 +206,7 @@ static void warn_of_many(lack what, listing *names, muscle_fibre kind, notes *wa
                                               [NO_AXIS] = "--fibre field needs no axis"};
     const long long count = names->count;
     notes_add(warnings, "%lld muscles have %s: %s; %s", count, have[what], listing_text(names),
-              what == NO_AXIS && kind == MUSCLE_FIELD ? "smaller voxels give them a shape" : remedy[what]);
+              what == NO_AXIS && fibre_rules[kind].fill ? "smaller voxels give them a shape" : remedy[what]);
 }
 
 /* One line for each thing that muscles lack. */
@@ -242,21 +216,21 @@ static void warn_of_all(const muscles *list, notes *warnings)
         listing names = {0};
         const muscle *last = NULL;
         for (int64_t i = 0; i < list->count; i++)
-            if (lack_of(&list->of[i], list->kind) == what) {
+            if (lack_of(&list->of[i]) == what) {
                 last = &list->of[i];
                 listing_add(&names, "%s", last->name);
             }
         if (names.count == 1)
-            warn_of_one(last, list->kind, warnings);
+            warn_of_one(last, warnings);
         else if (names.count)
-            warn_of_many(what, &names, list->kind, warnings);
+            warn_of_many(what, &names, last->rule, warnings);
     }
 }
 
-static void set_fibres(const body *b, muscle *m, muscle_fibre kind)
+static void set_fibres(const body *b, muscle *m)
 {
     for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++) {
-        const rule by = set_fibre(b, m, kind, b->element[at]);
+        const rule by = set_fibre(b, m, b->element[at]);
         m->by_axis += by == BY_AXIS;
         m->without += by == BY_NONE;
         m->still += !can_move(b, b->element[at]);
@@ -394,35 +368,134 @@ static int add_arrays(model *m, body *b, const muscles *list, err *e)
     return a ? 0 : -1;
 }
 
-/* --fibre field: each muscle's attachments are found again, since b->part holds one muscle's. */
-static int follow_fields(const model *m, const body *b, const muscles *list, pool *threads, err *e)
+/* ---- rules */
+
+/* Points that a muscle consists of: the cells of its shape, or else its elements' centres. */
+static int find_points(const fibre_case *c, double **place, double **weight, ring_points *p, err *e)
 {
-    lattice grid;
-    attachments own = {0};
-    field *f = lattice_of(m, &grid, e) ? NULL : field_create(b, threads, grid.spacing, e);
-    int rc = f ? 0 : -1;
-    for (int64_t i = 0; !rc && i < list->count; i++) {
-        const muscle *of = &list->of[i];
-        own.count = 0;
-        if (of->elements)
-            rc = attachments_find(&own, b, (int32_t)i, of->volume, e) ||
-                 field_fibres(f, of->volume, own.of, own.count, e);
+    p->count = c->shape ? muscle_shape_cells(c->shape) : c->of->elements;
+    *place = mem_array(3 * p->count, sizeof **place, "a muscle", e);
+    *weight = *place ? mem_array(p->count, sizeof **weight, "a muscle", e) : NULL;
+    if (!*weight)
+        return -1;
+    for (int64_t i = 0; i < p->count; i++) {
+        (*weight)[i] = 1;
+        if (c->shape) {
+            muscle_shape_place(c->shape, i, *place + 3 * i);
+            continue;
+        }
+        const int64_t element = c->b->element[c->b->start[c->of->volume] + i];
+        body_centre(c->b, element, *place + 3 * i);
+        (*weight)[i] = body_share(c->b, element, c->of->volume);
     }
-    free(own.of);
-    field_free(f);
-    return rc ? -1 : 0;
+    p->place = *place;
+    p->weight = *weight;
+    return 0;
 }
 
-int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, notes *warnings, err *e)
+static int find_ring(fibre_case *c, muscle *of, ring *r, err *e)
+{
+    double *place = NULL, *weight = NULL;
+    ring_points p;
+    const int rc = find_points(c, &place, &weight, &p, e);
+    of->is_ring = !rc && ring_find(r, &p);
+    c->ring = of->is_ring ? r : NULL;
+    free(place);
+    free(weight);
+    return rc;
+}
+
+/* Fibres that a rule has laid run toward the contraction centre, as others do; those of a ring run round. */
+static void turn_fibres(const body *b, const muscle *m)
+{
+    double along = 0;
+    for (int64_t at = b->start[m->volume]; at < b->start[m->volume + 1]; at++)
+        for (int a = 0; a < 3; a++)
+            along += m->axis[a] * (double)body_fibre(b, b->element[at], m->volume)[a];
+    for (int64_t at = b->start[m->volume]; along < 0 && at < b->start[m->volume + 1]; at++)
+        for (int a = 0; a < 3; a++) {
+            float *fibre = body_fibre(b, b->element[at], m->volume) + a;
+            *fibre = *fibre != 0 ? -*fibre : 0;
+        }
+}
+
+/* The shape of a muscle, or NULL where it has no closed surface that encloses something. -1 with e filled. */
+static int find_shape(const muscle_surfaces *surfaces, int32_t index, muscle_shape **shape, err *e)
+{
+    trimesh own = {0};
+    int rc = muscle_surface_take(surfaces, index, &own, e);
+    if (!rc && own.triangles && !(*shape = muscle_shape_create(&own, e)))
+        rc = -1;
+    if (*shape && !muscle_shape_cells(*shape)) {
+        muscle_shape_free(*shape);
+        *shape = NULL;
+    }
+    trimesh_free(&own);
+    return rc;
+}
+
+/* Chooses the muscle's rule, and lays its fibres by it. */
+static int follow_rule(fibre_case *c, muscle *of, const muscle_surfaces *surfaces, err *e)
+{
+    muscle_shape *shape = NULL;
+    ring r;
+    const bool looks = of->asked < 0 || of->asked == MUSCLE_ROUND || of->asked == MUSCLE_SHAPE;
+    int rc = looks ? find_shape(surfaces, c->index, &shape, e) : 0;
+    c->of = of;
+    c->shape = shape;
+    c->ring = NULL;
+    if (!rc && (of->asked < 0 || of->asked == MUSCLE_ROUND))
+        rc = find_ring(c, of, &r, e);
+    of->rule = of->asked >= 0 ? (muscle_fibre)of->asked : fibre_rule_for(c);
+    if (!rc && fibre_rules[of->rule].fill)
+        rc = fibre_rules[of->rule].fill(c, e);
+    if (!rc && fibre_rules[of->rule].fill && of->rule != MUSCLE_FIELD && !of->is_ring)
+        turn_fibres(c->b, of);
+    muscle_shape_free(shape);
+    return rc;
+}
+
+static int follow_rules(const model *m, const body *b, muscles *list, pool *threads, err *e)
+{
+    muscle_surfaces surfaces = {0};
+    fibre_case c = {.m = m, .b = b, .threads = threads};
+    const char **name = mem_array(list->count, sizeof *name, "muscles", e);
+    int rc = name ? 0 : -1;
+    for (int64_t i = 0; name && i < list->count; i++)
+        name[i] = list->of[i].name;
+    rc = rc || muscle_surfaces_find(&surfaces, m, name, list->count, e) ? -1 : 0;
+    for (int64_t i = 0; !rc && i < list->count; i++) {
+        c.index = (int32_t)i;
+        rc = follow_rule(&c, &list->of[i], &surfaces, e);
+        if (!rc)
+            set_fibres(b, &list->of[i]);
+    }
+    field_free(c.voxels);
+    muscle_surfaces_free(&surfaces);
+    free(name);
+    return rc;
+}
+
+static int add_rules(model *m, const muscles *list, err *e)
+{
+    model_array *a = model_add(m, "muscle.fibre", e);
+    for (int64_t i = 0; a && i < list->count; i++)
+        if (model_set_text(a, i, fibre_rules[list->of[i].rule].name, e))
+            return -1;
+    return a ? 0 : -1;
+}
+
+int muscle_make(model *m, const opt_list *asked, pool *threads, muscles *list, notes *warnings, err *e)
 {
     body b = {0};
     int rc = -1;
-    *list = (muscles){.kind = fibre};
+    *list = (muscles){0};
     model_axis_drop(m, "muscle", warnings);
     model_axis_drop(m, "attachment", warnings);
     model_remove(m, "element.fibre");
     model_remove(m, "element.mixfibre");
-    if (find_arrays(m, &b, e) || find_muscles(m, list, e) || sort_elements(&b, model_count(m, "volume"), e))
+    if (find_arrays(m, &b, e) || find_muscles(m, list, e) || sort_elements(&b, model_count(m, "volume"), e) ||
+        fibre_rules_asked(list, asked, e))
         goto out;
     for (int64_t i = 0; i < list->count; i++) {
         find_centres(&b, &list->of[i], (int32_t)i);
@@ -430,10 +503,9 @@ int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, note
         if (attachments_find(&list->attached, &b, (int32_t)i, list->of[i].volume, e))
             goto out;
     }
-    if (add_arrays(m, &b, list, e) || (fibre == MUSCLE_FIELD && follow_fields(m, &b, list, threads, e)))
+    if (add_arrays(m, &b, list, e) || follow_rules(m, &b, list, threads, e) ||
+        (!fibre_rules_single(asked) && add_rules(m, list, e)))
         goto out;
-    for (int64_t i = 0; i < list->count; i++)
-        set_fibres(&b, &list->of[i], fibre);
     warn_of_all(list, warnings);
     rc = 0;
 out:

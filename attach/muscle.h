@@ -6,17 +6,27 @@
 
 #include "attachment.h"
 #include "base/pool.h"
+#include "cli/opt.h"
 #include "model/model.h"
 
+/* The rules that give fibres (fibre_rule.h), in the order in which they are tried. */
 typedef enum muscle_fibre {
-    MUSCLE_CENTRE, /* from the element's centre toward the contraction centre */
+    MUSCLE_ROUND,  /* along the line of a ring, or along an arc of a sphincter */
+    MUSCLE_SHAPE,  /* along the gradient of a potential between the ends of its closed surface (muscle_shape.h) */
+    MUSCLE_FIELD,  /* the same between the ends of its voxels (fibre_field.h) */
     MUSCLE_AXIS,   /* along the muscle's longest axis, the principal one of its elements' centres */
-    MUSCLE_FIELD   /* along the gradient of a potential between its two ends (field.h) */
+    MUSCLE_CENTRE, /* from the element's centre toward the contraction centre */
+    MUSCLE_RULES
 } muscle_fibre;
+
+#define MUSCLE_RULE_NAMES "centre|axis|field|shape|round|auto"
 
 typedef struct muscle {
     const char *name; /* borrowed from volume.name */
     int32_t volume;
+    int asked; /* the rule that --fibre gives it, -1 = by default */
+    muscle_fibre rule;
+    bool is_ring;
     int64_t elements, rigid_nodes; /* elements: with those that it is the second volume of */
     int64_t by_axis;               /* elements whose fibre is along the axis because the rule asked for gives none */
     int64_t without;               /* elements without a fibre */
@@ -30,16 +40,16 @@ typedef struct muscle {
 typedef struct muscles {
     muscle *of;
     int64_t count;
-    muscle_fibre kind;
     attachments attached;
 } muscles;
 
 /* Makes the axis muscle with muscle.volume and muscle.centre, the axis attachment with attachment.muscle and its other
  * arrays, and element.fibre (and element.mixfibre where there is element.mix), in place of those that are there, from
- * node.rigid (and node.anchor, element.fraction and element.mix, where there are any) and the volumes that are muscles.
+ * node.rigid (and node.anchor, element.fraction and element.mix, where there are any), the volumes that are muscles,
+ * and their surfaces. asked: the values of --fibre; unless it gives one rule to all, muscle.fibre says which each has.
  * An element that lies at the contraction centre gets the axis. Notes the muscles that can have no centre or no fibres.
- * Spreads are weighted by its shares. threads: for MUSCLE_FIELD. The caller frees the list, on failure too. */
-int muscle_make(model *m, muscle_fibre fibre, pool *threads, muscles *list, notes *warnings, err *e);
+ * Spreads are weighted by its shares. The caller frees the list, on failure too. */
+int muscle_make(model *m, const opt_list *asked, pool *threads, muscles *list, notes *warnings, err *e);
 
 /* Whether it has an element that has a fibre, and one that has a free node. */
 static inline bool muscle_contracts(const muscle *m)

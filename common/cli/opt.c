@@ -197,8 +197,7 @@ static int set_numbers(const opt *o, const char *text, opt_numbers *to, err *e)
     return bad_value(o, text, want, e);
 }
 
-/* The index of a word among choices, or -1. */
-static int find_choice(const char *choices, const char *word)
+int opt_choice(const char *choices, const char *word)
 {
     const size_t length = strlen(word);
     for (int i = 0;; i++) {
@@ -214,9 +213,9 @@ static int find_choice(const char *choices, const char *word)
 static int set_choice(const opt *o, const char *text, int *to, err *e)
 {
     char british[64];
-    int found = find_choice(o->choices, text);
+    int found = opt_choice(o->choices, text);
     if (found < 0 && spelling_british(text, strlen(text), british, sizeof british))
-        found = find_choice(o->choices, british);
+        found = opt_choice(o->choices, british);
     if (found < 0)
         return bad_value(o, text, o->choices, e);
     *to = found;

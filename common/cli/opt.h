@@ -99,7 +99,8 @@ typedef struct opt_tool {
     const opt *options; /* ends with OPT_END */
 } opt_tool;
 
-/* Names of options and choices may have American spelling (cli/spelling.h), and are recorded as the table has them.
+/* Names of options and choices may have American spelling (cli/spelling.h), and are recorded as the table has them;
+ * those of a list too, where a value is a choice, or NAME=CHOICE. Whoever reads a list looks it up in both spellings.
  *
  * Parses argv into options (with its defaults set by the caller) and moves the operands to the front of argv, from
  * argv[1]. Returns the count of operands, or -1 with e filled (status 2). With -h, -V or --table, nothing more is
@@ -109,6 +110,9 @@ int opt_parse(const opt_tool *tool, int argc, char **argv, void *options, err *e
 /* Sets one option by its long name, as the command line does: for values that change while a tool runs. The text must
  * last as long as the options. -1 with e filled, and that option's value may be lost. */
 int opt_set(const opt_tool *tool, const char *name, const char *text, void *options, err *e);
+
+/* The index of a word among names between '|', or -1. */
+int opt_choice(const char *choices, const char *word);
 
 /* The i-th option of the tool: its own first, then the common ones that it has; NULL past the last. opt_own: how many
  * are its own. */

@@ -3,6 +3,7 @@
 #include "base/path.h"
 #include "cli/opt.h"
 #include "cli/opt_complete.h"
+#include "cli/spelling.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -148,11 +149,24 @@ static void put_name(const opt *o, out *to)
         out_format(to, "--%s", o->name);
 }
 
+/* A value of a list: a choice, or NAME=CHOICE, as the table spells it; what is neither stays as it is. */
+static const char *spelled(const opt *o, const char *text, char *to, size_t size)
+{
+    char british[64];
+    const char *equals = strrchr(text, '='), *word = equals ? equals + 1 : text;
+    if (!o->choices || !spelling_british(word, strlen(word), british, sizeof british) ||
+        opt_choice(o->choices, british) < 0)
+        return text;
+    const int length = snprintf(to, size, "%.*s%s", (int)(word - text), text, british);
+    return length < (int)size ? to : text;
+}
+
 /* Writes the option as it stands; what is off or was not given (texts, lists) is left out. */
 static void put_value(const opt *o, const void *options, out *to)
 {
     const void *at = (const char *)options + o->to;
     const opt_list *list = at;
+    char text[1024];
     if ((o->kind == OPT_FLAG && !*(const bool *)at) || (o->kind == OPT_TEXT && !*(const char *const *)at) ||
         (o->kind == OPT_LENGTHS && !((const opt_lengths *)at)->count) ||
         (o->kind == OPT_NUMBERS && !((const opt_numbers *)at)->count) ||
@@ -165,7 +179,7 @@ static void put_value(const opt *o, const void *options, out *to)
             if (o->flags & OPT_NAMED)
                 put_named(list->value[i], options, to);
             else
-                put_text(o->flags & OPT_FILE, list->value[i], options, to);
+                put_text(o->flags & OPT_FILE, spelled(o, list->value[i], text, sizeof text), options, to);
         }
         return;
     }

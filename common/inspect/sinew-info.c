@@ -214,9 +214,10 @@ static int put_materials(const model *m, out *to, err *e)
 
 static int put_muscles(const model *m, const int64_t *elements, out *to, err *e)
 {
-    static const char *const heads[] = {"<muscle", ">elements", ">centre x\nm", ">y\nm", ">z\nm", NULL};
     const model_array *volume = model_find(m, "muscle.volume"), *name = model_find(m, "volume.name");
-    const model_array *centre = model_find(m, "muscle.centre");
+    const model_array *centre = model_find(m, "muscle.centre"), *fibre = model_find(m, "muscle.fibre");
+    const char *const heads[] = {"<muscle", ">elements", ">centre x\nm", ">y\nm", ">z\nm", fibre ? "<fibres" : NULL,
+                                 NULL};
     if (!volume || !name || !volume->rows)
         return 0;
     const int decimals = centre ? text_table_decimals(info_stats_of(centre).max, 5) : 0;
@@ -226,6 +227,8 @@ static int put_muscles(const model *m, const int64_t *elements, out *to, err *e)
         text_table_count(t, elements[volume->i32[i]]);
         for (int a = 0; a < 3; a++)
             text_table_number(t, centre ? centre->f64[3 * i + a] : NAN, decimals);
+        if (fibre)
+            text_table_cell(t, "%s", fibre->str[i]);
     }
     out_text(to, "muscles\n");
     return text_table_put(t, to, e);

@@ -136,7 +136,7 @@ models() {
     quietly face_model
 }
 face_model() {
-    voxelise -q --unit mm -s 2.5 --box="$box" "$face" | attach -q -o "$folder/face.model"
+    voxelise -q --unit mm -s 2.5 --box="$box" "$face" | attach -q --fibre centre -o "$folder/face.model"
 }
 
 # samples_make FOLDER TARGET...

@@ -110,16 +110,27 @@ is "$(values element.fibre "$T/out")" "-1 0 0,-1 0 0,0 0 0" "fibres"
 is "$(grep -c 'rigid_far holds no node' "$T/stderr") $(wc -l <"$T/stderr")" "1 1" "one warning: a bone out of reach"
 is "$(values x-word "$T/out") $(values x-heat "$T/out")" '"one","two words" 1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16' \
     "unknown arrays pass"
-is "$(sed -n 's/^\(prov attach\) [0-9.]*/\1/p' "$T/out")" 'prov attach "--strictness 0.75 --fibre centre"' "provenance"
+is "$(sed -n 's/^\(prov attach\) [0-9.]*/\1/p' "$T/out")" 'prov attach "--strictness 0.75"' "provenance"
+is "$(values muscle.fibre "$T/out")" '"field"' "the rule of its fibres, as it has no surface of its own"
+attach --text -q --fibre centre <"$T/bar" >"$T/centre"
+is "$(sed -n 's/^\(prov attach\) [0-9.]*/\1/p' "$T/centre") $(values element.fibre "$T/centre") $(grep -c muscle.fibre "$T/centre")" \
+    'prov attach "--strictness 0.75 --fibre centre" -1 0 0,-1 0 0,0 0 0 0' "one rule for all is in the provenance, as it was before"
+attach --text -q --fibre 'A=center' --fibre 'muscle_*,a=axis' <"$T/bar" >"$T/own"
+is "$(sed -n 's/^\(prov attach\) [0-9.]*/\1/p' "$T/own") $(values muscle.fibre "$T/own")" \
+    'prov attach "--strictness 0.75 --fibre A=centre --fibre muscle_*,a=axis" "axis"' "a rule for some, the last that names it"
+is "$(attach -v -o "$T/x" <"$T/bar" 2>&1 | grep -c "muscle_a: fibres by the rule 'field': from end to end through")" 1 "-v tells it"
+is "$(sinew info "$T/own" | awk '/muscle_a/ && /axis/' | wc -l)" 1 "sinew info too"
+fails 2 "--fibre for a muscle that is not there" "fibre: unknown muscle 'zyg'.*muscle_a" attach --fibre zyg=axis -o "$T/no" <"$T/bar"
+fails 2 "--fibre with a rule that is none" "fibre 'a=along': expected centre" attach --fibre a=along <"$T/bar"
 
 check "again" attach --text -q -o "$T/again" <"$T/out"
 is "$(grep -v '^prov' "$T/again" | cksum)" "$(grep -v '^prov' "$T/out" | cksum)" "changes nothing"
-check "with other surfaces" attach --text -q --rigid bone_b -o "$T/again" <"$T/out"
+check "with other surfaces" attach --text -q --rigid bone_b --fibre centre -o "$T/again" <"$T/out"
 is "$(values node.rigid "$T/again") $(values anchor.name "$T/again") $(values node.anchor "$T/again" | tr -d ',01-')" \
     '0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0 "Bone_b" ' "what the first left is gone"
 is "$(values muscle.centre "$T/again") $(values element.fibre "$T/again")" "nan nan nan 0 0 0,0 0 0,0 0 0" \
     "a muscle that touches no bone"
-is "$(attach --rigid bone_b <"$T/bar" 2>&1 >"$T/x")" "attach: warning: muscle_a has no rigid node, so no contraction centre and no \
+is "$(attach --rigid bone_b --fibre centre <"$T/bar" 2>&1 >"$T/x")" "attach: warning: muscle_a has no rigid node, so no contraction centre and no \
 fibres: it will not contract; --fibre field gives it fibres without one" "is a warning that names it, and what helps"
 attach --text --rigid 'BONE*' --fibre axis <"$T/bar" >"$T/out" 2>"$T/stderr"
 is "$(values element.fibre "$T/out") $(cat "$T/stderr")" "1 0 0,1 0 0,0 0 0 " \
@@ -148,7 +159,7 @@ is "$(grep -v warning "$T/stderr")" "attach: 3 rigid surfaces
 attach: 1 muscle
                               rigid  centre x       y       z
   muscle    elements  fibres  nodes        mm      mm      mm
-  muscle_a         2  centre      4    0.0000  5.0000  5.0000" "--report"
+  muscle_a         2  field       4    0.0000  5.0000  5.0000" "--report"
 attach <"$T/bar" 2>"$T/stderr" >"$T/plain"
 # Faces 1 to 3 and 5 are far away, and so are 8 to 60, each apart from the next.
 {
@@ -253,16 +264,58 @@ is "$(attach --strictness 1 <"$T/cube18" 2>&1 >"$T/x")" "attach: warning: muscle
 voxels or a lower --strictness may leave some free" "one whose nodes are all held"
 is "$(attach --strictness 0.75 <"$T/cube18" 2>&1 >"$T/x")" "" "has some with a lower --strictness"
 
+# Lines on a ball, its circles of latitude, 15 degrees apart: fibres of its shell run east. Away from the poles.
+awk -v r=100 -v n=48 -f tests/cli/sphere.awk >"$T/ball.obj"
+echo 'shell thickness=20' >"$T/shell"
+voxelise -q --unit mm -s 10 --layers "$T/shell" "$T/ball.obj" 2>"$T/said" >"$T/ball"
+awk 'BEGIN { pi = atan2(0, -1)
+    for (t = -75; t <= 75; t += 15) {
+        line = "l"
+        for (k = 0; k < 60; k++) {
+            printf "v %.9g %.9g %.9g\n", 100 * cos(t * pi / 180) * cos(k * pi / 30), 100 * cos(t * pi / 180) * sin(k * pi / 30),
+                100 * sin(t * pi / 180)
+            line = line " " ++n
+        }
+        print line, n - 59
+    } }' >"$T/lines.obj"
+check "--fibre-lines" attach --text -q --fibre-lines "$T/lines.obj" -o "$T/out" <"$T/ball"
+is "$(sed -n 's/^\(prov attach\) [0-9.]*/\1/p' "$T/out")" 'prov attach "--strictness 0.75 --fibre-lines lines.obj"' "is in the provenance"
+is "$(awk '$1 == "array" { on = $2; r = 0; next } /^(crc|axis|end)/ { on = "" }
+    on == "node.position" { p[r++] = $0 } on == "element.node" { n[r++] = $0 } on == "element.normal" { up[r++] = $0 }
+    on == "element.fibre" {
+        split($0, f); split(up[r], m); split(n[r++], c); x = y = z = 0
+        if (!(m[1] || m[2] || m[3])) { inner += f[1] || f[2] || f[3]; next }
+        for (i = 1; i <= 8; i++) { split(p[c[i]], q); x += q[1]; y += q[2]; z += q[3] }
+        l = sqrt(x * x + y * y); east = (f[2] * x - f[1] * y) / l; out = f[1] * m[1] + f[2] * m[2] + f[3] * m[3]
+        radial = (m[1] * x + m[2] * y + m[3] * z) / sqrt(l * l + z * z)
+        if (l > .3 * sqrt(l * l + z * z) && east * east < .9995) off++
+        if (out * out > 1e-12) tilted++
+        if (radial < .9995) wrong++
+        shell++
+    } END { print (shell > 2000), inner + 0, off + 0, tilted + 0, wrong + 0 }' "$T/out")" "1 0 0 0 0" \
+    "to 1.3 degrees, in the plane across the normal, which is that of the ball; nothing inside"
+attach --text -q --threads 1 --fibre-lines "$T/lines.obj" -o "$T/one" <"$T/ball"
+check "the same bytes on one thread" cmp "$T/out" "$T/one"
+check "--fibre-lines-in" attach --text -q --fibre-lines "$T/lines.obj" --fibre-lines-in 'Sh*' -o "$T/out" <"$T/ball"
+sinew diff --only element.fibre "$T/out" "$T/one" >"$T/said"
+is $? 0 "names volumes, here the same"
+fails 2 "a model without layers" 'no layers of skin .element.normal.' attach --fibre-lines "$T/lines.obj" -o "$T/no" <"$T/cube4"
+fails 2 "lines in a muscle" 'muscle_m is a muscle' attach --fibre-lines "$T/lines.obj" --fibre-lines-in 'muscle*' -o "$T/no" <"$T/cube4"
+fails 2 "lines in a volume that is none" "unknown volume 'shel'.*shell" attach --fibre-lines "$T/lines.obj" --fibre-lines-in shel -o "$T/no" <"$T/ball"
+fails 1 "a file without lines" 'ball.obj: no lines; expected' attach --fibre-lines "$T/ball.obj" -o "$T/no" <"$T/ball"
+fails 2 "volumes without lines" 'needs --fibre-lines' attach --fibre-lines-in shell <"$T/ball"
+fails 2 "lines from standard input" 'standard input' attach --fibre-lines - <"$T/ball"
+
 if [ ! "$DATA" ]; then
-    skip 10 "no shared data"
+    skip 13 "no shared data"
     done_testing
 fi
 # The counts are those of every voxel tried against every triangle, once, at this size (a smaller size is in test_attach).
 voxelise -q --unit mm -s 2.5 --origin -125,-125,-125 "$DATA/face/face_zyg.obj" >"$T/face"
 check "the real face" attach --text --report -o "$T/out" <"$T/face"
 is "$(awk '/^  (muscle_|skull)/ { $1 = $1; print }' "$T/stderr")" "skull 6870 1800 0
-muscle_zyg_xneg 60 centre 28 -49.464 40.714 -37.321
-muscle_zyg_xpos 60 centre 27 49.259 40.556 -37.407" "what is held"
+muscle_zyg_xneg 60 shape 28 -49.464 40.714 -37.321
+muscle_zyg_xpos 60 shape 27 49.259 40.556 -37.407" "what is held"
 # fibres FILE: for each volume its elements, how many have a unit fibre, and whether those go outward and up on the whole.
 fibres() {
     awk '/^array /{ name = $2; row = 0; next } /^(crc|end)/{ name = "" }
@@ -290,15 +343,23 @@ fails 1 "an element of one node" "^attach: element.node, row 0 has 1 different n
 
 # Of 34 muscles 14 touch no bone. A field gives them fibres too, and they contract: nothing is to be warned of.
 voxelise -q --unit mm -s 2.5 "$DATA/face/face_all.obj" >"$T/face"
-attach -o "$T/centre" <"$T/face" 2>"$T/stderr"
+attach --fibre centre -o "$T/centre" <"$T/face" 2>"$T/stderr"
 is "$(grep -c '^attach: warning: 14 muscles have no rigid node, .*: muscle_buc_xneg, .*; --fibre field gives them fibres' "$T/stderr") $(
     wc -l <"$T/stderr" | tr -d ' ')" "1 1" "muscles without bone, to their centres: one warning of all, with what helps"
-attach --report -o "$T/centre" <"$T/face" 2>"$T/stderr"
+attach --report --fibre centre -o "$T/centre" <"$T/face" 2>"$T/stderr"
 is "$(awk '/^  muscle_/ && $3 == "none" && $4 == 0 && /!$/' "$T/stderr" | wc -l | tr -d ' ') $(grep -c '!$' "$T/stderr") $(
     awk 'length > 80 && !/warning/' "$T/stderr")" "14 14 " "they are marked in the report, which fits 80 columns"
 check "along fields" attach --report --fibre field -o "$T/field" <"$T/face"
 is "$(grep -c -e warning -e '!$' "$T/stderr") $(awk '/^  muscle_/ { print $3 }' "$T/stderr" | LC_ALL=C sort | uniq -c | tr -s ' \n' ' ')" \
     "0  32 field 2 field, " "none, for all contract"
+check "by default" attach --report -o "$T/all" <"$T/face"
+is "$(grep -c -e warning -e '!$' "$T/stderr") $(awk '/^  muscle_/ { print $3 }' "$T/stderr" | LC_ALL=C sort | uniq -c | tr -s ' \n' ' ')" \
+    "0  8 round 26 shape " "all 34 have fibres, the quarters of the sphincter as such"
+is "$(sinew export -f model --text "$T/all" | awk '$1 == "array" { on = $2; row = 0; next } /^(crc|axis|end)/ { on = "" }
+    on == "volume.muscle" { muscle[row++] = $1 } on == "element.volume" { of[row++] = $1 }
+    on == "element.fibre" { fibre[row++] = $1 * $1 + $2 * $2 + $3 * $3 }
+    END { for (i in fibre) if (muscle[of[i]]) { n++; unit += fibre[i] > .999 && fibre[i] < 1.001 } else other += fibre[i]
+        print n - unit, other }')" "0 0" "each element of a muscle, and no other"
 is "$(tled-run -q -d cpu --ramp 0 -n 10 -c buc_xneg=0.3 <"$T/field" | sinew info --get node.displacement.max |
     awk '{ print ($1 > 1e-5) }')" 1 "as such a one does"
 done_testing

@@ -43,7 +43,7 @@ voxelise -n 3 h|head.obj.gz
 msds-mesh --like |a.nrrd b.mhd sub
 us-slice |a.nrrd b.mhd sub
 us-slice --probe |curved: linear: phased:
-attach --fibre |axis centre field
+attach --fibre |auto axis centre field round shape
 sinew de|deform
 sinew |--help --version attach bind console deform diff distance export help import info msds-mesh msds-run render tled-run us-import us-segment us-slice us-surface voxelise
 sinew help def|deform

@@ -14,7 +14,7 @@ fails 2 "a tool that is none in either spelling" "no tool 'voxelyze'; did you me
 is "$(voxelize --version | sed 's/ (.*//') $(voxelize --help | grep -c voxelize)" "voxelise 0" "it says its one name"
 
 attach -q --fibre field <"$T/british" >"$T/fibres"
-for option in '--fiber field' --fiber=field '--fib field'; do
+for option in '--fiber field' --fiber=field; do
     # shellcheck disable=SC2086 # an option and its value
     attach -q $option <"$T/british" >"$T/fibers"
     check "attach $option, provenance and all" cmp "$T/fibres" "$T/fibers"

@@ -1,6 +1,7 @@
-// needs: voxelise/volumes.c voxelise/volumes_file.c voxelise/layers.c voxelise/depths.c voxelise/voxels.c voxelise/surfaces/outward.c
+// needs: voxelise/volumes.c voxelise/volumes_file.c voxelise/layers.c voxelise/depths.c voxelise/voxels.c
 // needs: voxelise/climb.c voxelise/surfaces/grid.c voxelise/surfaces/crossing.c voxelise/inside.c
 // needs: voxelise/surfaces/expansion.c voxelise/surfaces/meet.c voxelise/shares.c voxelise/pieces.c voxelise/cuts.c
+// needs: voxelise/surfaces/outward.c
 /* Any bytes as a --layers file, beside a plan of volumes: layers with names of their own, deeper and deeper, of
  * materials that there are; or one error with a text.
  */

@@ -1,7 +1,8 @@
 /* Fibres by a potential: in a straight bar exactly along it; in a bent tube made from equations, its own axis; with
  * both ends, one or none attached, whatever the number of threads.
  */
-// needs: attach/muscle.c attach/attachment.c attach/fibre_field.c attach/laplace.c
+// needs: attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/laplace.c
+// needs: attach/ring.c attach/principal.c attach/muscle_shape.c attach/muscle_surface.c
 #include "attach/laplace.h"
 #include "attach/muscle.h"
 
@@ -101,13 +102,13 @@ static void compare(const model *m, const tube *t, double h, double away, double
     *mean /= (double)count;
 }
 
-static void make(model *m, muscle_fibre kind, int threads)
+static void make(model *m, const char *rule, int threads)
 {
     err e = {0};
     notes warnings = {0};
     muscles list;
     pool *p = pool_create(threads, &e);
-    ok(!muscle_make(m, kind, p, &list, &warnings, &e), "fibres %s", e.text);
+    ok(!muscle_make(m, &(opt_list){1, {rule}}, p, &list, &warnings, &e), "fibres %s", e.text);
     notes_free(&warnings);
     muscles_free(&list);
     pool_destroy(p);
@@ -124,9 +125,9 @@ static void bent(void)
             double h = fine ? .001 : .002, mean, most, far_mean, far_most, line_mean, line_most;
             model m;
             make_muscle(&m, &t, h, ends);
-            make(&m, MUSCLE_AXIS, 1);
+            make(&m, "axis", 1);
             compare(&m, &t, h, 0, &line_mean, &line_most);
-            make(&m, MUSCLE_FIELD, 2);
+            make(&m, "field", 2);
             compare(&m, &t, h, 0, &mean, &most);
             compare(&m, &t, h, .008, &far_mean, &far_most);
             printf("# %s held, voxels of %g mm: mean %.2f, most %.2f degrees; a radius from the ends %.2f and %.2f; "
@@ -148,7 +149,7 @@ static void any_threads(void)
     for (int threads = 1; threads < 5; threads++) {
         model m;
         make_muscle(&m, &t, .001, 1);
-        make(&m, MUSCLE_FIELD, threads);
+        make(&m, "field", threads);
         const model_array *fibre = model_find(&m, "element.fibre");
         size = 3 * (size_t)fibre->rows * sizeof *one;
         if (!one && (one = malloc(size)))
@@ -183,7 +184,7 @@ static void straight(void)
             rigid[node_at(size, 0, j, k)] = k < 2;
         }
     pool *p = pool_create(1, &e);
-    ok(!muscle_make(&m, MUSCLE_FIELD, p, &list, &warnings, &e), "three pieces %s", e.text);
+    ok(!muscle_make(&m, &(opt_list){1, {"field"}}, p, &list, &warnings, &e), "three pieces %s", e.text);
     const float *f = model_find(&m, "element.fibre")->f32;
     double off[3] = {0};
     for (int32_t i = 0; i < 12 * 9 * 6; i++) {

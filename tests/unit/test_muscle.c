@@ -1,6 +1,7 @@
 /* Contraction centres, fibres and axes against sums done by hand; and which surfaces are rigid, by name.
  */
-// needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/fibre_field.c attach/laplace.c
+// needs: attach/rigid.c attach/muscle.c attach/attachment.c attach/fibre_rule.c attach/fibre_field.c attach/laplace.c
+// needs: attach/ring.c attach/principal.c attach/muscle_shape.c attach/muscle_surface.c
 #include "attach/muscle.h"
 #include "attach/rigid.h"
 #include "surface/surface.h"
@@ -40,7 +41,8 @@ static void centres(void)
             "00000"
             "11000"
             "00000");
-    ok(!muscle_make(&m, MUSCLE_CENTRE, NULL, &list, &warnings, &e) && list.count == 2, "two muscles %s", e.text);
+    ok(!muscle_make(&m, &(opt_list){1, {"centre"}}, NULL, &list, &warnings, &e) && list.count == 2, "two muscles %s",
+       e.text);
     const double *centre = model_find(&m, "muscle.centre")->f64;
     near_(centre[0], .005, 1e-15, "contraction centre x: each node once");
     near_(centre[1], 0, 1e-15, "y");
@@ -73,7 +75,7 @@ static void at_the_centre(void)
             "11011"
             "11011"
             "11011");
-    ok(!muscle_make(&m, MUSCLE_CENTRE, NULL, &list, &warnings, &e), "all corners rigid %s", e.text);
+    ok(!muscle_make(&m, &(opt_list){1, {"centre"}}, NULL, &list, &warnings, &e), "all corners rigid %s", e.text);
     ok(fibre(&m, 0)[0] == -1 && fibre(&m, 0)[1] == 0 && fibre(&m, 1)[0] == -1, "the axis, toward the centre");
     ok(fibre(&m, 3)[0] == 0, "one element alone has no axis");
     ok(warnings.count == 1 && strstr(warnings.line[0], "muscle_b has no node that is free: it will not contract"), "%s",
@@ -91,7 +93,7 @@ static void axis(const char *fixed, float x, int said, const char *what)
     muscles list;
     model m;
     bar(&m, fixed);
-    ok(!muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e), "--fibre axis %s", e.text);
+    ok(!muscle_make(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e), "--fibre axis %s", e.text);
     ok(fibre(&m, 0)[0] == x && fibre(&m, 1)[0] == x && fibre(&m, 1)[1] == 0, "%s", what);
     ok(warnings.count == said && strstr(warnings.line[0], "muscle_b has no axis"), "%d warnings", said);
     notes_free(&warnings);
@@ -121,7 +123,8 @@ static void slanted_axis(void)
         model_find(&m, "element.volume")->i32[((8 - i) * 9 + i) * 9 + i] = 2;
     model_add(&m, "node.rigid", &e);
     model_find(&m, "node.rigid")->u8[node_at(size, 0, 0, 9)] = 1;
-    ok(!muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) && list.count == 1, "nine voxels in a row %s", e.text);
+    ok(!muscle_make(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e) && list.count == 1,
+       "nine voxels in a row %s", e.text);
     near_(list.of[0].axis[0], -1. / 3, 1e-12, "axis x");
     near_(list.of[0].axis[1], -2. / 3, 1e-12, "axis y");
     near_(list.of[0].axis[2], 2. / 3, 1e-12, "axis z");
@@ -143,7 +146,8 @@ static void mixed(void)
     bar(&m, "10001000000000000000");
     memcpy(model_add(&m, "element.mix", &e)->i32, mix, sizeof mix);
     memcpy(model_add(&m, "element.mixture", &e)->f32, share, sizeof share);
-    ok(!muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e), "elements mixed of two volumes %s", e.text);
+    ok(!muscle_make(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e), "elements mixed of two volumes %s",
+       e.text);
     ok(list.of[0].elements == 4 && list.of[1].elements == 1, "of the second volume too");
     near_(list.of[0].weight, 1 + .75 + .25 + .5, 1e-12, "its shares");
     near_(list.of[1].weight, .5, 1e-12, "what it leaves the other");
@@ -159,7 +163,7 @@ static void mixed(void)
     notes_free(&warnings);
     muscles_free(&list);
     model_find(&m, "element.mix")->i32[3] = 2;
-    ok(muscle_make(&m, MUSCLE_AXIS, NULL, &list, &warnings, &e) &&
+    ok(muscle_make(&m, &(opt_list){1, {"axis"}}, NULL, &list, &warnings, &e) &&
            strstr(e.text, "element.mix, row 3 repeats the volume of the element"),
        "%s", e.text);
     notes_free(&warnings);
