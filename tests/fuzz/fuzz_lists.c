@@ -3,6 +3,8 @@
 // needs: tled/problem/script_nodes.c
 // needs: tled/problem/script_read.c common/inspect/info_key.c common/inspect/info_quality.c common/inspect/info_stats.c
 // needs: tled/problem/script_move.c tled/problem/pose_fit.c
+// needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
+// needs: tled/muscle/expressions.c tled/muscle/activation.c
 /* Any text as the lists of names that options take, over a small model: attach --rigid, msds-mesh --fix and --names,
  * tled-run -c; and as a key of sinew info --get. Each is taken or is one error with a text.
  */
@@ -12,6 +14,7 @@
 #include "msds/mesh/mesh_fix.h"
 #include "msds/mesh/mesh_labels.h"
 #include "msds/mesh/mesh_tets.h"
+#include "tled/muscle/muscles.h"
 #include "tled/problem/script.h"
 
 #include <math.h>
@@ -83,7 +86,7 @@ static void contract(const model *m, const char *text)
         must(s.value[3 * i] >= 0 && s.value[3 * i] <= 1);
     script_free(&s);
     double level;
-    if (!script_level(text, &level))
+    if (!muscles_level(text, &level))
         must(level >= 0 && level <= 1);
 }
 

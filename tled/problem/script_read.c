@@ -113,24 +113,6 @@ int script_reader_key(reader *r, int64_t at, double time, const double *value, e
     return 0;
 }
 
-static int line_contract(reader *r, double time, err *e)
-{
-    const keyfile *k = &r->k;
-    double value[3] = {0};
-    script_curve c = {.verb = SCRIPT_CONTRACT, .line = k->line, .target = k->word[2]};
-    c.volume = script_muscle(r->m, k->word[2], k->name, k->line, e);
-    if (c.volume < 0)
-        return -1;
-    if (script_level(k->word[3], &value[0]))
-        return keyfile_error(k, e, "level '%.200s'; expected a number from 0 to 1", k->word[3]);
-    bool fresh;
-    int64_t at = script_reader_curve(r, &c, &fresh, e);
-    if (at >= 0 && fresh && r->now) /* script_add_idle made one for each that can */
-        return keyfile_error(k, e, "'%.200s' has a material without a peak stress; expected a muscle with one",
-                             c.target);
-    return at < 0 ? -1 : script_reader_key(r, at, time, value, e);
-}
-
 static int line_gravity(reader *r, double time, err *e)
 {
     double value[3];
@@ -336,7 +318,7 @@ static const struct verb {
     int (*take)(reader *r, double time, err *e);
     const char *expected;
 } verbs[] = {
-    {4, 0, line_contract, "contract MUSCLE LEVEL"},
+    {4, 0, script_line_contract, "contract MUSCLE LEVEL"},
     {3, 0, line_gravity, "gravity X,Y,Z"},
     {5, 0, line_force, "force X,Y,Z RADIUS FX,FY,FZ"},
     {4, 0, line_displace, "displace SURFACE|X0,Y0,Z0,X1,Y1,Z1 UX,UY,UZ"},
@@ -489,6 +471,7 @@ static void take_back(script *s, const script *before)
     for (int64_t i = before->curves; i < s->curves; i++) {
         free(s->curve[i].target);
         free(s->curve[i].surface);
+        activation_free(&s->curve[i].active);
     }
     s->curves = before->curves;
     s->keys = before->keys;

@@ -35,6 +35,9 @@ int64_t script_reader_curve(script_reader *r, const script_curve *c, bool *fresh
 /* Adds a key to a curve, or, live, holds it at that value from now on. -1 with e filled. */
 int script_reader_key(script_reader *r, int64_t at, double time, const double *value, err *e);
 
+/* TIME contract MUSCLE LEVEL. */
+int script_line_contract(script_reader *r, double time, err *e);
+
 /* TIME move BODY X,Y,Z QX,QY,QZ,QW [about X,Y,Z]; and a line of script_read_poses. */
 int script_line_move(script_reader *r, double time, err *e);
 int script_line_pose(script_reader *r, err *e);

@@ -96,7 +96,17 @@ static uint32_t crc_script(const script *s)
             crc = checksum_add(crc, &c->stiffness, sizeof c->stiffness);
         if (c->surface)
             crc = checksum_add(crc, c->surface, strlen(c->surface));
+        if (c->is_smooth)
+            crc = checksum_add(crc, "smooth", sizeof "smooth");
     }
+    for (int64_t i = 0; i < s->terms; i++) {
+        const script_term *t = &s->term[i];
+        const int64_t what[] = {t->contract, t->express};
+        crc = checksum_add(crc, what, sizeof what);
+        crc = checksum_add(crc, &t->factor, sizeof t->factor);
+    }
+    if (s->times.rise > 0)
+        crc = checksum_add(crc, &s->times, sizeof s->times);
     return crc;
 }
 

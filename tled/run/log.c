@@ -1,8 +1,10 @@
 #include "tled/run/log.h"
 
+#include "base/chars.h"
 #include "base/clock.h"
 #include "base/in.h"
 #include "base/mem.h"
+#include "base/num.h"
 #include "base/path.h"
 #include "model/rest_place.h"
 #include "tled/problem/bodies.h"
@@ -26,14 +28,20 @@ static int place_of(const char *key, double *place, err *e)
 {
     if (!strncmp(key, trace, sizeof trace - 1) && rest_place_of(key + sizeof trace - 1, place))
         return 0;
-    return err_usage(e, "--tsv '%.80s': expected %sX,Y,Z, three lengths between commas (metres, or with a unit)", key,
-                     trace);
+    return err_usage(e,
+                     "--tsv '%.80s': expected %sX,Y,Z, three lengths between commas (metres, or with a unit), %s or %s",
+                     key, trace, LOG_LEVEL, LOG_ACTIVATION);
+}
+
+static bool is_of_muscles(const char *key)
+{
+    return !strcmp(key, LOG_LEVEL) || !strcmp(key, LOG_ACTIVATION);
 }
 
 int log_check_key(const char *key, err *e)
 {
     double place[3];
-    return place_of(key, place, e);
+    return is_of_muscles(key) ? 0 : place_of(key, place, e);
 }
 
 /* The name of a body as a part of a column's. */
@@ -53,14 +61,37 @@ static void put_bodies_heading(const model *m, out *to)
     }
 }
 
-static void put_heading(const run_log *l, out *to)
+/* A column a muscle that is driven, by its name in the model; -c finds it by what is written here. */
+static int put_muscles_heading(const run_log *l, const char *key, out *to, err *e)
+{
+    const model_array *names = model_find(l->m, "volume.name");
+    for (int64_t i = 0; i < l->script->curves; i++) {
+        const script_curve *c = &l->script->curve[i];
+        if (c->verb != SCRIPT_CONTRACT)
+            continue;
+        const char *name = names->str[c->volume];
+        char *shown = mem_array(4 * (int64_t)strlen(name) + 1, 1, "the log", e);
+        if (!shown)
+            return -1;
+        chars_escape(name, strlen(name), shown);
+        out_format(to, "\t%s.%s", key, shown);
+        free(shown);
+    }
+    return 0;
+}
+
+static int put_heading(const run_log *l, out *to, err *e)
 {
     out_text(to, heading);
-    for (int i = 0; i < l->keys->count; i++)
-        for (int a = 0; a < 3; a++)
+    for (int i = 0; i < l->keys->count; i++) {
+        if (is_of_muscles(l->keys->value[i]) && put_muscles_heading(l, l->keys->value[i], to, e))
+            return -1;
+        for (int a = 0; a < 3 && !is_of_muscles(l->keys->value[i]); a++)
             out_format(to, "\t%s.%c/m", l->keys->value[i], "xyz"[a]);
+    }
     put_bodies_heading(l->m, to);
     out_text(to, heading_end);
+    return 0;
 }
 
 /* line: the first of the file, NULL where there is none. */
@@ -70,9 +101,9 @@ static int compare_heading(const run_log *l, const char *path, const char *line,
     out *want = out_memory(e);
     if (!want)
         return -1;
-    put_heading(l, want);
+    int failed = put_heading(l, want, e);
     const unsigned char *bytes = out_bytes(want, &size);
-    int failed = out_failed(want, e);
+    failed = failed || out_failed(want, e) ? -1 : 0;
     if (!failed && (!line || strlen(line) + 1 != size || memcmp(line, bytes, size - 1) != 0))
         failed = err_set(e, path, 1,
                          "is not the heading of this run's log; expected the file and the --tsv that it began with");
@@ -101,6 +132,8 @@ int log_open(run_log *l, const char *path, const opt_list *keys, const model *m,
     l->m = m;
     for (int i = 0; i < keys->count; i++) {
         double place[3];
+        if (is_of_muscles(keys->value[i]))
+            continue;
         if (place_of(keys->value[i], place, e))
             return -1;
         l->node[i] = rest_place_row(m, "node", place);
@@ -135,8 +168,8 @@ int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
     l->rows = l->account ? out_memory(e) : NULL;
     if (!l->rows)
         return -1;
-    if (!growing_size(l->file))
-        put_heading(l, l->rows);
+    if (!growing_size(l->file) && put_heading(l, l->rows, e))
+        return -1;
     return empty_rows(l, true, e);
 }
 
@@ -189,6 +222,40 @@ static int put_bodies(const run_log *l, err *e)
     return failed;
 }
 
+/* In as many digits as it has, where a track may be read from the log. */
+static void put_time(const run_log *l, double time)
+{
+    char text[NUM_TEXT];
+    bool whole = false;
+    for (int i = 0; i < l->keys->count; i++)
+        whole |= is_of_muscles(l->keys->value[i]);
+    num_text(time, false, text);
+    if (whole)
+        out_text(l->rows, text);
+    else
+        out_format(l->rows, "%.9g", time);
+}
+
+static void put_muscles(const run_log *l, bool levels, double time)
+{
+    char text[NUM_TEXT];
+    for (int64_t i = 0; i < l->script->curves; i++) {
+        if (l->script->curve[i].verb != SCRIPT_CONTRACT)
+            continue;
+        num_text(levels ? script_level_at(l->script, i, time) : account_curves(l->account)[3 * i], false, text);
+        out_format(l->rows, "\t%s", text);
+    }
+}
+
+static void put_key(const run_log *l, int key, double time)
+{
+    const double *moved = account_displacement(l->account) + 3 * l->node[key];
+    if (is_of_muscles(l->keys->value[key]))
+        put_muscles(l, !strcmp(l->keys->value[key], LOG_LEVEL), time);
+    for (int a = 0; a < 3 && !is_of_muscles(l->keys->value[key]); a++)
+        put_number(l->rows, moved[a]);
+}
+
 static int put_row(run_log *l, const log_row *row, const account_sums *s, err *e)
 {
     const double took = clock_now() - l->began;
@@ -211,12 +278,12 @@ static int put_row(run_log *l, const log_row *row, const account_sums *s, err *e
                              row->remaining,
                              rate,
                              rate * (double)l->p->elements};
-    out_format(l->rows, "%.9g\t%lld", row->time, (long long)row->step);
+    put_time(l, row->time);
+    out_format(l->rows, "\t%lld", (long long)row->step);
     for (size_t i = 0; i < sizeof values / sizeof *values; i++)
         put_number(l->rows, values[i]);
-    const double *moved = account_displacement(l->account);
-    for (int i = 0; i < 3 * l->keys->count; i++)
-        put_number(l->rows, moved[3 * l->node[i / 3] + i % 3]);
+    for (int i = 0; i < l->keys->count; i++)
+        put_key(l, i, row->time);
     if (put_bodies(l, e))
         return -1;
     put_number(l->rows, s->tissue.quality.centre);

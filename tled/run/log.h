@@ -9,6 +9,7 @@
 #include "base/out.h"
 #include "cli/opt.h"
 #include "model/model.h"
+#include "tled/problem/script.h"
 #include "tled/run/account.h"
 
 /* What a row says besides what the account knows. */
@@ -26,7 +27,8 @@ typedef struct run_log {
     growing *file;
     out *rows; /* not yet known to be sound */
     account *account;
-    const opt_list *keys; /* node.displacement.at.X,Y,Z: three columns each, after the others */
+    const script *script; /* the creator's, which the problem is made of */
+    const opt_list *keys; /* node.displacement.at.X,Y,Z: three columns each, after the others; LOG_LEVEL */
     int64_t node[64];     /* of each */
     const tled_problem *p;
     const model *m; /* that it was made of: its bodies' names */
@@ -43,6 +45,10 @@ typedef struct log_point {
     account_past past;
     int64_t length; /* bytes of the file; 0: there was none */
 } log_point;
+
+/* A key of a log may be one of these, for a column a muscle that the script drives: what a track is read from. */
+#define LOG_LEVEL      "muscle.level"
+#define LOG_ACTIVATION "muscle.activation"
 
 /* Whether it is a key of a log: a usage error, where it is not. */
 int log_check_key(const char *key, err *e);

@@ -68,6 +68,19 @@ static int read_control(struct options *o, err *e)
     return err_usage(e, "--hourglass '%s': expected physical or isotropic[:KAPPA], KAPPA from 0 to 1000", o->hourglass);
 }
 
+/* Shorter time constants than the shortest are none; the longest is longer than anyone's. */
+static int check_levels(const struct options *o, err *e)
+{
+    static const double shortest = 1e-4, longest = 100; /* s */
+    for (int i = 0; i < o->rise_fall.count; i++)
+        if (!(o->rise_fall.value[i] >= shortest && o->rise_fall.value[i] <= longest))
+            return err_usage(e, "--rise-fall %g,%g; expected two times from %g to %g s", o->rise_fall.value[0],
+                             o->rise_fall.value[1], shortest, longest);
+    if (o->between >= 0 && !o->activations)
+        return err_usage(e, "--between without --activations, whose rows it is for; expected both");
+    return 0;
+}
+
 static int check_end(const struct options *o, err *e)
 {
     if (o->checkpoint_every > 0 && !o->checkpoint && !o->restart)
@@ -75,7 +88,7 @@ static int check_end(const struct options *o, err *e)
     int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
     if (ends > 1)
         return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
-    if (check_log(o, e))
+    if (check_log(o, e) || check_levels(o, e))
         return -1;
     if (live_check(o, e))
         return -1;
@@ -122,18 +135,48 @@ static int read_rigid_poses(session *s, const struct options *o, err *e)
     return failed;
 }
 
-static int make_script(session *s, const struct options *o, err *e)
+static int read_expressions(session *s, const struct options *o, err *e)
+{
+    if (!o->expressions)
+        return 0;
+    in *source = in_open(o->expressions, e);
+    const int failed = source ? expressions_read(&s->expressions, source, &s->m, e) : -1;
+    in_close(source);
+    s->script.expressions = &s->expressions;
+    return failed;
+}
+
+static int read_track(session *s, const struct options *o, err *e)
+{
+    if (!o->activations)
+        return 0;
+    in *source = in_open(o->activations, e);
+    const int failed = source ? script_read_track(&s->script, source, &s->m, o->between == 1, e) : -1;
+    in_close(source);
+    return failed;
+}
+
+static int read_script(session *s, const struct options *o, err *e)
 {
     in *source = o->script ? in_open(o->script, e) : NULL;
     s->script.unit = o->unit;
     int result = o->script && (!source || script_read(&s->script, source, &s->m, e)) ? -1 : 0;
     in_close(source);
-    if (!result)
-        result = read_rigid_poses(s, o, e);
+    return result;
+}
+
+static int make_script(session *s, const struct options *o, err *e)
+{
+    if (o->rise_fall.count)
+        s->script.times = (activation_times){o->rise_fall.value[0], o->rise_fall.value[1]};
+    int result =
+        read_expressions(s, o, e) || read_script(s, o, e) || read_rigid_poses(s, o, e) || read_track(s, o, e) ? -1 : 0;
     for (int i = 0; !result && i < o->contract.count; i++)
         result = script_add_contract(&s->script, &s->m, o->contract.value[i], o->ramp, e);
     if (!result && o->gravity.count)
         result = script_add_gravity(&s->script, o->gravity.value, o->ramp, e);
+    if (!result)
+        result = script_check_levels(&s->script, &s->m, &s->warnings, e);
     return result ? result : script_check_muscles(&s->script, &s->m, &s->warnings, e);
 }
 
@@ -444,6 +487,7 @@ static int open_log(session *s, const struct options *o, err *e)
     if (!o->log)
         return 0;
     s->run.log = &s->log;
+    s->log.script = &s->script;
     return log_open(&s->log, o->log, &o->tsv, &s->m, s->run.point ? &s->run.point->log : NULL, e);
 }
 
@@ -507,6 +551,7 @@ static int run_tool(int argc, char **argv)
                         .ramp = .1,
                         .damping = -1,
                         .every = -1,
+                        .between = -1,
                         .log_every = -1,
                         .repulsion = 1,
                         .rate = -1,
@@ -531,6 +576,7 @@ out:
     tled_problem_free(&s.problem);
     collider_free(&s.collider);
     script_free(&s.script);
+    expressions_free(&s.expressions);
     model_free(&s.m);
     return tool_end(&t, &e);
 }

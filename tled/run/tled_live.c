@@ -49,6 +49,7 @@ struct live {
     double came;      /* s: of the pose that is new in this tick; 0: none is */
     double *displacement;
     int64_t broken; /* times */
+    bool told_over; /* that levels add up to more than 1 */
     shown shown[RING];
     int64_t put, written; /* frames that were handed on, and written */
 };
@@ -172,6 +173,18 @@ int live_prepare(session *s, const struct options *o, err *e)
 
 /* ---- What came */
 
+/* Once a run. */
+static void tell_over(live *l, const run_tick *at)
+{
+    double sum;
+    const int32_t volume = l->told_over ? -1 : script_over(&l->s->script, at->from, &sum);
+    if (volume < 0)
+        return;
+    l->told_over = true;
+    notes_add(&l->s->warnings, "at %.6g s the levels of %.200s add up to %.4g; what is above 1 counts as 1", at->from,
+              l->s->problem.volume[volume].name, sum);
+}
+
 /* A control that may be wrong: then nothing has changed. */
 static int take_control(live *l, const keyfile *k, const run_tick *at, bool *anew, err *e)
 {
@@ -187,7 +200,11 @@ static int take_control(live *l, const keyfile *k, const run_tick *at, bool *ane
             return -1;
         now.displacement = l->displacement;
     }
-    return script_take_now(&l->s->script, &l->s->m, k, &now, anew, e);
+    if (script_take_now(&l->s->script, &l->s->m, k, &now, anew, e))
+        return -1;
+    if (!strcmp(verb, "contract"))
+        tell_over(l, at);
+    return 0;
 }
 
 static void take_pose(live *l, const run_tick *at, const pose *to)

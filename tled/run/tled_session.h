@@ -19,6 +19,7 @@ typedef struct session {
     stage stage;
     model m;
     script script;
+    expressions expressions;
     tled_problem problem;
     support support;
     collider collider;
