@@ -49,6 +49,7 @@ static void free_case(console_case *one)
     free(one->body);
     free(one->skin);
     free(one->bones);
+    free(one->expressions);
 }
 
 /* A name that no case has: this, or with the next number. */
@@ -147,7 +148,8 @@ static int take_named(console_case *one, const char *folder, const listing_of *l
     } files[] = {{"picture.png", &one->picture},
                  {"body.txt", &one->body},
                  {"skin.obj", &one->skin},
-                 {"skeleton.obj", &one->bones}};
+                 {"skeleton.obj", &one->bones},
+                 {"expressions.txt", &one->expressions}};
     for (int i = 0; i < l->count; i++)
         for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
             if (strcmp(l->list[i]->d_name, files[k].name) != 0)

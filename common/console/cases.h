@@ -7,14 +7,15 @@
 #include "base/err.h"
 
 typedef struct console_case {
-    char *name;    /* no two are the same */
-    char *model;   /* path */
-    char *volume;  /* path; NULL: none */
-    char *labels;  /* path; NULL: none */
-    char *picture; /* path; NULL: none */
-    char *body;    /* path of body.txt; NULL: none */
-    char *skin;    /* path of skin.obj, pressed as springs of its own; NULL: none */
-    char *bones;   /* path of skeleton.obj; NULL: none */
+    char *name;        /* no two are the same */
+    char *model;       /* path */
+    char *volume;      /* path; NULL: none */
+    char *labels;      /* path; NULL: none */
+    char *picture;     /* path; NULL: none */
+    char *body;        /* path of body.txt; NULL: none */
+    char *skin;        /* path of skin.obj, pressed as springs of its own; NULL: none */
+    char *bones;       /* path of skeleton.obj; NULL: none */
+    char *expressions; /* path of expressions.txt, of a face; NULL: none */
 } console_case;
 
 typedef struct cases {

@@ -11,6 +11,7 @@
 #include "console/child.h"
 #include "console/colouring.h"
 #include "console/dials.h"
+#include "console/expression_names.h"
 #include "console/feed.h"
 #include "console/geometry.h"
 #include "console/images.h"
@@ -64,9 +65,10 @@ typedef struct console {
     bool told[2];                /* that they ended */
     feed *feed;
     images *images;
-    double *level;     /* muscles: as asked for last */
-    double *value;     /* nodes: what colours tell of; console_show's own */
-    atomic_int colour; /* a colouring */
+    expression_names expressions; /* "@smile", of a face */
+    double *level;                /* muscles, then expressions: as asked for last */
+    double *value;                /* nodes: what colours tell of; console_show's own */
+    atomic_int colour;            /* a colouring */
     struct {
         char id[CONSOLE_WORD], line[CONSOLE_LINE];
     } pulls[CONSOLE_PULLS];
@@ -88,7 +90,8 @@ typedef struct console {
 int console_open(console *c, int index, bool replay, err *e);
 void console_close(console *c);
 
-/* The name of a muscle of the case that is open, for i from 0 on; NULL: there is none. */
+/* The name of a muscle of the case that is open, or "@" and that of an expression, which come after them, for i from 0
+ * on; NULL: there is none. */
 const char *console_muscle(const console *c, int64_t i);
 
 /* Says of children that ended what there is to say. */

@@ -66,7 +66,9 @@ static int read_body(console *c, const console_case *is, err *e)
                        "the case has no volume; expected %s and a .nrrd, .mha or .mhd beside it, or "
                        "after it on the command line",
                        is->model);
-    c->level = mem_array(muscle ? muscle->rows : 0, sizeof *c->level, "muscles", e);
+    if (c->face && is->expressions && expression_names_read(&c->expressions, is->expressions, e))
+        return -1;
+    c->level = mem_array((muscle ? muscle->rows : 0) + c->expressions.count, sizeof *c->level, "muscles", e);
     c->value = mem_array(model_count(m, "node"), sizeof *c->value, "colours", e);
     if (!c->level || !c->value)
         return -1;
@@ -80,7 +82,10 @@ const char *console_muscle(const console *c, int64_t i)
 {
     const model *m = &c->body.body;
     const model_array *of = c->level ? model_find(m, "muscle.volume") : NULL, *name = model_find(m, "volume.name");
-    return of && name && i < of->rows ? name->str[of->i32[i]] : NULL;
+    const int64_t muscles = of && name ? of->rows : 0;
+    if (i < muscles)
+        return name->str[of->i32[i]];
+    return c->level && i - muscles < c->expressions.count ? c->expressions.name[i - muscles] : NULL;
 }
 
 /* A pose over the skin's middle, its face toward the tissue and just off it. */
@@ -137,6 +142,7 @@ static void command_of_compute(const console *c, bool replay, command *to)
     add_records(c, 0, replay, to);
     if (c->face) {
         add_option(to, "--precision", "single");
+        add_option(to, "--expressions", c->cases.list[c->open].expressions);
         return;
     }
     if (!replay)
@@ -299,6 +305,7 @@ void console_close(console *c)
     around_free(&c->around);
     source_close(&c->body);
     c->body = (source){0};
+    expression_names_free(&c->expressions);
     free(c->level);
     c->level = NULL;
     free(c->value);

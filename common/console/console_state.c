@@ -86,6 +86,8 @@ static bool has(const char *name, const char *word)
 
 static const char *side_of(const char *name)
 {
+    if (*name == '@')
+        return "expression";
     const char *end = name + strlen(name);
     const bool l = end - name > 2 && !strcasecmp(end - 2, "_l"), r = end - name > 2 && !strcasecmp(end - 2, "_r");
     if (l || has(name, "left"))

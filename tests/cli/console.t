@@ -67,7 +67,10 @@ fails 1 "teeth on a body that is not there" "body.txt:2: unknown body 'jam'; did
 
 # ---- The conversation.
 check "cases from equations" env NODES=12x5x9 SPACING=8 samples/console "$T/cases"
-timeout 400 python3 tests/cli/console_talk.py "$T/muscle.sinew" "$T/case" "$SINEW_BIN" "$T" "$T/page" "$T/cases" "$T/face" >"$T/talk" 2>"$T/talk.err"
+mkdir "$T/muscle"
+cp "$T/muscle.sinew" "$T/muscle/mesh.sinew"
+echo 'half: *=.5 # of all' >"$T/muscle/expressions.txt"
+timeout 400 python3 tests/cli/console_talk.py "$T/muscle" "$T/case" "$SINEW_BIN" "$T" "$T/page" "$T/cases" "$T/face" >"$T/talk" 2>"$T/talk.err"
 is "$?" 0 "it is talked to, to the end"
 [ ! -s "$T/talk.err" ] || diag_file "$T/talk.err"
 tell "$T/talk"

@@ -60,6 +60,7 @@ static void try_folders(void)
     make("all/arm of a friend/picture.png");
     make("all/arm of a friend/body.txt");
     make("all/arm of a friend/skin.obj");
+    make("all/arm of a friend/expressions.txt");
     make("all/face.sinew");
     make("all/notes.txt");
     ok(!add(&c, "all", NULL, NULL, &e) && c.count == 2, "a folder of cases: %d of them%s", c.count, e.text);
@@ -68,6 +69,7 @@ static void try_folders(void)
     ok(arm >= 0 && ends(c.list[arm].labels, "/labels.nrrd") && ends(c.list[arm].picture, "/picture.png"), "all of it");
     ok(arm >= 0 && ends(c.list[arm].body, "/body.txt") && ends(c.list[arm].skin, "/skin.obj") && !c.list[arm].bones,
        "and the body around it");
+    ok(arm >= 0 && ends(c.list[arm].expressions, "/expressions.txt"), "and expressions");
     ok(face >= 0 && !c.list[face].volume && !c.list[face].picture, "the face");
     ok(!add(&c, "all/arm of a friend", NULL, NULL, &e) && c.count == 3, "a folder that is a case");
     ok(cases_find(&c, "arm of a friend-2") == 2, "has a name of its own");
@@ -128,6 +130,7 @@ int main(void)
                                        "all/arm of a friend/picture.png",
                                        "all/arm of a friend/body.txt",
                                        "all/arm of a friend/skin.obj",
+                                       "all/arm of a friend/expressions.txt",
                                        "all/face.sinew",
                                        "all/notes.txt",
                                        "a.sinew",

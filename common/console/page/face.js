@@ -16,7 +16,7 @@ import {Surface} from "./cast.js";
 import {drawScale} from "./colours.js";
 import {byId, element, exactly, figures, paced, renew, Slider} from "./widgets.js";
 
-const SIDES = ["left", "right", "middle", ""];
+const SIDES = ["expression", "left", "right", "middle", ""];
 const UP = new Vector3(0, 1, 0);
 
 // What two muscles of the two sides have in common: their name without the side.

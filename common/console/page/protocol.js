@@ -8,6 +8,7 @@
 //     image      {settings}, of us-slice      settings: {KEY: {value, unit, default, help, min, max, choices}}
 //     probe      {shape, pose}                pose: tx ty tz qx qy qz qw, in metres, or null
 //     muscles    [{name, side, level}]        pulls: [{id, point, radius, target, stiffness}]
+//                "@NAME" of side "expression" is an expression
 //     colour     what surfaces are coloured by: "own" or one of colours      units: {COLOUR: its unit}
 //     paused, recording, replaying            false, or what they are
 //     device     in words                     children: [{tool, alive, why}]      why: why no case is open
