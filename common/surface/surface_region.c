@@ -60,7 +60,8 @@ int surface_region_in_file(const char *file, double scale, const double *positio
     trimesh_free(&b);
     if (!body)
         return -1;
-    marker m = {body, position, metre, inside};
+    marker m = {.body = body, .position = position, .metre = metre};
+    m.inside = inside;
     if (threads)
         pool_run(threads, vertices, VERTICES, mark, &m);
     else
