@@ -4,11 +4,11 @@
 #
 # ---- What runs where. tests/check has the lists of parts; these are their times on two processors of an AMD EPYC with little else to do, from
 # a clean clone and without a compiler cache. (On a busy machine each takes several times as long.)
-#   make check      before every commit: the build by gcc, and by nvcc where it is, 66 s; clang-format 2 s, shellcheck 7 s, manual pages 2 s,
-#                   shape 1 s; all unit and command tests, CUDA's kernels on a card that the processor plays among them, 130 s
-#   .ci/run         that, and clang's build, cppcheck, clang-tidy, the unit tests with ASan and UBSan, 2 s of each fuzz target, and the browser:
-#                   about 10 minutes more; at most 15
-#   make check-all  that, with all tests sanitized and 10 s of each fuzz target, and tsan, valgrind, 20 s of each live run and the slow tests: 40 minutes
+#   make check      before every commit: the build by gcc, and by nvcc where it is, 320 s; clang-format 4 s, shellcheck 23 s, manual pages 4 s,
+#                   shape 4 s; all unit and command tests, CUDA's kernels on a card that the processor plays among them, 400 s
+#   .ci/run         that, nvcc's code hardly optimized (CUDA_QUICK=yes; the build takes 200 s), and clang's build, cppcheck, clang-tidy without
+#                   its analyzer, the unit tests with ASan and UBSan, 2 s of each fuzz target, and the browser: about 13 minutes more
+#   make check-all  that, with all tests sanitized and 10 s of each fuzz target, and tsan, valgrind, 20 s of each live run and the slow tests: an hour or more
 #   make soak       300 s of each fuzz target, tests that take many minutes with SINEW_LONG, ten minutes of each live run, tests/long/run1e6: hours
 # What a test lacks (a program, data, a card) it names, and is skipped. .ci/setup check installs what is small, so that a visitor's results are
 # compared with CalculiX, pydicom and DCMTK; VTK, Gmsh, gnuplot, ffmpeg, clang, cppcheck, valgrind and chromium come with .ci/setup check-all.
@@ -375,8 +375,8 @@ help:
 	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
 	'make picture      the pictures in README.md, anew: replaces samples/*.png' \
 	'' \
-	'make check        set-up, the build, all tests, and small lints: run it before each commit; 4 minutes on two processors' \
-	'make check-all    that, and clang, sanitizers, fuzzers, clang-tidy, cppcheck, valgrind, a browser, slow tests; 40 minutes' \
+	'make check        set-up, the build, all tests, and small lints: run it before each commit; 13 minutes on two processors' \
+	'make check-all    that, and clang, sanitizers, fuzzers, clang-tidy, cppcheck, valgrind, a browser, slow tests; an hour or more' \
 	'make soak         the long runs: fuzzing, a fault at every call, a hundred repeats, live runs, a million steps; hours' \
 	'make check-ci     what continuous integration runs (.ci/run): check, and a fixed list of the parts of check-all' \
 	'' \
