@@ -4,23 +4,15 @@
 #include "cli/spelling.h"
 #include "fibre_field.h"
 #include "mesh/lattice.h"
+#include "model/muscle_name.h"
 #include "surface/surface.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 /* Muscles that close an opening, by their names: a sphincter may also be in arcs, of which none is a ring. */
 static const char *const sphincters[] = {"orbicularis*", "sphincter*", "oom*", "oop*", "ooc*"};
-
-enum { PREFIX = sizeof "muscle_" - 1 };
-
-/* The name without muscle_. */
-static const char *plain_name(const char *name)
-{
-    return !strncasecmp(name, "muscle_", PREFIX) && name[PREFIX] ? name + PREFIX : name;
-}
 
 /* ---- whether a rule applies */
 
@@ -28,7 +20,7 @@ static bool closes_opening(const fibre_case *c)
 {
     bool named = false;
     for (size_t i = 0; i < sizeof sphincters / sizeof *sphincters; i++)
-        named |= surface_in_group(plain_name(c->of->name), sphincters[i]);
+        named |= surface_in_group(muscle_name_short(c->of->name), sphincters[i]);
     return c->ring || (named && c->of->elements);
 }
 
@@ -133,7 +125,8 @@ static int64_t ask(muscles *list, const char *pattern, int rule)
 {
     int64_t found = 0;
     for (int64_t i = 0; i < list->count; i++)
-        if (surface_in_group(list->of[i].name, pattern) || surface_in_group(plain_name(list->of[i].name), pattern)) {
+        if (surface_in_group(list->of[i].name, pattern) ||
+            surface_in_group(muscle_name_short(list->of[i].name), pattern)) {
             list->of[i].asked = rule;
             found++;
         }

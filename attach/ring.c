@@ -37,7 +37,7 @@ static void terms_at(const polar *p, double *term, double *slope)
     }
 }
 
-/* Which twelfth of the circle it is in. */
+/* Returns the number of the twelfth of the circle that a place is in. */
 static int sector_of(const polar *p)
 {
     const double x = fabs(p->cosine), y = fabs(p->sine);

@@ -23,7 +23,7 @@ typedef struct ring {
     double radius[RING_TERMS], height[RING_TERMS];
 } ring;
 
-/* Whether the points are a ring, and its line then. */
+/* Tells whether the points are a ring, and finds its line if they are. */
 bool ring_find(ring *r, const ring_points *p);
 
 /* The unit direction of its line at the angle of a place. */

@@ -196,6 +196,8 @@ int pool_threads(const pool *p)
 
 void pool_run(pool *p, int64_t count, int64_t size, pool_work *work, void *context)
 {
+    pool alone = {0};
+    p = p ? p : &alone;
     p->work = work;
     p->context = context;
     p->count = count;

@@ -16,7 +16,8 @@ pool *pool_create(int threads, err *e);
 void pool_destroy(pool *p);
 int pool_threads(const pool *p);
 
-/* Runs work over items [0, count) in chunks of `size`, and returns when all are done. Not reentrant. */
+/* Runs work over items [0, count) in chunks of `size`, and returns when all are done. Not reentrant. p: NULL for the
+ * caller alone. */
 void pool_run(pool *p, int64_t count, int64_t size, pool_work *work, void *context);
 
 /* How many chunks pool_run makes. */

@@ -13,7 +13,7 @@ enum { CHUNK = 1024 };
 
 /* ---- tables */
 
-/* What the tables are made with. */
+/* This is what the tables are made with. */
 typedef struct making {
     motion *m;
     const bound *b;
@@ -80,7 +80,7 @@ static int find_around(making *k, err *e)
 
 /* ---- slits */
 
-/* Whether another of these elements has another node at the place of one of the element's. */
+/* Tells whether one of these elements has another node where the element `which` has one. */
 static bool conflicts(const making *k, const int32_t *entry, int64_t count, int64_t which)
 {
     const int32_t *mine = nodes_of(k->b, k->m->element[entry[which]]);
@@ -261,21 +261,13 @@ static void map_nodes(void *context, int64_t chunk, int64_t from, int64_t to)
         map_of_node(m, i, &m->at_node[i]);
 }
 
-static void run(pool *threads, int64_t count, pool_work *work, motion *m)
-{
-    if (threads)
-        pool_run(threads, count, CHUNK, work, m);
-    else
-        work(m, 0, 0, count);
-}
-
 void motion_set(motion *m, const double *u, pool *threads)
 {
     m->u = u;
     if (!m->place)
         return;
-    run(threads, m->entries, map_elements, m);
-    run(threads, m->places, map_nodes, m);
+    pool_run(threads, m->entries, CHUNK, map_elements, m);
+    pool_run(threads, m->places, CHUNK, map_nodes, m);
 }
 
 /* ---- a vertex */

@@ -62,10 +62,7 @@ int surface_region_in_file(const char *file, double scale, const double *positio
         return -1;
     marker m = {.body = body, .position = position, .metre = metre};
     m.inside = inside;
-    if (threads)
-        pool_run(threads, vertices, VERTICES, mark, &m);
-    else
-        mark(&m, 0, 0, vertices);
+    pool_run(threads, vertices, VERTICES, mark, &m);
     triangle_tree_destroy(body);
     return 0;
 }

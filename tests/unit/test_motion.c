@@ -161,7 +161,7 @@ static void test_affine(void)
     done(k);
 }
 
-/* What was set in threads is what is set without, and its gradient is the differences'. */
+/* Threads set the same motion as one thread does, and its gradient is that of finite differences. */
 static void test_field(void)
 {
     const int32_t size[3] = {14, 13, 12};

@@ -4,23 +4,15 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "base/num.h"
+#include "model/muscle_name.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-
-static const char prefix[] = "muscle_";
 
 void muscles_free(muscle_list *l)
 {
     free(l->volume);
     *l = (muscle_list){0};
-}
-
-const char *muscles_short(const char *name)
-{
-    const size_t n = sizeof prefix - 1;
-    return !strncasecmp(name, prefix, n) && name[n] ? name + n : name;
 }
 
 int muscles_level(const char *text, double *level)
@@ -35,10 +27,10 @@ static int unknown(const model_array *names, const model_array *muscle, const ch
     if (!list)
         return -1;
     int count = 0;
-    const bool whole = muscles_short(word) != word;
+    const bool whole = muscle_name_short(word) != word;
     for (int64_t i = 0; i < names->rows && count < INT32_MAX; i++)
         if (muscle->u8[i])
-            list[count++] = whole ? names->str[i] : muscles_short(names->str[i]);
+            list[count++] = whole ? names->str[i] : muscle_name_short(names->str[i]);
     if (line)
         near_unknown(e, place, line, "muscle", word, list, count);
     else
@@ -54,7 +46,7 @@ static int64_t find_one(const model_array *names, const model_array *muscle, con
         if (muscle->u8[i] && chars_mean(word, names->str[i]))
             return i;
     for (int64_t i = 0; i < names->rows; i++)
-        if (muscle->u8[i] && chars_mean(word, muscles_short(names->str[i])))
+        if (muscle->u8[i] && chars_mean(word, muscle_name_short(names->str[i])))
             return i;
     return -1;
 }
@@ -78,7 +70,7 @@ static int find_many(muscle_list *to, const model_array *names, const model_arra
     const size_t length = strlen(word) - 1;
     for (int64_t i = 0; i < names->rows; i++) {
         const char *name = names->str[i];
-        const bool is = begins(name, word, length) || begins(muscles_short(name), word, length);
+        const bool is = begins(name, word, length) || begins(muscle_name_short(name), word, length);
         if (muscle->u8[i] && is && add(to, i, e))
             return -1;
     }

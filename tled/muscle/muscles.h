@@ -17,9 +17,6 @@ typedef struct muscle_list {
 int muscles_named(muscle_list *to, const model *m, const char *word, const char *place, int64_t line, err *e);
 void muscles_free(muscle_list *l);
 
-/* The name of a muscle past "muscle_", where it begins so (any case); else the name. */
-const char *muscles_short(const char *name);
-
 /* A level: a number from 0 to 1. Returns 0 or -1. */
 int muscles_level(const char *text, double *level);
 
