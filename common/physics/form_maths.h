@@ -5,6 +5,7 @@
 #ifndef SINEW_FORM_MATHS_H
 #define SINEW_FORM_MATHS_H
 
+#include "physics/form_first.h"
 #include "physics/form_mooney_rivlin.h"
 #include "physics/form_neo_hookean.h"
 #include "physics/forms.h"

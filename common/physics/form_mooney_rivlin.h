@@ -117,10 +117,9 @@ ELEMENT_FUNCTION void form_mooney_rivlin_tangent(element_tensor h, const double 
  * terms that have G vanish. Of the others, with s the largest stretch,
  *     z:(dG/dF z) = 2 F:cof z <= 2 s,
  *     z:(dN/dF z) = 2 (F:z)^2 + I1 - |F z^T|^2 - |F^T z + z^T F|^2 / 2 <= 2 (F:z)^2 + min(I1, 2 s^2),
- * as |F z^T|^2 is at least the square of the least stretch, which leaves two of the three in I1; and as G:z = 0, F may
- * be cut down to what it has across G:
- *     (F:z)^2 <= |F|^2 - (F:G)^2 / |G|^2 = I1 - 9 J^2 / I2,
- * which is nothing at rest. So what is left is at most a + b (2 (I1 - 9 J^2 / I2) + min(I1, 2 s^2)) + 2 |p| s. */
+ * as |F z^T|^2 is at least the square of the least stretch, which leaves two of the three in I1; and as G:z = 0,
+ * (F:z)^2 <= I1 - 9 J^2 / I2 (tangent_across). So what is left is at most
+ *     a + b (2 (I1 - 9 J^2 / I2) + min(I1, 2 s^2)) + 2 |p| s. */
 ELEMENT_FUNCTION double form_mooney_rivlin_along(element_tensor h, const double *c, element_tensor y, double square,
                                                  element_tensor *to)
 {
@@ -136,7 +135,7 @@ ELEMENT_FUNCTION double form_mooney_rivlin_along(element_tensor h, const double 
     tangent_add(to, 2 * t.second * along - t.mixed * square, f);
     tangent_add(to, -t.mixed_second * square, n);
     tangent_add(to, t.pressure, tangent_cofactor_along(h, y));
-    const double apart = fmax(t.first_invariant - 9 * volume * volume / t.second_invariant, 0.);
+    const double apart = tangent_across(t.first_invariant, t.second_invariant, volume);
     const double twice = fmin(t.first_invariant, 2 * stretch * stretch);
     return fmax(t.shear, 0.) + t.second * (2 * apart + twice) + 2 * fabs(t.pressure) * stretch;
 }

@@ -10,7 +10,8 @@
  * steppers, the kernels and messages take them from here. */
 #define FORMS_WITH(X, with)                                                                                            \
     X(with, NEO_HOOKEAN, neo_hookean, 2, 0)                                                                            \
-    X(with, MOONEY_RIVLIN, mooney_rivlin, 3, 0)
+    X(with, MOONEY_RIVLIN, mooney_rivlin, 3, 0)                                                                        \
+    X(with, FIRST, first, 6, 0)
 #define FORMS_ALONE(X, NAME, name, coefficients, history) X(NAME, name, coefficients, history)
 #define FORMS(X)                                          FORMS_WITH(FORMS_ALONE, X)
 

@@ -69,6 +69,14 @@ ELEMENT_FUNCTION element_tensor tangent_transposed(element_tensor a)
     return b;
 }
 
+/* No less than (F:z)^2 for any z of length 1 with G:z = 0, G = cof F; nothing at rest: F may be cut down to what it has
+ * across G, so that
+ *     (F:z)^2 <= |F|^2 - (F:G)^2 / |G|^2 = I1 - 9 J^2 / I2. */
+ELEMENT_FUNCTION double tangent_across(double first_invariant, double second_invariant, double volume)
+{
+    return fmax(first_invariant - 9 * volume * volume / second_invariant, 0.);
+}
+
 #endif
 
 #endif

@@ -20,6 +20,9 @@ static inline bool form_tried(form f, double mu, double bulk, double c[FORM_NUMB
     case FORM_MOONEY_RIVLIN: /* mu = 2 (c10 + c01) */
         c[0] = .3 * mu, c[1] = .2 * mu, c[2] = bulk;
         return true;
+    case FORM_FIRST: /* mu = 2 c1 */
+        c[0] = .5 * mu, c[1] = .3 * mu, c[2] = .1 * mu, c[3] = .03 * mu, c[4] = .01 * mu, c[5] = bulk;
+        return true;
     default:
         return false;
     }

@@ -177,31 +177,60 @@ static void test_range(form f, const double *c, double strain)
     ok(wide < 4 * TRIALS, "%s, H to %g: all but %d of %d within 5 %%", names[f], strain, wide, 10 * TRIALS);
 }
 
-/* Mooney-Rivlin without c01 is neo-Hookean. */
-static void test_express(void)
+/* Neo-Hookean is the same in a form that expresses it. */
+static void test_express_in(form f)
 {
     double own[FORM_NUMBERS], c[FORM_NUMBERS], none[FORM_NUMBERS], worst = 0, energy = 0, slope = 0;
     form_tried(FORM_NEO_HOOKEAN, 1000, 9700, own);
-    ok(form_express(FORM_NEO_HOOKEAN, FORM_MOONEY_RIVLIN, own, c) && c[0] == 500 && c[1] == 0 && c[2] == 9700,
-       "neo-Hookean in the Mooney-Rivlin form");
-    ok(!form_express(FORM_MOONEY_RIVLIN, FORM_NEO_HOOKEAN, c, none) &&
-           !form_express(FORM_LINEAR, FORM_NEO_HOOKEAN, own, none),
+    ok(form_express(FORM_NEO_HOOKEAN, f, own, c) && c[0] == 500 && c[1] == 0, "neo-Hookean in the form %s", names[f]);
+    ok(!form_express(f, FORM_NEO_HOOKEAN, c, none) && !form_express(FORM_LINEAR, f, own, none),
        "not the other way round, nor what is linear");
     for (int i = 0; i < TRIALS; i++) {
         const element_tensor h = gradient_by_chance(.4);
         const element_tensor p = form_stress(FORM_NEO_HOOKEAN, h, own);
         double a[9][9], b[9][9];
         form_tangent(FORM_NEO_HOOKEAN, h, own, a);
-        form_tangent(FORM_MOONEY_RIVLIN, h, c, b);
+        form_tangent(f, h, c, b);
         for (int r = 0; r < 9; r++)
             for (int s = 0; s <= r; s++)
                 slope = larger(slope, fabs(a[r][s] - b[r][s]) / own[1]);
-        worst = larger(worst, apart(p, form_stress(FORM_MOONEY_RIVLIN, h, c)) / largest_of(p));
-        energy =
-            larger(energy, fabs(form_energy(FORM_NEO_HOOKEAN, h, own) / form_energy(FORM_MOONEY_RIVLIN, h, c) - 1));
+        worst = larger(worst, apart(p, form_stress(f, h, c)) / largest_of(p));
+        energy = larger(energy, fabs(form_energy(FORM_NEO_HOOKEAN, h, own) / form_energy(f, h, c) - 1));
     }
     ok(worst < 1e-12 && energy < 1e-11 && slope < 1e-12, "the same stress, energy and tangent: %.1e, %.1e, %.1e", worst,
        energy, slope);
+}
+
+/* What lies between two has the moduli between, by forms that both express it alike. */
+static void test_between_in(form f, form wider)
+{
+    const double share = .3, mu = 1700, bulk = 2e4;
+    double a[FORM_NUMBERS], b[FORM_NUMBERS], c[FORM_NUMBERS], wide[3][FORM_NUMBERS], worst = 0;
+    form_tried(f, 1000, 9700, a);
+    form_tried(f, 3000, 5e4, b);
+    form_between(f, mu, bulk, a, b, share, c);
+    if (!ok(form_express(f, wider, a, wide[0]) && form_express(f, wider, b, wide[1]), "%s expresses %s", names[wider],
+            names[f]))
+        return;
+    form_between(wider, mu, bulk, wide[0], wide[1], share, wide[2]);
+    for (int i = 0; i < TRIALS; i++) {
+        const element_tensor h = gradient_by_chance(.4), p = form_stress(f, h, c);
+        worst = larger(worst, apart(p, form_stress(wider, h, wide[2])) / largest_of(p));
+    }
+    ok(worst < 1e-12, "%s: what lies between two is the same in %s, to %.1e", names[f], names[wider], worst);
+}
+
+/* f by its own mu goes by shares. */
+static void test_between_first(void)
+{
+    const double a[FORM_NUMBERS] = {500, 800, 0, 0, 100, 9700}, b[FORM_NUMBERS] = {1000, 0, 4000, 0, 0, 9700};
+    double c[FORM_NUMBERS];
+    form_between(FORM_FIRST, 1600, 12000, a, b, .25, c);
+    near_(c[0], 800, 1e-9, "first, between two: c1 is mu/2");
+    near_(c[1], 1600 * .75 * .8, 1e-9, "c2");
+    near_(c[2], 1600 * .25 * 2, 1e-9, "c3");
+    near_(c[4], 1600 * .75 * .1, 1e-9, "c5");
+    near_(c[5], 12000, 0, "K");
 }
 
 static void test_between(void)
@@ -262,8 +291,16 @@ int main(void)
     const double second[FORM_NUMBERS] = {0, 500, 9700};
     test_range(FORM_MOONEY_RIVLIN, second, .02);
     test_range(FORM_MOONEY_RIVLIN, second, .3);
-    test_express();
+    const double softens[FORM_NUMBERS] = {500, -400, 300, 0, 0, 9700}; /* f'' is below 0 at small strains */
+    test_tangent(FORM_FIRST, softens);
+    test_range(FORM_FIRST, softens, .02);
+    test_range(FORM_FIRST, softens, .3);
+    test_express_in(FORM_MOONEY_RIVLIN);
+    test_express_in(FORM_FIRST);
     test_between();
+    test_between_first();
+    test_between_in(FORM_NEO_HOOKEAN, FORM_MOONEY_RIVLIN);
+    test_between_in(FORM_NEO_HOOKEAN, FORM_FIRST);
     test_figures();
     return done_testing();
 }

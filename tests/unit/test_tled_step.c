@@ -147,7 +147,8 @@ static void pull(const tled_problem *p, const double *u, double *f)
     for (int64_t i = 0; i < p->elements; i++) {
         const tled_law v = tled_law_of(p, i);
         const int32_t *n = p->element_node + 8 * i;
-        element_law law = {.c = {v.c[0], v.c[1], v.c[2]}};
+        element_law law;
+        memcpy(law.c, v.c, sizeof law.c);
         memcpy(law.hourglass, v.hourglass, sizeof law.hourglass);
         element_field at, force;
         for (int c = 0; c < 8; c++) {

@@ -408,7 +408,7 @@ static void march_end(cuda_state *s)
 /* ---- the table, and the choice */
 
 enum {
-    TILES_FORMS = (1 << FORM_STEPPED) - 1,
+    TILES_FORMS = CUDA_FORMS,
     MARCH_FORMS = sizeof(real) == sizeof(float) ? 1 << FORM_NEO_HOOKEAN : 0 /* in single precision alone */
 };
 

@@ -72,18 +72,20 @@ template <form F, int N, hourglass_kind K> struct cuda_form {
     enum { COEFFICIENTS = N, HELD = cuda_held(K), LAW = N + HELD, NEAR = 4 + LAW * LAWS_NEAR };
 };
 
-/* Calls f with a form that steppers know, and the kind, as a type: tled_problem_make chooses no other. */
+/* The forms that kernels are compiled for, as bits. */
+enum { CUDA_FORMS = 1 << FORM_NEO_HOOKEAN | 1 << FORM_MOONEY_RIVLIN };
+
+/* Calls f with a form of CUDA_FORMS, and the kind, as a type. */
 template <hourglass_kind K, class F> static auto with_form(form which, F f)
 {
-#define FORM_ROW(NAME, name, coefficients, history)                                                                    \
-    case FORM_##NAME:                                                                                                  \
-        return f(cuda_form<FORM_##NAME, coefficients, K>());
     switch (which) {
-        FORMS(FORM_ROW)
+    case FORM_NEO_HOOKEAN:
+        return f(cuda_form<FORM_NEO_HOOKEAN, FORM_NEO_HOOKEAN_NUMBERS, K>());
+    case FORM_MOONEY_RIVLIN:
+        return f(cuda_form<FORM_MOONEY_RIVLIN, FORM_MOONEY_RIVLIN_NUMBERS, K>());
     default:
         __builtin_unreachable(); /* the choice of executors refuses others */
     }
-#undef FORM_ROW
 }
 
 template <class F> static auto with_stepper(form which, hourglass_kind kind, F f)

@@ -1,0 +1,106 @@
+/* The form of the first invariant, W = f(x) + K/2 (J - 1)^2, x = I1bar - 3 = J^-2/3 tr C - 3, f(x) = c1 x + c2 x^2 +
+ * ... + c5 x^5. Coefficients: c1 to c5, K (Pa). At rest mu = 2 c1. It is the neo-Hookean form with 2 f'(x) in place of
+ * mu, besides f'' in the tangent. Owns nothing.
+ */
+#ifndef SINEW_FORM_FIRST_H
+#define SINEW_FORM_FIRST_H
+
+#include "physics/form_neo_hookean.h"
+
+enum { FORM_FIRST_POWERS = 5 };
+
+/* f'(x), by Horner's scheme. */
+ELEMENT_FUNCTION real form_first_slope(real x, const real *c)
+{
+    return c[0] + x * (2 * c[1] + x * (3 * c[2] + x * (4 * c[3] + x * (5 * c[4]))));
+}
+
+ELEMENT_FUNCTION real form_first_x(element_tensor h)
+{
+    element_symmetric e = element_green(h);
+    real dilation = element_dilation(h);
+    return element_first_bar(dilation, element_cube_root_inverse(1 + dilation), e.xx + e.yy + e.zz);
+}
+
+/* P = cof F (2 f'(x) J^-5/3 dev(C - I) + K (J - 1) I); x without a difference of nearly equal numbers. */
+ELEMENT_FUNCTION element_tensor form_first_stress(element_tensor h, const real *c)
+{
+    const real now[] = {2 * form_first_slope(form_first_x(h), c), c[5]};
+    return form_neo_hookean_stress(h, now);
+}
+
+/* By volume at rest (J/m3). */
+ELEMENT_FUNCTION real form_first_energy(element_tensor h, const real *c)
+{
+    real x = form_first_x(h), dilation = element_dilation(h);
+    return x * (c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])))) + c[5] / 2 * dilation * dilation;
+}
+
+#ifdef REAL_IS_DOUBLE
+/* A = dP/dF: with n = dx/dF = 2 J^-2/3 (F - I1/(3 J) G),
+ *     A = (the neo-Hookean form's A with mu = 2 f'(x)) + f''(x) n (x) n. */
+typedef struct form_first_terms {
+    double now[2], curvature; /* 2 f', K; f'' */
+    element_tensor n;
+    double most; /* of (n:z)^2 across G */
+} form_first_terms;
+
+ELEMENT_FUNCTION form_first_terms form_first_terms_at(element_tensor h, const double *c)
+{
+    const element_tensor g = element_cofactor(h);
+    const double x = form_first_x(h), volume = 1 + element_dilation(h), root = element_cube_root_inverse(volume);
+    const double one = 3 + element_green_trace(h), twice = 2 * root * root;
+    form_first_terms t = {{2 * form_first_slope(x, c), c[5]},
+                          2 * c[1] + x * (6 * c[2] + x * (12 * c[3] + x * (20 * c[4]))),
+                          {0, 0, 0, 0, 0, 0, 0, 0, 0},
+                          twice * twice * tangent_across(one, tangent_dot(g, g), volume)};
+    tangent_add(&t.n, twice, tangent_moved(h));
+    tangent_add(&t.n, -twice * one / (3 * volume), g);
+    return t;
+}
+
+/* The lower triangle of A. */
+ELEMENT_FUNCTION void form_first_tangent(element_tensor h, const double *c, double a[9][9])
+{
+    const form_first_terms t = form_first_terms_at(h, c);
+    const double n[9] = {t.n.xx, t.n.xy, t.n.xz, t.n.yx, t.n.yy, t.n.yz, t.n.zx, t.n.zy, t.n.zz};
+    form_neo_hookean_tangent(h, t.now, a);
+    for (int r = 0; r < 9; r++)
+        for (int s = 0; s <= r; s++)
+            a[r][s] += t.curvature * n[r] * n[s];
+}
+
+/* Adds A y to *to; square: G:y. Returns no less than z:(A z) of any z of length 1 with G:z = 0: what the neo-Hookean
+ * form has, whatever the sign of f', and of f'' > 0, as n:z = 2 J^-2/3 F:z,
+ *     f'' (n:z)^2 <= 4 f'' J^-4/3 (I1 - 9 J^2 / I2)
+ * (tangent_across); f'' < 0 only takes from it. */
+ELEMENT_FUNCTION double form_first_along(element_tensor h, const double *c, element_tensor y, double square,
+                                         element_tensor *to)
+{
+    const form_first_terms t = form_first_terms_at(h, c);
+    const double plain = form_neo_hookean_along(h, t.now, y, square, to);
+    tangent_add(to, t.curvature * tangent_dot(t.n, y), t.n);
+    return plain + fmax(t.curvature, 0.) * t.most;
+}
+
+/* Neo-Hookean. */
+static inline int form_first_express(form from, const double *c, double *to)
+{
+    if (from != FORM_NEO_HOOKEAN)
+        return 0;
+    to[0] = c[0] / 2;
+    to[FORM_FIRST_POWERS] = c[1];
+    return 1;
+}
+
+/* Each f by its own mu goes by shares. */
+static inline void form_first_between(double mu, double bulk, const double *a, const double *b, double share,
+                                      double *to)
+{
+    for (int i = 0; i < FORM_FIRST_POWERS; i++)
+        to[i] = mu * ((1 - share) * (a[i] / (2 * a[0])) + share * (b[i] / (2 * b[0])));
+    to[FORM_FIRST_POWERS] = bulk;
+}
+#endif
+
+#endif
