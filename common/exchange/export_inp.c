@@ -135,24 +135,14 @@ static void put_sets(const writer *w)
     }
 }
 
-/* The row of a form, or NULL. */
-static const inp_law *inp_law_of(form f)
-{
-    for (int i = 0; i < INP_LAWS; i++)
-        if (inp_laws[i].form == f)
-            return &inp_laws[i];
-    return NULL;
-}
-
 int export_inp_has_law(const law_row *law, const char *name, err *e)
 {
     char words[INP_LAWS * 40] = "";
-    if (law->form == FORM_LINEAR || inp_law_of(law->form))
+    if (law->form == FORM_LINEAR || inp_law_of(law))
         return 0;
     for (int i = 0; i < INP_LAWS; i++) {
         const size_t at = strlen(words);
-        snprintf(words + at, sizeof words - at, "%s%s", i == INP_LAWS - 1 ? " or " : ", ",
-                 law_of_form(inp_laws[i].form)->name);
+        snprintf(words + at, sizeof words - at, "%s%s", i == INP_LAWS - 1 ? " or " : ", ", inp_laws[i].law);
     }
     return err_set(e, NULL, 0,
                    "material '%.200s' has the law '%s', which Abaqus's files do not have here; expected %s%s", name,
@@ -163,17 +153,15 @@ int export_inp_has_law(const law_row *law, const char *name, err *e)
 static void put_law(const writer *w, const material *of)
 {
     const double moduli[] = {material_young(of), material_poisson(of)};
-    const inp_law *law = inp_law_of(material_form(of));
-    double c[FORM_NUMBERS], constants[INP_CONSTANTS];
+    const inp_law *law = inp_law_of(of->law);
+    double constants[INP_CONSTANTS];
     if (!law) { /* FORM_LINEAR: open_tables refuses others */
         out_text(w->to, "*ELASTIC\n");
         put_numbers(moduli, 2, w->to);
         return;
     }
-    material_coefficients(of, c);
-    inp_law_write(law, c, constants);
     out_format(w->to, "*HYPERELASTIC, %s\n", law->name);
-    put_numbers(constants, law->constants, w->to);
+    put_numbers(constants, inp_law_write(law, of, constants), w->to);
 }
 
 static void put_materials(const writer *w)
@@ -238,6 +226,15 @@ static int open_tables(writer *w, const model *m, err *e)
     return 0;
 }
 
+static void note_laws(const writer *w, const model *m, notes *warnings)
+{
+    for (int64_t i = 0; i < w->materials; i++) {
+        const inp_law *law = inp_law_of(w->laws[i].law);
+        if (law && law->other_press)
+            notes_add(warnings, INP_OTHER_PRESS, model_find(m, "material.name")->str[i], law->name, law->other_press);
+    }
+}
+
 static void note_omissions(const writer *w, const model *m, notes *warnings)
 {
     const model_array *name = model_find(m, "volume.name");
@@ -273,6 +270,7 @@ int export_inp(const model *m, const export_inp_options *options, out *to, notes
     if (!bad && !w.x.cells)
         bad = err_set(e, NULL, 0, "the model has no elements; expected some");
     if (!bad) {
+        note_laws(&w, m, warnings);
         note_omissions(&w, m, warnings);
         put_all(&w, options);
     }

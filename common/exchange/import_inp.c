@@ -452,27 +452,46 @@ static int take_elastic(inp_reader *r, char *line, material *of)
     double young, poisson;
     if (take_number(r, next_field(&line), "E, nu", &young) || take_number(r, next_field(&line), "E, nu", &poisson))
         return -1;
-    const double none[FORM_NUMBERS] = {NAN, NAN};
     of->law = law_of_form(FORM_LINEAR);
-    of->law->read_back(none, of->value);
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        of->value[k] = NAN;
     of->value[LAW_E] = young;
     of->value[LAW_nu] = poisson;
     return 0;
 }
 
+/* Those after D1 need not be there, and are 0. */
+static int take_volumetric(inp_reader *r, char **line)
+{
+    const inp_law *of = r->hyper;
+    for (int i = 1; i < of->volumetric; i++) {
+        char *field = next_field(line);
+        double value = 0;
+        if (field && *field && take_number(r, field, of->words, &value))
+            return -1;
+        if (value != 0)
+            return wrong(r, "volumetric energy of (J - 1)^4 or on", "D2 and D3 of 0");
+    }
+    return 0;
+}
+
 static int take_hyper(inp_reader *r, char *line, material *of)
 {
-    double constants[INP_CONSTANTS] = {0}, c[FORM_NUMBERS] = {0};
-    const int last = r->hyper->constants - 1;
-    for (int i = 0; i <= last; i++)
-        if (take_number(r, next_field(&line), r->hyper->words, &constants[i]))
+    const inp_law *row = r->hyper;
+    double constants[INP_CONSTANTS] = {0};
+    char what[LAW_WORDS], expected[LAW_WORDS];
+    for (int i = 0; i <= row->keys; i++)
+        if (take_number(r, next_field(&line), row->words, &constants[i]))
             return -1;
-    if (!(constants[0] > 0) || !(constants[last] > 0))
-        return wrong(r, "C10 or D1 that is not above 0", "a material that can be compressed, D1 = 2/K");
-    inp_law_read(r->hyper, constants, c);
-    of->law = law_of_form(r->hyper->form);
-    of->law->read_back(c, of->value);
-    return 0;
+    snprintf(what, sizeof what, "%s that is not above 0", row->positive);
+    if (!(constants[0] > 0) || !(constants[row->keys] > 0))
+        return wrong(r, what, "a material that can be compressed, K = 2/D1");
+    if (row->other_press)
+        notes_add(r->warnings, INP_OTHER_PRESS, r->m->material[r->material].name, row->name, row->other_press);
+    inp_law_read(row, constants, of);
+    if (law_refuses(of->law, of->value, what, expected))
+        return wrong(r, what, expected);
+    return take_volumetric(r, &line);
 }
 
 static int take_law(inp_reader *r, char *line)

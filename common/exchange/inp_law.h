@@ -1,46 +1,82 @@
-/* The forms of energy that Abaqus has too, as sinew export writes them and sinew import reads them: W = C10 (I1bar -
- * 3) + C01 (I2bar - 3) + (J - 1)^2 / D1, and the first and the last term alone. Abaqus Analysis User's Guide,
- * "Hyperelastic behavior". Owns nothing.
+/* The laws that Abaqus has too, as sinew export writes them and sinew import reads them: constants, most of which are
+ * values of keys, then D1, D2 and so on of the volumetric energy (J - 1)^2 / D1 + (J - 1)^4 / D2 + ..., of which only the
+ * first term is there, K = 2 / D1. Abaqus Analysis User's Guide, "Hyperelastic behavior". Owns nothing.
  */
 #ifndef SINEW_INP_LAW_H
 #define SINEW_INP_LAW_H
 
-#include "physics/forms.h"
+#include "model/materials.h"
 
-enum { INP_CONSTANTS = 3 }; /* the most */
+#include <string.h>
+
+enum { INP_KEYS = 3, INP_CONSTANTS = 6 }; /* the most of a row */
 
 typedef struct inp_law {
-    const char *name; /* as *HYPERELASTIC has it */
-    form form;
-    int constants;
-    const char *words; /* their names */
+    const char *name, *law;  /* as *HYPERELASTIC has it; as we do */
+    int keys;                /* constants before D1 */
+    law_key key[INP_KEYS];   /* whose values they are; of E and nu C10 is mu/2 */
+    int volumetric;          /* D1 and on */
+    const char *words;       /* the names of all */
+    const char *positive;    /* of the first and of D1 */
+    const char *other_press; /* where J's energy is another: which; or NULL */
 } inp_law;
 
-static const inp_law inp_laws[] = {{"NEO HOOKE", FORM_NEO_HOOKEAN, 2, "C10, D1"},
-                                   {"MOONEY-RIVLIN", FORM_MOONEY_RIVLIN, 3, "C10, C01, D1"}};
+static const inp_law inp_laws[] = {
+    {"NEO HOOKE", "neo-hookean", 1, {LAW_E}, 1, "C10, D1", "C10 or D1", NULL},
+    {"MOONEY-RIVLIN", "mooney-rivlin", 2, {LAW_c10, LAW_c01}, 1, "C10, C01, D1", "C10 or D1", NULL},
+    {"YEOH", "yeoh", 3, {LAW_c10, LAW_c20, LAW_c30}, 3, "C10, C20, C30, D1, D2, D3", "C10 or D1", NULL},
+    {"ARRUDA-BOYCE",
+     "arruda-boyce",
+     2,
+     {LAW_mu, LAW_lock},
+     1,
+     "mu, lambda_m, D",
+     "mu or D",
+     "K/2 ((J^2 - 1)/2 - ln J)"}};
 enum { INP_LAWS = sizeof inp_laws / sizeof *inp_laws };
-#define INP_LAW_NAMES "NEO HOOKE or MOONEY-RIVLIN" /* for messages */
+#define INP_LAW_NAMES "NEO HOOKE, MOONEY-RIVLIN, YEOH or ARRUDA-BOYCE" /* for messages */
 
-/* From the coefficients of the form, Pa. */
-static inline void inp_law_write(const inp_law *of, const double *c, double *constants)
+/* What is said where J's energy is another. */
+#define INP_OTHER_PRESS                                                                                                \
+    "material %.200s: the volumetric energy of Abaqus's %s is %s, here K/2 (J - 1)^2: the same but for terms of (J - " \
+    "1)^3 and on"
+
+/* The row of a law, or NULL. */
+static inline const inp_law *inp_law_of(const law_row *law)
 {
-    const int last = of->constants - 1;
-    for (int i = 0; i < last; i++)
-        constants[i] = c[i];
-    if (of->form == FORM_NEO_HOOKEAN)
-        constants[0] = c[0] / 2;
-    constants[last] = 2 / c[last];
+    for (int i = 0; i < INP_LAWS; i++)
+        if (!strcmp(inp_laws[i].law, law->name))
+            return &inp_laws[i];
+    return NULL;
 }
 
-/* The way back. */
-static inline void inp_law_read(const inp_law *of, const double *constants, double *c)
+/* Returns how many constants. */
+static inline int inp_law_write(const inp_law *of, const material *from, double constants[INP_CONSTANTS])
 {
-    const int last = of->constants - 1;
-    for (int i = 0; i < last; i++)
-        c[i] = constants[i];
-    if (of->form == FORM_NEO_HOOKEAN)
-        c[0] = 2 * constants[0];
-    c[last] = 2 / constants[last];
+    for (int i = 0; i < of->keys; i++) {
+        const double value = of->key[i] == LAW_E ? material_mu(from) / 2 : from->value[of->key[i]];
+        constants[i] = isnan(value) ? 0 : value;
+    }
+    for (int i = 0; i < of->volumetric; i++)
+        constants[of->keys + i] = i ? 0 : 2 / material_bulk(from);
+    return of->keys + of->volumetric;
+}
+
+/* The way back; what is no key of the law becomes nan. */
+static inline void inp_law_read(const inp_law *of, const double *constants, material *to)
+{
+    const law_moduli at = {2 * constants[0], 2 / constants[of->keys]};
+    to->law = law_find(of->law);
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        to->value[k] = NAN;
+    if (of->key[0] == LAW_E) {
+        to->value[LAW_E] = law_young(at);
+        to->value[LAW_nu] = law_poisson(at);
+        return;
+    }
+    for (int i = 0; i < of->keys; i++)
+        to->value[of->key[i]] = constants[i];
+    to->value[LAW_K] = at.bulk;
 }
 
 #endif

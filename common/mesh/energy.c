@@ -46,12 +46,9 @@ static element_any shape_of(const view *v, int64_t element, double *squares)
 
 /* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, which has the same coefficients, mu
  * and K; every other form has its own energy. */
-static double material_energy(const material *of, element_tensor h)
+static double material_energy(const material_numbers *of, element_tensor h)
 {
-    const form f = material_form(of);
-    double c[FORM_NUMBERS] = {0};
-    material_coefficients(of, c);
-    return form_energy(f == FORM_LINEAR ? FORM_NEO_HOOKEAN : f, h, c);
+    return form_energy(of->form == FORM_LINEAR ? FORM_NEO_HOOKEAN : of->form, h, of->c);
 }
 
 /* The numbers by which modes are held. */
@@ -67,11 +64,11 @@ static void hold_of(const view *v, double mu, double bulk, double volume, double
         to[HOURGLASS_K] *= wave / (11 * mu);
 }
 
-static void add_element(const view *v, int64_t element, const material *of, double fraction, energy *to)
+static void add_element(const view *v, int64_t element, const material_numbers *of, double fraction, energy *to)
 {
     element_modes x = modes_of(v, element, 0), y = modes_of(v, element, 1), z = modes_of(v, element, 2);
     const double *side = v->side;
-    const double mu = material_mu(of), bulk = material_bulk(of);
+    const double mu = of->at_rest.mu, bulk = of->at_rest.bulk;
     double volume = side[0] * side[1] * side[2], hold[HOURGLASS_NUMBERS], squares;
     element_tensor h;
     hourglass_force force;
@@ -150,7 +147,7 @@ int energy_of(energy *to, const model *m, const frame *f, err *e)
     const materials_map map = materials_map_of(m, law);
     const int64_t elements = model_count(m, "element");
     for (int64_t i = 0; i < elements; i++) {
-        const material own = materials_of_element(&map, i);
+        const material_numbers own = materials_of_element(&map, i);
         add_element(&v, i, &own, fraction ? (double)fraction->f32[i] : 1, to);
     }
     free(law);

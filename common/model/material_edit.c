@@ -120,6 +120,16 @@ static int check_keys(const law_row *of, unsigned has, const char *place, int64_
     return 0;
 }
 
+/* Values that are no material together. */
+static int check_together(const material *of, const char *place, int64_t line, err *e)
+{
+    char what[LAW_WORDS], expected[LAW_WORDS], all[LAW_WORDS + 64];
+    if (!law_refuses(of->law, of->value, what, expected))
+        return 0;
+    snprintf(all, sizeof all, "the law %s, %s", of->law->name, what);
+    return wrong(e, place, line, all, expected);
+}
+
 unsigned material_edit_keys(const material *of)
 {
     unsigned has = 0;
@@ -143,5 +153,5 @@ int material_edit_apply(material *to, const material_edit *edit, const char *pla
     for (int k = 0; k < LAW_ALL_KEYS; k++)
         if (given >> k & 1)
             *material_edit_value(to, k) = *material_edit_value(&from, k);
-    return check_keys(law, material_edit_keys(to) | own, place, line, e);
+    return check_keys(law, material_edit_keys(to) | own, place, line, e) || check_together(to, place, line, e) ? -1 : 0;
 }

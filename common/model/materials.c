@@ -441,6 +441,27 @@ static int check_foreign(const model *m, int64_t i, const law_row *of, err *e)
     return 0;
 }
 
+/* The keys that need not be there. */
+static int take_optional(const model *m, int64_t i, material *to, err *e)
+{
+    for (int k = law_next_key(to->law->optional, 0); k >= 0; k = law_next_key(to->law->optional, k + 1)) {
+        const model_array *a = model_find(m, material_edit_arrays[k]);
+        if (a && !isnan(a->f64[i]) && value_of(m, i, k, NAN, &to->value[k], e))
+            return -1;
+    }
+    return 0;
+}
+
+/* Values that are no material together. */
+static int check_together(const model *m, int64_t i, const material *of, err *e)
+{
+    char what[LAW_WORDS], expected[LAW_WORDS];
+    if (!law_refuses(of->law, of->value, what, expected))
+        return 0;
+    return err_set(e, m->stream, line_of(m, model_find(m, "material.law"), i),
+                   "material.law, row %" PRId64 ": %s, %s; expected %s", i, of->law->name, what, expected);
+}
+
 /* "E=3000 with nu=0.3". */
 static void values_words(const material *of, char *to, size_t size)
 {
@@ -463,8 +484,8 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
         if (key < 0 || value_of(m, i, key, NAN, &to->value[key], e))
             return -1;
     }
-    if (check_foreign(m, i, to->law, e) || value_of(m, i, LAW_density, NAN, &to->density, e) ||
-        value_of(m, i, LAW_peak, 0, &to->peak, e))
+    if (take_optional(m, i, to, e) || check_foreign(m, i, to->law, e) || check_together(m, i, to, e) ||
+        value_of(m, i, LAW_density, NAN, &to->density, e) || value_of(m, i, LAW_peak, 0, &to->peak, e))
         return -1;
     if (isfinite(material_bulk(to)) && material_mu(to) > 0)
         return 0;
@@ -474,31 +495,33 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
 
 double material_young(const material *a)
 {
-    const double mu = material_mu(a), bulk = material_bulk(a);
-    return isnan(a->value[LAW_E]) ? 9 * bulk * mu / (3 * bulk + mu) : a->value[LAW_E];
+    return isnan(a->value[LAW_E]) ? law_young(a->law->moduli(a->value)) : a->value[LAW_E];
 }
 
 double material_poisson(const material *a)
 {
-    const double mu = material_mu(a), bulk = material_bulk(a);
-    return isnan(a->value[LAW_nu]) ? (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu)) : a->value[LAW_nu];
+    return isnan(a->value[LAW_nu]) ? law_poisson(a->law->moduli(a->value)) : a->value[LAW_nu];
 }
 
-material material_mixed(const material *a, const material *b, double s)
+material_numbers material_numbers_of(const material *a)
 {
-    const double mu = material_between(material_mu(a), material_mu(b), s);
-    const double bulk = material_between(material_bulk(a), material_bulk(b), s);
-    double ca[FORM_NUMBERS] = {0}, cb[FORM_NUMBERS] = {0}, same_a[FORM_NUMBERS], same_b[FORM_NUMBERS], c[FORM_NUMBERS];
-    material_coefficients(a, ca);
-    material_coefficients(b, cb);
-    const form f = form_of_both(material_form(a), ca, material_form(b), cb, same_a, same_b);
-    if (f == FORM_COUNT)
+    material_numbers to = {
+        .form = material_form(a), .at_rest = a->law->moduli(a->value), .density = a->density, .peak = a->peak};
+    material_coefficients(a, to.c);
+    return to;
+}
+
+material_numbers material_mixed(const material_numbers *a, const material_numbers *b, double s)
+{
+    double same_a[FORM_NUMBERS], same_b[FORM_NUMBERS];
+    material_numbers mixed = {.at_rest = {.mu = material_between(a->at_rest.mu, b->at_rest.mu, s),
+                                          .bulk = material_between(a->at_rest.bulk, b->at_rest.bulk, s)},
+                              .density = (1 - s) * a->density + s * b->density,
+                              .peak = (1 - s) * a->peak + s * b->peak};
+    mixed.form = form_of_both(a->form, a->c, b->form, b->c, same_a, same_b);
+    if (mixed.form == FORM_COUNT)
         return *a;
-    material mixed = {.law = f == material_form(a) ? a->law : law_of_form(f),
-                      .density = (1 - s) * a->density + s * b->density,
-                      .peak = (1 - s) * a->peak + s * b->peak};
-    form_between(f, mu, bulk, same_a, same_b, s, c);
-    mixed.law->read_back(c, mixed.value);
+    form_between(mixed.form, mixed.at_rest.mu, mixed.at_rest.bulk, same_a, same_b, s, mixed.c);
     return mixed;
 }
 
@@ -525,9 +548,12 @@ materials_map materials_map_of(const model *m, const material *of_volume)
     return map;
 }
 
-material materials_of_element(const materials_map *map, int64_t element)
+material_numbers materials_of_element(const materials_map *map, int64_t element)
 {
-    const material *own = &map->of_volume[map->volume[element]];
-    const int32_t second = map->mix ? map->mix[element] : -1;
-    return second < 0 ? *own : material_mixed(own, &map->of_volume[second], map->mixture[element]);
+    const material_numbers own = material_numbers_of(&map->of_volume[map->volume[element]]);
+    const int32_t mix = map->mix ? map->mix[element] : -1;
+    if (mix < 0)
+        return own;
+    const material_numbers second = material_numbers_of(&map->of_volume[mix]);
+    return material_mixed(&own, &second, map->mixture[element]);
 }

@@ -73,9 +73,19 @@ typedef struct materials_map {
 
 materials_map materials_map_of(const model *m, const material *of_volume);
 
-/* An element's material, from those of the volumes: its volume's, or one between those of the two that it is mixed
+/* What an element is made of: of a material, or of two. */
+typedef struct material_numbers {
+    form form;
+    double c[FORM_NUMBERS]; /* the form's coefficients, Pa; 0 where it has fewer */
+    law_moduli at_rest;
+    double density, peak; /* kg/m3, Pa */
+} material_numbers;
+
+material_numbers material_numbers_of(const material *a);
+
+/* Of an element, from the materials of the volumes: its volume's, or what lies between those of the two that it is mixed
  * of. */
-material materials_of_element(const materials_map *map, int64_t element);
+material_numbers materials_of_element(const materials_map *map, int64_t element);
 
 /* mu and K at rest, in Pa. */
 static inline double material_mu(const material *a)
@@ -110,7 +120,7 @@ static inline double material_between(double a, double b, double s)
 }
 
 /* What is mixed of two materials: mu and K as above, density and peak by shares, in the first form that expresses both
- * laws (form_between). Its law is a's where that has the form, else the first of the form. a, where none does. */
-material material_mixed(const material *a, const material *b, double s);
+ * laws (form_between). a, where none does. */
+material_numbers material_mixed(const material_numbers *a, const material_numbers *b, double s);
 
 #endif

@@ -1,5 +1,7 @@
 #include "physics/law.h"
 
+#include "physics/form_first.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -32,26 +34,18 @@ static void fill_moduli(const double *value, double *c)
     c[1] = at.bulk;
 }
 
-static void clear(double *value)
-{
-    for (int i = 0; i < LAW_OWN_KEYS; i++)
-        value[i] = NAN;
-}
-
-static void read_back_young(const double *c, double *value)
-{
-    const double mu = c[0], bulk = c[1];
-    clear(value);
-    value[LAW_E] = 9 * bulk * mu / (3 * bulk + mu);
-    value[LAW_nu] = (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu));
-}
-
 /* ---- keys c10, c01, and K or nu: mu = 2 (c10 + c01), K = 2 mu (1 + nu) / (3 (1 - 2 nu)) */
+
+/* With K, or K of nu. */
+static law_moduli moduli_with(double mu, const double *value)
+{
+    const double nu = value[LAW_nu];
+    return (law_moduli){.mu = mu, .bulk = isnan(nu) ? value[LAW_K] : bulk_of(mu, nu)};
+}
 
 static law_moduli moduli_of_mooney_rivlin(const double *value)
 {
-    const double mu = 2 * (value[LAW_c10] + value[LAW_c01]), nu = value[LAW_nu];
-    return (law_moduli){.mu = mu, .bulk = isnan(nu) ? value[LAW_K] : bulk_of(mu, nu)};
+    return moduli_with(2 * (value[LAW_c10] + value[LAW_c01]), value);
 }
 
 static void fill_mooney_rivlin(const double *value, double *c)
@@ -61,15 +55,74 @@ static void fill_mooney_rivlin(const double *value, double *c)
     c[2] = moduli_of_mooney_rivlin(value).bulk;
 }
 
-static void read_back_mooney_rivlin(const double *c, double *value)
+/* ---- keys c10, c20, c30, and K or nu: mu = 2 c10 */
+
+/* An optional key. */
+static double or_zero(double value)
 {
-    clear(value);
-    value[LAW_c10] = c[0];
-    value[LAW_c01] = c[1];
-    value[LAW_K] = c[2];
+    return isnan(value) ? 0 : value;
 }
 
-/* ---- the table. Of the laws of one form, the first is the one that files are read as which say the form alone. */
+static law_moduli moduli_of_yeoh(const double *value)
+{
+    return moduli_with(2 * value[LAW_c10], value);
+}
+
+static void fill_yeoh(const double *value, double *c)
+{
+    c[0] = value[LAW_c10];
+    c[1] = value[LAW_c20];
+    c[2] = or_zero(value[LAW_c30]);
+    c[FORM_FIRST_POWERS] = moduli_of_yeoh(value).bulk;
+}
+
+/* In simple shear g the stress is 2 f'(g^2) g. Its slope is 2 (f' + 2 x f'') at x = g^2: it must be above 0 at each x, or
+ * waves there have no speed (in an incompressible f(I1) material just then: at a given x, no wave is stretched more by
+ * f'' than those across a simple shear). That is c10 + 6 c20 x + 15 c30 x^2, for which f' > 0 too. */
+static bool refuses_yeoh(const double *value, char what[LAW_WORDS], char expected[LAW_WORDS])
+{
+    const double c10 = value[LAW_c10], c20 = value[LAW_c20], c30 = or_zero(value[LAW_c30]);
+    if (c20 >= 0 || 3 * c20 * c20 < 5 * c10 * c30)
+        return false;
+    snprintf(what, LAW_WORDS, "c20=%g with c10=%g and c30=%g lets the stress fall where shear grows", c20, c10, c30);
+    snprintf(expected, LAW_WORDS, "c20 of 0 or more, or c30 above 3 c20^2 / (5 c10) = %g", .6 * c20 * c20 / c10);
+    return true;
+}
+
+/* ---- keys mu, lock, and K or nu: with I1bar = 3 + x,
+ *     f = mu sum over i to 5 of s_i / lock^(2 i - 2) (I1bar^i - 3^i)
+ *       = sum over k to 5 of c_k x^k,   c_k = mu sum over i from k of s_i / lock^(2 i - 2) binomial(i, k) 3^(i - k). */
+
+static void powers_of_arruda_boyce(const double *value, double c[FORM_FIRST_POWERS])
+{
+    static const double series[] = {1. / 2, 1. / 20, 11. / 1050, 19. / 7000, 519. / 673750};
+    const double inverse = 1 / (value[LAW_lock] * value[LAW_lock]);
+    double by = value[LAW_mu];
+    for (int i = 0; i < FORM_FIRST_POWERS; i++)
+        c[i] = 0;
+    for (int i = 1; i <= FORM_FIRST_POWERS; i++, by *= inverse) {
+        double part = 1; /* binomial(i, k) 3^(i - k), from k = i down */
+        for (int k = i; k > 0; k--) {
+            c[k - 1] += by * series[i - 1] * part;
+            part *= 3. * k / (i - k + 1);
+        }
+    }
+}
+
+static law_moduli moduli_of_arruda_boyce(const double *value)
+{
+    double c[FORM_FIRST_POWERS];
+    powers_of_arruda_boyce(value, c);
+    return moduli_with(2 * c[0], value);
+}
+
+static void fill_arruda_boyce(const double *value, double *c)
+{
+    powers_of_arruda_boyce(value, c);
+    c[FORM_FIRST_POWERS] = moduli_of_arruda_boyce(value).bulk;
+}
+
+/* ---- the table */
 
 static const law_row rows[] = {
     {.name = "neo-hookean",
@@ -77,7 +130,6 @@ static const law_row rows[] = {
      .group = {BIT(E), BIT(nu)},
      .moduli = moduli_of_young,
      .fill = fill_moduli,
-     .read_back = read_back_young,
      .meaning = "Rubber of two moduli, for large strains.",
      .energy = "mu/2 (I1bar - 3) + K/2 (J - 1)^2",
      .source = "Rivlin 1948"},
@@ -86,16 +138,34 @@ static const law_row rows[] = {
      .group = {BIT(c10), BIT(c01), BIT(K) | BIT(nu)},
      .moduli = moduli_of_mooney_rivlin,
      .fill = fill_mooney_rivlin,
-     .read_back = read_back_mooney_rivlin,
      .meaning = "Rubber with a second invariant, for large strains; c01 = 0, c10 = mu/2 is the neo-Hookean law.",
      .energy = "c10 (I1bar - 3) + c01 (I2bar - 3) + K/2 (J - 1)^2",
      .source = "Mooney 1940; Rivlin and Saunders 1951"},
+    {.name = "yeoh",
+     .form = FORM_FIRST,
+     .group = {BIT(c10), BIT(c20), BIT(K) | BIT(nu)},
+     .optional = BIT(c30),
+     .moduli = moduli_of_yeoh,
+     .fill = fill_yeoh,
+     .refuses = refuses_yeoh,
+     .meaning = "Rubber that stiffens with the first invariant, for large strains; much used for the tissue of faces.",
+     .energy = "c10 (I1bar - 3) + c20 (I1bar - 3)^2 + c30 (I1bar - 3)^3 + K/2 (J - 1)^2",
+     .source = "Yeoh 1993"},
+    {.name = "arruda-boyce",
+     .form = FORM_FIRST,
+     .group = {BIT(mu), BIT(lock), BIT(K) | BIT(nu)},
+     .moduli = moduli_of_arruda_boyce,
+     .fill = fill_arruda_boyce,
+     .meaning =
+         "Rubber of chains that lock, for large strains: five terms of the series of the inverse Langevin function.",
+     .energy = "mu (1/2 (I1bar - 3) + 1/(20 lock^2) (I1bar^2 - 9) + 11/(1050 lock^4) (I1bar^3 - 27)\n"
+               "  + 19/(7000 lock^6) (I1bar^4 - 81) + 519/(673750 lock^8) (I1bar^5 - 243)) + K/2 (J - 1)^2",
+     .source = "Arruda and Boyce 1993"},
     {.name = "linear",
      .form = FORM_LINEAR,
      .group = {BIT(E), BIT(nu)},
      .moduli = moduli_of_young,
      .fill = fill_moduli,
-     .read_back = read_back_young,
      .meaning = "Isotropic linear elasticity, for small strains.",
      .energy = "mu dev e : dev e + K/2 (tr e)^2",
      .source = "Petrinec, Savitsky and Terzopoulos, section III"},
@@ -137,7 +207,7 @@ unsigned law_keys(const law_row *of)
     unsigned keys = 0;
     for (int g = 0; g < LAW_GROUPS; g++)
         keys |= of->group[g];
-    return keys;
+    return keys | of->optional;
 }
 
 int law_next_key(unsigned keys, int from)
@@ -150,7 +220,12 @@ int law_next_key(unsigned keys, int from)
 
 bool law_keys_equal(const law_row *a, const law_row *b)
 {
-    return !memcmp(a->group, b->group, sizeof a->group);
+    return !memcmp(a->group, b->group, sizeof a->group) && a->optional == b->optional;
+}
+
+bool law_refuses(const law_row *of, const double *value, char what[LAW_WORDS], char expected[LAW_WORDS])
+{
+    return of->refuses && of->refuses(value, what, expected);
 }
 
 const char *law_key_name(law_key key)
@@ -163,16 +238,24 @@ const char *law_key_unit(law_key key)
     return key_units[key];
 }
 
-/* Appends the names of a group's keys, " or " between them. */
-static void add_group(unsigned group, char to[LAW_WORDS])
+/* Appends the names of a group's keys, `between` between them. */
+static void add_group(unsigned group, const char *between, char to[LAW_WORDS])
 {
-    const char *between = *to ? ", " : "";
+    const char *before = *to ? ", " : "";
     for (int k = 0; k < LAW_OWN_KEYS; k++)
         if (group >> k & 1) {
             const size_t at = strlen(to);
-            snprintf(to + at, LAW_WORDS - at, "%s%s", between, key_names[k]);
-            between = " or ";
+            snprintf(to + at, LAW_WORDS - at, "%s%s", before, key_names[k]);
+            before = between;
         }
+}
+
+static void add_optional(unsigned keys, char to[LAW_WORDS])
+{
+    char names[LAW_WORDS] = "";
+    const size_t at = strlen(to);
+    add_group(keys, ", ", names);
+    snprintf(to + at, LAW_WORDS - at, ", [%.80s]", names);
 }
 
 void law_words(const law_row *of, int group, char to[LAW_WORDS])
@@ -180,5 +263,7 @@ void law_words(const law_row *of, int group, char to[LAW_WORDS])
     to[0] = '\0';
     for (int g = 0; g < LAW_GROUPS; g++)
         if (group < 0 || group == g)
-            add_group(of->group[g], to);
+            add_group(of->group[g], " or ", to);
+    if (group < 0 && of->optional)
+        add_optional(of->optional, to);
 }

@@ -17,7 +17,11 @@
     X(nu, "1", -.99, .4999, "Poisson's ratio")                                                                         \
     X(c10, "Pa", 1e-3, 1e12, "coefficient of I1bar - 3")                                                               \
     X(c01, "Pa", 0, 1e12, "coefficient of I2bar - 3")                                                                  \
-    X(K, "Pa", 1e-3, 1e12, "bulk modulus")
+    X(K, "Pa", 1e-3, 1e12, "bulk modulus")                                                                             \
+    X(c20, "Pa", -1e12, 1e12, "coefficient of (I1bar - 3)^2")                                                          \
+    X(c30, "Pa", 0, 1e12, "coefficient of (I1bar - 3)^3")                                                              \
+    X(mu, "Pa", 1e-3, 1e12, "shear modulus of chains that never lock")                                                 \
+    X(lock, "1", 1, 1e3, "stretch at which chains lock")
 
 /* The same of what every material has, whatever its law. */
 #define LAW_COMMON_KEYS(X)                                                                                             \
@@ -37,16 +41,29 @@ typedef struct law_moduli {
     double mu, bulk;
 } law_moduli;
 
-/* read_back gives, of each group, the last key in the order of LAW_KEYS (K of nu or K), and makes the others nan. */
+enum { LAW_WORDS = 160 }; /* of messages on laws */
+
 typedef struct law_row {
     const char *name;
     form form;
     unsigned group[LAW_GROUPS]; /* bits 1 << LAW_E and so on: of each group exactly one key must be given; then 0 */
+    unsigned optional;          /* such bits of keys that need not be given, and are 0 then */
     law_moduli (*moduli)(const double *value);
-    void (*fill)(const double *value, double *c);      /* value: LAW_OWN_KEYS, nan where none; c: FORM_NUMBERS */
-    void (*read_back)(const double *c, double *value); /* the other way */
-    const char *meaning, *energy, *source;             /* for the manual, a line each */
+    void (*fill)(const double *value, double *c); /* value: LAW_OWN_KEYS, nan where none; c: FORM_NUMBERS */
+    /* Whether values that are each in their range are no material together; what and expected say so. NULL: none are. */
+    bool (*refuses)(const double *value, char what[LAW_WORDS], char expected[LAW_WORDS]);
+    const char *meaning, *energy, *source; /* for the manual, a line each */
 } law_row;
+
+/* E (Pa) and nu of small strains. */
+static inline double law_young(law_moduli at)
+{
+    return 9 * at.bulk * at.mu / (3 * at.bulk + at.mu);
+}
+static inline double law_poisson(law_moduli at)
+{
+    return (3 * at.bulk - 2 * at.mu) / (2 * (3 * at.bulk + at.mu));
+}
 
 /* Row i, or NULL past the last. Row 0 is the default. */
 const law_row *law_at(int i);
@@ -54,8 +71,7 @@ const law_row *law_at(int i);
 /* NULL: there is none. */
 const law_row *law_find(const char *name);
 
-/* The first that has the form, or NULL: of the laws of one form, the one that files are read as which say the form
- * alone (sinew import of INP), and that elements mixed of two laws have. */
+/* The first that has the form, or NULL. */
 const law_row *law_of_form(form f);
 
 /* Of all laws, in order; returns how many. */
@@ -68,15 +84,18 @@ unsigned law_keys(const law_row *of);
 /* The lowest key in such bits, from `from` on; -1: none. */
 int law_next_key(unsigned keys, int from);
 
-/* Whether two laws have the same groups of keys, so that values of one are values of the other: a key means the same in
+/* Whether two laws have the same keys, so that values of one are values of the other: a key means the same in
  * each law that has it. */
 bool law_keys_equal(const law_row *a, const law_row *b);
 
 const char *law_key_name(law_key key);
 const char *law_key_unit(law_key key);
 
-/* "c10, c01, K or nu": the keys of one group, or of all groups where group is -1. */
-enum { LAW_WORDS = 100 };
+/* Whether law_row.refuses refuses the values. */
+bool law_refuses(const law_row *of, const double *value, char what[LAW_WORDS], char expected[LAW_WORDS]);
+
+/* "c10, c20, K or nu, [c30]": the keys of one group, or, where group is -1, of all groups, and those that are optional.
+ */
 void law_words(const law_row *of, int group, char to[LAW_WORDS]);
 
 #endif

@@ -127,15 +127,13 @@ static int of_names(field *to, const model *m, bool of_material, err *e)
 /* ---- strain and stress */
 
 /* law: of stress alone. */
-static double strained(int which, const double h[9], const material *law)
+static double strained(int which, const double h[9], const material_numbers *law)
 {
-    double strain[9], c[FORM_NUMBERS] = {0};
+    double strain[9];
+    if (which == STRESS && law->form == FORM_LINEAR)
+        return gradient_stress_linear(h, law->at_rest.mu);
     if (which == STRESS)
-        material_coefficients(law, c);
-    if (which == STRESS && material_form(law) == FORM_LINEAR)
-        return gradient_stress_linear(h, material_mu(law));
-    if (which == STRESS)
-        return gradient_stress(h, material_form(law), c);
+        return gradient_stress(h, law->form, law->c);
     gradient_strain(h, strain);
     return which == STRAIN ? 2. / 3 * gradient_mises(strain) : gradient_largest(strain);
 }
@@ -158,7 +156,7 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
     for (int64_t n = 0; n < node->rows; n++) {
         double h[9];
         gradient_of(&node->i32[n * node->columns], node->columns, rest->f64, u, h);
-        material own = law ? materials_of_element(&map, n) : (material){0};
+        const material_numbers own = law ? materials_of_element(&map, n) : (material_numbers){0};
         to->value[n] = strained(which, h, &own);
     }
     free(law);

@@ -108,6 +108,18 @@ static int find_shares(const model *m, shares *s, err *e)
     return 0;
 }
 
+/* Two of one form, which both have E and nu. */
+static material mixed(const material *a, const material *b, double share)
+{
+    const material_numbers first = material_numbers_of(a), second = material_numbers_of(b);
+    const material_numbers numbers = material_mixed(&first, &second, share);
+    material to = *a;
+    to.value[LAW_E] = law_young(numbers.at_rest);
+    to.value[LAW_nu] = law_poisson(numbers.at_rest);
+    to.density = numbers.density;
+    return to;
+}
+
 /* Element t's of its volume, or of the two that it is mixed of; of one that a surface cuts, so much as is enclosed. */
 static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t volume, const material *list,
                         const char *stream, err *e)
@@ -120,8 +132,8 @@ static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t vol
     if (s->fraction && !(s->fraction[t] > 0 && s->fraction[t] <= 1))
         return err_set(e, stream, 0, "element.fraction, row %lld is %g; expected above 0, and at most 1", (long long)t,
                        (double)s->fraction[t]);
-    if (mix >= 0)
-        own = material_mixed(&own, &list[mix], (double)s->mixture[t]);
+    if (mix >= 0 && material_form(&list[mix]) == material_form(&own))
+        own = mixed(&own, &list[mix], (double)s->mixture[t]);
     return take_material(p, t, &own, s->fraction ? (double)s->fraction[t] : 1);
 }
 

@@ -56,12 +56,37 @@ echo 'fat' >>"$T/table"
 check "a table in place of the file's" sinew import -q --unit m --materials "$T/table" -o "$T/back" "$T/two.inp"
 is "$(values "$T/back" | grep '^c01 ')" 'c01 2 nan' "has its values"
 
+printf 'skin law=yeoh c10=2500 c20=1175 K=1e5\nfat law=arruda-boyce mu=3000 lock=1.4 K=1e5\n' >"$T/table"
+tled-run -q -n 1 --materials "$T/table" <"$T/two" >"$T/stiff"
+sinew export -f inp -o "$T/stiff.inp" "$T/stiff" 2>"$T/said"
+check "sinew export says that the volumetric energy is another" grep -q 'material fat: the volumetric energy of Abaqus.s ARRUDA-BOYCE is K/2 ((J^2 - 1)/2 - ln J), here' "$T/said"
+is "$(grep -A 1 -E 'YEOH|ARRUDA' "$T/stiff.inp" | tr '\n' ' ')" "*HYPERELASTIC, YEOH 2500, 1175, 0, 2e-05, 0, 0 -- *HYPERELASTIC, ARRUDA-BOYCE 3000, 1.4, 2e-05 " \
+    "yeoh and arruda-boyce"
+check "and back" sh -c "sinew import -q --unit m --stress MPa -o '$T/back' '$T/stiff.inp'"
+is "$(values "$T/back" | grep -E '^(law|c10|c20|c30|mu|lock) ' | tr '\n' ' ')" \
+    'law "yeoh" "arruda-boyce" c10 2500000000 nan c20 1175000000 nan c30 0 nan mu nan 3000000000 lock nan 1.3999999999999999 ' "in MPa"
+sinew import --unit m -o "$T/back" "$T/stiff.inp" 2>"$T/said"
+check "sinew import says it too" grep -q 'material m_*fat: the volumetric energy' "$T/said"
+sed 's/^2500, 1175, 0, 2e-05, 0, 0/2500, 1175, 0, 2e-05, 0, 1/' "$T/stiff.inp" >"$T/bad.inp"
+fails 1 "D3" 'bad.inp:[0-9]*: volumetric energy of .J - 1..4 or on; expected D2 and D3 of 0' sinew import --unit m -o "$T/no" "$T/bad.inp"
+sed 's/^2500, 1175, 0, 2e-05, 0, 0/2500, -1175, 0, 2e-05/' "$T/stiff.inp" >"$T/bad.inp"
+fails 1 "C20 below 0" 'bad.inp:[0-9]*: c20=-1175 with c10=2500 and c30=0 lets the stress fall' sinew import --unit m -o "$T/no" "$T/bad.inp"
+
 # ---- -m, in any order; the last of a key counts.
 changed() { # ARG...: the values after them
     tled-run -q -n 1 "$@" <"$T/two" >"$T/out" && values "$T/out" | grep -E '^(law|E|nu|c10|c01|K|density) ' | tr '\n' ' '
 }
 is "$(changed -m skin.E=4000 -m skin.nu=.3 -m skin.law=neo-hookean)" 'law "neo-hookean" "neo-hookean" E 4000 3000 nu 0.29999999999999999 0.48999999999999999 density 1000 950 ' \
     "to the default law, its name last"
+more() { # ARG...: the values of all keys after them
+    tled-run -q -n 1 "$@" <"$T/two" >"$T/out" && values "$T/out" | grep -vE '^(name|law|density|peak) ' | tr '\n' ' '
+}
+stiff='-m skin.law=yeoh -m skin.c10=400 -m skin.c20=1400 -m skin.nu=.46'
+# shellcheck disable=SC2086 # options are words
+{
+    is "$(more $stiff)" 'E nan 3000 nu 0.46000000000000002 0.48999999999999999 c10 400 nan c20 1400 nan ' "yeoh without c30 has none"
+    is "$(more $stiff -m skin.c30=7)" 'E nan 3000 nu 0.46000000000000002 0.48999999999999999 c10 400 nan c20 1400 nan c30 7 nan ' "and with it"
+}
 is "$(changed -m skin.nu=.45 -m skin.c10=7 -m skin.c10=8)" 'law "mooney-rivlin" "neo-hookean" E nan 3000 nu 0.45000000000000001 0.48999999999999999 c10 8 nan c01 500 nan density 1000 950 ' \
     "nu in place of K"
 is "$(changed -m fat.law=mooney-rivlin -m fat.K=5e4 -m fat.c01=0 -m fat.c10=500)" 'law "mooney-rivlin" "mooney-rivlin" c10 2500 500 c01 500 0 K 100000 50000 density 1000 950 ' \
@@ -81,7 +106,16 @@ no "no K" "'K=0' is not allowed; expected 0.001 to 1e12 Pa" -m skin.K=0
 no "both K and nu" "the law mooney-rivlin with both nu and K; expected nu or K" -m skin.K=1e4 -m skin.nu=.4
 no "another law's key" "'E' is not a key of the law mooney-rivlin; expected c10, c01, nu or K, density, peak" -m skin.E=1
 no "a law without its keys" "the law neo-hookean without E; expected E, nu" -m skin.law=neo-hookean
-no "an unknown key" "unknown key 'c20'; did you mean 'c10'" -m skin.c20=1
+no "an unknown key" "unknown key 'c11'; did you mean 'c10'" -m skin.c11=1
+yeoh='-m skin.law=yeoh -m skin.c10=400 -m skin.K=1e4'
+# shellcheck disable=SC2086 # options are words
+{
+    no "yeoh without c20" "the law yeoh without c20; expected c10, c20, nu or K, \[c30\]" $yeoh
+    no "c20 below 0 alone" "the law yeoh, c20=-1 with c10=400 and c30=0 lets the stress fall where shear grows; expected c20 of 0 or more, or c30 above 3 c20.2 / .5 c10. = 0.0015" \
+        $yeoh -m skin.c20=-1
+    no "c30 below 0" "'c30=-1' is not allowed; expected 0 to 1e12 Pa" $yeoh -m skin.c20=1 -m skin.c30=-1
+    no "chains that lock at rest" "'lock=.9' is not allowed; expected 1 to 1000" -m skin.law=arruda-boyce -m skin.mu=1 -m skin.lock=.9 -m skin.K=9
+}
 no "an unknown law" "unknown law 'mooney'; did you mean 'mooney-rivlin'" -m skin.law=mooney
 while IFS='|' read -r name line pattern; do
     echo "$line" >"$T/bad"
@@ -96,6 +130,9 @@ no key of the other law|fat law=mooney-rivlin c10=1 c01=1|the law mooney-rivlin 
 no c10|fat law=mooney-rivlin c01=1 K=9|the law mooney-rivlin without c10; expected c10, c01, nu or K
 a key of no law that it has|fat c10=1|'c10' is not a key of the law neo-hookean; expected E, nu, density, peak
 END
+sed 's/"mooney-rivlin"/"yeoh"/; s/^array material.c01/array material.c20/; s/^500 *$/-500/; /^crc\|^sum/d' "$T/text" >"$T/bad"
+fails 1 "a model of values that no material has" "stdin:[0-9]*: material.law, row 0: yeoh, c20=-500 with c10=2500 and c30=0 lets the stress fall" \
+    tled-run -n 1 -o "$T/no" <"$T/bad"
 # by_hand NAME MESSAGE EDIT: such a change of a model's text.
 by_hand() {
     sed "$3" "$T/text" | sed '/^crc\|^sum/d' >"$T/bad"

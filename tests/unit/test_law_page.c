@@ -13,8 +13,8 @@
 static const char begin[] = ".\\\" laws\n", end[] = ".\\\" end laws\n";
 
 /* The values that the figures are for: of every key that is the last of its group in a law. 0: there is none. */
-static const double example[LAW_OWN_KEYS] = {
-    [LAW_E] = 3000, [LAW_nu] = .45, [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = 1e5};
+static const double example[LAW_OWN_KEYS] = {[LAW_E] = 3000, [LAW_nu] = .45,   [LAW_c10] = 2500, [LAW_c01] = 500,
+                                             [LAW_K] = 1e5,  [LAW_c20] = 1175, [LAW_mu] = 3000,  [LAW_lock] = 1.4};
 
 /* Along the bar, and in *across beside it, with a lateral stretch. */
 static double stresses(const law_row *of, const double *c, law_moduli at, double stretch, double lateral,
@@ -59,15 +59,15 @@ static bool begins_with_word(const char *text)
     return letters > 1 && (!text[letters] || strchr(" ,'", text[letters]));
 }
 
-static void print_key(out *o, int key)
+static void print_key(out *o, int key, const char *also)
 {
     char name[64], words[KNOWN_WORDS];
     snprintf(name, sizeof name, "material.%s", law_key_name((law_key)key));
     const known *k = known_find(name);
     const bool word = begins_with_word(k->meaning);
     known_words(k, words);
-    out_format(o, ".It Cm %s\n%c%s: %s.\n", law_key_name((law_key)key), k->meaning[0] - (word ? 'a' - 'A' : 0),
-               k->meaning + 1, words);
+    out_format(o, ".It Cm %s\n%c%s: %s%s.\n", law_key_name((law_key)key), k->meaning[0] - (word ? 'a' - 'A' : 0),
+               k->meaning + 1, words, also);
 }
 
 /* "One of nu and K is given." */
@@ -102,7 +102,9 @@ static void print_law(out *o, const law_row *of)
                of->meaning, of->energy);
     for (int g = 0; g < LAW_GROUPS; g++)
         for (int k = law_next_key(of->group[g], 0); k >= 0; k = law_next_key(of->group[g], k + 1))
-            print_key(o, k);
+            print_key(o, k, "");
+    for (int k = law_next_key(of->optional, 0); k >= 0; k = law_next_key(of->optional, k + 1))
+        print_key(o, k, ", and 0 where it is not given");
     out_text(o, ".El\n");
     print_choices(o, of);
     print_figures(o, of);
@@ -117,7 +119,7 @@ static void print(out *o)
         print_law(o, law_at(i));
     out_text(o, ".Ss Keys of every law\n.Bl -tag -width density -compact\n");
     for (int k = LAW_OWN_KEYS; k < LAW_ALL_KEYS; k++)
-        print_key(o, k);
+        print_key(o, k, "");
     out_text(o, ".El\n");
     out_text(o, end);
 }

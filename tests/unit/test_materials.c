@@ -140,24 +140,27 @@ static void mixtures(void)
 {
     const material a = {.law = law_at(0), .value = {3000, .45}, .density = 1000, .peak = 10};
     const material b = {.law = law_at(0), .value = {48000, .3}, .density = 1800, .peak = 30};
-    material none = material_mixed(&a, &b, 0), all = material_mixed(&a, &b, 1), same = material_mixed(&a, &a, .3);
-    near_(none.value[LAW_E], 3000, 1e-9, "share 0: E of the first");
-    near_(none.value[LAW_nu], .45, 1e-12, "and nu");
-    near_(all.value[LAW_E], 48000, 1e-7, "share 1: E of the second");
-    near_(all.value[LAW_nu], .3, 1e-12, "and nu");
-    near_(same.value[LAW_E], 3000, 1e-9, "one material twice");
+    const material_numbers one = material_numbers_of(&a), two = material_numbers_of(&b);
+    const material_numbers none = material_mixed(&one, &two, 0), all = material_mixed(&one, &two, 1),
+                           same = material_mixed(&one, &one, .3);
+    near_(law_young(none.at_rest), 3000, 1e-9, "share 0: E of the first");
+    near_(law_poisson(none.at_rest), .45, 1e-12, "and nu");
+    near_(law_young(all.at_rest), 48000, 1e-7, "share 1: E of the second");
+    near_(law_poisson(all.at_rest), .3, 1e-12, "and nu");
+    near_(law_young(same.at_rest), 3000, 1e-9, "one material twice");
     for (int i = 1; i < 4; i++) {
         const double s = i / 4.;
-        material m = material_mixed(&a, &b, s), turned = material_mixed(&b, &a, 1 - s);
-        double mu = material_mu(&m), beside = (1 - s) * material_mu(&a) + s * material_mu(&b);
+        const material_numbers m = material_mixed(&one, &two, s), turned = material_mixed(&two, &one, 1 - s);
+        double mu = m.at_rest.mu, beside = (1 - s) * material_mu(&a) + s * material_mu(&b);
         double across = 1 / ((1 - s) / material_mu(&a) + s / material_mu(&b));
         ok(mu > across && mu < beside, "share %g: mu %g is between %g and %g", s, mu, across, beside);
-        near_(turned.value[LAW_E], m.value[LAW_E], 1e-8, "the other way round");
+        ok(m.form == FORM_NEO_HOOKEAN && m.c[0] == mu && m.c[1] == m.at_rest.bulk, "and is the form's");
+        near_(law_young(turned.at_rest), law_young(m.at_rest), 1e-8, "the other way round");
         near_(m.density, 1000 + 800 * s, 1e-9, "density by shares");
         near_(m.peak, 10 + 20 * s, 1e-12, "peak too");
     }
-    material half = material_mixed(&a, &b, .5);
-    near_(material_bulk(&half), sqrt(material_bulk(&a) * material_bulk(&b)), 1e-8, "half and half: the geometric mean");
+    const material_numbers half = material_mixed(&one, &two, .5);
+    near_(half.at_rest.bulk, sqrt(material_bulk(&a) * material_bulk(&b)), 1e-8, "half and half: the geometric mean");
 }
 
 /* Material i: of mooney-rivlin, and its values, nan where none. */

@@ -35,11 +35,11 @@ static uint32_t features_of(form f)
 }
 
 /* The first volume whose own law has the problem's form; NULL: it only expresses them all. */
-static const char *volume_that_wants(const tled_problem *p)
+static const tled_volume *volume_that_wants(const tled_problem *p)
 {
     for (int32_t i = 0; i < p->volumes; i++)
         if (p->volume[i].row->form == p->form)
-            return p->volume[i].name;
+            return &p->volume[i];
     return NULL;
 }
 
@@ -47,12 +47,15 @@ executor_need tled_need(const tled_problem *p)
 {
     const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0, contact = p->collider ? EXECUTOR_CONTACT : 0,
                    followers = p->followers ? EXECUTOR_FOLLOWERS : 0, mixtures = p->mix ? EXECUTOR_MIXTURES : 0;
+    const tled_volume *wants = volume_that_wants(p);
     executor_need need = {.features = meshes | contact | followers | mixtures | features_of(p->form),
                           .form = UINT32_C(1) << p->form,
-                          .volume = volume_that_wants(p)};
+                          .volume = wants ? wants->name : NULL};
     for (int f = 0; f < FORM_COUNT; f++) {
         const law_row *row = law_of_form((form)f);
         need.law[f] = row ? row->name : NULL;
     }
+    if (wants)
+        need.law[p->form] = wants->row->name;
     return need;
 }
