@@ -17,9 +17,9 @@ static const float paper[2][4] = {{1, 1, 1, 1}, {0, 0, 0, 0}}; /* 1: transparent
 typedef struct work {
     picture *p;
     const model *m;
-    const frame *f;
-    field field;
-    bool coloured; /* there is a field */
+    const frame *const *f;       /* of each panel */
+    field field[PICTURE_PANELS]; /* likewise: of the first panel that has its frame */
+    bool coloured;               /* there is a field */
     showing showing[PICTURE_PANELS];
     double low, high; /* of the scale, SI */
     sheet sheet;      /* above the strip */
@@ -110,6 +110,29 @@ static int place_cameras(work *w, err *e)
 
 /* ---- what is in the panels */
 
+/* The first panel that has this one's frame. */
+static int like_frame(const work *w, int i)
+{
+    int like = 0;
+    while (w->f[like] != w->f[i])
+        like++;
+    return like;
+}
+
+static const field *field_of_panel(const work *w, int i)
+{
+    return &w->field[like_frame(w, i)];
+}
+
+static int make_fields(work *w, err *e)
+{
+    const picture_spec *s = w->p->spec;
+    for (int i = 0; i < s->panels; i++)
+        if (like_frame(w, i) == i && field_of(&w->field[i], w->m, w->f[i], s->field, e))
+            return -1;
+    return 0;
+}
+
 static int things_of(const work *w, const picture_panel *panel)
 {
     char name[8];
@@ -136,10 +159,10 @@ static int showing_panel(work *w, int i, err *e)
                          .clears = s->clears,
                          .cut = cut,
                          .cuts = s->cuts,
-                         .moved = panel->moved ? w->f : NULL,
+                         .moved = panel->moved ? w->f[i] : NULL,
                          .slice = panel->moved ? s->slice : NULL,
                          .body = s->body,
-                         .field = panel->coloured && w->coloured ? &w->field : NULL};
+                         .field = panel->coloured && w->coloured ? field_of_panel(w, i) : NULL};
     return showing_make(&w->showing[i], w->m, &want, e);
 }
 
@@ -183,13 +206,13 @@ static void find_range(work *w)
         }
     if (!(w->low <= w->high))
         w->low = w->high = 0;
-    if (w->field.folds || (!w->field.below_zero && w->low > 0))
+    if (w->field[0].folds || (!w->field[0].below_zero && w->low > 0))
         w->low = 0;
     w->high = fmax(w->low, w->high);
     if (s->ranged)
         w->low = s->low, w->high = s->high;
     for (int i = 0; i < s->panels; i++)
-        showing_colour(&w->showing[i], &w->field, &w->p->map, w->low, w->high);
+        showing_colour(&w->showing[i], &w->field[0], &w->p->map, w->low, w->high);
 }
 
 /* ---- legends */
@@ -205,7 +228,7 @@ static void add_key(work *w, int i, const char *words, const uint8_t srgb[3], bo
 /* The names that faces are coloured by. */
 static void add_names(work *w, int i)
 {
-    const field *f = &w->field;
+    const field *f = &w->field[0];
     int most = (int)(sizeof w->key[i] / sizeof *w->key[i]);
     for (int64_t n = 0; n < f->names && w->keys[i] < most; n++) {
         bool seen = false;
@@ -225,7 +248,7 @@ static void add_names(work *w, int i)
 static bool has_folded(const work *w, int i)
 {
     double low, high;
-    return w->field.folds && showing_range(&w->showing[i], &low, &high) && low <= 0;
+    return w->field[0].folds && showing_range(&w->showing[i], &low, &high) && low <= 0;
 }
 
 static bool has_field(const work *w, int i)
@@ -237,7 +260,7 @@ static void make_keys(work *w)
 {
     for (int i = 0; i < w->p->spec->panels; i++) {
         int seen = w->showing[i].seen;
-        if (has_field(w, i) && w->field.name)
+        if (has_field(w, i) && w->field[0].name)
             add_names(w, i);
         if (has_field(w, i) && has_folded(w, i))
             add_key(w, i, "folded (J not above 0)", showing_red, false);
@@ -254,7 +277,7 @@ static void make_keys(work *w)
 
 static bool has_bar(const work *w, int i)
 {
-    return has_field(w, i) && !w->field.name;
+    return has_field(w, i) && !w->field[0].name;
 }
 
 /* The size of letters, pixels: readable, but no wider than a panel of this width has room for. */
@@ -344,8 +367,8 @@ static void put_caption(work *w, int i)
     int size = w->letters;
     char caption[sizeof s->panel[i].caption + 48], shown[sizeof caption + 4];
     snprintf(caption, sizeof caption, "%s", s->panel[i].caption);
-    if (s->panel[i].moved && w->f)
-        snprintf(caption, sizeof caption, "%s, %.4g s", s->panel[i].caption, w->f->time);
+    if (s->panel[i].moved && w->f[i] && !s->panel[i].worded)
+        snprintf(caption, sizeof caption, "%s, %.4g s", s->panel[i].caption, w->f[i]->time);
     font_shorten(w->p->font, caption, c.width - size, shown);
     font_draw_middle(w->p->font, &w->p->image, c.x + c.width / 2, c.x, c.x + c.width, c.y + (int)lround(1.4 * size),
                      shown, ink);
@@ -358,8 +381,8 @@ static int put_legend(work *w, int i, bool bar, bool keys, int x, int y, int wid
     if (bar) {
         double scale;
         char words[200];
-        const char *unit = field_unit(&w->field, w->m, fmax(fabs(w->low), fabs(w->high)), &scale);
-        snprintf(words, sizeof words, "%s%s%s", w->field.label, *unit ? ", " : "", unit);
+        const char *unit = field_unit(&w->field[0], w->m, fmax(fabs(w->low), fabs(w->high)), &scale);
+        snprintf(words, sizeof words, "%s%s%s", w->field[0].label, *unit ? ", " : "", unit);
         legend_bar(&p->image, p->font, w->letters, x, y, width, &p->map, w->low * scale, w->high * scale, words);
         y += legend_bar_height(w->letters);
     }
@@ -438,10 +461,8 @@ static int draw(work *w, err *e)
 {
     picture *p = w->p;
     const picture_spec *s = p->spec;
-    if (s->field && field_of(&w->field, w->m, w->f, s->field, e))
-        return -1;
     w->coloured = s->field != NULL;
-    if (showing_panels(w, e))
+    if ((w->coloured && make_fields(w, e)) || showing_panels(w, e))
         return -1;
     if (w->coloured)
         find_range(w);
@@ -458,7 +479,7 @@ static int draw(work *w, err *e)
     return put_words(w, e);
 }
 
-int picture_draw(picture *p, const model *m, const frame *f, err *e)
+int picture_draw(picture *p, const model *m, const frame *const f[PICTURE_PANELS], err *e)
 {
     work *w = mem_array(1, sizeof *w, "a picture", e);
     if (!w)
@@ -466,8 +487,7 @@ int picture_draw(picture *p, const model *m, const frame *f, err *e)
     w->p = p, w->m = m, w->f = f;
     int bad = draw(w, e);
     for (int i = 0; i < PICTURE_PANELS; i++)
-        showing_free(&w->showing[i]);
-    field_free(&w->field);
+        showing_free(&w->showing[i]), field_free(&w->field[i]);
     free(w);
     return bad;
 }

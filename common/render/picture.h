@@ -22,8 +22,11 @@ typedef struct picture_panel {
     bool what_there_is; /* of muscles, rigid nodes and centres only what the model has */
     bool names;         /* the spec's names besides */
     bool moved;         /* by the frame; else at rest */
-    bool coloured;      /* by the spec's field; else by what things are */
+    bool framed;        /* by that of `index`, not by the picture's */
+    int64_t index;
+    bool coloured; /* by the spec's field; else by what things are */
     picture_view view;
+    bool worded; /* the caption is the user's: no time is added */
     char caption[120];
 } picture_panel;
 
@@ -69,7 +72,7 @@ typedef struct picture {
 int picture_open(picture *p, const picture_spec *spec, font *f, pool *threads, err *e);
 void picture_close(picture *p);
 
-/* Draws p->image. f NULL: all is at rest. -1 with e filled. */
-int picture_draw(picture *p, const model *m, const frame *f, err *e);
+/* Draws p->image. f: for each panel the frame that moves it; NULL: it is at rest. -1 with e filled. */
+int picture_draw(picture *p, const model *m, const frame *const f[PICTURE_PANELS], err *e);
 
 #endif

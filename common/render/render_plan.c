@@ -159,7 +159,7 @@ static int unknown_panel(const char *name, err *e)
 }
 
 /* "rest", "left", "rest@left". */
-static int read_panel(picture_panel *p, const picture_spec *s, const picture_panel *as_asked, const char *text, err *e)
+static int read_shown(picture_panel *p, const picture_spec *s, const picture_panel *as_asked, const char *text, err *e)
 {
     const char *at = strchr(text, '@');
     size_t n = at ? (size_t)(at - text) : strlen(text), used;
@@ -177,6 +177,34 @@ static int read_panel(picture_panel *p, const picture_spec *s, const picture_pan
     used = strlen(p->caption);
     if (which == VIEWED || at)
         snprintf(p->caption + used, sizeof p->caption - used, "%s%s", used ? ", " : "", p->view.name);
+    return 0;
+}
+
+/* ":12", after a panel. */
+static int read_index(picture_panel *p, const char *colon, const char *text, err *e)
+{
+    p->framed = true;
+    if (num_int(colon + 1, 0, INT64_MAX, &p->index))
+        return err_set(e, NULL, 0, "--sheet %s: expected the index of a frame after the colon", text);
+    if (!p->moved)
+        return err_set(e, NULL, 0, "--sheet %s: this panel is at rest; expected no frame", text);
+    return 0;
+}
+
+/* The same after "CAPTION=" and before ":FRAME". */
+static int read_panel(picture_panel *p, const picture_spec *s, const picture_panel *as_asked, const char *text, err *e)
+{
+    const char *equals = strchr(text, '='), *from = equals ? equals + 1 : text, *colon = strrchr(from, ':');
+    const size_t words = equals ? (size_t)(equals - text) : 0, n = colon ? (size_t)(colon - from) : strlen(from);
+    char shown[64];
+    snprintf(shown, sizeof shown, "%.*s", (int)n, from);
+    if (equals && (!words || words >= sizeof p->caption))
+        return err_set(e, NULL, 0, "--sheet: a caption of %zu bytes; expected 1 to %zu", words, sizeof p->caption - 1);
+    if (read_shown(p, s, as_asked, shown, e) || (colon && read_index(p, colon, text, e)))
+        return -1;
+    p->worded = equals != NULL;
+    if (equals)
+        snprintf(p->caption, sizeof p->caption, "%.*s", (int)words, text);
     return 0;
 }
 
@@ -239,6 +267,10 @@ static int read_frames(render_plan *p, const render_options *o, err *e)
 {
     const char *f = o->frame;
     p->frame_given = f != NULL;
+    for (int i = 0; i < p->spec.panels; i++)
+        p->panels_framed |= p->spec.panel[i].framed;
+    if (f && p->panels_framed)
+        return err_set(e, NULL, 0, "--frame %s: panels of --sheet name frames of their own; expected no --frame", f);
     if (frames_asked(f ? f : "last", &p->frames, &p->index, e))
         return -1;
     p->files = p->frames == FRAMES_ALL && o->format == RENDER_PNG;
@@ -310,7 +342,7 @@ static void read_colour(picture_spec *s, const render_options *o)
 {
     bool deformed = false;
     for (int i = 0; i < s->panels; i++)
-        deformed |= s->captions && !strncmp(s->panel[i].caption, panels[DEFORMED], strlen(panels[DEFORMED]));
+        deformed |= s->captions && s->panel[i].coloured;
     s->field = o->colour;
     if (!s->field && deformed)
         s->field = "displacement";

@@ -26,8 +26,9 @@ typedef struct render_plan {
     frames_which frames;
     int64_t index; /* of FRAMES_ONE */
     bool frame_given;
-    bool files;       /* a file a frame: `names` */
-    bool ranged_bare; /* --range has no unit: SI of whatever is coloured */
+    bool panels_framed; /* some panels have frames of their own */
+    bool files;         /* a file a frame: `names` */
+    bool ranged_bare;   /* --range has no unit: SI of whatever is coloured */
     numbered names;
     char *text; /* owned: the lists below point into it */
     const char *name[256];

@@ -42,7 +42,7 @@ static const opt option_table[] = {
     {OPT_INPUT, 0, "frame", FRAMES_ARG, OPT_TEXT, TO(frame), 0, 0, NULL, 0,
      "all: a file each, -o f_%04d.png [default last]"},
     {OPT_ACTION, 0, "sheet", "PANEL,...", OPT_LIST, TO(sheet), 0, 0, NULL, 0,
-     "several panels: rest, voxels, deformed, a view, or one of these as in rest@VIEW"},
+     "several panels, [CAPTION=]WHAT[@VIEW][:FRAME]: WHAT is rest, voxels, deformed or a view"},
     {OPT_RESULT, 0, "size", "WxH", OPT_TEXT, TO(size), 0, 0, NULL, 0, "size of the picture [pixels; default 1280x720]"},
     {OPT_RESULT, 0, "transparent", NULL, OPT_FLAG, TO(transparent), 0, 0, NULL, 0, "leave the background transparent"},
     {OPT_RESULT, 0, "format", "png|ppm", OPT_CHOICE, TO(format), 0, 0, "png|ppm", 0,
@@ -78,6 +78,7 @@ typedef struct job {
     out *sink;      /* of one picture, or of the stream */
     outs files;
     int64_t drawn;
+    frame kept[PICTURE_PANELS]; /* of panels with frames of their own: at the first that names it */
 } job;
 
 static int open_sink(job *j, err *e)
@@ -143,9 +144,42 @@ static int put(job *j, out *to, err *e)
     return 0;
 }
 
+/* The first panel that names a frame of this index, or -1. */
+static int keeps(const job *j, int64_t index)
+{
+    const picture_spec *s = &j->plan.spec;
+    for (int i = 0; i < s->panels; i++)
+        if (s->panel[i].framed && s->panel[i].index == index)
+            return i;
+    return -1;
+}
+
+/* Keeps the frame that was read, if a panel names it. */
+static void keep(job *j)
+{
+    const int i = keeps(j, j->s.frame.index);
+    if (i < 0 || j->kept[i].arrays.count)
+        return;
+    j->kept[i] = j->s.frame;
+    j->s.frame = (frame){.index = j->kept[i].index, .time = j->kept[i].time};
+}
+
+/* The frame that moves a panel, where others are moved by f; NULL: it was not there. */
+static const frame *frame_of(const job *j, int panel, const frame *f)
+{
+    const picture_panel *p = &j->plan.spec.panel[panel];
+    const int i = keeps(j, p->framed ? p->index : f ? f->index : -1);
+    if (i >= 0)
+        return j->kept[i].arrays.count ? &j->kept[i] : NULL;
+    return f;
+}
+
 static int draw(job *j, const frame *f, err *e)
 {
-    if ((!j->drawn && check_range(j, f, e)) || picture_draw(&j->picture, &j->s.body, f, e))
+    const frame *of[PICTURE_PANELS];
+    for (int i = 0; i < PICTURE_PANELS; i++)
+        of[i] = frame_of(j, i, f);
+    if ((!j->drawn && check_range(j, of[0], e)) || picture_draw(&j->picture, &j->s.body, of, e))
         return -1;
     j->drawn++;
     report(j);
@@ -157,14 +191,27 @@ static int draw(job *j, const frame *f, err *e)
     return out_end(to, to && put(j, to, e), e);
 }
 
-static int no_frame(const job *j, int64_t first, err *e)
+static int no_frame(const job *j, int64_t first, const char *option, const char *asked, err *e)
 {
-    const char *asked = j->plan.frame_given ? j->o->frame : "last";
     if (!j->s.frames)
-        return err_set(e, source_name(&j->s), 0, "--frame %s: the model has no frames; expected results, from tled-run",
-                       asked);
-    return err_set(e, source_name(&j->s), 0, "--frame %s: no such index; the model has frames %lld to %lld", asked,
+        return err_set(e, source_name(&j->s), 0, "%s%s: the model has no frames; expected results, from tled-run",
+                       option, asked);
+    return err_set(e, source_name(&j->s), 0, "%s%s: no such index; the model has frames %lld to %lld", option, asked,
                    (long long)first, (long long)j->s.frame.index);
+}
+
+/* Whether each panel has its frame. */
+static int check_kept(const job *j, int64_t first, err *e)
+{
+    const picture_spec *s = &j->plan.spec;
+    char asked[32];
+    for (int i = 0; i < s->panels; i++) {
+        if (!s->panel[i].framed || frame_of(j, i, NULL))
+            continue;
+        snprintf(asked, sizeof asked, "%lld", (long long)s->panel[i].index);
+        return no_frame(j, first, "--sheet PANEL:", asked, e);
+    }
+    return 0;
 }
 
 /* Reads to the end of the stream, whatever is wanted: only there is it known that the run went well. */
@@ -180,6 +227,7 @@ static int draw_frames(job *j, err *e)
         bool one = which == FRAMES_ONE && !found && j->s.frame.index == j->plan.index;
         first = j->s.frames == 1 ? j->s.frame.index : first;
         found |= one;
+        keep(j);
         if ((one || which == FRAMES_ALL) && draw(j, &j->s.frame, e)) {
             got = -1;
             break;
@@ -191,7 +239,9 @@ static int draw_frames(job *j, err *e)
         return -1;
     if ((which == FRAMES_ONE && !found) ||
         (!j->s.frames && (which == FRAMES_ALL || (which == FRAMES_LAST && j->plan.frame_given))))
-        return no_frame(j, first, e);
+        return no_frame(j, first, "--frame ", j->plan.frame_given ? j->o->frame : "last", e);
+    if (check_kept(j, first, e))
+        return -1;
     if (which == FRAMES_REST || which == FRAMES_LAST)
         return draw(j, which == FRAMES_LAST && j->s.frames ? &j->s.frame : NULL, e);
     return 0;
@@ -211,6 +261,8 @@ static void job_close(job *j)
     out_discard(j->sink);
     outs_free(&j->files);
     picture_close(&j->picture);
+    for (int i = 0; i < PICTURE_PANELS; i++)
+        frame_free(&j->kept[i]);
     font_close(j->font);
     if (j->threads)
         pool_destroy(j->threads);

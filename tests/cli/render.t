@@ -93,6 +93,28 @@ is "$(yellow --view front --colour displacement --sheet front,deformed)" "1 1" "
 is "$(sinew render --view front --sheet rest,voxels,front,deformed --size 1280x720 --format ppm "$muscle" |
     tail -c 3840 | od -An -v -tu1 -w1 | sort -u | tr -d ' ')" 255 "a sheet has room for its legends"
 
+# Panels of several frames: each is what --frame draws of it, with the camera of all.
+# half SIDE FILE: the left or the right half of a picture of 200 x 100 pixels.
+half() {
+    tail -c 60000 "$2" | od -An -v -tu1 -w600 | awk -v right=$([ "$1" = right ] && echo 1) '{
+        for (i = 1; i <= 300; i++) printf "%s ", $(i + (right ? 300 : 0)); print "" }' | tail -n +30
+}
+two() {
+    sinew render --camera 0,0,.2,0,0,0 --colour displacement --range 0,5mm --size 200x100 --format ppm "$@" "$muscle" >"$T/two.ppm"
+}
+last=$(($(sinew info --get frames "$muscle") - 1))
+two --sheet a=deformed:1,b=deformed:$last
+half left "$T/two.ppm" >"$T/first" && half right "$T/two.ppm" >"$T/second"
+check "two frames in one sheet differ" sh -c "! cmp -s '$T/first' '$T/second'"
+two --sheet a=deformed,b=deformed
+half right "$T/two.ppm" >"$T/whole"
+check "a panel of the last frame is the panel without a frame" cmp "$T/second" "$T/whole"
+two --frame 1 --sheet a=deformed,b=deformed
+half left "$T/two.ppm" >"$T/whole"
+check "a panel of another frame is that of --frame" cmp "$T/first" "$T/whole"
+two --sheet a=deformed:1,a=front:1,a=left:1
+check "a frame may be drawn in several panels" test -s "$T/two.ppm"
+
 # Films.
 frames=$(sinew info --get frames "$muscle")
 check "a run of several frames: $frames" test "$frames" -ge 3
@@ -134,6 +156,13 @@ r 1 'cannot be shown at rest' --colour strain --frame rest
 r 1 'frames 1 to|frames 0 to' --frame 99
 r 2 'index, last, all, rest or undeformed' --frame first
 r 2 "unknown panel 'rst'; did you mean 'rest'\?.*deformed" --sheet rst
+r 1 '^sinew-render: .*: --sheet PANEL:99: no such index; the model has frames' --sheet rest,deformed:99
+r 2 '--sheet deformed:x: expected the index of a frame after the colon' --sheet deformed:x
+r 2 '--sheet deformed:-1: expected the index' --sheet deformed:-1
+r 2 '--sheet rest:1: this panel is at rest; expected no frame' --sheet rest:1
+r 2 '--frame 1: panels of --sheet name frames of their own; expected no --frame' --frame 1 --sheet deformed:1
+r 2 'a caption of 0 bytes; expected 1 to 119' --sheet =deformed
+r 2 "unknown panel 'frnt'" --sheet a=frnt:1
 r 2 'AXIS=POSITION' --cut w=0
 r 1 'to leave some' --show voxels --cut +x=-1
 r 2 'two numbers' --colour stress --range 1
