@@ -110,6 +110,19 @@ ELEMENT_FUNCTION element_tensor element_active(element_tensor h, element_fibre f
     return p;
 }
 
+/* P (Pa) of all that an element's tissue does at H: of its law, and of the muscles along its fibres. What is not active
+ * is not looked at. Steppers, monitors and results take the stress from here. */
+ELEMENT_FUNCTION element_tensor element_stress(form f, element_tensor h, const real *c, element_fibre fibre,
+                                               int is_active, element_fibre second, int is_second_active)
+{
+    element_tensor p = form_stress(f, h, c);
+    if (is_active)
+        p = element_sum(p, element_active(h, fibre));
+    if (is_second_active)
+        p = element_sum(p, element_active(h, second));
+    return p;
+}
+
 ELEMENT_FUNCTION hourglass_modes element_hourglass_modes(element_modes x, element_modes y, element_modes z)
 {
     hourglass_modes m = {{x.xy, y.xy, z.xy}, {x.yz, y.yz, z.yz}, {x.zx, y.zx, z.zx}, {x.xyz, y.xyz, z.xyz}};
@@ -131,11 +144,7 @@ ELEMENT_FUNCTION element_field element_force_of_two(form f, hourglass_kind kind,
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_gradient(x, y, z, shape.slope);
-    element_tensor p = form_stress(f, h, law.c);
-    if (is_active)
-        p = element_sum(p, element_active(h, fibre));
-    if (is_second_active)
-        p = element_sum(p, element_active(h, second));
+    element_tensor p = element_stress(f, h, law.c, fibre, is_active, second, is_second_active);
     const hourglass_force held = hourglass_of(kind, element_hourglass_modes(x, y, z), h, shape, law.hourglass);
     const hourglass_modes *m = &held.f;
     if (kind == HOURGLASS_PHYSICAL)

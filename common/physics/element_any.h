@@ -120,9 +120,7 @@ ELEMENT_FUNCTION element_field element_any_force(form f, hourglass_kind kind, el
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_any_twist(s, &x, &y, &z);
-    element_tensor p = form_stress(f, h, law.c);
-    if (is_active)
-        p = element_sum(p, element_active(h, fibre));
+    element_tensor p = element_stress(f, h, law.c, fibre, is_active, fibre, 0);
     const hourglass_force held = element_any_hourglass(kind, element_hourglass_modes(x, y, z), h, s, law.hourglass);
     const hourglass_modes *m = &held.f;
     if (kind == HOURGLASS_PHYSICAL)
