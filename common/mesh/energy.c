@@ -1,48 +1,20 @@
 #include "mesh/energy.h"
 
-#include "mesh/hexahedron.h"
-#include "mesh/lattice.h"
+#include "mesh/element_motion.h"
 #include "model/hourglass_text.h"
 #include "model/materials.h"
-#include "physics/element_any.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A frame's elements; arrays are the model's and the frame's. */
+/* A frame's elements. */
 typedef struct view {
-    const int32_t *node;
-    const double *rest, *u;
-    bool is_lattice; /* all are boxes of `side` */
-    double side[3];
+    element_mesh mesh;
+    const double *u;
     hourglass_control control;
     bool is_old; /* of a release whose stiffness was kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8 */
 } view;
-
-static element_modes modes_of(const view *v, int64_t element, int axis)
-{
-    element_corners c;
-    for (int i = 0; i < 8; i++)
-        c.at[i] = v->u[3 * (int64_t)v->node[8 * element + i] + axis];
-    return element_modes_of(c);
-}
-
-/* Of an element that is no box: its shape, and sum(B^2), 1/m2. */
-static element_any shape_of(const view *v, int64_t element, double *squares)
-{
-    double at[24], b[24], slope[21], twist[12], basis[9];
-    for (int i = 0; i < 24; i++)
-        at[i] = v->rest[3 * (int64_t)v->node[8 * element + i / 3] + i % 3] -
-                v->rest[3 * (int64_t)v->node[8 * element] + i % 3];
-    const double volume = hexahedron_mean(at, b);
-    hexahedron_modes(at, b, slope, twist);
-    hexahedron_basis(at, basis);
-    *squares = 0;
-    for (int i = 0; i < 24; i++)
-        *squares += b[i] * b[i];
-    return element_any_of(slope, twist, volume, basis);
-}
 
 /* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, which has the same coefficients, mu
  * and K; every other form has its own energy. */
@@ -66,30 +38,16 @@ static void hold_of(const view *v, double mu, double bulk, double volume, double
 
 static void add_element(const view *v, int64_t element, const material_numbers *of, double fraction, energy *to)
 {
-    element_modes x = modes_of(v, element, 0), y = modes_of(v, element, 1), z = modes_of(v, element, 2);
-    const double *side = v->side;
-    const double mu = of->at_rest.mu, bulk = of->at_rest.bulk;
-    double volume = side[0] * side[1] * side[2], hold[HOURGLASS_NUMBERS], squares;
-    element_tensor h;
-    hourglass_force force;
-    hourglass_modes m;
-    if (v->is_lattice) {
-        const element_shape box = element_box(side[0], side[1], side[2]);
-        hold_of(v, mu, bulk, volume, hourglass_squares(side), hold);
-        h = element_gradient(x, y, z, box.slope);
-        m = element_hourglass_modes(x, y, z);
-        force = hourglass_of(v->control.kind, m, h, box, hold);
-    } else {
-        const element_any any = shape_of(v, element, &squares);
-        volume = any.volume;
-        hold_of(v, mu, bulk, volume, squares, hold);
-        h = element_any_twist(&any, &x, &y, &z);
-        m = element_hourglass_modes(x, y, z);
-        force = element_any_hourglass(v->control.kind, m, h, &any, hold);
-    }
-    to->scale += fraction * volume * mu;
-    to->strain += fraction * volume * material_energy(of, h);
-    to->hourglass += fraction * hourglass_dot(&force.f, &m) / 2;
+    const element_motion is = element_motion_of(&v->mesh, element, v->u);
+    const double *side = v->mesh.side, mu = of->at_rest.mu;
+    double hold[HOURGLASS_NUMBERS];
+    hold_of(v, mu, of->at_rest.bulk, is.volume, is.squares, hold);
+    const hourglass_force force =
+        v->mesh.is_lattice ? hourglass_of(v->control.kind, is.modes, is.h, element_box(side[0], side[1], side[2]), hold)
+                           : element_any_hourglass(v->control.kind, is.modes, is.h, &is.any, hold);
+    to->scale += fraction * is.volume * mu;
+    to->strain += fraction * is.volume * material_energy(of, is.h);
+    to->hourglass += fraction * hourglass_dot(&force.f, &is.modes) / 2;
 }
 
 /* How the run that wrote the frames held hourglass modes: hourglass.control, or hourglass.kappa of older releases. */
@@ -115,23 +73,17 @@ static int control_of(view *v, const model *m, err *e)
 
 static int view_of(view *v, const model *m, const frame *f, err *e)
 {
-    const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
     const model_array *u = frame_find(f, "node.displacement");
-    lattice l = {0};
+    *v = (view){.u = u ? u->f64 : NULL};
     if (!u)
-        err_set(e, NULL, 0, "frame %lld has no node.displacement; it comes from tled-run", (long long)f->index);
-    if (!node || !rest || !u)
+        return err_set(e, NULL, 0, "frame %lld has no node.displacement; it comes from tled-run", (long long)f->index);
+    if (element_mesh_of(&v->mesh, m, e))
         return -1;
-    *v = (view){.node = node->i32, .rest = rest->f64, .u = u->f64};
-    v->is_lattice = model_meta_of(m, "lattice.spacing") != NULL;
-    if (node->columns != 8)
+    if (v->mesh.corners != 8)
         return err_set(e, NULL, 0,
                        "hourglass energy is for hexahedra only, and these elements have %d nodes; expected 8",
-                       (int)node->columns);
-    if (control_of(v, m, e) || (v->is_lattice && lattice_of(m, &l, e)))
-        return -1;
-    memcpy(v->side, l.spacing, sizeof v->side);
-    return 0;
+                       v->mesh.corners);
+    return control_of(v, m, e);
 }
 
 int energy_of(energy *to, const model *m, const frame *f, err *e)

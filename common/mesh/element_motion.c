@@ -1,0 +1,79 @@
+#include "mesh/element_motion.h"
+
+#include "mesh/gradient.h"
+#include "mesh/hexahedron.h"
+#include "mesh/lattice.h"
+
+#include <string.h>
+
+int element_mesh_of(element_mesh *to, const model *m, err *e)
+{
+    const model_array *node = model_need(m, "element.node", e), *rest = model_need(m, "node.position", e);
+    lattice l = {0};
+    if (!node || !rest)
+        return -1;
+    *to = (element_mesh){.node = node->i32, .corners = node->columns, .elements = node->rows, .rest = rest->f64};
+    to->is_lattice = node->columns == 8 && model_meta_of(m, "lattice.spacing");
+    if (to->is_lattice && lattice_of(m, &l, e))
+        return -1;
+    memcpy(to->side, l.spacing, sizeof to->side);
+    return 0;
+}
+
+static element_modes modes_of(const int32_t *node, const double *u, int axis)
+{
+    element_corners c;
+    for (int i = 0; i < 8; i++)
+        c.at[i] = u[3 * (int64_t)node[i] + axis];
+    return element_modes_of(c);
+}
+
+/* Of an element that is no box: its shape, and sum(B^2), 1/m2. */
+static element_any shape_of(const element_mesh *m, const int32_t *node, double *squares)
+{
+    double at[24], b[24], slope[21], twist[12], basis[9];
+    for (int i = 0; i < 24; i++)
+        at[i] = m->rest[3 * (int64_t)node[i / 3] + i % 3] - m->rest[3 * (int64_t)node[0] + i % 3];
+    const double volume = hexahedron_mean(at, b);
+    hexahedron_modes(at, b, slope, twist);
+    hexahedron_basis(at, basis);
+    *squares = 0;
+    for (int i = 0; i < 24; i++)
+        *squares += b[i] * b[i];
+    return element_any_of(slope, twist, volume, basis);
+}
+
+static element_motion of_hexahedron(const element_mesh *m, const int32_t *node, const double *u)
+{
+    element_motion to = {.volume = m->side[0] * m->side[1] * m->side[2]};
+    element_modes x = modes_of(node, u, 0), y = modes_of(node, u, 1), z = modes_of(node, u, 2);
+    if (m->is_lattice) {
+        to.squares = hourglass_squares(m->side);
+        to.h = element_gradient(x, y, z, element_box(m->side[0], m->side[1], m->side[2]).slope);
+    } else {
+        to.any = shape_of(m, node, &to.squares);
+        to.volume = to.any.volume;
+        to.h = element_any_twist(&to.any, &x, &y, &z);
+    }
+    to.modes = element_hourglass_modes(x, y, z);
+    return to;
+}
+
+static element_motion of_tetrahedron(const element_mesh *m, const int32_t *node, const double *u)
+{
+    double h[9], edge[3][3];
+    gradient_of(node, 4, m->rest, u, h);
+    for (int i = 0; i < 9; i++)
+        edge[i / 3][i % 3] = m->rest[3 * (int64_t)node[1 + i / 3] + i % 3] - m->rest[3 * (int64_t)node[0] + i % 3];
+    const double *a = edge[0], *b = edge[1], *c = edge[2];
+    return (element_motion){.h = {h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]},
+                            .volume = (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                                       a[2] * (b[0] * c[1] - b[1] * c[0])) /
+                                      6};
+}
+
+element_motion element_motion_of(const element_mesh *m, int64_t element, const double *u)
+{
+    const int32_t *node = m->node + element * m->corners;
+    return m->corners == 8 ? of_hexahedron(m, node, u) : of_tetrahedron(m, node, u);
+}

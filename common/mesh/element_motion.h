@@ -1,0 +1,35 @@
+/* How the elements of a model move in a frame: the displacement gradient of each, its volume at rest and its hourglass
+ * modes, from the displacements of its nodes: of a box of the lattice, of any other hexahedron, of a tetrahedron. The
+ * gradients are those of tled-run (element.h, element_any.h). Borrows the arrays of the model and of the frame.
+ */
+#ifndef SINEW_ELEMENT_MOTION_H
+#define SINEW_ELEMENT_MOTION_H
+
+#include "model/model.h"
+#include "physics/element_any.h"
+
+typedef struct element_mesh {
+    const int32_t *node; /* elements x corners, VTK order */
+    int corners;         /* 8 or 4 */
+    int64_t elements;
+    const double *rest; /* nodes x 3, m */
+    bool is_lattice;    /* hexahedra, all boxes of `side` */
+    double side[3];     /* m */
+} element_mesh;
+
+typedef struct element_motion {
+    element_tensor h; /* grad u: at the centre; its mean over an element that is no box */
+    double volume;    /* m3, at rest */
+    /* Of hexahedra: */
+    hourglass_modes modes;
+    double squares;  /* 1/m2: sum of B^2 over corners and axes */
+    element_any any; /* where it is no box */
+} element_motion;
+
+/* -1 with e filled where the model lacks what it takes. */
+int element_mesh_of(element_mesh *to, const model *m, err *e);
+
+/* u: nodes x 3, m. Not finite where a tetrahedron is flat. */
+element_motion element_motion_of(const element_mesh *m, int64_t element, const double *u);
+
+#endif
