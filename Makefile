@@ -28,7 +28,7 @@ COLLIDE = -lccd
 WEB = -lcivetweb -lturbojpeg
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
-	sinew sinew-deform sinew-info sinew-diff sinew-distance sinew-export sinew-import sinew-render sinew-console
+	sinew sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-export sinew-import sinew-render sinew-console
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -40,7 +40,7 @@ endif
 # Every .c of these folders is the library, but for what mains begin and end with, and say on standard error: that is linked beside it.
 MAIN_SRC := common/cli/tool.c common/cli/progress.c
 MAIN_OBJ := $(MAIN_SRC:%.c=$(BUILD)/%.o)
-LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/render/sinew-render.c common/render/render_%,$(wildcard common/base/*.c common/physics/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/live/*.c common/solve/*.c common/picture/*.c common/render/*.c))
+LIB_SRC := $(filter-out $(MAIN_SRC) common/cli/sinew.c common/results/sinew-results.c common/render/sinew-render.c common/render/render_%,$(wildcard common/base/*.c common/physics/*.c common/cli/*.c common/model/*.c common/surface/*.c common/mesh/*.c common/volume/*.c common/probe/*.c common/live/*.c common/solve/*.c common/picture/*.c common/results/*.c common/render/*.c))
 LIB_OBJ := $(LIB_SRC:%.c=$(BUILD)/%.o)
 LIB := $(BUILD)/libsinew.a
 
@@ -181,6 +181,7 @@ $(eval $(call tool,us-segment,$(SEGMENT_SRC)))
 $(eval $(call tool,us-surface,$(SURFACE_SRC)))
 $(eval $(call tool,us-slice,$(SLICE_SRC),$$(PICTURES)))
 $(eval $(call tool,sinew,common/cli/sinew.c))
+$(eval $(call tool,sinew-results,common/results/sinew-results.c))
 $(eval $(call tool,sinew-info,common/inspect/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/inspect/sinew-diff.c))
 $(eval $(call tool,sinew-distance,common/inspect/sinew-distance.c $(DISTANCE_MODULES)))

@@ -33,6 +33,7 @@ static const struct {
     {ULTRASOUND, "us-surface", "us-surface", "closed surfaces of labels or intensities"},
     {ULTRASOUND, "us-slice", "us-slice", "ultrasound images of a volume, as a model deforms it"},
     {RESULTS, "deform", "sinew-deform", "an OBJ as the model's results move it"},
+    {RESULTS, "results", "sinew-results", "stress, strain and energies of elements, in frames"},
     {RESULTS, "info", "sinew-info", "what a model contains"},
     {RESULTS, "diff", "sinew-diff", "where two models differ"},
     {RESULTS, "distance", "sinew-distance", "how far two surfaces are apart, by region"},

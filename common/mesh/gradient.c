@@ -1,7 +1,6 @@
 #include "mesh/gradient.h"
 
 #include "mesh/lattice.h"
-#include "physics/element.h"
 
 #include <math.h>
 
@@ -71,41 +70,26 @@ double gradient_mises(const double t[9])
     return sqrt((x * x + y * y + z * z) / 2 + 3 * (t[1] * t[1] + t[5] * t[5] + t[2] * t[2]));
 }
 
-/* By the angle of the deviator: m + 2 q cos(phi / 3), phi from its determinant. */
-double gradient_largest(const double t[9])
+/* By the angle of the deviator: m + 2 q cos(phi / 3), phi from its determinant; the others a third of a turn on. */
+void gradient_principal(const double t[9], double to[3])
 {
+    const double third = acos(-.5);
     double m = (t[0] + t[4] + t[8]) / 3, q = gradient_mises(t) / 3, d[9];
+    for (int i = 0; i < 3; i++)
+        to[i] = m + q;
     if (!(q > 0))
-        return m + q;
+        return;
     for (int i = 0; i < 9; i++)
         d[i] = (t[i] - (i % 4 ? 0 : m)) / q;
     double c = fmin(fmax(determinant(d) / 2, -1), 1);
-    return m + 2 * q * cos(acos(c) / 3);
+    to[0] = m + 2 * q * cos(acos(c) / 3);
+    to[2] = m + 2 * q * cos(acos(c) / 3 + third);
+    to[1] = 3 * m - to[0] - to[2];
 }
 
-double gradient_stress(const double h[9], form f, const double *c)
+double gradient_largest(const double t[9])
 {
-    element_tensor g = {h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]};
-    element_tensor p = form_stress(f, g, c);
-    const double row[9] = {p.xx, p.xy, p.xz, p.yx, p.yy, p.yz, p.zx, p.zy, p.zz};
-    double cauchy[9], volume = 1 + element_dilation(g);
-    if (!(volume > 0))
-        return (double)NAN;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            cauchy[3 * i + j] = row[3 * i + j];
-            for (int k = 0; k < 3; k++)
-                cauchy[3 * i + j] += row[3 * i + k] * h[3 * j + k];
-            cauchy[3 * i + j] /= volume;
-        }
-    return gradient_mises(cauchy);
-}
-
-double gradient_stress_linear(const double h[9], double mu)
-{
-    double stress[9];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            stress[3 * i + j] = mu * (h[3 * i + j] + h[3 * j + i]);
-    return gradient_mises(stress);
+    double principal[3];
+    gradient_principal(t, principal);
+    return principal[0];
 }

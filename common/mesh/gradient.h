@@ -1,11 +1,9 @@
-/* The displacement gradient at an element's centre, from the displacements of its nodes, and the strain and stress
+/* The displacement gradient at an element's centre, from the displacements of its nodes, and the strain
  * there: for hexahedra of any shape and for tetrahedra. Tensors are 3 x 3, row i column j at 3 i + j. Nothing here
  * allocates.
  */
 #ifndef SINEW_GRADIENT_H
 #define SINEW_GRADIENT_H
-
-#include "physics/forms.h"
 
 #include <stdint.h>
 
@@ -16,16 +14,12 @@ int gradient_of(const int32_t *node, int corners, const double *rest, const doub
 /* Green-Lagrange's E = (H + H^T + H^T H) / 2. */
 void gradient_strain(const double h[9], double strain[9]);
 
+/* The principal values of a symmetric tensor, the largest first. */
+void gradient_principal(const double t[9], double to[3]);
+
 /* Of a symmetric tensor: the largest principal value, and sqrt(3/2 dev : dev), von Mises' equivalent of a stress (that
  * of a strain is 2/3 of it). */
 double gradient_largest(const double t[9]);
 double gradient_mises(const double t[9]);
-
-/* Von Mises' equivalent of the Cauchy stress P F^T / J of a form with these coefficients, without active stress; Pa.
- * nan where J is not above 0. */
-double gradient_stress(const double h[9], form f, const double *c);
-
-/* The same of linear elasticity: of the small strain (H + H^T) / 2, whose mean part drops out. */
-double gradient_stress_linear(const double h[9], double mu);
 
 #endif

@@ -121,6 +121,22 @@ typedef struct known {
       "displacement from rest")                                                                                        \
     X("node.velocity", MODEL_F64, "m/s", "node", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run or msds-run",        \
       "velocity")                                                                                                      \
+    X("element.stress", MODEL_F32, "Pa", "element", 6, 6, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,                 \
+      "tled-run or sinew results", "Cauchy stress at its centre: xx yy zz xy yz xz; nan where it is inside out")       \
+    X("element.stress.mises", MODEL_F32, "Pa", "element", 1, 1, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,           \
+      "tled-run or sinew results", "von Mises stress, of element.stress")                                              \
+    X("element.strain", MODEL_F32, "1", "element", 6, 6, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,                  \
+      "tled-run or sinew results", "Green-Lagrange strain at its centre: xx yy zz xy yz xz")                           \
+    X("element.stretch", MODEL_F32, "1", "element", 3, 3, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,                 \
+      "tled-run or sinew results", "principal stretches at its centre, the largest first")                             \
+    X("element.stretch.fibre", MODEL_F32, "1", "element", 1, 1, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,           \
+      "tled-run or sinew results", "stretch along its fibre; nan where it has none")                                   \
+    X("element.energy", MODEL_F32, "J/m3", "element", 1, 1, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,               \
+      "tled-run or sinew results", "strain energy at its centre, by volume at rest")                                   \
+    X("material.energy", MODEL_F64, "J", "material", 1, 1, KNOWN_FRAME, KNOWN_ANY, 0, 0, "tled-run or sinew results",  \
+      "strain energy of all elements of the material")                                                                 \
+    X("volume.activation", MODEL_F64, "1", "volume", 1, 1, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                \
+      "activation of the muscle that the volume is; 0 where it does not contract")                                     \
     X("probe.pose", MODEL_F64, "1", "probe", 7, 7, KNOWN_FRAME, KNOWN_POSE, 0, 0, "msds-run or tled-run",              \
       "place of its frame, m, and its turn, a unit quaternion x y z w")                                                \
     X("probe.force", MODEL_F64, "N", "probe", 3, 3, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "msds-run or tled-run",           \

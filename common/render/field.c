@@ -6,8 +6,8 @@
 #include "cli/spelling.h"
 #include "mesh/gradient.h"
 #include "mesh/quality.h"
-#include "model/materials.h"
 #include "model/source.h"
+#include "results/results.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -126,14 +126,9 @@ static int of_names(field *to, const model *m, bool of_material, err *e)
 
 /* ---- strain and stress */
 
-/* law: of stress alone. */
-static double strained(int which, const double h[9], const material_numbers *law)
+static double strained(int which, const double h[9])
 {
     double strain[9];
-    if (which == STRESS && law->form == FORM_LINEAR)
-        return gradient_stress_linear(h, law->at_rest.mu);
-    if (which == STRESS)
-        return gradient_stress(h, law->form, law->c);
     gradient_strain(h, strain);
     return which == STRAIN ? 2. / 3 * gradient_mises(strain) : gradient_largest(strain);
 }
@@ -143,23 +138,79 @@ static int of_strain(field *to, const model *m, const frame *f, int which, err *
     const double *u = displacement(f, ours[which], e);
     const model_array *node = u ? model_need(m, "element.node", e) : NULL;
     const model_array *rest = node ? model_need(m, "node.position", e) : NULL;
-    const model_array *volume = rest && which == STRESS ? model_need(m, "element.volume", e) : NULL;
-    if (!rest || (which == STRESS && !volume))
+    if (!rest || make(to, true, node->rows, ours[which], "", e))
         return -1;
-    material *law = which == STRESS ? materials_of_volumes(m, e) : NULL;
-    if ((which == STRESS && !law) || make(to, true, node->rows, ours[which], which == STRESS ? "Pa" : "", e)) {
-        free(law);
-        return -1;
-    }
-    const materials_map map = law ? materials_map_of(m, law) : (materials_map){0};
     to->below_zero = which == STRAIN_MAX;
     for (int64_t n = 0; n < node->rows; n++) {
         double h[9];
         gradient_of(&node->i32[n * node->columns], node->columns, rest->f64, u, h);
-        const material_numbers own = law ? materials_of_element(&map, n) : (material_numbers){0};
-        to->value[n] = strained(which, h, &own);
+        to->value[n] = strained(which, h);
     }
-    free(law);
+    return 0;
+}
+
+/* A number of a result, as "element.stress.xx": which of its columns; -1: it is none. */
+static int result_column(int row, const char *name)
+{
+    static const char *const tensor[] = {".xx", ".yy", ".zz", ".xy", ".yz", ".xz"}, *const values[] = {".1", ".2",
+                                                                                                       ".3"};
+    const int columns = results_columns(row);
+    const char *part = name + strlen(results_array(row));
+    if (columns <= 1)
+        return columns == 1 && !*part ? 0 : -1;
+    for (int i = 0; i < columns; i++)
+        if (!strcmp(part, columns == 6 ? tensor[i] : values[i]))
+            return i;
+    return -1;
+}
+
+/* The row of results that the name is of, and the column; false: of none. */
+static bool find_result(const char *name, int *row, int *column)
+{
+    for (*row = 0; *row < RESULTS; ++*row)
+        if (!strncmp(name, results_array(*row), strlen(results_array(*row))) &&
+            (*column = result_column(*row, name)) >= 0)
+            return true;
+    return false;
+}
+
+/* As the frame has it, or computed. The caller frees it. */
+static float *numbers_of(const model *m, const frame *f, int row, err *e)
+{
+    const model_array *there = frame_find(f, results_array(row));
+    const int64_t count = model_count(m, "element") * results_columns(row);
+    results *r = NULL;
+    float *to = mem_array(count, sizeof *to, "a field", e);
+    if (!to)
+        return NULL;
+    if (there) {
+        memcpy(to, there->f32, (size_t)count * sizeof *to);
+        return to;
+    }
+    if (results_create(&r, m, 1U << row, NULL, e)) {
+        free(to);
+        return NULL;
+    }
+    results_of_elements(r, row, f, to);
+    results_destroy(r);
+    return to;
+}
+
+static int of_result(field *to, const model *m, const frame *f, const char *name, int row, int column, err *e)
+{
+    const bool pressure = row == RESULTS_STRESS || row == RESULTS_MISES;
+    const char *unit = row == RESULTS_ENERGY ? "J/m3" : "";
+    if (!displacement(f, name, e))
+        return -1;
+    float *number = numbers_of(m, f, row, e);
+    if (!number || make(to, true, model_count(m, "element"), name, pressure ? "Pa" : unit, e)) {
+        free(number);
+        return -1;
+    }
+    to->below_zero = row != RESULTS_MISES && row != RESULTS_ENERGY;
+    for (int64_t n = 0; n < to->count; n++)
+        to->value[n] = (double)number[n * results_columns(row) + column];
+    free(number);
     return 0;
 }
 
@@ -186,15 +237,21 @@ static int of_quality(field *to, const model *m, const frame *f, int which, err 
 static void note_arrays(const model_arrays *list, notes *names)
 {
     for (int i = 0; i < list->count; i++)
-        if (is_field(&list->v[i]))
+        if (is_field(&list->v[i]) && results_find(list->v[i].name) == RESULTS)
             notes_add(names, "%s", list->v[i].name);
 }
+
+/* Of results, some: for messages. */
+static const char *const computed[] = {"element.stress.mises", "element.stress.xx",     "element.strain.xx",
+                                       "element.stretch.1",    "element.stretch.fibre", "element.energy"};
 
 static int unknown(const model *m, const frame *f, const char *name, err *e)
 {
     notes names = {0};
     for (int i = 0; i < OURS; i++)
         notes_add(&names, "%s", ours[i]);
+    for (size_t i = 0; i < sizeof computed / sizeof *computed; i++)
+        notes_add(&names, "%s", computed[i]);
     if (f)
         note_arrays(&f->arrays, &names);
     note_arrays(&m->arrays, &names);
@@ -218,7 +275,8 @@ enum { NAME = 120 };
 static const char *spelled(const model *m, const frame *f, const char *typed, char to[NAME])
 {
     int component;
-    const bool there = own(typed) < OURS || find(m, f, typed, &component);
+    int row;
+    const bool there = own(typed) < OURS || find_result(typed, &row, &component) || find(m, f, typed, &component);
     return there || !spelling_british(typed, strlen(typed), to, NAME) ? typed : to;
 }
 
@@ -226,16 +284,20 @@ static int of_name(field *to, const model *m, const frame *f, const char *typed,
 {
     char full[320], british[NAME];
     const char *name = spelled(m, f, typed, british);
-    int which = own(name), component;
+    int which = own(name), component, row;
     const model_array *a;
     if (which == VOLUME || which == MATERIAL)
         return of_names(to, m, which == MATERIAL, e);
-    if (which == STRAIN || which == STRAIN_MAX || which == STRESS)
+    if (which == STRAIN || which == STRAIN_MAX)
         return of_strain(to, m, f, which, e);
+    if (which == STRESS)
+        return of_result(to, m, f, name, RESULTS_MISES, 0, e);
     if (which == CENTRE || which == CORNER)
         return of_quality(to, m, f, which, e);
     if (which == DISPLACEMENT && !displacement(f, name, e))
         return -1;
+    if (find_result(name, &row, &component))
+        return of_result(to, m, f, name, row, component, e);
     snprintf(full, sizeof full, "%s%.300s", which == DISPLACEMENT ? "node." : "", name);
     a = find(m, f, full, &component);
     return a ? of_array(to, a, component, name, e) : unknown(m, f, name, e);

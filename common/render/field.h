@@ -22,10 +22,11 @@ typedef struct field {
 } field;
 
 /* displacement, displacement.x|y|z, strain (von Mises' equivalent of Green-Lagrange's), strain.max (its largest
- * principal value), stress (von Mises' equivalent of Cauchy's, without active stress), quality.j.centre,
- * quality.j.corner (mesh/quality.h), volume, material, or an array over nodes or elements by its name: its numbers,
- * .x|y|z of its three, or their norm. f NULL: at rest, where only what the body holds is there. -1 with e filled: no
- * such field (with the names there are), or the model lacks what it takes. */
+ * principal value), stress (element.stress.mises), quality.j.centre, quality.j.corner (mesh/quality.h), volume,
+ * material; element.stress.xx and the other numbers of what results.h has, whether the frame has them or not; or an
+ * array over nodes or elements by its name: its numbers, .x|y|z of its three, or their norm. f NULL: at rest, where
+ * only what the body holds is there. -1 with e filled: no such field (with the names there are), or the model lacks
+ * what it takes. */
 int field_of(field *to, const model *m, const frame *f, const char *name, err *e);
 void field_free(field *f);
 

@@ -65,12 +65,16 @@ quoted sinew-import sinew import --unit mm liver.vtu
 quoted sinew-import sinew import --unit mm whole.inp
 quoted sinew-info sinew info --get axs.node run.sinew
 quoted sinew-info sinew info --get node.velocity.max bound.sinew
+quoted sinew-results from run.sinew sinew results stresses
+quoted sinew-results from bound.sinew sinew results all
+awk -v nx=1 -v ny=1 -v nz=1 -v h=1 -v held=low -v muscle=1 -f "$ROOT/tests/cli/block.awk" | tled-run -q -n 2 >muscle.sinew
+quoted sinew-results from muscle.sinew sinew results stress
 quoted sinew-render sinew render --camera 1,0,0,2,0,0 run.sinew
 quoted sinew-render sinew render --colour displacement unbound.sinew
 quoted sinew-render sinew render --show voxels --clear skin run.sinew
 quoted sinew-render sinew render --font none.ttf --sheet rest,deformed run.sinew
 
-for page in sinew sinew-deform sinew-diff sinew-distance sinew-export sinew-import sinew-info sinew-render; do
+for page in sinew sinew-deform sinew-diff sinew-distance sinew-export sinew-import sinew-info sinew-render sinew-results; do
     quotes "$page" | sed "s/^/$page: /"
 done | sort >"$T/quotes"
 is "$(sort -u "$T/seen" | comm -13 - "$T/quotes")" "" "every quote was printed"

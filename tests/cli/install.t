@@ -5,7 +5,7 @@
 
 have make || skip_all "no make"
 root=$T/root
-tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew sinew-deform sinew-info sinew-diff sinew-distance sinew-export sinew-import sinew-render sinew-console"
+tools="voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice sinew sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-export sinew-import sinew-render sinew-console"
 
 # on ROOT's PREFIX: what was built for the tests, nothing else.
 # shellcheck disable=SC2317 # called by name

@@ -97,25 +97,9 @@ static void test_tetrahedra(void)
     model_free(&m);
 }
 
-/* DESIGN's checks of the law: E = 3000 Pa, nu = .45. */
 static void test_gradient(void)
 {
-    double mu = 3000 / (2 * 1.45), bulk = 3000 / (3 * .1), strain[9], c[FORM_NUMBERS] = {mu, bulk};
-    double side = 0.92181984, h[9] = {.2, 0, 0, 0, side - 1, 0, 0, 0, side - 1};
-    near_(gradient_stress(h, FORM_NEO_HOOKEAN, c), 502.2590 / (side * side), 1e-3,
-          "uniaxial stretch: the Cauchy stress");
-    const double second[FORM_NUMBERS] = {2500, 500, 1e5}, narrow = .918060;
-    const double pulled[9] = {.2, 0, 0, 0, narrow - 1, 0, 0, 0, narrow - 1};
-    near_(gradient_stress(pulled, FORM_MOONEY_RIVLIN, second), 2882.59 / (narrow * narrow), .1, "Mooney-Rivlin");
-    double shear[9] = {0, .2, 0, 0, 0, 0, 0, 0, 0};
-    double wanted = sqrt(3 * (206.8966 * 206.8966) + 41.3793 * 41.3793);
-    near_(gradient_stress(shear, FORM_NEO_HOOKEAN, c), wanted, 1e-3, "simple shear: von Mises' equivalent");
-    double stretch[9] = {.02, 0, 0, 0, -.01, 0, 0, 0, -.01};
-    near_(gradient_stress_linear(shear, mu), sqrt(3) * .2 * mu, 1e-9, "linear elasticity, shear: sqrt(3) mu gamma");
-    near_(gradient_stress_linear(stretch, mu), 6 * .01 * mu, 1e-9,
-          "and stretched at constant volume: 6 mu times a side's strain");
-    double inside_out[9] = {-3, 0, 0, 0, 0, 0, 0, 0, 0};
-    ok(isnan(gradient_stress(inside_out, FORM_NEO_HOOKEAN, c)), "inside out: none");
+    double strain[9], shear[9] = {0, .2, 0, 0, 0, 0, 0, 0, 0};
     gradient_strain(shear, strain);
     near_(gradient_largest(strain), .01 + sqrt(.01 * .01 + .1 * .1), 1e-12, "simple shear: the largest strain");
     const double sizes[9] = {2, 0, 0, 0, -1, 0, 0, 0, 2}, ball[9] = {3, 0, 0, 0, 3, 0, 0, 0, 3};

@@ -402,10 +402,15 @@ int tled_problem_start(tled_problem *p, const frame *f, notes *warnings, err *e)
     return 0;
 }
 
+double tled_activation(const tled_problem *p, int32_t volume, const double *value)
+{
+    const int64_t contract = p->volume[volume].contract;
+    return contract < 0 ? 0 : value[3 * contract];
+}
+
 double tled_tension(const tled_problem *p, int32_t volume, const double *value)
 {
-    const tled_volume *v = &p->volume[volume];
-    return v->contract < 0 ? 0 : v->peak * value[3 * v->contract];
+    return p->volume[volume].peak * tled_activation(p, volume, value);
 }
 
 void tled_curves(const tled_problem *p, double time, double *value)

@@ -138,6 +138,9 @@ static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
     return p->mixed && p->mixed[element] >= 0 ? p->law[p->mixed[element]] : p->volume[p->element_volume[element]].law;
 }
 
+/* The activation of the muscle that a volume is, 0 to 1; 0 where none contracts. */
+double tled_activation(const tled_problem *p, int32_t volume, const double *value);
+
 /* The active stress of a volume (Pa): level times peak; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);
 

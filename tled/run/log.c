@@ -29,8 +29,9 @@ static int place_of(const char *key, double *place, err *e)
     if (!strncmp(key, trace, sizeof trace - 1) && rest_place_of(key + sizeof trace - 1, place))
         return 0;
     return err_usage(e,
-                     "--tsv '%.80s': expected %sX,Y,Z, three lengths between commas (metres, or with a unit), %s or %s",
-                     key, trace, LOG_LEVEL, LOG_ACTIVATION);
+                     "--tsv '%.80s': expected %sX,Y,Z, three lengths between commas (metres, or with a unit), %s, %s "
+                     "or %s",
+                     key, trace, LOG_LEVEL, LOG_ACTIVATION, LOG_ENERGY);
 }
 
 static bool is_of_muscles(const char *key)
@@ -38,10 +39,20 @@ static bool is_of_muscles(const char *key)
     return !strcmp(key, LOG_LEVEL) || !strcmp(key, LOG_ACTIVATION);
 }
 
+static bool is_of_materials(const char *key)
+{
+    return !strcmp(key, LOG_ENERGY);
+}
+
+static bool is_of_place(const char *key)
+{
+    return !is_of_muscles(key) && !is_of_materials(key);
+}
+
 int log_check_key(const char *key, err *e)
 {
     double place[3];
-    return is_of_muscles(key) ? 0 : place_of(key, place, e);
+    return is_of_place(key) ? place_of(key, place, e) : 0;
 }
 
 /* The name of a body as a part of a column's. */
@@ -61,34 +72,56 @@ static void put_bodies_heading(const model *m, out *to)
     }
 }
 
+/* "KEY.NAME", as the model has the name, and the unit. */
+static int put_named(const char *key, const char *name, const char *unit, out *to, err *e)
+{
+    char *shown = mem_array(4 * (int64_t)strlen(name) + 1, 1, "the log", e);
+    if (!shown)
+        return -1;
+    chars_escape(name, strlen(name), shown);
+    out_format(to, "\t%s.%s%s", key, shown, unit);
+    free(shown);
+    return 0;
+}
+
 /* A column a muscle that is driven, by its name in the model; -c finds it by what is written here. */
 static int put_muscles_heading(const run_log *l, const char *key, out *to, err *e)
 {
     const model_array *names = model_find(l->m, "volume.name");
     for (int64_t i = 0; i < l->script->curves; i++) {
         const script_curve *c = &l->script->curve[i];
-        if (c->verb != SCRIPT_CONTRACT)
-            continue;
-        const char *name = names->str[c->volume];
-        char *shown = mem_array(4 * (int64_t)strlen(name) + 1, 1, "the log", e);
-        if (!shown)
+        if (c->verb == SCRIPT_CONTRACT && put_named(key, names->str[c->volume], "", to, e))
             return -1;
-        chars_escape(name, strlen(name), shown);
-        out_format(to, "\t%s.%s", key, shown);
-        free(shown);
     }
+    return 0;
+}
+
+static int put_materials_heading(const run_log *l, const char *key, out *to, err *e)
+{
+    const model_array *names = model_find(l->m, "material.name");
+    for (int64_t i = 0; i < names->rows; i++)
+        if (put_named(key, names->str[i], "/J", to, e))
+            return -1;
+    return 0;
+}
+
+static int put_key_heading(const run_log *l, const char *key, out *to, err *e)
+{
+    if (is_of_muscles(key))
+        return put_muscles_heading(l, key, to, e);
+    if (is_of_materials(key))
+        return put_materials_heading(l, key, to, e);
+    for (int a = 0; a < 3; a++)
+        out_format(to, "\t%s.%c/m", key, "xyz"[a]);
     return 0;
 }
 
 static int put_heading(const run_log *l, out *to, err *e)
 {
     out_text(to, heading);
-    for (int i = 0; i < l->keys->count; i++) {
-        if (is_of_muscles(l->keys->value[i]) && put_muscles_heading(l, l->keys->value[i], to, e))
+    for (int i = 0; i < l->keys->count; i++)
+        if (put_key_heading(l, l->keys->value[i], to, e))
             return -1;
-        for (int a = 0; a < 3 && !is_of_muscles(l->keys->value[i]); a++)
-            out_format(to, "\t%s.%c/m", l->keys->value[i], "xyz"[a]);
-    }
     put_bodies_heading(l->m, to);
     out_text(to, heading_end);
     return 0;
@@ -132,7 +165,7 @@ int log_open(run_log *l, const char *path, const opt_list *keys, const model *m,
     l->m = m;
     for (int i = 0; i < keys->count; i++) {
         double place[3];
-        if (is_of_muscles(keys->value[i]))
+        if (!is_of_place(keys->value[i]))
             continue;
         if (place_of(keys->value[i], place, e))
             return -1;
@@ -159,6 +192,18 @@ static int empty_rows(run_log *l, bool send, err *e)
     return l->rows ? 0 : -1;
 }
 
+/* Where a key asks for energies by material. */
+static int make_energies(run_log *l, err *e)
+{
+    bool wanted = false;
+    for (int i = 0; i < l->keys->count; i++)
+        wanted |= is_of_materials(l->keys->value[i]);
+    if (!wanted)
+        return 0;
+    l->energy = mem_array(model_count(l->m, "material"), sizeof *l->energy, "the log", e);
+    return l->energy ? results_create(&l->results, l->m, 0, l->threads, e) : -1;
+}
+
 int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
 {
     l->p = p;
@@ -166,7 +211,7 @@ int log_begin(run_log *l, const tled_problem *p, pool *threads, err *e)
     l->began = clock_now();
     l->account = account_create(p, threads, e);
     l->rows = l->account ? out_memory(e) : NULL;
-    if (!l->rows)
+    if (!l->rows || make_energies(l, e))
         return -1;
     if (!growing_size(l->file) && put_heading(l, l->rows, e))
         return -1;
@@ -247,13 +292,24 @@ static void put_muscles(const run_log *l, bool levels, double time)
     }
 }
 
+static void put_energies(const run_log *l)
+{
+    results_energies(l->results, account_displacement(l->account), l->energy);
+    for (int64_t i = 0; i < model_count(l->m, "material"); i++)
+        put_number(l->rows, l->energy[i]);
+}
+
 static void put_key(const run_log *l, int key, double time)
 {
+    const char *name = l->keys->value[key];
     const double *moved = account_displacement(l->account) + 3 * l->node[key];
-    if (is_of_muscles(l->keys->value[key]))
-        put_muscles(l, !strcmp(l->keys->value[key], LOG_LEVEL), time);
-    for (int a = 0; a < 3 && !is_of_muscles(l->keys->value[key]); a++)
-        put_number(l->rows, moved[a]);
+    if (is_of_muscles(name))
+        put_muscles(l, !strcmp(name, LOG_LEVEL), time);
+    else if (is_of_materials(name))
+        put_energies(l);
+    else
+        for (int a = 0; a < 3; a++)
+            put_number(l->rows, moved[a]);
 }
 
 static int put_row(run_log *l, const log_row *row, const account_sums *s, err *e)
@@ -334,6 +390,10 @@ int log_end(run_log *l, err *e)
 int log_close(run_log *l, err *e)
 {
     account_destroy(l->account);
+    results_destroy(l->results);
+    free(l->energy);
+    l->results = NULL;
+    l->energy = NULL;
     out_discard(l->rows);
     l->account = NULL;
     l->rows = NULL;

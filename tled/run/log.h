@@ -9,6 +9,7 @@
 #include "base/out.h"
 #include "cli/opt.h"
 #include "model/model.h"
+#include "results/results.h"
 #include "tled/problem/script.h"
 #include "tled/run/account.h"
 
@@ -28,8 +29,10 @@ typedef struct run_log {
     out *rows; /* not yet known to be sound */
     account *account;
     const script *script; /* the creator's, which the problem is made of */
-    const opt_list *keys; /* node.displacement.at.X,Y,Z: three columns each, after the others; LOG_LEVEL */
+    const opt_list *keys; /* node.displacement.at.X,Y,Z: three columns each, after the others; or LOG_... */
     int64_t node[64];     /* of each */
+    results *results;     /* energies by material, where a key asks for them; owned */
+    double *energy;       /* J: of each; owned */
     const tled_problem *p;
     const model *m; /* that it was made of: its bodies' names */
     pool *threads;  /* the run's */
@@ -49,6 +52,9 @@ typedef struct log_point {
 /* A key of a log may be one of these, for a column a muscle that the script drives: what a track is read from. */
 #define LOG_LEVEL      "muscle.level"
 #define LOG_ACTIVATION "muscle.activation"
+
+/* And this, for a column a material: its strain energy. */
+#define LOG_ENERGY "material.energy"
 
 /* Whether it is a key of a log: a usage error, where it is not. */
 int log_check_key(const char *key, err *e);

@@ -1,5 +1,7 @@
 #include "tled/run/options.h"
 
+#include "results/results.h"
+
 #define TO(field) offsetof(struct options, field)
 static const opt option_list[] = {
     {OPT_NUMERICS, 'd', "device", "auto|cuda|cpu", OPT_CHOICE, TO(device), 0, 0, "auto|cuda|cpu", OPT_OUTPUT,
@@ -37,6 +39,8 @@ static const opt option_list[] = {
      "hourglass control: physical, isotropic, or isotropic:KAPPA [default physical]"},
     {OPT_RESULT, 0, "every", "S", OPT_NUMBER, TO(every), 1e-12, 1e9, NULL, OPT_OUTPUT,
      "time between frames [s; default only the last]"},
+    {OPT_RESULT, 0, "results", "NAME,...", OPT_LIST, TO(results), 0, 0, RESULTS_CHOICES, OPT_OUTPUT,
+     "what elements hold in frames: stress, strain, ... or all [default none]"},
     {OPT_ACTION, 0, "probe", "SHAPE", OPT_TEXT, TO(probe), 0, 0, "sphere:|linear:|curved:|convex:", OPT_OUTPUT,
      "sphere:R, linear:W,T, curved:R,A,T or convex:OBJ"},
     {OPT_INPUT, 0, "poses", "FILE", OPT_TEXT, TO(poses), 0, 0, NULL, OPT_FILE,
@@ -67,7 +71,7 @@ static const opt option_list[] = {
     {OPT_RESULT, 0, "log-every", "S", OPT_NUMBER, TO(log_every), 1e-12, 1e9, NULL, OPT_OUTPUT,
      "time between rows of --log [s; default 0.01]"},
     {OPT_RESULT, 0, "tsv", "KEY", OPT_LIST, TO(tsv), 0, 0, NULL, OPT_OUTPUT,
-     "add to --log: node.displacement.at.X,Y,Z, muscle.level, muscle.activation"},
+     "add to --log: node.displacement.at.X,Y,Z, muscle.level, muscle.activation, material.energy"},
     {OPT_RESULT, 0, "checkpoint", "FILE", OPT_TEXT, TO(checkpoint), 0, 0, NULL, OPT_OUTPUT | OPT_FILE,
      "save the state, so that the run can be continued"},
     {OPT_RESULT, 0, "checkpoint-every", "S", OPT_NUMBER, TO(checkpoint_every), 1e-12, 1e9, NULL, OPT_OUTPUT,

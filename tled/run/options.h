@@ -11,7 +11,8 @@ struct options {
     double dt, seconds, rest, ramp, damping, every, log_every; /* below 0: not given */
     int64_t steps;                                             /* 0: not given */
     opt_numbers gravity, rise_fall;
-    opt_list contract, material, tsv;
+    opt_list contract, material, tsv, results;
+    unsigned which; /* of results, once read */
     const char *script, *materials, *probe, *poses, *unit, *log, *hourglass;
     const char *activations, *expressions;
     int between; /* rows of activations: 0: linear, 1: smooth; below 0: not given */

@@ -11,6 +11,7 @@
 #include "tled/problem/step.h"
 #include "tled/run/fingerprint.h"
 #include "tled/run/timeline.h"
+#include "tled/run/tled_frame.h"
 #include "tled/run/tled_live.h"
 #include "tled/run/tled_words.h"
 #include "volume/body.h"
@@ -81,14 +82,22 @@ static int check_levels(const struct options *o, err *e)
     return 0;
 }
 
-static int check_end(const struct options *o, err *e)
+static int check_results(struct options *o, err *e)
+{
+    for (int i = 0; i < o->results.count; i++)
+        if (results_read(o->results.value[i], "--results", &o->which, e))
+            return -1;
+    return 0;
+}
+
+static int check_end(struct options *o, err *e)
 {
     if (o->checkpoint_every > 0 && !o->checkpoint && !o->restart)
         return err_usage(e, "--checkpoint-every without --checkpoint or --restart; expected one of them");
     int ends = (o->seconds >= 0) + (o->steps > 0) + (o->rest >= 0);
     if (ends > 1)
         return err_usage(e, "-t, -n and --rest are three ways to end; expected one of them");
-    if (check_log(o, e) || check_levels(o, e))
+    if (check_log(o, e) || check_levels(o, e) || check_results(o, e))
         return -1;
     if (live_check(o, e))
         return -1;
@@ -266,68 +275,6 @@ static int take_frames(session *s, bool changed, err *e)
     return count < 0 ? -1 : failed;
 }
 
-/* Writes it first: who waits for it need not wait for what is to be said of it. */
-static int put_frame(session *s, const frame *f, err *e)
-{
-    if (model_write_frame(s->stage.writer, f, e) || out_failed(s->stage.sink, e))
-        return -1;
-    const model_array *u = frame_find(f, "node.displacement");
-    if (u && u->rows == s->problem.nodes)
-        folds_add(&s->folds, f->time, u->f64);
-    return 0;
-}
-
-/* Where the probe is, and what pushes it; live, not before its first pose. */
-static int add_probe(const session *s, frame *f, const double *displacement, err *e)
-{
-    if (!s->collider.poses)
-        return 0;
-    if (!s->live) {
-        const collider_moment now = collider_moment_at(&s->collider, f->time);
-        return collider_add(&s->problem, &now, f, &s->m, displacement, e);
-    }
-    const collider_moment *now = live_moment(s->live);
-    return now ? collider_add(&s->problem, now, f, &s->m, displacement, e) : 0;
-}
-
-/* Where the bodies are, and what the tissue pulls them with. */
-static int add_bodies(session *s, frame *f, const double *displacement, err *e)
-{
-    const tled_problem *p = &s->problem;
-    if (!bodies_count(p))
-        return 0;
-    if (s->live)
-        return bodies_add(p, s->folds.threads, live_values(s->live), displacement, f, &s->m, e);
-    double *value = mem_array(p->script->curves, 3 * sizeof *value, "the bodies", e);
-    if (!value)
-        return -1;
-    tled_curves(p, f->time, value);
-    const int failed = bodies_add(p, s->folds.threads, value, displacement, f, &s->m, e);
-    free(value);
-    return failed;
-}
-
-static int write_frame(void *context, double time, const field_values *state, err *e)
-{
-    session *s = context;
-    frame f = {.index = s->next_frame++, .time = time};
-    bool whole = !fields_lend(&s->problem.fields, FIELD_IN_FRAMES, state, &f, &s->m, e) &&
-                 !add_probe(s, &f, state->of[TLED_DISPLACEMENT], e) &&
-                 !add_bodies(s, &f, state->of[TLED_DISPLACEMENT], e);
-    int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
-    frame_free(&f);
-    if (s->live)
-        live_written(s->live);
-    return result;
-}
-
-static int replay_frame(void *context, const frame *f, err *e)
-{
-    session *s = context;
-    s->next_frame = f->index + 1;
-    return put_frame(s, f, e);
-}
-
 static void checked(void *context, int64_t step, const monitor_reading *reading, double remaining, int64_t cut,
                     double damping)
 {
@@ -379,7 +326,7 @@ static int begin_checkpoints(session *s, const struct options *o, err *e)
         return s->checkpoint ? 0 : -1;
     s->run.point = checkpoint_take(s->checkpoint, &s->problem);
     s->run.first = false;
-    return checkpoint_replay(s->checkpoint, replay_frame, s, e);
+    return checkpoint_replay(s->checkpoint, tled_frame_replay, s, e);
 }
 
 /* Ends the log and the output. Where there is a checkpoint, which then goes, both
@@ -464,7 +411,9 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
     int threads = tool_threads(s->t, e);
     s->threads = s->run.device && threads > 0 ? pool_create(threads, e) : NULL;
     /* Where a device computes, processors are free for frames. */
-    return s->threads ? folds_make(&s->folds, &s->problem, &s->m, s->run.device->monitor ? threads : 1, e) : -1;
+    if (!s->threads || folds_make(&s->folds, &s->problem, &s->m, s->run.device->monitor ? threads : 1, e))
+        return -1;
+    return tled_frame_results(s, o, e);
 }
 
 /* What the run is asked for, and whom it calls. */
@@ -475,7 +424,7 @@ static void set_run(session *s, const struct options *o)
     s->run.every = o->every > 0 ? o->every : 0;
     s->run.first = (s->run.every > 0 || s->live) && !s->started;
     s->run.context = s;
-    s->run.frame = write_frame;
+    s->run.frame = tled_frame_write;
     s->run.checked = checked;
     s->run.cut = say_cut;
     s->cut = 1;
@@ -572,6 +521,8 @@ out:
     end_checkpoints(&s, &e);
     live_destroy(s.live);
     pool_destroy(s.threads);
+    results_destroy(s.results);
+    free(s.activation);
     folds_free(&s.folds);
     tled_problem_free(&s.problem);
     collider_free(&s.collider);

@@ -27,7 +27,7 @@ typedef struct shown {
     bool placed; /* a pose came by then */
     collider_moment at;
     double came;   /* s, by clock_now: of a pose that is new in it; 0: none is */
-    double *value; /* the curves' values, where there are bodies; owned */
+    double *value; /* the curves' values, where there are bodies or results; owned */
     int64_t room;
 } shown;
 
@@ -329,7 +329,7 @@ static int show(live *l, double time, double came, err *e)
     to->came = came;
     if (to->placed)
         to->at = collider_moment_at(c, time);
-    if (!bodies_count(p))
+    if (!bodies_count(p) && !l->s->results)
         return 0;
     if (MEM_ROOM(&to->value, &to->room, 3 * p->script->curves, "the live run", e))
         return -1;

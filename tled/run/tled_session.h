@@ -6,6 +6,7 @@
 
 #include "cli/progress.h"
 #include "model/stage.h"
+#include "results/results.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/support.h"
@@ -33,6 +34,8 @@ typedef struct session {
     int64_t cut;            /* parts of a step, as said last */
     double stable;          /* s: at rest */
     folds folds;            /* of the frames written */
+    results *results;       /* that frames get; NULL: none; owned */
+    double *activation;     /* volumes: of the frame that is written, where there are results; owned */
     struct live *live;      /* NULL: not a live run, nor a replay; owned */
     notes warnings;
 } session;

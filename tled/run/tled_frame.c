@@ -1,0 +1,97 @@
+#include "tled/run/tled_frame.h"
+
+#include "base/mem.h"
+#include "tled/problem/bodies.h"
+#include "tled/run/tled_live.h"
+
+#include <stdlib.h>
+
+int tled_frame_results(session *s, const struct options *o, err *e)
+{
+    if (!o->which)
+        return 0;
+    s->activation = mem_array(s->problem.volumes, sizeof *s->activation, "the results", e);
+    return s->activation ? results_create(&s->results, &s->m, o->which, s->folds.threads, e) : -1;
+}
+
+/* Writes it first: who waits for it need not wait for what is to be said of it. */
+static int put_frame(session *s, const frame *f, err *e)
+{
+    if (model_write_frame(s->stage.writer, f, e) || out_failed(s->stage.sink, e))
+        return -1;
+    const model_array *u = frame_find(f, "node.displacement");
+    if (u && u->rows == s->problem.nodes)
+        folds_add(&s->folds, f->time, u->f64);
+    return 0;
+}
+
+/* Where the probe is, and what pushes it; live, not before its first pose. */
+static int add_probe(const session *s, frame *f, const double *displacement, err *e)
+{
+    if (!s->collider.poses)
+        return 0;
+    if (!s->live) {
+        const collider_moment now = collider_moment_at(&s->collider, f->time);
+        return collider_add(&s->problem, &now, f, &s->m, displacement, e);
+    }
+    const collider_moment *now = live_moment(s->live);
+    return now ? collider_add(&s->problem, now, f, &s->m, displacement, e) : 0;
+}
+
+/* The curves' values at a frame's time. *own is the caller's to free. NULL with e filled. */
+static const double *curves_at(const session *s, double time, double **own, err *e)
+{
+    *own = NULL;
+    if (s->live)
+        return live_values(s->live);
+    *own = mem_array(s->script.curves, 3 * sizeof **own, "a frame", e);
+    if (*own)
+        tled_curves(&s->problem, time, *own);
+    return *own;
+}
+
+static int add_results(session *s, frame *f, const double *value, err *e)
+{
+    if (!s->results)
+        return 0;
+    for (int32_t i = 0; i < s->problem.volumes; i++)
+        s->activation[i] = tled_activation(&s->problem, i, value);
+    return results_add(s->results, f, s->activation, e);
+}
+
+/* Where the bodies are, and what the tissue pulls them with; and what elements hold. */
+static int add_looks(session *s, frame *f, const double *displacement, err *e)
+{
+    double *own;
+    if (!bodies_count(&s->problem) && !s->results)
+        return 0;
+    const double *value = curves_at(s, f->time, &own, e);
+    const int failed = (!value && !s->live) ||
+                               bodies_add(&s->problem, s->folds.threads, value, displacement, f, &s->m, e) ||
+                               add_results(s, f, value, e)
+                           ? -1
+                           : 0;
+    free(own);
+    return failed;
+}
+
+int tled_frame_write(void *context, double time, const field_values *state, err *e)
+{
+    session *s = context;
+    frame f = {.index = s->next_frame++, .time = time};
+    bool whole = !fields_lend(&s->problem.fields, FIELD_IN_FRAMES, state, &f, &s->m, e) &&
+                 !add_probe(s, &f, state->of[TLED_DISPLACEMENT], e) &&
+                 !add_looks(s, &f, state->of[TLED_DISPLACEMENT], e);
+    int result = whole && !put_frame(s, &f, e) && !(s->checkpoint && checkpoint_add(s->checkpoint, &f, e)) ? 0 : -1;
+    frame_free(&f);
+    if (s->live)
+        live_written(s->live);
+    return result;
+}
+
+int tled_frame_replay(void *context, const frame *f, err *e)
+{
+    session *s = context;
+    s->next_frame = f->index + 1;
+    return put_frame(s, f, e);
+}

@@ -1,0 +1,20 @@
+/* The frames that tled-run writes: the fields of a state, and what is told beside them: the probe, the bodies, the
+ * results that were asked for. All is the session's.
+ */
+#ifndef SINEW_TLED_FRAME_H
+#define SINEW_TLED_FRAME_H
+
+#include "tled/run/options.h"
+#include "tled/run/tled_session.h"
+
+/* Makes what --results asks for, once the session has its problem and its folds, whose threads it takes. -1 with e
+ * filled. */
+int tled_frame_results(session *s, const struct options *o, err *e);
+
+/* run_setup's, with a session: writes a state as a frame. */
+int tled_frame_write(void *context, double time, const field_values *state, err *e);
+
+/* The same of a frame that a checkpoint has as it was written. */
+int tled_frame_replay(void *context, const frame *f, err *e);
+
+#endif
