@@ -67,7 +67,7 @@ typedef struct console {
     images *images;
     expression_names expressions; /* "@smile", of a face */
     double *level;                /* muscles, then expressions: as asked for last */
-    double *value;                /* nodes: what colours tell of; console_show's own */
+    colouring_room colours;       /* console_show's own, once a case is open */
     atomic_int colour;            /* a colouring */
     struct {
         char id[CONSOLE_WORD], line[CONSOLE_LINE];

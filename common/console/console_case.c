@@ -69,8 +69,7 @@ static int read_body(console *c, const console_case *is, err *e)
     if (c->face && is->expressions && expression_names_read(&c->expressions, is->expressions, e))
         return -1;
     c->level = mem_array((muscle ? muscle->rows : 0) + c->expressions.count, sizeof *c->level, "muscles", e);
-    c->value = mem_array(model_count(m, "node"), sizeof *c->value, "colours", e);
-    if (!c->level || !c->value)
+    if (!c->level || colouring_room_make(&c->colours, m, e))
         return -1;
     if ((!c->face || is->body) && around_read(&c->around, is, &c->body.body, e))
         return -1;
@@ -142,6 +141,7 @@ static void command_of_compute(const console *c, bool replay, command *to)
     add_records(c, 0, replay, to);
     if (c->face) {
         add_option(to, "--precision", "single");
+        add_option(to, "--results", "activation");
         add_option(to, "--expressions", c->cases.list[c->open].expressions);
         return;
     }
@@ -308,8 +308,7 @@ void console_close(console *c)
     expression_names_free(&c->expressions);
     free(c->level);
     c->level = NULL;
-    free(c->value);
-    c->value = NULL;
+    colouring_room_free(&c->colours);
     c->open = -1;
     c->replaying = false;
 }

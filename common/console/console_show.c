@@ -229,7 +229,7 @@ static void show_positions(console *c, const frame *f, const double *u)
     const model_array *skin = *c->around.skin ? frame_find(f, name) : NULL;
     if (skin && skin->type == MODEL_F64 && skin->rows == geometry_skin(c->scene))
         is.skin = skin->f64;
-    colouring_fill((colouring)atomic_load(&c->colour), &c->body.body, f, c->value, &is);
+    colouring_fill((colouring)atomic_load(&c->colour), &c->colours, f, &is);
     mail *made = geometry_positions(c->scene, &is, &e);
     c->making += .2 * (clock_now() - began - c->making);
     web_send(c->web, -1, MAIL_POSITIONS, made);

@@ -141,11 +141,14 @@ static int take_image(console *c, const char *line, err *e)
 
 static int take_colour(console *c, const char *name, err *e)
 {
+    char words[COLOURING_WORDS];
     const int is = colouring_find(name);
     if (need_case(c, e))
         return -1;
-    if (is < 0)
-        return err_set(e, NULL, 0, "colour '%.60s'; expected own, displacement, speed or quality", name);
+    if (is < 0) {
+        colouring_words(words);
+        return err_set(e, NULL, 0, "colour '%.60s'; expected one of %s", name, words);
+    }
     atomic_store(&c->colour, is);
     return 0;
 }

@@ -5,6 +5,7 @@
 #include "base/num.h"
 #include "cli/spelling.h"
 #include "mesh/gradient.h"
+#include "mesh/node_values.h"
 #include "mesh/quality.h"
 #include "model/source.h"
 #include "results/results.h"
@@ -319,22 +320,9 @@ void field_free(field *f)
     *f = (field){0};
 }
 
-static void add_elements(const field *f, const model_array *node, double *sum, int32_t *count)
-{
-    for (int64_t n = 0; n < f->count; n++)
-        for (int c = 0; c < node->columns && !isnan(f->value[n]); c++) {
-            int32_t i = node->i32[n * node->columns + c];
-            if (f->folds)
-                sum[i] = count[i] ? fmin(sum[i], f->value[n]) : f->value[n];
-            else
-                sum[i] += f->value[n];
-            count[i] += !f->folds || !count[i];
-        }
-}
-
 double *field_at_nodes(const field *f, const model *m, err *e)
 {
-    int64_t nodes = model_count(m, "node");
+    const int64_t nodes = model_count(m, "node");
     const model_array *node = f->of_elements ? model_need(m, "element.node", e) : NULL;
     double *value = mem_array(nodes, sizeof *value, "a field", e);
     if (!value || !f->of_elements) {
@@ -342,15 +330,10 @@ double *field_at_nodes(const field *f, const model *m, err *e)
             memcpy(value, f->value, (size_t)nodes * sizeof *value);
         return value;
     }
-    int32_t *count = node ? mem_array(nodes, sizeof *count, "a field", e) : NULL;
-    if (!count) {
+    if (!node || node_values(node, f->value, f->folds ? NODE_LEAST : NODE_MEAN, value, nodes, e)) {
         free(value);
         return NULL;
     }
-    add_elements(f, node, value, count);
-    for (int64_t n = 0; n < nodes; n++)
-        value[n] = count[n] ? value[n] / count[n] : (double)NAN;
-    free(count);
     return value;
 }
 

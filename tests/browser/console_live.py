@@ -150,6 +150,11 @@ def face(t, page):
     t.check("colours tell of the elements' quality", page.until("sinew.state.colour === 'quality' && sinew.view.touchable().range && "
                                                                  "sinew.view.touchable().range[1] >= 1", LONG), page.get("sinew.view.touchable().range"))
     t.check("by a legend", page.until("document.getElementById('legend-name').textContent === 'quality, J'"))
+    Select(page.find("#colouring")).select_by_value("stress")
+    t.check("or of von Mises' stress", page.until("sinew.state.colour === 'stress' && sinew.view.touchable().range && "
+                                                  "sinew.view.touchable().range[1] >= 10", LONG), page.get("sinew.view.touchable().range"))
+    t.check("with its unit", page.until("document.getElementById('legend-name').textContent === 'von Mises stress, Pa'"))
+    Select(page.find("#colouring")).select_by_value("quality")
     page.type("#gy", "-9.81")
     t.check("gravity is the state's", page.until("sinew.state.tool.settings.gravity.value === '0,-9.81,0'", LONG), page.get("sinew.state.tool"))
     page.open()

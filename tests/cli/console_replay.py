@@ -57,7 +57,7 @@ def act_on_face(page):
         ok(page.until(lambda p: p.state["colour"] == colour, LONG), f"face: coloured by {colour}", page.state["colour"])
     ok(page.state["tool"]["settings"]["gravity"]["value"] == "0,0,-9.81", "face: the state keeps gravity", page.state["tool"])
     page.send("colour blue")
-    ok(page.heard("colour 'blue'; expected own, displacement, speed or quality", LONG), "face: another colour is refused", page.said)
+    ok(page.heard("colour 'blue'; expected one of own, displacement, speed, quality, stress", LONG), "face: another colour is refused", page.said)
 
 
 def act_on_tissue(page, up):
@@ -92,7 +92,7 @@ def try_face(console, records):
     process.send_signal(signal.SIGINT)
     process.wait(LONG)
     record = record_of(records, "muscle-1", "tled")
-    same_frames("face", "tled-run", f"'{bin_folder}/tled-run' -q --precision single --replay '{record}' <'{face}'")
+    same_frames("face", "tled-run", f"'{bin_folder}/tled-run' -q --precision single --results activation --replay '{record}' <'{face}'")
 
 
 def try_killed(console, records):

@@ -104,27 +104,51 @@ static void try_colours(const model *m)
     err e = {0};
     frame f = {0};
     double *u = mem_array(3 * nodes, sizeof *u, "displacements", &e), off = 0;
-    double *value = mem_array(nodes, sizeof *value, "values", &e);
+    colouring_room room;
+    if (colouring_room_make(&room, m, &e) || !room.results) {
+        ok(false, "room for colours: %s", e.text);
+        return;
+    }
+    const double *value = room.value;
     model_array *v = frame_add(&f, m, "node.velocity", &e);
     geometry_frame plain = {.u = u}, quality = {.u = u}, speed = {.u = u};
     for (int64_t n = 0; n < nodes; n++)
         u[3 * n] = -.2 * rest[3 * n];
     for (int64_t n = 0; v && n < nodes; n++)
         v->f64[3 * n + 1] = -3 * rest[3 * n];
-    colouring_fill(COLOURING_DISPLACEMENT, m, &f, value, &plain);
+    colouring_fill(COLOURING_DISPLACEMENT, &room, &f, &plain);
     ok(!plain.value, "displacements need no values");
-    colouring_fill(COLOURING_QUALITY, m, &f, value, &quality);
+    colouring_fill(COLOURING_QUALITY, &room, &f, &quality);
     for (int64_t n = 0; quality.value && n < nodes; n++)
         off = fmax(off, fabs(value[n] - .8));
     ok(quality.value == value && off < 1e-12, "the quality is J at each node, to %g", off);
     ok(quality.low > .69 && quality.low < .8 + 1e-12 && quality.high >= .8, "within round ends");
-    colouring_fill(COLOURING_SPEED, m, &f, value, &speed);
+    colouring_fill(COLOURING_SPEED, &room, &f, &speed);
     near_(speed.value ? value[nodes - 1] : 0, 3 * rest[3 * (nodes - 1)], 1e-12, "the speed is a velocity's length");
     near_(speed.high, .5, 1e-12, "up to 1, 2 or 5 times a power of ten");
+    geometry_frame stress = {.u = u}, stretch = {.u = u}, fibre = {.u = u};
+    colouring_fill(COLOURING_STRESS, &room, &f, &stress);
+    ok(!stress.value, "no stress without displacements in the frame");
+    memcpy(frame_add(&f, m, "node.displacement", &e)->f64, u, 3 * (size_t)nodes * sizeof *u);
+    const double young = model_find(m, "material.E")->f64[0], poisson = model_find(m, "material.nu")->f64[0];
+    const double mises = .2 * young / (1 + poisson);
+    colouring_fill(COLOURING_STRESS, &room, &f, &stress);
+    off = 0;
+    for (int64_t n = 0; stress.value && n < nodes; n++)
+        off = fmax(off, fabs(value[n] / mises - 1));
+    ok(stress.value == value && off < 1e-6, "von Mises' stress, 2 mu times the strain, to %g", off);
+    ok(stress.low == 0 && stress.high >= mises && stress.high <= 2.5 * mises, "up to a round end");
+    colouring_fill(COLOURING_STRETCH, &room, &f, &stretch);
+    near_(stretch.value ? value[0] : 0, 1, 1e-6, "the largest stretch is that of the sides");
+    colouring_fill(COLOURING_FIBRE, &room, &f, &fibre);
+    near_(fibre.value ? value[0] : 0, 1, 0, "where there are no fibres it is 1");
+    char words[COLOURING_WORDS];
+    colouring_words(words);
+    ok(!strcmp(words, "own, displacement, speed, quality, stress, stretch, stretch.fibre, energy"), "all: %s", words);
     ok(colouring_find("blue") < 0 && colouring_find("quality") == COLOURING_QUALITY, "by name");
     frame_free(&f);
     free(u);
-    free(value);
+    colouring_room_free(&room);
 }
 
 static void write_text(const char *path, const char *text)

@@ -19,6 +19,16 @@ import {byId, element, exactly, figures, paced, renew, Slider} from "./widgets.j
 const SIDES = ["expression", "left", "right", "middle", ""];
 const UP = new Vector3(0, 1, 0);
 
+// What colourings are called; others by their own names.
+const COLOURINGS = {
+    own: "its own colour",
+    stress: "von Mises stress",
+    stretch: "largest stretch",
+    "stretch.fibre": "stretch of fibres",
+    energy: "strain energy"
+};
+const called = (name) => COLOURINGS[name] || name;
+
 // What two muscles of the two sides have in common: their name without the side.
 export const pairOf = (name) => name.toLowerCase().replace(/(^|[_\-. ])(left|right|l|r)(?=$|[_\-. ])/g, "$1");
 
@@ -351,8 +361,8 @@ export class Face {
     offerColours(state) {
         const offered = state.colours || [];
         const names = ["own", "displacement", ...offered.filter((name) => name !== "displacement")];
-        renew(byId("colouring"), names.join(),
-            () => names.map((name) => element("option", {value: name}, name === "own" ? "its own colour" : name)));
+        renew(
+            byId("colouring"), names.join(), () => names.map((name) => element("option", {value: name}, called(name))));
         this.units = state.units || {};
         if (state.colour && state.colour !== this.toldColour) this.setColouring(state.colour);
         this.toldColour = state.colour;
@@ -395,7 +405,7 @@ export class Face {
     byValues(item) {
         const [low, high] = item.range || [0, 1];
         this.view.colourBy("values", low, high);
-        this.legend(this.colouring, figures(low), figures(high), this.units[this.colouring] || "");
+        this.legend(called(this.colouring), figures(low), figures(high), this.units[this.colouring] || "");
     }
 
     legend(name, low, high, unit) {
