@@ -92,8 +92,8 @@ ELEMENT_FUNCTION real real_exp_less(real x)
 }
 
 /* ln(1 + f) for 1 + f from 2^(-1/2) to 2^(1/2): with s = f/(2 + f), 2 artanh s = f - s (f - R), R = 2 s^2/3 + 2 s^4/5
- * + ...; the rest of this series is below a tenth of a unit in the last place. plus: what is added to it. */
-ELEMENT_FUNCTION real powers_log(real f, real plus)
+ * + ...; the rest of this series is below a tenth of a unit in the last place. added: what is added to it. */
+ELEMENT_FUNCTION real powers_log(real f, real added)
 {
     const real s = f / (2 + f), z = s * s;
 #ifdef ELEMENT_SINGLE
@@ -105,7 +105,7 @@ ELEMENT_FUNCTION real powers_log(real f, real plus)
     q = z * (R(2. / 9) + q);
 #endif
     q = z * (R(2. / 3) + z * (R(2. / 5) + z * (R(2. / 7) + q)));
-    return f - (s * (f - q) - plus);
+    return f - (s * (f - q) - added);
 }
 
 /* ln(u + rest), where rest is 0 or at most half a unit in u's last place, and exact: u + rest - 1 where that is small.
