@@ -14,9 +14,9 @@ const char *const material_edit_arrays[LAW_ALL_KEYS] = {LAW_KEYS(KEY_ARRAY) LAW_
 
 double *material_edit_value(material *of, int key)
 {
-    if (key < LAW_OWN_KEYS)
-        return &of->value[key];
-    return key == LAW_density ? &of->density : &of->peak;
+#define KEY_VALUE(key, unit, low, high, meaning) &of->key,
+    double *const common[] = {LAW_COMMON_KEYS(KEY_VALUE)};
+    return key < LAW_OWN_KEYS ? &of->value[key] : common[key - LAW_OWN_KEYS];
 }
 
 static void clear_keys(material *of, unsigned keys)

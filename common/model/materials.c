@@ -50,11 +50,24 @@ static int parse_name(const keyfile *k, err *e)
 
 /* ---- the table in a model */
 
-/* The array of a key, made where there is none: of a law's own keys, which are nan where a material has none. */
+/* Whether materials may lack a key: one of a law, or an optional one. Its array is nan for them. */
+static bool may_lack(int key)
+{
+    return key < LAW_OWN_KEYS || key >= LAW_OPTIONAL;
+}
+
+/* The value that goes into the array; nan: none. */
+static double stored(material *of, int key)
+{
+    const double value = *material_edit_value(of, key);
+    return key >= LAW_OPTIONAL && value == 0 ? NAN : value;
+}
+
+/* The array of a key, made where there is none and materials may lack it. */
 static model_array *key_array(model *m, int key, err *e)
 {
     const char *name = material_edit_arrays[key];
-    if (key >= LAW_OWN_KEYS)
+    if (!may_lack(key))
         return model_need(m, name, e);
     model_array *a = model_find(m, name);
     if (a)
@@ -74,8 +87,8 @@ static int row_store(model *m, int64_t at, material of, uint64_t given, err *e)
     if (given & 1 && model_set_text(law, at, of.law->name, e))
         return -1;
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
-        const double value = *material_edit_value(&of, k);
-        if (k < LAW_OWN_KEYS ? isnan(value) && !model_find(m, material_edit_arrays[k]) : !(given >> (k + 1) & 1))
+        const double value = stored(&of, k);
+        if (may_lack(k) ? isnan(value) && !model_find(m, material_edit_arrays[k]) : !(given >> (k + 1) & 1))
             continue;
         model_array *a = key_array(m, k, e);
         if (!a)
@@ -88,8 +101,8 @@ static int row_store(model *m, int64_t at, material of, uint64_t given, err *e)
 /* Removes the arrays of keys that no material has any more. */
 static void drop_unused(model *m)
 {
-    for (int k = 0; k < LAW_OWN_KEYS; k++) {
-        const model_array *a = model_find(m, material_edit_arrays[k]);
+    for (int k = 0; k < LAW_ALL_KEYS; k++) {
+        const model_array *a = may_lack(k) ? model_find(m, material_edit_arrays[k]) : NULL;
         bool used = !a;
         for (int64_t i = 0; !used && i < a->rows; i++)
             used = !isnan(a->f64[i]);
@@ -98,11 +111,20 @@ static void drop_unused(model *m)
     }
 }
 
+/* Bits of the optional keys that are given. */
+static unsigned optional_keys(material of)
+{
+    unsigned keys = 0;
+    for (int k = LAW_OPTIONAL; k < LAW_ALL_KEYS; k++)
+        keys |= (unsigned)!isnan(stored(&of, k)) << k;
+    return keys;
+}
+
 int materials_put(model *m, const char *const *name, const material *of, int64_t count, err *e)
 {
     unsigned used = 1U << LAW_density | 1U << LAW_peak;
     for (int64_t i = 0; i < count; i++)
-        used |= material_edit_keys(&of[i]);
+        used |= material_edit_keys(&of[i]) | optional_keys(of[i]);
     if (model_axis_add(m, "material", count, e) || !model_add(m, "material.name", e) ||
         !model_add(m, "material.law", e))
         return -1;
@@ -136,7 +158,7 @@ int materials_make(model *m, const material *of, err *e)
     char words[KNOWN_WORDS];
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
         const double value = *material_edit_value(&checked, k);
-        if (!(k < LAW_OWN_KEYS && isnan(value)) && !material_edit_valid(k, value, words))
+        if (!(may_lack(k) && isnan(stored(&checked, k))) && !material_edit_valid(k, value, words))
             return err_set(e, NULL, 0, "%s=%g is not allowed; expected %s", law_key_name((law_key)k), value, words);
     }
     return materials_put(m, &name, of, 1, e);
@@ -243,8 +265,7 @@ static int change_row(model *m, int64_t at, const material_edit *edit, const cha
     material of;
     if (row_of(m, at, &of, e) || material_edit_apply(&of, edit, place, line, e) || row_store(m, at, of, edit->given, e))
         return -1;
-    if (edit->given & ((UINT64_C(2) << LAW_OWN_KEYS) - 1)) /* the law or a key of its own */
-        drop_unused(m);
+    drop_unused(m);
     return 0;
 }
 
@@ -487,10 +508,25 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
     if (take_optional(m, i, to, e) || check_foreign(m, i, to->law, e) || check_together(m, i, to, e) ||
         value_of(m, i, LAW_density, NAN, &to->density, e) || value_of(m, i, LAW_peak, 0, &to->peak, e))
         return -1;
+    for (int k = LAW_OPTIONAL; k < LAW_ALL_KEYS; k++)
+        if (value_of(m, i, k, law_key_usual((law_key)k), material_edit_value(to, k), e))
+            return -1;
     if (isfinite(material_bulk(to)) && material_mu(to) > 0)
         return 0;
     values_words(to, words, sizeof words);
     return err_set(e, m->stream, 0, "material, row %" PRId64 ": %s is beyond what can be computed", i, words);
+}
+
+bool material_muscle(const material *a, double curve[MUSCLE_NUMBERS])
+{
+    memset(curve, 0, MUSCLE_NUMBERS * sizeof *curve);
+    if (a->passive == 0 && a->optimum == 1)
+        return false;
+    curve[MUSCLE_LESS] = 1 / a->optimum - 1;
+    curve[MUSCLE_PASSIVE] = a->passive * a->peak / a->optimum;
+    curve[MUSCLE_STIFFENING] = a->stiffening;
+    curve[MUSCLE_STRAIGHT] = a->straight - 1;
+    return true;
 }
 
 double material_young(const material *a)

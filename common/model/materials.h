@@ -15,6 +15,7 @@
 #include "base/in.h"
 #include "model/model.h"
 #include "physics/law.h"
+#include "physics/muscle_numbers.h"
 
 #include <math.h>
 
@@ -22,6 +23,7 @@ typedef struct material {
     const law_row *law;
     double value[LAW_OWN_KEYS]; /* of the law's keys: LAW_E and so on, in their units; nan where it has no such key */
     double density, peak;       /* kg/m3, Pa */
+    double optimum, passive, stiffening, straight; /* of its muscles; 0: not given, so the usual value */
 } material;
 
 /* Neo-Hookean, E 3000 Pa, nu 0.49, density 1000 kg/m3 (W&M section 4.2); peak 30000 Pa, which is not in the paper. */
@@ -57,7 +59,7 @@ int32_t materials_find(const model *m, const char *name);
 int materials_unknown(const model *m, const char *name, const char *place, int64_t line, err *e);
 
 /* Material i, checked: a model may have been edited by hand. A key of its law that has no value is an error, so is a
- * value of a key that its law does not have. No peak is 0. */
+ * value of a key that its law does not have. No peak is 0; optional keys that are not given have their usual value. */
 int materials_of(const model *m, int64_t i, material *to, err *e);
 
 /* Of every volume, checked; the caller frees them. NULL with e filled. */
@@ -86,6 +88,10 @@ material_numbers material_numbers_of(const material *a);
 /* Of an element, from the materials of the volumes: its volume's, or what lies between those of the two that it is mixed
  * of. */
 material_numbers materials_of_element(const materials_map *map, int64_t element);
+
+/* The curves of its muscles (physics/muscle.h), from values that are given, as materials_of gives them. Returns whether
+ * they differ from the plain ones, of optimum 1 without passive stress. */
+bool material_muscle(const material *a, double curve[MUSCLE_NUMBERS]);
 
 /* mu and K at rest, in Pa. */
 static inline double material_mu(const material *a)

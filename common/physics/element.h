@@ -12,6 +12,7 @@
 
 #include "physics/form_maths.h"
 #include "physics/hourglass.h"
+#include "physics/muscle.h"
 
 /* One component of a vector field at the eight corners, and all three. */
 typedef struct element_corners {
@@ -31,11 +32,15 @@ typedef struct element_law {
     real c[FORM_NUMBERS], hourglass[HOURGLASS_NUMBERS];
 } element_law;
 
-/* Unit direction at rest, and the active stress a s (Pa): level times peak. */
+/* Unit direction at rest; the active stress (Pa): activation times peak, over the optimum; the muscle's curves. */
 typedef struct element_fibre {
     element_vector along;
     real tension;
+    muscle_curves curves;
 } element_fibre;
+
+/* What of a fibre is looked at: nothing; its active stress, with the curves at 0; all. To steppers a constant. */
+enum { ELEMENT_NO_MUSCLE, ELEMENT_MUSCLE, ELEMENT_CURVED_MUSCLE };
 
 /* The modes of one component: sums and differences along x, then y, then z. */
 ELEMENT_FUNCTION element_modes element_modes_of(element_corners u)
@@ -70,22 +75,6 @@ ELEMENT_FUNCTION element_tensor element_gradient(element_modes x, element_modes 
     return h;
 }
 
-/* f(l), l the fibre's stretch: 9 (l - .4)^2 on .4 to .6, 1 - 4 (1 - l)^2 to 1.4, 9 (l - 1.6)^2 to 1.6, else 0. */
-ELEMENT_FUNCTION real element_force_length(real l)
-{
-    real low = 9 * (l - R(.4)) * (l - R(.4)), middle = 1 - 4 * (1 - l) * (1 - l);
-    real high = 9 * (l - R(1.6)) * (l - R(1.6));
-    real f = REAL_SELECT(l < R(.6), low, REAL_SELECT(l <= R(1.4), middle, high));
-    return REAL_SELECT(l < R(.4), REAL_ZERO, REAL_SELECT(l > R(1.6), REAL_ZERO, f));
-}
-
-/* Its derivative. */
-ELEMENT_FUNCTION real element_force_length_slope(real l)
-{
-    real f = REAL_SELECT(l < R(.6), 18 * (l - R(.4)), REAL_SELECT(l <= R(1.4), 8 * (1 - l), 18 * (l - R(1.6))));
-    return REAL_SELECT(l < R(.4), REAL_ZERO, REAL_SELECT(l > R(1.6), REAL_ZERO, f));
-}
-
 /* F a0. */
 ELEMENT_FUNCTION element_vector element_fibre_now(element_tensor h, element_vector a)
 {
@@ -99,27 +88,99 @@ ELEMENT_FUNCTION real element_length(element_vector a)
     return real_sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
 }
 
-/* P of the muscle's active stress S = a s f(l)/l a0 (x) a0: a s f(l)/l (F a0) (x) a0. No fibre (a0 = 0): none. */
-ELEMENT_FUNCTION element_tensor element_active(element_tensor h, element_fibre fibre)
+/* t m (x) a0. */
+ELEMENT_FUNCTION element_tensor element_along(real t, element_vector m, element_vector a)
 {
-    element_vector a = fibre.along, m = element_fibre_now(h, a);
-    real l = element_length(m);
-    real t = fibre.tension * element_force_length(l) / REAL_SELECT(l > 0, l, REAL_ZERO + 1);
     element_tensor p = {t * m.x * a.x, t * m.x * a.y, t * m.x * a.z, t * m.y * a.x, t * m.y * a.y,
                         t * m.y * a.z, t * m.z * a.x, t * m.z * a.y, t * m.z * a.z};
     return p;
 }
 
-/* P (Pa) of all that an element's tissue does at H: of its law, and of the muscles along its fibres. What is not active
- * is not looked at. Steppers, monitors and results take the stress from here. */
-ELEMENT_FUNCTION element_tensor element_stress(form f, element_tensor h, const real *c, element_fibre fibre,
-                                               int is_active, element_fibre second, int is_second_active)
+/* P of the muscle's active stress S = a s f(l)/l a0 (x) a0: a s f(l)/l (F a0) (x) a0. No fibre (a0 = 0): none. */
+ELEMENT_FUNCTION element_tensor element_active(element_tensor h, element_fibre fibre)
+{
+    element_vector a = fibre.along, m = element_fibre_now(h, a);
+    real l = element_length(m);
+    real t = fibre.tension * muscle_force_length(l) / REAL_SELECT(l > 0, l, REAL_ZERO + 1);
+    return element_along(t, m, a);
+}
+
+#ifndef ELEMENT_FORCES_ALONE
+
+/* lambda - 1 of lambda = |F a0|, |a0| = 1, from the displacement gradient, so that float keeps small strains. */
+ELEMENT_FUNCTION real element_fibre_strain(element_tensor h, element_vector a, real lambda)
+{
+    const element_vector d = {h.xx * a.x + h.xy * a.y + h.xz * a.z, h.yx * a.x + h.yy * a.y + h.yz * a.z,
+                              h.zx * a.x + h.zy * a.y + h.zz * a.z};
+    return (2 * (a.x * d.x + a.y * d.y + a.z * d.z) + (d.x * d.x + d.y * d.y + d.z * d.z)) / (1 + lambda);
+}
+
+/* P of a muscle with curves of its own: sigma/lambda (F a0) (x) a0, sigma as in muscle.h. With curves of 0 the bits of
+ * element_active. */
+ELEMENT_FUNCTION element_tensor element_curved(element_tensor h, element_fibre fibre)
+{
+    const element_vector a = fibre.along, m = element_fibre_now(h, a);
+    const real lambda = element_length(m);
+    const real beyond = muscle_beyond(fibre.curves, element_fibre_strain(h, a, lambda));
+    const real sigma = fibre.tension * muscle_force_length(lambda + lambda * fibre.curves.less) +
+                       fibre.curves.passive * muscle_passive(fibre.curves, beyond);
+    return element_along(sigma / REAL_SELECT(lambda > 0, lambda, REAL_ZERO + 1), m, a);
+}
+
+#ifdef REAL_IS_DOUBLE
+/* From numbers of a model: a0; its muscle's curves; what of the element is the muscle's. Without active stress. */
+ELEMENT_FUNCTION element_fibre element_fibre_of(const float *along, double share, const double *curve)
+{
+    const element_fibre fibre = {
+        {along[0], along[1], along[2]},
+        0,
+        {curve[MUSCLE_LESS], share * curve[MUSCLE_PASSIVE], curve[MUSCLE_STIFFENING], curve[MUSCLE_STRAIGHT]}};
+    return fibre;
+}
+
+/* What of such a fibre is to be looked at: ELEMENT_MUSCLE and so on. */
+ELEMENT_FUNCTION int element_fibre_which(element_fibre of)
+{
+    if (of.curves.passive != 0 || of.curves.less != 0)
+        return ELEMENT_CURVED_MUSCLE;
+    return of.tension != 0 ? ELEMENT_MUSCLE : ELEMENT_NO_MUSCLE;
+}
+
+/* What a fibre's passive curve holds, J/m3 by volume at rest: d lambda = optimum dl. No fibre holds nothing, whatever
+ * the optimum. */
+ELEMENT_FUNCTION double element_fibre_energy(element_tensor h, element_fibre fibre)
+{
+    const element_vector a = fibre.along;
+    const muscle_curves c = fibre.curves;
+    if (c.passive == 0 || (a.x == 0 && a.y == 0 && a.z == 0))
+        return 0;
+    const double strain = element_fibre_strain(h, a, element_length(element_fibre_now(h, a)));
+    return c.passive / (1 + c.less) * muscle_passive_sum(c, muscle_beyond(c, strain));
+}
+#endif
+
+#endif
+
+ELEMENT_FUNCTION element_tensor element_muscle(element_tensor h, element_fibre fibre, int which)
+{
+#ifndef ELEMENT_FORCES_ALONE
+    if (which == ELEMENT_CURVED_MUSCLE)
+        return element_curved(h, fibre);
+#endif
+    (void)which;
+    return element_active(h, fibre);
+}
+
+/* P (Pa) of all that an element's tissue does at H: of its law, and of the muscles along its fibres, of each of which is
+ * looked at what `which` tells: ELEMENT_MUSCLE and so on. Steppers, monitors and results take the stress from here. */
+ELEMENT_FUNCTION element_tensor element_stress(form f, element_tensor h, const real *c, element_fibre fibre, int which,
+                                               element_fibre second, int which_second)
 {
     element_tensor p = form_stress(f, h, c);
-    if (is_active)
-        p = element_sum(p, element_active(h, fibre));
-    if (is_second_active)
-        p = element_sum(p, element_active(h, second));
+    if (which)
+        p = element_sum(p, element_muscle(h, fibre, which));
+    if (which_second)
+        p = element_sum(p, element_muscle(h, second, which_second));
     return p;
 }
 
@@ -139,12 +200,12 @@ ELEMENT_FUNCTION element_corners element_gather(real px, real py, real pz, eleme
 
 /* As element_force, with a second fibre. */
 ELEMENT_FUNCTION element_field element_force_of_two(form f, hourglass_kind kind, element_field u, element_shape shape,
-                                                    element_law law, element_fibre fibre, int is_active,
-                                                    element_fibre second, int is_second_active)
+                                                    element_law law, element_fibre fibre, int which,
+                                                    element_fibre second, int which_second)
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_gradient(x, y, z, shape.slope);
-    element_tensor p = element_stress(f, h, law.c, fibre, is_active, second, is_second_active);
+    element_tensor p = element_stress(f, h, law.c, fibre, which, second, which_second);
     const hourglass_force held = hourglass_of(kind, element_hourglass_modes(x, y, z), h, shape, law.hourglass);
     const hourglass_modes *m = &held.f;
     if (kind == HOURGLASS_PHYSICAL)
@@ -155,12 +216,12 @@ ELEMENT_FUNCTION element_field element_force_of_two(form f, hourglass_kind kind,
     return force;
 }
 
-/* The internal forces at the corners (N): what the element pulls with, for displacements u (m). is_active false: the
- * fibre is not looked at. */
+/* The internal forces at the corners (N): what the element pulls with, for displacements u (m). which: ELEMENT_MUSCLE
+ * and so on. */
 ELEMENT_FUNCTION element_field element_force(form f, hourglass_kind kind, element_field u, element_shape shape,
-                                             element_law law, element_fibre fibre, int is_active)
+                                             element_law law, element_fibre fibre, int which)
 {
-    return element_force_of_two(f, kind, u, shape, law, fibre, is_active, fibre, 0);
+    return element_force_of_two(f, kind, u, shape, law, fibre, which, fibre, ELEMENT_NO_MUSCLE);
 }
 
 #endif

@@ -116,11 +116,11 @@ ELEMENT_FUNCTION hourglass_force element_any_hourglass(hourglass_kind kind, hour
 
 /* As element_force of element.h. */
 ELEMENT_FUNCTION element_field element_any_force(form f, hourglass_kind kind, element_field u, const element_any *s,
-                                                 element_law law, element_fibre fibre, int is_active)
+                                                 element_law law, element_fibre fibre, int which)
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_any_twist(s, &x, &y, &z);
-    element_tensor p = element_stress(f, h, law.c, fibre, is_active, fibre, 0);
+    element_tensor p = element_stress(f, h, law.c, fibre, which, fibre, ELEMENT_NO_MUSCLE);
     const hourglass_force held = element_any_hourglass(kind, element_hourglass_modes(x, y, z), h, s, law.hourglass);
     const hourglass_modes *m = &held.f;
     if (kind == HOURGLASS_PHYSICAL)

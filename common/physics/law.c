@@ -238,6 +238,13 @@ const char *law_key_unit(law_key key)
     return key_units[key];
 }
 
+double law_key_usual(law_key key)
+{
+    static const double usual[LAW_ALL_KEYS] = {
+        [LAW_optimum] = 1, [LAW_passive] = 0, [LAW_stiffening] = 6.6, [LAW_straight] = 1.4};
+    return key < (law_key)LAW_OPTIONAL ? NAN : usual[key];
+}
+
 /* Appends the names of a group's keys, `between` between them. */
 static void add_group(unsigned group, const char *between, char to[LAW_WORDS])
 {

@@ -23,15 +23,23 @@
     X(mu, "Pa", 1e-3, 1e12, "shear modulus of chains that never lock")                                                 \
     X(lock, "1", 1, 1e3, "stretch at which chains lock")
 
-/* The same of what every material has, whatever its law. */
+/* The same of what every material may have, whatever its law. Those after peak are optional: they shape the curves of a
+ * muscle (muscle.h), and have a usual value where they are not given. */
 #define LAW_COMMON_KEYS(X)                                                                                             \
     X(density, "kg/m3", 1e-3, 1e6, "mass density at rest")                                                             \
-    X(peak, "Pa", 0, 1e12, "peak active stress of its muscles")
+    X(peak, "Pa", 0, 1e12, "peak active stress of its muscles")                                                        \
+    X(optimum, "1", .5, 2, "stretch at which its muscles are strongest, 1 if not given")                               \
+    X(passive, "1", 0, 10, "factor of the passive stress of its muscles, over peak, 0 if not given")                   \
+    X(stiffening, "1", .1, 20, "exponent of the passive stress of its muscles, 6.6 if not given")                      \
+    X(straight, "1", 1, 2, "stretch over optimum from which passive stress is linear, 1.4 if not given")
 
 #define LAW_KEY_INDEX(key, unit, low, high, meaning) LAW_##key,
 /* LAW_E and so on; those of laws first. */
 typedef enum law_key { LAW_KEYS(LAW_KEY_INDEX) LAW_COMMON_KEYS(LAW_KEY_INDEX) LAW_ALL_KEYS } law_key;
-enum { LAW_OWN_KEYS = LAW_density }; /* how many are of laws */
+enum {
+    LAW_OWN_KEYS = LAW_density, /* how many are of laws */
+    LAW_OPTIONAL = LAW_optimum
+}; /* the first that is */
 #undef LAW_KEY_INDEX
 
 enum { LAW_GROUPS = 3 }; /* the most groups of keys of any law */
@@ -90,6 +98,9 @@ bool law_keys_equal(const law_row *a, const law_row *b);
 
 const char *law_key_name(law_key key);
 const char *law_key_unit(law_key key);
+
+/* The value of an optional key that is not given; nan of others. */
+double law_key_usual(law_key key);
 
 /* Whether law_row.refuses refuses the values. */
 bool law_refuses(const law_row *of, const double *value, char what[LAW_WORDS], char expected[LAW_WORDS]);

@@ -15,25 +15,44 @@ typedef struct step_matrix {
     double at[9][9]; /* symmetric; 1/s2; row 3 k + j: component k, axis j */
 } step_matrix;
 
-/* Of the active stress: with m = F a0, l = |m| and t(l) = a s f(l)/l, P = t m (x) a0, so
+/* Of a muscle's stress: with m = F a0, l = |m| and t(l) = sigma(l)/l (muscle.h), P = t m (x) a0, so
  *     A = t I (x) a0 a0 + (t'/l) (m (x) a0) (x) (m (x) a0). */
 typedef struct stability_muscle {
     element_vector now; /* m */
     double t, slope;    /* slope: t'/l */
 } stability_muscle;
 
+/* Whether a fibre pulls at all. */
+ELEMENT_FUNCTION int stability_pulls(element_fibre fibre)
+{
+    return fibre.tension != 0 || fibre.curves.passive != 0;
+}
+
+/* d sigma / d lambda, Pa: what the muscle alone stiffens by along its fibre; below 0 where its force falls. strain:
+ * lambda - 1. */
+ELEMENT_FUNCTION double stability_fibre_slope(element_fibre fibre, double lambda, double strain)
+{
+    const muscle_curves c = fibre.curves;
+    const double by_l = fibre.tension * muscle_force_length_slope(lambda + lambda * c.less) +
+                        c.passive * muscle_passive_slope(c, muscle_beyond(c, strain));
+    return by_l + by_l * c.less;
+}
+
 ELEMENT_FUNCTION stability_muscle stability_muscle_at(element_tensor h, element_fibre fibre)
 {
     stability_muscle s = {element_fibre_now(h, fibre.along), 0, 0};
-    const double l = element_length(s.now);
+    const muscle_curves c = fibre.curves;
+    const double l = element_length(s.now), strain = element_fibre_strain(h, fibre.along, l);
     if (!(l > 0))
         return s;
-    s.t = fibre.tension * element_force_length(l) / l;
-    s.slope = (fibre.tension * element_force_length_slope(l) - s.t) / (l * l);
+    s.t = (fibre.tension * muscle_force_length(l + l * c.less) +
+           c.passive * muscle_passive(c, muscle_beyond(c, strain))) /
+          l;
+    s.slope = (stability_fibre_slope(fibre, l, strain) - s.t) / (l * l);
     return s;
 }
 
-ELEMENT_FUNCTION void stability_add_active(element_tensor h, element_fibre fibre, double a[9][9])
+ELEMENT_FUNCTION void stability_add_muscle(element_tensor h, element_fibre fibre, double a[9][9])
 {
     const stability_muscle s = stability_muscle_at(h, fibre);
     const double along[3] = {fibre.along.x, fibre.along.y, fibre.along.z}, m[3] = {s.now.x, s.now.y, s.now.z};
@@ -49,10 +68,10 @@ ELEMENT_FUNCTION void stability_matrix(form f, const double *c, double density, 
                                        element_fibre fibre, element_fibre second, step_matrix *a)
 {
     form_tangent(f, h, c, a->at);
-    if (fibre.tension != 0)
-        stability_add_active(h, fibre, a->at);
-    if (second.tension != 0)
-        stability_add_active(h, second, a->at);
+    if (stability_pulls(fibre))
+        stability_add_muscle(h, fibre, a->at);
+    if (stability_pulls(second))
+        stability_add_muscle(h, second, a->at);
     for (int r = 0; r < 9; r++)
         for (int s = 0; s <= r; s++)
             a->at[s][r] = a->at[r][s] *= 4 / (density * side[r % 3] * side[s % 3]);
@@ -121,11 +140,11 @@ ELEMENT_FUNCTION element_tensor stability_scaled(element_tensor a, element_vecto
     return b;
 }
 
-/* Adds the active stress's part of A y to *to. Returns no less than what it does to any z of length 1: z:(A z). */
+/* Adds a muscle's part of A y to *to. Returns no less than what it does to any z of length 1: z:(A z). */
 ELEMENT_FUNCTION double stability_muscle_along(element_tensor h, element_fibre fibre, element_tensor y,
                                                element_tensor *to)
 {
-    if (fibre.tension == 0)
+    if (!stability_pulls(fibre))
         return 0;
     const stability_muscle s = stability_muscle_at(h, fibre);
     const element_vector a = fibre.along, m = s.now;

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/near.h"
 #include "cli/spelling.h"
+#include "mesh/element_fibres.h"
 #include "mesh/element_motion.h"
 #include "mesh/gradient.h"
 #include "model/materials.h"
@@ -28,10 +29,11 @@ struct results {
     element_mesh mesh;
     material *of_volume; /* owned */
     materials_map map;
+    element_fibres fibres;
     const int32_t *volume, *material; /* elements, volumes */
     int64_t materials;
-    const float *fraction, *fibre, *second; /* elements, elements x 3; NULL: none */
-    double *part;                           /* chunks x materials, J: owned */
+    const float *fraction; /* elements; NULL: 1 */
+    double *part;          /* chunks x materials, J: owned */
     /* Of the frame that is looked at: */
     const double *u, *activation; /* nodes x 3, m; volumes, NULL: nothing contracts */
     float *to[RESULTS];           /* of elements; NULL: not wanted */
@@ -77,18 +79,6 @@ int results_read(const char *list, const char *option, unsigned *which, err *e)
 
 /* ---- an element */
 
-/* The active stress along an element's fibre; share: of the element that this volume is. */
-static element_fibre fibre_of(const results *r, const float *along, int64_t element, int32_t volume, double share)
-{
-    element_fibre f = {{0, 0, 0}, 0};
-    if (!along || volume < 0)
-        return f;
-    f.along = (element_vector){along[3 * element], along[3 * element + 1], along[3 * element + 2]};
-    if (r->activation && isfinite(r->activation[volume]))
-        f.tension = share * r->activation[volume] * r->of_volume[volume].peak;
-    return f;
-}
-
 static element_tensor linear_stress(element_tensor h, const double *c)
 {
     const double mean = (h.xx + h.yy + h.zz) / 3, press = 3 * c[1] * mean;
@@ -118,29 +108,35 @@ static held held_of(const results *r, int64_t i)
 {
     const element_motion is = element_motion_of(&r->mesh, i, r->u);
     const material_numbers own = materials_of_element(&r->map, i);
-    const int32_t mix = r->map.mix ? r->map.mix[i] : -1;
-    const double share = mix < 0 ? 0 : (double)r->map.mixture[i];
     held to = {.h = is.h,
                .volume = is.volume * (r->fraction ? (double)r->fraction[i] : 1),
                .form = own.form,
-               .fibre = fibre_of(r, r->fibre, i, r->volume[i], 1 - share),
-               .second = fibre_of(r, r->second, i, mix, share)};
+               .fibre = element_fibres_first(&r->fibres, i, r->activation),
+               .second = element_fibres_second(&r->fibres, i, r->activation)};
     memcpy(to.c, own.c, sizeof to.c);
     return to;
 }
 
-static double energy_of_held(const held *of)
+/* Of its law alone, by volume at rest. */
+static double law_energy(const held *of)
 {
     return of->form == FORM_LINEAR ? linear_energy(of->h, of->c) : form_energy(of->form, of->h, of->c);
+}
+
+/* And of its muscles that are stretched. */
+static double energy_of_held(const held *of)
+{
+    return law_energy(of) + element_fibre_energy(of->h, of->fibre) + element_fibre_energy(of->h, of->second);
 }
 
 /* Cauchy's, P F^T / J, Pa: 3 x 3. nan where J is not above 0. Of what is linear the stress of small strains. */
 static void cauchy_of(const held *of, double to[9])
 {
     const element_tensor h = of->h;
-    element_tensor p = of->form == FORM_LINEAR ? linear_stress(h, of->c)
-                                               : element_stress(of->form, h, of->c, of->fibre, of->fibre.tension != 0,
-                                                                of->second, of->second.tension != 0);
+    element_tensor p = of->form == FORM_LINEAR
+                           ? linear_stress(h, of->c)
+                           : element_stress(of->form, h, of->c, of->fibre, element_fibre_which(of->fibre), of->second,
+                                            element_fibre_which(of->second));
     const double volume = 1 + element_dilation(h);
     const element_tensor f = {1 + h.xx, h.yx, h.zx, h.xy, 1 + h.yy, h.zy, h.xz, h.yz, 1 + h.zz}; /* F^T */
     if (of->form != FORM_LINEAR)
@@ -213,14 +209,14 @@ static void put_element(const results *r, int64_t i, const held *of)
             close_row(r->to[k] + columns_of[k] * i, columns_of[k]);
 }
 
-/* What is mixed of two volumes holds its energy in the materials of both, by their shares. */
+/* What is mixed of two volumes holds its law's energy in the materials of both, by their shares; a muscle its own. */
 static void add_energy(const results *r, int64_t i, const held *of, double *sum)
 {
     const int32_t mix = r->map.mix ? r->map.mix[i] : -1;
-    const double share = mix < 0 ? 0 : (double)r->map.mixture[i], energy = of->volume * energy_of_held(of);
-    sum[r->material[r->volume[i]]] += (1 - share) * energy;
+    const double share = mix < 0 ? 0 : (double)r->map.mixture[i], energy = of->volume * law_energy(of);
+    sum[r->material[r->volume[i]]] += (1 - share) * energy + of->volume * element_fibre_energy(of->h, of->fibre);
     if (mix >= 0)
-        sum[r->material[mix]] += share * energy;
+        sum[r->material[mix]] += share * energy + of->volume * element_fibre_energy(of->h, of->second);
 }
 
 /* ---- a frame */
@@ -327,8 +323,7 @@ static int open_model(results *r, err *e)
     r->material = model_find(m, "volume.material")->i32;
     r->materials = model_count(m, "material");
     r->fraction = floats_of(m, "element.fraction");
-    r->fibre = floats_of(m, "element.fibre");
-    r->second = floats_of(m, "element.mixfibre");
+    r->fibres = element_fibres_of(m, &r->map);
     r->part = mem_array(pool_chunks(r->mesh.elements, CHUNK) * r->materials, sizeof *r->part, "the results", e);
     return r->part ? 0 : -1;
 }

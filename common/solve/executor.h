@@ -17,7 +17,8 @@
     X(FOLLOWERS, "pressure on a surface")                                                                              \
     X(WARP, "elements that turn: --warp")                                                                              \
     X(HISTORY, "history of elements, which the law needs")                                                             \
-    X(MIXTURES, "elements mixed of two volumes")
+    X(MIXTURES, "elements mixed of two volumes")                                                                       \
+    X(CURVES, "muscles with a passive stress or an optimum")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,

@@ -55,8 +55,8 @@ static void test_slope(void)
     double worst = 0;
     for (int i = 0; i < 110; i++) {
         double l = .35 + .0123 * i;
-        double numeric = (element_force_length(l + 1e-7) - element_force_length(l - 1e-7)) / 2e-7;
-        worst = fmax(worst, fabs(numeric - element_force_length_slope(l)));
+        double numeric = (muscle_force_length(l + 1e-7) - muscle_force_length(l - 1e-7)) / 2e-7;
+        worst = fmax(worst, fabs(numeric - muscle_force_length_slope(l)));
     }
     near_(worst, 0, 1e-5, "the force-length factor's slope");
 }

@@ -86,7 +86,7 @@ static element_field field_of(const double u[24])
 /* By the code under test. any: as a hexahedron of any shape. */
 static element_field field_of_forces(const tried *t, bool any, const double u[24])
 {
-    const element_fibre none = {{0, 0, 0}, 0};
+    const element_fibre none = {.tension = 0};
     if (any)
         return element_any_force(FORM_NEO_HOOKEAN, HOURGLASS_PHYSICAL, field_of(u), &t->any, t->law, none, false);
     return element_force(FORM_NEO_HOOKEAN, HOURGLASS_PHYSICAL, field_of(u), t->box, t->law, none, false);
@@ -315,7 +315,7 @@ static double largest(const tried *t, const double u[24])
 static double bound(const double side[3], const tried *t, const double u[24], double *j)
 {
     const element_field at = field_of(u);
-    const element_fibre none = {{0, 0, 0}, 0};
+    const element_fibre none = {.tension = 0};
     step_matrix a;
     const element_modes x = element_modes_of(at.x), y = element_modes_of(at.y), z = element_modes_of(at.z);
     const element_tensor h = element_gradient(x, y, z, t->box.slope);

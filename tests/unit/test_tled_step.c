@@ -3,7 +3,7 @@
  * of a block, found by power iteration. */
 // needs: tled/problem/state.c tled/problem/conforming.c tled/problem/conforming_step.c tled/problem/step.c
 // needs: tled/problem/script.c tled/problem/script_read.c tled/problem/script_nodes.c tled/problem/script_surface.c
-// needs: tled/problem/loads.c tled/problem/followers.c
+// needs: tled/problem/loads.c tled/problem/followers.c tled/problem/muscle_fibre.c
 // needs: tled/problem/script_move.c tled/problem/pose_fit.c
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c tled/problem/bodies.c
@@ -103,7 +103,7 @@ static double number(void)
 
 static element_fibre fibre_by_chance(double tension)
 {
-    element_fibre fibre = {{number(), number(), number()}, tension};
+    element_fibre fibre = {{number(), number(), number()}, tension, {0, 0, 0, 0}};
     const double length = element_length(fibre.along);
     fibre.along.x /= length, fibre.along.y /= length, fibre.along.z /= length;
     return fibre;
@@ -298,7 +298,8 @@ static void test_collapsed(void)
 static void test_no_range(void)
 {
     static const double side[3] = {.01, .01, .01};
-    const element_fibre none = {0}, lost = {{NAN, 0, 1}, 3000}, wild = {{0, 0, 1}, INFINITY};
+    const element_fibre none = {0}, lost = {{NAN, 0, 1}, 3000, {0, 0, 0, 0}},
+                        wild = {{0, 0, 1}, INFINITY, {0, 0, 0, 0}};
     const element_tensor rest = {0}, point = {-1, 0, 0, 0, -1, 0, 0, 0, -1}, broken = {0, 0, 0, 0, 0, NAN, 0, 0, 0};
     const stability_range range[] = {stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, point, none, none),
                                      stability_range_of(FORM_NEO_HOOKEAN, tissue, 1000, side, broken, none, none),
@@ -324,9 +325,9 @@ static void test_ranges(void)
 int main(void)
 {
     const element_tensor bent = {.2, .3, -.1, .05, -.2, .2, -.15, .1, .1}, rest = {0};
-    const element_fibre none = {0}, muscle = {{2. / 7, 3. / 7, 6. / 7}, 30000};
+    const element_fibre none = {0}, muscle = {{2. / 7, 3. / 7, 6. / 7}, 30000, {0, 0, 0, 0}};
     test_rest();
-    const element_fibre other = {{.6, -.64, .48}, 12000};
+    const element_fibre other = {{.6, -.64, .48}, 12000, {0, 0, 0, 0}};
     test_matrix(rest, none, none);
     test_matrix(rest, muscle, none);
     test_matrix(bent, none, none);

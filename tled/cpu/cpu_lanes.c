@@ -33,6 +33,12 @@ static inline const cpu_kind *kind_of(const cpu_work *w, int32_t volume)
     return (const cpu_kind *)w->kind + volume;
 }
 
+/* Whether a volume's muscle has curves of its own. */
+static inline bool is_curved(const cpu_work *w, int32_t volume)
+{
+    return w->p->curved && w->p->volume[volume].curved;
+}
+
 static inline real load(const void *array, int64_t at)
 {
     real x;
@@ -110,9 +116,22 @@ static inline void add_forces(void *sum, const rows_run *run, const element_corn
         add_row(sum, run, 0, 1, f);
 }
 
-static inline element_fibre fibre_of(const void *const along[3], const rows_run *run, real tension)
+/* A run's fibres. share: of the element that is the volume's tissue. which: ELEMENT_MUSCLE and so on, a constant. */
+static inline element_fibre fibre_of(const cpu_work *w, const void *const along[3], const rows_run *run, int32_t volume,
+                                     real share, int which)
 {
-    element_fibre fibre = {{load(along[0], run->cell), load(along[1], run->cell), load(along[2], run->cell)}, tension};
+    const double *curve = w->p->volume[volume].muscle;
+    element_fibre fibre = {.tension = REAL_ZERO};
+    if (which == ELEMENT_NO_MUSCLE)
+        return fibre;
+    fibre.along = (element_vector){load(along[0], run->cell), load(along[1], run->cell), load(along[2], run->cell)};
+    fibre.tension = share * (real_one)kind_of(w, volume)->tension;
+    if (which == ELEMENT_CURVED_MUSCLE) {
+        fibre.curves.less = REAL_ZERO + (real_one)curve[MUSCLE_LESS];
+        fibre.curves.passive = share * (real_one)curve[MUSCLE_PASSIVE];
+        fibre.curves.stiffening = REAL_ZERO + (real_one)curve[MUSCLE_STIFFENING];
+        fibre.curves.straight = REAL_ZERO + (real_one)curve[MUSCLE_STRAIGHT];
+    }
     return fibre;
 }
 
@@ -152,33 +171,27 @@ static inline element_law law_of_cells(const cpu_work *w, int64_t cell, real sha
 }
 
 static inline void run_forces(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control,
-                              bool active)
+                              int which)
 {
     const cpu_kind *kind = kind_of(w, run->volume);
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1; /* forces are linear in all below */
     const element_law law = law_of_kind(kind, share);
-    element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO};
-    if (active)
-        fibre = fibre_of(w->fibre, run, share * (real_one)kind->tension);
-    const element_field f = element_force(THE_FORM, control, moved_by(w, run), shape, law, fibre, active);
+    const element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, share, which);
+    const element_field f = element_force(THE_FORM, control, moved_by(w, run), shape, law, fibre, which);
     add_field(w, run, &f);
 }
 
 /* Elements mixed of two volumes. */
 static inline void mixed_forces(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control,
-                                bool active, bool second)
+                                int which, int which_second)
 {
-    const cpu_kind *kind = kind_of(w, run->volume), *mix = kind_of(w, run->mix);
     const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1, part = load(w->mixture, run->cell);
     const real own = share * (1 - part), other = share * part;
     const element_law law = law_of_cells(w, run->cell, share);
-    element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO}, mixfibre = fibre;
-    if (active)
-        fibre = fibre_of(w->fibre, run, own * (real_one)kind->tension);
-    if (second)
-        mixfibre = fibre_of(w->mixfibre, run, other * (real_one)mix->tension);
+    const element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
+    const element_fibre second = fibre_of(w, w->mixfibre, run, run->mix, other, which_second);
     const element_field f =
-        element_force_of_two(THE_FORM, control, moved_by(w, run), shape, law, fibre, active, mixfibre, second);
+        element_force_of_two(THE_FORM, control, moved_by(w, run), shape, law, fibre, which, second, which_second);
     add_field(w, run, &f);
 }
 
@@ -187,14 +200,18 @@ static inline void any_mixed_forces_of(const cpu_work *w, const rows_run *run, e
 {
     const bool active = w->fibre[0] && kind_of(w, run->volume)->tension != 0;
     const bool second = w->mixfibre[0] && kind_of(w, run->mix)->tension != 0;
-    if (active && second)
-        mixed_forces(w, run, shape, control, true, true);
+    if (w->fibre[0] && w->mixfibre[0] && (is_curved(w, run->volume) || is_curved(w, run->mix)))
+        mixed_forces(w, run, shape, control, ELEMENT_CURVED_MUSCLE, ELEMENT_CURVED_MUSCLE);
+    else if (w->fibre[0] && is_curved(w, run->volume))
+        mixed_forces(w, run, shape, control, ELEMENT_CURVED_MUSCLE, ELEMENT_NO_MUSCLE);
+    else if (active && second)
+        mixed_forces(w, run, shape, control, ELEMENT_MUSCLE, ELEMENT_MUSCLE);
     else if (active)
-        mixed_forces(w, run, shape, control, true, false);
+        mixed_forces(w, run, shape, control, ELEMENT_MUSCLE, ELEMENT_NO_MUSCLE);
     else if (second)
-        mixed_forces(w, run, shape, control, false, true);
+        mixed_forces(w, run, shape, control, ELEMENT_NO_MUSCLE, ELEMENT_MUSCLE);
     else
-        mixed_forces(w, run, shape, control, false, false);
+        mixed_forces(w, run, shape, control, ELEMENT_NO_MUSCLE, ELEMENT_NO_MUSCLE);
 }
 
 /* Apart from the loop, which is the faster without it. */
@@ -204,6 +221,15 @@ static __attribute__((noinline)) void any_mixed_forces(const cpu_work *w, const 
         any_mixed_forces_of(w, run, shape, HOURGLASS_PHYSICAL);
     else
         any_mixed_forces_of(w, run, shape, HOURGLASS_ISOTROPIC);
+}
+
+/* Elements of a muscle with curves of its own; likewise. */
+static __attribute__((noinline)) void curved_forces(const cpu_work *w, const rows_run *run, element_shape shape)
+{
+    if (w->p->control.kind == HOURGLASS_PHYSICAL)
+        run_forces(w, run, shape, HOURGLASS_PHYSICAL, ELEMENT_CURVED_MUSCLE);
+    else
+        run_forces(w, run, shape, HOURGLASS_ISOTROPIC, ELEMENT_CURVED_MUSCLE);
 }
 
 /* One component of a node that the script displaces or pushes. */
@@ -272,10 +298,12 @@ static inline void layer_forces(const cpu_work *w, const rows_layer *l, element_
     for (const rows_run *run = w->r->run + l->run; run < w->r->run + l->run + l->runs; run++)
         if (run->mix >= 0)
             any_mixed_forces(w, run, shape);
+        else if (w->fibre[0] && is_curved(w, run->volume))
+            curved_forces(w, run, shape);
         else if (w->fibre[0] && kind_of(w, run->volume)->tension != 0)
-            run_forces(w, run, shape, control, true);
+            run_forces(w, run, shape, control, ELEMENT_MUSCLE);
         else
-            run_forces(w, run, shape, control, false);
+            run_forces(w, run, shape, control, ELEMENT_NO_MUSCLE);
 }
 
 static void slab_pass(const cpu_work *w, int32_t which)

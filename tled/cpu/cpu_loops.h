@@ -541,16 +541,17 @@ static int64_t cpu_computed(const cpu_state *s)
     .destroy = cpu_destroy, .step = cpu_step, .get = cpu_get, .save = cpu_save, .restore = cpu_restore,                \
     .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes, .computed = cpu_computed
 
-const tled_executor CPU_EXECUTOR = {.is = {.device = "cpu",
-                                           .features = EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES,
-                                           .forms = (1U << FORM_STEPPED) - 1,
-                                           .unusable = cpu_unusable},
-                                    .create = boxes_create,
-                                    CPU_FUNCTIONS};
+const tled_executor CPU_EXECUTOR = {
+    .is = {.device = "cpu",
+           .features = EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES | EXECUTOR_CURVES,
+           .forms = (1U << FORM_STEPPED) - 1,
+           .unusable = cpu_unusable},
+    .create = boxes_create,
+    CPU_FUNCTIONS};
 
 const tled_executor CPU_EXECUTOR_OF_MESHES = {
     .is = {.device = "cpu",
-           .features = EXECUTOR_MESHES | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES,
+           .features = EXECUTOR_MESHES | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES | EXECUTOR_CURVES,
            .forms = (1U << FORM_STEPPED) - 1,
            .unusable = cpu_unusable},
     .create = mesh_create,

@@ -54,21 +54,35 @@ static inline element_law mesh_law(const real_one *at, hourglass_kind control)
     return law;
 }
 
-/* What pulls along the fibres; *active: any of them does. */
-static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, bool *active)
+/* A lane of a group: an element whose muscle has curves of its own. */
+static inline void mesh_curves(muscle_curves *to, const double *curve, real_one share, int lane)
 {
-    element_fibre fibre = {{REAL_ZERO, REAL_ZERO, REAL_ZERO}, REAL_ZERO};
-    *active = false;
+    to->less[lane] = (real_one)curve[MUSCLE_LESS];
+    to->passive[lane] = share * (real_one)curve[MUSCLE_PASSIVE];
+    to->stiffening[lane] = (real_one)curve[MUSCLE_STIFFENING];
+    to->straight[lane] = (real_one)curve[MUSCLE_STRAIGHT];
+}
+
+/* What pulls along the fibres; *which: ELEMENT_MUSCLE and so on, the most of any of them. */
+static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, int *which)
+{
+    element_fibre fibre = {.tension = REAL_ZERO};
+    *which = ELEMENT_NO_MUSCLE;
     for (int lane = 0; w->fibre[0] && lane < LANES && group * LANES + lane < w->p->elements; lane++) {
         const int64_t i = group * LANES + lane;
-        const double tension = kind_of(w, w->p->element_volume[i])->tension;
-        if (tension == 0)
+        const int32_t volume = w->p->element_volume[i];
+        const double tension = kind_of(w, volume)->tension;
+        const real_one share = w->fraction ? ((const real_one *)w->fraction)[i] : 1;
+        if (tension == 0 && !is_curved(w, volume))
             continue;
-        *active = true;
+        if (is_curved(w, volume))
+            mesh_curves(&fibre.curves, w->p->volume[volume].muscle, share, lane);
+        if (*which != ELEMENT_CURVED_MUSCLE)
+            *which = is_curved(w, volume) ? ELEMENT_CURVED_MUSCLE : ELEMENT_MUSCLE;
         fibre.along.x[lane] = ((const real_one *)w->fibre[0])[i];
         fibre.along.y[lane] = ((const real_one *)w->fibre[1])[i];
         fibre.along.z[lane] = ((const real_one *)w->fibre[2])[i];
-        fibre.tension[lane] = (w->fraction ? ((const real_one *)w->fraction)[i] : 1) * (real_one)tension;
+        fibre.tension[lane] = share * (real_one)tension;
     }
     return fibre;
 }
@@ -77,6 +91,17 @@ static inline void mesh_store(real_one *to, const element_corners *f)
 {
     for (int i = 0; i < 8; i++)
         store(to, i * LANES, f->at[i]);
+}
+
+/* Compiled for each that `which` may be. */
+static inline element_field mesh_force(hourglass_kind control, element_field u, const element_any *shape,
+                                       element_law law, element_fibre fibre, int which)
+{
+    if (which == ELEMENT_CURVED_MUSCLE)
+        return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_CURVED_MUSCLE);
+    if (which == ELEMENT_MUSCLE)
+        return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_MUSCLE);
+    return element_any_force(THE_FORM, control, u, shape, law, fibre, ELEMENT_NO_MUSCLE);
 }
 
 /* The forces of groups; control: a constant. */
@@ -90,10 +115,9 @@ static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t t
         const element_law law = mesh_law(own, control);
         const element_field u = {mesh_corners(w->from[0], node), mesh_corners(w->from[1], node),
                                  mesh_corners(w->from[2], node)};
-        bool active;
-        const element_fibre fibre = mesh_fibre(w, group, &active);
-        const element_field f = active ? element_any_force(THE_FORM, control, u, &shape, law, fibre, true)
-                                       : element_any_force(THE_FORM, control, u, &shape, law, fibre, false);
+        int which;
+        const element_fibre fibre = mesh_fibre(w, group, &which);
+        const element_field f = mesh_force(control, u, &shape, law, fibre, which);
         mesh_store(force, &f.x);
         mesh_store(force + 8 * LANES, &f.y);
         mesh_store(force + 16 * LANES, &f.z);

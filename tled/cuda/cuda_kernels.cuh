@@ -66,7 +66,7 @@ static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda
     const cuda_kind &mix = v.kind[mixed.mix];
     const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
     const element_law law = law_of<L>(mixed.c, mixed.hourglass, share);
-    element_fibre fibre = {{0, 0, 0}, 0}, second = fibre;
+    element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}}, second = fibre;
     real tension = 0, tension_of_mix = 0;
     if (i < t.fibred) {
         tension = cell_tension(kind, p);
@@ -88,7 +88,7 @@ static __device__ element_field plain_force(const cuda_view<real> &v, const cuda
 {
     const real *stiff = p.law + L::LAW * volume;
     const element_law law = law_of<L>(stiff, stiff + L::COEFFICIENTS, share);
-    element_fibre fibre = {{0, 0, 0}, 0};
+    element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}};
     if (i < t.fibred) {
         const cuda_kind &kind = v.kind[volume];
         fibre.along = cell_along(t, i, v.fibre);

@@ -118,7 +118,7 @@ template <class S>
 static __device__ element_fibre look_fibre(const cuda_look<S> &l, const tile &t, int i, const float *along,
                                            uint32_t kind, double share)
 {
-    element_fibre fibre = {{0, 0, 0}, 0};
+    element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}};
     const int32_t contract = i < t.fibred && along ? l.view.kind[kind].contract : -1;
     if (contract < 0)
         return fibre;

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "physics/element.h"
 #include "tled/problem/conforming_step.h"
+#include "tled/problem/muscle_fibre.h"
 #include "tled/problem/followers.h"
 #include "tled/problem/pose_fit.h"
 
@@ -72,14 +73,6 @@ void bodies_free(bodies *b)
 
 /* ---- forces of an element */
 
-static element_fibre fibre_at(const float *along, int64_t element, double tension)
-{
-    element_fibre f = {{0, 0, 0}, 0};
-    if (along && tension != 0)
-        f = (element_fibre){{along[3 * element], along[3 * element + 1], along[3 * element + 2]}, tension};
-    return f;
-}
-
 static element_field field_at(const tled_problem *p, int64_t element, const double *displacement)
 {
     element_field u;
@@ -110,18 +103,17 @@ static element_field pull_of(const tled_problem *p, int64_t element, const doubl
     const tled_law of = tled_law_of(p, element);
     const element_field u = field_at(p, element, displacement);
     const element_fibre own =
-        fibre_at(p->fibre, element, share * (1 - mixture) * tled_tension(p, p->element_volume[element], value));
+        muscle_fibre_of(p, p->fibre, element, p->element_volume[element], share * (1 - mixture), value);
     if (p->conforming) {
         const conforming_hold hold = conforming_hold_of(p, element);
         const element_any shape = conforming_shape(p, element, &hold);
         return element_any_force(p->form, p->control.kind, u, &shape, law_at(&of, hold.law, share), own,
-                                 own.tension != 0);
+                                 element_fibre_which(own));
     }
     const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
-    const element_fibre other =
-        fibre_at(mix >= 0 ? p->mixfibre : NULL, element, mix >= 0 ? share * mixture * tled_tension(p, mix, value) : 0);
+    const element_fibre other = muscle_fibre_of(p, p->mixfibre, element, mix, share * mixture, value);
     return element_force_of_two(p->form, p->control.kind, u, box, law_at(&of, of.hourglass, share), own,
-                                own.tension != 0, other, other.tension != 0);
+                                element_fibre_which(own), other, element_fibre_which(other));
 }
 
 /* ---- sums */

@@ -1,5 +1,7 @@
 #include "tled/problem/conforming_step.h"
 
+#include "tled/problem/muscle_fibre.h"
+
 #include <math.h>
 
 element_any conforming_shape(const tled_problem *p, int64_t element, const conforming_hold *hold)
@@ -16,8 +18,8 @@ void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h,
     double(*l)[3] = p->conforming->element[element].root;
     double half[9][9];
     form_tangent(p->form, h, law.c, a->at);
-    if (fibre.tension != 0)
-        stability_add_active(h, fibre, a->at);
+    if (stability_pulls(fibre))
+        stability_add_muscle(h, fibre, a->at);
     for (int r = 0; r < 9; r++)
         for (int c = r + 1; c < 9; c++)
             a->at[r][c] = a->at[c][r];
@@ -70,13 +72,12 @@ void conforming_join(tled_problem *p)
 {
     conforming *c = p->conforming;
     const element_tensor rest = {0};
-    const element_fibre none = {0};
     const hourglass_modes still = {.xy = {0}};
     step_matrix a;
     for (int64_t i = 0; i < p->elements; i++) {
         c->element[i].stiffest = stiffest_of(p, i);
         const stability_twists t = conforming_twists(p, i, rest, &still);
-        conforming_matrix(p, i, rest, none, &a);
+        conforming_matrix(p, i, rest, muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1, NULL), &a);
         if (i && step_below(&a, conforming_room(p, i, t, c->square)))
             continue;
         double square = conforming_square(p, i, t, step_largest(&a));

@@ -1,6 +1,7 @@
 #include "tled/problem/deformed.h"
 
 #include "tled/problem/conforming_step.h"
+#include "tled/problem/muscle_fibre.h"
 
 static element_modes modes_of(const tled_problem *p, int64_t element, const double *displacement, int axis)
 {
@@ -31,6 +32,6 @@ deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, 
     }
     d.hourglass = hourglass_dot(&f.f, &d.modes) / 2; /* f.m = s.q: the energy is quadratic in q */
     d.dilation = element_dilation(d.h);
-    d.energy = form_energy(p->form, d.h, d.law.c);
+    d.energy = form_energy(p->form, d.h, d.law.c) + muscle_fibre_energy(p, element, d.h);
     return d;
 }

@@ -12,7 +12,7 @@ typedef struct deformed {
     tled_law law;
     double rest;      /* m3: volume at rest */
     double dilation;  /* J - 1 */
-    double energy;    /* J/m3, by volume at rest: of its strain, without what muscles do */
+    double energy;    /* J/m3, by volume at rest: of its strain and of muscles that are stretched, without what these do */
     double hourglass; /* J */
     hourglass_modes modes;
 } deformed;

@@ -219,6 +219,29 @@ static void hold_modes(const tled_problem *p, tled_law *law)
         64 * hourglass_stiffest(p->control.kind, law->hourglass, side) / (law->density * side[0] * side[1] * side[2]);
 }
 
+static const char *material_of_volume(const model *m, int64_t i)
+{
+    return model_find(m, "material.name")->str[model_find(m, "volume.material")->i32[i]];
+}
+
+/* The curves of a volume's muscle. */
+static int make_muscle(tled_volume *v, const model *m, int32_t i, const material *of, err *e)
+{
+    v->peak = of->peak;
+    v->optimum = of->optimum;
+    if (v->contract >= 0 && !(v->peak > 0))
+        return err_set(e, NULL, 0,
+                       "volume '%s' is to contract, but its material '%s' has no peak stress; expected peak=PASCAL",
+                       v->name, material_of_volume(m, i));
+    if (of->passive > 0 && !(v->peak > 0))
+        return err_set(e, NULL, 0,
+                       "material '%s' has passive=%g, a share of the peak stress, but no peak stress; expected "
+                       "peak=PASCAL",
+                       material_of_volume(m, i), of->passive);
+    v->curved = material_muscle(of, v->muscle);
+    return 0;
+}
+
 static int make_volume(tled_problem *p, const model *m, int32_t i, const material *of, err *e)
 {
     tled_volume *v = &p->volume[i];
@@ -228,15 +251,10 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, const materia
     v->law.mu = material_mu(of);
     v->law.bulk = material_bulk(of);
     v->law.density = of->density;
-    v->peak = of->peak;
     hold_modes(p, &v->law);
     v->square = square_at_rest(p, v);
     v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
-    if (v->contract >= 0 && !(v->peak > 0))
-        return err_set(e, NULL, 0,
-                       "volume '%s' is to contract, but its material '%s' has no peak stress; expected peak=PASCAL",
-                       v->name, model_find(m, "material.name")->str[model_find(m, "volume.material")->i32[i]]);
-    return 0;
+    return make_muscle(v, m, i, of, e);
 }
 
 static int make_volumes(tled_problem *p, const model *m, err *e)
@@ -250,6 +268,8 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
     for (int32_t i = 0; i < p->volumes; i++)
         if (make_volume(p, m, i, &of[i], e))
             goto out;
+    for (int32_t i = 0; i < p->volumes; i++)
+        p->curved |= p->volume[i].curved;
     for (int64_t i = 0; i < p->elements; i++)
         p->volume[p->element_volume[i]].elements++;
     status = 0;
@@ -410,7 +430,8 @@ double tled_activation(const tled_problem *p, int32_t volume, const double *valu
 
 double tled_tension(const tled_problem *p, int32_t volume, const double *value)
 {
-    return p->volume[volume].peak * tled_activation(p, volume, value);
+    const tled_volume *v = &p->volume[volume];
+    return v->peak * tled_activation(p, volume, value) / v->optimum;
 }
 
 void tled_curves(const tled_problem *p, double time, double *value)

@@ -9,6 +9,7 @@
 
 #include "physics/forms.h"
 #include "physics/hourglass_numbers.h"
+#include "physics/muscle_numbers.h"
 #include "solve/fields.h"
 #include "tled/problem/moves.h"
 #include "tled/problem/script.h"
@@ -29,11 +30,13 @@ typedef struct tled_law {
 typedef struct tled_volume {
     const char *name; /* borrowed */
     tled_law law;
-    double peak;               /* Pa */
-    double square;             /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
-    int64_t elements;          /* of it */
-    int64_t contract;          /* curve that sets its level, or -1 */
-    const struct law_row *row; /* its material's law, in the table of laws */
+    double peak, optimum;          /* Pa; the stretch at which its muscle is strongest */
+    double muscle[MUSCLE_NUMBERS]; /* its curves (muscle.h); all 0: the active one alone, strongest at rest */
+    bool curved;                   /* that they are not */
+    double square;                 /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
+    int64_t elements;              /* of it */
+    int64_t contract;              /* curve that sets its level, or -1 */
+    const struct law_row *row;     /* its material's law, in the table of laws */
 } tled_volume;
 
 typedef struct tled_problem {
@@ -65,6 +68,7 @@ typedef struct tled_problem {
     int32_t *force_curve;  /* entries: the curve whose value the node gets a share of */
     int32_t *force_spring; /* entries: the curve of a spring's factor, or -1 (loads.h) */
     double *force_share;   /* entries: 1 for a force, m2 for a traction, in all; N/m for a spring */
+    bool curved;           /* that any volume's muscle has curves of its own */
     const script *script;
     int64_t gravity;                   /* its curve, or -1 */
     double start;                      /* s: the model's time at the start */
@@ -141,7 +145,7 @@ static inline tled_law tled_law_of(const tled_problem *p, int64_t element)
 /* The activation of the muscle that a volume is, 0 to 1; 0 where none contracts. */
 double tled_activation(const tled_problem *p, int32_t volume, const double *value);
 
-/* The active stress of a volume (Pa): level times peak; value: of all curves. */
+/* The active stress of a volume (Pa): activation times peak, over the optimum; value: of all curves. */
 double tled_tension(const tled_problem *p, int32_t volume, const double *value);
 
 /* The sum of what acts on node n from outside (N, 3): gravity, forces, tractions and springs. value: all curves'

@@ -1,6 +1,7 @@
 #include "tled/problem/step.h"
 
 #include "tled/problem/conforming_step.h"
+#include "tled/problem/muscle_fibre.h"
 
 #include <math.h>
 
@@ -33,14 +34,39 @@ static double square_by(const tled_law *law, const tled_volume *v)
     return v->square * fmax(law->mu / v->law.mu, law->bulk / v->law.bulk) * v->law.density / law->density;
 }
 
-/* The square of the highest frequency of an element at rest; of one that is mixed perhaps a little more. */
-static double square_at_rest(const tled_problem *p, int64_t element)
+/* Without muscles; of an element that is mixed perhaps a little more. */
+static double square_of_law(const tled_problem *p, int64_t element)
 {
     const tled_volume *v = &p->volume[p->element_volume[element]];
     if (tled_mix(p, element) < 0)
         return v->square;
     const tled_law law = tled_law_of(p, element);
     return fmin(square_by(&law, v), square_by(&law, &p->volume[p->mix[element]]));
+}
+
+/* No less than what a passive muscle adds along its fibre, Pa: at l = 1, towards longer fibres. */
+static double stiffness_at_rest(element_fibre fibre)
+{
+    const element_tensor rest = {0};
+    const stability_muscle s = stability_muscle_at(rest, fibre);
+    return fmax(s.t, 0) + fmax(s.slope, 0);
+}
+
+/* What passive muscles add to the square at most: as much as along the shortest side. */
+static double square_of_muscles(const tled_problem *p, int64_t element)
+{
+    const double mixture = tled_mixture(p, element), least = fmin(fmin(p->side[0], p->side[1]), p->side[2]);
+    const double own =
+        stiffness_at_rest(muscle_fibre_of(p, p->fibre, element, p->element_volume[element], 1 - mixture, NULL));
+    const double other = stiffness_at_rest(muscle_fibre_of(p, p->mixfibre, element, tled_mix(p, element), mixture, NULL));
+    return 4 * (own + other) / (tled_law_of(p, element).density * least * least);
+}
+
+/* The square of the highest frequency of an element at rest, or a little more. */
+static double square_at_rest(const tled_problem *p, int64_t element)
+{
+    const double square = square_of_law(p, element);
+    return p->curved ? square + square_of_muscles(p, element) : square;
 }
 
 double step_at_rest(const tled_problem *p, int32_t *volume)

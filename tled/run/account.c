@@ -38,15 +38,6 @@ struct account {
     followers_work followers;
 };
 
-/* The antiderivative of element_force_length from 0: what a muscle of unit stress does from one stretch to another. */
-static double force_length_sum(double l)
-{
-    const double low = fmin(fmax(l, .4), .6) - .4, middle = fmin(fmax(l, .6), 1.4),
-                 high = fmin(fmax(l, 1.4), 1.6) - 1.6;
-    const double off = middle - 1;
-    return 3 * low * low * low + (middle - .6) - 4. / 3 * (off * off * off + .064) + 3 * (high * high * high + .008);
-}
-
 static double stretch_of(const float *along, int64_t i, element_tensor h)
 {
     const element_vector a = {along[3 * i], along[3 * i + 1], along[3 * i + 2]};
@@ -62,7 +53,8 @@ static double muscle_work(const account *a, int64_t i, int fibre, int32_t volume
     const double tension = (tled_tension(p, volume, a->before.curves) + tled_tension(p, volume, a->now.curves)) / 2;
     if (tension == 0)
         return 0;
-    return -rest * tension * (force_length_sum(is) - force_length_sum(was));
+    const double more = 1 + p->volume[volume].muscle[MUSCLE_LESS]; /* 1/optimum */
+    return -rest * tension / more * (muscle_force_length_sum(is * more) - muscle_force_length_sum(was * more));
 }
 
 static void add_muscles(account *a, int64_t i, const deformed *d, account_sums *sum)

@@ -6,6 +6,7 @@
 #include "mesh/element_place.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/deformed.h"
+#include "tled/problem/muscle_fibre.h"
 #include "tled/problem/loads.h"
 #include "tled/problem/step.h"
 
@@ -21,17 +22,6 @@ struct monitor_part { /* of one chunk */
     bool inverted;
 };
 
-/* along: elements x 3, or NULL; share: of the tissue that is the volume's. */
-static element_fibre fibre_of(const monitor *w, const float *along, int64_t i, int32_t volume, double share)
-{
-    element_fibre fibre = {0};
-    if (!along || volume < 0)
-        return fibre;
-    fibre.along = (element_vector){along[3 * i], along[3 * i + 1], along[3 * i + 2]};
-    fibre.tension = share * tled_tension(w->p, volume, w->curves);
-    return fibre;
-}
-
 static void take_frequency(struct monitor_part *part, int64_t i, double square)
 {
     part->sum.frequency = square;
@@ -43,7 +33,7 @@ static void add_conforming(const monitor *w, int64_t i, const deformed *d, struc
     const tled_problem *p = w->p;
     const stability_twists t = conforming_twists(p, i, d->h, &d->modes);
     step_matrix a;
-    conforming_matrix(p, i, d->h, fibre_of(w, p->fibre, i, p->element_volume[i], 1), &a);
+    conforming_matrix(p, i, d->h, muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1, w->curves), &a);
     if (!step_below(&a, conforming_room(p, i, t, part->sum.frequency)))
         take_frequency(part, i, w->raise * conforming_square(p, i, t, step_largest(&a)));
 }
@@ -57,8 +47,8 @@ static void add_step(const monitor *w, int64_t i, const deformed *d, element_sha
     const double slope = fmax(box.slope.x, fmax(box.slope.y, box.slope.z));
     const stability_twists t = stability_twists_of(p->control.kind, d->law.twists, slope, d->h, &d->modes);
     const double s = tled_mixture(p, i);
-    const element_fibre own = fibre_of(w, p->fibre, i, p->element_volume[i], 1 - s);
-    const element_fibre other = fibre_of(w, p->mixfibre, i, tled_mix(p, i), s);
+    const element_fibre own = muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1 - s, w->curves);
+    const element_fibre other = muscle_fibre_of(p, p->mixfibre, i, tled_mix(p, i), s, w->curves);
     const stability_range range = stability_range_with(step_range_of(p, &d->law, d->h, own, other), t);
     step_matrix a;
     if (range.high <= part->sum.frequency)

@@ -1,0 +1,18 @@
+/* The fibres of elements as the maths of an element takes them, in double: for the stable step, monitors and reports.
+ * Owns nothing.
+ */
+#ifndef SINEW_MUSCLE_FIBRE_H
+#define SINEW_MUSCLE_FIBRE_H
+
+#include "physics/element.h"
+#include "tled/problem/state.h"
+
+/* An element's fibre that belongs to a volume. along: elements x 3, NULL: there are none; volume below 0: likewise;
+ * share: what of the element is the volume's; value: of all curves, NULL: levels of 0. */
+element_fibre muscle_fibre_of(const tled_problem *p, const float *along, int64_t element, int32_t volume, double share,
+                              const double *value);
+
+/* What the passive curves of an element's muscles hold at H, J/m3 by volume at rest. */
+double muscle_fibre_energy(const tled_problem *p, int64_t element, element_tensor h);
+
+#endif
