@@ -1,5 +1,6 @@
 #include "mesh/energy.h"
 
+#include "mesh/element_fibres.h"
 #include "mesh/element_motion.h"
 #include "model/hourglass_text.h"
 #include "model/materials.h"
@@ -13,6 +14,7 @@ typedef struct view {
     element_mesh mesh;
     const double *u;
     hourglass_control control;
+    element_fibres fibres;
     bool is_old; /* of a release whose stiffness was kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8 */
 } view;
 
@@ -21,6 +23,13 @@ typedef struct view {
 static double material_energy(const material_numbers *of, element_tensor h)
 {
     return form_energy(of->form == FORM_LINEAR ? FORM_NEO_HOOKEAN : of->form, h, of->c);
+}
+
+/* What passive muscles hold; likewise. */
+static double muscles_energy(const element_fibres *of, int64_t element, element_tensor h)
+{
+    return element_fibre_energy(h, element_fibres_first(of, element, NULL)) +
+           element_fibre_energy(h, element_fibres_second(of, element, NULL));
 }
 
 /* The numbers by which modes are held. */
@@ -46,7 +55,7 @@ static void add_element(const view *v, int64_t element, const material_numbers *
         v->mesh.is_lattice ? hourglass_of(v->control.kind, is.modes, is.h, element_box(side[0], side[1], side[2]), hold)
                            : element_any_hourglass(v->control.kind, is.modes, is.h, &is.any, hold);
     to->scale += fraction * is.volume * mu;
-    to->strain += fraction * is.volume * material_energy(of, is.h);
+    to->strain += fraction * is.volume * (material_energy(of, is.h) + muscles_energy(&v->fibres, element, is.h));
     to->hourglass += fraction * hourglass_dot(&force.f, &is.modes) / 2;
 }
 
@@ -97,6 +106,7 @@ int energy_of(energy *to, const model *m, const frame *f, err *e)
     if (!law)
         return -1;
     const materials_map map = materials_map_of(m, law);
+    v.fibres = element_fibres_of(m, &map);
     const int64_t elements = model_count(m, "element");
     for (int64_t i = 0; i < elements; i++) {
         const material_numbers own = materials_of_element(&map, i);

@@ -8,8 +8,9 @@
 #include "model/model.h"
 
 typedef struct energy {
-    double strain, hourglass; /* J; strain without hourglass energy, and without what muscles do */
-    double scale;             /* J: the sum of mu V, beside which these may be rounding (quality_hourglass) */
+    double strain,
+        hourglass; /* J; strain without hourglass energy, with that of stretched muscles, without what these do */
+    double scale;  /* J: the sum of mu V, beside which these may be rounding (quality_hourglass) */
 } energy;
 
 /* -1 with e filled: the elements are no hexahedra, it is not known by what coefficient their modes were

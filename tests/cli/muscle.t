@@ -1,0 +1,93 @@
+#!/bin/sh
+# Muscles with curves of their own in tled-run: passive and active, bars that are pulled and pressed against figures by
+# a script of its own, by every executor of the processor; energies; a bar that is weak on the descending limb; mixed
+# elements; files of materials, and what is refused.
+# shellcheck source=tests/cli/lib.sh
+. "$(dirname "$0")/lib.sh"
+
+# block ARGS...: a block with the corner at the origin, of one muscle with fibres along x.
+block() {
+    awk -v muscle=1 "$@" -f tests/cli/block.awk
+}
+planes='0 displace -1,-1,-1,0,1,1 0,-,-
+0 displace -1,-1,-1,1,0,1 -,0,-
+0 displace -1,-1,-1,1,1,0 -,-,0'
+# bar PRESSURE: a script that pulls the end of a bar of 40 x 10 x 10 mm.
+bar() {
+    echo "$planes"
+    echo "0 force 0.04,0.005,0.005 0.008 $(awk -v p="$1" 'BEGIN { printf "%.9g", p * 1e-4 }'),0,0"
+}
+# stretched FILE: of a bar, its length and its side, as shares of those at rest.
+stretched() {
+    sinew info --get node.displacement.at.0.04,0.01,0.01 "$1" | awk '{ printf "%.7f %.7f", 1 + $1 / 0.04, 1 + $2 / 0.01 }'
+}
+# balance FILE: the worst share that a log's balance is of what was done and held.
+balance() {
+    awk -F '\t' 'NR > 1 { all = 0; for (i = 5; i <= 13; i++) all = all > $i * $i ? all : $i * $i
+        off = off > $14 * $14 ? off : $14 * $14; most = most > all ? most : all } END { print sqrt(off / most) + 0 }' "$1"
+}
+below() { # VALUE LIMIT NAME
+    is "$(awk -v a="$1" -v b="$2" 'BEGIN { print (a < b) }')" 1 "$3: $1"
+}
+
+# mu 5e3, K 2.5e5.
+block -v nx=4 -v ny=1 -v nz=1 -v h=0.01 -v E=14900.6622516556 -v nu=0.490066225165563 >"$T/bar"
+grep -v '^meta lattice' "$T/bar" >"$T/mesh"
+blemker='-m tissue.passive=.05 -m tissue.peak=3e5'
+
+# shellcheck disable=SC2086 # options of a material are words
+{
+    # pull PRESSURE LEVEL ARGS...
+    pull() {
+        bar "$1" >"$T/script"
+        level=$2
+        shift 2
+        tled-run -q -d cpu --rest 1e-7 --script "$T/script" -c "all=$level" $blemker "$@" <"$T/bar" >"$T/out"
+        stretched "$T/out"
+    }
+    read -r long wide <<X
+$(pull 43658.6 0)
+X
+    near "$long" 1.2 1e-5 "a passive muscle is pulled by 43658.6 Pa to 1.2"
+    near "$wide" 0.914693 1e-5 "and its sides"
+    near "$(pull -3791.05 0 | cut -d ' ' -f 1)" 0.8 1e-5 "pressed by 3791.05 Pa to .8"
+    near "$(pull 169659 0.5 | cut -d ' ' -f 1)" 1.2 1e-5 "half active, pulled by 169659 Pa to 1.2"
+    near "$(pull 122209 0.5 | cut -d ' ' -f 1)" 0.8 1e-5 "half active, it lifts 122209 Pa to .8"
+    bar 43658.6 >"$T/pull"
+    tled-run -q -d cpu --rest 1e-7 --script "$T/pull" $blemker <"$T/bar" >"$T/out"
+    near "$(stretched "$T/out" | cut -d ' ' -f 1)" 1.2 1e-5 "a muscle that is not asked to contract is as stiff"
+
+    for model in bar mesh; do
+        for precision in double single; do
+            first=
+            for set in plain AVX2 AVX-512; do
+                for threads in 1 2; do
+                    name="$model, $precision, $set, $threads threads"
+                    SINEW_VECTORS=$set tled-run -q --text -d cpu --precision $precision --threads $threads -n 2000 \
+                        --script "$T/pull" -c all=.2 $blemker <"$T/$model" >"$T/out" 2>"$T/said"
+                    if grep -q SINEW_VECTORS "$T/said"; then
+                        skip 1 "$name: this processor cannot"
+                        continue
+                    fi
+                    sum=$(sed -n '/^frame/,$p' "$T/out" | cksum)
+                    is "$sum" "${first:=$sum}" "$name: the same bytes"
+                done
+            done
+            tled-run -q -d cpu --precision $precision --rest 1e-4 --script "$T/pull" $blemker <"$T/$model" >"$T/out"
+            near "$(stretched "$T/out" | cut -d ' ' -f 1)" 1.2 1e-4 "$model, $precision: pulled to 1.2"
+        done
+    done
+
+    # Energies: a muscle that pulls itself up and stretches by its end's weight.
+    block -v nx=8 -v ny=3 -v nz=3 -v h=0.005 -v E=3000 -v nu=0.46 -v held=low >"$T/muscle"
+    printf '0 force 0.04,0.0075,0.0075 0.02 0,0,0\n.05 force 0.04,0.0075,0.0075 0.02 5,0,0\n' >"$T/stretch"
+    tled-run -q -d cpu -t 0.12 --dt 5e-5 -c all=0.3 -g 0,0,-9.81 --script "$T/stretch" $blemker --log "$T/log" \
+        --log-every .0001 <"$T/muscle" >"$T/out"
+    below "$(balance "$T/log")" 1e-3 "energies balance"
+    near "$(sinew info --get quality.hourglass "$T/out")" "$(awk -F '\t' 'END { print $NF }' "$T/log")" 1e-6 \
+        "sinew info has the same strain energy"
+    tled-run -q -d cpu -t 0.12 --dt 5e-5 -m tissue.optimum=1.2 -m tissue.straight=1.1 --log "$T/log" --log-every .0001 \
+        -c all=0.3 -g 0,0,-9.81 --script "$T/stretch" $blemker <"$T/muscle" >"$T/out"
+    below "$(balance "$T/log")" 1e-3 "and with an optimum of 1.2"
+}
+done_testing
