@@ -38,6 +38,16 @@ ELEMENT_FUNCTION double stability_fibre_slope(element_fibre fibre, double lambda
     return by_l + by_l * c.less;
 }
 
+/* Whether the stress along the fibre falls as it is stretched, its sides free: the muscle's by more than that of tissue
+ * of shear modulus mu rises (of a bar that keeps its volume, mu (lambda - lambda^-2), by mu (1 + 2 lambda^-3)). A row of
+ * such elements does not stay even: some are stretched, until their passive stress holds them, and others shorten. */
+ELEMENT_FUNCTION int stability_falls(element_tensor h, element_fibre fibre, double mu)
+{
+    const double l = element_length(element_fibre_now(h, fibre.along));
+    const double slope = stability_fibre_slope(fibre, l, element_fibre_strain(h, fibre.along, l));
+    return l > 0 && slope + mu * (1 + 2 / (l * l * l)) < 0;
+}
+
 ELEMENT_FUNCTION stability_muscle stability_muscle_at(element_tensor h, element_fibre fibre)
 {
     stability_muscle s = {element_fibre_now(h, fibre.along), 0, 0};

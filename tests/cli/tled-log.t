@@ -76,7 +76,7 @@ is "$(awk -F '\t' 'NR == 2 { print $8 + $13, $14 }' "$T/log")" "0 0" "counts fro
 
 # ---- Places.
 check "--tsv" tled-run -q -d cpu -c all=0.5 -t .1 --every .01 --log "$T/log" --tsv node.displacement.at.25mm,5mm,5mm --tsv node.displacement.at.0.02,0.001,0.0101 -o "$T/out" <"$T/muscle.sinew"
-is "$(head -n 1 "$T/log" | cut -f 19- | tr '\t' ' ')" "steps/(1/s) elements/(1/s) node.displacement.at.25mm,5mm,5mm.x/m node.displacement.at.25mm,5mm,5mm.y/m node.displacement.at.25mm,5mm,5mm.z/m node.displacement.at.0.02,0.001,0.0101.x/m node.displacement.at.0.02,0.001,0.0101.y/m node.displacement.at.0.02,0.001,0.0101.z/m quality.j.centre quality.j.corner quality.folded quality.hourglass" "columns after the others, and before those of quality.t"
+is "$(head -n 1 "$T/log" | cut -f 19- | tr '\t' ' ')" "steps/(1/s) elements/(1/s) node.displacement.at.25mm,5mm,5mm.x/m node.displacement.at.25mm,5mm,5mm.y/m node.displacement.at.25mm,5mm,5mm.z/m node.displacement.at.0.02,0.001,0.0101.x/m node.displacement.at.0.02,0.001,0.0101.y/m node.displacement.at.0.02,0.001,0.0101.z/m muscles.falling quality.j.centre quality.j.corner quality.folded quality.hourglass" "columns after the others, and before those of quality.t"
 # What sinew info says of the frames, in nine digits as in a log.
 sinew info --tsv node.displacement.at.25mm,5mm,5mm --tsv node.displacement.at.0.02,0.001,0.0101 "$T/out" |
     awk -F '\t' 'NR > 1 { printf "%.9g", $2; for (i = 3; i <= 8; i++) printf "\t%.9g", $i; print "" }' >"$T/frames"
@@ -84,12 +84,12 @@ sed 1d "$T/log" | cut -f 1,21-26 >"$T/rows"
 is "$(wc -l <"$T/rows" | tr -d ' ')" 11 "a row a look"
 check "the same as of frames" cmp "$T/frames" "$T/rows"
 tled-run -q -d cpu -c all=0.5 -t .1 --log "$T/log" --log-every .0005 --tsv node.displacement.at.25mm,5mm,5mm -o "$T/plain" <"$T/muscle.sinew"
-is "$(awk -F '\t' 'NR > 1 && NF == 27 { n++ } END { print n }' "$T/log")" 201 "finer than frames, without any"
+is "$(awk -F '\t' 'NR > 1 && NF == 28 { n++ } END { print n }' "$T/log")" 201 "finer than frames, without any"
 is "$(sinew info --get frames "$T/plain") $(sinew info "$T/plain" | grep -c -e --tsv)" "1 0" "and no word of it in provenance"
 
 # ---- What goes wrong.
 fails 3 "a run that diverges" "diverged at step" tled-run -q -d cpu --dt .00035 -c all=1 -t .2 --ramp .01 --log "$T/log" -o "$T/none" <"$T/muscle.sinew"
-is "$(awk -F '\t' 'NF != 24 { print NR } NR > 1 && ($5 != $5 + 0 || $6 != $6 + 0) { print NR }' "$T/log")" "" "leaves whole rows of what was sound"
+is "$(awk -F '\t' 'NF != 25 { print NR } NR > 1 && ($5 != $5 + 0 || $6 != $6 + 0) { print NR }' "$T/log")" "" "leaves whole rows of what was sound"
 check "up to where it broke" test "$(wc -l <"$T/log")" -ge 2
 fails 1 "a full disk" "/dev/full: cannot write: No space left" tled-run -q -d cpu -n 10 --log /dev/full -o "$T/never" <"$T/block.sinew"
 is "$(ls "$T/never" 2>/dev/null)" "" "leaves no model"

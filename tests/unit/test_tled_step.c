@@ -59,8 +59,8 @@ static const double tissue[FORM_NUMBERS] = {1000, 9700}; /* mu, K */
 /* P at H, passive and active. */
 static void stress(const tled_law *v, element_tensor h, element_fibre fibre, element_fibre second, double p[9])
 {
-    element_tensor t = element_sum(form_stress(FORM_NEO_HOOKEAN, h, v->c), element_active(h, fibre));
-    t = element_sum(t, element_active(h, second));
+    element_tensor t = element_sum(form_stress(FORM_NEO_HOOKEAN, h, v->c), element_curved(h, fibre));
+    t = element_sum(t, element_curved(h, second));
     memcpy(p, &t, sizeof t);
 }
 
@@ -101,9 +101,13 @@ static double number(void)
     return (double)seed / 2147483648. - 1;
 }
 
+static double passive; /* of muscles by chance: Pa; above 0, their optimum differs from 1 too */
+
 static element_fibre fibre_by_chance(double tension)
 {
     element_fibre fibre = {{number(), number(), number()}, tension, {0, 0, 0, 0}};
+    if (passive > 0)
+        fibre.curves = (muscle_curves){.2 * number(), passive, 6.6, .4};
     const double length = element_length(fibre.along);
     fibre.along.x /= length, fibre.along.y /= length, fibre.along.z /= length;
     return fibre;
@@ -318,6 +322,11 @@ static void test_ranges(void)
     test_range(1000, 9700, .3, 30000, 10);
     test_range(1000, 2000, .5, 3000, 1);
     test_range(1000, 300, .5, 1000, 10);
+    passive = .05 * 3e5;
+    test_range(5e3, 2.5e5, .1, 3e5, 1);
+    test_range(5e3, 2.5e5, .3, 3e5, 3);
+    test_range(1e3, 9700, .3, 0, 10);
+    passive = 0;
     test_collapsed();
     test_no_range();
 }
@@ -333,6 +342,10 @@ int main(void)
     test_matrix(bent, none, none);
     test_matrix(bent, muscle, none);
     test_matrix(bent, muscle, other);
+    const element_fibre stretched = {{.8, .6, 0}, 30000, {.1, 15000, 6.6, .4}};
+    const element_fibre straight = {{1, 0, 0}, 0, {0, 15000, 6.6, .1}};
+    test_matrix(bent, stretched, straight);
+    test_matrix(bent, none, straight);
     for (int f = 0; f < FORM_STEPPED; f++) {
         test_bound((form)f, 1, 1, 1, 1, 1 - 1e-5);
         test_bound((form)f, 1, 1.3, .9, .9, 1 - 1e-5);

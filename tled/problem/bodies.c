@@ -3,8 +3,8 @@
 #include "base/mem.h"
 #include "physics/element.h"
 #include "tled/problem/conforming_step.h"
-#include "tled/problem/muscle_fibre.h"
 #include "tled/problem/followers.h"
+#include "tled/problem/muscle_fibre.h"
 #include "tled/problem/pose_fit.h"
 
 #include <stdlib.h>

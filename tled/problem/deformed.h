@@ -10,9 +10,9 @@
 typedef struct deformed {
     element_tensor h; /* grad u at the centre */
     tled_law law;
-    double rest;      /* m3: volume at rest */
-    double dilation;  /* J - 1 */
-    double energy;    /* J/m3, by volume at rest: of its strain and of muscles that are stretched, without what these do */
+    double rest;     /* m3: volume at rest */
+    double dilation; /* J - 1 */
+    double energy; /* J/m3, by volume at rest: of its strain and of muscles that are stretched, without what these do */
     double hourglass; /* J */
     hourglass_modes modes;
 } deformed;

@@ -58,7 +58,8 @@ static double square_of_muscles(const tled_problem *p, int64_t element)
     const double mixture = tled_mixture(p, element), least = fmin(fmin(p->side[0], p->side[1]), p->side[2]);
     const double own =
         stiffness_at_rest(muscle_fibre_of(p, p->fibre, element, p->element_volume[element], 1 - mixture, NULL));
-    const double other = stiffness_at_rest(muscle_fibre_of(p, p->mixfibre, element, tled_mix(p, element), mixture, NULL));
+    const double other =
+        stiffness_at_rest(muscle_fibre_of(p, p->mixfibre, element, tled_mix(p, element), mixture, NULL));
     return 4 * (own + other) / (tled_law_of(p, element).density * least * least);
 }
 

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "tled/problem/collider.h"
 #include "tled/problem/followers.h"
+#include "tled/problem/muscle_fibre.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,6 +30,7 @@ struct account_part { /* of one chunk: sums, largest values as squares */
 
 struct account {
     const tled_problem *p;
+    bool has_muscles;
     pool *threads;
     moment now, before, saved;
     double *velocity;
@@ -78,6 +80,8 @@ static void add_element(account *a, int64_t i, element_shape box, account_sums *
     strained_add(&sum->tissue, &a->view, i, &d);
     if (a->now.stretch)
         add_muscles(a, i, &d, sum);
+    if (a->has_muscles)
+        sum->falling += muscle_fibre_falls(a->p, i, a->now.curves, d.h, d.law.mu);
 }
 
 static void element_work(void *context, int64_t chunk, int64_t from, int64_t to)
@@ -96,6 +100,7 @@ static void sum_elements(account *a)
     for (int64_t c = 0; c < pool_chunks(a->p->elements, CHUNK); c++) {
         strained_join(&to->tissue, &a->part[c].sum.tissue);
         to->muscles += a->part[c].sum.muscles;
+        to->falling += a->part[c].sum.falling;
     }
 }
 
@@ -340,12 +345,17 @@ int account_resume(account *a, const tled_executor *b, tled_state *state, double
     return 0;
 }
 
-static bool has_muscles(const tled_problem *p)
+static bool contracts(const tled_problem *p)
 {
     for (int32_t i = 0; i < p->volumes; i++)
         if (p->volume[i].contract >= 0)
             return true;
     return false;
+}
+
+bool account_has_muscles(const tled_problem *p)
+{
+    return p->fibre && (p->curved || contracts(p));
 }
 
 static int make_numbers(int64_t rows, int columns, double **to, err *e)
@@ -363,7 +373,7 @@ static int make_moment(const tled_problem *p, moment *m, err *e)
         return -1;
     if (p->followers && make_numbers(p->nodes, 3, &m->pressed, e))
         return -1;
-    return has_muscles(p) ? make_numbers(p->elements, 2, &m->stretch, e) : 0;
+    return contracts(p) ? make_numbers(p->elements, 2, &m->stretch, e) : 0;
 }
 
 static void free_moment(moment *m)
@@ -384,6 +394,7 @@ account *account_create(const tled_problem *p, pool *threads, err *e)
         return NULL;
     a->p = p;
     a->threads = threads;
+    a->has_muscles = account_has_muscles(p);
     a->velocity = mem_array(p->nodes, 3 * sizeof(double), "the log", e);
     a->part = mem_array(pool_chunks(most, CHUNK), sizeof *a->part, "the log", e);
     if (!a->velocity || !a->part || make_moment(p, &a->now, e) || make_moment(p, &a->before, e) ||

@@ -18,6 +18,7 @@ typedef struct account_sums {
         probe;                  /* J: work done on the tissue since the first reading; held: by what is displaced */
     double damping;             /* J: taken by it since */
     double balance;             /* J: what is held, less what was held at first and came since: 0 but for errors */
+    int64_t falling;            /* elements in which the stress along a fibre falls as it is stretched */
     double displacement, speed; /* m, m/s: the largest */
     double acceleration; /* m/s2: of the forces out of balance, root mean square over the mass where nothing holds */
 } account_sums;
@@ -28,6 +29,9 @@ typedef struct account_past {
 } account_past;
 
 typedef struct account account;
+
+/* Whether a problem has muscles: volumes that contract, or have curves of their own. */
+bool account_has_muscles(const tled_problem *p);
 
 account *account_create(const tled_problem *p, pool *threads, err *e);
 void account_destroy(account *a);

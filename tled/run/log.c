@@ -20,6 +20,7 @@ static const char heading[] =
     "J\tprobe/J\t"
     "damping/J\tbalance/J\tdisplacement/m\tspeed/(m/s)\tresidual/(m/s2)\tremaining\tsteps/(1/s)\telements/(1/s)";
 
+static const char heading_muscles[] = "\tmuscles.falling";
 static const char heading_end[] = "\tquality.j.centre\tquality.j.corner\tquality.folded\tquality.hourglass\n";
 
 static const char trace[] = "node.displacement.at.";
@@ -123,6 +124,8 @@ static int put_heading(const run_log *l, out *to, err *e)
         if (put_key_heading(l, l->keys->value[i], to, e))
             return -1;
     put_bodies_heading(l->m, to);
+    if (account_has_muscles(l->p))
+        out_text(to, heading_muscles);
     out_text(to, heading_end);
     return 0;
 }
@@ -342,6 +345,8 @@ static int put_row(run_log *l, const log_row *row, const account_sums *s, err *e
         put_key(l, i, row->time);
     if (put_bodies(l, e))
         return -1;
+    if (account_has_muscles(l->p))
+        out_format(l->rows, "\t%lld", (long long)s->falling);
     put_number(l->rows, s->tissue.quality.centre);
     put_number(l->rows, s->tissue.quality.corner);
     out_format(l->rows, "\t%lld", (long long)s->tissue.quality.folded);

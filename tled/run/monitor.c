@@ -6,8 +6,8 @@
 #include "mesh/element_place.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/deformed.h"
-#include "tled/problem/muscle_fibre.h"
 #include "tled/problem/loads.h"
+#include "tled/problem/muscle_fibre.h"
 #include "tled/problem/step.h"
 
 #include <math.h>

@@ -12,8 +12,9 @@
 enum { STRAINED_CHUNK = 256 }; /* elements */
 
 typedef struct strained {
-    double strain, hourglass; /* J: strain without hourglass energy, with that of stretched muscles, without what these do */
-    double scale;             /* J: the sum of mu V, beside which these may be rounding (quality_hourglass) */
+    double strain,
+        hourglass; /* J: strain without hourglass energy, with that of stretched muscles, without what these do */
+    double scale;  /* J: the sum of mu V, beside which these may be rounding (quality_hourglass) */
     quality quality;
     int64_t twisted; /* the element that holds the most hourglass energy, -1: none does; and how much, J */
     double most;

@@ -437,6 +437,7 @@ static int open_log(session *s, const struct options *o, err *e)
         return 0;
     s->run.log = &s->log;
     s->log.script = &s->script;
+    s->log.p = &s->problem;
     return log_open(&s->log, o->log, &o->tsv, &s->m, s->run.point ? &s->run.point->log : NULL, e);
 }
 
