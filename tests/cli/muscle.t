@@ -50,8 +50,16 @@ $(pull 43658.6 0)
 X
     near "$long" 1.2 1e-5 "a passive muscle is pulled by 43658.6 Pa to 1.2"
     near "$wide" 0.914693 1e-5 "and its sides"
+    # cauchy PRESSURE: what an element has along the bar, as a share of the pressure by area now.
+    cauchy() {
+        sinew results stress <"$T/out" 2>"$T/said" >"$T/stress"
+        sinew info --get element.stress.row.1 "$T/stress" | awk -v p="$1" -v w="$wide" '{ printf "%.7f", $1 * w * w / p }'
+    }
+    pull 43658.6 0 --results activation >/dev/null
+    near "$(cauchy 43658.6)" 1 2e-5 "sinew results has that pressure as stress"
     near "$(pull -3791.05 0 | cut -d ' ' -f 1)" 0.8 1e-5 "pressed by 3791.05 Pa to .8"
-    near "$(pull 169659 0.5 | cut -d ' ' -f 1)" 1.2 1e-5 "half active, pulled by 169659 Pa to 1.2"
+    near "$(pull 169659 0.5 --results activation | cut -d ' ' -f 1)" 1.2 1e-5 "half active, pulled by 169659 Pa to 1.2"
+    near "$(cauchy 169659)" 1 2e-5 "with that stress"
     near "$(pull 122209 0.5 | cut -d ' ' -f 1)" 0.8 1e-5 "half active, it lifts 122209 Pa to .8"
     bar 43658.6 >"$T/pull"
     tled-run -q -d cpu --rest 1e-7 --script "$T/pull" $blemker <"$T/bar" >"$T/out"
@@ -82,8 +90,11 @@ X
     block -v nx=8 -v ny=3 -v nz=3 -v h=0.005 -v E=3000 -v nu=0.46 -v held=low >"$T/muscle"
     printf '0 force 0.04,0.0075,0.0075 0.02 0,0,0\n.05 force 0.04,0.0075,0.0075 0.02 5,0,0\n' >"$T/stretch"
     tled-run -q -d cpu -t 0.12 --dt 5e-5 -c all=0.3 -g 0,0,-9.81 --script "$T/stretch" $blemker --log "$T/log" \
-        --log-every .0001 <"$T/muscle" >"$T/out"
+        --log-every .0001 --results all <"$T/muscle" >"$T/out"
     below "$(balance "$T/log")" 1e-3 "energies balance"
+    held=$(awk -F '\t' 'END { print $6 }' "$T/log")
+    near "$(sinew info --get material.energy.tissue "$T/out")" "$held" 1e-8 "the material holds the log's strain energy"
+    near "$(sinew info --get element.energy.mean "$T/out" | awk '{ printf "%.9g", $1 * 72 * 1.25e-7 }')" "$held" 1e-6 "so do elements"
     near "$(sinew info --get quality.hourglass "$T/out")" "$(awk -F '\t' 'END { print $NF }' "$T/log")" 1e-6 \
         "sinew info has the same strain energy"
     tled-run -q -d cpu -t 0.12 --dt 5e-5 -m tissue.optimum=1.2 -m tissue.straight=1.1 --log "$T/log" --log-every .0001 \

@@ -80,6 +80,14 @@ near "$(awk -v a="$(get material.energy.tissue)" -v b="$(get material.energy.fat
     "$(awk -F '\t' 'END { print $6 }' "$T/log")" 1e-7 "the energies of two materials add up to the log's"
 is "$(get element.stretch.fibre.max | awk '{ print $1 < 1 }')" 1 "fibres are short"
 
+# What a stretched muscle holds is its material's.
+tled-run -q -t 0.05 -g 500,0,0 --results all --log "$T/log" -m tissue.passive=2 <"$T/muscle" >"$T/pulled"
+passive=$(get material.energy.tissue "$T/pulled")
+near "$(awk -v a="$passive" -v b="$(get material.energy.fat "$T/pulled")" 'BEGIN { printf "%.12g", a + b }')" \
+    "$(awk -F '\t' 'END { print $6 }' "$T/log")" 1e-7 "with passive muscles energies of materials add up too"
+near "$(awk -v e="$(get element.energy.mean "$T/pulled")" 'BEGIN { printf "%.9g", e * 4e-6 }')" \
+    "$(awk -F '\t' 'END { print $6 }' "$T/log")" 1e-6 "and those of elements"
+
 # Stress without that of muscles is said to be that.
 check "frames without activation" sh -c "sinew results stress.mises <'$T/plain' >'$T/passive' 2>'$T/said'"
 is "$(grep -c 'warning: .*volume.activation' "$T/said")" 1 "are told of"

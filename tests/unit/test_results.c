@@ -116,6 +116,8 @@ static bool is_near(const float *got, const double *want, int count, double tole
 }
 
 static const char *const soft[] = {"soft.E=3000", "soft.nu=.45", NULL};
+static const char *const passive[] = {"soft.E=3000",     "soft.nu=.45",        "muscle.E=3000",      "muscle.nu=.45",
+                                      "muscle.peak=1e5", "muscle.passive=.05", "muscle.optimum=.95", NULL};
 static const char *const rubber[] = {"soft.law=mooney-rivlin", "soft.c10=2500", "soft.c01=500", "soft.K=1e5", NULL};
 
 /* E = 3000 Pa, nu = .45: mu = 1034.4828, K = 10000; and c10 = 2500, c01 = 500, K = 1e5. */
@@ -174,11 +176,11 @@ static void follow(const double a[9], const double h[9], double to[9])
         to[i] += a[i] + h[i];
 }
 
-static void test_energy(shape of, const char *const *law, const char *name)
+static void test_energy(shape of, const char *const *law, float mixture, const char *name)
 {
     model m;
     double worst = 0;
-    make(&m, of, law, 0);
+    make(&m, of, law, mixture);
     for (int k = 0; k < 20; k++) {
         double h[9], l[9], ahead[9], behind[9], power = 0;
         static const int at[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};
@@ -195,7 +197,8 @@ static void test_energy(shape of, const char *const *law, const char *name)
                          h[1] * (h[3] * (1 + h[8]) - h[5] * h[6]) + h[2] * (h[3] * h[7] - (1 + h[4]) * h[6]);
         for (int i = 0; i < 9; i++)
             power -= j * (double)is.stress[at[i]] * l[i]; /* l is -L by now */
-        const double gained = (after.energy[0] - before.energy[0]) / 2 / volume_of[of];
+        const double gained =
+            (after.energy[0] - before.energy[0] + (after.energy[1] - before.energy[1])) / 2 / volume_of[of];
         worst = fmax(worst, fabs(gained - power) / (1e-5 * (double)is.mises));
     }
     ok(worst < 1e-5, "%s, %s: stress is the slope of the energy, to %.2g", shape_names[of], name, worst);
@@ -251,8 +254,14 @@ static void test_muscles(void)
     near_((double)a.fibre, 1.2, 1e-7, "and its stretch");
     near_(a.energy[1] / a.energy[0], 1. / 3, 1e-12, "each material has the energy of its share");
     near_((a.energy[0] + a.energy[1]) / volume_of[BOX], (double)a.density, 1e-5, "together it is the element's");
+    const look without = look_at(&m, pull, NAN);
+    near_((double)without.stress[0], 502.2590 / (side * side), 2e-3, "without activation nothing contracts");
+    model_free(&m);
+    make(&m, BOX, passive, .25F);
     a = look_at(&m, pull, NAN);
-    near_((double)a.stress[0], 502.2590 / (side * side), 2e-3, "without activation nothing contracts");
+    ok(a.energy[0] == without.energy[0] && a.energy[1] > 2 * without.energy[1],
+       "what a passive muscle holds is its material's alone");
+    near_((a.energy[0] + a.energy[1]) / volume_of[BOX] / (double)a.density, 1, 1e-7, "and the element's");
     model_free(&m);
 }
 
@@ -298,8 +307,9 @@ int main(void)
     for (shape of = BOX; of < SHAPES; of++) {
         test_figures(of);
         test_turned(of);
-        test_energy(of, soft, "neo-Hookean");
-        test_energy(of, rubber, "Mooney-Rivlin");
+        test_energy(of, soft, 0, "neo-Hookean");
+        test_energy(of, rubber, 0, "Mooney-Rivlin");
+        test_energy(of, passive, .75F, "three quarters of passive muscle");
     }
     test_muscles();
     test_linear();
