@@ -71,7 +71,7 @@ ELEMENT_FUNCTION double muscle_passive_slope(muscle_curves c, double beyond)
  * these, as d lambda = optimum dl. */
 ELEMENT_FUNCTION double muscle_passive_sum(muscle_curves c, double beyond)
 {
-    const double bent = fmax(fmin(beyond, c.straight), 0), over = fmax(beyond - c.straight, 0);
+    const double bent = fmax(fmin(beyond, c.straight), 0.), over = fmax(beyond - c.straight, 0.);
     if (!(bent > 0) && !(over > 0))
         return 0;
     const double less = real_exp_less(c.stiffening * bent);
