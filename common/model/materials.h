@@ -89,8 +89,8 @@ material_numbers material_numbers_of(const material *a);
  * of. */
 material_numbers materials_of_element(const materials_map *map, int64_t element);
 
-/* The curves of its muscles (physics/muscle.h), from values that are given, as materials_of gives them. Returns whether
- * they differ from the plain ones, of optimum 1 without passive stress. */
+/* The curves of its muscles (physics/muscle_curves.h), from values that are given, as materials_of gives them. Returns
+ * whether they differ from the plain ones, of optimum 1 without passive stress. */
 bool material_muscle(const material *a, double curve[MUSCLE_NUMBERS]);
 
 /* mu and K at rest, in Pa. */

@@ -12,7 +12,7 @@
 
 #include "physics/form_maths.h"
 #include "physics/hourglass.h"
-#include "physics/muscle.h"
+#include "physics/muscle_curves.h"
 
 /* One component of a vector field at the eight corners, and all three. */
 typedef struct element_corners {
@@ -115,8 +115,8 @@ ELEMENT_FUNCTION real element_fibre_strain(element_tensor h, element_vector a, r
     return (2 * (a.x * d.x + a.y * d.y + a.z * d.z) + (d.x * d.x + d.y * d.y + d.z * d.z)) / (1 + lambda);
 }
 
-/* P of a muscle with curves of its own: sigma/lambda (F a0) (x) a0, sigma as in muscle.h. With curves of 0 the bits of
- * element_active. */
+/* P of a muscle with curves of its own: sigma/lambda (F a0) (x) a0, sigma as in muscle_curves.h. With curves of 0 the
+ * bits of element_active. */
 ELEMENT_FUNCTION element_tensor element_curved(element_tensor h, element_fibre fibre)
 {
     const element_vector a = fibre.along, m = element_fibre_now(h, a);
@@ -171,8 +171,9 @@ ELEMENT_FUNCTION element_tensor element_muscle(element_tensor h, element_fibre f
     return element_active(h, fibre);
 }
 
-/* P (Pa) of all that an element's tissue does at H: of its law, and of the muscles along its fibres, of each of which is
- * looked at what `which` tells: ELEMENT_MUSCLE and so on. Steppers, monitors and results take the stress from here. */
+/* P (Pa) of all that an element's tissue does at H: of its law, and of the muscles along its fibres, of each of which
+ * `which` tells what is looked at: ELEMENT_MUSCLE and so on. Steppers, monitors and results take the stress from
+ * here. */
 ELEMENT_FUNCTION element_tensor element_stress(form f, element_tensor h, const real *c, element_fibre fibre, int which,
                                                element_fibre second, int which_second)
 {

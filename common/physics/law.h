@@ -24,7 +24,7 @@
     X(lock, "1", 1, 1e3, "stretch at which chains lock")
 
 /* The same of what every material may have, whatever its law. Those after peak are optional: they shape the curves of a
- * muscle (muscle.h), and have a usual value where they are not given. */
+ * muscle (muscle_curves.h), and have a usual value where they are not given. */
 #define LAW_COMMON_KEYS(X)                                                                                             \
     X(density, "kg/m3", 1e-3, 1e6, "mass density at rest")                                                             \
     X(peak, "Pa", 0, 1e12, "peak active stress of its muscles")                                                        \

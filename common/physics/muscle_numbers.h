@@ -1,4 +1,4 @@
-/* The numbers of a muscle's curves (muscle.h) in an array, as models and steppers have them. Owns nothing.
+/* The numbers of a muscle's curves (muscle_curves.h) in an array, as models and steppers have them. Owns nothing.
  */
 #ifndef SINEW_MUSCLE_NUMBERS_H
 #define SINEW_MUSCLE_NUMBERS_H

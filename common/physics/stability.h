@@ -15,7 +15,7 @@ typedef struct step_matrix {
     double at[9][9]; /* symmetric; 1/s2; row 3 k + j: component k, axis j */
 } step_matrix;
 
-/* Of a muscle's stress: with m = F a0, l = |m| and t(l) = sigma(l)/l (muscle.h), P = t m (x) a0, so
+/* Of a muscle's stress: with m = F a0, l = |m| and t(l) = sigma(l)/l (muscle_curves.h), P = t m (x) a0, so
  *     A = t I (x) a0 a0 + (t'/l) (m (x) a0) (x) (m (x) a0). */
 typedef struct stability_muscle {
     element_vector now; /* m */
@@ -38,9 +38,10 @@ ELEMENT_FUNCTION double stability_fibre_slope(element_fibre fibre, double lambda
     return by_l + by_l * c.less;
 }
 
-/* Whether the stress along the fibre falls as it is stretched, its sides free: the muscle's by more than that of tissue
- * of shear modulus mu rises (of a bar that keeps its volume, mu (lambda - lambda^-2), by mu (1 + 2 lambda^-3)). A row of
- * such elements does not stay even: some are stretched, until their passive stress holds them, and others shorten. */
+/* Whether the stress along the fibre falls as it is stretched, its sides free: the muscle's by more than that of
+ * tissue of shear modulus mu rises (of a bar that keeps its volume, mu (lambda - lambda^-2), by mu (1 + 2 lambda^-3)).
+ * A row of such elements does not stay even: some are stretched, until their passive stress holds them, and others
+ * shorten. */
 ELEMENT_FUNCTION int stability_falls(element_tensor h, element_fibre fibre, double mu)
 {
     const double l = element_length(element_fibre_now(h, fibre.along));

@@ -1,5 +1,5 @@
-/* What a muscle must do in either precision: test_muscle_curves.c and test_muscle_curves_single.c include this once each, after
- * choosing `real`. The figures are of a script of its own, by complex steps of the energies.
+/* What a muscle must do in either precision: test_muscle_curves.c and test_muscle_curves_single.c include this once
+ * each, after choosing `real`. The figures are of a script of its own, by complex steps of the energies.
  */
 #ifndef SINEW_MUSCLE_CASES_H
 #define SINEW_MUSCLE_CASES_H

@@ -167,8 +167,8 @@ static void test_slopes(void)
     ok(worst < 1e-5 * peak, "the fibre's slope: %.2g Pa", worst);
 }
 
-/* Fully active, in tissue of mu 5e3, whose own stress along a bar rises by mu (1 + 2/lambda^3): where does the whole fall
- * as the muscle is stretched? */
+/* Fully active, in tissue of mu 5e3, whose own stress along a bar rises by mu (1 + 2/lambda^3): where does the whole
+ * fall as the muscle is stretched? */
 static void test_descending(void)
 {
     double first = 0, last = 0, first_alone = 0, last_alone = 0;

@@ -96,8 +96,8 @@ static void stretch(bench *b, double x)
         b->problem.at_start.of[TLED_DISPLACEMENT][3 * n] = (x - 1) * b->problem.position[3 * n];
 }
 
-/* A muscle that is just longer than at rest, where its slope begins, is no stiffer than the step at rest knows; whatever
- * its shares. */
+/* A muscle that is just longer than at rest, where its slope begins, is no stiffer than the step at rest knows;
+ * whatever its shares. */
 static void test_step_at_rest(void)
 {
     for (int mixed = 0; mixed < 2; mixed++) {

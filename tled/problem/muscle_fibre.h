@@ -15,8 +15,8 @@ element_fibre muscle_fibre_of(const tled_problem *p, const float *along, int64_t
 /* What the passive curves of an element's muscles hold at H, J/m3 by volume at rest. */
 double muscle_fibre_energy(const tled_problem *p, int64_t element, element_tensor h);
 
-/* Whether the stress along any fibre of an element falls as it is stretched (stability_falls). value: of all curves; mu:
- * of the element's law, Pa. */
+/* Whether the stress along any fibre of an element falls as it is stretched (stability_falls). value: of all curves;
+ * mu: of the element's law, Pa. */
 bool muscle_fibre_falls(const tled_problem *p, int64_t element, const double *value, element_tensor h, double mu);
 
 #endif

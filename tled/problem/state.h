@@ -31,7 +31,7 @@ typedef struct tled_volume {
     const char *name; /* borrowed */
     tled_law law;
     double peak, optimum;          /* Pa; the stretch at which its muscle is strongest */
-    double muscle[MUSCLE_NUMBERS]; /* its curves (muscle.h); all 0: the active one alone, strongest at rest */
+    double muscle[MUSCLE_NUMBERS]; /* its curves (muscle_curves.h); all 0: the active one alone, strongest at rest */
     bool curved;                   /* that they are not */
     double square;                 /* 1/s2: of the highest frequency of an element of it at rest (step.h) */
     int64_t elements;              /* of it */

@@ -6,8 +6,8 @@
  * with the slope that the exponential has there. Both have an energy by l. In the numbers of strain.h, whose rules hold
  * here. Owns nothing.
  */
-#ifndef SINEW_MUSCLE_H
-#define SINEW_MUSCLE_H
+#ifndef SINEW_MUSCLE_CURVES_H
+#define SINEW_MUSCLE_CURVES_H
 
 #include "physics/muscle_numbers.h"
 
