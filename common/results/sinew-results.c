@@ -47,9 +47,8 @@ static void note_activation(const model *m, const frame *f, notes *warnings)
         any |= muscle->u8[i] != 0;
     if (!any || !model_find(m, "element.fibre") || frame_find(f, results_array(RESULTS_ACTIVATION)))
         return;
-    notes_add(warnings,
-              "the frames do not have volume.activation (tled-run --results activation): stress is without what "
-              "muscles do");
+    notes_add(warnings, "the frames do not have volume.activation (tled-run --results activation): stress is without "
+                        "the active stress of muscles");
 }
 
 static int work(stage *s, const model *m, results *r, bool stresses, notes *warnings, err *e)
