@@ -2,7 +2,7 @@
 # $(BUILD)/emulate has tled's CUDA as g++ makes it: each access of theirs a call (-fsanitize=thread), which comes to shadow.cc.
 
 EMULATE_CXX ?= $(if $(filter x86_64,$(shell uname -m)),$(shell command -v g++))
-EMULATE_CU := $(addprefix tled/cuda/,cuda_march cuda_single cuda_double cuda_look) common/solve/card tests/emulate/wrong tests/emulate/history
+EMULATE_CU := $(addprefix tled/cuda/,cuda_march cuda_single cuda_double cuda_look) common/solve/card $(addprefix tests/emulate/,wrong any_single any_double)
 EMULATE_OBJ := $(addprefix $(BUILD)/emulate/,$(addsuffix .o,$(EMULATE_CU) fibres shadow telling streams tled/cuda/march)) \
 	$(addprefix $(BUILD)/tled/cuda/,march_units.o march_near.o march_sheets.o march_tips.o places.o tile_split.o tiles.o)
 EMULATE_FLAGS = -std=c++17 -g -Wall $(WERROR) -Itests/emulate $(CPPFLAGS) -MMD -MP
@@ -15,7 +15,7 @@ $(BUILD)/emulate/%.o: %.cu
 EMULATE_CONTRACT = off
 $(BUILD)/emulate/tled/cuda/cuda_march.o $(BUILD)/emulate/tled/cuda/cuda_look.o: EMULATE_CONTRACT = fast
 # However small, a frame has its own memory on the card.
-$(addprefix $(BUILD)/emulate/,tled/cuda/cuda_single.o tled/cuda/cuda_double.o tests/emulate/history.o): EMULATE_CU_FLAGS += -DFRAME_DIRECT=0
+$(addprefix $(BUILD)/emulate/,$(patsubst %,%.o,tled/cuda/cuda_single tled/cuda/cuda_double tests/emulate/any_single tests/emulate/any_double)): EMULATE_CU_FLAGS += -DFRAME_DIRECT=0
 
 $(BUILD)/emulate/%.o: tests/emulate/%.cc
 	@mkdir -p $(@D)

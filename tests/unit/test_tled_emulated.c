@@ -5,8 +5,8 @@
 #include "tled_live_trial.h"
 
 #ifdef SINEW_EMULATED
+#include "tests/emulate/any_form.h"
 #include "tests/emulate/emulate.h"
-#include "tests/emulate/history.h"
 #include "tests/emulate/wrong.h"
 #include "tled/cuda/cuda.h"
 #include "tled/cuda/march_near.h"
@@ -305,6 +305,29 @@ static void test_form(form f, int64_t steps)
     in_form = FORM_NEO_HOOKEAN;
 }
 
+/* Kernels of any form give the CPU's bytes too, as those do that are compiled for one. */
+static void test_any_form(int64_t steps)
+{
+    const trial moved = {"kernels of any form, a script", lump, 0, true, {0}, false};
+    const trial mixed = {"kernels of any form, mixed elements", mixed_of(muscle), .5, false, {0}, false};
+    const trial parted = {"kernels of any form, slits", mixed_of(lump), 0, true, {0}, false};
+    for (int f = 0; f < FORM_STEPPED; f++) {
+        in_form = (form)f;
+        printf("# form %d\n", f);
+        try(&mixed, &plain, &any_form_single, &tled_cpu_single, steps, 0);
+        try(&moved, &staying, &any_form_single, &tled_cpu_single, steps, 0);
+        try(&mixed, &staying, &any_form_double, &tled_cpu_double, steps, 0);
+    }
+    in_slit = &slits[5];
+    try(&parted, &plain, &any_form_double, &tled_cpu_double, steps, 0);
+    try(&parted, &staying, &any_form_single, &tled_cpu_single, steps, 0);
+    in_slit = NULL;
+    in_form = FORM_NEO_HOOKEAN;
+    in_control = ISOTROPIC(.0075);
+    try(&mixed, &plain, &any_form_single, &tled_cpu_single, steps, 0);
+    in_control = PHYSICAL;
+}
+
 /* The emulated card is one thread's: frames, which have others, are left out. */
 static int no_snapshot(tled_state *state, int slot, err *e)
 {
@@ -535,6 +558,7 @@ int main(void)
     for (int f = 0; f < FORM_STEPPED; f++)
         if (f != FORM_NEO_HOOKEAN && tled_cuda_single.is.forms >> f & 1)
             test_form((form)f, 2 * more);
+    test_any_form(more);
     test_live(&marching, false, "a march");
     if (all_of_it) {
         test_live(&marching, true, "a march, made again");

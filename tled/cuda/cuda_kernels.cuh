@@ -45,27 +45,29 @@ static __device__ real cell_tension(const cuda_kind &kind, const cuda_pass &p)
 }
 
 /* A law's numbers, of what is tissue. */
-template <class L, class T> static __device__ element_law law_of(const T *c, const T *hourglass, real share)
+template <class L, class T> static __device__ element_law law_of(const L &l, const T *c, const T *hourglass, real share)
 {
     element_law law;
 #pragma unroll
     for (int i = 0; i < L::COEFFICIENTS; i++)
-        law.c[i] = share * (real)c[i];
+        if (i < l.coefficients)
+            law.c[i] = share * (real)c[i];
 #pragma unroll
     for (int i = 0; i < L::HELD; i++)
-        law.hourglass[i] = share * (real)hourglass[i];
+        if (i < l.held)
+            law.hourglass[i] = share * (real)hourglass[i];
     return law;
 }
 
 /* A cell mixed of two volumes. */
 template <class G, class L, class W>
-static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
-                                            const real *u, const W &where, const cuda_kind &kind,
+static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
+                                            int i, const real *u, const W &where, const cuda_kind &kind,
                                             const cuda_mixed &mixed, real share)
 {
     const cuda_kind &mix = v.kind[mixed.mix];
     const real part = (real)mixed.share, own = share * (1 - part), other = share * part;
-    const element_law law = law_of<L>(mixed.c, mixed.hourglass, share);
+    const element_law law = law_of(l, mixed.c, mixed.hourglass, share);
     element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}}, second = fibre;
     real tension = 0, tension_of_mix = 0;
     if (i < t.fibred) {
@@ -78,36 +80,36 @@ static __device__ element_field mixed_force(const cuda_view<real> &v, const cuda
         second.along = cell_along(t, i, v.mixfibre);
         second.tension = other * tension_of_mix;
     }
-    return element_force_of_two(L::FORM, L::CONTROL, cell_field<G>(u, where), p.shape, law, fibre, tension != 0, second,
+    return element_force_of_two(l.which, l.control, cell_field<G>(u, where), p.shape, law, fibre, tension != 0, second,
                                 tension_of_mix != 0);
 }
 
 template <class G, class L, class W>
-static __device__ element_field plain_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
-                                            const real *u, const W &where, uint32_t volume, real share)
+static __device__ element_field plain_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
+                                            int i, const real *u, const W &where, uint32_t volume, real share)
 {
-    const real *stiff = p.law + L::LAW * volume;
-    const element_law law = law_of<L>(stiff, stiff + L::COEFFICIENTS, share);
+    const real *stiff = p.law + (l.coefficients + l.held) * volume;
+    const element_law law = law_of(l, stiff, stiff + l.coefficients, share);
     element_fibre fibre = {{0, 0, 0}, 0, {0, 0, 0, 0}};
     if (i < t.fibred) {
         const cuda_kind &kind = v.kind[volume];
         fibre.along = cell_along(t, i, v.fibre);
         fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
     }
-    return element_force(L::FORM, L::CONTROL, cell_field<G>(u, where), p.shape, law, fibre, fibre.tension != 0);
+    return element_force(l.which, l.control, cell_field<G>(u, where), p.shape, law, fibre, fibre.tension != 0);
 }
 
-template <class G, class L, class T, class W>
-static __device__ void cell_force(const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i, uint32_t cell,
-                                  const W &where, const real *u, real *force)
+template <class G, class T, class L, class W>
+static __device__ void cell_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
+                                  uint32_t cell, const W &where, const real *u, real *force)
 {
     const int place = cell & TILE_PLACE;
     const uint32_t volume = cell >> TILE_VOLUME;
     const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
-    const int32_t mixed = T::MIXED ? v.mixed[t.cell + i] : -1;
+    const int32_t mixed = T::MIXED && (!T::ASKS || v.mixed) ? v.mixed[t.cell + i] : -1;
     const element_field f = T::MIXED && mixed >= 0
-                                ? mixed_force<G, L>(v, p, t, i, u, where, v.kind[volume], v.mixture[mixed], share)
-                                : plain_force<G, L>(v, p, t, i, u, where, volume, share);
+                                ? mixed_force<G>(l, v, p, t, i, u, where, v.kind[volume], v.mixture[mixed], share)
+                                : plain_force<G>(l, v, p, t, i, u, where, volume, share);
 #pragma unroll
     for (int c = 0; c < 8; c++) {
         force[c * G::CELLS + place] = f.x.at[c];
@@ -147,8 +149,8 @@ template <class G> static __device__ uint4 cell_where(const cell_told<true> &c, 
     return lists.corner < 0 ? cuda_row<G>(c.cell & TILE_PLACE) : c.row;
 }
 
-template <class G, class L, class T>
-static __device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p, const tile &t,
+template <class G, class T, class L>
+static __device__ void cell_forces(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
                                    const cuda_lists<T::LISTED> &lists, const cell_told<T::LISTED> &first, const real *u,
                                    real *force)
 {
@@ -156,7 +158,7 @@ static __device__ void cell_forces(const cuda_view<real> &v, const cuda_pass &p,
 #pragma unroll 1
     for (int i = threadIdx.x; i < t.cells; i += G::THREADS) {
         const cell_told<T::LISTED> next = cell_at(v, t, lists, i + G::THREADS);
-        cell_force<G, L, T>(v, p, t, i, cell.cell, cell_where<G>(cell, lists), u, force);
+        cell_force<G, T>(l, v, p, t, i, cell.cell, cell_where<G>(cell, lists), u, force);
         cell = next;
     }
 }
@@ -168,14 +170,18 @@ static __device__ void bring_gravity(const cuda_view<real> &v, const double *now
         room[threadIdx.x] = v.gravity < 0 ? 0 : (real)now[3 * v.gravity + threadIdx.x];
 }
 
-template <class L> static __device__ void bring_laws(const cuda_view<real> &v, cuda_pass *p, real *room)
+template <class G, class L>
+static __device__ void bring_laws(const L &l, const cuda_view<real> &v, cuda_pass *p, real *room)
 {
-    static_assert(L::LAW * LAWS_NEAR <= 128, "a thread brings one number"); /* no brick has fewer threads */
+    static_assert(L::ASKS || L::LAW * LAWS_NEAR <= G::THREADS, "a thread brings one number");
     const bool near = v.volumes <= LAWS_NEAR;
     p->gravity = room;
     p->law = near ? room + 4 : v.law;
-    if (near && threadIdx.x < L::LAW * v.volumes)
+    if (near && threadIdx.x < (l.coefficients + l.held) * v.volumes)
         room[4 + threadIdx.x] = v.law[threadIdx.x];
+    if (L::ASKS && near)
+        for (int i = (int)threadIdx.x + G::THREADS; i < (l.coefficients + l.held) * v.volumes; i += G::THREADS)
+            room[4 + i] = v.law[i];
 }
 
 /* The sum of the pulls at a node, elements in the lattice's order. */
@@ -330,33 +336,33 @@ static __device__ void one_node(const cuda_view<real> &v, const cuda_pass &p, co
     }
 }
 
-/* Double precision takes more registers than so many blocks would leave it. */
-template <class G> static constexpr int together(void)
+/* Double precision takes more registers than so many blocks would leave it, and any form may do. */
+template <class G, class L> static constexpr int together(void)
 {
-    return sizeof(real) == sizeof(float) ? G::TOGETHER : 1;
+    return sizeof(real) == sizeof(float) ? (L::ASKS ? (G::TOGETHER + 1) / 2 : G::TOGETHER) : 1;
 }
 
 /* But 16 warps of it are to be on a multiprocessor: of physical control, a few more registers would halve them. */
-template <class G> static constexpr int passes_together(void)
+template <class G, class L> static constexpr int passes_together(void)
 {
-    return sizeof(real) == sizeof(float) ? G::TOGETHER : 512 / G::THREADS;
+    return sizeof(real) == sizeof(float) ? together<G, L>() : L::ASKS ? 1 : 512 / G::THREADS;
 }
 
 template <class G, class L, class T>
-static __global__ void __launch_bounds__(G::THREADS, passes_together<G>())
-    pass_kernel(cuda_view<real> v, const __grid_constant__ cuda_pass given)
+static __global__ void __launch_bounds__(G::THREADS, passes_together<G, L>())
+    pass_kernel(cuda_view<real> v, const __grid_constant__ cuda_pass given, const __grid_constant__ L l)
 {
     DYNAMIC_SHARED(double, memory);
     real *u = (real *)memory, *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
-    const cuda_lists<T::LISTED> lists = cuda_lists_of<T::LISTED>(v, blockIdx.x);
+    const cuda_lists<T::LISTED> lists = cuda_lists_of<T>(v, blockIdx.x);
     const cell_told<T::LISTED> first = cell_at(v, t, lists, threadIdx.x);
     cuda_pass p = given;
-    bring_laws<L>(v, &p, near);
+    bring_laws<G>(l, v, &p, near);
     bring_gravity(v, p.now, near);
     cuda_load<G, true>(v, t, p.from, u);
     __syncthreads();
-    cell_forces<G, L, T>(v, p, t, lists, first, u, force);
+    cell_forces<G, T>(l, v, p, t, lists, first, u, force);
     own_node own = node_at(v, p, t, threadIdx.x);
     node_told<T::LISTED> told = node_row(v, t, lists, threadIdx.x);
     __syncthreads();
@@ -378,7 +384,7 @@ template <class G, class L> static cudaError_t pass_allow(void)
     const int shared = (int)pass_shared<G, L>();
     cudaError_t e = cudaSuccess;
     for (int kind = 0; e == cudaSuccess && kind < 4; kind++)
-        e = with_tiles(kind & 1, kind & 2, [&](auto t) {
+        e = with_tiles<L>(kind & 1, kind & 2, [&](auto t) {
             return cudaFuncSetAttribute(pass_kernel<G, L, decltype(t)>, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                         shared);
         });
@@ -386,11 +392,12 @@ template <class G, class L> static cudaError_t pass_allow(void)
 }
 
 template <class G, class L>
-static cudaError_t pass_start(const cuda_view<real> &v, const cuda_pass &p, int64_t tiles, cudaStream_t stream)
+static cudaError_t pass_start(const L &l, const cuda_view<real> &v, const cuda_pass &p, int64_t tiles,
+                              cudaStream_t stream)
 {
     const card_blocks blocks = {tiles, G::THREADS, pass_shared<G, L>(), stream};
-    return with_tiles(v.mixed, v.list,
-                      [&](auto t) { return card_start(pass_kernel<G, L, decltype(t)>, blocks, v, p); });
+    return with_tiles<L>(v.mixed, v.list,
+                         [&](auto t) { return card_start(pass_kernel<G, L, decltype(t)>, blocks, v, p, l); });
 }
 
 #endif

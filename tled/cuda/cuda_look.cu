@@ -56,10 +56,10 @@ typedef struct one_cell {
 } one_cell;
 
 /* What its hourglass modes have of energy, as hourglass_of would have it, with fewer operations. */
-template <class L>
-static __device__ void hold_cell(hourglass_modes m, const element_shape &shape, const double *held, one_cell *c)
+static __device__ void hold_cell(hourglass_kind control, hourglass_modes m, const element_shape &shape,
+                                 const double *held, one_cell *c)
 {
-    if constexpr (L::CONTROL == HOURGLASS_ISOTROPIC) {
+    if (control == HOURGLASS_ISOTROPIC) {
         c->hourglass = held[HOURGLASS_K] * hourglass_dot(&m, &m) / 2;
         c->twist = 0;
         return;
@@ -71,13 +71,7 @@ static __device__ void hold_cell(hourglass_modes m, const element_shape &shape, 
     c->twist = sqrt(hourglass_dot(&w, &w));
 }
 
-/* Where its corners stand: its place, or its row. */
-template <class G, class S>
-static __device__ int where_of(const cuda_view<S> &, const tile &, const cuda_lists<false> &, int, uint32_t cell)
-{
-    return cell & TILE_PLACE;
-}
-
+/* Where its corners stand in a tile's grid. */
 template <class G, class S>
 static __device__ uint4 where_of(const cuda_view<S> &v, const tile &t, const cuda_lists<true> &lists, int i,
                                  uint32_t cell)
@@ -85,13 +79,13 @@ static __device__ uint4 where_of(const cuda_view<S> &v, const tile &t, const cud
     return lists.corner < 0 ? cuda_row<G>(cell & TILE_PLACE) : cuda_listed(v, t, lists, i);
 }
 
-template <class G, class L, bool LISTED, class S>
-static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, const cuda_lists<LISTED> &lists, int i,
+template <class G, class S>
+static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, const cuda_lists<true> &lists, int i,
                                    const S *u, const element_shape &shape)
 {
     const cuda_view<S> &v = l.view;
     const uint32_t cell = v.cell[t.cell + i];
-    const auto where = where_of<G>(v, t, lists, i, cell);
+    const uint4 where = where_of<G>(v, t, lists, i, cell);
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
     const int32_t mixed = v.mixed ? v.mixed[t.cell + i] : -1;
     element_modes x = element_modes_of(cuda_corners<G>(u, where));
@@ -106,10 +100,10 @@ static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, const c
     const double *from = mixed >= 0 ? v.mixture[mixed].c : kind.c;
     const double *held = mixed >= 0 ? v.mixture[mixed].hourglass : kind.hourglass;
 #pragma unroll
-    for (int k = 0; k < L::COEFFICIENTS; k++)
+    for (int k = 0; k < FORM_NUMBERS; k++) /* 0, where the form has fewer */
         c.own.c[k] = from[k];
     c.h = element_gradient(x, y, z, shape.slope);
-    hold_cell<L>(element_hourglass_modes(x, y, z), shape, held, &c);
+    hold_cell(l.control, element_hourglass_modes(x, y, z), shape, held, &c);
     return c;
 }
 
@@ -138,11 +132,10 @@ static __device__ void fibres_of(const cuda_look<S> &l, const tile &t, int i, co
 }
 
 /* Its strain energy; not finite where the cell is broken. */
-template <class L, class S>
-static __device__ double strain_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
+template <class S> static __device__ double strain_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
 {
     const cuda_view<S> &v = l.view;
-    const double energy = form_energy(L::FORM, c.h, c.own.c);
+    const double energy = form_energy(l.which, c.h, c.own.c);
     if (!(1 + element_dilation(c.h) > 0) || !isfinite(energy) || !isfinite(c.hourglass))
         return INFINITY;
     return (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + c.hourglass);
@@ -190,24 +183,23 @@ template <class G> static __device__ int list_own(const unsigned *who, own_cells
     return count;
 }
 
-template <class L> static __device__ stability_twists twists_of(const one_cell &c, const look_parts &parts)
+static __device__ stability_twists twists_of(hourglass_kind control, const one_cell &c, const look_parts &parts)
 {
-    return stability_twists_by(L::CONTROL, c.own.twists, parts.slope, c.h, c.twist);
+    return stability_twists_by(control, c.own.twists, parts.slope, c.h, c.twist);
 }
 
 /* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread
  * nearly twice the registers. Returns what is proven. */
-template <class G, class L, bool LISTED, class S>
-static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const cuda_lists<LISTED> &lists,
-                                       const S *u, const own_cells<G> &own, int count, const look_parts &parts,
-                                       tled_sums *to)
+template <class G, class S>
+static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const cuda_lists<true> &lists, const S *u,
+                                       const own_cells<G> &own, int count, const look_parts &parts, tled_sums *to)
 {
     double proven = l.question.rest;
 #pragma unroll 1
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
-        const one_cell c = cell_of<G, L>(l, t, lists, i, u, parts.shape);
-        const double strain = strain_of<L>(l, t, i, c);
+        const one_cell c = cell_of<G>(l, t, lists, i, u, parts.shape);
+        const double strain = strain_of(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
             continue;
@@ -218,7 +210,7 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
         const double unit = 8 / sqrt(c.own.density);
         const element_vector slope = parts.shape.slope, d = {unit * slope.x, unit * slope.y, unit * slope.z};
         const stability_range range = stability_range_with(
-            stability_range_scaled(L::FORM, c.own.c, d, c.h, fibre[0], fibre[1]), twists_of<L>(c, parts));
+            stability_range_scaled(l.which, c.own.c, d, c.h, fibre[0], fibre[1]), twists_of(l.control, c, parts));
         if (range.high <= l.question.rest)
             continue;
         const double bound = isnan(range.high) ? INFINITY : range.high;
@@ -265,8 +257,8 @@ static __device__ void raise_limit(const step_matrix *a, stability_twists twists
 }
 
 /* The frequency of a tile by its cells' matrices. */
-template <class G, class L, bool LISTED, class S>
-static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const cuda_lists<LISTED> &lists,
+template <class G, class S>
+static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const cuda_lists<true> &lists,
                                   const look_parts &parts, tled_sums *out, S *u, double *scratch, int *least)
 {
     highest h = {l.question.rest, -1};
@@ -279,12 +271,12 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const cu
         step_matrix a;
         stability_twists twists = {0, 0};
         if (past) {
-            const one_cell c = cell_of<G, L>(l, t, lists, i, u, parts.shape);
+            const one_cell c = cell_of<G>(l, t, lists, i, u, parts.shape);
             element_fibre fibre[2];
             fibres_of(l, t, i, c, fibre);
-            twists = twists_of<L>(c, parts);
-            past = strain_of<L>(l, t, i, c) < INFINITY;
-            stability_matrix(L::FORM, c.own.c, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
+            twists = twists_of(l.control, c, parts);
+            past = strain_of(l, t, i, c) < INFINITY;
+            stability_matrix(l.which, c.own.c, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
         }
         past = past && !stability_below(&a, stability_room(twists, h.limit));
         if (__syncthreads_or(past))
@@ -381,7 +373,7 @@ static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_
 
 /* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one
  * block is beside what computes in others. */
-template <class G, class L, bool LISTED, class S>
+template <class G, class S>
 static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     look_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts out)
 {
@@ -392,7 +384,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     __shared__ double proven[WARPS];
     const unsigned warp = threadIdx.x / 32;
     const tile t = l.view.tiles[blockIdx.x];
-    const cuda_lists<LISTED> lists = cuda_lists_of<LISTED>(l.view, blockIdx.x);
+    const cuda_lists<true> lists = cuda_lists_of<cuda_any_tiles>(l.view, blockIdx.x);
     unsigned who[own_cells<G>::ROUNDS];
     count_own<G>(l.view.cell, t, who, &own);
     cuda_load<G, false>(l.view, t, l.displacement, u);
@@ -405,7 +397,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     const int count = list_own<G>(who, &own);
     __syncthreads();
     mine = nothing_seen(l.question.rest);
-    const double most = warp_most(look_at_cells<G, L>(l, t, lists, u, own, count, out, &mine));
+    const double most = warp_most(look_at_cells<G>(l, t, lists, u, own, count, out, &mine));
     sum_cells(&mine);
     if (threadIdx.x % 32 == 0) {
         add_part(&part[warp], mine);
@@ -437,7 +429,7 @@ static __device__ double proven_of_all(const double *proven, int64_t tiles, doub
  * reach: others' limits may stay, for if one of them is the highest of all, it is too high by `raise` at most.
  * Where no tile is known to pass the frequency at rest, it is for all that may. Then it adds up what their
  * blocks left, where the first of these was. */
-template <class G, class L, bool LISTED, class S>
+template <class G, class S>
 static __global__ void __launch_bounds__(G::THREADS)
     settle_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts parts)
 {
@@ -454,8 +446,8 @@ static __global__ void __launch_bounds__(G::THREADS)
         int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
         for (int which; (which = block_least(next, &least)) != NONE;) {
             const int64_t at = base + which * stride;
-            solve_tile<G, L>(l, l.view.tiles[at], cuda_lists_of<LISTED>(l.view, at), parts, &parts.block[at], u, number,
-                             &least);
+            solve_tile<G>(l, l.view.tiles[at], cuda_lists_of<cuda_any_tiles>(l.view, at), parts, &parts.block[at], u,
+                          number, &least);
             next = next == which ? NONE : next;
         }
         if (own < l.count)
@@ -474,25 +466,16 @@ static __global__ void __launch_bounds__(SUM_THREADS)
     sum_block<SUM_THREADS>(mine, true, scratch, out);
 }
 
-template <class S>
-cudaError_t cuda_look_start(const cuda_look<S> *l, form f, hourglass_kind kind, tled_sums *sums, cudaStream_t stream)
+template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream)
 {
     const look_parts parts = parts_of(l);
     const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
     cudaError_t e = with_brick(l->size, [&](auto g) {
-        return with_stepper(f, kind, [&](auto form_) {
-            typedef decltype(g) G;
-            typedef decltype(form_) L;
-            typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
-            return with_tiles(false, l->view.list, [&](auto t) {
-                constexpr bool LISTED = decltype(t)::LISTED;
-                const cudaError_t bounds =
-                    card_start(look_kernel<W, L, LISTED, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
-                return bounds == cudaSuccess
-                           ? card_start(settle_kernel<G, L, LISTED, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
-                           : bounds;
-            });
-        });
+        typedef decltype(g) G;
+        typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
+        const cudaError_t bounds = card_start(look_kernel<W, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
+        return bounds == cudaSuccess ? card_start(settle_kernel<G, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
+                                     : bounds;
     });
     return e == cudaSuccess
                ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, parts.block, solvers, l->question.rest, sums)
@@ -525,8 +508,7 @@ template <class S> cudaError_t cuda_save_start(const cuda_view<S> *v, const cuda
     return card_start(save_kernel<S>, {blocks, SAVE_THREADS, 0, stream}, *v, *saved);
 }
 
-template cudaError_t cuda_look_start<float>(const cuda_look<float> *, form, hourglass_kind, tled_sums *, cudaStream_t);
-template cudaError_t cuda_look_start<double>(const cuda_look<double> *, form, hourglass_kind, tled_sums *,
-                                             cudaStream_t);
+template cudaError_t cuda_look_start<float>(const cuda_look<float> *, tled_sums *, cudaStream_t);
+template cudaError_t cuda_look_start<double>(const cuda_look<double> *, tled_sums *, cudaStream_t);
 template cudaError_t cuda_save_start<float>(const cuda_view<float> *, const cuda_saved<float> *, cudaStream_t);
 template cudaError_t cuda_save_start<double>(const cuda_view<double> *, const cuda_saved<double> *, cudaStream_t);

@@ -181,9 +181,10 @@ static int cuda_monitor(cuda_state *s, const tled_question *q, tled_sums *sums, 
                          s->saved_internal,
                          rows,
                          *q,
-                         s->look_parts};
-    if (card_check(cuda_look_start(&l, s->p->form, s->p->control.kind, s->sums, s->stream), "the start of a look",
-                   s->step, e) ||
+                         s->look_parts,
+                         s->p->form,
+                         s->p->control.kind};
+    if (card_check(cuda_look_start(&l, s->sums, s->stream), "the start of a look", s->step, e) ||
         CUDA_TRY(cudaMemcpyAsync(s->sums_host, s->sums, sizeof *s->sums, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
         return -1;

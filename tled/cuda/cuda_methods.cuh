@@ -17,8 +17,8 @@ static int cut_in(cuda_state *s, cuda_size size, err *e)
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
         static const int brick[3] = {G::BX, G::BY, G::BZ};
-        const cudaError_t allowed =
-            with_stepper(s->p->form, s->p->control.kind, [](auto l) { return pass_allow<G, decltype(l)>(); });
+        const cudaError_t allowed = with_stepper<CUDA_TILES>(s->p->form, s->p->control.kind,
+                                                             [](auto l) { return pass_allow<G, decltype(l)>(); });
         return CUDA_TRY(allowed) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
     });
 }
@@ -30,10 +30,10 @@ static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
         const int64_t curves = s->curves;
-        const int64_t places = with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
+        const int64_t places = with_stepper<CUDA_RESIDENT>(s->p->form, s->p->control.kind, [&](auto l) {
             typedef decltype(l) L;
-            return with_tiles(s->p->mix, s->tiles.list,
-                              [&](auto t) { return resident_places<G, L, decltype(t)>(curves); });
+            return with_tiles<L>(s->p->mix, s->tiles.list,
+                                 [&](auto t) { return resident_places<G, L, decltype(t)>(curves); });
         });
         *nodes = places * G::NODES;
         return places;
@@ -94,8 +94,8 @@ static int tiles_begin(cuda_state *s, err *e)
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
     const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
-            return pass_start<decltype(g), decltype(l)>(s->view, *p, s->tiles.count, s->stream);
+        return with_stepper<CUDA_TILES>(s->p->form, s->p->control.kind, [&](auto l) {
+            return pass_start<decltype(g)>(l, s->view, *p, s->tiles.count, s->stream);
         });
     });
     return card_check(started, "the start of a pass", s->step, e);
@@ -203,11 +203,11 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
                              ends};
     s->messages += (uint32_t)b->passes;
     const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_stepper(s->p->form, s->p->control.kind, [&](auto l) {
+        return with_stepper<CUDA_RESIDENT>(s->p->form, s->p->control.kind, [&](auto l) {
             typedef decltype(g) G;
             typedef decltype(l) L;
-            return with_tiles(s->view.mixed, s->view.list, [&](auto t) {
-                return resident_start<G, L, decltype(t)>(s->view, r, s->tiles.count, s->stream);
+            return with_tiles<L>(s->view.mixed, s->view.list, [&](auto t) {
+                return resident_start<G, decltype(t)>(l, s->view, r, s->tiles.count, s->stream);
             });
         });
     });
@@ -408,8 +408,8 @@ static void march_end(cuda_state *s)
 /* ---- the table, and the choice */
 
 enum {
-    TILES_FORMS = CUDA_FORMS,
-    MARCH_FORMS = sizeof(real) == sizeof(float) ? 1 << FORM_NEO_HOOKEAN : 0 /* in single precision alone */
+    TILES_FORMS = (1 << FORM_STEPPED) - 1,
+    MARCH_FORMS = sizeof(real) == sizeof(float) ? cuda_own_forms(CUDA_MARCH) : 0 /* in single precision alone */
 };
 
 /* The preferred first. What is left takes the last. */

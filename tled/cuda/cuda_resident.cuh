@@ -134,18 +134,18 @@ static __device__ void resident_node(const cuda_view<real> &v, const cuda_reside
 }
 
 template <class G, class L, class T>
-static __global__ void __launch_bounds__(G::THREADS, together<G>())
-    resident_kernel(cuda_view<real> v, const __grid_constant__ cuda_resident r)
+static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
+    resident_kernel(cuda_view<real> v, const __grid_constant__ cuda_resident r, const __grid_constant__ L l)
 {
     DYNAMIC_SHARED(double, memory);
     real *u = (real *)(memory + 6 * r.curves), *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
-    const cuda_lists<T::LISTED> lists = cuda_lists_of<T::LISTED>(v, blockIdx.x);
+    const cuda_lists<T::LISTED> lists = cuda_lists_of<T>(v, blockIdx.x);
     cell_told<T::LISTED> first = cell_at(v, t, lists, threadIdx.x);
     const cuda_halo<G> halo = halo_of<G>(v, t);
     own_node own[G::OWN];
     cuda_pass p = r.pass;
-    bring_laws<L>(v, &p, near);
+    bring_laws<G>(l, v, &p, near);
     p.now = memory, p.next = memory + 3 * r.curves;
     cuda_load<G, true>(v, t, p.from, u);
 #pragma unroll
@@ -163,7 +163,7 @@ static __global__ void __launch_bounds__(G::THREADS, together<G>())
         if constexpr (T::LISTED) /* rows are in the L1 cache: in registers, they would leave room for fewer blocks */
             first.row = cuda_listed(v, t, lists, (int)threadIdx.x);
         __syncthreads();
-        cell_forces<G, L, T>(v, p, t, lists, first, u, force);
+        cell_forces<G, T>(l, v, p, t, lists, first, u, force);
         node_told<T::LISTED> told[G::OWN];
 #pragma unroll
         for (int i = 0; i < G::OWN; i++)
@@ -211,10 +211,11 @@ template <class G, class L, class T> static int64_t resident_places(int64_t curv
     return fits ? (int64_t)each * processors : 0;
 }
 
-template <class G, class L, class T>
-static cudaError_t resident_start(const cuda_view<real> &v, const cuda_resident &r, int64_t tiles, cudaStream_t s)
+template <class G, class T, class L>
+static cudaError_t resident_start(const L &l, const cuda_view<real> &v, const cuda_resident &r, int64_t tiles,
+                                  cudaStream_t s)
 {
-    return card_start(resident_kernel<G, L, T>, {tiles, G::THREADS, resident_shared<G, L>(r.curves), s, true}, v, r);
+    return card_start(resident_kernel<G, L, T>, {tiles, G::THREADS, resident_shared<G, L>(r.curves), s, true}, v, r, l);
 }
 
 #endif

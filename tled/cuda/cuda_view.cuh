@@ -24,6 +24,7 @@ extern "C" {
 }
 
 #include "solve/start.cuh"
+#include "tled/cuda/cuda_forms.cuh"
 
 /* A brick of nodes, one block of threads each. PLACES of nodes in its grid; CELLS: the last cell's place, and one;
  * HALO: the most places around it for a thread; TOGETHER: blocks that a multiprocessor is to have registers for, in
@@ -54,44 +55,6 @@ template <class F> static auto with_brick(cuda_size size, F f)
     return size == CUDA_LARGE    ? f(cuda_brick<8, 8, 4, 256, 4>())
            : size == CUDA_MIDDLE ? f(cuda_brick<8, 4, 4, 128, 1>())
                                  : f(cuda_brick<4, 4, 4, 128, 1>());
-}
-
-enum { LAWS_NEAR = 16 /* volumes whose laws stand in shared memory */ };
-
-/* What of a law holds hourglass modes. */
-static constexpr int cuda_held(hourglass_kind kind)
-{
-    return kind == HOURGLASS_ISOTROPIC ? 1 : (int)HOURGLASS_NUMBERS;
-}
-
-/* A form and a kind of hourglass control that kernels are compiled for. A law's numbers are its coefficients, then
- * those that hold hourglass modes; NEAR: numbers that all threads of a block ask for, gravity and laws. */
-template <form F, int N, hourglass_kind K> struct cuda_form {
-    static constexpr form FORM = F;
-    static constexpr hourglass_kind CONTROL = K;
-    enum { COEFFICIENTS = N, HELD = cuda_held(K), LAW = N + HELD, NEAR = 4 + LAW * LAWS_NEAR };
-};
-
-/* The forms that kernels are compiled for, as bits. */
-enum { CUDA_FORMS = 1 << FORM_NEO_HOOKEAN | 1 << FORM_MOONEY_RIVLIN };
-
-/* Calls f with a form of CUDA_FORMS, and the kind, as a type. */
-template <hourglass_kind K, class F> static auto with_form(form which, F f)
-{
-    switch (which) {
-    case FORM_NEO_HOOKEAN:
-        return f(cuda_form<FORM_NEO_HOOKEAN, FORM_NEO_HOOKEAN_NUMBERS, K>());
-    case FORM_MOONEY_RIVLIN:
-        return f(cuda_form<FORM_MOONEY_RIVLIN, FORM_MOONEY_RIVLIN_NUMBERS, K>());
-    default:
-        __builtin_unreachable(); /* the choice of executors refuses others */
-    }
-}
-
-template <class F> static auto with_stepper(form which, hourglass_kind kind, F f)
-{
-    return kind == HOURGLASS_ISOTROPIC ? with_form<HOURGLASS_ISOTROPIC>(which, f)
-                                       : with_form<HOURGLASS_PHYSICAL>(which, f);
 }
 
 typedef struct cuda_kind { /* a volume */
@@ -129,20 +92,6 @@ template <class S> struct cuda_view {
     const uint4 *pull;     /* rows of listed nodes */
 };
 
-/* What a tile's kernel is compiled for: cells mixed of two volumes, and listed tiles. Models without them have kernels
- * that do without. */
-template <bool M, bool N> struct cuda_tiles {
-    static constexpr bool MIXED = M, LISTED = N;
-};
-
-/* Calls f with what a model needs, as a type. */
-template <class F> static auto with_tiles(bool mixed, bool listed, F f)
-{
-    if (listed)
-        return mixed ? f(cuda_tiles<true, true>()) : f(cuda_tiles<false, true>());
-    return mixed ? f(cuda_tiles<true, false>()) : f(cuda_tiles<false, false>());
-}
-
 /* Where a tile's lists begin; nothing, where no tile is listed. */
 template <bool LISTED> struct cuda_lists {
 };
@@ -150,12 +99,15 @@ template <> struct cuda_lists<true> {
     int32_t corner, pull; /* tile_list's */
 };
 
-template <bool LISTED, class S> static __device__ cuda_lists<LISTED> cuda_lists_of(const cuda_view<S> &v, int64_t which)
+/* T: cuda_tiles, or cuda_any_tiles. */
+template <class T, class S> static __device__ cuda_lists<T::LISTED> cuda_lists_of(const cuda_view<S> &v, int64_t which)
 {
-    if constexpr (LISTED)
-        return {v.list[which].corner, v.list[which].pull};
-    else
+    if constexpr (!T::LISTED)
         return {};
+    else if (T::ASKS && !v.list)
+        return {-1, -1};
+    else
+        return {v.list[which].corner, v.list[which].pull};
 }
 
 /* Number i of a row. */
@@ -285,13 +237,14 @@ template <class S> struct cuda_look {
     const double *now;                                                                 /* the curves' values */
     tled_question question;
     void *parts; /* cuda_look_bytes of them */
+    form which;  /* of the laws */
+    hourglass_kind control;
 };
 
 size_t cuda_look_bytes(int64_t tiles);
 
 /* Starts the work on the stream; *sums (on the device) gets the answer, with cells for elements. */
-template <class S>
-cudaError_t cuda_look_start(const cuda_look<S> *l, form f, hourglass_kind kind, tled_sums *sums, cudaStream_t stream);
+template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream);
 
 /* The first fields of the table, which the kernels know: nodes x 3, as the view says. */
 enum { CUDA_STEPPED = TLED_VELOCITY + 1 };

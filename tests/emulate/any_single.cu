@@ -1,9 +1,10 @@
-/* See history.h. Every cell is changed, copies in other tiles' cells alike. */
-#define CUDA_EXECUTOR plain_cuda
+/* See any_form.h. Of histories, every cell is changed, copies in other tiles' cells alike. */
+#include "tests/emulate/any_form.h"
+
+#define CUDA_EXECUTOR any_form_single
+#define CUDA_OWN(X)   X(NEO_HOOKEAN, CUDA_MARCH)
 #define ELEMENT_SINGLE
 #include "tled/cuda/cuda_loops.cuh"
-
-#include "tests/emulate/history.h"
 
 enum { AGE_THREADS = 64 };
 
@@ -27,7 +28,7 @@ static int history_step(cuda_state *s, const tled_plan *plan, int64_t count, err
 
 static tled_executor with_history(void)
 {
-    tled_executor device = plain_cuda;
+    tled_executor device = any_form_single;
     device.is.features |= EXECUTOR_HISTORY;
     device.step = history_step;
     return device;
