@@ -1,7 +1,7 @@
 #!/bin/sh
 # README.md as its reader types it: the commands of each block marked sh, in order, in one shell, in a folder that holds what a clone does
-# (samples/, and the tools in bin/). bash runs them as they stand; with SINEW_LONG sh runs them too, on coarser meshes,
-# since bash has shown the figures. A block that is one `make TARGET` takes minutes: here it must be a target. Checked too: the files that the commands name, the lines of the blocks
+# (samples/, and the tools in bin/). bash runs them on coarser meshes. With SINEW_LONG it runs them as they stand, so
+# that what they print and draw is compared (tests/golden tells of each change of results before), and sh runs them on coarser meshes. A block that is one `make TARGET` takes minutes: here it must be a target. Checked too: the files that the commands name, the lines of the blocks
 # marked text, and that figures, make targets, pages and files that the text names are what they are called.
 . "$(dirname "$0")/lib.sh"
 
@@ -62,7 +62,10 @@ run_typed() {
 coarser='s/-s 2\.5 --fraction 4/-s 6/; s/-t 0\.2/-t 0.04/; s/--nodes 32x10x24/--nodes 13x5x11/; s/seconds=2/seconds=0.5/; s/--size 1200x400/--size 400x150/'
 clone "$T/bash"
 # (With sanitizers coarser too: what is printed is no test of memory.)
-typed "$T/bash" "${SINEW_SANITIZED:+$coarser}" >"$T/bash.script"
+coarse=
+[ -n "${SINEW_LONG:-}" ] || coarse="SINEW_LONG is not set: figures of coarser meshes"
+[ -z "${SINEW_SANITIZED:-}" ] || coarse="coarser with sanitizers"
+typed "$T/bash" "${coarse:+$coarser}" >"$T/bash.script"
 # -H and -o history: a '!' means what it does to one who types.
 check "all commands, typed in bash" run_typed "$T/bash" bash -e -H -o history
 other=$T/bash
@@ -86,8 +89,8 @@ check "files are named" test "$(wc -l <"$T/files")" -ge 20
 is "$(cd "$T/bash/out/moved" && echo *.moved.obj)" "anna.moved.obj ben.moved.obj" "a folder of OBJ files"
 is "$(wc -l <"$T/bash/out/corner.tsv")" "$(($(sinew info --get frames "$T/bash/out/smile.sinew") + 1))" "a row for each frame"
 compare=${BUILD:-build}/tests/cli/compare_pictures
-if [ -n "${SINEW_SANITIZED:-}" ]; then
-    skip 1 "coarser with sanitizers"
+if [ -n "$coarse" ]; then
+    skip 1 "$coarse"
 elif [ -x "$compare" ]; then
     check "README's picture" "$compare" "$T/bash/out/face.png" samples/face.png
 else
@@ -95,18 +98,18 @@ else
 fi
 check "a film for ParaView" grep -q '<DataSet' "$T/bash/out/smile.pvd"
 is "$(diff "$T/bash/out/head.obj" "$T/bash/out/smile.obj" | sed -n 's/^[<>] \([a-z#]*\) .*/\1/p' | sort -u | tr '\n' ' ')" "v vn " "only v and vn lines change"
-if [ -z "${SINEW_SANITIZED:-}" ]; then
+if [ -z "$coarse" ]; then
     is "$(cat "$T/bash"/said-* | grep -c 'warning: ')" 0 "no tool warns"
 else
-    skip 1 "coarser with sanitizers"
+    skip 1 "$coarse"
 fi
 
 # What README says was printed, was: the lines of blocks marked text, and what the two longer examples end with.
 cat "$T/bash"/said-* >"$T/said"
 cat "$T/blocks"/*.text >"$T/lines"
 while IFS= read -r line; do
-    if [ -n "${SINEW_SANITIZED:-}" ]; then
-        skip 1 "coarser with sanitizers"
+    if [ -n "$coarse" ]; then
+        skip 1 "$coarse"
     else
         check "printed: $line" grep -qxF -e "$line" "$T/said"
     fi
