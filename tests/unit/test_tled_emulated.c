@@ -1,5 +1,5 @@
 /* The CUDA executors' kernels on a card that the processor plays (tests/emulate): the march, its bricks, those that
- * stay, and looks, each by several lots; and that the card finds what is wrong, in kernels that are, and in ours where
+ * stay, and looks, a third of them by several lots; and that the card finds what is wrong, in kernels that are, and in ours where
  * it leaves out what they say. With SINEW_LONG for twenty times as many steps, and more shapes, slits and ways. */
 // needs: tled/*/*.c
 #include "tled_live_trial.h"
@@ -152,23 +152,27 @@ static double off(const answer *a, const answer *b)
     return worst;
 }
 
-/* The CPU's answer, to within a share, or its very bytes; and the same bytes by other lots, and in other units. */
+/* The CPU's answer, to within a share, or its very bytes; and the same bytes by other lots, and in other units: of every
+ * third, or of all. */
 static void try(const trial *t, const emulated_card *card, const tled_executor *device, const tled_executor *cpu,
                 int64_t steps, double tolerance)
 {
+    static int tried;
     answer here, there, again;
     find(&here, t, cpu, steps);
     put_in(card, 1, card->processors);
     find(&there, t, device, steps);
     const int64_t blocks = emulated_blocks();
-    put_in(card, 2, card->together ? card->processors : 1);
-    find(&again, t, device, steps);
     ok(off(&there, &here) <= tolerance, "%s: %.2g off by %" PRId64 " blocks %s", t->name, off(&there, &here), blocks,
        there.b.e.text);
-    ok(off(&again, &there) == 0, "%s: the same by other lots %s", t->name, again.b.e.text);
+    if (all_of_it || tried++ % 3 == 0) {
+        put_in(card, 2, card->together ? card->processors : 1);
+        find(&again, t, device, steps);
+        ok(off(&again, &there) == 0, "%s: the same by other lots %s", t->name, again.b.e.text);
+        answer_free(&again);
+    }
     answer_free(&here);
     answer_free(&there);
-    answer_free(&again);
 }
 
 static void test_wrong(void)
