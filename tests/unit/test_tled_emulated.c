@@ -1,6 +1,7 @@
 /* The CUDA executors' kernels on a card that the processor plays (tests/emulate): the march, its bricks, those that
- * stay, and looks, a third of them by several lots; and that the card finds what is wrong, in kernels that are, and in ours where
- * it leaves out what they say. With SINEW_LONG for twenty times as many steps, and more shapes, slits and ways. */
+ * stay, and looks, a third of them by several lots; and that the card finds what is wrong, in kernels that are, and in
+ * ours where it leaves out what they say. With SINEW_LONG for twenty times as many steps, all by several lots, and more
+ * shapes, slits and ways. */
 // needs: tled/*/*.c
 #include "tled_live_trial.h"
 
@@ -152,8 +153,8 @@ static double off(const answer *a, const answer *b)
     return worst;
 }
 
-/* The CPU's answer, to within a share, or its very bytes; and the same bytes by other lots, and in other units: of every
- * third, or of all. */
+/* The CPU's answer, to within a share, or its very bytes; and, of every third trial or of all, the same bytes by other
+ * lots, and in other units. */
 static void try(const trial *t, const emulated_card *card, const tled_executor *device, const tled_executor *cpu,
                 int64_t steps, double tolerance)
 {

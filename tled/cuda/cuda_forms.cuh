@@ -1,8 +1,8 @@
-/* Which kernels there are, by form of law, hourglass control and what tiles may have, and the choice among them. A kernel
- * that is compiled for one of each is the fastest; but for each size of bricks, way and precision a form then takes four
- * kernels for each kind of control. So a form has kernels of its own in the ways that a table says. In all others it
- * runs in the kernels of any form, one for each size, way and precision, whose threads branch alike by what they are
- * told. Both give the same bytes. Included by cuda_view.cuh alone.
+/* Which kernels there are, by form of law, hourglass control and what tiles may have, and the choice among them. A
+ * kernel that is compiled for one of each is the fastest; but for each size of bricks, way and precision a form then
+ * takes four kernels for each kind of control. So a form has kernels of its own in the ways that a table says. In all
+ * others it runs in the kernels of any form, one for each size, way and precision, whose threads branch alike by what
+ * they are told. Both give the same bytes. Included by cuda_view.cuh alone.
  */
 #ifndef SINEW_CUDA_FORMS_CUH
 #define SINEW_CUDA_FORMS_CUH
