@@ -5,6 +5,7 @@
 #include "tled/cuda/march_near.h"
 #include "tled/cuda/march_sheets.h"
 #include "tled/cuda/march_tips.h"
+#include "tled/cuda/march_turns.h"
 #include "tled/cuda/march_units.h"
 #include "tled/cuda/places.h"
 
@@ -561,8 +562,8 @@ static int finish(cutter *c, const march_runs *runs, int64_t slots)
 {
     march *m = c->m;
     if (order_nodes(c) || put_special(c) || march_runs_cut(runs, slots, &m->unit, &m->units, c->e) ||
-        march_tips_list(m, c->p, c->sheet, c->which, c->e) || march_tips_place(m, c->p->nodes, c->e) ||
-        march_near_find(m, c->p->nodes, c->e))
+        march_tips_list(m, c->p, c->sheet, c->which, c->e) || march_tips_add(m, c->e) ||
+        (c->sheet && march_turns_order(m, c->sheet, c->p->nodes, c->e)) || march_near_find(m, c->p->nodes, c->e))
         return -1;
     m->computed += 8. * (double)m->tips / (double)c->p->elements;
     mark_units(m);

@@ -2,10 +2,10 @@
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
-#include "tled/cuda/march_near.h"
 #include "tled/cuda/march_sheets.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Which corner of a tip's element corner c of VTK's order is. */
 static int corner_of(const march *m, int c)
@@ -41,51 +41,20 @@ int march_tips_list(march *m, const tled_problem *p, const int32_t *sheet, const
     return 0;
 }
 
-/* The unit that a unit of tips from `base` on is put after: one that owns a node of their elements, or the first. */
-static int32_t beside(const march *m, const int32_t *owner, int64_t base)
-{
-    for (const march_tip *tip = m->tip + 8 * base; tip < m->tip + 8 * m->tips; tip++)
-        for (int c = 0; tip->corner >= 0 && c < 8; c++)
-            if (tip->node[c] < m->tip_first)
-                return owner[tip->node[c]];
-    return 0;
-}
-
-int march_tips_place(march *m, int64_t nodes, err *e)
+int march_tips_add(march *m, err *e)
 {
     const int64_t more = (m->tips + MARCH_TIPS - 1) / MARCH_TIPS;
-    int result = -1;
     if (!m->tips)
         return 0;
-    int32_t *owner = mem_array(nodes, sizeof *owner, "the march", e);
-    int64_t *after = mem_array(m->units + 1, sizeof *after, "the march", e); /* units to be put after each */
-    int32_t *place = mem_array(more, sizeof *place, "the march", e);
     march_unit *unit = mem_array(m->units + more, sizeof *unit, "the march", e);
-    if (!owner || !after || !place || !unit)
-        goto out;
-    march_owners(m, owner);
-    for (int64_t k = 0; k < more; k++)
-        after[place[k] = beside(m, owner, MARCH_TIPS * k)]++;
-    for (int64_t i = 0, to = 0; i < m->units; i++) {
-        const int64_t count = after[i];
-        unit[to++] = m->unit[i];
-        after[i] = to;
-        to += count;
-    }
-    for (int64_t k = 0; k < more; k++) {
-        const int64_t base = MARCH_TIPS * k, left = m->tips - base;
-        unit[after[place[k]]++] =
-            (march_unit){.base = (int32_t)base, .tips = left < MARCH_TIPS ? (int32_t)left : MARCH_TIPS};
+    if (!unit)
+        return -1;
+    memcpy(unit, m->unit, (size_t)m->units * sizeof *unit);
+    for (int64_t base = 0; base < m->tips; base += MARCH_TIPS) {
+        const int64_t left = m->tips - base;
+        unit[m->units++] = (march_unit){.base = (int32_t)base, .tips = left < MARCH_TIPS ? (int32_t)left : MARCH_TIPS};
     }
     free(m->unit);
     m->unit = unit;
-    m->units += more;
-    unit = NULL;
-    result = 0;
-out:
-    free(owner);
-    free(after);
-    free(place);
-    free(unit);
-    return result;
+    return 0;
 }

@@ -5,10 +5,10 @@
 #include "tled/cuda/march.h"
 
 /* Makes `tip` of a march whose order is made. sheet: nodes: MARCH_TIP, or not; special: elements: which special cell
- * each is, from 1 on, or 0. -1 with e filled, as for march_tips_place. */
+ * each is, from 1 on, or 0. -1 with e filled, as for march_tips_add. */
 int march_tips_list(march *m, const tled_problem *p, const int32_t *sheet, const int32_t *special, err *e);
 
-/* Puts the tips' units among the others. nodes: of the problem. */
-int march_tips_place(march *m, int64_t nodes, err *e);
+/* Adds the tips' units after the others. */
+int march_tips_add(march *m, err *e);
 
 #endif
