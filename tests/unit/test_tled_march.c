@@ -1,11 +1,12 @@
 /* A problem cut for a march: every node is moved by one unit, which has all of its elements, with their own corners;
  * what is said of special cells is the problem's, and others are of the plain law. Nodes stand in one order, in which
  * what is owned of a layer is one piece. So with slits, whose tips have units of their own. With each of the six axes;
- * and not where too few threads would have a cell. Which units wait for which, by trying all pairs. And units: some for
+ * and not where too few threads would have a cell. Which units wait for which, by trying all pairs; and that none waits
+ * for one whose turn comes long after its own. And units: some for
  * each block that there is room for at once where their layers are all alike, in the order of these.
  */
 // needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_sheets.c
-// needs: tled/cuda/march_tips.c tled/cuda/march_turns.c tled/cuda/places.c  tled/*/*.c
+// needs: tled/cuda/march_tips.c tled/cuda/march_turns.c tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "tled/cuda/march_near.h"
 #include "tled/cuda/march_units.h"
@@ -427,6 +428,51 @@ static void test_slits(const block *plain, const block *special)
     in_slit = NULL;
 }
 
+/* How many turns later than a unit's the last of those near it is, as a share of a pass. */
+static double most_apart(const march *m)
+{
+    int64_t most = 0;
+    for (int64_t i = 0; i < m->units * m->nears; i++)
+        most = m->near[i] - i / m->nears > most ? m->near[i] - i / m->nears : most;
+    return (double)most / (double)m->units;
+}
+
+static double apart_in(const block *what, const slit *with)
+{
+    model m = {0};
+    script played = {0};
+    tled_problem p = {0};
+    march cut;
+    err e = {0};
+    in_slit = with;
+    block_make(what, &m);
+    in_slit = NULL;
+    if (tled_problem_make(&p, &m, &played, PHYSICAL, &e) || march_make(&cut, &p, 40, &e))
+        printf("Bail out! %s\n", e.text);
+    const double apart = most_apart(&cut);
+    march_free(&cut);
+    tled_problem_free(&p);
+    model_free(&m);
+    return apart;
+}
+
+/* A unit that has its turn long after one near it would be waited for in the next pass. A slit's second sheet and tips
+ * have theirs beside those near them. */
+static void test_turns(void)
+{
+    const block wide = {{62, 62, 16}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
+    const double without = apart_in(&wide, NULL);
+    for (int a = 0; a < 3; a++) {
+        const int32_t *cells = wide.cells;
+        const slit half = {
+            "half", {{a, cells[a] / 2, {0, 0}, {cells[(a + 1) % 3] / 2, cells[(a + 2) % 3]}, false, false}}, false};
+        const double apart = apart_in(&wide, &half);
+        ok(apart < without + .1,
+           "a slit across %c: the last unit near another has its turn %.2f passes later, not %.2f", 'x' + a, apart,
+           without);
+    }
+}
+
 int main(void)
 {
     const block tall = {{33, 31, 40}, {.01, .02, .03}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
@@ -452,6 +498,7 @@ int main(void)
     test_slits(&tall, &both);
     test_thin();
     test_one_way();
+    test_turns();
     test_units();
     test_special_units();
     return done_testing();

@@ -24,11 +24,10 @@ typedef struct cuda_pass {
     int what;
 } cuda_pass;
 
-/* where: the cell's place, or its row. */
-template <class G, class W> static __device__ element_field cell_field(const real *u, const W &where)
+template <class G> static __device__ element_field cell_field(const real *u, int place)
 {
-    element_field at = {cuda_corners<G>(u, where), cuda_corners<G>(u + G::PLACES, where),
-                        cuda_corners<G>(u + 2 * G::PLACES, where)};
+    element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
+                        cuda_corners<G>(u + 2 * G::PLACES, place)};
     return at;
 }
 
@@ -60,9 +59,9 @@ template <class L, class T> static __device__ element_law law_of(const L &l, con
 }
 
 /* A cell mixed of two volumes. */
-template <class G, class L, class W>
+template <class G, class L>
 static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
-                                            int i, const real *u, const W &where, const cuda_kind &kind,
+                                            int i, const real *u, int place, const cuda_kind &kind,
                                             const cuda_mixed &mixed, real share)
 {
     const cuda_kind &mix = v.kind[mixed.mix];
@@ -80,13 +79,13 @@ static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v
         second.along = cell_along(t, i, v.mixfibre);
         second.tension = other * tension_of_mix;
     }
-    return element_force_of_two(l.which, l.control, cell_field<G>(u, where), p.shape, law, fibre, tension != 0, second,
+    return element_force_of_two(l.which, l.control, cell_field<G>(u, place), p.shape, law, fibre, tension != 0, second,
                                 tension_of_mix != 0);
 }
 
-template <class G, class L, class W>
+template <class G, class L>
 static __device__ element_field plain_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
-                                            int i, const real *u, const W &where, uint32_t volume, real share)
+                                            int i, const real *u, int place, uint32_t volume, real share)
 {
     const real *stiff = p.law + (l.coefficients + l.held) * volume;
     const element_law law = law_of(l, stiff, stiff + l.coefficients, share);
@@ -96,20 +95,20 @@ static __device__ element_field plain_force(const L &l, const cuda_view<real> &v
         fibre.along = cell_along(t, i, v.fibre);
         fibre.tension = share * (real)(kind.peak * p.now[3 * kind.contract]);
     }
-    return element_force(l.which, l.control, cell_field<G>(u, where), p.shape, law, fibre, fibre.tension != 0);
+    return element_force(l.which, l.control, cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
 }
 
-template <class G, class T, class L, class W>
+template <class G, class T, class L>
 static __device__ void cell_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
-                                  uint32_t cell, const W &where, const real *u, real *force)
+                                  uint32_t cell, const real *u, real *force)
 {
     const int place = cell & TILE_PLACE;
     const uint32_t volume = cell >> TILE_VOLUME;
     const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
     const int32_t mixed = T::MIXED && (!T::ASKS || v.mixed) ? v.mixed[t.cell + i] : -1;
     const element_field f = T::MIXED && mixed >= 0
-                                ? mixed_force<G>(l, v, p, t, i, u, where, v.kind[volume], v.mixture[mixed], share)
-                                : plain_force<G>(l, v, p, t, i, u, where, volume, share);
+                                ? mixed_force<G>(l, v, p, t, i, u, place, v.kind[volume], v.mixture[mixed], share)
+                                : plain_force<G>(l, v, p, t, i, u, place, volume, share);
 #pragma unroll
     for (int c = 0; c < 8; c++) {
         force[c * G::CELLS + place] = f.x.at[c];
@@ -118,47 +117,21 @@ static __device__ void cell_force(const L &l, const cuda_view<real> &v, const cu
     }
 }
 
-/* A cell, and its row where tiles may be listed. */
-template <bool LISTED> struct cell_told {
-    uint32_t cell;
-};
-template <> struct cell_told<true> {
-    uint32_t cell;
-    uint4 row;
-};
-
 /* A thread's first cell, and each after it while the one before is computed. */
-template <bool LISTED>
-static __device__ cell_told<LISTED> cell_at(const cuda_view<real> &v, const tile &t, const cuda_lists<LISTED> &lists,
-                                            int i)
+static __device__ uint32_t cell_at(const cuda_view<real> &v, const tile &t, int i)
 {
-    cell_told<LISTED> c;
-    c.cell = i < t.cells ? v.cell[t.cell + i] : 0;
-    if constexpr (LISTED)
-        c.row = cuda_listed(v, t, lists, i);
-    return c;
-}
-
-template <class G> static __device__ int cell_where(const cell_told<false> &c, const cuda_lists<false> &)
-{
-    return c.cell & TILE_PLACE;
-}
-
-template <class G> static __device__ uint4 cell_where(const cell_told<true> &c, const cuda_lists<true> &lists)
-{
-    return lists.corner < 0 ? cuda_row<G>(c.cell & TILE_PLACE) : c.row;
+    return i < t.cells ? v.cell[t.cell + i] : 0;
 }
 
 template <class G, class T, class L>
 static __device__ void cell_forces(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
-                                   const cuda_lists<T::LISTED> &lists, const cell_told<T::LISTED> &first, const real *u,
-                                   real *force)
+                                   uint32_t first, const real *u, real *force)
 {
-    cell_told<T::LISTED> cell = first;
+    uint32_t cell = first;
 #pragma unroll 1
     for (int i = threadIdx.x; i < t.cells; i += G::THREADS) {
-        const cell_told<T::LISTED> next = cell_at(v, t, lists, i + G::THREADS);
-        cell_force<G, T>(l, v, p, t, i, cell.cell, cell_where<G>(cell, lists), u, force);
+        const uint32_t next = cell_at(v, t, i + G::THREADS);
+        cell_force<G, T>(l, v, p, t, i, cell, u, force);
         cell = next;
     }
 }
@@ -211,17 +184,17 @@ template <> struct node_told<true> {
 };
 
 template <bool LISTED>
-static __device__ node_told<LISTED> node_row(const cuda_view<real> &v, const tile &t, const cuda_lists<LISTED> &lists,
+static __device__ node_told<LISTED> node_row(const cuda_view<real> &v, const tile &t, const cuda_list<LISTED> &list,
                                              int i)
 {
     if constexpr (LISTED)
-        return {lists.pull >= 0 && i < t.nodes ? v.pull[lists.pull + i] : uint4{0, 0, 0, 0}};
+        return {list.pull >= 0 && i < t.nodes ? v.pull[list.pull + i] : uint4{0, 0, 0, 0}};
     else
         return {};
 }
 
 template <class G>
-static __device__ element_vector node_sum(uint32_t info, const node_told<false> &, const cuda_lists<false> &,
+static __device__ element_vector node_sum(uint32_t info, const node_told<false> &, const cuda_list<false> &,
                                           const real *force)
 {
     return node_internal<G>(info, force);
@@ -229,11 +202,11 @@ static __device__ element_vector node_sum(uint32_t info, const node_told<false> 
 
 /* Of a listed tile, in the order of the row. */
 template <class G>
-static __device__ element_vector node_sum(uint32_t info, const node_told<true> &told, const cuda_lists<true> &lists,
+static __device__ element_vector node_sum(uint32_t info, const node_told<true> &told, const cuda_list<true> &list,
                                           const real *force)
 {
     element_vector sum = {0, 0, 0};
-    if (lists.pull < 0)
+    if (list.pull < 0)
         return node_internal<G>(info, force);
 #pragma unroll
     for (int i = 0; i < 8; i++) {
@@ -355,21 +328,21 @@ static __global__ void __launch_bounds__(G::THREADS, passes_together<G, L>())
     DYNAMIC_SHARED(double, memory);
     real *u = (real *)memory, *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
-    const cuda_lists<T::LISTED> lists = cuda_lists_of<T>(v, blockIdx.x);
-    const cell_told<T::LISTED> first = cell_at(v, t, lists, threadIdx.x);
+    const cuda_list<T::LISTED> list = cuda_list_of<T>(v, blockIdx.x);
+    const uint32_t first = cell_at(v, t, threadIdx.x);
     cuda_pass p = given;
     bring_laws<G>(l, v, &p, near);
     bring_gravity(v, p.now, near);
     cuda_load<G, true>(v, t, p.from, u);
     __syncthreads();
-    cell_forces<G, T>(l, v, p, t, lists, first, u, force);
+    cell_forces<G, T>(l, v, p, t, first, u, force);
     own_node own = node_at(v, p, t, threadIdx.x);
-    node_told<T::LISTED> told = node_row(v, t, lists, threadIdx.x);
+    node_told<T::LISTED> told = node_row(v, t, list, threadIdx.x);
     __syncthreads();
     for (int i = threadIdx.x; i < t.nodes; i += G::THREADS) {
-        one_node<G>(v, p, t, i, own, node_sum<G>(own.info, told, lists, force), u);
+        one_node<G>(v, p, t, i, own, node_sum<G>(own.info, told, list, force), u);
         own = node_at(v, p, t, i + G::THREADS);
-        told = node_row(v, t, lists, i + G::THREADS);
+        told = node_row(v, t, list, i + G::THREADS);
     }
 }
 

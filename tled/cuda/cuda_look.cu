@@ -71,26 +71,17 @@ static __device__ void hold_cell(hourglass_kind control, hourglass_modes m, cons
     c->twist = sqrt(hourglass_dot(&w, &w));
 }
 
-/* Where its corners stand in a tile's grid. */
 template <class G, class S>
-static __device__ uint4 where_of(const cuda_view<S> &v, const tile &t, const cuda_lists<true> &lists, int i,
-                                 uint32_t cell)
-{
-    return lists.corner < 0 ? cuda_row<G>(cell & TILE_PLACE) : cuda_listed(v, t, lists, i);
-}
-
-template <class G, class S>
-static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, const cuda_lists<true> &lists, int i,
-                                   const S *u, const element_shape &shape)
+static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, const S *u, const element_shape &shape)
 {
     const cuda_view<S> &v = l.view;
     const uint32_t cell = v.cell[t.cell + i];
-    const uint4 where = where_of<G>(v, t, lists, i, cell);
+    const int place = cell & TILE_PLACE;
     const cuda_kind &kind = v.kind[cell >> TILE_VOLUME];
     const int32_t mixed = v.mixed ? v.mixed[t.cell + i] : -1;
-    element_modes x = element_modes_of(cuda_corners<G>(u, where));
-    element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, where));
-    element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, where));
+    element_modes x = element_modes_of(cuda_corners<G>(u, place));
+    element_modes y = element_modes_of(cuda_corners<G>(u + G::PLACES, place));
+    element_modes z = element_modes_of(cuda_corners<G>(u + 2 * G::PLACES, place));
     one_cell c;
     c.own = {{0}, kind.density, {0}, kind.twists, 0, -1};
     if (mixed >= 0) {
@@ -191,14 +182,14 @@ static __device__ stability_twists twists_of(hourglass_kind control, const one_c
 /* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread
  * nearly twice the registers. Returns what is proven. */
 template <class G, class S>
-static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const cuda_lists<true> &lists, const S *u,
-                                       const own_cells<G> &own, int count, const look_parts &parts, tled_sums *to)
+static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
+                                       int count, const look_parts &parts, tled_sums *to)
 {
     double proven = l.question.rest;
 #pragma unroll 1
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
-        const one_cell c = cell_of<G>(l, t, lists, i, u, parts.shape);
+        const one_cell c = cell_of<G>(l, t, i, u, parts.shape);
         const double strain = strain_of(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
@@ -258,7 +249,8 @@ static __device__ void raise_limit(const step_matrix *a, stability_twists twists
 
 /* The frequency of a tile by its cells' matrices. */
 template <class G, class S>
-static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const cuda_lists<true> &lists,
+static __device__ void solve_tile(const cuda_look<S> &l, const tile &t,
+
                                   const look_parts &parts, tled_sums *out, S *u, double *scratch, int *least)
 {
     highest h = {l.question.rest, -1};
@@ -271,7 +263,7 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t, const cu
         step_matrix a;
         stability_twists twists = {0, 0};
         if (past) {
-            const one_cell c = cell_of<G>(l, t, lists, i, u, parts.shape);
+            const one_cell c = cell_of<G>(l, t, i, u, parts.shape);
             element_fibre fibre[2];
             fibres_of(l, t, i, c, fibre);
             twists = twists_of(l.control, c, parts);
@@ -384,7 +376,6 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     __shared__ double proven[WARPS];
     const unsigned warp = threadIdx.x / 32;
     const tile t = l.view.tiles[blockIdx.x];
-    const cuda_lists<true> lists = cuda_lists_of<cuda_any_tiles>(l.view, blockIdx.x);
     unsigned who[own_cells<G>::ROUNDS];
     count_own<G>(l.view.cell, t, who, &own);
     cuda_load<G, false>(l.view, t, l.displacement, u);
@@ -397,7 +388,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     const int count = list_own<G>(who, &own);
     __syncthreads();
     mine = nothing_seen(l.question.rest);
-    const double most = warp_most(look_at_cells<G>(l, t, lists, u, own, count, out, &mine));
+    const double most = warp_most(look_at_cells<G>(l, t, u, own, count, out, &mine));
     sum_cells(&mine);
     if (threadIdx.x % 32 == 0) {
         add_part(&part[warp], mine);
@@ -446,8 +437,7 @@ static __global__ void __launch_bounds__(G::THREADS)
         int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
         for (int which; (which = block_least(next, &least)) != NONE;) {
             const int64_t at = base + which * stride;
-            solve_tile<G>(l, l.view.tiles[at], cuda_lists_of<cuda_any_tiles>(l.view, at), parts, &parts.block[at], u,
-                          number, &least);
+            solve_tile<G>(l, l.view.tiles[at], parts, &parts.block[at], u, number, &least);
             next = next == which ? NONE : next;
         }
         if (own < l.count)

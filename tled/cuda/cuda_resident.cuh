@@ -133,6 +133,11 @@ static __device__ void resident_node(const cuda_view<real> &v, const cuda_reside
     }
 }
 
+/* Whether registers have room for listed nodes' rows from pass to pass; else they are in the L1 cache. */
+template <class G, class L> struct resident_rows {
+    static constexpr bool NEAR = together<G, L>() == 1;
+};
+
 template <class G, class L, class T>
 static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
     resident_kernel(cuda_view<real> v, const __grid_constant__ cuda_resident r, const __grid_constant__ L l)
@@ -140,8 +145,8 @@ static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
     DYNAMIC_SHARED(double, memory);
     real *u = (real *)(memory + 6 * r.curves), *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
-    const cuda_lists<T::LISTED> lists = cuda_lists_of<T>(v, blockIdx.x);
-    cell_told<T::LISTED> first = cell_at(v, t, lists, threadIdx.x);
+    const cuda_list<T::LISTED> list = cuda_list_of<T>(v, blockIdx.x);
+    const uint32_t first = cell_at(v, t, threadIdx.x);
     const cuda_halo<G> halo = halo_of<G>(v, t);
     own_node own[G::OWN];
     cuda_pass p = r.pass;
@@ -151,6 +156,11 @@ static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
 #pragma unroll
     for (int k = 0; k < G::OWN; k++)
         own[k] = node_at(v, p, t, (int)threadIdx.x + k * G::THREADS);
+    node_told<T::LISTED> told[G::OWN];
+    if constexpr (resident_rows<G, L>::NEAR)
+#pragma unroll
+        for (int k = 0; k < G::OWN; k++)
+            told[k] = node_row(v, t, list, (int)threadIdx.x + k * G::THREADS);
     for (int32_t k = 0; k < r.passes; k++) {
         const bool last = r.ends && k == r.passes - 1;
         const uint32_t count = r.count + (uint32_t)k;
@@ -160,20 +170,18 @@ static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
         for (int i = threadIdx.x; i < (last ? 3 : 6) * r.curves; i += G::THREADS)
             memory[i] = now[i];
         bring_gravity(v, now, near);
-        if constexpr (T::LISTED) /* rows are in the L1 cache: in registers, they would leave room for fewer blocks */
-            first.row = cuda_listed(v, t, lists, (int)threadIdx.x);
         __syncthreads();
-        cell_forces<G, T>(l, v, p, t, lists, first, u, force);
-        node_told<T::LISTED> told[G::OWN];
+        cell_forces<G, T>(l, v, p, t, first, u, force);
+        if constexpr (!resident_rows<G, L>::NEAR)
 #pragma unroll
-        for (int i = 0; i < G::OWN; i++)
-            told[i] = node_row(v, t, lists, (int)threadIdx.x + i * G::THREADS);
+            for (int i = 0; i < G::OWN; i++)
+                told[i] = node_row(v, t, list, (int)threadIdx.x + i * G::THREADS);
         __syncthreads();
 #pragma unroll
         for (int i = 0; i < G::OWN; i++)
             if ((int)threadIdx.x + i * G::THREADS < t.nodes)
                 resident_node<G>(v, r, p, t, (int)threadIdx.x + i * G::THREADS,
-                                 node_sum<G>(own[i].info, told[i], lists, force), u, &own[i], message, count);
+                                 node_sum<G>(own[i].info, told[i], list, force), u, &own[i], message, count);
         if (k < r.passes - 1)
             hear<G>(halo, message, v.stride, count, u);
         __syncthreads(); /* the curves' values change next */

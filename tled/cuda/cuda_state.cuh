@@ -176,8 +176,7 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
     cuda_view<real> *v = &s->view;
     card_layout_copy(l, &v->tiles, t->tile, t->count);
     card_layout_copy(l, &v->list, t->list, t->count);
-    card_layout_copy(l, &v->corner, (const uint4 *)t->corner, t->listed_cells);
-    card_layout_copy(l, &v->pull, (const uint4 *)t->pull, t->listed_nodes);
+    card_layout_copy(l, &v->pull, (const uint4 *)t->pull, t->listed);
     card_layout_copy(l, &v->node_info, t->node_info, t->nodes);
     card_layout_copy(l, &v->order, t->order, t->nodes);
     card_layout_copy(l, &v->cell, t->cell, t->cells);

@@ -87,27 +87,26 @@ template <class S> struct cuda_view {
     int64_t offset[3], along, mass_along;    /* mass_along: of mass_inverse */
     int32_t nodes, extras, volumes, gravity; /* gravity: its curve, or -1 */
     double side[3];
-    const tile_list *list; /* the tiles'; NULL: none is listed */
-    const uint4 *corner;   /* rows of listed cells: 8 numbers of 16 bits, as in: */
-    const uint4 *pull;     /* rows of listed nodes */
+    const int32_t *list; /* the tiles'; NULL: none is listed */
+    const uint4 *pull;   /* rows of listed nodes: 8 numbers of 16 bits */
 };
 
-/* Where a tile's lists begin; nothing, where no tile is listed. */
-template <bool LISTED> struct cuda_lists {
+/* Where a tile's list begins, or -1; nothing, where no tile is listed. */
+template <bool LISTED> struct cuda_list {
 };
-template <> struct cuda_lists<true> {
-    int32_t corner, pull; /* tile_list's */
+template <> struct cuda_list<true> {
+    int32_t pull;
 };
 
 /* T: cuda_tiles, or cuda_any_tiles. */
-template <class T, class S> static __device__ cuda_lists<T::LISTED> cuda_lists_of(const cuda_view<S> &v, int64_t which)
+template <class T, class S> static __device__ cuda_list<T::LISTED> cuda_list_of(const cuda_view<S> &v, int64_t which)
 {
     if constexpr (!T::LISTED)
         return {};
     else if (T::ASKS && !v.list)
-        return {-1, -1};
+        return {-1};
     else
-        return {v.list[which].corner, v.list[which].pull};
+        return {v.list[which]};
 }
 
 /* Number i of a row. */
@@ -178,31 +177,6 @@ template <class G, class S> static __device__ element_corners cuda_corners(const
     element_corners c = {{at[cuda_corner<G>(0)], at[cuda_corner<G>(1)], at[cuda_corner<G>(2)], at[cuda_corner<G>(3)],
                           at[cuda_corner<G>(4)], at[cuda_corner<G>(5)], at[cuda_corner<G>(6)], at[cuda_corner<G>(7)]}};
     return c;
-}
-
-/* At places that a row tells. */
-template <class G, class S> static __device__ element_corners cuda_corners(const S *u, const uint4 &row)
-{
-    element_corners c;
-#pragma unroll
-    for (int i = 0; i < 8; i++)
-        c.at[i] = u[cuda_entry(row, i)];
-    return c;
-}
-
-/* The row of a cell in a tile that is not listed. */
-template <class G> static __device__ uint4 cuda_row(uint32_t place)
-{
-    const uint32_t two = place << 16 | place;
-    return {two + (cuda_corner<G>(1) << 16 | cuda_corner<G>(0)), two + (cuda_corner<G>(3) << 16 | cuda_corner<G>(2)),
-            two + (cuda_corner<G>(5) << 16 | cuda_corner<G>(4)), two + (cuda_corner<G>(7) << 16 | cuda_corner<G>(6))};
-}
-
-/* A cell's row, as it is on its way from memory: of a cell that is not listed, of no meaning. */
-template <class S>
-static __device__ uint4 cuda_listed(const cuda_view<S> &v, const tile &t, const cuda_lists<true> &lists, int i)
-{
-    return lists.corner >= 0 && i < t.cells ? v.corner[lists.corner + i] : uint4{0, 0, 0, 0};
 }
 
 /* What the script does to a node whose TILE_EXTRA is set. */

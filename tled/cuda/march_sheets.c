@@ -2,36 +2,27 @@
 
 #include "base/mem.h"
 #include "tled/cuda/places.h"
+#include "tled/cuda/lattice_sheet.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-enum { TOUCHED = 8 * 9 /* of a node: elements and their corners */, NOBODY = -1 };
 
 typedef struct sheets {
     const tled_problem *p;
     int32_t *first;         /* nodes: the first at its place */
     int32_t *nodes, *cells; /* by that: how many nodes there are, and elements with their low corner */
-    int32_t *node, *cell;   /* and which of them the sheet that is being filled has, or NOBODY */
+    lattice_sheet filled;   /* the one that is being filled */
     int32_t *near;          /* nodes that have to do with a place that is shared */
     int64_t count;          /* of those that no sheet has yet */
 } sheets;
 
-/* Entry i of a node's elements, or -1 after its last. */
-static int32_t corner_of(const tled_problem *p, int32_t node, int i)
-{
-    const int32_t corner = i < 8 ? p->corner[8 * (int64_t)node + i] : -1;
-    return corner < 8 * p->elements ? corner : -1;
-}
-
 static int allocate(sheets *s, err *e)
 {
     const int64_t nodes = s->p->nodes;
-    int32_t **of[] = {&s->first, &s->nodes, &s->cells, &s->node, &s->cell, &s->near};
+    int32_t **of[] = {&s->first, &s->nodes, &s->cells, &s->near};
     for (size_t i = 0; i < sizeof of / sizeof *of; i++)
         if (!(*of[i] = mem_array(nodes, sizeof **of[i], "the march", e)))
             return -1;
-    return 0;
+    return sheet_make(&s->filled, s->p, s->first, e);
 }
 
 static void free_all(sheets *s)
@@ -39,15 +30,14 @@ static void free_all(sheets *s)
     free(s->first);
     free(s->nodes);
     free(s->cells);
-    free(s->node);
-    free(s->cell);
     free(s->near);
+    sheet_free(&s->filled);
 }
 
 static bool is_near(const sheets *s, int32_t node)
 {
-    for (int i = 0; corner_of(s->p, node, i) >= 0; i++) {
-        const int32_t *corner = s->p->element_node + corner_of(s->p, node, i) / 8 * 8;
+    for (int i = 0; sheet_corner(s->p, node, i) >= 0; i++) {
+        const int32_t *corner = s->p->element_node + sheet_corner(s->p, node, i) / 8 * 8;
         if (s->cells[s->first[corner[0]]] > 1)
             return true;
         for (int c = 0; c < 8; c++)
@@ -74,47 +64,15 @@ static int list_near(sheets *s, const int32_t *group, const int32_t *at, int32_t
     return 0;
 }
 
-/* What a node has taken, to be given back where it cannot have all. */
-typedef struct taken {
-    int32_t *of[TOUCHED];
-    int count;
-} taken;
-
-static bool take(int32_t *place, int32_t who, taken *t)
-{
-    if (*place == NOBODY) {
-        *place = who;
-        t->of[t->count++] = place;
-    }
-    return *place == who;
-}
-
-/* Whether the sheet has room for a node, with all that its elements touch; takes it. */
-static bool take_node(sheets *s, int32_t node)
-{
-    taken t = {.count = 0};
-    bool takes = true;
-    for (int i = 0; takes && corner_of(s->p, node, i) >= 0; i++) {
-        const int32_t element = corner_of(s->p, node, i) / 8, *corner = s->p->element_node + 8 * (int64_t)element;
-        takes = take(&s->cell[s->first[corner[0]]], element, &t);
-        for (int c = 0; takes && c < 8; c++)
-            takes = take(&s->node[s->first[corner[c]]], corner[c], &t);
-    }
-    while (!takes && t.count)
-        *t.of[--t.count] = NOBODY;
-    return takes;
-}
-
 /* Gives a sheet the nodes that it has room for, in their order. Returns how many. */
 static int64_t fill_sheet(sheets *s, int32_t number, int32_t *sheet)
 {
     int64_t left = 0;
-    memset(s->node, 0xff, (size_t)s->p->nodes * sizeof *s->node);
-    memset(s->cell, 0xff, (size_t)s->p->nodes * sizeof *s->cell);
+    sheet_begin(&s->filled);
     for (int64_t i = 0; i < s->count; i++) {
         const int32_t node = s->near[i];
         sheet[node] = number;
-        if (!take_node(s, node))
+        if (!sheet_take(&s->filled, node))
             s->near[left++] = node;
     }
     const int64_t gone = s->count - left;

@@ -1,6 +1,5 @@
-/* Sheets of a problem with slits, for a march: in a sheet a place of the lattice means one node and one cell, whichever
- * nodes of it are looked at together with all that their elements touch. A node at the tip of a slit has elements on
- * both sides of it, with different nodes at one place: no sheet takes it. Fills an array that the caller owns.
+/* Sheets (lattice_sheet.h) of a problem with slits, for a march, and tips: nodes at the end of a slit, which none takes. Fills
+ * an array that the caller owns.
  *
  *      a   a'  slit      sheet 0: a, and all that is not near the slit
  *      |   |             sheet 1: a', and the nodes beside it, whose elements touch a'

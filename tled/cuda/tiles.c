@@ -1,7 +1,9 @@
 #include "tled/cuda/tiles.h"
 
 #include "base/mem.h"
+#include "tled/cuda/lattice_sheet.h"
 #include "tled/cuda/places.h"
+#include "tled/cuda/tile_pack.h"
 #include "tled/cuda/tile_split.h"
 
 #include <stdlib.h>
@@ -11,17 +13,16 @@
 typedef struct cutter {
     tiles *t;
     const tled_problem *p;
-    int32_t *part;             /* nodes: a node of the part that it belongs to; later, its tile */
-    int32_t *at;               /* nodes x 3: its place in the lattice, from its part's first node */
-    int32_t *order;            /* nodes: where it stands in the tiles' order */
-    int64_t *seat;             /* a table of tiles by part and brick: tile, or -1 */
-    int64_t seats;             /* a power of 2 */
-    int32_t *brick;            /* tiles x 4: part and brick */
-    int64_t capacity;          /* of brick */
-    int32_t here[TILE_PLACES]; /* in the tile being cut: the node there, or -1 */
-    tile_split split;          /* where nodes share places */
-    int32_t *place;            /* there, of the listed tile being cut: nodes: its place, or -1 */
-    int32_t *cell;             /* elements: likewise */
+    int32_t *part;    /* nodes: a node of the part that it belongs to; later, its tile */
+    int32_t *at;      /* nodes x 3: its place in the lattice, from its part's first node */
+    int32_t *order;   /* nodes: where it stands in the tiles' order */
+    int64_t *seat;    /* a table of tiles by part and brick: tile, or -1 */
+    int64_t seats;    /* a power of 2 */
+    int32_t *brick;   /* tiles x 4: part and brick */
+    int64_t capacity; /* of brick */
+    tile_pack here;   /* the tile being cut */
+    tile_split split; /* where nodes share places */
+    int32_t *place;   /* there, of the listed tile being cut: elements: its cell's place, or -1 */
     err *e;
 } cutter;
 
@@ -29,7 +30,6 @@ void tiles_free(tiles *t)
 {
     free(t->tile);
     free(t->list);
-    free(t->corner);
     free(t->pull);
     free(t->node);
     free(t->node_info);
@@ -217,17 +217,14 @@ static int split_tiles(cutter *c)
         tile_split_make(&c->split, c->p, t, first, c->part, c->e))
         goto out;
     int32_t *brick = mem_array(c->split.count, 4 * sizeof *brick, "the tiles", c->e);
-    t->list = mem_array(c->split.count, sizeof *t->list, "the tiles", c->e);
-    c->place = mem_array(t->nodes, sizeof *c->place, "the tiles", c->e);
-    c->cell = mem_array(c->p->elements, sizeof *c->cell, "the tiles", c->e);
-    if (!brick || !t->list || !c->place || !c->cell) {
+    c->place = mem_array(c->p->elements, sizeof *c->place, "the tiles", c->e);
+    if (!brick || !c->place) {
         free(brick);
         goto out;
     }
     for (int64_t i = 0; i < c->split.count; i++)
         memcpy(brick + 4 * i, c->brick + 4 * (int64_t)c->split.tile[i].brick, 4 * sizeof *brick);
-    memset(c->place, 0xff, (size_t)t->nodes * sizeof *c->place);
-    memset(c->cell, 0xff, (size_t)c->p->elements * sizeof *c->cell);
+    memset(c->place, 0xff, (size_t)c->p->elements * sizeof *c->place);
     free(c->brick);
     c->brick = brick;
     t->count = c->split.count;
@@ -241,7 +238,7 @@ out:
 
 static bool is_listed(const cutter *c, int64_t which)
 {
-    return c->t->list && c->split.tile[which].listed;
+    return c->split.tile && c->split.tile[which].listed;
 }
 
 /* The nodes in order of tiles, in each by place. */
@@ -260,7 +257,7 @@ static int order_nodes(cutter *c)
         return -1;
     for (int32_t k = 0; k < t->nodes; k++) {
         const int32_t n = t->node[k], which = c->part[n];
-        t->node_info[k] = info_of(c, n, is_listed(c, which) ? k - t->tile[which].node : place_in(c, which, n));
+        t->node_info[k] = info_of(c, n, is_listed(c, which) ? 0 : place_in(c, which, n)); /* 0: put_places */
         c->order[n] = k;
     }
     return 0;
@@ -362,98 +359,97 @@ static void put_halo(cutter *c, tile *to, int32_t node, int32_t place)
     to->halos++;
 }
 
+/* Puts a tile's cells where they lie in the lattice. */
+static void put_grid(cutter *c, int64_t i)
+{
+    const tile *to = &c->t->tile[i];
+    for (int32_t k = to->cell; k < to->cell + to->cells; k++) {
+        const int32_t *corner = c->p->element_node + 8 * (int64_t)c->t->cell_element[k];
+        put_cell(c, i, k, place_in(c, i, corner[0]));
+        for (int m = 0; m < 8; m++)
+            c->here.node[place_in(c, i, corner[m])] = corner[m];
+    }
+}
+
+/* A node's own place: the first of those that it has. */
+static void put_places(cutter *c, const tile *to)
+{
+    for (int32_t k = to->node; k < to->node + to->nodes; k++) {
+        uint32_t place = 0;
+        while (c->here.node[place] != c->t->node[k])
+            place++;
+        c->t->node_info[k] = (c->t->node_info[k] & ~(uint32_t)TILE_PLACE) | place;
+    }
+}
+
+/* Those of a listed tile where there is room: in the order in which tile_split found that there is. */
+static void put_packed(cutter *c, int64_t i)
+{
+    const tile *to = &c->t->tile[i];
+    for (int32_t k = to->node; k < to->node + to->nodes; k++)
+        for (int m = 0, corner; (corner = sheet_corner(c->p, c->t->node[k], m)) >= 0; m++) {
+            int32_t *place = &c->place[corner / 8];
+            if (*place < 0)
+                *place = tile_pack_add(&c->here, c->p->element_node + corner / 8 * 8);
+        }
+    put_places(c, to);
+    for (int32_t k = to->cell; k < to->cell + to->cells; k++)
+        put_cell(c, i, k, c->place[c->t->cell_element[k]]);
+}
+
+/* The rows of a listed tile's nodes, once its cells have places; forgets these. */
+static void put_pulls(cutter *c, int64_t i)
+{
+    const tiles *t = c->t;
+    const tile *of = &t->tile[i];
+    uint16_t *row = t->list ? t->pull + 8 * (int64_t)t->list[i] : NULL;
+    for (int32_t k = 0; row && k < of->nodes; k++)
+        for (int m = 0; m < 8; m++, row++) {
+            const int32_t corner = sheet_corner(c->p, t->node[of->node + k], m);
+            *row = corner < 0 ? TILE_NO_PULL : (uint16_t)(corner % 8 << TILE_PULL | c->place[corner / 8]);
+        }
+    for (int32_t k = of->cell; k < of->cell + of->cells; k++)
+        c->place[t->cell_element[k]] = -1;
+}
+
 /* Finds what stands around a tile. Counts its halo, or fills it too where there is room. */
-static void cut_grid(cutter *c, int64_t i)
-{
-    tiles *t = c->t;
-    tile *to = &t->tile[i];
-    const int32_t places = t->grid[0] * t->grid[1] * t->grid[2];
-    memset(c->here, 0xff, sizeof c->here);
-    for (int32_t k = 0; k < to->cells; k++) {
-        const int32_t *corner = c->p->element_node + 8 * (int64_t)t->cell_element[to->cell + k];
-        put_cell(c, i, to->cell + k, place_in(c, i, corner[0]));
-        for (int m = 0; m < 8; m++)
-            c->here[place_in(c, i, corner[m])] = corner[m];
-    }
-    for (int32_t at = 0; at < places; at++)
-        if (c->here[at] >= 0 && c->part[c->here[at]] != i)
-            put_halo(c, to, c->here[at], at);
-}
-
-/* Forgets the places of a listed tile. */
-static void leave_list(cutter *c, const tile *to)
-{
-    for (int32_t k = 0; k < to->cells; k++) {
-        const int32_t element = c->t->cell_element[to->cell + k];
-        c->cell[element] = -1;
-        for (int m = 0; m < 8; m++)
-            c->place[c->p->element_node[8 * (int64_t)element + m]] = -1;
-    }
-}
-
-/* The rows of its nodes, once its cells have places. */
-static void put_pulls(const cutter *c, const tile *to, uint16_t *row)
-{
-    for (int32_t k = 0; k < to->nodes; k++, row += 8)
-        for (int m = 0; m < 8; m++) {
-            const int32_t corner = c->p->corner[8 * (int64_t)c->t->node[to->node + k] + m];
-            row[m] = TILE_NO_PULL;
-            if (corner < 8 * c->p->elements)
-                row[m] = (uint16_t)(corner % 8 << TILE_PULL | c->cell[corner / 8]);
-        }
-}
-
-/* As cut_grid, of a listed tile: places as they come. */
-static void cut_list(cutter *c, int64_t i)
-{
-    tiles *t = c->t;
-    tile *to = &t->tile[i];
-    uint16_t *row = t->corner ? t->corner + 8 * (int64_t)t->list[i].corner : NULL;
-    for (int32_t k = 0; k < to->nodes; k++)
-        c->place[t->node[to->node + k]] = k;
-    for (int32_t k = 0; k < to->cells; k++) {
-        const int32_t element = t->cell_element[to->cell + k], *corner = c->p->element_node + 8 * (int64_t)element;
-        put_cell(c, i, to->cell + k, k);
-        c->cell[element] = k;
-        for (int m = 0; m < 8; m++) {
-            int32_t *place = &c->place[corner[m]];
-            if (*place < 0) {
-                *place = to->nodes + to->halos;
-                put_halo(c, to, corner[m], *place);
-            }
-            if (row)
-                row[8 * k + m] = (uint16_t)*place;
-        }
-    }
-    if (row)
-        put_pulls(c, to, t->pull + 8 * (int64_t)t->list[i].pull);
-    leave_list(c, to);
-}
-
 static void cut_tile(cutter *c, int64_t i)
 {
-    c->t->tile[i].halos = 0;
-    if (is_listed(c, i))
-        cut_list(c, i);
-    else
-        cut_grid(c, i);
+    tile *to = &c->t->tile[i];
+    const int *grid = c->t->grid;
+    tile_pack_begin(&c->here, grid);
+    if (is_listed(c, i)) {
+        put_packed(c, i);
+        put_pulls(c, i);
+    } else {
+        put_grid(c, i);
+    }
+    to->halos = 0;
+    for (int32_t at = 0; at < grid[0] * grid[1] * grid[2]; at++) {
+        const int32_t node = c->here.node[at];
+        if (node < 0 || (c->part[node] == i && (int32_t)(c->t->node_info[c->order[node]] & TILE_PLACE) == at))
+            continue;
+        put_halo(c, to, node, at);
+    }
 }
 
-/* Where the lists of listed tiles begin. */
+/* Where the lists of listed tiles begin, if there are any. */
 static int list_lists(cutter *c)
 {
     tiles *t = c->t;
-    for (int64_t i = 0; i < t->count; i++) {
-        t->list[i] = (tile_list){-1, -1};
-        if (!is_listed(c, i))
-            continue;
-        t->list[i] = (tile_list){(int32_t)t->listed_cells, (int32_t)t->listed_nodes};
-        t->listed_cells += t->tile[i].cells;
-        t->listed_nodes += t->tile[i].nodes;
+    for (int64_t i = 0; i < t->count; i++)
+        t->listed += is_listed(c, i) ? t->tile[i].nodes : 0;
+    if (!t->listed)
+        return 0;
+    t->list = mem_array(t->count, sizeof *t->list, "the tiles", c->e);
+    t->pull = mem_array(t->listed, 8 * sizeof *t->pull, "the tiles", c->e);
+    if (!t->list || !t->pull)
+        return -1;
+    for (int64_t i = 0, next = 0; i < t->count; i++) {
+        t->list[i] = is_listed(c, i) ? (int32_t)next : -1;
+        next += is_listed(c, i) ? t->tile[i].nodes : 0;
     }
-    t->corner = mem_array(t->listed_cells, 8 * sizeof *t->corner, "the tiles", c->e);
-    t->pull = mem_array(t->listed_nodes, 8 * sizeof *t->pull, "the tiles", c->e);
-    return t->corner && t->pull ? 0 : -1;
+    return 0;
 }
 
 static void sort_cells(cutter *c, int64_t i)
@@ -489,7 +485,7 @@ static int cut_tiles(cutter *c)
     }
     t->halo_node = mem_array(t->halos, sizeof *t->halo_node, "the tiles", c->e);
     t->halo_place = mem_array(t->halos, sizeof *t->halo_place, "the tiles", c->e);
-    if (!t->halo_node || !t->halo_place || (t->list && list_lists(c)))
+    if (!t->halo_node || !t->halo_place || list_lists(c))
         return -1;
     for (int64_t i = 0; i < t->count; i++)
         cut_tile(c, i);
@@ -556,7 +552,6 @@ out:
     free(c.seat);
     free(c.brick);
     free(c.place);
-    free(c.cell);
     tile_split_free(&c.split);
     return result;
 }

@@ -8,15 +8,18 @@
  * its cells, by adding constants. For that a place must mean one node, and one cell.
  *
  * Where a slit comes to a brick, two nodes of one part may have the same place, or two elements the same cell. Such a
- * brick is cut into listed tiles, as many as its nodes take: nodes and cells stand one after the other, whatever their
- * places in the lattice, and lists say which belong to which. At the tip of a slit, seen along its edge:
+ * brick is cut into several tiles: one for each sheet (lattice_sheet.h) of its nodes, and listed ones for the nodes at
+ * the end of the slit. A listed tile's cells find their corners by the same constants, but stand where there is room
+ * in the grid (tile_pack.h); so a node may have several places, one of which is its own, and the others are as a halo
+ * node's, even if the tile owns it. A list says which cells a node has, and which of their corners it is. Seen along
+ * the slit's edge:
  *
- *      d --- e --- f        place:   0 .. nodes - 1    owned nodes, by place in the brick
- *      |  A  |  B  |                 nodes ..          halo nodes, as cells come to them
- *      a === t --- g        cell:    0 .. cells - 1    cells, as `cell` has them
- *      b === t --- g        corner:  A: a t e d ...    places of a cell's corners, in VTK's order
- *      |  C  |  D  |        pull:    t: D1 C2 B0 A3    a node's cells and which of their corners it is,
- *      h --- i --- k                                   in the order of its sum: the lattice's
+ *      d --- e --- f        in the grid:  d e f .    pull: t: D1 C2 B0 A3
+ *      |  A  |  B  |                      a t g .    a node's cells and which of their corners it is,
+ *      a === t --- g                      b t g .    in the order of its sum: the lattice's
+ *      b === t --- g                      h i k .
+ *      |  C  |  D  |
+ *      h --- i --- k        of the two t, one is its own place
  *
  * No list is longer than it is in a tile of a whole brick: so kernels need no more room.
  *
@@ -49,12 +52,6 @@ enum {
     TILE_NO_PULL = 0xffff   /* there is none, nor one after it */
 };
 
-/* Where a listed tile's lists begin, in rows of 8; another tile's are -1. */
-typedef struct tile_list {
-    int32_t corner; /* of `corner`: a row for each of its cells */
-    int32_t pull;   /* of `pull`: a row for each node that it owns, in the tiles' order */
-} tile_list;
-
 /* What the script does to a node, apart from gravity. */
 typedef struct tile_extra {
     int32_t node; /* where it stands */
@@ -67,15 +64,14 @@ typedef struct tiles {
     int brick[3], grid[3];       /* owned places, all places, along x, y, z */
     int64_t count, halos, cells; /* sums over all */
     int64_t nodes, directions, extras;
-    int64_t listed_cells, listed_nodes; /* of listed tiles */
+    int64_t listed; /* nodes of listed tiles */
     tile *tile;
-    tile_list *list;       /* count; NULL: no tile is listed, nor are there: */
-    uint16_t *corner;      /* listed_cells x 8: the place of each corner */
-    uint16_t *pull;        /* listed_nodes x 8: TILE_PULL */
-    int32_t *node;         /* nodes: which of the model's it is */
-    uint32_t *node_info;   /* nodes: TILE_* */
-    int32_t *order;        /* nodes, in the tiles' order: where each stands; NULL: there */
-    int32_t *halo_node;    /* halos: where it stands */
+    int32_t *list;       /* count: a listed tile's first row of `pull`, or -1; NULL: no tile is listed, nor is there: */
+    uint16_t *pull;      /* listed x 8: of each node of listed tiles, in the tiles' order: TILE_PULL */
+    int32_t *node;       /* nodes: which of the model's it is */
+    uint32_t *node_info; /* nodes: TILE_* */
+    int32_t *order;      /* nodes, in the tiles' order: where each stands; NULL: there */
+    int32_t *halo_node;  /* halos: where it stands */
     uint16_t *halo_place;  /* halos */
     uint32_t *cell;        /* cells: TILE_*, those with fibres first, then by place */
     int32_t *cell_element; /* cells: which of the model's elements it is */
@@ -86,7 +82,7 @@ typedef struct tiles {
     tile_extra *extra;     /* extras, by where their nodes stand */
 } tiles;
 
-/* brick: at most 8 each. -1 with e filled, and t to be freed all the same: no memory, or elements that are not boxes of
+/* brick: 2 to 8 each. -1 with e filled, and t to be freed all the same: no memory, or elements that are not boxes of
  * the lattice. */
 int tiles_make(tiles *t, const tled_problem *p, const int brick[3], err *e);
 void tiles_free(tiles *t);
