@@ -24,7 +24,7 @@ typedef struct cuda_pass {
     int what;
 } cuda_pass;
 
-template <class G> static __device__ element_field cell_field(const real *u, int place)
+template <class G> static __device__ element_field cell_field(const real *u, const int &place)
 {
     element_field at = {cuda_corners<G>(u, place), cuda_corners<G>(u + G::PLACES, place),
                         cuda_corners<G>(u + 2 * G::PLACES, place)};
@@ -61,7 +61,7 @@ template <class L, class T> static __device__ element_law law_of(const L &l, con
 /* A cell mixed of two volumes. */
 template <class G, class L>
 static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
-                                            int i, const real *u, int place, const cuda_kind &kind,
+                                            int i, const real *u, const int &place, const cuda_kind &kind,
                                             const cuda_mixed &mixed, real share)
 {
     const cuda_kind &mix = v.kind[mixed.mix];
@@ -85,7 +85,7 @@ static __device__ element_field mixed_force(const L &l, const cuda_view<real> &v
 
 template <class G, class L>
 static __device__ element_field plain_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
-                                            int i, const real *u, int place, uint32_t volume, real share)
+                                            int i, const real *u, const int &place, uint32_t volume, real share)
 {
     const real *stiff = p.law + (l.coefficients + l.held) * volume;
     const element_law law = law_of(l, stiff, stiff + l.coefficients, share);
@@ -125,7 +125,7 @@ static __device__ uint32_t cell_at(const cuda_view<real> &v, const tile &t, int 
 
 template <class G, class T, class L>
 static __device__ void cell_forces(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
-                                   uint32_t first, const real *u, real *force)
+                                   const uint32_t &first, const real *u, real *force)
 {
     uint32_t cell = first;
 #pragma unroll 1

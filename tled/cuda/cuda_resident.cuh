@@ -146,7 +146,7 @@ static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
     real *u = (real *)(memory + 6 * r.curves), *near = u + 3 * G::PLACES, *force = near + L::NEAR;
     const tile t = v.tiles[blockIdx.x];
     const cuda_list<T::LISTED> list = cuda_list_of<T>(v, blockIdx.x);
-    const uint32_t first = cell_at(v, t, threadIdx.x);
+    uint32_t first = cell_at(v, t, threadIdx.x);
     const cuda_halo<G> halo = halo_of<G>(v, t);
     own_node own[G::OWN];
     cuda_pass p = r.pass;
