@@ -133,11 +133,6 @@ static __device__ void resident_node(const cuda_view<real> &v, const cuda_reside
     }
 }
 
-/* Whether registers have room for listed nodes' rows from pass to pass; else they are in the L1 cache. */
-template <class G, class L> struct resident_rows {
-    static constexpr bool NEAR = together<G, L>() == 1;
-};
-
 template <class G, class L, class T>
 static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
     resident_kernel(cuda_view<real> v, const __grid_constant__ cuda_resident r, const __grid_constant__ L l)
@@ -156,11 +151,6 @@ static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
 #pragma unroll
     for (int k = 0; k < G::OWN; k++)
         own[k] = node_at(v, p, t, (int)threadIdx.x + k * G::THREADS);
-    node_told<T::LISTED> told[G::OWN];
-    if constexpr (resident_rows<G, L>::NEAR)
-#pragma unroll
-        for (int k = 0; k < G::OWN; k++)
-            told[k] = node_row(v, t, list, (int)threadIdx.x + k * G::THREADS);
     for (int32_t k = 0; k < r.passes; k++) {
         const bool last = r.ends && k == r.passes - 1;
         const uint32_t count = r.count + (uint32_t)k;
@@ -172,10 +162,10 @@ static __global__ void __launch_bounds__(G::THREADS, together<G, L>())
         bring_gravity(v, now, near);
         __syncthreads();
         cell_forces<G, T>(l, v, p, t, first, u, force);
-        if constexpr (!resident_rows<G, L>::NEAR)
+        node_told<T::LISTED> told[G::OWN]; /* from the L1 cache: registers would leave fewer tiles room */
 #pragma unroll
-            for (int i = 0; i < G::OWN; i++)
-                told[i] = node_row(v, t, list, (int)threadIdx.x + i * G::THREADS);
+        for (int i = 0; i < G::OWN; i++)
+            told[i] = node_row(v, t, list, (int)threadIdx.x + i * G::THREADS);
         __syncthreads();
 #pragma unroll
         for (int i = 0; i < G::OWN; i++)
