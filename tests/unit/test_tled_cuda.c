@@ -2,8 +2,8 @@
  * largest displacement off double where it marches), 1e-4 of the largest displacement between single precision there
  * and double here over 10,000 steps and at rest, the same looks, the same messages. Without a card all is skipped.
  */
-// needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_sheets.c
-// needs: tled/cuda/march_tips.c tled/cuda/march_turns.c tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
+// needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_tips.c
+// needs: tled/cuda/march_turns.c tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
 #include "tled/cuda/march.h"
 
 #include "tled_card.h"

@@ -2,8 +2,8 @@
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
+#include "tled/cuda/lattice_sheet.h"
 #include "tled/cuda/march_near.h"
-#include "tled/cuda/march_sheets.h"
 #include "tled/cuda/march_tips.h"
 #include "tled/cuda/march_turns.h"
 #include "tled/cuda/march_units.h"
@@ -42,7 +42,7 @@ typedef struct cutter {
     uint8_t *warps;       /* of the layer's warps, those with cells */
     bool *special;        /* the layer has special cells */
     int32_t *slot;        /* its number, or -1; before: 0 where a node is owned */
-    int32_t *sheet;       /* nodes: march_sheets_find's; NULL: there is one, and part is of all. Else there are: */
+    int32_t *sheet;       /* nodes: sheets_find's; NULL: there is one, and part is of all. Else there are: */
     int32_t *which;       /* elements: its special cell, from 1 on, or 0 */
     bool *inner;          /* nodes: all corners of its elements are in its sheet */
     int margin;           /* layers around a box: of nodes that its cells have, and it does not */
@@ -191,7 +191,7 @@ static bool is_in_sheet(const cutter *c, int64_t element, int32_t node)
     for (int k = 0; k < 8; k++)
         if (c->sheet[c->p->element_node[8 * element + k]] != c->sheet[node])
             return false;
-    return c->sheet[node] != MARCH_TIP;
+    return c->sheet[node] != SHEET_TIP;
 }
 
 /* Where a cell stands by its low corner. Of sheets: in each column that owns one of its corners. Returns how many. */
@@ -202,7 +202,7 @@ static int cell_spots(const cutter *c, int64_t element, spot *to)
     if (!c->sheet || is_in_sheet(c, element, corner[0]))
         return spots_of(c, corner[0], true, to);
     for (int k = 0; k < 8; k++)
-        if (c->sheet[corner[k]] != MARCH_TIP)
+        if (c->sheet[corner[k]] != SHEET_TIP)
             add_spot(to, &count, beside(c, own_spot(c, corner[k]), lattice_vtk[k], -1));
     return count;
 }
@@ -214,7 +214,7 @@ static int node_spots(const cutter *c, int32_t node, spot *to)
     int count = 0;
     if (!c->sheet || c->inner[node])
         return spots_of(c, node, false, to);
-    if (c->sheet[node] != MARCH_TIP)
+    if (c->sheet[node] != SHEET_TIP)
         to[count++] = own_spot(c, node);
     for (int i = 0; i < 8; i++) {
         const int32_t corner = c->p->corner[8 * (int64_t)node + i];
@@ -226,7 +226,7 @@ static int node_spots(const cutter *c, int32_t node, spot *to)
 
 static bool is_tip(const cutter *c, int32_t node)
 {
-    return c->sheet && c->sheet[node] == MARCH_TIP;
+    return c->sheet && c->sheet[node] == SHEET_TIP;
 }
 
 /* A multiprocessor has four schedulers, and every fourth warp is one's: neighbours are of
@@ -491,7 +491,7 @@ static void find_inner(cutter *c)
 {
     const tled_problem *p = c->p;
     for (int32_t n = 0; n < p->nodes; n++) {
-        c->inner[n] = c->sheet[n] != MARCH_TIP;
+        c->inner[n] = c->sheet[n] != SHEET_TIP;
         for (int i = 0; i < 8 && p->corner[8 * (int64_t)n + i] < 8 * p->elements; i++)
             c->inner[n] &= is_in_sheet(c, p->corner[8 * (int64_t)n + i] / 8, n);
     }
@@ -504,7 +504,7 @@ static int part_sheets(cutter *c)
     c->sheet = mem_array(p->nodes, sizeof *c->sheet, "the march", c->e);
     c->inner = mem_array(p->nodes, sizeof *c->inner, "the march", c->e);
     c->which = mem_array(p->elements, sizeof *c->which, "the march", c->e);
-    const int32_t sheets = c->sheet && c->which && c->inner ? march_sheets_find(p, c->part, c->at, c->sheet, c->e) : -1;
+    const int32_t sheets = c->sheet && c->which && c->inner ? sheets_find(p, c->part, c->at, c->sheet, c->e) : -1;
     if (sheets < 0)
         return -1;
     int32_t *number = mem_array(c->parts * sheets, sizeof *number, "the march", c->e); /* of its box, from 1 on */

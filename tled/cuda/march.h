@@ -17,7 +17,7 @@
  * in the order of columns and layers, pass after pass; a unit waits for those near it alone, in the pass before, which
  * this order has long since left behind. The creator owns the march; it holds no pointer into the problem.
  *
- * A problem with slits is cut into sheets (march_sheets.h), each with columns of its own: a column has the cells that
+ * A problem with slits is cut into sheets (lattice_sheet.h), each with columns of its own: a column has the cells that
  * touch nodes which it owns, and their corners, whoever owns these. Nodes that no sheet takes, tips, stand after all
  * others in the order; up to MARCH_TIPS of them are a unit, beside one that owns nodes next to them, in which eight
  * threads each compute the elements of one: a row of eight march_tip.

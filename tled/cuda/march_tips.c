@@ -2,7 +2,7 @@
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
-#include "tled/cuda/march_sheets.h"
+#include "tled/cuda/lattice_sheet.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +36,7 @@ int march_tips_list(march *m, const tled_problem *p, const int32_t *sheet, const
     if (!m->tip)
         return -1;
     for (int32_t n = 0; n < p->nodes; n++)
-        if (sheet[n] == MARCH_TIP)
+        if (sheet[n] == SHEET_TIP)
             put_tip(m, p, n, special, m->tip + 8 * (int64_t)(m->order[n] - m->tip_first));
     return 0;
 }

@@ -8,7 +8,7 @@
 
 #include "tled/cuda/march.h"
 
-/* sheet: nodes: march_sheets_find's. -1 with e filled: no memory. */
+/* sheet: nodes: sheets_find's. -1 with e filled: no memory. */
 int march_turns_order(march *m, const int32_t *sheet, int64_t nodes, err *e);
 
 #endif
