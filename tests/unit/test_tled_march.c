@@ -367,7 +367,7 @@ static void test_units(void)
     err e = {0};
     memset(warps, 0xff, sizeof warps);
     for (int i = 0; i < 6; i++)
-        ok(!march_runs_add(&runs, 102 * i, warps, special, 100, &e), "a run is added");
+        ok(!march_runs_add(&runs, 102 * i, warps, special, 100, false, &e), "a run is added");
     const int failed = march_runs_cut(&runs, 44, &unit, &units, &e);
     for (int64_t i = 0; i < units; i++)
         wrong += unit[i].base != 102 * (i / 10) + 10 * (i % 10) || unit[i].cells != 11;
@@ -389,7 +389,8 @@ static void test_special_units(void)
     err e = {0};
     memset(warps, 0xff, sizeof warps);
     memset(special, true, 50);
-    const int failed = march_runs_add(&runs, 0, warps, special, 100, &e) || march_runs_cut(&runs, 9, &unit, &units, &e);
+    const int failed =
+        march_runs_add(&runs, 0, warps, special, 100, false, &e) || march_runs_cut(&runs, 9, &unit, &units, &e);
     for (int64_t i = 0; i < units; i++) {
         double cost = 0;
         for (int32_t k = 0; k < unit[i].cells - 1; k++)
@@ -399,6 +400,28 @@ static void test_special_units(void)
     }
     ok(!failed && units == 12 && layers == 100 && most - least <= 14,
        "100 layers, half of them special: %lld units that cost %g to %g", (long long)units, least, most);
+    free(unit);
+    march_runs_free(&runs);
+}
+
+/* Thin layers of a further sheet: its units have no more layers than others, which are cut as without them. */
+static void test_further_units(void)
+{
+    march_runs runs = {0};
+    march_unit *unit = NULL;
+    int64_t units = 0, wrong = 0;
+    uint8_t full[100], thin[100];
+    bool special[100] = {0};
+    err e = {0};
+    memset(full, 0xff, sizeof full);
+    memset(thin, 1, sizeof thin);
+    for (int i = 0; i < 7; i++)
+        ok(!march_runs_add(&runs, 102 * i, i < 6 ? full : thin, special, 100, i == 6, &e), "a run is added");
+    const int failed = march_runs_cut(&runs, 44, &unit, &units, &e);
+    for (int64_t i = 0; i < units; i++)
+        wrong += unit[i].base != 102 * (i / 10) + 10 * (i % 10) || unit[i].cells != 11;
+    ok(!failed && units == 70 && !wrong, "and 100 thin ones of a further sheet: %lld units of 10, %lld not so",
+       (long long)units, (long long)wrong);
     free(unit);
     march_runs_free(&runs);
 }
@@ -437,7 +460,16 @@ static double most_apart(const march *m)
     return (double)most / (double)m->units;
 }
 
-static double apart_in(const block *what, const slit *with)
+static int32_t most_layers(const march *m)
+{
+    int32_t most = 0;
+    for (int64_t i = 0; i < m->units; i++)
+        most = m->unit[i].cells > most ? m->unit[i].cells : most;
+    return most;
+}
+
+/* layers: of cells, of the longest unit. */
+static double apart_in(const block *what, const slit *with, int64_t slots, int32_t *layers)
 {
     model m = {0};
     script played = {0};
@@ -447,9 +479,10 @@ static double apart_in(const block *what, const slit *with)
     in_slit = with;
     block_make(what, &m);
     in_slit = NULL;
-    if (tled_problem_make(&p, &m, &played, PHYSICAL, &e) || march_make(&cut, &p, 40, &e))
+    if (tled_problem_make(&p, &m, &played, PHYSICAL, &e) || march_make(&cut, &p, slots, &e))
         printf("Bail out! %s\n", e.text);
     const double apart = most_apart(&cut);
+    *layers = most_layers(&cut);
     march_free(&cut);
     tled_problem_free(&p);
     model_free(&m);
@@ -461,14 +494,29 @@ static double apart_in(const block *what, const slit *with)
 static void test_turns(void)
 {
     const block wide = {{62, 62, 16}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
-    const double without = apart_in(&wide, NULL);
+    int32_t layers;
+    const double without = apart_in(&wide, NULL, 40, &layers);
     for (int a = 0; a < 3; a++) {
         const int32_t *cells = wide.cells;
         const slit half = {
             "half", {{a, cells[a] / 2, {0, 0}, {cells[(a + 1) % 3] / 2, cells[(a + 2) % 3]}, false, false}}, false};
-        const double apart = apart_in(&wide, &half);
+        const double apart = apart_in(&wide, &half, 40, &layers);
         ok(apart < .5, "a slit across %c: the last unit near another has its turn %.2f passes later, not %.2f", 'x' + a,
            apart, without);
+    }
+}
+
+/* Nor are a further sheet's units longer than others, however few cells their layers have. */
+static void test_lengths(void)
+{
+    const block tall = {{14, 14, 45}, {.01, .01, .01}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
+    int32_t without, layers;
+    apart_in(&tall, NULL, 3, &without);
+    for (int a = 0; a < 2; a++) {
+        const slit half = {"half", {{a, 7, {0, 0}, {a ? 45 : 7, a ? 7 : 45}, false, false}}, false};
+        apart_in(&tall, &half, 3, &layers);
+        ok(without < 46 && layers <= without, "a slit across %c: the longest unit has %d layers, not %d", 'x' + a,
+           layers, without);
     }
 }
 
@@ -498,7 +546,9 @@ int main(void)
     test_thin();
     test_one_way();
     test_turns();
+    test_lengths();
     test_units();
     test_special_units();
+    test_further_units();
     return done_testing();
 }

@@ -31,6 +31,7 @@ typedef struct box {
     int32_t low[3], high[3]; /* along the model's axes */
     int32_t columns[2];      /* along rows, across */
     int64_t first;           /* of its layers, in the arrays below */
+    bool further;            /* of a sheet after the first */
 } box;
 
 typedef struct cutter {
@@ -379,7 +380,7 @@ static int number_layers(cutter *c, march_runs *runs)
         for (; i < end && c->slot[i] >= 0; i++)
             c->slot[i] = (int32_t)c->m->layers++;
         c->m->layers++;
-        if (march_runs_add(runs, base, c->warps + first, c->special + first, i - first, c->e))
+        if (march_runs_add(runs, base, c->warps + first, c->special + first, i - first, c->boxes[part].further, c->e))
             return -1;
     }
     return 0;
@@ -519,6 +520,7 @@ static int part_sheets(cutter *c)
         const bool is_first = !*its;
         *its = is_first ? (int32_t)++c->parts : *its;
         c->part[n] = *its - 1;
+        c->boxes[*its - 1].further = c->sheet[n] > 0;
         grow_box(c, n, is_first);
     }
     const int result = number && c->boxes ? 0 : -1;
@@ -588,12 +590,8 @@ int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
         goto out;
     result = suited ? finish(&c, &runs, slots) : 0;
 out:
-    free(c.part);
-    free(c.at);
-    free(c.boxes);
-    free(c.warps);
-    free(c.special);
-    free(c.slot);
+    free(c.part), free(c.at), free(c.boxes);
+    free(c.warps), free(c.special), free(c.slot);
     free(c.sheet), free(c.which), free(c.inner);
     march_runs_free(&runs);
     return result;

@@ -23,14 +23,19 @@ int march_warps(uint8_t mask)
     return __builtin_popcount(mask);
 }
 
-int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, const bool *special, int64_t owned, err *e)
+int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, const bool *special, int64_t owned, bool further,
+                   err *e)
 {
     if (MEM_ROOM(&r->run, &r->capacity, r->count + 1, "the march", e) ||
         MEM_ROOM(&r->cost, &r->costs_capacity, r->costs + owned, "the march", e))
         return -1;
     r->run[r->count++] = (march_run){base, (int32_t)owned, r->costs};
-    for (int64_t i = 0; i < owned; i++)
-        r->cost[r->costs++] = layer_cost + (special[i] ? special_cost : 0) + march_warps(warps[i]);
+    for (int64_t i = 0; i < owned; i++) {
+        const int count = further ? MARCH_THREADS / 32 : march_warps(warps[i]);
+        const double cost = layer_cost + (special[i] ? special_cost : 0) + count;
+        r->cost[r->costs++] = cost;
+        r->all += further ? 0 : cost;
+    }
     return 0;
 }
 
@@ -73,11 +78,9 @@ static int cut_run(pieces *to, const march_run *run, const double *cost, double 
 int march_runs_cut(const march_runs *r, int64_t slots, march_unit **unit, int64_t *units, err *e)
 {
     pieces p = {0};
-    double all = 0;
-    for (int64_t i = 0; i < r->costs; i++)
-        all += r->cost[i];
+    const double most = r->all / (units_a_slot * (double)slots);
     for (int64_t i = 0; i < r->count; i++)
-        if (cut_run(&p, &r->run[i], r->cost + r->run[i].first, all / (units_a_slot * (double)slots), e)) {
+        if (cut_run(&p, &r->run[i], r->cost + r->run[i].first, most, e)) {
             free(p.of);
             return -1;
         }

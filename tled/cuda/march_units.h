@@ -1,5 +1,6 @@
-/* Runs of layers of a march's columns, and how they are cut into units for a card: march.h says by what model. The
- * creator owns the runs; what march_runs_cut makes is its caller's.
+/* Runs of layers of a march's columns, and how they are cut into units for a card: march.h says by what model. Those of
+ * first sheets are cut as without further ones, whose units come on top: so all have their turns as long after those
+ * near them as without. The creator owns the runs; what march_runs_cut makes is its caller's.
  */
 #ifndef SINEW_MARCH_UNITS_H
 #define SINEW_MARCH_UNITS_H
@@ -16,13 +17,17 @@ typedef struct march_runs {
     int64_t count, capacity;
     double *cost; /* of the owned layers of all runs */
     int64_t costs, costs_capacity;
+    double all; /* of runs that are not of further sheets */
 } march_runs;
 
 /* Warps that a layer's mask says. */
 int march_warps(uint8_t mask);
 
-/* warps, special: of each layer with owned nodes: those with cells, and whether any of these is special. */
-int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, const bool *special, int64_t owned, err *e);
+/* warps, special: of each layer with owned nodes: those with cells, and whether any of these is special. further: of a
+ * sheet after the first, whose layers, where few warps have cells, last nearly as long as full ones. They count as
+ * full: no step takes less time than its longest unit. */
+int march_runs_add(march_runs *r, int32_t base, const uint8_t *warps, const bool *special, int64_t owned, bool further,
+                   err *e);
 int march_runs_cut(const march_runs *r, int64_t slots, march_unit **unit, int64_t *units, err *e);
 void march_runs_free(march_runs *r);
 
