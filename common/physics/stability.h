@@ -6,6 +6,7 @@
 #define SINEW_STABILITY_H
 
 #include "physics/element.h"
+#include "physics/fibre.h"
 
 #ifndef REAL_IS_DOUBLE
 #error "stability.h is in double"
@@ -73,19 +74,28 @@ ELEMENT_FUNCTION void stability_add_muscle(element_tensor h, element_fibre fibre
                        s.slope * m[r / 3] * along[r % 3] * m[c / 3] * along[c % 3];
 }
 
-/* (4/rho) A_kjlm / (h_j h_m) of an element at H, with its fibre and that of a second volume in it; density: kg/m3;
- * side: m. */
-ELEMENT_FUNCTION void stability_matrix(form f, const double *c, double density, const double side[3], element_tensor h,
-                                       element_fibre fibre, element_fibre second, step_matrix *a)
+/* (4/rho) A_kjlm / (h_j h_m) of an element at H, with its fibre and that of a second volume in it, and what fibres
+ * these volumes have beside; density: kg/m3; side: m; sets: `count`, none to two. */
+ELEMENT_FUNCTION void stability_matrix_fibred(form f, const double *c, double density, const double side[3],
+                                              element_tensor h, element_fibre fibre, element_fibre second,
+                                              const fibre_set *sets, int count, step_matrix *a)
 {
     form_tangent(f, h, c, a->at);
     if (stability_pulls(fibre))
         stability_add_muscle(h, fibre, a->at);
     if (stability_pulls(second))
         stability_add_muscle(h, second, a->at);
+    fibre_add_tangent(h, sets, count, a->at);
     for (int r = 0; r < 9; r++)
         for (int s = 0; s <= r; s++)
             a->at[s][r] = a->at[r][s] *= 4 / (density * side[r % 3] * side[s % 3]);
+}
+
+/* The same, of no more fibres. */
+ELEMENT_FUNCTION void stability_matrix(form f, const double *c, double density, const double side[3], element_tensor h,
+                                       element_fibre fibre, element_fibre second, step_matrix *a)
+{
+    stability_matrix_fibred(f, c, density, side, h, fibre, second, 0, 0, a);
 }
 
 /* limit I - A = L D L^T: it is positive definite exactly where all of D is positive. */
@@ -172,12 +182,14 @@ ELEMENT_FUNCTION double stability_muscle_along(element_tensor h, element_fibre f
 
 /* Of stability_matrix, B = D A D with D_j = 2/(sqrt(rho) h_j), by the direction x = D G, which the bulk's term makes
  * nearly that of its largest eigenvalue. The Rayleigh quotient q of x is the lower bound. Across it, for z:x = 0, |z| =
- * 1 and y = D z, is G:y = 0, where the form bounds y:(A y) / |y|^2 (form_along), so that z:(B z) is at most
- *     m = max(D_j)^2 (that bound + the muscles').
+ * 1 and y = D z, is G:y = 0, where the form bounds y:(A y) / |y|^2 (form_along), as fibres do, so that z:(B z) is at
+ * most
+ *     m = max(D_j)^2 (that bound + the muscles' + the fibres').
  * So with r, the length of what B x/|x| has across x, the largest eigenvalue is at most that of the 2 x 2 matrix (q r,
  * r m). Both bounds leave room for rounding. Where F's cofactors all vanish they are no numbers. d: D's diagonal. */
-ELEMENT_FUNCTION stability_range stability_range_scaled(form f, const double *c, element_vector d, element_tensor h,
-                                                        element_fibre fibre, element_fibre second)
+ELEMENT_FUNCTION stability_range stability_range_fibred(form f, const double *c, element_vector d, element_tensor h,
+                                                        element_fibre fibre, element_fibre second,
+                                                        const fibre_set *sets, int count)
 {
     const double slack = 1e-12;
     const element_tensor g = element_cofactor(h), x = stability_scaled(g, d), y = stability_scaled(x, d);
@@ -186,7 +198,8 @@ ELEMENT_FUNCTION stability_range stability_range_scaled(form f, const double *c,
     element_tensor z = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     const double bound = form_along(f, h, c, y, square, &z);
     const double muscles = stability_muscle_along(h, fibre, y, &z) + stability_muscle_along(h, second, y, &z);
-    const double across = most * most * (bound + muscles);
+    const double fibres = fibre_along(h, sets, count, y, &z);
+    const double across = most * most * (bound + muscles + fibres);
     const double quotient = tangent_dot(y, z) * inverse; /* x:(z D) */
     z = stability_scaled(z, d);
     const double rest = fmax(tangent_dot(z, z) * inverse - quotient * quotient, 0.) + slack * quotient * quotient;
@@ -194,6 +207,13 @@ ELEMENT_FUNCTION stability_range stability_range_scaled(form f, const double *c,
     const stability_range range = {quotient - slack * fabs(quotient),
                                    ((quotient + across) / 2 + sqrt(half * half + rest)) * (1 + slack)};
     return range;
+}
+
+/* The same, of no more fibres. */
+ELEMENT_FUNCTION stability_range stability_range_scaled(form f, const double *c, element_vector d, element_tensor h,
+                                                        element_fibre fibre, element_fibre second)
+{
+    return stability_range_fibred(f, c, d, h, fibre, second, 0, 0);
 }
 
 /* ---- hourglass modes
@@ -258,13 +278,19 @@ ELEMENT_FUNCTION stability_range stability_range_with(stability_range r, stabili
     return range;
 }
 
+/* D of an element of these sides. */
+ELEMENT_FUNCTION element_vector stability_diagonal(double density, const double side[3])
+{
+    const double unit = 2 / sqrt(density);
+    const element_vector d = {unit / side[0], unit / side[1], unit / side[2]};
+    return d;
+}
+
 /* Of an element of these sides. */
 ELEMENT_FUNCTION stability_range stability_range_of(form f, const double *c, double density, const double side[3],
                                                     element_tensor h, element_fibre fibre, element_fibre second)
 {
-    const double unit = 2 / sqrt(density);
-    const element_vector d = {unit / side[0], unit / side[1], unit / side[2]};
-    return stability_range_scaled(f, c, d, h, fibre, second);
+    return stability_range_scaled(f, c, stability_diagonal(density, side), h, fibre, second);
 }
 
 #endif
