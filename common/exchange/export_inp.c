@@ -199,6 +199,17 @@ static void put_step(const writer *w, const double *gravity)
     out_text(w->to, "*NODE PRINT, NSET=NALL, FREQUENCY=1000\nU\n*NODE FILE, FREQUENCY=1000\nU\n*END STEP\n");
 }
 
+static int check_material(const material *of, const char *name, err *e)
+{
+    if (material_is_directed(of))
+        return err_set(
+            e, NULL, 0,
+            "material '%.200s' has fibres that resist being stretched, which Abaqus's files do not have here; "
+            "expected none",
+            name);
+    return export_inp_has_law(of->law, name, e);
+}
+
 static int open_tables(writer *w, const model *m, err *e)
 {
     const model_array *name = model_need(m, "volume.name", e);
@@ -217,7 +228,7 @@ static int open_tables(writer *w, const model *m, err *e)
     if (!w->laws)
         return -1;
     for (int64_t i = 0; i < w->materials; i++)
-        if (materials_of(m, i, &w->laws[i], e) || export_inp_has_law(w->laws[i].law, law->str[i], e))
+        if (materials_of(m, i, &w->laws[i], e) || check_material(&w->laws[i], law->str[i], e))
             return -1;
     for (int64_t i = 0; i < w->volume->rows; i++)
         w->count[w->volume->i32[i]]++;

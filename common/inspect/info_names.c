@@ -50,19 +50,27 @@ static int put_muscles(const model *m, out *to, err *e)
     return 0;
 }
 
-/* NAME.KEY, as -m of tled-run takes it: the law, its keys and those that every material has. */
+static int put_key_of(const char *name, const char *key, out *to, err *e)
+{
+    if (put_text(name, to, e))
+        return -1;
+    out_format(to, ".%s\n", key);
+    return 0;
+}
+
+/* NAME.KEY, as -m of tled-run takes it: the law, its keys, those that every material has, and those of fibres. */
 static int put_keys_of(const char *name, const char *law, out *to, err *e)
 {
     const law_row *of = law_find(law);
-    if (put_text(name, to, e))
+    if (put_key_of(name, "law", to, e))
         return -1;
-    out_text(to, ".law\n");
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
         if (k < LAW_OWN_KEYS && !(of && law_keys(of) >> k & 1))
             continue;
-        if (put_text(name, to, e))
+        if (k == LAW_FIBRE_KEYS_FIRST && put_key_of(name, "fibre", to, e))
             return -1;
-        out_format(to, ".%s\n", law_key_name((law_key)k));
+        if (put_key_of(name, law_key_name((law_key)k), to, e))
+            return -1;
     }
     return 0;
 }

@@ -185,12 +185,15 @@ static int put_volumes(const model *m, const int64_t *elements, out *to, err *e)
 /* "E=3000 nu=0.49 density=1000", as a file of materials has it: what has a value in row i. */
 static void keys_of(const model *m, int64_t i, char *to, size_t size)
 {
+    const model_array *kind = model_find(m, "material.fibre");
     to[0] = '\0';
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
         const size_t at = strlen(to);
         const model_array *a = model_find(m, material_edit_arrays[k]);
         if (a && !isnan(a->f64[i]))
             snprintf(to + at, size - at, "%s%s=%.7g", at ? " " : "", law_key_name((law_key)k), a->f64[i]);
+        if (k == LAW_FIBRE_KEYS_FIRST - 1 && kind && strcmp(kind->str[i], fibre_kind_none) != 0)
+            snprintf(to + strlen(to), size - strlen(to), " fibre=%s", kind->str[i]);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "mesh/element_fibres.h"
 #include "mesh/element_motion.h"
+#include "mesh/fibre_sets.h"
 #include "model/hourglass_text.h"
 #include "model/materials.h"
 
@@ -14,8 +15,9 @@ typedef struct view {
     element_mesh mesh;
     const double *u;
     hourglass_control control;
-    element_fibres fibres;
-    bool is_old; /* of a release whose stiffness was kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8 */
+    element_fibres muscles;
+    fibres_view fibres; /* owned */
+    bool is_old;        /* of a release whose stiffness was kappa min(lambda + 2 mu, 11 mu) V sum(B^2) / 8 */
 } view;
 
 /* By volume at rest, J/m3. What is linear in its strains is taken for neo-Hookean, which has the same coefficients, mu
@@ -48,6 +50,7 @@ static void hold_of(const view *v, double mu, double bulk, double volume, double
 static void add_element(const view *v, int64_t element, const material_numbers *of, double fraction, energy *to)
 {
     const element_motion is = element_motion_of(&v->mesh, element, v->u);
+    const fibre_sets fibres = fibre_sets_at(&v->fibres, element);
     const double *side = v->mesh.side, mu = of->at_rest.mu;
     double hold[HOURGLASS_NUMBERS];
     hold_of(v, mu, of->at_rest.bulk, is.volume, is.squares, hold);
@@ -55,7 +58,9 @@ static void add_element(const view *v, int64_t element, const material_numbers *
         v->mesh.is_lattice ? hourglass_of(v->control.kind, is.modes, is.h, element_box(side[0], side[1], side[2]), hold)
                            : element_any_hourglass(v->control.kind, is.modes, is.h, &is.any, hold);
     to->scale += fraction * is.volume * mu;
-    to->strain += fraction * is.volume * (material_energy(of, is.h) + muscles_energy(&v->fibres, element, is.h));
+    to->strain +=
+        fraction * is.volume *
+        (material_energy(of, is.h) + muscles_energy(&v->muscles, element, is.h) + fibre_sets_energy(&fibres, is.h));
     to->hourglass += fraction * hourglass_dot(&force.f, &is.modes) / 2;
 }
 
@@ -103,15 +108,19 @@ int energy_of(energy *to, const model *m, const frame *f, err *e)
     if (view_of(&v, m, f, e) || !model_need(m, "element.volume", e))
         return -1;
     material *law = materials_of_volumes(m, e);
-    if (!law)
+    if (!law || fibres_make(&v.fibres, m, law, e)) {
+        fibres_free(&v.fibres);
+        free(law);
         return -1;
+    }
     const materials_map map = materials_map_of(m, law);
-    v.fibres = element_fibres_of(m, &map);
+    v.muscles = element_fibres_of(m, &map);
     const int64_t elements = model_count(m, "element");
     for (int64_t i = 0; i < elements; i++) {
         const material_numbers own = materials_of_element(&map, i);
         add_element(&v, i, &own, fraction ? (double)fraction->f32[i] : 1, to);
     }
+    fibres_free(&v.fibres);
     free(law);
     return 0;
 }

@@ -9,12 +9,12 @@
 #define ROW(name, type, unit, axis, few, most, flags, rule, low, high, maker, meaning)                                 \
     {name, type, unit, axis, few, most, flags, rule, low, high, maker, meaning},
 
-/* material.KEY. nan: its law has no such key, or, of peak, none of its muscles contracts. */
+/* material.KEY. nan: its law or its kind of fibres has no such key, or, of peak, none of its muscles contracts. */
 #define KEY_ROW(key, unit, low, high, meaning)                                                                         \
     ROW("material." #key, MODEL_F64, unit, "material", 1, 1, LAW_##key == LAW_density ? 0 : KNOWN_NAN, KNOWN_FROM,     \
         low, high, "voxelise or msds-mesh", meaning)
 
-static const known rows[] = {KNOWN_ARRAYS(ROW, LAW_KEYS(KEY_ROW) LAW_COMMON_KEYS(KEY_ROW))};
+static const known rows[] = {KNOWN_ARRAYS(ROW, LAW_KEYS(KEY_ROW) LAW_COMMON_KEYS(KEY_ROW) LAW_FIBRE_KEYS(KEY_ROW))};
 
 enum { ROWS = sizeof rows / sizeof *rows };
 

@@ -83,6 +83,8 @@ typedef struct known {
     X("material.law", MODEL_STR, "1", "material", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh",                   \
       "its law, one of those in sinew-laws(7)")                                                                        \
     KEY_ARRAYS                                                                                                         \
+    X("material.fibre", MODEL_STR, "1", "material", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh",                 \
+      "kind of its families of fibres, one of those in sinew-laws(7), or none")                                        \
     X("muscle.volume", MODEL_I32, "@volume", "muscle", 1, 1, KNOWN_EVERY, KNOWN_ANY, 0, 0, "attach",                   \
       "volume of the muscle")                                                                                          \
     X("muscle.centre", MODEL_F64, "m", "muscle", 3, 3, KNOWN_NAN, KNOWN_FINITE, 0, 0, "attach",                        \

@@ -7,9 +7,9 @@
 #include "model/known.h"
 #include "model/materials.h"
 
-enum { MATERIAL_EDIT_NAMES = LAW_ALL_KEYS + 1 };
+enum { MATERIAL_EDIT_FIBRE = LAW_ALL_KEYS + 1, MATERIAL_EDIT_NAMES };
 
-/* "law", and then the keys; and the arrays of the keys. */
+/* "law", then the keys, then "fibre"; and the arrays of the keys. */
 extern const char *const material_edit_names[MATERIAL_EDIT_NAMES];
 extern const char *const material_edit_arrays[LAW_ALL_KEYS];
 
@@ -20,6 +20,15 @@ typedef struct material_edit {
 
 /* Where a material has the value of a law_key. */
 double *material_edit_value(material *of, int key);
+
+/* The value of a key that stands in a model: nan where the material has no such key, or none is given. */
+double material_edit_stored(const material *of, int key);
+
+/* Whether materials may lack a key, which is nan in their row of its array: of laws, of fibres, and optional ones. */
+static inline bool material_edit_optional(int key)
+{
+    return key < LAW_OWN_KEYS || key >= LAW_OPTIONAL;
+}
 
 /* All keys of laws become nan. */
 void material_edit_clear(material *of);

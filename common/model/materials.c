@@ -7,6 +7,7 @@
 #include "base/num.h"
 #include "model/known.h"
 #include "model/material_edit.h"
+#include "model/material_families.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -26,6 +27,8 @@ material materials_fallback(void)
     material_edit_clear(&of);
     of.value[LAW_E] = 3000;
     of.value[LAW_nu] = .49;
+    for (int k = 0; k < LAW_FIBRE_KEYS_COUNT; k++)
+        of.families[k] = NAN;
     return of;
 }
 
@@ -50,24 +53,11 @@ static int parse_name(const keyfile *k, err *e)
 
 /* ---- the table in a model */
 
-/* Whether materials may lack a key: one of a law, or an optional one. Its array is nan for them. */
-static bool may_lack(int key)
-{
-    return key < LAW_OWN_KEYS || key >= LAW_OPTIONAL;
-}
-
-/* The value that goes into the array; nan: none. */
-static double stored(material *of, int key)
-{
-    const double value = *material_edit_value(of, key);
-    return key >= LAW_OPTIONAL && value == 0 ? NAN : value;
-}
-
 /* The array of a key, made where there is none and materials may lack it. */
 static model_array *key_array(model *m, int key, err *e)
 {
     const char *name = material_edit_arrays[key];
-    if (!may_lack(key))
+    if (!material_edit_optional(key))
         return model_need(m, name, e);
     model_array *a = model_find(m, name);
     if (a)
@@ -78,17 +68,18 @@ static model_array *key_array(model *m, int key, err *e)
     return a;
 }
 
-/* Writes row `at`: its law and the values of its keys, and of the others those in `given`. */
+/* Writes row `at`: its law, its kind of fibres and the values of their keys, and of the others those in `given`. */
 static int row_store(model *m, int64_t at, material of, uint64_t given, err *e)
 {
     model_array *law = model_find(m, "material.law");
     if (!law && !(law = model_add(m, "material.law", e)))
         return -1;
-    if (given & 1 && model_set_text(law, at, of.law->name, e))
+    if ((given & 1 && model_set_text(law, at, of.law->name, e)) || material_families_store(m, at, &of, e))
         return -1;
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
-        const double value = stored(&of, k);
-        if (may_lack(k) ? isnan(value) && !model_find(m, material_edit_arrays[k]) : !(given >> (k + 1) & 1))
+        const double value = material_edit_stored(&of, k);
+        const bool none = isnan(value) && !model_find(m, material_edit_arrays[k]);
+        if (material_edit_optional(k) ? none : !(given >> (k + 1) & 1))
             continue;
         model_array *a = key_array(m, k, e);
         if (!a)
@@ -98,11 +89,12 @@ static int row_store(model *m, int64_t at, material of, uint64_t given, err *e)
     return 0;
 }
 
-/* Removes the arrays of keys that no material has any more. */
+/* Removes the arrays of keys that no material has any more, and that of kinds of fibres if all are none. */
 static void drop_unused(model *m)
 {
+    material_families_drop(m);
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
-        const model_array *a = may_lack(k) ? model_find(m, material_edit_arrays[k]) : NULL;
+        const model_array *a = material_edit_optional(k) ? model_find(m, material_edit_arrays[k]) : NULL;
         bool used = !a;
         for (int64_t i = 0; !used && i < a->rows; i++)
             used = !isnan(a->f64[i]);
@@ -112,11 +104,11 @@ static void drop_unused(model *m)
 }
 
 /* Bits of the optional keys that are given. */
-static unsigned optional_keys(material of)
+static unsigned optional_keys(const material *of)
 {
     unsigned keys = 0;
     for (int k = LAW_OPTIONAL; k < LAW_ALL_KEYS; k++)
-        keys |= (unsigned)!isnan(stored(&of, k)) << k;
+        keys |= (unsigned)!isnan(material_edit_stored(of, k)) << k;
     return keys;
 }
 
@@ -124,7 +116,7 @@ int materials_put(model *m, const char *const *name, const material *of, int64_t
 {
     unsigned used = 1U << LAW_density | 1U << LAW_peak;
     for (int64_t i = 0; i < count; i++)
-        used |= material_edit_keys(&of[i]) | optional_keys(of[i]);
+        used |= material_edit_keys(&of[i]) | optional_keys(&of[i]);
     if (model_axis_add(m, "material", count, e) || !model_add(m, "material.name", e) ||
         !model_add(m, "material.law", e))
         return -1;
@@ -157,8 +149,8 @@ int materials_make(model *m, const material *of, err *e)
     material checked = *of;
     char words[KNOWN_WORDS];
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
-        const double value = *material_edit_value(&checked, k);
-        if (!(may_lack(k) && isnan(stored(&checked, k))) && !material_edit_valid(k, value, words))
+        const double value = material_edit_stored(&checked, k);
+        if (!(material_edit_optional(k) && isnan(value)) && !material_edit_valid(k, value, words))
             return err_set(e, NULL, 0, "%s=%g is not allowed; expected %s", law_key_name((law_key)k), value, words);
     }
     return materials_put(m, &name, of, 1, e);
@@ -251,7 +243,7 @@ static const law_row *law_of(const model *m, int64_t i, err *e)
 /* Row `at` as it stands in the model, unchecked: what is missing is nan. */
 static int row_of(const model *m, int64_t at, material *to, err *e)
 {
-    if (!(to->law = law_of(m, at, e)))
+    if (!(to->law = law_of(m, at, e)) || material_families_kind(m, at, &to->fibre, e))
         return -1;
     for (int k = 0; k < LAW_ALL_KEYS; k++) {
         const model_array *a = model_find(m, material_edit_arrays[k]);
@@ -473,6 +465,27 @@ static int take_optional(const model *m, int64_t i, material *to, err *e)
     return 0;
 }
 
+/* The families of material i: all keys of their kind, and no other's. */
+static int families_of(const model *m, int64_t i, material *to, err *e)
+{
+    char words[LAW_WORDS];
+    if (material_families_kind(m, i, &to->fibre, e))
+        return -1;
+    for (int k = LAW_FIBRE_KEYS_FIRST; k < LAW_ALL_KEYS; k++) {
+        const model_array *a = model_find(m, material_edit_arrays[k]);
+        const bool given = a && !isnan(a->f64[i]),
+                   needs = to->fibre && to->fibre->needs >> (k - LAW_FIBRE_KEYS_FIRST) & 1;
+        *material_edit_value(to, k) = NAN;
+        if (given && !fibre_kind_takes(to->fibre, k)) {
+            snprintf(words, sizeof words, "nan, as %s has no such key", to->fibre ? to->fibre->name : "fibre=none");
+            return row_wrong(m, a, i, k, a->f64[i], words, e);
+        }
+        if ((given || needs) && value_of(m, i, k, NAN, material_edit_value(to, k), e))
+            return -1;
+    }
+    return 0;
+}
+
 /* Values that are no material together. */
 static int check_together(const model *m, int64_t i, const material *of, err *e)
 {
@@ -506,27 +519,16 @@ int materials_of(const model *m, int64_t i, material *to, err *e)
             return -1;
     }
     if (take_optional(m, i, to, e) || check_foreign(m, i, to->law, e) || check_together(m, i, to, e) ||
-        value_of(m, i, LAW_density, NAN, &to->density, e) || value_of(m, i, LAW_peak, 0, &to->peak, e))
+        families_of(m, i, to, e) || value_of(m, i, LAW_density, NAN, &to->density, e) ||
+        value_of(m, i, LAW_peak, 0, &to->peak, e))
         return -1;
-    for (int k = LAW_OPTIONAL; k < LAW_ALL_KEYS; k++)
+    for (int k = LAW_OPTIONAL; k < LAW_FIBRE_KEYS_FIRST; k++)
         if (value_of(m, i, k, law_key_usual((law_key)k), material_edit_value(to, k), e))
             return -1;
     if (isfinite(material_bulk(to)) && material_mu(to) > 0)
         return 0;
     values_words(to, words, sizeof words);
     return err_set(e, m->stream, 0, "material, row %" PRId64 ": %s is beyond what can be computed", i, words);
-}
-
-bool material_muscle(const material *a, double curve[MUSCLE_NUMBERS])
-{
-    memset(curve, 0, MUSCLE_NUMBERS * sizeof *curve);
-    if (a->passive == 0 && a->optimum == 1)
-        return false;
-    curve[MUSCLE_LESS] = 1 / a->optimum - 1;
-    curve[MUSCLE_PASSIVE] = a->passive * a->peak / a->optimum;
-    curve[MUSCLE_STIFFENING] = a->stiffening;
-    curve[MUSCLE_STRAIGHT] = a->straight - 1;
-    return true;
 }
 
 double material_young(const material *a)

@@ -14,6 +14,7 @@
 
 #include "base/in.h"
 #include "model/model.h"
+#include "physics/fibre_kind.h"
 #include "physics/law.h"
 #include "physics/muscle_numbers.h"
 
@@ -24,6 +25,8 @@ typedef struct material {
     double value[LAW_OWN_KEYS]; /* of the law's keys: LAW_E and so on, in their units; nan where it has no such key */
     double density, peak;       /* kg/m3, Pa */
     double optimum, passive, stiffening, straight; /* of its muscles; 0: not given, so the usual value */
+    const fibre_kind *fibre;                       /* of its families of fibres; NULL: none */
+    double families[LAW_FIBRE_KEYS_COUNT];         /* of that kind's keys: LAW_eta and so on; nan where not given */
 } material;
 
 /* Neo-Hookean, E 3000 Pa, nu 0.49, density 1000 kg/m3 (W&M section 4.2); peak 30000 Pa, which is not in the paper. */
@@ -117,6 +120,14 @@ static inline void material_coefficients(const material *a, double *c)
     a->law->fill(a->value, c);
 }
 
+/* What of it needs a direction, and whether anything does. */
+fibre_numbers material_fibres(const material *a);
+static inline bool material_is_directed(const material *a)
+{
+    const fibre_numbers n = material_fibres(a);
+    return fibre_numbers_any(&n);
+}
+
 /* A modulus of what is mixed of two materials, s the share of b: a^(1-s) b^s. Two materials side by side have the sum
  * of their shares along their border, and the inverse of the sum of their shares' inverses across it; this lies
  * between, whatever the border's direction, and does to the inverses what it does to the moduli. */
@@ -125,8 +136,8 @@ static inline double material_between(double a, double b, double s)
     return a == b ? a : exp((1 - s) * log(a) + s * log(b));
 }
 
-/* What is mixed of two materials: mu and K as above, density and peak by shares, in the first form that expresses both
- * laws (form_between). a, where none does. */
+/* What is mixed of two materials, but for fibres: mu and K as above, density and peak by shares, in the first form that
+ * expresses both laws (form_between). a, where none does. */
 material_numbers material_mixed(const material_numbers *a, const material_numbers *b, double s);
 
 #endif

@@ -14,6 +14,12 @@
 #include "physics/hourglass.h"
 #include "physics/muscle_curves.h"
 
+#ifdef ELEMENT_FORCES_ALONE /* numbers without bits have no powers, so no fibres that take them */
+typedef struct fibre_set fibre_set;
+#else
+#include "physics/fibre.h"
+#endif
+
 /* One component of a vector field at the eight corners, and all three. */
 typedef struct element_corners {
     real at[8];
@@ -171,17 +177,22 @@ ELEMENT_FUNCTION element_tensor element_muscle(element_tensor h, element_fibre f
     return element_active(h, fibre);
 }
 
-/* P (Pa) of all that an element's tissue does at H: of its law, and of the muscles along its fibres, of each of which
- * `which` tells what is looked at: ELEMENT_MUSCLE and so on. Steppers, monitors and results take the stress from
- * here. */
+/* P (Pa) of all that an element's tissue does at H: of its law; of the muscles along its fibres, of each of which is
+ * looked at what `which` tells, ELEMENT_MUSCLE and so on; and of what of fibres resists being stretched, of `count`
+ * volumes, none to two. Steppers, monitors and results take the stress from here. */
 ELEMENT_FUNCTION element_tensor element_stress(form f, element_tensor h, const real *c, element_fibre fibre, int which,
-                                               element_fibre second, int which_second)
+                                               element_fibre second, int which_second, const fibre_set *sets, int count)
 {
     element_tensor p = form_stress(f, h, c);
     if (which)
         p = element_sum(p, element_muscle(h, fibre, which));
     if (which_second)
         p = element_sum(p, element_muscle(h, second, which_second));
+#ifndef ELEMENT_FORCES_ALONE
+    if (count)
+        p = element_sum(p, fibre_stress(h, sets, count));
+#endif
+    (void)sets, (void)count;
     return p;
 }
 
@@ -199,14 +210,15 @@ ELEMENT_FUNCTION element_corners element_gather(real px, real py, real pz, eleme
     return element_corners_of(f);
 }
 
-/* As element_force, with a second fibre. */
-ELEMENT_FUNCTION element_field element_force_of_two(form f, hourglass_kind kind, element_field u, element_shape shape,
+/* As element_force, with a second fibre, and what resists being stretched of `count` volumes, none to two. */
+ELEMENT_FUNCTION element_field element_force_fibred(form f, hourglass_kind kind, element_field u, element_shape shape,
                                                     element_law law, element_fibre fibre, int which,
-                                                    element_fibre second, int which_second)
+                                                    element_fibre second, int which_second, const fibre_set *sets,
+                                                    int count)
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_gradient(x, y, z, shape.slope);
-    element_tensor p = element_stress(f, h, law.c, fibre, which, second, which_second);
+    element_tensor p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
     const hourglass_force held = hourglass_of(kind, element_hourglass_modes(x, y, z), h, shape, law.hourglass);
     const hourglass_modes *m = &held.f;
     if (kind == HOURGLASS_PHYSICAL)
@@ -215,6 +227,14 @@ ELEMENT_FUNCTION element_field element_force_of_two(form f, hourglass_kind kind,
                            element_gather(p.yx, p.yy, p.yz, shape.area, m->xy.y, m->yz.y, m->zx.y, m->xyz.y),
                            element_gather(p.zx, p.zy, p.zz, shape.area, m->xy.z, m->yz.z, m->zx.z, m->xyz.z)};
     return force;
+}
+
+/* As element_force, with a second fibre. */
+ELEMENT_FUNCTION element_field element_force_of_two(form f, hourglass_kind kind, element_field u, element_shape shape,
+                                                    element_law law, element_fibre fibre, int which,
+                                                    element_fibre second, int which_second)
+{
+    return element_force_fibred(f, kind, u, shape, law, fibre, which, second, which_second, 0, 0);
 }
 
 /* The internal forces at the corners (N): what the element pulls with, for displacements u (m). which: ELEMENT_MUSCLE

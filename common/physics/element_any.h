@@ -114,13 +114,14 @@ ELEMENT_FUNCTION hourglass_force element_any_hourglass(hourglass_kind kind, hour
     return hourglass_physical_any(m, h, s->basis, s->volume, law);
 }
 
-/* As element_force of element.h. */
-ELEMENT_FUNCTION element_field element_any_force(form f, hourglass_kind kind, element_field u, const element_any *s,
-                                                 element_law law, element_fibre fibre, int which)
+/* As element_force of element.h, with what fibres of `count` volumes, none to two, resist being stretched. */
+ELEMENT_FUNCTION element_field element_any_force_fibred(form f, hourglass_kind kind, element_field u,
+                                                        const element_any *s, element_law law, element_fibre fibre,
+                                                        int which, const fibre_set *sets, int count)
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_any_twist(s, &x, &y, &z);
-    element_tensor p = element_stress(f, h, law.c, fibre, which, fibre, ELEMENT_NO_MUSCLE);
+    element_tensor p = element_stress(f, h, law.c, fibre, which, fibre, ELEMENT_NO_MUSCLE, sets, count);
     const hourglass_force held = element_any_hourglass(kind, element_hourglass_modes(x, y, z), h, s, law.hourglass);
     const hourglass_modes *m = &held.f;
     if (kind == HOURGLASS_PHYSICAL)
@@ -129,6 +130,13 @@ ELEMENT_FUNCTION element_field element_any_force(form f, hourglass_kind kind, el
                            element_any_gather(s, p.yx, p.yy, p.yz, m->xy.y, m->yz.y, m->zx.y, m->xyz.y),
                            element_any_gather(s, p.zx, p.zy, p.zz, m->xy.z, m->yz.z, m->zx.z, m->xyz.z)};
     return force;
+}
+
+/* As element_force of element.h. */
+ELEMENT_FUNCTION element_field element_any_force(form f, hourglass_kind kind, element_field u, const element_any *s,
+                                                 element_law law, element_fibre fibre, int which)
+{
+    return element_any_force_fibred(f, kind, u, s, law, fibre, which, 0, 0);
 }
 
 #endif

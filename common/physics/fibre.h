@@ -1,6 +1,7 @@
 /* Fibres that resist being stretched, beside any law: families of fibres, and the law fung, which has a direction. With
  * C = F^T F and a0 a family's direction at rest, of length 1,
- *     Ebar = kappa (tr C - 3) + (1 - 3 kappa) (a0.C a0 - 1),   W = k1/(2 k2) (exp(k2 Ebar^2) - 1) where Ebar > 0, else 0
+ *     Ebar = kappa (tr C - 3) + (1 - 3 kappa) (a0.C a0 - 1),
+ *     W = k1/(2 k2) (exp(k2 Ebar^2) - 1) where Ebar > 0, else 0
  * (Gasser, Ogden & Holzapfel 2006, but of full C: see below; quadratic: k2 and kappa 0, W = k1/2 Ebar^2), and with
  * E = (C - I)/2 in axes whose first is the fibre
  *     Q = bf E11^2 + bt (E22^2 + E33^2 + 2 E23^2) + 2 bfs (E12^2 + E13^2),   W = c/2 (exp Q - 1)
@@ -234,7 +235,7 @@ ELEMENT_FUNCTION double fibre_across(double c, element_tensor n, element_tensor 
 /* Adds A y, A = dP/dF of a family. With m = F a0 and N = dEbar/dF = 2 (kappa F + (1 - 3 kappa) m (x) a0):
  *     A = W'' N (x) N + 2 W' (kappa I + (1 - 3 kappa) I (x) a0 a0).
  * Returns no less than z:(A z) of any z of length 1 with G:z = 0: of the first term as above (without kappa that is at
- * most 4 W'' I4, I4 = m.m), and as |z a0| <= |a0| and kappa <= 1/3 of the second 2 W' (kappa + (1 - 3 kappa) |a0|^2). */
+ * most 4 W'' I4, I4 = m.m); of the second, as |z a0| <= |a0| and kappa <= 1/3, 2 W' (kappa + (1 - 3 kappa) |a0|^2). */
 ELEMENT_FUNCTION double fibre_family_along(element_tensor h, fibre_law law, element_vector a, element_tensor y,
                                            element_tensor *to)
 {

@@ -27,6 +27,7 @@ static inline int fibre_numbers_families(const fibre_numbers *f)
 typedef struct fibre_local {
     fibre_numbers of;
     double share;    /* of the tissue, that is of the volume */
+    int is_second;   /* the volume is the one that the element's own is mixed with */
     double along[3]; /* unit vector, or 0 0 0 */
     double family[FIBRE_FAMILIES][3];
 } fibre_local;

@@ -10,8 +10,8 @@
 
 #define KEY_NAME(key, unit, low, high, meaning) #key,
 #define KEY_UNIT(key, unit, low, high, meaning) unit,
-static const char *const key_names[] = {LAW_KEYS(KEY_NAME) LAW_COMMON_KEYS(KEY_NAME)};
-static const char *const key_units[] = {LAW_KEYS(KEY_UNIT) LAW_COMMON_KEYS(KEY_UNIT)};
+static const char *const key_names[] = {LAW_KEYS(KEY_NAME) LAW_COMMON_KEYS(KEY_NAME) LAW_FIBRE_KEYS(KEY_NAME)};
+static const char *const key_units[] = {LAW_KEYS(KEY_UNIT) LAW_COMMON_KEYS(KEY_UNIT) LAW_FIBRE_KEYS(KEY_UNIT)};
 
 /* K of mu and Poisson's ratio at rest. */
 static double bulk_of(double mu, double nu)

@@ -33,13 +33,25 @@
     X(stiffening, "1", .1, 20, "exponent of the passive stress of its muscles, 6.6 if not given")                      \
     X(straight, "1", 1, 2, "stretch over optimum from which passive stress is linear, 1.4 if not given")
 
+/* The same of families of fibres, by their kind (fibre_kind.h). */
+#define LAW_FIBRE_KEYS(X)                                                                                              \
+    X(eta, "Pa", 1e-3, 1e12, "stiffness of the fibres")                                                                \
+    X(k1, "Pa", 1e-3, 1e12, "stiffness of the fibres at rest")                                                         \
+    X(k2, "1", 0, 1e4, "how fast the fibres stiffen")                                                                  \
+    X(kappa, "1", 0, 1. / 3, "dispersion of the fibres, from all in one direction to all alike")                       \
+    X(angle, "degree", 0, 90, "of two families to the fibre, either side, in the plane across the normal")
+
 #define LAW_KEY_INDEX(key, unit, low, high, meaning) LAW_##key,
-/* LAW_E and so on; those of laws first. */
-typedef enum law_key { LAW_KEYS(LAW_KEY_INDEX) LAW_COMMON_KEYS(LAW_KEY_INDEX) LAW_ALL_KEYS } law_key;
+/* LAW_E and so on; those of laws first, those of fibres last. */
+typedef enum law_key {
+    LAW_KEYS(LAW_KEY_INDEX) LAW_COMMON_KEYS(LAW_KEY_INDEX) LAW_FIBRE_KEYS(LAW_KEY_INDEX) LAW_ALL_KEYS
+} law_key;
 enum {
     LAW_OWN_KEYS = LAW_density, /* how many are of laws */
-    LAW_OPTIONAL = LAW_optimum
-}; /* the first that is */
+    LAW_OPTIONAL = LAW_optimum, /* the first that is */
+    LAW_FIBRE_KEYS_FIRST = LAW_eta,
+    LAW_FIBRE_KEYS_COUNT = LAW_ALL_KEYS - LAW_FIBRE_KEYS_FIRST
+};
 #undef LAW_KEY_INDEX
 
 enum { LAW_GROUPS = 3 }; /* the most groups of keys of any law */

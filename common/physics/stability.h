@@ -198,8 +198,8 @@ ELEMENT_FUNCTION stability_range stability_range_fibred(form f, const double *c,
     element_tensor z = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     const double bound = form_along(f, h, c, y, square, &z);
     const double muscles = stability_muscle_along(h, fibre, y, &z) + stability_muscle_along(h, second, y, &z);
-    const double fibres = fibre_along(h, sets, count, y, &z);
-    const double across = most * most * (bound + muscles + fibres);
+    const double stretched = fibre_along(h, sets, count, y, &z);
+    const double across = most * most * (bound + muscles + stretched);
     const double quotient = tangent_dot(y, z) * inverse; /* x:(z D) */
     z = stability_scaled(z, d);
     const double rest = fmax(tangent_dot(z, z) * inverse - quotient * quotient, 0.) + slack * quotient * quotient;

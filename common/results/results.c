@@ -5,6 +5,7 @@
 #include "cli/spelling.h"
 #include "mesh/element_fibres.h"
 #include "mesh/element_motion.h"
+#include "mesh/fibre_sets.h"
 #include "mesh/gradient.h"
 #include "model/materials.h"
 
@@ -29,7 +30,8 @@ struct results {
     element_mesh mesh;
     material *of_volume; /* owned */
     materials_map map;
-    element_fibres fibres;
+    element_fibres muscles;
+    fibres_view fibres;               /* owned */
     const int32_t *volume, *material; /* elements, volumes */
     int64_t materials;
     const float *fraction; /* elements; NULL: 1 */
@@ -95,13 +97,14 @@ static double linear_energy(element_tensor h, const double *c)
     return c[0] * (xx * xx + yy * yy + zz * zz + 2 * (xy * xy + yz * yz + zx * zx)) + c[1] / 2 * trace * trace;
 }
 
-/* An element, its law and what its muscles do. */
+/* An element, its law, what its muscles do, and what of its fibres resists being stretched. */
 typedef struct held {
     element_tensor h;
     double volume; /* m3, at rest, of what is tissue */
     form form;
     double c[FORM_NUMBERS];
     element_fibre fibre, second;
+    fibre_sets sets;
 } held;
 
 static held held_of(const results *r, int64_t i)
@@ -111,8 +114,9 @@ static held held_of(const results *r, int64_t i)
     held to = {.h = is.h,
                .volume = is.volume * (r->fraction ? (double)r->fraction[i] : 1),
                .form = own.form,
-               .fibre = element_fibres_first(&r->fibres, i, r->activation),
-               .second = element_fibres_second(&r->fibres, i, r->activation)};
+               .fibre = element_fibres_first(&r->muscles, i, r->activation),
+               .second = element_fibres_second(&r->muscles, i, r->activation),
+               .sets = fibre_sets_at(&r->fibres, i)};
     memcpy(to.c, own.c, sizeof to.c);
     return to;
 }
@@ -123,10 +127,11 @@ static double law_energy(const held *of)
     return of->form == FORM_LINEAR ? linear_energy(of->h, of->c) : form_energy(of->form, of->h, of->c);
 }
 
-/* And of its muscles that are stretched. */
+/* And of its muscles and fibres that are stretched. */
 static double energy_of_held(const held *of)
 {
-    return law_energy(of) + element_fibre_energy(of->h, of->fibre) + element_fibre_energy(of->h, of->second);
+    return law_energy(of) + element_fibre_energy(of->h, of->fibre) + element_fibre_energy(of->h, of->second) +
+           fibre_sets_energy(&of->sets, of->h);
 }
 
 /* Cauchy's, P F^T / J, Pa: 3 x 3. nan where J is not above 0. Of what is linear the stress of small strains. */
@@ -136,7 +141,7 @@ static void cauchy_of(const held *of, double to[9])
     element_tensor p = of->form == FORM_LINEAR
                            ? linear_stress(h, of->c)
                            : element_stress(of->form, h, of->c, of->fibre, element_fibre_which(of->fibre), of->second,
-                                            element_fibre_which(of->second));
+                                            element_fibre_which(of->second), of->sets.of, of->sets.count);
     const double volume = 1 + element_dilation(h);
     const element_tensor f = {1 + h.xx, h.yx, h.zx, h.xy, 1 + h.yy, h.zy, h.xz, h.yz, 1 + h.zz}; /* F^T */
     if (of->form != FORM_LINEAR)
@@ -209,7 +214,8 @@ static void put_element(const results *r, int64_t i, const held *of)
             close_row(r->to[k] + columns_of[k] * i, columns_of[k]);
 }
 
-/* What is mixed of two volumes holds its law's energy in the materials of both, by their shares; a muscle its own. */
+/* What is mixed of two volumes holds its law's energy in the materials of both, by their shares; muscles and fibres
+ * that are stretched hold theirs in their own. */
 static void add_energy(const results *r, int64_t i, const held *of, double *sum)
 {
     const int32_t mix = r->map.mix ? r->map.mix[i] : -1;
@@ -217,6 +223,8 @@ static void add_energy(const results *r, int64_t i, const held *of, double *sum)
     sum[r->material[r->volume[i]]] += (1 - share) * energy + of->volume * element_fibre_energy(of->h, of->fibre);
     if (mix >= 0)
         sum[r->material[mix]] += share * energy + of->volume * element_fibre_energy(of->h, of->second);
+    for (int k = 0; k < of->sets.count; k++)
+        sum[r->material[of->sets.second[k] ? mix : r->volume[i]]] += of->volume * fibre_energy(of->h, &of->sets.of[k]);
 }
 
 /* ---- a frame */
@@ -316,14 +324,15 @@ static int open_model(results *r, err *e)
 {
     const model *m = r->m;
     const model_array *volume = model_need(m, "element.volume", e);
-    if (!volume || element_mesh_of(&r->mesh, m, e) || !(r->of_volume = materials_of_volumes(m, e)))
+    if (!volume || element_mesh_of(&r->mesh, m, e) || !(r->of_volume = materials_of_volumes(m, e)) ||
+        fibres_make(&r->fibres, m, r->of_volume, e))
         return -1;
     r->map = materials_map_of(m, r->of_volume);
     r->volume = volume->i32;
     r->material = model_find(m, "volume.material")->i32;
     r->materials = model_count(m, "material");
     r->fraction = floats_of(m, "element.fraction");
-    r->fibres = element_fibres_of(m, &r->map);
+    r->muscles = element_fibres_of(m, &r->map);
     r->part = mem_array(pool_chunks(r->mesh.elements, CHUNK) * r->materials, sizeof *r->part, "the results", e);
     return r->part ? 0 : -1;
 }
@@ -347,6 +356,7 @@ void results_destroy(results *r)
 {
     if (!r)
         return;
+    fibres_free(&r->fibres);
     free(r->of_volume);
     free(r->part);
     free(r);

@@ -149,6 +149,11 @@ static int read_material(const model *m, int64_t i, material *to, err *e)
     const model_array *name = model_find(m, "volume.name");
     if (materials_of(m, model_find(m, "volume.material")->i32[i], to, e))
         return -1;
+    if (material_is_directed(to))
+        return err_set(e, NULL, 0,
+                       "volume '%s' has fibres that resist being stretched; expected none, as springs and "
+                       "small strains have no direction",
+                       name ? name->str[i] : "");
     if (is_small_strain(material_form(to)))
         return 0;
     return err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected linear, or neo-hookean at small strains",

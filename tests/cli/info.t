@@ -64,7 +64,9 @@ fails 1 "a slip in one" "no key 'muscle.nam'; did you mean 'muscle.name'" sinew 
 
 is "$(lines group.name "$small")" "skin|edge|lip|" "groups of surfaces, each once"
 
-is "$(lines material.key "$small")" "$(printf '%s|' tissue.law tissue.E tissue.nu tissue.density tissue.peak tissue.optimum tissue.passive tissue.stiffening tissue.straight Tissue.law Tissue.E Tissue.nu Tissue.density Tissue.peak Tissue.optimum Tissue.passive Tissue.stiffening Tissue.straight)" \
+fibres='tissue.optimum tissue.passive tissue.stiffening tissue.straight tissue.fibre tissue.eta tissue.k1 tissue.k2 tissue.kappa tissue.angle'
+# shellcheck disable=SC2046,SC2086 # words
+is "$(lines material.key "$small")" "$(printf '%s|' tissue.law tissue.E tissue.nu tissue.density tissue.peak $fibres Tissue.law Tissue.E Tissue.nu Tissue.density Tissue.peak $(echo "$fibres" | sed s/tissue/Tissue/g))" \
     "what -m can set"
 is "$(sed 's/^"neo-hookean"$/"mooney-rivlin"/' "$small" | sed '/^crc/d' | sinew info --names --get material.key | sed 6q | tr '\n' '|')" \
     "tissue.law|tissue.nu|tissue.c10|tissue.c01|tissue.K|tissue.density|" "of mooney-rivlin, its own keys"

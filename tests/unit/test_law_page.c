@@ -4,6 +4,7 @@
  */
 #include "model/known.h"
 #include "physics/element.h"
+#include "physics/fibre_kind.h"
 #include "physics/law.h"
 
 #include "page_table.h"
@@ -112,15 +113,30 @@ static void print_law(out *o, const law_row *of)
                of->source);
 }
 
+static void print_kind(out *o, const fibre_kind *of)
+{
+    char needs[LAW_WORDS];
+    fibre_kind_words(of->needs, needs);
+    out_format(o, ".Ss fibre=%s\n%s\n.Bd -literal -offset indent\nW = %s\n.Ed\n.Bl -tag -width 4n -compact\n", of->name,
+               of->meaning, of->energy);
+    for (int k = LAW_FIBRE_KEYS_FIRST; k < LAW_ALL_KEYS; k++)
+        if (fibre_kind_takes(of, k))
+            print_key(o, k, "");
+    out_format(o, ".El\n.Pp\nMust be given: %s; the others are 0 where they are not.\nSource: %s.\n", needs,
+               of->source);
+}
+
 static void print(out *o)
 {
     out_text(o, begin);
     for (int i = 0; law_at(i); i++)
         print_law(o, law_at(i));
     out_text(o, ".Ss Keys of every law\n.Bl -tag -width density -compact\n");
-    for (int k = LAW_OWN_KEYS; k < LAW_ALL_KEYS; k++)
+    for (int k = LAW_OWN_KEYS; k < LAW_FIBRE_KEYS_FIRST; k++)
         print_key(o, k, "");
     out_text(o, ".El\n");
+    for (int i = 0; fibre_kind_at(i); i++)
+        print_kind(o, fibre_kind_at(i));
     out_text(o, end);
 }
 

@@ -152,6 +152,11 @@ static void test_figures(shape of)
     model_free(&m);
 }
 
+/* The muscle's fibres resist being stretched. */
+static const char *const fibred[] = {"soft.E=3000",   "soft.nu=.45",      "muscle.E=3000",
+                                     "muscle.nu=.45", "muscle.fibre=hgo", "muscle.k1=20000",
+                                     "muscle.k2=2",   "muscle.kappa=.1",  NULL};
+
 /* ---- turned, and against the energy */
 
 static uint64_t state = 7;
@@ -176,6 +181,11 @@ static void follow(const double a[9], const double h[9], double to[9])
         to[i] += a[i] + h[i];
 }
 
+static double whole(look of)
+{
+    return of.energy[0] + of.energy[1];
+}
+
 static void test_energy(shape of, const char *const *law, float mixture, const char *name)
 {
     model m;
@@ -197,8 +207,7 @@ static void test_energy(shape of, const char *const *law, float mixture, const c
                          h[1] * (h[3] * (1 + h[8]) - h[5] * h[6]) + h[2] * (h[3] * h[7] - (1 + h[4]) * h[6]);
         for (int i = 0; i < 9; i++)
             power -= j * (double)is.stress[at[i]] * l[i]; /* l is -L by now */
-        const double gained =
-            (after.energy[0] - before.energy[0] + (after.energy[1] - before.energy[1])) / 2 / volume_of[of];
+        const double gained = (whole(after) - whole(before)) / 2 / volume_of[of];
         worst = fmax(worst, fabs(gained - power) / (1e-5 * (double)is.mises));
     }
     ok(worst < 1e-5, "%s, %s: stress is the slope of the energy, to %.2g", shape_names[of], name, worst);
@@ -265,6 +274,24 @@ static void test_muscles(void)
     model_free(&m);
 }
 
+/* W = k1/(2 k2) (exp(k2 x^2) - 1), x = kappa (tr C - 3) + (1 - 3 kappa) (1.2^2 - 1), of the share that is muscle. */
+static void test_fibres(void)
+{
+    model m;
+    const double side = .92181984, pull[9] = {.2, 0, 0, 0, side - 1, 0, 0, 0, side - 1}, j = 1.2 * side * side;
+    const double x = .1 * (1.44 + 2 * side * side - 3) + .7 * .44, grow = exp(2 * x * x);
+    const double along = 4e4 * x * grow * (.1 + .7) * 1.44 / j, across = 4e4 * x * grow * .1 * side * side / j;
+    make(&m, BOX, fibred, .25F);
+    const look a = look_at(&m, pull, NAN);
+    near_((double)a.stress[0], 502.2590 / (side * side) + along / 4, 1e-2,
+          "fibres that are pulled pull, by their share");
+    near_((double)a.stress[1], across / 4, 1e-2, "and those that are dispersed press the sides");
+    near_((double)a.density, whole(a) / volume_of[BOX], 1e-3, "the element's energy has theirs");
+    near_(a.energy[1] - a.energy[0] / 3, 1e4 / 2 * (grow - 1) / 4 * volume_of[BOX], 1e-9 * whole(a),
+          "which is their material's");
+    model_free(&m);
+}
+
 static void test_linear(void)
 {
     static const char *const linear[] = {"soft.law=linear", "soft.E=3000", "soft.nu=.45", NULL};
@@ -310,8 +337,10 @@ int main(void)
         test_energy(of, soft, 0, "neo-Hookean");
         test_energy(of, rubber, 0, "Mooney-Rivlin");
         test_energy(of, passive, .75F, "three quarters of passive muscle");
+        test_energy(of, fibred, .25F, "fibres");
     }
     test_muscles();
+    test_fibres();
     test_linear();
     test_refusals();
     return done_testing();

@@ -203,14 +203,14 @@ static void test_judged(void)
         bool taken;
     } cases[] = {{.6, true}, {.99, true}, {1.01, false}, {1.5, false}, {1.9, false}};
     const element_tensor h = {.3, 0, 0, 0, .2, 0, 0, 0, .1};
-    const element_fibre none = {0};
+    const step_fibres none = {0};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         bench b;
         step_matrix a;
         bench_make(&b, &lump, NULL, 0, PHYSICAL, 1);
         strain(&b, 1.3, 1.2, 1.1);
         const tled_law law = tled_law_of(&b.problem, 0);
-        step_matrix_of(&b.problem, &law, h, none, none, &a);
+        step_matrix_of(&b.problem, &law, h, &none, &a);
         bench_steps(&b, 0, 0);
         b.setup.rate = 1 / (cases[i].share * 2 / sqrt(step_largest(&a)));
         b.setup.rate_fixed = true;

@@ -71,7 +71,8 @@ static void test_matrix(element_tensor h, element_fibre fibre, element_fibre sec
     tled_law v = {.c = {1000, 9000}, .density = 1100};
     step_matrix a;
     double worst = 0, scale = 0, shifted[9], high[9], low[9];
-    step_matrix_of(&p, &v, h, fibre, second, &a);
+    const step_fibres fibres = {.own = fibre, .other = second};
+    step_matrix_of(&p, &v, h, &fibres, &a);
     for (int c = 0; c < 9; c++) {
         element_tensor moved;
         memcpy(shifted, &h, sizeof h);
@@ -209,7 +210,7 @@ static void test_bound(form f, int32_t cells, double x, double y, double z, doub
     step_matrix a;
     const double stretch[3] = {x, y, z};
     const element_tensor h = {x - 1, 0, 0, 0, y - 1, 0, 0, 0, z - 1};
-    const element_fibre none = {0};
+    const step_fibres none = {0};
     b.poisson = .45;
     b.side[1] = .01;
     b.cells[0] = b.cells[1] = b.cells[2] = cells;
@@ -219,7 +220,7 @@ static void test_bound(form f, int32_t cells, double x, double y, double z, doub
     ok(form_tried(f, of->mu, of->bulk, of->c), "form %d: form_tried.h has coefficients", f);
     p.form = f;
     const tled_law law = tled_law_of(&p, 0);
-    step_matrix_of(&p, &law, h, none, none, &a);
+    step_matrix_of(&p, &law, h, &none, &a);
     double share = largest_frequency(&p, stretch) / step_largest(&a);
     ok(share <= 1 + 1e-6 && share >= least, "%d^3 elements stretched by %g %g %g: the largest w^2 is %.4f of the bound",
        cells, x, y, z, share);

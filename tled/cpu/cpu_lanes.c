@@ -232,6 +232,60 @@ static __attribute__((noinline)) void curved_forces(const cpu_work *w, const row
         run_forces(w, run, shape, HOURGLASS_ISOTROPIC, ELEMENT_CURVED_MUSCLE);
 }
 
+/* What of a volume's fibres in cells resists being stretched; share: of the cells, that is the volume's tissue. */
+static inline fibre_set fibres_of(const cpu_work *w, int64_t cell, int32_t volume, const void *const along[3],
+                                  const void *const family[FIBRE_FAMILIES][3], real share)
+{
+    fibre_set s = {.families = 0};
+    if (!fibres_any(&w->p->fibres, volume) || !along[0])
+        return s;
+    const fibre_numbers *n = &w->p->fibres.of[volume];
+    s.families = fibre_numbers_families(n);
+    s.is_fung = n->c > 0;
+    s.law = (fibre_law){share * (real_one)n->k1, real_of(n->k2), real_of(n->kappa)};
+    s.fung = (fibre_fung){share * (real_one)n->c, real_of(n->bt), real_of(n->bfs - n->bt),
+                          real_of(n->bf + n->bt - 2 * n->bfs)};
+    s.along = (element_vector){load(along[0], cell), load(along[1], cell), load(along[2], cell)};
+    for (int k = 0; k < s.families; k++)
+        s.family[k] = (element_vector){load(family[k][0], cell), load(family[k][1], cell), load(family[k][2], cell)};
+    return s;
+}
+
+/* ELEMENT_MUSCLE and so on. volume: -1 where an element has no such. */
+static inline int muscle_of(const cpu_work *w, const void *const along[3], int32_t volume)
+{
+    if (volume < 0 || !along[0])
+        return ELEMENT_NO_MUSCLE;
+    if (is_curved(w, volume))
+        return ELEMENT_CURVED_MUSCLE;
+    return kind_of(w, volume)->tension != 0 ? ELEMENT_MUSCLE : ELEMENT_NO_MUSCLE;
+}
+
+/* Elements of which a volume has fibres that resist being stretched. */
+static inline void fibred_forces_of(const cpu_work *w, const rows_run *run, element_shape shape, hourglass_kind control)
+{
+    const bool mixed = run->mix >= 0;
+    const int which = muscle_of(w, w->fibre, run->volume), which_second = muscle_of(w, w->mixfibre, run->mix);
+    const real share = w->fraction ? load(w->fraction, run->cell) : REAL_ZERO + 1;
+    const real part = mixed ? load(w->mixture, run->cell) : REAL_ZERO, own = share * (1 - part), other = share * part;
+    const element_law law = mixed ? law_of_cells(w, run->cell, share) : law_of_kind(kind_of(w, run->volume), share);
+    const element_fibre fibre = fibre_of(w, w->fibre, run, run->volume, own, which);
+    const element_fibre second = fibre_of(w, w->mixfibre, run, mixed ? run->mix : run->volume, other, which_second);
+    const fibre_set sets[2] = {fibres_of(w, run->cell, run->volume, w->fibre, w->family, own),
+                               fibres_of(w, run->cell, run->mix, w->mixfibre, w->mixfamily, other)};
+    const element_field f = element_force_fibred(THE_FORM, control, moved_by(w, run), shape, law, fibre, which, second,
+                                                 which_second, sets, 1 + mixed);
+    add_field(w, run, &f);
+}
+
+static __attribute__((noinline)) void fibred_forces(const cpu_work *w, const rows_run *run, element_shape shape)
+{
+    if (w->p->control.kind == HOURGLASS_PHYSICAL)
+        fibred_forces_of(w, run, shape, HOURGLASS_PHYSICAL);
+    else
+        fibred_forces_of(w, run, shape, HOURGLASS_ISOTROPIC);
+}
+
 /* One component of a node that the script displaces or pushes. */
 static void move_extra(const cpu_work *w, int64_t at, int64_t n, int a, node_factors k)
 {
@@ -295,8 +349,11 @@ static inline void move_nodes(const cpu_work *w, const rows_layer *l, int a, nod
 /* The forces of a layer's elements; control: a constant. */
 static inline void layer_forces(const cpu_work *w, const rows_layer *l, element_shape shape, hourglass_kind control)
 {
+    const bool fibred = w->p->fibres.of;
     for (const rows_run *run = w->r->run + l->run; run < w->r->run + l->run + l->runs; run++)
-        if (run->mix >= 0)
+        if (fibred && (fibres_any(&w->p->fibres, run->volume) || fibres_any(&w->p->fibres, run->mix)))
+            fibred_forces(w, run, shape);
+        else if (run->mix >= 0)
             any_mixed_forces(w, run, shape);
         else if (w->fibre[0] && is_curved(w, run->volume))
             curved_forces(w, run, shape);

@@ -46,6 +46,7 @@ struct tled_state {
     uint8_t *flags;                   /* rows.nodes: NODE_* */
     number *fibre, *fraction;         /* cells, with padding: 3 x and 1 x; or NULL */
     number *mixfibre, *mixture, *law; /* likewise; law: a law's numbers x */
+    number *family, *mixfamily;       /* likewise, of families at an angle to the fibre: 6 x */
     number *shape, *force;            /* a mesh's: cpu_work's, as is: */
     int32_t *group_node;
     int64_t mesh_bytes; /* of these */
@@ -321,6 +322,7 @@ static int64_t cpu_bytes(const cpu_state *s)
     const rows *r = &s->rows;
     int64_t numbers = numbers_of(s, FIELDS_ALL) * (s->saved ? 2 : 1),
             cells = (s->fibre ? 3 : 0) + (s->fraction ? 1 : 0);
+    cells += (s->family ? 6 : 0) + (s->mixfamily ? 6 : 0);
     cells += (s->mixfibre ? 3 : 0) + (s->mixture ? 1 + cpu_law_numbers(s->p->form) : 0);
     for (int i = 0; i < TLED_SLOTS; i++)
         numbers += s->slot[i] ? numbers_of(s, FIELD_IN_FRAMES) : 0;
@@ -346,6 +348,8 @@ static void cpu_destroy(cpu_state *s)
     free(s->fibre);
     free(s->fraction);
     free(s->mixfibre);
+    free(s->family);
+    free(s->mixfamily);
     free(s->mixture);
     free(s->law);
     free(s->shape);
@@ -371,7 +375,11 @@ static int allocate_cells(cpu_state *s, err *e)
 {
     const tled_problem *p = s->p;
     const int64_t cells = s->rows.cells + ROWS_PAD;
-    return (p->fibre && make_numbers(&s->fibre, cells, 3, e)) ||
+    const int directions = 3 * FIBRE_FAMILIES;
+    const bool angled = fibres_angled(&p->fibres);
+    return (angled && make_numbers(&s->family, cells, directions, e)) ||
+                   (angled && p->mix && make_numbers(&s->mixfamily, cells, directions, e)) ||
+                   (p->fibre && make_numbers(&s->fibre, cells, 3, e)) ||
                    (p->fraction && make_numbers(&s->fraction, cells, 1, e)) ||
                    (p->mix && make_numbers(&s->mixture, cells, 1, e)) ||
                    (p->mix && make_numbers(&s->law, cells, cpu_law_numbers(p->form), e)) ||
@@ -431,6 +439,19 @@ static void fill_nodes(cpu_state *s)
         put_in(layout_of(s, i), p->at_start.of[i], s->field[i]);
 }
 
+/* The directions of families in a cell, where they are not those of fibres. */
+static void fill_families(cpu_state *s, int64_t cell)
+{
+    const int64_t cells = s->rows.cells + ROWS_PAD;
+    fibre_local at[2];
+    const int count = s->family ? fibres_at(&s->p->fibres, s->rows.cell_element[cell], at) : 0;
+    for (int i = 0; i < count; i++) {
+        number *to = at[i].is_second ? s->mixfamily : s->family;
+        for (int k = 0; k < 3 * FIBRE_FAMILIES; k++)
+            to[k * cells + cell] = (number)at[i].family[k / 3][k % 3];
+    }
+}
+
 static void fill_cells(cpu_state *s)
 {
     const tled_problem *p = s->p;
@@ -441,6 +462,7 @@ static void fill_cells(cpu_state *s)
             s->fibre[a * cells + i] = (number)p->fibre[3 * element + a];
         for (int a = 0; s->mixfibre && a < 3; a++)
             s->mixfibre[a * cells + i] = (number)p->mixfibre[3 * element + a];
+        fill_families(s, i);
         if (s->fraction)
             s->fraction[i] = (number)p->fraction[element];
         if (s->mixture) {
@@ -456,6 +478,23 @@ static void fill_cells(cpu_state *s)
         double *kind = s->kind + cpu_kind_numbers(p->form) * i;
         memcpy(kind, p->volume[i].law.c, (size_t)form_numbers(p->form) * sizeof *kind);
         memcpy(kind + form_numbers(p->form), p->volume[i].law.hourglass, sizeof p->volume[i].law.hourglass);
+    }
+}
+
+/* Where the families' directions are: with the fibres, unless any are at an angle to these. */
+static void find_families(cpu_state *s)
+{
+    cpu_work *w = &s->work;
+    const int64_t cells = s->rows.cells + ROWS_PAD;
+    for (int a = 0; a < 3; a++) {
+        w->family[0][a] = w->fibre[a];
+        w->mixfamily[0][a] = w->mixfibre[a];
+    }
+    for (int k = 0; k < 3 * FIBRE_FAMILIES; k++) {
+        if (s->family)
+            w->family[k / 3][k % 3] = s->family + k * cells;
+        if (s->mixfamily)
+            w->mixfamily[k / 3][k % 3] = s->mixfamily + k * cells;
     }
 }
 
@@ -478,6 +517,7 @@ static void make_work(cpu_state *s)
         w->fibre[a] = s->fibre ? s->fibre + a * (s->rows.cells + ROWS_PAD) : NULL;
         w->mixfibre[a] = s->mixfibre ? s->mixfibre + a * (s->rows.cells + ROWS_PAD) : NULL;
     }
+    find_families(s);
     for (int k = 0; k < cpu_law_numbers(s->p->form); k++)
         w->law[k] = s->law ? s->law + k * (s->rows.cells + ROWS_PAD) : NULL;
 }
@@ -541,18 +581,16 @@ static int64_t cpu_computed(const cpu_state *s)
     .destroy = cpu_destroy, .step = cpu_step, .get = cpu_get, .save = cpu_save, .restore = cpu_restore,                \
     .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes, .computed = cpu_computed
 
+enum { CPU_FEATURES = EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES };
+
 const tled_executor CPU_EXECUTOR = {
-    .is = {.device = "cpu",
-           .features = EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES | EXECUTOR_CURVES,
-           .forms = (1U << FORM_STEPPED) - 1,
-           .unusable = cpu_unusable},
+    .is = {.device = "cpu", .features = CPU_FEATURES, .forms = (1U << FORM_STEPPED) - 1, .unusable = cpu_unusable},
     .create = boxes_create,
     CPU_FUNCTIONS};
 
-const tled_executor CPU_EXECUTOR_OF_MESHES = {
-    .is = {.device = "cpu",
-           .features = EXECUTOR_MESHES | EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES | EXECUTOR_CURVES,
-           .forms = (1U << FORM_STEPPED) - 1,
-           .unusable = cpu_unusable},
-    .create = mesh_create,
-    CPU_FUNCTIONS};
+const tled_executor CPU_EXECUTOR_OF_MESHES = {.is = {.device = "cpu",
+                                                     .features = EXECUTOR_MESHES | CPU_FEATURES,
+                                                     .forms = (1U << FORM_STEPPED) - 1,
+                                                     .unusable = cpu_unusable},
+                                              .create = mesh_create,
+                                              CPU_FUNCTIONS};

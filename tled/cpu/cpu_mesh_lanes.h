@@ -87,6 +87,49 @@ static inline element_fibre mesh_fibre(const cpu_work *w, int64_t group, int *wh
     return fibre;
 }
 
+/* Lane `lane` of a volume's fibres that resist being stretched, in cell i. */
+static inline void mesh_fibres_of(const cpu_work *w, int64_t i, int lane, int32_t volume, const void *const along[3],
+                                  const void *const family[FIBRE_FAMILIES][3], real_one share, fibre_set *s)
+{
+    if (!fibres_any(&w->p->fibres, volume) || !along[0])
+        return;
+    const fibre_numbers *n = &w->p->fibres.of[volume];
+    const int families = fibre_numbers_families(n);
+    s->families = families > s->families ? families : s->families;
+    s->is_fung |= n->c > 0;
+    s->law.k1[lane] = share * (real_one)n->k1;
+    s->law.k2[lane] = (real_one)n->k2;
+    s->law.kappa[lane] = (real_one)n->kappa;
+    s->fung.c[lane] = share * (real_one)n->c;
+    s->fung.all[lane] = (real_one)n->bt;
+    s->fung.along[lane] = (real_one)(n->bfs - n->bt);
+    s->fung.both[lane] = (real_one)(n->bf + n->bt - 2 * n->bfs);
+    s->along.x[lane] = ((const real_one *)along[0])[i];
+    s->along.y[lane] = ((const real_one *)along[1])[i];
+    s->along.z[lane] = ((const real_one *)along[2])[i];
+    for (int k = 0; k < families; k++) {
+        s->family[k].x[lane] = ((const real_one *)family[k][0])[i];
+        s->family[k].y[lane] = ((const real_one *)family[k][1])[i];
+        s->family[k].z[lane] = ((const real_one *)family[k][2])[i];
+    }
+}
+
+/* The fibres of a group that resist being stretched, of its volumes and of those mixed into them. 0: there are none. */
+static inline int mesh_fibres(const cpu_work *w, int64_t group, fibre_set sets[2])
+{
+    const tled_problem *p = w->p;
+    for (int k = 0; k < 2; k++)
+        sets[k] = (fibre_set){.families = 0};
+    for (int lane = 0; p->fibres.of && lane < LANES && group * LANES + lane < p->elements; lane++) {
+        const int64_t i = group * LANES + lane;
+        const real_one share = w->fraction ? ((const real_one *)w->fraction)[i] : 1;
+        const real_one part = tled_mix(p, i) >= 0 ? ((const real_one *)w->mixture)[i] : 0;
+        mesh_fibres_of(w, i, lane, p->element_volume[i], w->fibre, w->family, share * (1 - part), &sets[0]);
+        mesh_fibres_of(w, i, lane, tled_mix(p, i), w->mixfibre, w->mixfamily, share * part, &sets[1]);
+    }
+    return sets[0].families || sets[0].is_fung || sets[1].families || sets[1].is_fung ? 2 : 0;
+}
+
 static inline void mesh_store(real_one *to, const element_corners *f)
 {
     for (int i = 0; i < 8; i++)
@@ -117,7 +160,11 @@ static inline void mesh_groups_forces(const cpu_work *w, int64_t from, int64_t t
                                  mesh_corners(w->from[2], node)};
         int which;
         const element_fibre fibre = mesh_fibre(w, group, &which);
-        const element_field f = mesh_force(control, u, &shape, law, fibre, which);
+        fibre_set sets[2];
+        const int count = mesh_fibres(w, group, sets);
+        const element_field f =
+            count ? element_any_force_fibred(THE_FORM, control, u, &shape, law, fibre, which, sets, count)
+                  : mesh_force(control, u, &shape, law, fibre, which);
         mesh_store(force, &f.x);
         mesh_store(force + 8 * LANES, &f.y);
         mesh_store(force + 16 * LANES, &f.z);

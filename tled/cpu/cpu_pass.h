@@ -50,11 +50,12 @@ typedef struct cpu_work {
     void *sum[3]; /* zeros, before and after */
     const void *mass_inverse;
     const uint8_t *flags;
-    const void *fibre[3];                              /* cells, or NULL */
-    const void *fraction;                              /* cells, or NULL */
-    const void *mixture;                               /* cells, or NULL: none is mixed */
-    const void *law[FORM_NUMBERS + HOURGLASS_NUMBERS]; /* cells: those that are mixed; or NULL */
-    const void *mixfibre[3];                           /* cells, or NULL */
+    const void *fibre[3];                                                 /* cells, or NULL */
+    const void *fraction;                                                 /* cells, or NULL */
+    const void *mixture;                                                  /* cells, or NULL: none is mixed */
+    const void *law[FORM_NUMBERS + HOURGLASS_NUMBERS];                    /* cells: those that are mixed; or NULL */
+    const void *mixfibre[3];                                              /* cells, or NULL */
+    const void *family[FIBRE_FAMILIES][3], *mixfamily[FIBRE_FAMILIES][3]; /* cells, or NULL: of families */
     const void *shape;         /* without a lattice: groups x cpu_mesh_numbers x lanes; or NULL */
     const int32_t *group_node; /* groups x 8 x lanes */
     void *force;               /* groups x 3 x 8 x lanes: what each corner is pulled with */

@@ -1,6 +1,7 @@
 #include "tled/problem/bodies.h"
 
 #include "base/mem.h"
+#include "mesh/fibre_sets.h"
 #include "physics/element.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/followers.h"
@@ -95,6 +96,17 @@ static element_law law_at(const tled_law *of, const double *hourglass, double sh
     return law;
 }
 
+/* What of an element's fibres resists being stretched, of what of it is tissue. */
+static fibre_sets sets_at(const tled_problem *p, int64_t element)
+{
+    fibre_sets to = fibre_sets_at(&p->fibres, element);
+    for (int i = 0; i < to.count; i++) {
+        to.of[i].law.k1 *= tled_fraction(p, element);
+        to.of[i].fung.c *= tled_fraction(p, element);
+    }
+    return to;
+}
+
 /* What an element pulls its corners with. */
 static element_field pull_of(const tled_problem *p, int64_t element, const double *value, const double *displacement)
 {
@@ -102,18 +114,19 @@ static element_field pull_of(const tled_problem *p, int64_t element, const doubl
     const int32_t mix = tled_mix(p, element);
     const tled_law of = tled_law_of(p, element);
     const element_field u = field_at(p, element, displacement);
+    const fibre_sets sets = sets_at(p, element);
     const element_fibre own =
         muscle_fibre_of(p, p->fibre, element, p->element_volume[element], share * (1 - mixture), value);
     if (p->conforming) {
         const conforming_hold hold = conforming_hold_of(p, element);
         const element_any shape = conforming_shape(p, element, &hold);
-        return element_any_force(p->form, p->control.kind, u, &shape, law_at(&of, hold.law, share), own,
-                                 element_fibre_which(own));
+        return element_any_force_fibred(p->form, p->control.kind, u, &shape, law_at(&of, hold.law, share), own,
+                                        element_fibre_which(own), sets.of, sets.count);
     }
     const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
     const element_fibre other = muscle_fibre_of(p, p->mixfibre, element, mix, share * mixture, value);
-    return element_force_of_two(p->form, p->control.kind, u, box, law_at(&of, of.hourglass, share), own,
-                                element_fibre_which(own), other, element_fibre_which(other));
+    return element_force_fibred(p->form, p->control.kind, u, box, law_at(&of, of.hourglass, share), own,
+                                element_fibre_which(own), other, element_fibre_which(other), sets.of, sets.count);
 }
 
 /* ---- sums */

@@ -1,5 +1,6 @@
 #include "tled/problem/conforming_step.h"
 
+#include "mesh/fibre_sets.h"
 #include "tled/problem/muscle_fibre.h"
 
 #include <math.h>
@@ -17,9 +18,11 @@ void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h,
     const tled_law law = tled_law_of(p, element);
     double(*l)[3] = p->conforming->element[element].root;
     double half[9][9];
+    const fibre_sets sets = fibre_sets_at(&p->fibres, element);
     form_tangent(p->form, h, law.c, a->at);
     if (stability_pulls(fibre))
         stability_add_muscle(h, fibre, a->at);
+    fibre_add_tangent(h, sets.of, sets.count, a->at);
     for (int r = 0; r < 9; r++)
         for (int c = r + 1; c < 9; c++)
             a->at[r][c] = a->at[c][r];

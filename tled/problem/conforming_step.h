@@ -24,7 +24,7 @@ void conforming_join(tled_problem *p);
 /* element_any of double numbers. */
 element_any conforming_shape(const tled_problem *p, int64_t element, const conforming_hold *hold);
 
-/* The first of the two matrices above, for an element at H. */
+/* The first of the two matrices above, for an element at H that is pulled along its fibre. */
 void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h, element_fibre fibre, step_matrix *a);
 
 /* What its hourglass modes m (twisted) have, at H. */

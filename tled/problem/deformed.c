@@ -1,5 +1,6 @@
 #include "tled/problem/deformed.h"
 
+#include "mesh/fibre_sets.h"
 #include "tled/problem/conforming_step.h"
 #include "tled/problem/muscle_fibre.h"
 
@@ -32,6 +33,8 @@ deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, 
     }
     d.hourglass = hourglass_dot(&f.f, &d.modes) / 2; /* f.m = s.q: the energy is quadratic in q */
     d.dilation = element_dilation(d.h);
-    d.energy = form_energy(p->form, d.h, d.law.c) + muscle_fibre_energy(p, element, d.h);
+    const fibre_sets fibres = fibre_sets_at(&p->fibres, element);
+    d.energy =
+        form_energy(p->form, d.h, d.law.c) + muscle_fibre_energy(p, element, d.h) + fibre_sets_energy(&fibres, d.h);
     return d;
 }

@@ -40,6 +40,7 @@ static void forget_loads(tled_problem *p)
 
 void tled_problem_free(tled_problem *p)
 {
+    fibres_free(&p->fibres);
     free(p->mixed);
     free(p->law);
     free(p->volume);
@@ -263,7 +264,7 @@ static int make_volumes(tled_problem *p, const model *m, err *e)
     p->volumes = (int32_t)model_find(m, "volume.name")->rows;
     p->volume = mem_array(p->volumes, sizeof *p->volume, "the volumes", e);
     material *of = p->volume ? materials_of_volumes(m, e) : NULL;
-    if (!of || choose_form(p, m, of, e))
+    if (!of || choose_form(p, m, of, e) || fibres_make(&p->fibres, m, of, e))
         goto out;
     for (int32_t i = 0; i < p->volumes; i++)
         if (make_volume(p, m, i, &of[i], e))

@@ -7,6 +7,7 @@
 #ifndef SINEW_STATE_H
 #define SINEW_STATE_H
 
+#include "mesh/fibres.h"
 #include "physics/forms.h"
 #include "physics/hourglass_numbers.h"
 #include "physics/muscle_numbers.h"
@@ -54,6 +55,7 @@ typedef struct tled_problem {
     const int32_t *mix;    /* elements: the second volume of those that are mixed, -1 in others; NULL: none is */
     const float *mixture;  /* elements: its share of the tissue, 0 to 1; where mix is not NULL */
     const float *mixfibre; /* elements x 3: its fibre; or NULL */
+    fibres_view fibres;    /* that resist being stretched; of NULL: there are none */
     int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL where mix is. Owned, as is all below */
     tled_law *law;         /* of the mixed elements, in their order */
     int64_t laws;

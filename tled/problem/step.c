@@ -5,16 +5,27 @@
 
 #include <math.h>
 
-void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
-                    element_fibre second, step_matrix *a)
+step_fibres step_fibres_of(const tled_problem *p, int64_t element, const double *value)
 {
-    stability_matrix(p->form, law->c, law->density, p->side, h, fibre, second, a);
+    const double mixture = tled_mixture(p, element);
+    const step_fibres to = {.own =
+                                muscle_fibre_of(p, p->fibre, element, p->element_volume[element], 1 - mixture, value),
+                            .other = muscle_fibre_of(p, p->mixfibre, element, tled_mix(p, element), mixture, value),
+                            .sets = fibre_sets_at(&p->fibres, element)};
+    return to;
 }
 
-stability_range step_range_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
-                              element_fibre second)
+void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, const step_fibres *fibres,
+                    step_matrix *a)
 {
-    return stability_range_of(p->form, law->c, law->density, p->side, h, fibre, second);
+    stability_matrix_fibred(p->form, law->c, law->density, p->side, h, fibres->own, fibres->other, fibres->sets.of,
+                            fibres->sets.count, a);
+}
+
+stability_range step_range_of(const tled_problem *p, const tled_law *law, element_tensor h, const step_fibres *fibres)
+{
+    return stability_range_fibred(p->form, law->c, stability_diagonal(law->density, p->side), h, fibres->own,
+                                  fibres->other, fibres->sets.of, fibres->sets.count);
 }
 
 bool step_below(const step_matrix *a, double limit)
@@ -55,12 +66,10 @@ static double stiffness_at_rest(element_fibre fibre)
 /* What passive muscles add to the square at most: as much as along the shortest side. */
 static double square_of_muscles(const tled_problem *p, int64_t element)
 {
-    const double mixture = tled_mixture(p, element), least = fmin(fmin(p->side[0], p->side[1]), p->side[2]);
-    const double own =
-        stiffness_at_rest(muscle_fibre_of(p, p->fibre, element, p->element_volume[element], 1 - mixture, NULL));
-    const double other =
-        stiffness_at_rest(muscle_fibre_of(p, p->mixfibre, element, tled_mix(p, element), mixture, NULL));
-    return 4 * (own + other) / (tled_law_of(p, element).density * least * least);
+    const double least = fmin(fmin(p->side[0], p->side[1]), p->side[2]);
+    const step_fibres fibres = step_fibres_of(p, element, NULL);
+    return 4 * (stiffness_at_rest(fibres.own) + stiffness_at_rest(fibres.other)) /
+           (tled_law_of(p, element).density * least * least);
 }
 
 /* The square of the highest frequency of an element at rest, or a little more. */
@@ -68,6 +77,19 @@ static double square_at_rest(const tled_problem *p, int64_t element)
 {
     const double square = square_of_law(p, element);
     return p->curved ? square + square_of_muscles(p, element) : square;
+}
+
+/* Of one whose fibres resist being stretched, if it is above `highest`; else `highest`. Bounds tell that of most. */
+static double fibred_square_at_rest(const tled_problem *p, int64_t element, const step_fibres *fibres, double highest)
+{
+    const element_tensor rest = {0};
+    const tled_law law = tled_law_of(p, element);
+    step_matrix a;
+    highest = fmax(highest, law.twists);
+    if (step_range_of(p, &law, rest, fibres).high <= highest)
+        return highest;
+    step_matrix_of(p, &law, rest, fibres, &a);
+    return step_below(&a, highest) ? highest : step_largest(&a);
 }
 
 double step_at_rest(const tled_problem *p, int32_t *volume)
@@ -79,7 +101,8 @@ double step_at_rest(const tled_problem *p, int32_t *volume)
         return 2 / sqrt(p->conforming->square);
     }
     for (int64_t i = 0; i < p->elements; i++) {
-        double square = square_at_rest(p, i);
+        const step_fibres fibres = step_fibres_of(p, i, NULL);
+        const double square = fibres.sets.count ? fibred_square_at_rest(p, i, &fibres, highest) : square_at_rest(p, i);
         if (square > highest && volume)
             *volume = p->element_volume[i];
         highest = fmax(highest, square);

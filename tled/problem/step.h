@@ -8,24 +8,35 @@
  * largest eigenvalue of a cube is 12 K / (rho h^2), so dt = h / sqrt(3 K / rho). Deformed, A has the geometric
  * stiffness and the active stress in it.
  *
- * Of an element mixed of two volumes what is found at rest is a bound from theirs, exact where both have the same nu.
+ * Of an element mixed of two volumes what is found at rest is a bound from theirs, exact where both have the same nu;
+ * where fibres resist being stretched it is exact of each element, with the fibres as they are when they are pulled.
  */
 #ifndef SINEW_STEP_H
 #define SINEW_STEP_H
 
+#include "mesh/fibre_sets.h"
 #include "physics/stability.h"
 #include "tled/problem/state.h"
 
 /* The stable step at rest, s: the least of all elements. *volume (may be NULL) gets whose. */
 double step_at_rest(const tled_problem *p, int32_t *volume);
 
-/* The matrix above for an element of a law at H, with its fibre and that of its second volume. */
-void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
-                    element_fibre second, step_matrix *a);
+/* Of the fibres of an element: how it is pulled along its fibre and along that of its second volume, and what resists
+ * being stretched. */
+typedef struct step_fibres {
+    element_fibre own, other;
+    fibre_sets sets;
+} step_fibres;
+
+/* value: of all curves; NULL: levels of 0. */
+step_fibres step_fibres_of(const tled_problem *p, int64_t element, const double *value);
+
+/* The matrix above for an element of a law at H. */
+void step_matrix_of(const tled_problem *p, const tled_law *law, element_tensor h, const step_fibres *fibres,
+                    step_matrix *a);
 
 /* Between which its largest eigenvalue lies, without it; not finite where anything is not. */
-stability_range step_range_of(const tled_problem *p, const tled_law *law, element_tensor h, element_fibre fibre,
-                              element_fibre second);
+stability_range step_range_of(const tled_problem *p, const tled_law *law, element_tensor h, const step_fibres *fibres);
 
 /* Whether all its eigenvalues are below the limit; false where anything is not finite. */
 bool step_below(const step_matrix *a, double limit);

@@ -46,10 +46,8 @@ static void add_step(const monitor *w, int64_t i, const deformed *d, element_sha
     const tled_problem *p = w->p;
     const double slope = fmax(box.slope.x, fmax(box.slope.y, box.slope.z));
     const stability_twists t = stability_twists_of(p->control.kind, d->law.twists, slope, d->h, &d->modes);
-    const double s = tled_mixture(p, i);
-    const element_fibre own = muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1 - s, w->curves);
-    const element_fibre other = muscle_fibre_of(p, p->mixfibre, i, tled_mix(p, i), s, w->curves);
-    const stability_range range = stability_range_with(step_range_of(p, &d->law, d->h, own, other), t);
+    const step_fibres fibres = step_fibres_of(p, i, w->curves);
+    const stability_range range = stability_range_with(step_range_of(p, &d->law, d->h, &fibres), t);
     step_matrix a;
     if (range.high <= part->sum.frequency)
         return;
@@ -58,7 +56,7 @@ static void add_step(const monitor *w, int64_t i, const deformed *d, element_sha
         take_frequency(part, i, range.high);
         return;
     }
-    step_matrix_of(p, &d->law, d->h, own, other, &a);
+    step_matrix_of(p, &d->law, d->h, &fibres, &a);
     if (!step_below(&a, stability_room(t, part->sum.frequency)))
         take_frequency(part, i, w->raise * stability_square(t, step_largest(&a)));
 }

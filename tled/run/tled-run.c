@@ -401,6 +401,7 @@ static int prepare(session *s, const struct options *o, char *device, size_t siz
         support_check(&s->support, &s->problem, s->run.rest >= 0, s->collider.poses, &s->warnings, e))
         return -1;
     loads_check(&s->problem, &s->m, &s->warnings);
+    fibres_note(&s->problem.fibres, &s->m, &s->warnings);
     if (s->collider.poses)
         collider_join(&s->collider, &s->problem, o->repulsion);
     if (choose_rate(s, o, e))
