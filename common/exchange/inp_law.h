@@ -1,6 +1,6 @@
 /* The laws that Abaqus has too, as sinew export writes them and sinew import reads them: constants, most of which are
- * values of keys, then D1, D2 and so on of the volumetric energy (J - 1)^2 / D1 + (J - 1)^4 / D2 + ..., of which only the
- * first term is there, K = 2 / D1. Abaqus Analysis User's Guide, "Hyperelastic behavior". Owns nothing.
+ * values of keys, then D1, D2 and so on of the volumetric energy (J - 1)^2 / D1 + (J - 1)^4 / D2 + ..., of which only
+ * the first term is there, K = 2 / D1. Abaqus Analysis User's Guide, "Hyperelastic behavior". Owns nothing.
  */
 #ifndef SINEW_INP_LAW_H
 #define SINEW_INP_LAW_H

@@ -88,8 +88,8 @@ typedef struct material_numbers {
 
 material_numbers material_numbers_of(const material *a);
 
-/* Of an element, from the materials of the volumes: its volume's, or what lies between those of the two that it is mixed
- * of. */
+/* Of an element, from the materials of the volumes: its volume's, or what lies between those of the two that it is
+ * mixed of. */
 material_numbers materials_of_element(const materials_map *map, int64_t element);
 
 /* The curves of its muscles (physics/muscle_curves.h), from values that are given, as materials_of gives them. Returns

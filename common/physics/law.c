@@ -76,9 +76,9 @@ static void fill_yeoh(const double *value, double *c)
     c[FORM_FIRST_POWERS] = moduli_of_yeoh(value).bulk;
 }
 
-/* In simple shear g the stress is 2 f'(g^2) g. Its slope is 2 (f' + 2 x f'') at x = g^2: it must be above 0 at each x, or
- * waves there have no speed (in an incompressible f(I1) material just then: at a given x, no wave is stretched more by
- * f'' than those across a simple shear). That is c10 + 6 c20 x + 15 c30 x^2, for which f' > 0 too. */
+/* In simple shear g the stress is 2 f'(g^2) g. Its slope is 2 (f' + 2 x f'') at x = g^2: it must be above 0 at each x,
+ * or waves there have no speed (in an incompressible f(I1) material just then: at a given x, no wave is stretched more
+ * by f'' than those across a simple shear). That is c10 + 6 c20 x + 15 c30 x^2, for which f' > 0 too. */
 static bool refuses_yeoh(const double *value, char what[LAW_WORDS], char expected[LAW_WORDS])
 {
     const double c10 = value[LAW_c10], c20 = value[LAW_c20], c30 = or_zero(value[LAW_c30]);

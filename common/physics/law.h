@@ -70,7 +70,8 @@ typedef struct law_row {
     unsigned optional;          /* such bits of keys that need not be given, and are 0 then */
     law_moduli (*moduli)(const double *value);
     void (*fill)(const double *value, double *c); /* value: LAW_OWN_KEYS, nan where none; c: FORM_NUMBERS */
-    /* Whether values that are each in their range are no material together; what and expected say so. NULL: none are. */
+    /* Whether values that are each in their range are no material together; what and expected say so. NULL: all are
+     * one. */
     bool (*refuses)(const double *value, char what[LAW_WORDS], char expected[LAW_WORDS]);
     const char *meaning, *energy, *source; /* for the manual, a line each */
 } law_row;
