@@ -42,7 +42,7 @@ static const opt option_table[] = {
     {OPT_INPUT, 0, "frame", FRAMES_ARG, OPT_TEXT, TO(frame), 0, 0, NULL, 0,
      "all: a file each, -o f_%04d.png [default last]"},
     {OPT_ACTION, 0, "sheet", "PANEL,...", OPT_LIST, TO(sheet), 0, 0, NULL, 0,
-     "several panels, [CAPTION=]WHAT[@VIEW][:FRAME]: WHAT is rest, voxels, deformed or a view"},
+     "several panels, such as rest and smile=deformed@front:7: a caption, what is drawn, its view and its frame"},
     {OPT_RESULT, 0, "size", "WxH", OPT_TEXT, TO(size), 0, 0, NULL, 0, "size of the picture [pixels; default 1280x720]"},
     {OPT_RESULT, 0, "transparent", NULL, OPT_FLAG, TO(transparent), 0, 0, NULL, 0, "leave the background transparent"},
     {OPT_RESULT, 0, "format", "png|ppm", OPT_CHOICE, TO(format), 0, 0, "png|ppm", 0,
