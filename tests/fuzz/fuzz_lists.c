@@ -6,7 +6,7 @@
 // needs: tled/problem/script_levels.c tled/problem/script_muscles.c tled/problem/script_track.c tled/muscle/muscles.c
 // needs: tled/muscle/expressions.c tled/muscle/activation.c
 /* Any text as the lists of names that options take, over a small model: attach --rigid, msds-mesh --fix and --names,
- * tled-run -c; and as a key of sinew info --get. Each is taken or is one error with a text.
+ * tled-run -c, tled-run --results; and as a key of sinew info --get. Each is taken or is one error with a text.
  */
 #include "attach/rigid.h"
 #include "inspect/info_key.h"
@@ -14,6 +14,7 @@
 #include "msds/mesh/mesh_fix.h"
 #include "msds/mesh/mesh_labels.h"
 #include "msds/mesh/mesh_tets.h"
+#include "results/results.h"
 #include "tled/muscle/muscles.h"
 #include "tled/problem/script.h"
 
@@ -99,6 +100,14 @@ static void label_names(const char *text)
     volume_free(&v);
 }
 
+static void result_names(const char *text)
+{
+    unsigned which = 0;
+    err e = {0};
+    int status = results_read(text, "--results", &which, &e);
+    must((status != 0) == (*e.text != '\0') && which < 1U << RESULTS);
+}
+
 static void key(const source *s, const char *text)
 {
     err e = {0};
@@ -124,6 +133,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     key(&s, text);
     fix(text);
     label_names(text);
+    result_names(text);
     source_close(&s);
     free(text);
     return 0;
