@@ -28,7 +28,7 @@ COLLIDE = -lccd
 WEB = -lcivetweb -lturbojpeg
 
 TOOLS = voxelise attach bind tled-run msds-mesh msds-run us-import us-segment us-surface us-slice \
-	sinew sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-export sinew-import sinew-render sinew-console
+	sinew sinew-materials sinew-deform sinew-results sinew-info sinew-diff sinew-distance sinew-export sinew-import sinew-render sinew-console
 
 # `make V=1` shows whole commands.
 ifeq ($(V),1)
@@ -159,6 +159,7 @@ SURFACE_SRC := slice/contour/us-surface.c $(wildcard slice/contour/contour*.c) s
 SLICE_SRC := $(wildcard slice/image/*.c)
 INFO_MODULES := $(wildcard common/inspect/info_*.c)
 DISTANCE_MODULES := $(wildcard common/inspect/distance_*.c)
+PRESET_MODULES := $(wildcard common/inspect/preset_*.c)
 EXPORT_MODULES := $(wildcard common/exchange/export_*.c)
 IMPORT_MODULES := $(wildcard common/exchange/import_*.c)
 RENDER_MODULES := $(wildcard common/render/render_*.c)
@@ -181,6 +182,7 @@ $(eval $(call tool,us-segment,$(SEGMENT_SRC)))
 $(eval $(call tool,us-surface,$(SURFACE_SRC)))
 $(eval $(call tool,us-slice,$(SLICE_SRC),$$(PICTURES)))
 $(eval $(call tool,sinew,common/cli/sinew.c))
+$(eval $(call tool,sinew-materials,common/inspect/sinew-materials.c $(PRESET_MODULES)))
 $(eval $(call tool,sinew-results,common/results/sinew-results.c))
 $(eval $(call tool,sinew-info,common/inspect/sinew-info.c $(INFO_MODULES)))
 $(eval $(call tool,sinew-diff,common/inspect/sinew-diff.c))

@@ -345,14 +345,18 @@ PAGES = $(wildcard man/*.[157])
 # The console's page, as it lies.
 PAGEDIR = $(DESTDIR)$(PREFIX)/share/sinew/console
 PAGE_FILES = $(wildcard common/console/page/*.*)
+# Files of materials, which sinew materials lists; in the folder of samples too.
+PRESETDIR = $(DESTDIR)$(PREFIX)/share/sinew/materials
+PRESETS = $(wildcard samples/*.materials)
 SAMPLES = $(filter-out samples/demo samples/arm samples/scan samples/console samples/paper samples/paper.d,$(wildcard samples/*))
 
 install: all
-	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(PAGEDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
+	$(INSTALL) -d $(BINDIR) $(COMPLETIONDIR) $(ZSHDIR) $(SAMPLEDIR) $(PAGEDIR) $(PRESETDIR) $(MANDIR)/man1 $(MANDIR)/man5 $(MANDIR)/man7
 	$(INSTALL) -m 755 $(TOOLS:%=$(BIN)/%) $(BINDIR)
 	ln -sf voxelise $(BINDIR)/voxelize
 	for section in 1 5 7; do $(INSTALL) -m 644 man/*.$$section $(MANDIR)/man$$section || exit 1; done
 	$(INSTALL) -m 644 $(SAMPLES) $(SAMPLEDIR)
+	$(INSTALL) -m 644 $(PRESETS) $(PRESETDIR)
 	$(if $(PAGE_FILES),$(INSTALL) -m 644 $(PAGE_FILES) $(PAGEDIR))
 	for tool in $(COMPLETIONS); do $(BIN)/$$tool --table bash >$(COMPLETIONDIR)/$$tool || exit 1; done
 	for tool in $(TOOLS); do $(BIN)/$$tool --table zsh >$(ZSHDIR)/_$$tool || exit 1; done
@@ -364,7 +368,7 @@ uninstall:
 	rm -f $(TOOLS:%=$(BINDIR)/%) $(COMPLETIONS:%=$(COMPLETIONDIR)/%) $(TOOLS:%=$(ZSHDIR)/_%) \
 	    $(BINDIR)/voxelize $(MANDIR)/man1/voxelize.1 $(COMPLETIONDIR)/voxelize \
 	    $(foreach page,$(PAGES),$(MANDIR)/man$(subst .,,$(suffix $(page)))/$(notdir $(page)))
-	rm -rf $(SAMPLEDIR) $(PAGEDIR)
+	rm -rf $(SAMPLEDIR) $(PAGEDIR) $(PRESETDIR)
 	rmdir $(dir $(SAMPLEDIR)) $(dir $(PAGEDIR)) 2>/dev/null || :
 
 .PHONY: help

@@ -30,17 +30,31 @@ static int check_characters(const keyfile *k, const char *text, err *e)
     return 0;
 }
 
-/* Cuts the line into words in place. */
+/* What stands after the '#', without the blanks around it. */
+static const char *trim(char *text)
+{
+    char *end = text + strlen(text);
+    while (end > text && chars_blank(end[-1]))
+        *--end = '\0';
+    while (chars_blank(*text))
+        text++;
+    return text;
+}
+
+/* Cuts the line into words, and a comment, in place. */
 static int split(keyfile *k, char *text, err *e)
 {
     k->count = 0;
+    k->comment = NULL;
     for (char *p = text; *p;) {
         if (chars_blank(*p)) {
             *p++ = '\0';
             continue;
         }
-        if (*p == '#')
+        if (*p == '#') {
+            k->comment = trim(p + 1);
             break;
+        }
         if (k->count == KEYFILE_WORDS)
             return keyfile_error(k, e, "more than %d words on a line", KEYFILE_WORDS);
         k->word[k->count++] = p;

@@ -15,6 +15,7 @@ typedef struct keyfile {
     int64_t line;     /* the number of the line whose words these are */
     int count;
     char *word[KEYFILE_WORDS];
+    const char *comment; /* of the line, without its '#' and the blanks around it, of any bytes; NULL: none */
 } keyfile;
 
 void keyfile_open(keyfile *k, in *source);

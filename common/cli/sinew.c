@@ -25,6 +25,7 @@ static const struct {
     {MODELS, "voxelise", "voxelise", "closed surfaces to hexahedral elements"},
     {MODELS, "attach", "attach", "rigid nodes, contraction centres and fibres"},
     {MODELS, "bind", "bind", "surfaces to elements, to move with them"},
+    {MODELS, "materials", "sinew-materials", "laws of tissue, their keys, and materials by name"},
     {SIMULATION, "tled-run", "tled-run", "total Lagrangian explicit dynamics"},
     {MODELS, "msds-mesh", "msds-mesh", "regular meshes of tetrahedra"},
     {SIMULATION, "msds-run", "msds-run", "press a probe on tetrahedra, by springs or finite elements"},

@@ -1,12 +1,12 @@
 /* sinew-console: a page in a browser on tools that run live. */
 #include "base/path.h"
+#include "cli/installed.h"
 #include "cli/tool.h"
 #include "console/console.h"
 #include "console/json.h"
 #include "live/stop.h"
 
 #include <errno.h>
-#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,26 +51,15 @@ static bool has_file(const char *folder, const char *name)
     return snprintf(path, sizeof path, "%s/%s", folder, name) < (int)sizeof path && !access(path, R_OK);
 }
 
-/* Where the page's files lie: as installed, beside the folder of this program; or in the checkout that it was built
- * in. */
-static int find_page(char folder[CONSOLE_FILE], err *e)
+/* Where the page's files lie. */
+static int find_page(char folder[INSTALLED_PATH], err *e)
 {
-    char own[PATH_MAX];
-    const ssize_t n = readlink("/proc/self/exe", own, sizeof own - 1);
-    own[n > 0 ? n : 0] = '\0';
-    for (char *slash = strrchr(own, '/'); slash; slash = strrchr(own, '/')) {
-        *slash = '\0';
-        snprintf(folder, CONSOLE_FILE, "%.4000s/share/sinew/console", own);
-        if (has_file(folder, "index.html"))
-            return 0;
-        snprintf(folder, CONSOLE_FILE, "%.4000s/common/console/page", own);
-        if (has_file(folder, "index.html"))
-            return 0;
-    }
+    if (installed_find("share/sinew/console", "common/console/page", "index.html", folder))
+        return 0;
     return err_set(e, NULL, 0, "the page's files are not where they were installed; expected --page FOLDER");
 }
 
-static int check_folders(struct options *o, char page[CONSOLE_FILE], err *e)
+static int check_folders(struct options *o, char page[INSTALLED_PATH], err *e)
 {
     if (!o->page && find_page(page, e))
         return -1;
@@ -167,7 +156,7 @@ static void finish(console *c)
 static int run_tool(int argc, char **argv)
 {
     struct options o = {0};
-    char page[CONSOLE_FILE], token[ADDRESS_TOKEN];
+    char page[INSTALLED_PATH], token[ADDRESS_TOKEN];
     err e = {0};
     tool t = {0};
     static const console none = {.open = -1};

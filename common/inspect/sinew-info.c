@@ -182,31 +182,16 @@ static int put_volumes(const model *m, const int64_t *elements, out *to, err *e)
     return text_table_put(t, to, e);
 }
 
-/* "E=3000 nu=0.49 density=1000", as a file of materials has it: what has a value in row i. */
-static void keys_of(const model *m, int64_t i, char *to, size_t size)
-{
-    const model_array *kind = model_find(m, "material.fibre");
-    to[0] = '\0';
-    for (int k = 0; k < LAW_ALL_KEYS; k++) {
-        const size_t at = strlen(to);
-        const model_array *a = model_find(m, material_edit_arrays[k]);
-        if (a && !isnan(a->f64[i]))
-            snprintf(to + at, size - at, "%s%s=%.7g", at ? " " : "", law_key_name((law_key)k), a->f64[i]);
-        if (k == LAW_FIBRE_KEYS_FIRST - 1 && kind && strcmp(kind->str[i], fibre_kind_none) != 0)
-            snprintf(to + strlen(to), size - strlen(to), " fibre=%s", kind->str[i]);
-    }
-}
-
 static int put_materials(const model *m, out *to, err *e)
 {
     static const char *const heads[] = {"<material", "<law", "<keys", NULL};
     const model_array *name = model_find(m, "material.name"), *law = model_find(m, "material.law");
-    char keys[32 * LAW_ALL_KEYS];
+    char keys[MATERIAL_EDIT_WORDS];
     if (!name || !name->rows)
         return 0;
     text_table *t = text_table_create(heads, e);
     for (int64_t i = 0; t && i < name->rows; i++) {
-        keys_of(m, i, keys, sizeof keys);
+        material_edit_words(m, i, keys);
         text_table_cell(t, "%s", name->str[i]);
         text_table_cell(t, "%s", law ? law->str[i] : "-");
         text_table_cell(t, "%s", keys);

@@ -224,3 +224,18 @@ int material_edit_apply(material *to, const material_edit *edit, const char *pla
                ? -1
                : 0;
 }
+
+void material_edit_words(const model *m, int64_t i, char to[MATERIAL_EDIT_WORDS])
+{
+    const model_array *kind = model_find(m, "material.fibre");
+    to[0] = '\0';
+    for (int k = 0; k < LAW_ALL_KEYS; k++) {
+        const size_t at = strlen(to);
+        const model_array *a = model_find(m, material_edit_arrays[k]);
+        if (a && !isnan(a->f64[i]))
+            snprintf(to + at, MATERIAL_EDIT_WORDS - at, "%s%s=%.7g", at ? " " : "", law_key_name((law_key)k),
+                     a->f64[i]);
+        if (k == LAW_FIBRE_KEYS_FIRST - 1 && kind && strcmp(kind->str[i], fibre_kind_none) != 0)
+            snprintf(to + strlen(to), MATERIAL_EDIT_WORDS - strlen(to), " fibre=%s", kind->str[i]);
+    }
+}

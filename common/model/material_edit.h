@@ -50,4 +50,8 @@ int material_edit_take(material_edit *r, int name, const char *text, const char 
  * place:line. */
 int material_edit_apply(material *to, const material_edit *edit, const char *place, int64_t line, err *e);
 
+/* "E=3000 nu=0.49 density=1000", as a file of materials has it: what has a value in row i of a model's table. */
+enum { MATERIAL_EDIT_WORDS = 32 * (LAW_ALL_KEYS + 1) };
+void material_edit_words(const model *m, int64_t i, char to[MATERIAL_EDIT_WORDS]);
+
 #endif

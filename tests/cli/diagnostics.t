@@ -65,6 +65,9 @@ quoted sinew-import sinew import --unit mm liver.vtu
 quoted sinew-import sinew import --unit mm whole.inp
 quoted sinew-info sinew info --get axs.node run.sinew
 quoted sinew-info sinew info --get node.velocity.max bound.sinew
+quoted sinew-materials sinew materials --tsv laws two.materials
+printf 'tissue E=3000\nfat law=yeo\n' >two.materials
+quoted sinew-materials sinew materials two.materials
 quoted sinew-results from run.sinew sinew results stresses
 quoted sinew-results from bound.sinew sinew results all
 awk -v nx=1 -v ny=1 -v nz=1 -v h=1 -v held=low -v muscle=1 -f "$ROOT/tests/cli/block.awk" | tled-run -q -n 2 >muscle.sinew
@@ -74,7 +77,7 @@ quoted sinew-render sinew render --colour displacement unbound.sinew
 quoted sinew-render sinew render --show voxels --clear skin run.sinew
 quoted sinew-render sinew render --font none.ttf --sheet rest,deformed run.sinew
 
-for page in sinew sinew-deform sinew-diff sinew-distance sinew-export sinew-import sinew-info sinew-render sinew-results; do
+for page in sinew sinew-deform sinew-diff sinew-distance sinew-export sinew-import sinew-info sinew-materials sinew-render sinew-results; do
     quotes "$page" | sed "s/^/$page: /"
 done | sort >"$T/quotes"
 is "$(sort -u "$T/seen" | comm -13 - "$T/quotes")" "" "every quote was printed"

@@ -52,6 +52,7 @@ done
 cp "$T/tled-run" "$T/in"
 same deform sinew deform -q "$T/box.obj"
 same info sinew info
+same materials sinew materials
 same diff sinew diff "$T/tled-run" "$T/tled-run"
 same distance sinew distance --unit mm --both "$T/box.obj" "$T/box.obj"
 same export sinew export -f inp

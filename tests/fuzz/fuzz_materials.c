@@ -1,6 +1,9 @@
+// needs: common/inspect/preset_file.c
 /* Any bytes as a file of materials: a table whose rows are all valid, or one error with a text. What was read can be
- * read over itself as an override; and so can the default table, where the names fit. */
-#include "model/materials.h"
+ * read over itself as an override; and so can the default table, where the names fit. What sinew materials reads of it
+ * has text for each row, or is refused with it. */
+#include "base/chars.h"
+#include "inspect/preset_file.h"
 
 #include <stdlib.h>
 
@@ -25,6 +28,23 @@ static void check_table(const model *m)
     }
 }
 
+/* Whether the file is refused as when its materials alone are read. */
+static void check_preset(const uint8_t *data, size_t size, bool refused)
+{
+    preset_file of;
+    err e = {0};
+    in *s = in_memory(data, size, "fuzz", &e);
+    const int status = s ? preset_file_take(&of, s, &e) : -1;
+    if ((status != 0) != refused || refused != (*e.text != '\0'))
+        abort();
+    for (int64_t i = 0; !status && i < model_count(&of.materials, "material"); i++)
+        if (!chars_utf8(of.what[i]))
+            abort();
+    if (!status)
+        preset_file_free(&of);
+    in_close(s);
+}
+
 static void change_default(const uint8_t *data, size_t size)
 {
     model m = {0};
@@ -42,7 +62,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     model m = {0};
     err e = {0};
-    if (read_bytes(materials_read, &m, data, size, &e)) {
+    const bool refused = read_bytes(materials_read, &m, data, size, &e) != 0;
+    if (refused) {
         if (!e.text[0])
             abort();
     } else {
@@ -52,6 +73,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check_table(&m);
     }
     model_free(&m);
+    check_preset(data, size, refused);
     change_default(data, size);
     return 0;
 }

@@ -43,8 +43,10 @@ static void words(void)
     ok(f.k.line == 3 && f.k.count == 3, "is line 3, of 3 words (line %d, %d)", (int)f.k.line, f.k.count);
     ok(!strcmp(f.k.word[0], "skin") && !strcmp(f.k.word[1], "level=0"), "blanks and tabs part words");
     ok(!strcmp(f.k.word[2], "surfaces=a#1,b*"), "a '#' inside a word is no comment: %s", f.k.word[2]);
+    ok(f.k.comment && !strcmp(f.k.comment, "rest"), "what comes after one is: %s", f.k.comment ? f.k.comment : "none");
     ok(keyfile_next(&f.k, &f.e) == 1 && f.k.count == 1 && !strcmp(f.k.word[0], "last") && f.k.line == 4,
        "a last line without its end");
+    ok(!f.k.comment, "which has no comment");
     ok(keyfile_next(&f.k, &f.e) == 0 && !f.e.status, "then the end");
     in_close(f.s);
 }
