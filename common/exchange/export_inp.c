@@ -138,11 +138,13 @@ static void put_sets(const writer *w)
 int export_inp_has_law(const law_row *law, const char *name, err *e)
 {
     char words[INP_LAWS * 40] = "";
-    if (law->form == FORM_LINEAR || inp_law_of(law))
+    if (law->form == FORM_LINEAR || inp_law_of(law, 0))
         return 0;
     for (int i = 0; i < INP_LAWS; i++) {
         const size_t at = strlen(words);
-        snprintf(words + at, sizeof words - at, "%s%s", i == INP_LAWS - 1 ? " or " : ", ", inp_laws[i].law);
+        const bool more = i + 1 < INP_LAWS && inp_laws[i + 1].terms <= 1; /* and not the same law with more terms */
+        if (inp_laws[i].terms <= 1)
+            snprintf(words + at, sizeof words - at, "%s%s", more ? ", " : " or ", inp_laws[i].law);
     }
     return err_set(e, NULL, 0,
                    "material '%.200s' has the law '%s', which Abaqus's files do not have here; expected %s%s", name,
@@ -153,15 +155,21 @@ int export_inp_has_law(const law_row *law, const char *name, err *e)
 static void put_law(const writer *w, const material *of)
 {
     const double moduli[] = {material_young(of), material_poisson(of)};
-    const inp_law *law = inp_law_of(of->law);
+    const inp_law *law = inp_law_of(of->law, material_edit_keys(of));
     double constants[INP_CONSTANTS];
     if (!law) { /* FORM_LINEAR: open_tables refuses others */
         out_text(w->to, "*ELASTIC\n");
         put_numbers(moduli, 2, w->to);
         return;
     }
-    out_format(w->to, "*HYPERELASTIC, %s\n", law->name);
-    put_numbers(constants, inp_law_write(law, of, constants), w->to);
+    out_format(w->to, "*HYPERELASTIC, %s", law->name);
+    if (law->terms)
+        out_format(w->to, ", N=%d", law->terms);
+    out_text(w->to, "\n");
+    const int count = inp_law_write(law, of, constants), first = count < INP_LINE ? count : INP_LINE;
+    put_numbers(constants, first, w->to);
+    if (count > first)
+        put_numbers(constants + first, count - first, w->to);
 }
 
 static void put_materials(const writer *w)
@@ -240,7 +248,7 @@ static int open_tables(writer *w, const model *m, err *e)
 static void note_laws(const writer *w, const model *m, notes *warnings)
 {
     for (int64_t i = 0; i < w->materials; i++) {
-        const inp_law *law = inp_law_of(w->laws[i].law);
+        const inp_law *law = inp_law_of(w->laws[i].law, 0);
         if (law && law->other_press)
             notes_add(warnings, INP_OTHER_PRESS, model_find(m, "material.name")->str[i], law->name, law->other_press);
     }

@@ -207,6 +207,19 @@ static int begin_material(inp_reader *r, const keyword *k)
     return r->material < 0 ? -1 : 0;
 }
 
+/* The row that *HYPERELASTIC names, and where it has terms the N of them, 1 where it is not given; or NULL. */
+static const inp_law *hyper_of(const keyword *k)
+{
+    const char *terms = parameter(k, "N");
+    int64_t count = 1;
+    if (terms && num_int(terms, 1, INT32_MAX, &count))
+        count = 0;
+    for (int i = 0; i < INP_LAWS; i++)
+        if (parameter(k, inp_laws[i].name) && (!inp_laws[i].terms || inp_laws[i].terms == count))
+            return &inp_laws[i];
+    return NULL;
+}
+
 static int begin_law(inp_reader *r, const keyword *k)
 {
     bool elastic = same(k->name, "ELASTIC"), density = same(k->name, "DENSITY");
@@ -218,10 +231,7 @@ static int begin_law(inp_reader *r, const keyword *k)
         return 0;
     if (elastic && type && !same(type, "ISO") && !same(type, "ISOTROPIC"))
         return wrong(r, "*ELASTIC that is not isotropic", "E and nu");
-    r->hyper = NULL;
-    for (int i = 0; i < INP_LAWS; i++)
-        if (parameter(k, inp_laws[i].name))
-            r->hyper = &inp_laws[i];
+    r->hyper = hyper_of(k);
     if (!elastic && !density && !r->hyper)
         return wrong(r, "*HYPERELASTIC of another law", INP_LAW_NAMES);
     if (!elastic && !density && parameter(k, "TEST DATA INPUT"))
@@ -475,6 +485,13 @@ static int take_volumetric(inp_reader *r, char **line)
     return 0;
 }
 
+/* The constants that are on a second line: of the volumetric energy. */
+static int take_hyper_rest(inp_reader *r, char *line)
+{
+    r->now = INP_NOTHING;
+    return take_volumetric(r, &line);
+}
+
 static int take_hyper(inp_reader *r, char *line, material *of)
 {
     const inp_law *row = r->hyper;
@@ -500,7 +517,9 @@ static int take_law(inp_reader *r, char *line)
     const inp_block now = r->now;
     if (!*trim(line))
         return 0;
-    r->now = INP_NOTHING; /* further lines are for other temperatures */
+    r->now = now == INP_HYPER && r->hyper->keys + r->hyper->volumetric > INP_LINE
+                 ? INP_HYPER_REST
+                 : INP_NOTHING; /* further lines are for other temperatures */
     if (now == INP_DENSITY)
         return take_number(r, next_field(&line), "a density", &of->density);
     return now == INP_HYPER ? take_hyper(r, line, of) : take_elastic(r, line, of);
@@ -525,6 +544,8 @@ static int take(inp_reader *r, char *line)
     case INP_HYPER:
     case INP_DENSITY:
         return take_law(r, line);
+    case INP_HYPER_REST:
+        return take_hyper_rest(r, line);
     default:
         return 0;
     }

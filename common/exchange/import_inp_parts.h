@@ -18,6 +18,7 @@ typedef enum inp_block {
     INP_MOVED,
     INP_ELASTIC,
     INP_HYPER,
+    INP_HYPER_REST,
     INP_DENSITY,
     INP_HELD
 } inp_block;

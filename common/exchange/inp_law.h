@@ -5,14 +5,16 @@
 #ifndef SINEW_INP_LAW_H
 #define SINEW_INP_LAW_H
 
+#include "model/material_edit.h"
 #include "model/materials.h"
 
 #include <string.h>
 
-enum { INP_KEYS = 3, INP_CONSTANTS = 6 }; /* the most of a row */
+enum { INP_KEYS = 6, INP_CONSTANTS = 9, INP_LINE = 8 }; /* the most of a row, and on a line */
 
 typedef struct inp_law {
     const char *name, *law;  /* as *HYPERELASTIC has it; as we do */
+    int terms;               /* its N, or 0: it has none */
     int keys;                /* constants before D1 */
     law_key key[INP_KEYS];   /* whose values they are; of E and nu C10 is mu/2 */
     int volumetric;          /* D1 and on */
@@ -22,31 +24,55 @@ typedef struct inp_law {
 } inp_law;
 
 static const inp_law inp_laws[] = {
-    {"NEO HOOKE", "neo-hookean", 1, {LAW_E}, 1, "C10, D1", "C10 or D1", NULL},
-    {"MOONEY-RIVLIN", "mooney-rivlin", 2, {LAW_c10, LAW_c01}, 1, "C10, C01, D1", "C10 or D1", NULL},
-    {"YEOH", "yeoh", 3, {LAW_c10, LAW_c20, LAW_c30}, 3, "C10, C20, C30, D1, D2, D3", "C10 or D1", NULL},
+    {"NEO HOOKE", "neo-hookean", 0, 1, {LAW_E}, 1, "C10, D1", "C10 or D1", NULL},
+    {"MOONEY-RIVLIN", "mooney-rivlin", 0, 2, {LAW_c10, LAW_c01}, 1, "C10, C01, D1", "C10 or D1", NULL},
+    {"YEOH", "yeoh", 0, 3, {LAW_c10, LAW_c20, LAW_c30}, 3, "C10, C20, C30, D1, D2, D3", "C10 or D1", NULL},
     {"ARRUDA-BOYCE",
      "arruda-boyce",
+     0,
      2,
      {LAW_mu, LAW_lock},
      1,
      "mu, lambda_m, D",
      "mu or D",
-     "K/2 ((J^2 - 1)/2 - ln J)"}};
+     "K/2 ((J^2 - 1)/2 - ln J)"},
+    {"OGDEN", "ogden", 1, 2, {LAW_mu1, LAW_a1}, 1, "mu1, alpha1, D1", "mu1 or D1", NULL},
+    {"OGDEN",
+     "ogden",
+     2,
+     4,
+     {LAW_mu1, LAW_a1, LAW_mu2, LAW_a2},
+     2,
+     "mu1, alpha1, mu2, alpha2, D1, D2",
+     "mu1 or D1",
+     NULL},
+    {"OGDEN",
+     "ogden",
+     3,
+     6,
+     {LAW_mu1, LAW_a1, LAW_mu2, LAW_a2, LAW_mu3, LAW_a3},
+     3,
+     "mu1, alpha1, mu2, alpha2, mu3, alpha3, D1, D2, D3",
+     "mu1 or D1",
+     NULL}};
 enum { INP_LAWS = sizeof inp_laws / sizeof *inp_laws };
-#define INP_LAW_NAMES "NEO HOOKE, MOONEY-RIVLIN, YEOH or ARRUDA-BOYCE" /* for messages */
+#define INP_LAW_NAMES "NEO HOOKE, MOONEY-RIVLIN, YEOH, ARRUDA-BOYCE or OGDEN of N=1 to 3" /* for messages */
 
 /* What is said where J's energy is another. */
 #define INP_OTHER_PRESS                                                                                                \
     "material %.200s: the volumetric energy of Abaqus's %s is %s, here K/2 (J - 1)^2: the same but for terms of (J - " \
     "1)^3 and on"
 
-/* The row of a law, or NULL. */
-static inline const inp_law *inp_law_of(const law_row *law)
+/* The first row of a law that has all keys whose bits are given, or NULL. */
+static inline const inp_law *inp_law_of(const law_row *law, unsigned keys)
 {
-    for (int i = 0; i < INP_LAWS; i++)
-        if (!strcmp(inp_laws[i].law, law->name))
+    for (int i = 0; i < INP_LAWS; i++) {
+        unsigned left = keys & (law->group[0] | law->group[1] | law->optional);
+        for (int k = 0; k < inp_laws[i].keys; k++)
+            left &= ~(1U << inp_laws[i].key[k]);
+        if (!strcmp(inp_laws[i].law, law->name) && (!left || !inp_laws[i].terms))
             return &inp_laws[i];
+    }
     return NULL;
 }
 

@@ -37,50 +37,65 @@ ELEMENT_FUNCTION real form_first_energy(element_tensor h, const real *c)
 }
 
 #ifdef REAL_IS_DOUBLE
-/* A = dP/dF: with n = dx/dF = 2 J^-2/3 (F - I1/(3 J) G),
- *     A = (the neo-Hookean form's A with mu = 2 f'(x)) + f''(x) n (x) n. */
-typedef struct form_first_terms {
-    double now[2], curvature; /* 2 f', K; f'' */
-    element_tensor n;
-    double most; /* of (n:z)^2 across G */
-} form_first_terms;
+ELEMENT_FUNCTION double form_first_curvature(double x, const double *c)
+{
+    return 2 * c[1] + x * (6 * c[2] + x * (12 * c[3] + x * (20 * c[4])));
+}
 
-ELEMENT_FUNCTION form_first_terms form_first_terms_at(element_tensor h, const double *c)
+/* A = dP/dF: with n = dx/dF = 2 J^-2/3 (F - I1/(3 J) G),
+ *     A = (the neo-Hookean form's A with mu = 2 f'(x)) + f''(x) n (x) n.
+ * most: of (n:z)^2 across G. */
+ELEMENT_FUNCTION element_tensor form_first_normal(element_tensor h, double *most)
 {
     const element_tensor g = element_cofactor(h);
-    const double x = form_first_x(h), volume = 1 + element_dilation(h), root = element_cube_root_inverse(volume);
+    const double volume = 1 + element_dilation(h), root = element_cube_root_inverse(volume);
     const double one = 3 + element_green_trace(h), twice = 2 * root * root;
-    form_first_terms t = {{2 * form_first_slope(x, c), c[5]},
-                          2 * c[1] + x * (6 * c[2] + x * (12 * c[3] + x * (20 * c[4]))),
-                          {0, 0, 0, 0, 0, 0, 0, 0, 0},
-                          twice * twice * tangent_across(one, tangent_dot(g, g), volume)};
-    tangent_add(&t.n, twice, tangent_moved(h));
-    tangent_add(&t.n, -twice * one / (3 * volume), g);
-    return t;
+    element_tensor n = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+    *most = twice * twice * tangent_across(one, tangent_dot(g, g), volume);
+    tangent_add(&n, twice, tangent_moved(h));
+    tangent_add(&n, -twice * one / (3 * volume), g);
+    return n;
+}
+
+/* Adds curvature n (x) n to the lower triangle. */
+ELEMENT_FUNCTION void form_first_bend(element_tensor h, double curvature, double a[9][9])
+{
+    double most;
+    const element_tensor of = form_first_normal(h, &most);
+    const double n[9] = {of.xx, of.xy, of.xz, of.yx, of.yy, of.yz, of.zx, of.zy, of.zz};
+    for (int r = 0; r < 9; r++)
+        for (int s = 0; s <= r; s++)
+            a[r][s] += curvature * n[r] * n[s];
+}
+
+/* Adds curvature n (n:y) to *to. Returns no less than curvature (n:z)^2 of any z of length 1 with G:z = 0: above 0, as
+ * n:z = 2 J^-2/3 F:z,
+ *     curvature (n:z)^2 <= 4 curvature J^-4/3 (I1 - 9 J^2 / I2)
+ * (tangent_across); below 0 it only takes. */
+ELEMENT_FUNCTION double form_first_bend_along(element_tensor h, double curvature, element_tensor y, element_tensor *to)
+{
+    double most;
+    const element_tensor n = form_first_normal(h, &most);
+    tangent_add(to, curvature * tangent_dot(n, y), n);
+    return fmax(curvature, 0.) * most;
 }
 
 /* The lower triangle of A. */
 ELEMENT_FUNCTION void form_first_tangent(element_tensor h, const double *c, double a[9][9])
 {
-    const form_first_terms t = form_first_terms_at(h, c);
-    const double n[9] = {t.n.xx, t.n.xy, t.n.xz, t.n.yx, t.n.yy, t.n.yz, t.n.zx, t.n.zy, t.n.zz};
-    form_neo_hookean_tangent(h, t.now, a);
-    for (int r = 0; r < 9; r++)
-        for (int s = 0; s <= r; s++)
-            a[r][s] += t.curvature * n[r] * n[s];
+    const double x = form_first_x(h), now[] = {2 * form_first_slope(x, c), c[5]};
+    form_neo_hookean_tangent(h, now, a);
+    form_first_bend(h, form_first_curvature(x, c), a);
 }
 
-/* Adds A y to *to; square: G:y. Returns no less than z:(A z) of any z of length 1 with G:z = 0: what the neo-Hookean
- * form has, whatever the sign of f', and of f'' > 0, as n:z = 2 J^-2/3 F:z,
- *     f'' (n:z)^2 <= 4 f'' J^-4/3 (I1 - 9 J^2 / I2)
- * (tangent_across); f'' < 0 only takes from it. */
+/* Adds A y to *to; square: G:y. Returns the sum of what the parts return: the neo-Hookean form's holds whatever the sign
+ * of f'. */
 ELEMENT_FUNCTION double form_first_along(element_tensor h, const double *c, element_tensor y, double square,
                                          element_tensor *to)
 {
-    const form_first_terms t = form_first_terms_at(h, c);
-    const double plain = form_neo_hookean_along(h, t.now, y, square, to);
-    tangent_add(to, t.curvature * tangent_dot(t.n, y), t.n);
-    return plain + fmax(t.curvature, 0.) * t.most;
+    const double x = form_first_x(h), now[] = {2 * form_first_slope(x, c), c[5]};
+    const double plain = form_neo_hookean_along(h, now, y, square, to);
+    return plain + form_first_bend_along(h, form_first_curvature(x, c), y, to);
 }
 
 /* Neo-Hookean. */

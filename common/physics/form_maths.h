@@ -6,16 +6,17 @@
 #define SINEW_FORM_MATHS_H
 
 #include "physics/form_first.h"
+#include "physics/form_general.h"
 #include "physics/form_mooney_rivlin.h"
 #include "physics/form_neo_hookean.h"
 #include "physics/forms.h"
 
-/* P (Pa), the first Piola-Kirchhoff stress. c: the form's coefficients, Pa. */
+/* P (Pa), the first Piola-Kirchhoff stress. c: the form's coefficients. */
 ELEMENT_FUNCTION element_tensor form_stress(form f, element_tensor h, const real *c)
 {
     const element_tensor none = {REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO,
                                  REAL_ZERO, REAL_ZERO, REAL_ZERO, REAL_ZERO};
-#define FORM_CASE(NAME, name, coefficients, history)                                                                   \
+#define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \
     case FORM_##NAME:                                                                                                  \
         return form_##name##_stress(h, c);
     switch (f) {
@@ -29,7 +30,7 @@ ELEMENT_FUNCTION element_tensor form_stress(form f, element_tensor h, const real
 /* W, by volume at rest (J/m3). */
 ELEMENT_FUNCTION real form_energy(form f, element_tensor h, const real *c)
 {
-#define FORM_CASE(NAME, name, coefficients, history)                                                                   \
+#define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \
     case FORM_##NAME:                                                                                                  \
         return form_##name##_energy(h, c);
     switch (f) {
@@ -44,7 +45,7 @@ ELEMENT_FUNCTION real form_energy(form f, element_tensor h, const real *c)
 /* The lower triangle of A = dP/dF as a 9 x 9 matrix. */
 ELEMENT_FUNCTION void form_tangent(form f, element_tensor h, const double *c, double a[9][9])
 {
-#define FORM_CASE(NAME, name, coefficients, history)                                                                   \
+#define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \
     case FORM_##NAME:                                                                                                  \
         form_##name##_tangent(h, c, a);                                                                                \
         break;
@@ -63,7 +64,7 @@ ELEMENT_FUNCTION void form_tangent(form f, element_tensor h, const double *c, do
 ELEMENT_FUNCTION double form_along(form f, element_tensor h, const double *c, element_tensor y, double square,
                                    element_tensor *to)
 {
-#define FORM_CASE(NAME, name, coefficients, history)                                                                   \
+#define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \
     case FORM_##NAME:                                                                                                  \
         return form_##name##_along(h, c, y, square, to);
     switch (f) {

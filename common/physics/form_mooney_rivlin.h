@@ -113,13 +113,15 @@ ELEMENT_FUNCTION void form_mooney_rivlin_tangent(element_tensor h, const double 
         }
 }
 
-/* Adds A y to *to; square: G:y. Returns no less than z:(A z) of any z of length 1 with G:z = 0, as c01 >= 0. There the
+/* Adds A y to *to; square: G:y. Returns no less than z:(A z) of any z of length 1 with G:z = 0. There the
  * terms that have G vanish. Of the others, with s the largest stretch,
  *     z:(dG/dF z) = 2 F:cof z <= 2 s,
  *     z:(dN/dF z) = 2 (F:z)^2 + I1 - |F z^T|^2 - |F^T z + z^T F|^2 / 2 <= 2 (F:z)^2 + min(I1, 2 s^2),
  * as |F z^T|^2 is at least the square of the least stretch, which leaves two of the three in I1; and as G:z = 0,
  * (F:z)^2 <= I1 - 9 J^2 / I2 (tangent_across). So what is left is at most
- *     a + b (2 (I1 - 9 J^2 / I2) + min(I1, 2 s^2)) + 2 |p| s. */
+ *     a + b (2 (I1 - 9 J^2 / I2) + min(I1, 2 s^2)) + 2 |p| s.
+ * Of b below 0, which the general form may have, dN/dF counts from below: |F z^T| is at most s, |F^T z + z^T F| 2 s, so
+ *     a + |b| (3 s^2 - I1) + 2 |p| s. */
 ELEMENT_FUNCTION double form_mooney_rivlin_along(element_tensor h, const double *c, element_tensor y, double square,
                                                  element_tensor *to)
 {
@@ -137,7 +139,8 @@ ELEMENT_FUNCTION double form_mooney_rivlin_along(element_tensor h, const double 
     tangent_add(to, t.pressure, tangent_cofactor_along(h, y));
     const double apart = tangent_across(t.first_invariant, t.second_invariant, volume);
     const double twice = fmin(t.first_invariant, 2 * stretch * stretch);
-    return fmax(t.shear, 0.) + t.second * (2 * apart + twice) + 2 * fabs(t.pressure) * stretch;
+    const double slope = t.second < 0 ? t.first_invariant - 3 * stretch * stretch : 2 * apart + twice;
+    return fmax(t.shear, 0.) + t.second * slope + 2 * fabs(t.pressure) * stretch;
 }
 
 /* Neo-Hookean: c01 is 0. */

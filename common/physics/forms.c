@@ -2,15 +2,23 @@
 
 int form_numbers(form f)
 {
-#define FORM_ROW(NAME, name, coefficients, history) (coefficients),
+#define FORM_ROW(NAME, name, coefficients, exponents, history) (coefficients),
     static const int numbers[FORM_COUNT] = {FORMS(FORM_ROW)[FORM_LINEAR] = 2};
 #undef FORM_ROW
     return numbers[f];
 }
 
+int form_moduli(form f)
+{
+#define FORM_ROW(NAME, name, coefficients, exponents, history) (coefficients) - (exponents),
+    static const int moduli[FORM_COUNT] = {FORMS(FORM_ROW)[FORM_LINEAR] = 2};
+#undef FORM_ROW
+    return moduli[f];
+}
+
 static int express(form from, form target, const double *c, double *to)
 {
-#define FORM_ROW(NAME, name, coefficients, history)                                                                    \
+#define FORM_ROW(NAME, name, coefficients, exponents, history)                                                         \
     case FORM_##NAME:                                                                                                  \
         return form_##name##_express(from, c, to);
     switch (target) {
@@ -40,15 +48,15 @@ form form_of_both(form a, const double *ca, form b, const double *cb, double *to
 
 void form_between(form f, double mu, double bulk, const double *a, const double *b, double share, double *to)
 {
-#define FORM_ROW(NAME, name, coefficients, history)                                                                    \
+#define FORM_ROW(NAME, name, coefficients, exponents, history)                                                         \
     case FORM_##NAME:                                                                                                  \
         form_##name##_between(mu, bulk, a, b, share, to);                                                              \
         break;
     memset(to, 0, FORM_NUMBERS * sizeof *to);
-    to[0] = mu, to[1] = bulk; /* FORM_LINEAR's */
     switch (f) {
         FORMS(FORM_ROW)
-    default:
+    default: /* FORM_LINEAR */
+        to[0] = mu, to[1] = bulk;
         break;
     }
 #undef FORM_ROW

@@ -1,6 +1,6 @@
 #include "physics/law.h"
 
-#include "physics/form_first.h"
+#include "physics/form_general.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -122,6 +122,87 @@ static void fill_arruda_boyce(const double *value, double *c)
     c[FORM_FIRST_POWERS] = moduli_of_arruda_boyce(value).bulk;
 }
 
+/* ---- keys c1, c2, and K or nu: f = c1 (e^(c2 x) - 1), c01 = -c1 c2 / 2, mu = c1 c2 */
+
+static law_moduli moduli_of_veronda_westmann(const double *value)
+{
+    return moduli_with(value[LAW_c1] * value[LAW_c2], value);
+}
+
+static void fill_veronda_westmann(const double *value, double *c)
+{
+    c[FORM_GENERAL_c01] = -value[LAW_c1] * value[LAW_c2] / 2;
+    c[FORM_GENERAL_K] = moduli_of_veronda_westmann(value).bulk;
+    c[FORM_GENERAL_e] = value[LAW_c1];
+    c[FORM_GENERAL_b] = value[LAW_c2];
+}
+
+/* A wave along n with a displacement along a, |n| = |a| = 1 and n.a = 0, B = F F^T and det F = 1, has
+ *     rho c^2 = 2 f' n.Bn + 4 f'' (a.Bn)^2 + 2 c01 a.B^-1 a,   a.B^-1 a <= l^2 n.Bn,
+ * l the largest stretch, and equal where a and n are the other two axes of B. So with f'' > 0 waves have a speed in any
+ * state just where f' > -c01 l^2, and as no x is less at a given l than that of a bar, l^2 + 2/l - 3,
+ *     2 e^(c2 (l^2 + 2/l - 3)) > l^2 for each l > 1,
+ * which is so where c2 is above the largest ln(l^2 / 2) / (l^2 + 2/l - 3), .357531 at l = 1.8286. */
+static bool refuses_veronda_westmann(const double *value, char what[LAW_WORDS], char expected[LAW_WORDS])
+{
+    const double least = .35754;
+    if (value[LAW_c2] > least)
+        return false;
+    snprintf(what, LAW_WORDS, "c2=%g lets waves lose their speed where tissue is stretched", value[LAW_c2]);
+    snprintf(expected, LAW_WORDS, "c2 above %g", least);
+    return true;
+}
+
+/* ---- keys mu1, a1 to mu3, a3, and K or nu: m_i = 2 mu_i / a_i^2, mu = mu1 + mu2 + mu3 */
+
+enum { OGDEN_TERMS = 3 };
+static const law_key ogden_mu[OGDEN_TERMS] = {LAW_mu1, LAW_mu2, LAW_mu3};
+static const law_key ogden_a[OGDEN_TERMS] = {LAW_a1, LAW_a2, LAW_a3};
+
+static law_moduli moduli_of_ogden(const double *value)
+{
+    double mu = 0;
+    for (int i = 0; i < OGDEN_TERMS; i++)
+        mu += or_zero(value[ogden_mu[i]]);
+    return moduli_with(mu, value);
+}
+
+static void fill_ogden(const double *value, double *c)
+{
+    for (int i = 0; i < OGDEN_TERMS; i++) {
+        const double mu = or_zero(value[ogden_mu[i]]), a = or_zero(value[ogden_a[i]]);
+        c[FORM_GENERAL_m + i] = mu != 0 ? 2 * mu / (a * a) : 0;
+        c[FORM_GENERAL_a + i] = a;
+    }
+    c[FORM_GENERAL_K] = moduli_of_ogden(value).bulk;
+}
+
+/* l1^a + l2^a + l3^a is convex in F for a of 1 and more, and in its cofactors for a of -1 and less: so waves have a speed
+ * in any state. In between the stress falls where shear is large. */
+static bool refuses_ogden(const double *value, char what[LAW_WORDS], char expected[LAW_WORDS])
+{
+    for (int i = 0; i < OGDEN_TERMS; i++) {
+        const double mu = value[ogden_mu[i]], a = value[ogden_a[i]];
+        const char *mu_name = key_names[ogden_mu[i]], *a_name = key_names[ogden_a[i]];
+        if (isnan(mu) != isnan(a)) {
+            snprintf(what, LAW_WORDS, "%s without %s", isnan(mu) ? a_name : mu_name, isnan(mu) ? mu_name : a_name);
+            snprintf(expected, LAW_WORDS, "both %s and %s, or neither", mu_name, a_name);
+            return true;
+        }
+        if (i && !isnan(mu) && isnan(value[ogden_mu[i - 1]])) {
+            snprintf(what, LAW_WORDS, "%s without %s", mu_name, key_names[ogden_mu[i - 1]]);
+            snprintf(expected, LAW_WORDS, "the terms in their order");
+            return true;
+        }
+        if (fabs(a) < 1) {
+            snprintf(what, LAW_WORDS, "%s=%g lets the stress fall where shear grows", a_name, a);
+            snprintf(expected, LAW_WORDS, "%s of 1 or more, or of -1 or less", a_name);
+            return true;
+        }
+    }
+    return false;
+}
+
 /* ---- the table */
 
 static const law_row rows[] = {
@@ -161,6 +242,26 @@ static const law_row rows[] = {
      .energy = "mu (1/2 (I1bar - 3) + 1/(20 lock^2) (I1bar^2 - 9) + 11/(1050 lock^4) (I1bar^3 - 27)\n"
                "  + 19/(7000 lock^6) (I1bar^4 - 81) + 519/(673750 lock^8) (I1bar^5 - 243)) + K/2 (J - 1)^2",
      .source = "Arruda and Boyce 1993"},
+    {.name = "veronda-westmann",
+     .form = FORM_GENERAL,
+     .group = {BIT(c1), BIT(c2), BIT(K) | BIT(nu)},
+     .moduli = moduli_of_veronda_westmann,
+     .fill = fill_veronda_westmann,
+     .refuses = refuses_veronda_westmann,
+     .meaning = "Skin that stiffens exponentially with the first invariant, for large strains.",
+     .energy = "c1 (e^(c2 (I1bar - 3)) - 1) - c1 c2/2 (I2bar - 3) + K/2 (J - 1)^2",
+     .source = "Veronda and Westmann 1970"},
+    {.name = "ogden",
+     .form = FORM_GENERAL,
+     .group = {BIT(mu1), BIT(a1), BIT(K) | BIT(nu)},
+     .optional = BIT(mu2) | BIT(a2) | BIT(mu3) | BIT(a3),
+     .moduli = moduli_of_ogden,
+     .fill = fill_ogden,
+     .refuses = refuses_ogden,
+     .meaning = "Rubber of powers of the principal stretches l1 to l3, for large strains; up to three terms.",
+     .energy = "2 mu1/a1^2 (L1^a1 + L2^a1 + L3^a1 - 3) + K/2 (J - 1)^2, L1 = J^-1/3 l1 and so on;\n"
+               "  mu2, a2 and mu3, a3 likewise",
+     .source = "Ogden 1972"},
     {.name = "linear",
      .form = FORM_LINEAR,
      .group = {BIT(E), BIT(nu)},

@@ -21,7 +21,15 @@
     X(c20, "Pa", -1e12, 1e12, "coefficient of (I1bar - 3)^2")                                                          \
     X(c30, "Pa", 0, 1e12, "coefficient of (I1bar - 3)^3")                                                              \
     X(mu, "Pa", 1e-3, 1e12, "shear modulus of chains that never lock")                                                 \
-    X(lock, "1", 1, 1e3, "stretch at which chains lock")
+    X(lock, "1", 1, 1e3, "stretch at which chains lock")                                                               \
+    X(c1, "Pa", 1e-3, 1e12, "factor of the exponential of I1bar - 3")                                                  \
+    X(c2, "1", 0, 1e3, "factor of I1bar - 3 in the exponent")                                                          \
+    X(mu1, "Pa", 1e-3, 1e12, "shear modulus at rest of the first term of stretches")                                   \
+    X(a1, "1", -100, 100, "exponent of the first term of stretches")                                                   \
+    X(mu2, "Pa", 1e-3, 1e12, "shear modulus at rest of the second term of stretches")                                  \
+    X(a2, "1", -100, 100, "exponent of the second term of stretches")                                                  \
+    X(mu3, "Pa", 1e-3, 1e12, "shear modulus at rest of the third term of stretches")                                   \
+    X(a3, "1", -100, 100, "exponent of the third term of stretches")
 
 /* The same of what every material may have, whatever its law. Those after peak are optional: they shape the curves of a
  * muscle (muscle_curves.h), and have a usual value where they are not given. */

@@ -38,6 +38,7 @@ typedef float real_guess;
 typedef int32_t real_bits;
 #define REAL_ZERO                  ((real)0)
 #define REAL_CONVERT(x, type)      ((type)(x))
+typedef int real_mask;
 #define REAL_SELECT(mask, yes, no) ((mask) ? (yes) : (no))
 #endif
 
@@ -61,6 +62,20 @@ ELEMENT_FUNCTION real real_of(double x)
     return REAL_ZERO + (real_one)x;
 #else
     return (real)x;
+#endif
+}
+
+/* Whether it is so in any lane: what no lane needs may be left out, if lanes that do not need it have the same bytes
+ * beside one that does. */
+ELEMENT_FUNCTION int real_any(real_mask mask)
+{
+#ifdef ELEMENT_LANES
+    int any = 0;
+    for (int i = 0; i < ELEMENT_LANES; i++)
+        any |= mask[i] != 0;
+    return any;
+#else
+    return mask != 0;
 #endif
 }
 
@@ -88,6 +103,16 @@ ELEMENT_FUNCTION element_tensor element_sum(element_tensor a, element_tensor b)
 {
     element_tensor s = {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yx + b.yx, a.yy + b.yy,
                         a.yz + b.yz, a.zx + b.zx, a.zy + b.zy, a.zz + b.zz};
+    return s;
+}
+
+/* yes where the mask is set, else no. */
+ELEMENT_FUNCTION element_tensor element_selected(real_mask mask, element_tensor yes, element_tensor no)
+{
+    const element_tensor s = {
+        REAL_SELECT(mask, yes.xx, no.xx), REAL_SELECT(mask, yes.xy, no.xy), REAL_SELECT(mask, yes.xz, no.xz),
+        REAL_SELECT(mask, yes.yx, no.yx), REAL_SELECT(mask, yes.yy, no.yy), REAL_SELECT(mask, yes.yz, no.yz),
+        REAL_SELECT(mask, yes.zx, no.zx), REAL_SELECT(mask, yes.zy, no.zy), REAL_SELECT(mask, yes.zz, no.zz)};
     return s;
 }
 

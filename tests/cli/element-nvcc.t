@@ -13,10 +13,10 @@ __global__ void forces(const element_field *u, element_field *f, element_shape s
     f[threadIdx.x] = element_force(FORM, CONTROL, u[threadIdx.x], shape, law, fibre, fibre.tension != 0);
 }
 END
-for form in FORM_NEO_HOOKEAN FORM_MOONEY_RIVLIN; do
+for form in FORM_NEO_HOOKEAN FORM_MOONEY_RIVLIN FORM_FIRST FORM_GENERAL; do
     for precision in "" -DELEMENT_SINGLE; do
         case $form$precision in
-        FORM_NEO_HOOKEAN-DELEMENT_SINGLE | FORM_MOONEY_RIVLIN) [ "$SINEW_LONG" ] || continue ;;
+        FORM_NEO_HOOKEAN-DELEMENT_SINGLE | FORM_MOONEY_RIVLIN | FORM_FIRST* | FORM_GENERAL) [ "$SINEW_LONG" ] || continue ;;
         esac
         control=HOURGLASS_PHYSICAL
         [ -z "$precision" ] || [ $form = FORM_NEO_HOOKEAN ] || control=HOURGLASS_ISOTROPIC

@@ -71,6 +71,22 @@ sed 's/^2500, 1175, 0, 2e-05, 0, 0/2500, 1175, 0, 2e-05, 0, 1/' "$T/stiff.inp" >
 fails 1 "D3" 'bad.inp:[0-9]*: volumetric energy of .J - 1..4 or on; expected D2 and D3 of 0' sinew import --unit m -o "$T/no" "$T/bad.inp"
 sed 's/^2500, 1175, 0, 2e-05, 0, 0/2500, -1175, 0, 2e-05/' "$T/stiff.inp" >"$T/bad.inp"
 fails 1 "C20 below 0" 'bad.inp:[0-9]*: c20=-1175 with c10=2500 and c30=0 lets the stress fall' sinew import --unit m -o "$T/no" "$T/bad.inp"
+printf 'skin law=ogden mu1=1000 a1=2 mu2=200 a2=-4 K=1e5\nfat law=ogden mu1=1000 a1=2 mu2=200 a2=-4 mu3=10 a3=9 K=1e5\n' >"$T/table"
+tled-run -q -n 1 --materials "$T/table" <"$T/two" >"$T/stretches"
+sinew export -f inp -o "$T/stretches.inp" "$T/stretches" 2>"$T/said"
+is "$(grep -A 2 OGDEN "$T/stretches.inp" | grep -v DENSITY | tr '\n' ' ')" \
+    "*HYPERELASTIC, OGDEN, N=2 1000, 2, 200, -4, 2e-05, 0 -- *HYPERELASTIC, OGDEN, N=3 1000, 2, 200, -4, 10, 9, 2e-05, 0 0 " "ogden of two terms and of three"
+check "and back" sh -c "sinew import -q --unit m --stress kPa -o '$T/back' '$T/stretches.inp'"
+is "$(values "$T/back" | grep -E '^(law|mu.|a.) ' | tr '\n' ' ')" \
+    'law "ogden" "ogden" mu1 1000000 1000000 a1 2 2 mu2 200000 200000 a2 -4 -4 mu3 nan 10000 a3 nan 9 ' "in kPa"
+sed 's/N=3/N=4/' "$T/stretches.inp" >"$T/bad.inp"
+fails 1 "more terms" 'bad.inp:[0-9]*: .HYPERELASTIC of another law; expected .* or OGDEN of N=1 to 3' sinew import --unit m -o "$T/no" "$T/bad.inp"
+sed 's/^0 *$/7/' "$T/stretches.inp" >"$T/bad.inp"
+fails 1 "D3 on its line" 'bad.inp:[0-9]*: volumetric energy of .J - 1..4 or on; expected D2 and D3 of 0' sinew import --unit m -o "$T/no" "$T/bad.inp"
+printf 'skin law=veronda-westmann c1=1000 c2=3 K=1e5\nfat\n' >"$T/table"
+tled-run -q -n 1 --materials "$T/table" <"$T/two" >"$T/skin"
+fails 1 "a law that Abaqus does not have" "material 'skin' has the law 'veronda-westmann', which Abaqus's files do not have here; expected linear, neo-hookean" \
+    sinew export -f inp -o "$T/no" "$T/skin"
 
 # ---- -m, in any order; the last of a key counts.
 changed() { # ARG...: the values after them
@@ -116,6 +132,12 @@ yeoh='-m skin.law=yeoh -m skin.c10=400 -m skin.K=1e4'
     no "c30 below 0" "'c30=-1' is not allowed; expected 0 to 1e12 Pa" $yeoh -m skin.c20=1 -m skin.c30=-1
     no "chains that lock at rest" "'lock=.9' is not allowed; expected 1 to 1000" -m skin.law=arruda-boyce -m skin.mu=1 -m skin.lock=.9 -m skin.K=9
 }
+no "an exponential that is too slow" "the law veronda-westmann, c2=0.3 lets waves lose their speed where tissue is stretched; expected c2 above 0.35754" \
+    -m skin.law=veronda-westmann -m skin.c1=1000 -m skin.c2=.3 -m skin.K=9
+no "an exponent below 1" "the law ogden, a1=-0.5 lets the stress fall where shear grows; expected a1 of 1 or more, or of -1 or less" \
+    -m skin.law=ogden -m skin.mu1=1000 -m skin.a1=-.5 -m skin.K=9
+no "a term without its exponent" "the law ogden, mu2 without a2; expected both mu2 and a2, or neither" \
+    -m skin.law=ogden -m skin.mu1=1000 -m skin.a1=2 -m skin.mu2=7 -m skin.K=9
 no "an unknown law" "unknown law 'mooney'; did you mean 'mooney-rivlin'" -m skin.law=mooney
 while IFS='|' read -r name line pattern; do
     echo "$line" >"$T/bad"

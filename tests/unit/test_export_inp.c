@@ -8,14 +8,14 @@
 
 int main(void)
 {
-    const char *const known[] = {"neo-hookean", "mooney-rivlin", "yeoh", "arruda-boyce", "linear"};
+    const char *const known[] = {"neo-hookean", "mooney-rivlin", "yeoh", "arruda-boyce", "ogden", "linear"};
     const law_row other = {.name = "quadratic", .form = FORM_COUNT};
     err e = {0};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         ok(!export_inp_has_law(law_find(known[i]), "tissue", &e), "%s: %s", known[i], e.text);
     ok(export_inp_has_law(&other, "tissue", &e) == -1 &&
            strstr(e.text, "material 'tissue' has the law 'quadratic', which Abaqus's files do not have here; expected "
-                          "linear, neo-hookean, mooney-rivlin, yeoh or arruda-boyce"),
+                          "linear, neo-hookean, mooney-rivlin, yeoh, arruda-boyce or ogden"),
        "a law of another form: %s", e.text);
     return done_testing();
 }

@@ -8,7 +8,7 @@
 
 enum { TRIALS = 200 };
 
-#define NAME_OF(NAME, name, coefficients, history) #name,
+#define NAME_OF(NAME, name, coefficients, exponents, history) #name,
 static const char *const names[] = {FORMS(NAME_OF)};
 
 /* Numbers from -1 to 1, the same in every run. */
@@ -245,6 +245,83 @@ static void test_between(void)
     ok(c[0] == 2000 && c[1] == 9700 && c[2] == 0, "neo-Hookean: the moduli between");
 }
 
+/* Of terms with equal exponents one is made, and the terms of both are there: the sum of energies is exact. */
+static void test_between_general(void)
+{
+    const double share = .25, mu = 1600;
+    double a[FORM_NUMBERS] = {0}, b[FORM_NUMBERS] = {0}, c[FORM_NUMBERS], worst = 0;
+    a[FORM_GENERAL_e] = 500, a[FORM_GENERAL_b] = 2, a[FORM_GENERAL_c01] = -500; /* mu 1000 */
+    b[FORM_GENERAL_e] = 100, b[FORM_GENERAL_b] = 5, b[FORM_GENERAL_c01] = -250; /* 500 + m a^2 / 2 */
+    for (int i = 0; i < 3; i++) {
+        a[FORM_GENERAL_m + i] = 10 + i, a[FORM_GENERAL_a + i] = 2 + i;
+        b[FORM_GENERAL_m + i] = 30 - i, b[FORM_GENERAL_a + i] = -3 - i;
+    }
+    b[FORM_GENERAL_a + 1] = 3;
+    form_between(FORM_GENERAL, mu, 0, a, b, share, c);
+    int terms = 0;
+    for (int i = 0; i < FORM_GENERAL_STRETCHES; i++)
+        terms += c[FORM_GENERAL_m + i] != 0;
+    ok(terms == 5 && c[FORM_GENERAL_e + 1] != 0, "general, between two: %d terms of stretches, two exponentials",
+       terms);
+    near_(form_general_shear(c), mu, 1e-9, "its modulus at rest");
+    for (int i = 0; i < TRIALS; i++) {
+        const element_tensor h = gradient_by_chance(.4);
+        const double sum = (1 - share) * form_energy(FORM_GENERAL, h, a) / form_general_shear(a) +
+                           share * form_energy(FORM_GENERAL, h, b) / form_general_shear(b);
+        worst = larger(worst, fabs(form_energy(FORM_GENERAL, h, c) / (mu * sum) - 1));
+    }
+    ok(worst < 1e-12, "and its energy is the sum by shares, to %.1e", worst);
+    form_between(FORM_GENERAL, mu, 0, a, a, share, c);
+    ok(c[FORM_GENERAL_e + 1] == 0 && c[FORM_GENERAL_m + 3] == 0, "of one and the same, it has as many terms");
+}
+
+/* The exponent 2 is neo-Hookean, 2 and -2 together are Mooney-Rivlin where the volume is kept: also where stretches are
+ * equal, or nearly. */
+static void test_equal_stretches(void)
+{
+    const double mu = 1000, bulk = 9700, plain[FORM_NUMBERS] = {1000, 9700};
+    double c[FORM_NUMBERS] = {0}, worst = 0, slope = 0;
+    c[FORM_GENERAL_m] = mu / 2, c[FORM_GENERAL_a] = 2, c[FORM_GENERAL_K] = bulk;
+    for (int i = 0; i < 3 * TRIALS; i++) {
+        const double x = .4 * number(), y = i % 3 ? x : x * (1 + 1e-9 * number()), z = i % 3 == 2 ? x : .4 * number();
+        const element_tensor turn = turn_by_chance(), diagonal = {1 + x, 0, 0, 0, 1 + y, 0, 0, 0, 1 + z};
+        const element_tensor f = element_product(element_product(turn, diagonal), tangent_transposed(turn));
+        const element_tensor h = minus_one(f), p = form_stress(FORM_NEO_HOOKEAN, h, plain);
+        double a[9][9], b[9][9];
+        worst = larger(worst, apart(p, form_stress(FORM_GENERAL, h, c)) / mu);
+        form_tangent(FORM_NEO_HOOKEAN, h, plain, a);
+        form_tangent(FORM_GENERAL, h, c, b);
+        for (int r = 0; r < 9; r++)
+            for (int s = 0; s <= r; s++)
+                slope = larger(slope, fabs(a[r][s] - b[r][s]) / bulk);
+    }
+    ok(worst < 1e-13, "general of stretches squared is neo-Hookean where stretches are equal: %.1e of mu", worst);
+    ok(slope < 1e-13, "and its tangent: %.1e of K", slope);
+}
+
+/* Jacobi's rotations leave nothing beside the diagonal, however small or alike the entries are. */
+static void test_spectral(void)
+{
+    double worst = 0, square = 0;
+    for (int i = 0; i < 20 * TRIALS; i++) {
+        const double by = pow(10, 10 * number() - (i % 4 ? 0 : 280));
+        const double off = by * pow(10, i % 3 ? 0 : 16 * number() - 8);
+        const element_symmetric a = {by * number(),  by * number(),  by * number(),
+                                     off * number(), off * number(), off * number()};
+        const spectral s = spectral_of(a);
+        const element_symmetric back = spectral_with(s.v, s.at);
+        const element_tensor v = element_product(tangent_transposed(s.v), s.v);
+        const element_tensor rest = {
+            back.xx - a.xx, back.xy - a.xy, back.zx - a.zx, back.yy - a.yy, back.yz - a.yz, back.zz - a.zz, 0, 0, 0};
+        worst = larger(worst, largest_of(rest) / fmax(by, off));
+        square = larger(square, largest_of(minus_one(v)));
+    }
+    const spectral none = spectral_of((element_symmetric){0});
+    ok(worst < 1e-14, "eigenvalues and vectors give the tensor: %.1e off", worst);
+    ok(square < 1e-14, "vectors are orthonormal: %.1e off", square);
+    ok(none.at.x == 0 && none.v.xx == 1 && none.v.xy == 0, "of nothing they are 0 and the axes");
+}
+
 /* P_xx where the sides that are free, y and z or z alone, are not pulled. */
 static double pulled(double x, bool both, double *lateral)
 {
@@ -295,10 +372,24 @@ int main(void)
     test_tangent(FORM_FIRST, softens);
     test_range(FORM_FIRST, softens, .02);
     test_range(FORM_FIRST, softens, .3);
+    double steep[FORM_NUMBERS] = {0}; /* skin of an exponential, and brain's stretches */
+    steep[FORM_GENERAL_e] = 100, steep[FORM_GENERAL_b] = 3, steep[FORM_GENERAL_c01] = -150,
+    steep[FORM_GENERAL_K] = 9700;
+    test_tangent(FORM_GENERAL, steep);
+    test_range(FORM_GENERAL, steep, .02);
+    test_range(FORM_GENERAL, steep, .1);
+    steep[FORM_GENERAL_m] = 1, steep[FORM_GENERAL_a] = -19;
+    test_range(FORM_GENERAL, steep, .02);
     test_express_in(FORM_MOONEY_RIVLIN);
     test_express_in(FORM_FIRST);
+    test_express_in(FORM_GENERAL);
     test_between();
     test_between_first();
+    test_between_general();
+    test_between_in(FORM_FIRST, FORM_GENERAL);
+    test_between_in(FORM_MOONEY_RIVLIN, FORM_GENERAL);
+    test_equal_stretches();
+    test_spectral();
     test_between_in(FORM_NEO_HOOKEAN, FORM_MOONEY_RIVLIN);
     test_between_in(FORM_NEO_HOOKEAN, FORM_FIRST);
     test_figures();

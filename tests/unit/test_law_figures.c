@@ -59,6 +59,22 @@ static const figures all[] = {
      3054.74,
      1954.66,
      781.863},
+    {"veronda-westmann",
+     {{LAW_c1, 1e3}, {LAW_c2, 3}, {LAW_K, 1e5}, NONE},
+     2790.32,
+     .917896,
+     -3964.01,
+     4059.87,
+     2678.58,
+     1071.43},
+    {"ogden",
+     {{LAW_mu1, 1e3}, {LAW_a1, 2}, {LAW_mu2, 200}, {LAW_a2, -4}, {LAW_K, 1e5}, NONE},
+     582.663,
+     .913932,
+     -983.689,
+     0,
+     0,
+     0},
 };
 
 /* P of H, by c: in float, or in double. */

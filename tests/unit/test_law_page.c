@@ -14,8 +14,9 @@
 static const char begin[] = ".\\\" laws\n", end[] = ".\\\" end laws\n";
 
 /* The values that the figures are for: of every key that is the last of its group in a law. 0: there is none. */
-static const double example[LAW_OWN_KEYS] = {[LAW_E] = 3000, [LAW_nu] = .45,   [LAW_c10] = 2500, [LAW_c01] = 500,
-                                             [LAW_K] = 1e5,  [LAW_c20] = 1175, [LAW_mu] = 3000,  [LAW_lock] = 1.4};
+static const double example[LAW_OWN_KEYS] = {
+    [LAW_E] = 3000,  [LAW_nu] = .45,   [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = 1e5,    [LAW_c20] = 1175,
+    [LAW_mu] = 3000, [LAW_lock] = 1.4, [LAW_c1] = 1000,  [LAW_c2] = 3,    [LAW_mu1] = 1000, [LAW_a1] = -4};
 
 /* Along the bar, and in *across beside it, with a lateral stretch. */
 static double stresses(const law_row *of, const double *c, law_moduli at, double stretch, double lateral,
@@ -105,7 +106,7 @@ static void print_law(out *o, const law_row *of)
         for (int k = law_next_key(of->group[g], 0); k >= 0; k = law_next_key(of->group[g], k + 1))
             print_key(o, k, "");
     for (int k = law_next_key(of->optional, 0); k >= 0; k = law_next_key(of->optional, k + 1))
-        print_key(o, k, ", and 0 where it is not given");
+        print_key(o, k, "; without it the term is left out");
     out_text(o, ".El\n");
     print_choices(o, of);
     print_figures(o, of);

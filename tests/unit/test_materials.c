@@ -232,7 +232,7 @@ static void refuse_two_laws(void)
     refuse_set("tissue.K=1", "-m tissue: 'K' is not a key of the law neo-hookean; expected E, nu, density, peak");
     refuse_set("tissue.law=mooney-rivlin", "-m tissue: the law mooney-rivlin without c10; expected c10, c01, nu or K");
     refuse_set("tissue.law=moony-rivlin", "did you mean 'mooney-rivlin'?");
-    refuse_set("tissue.c1=1", "unknown key 'c1'; did you mean 'c10'?");
+    refuse_set("tissue.c11=1", "unknown key 'c11'; did you mean 'c10'?");
 }
 
 /* With all laws of the table, in order. */

@@ -22,7 +22,11 @@
 
 #define THE_FORM CPU_JOIN(FORM_, CPU_FORM, )
 
-enum { LANES = ELEMENT_LANES, COEFFICIENTS = CPU_JOIN(FORM_, CPU_FORM, _NUMBERS) };
+enum {
+    LANES = ELEMENT_LANES,
+    COEFFICIENTS = CPU_JOIN(FORM_, CPU_FORM, _NUMBERS),
+    MODULI = CPU_JOIN(FORM_, CPU_FORM, _MODULI) /* the first ones */
+};
 
 typedef struct cpu_kind { /* a volume's numbers: cpu_kind_numbers */
     double law[COEFFICIENTS + HOURGLASS_NUMBERS], tension;
@@ -152,8 +156,10 @@ static inline void add_field(const cpu_work *w, const rows_run *run, const eleme
 static inline element_law law_of_kind(const cpu_kind *kind, real share)
 {
     element_law law = {{REAL_ZERO}, {REAL_ZERO}};
-    for (int i = 0; i < COEFFICIENTS; i++)
+    for (int i = 0; i < MODULI; i++)
         law.c[i] = share * (real_one)kind->law[i];
+    for (int i = MODULI; i < COEFFICIENTS; i++)
+        law.c[i] = real_of(kind->law[i]);
     for (int i = 0; i < HOURGLASS_NUMBERS; i++)
         law.hourglass[i] = share * (real_one)kind->law[COEFFICIENTS + i];
     return law;
@@ -163,8 +169,10 @@ static inline element_law law_of_kind(const cpu_kind *kind, real share)
 static inline element_law law_of_cells(const cpu_work *w, int64_t cell, real share)
 {
     element_law law = {{REAL_ZERO}, {REAL_ZERO}};
-    for (int i = 0; i < COEFFICIENTS; i++)
+    for (int i = 0; i < MODULI; i++)
         law.c[i] = share * load(w->law[i], cell);
+    for (int i = MODULI; i < COEFFICIENTS; i++)
+        law.c[i] = load(w->law[i], cell);
     for (int i = 0; i < HOURGLASS_NUMBERS; i++)
         law.hourglass[i] = share * load(w->law[COEFFICIENTS + i], cell);
     return law;

@@ -64,7 +64,7 @@ static void mesh_element(const cpu_state *s, int64_t i, double *own)
     }
     own += cpu_hold_numbers(s->p->control.kind);
     for (int k = 0; k < form_numbers(s->p->form); k++)
-        own[k] = share * law.c[k];
+        own[k] = (k < form_moduli(s->p->form) ? share : 1) * law.c[k];
 }
 
 static void mesh_fill(cpu_state *s)

@@ -22,7 +22,8 @@ enum cuda_way { CUDA_TILES = 1, CUDA_RESIDENT = 2, CUDA_MARCH = 4 };
 #ifndef CUDA_OWN
 #define CUDA_OWN(X)                                                                                                    \
     X(NEO_HOOKEAN, CUDA_TILES | CUDA_RESIDENT | CUDA_MARCH)                                                            \
-    X(MOONEY_RIVLIN, CUDA_TILES | CUDA_RESIDENT)
+    X(MOONEY_RIVLIN, CUDA_TILES | CUDA_RESIDENT)                                                                       \
+    X(FIRST, CUDA_TILES | CUDA_RESIDENT)
 #endif
 
 /* The ways in which a form has kernels of its own. */
@@ -55,12 +56,12 @@ static constexpr int cuda_held(hourglass_kind kind)
 
 /* What a kernel is compiled for: a form and a kind of hourglass control. A law's numbers are its coefficients, then
  * those that hold hourglass modes; NEAR: numbers that all threads of a block ask for, gravity and laws. */
-template <form F, int N, hourglass_kind K> struct cuda_form {
+template <form F, int N, int M, hourglass_kind K> struct cuda_form {
     static constexpr bool ASKS = false;
     enum { COEFFICIENTS = N, HELD = cuda_held(K), LAW = N + HELD, NEAR = 4 + LAW * LAWS_NEAR };
     static constexpr form which = F;
     static constexpr hourglass_kind control = K;
-    static constexpr int coefficients = N, held = HELD;
+    static constexpr int coefficients = N, moduli = M, held = HELD;
     cuda_form(form, hourglass_kind)
     {
     }
@@ -77,28 +78,28 @@ struct cuda_any_form {
     };
     form which;
     hourglass_kind control;
-    int coefficients, held;
-    cuda_any_form(form f, hourglass_kind k) : which(f), control(k), coefficients(form_numbers(f)), held(cuda_held(k))
+    int coefficients, moduli, held;
+    cuda_any_form(form f, hourglass_kind k)
+        : which(f), control(k), coefficients(form_numbers(f)), moduli(form_moduli(f)), held(cuda_held(k))
     {
     }
 };
 
 /* The one of both that a form takes in a way. */
-template <bool OWN, form F, int N, hourglass_kind K> struct cuda_form_taken {
-    typedef cuda_form<F, N, K> type;
+template <bool OWN, form F, int N, int M, hourglass_kind K> struct cuda_form_taken {
+    typedef cuda_form<F, N, M, K> type;
 };
-template <form F, int N, hourglass_kind K> struct cuda_form_taken<false, F, N, K> {
+template <form F, int N, int M, hourglass_kind K> struct cuda_form_taken<false, F, N, M, K> {
     typedef cuda_any_form type;
 };
 
 /* Calls f with what a form that steppers know, and the kind, take in a way: tled_problem_make chooses no other. */
 template <cuda_way WAY, hourglass_kind K, class F> static auto with_form(form which, F f)
 {
-#define FORM_ROW(NAME, name, coefficients, history)                                                                    \
+#define FORM_ROW(NAME, name, coefficients, exponents, history)                                                         \
     case FORM_##NAME:                                                                                                  \
-        return f(                                                                                                      \
-            typename cuda_form_taken<(cuda_own_ways(FORM_##NAME) & WAY) != 0, FORM_##NAME, coefficients, K>::type(     \
-                which, K));
+        return f(typename cuda_form_taken<(cuda_own_ways(FORM_##NAME) & WAY) != 0, FORM_##NAME, coefficients,          \
+                                          (coefficients) - (exponents), K>::type(which, K));
     switch (which) {
         FORMS(FORM_ROW)
     default:

@@ -50,7 +50,7 @@ template <class L, class T> static __device__ element_law law_of(const L &l, con
 #pragma unroll
     for (int i = 0; i < L::COEFFICIENTS; i++)
         if (i < l.coefficients)
-            law.c[i] = share * (real)c[i];
+            law.c[i] = i < l.moduli ? share * (real)c[i] : (real)c[i];
 #pragma unroll
     for (int i = 0; i < L::HELD; i++)
         if (i < l.held)

@@ -86,11 +86,11 @@ static element_field field_at(const tled_problem *p, int64_t element, const doub
     return u;
 }
 
-static element_law law_at(const tled_law *of, const double *hourglass, double share)
+static element_law law_at(form f, const tled_law *of, const double *hourglass, double share)
 {
     element_law law = {{0}, {0}};
     for (int i = 0; i < FORM_NUMBERS; i++)
-        law.c[i] = share * of->c[i];
+        law.c[i] = (i < form_moduli(f) ? share : 1) * of->c[i];
     for (int i = 0; i < HOURGLASS_NUMBERS; i++)
         law.hourglass[i] = share * hourglass[i];
     return law;
@@ -120,12 +120,12 @@ static element_field pull_of(const tled_problem *p, int64_t element, const doubl
     if (p->conforming) {
         const conforming_hold hold = conforming_hold_of(p, element);
         const element_any shape = conforming_shape(p, element, &hold);
-        return element_any_force_fibred(p->form, p->control.kind, u, &shape, law_at(&of, hold.law, share), own,
+        return element_any_force_fibred(p->form, p->control.kind, u, &shape, law_at(p->form, &of, hold.law, share), own,
                                         element_fibre_which(own), sets.of, sets.count);
     }
     const element_shape box = element_box(p->side[0], p->side[1], p->side[2]);
     const element_fibre other = muscle_fibre_of(p, p->mixfibre, element, mix, share * mixture, value);
-    return element_force_fibred(p->form, p->control.kind, u, box, law_at(&of, of.hourglass, share), own,
+    return element_force_fibred(p->form, p->control.kind, u, box, law_at(p->form, &of, of.hourglass, share), own,
                                 element_fibre_which(own), other, element_fibre_which(other), sets.of, sets.count);
 }
 

@@ -202,12 +202,8 @@ static int choose_form(tled_problem *p, const model *m, const material *of, err 
     if (most == p->volumes)
         return 0;
     words_of_laws(words, sizeof words);
-    const char *name = model_find(m, "volume.name")->str[most];
-    if (material_form(&of[most]) >= FORM_STEPPED)
-        return err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected %s, here or by -m MATERIAL.law=", name,
-                       law_of_volume(m, most), words);
-    return err_set(e, NULL, 0, "volume '%s' has the law '%s', which no solver has together with '%s' of volume '%s'",
-                   name, law_of_volume(m, most), law_of_volume(m, 0), model_find(m, "volume.name")->str[0]);
+    return err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected %s, here or by -m MATERIAL.law=",
+                   model_find(m, "volume.name")->str[most], law_of_volume(m, most), words);
 }
 
 /* What holds the hourglass modes of a box of that law. A corner has an eighth of the mass, and the squares of a mode's

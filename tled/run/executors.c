@@ -28,7 +28,7 @@ const executor *const tled_executors_single[] = {
 /* The features that elements of a form need. */
 static uint32_t features_of(form f)
 {
-#define FORM_HISTORY(NAME, name, coefficients, history) (history),
+#define FORM_HISTORY(NAME, name, coefficients, exponents, history) (history),
     static const int numbers[FORM_COUNT] = {FORMS(FORM_HISTORY) 0};
 #undef FORM_HISTORY
     return numbers[f] > 0 ? EXECUTOR_HISTORY : 0;
