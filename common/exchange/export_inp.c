@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/num.h"
 #include "exchange/inp_law.h"
+#include "model/material_elements.h"
 #include "model/materials.h"
 
 #include <ctype.h>
@@ -266,6 +267,11 @@ static void note_omissions(const writer *w, const model *m, notes *warnings)
     if (model_find(m, "element.mix"))
         notes_add(warnings,
                   "element.mix is not in the file, which has no place for it: elements are of one volume there");
+    for (int k = 0; k < MATERIAL_ELEMENT_KEYS; k++)
+        if (model_find(m, material_elements_arrays[k]))
+            notes_add(warnings,
+                      "%s is not in the file, which has no place for it: elements have their material's there",
+                      material_elements_arrays[k]);
     for (int64_t i = 0; w->rigid && i < w->rigid->rows; i++)
         if (w->rigid->u8[i])
             return;

@@ -14,7 +14,13 @@
     ROW("material." #key, MODEL_F64, unit, "material", 1, 1, LAW_##key == LAW_density ? 0 : KNOWN_NAN, KNOWN_FROM,     \
         low, high, "voxelise or msds-mesh", meaning)
 
-static const known rows[] = {KNOWN_ARRAYS(ROW, LAW_KEYS(KEY_ROW) LAW_COMMON_KEYS(KEY_ROW) LAW_FIBRE_KEYS(KEY_ROW))};
+/* element.KEY. nan: the material's. */
+#define ELEMENT_ROW(key, unit, low, high, meaning)                                                                     \
+    ROW("element." #key, MODEL_F64, unit, "element", 1, 1, KNOWN_NAN, KNOWN_FROM, low, high,                           \
+        "hand or another program", meaning ", in place of its material's")
+
+static const known rows[] = {KNOWN_ARRAYS(ROW, LAW_KEYS(KEY_ROW) LAW_COMMON_KEYS(KEY_ROW) LAW_FIBRE_KEYS(KEY_ROW),
+                                          LAW_KEYS(ELEMENT_ROW) LAW_DENSITY_KEY(ELEMENT_ROW))};
 
 enum { ROWS = sizeof rows / sizeof *rows };
 

@@ -39,8 +39,8 @@ typedef struct known {
 } known;
 
 /* X(name, type, unit, axis, columns_min, columns_max, flags, rule, low, high, maker, meaning). KEY_ARRAYS: where the
- * arrays of the keys of materials are, one a key of physics/law.h. */
-#define KNOWN_ARRAYS(X, KEY_ARRAYS)                                                                                    \
+ * arrays of the keys of materials are, one a key of physics/law.h; ELEMENT_KEYS: those of single elements. */
+#define KNOWN_ARRAYS(X, KEY_ARRAYS, ELEMENT_KEYS)                                                                      \
     X("node.position", MODEL_F64, "m", "node", 3, 3, 0, KNOWN_FINITE, 0, 0, "voxelise or msds-mesh", "rest position")  \
     X("node.lattice", MODEL_I32, "1", "node", 3, 3, 0, KNOWN_ANY, 0, 0, "voxelise", "corner of the lattice: i, j, k")  \
     X("node.rigid", MODEL_U8, "1", "node", 1, 1, 0, KNOWN_FROM, 0, 1, "attach or msds-mesh", "1 = fixed")              \
@@ -71,6 +71,7 @@ typedef struct known {
       "the same of element.mix")                                                                                       \
     X("element.normal", MODEL_F32, "1", "element", 3, 3, 0, KNOWN_DIRECTION, 0, 0, "voxelise",                         \
       "unit outward normal of the skin next to it; 0 0 0 where there is none")                                         \
+    ELEMENT_KEYS                                                                                                       \
     X("volume.name", MODEL_STR, "1", "volume", 1, 1, 0, KNOWN_ANY, 0, 0, "voxelise or msds-mesh", "name")              \
     X("volume.level", MODEL_I32, "1", "volume", 1, 1, 0, KNOWN_FROM, 0, INT32_MAX, "voxelise or msds-mesh",            \
       "level, 0 the lowest")                                                                                           \

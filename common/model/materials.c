@@ -7,6 +7,7 @@
 #include "base/num.h"
 #include "model/known.h"
 #include "model/material_edit.h"
+#include "model/material_elements.h"
 #include "model/material_families.h"
 
 #include <inttypes.h>
@@ -572,13 +573,17 @@ material *materials_of_volumes(const model *m, err *e)
             free(law);
             return NULL;
         }
-    return law;
+    if (law && !material_elements_check(m, law, e))
+        return law;
+    free(law);
+    return NULL;
 }
 
 materials_map materials_map_of(const model *m, const material *of_volume)
 {
     const model_array *mix = model_find(m, "element.mix"), *mixture = model_find(m, "element.mixture");
-    materials_map map = {.of_volume = of_volume, .volume = model_find(m, "element.volume")->i32};
+    materials_map map = {
+        .of_volume = of_volume, .volume = model_find(m, "element.volume")->i32, .own = material_elements_of(m)};
     if (mix && mixture) {
         map.mix = mix->i32;
         map.mixture = mixture->f32;
@@ -588,7 +593,9 @@ materials_map materials_map_of(const model *m, const material *of_volume)
 
 material_numbers materials_of_element(const materials_map *map, int64_t element)
 {
-    const material_numbers own = material_numbers_of(&map->of_volume[map->volume[element]]);
+    material of = map->of_volume[map->volume[element]];
+    material_elements_put(&map->own, element, &of);
+    const material_numbers own = material_numbers_of(&of);
     const int32_t mix = map->mix ? map->mix[element] : -1;
     if (mix < 0)
         return own;

@@ -65,8 +65,17 @@ int materials_unknown(const model *m, const char *name, const char *place, int64
  * value of a key that its law does not have. No peak is 0; optional keys that are not given have their usual value. */
 int materials_of(const model *m, int64_t i, material *to, err *e);
 
-/* Of every volume, checked; the caller frees them. NULL with e filled. */
+/* Of every volume, checked, as are the values that single elements have (material_elements.h); the caller frees them.
+ * NULL with e filled. */
 material *materials_of_volumes(const model *m, err *e);
+
+/* What single elements have in place of their material's, by key (material_elements.h). */
+typedef struct material_elements {
+    const double *value[LAW_density + 1]; /* elements; nan where there is none; NULL: no element has one */
+    bool any;
+} material_elements;
+
+material_elements material_elements_of(const model *m);
 
 /* What elements are made of, looked up once: all borrowed from the model, which has element.volume, and of those of
  * the volumes. */
@@ -74,6 +83,7 @@ typedef struct materials_map {
     const material *of_volume;
     const int32_t *volume, *mix; /* mix NULL: no element is mixed */
     const float *mixture;
+    material_elements own;
 } materials_map;
 
 materials_map materials_map_of(const model *m, const material *of_volume);
@@ -88,8 +98,8 @@ typedef struct material_numbers {
 
 material_numbers material_numbers_of(const material *a);
 
-/* Of an element, from the materials of the volumes: its volume's, or what lies between those of the two that it is
- * mixed of. */
+/* Of an element, from the materials of the volumes: its volume's, with the values that it has itself, or what lies between
+ * that and its second volume's. */
 material_numbers materials_of_element(const materials_map *map, int64_t element);
 
 /* The curves of its muscles (physics/muscle_curves.h), from values that are given, as materials_of gives them. Returns

@@ -31,10 +31,12 @@
     X(mu3, "Pa", 1e-3, 1e12, "shear modulus at rest of the third term of stretches")                                   \
     X(a3, "1", -100, 100, "exponent of the third term of stretches")
 
+#define LAW_DENSITY_KEY(X) X(density, "kg/m3", 1e-3, 1e6, "mass density at rest")
+
 /* The same of what every material may have, whatever its law. Those after peak are optional: they shape the curves of a
  * muscle (muscle_curves.h), and have a usual value where they are not given. */
 #define LAW_COMMON_KEYS(X)                                                                                             \
-    X(density, "kg/m3", 1e-3, 1e6, "mass density at rest")                                                             \
+    LAW_DENSITY_KEY(X)                                                                                                 \
     X(peak, "Pa", 0, 1e12, "peak active stress of its muscles")                                                        \
     X(optimum, "1", .5, 2, "stretch at which its muscles are strongest, 1 if not given")                               \
     X(passive, "1", 0, 10, "factor of the passive stress of its muscles, over peak, 0 if not given")                   \

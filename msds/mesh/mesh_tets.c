@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "model/known.h"
+#include "physics/law.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -107,8 +108,14 @@ int mesh_box_add(model *m, const mesh_box *b, err *e)
 /* ---- a voxel model */
 
 /* What stays of an element, by the names of arrays: every tetrahedron has its cell's row. */
-static const char *const kept[] = {"element.volume", "element.fibre",   "element.fraction",
-                                   "element.mix",    "element.mixture", "element.mixfibre"};
+#define KEY_ARRAY(key, unit, low, high, meaning) "element." #key,
+static const char *const kept[] = {"element.volume",
+                                   "element.fibre",
+                                   "element.fraction",
+                                   "element.mix",
+                                   "element.mixture",
+                                   "element.mixfibre",
+                                   LAW_KEYS(KEY_ARRAY) LAW_DENSITY_KEY(KEY_ARRAY)};
 
 enum { KEPT = sizeof kept / sizeof *kept };
 

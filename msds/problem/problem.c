@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "model/finite.h"
+#include "model/material_elements.h"
 #include "model/materials.h"
 #include "msds/problem/springs.h"
 
@@ -90,6 +91,7 @@ static int take_material(msds_problem *p, int64_t t, const material *a, double s
 typedef struct shares {
     const float *fraction, *mixture;
     const int32_t *mix;
+    material_elements own;
 } shares;
 
 static int find_shares(const model *m, shares *s, err *e)
@@ -98,7 +100,7 @@ static int find_shares(const model *m, shares *s, err *e)
     const model_array *mixture = mix ? model_need(m, "element.mixture", e) : NULL;
     if (mix && !mixture)
         return -1;
-    *s = (shares){0};
+    *s = (shares){.own = material_elements_of(m)};
     if (fraction)
         s->fraction = fraction->f32;
     if (mix) {
@@ -126,6 +128,7 @@ static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t vol
 {
     const int32_t mix = s->mix ? s->mix[t] : -1;
     material own = list[volume];
+    material_elements_put(&s->own, t, &own);
     if (mix >= 0 && !(s->mixture[t] >= 0 && s->mixture[t] <= 1))
         return err_set(e, stream, 0, "element.mixture, row %lld is %g; expected a share from 0 to 1", (long long)t,
                        (double)s->mixture[t]);
@@ -171,6 +174,7 @@ static int make_materials(msds_problem *p, const model *m, err *e)
     int result = list && p->young && p->weight ? find_shares(m, &share, e) : -1;
     for (int64_t i = 0; !result && i < table->rows; i++)
         result = read_material(m, i, &list[i], e);
+    result = result ? result : material_elements_check(m, list, e);
     for (int64_t t = 0; !result && t < p->elements; t++)
         result = take_element(p, &share, t, of->i32[t], list, m->stream, e);
     free(list);

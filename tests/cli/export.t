@@ -265,7 +265,7 @@ fails 1 "an empty model" "node.position" sinew export -f vtu -o "$T/x.vtu" "$T/e
 fails 1 "no volumes" "element.volume|volume.name" sinew export -f inp -o "$T/x.inp" "$T/tet"
 sed 's/^0.45$/0.5/' "$small" >"$T/b"
 fails 1 "a material that is none" "tissue.*nu|nu.*0.5" sinew export -f inp -o "$T/x.inp" "$T/b"
-sed 's/"neo-hookean"/"ogden"/' "$small" >"$T/b"
+sed 's/"neo-hookean"/"odgen"/' "$small" >"$T/b"
 fails 1 "a law that is not known" "law" sinew export -f inp -o "$T/x.inp" "$T/b"
 fails 1 "a cut stream" "cut" sinew export -f vtu -o "$T/x.vtu" "$T/cut"
 fails 1 "a cut stream, all frames" "cut" sinew export -f vtu --frame all -o "$T/x.pvd" "$T/cut"

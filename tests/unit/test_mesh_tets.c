@@ -138,7 +138,8 @@ static int voxels(model *m, int side, unsigned seed, err *e)
     if (model_axis_add(m, "node", (int64_t)n * n * n, e) || model_axis_add(m, "element", count, e) ||
         model_axis_add(m, "volume", 3, e) || !model_add(m, "node.position", e) || !model_add(m, "node.lattice", e) ||
         !model_add(m, "element.node", e) || !model_add(m, "element.lattice", e) || !model_add(m, "element.volume", e) ||
-        !model_add(m, "element.fibre", e) || !model_add(m, "element.mix", e) || !model_add(m, "element.mixture", e) ||
+        !model_add(m, "element.fibre", e) || !model_add(m, "element.c10", e) || !model_add(m, "element.density", e) ||
+        !model_add(m, "element.mix", e) || !model_add(m, "element.mixture", e) ||
         !model_add_as(m, "x-kept", MODEL_U8, "1", "node", 1, e) ||
         !model_add_as(m, "x-lost", MODEL_U8, "1", "element", 1, e))
         return -1;
@@ -158,6 +159,8 @@ static int voxels(model *m, int side, unsigned seed, err *e)
         model_find(m, "element.fibre")->f32[3 * c] = (float)c;
         model_find(m, "element.mix")->i32[c] = (int32_t)(c % 2) - 1;
         model_find(m, "element.mixture")->f32[c] = (float)c;
+        model_find(m, "element.c10")->f64[c] = 1 + (double)c;
+        model_find(m, "element.density")->f64[c] = 2 + (double)c;
     }
     return 0;
 }
@@ -166,10 +169,12 @@ static bool rows_kept(const model *m)
 {
     const model_array *of = model_find(m, "element.volume"), *fibre = model_find(m, "element.fibre");
     const model_array *mix = model_find(m, "element.mix"), *mixture = model_find(m, "element.mixture");
-    bool same = of && fibre && mix && mixture;
+    const model_array *own = model_find(m, "element.c10"), *density = model_find(m, "element.density");
+    bool same = of && fibre && mix && mixture && own && density;
     for (int64_t n = 0; same && n < of->rows; n++)
         same = of->i32[n] == n / 5 % 3 && (int64_t)fibre->f32[3 * n] == n / 5 && mix->i32[n] == n / 5 % 2 - 1 &&
-               (int64_t)mixture->f32[n] == n / 5;
+               (int64_t)mixture->f32[n] == n / 5 && (int64_t)own->f64[n] == 1 + n / 5 &&
+               (int64_t)density->f64[n] == 2 + n / 5;
     return same;
 }
 

@@ -13,6 +13,7 @@
 
 #include "tled_slit.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -25,6 +26,7 @@ typedef struct block {
     float fraction; /* of every element; 0: the model has none. Below 0: they differ, from .05 to 1 */
     bool mixed;     /* some elements are of a second volume, stiffer and denser, and some
                 * mixed of both, by different shares */
+    bool own;       /* some elements have values in place of their material's */
 } block;
 
 static inline model_array *block_array(model *m, const char *name)
@@ -95,6 +97,16 @@ static inline void block_second(const block *b, bool muscle, model *m)
     model_find(m, "material.peak")->f64[1] = .4 * b->peak;
 }
 
+/* Values that some elements have in place of their material's, mixed ones and others. */
+static inline void block_own(const block *b, model *m)
+{
+    double *young = block_array(m, "element.E")->f64, *density = block_array(m, "element.density")->f64;
+    for (int64_t i = 0; i < model_count(m, "element"); i++) {
+        young[i] = i % 4 == 2 ? 1.3 * b->young : NAN;
+        density[i] = i % 8 == 2 || i % 8 == 3 ? 1.2 * b->density : NAN;
+    }
+}
+
 /* Which elements are of the second volume, and which are mixed; fibres by volume. */
 static inline void block_mix(const block *b, bool muscle, model *m)
 {
@@ -145,6 +157,8 @@ static inline void block_tables(const block *b, model *m)
         fraction[i] = b->fraction > 0 ? b->fraction : .05F + .95F * (float)(i * 7919 % 101) / 100;
     if (b->mixed)
         block_mix(b, muscle, m);
+    if (b->own)
+        block_own(b, m);
 }
 
 /* Makes the model, with the slits that are asked for; the caller frees it. */

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "mesh/lattice.h"
+#include "model/material_elements.h"
 #include "model/materials.h"
 #include "physics/stability.h"
 #include "tled/problem/bodies.h"
@@ -42,6 +43,8 @@ void tled_problem_free(tled_problem *p)
 {
     fibres_free(&p->fibres);
     free(p->mixed);
+    free(p->own_mix);
+    free(p->own_mixture);
     free(p->law);
     free(p->volume);
     conforming_free(p->conforming);
@@ -116,6 +119,24 @@ static int check_mixes(const tled_problem *p, err *e)
                            "element.mix of element %lld repeats the volume of the element; expected another, or -1",
                            (long long)i);
     return 0;
+}
+
+/* Elements that have values of their own go the way of mixed ones. */
+static int join_own(tled_problem *p, const model *m, err *e)
+{
+    const material_elements own = material_elements_of(m);
+    if (!own.any)
+        return 0;
+    p->own_mix = mem_array(p->elements, sizeof *p->own_mix, "the mixed elements", e);
+    p->own_mixture = p->own_mix ? mem_array(p->elements, sizeof *p->own_mixture, "the mixed elements", e) : NULL;
+    for (int64_t i = 0; p->own_mixture && i < p->elements; i++) {
+        const int32_t mix = tled_mix(p, i);
+        p->own_mix[i] = mix < 0 && material_elements_has(&own, i) ? p->element_volume[i] : mix;
+        p->own_mixture[i] = mix < 0 ? 0 : p->mixture[i];
+    }
+    p->mix = p->own_mix;
+    p->mixture = p->own_mixture;
+    return p->own_mixture ? 0 : -1;
 }
 
 /* Every element must be a box with the lattice's spacing for sides, its corners in VTK order. */
@@ -216,6 +237,14 @@ static void hold_modes(const tled_problem *p, tled_law *law)
         64 * hourglass_stiffest(p->control.kind, law->hourglass, side) / (law->density * side[0] * side[1] * side[2]);
 }
 
+static tled_law law_of(const tled_problem *p, const material *of)
+{
+    tled_law law = {.mu = material_mu(of), .bulk = material_bulk(of), .density = of->density};
+    express(of, p->form, law.c);
+    hold_modes(p, &law);
+    return law;
+}
+
 static const char *material_of_volume(const model *m, int64_t i)
 {
     return model_find(m, "material.name")->str[model_find(m, "volume.material")->i32[i]];
@@ -244,41 +273,31 @@ static int make_volume(tled_problem *p, const model *m, int32_t i, const materia
     tled_volume *v = &p->volume[i];
     v->name = model_find(m, "volume.name")->str[i];
     v->row = of->law;
-    express(of, p->form, v->law.c);
-    v->law.mu = material_mu(of);
-    v->law.bulk = material_bulk(of);
-    v->law.density = of->density;
-    hold_modes(p, &v->law);
+    v->law = law_of(p, of);
     v->square = square_at_rest(p, v);
     v->contract = find_curve(p->script, SCRIPT_CONTRACT, i);
     return make_muscle(v, m, i, of, e);
 }
 
-static int make_volumes(tled_problem *p, const model *m, err *e)
+static int make_volumes(tled_problem *p, const model *m, const material *of, err *e)
 {
-    int status = -1;
     p->volumes = (int32_t)model_find(m, "volume.name")->rows;
     p->volume = mem_array(p->volumes, sizeof *p->volume, "the volumes", e);
-    material *of = p->volume ? materials_of_volumes(m, e) : NULL;
-    if (!of || choose_form(p, m, of, e) || fibres_make(&p->fibres, m, of, e))
-        goto out;
+    if (!p->volume || choose_form(p, m, of, e) || fibres_make(&p->fibres, m, of, e))
+        return -1;
     for (int32_t i = 0; i < p->volumes; i++)
         if (make_volume(p, m, i, &of[i], e))
-            goto out;
+            return -1;
     for (int32_t i = 0; i < p->volumes; i++)
         p->curved |= p->volume[i].curved;
     for (int64_t i = 0; i < p->elements; i++)
         p->volume[p->element_volume[i]].elements++;
-    status = 0;
-out:
-    free(of);
-    return status;
+    return 0;
 }
 
-static tled_law mix_laws(const tled_problem *p, int64_t element)
+/* s: the share of w. */
+static tled_law mix_laws(const tled_problem *p, const tled_law *v, const tled_law *w, double s)
 {
-    const tled_law *v = &p->volume[p->element_volume[element]].law, *w = &p->volume[p->mix[element]].law;
-    const double s = tled_mixture(p, element);
     tled_law law = {.mu = material_between(v->mu, w->mu, s),
                     .bulk = material_between(v->bulk, w->bulk, s),
                     .density = (1 - s) * v->density + s * w->density};
@@ -287,19 +306,39 @@ static tled_law mix_laws(const tled_problem *p, int64_t element)
     return law;
 }
 
-/* The laws of what is mixed. */
-static int make_mixtures(tled_problem *p, err *e)
+/* Of an element that is mixed, or has values of its own. */
+static tled_law own_law(const tled_problem *p, int64_t i, const material *of, const material_elements *own)
 {
-    if (!p->mix)
+    const int32_t volume = p->element_volume[i], mix = tled_mix(p, i);
+    material first = of[volume];
+    material_elements_put(own, i, &first);
+    const tled_law law = material_elements_has(own, i) ? law_of(p, &first) : p->volume[volume].law;
+    return mix < 0 || mix == volume ? law : mix_laws(p, &law, &p->volume[mix].law, tled_mixture(p, i));
+}
+
+/* The laws of what is mixed, and of what has values of its own. */
+static int make_mixtures(tled_problem *p, const model *m, const material *of, err *e)
+{
+    const material_elements own = material_elements_of(m);
+    p->own_values = own.any;
+    if (!p->mix && !own.any)
         return 0;
     p->mixed = mem_array(p->elements, sizeof *p->mixed, "the mixed elements", e);
     for (int64_t i = 0; p->mixed && i < p->elements; i++)
-        p->mixed[i] = p->mix[i] < 0 ? -1 : (int32_t)p->laws++;
+        p->mixed[i] = tled_mix(p, i) < 0 && !material_elements_has(&own, i) ? -1 : (int32_t)p->laws++;
     p->law = p->mixed ? mem_array(p->laws, sizeof *p->law, "the mixed elements", e) : NULL;
     for (int64_t i = 0; p->law && i < p->elements; i++)
         if (p->mixed[i] >= 0)
-            p->law[p->mixed[i]] = mix_laws(p, i);
+            p->law[p->mixed[i]] = own_law(p, i, of, &own);
     return p->law ? 0 : -1;
+}
+
+static int make_laws(tled_problem *p, const model *m, err *e)
+{
+    material *of = materials_of_volumes(m, e);
+    const int status = !of || make_volumes(p, m, of, e) || make_mixtures(p, m, of, e) ? -1 : 0;
+    free(of);
+    return status;
 }
 
 /* Where among a node's elements, by their places in the lattice, the one is that has the node for this corner. */
@@ -370,8 +409,8 @@ int tled_problem_make(tled_problem *p, const model *m, const script *s, hourglas
     p->fields = tled_fields(p->nodes, p->elements);
     if (!p->corner || !p->mass || !p->hold || fields_allocate(&p->fields, FIELDS_ALL, &p->at_start, "the nodes", e))
         return -1;
-    if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || make_volumes(p, m, e) ||
-        make_mixtures(p, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || loads_make(p, m, e) ||
+    if ((boxes && check_boxes(p, e)) || check_fractions(p, e) || check_mixes(p, e) || (boxes && join_own(p, m, e)) ||
+        make_laws(p, m, e) || (boxes ? make_corners(p, e) : conforming_corners(p, e)) || loads_make(p, m, e) ||
         followers_make(p, m, e) || bodies_make(p, m, e))
         return -1;
     if (!boxes)

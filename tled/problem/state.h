@@ -56,9 +56,12 @@ typedef struct tled_problem {
     const float *mixture;  /* elements: its share of the tissue, 0 to 1; where mix is not NULL */
     const float *mixfibre; /* elements x 3: its fibre; or NULL */
     fibres_view fibres;    /* that resist being stretched; of NULL: there are none */
-    int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL where mix is. Owned, as is all below */
-    tled_law *law;         /* of the mixed elements, in their order */
+    int32_t *mixed;        /* elements: which of `law` is its own, or -1; NULL: none is. Owned, as is all below */
+    tled_law *law;         /* of the elements that are mixed, or have values in place of their material's, in order */
+    int32_t *own_mix;   /* what mix and mixture are where elements have such values: those go the way of mixed ones, */
+    float *own_mixture; /* as mixed of their volume, and of no share of it again; else NULL */
     int64_t laws;
+    bool own_values;       /* some elements have values in place of their material's */
     tled_volume *volume;   /* volumes */
     int32_t *corner;       /* nodes x 8: element * 8 + corner, in the lattice's order, then elements * 8 */
     int32_t *corner_start; /* nodes + 1; or NULL. Without a lattice: node n's are

@@ -52,6 +52,8 @@ static double square_of_law(const tled_problem *p, int64_t element)
     if (tled_mix(p, element) < 0)
         return v->square;
     const tled_law law = tled_law_of(p, element);
+    if (law.mu == v->law.mu && law.bulk == v->law.bulk && law.density == v->law.density)
+        return v->square;
     return fmin(square_by(&law, v), square_by(&law, &p->volume[p->mix[element]]));
 }
 

@@ -2,12 +2,22 @@
 
 #include <math.h>
 
+/* Of shear waves at rest, m/s. */
+static double speed_of(const tled_law *law)
+{
+    return sqrt(law->mu / law->density);
+}
+
 double relax_guess(const tled_problem *p, double reach)
 {
     double speed = INFINITY;
-    for (int32_t i = 0; i < p->volumes; i++)
+    for (int32_t i = 0; i < p->volumes && !p->own_values; i++)
         if (p->volume[i].elements)
-            speed = fmin(speed, sqrt(p->volume[i].law.mu / p->volume[i].law.density));
+            speed = fmin(speed, speed_of(&p->volume[i].law));
+    for (int64_t i = 0; i < p->elements && p->own_values; i++) {
+        const tled_law law = tled_law_of(p, i);
+        speed = fmin(speed, speed_of(&law));
+    }
     return acos(-1) / 2 * speed / reach;
 }
 

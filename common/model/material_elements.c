@@ -1,0 +1,88 @@
+#include "model/material_elements.h"
+
+#include "model/material_edit.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#define KEY_ARRAY(key, unit, low, high, meaning) "element." #key,
+const char *const material_elements_arrays[MATERIAL_ELEMENT_KEYS] = {LAW_KEYS(KEY_ARRAY) LAW_DENSITY_KEY(KEY_ARRAY)};
+
+material_elements material_elements_of(const model *m)
+{
+    material_elements of = {.any = false};
+    for (int k = 0; k < MATERIAL_ELEMENT_KEYS; k++) {
+        const model_array *a = model_find(m, material_elements_arrays[k]);
+        of.value[k] = a ? a->f64 : NULL;
+        of.any |= a != NULL;
+    }
+    return of;
+}
+
+bool material_elements_has(const material_elements *of, int64_t element)
+{
+    for (int k = 0; of->any && k < MATERIAL_ELEMENT_KEYS; k++)
+        if (of->value[k] && !isnan(of->value[k][element]))
+            return true;
+    return false;
+}
+
+void material_elements_put(const material_elements *of, int64_t element, material *to)
+{
+    for (int k = 0; of->any && k < MATERIAL_ELEMENT_KEYS; k++)
+        if (of->value[k] && !isnan(of->value[k][element]))
+            *material_edit_value(to, k) = of->value[k][element];
+}
+
+/* expected: what the value should be. */
+static int wrong(const model *m, int key, int64_t i, double value, const char *expected, err *e)
+{
+    const model_array *a = model_find(m, material_elements_arrays[key]);
+    return err_set(e, m->stream, m->stream ? model_line(a, i) : 0,
+                   "%s, row %" PRId64 ": %g is not allowed; expected %s", a->name, i, value, expected);
+}
+
+/* The first key that element i has a value of. */
+static int first_key(const material_elements *of, int64_t i)
+{
+    int k = 0;
+    while (k < MATERIAL_ELEMENT_KEYS - 1 && (!of->value[k] || isnan(of->value[k][i])))
+        k++;
+    return k;
+}
+
+/* volume: its number. */
+static int check_one(const model *m, const material_elements *of, int64_t i, const material *volume, err *e)
+{
+    char what[LAW_WORDS], expected[LAW_WORDS], words[KNOWN_WORDS + 64];
+    material own = *volume;
+    for (int k = 0; k < MATERIAL_ELEMENT_KEYS; k++) {
+        const double value = of->value[k] ? of->value[k][i] : NAN;
+        if (isnan(value))
+            continue;
+        snprintf(words, sizeof words, "nan, as its material, of the law %s, has no %s", volume->law->name,
+                 law_key_name((law_key)k));
+        if (isnan(*material_edit_value(&own, k)) || !material_edit_valid(k, value, words))
+            return wrong(m, k, i, value, words, e);
+        *material_edit_value(&own, k) = value;
+    }
+    const int key = first_key(of, i);
+    if (law_refuses(own.law, own.value, what, expected))
+        return err_set(e, m->stream, 0, "element, row %" PRId64 ": %s, %s; expected %s", i, own.law->name, what,
+                       expected);
+    if (isfinite(material_bulk(&own)) && material_mu(&own) > 0)
+        return 0;
+    return wrong(m, key, i, of->value[key][i], "what can be computed", e);
+}
+
+int material_elements_check(const model *m, const material *of_volume, err *e)
+{
+    const material_elements of = material_elements_of(m);
+    const model_array *volume = of.any ? model_need(m, "element.volume", e) : NULL;
+    if (!of.any)
+        return 0;
+    for (int64_t i = 0; volume && i < volume->rows; i++)
+        if (material_elements_has(&of, i) && check_one(m, &of, i, &of_volume[volume->i32[i]], e))
+            return -1;
+    return volume ? 0 : -1;
+}
