@@ -238,7 +238,7 @@ static void test_mixed(int32_t cells, double poisson_of_second, double least)
     tled_problem p = {0};
     err e = {0};
     const double rest[3] = {1, 1, 1};
-    b.mixed = b.own = true;
+    b.mixed = true;
     b.cells[0] = b.cells[1] = b.cells[2] = cells;
     block_make(&b, &m);
     model_find(&m, "material.nu")->f64[0] = .4;

@@ -26,7 +26,6 @@ typedef struct block {
     float fraction; /* of every element; 0: the model has none. Below 0: they differ, from .05 to 1 */
     bool mixed;     /* some elements are of a second volume, stiffer and denser, and some
                 * mixed of both, by different shares */
-    bool own;       /* some elements have values in place of their material's */
 } block;
 
 static inline model_array *block_array(model *m, const char *name)
@@ -131,6 +130,7 @@ static inline void block_mix(const block *b, bool muscle, model *m)
                 mixfibre[3 * i + a] = 0;
         }
     }
+    block_own(b, m);
 }
 
 static inline void block_tables(const block *b, model *m)
@@ -157,8 +157,6 @@ static inline void block_tables(const block *b, model *m)
         fraction[i] = b->fraction > 0 ? b->fraction : .05F + .95F * (float)(i * 7919 % 101) / 100;
     if (b->mixed)
         block_mix(b, muscle, m);
-    if (b->own)
-        block_own(b, m);
 }
 
 /* Makes the model, with the slits that are asked for; the caller frees it. */
