@@ -83,6 +83,11 @@ arm: all
 paper: all $(addprefix $(BUILD)/tests/bench/bench_,tled msds msds_card slice)
 	SINEW_BIN=$(BIN) BENCH=$(BUILD)/tests/bench samples/paper out/paper
 
+# Expressions of a real face, FACE=FILE.obj: out/NAME.expressions.png, and how far the corners of its mouth move (samples/expressions.mk).
+.PHONY: expressions
+expressions: all
+	$(MAKE) -C samples expressions OUT=../out FACE=$(abspath $(FACE)) SINEW_BIN=$(abspath $(BIN))
+
 # The third: from an ultrasound volume to images of it as a probe presses it, with a video where there is ffmpeg.
 .PHONY: scan
 scan: all
@@ -380,6 +385,7 @@ help:
 	'make scan         from an ultrasound volume to images of it under a probe, into out/scan' \
 	'make console      a page in a browser on an arm and a patient under a probe, and a head, live; cases in out/console' \
 	'make paper        the figures and tables of both papers, beside what they print; out/paper/paper.html' \
+	'make expressions  FACE=FILE.obj: smile, frown, pucker, disgust and an open jaw of a real face; out/NAME.expressions.png' \
 	'make picture      the pictures in README.md, anew: replaces samples/*.png' \
 	'' \
 	'make check        set-up, the build, all tests, and small lints: run it before each commit; 13 minutes on two processors' \
