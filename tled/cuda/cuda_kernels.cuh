@@ -146,13 +146,13 @@ static __device__ void bring_gravity(const cuda_view<real> &v, const double *now
 template <class G, class L>
 static __device__ void bring_laws(const L &l, const cuda_view<real> &v, cuda_pass *p, real *room)
 {
-    static_assert(L::ASKS || L::LAW * LAWS_NEAR <= G::THREADS, "a thread brings one number");
+    constexpr bool more = L::LAW * LAWS_NEAR > G::THREADS; /* than one number a thread */
     const bool near = v.volumes <= LAWS_NEAR;
     p->gravity = room;
     p->law = near ? room + 4 : v.law;
     if (near && threadIdx.x < (l.coefficients + l.held) * v.volumes)
         room[4 + threadIdx.x] = v.law[threadIdx.x];
-    if (L::ASKS && near)
+    if (more && near)
         for (int i = (int)threadIdx.x + G::THREADS; i < (l.coefficients + l.held) * v.volumes; i += G::THREADS)
             room[4 + i] = v.law[i];
 }
