@@ -121,21 +121,29 @@ typedef struct stretch {
     float h[3][3];  /* H': row a, column: of the modes x, y, z */
     float g[3][3];  /* cof F'; on the diagonal, less that at rest */
     float dilation; /* det F' - V' */
-    float j;        /* J */
+    float j;        /* J; no cell: NO_CELL */
     float third;    /* (tr C - 3)/3 */
 } stretch;
 
+/* As J, of which all that depends on it is 0: a power of it, and what it divides. */
+#define NO_CELL 3e38f
+
 /* Of a box, by axis. */
-template <march_control K> static __device__ __forceinline__ float of_side(const float side[3], int i)
+template <march_control K> static __device__ __forceinline__ const march_side &side_of(const cuda_march &m, int i)
 {
-    return side[K == MARCH_PHYSICAL_CUBES ? 0 : i];
+    return m.side[K == MARCH_PHYSICAL_CUBES ? 0 : i];
 }
 
-/* Adds c^2 (C - 1) on the diagonal, along one axis; wide: c H' there; f: F' there. */
-static __device__ __forceinline__ float add_square(const float h[3][3], float wide, float f, int i, float sum)
+/* V'/c^2; of a cube, c. */
+template <march_control K> static __device__ __forceinline__ float squares_of(const cuda_march &m, int i)
+{
+    return K == MARCH_PHYSICAL_CUBES ? m.side[0].width : m.side[i].squares;
+}
+
+/* Adds c^2 (C - 1) on the diagonal, along one axis, to c H' there; f: F' there. */
+static __device__ __forceinline__ float add_square(const float h[3][3], float f, int i, float sum)
 {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    sum += wide;
     sum += h[i][i] * f;
     sum += h[j][i] * h[j][i];
     return sum + h[k][i] * h[k][i];
@@ -150,14 +158,14 @@ static __device__ __forceinline__ float third_of(const cuda_march &m, const floa
 #pragma unroll
     for (int i = 0; i < 3; i++)
         if constexpr (K == MARCH_PHYSICAL_CUBES)
-            all = add_square(h, wide[i], f[i], i, all);
+            all = add_square(h, f[i], i, i ? all + wide[i] : wide[i]);
         else
-            all += m.thirds[i] * add_square(h, m.width[i] * h[i][i], f[i], i, 0);
-    return K == MARCH_PHYSICAL_CUBES ? m.thirds[0] * all : all;
+            all += m.side[i].thirds * add_square(h, f[i], i, m.side[i].width * h[i][i]);
+    return K == MARCH_PHYSICAL_CUBES ? m.side[0].thirds * all : all;
 }
 
 template <march_control K>
-static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, const face &low, const face &high)
+static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, bool is, const face &low, const face &high)
 {
     stretch s;
     float f[3], wide[3];
@@ -169,8 +177,8 @@ static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, const 
     }
 #pragma unroll
     for (int i = 0; i < 3; i++) {
-        f[i] = of_side<K>(m.width, i) + s.h[i][i];
-        wide[i] = of_side<K>(m.width, (i + 2) % 3) * s.h[i][i];
+        f[i] = side_of<K>(m, i).width + s.h[i][i];
+        wide[i] = side_of<K>(m, (i + 2) % 3).width * s.h[i][i];
     }
 #pragma unroll
     for (int i = 0; i < 3; i++) {
@@ -179,8 +187,8 @@ static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, const 
         s.g[i][j] = s.h[j][k] * s.h[k][i] - s.h[j][i] * f[k];
         s.g[i][k] = s.h[j][i] * s.h[k][j] - s.h[k][i] * f[j];
     }
-    s.dilation = f[0] * s.g[0][0] + m.face[0] * s.h[0][0] + s.h[0][1] * s.g[0][1] + s.h[0][2] * s.g[0][2];
-    s.j = 1 + s.dilation * m.density;
+    s.dilation = f[0] * s.g[0][0] + m.side[0].face * s.h[0][0] + s.h[0][1] * s.g[0][1] + s.h[0][2] * s.g[0][2];
+    s.j = is ? 1 + s.dilation * m.side[0].density : NO_CELL;
     s.third = third_of<K>(m, s.h, wide, f);
     return s;
 }
@@ -190,30 +198,30 @@ template <march_control K>
 static __device__ __forceinline__ void push_of(const cuda_march &m, const march_hold &k, const stretch &s, bool is,
                                                float p[3][3])
 {
-    const float scale = is ? near_exp2(k.log_mu + near_log2(s.j) * (-5.f / 3)) : 0;
+    const float scale = near_exp2(k.log_mu + near_log2(s.j) * (-5.f / 3));
     const float pressure = is ? k.press * s.dilation : 0;
-    const float all = pressure + scale * (s.dilation * m.density - s.third), own = scale * s.j;
+    const float all = pressure + scale * (s.dilation * m.side[0].density - s.third), own = scale * s.j;
     const float g = pressure - scale * (1 + s.third);
 #pragma unroll
     for (int i = 0; i < 3; i++) {
-        const float column = own * of_side<K>(m.squares, i);
+        const float column = own * squares_of<K>(m, i);
 #pragma unroll
         for (int a = 0; a < 3; a++)
             p[a][i] = column * s.h[a][i] + g * s.g[a][i];
-        p[i][i] += all * of_side<K>(m.face, i);
+        p[i][i] += all * side_of<K>(m, i).face;
     }
 }
 
 /* F'^-T; no cell: nothing. */
 template <march_control K>
-static __device__ __forceinline__ void inverse_of(const cuda_march &m, const stretch &s, bool is, float to[3][3])
+static __device__ __forceinline__ void inverse_of(const cuda_march &m, const stretch &s, float to[3][3])
 {
-    const float inverse = is ? m.density * near_inverse(s.j) : 0;
+    const float inverse = m.side[0].density * near_inverse(s.j);
 #pragma unroll
     for (int i = 0; i < 3; i++)
 #pragma unroll
         for (int a = 0; a < 3; a++)
-            to[a][i] = a == i ? s.g[i][i] * inverse + of_side<K>(m.face, i) * inverse : s.g[a][i] * inverse;
+            to[a][i] = a == i ? s.g[i][i] * inverse + side_of<K>(m, i).face * inverse : s.g[a][i] * inverse;
 }
 
 /* Strains of a mode. */
@@ -248,7 +256,13 @@ template <march_control K> static __device__ __forceinline__ float own_of(const 
     return K == MARCH_PHYSICAL_CUBES ? k.torsion : k.own[i];
 }
 
-template <march_control K>
+/* k.bending; of a plain cell it is 1. */
+template <bool PLAIN> static __device__ __forceinline__ float bending_of(const march_hold &k)
+{
+    return PLAIN ? 1 : k.bending;
+}
+
+template <march_control K, bool PLAIN>
 static __device__ __forceinline__ void hold_modes(const march_hold &k, const float inverse[3][3], const face &low,
                                                   const face &high, mode_force *f, float p[3][3])
 {
@@ -265,15 +279,15 @@ static __device__ __forceinline__ void hold_modes(const march_hold &k, const flo
 #pragma unroll
     for (int i = 0; i < 3; i++)
         xy[i] = e_low[i] + e_high[i];
-    const float twist = k.torsion * (e_yz[0] + e_zx[1] + xy[2]);
-    const float s_xy[3] = {k.bending * xy[0] + k.coupling * e_yz[2], k.bending * xy[1] + k.coupling * e_zx[2],
+    const float bending = bending_of<PLAIN>(k), twist = k.torsion * (e_yz[0] + e_zx[1] + xy[2]);
+    const float s_xy[3] = {bending * xy[0] + k.coupling * e_yz[2], bending * xy[1] + k.coupling * e_zx[2],
                            own_of<K>(k, 2) * xy[2] + twist};
     s_yz[0] = own_of<K>(k, 0) * e_yz[0] + twist;
-    s_yz[1] = k.bending * e_yz[1] + k.coupling * e_zx[0];
-    s_yz[2] = k.bending * e_yz[2] + k.coupling * xy[0];
-    s_zx[0] = k.bending * e_zx[0] + k.coupling * e_yz[1];
+    s_yz[1] = bending * e_yz[1] + k.coupling * e_zx[0];
+    s_yz[2] = bending * e_yz[2] + k.coupling * xy[0];
+    s_zx[0] = bending * e_zx[0] + k.coupling * e_yz[1];
     s_zx[1] = own_of<K>(k, 1) * e_zx[1] + twist;
-    s_zx[2] = k.bending * e_zx[2] + k.coupling * xy[1];
+    s_zx[2] = bending * e_zx[2] + k.coupling * xy[1];
 #pragma unroll
     for (int i = 0; i < 3; i++) {
         const float gap = e_high[i] - e_low[i];
@@ -286,17 +300,17 @@ static __device__ __forceinline__ void hold_modes(const march_hold &k, const flo
     mode_forces(inverse, s_zx, e_zx, f->zx, p);
 }
 
-/* As cell_forces of isotropic control. */
-template <march_control K>
+/* As cell_forces of isotropic control; PLAIN: the cell is. */
+template <march_control K, bool PLAIN>
 static __device__ __forceinline__ void cell_forces(const cuda_march &m, const march_hold &k, bool is, const face &low,
                                                    const face &high, face *sum, push<K> *below)
 {
     float p[3][3], inverse[3][3];
     mode_force f;
-    const stretch s = stretch_of<K>(m, low, high);
+    const stretch s = stretch_of<K>(m, is, low, high);
     push_of<K>(m, k, s, is, p);
-    inverse_of<K>(m, s, is, inverse);
-    hold_modes<K>(k, inverse, low, high, &f, p);
+    inverse_of<K>(m, s, inverse);
+    hold_modes<K, PLAIN>(k, inverse, low, high, &f, p);
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         sum->mean[a] = below->mean[a] - p[a][2];
@@ -313,17 +327,17 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, const ma
 /* Of a law, by hourglass_numbers' formulas. */
 static __device__ __forceinline__ march_hold hold_of(const cuda_march &m, float mu, float bulk)
 {
-    const float least = 1e-30f, torsion = m.volume * (MARCH_LAW / 3) * mu, twice = 2 * torsion;
+    const float least = 1e-30f, torsion = m.volume * m.weight * (1.f / 3) * mu, twice = 2 * torsion;
     march_hold k;
-    k.log_mu = near_log2(MARCH_LAW * mu);
-    k.press = MARCH_LAW * m.density * bulk;
+    k.log_mu = near_log2(m.weight * mu);
+    k.press = m.weight * m.side[0].density * bulk;
     k.coupling = twice * (bulk - 2.f / 3 * mu) * near_inverse(fmaxf(bulk + 4.f / 3 * mu, least));
     k.bending = k.coupling + twice;
     k.torsion = torsion;
     k.corner = 3 * torsion * bulk * near_inverse(fmaxf(3 * bulk + mu, least));
 #pragma unroll
     for (int a = 0; a < 3; a++)
-        k.own[a] = m.own[a] * torsion;
+        k.own[a] = m.side[a].own * torsion;
     return k;
 }
 

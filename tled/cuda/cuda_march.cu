@@ -27,12 +27,12 @@ static_assert((int)TAKEN < (int)MARCH_AHEAD, "in the layers that send for no dis
 
 /* What goes from layer to layer. */
 template <march_control K> struct flow {
-    const uint32_t *word;      /* of the layer after the one that the loop is at, this thread's */
-    uint32_t after, far, more; /* words of layer c + 2, and c + MARCH_AHEAD, and there of the place beyond */
-    int32_t which, detail;     /* march's: which, of layer c + 3; detail, of layer c + 4 */
-    uint32_t last, now, then;  /* words of layers c - 1, c, c + 1 */
-    int32_t empty;             /* layers since this warp's last with cells */
-    uint32_t ticket;           /* thread 0's, of the unit that the block takes next */
+    const uint32_t *word;     /* of the layer that the loop is at, this thread's */
+    uint32_t far, more;       /* words of layer c + MARCH_AHEAD, and there of the place beyond */
+    int32_t which, detail;    /* march's: which, of layer c + 3; detail, of layer c + 4 */
+    uint32_t last, now, then; /* words of layers c - 1, c, c + 1 */
+    int32_t empty;            /* layers since this warp's last with cells */
+    uint32_t ticket;          /* thread 0's, of the unit that the block takes next */
     push<K> below;
 };
 
@@ -174,7 +174,7 @@ static __device__ __forceinline__ void forces_of(const cuda_march &m, const doub
             const float4 law = shared_load(record);
             k = hold_of(m, law.x, law.y);
         }
-        cell_forces<K>(m, k, is, low, high, sum, &f->below);
+        cell_forces<K, !SPECIAL>(m, k, is, low, high, sum, &f->below);
     }
     if (special)
         muscle_forces(m, now, record, t.base + c, here, next, sum, &f->below);
@@ -211,9 +211,9 @@ static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda
     const double *now = now_of(p, t);
     const cuda_march_kind &k = kind_of<STEP>(p, t);
     const int axis = m.axis[a];
-    float u = shared_number(node + 4 * a), v = shared_number(speed + 4 * a), net = -pull;
-    for (int32_t i = x ? x->forces : 0; i-- > 0;) /* downwards, of unknown length: else it is unrolled */
-        net += (float)cuda_force(m.v, x->force + unknown(i), now, axis, (double)u);
+    float u = shared_number(node + 4 * a), v = shared_number(speed + 4 * a), net = -m.force * pull;
+    for (int32_t i = x ? x->forces : 0; (i = unknown(i)) > 0; i--) /* of unknown length: else it is unrolled */
+        net += (float)cuda_force(m.v, x->force + i - 1, now, axis, (double)u);
     if (bits >> (MARCH_FREE + a) & 1) {
         v = k.keep * v + shared_number(t.memory + GRAVITY + 4 * a) + k.push * shared_number(node + 12) * net;
         u += k.dt * v;
@@ -255,17 +255,17 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
     const uint32_t bits = __float_as_uint(v.w);
     const cuda_march_kind &k = kind_of<STEP>(p, t);
     if (!STEP && k.what & PASS_INTERNAL)
-        *(float4 *)node_of(to_of(p, t), word) = make_float4(sum.x, sum.y, sum.z, u.w);
+        *(float4 *)node_of(to_of(p, t), word) = make_float4(m.force * sum.x, m.force * sum.y, m.force * sum.z, u.w);
     if (bits != 7) {
 #pragma unroll 1
         for (int a = 0; bits && a < 3; a++) /* of what is held and not displaced, all stays */
             move_held<STEP>(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
         put_node<STEP>(p, t, word, shared_load(node), shared_load(speed));
     } else {
-        const float push = k.push * u.w;
-        v.x = (k.keep * v.x + gravity.x) - push * sum.x;
-        v.y = (k.keep * v.y + gravity.y) - push * sum.y;
-        v.z = (k.keep * v.z + gravity.z) - push * sum.z;
+        const float pull = k.pull * u.w;
+        v.x = (k.keep * v.x + gravity.x) - pull * sum.x;
+        v.y = (k.keep * v.y + gravity.y) - pull * sum.y;
+        v.z = (k.keep * v.z + gravity.z) - pull * sum.z;
         u.x += k.dt * v.x;
         u.y += k.dt * v.y;
         u.z += k.dt * v.z;
@@ -277,14 +277,13 @@ static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda
 static __device__ __forceinline__ void say_done(const turn &t)
 {
     __syncwarp();
-    if (threadIdx.x % 32 == 0)
-        barrier_arrive(t.memory + SAID);
+    barrier_arrive_warp(t.memory + SAID);
 }
 
-/* Words of the layer after the next are on their way while a layer is worked on. */
+/* Words by which a layer sends at its end: they are on their way while it is worked on. */
 template <march_control K> static __device__ __forceinline__ void fetch_words(flow<K> *f)
 {
-    f->after = f->word[2 * MARCH_WORDS];
+    f->then = f->word[MARCH_WORDS];
     f->far = f->word[MARCH_AHEAD * MARCH_WORDS];
     f->more = has_extra() ? f->word[MARCH_AHEAD * MARCH_WORDS + MARCH_THREADS] : 0;
     f->word += MARCH_WORDS;
@@ -352,11 +351,8 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
     const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
     const uint32_t here = at + (next ? next - STAGE : (STAGES - 1) * STAGE);
-    const uint32_t after = f->after, far = f->far, more = f->more;
     const int c = t.cells - left;
     fetch_words(f);
-    if (left < MARCH_AHEAD)
-        take_next(m, p, t, left, f);
     if (__any_sync(~0u, f->now & MARCH_CELL)) {
         face sum;
         *high = face_at(at + next);
@@ -375,11 +371,12 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     }
     move_node<STEP>(m, p, t, f->last, before, at + old, speed);
     if (left >= MARCH_AHEAD) {
-        send_both(speed, node_of(p.velocity, f->then), f->then & MARCH_OWN, at + old, node_of(from_of(p, t), far),
-                  far & MARCH_THERE);
-        send_extra(from_of(p, t), at, old, more);
+        send_both(speed, node_of(p.velocity, f->then), f->then & MARCH_OWN, at + old, node_of(from_of(p, t), f->far),
+                  f->far & MARCH_THERE);
+        send_extra(from_of(p, t), at, old, f->more);
     } else {
         send(speed, node_of(p.velocity, f->then), left > 1 ? f->then & MARCH_OWN : 0);
+        take_next(m, p, t, left, f);
     }
     if (SPECIAL)
         go_on_special(m, t, f, c);
@@ -387,7 +384,6 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     say_done(t);
     f->last = f->now;
     f->now = f->then;
-    f->then = after;
 }
 
 /* Thread 0's work. */
@@ -423,9 +419,7 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
         word[k] = f->word[k * MARCH_WORDS];
         extra[k] = has_extra() ? f->word[k * MARCH_WORDS + MARCH_THREADS] : 0;
     }
-    fetch_words(f);
     f->now = word[0] & ~MARCH_OWN; /* the first layer's nodes are another unit's */
-    f->then = word[1];
     wait_for_near(m, p, t, unit);
 #pragma unroll
     for (int k = 0; k < MARCH_AHEAD; k++)

@@ -20,12 +20,18 @@ enum {
 /* V/V', by which the march's numbers of a law are multiplied under physical control. */
 #define MARCH_LAW (1.f / 64)
 
-/* What holds a cell under physical control: log2 of mu and K/V', both times MARCH_LAW; of its modes hourglass_numbers
- * times V, and what of torsion is a strain's own, but for the sum. */
+/* What holds a cell under physical control, in the march's unit of force: log2 of mu and K/V', both times MARCH_LAW; of
+ * its modes hourglass_numbers times V, and what of torsion is a strain's own, but for the sum. `bending` is 1 of plain
+ * cells. */
 typedef struct march_hold {
     float log_mu, press;
-    float bending, coupling, torsion, corner, own[3];
+    float coupling, torsion, corner, bending, own[3];
 } march_hold;
+
+/* Of an axis, with c = 4 h and V' = 64 V: c, V'/c, 1/(3 c^2), 1/V'; V'/c^2, (c_i^2/c_j^2 + c_i^2/c_k^2) - 1. */
+typedef struct march_side {
+    float width, face, thirds, density, squares, own;
+} march_side;
 
 typedef struct cuda_march {
     cuda_view<float> v;
@@ -38,13 +44,15 @@ typedef struct cuda_march {
     const uint32_t *word;
     const int32_t *detail, *which;
     const march_cell *cell;
-    float law[3];            /* isotropic: of plain cells mu, K, hourglass */
-    march_hold held;         /* physical: of plain cells */
-    float slope[3], area[3]; /* element_shape's, along the march's axes */
-    /* Along these, with c = 4 h: c, V'/c, 1/(3 c^2), V'/c^2, (c_i^2/c_j^2 + c_i^2/c_k^2) - 1; V' = 64 V, and 1/V'. */
-    float width[3], face[3], thirds[3], squares[3], own[3], volume, density;
-    int32_t axis[3];      /* of the model: which these are */
-    const march_tip *tip; /* march's; NULL: there are none */
+    float law[3];                /* isotropic: of plain cells mu, K, hourglass */
+    float force;                 /* the unit of force, in newtons; isotropic: 1 */
+    float weight;                /* physical: MARCH_LAW in that unit */
+    alignas(16) march_hold held; /* physical: of plain cells */
+    alignas(16) march_side side[3];
+    float slope[3], area[3]; /* element_shape's, along the march's axes; area: in the unit of force */
+    float volume;            /* V' */
+    int32_t axis[3];         /* of the model: which these are */
+    const march_tip *tip;    /* march's; NULL: there are none */
     int32_t tip_first;
 } cuda_march;
 
@@ -59,9 +67,10 @@ static inline march_control march_control_of(hourglass_kind kind, const double s
     return side[0] == side[1] && side[1] == side[2] ? MARCH_PHYSICAL_CUBES : MARCH_PHYSICAL;
 }
 
-/* What a pass does: v = keep v + push a, with what a step begins and ends; u += dt v. */
-typedef struct cuda_march_kind {
-    float keep, push, dt;
+/* What a pass does: v = keep v + push a, with what a step begins and ends; u += dt v. pull: push, of forces in the
+ * march's unit. */
+typedef struct alignas(16) cuda_march_kind {
+    float keep, pull, dt, push;
     int32_t what;
 } cuda_march_kind;
 

@@ -47,7 +47,7 @@ static __device__ __forceinline__ void tip_muscles(const cuda_march &m, const do
     }
 }
 
-/* What a thread's element pulls the tip with. */
+/* What a thread's element pulls the tip with, in the march's unit of force. */
 template <march_control K>
 static __device__ __forceinline__ float3 tip_pull(const cuda_march &m, const double *now, const march_tip &of,
                                                   uint32_t at)
@@ -66,14 +66,14 @@ static __device__ __forceinline__ float3 tip_pull(const cuda_march &m, const dou
         march_hold k = m.held;
         if (of.special)
             k = hold_of(m, m.cell[of.special - 1].mu, m.cell[of.special - 1].bulk);
-        cell_forces<K>(m, k, true, low, high, &sum, &below);
+        cell_forces<K, false>(m, k, true, low, high, &sum, &below);
     }
     if (of.special)
         tip_muscles(m, now, m.cell[of.special - 1], low, high, &sum, &below);
     return tip_share(of.corner < 4 ? sum : face_of(below, high), of.corner);
 }
 
-/* As move_node; n: where it stands. */
+/* As move_node; n: where it stands; pull: in newtons. */
 static __device__ __forceinline__ void move_tip(const cuda_march &m, const cuda_march_pass &p, const turn &t,
                                                 uint32_t n, float4 from, float4 speed, float3 pull)
 {
@@ -89,8 +89,8 @@ static __device__ __forceinline__ void move_tip(const cuda_march &m, const cuda_
     for (int a = 0; a < 3; a++) {
         const int axis = m.axis[a];
         float net = -sum[a];
-        for (int32_t i = x ? x->forces : 0; i-- > 0;)
-            net += (float)cuda_force(m.v, x->force + unknown(i), now, axis, (double)u[a]);
+        for (int32_t i = x ? x->forces : 0; (i = unknown(i)) > 0; i--)
+            net += (float)cuda_force(m.v, x->force + i - 1, now, axis, (double)u[a]);
         if (bits >> (MARCH_FREE + a) & 1) {
             const float gravity = m.v.gravity < 0 ? 0 : k.push * (float)now[3 * m.v.gravity + axis];
             v[a] = k.keep * v[a] + gravity + k.push * from.w * net;
@@ -134,7 +134,8 @@ static __device__ __forceinline__ void move_tips(const cuda_march &m, const cuda
         pull.z += __shfl_xor_sync(~0u, pull.z, with);
     }
     if (moves)
-        move_tip(m, p, t, n, shared_load(at + (uint32_t)of.corner * TIP_ROW), shared_load(at + TIP_VELOCITY), pull);
+        move_tip(m, p, t, n, shared_load(at + (uint32_t)of.corner * TIP_ROW), shared_load(at + TIP_VELOCITY),
+                 {m.force * pull.x, m.force * pull.y, m.force * pull.z});
 }
 
 #endif

@@ -261,21 +261,26 @@ static void march_list(cuda_state *s, const cuda_numbers *numbers, card_layout *
     card_layout_copy(l, &w->tip, m->tip, 8 * m->tips);
 }
 
-/* Of plain cells, under physical control. */
+/* Of plain cells, under physical control, in a unit of force by which their bending is 1. */
 static void hold_plain(cuda_state *s)
 {
     const tled_problem *p = s->p;
     const tled_volume *plain = &p->volume[s->march.plain];
     const double *held = plain->law.hourglass, volume = p->side[0] * p->side[1] * p->side[2];
+    const double unit = volume * held[HOURGLASS_BENDING], weight = MARCH_LAW / unit, by = volume / unit;
     march_hold *to = &s->walk.held;
-    to->log_mu = (float)log2(MARCH_LAW * plain->law.c[0]); /* neo-Hookean form: mu, K */
-    to->press = (float)(MARCH_LAW * plain->law.c[1] / (64 * volume));
-    to->bending = (float)(volume * held[HOURGLASS_BENDING]);
-    to->coupling = (float)(volume * held[HOURGLASS_COUPLING]);
-    to->torsion = (float)(volume * held[HOURGLASS_TORSION]);
-    to->corner = (float)(volume * held[HOURGLASS_CORNER]);
-    for (int a = 0; a < 3; a++)
-        to->own[a] = s->walk.own[a] * to->torsion;
+    to->log_mu = (float)log2(weight * plain->law.c[0]); /* neo-Hookean form: mu, K */
+    to->press = (float)(weight * plain->law.c[1] / (64 * volume));
+    to->bending = 1;
+    to->coupling = (float)(by * held[HOURGLASS_COUPLING]);
+    to->torsion = (float)(by * held[HOURGLASS_TORSION]);
+    to->corner = (float)(by * held[HOURGLASS_CORNER]);
+    for (int a = 0; a < 3; a++) {
+        to->own[a] = s->walk.side[a].own * to->torsion;
+        s->walk.area[a] = (float)(volume / (4 * p->side[s->march.axis[a]]) / unit);
+    }
+    s->walk.force = (float)unit;
+    s->walk.weight = (float)weight;
 }
 
 /* What a march's kernels see beside its lists. */
@@ -301,15 +306,17 @@ static void march_fill(cuda_state *s)
         w->law[a] = (float)law[a];
         w->slope[a] = (float)(1 / (4 * side));
         w->area[a] = (float)(volume / (4 * side));
-        w->width[a] = (float)width;
-        w->face[a] = (float)(beside * across);
-        w->thirds[a] = (float)(1 / (3 * width * width));
-        w->squares[a] = (float)(64 * volume / (width * width));
-        w->own[a] = (float)(width * width * (1 / (beside * beside) + 1 / (across * across)) - 1);
+        w->side[a].width = (float)width;
+        w->side[a].face = (float)(beside * across);
+        w->side[a].thirds = (float)(1 / (3 * width * width));
+        w->side[a].density = (float)(1 / (64 * volume));
+        w->side[a].squares = (float)(64 * volume / (width * width));
+        w->side[a].own = (float)(width * width * (1 / (beside * beside) + 1 / (across * across)) - 1);
     }
+    w->force = 1;
     w->volume = (float)(64 * volume);
-    w->density = (float)(1 / (64 * volume));
-    hold_plain(s);
+    if (p->control.kind == HOURGLASS_PHYSICAL)
+        hold_plain(s);
 }
 
 /* Velocities, which a pass reads and writes, and words, which stand after them, are what the cache is to keep while the
@@ -345,29 +352,29 @@ static int march_begin(cuda_state *s, err *e)
 }
 
 /* What a march does in a pass: v = (keep v + half a) slow where a step begins, and so on. */
-static cuda_march_kind kind_of(const tled_plan *plan, int what)
+static cuda_march_kind kind_of(const cuda_state *s, const tled_plan *plan, int what)
 {
     const node_factors f = node_factors_of(1 / plan->rate, plan->damping);
     const bool begins = what & PASS_BEGIN, ends = what & PASS_FINISH;
     const real keep = (begins ? f.slow : 1) * (ends ? f.keep : 1);
     const real push = begins && ends ? f.dt * f.slow : begins ? f.half * f.slow : ends ? f.half : 0;
-    return {(float)keep, (float)push, begins ? (float)f.dt : 0, what};
+    return {(float)keep, (float)(push * s->walk.force), begins ? (float)f.dt : 0, (float)push, what};
 }
 
 /* `passes` passes in one launch. first: what the first does; ends: the last leaves the internal forces. */
 static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int64_t passes, int first, bool ends,
                     err *e)
 {
-    const cuda_march_pass p = {
-        {(float4 *)s->field[TLED_DISPLACEMENT], (float4 *)s->spare},
-        (float4 *)s->field[TLED_VELOCITY],
-        now,
-        {kind_of(plan, first), kind_of(plan, PASS_BEGIN | PASS_FINISH), kind_of(plan, PASS_FINISH | PASS_INTERNAL)},
-        3 * (int32_t)s->p->script->curves,
-        (int32_t)passes,
-        ends,
-        s->walked + 1,
-        s->tickets};
+    const cuda_march_pass p = {{(float4 *)s->field[TLED_DISPLACEMENT], (float4 *)s->spare},
+                               (float4 *)s->field[TLED_VELOCITY],
+                               now,
+                               {kind_of(s, plan, first), kind_of(s, plan, PASS_BEGIN | PASS_FINISH),
+                                kind_of(s, plan, PASS_FINISH | PASS_INTERNAL)},
+                               3 * (int32_t)s->p->script->curves,
+                               (int32_t)passes,
+                               ends,
+                               s->walked + 1,
+                               s->tickets};
     const march_control control = march_control_of(s->p->control.kind, s->p->side);
     if (card_check(cuda_march_start(control, &s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
         return -1;

@@ -93,9 +93,12 @@ static __device__ __forceinline__ void barrier_make(uint32_t barrier, uint32_t c
     asm volatile("mbarrier.init.shared::cta.b64 [%0], %1;" ::"r"(barrier), "r"(count) : "memory");
 }
 
-static __device__ __forceinline__ void barrier_arrive(uint32_t barrier)
+/* One thread of each warp that calls it, all of it at once. */
+static __device__ __forceinline__ void barrier_arrive_warp(uint32_t barrier)
 {
-    asm volatile("{ .reg .b64 state; mbarrier.arrive.shared::cta.b64 state, [%0]; }" ::"r"(barrier) : "memory");
+    asm volatile("{ .reg .pred one; .reg .b64 state; elect.sync _|one, 0xffffffff;"
+                 " @one mbarrier.arrive.shared::cta.b64 state, [%0]; }" ::"r"(barrier)
+                 : "memory");
 }
 
 /* Waits for the end of the phase that goes on or of the one before it: whichever is `odd`. */

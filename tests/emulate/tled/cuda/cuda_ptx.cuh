@@ -30,6 +30,11 @@ template <int N> static inline void arrived()
 void barrier_make(uint32_t barrier, uint32_t count);
 void barrier_arrive(uint32_t barrier);
 void barrier_wait(uint32_t barrier, int odd);
+static inline void barrier_arrive_warp(uint32_t barrier)
+{
+    if (threadIdx.x % 32 == 0)
+        barrier_arrive(barrier);
+}
 
 void relaxed_store(uint64_t *to, uint64_t word);
 uint64_t relaxed_load(const uint64_t *from);
