@@ -3,9 +3,14 @@
  * so an element takes one new face, and a node the sums of one. Compiled with fused multiplications and
  * additions: its bytes are not the processor's.
  *
- * Layer c of cells lies between layers c and c + 1 of nodes. Displacements are on their way to shared memory from four
- * layers before they are wanted, velocities from two: both have the time of two layers of cells before a thread waits
- * for them. Forces on neighbours' nodes go there too, in buffers that take turns. A layer's nodes move after the cells
+ * Layer c of cells lies between layers c and c + 1 of nodes. At its end a thread sends for displacements of layer c + 7
+ * and velocities of layer c + 3, as one group of copies to shared memory. It waits for that group in layer c + 4, after
+ * the cells of that are computed: so copies have the time of four layers of cells, as memory takes longer than two when
+ * all blocks ask it. Displacements are there a layer before others read them, velocities just before they are wanted.
+ * In units with special cells it waits in layer c + 2 already: what these are made of comes with the same groups, but
+ * is sent for three layers ahead.
+ *
+ * Forces on neighbours' nodes go to shared memory too, in buffers that take turns. A layer's nodes move after the cells
  * of the next one are computed: a warp says that it is done with a layer, and only after it has computed the next one
  * does it wait until all have said so, so that those with fewer cells seldom keep others waiting.
  */
@@ -19,18 +24,24 @@ extern "C" {
 #include <limits.h>
 
 enum {
-    TAKEN = 4,    /* layers before its last, a block takes its next unit */
-    TOGETHER = 2, /* blocks of a multiprocessor */
-    ZEROS = 3     /* layers after its last with cells, a warp has left zeros in both buffers of forces */
+    TAKEN = 4,                 /* layers before its last, a block takes its next unit */
+    TOGETHER = 2,              /* blocks of a multiprocessor */
+    ZEROS = 3,                 /* layers after its last with cells, a warp has left zeros in both buffers of forces */
+    SPEEDS_AHEAD = SPEEDS - 1, /* layers that velocities are ahead */
+    UNDERWAY = 3,              /* groups of copies that a layer does not wait for: of so many layers before it */
+    UNDERWAY_SPECIAL = 1       /* of a unit with special cells */
 };
 static_assert((int)TAKEN < (int)MARCH_AHEAD, "in the layers that send for no displacements");
+static_assert((int)MARCH_AHEAD - UNDERWAY == 4 && SPEEDS_AHEAD - UNDERWAY == 0, "what wait_before says is there");
 
 /* What goes from layer to layer. */
 template <march_control K> struct flow {
     const uint32_t *word;     /* of the layer that the loop is at, this thread's */
+    uint32_t speed;           /* word of layer c + SPEEDS_AHEAD */
     uint32_t far, more;       /* words of layer c + MARCH_AHEAD, and there of the place beyond */
     int32_t which, detail;    /* march's: which, of layer c + 3; detail, of layer c + 4 */
     uint32_t last, now, then; /* words of layers c - 1, c, c + 1 */
+    uint32_t pair;            /* where places c % SPEEDS of velocities begin, of c - c % 2 */
     int32_t empty;            /* layers since this warp's last with cells */
     uint32_t ticket;          /* thread 0's, of the unit that the block takes next */
     push<K> below;
@@ -70,19 +81,6 @@ static __device__ __forceinline__ const cuda_march_kind &kind_of(const cuda_marc
 static __device__ __forceinline__ const double *now_of(const cuda_march_pass &p, const turn &t)
 {
     return p.now + (int64_t)t.pass * p.row;
-}
-
-/* The first threads have a place beyond the threads' as well. */
-static __device__ __forceinline__ bool has_extra(void)
-{
-    return threadIdx.x < EXTRA;
-}
-
-/* at: the thread's own place. */
-static __device__ __forceinline__ uint32_t extra_at(uint32_t at)
-{
-    const int t = (int)threadIdx.x, own = place_of(t), extra = t < GRID ? t * GRID + SIDE : SIDE * GRID + t - GRID;
-    return at + (uint32_t)((extra - own) * NODE);
 }
 
 static __device__ __forceinline__ void send_extra(const float4 *from, uint32_t at, uint32_t stage, uint32_t extra)
@@ -284,6 +282,7 @@ static __device__ __forceinline__ void say_done(const turn &t)
 template <march_control K> static __device__ __forceinline__ void fetch_words(flow<K> *f)
 {
     f->then = f->word[MARCH_WORDS];
+    f->speed = f->word[SPEEDS_AHEAD * MARCH_WORDS];
     f->far = f->word[MARCH_AHEAD * MARCH_WORDS];
     f->more = has_extra() ? f->word[MARCH_AHEAD * MARCH_WORDS + MARCH_THREADS] : 0;
     f->word += MARCH_WORDS;
@@ -332,16 +331,16 @@ static __device__ __forceinline__ void take_next(const cuda_march &m, const cuda
         note_next(m, p, t.memory, f->ticket);
 }
 
-/* All warps are done with the layer before. What was sent is there but for what was sent in that: displacements up to
- * layer c + 3, and velocities of c - 1. */
-template <int ODD> static __device__ __forceinline__ void wait_before(const turn &t)
+/* All warps are done with the layer before. What was sent UNDERWAY + 1 layers ago is there: displacements up to layer
+ * c + 3, and velocities of c - 1. Where there are special cells, so are those of layer c + 1. */
+template <bool SPECIAL, int ODD> static __device__ __forceinline__ void wait_before(const turn &t)
 {
     barrier_wait(t.memory + SAID, 1 - ODD); /* first: a wait for copies alone is placed before the arithmetic */
-    arrived<1>();
+    arrived<SPECIAL ? UNDERWAY_SPECIAL : UNDERWAY>();
 }
 
 /* Layer c of cells of a unit, whose lower face is `low`, and layer c - 1 of nodes; odd: c is. left: layers from c on.
- * next: where the displacements of layer c + 1 stand; old: those of c - 1, and those of c + 5 from here on. Who has no
+ * next: where the displacements of layer c + 1 stand; old: those of c - 1, and those of c + 7 from here on. Who has no
  * cells finds the face of those that the next layer has. */
 template <march_control K, bool SPECIAL, bool STEP, int ODD>
 static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_march_pass &p, const turn &t, uint32_t at,
@@ -349,7 +348,7 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
                                              face *high)
 {
     const uint32_t forces = at + FORCES + ODD * FORCES_EACH, before = at + FORCES + (1 - ODD) * FORCES_EACH;
-    const uint32_t speed = at + VELOCITIES + (1 - ODD) * FORCE; /* of layer c - 1, and of c + 1 from here on */
+    const uint32_t speed = at + VELOCITIES + ODD * FORCE + f->pair; /* of layer c - 1, and of c + 3 from here on */
     const uint32_t here = at + (next ? next - STAGE : (STAGES - 1) * STAGE);
     const int c = t.cells - left;
     fetch_words(f);
@@ -358,12 +357,12 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
         *high = face_at(at + next);
         forces_of<K, SPECIAL>(m, now_of(p, t), t, f, c, low, *high, here, at + next, &sum);
         f->empty = 0;
-        wait_before<ODD>(t);
+        wait_before<SPECIAL, ODD>(t);
         share_forces(sum, forces);
     } else {
         if (__any_sync(~0u, f->then & MARCH_CELL))
             *high = face_at(at + next);
-        wait_before<ODD>(t);
+        wait_before<SPECIAL, ODD>(t);
         if (f->empty < ZEROS)
             share_forces(f->empty ? face{} : face_of(f->below, low), forces);
         f->below = {};
@@ -371,11 +370,11 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     }
     move_node<STEP>(m, p, t, f->last, before, at + old, speed);
     if (left >= MARCH_AHEAD) {
-        send_both(speed, node_of(p.velocity, f->then), f->then & MARCH_OWN, at + old, node_of(from_of(p, t), f->far),
+        send_both(speed, node_of(p.velocity, f->speed), f->speed & MARCH_OWN, at + old, node_of(from_of(p, t), f->far),
                   f->far & MARCH_THERE);
         send_extra(from_of(p, t), at, old, f->more);
     } else {
-        send(speed, node_of(p.velocity, f->then), left > 1 ? f->then & MARCH_OWN : 0);
+        send(speed, node_of(p.velocity, f->speed), left > SPEEDS_AHEAD ? f->speed & MARCH_OWN : 0);
         take_next(m, p, t, left, f);
     }
     if (SPECIAL)
@@ -384,6 +383,8 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     say_done(t);
     f->last = f->now;
     f->now = f->then;
+    if (ODD)
+        f->pair ^= 2 * FORCE;
 }
 
 /* Thread 0's work. */
@@ -425,6 +426,10 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
     for (int k = 0; k < MARCH_AHEAD; k++)
         if (k <= t.cells)
             send_layer(from_of(p, t), at, k * STAGE, word[k], extra[k]);
+#pragma unroll
+    for (int k = 1; k < SPEEDS_AHEAD; k++)
+        send(at + VELOCITIES + (k + 1) % SPEEDS * FORCE, node_of(p.velocity, word[k]),
+             k < t.cells ? word[k] & MARCH_OWN : 0);
     if (SPECIAL)
         begin_special(m, t, f);
     sent();
@@ -464,7 +469,7 @@ static __device__ __forceinline__ void march_unit_of(const cuda_march &m, const 
     arrived<0>();
     barrier_wait(t.memory + SAID, (last - 1) % 2);
     move_node<STEP>(m, p, t, f.last, at + FORCES + (uint32_t)(last - 1) % 2 * FORCES_EACH, at + old,
-                    at + VELOCITIES + (uint32_t)(last - 1) % 2 * FORCE);
+                    at + VELOCITIES + (uint32_t)last % SPEEDS * FORCE);
     if (last % 2) { /* the next unit's first phase is even again */
         say_done(t);
         barrier_wait(t.memory + SAID, 1);

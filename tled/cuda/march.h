@@ -32,7 +32,7 @@ enum {
     MARCH_THREADS = 256,        /* cells of a layer */
     MARCH_WORDS = 296,          /* of a layer: 256 and 33, and 7 of no use */
     MARCH_TIPS = 32,            /* the most of a unit */
-    MARCH_AHEAD = 5,            /* layers that copies are ahead, and words: so many of nothing follow the last */
+    MARCH_AHEAD = 7,            /* layers that displacements are ahead, and words: so many of nothing follow the last */
     MARCH_NODE = (1 << 28) - 1, /* of a word: where its node stands */
     MARCH_SPECIAL = 1 << 28,    /* its cell is not of the plain law: see `which` */
     MARCH_THERE = 1 << 29,      /* there is a node */
