@@ -6,10 +6,27 @@
 #define SINEW_FORM_MATHS_H
 
 #include "physics/form_first.h"
-#include "physics/form_general.h"
 #include "physics/form_mooney_rivlin.h"
 #include "physics/form_neo_hookean.h"
 #include "physics/forms.h"
+
+#ifdef ELEMENT_FORCES_ALONE /* numbers without bits have no powers: nothing is known of the form that takes them */
+ELEMENT_FUNCTION element_tensor form_general_stress(element_tensor h, const real *c)
+{
+    const real none = R(NAN);
+    const element_tensor p = {none, none, none, none, none, none, none, none, none};
+    (void)h, (void)c;
+    return p;
+}
+
+ELEMENT_FUNCTION real form_general_energy(element_tensor h, const real *c)
+{
+    (void)h, (void)c;
+    return R(NAN);
+}
+#else
+#include "physics/form_general.h"
+#endif
 
 /* P (Pa), the first Piola-Kirchhoff stress. c: the form's coefficients. */
 ELEMENT_FUNCTION element_tensor form_stress(form f, element_tensor h, const real *c)

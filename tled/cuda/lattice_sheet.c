@@ -8,7 +8,7 @@
 
 enum { TOUCHED = 8 * 9 /* of a node: elements and their corners */ };
 
-int sheet_make(lattice_sheet *s, const tled_problem *p, const int32_t *first, err *e)
+int lattice_sheet_make(lattice_sheet *s, const tled_problem *p, const int32_t *first, err *e)
 {
     *s = (lattice_sheet){.p = p, .first = first};
     s->at_node = mem_array(p->nodes, sizeof *s->at_node, "sheets of nodes", e);
@@ -16,19 +16,19 @@ int sheet_make(lattice_sheet *s, const tled_problem *p, const int32_t *first, er
     return s->at_node && s->at_cell ? 0 : -1;
 }
 
-void sheet_free(lattice_sheet *s)
+void lattice_sheet_free(lattice_sheet *s)
 {
     free(s->at_node);
     free(s->at_cell);
     memset(s, 0, sizeof *s);
 }
 
-void sheet_begin(lattice_sheet *s)
+void lattice_sheet_begin(lattice_sheet *s)
 {
     s->number++;
 }
 
-int32_t sheet_corner(const tled_problem *p, int32_t node, int i)
+int32_t lattice_sheet_corner(const tled_problem *p, int32_t node, int i)
 {
     const int32_t corner = i < 8 ? p->corner[8 * (int64_t)node + i] : -1;
     return corner < 8 * p->elements ? corner : -1;
@@ -50,12 +50,12 @@ static bool take(const lattice_sheet *s, int64_t *place, int32_t who, taken *t)
     return *place == mine;
 }
 
-bool sheet_take(lattice_sheet *s, int32_t node)
+bool lattice_sheet_take(lattice_sheet *s, int32_t node)
 {
     taken t = {.count = 0};
     bool takes = true;
-    for (int i = 0; takes && sheet_corner(s->p, node, i) >= 0; i++) {
-        const int32_t element = sheet_corner(s->p, node, i) / 8;
+    for (int i = 0; takes && lattice_sheet_corner(s->p, node, i) >= 0; i++) {
+        const int32_t element = lattice_sheet_corner(s->p, node, i) / 8;
         const int32_t *corner = s->p->element_node + 8 * (int64_t)element;
         takes = take(s, &s->at_cell[s->first[corner[0]]], element, &t);
         for (int c = 0; takes && c < 8; c++)
@@ -82,7 +82,7 @@ static int allocate(sheets *s, err *e)
     for (size_t i = 0; i < sizeof of / sizeof *of; i++)
         if (!(*of[i] = mem_array(nodes, sizeof **of[i], "sheets of nodes", e)))
             return -1;
-    return sheet_make(&s->filled, s->p, s->first, e);
+    return lattice_sheet_make(&s->filled, s->p, s->first, e);
 }
 
 static void free_all(sheets *s)
@@ -91,13 +91,13 @@ static void free_all(sheets *s)
     free(s->nodes);
     free(s->cells);
     free(s->near);
-    sheet_free(&s->filled);
+    lattice_sheet_free(&s->filled);
 }
 
 static bool is_near(const sheets *s, int32_t node)
 {
-    for (int i = 0; sheet_corner(s->p, node, i) >= 0; i++) {
-        const int32_t *corner = s->p->element_node + sheet_corner(s->p, node, i) / 8 * 8;
+    for (int i = 0; lattice_sheet_corner(s->p, node, i) >= 0; i++) {
+        const int32_t *corner = s->p->element_node + lattice_sheet_corner(s->p, node, i) / 8 * 8;
         if (s->cells[s->first[corner[0]]] > 1)
             return true;
         for (int c = 0; c < 8; c++)
@@ -128,11 +128,11 @@ static int list_near(sheets *s, const int32_t *group, const int32_t *at, int32_t
 static int64_t fill_sheet(sheets *s, int32_t number, int32_t *sheet)
 {
     int64_t left = 0;
-    sheet_begin(&s->filled);
+    lattice_sheet_begin(&s->filled);
     for (int64_t i = 0; i < s->count; i++) {
         const int32_t node = s->near[i];
         sheet[node] = number;
-        if (!sheet_take(&s->filled, node))
+        if (!lattice_sheet_take(&s->filled, node))
             s->near[left++] = node;
     }
     const int64_t gone = s->count - left;

@@ -24,17 +24,17 @@ typedef struct lattice_sheet {
 } lattice_sheet;
 
 /* -1 with e filled, and s to be freed all the same: no memory. */
-int sheet_make(lattice_sheet *s, const tled_problem *p, const int32_t *first, err *e);
-void sheet_free(lattice_sheet *s);
+int lattice_sheet_make(lattice_sheet *s, const tled_problem *p, const int32_t *first, err *e);
+void lattice_sheet_free(lattice_sheet *s);
 
 /* Begins an empty one. */
-void sheet_begin(lattice_sheet *s);
+void lattice_sheet_begin(lattice_sheet *s);
 
 /* Takes a node, if there is room for it and all that its elements touch. */
-bool sheet_take(lattice_sheet *s, int32_t node);
+bool lattice_sheet_take(lattice_sheet *s, int32_t node);
 
 /* Corner i of a node's elements, as 8 x element + corner, or -1 after its last. */
-int32_t sheet_corner(const tled_problem *p, int32_t node, int i);
+int32_t lattice_sheet_corner(const tled_problem *p, int32_t node, int i);
 
 /* Fills sheets, one after another. group, at: as places_shared takes them. sheet: nodes: which each is in, or
  * SHEET_TIP. Returns how many sheets there are, or -1 with e filled. A node is looked at once for each sheet up to its

@@ -54,11 +54,11 @@ static int split_sheets(splitter *s, tile_split *to, int32_t brick, int32_t *nod
 {
     for (int32_t before = -1; *left && before != *left; *own = *own && before == *left) {
         int64_t which = -1;
-        sheet_begin(&s->sheet);
+        lattice_sheet_begin(&s->sheet);
         before = *left;
         *left = 0;
         for (int32_t k = 0; k < before; k++) {
-            if (!sheet_take(&s->sheet, node[k])) {
+            if (!lattice_sheet_take(&s->sheet, node[k])) {
                 node[(*left)++] = node[k];
                 continue;
             }
@@ -82,7 +82,7 @@ static bool add_node(const splitter *s, piece *to, int32_t node)
 {
     int32_t corner;
     to->nodes++;
-    for (int i = 0; (corner = sheet_corner(s->p, node, i)) >= 0; i++) {
+    for (int i = 0; (corner = lattice_sheet_corner(s->p, node, i)) >= 0; i++) {
         const int32_t element = corner / 8;
         to->own_cells += corner % 8 == 0;
         if (s->seen[element] == to->number)
@@ -134,7 +134,7 @@ int tile_split_make(tile_split *s, const tled_problem *p, const tiles *t, const 
     int result = -1;
     memset(s, 0, sizeof *s);
     with.seen = mem_array(p->elements, sizeof *with.seen, "the tiles", e);
-    if (!with.seen || sheet_make(&with.sheet, p, first, e))
+    if (!with.seen || lattice_sheet_make(&with.sheet, p, first, e))
         goto out;
     for (int32_t i = 0; i < t->count; i++)
         if (add_tile(s, i, false, e))
@@ -145,6 +145,6 @@ int tile_split_make(tile_split *s, const tled_problem *p, const tiles *t, const 
     result = 0;
 out:
     free(with.seen);
-    sheet_free(&with.sheet);
+    lattice_sheet_free(&with.sheet);
     return result;
 }

@@ -387,7 +387,7 @@ static void put_packed(cutter *c, int64_t i)
 {
     const tile *to = &c->t->tile[i];
     for (int32_t k = to->node; k < to->node + to->nodes; k++)
-        for (int m = 0, corner; (corner = sheet_corner(c->p, c->t->node[k], m)) >= 0; m++) {
+        for (int m = 0, corner; (corner = lattice_sheet_corner(c->p, c->t->node[k], m)) >= 0; m++) {
             int32_t *place = &c->place[corner / 8];
             if (*place < 0)
                 *place = tile_pack_add(&c->here, c->p->element_node + corner / 8 * 8);
@@ -405,7 +405,7 @@ static void put_pulls(cutter *c, int64_t i)
     uint16_t *row = t->list ? t->pull + 8 * (int64_t)t->list[i] : NULL;
     for (int32_t k = 0; row && k < of->nodes; k++)
         for (int m = 0; m < 8; m++, row++) {
-            const int32_t corner = sheet_corner(c->p, t->node[of->node + k], m);
+            const int32_t corner = lattice_sheet_corner(c->p, t->node[of->node + k], m);
             *row = corner < 0 ? TILE_NO_PULL : (uint16_t)(corner % 8 << TILE_PULL | c->place[corner / 8]);
         }
     for (int32_t k = of->cell; k < of->cell + of->cells; k++)
