@@ -578,27 +578,3 @@ material *materials_of_volumes(const model *m, err *e)
     free(law);
     return NULL;
 }
-
-materials_map materials_map_of(const model *m, const material *of_volume)
-{
-    const model_array *mix = model_find(m, "element.mix"), *mixture = model_find(m, "element.mixture");
-    materials_map map = {
-        .of_volume = of_volume, .volume = model_find(m, "element.volume")->i32, .own = material_elements_of(m)};
-    if (mix && mixture) {
-        map.mix = mix->i32;
-        map.mixture = mixture->f32;
-    }
-    return map;
-}
-
-material_numbers materials_of_element(const materials_map *map, int64_t element)
-{
-    material of = map->of_volume[map->volume[element]];
-    material_elements_put(&map->own, element, &of);
-    const material_numbers own = material_numbers_of(&of);
-    const int32_t mix = map->mix ? map->mix[element] : -1;
-    if (mix < 0)
-        return own;
-    const material_numbers second = material_numbers_of(&map->of_volume[mix]);
-    return material_mixed(&own, &second, map->mixture[element]);
-}

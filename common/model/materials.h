@@ -98,8 +98,8 @@ typedef struct material_numbers {
 
 material_numbers material_numbers_of(const material *a);
 
-/* Of an element, from the materials of the volumes: its volume's, with the values that it has itself, or what lies between
- * that and its second volume's. */
+/* Of an element, from the materials of the volumes: its volume's, with the values that it has itself, or what lies
+ * between that and its second volume's. */
 material_numbers materials_of_element(const materials_map *map, int64_t element);
 
 /* The curves of its muscles (physics/muscle_curves.h), from values that are given, as materials_of gives them. Returns

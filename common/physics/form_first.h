@@ -88,8 +88,8 @@ ELEMENT_FUNCTION void form_first_tangent(element_tensor h, const double *c, doub
     form_first_bend(h, form_first_curvature(x, c), a);
 }
 
-/* Adds A y to *to; square: G:y. Returns the sum of what the parts return: the neo-Hookean form's holds whatever the sign
- * of f'. */
+/* Adds A y to *to; square: G:y. Returns the sum of what the parts return: the neo-Hookean form's holds whatever the
+ * sign of f'. */
 ELEMENT_FUNCTION double form_first_along(element_tensor h, const double *c, element_tensor y, double square,
                                          element_tensor *to)
 {

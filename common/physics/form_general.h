@@ -1,9 +1,10 @@
 /* The form of all isotropic laws together, and of what lies between any two of them:
- *     W = f(x) + c01 (I2bar - 3) + sum of e_j (exp(b_j x) - 1) + sum of m_i (L1^a_i + L2^a_i + L3^a_i - 3) + K/2 (J - 1)^2,
- * x = I1bar - 3, f(x) = c1 x + ... + c5 x^5, L1 to L3 the principal stretches times J^-1/3. Coefficients: c1 to c5, c01,
- * K, e1, e2, m1 to m6 (Pa); then exponents: b1, b2, a1 to a6. Terms without a modulus are left out. At rest mu = 2 (c1 +
- * c01 + sum of e_j b_j) + sum of m_i a_i^2 / 2. (The exponential: Veronda & Westmann 1970; stretches: Ogden 1972.) Owns
- * nothing.
+ *     W = f(x) + c01 (I2bar - 3) + sum of e_j (exp(b_j x) - 1)
+ *         + sum of m_i (L1^a_i + L2^a_i + L3^a_i - 3) + K/2 (J - 1)^2,
+ * x = I1bar - 3, f(x) = c1 x + ... + c5 x^5, L1 to L3 the principal stretches times J^-1/3. Coefficients: c1 to c5,
+ * c01, K, e1, e2, m1 to m6 (Pa); then exponents: b1, b2, a1 to a6. Terms without a modulus are left out. At rest
+ *     mu = 2 (c1 + c01 + sum of e_j b_j) + sum of m_i a_i^2 / 2.
+ * (The exponential: Veronda & Westmann 1970; stretches: Ogden 1972.) Owns nothing.
  */
 #ifndef SINEW_FORM_GENERAL_H
 #define SINEW_FORM_GENERAL_H
@@ -122,8 +123,8 @@ ELEMENT_FUNCTION real form_general_energy(element_tensor h, const real *c)
 }
 
 #ifdef REAL_IS_DOUBLE
-/* A = dP/dF of the terms of stretches, in principal axes: with F = sum of l_k n_k (x) N_k, W of the stretches l_k alone,
- * and y = sum of y_kj n_k (x) N_j, the components of A y are
+/* A = dP/dF of the terms of stretches, in principal axes: with F = sum of l_k n_k (x) N_k, W of the stretches l_k
+ * alone, and y = sum of y_kj n_k (x) N_j, the components of A y are
  *     sum over j of W_kj y_jj at kk;   and of two axes, at kj and jk,
  *     (even (y_kj + y_jk) +- odd (y_kj - y_jk)) / 2,
  *     even = (W_k - W_j)/(l_k - l_j),   odd = (W_k + W_j)/(l_k + l_j).

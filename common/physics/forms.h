@@ -6,9 +6,9 @@
 #define SINEW_FORMS_H
 
 /* A row: X(with, NAME, name, coefficients, how many of them are exponents, numbers of history an element). The
- * exponents are the last of a form's coefficients; in the others, moduli (Pa), its energy is linear. First the forms that
- * others can express: a model runs in the first form that expresses all its laws. Nothing else lists the forms: the
- * Makefile, the steppers, the kernels and messages take them from here. */
+ * exponents are the last of a form's coefficients; in the others, moduli (Pa), its energy is linear. First the forms
+ * that others can express: a model runs in the first form that expresses all its laws. Nothing else lists the forms:
+ * the Makefile, the steppers, the kernels and messages take them from here. */
 #define FORMS_WITH(X, with)                                                                                            \
     X(with, NEO_HOOKEAN, neo_hookean, 2, 0, 0)                                                                         \
     X(with, MOONEY_RIVLIN, mooney_rivlin, 3, 0, 0)                                                                     \

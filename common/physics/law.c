@@ -177,8 +177,8 @@ static void fill_ogden(const double *value, double *c)
     c[FORM_GENERAL_K] = moduli_of_ogden(value).bulk;
 }
 
-/* l1^a + l2^a + l3^a is convex in F for a of 1 and more, and in its cofactors for a of -1 and less: so waves have a speed
- * in any state. In between the stress falls where shear is large. */
+/* l1^a + l2^a + l3^a is convex in F for a of 1 and more, and in its cofactors for a of -1 and less: so waves have a
+ * speed in any state. In between the stress falls where shear is large. */
 static bool refuses_ogden(const double *value, char what[LAW_WORDS], char expected[LAW_WORDS])
 {
     for (int i = 0; i < OGDEN_TERMS; i++) {

@@ -1,6 +1,6 @@
-/* Eigenvalues and eigenvectors of symmetric tensors, by Jacobi's rotations, so many of them whatever the tensor: what is
- * put together of them again is as exact where eigenvalues are equal as where they are not. In the numbers of strain.h,
- * whose rules hold here. (Golub & Van Loan, Matrix Computations, 8.5.) Owns nothing.
+/* Eigenvalues and eigenvectors of symmetric tensors, by a fixed number of Jacobi's rotations: what is put together of
+ * them again is as exact where eigenvalues are equal as where they are not. In the numbers of strain.h, whose rules
+ * hold here. (Golub & Van Loan, Matrix Computations, 8.5.) Owns nothing.
  */
 #ifndef SINEW_SPECTRAL_H
 #define SINEW_SPECTRAL_H

@@ -96,8 +96,8 @@ is "$(sinew render --view front --sheet rest,voxels,front,deformed --size 1280x7
 # Panels of several frames: each is what --frame draws of it, with the camera of all.
 # half SIDE FILE: the left or the right half of a picture of 200 x 100 pixels.
 half() {
-    tail -c 60000 "$2" | od -An -v -tu1 -w600 | awk -v right=$([ "$1" = right ] && echo 1) '{
-        for (i = 1; i <= 300; i++) printf "%s ", $(i + (right ? 300 : 0)); print "" }' | tail -n +30
+    tail -c 60000 "$2" | od -An -v -tu1 -w600 | awk -v side="$1" '{
+        for (i = 1; i <= 300; i++) printf "%s ", $(i + (side == "right" ? 300 : 0)); print "" }' | tail -n +30
 }
 two() {
     sinew render --camera 0,0,.2,0,0,0 --colour displacement --range 0,5mm --size 200x100 --format ppm "$@" "$muscle" >"$T/two.ppm"

@@ -1,5 +1,5 @@
-/* The CUDA executors as they are for forms of law that have no kernels of their own: with kernels of any form alone, but
- * for the march. any_single.cu and any_double.cu.
+/* The CUDA executors as they are for forms of law that have no kernels of their own: with kernels of any form alone,
+ * but for the march. any_single.cu and any_double.cu.
  */
 #ifndef SINEW_ANY_FORM_H
 #define SINEW_ANY_FORM_H

@@ -113,7 +113,7 @@ static void yeoh(void)
     ok(c[0] == 1000 && c[1] == value[LAW_c20] && c[2] == 600 && c[3] == 0 && c[5] == 1e5, "its coefficients");
 }
 
-/* The speed of the slowest wave across the state of a bar at stretch l, which is incompressible: of 2 (f' + c01 l^2). */
+/* The speed of the slowest wave across the state of a bar at stretch l, incompressible: of 2 (f' + c01 l^2). */
 static double slowest(double c2, double l)
 {
     return c2 * exp(c2 * (l * l + 2 / l - 3)) - c2 / 2 * l * l;
