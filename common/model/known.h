@@ -136,8 +136,8 @@ typedef struct known {
       "tled-run or sinew results", "stretch along its fibre; nan where it has none")                                   \
     X("element.energy", MODEL_F32, "J/m3", "element", 1, 1, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,               \
       "tled-run or sinew results", "strain energy at its centre, by volume at rest")                                   \
-    X("material.energy", MODEL_F64, "J", "material", 1, 1, KNOWN_FRAME, KNOWN_ANY, 0, 0, "tled-run or sinew results",  \
-      "strain energy of all elements of the material")                                                                 \
+    X("material.energy", MODEL_F64, "J", "material", 1, 1, KNOWN_FRAME | KNOWN_NAN, KNOWN_FINITE, 0, 0,                \
+      "tled-run or sinew results", "strain energy of all elements of the material")                                    \
     X("volume.activation", MODEL_F64, "1", "volume", 1, 1, KNOWN_FRAME, KNOWN_FINITE, 0, 0, "tled-run",                \
       "activation of the muscle that the volume is; 0 where it does not contract")                                     \
     X("probe.pose", MODEL_F64, "1", "probe", 7, 7, KNOWN_FRAME, KNOWN_POSE, 0, 0, "msds-run or tled-run",              \

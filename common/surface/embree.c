@@ -298,18 +298,40 @@ static void begin(struct RTCIntersectContext *c, bool coherent, unsigned valid, 
     c->flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 }
 
+/* Where a processor has no vectors of 16 numbers, Embree takes a packet's rays one by one without looking at `each`, but
+ * for rays that end before they start. So those that do not count end there meanwhile; to: where they ended. */
+static void end_others(embree_packet *p, unsigned valid, float *to)
+{
+    for (int i = 0; i < EMBREE_RAYS; i++) {
+        to[i] = p->end[i];
+        p->end[i] = valid >> i & 1 ? p->end[i] : -INFINITY;
+    }
+}
+
+static void put_others_back(embree_packet *p, unsigned valid, const float *from)
+{
+    for (int i = 0; i < EMBREE_RAYS; i++)
+        p->end[i] = valid >> i & 1 ? p->end[i] : from[i];
+}
+
 void embree_nearest(const embree *b, unsigned valid, embree_packet *p, bool coherent)
 {
     struct RTCIntersectContext c;
     alignas(64) int each[EMBREE_RAYS];
+    float end[EMBREE_RAYS];
     begin(&c, coherent, valid, each);
+    end_others(p, valid, end);
     rtcIntersect16(each, b->scene, &c, (struct RTCRayHit16 *)(void *)p);
+    put_others_back(p, valid, end);
 }
 
 void embree_blocked(const embree *b, unsigned valid, embree_packet *p, bool coherent)
 {
     struct RTCIntersectContext c;
     alignas(64) int each[EMBREE_RAYS];
+    float end[EMBREE_RAYS];
     begin(&c, coherent, valid, each);
+    end_others(p, valid, end);
     rtcOccluded16(each, b->scene, &c, (struct RTCRay16 *)(void *)p);
+    put_others_back(p, valid, end);
 }
