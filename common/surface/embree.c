@@ -298,8 +298,9 @@ static void begin(struct RTCIntersectContext *c, bool coherent, unsigned valid, 
     c->flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 }
 
-/* Where a processor has no vectors of 16 numbers, Embree takes a packet's rays one by one without looking at `each`, but
- * for rays that end before they start. So those that do not count end there meanwhile; to: where they ended. */
+/* Where a processor has no vectors of 16 numbers, Embree takes a packet's rays one by one and does not look at `each`,
+ * but passes over rays that end before they start. So those that do not count end there meanwhile; to: where they
+ * ended. */
 static void end_others(embree_packet *p, unsigned valid, float *to)
 {
     for (int i = 0; i < EMBREE_RAYS; i++) {
