@@ -406,7 +406,7 @@ static void put_pulls(cutter *c, int64_t i)
     for (int32_t k = 0; row && k < of->nodes; k++)
         for (int m = 0; m < 8; m++, row++) {
             const int32_t corner = lattice_sheet_corner(c->p, t->node[of->node + k], m);
-            *row = corner < 0 ? TILE_NO_PULL : (uint16_t)(corner % 8 << TILE_PULL | c->place[corner / 8]);
+            *row = (uint16_t)(corner < 0 ? (int)TILE_NO_PULL : corner % 8 << TILE_PULL | c->place[corner / 8]);
         }
     for (int32_t k = of->cell; k < of->cell + of->cells; k++)
         c->place[t->cell_element[k]] = -1;
