@@ -100,12 +100,13 @@ static void powers_of_arruda_boyce(const double *value, double c[FORM_FIRST_POWE
     double by = value[LAW_mu];
     for (int i = 0; i < FORM_FIRST_POWERS; i++)
         c[i] = 0;
-    for (int i = 1; i <= FORM_FIRST_POWERS; i++, by *= inverse) {
+    for (int i = 1; i <= FORM_FIRST_POWERS; i++) {
         double part = 1; /* binomial(i, k) 3^(i - k), from k = i down */
         for (int k = i; k > 0; k--) {
             c[k - 1] += by * series[i - 1] * part;
             part *= 3. * k / (i - k + 1);
         }
+        by *= inverse;
     }
 }
 

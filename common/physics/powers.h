@@ -116,7 +116,7 @@ ELEMENT_FUNCTION real powers_log_of(real u, real rest, real exact)
     const powers_word_one one = (powers_word_one)POWERS_BIAS << POWERS_DIGITS;
     const powers_word_one unit = (powers_word_one)(POWERS_BIAS + POWERS_DIGITS) << POWERS_DIGITS; /* of 2^digits */
     const powers_word shifted = powers_bits(u) + (one - POWERS_HALF_WAY), exponent = shifted >> POWERS_DIGITS;
-    const real whole = powers_of_bits(exponent | unit) - (powers_of_bits(exponent - exponent + unit) + POWERS_BIAS);
+    const real whole = powers_of_bits(exponent | unit) - (R((uint64_t)1 << POWERS_DIGITS) + POWERS_BIAS);
     const real scale = powers_of_bits((2 * POWERS_BIAS - exponent) << POWERS_DIGITS); /* 2^-whole */
     const real part = powers_of_bits((shifted & digits) + POWERS_HALF_WAY) - 1;
     const real f = REAL_SELECT(whole == 0, exact, part + rest * scale);

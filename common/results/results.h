@@ -32,7 +32,7 @@ typedef struct results results;
 
 /* Adds the bits 1 << RESULTS_STRESS and so on of names between commas; `all`: every one. option: for the message, NULL
  * of operands. -1 with e filled (status 2). */
-int results_read(const char *names, const char *option, unsigned *which, err *e);
+int results_read(const char *list, const char *option, unsigned *which, err *e);
 
 /* The row of such a name, or of the name of an array, in either spelling; RESULTS: there is none. */
 int results_find(const char *name);

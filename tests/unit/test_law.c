@@ -104,8 +104,10 @@ static void yeoh(void)
         const double limit = sqrt(5. / 3 * 1000 * 600);
         value[LAW_c30] = 600, value[LAW_c20] = -limit * (i ? 1.0001 : .9999);
         double least = 1;
-        for (double x = 0; x < 3; x += .0001)
+        for (int k = 0; k < 30000; k++) {
+            const double x = 1e-4 * k;
             least = fmin(least, 1000 + 6 * value[LAW_c20] * x + 15 * 600 * x * x);
+        }
         ok(law_refuses(a, value, what, expected) == (i == 1) && (least > 0) == (i == 0),
            "yeoh: c20 %g with c30 600, and the least slope is %g", value[LAW_c20], least);
     }
@@ -132,8 +134,8 @@ static void veronda_westmann(void)
     for (int i = 0; i < 2; i++) {
         double least = 1;
         value[LAW_c2] = i ? .3575 : .3576;
-        for (double l = 1; l < 4; l += .0001)
-            least = fmin(least, slowest(value[LAW_c2], l));
+        for (int k = 0; k < 30000; k++)
+            least = fmin(least, slowest(value[LAW_c2], 1 + 1e-4 * k));
         ok(law_refuses(a, value, what, expected) == (i == 1) && (least > 0) == (i == 0),
            "c2 of %g, and the least of a wave is %g", value[LAW_c2], least);
     }

@@ -172,7 +172,8 @@ static void test_slopes(void)
 static void test_descending(void)
 {
     double first = 0, last = 0, first_alone = 0, last_alone = 0;
-    for (double l = 1; l < 1.7; l += .001) {
+    for (int k = 0; k < 700; k++) {
+        const double l = 1 + .001 * k;
         element_fibre fibre = muscle_of(1, 1), alone = fibre;
         alone.curves.passive = 0;
         if (stability_fibre_slope(fibre, l, l - 1) + 5e3 * (1 + 2 / (l * l * l)) < 0) {
