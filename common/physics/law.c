@@ -344,7 +344,7 @@ double law_key_usual(law_key key)
 {
     static const double usual[LAW_ALL_KEYS] = {
         [LAW_optimum] = 1, [LAW_passive] = 0, [LAW_stiffening] = 6.6, [LAW_straight] = 1.4};
-    return key < (law_key)LAW_OPTIONAL ? NAN : usual[key];
+    return (int)key >= (int)LAW_OPTIONAL && (int)key < (int)LAW_ALL_KEYS ? usual[key] : NAN;
 }
 
 /* Appends the names of a group's keys, `between` between them. */
