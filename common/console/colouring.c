@@ -122,7 +122,7 @@ static bool to_nodes(colouring_room *room, node_values_rule rule, double other, 
     return true;
 }
 
-/* Of what is 1 at rest. */
+/* Rounds the range of values that are 1 at rest outward to tenths. */
 static void range_about_one(double least, double most, geometry_frame *to)
 {
     static const double step = .1;

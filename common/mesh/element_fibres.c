@@ -28,7 +28,7 @@ static int32_t mix_of(const element_fibres *of, int64_t element)
     return of->map->mix ? of->map->mix[element] : -1;
 }
 
-/* What of the element is the second volume's. */
+/* The share of the element that its second volume has. */
 static double second_share(const element_fibres *of, int64_t element)
 {
     return mix_of(of, element) < 0 ? 0 : (double)of->map->mixture[element];

@@ -28,7 +28,7 @@ static element_modes modes_of(const int32_t *node, const double *u, int axis)
     return element_modes_of(c);
 }
 
-/* Of an element that is no box: its shape, and sum(B^2), 1/m2. */
+/* Makes the shape of an element that is no box, and the sum of its B^2 (1/m2). */
 static element_any shape_of(const element_mesh *m, const int32_t *node, double *squares)
 {
     double at[24], b[24], slope[21], twist[12], basis[9];

@@ -35,7 +35,7 @@ int fibres_at(const fibres_view *f, int64_t element, fibre_local to[2]);
 /* Whether any volume has families at an angle: these have directions of their own. */
 bool fibres_angled(const fibres_view *f);
 
-/* Whether a volume has any. */
+/* Whether a volume has fibres that resist being stretched. */
 static inline int fibres_any(const fibres_view *f, int32_t volume)
 {
     return f->of && volume >= 0 && fibre_numbers_any(&f->of[volume]);
