@@ -118,9 +118,11 @@ static inline void mesh_fibres_of(const cpu_work *w, int64_t i, int lane, int32_
 static inline int mesh_fibres(const cpu_work *w, int64_t group, fibre_set sets[2])
 {
     const tled_problem *p = w->p;
+    if (!p->fibres.of)
+        return 0;
     for (int k = 0; k < 2; k++)
         sets[k] = (fibre_set){.families = 0};
-    for (int lane = 0; p->fibres.of && lane < LANES && group * LANES + lane < p->elements; lane++) {
+    for (int lane = 0; lane < LANES && group * LANES + lane < p->elements; lane++) {
         const int64_t i = group * LANES + lane;
         const real_one share = w->fraction ? ((const real_one *)w->fraction)[i] : 1;
         const real_one part = tled_mix(p, i) >= 0 ? ((const real_one *)w->mixture)[i] : 0;
