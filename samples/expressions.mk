@@ -25,7 +25,7 @@ $(EXPRESSIONS).model: $(if $(FACE),$(JAW_OUT).obj) face.materials
 $(EXPRESSIONS).result: $(EXPRESSIONS).model expressions.face.script face.expressions
 	tled-run $(EXPRESSIONS_TISSUE) --script expressions.face.script --expressions face.expressions $(EXPRESSIONS_RUN) <$< >$@
 $(EXPRESSIONS).png: $(EXPRESSIONS).result
-	sinew render --up z --size 1500x1100 --sheet \
+	sinew render --up z --size 1200x860 --sheet \
 	    rest=rest@front$(subst $(empty) $(empty),,$(foreach f,$(EXPRESSIONS_FRAMES),$(comma)$(subst :,=front:,$(f)))) -o $@ $<
 $(EXPRESSIONS).tsv: $(EXPRESSIONS).result corner.awk
 	for f in $(EXPRESSIONS_FRAMES); do \
