@@ -47,6 +47,15 @@ static void hold_of(const view *v, double mu, double bulk, double volume, double
         to[HOURGLASS_K] *= wave / (11 * mu);
 }
 
+/* By how much they are held where the law has become stiffer. */
+static double stiffening_of(const view *v, const material_numbers *of, element_tensor h)
+{
+    if (!element_follows(of->form, v->control.kind))
+        return 1;
+    const form_shear t = form_sheared(of->form, form_first_x(h), of->c);
+    return t.now / t.rest;
+}
+
 static void add_element(const view *v, int64_t element, const material_numbers *of, double fraction, energy *to)
 {
     const element_motion is = element_motion_of(&v->mesh, element, v->u);
@@ -61,7 +70,7 @@ static void add_element(const view *v, int64_t element, const material_numbers *
     to->strain +=
         fraction * is.volume *
         (material_energy(of, is.h) + muscles_energy(&v->muscles, element, is.h) + fibre_sets_energy(&fibres, is.h));
-    to->hourglass += fraction * hourglass_dot(&force.f, &is.modes) / 2;
+    to->hourglass += fraction * stiffening_of(v, of, is.h) * hourglass_dot(&force.f, &is.modes) / 2;
 }
 
 /* How the run that wrote the frames held hourglass modes: hourglass.control, or hourglass.kappa of older releases. */

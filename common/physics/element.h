@@ -202,6 +202,29 @@ ELEMENT_FUNCTION hourglass_modes element_hourglass_modes(element_modes x, elemen
     return m;
 }
 
+/* ---- hourglass control that follows the law (hourglass.h): physical, of a form that stiffens */
+
+ELEMENT_FUNCTION int element_follows(form f, hourglass_kind kind)
+{
+    return kind == HOURGLASS_PHYSICAL && form_stiffens(f);
+}
+
+/* The numbers that hold modes become those at H, s times those at rest. Returns s'/s. */
+ELEMENT_FUNCTION real element_follow(form f, element_tensor h, element_law *law)
+{
+    const form_shear t = form_sheared(f, form_first_x(h), law->c);
+    const real s = t.now / t.rest;
+    for (int i = 0; i < HOURGLASS_NUMBERS; i++)
+        law->hourglass[i] = law->hourglass[i] * s;
+    return t.slope / t.now;
+}
+
+/* P has W s'/(s V) dx/dF besides: f' becomes so much more. by: s'/(s V), 1/m3. */
+ELEMENT_FUNCTION void element_followed(const hourglass_modes *f, const hourglass_modes *m, real by, element_law *law)
+{
+    form_first_add(law->c, R(.5) * hourglass_dot(f, m) * by);
+}
+
 /* One component of f_a = V P B_a + sum_g gamma_g f_g; px, py, pz: its row of P; the others: of its hourglass forces. */
 ELEMENT_FUNCTION element_corners element_gather(real px, real py, real pz, element_vector area, real xy, real yz,
                                                 real zx, real xyz)
@@ -218,9 +241,18 @@ ELEMENT_FUNCTION element_field element_force_fibred(form f, hourglass_kind kind,
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_gradient(x, y, z, shape.slope);
-    element_tensor p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
-    const hourglass_force held = hourglass_of(kind, element_hourglass_modes(x, y, z), h, shape, law.hourglass);
+    const hourglass_modes modes = element_hourglass_modes(x, y, z);
+    const int follows = element_follows(f, kind);
+    element_tensor p = h;
+    if (!follows)
+        p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
+    const real slope = follows ? element_follow(f, h, &law) : REAL_ZERO;
+    const hourglass_force held = hourglass_of(kind, modes, h, shape, law.hourglass);
     const hourglass_modes *m = &held.f;
+    if (follows) {
+        element_followed(m, &modes, slope * shape.density, &law);
+        p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
+    }
     if (kind == HOURGLASS_PHYSICAL)
         p = element_sum(p, held.p);
     element_field force = {element_gather(p.xx, p.xy, p.xz, shape.area, m->xy.x, m->yz.x, m->zx.x, m->xyz.x),

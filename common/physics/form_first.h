@@ -7,7 +7,7 @@
 
 #include "physics/form_neo_hookean.h"
 
-enum { FORM_FIRST_POWERS = 5 };
+enum { FORM_FIRST_POWERS = 5, FORM_FIRST_STIFFENS = 1 };
 
 /* f'(x), by Horner's scheme. */
 ELEMENT_FUNCTION real form_first_slope(real x, const real *c)
@@ -36,7 +36,33 @@ ELEMENT_FUNCTION real form_first_energy(element_tensor h, const real *c)
     return x * (c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])))) + c[5] / 2 * dilation * dilation;
 }
 
+/* The stress is 2 f'(g^2) g, so T = f' + 2 x f'' = sum of k (2 k - 1) c_k x^(k - 1). */
+ELEMENT_FUNCTION form_shear form_first_sheared(real x, const real *c)
+{
+    const form_shear s = {c[0], c[0] + x * (6 * c[1] + x * (15 * c[2] + x * (28 * c[3] + x * (45 * c[4])))),
+                          6 * c[1] + x * (30 * c[2] + x * (84 * c[3] + x * (180 * c[4])))};
+    return s;
+}
+
+/* Adds to f': to the coefficient of x. */
+ELEMENT_FUNCTION void form_first_add(real *c, real slope)
+{
+    c[0] += slope;
+}
+
 #ifdef REAL_IS_DOUBLE
+ELEMENT_FUNCTION double form_first_sheared_curve(double x, const double *c)
+{
+    return 30 * c[2] + x * (168 * c[3] + x * (540 * c[4]));
+}
+
+/* Adds to f' and f'' at x. */
+ELEMENT_FUNCTION void form_first_add_at(double *c, double x, double slope, double curvature)
+{
+    c[0] += slope - curvature * x;
+    c[1] += curvature / 2;
+}
+
 ELEMENT_FUNCTION double form_first_curvature(double x, const double *c)
 {
     return 2 * c[1] + x * (6 * c[2] + x * (12 * c[3] + x * (20 * c[4])));

@@ -18,6 +18,7 @@
 enum {
     FORM_GENERAL_EXPONENTIALS = 2,
     FORM_GENERAL_STRETCHES = 6,
+    FORM_GENERAL_STIFFENS = 1,
     FORM_GENERAL_c01 = FORM_FIRST_POWERS,
     FORM_GENERAL_K,
     FORM_GENERAL_e,
@@ -122,7 +123,92 @@ ELEMENT_FUNCTION real form_general_energy(element_tensor h, const real *c)
     return REAL_SELECT(stretched, w + form_general_stretch_energy(h, c), w);
 }
 
+/* T of a term of stretches. These are e^l, 1 and e^-l in simple shear of the amount g = 2 sinh l, so the energy is
+ * 2 m (cosh(a l) - 1), and with c = cosh l, U = a^2 cosh(a l) and V = a sinh(a l)/sinh l
+ *     T = m/4 (U/c^2 - V/c + V/c^3),   dT/dx = m/4 ((a^2 + 2)/8 V/c^3 - 3/8 (U/c^4 + V/c^5)).
+ * For a = 2 and -2 that is m, and 0. Only V divides by what is 0 at rest: no x is taken below 1e-30. */
+typedef struct form_general_simple {
+    real log, sine, inverse; /* l, sinh l, 1/c */
+} form_general_simple;
+
+ELEMENT_FUNCTION form_general_simple form_general_simple_by(real x)
+{
+    const real least = real_of(1e-30), quarter = R(.25) * REAL_SELECT(x > least, x, least);
+    const real sine = real_sqrt(quarter), cosine = real_sqrt(1 + quarter);
+    const form_general_simple at = {real_log_more(sine + quarter / (1 + cosine)), sine, 1 / cosine};
+    return at;
+}
+
+/* U and V. */
+ELEMENT_FUNCTION void form_general_pair(form_general_simple at, real a, real *u, real *v)
+{
+    const real more = real_exp_less(a * at.log), less = real_exp_less(-(a * at.log));
+    *u = a * a * (1 + R(.5) * (more + less));
+    *v = a * (more - less) / (2 * at.sine);
+}
+
+ELEMENT_FUNCTION void form_general_add_stretches(real x, const real *c, form_shear *to)
+{
+    const form_general_simple at = form_general_simple_by(x);
+    const real k = at.inverse;
+    for (int i = 0; i < FORM_GENERAL_STRETCHES; i++)
+        if (real_any(c[FORM_GENERAL_m + i] != 0)) {
+            const real a = c[FORM_GENERAL_a + i], by = R(.25) * c[FORM_GENERAL_m + i];
+            real u, v;
+            form_general_pair(at, a, &u, &v);
+            to->rest += by * a * a;
+            to->now += by * (k * (u * k - v + v * k * k));
+            to->slope += by * (k * k * k * ((a * a + 2) * R(.125) * v - R(.375) * k * (u + v * k)));
+        }
+}
+
+/* That of f and c01; of an exponential, e b exp(b x) (1 + 2 b x); of stretches. */
+ELEMENT_FUNCTION form_shear form_general_sheared(real x, const real *c)
+{
+    form_shear s = form_first_sheared(x, c);
+    s.rest += c[FORM_GENERAL_c01];
+    s.now += c[FORM_GENERAL_c01];
+    for (int j = 0; j < FORM_GENERAL_EXPONENTIALS; j++)
+        if (real_any(c[FORM_GENERAL_e + j] != 0)) {
+            const real b = c[FORM_GENERAL_b + j], rest = c[FORM_GENERAL_e + j] * b, now = rest * real_exp(b * x);
+            s.rest += rest;
+            s.now += now * (1 + 2 * (b * x));
+            s.slope += now * b * (3 + 2 * (b * x));
+        }
+    if (real_any(form_general_stretched(c)))
+        form_general_add_stretches(x, c, &s);
+    return s;
+}
+
 #ifdef REAL_IS_DOUBLE
+/* As dV/dx = (U - V c)/(2 x c), which is a^2 (a^2 - 1)/24 at rest, and dU/dx = a^2 V/(8 c), d2T/dx2 of stretches is
+ *     m/4 ((a^2 + 2)/8 (V'/c^3 - 3/8 V/c^5) - 3/8 (U'/c^4 - U/(2 c^6) + V'/c^5 - 5/8 V/c^7)). */
+ELEMENT_FUNCTION double form_general_stretch_curve(double x, double m, double a)
+{
+    const form_general_simple at = form_general_simple_by(x);
+    const double k = at.inverse, cube = k * k * k, square = a * a;
+    double u, v;
+    form_general_pair(at, a, &u, &v);
+    const double dv = x > 1e-6 ? (u * k - v) / (2 * x) : square * (square - 1) / 24, du = square * v * k / 8;
+    return m / 4 * cube *
+           ((square + 2) / 8 * (dv - 3. / 8 * v * k * k) -
+            3. / 8 * (du * k - u * cube / 2 + dv * k * k - 5. / 8 * v * k * cube));
+}
+
+ELEMENT_FUNCTION double form_general_sheared_curve(double x, const double *c)
+{
+    double curve = form_first_sheared_curve(x, c);
+    for (int j = 0; j < FORM_GENERAL_EXPONENTIALS; j++) {
+        const double b = c[FORM_GENERAL_b + j];
+        if (c[FORM_GENERAL_e + j] != 0)
+            curve += c[FORM_GENERAL_e + j] * b * b * b * real_exp(b * x) * (5 + 2 * b * x);
+    }
+    for (int i = 0; i < FORM_GENERAL_STRETCHES; i++)
+        if (c[FORM_GENERAL_m + i] != 0)
+            curve += form_general_stretch_curve(x, c[FORM_GENERAL_m + i], c[FORM_GENERAL_a + i]);
+    return curve;
+}
+
 /* A = dP/dF of the terms of stretches, in principal axes: with F = sum of l_k n_k (x) N_k, W of the stretches l_k
  * alone, and y = sum of y_kj n_k (x) N_j, the components of A y are
  *     sum over j of W_kj y_jj at kk;   and of two axes, at kj and jk,

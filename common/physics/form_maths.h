@@ -24,6 +24,14 @@ ELEMENT_FUNCTION real form_general_energy(element_tensor h, const real *c)
     (void)h, (void)c;
     return R(NAN);
 }
+
+enum { FORM_GENERAL_STIFFENS = 1 };
+ELEMENT_FUNCTION form_shear form_general_sheared(real x, const real *c)
+{
+    const form_shear none = {R(NAN), R(NAN), R(NAN)};
+    (void)x, (void)c;
+    return none;
+}
 #else
 #include "physics/form_general.h"
 #endif
@@ -58,7 +66,50 @@ ELEMENT_FUNCTION real form_energy(form f, element_tensor h, const real *c)
 #undef FORM_CASE
 }
 
+/* Whether its shear stiffness is more than a constant. */
+ELEMENT_FUNCTION int form_stiffens(form f)
+{
+#define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \
+    case FORM_##NAME:                                                                                                  \
+        return FORM_##NAME##_STIFFENS;
+    switch (f) {
+        FORMS(FORM_CASE)
+    default:
+        return 0;
+    }
+#undef FORM_CASE
+}
+
+/* Its shear stiffness at x = I1bar - 3. */
+ELEMENT_FUNCTION form_shear form_sheared(form f, real x, const real *c)
+{
+    const form_shear none = {REAL_ZERO, REAL_ZERO, REAL_ZERO};
+#define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \
+    case FORM_##NAME:                                                                                                  \
+        return form_##name##_sheared(x, c);
+    switch (f) {
+        FORMS(FORM_CASE)
+    default:
+        return none;
+    }
+#undef FORM_CASE
+}
+
 #ifdef REAL_IS_DOUBLE
+/* d2T/dx2 of form_shear.h, Pa. */
+ELEMENT_FUNCTION double form_sheared_curve(form f, double x, const double *c)
+{
+#define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \
+    case FORM_##NAME:                                                                                                  \
+        return form_##name##_sheared_curve(x, c);
+    switch (f) {
+        FORMS(FORM_CASE)
+    default:
+        return 0;
+    }
+#undef FORM_CASE
+}
+
 /* The lower triangle of A = dP/dF as a 9 x 9 matrix. */
 ELEMENT_FUNCTION void form_tangent(form f, element_tensor h, const double *c, double a[9][9])
 {

@@ -5,8 +5,11 @@
 #ifndef SINEW_FORM_MOONEY_RIVLIN_H
 #define SINEW_FORM_MOONEY_RIVLIN_H
 
+#include "physics/form_shear.h"
 #include "physics/forms.h"
 #include "physics/tangent.h"
+
+enum { FORM_MOONEY_RIVLIN_STIFFENS = 0 };
 
 /* With E = C - I and r = J^-1/3, as I1 C - C^2 = (1 + tr E) E - E^2 + a multiple of I:
  *     P = cof F (dev M + K (J - 1) I),   M = 2 c10 r^5 E + 2 c01 r^7 ((1 + tr E) E - E^2),
@@ -47,7 +50,21 @@ ELEMENT_FUNCTION real form_mooney_rivlin_energy(element_tensor h, const real *c)
     return c[0] * first_bar + c[1] * second_bar + c[2] / 2 * dilation * dilation;
 }
 
+/* In simple shear I2bar is I1bar. */
+ELEMENT_FUNCTION form_shear form_mooney_rivlin_sheared(real x, const real *c)
+{
+    const form_shear s = {c[0] + c[1], c[0] + c[1], REAL_ZERO};
+    (void)x;
+    return s;
+}
+
 #ifdef REAL_IS_DOUBLE
+ELEMENT_FUNCTION double form_mooney_rivlin_sheared_curve(double x, const double *c)
+{
+    (void)x, (void)c;
+    return 0;
+}
+
 /* A = dP/dF. With G = cof F, N = I1 F - F C, a = 2 c10 J^-2/3, b = 2 c01 J^-4/3:
  *     P = a F + b N + p G,   p = K (J - 1) - (a I1 + 2 b I2) / (3 J),
  *     A = a I + b dN/dF + (K + (5 a I1 + 14 b I2) / (9 J^2)) G (x) G - 2/3 (a/J) (F (x) G + G (x) F)

@@ -2,8 +2,11 @@
 #ifndef SINEW_FORM_NEO_HOOKEAN_H
 #define SINEW_FORM_NEO_HOOKEAN_H
 
+#include "physics/form_shear.h"
 #include "physics/forms.h"
 #include "physics/tangent.h"
+
+enum { FORM_NEO_HOOKEAN_STIFFENS = 0 }; /* whether T of form_shear.h is more than a constant */
 
 /* P = F S. From S = mu J^-2/3 (I - tr C/3 C^-1) + K J (J - 1) C^-1, as I - tr C/3 C^-1 = C^-1 dev C and
  * dev C = dev(C - I):
@@ -35,7 +38,21 @@ ELEMENT_FUNCTION real form_neo_hookean_energy(element_tensor h, const real *c)
     return c[0] / 2 * (root * root * (3 + trace) - 3) + c[1] / 2 * dilation * dilation;
 }
 
+ELEMENT_FUNCTION form_shear form_neo_hookean_sheared(real x, const real *c)
+{
+    const form_shear s = {R(.5) * c[0], R(.5) * c[0], REAL_ZERO};
+    (void)x;
+    return s;
+}
+
 #ifdef REAL_IS_DOUBLE
+/* d2T/dx2, Pa. */
+ELEMENT_FUNCTION double form_neo_hookean_sheared_curve(double x, const double *c)
+{
+    (void)x, (void)c;
+    return 0;
+}
+
 /* A = dP/dF. With G = cof F, J = det F, a = mu J^-2/3, I1 = F:F:
  *     P = a F + p G,   p = K (J - 1) - a I1 / (3 J),
  *     A = a I + (K + 5/9 a I1 / J^2) G (x) G - 2/3 (a/J) (F (x) G + G (x) F) + p dG/dF. */

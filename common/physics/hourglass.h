@@ -12,6 +12,10 @@
  *         V/18 E e_i^2,
  * the means of xi^2, 1/3, and of xi^2 eta^2, 1/9, taken. E/(1 - nu^2) = 4 mu (lambda + mu)/(lambda + 2 mu) is finite at
  * nu = 1/2: nothing locks. See Belytschko & Bindeman (1993), Puso (2000), Krysl (2015) for physical stabilisation.
+ * These are the moduli at rest, and this is the energy w0. Where a law stiffens, so do the modes: W = s(x) w0, with
+ * x = I1bar - 3 at the centre and s(x) = T(x)/T(0), the slope of the law's stress in simple shear of the same x over
+ * that at rest (form_shear.h). The law's tangent grows about as much along a stretch in one direction, and by less
+ * across it. Of a neo-Hookean or a Mooney-Rivlin law s is 1. P has W s'/(s V) dx/dF besides, which element.h adds.
  * With s_g = dW/dq_g the forces on modes are f_g = F^-T s_g, and as q depends on F,
  *     P has -(1/V) sum over g of f_g (x) q_g.
  *

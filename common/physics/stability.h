@@ -218,13 +218,45 @@ ELEMENT_FUNCTION stability_range stability_range_scaled(form f, const double *c,
 
 /* ---- hourglass modes
  *
- * Their energy W = q:D q / 2, q = F^-1 m, moves with F as well as with m: dq = F^-1 (dm - dF q), so along (dm, dF)
- *     d2W = dq:D dq - 2 sum over g of f_g.(dF dq_g),   |f| <= |F^-1| |D| |q|,   |dq| <= |F^-1| (|dm| + |dF| |q|),
- *     d2W <= |D| |F^-1|^2 (|dm|^2 + 4 |q| |dm| |dF| + 3 |q|^2 |dF|^2).
- * Over the mass of mode g, and of the slopes m of dF = m/(4 h), with l the largest 1/(4 h), b = l |q|, w the square of
- * the highest frequency at rest, and 4 b x y <= 2 b (x^2 + y^2), the modes and F then have as squares at most
- *     own = w |F^-1|^2 (1 + 2 b)   and   more = w |F^-1|^2 (2 b + 3 b^2) besides the law's,
+ * Their energy w = q:D q / 2, q = F^-1 m, moves with F as well as with m: dq = F^-1 (dm - dF q), so along (dm, dF)
+ *     d2w = dq:D dq - 2 sum over g of f_g.(dF dq_g),   |f| <= |F^-1| |D| |q|,   |dq| <= |F^-1| (|dm| + |dF| |q|),
+ *     d2w <= |D| |F^-1|^2 (|dm|^2 + 4 |q| |dm| |dF| + 3 |q|^2 |dF|^2).
+ * Where it follows the law, W = s(x) w, with n = dx/dF and dw = q:D dq,
+ *     d2W = s d2w + 2 s' (n:dF) dw + w d2s,   (n:dF) dw <= |n| |D| |F^-1| |q| |dF| (|dm| + |dF| |q|),
+ *     d2s = s' d2x + s'' (n:dF)^2,
+ * of which w d2s is that of a law with w s'/V more of f' and w s''/V more of f'': it is counted there, as it is.
+ * Over the mass of mode g, and of the slopes m of dF = m/(4 h), with l the largest 1/(4 h), b = l |q|, w0 the square of
+ * the highest frequency at rest, and 2 b x y <= b (x^2 + y^2), the modes and F then have as squares at most
+ *     own = w0 (s |F^-1|^2 (1 + 2 b) + |s'| |n| |F^-1| b)   and
+ *     more = w0 (s |F^-1|^2 (2 b + 3 b^2) + |s'| |n| |F^-1| (b + 2 b^2)) besides the law's,
  * and as they share no displacement, the element has the larger of own and (law's + more). */
+
+/* x, s and its derivatives by x; of control that does not follow, 0, 1, 0, 0. */
+typedef struct stability_stiffening {
+    double x, now, slope, curve;
+} stability_stiffening;
+
+ELEMENT_FUNCTION stability_stiffening stability_stiffening_of(form f, hourglass_kind kind, element_tensor h,
+                                                              const double *c)
+{
+    stability_stiffening s = {0, 1, 0, 0};
+    if (!element_follows(f, kind))
+        return s;
+    s.x = form_first_x(h);
+    const form_shear t = form_sheared(f, s.x, c);
+    s.now = t.now / t.rest;
+    s.slope = t.slope / t.rest;
+    s.curve = form_sheared_curve(f, s.x, c) / t.rest;
+    return s;
+}
+
+/* Adds w d2s to the law whose tangent is asked for; density: w/V, J/m3. */
+ELEMENT_FUNCTION void stability_stiffen(stability_stiffening s, double density, double *c)
+{
+    if (s.slope != 0 || s.curve != 0)
+        form_first_add_at(c, s.x, density * s.slope, density * s.curve);
+}
+
 typedef struct stability_twists {
     double own, more;
 } stability_twists;
@@ -239,23 +271,37 @@ ELEMENT_FUNCTION double stability_norm(element_tensor a)
     return sqrt(row * column);
 }
 
+/* |n|, n = dx/dF. */
+ELEMENT_FUNCTION double stability_normal(element_tensor h)
+{
+    double most;
+    const element_tensor n = form_first_normal(h, &most);
+    return sqrt(tangent_dot(n, n));
+}
+
 /* At H, of modes m with G^T m of such a length, G = cof F. square: at rest; slope: 1/m, the largest 1/(4 h). */
 ELEMENT_FUNCTION stability_twists stability_twists_by(hourglass_kind kind, double square, double slope,
-                                                      element_tensor h, double length)
+                                                      element_tensor h, double length, stability_stiffening s)
 {
     const double inverse = 1 / (1 + element_dilation(h)), norm = stability_norm(element_cofactor(h)) * inverse;
-    const double b = slope * length * fabs(inverse), now = square * norm * norm;
+    const double b = slope * length * fabs(inverse), now = square * norm * norm * s.now;
     stability_twists t = {now * (1 + 2 * b), now * (2 * b + 3 * b * b)};
     if (kind == HOURGLASS_ISOTROPIC)
         t = (stability_twists){square, 0};
+    if (s.slope != 0) {
+        const double across = square * fabs(norm * s.slope) * stability_normal(h) * b;
+        t.own += across;
+        t.more += across * (1 + 2 * b);
+    }
     return t;
 }
 
 ELEMENT_FUNCTION stability_twists stability_twists_of(hourglass_kind kind, double square, double slope,
-                                                      element_tensor h, const hourglass_modes *m)
+                                                      element_tensor h, const hourglass_modes *m,
+                                                      stability_stiffening s)
 {
     const hourglass_modes w = hourglass_all_by_columns(element_cofactor(h), *m);
-    return stability_twists_by(kind, square, slope, h, sqrt(hourglass_dot(&w, &w)));
+    return stability_twists_by(kind, square, slope, h, sqrt(hourglass_dot(&w, &w)), s);
 }
 
 /* The square of the element's highest frequency, from the largest eigenvalue of stability_matrix. */

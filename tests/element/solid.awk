@@ -4,7 +4,7 @@
 #   shape     box: x by y by z, corner at the origin; cook: Cook's membrane, 48 x 44 to 16, z thick; trapezoids, parallelograms: a box whose inner
 #             sections lean by 45 degrees in the plane xy; twisted: a box that turns by 90 degrees about x; cylinder: of radius x / 2 about z
 #   unit      of these lengths, in m [1]
-#   law       neo (default) with E and nu or mu and K; linear with E and nu; rho [1000]
+#   law       neo (default) with E and nu or mu and K; linear with E and nu; yeoh with c10, c20, c30 and K; rho [1000]
 #   side force  of a load: X0 or X1; the total as "fx,fy,fz"; ramp and late: the times at which it is full and until which the script lasts
 #   twist     of a script: a moment about x on the four edges' ends of that side, for ny = nz = 1
 # Nodes are numbered along x, then y, then z, of a grid of half the elements' sides.
@@ -103,8 +103,9 @@ function print_elements(    i, j, k, line) {
     }
 }
 function print_material() {
-    if (mu == "") { mu = E / (2 * (1 + nu)); K = E / (3 * (1 - 2 * nu)) }
-    if (law == "linear") printf "*MATERIAL, NAME=TISSUE\n*ELASTIC\n%.15g, %.15g\n", E, nu
+    if (mu == "" && law != "yeoh") { mu = E / (2 * (1 + nu)); K = E / (3 * (1 - 2 * nu)) }
+    if (law == "yeoh") printf "*MATERIAL, NAME=TISSUE\n*HYPERELASTIC, YEOH\n%.15g, %.15g, %.15g, %.15g, 0, 0\n", c10, c20, c30, 2 / K
+    else if (law == "linear") printf "*MATERIAL, NAME=TISSUE\n*ELASTIC\n%.15g, %.15g\n", E, nu
     else printf "*MATERIAL, NAME=TISSUE\n*HYPERELASTIC, NEO HOOKE\n%.15g, %.15g\n", mu / 2, 2 / K
     printf "*DENSITY\n%.15g\n*SOLID SECTION, ELSET=SOLID, MATERIAL=TISSUE\n", rho == "" ? 1000 : rho
 }

@@ -421,9 +421,10 @@ static double bound_of_element(const tled_problem *p, const double u[24], double
     const element_tensor h = element_any_twist(&shape, &x, &y, &z);
     const hourglass_modes m = element_hourglass_modes(x, y, z);
     step_matrix a;
-    conforming_matrix(p, 0, h, none, &a);
+    const tled_law law = tled_law_of(p, 0);
+    conforming_matrix(p, 0, &law, h, none, &a);
     *j = 1 + element_dilation(h);
-    return conforming_square(p, 0, conforming_twists(p, 0, h, &m), step_largest(&a));
+    return conforming_square(p, 0, conforming_twists(p, 0, h, &m, (stability_stiffening){.now = 1}), step_largest(&a));
 }
 
 /* One element, its corners moved by a share `by` of a side; false: it has no inside. */

@@ -51,8 +51,9 @@ template <class S> static look_parts parts_of(const cuda_look<S> *l)
 typedef struct one_cell {
     cuda_mixed own;
     element_tensor h;
-    double hourglass; /* its energy */
-    double twist;     /* the length that stability_twists_by takes */
+    double hourglass;                /* its energy */
+    double twist;                    /* the length that stability_twists_by takes */
+    stability_stiffening stiffening; /* how hourglass control follows the law */
 } one_cell;
 
 /* What its hourglass modes have of energy, as hourglass_of would have it, with fewer operations. */
@@ -67,7 +68,7 @@ static __device__ void hold_cell(hourglass_kind control, hourglass_modes m, cons
     const double inverse = 1 / (1 + element_dilation(c->h));
     const hourglass_modes w = hourglass_all_by_columns(element_cofactor(c->h), m);
     const hourglass_modes t = hourglass_box(&w, shape, held, inverse * inverse);
-    c->hourglass = hourglass_dot(&t, &w) / 2;
+    c->hourglass = c->stiffening.now * hourglass_dot(&t, &w) / 2;
     c->twist = sqrt(hourglass_dot(&w, &w));
 }
 
@@ -94,6 +95,7 @@ static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, 
     for (int k = 0; k < FORM_NUMBERS; k++) /* 0, where the form has fewer */
         c.own.c[k] = from[k];
     c.h = element_gradient(x, y, z, shape.slope);
+    c.stiffening = stability_stiffening_of(l.which, l.control, c.h, c.own.c);
     hold_cell(l.control, element_hourglass_modes(x, y, z), shape, held, &c);
     return c;
 }
@@ -130,6 +132,13 @@ template <class S> static __device__ double strain_of(const cuda_look<S> &l, con
     if (!(1 + element_dilation(c.h) > 0) || !isfinite(energy) || !isfinite(c.hourglass))
         return INFINITY;
     return (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + c.hourglass);
+}
+
+/* Once its energy is known: its law gets what hourglass energy adds to the tangent. */
+template <class S> static __device__ void stiffen(const cuda_look<S> &l, one_cell *c)
+{
+    const double volume = l.view.side[0] * l.view.side[1] * l.view.side[2];
+    stability_stiffen(c->stiffening, c->hourglass / (c->stiffening.now * volume), c->own.c);
 }
 
 /* The cells that a tile owns: of each cell and each of its nodes, one. */
@@ -176,7 +185,7 @@ template <class G> static __device__ int list_own(const unsigned *who, own_cells
 
 static __device__ stability_twists twists_of(hourglass_kind control, const one_cell &c, const look_parts &parts)
 {
-    return stability_twists_by(control, c.own.twists, parts.slope, c.h, c.twist);
+    return stability_twists_by(control, c.own.twists, parts.slope, c.h, c.twist, c.stiffening);
 }
 
 /* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread
@@ -189,13 +198,14 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
 #pragma unroll 1
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
-        const one_cell c = cell_of<G>(l, t, i, u, parts.shape);
+        one_cell c = cell_of<G>(l, t, i, u, parts.shape);
         const double strain = strain_of(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
             continue;
         }
         to->strain += strain;
+        stiffen(l, &c);
         element_fibre fibre[2];
         fibres_of(l, t, i, c, fibre);
         const double unit = 8 / sqrt(c.own.density);
@@ -263,11 +273,12 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t,
         step_matrix a;
         stability_twists twists = {0, 0};
         if (past) {
-            const one_cell c = cell_of<G>(l, t, i, u, parts.shape);
+            one_cell c = cell_of<G>(l, t, i, u, parts.shape);
             element_fibre fibre[2];
             fibres_of(l, t, i, c, fibre);
             twists = twists_of(l.control, c, parts);
             past = strain_of(l, t, i, c) < INFINITY;
+            stiffen(l, &c);
             stability_matrix(l.which, c.own.c, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
         }
         past = past && !stability_below(&a, stability_room(twists, h.limit));

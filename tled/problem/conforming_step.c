@@ -13,13 +13,13 @@ element_any conforming_shape(const tled_problem *p, int64_t element, const confo
 
 /* ---- the stable step */
 
-void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h, element_fibre fibre, step_matrix *a)
+void conforming_matrix(const tled_problem *p, int64_t element, const tled_law *law, element_tensor h,
+                       element_fibre fibre, step_matrix *a)
 {
-    const tled_law law = tled_law_of(p, element);
     double(*l)[3] = p->conforming->element[element].root;
     double half[9][9];
     const fibre_sets sets = fibre_sets_at(&p->fibres, element);
-    form_tangent(p->form, h, law.c, a->at);
+    form_tangent(p->form, h, law->c, a->at);
     if (stability_pulls(fibre))
         stability_add_muscle(h, fibre, a->at);
     fibre_add_tangent(h, sets.of, sets.count, a->at);
@@ -37,15 +37,16 @@ void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h,
             double sum = 0;
             for (int j = r % 3; j < 3; j++)
                 sum += l[j][r % 3] * half[r / 3 * 3 + j][c];
-            a->at[r][c] = 8 / law.density * sum;
+            a->at[r][c] = 8 / law->density * sum;
         }
 }
 
-stability_twists conforming_twists(const tled_problem *p, int64_t element, element_tensor h, const hourglass_modes *m)
+stability_twists conforming_twists(const tled_problem *p, int64_t element, element_tensor h, const hourglass_modes *m,
+                                   stability_stiffening s)
 {
     const conforming_element *c = &p->conforming->element[element];
     const double square = c->stiffest / (tled_law_of(p, element).density * c->volume / 8);
-    return stability_twists_of(p->control.kind, square, c->steepest, h, m);
+    return stability_twists_of(p->control.kind, square, c->steepest, h, m, s);
 }
 
 double conforming_room(const tled_problem *p, int64_t element, stability_twists t, double limit)
@@ -76,11 +77,13 @@ void conforming_join(tled_problem *p)
     conforming *c = p->conforming;
     const element_tensor rest = {0};
     const hourglass_modes still = {.xy = {0}};
+    const stability_stiffening none = {.now = 1};
     step_matrix a;
     for (int64_t i = 0; i < p->elements; i++) {
+        const tled_law law = tled_law_of(p, i);
         c->element[i].stiffest = stiffest_of(p, i);
-        const stability_twists t = conforming_twists(p, i, rest, &still);
-        conforming_matrix(p, i, rest, muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1, NULL), &a);
+        const stability_twists t = conforming_twists(p, i, rest, &still, none);
+        conforming_matrix(p, i, &law, rest, muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1, NULL), &a);
         if (i && step_below(&a, conforming_room(p, i, t, c->square)))
             continue;
         double square = conforming_square(p, i, t, step_largest(&a));

@@ -24,11 +24,13 @@ void conforming_join(tled_problem *p);
 /* element_any of double numbers. */
 element_any conforming_shape(const tled_problem *p, int64_t element, const conforming_hold *hold);
 
-/* The first of the two matrices above, for an element at H that is pulled along its fibre. */
-void conforming_matrix(const tled_problem *p, int64_t element, element_tensor h, element_fibre fibre, step_matrix *a);
+/* The first of the two matrices above, for an element of a law at H that is pulled along its fibre. */
+void conforming_matrix(const tled_problem *p, int64_t element, const tled_law *law, element_tensor h,
+                       element_fibre fibre, step_matrix *a);
 
-/* What its hourglass modes m (twisted) have, at H. */
-stability_twists conforming_twists(const tled_problem *p, int64_t element, element_tensor h, const hourglass_modes *m);
+/* What its hourglass modes m (twisted) have, at H; s: how control follows the law there. */
+stability_twists conforming_twists(const tled_problem *p, int64_t element, element_tensor h, const hourglass_modes *m,
+                                   stability_stiffening s);
 
 /* What its largest eigenvalue may be, so that the square of the element's highest frequency is at most limit; and
  * the other way round: what that is at most with an eigenvalue. */

@@ -31,10 +31,13 @@ deformed deformed_of(const tled_problem *p, int64_t element, element_shape box, 
         f = hourglass_of(p->control.kind, d.modes, d.h, box, d.law.hourglass);
         d.rest = p->side[0] * p->side[1] * p->side[2];
     }
-    d.hourglass = hourglass_dot(&f.f, &d.modes) / 2; /* f.m = s.q: the energy is quadratic in q */
+    const double w0 = hourglass_dot(&f.f, &d.modes) / 2; /* f.m = s.q: the energy is quadratic in q */
     d.dilation = element_dilation(d.h);
     const fibre_sets fibres = fibre_sets_at(&p->fibres, element);
     d.energy =
         form_energy(p->form, d.h, d.law.c) + muscle_fibre_energy(p, element, d.h) + fibre_sets_energy(&fibres, d.h);
+    d.stiffening = stability_stiffening_of(p->form, p->control.kind, d.h, d.law.c);
+    d.hourglass = d.stiffening.now * w0;
+    stability_stiffen(d.stiffening, w0 / d.rest, d.law.c);
     return d;
 }

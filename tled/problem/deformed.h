@@ -5,16 +5,18 @@
 #define SINEW_DEFORMED_H
 
 #include "physics/element.h"
+#include "physics/stability.h"
 #include "tled/problem/state.h"
 
 typedef struct deformed {
     element_tensor h; /* grad u at the centre */
-    tled_law law;
-    double rest;     /* m3: volume at rest */
-    double dilation; /* J - 1 */
+    tled_law law;     /* its coefficients with what hourglass energy adds to the tangent */
+    double rest;      /* m3: volume at rest */
+    double dilation;  /* J - 1 */
     double energy; /* J/m3, by volume at rest: of its strain and of muscles that are stretched, without what these do */
     double hourglass; /* J */
     hourglass_modes modes;
+    stability_stiffening stiffening; /* how hourglass control follows the law */
 } deformed;
 
 /* box: of elements that are a lattice's. displacement: nodes x 3. */

@@ -31,9 +31,9 @@ static void take_frequency(struct monitor_part *part, int64_t i, double square)
 static void add_conforming(const monitor *w, int64_t i, const deformed *d, struct monitor_part *part)
 {
     const tled_problem *p = w->p;
-    const stability_twists t = conforming_twists(p, i, d->h, &d->modes);
+    const stability_twists t = conforming_twists(p, i, d->h, &d->modes, d->stiffening);
     step_matrix a;
-    conforming_matrix(p, i, d->h, muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1, w->curves), &a);
+    conforming_matrix(p, i, &d->law, d->h, muscle_fibre_of(p, p->fibre, i, p->element_volume[i], 1, w->curves), &a);
     if (!step_below(&a, conforming_room(p, i, t, part->sum.frequency)))
         take_frequency(part, i, w->raise * conforming_square(p, i, t, step_largest(&a)));
 }
@@ -45,7 +45,8 @@ static void add_step(const monitor *w, int64_t i, const deformed *d, element_sha
 {
     const tled_problem *p = w->p;
     const double slope = fmax(box.slope.x, fmax(box.slope.y, box.slope.z));
-    const stability_twists t = stability_twists_of(p->control.kind, d->law.twists, slope, d->h, &d->modes);
+    const stability_twists t =
+        stability_twists_of(p->control.kind, d->law.twists, slope, d->h, &d->modes, d->stiffening);
     const step_fibres fibres = step_fibres_of(p, i, w->curves);
     const stability_range range = stability_range_with(step_range_of(p, &d->law, d->h, &fibres), t);
     step_matrix a;
