@@ -104,7 +104,8 @@ function print_elements(    i, j, k, line) {
 }
 function print_material() {
     if (mu == "" && law != "yeoh") { mu = E / (2 * (1 + nu)); K = E / (3 * (1 - 2 * nu)) }
-    if (law == "yeoh") printf "*MATERIAL, NAME=TISSUE\n*HYPERELASTIC, YEOH\n%.15g, %.15g, %.15g, %.15g, 0, 0\n", c10, c20, c30, 2 / K
+    # D2 and D3 of 0 would be CalculiX's own, which are small: then nothing changes its volume by more than a little.
+    if (law == "yeoh") printf "*MATERIAL, NAME=TISSUE\n*HYPERELASTIC, YEOH\n%.15g, %.15g, %.15g, %.15g, 1e12, 1e12\n", c10, c20, c30, 2 / K
     else if (law == "linear") printf "*MATERIAL, NAME=TISSUE\n*ELASTIC\n%.15g, %.15g\n", E, nu
     else printf "*MATERIAL, NAME=TISSUE\n*HYPERELASTIC, NEO HOOKE\n%.15g, %.15g\n", mu / 2, 2 / K
     printf "*DENSITY\n%.15g\n*SOLID SECTION, ELSET=SOLID, MATERIAL=TISSUE\n", rho == "" ? 1000 : rho
