@@ -233,6 +233,32 @@ ELEMENT_FUNCTION element_corners element_gather(real px, real py, real pz, eleme
     return element_corners_of(f);
 }
 
+/* What holds an element's modes. Where that follows the law, it changes the law: P is to be found after it, and has
+ * what that adds. */
+ELEMENT_FUNCTION hourglass_force element_hold(form f, hourglass_kind kind, hourglass_modes modes, element_tensor h,
+                                              element_shape shape, element_law *law)
+{
+    const int follows = element_follows(f, kind);
+    const real slope = follows ? element_follow(f, h, law) : REAL_ZERO;
+    const hourglass_force held = hourglass_of(kind, modes, h, shape, law->hourglass);
+    if (follows)
+        element_followed(&held.f, &modes, slope * shape.density, law);
+    return held;
+}
+
+/* The forces at the corners from P of the tissue and from what holds the modes. */
+ELEMENT_FUNCTION element_field element_force_of(hourglass_kind kind, element_tensor p, const hourglass_force *held,
+                                                element_shape shape)
+{
+    const hourglass_modes *m = &held->f;
+    if (kind == HOURGLASS_PHYSICAL)
+        p = element_sum(p, held->p);
+    element_field force = {element_gather(p.xx, p.xy, p.xz, shape.area, m->xy.x, m->yz.x, m->zx.x, m->xyz.x),
+                           element_gather(p.yx, p.yy, p.yz, shape.area, m->xy.y, m->yz.y, m->zx.y, m->xyz.y),
+                           element_gather(p.zx, p.zy, p.zz, shape.area, m->xy.z, m->yz.z, m->zx.z, m->xyz.z)};
+    return force;
+}
+
 /* As element_force, with a second fibre, and what resists being stretched of `count` volumes, none to two. */
 ELEMENT_FUNCTION element_field element_force_fibred(form f, hourglass_kind kind, element_field u, element_shape shape,
                                                     element_law law, element_fibre fibre, int which,
@@ -241,24 +267,14 @@ ELEMENT_FUNCTION element_field element_force_fibred(form f, hourglass_kind kind,
 {
     element_modes x = element_modes_of(u.x), y = element_modes_of(u.y), z = element_modes_of(u.z);
     element_tensor h = element_gradient(x, y, z, shape.slope);
-    const hourglass_modes modes = element_hourglass_modes(x, y, z);
     const int follows = element_follows(f, kind);
     element_tensor p = h;
     if (!follows)
         p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
-    const real slope = follows ? element_follow(f, h, &law) : REAL_ZERO;
-    const hourglass_force held = hourglass_of(kind, modes, h, shape, law.hourglass);
-    const hourglass_modes *m = &held.f;
-    if (follows) {
-        element_followed(m, &modes, slope * shape.density, &law);
+    const hourglass_force held = element_hold(f, kind, element_hourglass_modes(x, y, z), h, shape, &law);
+    if (follows)
         p = element_stress(f, h, law.c, fibre, which, second, which_second, sets, count);
-    }
-    if (kind == HOURGLASS_PHYSICAL)
-        p = element_sum(p, held.p);
-    element_field force = {element_gather(p.xx, p.xy, p.xz, shape.area, m->xy.x, m->yz.x, m->zx.x, m->xyz.x),
-                           element_gather(p.yx, p.yy, p.yz, shape.area, m->xy.y, m->yz.y, m->zx.y, m->xyz.y),
-                           element_gather(p.zx, p.zy, p.zz, shape.area, m->xy.z, m->yz.z, m->zx.z, m->xyz.z)};
-    return force;
+    return element_force_of(kind, p, &held, shape);
 }
 
 /* As element_force, with a second fibre. */

@@ -99,7 +99,9 @@ ELEMENT_FUNCTION real fibre_strain(element_symmetric e, element_vector a, real k
 ELEMENT_FUNCTION void fibre_add_family(element_symmetric e, fibre_law law, element_vector a, element_symmetric *s)
 {
     const real strain = fibre_strain(e, a, law.kappa);
-    const real twice = 2 * law.k1 * strain * fibre_growth_at(law.k2 * strain * strain).slope;
+    real twice = 2 * law.k1 * strain;
+    if (real_any(law.k2 != 0)) /* else times 1 */
+        twice = twice * fibre_growth_at(law.k2 * strain * strain).slope;
     const real around = twice * law.kappa;
     s->xx += around;
     s->yy += around;
