@@ -35,7 +35,7 @@ enum { /* as bits */
 };
 
 /* All executors have these features, so messages about the choice do not name them. */
-enum { EXECUTOR_USUAL = EXECUTOR_MIXTURES };
+enum { EXECUTOR_USUAL = EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES };
 
 typedef struct executor {
     const char *device; /* "cpu" or "cuda", as the user says it */

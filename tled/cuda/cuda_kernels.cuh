@@ -10,8 +10,8 @@
 extern "C" {
 #include "tled/problem/node.h"
 }
+#include "tled/cuda/cuda_fibres.cuh"
 #include "tled/cuda/cuda_ptx.cuh"
-#include "tled/cuda/cuda_view.cuh"
 
 typedef struct cuda_pass {
     const real *from; /* displacements */
@@ -98,6 +98,121 @@ static __device__ element_field plain_force(const L &l, const cuda_view<real> &v
     return element_force(l.which, l.control, cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
 }
 
+/* What a muscle of a volume pulls with before its curve is looked at, Pa: tled_tension. */
+static __device__ real volume_tension(const cuda_fibres<real> &of, const cuda_pass &p)
+{
+    return of.contract < 0 ? 0 : (real)(of.peak * p.now[3 * of.contract] / of.optimum);
+}
+
+/* What is to be looked at of a volume's muscle: ELEMENT_MUSCLE and so on. */
+static __device__ int muscle_of(const cuda_fibres<real> &of, real tension)
+{
+    if (of.curved)
+        return ELEMENT_CURVED_MUSCLE;
+    return tension != 0 ? ELEMENT_MUSCLE : ELEMENT_NO_MUSCLE;
+}
+
+/* What of a cell a volume's muscle has to do with: its share, and what is looked at of it. */
+typedef struct cell_part {
+    const cuda_fibres<real> *of;
+    const float *along; /* directions; or NULL */
+    const real *family;
+    real share, tension;
+    int which;
+} cell_part;
+
+static __device__ cell_part part_of(const cuda_view<real> &v, const cuda_pass &p, const cuda_fibres<real> *of,
+                                    const float *along, const real *family, real share)
+{
+    const real tension = along ? volume_tension(*of, p) : 0;
+    return {of, along, family, share, tension, along ? muscle_of(*of, tension) : ELEMENT_NO_MUSCLE};
+}
+
+/* Adds the stress of a muscle, if it is looked at. */
+static __device__ void add_muscle(const cell_part &part, int64_t row, element_tensor h, element_tensor *to)
+{
+    if (part.which)
+        *to = element_sum(
+            *to, element_muscle(h, cuda_muscle(*part.of, part.along, row, part.share, part.tension), part.which));
+}
+
+/* Adds S of what resists being stretched. */
+static __device__ void add_stretched(const cuda_view<real> &v, const cell_part &part, int64_t row, element_symmetric e,
+                                     element_symmetric *to)
+{
+    if (part.along) {
+        const fibre_set set = cuda_fibre_set(v, *part.of, part.along, part.family, row, part.share);
+        fibre_add_set(e, &set, to);
+    }
+}
+
+/* Adds P of a cell's fibres, in the order of element_stress; MIXED: of two volumes, of which cpu_lanes.c looks at both
+ * muscles alike where no fibres resist being stretched, and adds zeros, which have signs. */
+template <bool MIXED>
+static __device__ void add_fibres(const cuda_view<real> &v, cell_part own, cell_part other, int64_t row,
+                                  element_tensor h, element_tensor *to)
+{
+    const bool stretched = cuda_stretched(*own.of) || (MIXED && cuda_stretched(*other.of));
+    if (MIXED && other.along && !stretched && (own.of->curved || other.of->curved))
+        own.which = other.which = ELEMENT_CURVED_MUSCLE;
+    add_muscle(own, row, h, to);
+    if (MIXED)
+        add_muscle(other, row, h, to);
+    if (!stretched)
+        return;
+    const element_symmetric e = element_green(h);
+    element_symmetric s = {0, 0, 0, 0, 0, 0};
+    add_stretched(v, own, row, e, &s);
+    if (MIXED)
+        add_stretched(v, other, row, e, &s);
+    *to = element_sum(*to, fibre_moved(h, s));
+}
+
+/* A cell of a model with fibres, as element_force_fibred: what fibres need is loaded where it is needed. mixed: of
+ * MIXED. */
+template <bool MIXED, class G, class L>
+static __device__ element_field fibred_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
+                                             int i, const real *u, const int &place, uint32_t volume,
+                                             const cuda_mixed *mixed, real share)
+{
+    const real *stiff = p.law + (l.coefficients + l.held) * volume;
+    element_law law =
+        MIXED ? law_of(l, mixed->c, mixed->hourglass, share) : law_of(l, stiff, stiff + l.coefficients, share);
+    const element_field at = cell_field<G>(u, place);
+    const element_modes x = element_modes_of(at.x), y = element_modes_of(at.y), z = element_modes_of(at.z);
+    const element_tensor h = element_gradient(x, y, z, p.shape.slope);
+    const hourglass_modes modes = element_hourglass_modes(x, y, z);
+    const bool first = L::ASKS || element_follows(l.which, l.control); /* it may change the law */
+    hourglass_force held = {};
+    if (first)
+        held = element_hold(l.which, l.control, modes, h, p.shape, &law);
+    element_tensor stress = form_stress(l.which, h, law.c);
+    if (i < t.fibred) {
+        const real part = MIXED ? (real)mixed->share : 0;
+        const cell_part own = part_of(v, p, v.fibres + volume, v.fibre, v.family, share * (1 - part));
+        const cell_part other = part_of(v, p, v.fibres + (MIXED ? mixed->mix : volume), MIXED ? v.mixfibre : NULL,
+                                        v.mixfamily, share * part);
+        add_fibres<MIXED>(v, own, other, t.direction + i, h, &stress);
+    }
+    if (!first)
+        held = element_hold(l.which, l.control, modes, h, p.shape, &law);
+    return element_force_of(l.control, stress, &held, p.shape);
+}
+
+/* A cell's forces at its corners. mixed: which of v.mixture it is, or -1. */
+template <class G, class T, class L>
+static __device__ element_field force_of_cell(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t,
+                                              int i, const real *u, const int &place, uint32_t volume, int32_t mixed,
+                                              real share)
+{
+    if constexpr (L::FIBRED)
+        return T::MIXED && mixed >= 0 ? fibred_force<true, G>(l, v, p, t, i, u, place, volume, &v.mixture[mixed], share)
+                                      : fibred_force<false, G>(l, v, p, t, i, u, place, volume, NULL, share);
+    else
+        return T::MIXED && mixed >= 0 ? mixed_force<G>(l, v, p, t, i, u, place, v.kind[volume], v.mixture[mixed], share)
+                                      : plain_force<G>(l, v, p, t, i, u, place, volume, share);
+}
+
 template <class G, class T, class L>
 static __device__ void cell_force(const L &l, const cuda_view<real> &v, const cuda_pass &p, const tile &t, int i,
                                   uint32_t cell, const real *u, real *force)
@@ -106,9 +221,7 @@ static __device__ void cell_force(const L &l, const cuda_view<real> &v, const cu
     const uint32_t volume = cell >> TILE_VOLUME;
     const real share = v.share ? (real)v.share[t.cell + i] : 1; /* forces are linear in all of these */
     const int32_t mixed = T::MIXED && (!T::ASKS || v.mixed) ? v.mixed[t.cell + i] : -1;
-    const element_field f = T::MIXED && mixed >= 0
-                                ? mixed_force<G>(l, v, p, t, i, u, place, v.kind[volume], v.mixture[mixed], share)
-                                : plain_force<G>(l, v, p, t, i, u, place, volume, share);
+    const element_field f = force_of_cell<G, T>(l, v, p, t, i, u, place, volume, mixed, share);
 #pragma unroll
     for (int c = 0; c < 8; c++) {
         force[c * G::CELLS + place] = f.x.at[c];

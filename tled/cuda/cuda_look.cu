@@ -5,8 +5,8 @@
 extern "C" {
 #include "physics/stability.h"
 }
+#include "tled/cuda/cuda_fibres.cuh"
 #include "tled/cuda/cuda_sums.cuh"
-#include "tled/cuda/cuda_view.cuh"
 
 /* Blocks of settle_kernel: what an H200 has room for. */
 #ifndef SOLVERS
@@ -100,7 +100,7 @@ static __device__ one_cell cell_of(const cuda_look<S> &l, const tile &t, int i, 
     return c;
 }
 
-/* along: over cells that may contract, or NULL; share: of the tissue that is of this kind. */
+/* along: over cells whose fibres act, or NULL; share: of the tissue that is of this kind. */
 template <class S>
 static __device__ element_fibre look_fibre(const cuda_look<S> &l, const tile &t, int i, const float *along,
                                            uint32_t kind, double share)
@@ -116,19 +116,67 @@ static __device__ element_fibre look_fibre(const cuda_look<S> &l, const tile &t,
 }
 
 /* Its muscles: of its own volume, and of the second. */
+template <bool FIBRED> struct cell_fibres {
+    element_fibre muscle[2];
+};
+
+/* And what resists being stretched, of so many volumes. */
+template <> struct cell_fibres<true> {
+    element_fibre muscle[2];
+    fibre_set sets[2];
+    int count;
+};
+
+/* Adds those of one volume; along, family: NULL: it has none. */
 template <class S>
-static __device__ void fibres_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c, element_fibre *two)
+static __device__ void add_fibres(const cuda_look<S> &l, int64_t row, uint32_t volume, const float *along,
+                                  const S *family, double share, element_fibre *muscle, cell_fibres<true> *to)
+{
+    if (!along)
+        return;
+    const cuda_fibres<double> &of = l.fibres[volume];
+    const double tension = of.contract < 0 ? 0 : of.peak * l.now[3 * of.contract] / of.optimum;
+    *muscle = cuda_muscle(of, along, row, share, tension);
+    if (cuda_stretched(of))
+        to->sets[to->count++] = cuda_fibre_set(l.view, of, along, family, row, share);
+}
+
+template <bool FIBRED, class S>
+static __device__ cell_fibres<FIBRED> fibres_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
 {
     const cuda_view<S> &v = l.view;
-    two[0] = look_fibre(l, t, i, v.fibre, v.cell[t.cell + i] >> TILE_VOLUME, 1 - c.own.share);
-    two[1] = look_fibre(l, t, i, c.own.mix < 0 ? NULL : v.mixfibre, (uint32_t)c.own.mix, c.own.share);
+    const uint32_t volume = v.cell[t.cell + i] >> TILE_VOLUME, mix = (uint32_t)c.own.mix;
+    cell_fibres<FIBRED> f = {};
+    const float *const mixfibre = c.own.mix < 0 ? NULL : v.mixfibre;
+    if constexpr (FIBRED) {
+        if (i < t.fibred) {
+            add_fibres(l, t.direction + i, volume, v.fibre, v.family, 1 - c.own.share, &f.muscle[0], &f);
+            add_fibres(l, t.direction + i, mix, mixfibre, v.mixfamily, c.own.share, &f.muscle[1], &f);
+        }
+    } else {
+        f.muscle[0] = look_fibre(l, t, i, v.fibre, volume, 1 - c.own.share);
+        f.muscle[1] = look_fibre(l, t, i, mixfibre, mix, c.own.share);
+    }
+    return f;
+}
+
+/* What its fibres hold, J/m3 by volume at rest; no energy is told of active muscles. */
+static __device__ double fibres_energy(const cell_fibres<true> &f, element_tensor h)
+{
+    double energy = element_fibre_energy(h, f.muscle[0]) + element_fibre_energy(h, f.muscle[1]);
+    for (int k = 0; k < f.count; k++)
+        energy += fibre_energy(h, &f.sets[k]);
+    return energy;
 }
 
 /* Its strain energy; not finite where the cell is broken. */
-template <class S> static __device__ double strain_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
+template <bool FIBRED, class S>
+static __device__ double strain_of(const cuda_look<S> &l, const tile &t, int i, const one_cell &c)
 {
     const cuda_view<S> &v = l.view;
-    const double energy = form_energy(l.which, c.h, c.own.c);
+    double energy = form_energy(l.which, c.h, c.own.c);
+    if constexpr (FIBRED)
+        energy += fibres_energy(fibres_of<true>(l, t, i, c), c.h);
     if (!(1 + element_dilation(c.h) > 0) || !isfinite(energy) || !isfinite(c.hourglass))
         return INFINITY;
     return (v.share ? (double)v.share[t.cell + i] : 1) * (energy * v.side[0] * v.side[1] * v.side[2] + c.hourglass);
@@ -183,6 +231,28 @@ template <class G> static __device__ int list_own(const unsigned *who, own_cells
     return count;
 }
 
+/* Between which the largest eigenvalue of its matrix lies; d: stability_range_scaled's. */
+template <bool FIBRED, class S>
+static __device__ stability_range range_of(const cuda_look<S> &l, const one_cell &c, element_vector d,
+                                           const cell_fibres<FIBRED> &f)
+{
+    if constexpr (FIBRED)
+        return stability_range_fibred(l.which, c.own.c, d, c.h, f.muscle[0], f.muscle[1], f.sets, f.count);
+    else
+        return stability_range_scaled(l.which, c.own.c, d, c.h, f.muscle[0], f.muscle[1]);
+}
+
+template <bool FIBRED, class S>
+static __device__ void matrix_of(const cuda_look<S> &l, const one_cell &c, const cell_fibres<FIBRED> &f, step_matrix *a)
+{
+    const double *side = l.view.side;
+    if constexpr (FIBRED)
+        stability_matrix_fibred(l.which, c.own.c, c.own.density, side, c.h, f.muscle[0], f.muscle[1], f.sets, f.count,
+                                a);
+    else
+        stability_matrix(l.which, c.own.c, c.own.density, side, c.h, f.muscle[0], f.muscle[1], a);
+}
+
 static __device__ stability_twists twists_of(hourglass_kind control, const one_cell &c, const look_parts &parts)
 {
     return stability_twists_by(control, c.own.twists, parts.slope, c.h, c.twist, c.stiffening);
@@ -190,7 +260,7 @@ static __device__ stability_twists twists_of(hourglass_kind control, const one_c
 
 /* Strain energies, what is broken, and bounds of frequencies, of a thread's cells; no matrices, which take a thread
  * nearly twice the registers. Returns what is proven. */
-template <class G, class S>
+template <class G, bool FIBRED, class S>
 static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, const S *u, const own_cells<G> &own,
                                        int count, const look_parts &parts, tled_sums *to)
 {
@@ -199,19 +269,17 @@ static __device__ double look_at_cells(const cuda_look<S> &l, const tile &t, con
     for (int k = threadIdx.x; k < count; k += G::THREADS) {
         const int i = own.cell[k];
         one_cell c = cell_of<G>(l, t, i, u, parts.shape);
-        const double strain = strain_of(l, t, i, c);
+        const double strain = strain_of<FIBRED>(l, t, i, c);
         if (!(strain < INFINITY)) {
             to->broken = to->broken < 0 ? t.cell + i : to->broken;
             continue;
         }
         to->strain += strain;
         stiffen(l, &c);
-        element_fibre fibre[2];
-        fibres_of(l, t, i, c, fibre);
+        const cell_fibres<FIBRED> fibres = fibres_of<FIBRED>(l, t, i, c);
         const double unit = 8 / sqrt(c.own.density);
         const element_vector slope = parts.shape.slope, d = {unit * slope.x, unit * slope.y, unit * slope.z};
-        const stability_range range = stability_range_with(
-            stability_range_scaled(l.which, c.own.c, d, c.h, fibre[0], fibre[1]), twists_of(l.control, c, parts));
+        const stability_range range = stability_range_with(range_of(l, c, d, fibres), twists_of(l.control, c, parts));
         if (range.high <= l.question.rest)
             continue;
         const double bound = isnan(range.high) ? INFINITY : range.high;
@@ -258,7 +326,7 @@ static __device__ void raise_limit(const step_matrix *a, stability_twists twists
 }
 
 /* The frequency of a tile by its cells' matrices. */
-template <class G, class S>
+template <class G, bool FIBRED, class S>
 static __device__ void solve_tile(const cuda_look<S> &l, const tile &t,
 
                                   const look_parts &parts, tled_sums *out, S *u, double *scratch, int *least)
@@ -274,12 +342,11 @@ static __device__ void solve_tile(const cuda_look<S> &l, const tile &t,
         stability_twists twists = {0, 0};
         if (past) {
             one_cell c = cell_of<G>(l, t, i, u, parts.shape);
-            element_fibre fibre[2];
-            fibres_of(l, t, i, c, fibre);
+            const cell_fibres<FIBRED> fibres = fibres_of<FIBRED>(l, t, i, c);
             twists = twists_of(l.control, c, parts);
-            past = strain_of(l, t, i, c) < INFINITY;
+            past = strain_of<FIBRED>(l, t, i, c) < INFINITY;
             stiffen(l, &c);
-            stability_matrix(l.which, c.own.c, c.own.density, l.view.side, c.h, fibre[0], fibre[1], &a);
+            matrix_of(l, c, fibres, &a);
         }
         past = past && !stability_below(&a, stability_room(twists, h.limit));
         if (__syncthreads_or(past))
@@ -376,7 +443,7 @@ static __device__ void look_at_nodes(const cuda_look<S> &l, int64_t share, tled_
 
 /* What bounds tell of a tile's cells, and sums over them and over a share of the nodes: what waits for memory in one
  * block is beside what computes in others. */
-template <class G, class S>
+template <class G, bool FIBRED, class S>
 static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     look_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts out)
 {
@@ -399,7 +466,7 @@ static __global__ void __launch_bounds__(G::THREADS, 512 / G::THREADS)
     const int count = list_own<G>(who, &own);
     __syncthreads();
     mine = nothing_seen(l.question.rest);
-    const double most = warp_most(look_at_cells<G>(l, t, u, own, count, out, &mine));
+    const double most = warp_most(look_at_cells<G, FIBRED>(l, t, u, own, count, out, &mine));
     sum_cells(&mine);
     if (threadIdx.x % 32 == 0) {
         add_part(&part[warp], mine);
@@ -431,7 +498,7 @@ static __device__ double proven_of_all(const double *proven, int64_t tiles, doub
  * reach: others' limits may stay, for if one of them is the highest of all, it is too high by `raise` at most.
  * Where no tile is known to pass the frequency at rest, it is for all that may. Then it adds up what their
  * blocks left, where the first of these was. */
-template <class G, class S>
+template <class G, bool FIBRED, class S>
 static __global__ void __launch_bounds__(G::THREADS)
     settle_kernel(const __grid_constant__ cuda_look<S> l, const __grid_constant__ look_parts parts)
 {
@@ -448,7 +515,7 @@ static __global__ void __launch_bounds__(G::THREADS)
         int next = own < l.count && parts.block[own].frequency > enough ? (int)threadIdx.x : NONE;
         for (int which; (which = block_least(next, &least)) != NONE;) {
             const int64_t at = base + which * stride;
-            solve_tile<G>(l, l.view.tiles[at], parts, &parts.block[at], u, number, &least);
+            solve_tile<G, FIBRED>(l, l.view.tiles[at], parts, &parts.block[at], u, number, &least);
             next = next == which ? NONE : next;
         }
         if (own < l.count)
@@ -467,16 +534,23 @@ static __global__ void __launch_bounds__(SUM_THREADS)
     sum_block<SUM_THREADS>(mine, true, scratch, out);
 }
 
+/* By bricks G. */
+template <class G, bool FIBRED, class S>
+static cudaError_t start_in(const cuda_look<S> *l, const look_parts &parts, int64_t solvers, cudaStream_t stream)
+{
+    typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
+    const cudaError_t bounds = card_start(look_kernel<W, FIBRED, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
+    return bounds == cudaSuccess ? card_start(settle_kernel<G, FIBRED, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
+                                 : bounds;
+}
+
 template <class S> cudaError_t cuda_look_start(const cuda_look<S> *l, tled_sums *sums, cudaStream_t stream)
 {
     const look_parts parts = parts_of(l);
     const int64_t solvers = l->count < SOLVERS ? l->count : SOLVERS;
     cudaError_t e = with_brick(l->size, [&](auto g) {
         typedef decltype(g) G;
-        typedef cuda_brick<G::BX, G::BY, G::BZ, LOOK_THREADS, 1> W;
-        const cudaError_t bounds = card_start(look_kernel<W, S>, {l->count, W::THREADS, 0, stream}, *l, parts);
-        return bounds == cudaSuccess ? card_start(settle_kernel<G, S>, {solvers, G::THREADS, 0, stream}, *l, parts)
-                                     : bounds;
+        return l->fibres ? start_in<G, true>(l, parts, solvers, stream) : start_in<G, false>(l, parts, solvers, stream);
     });
     return e == cudaSuccess
                ? card_start(sums_kernel, {1, SUM_THREADS, 0, stream}, parts.block, solvers, l->question.rest, sums)

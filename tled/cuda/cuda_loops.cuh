@@ -183,7 +183,8 @@ static int cuda_monitor(cuda_state *s, const tled_question *q, tled_sums *sums, 
                          *q,
                          s->look_parts,
                          s->p->form,
-                         s->p->control.kind};
+                         s->p->control.kind,
+                         s->fibres};
     if (card_check(cuda_look_start(&l, s->sums, s->stream), "the start of a look", s->step, e) ||
         CUDA_TRY(cudaMemcpyAsync(s->sums_host, s->sums, sizeof *s->sums, cudaMemcpyDeviceToHost, s->stream)) ||
         CUDA_TRY(cudaStreamSynchronize(s->stream)))
@@ -311,8 +312,10 @@ static int64_t cuda_computed(const cuda_state *s)
     return s->method->computed(s);
 }
 
+enum { CUDA_FEATURES = EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES };
+
 const tled_executor CUDA_EXECUTOR = {
-    .is = {.device = "cuda", .features = EXECUTOR_MIXTURES, .forms = TILES_FORMS, .unusable = card_unusable},
+    .is = {.device = "cuda", .features = CUDA_FEATURES, .forms = TILES_FORMS, .unusable = card_unusable},
     .create = cuda_create,
     .destroy = cuda_destroy,
     .step = cuda_step,

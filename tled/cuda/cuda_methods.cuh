@@ -17,8 +17,8 @@ static int cut_in(cuda_state *s, cuda_size size, err *e)
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
         static const int brick[3] = {G::BX, G::BY, G::BZ};
-        const cudaError_t allowed = with_stepper<CUDA_TILES>(s->p->form, s->p->control.kind,
-                                                             [](auto l) { return pass_allow<G, decltype(l)>(); });
+        const cudaError_t allowed =
+            with_stepper<CUDA_TILES>(wants_of(s->p), [](auto l) { return pass_allow<G, decltype(l)>(); });
         return CUDA_TRY(allowed) ? -1 : tiles_make(&s->tiles, s->p, brick, e);
     });
 }
@@ -30,7 +30,7 @@ static int64_t places_of(const cuda_state *s, cuda_size size, int64_t *nodes)
     return with_brick(size, [&](auto g) {
         typedef decltype(g) G;
         const int64_t curves = s->curves;
-        const int64_t places = with_stepper<CUDA_RESIDENT>(s->p->form, s->p->control.kind, [&](auto l) {
+        const int64_t places = with_stepper<CUDA_RESIDENT>(wants_of(s->p), [&](auto l) {
             typedef decltype(l) L;
             return with_tiles<L>(s->p->mix, s->tiles.list,
                                  [&](auto t) { return resident_places<G, L, decltype(t)>(curves); });
@@ -94,9 +94,8 @@ static int tiles_begin(cuda_state *s, err *e)
 static int begin_pass(cuda_state *s, const cuda_pass *p, err *e)
 {
     const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_stepper<CUDA_TILES>(s->p->form, s->p->control.kind, [&](auto l) {
-            return pass_start<decltype(g)>(l, s->view, *p, s->tiles.count, s->stream);
-        });
+        return with_stepper<CUDA_TILES>(
+            wants_of(s->p), [&](auto l) { return pass_start<decltype(g)>(l, s->view, *p, s->tiles.count, s->stream); });
     });
     return card_check(started, "the start of a pass", s->step, e);
 }
@@ -203,7 +202,7 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
                              ends};
     s->messages += (uint32_t)b->passes;
     const cudaError_t started = with_brick(s->size, [&](auto g) {
-        return with_stepper<CUDA_RESIDENT>(s->p->form, s->p->control.kind, [&](auto l) {
+        return with_stepper<CUDA_RESIDENT>(wants_of(s->p), [&](auto l) {
             typedef decltype(g) G;
             typedef decltype(l) L;
             return with_tiles<L>(s->view.mixed, s->view.list, [&](auto t) {
@@ -422,6 +421,7 @@ enum {
 /* The preferred first. What is left takes the last. */
 static const cuda_method cuda_methods[] = {
     {.forms = TILES_FORMS,
+     .fibred = true,
      .take = resident_take,
      .arrange = rows_arrange,
      .list = resident_list,
@@ -432,6 +432,7 @@ static const cuda_method cuda_methods[] = {
      .computed = tiles_computed,
      .end = NULL},
     {.forms = MARCH_FORMS,
+     .fibred = false,
      .take = march_take,
      .arrange = march_arrange,
      .list = march_list,
@@ -442,6 +443,7 @@ static const cuda_method cuda_methods[] = {
      .computed = march_computed,
      .end = march_end},
     {.forms = TILES_FORMS,
+     .fibred = true,
      .take = tiles_take,
      .arrange = rows_arrange,
      .list = tiles_list,
@@ -453,12 +455,17 @@ static const cuda_method cuda_methods[] = {
      .end = NULL},
 };
 
-/* The first method that has the problem's form and takes it, cut in tiles as it is. */
+static bool has_kernels(const cuda_method *m, cuda_wants w)
+{
+    return m->forms >> w.which & 1 && (m->fibred || !w.fibred);
+}
+
+/* The first method that has kernels for the problem and takes it, cut in tiles as it is. */
 static int choose_method(cuda_state *s, err *e)
 {
     for (const cuda_method *m = cuda_methods; !s->method; m++) {
         bool takes = false;
-        if (m->forms >> s->p->form & 1 && m->take(s, &takes, e))
+        if (has_kernels(m, wants_of(s->p)) && m->take(s, &takes, e))
             return -1;
         s->method = takes ? m : NULL;
     }

@@ -29,6 +29,9 @@ typedef struct cuda_numbers {
     real *mass_inverse, *law;
     cuda_kind *kind;
     cuda_mixed *mixture;
+    cuda_fibres<real> *fibres; /* as, until the struct ends, of models with fibres; else NULL */
+    cuda_fibres<double> *fibres_looked_at;
+    real *family, *mixfamily; /* or NULL */
 } cuda_numbers;
 
 /* Passes that follow each other, of those of `count` steps: what_of says what each does. */
@@ -42,6 +45,7 @@ typedef struct cuda_batch {
  * state, or for a batch of passes, and never within a step. They return -1 with e filled. */
 typedef struct cuda_method {
     uint32_t forms; /* that it is compiled for: bit i for form i */
+    bool fibred;    /* it has kernels with fibres */
     /* Whether it takes the problem, which is cut in tiles. */
     int (*take)(cuda_state *s, bool *takes, err *e);
     /* How the arrays of the state stand: s->numbers, and in the view. */
@@ -68,6 +72,7 @@ struct tled_state {
     cuda_size size; /* of its bricks */
     int64_t places; /* how many of them the card has at once */
     cuda_view<real> view;
+    const cuda_fibres<double> *fibres; /* of looks */
     element_shape shape;
     struct march march;       /* where the method is that: */
     cuda_march walk;          /* what its kernels see */
@@ -162,6 +167,12 @@ static int64_t largest_field(const cuda_state *s)
 
 /* ---- memory */
 
+/* What kernels are chosen by. */
+static cuda_wants wants_of(const tled_problem *p)
+{
+    return {p->form, p->control.kind, p->curved || p->fibres.of};
+}
+
 /* Of a law, as kernels read it (cuda_form). */
 static int law_numbers(const tled_problem *p)
 {
@@ -187,6 +198,11 @@ static void list_problem(cuda_state *s, const cuda_numbers *numbers, card_layout
     card_layout_copy(l, &v->mixed, t->mixed, t->cells);
     card_layout_copy(l, &v->mixture, t->mixed ? numbers->mixture : NULL, p->laws);
     card_layout_copy(l, &v->mixfibre, t->mixfibre, 3 * t->directions);
+    card_layout_copy(l, &v->fibres, numbers->fibres, p->volumes);
+    card_layout_copy(l, &s->fibres, numbers->fibres_looked_at, p->volumes);
+    card_layout_copy(l, &v->family, numbers->family, 3 * FIBRE_FAMILIES * t->directions);
+    card_layout_copy(l, &v->mixfamily, numbers->mixfamily, 3 * FIBRE_FAMILIES * t->directions);
+    v->directions = t->directions;
     card_layout_add(l, &v->extra, s->extras);
     card_layout_add(l, &v->force_curve, s->forces);
     card_layout_add(l, &v->force_spring, s->forces);
@@ -241,6 +257,76 @@ static void put_mixtures(const tled_problem *p, cuda_mixed *to)
         }
 }
 
+/* Of a volume: numbers of the problem, rounded where they go to steps in single precision. */
+template <class R> static cuda_fibres<R> fibres_of_volume(const tled_problem *p, int32_t i)
+{
+    static const fibre_numbers none = {};
+    const tled_volume *v = &p->volume[i];
+    const fibre_numbers *n = p->fibres.of ? &p->fibres.of[i] : &none;
+    return {(R)n->k1,
+            (R)n->k2,
+            (R)n->kappa,
+            (R)n->c,
+            (R)n->bt,
+            (R)(n->bfs - n->bt),
+            (R)(n->bf + n->bt - 2 * n->bfs),
+            (R)v->muscle[MUSCLE_LESS],
+            (R)v->muscle[MUSCLE_PASSIVE],
+            (R)v->muscle[MUSCLE_STIFFENING],
+            (R)v->muscle[MUSCLE_STRAIGHT],
+            v->peak,
+            v->optimum,
+            (int32_t)v->contract,
+            fibre_numbers_families(n),
+            n->c > 0,
+            v->curved};
+}
+
+/* The directions of families in a row of the tiles' fibres. */
+static void put_families(const cuda_numbers *n, const cuda_state *s, int64_t row, int64_t element)
+{
+    fibre_local at[2];
+    const int count = fibres_at(&s->p->fibres, element, at);
+    for (int i = 0; i < count; i++) {
+        real *to = at[i].is_second ? n->mixfamily : n->family;
+        for (int k = 0; k < 3 * FIBRE_FAMILIES; k++)
+            to[k * s->tiles.directions + row] = (real)at[i].family[k / 3][k % 3];
+    }
+}
+
+/* Where families are at an angle to fibres: the others have these. */
+static int make_families(cuda_numbers *n, const cuda_state *s, err *e)
+{
+    const tiles *t = &s->tiles;
+    const size_t size = 3 * FIBRE_FAMILIES * sizeof(real);
+    if (!fibres_angled(&s->p->fibres))
+        return 0;
+    n->family = (real *)mem_array(t->directions, size, "the solver", e);
+    n->mixfamily = s->p->mix && n->family ? (real *)mem_array(t->directions, size, "the solver", e) : NULL;
+    if (!n->family || (s->p->mix && !n->mixfamily))
+        return -1;
+    for (const tile *to = t->tile; to < t->tile + t->count; to++)
+        for (int32_t k = 0; k < to->fibred; k++)
+            put_families(n, s, to->direction + k, t->cell_element[to->cell + k]);
+    return 0;
+}
+
+static int make_fibres(cuda_numbers *n, const cuda_state *s, err *e)
+{
+    const tled_problem *p = s->p;
+    if (!wants_of(p).fibred)
+        return 0;
+    n->fibres = (cuda_fibres<real> *)mem_array(p->volumes, sizeof *n->fibres, "the solver", e);
+    n->fibres_looked_at = (cuda_fibres<double> *)mem_array(p->volumes, sizeof *n->fibres_looked_at, "the solver", e);
+    if (!n->fibres || !n->fibres_looked_at)
+        return -1;
+    for (int32_t i = 0; i < p->volumes; i++) {
+        n->fibres[i] = fibres_of_volume<real>(p, i);
+        n->fibres_looked_at[i] = fibres_of_volume<double>(p, i);
+    }
+    return make_families(n, s, e);
+}
+
 static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
 {
     const tled_problem *p = s->p;
@@ -267,7 +353,7 @@ static int make_numbers(cuda_numbers *n, const cuda_state *s, err *e)
             law[k] = (real)v->law.hourglass[k - coefficients];
     }
     put_mixtures(p, n->mixture);
-    return 0;
+    return make_fibres(n, s, e);
 }
 
 static int put_array(cuda_state *s, const void *to, const void *from, int64_t bytes, err *e)
@@ -310,6 +396,10 @@ out:
     free(numbers.law);
     free(numbers.kind);
     free(numbers.mixture);
+    free(numbers.fibres);
+    free(numbers.fibres_looked_at);
+    free(numbers.family);
+    free(numbers.mixfamily);
     return result;
 }
 

@@ -67,6 +67,16 @@ typedef struct cuda_mixed {                                                     
     int32_t mix;                                                                  /* the second volume */
 } cuda_mixed;
 
+/* Of a volume, for kernels with fibres (physics/fibre.h, physics/muscle_curves.h). */
+template <class R> struct cuda_fibres {
+    R k1, k2, kappa;                       /* of a family */
+    R c, all, along, both;                 /* of the law fung: fibre_fung */
+    R less, passive, stiffening, straight; /* of its muscle: muscle_curves */
+    double peak, optimum;                  /* Pa, 1 */
+    int32_t contract;                      /* its curve, or -1 */
+    int32_t families, is_fung, curved;     /* how many; whether it is; whether the muscle has curves of its own */
+};
+
 template <class S> struct cuda_view {
     const tile *tiles;
     const uint32_t *node_info, *cell;
@@ -89,6 +99,11 @@ template <class S> struct cuda_view {
     double side[3];
     const int32_t *list; /* the tiles'; NULL: none is listed */
     const uint4 *pull;   /* rows of listed nodes: 8 numbers of 16 bits */
+    /* Of models with fibres, else NULL. Two families at an angle have directions of their own: component a of family k
+     * in row r is family[(3 k + a) directions + r], r as of `fibre`. */
+    const cuda_fibres<S> *fibres; /* volumes */
+    const S *family, *mixfamily;  /* or NULL: no volume has such */
+    int64_t directions;
 };
 
 /* Where a tile's list begins, or -1; nothing, where no tile is listed. */
@@ -213,6 +228,7 @@ template <class S> struct cuda_look {
     void *parts; /* cuda_look_bytes of them */
     form which;  /* of the laws */
     hourglass_kind control;
+    const cuda_fibres<double> *fibres; /* volumes, where the view has them; else NULL */
 };
 
 size_t cuda_look_bytes(int64_t tiles);

@@ -278,12 +278,18 @@ static int tiles_at(const cutter *c, int64_t element, int32_t list[8])
     return count;
 }
 
+/* Whether fibres of a volume do anything: they contract, have curves of their own or resist being stretched. */
+static bool fibres_act(const tled_problem *p, int32_t volume)
+{
+    return p->volume[volume].contract >= 0 || p->volume[volume].curved || fibres_any(&p->fibres, volume);
+}
+
 static bool is_fibred(const cutter *c, int64_t element)
 {
     const tled_problem *p = c->p;
-    if (p->fibre && p->volume[p->element_volume[element]].contract >= 0)
+    if (p->fibre && fibres_act(p, p->element_volume[element]))
         return true;
-    return p->mixfibre && p->mix[element] >= 0 && p->volume[p->mix[element]].contract >= 0;
+    return p->mixfibre && p->mix[element] >= 0 && fibres_act(p, p->mix[element]);
 }
 
 /* Lists over cells, as many as are counted. */

@@ -36,7 +36,7 @@ typedef struct tile {
     int32_t node, nodes;       /* owned: the first, in the tiles' order, and how many */
     int32_t halo, halos;       /* in halo_node, halo_place */
     int32_t cell, cells;       /* in cell */
-    int32_t fibred, direction; /* the first `fibred` of its cells may contract: fibre from row `direction` on */
+    int32_t fibred, direction; /* the first `fibred` of its cells have fibres that act: fibre from row `direction` on */
 } tile;
 
 enum {
