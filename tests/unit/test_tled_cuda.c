@@ -202,6 +202,54 @@ static void test_forms_bytes(const tled_executor *cpu, const tled_executor *cuda
     in_form = FORM_NEO_HOOKEAN;
 }
 
+/* Fibres that act by themselves: the CPU's bytes in bricks, small and many, also where slits are. */
+static void test_fibres_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
+{
+    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres, &two_families, &passive_muscles,
+                                              &all_fibres};
+    char what[120];
+    block mixed = muscle, cut = lump;
+    mixed.mixed = cut.mixed = true;
+    mixed.fraction = cut.fraction = -1;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        in_fibres = all[i];
+        snprintf(what, sizeof what, "%s, %s, a muscle", name, all[i]->name);
+        test_bytes(&muscle, .5, false, 1000, cpu, cuda, what);
+        snprintf(what, sizeof what, "%s, %s, mixed muscles", name, all[i]->name);
+        test_bytes(&mixed, .5, false, 1000, cpu, cuda, what);
+    }
+    in_fibres = &two_families;
+    snprintf(what, sizeof what, "%s, two families, more bricks", name);
+    test_bytes(&middle, .2, false, 60, cpu, cuda, what);
+    snprintf(what, sizeof what, "%s, two families, many bricks", name);
+    test_bytes(&large, .2, false, 20, cpu, cuda, what);
+    in_slit = &slits[5];
+    snprintf(what, sizeof what, "%s, two families, slits, a script", name);
+    test_bytes(&cut, 0, true, 1000, cpu, cuda, what);
+    in_slit = NULL;
+    in_form = FORM_MOONEY_RIVLIN;
+    snprintf(what, sizeof what, "%s, two families of another form, a script", name);
+    test_bytes(&cut, 0, true, 1000, cpu, cuda, what);
+    in_form = FORM_NEO_HOOKEAN;
+    in_fibres = NULL;
+}
+
+static void test_fibres_looks(const tled_executor *twice, const tled_executor *once)
+{
+    block mixed = muscle;
+    mixed.mixed = true;
+    in_bent = true;
+    in_fibres = &hgo_fibres;
+    test_look(&lump, true, 300, once, "single, hgo fibres, a script", 1e-6);
+    test_look(&large, false, 300, once, "single, hgo fibres, many bricks", 1e-6);
+    in_fibres = &all_fibres;
+    test_look(&mixed, false, 300, twice, "double, passive muscles with two families", 1e-10);
+    in_fibres = &two_families;
+    test_look(&middle, false, 300, twice, "double, two families, more bricks", 1e-10);
+    in_fibres = NULL;
+    in_bent = false;
+}
+
 /* Slits: the CPU's bytes in bricks, small and many. */
 static void test_slits_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
 {
@@ -410,6 +458,9 @@ int main(void)
     test_forms_bytes(&tled_cpu_single, once, "single");
     test_slits_bytes(&tled_cpu_double, twice, "double");
     test_slits_bytes(&tled_cpu_single, once, "single");
+    test_fibres_bytes(&tled_cpu_double, twice, "double");
+    test_fibres_bytes(&tled_cpu_single, once, "single");
+    test_fibres_looks(twice, once);
     test_all_marched(once);
     test_isotropic(twice, once);
     test_long(twice, "double");

@@ -7,18 +7,14 @@
 
 #ifdef SINEW_EMULATED
 #include "tests/emulate/any_form.h"
-#include "tests/emulate/emulate.h"
 #include "tests/emulate/wrong.h"
 #include "tled/cuda/cuda.h"
 #include "tled/cuda/march_near.h"
 #include "tled_history.h"
+#include "tled_trial.h"
 
 /* Steps, of a lump on so many processors, in a test of what is left out. */
 enum { OMITTED_STEPS = 8, OMITTED_ON = 6, OMITTED_NODES = 18 * 10 * 7 };
-
-/* Cards that march, that have bricks only, and on which they stay. */
-static const emulated_card marching = {.capability = 90, .processors = 2}, plain = {.capability = 80, .processors = 4},
-                           staying = {.capability = 80, .processors = 132, .together = true};
 
 /* Of all pairs of units that wait for each other in a march that is made, the number
  * of the one that is left out, if not -1. */
@@ -40,142 +36,6 @@ int near_find_tried(march *m, int64_t nodes, err *e)
     return 0;
 }
 
-/* Whether all is tried: SINEW_LONG. */
-static bool all_of_it;
-
-/* Some lots, on so many of the card's processors. */
-static void put_in(const emulated_card *card, uint64_t seed, int processors)
-{
-    emulated_card c = *card;
-    c.seed = seed;
-    c.processors = processors;
-    emulate(&c);
-}
-
-/* A state that is everywhere bent, in the middle of what curves do. */
-static void bend(bench *b)
-{
-    const tled_problem *p = &b->problem;
-    for (int64_t i = 0; i < 3 * p->nodes; i++) {
-        p->at_start.of[TLED_DISPLACEMENT][i] = .07 * p->side[i % 3] * sin((double)(i * i % 1009));
-        p->at_start.of[TLED_VELOCITY][i] = 30 * p->at_start.of[TLED_DISPLACEMENT][i];
-    }
-    b->problem.start = .03;
-}
-
-typedef struct trial {
-    const char *name;
-    block what;
-    double level;
-    bool scripted;
-    int32_t cells[3]; /* in place of the block's, if not 0 */
-    bool rests;       /* it keeps what leaves the card no memory for frames */
-} trial;
-
-/* What an executor makes of it: displacements and velocities of a frame, and of one a step later; internal forces at
- * the first, displacements at the second. */
-enum { PARTS = 6 };
-typedef struct answer {
-    bench b;
-    double *numbers;
-    int64_t count; /* of each */
-    bool gone;
-} answer;
-
-/* Steps up to `last`: now some at once, whose middle passes a march makes in one launch, now one. */
-static int go_on(const tled_executor *device, tled_state *state, tled_plan *plan, int64_t last, err *e)
-{
-    for (int64_t count; plan->first < last; plan->first += count) {
-        count = plan->first % 4 == 0 && plan->first + 3 <= last ? 3 : 1;
-        if (device->step(state, plan, count, e))
-            return -1;
-    }
-    return 0;
-}
-
-/* As in a run to rest, where the executor itself computes what the monitor asks. */
-static int look_for_rest(const tled_executor *device, tled_state *state, err *e)
-{
-    tled_sums sums;
-    const tled_question question = {.rest = INFINITY, .raise = 1.01, .differences = true};
-    return device->monitor ? device->monitor(state, &question, &sums, e) : 0;
-}
-
-/* `steps` steps, after one that is taken back, and one more. */
-static void find(answer *a, const trial *t, const tled_executor *device, int64_t steps)
-{
-    block what = t->what;
-    if (t->cells[0])
-        memcpy(what.cells, t->cells, sizeof what.cells);
-    bench *b = &a->b;
-    make(b, &what, t->level, t->scripted, device, steps);
-    bend(b);
-    tled_plan plan = {.origin = b->problem.start, .rate = b->setup.rate, .damping = b->setup.damping}, once = plan;
-    a->count = 3 * b->problem.nodes;
-    a->numbers = calloc(PARTS * (size_t)a->count, sizeof *a->numbers);
-    field_values first = {{a->numbers, a->numbers + a->count}},
-                 second = {{a->numbers + 4 * a->count, a->numbers + 5 * a->count}};
-    tled_state *state = device->create(&b->problem, b->setup.threads, &b->e);
-    a->gone = !a->numbers || !state || (t->rests && look_for_rest(device, state, &b->e)) ||
-              device->save(state, &b->e) || go_on(device, state, &once, 1, &b->e) || device->restore(state, &b->e) ||
-              go_on(device, state, &plan, steps, &b->e) ||
-              device->get(state, TLED_INTERNAL, a->numbers + 2 * a->count, &b->e) ||
-              device->snapshot(state, 0, &b->e) || go_on(device, state, &plan, steps + 1, &b->e) ||
-              device->snapshot(state, 1, &b->e) || device->fetch(state, 0, &first, &b->e) ||
-              device->fetch(state, 1, &second, &b->e) ||
-              device->get(state, TLED_DISPLACEMENT, a->numbers + 3 * a->count, &b->e);
-    device->destroy(state);
-}
-
-static void answer_free(answer *a)
-{
-    bench_free(&a->b);
-    free(a->numbers);
-}
-
-/* The largest difference of one of these, as a share of the largest there is; infinite where there is no number. */
-static double off(const answer *a, const answer *b)
-{
-    double worst = 0;
-    if (a->gone || b->gone)
-        return INFINITY;
-    for (int i = 0; i < PARTS; i++) {
-        double most = 0, size = 0;
-        for (int64_t k = i * a->count; k < (i + 1) * a->count; k++) {
-            const double gap = fabs(a->numbers[k] - b->numbers[k]);
-            if (!isfinite(gap))
-                return INFINITY;
-            most = fmax(most, gap);
-            size = fmax(size, fabs(b->numbers[k]));
-        }
-        worst = fmax(worst, most / size);
-    }
-    return worst;
-}
-
-/* The CPU's answer, to within a share, or its very bytes; and, of every third trial or of all, the same bytes by other
- * lots, and in other units. */
-static void try(const trial *t, const emulated_card *card, const tled_executor *device, const tled_executor *cpu,
-                int64_t steps, double tolerance)
-{
-    static int tried;
-    answer here, there, again;
-    find(&here, t, cpu, steps);
-    put_in(card, 1, card->processors);
-    find(&there, t, device, steps);
-    const int64_t blocks = emulated_blocks();
-    ok(off(&there, &here) <= tolerance, "%s: %.2g off by %" PRId64 " blocks %s", t->name, off(&there, &here), blocks,
-       there.b.e.text);
-    if (all_of_it || tried++ % 3 == 0) {
-        put_in(card, 2, card->together ? card->processors : 1);
-        find(&again, t, device, steps);
-        ok(off(&again, &there) == 0, "%s: the same by other lots %s", t->name, again.b.e.text);
-        answer_free(&again);
-    }
-    answer_free(&here);
-    answer_free(&there);
-}
-
 static void test_wrong(void)
 {
     for (const wrong_kernel *k = wrong_kernels; k->name; k++) {
@@ -189,13 +49,6 @@ static void test_wrong(void)
         }
         ok(as_told == 3, "%s: %s", k->name, said);
     }
-}
-
-static block mixed_of(block what)
-{
-    what.fraction = -1;
-    what.mixed = true;
-    return what;
 }
 
 static void test_marches(int64_t steps)
@@ -331,6 +184,87 @@ static void test_any_form(int64_t steps)
     in_control = ISOTROPIC(.0075);
     try(&mixed, &plain, &any_form_single, &tled_cpu_single, steps, 0);
     in_control = PHYSICAL;
+}
+
+/* What fibres of a block do by themselves is not nothing. */
+static void fibres_act(const block_fibres *f, trial t, int64_t steps)
+{
+    answer with, without;
+    in_fibres = f;
+    find(&with, &t, &tled_cpu_double, steps);
+    in_fibres = NULL;
+    find(&without, &t, &tled_cpu_double, steps);
+    ok(off(&with, &without) > 1e-4 && off(&with, &without) < INFINITY, "%s matter: %.2g %s", f->name,
+       off(&with, &without), with.b.e.text);
+    answer_free(&with);
+    answer_free(&without);
+}
+
+/* Fibres that resist being stretched, and muscles with curves of their own: the CPU's bytes in bricks and in bricks
+ * that stay, on a card that marches too. */
+static void test_fibres(int64_t steps)
+{
+    const block cut = mixed_of(muscle);
+    const struct {
+        const block_fibres *fibres;
+        trial what;
+    } all[] = {{&quadratic_fibres, {"quadratic fibres, a script", lump, 0, true, {0}, false}},
+               {&hgo_fibres, {"hgo fibres, mixed elements, a script", mixed_of(lump), 0, true, {0}, false}},
+               {&two_families, {"two families, mixed muscles", cut, .5, false, {0}, false}},
+               {&passive_muscles, {"passive muscles, mixed", cut, .5, false, {0}, false}},
+               {&passive_muscles, {"a passive muscle", muscle, .5, false, {0}, false}},
+               {&all_fibres, {"passive muscles with two families, mixed", cut, .5, false, {0}, false}}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        fibres_act(all[i].fibres, all[i].what, steps);
+        in_fibres = all[i].fibres;
+        try(&all[i].what, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+        try(&all[i].what, &staying, &tled_cuda_single, &tled_cpu_single, steps, 0);
+        if (all_of_it || i % 2)
+            try(&all[i].what, &plain, &tled_cuda_double, &tled_cpu_double, steps, 0);
+        if (all_of_it || i % 2 == 0)
+            try(&all[i].what, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
+    }
+    in_fibres = &two_families;
+    try(&all[2].what, &marching, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    in_control = ISOTROPIC(.0075);
+    try(&all[2].what, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    in_control = PHYSICAL;
+    in_slit = &slits[5];
+    const trial parted = {"two families, slits", mixed_of(lump), 0, true, {0}, false};
+    try(&parted, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    try(&parted, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
+    in_slit = NULL;
+    in_fibres = NULL;
+}
+
+/* In kernels of any form. */
+static void test_fibres_of_forms(int64_t steps)
+{
+    const trial mixed = {"hgo fibres of any form, mixed elements", mixed_of(muscle), .5, false, {0}, false};
+    in_fibres = &hgo_fibres;
+    for (int f = 0; f < FORM_STEPPED; f++) {
+        in_form = (form)f;
+        printf("# form %d\n", f);
+        try(&mixed, &plain, &any_form_single, &tled_cpu_single, steps, 0);
+        if (all_of_it || f == FORM_NEO_HOOKEAN)
+            try(&mixed, &staying, &any_form_double, &tled_cpu_double, steps, 0);
+    }
+    in_form = FORM_NEO_HOOKEAN;
+}
+
+static void test_fibres_looks(int64_t steps)
+{
+    const block cut = mixed_of(muscle);
+    put_in(&plain, 4, 4);
+    in_bent = true;
+    in_fibres = &hgo_fibres;
+    test_look(&lump, true, steps, &tled_cuda_single, "a look at hgo fibres", 1e-6);
+    in_fibres = &all_fibres;
+    test_look(&cut, false, steps, &tled_cuda_double, "a look at passive muscles with two families", 1e-10);
+    in_fibres = &two_families;
+    test_look(&cut, false, steps, &tled_cuda_double, "a look at two families", 1e-10);
+    in_fibres = NULL;
+    in_bent = false;
 }
 
 /* The emulated card is one thread's: frames, which have others, are left out. */
@@ -564,6 +498,9 @@ int main(void)
         if (f != FORM_NEO_HOOKEAN)
             test_form((form)f, 2 * more);
     test_any_form(more);
+    test_fibres(2 * more);
+    test_fibres_of_forms(more);
+    test_fibres_looks(2 * more);
     test_live(&marching, false, "a march");
     if (all_of_it) {
         test_live(&marching, true, "a march, made again");

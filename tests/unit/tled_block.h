@@ -159,7 +159,62 @@ static inline void block_tables(const block *b, model *m)
         block_mix(b, muscle, m);
 }
 
-/* Makes the model, with the slits that are asked for; the caller frees it. */
+/* What fibres do by themselves, of both volumes: a kind that resists being stretched, or NULL; k1 is eta of quadratic;
+ * the passive curve and the optimum of muscles. 0: not given. */
+typedef struct block_fibres {
+    const char *name, *kind[2];
+    double k1[2], k2[2], kappa[2], angle[2], passive[2], optimum[2];
+} block_fibres;
+
+/* Those of blocks that are made; NULL: none do anything. */
+static const block_fibres *in_fibres;
+
+static inline void block_values(model *m, const char *name, const double value[2])
+{
+    if (value[0] != 0 || value[1] != 0) {
+        model_array *a = block_array(m, name);
+        for (int64_t i = 0; i < a->rows; i++)
+            a->f64[i] = value[i] != 0 ? value[i] : NAN;
+    }
+}
+
+/* Directions that differ; some elements have none, and of some the normal is along the fibre. */
+static inline void block_directions(model *m)
+{
+    model_array *mixed = model_find(m, "element.mixfibre"), *mix = model_find(m, "element.mix");
+    float *fibre = model_find(m, "element.fibre")->f32, *normal = block_array(m, "element.normal")->f32;
+    for (int64_t i = 0; i < model_count(m, "element"); i++) {
+        const double a = (double)(i * 7919 % 101), z = cos(3 * a), r = sin(3 * a);
+        const double along[3] = {r * cos(a), r * sin(a), z}, across[3] = {-z * cos(a), -z * sin(a), r};
+        for (int k = 0; k < 3; k++) {
+            fibre[3 * i + k] = i % 17 == 5 ? 0 : (float)along[k];
+            normal[3 * i + k] = (float)(i % 13 == 3 ? along[k] : across[k]);
+            if (mixed && mix->i32[i] >= 0)
+                mixed->f32[3 * i + k] = (float)along[(k + 1) % 3];
+        }
+    }
+}
+
+static inline void block_add_fibres(const block_fibres *f, model *m)
+{
+    err e = {0};
+    const bool hgo[2] = {f->k2[0] > 0, f->k2[1] > 0};
+    const double eta[2] = {hgo[0] ? 0 : f->k1[0], hgo[1] ? 0 : f->k1[1]};
+    const double k1[2] = {hgo[0] ? f->k1[0] : 0, hgo[1] ? f->k1[1] : 0};
+    for (int64_t i = 0; i < model_count(m, "material"); i++)
+        model_set_text(i ? model_find(m, "material.fibre") : block_array(m, "material.fibre"), i,
+                       f->kind[i] ? f->kind[i] : "none", &e);
+    block_values(m, "material.eta", eta);
+    block_values(m, "material.k1", k1);
+    block_values(m, "material.k2", f->k2);
+    block_values(m, "material.kappa", f->kappa);
+    block_values(m, "material.angle", f->angle);
+    block_values(m, "material.passive", f->passive);
+    block_values(m, "material.optimum", f->optimum);
+    block_directions(m);
+}
+
+/* Makes the model, with the slits and the fibres that are asked for; the caller frees it. */
 static inline void block_make(const block *b, model *m)
 {
     err e = {0};
@@ -183,6 +238,8 @@ static inline void block_make(const block *b, model *m)
         block_mesh(b, &l, m);
     slit_free(&mesh);
     block_tables(b, m);
+    if (in_fibres)
+        block_add_fibres(in_fibres, m);
     if (e.status) {
         printf("Bail out! %s\n", e.text);
         exit(1);

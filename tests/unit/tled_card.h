@@ -13,6 +13,25 @@ static const block muscle = {{11, 6, 5}, {.0025, .0025, .0025}, 3000, .45, 1000,
 /* Of two columns whose threads nearly all have an element, and of layers that end. */
 static const block small = {{29, 14, 9}, {.001, .001, .001}, 3000, .45, 1000, 30000, 0, 1, 0, {0, 1, 0}, 0, false};
 
+/* Fibres that act by themselves. */
+static const block_fibres quadratic_fibres = {.name = "quadratic fibres", .kind = {"quadratic"}, .k1 = {2e4}};
+static const block_fibres hgo_fibres = {
+    .name = "hgo fibres", .kind = {"hgo", "hgo"}, .k1 = {1e4, 3e4}, .k2 = {2, 5}, .kappa = {0, .15}};
+static const block_fibres two_families = {.name = "two families",
+                                          .kind = {"hgo", "quadratic"},
+                                          .k1 = {1e4, 2e4},
+                                          .k2 = {3, 0},
+                                          .kappa = {.1, 0},
+                                          .angle = {35, 0}};
+static const block_fibres passive_muscles = {.name = "passive muscles", .passive = {.05, 0}, .optimum = {.9, 0}};
+static const block_fibres all_fibres = {.name = "passive muscles with two families",
+                                        .kind = {NULL, "hgo"},
+                                        .k1 = {0, 2e4},
+                                        .k2 = {0, 3},
+                                        .angle = {0, 50},
+                                        .passive = {.1, .05},
+                                        .optimum = {0, 1.1}};
+
 /* The hourglass control that a new problem gets. */
 static hourglass_control in_control = {HOURGLASS_PHYSICAL, 0};
 
@@ -81,6 +100,20 @@ static inline bool close_to(double a, double b, double tolerance)
     return fabs(a - b) <= tolerance * fmax(fabs(a), fabs(b));
 }
 
+/* A state that is everywhere bent, in the middle of what curves do. */
+static inline void bend(bench *b)
+{
+    const tled_problem *p = &b->problem;
+    for (int64_t i = 0; i < 3 * p->nodes; i++) {
+        p->at_start.of[TLED_DISPLACEMENT][i] = .07 * p->side[i % 3] * sin((double)(i * i % 1009));
+        p->at_start.of[TLED_VELOCITY][i] = 30 * p->at_start.of[TLED_DISPLACEMENT][i];
+    }
+    b->problem.start = .03;
+}
+
+/* Whether what a device looks at begins bent. */
+static bool in_bent;
+
 /* The device's look, after so many steps and as many more, against that of the monitor on what get() gives. */
 static inline void test_look(const block *what, bool scripted, int64_t steps, const tled_executor *cuda,
                              const char *name, double tolerance)
@@ -90,7 +123,10 @@ static inline void test_look(const block *what, bool scripted, int64_t steps, co
     tled_plan plan = {0};
     blind.monitor = NULL;
     make(&b, what, scripted ? 0 : .8, scripted, cuda, steps);
+    if (in_bent)
+        bend(&b);
     plan.rate = b.setup.rate;
+    plan.origin = b.problem.start;
     tled_state *state = cuda->create(&b.problem, b.setup.threads, &b.e);
     monitor *w = monitor_create(&b.problem, b.setup.threads, &b.e),
             *v = monitor_create(&b.problem, b.setup.threads, &b.e);
