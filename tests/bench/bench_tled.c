@@ -10,10 +10,10 @@
  * bytes_a_step is what a step must move at least, each thing once: of a node its displacement and velocity, read and
  * written, 1/m, and 4 bytes that say what it is; of an element 4 bytes that say where and what it is, its share (4)
  * where the model has them, and its fibre (12) where its muscle contracts. flops_a_step is what flops.h counts, for
- * each element and node once; `computed` says how many elements for each one of the model are computed in fact, and
- * lanes_filled how much of a processor's vectors they fill. Beside them stands what the machine did at most in the same
- * rounds: copying (on a card of more than its L2 cache holds or within it, as the bytes of a step are) and
- * multiply-adds, in two instructions, of the same precision.
+ * each element and node once, without fibres that resist being stretched; `computed` says how many elements for each
+ * one of the model are computed in fact, and lanes_filled how much of a processor's vectors they fill. Beside them
+ * stands what the machine did at most in the same rounds: copying (on a card of more than its L2 cache holds or
+ * within it, as the bytes of a step are) and multiply-adds, in two instructions, of the same precision.
  */
 // needs: tests/bench/roof.c tests/bench/flops.cc  tled/*/*.c
 #include "../unit/tled_bench.h"
