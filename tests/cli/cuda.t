@@ -75,7 +75,7 @@ logged "a muscle"
 hgo='-m tissue.fibre=hgo -m tissue.k1=2e4 -m tissue.k2=2'
 # shellcheck disable=SC2086 # options of a material are words
 {
-    same "fibres that resist being stretched" "$T/block.sinew" --script "$T/script" -m tissue.fibre=quadratic -m tissue.eta=2e4
+    same "fibres that resist being stretched" "$T/muscle.sinew" -g 0,2,-9.81 -m tissue.fibre=quadratic -m tissue.eta=2e4
     same "a passive muscle with fibres" "$T/muscle.sinew" -c all=0.5 -g 0,0,-9.81 $hgo -m tissue.passive=0.05 -m tissue.optimum=0.9
     logged "a passive muscle with fibres" $hgo -m tissue.passive=0.05 -m tissue.optimum=0.9
     run "$T/muscle.sinew" -q -d cpu -n 500 -c all=0.5 $hgo -m tissue.kappa=.1 >"$T/cpu"
