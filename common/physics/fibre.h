@@ -21,7 +21,7 @@
 
 enum { FIBRE_CAP = 30 };
 
-/* The law of a family; the law fung, as the coefficients of its Q: of E:E, of 2 |E a0|^2 and of E11^2 (fibre_set_of).
+/* The law of a family; the law fung, as the coefficients of its Q (fibre_numbers_fung).
  * Energies are linear in k1 and c. */
 typedef struct fibre_law {
     real k1, k2, kappa;
@@ -196,16 +196,14 @@ ELEMENT_FUNCTION element_vector fibre_vector(const double a[3])
     return v;
 }
 
-/* On the host. times: what the volume's energies are to be multiplied by. With E11 = a0.E a0 and E12^2 + E13^2 =
- * |E a0|^2 - E11^2,
- *     Q = bt E:E + 2 (bfs - bt) |E a0|^2 + (bf + bt - 2 bfs) E11^2. */
+/* On the host. times: what the volume's energies are to be multiplied by. */
 static inline fibre_set fibre_set_of(const fibre_local *l, double times)
 {
     const fibre_numbers *n = &l->of;
-    const fibre_set s = {
-        {times * n->k1, n->k2, n->kappa}, {times * n->c, n->bt, n->bfs - n->bt, n->bf + n->bt - 2 * n->bfs},
-        fibre_vector(l->along),           {fibre_vector(l->family[0]), fibre_vector(l->family[1])},
-        fibre_numbers_families(n),        n->c > 0};
+    const fibre_invariants q = fibre_numbers_fung(n);
+    const fibre_set s = {{times * n->k1, n->k2, n->kappa}, {times * n->c, q.all, q.along, q.both},
+                         fibre_vector(l->along),           {fibre_vector(l->family[0]), fibre_vector(l->family[1])},
+                         fibre_numbers_families(n),        n->c > 0};
     return s;
 }
 

@@ -23,6 +23,19 @@ static inline int fibre_numbers_families(const fibre_numbers *f)
     return f->k1 > 0 ? 1 + (f->angle > 0) : 0;
 }
 
+/* The law fung's Q in invariants. With E11 = a0.E a0 and E12^2 + E13^2 = |E a0|^2 - E11^2,
+ *     Q = bt E:E + 2 (bfs - bt) |E a0|^2 + (bf + bt - 2 bfs) E11^2
+ *       = all E:E + 2 along |E a0|^2 + both E11^2. */
+typedef struct fibre_invariants {
+    double all, along, both;
+} fibre_invariants;
+
+static inline fibre_invariants fibre_numbers_fung(const fibre_numbers *f)
+{
+    const fibre_invariants q = {f->bt, f->bfs - f->bt, f->bf + f->bt - 2 * f->bfs};
+    return q;
+}
+
 /* Of one volume in an element. */
 typedef struct fibre_local {
     fibre_numbers of;

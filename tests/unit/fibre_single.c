@@ -12,8 +12,9 @@ static element_vector vector_of(const double a[3])
 void fibre_single(const fibre_local *l, const double h[9], float p[9])
 {
     const fibre_numbers *n = &l->of;
+    const fibre_invariants q = fibre_numbers_fung(n);
     const fibre_set s = {{(float)n->k1, (float)n->k2, (float)n->kappa},
-                         {(float)n->c, (float)n->bt, (float)(n->bfs - n->bt), (float)(n->bf + n->bt - 2 * n->bfs)},
+                         {(float)n->c, (float)q.all, (float)q.along, (float)q.both},
                          vector_of(l->along),
                          {vector_of(l->family[0]), vector_of(l->family[1])},
                          fibre_numbers_families(n),

@@ -248,11 +248,11 @@ static inline fibre_set fibres_of(const cpu_work *w, int64_t cell, int32_t volum
     if (!fibres_any(&w->p->fibres, volume) || !along[0])
         return s;
     const fibre_numbers *n = &w->p->fibres.of[volume];
+    const fibre_invariants q = fibre_numbers_fung(n);
     s.families = fibre_numbers_families(n);
     s.is_fung = n->c > 0;
     s.law = (fibre_law){share * (real_one)n->k1, real_of(n->k2), real_of(n->kappa)};
-    s.fung = (fibre_fung){share * (real_one)n->c, real_of(n->bt), real_of(n->bfs - n->bt),
-                          real_of(n->bf + n->bt - 2 * n->bfs)};
+    s.fung = (fibre_fung){share * (real_one)n->c, real_of(q.all), real_of(q.along), real_of(q.both)};
     s.along = (element_vector){load(along[0], cell), load(along[1], cell), load(along[2], cell)};
     for (int k = 0; k < s.families; k++)
         s.family[k] = (element_vector){load(family[k][0], cell), load(family[k][1], cell), load(family[k][2], cell)};

@@ -94,6 +94,7 @@ static inline void mesh_fibres_of(const cpu_work *w, int64_t i, int lane, int32_
     if (!fibres_any(&w->p->fibres, volume) || !along[0])
         return;
     const fibre_numbers *n = &w->p->fibres.of[volume];
+    const fibre_invariants q = fibre_numbers_fung(n);
     const int families = fibre_numbers_families(n);
     s->families = families > s->families ? families : s->families;
     s->is_fung |= n->c > 0;
@@ -101,9 +102,9 @@ static inline void mesh_fibres_of(const cpu_work *w, int64_t i, int lane, int32_
     s->law.k2[lane] = (real_one)n->k2;
     s->law.kappa[lane] = (real_one)n->kappa;
     s->fung.c[lane] = share * (real_one)n->c;
-    s->fung.all[lane] = (real_one)n->bt;
-    s->fung.along[lane] = (real_one)(n->bfs - n->bt);
-    s->fung.both[lane] = (real_one)(n->bf + n->bt - 2 * n->bfs);
+    s->fung.all[lane] = (real_one)q.all;
+    s->fung.along[lane] = (real_one)q.along;
+    s->fung.both[lane] = (real_one)q.both;
     s->along.x[lane] = ((const real_one *)along[0])[i];
     s->along.y[lane] = ((const real_one *)along[1])[i];
     s->along.z[lane] = ((const real_one *)along[2])[i];
