@@ -210,13 +210,14 @@ static void put_step(const writer *w, const double *gravity)
 
 static int check_material(const material *of, const char *name, err *e)
 {
-    if (material_is_directed(of))
-        return err_set(
-            e, NULL, 0,
-            "material '%.200s' has fibres that resist being stretched, which Abaqus's files do not have here; "
-            "expected none",
-            name);
-    return export_inp_has_law(of->law, name, e);
+    if (export_inp_has_law(of->law, name, e))
+        return -1;
+    if (!material_is_directed(of))
+        return 0;
+    return err_set(e, NULL, 0,
+                   "material '%.200s' has fibres that resist being stretched, which Abaqus's files do not have here; "
+                   "expected none",
+                   name);
 }
 
 static int open_tables(writer *w, const model *m, err *e)

@@ -93,16 +93,17 @@ static int check_volume(const fibres_view *f, const char *name, int32_t volume, 
 {
     if (!fibres_any(f, volume) || !t->all)
         return 0;
+    const char *what = f->of[volume].c > 0 ? "the law fung" : "fibres that resist being stretched";
     if (!f->along)
         return err_set(e, NULL, 0,
-                       "volume '%s' has fibres that resist being stretched, but the model has no element.fibre; "
+                       "volume '%s' has %s, but the model has no element.fibre; "
                        "expected directions, as attach makes them (--fibre, --fibre-lines)",
-                       name);
+                       name, what);
     if (t->lost == t->all)
         return err_set(e, NULL, 0,
-                       "volume '%s' has fibres that resist being stretched, but no element of it has a direction; "
+                       "volume '%s' has %s, but no element of it has a direction; "
                        "expected directions, as attach makes them (--fibre, --fibre-lines)",
-                       name);
+                       name, what);
     if (f->of[volume].c > 0 && t->lost)
         return err_set(e, NULL, 0,
                        "%lld of %lld elements of volume '%s' have no direction of fibres, which the law fung needs; "

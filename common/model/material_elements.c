@@ -51,7 +51,13 @@ static int first_key(const material_elements *of, int64_t i)
     return k;
 }
 
-/* volume: its number. */
+/* Whether fibres take its value: all but K's, where the law's shear is that of fibres. */
+static bool is_of_fibres(const law_row *of, int key)
+{
+    return of->fibres && key < LAW_OWN_KEYS && law_keys(of) >> key & 1 && key != LAW_nu && key != LAW_K;
+}
+
+/* volume: its material. */
 static int check_one(const model *m, const material_elements *of, int64_t i, const material *volume, err *e)
 {
     char what[LAW_WORDS], expected[LAW_WORDS], words[KNOWN_WORDS + 64];
@@ -62,6 +68,8 @@ static int check_one(const model *m, const material_elements *of, int64_t i, con
             continue;
         snprintf(words, sizeof words, "nan, as its material, of the law %s, has no %s", volume->law->name,
                  law_key_name((law_key)k));
+        if (is_of_fibres(volume->law, k))
+            return wrong(m, k, i, value, "nan, as fibres have the values of their volume's material", e);
         if (isnan(*material_edit_value(&own, k)) || !material_edit_valid(k, value, words))
             return wrong(m, k, i, value, words, e);
         *material_edit_value(&own, k) = value;

@@ -1,7 +1,7 @@
 /* Values that single elements have in place of those of their volume's material: the arrays element.E, element.c10 and
  * so on, one for each key of a law and one for the density, nan where an element has the material's. A value must be
- * one that the material could have, and of a key that it has. Borrowed from the model. What materials.h declares of
- * elements is here too.
+ * one that the material could have, and of a key that it has; fibres have none of their own. Borrowed from the model.
+ * What materials.h declares of elements is here too.
  */
 #ifndef SINEW_MATERIAL_ELEMENTS_H
 #define SINEW_MATERIAL_ELEMENTS_H

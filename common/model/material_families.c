@@ -46,6 +46,8 @@ void material_families_drop(model *m)
 fibre_numbers material_fibres(const material *a)
 {
     fibre_numbers n = {0};
+    if (a->law->fibres)
+        a->law->fibres(a->value, &n);
     if (a->fibre)
         a->fibre->fill(a->families, &n);
     return n;

@@ -46,6 +46,28 @@ form form_of_both(form a, const double *ca, form b, const double *cb, double *to
     return FORM_COUNT;
 }
 
+/* Whether it has no modulus but K: it is that of a law whose shear is all that of fibres (law.h). */
+static int only_bulk(form f, const double *c)
+{
+    int others = -1;
+    for (int i = 0; i < form_moduli(f); i++)
+        others += c[i] != 0;
+    return !others;
+}
+
+/* Where one is such, energies but for that of K go by shares, as those of fibres do. */
+static int between_by_shares(form f, double bulk, const double *a, const double *b, double share, double *to)
+{
+    const double *slack = only_bulk(f, a) ? a : b;
+    if (!only_bulk(f, slack))
+        return 0;
+    for (int i = 0; i < form_moduli(f); i++)
+        to[i] = slack[i] != 0 ? bulk : (1 - share) * a[i] + share * b[i];
+    for (int i = form_moduli(f); i < form_numbers(f); i++)
+        to[i] = a[i] + b[i]; /* exponents, of which the slack one has none */
+    return 1;
+}
+
 void form_between(form f, double mu, double bulk, const double *a, const double *b, double share, double *to)
 {
 #define FORM_ROW(NAME, name, coefficients, exponents, history)                                                         \
@@ -53,6 +75,8 @@ void form_between(form f, double mu, double bulk, const double *a, const double 
         form_##name##_between(mu, bulk, a, b, share, to);                                                              \
         break;
     memset(to, 0, FORM_NUMBERS * sizeof *to);
+    if (between_by_shares(f, bulk, a, b, share, to))
+        return;
     switch (f) {
         FORMS(FORM_ROW)
     default: /* FORM_LINEAR */

@@ -204,6 +204,30 @@ static bool refuses_ogden(const double *value, char what[LAW_WORDS], char expect
     return false;
 }
 
+/* ---- keys c, bf, bt, bfs, and K or nu: at rest mu is another in each direction. What follows from one mu takes the
+ * mean of W / e:e over five strains e that keep the volume, at right angles to each other: with W = c/2 Q, Q is
+ * (2 bf + bt)/3 e:e along diag(2, -1, -1), bt e:e twice and bfs e:e twice. Where bf = bt = bfs that is c bf/2. */
+
+static law_moduli moduli_of_fung(const double *value)
+{
+    return moduli_with(value[LAW_c] * (2 * value[LAW_bf] + 7 * value[LAW_bt] + 6 * value[LAW_bfs]) / 30, value);
+}
+
+/* The form has K alone. */
+static void fill_fung(const double *value, double *c)
+{
+    c[0] = 0;
+    c[1] = moduli_of_fung(value).bulk;
+}
+
+static void fibres_of_fung(const double *value, fibre_numbers *to)
+{
+    to->c = value[LAW_c];
+    to->bf = value[LAW_bf];
+    to->bt = value[LAW_bt];
+    to->bfs = value[LAW_bfs];
+}
+
 /* ---- the table */
 
 static const law_row rows[] = {
@@ -263,6 +287,16 @@ static const law_row rows[] = {
      .energy = "2 mu1/a1^2 (L1^a1 + L2^a1 + L3^a1 - 3) + K/2 (J - 1)^2, L1 = J^-1/3 l1 and so on;\n"
                "  mu2, a2 and mu3, a3 likewise",
      .source = "Ogden 1972"},
+    {.name = "fung",
+     .form = FORM_NEO_HOOKEAN,
+     .group = {BIT(c), BIT(bf), BIT(bt), BIT(bfs), BIT(K) | BIT(nu)},
+     .moduli = moduli_of_fung,
+     .fill = fill_fung,
+     .fibres = fibres_of_fung,
+     .meaning = "Tissue, such as the heart's, that is alike all round its fibres and stiffens exponentially.",
+     .energy = "c/2 (exp Q - 1) + K/2 (J - 1)^2,\n"
+               "  Q = bf E11^2 + bt (E22^2 + E33^2 + 2 E23^2) + 2 bfs (E12^2 + E13^2)",
+     .source = "Guccione, McCulloch and Waldman 1991"},
     {.name = "linear",
      .form = FORM_LINEAR,
      .group = {BIT(E), BIT(nu)},

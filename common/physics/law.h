@@ -5,6 +5,7 @@
 #ifndef SINEW_LAW_H
 #define SINEW_LAW_H
 
+#include "physics/fibre_numbers.h"
 #include "physics/forms.h"
 
 #include <stdbool.h>
@@ -29,7 +30,11 @@
     X(mu2, "Pa", 1e-3, 1e12, "shear modulus at rest of the second term of stretches")                                  \
     X(a2, "1", -100, 100, "exponent of the second term of stretches")                                                  \
     X(mu3, "Pa", 1e-3, 1e12, "shear modulus at rest of the third term of stretches")                                   \
-    X(a3, "1", -100, 100, "exponent of the third term of stretches")
+    X(a3, "1", -100, 100, "exponent of the third term of stretches")                                                   \
+    X(c, "Pa", 1e-3, 1e12, "factor of the exponential of strains")                                                     \
+    X(bf, "1", 1e-3, 1e3, "factor of the strain along the fibre in the exponent")                                      \
+    X(bt, "1", 1e-3, 1e3, "factor of strains across the fibre in the exponent")                                        \
+    X(bfs, "1", 1e-3, 1e3, "factor of shear along the fibre in the exponent")
 
 #define LAW_DENSITY_KEY(X) X(density, "kg/m3", 1e-3, 1e6, "mass density at rest")
 
@@ -64,7 +69,9 @@ enum {
 };
 #undef LAW_KEY_INDEX
 
-enum { LAW_GROUPS = 3 }; /* the most groups of keys of any law */
+_Static_assert((int)LAW_ALL_KEYS <= 32, "keys are bits of an unsigned");
+
+enum { LAW_GROUPS = 5 }; /* the most groups of keys of any law */
 
 /* At rest: the shear and the bulk modulus, Pa. */
 typedef struct law_moduli {
@@ -80,6 +87,9 @@ typedef struct law_row {
     unsigned optional;          /* such bits of keys that need not be given, and are 0 then */
     law_moduli (*moduli)(const double *value);
     void (*fill)(const double *value, double *c); /* value: LAW_OWN_KEYS, nan where none; c: FORM_NUMBERS */
+    /* Of a law whose shear is that of fibres: the numbers of these, which the form's coefficients lack, so that an
+     * element needs a direction. NULL: it has none. */
+    void (*fibres)(const double *value, fibre_numbers *to);
     /* Whether values that are each in their range are no material together; what and expected say so. NULL: all are
      * one. */
     bool (*refuses)(const double *value, char what[LAW_WORDS], char expected[LAW_WORDS]);

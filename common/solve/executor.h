@@ -19,7 +19,8 @@
     X(HISTORY, "history of elements, which the law needs")                                                             \
     X(MIXTURES, "elements mixed of two volumes")                                                                       \
     X(CURVES, "muscles with a passive stress or an optimum")                                                           \
-    X(FIBRES, "fibres that resist being stretched")
+    X(FIBRES, "fibres that resist being stretched")                                                                    \
+    X(FUNG, "law fung")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,

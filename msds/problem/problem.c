@@ -141,9 +141,9 @@ static int take_element(msds_problem *p, const shares *s, int64_t t, int32_t vol
 }
 
 /* Whether linear elasticity of the same moduli at rest stands for it at small strains. */
-static bool is_small_strain(form f)
+static bool is_small_strain(const law_row *of)
 {
-    return f == FORM_LINEAR || f == FORM_NEO_HOOKEAN;
+    return !of->fibres && (of->form == FORM_LINEAR || of->form == FORM_NEO_HOOKEAN);
 }
 
 /* Of volume i. */
@@ -152,15 +152,15 @@ static int read_material(const model *m, int64_t i, material *to, err *e)
     const model_array *name = model_find(m, "volume.name");
     if (materials_of(m, model_find(m, "volume.material")->i32[i], to, e))
         return -1;
-    if (material_is_directed(to))
-        return err_set(e, NULL, 0,
-                       "volume '%s' has fibres that resist being stretched; expected none, as springs and "
-                       "small strains have no direction",
-                       name ? name->str[i] : "");
-    if (is_small_strain(material_form(to)))
+    if (!is_small_strain(to->law))
+        return err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected linear, or neo-hookean at small strains",
+                       name ? name->str[i] : "", to->law->name);
+    if (!material_is_directed(to))
         return 0;
-    return err_set(e, NULL, 0, "volume '%s' has the law '%s'; expected linear, or neo-hookean at small strains",
-                   name ? name->str[i] : "", to->law->name);
+    return err_set(e, NULL, 0,
+                   "volume '%s' has fibres that resist being stretched; expected none, as springs and "
+                   "small strains have no direction",
+                   name ? name->str[i] : "");
 }
 
 static int make_materials(msds_problem *p, const model *m, err *e)

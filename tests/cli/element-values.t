@@ -91,4 +91,13 @@ fails 1 "-m changes the law under it" "element.nu, row 6: 0.45 is not allowed; e
 with "$T/bar" c2 1 'print i ? "nan" : 0.1' >"$T/model"
 fails 1 "values that are no material together" "element, row 0: veronda-westmann, c2=0.1 lets waves lose their speed where tissue is stretched; expected c2 above" \
     tled-run -n 1 -m tissue.law=veronda-westmann -m tissue.c1=1000 -m tissue.c2=3 -m tissue.K=1e4 -o "$T/no" <"$T/model"
+fung='-m tissue.law=fung -m tissue.c=2000 -m tissue.bf=8 -m tissue.bt=2 -m tissue.bfs=4 -m tissue.K=1e4'
+with "$T/muscle" bfs 1 'print i == 3 ? 4 : "nan"' >"$T/model"
+with "$T/muscle" K Pa 'print i == 3 ? 2e4 : "nan"' >"$T/stiffer"
+# shellcheck disable=SC2086 # options of a material are words
+{
+    fails 1 "what fibres take of their volume" "element.bfs, row 3: 4 is not allowed; expected nan, as fibres have the values of their volume's material" \
+        tled-run -q -n 1 $fung -o "$T/no" <"$T/model"
+    check "but K may be an element's" tled-run -q -d cpu -n 1 $fung -o "$T/out" <"$T/stiffer"
+}
 done_testing

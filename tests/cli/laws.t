@@ -87,6 +87,15 @@ printf 'skin law=veronda-westmann c1=1000 c2=3 K=1e5\nfat\n' >"$T/table"
 tled-run -q -n 1 --materials "$T/table" <"$T/two" >"$T/skin"
 fails 1 "a law that Abaqus does not have" "material 'skin' has the law 'veronda-westmann', which Abaqus's files do not have here; expected linear, neo-hookean" \
     sinew export -f inp -o "$T/no" "$T/skin"
+printf 'skin law=fung c=2000 bf=8 bt=2 bfs=4 K=1e5\nfat\n' >"$T/table"
+fails 1 "a law that needs directions" "volume '.*' has the law fung, but no element of it has a direction; expected directions" \
+    tled-run -q -n 1 --materials "$T/table" -o "$T/no" <"$T/two"
+awk '/^array/ { along = $2 == "element.fibre" } /^crc|^sum/ { next } { print along && !/^array|^end/ ? "0 1 0" : $0 }' "$T/text" >"$T/directed"
+check "and runs with them" tled-run -q -d cpu -n 1 --materials "$T/table" -o "$T/heart" <"$T/directed"
+is "$(values "$T/heart" | grep -E '^(law|K|c|bf|bt|bfs) ' | tr '\n' ' ')" \
+    'law "fung" "neo-hookean" K 100000 nan c 2000 nan bf 8 nan bt 2 nan bfs 4 nan ' "the keys of fung"
+fails 1 "fung is not in Abaqus's files either" "material 'skin' has the law 'fung', which Abaqus's files do not have here; expected linear" \
+    sinew export -f inp -o "$T/no" "$T/heart"
 
 # ---- -m, in any order; the last of a key counts.
 changed() { # ARG...: the values after them
@@ -138,6 +147,8 @@ no "an exponent below 1" "the law ogden, a1=-0.5 lets the stress fall where shea
     -m skin.law=ogden -m skin.mu1=1000 -m skin.a1=-.5 -m skin.K=9
 no "a term without its exponent" "the law ogden, mu2 without a2; expected both mu2 and a2, or neither" \
     -m skin.law=ogden -m skin.mu1=1000 -m skin.a1=2 -m skin.mu2=7 -m skin.K=9
+no "fung without bfs" "the law fung without bfs; expected c, bf, bt, bfs, nu or K" \
+    -m skin.law=fung -m skin.c=1000 -m skin.bf=1 -m skin.bt=1 -m skin.K=9
 no "an unknown law" "unknown law 'mooney'; did you mean 'mooney-rivlin'" -m skin.law=mooney
 while IFS='|' read -r name line pattern; do
     echo "$line" >"$T/bad"
@@ -167,6 +178,9 @@ by_hand "another law's key" "material.E, row 0: 3 is not allowed; expected nan, 
 by_hand "a law that is not there" "unknown law 'mooney'; did you mean 'mooney-rivlin'" 's/"mooney-rivlin"/"mooney"/'
 msds-mesh -q --materials "$T/one" --size 20mm,20mm,20mm --nodes 4x4x4 -o "$T/tets"
 awk 'BEGIN { print "0 0 0 0.1 0 0 0 1" }' >"$T/poses"
+printf 'skin law=fung c=2000 bf=8 bt=2 bfs=4 nu=.45\n' >"$T/table"
+msds-mesh -q --materials "$T/table" --size 20mm,20mm,20mm --nodes 4x4x4 -o "$T/along"
+fails 1 "nor fung" "volume '.*' has the law 'fung'; expected linear, or neo-hookean" msds-run --poses "$T/poses" -o "$T/no" <"$T/along"
 fails 1 "msds-run has no such law" "volume '.*' has the law 'mooney-rivlin'; expected linear, or neo-hookean" \
     msds-run --poses "$T/poses" -o "$T/no" <"$T/tets"
 done_testing

@@ -8,7 +8,7 @@ tsv() {
 }
 
 # ---- Laws and keys are those that a run takes and refuses.
-is "$(tsv laws | cut -f 1 | sed 1d | tr '\n' ' ')" "neo-hookean mooney-rivlin yeoh arruda-boyce veronda-westmann ogden linear " "the laws"
+is "$(tsv laws | cut -f 1 | sed 1d | tr '\n' ' ')" "neo-hookean mooney-rivlin yeoh arruda-boyce veronda-westmann ogden fung linear " "the laws"
 is "$(tsv laws | awk -F '\t' '$1 == "yeoh" { print $2, "by", $3 }')" "c10, c20, nu or K, [c30] by tled-run" "keys and solver of one"
 is "$(tsv keys | awk -F '\t' '$1 == "c30" { print $2, $3, $4, $5 }')" "Pa 0 1000000000000 yeoh" "a key of one law"
 is "$(tsv keys | awk -F '\t' '$1 == "density" { print $2, $3, $4, $5 }')" "kg/m3 0.001 1000000 all" "a key of every law"

@@ -9,7 +9,7 @@
 # shellcheck source=tests/cli/boxes.sh
 . tests/cli/boxes.sh
 
-block 4 1 1 0.01 >"$T/bar"
+awk -v nx=4 -v ny=1 -v nz=1 -v h=0.01 -v muscle=1 -f tests/cli/block.awk >"$T/bar"
 grep -v '^meta lattice' "$T/bar" >"$T/mesh"
 awk -v nx=6 -v ny=3 -v nz=3 -v h=0.01 -v held=low -v muscle=1 -f tests/cli/block.awk >"$T/muscle"
 grep -v '^meta lattice' "$T/muscle" >"$T/muscle_mesh"
@@ -78,6 +78,7 @@ yeoh c10=400 c20=1400 nu=.46|643.062|.924556|-1103.26
 arruda-boyce mu=3e3 lock=1.4 K=1e5|2392.97|.917189|-3655.78
 veronda-westmann c1=1e3 c2=3 K=1e5|2790.32|.917896|-3964.01
 ogden mu1=1e3 a1=2 mu2=200 a2=-4 K=1e5|582.663|.913932|-983.689
+fung c=2e3 bf=8 bt=2 bfs=4 K=1e5|6733.678|.9147474|-4182.077
 END
 
 # Parts of elements, mixed of laws that only one form has together: energies balance, sinew info finds those of the log by

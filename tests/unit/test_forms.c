@@ -241,7 +241,8 @@ static void test_between(void)
     near_(c[0], 800, 1e-9, "between two: c10");
     near_(c[1], 200, 1e-9, "between two: c01");
     near_(c[2], 9700, 0, "between two: K");
-    form_between(FORM_NEO_HOOKEAN, 2000, 9700, a, b, .5, c);
+    const double one[FORM_NUMBERS] = {1000, 9700}, other[FORM_NUMBERS] = {4000, 9700};
+    form_between(FORM_NEO_HOOKEAN, 2000, 9700, one, other, .5, c);
     ok(c[0] == 2000 && c[1] == 9700 && c[2] == 0, "neo-Hookean: the moduli between");
 }
 

@@ -88,6 +88,25 @@ static void arruda_boyce(void)
     ok(a->moduli(value).mu == 2 * c[0] && c[5] == 1e5, "its moduli at rest");
 }
 
+/* Its shear is that of fibres; where bf, bt and bfs are alike it is isotropic at rest, W = c b/2 e:e. */
+static void fung(void)
+{
+    const law_row *a = law_find("fung");
+    double value[LAW_OWN_KEYS] = {
+        [LAW_nu] = .45, [LAW_K] = NAN, [LAW_c] = 2000, [LAW_bf] = 3, [LAW_bt] = 3, [LAW_bfs] = 3};
+    fibre_numbers f = {0};
+    double c[FORM_NUMBERS] = {0};
+    near_(a->moduli(value).mu, 3000, 1e-9, "fung, alike all round: mu = c b/2");
+    value[LAW_bf] = 8, value[LAW_bt] = 2, value[LAW_bfs] = 4;
+    const law_moduli at = a->moduli(value);
+    near_(at.mu, 3600, 1e-9, "fung: the mean of 6000, twice 2000 and twice 4000");
+    near_(law_poisson(at), .45, 1e-12, "and K of nu");
+    a->fill(value, c);
+    ok(a->form == FORM_NEO_HOOKEAN && c[0] == 0 && c[1] == at.bulk, "its form has K alone");
+    a->fibres(value, &f);
+    ok(f.c == 2000 && f.bf == 8 && f.bt == 2 && f.bfs == 4, "and its fibres the rest");
+}
+
 /* Yeoh's stress in shear must grow: c10 + 6 c20 x + 15 c30 x^2 above 0. */
 static void yeoh(void)
 {
@@ -192,6 +211,7 @@ int main(void)
     arruda_boyce();
     veronda_westmann();
     ogden();
+    fung();
     ok(!strcmp(law_key_name(LAW_density), "density") && !strcmp(law_key_unit(LAW_E), "Pa"),
        "keys have names and units");
     ok(law_next_key(law_keys(a), 0) == LAW_E && law_next_key(law_keys(a), LAW_E + 1) == LAW_nu &&

@@ -1,10 +1,11 @@
 /* Laws against figures of a script that shares no code with Sinew (derivatives of W by complex steps): a bar with free
  * sides, a sheet that is pulled along two axes, simple shear; in double and in float. */
-// needs: tests/unit/form_double.c
+// needs: tests/unit/form_double.c tests/unit/fibre_single.c
 #define ELEMENT_SINGLE
 #include "physics/form_maths.h"
 #include "physics/law.h"
 
+#include "fibre_single.h"
 #include "form_double.h"
 #include "tap.h"
 
@@ -75,21 +76,42 @@ static const figures all[] = {
      0,
      0,
      0},
+    {"fung",
+     {{LAW_c, 2e3}, {LAW_bf, 8}, {LAW_bt, 2}, {LAW_bfs, 4}, {LAW_K, 1e5}, NONE},
+     6733.678267,
+     .914747360,
+     -4182.077308,
+     4803.899676,
+     2410.332417,
+     1410.490822},
+    {"fung",
+     {{LAW_c, 500}, {LAW_bf, 1}, {LAW_bt, 20}, {LAW_bfs, 3}, {LAW_K, 1e5}, NONE},
+     932.7034296,
+     .916955974,
+     -2958.800268,
+     3989.937310,
+     895.8020642,
+     -624.1717609},
 };
 
 /* P of H, by c: in float, or in double. */
 typedef struct tried {
     form form;
     double c[FORM_NUMBERS];
+    fibre_local fibres; /* along x; of none: there are none */
     bool narrow;
 } tried;
 
 static void stress(const tried *t, const double h[9], double p[9])
 {
-    float small[9], c[FORM_NUMBERS];
+    float small[9], fibres[9], c[FORM_NUMBERS];
+    double other[9];
     element_tensor at;
     if (!t->narrow) {
         form_double(t->form, h, t->c, p);
+        fibre_double(&t->fibres, h, other);
+        for (int i = 0; i < 9; i++)
+            p[i] += other[i];
         return;
     }
     for (int i = 0; i < 9; i++)
@@ -99,8 +121,9 @@ static void stress(const tried *t, const double h[9], double p[9])
     memcpy(&at, small, sizeof at);
     const element_tensor stressed = form_stress(t->form, at, c);
     memcpy(small, &stressed, sizeof small);
+    fibre_single(&t->fibres, h, fibres);
     for (int i = 0; i < 9; i++)
-        p[i] = (double)small[i];
+        p[i] = (double)(small[i] + fibres[i]);
 }
 
 /* P_xx at a stretch of x along one axis or two, the others free; *side: theirs. */
@@ -143,13 +166,15 @@ int main(void)
 {
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         const law_row *law = law_find(all[i].law);
-        tried t = {.form = law->form};
+        tried t = {.form = law->form, .fibres.along = {1, 0, 0}};
         double value[LAW_OWN_KEYS];
         for (int k = 0; k < LAW_OWN_KEYS; k++)
             value[k] = NAN;
         for (int k = 0; all[i].of[k].key != LAW_ALL_KEYS; k++)
             value[all[i].of[k].key] = all[i].of[k].value;
         law->fill(value, t.c);
+        if (law->fibres)
+            law->fibres(value, &t.fibres.of);
         for (int narrow = 0; narrow < 2; narrow++) {
             t.narrow = narrow;
             try(&all[i], &t);

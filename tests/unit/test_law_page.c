@@ -4,6 +4,7 @@
  */
 #include "model/known.h"
 #include "physics/element.h"
+#include "physics/fibre.h"
 #include "physics/fibre_kind.h"
 #include "physics/law.h"
 
@@ -16,19 +17,25 @@ static const char begin[] = ".\\\" laws\n", end[] = ".\\\" end laws\n";
 /* The values that the figures are for: of every key that is the last of its group in a law. 0: there is none. */
 static const double example[LAW_OWN_KEYS] = {
     [LAW_E] = 3000,  [LAW_nu] = .45,   [LAW_c10] = 2500, [LAW_c01] = 500, [LAW_K] = 1e5,    [LAW_c20] = 1175,
-    [LAW_mu] = 3000, [LAW_lock] = 1.4, [LAW_c1] = 1000,  [LAW_c2] = 3,    [LAW_mu1] = 1000, [LAW_a1] = -4};
+    [LAW_mu] = 3000, [LAW_lock] = 1.4, [LAW_c1] = 1000,  [LAW_c2] = 3,    [LAW_mu1] = 1000, [LAW_a1] = -4,
+    [LAW_c] = 2000,  [LAW_bf] = 8,     [LAW_bt] = 2,     [LAW_bfs] = 4};
 
-/* Along the bar, and in *across beside it, with a lateral stretch. */
-static double stresses(const law_row *of, const double *c, law_moduli at, double stretch, double lateral,
+/* Along the bar, which fibres go along too, and in *across beside it, with a lateral stretch. */
+static double stresses(const law_row *of, const double *c, const double *value, double stretch, double lateral,
                        double *across)
 {
+    const law_moduli at = of->moduli(value);
+    fibre_local fibres = {.along = {1, 0, 0}};
     const element_tensor h = {.xx = stretch - 1, .yy = lateral - 1, .zz = lateral - 1};
     if (of->form == FORM_LINEAR) {
         const double trace = h.xx + 2 * h.yy, lambda = at.bulk - 2. / 3 * at.mu;
         *across = lambda * trace + 2 * at.mu * h.yy;
         return lambda * trace + 2 * at.mu * h.xx;
     }
-    const element_tensor p = form_stress(of->form, h, c);
+    if (of->fibres)
+        of->fibres(value, &fibres.of);
+    const fibre_set set = fibre_set_of(&fibres, 1);
+    const element_tensor p = element_sum(form_stress(of->form, h, c), fibre_stress(h, &set, 1));
     *across = p.yy;
     return p.xx;
 }
@@ -40,7 +47,7 @@ static double pulled(const law_row *of, const double *value, double stretch)
     of->fill(value, c);
     for (int i = 0; i < 100; i++) {
         const double lateral = (low + high) / 2;
-        stress = stresses(of, c, of->moduli(value), stretch, lateral, &across);
+        stress = stresses(of, c, value, stretch, lateral, &across);
         *(across < 0 ? &low : &high) = lateral;
     }
     return stress;
@@ -88,7 +95,7 @@ static void print_figures(out *o, const law_row *of)
     double value[LAW_OWN_KEYS];
     for (int k = 0; k < LAW_OWN_KEYS; k++)
         value[k] = NAN;
-    out_text(o, ".Pp\nA bar with free sides has, with");
+    out_format(o, ".Pp\nA bar%s with free sides has, with", of->fibres ? " along the fibres" : "");
     for (int g = 0; g < LAW_GROUPS && of->group[g]; g++) {
         const int key = last_of(of->group[g]);
         value[key] = example[key];

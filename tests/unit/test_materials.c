@@ -163,6 +163,36 @@ static void mixtures(void)
     near_(half.at_rest.bulk, sqrt(material_bulk(&a) * material_bulk(&b)), 1e-8, "half and half: the geometric mean");
 }
 
+/* Of fung, whose shear its fibres have, and of another: the energy of the other goes by its share, as that of fibres
+ * does. */
+static void mixed_with_fibres(void)
+{
+    const char *const laws[] = {"neo-hookean", "mooney-rivlin", "yeoh", "veronda-westmann", "ogden"};
+    material a = {.law = law_find("fung"), .density = 1000};
+    for (int k = 0; k < LAW_OWN_KEYS; k++)
+        a.value[k] = NAN;
+    material b = a;
+    a.value[LAW_c] = 2000, a.value[LAW_bf] = 8, a.value[LAW_bt] = 2, a.value[LAW_bfs] = 4, a.value[LAW_nu] = .45;
+    b.value[LAW_E] = 5000, b.value[LAW_nu] = .4, b.value[LAW_c10] = 700, b.value[LAW_c01] = 70;
+    b.value[LAW_c20] = 90, b.value[LAW_c1] = 100, b.value[LAW_c2] = 2, b.value[LAW_mu1] = 800, b.value[LAW_a1] = -4;
+    const material_numbers one = material_numbers_of(&a), itself = material_mixed(&one, &one, .3);
+    ok(itself.c[0] == 0 && fabs(itself.c[1] / one.c[1] - 1) < 1e-12, "fung and fung: K alone");
+    for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
+        b.law = law_find(laws[i]);
+        const material_numbers two = material_numbers_of(&b), m = material_mixed(&one, &two, .25),
+                               turned = material_mixed(&two, &one, .75);
+        bool right = m.form == two.form;
+        for (int k = 0; k < FORM_NUMBERS; k++) {
+            const bool bulk = one.form == two.form ? k == 1 : two.c[k] == two.at_rest.bulk;
+            const double of_share = k < form_moduli(two.form) ? two.c[k] / 4 : two.c[k];
+            const double want = bulk ? m.at_rest.bulk : of_share;
+            right =
+                right && fabs(m.c[k] - want) <= 1e-12 * fabs(want) && fabs(turned.c[k] - want) <= 1e-12 * fabs(want);
+        }
+        ok(right, "fung, and %s by a share of a quarter", laws[i]);
+    }
+}
+
 /* Material i: of mooney-rivlin, and its values, nan where none. */
 static bool is_mooney(const model *m, int64_t i, double c10, double c01, double bulk, double nu)
 {
@@ -253,6 +283,7 @@ int main(void)
     refuse_two_laws();
     defaults();
     mixtures();
+    mixed_with_fibres();
     files();
     dots();
     refuse_file("", "m.txt: no material");
