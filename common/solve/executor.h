@@ -19,8 +19,7 @@
     X(HISTORY, "history of elements, which the law needs")                                                             \
     X(MIXTURES, "elements mixed of two volumes")                                                                       \
     X(CURVES, "muscles with a passive stress or an optimum")                                                           \
-    X(FIBRES, "fibres that resist being stretched")                                                                    \
-    X(FUNG, "law fung")
+    X(FIBRES, "fibres that resist being stretched")
 
 enum executor_feature {
 #define EXECUTOR_NUMBER(name, words) EXECUTOR_NUMBER_##name,

@@ -76,6 +76,7 @@ hgo='-m tissue.fibre=hgo -m tissue.k1=2e4 -m tissue.k2=2'
 # shellcheck disable=SC2086 # options of a material are words
 {
     same "fibres that resist being stretched" "$T/muscle.sinew" -g 0,2,-9.81 -m tissue.fibre=quadratic -m tissue.eta=2e4
+    same "the law fung" "$T/muscle.sinew" -g 0,2,-9.81 -m tissue.law=fung -m tissue.c=500 -m tissue.bf=8 -m tissue.bt=2 -m tissue.bfs=4 -m tissue.nu=.45
     same "a passive muscle with fibres" "$T/muscle.sinew" -c all=0.5 -g 0,0,-9.81 $hgo -m tissue.passive=0.05 -m tissue.optimum=0.9
     logged "a passive muscle with fibres" $hgo -m tissue.passive=0.05 -m tissue.optimum=0.9
     run "$T/muscle.sinew" -q -d cpu -n 500 -c all=0.5 $hgo -m tissue.kappa=.1 >"$T/cpu"

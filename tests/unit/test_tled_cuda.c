@@ -205,8 +205,8 @@ static void test_forms_bytes(const tled_executor *cpu, const tled_executor *cuda
 /* Fibres that act by themselves: the CPU's bytes in bricks, small and many, also where slits are. */
 static void test_fibres_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
 {
-    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres, &two_families, &passive_muscles,
-                                              &all_fibres};
+    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres, &two_families,
+                                              &passive_muscles,  &all_fibres, &fung_tissue};
     char what[120];
     block mixed = muscle, cut = lump;
     mixed.mixed = cut.mixed = true;
@@ -241,6 +241,8 @@ static void test_fibres_looks(const tled_executor *twice, const tled_executor *o
     in_bent = true;
     in_fibres = &hgo_fibres;
     test_look(&lump, true, 300, once, "single, hgo fibres, a script", 1e-6);
+    in_fibres = &fung_tissue;
+    test_look(&lump, true, 300, twice, "double, fung, a script", 1e-10);
     test_look(&large, false, 300, once, "single, hgo fibres, many bricks", 1e-6);
     in_fibres = &all_fibres;
     test_look(&mixed, false, 300, twice, "double, passive muscles with two families", 1e-10);

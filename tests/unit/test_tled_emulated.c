@@ -209,6 +209,7 @@ static void test_fibres(int64_t steps)
         const block_fibres *fibres;
         trial what;
     } all[] = {{&quadratic_fibres, {"quadratic fibres, a script", lump, 0, true, {0}, false}},
+               {&fung_tissue, {"fung, mixed elements, a script", mixed_of(lump), 0, true, {0}, false}},
                {&hgo_fibres, {"hgo fibres, mixed elements, a script", mixed_of(lump), 0, true, {0}, false}},
                {&two_families, {"two families, mixed muscles", cut, .5, false, {0}, false}},
                {&passive_muscles, {"passive muscles, mixed", cut, .5, false, {0}, false}},
@@ -225,9 +226,9 @@ static void test_fibres(int64_t steps)
             try(&all[i].what, &staying, &tled_cuda_double, &tled_cpu_double, steps, 0);
     }
     in_fibres = &two_families;
-    try(&all[2].what, &marching, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    try(&all[3].what, &marching, &tled_cuda_single, &tled_cpu_single, steps, 0);
     in_control = ISOTROPIC(.0075);
-    try(&all[2].what, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
+    try(&all[3].what, &plain, &tled_cuda_single, &tled_cpu_single, steps, 0);
     in_control = PHYSICAL;
     in_slit = &slits[5];
     const trial parted = {"two families, slits", mixed_of(lump), 0, true, {0}, false};
@@ -259,6 +260,8 @@ static void test_fibres_looks(int64_t steps)
     in_bent = true;
     in_fibres = &hgo_fibres;
     test_look(&lump, true, steps, &tled_cuda_single, "a look at hgo fibres", 1e-6);
+    in_fibres = &fung_tissue;
+    test_look(&lump, true, steps, &tled_cuda_single, "a look at fung", 1e-6);
     in_fibres = &all_fibres;
     test_look(&cut, false, steps, &tled_cuda_double, "a look at passive muscles with two families", 1e-10);
     in_fibres = &two_families;

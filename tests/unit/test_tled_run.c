@@ -2,7 +2,6 @@
  * two, muscles at full contraction, steps that are too large, and the ends of runs.
  */
 // needs: tled/*/*.c
-#include "physics/law.h"
 #include "tled/run/timeline.h"
 #include "tled_bench.h"
 
@@ -440,26 +439,6 @@ static const char *no_device(void)
     return "no device";
 }
 
-/* Of fibres, which executors may have or not. */
-static void test_fibred_need(void)
-{
-    const executor *without[] = {&(const executor){.device = "cuda", .forms = 1, .unusable = no_device},
-                                 &tled_cpu_double.is, NULL};
-    tled_volume heart = {.name = "heart", .row = law_find("fung")};
-    fibre_numbers of = {.k1 = 1};
-    tled_problem p = {.volumes = 1, .volume = &heart, .fibres.of = &of};
-    char says[100];
-    err e = {0};
-    ok(tled_need(&p).features == EXECUTOR_FIBRES, "families need an executor that has fibres");
-    of = (fibre_numbers){.c = 1, .bf = 1, .bt = 1, .bfs = 1};
-    const executor_need need = tled_need(&p);
-    ok(need.features == EXECUTOR_FUNG, "and fung one that has fung");
-    const executor *took = executor_choose(without, "auto", &need, says, sizeof says, &e);
-    ok(took == &tled_cpu_double.is && strstr(says, "law fung"), "%s", says);
-    took = executor_choose(without, "cuda", &need, says, sizeof says, &e);
-    ok(!took && !strcmp(e.text, "the CUDA back end has no law fung; expected -d cpu or auto"), "%s", e.text);
-}
-
 static void test_choice(void)
 {
     static const executor broken = {.device = "cuda", .features = EXECUTOR_MIXTURES, .unusable = no_device};
@@ -573,7 +552,6 @@ int main(void)
     bound.fixed_axis = 0;
     test_times();
     test_choice();
-    test_fibred_need();
     test_device(&tled_cpu_double, "double");
     test_device(&tled_cpu_single, "single");
     test_contraction(&muscle, "a muscle on its side");

@@ -164,6 +164,7 @@ static inline void block_tables(const block *b, model *m)
 typedef struct block_fibres {
     const char *name, *kind[2];
     double k1[2], k2[2], kappa[2], angle[2], passive[2], optimum[2];
+    double fung[4]; /* c, bf, bt and bfs of the first volume, whose law is fung then */
 } block_fibres;
 
 /* Those of blocks that are made; NULL: none do anything. */
@@ -178,8 +179,24 @@ static inline void block_values(model *m, const char *name, const double value[2
     }
 }
 
-/* Directions that differ; some elements have none, and of some the normal is along the fibre. */
-static inline void block_directions(model *m)
+/* The first volume's law is fung; no element has values of its own. */
+static inline void block_fung(const double value[4], model *m)
+{
+    static const char *const key[] = {"material.c", "material.bf", "material.bt", "material.bfs"};
+    model_array *young = model_find(m, "element.E");
+    err e = {0};
+    model_set_text(model_find(m, "material.law"), 0, "fung", &e);
+    model_find(m, "material.E")->f64[0] = NAN;
+    for (int i = 0; i < 4; i++) {
+        const double both[2] = {value[i], 0};
+        block_values(m, key[i], both);
+    }
+    for (int64_t i = 0; young && i < young->rows; i++)
+        young->f64[i] = NAN;
+}
+
+/* Directions that differ; some elements have none, if that may be, and of some the normal is along the fibre. */
+static inline void block_directions(model *m, bool all)
 {
     model_array *mixed = model_find(m, "element.mixfibre"), *mix = model_find(m, "element.mix");
     float *fibre = model_find(m, "element.fibre")->f32, *normal = block_array(m, "element.normal")->f32;
@@ -187,7 +204,7 @@ static inline void block_directions(model *m)
         const double a = (double)(i * 7919 % 101), z = cos(3 * a), r = sin(3 * a);
         const double along[3] = {r * cos(a), r * sin(a), z}, across[3] = {-z * cos(a), -z * sin(a), r};
         for (int k = 0; k < 3; k++) {
-            fibre[3 * i + k] = i % 17 == 5 ? 0 : (float)along[k];
+            fibre[3 * i + k] = i % 17 == 5 && !all ? 0 : (float)along[k];
             normal[3 * i + k] = (float)(i % 13 == 3 ? along[k] : across[k]);
             if (mixed && mix->i32[i] >= 0)
                 mixed->f32[3 * i + k] = (float)along[(k + 1) % 3];
@@ -211,7 +228,9 @@ static inline void block_add_fibres(const block_fibres *f, model *m)
     block_values(m, "material.angle", f->angle);
     block_values(m, "material.passive", f->passive);
     block_values(m, "material.optimum", f->optimum);
-    block_directions(m);
+    if (f->fung[0] > 0)
+        block_fung(f->fung, m);
+    block_directions(m, f->fung[0] > 0);
 }
 
 /* Makes the model, with the slits and the fibres that are asked for; the caller frees it. */

@@ -32,6 +32,9 @@ static const block_fibres all_fibres = {.name = "passive muscles with two famili
                                         .passive = {.1, .05},
                                         .optimum = {0, 1.1}};
 
+static const block_fibres fung_tissue = {
+    .name = "the law fung", .kind = {NULL, "hgo"}, .k1 = {0, 1e4}, .k2 = {0, 2}, .fung = {2e3, 8, 2, 4}};
+
 /* The hourglass control that a new problem gets. */
 static hourglass_control in_control = {HOURGLASS_PHYSICAL, 0};
 

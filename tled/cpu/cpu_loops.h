@@ -581,10 +581,7 @@ static int64_t cpu_computed(const cpu_state *s)
     .destroy = cpu_destroy, .step = cpu_step, .get = cpu_get, .save = cpu_save, .restore = cpu_restore,                \
     .snapshot = cpu_snapshot, .fetch = cpu_fetch, .reload = cpu_reload, .bytes = cpu_bytes, .computed = cpu_computed
 
-enum {
-    CPU_FEATURES =
-        EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES | EXECUTOR_FUNG
-};
+enum { CPU_FEATURES = EXECUTOR_CONTACT | EXECUTOR_FOLLOWERS | EXECUTOR_MIXTURES | EXECUTOR_CURVES | EXECUTOR_FIBRES };
 
 const tled_executor CPU_EXECUTOR = {
     .is = {.device = "cpu", .features = CPU_FEATURES, .forms = (1U << FORM_STEPPED) - 1, .unusable = cpu_unusable},

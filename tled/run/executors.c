@@ -43,22 +43,11 @@ static const tled_volume *volume_that_wants(const tled_problem *p)
     return NULL;
 }
 
-/* What volumes have of fibres that resist being stretched: families, the law fung. */
-static uint32_t fibres_of(const tled_problem *p)
-{
-    uint32_t features = 0;
-    for (int32_t i = 0; p->fibres.of && i < p->volumes; i++) {
-        features |= fibre_numbers_families(&p->fibres.of[i]) ? EXECUTOR_FIBRES : 0;
-        features |= p->fibres.of[i].c > 0 ? EXECUTOR_FUNG : 0;
-    }
-    return features;
-}
-
 executor_need tled_need(const tled_problem *p)
 {
     const uint32_t meshes = p->conforming ? EXECUTOR_MESHES : 0, contact = p->collider ? EXECUTOR_CONTACT : 0,
                    followers = p->followers ? EXECUTOR_FOLLOWERS : 0, mixtures = p->mix ? EXECUTOR_MIXTURES : 0,
-                   curves = p->curved ? EXECUTOR_CURVES : 0, fibres = fibres_of(p);
+                   curves = p->curved ? EXECUTOR_CURVES : 0, fibres = p->fibres.of ? EXECUTOR_FIBRES : 0;
     const tled_volume *wants = volume_that_wants(p);
     executor_need need = {.features = meshes | contact | followers | mixtures | curves | fibres | features_of(p->form),
                           .form = UINT32_C(1) << p->form,
