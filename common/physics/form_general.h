@@ -139,12 +139,14 @@ ELEMENT_FUNCTION form_general_simple form_general_simple_by(real x)
     return at;
 }
 
-/* U and V. */
-ELEMENT_FUNCTION void form_general_pair(form_general_simple at, real a, real *u, real *v)
+/* U and V, which are the same for -a: with e = e^(a l) - 1, cosh(a l) = 1 + e^2/(2 + 2 e) and sinh(a l) = (e + e/(1 +
+ * e))/2. */
+ELEMENT_FUNCTION void form_general_pair(form_general_simple at, real exponent, real *u, real *v)
 {
-    const real more = real_exp_less(a * at.log), less = real_exp_less(-(a * at.log));
-    *u = a * a * (1 + R(.5) * (more + less));
-    *v = a * (more - less) / (2 * at.sine);
+    const real a = REAL_SELECT(exponent < 0, -exponent, exponent);
+    const real more = real_exp_less(a * at.log), part = more / (1 + more);
+    *u = a * a * (1 + R(.5) * (more * part));
+    *v = a * (more + part) / (2 * at.sine);
 }
 
 ELEMENT_FUNCTION void form_general_add_stretches(real x, const real *c, form_shear *to)
