@@ -21,8 +21,28 @@ hold() { # LIST
 }
 
 hold short
+# Figures of the table of references, found once more on its coarsest meshes.
+again() { # PROBLEM
+    SIZES=2 tests/element/references "$1" >"$T/again" 2>"$T/said" || not_ok "tests/element/references $1"
+    diag_file "$T/said"
+    while read -r problem case size value; do
+        near "$value" "$(awk -v p="$problem" -v c="$case" -v n="$size" '$1 == p && $2 == c && $3 == n { print $4 }' tests/element/references.tsv)" 1e-5 \
+            "$problem, $case, once more on $size elements through the thickness"
+    done <"$T/again"
+}
+
 if [ -n "$SINEW_LONG" ]; then
     hold long
+    if have ccx; then
+        again yeoh
+    else
+        skip 1 "no CalculiX (calculix-ccx)"
+    fi
+    if /usr/bin/python3 -c 'import getfem' 2>"$T/said"; then
+        again fibres
+    else
+        skip 1 "no GetFEM (python3-getfem)"
+    fi
 else
     skip 1 "finer meshes and large strain take minutes: SINEW_LONG is not set"
 fi
