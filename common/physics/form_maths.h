@@ -80,8 +80,7 @@ ELEMENT_FUNCTION int form_stiffens(form f)
 #undef FORM_CASE
 }
 
-/* Its shear stiffness at x = I1bar - 3. */
-ELEMENT_FUNCTION form_shear form_sheared(form f, real x, const real *c)
+ELEMENT_FUNCTION form_shear form_sheared_alone(form f, real x, const real *c)
 {
     const form_shear none = {REAL_ZERO, REAL_ZERO, REAL_ZERO};
 #define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \
@@ -93,6 +92,16 @@ ELEMENT_FUNCTION form_shear form_sheared(form f, real x, const real *c)
         return none;
     }
 #undef FORM_CASE
+}
+
+/* Its shear stiffness at x = I1bar - 3. Of coefficients without any, those of a law whose shear is that of fibres, it
+ * is a constant 1: hourglass control does not follow fibres. */
+ELEMENT_FUNCTION form_shear form_sheared(form f, real x, const real *c)
+{
+    form_shear t = form_sheared_alone(f, x, c);
+    t.now = REAL_SELECT(t.rest > 0, t.now, REAL_ZERO + 1);
+    t.rest = REAL_SELECT(t.rest > 0, t.rest, REAL_ZERO + 1);
+    return t;
 }
 
 #ifdef REAL_IS_DOUBLE

@@ -173,13 +173,17 @@ near "$(sinew info --get quality.hourglass "$T/out")" "$(awk -F '\t' 'END { prin
 sinew results material.energy <"$T/out" >"$T/energies"
 near "$(for name in soft hard; do sinew info --get material.energy.$name "$T/energies"; done | awk '{ e += $1 } END { printf "%.12g", e }')" \
     "$(awk -F '\t' 'END { print $6 }' "$T/log")" 1e-6 "energies by material add up to the log's"
-tled-run -q -d cpu --rest 1e-7 --log "$T/log" --script "$T/script" -m hard.fibre=none -m hard.law=fung -m hard.c=500 -m hard.bf=8 \
-    -m hard.bt=2 -m hard.bfs=4 -m hard.nu=.3 <"$T/mixed" >"$T/heart"
-near "$(sinew info --get quality.hourglass "$T/heart")" "$(awk -F '\t' 'END { print $NF }' "$T/log")" 1e-5 \
-    "the law fung mixed with another: sinew info has the energies of the log"
-sinew results material.energy <"$T/heart" >"$T/energies"
-near "$(for name in soft hard; do sinew info --get material.energy.$name "$T/energies"; done | awk '{ e += $1 } END { printf "%.12g", e }')" \
-    "$(awk -F '\t' 'END { print $6 }' "$T/log")" 1e-6 "and energies by material add up to the log's"
+# By a law that does not stiffen, and by one that does, which hourglass control follows.
+for other in 'E=3000' 'law=yeoh c10=500 c20=300 nu=.45'; do
+    # shellcheck disable=SC2046,SC2086 # options of a material are words
+    tled-run -q -d cpu --rest 1e-7 --log "$T/log" --script "$T/script" -m hard.fibre=none -m hard.law=fung -m hard.c=500 -m hard.bf=8 \
+        -m hard.bt=2 -m hard.bfs=4 -m hard.nu=.3 $(printf -- '-m soft.%s ' $other) <"$T/mixed" >"$T/heart"
+    near "$(sinew info --get quality.hourglass "$T/heart")" "$(awk -F '\t' 'END { print $NF }' "$T/log")" 1e-5 \
+        "the law fung mixed with $other: sinew info has the energies of the log"
+    sinew results material.energy <"$T/heart" >"$T/energies"
+    near "$(for name in soft hard; do sinew info --get material.energy.$name "$T/energies"; done | awk '{ e += $1 } END { printf "%.12g", e }')" \
+        "$(awk -F '\t' 'END { print $6 }' "$T/log")" 1e-6 "and energies by material add up to the log's"
+done
 for x in 0.03 0.04 0.05 0.06; do
     sinew info --get "node.displacement.at.$x,0,0" "$T/out"
 done >"$T/ends"
