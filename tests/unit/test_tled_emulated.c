@@ -501,7 +501,7 @@ int main(void)
         if (f != FORM_NEO_HOOKEAN)
             test_form((form)f, 2 * more);
     test_any_form(more);
-    test_fibres(2 * more);
+    test_fibres(more);
     test_fibres_of_forms(more);
     test_fibres_looks(2 * more);
     test_live(&marching, false, "a march");
