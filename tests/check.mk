@@ -4,10 +4,11 @@
 #
 # ---- What runs where. tests/check has the lists of parts; these are their times on two processors of an AMD EPYC with little else to do, from
 # a clean clone and without a compiler cache. (On a busy machine each takes several times as long.)
-#   make check      before every commit: the build by gcc, and by nvcc where it is, 320 s; clang-format 4 s, shellcheck 23 s, manual pages 4 s,
-#                   shape 4 s; all unit and command tests, CUDA's kernels on a card that the processor plays among them, 400 s
-#   .ci/run         that, nvcc's code hardly optimized (CUDA_QUICK=yes; the build takes 200 s), and clang's build, cppcheck, clang-tidy without
-#                   its analyzer, the unit tests with ASan and UBSan, 2 s of each fuzz target, and the browser: about 13 minutes more
+#   make check      before every commit: the build by gcc, and by nvcc where it is, 220 s; clang-format 4 s, shellcheck 19 s, manual pages 3 s,
+#                   shape 1 s; all unit and command tests, 230 s
+#   .ci/run         that, nvcc's code hardly optimized (CUDA_QUICK=yes; the build takes 160 s), CUDA's kernels on a card that the processor
+#                   plays, and clang's build, cppcheck, clang-tidy without its analyzer, the unit tests with ASan and UBSan, 2 s of each fuzz
+#                   target, and the browser: about 18 minutes more
 #   make check-all  that, with all tests sanitized and 10 s of each fuzz target, and tsan, valgrind, 20 s of each live run and the slow tests: an hour or more
 #   make soak       300 s of each fuzz target, tests that take many minutes with SINEW_LONG, ten minutes of each live run, tests/long/run1e6: hours
 # What a test lacks (a program, data, a card) it names, and is skipped. .ci/setup check installs what is small, so that a visitor's results are
@@ -31,7 +32,7 @@ JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 2
 # ---- test programs: the library, and the objects that a line `// needs: a/b.c c/d.c` in the source names.
 UNIT_SRC := $(wildcard tests/unit/test_*.c)
 FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
-UNIT := $(UNIT_SRC:%.c=$(BUILD)/%)
+UNIT := $(filter-out $(UNIT_TEST)tled_emulated,$(UNIT_SRC:%.c=$(BUILD)/%))
 FUZZ := $(FUZZ_SRC:%.c=$(BUILD)/%)
 # Each fuzz target with a plain main, which tries the inputs that it is given: no libFuzzer, any compiler.
 REPLAY := $(FUZZ_SRC:tests/fuzz/fuzz_%.c=$(BUILD)/tests/fuzz/replay_%)
@@ -64,7 +65,7 @@ $(BUILD)/tests/faults/wreck_card.so: tests/faults/wreck_card.cu
 	@mkdir -p $(@D)
 	$(call run,NVCC $<,$(NVCC) $(NVCC_FLAGS) -Xcompiler -fPIC -shared -o $@ $<)
 
-.PHONY: setup demo check check-all check-ci soak unit check-unit check-cli check-tests check-slow check-soak check-live check-run1e6
+.PHONY: setup demo check check-all check-ci soak unit check-unit check-cli check-tests check-emulated check-slow check-soak check-live check-run1e6
 setup:
 	.ci/setup check
 
@@ -102,7 +103,8 @@ console:
 	SINEW_BIN=$(BIN) samples/console out/console
 	$(BIN)/sinew console $(if $(THREE),--three $(THREE)) out/console
 
-# The pictures in README.md: small, since they are kept in the repository; make demo and make scan leave larger ones.
+# The pictures in README.md: small, since they are kept in the repository; make demo and make scan leave larger ones. The first one,
+# samples/expressions.png, is what `make expressions` leaves of ArtiSynth's face.
 .PHONY: picture
 picture: demo scan
 	$(BIN)/sinew render --view front --cut x=0 --sheet rest,voxels,front,deformed --size 1200x400 -o samples/face.png out/smile.sinew
@@ -135,6 +137,10 @@ soak:
 
 unit: $(UNIT) $(COMPARE) $(FAULTS)
 
+# CUDA's kernels on a card that the processor plays: apart, since g++ takes a minute or two to compile them for it.
+check-emulated: $(UNIT_TEST)tled_emulated
+	$(ENVIRONMENT) $(PROVE) $<
+
 # ---- the tests, as TAP under prove; V=1 shows every line
 PROVE = prove $(if $(V),-v) $(or $(JOBS),-j2)
 # A shell ignores signals for the commands that it runs in the background; tests want their default actions.
@@ -155,7 +161,7 @@ check-slow: all unit
 	$(ENVIRONMENT) SINEW_LONG=1 $(PROVE) $(SLOW)
 
 # Runs with threads, and runs that are killed, are repeated a hundred times.
-check-soak: all unit
+check-soak: all unit $(UNIT_TEST)tled_emulated
 	$(ENVIRONMENT) SINEW_LONG=1 REPEATS=100 $(PROVE) $(SOAK)
 
 # Live runs, each of so many seconds, and so many short ones that are recorded and replayed.
@@ -396,6 +402,7 @@ help:
 	'make setup        installs by apt what make check needs (through sudo if not root), and names it' \
 	'make check-unit   the unit tests            make check-cli   the tests of the commands' \
 	'make check-tests  both, with the counts     make check-slow  slow tests, at their full length' \
+	'make check-emulated   kernels of CUDA on a card that the processor plays; it takes four minutes' \
 	'make check-live   live runs of LIVE_SECONDS=$(LIVE_SECONDS) each, and LIVE_SESSIONS=$(LIVE_SESSIONS) that are recorded and replayed' \
 	'make same WITH=FOLDER   what the outputs of this build differ in from those of the tools in FOLDER' \
 	'make lint         clang-format, shellcheck, manual pages, shape; and cppcheck and clang-tidy, which take minutes' \
