@@ -205,13 +205,13 @@ static void test_forms_bytes(const tled_executor *cpu, const tled_executor *cuda
 /* Fibres that act by themselves: the CPU's bytes in bricks, small and many, also where slits are. */
 static void test_fibres_bytes(const tled_executor *cpu, const tled_executor *cuda, const char *name)
 {
-    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres, &two_families,
-                                              &passive_muscles,  &all_fibres, &fung_tissue};
+    static const block_fibres *const all[] = {&quadratic_fibres, &hgo_fibres,  &two_families, &passive_muscles,
+                                              &all_fibres,       &fung_tissue, NULL};
     char what[120];
     block mixed = muscle, cut = lump;
     mixed.mixed = cut.mixed = true;
     mixed.fraction = cut.fraction = -1;
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    for (size_t i = 0; all[i]; i++) {
         in_fibres = all[i];
         snprintf(what, sizeof what, "%s, %s, a muscle", name, all[i]->name);
         test_bytes(&muscle, .5, false, 1000, cpu, cuda, what);
