@@ -470,17 +470,18 @@ static int take_elastic(inp_reader *r, char *line, material *of)
     return 0;
 }
 
-/* Those after D1 need not be there, and are 0. */
+/* Those after D1 need not be there; their terms are none. */
 static int take_volumetric(inp_reader *r, char **line)
 {
     const inp_law *of = r->hyper;
+    const double least = inp_least_no_term * 2 / r->m->material[r->material].of.value[LAW_K];
     for (int i = 1; i < of->volumetric; i++) {
         char *field = next_field(line);
         double value = 0;
         if (field && *field && take_number(r, field, of->words, &value))
             return -1;
-        if (value != 0)
-            return wrong(r, "volumetric energy of (J - 1)^4 or on", "D2 and D3 of 0");
+        if (value != 0 && !(value >= least))
+            return wrong(r, "volumetric energy of (J - 1)^4 or on", "D2 and D3 of 0, or at least 1e9 times D1");
     }
     return 0;
 }

@@ -1,6 +1,8 @@
 /* The laws that Abaqus has too, as sinew export writes them and sinew import reads them: constants, most of which are
  * values of keys, then D1, D2 and so on of the volumetric energy (J - 1)^2 / D1 + (J - 1)^4 / D2 + ..., of which only
- * the first term is there, K = 2 / D1. Abaqus Analysis User's Guide, "Hyperelastic behavior". Owns nothing.
+ * the first term is there, K = 2 / D1. Abaqus Analysis User's Guide, "Hyperelastic behavior". CalculiX takes a small D2
+ * of its own for one of 0, so that nothing changes its volume by much: a large one leaves the term out in both. Owns
+ * nothing.
  */
 #ifndef SINEW_INP_LAW_H
 #define SINEW_INP_LAW_H
@@ -9,6 +11,9 @@
 #include "model/materials.h"
 
 #include <string.h>
+
+/* D2 and D3 over D1, as they are written, and from which on such terms are none. */
+static const double inp_no_term = 1e12, inp_least_no_term = 1e9;
 
 enum { INP_KEYS = 6, INP_CONSTANTS = 9, INP_LINE = 8 }; /* the most of a row, and on a line */
 
@@ -84,7 +89,7 @@ static inline int inp_law_write(const inp_law *of, const material *from, double 
         constants[i] = isnan(value) ? 0 : value;
     }
     for (int i = 0; i < of->volumetric; i++)
-        constants[of->keys + i] = i ? 0 : 2 / material_bulk(from);
+        constants[of->keys + i] = (i ? inp_no_term : 1) * 2 / material_bulk(from);
     return of->keys + of->volumetric;
 }
 
