@@ -71,7 +71,7 @@ setup:
 
 demo:
 	.ci/setup demo
-	$(MAKE) $(JOBS) all
+	$(MAKE) $(JOBS) CUDA_QUICK=$(QUICK) all
 	SINEW_BIN=$(BIN) samples/demo out
 
 # The second example: an arm's vessels under a probe, with plots where there is gnuplot.
@@ -118,10 +118,10 @@ picture: demo scan
 CHECK = BUILD=$(BUILD) JOBS='$(JOBS)' tests/check
 # Without a card, kernels are only to be seen to compile: machine code that is hardly optimised. make install makes it anew; check-all
 # has it as it is installed.
-CARD := $(wildcard /dev/nvidia0)
+QUICK := $(if $(wildcard /dev/nvidia0),no,yes)
 check:
 	.ci/setup check
-	CUDA_QUICK=$(if $(CARD),no,yes) MAKE='$(MAKE)' $(CHECK) check
+	CUDA_QUICK=$(QUICK) MAKE='$(MAKE)' $(CHECK) check
 
 check-all:
 	.ci/setup check-all
