@@ -5,6 +5,7 @@
 #include "mesh/fibre_sets.h"
 #include "model/hourglass_text.h"
 #include "model/materials.h"
+#include "physics/stability.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -47,15 +48,6 @@ static void hold_of(const view *v, double mu, double bulk, double volume, double
         to[HOURGLASS_K] *= wave / (11 * mu);
 }
 
-/* By how much they are held where the law has become stiffer. */
-static double stiffening_of(const view *v, const material_numbers *of, element_tensor h)
-{
-    if (!element_follows(of->form, v->control.kind))
-        return 1;
-    const form_shear t = form_sheared(of->form, form_first_x(h), of->c);
-    return t.now / t.rest;
-}
-
 static void add_element(const view *v, int64_t element, const material_numbers *of, double fraction, energy *to)
 {
     const element_motion is = element_motion_of(&v->mesh, element, v->u);
@@ -63,6 +55,7 @@ static void add_element(const view *v, int64_t element, const material_numbers *
     const double *side = v->mesh.side, mu = of->at_rest.mu;
     double hold[HOURGLASS_NUMBERS];
     hold_of(v, mu, of->at_rest.bulk, is.volume, is.squares, hold);
+    const double stiffer = stability_stiffening_of(of->form, v->control.kind, is.h, of->c).now;
     const hourglass_force force =
         v->mesh.is_lattice ? hourglass_of(v->control.kind, is.modes, is.h, element_box(side[0], side[1], side[2]), hold)
                            : element_any_hourglass(v->control.kind, is.modes, is.h, &is.any, hold);
@@ -70,7 +63,7 @@ static void add_element(const view *v, int64_t element, const material_numbers *
     to->strain +=
         fraction * is.volume *
         (material_energy(of, is.h) + muscles_energy(&v->muscles, element, is.h) + fibre_sets_energy(&fibres, is.h));
-    to->hourglass += fraction * stiffening_of(v, of, is.h) * hourglass_dot(&force.f, &is.modes) / 2;
+    to->hourglass += fraction * stiffer * hourglass_dot(&force.f, &is.modes) / 2;
 }
 
 /* How the run that wrote the frames held hourglass modes: hourglass.control, or hourglass.kappa of older releases. */

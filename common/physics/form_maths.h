@@ -66,7 +66,7 @@ ELEMENT_FUNCTION real form_energy(form f, element_tensor h, const real *c)
 #undef FORM_CASE
 }
 
-/* Whether its shear stiffness is more than a constant. */
+/* Returns whether the shear stiffness of the form depends on the state. */
 ELEMENT_FUNCTION int form_stiffens(form f)
 {
 #define FORM_CASE(NAME, name, coefficients, exponents, history)                                                        \

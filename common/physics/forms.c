@@ -46,7 +46,7 @@ form form_of_both(form a, const double *ca, form b, const double *cb, double *to
     return FORM_COUNT;
 }
 
-/* Whether it has no modulus but K: it is that of a law whose shear is all that of fibres (law.h). */
+/* Returns whether all moduli but one are 0: that one is K, of a law whose shear is that of fibres (law.h). */
 static int only_bulk(form f, const double *c)
 {
     int others = -1;

@@ -87,8 +87,8 @@ typedef struct law_row {
     unsigned optional;          /* such bits of keys that need not be given, and are 0 then */
     law_moduli (*moduli)(const double *value);
     void (*fill)(const double *value, double *c); /* value: LAW_OWN_KEYS, nan where none; c: FORM_NUMBERS */
-    /* Of a law whose shear is that of fibres: the numbers of these, which the form's coefficients lack, so that an
-     * element needs a direction. NULL: it has none. */
+    /* Fills the numbers of fibres, if the law's shear is that of fibres: the form's coefficients lack them, and each
+     * element needs a direction. NULL: the law has none. */
     void (*fibres)(const double *value, fibre_numbers *to);
     /* Whether values that are each in their range are no material together; what and expected say so. NULL: all are
      * one. */

@@ -186,7 +186,7 @@ static void test_any_form(int64_t steps)
     in_control = PHYSICAL;
 }
 
-/* What fibres of a block do by themselves is not nothing. */
+/* Fibres that act by themselves change how a block moves. */
 static void fibres_act(const block_fibres *f, trial t, int64_t steps)
 {
     answer with, without;

@@ -15,6 +15,12 @@ static __device__ bool cuda_stretched(const cuda_fibres<real> &of)
     return of.families > 0 || of.is_fung;
 }
 
+/* What a muscle of a volume pulls with before its curve is looked at, Pa: tled_tension. now: the curves' values. */
+static __device__ real cuda_tension(const cuda_fibres<real> &of, const double *now)
+{
+    return of.contract < 0 ? 0 : (real)(of.peak * now[3 * of.contract] / of.optimum);
+}
+
 /* Row `row` of a model's fibres. */
 static __device__ element_vector cuda_direction(const float *fibre, int64_t row)
 {

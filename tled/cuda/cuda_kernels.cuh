@@ -98,12 +98,6 @@ static __device__ element_field plain_force(const L &l, const cuda_view<real> &v
     return element_force(l.which, l.control, cell_field<G>(u, place), p.shape, law, fibre, fibre.tension != 0);
 }
 
-/* What a muscle of a volume pulls with before its curve is looked at, Pa: tled_tension. */
-static __device__ real volume_tension(const cuda_fibres<real> &of, const cuda_pass &p)
-{
-    return of.contract < 0 ? 0 : (real)(of.peak * p.now[3 * of.contract] / of.optimum);
-}
-
 /* What is to be looked at of a volume's muscle: ELEMENT_MUSCLE and so on. */
 static __device__ int muscle_of(const cuda_fibres<real> &of, real tension)
 {
@@ -124,7 +118,7 @@ typedef struct cell_part {
 static __device__ cell_part part_of(const cuda_view<real> &v, const cuda_pass &p, const cuda_fibres<real> *of,
                                     const float *along, const real *family, real share)
 {
-    const real tension = along ? volume_tension(*of, p) : 0;
+    const real tension = along ? cuda_tension(*of, p.now) : 0;
     return {of, along, family, share, tension, along ? muscle_of(*of, tension) : ELEMENT_NO_MUSCLE};
 }
 

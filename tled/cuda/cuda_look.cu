@@ -135,8 +135,7 @@ static __device__ void add_fibres(const cuda_look<S> &l, int64_t row, uint32_t v
     if (!along)
         return;
     const cuda_fibres<double> &of = l.fibres[volume];
-    const double tension = of.contract < 0 ? 0 : of.peak * l.now[3 * of.contract] / of.optimum;
-    *muscle = cuda_muscle(of, along, row, share, tension);
+    *muscle = cuda_muscle(of, along, row, share, cuda_tension(of, l.now));
     if (cuda_stretched(of))
         to->sets[to->count++] = cuda_fibre_set(l.view, of, along, family, row, share);
 }
