@@ -22,6 +22,10 @@
  * it is known where all of it stands.) */
 #define __shared__ static thread_local
 
+struct alignas(8) uint2 {
+    unsigned x, y;
+};
+
 struct alignas(16) uint4 {
     uint32_t x, y, z, w;
 };
@@ -59,6 +63,10 @@ static inline unsigned __float_as_uint(float x)
 static inline float __uint_as_float(unsigned x)
 {
     return emulated_bits<float>(x);
+}
+static inline unsigned __funnelshift_r(unsigned low, unsigned high, unsigned by)
+{
+    return (unsigned)(((uint64_t)high << 32 | low) >> (by & 31));
 }
 static inline int __double2loint(double x)
 {

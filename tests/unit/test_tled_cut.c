@@ -3,7 +3,7 @@
  * in another order, and where there are slits, of which bricks that none comes to are told nothing. And in rows: the
  * same.
  */
-// needs: tled/cuda/tiles.c tled/cuda/tile_split.c tled/cuda/tile_pack.c
+// needs: tled/cuda/tiles.c tled/cuda/tile_split.c
 // needs: tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "physics/element.h"

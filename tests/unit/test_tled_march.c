@@ -6,7 +6,7 @@
  * each block that there is room for at once where their layers are all alike, in the order of these.
  */
 // needs: tled/cuda/march.c tled/cuda/march_units.c tled/cuda/march_near.c tled/cuda/march_tips.c
-// needs: tled/cuda/march_turns.c tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
+// needs: tled/cuda/march_cells.c tled/cuda/lattice_sheet.c tled/cuda/places.c  tled/*/*.c
 #include "mesh/lattice.h"
 #include "tled/cuda/march_near.h"
 #include "tled/cuda/march_units.h"
@@ -104,8 +104,9 @@ static void see_special(seen *s, int64_t layer, int i, int j, int32_t element)
     const int32_t mix = tled_mix(p, element);
     int muscles = 0;
     s->special++;
-    s->wrong += cell->mu != (float)(share * law.mu) || cell->bulk != (float)(share * law.bulk) ||
-                cell->hourglass != (float)(share * law.hourglass[HOURGLASS_K]);
+    s->wrong +=
+        cell->mu != (float)(share * law.mu) || cell->bulk != (float)(share * law.bulk) ||
+        cell->second != (p->control.kind == HOURGLASS_ISOTROPIC ? (float)(share * law.hourglass[HOURGLASS_K]) : 0);
     s->wrong += !has_muscle(s, cell, &muscles, p->fibre ? p->fibre + 3 * (int64_t)element : NULL,
                             p->element_volume[element], share * (1 - other));
     s->wrong += mix >= 0 && !has_muscle(s, cell, &muscles, p->mixfibre ? p->mixfibre + 3 * (int64_t)element : NULL, mix,

@@ -6,13 +6,7 @@
 #define SINEW_CUDA_CELLS_CUH
 
 /* element.h before it, in single precision */
-#include "tled/cuda/cuda_march.cuh"
-#include "tled/cuda/cuda_ptx.cuh"
-
-/* Modes of a face's four nodes, or forces on them. */
-typedef struct face {
-    float mean[3], x[3], y[3], xy[3];
-} face;
+#include "tled/cuda/cuda_march_laws.cuh"
 
 /* Forces of the cell below on a face; isotropic: on its xy, those are twice `hourglass` times the face's. */
 template <march_control K> struct push {
@@ -21,23 +15,6 @@ template <march_control K> struct push {
 template <> struct push<MARCH_ISOTROPIC> {
     float mean[3], x[3], y[3], hourglass;
 };
-
-/* Of displacements at corners (0, 0), (1, 0), (0, 1), (1, 1). */
-static __device__ __forceinline__ face face_between(float4 a, float4 b, float4 c, float4 d)
-{
-    const float low[2][3] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}}, high[2][3] = {{c.x, c.y, c.z}, {d.x, d.y, d.z}};
-    face f;
-#pragma unroll
-    for (int i = 0; i < 3; i++) {
-        const float s = low[0][i] + low[1][i], t = low[1][i] - low[0][i];
-        const float sum = high[0][i] + high[1][i], gap = high[1][i] - high[0][i];
-        f.mean[i] = s + sum;
-        f.y[i] = sum - s;
-        f.x[i] = t + gap;
-        f.xy[i] = gap - t;
-    }
-    return f;
-}
 
 /* x^(-5/3), to 4e-7 of it. */
 static __device__ __forceinline__ float power(float x)
@@ -106,124 +83,6 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, float mu
     below->hourglass = hourglass;
 }
 
-/* ---- physical control
- *
- * With c = 4 h and L = diag(1/c), F' = F L^-1 = diag(c) + H' has as H' the sums and differences over corners, which so
- * need no slopes, and the forces on these, V P L, no areas. With G' = cof F' and V' = 64 V = c_x c_y c_z,
- *     V P L = all V L + own V H' L^2 + g (G' - V' L)/64,   J - 1 = (det F' - V')/V',
- * all, own and g being those of `stress`. The strains of a mode, 1/(4 h_i) times q_i, are e = F'^-1 m. With s = dW/de
- * the forces on the mode are f = F'^-T s, and V P L has -f (x) e. The three shears share one sum: with a, b, c the
- * strains yz.x, zx.y, xy.z and l = 1/c,
- *     s_a = mu V/3 ((l_y^2 + l_z^2 - l_x^2)/l_x^2 a + (a + b + c)). */
-
-/* F' and, first order in H', what of it is measured from rest. */
-typedef struct stretch {
-    float h[3][3];  /* H': row a, column: of the modes x, y, z */
-    float g[3][3];  /* cof F'; on the diagonal, less that at rest */
-    float dilation; /* det F' - V' */
-    float j;        /* J; no cell: NO_CELL */
-    float third;    /* (tr C - 3)/3 */
-} stretch;
-
-/* As J, of which all that depends on it is 0: a power of it, and what it divides. */
-#define NO_CELL 3e38f
-
-/* Of a box, by axis. */
-template <march_control K> static __device__ __forceinline__ const march_side &side_of(const cuda_march &m, int i)
-{
-    return m.side[K == MARCH_PHYSICAL_CUBES ? 0 : i];
-}
-
-/* V'/c^2; of a cube, c. */
-template <march_control K> static __device__ __forceinline__ float squares_of(const cuda_march &m, int i)
-{
-    return K == MARCH_PHYSICAL_CUBES ? m.side[0].width : m.side[i].squares;
-}
-
-/* Adds c^2 (C - 1) on the diagonal, along one axis, to c H' there; f: F' there. */
-static __device__ __forceinline__ float add_square(const float h[3][3], float f, int i, float sum)
-{
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    sum += h[i][i] * f;
-    sum += h[j][i] * h[j][i];
-    return sum + h[k][i] * h[k][i];
-}
-
-/* (tr C - 3)/3, of a cube in one sum; wide: of a cube, c H' on the diagonal, which cof F' has too. */
-template <march_control K>
-static __device__ __forceinline__ float third_of(const cuda_march &m, const float h[3][3], const float wide[3],
-                                                 const float f[3])
-{
-    float all = 0;
-#pragma unroll
-    for (int i = 0; i < 3; i++)
-        if constexpr (K == MARCH_PHYSICAL_CUBES)
-            all = add_square(h, f[i], i, i ? all + wide[i] : wide[i]);
-        else
-            all += m.side[i].thirds * add_square(h, f[i], i, m.side[i].width * h[i][i]);
-    return K == MARCH_PHYSICAL_CUBES ? m.side[0].thirds * all : all;
-}
-
-template <march_control K>
-static __device__ __forceinline__ stretch stretch_of(const cuda_march &m, bool is, const face &low, const face &high)
-{
-    stretch s;
-    float f[3], wide[3];
-#pragma unroll
-    for (int a = 0; a < 3; a++) {
-        s.h[a][0] = low.x[a] + high.x[a];
-        s.h[a][1] = low.y[a] + high.y[a];
-        s.h[a][2] = high.mean[a] - low.mean[a];
-    }
-#pragma unroll
-    for (int i = 0; i < 3; i++) {
-        f[i] = side_of<K>(m, i).width + s.h[i][i];
-        wide[i] = side_of<K>(m, (i + 2) % 3).width * s.h[i][i];
-    }
-#pragma unroll
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        s.g[i][i] = fmaf(s.h[j][j], f[k], fmaf(-s.h[j][k], s.h[k][j], wide[k]));
-        s.g[i][j] = s.h[j][k] * s.h[k][i] - s.h[j][i] * f[k];
-        s.g[i][k] = s.h[j][i] * s.h[k][j] - s.h[k][i] * f[j];
-    }
-    s.dilation = f[0] * s.g[0][0] + m.side[0].face * s.h[0][0] + s.h[0][1] * s.g[0][1] + s.h[0][2] * s.g[0][2];
-    s.j = is ? 1 + s.dilation * m.side[0].density : NO_CELL;
-    s.third = third_of<K>(m, s.h, wide, f);
-    return s;
-}
-
-/* V P L, by `stress`' formula, with mu J^-5/3 = 2^(log2 mu - 5/3 log2 J); no cell: 0. */
-template <march_control K>
-static __device__ __forceinline__ void push_of(const cuda_march &m, const march_hold &k, const stretch &s, bool is,
-                                               float p[3][3])
-{
-    const float scale = near_exp2(k.log_mu + near_log2(s.j) * (-5.f / 3));
-    const float pressure = is ? k.press * s.dilation : 0;
-    const float all = pressure + scale * (s.dilation * m.side[0].density - s.third), own = scale * s.j;
-    const float g = pressure - scale * (1 + s.third);
-#pragma unroll
-    for (int i = 0; i < 3; i++) {
-        const float column = own * squares_of<K>(m, i);
-#pragma unroll
-        for (int a = 0; a < 3; a++)
-            p[a][i] = column * s.h[a][i] + g * s.g[a][i];
-        p[i][i] += all * side_of<K>(m, i).face;
-    }
-}
-
-/* F'^-T; no cell: nothing. */
-template <march_control K>
-static __device__ __forceinline__ void inverse_of(const cuda_march &m, const stretch &s, float to[3][3])
-{
-    const float inverse = m.side[0].density * near_inverse(s.j);
-#pragma unroll
-    for (int i = 0; i < 3; i++)
-#pragma unroll
-        for (int a = 0; a < 3; a++)
-            to[a][i] = a == i ? s.g[i][i] * inverse + side_of<K>(m, i).face * inverse : s.g[a][i] * inverse;
-}
-
 /* Strains of a mode. */
 static __device__ __forceinline__ void strains_of(const float inverse[3][3], const float mode[3], float to[3])
 {
@@ -253,7 +112,7 @@ typedef struct mode_force {
 /* k.own; of a cube it is 1 times the torsion. */
 template <march_control K> static __device__ __forceinline__ float own_of(const march_hold &k, int i)
 {
-    return K == MARCH_PHYSICAL_CUBES ? k.torsion : k.own[i];
+    return march_kind<K>::CUBES ? k.torsion : k.own[i];
 }
 
 /* k.bending; of a plain cell it is 1. */
@@ -262,9 +121,10 @@ template <bool PLAIN> static __device__ __forceinline__ float bending_of(const m
     return PLAIN ? 1 : k.bending;
 }
 
+/* *work: twice the energy of the modes. */
 template <march_control K, bool PLAIN>
 static __device__ __forceinline__ void hold_modes(const march_hold &k, const float inverse[3][3], const face &low,
-                                                  const face &high, mode_force *f, float p[3][3])
+                                                  const face &high, mode_force *f, float *work, float p[3][3])
 {
     float yz[3], zx[3], e_low[3], e_high[3], e_yz[3], e_zx[3], xy[3], s_low[3], s_high[3], s_yz[3], s_zx[3];
 #pragma unroll
@@ -294,23 +154,69 @@ static __device__ __forceinline__ void hold_modes(const march_hold &k, const flo
         s_low[i] = s_xy[i] - k.corner * gap;
         s_high[i] = s_xy[i] + k.corner * gap;
     }
+    *work = 0;
+#pragma unroll
+    for (int i = 0; i < 3; i++)
+        *work += s_low[i] * e_low[i] + s_high[i] * e_high[i] + s_yz[i] * e_yz[i] + s_zx[i] * e_zx[i];
     mode_forces(inverse, s_low, e_low, f->low, p);
     mode_forces(inverse, s_high, e_high, f->high, p);
     mode_forces(inverse, s_yz, e_yz, f->yz, p);
     mode_forces(inverse, s_zx, e_zx, f->zx, p);
 }
 
+/* V P L, and the forces on the modes, of a law that they follow: W = s w0, s = T/T(0), so P has w0 s' dx/dF besides,
+ * which is the law's own stress with w0 s'/V more in place of f'. */
+template <march_control K, bool PLAIN>
+static __device__ __forceinline__ void follow(const cuda_march &m, const tissue<K> &of, const stretch &s, bool is,
+                                              const face &low, const face &high, mode_force *f, float p[3][3])
+{
+    const march_side &side = m.side[0];
+    const bent b = bent_of(m, of.more, s, is);
+    const float j = 1 + s.dilation * side.density;
+    float inverse[3][3], own[3][3], work;
+#pragma unroll
+    for (int i = 0; i < 3; i++) {
+#pragma unroll
+        for (int a = 0; a < 3; a++) {
+            own[a][i] = (j * side.width) * s.h[a][i] - (1 + s.third) * s.g[a][i];
+            p[a][i] = 0;
+        }
+        own[i][i] += (s.dilation * side.density - s.third) * side.face;
+    }
+    inverse_of<K>(m, s, inverse);
+    hold_modes<K, PLAIN>(of.hold, inverse, low, high, f, &work, p);
+    const float scale = (b.slope + work * b.slope_of_shear * side.density) * b.scale;
+    const float pressure = is ? of.hold.press * s.dilation * j * m.volume : 0;
+#pragma unroll
+    for (int i = 0; i < 3; i++)
+#pragma unroll
+        for (int a = 0; a < 3; a++)
+            p[a][i] = scale * own[a][i] + (pressure * inverse[a][i] + b.shear * p[a][i]);
+#pragma unroll
+    for (int a = 0; a < 3; a++) {
+        f->low[a] *= b.shear;
+        f->high[a] *= b.shear;
+        f->yz[a] *= b.shear;
+        f->zx[a] *= b.shear;
+    }
+}
+
 /* As cell_forces of isotropic control; PLAIN: the cell is. */
 template <march_control K, bool PLAIN>
-static __device__ __forceinline__ void cell_forces(const cuda_march &m, const march_hold &k, bool is, const face &low,
+static __device__ __forceinline__ void cell_forces(const cuda_march &m, const tissue<K> &of, bool is, const face &low,
                                                    const face &high, face *sum, push<K> *below)
 {
-    float p[3][3], inverse[3][3];
+    float p[3][3];
     mode_force f;
     const stretch s = stretch_of<K>(m, is, low, high);
-    push_of<K>(m, k, s, is, p);
-    inverse_of<K>(m, s, inverse);
-    hold_modes<K, PLAIN>(k, inverse, low, high, &f, p);
+    if constexpr (march_kind<K>::FORM == FORM_FIRST) {
+        follow<K, PLAIN>(m, of, s, is, low, high, &f, p);
+    } else {
+        float inverse[3][3], work;
+        push_of<K>(m, of, scale_of(of.hold, s), s, is, p);
+        inverse_of<K>(m, s, inverse);
+        hold_modes<K, PLAIN>(of.hold, inverse, low, high, &f, &work, p);
+    }
 #pragma unroll
     for (int a = 0; a < 3; a++) {
         sum->mean[a] = below->mean[a] - p[a][2];
@@ -322,23 +228,6 @@ static __device__ __forceinline__ void cell_forces(const cuda_march &m, const ma
         below->y[a] = p[a][1] + f.yz[a];
         below->xy[a] = f.high[a];
     }
-}
-
-/* Of a law, by hourglass_numbers' formulas. */
-static __device__ __forceinline__ march_hold hold_of(const cuda_march &m, float mu, float bulk)
-{
-    const float least = 1e-30f, torsion = m.volume * m.weight * (1.f / 3) * mu, twice = 2 * torsion;
-    march_hold k;
-    k.log_mu = near_log2(m.weight * mu);
-    k.press = m.weight * m.side[0].density * bulk;
-    k.coupling = twice * (bulk - 2.f / 3 * mu) * near_inverse(fmaxf(bulk + 4.f / 3 * mu, least));
-    k.bending = k.coupling + twice;
-    k.torsion = torsion;
-    k.corner = 3 * torsion * bulk * near_inverse(fmaxf(3 * bulk + mu, least));
-#pragma unroll
-    for (int a = 0; a < 3; a++)
-        k.own[a] = m.side[a].own * torsion;
-    return k;
 }
 
 /* Adds those of a muscle; h: the cell's gradient, tension: Pa. */

@@ -19,13 +19,13 @@ extern "C" {
 /* The ways in which a card takes steps, as bits. */
 enum cuda_way { CUDA_TILES = 1, CUDA_RESIDENT = 2, CUDA_MARCH = 4 };
 
-/* X(NAME, ways): the forms that have kernels of their own, and in which ways. The march has no others. A form that is
- * not here costs no kernel. */
+/* X(NAME, ways): the forms that have kernels of their own, and in which ways. The march has no others, and not
+ * all of these (cuda_march.cuh's MARCHES). A form that is not here costs no kernel. */
 #ifndef CUDA_OWN
 #define CUDA_OWN(X)                                                                                                    \
     X(NEO_HOOKEAN, CUDA_TILES | CUDA_RESIDENT | CUDA_MARCH)                                                            \
-    X(MOONEY_RIVLIN, CUDA_TILES | CUDA_RESIDENT)                                                                       \
-    X(FIRST, CUDA_TILES | CUDA_RESIDENT)
+    X(MOONEY_RIVLIN, CUDA_TILES | CUDA_RESIDENT | CUDA_MARCH)                                                          \
+    X(FIRST, CUDA_TILES | CUDA_RESIDENT | CUDA_MARCH)
 #endif
 
 /* Likewise, of kernels with fibres under physical control, for all kinds of tiles. */

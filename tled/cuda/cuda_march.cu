@@ -45,6 +45,7 @@ template <march_control K> struct flow {
     int32_t empty;            /* layers since this warp's last with cells */
     uint32_t ticket;          /* thread 0's, of the unit that the block takes next */
     push<K> below;
+    uint2 along, along_then; /* directions of layers c and c + 1 */
 };
 
 /* What a block is at: pass `pass` of a launch, of a unit. memory: where its shared memory stands. */
@@ -151,6 +152,27 @@ static __device__ __forceinline__ void muscle_forces(const cuda_march &m, const 
                 sum, below);
 }
 
+/* The directions of row `at`, if there are families. */
+template <march_control K> static __device__ __forceinline__ void fetch_along(const uint2 *along, int64_t at, uint2 *to)
+{
+    if constexpr (march_kind<K>::FAMILIES > 0)
+        *to = load_once(along + at);
+}
+
+/* What a cell is made of. record: where its first half stands, if it is `special`. */
+template <march_control K>
+static __device__ __forceinline__ tissue<K> tissue_of(const cuda_march &m, uint2 along, bool special, int32_t layer,
+                                                      uint32_t record)
+{
+    tissue<K> of = plain_tissue<K>(m);
+    if (special) {
+        const bool asks = march_kind<K>::FORM == FORM_FIRST || march_kind<K>::FAMILIES > 0;
+        special_tissue(m, m.cell[asks ? which_of(m, m.detail[layer]) - 1 : 0], shared_load(record), &of);
+    }
+    of.along = along;
+    return of;
+}
+
 /* As cell_forces, of any cell of layer c. */
 template <march_control K, bool SPECIAL>
 static __device__ __forceinline__ void forces_of(const cuda_march &m, const double *now, const turn &t, flow<K> *f,
@@ -167,12 +189,8 @@ static __device__ __forceinline__ void forces_of(const cuda_march &m, const doub
         }
         cell_forces(m, mu, bulk, hourglass, is, low, high, sum, &f->below);
     } else {
-        march_hold k = m.held;
-        if (special) {
-            const float4 law = shared_load(record);
-            k = hold_of(m, law.x, law.y);
-        }
-        cell_forces<K, !SPECIAL>(m, k, is, low, high, sum, &f->below);
+        const tissue<K> of = tissue_of<K>(m, f->along, special, t.base + c, record);
+        cell_forces<K, !SPECIAL>(m, of, is, low, high, sum, &f->below);
     }
     if (special)
         muscle_forces(m, now, record, t.base + c, here, next, sum, &f->below);
@@ -197,79 +215,7 @@ static __device__ __forceinline__ void share_forces(const face &sum, uint32_t to
     shared_store(to + 3 * FORCE, own[0], own[1], own[2]);
 }
 
-/* One component of a node that the script displaces or pushes, or that is held; pull: elements' forces
- * on it. It is worked on where it stands in shared memory, component by component: few nodes are such,
- * and others are to keep their registers. */
-template <bool STEP>
-static __device__ __forceinline__ void move_held(const cuda_march &m, const cuda_march_pass &p, const turn &t,
-                                                 uint32_t speed, uint32_t word, uint32_t node, uint32_t bits, int a,
-                                                 float pull)
-{
-    const tile_extra *x = bits >> MARCH_EXTRA & 1 ? cuda_extra(m.v, (int32_t)(word & MARCH_NODE)) : NULL;
-    const double *now = now_of(p, t);
-    const cuda_march_kind &k = kind_of<STEP>(p, t);
-    const int axis = m.axis[a];
-    float u = shared_number(node + 4 * a), v = shared_number(speed + 4 * a), net = -m.force * pull;
-    for (int32_t i = x ? x->forces : 0; (i = unknown(i)) > 0; i--) /* of unknown length: else it is unrolled */
-        net += (float)cuda_force(m.v, x->force + i - 1, now, axis, (double)u);
-    if (bits >> (MARCH_FREE + a) & 1) {
-        v = k.keep * v + shared_number(t.memory + GRAVITY + 4 * a) + k.push * shared_number(node + 12) * net;
-        u += k.dt * v;
-    } else if (k.what & PASS_BEGIN && x && x->hold[axis] >= 0) {
-        const float to = (float)moves_to(now + p.row, x->hold[axis], axis, x->rest);
-        v = (to - u) / k.dt;
-        u = to;
-    }
-    shared_number_store(node + 4 * a, u);
-    shared_number_store(speed + 4 * a, v);
-}
-
-/* What a pass leaves of a node. */
-template <bool STEP>
-static __device__ __forceinline__ void put_node(const cuda_march_pass &p, const turn &t, uint32_t word, float4 u,
-                                                float4 v)
-{
-    const cuda_march_kind &k = kind_of<STEP>(p, t);
-    if (STEP || k.what & PASS_BEGIN)
-        *(float4 *)node_of(to_of(p, t), word) = u;
-    if (STEP || k.what & (PASS_BEGIN | PASS_FINISH))
-        *(float4 *)node_of(p.velocity, word) = v;
-}
-
-/* The forces at a thread's node, and its step, if it is owned; forces, node, speed: where its
- * forces, displacement and velocity stand. */
-template <bool STEP>
-static __device__ __forceinline__ void move_node(const cuda_march &m, const cuda_march_pass &p, const turn &t,
-                                                 uint32_t word, uint32_t forces, uint32_t node, uint32_t speed)
-{
-    if (!(word & MARCH_OWN))
-        return;
-    const float4 own = shared_load(forces + 3 * FORCE), x = shared_load(forces - NODE);
-    const float4 y = shared_load(forces + FORCE - GRID * NODE);
-    const float4 xy = shared_load(forces + 2 * FORCE - (GRID + 1) * NODE);
-    float4 u = shared_load(node), v = shared_load(speed);
-    const float4 gravity = shared_load(t.memory + GRAVITY);
-    const float3 sum = {(own.x + x.x) + (y.x + xy.x), (own.y + x.y) + (y.y + xy.y), (own.z + x.z) + (y.z + xy.z)};
-    const uint32_t bits = __float_as_uint(v.w);
-    const cuda_march_kind &k = kind_of<STEP>(p, t);
-    if (!STEP && k.what & PASS_INTERNAL)
-        *(float4 *)node_of(to_of(p, t), word) = make_float4(m.force * sum.x, m.force * sum.y, m.force * sum.z, u.w);
-    if (bits != 7) {
-#pragma unroll 1
-        for (int a = 0; bits && a < 3; a++) /* of what is held and not displaced, all stays */
-            move_held<STEP>(m, p, t, speed, word, node, bits, a, a == 0 ? sum.x : a == 1 ? sum.y : sum.z);
-        put_node<STEP>(p, t, word, shared_load(node), shared_load(speed));
-    } else {
-        const float pull = k.pull * u.w;
-        v.x = (k.keep * v.x + gravity.x) - pull * sum.x;
-        v.y = (k.keep * v.y + gravity.y) - pull * sum.y;
-        v.z = (k.keep * v.z + gravity.z) - pull * sum.z;
-        u.x += k.dt * v.x;
-        u.y += k.dt * v.y;
-        u.z += k.dt * v.z;
-        put_node<STEP>(p, t, word, u, v);
-    }
-}
+#include "tled/cuda/cuda_march_nodes.cuh"
 
 /* Says that this warp is done with a layer: its forces are there, and displacements of layers up to c + 3. */
 static __device__ __forceinline__ void say_done(const turn &t)
@@ -278,9 +224,12 @@ static __device__ __forceinline__ void say_done(const turn &t)
     barrier_arrive_warp(t.memory + SAID);
 }
 
-/* Words by which a layer sends at its end: they are on their way while it is worked on. */
-template <march_control K> static __device__ __forceinline__ void fetch_words(flow<K> *f)
+/* Words by which a layer sends at its end, and the next one's directions: they are on their way while it is worked
+ * on. */
+template <march_control K>
+static __device__ __forceinline__ void fetch_words(const cuda_march &m, int32_t layer, flow<K> *f)
 {
+    fetch_along<K>(m.along, MARCH_THREADS * ((int64_t)layer + 1) + threadIdx.x, &f->along_then);
     f->then = f->word[MARCH_WORDS];
     f->speed = f->word[SPEEDS_AHEAD * MARCH_WORDS];
     f->far = f->word[MARCH_AHEAD * MARCH_WORDS];
@@ -351,7 +300,7 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     const uint32_t speed = at + VELOCITIES + ODD * FORCE + f->pair; /* of layer c - 1, and of c + 3 from here on */
     const uint32_t here = at + (next ? next - STAGE : (STAGES - 1) * STAGE);
     const int c = t.cells - left;
-    fetch_words(f);
+    fetch_words(m, t.base + c, f);
     if (__any_sync(~0u, f->now & MARCH_CELL)) {
         face sum;
         *high = face_at(at + next);
@@ -383,6 +332,7 @@ static __device__ __forceinline__ void layer(const cuda_march &m, const cuda_mar
     say_done(t);
     f->last = f->now;
     f->now = f->then;
+    f->along = f->along_then;
     if (ODD)
         f->pair ^= 2 * FORCE;
 }
@@ -421,6 +371,7 @@ static __device__ __forceinline__ void begin(const cuda_march &m, const cuda_mar
         extra[k] = has_extra() ? f->word[k * MARCH_WORDS + MARCH_THREADS] : 0;
     }
     f->now = word[0] & ~MARCH_OWN; /* the first layer's nodes are another unit's */
+    fetch_along<K>(m.along, MARCH_THREADS * (int64_t)t.base + threadIdx.x, &f->along);
     wait_for_near(m, p, t, unit);
 #pragma unroll
     for (int k = 0; k < MARCH_AHEAD; k++)
@@ -488,8 +439,8 @@ static __device__ __forceinline__ void take_first(const cuda_march &m, const cud
 }
 
 /* Blocks take units in turn, pass after pass. What special cells take in registers, units without them do without; nor
- * do passes that end a step and begin the next ask what they are. */
-template <march_control K, bool TIPS>
+ * do passes that end a step and begin the next ask what they are. SPECIALS: the model has special cells. */
+template <march_control K, bool TIPS, bool SPECIALS>
 static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
     march_kernel(const __grid_constant__ cuda_march m, const __grid_constant__ cuda_march_pass p)
 {
@@ -511,12 +462,12 @@ static __global__ void __launch_bounds__(MARCH_THREADS, TOGETHER)
         const bool special = __float_as_uint(next.z);
         if (TIPS && t.cells == 0)
             move_tips<K>(m, p, t, unit, (int)__float_as_uint(next.w));
-        else if (t.kind == MARCH_STEP && special)
-            march_unit_of<K, true, true>(m, p, t, unit);
+        else if (SPECIALS && t.kind == MARCH_STEP && special)
+            march_unit_of<K, SPECIALS, true>(m, p, t, unit);
         else if (t.kind == MARCH_STEP)
             march_unit_of<K, false, true>(m, p, t, unit);
         else
-            march_unit_of<K, true, false>(m, p, t, unit);
+            march_unit_of<K, SPECIALS, false>(m, p, t, unit);
         __syncthreads();
         if (threadIdx.x == 0)
             tell_done(&m.done[unit], p.number + t.pass);
@@ -548,22 +499,32 @@ cudaError_t cuda_march_unpack(const cuda_march *m, const float *from, float4 *to
 
 /* ---- starting */
 
-/* Calls f with the kernel. */
-template <bool TIPS, class F> static cudaError_t with_tips(march_control control, F f)
+/* Whether there are kernels for models without special cells. With both, those of other forms and of fibres find no
+ * registers for some numbers of plain cells, and wait a tenth of the time for these. */
+static constexpr bool march_lean(march_control k)
 {
-    switch (control) {
-    case MARCH_ISOTROPIC:
-        return f(march_kernel<MARCH_ISOTROPIC, TIPS>);
-    case MARCH_PHYSICAL:
-        return f(march_kernel<MARCH_PHYSICAL, TIPS>);
-    default:
-        return f(march_kernel<MARCH_PHYSICAL_CUBES, TIPS>);
-    }
+    return march_form(k) == FORM_FIRST || march_families(k) > 0;
 }
 
-template <class F> static cudaError_t with_march(march_control control, bool tips, F f)
+/* Calls f with the kernel. */
+template <bool TIPS, bool SPECIALS, class F> static cudaError_t with_kernel(march_control control, F f)
 {
-    return tips ? with_tips<true>(control, f) : with_tips<false>(control, f);
+#define MARCH_ROW(NAME, form, families)                                                                                \
+    case NAME:                                                                                                         \
+        return f(march_kernel<NAME, TIPS, (SPECIALS || !march_lean(NAME))>);
+    switch (control) {
+        MARCHES(MARCH_ROW)
+    default:
+        return cudaErrorInvalidValue;
+    }
+#undef MARCH_ROW
+}
+
+template <class F> static cudaError_t with_march(march_control control, bool tips, bool specials, F f)
+{
+    if (tips)
+        return specials ? with_kernel<true, true>(control, f) : with_kernel<true, false>(control, f);
+    return specials ? with_kernel<false, true>(control, f) : with_kernel<false, false>(control, f);
 }
 
 cudaError_t cuda_march_slots(march_control control, int64_t *slots)
@@ -575,8 +536,9 @@ cudaError_t cuda_march_slots(march_control control, int64_t *slots)
     e = e == cudaSuccess ? cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device) : e;
     if (e != cudaSuccess || major < 9)
         return e;
-    for (int tips = 0; e == cudaSuccess && tips < 2; tips++) /* whether there are is not known yet */
-        e = with_march(control, tips, [&](auto kernel) {
+    for (int has = 0; e == cudaSuccess && has < 4;
+         has++) /* whether there are tips, or special cells, is not known yet */
+        e = with_march(control, has & 1, has & 2, [&](auto kernel) {
             int each = 0;
             cudaError_t bad = cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, SHARED);
             bad = bad == cudaSuccess
@@ -593,5 +555,6 @@ cudaError_t cuda_march_start(march_control control, const cuda_march *m, const c
                              cudaStream_t stream)
 {
     const card_blocks how = {blocks, MARCH_THREADS, SHARED, stream};
-    return with_march(control, m->tip != NULL, [&](auto kernel) { return card_start(kernel, how, *m, *p); });
+    return with_march(control, m->tip != NULL, m->specials > 0,
+                      [&](auto kernel) { return card_start(kernel, how, *m, *p); });
 }

@@ -10,6 +10,7 @@
 
 extern "C" {
 #include "tled/cuda/march.h"
+#include "tled/cuda/march_cells.h"
 }
 
 enum {
@@ -33,6 +34,21 @@ typedef struct march_side {
     float width, face, thirds, density, squares, own;
 } march_side;
 
+/* Of laws beside the neo-Hookean, under physical control, times MARCH_LAW in the march's unit of force where they are
+ * moduli. Form `first`: 2 f'(x) = sum of slope[k] x^k; T/T(0) = 1 + sum of shear[k] x^(k + 1), and its slope, sum of
+ * rise[k] x^k (form_shear.h). Mooney-Rivlin: slope[0] = 2 c01. */
+enum { MARCH_POWERS = 5 };
+typedef struct march_more {
+    float slope[MARCH_POWERS], shear[MARCH_POWERS - 1], rise[MARCH_POWERS - 1];
+} march_more;
+
+/* A family of fibres (fibre.h): 2 k1, in that unit; k2 log2 e, and the most that it may be times Ebar^2; what Ebar has
+ * of (tr C - 3)/3 and of c^2 (a0.C a0 - 1); of 2 W', the part of F, and that of F'a0 (x) a0. cos, sin: of two families,
+ * of their angle. */
+typedef struct march_family {
+    float stiff, grow, most, around, along, all, own, cos, sin;
+} march_family;
+
 typedef struct cuda_march {
     cuda_view<float> v;
     const march_unit *unit;
@@ -44,10 +60,15 @@ typedef struct cuda_march {
     const uint32_t *word;
     const int32_t *detail, *which;
     const march_cell *cell;
+    int64_t specials;            /* how many of them */
     float law[3];                /* isotropic: of plain cells mu, K, hourglass */
     float force;                 /* the unit of force, in newtons; isotropic: 1 */
     float weight;                /* physical: MARCH_LAW in that unit */
-    alignas(16) march_hold held; /* physical: of plain cells */
+    alignas(16) march_hold held; /* physical: of plain cells, as are: */
+    alignas(16) march_more more;
+    alignas(16) march_family family;
+    int32_t curved;                 /* whether any cell's more.slope has more than two numbers */
+    const uint2 *along, *tip_along; /* march's */
     alignas(16) march_side side[3];
     float slope[3], area[3]; /* element_shape's, along the march's axes; area: in the unit of force */
     float volume;            /* V' */
@@ -56,15 +77,63 @@ typedef struct cuda_march {
     int32_t tip_first;
 } cuda_march;
 
-/* What the kernel is compiled for: isotropic or physical control, and whether all sides are alike, which saves some
- * operations; and, beside that, whether there are tips. */
-typedef enum march_control { MARCH_ISOTROPIC, MARCH_PHYSICAL, MARCH_PHYSICAL_CUBES } march_control;
+/* X(NAME, form, families): what kernels are compiled for, beside whether there are tips: the neo-Hookean form under
+ * isotropic or physical control; and under the latter, where all sides are alike, which saves some operations, other
+ * forms, and families of fibres. */
+#define MARCHES(X)                                                                                                     \
+    X(MARCH_ISOTROPIC, FORM_NEO_HOOKEAN, 0)                                                                            \
+    X(MARCH_PHYSICAL, FORM_NEO_HOOKEAN, 0)                                                                             \
+    X(MARCH_CUBES, FORM_NEO_HOOKEAN, 0)                                                                                \
+    X(MARCH_CUBES_MOONEY_RIVLIN, FORM_MOONEY_RIVLIN, 0)                                                                \
+    X(MARCH_CUBES_FIRST, FORM_FIRST, 0)                                                                                \
+    X(MARCH_CUBES_FAMILY, FORM_NEO_HOOKEAN, 1)                                                                         \
+    X(MARCH_CUBES_FAMILIES, FORM_NEO_HOOKEAN, 2)
 
-static inline march_control march_control_of(hourglass_kind kind, const double side[3])
+#define MARCH_ROW(NAME, form, families) NAME,
+typedef enum march_control { MARCHES(MARCH_ROW) MARCH_CONTROLS } march_control; /* the last: no kernel */
+#undef MARCH_ROW
+
+#define MARCH_ROW(NAME, form, families)                                                                                \
+    if (k == NAME)                                                                                                     \
+        return form;
+static constexpr form march_form(march_control k)
 {
-    if (kind == HOURGLASS_ISOTROPIC)
-        return MARCH_ISOTROPIC;
-    return side[0] == side[1] && side[1] == side[2] ? MARCH_PHYSICAL_CUBES : MARCH_PHYSICAL;
+    MARCHES(MARCH_ROW)
+    return FORM_COUNT;
+}
+#undef MARCH_ROW
+
+#define MARCH_ROW(NAME, form, families)                                                                                \
+    if (k == NAME)                                                                                                     \
+        return families;
+static constexpr int march_families(march_control k)
+{
+    MARCHES(MARCH_ROW)
+    return 0;
+}
+#undef MARCH_ROW
+
+static constexpr bool march_cubes(march_control k)
+{
+    return k >= MARCH_CUBES;
+}
+
+/* These, as constants of kernels. */
+template <march_control K> struct march_kind {
+    static constexpr form FORM = march_form(K);
+    static constexpr int FAMILIES = march_families(K);
+    static constexpr bool CUBES = march_cubes(K);
+};
+
+/* The one that a model takes. families: the most of an element. */
+static inline march_control march_control_of(form which, hourglass_kind kind, const double side[3], int families)
+{
+    const bool cubes = kind == HOURGLASS_PHYSICAL && side[0] == side[1] && side[1] == side[2];
+    for (int k = cubes ? MARCH_CUBES : 0; k < MARCH_CONTROLS; k++)
+        if (march_form((march_control)k) == which && march_families((march_control)k) == families &&
+            cubes == march_cubes((march_control)k) && (kind == HOURGLASS_ISOTROPIC) == (k == MARCH_ISOTROPIC))
+            return (march_control)k;
+    return MARCH_CONTROLS;
 }
 
 /* What a pass does: v = keep v + push a, with what a step begins and ends; u += dt v. pull: push, of forces in the

@@ -50,7 +50,7 @@ static __device__ __forceinline__ void tip_muscles(const cuda_march &m, const do
 /* What a thread's element pulls the tip with, in the march's unit of force. */
 template <march_control K>
 static __device__ __forceinline__ float3 tip_pull(const cuda_march &m, const double *now, const march_tip &of,
-                                                  uint32_t at)
+                                                  uint2 along, uint32_t at)
 {
     const face low = tip_face(at, 0), high = tip_face(at, 4);
     push<K> below = {};
@@ -59,14 +59,17 @@ static __device__ __forceinline__ float3 tip_pull(const cuda_march &m, const dou
         float mu = m.law[0], bulk = m.law[1], hourglass = m.law[2];
         if (of.special) {
             const march_cell &cell = m.cell[of.special - 1];
-            mu = cell.mu, bulk = cell.bulk, hourglass = cell.hourglass;
+            mu = cell.mu, bulk = cell.bulk, hourglass = cell.second;
         }
         cell_forces(m, mu, bulk, hourglass, true, low, high, &sum, &below);
     } else {
-        march_hold k = m.held;
-        if (of.special)
-            k = hold_of(m, m.cell[of.special - 1].mu, m.cell[of.special - 1].bulk);
-        cell_forces<K, false>(m, k, true, low, high, &sum, &below);
+        tissue<K> its = plain_tissue<K>(m);
+        if (of.special) {
+            const march_cell &cell = m.cell[of.special - 1];
+            special_tissue(m, cell, make_float4(cell.mu, cell.bulk, cell.second, 0), &its);
+        }
+        its.along = along;
+        cell_forces<K, false>(m, its, true, low, high, &sum, &below);
     }
     if (of.special)
         tip_muscles(m, now, m.cell[of.special - 1], low, high, &sum, &below);
@@ -114,8 +117,11 @@ static __device__ __forceinline__ void move_tips(const cuda_march &m, const cuda
     const bool moves = which < count && element == 0;
     float3 pull = {0, 0, 0};
     march_tip of = {{0, 0, 0, 0, 0, 0, 0, 0}, -1, 0};
-    if (which < count)
+    uint2 along = {0, 0};
+    if (which < count) {
         of = m.tip[8 * (int64_t)(t.base + which) + element];
+        fetch_along<K>(m.tip_along, 8 * (int64_t)(t.base + which) + element, &along);
+    }
     wait_for_near(m, p, t, unit);
     if (threadIdx.x == 0)
         note_next(m, p, t.memory, take_ticket(m.ticket));
@@ -126,7 +132,7 @@ static __device__ __forceinline__ void move_tips(const cuda_march &m, const cuda
     sent();
     arrived<0>();
     if (of.corner >= 0)
-        pull = tip_pull<K>(m, now_of(p, t), of, at);
+        pull = tip_pull<K>(m, now_of(p, t), of, along, at);
 #pragma unroll
     for (int with = 1; with < 8; with *= 2) {
         pull.x += __shfl_xor_sync(~0u, pull.x, with);

@@ -220,11 +220,20 @@ static int resident_passes(cuda_state *s, const cuda_batch *b, err *e)
 
 /* ---- the march */
 
+/* The kernels that the model takes; families: of the most fibres. */
+static march_control march_control_for(const tled_problem *p, int families)
+{
+    return march_control_of(p->form, p->control.kind, p->side, families);
+}
+
 /* On a card that can, where the model is suited. */
 static int march_take(cuda_state *s, bool *takes, err *e)
 {
     int64_t slots = 0;
-    if (CUDA_TRY(cuda_march_slots(march_control_of(s->p->control.kind, s->p->side), &slots)))
+    const march_control control = march_control_for(s->p, march_families_of(s->p));
+    if (control == MARCH_CONTROLS)
+        return 0;
+    if (CUDA_TRY(cuda_march_slots(control, &slots)))
         return -1;
     if (!slots)
         return 0;
@@ -258,6 +267,40 @@ static void march_list(cuda_state *s, const cuda_numbers *numbers, card_layout *
     card_layout_copy(l, &w->which, m->which, m->details * MARCH_THREADS);
     card_layout_copy(l, &w->cell, m->cell, m->cells);
     card_layout_copy(l, &w->tip, m->tip, 8 * m->tips);
+    card_layout_copy(l, &w->along, (const uint2 *)m->along, m->families ? march_along_tips(m) + 8 * m->tips : 0);
+}
+
+/* What a law has beside the neo-Hookean one. Returns the mu that goes with J^-5/3. */
+static double more_plain(const tled_problem *p, const tled_law *law, double weight, march_more *to)
+{
+    if (p->form == FORM_MOONEY_RIVLIN) {
+        to->slope[0] = (float)(2 * weight * law->c[1]);
+        return 2 * law->c[0];
+    }
+    for (int k = 0; p->form == FORM_FIRST && k < MARCH_POWERS; k++) {
+        to->slope[k] = (float)(2 * (k + 1) * weight * law->c[k]);
+        if (k)
+            to->shear[k - 1] = (float)((k + 1) * (2 * k + 1) * law->c[k] / law->c[0]);
+        if (k)
+            to->rise[k - 1] = (float)(k * (k + 1) * (2 * k + 1) * law->c[k] / law->c[0]);
+    }
+    return law->mu;
+}
+
+static void family_plain(const march *m, const tled_problem *p, double weight, march_family *to)
+{
+    const fibre_numbers *of = &p->fibres.of[m->plain];
+    const double square = 16 * p->side[0] * p->side[0], along = 1 - 3 * of->kappa;
+    const bool twice = m->families == 2 && fibre_numbers_families(of) == 1; /* as march_cells.c has it */
+    *to = {(float)((twice ? 1 : 2) * weight * of->k1),
+           (float)(of->k2 * M_LOG2E),
+           (float)(FIBRE_CAP * M_LOG2E),
+           (float)(3 * of->kappa),
+           (float)(along / square),
+           (float)of->kappa,
+           (float)(along * sqrt(square)),
+           (float)cos(of->angle),
+           (float)sin(of->angle)};
 }
 
 /* Of plain cells, under physical control, in a unit of force by which their bending is 1. */
@@ -268,8 +311,11 @@ static void hold_plain(cuda_state *s)
     const double *held = plain->law.hourglass, volume = p->side[0] * p->side[1] * p->side[2];
     const double unit = volume * held[HOURGLASS_BENDING], weight = MARCH_LAW / unit, by = volume / unit;
     march_hold *to = &s->walk.held;
-    to->log_mu = (float)log2(weight * plain->law.c[0]); /* neo-Hookean form: mu, K */
-    to->press = (float)(weight * plain->law.c[1] / (64 * volume));
+    to->log_mu = (float)log2(weight * more_plain(p, &plain->law, weight, &s->walk.more));
+    to->press = (float)(weight * plain->law.bulk / (64 * volume));
+    s->walk.curved = s->march.curved;
+    if (p->fibres.of)
+        family_plain(&s->march, p, weight, &s->walk.family);
     to->bending = 1;
     to->coupling = (float)(by * held[HOURGLASS_COUPLING]);
     to->torsion = (float)(by * held[HOURGLASS_TORSION]);
@@ -296,6 +342,8 @@ static void march_fill(cuda_state *s)
     w->nears = (int32_t)s->march.nears;
     w->units = (int32_t)s->march.units;
     w->tip_first = s->march.tip_first;
+    w->specials = s->march.cells;
+    w->tip_along = w->along ? w->along + march_along_tips(&s->march) : NULL;
     static_assert(sizeof w->v == sizeof s->view, "views differ by what they point to alone");
     memcpy(&w->v, &s->view, sizeof w->v);
     for (int a = 0; a < 3; a++) {
@@ -374,7 +422,7 @@ static int march_on(cuda_state *s, const tled_plan *plan, const double *now, int
                                ends,
                                s->walked + 1,
                                s->tickets};
-    const march_control control = march_control_of(s->p->control.kind, s->p->side);
+    const march_control control = march_control_for(s->p, s->march.families);
     if (card_check(cuda_march_start(control, &s->walk, &p, s->walkers, s->stream), "the start of passes", s->step, e))
         return -1;
     s->walked += (uint32_t)passes;
@@ -432,7 +480,7 @@ static const cuda_method cuda_methods[] = {
      .computed = tiles_computed,
      .end = NULL},
     {.forms = MARCH_FORMS,
-     .fibred = false,
+     .fibred = true,
      .take = march_take,
      .arrange = march_arrange,
      .list = march_list,

@@ -50,6 +50,13 @@ static __device__ __forceinline__ void shared_store(uint32_t at, float x, float 
     asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(x), "f"(y), "f"(z), "f"(any) : "memory");
 }
 
+/* ---- what is read once a pass: the cache keeps other things */
+
+static __device__ __forceinline__ uint2 load_once(const uint2 *from)
+{
+    return __ldcs(from);
+}
+
 /* ---- copies that the thread does not wait for */
 
 /* On its way to shared memory; if is: 0, zeros. */
@@ -176,6 +183,20 @@ static __device__ __forceinline__ float near_inverse(float x)
     float y;
     asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
     return y;
+}
+
+static __device__ __forceinline__ float near_root_inverse(float x)
+{
+    float y;
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+    return y;
+}
+
+/* Of an angle from 0 to 2 pi. */
+static __device__ __forceinline__ void near_turn(float x, float *sine, float *cosine)
+{
+    asm("sin.approx.ftz.f32 %0, %1;" : "=f"(*sine) : "f"(x));
+    asm("cos.approx.ftz.f32 %0, %1;" : "=f"(*cosine) : "f"(x));
 }
 
 static __device__ __forceinline__ float near_exp2(float x)

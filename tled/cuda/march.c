@@ -3,9 +3,9 @@
 #include "base/mem.h"
 #include "mesh/lattice.h"
 #include "tled/cuda/lattice_sheet.h"
+#include "tled/cuda/march_cells.h"
 #include "tled/cuda/march_near.h"
 #include "tled/cuda/march_tips.h"
-#include "tled/cuda/march_turns.h"
 #include "tled/cuda/march_units.h"
 #include "tled/cuda/places.h"
 
@@ -66,6 +66,7 @@ void march_free(march *m)
     free(m->detail);
     free(m->which);
     free(m->cell);
+    free(m->along);
     free(m->tip);
     memset(m, 0, sizeof *m);
 }
@@ -295,44 +296,6 @@ static int choose_axes(cutter *c)
     return 0;
 }
 
-/* What a cell has of a volume's muscle, if that may contract; share: of the cell. */
-static void add_muscle(const cutter *c, march_cell *to, const float *fibre, int32_t volume, double share)
-{
-    const tled_volume *v = &c->p->volume[volume];
-    const bool second = to->muscle[0].curve >= 0;
-    march_muscle *muscle = &to->muscle[second];
-    if (!fibre || v->contract < 0)
-        return;
-    if (second)
-        to->muscle[0].curve |= MARCH_SECOND;
-    muscle->curve = (int32_t)v->contract;
-    *(second ? &to->second_peak : &to->peak) = (float)(share * v->peak);
-    for (int a = 0; a < 3; a++)
-        muscle->fibre[a] = fibre[c->m->axis[a]];
-}
-
-static march_cell cell_of(const cutter *c, int64_t element)
-{
-    const tled_problem *p = c->p;
-    const tled_law law = tled_law_of(p, element);
-    const double share = tled_fraction(p, element), other = tled_mixture(p, element);
-    march_cell cell = {.mu = (float)(share * law.c[0]),
-                       .bulk = (float)(share * law.c[1]),
-                       .hourglass = (float)(share * law.hourglass[HOURGLASS_K]),
-                       .muscle = {{.curve = -1}, {.curve = -1}}};
-    add_muscle(c, &cell, p->fibre ? p->fibre + 3 * element : NULL, p->element_volume[element], share * (1 - other));
-    if (tled_mix(p, element) >= 0)
-        add_muscle(c, &cell, p->mixfibre ? p->mixfibre + 3 * element : NULL, tled_mix(p, element), share * other);
-    return cell;
-}
-
-static bool is_special(const cutter *c, const march_cell *cell)
-{
-    const tled_law *plain = &c->p->volume[c->m->plain].law;
-    return cell->muscle[0].curve >= 0 || cell->mu != (float)plain->c[0] || cell->bulk != (float)plain->c[1] ||
-           cell->hourglass != (float)plain->hourglass[HOURGLASS_K];
-}
-
 static int mark_special(cutter *c)
 {
     const tled_problem *p = c->p;
@@ -344,8 +307,8 @@ static int mark_special(cutter *c)
     if (!c->special)
         return -1;
     for (int64_t i = 0; i < p->elements; i++) {
-        const march_cell cell = cell_of(c, i);
-        for (int k = is_special(c, &cell) ? cell_spots(c, i, at) : 0; k--;)
+        const march_cell cell = march_cell_of(c->m, p, i);
+        for (int k = march_cell_special(c->m, p, &cell) ? cell_spots(c, i, at) : 0; k--;)
             c->special[at[k].layer] = true;
     }
     return 0;
@@ -442,8 +405,8 @@ static void list_special(cutter *c)
     spot at[SPOTS];
     m->cells = 0;
     for (int64_t i = 0; i < c->p->elements; i++) {
-        const march_cell cell = cell_of(c, i);
-        if (!is_special(c, &cell))
+        const march_cell cell = march_cell_of(m, c->p, i);
+        if (!march_cell_special(m, c->p, &cell))
             continue;
         const int64_t number = m->cells++;
         if (m->cell)
@@ -478,6 +441,20 @@ static int put_special(cutter *c)
     if (m->cells)
         list_special(c);
     return 0;
+}
+
+/* The directions of fibres, where there are any. */
+static int put_along(cutter *c)
+{
+    march *m = c->m;
+    spot at[SPOTS];
+    if (!m->families)
+        return 0;
+    m->along = march_along_make(m, c->e);
+    for (int64_t i = 0; m->along && i < c->p->elements; i++)
+        for (int k = cell_spots(c, i, at); k--;)
+            march_along_put(m, c->p, i, MARCH_THREADS * (int64_t)c->slot[at[k].layer] + word_of(at[k].i, at[k].j));
+    return m->along ? 0 : -1;
 }
 
 static void mark_units(march *m)
@@ -563,7 +540,7 @@ static int cut_sheets(cutter *c, march_runs *runs, bool *suited)
 static int finish(cutter *c, const march_runs *runs, int64_t slots)
 {
     march *m = c->m;
-    if (order_nodes(c) || put_special(c) || march_runs_cut(runs, slots, &m->unit, &m->units, c->e) ||
+    if (order_nodes(c) || put_special(c) || put_along(c) || march_runs_cut(runs, slots, &m->unit, &m->units, c->e) ||
         march_tips_list(m, c->p, c->sheet, c->which, c->e) || march_tips_add(m, c->e) ||
         (c->sheet && march_turns_order(m, c->sheet, c->p->nodes, c->e)) || march_near_find(m, c->p->nodes, c->e))
         return -1;
@@ -579,7 +556,9 @@ int march_make(march *m, const tled_problem *p, int64_t slots, err *e)
     march_runs runs = {0};
     bool suited;
     int result = -1;
-    if (p->nodes > MARCH_NODE)
+    m->families = march_families_of(p);
+    m->curved = march_curved(p);
+    if (p->nodes > MARCH_NODE || m->families < 0)
         return 0;
     c.part = mem_array(p->nodes, sizeof *c.part, "the march", e);
     c.at = mem_array(p->nodes, 3 * sizeof *c.at, "the march", e);

@@ -54,11 +54,14 @@ typedef struct march_muscle {
 enum { MARCH_SECOND = 1 << 30 };
 
 /* A cell that is not plain: of another law, contracting, mixed, or not all tissue. What it has is multiplied by its
- * share of tissue, and a muscle's peak by the muscle's share of the cell. What most of them need comes first. */
+ * share of tissue, and a muscle's peak by the muscle's share of the cell. What most of them need comes first. `second`
+ * is what holds modes under isotropic control; else, of the Mooney-Rivlin form 2 c01, of `first` 4 c2, and `more` 6 c3,
+ * 8 c4, 10 c5. */
 typedef struct march_cell {
-    float mu, bulk, hourglass, peak; /* Pa; hourglass: isotropic control's, others need none; peak: of the first of: */
-    march_muscle muscle[2];          /* of its volumes, those that may contract */
-    float second_peak, unused[3];
+    float mu, bulk, second, peak; /* Pa; second: below; peak: of the first of: */
+    march_muscle muscle[2];       /* of its volumes, those that may contract */
+    float second_peak, more[3];
+    float family[4]; /* of fibres that resist being stretched: k1, k2, kappa, angle (rad) */
 } march_cell;
 
 /* An element of a tip. */
@@ -82,6 +85,10 @@ typedef struct march {
     int32_t *detail;  /* layers + MARCH_AHEAD: where its special cells stand in `which`, in layers; or -1 */
     int32_t *which;   /* details x MARCH_THREADS: in cell, from 1 on; 0: none */
     march_cell *cell;
+    bool curved;     /* some cell's `more` is not 0, or would be if it were special */
+    int families;    /* of fibres that resist being stretched, the most of a cell */
+    uint32_t *along; /* ((layers + MARCH_AHEAD) x MARCH_THREADS + tips x 8) x 2: the directions of cells' and of
+                      * tips' elements' (march_cells.h); NULL: there are none */
     int64_t tips;
     int32_t tip_first; /* where the first of them stands */
     march_tip *tip;    /* tips x 8; NULL: there are none */

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "mesh/lattice.h"
 #include "tled/cuda/lattice_sheet.h"
+#include "tled/cuda/march_cells.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,8 +15,10 @@ static int corner_of(const march *m, int c)
     return at[m->axis[0]] + 2 * at[m->axis[1]] + 4 * at[m->axis[2]];
 }
 
+/* to: of the tip; its elements' directions go where those of tips stand. */
 static void put_tip(const march *m, const tled_problem *p, int32_t node, const int32_t *special, march_tip *to)
 {
+    const int64_t along = march_along_tips(m) + (to - m->tip);
     for (int i = 0; i < 8; i++) {
         const int32_t corner = p->corner[8 * (int64_t)node + i], element = corner / 8;
         to[i] = (march_tip){.corner = -1};
@@ -23,6 +26,8 @@ static void put_tip(const march *m, const tled_problem *p, int32_t node, const i
             continue;
         to[i].corner = corner_of(m, corner % 8);
         to[i].special = special[element];
+        if (m->families)
+            march_along_put(m, p, element, along + i);
         for (int c = 0; c < 8; c++)
             to[i].node[corner_of(m, c)] = m->order[p->element_node[8 * (int64_t)element + c]];
     }

@@ -3,7 +3,6 @@
 #include "base/mem.h"
 #include "tled/cuda/lattice_sheet.h"
 #include "tled/cuda/places.h"
-#include "tled/cuda/tile_pack.h"
 #include "tled/cuda/tile_split.h"
 
 #include <stdlib.h>

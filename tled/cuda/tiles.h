@@ -10,7 +10,7 @@
  * Where a slit comes to a brick, two nodes of one part may have the same place, or two elements the same cell. Such a
  * brick is cut into several tiles: one for each sheet (lattice_sheet.h) of its nodes, and listed ones for the nodes at
  * the end of the slit. A listed tile's cells find their corners by the same constants, but stand where there is room
- * in the grid (tile_pack.h); so a node may have several places, one of which is its own, and the others are as a halo
+ * in the grid (tile_split.h); so a node may have several places, one of which is its own, and the others are as a halo
  * node's, even if the tile owns it. A list says which cells a node has, and which of their corners it is. Seen along
  * the slit's edge:
  *

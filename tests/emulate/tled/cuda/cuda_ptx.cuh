@@ -20,6 +20,10 @@ static inline void send_both(uint32_t to, const float4 *from, bool is, uint32_t 
     send(to, from, is);
     send(other_to, other, is_other);
 }
+static inline uint2 load_once(const uint2 *from)
+{
+    return *from;
+}
 void sent();
 void emulated_arrived(int but_for);
 template <int N> static inline void arrived()
@@ -58,6 +62,15 @@ static inline float near_log2(float x)
 static inline float near_inverse(float x)
 {
     return 1 / x;
+}
+static inline float near_root_inverse(float x)
+{
+    return 1 / sqrtf(x);
+}
+static inline void near_turn(float x, float *sine, float *cosine)
+{
+    *sine = sinf(x);
+    *cosine = cosf(x);
 }
 static inline float near_exp2(float x)
 {
